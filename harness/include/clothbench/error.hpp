@@ -1,0 +1,23 @@
+#pragma once
+#include <stdexcept>
+#include <string>
+
+namespace clothbench {
+
+/// Process exit codes of the `clothbench` command.
+enum class ExitCode : int { Ok = 0, CheckFailed = 1, BadInput = 2, NoDevice = 3, Interrupted = 130 };
+
+/// The one exception type of the project. The message is complete as it stands: it names the file and JSON pointer,
+/// the argument, or the Vulkan call, and what was expected. A solver that blows up is not an error but a result
+/// (StepStatus).
+class Error : public std::runtime_error {
+ public:
+  explicit Error(const std::string& message, ExitCode code = ExitCode::BadInput)
+      : std::runtime_error(message), code_(code) {}
+  ExitCode code() const { return code_; }
+
+ private:
+  ExitCode code_;
+};
+
+}  // namespace clothbench

@@ -1,0 +1,70 @@
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace clothbench {
+
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// How a cell ended. `status` is one of ok, not_finite, diverged, device_lost, timed_out, unsupported, error.
+struct Outcome {
+  std::string status = "ok";
+  std::string klass = "ok";  ///< F0..F8 or ok
+  int failed_frame = -1;
+  std::string message;
+};
+
+struct StageRecord {
+  std::string name;
+  std::vector<std::string> serves;
+  int dispatches = 0;
+};
+
+/// What is known of a cell before its first frame. Serialised as JSON (`to_json`) in raw files and as attributes in
+/// HDF5.
+struct CellHeader {
+  std::string scene, solver, setting;  ///< setting: short name such as "default" or "readback=blocking"
+  nlohmann::json settings;             ///< complete
+  std::string scenario_json, scenario_sha256;
+  std::vector<StageRecord> stages;
+  nlohmann::json plan;         ///< buffers, left out
+  nlohmann::json environment;  ///< gpu, driver, cpu, compiler, commit, clock policy, ...
+  std::uint32_t vertices = 0;
+  std::vector<std::uint32_t> triangles;  ///< 3 per triangle
+  double load_s = kMissing;              ///< wall time of load()
+};
+
+/// Series over the frames of one timed trial; the sizes of all vectors agree: frames, or frames*stages row-major.
+struct TimedTrial {
+  int index = 0;
+  std::vector<double> frame_wall_s, frame_device_s;
+  std::vector<double> stage_device_s, stage_read_B, stage_write_B;  ///< (frame, stage)
+  int frames() const { return static_cast<int>(frame_wall_s.size()); }
+};
+
+struct MetricSeries {
+  std::string name, units, long_name;
+  std::vector<double> values;  ///< one per stored frame, frame 0 = initial state
+};
+
+/// The untimed pass that positions and metrics come from.
+struct AccuracyPass {
+  std::vector<double> time_s;          ///< frames+1
+  std::vector<float> position;         ///< (frames+1, vertices, 3)
+  std::vector<MetricSeries> metrics;
+};
+
+/// One cell: one scene x one solver x one setting. What a result file holds.
+struct CellRecord {
+  CellHeader header;
+  std::vector<TimedTrial> trials;
+  AccuracyPass accuracy;
+  Outcome outcome;
+  std::map<std::string, double> summary;  ///< every scalar a table prints; NaN = missing
+};
+
+}  // namespace clothbench

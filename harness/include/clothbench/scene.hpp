@@ -1,0 +1,88 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clothbench/feature.hpp"
+
+namespace clothbench {
+
+using Vec3 = std::array<double, 3>;
+
+/// How the paper's "single-sided" and "double-sided" cloths are told apart; see docs of `cloth.sides` in the schema.
+enum class Sides { Single, DoubleDuplicated, Double };
+
+/// Rectangular sheet. Vertex (i, j) has index j*columns + i, material coordinates (i*du, j*dv), and lies in the plane
+/// spanned by `axis_u` and `axis_v` (orthonormal) around `center_m`.
+struct Cloth {
+  int columns = 0, rows = 0;      ///< vertices along u and v, each >= 2
+  double width_m = 0, height_m = 0;  ///< rest length along u and v
+  double areal_density_kg_per_m2 = 0;
+  Sides sides = Sides::Single;
+  Vec3 center_m{}, axis_u{}, axis_v{};
+  Vec3 initial_velocity_m_per_s{};
+
+  std::size_t vertex_count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  double du() const { return width_m / (columns - 1); }
+  double dv() const { return height_m / (rows - 1); }
+};
+
+/// Continuum data only; every solver maps it onto its own model and says how (its README).
+struct Material {
+  std::optional<double> membrane_stiffness_N_per_m;  ///< Y = E h; empty = inextensible
+  double bending_rigidity_N_m = 0;                   ///< B; 0 = bending off
+  double damping_per_s = 0;                          ///< mass-proportional: dv/dt = -c v
+};
+
+/// Vertices held at their initial position for the whole run.
+struct Pins {
+  std::vector<std::uint32_t> vertices;
+};
+
+struct TimeSpan {
+  double frame_rate_hz = 0;
+  double duration_s = 0;
+  double dt() const { return 1.0 / frame_rate_hz; }
+  int frames() const { return static_cast<int>(duration_s * frame_rate_hz + 0.5); }
+};
+
+/// The completed scene: what runs and what is stored. Plain data, SI units, right-handed, +y up.
+struct Scene {
+  std::string name, why;
+  Cloth cloth;
+  Material material;
+  Pins pins;
+  Vec3 gravity_m_per_s2{};
+  TimeSpan time;
+  FeatureSet needs;
+  std::string json;    ///< completed scenario, canonical dump
+  std::string sha256;  ///< of `json`
+  std::string source;  ///< path of the file it came from, for messages
+
+  Vec3 rest_position(int i, int j) const;
+};
+
+/// Lumped vertex masses [kg], size vertex_count: quarter of each adjacent cell ("quad-lumped": interior rho*du*dv,
+/// edge half, corner quarter).
+std::vector<double> vertex_masses(const Scene&);
+
+/// Initial positions [m], size 3*vertex_count, xyz interleaved.
+std::vector<double> initial_positions(const Scene&);
+
+/// Triangles of the render and metric mesh, 3 indices each, 2 per cell, all wound alike (normal = axis_u x axis_v).
+std::vector<std::array<std::uint32_t, 3>> triangles(const Cloth&);
+
+enum class EdgeKind : std::uint8_t { Structural, Shear, SkipOne };
+struct Edge {
+  std::uint32_t a, b;
+  double rest_m;
+  EdgeKind kind;
+};
+
+/// Grid edges of one kind with their rest lengths, in a fixed order.
+std::vector<Edge> edges(const Cloth&, EdgeKind);
+
+}  // namespace clothbench

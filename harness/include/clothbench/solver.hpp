@@ -1,0 +1,131 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "clothbench/feature.hpp"
+#include "clothbench/scene.hpp"
+
+namespace clothbench {
+
+/// One knob of a solver. `default_json` is a JSON literal and fixes the type.
+struct SettingSpec {
+  std::string name, default_json, doc;
+};
+
+/// What a backend is and can do. A scene feature outside `supports | ignores` makes the cell an `unsupported` row.
+struct SolverInfo {
+  std::string name;       ///< as on the command line: "xpbd"
+  std::string folder;     ///< where it lives: "solvers/pbd-gpu"
+  std::string summary;    ///< one line
+  std::string version;
+  std::string precision;  ///< "float32" or "float64"
+  bool on_gpu = false;
+  FeatureSet supports;
+  FeatureSet ignores;     ///< runs without serving these, and every table says so (only `ballistic` does)
+  std::vector<SettingSpec> settings;
+};
+
+/// The device a solver runs on; the CPU for CPU solvers.
+struct DeviceInfo {
+  std::string name, driver, api;
+  bool is_software = false;  ///< a CPU rasteriser such as lavapipe: good for correctness, not for speed claims
+  std::string properties_json = "{}";  ///< everything the API tells of it
+};
+
+enum class StepStatus { Ok, NotFinite, Diverged, DeviceLost, TimedOut };
+
+/// One stage of a frame as the solver declares it after `load`. `serves` ties the stage to the scene's needs: empty
+/// for what every frame does (integration), otherwise only features the scene asked for.
+struct StagePlan {
+  std::string name;
+  FeatureSet serves;
+  int dispatches = 0;        ///< per frame; 0 on a CPU
+  double read_B = 0, write_B = 0;  ///< shader-logical bytes per frame, counted, not modelled; NaN on a CPU
+};
+
+struct BufferPlan {
+  std::string name;
+  std::uint64_t bytes = 0;
+  bool device_local = true;
+};
+
+struct LeftOut {
+  std::string what, why;
+};
+
+/// Everything `load` set up for this scene and nothing else.
+struct Plan {
+  std::vector<StagePlan> stages;
+  std::vector<BufferPlan> buffers;
+  std::vector<LeftOut> left_out;
+};
+
+/// Cost of the last step. Device times are NaN where the device has no timestamps or the solver runs on the CPU.
+struct FrameCost {
+  double device_s;                    ///< first to last timestamp
+  std::vector<double> stage_device_s; ///< one per StagePlan, same order
+  std::vector<double> stage_read_B, stage_write_B;
+};
+
+/// What changes in a frame. Times are those at the frame's end.
+struct FrameInput {
+  int index = 0;
+  double time_s = 0;
+  double dt_s = 0;
+};
+
+/// Positions [m] and velocities [m/s], xyz interleaved, scene vertex order.
+struct ClothState {
+  std::vector<double> position, velocity;
+};
+
+/// Options of the run that are not the solver's own.
+struct DeviceOptions {
+  int index = -1;           ///< -1: best present
+  bool validation = false;  ///< Vulkan core + synchronization validation; any message makes the run fail
+};
+
+/// A cloth backend. Life: construct -> load -> (reset -> step...)*. Never sees a metric, a clock or a file.
+class ClothSolver {
+ public:
+  virtual ~ClothSolver() = default;
+  virtual const SolverInfo& info() const = 0;
+  virtual DeviceInfo device() const = 0;
+  /// Allocates for this scene and nothing else, and puts the cloth in its initial state. Throws Error on a missing
+  /// device. `scene` outlives the solver's use of it.
+  virtual void load(const Scene& scene) = 0;
+  /// Back to the initial state of the loaded scene, bit for bit.
+  virtual void reset() = 0;
+  /// One displayed frame, complete on return (the device has finished).
+  virtual StepStatus step(const FrameInput&) = 0;
+  virtual void read_state(ClothState&) const = 0;
+  virtual FrameCost last_cost() const = 0;
+  virtual Plan plan() const = 0;
+  /// Messages of the validation layer so far; 0 where there is none.
+  virtual int validation_messages() const { return 0; }
+};
+
+/// What a solver folder registers: its description and how to make one. `settings` is complete: every SettingSpec
+/// is present with its declared type.
+struct SolverEntry {
+  SolverInfo info;
+  std::function<std::unique_ptr<ClothSolver>(const nlohmann::json& settings, const DeviceOptions&)> make;
+  /// Exact velocity-update order of the integrator, for the free-fall check: position after n frames of a body
+  /// that only falls, relative to its start [m] (vertical component, downwards negative).
+  std::function<double(const Scene&, const nlohmann::json& settings, int frames)> free_fall_m;
+};
+
+/// All registered solvers, in registration order (solvers/CMakeLists.txt).
+const std::vector<SolverEntry>& solvers();
+/// Throws Error naming the nearest known solver.
+const SolverEntry& find_solver(const std::string& name);
+/// Fills in defaults; throws Error on an unknown key (with the nearest known one) or a wrong type.
+nlohmann::json complete_settings(const SolverInfo&, const nlohmann::json& given);
+/// Nearest of `known` by edit distance, for messages; empty if none is near.
+std::string nearest(const std::string& word, const std::vector<std::string>& known);
+
+}  // namespace clothbench
