@@ -1,0 +1,58 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clothbench/record.hpp"
+
+namespace clothbench {
+
+/// "<scene>__<solver>__<setting>", with characters outside [A-Za-z0-9._=-] replaced by '-'.
+std::string cell_name(const CellHeader&);
+
+/// Writes one cell, crash-safe. Every finished trial is one raw file `<dir>/<cell>.part/trial-<k>.raw` (written under
+/// another name, fsync, rename), the accuracy pass one `accuracy.raw`. `finish` turns them into
+/// `<dir>/<cell>.h5` + `<cell>.xdmf` (tmp + fsync + rename) and removes the part folder; without HDF5 the part folder
+/// stays, with `outcome.raw` beside the trials. SIGKILL at any moment loses at most what has not been handed over.
+class CellWriter {
+ public:
+  CellWriter(std::filesystem::path dir, CellHeader header);
+  void write_trial(const TimedTrial&);
+  void write_accuracy(const AccuracyPass&);
+  /// Returns the path of the finished file (the .h5, or the part folder without HDF5).
+  std::filesystem::path finish(const Outcome&, const std::map<std::string, double>& summary);
+  /// What an interrupted run of the same cell left here (same scenario_sha256 and settings; anything else is an
+  /// Error naming both): trials and accuracy pass, already valid.
+  CellRecord recovered() const;
+
+ private:
+  std::filesystem::path dir_;
+  CellHeader header_;
+};
+
+/// True if `<dir>/<cell>.h5` (or, without HDF5, `outcome.raw` in its part folder) exists.
+bool cell_finished(const std::filesystem::path& dir, const std::string& cell);
+
+/// Reads a finished file (.h5) or a part folder. Throws Error naming the file and what is wrong with it.
+CellRecord read_cell(const std::filesystem::path&);
+
+/// Without the trajectory: what tables need. Cheap also for large cells.
+CellRecord read_cell_summary(const std::filesystem::path&);
+
+/// Part folders of a run made without HDF5 -> the same .h5 a direct run gives. Returns the new files.
+std::vector<std::filesystem::path> import_raw(const std::filesystem::path& dir_or_part);
+
+/// `<dir>/study.json`: what the folder is. Written tmp + fsync + rename.
+struct StudyManifest {
+  std::string study, created, command_line;
+  nlohmann::json definition;        ///< completed study file
+  std::vector<std::string> cells;   ///< names of all planned cells, in order
+};
+void write_manifest(const std::filesystem::path& dir, const StudyManifest&);
+StudyManifest read_manifest(const std::filesystem::path& dir);
+
+/// tmp + fsync + rename + fsync of the folder.
+void write_file_atomically(const std::filesystem::path&, const std::string& content);
+
+}  // namespace clothbench
