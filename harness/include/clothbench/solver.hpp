@@ -117,6 +117,8 @@ struct SolverEntry {
   /// Exact velocity-update order of the integrator, for the free-fall check: position after n frames of a body
   /// that only falls, relative to its start [m] (vertical component, downwards negative).
   std::function<double(const Scene&, const nlohmann::json& settings, int frames)> free_fall_m;
+  /// Devices this backend could run on, in the order of --device; empty function = the CPU alone.
+  std::function<std::vector<DeviceInfo>()> devices = nullptr;
 };
 
 /// All registered solvers, in registration order (solvers/CMakeLists.txt).
