@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Installs what clothbench needs from Debian 12, and only what is missing. Sourced or run by run.sh and test.sh.
+#   scripts/bootstrap.sh [--tests]     --tests: also what only the tests use
+set -euo pipefail
+
+packages=(g++ cmake ninja-build ccache
+          glslc spirv-tools libvulkan-dev mesa-vulkan-drivers
+          libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libvalijson-dev libhdf5-dev libcli11-dev
+          libfmt-dev libcgal-dev libtinygltf-dev libtinyobjloader-dev
+          python3-h5py python3-matplotlib git)
+if [ "${1:-}" = --tests ]; then
+  packages+=(libgtest-dev vulkan-validationlayers hdf5-tools python3-xarray python3-h5netcdf)
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+  echo "set-up: every package is there"
+  exit 0
+fi
+echo "set-up: installing ${missing[*]}"
+sudo=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "set-up: run as root or install sudo (needed: apt-get install ${missing[*]})" >&2; exit 1; }
+  sudo=(sudo)
+fi
+log=$(mktemp)
+export DEBIAN_FRONTEND=noninteractive
+install() { "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"; }
+if ! { "${sudo[@]}" apt-get update && install; } >"$log" 2>&1; then
+  tail -20 "$log" >&2
+  echo "set-up: apt-get failed (whole output: $log)" >&2
+  exit 1
+fi
+rm -f "$log"
