@@ -1,0 +1,47 @@
+#include <cmath>
+
+#include "metrics/metric.hpp"
+
+namespace clothbench {
+namespace {
+
+/// Calls fn(strain) for every structural edge of the grid.
+template <class Fn>
+void for_each_strain(const Cloth& c, const ClothState& state, Fn fn) {
+  const auto strain = [&](std::size_t a, std::size_t b, double rest) {
+    const double* p = &state.position[3 * a];
+    const double* q = &state.position[3 * b];
+    return std::hypot(q[0] - p[0], q[1] - p[1], q[2] - p[2]) / rest - 1;
+  };
+  const auto columns = static_cast<std::size_t>(c.columns), rows = static_cast<std::size_t>(c.rows);
+  for (std::size_t j = 0; j < rows; ++j)
+    for (std::size_t i = 0; i < columns; ++i) {
+      const std::size_t v = j * columns + i;
+      if (i + 1 < columns) fn(strain(v, v + 1, c.du()));
+      if (j + 1 < rows) fn(strain(v, v + columns, c.dv()));
+    }
+}
+
+double edge_count(const Cloth& c) { return (c.columns - 1.0) * c.rows + (c.rows - 1.0) * c.columns; }
+
+}  // namespace
+
+double stretch_max(const MetricContext& c, int, const ClothState& state) {
+  double most = -1;
+  for_each_strain(c.scene.cloth, state, [&](double e) { most = max_or_nan(most, e); });
+  return most;
+}
+
+double stretch_rms(const MetricContext& c, int, const ClothState& state) {
+  double sum = 0;
+  for_each_strain(c.scene.cloth, state, [&](double e) { sum += e * e; });
+  return std::sqrt(sum / edge_count(c.scene.cloth));
+}
+
+double stretch_mean(const MetricContext& c, int, const ClothState& state) {
+  double sum = 0;
+  for_each_strain(c.scene.cloth, state, [&](double e) { sum += e; });
+  return sum / edge_count(c.scene.cloth);
+}
+
+}  // namespace clothbench

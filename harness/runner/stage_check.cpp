@@ -1,0 +1,20 @@
+#include "runner/stage_check.hpp"
+
+namespace clothbench {
+
+std::string check_stages(const Scene& scene, const SolverInfo& info, const Plan& plan) {
+  std::string fault;
+  const FeatureSet implied = scene.needs - info.ignores;
+  FeatureSet served;
+  for (const StagePlan& stage : plan.stages) {
+    served |= stage.serves;
+    (stage.serves - implied).for_each([&](Feature f) {
+      fault += "stage " + stage.name + " serves " + std::string(name_of(f)) + ", which the scene does not need; ";
+    });
+  }
+  (implied - served).for_each([&](Feature f) { fault += "no stage serves " + std::string(name_of(f)) + "; "; });
+  if (plan.stages.empty()) fault += "no stage at all; ";
+  return fault.empty() ? fault : fault.substr(0, fault.size() - 2);
+}
+
+}  // namespace clothbench

@@ -1,0 +1,126 @@
+// One message from valijson's many: the deepest violation, with what was expected in its place.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+
+#include "clothbench/error.hpp"
+#include "clothbench/solver.hpp"
+#include "scenario/json_text.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+const json& resolve(const json& schema, const json& root) {
+  if (!schema.contains("$ref")) return schema;
+  return root.at(json::json_pointer(schema["$ref"].get<std::string>().substr(1)));
+}
+
+std::string pointer_of(const std::vector<std::string>& context) {
+  std::string pointer;
+  for (std::size_t i = 1; i < context.size(); ++i) {
+    std::string part = context[i];
+    if (part.size() >= 2 && part.front() == '[' && part.back() == ']') part = part.substr(1, part.size() - 2);
+    pointer += "/" + part;
+  }
+  return pointer;
+}
+
+/// Sub-schema a pointer leads to; null where the schema says nothing of it.
+json schema_at(const json& root, const std::string& pointer) {
+  json s = root;
+  std::size_t i = 1;
+  while (i < pointer.size()) {
+    const std::size_t end = std::min(pointer.find('/', i), pointer.size());
+    const std::string part = pointer.substr(i, end - i);
+    s = json(resolve(s, root));
+    if (s.contains("properties") && s["properties"].contains(part)) s = json(s["properties"][part]);
+    else if (s.contains("items")) s = json(s["items"]);
+    else return json();
+    i = end + 1;
+  }
+  return json(resolve(s, root));
+}
+
+std::string expectation(const json& s) {
+  if (!s.is_object()) return "";
+  std::vector<std::string> parts;
+  if (s.contains("type")) parts.push_back(s["type"].is_string() ? s["type"].get<std::string>() : s["type"].dump());
+  if (s.contains("enum")) parts.push_back("one of " + s["enum"].dump());
+  if (s.contains("minimum")) parts.push_back(">= " + s["minimum"].dump());
+  if (s.contains("exclusiveMinimum")) parts.push_back("> " + s["exclusiveMinimum"].dump());
+  if (s.contains("maximum")) parts.push_back("<= " + s["maximum"].dump());
+  if (s.contains("minItems") && s.contains("maxItems") && s["minItems"] == s["maxItems"]) parts.push_back(s["minItems"].dump() + " items");
+  else if (s.contains("minItems")) parts.push_back("at least " + s["minItems"].dump() + " items");
+  else if (s.contains("maxItems")) parts.push_back("at most " + s["maxItems"].dump() + " items");
+  if (s.contains("minLength")) parts.push_back("at least " + s["minLength"].dump() + " characters");
+  if (s.contains("pattern")) parts.push_back("matching " + s["pattern"].get<std::string>());
+  std::string text;
+  for (const std::string& p : parts) text += (text.empty() ? "" : ", ") + p;
+  return text;
+}
+
+/// First key of an object that its schema does not know, with the nearest known one; searched depth first, because
+/// valijson names only the object.
+std::string unknown_key(const json& value, const json& schema, const json& root, const std::string& pointer) {
+  const json s = json(resolve(schema, root));
+  if (value.is_object() && s.contains("properties")) {
+    const json& known = s["properties"];
+    for (const auto& [key, sub] : value.items()) {
+      if (known.contains(key)) {
+        if (std::string found = unknown_key(sub, known[key], root, pointer + "/" + key); !found.empty()) return found;
+      } else if (s.value("additionalProperties", json(true)) == json(false)) {
+        std::vector<std::string> names;
+        for (const auto& [name, unused] : known.items()) names.push_back(name);
+        const std::string near = nearest(key, names);
+        return fmt::format("{}/{}: unknown key{}", pointer, key, near.empty() ? "" : "; nearest known: " + near);
+      }
+    }
+  }
+  if (value.is_array() && s.contains("items"))
+    for (std::size_t i = 0; i < value.size(); ++i)
+      if (std::string found = unknown_key(value[i], s["items"], root, fmt::format("{}/{}", pointer, i)); !found.empty()) return found;
+  return "";
+}
+
+std::string missing_key(const json& value, const json& schema) {
+  if (!value.is_object() || !schema.is_object() || !schema.contains("required")) return "";
+  for (const auto& key : schema["required"])
+    if (!value.contains(key.get<std::string>())) return key.get<std::string>();
+  return "";
+}
+
+}  // namespace
+
+void validate_json(const nlohmann::json& value, const std::string& schema_text, const std::string& source) {
+  const json schema_json = json::parse(schema_text);
+  if (const std::string fault = unknown_key(value, schema_json, schema_json, ""); !fault.empty()) throw Error(source + ": " + fault);
+
+  valijson::Schema schema;
+  valijson::SchemaParser parser;
+  valijson::adapters::NlohmannJsonAdapter schema_adapter(schema_json), value_adapter(value);
+  parser.populateSchema(schema_adapter, schema);
+  valijson::Validator validator;
+  valijson::ValidationResults results;
+  if (validator.validate(schema, value_adapter, &results)) return;
+
+  std::vector<std::string> deepest;
+  for (valijson::ValidationResults::Error e; results.popError(e);)
+    if (e.context.size() > deepest.size()) deepest = e.context;
+  const std::string pointer = pointer_of(deepest);
+  const json sub = schema_at(schema_json, pointer);
+  const json found = value.at(json::json_pointer(pointer));
+  if (const std::string key = missing_key(found, sub); !key.empty())
+    throw Error(fmt::format("{}: {}: \"{}\" is missing", source, pointer.empty() ? "/" : pointer, key));
+  std::string shown = found.dump();
+  if (shown.size() > 60) shown = shown.substr(0, 60) + "…";
+  throw Error(fmt::format("{}: {}: expected {}; found {}", source, pointer.empty() ? "/" : pointer, expectation(sub), shown));
+}
+
+}  // namespace clothbench

@@ -1,0 +1,181 @@
+#include "scenario/load.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <set>
+
+#include "scenario/json_text.hpp"
+#include "scenario/paths.hpp"
+#include "scenario/sha256.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostVertices = std::size_t{1} << 22;
+constexpr double kMostFrames = 1e7;
+
+Vec3 vec3(const json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
+
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// Message of every check below: where, and what was expected.
+[[noreturn]] void refuse(const std::string& source, const std::string& pointer, const std::string& expected) {
+  throw Error(source + ": " + pointer + ": " + expected);
+}
+
+std::uint32_t corner(const Cloth& c, const std::string& name) {
+  const int i = name[1] == '1' ? c.columns - 1 : 0, j = name[3] == '1' ? c.rows - 1 : 0;
+  return static_cast<std::uint32_t>(j * c.columns + i);
+}
+
+void add_edge(const Cloth& c, const std::string& edge, std::set<std::uint32_t>& out) {
+  const bool along_v = edge[0] == 'u';
+  const int fixed = edge[1] == '0' ? 0 : (along_v ? c.columns : c.rows) - 1;
+  for (int k = 0; k < (along_v ? c.rows : c.columns); ++k)
+    out.insert(static_cast<std::uint32_t>(along_v ? k * c.columns + fixed : fixed * c.columns + k));
+}
+
+Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
+  std::set<std::uint32_t> pinned;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const json& pin = list[k];
+    if (pin.contains("corners"))
+      for (const auto& name : pin["corners"]) pinned.insert(corner(c, name.get<std::string>()));
+    if (pin.contains("edge")) add_edge(c, pin["edge"].get<std::string>(), pinned);
+    if (pin.contains("vertices"))
+      for (std::size_t v = 0; v < pin["vertices"].size(); ++v) {
+        const auto index = pin["vertices"][v].get<std::uint64_t>();
+        if (index >= c.vertex_count())
+          refuse(source, fmt::format("/pins/{}/vertices/{}", k, v), fmt::format("vertex {} of {} (the first is 0)", index, c.vertex_count()));
+        pinned.insert(static_cast<std::uint32_t>(index));
+      }
+  }
+  return {{pinned.begin(), pinned.end()}};
+}
+
+Cloth read_cloth(const json& j, const std::string& source) {
+  Cloth c;
+  c.columns = j["grid"][0].get<int>();
+  c.rows = j["grid"][1].get<int>();
+  if (c.vertex_count() > kMostVertices)
+    refuse(source, "/cloth/grid", fmt::format("at most {} vertices; found {}", kMostVertices, c.vertex_count()));
+  c.width_m = j["size_m"][0].get<double>();
+  c.height_m = j["size_m"][1].get<double>();
+  c.areal_density_kg_per_m2 = j["areal_density_kg_per_m2"].get<double>();
+  const auto sides = j["sides"].get<std::string>();
+  c.sides = sides == "single" ? Sides::Single : sides == "double" ? Sides::Double : Sides::DoubleDuplicated;
+  c.center_m = vec3(j["pose"]["center_m"]);
+  c.axis_u = vec3(j["pose"]["axis_u"]);
+  c.axis_v = vec3(j["pose"]["axis_v"]);
+  c.initial_velocity_m_per_s = vec3(j["initial_velocity_m_per_s"]);
+  constexpr double kOrthonormal = 1e-9;
+  for (const char* name : {"axis_u", "axis_v"}) {
+    const Vec3 a = vec3(j["pose"][name]);
+    if (!(std::abs(dot(a, a) - 1) <= kOrthonormal)) refuse(source, std::string("/cloth/pose/") + name, "expected a vector of length 1");
+  }
+  if (!(std::abs(dot(c.axis_u, c.axis_v)) <= kOrthonormal)) refuse(source, "/cloth/pose/axis_v", "expected a vector at right angles to axis_u");
+  return c;
+}
+
+void check_assumed(const json& scenario, const std::string& source) {
+  for (std::size_t k = 0; k < scenario["assumed"].size(); ++k) {
+    const auto entry = scenario["assumed"][k].get<std::string>();
+    if (entry[0] != '/') continue;
+    bool found = false;
+    try {
+      found = scenario.contains(json::json_pointer(entry));
+    } catch (const json::exception&) {
+    }
+    if (!found) refuse(source, fmt::format("/assumed/{}", k), "\"" + entry + "\" points at nothing in this scene");
+  }
+}
+
+}  // namespace
+
+std::filesystem::path scenario_root() {
+  if (const char* folder = std::getenv("CLOTHBENCH_SCENARIOS"); folder != nullptr && *folder != '\0') return folder;
+  return kScenarioRoot;
+}
+
+std::filesystem::path find_scenario(const std::string& name_or_path) {
+  std::error_code ec;
+  if (std::filesystem::is_regular_file(name_or_path, ec)) return name_or_path;
+  for (const char* folder : {"", "studies/"}) {
+    const std::filesystem::path named = scenario_root() / (folder + name_or_path + ".json");
+    if (std::filesystem::is_regular_file(named, ec)) return named;
+  }
+  if (std::filesystem::exists(name_or_path, ec)) return name_or_path;
+  throw Error(fmt::format("{}: no such file, nor a scene or study of that name in {}", name_or_path, scenario_root().string()));
+}
+
+FeatureSet derive_needs(const Scene& scene) {
+  FeatureSet needs = {Feature::Stretch, Feature::Shear};
+  if (scene.material.bending_rigidity_N_m > 0) needs.add(Feature::Bend);
+  if (scene.material.damping_per_s > 0) needs.add(Feature::Damping);
+  if (!scene.pins.vertices.empty()) needs.add(Feature::Pins);
+  if (scene.cloth.sides == Sides::DoubleDuplicated) needs.add(Feature::DuplicatedLayer);
+  // Two-sided contact is a matter of contact: with nothing to touch there is nothing to do for it.
+  if (scene.cloth.sides == Sides::Double && !(needs & kColliderFeatures).empty()) needs.add(Feature::DoubleSided);
+  return needs;
+}
+
+void apply_override(json& scenario, const std::string& assignment, const std::string& source) {
+  const auto eq = assignment.find('=');
+  if (eq == std::string::npos || eq == 0) throw Error("--set " + assignment + ": expected key=value, such as cloth.grid=[64,64]");
+  const std::string text = assignment.substr(eq + 1);
+  const bool has_nan = text.find("NaN") != std::string::npos;
+  json value = json::parse(text, nullptr, false);
+  if (value.is_discarded() && (has_nan || text.empty())) throw Error("--set " + assignment + ": not a JSON value");
+  if (value.is_discarded()) value = text;
+  json* at = &scenario;
+  std::string pointer;
+  std::size_t i = 0;
+  const std::string path = assignment.substr(0, eq);
+  while (i <= path.size()) {
+    const std::size_t dot_at = std::min(path.find('.', i), path.size());
+    const std::string key = path.substr(i, dot_at - i);
+    pointer += "/" + key;
+    if (!at->is_object() && !at->is_null()) throw Error(source + ": --set " + assignment + ": " + pointer + ": not an object's key");
+    at = &(*at)[key];
+    i = dot_at + 1;
+  }
+  *at = std::move(value);
+}
+
+Scene scene_from_json(json scenario, const std::string& source, const std::vector<std::string>& overrides) {
+  for (const std::string& o : overrides) apply_override(scenario, o, source);
+  validate_json(scenario, kSceneSchema, source);
+  fill_defaults(scenario, kSceneSchema);
+  check_assumed(scenario, source);
+
+  Scene s;
+  s.source = source;
+  s.name = scenario["name"].get<std::string>();
+  s.why = scenario["why"].get<std::string>();
+  s.cloth = read_cloth(scenario["cloth"], source);
+  const json& material = scenario["material"];
+  if (material["membrane_stiffness_N_per_m"].is_number())
+    s.material.membrane_stiffness_N_per_m = material["membrane_stiffness_N_per_m"].get<double>();
+  s.material.bending_rigidity_N_m = material["bending_rigidity_N_m"].get<double>();
+  s.material.damping_per_s = material["damping_per_s"].get<double>();
+  s.pins = read_pins(scenario["pins"], s.cloth, source);
+  s.gravity_m_per_s2 = vec3(scenario["gravity_m_per_s2"]);
+  s.time = {scenario["time"]["frame_rate_hz"].get<double>(), scenario["time"]["duration_s"].get<double>()};
+  if (!(s.time.duration_s * s.time.frame_rate_hz <= kMostFrames)) refuse(source, "/time/duration_s", fmt::format("at most {} frames", kMostFrames));
+  if (s.time.frames() < 1) refuse(source, "/time/duration_s", "at least one frame");
+  s.needs = derive_needs(s);
+  s.json = scenario.dump();
+  s.sha256 = sha256(s.json);
+  return s;
+}
+
+Scene load_scene(const std::string& name_or_path, const std::vector<std::string>& overrides) {
+  const std::filesystem::path file = find_scenario(name_or_path);
+  return scene_from_json(parse_json(read_text(file), file.string()), file.string(), overrides);
+}
+
+}  // namespace clothbench

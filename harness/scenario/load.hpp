@@ -1,0 +1,32 @@
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "clothbench/error.hpp"
+#include "clothbench/scene.hpp"
+
+namespace clothbench {
+
+/// Folder with the scenario files: $CLOTHBENCH_SCENARIOS, else the source tree this was built from.
+std::filesystem::path scenario_root();
+
+/// `name_or_path` as given, or `<scenario_root>/<name>.json`. Throws Error if there is neither.
+std::filesystem::path find_scenario(const std::string& name_or_path);
+
+/// Loads, checks and completes a scene. `overrides` are `dotted.key=JSON` as `--set` takes them. Throws Error: one
+/// message with file, JSON pointer (or line and column) and what was expected.
+Scene load_scene(const std::string& name_or_path, const std::vector<std::string>& overrides = {});
+
+/// The same from parsed JSON; `source` stands in messages.
+Scene scene_from_json(nlohmann::json scenario, const std::string& source, const std::vector<std::string>& overrides = {});
+
+/// Sets `dotted.key` to a JSON value (a bare word counts as a string). The key's parent must exist or be an object of
+/// the scene format; the result is validated afterwards.
+void apply_override(nlohmann::json& scenario, const std::string& assignment, const std::string& source);
+
+/// What the scene asks of a solver.
+FeatureSet derive_needs(const Scene&);
+
+}  // namespace clothbench
