@@ -1,0 +1,165 @@
+#include "gpu_solver.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "clothbench/record.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// A frame that takes longer is taken for lost. Software devices are slow, real ones reset themselves after some 2 s.
+constexpr double kPatience_s = 2, kSoftwarePatience_s = 30;
+
+}  // namespace
+
+std::vector<float> inverse_masses(const Scene& scene) {
+  std::vector<float> w;
+  for (double m : vertex_masses(scene)) w.push_back(static_cast<float>(1 / m));
+  for (std::uint32_t v : scene.pins.vertices) w[v] = 0;
+  return w;
+}
+
+GpuSolver::GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)
+    : info_(std::move(info)), settings_(settings), count_bytes_(count_bytes), device_(vulkan::Device::get(device)) {}
+
+vulkan::Buffer& GpuSolver::add_buffer(const std::string& name, std::uint64_t bytes, std::vector<std::uint8_t> initial) {
+  using vulkan::Buffer;
+  buffers_.push_back(std::make_unique<Buffer>(device_, name, bytes, Buffer::Place::Device));
+  Buffer& buffer = *buffers_.back();
+  plan_.buffers.push_back({name, bytes, true});
+  auto staging = std::make_unique<Buffer>(device_, name + " (initial)", bytes, Buffer::Place::Host);
+  std::memset(staging->mapped(), 0, bytes);
+  std::memcpy(staging->mapped(), initial.data(), std::min<std::size_t>(initial.size(), bytes));
+  plan_.buffers.push_back({staging->name(), bytes, false});
+  upload_->copy(0, *staging, buffer);
+  initials_.push_back({&buffer, std::move(staging)});
+  return buffer;
+}
+
+vulkan::Buffer& GpuSolver::add_vec4_buffer(const std::string& name, const vec4s& initial) {
+  std::vector<std::uint8_t> bytes(initial.size() * sizeof(vec4));
+  std::memcpy(bytes.data(), initial.data(), bytes.size());
+  return add_buffer(name, bytes.size(), bytes);
+}
+
+vulkan::Buffer& GpuSolver::add_host_buffer(const std::string& name, std::uint64_t bytes) {
+  buffers_.push_back(std::make_unique<vulkan::Buffer>(device_, name, bytes, vulkan::Buffer::Place::Host));
+  plan_.buffers.push_back({name, bytes, false});
+  return *buffers_.back();
+}
+
+void GpuSolver::set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m) {
+  origin_m_ = origin_m;
+  const std::uint64_t bytes = scene_->cloth.vertex_count() * sizeof(vec4);
+  read_position_ = std::make_unique<vulkan::Buffer>(device_, "read position", bytes, vulkan::Buffer::Place::Host);
+  read_velocity_ = std::make_unique<vulkan::Buffer>(device_, "read velocity", bytes, vulkan::Buffer::Place::Host);
+  plan_.buffers.push_back({"read position", bytes, false});
+  plan_.buffers.push_back({"read velocity", bytes, false});
+  download_->copy(0, position, *read_position_);
+  download_->copy(0, velocity, *read_velocity_);
+}
+
+int GpuSolver::add_stage(const std::string& name, FeatureSet serves) {
+  plan_.stages.push_back({name, serves, 0, 0, 0});
+  counters_.push_back(count_bytes_ ? &add_buffer("bytes counted in " + name, 8) : nullptr);
+  return static_cast<int>(plan_.stages.size()) - 1;
+}
+
+vulkan::Kernel& GpuSolver::add_kernel(int stage, const Shader& shader, std::vector<vulkan::Binding> bindings, std::uint32_t push_bytes,
+                                      std::vector<std::uint32_t> specialization) {
+  if (count_bytes_) bindings.push_back({counters_[static_cast<std::size_t>(stage)], vulkan::Access::ReadWrite});
+  specialization.insert(specialization.begin(), kGroupSize);
+  kernels_.push_back(std::make_unique<vulkan::Kernel>(device_, shader.name, count_bytes_ ? shader.counted : shader.code,
+                                                      std::move(specialization), std::move(bindings), push_bytes));
+  return *kernels_.back();
+}
+
+void GpuSolver::copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer& to) {
+  frame_->copy(stage, from, to);
+  const auto bytes = static_cast<double>(std::min(from.bytes(), to.bytes()));
+  plan_.stages[static_cast<std::size_t>(stage)].read_B += bytes;
+  plan_.stages[static_cast<std::size_t>(stage)].write_B += bytes;
+}
+
+void GpuSolver::load(const Scene& scene) {
+  scene_ = &scene;
+  frame_ = std::make_unique<vulkan::Program>(device_);
+  upload_ = std::make_unique<vulkan::Program>(device_);
+  download_ = std::make_unique<vulkan::Program>(device_);
+  build();
+  upload_->record(false);
+  download_->record(false);
+  record(scene.time.dt());
+  reset();
+}
+
+void GpuSolver::record(double dt_s) {
+  frame_->clear();
+  for (StagePlan& s : plan_.stages) s.read_B = s.write_B = 0;
+  record_frame(dt_s);
+  for (std::size_t s = 0; s < plan_.stages.size(); ++s) plan_.stages[s].dispatches = frame_->dispatches(static_cast<int>(s));
+  frame_->record(settings_.value("stage_times", false));
+  dt_s_ = dt_s;
+}
+
+StepStatus GpuSolver::run(vulkan::Program& program) const {
+  try {
+    program.run(device_->is_software() ? kSoftwarePatience_s : kPatience_s);
+  } catch (const vulkan::Failure& failure) {
+    if (failure.result() == VK_TIMEOUT) return StepStatus::TimedOut;
+    if (failure.result() == VK_ERROR_DEVICE_LOST) return StepStatus::DeviceLost;
+    throw;
+  }
+  return StepStatus::Ok;
+}
+
+void GpuSolver::reset() { run(*upload_); }
+
+StepStatus GpuSolver::step(const FrameInput& frame) {
+  if (frame.dt_s != dt_s_) record(frame.dt_s);
+  return run(*frame_);
+}
+
+void GpuSolver::read_state(ClothState& state) const {
+  run(*download_);
+  const std::size_t n = scene_->cloth.vertex_count();
+  state.position.resize(3 * n);
+  state.velocity.resize(3 * n);
+  const auto* x = static_cast<const float*>(read_position_->mapped());
+  const auto* v = static_cast<const float*>(read_velocity_->mapped());
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      state.position[3 * i + k] = origin_m_[k] + static_cast<double>(x[4 * i + k]);
+      state.velocity[3 * i + k] = static_cast<double>(v[4 * i + k]);
+    }
+}
+
+FrameCost GpuSolver::last_cost() const {
+  FrameCost cost;
+  cost.device_s = frame_->device_s();
+  cost.stage_device_s = frame_->stage_s(static_cast<int>(plan_.stages.size()));
+  for (const StagePlan& s : plan_.stages) {
+    cost.stage_read_B.push_back(s.read_B);
+    cost.stage_write_B.push_back(s.write_B);
+  }
+  return cost;
+}
+
+Plan GpuSolver::plan() const { return plan_; }
+
+std::vector<Traffic> GpuSolver::counted() {
+  std::vector<Traffic> all;
+  for (vulkan::Buffer* counter : counters_) {
+    vulkan::Buffer host(device_, "counted", 8, vulkan::Buffer::Place::Host);
+    vulkan::Program fetch(device_);
+    fetch.copy(0, *counter, host);
+    fetch.record(false);
+    run(fetch);
+    const auto* bytes = static_cast<const std::uint32_t*>(host.mapped());
+    all.push_back({static_cast<double>(bytes[0]), static_cast<double>(bytes[1])});
+  }
+  return all;
+}
+
+}  // namespace clothbench::pbd_gpu

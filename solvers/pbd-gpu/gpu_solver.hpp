@@ -1,0 +1,106 @@
+#pragma once
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "clothbench/solver.hpp"
+#include "pbd_shared.h"
+#include "shaders.hpp"
+#include "vulkan/program.hpp"
+
+namespace clothbench::pbd_gpu {
+
+inline constexpr std::uint32_t kGroupSize = 64;
+
+/// Bytes of one dispatch, counted from the scene (no contention retries of atomics).
+struct Traffic {
+  double read_B = 0, write_B = 0;
+};
+
+/// What both methods share: device, buffers, one recorded frame submitted again and again, costs. A method fills in
+/// its buffers and its frame.
+class GpuSolver : public ClothSolver {
+ public:
+  GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes);
+
+  const SolverInfo& info() const override { return info_; }
+  DeviceInfo device() const override { return device_->info(); }
+  void load(const Scene& scene) override;
+  void reset() override;
+  StepStatus step(const FrameInput&) override;
+  void read_state(ClothState&) const override;
+  FrameCost last_cost() const override;
+  Plan plan() const override;
+  int validation_messages() const override { return device_->validation_messages(); }
+
+  /// Bytes each stage's instrumented kernels counted since the last call; needs `count_bytes`.
+  std::vector<Traffic> counted();
+
+ protected:
+  using vec4s = std::vector<vec4>;
+
+  /// Buffers and kernels of this scene.
+  virtual void build() = 0;
+  /// The frame of `dt_s` into program().
+  virtual void record_frame(double dt_s) = 0;
+
+  const Scene& scene() const { return *scene_; }
+  const nlohmann::json& settings() const { return settings_; }
+  vulkan::Device& vulkan_device() const { return *device_; }
+
+  /// A device buffer that `reset` fills with these bytes (zeros beyond them).
+  vulkan::Buffer& add_buffer(const std::string& name, std::uint64_t bytes, std::vector<std::uint8_t> initial = {});
+  vulkan::Buffer& add_vec4_buffer(const std::string& name, const vec4s& initial);
+  vulkan::Buffer& add_host_buffer(const std::string& name, std::uint64_t bytes);
+  /// Read back by read_state: the first `vertex_count` vec4 of each.
+  void set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m);
+
+  int add_stage(const std::string& name, FeatureSet serves);
+  vulkan::Kernel& add_kernel(int stage, const Shader& shader, std::vector<vulkan::Binding> bindings, std::uint32_t push_bytes,
+                             std::vector<std::uint32_t> specialization = {});
+  void leave_out(const std::string& what, const std::string& why) { plan_.left_out.push_back({what, why}); }
+
+  template <class Constants>
+  void dispatch(int stage, const vulkan::Kernel& kernel, std::uint64_t items, const Constants& constants, Traffic traffic) {
+    frame_->dispatch(stage, kernel, vulkan::group_count(items, kGroupSize), constants);
+    plan_.stages[static_cast<std::size_t>(stage)].read_B += traffic.read_B;
+    plan_.stages[static_cast<std::size_t>(stage)].write_B += traffic.write_B;
+  }
+  void copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer& to);
+
+ private:
+  struct Initial {
+    const vulkan::Buffer* target;
+    std::unique_ptr<vulkan::Buffer> staging;
+  };
+  void record(double dt_s);
+  StepStatus run(vulkan::Program& program) const;
+
+  const SolverInfo info_;
+  const nlohmann::json settings_;
+  const bool count_bytes_;
+  std::shared_ptr<vulkan::Device> device_;
+  const Scene* scene_ = nullptr;
+  double dt_s_ = 0;
+  Plan plan_;
+  Vec3 origin_m_{};
+  // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
+  std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
+  std::vector<Initial> initials_;
+  std::vector<vulkan::Buffer*> counters_;  ///< one a stage
+  std::unique_ptr<vulkan::Buffer> read_position_, read_velocity_;
+  std::vector<std::unique_ptr<vulkan::Kernel>> kernels_;
+  std::unique_ptr<vulkan::Program> frame_, upload_, download_;
+};
+
+/// Inverse masses [1/kg] of the scene's vertices, 0 where pinned.
+std::vector<float> inverse_masses(const Scene&);
+
+std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions&, bool count_bytes = false);
+std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions&, bool count_bytes = false);
+SolverInfo paper_info();
+SolverInfo xpbd_info();
+double paper_free_fall_m(const Scene&, const nlohmann::json& settings, int frames);
+double xpbd_free_fall_m(const Scene&, const nlohmann::json& settings, int frames);
+
+}  // namespace clothbench::pbd_gpu

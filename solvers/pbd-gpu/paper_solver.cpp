@@ -1,0 +1,191 @@
+// The paper's solver, kernel for kernel: Kim, Ma & Hong, Appl. Sci. 2025, 15(12), 6611, Algorithm 1 and section 3.2.3.
+#include <algorithm>
+#include <cmath>
+
+#include "gpu_solver.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+using vulkan::Access;
+
+class Paper final : public GpuSolver {
+ public:
+  using GpuSolver::GpuSolver;
+
+ private:
+  void build() override {
+    if (native() && !vulkan_device().has_float_atomics())
+      throw Error("solver paper: setting atomics=native: this device has no float atomics (VK_EXT_shader_atomic_float)");
+    layers_ = scene().needs.has(Feature::DuplicatedLayer) ? 2 : 1;
+    build_particles();
+    build_constraints();
+    build_stages();
+  }
+
+  bool native() const { return settings()["atomics"] == "native"; }
+  std::uint64_t particles() const { return layers_ * scene().cloth.vertex_count(); }
+
+  void build_particles() {
+    const std::vector<double> start = initial_positions(scene());
+    const std::vector<float> w = inverse_masses(scene());
+    const Vec3 v0 = scene().cloth.initial_velocity_m_per_s;
+    vec4s position, velocity;
+    for (int layer = 0; layer < layers_; ++layer)
+      for (std::size_t i = 0; i < w.size(); ++i) {
+        const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k]); };
+        const auto speed = [&](std::size_t k) { return w[i] > 0 ? static_cast<float>(v0[k]) : 0.0f; };
+        position.push_back({at(0), at(1), at(2), w[i]});
+        velocity.push_back({speed(0), speed(1), speed(2), w[i]});
+      }
+    free_ = std::count_if(velocity.begin(), velocity.end(), [](const vec4& v) { return v.w > 0; });
+    x_ = &add_vec4_buffer("positions", position);
+    v_ = &add_vec4_buffer("velocities", velocity);
+    q_ = &add_buffer("predicted positions", position.size() * sizeof(vec4));
+    d_ = &add_buffer("constraint deltas", position.size() * sizeof(vec4));
+    set_state(*x_, *v_, {});
+  }
+
+  void build_constraints() {
+    const std::vector<float> w = inverse_masses(scene());
+    const auto n = static_cast<std::uint32_t>(w.size());
+    std::vector<DistanceConstraint> all;
+    const auto add = [&](std::uint32_t a, std::uint32_t b, double rest, std::uint32_t kind) {
+      all.push_back({a, b, static_cast<float>(rest), kind});
+      const int ends = (w[a % n] > 0 ? 1 : 0) + (w[b % n] > 0 ? 1 : 0);
+      // Constraint and both ends; per free end 3 sums and a count.
+      traffic_.read_B += 16 + 32 + ends * (native() ? 16.0 : 28.0);
+      traffic_.write_B += ends * 16.0;
+    };
+    std::vector<EdgeKind> kinds = {EdgeKind::Structural, EdgeKind::Shear};
+    if (scene().needs.has(Feature::Bend)) kinds.push_back(EdgeKind::SkipOne);
+    for (std::uint32_t layer = 0; layer < static_cast<std::uint32_t>(layers_); ++layer)
+      for (EdgeKind kind : kinds)
+        for (const Edge& e : edges(scene().cloth, kind)) add(layer * n + e.a, layer * n + e.b, e.rest_m, static_cast<std::uint32_t>(kind));
+    if (layers_ == 2)
+      for (std::uint32_t i = 0; i < n; ++i) add(i, n + i, 0, 3);
+    constraint_count_ = all.size();
+    std::vector<std::uint8_t> bytes(all.size() * sizeof all[0]);
+    std::memcpy(bytes.data(), all.data(), bytes.size());
+    c_ = &add_buffer("constraints", bytes.size(), bytes);
+  }
+
+  void build_stages() {
+    const FeatureSet needs = scene().needs;
+    const auto push = static_cast<std::uint32_t>(sizeof(PaperConstants));
+    const FeatureSet pins = needs & FeatureSet{Feature::Pins};
+    stage_forces_ = add_stage("ApplyExternalForces", {});
+    forces_ = &add_kernel(stage_forces_, shaders::kApplyExternalForces, {{v_, Access::ReadWrite}}, push);
+    if (needs.has(Feature::Damping)) {
+      stage_damp_ = add_stage("DampVelocities", {Feature::Damping});
+      damp_ = &add_kernel(stage_damp_, shaders::kDampVelocities, {{v_, Access::ReadWrite}}, push);
+    } else {
+      leave_out("DampVelocities", "the scene has no damping");
+    }
+    stage_euler_ = add_stage("ApplyExplicitEuler", pins);
+    euler_ = &add_kernel(stage_euler_, shaders::kApplyExplicitEuler, {{x_, Access::Read}, {v_, Access::Read}, {q_, Access::Write}}, push);
+    stage_project_ = add_stage("ProjectConstraintDeltas",
+                               needs & FeatureSet{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::DuplicatedLayer});
+    project_ = &add_kernel(stage_project_, native() ? shaders::kProjectConstraintDeltasNative : shaders::kProjectConstraintDeltas,
+                           {{c_, Access::Read}, {q_, Access::Read}, {d_, Access::ReadWrite}}, push);
+    stage_average_ = add_stage("AverageConstraintDeltas", {});
+    average_ = &add_kernel(stage_average_, shaders::kAverageConstraintDeltas, {{d_, Access::ReadWrite}, {q_, Access::ReadWrite}}, push,
+                           {native() ? 1u : 0u});
+    stage_update_ = add_stage("UpdatePositions", {});
+    update_ = &add_kernel(stage_update_, shaders::kUpdatePositions, {{x_, Access::ReadWrite}, {v_, Access::Write}, {q_, Access::Read}}, push);
+    if (settings()["readback"] == "blocking") {
+      stage_readback_ = add_stage("Readback", {});
+      host_x_ = &add_host_buffer("positions on the host", x_->bytes());
+      host_v_ = &add_host_buffer("velocities on the host", v_->bytes());
+    } else {
+      leave_out("Readback", "setting readback=none");
+    }
+    if (!needs.has(Feature::Bend)) leave_out("skip-one distance constraints", "the scene has no bending");
+    if ((needs & kColliderFeatures).empty()) leave_out("SatisfyCollisions", "the scene has no collider");
+    if (!needs.has(Feature::DuplicatedLayer)) leave_out("second layer", "the cloth is not double-duplicated");
+  }
+
+  void record_frame(double dt_s) override {
+    const Vec3 g = scene().gravity_m_per_s2;
+    PaperConstants c{};
+    c.gravity = {static_cast<float>(g[0]), static_cast<float>(g[1]), static_cast<float>(g[2]), 0};
+    c.particles = static_cast<std::uint32_t>(particles());
+    c.constraints = static_cast<std::uint32_t>(constraint_count_);
+    c.h = static_cast<float>(dt_s);
+    c.stiffness = settings()["stiffness"].get<float>();
+    c.keep = static_cast<float>(std::max(0.0, 1 - scene().material.damping_per_s * dt_s));
+    const auto n = static_cast<double>(particles()), f = static_cast<double>(free_);
+    dispatch(stage_forces_, *forces_, particles(), c, {16 * n, 16 * f});
+    if (damp_ != nullptr) dispatch(stage_damp_, *damp_, particles(), c, {16 * n, 16 * n});
+    dispatch(stage_euler_, *euler_, particles(), c, {32 * n, 16 * n});
+    for (int i = 0; i < settings()["iterations"].get<int>(); ++i) {
+      dispatch(stage_project_, *project_, constraint_count_, c, traffic_);
+      dispatch(stage_average_, *average_, particles(), c, {16 * n + 16 * f, 32 * f});
+    }
+    dispatch(stage_update_, *update_, particles(), c, {32 * n, 32 * n});
+    if (stage_readback_ >= 0) {
+      copy(stage_readback_, *x_, *host_x_);
+      copy(stage_readback_, *v_, *host_v_);
+    }
+  }
+
+  int layers_ = 1;
+  std::int64_t free_ = 0;
+  std::uint64_t constraint_count_ = 0;
+  Traffic traffic_;  ///< of one ProjectConstraintDeltas
+  int stage_forces_ = -1, stage_damp_ = -1, stage_euler_ = -1, stage_project_ = -1, stage_average_ = -1, stage_update_ = -1,
+      stage_readback_ = -1;
+  vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *q_ = nullptr, *d_ = nullptr, *c_ = nullptr, *host_x_ = nullptr, *host_v_ = nullptr;
+  vulkan::Kernel *forces_ = nullptr, *damp_ = nullptr, *euler_ = nullptr, *project_ = nullptr, *average_ = nullptr, *update_ = nullptr;
+};
+
+void check_settings(const nlohmann::json& s) {
+  const auto one_of = [&](const char* key, const char* a, const char* b) {
+    if (s[key] != a && s[key] != b)
+      throw Error(std::string("solver paper: setting ") + key + ": expected \"" + a + "\" or \"" + b + "\"; found " + s[key].dump());
+  };
+  one_of("readback", "none", "blocking");
+  one_of("atomics", "cas", "native");
+  if (!(s["iterations"].get<double>() >= 1 && s["iterations"].get<double>() <= 100000))
+    throw Error("solver paper: setting iterations: expected 1 to 100000; found " + s["iterations"].dump());
+  if (!(s["stiffness"].get<double>() >= 0 && s["stiffness"].get<double>() <= 1))
+    throw Error("solver paper: setting stiffness: expected 0 to 1; found " + s["stiffness"].dump());
+}
+
+}  // namespace
+
+SolverInfo paper_info() {
+  SolverInfo info;
+  info.name = "paper";
+  info.folder = "solvers/pbd-gpu";
+  info.summary = "the paper's kernels, one by one: averaged Jacobi PBD with atomic accumulation";
+  info.version = "1";
+  info.precision = "float32";
+  info.on_gpu = true;
+  info.supports = {Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins, Feature::DuplicatedLayer};
+  info.settings = {{"iterations", "5", "constraint iterations a frame"},
+                   {"stiffness", "0.8", "PBD's k, 0 to 1"},
+                   {"readback", "\"none\"", "none | blocking: copy positions and velocities to the host every frame and wait"},
+                   {"atomics", "\"cas\"", "cas | native: float sums by compare-and-swap, or by VK_EXT_shader_atomic_float"},
+                   {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+  return info;
+}
+
+std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes) {
+  check_settings(settings);
+  return std::make_unique<Paper>(paper_info(), settings, device, count_bytes);
+}
+
+/// v <- (v + g h) keep, x <- x + h v, one step a frame; damping comes after the forces.
+double paper_free_fall_m(const Scene& scene, const nlohmann::json&, int frames) {
+  const double h = scene.time.dt(), g = scene.gravity_m_per_s2[1];
+  const double keep = scene.needs.has(Feature::Damping) ? std::max(0.0, 1 - scene.material.damping_per_s * h) : 1;
+  double v = 0, x = 0;
+  for (int i = 0; i < frames; ++i) {
+    v = (v + g * h) * keep;
+    x += v * h;
+  }
+  return x;
+}
+
+}  // namespace clothbench::pbd_gpu

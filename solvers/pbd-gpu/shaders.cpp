@@ -1,0 +1,84 @@
+#include "shaders.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+#define CODE(id) const std::uint32_t id[] = {
+CODE(apply_external_forces)
+#include "apply_external_forces.inc"
+};
+CODE(apply_external_forces_counted)
+#include "apply_external_forces_counted.inc"
+};
+CODE(damp_velocities)
+#include "damp_velocities.inc"
+};
+CODE(damp_velocities_counted)
+#include "damp_velocities_counted.inc"
+};
+CODE(apply_explicit_euler)
+#include "apply_explicit_euler.inc"
+};
+CODE(apply_explicit_euler_counted)
+#include "apply_explicit_euler_counted.inc"
+};
+CODE(project_constraint_deltas)
+#include "project_constraint_deltas.inc"
+};
+CODE(project_constraint_deltas_counted)
+#include "project_constraint_deltas_counted.inc"
+};
+CODE(project_constraint_deltas_native)
+#include "project_constraint_deltas_native.inc"
+};
+CODE(project_constraint_deltas_native_counted)
+#include "project_constraint_deltas_native_counted.inc"
+};
+CODE(average_constraint_deltas)
+#include "average_constraint_deltas.inc"
+};
+CODE(average_constraint_deltas_counted)
+#include "average_constraint_deltas_counted.inc"
+};
+CODE(update_positions)
+#include "update_positions.inc"
+};
+CODE(update_positions_counted)
+#include "update_positions_counted.inc"
+};
+CODE(integrate)
+#include "integrate.inc"
+};
+CODE(integrate_counted)
+#include "integrate_counted.inc"
+};
+CODE(project_distance)
+#include "project_distance.inc"
+};
+CODE(project_distance_counted)
+#include "project_distance_counted.inc"
+};
+CODE(project_bending)
+#include "project_bending.inc"
+};
+CODE(project_bending_counted)
+#include "project_bending_counted.inc"
+};
+
+}  // namespace
+
+namespace shaders {
+#define SHADER(constant, id) const Shader constant = {#id, {id, sizeof id}, {id##_counted, sizeof id##_counted}}
+SHADER(kApplyExternalForces, apply_external_forces);
+SHADER(kDampVelocities, damp_velocities);
+SHADER(kApplyExplicitEuler, apply_explicit_euler);
+SHADER(kProjectConstraintDeltas, project_constraint_deltas);
+SHADER(kProjectConstraintDeltasNative, project_constraint_deltas_native);
+SHADER(kAverageConstraintDeltas, average_constraint_deltas);
+SHADER(kUpdatePositions, update_positions);
+SHADER(kIntegrate, integrate);
+SHADER(kProjectDistance, project_distance);
+SHADER(kProjectBending, project_bending);
+}  // namespace shaders
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,16 @@
+#version 450
+// Kim, Ma & Hong 2025, 3.2.3: predicted position. P.w = inverse mass.
+#define COUNTER_BINDING 3
+#extension GL_GOOGLE_include_directive : require
+#include "common.glsl"
+layout(std430, binding = 0) readonly buffer Positions { vec4 x[]; };
+layout(std430, binding = 1) readonly buffer Velocities { vec4 v[]; };
+layout(std430, binding = 2) writeonly buffer Predicted { vec4 q[]; };
+layout(push_constant) uniform Push { PaperConstants p; };
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= p.particles) return;
+  vec4 vel = LOAD16(v, i);
+  STORE16(q, i, vec4(LOAD16(x, i).xyz + vel.xyz * p.h, vel.w));
+}

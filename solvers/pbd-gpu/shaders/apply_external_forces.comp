@@ -1,0 +1,15 @@
+#version 450
+// Kim, Ma & Hong 2025, 3.2.3: gravity onto the velocities. V.w = inverse mass, 0 where pinned.
+#define COUNTER_BINDING 1
+#extension GL_GOOGLE_include_directive : require
+#include "common.glsl"
+layout(std430, binding = 0) buffer Velocities { vec4 v[]; };
+layout(push_constant) uniform Push { PaperConstants p; };
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= p.particles) return;
+  vec4 vel = LOAD16(v, i);
+  if (vel.w == 0.0) return;
+  STORE16(v, i, vec4(vel.xyz + p.gravity.xyz * p.h, vel.w));
+}

@@ -1,0 +1,20 @@
+#version 450
+// Kim, Ma & Hong 2025, 3.2.3: mean of a particle's corrections onto its predicted position; clears the sums.
+#define COUNTER_BINDING 2
+#extension GL_GOOGLE_include_directive : require
+#include "common.glsl"
+layout(std430, binding = 0) buffer Deltas { uvec4 d[]; };
+layout(std430, binding = 1) buffer Predicted { vec4 q[]; };
+layout(push_constant) uniform Push { PaperConstants p; };
+layout(constant_id = 1) const uint NATIVE = 0u;  // the count is a float there
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= p.particles) return;
+  uvec4 sum = LOAD16(d, i);
+  if (sum.w == 0u) return;
+  float n = NATIVE == 1u ? uintBitsToFloat(sum.w) : float(sum.w);
+  vec4 at = LOAD16(q, i);
+  STORE16(q, i, vec4(at.xyz + uintBitsToFloat(sum.xyz) / n, at.w));
+  STORE16(d, i, uvec4(0u));
+}

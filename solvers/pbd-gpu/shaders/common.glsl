@@ -1,0 +1,19 @@
+// Included by every kernel after COUNTER_BINDING is set. LOAD/STORE count bytes in the instrumented build, which the
+// test of the byte table runs; in the normal build they are plain accesses.
+#extension GL_GOOGLE_include_directive : require
+#include "../pbd_shared.h"
+
+layout(local_size_x_id = 0) in;
+
+#ifdef CLOTHBENCH_COUNT_BYTES
+layout(std430, binding = COUNTER_BINDING) buffer Counter { uint counted_read, counted_write; };
+#define LOAD16(array, i) (atomicAdd(counted_read, 16u), array[i])
+#define LOAD4(array, i) (atomicAdd(counted_read, 4u), array[i])
+#define STORE16(array, i, value) { atomicAdd(counted_write, 16u); array[i] = (value); }
+#define COUNT_ATOMIC { atomicAdd(counted_read, 4u); atomicAdd(counted_write, 4u); }
+#else
+#define LOAD16(array, i) (array[i])
+#define LOAD4(array, i) (array[i])
+#define STORE16(array, i, value) { array[i] = (value); }
+#define COUNT_ATOMIC
+#endif

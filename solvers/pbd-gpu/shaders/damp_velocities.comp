@@ -1,0 +1,14 @@
+#version 450
+// Kim, Ma & Hong 2025, 3.2.3: velocities lose a fixed share a step.
+#define COUNTER_BINDING 1
+#extension GL_GOOGLE_include_directive : require
+#include "common.glsl"
+layout(std430, binding = 0) buffer Velocities { vec4 v[]; };
+layout(push_constant) uniform Push { PaperConstants p; };
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= p.particles) return;
+  vec4 vel = LOAD16(v, i);
+  STORE16(v, i, vec4(vel.xyz * p.keep, vel.w));
+}

@@ -1,0 +1,18 @@
+#version 450
+// Kim, Ma & Hong 2025, 3.2.3: v = (q - x) / h, x = q.
+#define COUNTER_BINDING 3
+#extension GL_GOOGLE_include_directive : require
+#include "common.glsl"
+layout(std430, binding = 0) buffer Positions { vec4 x[]; };
+layout(std430, binding = 1) writeonly buffer Velocities { vec4 v[]; };
+layout(std430, binding = 2) readonly buffer Predicted { vec4 q[]; };
+layout(push_constant) uniform Push { PaperConstants p; };
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= p.particles) return;
+  vec4 to = LOAD16(q, i);
+  vec4 from = LOAD16(x, i);
+  STORE16(v, i, vec4((to.xyz - from.xyz) / p.h, to.w));
+  STORE16(x, i, to);
+}

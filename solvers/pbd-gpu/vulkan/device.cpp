@@ -1,0 +1,244 @@
+#include "vulkan/device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <mutex>
+
+#include "vulkan/device_info.hpp"
+
+namespace clothbench::vulkan {
+namespace {
+
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+
+VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+  static_cast<Device*>(user)->note_message(data->pMessage);
+  return VK_FALSE;
+}
+
+std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
+  std::uint32_t count = 0;
+  check(vkEnumeratePhysicalDevices(instance, &count, nullptr), "vkEnumeratePhysicalDevices");
+  std::vector<VkPhysicalDevice> found(count);
+  check(vkEnumeratePhysicalDevices(instance, &count, found.data()), "vkEnumeratePhysicalDevices");
+  return found;
+}
+
+int rank(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 0;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 1;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
+    default: return 3;
+  }
+}
+
+bool layer_present(const char* name) {
+  std::uint32_t count = 0;
+  vkEnumerateInstanceLayerProperties(&count, nullptr);
+  std::vector<VkLayerProperties> layers(count);
+  vkEnumerateInstanceLayerProperties(&count, layers.data());
+  return std::any_of(layers.begin(), layers.end(), [&](const auto& l) { return std::strcmp(l.layerName, name) == 0; });
+}
+
+VkApplicationInfo application() {
+  VkApplicationInfo app{};
+  app.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+  app.pApplicationName = "clothbench";
+  app.apiVersion = VK_API_VERSION_1_1;
+  return app;
+}
+
+}  // namespace
+
+Failure::Failure(const char* call, VkResult result)
+    : Error(fmt::format("{} failed: VkResult {}", call, static_cast<int>(result)), ExitCode::CheckFailed), result_(result) {}
+
+void check(VkResult result, const char* call) {
+  if (result != VK_SUCCESS) throw Failure(call, result);
+}
+
+std::shared_ptr<Device> Device::get(const DeviceOptions& options) {
+  static std::mutex mutex;
+  static std::map<std::pair<int, bool>, std::weak_ptr<Device>> cache;
+  const std::lock_guard lock(mutex);
+  auto& slot = cache[{options.index, options.validation}];
+  if (auto device = slot.lock()) return device;
+  std::shared_ptr<Device> device(new Device(options));
+  slot = device;
+  return device;
+}
+
+std::vector<DeviceInfo> Device::list() {
+  const VkApplicationInfo app = application();
+  VkInstanceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+  info.pApplicationInfo = &app;
+  VkInstance instance = VK_NULL_HANDLE;
+  if (vkCreateInstance(&info, nullptr, &instance) != VK_SUCCESS) return {};
+  std::vector<DeviceInfo> all;
+  for (VkPhysicalDevice p : physical_devices(instance)) all.push_back(describe(p));
+  vkDestroyInstance(instance, nullptr);
+  return all;
+}
+
+Device::Device(const DeviceOptions& options) {
+  try {
+    create_instance(options.validation);
+    choose_physical(options.index);
+    create_device();
+  } catch (...) {
+    release();
+    throw;
+  }
+}
+
+void Device::create_instance(bool validation) {
+  if (validation && !layer_present(kValidationLayer))
+    throw Error(std::string("validation was asked for, but ") + kValidationLayer + " is not installed (Debian: vulkan-validationlayers)");
+  const VkApplicationInfo app = application();
+  const VkValidationFeatureEnableEXT enable = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+  VkValidationFeaturesEXT features{};
+  features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+  features.enabledValidationFeatureCount = 1;
+  features.pEnabledValidationFeatures = &enable;
+  VkDebugUtilsMessengerCreateInfoEXT messenger{};
+  messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+  messenger.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+  messenger.pfnUserCallback = on_message;
+  messenger.pUserData = this;
+  const std::array names = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+
+  VkInstanceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+  info.pApplicationInfo = &app;
+  if (validation) {
+    info.pNext = &features;
+    info.enabledLayerCount = 1;
+    info.ppEnabledLayerNames = &kValidationLayer;
+    info.enabledExtensionCount = static_cast<std::uint32_t>(names.size());
+    info.ppEnabledExtensionNames = names.data();
+  }
+  const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+  if (result != VK_SUCCESS)
+    throw Error(fmt::format("no Vulkan instance: vkCreateInstance gave {}; is a driver installed? (Debian: mesa-vulkan-drivers)",
+                            static_cast<int>(result)), ExitCode::NoDevice);
+  if (!validation) return;
+  const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+  check(create(instance_, &messenger, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
+}
+
+void Device::choose_physical(int index) {
+  const std::vector<VkPhysicalDevice> all = physical_devices(instance_);
+  if (all.empty()) throw Error("no Vulkan device; install a driver (Debian: mesa-vulkan-drivers)", ExitCode::NoDevice);
+  if (index >= static_cast<int>(all.size()))
+    throw Error(fmt::format("device {}: there are {} Vulkan devices (the first is 0)", index, all.size()), ExitCode::NoDevice);
+  if (index >= 0) {
+    physical_ = all[static_cast<std::size_t>(index)];
+  } else {
+    const auto rank_of = [](VkPhysicalDevice p) {
+      VkPhysicalDeviceProperties properties;
+      vkGetPhysicalDeviceProperties(p, &properties);
+      return rank(properties.deviceType);
+    };
+    physical_ = *std::min_element(all.begin(), all.end(), [&](auto a, auto b) { return rank_of(a) < rank_of(b); });
+  }
+  vkGetPhysicalDeviceProperties(physical_, &properties_);
+  vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
+}
+
+void Device::create_device() {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, families.data());
+  while (family_ < count && (families[family_].queueFlags & VK_QUEUE_COMPUTE_BIT) == 0) ++family_;
+  if (family_ == count) throw Error(std::string(properties_.deviceName) + ": no compute queue", ExitCode::NoDevice);
+  timestamp_bits_ = families[family_].timestampValidBits;
+
+  const float priority = 1;
+  VkDeviceQueueCreateInfo queue{};
+  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+  queue.queueFamilyIndex = family_;
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  VkDeviceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue;
+
+  // Float atomics are used by one named option of `paper` only; everything else is Vulkan 1.1 core.
+  VkPhysicalDeviceShaderAtomicFloatFeaturesEXT atomics{};
+  atomics.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_FEATURES_EXT;
+  const char* atomic_extension = VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME;
+  const auto names = extensions(physical_);
+  if (std::find(names.begin(), names.end(), atomic_extension) != names.end()) {
+    VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &atomics, {}};
+    vkGetPhysicalDeviceFeatures2(physical_, &features);
+    float_atomics_ = atomics.shaderBufferFloat32AtomicAdd == VK_TRUE;
+  }
+  if (float_atomics_) {
+    atomics = {};
+    atomics.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_FEATURES_EXT;
+    atomics.shaderBufferFloat32AtomicAdd = VK_TRUE;
+    info.pNext = &atomics;
+    info.enabledExtensionCount = 1;
+    info.ppEnabledExtensionNames = &atomic_extension;
+  }
+  check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
+  vkGetDeviceQueue(device_, family_, 0, &queue_);
+
+  VkCommandPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+  pool.queueFamilyIndex = family_;
+  check(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "vkCreateCommandPool");
+  VkPipelineCacheCreateInfo cache{};
+  cache.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
+  check(vkCreatePipelineCache(device_, &cache, nullptr, &cache_), "vkCreatePipelineCache");
+}
+
+Device::~Device() { release(); }
+
+void Device::release() {
+  if (device_ != VK_NULL_HANDLE) {
+    vkDeviceWaitIdle(device_);
+    vkDestroyPipelineCache(device_, cache_, nullptr);
+    vkDestroyCommandPool(device_, pool_, nullptr);
+    vkDestroyDevice(device_, nullptr);
+  }
+  if (messenger_ != VK_NULL_HANDLE) {
+    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+    destroy(instance_, messenger_, nullptr);
+  }
+  if (instance_ != VK_NULL_HANDLE) vkDestroyInstance(instance_, nullptr);
+}
+
+DeviceInfo Device::info() const { return describe(physical_); }
+
+std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const {
+  for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
+    if ((allowed >> i & 1u) != 0 && (memory_.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
+  return kNoMemory;
+}
+
+double Device::seconds(std::uint64_t from, std::uint64_t to) const {
+  if (timestamp_bits_ == 0) return std::numeric_limits<double>::quiet_NaN();
+  const std::uint64_t mask = timestamp_bits_ >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << timestamp_bits_) - 1;
+  return static_cast<double>((to - from) & mask) * static_cast<double>(properties_.limits.timestampPeriod) * 1e-9;
+}
+
+void Device::note_message(const char* text) {
+  if (messages_++ == 0) first_message_ = text;
+  fmt::print(stderr, "[vulkan] {}\n", text);
+}
+
+}  // namespace clothbench::vulkan

@@ -1,0 +1,83 @@
+#pragma once
+#include <vulkan/vulkan.h>
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "clothbench/error.hpp"
+#include "clothbench/solver.hpp"
+
+namespace clothbench::vulkan {
+
+/// Thrown for a VkResult that is no bad input: lost device, time-out, exhausted memory.
+class Failure : public Error {
+ public:
+  Failure(const char* call, VkResult result);
+  VkResult result() const { return result_; }
+
+ private:
+  VkResult result_;
+};
+
+/// Throws Failure naming the call unless `result` is VK_SUCCESS.
+void check(VkResult result, const char* call);
+
+/// Instance, device and its one compute queue (Vulkan 1.1 core, no required extension). One a process for each
+/// (index, validation), shared by all solvers.
+class Device {
+ public:
+  /// The device `options.index`, or the best present: discrete, integrated, virtual, then CPU. Throws Error with
+  /// ExitCode::NoDevice where there is none, and Error where validation is asked for but the layer is missing.
+  static std::shared_ptr<Device> get(const DeviceOptions& options);
+  static std::vector<DeviceInfo> list();
+
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  VkDevice handle() const { return device_; }
+  VkQueue queue() const { return queue_; }
+  VkCommandPool command_pool() const { return pool_; }
+  VkPipelineCache pipeline_cache() const { return cache_; }
+  const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
+  bool has_float_atomics() const { return float_atomics_; }  ///< VK_EXT_shader_atomic_float, buffer float32 add
+  bool is_software() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+  DeviceInfo info() const;
+
+  /// Memory type with all of `wanted`, or kNoMemory.
+  static constexpr std::uint32_t kNoMemory = ~0u;
+  std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
+
+  /// Seconds between two raw timestamps; NaN where the queue has none.
+  double seconds(std::uint64_t from, std::uint64_t to) const;
+  bool has_timestamps() const { return timestamp_bits_ > 0; }
+
+  int validation_messages() const { return messages_; }
+  const std::string& first_message() const { return first_message_; }
+  void note_message(const char* text);
+
+ private:
+  explicit Device(const DeviceOptions& options);
+  void create_instance(bool validation);
+  void choose_physical(int index);
+  void create_device();
+  void release();
+
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+  VkPhysicalDeviceProperties properties_{};
+  VkPhysicalDeviceMemoryProperties memory_{};
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  std::uint32_t family_ = 0, timestamp_bits_ = 0;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  VkPipelineCache cache_ = VK_NULL_HANDLE;
+  bool float_atomics_ = false;
+  std::atomic<int> messages_{0};
+  std::string first_message_;
+};
+
+}  // namespace clothbench::vulkan

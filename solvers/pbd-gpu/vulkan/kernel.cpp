@@ -1,0 +1,113 @@
+#include "vulkan/kernel.hpp"
+
+#include <fmt/format.h>
+
+namespace clothbench::vulkan {
+
+Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,
+               std::vector<Binding> bindings, std::uint32_t push_bytes)
+    : device_(std::move(device)), name_(std::move(name)), bindings_(std::move(bindings)) {
+  create_layout(push_bytes);
+  create_set();
+  create_pipeline(code, specialization);
+}
+
+Kernel::~Kernel() {
+  vkDestroyPipeline(device_->handle(), pipeline_, nullptr);
+  vkDestroyDescriptorPool(device_->handle(), pool_, nullptr);
+  vkDestroyPipelineLayout(device_->handle(), layout_, nullptr);
+  vkDestroyDescriptorSetLayout(device_->handle(), set_layout_, nullptr);
+}
+
+void Kernel::create_layout(std::uint32_t push_bytes) {
+  std::vector<VkDescriptorSetLayoutBinding> slots;
+  for (std::uint32_t k = 0; k < bindings_.size(); ++k)
+    slots.push_back({k, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+  VkDescriptorSetLayoutCreateInfo set{};
+  set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  set.bindingCount = static_cast<std::uint32_t>(slots.size());
+  set.pBindings = slots.data();
+  check(vkCreateDescriptorSetLayout(device_->handle(), &set, nullptr, &set_layout_), "vkCreateDescriptorSetLayout");
+  const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
+  VkPipelineLayoutCreateInfo layout{};
+  layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  layout.setLayoutCount = 1;
+  layout.pSetLayouts = &set_layout_;
+  layout.pushConstantRangeCount = push_bytes > 0 ? 1 : 0;
+  layout.pPushConstantRanges = &range;
+  check(vkCreatePipelineLayout(device_->handle(), &layout, nullptr, &layout_), "vkCreatePipelineLayout");
+}
+
+void Kernel::create_set() {
+  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, static_cast<std::uint32_t>(bindings_.size())};
+  VkDescriptorPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  pool.maxSets = 1;
+  pool.poolSizeCount = 1;
+  pool.pPoolSizes = &size;
+  check(vkCreateDescriptorPool(device_->handle(), &pool, nullptr, &pool_), "vkCreateDescriptorPool");
+  VkDescriptorSetAllocateInfo allocate{};
+  allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  allocate.descriptorPool = pool_;
+  allocate.descriptorSetCount = 1;
+  allocate.pSetLayouts = &set_layout_;
+  check(vkAllocateDescriptorSets(device_->handle(), &allocate, &set_), "vkAllocateDescriptorSets");
+  std::vector<VkDescriptorBufferInfo> infos;
+  for (const Binding& b : bindings_) infos.push_back({b.buffer->handle(), 0, VK_WHOLE_SIZE});
+  std::vector<VkWriteDescriptorSet> writes;
+  for (std::uint32_t k = 0; k < infos.size(); ++k) {
+    VkWriteDescriptorSet w{};
+    w.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    w.dstSet = set_;
+    w.dstBinding = k;
+    w.descriptorCount = 1;
+    w.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    w.pBufferInfo = &infos[k];
+    writes.push_back(w);
+  }
+  vkUpdateDescriptorSets(device_->handle(), static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
+}
+
+void Kernel::create_pipeline(SpirV code, const std::vector<std::uint32_t>& specialization) {
+  VkShaderModuleCreateInfo module_info{};
+  module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  module_info.codeSize = code.bytes;
+  module_info.pCode = code.words;
+  VkShaderModule module = VK_NULL_HANDLE;
+  check(vkCreateShaderModule(device_->handle(), &module_info, nullptr, &module), "vkCreateShaderModule");
+  std::vector<VkSpecializationMapEntry> entries;
+  for (std::uint32_t k = 0; k < specialization.size(); ++k) entries.push_back({k, 4 * k, 4});
+  const VkSpecializationInfo constants{static_cast<std::uint32_t>(entries.size()), entries.data(), 4 * specialization.size(),
+                                       specialization.data()};
+  VkComputePipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+  info.layout = layout_;
+  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  info.stage.module = module;
+  info.stage.pName = "main";
+  info.stage.pSpecializationInfo = &constants;
+  const VkResult result = vkCreateComputePipelines(device_->handle(), device_->pipeline_cache(), 1, &info, nullptr, &pipeline_);
+  vkDestroyShaderModule(device_->handle(), module, nullptr);
+  check(result, ("vkCreateComputePipelines(" + name_ + ")").c_str());
+}
+
+void Kernel::bind(VkCommandBuffer commands) const {
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &set_, 0, nullptr);
+}
+
+void Kernel::push(VkCommandBuffer commands, const std::vector<std::uint8_t>& constants) const {
+  if (constants.empty()) return;
+  vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, static_cast<std::uint32_t>(constants.size()), constants.data());
+}
+
+std::uint32_t group_count(std::uint64_t items, std::uint32_t group_size) {
+  constexpr std::uint64_t kMost = 65535;  // least maxComputeWorkGroupCount a Vulkan device may have
+  const std::uint64_t groups = (items + group_size - 1) / group_size;
+  if (groups > kMost)
+    throw Error(fmt::format("{} items in groups of {} are {} workgroups; a dispatch has at most {}", items, group_size, groups, kMost));
+  return static_cast<std::uint32_t>(groups);
+}
+
+}  // namespace clothbench::vulkan

@@ -1,0 +1,56 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vulkan/buffer.hpp"
+
+namespace clothbench::vulkan {
+
+enum class Access { Read, Write, ReadWrite };
+
+/// What a kernel does with a buffer; the shader's readonly / writeonly must say the same.
+struct Binding {
+  const Buffer* buffer;
+  Access access;
+};
+
+struct SpirV {
+  const std::uint32_t* words;
+  std::size_t bytes;
+};
+
+/// One compute pipeline with its buffers bound: binding k of set 0 is bindings[k].
+class Kernel {
+ public:
+  Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,
+         std::vector<Binding> bindings, std::uint32_t push_bytes);
+  ~Kernel();
+  Kernel(const Kernel&) = delete;
+  Kernel& operator=(const Kernel&) = delete;
+
+  const std::string& name() const { return name_; }
+  const std::vector<Binding>& bindings() const { return bindings_; }
+  void bind(VkCommandBuffer commands) const;
+  void push(VkCommandBuffer commands, const std::vector<std::uint8_t>& constants) const;
+
+ private:
+  void create_layout(std::uint32_t push_bytes);
+  void create_set();
+  void create_pipeline(SpirV code, const std::vector<std::uint32_t>& specialization);
+
+  std::shared_ptr<Device> device_;
+  std::string name_;
+  std::vector<Binding> bindings_;
+  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  VkDescriptorPool pool_ = VK_NULL_HANDLE;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  VkPipeline pipeline_ = VK_NULL_HANDLE;
+};
+
+/// Workgroups for `items` items at `group_size` each. Throws Error beyond the 65535 that every device has.
+std::uint32_t group_count(std::uint64_t items, std::uint32_t group_size);
+
+}  // namespace clothbench::vulkan

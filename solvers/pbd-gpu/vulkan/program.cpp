@@ -1,0 +1,151 @@
+#include "vulkan/program.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace clothbench::vulkan {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+bool meet(const std::set<const Buffer*>& a, const std::set<const Buffer*>& b) {
+  return std::any_of(a.begin(), a.end(), [&](const Buffer* x) { return b.count(x) != 0; });
+}
+
+void full_barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkPipelineStageFlags to, VkAccessFlags written, VkAccessFlags next) {
+  VkMemoryBarrier memory{};
+  memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+  memory.srcAccessMask = written;
+  memory.dstAccessMask = next;
+  vkCmdPipelineBarrier(commands, from, to, 0, 1, &memory, 0, nullptr, 0, nullptr);
+}
+
+constexpr VkPipelineStageFlags kWork = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+constexpr VkAccessFlags kWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+constexpr VkAccessFlags kAll = kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
+
+}  // namespace
+
+Program::Program(std::shared_ptr<Device> device) : device_(std::move(device)) {
+  VkCommandBufferAllocateInfo allocate{};
+  allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  allocate.commandPool = device_->command_pool();
+  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  allocate.commandBufferCount = 1;
+  check(vkAllocateCommandBuffers(device_->handle(), &allocate, &commands_), "vkAllocateCommandBuffers");
+  VkFenceCreateInfo fence{};
+  fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+  check(vkCreateFence(device_->handle(), &fence, nullptr, &fence_), "vkCreateFence");
+}
+
+Program::~Program() {
+  // A run that timed out may still be in flight.
+  vkDeviceWaitIdle(device_->handle());
+  vkDestroyQueryPool(device_->handle(), queries_, nullptr);
+  vkDestroyFence(device_->handle(), fence_, nullptr);
+  vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands_);
+}
+
+Program::Touched Program::touched(const Step& s) {
+  Touched t;
+  if (s.kernel == nullptr) {
+    t.read.insert(s.from);
+    t.written.insert(s.to);
+    return t;
+  }
+  for (const Binding& b : s.kernel->bindings()) {
+    if (b.access != Access::Write) t.read.insert(b.buffer);
+    if (b.access != Access::Read) t.written.insert(b.buffer);
+  }
+  return t;
+}
+
+void Program::barrier_if_needed(const Touched& next, Touched& since) {
+  const bool hazard = meet(since.written, next.read) || meet(since.written, next.written) || meet(since.read, next.written);
+  if (hazard) {
+    // Orders what the steps since the last barrier wrote before what this step reads or writes, and what they read
+    // before what it writes.
+    full_barrier(commands_, kWork, kWork, kWrites, kAll);
+    ++barriers_;
+    since = {};
+  }
+  since.read.insert(next.read.begin(), next.read.end());
+  since.written.insert(next.written.begin(), next.written.end());
+}
+
+void Program::timestamp(std::uint32_t query) {
+  if (query_count_ > 0) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, query);
+}
+
+void Program::record(bool time_stages) {
+  time_stages_ = time_stages;
+  barriers_ = 0;
+  vkDestroyQueryPool(device_->handle(), queries_, nullptr);
+  queries_ = VK_NULL_HANDLE;
+  query_count_ = !device_->has_timestamps() ? 0 : time_stages ? static_cast<std::uint32_t>(steps_.size()) + 1 : 2;
+  if (query_count_ > 0) {
+    VkQueryPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    info.queryCount = query_count_;
+    check(vkCreateQueryPool(device_->handle(), &info, nullptr, &queries_), "vkCreateQueryPool");
+  }
+  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");
+  VkCommandBufferBeginInfo begin{};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  if (query_count_ > 0) vkCmdResetQueryPool(commands_, queries_, 0, query_count_);
+  // What the host or the frame before wrote, before anything here reads it.
+  full_barrier(commands_, kWork | VK_PIPELINE_STAGE_HOST_BIT, kWork, kWrites | VK_ACCESS_HOST_WRITE_BIT, kAll);
+  timestamp(0);
+  Touched since;
+  const Kernel* bound = nullptr;
+  for (std::uint32_t k = 0; k < steps_.size(); ++k) {
+    const Step& s = steps_[k];
+    barrier_if_needed(touched(s), since);
+    if (s.kernel != nullptr) {
+      if (bound != s.kernel) s.kernel->bind(commands_);
+      bound = s.kernel;
+      s.kernel->push(commands_, s.constants);
+      vkCmdDispatch(commands_, s.groups, 1, 1);
+    } else {
+      const VkBufferCopy region{0, 0, std::min(s.from->bytes(), s.to->bytes())};
+      vkCmdCopyBuffer(commands_, s.from->handle(), s.to->handle(), 1, &region);
+    }
+    if (time_stages_) timestamp(k + 1);
+  }
+  if (!time_stages_) timestamp(1);
+  // What this frame wrote, before the host reads it.
+  full_barrier(commands_, kWork, VK_PIPELINE_STAGE_HOST_BIT, kWrites, VK_ACCESS_HOST_READ_BIT);
+  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+}
+
+void Program::run(double patience_s) {
+  VkSubmitInfo submit{};
+  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  submit.commandBufferCount = 1;
+  submit.pCommandBuffers = &commands_;
+  check(vkQueueSubmit(device_->queue(), 1, &submit, fence_), "vkQueueSubmit");
+  check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, static_cast<std::uint64_t>(patience_s * 1e9)), "vkWaitForFences");
+  check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
+  if (query_count_ == 0) return;
+  ticks_.resize(query_count_);
+  check(vkGetQueryPoolResults(device_->handle(), queries_, 0, query_count_, ticks_.size() * 8, ticks_.data(), 8,
+                              VK_QUERY_RESULT_64_BIT), "vkGetQueryPoolResults");
+}
+
+double Program::device_s() const { return ticks_.size() < 2 ? kMissing : device_->seconds(ticks_.front(), ticks_.back()); }
+
+std::vector<double> Program::stage_s(int stages) const {
+  if (!time_stages_ || ticks_.size() != steps_.size() + 1) return std::vector<double>(static_cast<std::size_t>(stages), kMissing);
+  std::vector<double> sum(static_cast<std::size_t>(stages), 0);
+  for (std::size_t k = 0; k < steps_.size(); ++k)
+    sum[static_cast<std::size_t>(steps_[k].stage)] += device_->seconds(ticks_[k], ticks_[k + 1]);
+  return sum;
+}
+
+int Program::dispatches(int stage) const {
+  return static_cast<int>(std::count_if(steps_.begin(), steps_.end(), [&](const Step& s) { return s.stage == stage && s.kernel != nullptr; }));
+}
+
+}  // namespace clothbench::vulkan

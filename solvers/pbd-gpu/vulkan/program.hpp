@@ -1,0 +1,66 @@
+#pragma once
+#include <cstring>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "vulkan/kernel.hpp"
+
+namespace clothbench::vulkan {
+
+/// A frame's work in order: dispatches and copies with their stage. Barriers are placed where a later step touches
+/// what an earlier one wrote, or writes what it read, and nowhere else.
+class Program {
+ public:
+  explicit Program(std::shared_ptr<Device> device);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  template <class Constants>
+  void dispatch(int stage, const Kernel& kernel, std::uint32_t groups, const Constants& constants) {
+    std::vector<std::uint8_t> bytes(sizeof constants);
+    std::memcpy(bytes.data(), &constants, sizeof constants);
+    steps_.push_back({stage, &kernel, groups, std::move(bytes), nullptr, nullptr});
+  }
+  void copy(int stage, const Buffer& from, const Buffer& to) { steps_.push_back({stage, nullptr, 0, {}, &from, &to}); }
+  void clear() { steps_.clear(); }
+
+  /// Records once; `run` submits the same commands again and again. With `time_stages` a timestamp follows every
+  /// step, else only the first and last are taken.
+  void record(bool time_stages);
+  /// Submits and waits. Throws Failure (VK_TIMEOUT after `patience_s`, VK_ERROR_DEVICE_LOST, ...).
+  void run(double patience_s);
+
+  double device_s() const;                        ///< first to last timestamp of the last run; NaN without timestamps
+  std::vector<double> stage_s(int stages) const;  ///< summed by stage; NaN unless recorded with time_stages
+  int dispatches(int stage) const;
+  std::size_t barriers() const { return barriers_; }
+
+ private:
+  struct Step {
+    int stage;
+    const Kernel* kernel;
+    std::uint32_t groups;
+    std::vector<std::uint8_t> constants;
+    const Buffer *from, *to;
+  };
+  struct Touched {
+    std::set<const Buffer*> read, written;
+  };
+  static Touched touched(const Step&);
+  void barrier_if_needed(const Touched& next, Touched& since);
+  void timestamp(std::uint32_t query);
+
+  std::shared_ptr<Device> device_;
+  std::vector<Step> steps_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  VkFence fence_ = VK_NULL_HANDLE;
+  VkQueryPool queries_ = VK_NULL_HANDLE;
+  std::uint32_t query_count_ = 0;
+  bool time_stages_ = false;
+  std::size_t barriers_ = 0;
+  std::vector<std::uint64_t> ticks_;
+};
+
+}  // namespace clothbench::vulkan
