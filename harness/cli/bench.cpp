@@ -1,0 +1,98 @@
+// The Table 3 cells under Google Benchmark: one benchmark a cell, one iteration a frame, the clock is the frame's wall time.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/study_plan.hpp"
+#include "runner/environment.hpp"
+
+namespace clothbench {
+namespace {
+
+/// Fixed, so that a slow clock cannot make the library run a cell for minutes.
+constexpr int kFrames = 72;
+
+void run_cell(benchmark::State& state, const CellSpec& spec, const DeviceOptions& device) {
+  const auto solver = spec.entry->make(spec.settings, device);
+  solver->load(*spec.scene);
+  const double dt = spec.scene->time.dt();
+  int frame = 0;
+  double device_s = 0;
+  for (auto unused : state) {
+    (void)unused;
+    const auto start = std::chrono::steady_clock::now();
+    const StepStatus status = solver->step({frame, (frame + 1) * dt, dt});
+    state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    if (status != StepStatus::Ok) {
+      state.SkipWithError("the solver failed");
+      break;
+    }
+    device_s += solver->last_cost().device_s;
+    ++frame;
+  }
+  const Plan plan = solver->plan();
+  double read_B = 0, write_B = 0;
+  for (const StagePlan& s : plan.stages) {
+    read_B += s.read_B;
+    write_B += s.write_B;
+  }
+  state.counters["fps"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
+  // Not there for CPU solvers rather than zero.
+  if (std::isfinite(device_s)) state.counters["device_us"] = device_s / frame * 1e6;
+  if (std::isfinite(read_B)) state.counters["read_B"] = read_B;
+  if (std::isfinite(write_B)) state.counters["write_B"] = write_B;
+}
+
+void add_context(const CellPlan& plan, const DeviceFlags& flags) {
+  DeviceInfo device;
+  for (const auto& group : plan.groups)
+    for (const CellSpec& c : group)
+      if (c.entry->info.on_gpu && device.name.empty()) device = c.entry->make(c.settings, flags.options)->device();
+  const nlohmann::json e = describe_environment(device, "bench");
+  for (const char* key : {"gpu", "driver", "gpu_is_software", "cpu", "compiler", "shader_compiler", "git_commit", "version"})
+    benchmark::AddCustomContext(std::string("clothbench_") + key, e[key].is_string() ? e[key].get<std::string>() : e[key].dump());
+  // The library's own field tells how the library was built, not this program.
+  benchmark::AddCustomContext("clothbench_build_type", e["build_type"].get<std::string>());
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Console& console) {
+  static DeviceFlags flags;
+  static std::string study_name = "table3";
+  CLI::App* cmd = app.add_subcommand("bench", "The cells of a study under Google Benchmark; takes its --benchmark_… flags");
+  cmd->add_option("--study", study_name, "Study")->capture_default_str();
+  flags.add_to(*cmd);
+  cmd->allow_extras();
+  cmd->footer("Example: clothbench bench --benchmark_filter='gravity-32-.*xpbd' --benchmark_repetitions=5");
+  cmd->callback([cmd, &console] {
+    std::vector<std::string> words = cmd->remaining();
+    words.insert(words.begin(), "clothbench");
+    if (console.json) words.push_back("--benchmark_format=json");
+    std::vector<char*> argv;
+    for (std::string& w : words) argv.push_back(w.data());
+    int argc = static_cast<int>(argv.size());
+    benchmark::Initialize(&argc, argv.data());
+    if (argc > 1) throw Error(std::string("bench: unknown argument ") + argv[1]);
+    const Study study = load_study(study_name);
+    const CellPlan plan = plan_study(study, false, {});
+    add_context(plan, flags);
+    for (const auto& group : plan.groups)
+      for (const CellSpec& c : group) {
+        if (!(c.scene->needs - (c.entry->info.supports | c.entry->info.ignores)).empty()) continue;
+        benchmark::RegisterBenchmark(fmt::format("{}/{}/{}", c.scene->name, c.entry->info.name, c.setting).c_str(),
+                                     [&c](benchmark::State& state) { run_cell(state, c, flags.options); })
+            ->UseManualTime()
+            ->Iterations(kFrames)
+            ->Unit(benchmark::kMicrosecond);
+      }
+    benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+  });
+}
+
+}  // namespace clothbench

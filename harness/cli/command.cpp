@@ -1,0 +1,66 @@
+#include "cli/command.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+
+namespace clothbench {
+namespace {
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+Overrides split_overrides(const std::vector<std::string>& set) {
+  const std::string prefix = "solver.";
+  Overrides out;
+  for (const std::string& item : set) {
+    if (item.rfind(prefix, 0) != 0) {
+      out.scene.push_back(item);
+      continue;
+    }
+    const auto eq = item.find('=');
+    if (eq == std::string::npos) throw Error("--set " + item + ": expected solver.<name>=<value>");
+    const std::string key = item.substr(prefix.size(), eq - prefix.size()), text = item.substr(eq + 1);
+    nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
+    out.solver[key] = value.is_discarded() ? nlohmann::json(text) : value;
+  }
+  return out;
+}
+
+std::string Overrides::label() const {
+  std::string text;
+  for (const auto& [key, value] : solver.items())
+    text += (text.empty() ? "" : ",") + key + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
+  return text.empty() ? "default" : text;
+}
+
+void DeviceFlags::add_to(CLI::App& app) {
+  app.add_option("--device", options.index, "Vulkan device number (see `list devices`); default: the best present");
+  app.add_flag("--validate", options.validation, "Vulkan core and synchronization validation; any message fails the run");
+  app.add_flag("--allow-no-device", allow_no_device, "Leave GPU solvers out where there is no Vulkan device");
+}
+
+StatusLine::StatusLine(bool enabled) : enabled_(enabled && isatty(STDERR_FILENO) != 0), start_s_(now_s()) {}
+
+StatusLine::~StatusLine() {
+  if (enabled_ && width_ > 0) fmt::print(stderr, "\r{:{}}\r", "", width_);
+}
+
+void StatusLine::show(const std::string& what, std::size_t done, std::size_t total) {
+  if (!enabled_) return;
+  const double elapsed_s = now_s() - start_s_;
+  std::string eta = "";
+  if (done > 0 && done < total)
+    eta = fmt::format("  about {:.0f} s left", elapsed_s / static_cast<double>(done) * static_cast<double>(total - done));
+  const std::string line = fmt::format("[{}/{}] {}{}", done, total, what, eta);
+  fmt::print(stderr, "\r{:<{}}", line, width_);
+  std::fflush(stderr);
+  width_ = line.size();
+}
+
+}  // namespace clothbench

@@ -1,0 +1,56 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "clothbench/error.hpp"
+#include "clothbench/solver.hpp"
+
+namespace clothbench {
+
+/// What every command shares. A command adds itself to the app and runs in its callback; failures are Errors.
+struct Console {
+  bool json = false;  ///< print a machine-readable summary instead of tables
+  std::string command_line;
+  ExitCode exit_code = ExitCode::Ok;
+};
+
+void add_list(CLI::App&, Console&);
+void add_validate(CLI::App&, Console&);
+void add_plan(CLI::App&, Console&);
+void add_run(CLI::App&, Console&);
+void add_study(CLI::App&, Console&);
+void add_report(CLI::App&, Console&);
+void add_import(CLI::App&, Console&);
+void add_bench(CLI::App&, Console&);
+
+/// `--set` arguments: `solver.<name>=<JSON>` go to the solver, everything else to the scene.
+struct Overrides {
+  std::vector<std::string> scene;
+  nlohmann::json solver = nlohmann::json::object();
+  std::string label() const;  ///< short name of the solver part, "default" if empty
+};
+Overrides split_overrides(const std::vector<std::string>& set);
+
+/// Options of everything that runs a solver: --device, --validate, --allow-no-device.
+struct DeviceFlags {
+  DeviceOptions options;
+  bool allow_no_device = false;
+  void add_to(CLI::App&);
+};
+
+/// A line on the terminal that is rewritten in place; silent in a pipe.
+class StatusLine {
+ public:
+  explicit StatusLine(bool enabled);
+  ~StatusLine();
+  void show(const std::string& what, std::size_t done, std::size_t total);
+
+ private:
+  bool enabled_;
+  double start_s_;
+  std::size_t width_ = 0;
+};
+
+}  // namespace clothbench

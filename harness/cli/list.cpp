@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/command.hpp"
+#include "metrics/metric.hpp"
+#include "scenario/load.hpp"
+#include "scenario/study.hpp"
+
+namespace clothbench {
+namespace {
+
+nlohmann::json list_solvers() {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const SolverEntry& e : solvers()) {
+    nlohmann::json settings = nlohmann::json::array(), features = nlohmann::json::array();
+    for (const SettingSpec& s : e.info.settings)
+      settings.push_back({{"name", s.name}, {"default", nlohmann::json::parse(s.default_json)}, {"doc", s.doc}});
+    e.info.supports.for_each([&](Feature f) { features.push_back(name_of(f)); });
+    rows.push_back({{"name", e.info.name}, {"folder", e.info.folder}, {"summary", e.info.summary},
+                    {"version", e.info.version}, {"precision", e.info.precision}, {"gpu", e.info.on_gpu},
+                    {"supports", features}, {"settings", settings}});
+  }
+  return rows;
+}
+
+nlohmann::json list_files(const char* folder) {
+  nlohmann::json rows = nlohmann::json::array();
+  const std::filesystem::path root = scenario_root();
+  if (!std::filesystem::exists(root / folder)) return rows;
+  for (const auto& file : std::filesystem::recursive_directory_iterator(root / folder))
+    if (file.path().extension() == ".json")
+      rows.push_back({{"name", std::filesystem::relative(file.path(), root).replace_extension().string()}});
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+nlohmann::json list_scenarios() {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const char* folder : {"paper", "validation", "stability"})
+    for (auto& row : list_files(folder)) {
+      row["why"] = load_scene(row["name"].get<std::string>()).why;
+      rows.push_back(row);
+    }
+  return rows;
+}
+
+nlohmann::json list_devices() {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const SolverEntry& e : solvers()) {
+    if (!e.devices) continue;
+    for (const DeviceInfo& d : e.devices())
+      rows.push_back({{"name", d.name}, {"driver", d.driver}, {"api", d.api}, {"software", d.is_software}});
+    break;  // all GPU backends here see the same Vulkan devices
+  }
+  return rows;
+}
+
+nlohmann::json list_metrics() {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Metric& m : metrics()) rows.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}});
+  return rows;
+}
+
+void print_rows(const nlohmann::json& rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto& r = rows[i];
+    std::string text = r.value("summary", r.value("why", r.value("long_name", r.value("driver", std::string()))));
+    if (r.value("software", false)) text += "  (software: for correctness, not for speed claims)";
+    if (r.contains("units")) text += " [" + r["units"].get<std::string>() + "]";
+    fmt::print("{:<24} {}\n", r["name"].get<std::string>(), text);
+    if (r.contains("settings"))
+      for (const auto& s : r["settings"])
+        fmt::print("    solver.{}={}  {}\n", s["name"].get<std::string>(), s["default"].dump(), s["doc"].get<std::string>());
+  }
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, Console& console) {
+  static std::string what = "solvers";
+  CLI::App* cmd = app.add_subcommand("list", "What there is: solvers, scenarios, studies, devices or metrics");
+  cmd->add_option("what", what, "solvers | scenarios | studies | devices | metrics")
+      ->check(CLI::IsMember({"solvers", "scenarios", "studies", "devices", "metrics"}));
+  cmd->callback([&console] {
+    const nlohmann::json rows = what == "solvers"     ? list_solvers()
+                                : what == "scenarios" ? list_scenarios()
+                                : what == "studies"   ? list_files("studies")
+                                : what == "devices"   ? list_devices()
+                                                      : list_metrics();
+    if (console.json) fmt::print("{}\n", rows.dump(2));
+    else if (rows.empty()) fmt::print("no {}\n", what);
+    else print_rows(rows);
+  });
+}
+
+}  // namespace clothbench

@@ -1,0 +1,90 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cli/command.hpp"
+#include "runner/cell.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> scenes, solvers, set;
+  DeviceFlags device;
+};
+
+nlohmann::json number(double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr); }
+
+nlohmann::json plan_of(const Cell& cell, const Scene& scene) {
+  nlohmann::json needs = nlohmann::json::array(), stages = nlohmann::json::array();
+  scene.needs.for_each([&](Feature f) { needs.push_back(name_of(f)); });
+  for (const StagePlan& s : cell.plan().stages) {
+    nlohmann::json serves = nlohmann::json::array();
+    s.serves.for_each([&](Feature f) { serves.push_back(name_of(f)); });
+    stages.push_back({{"name", s.name}, {"serves", serves}, {"dispatches", s.dispatches},
+                      {"read_B", number(s.read_B)}, {"write_B", number(s.write_B)}});
+  }
+  nlohmann::json j = {{"scene", scene.name}, {"solver", cell.header().solver}, {"needs", needs},
+                      {"status", cell.outcome().status}, {"message", cell.outcome().message}, {"stages", stages},
+                      {"buffers", nlohmann::json::array()}, {"left_out", nlohmann::json::array()}};
+  for (const char* key : {"buffers", "left_out"})
+    if (cell.header().plan.contains(key)) j[key] = cell.header().plan[key];
+  return j;
+}
+
+std::string bytes(const nlohmann::json& b) { return b.is_null() ? "–" : fmt::format("{:.0f}", b.get<double>()); }
+
+std::string joined(const nlohmann::json& words) {
+  std::string text;
+  for (const auto& w : words) text += (text.empty() ? "" : ", ") + w.get<std::string>();
+  return text;
+}
+
+void print(const nlohmann::json& p) {
+  fmt::print("{} on {}\n  needs: {}\n", p["solver"].get<std::string>(), p["scene"].get<std::string>(), joined(p["needs"]));
+  if (p["status"] != "ok") fmt::print("  {}: {}\n", p["status"].get<std::string>(), p["message"].get<std::string>());
+  if (!p["stages"].empty())
+    fmt::print("\n  {:<28} {:>10} {:>14} {:>14}  {}\n", "stage, each frame", "dispatches", "read B", "written B", "serves");
+  for (const auto& s : p["stages"])
+    fmt::print("  {:<28} {:>10} {:>14} {:>14}  {}\n", s["name"].get<std::string>(), s["dispatches"].get<int>(),
+               bytes(s["read_B"]), bytes(s["write_B"]), joined(s["serves"]));
+  if (!p["buffers"].empty()) fmt::print("\n  {:<28} {:>14}\n", "buffer", "bytes");
+  for (const auto& b : p["buffers"])
+    fmt::print("  {:<28} {:>14}  {}\n", b["name"].get<std::string>(), b["bytes"].get<std::uint64_t>(),
+               b["device_local"].get<bool>() ? "device" : "host");
+  if (!p["left_out"].empty()) fmt::print("\n  left out\n");
+  for (const auto& l : p["left_out"]) fmt::print("  {:<28} {}\n", l["what"].get<std::string>(), l["why"].get<std::string>());
+  fmt::print("\n");
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, Console& console) {
+  static Arguments a;
+  CLI::App* cmd = app.add_subcommand("plan", "What a solver would run for a scene: kernels, dispatches, buffers, bytes, and what it leaves out");
+  cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
+  cmd->add_option("--solver", a.solvers, "Solvers; default: all");
+  cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
+  a.device.add_to(*cmd);
+  cmd->callback([&console] {
+    const Overrides overrides = split_overrides(a.set);
+    if (a.solvers.empty())
+      for (const SolverEntry& e : solvers()) a.solvers.push_back(e.info.name);
+    nlohmann::json all = nlohmann::json::array();
+    for (const std::string& file : a.scenes) {
+      const Scene scene = load_scene(file, overrides.scene);
+      for (const std::string& name : a.solvers) {
+        const SolverEntry& entry = find_solver(name);
+        const Cell cell({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()},
+                        a.device.options, "plan");
+        all.push_back(plan_of(cell, scene));
+        if (!console.json) print(all.back());
+        if (cell.outcome().status == "error") console.exit_code = ExitCode::CheckFailed;
+      }
+    }
+    if (console.json) fmt::print("{}\n", all.dump(2));
+  });
+}
+
+}  // namespace clothbench

@@ -1,0 +1,28 @@
+#include <fmt/format.h>
+
+#include "cli/command.hpp"
+#include "report/report.hpp"
+
+namespace clothbench {
+
+void add_report(CLI::App& app, Console& console) {
+  static std::vector<std::string> runs;
+  static std::string out = "report";
+  CLI::App* cmd = app.add_subcommand("report", "Tables (Markdown, CSV, JSON) and figures (SVG, PNG) from result files");
+  cmd->add_option("runs", runs, "Study folders or result files")->required();
+  cmd->add_option("-o,--out", out, "Folder to write to")->capture_default_str();
+  cmd->footer("Example: clothbench report results/runs/table3-20260101T000000Z -o report");
+  cmd->callback([&console] {
+    std::vector<std::filesystem::path> paths(runs.begin(), runs.end());
+    ReportOptions options;
+    options.out = out;
+    write_report(paths, options);
+    if (console.json) fmt::print("{}\n", nlohmann::json{{"out", out}}.dump(2));
+    else {
+      print_console_report(paths);
+      fmt::print("\nreport: {}/report.md\n", out);
+    }
+  });
+}
+
+}  // namespace clothbench

@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cli/command.hpp"
+#include "cli/run_common.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> scenes, solvers, set;
+  std::string out;
+  int trials = 1;
+  DeviceFlags device;
+};
+
+}  // namespace
+
+void add_run(CLI::App& app, Console& console) {
+  static Arguments a;
+  CLI::App* cmd = app.add_subcommand("run", "Run scenes with solvers: one accuracy pass over the whole scene, then timed trials");
+  cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
+  cmd->add_option("--solver", a.solvers, "Solvers (default xpbd)");
+  cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
+  cmd->add_option("--trials", a.trials, "Timed trials")->check(CLI::Range(0, 1000))->capture_default_str();
+  cmd->add_option("--out", a.out, "Folder for the result files; default results/runs/run-<UTC>");
+  a.device.add_to(*cmd);
+  cmd->footer("Example: clothbench run paper/gravity --solver paper --set cloth.grid=[64,64] --set solver.iterations=20");
+  cmd->callback([&console] {
+    const Overrides overrides = split_overrides(a.set);
+    if (a.solvers.empty()) a.solvers = {"xpbd"};
+    std::vector<Scene> scenes;
+    for (const std::string& file : a.scenes) scenes.push_back(load_scene(file, overrides.scene));
+    CellPlan plan;
+    plan.protocol = "run";
+    plan.rules.trials = a.trials;
+    plan.rules.max_wall_s = 10;
+    plan.rules.accuracy_duration_s = 0;
+    for (const Scene& scene : scenes) {
+      plan.rules.accuracy_duration_s = std::max(plan.rules.accuracy_duration_s, scene.time.duration_s);
+      std::vector<CellSpec> group;
+      for (const std::string& name : a.solvers) {
+        const SolverEntry& entry = find_solver(name);
+        group.push_back({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()});
+      }
+      plan.groups.push_back(std::move(group));
+    }
+    StudyManifest manifest;
+    manifest.study = "run";
+    run_and_tell(plan, manifest, {a.out, false, a.device}, console);
+  });
+}
+
+}  // namespace clothbench

@@ -1,0 +1,81 @@
+#include "cli/run_common.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/report.hpp"
+#include "runner/environment.hpp"
+
+namespace clothbench {
+namespace {
+
+std::filesystem::path default_folder(const std::string& study) {
+  std::string stamp = utc_now();
+  stamp.erase(std::remove_if(stamp.begin(), stamp.end(), [](char c) { return c == '-' || c == ':'; }), stamp.end());
+  return std::filesystem::path("results/runs") / (study + "-" + stamp);
+}
+
+/// Says what GPU solvers will run on, before anything is measured. Drops them where there is no device and that is
+/// allowed.
+void settle_device(CellPlan& plan, const DeviceFlags& flags) {
+  const SolverEntry* gpu = nullptr;
+  for (const auto& group : plan.groups)
+    for (const CellSpec& c : group)
+      if (c.entry->info.on_gpu && c.entry->devices) gpu = c.entry;
+  if (gpu == nullptr) return;
+  const std::vector<DeviceInfo> devices = gpu->devices();
+  if (devices.empty()) {
+    if (!flags.allow_no_device)
+      throw Error("no Vulkan device is present; install a driver (Debian: mesa-vulkan-drivers) or give --allow-no-device",
+                  ExitCode::NoDevice);
+    fmt::print(stderr, "no Vulkan device: GPU solvers are left out\n");
+    for (auto& group : plan.groups)
+      group.erase(std::remove_if(group.begin(), group.end(), [](const CellSpec& c) { return c.entry->info.on_gpu; }),
+                  group.end());
+    return;
+  }
+  if (flags.options.index >= static_cast<int>(devices.size()))
+    throw Error(fmt::format("--device {}: there are {} devices (see `clothbench list devices`)", flags.options.index,
+                            devices.size()), ExitCode::NoDevice);
+}
+
+}  // namespace
+
+void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, Console& console) {
+  settle_device(plan, flags.device);
+  const std::filesystem::path out = flags.out.empty() ? default_folder(manifest.study) : std::filesystem::path(flags.out);
+  std::filesystem::create_directories(out);
+  manifest.created = utc_now();
+  manifest.command_line = console.command_line;
+  for (const auto& group : plan.groups)
+    for (const CellSpec& c : group) {
+      CellHeader h;
+      h.scene = c.scene->name;
+      h.solver = c.entry->info.name;
+      h.setting = c.setting;
+      manifest.cells.push_back(cell_name(h));
+    }
+  write_manifest(out, manifest);
+
+  RunResult result;
+  {
+    StatusLine line(!console.json);
+    RunOptions options{out, flags.resume, flags.device.options,
+                       [&](const std::string& what, std::size_t done, std::size_t total) { line.show(what, done, total); }};
+    result = run_cells(plan, options);
+  }
+  for (const std::string& fault : result.faults) fmt::print(stderr, "FAULT {}\n", fault);
+  if (!result.faults.empty()) console.exit_code = ExitCode::CheckFailed;
+  if (console.json) {
+    nlohmann::json j = {{"out", out.string()}, {"ok", result.cells_ok}, {"unsupported", result.cells_unsupported},
+                        {"failed", result.cells_failed}, {"faults", result.faults}};
+    fmt::print("{}\n", j.dump(2));
+    return;
+  }
+  print_console_report({out});
+  fmt::print("\n{} cells ok, {} unsupported, {} failed; results in {}\n", result.cells_ok, result.cells_unsupported,
+             result.cells_failed, out.string());
+}
+
+}  // namespace clothbench

@@ -1,0 +1,31 @@
+#include <fmt/format.h>
+
+#include "cli/command.hpp"
+#include "scenario/load.hpp"
+#include "scenario/study.hpp"
+
+namespace clothbench {
+
+void add_validate(CLI::App& app, Console& console) {
+  static std::vector<std::string> files;
+  CLI::App* cmd = app.add_subcommand("validate", "Check scenario and study files");
+  cmd->add_option("file", files, "Files or names")->required();
+  cmd->callback([&console] {
+    nlohmann::json rows = nlohmann::json::array();
+    for (const std::string& file : files) {
+      std::string fault;
+      try {
+        if (is_study(file)) load_study(file);
+        else load_scene(file);
+      } catch (const Error& e) {
+        fault = e.what();
+        console.exit_code = ExitCode::BadInput;
+      }
+      rows.push_back({{"file", file}, {"ok", fault.empty()}, {"message", fault}});
+      if (!console.json) fmt::print("{}\n", fault.empty() ? file + ": ok" : fault);
+    }
+    if (console.json) fmt::print("{}\n", rows.dump(2));
+  });
+}
+
+}  // namespace clothbench

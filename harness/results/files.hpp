@@ -1,0 +1,12 @@
+#pragma once
+#include <filesystem>
+
+namespace clothbench {
+
+/// `<path>.tmp.<pid>`: what a file is called until it is whole.
+std::filesystem::path temporary_name(const std::filesystem::path& path);
+
+/// fsync of the temporary file, rename into place, fsync of the folder. Throws Error naming the file.
+void publish(const std::filesystem::path& temporary, const std::filesystem::path& path);
+
+}  // namespace clothbench

@@ -1,0 +1,20 @@
+#pragma once
+#include <filesystem>
+
+#include "clothbench/record.hpp"
+
+namespace clothbench {
+
+#ifdef CLOTHBENCH_HAS_HDF5
+inline constexpr bool kWithHdf5 = true;
+#else
+inline constexpr bool kWithHdf5 = false;  // the two functions below then throw
+#endif
+
+/// One result file, layout in results/README.md. tmp + fsync + rename; throws Error naming the file.
+void write_hdf5(const std::filesystem::path&, const CellRecord&);
+
+/// Reads one back; without `with_trajectory` positions and metric series stay empty.
+CellRecord read_hdf5(const std::filesystem::path&, bool with_trajectory);
+
+}  // namespace clothbench

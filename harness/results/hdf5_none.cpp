@@ -1,0 +1,12 @@
+#include "clothbench/error.hpp"
+#include "results/hdf5_file.hpp"
+
+namespace clothbench {
+
+void write_hdf5(const std::filesystem::path& path, const CellRecord&) {
+  throw Error(path.string() + ": this build writes no HDF5; convert raw run files with `clothbench import` on another machine");
+}
+
+CellRecord read_hdf5(const std::filesystem::path& path, bool) { throw Error(path.string() + ": this build reads no HDF5"); }
+
+}  // namespace clothbench

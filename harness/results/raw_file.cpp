@@ -1,0 +1,222 @@
+#include "results/raw_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <fstream>
+
+#include "clothbench/error.hpp"
+#include "results/store.hpp"
+
+namespace clothbench {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "raw run files are written as memory lies");
+
+constexpr char kMagic[9] = "CBRAW001";
+constexpr std::size_t kMostHeader = 64u << 20;
+
+using Bytes = std::vector<std::uint8_t>;
+
+void put(std::string& out, const void* data, std::size_t size) { out.append(static_cast<const char*>(data), size); }
+void put_u32(std::string& out, std::uint32_t v) { put(out, &v, sizeof v); }
+
+template <class T>
+void append(Bytes& out, const T* values, std::size_t count) {
+  const std::size_t at = out.size();
+  out.resize(at + count * sizeof(T));
+  if (count > 0) std::memcpy(out.data() + at, values, count * sizeof(T));
+}
+
+/// Takes values off the front of a payload.
+class Taker {
+ public:
+  explicit Taker(const Bytes& bytes) : bytes_(bytes) {}
+  template <class T>
+  void take(std::vector<T>& out, std::size_t count) {
+    if (at_ + count * sizeof(T) > bytes_.size()) throw Error("a frame is shorter than its header says");
+    const std::size_t old = out.size();
+    out.resize(old + count);
+    if (count > 0) std::memcpy(out.data() + old, bytes_.data() + at_, count * sizeof(T));
+    at_ += count * sizeof(T);
+  }
+
+ private:
+  const Bytes& bytes_;
+  std::size_t at_ = 0;
+};
+
+std::string slurp(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error(path.string() + ": cannot be opened");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Runs a reader of headers and payloads; whatever is wrong inside names the file.
+template <class Fn>
+auto naming(const std::filesystem::path& path, Fn fn) {
+  try {
+    return fn();
+  } catch (const nlohmann::json::exception& e) {
+    throw Error(path.string() + ": not a raw run file of this kind: " + e.what());
+  } catch (const Error& e) {
+    throw Error(path.string() + ": " + e.what());
+  }
+}
+
+}  // namespace
+
+std::uint32_t crc32c(const std::uint8_t* data, std::size_t size, std::uint32_t seed) {
+  static const std::array<std::uint32_t, 256> table = [] {
+    std::array<std::uint32_t, 256> t{};
+    for (std::uint32_t i = 0; i < 256; ++i) {
+      std::uint32_t c = i;
+      for (int k = 0; k < 8; ++k) c = (c & 1u) != 0 ? 0x82f63b78u ^ (c >> 1) : c >> 1;  // Castagnoli, reflected
+      t[i] = c;
+    }
+    return t;
+  }();
+  std::uint32_t c = ~seed;
+  for (std::size_t i = 0; i < size; ++i) c = table[(c ^ data[i]) & 255u] ^ (c >> 8);
+  return ~c;
+}
+
+void write_raw(const std::filesystem::path& path, nlohmann::json header, const std::vector<Bytes>& payloads) {
+  const std::size_t payload_B = payloads.empty() ? 0 : payloads.front().size();
+  header["frame_B"] = payload_B + 8;
+  const std::string text = header.dump();
+  std::string out(kMagic, 8);
+  put_u32(out, static_cast<std::uint32_t>(text.size()));
+  out += text;
+  put_u32(out, crc32c(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+  for (std::uint32_t k = 0; k < payloads.size(); ++k) {
+    const std::size_t start = out.size();
+    put_u32(out, k);
+    put(out, payloads[k].data(), payloads[k].size());
+    put_u32(out, crc32c(reinterpret_cast<const std::uint8_t*>(out.data()) + start, out.size() - start));
+  }
+  write_file_atomically(path, out);
+}
+
+RawFile read_raw(const std::filesystem::path& path) {
+  const std::string all = slurp(path);
+  const auto* data = reinterpret_cast<const std::uint8_t*>(all.data());
+  const auto u32 = [&](std::size_t at) {
+    std::uint32_t v = 0;
+    std::memcpy(&v, data + at, 4);
+    return v;
+  };
+  if (all.size() < 16 || std::memcmp(data, kMagic, 8) != 0) throw Error(path.string() + ": not a raw run file (it does not begin with CBRAW001)");
+  const std::size_t length = u32(8);
+  if (length > kMostHeader || all.size() < 16 + length) throw Error(path.string() + ": cut short within its header");
+  if (crc32c(data + 12, length) != u32(12 + length)) throw Error(path.string() + ": its header is damaged (CRC32C)");
+  RawFile file;
+  file.header = nlohmann::json::parse(all.substr(12, length), nullptr, false);
+  if (!file.header.is_object() || !file.header.contains("frame_B") || !file.header["frame_B"].is_number_unsigned())
+    throw Error(path.string() + ": its header has no frame_B");
+  const auto frame_B = file.header["frame_B"].get<std::size_t>();
+  if (frame_B < 8) throw Error(path.string() + ": frame_B is under 8");
+  std::size_t at = 16 + length;
+  for (std::uint32_t k = 0; at < all.size(); ++k, at += frame_B) {
+    const bool whole = frame_B <= all.size() - at && u32(at) == k && crc32c(data + at, frame_B - 4) == u32(at + frame_B - 4);
+    if (!whole) {
+      file.complete = false;
+      break;
+    }
+    file.frames.emplace_back(data + at + 4, data + at + frame_B - 4);
+  }
+  return file;
+}
+
+nlohmann::json header_to_json(const CellHeader& h) {
+  nlohmann::json stages = nlohmann::json::array();
+  for (const StageRecord& s : h.stages) stages.push_back({{"name", s.name}, {"serves", s.serves}, {"dispatches", s.dispatches}});
+  return {{"scene", h.scene}, {"solver", h.solver}, {"setting", h.setting}, {"settings", h.settings},
+          {"scenario_json", h.scenario_json}, {"scenario_sha256", h.scenario_sha256}, {"stages", stages}, {"plan", h.plan},
+          {"environment", h.environment}, {"vertices", h.vertices}, {"triangles", h.triangles}, {"load_s", h.load_s}};
+}
+
+CellHeader header_from_json(const nlohmann::json& j) {
+  CellHeader h;
+  h.scene = j.at("scene").get<std::string>();
+  h.solver = j.at("solver").get<std::string>();
+  h.setting = j.at("setting").get<std::string>();
+  h.settings = j.at("settings");
+  h.scenario_json = j.at("scenario_json").get<std::string>();
+  h.scenario_sha256 = j.at("scenario_sha256").get<std::string>();
+  for (const auto& s : j.at("stages"))
+    h.stages.push_back({s.at("name").get<std::string>(), s.at("serves").get<std::vector<std::string>>(), s.at("dispatches").get<int>()});
+  h.plan = j.at("plan");
+  h.environment = j.at("environment");
+  h.vertices = j.at("vertices").get<std::uint32_t>();
+  h.triangles = j.at("triangles").get<std::vector<std::uint32_t>>();
+  h.load_s = j.at("load_s").is_null() ? kMissing : j.at("load_s").get<double>();
+  return h;
+}
+
+void write_trial_file(const std::filesystem::path& path, const TimedTrial& t, std::size_t stages) {
+  std::vector<Bytes> frames;
+  for (std::size_t f = 0; f < t.frame_wall_s.size(); ++f) {
+    Bytes b;
+    append(b, &t.frame_wall_s[f], 1);
+    append(b, &t.frame_device_s[f], 1);
+    for (const auto* series : {&t.stage_device_s, &t.stage_read_B, &t.stage_write_B}) append(b, series->data() + f * stages, stages);
+    frames.push_back(std::move(b));
+  }
+  write_raw(path, {{"kind", "trial"}, {"index", t.index}, {"stages", stages}, {"frames", frames.size()}}, frames);
+}
+
+TimedTrial read_trial_file(const std::filesystem::path& path) {
+  return naming(path, [&] {
+    const RawFile file = read_raw(path);
+    const auto stages = file.header.at("stages").get<std::size_t>();
+    if (!file.complete || file.frames.size() != file.header.at("frames").get<std::size_t>()) throw Error("damaged: not all frames are there");
+    TimedTrial t;
+    t.index = file.header.at("index").get<int>();
+    for (const Bytes& b : file.frames) {
+      Taker taker(b);
+      taker.take(t.frame_wall_s, 1);
+      taker.take(t.frame_device_s, 1);
+      taker.take(t.stage_device_s, stages);
+      taker.take(t.stage_read_B, stages);
+      taker.take(t.stage_write_B, stages);
+    }
+    return t;
+  });
+}
+
+void write_accuracy_file(const std::filesystem::path& path, const AccuracyPass& a, std::uint32_t vertices) {
+  nlohmann::json names = nlohmann::json::array();
+  for (const MetricSeries& m : a.metrics) names.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}});
+  std::vector<Bytes> frames;
+  for (std::size_t f = 0; f < a.time_s.size(); ++f) {
+    Bytes b;
+    append(b, &a.time_s[f], 1);
+    for (const MetricSeries& m : a.metrics) append(b, &m.values[f], 1);
+    append(b, a.position.data() + f * 3 * vertices, 3 * std::size_t{vertices});
+    frames.push_back(std::move(b));
+  }
+  write_raw(path, {{"kind", "accuracy"}, {"metrics", names}, {"vertices", vertices}, {"frames", frames.size()}}, frames);
+}
+
+AccuracyPass read_accuracy_file(const std::filesystem::path& path) {
+  return naming(path, [&] {
+    const RawFile file = read_raw(path);
+    if (!file.complete || file.frames.size() != file.header.at("frames").get<std::size_t>()) throw Error("damaged: not all frames are there");
+    const auto vertices = file.header.at("vertices").get<std::size_t>();
+    AccuracyPass a;
+    for (const auto& m : file.header.at("metrics"))
+      a.metrics.push_back({m.at("name").get<std::string>(), m.at("units").get<std::string>(), m.at("long_name").get<std::string>(), {}});
+    for (const Bytes& b : file.frames) {
+      Taker taker(b);
+      taker.take(a.time_s, 1);
+      for (MetricSeries& m : a.metrics) taker.take(m.values, 1);
+      taker.take(a.position, 3 * vertices);
+    }
+    return a;
+  });
+}
+
+}  // namespace clothbench

@@ -1,0 +1,39 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "clothbench/record.hpp"
+
+namespace clothbench {
+
+/// Raw run file, format 1: what a measurement is written to first, and all that a device without HDF5 writes.
+/// Little-endian:
+///   8 B  "CBRAW001"
+///   u32  length of the header, then the header (JSON, UTF-8), then u32 CRC32C of the header
+///   frames of `frame_B` bytes each (named in the header): u32 index, payload, u32 CRC32C of index and payload
+/// A file cut short or with a damaged frame is valid up to there.
+struct RawFile {
+  nlohmann::json header;
+  std::vector<std::vector<std::uint8_t>> frames;  ///< payloads, in order
+  bool complete = true;                           ///< false: a torn or damaged tail was cut off
+};
+
+std::uint32_t crc32c(const std::uint8_t* data, std::size_t size, std::uint32_t seed = 0);
+
+/// tmp + fsync + rename + fsync of the folder. All payloads have the same size.
+void write_raw(const std::filesystem::path&, nlohmann::json header, const std::vector<std::vector<std::uint8_t>>& payloads);
+
+/// Throws Error naming the file if its header is not readable.
+RawFile read_raw(const std::filesystem::path&);
+
+nlohmann::json header_to_json(const CellHeader&);
+CellHeader header_from_json(const nlohmann::json&);
+
+void write_trial_file(const std::filesystem::path&, const TimedTrial&, std::size_t stages);
+TimedTrial read_trial_file(const std::filesystem::path&);
+void write_accuracy_file(const std::filesystem::path&, const AccuracyPass&, std::uint32_t vertices);
+AccuracyPass read_accuracy_file(const std::filesystem::path&);
+
+}  // namespace clothbench

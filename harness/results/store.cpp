@@ -1,0 +1,145 @@
+#include "results/store.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+#include "clothbench/error.hpp"
+#include "results/hdf5_file.hpp"
+#include "results/raw_file.hpp"
+#include "results/xdmf.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path part_folder(const fs::path& dir, const std::string& cell) { return dir / (cell + ".part"); }
+fs::path trial_file(const fs::path& part, int k) { return part / fmt::format("trial-{}.raw", k); }
+
+nlohmann::json outcome_json(const Outcome& o, const std::map<std::string, double>& summary) {
+  return {{"kind", "outcome"}, {"status", o.status}, {"class", o.klass}, {"failed_frame", o.failed_frame}, {"message", o.message},
+          {"summary", summary}};  // NaN becomes null
+}
+
+/// Everything in a part folder. Damaged or foreign trial files count as not there.
+CellRecord read_part(const fs::path& part) {
+  CellRecord record;
+  const fs::path header = part / "header.raw";
+  record.header = header_from_json(read_raw(header).header.at("cell"));
+  for (const auto& entry : fs::directory_iterator(part)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("trial-", 0) != 0 || entry.path().extension() != ".raw") continue;
+    try {
+      record.trials.push_back(read_trial_file(entry.path()));
+    } catch (const Error&) {
+      continue;
+    }
+  }
+  std::sort(record.trials.begin(), record.trials.end(), [](const auto& a, const auto& b) { return a.index < b.index; });
+  if (fs::exists(part / "accuracy.raw")) record.accuracy = read_accuracy_file(part / "accuracy.raw");
+  if (fs::exists(part / "outcome.raw")) {
+    const nlohmann::json o = read_raw(part / "outcome.raw").header;
+    record.outcome = {o.at("status"), o.at("class"), o.at("failed_frame"), o.at("message")};
+    for (const auto& [key, value] : o.at("summary").items()) record.summary[key] = value.is_null() ? kMissing : value.get<double>();
+  }
+  return record;
+}
+
+fs::path write_finished(const fs::path& dir, const CellRecord& record) {
+  const std::string cell = cell_name(record.header);
+  const fs::path file = dir / (cell + ".h5");
+  write_hdf5(file, record);
+  write_xdmf(dir / (cell + ".xdmf"), file.filename().string(), record);
+  return file;
+}
+
+}  // namespace
+
+std::string cell_name(const CellHeader& h) {
+  std::string name = h.scene + "__" + h.solver + "__" + h.setting;
+  for (char& c : name)
+    if (!(std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '=' || c == '-')) c = '-';
+  return name;
+}
+
+CellWriter::CellWriter(fs::path dir, CellHeader header) : dir_(std::move(dir)), header_(std::move(header)) {
+  const fs::path part = part_folder(dir_, cell_name(header_)), file = part / "header.raw";
+  std::error_code ec;
+  fs::create_directories(part, ec);
+  if (ec) throw Error(part.string() + ": cannot be created: " + ec.message(), ExitCode::CheckFailed);
+  if (fs::exists(file)) {
+    const CellHeader before = header_from_json(read_raw(file).header.at("cell"));
+    if (before.scenario_sha256 != header_.scenario_sha256 || before.settings != header_.settings)
+      throw Error(fmt::format("{}: holds trials of another run (scene {} settings {}; now scene {} settings {}); give another --out", part.string(),
+                              before.scenario_sha256.substr(0, 12), before.settings.dump(), header_.scenario_sha256.substr(0, 12),
+                              header_.settings.dump()));
+    return;
+  }
+  write_raw(file, {{"kind", "header"}, {"cell", header_to_json(header_)}}, {});
+}
+
+void CellWriter::write_trial(const TimedTrial& trial) {
+  write_trial_file(trial_file(part_folder(dir_, cell_name(header_)), trial.index), trial, header_.stages.size());
+}
+
+void CellWriter::write_accuracy(const AccuracyPass& pass) {
+  write_accuracy_file(part_folder(dir_, cell_name(header_)) / "accuracy.raw", pass, header_.vertices);
+}
+
+fs::path CellWriter::finish(const Outcome& outcome, const std::map<std::string, double>& summary) {
+  const fs::path part = part_folder(dir_, cell_name(header_));
+  write_raw(part / "outcome.raw", outcome_json(outcome, summary), {});
+  if (!kWithHdf5) return part;
+  const fs::path file = write_finished(dir_, read_part(part));
+  fs::remove_all(part);
+  return file;
+}
+
+CellRecord CellWriter::recovered() const { return read_part(part_folder(dir_, cell_name(header_))); }
+
+bool cell_finished(const fs::path& dir, const std::string& cell) {
+  return fs::exists(dir / (cell + ".h5")) || (!kWithHdf5 && fs::exists(part_folder(dir, cell) / "outcome.raw"));
+}
+
+CellRecord read_cell(const fs::path& path) { return fs::is_directory(path) ? read_part(path) : read_hdf5(path, true); }
+CellRecord read_cell_summary(const fs::path& path) { return fs::is_directory(path) ? read_part(path) : read_hdf5(path, false); }
+
+std::vector<fs::path> import_raw(const fs::path& dir_or_part) {
+  if (!kWithHdf5) throw Error("import: this build has no HDF5");
+  if (!fs::is_directory(dir_or_part)) throw Error(dir_or_part.string() + ": expected a study folder or a .part folder");
+  std::vector<fs::path> parts, files;
+  if (dir_or_part.extension() == ".part") parts.push_back(dir_or_part);
+  else
+    for (const auto& entry : fs::directory_iterator(dir_or_part))
+      if (entry.is_directory() && entry.path().extension() == ".part") parts.push_back(entry.path());
+  std::sort(parts.begin(), parts.end());
+  for (const fs::path& part : parts) {
+    if (!fs::exists(part / "outcome.raw")) continue;  // not finished: `study --resume` goes on with it
+    files.push_back(write_finished(part.parent_path(), read_part(part)));
+  }
+  return files;
+}
+
+void write_manifest(const fs::path& dir, const StudyManifest& m) {
+  const nlohmann::json j = {{"format", "clothbench-study"}, {"format_version", 1}, {"study", m.study}, {"created", m.created},
+                            {"command_line", m.command_line}, {"definition", m.definition}, {"cells", m.cells}};
+  write_file_atomically(dir / "study.json", j.dump(2) + "\n");
+}
+
+StudyManifest read_manifest(const fs::path& dir) {
+  const fs::path file = dir / "study.json";
+  std::error_code ec;
+  if (!fs::is_regular_file(file, ec)) throw Error(file.string() + ": no such file; expected a study folder");
+  try {
+    std::ifstream in(file);
+    const nlohmann::json j = nlohmann::json::parse(in);
+    return {j.at("study"), j.at("created"), j.at("command_line"), j.at("definition"), j.at("cells")};
+  } catch (const nlohmann::json::exception& e) {
+    throw Error(file.string() + ": not a study manifest: " + e.what());
+  }
+}
+
+}  // namespace clothbench

@@ -1,0 +1,30 @@
+# Run at every build: cmake -D SOURCE_DIR= -D OUTPUT= -D COMPILER= -D BUILD_TYPE= -D VERSION= -P build_info.cmake
+# The file is rewritten only when its content changes, so a commit costs one small compilation.
+execute_process(COMMAND git rev-parse HEAD WORKING_DIRECTORY ${SOURCE_DIR}
+  OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+execute_process(COMMAND git status --porcelain --untracked-files=no WORKING_DIRECTORY ${SOURCE_DIR}
+  OUTPUT_VARIABLE changes OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+execute_process(COMMAND glslc --version OUTPUT_VARIABLE glslc ERROR_QUIET)
+string(REGEX REPLACE "\n.*" "" glslc "${glslc}")
+if(NOT commit)
+  set(commit "unknown")
+endif()
+if(NOT glslc)
+  set(glslc "none")
+endif()
+set(dirty false)
+if(changes)
+  set(dirty true)
+endif()
+file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
+#include "runner/build_info.hpp"
+
+namespace clothbench::build_info {
+const char* const kCompiler = "@COMPILER@";
+const char* const kShaderCompiler = "@glslc@";
+const char* const kBuildType = "@BUILD_TYPE@";
+const char* const kVersion = "@VERSION@";
+const char* const kGitCommit = "@commit@";
+const bool kGitDirty = @dirty@;
+}  // namespace clothbench::build_info
+]])

@@ -1,0 +1,11 @@
+#pragma once
+
+/// Facts of this build, written by build_info.cmake at every build.
+namespace clothbench::build_info {
+extern const char* const kCompiler;
+extern const char* const kShaderCompiler;
+extern const char* const kBuildType;
+extern const char* const kVersion;
+extern const char* const kGitCommit;
+extern const bool kGitDirty;
+}  // namespace clothbench::build_info

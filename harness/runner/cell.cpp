@@ -1,0 +1,197 @@
+#include "runner/cell.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+
+#include "metrics/metric.hpp"
+#include "runner/environment.hpp"
+#include "runner/stage_check.hpp"
+
+namespace clothbench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::atomic<bool> interrupted{false};
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+void stop_if_interrupted() {
+  if (interrupted) throw Error("interrupted; every finished trial is kept (continue with --resume)", ExitCode::Interrupted);
+}
+
+FrameInput frame_input(const Scene& scene, int index) {
+  const double dt = scene.time.dt();
+  return {index, (index + 1) * dt, dt};
+}
+
+bool all_finite(const std::vector<double>& values) {
+  for (double v : values)
+    if (!std::isfinite(v)) return false;
+  return true;
+}
+
+std::string join(FeatureSet set) {
+  std::string text;
+  set.for_each([&](Feature f) { text += (text.empty() ? "" : ", ") + std::string(name_of(f)); });
+  return text;
+}
+
+nlohmann::json plan_json(const Plan& plan) {
+  nlohmann::json j;
+  for (const BufferPlan& b : plan.buffers)
+    j["buffers"].push_back({{"name", b.name}, {"bytes", b.bytes}, {"device_local", b.device_local}});
+  for (const LeftOut& l : plan.left_out) j["left_out"].push_back({{"what", l.what}, {"why", l.why}});
+  return j;
+}
+
+/// Settings with per-stage timestamps on, if the solver offers them.
+std::optional<nlohmann::json> with_stage_times(const SolverEntry& entry, nlohmann::json settings) {
+  if (!settings.contains("stage_times") || !entry.info.on_gpu) return std::nullopt;
+  settings["stage_times"] = true;
+  return settings;
+}
+
+}  // namespace
+
+void request_interrupt() { interrupted = true; }
+bool interrupt_requested() { return interrupted; }
+
+Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protocol) : spec_(std::move(spec)), device_(device) {
+  const Scene& scene = *spec_.scene;
+  const SolverInfo& info = spec_.entry->info;
+  header_.scene = scene.name;
+  header_.solver = info.name;
+  header_.setting = spec_.setting;
+  header_.settings = spec_.settings;
+  header_.scenario_json = scene.json;
+  header_.scenario_sha256 = scene.sha256;
+  header_.vertices = static_cast<std::uint32_t>(scene.cloth.vertex_count());
+  for (const auto& t : triangles(scene.cloth)) header_.triangles.insert(header_.triangles.end(), t.begin(), t.end());
+
+  const FeatureSet missing = scene.needs - (info.supports | info.ignores);
+  if (!missing.empty()) {
+    outcome_ = {"unsupported", "ok", -1, info.name + " has no " + join(missing)};
+    header_.environment = describe_environment({}, protocol);
+    return;
+  }
+  solver_ = spec_.entry->make(spec_.settings, device_);
+  const auto start = Clock::now();
+  solver_->load(scene);
+  header_.load_s = seconds_since(start);
+  header_.environment = describe_environment(solver_->device(), protocol);
+  plan_ = solver_->plan();
+  header_.plan = plan_json(plan_);
+  for (const StagePlan& s : plan_.stages) {
+    StageRecord record{s.name, {}, s.dispatches};
+    s.serves.for_each([&](Feature f) { record.serves.emplace_back(name_of(f)); });
+    header_.stages.push_back(std::move(record));
+  }
+  if (const std::string fault = check_stages(scene, info, plan_); !fault.empty())
+    outcome_ = {"error", "ok", -1, "stages: " + fault};
+}
+
+void Cell::fail(StepStatus status, int frame) {
+  switch (status) {
+    case StepStatus::Ok: return;
+    case StepStatus::NotFinite: outcome_ = {"not_finite", "F0", frame, "a position or velocity is not finite"}; return;
+    case StepStatus::Diverged: outcome_ = {"diverged", "F1", frame, "the solver gave up"}; return;
+    case StepStatus::DeviceLost: outcome_ = {"device_lost", "F8", frame, "the device was lost"}; return;
+    case StepStatus::TimedOut: outcome_ = {"timed_out", "F8", frame, "the device did not finish in time"}; return;
+  }
+}
+
+AccuracyPass Cell::run_accuracy(double duration_s) {
+  const Scene& scene = *spec_.scene;
+  const int frames = static_cast<int>(std::lround(std::min(duration_s, scene.time.duration_s) * scene.time.frame_rate_hz));
+  const MetricContext context{scene, *spec_.entry, spec_.settings};
+  AccuracyPass pass;
+  std::vector<const Metric*> wanted;
+  for (const Metric& m : metrics())
+    if (m.applies(scene)) {
+      wanted.push_back(&m);
+      pass.metrics.push_back({m.name, m.units, m.long_name, {}});
+    }
+  solver_->reset();
+  ClothState state;
+  for (int frame = 0; frame <= frames; ++frame) {
+    stop_if_interrupted();
+    if (frame > 0) fail(solver_->step(frame_input(scene, frame - 1)), frame);
+    solver_->read_state(state);
+    if (outcome_.status == "ok" && !(all_finite(state.position) && all_finite(state.velocity)))
+      fail(StepStatus::NotFinite, frame);
+    pass.time_s.push_back(frame * scene.time.dt());
+    for (double x : state.position) pass.position.push_back(static_cast<float>(x));
+    for (std::size_t m = 0; m < wanted.size(); ++m) pass.metrics[m].values.push_back(wanted[m]->value(context, frame, state));
+    if (outcome_.status != "ok") break;
+  }
+  return pass;
+}
+
+void Cell::warm_up(const TrialRules& rules) {
+  constexpr int kLeastFrames = 3;
+  solver_->reset();
+  const auto start = Clock::now();
+  for (int frame = 0; frame < kLeastFrames || seconds_since(start) < rules.warmup_s; ++frame) {
+    stop_if_interrupted();
+    if (rules.drop_frames > 0 && frame > 0 && frame % rules.drop_frames == 0) solver_->reset();
+    if (solver_->step(frame_input(*spec_.scene, frame)) != StepStatus::Ok) return;
+  }
+}
+
+TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
+  TimedTrial trial;
+  trial.index = index;
+  warm_up(rules);
+  const std::size_t stages = plan_.stages.size();
+  double elapsed = 0;
+  for (int frame = 0; frame < (frames > 0 ? frames : rules.frames); ++frame) {
+    const bool out_of_time = frames == 0 && rules.max_wall_s > 0 && elapsed >= rules.max_wall_s && frame >= rules.min_frames;
+    if (out_of_time) break;
+    stop_if_interrupted();
+    const int in_drop = rules.drop_frames > 0 ? frame % rules.drop_frames : frame;
+    if (in_drop == 0) solver_->reset();
+    const FrameInput input = frame_input(*spec_.scene, in_drop);
+    const auto start = Clock::now();
+    const StepStatus status = solver_->step(input);
+    const double wall = seconds_since(start);
+    elapsed += wall;
+    if (status != StepStatus::Ok) {
+      fail(status, frame);
+      break;
+    }
+    const FrameCost cost = solver_->last_cost();
+    trial.frame_wall_s.push_back(wall);
+    trial.frame_device_s.push_back(cost.device_s);
+    trial.stage_device_s.insert(trial.stage_device_s.end(), stages, kMissing);
+    trial.stage_read_B.insert(trial.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
+    trial.stage_write_B.insert(trial.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
+  }
+  if (outcome_.status == "ok") profile_stages(trial, rules.min_frames);
+  return trial;
+}
+
+/// Per-stage device times come from a twin with timestamps around every stage, run right after the timed frames: the
+/// timestamps themselves would slow the frames that are timed. Frames without a profiled twin stay NaN.
+void Cell::profile_stages(TimedTrial& trial, int frames) {
+  if (!profiled_) {
+    const auto settings = with_stage_times(*spec_.entry, spec_.settings);
+    if (!settings) return;
+    profiled_ = spec_.entry->make(*settings, device_);
+    profiled_->load(*spec_.scene);
+  }
+  profiled_->reset();
+  const std::size_t stages = plan_.stages.size();
+  for (int frame = 0; frame < std::min(frames, trial.frames()); ++frame) {
+    stop_if_interrupted();
+    if (profiled_->step(frame_input(*spec_.scene, frame)) != StepStatus::Ok) return;
+    const FrameCost cost = profiled_->last_cost();
+    for (std::size_t s = 0; s < std::min(stages, cost.stage_device_s.size()); ++s)
+      trial.stage_device_s[frame * stages + s] = cost.stage_device_s[s];
+  }
+}
+
+}  // namespace clothbench

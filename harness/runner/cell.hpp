@@ -1,0 +1,72 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "clothbench/error.hpp"
+#include "clothbench/record.hpp"
+#include "clothbench/solver.hpp"
+
+namespace clothbench {
+
+/// One cell to run: one scene x one solver x one complete set of settings.
+struct CellSpec {
+  const Scene* scene = nullptr;
+  const SolverEntry* entry = nullptr;
+  nlohmann::json settings;
+  std::string setting = "default";
+};
+
+/// How long and how often; see results/README.md, "protocols".
+struct TrialRules {
+  int trials = 5;
+  int frames = 72;         ///< wanted per trial
+  double max_wall_s = 0;   ///< a trial stops after this much wall time; 0 = no limit
+  int min_frames = 12;     ///< ... but never before this many frames
+  double warmup_s = 0.1;   ///< before each trial, outside the clock
+  int drop_frames = 72;    ///< the scene restarts, outside the clock, after this many frames; 0 = never
+  double accuracy_duration_s = 0.5;  ///< simulated time of the untimed pass
+};
+
+/// Thrown between frames once the user pressed Ctrl-C (`request_interrupt`).
+void request_interrupt();
+bool interrupt_requested();
+
+/// A loaded solver and what has been measured of it.
+class Cell {
+ public:
+  /// Loads the solver. A feature the backend does not have makes the outcome `unsupported`; a failed load of a
+  /// scene it claims to support is an Error.
+  Cell(CellSpec spec, const DeviceOptions& device, const std::string& protocol);
+
+  const CellSpec& spec() const { return spec_; }
+  const CellHeader& header() const { return header_; }
+  const Outcome& outcome() const { return outcome_; }
+  bool alive() const { return solver_ != nullptr && outcome_.status == "ok"; }
+  const Plan& plan() const { return plan_; }
+
+  /// Untimed pass: positions and metrics at every frame, frame 0 = initial state.
+  AccuracyPass run_accuracy(double duration_s);
+  /// One timed trial. `frames` > 0 asks for exactly that many (so that all trials of a cell agree).
+  TimedTrial run_trial(int index, const TrialRules& rules, int frames);
+  /// Validation messages so far; a run with any is not ok.
+  int validation_messages() const { return solver_ ? solver_->validation_messages() : 0; }
+
+ private:
+  void fail(StepStatus status, int frame);
+  void warm_up(const TrialRules& rules);
+  void profile_stages(TimedTrial& trial, int frames);
+
+  CellSpec spec_;
+  DeviceOptions device_;
+  CellHeader header_;
+  Outcome outcome_;
+  Plan plan_;
+  std::unique_ptr<ClothSolver> solver_;
+  std::unique_ptr<ClothSolver> profiled_;  ///< twin with per-stage timestamps, only on a GPU
+};
+
+/// Every scalar a table prints, from the record of one cell. NaN where it does not apply.
+std::map<std::string, double> summarise(const CellSpec&, const Plan&, const CellRecord&);
+
+}  // namespace clothbench

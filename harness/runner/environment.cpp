@@ -1,0 +1,69 @@
+#include "runner/environment.hpp"
+
+#include <sys/utsname.h>
+
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+#include "runner/build_info.hpp"
+
+namespace clothbench {
+namespace {
+
+std::string cpu_model() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind("model name", 0) == 0 || line.rfind("Hardware", 0) == 0) {
+      const auto colon = line.find(':');
+      if (colon != std::string::npos && colon + 2 <= line.size()) return line.substr(colon + 2);
+    }
+  return "unknown";
+}
+
+std::string operating_system() {
+  utsname u{};
+  if (uname(&u) != 0) return "unknown";
+  return std::string(u.sysname) + " " + u.release + " " + u.machine;
+}
+
+std::string clock_policy() {
+  std::ifstream in("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+  std::string governor;
+  return in >> governor ? "cpu governor " + governor + ", gpu default" : "not readable";
+}
+
+}  // namespace
+
+std::string utc_now() {
+  const std::time_t t = std::time(nullptr);
+  std::tm tm{};
+  gmtime_r(&t, &tm);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &tm);
+  return text;
+}
+
+nlohmann::json describe_environment(const DeviceInfo& device, const std::string& protocol) {
+  nlohmann::json e;
+  e["gpu"] = device.name;
+  e["driver"] = device.driver;
+  e["api"] = device.api;
+  e["gpu_is_software"] = device.is_software;
+  e["gpu_properties"] = nlohmann::json::parse(device.properties_json, nullptr, false);
+  e["cpu"] = cpu_model();
+  e["cpu_threads"] = std::thread::hardware_concurrency();
+  e["os"] = operating_system();
+  e["compiler"] = build_info::kCompiler;
+  e["shader_compiler"] = build_info::kShaderCompiler;
+  e["build_type"] = build_info::kBuildType;
+  e["version"] = build_info::kVersion;
+  e["git_commit"] = build_info::kGitCommit;
+  e["git_dirty"] = build_info::kGitDirty;
+  e["created"] = utc_now();
+  e["clock_policy"] = clock_policy();
+  e["protocol"] = protocol;
+  return e;
+}
+
+}  // namespace clothbench

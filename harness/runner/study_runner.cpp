@@ -1,0 +1,129 @@
+#include "runner/study_runner.hpp"
+
+#include <fmt/format.h>
+
+namespace clothbench {
+namespace {
+
+/// One cell with its open result file.
+struct Running {
+  std::unique_ptr<Cell> cell;
+  std::unique_ptr<CellWriter> writer;
+  CellRecord record;
+
+  bool has_trial(int k) const {
+    for (const TimedTrial& t : record.trials)
+      if (t.index == k) return true;
+    return false;
+  }
+  int frames() const { return record.trials.empty() ? 0 : record.trials.front().frames(); }
+  std::string name() const { return cell_name(cell->header()); }
+};
+
+CellHeader header_of(const CellSpec& spec) {
+  CellHeader h;
+  h.scene = spec.scene->name;
+  h.solver = spec.entry->info.name;
+  h.setting = spec.setting;
+  return h;
+}
+
+class GroupRun {
+ public:
+  GroupRun(const CellPlan& plan, const RunOptions& options, RunResult& result, std::size_t& done)
+      : plan_(plan), options_(options), result_(result), done_(done) {}
+
+  void run(const std::vector<CellSpec>& group) {
+    for (const CellSpec& spec : group) open(spec);
+    for (Running& r : running_)
+      if (r.cell->alive() && r.record.accuracy.time_s.empty()) accuracy(r);
+    for (int k = 0; k < plan_.rules.trials; ++k)
+      for (std::size_t i = 0; i < running_.size(); ++i) {
+        // Each round starts with another cell, so that none always follows the same neighbour.
+        Running& r = running_[(i + static_cast<std::size_t>(k)) % running_.size()];
+        if (r.cell->alive() && !r.has_trial(k)) trial(r, k);
+      }
+    for (Running& r : running_) finish(r);
+  }
+
+ private:
+  void note(const std::string& what) const {
+    if (options_.progress) options_.progress(what, done_, plan_.size());
+  }
+
+  void open(const CellSpec& spec) {
+    const std::string name = cell_name(header_of(spec));
+    if (cell_finished(options_.out, name)) {
+      if (!options_.resume)
+        throw Error(fmt::format("{}: {} is already there; give another --out, or --resume to go on with this folder",
+                                options_.out.string(), name));
+      ++done_;
+      return;
+    }
+    note(name + ": load");
+    Running r;
+    r.cell = std::make_unique<Cell>(spec, options_.device, plan_.protocol);
+    r.record.header = r.cell->header();
+    r.writer = std::make_unique<CellWriter>(options_.out, r.cell->header());
+    if (options_.resume) {
+      const CellRecord before = r.writer->recovered();
+      r.record.trials = before.trials;
+      r.record.accuracy = before.accuracy;
+    }
+    running_.push_back(std::move(r));
+  }
+
+  void accuracy(Running& r) {
+    note(r.name() + ": accuracy");
+    r.record.accuracy = r.cell->run_accuracy(plan_.rules.accuracy_duration_s);
+    r.writer->write_accuracy(r.record.accuracy);
+  }
+
+  void trial(Running& r, int k) {
+    note(fmt::format("{}: trial {} of {}", r.name(), k + 1, plan_.rules.trials));
+    TimedTrial t = r.cell->run_trial(k, plan_.rules, r.frames());
+    if (t.frames() == 0) return;
+    r.writer->write_trial(t);
+    r.record.trials.push_back(std::move(t));
+  }
+
+  void finish(Running& r) {
+    Outcome outcome = r.cell->outcome();
+    const int messages = r.cell->validation_messages();
+    if (messages > 0) {
+      result_.validation_messages += messages;
+      result_.faults.push_back(fmt::format("{}: {} validation messages", r.name(), messages));
+    }
+    if (outcome.status == "error") result_.faults.push_back(r.name() + ": " + outcome.message);
+    if (outcome.status == "ok") ++result_.cells_ok;
+    else if (outcome.status == "unsupported") ++result_.cells_unsupported;
+    else ++result_.cells_failed;
+    r.record.outcome = outcome;
+    result_.files.push_back(r.writer->finish(outcome, summarise(r.cell->spec(), r.cell->plan(), r.record)));
+    ++done_;
+  }
+
+  const CellPlan& plan_;
+  const RunOptions& options_;
+  RunResult& result_;
+  std::size_t& done_;
+  std::vector<Running> running_;
+};
+
+}  // namespace
+
+std::size_t CellPlan::size() const {
+  std::size_t n = 0;
+  for (const auto& g : groups) n += g.size();
+  return n;
+}
+
+RunResult run_cells(const CellPlan& plan, const RunOptions& options) {
+  RunResult result;
+  std::size_t done = 0;
+  for (const auto& group : plan.groups) GroupRun(plan, options, result, done).run(group);
+  if (options.progress) options.progress("", done, plan.size());
+  return result;
+}
+
+}  // namespace clothbench

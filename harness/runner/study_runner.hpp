@@ -1,0 +1,40 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+#include "results/store.hpp"
+#include "runner/cell.hpp"
+
+namespace clothbench {
+
+/// Cells to run, in groups; the trials of one group are interleaved, so that a change of the machine's speed meets
+/// all of its cells alike.
+struct CellPlan {
+  std::vector<std::vector<CellSpec>> groups;
+  TrialRules rules;
+  std::string protocol;  ///< "short" or "full", stored with every cell
+
+  std::size_t size() const;
+};
+
+struct RunOptions {
+  std::filesystem::path out;
+  bool resume = false;
+  DeviceOptions device;
+  /// Called before each piece of work with what it is and how many of how many pieces are done.
+  std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress;
+};
+
+struct RunResult {
+  std::vector<std::filesystem::path> files;
+  int cells_ok = 0, cells_unsupported = 0, cells_failed = 0;
+  int validation_messages = 0;
+  std::vector<std::string> faults;  ///< cells that broke a rule of the harness (stages, validation): the run fails
+};
+
+/// Runs every cell and writes one file each. Finished cells are skipped and finished trials reused with `resume`;
+/// without it a cell that is already there is an Error. Throws Error with ExitCode::Interrupted on Ctrl-C.
+RunResult run_cells(const CellPlan&, const RunOptions&);
+
+}  // namespace clothbench
