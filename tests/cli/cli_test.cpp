@@ -1,0 +1,176 @@
+// The command as a user meets it: arguments, exit codes, files left behind.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "results/store.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Answer {
+  int code = -1;
+  std::string text;
+};
+
+/// Runs `clothbench <arguments>`; stdout and stderr together unless `quiet_stderr`.
+Answer clothbench_command(const std::string& arguments, bool quiet_stderr = false) {
+  const std::string command = std::string(CLOTHBENCH_COMMAND) + " " + arguments + (quiet_stderr ? " 2>/dev/null" : " 2>&1");
+  Answer a;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return a;
+  std::array<char, 4096> chunk{};
+  while (const std::size_t n = fread(chunk.data(), 1, chunk.size(), pipe)) a.text.append(chunk.data(), n);
+  const int status = pclose(pipe);
+  a.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return a;
+}
+
+nlohmann::json json_of(const std::string& arguments) {
+  const Answer a = clothbench_command("--json " + arguments, true);
+  EXPECT_EQ(a.code, 0) << a.text;
+  return nlohmann::json::parse(a.text, nullptr, false);
+}
+
+class Cli : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    dir_ = fs::temp_directory_path() / ("clothbench-cli-" + std::to_string(getpid()) + "-" + info->name());
+    fs::create_directories(dir_);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  /// A study of ballistic cells, quick enough to interrupt at will.
+  std::string small_study() const {
+    const fs::path file = dir_ / "small.json";
+    std::ofstream(file) << R"({"name":"small","why":"A test.","protocol":"fps",
+      "scenes":[{"file":")" << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/paper/gravity.json",
+        "axes":[{"key":"cloth.grid","values":[[8,8],[9,7]],"labels":["8","9x7"]}]}],
+      "solvers":[{"solver":"ballistic"}],"trials":3,
+      "short":{"frames":24,"max_wall_s":1,"min_frames":12,"warmup_s":0.05},
+      "full":{"frames":48,"max_wall_s":0,"min_frames":48,"warmup_s":0.05},
+      "drop_frames":12,"accuracy_duration_s":0.5})";
+    return file.string();
+  }
+
+  fs::path dir_;
+};
+
+TEST_F(Cli, HelpNamesEveryCommand) {
+  const Answer a = clothbench_command("--help");
+  EXPECT_EQ(a.code, 0);
+  for (const char* word : {"list", "run", "study", "plan", "report", "validate", "import", "bench"})
+    EXPECT_NE(a.text.find(word), std::string::npos) << word;
+}
+
+TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {
+  const fs::path bad = dir_ / "bad.json";
+  std::ofstream(bad) << R"({"name":"x","why":"y","cloth":{"gird":[8,8]}})";
+  const Answer a = clothbench_command("run " + bad.string() + " --solver ballistic --out " + (dir_ / "o").string());
+  EXPECT_EQ(a.code, 2) << a.text;
+  EXPECT_NE(a.text.find("bad.json"), std::string::npos) << a.text;
+  EXPECT_EQ(clothbench_command("run no-such-scene").code, 2);
+  EXPECT_EQ(clothbench_command("frobnicate").code, 2);
+  const Answer unknown = clothbench_command("run paper/gravity --solver balistic --out " + (dir_ / "p").string());
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.text.find("ballistic"), std::string::npos) << "the nearest name: " << unknown.text;
+  const Answer setting = clothbench_command("run paper/gravity --solver ballistic --set solver.x=1 --out " + (dir_ / "q").string());
+  EXPECT_EQ(setting.code, 2) << setting.text;
+}
+
+TEST_F(Cli, ListsAreReadableByMachines) {
+  for (const char* what : {"solvers", "scenarios", "studies", "devices", "metrics"}) {
+    const nlohmann::json rows = json_of(std::string("list ") + what);
+    EXPECT_TRUE(rows.is_array()) << what;
+    EXPECT_FALSE(std::string(what) != "devices" && rows.empty()) << what;
+  }
+}
+
+TEST_F(Cli, PlanNamesStagesAndWhatIsLeftOut) {
+  const nlohmann::json plan = json_of("plan paper/gravity --solver ballistic");
+  ASSERT_TRUE(plan.is_array() && plan.size() == 1);
+  EXPECT_FALSE(plan[0]["stages"].empty());
+  EXPECT_TRUE(plan[0].contains("left_out"));
+}
+
+TEST_F(Cli, StudyThenReport) {
+  const fs::path out = dir_ / "study";
+  const Answer a = clothbench_command("study " + small_study() + " --out " + out.string());
+  ASSERT_EQ(a.code, 0) << a.text;
+  const StudyManifest manifest = read_manifest(out);
+  ASSERT_EQ(manifest.cells.size(), 2u);
+  for (const std::string& cell : manifest.cells) {
+    const CellRecord r = read_cell(out / (cell + ".h5"));
+    EXPECT_EQ(r.outcome.status, "ok");
+    EXPECT_EQ(r.trials.size(), 3u);
+    // ballistic integrates as its closed form says, in double.
+    EXPECT_LE(r.summary.at("free_fall_error"), 1e-12);
+    EXPECT_GT(r.summary.at("fps_median"), 0);
+    EXPECT_TRUE(std::isnan(r.summary.at("read_B_per_frame"))) << "bytes of a CPU solver are missing, never modelled";
+  }
+  const Answer again = clothbench_command("study " + small_study() + " --out " + out.string());
+  EXPECT_EQ(again.code, 2) << "finished cells are not overwritten: " << again.text;
+  const Answer report = clothbench_command("report " + out.string() + " -o " + (dir_ / "report").string());
+  EXPECT_EQ(report.code, 0) << report.text;
+  EXPECT_TRUE(fs::exists(dir_ / "report" / "report.md"));
+}
+
+/// Starts the study, lets it run for a while and sends it a signal.
+int run_and_signal(const std::string& study, const fs::path& out, int signal_number, int after_ms, bool resume) {
+  const pid_t child = fork();
+  if (child == 0) {
+    if (freopen("/dev/null", "w", stderr) == nullptr || freopen("/dev/null", "w", stdout) == nullptr) _exit(99);
+    const std::string out_path = out.string();
+    if (resume) execl(CLOTHBENCH_COMMAND, "clothbench", "study", study.c_str(), "--out", out_path.c_str(), "--resume", nullptr);
+    execl(CLOTHBENCH_COMMAND, "clothbench", "study", study.c_str(), "--out", out_path.c_str(), nullptr);
+    _exit(99);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
+  kill(child, signal_number);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+TEST_F(Cli, CtrlCKeepsFinishedTrialsAndResumeCompletes) {
+  const fs::path out = dir_ / "study";
+  const std::string study = small_study();
+  EXPECT_EQ(run_and_signal(study, out, SIGINT, 250, false), 130);
+  const Answer a = clothbench_command("study " + study + " --out " + out.string() + " --resume");
+  EXPECT_EQ(a.code, 0) << a.text;
+  for (const std::string& cell : read_manifest(out).cells) EXPECT_EQ(read_cell(out / (cell + ".h5")).trials.size(), 3u);
+}
+
+TEST_F(Cli, KilledAnywhereResumeCompletes) {
+  const fs::path out = dir_ / "study";
+  const std::string study = small_study();
+  for (int after_ms = 5; after_ms < 700; after_ms += 60) run_and_signal(study, out, SIGKILL, after_ms, after_ms > 5);
+  const Answer a = clothbench_command("study " + study + " --out " + out.string() + " --resume");
+  EXPECT_EQ(a.code, 0) << a.text;
+  for (const std::string& cell : read_manifest(out).cells) EXPECT_EQ(read_cell(out / (cell + ".h5")).trials.size(), 3u);
+}
+
+TEST_F(Cli, OwnOverheadIsUnderOnePercentOfAFrame) {
+  const fs::path out = dir_ / "run";
+  ASSERT_EQ(clothbench_command("run paper/gravity --solver ballistic --set cloth.grid=[128,128] --out " + out.string()).code, 0);
+  for (const auto& file : fs::directory_iterator(out))
+    if (file.path().extension() == ".h5") {
+      const double frame_s = read_cell_summary(file.path()).summary.at("frame_wall_median_s");
+      EXPECT_LT(frame_s, 0.01 / 72);
+    }
+}
+
+}  // namespace
+}  // namespace clothbench

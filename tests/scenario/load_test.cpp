@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "scenario/json_text.hpp"
+#include "scenario/load.hpp"
+#include "scenario/study.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kGood = R"({"name":"x","why":"A scene for tests.","cloth":{"grid":[8,6],"size_m":[1,0.5],
+  "areal_density_kg_per_m2":0.2,"sides":"single"},"material":{"membrane_stiffness_N_per_m":1000},
+  "time":{"frame_rate_hz":72,"duration_s":1}})";
+
+std::string message_of(const std::string& text) {
+  try {
+    scene_from_json(parse_json(text, "test.json"), "test.json");
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::BadInput);
+    return e.what();
+  }
+  return "";
+}
+
+/// kGood with one change.
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = kGood;
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(Load, CompletesDefaults) {
+  const Scene s = scene_from_json(parse_json(kGood, "test.json"), "test.json");
+  EXPECT_EQ(s.gravity_m_per_s2, (Vec3{0, -9.81, 0}));
+  EXPECT_EQ(s.cloth.axis_v, (Vec3{0, 0, 1}));
+  EXPECT_EQ(s.time.frames(), 72);
+  EXPECT_EQ(s.needs, (FeatureSet{Feature::Stretch, Feature::Shear}));
+  EXPECT_EQ(s.sha256.size(), 64u);
+  // The stored scenario is complete: loading it again changes nothing.
+  EXPECT_EQ(scene_from_json(parse_json(s.json, "again"), "again").sha256, s.sha256);
+}
+
+TEST(Load, NeedsFollowTheScene) {
+  EXPECT_TRUE(scene_from_json(parse_json(changed("1000}", "1000,\"bending_rigidity_N_m\":1e-5}"), "t"), "t").needs.has(Feature::Bend));
+  EXPECT_TRUE(scene_from_json(parse_json(changed("1000}", "1000,\"damping_per_s\":0.1}"), "t"), "t").needs.has(Feature::Damping));
+  EXPECT_TRUE(scene_from_json(parse_json(changed("\"single\"", "\"double-duplicated\""), "t"), "t").needs.has(Feature::DuplicatedLayer));
+  EXPECT_FALSE(scene_from_json(parse_json(changed("\"single\"", "\"double\""), "t"), "t").needs.has(Feature::DoubleSided))
+      << "with nothing to touch, two-sided contact is nothing";
+}
+
+TEST(Load, PinsBecomeVertices) {
+  const Scene s = scene_from_json(parse_json(changed("\"time\"", R"("pins":[{"corners":["u0v0","u1v1"]},{"edge":"v0"},{"vertices":[9]}],"time")"), "t"), "t");
+  EXPECT_EQ(s.pins.vertices, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7, 9, 47}));
+}
+
+TEST(Load, OverridesAreChecked) {
+  const auto load = [](const std::string& set) { return scene_from_json(parse_json(kGood, "t"), "t", {set}); };
+  EXPECT_EQ(load("cloth.grid=[64,32]").cloth.columns, 64);
+  EXPECT_EQ(load("cloth.sides=double").cloth.sides, Sides::Double);
+  for (const char* bad : {"cloth.grid", "=1", "cloth.gird=[2,2]", "cloth.grid=[1,1]", "name.x=1", "cloth.size_m=[NaN,1]"})
+    EXPECT_THROW(load(bad), Error) << bad;
+}
+
+struct Bad {
+  const char *what, *from, *to, *place, *hint;
+};
+
+class BadScene : public ::testing::TestWithParam<Bad> {};
+
+TEST_P(BadScene, OneMessageWithPlace) {
+  const std::string message = message_of(changed(GetParam().from, GetParam().to));
+  EXPECT_NE(message.find("test.json"), std::string::npos) << message;
+  EXPECT_NE(message.find(GetParam().place), std::string::npos) << message;
+  EXPECT_NE(message.find(GetParam().hint), std::string::npos) << message;
+  EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 0) << message;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BadScene, ::testing::Values(
+    Bad{"unknown key", "\"grid\"", "\"gird\"", "/cloth/gird", "grid"},
+    Bad{"unknown key deep", "\"frame_rate_hz\"", "\"frame_rate\"", "/time/frame_rate", "frame_rate_hz"},
+    Bad{"wrong unit", "\"size_m\"", "\"size_cm\"", "/cloth/size_cm", "size_m"},
+    Bad{"NaN", "1000", "NaN", "line 2", "not valid JSON"},
+    Bad{"Infinity", "1000", "Infinity", "line 2", "not valid JSON"},
+    Bad{"beyond double", "1000", "1e999", "line 2", "range"},
+    Bad{"negative size", "[1,0.5]", "[-1,0.5]", "/cloth/size_m/0", "> 0"},
+    Bad{"zero size", "[1,0.5]", "[1,0]", "/cloth/size_m/1", "> 0"},
+    Bad{"1x1", "[8,6]", "[1,1]", "/cloth/grid/0", ">= 2"},
+    Bad{"a million squared", "[8,6]", "[1000000,1000000]", "/cloth/grid/0", "<= 4096"},
+    Bad{"too many vertices", "[8,6]", "[4096,4096]", "/cloth/grid", "vertices"},
+    Bad{"half a vertex", "[8,6]", "[8.5,6]", "/cloth/grid/0", "integer"},
+    Bad{"three numbers", "[8,6]", "[8,6,4]", "/cloth/grid", "2 items"},
+    Bad{"wrong type", "0.2", "\"0.2\"", "/cloth/areal_density_kg_per_m2", "number"},
+    Bad{"null", "0.2", "null", "/cloth/areal_density_kg_per_m2", "number"},
+    Bad{"negative density", "0.2", "-0.2", "/cloth/areal_density_kg_per_m2", "> 0"},
+    Bad{"unknown word", "\"single\"", "\"both\"", "/cloth/sides", "double-duplicated"},
+    Bad{"missing key", "\"sides\":\"single\"", "\"pose\":{}", "/cloth", "sides"},
+    Bad{"not extensible", "1000", "\"rigid\"", "/material/membrane_stiffness_N_per_m", "inextensible"},
+    Bad{"zero stiffness", "1000", "0", "/material/membrane_stiffness_N_per_m", "> 0"},
+    Bad{"negative bending", "1000}", "1000,\"bending_rigidity_N_m\":-1}", "/material/bending_rigidity_N_m", ">= 0"},
+    Bad{"key twice", "\"why\"", "\"name\":\"y\",\"why\"", "/name", "twice"},
+    Bad{"pin out of range", "\"time\"", "\"pins\":[{\"vertices\":[0,48]}],\"time\"", "/pins/0/vertices/1", "48"},
+    Bad{"pin of two kinds", "\"time\"", "\"pins\":[{\"edge\":\"v0\",\"vertices\":[1]}],\"time\"", "/pins/0", "object"},
+    Bad{"axis not of length 1", "\"sides\":\"single\"", "\"sides\":\"single\",\"pose\":{\"axis_u\":[2,0,0]}", "/cloth/pose/axis_u", "length 1"},
+    Bad{"axes not at right angles", "\"sides\":\"single\"", "\"sides\":\"single\",\"pose\":{\"axis_u\":[0,0,1]}", "/cloth/pose/axis_v", "right angles"},
+    Bad{"colliders not yet", "\"time\"", "\"colliders\":[{}],\"time\"", "/colliders", "items"},
+    Bad{"too long", "\"duration_s\":1", "\"duration_s\":1e9", "/time/duration_s", "86400"},
+    Bad{"no frame", "\"duration_s\":1", "\"duration_s\":1e-9", "/time/duration_s", "frame"},
+    Bad{"assumed points nowhere", "\"time\"", "\"assumed\":[\"/cloth/colour\"],\"time\"", "/assumed/0", "/cloth/colour"},
+    Bad{"empty name", "\"x\"", "\"\"", "/name", "string"},
+    Bad{"trailing comma", "\"duration_s\":1", "\"duration_s\":1,", "line 3", "not valid JSON"}));
+
+TEST(Load, TextThatIsNoJson) {
+  for (const std::string& text : {std::string(""), std::string("hello"), std::string("{"), std::string("\x00\xff\xfe", 3), std::string("[1,2"),
+                                  std::string(kGood).substr(0, 100), std::string(100000, '['), std::string("{\"name\":\"\xc3\x28\"}")}) {
+    const std::string message = message_of(text);
+    EXPECT_NE(message.find("test.json"), std::string::npos) << message;
+  }
+  EXPECT_NE(message_of("[]").find("expected object"), std::string::npos);
+}
+
+TEST(Load, FilesThatCannotBeRead) {
+  EXPECT_THROW(load_scene("/no/such/scene.json"), Error);
+  EXPECT_THROW(load_scene(fs::temp_directory_path().string()), Error);
+  const fs::path big = fs::temp_directory_path() / "clothbench-too-big.json";
+  std::ofstream(big) << std::string((16u << 20) + 1, ' ');
+  try {
+    load_scene(big.string());
+    ADD_FAILURE() << "read a file over 16 MiB";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("bytes"), std::string::npos) << e.what();
+  }
+  fs::remove(big);
+}
+
+TEST(Load, EveryShippedFileLoads) {
+  int scenes = 0, studies = 0;
+  for (const auto& file : fs::recursive_directory_iterator(CLOTHBENCH_SOURCE_DIR "/scenarios")) {
+    const std::string path = file.path().string();
+    if (file.path().extension() != ".json" || path.find("/schema/") != std::string::npos || path.find("/assets/") != std::string::npos) continue;
+    if (is_study(path)) {
+      EXPECT_NO_THROW(load_study(path)) << path;
+      ++studies;
+    } else {
+      EXPECT_NO_THROW(load_scene(path)) << path;
+      ++scenes;
+    }
+  }
+  EXPECT_GE(scenes, 1);
+  EXPECT_GE(studies, 1);
+}
+
+}  // namespace
+}  // namespace clothbench
