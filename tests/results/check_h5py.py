@@ -1,0 +1,38 @@
+"""h5py and xarray read what results/README.md promises. usage: check_h5py.py FOLDER"""
+import pathlib
+import sys
+
+import h5py
+import numpy as np
+import xarray as xr
+
+path = next(pathlib.Path(sys.argv[1]).glob("*.h5"))
+with h5py.File(path) as f:
+    assert f.attrs["format"] == "clothbench-run" and f.attrs["format_version"] == 1
+    assert f.attrs["driver"] == "µ"
+    assert f["outcome"].attrs["status"] == "diverged" and f["outcome"].attrs["failed_frame"] == 3
+    assert f["summary"].attrs["fps_median"] == 123.4567890123 and np.isnan(f["summary"].attrs["read_B_per_frame"])
+    points = f["VTKHDF/Points"][:]
+    assert points.shape == (30, 3) and points.dtype == np.float32
+    assert np.array_equal(f["frames/000003"][:], points[18:24]), "a frame is a view of the points"
+    assert f["VTKHDF"].attrs["Type"] == b"PolyData" and list(f["VTKHDF"].attrs["Version"]) == [2, 0]
+    assert f["VTKHDF/Steps"].attrs["NSteps"] == 5
+    assert f["VTKHDF/Polygons/NumberOfCells"][0] == 4 and f["VTKHDF/Lines/Offsets"][:].tolist() == [0]
+    def labelled(name, item):
+        if isinstance(item, h5py.Dataset) and not name.startswith("VTKHDF"):
+            assert "units" in item.attrs and "long_name" in item.attrs or name == "triangles", name
+    f.visititems(labelled)
+
+shapes = {"timing": {"trial": 3, "frame": 4, "stage": 2}, "bandwidth": {"trial": 3, "frame": 4, "stage": 2}, "metrics": {"frame": 5},
+          "trajectory": {"time_s": 5, "vertex": 6, "xyz": 3}}
+for group, sizes in shapes.items():
+    with xr.open_dataset(path, engine="h5netcdf", group=group) as d:
+        assert dict(d.sizes) == sizes, (group, dict(d.sizes))
+        if group == "timing":
+            assert list(d["stage"].values) == ["First", "Second"]
+            assert d["frame_wall_s"].attrs["units"] == "s"
+            assert np.isnan(d["frame_device_s"].sel(trial=1)).all()
+        if group == "trajectory":
+            assert d["position"].dims == ("time_s", "vertex", "xyz")
+            assert np.isclose(d["position"].values[2, 1, 0], 2.03)
+print("ok", path)

@@ -1,0 +1,123 @@
+#include "results/hdf5_file.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <random>
+
+#include "clothbench/error.hpp"
+#include "results/raw_file.hpp"
+#include "results/store.hpp"
+#include "sample_cell.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Hdf5 : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = fs::temp_directory_path() / ("clothbench-h5-" + std::to_string(getpid()) + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(dir_);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+  static std::string bytes(const fs::path& p) {
+    std::ifstream in(p, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  fs::path dir_;
+};
+
+TEST_F(Hdf5, RoundTrip) {
+  CellRecord r = sample_cell();
+  r.trials[2].frame_wall_s.resize(3);  // a trial may stop early
+  r.trials[2].frame_device_s.resize(3);
+  for (auto* s : {&r.trials[2].stage_device_s, &r.trials[2].stage_read_B, &r.trials[2].stage_write_B}) s->resize(6);
+  write_hdf5(dir_ / "x.h5", r);
+  const CellRecord b = read_hdf5(dir_ / "x.h5", true);
+  EXPECT_EQ(header_to_json(b.header), header_to_json(r.header));
+  ASSERT_EQ(b.trials.size(), 3u);
+  for (int t = 0; t < 3; ++t) EXPECT_TRUE(same(b.trials[t], r.trials[t])) << t;
+  EXPECT_EQ(b.accuracy.position, r.accuracy.position);
+  ASSERT_EQ(b.accuracy.metrics.size(), 2u);
+  for (const MetricSeries& m : b.accuracy.metrics) {
+    const MetricSeries& original = m.name == "stretch_max" ? r.accuracy.metrics[0] : r.accuracy.metrics[1];
+    EXPECT_TRUE(same(m.values, original.values));
+    EXPECT_EQ(m.long_name, original.long_name);
+  }
+  EXPECT_EQ(b.outcome.status, "diverged");
+  EXPECT_EQ(b.outcome.message, r.outcome.message);
+  EXPECT_EQ(b.summary.at("fps_median"), 123.4567890123);
+  EXPECT_TRUE(std::isnan(b.summary.at("read_B_per_frame")));
+  EXPECT_TRUE(read_hdf5(dir_ / "x.h5", false).accuracy.position.empty());
+}
+
+TEST_F(Hdf5, ACellWithoutFramesIsAFileToo) {
+  CellRecord r = sample_cell(0);
+  r.accuracy = {};
+  r.header.stages.clear();
+  r.outcome = {"unsupported", "ok", -1, "has no duplicated_layer"};
+  write_hdf5(dir_ / "x.h5", r);
+  EXPECT_EQ(read_hdf5(dir_ / "x.h5", true).outcome.status, "unsupported");
+}
+
+TEST_F(Hdf5, SameRunSameBytesAlsoThroughRawFiles) {
+  const CellRecord r = sample_cell();
+  write_hdf5(dir_ / "direct.h5", r);
+  write_hdf5(dir_ / "again.h5", r);
+  EXPECT_EQ(bytes(dir_ / "direct.h5"), bytes(dir_ / "again.h5"));
+  // What a device without HDF5 leaves behind, imported on the host.
+  CellWriter writer(dir_, r.header);
+  for (const TimedTrial& t : r.trials) writer.write_trial(t);
+  writer.write_accuracy(r.accuracy);
+  const fs::path part = dir_ / (cell_name(r.header) + ".part"), copy = dir_ / "phone" / (cell_name(r.header) + ".part");
+  const fs::path direct = [&] {
+    // finish() removes the part folder, so keep a copy with the outcome in it.
+    CellWriter other(dir_ / "other", r.header);
+    for (const TimedTrial& t : r.trials) other.write_trial(t);
+    other.write_accuracy(r.accuracy);
+    return other.finish(r.outcome, r.summary);
+  }();
+  fs::create_directories(copy);
+  fs::copy(part, copy, fs::copy_options::recursive);
+  nlohmann::json outcome = {{"kind", "outcome"}, {"status", r.outcome.status}, {"class", r.outcome.klass}, {"failed_frame", r.outcome.failed_frame},
+                            {"message", r.outcome.message}, {"summary", r.summary}};
+  write_raw(copy / "outcome.raw", outcome, {});
+  const auto imported = import_raw(dir_ / "phone");
+  ASSERT_EQ(imported.size(), 1u);
+  EXPECT_EQ(bytes(imported[0]), bytes(direct));
+  EXPECT_EQ(bytes(direct), bytes(dir_ / "direct.h5"));
+}
+
+TEST_F(Hdf5, FaultsNameTheFile) {
+  std::ofstream(dir_ / "not.h5") << "text";
+  for (const fs::path& p : {dir_ / "not.h5", dir_ / "missing.h5"}) {
+    try {
+      read_cell(p);
+      ADD_FAILURE() << p;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(p.filename().string()), std::string::npos) << e.what();
+    }
+  }
+  EXPECT_THROW(read_manifest(dir_), Error);
+  EXPECT_THROW(write_hdf5(dir_ / "no" / "such" / "x.h5", sample_cell()), Error);
+}
+
+TEST_F(Hdf5, LargeTrajectoriesAreWrittenQuickly) {
+  CellRecord r = sample_cell(1, 4, 6);
+  r.header.vertices = 128 * 128;
+  r.accuracy = {};
+  std::vector<float> frame(3 * 128 * 128);
+  for (int f = 0; f < 37; ++f) {
+    r.accuracy.time_s.push_back(f / 72.0);
+    for (std::size_t k = 0; k < frame.size(); ++k) frame[k] = static_cast<float>(std::sin(0.001 * static_cast<double>(k) + 0.1 * f));
+    r.accuracy.position.insert(r.accuracy.position.end(), frame.begin(), frame.end());
+  }
+  write_hdf5(dir_ / "x.h5", r);
+  EXPECT_EQ(read_hdf5(dir_ / "x.h5", true).accuracy.position, r.accuracy.position);
+}
+
+}  // namespace
+}  // namespace clothbench

@@ -1,0 +1,141 @@
+#include "results/raw_file.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <random>
+
+#include "clothbench/error.hpp"
+#include "results/store.hpp"
+#include "sample_cell.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Raw : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = fs::temp_directory_path() / ("clothbench-raw-" + std::to_string(getpid()) + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(dir_);
+  }
+  void TearDown() override {
+    fs::permissions(dir_, fs::perms::owner_all);
+    fs::remove_all(dir_);
+  }
+  static std::string bytes(const fs::path& p) {
+    std::ifstream in(p, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  static void write(const fs::path& p, const std::string& s) { std::ofstream(p, std::ios::binary) << s; }
+  fs::path dir_;
+};
+
+TEST_F(Raw, Crc32cAgreesWithThePublishedVector) {
+  const std::string digits = "123456789";  // RFC 3720, B.4 and common practice
+  EXPECT_EQ(crc32c(reinterpret_cast<const std::uint8_t*>(digits.data()), digits.size()), 0xe3069283u);
+}
+
+TEST_F(Raw, TrialsAndAccuracyRoundTripBitForBit) {
+  const CellRecord r = sample_cell();
+  write_trial_file(dir_ / "t.raw", r.trials[1], 2);
+  EXPECT_TRUE(same(read_trial_file(dir_ / "t.raw"), r.trials[1]));
+  write_accuracy_file(dir_ / "a.raw", r.accuracy, r.header.vertices);
+  const AccuracyPass a = read_accuracy_file(dir_ / "a.raw");
+  EXPECT_EQ(a.position, r.accuracy.position);
+  EXPECT_EQ(a.time_s, r.accuracy.time_s);
+  ASSERT_EQ(a.metrics.size(), 2u);
+  EXPECT_TRUE(same(a.metrics[0].values, r.accuracy.metrics[0].values));
+  EXPECT_EQ(header_to_json(header_from_json(header_to_json(r.header))), header_to_json(r.header));
+}
+
+TEST_F(Raw, EveryFlippedByteIsFound) {
+  const fs::path file = dir_ / "t.raw";
+  write_trial_file(file, sample_cell().trials[0], 2);
+  const std::string good = bytes(file);
+  for (std::size_t k = 0; k < good.size(); ++k) {
+    std::string bad = good;
+    bad[k] = static_cast<char>(bad[k] ^ 0x10);
+    write(file, bad);
+    EXPECT_THROW(read_trial_file(file), Error) << "byte " << k;
+  }
+}
+
+TEST_F(Raw, EveryTornTailIsCut) {
+  const fs::path file = dir_ / "t.raw";
+  write_trial_file(file, sample_cell().trials[0], 2);
+  const std::string good = bytes(file);
+  const std::size_t frame_B = read_raw(file).header["frame_B"], header_B = good.size() - 4 * frame_B;
+  for (std::size_t k = 0; k < good.size(); ++k) {
+    write(file, good.substr(0, k));
+    if (k < header_B) {
+      EXPECT_THROW(read_raw(file), Error) << k;
+      continue;
+    }
+    const RawFile torn = read_raw(file);
+    EXPECT_EQ(torn.frames.size(), (k - header_B) / frame_B) << k;
+    EXPECT_EQ(torn.complete, (k - header_B) % frame_B == 0) << k;
+    EXPECT_THROW(read_trial_file(file), Error) << "a trial is whole or not there";
+  }
+}
+
+TEST_F(Raw, NoiseNeverCrashesAReader) {
+  std::mt19937 random(1);
+  const CellRecord r = sample_cell();
+  write_trial_file(dir_ / "t.raw", r.trials[0], 2);
+  write_accuracy_file(dir_ / "a.raw", r.accuracy, r.header.vertices);
+  const std::string good[] = {bytes(dir_ / "t.raw"), bytes(dir_ / "a.raw")};
+  for (int k = 0; k < 2000; ++k) {
+    std::string bad = good[k % 2];
+    for (int n = 0; n < 1 + k % 8; ++n) bad[random() % bad.size()] = static_cast<char>(random());
+    if (k % 3 == 0) bad.resize(random() % bad.size());
+    write(dir_ / "x.raw", bad);
+    try {
+      read_trial_file(dir_ / "x.raw");
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("x.raw"), std::string::npos) << e.what();
+    }
+    try {
+      read_accuracy_file(dir_ / "x.raw");
+    } catch (const Error&) {
+    }
+  }
+}
+
+TEST_F(Raw, AnotherRunsTrialsAreNotMixedIn) {
+  CellRecord r = sample_cell();
+  CellWriter first(dir_, r.header);
+  first.write_trial(r.trials[0]);
+  r.header.scenario_sha256 = "11ff";
+  EXPECT_THROW(CellWriter(dir_, r.header), Error);
+}
+
+TEST_F(Raw, AFolderThatTakesNothingIsAnErrorAndKeepsWhatIsThere) {
+  const fs::path full = dir_ / "full";
+  fs::create_directories(full);
+  const CellRecord r = sample_cell();
+  CellWriter writer(full, r.header);
+  writer.write_trial(r.trials[0]);
+  const fs::path part = full / (cell_name(r.header) + ".part");
+  if (geteuid() == 0) {
+    // Root may write anywhere; a file in the way of the temporary one cannot be opened for writing by anybody.
+    fs::create_directories(part / ("trial-1.raw.tmp." + std::to_string(getpid())));
+  } else {
+    fs::permissions(part, fs::perms::owner_read | fs::perms::owner_exec);
+  }
+  try {
+    writer.write_trial(r.trials[1]);
+    ADD_FAILURE() << "wrote into a folder that takes nothing";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("trial-1.raw"), std::string::npos) << e.what();
+  }
+  fs::permissions(part, fs::perms::owner_all);
+  const CellRecord kept = writer.recovered();
+  ASSERT_EQ(kept.trials.size(), 1u);
+  EXPECT_TRUE(same(kept.trials[0], r.trials[0]));
+}
+
+}  // namespace
+}  // namespace clothbench

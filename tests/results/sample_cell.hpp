@@ -1,0 +1,63 @@
+#pragma once
+#include <cmath>
+
+#include "clothbench/record.hpp"
+
+namespace clothbench {
+
+/// A small cell with every kind of content; all values differ, some are missing.
+inline CellRecord sample_cell(int trials = 3, int frames = 4, std::uint32_t vertices = 6) {
+  CellRecord r;
+  r.header.scene = "sample";
+  r.header.solver = "none";
+  r.header.setting = "readback=blocking";
+  r.header.settings = {{"iterations", 5}, {"mode", "a"}};
+  r.header.scenario_json = R"({"name":"sample","cloth":{"grid":[3,2],"sides":"single"}})";
+  r.header.scenario_sha256 = "00ff";
+  r.header.stages = {{"First", {"stretch", "shear"}, 3}, {"Second", {}, 1}};
+  r.header.plan = {{"buffers", nlohmann::json::array()}};
+  r.header.environment = {{"gpu", "none"}, {"driver", "µ"}, {"gpu_is_software", true}, {"created", "2026-01-01T00:00:00Z"}};
+  r.header.vertices = vertices;
+  r.header.triangles = {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4};
+  r.header.load_s = 0.25;
+  for (int t = 0; t < trials; ++t) {
+    TimedTrial trial;
+    trial.index = t;
+    for (int f = 0; f < frames; ++f) {
+      trial.frame_wall_s.push_back(1e-3 * (1 + t) + 1e-5 * f);
+      trial.frame_device_s.push_back(t == 1 ? kMissing : 9e-4 + 1e-6 * f);
+      for (int s = 0; s < 2; ++s) {
+        trial.stage_device_s.push_back(f < 2 ? 1e-4 * (s + 1) : kMissing);
+        trial.stage_read_B.push_back(100 * (s + 1) + f);
+        trial.stage_write_B.push_back(50 * (s + 1) + f);
+      }
+    }
+    r.trials.push_back(trial);
+  }
+  r.accuracy.metrics = {{"stretch_max", "1", "greatest strain", {}}, {"speed_max", "m s-1", "greatest speed", {}}};
+  for (int f = 0; f <= frames; ++f) {
+    r.accuracy.time_s.push_back(f / 72.0);
+    for (std::uint32_t k = 0; k < 3 * vertices; ++k) r.accuracy.position.push_back(static_cast<float>(f) + 0.01f * static_cast<float>(k));
+    r.accuracy.metrics[0].values.push_back(f == 0 ? kMissing : 0.1 * f);
+    r.accuracy.metrics[1].values.push_back(9.81 * f / 72);
+  }
+  r.outcome = {"diverged", "F1", 3, "a message with \"quotes\" and µ"};
+  r.summary = {{"fps_median", 123.4567890123}, {"read_B_per_frame", kMissing}};
+  return r;
+}
+
+/// NaN equals NaN; everything else bit for bit.
+template <class T>
+bool same(const std::vector<T>& a, const std::vector<T>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (!(a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i])))) return false;
+  return true;
+}
+
+inline bool same(const TimedTrial& a, const TimedTrial& b) {
+  return a.index == b.index && same(a.frame_wall_s, b.frame_wall_s) && same(a.frame_device_s, b.frame_device_s) &&
+         same(a.stage_device_s, b.stage_device_s) && same(a.stage_read_B, b.stage_read_B) && same(a.stage_write_B, b.stage_write_B);
+}
+
+}  // namespace clothbench
