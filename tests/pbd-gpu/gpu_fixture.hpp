@@ -1,0 +1,85 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "clothbench/error.hpp"
+#include "gpu_solver.hpp"
+
+namespace clothbench::pbd_gpu {
+
+/// Every test runs under core and synchronization validation and ends with no message.
+class Gpu : public ::testing::Test {
+ protected:
+  static DeviceOptions options() { return {-1, true}; }
+
+  void SetUp() override {
+    try {
+      device_ = vulkan::Device::get(options());
+    } catch (const Error& e) {
+      const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
+      if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
+      FAIL() << e.what();
+    }
+  }
+  void TearDown() override {
+    if (device_) {
+      EXPECT_EQ(device_->validation_messages(), 0) << device_->first_message();
+    }
+  }
+
+  static std::unique_ptr<GpuSolver> make(const std::string& name, const nlohmann::json& given = nlohmann::json::object(), bool count = false) {
+    return name == "paper" ? make_paper(complete_settings(paper_info(), given), options(), count)
+                           : make_xpbd(complete_settings(xpbd_info(), given), options(), count);
+  }
+
+  std::shared_ptr<vulkan::Device> device_;
+};
+
+/// A horizontal sheet; features are added by the caller.
+inline Scene sheet(int columns, int rows, double width = 1, double height = 1) {
+  Scene s;
+  s.name = "sheet";
+  s.cloth.columns = columns;
+  s.cloth.rows = rows;
+  s.cloth.width_m = width;
+  s.cloth.height_m = height;
+  s.cloth.areal_density_kg_per_m2 = 0.2;
+  s.cloth.axis_u = {1, 0, 0};
+  s.cloth.axis_v = {0, 0, 1};
+  s.material.membrane_stiffness_N_per_m = 1000;
+  s.gravity_m_per_s2 = {0, -9.81, 0};
+  s.time = {72, 1};
+  s.needs = {Feature::Stretch, Feature::Shear};
+  return s;
+}
+
+inline Scene with_bending(Scene s) {
+  s.material.bending_rigidity_N_m = 1e-5;
+  s.needs.add(Feature::Bend);
+  return s;
+}
+
+inline Scene with_damping(Scene s) {
+  s.material.damping_per_s = 0.5;
+  s.needs.add(Feature::Damping);
+  return s;
+}
+
+/// First and last vertex of the first row held.
+inline Scene with_pins(Scene s) {
+  s.pins.vertices = {0, static_cast<std::uint32_t>(s.cloth.columns - 1)};
+  s.needs.add(Feature::Pins);
+  return s;
+}
+
+inline ClothState after(ClothSolver& solver, const Scene& s, int frames) {
+  for (int f = 0; f < frames; ++f) EXPECT_EQ(solver.step({f, (f + 1) * s.time.dt(), s.time.dt()}), StepStatus::Ok);
+  ClothState state;
+  solver.read_state(state);
+  return state;
+}
+
+}  // namespace clothbench::pbd_gpu
