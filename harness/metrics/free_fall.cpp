@@ -14,7 +14,7 @@ double fold_errors(const MetricContext& c, int frame, const ClothState& state, F
   const Scene& s = c.scene;
   const double t = frame * s.time.dt();
   const Vec3 g = s.gravity_m_per_s2;
-  const double scale = 0.5 * std::hypot(g[0], g[1], g[2]) * t * t;
+  const double scale = 0.5 * norm(g[0], g[1], g[2]) * t * t;
   const double share = c.entry.free_fall_m(s, c.settings, frame) / g[1];
   const std::vector<double> start = initial_positions(s);
   double result = 0;

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -28,6 +29,9 @@ const std::vector<Metric>& metrics();
 
 /// Greater of two numbers, and NaN if either is: std::max would lose it.
 inline double max_or_nan(double a, double b) { return b <= a || a != a ? a : b; }
+
+/// Length of a vector. Not std::hypot(x, y, z): libstdc++'s gives 0 for (0, NaN, 0).
+inline double norm(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
 
 /// Greatest (or root mean square) distance of a vertex from the free fall of the solver's own integrator, over
 /// |g| T^2 / 2; NaN at T = 0.

@@ -17,13 +17,13 @@ double momentum_error(const MetricContext& c, int frame, const ClothState& state
       excess[k] += mass[v] * (state.velocity[3 * v + k] - s.cloth.initial_velocity_m_per_s[k] - g[k] * t);
   }
   const double length = s.cloth.width_m < s.cloth.height_m ? s.cloth.height_m : s.cloth.width_m;
-  return std::hypot(excess[0], excess[1], excess[2]) / (total * std::sqrt(std::hypot(g[0], g[1], g[2]) * length));
+  return norm(excess[0], excess[1], excess[2]) / (total * std::sqrt(norm(g[0], g[1], g[2]) * length));
 }
 
 double speed_max(const MetricContext&, int, const ClothState& state) {
   double most = 0;
   for (std::size_t v = 0; v < state.velocity.size(); v += 3) {
-    const double speed = std::hypot(state.velocity[v], state.velocity[v + 1], state.velocity[v + 2]);
+    const double speed = norm(state.velocity[v], state.velocity[v + 1], state.velocity[v + 2]);
     most = max_or_nan(most, speed);
   }
   return most;

@@ -11,7 +11,7 @@ void for_each_strain(const Cloth& c, const ClothState& state, Fn fn) {
   const auto strain = [&](std::size_t a, std::size_t b, double rest) {
     const double* p = &state.position[3 * a];
     const double* q = &state.position[3 * b];
-    return std::hypot(q[0] - p[0], q[1] - p[1], q[2] - p[2]) / rest - 1;
+    return norm(q[0] - p[0], q[1] - p[1], q[2] - p[2]) / rest - 1;
   };
   const auto columns = static_cast<std::size_t>(c.columns), rows = static_cast<std::size_t>(c.rows);
   for (std::size_t j = 0; j < rows; ++j)

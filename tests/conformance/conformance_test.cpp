@@ -1,0 +1,119 @@
+// One body x every registered solver x every scene: what any backend must do, whatever its method.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "clothbench/error.hpp"
+#include "clothbench/solver.hpp"
+#include "runner/stage_check.hpp"
+#include "scenario/load.hpp"
+#include "scenario/study.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Case {
+  std::string solver, scene, sides, grid;
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const SolverEntry& e : solvers())
+    for (const auto& file : fs::recursive_directory_iterator(CLOTHBENCH_SOURCE_DIR "/scenarios")) {
+      fs::path relative = fs::relative(file.path(), CLOTHBENCH_SOURCE_DIR "/scenarios");
+      const std::string folder = relative.begin()->string();
+      if (file.path().extension() != ".json" || folder == "schema" || folder == "studies" || folder == "assets") continue;
+      for (const char* sides : {"single", "double-duplicated", "double"})
+        for (const char* grid : {"[2,2]", "[9,7]", "[17,33]"})  // not multiples of any workgroup
+          all.push_back({e.info.name, relative.replace_extension().string(), sides, grid});
+    }
+  return all;
+}
+
+std::string case_name(const ::testing::TestParamInfo<Case>& info) {
+  std::string name = info.param.solver + "_" + info.param.scene + "_" + info.param.sides + "_" + info.param.grid;
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return name;
+}
+
+class Conformance : public ::testing::TestWithParam<Case> {
+ protected:
+  void SetUp() override {
+    const Case& c = GetParam();
+    scene_ = load_scene(c.scene, {"cloth.sides=" + c.sides, "cloth.grid=" + c.grid});
+    entry_ = &find_solver(c.solver);
+    try {
+      solver_ = entry_->make(complete_settings(entry_->info, nlohmann::json::object()), {-1, true});
+    } catch (const Error& e) {
+      const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
+      if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
+      FAIL() << e.what();
+    }
+  }
+  void TearDown() override {
+    if (solver_) {
+      EXPECT_EQ(solver_->validation_messages(), 0);
+    }
+  }
+  void run(int frames) {
+    for (int f = 0; f < frames; ++f) {
+      const double dt = scene_.time.dt();
+      ASSERT_EQ(solver_->step({f, (f + 1) * dt, dt}), StepStatus::Ok) << "frame " << f;
+    }
+  }
+
+  Scene scene_;
+  const SolverEntry* entry_ = nullptr;
+  std::unique_ptr<ClothSolver> solver_;
+};
+
+TEST_P(Conformance, DoesWhatABackendMust) {
+  const SolverInfo& info = solver_->info();
+  EXPECT_EQ(info.name, entry_->info.name);
+  EXPECT_TRUE((info.supports & info.ignores).empty()) << "a feature is either served or ignored";
+  if (!(scene_.needs - (info.supports | info.ignores)).empty()) return;  // an `unsupported` row
+
+  solver_->load(scene_);
+  const Plan plan = solver_->plan();
+  EXPECT_EQ(check_stages(scene_, info, plan), "");
+  if ((scene_.needs & kColliderFeatures).empty()) {
+    for (const BufferPlan& b : plan.buffers) EXPECT_EQ(b.name.find("olli"), std::string::npos) << b.name << ": the scene has nothing to collide with";
+  }
+
+  ClothState start, once, again;
+  solver_->read_state(start);
+  const std::vector<double> rest = initial_positions(scene_);
+  ASSERT_EQ(start.position.size(), rest.size());
+  ASSERT_EQ(start.velocity.size(), rest.size());
+  for (std::size_t k = 0; k < rest.size(); ++k)
+    EXPECT_NEAR(start.position[k], rest[k], 1e-6 * scene_.cloth.width_m) << "the cloth starts where the scene puts it";
+
+  run(6);
+  solver_->read_state(once);
+  for (std::size_t k = 0; k < once.position.size(); ++k) ASSERT_TRUE(std::isfinite(once.position[k]) && std::isfinite(once.velocity[k]));
+  for (std::uint32_t v : scene_.pins.vertices)
+    for (std::size_t k = 0; k < 3 && !info.ignores.has(Feature::Pins); ++k) {
+      EXPECT_NEAR(once.position[3 * v + k], rest[3 * v + k], 1e-6 * scene_.cloth.width_m);
+    }
+
+  const FrameCost cost = solver_->last_cost();
+  EXPECT_EQ(cost.stage_device_s.size(), plan.stages.size());
+  EXPECT_EQ(cost.stage_read_B.size(), plan.stages.size());
+  EXPECT_EQ(cost.stage_write_B.size(), plan.stages.size());
+  EXPECT_EQ(std::isfinite(cost.device_s), info.on_gpu) << "device time where there is a device, and only there";
+
+  solver_->reset();
+  solver_->read_state(again);
+  EXPECT_EQ(again.position, start.position) << "reset restores the start bit for bit";
+  EXPECT_EQ(again.velocity, start.velocity);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Conformance, ::testing::ValuesIn(cases()), case_name);
+
+}  // namespace
+}  // namespace clothbench
