@@ -3,17 +3,103 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-TEST(GroupCount, RoundsUpAndKnowsTheLimit) {
-  EXPECT_EQ(vulkan::group_count(1, 64), 1u);
-  EXPECT_EQ(vulkan::group_count(64, 64), 1u);
-  EXPECT_EQ(vulkan::group_count(65, 64), 2u);
-  EXPECT_EQ(vulkan::group_count(65535ull * 64, 64), 65535u);
-  EXPECT_THROW(vulkan::group_count(65535ull * 64 + 1, 64), Error);
-  EXPECT_THROW(vulkan::group_count(~0ull / 2, 64), Error);
+TEST(Groups, RoundUpAndTurnIntoRowsPastTheLimit) {
+  using vulkan::Groups, vulkan::groups_for;
+  EXPECT_EQ(groups_for(1, 64), (Groups{1, 1}));
+  EXPECT_EQ(groups_for(64, 64), (Groups{1, 1}));
+  EXPECT_EQ(groups_for(65, 64), (Groups{2, 1}));
+  EXPECT_EQ(groups_for(65535ull * 64, 64), (Groups{65535, 1}));
+  EXPECT_EQ(groups_for(65535ull * 64 + 1, 64), (Groups{32768, 2}));
+  for (std::uint64_t items : {1ull << 22, (1ull << 27) + 3, (1ull << 31) + 77}) {
+    const Groups g = groups_for(items, 64);
+    EXPECT_LE(g.x, 65535u);
+    EXPECT_GE(64ull * g.x * g.y, items);
+    EXPECT_LT(64ull * g.x * g.y, items + 64ull * (g.y + 1)) << "less than a group a row in vain";
+  }
+  EXPECT_THROW(groups_for(1ull << 33, 64), Error);
+  EXPECT_THROW(groups_for(~0ull, 64), Error);
+}
+
+TEST_F(Gpu, RowsOfGroupsReachEveryItemOnce) {
+  using vulkan::Access, vulkan::Buffer;
+  constexpr std::uint32_t kItems = 15 * 64 - 7, kBeyond = 9;
+  const auto buffer =
+      std::make_unique<Buffer>(device_, "velocities", (kItems + kBeyond) * sizeof(vec4), Buffer::Place::Host);
+  auto* v = static_cast<vec4*>(buffer->mapped());
+  for (std::uint32_t i = 0; i < kItems + kBeyond; ++i) v[i] = {static_cast<float>(i), 0, 0, 1};
+  const vulkan::Kernel kernel(device_, "forces", shaders::kApplyExternalForces.code, {64},
+                              {{buffer.get(), Access::ReadWrite}}, sizeof(PaperConstants));
+  vulkan::Program program(device_);
+  PaperConstants c{};
+  c.gravity = {0, 1, 0, 0};
+  c.particles = kItems;
+  c.h = 1;
+  program.dispatch(0, kernel, {4, 4}, c);
+  program.record(false);
+  program.run(10);
+  program.run(10);
+  for (std::uint32_t i = 0; i < kItems + kBeyond; ++i) {
+    EXPECT_EQ(v[i].x, static_cast<float>(i));
+    EXPECT_EQ(v[i].y, i < kItems ? 2.0f : 0.0f) << i;
+  }
+}
+
+TEST_F(Gpu, ValidationIsOnAndCounts) {
+  // A device of its own, so that the message is not held against another test.
+  const auto device = vulkan::Device::get({0, true});
+  ASSERT_NE(device, device_);
+  VkBufferCreateInfo wrong{};
+  wrong.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  wrong.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  vkCreateBuffer(device->handle(), &wrong, nullptr, &buffer);
+  vkDestroyBuffer(device->handle(), buffer, nullptr);
+  EXPECT_GE(device->validation_messages(), 1);
+  ASSERT_FALSE(device->messages().empty());
+  EXPECT_NE(device->messages().front().find("VkBufferCreateInfo-size"), std::string::npos)
+      << device->messages().front();
+}
+
+TEST_F(Gpu, NothingIsLeftBehind) {
+  device_.reset();
+  const int before = vulkan::Device::validation_messages_ever();
+  for (const char* name : {"paper", "xpbd"}) {
+    const Scene s = with_bending(sheet(7, 5));
+    const auto solver = make(name);
+    solver->load(s);
+    after(*solver, s, 1);
+  }
+  // The last solver took its device with it, and the layer names every object that was not destroyed.
+  EXPECT_EQ(vulkan::Device::validation_messages_ever(), before);
+}
+
+TEST_F(Gpu, SolversShareADevice) {
+  EXPECT_EQ(vulkan::Device::get(options()), device_);
+  device_->mark_lost();
+  EXPECT_NE(vulkan::Device::get(options()), device_) << "a lost device is not handed on";
+}
+
+TEST_F(Gpu, AFrameThatTakesTooLongIsTimedOutAndWaitedForLater) {
+  vulkan::Program copy(device_);
+  const vulkan::Buffer a(device_, "a", 1u << 26, vulkan::Buffer::Place::Device),
+      b(device_, "b", 1u << 26, vulkan::Buffer::Place::Device);
+  for (int k = 0; k < 8; ++k) copy.copy(0, a, b);
+  copy.record(false);
+  try {
+    copy.run(0);
+    ADD_FAILURE() << "half a gigabyte copied in no time";
+  } catch (const vulkan::Failure& e) {
+    EXPECT_EQ(e.result(), VK_TIMEOUT);
+  }
+  copy.run(10);
 }
 
 TEST_F(Gpu, ListIsNotEmptyAndBadIndexIsNoDevice) {
-  EXPECT_FALSE(vulkan::Device::list().empty());
+  ASSERT_FALSE(vulkan::Device::list().empty());
+  const auto properties = nlohmann::json::parse(vulkan::Device::list().front().properties_json);
+  EXPECT_GE(properties["limits"]["maxComputeWorkGroupCount"][0], 65535);
+  EXPECT_GT(properties["limits"]["timestampPeriod"], 0);
+  EXPECT_FALSE(properties["memory_heaps"].empty());
   try {
     vulkan::Device::get({1000, false});
     ADD_FAILURE();
@@ -23,9 +109,12 @@ TEST_F(Gpu, ListIsNotEmptyAndBadIndexIsNoDevice) {
 }
 
 TEST_F(Gpu, BadSettingsAreRefused) {
-  for (const auto& given : {nlohmann::json{{"iterations", 0}}, {{"stiffness", 1.5}}, {{"readback", "maybe"}}, {{"atomics", "none"}}})
+  for (const auto& given :
+       {nlohmann::json{{"iterations", 0}}, {{"stiffness", 1.5}}, {{"readback", "maybe"}}, {{"atomics", "none"}}})
     EXPECT_THROW(make("paper", given), Error) << given;
-  for (int substeps : {0, -3, 5000}) EXPECT_THROW(make("xpbd", {{"substeps", substeps}}), Error);
+  for (const char* solver : {"paper", "xpbd"})
+    for (int substeps : {0, -3, 5000}) EXPECT_THROW(make(solver, {{"substeps", substeps}}), Error);
+  for (int iterations : {0, 5000}) EXPECT_THROW(make("xpbd", {{"iterations", iterations}}), Error);
 }
 
 TEST_F(Gpu, GravityOnlyHasNoContactKernelNorBuffer) {

@@ -26,11 +26,12 @@ class Gpu : public ::testing::Test {
   }
   void TearDown() override {
     if (device_) {
-      EXPECT_EQ(device_->validation_messages(), 0) << device_->first_message();
+      EXPECT_EQ(device_->messages(), std::vector<std::string>{});
     }
   }
 
-  static std::unique_ptr<GpuSolver> make(const std::string& name, const nlohmann::json& given = nlohmann::json::object(), bool count = false) {
+  static std::unique_ptr<GpuSolver> make(const std::string& name,
+                                         const nlohmann::json& given = nlohmann::json::object(), bool count = false) {
     return name == "paper" ? make_paper(complete_settings(paper_info(), given), options(), count)
                            : make_xpbd(complete_settings(xpbd_info(), given), options(), count);
   }
