@@ -40,6 +40,7 @@ class Grid {
  public:
   explicit Grid(const std::vector<CellRecord>& cells) : cells_(cells) {
     for (const CellRecord& c : cells) {
+      if (c.outcome.status == "missing") continue;  // no file, so no resolution either: a dash in its place
       if (resolution(c) > 0) sizes_.insert(resolution(c));
       const Key k = key_of(c);
       if (std::find(keys_.begin(), keys_.end(), k) == keys_.end()) keys_.push_back(k);
@@ -83,6 +84,7 @@ class Grid {
 
 void add_published(Table& t, const std::set<int>& sizes, const nlohmann::json& published) {
   const auto& resolutions = published.at("resolution");
+  auto at = t.rows.begin() + 1;
   for (const auto& column : published.at("columns")) {
     std::vector<std::string> row = {"published: " + column.at("name").get<std::string>(), column.value("sides", "–")};
     for (int n : sizes) {
@@ -91,7 +93,7 @@ void add_published(Table& t, const std::set<int>& sizes, const nlohmann::json& p
         if (resolutions[k].get<int>() == n) text = fps(column.at("fps")[k].get<double>());
       row.push_back(text);
     }
-    t.rows.insert(t.rows.begin() + 1, std::move(row));
+    at = t.rows.insert(at, std::move(row)) + 1;
   }
 }
 
@@ -139,6 +141,7 @@ std::vector<Table> fps_tables(const std::vector<CellRecord>& cells, const nlohma
 }
 
 std::string headline(const std::vector<CellRecord>& cells) {
+  const auto missing = std::count_if(cells.begin(), cells.end(), [](const CellRecord& c) { return c.outcome.status == "missing"; });
   nlohmann::json e;
   for (const CellRecord& c : cells)
     if (c.header.environment.is_object() && (e.is_null() || e.value("gpu", "").empty()) && !c.header.environment.value("gpu", "").empty()) {
@@ -153,6 +156,7 @@ std::string headline(const std::vector<CellRecord>& cells) {
   const auto text = [&](const char* key) { return e.contains(key) && e[key].is_string() && !e[key].get<std::string>().empty() ? e[key].get<std::string>() : std::string("–"); };
   out += fmt::format("GPU {} · driver {} · CPU {} · protocol {} · commit {}{} · {} · {}\n", text("gpu"), text("driver"), text("cpu"), text("protocol"),
                      text("git_commit").substr(0, 12), e.value("git_dirty", false) ? " (with local changes)" : "", text("build_type"), text("created"));
+  if (missing > 0) out += fmt::format("\n{} of {} planned cells were not run.\n", missing, cells.size());
   return out;
 }
 
