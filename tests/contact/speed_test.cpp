@@ -6,6 +6,10 @@
 #include "meshes.hpp"
 #include "metrics/contact/contact_probe.hpp"
 
+#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
+#define CLOTHBENCH_TIMES_COUNT 1
+#endif
+
 namespace clothbench::contact {
 namespace {
 
@@ -31,7 +35,7 @@ TEST(Speed, FrameAgainstALargeMesh) {
   });
   std::printf("  a frame against %zu triangles: %.3f s at rest, %.3f s moving (0.5 s allowed)\n", ball.triangles.size(),
               resting, moving);
-#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
+#if CLOTHBENCH_TIMES_COUNT
   // Four times what is promised of an idle machine: this one may be busy.
   EXPECT_LT(resting, 2.0);
   EXPECT_LT(moving, 2.0);
@@ -40,6 +44,9 @@ TEST(Speed, FrameAgainstALargeMesh) {
 
 // Every predicate between neighbours is undecided in floating point.
 TEST(Speed, FrameAgainstItsOwnCopy) {
+#if !CLOTHBENCH_TIMES_COUNT
+  GTEST_SKIP() << "exact numbers allocate: minutes under a sanitizer, and no time to judge";
+#endif
   const Mesh bent = sheet(31, 31, {-0.5, 0, -0.5}, {0, 0, 1}, {1, 0, 0}).mapped([](const Point<3>& p) {
     return Point<3>(p + Point<3>(0, 0.02 * std::sin(14 * p[0] + 3 * p[2]), 0));
   });
@@ -48,7 +55,7 @@ TEST(Speed, FrameAgainstItsOwnCopy) {
   const double time = seconds([&] { sample = probe.probe(bent.positions); });
   EXPECT_EQ(sample.cloth_fraction, 1);
   std::printf("  a frame against its own copy: %.3f s\n", time);
-#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
+#if CLOTHBENCH_TIMES_COUNT
   EXPECT_LT(time, 4.0);
 #endif
 }
@@ -62,7 +69,7 @@ TEST(Speed, FrameAgainstAHandOfCapsules) {
   const double time = seconds([&] { sample = probe.probe(cloth.positions); });
   EXPECT_GT(sample.contour_length_m, 1);
   std::printf("  a frame against 19 capsules: %.3f s\n", time);
-#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
+#if CLOTHBENCH_TIMES_COUNT
   EXPECT_LT(time, 2.0);
 #endif
 }

@@ -133,6 +133,21 @@ TEST(Tunnel, MovingMeshAgainstRestingCloth) {
   }
 }
 
+// The way begins where the last probe saw the object, whatever it was told in between.
+TEST(Tunnel, MovedTwiceBetweenProbes) {
+  const Mesh object = patch(3), cloth = sheet(4, 4, {-0.1, 0, -0.1}, {0, 0, 0.2}, {0.2, 0, 0});
+  ContactProbe probe(cloth.view(), object.moved({0, 0.2, 0}).view());
+  probe.probe(cloth.positions);
+  probe.move_object(object.moved({2, -0.2, 0}).positions);
+  probe.move_object(object.moved({0, -0.2, 0}).positions);
+  EXPECT_NEAR(probe.probe(cloth.positions).tunnelled_fraction, 1, 1e-12);
+  // And round about it takes two probes.
+  probe.move_object(object.moved({2, -0.2, 0}).positions);
+  EXPECT_NEAR(probe.probe(cloth.positions).tunnelled_fraction, 1, 1e-12);
+  probe.move_object(object.moved({0, 0.2, 0}).positions);
+  EXPECT_NEAR(probe.probe(cloth.positions).tunnelled_fraction, 1, 1e-12);
+}
+
 // Turning, shrinking, jerking about: whatever a closed mesh does in between, those inside at the end are those that
 // crossed once more inwards than outwards.
 TEST(Tunnel, ClosedMeshThatTurnsAndDeforms) {
