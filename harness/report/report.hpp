@@ -1,8 +1,11 @@
 #pragma once
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "clothbench/record.hpp"
+#include "report/grid.hpp"
 #include "report/table.hpp"
 
 namespace clothbench {
@@ -12,20 +15,48 @@ struct ReportOptions {
 };
 
 /// All cells of study folders, result files or part folders, without trajectories. Planned cells without a file are
-/// rows with status "missing".
+/// rows with status "missing". Throws Error naming the file that cannot be read.
 std::vector<CellRecord> collect(const std::vector<std::filesystem::path>& runs);
 
-/// Tables of the frame-rate study; pure functions of the cells.
-std::vector<Table> fps_tables(const std::vector<CellRecord>& cells, const nlohmann::json& published);
+/// results/paper-table3.json. Throws Error naming the file.
+nlohmann::json published_table3();
 
-/// What a reader must know first: device, protocol, commit, and whether the device is software.
-std::string headline(const std::vector<CellRecord>& cells);
+/// Tables of one scene at its resolutions; pure functions of the cells. Where the scene is the paper's Table 3 the
+/// first table has the published rows.
+std::vector<Table> fps_tables(const Family&, const nlohmann::json& published);
 
-/// One row a cell, every summary value in full precision.
+/// Cells that did not end well, by solver, status and message; no rows but the header if there is none.
+Table failed_table(const std::vector<CellRecord>& cells);
+
+enum class Format { Markdown, Console };
+
+/// What a reader must know first: whether the device is software; device, protocol and commit, one line for each
+/// combination among the cells; what the harness itself costs.
+std::string headline(const std::vector<CellRecord>& cells, Format);
+
+/// The ballistic solver's slowest cell as a share of a 72 Hz frame, against the 1 % allowed; empty without such cells.
+std::string overhead_line(const std::vector<CellRecord>& cells);
+
+/// "5 s windows, or the whole trial where it is shorter (here 0.3 s to 2 s)"; empty if no cell has counted bytes.
+std::string window_note(const std::vector<CellRecord>& cells);
+
+/// One row a cell, every summary value, shortest text that reads back exactly; missing = empty.
 std::string cells_csv(const std::vector<CellRecord>& cells);
 
-/// Writes report.md, cells.csv, table3.csv, table3.json and the figures fig4 and fig5 (SVG, PNG; left out, with a line
-/// saying so, where there is no Python with matplotlib).
+/// The same with only some of the summary values.
+std::string summary_csv(const std::vector<CellRecord>& cells, const std::vector<std::string>& names);
+
+/// Published and measured values of Table 3, one row a cell.
+std::string table3_csv(const Family&, const nlohmann::json& published);
+nlohmann::json table3_json(const Family&, const nlohmann::json& published);
+
+/// Everything but frames: outcome, summary (missing = null), environment.
+nlohmann::json cells_json(const std::vector<CellRecord>& cells);
+
+/// Writes report.md, cells.csv, cells.json, bandwidth.csv, memory.csv; for the paper's Table 3 also table3.md, .csv and
+/// .json; and the figures fig4 and fig5 (SVG, PNG; left out, with a line saying so, where there is no Python with
+/// matplotlib). Throws Error if a file cannot be read or written, or the figures cannot be drawn (the tables are
+/// written by then).
 void write_report(const std::vector<std::filesystem::path>& runs, const ReportOptions&);
 
 /// The same tables on the terminal.

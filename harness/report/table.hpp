@@ -1,17 +1,28 @@
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace clothbench {
 
-/// A table of text, printed for the terminal, as Markdown or as CSV. The first row of cells is the header.
+/// Columns of the terminal that tables and their notes are made to fit.
+inline constexpr std::size_t kConsoleColumns = 120;
+
+/// A table of text, printed for the terminal or as Markdown. The first row of cells is the header.
 struct Table {
   std::string title, note;
   std::vector<std::vector<std::string>> rows;
 
   std::string markdown() const;
+  /// Columns that do not fit kConsoleColumns follow below, with the first two repeated; the note is wrapped.
   std::string console() const;
 };
+
+/// Characters on screen of UTF-8 text without combining or double-width characters.
+std::size_t display_width(const std::string&);
+
+/// Breaks text at spaces so that lines with their indent fit `columns`; a longer word stands alone. Ends in a newline.
+std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns);
 
 /// Fields with comma, quote or line break quoted as RFC 4180 says.
 std::string csv_row(const std::vector<std::string>& fields);

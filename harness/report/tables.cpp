@@ -2,184 +2,136 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "report/report.hpp"
 
 namespace clothbench {
 namespace {
 
-struct Key {
-  std::string solver, setting, sides;
-  auto operator<=>(const Key&) const = default;
-};
-
-nlohmann::json scenario(const CellRecord& c) { return nlohmann::json::parse(c.header.scenario_json, nullptr, false); }
-
-int resolution(const CellRecord& c) {
-  const nlohmann::json s = scenario(c);
-  return s.is_object() && s.contains("cloth") ? s["cloth"]["grid"][0].get<int>() : 0;
+/// `digits` significant digits without an exponent; "–" for a missing value.
+std::string significant(double v, int digits) {
+  if (!std::isfinite(v)) return "–";
+  const int before = v == 0 ? 1 : static_cast<int>(std::floor(std::log10(std::abs(v)))) + 1;
+  return fmt::format("{:.{}f}", v, std::max(0, digits - before));
 }
 
-Key key_of(const CellRecord& c) {
-  const nlohmann::json s = scenario(c);
-  return {c.header.solver, c.header.setting, s.is_object() && s.contains("cloth") ? s["cloth"]["sides"].get<std::string>() : ""};
+/// Four digits at most; beyond that in thousands or millions.
+std::string fps(double v) {
+  if (!std::isfinite(v)) return "–";
+  if (v >= 999500) return significant(1e-6 * v, 3) + "M";
+  return v >= 9999.5 ? significant(1e-3 * v, 3) + "k" : fmt::format("{:.{}f}", v, v >= 1000 ? 0 : 1);
 }
 
-std::string number(double v, const char* format) { return std::isfinite(v) ? fmt::format(fmt::runtime(format), v) : "–"; }
-
-double value(const CellRecord& c, const std::string& name) {
-  const auto at = c.summary.find(name);
-  return at == c.summary.end() ? kMissing : at->second;
+std::string with_spread(double v, double spread) {
+  if (!std::isfinite(v)) return "–";
+  return fps(v) + " ± " +
+         (std::isfinite(spread) ? fmt::format("{:.{}f} %", 100 * spread, spread >= 0.0995 ? 0 : 1) : "–");
 }
 
-/// Frames per second with four digits at most; spread in per cent.
-std::string fps(double v) { return !std::isfinite(v) ? "–" : v >= 1000 ? fmt::format("{:.0f}", v) : fmt::format("{:.1f}", v); }
+std::string pair(double a, double b, const char* between, int digits) {
+  if (!std::isfinite(a) && !std::isfinite(b)) return "–";
+  return significant(a, digits) + between + significant(b, digits);
+}
 
-class Grid {
- public:
-  explicit Grid(const std::vector<CellRecord>& cells) : cells_(cells) {
-    for (const CellRecord& c : cells) {
-      if (resolution(c) > 0) sizes_.insert(resolution(c));
-      const Key k = key_of(c);
-      if (std::find(keys_.begin(), keys_.end(), k) == keys_.end()) keys_.push_back(k);
-    }
-    const auto rank = [](const Key& k) { return k.sides == "single" ? 0 : k.sides == "double-duplicated" ? 1 : 2; };
-    std::stable_sort(keys_.begin(), keys_.end(), [&](const Key& a, const Key& b) {
-      return std::pair(a.solver + a.setting, rank(a)) < std::pair(b.solver + b.setting, rank(b));
-    });
-  }
-
-  const std::set<int>& sizes() const { return sizes_; }
-
-  /// Rows: solver, setting, sides; columns: resolutions. A cell that did not end well says how instead.
-  template <class Text>
-  Table table(const std::string& title, const std::string& note, Text text) const {
-    Table t{title, note, {{"solver", "sides"}}};
-    for (int n : sizes_) t.rows[0].push_back(fmt::format("{}²", n));
-    for (const Key& k : keys_) {
-      std::vector<std::string> row = {k.setting == "default" ? k.solver : k.solver + " " + k.setting, k.sides};
-      for (int n : sizes_) row.push_back(entry(k, n, text));
-      t.rows.push_back(std::move(row));
-    }
-    return t;
-  }
-
- private:
-  template <class Text>
-  std::string entry(const Key& k, int n, Text text) const {
-    for (const CellRecord& c : cells_) {
-      if (resolution(c) != n || key_of(c) != k) continue;
-      if (c.outcome.status == "ok") return text(c);
-      return c.outcome.failed_frame >= 0 ? fmt::format("{} at {}", c.outcome.status, c.outcome.failed_frame) : c.outcome.status;
-    }
-    return "–";
-  }
-
-  const std::vector<CellRecord>& cells_;
-  std::set<int> sizes_;
-  std::vector<Key> keys_;
-};
-
-void add_published(Table& t, const std::set<int>& sizes, const nlohmann::json& published) {
-  const auto& resolutions = published.at("resolution");
-  for (const auto& column : published.at("columns")) {
+/// Published values as they are printed there: to the unit.
+void add_published(Table& t, const std::vector<Resolution>& columns, const nlohmann::json& published) {
+  const nlohmann::json& resolutions = published.at("resolution");
+  std::size_t at = 1;
+  for (const nlohmann::json& column : published.at("columns")) {
     std::vector<std::string> row = {"published: " + column.at("name").get<std::string>(), column.value("sides", "–")};
-    for (int n : sizes) {
-      std::string text = "–";
+    for (const Resolution& r : columns) {
+      std::string cell = "–";
       for (std::size_t k = 0; k < resolutions.size(); ++k)
-        if (resolutions[k].get<int>() == n) text = fps(column.at("fps")[k].get<double>());
-      row.push_back(text);
+        if (r.grid[0] == resolutions[k].get<int>() && r.grid[1] == r.grid[0])
+          cell = fmt::format("{:g}", column.at("fps").at(k).get<double>());
+      row.push_back(cell);
     }
-    t.rows.insert(t.rows.begin() + 1, std::move(row));
+    t.rows.insert(t.rows.begin() + static_cast<std::ptrdiff_t>(at++), std::move(row));
   }
 }
 
-/// The ballistic solver's frame is what the harness itself costs.
-std::string overhead_note(const std::vector<CellRecord>& cells) {
-  double most = kMissing;
-  for (const CellRecord& c : cells)
-    if (const double t = value(c, "frame_wall_median_s"); c.header.solver == "ballistic" && c.outcome.status == "ok" && !(t <= most)) most = t;
-  if (!std::isfinite(most)) return "";
-  const double share = most * 72;
-  return fmt::format("Harness overhead (ballistic, largest grid): {:.2g} µs, {:.3g} % of a 72 Hz frame{}.", most * 1e6, share * 100,
-                     share < 0.01 ? "" : ": more than the 1 % allowed");
+std::string capped_note(const Family& f, bool paper) {
+  std::string note = "Ours: mean over frames of min(72, 1/t), median of the trials, simulation alone.";
+  if (paper)
+    note =
+        "Published: Quest 3, rendering included, values to the unit; 11 of the 15 read the display's 72, so this "
+        "table cannot tell solvers apart: the next one can. " +
+        note;
+  if (std::any_of(f.cells.begin(), f.cells.end(), [](const PlacedCell& p) { return p.series.repeat > 1; }))
+    note += " (2), (3): the same cell from another file.";
+  return note;
 }
 
 }  // namespace
 
-std::vector<Table> fps_tables(const std::vector<CellRecord>& cells, const nlohmann::json& published) {
-  const Grid grid(cells);
-  std::vector<Table> tables;
-  tables.push_back(grid.table("Table 3: frames per second, capped at 72",
-                              "Published: Quest 3, rendering included, to the unit. Ours: mean over frames of min(72, 1/t), median of the trials.",
-                              [](const CellRecord& c) { return fps(value(c, "fps_at_72")); }));
-  add_published(tables.back(), grid.sizes(), published);
-  tables.push_back(grid.table("Frames per second, uncapped: median of the trials ± half their range", "",
-                              [](const CellRecord& c) { return fps(value(c, "fps_median")) + " ± " + number(100 * value(c, "fps_spread"), "{:.0f} %"); }));
-  tables.push_back(grid.table("Wall time a frame, median [ms]", overhead_note(cells),
-                              [](const CellRecord& c) { return number(1e3 * value(c, "frame_wall_median_s"), "{:.4f}"); }));
-  tables.push_back(grid.table("GPU time a frame, median [ms]", "First to last timestamp of the frame's one submission; – on a CPU.",
-                              [](const CellRecord& c) { return number(1e3 * value(c, "frame_device_median_s"), "{:.4f}"); }));
-  tables.push_back(grid.table("Free-fall error over gT²/2 at T = 0.5 s",
-                              "Greatest distance of a vertex from the closed form of the solver's own integrator.",
-                              [](const CellRecord& c) { return number(value(c, "free_fall_error"), "{:.1e}"); }));
-  tables.push_back(grid.table("Bytes a frame, read + written [MB]", "Counted loads and stores of the shaders; missing for CPU solvers, never modelled.",
-                              [](const CellRecord& c) { return number(1e-6 * (value(c, "read_B_per_frame") + value(c, "write_B_per_frame")), "{:.3f}"); }));
-  tables.push_back(grid.table("Bandwidth, peak over 5 s windows, read / written [GB/s]", "Windows of 5 s, or of the whole trial where it is shorter.",
-                              [](const CellRecord& c) {
-                                const double r = value(c, "bandwidth_read_peak_B_per_s"), w = value(c, "bandwidth_write_peak_B_per_s");
-                                return std::isfinite(r) ? fmt::format("{:.3g} / {:.3g}", 1e-9 * r, 1e-9 * w) : std::string("–");
-                              }));
-  tables.push_back(grid.table("Device memory [kB] · dispatches a frame", "", [](const CellRecord& c) {
-    const double m = value(c, "device_memory_B");
-    return std::isfinite(m) ? fmt::format("{:.1f} · {:.0f}", 1e-3 * m, value(c, "dispatches")) : std::string("–");
-  }));
-  return tables;
-}
-
-std::string headline(const std::vector<CellRecord>& cells) {
-  nlohmann::json e;
-  for (const CellRecord& c : cells)
-    if (c.header.environment.is_object() && (e.is_null() || e.value("gpu", "").empty()) && !c.header.environment.value("gpu", "").empty()) {
-      if (c.header.environment["gpu"] == "CPU" && !e.is_null()) continue;
-      e = c.header.environment;
-      if (e["gpu"] == "CPU") e["gpu"] = "";
-    }
-  if (!e.is_object()) return "no cells\n";
-  std::string out;
-  if (e.value("gpu_is_software", false))
-    out += fmt::format("**Software Vulkan device ({}): for correctness, not for speed claims.**\n\n", e.value("gpu", ""));
-  const auto text = [&](const char* key) { return e.contains(key) && e[key].is_string() && !e[key].get<std::string>().empty() ? e[key].get<std::string>() : std::string("–"); };
-  out += fmt::format("GPU {} · driver {} · CPU {} · protocol {} · commit {}{} · {} · {}\n", text("gpu"), text("driver"), text("cpu"), text("protocol"),
-                     text("git_commit").substr(0, 12), e.value("git_dirty", false) ? " (with local changes)" : "", text("build_type"), text("created"));
-  return out;
-}
-
-std::string cells_csv(const std::vector<CellRecord>& cells) {
-  std::set<std::string> names;
-  for (const CellRecord& c : cells)
-    for (const auto& [name, unused] : c.summary) names.insert(name);
-  std::vector<std::string> head = {"scene", "solver", "setting", "sides", "resolution", "status", "failed_frame", "message",
-                                   "gpu", "driver", "gpu_is_software", "protocol", "git_commit", "created"};
-  head.insert(head.end(), names.begin(), names.end());
-  std::string out = csv_row(head);
-  for (const CellRecord& c : cells) {
-    const nlohmann::json& e = c.header.environment;
-    const auto text = [&](const char* key) {
-      const nlohmann::json v = e.is_object() ? e.value(key, nlohmann::json("")) : nlohmann::json("");
-      return v.is_string() ? v.get<std::string>() : v.dump();
-    };
-    std::vector<std::string> row = {c.header.scene, c.header.solver, c.header.setting, key_of(c).sides, std::to_string(resolution(c)),
-                                    c.outcome.status, std::to_string(c.outcome.failed_frame), c.outcome.message, text("gpu"), text("driver"),
-                                    text("gpu_is_software"), text("protocol"), text("git_commit"), text("created")};
-    for (const std::string& name : names) {
-      const double v = value(c, name);
-      row.push_back(std::isfinite(v) ? fmt::format("{}", v) : "");
-    }
-    out += csv_row(row);
+std::vector<Table> fps_tables(const Family& family, const nlohmann::json& published) {
+  const bool paper = family.paper_table == 3;
+  const std::string scene = paper ? "" : " (" + family.name + ")";
+  std::vector<CellRecord> cells;  // summaries are enough for the notes
+  for (const PlacedCell& p : family.cells) {
+    cells.emplace_back();
+    cells.back().summary = p.cell->summary;
   }
-  return out;
+  const auto v = summary_value;
+  std::vector<Table> t;
+  t.push_back(family.table((paper ? "Table 3: frames" : "Frames") + std::string(" per second, capped at 72") + scene,
+                           capped_note(family, paper), [&](const CellRecord& c) { return fps(v(c, "fps_at_72")); }));
+  if (paper) add_published(t.back(), family.resolutions(), published);
+  t.push_back(family.table("Frames per second, uncapped" + scene, "Median of the trials ± half their range.",
+                           [&](const CellRecord& c) { return with_spread(v(c, "fps_median"), v(c, "fps_spread")); }));
+  t.push_back(family.table("Wall time a frame [ms]" + scene, "Median over all timed frames.",
+                           [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_wall_median_s"), 3); }));
+  t.push_back(family.table("GPU time a frame [ms]" + scene,
+                           "Median; first to last timestamp of the frame's one submission. – on a CPU.",
+                           [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_device_median_s"), 3); }));
+  t.push_back(family.table("Free-fall error over gT²/2 at T = 0.5 s" + scene,
+                           "Greatest distance of a vertex from the closed form of the solver's own integrator.",
+                           [&](const CellRecord& c) {
+                             const double e = v(c, "free_fall_error");
+                             return std::isfinite(e) ? fmt::format("{:.1e}", e) : std::string("–");
+                           }));
+  t.push_back(family.table("kB a frame, read / written" + scene,
+                           "Counted loads and stores of the shaders; missing for CPU solvers, never modelled.",
+                           [&](const CellRecord& c) {
+                             return pair(1e-3 * v(c, "read_B_per_frame"), 1e-3 * v(c, "write_B_per_frame"), " / ", 3);
+                           }));
+  const std::string windows = window_note(cells);
+  t.push_back(family.table(
+      "Peak bandwidth, read / written [GB/s]" + scene,
+      "The same counted bytes over wall time; " + (windows.empty() ? "no cell has any." : windows + "."),
+      [&](const CellRecord& c) {
+        return pair(1e-9 * v(c, "bandwidth_read_peak_B_per_s"), 1e-9 * v(c, "bandwidth_write_peak_B_per_s"), " / ", 3);
+      }));
+  t.push_back(family.table("Device memory [kB] · dispatches a frame" + scene,
+                           "Buffers in device-local memory. – on a CPU.", [&](const CellRecord& c) {
+                             const double m = v(c, "device_memory_B"), d = v(c, "dispatches");
+                             return std::isfinite(m) || std::isfinite(d)
+                                        ? significant(1e-3 * m, 4) + " · " + significant(d, 1)
+                                        : std::string("–");
+                           }));
+  return t;
+}
+
+Table failed_table(const std::vector<CellRecord>& cells) {
+  // One row for all cells with the same end: a feature a solver lacks is one line, not one a resolution.
+  std::vector<std::vector<std::string>> rows;
+  for (const CellRecord& c : cells) {
+    if (c.outcome.status == "ok") continue;
+    std::string status = c.outcome.status, scene = c.header.scene;
+    if (c.outcome.klass != "ok" && !c.outcome.klass.empty()) status += " (" + c.outcome.klass + ")";
+    if (c.outcome.failed_frame >= 0) scene += fmt::format(" (frame {})", c.outcome.failed_frame);
+    std::vector<std::string> row = {Series{c.header.solver, c.header.setting, ""}.label(), status,
+                                    c.outcome.message.empty() ? "–" : c.outcome.message, scene};
+    const auto same = std::find_if(rows.begin(), rows.end(),
+                                   [&](const auto& r) { return std::equal(r.begin(), r.begin() + 3, row.begin()); });
+    if (same == rows.end())
+      rows.push_back(std::move(row));
+    else
+      same->back() += ", " + scene;
+  }
+  Table t{"Cells without a result", "", {{"solver", "status", "message", "scenes"}}};
+  t.rows.insert(t.rows.end(), rows.begin(), rows.end());
+  return t;
 }
 
 }  // namespace clothbench

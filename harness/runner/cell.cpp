@@ -170,7 +170,8 @@ TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
     trial.stage_read_B.insert(trial.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
     trial.stage_write_B.insert(trial.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
   }
-  if (outcome_.status == "ok") profile_stages(trial, rules.min_frames);
+  constexpr int kProfiledFrames = 12;
+  if (outcome_.status == "ok") profile_stages(trial, kProfiledFrames);
   return trial;
 }
 

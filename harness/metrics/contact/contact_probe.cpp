@@ -1,0 +1,202 @@
+#include "metrics/contact/contact_probe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "clothbench/error.hpp"
+#include "metrics/contact/contour.hpp"
+#include "metrics/contact/tunnel.hpp"
+
+namespace clothbench::contact {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr ContactSample kUnknown{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
+
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+Triangles copy(std::span<const std::array<std::uint32_t, 3>> t) { return {t.begin(), t.end()}; }
+
+/// A third of the area of its triangles for each vertex.
+std::vector<double> vertex_areas(const TriangleMeshView& mesh) {
+  std::vector<double> areas(mesh.vertex_count(), 0);
+  double all = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const double share = area(mesh.triangle(t)) / 3;
+    for (const std::uint32_t v : mesh.triangles[t]) areas[v] += share;
+    all += share;
+  }
+  if (!(all > 0)) throw Error("contact cloth: expected at least one triangle with area");
+  return areas;
+}
+
+void validate(std::span<const Capsule> shapes) {
+  for (std::size_t k = 0; k < shapes.size(); ++k)
+    if (!shapes[k].a.allFinite() || !shapes[k].b.allFinite() || !(shapes[k].radius_m > 0) ||
+        !std::isfinite(shapes[k].radius_m))
+      throw Error("contact capsule " + std::to_string(k) + ": expected finite ends and a positive radius");
+}
+
+/// An object made of triangles, where it is now and where it was at the last probe.
+struct MeshObject {
+  MeshObject(const TriangleMeshView& mesh, Solid solid)
+      : triangles(copy(mesh.triangles)),
+        positions(mesh.positions.begin(), mesh.positions.end()),
+        tree(mesh),
+        welded(welded_vertices(mesh)),
+        closed(is_closed(mesh, welded)),
+        has_inside(solid == Solid::Nearly || (solid == Solid::Auto && closed)) {}
+
+  TriangleMeshView view(const std::vector<double>& at) const { return {at, triangles}; }
+
+  Triangles triangles;
+  std::vector<double> positions, positions_before;  ///< the latter empty if it hasn't moved
+  TriangleTree tree;
+  std::vector<std::uint32_t> welded;
+  bool closed, has_inside;
+};
+
+}  // namespace
+
+struct ContactProbe::State {
+  explicit State(const TriangleMeshView& cloth)
+      : triangles(copy(cloth.triangles)),
+        areas((contact::validate(cloth, "contact cloth"), vertex_areas(cloth))),
+        mesh_depth(cloth),
+        history(cloth.vertex_count()) {}
+
+  void advance(std::span<const double> positions);
+  void probe_mesh(const TriangleMeshView& cloth, ContactSample&);
+  void probe_shapes(const TriangleMeshView& cloth, ContactSample&) const;
+  void set(const Contour& c, ContactSample& s) const {
+    s.contour_length_m = c.length_m;
+    s.pairs = static_cast<double>(c.pairs);
+    s.cloth_fraction = static_cast<double>(c.cloth_triangles) / static_cast<double>(triangles.size());
+  }
+  static void set(const Depth& d, ContactSample& s) {
+    s.depth_max_m = d.max_m;
+    s.depth_vertex_max_m = d.vertex_max_m;
+    s.depth_p99_m = d.p99_m;
+    s.depth_mean_m = d.mean_m;
+    s.area_m2 = d.area_m2;
+    s.area_fraction = d.area_fraction;
+  }
+
+  Triangles triangles;
+  std::vector<double> areas;
+  MeshDepth mesh_depth;
+  TunnelHistory history;
+  std::vector<double> cloth_before;  ///< empty before the first probe
+  bool history_lost = false;
+  std::optional<MeshObject> mesh;
+  std::vector<Capsule> shapes;
+  double resolution_m = 0;
+};
+
+void ContactProbe::State::advance(std::span<const double> positions) {
+  if (!cloth_before.empty()) {
+    if (mesh->positions_before.empty())
+      history.advance(cloth_before, positions, mesh->tree);
+    else
+      history.advance(cloth_before, positions,
+                      SweptMesh(mesh->view(mesh->positions_before), mesh->view(mesh->positions), mesh->welded));
+  }
+  cloth_before.assign(positions.begin(), positions.end());
+}
+
+void ContactProbe::State::probe_mesh(const TriangleMeshView& cloth, ContactSample& s) {
+  set(contour(cloth, mesh->tree), s);
+  if (!history_lost) {
+    advance(cloth.positions);
+    s.tunnelled_fraction = history.fraction(areas);
+    s.tunnelled_depth_max_m = 0;
+    for (std::size_t i = 0; i < cloth.vertex_count(); ++i)
+      if (history.counts()[i] != 0)
+        s.tunnelled_depth_max_m = std::max(s.tunnelled_depth_max_m, mesh->tree.distance(cloth.vertex(i)));
+  }
+  if (mesh->has_inside) set(mesh_depth(cloth, mesh->tree, InsideTest(mesh->tree, mesh->closed)), s);
+}
+
+void ContactProbe::State::probe_shapes(const TriangleMeshView& cloth, ContactSample& s) const {
+  const ShapesResult result = shapes_contact(cloth, shapes, resolution_m);
+  set(result.contour, s);
+  set(result.depth, s);
+  double inside = 0, all = 0;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    all += areas[i];
+    if (result.inside[i]) inside += areas[i];
+  }
+  s.tunnelled_fraction = inside / all;
+  s.tunnelled_depth_max_m = result.depth.vertex_max_m;
+}
+
+ContactProbe::ContactProbe(const TriangleMeshView& cloth_at_rest, const TriangleMeshView& object, Solid solid)
+    : state_(std::make_unique<State>(cloth_at_rest)) {
+  state_->mesh.emplace(object, solid);
+}
+
+ContactProbe::ContactProbe(const TriangleMeshView& cloth_at_rest, std::span<const Capsule> shapes, double resolution_m)
+    : state_(std::make_unique<State>(cloth_at_rest)) {
+  validate(shapes);
+  state_->shapes.assign(shapes.begin(), shapes.end());
+  state_->resolution_m = resolution_m > 0 ? resolution_m : default_resolution_m(shapes);
+}
+
+ContactProbe::~ContactProbe() = default;
+ContactProbe::ContactProbe(ContactProbe&&) noexcept = default;
+ContactProbe& ContactProbe::operator=(ContactProbe&&) noexcept = default;
+
+void ContactProbe::move_object(std::span<const double> positions) {
+  if (!state_->mesh) throw Error("move_object: expected a probe of a mesh, this one has capsules");
+  MeshObject& mesh = *state_->mesh;
+  if (positions.size() != mesh.positions.size())
+    throw Error("move_object: expected " + std::to_string(mesh.positions.size() / 3) + " vertices, got " +
+                std::to_string(positions.size() / 3));
+  std::vector<double> moved(positions.begin(), positions.end());
+  mesh.tree = TriangleTree(mesh.view(moved));
+  // Moved twice between two probes: the way still begins where the last probe saw it.
+  if (mesh.positions_before.empty()) mesh.positions_before = std::move(mesh.positions);
+  mesh.positions = std::move(moved);
+}
+
+void ContactProbe::move_shapes(std::span<const Capsule> shapes) {
+  if (state_->mesh) throw Error("move_shapes: expected a probe of capsules, this one has a mesh");
+  if (shapes.size() != state_->shapes.size())
+    throw Error("move_shapes: expected " + std::to_string(state_->shapes.size()) + " capsules, got " +
+                std::to_string(shapes.size()));
+  validate(shapes);
+  state_->shapes.assign(shapes.begin(), shapes.end());
+}
+
+ContactSample ContactProbe::probe(std::span<const double> cloth_positions) {
+  State& state = *state_;
+  if (cloth_positions.size() != 3 * state.areas.size())
+    throw Error("contact probe: expected " + std::to_string(state.areas.size()) + " vertices, got " +
+                std::to_string(cloth_positions.size() / 3));
+  ContactSample sample = kUnknown;
+  if (all_finite(cloth_positions)) {
+    const TriangleMeshView cloth{cloth_positions, state.triangles};
+    state.mesh ? state.probe_mesh(cloth, sample) : state.probe_shapes(cloth, sample);
+  } else {
+    state.history_lost = true;
+  }
+  if (state.mesh) state.mesh->positions_before.clear();
+  return sample;
+}
+
+void ContactProbe::reset() {
+  state_->history = TunnelHistory(state_->areas.size());
+  state_->cloth_before.clear();
+  state_->history_lost = false;
+}
+
+std::span<const int> ContactProbe::crossing_counts() const {
+  return state_->mesh ? state_->history.counts() : std::span<const int>();
+}
+
+bool ContactProbe::has_inside() const { return !state_->mesh || state_->mesh->has_inside; }
+
+}  // namespace clothbench::contact

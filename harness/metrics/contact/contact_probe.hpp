@@ -1,0 +1,72 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "metrics/contact/shapes.hpp"
+#include "metrics/contact/triangle_mesh.hpp"
+
+namespace clothbench::contact {
+
+/// One frame's figures. All are NaN if the cloth isn't finite. `depth` and `area` are NaN for an open object, which
+/// has no inside.
+struct ContactSample {
+  double contour_length_m;       ///< of the curve in which cloth and object cross
+  double pairs;                  ///< (cloth triangle, object triangle or capsule) that meet
+  double cloth_fraction;         ///< cloth triangles in a pair, of all
+  double tunnelled_fraction;     ///< rest area of the vertices on the other side than they began, of all
+  double tunnelled_depth_max_m;  ///< greatest distance of such a vertex from the object; 0 if there is none
+  double depth_max_m;            ///< over all sample points
+  double depth_vertex_max_m;     ///< over the vertices alone
+  double depth_p99_m;            ///< 99 % of the penetrating area is no deeper
+  double depth_mean_m;           ///< over the penetrating area
+  double area_m2;                ///< penetrating area
+  double area_fraction;          ///< of the cloth's area as it lies
+};
+
+/// Whether a mesh has an inside.
+enum class Solid {
+  Auto,    ///< if no edge is open
+  Nearly,  ///< yes, though it has holes (a hand open at the wrist): decided by the generalised winding number
+  No       ///< no: depth and area are NaN
+};
+
+/// Watches one cloth against one object, frame after frame.
+///
+/// Crossings are counted from one probe to the next, so the sequence matters: it starts at the first probe after the
+/// construction or a reset, where nothing has tunnelled. After a cloth that wasn't finite its history is unknown, and
+/// the tunnelled fraction is NaN until a reset. For capsules, which are convex and closed, no history is needed: the
+/// tunnelled vertices are those inside.
+class ContactProbe {
+ public:
+  /// The cloth's rest positions give each vertex its share of area. Copies all it needs.
+  /// Throws Error on bad indices, numbers that are not finite, or a cloth without area.
+  ContactProbe(const TriangleMeshView& cloth_at_rest, const TriangleMeshView& object, Solid solid = Solid::Auto);
+  /// As above; radii must be positive. `resolution_m` as in shapes_contact, by default default_resolution_m.
+  ContactProbe(const TriangleMeshView& cloth_at_rest, std::span<const Capsule> shapes, double resolution_m = 0);
+  ~ContactProbe();
+  ContactProbe(ContactProbe&&) noexcept;
+  ContactProbe& operator=(ContactProbe&&) noexcept;
+
+  /// Where the object is at the next probe: its vertices move in straight lines from where they were at the last one.
+  /// Throws Error on another number of vertices (capsules), or numbers that are not finite.
+  void move_object(std::span<const double> positions);
+  void move_shapes(std::span<const Capsule> shapes);
+
+  /// Positions xyz interleaved, as many as at rest (else Error).
+  ContactSample probe(std::span<const double> cloth_positions);
+
+  /// Forgets the history.
+  void reset();
+
+  /// Signed crossing count of each vertex; empty for capsules.
+  std::span<const int> crossing_counts() const;
+  /// Whether depth is defined.
+  bool has_inside() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace clothbench::contact

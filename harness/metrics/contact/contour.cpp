@@ -1,0 +1,64 @@
+#include "metrics/contact/contour.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include <algorithm>
+
+namespace clothbench::contact {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+Kernel::Triangle_3 to_cgal(const Simplex<3>& v) {
+  const auto point = [](const Point<3>& p) { return Kernel::Point_3(p[0], p[1], p[2]); };
+  return {point(v[0]), point(v[1]), point(v[2])};
+}
+
+/// Where the segment meets the plane of the triangle, known to lie between p and q.
+Point<3> point_of_crossing(const Point<3>& p, const Point<3>& q, const Simplex<3>& v) {
+  const Point<3> normal = (v[1] - v[0]).cross(v[2] - v[0]);
+  const double height_p = std::abs(normal.dot(p - v[0])), height_q = std::abs(normal.dot(q - v[0]));
+  // Both heights are noise if their sum is: any point between will do then.
+  const double share = height_p + height_q > 0 ? height_p / (height_p + height_q) : 0.5;
+  return p + share * (q - p);
+}
+
+/// Two triangles in general position share nothing, or a segment whose ends are two crossings of an edge of one with
+/// the other.
+double length_of_intersection(const Simplex<3>& cloth, const Simplex<3>& object) {
+  std::array<Point<3>, 6> ends;
+  int count = 0;
+  const auto collect = [&](const Simplex<3>& edges, const Simplex<3>& face, int shift) {
+    for (int i = 0; i < 3; ++i) {
+      const Point<3>&p = edges[i], &q = edges[(i + 1) % 3];
+      if (crossing<3>(p, q, face, shift) != 0) ends[count++] = point_of_crossing(p, q, face);
+    }
+  };
+  collect(cloth, object, 1);
+  // The cloth moved one way is the object moved the other.
+  collect(object, cloth, -1);
+  return count == 2 ? (ends[1] - ends[0]).norm() : 0;
+}
+
+}  // namespace
+
+Contour contour(const TriangleMeshView& cloth, const TriangleTree& object) {
+  Contour result;
+  for (std::size_t t = 0; t < cloth.triangles.size(); ++t) {
+    const Simplex<3> triangle = cloth.triangle(t);
+    const Box box = Box(triangle[0]).extend(triangle[1]).extend(triangle[2]);
+    if (!box.intersects(object.tree().box()) || is_degenerate(triangle)) continue;
+    const Kernel::Triangle_3 exact = to_cgal(triangle);
+    const long pairs_before = result.pairs;
+    object.tree().for_each_overlapping(box, [&](int other) {
+      const Simplex<3>& facet = object.triangles()[other];
+      if (!CGAL::do_intersect(exact, to_cgal(facet))) return;
+      ++result.pairs;
+      result.length_m += length_of_intersection(triangle, facet);
+    });
+    if (result.pairs > pairs_before) ++result.cloth_triangles;
+  }
+  return result;
+}
+
+}  // namespace clothbench::contact

@@ -1,0 +1,132 @@
+#include "metrics/contact/predicates.hpp"
+
+#include <CGAL/MP_Float.h>
+
+#include <cmath>
+#include <utility>
+
+namespace clothbench::contact {
+namespace {
+
+/// Expansion along the first row. With kPermanent all terms are added: given |entries|, the sum of all magnitudes.
+template <class T, int N, bool kPermanent = false>
+T expand(const std::array<std::array<T, N>, N>& m) {
+  if constexpr (N == 1) {
+    return m[0][0];
+  } else {
+    T sum = T(0);
+    for (int column = 0; column < N; ++column) {
+      std::array<std::array<T, N - 1>, N - 1> minor;
+      for (int i = 1; i < N; ++i)
+        for (int j = 0, k = 0; j < N; ++j)
+          if (j != column) minor[i - 1][k++] = m[i][j];
+      const T term = m[0][column] * expand<T, N - 1, kPermanent>(minor);
+      sum = kPermanent || column % 2 == 0 ? sum + term : sum - term;
+    }
+    return sum;
+  }
+}
+
+template <int N>
+int exact_sign(const std::array<Point<N>, N>& head, const std::array<Point<N>, N>& tail) {
+  std::array<std::array<CGAL::MP_Float, N>, N> m;
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j) m[i][j] = CGAL::MP_Float(head[i][j]) - CGAL::MP_Float(tail[i][j]);
+  return static_cast<int>(CGAL::sign(expand<CGAL::MP_Float, N>(m)));
+}
+
+/// Sign of the determinant with its last row moved by shift * (e, e^2, e^3, 0): the first cofactor of that row that
+/// isn't zero decides.
+template <int N>
+int perturbed_sign(const std::array<Point<N>, N>& head, const std::array<Point<N>, N>& tail, int shift) {
+  if (const int sign = sign_of_determinant<N>(head, tail)) return sign;
+  for (int column = 0; column < 3; ++column) {
+    std::array<Point<N - 1>, N - 1> minor_head, minor_tail;
+    for (int i = 0; i < N - 1; ++i)
+      for (int j = 0, k = 0; j < N; ++j)
+        if (j != column) {
+          minor_head[i][k] = head[i][j];
+          minor_tail[i][k++] = tail[i][j];
+        }
+    if (const int sign = sign_of_determinant<N - 1>(minor_head, minor_tail))
+      return ((N - 1 + column) % 2 == 0 ? sign : -sign) * shift;
+  }
+  return 0;
+}
+
+template <int N>
+int side(const Simplex<N>& v, const Point<N>& p, int shift) {
+  std::array<Point<N>, N> head, tail;
+  for (int i = 0; i < N - 1; ++i) head[i] = v[i + 1];
+  head[N - 1] = p;
+  tail.fill(v[0]);
+  return perturbed_sign<N>(head, tail, shift);
+}
+
+}  // namespace
+
+template <int N>
+int sign_of_determinant(const std::array<Point<N>, N>& head, const std::array<Point<N>, N>& tail) {
+  std::array<std::array<double, N>, N> m, magnitude;
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j) {
+      m[i][j] = head[i][j] - tail[i][j];
+      magnitude[i][j] = std::abs(m[i][j]);
+    }
+  const double determinant = expand<double, N>(m);
+  const double bound = expand<double, N, true>(magnitude);
+  // A term is rounded at most 4 (differences) + 3 (products) + 6 (sums) times for N = 4: 13 * 2^-53 < 2^-48. The
+  // absolute bound keeps what underflow can lose out of the decision; an overflow fails the comparison as NaN does.
+  constexpr double kRelative = 0x1p-48, kLeast = 0x1p-900;
+  if (std::abs(determinant) > kRelative * bound && bound > kLeast && std::isfinite(bound))
+    return determinant > 0 ? 1 : -1;
+  // No term without a factor that is exactly 0: points that share a coordinate, the common tie.
+  for (auto& row : magnitude)
+    for (double& x : row) x = x == 0 ? 0 : 1;
+  if (expand<double, N, true>(magnitude) == 0) return 0;
+  return exact_sign<N>(head, tail);
+}
+
+template <int N>
+int crossing(const Point<N>& p, const Point<N>& q, const Simplex<N>& simplex, int shift) {
+  if (p == q) return 0;
+  const int side_p = side<N>(simplex, p, shift);
+  const int side_q = side<N>(simplex, q, shift);
+  if (side_p * side_q >= 0) return 0;
+  // Seen along the segment, p lies in the simplex if putting it in the place of any corner keeps the orientation:
+  // det(q - p, w1 - w0, ..., p - w0) for w = the corners with one of them exchanged for the last.
+  int first = 0;
+  for (int i = N - 1; i >= 0; --i) {
+    Simplex<N> w = simplex;
+    std::swap(w[i], w[N - 1]);
+    std::array<Point<N>, N> head, tail;
+    tail.fill(w[0]);
+    head[0] = q;
+    tail[0] = p;
+    for (int k = 1; k < N - 1; ++k) head[k] = w[k];
+    head[N - 1] = p;
+    // For i = 0 the exchange puts the last corner first.
+    const int sign = perturbed_sign<N>(head, tail, shift) * (i == N - 1 ? 1 : -1);
+    if (sign == 0) return 0;
+    if (i == N - 1) first = sign;
+    if (sign != first) return 0;
+  }
+  return side_q;
+}
+
+bool is_degenerate(const Simplex<3>& triangle) {
+  for (int drop = 0; drop < 3; ++drop) {
+    const int j = (drop + 1) % 3, k = (drop + 2) % 3;
+    const auto at = [&](int corner) { return Point<2>(triangle[corner][j], triangle[corner][k]); };
+    if (sign_of_determinant<2>({at(1), at(2)}, {at(0), at(0)}) != 0) return false;
+  }
+  return true;
+}
+
+template int sign_of_determinant<2>(const std::array<Point<2>, 2>&, const std::array<Point<2>, 2>&);
+template int sign_of_determinant<3>(const std::array<Point<3>, 3>&, const std::array<Point<3>, 3>&);
+template int sign_of_determinant<4>(const std::array<Point<4>, 4>&, const std::array<Point<4>, 4>&);
+template int crossing<3>(const Point<3>&, const Point<3>&, const Simplex<3>&, int);
+template int crossing<4>(const Point<4>&, const Point<4>&, const Simplex<4>&, int);
+
+}  // namespace clothbench::contact

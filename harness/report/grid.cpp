@@ -1,0 +1,138 @@
+#include "report/grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace clothbench {
+namespace {
+
+/// Where one cell stands, and the scene without what tables vary.
+struct Parsed {
+  Resolution resolution;
+  std::string sides, name, family;
+  int paper_table = 0;
+};
+
+Parsed parse(const CellRecord& c) {
+  Parsed p;
+  p.name = c.header.scene;
+  nlohmann::json s = nlohmann::json::parse(c.header.scenario_json, nullptr, false);
+  if (!s.is_object()) {
+    p.family = "\n" + p.name;  // no scene's JSON starts with a line break
+    return p;
+  }
+  if (s.contains("name") && s["name"].is_string()) p.name = s["name"].get<std::string>();
+  const nlohmann::json table = s.value(nlohmann::json::json_pointer("/paper/table"), nlohmann::json());
+  if (table.is_number_integer()) p.paper_table = table;
+  if (nlohmann::json& cloth = s["cloth"]; cloth.is_object()) {
+    const nlohmann::json grid = cloth.value("grid", nlohmann::json());
+    if (grid.is_array() && grid.size() == 2 && grid[0].is_number_integer() && grid[1].is_number_integer()) {
+      p.resolution.grid[0] = grid[0];
+      p.resolution.grid[1] = grid[1];
+    }
+    if (cloth.contains("sides") && cloth["sides"].is_string()) p.sides = cloth["sides"].get<std::string>();
+    cloth.erase("grid");
+    cloth.erase("sides");
+  }
+  if (p.resolution.grid[0] == 0) p.resolution.vertices = c.header.vertices;
+  p.family = s.dump();
+  return p;
+}
+
+int rank(const std::string& sides) { return sides == "single" ? 0 : sides == "double-duplicated" ? 1 : 2; }
+
+}  // namespace
+
+double summary_value(const CellRecord& c, const std::string& name) {
+  const auto at = c.summary.find(name);
+  return at == c.summary.end() ? kMissing : at->second;
+}
+
+std::string Resolution::label() const {
+  if (grid[0] > 0) return grid[0] == grid[1] ? fmt::format("{}²", grid[0]) : fmt::format("{}×{}", grid[0], grid[1]);
+  return vertices > 0 ? fmt::format("{} vertices", vertices) : "–";
+}
+
+std::string Series::label() const {
+  std::string out = setting == "default" || setting.empty() ? solver : solver + " " + setting;
+  return repeat > 1 ? fmt::format("{} ({})", out, repeat) : out;
+}
+
+std::vector<Resolution> Family::resolutions() const {
+  std::set<Resolution> all;
+  for (const PlacedCell& p : cells) all.insert(p.resolution);
+  std::vector<Resolution> out(all.begin(), all.end());
+  std::stable_sort(out.begin(), out.end(), [](const Resolution& a, const Resolution& b) {
+    const auto size = [](const Resolution& r) { return static_cast<double>(r.grid[0]) * r.grid[1] + r.vertices; };
+    return size(a) < size(b);
+  });
+  return out;
+}
+
+std::vector<Series> Family::series() const {
+  std::set<Series> all;
+  for (const PlacedCell& p : cells) all.insert(p.series);
+  std::vector<Series> out(all.begin(), all.end());
+  std::stable_sort(out.begin(), out.end(), [](const Series& a, const Series& b) {
+    const auto order = [](const Series& s) { return std::tuple(s.solver, s.setting, s.repeat, rank(s.sides)); };
+    return order(a) < order(b);
+  });
+  return out;
+}
+
+const CellRecord* Family::find(const Series& s, const Resolution& r) const {
+  for (const PlacedCell& p : cells)
+    if (p.series == s && p.resolution == r) return p.cell;
+  return nullptr;
+}
+
+Table Family::table(const std::string& title, const std::string& note,
+                    const std::function<std::string(const CellRecord&)>& text) const {
+  const std::vector<Resolution> columns = resolutions();
+  Table t{title, note, {{"solver", "sides"}}};
+  for (const Resolution& r : columns) t.rows[0].push_back(r.label());
+  for (const Series& s : series()) {
+    std::vector<std::string> row = {s.label(), s.sides.empty() ? "–" : s.sides};
+    for (const Resolution& r : columns) {
+      const CellRecord* c = find(s, r);
+      if (c == nullptr)
+        row.push_back("–");
+      else if (c->outcome.status == "ok")
+        row.push_back(text(*c));
+      else if (c->outcome.failed_frame < 0)
+        row.push_back(c->outcome.status);
+      else
+        row.push_back(fmt::format("{} at {}", c->outcome.status, c->outcome.failed_frame));
+    }
+    t.rows.push_back(std::move(row));
+  }
+  return t;
+}
+
+std::vector<Family> families(const std::vector<CellRecord>& cells) {
+  std::vector<Family> out;
+  std::map<std::string, std::size_t> index;
+  std::map<std::string, int> names;
+  for (const CellRecord& c : cells) {
+    const Parsed p = parse(c);
+    const auto [at, is_new] = index.emplace(p.family, out.size());
+    if (is_new) {
+      Family f;
+      const int same_name = ++names[p.name];
+      f.name = same_name > 1 ? fmt::format("{} ({})", p.name, same_name) : p.name;
+      f.paper_table = p.paper_table;
+      out.push_back(std::move(f));
+    }
+    Family& f = out[at->second];
+    PlacedCell placed{&c, p.resolution, {c.header.solver, c.header.setting, p.sides}};
+    while (f.find(placed.series, placed.resolution) != nullptr) ++placed.series.repeat;
+    f.cells.push_back(std::move(placed));
+  }
+  return out;
+}
+
+}  // namespace clothbench

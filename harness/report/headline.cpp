@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "report/report.hpp"
+
+namespace clothbench {
+namespace {
+
+constexpr double kDisplayHz = 72;
+constexpr double kAllowedOverhead = 0.01;  // of a displayed frame
+
+std::string text(const nlohmann::json& e, const char* key) {
+  if (!e.is_object() || !e.contains(key) || !e[key].is_string() || e[key].get<std::string>().empty()) return "–";
+  return e[key].get<std::string>();
+}
+
+bool flag(const nlohmann::json& e, const char* key) {
+  return e.is_object() && e.contains(key) && e[key].is_boolean() && e[key].get<bool>();
+}
+
+/// What cells of one run share whatever the solver.
+std::string host_line(const nlohmann::json& e) {
+  return fmt::format("CPU {} · protocol {} · commit {}{} · {}", text(e, "cpu"), text(e, "protocol"),
+                     text(e, "git_commit").substr(0, 12), flag(e, "git_dirty") ? " (with local changes)" : "",
+                     text(e, "build_type"));
+}
+
+struct Span {
+  std::string first, last;
+  void add(const std::string& t) {
+    if (t == "–") return;
+    if (first.empty() || t < first) first = t;
+    if (last.empty() || t > last) last = t;
+  }
+  std::string text() const { return first.empty() ? "–" : first == last ? first : first + " to " + last; }
+};
+
+}  // namespace
+
+std::string overhead_line(const std::vector<CellRecord>& cells) {
+  const CellRecord* most = nullptr;
+  for (const CellRecord& c : cells) {
+    if (c.header.solver != "ballistic" || c.outcome.status != "ok") continue;
+    const double t = summary_value(c, "frame_wall_median_s");
+    if (std::isfinite(t) && (most == nullptr || t > summary_value(*most, "frame_wall_median_s"))) most = &c;
+  }
+  if (most == nullptr) return "";
+  const double t = summary_value(*most, "frame_wall_median_s"), share = t * kDisplayHz;
+  return fmt::format(
+      "Harness overhead: at most {:.2g} % of a 72 Hz frame (13.89 ms), {} the 1 % allowed: {:.3g} µs a frame of "
+      "{} with ballistic, whose particles only fall.\n",
+      100 * share, share < kAllowedOverhead ? "below" : "**above**", 1e6 * t, most->header.scene);
+}
+
+std::string window_note(const std::vector<CellRecord>& cells) {
+  double least = kMissing, most = kMissing;
+  for (const CellRecord& c : cells) {
+    const double w = summary_value(c, "bandwidth_window_s");
+    if (!std::isfinite(summary_value(c, "bandwidth_read_peak_B_per_s")) || !std::isfinite(w)) continue;
+    if (!(least <= w)) least = w;
+    if (!(most >= w)) most = w;
+  }
+  if (!std::isfinite(most)) return "";
+  return fmt::format("windows of 5 s, or of the whole trial where it is shorter (here {:.2g} to {:.2g}\u00a0s)", least,
+                     most);
+}
+
+std::string headline(const std::vector<CellRecord>& cells, Format format) {
+  std::vector<std::string> software, lines, hosts;
+  std::map<std::string, Span> created;
+  std::map<std::string, bool> on_gpu;  // has the host a line with a GPU?
+  const auto add = [](std::vector<std::string>& v, const std::string& s) {
+    if (std::find(v.begin(), v.end(), s) == v.end()) v.push_back(s);
+  };
+  for (const CellRecord& c : cells) {
+    const nlohmann::json& e = c.header.environment;
+    if (!e.is_object() || e.empty()) continue;
+    const std::string host = host_line(e);
+    created[host].add(text(e, "created"));
+    add(hosts, host);
+    if (text(e, "gpu") == "CPU" || text(e, "gpu") == "–") continue;
+    if (flag(e, "gpu_is_software")) add(software, text(e, "gpu"));
+    add(lines, fmt::format("GPU {} · driver {} · {}", text(e, "gpu"), text(e, "driver"), host));
+    on_gpu[host] = true;
+  }
+  for (const std::string& host : hosts)
+    if (!on_gpu[host]) lines.push_back("no GPU · " + host);
+  std::string out;
+  for (const std::string& device : software)
+    out += fmt::format("**Software Vulkan device ({}): for correctness, not for speed claims.**\n\n", device);
+  for (const std::string& line : lines) {
+    std::string host = line;
+    for (const auto& [key, span] : created)
+      if (line.ends_with(key)) host = line + " · " + span.text();
+    out += host + "\n\n";
+  }
+  if (lines.empty()) out += "No cell says where it ran.\n\n";
+  out += overhead_line(cells);
+  if (format == Format::Markdown) return out;
+  for (std::size_t at; (at = out.find("**")) != std::string::npos;) out.erase(at, 2);
+  std::string console;
+  for (std::size_t at = 0, end; at < out.size(); at = end + 1) {
+    end = out.find('\n', at);
+    if (end > at) console += wrapped(out.substr(at, end - at), 0, kConsoleColumns);
+  }
+  return console;
+}
+
+}  // namespace clothbench

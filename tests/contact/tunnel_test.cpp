@@ -1,0 +1,215 @@
+#include "metrics/contact/tunnel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "meshes.hpp"
+#include "metrics/contact/contact_probe.hpp"
+
+namespace clothbench::contact {
+namespace {
+
+/// Vertical cloth of side 1 in the plane z = `z`, its middle at height `y`.
+Mesh curtain(int cells, double y, double z) { return sheet(cells, cells, {-0.5, y - 0.5, z}, {1, 0, 0}, {0, 1, 0}); }
+
+// An even number of cells puts a row of vertices into the plane of the patch, and an odd one puts none; z = 0 runs
+// along edges of an even patch.
+TEST(Tunnel, CurtainLoweredHalfWayThroughAPatch) {
+  for (const int cells : {31, 32, 33})
+    for (const int patch_cells : {1, 2, 5, 8})
+      for (const double z : {0.0, 0.013}) {
+        const Mesh object = patch(patch_cells);
+        ContactProbe probe(curtain(cells, 0, z).view(), object.view());
+        const ContactSample above = probe.probe(curtain(cells, 0.7, z).positions);
+        EXPECT_EQ(above.contour_length_m, 0);
+        EXPECT_EQ(above.pairs, 0);
+        EXPECT_EQ(above.tunnelled_fraction, 0);
+        probe.probe(curtain(cells, 0.2, z).positions);
+        const Mesh half = curtain(cells, 0, z);
+        const ContactSample s = probe.probe(half.positions);
+        EXPECT_NEAR(s.contour_length_m, 1, 1e-12) << cells << ' ' << patch_cells << ' ' << z;
+        EXPECT_GT(s.pairs, 0);
+        EXPECT_GT(s.cloth_fraction, 0);
+        EXPECT_TRUE(std::isnan(s.depth_max_m) && std::isnan(s.area_m2));  // no inside
+        // Special positions are those of a cloth moved by (e, e^2, e^3): the row in the plane is still above it, and
+        // the last column passes just beside the patch, both with half a cell of area a vertex.
+        const double rows = 0.5 - (cells % 2 == 0 ? 0.5 / cells : 0), columns = 1 - 0.5 / cells;
+        EXPECT_NEAR(s.tunnelled_fraction, rows * columns, 1.0 / (cells * cells));
+        EXPECT_NEAR(s.tunnelled_depth_max_m, 0.5, 1e-12);
+        const ContactSample back = probe.probe(curtain(cells, 0.7, z).positions);
+        EXPECT_EQ(back.contour_length_m, 0);
+        EXPECT_EQ(back.tunnelled_fraction, 0);
+        EXPECT_EQ(back.tunnelled_depth_max_m, 0);
+      }
+}
+
+// A whole number of equal halves: no vertex at the border of the patch, none in its plane.
+TEST(Tunnel, HalfIsExactlyHalf) {
+  const auto narrow = [](double y) { return sheet(31, 31, {-0.4, y - 0.5, 0.013}, {0.8, 0, 0}, {0, 1, 0}); };
+  ContactProbe probe(narrow(0).view(), patch(5).view());
+  probe.probe(narrow(0.7).positions);
+  const ContactSample s = probe.probe(narrow(0).positions);
+  EXPECT_NEAR(s.tunnelled_fraction, 0.5, 1e-12);
+  EXPECT_NEAR(s.contour_length_m, 0.8, 1e-12);
+  EXPECT_NEAR(s.tunnelled_depth_max_m, 0.5, 1e-12);
+  for (const int n : probe.crossing_counts()) EXPECT_TRUE(n == 0 || n == -1) << n;  // down, against the normal
+}
+
+TEST(Tunnel, LoweredBesideThePatch) {
+  ContactProbe probe(curtain(32, 0, 0.6).view(), patch(8).view());
+  for (const double y : {0.7, 0.3, 0.0, -0.7}) {
+    const ContactSample s = probe.probe(curtain(32, y, 0.6).positions);
+    EXPECT_EQ(s.contour_length_m, 0);
+    EXPECT_EQ(s.tunnelled_fraction, 0);
+  }
+}
+
+TEST(Tunnel, RoundTheBorderAndBackCountsNothingButThroughAndRoundDoes) {
+  const Mesh object = patch(8), cloth = sheet(4, 4, {-0.1, 0, -0.1}, {0.2, 0, 0}, {0, 0, 0.2});
+  const auto at = [&](double x, double y) { return cloth.moved({x, y, 0}).positions; };
+  ContactProbe probe(cloth.view(), object.view());
+  for (const auto& [x, y] : {std::pair{0.01, 0.2}, {0.9, 0.2}, {0.9, -0.2}, {0.01, -0.2}})
+    EXPECT_EQ(probe.probe(at(x, y)).tunnelled_fraction, 0);
+  EXPECT_NEAR(probe.probe(at(0.01, 0.2)).tunnelled_fraction, 1, 1e-12);  // up through it
+  for (const int n : probe.crossing_counts()) EXPECT_EQ(n, 1);
+  probe.probe(at(0.01, -0.2));
+  probe.probe(at(0.01, -0.3));
+  EXPECT_EQ(probe.probe(at(0.9, -0.3)).tunnelled_fraction, 0);
+  probe.reset();
+  EXPECT_EQ(probe.probe(at(0.01, -0.3)).tunnelled_fraction, 0);  // a start, not a path
+}
+
+// All on a coarse lattice: paths through vertices and edges, along triangles, ending on them.
+TEST(Tunnel, LatticePathsThroughAClosedMeshKeepTheBalance) {
+  Mesh cube;
+  for (int i = 0; i < 8; ++i) cube.add(Point<3>(i & 1 ? 2 : -2, i & 2 ? 2 : -2, i & 4 ? 2 : -2));
+  cube.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  for (const Mesh& object : {cube, unshared(cube)}) {
+    const TriangleTree tree(object.view());
+    ASSERT_TRUE(is_closed(object.view(), welded_vertices(object.view())));
+    std::mt19937 random(7);
+    std::uniform_int_distribution<int> lattice(-3, 3);
+    const auto point = [&] { return Point<3>(lattice(random), lattice(random), lattice(random)); };
+    // Far outside, so that its side is beyond doubt.
+    const Point<3> out(9, 5, -7);
+    int inside_seen = 0;
+    for (int trial = 0; trial < 3000; ++trial) {
+      const Point<3> a = point(), b = point();
+      const int out_a = signed_crossings(out, a, tree), a_b = signed_crossings(a, b, tree),
+                b_out = signed_crossings(b, out, tree);
+      ASSERT_EQ(out_a + a_b + b_out, 0) << a.transpose() << " -> " << b.transpose();
+      ASSERT_EQ(a_b, -signed_crossings(b, a, tree));
+      // Moved a little along +x, then +y, then +z, a point of the lattice is inside [-2, 2).
+      const bool inside = (a.array() >= -2).all() && (a.array() < 2).all();
+      ASSERT_EQ(out_a, inside ? -1 : 0) << a.transpose();
+      inside_seen += inside;
+    }
+    EXPECT_GT(inside_seen, 500);
+  }
+}
+
+// Motion is relative: a mesh that moves one way is a cloth that moves the other.
+TEST(Tunnel, MovingMeshAgainstRestingCloth) {
+  const Mesh cloth = sheet(16, 16, {-0.5, -0.5, 0.0}, {1, 0, 0}, {0, 1, 0}), ball = bumpy_ball(12, 0.2);
+  ContactProbe probe(cloth.view(), ball.moved({0, 0, 0.5}).view());
+  probe.probe(cloth.positions);
+  ContactProbe relative(cloth.view(), ball.view());
+  relative.probe(cloth.moved({0, 0, -0.5}).positions);
+  for (const double z : {0.31, 0.1, 0.0, -0.15, -0.5, 0.05, 0.6}) {
+    probe.move_object(ball.moved({0, 0, z}).positions);
+    const ContactSample s = probe.probe(cloth.positions);
+    const ContactSample r = relative.probe(cloth.moved({0, 0, -z}).positions);
+    EXPECT_EQ(s.tunnelled_fraction, r.tunnelled_fraction) << z;
+    EXPECT_TRUE(
+        std::equal(probe.crossing_counts().begin(), probe.crossing_counts().end(), relative.crossing_counts().begin()));
+    // A closed mesh: to have tunnelled is to be inside now.
+    EXPECT_EQ(s.tunnelled_fraction > 0, s.depth_vertex_max_m > 0) << z;
+    EXPECT_NEAR(s.tunnelled_depth_max_m, s.depth_vertex_max_m, 1e-12);
+    if (std::abs(z) > 0.3) {
+      EXPECT_EQ(s.tunnelled_fraction, 0);
+    }
+  }
+}
+
+// The way begins where the last probe saw the object, whatever it was told in between.
+TEST(Tunnel, MovedTwiceBetweenProbes) {
+  const Mesh object = patch(3), cloth = sheet(4, 4, {-0.1, 0, -0.1}, {0, 0, 0.2}, {0.2, 0, 0});
+  ContactProbe probe(cloth.view(), object.moved({0, 0.2, 0}).view());
+  probe.probe(cloth.positions);
+  probe.move_object(object.moved({2, -0.2, 0}).positions);
+  probe.move_object(object.moved({0, -0.2, 0}).positions);
+  EXPECT_NEAR(probe.probe(cloth.positions).tunnelled_fraction, 1, 1e-12);
+  // And round about it takes two probes.
+  probe.move_object(object.moved({2, -0.2, 0}).positions);
+  EXPECT_NEAR(probe.probe(cloth.positions).tunnelled_fraction, 1, 1e-12);
+  probe.move_object(object.moved({0, 0.2, 0}).positions);
+  EXPECT_NEAR(probe.probe(cloth.positions).tunnelled_fraction, 1, 1e-12);
+}
+
+// Turning, shrinking, jerking about: whatever a closed mesh does in between, those inside at the end are those that
+// crossed once more inwards than outwards.
+TEST(Tunnel, ClosedMeshThatTurnsAndDeforms) {
+  const Mesh cloth = sheet(20, 20, {-0.5, -0.5, 0.01}, {1, 0, 0}, {0, 1, 0});
+  const Mesh ball = octasphere(8, 0.3);
+  for (const Mesh& object : {ball, unshared(ball)}) {
+    ContactProbe probe(cloth.view(), object.moved({0, 0, 1}).view());
+    probe.probe(cloth.positions);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    int inside_seen = 0;
+    for (int step = 0; step < 12; ++step) {
+      const Point<3> centre(0.3 * unit(random), 0.3 * unit(random), 0.4 * unit(random));
+      const double angle = 3 * unit(random), stretch = 1 + 0.4 * unit(random);
+      const Mesh moved = object.mapped([&](const Point<3>& p) {
+        return Point<3>(centre + Eigen::AngleAxisd(angle, Point<3>(1, 1, 0).normalized()) *
+                                     p.cwiseProduct(Point<3>(stretch, 1, 1)));
+      });
+      probe.move_object(moved.positions);
+      probe.probe(cloth.positions);
+      const TriangleTree tree(moved.view());
+      for (std::size_t i = 0; i < probe.crossing_counts().size(); ++i) {
+        const bool inside = winding_number(cloth.view().vertex(i), tree) > 0.5;
+        ASSERT_EQ(probe.crossing_counts()[i], inside ? -1 : 0) << step << ' ' << i;
+        inside_seen += inside;
+      }
+    }
+    EXPECT_GT(inside_seen, 100);
+  }
+}
+
+// Space-time on a lattice: vertices of the mesh move through the cloth's vertices and land on them.
+TEST(Tunnel, MovingLatticeMeshKeepsTheBalance) {
+  std::mt19937 random(11);
+  std::uniform_int_distribution<int> lattice(-3, 3);
+  const auto point = [&] { return Point<3>(lattice(random), lattice(random), lattice(random)); };
+  const Mesh octahedron = octasphere(1, 2).mapped([](const Point<3>& p) { return Point<3>(p.array().round()); });
+  const auto welded = welded_vertices(octahedron.view());
+  for (int trial = 0; trial < 800; ++trial) {
+    const Mesh from = octahedron.moved(point()), to = octahedron.moved(point());
+    const SweptMesh swept(from.view(), to.view(), welded);
+    const TriangleTree before(from.view()), after(to.view());
+    const Point<3> p = point(), q = point(), out(20, 9, 7);
+    const int inside_before = -signed_crossings(out, p, before), inside_after = -signed_crossings(out, q, after);
+    // The count goes with the normals, outwards.
+    ASSERT_EQ(-swept.signed_crossings(p, q), inside_after - inside_before) << trial;
+  }
+}
+
+TEST(Tunnel, ShapesCountTheVerticesInside) {
+  const Mesh cloth = sheet(10, 10, {-0.5, 0, -0.5}, {0, 0, 1}, {1, 0, 0});
+  const Capsule ball = sphere({0, 0, 0}, 0.25), away = sphere({0, 1, 0}, 0.25);
+  ContactProbe probe(cloth.view(), {&ball, 1});
+  // 21 points of a lattice of step 0.1 lie within 0.25 of a lattice point, each with 1/100 of the area.
+  EXPECT_NEAR(probe.probe(cloth.positions).tunnelled_fraction, 0.21, 1e-12);
+  probe.move_shapes({&away, 1});
+  const ContactSample s = probe.probe(cloth.positions);
+  EXPECT_EQ(s.tunnelled_fraction, 0);
+  EXPECT_EQ(s.contour_length_m, 0);
+  EXPECT_EQ(s.depth_max_m, 0);
+  EXPECT_EQ(s.area_m2, 0);
+}
+
+}  // namespace
+}  // namespace clothbench::contact

@@ -1,0 +1,87 @@
+// CSV and JSON: every value, exactly.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fake_cells.hpp"
+
+namespace clothbench {
+namespace {
+
+std::string field(const std::vector<std::vector<std::string>>& csv, std::size_t row, const std::string& name) {
+  for (std::size_t k = 0; k < csv.at(0).size(); ++k)
+    if (csv[0][k] == name) return csv.at(row).at(k);
+  ADD_FAILURE() << "no column " << name;
+  return "";
+}
+
+TEST(Export, CellsCsvReadsBackExactly) {
+  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1.0 / 3),
+                                   fake_cell("bullet-soft", 8, "double", 1e-300, false)};
+  cells.push_back(with_outcome(fake_cell("paper", 8, "single", 1), "diverged", 17, "said \"no\", twice\nand stopped"));
+  const auto csv = parse_csv(cells_csv(cells));
+  ASSERT_EQ(csv.size(), 4u);
+  for (const auto& row : csv) EXPECT_EQ(row.size(), csv[0].size());
+  for (std::size_t k = 0; k < 2; ++k)
+    for (const auto& [name, v] : cells[k].summary) {
+      const std::string text = field(csv, k + 1, name);
+      if (std::isfinite(v))
+        EXPECT_EQ(std::stod(text), v) << name;
+      else
+        EXPECT_EQ(text, "") << name;
+    }
+  EXPECT_EQ(field(csv, 1, "grid_x"), "8");
+  EXPECT_EQ(field(csv, 1, "gpu"), "Fake GPU");
+  EXPECT_EQ(field(csv, 1, "gpu_is_software"), "false");
+  EXPECT_EQ(field(csv, 1, "failed_frame"), "");
+  EXPECT_EQ(field(csv, 3, "failed_frame"), "17");
+  EXPECT_EQ(field(csv, 3, "message"), "said \"no\", twice\nand stopped");
+  EXPECT_EQ(field(csv, 3, "fps_median"), "");
+}
+
+TEST(Export, Table3HasPublishedAndMeasured) {
+  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 0.02),
+                                   with_outcome(fake_cell("xpbd", 16, "single", 1), "unsupported", -1, "")};
+  const auto csv = parse_csv(table3_csv(families(cells)[0], published_table3()));
+  ASSERT_EQ(csv.size(), 1u + 15u + 2u);
+  double sum = 0;
+  for (std::size_t k = 1; k <= 15; ++k) {
+    EXPECT_EQ(field(csv, k, "source"), "published");
+    EXPECT_EQ(field(csv, k, "fps_median"), "");
+    sum += std::stod(field(csv, k, "fps_at_72"));
+  }
+  EXPECT_EQ(sum, 11 * 72 + 65 + 42 + 40 + 16);
+  EXPECT_EQ(std::stod(field(csv, 16, "fps_median")), 50);
+  EXPECT_EQ(field(csv, 17, "status"), "unsupported");
+
+  const nlohmann::json j = nlohmann::json::parse(table3_json(families(cells)[0], published_table3()).dump());
+  EXPECT_EQ(j.at("published"), published_table3());
+  EXPECT_EQ(j.at("measured").at(0).at("fps_median"), 50);
+  EXPECT_TRUE(j.at("measured").at(1).at("fps_median").is_null());
+}
+
+TEST(Export, CellsJsonHasNullForMissing) {
+  const nlohmann::json j =
+      nlohmann::json::parse(cells_json({fake_cell("bullet-soft", 8, "single", 0.25, false)}).dump());
+  EXPECT_TRUE(j.at(0).at("summary").at("read_B_per_frame").is_null());
+  EXPECT_EQ(j.at(0).at("summary").at("fps_median"), 4);
+  EXPECT_EQ(j.at(0).at("environment").at("cpu"), "Fake CPU");
+}
+
+TEST(Export, WindowNoteSpansTheCellsWithBytes) {
+  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1), fake_cell("xpbd", 16, "single", 1),
+                                   fake_cell("bullet-soft", 16, "single", 1, false)};
+  cells[1].summary["bandwidth_window_s"] = 5;
+  cells[2].summary["bandwidth_window_s"] = 0.001;
+  EXPECT_NE(window_note(cells).find("0.5 to 5"), std::string::npos) << window_note(cells);
+  EXPECT_EQ(window_note({cells[2]}), "");
+}
+
+TEST(Export, WrappedKeepsEveryWord) {
+  const std::string text = "aa bb – cc ddddddddddddddd e";
+  const std::string out = wrapped(text, 2, 9);
+  EXPECT_EQ(out, "  aa bb –\n  cc\n  ddddddddddddddd\n  e\n");
+}
+
+}  // namespace
+}  // namespace clothbench
