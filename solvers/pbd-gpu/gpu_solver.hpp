@@ -35,6 +35,10 @@ class GpuSolver : public ClothSolver {
 
   /// Bytes each stage's instrumented kernels counted since the last call; needs `count_bytes`.
   std::vector<Traffic> counted();
+  /// What is submitted for set-up, a frame and reading back, for the test of the barriers.
+  const vulkan::Program& upload_program() const { return *upload_; }
+  const vulkan::Program& frame_program() const { return *frame_; }
+  const vulkan::Program& download_program() const { return *download_; }
 
  protected:
   using vec4s = std::vector<vec4>;
@@ -56,13 +60,14 @@ class GpuSolver : public ClothSolver {
   void set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m);
 
   int add_stage(const std::string& name, FeatureSet serves);
-  vulkan::Kernel& add_kernel(int stage, const Shader& shader, std::vector<vulkan::Binding> bindings, std::uint32_t push_bytes,
-                             std::vector<std::uint32_t> specialization = {});
+  vulkan::Kernel& add_kernel(int stage, const Shader& shader, std::vector<vulkan::Binding> bindings,
+                             std::uint32_t push_bytes, std::vector<std::uint32_t> specialization = {});
   void leave_out(const std::string& what, const std::string& why) { plan_.left_out.push_back({what, why}); }
 
   template <class Constants>
-  void dispatch(int stage, const vulkan::Kernel& kernel, std::uint64_t items, const Constants& constants, Traffic traffic) {
-    frame_->dispatch(stage, kernel, vulkan::group_count(items, kGroupSize), constants);
+  void dispatch(int stage, const vulkan::Kernel& kernel, std::uint64_t items, const Constants& constants,
+                Traffic traffic) {
+    frame_->dispatch(stage, kernel, vulkan::groups_for(items, kGroupSize), constants);
     plan_.stages[static_cast<std::size_t>(stage)].read_B += traffic.read_B;
     plan_.stages[static_cast<std::size_t>(stage)].write_B += traffic.write_B;
   }
@@ -82,6 +87,7 @@ class GpuSolver : public ClothSolver {
   std::shared_ptr<vulkan::Device> device_;
   const Scene* scene_ = nullptr;
   double dt_s_ = 0;
+  StepStatus ready_ = StepStatus::Ok;  ///< of the last reset
   Plan plan_;
   Vec3 origin_m_{};
   // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.

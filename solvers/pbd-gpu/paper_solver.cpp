@@ -16,7 +16,8 @@ class Paper final : public GpuSolver {
  private:
   void build() override {
     if (native() && !vulkan_device().has_float_atomics())
-      throw Error("solver paper: setting atomics=native: this device has no float atomics (VK_EXT_shader_atomic_float)");
+      throw Error(
+          "solver paper: setting atomics=native: this device has no float atomics (VK_EXT_shader_atomic_float)");
     layers_ = scene().needs.has(Feature::DuplicatedLayer) ? 2 : 1;
     build_particles();
     build_constraints();
@@ -61,7 +62,8 @@ class Paper final : public GpuSolver {
     if (scene().needs.has(Feature::Bend)) kinds.push_back(EdgeKind::SkipOne);
     for (std::uint32_t layer = 0; layer < static_cast<std::uint32_t>(layers_); ++layer)
       for (EdgeKind kind : kinds)
-        for (const Edge& e : edges(scene().cloth, kind)) add(layer * n + e.a, layer * n + e.b, e.rest_m, static_cast<std::uint32_t>(kind));
+        for (const Edge& e : edges(scene().cloth, kind))
+          add(layer * n + e.a, layer * n + e.b, e.rest_m, static_cast<std::uint32_t>(kind));
     if (layers_ == 2)
       for (std::uint32_t i = 0; i < n; ++i) add(i, n + i, 0, 3);
     constraint_count_ = all.size();
@@ -83,16 +85,19 @@ class Paper final : public GpuSolver {
       leave_out("DampVelocities", "the scene has no damping");
     }
     stage_euler_ = add_stage("ApplyExplicitEuler", pins);
-    euler_ = &add_kernel(stage_euler_, shaders::kApplyExplicitEuler, {{x_, Access::Read}, {v_, Access::Read}, {q_, Access::Write}}, push);
-    stage_project_ = add_stage("ProjectConstraintDeltas",
-                               needs & FeatureSet{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::DuplicatedLayer});
-    project_ = &add_kernel(stage_project_, native() ? shaders::kProjectConstraintDeltasNative : shaders::kProjectConstraintDeltas,
+    euler_ = &add_kernel(stage_euler_, shaders::kApplyExplicitEuler,
+                         {{x_, Access::Read}, {v_, Access::Read}, {q_, Access::Write}}, push);
+    stage_project_ = add_stage("ProjectConstraintDeltas", needs & FeatureSet{Feature::Stretch, Feature::Shear,
+                                                                             Feature::Bend, Feature::DuplicatedLayer});
+    project_ = &add_kernel(stage_project_,
+                           native() ? shaders::kProjectConstraintDeltasNative : shaders::kProjectConstraintDeltas,
                            {{c_, Access::Read}, {q_, Access::Read}, {d_, Access::ReadWrite}}, push);
     stage_average_ = add_stage("AverageConstraintDeltas", {});
-    average_ = &add_kernel(stage_average_, shaders::kAverageConstraintDeltas, {{d_, Access::ReadWrite}, {q_, Access::ReadWrite}}, push,
-                           {native() ? 1u : 0u});
+    average_ = &add_kernel(stage_average_, shaders::kAverageConstraintDeltas,
+                           {{d_, Access::ReadWrite}, {q_, Access::ReadWrite}}, push, {native() ? 1u : 0u});
     stage_update_ = add_stage("UpdatePositions", {});
-    update_ = &add_kernel(stage_update_, shaders::kUpdatePositions, {{x_, Access::ReadWrite}, {v_, Access::Write}, {q_, Access::Read}}, push);
+    update_ = &add_kernel(stage_update_, shaders::kUpdatePositions,
+                          {{x_, Access::ReadWrite}, {v_, Access::Write}, {q_, Access::Read}}, push);
     if (settings()["readback"] == "blocking") {
       stage_readback_ = add_stage("Readback", {});
       host_x_ = &add_host_buffer("positions on the host", x_->bytes());
@@ -111,9 +116,19 @@ class Paper final : public GpuSolver {
     c.gravity = {static_cast<float>(g[0]), static_cast<float>(g[1]), static_cast<float>(g[2]), 0};
     c.particles = static_cast<std::uint32_t>(particles());
     c.constraints = static_cast<std::uint32_t>(constraint_count_);
-    c.h = static_cast<float>(dt_s);
+    const int substeps = settings()["substeps"].get<int>();
+    const double h = dt_s / substeps;
+    c.h = static_cast<float>(h);
     c.stiffness = settings()["stiffness"].get<float>();
-    c.keep = static_cast<float>(std::max(0.0, 1 - scene().material.damping_per_s * dt_s));
+    c.keep = static_cast<float>(std::max(0.0, 1 - scene().material.damping_per_s * h));
+    for (int s = 0; s < substeps; ++s) record_step(c);
+    if (stage_readback_ >= 0) {
+      copy(stage_readback_, *x_, *host_x_);
+      copy(stage_readback_, *v_, *host_v_);
+    }
+  }
+
+  void record_step(const PaperConstants& c) {
     const auto n = static_cast<double>(particles()), f = static_cast<double>(free_);
     dispatch(stage_forces_, *forces_, particles(), c, {16 * n, 16 * f});
     if (damp_ != nullptr) dispatch(stage_damp_, *damp_, particles(), c, {16 * n, 16 * n});
@@ -123,31 +138,32 @@ class Paper final : public GpuSolver {
       dispatch(stage_average_, *average_, particles(), c, {16 * n + 16 * f, 32 * f});
     }
     dispatch(stage_update_, *update_, particles(), c, {32 * n, 32 * n});
-    if (stage_readback_ >= 0) {
-      copy(stage_readback_, *x_, *host_x_);
-      copy(stage_readback_, *v_, *host_v_);
-    }
   }
 
   int layers_ = 1;
   std::int64_t free_ = 0;
   std::uint64_t constraint_count_ = 0;
   Traffic traffic_;  ///< of one ProjectConstraintDeltas
-  int stage_forces_ = -1, stage_damp_ = -1, stage_euler_ = -1, stage_project_ = -1, stage_average_ = -1, stage_update_ = -1,
-      stage_readback_ = -1;
-  vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *q_ = nullptr, *d_ = nullptr, *c_ = nullptr, *host_x_ = nullptr, *host_v_ = nullptr;
-  vulkan::Kernel *forces_ = nullptr, *damp_ = nullptr, *euler_ = nullptr, *project_ = nullptr, *average_ = nullptr, *update_ = nullptr;
+  int stage_forces_ = -1, stage_damp_ = -1, stage_euler_ = -1, stage_project_ = -1, stage_average_ = -1,
+      stage_update_ = -1, stage_readback_ = -1;
+  vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *q_ = nullptr, *d_ = nullptr, *c_ = nullptr, *host_x_ = nullptr,
+                 *host_v_ = nullptr;
+  vulkan::Kernel *forces_ = nullptr, *damp_ = nullptr, *euler_ = nullptr, *project_ = nullptr, *average_ = nullptr,
+                 *update_ = nullptr;
 };
 
 void check_settings(const nlohmann::json& s) {
   const auto one_of = [&](const char* key, const char* a, const char* b) {
     if (s[key] != a && s[key] != b)
-      throw Error(std::string("solver paper: setting ") + key + ": expected \"" + a + "\" or \"" + b + "\"; found " + s[key].dump());
+      throw Error(std::string("solver paper: setting ") + key + ": expected \"" + a + "\" or \"" + b + "\"; found " +
+                  s[key].dump());
   };
   one_of("readback", "none", "blocking");
   one_of("atomics", "cas", "native");
   if (!(s["iterations"].get<double>() >= 1 && s["iterations"].get<double>() <= 100000))
     throw Error("solver paper: setting iterations: expected 1 to 100000; found " + s["iterations"].dump());
+  if (!(s["substeps"].get<double>() >= 1 && s["substeps"].get<double>() <= 4096))
+    throw Error("solver paper: setting substeps: expected 1 to 4096; found " + s["substeps"].dump());
   if (!(s["stiffness"].get<double>() >= 0 && s["stiffness"].get<double>() <= 1))
     throw Error("solver paper: setting stiffness: expected 0 to 1; found " + s["stiffness"].dump());
 }
@@ -162,12 +178,15 @@ SolverInfo paper_info() {
   info.version = "1";
   info.precision = "float32";
   info.on_gpu = true;
-  info.supports = {Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins, Feature::DuplicatedLayer};
-  info.settings = {{"iterations", "5", "constraint iterations a frame"},
-                   {"stiffness", "0.8", "PBD's k, 0 to 1"},
-                   {"readback", "\"none\"", "none | blocking: copy positions and velocities to the host every frame and wait"},
-                   {"atomics", "\"cas\"", "cas | native: float sums by compare-and-swap, or by VK_EXT_shader_atomic_float"},
-                   {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+  info.supports = {Feature::Stretch, Feature::Shear, Feature::Bend,
+                   Feature::Damping, Feature::Pins,  Feature::DuplicatedLayer};
+  info.settings = {
+      {"iterations", "5", "constraint iterations a substep"},
+      {"substeps", "1", "substeps a frame (the paper has one)"},
+      {"stiffness", "0.8", "PBD's k, 0 to 1"},
+      {"readback", "\"none\"", "none | blocking: copy positions and velocities to the host every frame and wait"},
+      {"atomics", "\"cas\"", "cas | native: float sums by compare-and-swap, or by VK_EXT_shader_atomic_float"},
+      {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   return info;
 }
 
@@ -176,12 +195,13 @@ std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const Devi
   return std::make_unique<Paper>(paper_info(), settings, device, count_bytes);
 }
 
-/// v <- (v + g h) keep, x <- x + h v, one step a frame; damping comes after the forces.
-double paper_free_fall_m(const Scene& scene, const nlohmann::json&, int frames) {
-  const double h = scene.time.dt(), g = scene.gravity_m_per_s2[1];
+/// v <- (v + g h) keep, x <- x + h v, every substep; damping comes after the forces.
+double paper_free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
+  const int substeps = settings["substeps"].get<int>();
+  const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1];
   const double keep = scene.needs.has(Feature::Damping) ? std::max(0.0, 1 - scene.material.damping_per_s * h) : 1;
   double v = 0, x = 0;
-  for (int i = 0; i < frames; ++i) {
+  for (long i = 0; i < static_cast<long>(frames) * substeps; ++i) {
     v = (v + g * h) * keep;
     x += v * h;
   }

@@ -41,7 +41,8 @@ struct XpbdConstants {
   float alpha_border;     // the same on the border lines, which carry half the width
   float loss;             // 1 - exp(-c h)
   uint i_first;           // first i of the family: 1 for the diagonal that runs down-left
-  uint unused0, unused1;
+  uint multiplier_first;  // of this family, where multipliers are kept
+  uint iteration;         // 0 takes them as 0
 };
 
 #ifdef __cplusplus

@@ -12,58 +12,93 @@ CODE(apply_external_forces_counted)
 };
 CODE(damp_velocities)
 #include "damp_velocities.inc"
-};
+}
+;
 CODE(damp_velocities_counted)
 #include "damp_velocities_counted.inc"
-};
+}
+;
 CODE(apply_explicit_euler)
 #include "apply_explicit_euler.inc"
-};
+}
+;
 CODE(apply_explicit_euler_counted)
 #include "apply_explicit_euler_counted.inc"
-};
+}
+;
 CODE(project_constraint_deltas)
 #include "project_constraint_deltas.inc"
-};
+}
+;
 CODE(project_constraint_deltas_counted)
 #include "project_constraint_deltas_counted.inc"
-};
+}
+;
 CODE(project_constraint_deltas_native)
 #include "project_constraint_deltas_native.inc"
-};
+}
+;
 CODE(project_constraint_deltas_native_counted)
 #include "project_constraint_deltas_native_counted.inc"
-};
+}
+;
 CODE(average_constraint_deltas)
 #include "average_constraint_deltas.inc"
-};
+}
+;
 CODE(average_constraint_deltas_counted)
 #include "average_constraint_deltas_counted.inc"
-};
+}
+;
 CODE(update_positions)
 #include "update_positions.inc"
-};
+}
+;
 CODE(update_positions_counted)
 #include "update_positions_counted.inc"
-};
+}
+;
 CODE(integrate)
 #include "integrate.inc"
-};
+}
+;
 CODE(integrate_counted)
 #include "integrate_counted.inc"
-};
+}
+;
 CODE(project_distance)
 #include "project_distance.inc"
-};
+}
+;
 CODE(project_distance_counted)
 #include "project_distance_counted.inc"
-};
+}
+;
 CODE(project_bending)
 #include "project_bending.inc"
-};
+}
+;
 CODE(project_bending_counted)
 #include "project_bending_counted.inc"
-};
+}
+;
+
+CODE(project_distance_iterated)
+#include "project_distance_iterated.inc"
+}
+;
+CODE(project_distance_iterated_counted)
+#include "project_distance_iterated_counted.inc"
+}
+;
+CODE(project_bending_iterated)
+#include "project_bending_iterated.inc"
+}
+;
+CODE(project_bending_iterated_counted)
+#include "project_bending_iterated_counted.inc"
+}
+;
 
 }  // namespace
 
@@ -79,6 +114,8 @@ SHADER(kUpdatePositions, update_positions);
 SHADER(kIntegrate, integrate);
 SHADER(kProjectDistance, project_distance);
 SHADER(kProjectBending, project_bending);
+SHADER(kProjectDistanceIterated, project_distance_iterated);
+SHADER(kProjectBendingIterated, project_bending_iterated);
 }  // namespace shaders
 
 }  // namespace clothbench::pbd_gpu

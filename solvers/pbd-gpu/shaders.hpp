@@ -11,7 +11,8 @@ struct Shader {
 
 namespace shaders {
 extern const Shader kApplyExternalForces, kDampVelocities, kApplyExplicitEuler, kProjectConstraintDeltas,
-    kProjectConstraintDeltasNative, kAverageConstraintDeltas, kUpdatePositions, kIntegrate, kProjectDistance, kProjectBending;
+    kProjectConstraintDeltasNative, kAverageConstraintDeltas, kUpdatePositions, kIntegrate, kProjectDistance,
+    kProjectBending, kProjectDistanceIterated, kProjectBendingIterated;
 }
 
 }  // namespace clothbench::pbd_gpu

@@ -66,7 +66,7 @@ class Xpbd final : public GpuSolver {
     stretch_ = {{1, 0, 1, 2, du, 1 / k.along_u}, {0, 1, 1, 2, dv, 1 / k.along_v}};
     shear_ = {{1, 1, 1, 2, std::hypot(du, dv), 1 / k.diagonal}, {-1, 1, 1, 2, std::hypot(du, dv), 1 / k.diagonal}};
     // E = (B w / 2 a^3) |x0 - 2 x1 + x2|^2 on each line, w the strip's width.
-    if (const double B = scene().material.bending_rigidity_N_m; B > 0)
+    if (const double B = scene().material.bending_rigidity_N_m; scene().needs.has(Feature::Bend))
       bend_ = {{1, 0, 2, 3, 0, du * du * du / (B * dv)}, {0, 1, 2, 3, 0, dv * dv * dv / (B * du)}};
   }
 
@@ -75,18 +75,28 @@ class Xpbd final : public GpuSolver {
     const auto push = static_cast<std::uint32_t>(sizeof(XpbdConstants));
     const bool damped = needs.has(Feature::Damping);
     stage_integrate_ = add_stage("Integrate", needs & FeatureSet{Feature::Damping, Feature::Pins});
-    integrate_ = &add_kernel(stage_integrate_, shaders::kIntegrate,
-                             {{x_, Access::ReadWrite}, {v_, Access::ReadWrite}, {rx_, Access::ReadWrite}, {rv_, Access::ReadWrite}}, push,
-                             {damped ? 1u : 0u});
+    integrate_ = &add_kernel(
+        stage_integrate_, shaders::kIntegrate,
+        {{x_, Access::ReadWrite}, {v_, Access::ReadWrite}, {rx_, Access::ReadWrite}, {rv_, Access::ReadWrite}}, push,
+        {damped ? 1u : 0u});
     if (!damped) leave_out("damping", "the scene has none");
-    const std::vector<vulkan::Binding> state = {{x_, Access::ReadWrite}, {v_, Access::ReadWrite}};
+    const bool keep = settings()["iterations"].get<int>() > 1;
+    const Shader& distance = keep ? shaders::kProjectDistanceIterated : shaders::kProjectDistance;
+    const auto state = [&](const char* name, std::uint64_t multiplier_bytes) {
+      std::vector<vulkan::Binding> b = {{x_, Access::ReadWrite}, {v_, Access::ReadWrite}};
+      // Two families each; a constraint is named by its first vertex.
+      if (keep) b.push_back({&add_buffer(name, 2 * w_.size() * multiplier_bytes), Access::ReadWrite});
+      return b;
+    };
+    if (!keep) leave_out("multipliers", "setting iterations=1: they would start at 0 and be dropped");
     stage_stretch_ = add_stage("ProjectStretch", {Feature::Stretch});
-    distance_ = &add_kernel(stage_stretch_, shaders::kProjectDistance, state, push);
+    distance_ = &add_kernel(stage_stretch_, distance, state("stretch multipliers", 4), push);
     stage_shear_ = add_stage("ProjectShear", {Feature::Shear});
-    shear_distance_ = &add_kernel(stage_shear_, shaders::kProjectDistance, state, push);
+    shear_distance_ = &add_kernel(stage_shear_, distance, state("shear multipliers", 4), push);
     if (needs.has(Feature::Bend)) {
       stage_bend_ = add_stage("ProjectBending", {Feature::Bend});
-      bending_ = &add_kernel(stage_bend_, shaders::kProjectBending, state, push);
+      bending_ = &add_kernel(stage_bend_, keep ? shaders::kProjectBendingIterated : shaders::kProjectBending,
+                             state("bending multipliers", 16), push);
     } else {
       leave_out("ProjectBending", "the scene has no bending");
     }
@@ -94,14 +104,15 @@ class Xpbd final : public GpuSolver {
   }
 
   /// Bytes of one dispatch: with m = vertices of a constraint, 16 m for positions, and another 16 m read and 32 m
-  /// written where one of them is free.
-  Traffic traffic(const Family& f, std::uint32_t colour, int vertices) const {
+  /// written where one of them is free; kept multipliers are read from the second iteration on and written in each.
+  Traffic traffic(const Family& f, std::uint32_t colour, int vertices, std::uint32_t iteration) const {
     Traffic t;
+    const double multiplier = settings()["iterations"].get<int>() == 1 ? 0 : vertices == 3 ? 16 : 4;
     for_each(f, colour, [&](std::size_t first, std::size_t step) {
       bool any_free = false;
       for (int k = 0; k < vertices; ++k) any_free |= w_[first + static_cast<std::size_t>(k) * step] > 0;
-      t.read_B += 16.0 * vertices * (any_free ? 2 : 1);
-      t.write_B += any_free ? 32.0 * vertices : 0.0;
+      t.read_B += 16.0 * vertices * (any_free ? 2 : 1) + (any_free && iteration > 0 ? multiplier : 0);
+      t.write_B += any_free ? 32.0 * vertices + multiplier : 0.0;
     });
     return t;
   }
@@ -118,8 +129,8 @@ class Xpbd final : public GpuSolver {
 
   void project(int stage, const vulkan::Kernel& kernel, const Family& f, XpbdConstants c, int vertices) {
     const std::uint32_t columns = c.columns, rows = c.rows;
-    const auto across = f.di == 0 ? columns : columns - f.reach;           // valid i
-    const auto down = f.dj == 0 ? rows : rows - f.reach;                   // valid j
+    const auto across = f.di == 0 ? columns : columns - f.reach;  // valid i
+    const auto down = f.dj == 0 ? rows : rows - f.reach;          // valid j
     if ((f.di != 0 && columns <= f.reach) || (f.dj != 0 && rows <= f.reach)) return;
     const std::uint32_t strided = f.dj == 0 ? across : down;
     c.di = f.di;
@@ -134,7 +145,7 @@ class Xpbd final : public GpuSolver {
     for (std::uint32_t colour = 0; colour < f.stride && colour < strided; ++colour) {
       c.colour = colour;
       c.count = c.along * ((strided - colour + f.stride - 1) / f.stride);
-      dispatch(stage, kernel, c.count, c, traffic(f, colour, vertices));
+      dispatch(stage, kernel, c.count, c, traffic(f, colour, vertices, c.iteration));
     }
   }
 
@@ -150,11 +161,25 @@ class Xpbd final : public GpuSolver {
     c.loss = static_cast<float>(-std::expm1(-scene().material.damping_per_s * h));
     const auto n = static_cast<double>(w_.size());
     const auto f = static_cast<double>(std::count_if(w_.begin(), w_.end(), [](float w) { return w > 0; }));
+    struct Constraints {
+      int stage;
+      const vulkan::Kernel* kernel;
+      const std::vector<Family>* families;
+      int vertices;
+    };
+    const Constraints constraints[] = {{stage_stretch_, distance_, &stretch_, 2},
+                                       {stage_shear_, shear_distance_, &shear_, 2},
+                                       {stage_bend_, bending_, &bend_, 3}};
+    const auto iterations = settings()["iterations"].get<std::uint32_t>();
     for (int s = 0; s < substeps; ++s) {
       dispatch(stage_integrate_, *integrate_, w_.size(), c, {16 * n + 48 * f, 64 * f});
-      for (const Family& family : stretch_) project(stage_stretch_, *distance_, family, c, 2);
-      for (const Family& family : shear_) project(stage_shear_, *shear_distance_, family, c, 2);
-      for (const Family& family : bend_) project(stage_bend_, *bending_, family, c, 3);
+      for (c.iteration = 0; c.iteration < iterations; ++c.iteration) {
+        for (const auto& [stage, kernel, families, vertices] : constraints)
+          for (std::size_t k = 0; k < families->size(); ++k) {
+            c.multiplier_first = static_cast<std::uint32_t>(k * w_.size());
+            project(stage, *kernel, (*families)[k], c, vertices);
+          }
+      }
     }
   }
 
@@ -176,7 +201,8 @@ SolverInfo xpbd_info() {
   info.precision = "float32";
   info.on_gpu = true;
   info.supports = {Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins};
-  info.settings = {{"substeps", "10", "substeps a frame, one iteration each"},
+  info.settings = {{"substeps", "10", "substeps a frame"},
+                   {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
                    {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   return info;
 }
@@ -184,6 +210,8 @@ SolverInfo xpbd_info() {
 std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes) {
   if (!(settings["substeps"].get<double>() >= 1 && settings["substeps"].get<double>() <= 4096))
     throw Error("solver xpbd: setting substeps: expected 1 to 4096; found " + settings["substeps"].dump());
+  if (!(settings["iterations"].get<double>() >= 1 && settings["iterations"].get<double>() <= 4096))
+    throw Error("solver xpbd: setting iterations: expected 1 to 4096; found " + settings["iterations"].dump());
   return std::make_unique<Xpbd>(xpbd_info(), settings, device, count_bytes);
 }
 

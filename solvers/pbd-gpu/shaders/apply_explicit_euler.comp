@@ -9,7 +9,7 @@ layout(std430, binding = 2) writeonly buffer Predicted { vec4 q[]; };
 layout(push_constant) uniform Push { PaperConstants p; };
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = item();
   if (i >= p.particles) return;
   vec4 vel = LOAD16(v, i);
   STORE16(q, i, vec4(LOAD16(x, i).xyz + vel.xyz * p.h, vel.w));

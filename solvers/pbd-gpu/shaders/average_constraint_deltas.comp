@@ -9,7 +9,7 @@ layout(push_constant) uniform Push { PaperConstants p; };
 layout(constant_id = 1) const uint NATIVE = 0u;  // the count is a float there
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = item();
   if (i >= p.particles) return;
   uvec4 sum = LOAD16(d, i);
   if (sum.w == 0u) return;

@@ -5,15 +5,22 @@
 
 layout(local_size_x_id = 0) in;
 
+/// Item of this invocation. Groups are one-dimensional; past 65535 of them they lie in rows (`groups_for`).
+uint item() {
+  return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+}
+
 #ifdef CLOTHBENCH_COUNT_BYTES
 layout(std430, binding = COUNTER_BINDING) buffer Counter { uint counted_read, counted_write; };
 #define LOAD16(array, i) (atomicAdd(counted_read, 16u), array[i])
 #define LOAD4(array, i) (atomicAdd(counted_read, 4u), array[i])
 #define STORE16(array, i, value) { atomicAdd(counted_write, 16u); array[i] = (value); }
+#define STORE4(array, i, value) { atomicAdd(counted_write, 4u); array[i] = (value); }
 #define COUNT_ATOMIC { atomicAdd(counted_read, 4u); atomicAdd(counted_write, 4u); }
 #else
 #define LOAD16(array, i) (array[i])
 #define LOAD4(array, i) (array[i])
 #define STORE16(array, i, value) { array[i] = (value); }
+#define STORE4(array, i, value) { array[i] = (value); }
 #define COUNT_ATOMIC
 #endif

@@ -7,7 +7,7 @@ layout(std430, binding = 0) buffer Velocities { vec4 v[]; };
 layout(push_constant) uniform Push { PaperConstants p; };
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = item();
   if (i >= p.particles) return;
   vec4 vel = LOAD16(v, i);
   STORE16(v, i, vec4(vel.xyz * p.keep, vel.w));

@@ -22,7 +22,7 @@ void two_sum(vec3 a, vec3 b, out vec3 sum, out vec3 rest) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = item();
   if (i >= p.columns * p.rows) return;
   vec4 at = LOAD16(x, i);
   if (at.w == 0.0) return;

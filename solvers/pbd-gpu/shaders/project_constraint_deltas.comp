@@ -45,7 +45,7 @@ void add_delta(uint particle, vec3 delta) {
 }
 
 void main() {
-  uint k = gl_GlobalInvocationID.x;
+  uint k = item();
   if (k >= p.constraints) return;
   DistanceConstraint e = LOAD16(c, k);
   vec4 a = LOAD16(q, e.a), b = LOAD16(q, e.b);

@@ -9,7 +9,7 @@ layout(std430, binding = 2) readonly buffer Predicted { vec4 q[]; };
 layout(push_constant) uniform Push { PaperConstants p; };
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = item();
   if (i >= p.particles) return;
   vec4 to = LOAD16(q, i);
   vec4 from = LOAD16(x, i);

@@ -16,15 +16,16 @@ Buffer::Buffer(std::shared_ptr<Device> device, std::string name, VkDeviceSize by
   VkMemoryAllocateInfo memory{};
   memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   memory.allocationSize = needs.size;
-  memory.memoryTypeIndex = place == Place::Device
-                               ? device_->memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)
-                               // Cached where there is such a type: the host reads positions back through it.
-                               : device_->memory_type(needs.memoryTypeBits, kMapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+  memory.memoryTypeIndex =
+      place == Place::Device ? device_->memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)
+                             // Cached where there is such a type: the host reads positions back through it.
+                             : device_->memory_type(needs.memoryTypeBits, kMapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
   if (memory.memoryTypeIndex == Device::kNoMemory)
     memory.memoryTypeIndex = device_->memory_type(needs.memoryTypeBits, place == Place::Device ? 0 : kMapped);
   check(vkAllocateMemory(device_->handle(), &memory, nullptr, &memory_), "vkAllocateMemory");
   check(vkBindBufferMemory(device_->handle(), buffer_, memory_, 0), "vkBindBufferMemory");
-  if (place == Place::Host) check(vkMapMemory(device_->handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
+  if (place == Place::Host)
+    check(vkMapMemory(device_->handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
 }
 
 Buffer::~Buffer() {

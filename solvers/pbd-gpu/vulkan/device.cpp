@@ -15,6 +15,8 @@
 namespace clothbench::vulkan {
 namespace {
 
+std::atomic<int> messages_ever{0};
+
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -33,10 +35,14 @@ std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
 
 int rank(VkPhysicalDeviceType type) {
   switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 0;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 1;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
-    default: return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return 0;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return 1;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return 2;
+    default:
+      return 3;
   }
 }
 
@@ -59,7 +65,8 @@ VkApplicationInfo application() {
 }  // namespace
 
 Failure::Failure(const char* call, VkResult result)
-    : Error(fmt::format("{} failed: VkResult {}", call, static_cast<int>(result)), ExitCode::CheckFailed), result_(result) {}
+    : Error(fmt::format("{} failed: VkResult {}", call, static_cast<int>(result)), ExitCode::CheckFailed),
+      result_(result) {}
 
 void check(VkResult result, const char* call) {
   if (result != VK_SUCCESS) throw Failure(call, result);
@@ -70,7 +77,7 @@ std::shared_ptr<Device> Device::get(const DeviceOptions& options) {
   static std::map<std::pair<int, bool>, std::weak_ptr<Device>> cache;
   const std::lock_guard lock(mutex);
   auto& slot = cache[{options.index, options.validation}];
-  if (auto device = slot.lock()) return device;
+  if (auto device = slot.lock(); device && !device->lost()) return device;
   std::shared_ptr<Device> device(new Device(options));
   slot = device;
   return device;
@@ -102,7 +109,8 @@ Device::Device(const DeviceOptions& options) {
 
 void Device::create_instance(bool validation) {
   if (validation && !layer_present(kValidationLayer))
-    throw Error(std::string("validation was asked for, but ") + kValidationLayer + " is not installed (Debian: vulkan-validationlayers)");
+    throw Error(std::string("validation was asked for, but ") + kValidationLayer +
+                " is not installed (Debian: vulkan-validationlayers)");
   const VkApplicationInfo app = application();
   const VkValidationFeatureEnableEXT enable = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
   VkValidationFeaturesEXT features{};
@@ -111,8 +119,10 @@ void Device::create_instance(bool validation) {
   features.pEnabledValidationFeatures = &enable;
   VkDebugUtilsMessengerCreateInfoEXT messenger{};
   messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-  messenger.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-  messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+  messenger.messageSeverity =
+      VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  messenger.messageType =
+      VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
   messenger.pfnUserCallback = on_message;
   messenger.pUserData = this;
   const std::array names = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
@@ -129,10 +139,14 @@ void Device::create_instance(bool validation) {
   }
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
   if (result != VK_SUCCESS)
-    throw Error(fmt::format("no Vulkan instance: vkCreateInstance gave {}; is a driver installed? (Debian: mesa-vulkan-drivers)",
-                            static_cast<int>(result)), ExitCode::NoDevice);
+    throw Error(
+        fmt::format(
+            "no Vulkan instance: vkCreateInstance gave {}; is a driver installed? (Debian: mesa-vulkan-drivers)",
+            static_cast<int>(result)),
+        ExitCode::NoDevice);
   if (!validation) return;
-  const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+  const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+      vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
   check(create(instance_, &messenger, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
 }
 
@@ -140,7 +154,8 @@ void Device::choose_physical(int index) {
   const std::vector<VkPhysicalDevice> all = physical_devices(instance_);
   if (all.empty()) throw Error("no Vulkan device; install a driver (Debian: mesa-vulkan-drivers)", ExitCode::NoDevice);
   if (index >= static_cast<int>(all.size()))
-    throw Error(fmt::format("device {}: there are {} Vulkan devices (the first is 0)", index, all.size()), ExitCode::NoDevice);
+    throw Error(fmt::format("device {}: there are {} Vulkan devices (the first is 0)", index, all.size()),
+                ExitCode::NoDevice);
   if (index >= 0) {
     physical_ = all[static_cast<std::size_t>(index)];
   } else {
@@ -216,7 +231,8 @@ void Device::release() {
     vkDestroyDevice(device_, nullptr);
   }
   if (messenger_ != VK_NULL_HANDLE) {
-    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
     destroy(instance_, messenger_, nullptr);
   }
   if (instance_ != VK_NULL_HANDLE) vkDestroyInstance(instance_, nullptr);
@@ -236,8 +252,22 @@ double Device::seconds(std::uint64_t from, std::uint64_t to) const {
   return static_cast<double>((to - from) & mask) * static_cast<double>(properties_.limits.timestampPeriod) * 1e-9;
 }
 
+int Device::validation_messages() const {
+  const std::lock_guard lock(messages_mutex_);
+  return static_cast<int>(messages_.size());
+}
+
+std::vector<std::string> Device::messages() const {
+  const std::lock_guard lock(messages_mutex_);
+  return messages_;
+}
+
+int Device::validation_messages_ever() { return messages_ever; }
+
 void Device::note_message(const char* text) {
-  if (messages_++ == 0) first_message_ = text;
+  const std::lock_guard lock(messages_mutex_);
+  messages_.emplace_back(text);
+  ++messages_ever;
   fmt::print(stderr, "[vulkan] {}\n", text);
 }
 

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -54,9 +55,15 @@ class Device {
   double seconds(std::uint64_t from, std::uint64_t to) const;
   bool has_timestamps() const { return timestamp_bits_ > 0; }
 
-  int validation_messages() const { return messages_; }
-  const std::string& first_message() const { return first_message_; }
+  int validation_messages() const;
+  std::vector<std::string> messages() const;  ///< text of the validation layer's warnings and errors so far
+  /// Of all devices this process has had, those of their destruction (leaked objects) included.
+  static int validation_messages_ever();
   void note_message(const char* text);
+
+  /// After VK_ERROR_DEVICE_LOST: `get` makes a new device instead of sharing this one.
+  void mark_lost() { lost_ = true; }
+  bool lost() const { return lost_; }
 
  private:
   explicit Device(const DeviceOptions& options);
@@ -76,8 +83,9 @@ class Device {
   VkCommandPool pool_ = VK_NULL_HANDLE;
   VkPipelineCache cache_ = VK_NULL_HANDLE;
   bool float_atomics_ = false;
-  std::atomic<int> messages_{0};
-  std::string first_message_;
+  std::atomic<bool> lost_{false};
+  mutable std::mutex messages_mutex_;
+  std::vector<std::string> messages_;
 };
 
 }  // namespace clothbench::vulkan

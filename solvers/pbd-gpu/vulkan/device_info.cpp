@@ -17,7 +17,8 @@ std::vector<std::string> extensions(VkPhysicalDevice physical) {
 }
 
 DeviceInfo describe(VkPhysicalDevice physical) {
-  VkPhysicalDeviceSubgroupProperties subgroup{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES, nullptr, 0, 0, 0, VK_FALSE};
+  VkPhysicalDeviceSubgroupProperties subgroup{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES, nullptr, 0, 0, 0, VK_FALSE};
   VkPhysicalDeviceDriverProperties driver{};
   driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
   VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroup, {}};
@@ -39,15 +40,7 @@ DeviceInfo describe(VkPhysicalDevice physical) {
   j["driver_info"] = driver.driverInfo;
   j["subgroup_size"] = subgroup.subgroupSize;
   j["subgroup_operations"] = subgroup.supportedOperations;
-  const VkPhysicalDeviceLimits& l = p.limits;
-  j["limits"] = {{"maxComputeSharedMemorySize", l.maxComputeSharedMemorySize},
-                 {"maxComputeWorkGroupInvocations", l.maxComputeWorkGroupInvocations},
-                 {"maxComputeWorkGroupCount", {l.maxComputeWorkGroupCount[0], l.maxComputeWorkGroupCount[1], l.maxComputeWorkGroupCount[2]}},
-                 {"maxComputeWorkGroupSize", {l.maxComputeWorkGroupSize[0], l.maxComputeWorkGroupSize[1], l.maxComputeWorkGroupSize[2]}},
-                 {"maxPushConstantsSize", l.maxPushConstantsSize},
-                 {"maxStorageBufferRange", l.maxStorageBufferRange},
-                 {"timestampPeriod_ns", l.timestampPeriod},
-                 {"timestampComputeAndGraphics", l.timestampComputeAndGraphics != 0}};
+  j["limits"] = limits_json(p.limits);
   for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
     j["memory_heaps"].push_back({{"bytes", memory.memoryHeaps[i].size}, {"flags", memory.memoryHeaps[i].flags}});
   j["extensions"] = extensions(physical);
@@ -56,7 +49,8 @@ DeviceInfo describe(VkPhysicalDevice physical) {
   info.name = p.deviceName;
   info.driver = driver.driverName[0] != '\0' ? fmt::format("{} {}", driver.driverName, driver.driverInfo)
                                              : fmt::format("version {:#x}", p.driverVersion);
-  info.api = fmt::format("Vulkan {}.{}.{}", VK_API_VERSION_MAJOR(p.apiVersion), VK_API_VERSION_MINOR(p.apiVersion), VK_API_VERSION_PATCH(p.apiVersion));
+  info.api = fmt::format("Vulkan {}.{}.{}", VK_API_VERSION_MAJOR(p.apiVersion), VK_API_VERSION_MINOR(p.apiVersion),
+                         VK_API_VERSION_PATCH(p.apiVersion));
   info.is_software = p.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   info.properties_json = j.dump();
   return info;

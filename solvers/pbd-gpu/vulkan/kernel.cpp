@@ -2,14 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace clothbench::vulkan {
 
 Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,
                std::vector<Binding> bindings, std::uint32_t push_bytes)
-    : device_(std::move(device)), name_(std::move(name)), bindings_(std::move(bindings)) {
+    : device_(std::move(device)), name_(std::move(name)), code_(code), bindings_(std::move(bindings)) {
+  for (const Binding& b : bindings_)
+    if (b.buffer->bytes() > device_->limits().maxStorageBufferRange)
+      throw Error(fmt::format("{}: buffer \"{}\" of {} B is larger than this device binds ({} B)", name_,
+                              b.buffer->name(), b.buffer->bytes(), device_->limits().maxStorageBufferRange));
   create_layout(push_bytes);
   create_set();
-  create_pipeline(code, specialization);
+  create_pipeline(specialization);
 }
 
 Kernel::~Kernel() {
@@ -68,17 +75,17 @@ void Kernel::create_set() {
   vkUpdateDescriptorSets(device_->handle(), static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
 }
 
-void Kernel::create_pipeline(SpirV code, const std::vector<std::uint32_t>& specialization) {
+void Kernel::create_pipeline(const std::vector<std::uint32_t>& specialization) {
   VkShaderModuleCreateInfo module_info{};
   module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  module_info.codeSize = code.bytes;
-  module_info.pCode = code.words;
+  module_info.codeSize = code_.bytes;
+  module_info.pCode = code_.words;
   VkShaderModule module = VK_NULL_HANDLE;
   check(vkCreateShaderModule(device_->handle(), &module_info, nullptr, &module), "vkCreateShaderModule");
   std::vector<VkSpecializationMapEntry> entries;
   for (std::uint32_t k = 0; k < specialization.size(); ++k) entries.push_back({k, 4 * k, 4});
-  const VkSpecializationInfo constants{static_cast<std::uint32_t>(entries.size()), entries.data(), 4 * specialization.size(),
-                                       specialization.data()};
+  const VkSpecializationInfo constants{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                       4 * specialization.size(), specialization.data()};
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
   info.layout = layout_;
@@ -87,7 +94,8 @@ void Kernel::create_pipeline(SpirV code, const std::vector<std::uint32_t>& speci
   info.stage.module = module;
   info.stage.pName = "main";
   info.stage.pSpecializationInfo = &constants;
-  const VkResult result = vkCreateComputePipelines(device_->handle(), device_->pipeline_cache(), 1, &info, nullptr, &pipeline_);
+  const VkResult result =
+      vkCreateComputePipelines(device_->handle(), device_->pipeline_cache(), 1, &info, nullptr, &pipeline_);
   vkDestroyShaderModule(device_->handle(), module, nullptr);
   check(result, ("vkCreateComputePipelines(" + name_ + ")").c_str());
 }
@@ -99,15 +107,17 @@ void Kernel::bind(VkCommandBuffer commands) const {
 
 void Kernel::push(VkCommandBuffer commands, const std::vector<std::uint8_t>& constants) const {
   if (constants.empty()) return;
-  vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, static_cast<std::uint32_t>(constants.size()), constants.data());
+  vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, static_cast<std::uint32_t>(constants.size()),
+                     constants.data());
 }
 
-std::uint32_t group_count(std::uint64_t items, std::uint32_t group_size) {
+Groups groups_for(std::uint64_t items, std::uint32_t group_size) {
   constexpr std::uint64_t kMost = 65535;  // least maxComputeWorkGroupCount a Vulkan device may have
-  const std::uint64_t groups = (items + group_size - 1) / group_size;
-  if (groups > kMost)
-    throw Error(fmt::format("{} items in groups of {} are {} workgroups; a dispatch has at most {}", items, group_size, groups, kMost));
-  return static_cast<std::uint32_t>(groups);
+  const std::uint64_t groups = items / group_size + (items % group_size != 0 ? 1 : 0);
+  if (groups * group_size > std::numeric_limits<std::uint32_t>::max() || groups > kMost * kMost)
+    throw Error(fmt::format("{} items in groups of {}: a dispatch has at most 2^32 items", items, group_size));
+  const std::uint64_t rows = std::max<std::uint64_t>(1, (groups + kMost - 1) / kMost);
+  return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows)};
 }
 
 }  // namespace clothbench::vulkan

@@ -32,16 +32,18 @@ class Kernel {
 
   const std::string& name() const { return name_; }
   const std::vector<Binding>& bindings() const { return bindings_; }
+  SpirV code() const { return code_; }
   void bind(VkCommandBuffer commands) const;
   void push(VkCommandBuffer commands, const std::vector<std::uint8_t>& constants) const;
 
  private:
   void create_layout(std::uint32_t push_bytes);
   void create_set();
-  void create_pipeline(SpirV code, const std::vector<std::uint32_t>& specialization);
+  void create_pipeline(const std::vector<std::uint32_t>& specialization);
 
   std::shared_ptr<Device> device_;
   std::string name_;
+  SpirV code_;  ///< not owned: programs are embedded in the library
   std::vector<Binding> bindings_;
   VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
@@ -50,7 +52,14 @@ class Kernel {
   VkPipeline pipeline_ = VK_NULL_HANDLE;
 };
 
-/// Workgroups for `items` items at `group_size` each. Throws Error beyond the 65535 that every device has.
-std::uint32_t group_count(std::uint64_t items, std::uint32_t group_size);
+struct Groups {
+  std::uint32_t x = 0, y = 0;
+  bool operator==(const Groups&) const = default;
+};
+
+/// Workgroups for `items` items at `group_size` each: one row, or the fewest equal rows where one would pass the 65535
+/// that every device has. The last row may reach past the items; kernels check. Throws Error past 65535 rows, and past
+/// the 32 bits of a kernel's item number.
+Groups groups_for(std::uint64_t items, std::uint32_t group_size);
 
 }  // namespace clothbench::vulkan

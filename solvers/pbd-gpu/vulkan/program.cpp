@@ -12,14 +12,6 @@ bool meet(const std::set<const Buffer*>& a, const std::set<const Buffer*>& b) {
   return std::any_of(a.begin(), a.end(), [&](const Buffer* x) { return b.count(x) != 0; });
 }
 
-void full_barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkPipelineStageFlags to, VkAccessFlags written, VkAccessFlags next) {
-  VkMemoryBarrier memory{};
-  memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-  memory.srcAccessMask = written;
-  memory.dstAccessMask = next;
-  vkCmdPipelineBarrier(commands, from, to, 0, 1, &memory, 0, nullptr, 0, nullptr);
-}
-
 constexpr VkPipelineStageFlags kWork = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
 constexpr VkAccessFlags kWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
 constexpr VkAccessFlags kAll = kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
@@ -60,13 +52,23 @@ Program::Touched Program::touched(const Step& s) {
   return t;
 }
 
+void Program::barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written,
+                      VkAccessFlags next) {
+  VkMemoryBarrier memory{};
+  memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+  memory.srcAccessMask = written;
+  memory.dstAccessMask = next;
+  vkCmdPipelineBarrier(commands_, before, after, 0, 1, &memory, 0, nullptr, 0, nullptr);
+  recorded_.push_back({true, before, after, written, next, nullptr, nullptr, nullptr});
+}
+
 void Program::barrier_if_needed(const Touched& next, Touched& since) {
-  const bool hazard = meet(since.written, next.read) || meet(since.written, next.written) || meet(since.read, next.written);
+  const bool hazard =
+      meet(since.written, next.read) || meet(since.written, next.written) || meet(since.read, next.written);
   if (hazard) {
     // Orders what the steps since the last barrier wrote before what this step reads or writes, and what they read
     // before what it writes.
-    full_barrier(commands_, kWork, kWork, kWrites, kAll);
-    ++barriers_;
+    barrier(kWork, kWork, kWrites, kAll);
     since = {};
   }
   since.read.insert(next.read.begin(), next.read.end());
@@ -79,7 +81,7 @@ void Program::timestamp(std::uint32_t query) {
 
 void Program::record(bool time_stages) {
   time_stages_ = time_stages;
-  barriers_ = 0;
+  recorded_.clear();
   vkDestroyQueryPool(device_->handle(), queries_, nullptr);
   queries_ = VK_NULL_HANDLE;
   query_count_ = !device_->has_timestamps() ? 0 : time_stages ? static_cast<std::uint32_t>(steps_.size()) + 1 : 2;
@@ -95,8 +97,9 @@ void Program::record(bool time_stages) {
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
   if (query_count_ > 0) vkCmdResetQueryPool(commands_, queries_, 0, query_count_);
-  // What the host or the frame before wrote, before anything here reads it.
-  full_barrier(commands_, kWork | VK_PIPELINE_STAGE_HOST_BIT, kWork, kWrites | VK_ACCESS_HOST_WRITE_BIT, kAll);
+  // What earlier submissions wrote or read, before anything here reads or writes it. What the host wrote is visible to
+  // every submission after it.
+  barrier(kWork, kWork, kWrites, kAll);
   timestamp(0);
   Touched since;
   const Kernel* bound = nullptr;
@@ -107,37 +110,55 @@ void Program::record(bool time_stages) {
       if (bound != s.kernel) s.kernel->bind(commands_);
       bound = s.kernel;
       s.kernel->push(commands_, s.constants);
-      vkCmdDispatch(commands_, s.groups, 1, 1);
+      vkCmdDispatch(commands_, s.groups.x, s.groups.y, 1);
     } else {
       const VkBufferCopy region{0, 0, std::min(s.from->bytes(), s.to->bytes())};
       vkCmdCopyBuffer(commands_, s.from->handle(), s.to->handle(), 1, &region);
     }
+    recorded_.push_back({false, 0, 0, 0, 0, s.kernel, s.from, s.to});
     if (time_stages_) timestamp(k + 1);
   }
   if (!time_stages_) timestamp(1);
-  // What this frame wrote, before the host reads it.
-  full_barrier(commands_, kWork, VK_PIPELINE_STAGE_HOST_BIT, kWrites, VK_ACCESS_HOST_READ_BIT);
+  // What was written for the host, before it reads it.
+  const bool for_host = std::any_of(steps_.begin(), steps_.end(), [](const Step& s) {
+    const Touched t = touched(s);
+    return std::any_of(t.written.begin(), t.written.end(),
+                       [](const Buffer* b) { return b->place() == Buffer::Place::Host; });
+  });
+  if (for_host) barrier(kWork, VK_PIPELINE_STAGE_HOST_BIT, kWrites, VK_ACCESS_HOST_READ_BIT);
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
 }
 
+void Program::wait(double patience_s) {
+  check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, static_cast<std::uint64_t>(patience_s * 1e9)),
+        "vkWaitForFences");
+  in_flight_ = false;
+  check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
+}
+
 void Program::run(double patience_s) {
+  if (in_flight_) wait(patience_s);
   VkSubmitInfo submit{};
   submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
   submit.commandBufferCount = 1;
   submit.pCommandBuffers = &commands_;
   check(vkQueueSubmit(device_->queue(), 1, &submit, fence_), "vkQueueSubmit");
-  check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, static_cast<std::uint64_t>(patience_s * 1e9)), "vkWaitForFences");
-  check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
+  in_flight_ = true;
+  wait(patience_s);
   if (query_count_ == 0) return;
   ticks_.resize(query_count_);
   check(vkGetQueryPoolResults(device_->handle(), queries_, 0, query_count_, ticks_.size() * 8, ticks_.data(), 8,
-                              VK_QUERY_RESULT_64_BIT), "vkGetQueryPoolResults");
+                              VK_QUERY_RESULT_64_BIT),
+        "vkGetQueryPoolResults");
 }
 
-double Program::device_s() const { return ticks_.size() < 2 ? kMissing : device_->seconds(ticks_.front(), ticks_.back()); }
+double Program::device_s() const {
+  return ticks_.size() < 2 ? kMissing : device_->seconds(ticks_.front(), ticks_.back());
+}
 
 std::vector<double> Program::stage_s(int stages) const {
-  if (!time_stages_ || ticks_.size() != steps_.size() + 1) return std::vector<double>(static_cast<std::size_t>(stages), kMissing);
+  if (!time_stages_ || ticks_.size() != steps_.size() + 1)
+    return std::vector<double>(static_cast<std::size_t>(stages), kMissing);
   std::vector<double> sum(static_cast<std::size_t>(stages), 0);
   for (std::size_t k = 0; k < steps_.size(); ++k)
     sum[static_cast<std::size_t>(steps_[k].stage)] += device_->seconds(ticks_[k], ticks_[k + 1]);
@@ -145,7 +166,8 @@ std::vector<double> Program::stage_s(int stages) const {
 }
 
 int Program::dispatches(int stage) const {
-  return static_cast<int>(std::count_if(steps_.begin(), steps_.end(), [&](const Step& s) { return s.stage == stage && s.kernel != nullptr; }));
+  return static_cast<int>(std::count_if(steps_.begin(), steps_.end(),
+                                        [&](const Step& s) { return s.stage == stage && s.kernel != nullptr; }));
 }
 
 }  // namespace clothbench::vulkan

@@ -18,30 +18,42 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   template <class Constants>
-  void dispatch(int stage, const Kernel& kernel, std::uint32_t groups, const Constants& constants) {
+  void dispatch(int stage, const Kernel& kernel, Groups groups, const Constants& constants) {
     std::vector<std::uint8_t> bytes(sizeof constants);
     std::memcpy(bytes.data(), &constants, sizeof constants);
     steps_.push_back({stage, &kernel, groups, std::move(bytes), nullptr, nullptr});
   }
-  void copy(int stage, const Buffer& from, const Buffer& to) { steps_.push_back({stage, nullptr, 0, {}, &from, &to}); }
+  void copy(int stage, const Buffer& from, const Buffer& to) { steps_.push_back({stage, nullptr, {}, {}, &from, &to}); }
   void clear() { steps_.clear(); }
 
   /// Records once; `run` submits the same commands again and again. With `time_stages` a timestamp follows every
   /// step, else only the first and last are taken.
   void record(bool time_stages);
-  /// Submits and waits. Throws Failure (VK_TIMEOUT after `patience_s`, VK_ERROR_DEVICE_LOST, ...).
+  /// Submits and waits; after a time-out, first waits for the earlier submission. Throws Failure (VK_TIMEOUT after
+  /// `patience_s`, VK_ERROR_DEVICE_LOST, ...).
   void run(double patience_s);
 
   double device_s() const;                        ///< first to last timestamp of the last run; NaN without timestamps
   std::vector<double> stage_s(int stages) const;  ///< summed by stage; NaN unless recorded with time_stages
   int dispatches(int stage) const;
-  std::size_t barriers() const { return barriers_; }
+
+  /// What was recorded, in order, so that a test can tell whether a barrier is missing or there in vain.
+  struct Recorded {
+    // A barrier, where `is_barrier`:
+    bool is_barrier = false;
+    VkPipelineStageFlags stages_before = 0, stages_after = 0;
+    VkAccessFlags written = 0, next = 0;
+    // Else a dispatch of `kernel`, or a copy where that is null:
+    const Kernel* kernel = nullptr;
+    const Buffer *from = nullptr, *to = nullptr;
+  };
+  const std::vector<Recorded>& recorded() const { return recorded_; }
 
  private:
   struct Step {
     int stage;
     const Kernel* kernel;
-    std::uint32_t groups;
+    Groups groups;
     std::vector<std::uint8_t> constants;
     const Buffer *from, *to;
   };
@@ -49,7 +61,9 @@ class Program {
     std::set<const Buffer*> read, written;
   };
   static Touched touched(const Step&);
+  void barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written, VkAccessFlags next);
   void barrier_if_needed(const Touched& next, Touched& since);
+  void wait(double patience_s);
   void timestamp(std::uint32_t query);
 
   std::shared_ptr<Device> device_;
@@ -59,7 +73,8 @@ class Program {
   VkQueryPool queries_ = VK_NULL_HANDLE;
   std::uint32_t query_count_ = 0;
   bool time_stages_ = false;
-  std::size_t barriers_ = 0;
+  std::vector<Recorded> recorded_;
+  bool in_flight_ = false;
   std::vector<std::uint64_t> ticks_;
 };
 
