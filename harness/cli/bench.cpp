@@ -67,6 +67,8 @@ void add_bench(CLI::App& app, Console& console) {
   CLI::App* cmd = app.add_subcommand("bench", "The cells of a study under Google Benchmark; takes its --benchmark_… flags");
   cmd->add_option("--study", study_name, "Study")->capture_default_str();
   flags.add_to(*cmd);
+  // Google Benchmark reads what this command does not know; without this the words would go to the parent command.
+  cmd->fallthrough(false);
   cmd->allow_extras();
   cmd->footer("Example: clothbench bench --benchmark_filter='gravity-32-.*xpbd' --benchmark_repetitions=5");
   cmd->callback([cmd, &console] {

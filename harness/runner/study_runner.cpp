@@ -37,16 +37,28 @@ class GroupRun {
     for (const CellSpec& spec : group) open(spec);
     for (Running& r : running_)
       if (r.cell->alive() && r.record.accuracy.time_s.empty()) accuracy(r);
-    for (int k = 0; k < plan_.rules.trials; ++k)
-      for (std::size_t i = 0; i < running_.size(); ++i) {
-        // Each round starts with another cell, so that none always follows the same neighbour.
-        Running& r = running_[(i + static_cast<std::size_t>(k)) % running_.size()];
-        if (r.cell->alive() && !r.has_trial(k)) trial(r, k);
-      }
+    for (int k = 0; k < plan_.rules.trials; ++k) round(k);
     for (Running& r : running_) finish(r);
   }
 
  private:
+  /// One trial of every cell: those on the GPU together, then those on the CPU, each part starting with another cell
+  /// every time, so that none always follows the same neighbour. While CPU cells run a GPU goes to sleep, and it takes
+  /// longer to wake than a small cell's warm-up lasts: the first GPU cell of a round warms up for all of them.
+  void round(int k) {
+    constexpr double kWakeUp = 5;  // warm-ups
+    for (const bool on_gpu : {true, false}) {
+      std::vector<Running*> part;
+      for (Running& r : running_)
+        if (r.cell->alive() && r.cell->spec().entry->info.on_gpu == on_gpu && !r.has_trial(k)) part.push_back(&r);
+      for (std::size_t i = 0; i < part.size(); ++i) {
+        TrialRules rules = plan_.rules;
+        if (on_gpu && i == 0) rules.warmup_s *= kWakeUp;
+        trial(*part[(i + static_cast<std::size_t>(k)) % part.size()], k, rules);
+      }
+    }
+  }
+
   void note(const std::string& what) const {
     if (options_.progress) options_.progress(what, done_, plan_.size());
   }
@@ -79,9 +91,9 @@ class GroupRun {
     r.writer->write_accuracy(r.record.accuracy);
   }
 
-  void trial(Running& r, int k) {
+  void trial(Running& r, int k, const TrialRules& rules) {
     note(fmt::format("{}: trial {} of {}", r.name(), k + 1, plan_.rules.trials));
-    TimedTrial t = r.cell->run_trial(k, plan_.rules, r.frames());
+    TimedTrial t = r.cell->run_trial(k, rules, r.frames());
     if (t.frames() == 0) return;
     r.writer->write_trial(t);
     r.record.trials.push_back(std::move(t));

@@ -105,6 +105,16 @@ TEST_F(Cli, PlanNamesStagesAndWhatIsLeftOut) {
   EXPECT_TRUE(plan[0].contains("left_out"));
 }
 
+TEST_F(Cli, BenchIsAGoogleBenchmarkProgram) {
+  const nlohmann::json j = json_of("bench --benchmark_filter=gravity-8-single/ballistic");
+  ASSERT_TRUE(j.contains("context") && j.contains("benchmarks"));
+  EXPECT_TRUE(j["context"].contains("clothbench_git_commit"));
+  ASSERT_EQ(j["benchmarks"].size(), 1u);
+  EXPECT_EQ(j["benchmarks"][0]["iterations"], 72) << "a fixed number of frames, whatever the clock says";
+  EXPECT_GT(j["benchmarks"][0]["fps"].get<double>(), 0);
+  EXPECT_EQ(clothbench_command("bench --no-such-flag").code, 2);
+}
+
 TEST_F(Cli, StudyThenReport) {
   const fs::path out = dir_ / "study";
   const Answer a = clothbench_command("study " + small_study() + " --out " + out.string());
