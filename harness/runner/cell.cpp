@@ -104,9 +104,21 @@ void Cell::fail(StepStatus status, int frame) {
   }
 }
 
+int Cell::accuracy_frames(double duration_s) const {
+  const TimeSpan& time = spec_.scene->time;
+  return static_cast<int>(std::lround(std::min(duration_s, time.duration_s) * time.frame_rate_hz));
+}
+
+bool Cell::usable(const AccuracyPass& pass, double duration_s) const {
+  if (pass.time_s.size() != static_cast<std::size_t>(accuracy_frames(duration_s)) + 1) return false;
+  for (float x : pass.position)
+    if (!std::isfinite(x)) return false;
+  return true;
+}
+
 AccuracyPass Cell::run_accuracy(double duration_s) {
   const Scene& scene = *spec_.scene;
-  const int frames = static_cast<int>(std::lround(std::min(duration_s, scene.time.duration_s) * scene.time.frame_rate_hz));
+  const int frames = accuracy_frames(duration_s);
   const MetricContext context{scene, *spec_.entry, spec_.settings};
   AccuracyPass pass;
   std::vector<const Metric*> wanted;

@@ -45,6 +45,9 @@ class Cell {
   bool alive() const { return solver_ != nullptr && outcome_.status == "ok"; }
   const Plan& plan() const { return plan_; }
 
+  /// True if a pass recovered from an interrupted run is whole and ended well; if not it is run again, so that a
+  /// failure is met again instead of forgotten.
+  bool usable(const AccuracyPass& pass, double duration_s) const;
   /// Untimed pass: positions and metrics at every frame, frame 0 = initial state.
   AccuracyPass run_accuracy(double duration_s);
   /// One timed trial. `frames` > 0 asks for exactly that many (so that all trials of a cell agree).
@@ -53,6 +56,7 @@ class Cell {
   int validation_messages() const { return solver_ ? solver_->validation_messages() : 0; }
 
  private:
+  int accuracy_frames(double duration_s) const;
   void fail(StepStatus status, int frame);
   void warm_up(const TrialRules& rules);
   void profile_stages(TimedTrial& trial, int frames);

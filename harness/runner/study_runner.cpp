@@ -36,7 +36,7 @@ class GroupRun {
   void run(const std::vector<CellSpec>& group) {
     for (const CellSpec& spec : group) open(spec);
     for (Running& r : running_)
-      if (r.cell->alive() && r.record.accuracy.time_s.empty()) accuracy(r);
+      if (r.cell->alive() && !r.cell->usable(r.record.accuracy, plan_.rules.accuracy_duration_s)) accuracy(r);
     for (int k = 0; k < plan_.rules.trials; ++k) round(k);
     for (Running& r : running_) finish(r);
   }
