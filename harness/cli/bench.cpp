@@ -85,7 +85,7 @@ void add_bench(CLI::App& app, Console& console) {
     add_context(plan, flags);
     for (const auto& group : plan.groups)
       for (const CellSpec& c : group) {
-        if (!(c.scene->needs - (c.entry->info.supports | c.entry->info.ignores)).empty()) continue;
+        if (!unsupported(c.entry->info, c.scene->needs).empty()) continue;
         benchmark::RegisterBenchmark(fmt::format("{}/{}/{}", c.scene->name, c.entry->info.name, c.setting).c_str(),
                                      [&c](benchmark::State& state) { run_cell(state, c, flags.options); })
             ->UseManualTime()

@@ -25,7 +25,7 @@ void stop_if_interrupted() {
 
 FrameInput frame_input(const Scene& scene, int index) {
   const double dt = scene.time.dt();
-  return {index, (index + 1) * dt, dt};
+  return {index, (index + 1) * dt, dt, scene.motion_after(index)};
 }
 
 bool all_finite(const std::vector<double>& values) {
@@ -72,7 +72,7 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
   header_.vertices = static_cast<std::uint32_t>(scene.cloth.vertex_count());
   for (const auto& t : triangles(scene.cloth)) header_.triangles.insert(header_.triangles.end(), t.begin(), t.end());
 
-  const FeatureSet missing = scene.needs - (info.supports | info.ignores);
+  const FeatureSet missing = unsupported(info, scene.needs);
   if (!missing.empty()) {
     outcome_ = {"unsupported", "ok", -1, info.name + " has no " + join(missing)};
     header_.environment = describe_environment({}, protocol);

@@ -98,9 +98,10 @@ std::string missing_key(const json& value, const json& schema) {
 
 }  // namespace
 
-void validate_json(const nlohmann::json& value, const std::string& schema_text, const std::string& source) {
+void validate_json(const nlohmann::json& value, const std::string& schema_text, const std::string& source,
+                   const std::string& base) {
   const json schema_json = json::parse(schema_text);
-  if (const std::string fault = unknown_key(value, schema_json, schema_json, ""); !fault.empty()) throw Error(source + ": " + fault);
+  if (const std::string fault = unknown_key(value, schema_json, schema_json, base); !fault.empty()) throw Error(source + ": " + fault);
 
   valijson::Schema schema;
   valijson::SchemaParser parser;
@@ -116,11 +117,12 @@ void validate_json(const nlohmann::json& value, const std::string& schema_text, 
   const std::string pointer = pointer_of(deepest);
   const json sub = schema_at(schema_json, pointer);
   const json found = value.at(json::json_pointer(pointer));
+  const std::string where = base + pointer;
   if (const std::string key = missing_key(found, sub); !key.empty())
-    throw Error(fmt::format("{}: {}: \"{}\" is missing", source, pointer.empty() ? "/" : pointer, key));
+    throw Error(fmt::format("{}: {}: \"{}\" is missing", source, where.empty() ? "/" : where, key));
   std::string shown = found.dump();
   if (shown.size() > 60) shown = shown.substr(0, 60) + "…";
-  throw Error(fmt::format("{}: {}: expected {}; found {}", source, pointer.empty() ? "/" : pointer, expectation(sub), shown));
+  throw Error(fmt::format("{}: {}: expected {}; found {}", source, where.empty() ? "/" : where, expectation(sub), shown));
 }
 
 }  // namespace clothbench

@@ -13,8 +13,10 @@ std::string read_text(const std::filesystem::path&);
 nlohmann::json parse_json(const std::string& text, const std::string& source);
 
 /// Checks against one of the schemas in scenarios/schema (compiled in). Throws one Error: the deepest violation, with
-/// `source`, JSON pointer, what was expected and, for an unknown key, the nearest known one.
-void validate_json(const nlohmann::json&, const std::string& schema_text, const std::string& source);
+/// `source`, JSON pointer (below `pointer`, where the value stands in its file), what was expected and, for an unknown
+/// key, the nearest known one.
+void validate_json(const nlohmann::json&, const std::string& schema_text, const std::string& source,
+                   const std::string& pointer = "");
 
 /// Adds every `default` the schema names that is missing.
 void fill_defaults(nlohmann::json&, const std::string& schema_text);

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "scenario/colliders.hpp"
 #include "scenario/json_text.hpp"
 #include "scenario/paths.hpp"
 #include "scenario/sha256.hpp"
@@ -117,6 +118,11 @@ FeatureSet derive_needs(const Scene& scene) {
   if (scene.material.bending_rigidity_N_m > 0) needs.add(Feature::Bend);
   if (scene.material.damping_per_s > 0) needs.add(Feature::Damping);
   if (!scene.pins.vertices.empty()) needs.add(Feature::Pins);
+  if (!scene.grips.vertices.empty()) needs.add(Feature::MovingPins);
+  for (const Collider& c : scene.colliders) {
+    needs.add(c.feature());
+    if (c.friction > 0) needs.add(Feature::Friction);
+  }
   if (scene.cloth.sides == Sides::DoubleDuplicated) needs.add(Feature::DuplicatedLayer);
   // Two-sided contact is a matter of contact: with nothing to touch there is nothing to do for it.
   if (scene.cloth.sides == Sides::Double && !(needs & kColliderFeatures).empty()) needs.add(Feature::DoubleSided);
@@ -167,6 +173,7 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   s.time = {scenario["time"]["frame_rate_hz"].get<double>(), scenario["time"]["duration_s"].get<double>()};
   if (!(s.time.duration_s * s.time.frame_rate_hz <= kMostFrames)) refuse(source, "/time/duration_s", fmt::format("at most {} frames", kMostFrames));
   if (s.time.frames() < 1) refuse(source, "/time/duration_s", "at least one frame");
+  read_colliders(scenario, s, source);
   s.needs = derive_needs(s);
   s.json = scenario.dump();
   s.sha256 = sha256(s.json);

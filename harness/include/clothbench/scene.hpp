@@ -6,11 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "clothbench/collider.hpp"
 #include "clothbench/feature.hpp"
 
 namespace clothbench {
-
-using Vec3 = std::array<double, 3>;
 
 /// How the paper's "single-sided" and "double-sided" cloths are told apart; see docs of `cloth.sides` in the schema.
 enum class Sides { Single, DoubleDuplicated, Double };
@@ -42,6 +41,12 @@ struct Pins {
   std::vector<std::uint32_t> vertices;
 };
 
+/// Vertices that hands hold and move. They are held from t = 0 (see FrameMotion::grip_held) and free for good once let
+/// go.
+struct Grips {
+  std::vector<std::uint32_t> vertices;
+};
+
 struct TimeSpan {
   double frame_rate_hz = 0;
   double duration_s = 0;
@@ -55,14 +60,21 @@ struct Scene {
   Cloth cloth;
   Material material;
   Pins pins;
+  Grips grips;
+  std::vector<Collider> colliders;
+  /// Of frame 0 (the start) to frame time.frames(), so frames() + 1 of them; empty where nothing moves.
+  std::vector<FrameMotion> motion;
   Vec3 gravity_m_per_s2{};
   TimeSpan time;
   FeatureSet needs;
   std::string json;    ///< completed scenario, canonical dump
   std::string sha256;  ///< of `json`
   std::string source;  ///< path of the file it came from, for messages
+  std::string assets;  ///< where rooms and hands came from: "npm", "procedural", or "" if the scene has none
 
   Vec3 rest_position(int i, int j) const;
+  /// Motion at the end of frame `index` (0 = the first); null where nothing moves. Stands still after the scene's end.
+  const FrameMotion* motion_after(int index) const;
 };
 
 /// Lumped vertex masses [kg], size vertex_count: quarter of each adjacent cell ("quad-lumped": interior rho*du*dv,

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clothbench/feature.hpp"
@@ -26,8 +27,13 @@ struct SolverInfo {
   bool on_gpu = false;
   FeatureSet supports;
   FeatureSet ignores;     ///< runs without serving these, and every table says so (only `ballistic` does)
+  /// Features supported only beside another: {StaticMesh, DuplicatedLayer} = meshes only with a duplicated layer.
+  std::vector<std::pair<Feature, Feature>> only_with = {};
   std::vector<SettingSpec> settings;
 };
+
+/// What of a scene's needs the solver cannot do, `only_with` taken into account; empty if it can run the scene.
+FeatureSet unsupported(const SolverInfo&, FeatureSet needs);
 
 /// The device a solver runs on; the CPU for CPU solvers.
 struct DeviceInfo {
@@ -76,6 +82,7 @@ struct FrameInput {
   int index = 0;
   double time_s = 0;
   double dt_s = 0;
+  const FrameMotion* motion = nullptr;  ///< at the frame's end; null where nothing moves. At reset it is scene.motion[0]
 };
 
 /// Positions [m] and velocities [m/s], xyz interleaved, scene vertex order.

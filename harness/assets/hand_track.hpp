@@ -1,0 +1,50 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "assets/hand.hpp"
+
+namespace clothbench::assets {
+
+/// Which point of the hand `position_m` places.
+enum class Anchor { Palm, Pinch };
+
+/// One pose at one time. A pose is `pose`, or `amount` of the way from it to `blend_to`.
+struct HandKey {
+  double time_s = 0;
+  std::string pose, blend_to;
+  double amount = 0;
+  Vector position_m = Vector::Zero();
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  bool grip = false;  ///< holds what the pinch point touches, from this key to the next
+};
+
+/// A hand's way through a scene: keys in order of time, at least one.
+struct HandTrack {
+  Side side = Side::Right;
+  Anchor anchor = Anchor::Palm;
+  std::vector<HandKey> keys;
+  double duration_s() const { return keys.back().time_s; }
+};
+
+/// Reads a track, for example
+/// {"hand": "right", "anchor": "palm", "why": "...",
+///  "keys": [{"time_s": 0, "pose": "relaxed", "blend": {"to": "pinch", "amount": 0.5}, "position_m": [0, 1, 0.1],
+///            "rotation_deg": [0, 0, 0], "grip": false}, ...]}
+/// rotation_deg turns about the world's x, then y, then z axis; "orientation": [x, y, z, w] may stand instead. Without
+/// rotation the fingers point to +y and the palm faces -z. `pose` and rotation, where left out, stay as in the key
+/// before; a first key must have a pose. Throws Error with the file and JSON pointer.
+HandTrack read_hand_track(const std::filesystem::path&);
+HandTrack parse_hand_track(const std::string& text, const std::string& source);
+
+struct HandSample {
+  HandPose pose;  ///< in the world
+  bool grip = false;
+};
+
+/// The hand at `time_s`: position linear, orientation slerp, pose blended between the keys about it; before the first
+/// and after the last key it stands still. Throws Error if the hand is of the other side.
+HandSample sample(const HandTrack&, const Hand&, double time_s);
+
+}  // namespace clothbench::assets

@@ -1,0 +1,116 @@
+#include "assets/json_at.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "clothbench/error.hpp"
+#include "clothbench/solver.hpp"
+
+namespace clothbench::assets {
+namespace {
+
+std::string escaped(const std::string& name) {
+  std::string out;
+  for (char c : name) {
+    if (c == '~')
+      out += "~0";
+    else if (c == '/')
+      out += "~1";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string what_is(const nlohmann::json& j) {
+  std::string dump = j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return dump.size() <= 60 ? dump : std::string(j.type_name());
+}
+
+}  // namespace
+
+JsonAt::JsonAt(const nlohmann::json& root, std::string source)
+    : JsonAt(root, std::make_shared<const std::string>(std::move(source)), "") {}
+
+JsonAt::JsonAt(const nlohmann::json& value, std::shared_ptr<const std::string> source, std::string pointer)
+    : value_(&value), source_(std::move(source)), pointer_(std::move(pointer)) {}
+
+void JsonAt::fail(const std::string& message) const {
+  throw Error(*source_ + ": " + (pointer_.empty() ? "/" : pointer_) + ": " + message);
+}
+
+std::optional<JsonAt> JsonAt::maybe(const std::string& name) const {
+  if (!value_->is_object()) fail("expected an object, not " + what_is(*value_));
+  const auto found = value_->find(name);
+  if (found == value_->end()) return std::nullopt;
+  return JsonAt(*found, source_, pointer_ + "/" + escaped(name));
+}
+
+JsonAt JsonAt::key(const std::string& name) const {
+  const std::optional<JsonAt> found = maybe(name);
+  if (!found) fail("\"" + name + "\" is missing");
+  return *found;
+}
+
+JsonAt JsonAt::item(std::size_t i) const {
+  if (i >= size()) fail(fmt::format("expected at least {} items", i + 1));
+  return JsonAt((*value_)[i], source_, fmt::format("{}/{}", pointer_, i));
+}
+
+std::size_t JsonAt::size() const {
+  if (!value_->is_array()) fail("expected an array, not " + what_is(*value_));
+  return value_->size();
+}
+
+double JsonAt::number() const {
+  if (!value_->is_number()) fail("expected a number, not " + what_is(*value_));
+  const double v = value_->get<double>();
+  if (!std::isfinite(v)) fail("expected a finite number");
+  return v;
+}
+
+double JsonAt::number_or(const std::string& name, double otherwise) const {
+  const auto found = maybe(name);
+  return found ? found->number() : otherwise;
+}
+
+std::string JsonAt::text() const {
+  if (!value_->is_string()) fail("expected a string, not " + what_is(*value_));
+  return value_->get<std::string>();
+}
+
+bool JsonAt::boolean() const {
+  if (!value_->is_boolean()) fail("expected true or false, not " + what_is(*value_));
+  return value_->get<bool>();
+}
+
+Eigen::VectorXd JsonAt::numbers(std::size_t n) const {
+  if (size() != n) fail(fmt::format("expected {} numbers, not {}", n, size()));
+  Eigen::VectorXd out(static_cast<Eigen::Index>(n));
+  for (std::size_t i = 0; i < n; ++i) out[static_cast<Eigen::Index>(i)] = item(i).number();
+  return out;
+}
+
+void JsonAt::only(const std::vector<std::string>& known) const {
+  if (!value_->is_object()) fail("expected an object, not " + what_is(*value_));
+  for (const auto& [name, unused] : value_->items()) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string near = nearest(name, known);
+    fail(fmt::format(
+        "unknown key \"{}\"; {}", name,
+        near.empty() ? fmt::format("known: {}", fmt::join(known, ", ")) : "did you mean \"" + near + "\"?"));
+  }
+}
+
+std::string JsonAt::word(const std::vector<std::string>& known) const {
+  const std::string given = text();
+  if (std::find(known.begin(), known.end(), given) != known.end()) return given;
+  const std::string near = nearest(given, known);
+  fail(fmt::format("\"{}\" is not one of {}{}", given, fmt::join(known, ", "),
+                   near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+}
+
+}  // namespace clothbench::assets

@@ -1,0 +1,45 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace clothbench::assets {
+
+/// A place in a JSON document that knows its file and pointer, so that every complaint names both.
+class JsonAt {
+ public:
+  /// The root. `root` must outlive this and all made from it.
+  JsonAt(const nlohmann::json& root, std::string source);
+
+  const nlohmann::json& json() const { return *value_; }
+  const std::string& pointer() const { return pointer_; }
+  /// Throws Error "<file>: <pointer>: <message>".
+  [[noreturn]] void fail(const std::string& message) const;
+
+  JsonAt key(const std::string& name) const;                   ///< must be there
+  std::optional<JsonAt> maybe(const std::string& name) const;  ///< this must be an object
+  JsonAt item(std::size_t i) const;
+  std::size_t size() const;  ///< this must be an array
+
+  double number() const;  ///< finite
+  double number_or(const std::string& name, double otherwise) const;
+  std::string text() const;
+  bool boolean() const;
+  Eigen::VectorXd numbers(std::size_t n) const;  ///< an array of exactly n finite numbers
+  /// Fails on any other key, naming the nearest known one.
+  void only(const std::vector<std::string>& known) const;
+  /// One of `known`; fails naming the nearest.
+  std::string word(const std::vector<std::string>& known) const;
+
+ private:
+  JsonAt(const nlohmann::json& value, std::shared_ptr<const std::string> source, std::string pointer);
+  const nlohmann::json* value_;
+  std::shared_ptr<const std::string> source_;
+  std::string pointer_;
+};
+
+}  // namespace clothbench::assets

@@ -1,0 +1,179 @@
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "assets/procedural.hpp"
+
+namespace clothbench::assets {
+namespace {
+
+// A right hand in its palm frame, of round measures near an adult's: metres and degrees. The thumb is on the -x side.
+struct Finger {
+  std::size_t first;         ///< metacarpal joint
+  double x_base, x_knuckle;  ///< of metacarpal and proximal joint
+  double y_knuckle;
+  std::array<double, 3> bones;  ///< proximal, intermediate, distal (to the tip)
+  std::array<double, 5> radius;
+};
+const Finger kFingers[] = {
+    {kIndex, -0.016, -0.022, 0.030, {0.038, 0.023, 0.022}, {0.020, 0.010, 0.0085, 0.0075, 0.0065}},
+    {kMiddle, 0.0, 0.0, 0.030, {0.043, 0.027, 0.025}, {0.020, 0.011, 0.0085, 0.0075, 0.0065}},
+    {kRing, 0.016, 0.020, 0.025, {0.038, 0.026, 0.024}, {0.019, 0.010, 0.0080, 0.0070, 0.0060}},
+    {kPinky, 0.026, 0.037, 0.013, {0.031, 0.020, 0.020}, {0.018, 0.0085, 0.0070, 0.0065, 0.0055}}};
+const double kBaseY = -0.030;
+const std::array<double, 3> kThumbBones = {0.031, 0.033, 0.025};
+const std::array<double, 4> kThumbRadius = {0.019, 0.012, 0.010, 0.009};
+
+/// Bends [degrees] of each finger's three joints, from index to little finger; where the thumb starts, and the
+/// direction of its bones. In `pinch` the thumb is straight and ends at the tip of the index finger.
+struct Bends {
+  const char* name;
+  std::array<std::array<double, 3>, 4> fingers;
+  Vector thumb_base;
+  std::array<Vector, 3> thumb;
+};
+const Bends kBends[] = {{"relaxed",
+                         {{{2, 14, 4}, {0, 17, 2}, {-5, 16, 6}, {-4, 19, 1}}},
+                         {-0.027, -0.030, -0.011},
+                         {{{-0.64, 0.70, -0.32}, {-0.64, 0.74, -0.18}, {-0.54, 0.77, -0.34}}}},
+                        {"pinch",
+                         {{{65, 32, 8}, {19, 20, 1}, {-1, 22, 6}, {-10, 20, 2}}},
+                         {-0.022, -0.028, -0.018},
+                         {{{0, 0.735, -0.678}, {0, 0.735, -0.678}, {0, 0.735, -0.678}}}},
+                        {"point",
+                         {{{7, 7, -6}, {64, 81, 56}, {74, 84, 26}, {75, 89, 26}}},
+                         {-0.028, -0.031, -0.009},
+                         {{{-0.72, 0.68, -0.18}, {-0.60, 0.79, -0.12}, {-0.81, 0.57, -0.11}}}}};
+
+/// A joint whose -z runs along `bone` and whose +y is as near to `back` as can be.
+Frame joint_frame(const Vector& at, const Vector& bone, const Vector& back) {
+  Frame frame = Frame::Identity();
+  const Vector z = -bone.normalized();
+  const Vector y = (back - back.dot(z) * z).normalized();
+  frame.linear() << y.cross(z), y, z;
+  frame.translation() = at;
+  return frame;
+}
+
+/// Bent by `degrees` towards the palm from straight along +y.
+Frame bent(const Vector& at, double degrees) {
+  const double a = degrees * std::numbers::pi / 180;
+  return joint_frame(at, {0, std::cos(a), -std::sin(a)}, {0, std::sin(a), std::cos(a)});
+}
+
+HandPose make_pose(const Bends& bends) {
+  HandPose pose;
+  pose.joints[kWrist] = bent({0, -0.065, 0}, 0);
+  pose.radius_m[kWrist] = 0.0215;
+  for (std::size_t f = 0; f < 4; ++f) {
+    const Finger& finger = kFingers[f];
+    const Vector base(finger.x_base, kBaseY, 0), knuckle(finger.x_knuckle, finger.y_knuckle, 0);
+    pose.joints[finger.first] = joint_frame(base, knuckle - base, Vector::UnitZ());
+    Vector at = knuckle;
+    double angle = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      angle += bends.fingers[f][k];
+      pose.joints[finger.first + 1 + k] = bent(at, angle);
+      at -= finger.bones[k] * pose.joints[finger.first + 1 + k].linear().col(2);
+    }
+    pose.joints[finger.first + 4] = bent(at, angle);
+    for (std::size_t k = 0; k < 5; ++k) pose.radius_m[finger.first + k] = finger.radius[k];
+  }
+  const Vector thumb_back(-0.8, -0.5, 0.3);
+  Vector at = bends.thumb_base;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vector bone = bends.thumb[std::min<std::size_t>(k, 2)];
+    pose.joints[kThumb + k] = joint_frame(at, bone, thumb_back);
+    pose.radius_m[kThumb + k] = kThumbRadius[k];
+    if (k < 3) at += kThumbBones[k] * bone.normalized();
+  }
+  return pose;
+}
+
+/// Adds a closed tube along joints first..last: a ring at each joint and half-way along each bone, round caps at both
+/// ends.
+class TubeMaker {
+ public:
+  explicit TubeMaker(SkinnedMesh& hand) : hand_(hand) {}
+
+  void tube(const HandPose& pose, std::size_t first, std::size_t last) {
+    cap(pose, first, -1);
+    for (std::size_t j = first; j <= last; ++j) {
+      ring(pose.joints[j], 0, pose.radius_m[j], j, j > first ? j - 1 : j);
+      if (j == last) break;
+      const double length = (pose.joints[j + 1].translation() - pose.joints[j].translation()).norm();
+      ring(pose.joints[j], length / 2, (pose.radius_m[j] + pose.radius_m[j + 1]) / 2, j, j);
+    }
+    cap(pose, last, 1);
+  }
+
+ private:
+  static constexpr std::uint32_t kSides = 12, kCapRings = 3;
+
+  std::uint32_t vertex(const Vector& p, std::size_t a, std::size_t b) {
+    hand_.rest.add_vertex(p);
+    hand_.joints.push_back({static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b), 0, 0});
+    hand_.weights.push_back({0.5, 0.5, 0, 0});
+    return static_cast<std::uint32_t>(hand_.rest.vertex_count() - 1);
+  }
+
+  /// A ring `along` the bone from a joint, joined to the ring before.
+  void ring(const Frame& joint, double along, double radius, std::size_t a, std::size_t b) {
+    const auto start = static_cast<std::uint32_t>(hand_.rest.vertex_count());
+    for (std::uint32_t s = 0; s < kSides; ++s) {
+      const double angle = 2 * std::numbers::pi * s / kSides;
+      vertex(joint * Vector(radius * std::cos(angle), radius * std::sin(angle), -along), a, b);
+    }
+    auto& triangles = hand_.rest.triangles;
+    for (std::uint32_t s = 0; s < kSides; ++s) {
+      const std::uint32_t t = (s + 1) % kSides;
+      if (pole_) {
+        triangles.push_back({*pole_, start + s, start + t});
+      } else {
+        triangles.push_back({before_ + s, start + t, before_ + t});
+        triangles.push_back({before_ + s, start + s, start + t});
+      }
+    }
+    pole_.reset();
+    before_ = start;
+  }
+
+  void cap(const HandPose& pose, std::size_t j, int end) {
+    const Frame& joint = pose.joints[j];
+    const double radius = pose.radius_m[j];
+    if (end < 0) pole_ = vertex(joint * Vector(0, 0, radius), j, j);
+    for (std::uint32_t k = 1; k < kCapRings; ++k) {
+      const double latitude = std::numbers::pi / 2 * (end < 0 ? kCapRings - k : k) / kCapRings;
+      ring(joint, end * radius * std::sin(latitude), radius * std::cos(latitude), j, j);
+    }
+    if (end < 0) return;
+    const std::uint32_t tip = vertex(joint * Vector(0, 0, -radius), j, j);
+    for (std::uint32_t s = 0; s < kSides; ++s)
+      hand_.rest.triangles.push_back({before_ + s, tip, before_ + (s + 1) % kSides});
+  }
+
+  SkinnedMesh& hand_;
+  std::optional<std::uint32_t> pole_;
+  std::uint32_t before_ = 0;
+};
+
+}  // namespace
+
+Hand procedural_hand(Side side) {
+  Hand hand;
+  hand.side = side;
+  for (const Bends& bends : kBends) {
+    const HandPose right = make_pose(bends);
+    hand.poses.emplace(bends.name, in_palm_frame(side == Side::Right ? right : mirrored(right)));
+  }
+  const HandPose& rest = hand.poses.at("relaxed");
+  TubeMaker maker(hand.mesh);
+  maker.tube(rest, kThumb, kThumb + 3);
+  for (std::size_t first : {kIndex, kMiddle, kRing, kPinky}) maker.tube(rest, first, first + 4);
+  hand.mesh.bind = rest.joints;
+  for (std::size_t j = 0; j < kJointCount; ++j) hand.mesh.inverse_bind[j] = Eigen::Affine3d(rest.joints[j].inverse());
+  hand.mesh.stored_vertices = hand.mesh.rest.vertex_count();
+  return hand;
+}
+
+}  // namespace clothbench::assets

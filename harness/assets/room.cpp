@@ -1,0 +1,186 @@
+#include "assets/room.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "assets/base64.hpp"
+#include "assets/json_at.hpp"
+#include "clothbench/error.hpp"
+#include "scenario/json_text.hpp"
+
+namespace clothbench::assets {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "captures are little-endian");
+
+Vector vector_at(const std::optional<JsonAt>& at) {
+  if (!at) return Vector::Zero();
+  return {at->number_or("x", 0), at->number_or("y", 0), at->number_or("z", 0)};
+}
+
+Frame frame_at(const JsonAt& entity) {
+  const JsonAt located = entity.key("locatable_META");
+  const JsonAt turned = located.key("orientation");
+  const Eigen::Quaterniond q(turned.number_or("w", 0), turned.number_or("x", 0), turned.number_or("y", 0),
+                             turned.number_or("z", 0));
+  // Captures hold unit quaternions to 1e-6; anything far from that is another kind of data.
+  if (!(std::abs(q.norm() - 1) <= 1e-3))
+    turned.fail(fmt::format("expected a unit quaternion, not of norm {}", q.norm()));
+  Frame frame = Frame::Identity();
+  frame.linear() = q.normalized().toRotationMatrix();
+  frame.translation() = vector_at(located.maybe("position"));
+  return frame;
+}
+
+double extent_at(const JsonAt& extent, const char* name) {
+  const double v = extent.number_or(name, 0);
+  if (!(v > 0)) extent.fail(fmt::format("\"{}\" is {}; expected more than 0 m", name, v));
+  return v;
+}
+
+Table table_at(const JsonAt& entity, const JsonAt& bounded) {
+  Table table;
+  table.uuid = entity.key("uuid").text();
+  table.frame = frame_at(entity);
+  const JsonAt extent = bounded.key("extent");
+  const Vector low = vector_at(bounded.maybe("offset"));
+  table.box =
+      Box(low, low + Vector(extent_at(extent, "width"), extent_at(extent, "height"), extent_at(extent, "depth")));
+  return table;
+}
+
+Rectangle rectangle_at(const JsonAt& entity, const JsonAt& bounded) {
+  const JsonAt extent = bounded.key("extent");
+  return {entity.key("uuid").text(),
+          frame_at(entity),
+          vector_at(bounded.maybe("offset")).head<2>(),
+          {extent_at(extent, "width"), extent_at(extent, "height")}};
+}
+
+/// 4-byte items in threes.
+template <class Item>
+std::vector<Item> triples_at(const JsonAt& at) {
+  std::vector<std::uint8_t> bytes;
+  std::string problem;
+  if (!decode_base64(at.json().is_string() ? at.json().get_ref<const std::string&>() : at.text(), bytes, problem))
+    at.fail(problem);
+  if (bytes.empty() || bytes.size() % 12 != 0)
+    at.fail(fmt::format("{} bytes; expected a positive multiple of 12 (three 4-byte numbers each)", bytes.size()));
+  std::vector<Item> items(bytes.size() / sizeof(Item));
+  std::memcpy(items.data(), bytes.data(), bytes.size());
+  return items;
+}
+
+TriangleMesh mesh_at(const JsonAt& entity, const JsonAt& stored) {
+  const Frame frame = frame_at(entity);
+  const JsonAt vertices_at = stored.key("vertices"), indices_at = stored.key("indices");
+  const auto vertices = triples_at<float>(vertices_at);
+  const auto indices = triples_at<std::uint32_t>(indices_at);
+  TriangleMesh mesh;
+  mesh.positions.reserve(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); i += 3) {
+    const Vector p(vertices[i], vertices[i + 1], vertices[i + 2]);
+    if (!p.allFinite()) vertices_at.fail(fmt::format("vertex {} is not finite", i / 3));
+    mesh.add_vertex(frame * p);
+  }
+  const std::size_t count = mesh.vertex_count();
+  mesh.triangles.reserve(indices.size() / 3);
+  for (std::size_t i = 0; i < indices.size(); i += 3) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!(indices[i + k] < count))
+        indices_at.fail(fmt::format("triangle {} names vertex {}, but there are {}", i / 3, indices[i + k], count));
+    mesh.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+  }
+  return mesh;
+}
+
+/// Gives every box the rectangle whose centre is nearest to that of its upper face, if within half its shorter side.
+void pair_tops(std::vector<Table>& tables, const std::vector<Rectangle>& tops) {
+  for (Table& table : tables) {
+    const auto corners = table.top_corners();
+    const Vector middle = (corners[0] + corners[2]) / 2;
+    double best = table.box.sizes().head<2>().minCoeff() / 2;
+    for (const Rectangle& top : tops) {
+      const Eigen::Vector2d centre = top.offset_m + top.extent_m / 2;
+      const double distance = (top.frame * Vector(centre.x(), centre.y(), 0) - middle).norm();
+      if (!(distance < best)) continue;
+      best = distance;
+      table.top = top;
+    }
+  }
+}
+
+}  // namespace
+
+std::array<Vector, 4> Table::top_corners() const {
+  const Vector low = box.min(), high = box.max();
+  return {frame * Vector(low.x(), low.y(), high.z()), frame * Vector(high.x(), low.y(), high.z()),
+          frame * Vector(high.x(), high.y(), high.z()), frame * Vector(low.x(), high.y(), high.z())};
+}
+
+double Table::top_height() const {
+  const auto corners = top_corners();
+  return (corners[0].y() + corners[1].y() + corners[2].y() + corners[3].y()) / 4;
+}
+
+std::size_t count_zero_area(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return 0;
+  const double least = 1e-12 * bounding_box(mesh).diagonal().squaredNorm();
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) count += !(area(mesh, t) >= least);
+  return count;
+}
+
+Room parse_room(const std::string& text, const std::string& source, const std::string& name) {
+  const nlohmann::json document = parse_json(text, source);
+  const JsonAt root(document, source);
+  const JsonAt type = root.key("type"), version = root.key("version");
+  if (type.text() != "scene") type.fail("expected \"scene\", not \"" + type.text() + "\"");
+  if (version.number() != 1) version.fail("version " + version.json().dump() + "; 1 is understood");
+  Room room;
+  room.name = name;
+  const JsonAt entities = root.key("spatialEntities");
+  room.entities = entities.size();
+  std::vector<Rectangle> tops;
+  for (std::size_t i = 0; i < room.entities; ++i) {
+    const JsonAt entity = entities.item(i);
+    if (const auto stored = entity.maybe("triangleMesh_META")) {
+      if (!room.mesh.triangles.empty()) stored->fail("a second mesh; expected one entity with triangleMesh_META");
+      room.mesh = mesh_at(entity, *stored);
+    }
+    const auto label = entity.maybe("semanticLabel_META");
+    if (!label || label->text() != "TABLE") continue;
+    if (const auto box = entity.maybe("bounded3D_META")) room.tables.push_back(table_at(entity, *box));
+    if (const auto flat = entity.maybe("bounded2D_META")) tops.push_back(rectangle_at(entity, *flat));
+  }
+  if (room.mesh.triangles.empty()) entities.fail("no entity has triangleMesh_META: there is no scanned mesh");
+  pair_tops(room.tables, tops);
+  room.zero_area_triangles = count_zero_area(room.mesh);
+  return room;
+}
+
+Room load_room(const std::filesystem::path& path) {
+  return parse_room(read_text(path), path.string(), path.stem().string());
+}
+
+const Table& find_table(const Room& room, const std::string& prefix) {
+  const Table* found = nullptr;
+  std::string known;
+  int matches = 0;
+  for (const Table& table : room.tables) {
+    known += (known.empty() ? "" : ", ") + table.uuid;
+    const bool stands =
+        !table.stands_for.empty() && (table.stands_for.starts_with(prefix) || prefix.starts_with(table.stands_for));
+    if (prefix.empty() || !(table.uuid.starts_with(prefix) || stands)) continue;
+    ++matches;
+    found = &table;
+  }
+  if (matches == 1) return *found;
+  throw Error(fmt::format("room {}: {} tables have a uuid that starts with \"{}\"; there are: {}", room.name, matches,
+                          prefix, known.empty() ? "none" : known));
+}
+
+}  // namespace clothbench::assets

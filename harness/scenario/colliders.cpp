@@ -1,0 +1,294 @@
+#include "scenario/colliders.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+
+#include "assets/assets.hpp"
+#include "assets/hand_track.hpp"
+#include "assets/submesh.hpp"
+#include "clothbench/error.hpp"
+#include "scenario/json_text.hpp"
+#include "scenario/load.hpp"
+#include "scenario/table_pose.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr double kUnit = 1e-9;  // how far from length 1 a unit vector may be
+constexpr double kRadians = std::numbers::pi / 180;
+
+Vec3 vec3(const json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
+Vec3 vec3(const assets::Vector& v) { return {v.x(), v.y(), v.z()}; }
+
+/// A hand on its way; keeps what is needed to sample it.
+struct Moving {
+  assets::Hand hand;
+  assets::HandTrack track;
+};
+
+class Reader {
+ public:
+  Reader(json& scenario, Scene& scene, const std::string& source) : scenario_(scenario), scene_(scene), source_(source) {}
+
+  void read() {
+    json& list = scenario_["colliders"];
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      at_ = fmt::format("/colliders/{}", k);
+      scene_.colliders.push_back(collider(list[k]));
+      hands_.resize(scene_.colliders.size());
+    }
+    place_cloth();
+    for (std::size_t k = 0; k < scenario_["grips"].size(); ++k) {
+      at_ = fmt::format("/grips/{}", k);
+      grip(scenario_["grips"][k]);
+    }
+    sample_motion();
+    if (assets_) scenario_["assets"] = scene_.assets = assets_->kind();
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& key, const std::string& expected) const {
+    throw Error(source_ + ": " + at_ + key + ": " + expected);
+  }
+
+  const assets::AssetSource& assets() {
+    if (!assets_) assets_ = assets::locate_assets(false);
+    return *assets_;
+  }
+
+  Collider collider(json& j) {
+    const auto type = j["type"].get<std::string>();
+    json schema = json::parse(kSceneSchema);
+    json sub = schema["definitions"]["collider_" + type];
+    sub["definitions"] = schema["definitions"];
+    validate_json(j, sub.dump(), source_, at_);
+    fill_defaults(j, sub.dump());
+    Collider c;
+    c.margin_m = j["margin_m"].get<double>();
+    c.friction = j["friction"].get<double>();
+    c.name = type;
+    if (type == "plane") plane(j, c);
+    if (type == "sphere") sphere(j, c);
+    if (type == "box") box(j, c);
+    if (type == "mesh") mesh(j, c);
+    if (type == "room") room(j, c);
+    if (type == "hand_capsules" || type == "hand_mesh") hand(j, c, type == "hand_mesh");
+    return c;
+  }
+
+  void plane(const json& j, Collider& c) const {
+    c.shape = Collider::Shape::Plane;
+    c.center_m = vec3(j["point_m"]);
+    c.normal = vec3(j["normal"]);
+    const double squared = c.normal[0] * c.normal[0] + c.normal[1] * c.normal[1] + c.normal[2] * c.normal[2];
+    if (!(std::abs(squared - 1) <= kUnit)) refuse("/normal", "expected a vector of length 1");
+  }
+
+  void sphere(const json& j, Collider& c) const {
+    c.shape = Collider::Shape::Sphere;
+    c.center_m = vec3(j["center_m"]);
+    c.radius_m = j["radius_m"].get<double>();
+  }
+
+  void box(const json& j, Collider& c) const {
+    c.shape = Collider::Shape::Box;
+    c.center_m = vec3(j["center_m"]);
+    const Vec3 size = vec3(j["size_m"]), turn = vec3(j["rotation_deg"]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(size[k] > 0)) refuse("/size_m", "expected three lengths above 0");
+      c.half_extent_m[k] = size[k] / 2;
+    }
+    using Turn = Eigen::AngleAxisd;
+    const Eigen::Matrix3d r = (Turn(turn[2] * kRadians, Eigen::Vector3d::UnitZ()) * Turn(turn[1] * kRadians, Eigen::Vector3d::UnitY()) *
+                               Turn(turn[0] * kRadians, Eigen::Vector3d::UnitX())).toRotationMatrix();
+    for (int k = 0; k < 3; ++k) c.axes[static_cast<std::size_t>(k)] = vec3(assets::Vector(r.col(k)));
+  }
+
+  static std::shared_ptr<ColliderMesh> mesh_of(const assets::TriangleMesh& from) {
+    auto mesh = std::make_shared<ColliderMesh>();
+    mesh->positions = from.positions;
+    mesh->triangles = from.triangles;
+    // A room is closed too, but what is solid lies outside it: no point has a depth in it.
+    mesh->closed = assets::topology(from).closed_manifold() && assets::signed_volume(from) > 0;
+    return mesh;
+  }
+
+  void mesh(const json& j, Collider& c) const {
+    c.shape = Collider::Shape::Mesh;
+    assets::TriangleMesh m;
+    for (const json& p : j["positions_m"]) m.add_vertex({p[0].get<double>(), p[1].get<double>(), p[2].get<double>()});
+    for (std::size_t t = 0; t < j["triangles"].size(); ++t) {
+      const json& corners = j["triangles"][t];
+      for (std::size_t k = 0; k < 3; ++k)
+        if (corners[k].get<std::size_t>() >= m.vertex_count())
+          refuse(fmt::format("/triangles/{}/{}", t, k), fmt::format("vertex {} of {} (the first is 0)", corners[k].get<std::size_t>(), m.vertex_count()));
+      m.triangles.push_back({corners[0].get<std::uint32_t>(), corners[1].get<std::uint32_t>(), corners[2].get<std::uint32_t>()});
+    }
+    c.mesh = mesh_of(m);
+  }
+
+  void room(const json& j, Collider& c) {
+    c.shape = Collider::Shape::Mesh;
+    c.name = j["room"].get<std::string>();
+    const assets::Room room = assets::open_room(assets(), c.name);
+    const auto cut = j["cut"].get<std::string>();
+    std::optional<assets::Table> table;
+    if (j.contains("table")) {
+      table = assets::find_table(room, j["table"].get<std::string>());
+      c.name += "/" + j["table"].get<std::string>();
+    }
+    if (cut == "none") {
+      c.mesh = mesh_of(room.mesh);
+    } else {
+      if (!table) refuse("", fmt::format("\"table\" is missing; cut \"{}\" goes round one", cut));
+      const auto points = assets::six_points(*table, j["below_m"].get<double>(), j["above_m"].get<double>());
+      const auto mode = cut == "crossing" ? assets::CutMode::Crossing : assets::CutMode::AnyVertexInside;
+      c.mesh = mesh_of(assets::cut(room.mesh, assets::box_of(points), mode).mesh);
+      if (c.mesh->triangles.empty()) refuse("", "no triangle of the room is in the box");
+    }
+    if (table) tables_[scene_.colliders.size()] = *table;
+  }
+
+  fs::path track_file(const std::string& name) const {
+    std::error_code ec;
+    for (const fs::path& folder : {fs::path(source_).parent_path(), scenario_root()})
+      if (fs::is_regular_file(folder / name, ec)) return folder / name;
+    refuse("/track", fmt::format("\"{}\": no such file beside the scene or in {}", name, scenario_root().string()));
+  }
+
+  Moving moving(const json& j) {
+    const assets::HandTrack track = assets::read_hand_track(track_file(j["track"].get<std::string>()));
+    return {assets::open_hand(assets(), track.side), track};
+  }
+
+  void hand(const json& j, Collider& c, bool as_mesh) {
+    Moving m = moving(j);
+    c.name = fs::path(j["track"].get<std::string>()).stem().string();
+    c.shape = as_mesh ? Collider::Shape::Mesh : Collider::Shape::Capsules;
+    if (as_mesh) {
+      auto mesh = mesh_of(m.hand.mesh.rest);
+      mesh->joints = m.hand.mesh.joints;
+      for (const auto& w : m.hand.mesh.weights)
+        mesh->weights.push_back({static_cast<float>(w[0]), static_cast<float>(w[1]), static_cast<float>(w[2]), static_cast<float>(w[3])});
+      mesh->joint_count = assets::kJointCount;
+      c.mesh = std::move(mesh);
+    } else {
+      c.capsules = pose_at(m, false, 0).capsules;
+    }
+    hands_.resize(scene_.colliders.size() + 1);
+    hands_.back() = std::move(m);
+  }
+
+  static ColliderPose pose_at(const Moving& m, bool as_mesh, double time_s) {
+    const assets::HandSample now = assets::sample(m.track, m.hand, time_s);
+    ColliderPose pose;
+    if (!as_mesh) {
+      for (const assets::Capsule& c : assets::capsules(now.pose)) pose.capsules.push_back({vec3(c.a), vec3(c.b), c.radius_m});
+      return pose;
+    }
+    for (std::size_t k = 0; k < assets::kJointCount; ++k) {
+      const Eigen::Affine3d skin = now.pose.joints[k] * m.hand.mesh.inverse_bind[k];
+      Affine& a = pose.joints.emplace_back();
+      for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column) a[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = skin.matrix()(row, column);
+    }
+    return pose;
+  }
+
+  void place_cloth() {
+    json& pose = scenario_["cloth"]["pose"];
+    if (!pose.contains("over_table")) return;
+    at_ = "/cloth/pose/over_table";
+    const json& over = pose["over_table"];
+    const auto index = over["collider"].get<std::size_t>();
+    const auto table = tables_.find(index);
+    if (table == tables_.end()) refuse("/collider", fmt::format("expected a collider of type room with a table; /colliders/{} is none", index));
+    const ColliderMesh& mesh = *scene_.colliders[index].mesh;
+    const double drop = over["drop_m"].get<double>();
+    const TablePose at = over["at"] == "center" ? flat_over(table->second, mesh, scene_.cloth, drop)
+                                                : corner_first_over(table->second, scene_.cloth, drop, over["tilt_deg"].get<double>() * kRadians);
+    scene_.cloth.center_m = at.center_m;
+    scene_.cloth.axis_u = at.axis_u;
+    scene_.cloth.axis_v = at.axis_v;
+    pose["center_m"] = at.center_m;
+    pose["axis_u"] = at.axis_u;
+    pose["axis_v"] = at.axis_v;
+  }
+
+  void grip(const json& j) {
+    Grip g{moving(j), {}};
+    const assets::HandSample start = assets::sample(g.by.track, g.by.hand, 0);
+    if (!start.grip) refuse("/track", "this hand does not hold anything at time 0 (\"grip\": true in its first key)");
+    const double radius = j["radius_m"].get<double>();
+    const assets::Vector pinch = assets::pinch_point(start.pose);
+    const std::vector<double> x = initial_positions(scene_);
+    for (std::size_t v = 0; v < x.size() / 3; ++v)
+      if ((assets::Vector::Map(x.data() + 3 * v) - pinch).norm() <= radius) g.vertices.push_back(static_cast<std::uint32_t>(v));
+    if (g.vertices.empty()) refuse("/radius_m", fmt::format("no vertex within {} m of the pinch point ({:.4f}, {:.4f}, {:.4f})", radius, pinch.x(), pinch.y(), pinch.z()));
+    for (std::uint32_t v : g.vertices) {
+      for (std::uint32_t w : scene_.grips.vertices)
+        if (v == w) refuse("/radius_m", fmt::format("vertex {} is held by two hands", v));
+      for (std::uint32_t w : scene_.pins.vertices)
+        if (v == w) refuse("/radius_m", fmt::format("vertex {} is pinned as well", v));
+      scene_.grips.vertices.push_back(v);
+    }
+    grips_.push_back(std::move(g));
+  }
+
+  /// Held vertices follow the hand rigidly: the frame of its pinch, turned as its palm.
+  static assets::Frame pinch_frame(const assets::HandPose& pose) {
+    assets::Frame f = assets::palm_frame(pose);
+    f.translation() = assets::pinch_point(pose);
+    return f;
+  }
+
+  void sample_motion() {
+    bool any = !grips_.empty();
+    for (const Collider& c : scene_.colliders) any = any || c.moves();
+    if (!any) return;
+    const std::vector<double> x = initial_positions(scene_);
+    for (int frame = 0; frame <= scene_.time.frames(); ++frame) {
+      const double t = frame * scene_.time.dt();
+      FrameMotion& m = scene_.motion.emplace_back();
+      for (std::size_t k = 0; k < scene_.colliders.size(); ++k) {
+        const Collider& c = scene_.colliders[k];
+        m.colliders.push_back(c.moves() ? pose_at(*hands_[k], c.shape == Collider::Shape::Mesh, t) : ColliderPose{});
+      }
+      for (const Grip& g : grips_) {
+        const assets::HandSample start = assets::sample(g.by.track, g.by.hand, 0), now = assets::sample(g.by.track, g.by.hand, t);
+        const assets::Frame move = pinch_frame(now.pose) * pinch_frame(start.pose).inverse();
+        for (std::uint32_t v : g.vertices) {
+          const bool before = frame == 0 || scene_.motion[scene_.motion.size() - 2].grip_held[m.grip_held.size()] != 0;
+          m.grip_position_m.push_back(vec3(assets::Vector(move * assets::Vector::Map(x.data() + 3 * v))));
+          m.grip_held.push_back(before && now.grip ? 1 : 0);
+        }
+      }
+    }
+  }
+
+  struct Grip {
+    Moving by;
+    std::vector<std::uint32_t> vertices;
+  };
+  json& scenario_;
+  Scene& scene_;
+  const std::string& source_;
+  std::string at_;
+  std::optional<assets::AssetSource> assets_;
+  std::map<std::size_t, assets::Table> tables_;  ///< by collider
+  std::vector<std::optional<Moving>> hands_;     ///< by collider
+  std::vector<Grip> grips_;
+};
+
+}  // namespace
+
+void read_colliders(json& scenario, Scene& scene, const std::string& source) { Reader(scenario, scene, source).read(); }
+
+}  // namespace clothbench

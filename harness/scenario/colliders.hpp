@@ -1,0 +1,14 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "clothbench/scene.hpp"
+
+namespace clothbench {
+
+/// Fills in `scene.colliders`, `grips`, `motion` and `assets` from the scenario, and, where `cloth.pose.over_table`
+/// asks for it, the cloth's pose, which is written back to `scenario` for the record. Everything of the scene that
+/// does not move must be there already. Throws Error with `source` and JSON pointer.
+void read_colliders(nlohmann::json& scenario, Scene& scene, const std::string& source);
+
+}  // namespace clothbench

@@ -1,0 +1,79 @@
+#include "scenario/table_pose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "clothbench/error.hpp"
+
+namespace clothbench {
+namespace {
+
+using assets::Vector;
+
+Vec3 vec3(const Vector& v) { return {v.x(), v.y(), v.z()}; }
+
+/// The part of a polygon with f >= 0, f linear.
+template <class F>
+std::vector<Vector> clip(const std::vector<Vector>& polygon, F f) {
+  std::vector<Vector> out;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double fa = f(a), fb = f(b);
+    if (fa >= 0) out.push_back(a);
+    if ((fa < 0) != (fb < 0)) out.push_back(a + (b - a) * (fa / (fa - fb)));
+  }
+  return out;
+}
+
+struct Edges {
+  Vector middle_of_long, along, across;  ///< unit vectors, level; `across` points off the table
+  Vector center;
+};
+
+Edges edges_of(const assets::Table& table) {
+  const auto c = table.top_corners();
+  std::size_t longest = 0;
+  const auto side = [&](std::size_t k) { return Vector(c[(k + 1) % 4] - c[k]); };
+  if (side(1).norm() > side(0).norm()) longest = 1;
+  Edges e;
+  e.center = (c[0] + c[1] + c[2] + c[3]) / 4;
+  e.middle_of_long = (c[longest] + c[(longest + 1) % 4]) / 2;
+  e.along = side(longest);
+  e.along.y() = 0;
+  e.along.normalize();
+  e.across = e.along.cross(Vector::UnitY());
+  if (e.across.dot(e.middle_of_long - e.center) < 0) e.across = -e.across;
+  return e;
+}
+
+}  // namespace
+
+TablePose flat_over(const assets::Table& table, const ColliderMesh& mesh, const Cloth& cloth, double drop_m) {
+  const Edges e = edges_of(table);
+  double highest = -INFINITY;
+  for (const auto& t : mesh.triangles) {
+    std::vector<Vector> part;
+    for (std::uint32_t v : t) part.push_back(Vector::Map(mesh.positions.data() + 3 * v));
+    for (const double sign : {1.0, -1.0}) {
+      part = clip(part, [&](const Vector& p) { return cloth.width_m / 2 - sign * (p - e.center).dot(e.along); });
+      part = clip(part, [&](const Vector& p) { return cloth.height_m / 2 - sign * (p - e.center).dot(e.across); });
+    }
+    for (const Vector& p : part) highest = std::max(highest, p.y());
+  }
+  if (!std::isfinite(highest)) throw Error("/cloth/pose/over_table: nothing of the table's mesh is below the cloth");
+  // axis_u x axis_v points down, as for the sheet of the other scenes: u, v = x, z.
+  Vector v = e.along.cross(Vector::UnitY());
+  return {{e.center.x(), highest + drop_m, e.center.z()}, vec3(e.along), vec3(v)};
+}
+
+TablePose corner_first_over(const assets::Table& table, const Cloth& cloth, double drop_m, double tilt) {
+  const Edges e = edges_of(table);
+  const Vector rising = std::cos(tilt) * e.along + std::sin(tilt) * Vector::UnitY();
+  // The lowest corner is u0v0: the sheet's diagonal from there rises, u and v lie at 45 degrees to it.
+  const Vector u = (rising + e.across) / std::sqrt(2.0), v = (rising - e.across) / std::sqrt(2.0);
+  const Vector lowest = e.middle_of_long + drop_m * Vector::UnitY();
+  return {vec3(Vector(lowest + cloth.width_m / 2 * u + cloth.height_m / 2 * v)), vec3(u), vec3(v)};
+}
+
+}  // namespace clothbench

@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Gets the room captures, hand meshes and hand poses into build/assets/node_modules, pinned by assets-package-lock.json.
+#   scripts/fetch-assets.sh [--require-assets]
+# Without them clothbench uses procedural stand-ins, so a failure here is one line and exit 0, unless --require-assets.
+# Nothing from the packages is executed.
+set -euo pipefail
+
+require=0
+case "${1:-}" in
+  '') ;;
+  --require-assets) require=1 ;;
+  *) echo "usage: scripts/fetch-assets.sh [--require-assets]" >&2; exit 2 ;;
+esac
+here=$(cd "$(dirname "$0")" && pwd)
+target=$(dirname "$here")/build/assets
+
+give_up() {
+  echo "assets: $1; clothbench will use its procedural room and hand"
+  exit "$require"
+}
+
+# Written last, so an interrupted fetch is started again.
+if cmp -s "$here/assets-package-lock.json" "$target/fetched-lock.json" && [ -d "$target/node_modules/@iwer/sem" ]; then
+  echo "assets: already in build/assets"
+  exit 0
+fi
+
+# Debian's npm and one from elsewhere conflict: any npm that is there is used, and Debian's only where there is none.
+if ! command -v npm >/dev/null; then
+  as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || give_up "no npm, and neither root nor sudo to install it"
+    as_root=(sudo -n)
+  fi
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends npm >/dev/null 2>&1 ||
+    give_up "no npm, and apt-get install npm failed"
+fi
+
+mkdir -p "$target"
+rm -f "$target/fetched-lock.json"
+cp "$here/assets-package.json" "$target/package.json"
+cp "$here/assets-package-lock.json" "$target/package-lock.json"
+log=$target/npm.log
+(cd "$target" && timeout 420 npm ci --ignore-scripts --no-audit --no-fund --fetch-retries=1 --fetch-timeout=60000) >"$log" 2>&1 ||
+  give_up "npm ci failed (see build/assets/npm.log)"
+cp "$here/assets-package-lock.json" "$target/fetched-lock.json"
+echo "assets: fetched into build/assets"

@@ -1,0 +1,196 @@
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "assets/hand.hpp"
+#include "assets/room.hpp"
+#include "support.hpp"
+
+namespace clothbench::assets {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string room_text() {
+  std::vector<float> vertices;
+  for (double x : tetrahedron().positions) vertices.push_back(static_cast<float>(x));
+  std::vector<std::uint32_t> indices;
+  for (const auto& t : tetrahedron().triangles) indices.insert(indices.end(), t.begin(), t.end());
+  return R"({"type": "scene", "version": 1, "spatialEntities": [
+ {"uuid": "t-1", "semanticLabel_META": "TABLE", "locatable_META": {"orientation": {"x": -0.5, "y": 0.5, "z": 0.5, "w": 0.5}},
+  "bounded3D_META": {"offset": {"z": -0.75}, "extent": {"width": 1, "height": 2, "depth": 0.75}}},
+ {"uuid": "m-1", "semanticLabel_META": "UNRECOGNIZED", "locatable_META": {"position": {"y": 2}, "orientation": {"w": 1}},
+  "triangleMesh_META": {"vertices": ")" +
+         base64_of(vertices) + R"(", "indices": ")" + base64_of(indices) + "\"}}]}";
+}
+
+TEST(RoomText, LeftOutFieldsAreZero) {
+  const Room room = parse_room(room_text(), "r.json", "r");
+  EXPECT_EQ(room.mesh.vertex(0), Vector(0, 2, 0));
+  ASSERT_EQ(room.tables.size(), 1u);
+  EXPECT_EQ(room.tables[0].box.min(), Vector(0, 0, -0.75));
+  EXPECT_FALSE(room.tables[0].top);
+}
+
+struct Bad {
+  const char *name, *from;
+  std::string to;
+  const char *where, *says;
+};
+class BadRooms : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadRooms, SayWhere) {
+  std::string text = room_text();
+  const std::size_t at = text.find(GetParam().from);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, std::string(GetParam().from).size(), GetParam().to);
+  const std::string message = error_of([&] { parse_room(text, "my-room.json", "r"); });
+  EXPECT_EQ(message.find("my-room.json: "), 0u) << message;
+  EXPECT_NE(message.find(GetParam().where), std::string::npos) << message;
+  EXPECT_NE(message.find(GetParam().says), std::string::npos) << message;
+}
+
+const std::string kVertices = "\"vertices\": \"", kIndices = "\"indices\": \"";
+const float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinite = std::numeric_limits<float>::infinity();
+
+INSTANTIATE_TEST_SUITE_P(
+    Table, BadRooms,
+    testing::Values(
+        Bad{"not_a_scene", "\"scene\"", "\"anchor\"", "/type", "scene"},
+        Bad{"version", "\"version\": 1", "\"version\": 2", "/version", "1 is understood"},
+        Bad{"no_version", "\"version\": 1, ", "", "/", "\"version\" is missing"},
+        Bad{"no_mesh", "triangleMesh_META", "triangleMesh", "/spatialEntities", "no entity has triangleMesh_META"},
+        Bad{"cut_base64", kVertices.c_str(), kVertices + "AA", "/spatialEntities/1/triangleMesh_META/vertices",
+            "multiple of 4"},
+        Bad{"alphabet", kVertices.c_str(), kVertices + "AA*A", "/spatialEntities/1/triangleMesh_META/vertices",
+            "alphabet"},
+        Bad{"half_vertex", kVertices.c_str(),
+            kVertices + base64_of(std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9}).substr(0, 4),
+            "/triangleMesh_META/vertices", "multiple of 12"},
+        Bad{"nan", kVertices.c_str(), kVertices + base64_of(std::vector<float>{0, kNan, 0}),
+            "/triangleMesh_META/vertices", "vertex 0 is not finite"},
+        Bad{"infinite", kVertices.c_str(), kVertices + base64_of(std::vector<float>{0, 0, kInfinite}),
+            "/triangleMesh_META/vertices", "not finite"},
+        Bad{"index", kIndices.c_str(), kIndices + base64_of(std::vector<std::uint32_t>{0, 1, 4}),
+            "/triangleMesh_META/indices", "names vertex 4, but there are 4"},
+        Bad{"index_huge", kIndices.c_str(), kIndices + base64_of(std::vector<std::uint32_t>{0xffffffffu, 1, 2}),
+            "/triangleMesh_META/indices", "4294967295"},
+        Bad{"vertices_number", kVertices.c_str(), "\"vertices\": 3, \"v\": \"", "/triangleMesh_META/vertices",
+            "expected a string"},
+        Bad{"no_indices", kIndices.c_str(), "\"index\": \"", "/spatialEntities/1/triangleMesh_META",
+            "\"indices\" is missing"},
+        Bad{"no_place", "\"locatable_META\": {\"position\"", "\"located\": {\"position\"", "/spatialEntities/1",
+            "locatable_META"},
+        Bad{"quaternion", "\"w\": 1", "\"w\": 3", "/spatialEntities/1/locatable_META/orientation", "unit quaternion"},
+        Bad{"flat_table", "\"depth\": 0.75", "\"depth\": -0.75", "/spatialEntities/0/bounded3D_META/extent",
+            "more than 0"},
+        Bad{"word", "\"z\": -0.75", "\"z\": \"NaN\"", "/spatialEntities/0/bounded3D_META/offset/z",
+            "expected a number"},
+        Bad{"not_json", "{\"type\"", "{type", "line 1", "not valid JSON"},
+        Bad{"list", "\"spatialEntities\": [", "\"spatialEntities\": {}, \"x\": [", "/spatialEntities",
+            "expected an array"}),
+    [](const auto& p) { return p.param.name; });
+
+TEST(RoomText, CutAnywhereIsAnError) {
+  const std::string text = room_text();
+  for (std::size_t n = 0; n < text.size(); n += 7)
+    EXPECT_NE(error_of([&] { parse_room(text.substr(0, n), "cut.json", "r"); }), "") << n;
+}
+
+TEST(RoomText, MissingFileAndFolder) {
+  EXPECT_NE(error_of([] { load_room("/nonexistent/room.json"); }).find("/nonexistent/room.json: no such file"),
+            std::string::npos);
+  EXPECT_NE(error_of([] { load_room(CLOTHBENCH_SOURCE_DIR); }).find("folder"), std::string::npos);
+}
+
+std::vector<std::uint8_t> bytes_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+fs::path right_hand(const AssetSource& source) {
+  return source.root / "@webxr-input-profiles/assets/dist/profiles/generic-hand/right.glb";
+}
+
+TEST(Glb, CutAnywhereIsAnError) {
+  NEED_NPM_ASSETS(source);
+  const auto whole = bytes_of(right_hand(source));
+  ASSERT_GT(whole.size(), 90000u);
+  for (std::size_t n = 0; n < whole.size(); n += 100) {
+    const std::vector<std::uint8_t> part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
+    EXPECT_EQ(error_of([&] { parse_hand_glb(part, "cut.glb"); }).find("cut.glb: "), 0u) << n;
+  }
+}
+
+/// Nothing but a hand or an Error may come of any byte; the sanitizer build looks for worse.
+TEST(Glb, DamagedBytesNeverCrash) {
+  NEED_NPM_ASSETS(source);
+  const auto whole = bytes_of(right_hand(source));
+  std::size_t refused = 0, tried = 0;
+  // The header and JSON chunk densely, the arrays sparsely.
+  for (std::size_t at = 0; at < whole.size(); at += at < 8000 ? 13 : 1009, ++tried) {
+    auto bytes = whole;
+    bytes[at] = static_cast<std::uint8_t>(bytes[at] ^ (at % 2 ? 0x80u : 0x05u));
+    try {
+      parse_hand_glb(bytes, "damaged.glb");
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, tried / 10);
+}
+
+TEST(Glb, WrongJsonIsAnError) {
+  NEED_NPM_ASSETS(source);
+  const auto whole = bytes_of(right_hand(source));
+  const std::string text(whole.begin(), whole.end());
+  struct Edit {
+    std::string from, to, says;
+  };
+  for (const Edit& e : {Edit{"\"ring-finger-tip\"", "\"ring-finger-top\"", "not a WebXR hand joint"},
+                        Edit{"\"count\":1360", "\"count\":9999", "beyond its buffer view"},
+                        Edit{"\"WEIGHTS_0\"", "\"WEIGHTS_9\"", "\"WEIGHTS_0\" is missing"},
+                        Edit{"\"bufferView\":4", "\"bufferView\":9", "edited.glb: "},
+                        Edit{"\"inverseBindMatrices\":6", "\"inverseBindMatrices\":0", "/accessors/0"}}) {
+    std::string edited = text;
+    const std::size_t at = edited.find(e.from);
+    ASSERT_NE(at, std::string::npos) << e.from;
+    ASSERT_EQ(e.to.size(), e.from.size()) << "the chunk's length is in the header";
+    edited.replace(at, e.from.size(), e.to);
+    const std::string message = error_of([&] { parse_hand_glb({edited.begin(), edited.end()}, "edited.glb"); });
+    EXPECT_NE(message.find(e.says), std::string::npos) << message;
+  }
+}
+
+TEST(PoseModule, Damage) {
+  NEED_NPM_ASSETS(source);
+  const auto bytes = bytes_of(source.root / "iwer/lib/device/configs/hand/relaxed.js");
+  const std::string text(bytes.begin(), bytes.end());
+  struct Edit {
+    std::string from, to, says;
+  };
+  for (const Edit& e :
+       {Edit{"'thumb-tip'", "'thumb-top'", "/jointTransforms: \"thumb-tip\" is missing"},
+        Edit{"radius:", "radios:", "/jointTransforms/wrist: \"radius\" is missing"},
+        Edit{"radius: 0", "radius: -0", "/jointTransforms/wrist/radius"},
+        Edit{"offsetMatrix: [", "offsetMatrix: [1, ", "/jointTransforms/wrist/offsetMatrix: expected 16 numbers"},
+        Edit{"offsetMatrix: [", "offsetMatrix: [1", "/jointTransforms/wrist/offsetMatrix: expected a rotation"},
+        Edit{"offsetMatrix: [", "offsetMatrix: [Math.PI * ", "'*' in an object literal"},
+        Edit{"offsetMatrix: [", "offsetMatrix: [NaN, ", "not valid JSON"},
+        Edit{"'thumb-tip'", "'thumb-tip", "not closed"}, Edit{"=", "", "expected a module"}}) {
+    std::string edited = text;
+    const std::size_t at = edited.find(e.from);
+    ASSERT_NE(at, std::string::npos) << e.from;
+    edited.replace(at, e.from.size(), e.to);
+    const std::string message = error_of([&] { parse_pose_js(edited, "pose.js"); });
+    EXPECT_EQ(message.find("pose.js"), 0u) << message;
+    EXPECT_NE(message.find(e.says), std::string::npos) << message;
+  }
+  const std::size_t end = text.rfind('}');
+  for (std::size_t n = 0; n <= end; n += 101)
+    EXPECT_NE(error_of([&] { parse_pose_js(text.substr(0, n), "pose.js"); }), "") << n;
+}
+
+}  // namespace
+}  // namespace clothbench::assets

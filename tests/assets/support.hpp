@@ -1,0 +1,52 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "assets/assets.hpp"
+#include "clothbench/error.hpp"
+
+namespace clothbench::assets {
+
+/// The npm assets, or a skip with the reason; with CLOTHBENCH_REQUIRE_ASSETS=1 a failure instead.
+#define NEED_NPM_ASSETS(source)                                                                    \
+  const char* required_ = std::getenv("CLOTHBENCH_REQUIRE_ASSETS");                                \
+  const AssetSource source = locate_assets(required_ != nullptr && std::string(required_) == "1"); \
+  if (!source.npm) GTEST_SKIP() << "no npm assets: " << source.reason
+
+/// Message of the Error that `f` throws; fails the test if it throws none or another type.
+inline std::string error_of(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::BadInput);
+    return e.what();
+  }
+  ADD_FAILURE() << "nothing thrown";
+  return {};
+}
+
+template <class Item>
+std::string base64_of(const std::vector<Item>& items) {
+  static const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<std::uint8_t> bytes(items.size() * sizeof(Item));
+  if (!bytes.empty()) std::memcpy(bytes.data(), items.data(), bytes.size());
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < bytes.size() ? bytes[i + k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63u] : '=';
+  }
+  return out;
+}
+
+inline TriangleMesh tetrahedron() {
+  return {{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
+}  // namespace clothbench::assets

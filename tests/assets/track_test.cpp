@@ -1,0 +1,168 @@
+#include <filesystem>
+
+#include "assets/hand_track.hpp"
+#include "support.hpp"
+
+namespace clothbench::assets {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kTracks = fs::path(CLOTHBENCH_SOURCE_DIR) / "scenarios/assets";
+
+const char* const kTwoKeys = R"({"hand": "right", "keys": [
+  {"time_s": 1, "pose": "relaxed", "position_m": [0, 0, 0], "grip": true},
+  {"time_s": 3, "pose": "relaxed", "blend": {"to": "pinch", "amount": 0.5}, "position_m": [2, 4, -6], "rotation_deg": [0, 90, 0]}]})";
+
+TEST(HandTrack, InterpolatesPositionOrientationAndPose) {
+  const Hand hand = open_hand(AssetSource{}, Side::Right);
+  const HandTrack track = parse_hand_track(kTwoKeys, "t");
+  const HandSample half = sample(track, hand, 2);
+  const Frame palm = palm_frame(half.pose);
+  EXPECT_LT((palm.translation() - Vector(1, 2, -3)).norm(), 1e-9);
+  const Eigen::Quaterniond expected(Eigen::AngleAxisd(EIGEN_PI / 4, Vector::UnitY()));
+  EXPECT_LT(Eigen::Quaterniond(palm.linear()).angularDistance(expected), 1e-6);
+  // Half-way to a half pinch is within the slerp of a slerp: a quarter.
+  const HandPose quarter = blended(hand.pose("relaxed"), hand.pose("pinch"), 0.25);
+  const HandPose local = in_palm_frame(half.pose);
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    EXPECT_LT((local.joints[j].translation() - quarter.joints[j].translation()).norm(), 1e-9);
+    EXPECT_NEAR(local.radius_m[j], quarter.radius_m[j], 1e-12);
+  }
+}
+
+TEST(HandTrack, StandsStillOutsideItsKeys) {
+  const Hand hand = open_hand(AssetSource{}, Side::Right);
+  const HandTrack track = parse_hand_track(kTwoKeys, "t");
+  EXPECT_LT(palm_frame(sample(track, hand, 0).pose).translation().norm(), 1e-12);
+  EXPECT_LT((palm_frame(sample(track, hand, 99).pose).translation() - Vector(2, 4, -6)).norm(), 1e-12);
+  EXPECT_FALSE(sample(track, hand, 0.5).grip);
+  EXPECT_TRUE(sample(track, hand, 1).grip);
+  EXPECT_TRUE(sample(track, hand, 2.999).grip);
+  EXPECT_FALSE(sample(track, hand, 3).grip);
+  EXPECT_NE(error_of([&] { sample(track, hand, std::numeric_limits<double>::quiet_NaN()); }), "");
+  EXPECT_NE(error_of([&] { sample(track, open_hand(AssetSource{}, Side::Left), 0); }).find("right"), std::string::npos);
+}
+
+TEST(HandTrack, RotationTurnsAboutXThenYThenZ) {
+  const HandTrack track = parse_hand_track(
+      R"({"hand": "right", "keys": [{"time_s": 0, "pose": "point", "position_m": [0,0,0], "rotation_deg": [90, 0, 90]}]})",
+      "t");
+  // y -> z by the first turn, which the second leaves.
+  EXPECT_LT((track.keys[0].orientation * Vector::UnitY() - Vector::UnitZ()).norm(), 1e-12);
+  EXPECT_LT((track.keys[0].orientation * Vector::UnitX() - Vector::UnitY()).norm(), 1e-12);
+}
+
+TEST(HandTrack, PinchAnchorPlacesThePinchPoint) {
+  const Hand hand = open_hand(AssetSource{}, Side::Right);
+  const HandTrack track = parse_hand_track(
+      R"({"hand": "right", "anchor": "pinch", "keys": [
+        {"time_s": 0, "pose": "pinch", "position_m": [1, 2, 3], "orientation": [0, 0.6, 0, 0.8]},
+        {"time_s": 1, "pose": "relaxed", "position_m": [1, 2, 3]}]})",
+      "t");
+  for (double t : {0.0, 0.3, 1.0})
+    EXPECT_LT((pinch_point(sample(track, hand, t).pose) - Vector(1, 2, 3)).norm(), 1e-12) << t;
+  EXPECT_LT(track.keys[1].orientation.angularDistance(track.keys[0].orientation), 1e-12)
+      << "stays as in the key before";
+}
+
+struct Bad {
+  const char *name, *from, *to, *pointer, *says;
+};
+class BadTracks : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadTracks, SayWhere) {
+  std::string text = kTwoKeys;
+  const std::string from = GetParam().from;
+  const std::size_t at = text.find(from);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, from.size(), GetParam().to);
+  const std::string message = error_of([&] { parse_hand_track(text, "my-track.json"); });
+  EXPECT_EQ(message.find("my-track.json: "), 0u) << message;
+  EXPECT_NE(message.find(GetParam().pointer), std::string::npos) << message;
+  EXPECT_NE(message.find(GetParam().says), std::string::npos) << message;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Table, BadTracks,
+    testing::Values(Bad{"unknown_key", "\"grip\"", "\"gripp\"", "/keys/0", "did you mean \"grip\""},
+                    Bad{"unit", "\"position_m\"", "\"position_cm\"", "/keys/0", "position_m"},
+                    Bad{"no_pose", "\"pose\": \"relaxed\", ", "", "/keys/0", "first key"},
+                    Bad{"pose_name", "\"relaxed\"", "\"relaxt\"", "/keys/0/pose", "did you mean \"relaxed\""},
+                    Bad{"hand", "\"right\"", "\"both\"", "/hand", "left, right"},
+                    Bad{"time_order", "\"time_s\": 3", "\"time_s\": 1", "/keys/1/time_s", "later"},
+                    Bad{"time_negative", "\"time_s\": 1", "\"time_s\": -1", "/keys/0/time_s", "expected 0"},
+                    Bad{"two_numbers", "[2, 4, -6]", "[2, 4]", "/keys/1/position_m", "expected 3 numbers"},
+                    Bad{"word", "[2, 4, -6]", "[2, \"4\", -6]", "/keys/1/position_m/1", "expected a number"},
+                    Bad{"nan", "[2, 4, -6]", "[2, NaN, -6]", "line 3", "not valid JSON"},
+                    Bad{"overflow", "[2, 4, -6]", "[2, 1e999, -6]", "line 3", "double range"},
+                    Bad{"far", "[2, 4, -6]", "[2, 4e9, -6]", "/keys/1/position_m", "at most"},
+                    Bad{"amount", "0.5", "1.5", "/keys/1/blend/amount", "0 to 1"},
+                    Bad{"blend_key", "\"amount\"", "\"by\"", "/keys/1/blend", "unknown key"},
+                    Bad{"quaternion", "\"rotation_deg\": [0, 90, 0]", "\"orientation\": [0, 0, 0, 0]",
+                        "/keys/1/orientation", "unit"},
+                    Bad{"both", "\"rotation_deg\"", "\"orientation\": [0, 0, 0, 1], \"rotation_deg\"",
+                        "/keys/1/orientation", "one of them"},
+                    Bad{"grip", "\"grip\": true", "\"grip\": 1", "/keys/0/grip", "true or false"},
+                    Bad{"twice", "\"grip\": true", "\"grip\": true, \"grip\": false", "grip", "twice"},
+                    Bad{"empty", R"({"hand": "right", "keys": [)", R"({"hand": "right", "keys": [], "why": [)", "/why",
+                        "string"}),
+    [](const auto& p) { return p.param.name; });
+
+TEST(HandTrack, NeedsAKey) {
+  EXPECT_NE(
+      error_of([] { parse_hand_track(R"({"hand": "left", "keys": []})", "t"); }).find("/keys: expected at least one"),
+      std::string::npos);
+}
+
+TEST(HandTrack, AllOfTheScenariosLoad) {
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(kTracks)) {
+    if (entry.path().extension() != ".json") continue;
+    const HandTrack track = read_hand_track(entry.path());
+    EXPECT_EQ(entry.path().filename().string().starts_with(std::string(name_of(track.side))), true) << entry.path();
+    const Hand hand = open_hand(locate_assets(false), track.side);
+    for (double t = 0; t <= track.duration_s(); t += 1.0 / 72)
+      for (const Frame& joint : sample(track, hand, t).pose.joints) ASSERT_TRUE(joint.matrix().allFinite());
+    ++count;
+  }
+  EXPECT_GE(count, 8u);
+}
+
+TEST(HandTrack, SweepIsAsDescribed) {
+  const Hand hand = open_hand(locate_assets(false), Side::Right);
+  const HandTrack track = read_hand_track(kTracks / "right-hand-sweep.json");
+  for (const Capsule& c : capsules(sample(track, hand, 0).pose))
+    EXPECT_GT(std::min(c.a.z(), c.b.z()) - c.radius_m, 0) << "clear of the cloth";
+  const auto palm = [&](double t) { return Vector(palm_frame(sample(track, hand, t).pose).translation()); };
+  EXPECT_NEAR((palm(1.7) - palm(1.4)).norm() / 0.3, 0.8, 1e-9);
+  EXPECT_NEAR(palm(1.25).z(), -0.05, 1e-12);
+  const HandPose middle = sample(track, hand, 1.5).pose;
+  EXPECT_GT(middle.joints[kMiddle + 4].translation().y(), middle.joints[kWrist].translation().y()) << "fingers up";
+}
+
+TEST(HandTrack, StretchPullsOutwardsAtItsSpeed) {
+  struct Case {
+    const char* name;
+    double speed, way;
+  };
+  for (const Case& c : {Case{"0p5", 0.5, 0.15}, Case{"2", 2, 0.15}, Case{"10", 10, 0.5}})
+    for (Side side : {Side::Left, Side::Right}) {
+      const double sign = side == Side::Left ? -1 : 1;
+      const Hand hand = open_hand(locate_assets(false), side);
+      const HandTrack track =
+          read_hand_track(kTracks / (std::string(name_of(side)) + "-hand-stretch-" + c.name + "mps.json"));
+      const double end = 0.5 + c.way / c.speed;
+      const auto point = [&](double t) { return Vector(pinch_point(sample(track, hand, t).pose)); };
+      EXPECT_LT((point(0) - Vector(sign * 0.5, 0, 0)).norm(), 1e-9);
+      EXPECT_LT((point(0.5 + 0.5 * (end - 0.5)) - Vector(sign * (0.5 + c.way / 2), 0, 0)).norm(), 1e-6 * c.way);
+      EXPECT_LT((point(end) - Vector(sign * (0.5 + c.way), 0, 0)).norm(), 1e-6 * c.way);
+      EXPECT_TRUE(sample(track, hand, end + 0.49).grip);
+      EXPECT_FALSE(sample(track, hand, end + 0.51).grip);
+      const Frame palm = palm_frame(sample(track, hand, 0).pose);
+      EXPECT_NEAR((palm.linear() * -Vector::UnitZ()).x(), -sign, 1e-3) << "palm to the cloth";
+      EXPECT_GT(sign * palm.translation().x(), 0.5) << "hand beside the cloth";
+    }
+}
+
+}  // namespace
+}  // namespace clothbench::assets
