@@ -129,6 +129,20 @@ FeatureSet derive_needs(const Scene& scene) {
   return needs;
 }
 
+namespace {
+
+/// Member `key` of an object, made if it is not there, or item number `key` of an array.
+json& child(json& of, const std::string& key, const std::string& where) {
+  if (of.is_object() || of.is_null()) return of[key];
+  if (!of.is_array()) throw Error(where + ": not an object's key");
+  const bool number = !key.empty() && key.find_first_not_of("0123456789") == std::string::npos && key.size() < 6;
+  if (!number || std::stoul(key) >= of.size())
+    throw Error(fmt::format("{}: expected an item's number, 0 to {}", where, static_cast<long>(of.size()) - 1));
+  return of[std::stoul(key)];
+}
+
+}  // namespace
+
 void apply_override(json& scenario, const std::string& assignment, const std::string& source) {
   const auto eq = assignment.find('=');
   if (eq == std::string::npos || eq == 0) throw Error("--set " + assignment + ": expected key=value, such as cloth.grid=[64,64]");
@@ -145,8 +159,7 @@ void apply_override(json& scenario, const std::string& assignment, const std::st
     const std::size_t dot_at = std::min(path.find('.', i), path.size());
     const std::string key = path.substr(i, dot_at - i);
     pointer += "/" + key;
-    if (!at->is_object() && !at->is_null()) throw Error(source + ": --set " + assignment + ": " + pointer + ": not an object's key");
-    at = &(*at)[key];
+    at = &child(*at, key, source + ": --set " + assignment + ": " + pointer);
     i = dot_at + 1;
   }
   *at = std::move(value);

@@ -45,7 +45,11 @@ class Conformance : public ::testing::TestWithParam<Case> {
  protected:
   void SetUp() override {
     const Case& c = GetParam();
-    scene_ = load_scene(c.scene, {"cloth.sides=" + c.sides, "cloth.grid=" + c.grid});
+    std::vector<std::string> overrides = {"cloth.sides=" + c.sides, "cloth.grid=" + c.grid};
+    // Four vertices have none near a hand.
+    if (c.grid == "[2,2]" && c.scene.find("stretch") != std::string::npos)
+      for (const char* hand : {"0", "1"}) overrides.push_back(std::string("grips.") + hand + ".radius_m=0.6");
+    scene_ = load_scene(c.scene, overrides);
     entry_ = &find_solver(c.solver);
     try {
       solver_ = entry_->make(complete_settings(entry_->info, nlohmann::json::object()), {-1, true});
@@ -63,7 +67,7 @@ class Conformance : public ::testing::TestWithParam<Case> {
   void run(int frames) {
     for (int f = 0; f < frames; ++f) {
       const double dt = scene_.time.dt();
-      ASSERT_EQ(solver_->step({f, (f + 1) * dt, dt}), StepStatus::Ok) << "frame " << f;
+      ASSERT_EQ(solver_->step({f, (f + 1) * dt, dt, scene_.motion_after(f)}), StepStatus::Ok) << "frame " << f;
     }
   }
 

@@ -1,0 +1,134 @@
+// Scenes with colliders, on the procedural room and hand, so that the test needs no download.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "assets/assets.hpp"
+#include "clothbench/error.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+class Colliders : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const char* set = std::getenv("CLOTHBENCH_ASSETS")) before_ = set;
+    ::setenv("CLOTHBENCH_ASSETS", "procedural", 1);
+  }
+  void TearDown() override {
+    if (before_.empty()) ::unsetenv("CLOTHBENCH_ASSETS");
+    else ::setenv("CLOTHBENCH_ASSETS", before_.c_str(), 1);
+  }
+
+ private:
+  std::string before_;
+};
+
+double lowest(const Scene& s) {
+  const auto x = initial_positions(s);
+  double y = INFINITY;
+  for (std::size_t i = 1; i < x.size(); i += 3) y = std::min(y, x[i]);
+  return y;
+}
+
+TEST_F(Colliders, FlatDropStartsThirtyCentimetresOverTheTable) {
+  const Scene s = load_scene("paper/desk-flat-low");
+  EXPECT_EQ(s.assets, "procedural");
+  ASSERT_EQ(s.colliders.size(), 1u);
+  const ColliderMesh& m = *s.colliders[0].mesh;
+  EXPECT_FALSE(m.closed);
+  EXPECT_FALSE(m.skinned());
+  // Highest vertex below the cloth: no more than 30 cm below it, and closer than the roughness of a triangle to that.
+  const auto x = initial_positions(s);
+  double highest = -INFINITY;
+  for (std::size_t v = 0; v < m.vertex_count(); ++v) {
+    const double *p = m.positions.data() + 3 * v, *c = s.cloth.center_m.data();
+    if (std::abs(p[0] - c[0]) < 0.2 && std::abs(p[2] - c[2]) < 0.2) highest = std::max(highest, p[1]);
+  }
+  EXPECT_LE(highest + 0.3, lowest(s) + 1e-12);
+  EXPECT_GE(highest + 0.32, lowest(s));
+  EXPECT_EQ(s.needs, (FeatureSet{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::StaticMesh,
+                                 Feature::Friction, Feature::DoubleSided}));
+  EXPECT_TRUE(s.motion.empty());
+  EXPECT_EQ(s.motion_after(0), nullptr);
+  // What was computed is part of the record, and the record loads to the same scene.
+  const Scene again = scene_from_json(nlohmann::json::parse(s.json), s.source);
+  EXPECT_EQ(again.json, s.json);
+  EXPECT_EQ(again.cloth.center_m, s.cloth.center_m);
+}
+
+TEST_F(Colliders, CornerDropHangsHalfOutside) {
+  const Scene s = load_scene("paper/desk-corner-high");
+  const auto room = assets::open_room(assets::locate_assets(false), "living_room");
+  const auto& table = assets::find_table(room, "1088a241");
+  const auto c = table.top_corners();
+  const assets::Vector center = (c[0] + c[1] + c[2] + c[3]) / 4;
+  const auto x = initial_positions(s);
+  std::size_t low = 0;
+  for (std::size_t v = 0; v < x.size() / 3; ++v)
+    if (x[3 * v + 1] < x[3 * low + 1]) low = v;
+  EXPECT_EQ(low, 0u);
+  EXPECT_NEAR(x[1], center.y() + 0.3, 1e-9);
+  // The lowest corner is over the middle of a long edge; the sheet is symmetric about the plane through that edge.
+  const assets::Vector corner(x[0], center.y(), x[2]), out = (corner - center).normalized();
+  std::size_t outside = 0, inside = 0;
+  for (std::size_t v = 0; v < x.size() / 3; ++v) {
+    const double f = (assets::Vector::Map(&x[3 * v]) - corner).dot(out);
+    outside += f > 1e-9;
+    inside += f < -1e-9;
+  }
+  EXPECT_EQ(outside, inside);
+  EXPECT_NEAR((x[3 * (x.size() / 3 - 1) + 1] - x[1]) / (std::sqrt(2.0) * 0.5), std::sin(M_PI / 3), 1e-9);
+}
+
+TEST_F(Colliders, HandsMoveFrameByFrame) {
+  const Scene s = load_scene("paper/capsule-sweep");
+  ASSERT_EQ(s.colliders.size(), 1u);
+  EXPECT_EQ(s.colliders[0].capsules.size(), 19u);
+  ASSERT_EQ(s.motion.size(), static_cast<std::size_t>(s.time.frames()) + 1);
+  EXPECT_EQ(s.motion_after(-1), &s.motion.front());
+  EXPECT_EQ(s.motion_after(100000), &s.motion.back());
+  const auto x = [&](double t) { return s.motion[static_cast<std::size_t>(std::lround(t * 72))].colliders[0].capsules[0].a_m; };
+  EXPECT_NEAR((x(1.5)[0] - x(1.75)[0]) / 0.25, 0.8, 1e-9);
+  EXPECT_NEAR(x(0)[2] - x(1.25)[2], 0.15, 1e-9);
+  const Scene push = load_scene("paper/hand-push");
+  const ColliderMesh& m = *push.colliders[0].mesh;
+  EXPECT_TRUE(m.closed);
+  EXPECT_TRUE(m.skinned());
+  const auto p = posed_positions(m, push.motion[0].colliders[0]), q = posed_positions(m, push.motion[144].colliders[0]);
+  for (std::size_t k = 0; k < p.size(); k += 3) {
+    EXPECT_NEAR(q[k] - p[k], -0.3, 1e-6);
+    EXPECT_NEAR(q[k + 2] - p[k + 2], -0.4, 1e-6);
+  }
+}
+
+TEST_F(Colliders, GripsFollowTheHandAndLetGo) {
+  const Scene s = load_scene("paper/two-hand-stretch-2mps");
+  EXPECT_EQ(s.grips.vertices.size(), 4u);
+  EXPECT_TRUE(s.needs.has(Feature::MovingPins));
+  EXPECT_FALSE(s.needs.has(Feature::Pins));
+  const FrameMotion &start = s.motion.front(), &end = s.motion.back();
+  const auto x = initial_positions(s);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double side = x[3 * s.grips.vertices[k]] < 0 ? -1 : 1;
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(start.grip_position_m[k][c], x[3 * s.grips.vertices[k] + c], 1e-12);
+    EXPECT_EQ(start.grip_held[k], 1);
+    EXPECT_EQ(end.grip_held[k], 0);
+    EXPECT_NEAR(s.motion[60].grip_position_m[k][0], side * 0.65, 1e-9);
+    EXPECT_EQ(s.motion[60].grip_held[k], 1);
+  }
+}
+
+TEST_F(Colliders, ItemsOfListsCanBeOverridden) {
+  EXPECT_EQ(load_scene("contact/sphere", {"colliders.0.radius_m=0.2"}).colliders[0].radius_m, 0.2);
+  EXPECT_FALSE(load_scene("contact/sphere", {"colliders.0.friction=0"}).needs.has(Feature::Friction));
+  for (const char* bad : {"colliders.1.radius_m=0.2", "colliders.x=1", "colliders.0.radius_m=-1", "colliders.-1={}"})
+    EXPECT_THROW(load_scene("contact/sphere", {bad}), Error) << bad;
+}
+
+
+}  // namespace
+}  // namespace clothbench
