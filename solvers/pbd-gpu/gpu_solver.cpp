@@ -17,6 +17,7 @@ std::vector<float> inverse_masses(const Scene& scene) {
   std::vector<float> w;
   for (double m : vertex_masses(scene)) w.push_back(static_cast<float>(1 / m));
   for (std::uint32_t v : scene.pins.vertices) w[v] = 0;
+  for (std::uint32_t v : scene.grips.vertices) w[v] = 0;
   return w;
 }
 
@@ -75,8 +76,17 @@ vulkan::Kernel& GpuSolver::add_kernel(int stage, const Shader& shader, std::vect
   return *kernels_.back();
 }
 
+void GpuSolver::add_colliders(Vec3 origin_m, bool keep_start) {
+  if (!scene_->colliders.empty())
+    colliders_ = std::make_unique<ColliderBuffers>(*this, *scene_, origin_m, keep_start);
+}
+
+void GpuSolver::add_grips(Vec3 origin_m, std::uint32_t layers) {
+  if (!scene_->grips.vertices.empty()) grips_ = std::make_unique<GripBuffer>(*this, *scene_, origin_m, layers);
+}
+
 void GpuSolver::copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer& to) {
-  frame_->copy(stage, from, to);
+  if (!only_counting_) frame_->copy(stage, from, to);
   const auto bytes = static_cast<double>(std::min(from.bytes(), to.bytes()));
   plan_.stages[static_cast<std::size_t>(stage)].read_B += bytes;
   plan_.stages[static_cast<std::size_t>(stage)].write_B += bytes;
@@ -87,6 +97,7 @@ void GpuSolver::load(const Scene& scene) {
   frame_ = std::make_unique<vulkan::Program>(device_);
   upload_ = std::make_unique<vulkan::Program>(device_);
   download_ = std::make_unique<vulkan::Program>(device_);
+  inverse_mass_now_ = inverse_masses(scene);
   build();
   upload_->record(false);
   download_->record(false);
@@ -96,12 +107,29 @@ void GpuSolver::load(const Scene& scene) {
 
 void GpuSolver::record(double dt_s) {
   frame_->clear();
-  for (StagePlan& s : plan_.stages) s.read_B = s.write_B = 0;
-  record_frame(dt_s);
+  count(dt_s);
   for (std::size_t s = 0; s < plan_.stages.size(); ++s)
     plan_.stages[s].dispatches = frame_->dispatches(static_cast<int>(s));
   frame_->record(settings_.value("stage_times", false));
   dt_s_ = dt_s;
+}
+
+void GpuSolver::count(double dt_s) {
+  for (StagePlan& s : plan_.stages) s.read_B = s.write_B = 0;
+  record_frame(dt_s);
+}
+
+void GpuSolver::update_inverse_masses() {
+  inverse_mass_now_ = inverse_masses(*scene_);
+  const std::vector<double> mass = vertex_masses(*scene_);
+  for (std::size_t k = 0; k < grips_->held().size(); ++k) {
+    const std::uint32_t v = scene_->grips.vertices[k];
+    if (grips_->held()[k] == 0) inverse_mass_now_[v] = static_cast<float>(1 / mass[v]);
+  }
+  // The commands stay as they are; free vertices read and write more than held ones.
+  only_counting_ = true;
+  count(dt_s_);
+  only_counting_ = false;
 }
 
 StepStatus GpuSolver::run(vulkan::Program& program) const {
@@ -118,11 +146,20 @@ StepStatus GpuSolver::run(vulkan::Program& program) const {
   return StepStatus::Ok;
 }
 
-void GpuSolver::reset() { ready_ = run(*upload_); }
+void GpuSolver::reset() {
+  if (colliders_) colliders_->reset();
+  if (grips_) {
+    grips_->reset();
+    update_inverse_masses();
+  }
+  ready_ = run(*upload_);
+}
 
 StepStatus GpuSolver::step(const FrameInput& frame) {
   if (ready_ != StepStatus::Ok) return ready_;
   if (frame.dt_s != dt_s_) record(frame.dt_s);
+  if (colliders_) colliders_->write(frame.motion);
+  if (grips_ && grips_->write(frame.motion)) update_inverse_masses();
   return run(*frame_);
 }
 

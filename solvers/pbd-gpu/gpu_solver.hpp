@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "clothbench/solver.hpp"
+#include "colliders.hpp"
 #include "pbd_shared.h"
 #include "shaders.hpp"
 #include "vulkan/program.hpp"
@@ -62,23 +63,36 @@ class GpuSolver : public ClothSolver {
   int add_stage(const std::string& name, FeatureSet serves);
   vulkan::Kernel& add_kernel(int stage, const Shader& shader, std::vector<vulkan::Binding> bindings,
                              std::uint32_t push_bytes, std::vector<std::uint32_t> specialization = {});
+  /// What the scene has of colliders and grips, relative to `origin_m`; their stages come where these are called.
+  void add_colliders(Vec3 origin_m, bool keep_start);
+  void add_grips(Vec3 origin_m, std::uint32_t layers);
+  ColliderBuffers* colliders() { return colliders_.get(); }  ///< null where the scene has none
+  GripBuffer* grips() { return grips_.get(); }               ///< null where the scene has none
+  /// Inverse masses of the scene's vertices in this frame [1/kg], 0 where pinned or held. record_frame is called again,
+  /// for the bytes alone, when they change.
+  const std::vector<float>& inverse_mass_now() const { return inverse_mass_now_; }
+
   void leave_out(const std::string& what, const std::string& why) { plan_.left_out.push_back({what, why}); }
 
   template <class Constants>
   void dispatch(int stage, const vulkan::Kernel& kernel, std::uint64_t items, const Constants& constants,
                 Traffic traffic) {
-    frame_->dispatch(stage, kernel, vulkan::groups_for(items, kGroupSize), constants);
+    if (!only_counting_) frame_->dispatch(stage, kernel, vulkan::groups_for(items, kGroupSize), constants);
     plan_.stages[static_cast<std::size_t>(stage)].read_B += traffic.read_B;
     plan_.stages[static_cast<std::size_t>(stage)].write_B += traffic.write_B;
   }
   void copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer& to);
 
  private:
+  friend ColliderBuffers;
+  friend GripBuffer;
   struct Initial {
     const vulkan::Buffer* target;
     std::unique_ptr<vulkan::Buffer> staging;
   };
   void record(double dt_s);
+  void count(double dt_s);
+  void update_inverse_masses();
   StepStatus run(vulkan::Program& program) const;
 
   const SolverInfo info_;
@@ -90,16 +104,20 @@ class GpuSolver : public ClothSolver {
   StepStatus ready_ = StepStatus::Ok;  ///< of the last reset
   Plan plan_;
   Vec3 origin_m_{};
+  std::vector<float> inverse_mass_now_;
+  bool only_counting_ = false;
   // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
   std::vector<Initial> initials_;
   std::vector<vulkan::Buffer*> counters_;  ///< one a stage
   std::unique_ptr<vulkan::Buffer> read_position_, read_velocity_;
   std::vector<std::unique_ptr<vulkan::Kernel>> kernels_;
+  std::unique_ptr<ColliderBuffers> colliders_;
+  std::unique_ptr<GripBuffer> grips_;
   std::unique_ptr<vulkan::Program> frame_, upload_, download_;
 };
 
-/// Inverse masses [1/kg] of the scene's vertices, 0 where pinned.
+/// Inverse masses [1/kg] of the scene's vertices at the start, 0 where pinned or gripped.
 std::vector<float> inverse_masses(const Scene&);
 
 std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions&, bool count_bytes = false);

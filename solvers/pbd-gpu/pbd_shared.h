@@ -7,6 +7,9 @@ struct vec4 {
   float x, y, z, w;
 };
 using uint = std::uint32_t;
+struct uvec4 {
+  uint x, y, z, w;
+};
 #endif
 
 /// One distance constraint of `paper`.
@@ -45,7 +48,71 @@ struct XpbdConstants {
   uint iteration;         // 0 takes them as 0
 };
 
+// Colliders. Lengths in metres, positions relative to the method's origin.
+
+struct PlaneShape {
+  vec4 normal;  // into free space; w: its dot product with any point of the plane
+  float margin, friction;
+  uint unused0, unused1;
+};
+
+struct SphereShape {
+  vec4 center;
+  float radius, margin, friction;
+  uint unused0;
+};
+
+struct BoxShape {
+  vec4 center;
+  vec4 axis_x, axis_y, axis_z;  // orthonormal; w: half extent along it
+  float margin, friction;
+  uint unused0, unused1;
+};
+
+/// Segment at the frame's start (0) and end (1).
+struct CapsuleShape {
+  vec4 a0;  // w: radius
+  vec4 b0;  // w: margin
+  vec4 a1;  // w: radius + margin
+  vec4 b1;  // w: friction
+};
+
+struct SkinVertex {
+  vec4 rest, weights;
+  uvec4 joints;
+};
+
+/// Affine map, rows of 3 x 4.
+struct JointMatrix {
+  vec4 row0, row1, row2;
+};
+
+struct SkinConstants {
+  uint vertices;
+};
+
+struct GripVertex {
+  vec4 from, to;  // at the frame's start and end
+  uint vertex, held;
+  float free_inverse_mass;
+  uint unused0;
+};
+
+struct GripConstants {
+  uint count;
+  float fraction;     // of the frame's way
+  float per_frame_s;  // 1 / frame [1/s]
+  uint unused0;
+};
+
 #ifdef __cplusplus
+static_assert(sizeof(PlaneShape) == 32);
+static_assert(sizeof(SphereShape) == 32);
+static_assert(sizeof(BoxShape) == 80);
+static_assert(sizeof(CapsuleShape) == 64);
+static_assert(sizeof(SkinVertex) == 48);
+static_assert(sizeof(JointMatrix) == 48);
+static_assert(sizeof(GripVertex) == 48);
 static_assert(sizeof(DistanceConstraint) == 16);
 static_assert(sizeof(PaperConstants) == 48);
 static_assert(sizeof(XpbdConstants) == 80);

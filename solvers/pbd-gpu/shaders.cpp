@@ -100,6 +100,31 @@ CODE(project_bending_iterated_counted)
 }
 ;
 
+CODE(skin_mesh)
+#include "skin_mesh.inc"
+}
+;
+CODE(skin_mesh_counted)
+#include "skin_mesh_counted.inc"
+}
+;
+CODE(skin_mesh_keep_start)
+#include "skin_mesh_keep_start.inc"
+}
+;
+CODE(skin_mesh_keep_start_counted)
+#include "skin_mesh_keep_start_counted.inc"
+}
+;
+CODE(move_grips)
+#include "move_grips.inc"
+}
+;
+CODE(move_grips_counted)
+#include "move_grips_counted.inc"
+}
+;
+
 }  // namespace
 
 namespace shaders {
@@ -116,6 +141,9 @@ SHADER(kProjectDistance, project_distance);
 SHADER(kProjectBending, project_bending);
 SHADER(kProjectDistanceIterated, project_distance_iterated);
 SHADER(kProjectBendingIterated, project_bending_iterated);
+SHADER(kSkinMesh, skin_mesh);
+SHADER(kSkinMeshKeepStart, skin_mesh_keep_start);
+SHADER(kMoveGrips, move_grips);
 }  // namespace shaders
 
 }  // namespace clothbench::pbd_gpu

@@ -12,7 +12,7 @@ struct Shader {
 namespace shaders {
 extern const Shader kApplyExternalForces, kDampVelocities, kApplyExplicitEuler, kProjectConstraintDeltas,
     kProjectConstraintDeltasNative, kAverageConstraintDeltas, kUpdatePositions, kIntegrate, kProjectDistance,
-    kProjectBending, kProjectDistanceIterated, kProjectBendingIterated;
+    kProjectBending, kProjectDistanceIterated, kProjectBendingIterated, kSkinMesh, kSkinMeshKeepStart, kMoveGrips;
 }
 
 }  // namespace clothbench::pbd_gpu

@@ -1,0 +1,263 @@
+#include "colliders.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "clothbench/error.hpp"
+#include "gpu_solver.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+using vulkan::Access;
+using vulkan::Buffer;
+
+template <class T>
+std::vector<std::uint8_t> bytes_of(const std::vector<T>& items) {
+  std::vector<std::uint8_t> bytes(items.size() * sizeof(T));
+  std::memcpy(bytes.data(), items.data(), bytes.size());
+  return bytes;
+}
+
+template <class T>
+void write_to(const Buffer& host, const std::vector<T>& items) {
+  std::memcpy(host.mapped(), items.data(), items.size() * sizeof(T));
+}
+
+vec4 relative(const Vec3& at, const Vec3& origin, float w) {
+  return {static_cast<float>(at[0] - origin[0]), static_cast<float>(at[1] - origin[1]),
+          static_cast<float>(at[2] - origin[2]), w};
+}
+
+vec4 direction(const Vec3& d, double w) {
+  return {static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2]), static_cast<float>(w)};
+}
+
+}  // namespace
+
+ColliderBuffers::ColliderBuffers(GpuSolver& solver, const Scene& scene, Vec3 origin_m, bool keep_start)
+    : solver_(solver), scene_(scene), origin_m_(origin_m), keep_start_(keep_start) {
+  const auto number = [](double v) { return static_cast<float>(v); };
+  planes = add_shapes<PlaneShape>(Collider::Shape::Plane, "collider planes", [&](const Collider& c) {
+    double offset = 0;
+    for (std::size_t k = 0; k < 3; ++k) offset += c.normal[k] * (c.center_m[k] - origin_m_[k]);
+    return PlaneShape{direction(c.normal, offset), number(c.margin_m), number(c.friction), 0, 0};
+  });
+  spheres = add_shapes<SphereShape>(Collider::Shape::Sphere, "collider spheres", [&](const Collider& c) {
+    return SphereShape{relative(c.center_m, origin_m_, 0), number(c.radius_m), number(c.margin_m), number(c.friction),
+                       0};
+  });
+  boxes = add_shapes<BoxShape>(Collider::Shape::Box, "collider boxes", [&](const Collider& c) {
+    return BoxShape{relative(c.center_m, origin_m_, 0),
+                    direction(c.axes[0], c.half_extent_m[0]),
+                    direction(c.axes[1], c.half_extent_m[1]),
+                    direction(c.axes[2], c.half_extent_m[2]),
+                    number(c.margin_m),
+                    number(c.friction),
+                    0,
+                    0};
+  });
+  standing = add_meshes("collider mesh", false);
+  const FeatureSet moving_kinds = scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh};
+  if (moving_kinds.empty()) return;
+  at_ = scene.motion.at(0);
+  stage_upload_ = solver_.add_stage("UploadColliders", moving_kinds);
+  if (moving_kinds.has(Feature::Capsules)) add_capsules();
+  if (moving_kinds.has(Feature::MovingMesh)) {
+    moving = add_meshes("moving collider mesh", true);
+    add_skinning(keep_start);
+  }
+}
+
+template <class Shape, class Fill>
+ShapeBuffer ColliderBuffers::add_shapes(Collider::Shape kind, const char* name, Fill fill) {
+  std::vector<Shape> shapes;
+  ShapeBuffer result;
+  for (const Collider& c : scene_.colliders)
+    if (c.shape == kind) {
+      shapes.push_back(fill(c));
+      result.friction |= c.friction > 0;
+    }
+  if (shapes.empty()) return result;
+  result.count = static_cast<std::uint32_t>(shapes.size());
+  result.buffer = &solver_.add_buffer(name, shapes.size() * sizeof(Shape), bytes_of(shapes));
+  return result;
+}
+
+MeshBuffers ColliderBuffers::add_meshes(const char* kind, bool moving_ones) {
+  MeshBuffers result;
+  std::vector<vec4> positions;
+  std::vector<uvec4> triangles;
+  for (std::size_t k = 0; k < scene_.colliders.size(); ++k) {
+    const Collider& c = scene_.colliders[k];
+    if (c.shape != Collider::Shape::Mesh || c.moves() != moving_ones) continue;
+    const auto first_vertex = static_cast<std::uint32_t>(positions.size());
+    const auto first_triangle = static_cast<std::uint32_t>(triangles.size());
+    const std::vector<double> at = moving_ones ? posed_positions(*c.mesh, at_.colliders.at(k)) : c.mesh->positions;
+    for (std::size_t v = 0; v < c.mesh->vertex_count(); ++v)
+      positions.push_back(relative({at[3 * v], at[3 * v + 1], at[3 * v + 2]}, origin_m_, 0));
+    for (const auto& t : c.mesh->triangles)
+      triangles.push_back({first_vertex + t[0], first_vertex + t[1], first_vertex + t[2], static_cast<uint>(k)});
+    result.ranges.push_back({k, first_vertex, static_cast<std::uint32_t>(c.mesh->vertex_count()), first_triangle,
+                             static_cast<std::uint32_t>(c.mesh->triangles.size()), static_cast<float>(c.margin_m),
+                             static_cast<float>(c.friction)});
+  }
+  if (result.ranges.empty()) return result;
+  const std::string name = kind;
+  result.positions = &solver_.add_buffer(name + " positions", positions.size() * sizeof(vec4), bytes_of(positions));
+  if (moving_ones && keep_start_)
+    result.start_positions =
+        &solver_.add_buffer(name + " start positions", positions.size() * sizeof(vec4), bytes_of(positions));
+  result.triangles = &solver_.add_buffer(name + " triangles", triangles.size() * sizeof(uvec4), bytes_of(triangles));
+  return result;
+}
+
+std::vector<CapsuleShape> ColliderBuffers::capsules_between(const FrameMotion& start, const FrameMotion& end) const {
+  std::vector<CapsuleShape> all;
+  for (std::size_t k = 0; k < scene_.colliders.size(); ++k) {
+    const Collider& c = scene_.colliders[k];
+    if (c.shape != Collider::Shape::Capsules) continue;
+    for (std::size_t i = 0; i < c.capsules.size(); ++i) {
+      const Capsule &s = start.colliders.at(k).capsules.at(i), &e = end.colliders.at(k).capsules.at(i);
+      all.push_back({relative(s.a_m, origin_m_, static_cast<float>(e.radius_m)),
+                     relative(s.b_m, origin_m_, static_cast<float>(c.margin_m)),
+                     relative(e.a_m, origin_m_, static_cast<float>(e.radius_m + c.margin_m)),
+                     relative(e.b_m, origin_m_, static_cast<float>(c.friction))});
+    }
+  }
+  return all;
+}
+
+void ColliderBuffers::add_capsules() {
+  const std::vector<CapsuleShape> all = capsules_between(at_, at_);
+  capsules.count = static_cast<std::uint32_t>(all.size());
+  for (const Collider& c : scene_.colliders)
+    capsules.friction |= c.shape == Collider::Shape::Capsules && c.friction > 0;
+  const std::uint64_t bytes = all.size() * sizeof(CapsuleShape);
+  capsules.buffer = &solver_.add_buffer("collider capsules", bytes, bytes_of(all));
+  capsules_host_ = &solver_.add_host_buffer("collider capsules (upload)", bytes);
+}
+
+/// The translations carry the shift of origin, so that skinned positions come out relative to it: weights sum to 1.
+std::vector<JointMatrix> ColliderBuffers::matrices(const FrameMotion& motion) const {
+  std::vector<JointMatrix> all;
+  for (const MeshRange& range : moving.ranges)
+    for (const Affine& m : motion.colliders.at(range.collider).joints) {
+      const auto row = [&](std::size_t r) { return direction({m[r][0], m[r][1], m[r][2]}, m[r][3] - origin_m_[r]); };
+      all.push_back({row(0), row(1), row(2)});
+    }
+  return all;
+}
+
+void ColliderBuffers::add_skinning(bool keep_start) {
+  std::vector<SkinVertex> vertices;
+  std::uint32_t first_joint = 0;
+  for (const MeshRange& range : moving.ranges) {
+    const ColliderMesh& mesh = *scene_.colliders[range.collider].mesh;
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+      const auto& j = mesh.joints[v];
+      const auto& w = mesh.weights[v];
+      vertices.push_back(
+          {relative({mesh.positions[3 * v], mesh.positions[3 * v + 1], mesh.positions[3 * v + 2]}, {}, 1),
+           {w[0], w[1], w[2], w[3]},
+           {first_joint + j[0], first_joint + j[1], first_joint + j[2], first_joint + j[3]}});
+    }
+    first_joint += static_cast<std::uint32_t>(mesh.joint_count);
+  }
+  skinned_vertices_ = static_cast<std::uint32_t>(vertices.size());
+  const Buffer& rest = solver_.add_buffer("collider skin", vertices.size() * sizeof(SkinVertex), bytes_of(vertices));
+  const std::uint64_t bytes = first_joint * sizeof(JointMatrix);
+  joints_ = &solver_.add_buffer("collider joints", bytes);
+  joints_host_ = &solver_.add_host_buffer("collider joints (upload)", bytes);
+  stage_skin_ = solver_.add_stage("SkinHand", {Feature::MovingMesh});
+  std::vector<vulkan::Binding> bindings = {{&rest, Access::Read}, {joints_, Access::Read}};
+  bindings.push_back({moving.positions, keep_start ? Access::ReadWrite : Access::Write});
+  if (keep_start) bindings.push_back({moving.start_positions, Access::Write});
+  skin_ = &solver_.add_kernel(stage_skin_, keep_start ? shaders::kSkinMeshKeepStart : shaders::kSkinMesh,
+                              std::move(bindings), sizeof(SkinConstants));
+}
+
+void ColliderBuffers::record() {
+  if (capsules_host_ != nullptr) solver_.copy(stage_upload_, *capsules_host_, *capsules.buffer);
+  if (joints_host_ == nullptr) return;
+  solver_.copy(stage_upload_, *joints_host_, *joints_);
+  const double n = skinned_vertices_, start = keep_start_ ? 16 : 0;
+  solver_.dispatch(stage_skin_, *skin_, skinned_vertices_, SkinConstants{skinned_vertices_},
+                   {n * (sizeof(SkinVertex) + 4 * sizeof(JointMatrix) + start), n * (16 + start)});
+}
+
+void ColliderBuffers::reset() {
+  if (stage_upload_ >= 0) at_ = scene_.motion.at(0);
+}
+
+void ColliderBuffers::write(const FrameMotion* end) {
+  if (stage_upload_ < 0) return;
+  const FrameMotion& to = end != nullptr ? *end : at_;
+  if (to.colliders.size() != scene_.colliders.size())
+    throw Error("solver " + solver_.info().name + ": motion of " + std::to_string(to.colliders.size()) +
+                " colliders; expected " + std::to_string(scene_.colliders.size()));
+  if (capsules_host_ != nullptr) write_to(*capsules_host_, capsules_between(at_, to));
+  if (joints_host_ != nullptr) write_to(*joints_host_, matrices(to));
+  if (end != nullptr) at_ = *end;
+}
+
+GripBuffer::GripBuffer(GpuSolver& solver, const Scene& scene, Vec3 origin_m, std::uint32_t layers)
+    : solver_(solver), scene_(scene), origin_m_(origin_m), layers_(layers) {
+  const std::vector<double> mass = vertex_masses(scene);
+  for (std::uint32_t v : scene.grips.vertices) free_inverse_mass_.push_back(static_cast<float>(1 / mass[v]));
+  at_ = scene.motion.at(0);
+  held_ = at_.grip_held;
+  const std::vector<GripVertex> all = entries(at_, at_);
+  const std::uint64_t bytes = all.size() * sizeof(GripVertex);
+  grips_ = &solver_.add_buffer("grips", bytes, bytes_of(all));
+  host_ = &solver_.add_host_buffer("grips (upload)", bytes);
+  stage_upload_ = solver_.add_stage("UploadGrips", {Feature::MovingPins});
+  stage_move_ = solver_.add_stage("MoveGrips", {Feature::MovingPins});
+}
+
+std::vector<GripVertex> GripBuffer::entries(const FrameMotion& start, const FrameMotion& end) const {
+  const std::vector<std::uint32_t>& vertices = scene_.grips.vertices;
+  if (start.grip_position_m.size() != vertices.size() || end.grip_position_m.size() != vertices.size() ||
+      start.grip_held.size() != vertices.size())
+    throw Error("solver " + solver_.info().name + ": motion of " + std::to_string(end.grip_position_m.size()) +
+                " held vertices; expected " + std::to_string(vertices.size()));
+  std::vector<GripVertex> all;
+  for (std::uint32_t layer = 0; layer < layers_; ++layer)
+    for (std::size_t k = 0; k < vertices.size(); ++k)
+      all.push_back({relative(start.grip_position_m[k], origin_m_, 0), relative(end.grip_position_m[k], origin_m_, 0),
+                     vertices[k] + layer * static_cast<std::uint32_t>(scene_.cloth.vertex_count()), start.grip_held[k],
+                     free_inverse_mass_[k], 0});
+  return all;
+}
+
+const vulkan::Kernel& GripBuffer::add_kernel(const Buffer& positions, const Buffer& velocities) {
+  return solver_.add_kernel(stage_move_, shaders::kMoveGrips,
+                            {{grips_, Access::Read}, {&positions, Access::ReadWrite}, {&velocities, Access::ReadWrite}},
+                            sizeof(GripConstants));
+}
+
+void GripBuffer::record_upload() { solver_.copy(stage_upload_, *host_, *grips_); }
+
+void GripBuffer::record_move(const vulkan::Kernel& kernel, double fraction, double frame_s) {
+  const auto n = static_cast<std::uint32_t>(layers_ * scene_.grips.vertices.size());
+  solver_.dispatch(stage_move_, kernel, n,
+                   GripConstants{n, static_cast<float>(fraction), static_cast<float>(1 / frame_s), 0},
+                   {n * (sizeof(GripVertex) + 32.0), n * 32.0});
+}
+
+void GripBuffer::reset() {
+  at_ = scene_.motion.at(0);
+  held_ = at_.grip_held;
+}
+
+bool GripBuffer::write(const FrameMotion* end) {
+  const FrameMotion& to = end != nullptr ? *end : at_;
+  write_to(*host_, entries(at_, to));
+  // A vertex is held through the frames that start with its flag set: let go at t, it is free from t on.
+  const bool changed = held_ != at_.grip_held;
+  held_ = at_.grip_held;
+  if (end != nullptr) at_ = *end;
+  return changed;
+}
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,113 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "clothbench/scene.hpp"
+#include "pbd_shared.h"
+#include "vulkan/kernel.hpp"
+
+namespace clothbench::pbd_gpu {
+
+class GpuSolver;
+
+/// Where one mesh collider lies in the buffers of its kind, and how the cloth touches it.
+struct MeshRange {
+  std::size_t collider = 0;  ///< index in Scene::colliders; also .w of each of its triangles
+  std::uint32_t first_vertex = 0, vertices = 0, first_triangle = 0, triangles = 0;
+  float margin_m = 0, friction = 0;
+};
+
+/// All meshes of one kind, one after another; indices count from the first vertex of all. Null and empty where the
+/// scene has none.
+struct MeshBuffers {
+  std::vector<MeshRange> ranges;
+  const vulkan::Buffer* triangles = nullptr;        ///< uvec4 each: corners, and the collider's index
+  const vulkan::Buffer* positions = nullptr;        ///< vec4 each; of what moves, at the frame's end
+  const vulkan::Buffer* start_positions = nullptr;  ///< of what moves, at the frame's start; only if asked for
+};
+
+/// Shapes of one kind: `count` structs of pbd_shared.h.
+struct ShapeBuffer {
+  const vulkan::Buffer* buffer = nullptr;
+  std::uint32_t count = 0;
+  bool friction = false;  ///< any of them has some
+};
+
+/// What the cloth touches, on the device: of each kind of collider one buffer, only if the scene has that kind.
+///
+/// What stands still is written once. What moves is written by the host into a mapped buffer each frame and copied to
+/// the device in the frame's stage UploadColliders: read in place it would cross the bus once for every cache miss of
+/// every kernel of the frame instead of once. Of a skinned mesh the joints' matrices travel (48 B each); the stage
+/// SkinHand makes vertices of them.
+class ColliderBuffers {
+ public:
+  /// Adds buffers, the stages the scene needs and their kernels to `solver`. Positions are relative to `origin_m`,
+  /// subtracted in double. With `keep_start`, positions of moving meshes at the frame's start are kept as well
+  /// (capsules always carry both).
+  ColliderBuffers(GpuSolver& solver, const Scene& scene, Vec3 origin_m, bool keep_start);
+
+  ShapeBuffer planes, spheres, boxes, capsules;
+  MeshBuffers standing, moving;
+
+  /// Upload and skinning, into the frame; to be called before anything reads what moves.
+  void record();
+  /// The host's side of a reset: the next frame starts at motion[0].
+  void reset();
+  /// Before a frame is submitted: what moves goes from where the last call left it to `end`; null: it stands still.
+  void write(const FrameMotion* end);
+
+ private:
+  template <class Shape, class Fill>
+  ShapeBuffer add_shapes(Collider::Shape kind, const char* name, Fill fill);
+  MeshBuffers add_meshes(const char* kind, bool moving_ones);
+  void add_capsules();
+  void add_skinning(bool keep_start);
+  std::vector<CapsuleShape> capsules_between(const FrameMotion& start, const FrameMotion& end) const;
+  std::vector<JointMatrix> matrices(const FrameMotion&) const;
+
+  GpuSolver& solver_;
+  const Scene& scene_;
+  const Vec3 origin_m_;
+  FrameMotion at_;  ///< end of the last frame
+  int stage_upload_ = -1, stage_skin_ = -1;
+  std::uint32_t skinned_vertices_ = 0;
+  bool keep_start_ = false;
+  vulkan::Buffer *capsules_host_ = nullptr, *joints_host_ = nullptr, *joints_ = nullptr;
+  vulkan::Kernel* skin_ = nullptr;
+};
+
+/// Vertices that hands hold: at substep s of n a held vertex is put at (s + 1) / n of its way through the frame.
+class GripBuffer {
+ public:
+  /// `layers` copies of the cloth's vertices lie one after another in the solver's buffers.
+  GripBuffer(GpuSolver& solver, const Scene& scene, Vec3 origin_m, std::uint32_t layers);
+
+  /// A kernel that puts held vertices of `positions` in their place with the hand's velocity, .w of both 0; of those
+  /// let go it sets .w to the inverse mass and leaves the rest as it is. May be added for several pairs of buffers.
+  const vulkan::Kernel& add_kernel(const vulkan::Buffer& positions, const vulkan::Buffer& velocities);
+  void record_upload();
+  /// `fraction` of the way through the frame, 0 to 1.
+  void record_move(const vulkan::Kernel&, double fraction, double frame_s);
+
+  void reset();
+  /// As ColliderBuffers::write; true if other vertices are held than before.
+  bool write(const FrameMotion* end);
+  /// Held during the frame last written, one per Scene::grips.vertices.
+  const std::vector<std::uint8_t>& held() const { return held_; }
+
+ private:
+  std::vector<GripVertex> entries(const FrameMotion& start, const FrameMotion& end) const;
+
+  GpuSolver& solver_;
+  const Scene& scene_;
+  const Vec3 origin_m_;
+  const std::uint32_t layers_;
+  std::vector<float> free_inverse_mass_;  ///< one per Scene::grips.vertices
+  FrameMotion at_;
+  std::vector<std::uint8_t> held_;
+  int stage_upload_ = -1, stage_move_ = -1;
+  const vulkan::Buffer* host_ = nullptr;
+  const vulkan::Buffer* grips_ = nullptr;
+};
+
+}  // namespace clothbench::pbd_gpu
