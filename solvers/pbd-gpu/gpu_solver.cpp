@@ -77,8 +77,7 @@ vulkan::Kernel& GpuSolver::add_kernel(int stage, const Shader& shader, std::vect
 }
 
 void GpuSolver::add_colliders(Vec3 origin_m, bool keep_start) {
-  if (!scene_->colliders.empty())
-    colliders_ = std::make_unique<ColliderBuffers>(*this, *scene_, origin_m, keep_start);
+  if (!scene_->colliders.empty()) colliders_ = std::make_unique<ColliderBuffers>(*this, *scene_, origin_m, keep_start);
 }
 
 void GpuSolver::add_grips(Vec3 origin_m, std::uint32_t layers) {

@@ -86,6 +86,7 @@ class GpuSolver : public ClothSolver {
  private:
   friend ColliderBuffers;
   friend GripBuffer;
+  friend class PaperContact;
   struct Initial {
     const vulkan::Buffer* target;
     std::unique_ptr<vulkan::Buffer> staging;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "gpu_solver.hpp"
+#include "paper_contact.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -21,6 +22,8 @@ class Paper final : public GpuSolver {
     layers_ = scene().needs.has(Feature::DuplicatedLayer) ? 2 : 1;
     build_particles();
     build_constraints();
+    add_colliders({}, false);
+    add_grips({}, static_cast<std::uint32_t>(layers_));
     build_stages();
   }
 
@@ -39,7 +42,6 @@ class Paper final : public GpuSolver {
         position.push_back({at(0), at(1), at(2), w[i]});
         velocity.push_back({speed(0), speed(1), speed(2), w[i]});
       }
-    free_ = std::count_if(velocity.begin(), velocity.end(), [](const vec4& v) { return v.w > 0; });
     x_ = &add_vec4_buffer("positions", position);
     v_ = &add_vec4_buffer("velocities", velocity);
     q_ = &add_buffer("predicted positions", position.size() * sizeof(vec4));
@@ -47,29 +49,43 @@ class Paper final : public GpuSolver {
     set_state(*x_, *v_, {});
   }
 
-  void build_constraints() {
-    const std::vector<float> w = inverse_masses(scene());
-    const auto n = static_cast<std::uint32_t>(w.size());
-    std::vector<DistanceConstraint> all;
-    const auto add = [&](std::uint32_t a, std::uint32_t b, double rest, std::uint32_t kind) {
-      all.push_back({a, b, static_cast<float>(rest), kind});
-      const int ends = (w[a % n] > 0 ? 1 : 0) + (w[b % n] > 0 ? 1 : 0);
-      // Constraint and both ends; per free end 3 sums and a count.
-      traffic_.read_B += 16 + 32 + ends * (native() ? 16.0 : 28.0);
-      traffic_.write_B += ends * 16.0;
-    };
+  /// fn(a, b, rest length, kind), in the order of the buffer.
+  template <class Fn>
+  void for_each_constraint(Fn fn) const {
+    const auto n = static_cast<std::uint32_t>(scene().cloth.vertex_count());
     std::vector<EdgeKind> kinds = {EdgeKind::Structural, EdgeKind::Shear};
     if (scene().needs.has(Feature::Bend)) kinds.push_back(EdgeKind::SkipOne);
     for (std::uint32_t layer = 0; layer < static_cast<std::uint32_t>(layers_); ++layer)
       for (EdgeKind kind : kinds)
         for (const Edge& e : edges(scene().cloth, kind))
-          add(layer * n + e.a, layer * n + e.b, e.rest_m, static_cast<std::uint32_t>(kind));
+          fn(layer * n + e.a, layer * n + e.b, e.rest_m, static_cast<std::uint32_t>(kind));
     if (layers_ == 2)
-      for (std::uint32_t i = 0; i < n; ++i) add(i, n + i, 0, 3);
+      for (std::uint32_t i = 0; i < n; ++i) fn(i, n + i, 0.0, 3u);
+  }
+
+  void build_constraints() {
+    std::vector<DistanceConstraint> all;
+    for_each_constraint([&](std::uint32_t a, std::uint32_t b, double rest, std::uint32_t kind) {
+      all.push_back({a, b, static_cast<float>(rest), kind});
+    });
     constraint_count_ = all.size();
     std::vector<std::uint8_t> bytes(all.size() * sizeof all[0]);
     std::memcpy(bytes.data(), all.data(), bytes.size());
     c_ = &add_buffer("constraints", bytes.size(), bytes);
+  }
+
+  /// What one ProjectConstraintDeltas reads and writes, and how many particles are free.
+  void count_traffic() {
+    const std::vector<float>& w = inverse_mass_now();
+    const auto n = static_cast<std::uint32_t>(w.size());
+    free_ = layers_ * std::count_if(w.begin(), w.end(), [](float v) { return v > 0; });
+    traffic_ = {};
+    for_each_constraint([&](std::uint32_t a, std::uint32_t b, double, std::uint32_t) {
+      const int ends = (w[a % n] > 0 ? 1 : 0) + (w[b % n] > 0 ? 1 : 0);
+      // Constraint and both ends; per free end 3 sums and a count.
+      traffic_.read_B += 16 + 32 + ends * (native() ? 16.0 : 28.0);
+      traffic_.write_B += ends * 16.0;
+    });
   }
 
   void build_stages() {
@@ -95,6 +111,13 @@ class Paper final : public GpuSolver {
     stage_average_ = add_stage("AverageConstraintDeltas", {});
     average_ = &add_kernel(stage_average_, shaders::kAverageConstraintDeltas,
                            {{d_, Access::ReadWrite}, {q_, Access::ReadWrite}}, push, {native() ? 1u : 0u});
+    if (grips() != nullptr) {
+      hold_ = &grips()->add_kernel(*x_, *v_);
+      aim_ = &grips()->add_kernel(*q_, *v_);
+    }
+    if (colliders() != nullptr)
+      contact_ = std::make_unique<PaperContact>(*this, *colliders(), *q_, *x_, settings()["mesh_depth_m"].get<float>(),
+                                                settings()["hand_depth_m"].get<float>());
     stage_update_ = add_stage("UpdatePositions", {});
     update_ = &add_kernel(stage_update_, shaders::kUpdatePositions,
                           {{x_, Access::ReadWrite}, {v_, Access::Write}, {q_, Access::Read}}, push);
@@ -116,27 +139,34 @@ class Paper final : public GpuSolver {
     c.gravity = {static_cast<float>(g[0]), static_cast<float>(g[1]), static_cast<float>(g[2]), 0};
     c.particles = static_cast<std::uint32_t>(particles());
     c.constraints = static_cast<std::uint32_t>(constraint_count_);
+    count_traffic();
+    if (colliders() != nullptr) colliders()->record();
+    if (grips() != nullptr) grips()->record_upload();
     const int substeps = settings()["substeps"].get<int>();
     const double h = dt_s / substeps;
     c.h = static_cast<float>(h);
     c.stiffness = settings()["stiffness"].get<float>();
     c.keep = static_cast<float>(std::max(0.0, 1 - scene().material.damping_per_s * h));
-    for (int s = 0; s < substeps; ++s) record_step(c);
+    for (int s = 0; s < substeps; ++s) record_step(c, s, substeps, dt_s);
     if (stage_readback_ >= 0) {
       copy(stage_readback_, *x_, *host_x_);
       copy(stage_readback_, *v_, *host_v_);
     }
   }
 
-  void record_step(const PaperConstants& c) {
+  void record_step(const PaperConstants& c, int step, int steps, double dt_s) {
     const auto n = static_cast<double>(particles()), f = static_cast<double>(free_);
+    // Held or let go from the step's start on, which the kernels that follow tell from the inverse mass.
+    if (hold_ != nullptr) grips()->record_move(*hold_, static_cast<double>(step) / steps, dt_s);
     dispatch(stage_forces_, *forces_, particles(), c, {16 * n, 16 * f});
     if (damp_ != nullptr) dispatch(stage_damp_, *damp_, particles(), c, {16 * n, 16 * n});
     dispatch(stage_euler_, *euler_, particles(), c, {32 * n, 16 * n});
+    if (aim_ != nullptr) grips()->record_move(*aim_, static_cast<double>(step + 1) / steps, dt_s);
     for (int i = 0; i < settings()["iterations"].get<int>(); ++i) {
       dispatch(stage_project_, *project_, constraint_count_, c, traffic_);
       dispatch(stage_average_, *average_, particles(), c, {16 * n + 16 * f, 32 * f});
     }
+    if (contact_) contact_->record(static_cast<std::uint32_t>(particles()), free_);
     dispatch(stage_update_, *update_, particles(), c, {32 * n, 32 * n});
   }
 
@@ -150,6 +180,8 @@ class Paper final : public GpuSolver {
                  *host_v_ = nullptr;
   vulkan::Kernel *forces_ = nullptr, *damp_ = nullptr, *euler_ = nullptr, *project_ = nullptr, *average_ = nullptr,
                  *update_ = nullptr;
+  const vulkan::Kernel *hold_ = nullptr, *aim_ = nullptr;
+  std::unique_ptr<PaperContact> contact_;
 };
 
 void check_settings(const nlohmann::json& s) {
@@ -166,6 +198,9 @@ void check_settings(const nlohmann::json& s) {
     throw Error("solver paper: setting substeps: expected 1 to 4096; found " + s["substeps"].dump());
   if (!(s["stiffness"].get<double>() >= 0 && s["stiffness"].get<double>() <= 1))
     throw Error("solver paper: setting stiffness: expected 0 to 1; found " + s["stiffness"].dump());
+  for (const char* key : {"mesh_depth_m", "hand_depth_m"})
+    if (!(s[key].get<double>() >= 0 && s[key].get<double>() <= 1000))
+      throw Error(std::string("solver paper: setting ") + key + ": expected 0 to 1000; found " + s[key].dump());
 }
 
 }  // namespace
@@ -178,14 +213,20 @@ SolverInfo paper_info() {
   info.version = "1";
   info.precision = "float32";
   info.on_gpu = true;
-  info.supports = {Feature::Stretch, Feature::Shear, Feature::Bend,
-                   Feature::Damping, Feature::Pins,  Feature::DuplicatedLayer};
+  info.supports = {Feature::Stretch,        Feature::Shear,      Feature::Bend,       Feature::Damping,
+                   Feature::Pins,           Feature::MovingPins, Feature::Sphere,     Feature::Box,
+                   Feature::Capsules,       Feature::StaticMesh, Feature::MovingMesh, Feature::Friction,
+                   Feature::DuplicatedLayer};
+  // Table 4 of the article: a single-sided cloth does not touch meshes.
+  info.only_with = {{Feature::StaticMesh, Feature::DuplicatedLayer}, {Feature::MovingMesh, Feature::DuplicatedLayer}};
   info.settings = {
       {"iterations", "5", "constraint iterations a substep"},
       {"substeps", "1", "substeps a frame (the paper has one)"},
       {"stiffness", "0.8", "PBD's k, 0 to 1"},
       {"readback", "\"none\"", "none | blocking: copy positions and velocities to the host every frame and wait"},
       {"atomics", "\"cas\"", "cas | native: float sums by compare-and-swap, or by VK_EXT_shader_atomic_float"},
+      {"mesh_depth_m", "0.03", "a particle at most this far behind a triangle of a mesh that stands still touches it"},
+      {"hand_depth_m", "0.01", "the same for the mesh of a hand"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   return info;
 }

@@ -30,6 +30,13 @@ struct PaperConstants {
   uint unused0, unused1, unused2;
 };
 
+/// Push constants of the collision kernels of `paper`.
+struct PaperContactConstants {
+  uint particles;
+  uint first, count;  // of the things every particle is tested against
+  float margin, depth, friction;  // of a mesh
+};
+
 /// Push constants of every `xpbd` kernel. A family of constraints joins grid vertex (i, j) with (i + di, j + dj) (and,
 /// for bending, (i + 2 di, j + 2 dj)); a colour takes every `stride`-th line, so that no two share a vertex.
 struct XpbdConstants {

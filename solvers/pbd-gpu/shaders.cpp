@@ -124,6 +124,38 @@ CODE(move_grips_counted)
 #include "move_grips_counted.inc"
 }
 ;
+CODE(satisfy_sphere_collisions)
+#include "satisfy_sphere_collisions.inc"
+}
+;
+CODE(satisfy_sphere_collisions_counted)
+#include "satisfy_sphere_collisions_counted.inc"
+}
+;
+CODE(satisfy_cube_collisions)
+#include "satisfy_cube_collisions.inc"
+}
+;
+CODE(satisfy_cube_collisions_counted)
+#include "satisfy_cube_collisions_counted.inc"
+}
+;
+CODE(satisfy_capsule_collisions)
+#include "satisfy_capsule_collisions.inc"
+}
+;
+CODE(satisfy_capsule_collisions_counted)
+#include "satisfy_capsule_collisions_counted.inc"
+}
+;
+CODE(satisfy_mesh_collisions)
+#include "satisfy_mesh_collisions.inc"
+}
+;
+CODE(satisfy_mesh_collisions_counted)
+#include "satisfy_mesh_collisions_counted.inc"
+}
+;
 
 }  // namespace
 
@@ -144,6 +176,10 @@ SHADER(kProjectBendingIterated, project_bending_iterated);
 SHADER(kSkinMesh, skin_mesh);
 SHADER(kSkinMeshKeepStart, skin_mesh_keep_start);
 SHADER(kMoveGrips, move_grips);
+SHADER(kSatisfySphereCollisions, satisfy_sphere_collisions);
+SHADER(kSatisfyCubeCollisions, satisfy_cube_collisions);
+SHADER(kSatisfyCapsuleCollisions, satisfy_capsule_collisions);
+SHADER(kSatisfyMeshCollisions, satisfy_mesh_collisions);
 }  // namespace shaders
 
 }  // namespace clothbench::pbd_gpu

@@ -12,7 +12,8 @@ struct Shader {
 namespace shaders {
 extern const Shader kApplyExternalForces, kDampVelocities, kApplyExplicitEuler, kProjectConstraintDeltas,
     kProjectConstraintDeltasNative, kAverageConstraintDeltas, kUpdatePositions, kIntegrate, kProjectDistance,
-    kProjectBending, kProjectDistanceIterated, kProjectBendingIterated, kSkinMesh, kSkinMeshKeepStart, kMoveGrips;
+    kProjectBending, kProjectDistanceIterated, kProjectBendingIterated, kSkinMesh, kSkinMeshKeepStart, kMoveGrips,
+    kSatisfySphereCollisions, kSatisfyCubeCollisions, kSatisfyCapsuleCollisions, kSatisfyMeshCollisions;
 }
 
 }  // namespace clothbench::pbd_gpu

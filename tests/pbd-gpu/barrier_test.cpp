@@ -3,7 +3,7 @@
 // accesses from the kernels' own code, barriers with the very masks that were recorded.
 #include <algorithm>
 
-#include "gpu_fixture.hpp"
+#include "contact_scenes.hpp"
 #include "recorded_access.hpp"
 
 namespace clothbench::pbd_gpu {
@@ -17,12 +17,11 @@ struct Cell {
 
 std::vector<Cell> cells() {
   const Scene plain = sheet(7, 5), full = with_pins(with_damping(with_bending(sheet(7, 5))));
-  Scene doubled = full;
-  doubled.cloth.sides = Sides::DoubleDuplicated;
-  doubled.needs.add(Feature::DuplicatedLayer);
   return {{"paper", {{"iterations", 2}}, plain},
           {"paper", {{"iterations", 2}, {"substeps", 2}}, full},
-          {"paper", {{"iterations", 2}, {"readback", "blocking"}}, doubled},
+          {"paper", {{"iterations", 2}, {"readback", "blocking"}}, doubled(full)},
+          {"paper", {{"iterations", 2}, {"substeps", 2}}, everything(full)},
+          {"paper", {{"iterations", 2}, {"substeps", 2}}, moving(doubled(full), {3, 20}, 2)},
           {"xpbd", {{"substeps", 2}}, plain},
           {"xpbd", {{"substeps", 2}}, full},
           {"xpbd", {{"substeps", 2}, {"iterations", 2}}, full}};

@@ -1,24 +1,33 @@
 // The counted bytes of every stage are what an instrumented build of the same kernels counts, access by access.
-#include "gpu_fixture.hpp"
+#include "contact_scenes.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
 
 class Bytes : public Gpu {
  protected:
-  void expect_equal(const std::string& solver_name, const Scene& scene, const nlohmann::json& settings) {
+  void expect_equal(const std::string& solver_name, const Scene& scene, const nlohmann::json& settings,
+                    int frames = 1) {
     const auto solver = make(solver_name, settings, true);
     solver->load(scene);
-    after(*solver, scene, 1);
-    const std::vector<Traffic> counted = solver->counted();
     const Plan plan = solver->plan();
+    std::vector<Traffic> costs(plan.stages.size());
+    for (int f = 0; f < frames; ++f) {
+      after_frame(*solver, scene, f);
+      const FrameCost cost = solver->last_cost();
+      for (std::size_t k = 0; k < costs.size(); ++k) {
+        costs[k].read_B += cost.stage_read_B[k];
+        costs[k].write_B += cost.stage_write_B[k];
+      }
+    }
+    const std::vector<Traffic> counted = solver->counted();
     ASSERT_EQ(counted.size(), plan.stages.size());
     for (std::size_t k = 0; k < counted.size(); ++k) {
       const StagePlan& s = plan.stages[k];
       if (s.dispatches == 0) continue;  // a copy, not a kernel
-      EXPECT_EQ(counted[k].read_B, s.read_B)
+      EXPECT_EQ(counted[k].read_B, costs[k].read_B)
           << solver_name << " " << s.name << " " << scene.cloth.columns << "x" << scene.cloth.rows;
-      EXPECT_EQ(counted[k].write_B, s.write_B)
+      EXPECT_EQ(counted[k].write_B, costs[k].write_B)
           << solver_name << " " << s.name << " " << scene.cloth.columns << "x" << scene.cloth.rows;
       EXPECT_GT(s.read_B, 0) << s.name;
     }
@@ -35,11 +44,19 @@ TEST_F(Bytes, OfEveryStageAtManySizes) {
       expect_equal("xpbd", s, {{"substeps", 2}});
       expect_equal("xpbd", s, {{"substeps", 2}, {"iterations", 3}});
     }
-    Scene doubled = full;
-    doubled.cloth.sides = Sides::DoubleDuplicated;
-    doubled.needs.add(Feature::DuplicatedLayer);
-    expect_equal("paper", doubled, {{"iterations", 1}, {"readback", "blocking"}});
+    expect_equal("paper", doubled(full), {{"iterations", 1}, {"readback", "blocking"}});
   }
+}
+
+TEST_F(Bytes, OfContactWithAndWithoutFriction) {
+  for (const auto& [columns, rows] : {std::pair{2, 2}, {9, 7}, {33, 17}})
+    for (double friction : {0.0, kContactFriction})
+      expect_equal("paper", everything(with_pins(sheet(columns, rows)), friction), {{"substeps", 2}}, 2);
+}
+
+TEST_F(Bytes, OfHeldVerticesBeforeAndAfterTheyAreLetGo) {
+  const Scene s = moving(doubled(with_pins(sheet(7, 5))), {1, 2, 20}, 2);
+  for (int frames : {1, 2, 3, 4}) expect_equal("paper", s, {{"iterations", 1}, {"substeps", 2}}, frames);
 }
 
 TEST_F(Bytes, WithNativeAtomicsWhereTheDeviceHasThem) {

@@ -76,8 +76,16 @@ inline Scene with_pins(Scene s) {
   return s;
 }
 
+inline ClothState after_frame(ClothSolver& solver, const Scene& s, int frame) {
+  EXPECT_EQ(solver.step({frame, (frame + 1) * s.time.dt(), s.time.dt(), s.motion_after(frame)}), StepStatus::Ok);
+  ClothState state;
+  solver.read_state(state);
+  return state;
+}
+
 inline ClothState after(ClothSolver& solver, const Scene& s, int frames) {
-  for (int f = 0; f < frames; ++f) EXPECT_EQ(solver.step({f, (f + 1) * s.time.dt(), s.time.dt()}), StepStatus::Ok);
+  for (int f = 0; f < frames; ++f)
+    EXPECT_EQ(solver.step({f, (f + 1) * s.time.dt(), s.time.dt(), s.motion_after(f)}), StepStatus::Ok);
   ClothState state;
   solver.read_state(state);
   return state;

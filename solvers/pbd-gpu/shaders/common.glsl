@@ -13,6 +13,7 @@ uint item() {
 #ifdef CLOTHBENCH_COUNT_BYTES
 layout(std430, binding = COUNTER_BINDING) buffer Counter { uint counted_read, counted_write; };
 #define LOAD(bytes, array, i) (atomicAdd(counted_read, bytes), array[i])
+#define LOAD16_OF(member) (atomicAdd(counted_read, 16u), member)
 #define LOAD16(array, i) (atomicAdd(counted_read, 16u), array[i])
 #define LOAD4(array, i) (atomicAdd(counted_read, 4u), array[i])
 #define STORE16(array, i, value) { atomicAdd(counted_write, 16u); array[i] = (value); }
@@ -20,6 +21,7 @@ layout(std430, binding = COUNTER_BINDING) buffer Counter { uint counted_read, co
 #define COUNT_ATOMIC { atomicAdd(counted_read, 4u); atomicAdd(counted_write, 4u); }
 #else
 #define LOAD(bytes, array, i) (array[i])
+#define LOAD16_OF(member) (member)
 #define LOAD16(array, i) (array[i])
 #define LOAD4(array, i) (array[i])
 #define STORE16(array, i, value) { array[i] = (value); }

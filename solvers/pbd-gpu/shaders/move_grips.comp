@@ -1,6 +1,6 @@
 #version 450
-// Vertices that a hand holds go where it takes them, on a straight line through the frame, and have no inverse mass. Once
-// let go they have theirs, and keep the position and velocity they had.
+// Vertices that a hand holds go where it takes them, on a straight line through the frame, and have no inverse mass.
+// Once let go they have theirs, and keep the position and velocity they had.
 #define COUNTER_BINDING 3
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "gpu_solver.hpp"
+
+namespace clothbench::pbd_gpu {
+
+/// Collisions of `paper` as published: every particle against every sphere, box, capsule and triangle, on predicted
+/// positions, at the end of each step. Kim, Ma & Hong 2025, 3.2.3 to 3.2.6, Algorithms 3 and 4.
+class PaperContact {
+ public:
+  /// One stage and kernel for each kind of collider the scene has. `mesh_depth_m` and `hand_depth_m`: how far behind a
+  /// triangle a particle is still taken for touching it.
+  PaperContact(GpuSolver& solver, const ColliderBuffers& colliders, const vulkan::Buffer& predicted,
+               const vulkan::Buffer& positions, float mesh_depth_m, float hand_depth_m);
+  /// For `particles`, of which `free` have an inverse mass.
+  void record(std::uint32_t particles, std::int64_t free);
+
+ private:
+  struct Pass {
+    int stage;
+    const vulkan::Kernel* kernel;
+    PaperContactConstants constants;
+    std::uint32_t item_bytes;  ///< read by a particle for each thing it is tested against
+    bool friction;
+  };
+  void add_shapes(const char* stage, const ShapeBuffer&, Feature, const Shader&, std::uint32_t item_bytes);
+  void add_meshes(const char* stage, const MeshBuffers&, Feature, float depth_m);
+
+  GpuSolver& solver_;
+  const vulkan::Buffer &predicted_, &positions_;
+  std::vector<Pass> passes_;
+};
+
+}  // namespace clothbench::pbd_gpu

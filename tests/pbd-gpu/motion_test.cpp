@@ -1,0 +1,169 @@
+// What moves: upload, skinning and gripped vertices.
+#include <cmath>
+#include <cstring>
+
+#include "contact_scenes.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// Nothing but colliders, read back: what a method finds in its buffers during a frame.
+class Mirror final : public GpuSolver {
+ public:
+  Mirror(bool keep_start, Vec3 origin)
+      : GpuSolver(paper_info(), complete_settings(paper_info(), nlohmann::json::object()), {-1, true}, false),
+        keep_start_(keep_start),
+        origin_(origin) {}
+  template <class T>
+  const T* seen(std::size_t k) const {
+    return static_cast<const T*>(hosts_.at(k)->mapped());
+  }
+  const MeshBuffers& hands() { return colliders()->moving; }
+
+ private:
+  void build() override {
+    const int stage = add_stage("Mirror", {});
+    add_colliders(origin_, keep_start_);
+    const vulkan::Buffer& state = add_vec4_buffer("state", vec4s(scene().cloth.vertex_count()));
+    set_state(state, state, {});
+    sources_ = {colliders()->capsules.buffer, colliders()->moving.positions};
+    if (keep_start_) sources_.push_back(colliders()->moving.start_positions);
+    for (const vulkan::Buffer* b : sources_) hosts_.push_back(&add_host_buffer(b->name(), b->bytes()));
+    stage_ = stage;
+  }
+  void record_frame(double) override {
+    colliders()->record();
+    for (std::size_t k = 0; k < sources_.size(); ++k) copy(stage_, *sources_[k], *hosts_[k]);
+  }
+
+  const bool keep_start_;
+  const Vec3 origin_;
+  int stage_ = -1;
+  std::vector<const vulkan::Buffer*> sources_;
+  std::vector<vulkan::Buffer*> hosts_;
+};
+
+Scene hands() {
+  Scene s = with_collider(sheet(3, 3), octahedron({0.3, 0.2, -0.1}, 0.06, true));
+  s = with_collider(s, sphere({0, 0, 0}, 0.1));
+  s = with_collider(s, capsules({0.1, 0.2, 0.3}, 0.25));
+  return moving(with_collider(s, octahedron({-0.4, 0, 0.7}, 0.1, true)));
+}
+
+void expect_mesh(const vec4* seen, const Scene& s, const MeshBuffers& buffers, std::size_t instant,
+                 const Vec3& origin) {
+  for (const MeshRange& r : buffers.ranges) {
+    const std::vector<double> x =
+        posed_positions(*s.colliders[r.collider].mesh, s.motion[instant].colliders[r.collider]);
+    for (std::size_t v = 0; v < r.vertices; ++v) {
+      const vec4& at = seen[r.first_vertex + v];
+      EXPECT_NEAR(at.x, x[3 * v] - origin[0], 1e-6) << "instant " << instant << " vertex " << v;
+      EXPECT_NEAR(at.y, x[3 * v + 1] - origin[1], 1e-6);
+      EXPECT_NEAR(at.z, x[3 * v + 2] - origin[2], 1e-6);
+    }
+  }
+}
+
+TEST_F(Gpu, HandsAreSkinnedAndCapsulesArriveRelativeToTheOrigin) {
+  const Scene s = hands();
+  const Vec3 origin = {0.25, -0.5, 0.125};
+  for (bool keep_start : {false, true}) {
+    Mirror mirror(keep_start, origin);
+    mirror.load(s);
+    ASSERT_EQ(mirror.hands().ranges.size(), 2u);
+    EXPECT_EQ(mirror.hands().ranges[1].collider, 3u);
+    for (int lap = 0; lap < 2; ++lap, mirror.reset())
+      for (std::size_t f = 0; f < 4; ++f) {
+        after_frame(mirror, s, static_cast<int>(f));
+        expect_mesh(mirror.seen<vec4>(1), s, mirror.hands(), f + 1, origin);
+        if (keep_start) expect_mesh(mirror.seen<vec4>(2), s, mirror.hands(), f, origin);
+        const auto* capsule = mirror.seen<CapsuleShape>(0);
+        for (std::size_t k = 0; k < 2; ++k) {
+          const Capsule &start = s.motion[f].colliders[2].capsules[k], &end = s.motion[f + 1].colliders[2].capsules[k];
+          EXPECT_NEAR(capsule[k].a0.x, start.a_m[0] - origin[0], 1e-6) << f;
+          EXPECT_NEAR(capsule[k].b0.y, start.b_m[1] - origin[1], 1e-6) << f;
+          EXPECT_NEAR(capsule[k].a1.x, end.a_m[0] - origin[0], 1e-6) << f;
+          EXPECT_NEAR(capsule[k].b1.z, end.b_m[2] - origin[2], 1e-6) << f;
+          EXPECT_FLOAT_EQ(capsule[k].a0.w, static_cast<float>(end.radius_m));
+          EXPECT_FLOAT_EQ(capsule[k].a1.w, static_cast<float>(end.radius_m + 0.02));
+          EXPECT_FLOAT_EQ(capsule[k].b0.w, 0.02f);
+          EXPECT_FLOAT_EQ(capsule[k].b1.w, 0.25f);
+        }
+      }
+  }
+}
+
+TEST_F(Gpu, MotionOfAnotherSceneIsRefused) {
+  const Scene s = hands();
+  const auto solver = make("paper");
+  solver->load(doubled(s));
+  const FrameMotion wrong;
+  EXPECT_THROW(solver->step({0, s.time.dt(), s.time.dt(), &wrong}), Error);
+}
+
+TEST_F(Gpu, HeldVerticesFollowTheHandAndDragTheRest) {
+  for (int substeps : {1, 3})
+    for (bool two_layers : {false, true}) {
+      Scene s = moving(with_damping(sheet(9, 7)), {0, 9, 62});
+      if (two_layers) s = doubled(s);
+      const auto solver = make("paper", {{"substeps", substeps}});
+      solver->load(s);
+      const std::vector<double> rest = initial_positions(s);
+      for (int lap = 0; lap < 2; ++lap, solver->reset())
+        for (int f = 0; f < 10; ++f) {
+          const ClothState state = after_frame(*solver, s, f);
+          for (std::size_t g = 0; g < s.grips.vertices.size(); ++g)
+            for (std::size_t k = 0; k < 3; ++k) {
+              const std::size_t at = 3 * s.grips.vertices[g] + k;
+              const FrameMotion &now = s.motion[static_cast<std::size_t>(f) + 1],
+                                &before = s.motion[static_cast<std::size_t>(f)];
+              EXPECT_EQ(static_cast<float>(state.position[at]), static_cast<float>(now.grip_position_m[g][k])) << f;
+              EXPECT_NEAR(state.velocity[at], (now.grip_position_m[g][k] - before.grip_position_m[g][k]) / s.time.dt(),
+                          1e-4);
+            }
+          if (f == 9) {
+            EXPECT_GT(state.position[3 * 10] - rest[3 * 10], 0.02) << "a neighbour is dragged along";
+          }
+        }
+    }
+}
+
+TEST_F(Gpu, LetGoTheyFlyOnAndFall) {
+  // All of a rigid sheet is held: let go, it has the hand's velocity and falls as the method's free fall does.
+  constexpr int kRelease = 4, kFlight = 12;
+  for (int substeps : {1, 3}) {
+    Scene s = sheet(5, 4);
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t v = 0; v < 20; ++v) all.push_back(v);
+    s = moving(s, all, kRelease);
+    const nlohmann::json settings = {{"substeps", substeps}};
+    const auto solver = make("paper", settings);
+    solver->load(s);
+    const std::vector<double> rest = initial_positions(s);
+    for (int lap = 0; lap < 2; ++lap, solver->reset()) {
+      const ClothState state = after(*solver, s, kRelease + kFlight);
+      const double fall = paper_free_fall_m(s, settings, kFlight);
+      const double frames = kRelease + kFlight;
+      for (std::size_t v = 0; v < all.size(); ++v) {
+        EXPECT_NEAR(state.position[3 * v], rest[3 * v] + 0.02 * frames, 1e-4) << substeps;
+        EXPECT_NEAR(state.position[3 * v + 1], rest[3 * v + 1] + 0.03 * frames + fall, 1e-4) << substeps;
+        EXPECT_NEAR(state.position[3 * v + 2], rest[3 * v + 2] - 0.01 * frames, 1e-4) << substeps;
+      }
+    }
+  }
+}
+
+TEST_F(Gpu, WithoutMotionWhatCouldMoveStandsStill) {
+  const Scene s = moving(sheet(5, 4), {0, 4});
+  const auto solver = make("paper");
+  solver->load(s);
+  const std::vector<double> rest = initial_positions(s);
+  ClothState state;
+  for (int f = 0; f < 5; ++f) EXPECT_EQ(solver->step({f, (f + 1) * s.time.dt(), s.time.dt()}), StepStatus::Ok);
+  solver->read_state(state);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_EQ(static_cast<float>(state.position[12 + k]), static_cast<float>(rest[12 + k]));
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu
