@@ -25,7 +25,7 @@ void run_cell(benchmark::State& state, const CellSpec& spec, const DeviceOptions
   for (auto unused : state) {
     (void)unused;
     const auto start = std::chrono::steady_clock::now();
-    const StepStatus status = solver->step({frame, (frame + 1) * dt, dt});
+    const StepStatus status = solver->step({frame, (frame + 1) * dt, dt, spec.scene->motion_after(frame)});
     state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     if (status != StepStatus::Ok) {
       state.SkipWithError("the solver failed");
