@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -140,20 +141,20 @@ class Reader {
     const assets::Room room = assets::open_room(assets(), c.name);
     const auto cut = j["cut"].get<std::string>();
     std::optional<assets::Table> table;
+    assets::TriangleMesh round_table;
     if (j.contains("table")) {
       table = assets::find_table(room, j["table"].get<std::string>());
       c.name += "/" + j["table"].get<std::string>();
-    }
-    if (cut == "none") {
-      c.mesh = mesh_of(room.mesh);
-    } else {
-      if (!table) refuse("", fmt::format("\"table\" is missing; cut \"{}\" goes round one", cut));
       const auto points = assets::six_points(*table, j["below_m"].get<double>(), j["above_m"].get<double>());
       const auto mode = cut == "crossing" ? assets::CutMode::Crossing : assets::CutMode::AnyVertexInside;
-      c.mesh = mesh_of(assets::cut(room.mesh, assets::box_of(points), mode).mesh);
-      if (c.mesh->triangles.empty()) refuse("", "no triangle of the room is in the box");
+      round_table = assets::cut(room.mesh, assets::box_of(points), mode).mesh;
+      if (round_table.triangles.empty()) refuse("", "no triangle of the room is in the box");
+    } else if (cut != "none") {
+      refuse("", fmt::format("\"table\" is missing; cut \"{}\" goes round one", cut));
     }
-    if (table) tables_[scene_.colliders.size()] = *table;
+    c.mesh = mesh_of(cut == "none" ? room.mesh : round_table);
+    // The cloth is placed by what is round the table, the same with the whole room, whose ceiling is above it too.
+    if (table) tables_[scene_.colliders.size()] = {*table, *mesh_of(round_table)};
   }
 
   fs::path track_file(const std::string& name) const {
@@ -210,10 +211,10 @@ class Reader {
     const auto index = over["collider"].get<std::size_t>();
     const auto table = tables_.find(index);
     if (table == tables_.end()) refuse("/collider", fmt::format("expected a collider of type room with a table; /colliders/{} is none", index));
-    const ColliderMesh& mesh = *scene_.colliders[index].mesh;
+    const auto& [box, mesh] = table->second;
     const double drop = over["drop_m"].get<double>();
-    const TablePose at = over["at"] == "center" ? flat_over(table->second, mesh, scene_.cloth, drop)
-                                                : corner_first_over(table->second, scene_.cloth, drop, over["tilt_deg"].get<double>() * kRadians);
+    const TablePose at = over["at"] == "center" ? flat_over(box, mesh, scene_.cloth, drop)
+                                                : corner_first_over(box, scene_.cloth, drop, over["tilt_deg"].get<double>() * kRadians);
     scene_.cloth.center_m = at.center_m;
     scene_.cloth.axis_u = at.axis_u;
     scene_.cloth.axis_v = at.axis_v;
@@ -282,7 +283,7 @@ class Reader {
   const std::string& source_;
   std::string at_;
   std::optional<assets::AssetSource> assets_;
-  std::map<std::size_t, assets::Table> tables_;  ///< by collider
+  std::map<std::size_t, std::pair<assets::Table, ColliderMesh>> tables_;  ///< by collider; with the mesh round it
   std::vector<std::optional<Moving>> hands_;     ///< by collider
   std::vector<Grip> grips_;
 };

@@ -58,6 +58,9 @@ TEST_F(Colliders, FlatDropStartsThirtyCentimetresOverTheTable) {
   const Scene again = scene_from_json(nlohmann::json::parse(s.json), s.source);
   EXPECT_EQ(again.json, s.json);
   EXPECT_EQ(again.cloth.center_m, s.cloth.center_m);
+  const Scene whole = load_scene("paper/desk-flat-low", {"colliders.0.cut=none"});
+  EXPECT_EQ(whole.cloth.center_m, s.cloth.center_m);
+  EXPECT_GT(whole.colliders[0].mesh->triangles.size(), m.triangles.size());
 }
 
 TEST_F(Colliders, CornerDropHangsHalfOutside) {
