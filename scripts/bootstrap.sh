@@ -9,7 +9,7 @@ packages=(g++ cmake ninja-build ccache
           libfmt-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev
           python3-h5py python3-matplotlib git)
 if [ "${1:-}" = --tests ]; then
-  packages+=(libgtest-dev vulkan-validationlayers hdf5-tools python3-xarray python3-h5netcdf python3-paraview)
+  packages+=(libgtest-dev vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf python3-paraview)
 fi
 
 missing=()

@@ -23,6 +23,7 @@ void add_run(CLI::App&, Console&);
 void add_study(CLI::App&, Console&);
 void add_report(CLI::App&, Console&);
 void add_import(CLI::App&, Console&);
+void add_check(CLI::App&, Console&);
 void add_bench(CLI::App&, Console&);
 
 /// `--set` arguments: `solver.<name>=<JSON>` go to the solver, everything else to the scene.

@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   add_study(app, console);
   add_report(app, console);
   add_import(app, console);
+  add_check(app, console);
   add_bench(app, console);
 
   std::signal(SIGINT, on_signal);

@@ -4,8 +4,8 @@
 
 namespace clothbench {
 
-/// A study's cells with the short or the full protocol, of the solvers in `only` (all if empty). The study must
-/// outlive the plan. Throws Error for a solver or setting this build does not have.
+/// A study's cells with the short or the full protocol, of the solvers in `only` (the study's if empty; one
+/// that it does not name has its default settings). The study must outlive the plan. Throws Error for a solver or setting this build does not have.
 CellPlan plan_study(const Study&, bool full, const std::vector<std::string>& only);
 
 }  // namespace clothbench

@@ -71,7 +71,7 @@ class Cli : public ::testing::Test {
 TEST_F(Cli, HelpNamesEveryCommand) {
   const Answer a = clothbench_command("--help");
   EXPECT_EQ(a.code, 0);
-  for (const char* word : {"list", "run", "study", "plan", "report", "validate", "import", "bench"})
+  for (const char* word : {"list", "run", "study", "plan", "report", "validate", "import", "check", "bench"})
     EXPECT_NE(a.text.find(word), std::string::npos) << word;
 }
 

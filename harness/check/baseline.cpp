@@ -1,0 +1,129 @@
+#include "check/baseline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "check/gates.hpp"
+#include "check/schema.hpp"
+#include "clothbench/error.hpp"
+#include "clothbench/solver.hpp"
+#include "results/store.hpp"
+#include "scenario/json_text.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+/// The environment says, or the completed scene does; a cell without assets has neither.
+std::string assets_of(const CellRecord& c) {
+  for (const json& j : {c.header.environment, json::parse(c.header.scenario_json, nullptr, false)})
+    if (j.is_object() && j.contains("assets") && j["assets"].is_string()) return j["assets"].get<std::string>();
+  return "";
+}
+
+std::string stage_text(const StageRecord& s) {
+  std::string features;
+  for (const std::string& f : s.serves) features += (features.empty() ? "" : ", ") + f;
+  return features.empty() ? s.name : s.name + " (" + features + ")";
+}
+
+double number_at(const json& value, const std::string& name, const std::string& where) {
+  if (find_gate(name) == nullptr) {
+    std::vector<std::string> known;
+    for (const Gate& g : gates()) known.emplace_back(g.pattern);
+    const std::string near = nearest(name, known);
+    throw Error(fmt::format("{}: not a scalar that is checked{} (the table is in results/baselines/README.md)", where,
+                            near.empty() ? "" : "; nearest known: " + near));
+  }
+  if (value.is_null()) return kMissing;
+  if (!value.is_number())
+    throw Error(fmt::format("{}: expected number, or null for not measured; found {}", where, value.dump()));
+  return value.get<double>();
+}
+
+BaselineCell cell_from(const json& j, const std::string& where) {
+  BaselineCell c;
+  c.key = {j.at("scene"), j.at("solver"), j.at("setting"), j.value("assets", "")};
+  c.scenario_sha256 = j.at("scenario_sha256");
+  c.status = j.at("status");
+  c.klass = j.at("class");
+  c.failed_frame = j.at("failed_frame");
+  c.stages = j.at("stages");
+  for (const auto& [name, value] : j.at("scalars").items())
+    c.scalars[name] = number_at(value, name, where + "/scalars/" + name);
+  return c;
+}
+
+ordered_json json_of(const BaselineCell& c) {
+  ordered_json j = {{"scene", c.key.scene}, {"solver", c.key.solver}, {"setting", c.key.setting}};
+  if (!c.key.assets.empty()) j["assets"] = c.key.assets;
+  j["scenario_sha256"] = c.scenario_sha256;
+  j["status"] = c.status;
+  j["class"] = c.klass;
+  j["failed_frame"] = c.failed_frame;
+  j["stages"] = c.stages;
+  j["scalars"] = ordered_json::object();
+  for (const auto& [name, v] : c.scalars) j["scalars"][name] = std::isfinite(v) ? ordered_json(v) : ordered_json();
+  return j;
+}
+
+}  // namespace
+
+std::string CellKey::file_name() const {
+  CellHeader h;
+  h.scene = scene;
+  h.solver = solver;
+  h.setting = setting;
+  return cell_name(h);
+}
+
+std::string CellKey::text() const { return file_name() + (assets.empty() ? "" : " [" + assets + "]"); }
+
+BaselineCell gated_part(const CellRecord& r) {
+  BaselineCell c;
+  c.key = {r.header.scene, r.header.solver, r.header.setting, assets_of(r)};
+  c.scenario_sha256 = r.header.scenario_sha256;
+  c.status = r.outcome.status;
+  c.klass = r.outcome.klass;
+  c.failed_frame = r.outcome.failed_frame;
+  for (const StageRecord& s : r.header.stages) c.stages.push_back(stage_text(s));
+  for (const auto& [name, v] : r.summary)
+    if (find_gate(name) != nullptr) c.scalars[name] = std::isfinite(v) ? v : kMissing;
+  return c;
+}
+
+Baseline read_baseline(const std::filesystem::path& file) {
+  const std::string source = file.string();
+  const json j = parse_json(read_text(file), source);
+  validate_json(j, kBaselineSchema, source);
+  Baseline b;
+  const json& made = j.at("made_with");
+  b.origin = {made.at("command"), made.at("runs"), made.at("commits"), made.at("devices")};
+  std::set<CellKey> seen;
+  for (std::size_t k = 0; k < j.at("cells").size(); ++k) {
+    const std::string where = fmt::format("{}: /cells/{}", source, k);
+    b.cells.push_back(cell_from(j["cells"][k], where));
+    if (!seen.insert(b.cells.back().key).second)
+      throw Error(where + ": this cell stands twice: " + b.cells.back().key.text());
+  }
+  std::sort(b.cells.begin(), b.cells.end(), [](const BaselineCell& x, const BaselineCell& y) { return x.key < y.key; });
+  return b;
+}
+
+std::string baseline_text(const Baseline& b) {
+  ordered_json j = {{"format", "clothbench-baseline"}, {"format_version", 1}};
+  j["made_with"] = {{"command", b.origin.command},
+                    {"runs", b.origin.runs},
+                    {"commits", b.origin.commits},
+                    {"devices", b.origin.devices}};
+  j["cells"] = ordered_json::array();
+  for (const BaselineCell& c : b.cells) j["cells"].push_back(json_of(c));
+  return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace clothbench

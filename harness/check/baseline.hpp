@@ -1,0 +1,53 @@
+#pragma once
+#include <compare>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "clothbench/record.hpp"
+
+namespace clothbench {
+
+/// What a cell is found by. `assets` tells npm from procedural rooms and hands; empty where the result does not say.
+struct CellKey {
+  std::string scene, solver, setting, assets;
+  auto operator<=>(const CellKey&) const = default;
+
+  std::string file_name() const;  ///< "<scene>__<solver>__<setting>", as the result file is called
+  std::string text() const;       ///< the same with the assets in brackets, if known
+};
+
+/// What of a cell does not depend on the machine.
+struct BaselineCell {
+  CellKey key;
+  std::string scenario_sha256;
+  std::string status, klass;
+  int failed_frame = -1;
+  std::vector<std::string> stages;        ///< "<name> (<feature>, <feature>)" in order
+  std::map<std::string, double> scalars;  ///< gated ones alone; NaN = not measured
+};
+
+/// How a baseline was made, for the reader of the file; nothing is computed from it.
+struct BaselineOrigin {
+  std::string command;                        ///< that wrote the baseline
+  std::vector<std::string> runs;              ///< that computed the results
+  std::vector<std::string> commits, devices;  ///< of the results, sorted
+};
+
+struct Baseline {
+  BaselineOrigin origin;
+  std::vector<BaselineCell> cells;  ///< sorted by key, no key twice
+};
+
+/// The part of a result that is gated. A scalar that is not finite counts as not measured.
+BaselineCell gated_part(const CellRecord&);
+
+/// Reads and checks a baseline. Throws Error with file and JSON pointer (line and column where the text is no JSON): a
+/// key that is unknown or missing, a scalar that has no gate, a cell that stands twice.
+Baseline read_baseline(const std::filesystem::path&);
+
+/// The file's text: one line a value, sorted; numbers read back exactly, not measured = null.
+std::string baseline_text(const Baseline&);
+
+}  // namespace clothbench

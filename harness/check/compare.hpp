@@ -1,0 +1,61 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "check/baseline.hpp"
+
+namespace clothbench {
+
+/// Ordered from good to bad; the verdict of a whole is the greatest of its parts'.
+enum class Verdict { Same, New, Improved, Failed };
+
+const char* word_for(Verdict);
+
+/// One quantity that is not as in the baseline.
+struct Finding {
+  Verdict verdict = Verdict::Same;
+  std::string quantity, baseline, found;
+  std::string allowed;  ///< "≤ 0.0036"; empty where it is the baseline itself
+  std::string message;  ///< what the values alone do not tell; may be empty
+
+  std::string sentence() const;
+};
+
+struct CheckedCell {
+  CellKey key;
+  std::vector<Finding> findings;
+
+  Verdict verdict() const;
+};
+
+struct Checked {
+  std::vector<CheckedCell> cells;  ///< every cell of baseline and results, sorted by key
+  std::size_t other_assets =
+      0;  ///< cells of the baseline left out because the results have the same cell with other assets
+
+  std::size_t count(Verdict) const;
+  bool passed() const { return count(Verdict::Failed) == 0; }
+};
+
+/// What of `record` differs from its baseline: the scene, the outcome, the stages, the gated scalars. Where the scene
+/// or the outcome differ, the rest is not comparable and left out. Throws Error if the record's scene has no cloth
+/// size.
+std::vector<Finding> compare_cell(const BaselineCell&, const CellRecord& record);
+
+/// Holds results to a baseline. A cell of the baseline without a result fails, unless the results have the cell with
+/// another kind of assets that the baseline also knows; so does a planned cell without a result. A cell that the
+/// baseline does not have is new. Throws Error if a cell stands twice among the results.
+Checked check_cells(const Baseline&, const std::vector<CellRecord>&);
+
+struct Updated {
+  Baseline baseline;
+  std::vector<CheckedCell> changes;  ///< beyond slack, as `compare_cell` tells them
+  std::vector<CellKey> removed;      ///< had no result
+  std::size_t within_slack = 0;      ///< cells with other values, all of them within slack
+};
+
+/// The baseline that the results make: their cells, and those of `old` that are there with other assets alone. Throws
+/// Error if there is no result, a cell stands twice, or a planned cell has no result.
+Updated update_baseline(const Baseline& old, const std::vector<CellRecord>&, BaselineOrigin);
+
+}  // namespace clothbench

@@ -1,0 +1,59 @@
+#include "check/github.hpp"
+
+#include <fmt/format.h>
+
+namespace clothbench {
+namespace {
+
+/// As @actions/core escapes them: %, CR and LF in the message; also : and , in a property.
+std::string escaped(const std::string& text, bool property) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '%')
+      out += "%25";
+    else if (c == '\r')
+      out += "%0D";
+    else if (c == '\n')
+      out += "%0A";
+    else if (property && c == ':')
+      out += "%3A";
+    else if (property && c == ',')
+      out += "%2C";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string command(const char* kind, const std::string& file, const std::string& title, const std::string& message) {
+  return fmt::format("::{} file={},title={}::{}\n", kind, escaped(file, true), escaped(title, true),
+                     escaped(message, false));
+}
+
+std::string sentences(const CheckedCell& cell, Verdict verdict) {
+  std::string text;
+  for (const Finding& f : cell.findings)
+    if (f.verdict == verdict) text += (text.empty() ? "" : "\n") + f.sentence();
+  return text;
+}
+
+}  // namespace
+
+std::string github_commands(const Checked& checked, const std::string& file) {
+  std::string out, improved, fresh;
+  for (const CheckedCell& cell : checked.cells) {
+    if (cell.verdict() == Verdict::Failed)
+      out += command("error", file, cell.key.text(), sentences(cell, Verdict::Failed));
+    const auto append = [&](std::string& to, Verdict verdict) {
+      if (const std::string text = sentences(cell, verdict); !text.empty())
+        to += (to.empty() ? "" : "\n") + cell.key.text() + ": " + text;
+    };
+    append(improved, Verdict::Improved);
+    append(fresh, Verdict::New);
+  }
+  if (!improved.empty()) out += command("notice", file, "better than the baseline: accept with --update", improved);
+  if (!fresh.empty()) out += command("notice", file, "not in the baseline", fresh);
+  return out;
+}
+
+}  // namespace clothbench

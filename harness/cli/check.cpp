@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "check/baseline.hpp"
+#include "check/compare.hpp"
+#include "check/github.hpp"
+#include "check/junit.hpp"
+#include "check/print.hpp"
+#include "cli/command.hpp"
+#include "report/report.hpp"
+#include "results/store.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<std::string> runs;
+  std::string baseline, junit;
+  bool github = false, update = false;
+};
+
+std::string text_at(const nlohmann::json& environment, const char* key) {
+  return environment.contains(key) && environment[key].is_string() ? environment[key].get<std::string>() : "";
+}
+
+BaselineOrigin origin_of(const std::vector<fs::path>& runs, const std::vector<CellRecord>& cells,
+                         const std::string& command) {
+  BaselineOrigin origin;
+  origin.command = command;
+  for (const fs::path& run : runs)
+    if (fs::is_regular_file(run / "study.json")) origin.runs.push_back(read_manifest(run).command_line);
+  std::set<std::string> commits, devices;
+  for (const CellRecord& c : cells) {
+    const nlohmann::json& e = c.header.environment;
+    const std::string commit = text_at(e, "git_commit"), device = text_at(e, "gpu");
+    if (!commit.empty()) commits.insert(commit + (e.contains("git_dirty") && e["git_dirty"] == true ? "-dirty" : ""));
+    if (!device.empty()) devices.insert(device);
+  }
+  std::sort(origin.runs.begin(), origin.runs.end());
+  origin.commits.assign(commits.begin(), commits.end());
+  origin.devices.assign(devices.begin(), devices.end());
+  return origin;
+}
+
+void print_json(const nlohmann::json& j) {
+  fmt::print("{}\n", j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+void update(const Arguments& a, const std::vector<fs::path>& runs, const std::vector<CellRecord>& cells,
+            const Console& console) {
+  const Baseline old = fs::exists(a.baseline) ? read_baseline(a.baseline) : Baseline{};
+  const Updated updated = update_baseline(old, cells, origin_of(runs, cells, console.command_line));
+  write_file_atomically(a.baseline, baseline_text(updated.baseline));
+  if (console.json)
+    print_json(update_json(updated, a.baseline));
+  else
+    fmt::print("{}", update_text(updated, a.baseline));
+}
+
+void check(const Arguments& a, const std::vector<CellRecord>& cells, Console& console) {
+  const Checked checked = check_cells(read_baseline(a.baseline), cells);
+  if (!a.junit.empty()) write_file_atomically(a.junit, junit_xml(checked));
+  if (console.json)
+    print_json(check_json(checked, a.baseline));
+  else
+    fmt::print("{}", check_text(checked, a.baseline));
+  std::fflush(stdout);
+  // A runner reads commands from both streams; on stdout they would spoil the JSON.
+  if (a.github) fmt::print(console.json ? stderr : stdout, "{}", github_commands(checked, a.baseline));
+  if (!checked.passed()) console.exit_code = ExitCode::CheckFailed;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Console& console) {
+  static Arguments a;
+  CLI::App* cmd = app.add_subcommand(
+      "check", "Hold results to a baseline: outcome, stages, dispatches, error, penetration; never times");
+  cmd->add_option("runs", a.runs, "Study folders or result files")->required();
+  cmd->add_option("--baseline", a.baseline, "Baseline file, such as results/baselines/penetration.json")->required();
+  CLI::Option* rewrite =
+      cmd->add_flag("--update", a.update, "Rewrite the baseline from these results and say what changed");
+  cmd->add_option("--junit", a.junit, "Also write JUnit XML, one test case a cell")->excludes(rewrite);
+  cmd->add_flag("--github", a.github, "Also print annotations for GitHub Actions")->excludes(rewrite);
+  cmd->footer(
+      "Exit codes: 0 as in the baseline or better, 1 something is worse or missing, 2 bad input.\n"
+      "Example: clothbench check results/runs/mine --baseline results/baselines/penetration.json --junit check.xml");
+  cmd->callback([&console] {
+    const std::vector<fs::path> runs(a.runs.begin(), a.runs.end());
+    if (!a.junit.empty() && fs::is_regular_file(a.junit))
+      fs::remove(a.junit);  // an older verdict must not outlive a failed check
+    if (!a.update && !fs::exists(a.baseline))
+      throw Error(a.baseline + ": no such file; expected a baseline (--update makes one)");
+    const std::vector<CellRecord> cells = collect(runs);
+    if (a.update)
+      update(a, runs, cells, console);
+    else
+      check(a, cells, console);
+  });
+}
+
+}  // namespace clothbench

@@ -1,0 +1,184 @@
+// `clothbench check` as a user meets it: exit codes, files, a study of the ballistic solver as the subject.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "results.hpp"
+#include "results/store.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class CheckCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    dir_ = fs::temp_directory_path() / ("clothbench-check-" + std::to_string(getpid()) + "-" + info->name());
+    fs::create_directories(dir_);
+    write_study({contact_cell("desk"), contact_cell("sweep")});
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  /// A study folder with these cells, as `clothbench study` leaves it.
+  void write_study(const std::vector<CellRecord>& cells) {
+    fs::remove_all(run());
+    fs::create_directories(run());
+    StudyManifest manifest{
+        "penetration", "2026-01-01T00:00:00Z", "clothbench study penetration --quick", json::object(), {}};
+    for (const CellRecord& c : cells) {
+      manifest.cells.push_back(cell_name(c.header));
+      if (c.outcome.status != "missing") CellWriter(run(), c.header).finish(c.outcome, c.summary);
+    }
+    write_manifest(run(), manifest);
+  }
+
+  fs::path run() const { return dir_ / "run"; }
+  fs::path baseline() const { return dir_ / "baseline.json"; }
+
+  int command(const std::string& arguments, bool with_stderr = true) {
+    const std::string line =
+        std::string(CLOTHBENCH_COMMAND) + " " + arguments + (with_stderr ? " 2>&1" : " 2>/dev/null");
+    text_.clear();
+    FILE* pipe = popen(line.c_str(), "r");
+    if (pipe == nullptr) return -1;
+    std::array<char, 4096> chunk{};
+    while (const std::size_t n = fread(chunk.data(), 1, chunk.size(), pipe)) text_.append(chunk.data(), n);
+    const int status = pclose(pipe);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  int check(const std::string& more = "") {
+    return command("check " + run().string() + " --baseline " + baseline().string() + " " + more);
+  }
+
+  static std::string content(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  fs::path dir_;
+  std::string text_;
+};
+
+TEST_F(CheckCommand, UpdateThenCheckThenRegress) {
+  ASSERT_EQ(check("--update"), 0) << text_;
+  EXPECT_NE(text_.find("2 changed or new"), std::string::npos) << text_;
+  const std::string made = content(baseline());
+  EXPECT_NE(made.find("clothbench study penetration --quick"), std::string::npos);
+  EXPECT_EQ(check(), 0) << text_;
+  EXPECT_NE(text_.find("check passed: 2 cells: 0 failed, 0 improved, 0 new, 2 as in"), std::string::npos) << text_;
+  EXPECT_EQ(content(baseline()), made) << "a check writes nothing";
+  ASSERT_EQ(check("--update"), 0);
+  EXPECT_EQ(content(baseline()), made) << "the same results give the same file";
+
+  write_study({contact_cell("desk"), with(contact_cell("sweep"), "tunnelled_fraction_max", 0.25)});
+  EXPECT_EQ(check(), 1) << text_;
+  EXPECT_NE(text_.find("tunnelled_fraction_max"), std::string::npos) << text_;
+  ASSERT_EQ(check("--update"), 0);
+  EXPECT_NE(text_.find("tunnelled_fraction_max"), std::string::npos) << text_;
+  EXPECT_EQ(check(), 0) << text_;
+
+  write_study({contact_cell("desk"), contact_cell("sweep")});
+  EXPECT_EQ(check(), 0) << "an improvement passes";
+  EXPECT_NE(text_.find("1 improved"), std::string::npos) << text_;
+  EXPECT_NE(text_.find("--update"), std::string::npos) << text_;
+  for (const auto& file : fs::directory_iterator(dir_))
+    EXPECT_EQ(file.path().string().find(".tmp"), std::string::npos) << file.path();
+}
+
+TEST_F(CheckCommand, NotANumberMissingAndNewCells) {
+  ASSERT_EQ(check("--update"), 0);
+  write_study({contact_cell("desk"), with(contact_cell("sweep"), "depth_max_m", kMissing)});
+  EXPECT_EQ(check(), 1);
+  EXPECT_NE(text_.find("not measured"), std::string::npos) << text_;
+  write_study({contact_cell("desk"), planned(contact_cell("sweep"))});
+  EXPECT_EQ(check(), 1);
+  EXPECT_NE(text_.find("planned, not run"), std::string::npos) << text_;
+  EXPECT_EQ(check("--update"), 2) << "no baseline of half a study";
+  write_study({contact_cell("desk")});
+  EXPECT_EQ(check(), 1);
+  write_study({contact_cell("desk"), contact_cell("sweep"), contact_cell("push")});
+  EXPECT_EQ(check(), 0);
+  EXPECT_NE(text_.find("1 new"), std::string::npos) << text_;
+}
+
+TEST_F(CheckCommand, ResultFilesOneByOne) {
+  ASSERT_EQ(check("--update"), 0);
+  std::string files;
+  for (const auto& file : fs::directory_iterator(run()))
+    if (file.path().extension() == ".h5") files += " " + file.path().string();
+  EXPECT_EQ(command("check" + files + " --baseline " + baseline().string()), 0) << text_;
+}
+
+TEST_F(CheckCommand, BadInputExitsTwo) {
+  EXPECT_EQ(check(), 2) << "no baseline";
+  EXPECT_NE(text_.find("--update"), std::string::npos) << text_;
+  ASSERT_EQ(check("--update"), 0);
+  EXPECT_EQ(command("check " + (dir_ / "nothing").string() + " --baseline " + baseline().string()), 2) << text_;
+  EXPECT_EQ(command("check " + run().string()), 2) << "no --baseline";
+  EXPECT_EQ(check("--update --github"), 2);
+  EXPECT_EQ(command("check " + run().string() + " " + run().string() + " --baseline " + baseline().string()), 2);
+  EXPECT_NE(text_.find("twice"), std::string::npos) << text_;
+  json bad = json::parse(content(baseline()));
+  bad["cells"][1]["scalars"]["depth_max"] = 1;
+  std::ofstream(baseline()) << bad.dump();
+  EXPECT_EQ(check(), 2);
+  EXPECT_NE(text_.find("baseline.json: /cells/1/scalars/depth_max"), std::string::npos) << text_;
+  EXPECT_EQ(check("--update"), 2) << "what cannot be read is not written over";
+  EXPECT_EQ(json::parse(content(baseline())), bad);
+}
+
+TEST_F(CheckCommand, JunitGithubAndJson) {
+  ASSERT_EQ(check("--update"), 0);
+  write_study({contact_cell("desk"), ended(contact_cell("sweep"), "diverged", "F2", 3)});
+  const fs::path junit = dir_ / "check.xml";
+  EXPECT_EQ(check("--github --junit " + junit.string()), 1);
+  EXPECT_NE(text_.find("\n::error file=" + baseline().string() + ",title=sweep__xpbd__default::FAILED: outcome"),
+            std::string::npos)
+      << text_;
+  EXPECT_NE(content(junit).find("failures=\"1\""), std::string::npos);
+  EXPECT_EQ(command("check --json --github " + run().string() + " --baseline " + baseline().string(), false), 1);
+  const json j = json::parse(text_);
+  EXPECT_EQ(j.at("passed"), false);
+  EXPECT_EQ(j.at("cells").size(), 2u);
+  std::ofstream(baseline()) << "{";
+  EXPECT_EQ(check("--junit " + junit.string()), 2);
+  EXPECT_FALSE(fs::exists(junit)) << "an older verdict";
+}
+
+TEST_F(CheckCommand, HoldsARealStudyOfASolverThatTheStudyDoesNotName) {
+  const fs::path study = dir_ / "study.json", out = dir_ / "real";
+  std::ofstream(study) << R"({"name":"small","why":"A test.","protocol":"fps",
+    "scenes":[{"file":")"
+                       << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/paper/gravity.json",
+      "axes":[{"key":"cloth.grid","values":[[8,8]],"labels":["8"]}]}],
+    "solvers":[{"solver":"no-such-solver"}],"trials":1,
+    "short":{"frames":12,"max_wall_s":1,"min_frames":12,"warmup_s":0.01},
+    "full":{"frames":12,"max_wall_s":0,"min_frames":12,"warmup_s":0.01},"accuracy_duration_s":0.1})";
+  ASSERT_EQ(command("study " + study.string() + " --solver ballistic --out " + out.string()), 0) << text_;
+  const std::string arguments = "check " + out.string() + " --baseline " + baseline().string();
+  ASSERT_EQ(command(arguments + " --update"), 0) << text_;
+  EXPECT_EQ(command(arguments), 0) << text_;
+  json changed = json::parse(content(baseline()));
+  ASSERT_EQ(changed["cells"].size(), 1u);
+  EXPECT_EQ(changed["cells"][0]["solver"], "ballistic");
+  ASSERT_TRUE(changed["cells"][0]["scalars"].contains("free_fall_error"));
+  changed["cells"][0]["scalars"]["free_fall_error"] = -1;
+  std::ofstream(baseline()) << changed.dump();
+  EXPECT_EQ(command(arguments), 1) << text_;
+  changed["cells"][0]["scenario_sha256"] = "0";
+  std::ofstream(baseline()) << changed.dump();
+  EXPECT_EQ(command(arguments), 1);
+  EXPECT_NE(text_.find("the scene changed"), std::string::npos) << text_;
+}
+
+}  // namespace
+}  // namespace clothbench

@@ -1,0 +1,272 @@
+// Every rule of the check, on cells as the runner would leave them.
+#include "check/compare.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "check/gates.hpp"
+#include "clothbench/error.hpp"
+#include "results.hpp"
+
+namespace clothbench {
+namespace {
+
+Baseline baseline_of(const std::vector<CellRecord>& cells) { return update_baseline({}, cells, {}).baseline; }
+
+std::vector<Finding> findings(const CellRecord& was, const CellRecord& is) { return compare_cell(gated_part(was), is); }
+
+/// Verdict of one changed scalar.
+Verdict verdict_of(const std::string& name, double was, double is) {
+  const std::vector<Finding> f = findings(with(contact_cell(), name, was), with(contact_cell(), name, is));
+  if (f.empty()) return Verdict::Same;
+  EXPECT_EQ(f.size(), 1u);
+  EXPECT_EQ(f[0].quantity, name);
+  return f[0].verdict;
+}
+
+std::string error_of(const auto& call) {
+  try {
+    call();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(Gates, EveryPenetrationScalarHasOneAndNoTimeDoes) {
+  for (const char* name : {"contact_length_settled_m", "contact_length_max_m", "tunnelled_fraction_max",
+                           "tunnelled_fraction_end", "tunnelled_depth_max_m", "depth_max_m", "depth_vertex_max_m",
+                           "depth_p99_m", "depth_mean_m", "penetrating_area_max_m2", "stretch_max", "stretch_max_end",
+                           "expect.anything", "free_fall_error", "free_fall_error_rms", "dispatches"})
+    EXPECT_NE(find_gate(name), nullptr) << name;
+  for (const char* name : {"fps_median", "fps_mean", "fps_spread", "fps_at_72", "frame_wall_median_s",
+                           "frame_wall_iqr_s", "frame_device_median_s", "read_B_per_frame", "write_B_per_frame",
+                           "bandwidth_read_peak_B_per_s", "bandwidth_window_s", "device_memory_B", "load_s", "trials",
+                           "frames_per_trial", "stage_device_median_s.Contact"})
+    EXPECT_EQ(find_gate(name), nullptr) << name;
+}
+
+TEST(Gates, SlackScalesWithTheCloth) {
+  const Gate& depth = *find_gate("depth_max_m");
+  EXPECT_DOUBLE_EQ(slack(depth, 0, 2), 2 * slack(depth, 0, 1));
+  const Gate& area = *find_gate("penetrating_area_max_m2");
+  EXPECT_DOUBLE_EQ(slack(area, 0, 2), 4 * slack(area, 0, 1));
+  EXPECT_GT(slack(depth, 1, 1), slack(depth, 0, 1));
+  EXPECT_EQ(slack(*find_gate("tunnelled_fraction_max"), 0, 1), 0);
+}
+
+TEST(Compare, AgreesWithItself) { EXPECT_TRUE(findings(contact_cell(), contact_cell()).empty()); }
+
+TEST(Compare, TimesAreNeverGated) {
+  CellRecord slow = contact_cell();
+  for (const char* name :
+       {"fps_median", "frame_wall_median_s", "load_s", "device_memory_B", "bandwidth_read_peak_B_per_s"})
+    slow.summary[name] = kMissing;
+  EXPECT_TRUE(findings(contact_cell(), slow).empty());
+}
+
+TEST(Compare, MoreThanSlackFailsLessIsBetter) {
+  for (const Gate& gate : gates()) {
+    if (gate.rule != Rule::AtMost) continue;
+    std::string name = gate.pattern;
+    while (name.find('*') != std::string::npos) name.replace(name.find('*'), 1, "max");
+    const double was = 1, room = slack(gate, was, 0.5);
+    EXPECT_EQ(verdict_of(name, was, was), Verdict::Same) << name;
+    EXPECT_EQ(verdict_of(name, was, was + 0.99 * room), Verdict::Same) << name;
+    EXPECT_EQ(verdict_of(name, was, was - 0.99 * room), Verdict::Same) << name;
+    EXPECT_EQ(verdict_of(name, was, was + 1.01 * room + 1e-12), Verdict::Failed) << name;
+    EXPECT_EQ(verdict_of(name, was, was - 1.01 * room - 1e-12), Verdict::Improved) << name;
+  }
+}
+
+TEST(Compare, NothingTunnelledStaysNothing) {
+  EXPECT_EQ(verdict_of("tunnelled_fraction_max", 0, 1e-12), Verdict::Failed);
+  EXPECT_EQ(verdict_of("contact_length_settled_m", 0, 1e-12), Verdict::Failed);
+  EXPECT_EQ(verdict_of("depth_max_m", 0, 1e-12), Verdict::Same);
+}
+
+TEST(Compare, NotANumberFailsWhereTheBaselineHasOne) {
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const char* name :
+       {"depth_max_m", "tunnelled_fraction_max", "dispatches", "free_fall_error", "expect.depth_max_m"}) {
+    EXPECT_EQ(verdict_of(name, 1, kMissing), Verdict::Failed) << name;
+    EXPECT_EQ(verdict_of(name, 0, kMissing), Verdict::Failed) << name;
+    EXPECT_EQ(verdict_of(name, 1, inf), Verdict::Failed) << name;
+    EXPECT_EQ(verdict_of(name, 1, -inf), Verdict::Failed) << name;
+    EXPECT_EQ(verdict_of(name, kMissing, kMissing), Verdict::Same) << name;
+    EXPECT_EQ(verdict_of(name, kMissing, 1), Verdict::New) << name;
+  }
+  CellRecord absent = contact_cell();
+  absent.summary.erase("depth_max_m");
+  ASSERT_EQ(findings(contact_cell(), absent).size(), 1u);
+  EXPECT_EQ(findings(contact_cell(), absent)[0].verdict, Verdict::Failed);
+  EXPECT_EQ(findings(absent, contact_cell())[0].verdict, Verdict::New);
+}
+
+TEST(Compare, TheScenesOwnVerdict) {
+  EXPECT_EQ(verdict_of("expect.depth_max_m", 1, 0), Verdict::Failed);
+  EXPECT_EQ(verdict_of("expect.depth_max_m", 0, 1), Verdict::Improved);
+  EXPECT_EQ(verdict_of("expect.depth_max_m", 0, 0), Verdict::Same);
+}
+
+TEST(Compare, Outcome) {
+  const CellRecord ok = contact_cell(), blown = ended(ok, "diverged", "F2", 40);
+  const auto verdict = [](const CellRecord& was, const CellRecord& is) {
+    const auto f = findings(was, is);
+    EXPECT_LE(f.size(), 1u);
+    return f.empty() ? Verdict::Same : f[0].verdict;
+  };
+  EXPECT_EQ(verdict(ok, blown), Verdict::Failed);
+  EXPECT_EQ(findings(ok, blown)[0].message, "what the solver said");
+  EXPECT_EQ(verdict(blown, ok), Verdict::Improved);
+  EXPECT_EQ(verdict(blown, blown), Verdict::Same);
+  EXPECT_EQ(verdict(blown, ended(ok, "diverged", "F3", 40)), Verdict::Failed) << "another class";
+  EXPECT_EQ(verdict(blown, ended(ok, "not_finite", "F2", 40)), Verdict::Failed) << "another status";
+  EXPECT_EQ(verdict(ended(ok, "unsupported"), ended(ok, "diverged", "F2", 40)), Verdict::Failed);
+  EXPECT_EQ(verdict(ended(ok, "unsupported"), ok), Verdict::Improved);
+  EXPECT_EQ(verdict(ok, ended(ok, "unsupported")), Verdict::Failed);
+  EXPECT_EQ(verdict(ok, ended(ok, "ok", "F4")), Verdict::Failed);
+  EXPECT_EQ(verdict(ended(ok, "ok", "F4"), ok), Verdict::Improved);
+  // 2 frames and a tenth of 40: 34 to 46 is the same blow-up.
+  EXPECT_EQ(verdict(blown, ended(ok, "diverged", "F2", 34)), Verdict::Same);
+  EXPECT_EQ(verdict(blown, ended(ok, "diverged", "F2", 33)), Verdict::Failed);
+  EXPECT_EQ(verdict(blown, ended(ok, "diverged", "F2", 46)), Verdict::Same);
+  EXPECT_EQ(verdict(blown, ended(ok, "diverged", "F2", 47)), Verdict::Improved);
+  EXPECT_EQ(verdict(blown, ended(ok, "diverged", "F2", -1)), Verdict::Failed);
+}
+
+TEST(Compare, Stages) {
+  CellRecord extra = contact_cell(), fewer = contact_cell(), serves = contact_cell(), order = contact_cell();
+  extra.header.stages.push_back({"Friction", {"friction"}, 1});
+  fewer.header.stages.pop_back();
+  serves.header.stages[2].serves = {"moving_mesh"};
+  std::swap(order.header.stages[0], order.header.stages[1]);
+  for (const CellRecord& changed : {extra, fewer, serves, order}) {
+    const auto f = findings(contact_cell(), changed);
+    ASSERT_EQ(f.size(), 1u);
+    EXPECT_EQ(f[0].verdict, Verdict::Failed);
+    EXPECT_EQ(f[0].quantity, "stages");
+  }
+  EXPECT_EQ(findings(contact_cell(), extra)[0].message, "not in the baseline: Friction (friction)");
+  EXPECT_EQ(findings(contact_cell(), serves)[0].message,
+            "not in the baseline: Contact (moving_mesh); missing: Contact (static_mesh)");
+  EXPECT_NE(findings(contact_cell(), order)[0].message.find("order"), std::string::npos);
+}
+
+TEST(Compare, AChangedSceneIsSaidAndNothingElse) {
+  CellRecord changed = with(contact_cell(), "depth_max_m", 99);
+  changed.header.scenario_sha256 = "ffff";
+  const auto f = findings(contact_cell(), changed);
+  ASSERT_EQ(f.size(), 1u);
+  EXPECT_EQ(f[0].verdict, Verdict::Failed);
+  EXPECT_NE(f[0].message.find("scene changed"), std::string::npos);
+  EXPECT_NE(f[0].message.find("--update"), std::string::npos);
+}
+
+TEST(Compare, ASceneWithoutSizeIsBadInput) {
+  CellRecord odd = contact_cell();
+  for (const char* json : {"{}", "not JSON", R"({"cloth":{"size_m":["a",1]}})"}) {
+    odd.header.scenario_json = json;
+    EXPECT_NE(error_of([&] { findings(contact_cell(), odd); }).find("/cloth/size_m"), std::string::npos) << json;
+  }
+}
+
+TEST(Check, MissingCellsFailNewOnesDoNot) {
+  const CellRecord a = contact_cell("a"), b = contact_cell("b"), c = contact_cell("c");
+  const Checked gone = check_cells(baseline_of({a, b}), {a});
+  ASSERT_EQ(gone.cells.size(), 2u);
+  EXPECT_FALSE(gone.passed());
+  EXPECT_EQ(gone.cells[1].findings.at(0).found, "missing");
+
+  const Checked interrupted = check_cells(baseline_of({a, b}), {a, planned(b)});
+  EXPECT_EQ(interrupted.count(Verdict::Failed), 1u);
+  EXPECT_EQ(interrupted.cells[1].findings.at(0).message, "planned, not run");
+  EXPECT_FALSE(check_cells(baseline_of({a}), {a, planned(b)}).passed()) << "an unfinished study";
+
+  const Checked more = check_cells(baseline_of({a, b}), {c, b, a});
+  EXPECT_TRUE(more.passed());
+  EXPECT_EQ(more.count(Verdict::New), 1u);
+  EXPECT_EQ(more.count(Verdict::Same), 2u);
+
+  EXPECT_FALSE(check_cells(baseline_of({a}), {}).passed());
+  EXPECT_NE(error_of([&] { check_cells(baseline_of({a}), {a, a}); }).find("twice"), std::string::npos);
+}
+
+TEST(Check, APlannedCellIsFoundByItsFileName) {
+  CellRecord odd = contact_cell();
+  odd.header.setting = "speed=0.5 m/s";
+  CellRecord as_planned = planned(odd);
+  as_planned.header.setting = "speed=0.5-m-s";
+  const Checked checked = check_cells(baseline_of({odd}), {as_planned});
+  ASSERT_EQ(checked.cells.size(), 1u);
+  EXPECT_EQ(checked.cells[0].key.setting, "speed=0.5 m/s");
+}
+
+TEST(Check, AssetKindsAreCellsOfTheirOwn) {
+  const CellRecord real = with_assets(contact_cell(), "npm");
+  const CellRecord made_up = with(with_assets(contact_cell(), "procedural"), "depth_max_m", 0.5);
+  const Checked one = check_cells(baseline_of({real, made_up}), {made_up});
+  EXPECT_TRUE(one.passed());
+  EXPECT_EQ(one.cells.size(), 1u);
+  EXPECT_EQ(one.other_assets, 1u);
+  EXPECT_TRUE(check_cells(baseline_of({real, made_up}), {made_up, real}).passed());
+
+  const Checked other = check_cells(baseline_of({real}), {made_up});
+  ASSERT_EQ(other.count(Verdict::Failed), 1u) << "made-up rooms must not pass for real ones";
+  EXPECT_EQ(other.cells.at(0).findings.at(0).quantity, "assets");
+  EXPECT_EQ(check_cells(baseline_of({real}), {real, made_up}).count(Verdict::New), 1u);
+  EXPECT_EQ(check_cells(baseline_of({real, made_up}), {}).cells.size(), 1u);
+}
+
+TEST(Check, TheCompletedSceneMaySayTheAssetsToo) {
+  CellRecord c = contact_cell();
+  EXPECT_EQ(gated_part(c).key.assets, "");
+  c.header.scenario_json = R"({"assets":"procedural","cloth":{"size_m":[1,1]}})";
+  EXPECT_EQ(gated_part(c).key.assets, "procedural");
+}
+
+TEST(Check, ACellIsAsBadAsItsWorstFinding) {
+  const CellRecord was = contact_cell();
+  const CellRecord is = with(with(was, "depth_max_m", 0), "tunnelled_fraction_max", 0.5);
+  const Checked checked = check_cells(baseline_of({was}), {is});
+  EXPECT_EQ(checked.cells.at(0).findings.size(), 2u);
+  EXPECT_EQ(checked.cells.at(0).verdict(), Verdict::Failed);
+  EXPECT_EQ(checked.count(Verdict::Improved), 0u);
+}
+
+TEST(Update, TakesTheResultsAndSaysWhatChanged) {
+  const CellRecord a = contact_cell("a"), b = contact_cell("b"), c = contact_cell("c"), d = contact_cell("d");
+  const Baseline old = baseline_of({a, b, d});
+  const std::vector<CellRecord> results = {with(a, "depth_max_m", 0.5), c, with(d, "depth_max_m", 0.00301)};
+  const Updated u = update_baseline(old, results, {});
+  ASSERT_EQ(u.changes.size(), 2u);
+  EXPECT_EQ(u.changes[0].findings.at(0).quantity, "depth_max_m");
+  EXPECT_EQ(u.changes[1].verdict(), Verdict::New);
+  ASSERT_EQ(u.removed.size(), 1u);
+  EXPECT_EQ(u.removed[0].scene, "b");
+  EXPECT_EQ(u.within_slack, 1u);
+  const Checked again = check_cells(u.baseline, results);
+  EXPECT_EQ(again.count(Verdict::Same), 3u);
+}
+
+TEST(Update, KeepsCellsOfOtherAssetsWithTheirOrigin) {
+  const CellRecord real = with_assets(contact_cell(), "npm"), made_up = with_assets(contact_cell(), "procedural");
+  Baseline old = baseline_of({real});
+  old.origin.devices = {"Real GPU"};
+  const Updated u = update_baseline(old, {made_up}, {"x", {}, {}, {"Another"}});
+  EXPECT_EQ(u.baseline.cells.size(), 2u);
+  EXPECT_EQ(u.changes.size(), 1u);
+  EXPECT_TRUE(u.removed.empty());
+  EXPECT_EQ(u.baseline.origin.devices, (std::vector<std::string>{"Another", "Real GPU"}));
+}
+
+TEST(Update, RefusesWhatIsNotWhole) {
+  const CellRecord a = contact_cell("a"), b = contact_cell("b");
+  EXPECT_NE(error_of([&] { update_baseline({}, {a, planned(b)}, {}); }).find("b__xpbd__default"), std::string::npos);
+  EXPECT_NE(error_of([&] { update_baseline({}, {}, {}); }).find("no cell"), std::string::npos);
+  EXPECT_NE(error_of([&] { update_baseline({}, {a, a}, {}); }).find("twice"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace clothbench

@@ -1,0 +1,101 @@
+// What people and machines read: the console, JUnit XML, workflow commands.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "check/github.hpp"
+#include "check/junit.hpp"
+#include "check/print.hpp"
+#include "results.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// A cell of each verdict, with text that every format must escape.
+Checked sample() {
+  const std::string nasty = "a <b> & \"c\", 100 %: d]]>\r\nnext\tline \x01\x1b \xff\xEF\xBF\xBF µ";
+  Checked c;
+  c.cells.push_back({{"desk", "good", "default", ""}, {}});
+  c.cells.push_back({{"desk", "bad & <ugly>", "\"k\"=1", "npm"},
+                     {{Verdict::Failed, "outcome", "ok", "diverged F2 at frame 3", "", nasty},
+                      {Verdict::Failed, "depth_max_m", "0.003", "0.02", "≤ 0.0036", ""},
+                      {Verdict::Improved, "stretch_max", "0.5", "0.1", "≤ 0.555", ""}}});
+  c.cells.push_back({{"desk", "better", "default", ""}, {{Verdict::Improved, "depth_max_m", "1", "0.5", "≤ 1.1", ""}}});
+  c.cells.push_back(
+      {{"desk", "newcomer", "default", ""}, {{Verdict::New, "cell", "–", "ok", "", "not in the baseline"}}});
+  return c;
+}
+
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t n = 0;
+  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += word.size()) ++n;
+  return n;
+}
+
+TEST(Junit, IsReadBackByAnXmlParser) {
+  const fs::path dir = fs::temp_directory_path() / ("clothbench-junit-" + std::to_string(getpid()));
+  fs::create_directories(dir);
+  std::ofstream(dir / "check.xml") << junit_xml(sample());
+  json expected = json::array();
+  for (const CheckedCell& c : sample().cells) {
+    std::string name = c.key.solver + " " + c.key.setting + (c.key.assets.empty() ? "" : " [" + c.key.assets + "]");
+    json item = {{"classname", c.key.scene}, {"name", name}, {"failures", json::array()}, {"notes", json::array()}};
+    for (const Finding& f : c.findings) item[f.verdict == Verdict::Failed ? "failures" : "notes"].push_back(f.quantity);
+    expected.push_back(item);
+  }
+  std::ofstream(dir / "expected.json") << expected.dump();
+  const std::string script = std::string(CLOTHBENCH_SOURCE_DIR) + "/tests/check/check_junit.py";
+  const std::string command = "/usr/bin/python3 '" + script + "' '" + (dir / "check.xml").string() + "' '" +
+                              (dir / "expected.json").string() + "'";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  fs::remove_all(dir);
+}
+
+TEST(Github, OneLineACommandWithEverythingEscaped) {
+  const std::string text = github_commands(sample(), "a:b,c/base.json");
+  EXPECT_EQ(count(text, "\n"), 3u) << text;
+  EXPECT_EQ(count(text, "::error "), 1u);
+  EXPECT_EQ(count(text, "::notice "), 2u);
+  EXPECT_EQ(count(text, "\r"), 0u);
+  EXPECT_EQ(text.rfind("::error file=a%3Ab%2Cc/base.json,title=desk__bad----ugly-__-k-=1 [npm]::FAILED: outcome: ", 0),
+            0u)
+      << text;
+  EXPECT_NE(text.find("100 %25: d]]>%0D%0Anext"), std::string::npos) << text;
+  EXPECT_NE(text.find("%0AFAILED: depth_max_m: 0.02, baseline 0.003, allowed ≤ 0.0036"), std::string::npos) << text;
+  EXPECT_EQ(github_commands({}, "x"), "");
+}
+
+TEST(Console, ShowsWhatDiffersAndAVerdict) {
+  const std::string text = check_text(sample(), "base.json");
+  EXPECT_NE(text.find("check FAILED: 4 cells: 1 failed, 1 improved, 1 new, 1 as in base.json\n"), std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("good"), std::string::npos) << "what is as it was is not listed";
+  EXPECT_LT(text.find("bad"), text.find("better"));
+  EXPECT_LT(text.find("better"), text.find("newcomer"));
+  EXPECT_NE(text.find("100 %"), std::string::npos) << "the solver's own message";
+
+  Checked fine;
+  fine.cells.push_back({{"desk", "good", "default", ""}, {}});
+  fine.other_assets = 2;
+  EXPECT_EQ(check_text(fine, "b.json"),
+            "check passed: 1 cell: 0 failed, 0 improved, 0 new, 1 as in b.json; 2 cells more of the baseline stand for "
+            "other assets\n");
+}
+
+TEST(Json, HasEveryCell) {
+  const json j = check_json(sample(), "base.json");
+  EXPECT_EQ(j.at("passed"), false);
+  EXPECT_EQ(j.at("failed"), 1);
+  ASSERT_EQ(j.at("cells").size(), 4u);
+  EXPECT_EQ(j["cells"][0]["verdict"], "same");
+  EXPECT_EQ(j["cells"][1]["assets"], "npm");
+  EXPECT_EQ(j["cells"][1]["findings"][1]["allowed"], "≤ 0.0036");
+}
+
+}  // namespace
+}  // namespace clothbench

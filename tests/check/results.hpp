@@ -1,0 +1,56 @@
+#pragma once
+#include "../report/fake_cells.hpp"
+
+namespace clothbench {
+
+/// A desk drop as the runner leaves it: penetration scalars, stages, a scene of 0.5 m x 0.5 m.
+inline CellRecord contact_cell(const std::string& scene = "desk", const std::string& solver = "xpbd") {
+  CellRecord c = fake_cell(solver, 32, "double", 0.01);
+  c.header.scene = scene;
+  c.header.scenario_json = R"({"cloth":{"grid":[32,32],"size_m":[0.5,0.75]}})";
+  c.header.scenario_sha256 = "a0b1c2d3e4f5";
+  c.header.stages = {{"Predict", {}, 1}, {"Solve", {"stretch", "shear"}, 10}, {"Contact", {"static_mesh"}, 3}};
+  c.summary["dispatches"] = 14;
+  c.summary["contact_length_settled_m"] = 0;
+  c.summary["contact_length_max_m"] = 0.1;
+  c.summary["tunnelled_fraction_max"] = 0;
+  c.summary["tunnelled_fraction_end"] = 0;
+  c.summary["tunnelled_depth_max_m"] = 0;
+  c.summary["depth_max_m"] = 0.003;
+  c.summary["depth_vertex_max_m"] = 0.002;
+  c.summary["depth_p99_m"] = 0.001;
+  c.summary["depth_mean_m"] = kMissing;
+  c.summary["penetrating_area_max_m2"] = 0.01;
+  c.summary["stretch_max"] = 0.02;
+  c.summary["stretch_max_end"] = 0.01;
+  c.summary["expect.tunnelled_fraction_max"] = 1;
+  c.summary["expect.depth_max_m"] = 0;
+  return c;
+}
+
+inline CellRecord with(CellRecord c, const std::string& name, double value) {
+  c.summary[name] = value;
+  return c;
+}
+
+inline CellRecord ended(CellRecord c, const std::string& status, const std::string& klass = "ok", int frame = -1) {
+  c.outcome = {status, klass, frame, status == "ok" ? "" : "what the solver said"};
+  return c;
+}
+
+inline CellRecord with_assets(CellRecord c, const std::string& assets) {
+  c.header.environment["assets"] = assets;
+  return c;
+}
+
+/// As `collect` gives a planned cell without a file: only its file name is known.
+inline CellRecord planned(const CellRecord& of) {
+  CellRecord c;
+  c.header.scene = of.header.scene;
+  c.header.solver = of.header.solver;
+  c.header.setting = of.header.setting;
+  c.outcome = {"missing", "ok", -1, "planned, not run"};
+  return c;
+}
+
+}  // namespace clothbench
