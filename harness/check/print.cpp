@@ -9,15 +9,16 @@ namespace {
 
 using nlohmann::json;
 
-/// Table and messages of `cells`, worst verdict first; empty if there is no finding.
-std::string findings_text(const std::string& title, const std::vector<CheckedCell>& cells) {
+/// Table and messages of `cells`, worst verdict first; empty if there is no finding. `worse`: what a failure is called.
+std::string findings_text(const std::string& title, const std::vector<CheckedCell>& cells, const char* worse) {
   Table table{title, "", {{"cell", "quantity", "verdict", "baseline", "found", "allowed"}}};
   std::string messages;
   for (const Verdict verdict : {Verdict::Failed, Verdict::Improved, Verdict::New})
     for (const CheckedCell& cell : cells)
       for (const Finding& f : cell.findings) {
         if (f.verdict != verdict) continue;
-        table.rows.push_back({cell.key.text(), f.quantity, word_for(f.verdict), f.baseline, f.found, f.allowed});
+        table.rows.push_back({cell.key.text(), f.quantity, f.verdict == Verdict::Failed ? worse : word_for(f.verdict),
+                              f.baseline, f.found, f.allowed});
         if (!f.message.empty() && verdict != Verdict::New)
           messages += wrapped(fmt::format("{}: {}: {}", cell.key.text(), f.quantity, f.message), 2, kConsoleColumns);
       }
@@ -49,7 +50,7 @@ std::string cells_word(std::size_t n) { return fmt::format("{} cell{}", n, n == 
 }  // namespace
 
 std::string check_text(const Checked& checked, const std::string& file) {
-  std::string out = findings_text("Not as in " + file, checked.cells);
+  std::string out = findings_text("Not as in " + file, checked.cells, word_for(Verdict::Failed));
   out +=
       fmt::format("check {}: {}: {} failed, {} improved, {} new, {} as in {}", checked.passed() ? "passed" : "FAILED",
                   cells_word(checked.cells.size()), checked.count(Verdict::Failed), checked.count(Verdict::Improved),
@@ -74,7 +75,7 @@ json check_json(const Checked& checked, const std::string& file) {
 }
 
 std::string update_text(const Updated& u, const std::string& file) {
-  std::string out = findings_text("Changed in " + file, u.changes);
+  std::string out = findings_text("Changed in " + file, u.changes, "changed");
   for (const CellKey& key : u.removed) out += "  removed, no result: " + key.text() + "\n";
   return out + fmt::format("{}: {}: {} changed or new, {} removed, {} with other values within slack\n", file,
                            cells_word(u.baseline.cells.size()), u.changes.size(), u.removed.size(), u.within_slack);

@@ -114,7 +114,8 @@ TEST_F(CheckCommand, ResultFilesOneByOne) {
   ASSERT_EQ(check("--update"), 0);
   std::string files;
   for (const auto& file : fs::directory_iterator(run()))
-    if (file.path().extension() == ".h5") files += " " + file.path().string();
+    if (const auto kind = file.path().extension(); kind == ".h5" || kind == ".part")
+      files += " " + file.path().string();
   EXPECT_EQ(command("check" + files + " --baseline " + baseline().string()), 0) << text_;
 }
 

@@ -87,6 +87,16 @@ TEST(Console, ShowsWhatDiffersAndAVerdict) {
             "other assets\n");
 }
 
+TEST(Console, AnUpdateChangesAndDoesNotFail) {
+  Updated u;
+  u.changes = sample().cells;
+  u.removed = {{"sweep", "old", "default", ""}};
+  const std::string text = update_text(u, "base.json");
+  EXPECT_EQ(text.find("FAILED"), std::string::npos) << text;
+  EXPECT_NE(text.find("changed"), std::string::npos) << text;
+  EXPECT_NE(text.find("removed, no result: sweep__old__default\n"), std::string::npos) << text;
+}
+
 TEST(Json, HasEveryCell) {
   const json j = check_json(sample(), "base.json");
   EXPECT_EQ(j.at("passed"), false);
