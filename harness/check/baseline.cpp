@@ -93,7 +93,7 @@ BaselineCell gated_part(const CellRecord& r) {
   c.failed_frame = r.outcome.failed_frame;
   for (const StageRecord& s : r.header.stages) c.stages.push_back(stage_text(s));
   for (const auto& [name, v] : r.summary)
-    if (find_gate(name) != nullptr) c.scalars[name] = std::isfinite(v) ? v : kMissing;
+    if (find_gate(name) != nullptr && std::isfinite(v)) c.scalars[name] = v;
   return c;
 }
 

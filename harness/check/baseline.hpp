@@ -25,7 +25,7 @@ struct BaselineCell {
   std::string status, klass;
   int failed_frame = -1;
   std::vector<std::string> stages;        ///< "<name> (<feature>, <feature>)" in order
-  std::map<std::string, double> scalars;  ///< gated ones alone; NaN = not measured
+  std::map<std::string, double> scalars;  ///< gated ones alone; NaN or absent = not measured
 };
 
 /// How a baseline was made, for the reader of the file; nothing is computed from it.
@@ -40,14 +40,14 @@ struct Baseline {
   std::vector<BaselineCell> cells;  ///< sorted by key, no key twice
 };
 
-/// The part of a result that is gated. A scalar that is not finite counts as not measured.
+/// The part of a result that is gated. A scalar that is not finite counts as not measured and is left out.
 BaselineCell gated_part(const CellRecord&);
 
 /// Reads and checks a baseline. Throws Error with file and JSON pointer (line and column where the text is no JSON): a
 /// key that is unknown or missing, a scalar that has no gate, a cell that stands twice.
 Baseline read_baseline(const std::filesystem::path&);
 
-/// The file's text: one line a value, sorted; numbers read back exactly, not measured = null.
+/// The file's text: one line a value, sorted; numbers read back exactly.
 std::string baseline_text(const Baseline&);
 
 }  // namespace clothbench
