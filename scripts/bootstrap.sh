@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(g++ cmake ninja-build ccache
           glslc spirv-tools libvulkan-dev mesa-vulkan-drivers
           libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libvalijson-dev libhdf5-dev libcli11-dev
-          libfmt-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev
+          libfmt-dev libboost-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev
           python3-h5py python3-matplotlib git)
 if [ "${1:-}" = --tests ]; then
   packages+=(libgtest-dev vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf python3-paraview)

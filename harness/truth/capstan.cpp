@@ -1,0 +1,72 @@
+#include "truth/capstan.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "truth/checks.hpp"
+
+namespace clothbench::truth {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+double check(const HeavyCapstan& c) {
+  non_negative(c.friction, "friction");
+  non_negative(c.radius_m, "radius_m");
+  return positive(c.areal_density_kg_per_m2, "areal_density_kg_per_m2") *
+         positive(c.gravity_m_per_s2, "gravity_m_per_s2");
+}
+
+double half_turn(double friction, double wrap, int turns) {
+  const double half = non_negative(wrap, "wrap_rad") / (2 * at_least(turns, 1, "turns"));
+  between(half, -1, kPi / 2, "wrap_rad (per turn, half)");
+  within(non_negative(friction, "friction") * std::tan(half), 0, std::nextafter(1.0, 0.0),
+         "friction (times tan of half a turn)");
+  return half;
+}
+
+}  // namespace
+
+double capstan_ratio(double friction, double wrap) {
+  return std::exp(non_negative(friction, "friction") * non_negative(wrap, "wrap_rad"));
+}
+
+double polygonal_capstan_ratio(double friction, double wrap, int turns) {
+  const double grip = friction * std::tan(half_turn(friction, wrap, turns));
+  return std::exp(turns * 2 * std::atanh(grip));
+}
+
+double slip_tension_N_per_m(const HeavyCapstan& c, double light, double phi) {
+  const double weight = check(c) * c.radius_m, mu = c.friction;
+  non_negative(light, "light_tension_N_per_m");
+  within(phi, 0, kPi, "phi_rad");
+  // Particular solution A sin + B cos of the linear equation.
+  const double a = weight * (1 - mu * mu) / (1 + mu * mu), b = -2 * mu * weight / (1 + mu * mu);
+  return std::exp(mu * phi) * (light - b) + a * std::sin(phi) + b * std::cos(phi);
+}
+
+double greatest_tension_N_per_m(const HeavyCapstan& c, double light) { return slip_tension_N_per_m(c, light, kPi); }
+
+double greatest_overhang_m(const HeavyCapstan& c, double light_overhang) {
+  const double weight = check(c);
+  return greatest_tension_N_per_m(c, weight * non_negative(light_overhang, "light_overhang_m")) / weight;
+}
+
+bool holds(const HeavyCapstan& c, double overhang_1, double overhang_2) {
+  return overhang_2 <= greatest_overhang_m(c, overhang_1) && overhang_1 <= greatest_overhang_m(c, overhang_2);
+}
+
+double polygonal_greatest_overhang_m(const HeavyCapstan& c, double light_overhang, int turns) {
+  check(c);
+  const double half = half_turn(c.friction, kPi, turns), mu = c.friction;
+  const double edge = 2 * c.radius_m * std::sin(half), in = std::cos(half) + mu * std::sin(half),
+               out = std::cos(half) - mu * std::sin(half);
+  double tension = non_negative(light_overhang, "light_overhang_m");  // over rho g
+  for (int j = 0; j < turns; ++j) {
+    const double phi = (2 * j + 1) * half;
+    tension = (tension * in + edge * (std::cos(phi) + mu * std::sin(phi))) / out;
+  }
+  return tension;
+}
+
+}  // namespace clothbench::truth

@@ -1,0 +1,45 @@
+#pragma once
+
+namespace clothbench::truth {
+
+/// An inextensible strip without bending stiffness over a fixed cylinder with Coulomb friction. Tensions per width
+/// [N/m].
+///
+/// Weightless, wrap angle beta: it holds up to T2/T1 = e^{mu beta}. Source: Euler 1769, Eytelwein 1808.
+double capstan_ratio(double friction, double wrap_rad);
+
+/// The same if contact is at vertices only, in m equal turns d = beta/m (a polygon of cloth edges on a round cylinder):
+///   T2/T1 = [(1 + mu tan(d/2)) / (1 - mu tan(d/2))]^m, order 2 in 1/m.
+/// Source: friction cone at each vertex. m >= 1 and mu tan(d/2) < 1 (beyond, it never slips), else Error.
+double polygonal_capstan_ratio(double friction, double wrap_rad, int turns);
+
+/// A strip over a horizontal cylinder with both ends hanging straight down (wrap pi) and its own weight:
+///   dT/dphi = mu (T + rho g R sin phi) + rho g R cos phi,  phi from the light side, so at slip
+///   T2 = e^{mu pi} T1 + (2 mu rho g R/(1 + mu^2)) (1 + e^{mu pi}).
+/// Source: derived from the balance of one element. Valid for mu >= 0, R >= 0, T1 >= 0; Error otherwise. Rounding only.
+struct HeavyCapstan {
+  double friction = 0.3;
+  double radius_m = 0.05;
+  double areal_density_kg_per_m2 = 0.2;
+  double gravity_m_per_s2 = 9.81;
+};
+
+/// Greatest tension on the heavy side that `light_tension` still holds, both at the height of the axis.
+double greatest_tension_N_per_m(const HeavyCapstan&, double light_tension_N_per_m);
+
+/// Tension at `phi` (0 light side .. pi) when about to slip; the normal pressure times R is T + rho g R sin(phi).
+double slip_tension_N_per_m(const HeavyCapstan&, double light_tension_N_per_m, double phi_rad);
+
+/// Longest overhang below the axis that an overhang `light_overhang_m` on the other side holds.
+double greatest_overhang_m(const HeavyCapstan&, double light_overhang_m);
+bool holds(const HeavyCapstan&, double overhang_1_m, double overhang_2_m);
+
+/// The same for a strip of lumped rows whose m rows in contact lie on the cylinder at phi = (j - 1/2) pi/m, j = 1 .. m
+/// (edges 2 R sin(pi/2m), each of m equal turns; the hanging parts are vertical from the outermost rows). Row weight q
+/// = rho g * edge; friction cone at each row, d = pi/m:
+///   T+ (cos(d/2) - mu sin(d/2)) = T (cos(d/2) + mu sin(d/2)) + q (cos phi + mu sin phi).
+/// An overhang l below the axis pulls with rho g (l + R sin(d/2) - edge/2) = rho g l on the outermost row, as the row
+/// itself carries half an edge of it. Order 2 in 1/m towards the smooth one. Error as above, or if mu tan(d/2) >= 1.
+double polygonal_greatest_overhang_m(const HeavyCapstan&, double light_overhang_m, int turns);
+
+}  // namespace clothbench::truth

@@ -1,0 +1,27 @@
+#pragma once
+#include <array>
+
+namespace clothbench::truth {
+
+/// A strip whose springs obey Hooke's law (engineering strain, membrane stiffness Y) and that has no bending stiffness,
+/// held on both short edges at one height, span d; w = rho g is the weight per rest area. Horizontal tension H [N/m]
+/// from
+///   d = H L/Y + (2H/w) asinh(w L/2H),   sag = w L^2/(8Y) + (H/w) (sqrt(1 + (wL/2H)^2) - 1).
+/// Source: Irvine, Cable Structures (1981), par. 1.4. Unlike the inextensible one it may span more than its rest
+/// length. Valid for d/L >= 1e-3 and d/L <= 3; errors of rounding (1e-13 relative; 1e-13 Y/(wL) where d is just below L
+/// and the strip is very stiff). Throws Error for other arguments.
+class ElasticCatenary {
+ public:
+  ElasticCatenary(double length_m, double span_m, double areal_density_kg_per_m2, double membrane_stiffness_N_per_m,
+                  double gravity_m_per_s2);
+  double horizontal_tension_N_per_m() const { return tension_; }
+  double sag_m() const;
+  double strain(double rest_m) const;
+  /// x from the left end, z upwards from the ends, of the point at rest length s from the left end.
+  std::array<double, 2> position_m(double rest_m) const;
+
+ private:
+  double length_, span_, weight_, stiffness_, tension_;
+};
+
+}  // namespace clothbench::truth

@@ -1,0 +1,56 @@
+#include "truth/free_fall.hpp"
+
+#include <cmath>
+
+#include "clothbench/error.hpp"
+#include "truth/checks.hpp"
+
+namespace clothbench::truth {
+namespace {
+
+double p1(double x) { return x == 0 ? 1 : -std::expm1(-x) / x; }
+
+double p2(double x) {
+  if (x > 1) return (x + std::expm1(-x)) / (x * x);
+  // sum of (-x)^k / (k + 2)!: the closed form loses all digits near 0.
+  double term = 0.5, sum = 0;
+  for (int k = 0; k < 20; ++k) {
+    sum += term;
+    term *= -x / (k + 3);
+  }
+  return sum;
+}
+
+void check(const FreeFall& f, double time_s) {
+  within(f.height_m, -1e300, 1e300, "height_m");
+  within(f.speed_m_per_s, -1e300, 1e300, "speed_m_per_s");
+  non_negative(f.gravity_m_per_s2, "gravity_m_per_s2");
+  non_negative(f.damping_per_s, "damping_per_s");
+  non_negative(time_s, "time_s");
+}
+
+}  // namespace
+
+double fall_height_m(const FreeFall& f, double t) {
+  check(f, t);
+  const double x = f.damping_per_s * t;
+  return f.height_m + f.speed_m_per_s * t * p1(x) - f.gravity_m_per_s2 * t * t * p2(x);
+}
+
+double fall_speed_m_per_s(const FreeFall& f, double t) {
+  check(f, t);
+  const double x = f.damping_per_s * t;
+  return f.speed_m_per_s * std::exp(-x) - f.gravity_m_per_s2 * t * p1(x);
+}
+
+double semi_implicit_fall_height_m(const FreeFall& f, double t, double step) {
+  check(f, t);
+  positive(step, "step_s");
+  if (f.damping_per_s > 0) throw Error("argument damping_per_s: integrators differ on damping; expected 0 here");
+  const double steps = t / step;
+  if (!(std::abs(steps - std::round(steps)) <= 1e-9 * (1 + steps)))
+    throw Error("argument time_s: expected a multiple of step_s");
+  return f.height_m + f.speed_m_per_s * t - 0.5 * f.gravity_m_per_s2 * t * (t + step);
+}
+
+}  // namespace clothbench::truth
