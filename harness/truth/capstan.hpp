@@ -2,8 +2,7 @@
 
 namespace clothbench::truth {
 
-/// An inextensible strip without bending stiffness over a fixed cylinder with Coulomb friction. Tensions per width
-/// [N/m].
+/// An inextensible strip without bending stiffness over a fixed cylinder with Coulomb friction; tensions are per width.
 ///
 /// Weightless, wrap angle beta: it holds up to T2/T1 = e^{mu beta}. Source: Euler 1769, Eytelwein 1808.
 double capstan_ratio(double friction, double wrap_rad);

@@ -14,17 +14,16 @@ struct ElasticaLoad {
   double clamp_angle_rad = 0;  ///< of the clamp below the horizontal; -pi/2 points up
 };
 
-/// Static shape of the strip (Euler's elastica under its own weight and a dead load at the tip): theta(s) below the
-/// horizontal,
+/// Static shape of the strip, Euler's elastica under its own weight and a dead load at the tip; theta below horizontal:
 ///   theta'' = -(Gamma (1 - s) + alpha) cos(theta),   theta(0) = clamp angle,   theta'(1) = 0.
 /// Limits: y = Gamma/8 + alpha/3 for small loads; tip x = sqrt(2/Gamma), theta'(0) = sqrt(2 Gamma) for great ones.
 /// Source: Euler 1744; own weight: Bickley 1934; tip load: Bisshopp & Drucker 1945. Bending of a strip that may curl
 /// across (narrow) and one that may not (wide) differ for Poisson's ratio other than 0: B is the one that fits.
 ///
 /// Solved as the integral equation of the problem by Chebyshev collocation and Newton (Eigen, dense), along the branch
-/// that starts straight at load 0, stable equilibria alone. The degree is doubled until the equation's residual between
-/// collocation points is below 1e-10 rad, which `residual_rad` states. Valid for 0 <= Gamma, alpha <= 1e4 and clamp
-/// angles within +-pi/2; Error otherwise, or where the branch ends (a strip that points up exactly, beyond
+/// that starts straight at load 0 and as long as it is stable. The degree is doubled until the equation's residual
+/// between collocation points is below 1e-10 rad, which `residual_rad` states. Valid for 0 <= Gamma, alpha <= 1e4 and
+/// clamp angles within +-pi/2; Error otherwise, or where the branch ends (a strip that points up exactly, beyond
 /// self-buckling: give it an imperfection of the angle).
 class Elastica {
  public:

@@ -6,8 +6,8 @@ namespace clothbench::truth {
 // Lengths, densities, tensions, gravity must be positive and modes 1 or more, else Error. Amplitudes: at 2 % of the
 // length the error of linearity is of the order 1e-4.
 
-/// Hanging inextensible strip: J0(2 w sqrt(L/g)) = 0, w = (j_{0,n}/2) sqrt(g/L). Source: D. Bernoulli 1733; Lamb,
-/// Dynamics.
+/// Hanging inextensible strip: J0(2 w sqrt(L/g)) = 0, w = (j_{0,n}/2) sqrt(g/L).
+/// Source: D. Bernoulli 1733.
 double hanging_strip_frequency(int mode, double length_m, double gravity_m_per_s2);
 
 /// The same for n links with equal inner masses and an end mass `end_mass_ratio` times as great (1/2: lumped cells), as
@@ -18,18 +18,18 @@ double hanging_chain_frequency(int mode, int links, double length_m, double grav
 
 /// Strip under a uniform tension T [N/m] held on both short edges, across its plane: n pi/L sqrt(T/rho), and for n
 /// cells of lumped mass 2 sqrt(T/rho)/a sin(n pi/(2 cells)), mode < cells. Source: Lagrange; Rayleigh, Theory of Sound,
-/// par. 120.
+/// ch. 6.
 double taut_string_frequency(int mode, double length_m, double tension_N_per_m, double areal_density_kg_per_m2);
 double taut_chain_frequency(int mode, int cells, double length_m, double tension_N_per_m,
                             double areal_density_kg_per_m2);
 
 /// Rectangular membrane under uniform tension, edges held: pi sqrt(T/rho) sqrt((m/a)^2 + (n/b)^2).
-/// Source: Rayleigh, Theory of Sound, par. 197.
+/// Source: Rayleigh, Theory of Sound, ch. 9.
 double membrane_frequency(int mode_a, int mode_b, double side_a_m, double side_b_m, double tension_N_per_m,
                           double areal_density_kg_per_m2);
 
 /// Its static sag [m] in the middle under its weight: solution of T lap u = -rho g as a series (Timoshenko & Goodier,
-/// Theory of Elasticity, par. 109, Prandtl's analogy). 0.0736714 rho g a^2/T for a square. Small slopes; series summed
+/// Theory of Elasticity, ch. 10, Prandtl's analogy). 0.0736714 rho g a^2/T for a square. Small slopes; series summed
 /// to rounding.
 double membrane_sag_m(double side_a_m, double side_b_m, double tension_N_per_m, double areal_density_kg_per_m2,
                       double gravity_m_per_s2);
@@ -37,8 +37,8 @@ double membrane_sag_m(double side_a_m, double side_b_m, double tension_N_per_m, 
 /// Roots of cos(b) cosh(b) = -1, increasing.
 double cantilever_root(int mode);
 
-/// Cantilever strip without gravity: root^2 sqrt(B/(rho L^4)). Source: Euler-Bernoulli; Rayleigh, Theory of Sound, par.
-/// 174.
+/// Cantilever strip without gravity: root^2 sqrt(B/(rho L^4)). Source: Euler-Bernoulli; Rayleigh, Theory of Sound,
+/// ch. 8.
 double cantilever_frequency(int mode, double length_m, double bending_rigidity_N_m, double areal_density_kg_per_m2);
 
 /// What implicit Euler does to an undamped mode of frequency w with step dt, z = w dt: amplitude after one step over

@@ -14,7 +14,7 @@ struct SourcedValue {
 
 /// Critical load parameter q L^3/sqrt(EI GJ) of a narrow cantilever under its own weight q per length in the plane of
 /// its greater stiffness, 6 j with j the first zero of J_{-1/6}: 12.853764. Source: Michell 1899, Prandtl 1899;
-/// Timoshenko & Gere, Theory of Elastic Stability, par. 6.3.
+/// Timoshenko & Gere, Theory of Elastic Stability, ch. 6.
 double michell_prandtl_constant();
 
 /// Critical Gamma = rho g L^3/B at which a cantilever sheet with its width w upright twists aside, for w/L -> 0. With

@@ -3,8 +3,8 @@
 namespace clothbench::truth {
 
 /// An unstretched strip held at its upper edge (s = 0), small strains, on which gravity is switched on at t = 0:
-/// u_tt = c^2 u_ss + g, u(0, t) = 0, u_s(L, t) = 0, c = sqrt(Y/rho). By images (d'Alembert), with f(t) = -g t^2/2 for t
-/// > 0:
+/// u_tt = c^2 u_ss + g, u(0, t) = 0, u_s(L, t) = 0, c = sqrt(Y/rho). By images (d'Alembert), with
+/// f(t) = -g t^2/2 for t > 0 and 0 before:
 ///   u = g t^2/2 + sum_k (-1)^k [ f(t - (2kL + s)/c) + f(t - (2(k+1)L - s)/c) ].
 /// End: g t^2/2 up to t = L/c, then g t^2/2 - g (t - L/c)^2 up to 3L/c; greatest 2 * static = g L^2/c^2 at 2L/c; period
 /// 4L/c. Source: wave equation (e.g. Graff, Wave Motion in Elastic Solids, ch. 2). Exact for engineering-strain springs

@@ -74,6 +74,14 @@ void check(const SwingingChain& c) {
   within(c.start_angle_rad, -std::numbers::pi / 2, std::numbers::pi / 2, "start_angle_rad");
 }
 
+std::array<double, 2> along(const std::vector<double>& x, const std::vector<double>& z, double share) {
+  if (x.size() < 2 || z.size() != x.size()) throw Error("argument state: expected 2 nodes or more");
+  const double links = static_cast<double>(x.size() - 1), at = within(share, 0, 1, "share") * links;
+  const double before = std::min(std::floor(at), links - 1), rest = at - before;
+  const auto i = static_cast<std::size_t>(before);
+  return {x[i] + rest * (x[i + 1] - x[i]), z[i] + rest * (z[i + 1] - z[i])};
+}
+
 }  // namespace
 
 std::vector<ChainState> swing(const SwingingChain& c, std::span<const double> times_s, double tolerance) {
@@ -104,6 +112,12 @@ std::vector<ChainState> swing(const SwingingChain& c, std::span<const double> ti
     throw Error(std::string("swinging chain: the integrator made no progress at this tolerance: ") + e.what());
   }
   return out;
+}
+
+std::array<double, 2> chain_position_m(const ChainState& s, double share) { return along(s.x_m, s.z_m, share); }
+
+std::array<double, 2> chain_speed_m_per_s(const ChainState& s, double share) {
+  return along(s.x_speed_m_per_s, s.z_speed_m_per_s, share);
 }
 
 double chain_energy(const SwingingChain& c, const ChainState& s) {

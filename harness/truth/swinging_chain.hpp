@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,11 @@ struct ChainState {
 /// States at `times_s` (ascending, 0 or more). `tolerance`: error per step, absolute and relative, of angles and
 /// angular speeds in units of sqrt(g/L). Throws Error for bad arguments or if the integrator can't make progress.
 std::vector<ChainState> swing(const SwingingChain&, std::span<const double> times_s, double tolerance = 1e-13);
+
+/// Linear interpolation between the nodes, at a share 0 .. 1 of the strip's length from the held end: position {x, z}
+/// and speed of the material point. Throws Error for another share.
+std::array<double, 2> chain_position_m(const ChainState&, double share);
+std::array<double, 2> chain_speed_m_per_s(const ChainState&, double share);
 
 /// Kinetic and potential energy, over (strip mass * g * L); 0 height at the held end. Constant, which tests use.
 double chain_energy(const SwingingChain&, const ChainState&);

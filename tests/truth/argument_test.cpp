@@ -85,6 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Motion, BadArgument,
                                                  }},
                                          BadCall{"tolerance", [] { swing({}, kOne, kNan); }},
                                          BadCall{"state", [] { chain_energy({}, {}); }},
+                                         BadCall{"share", [] { chain_position_m(swing({}, kOne)[0], 1.1); }},
                                          BadCall{"angle_rad",
                                                  [] {
                                                    sticks({2, 0.3, 0, 9.81});

@@ -68,6 +68,14 @@ TEST(SwingingChain, SpeedsAreDerivatives) {
   }
 }
 
+TEST(SwingingChain, PointsBetweenNodes) {
+  const ChainState s{0, {0, 1, 3}, {0, -2, -2}, {0, 4, 5}, {0, 0, 8}};
+  EXPECT_EQ(chain_position_m(s, 0.25), (std::array<double, 2>{0.5, -1}));
+  EXPECT_EQ(chain_position_m(s, 0.75), (std::array<double, 2>{2, -2}));
+  EXPECT_EQ(chain_position_m(s, 1), (std::array<double, 2>{3, -2}));
+  EXPECT_EQ(chain_speed_m_per_s(s, 0.75), (std::array<double, 2>{4.5, 4}));
+}
+
 TEST(SwingingChain, TipFallsFreelyAtFirst) {
   const auto s = swing({128, 1, 9.81, 0.5, 0}, std::vector<double>{0.3});
   EXPECT_NEAR(s[0].z_m[128], -0.5 * 9.81 * 0.09, 1e-9);
