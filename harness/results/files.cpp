@@ -33,7 +33,7 @@ class Descriptor {
 
 }  // namespace
 
-std::filesystem::path temporary_name(const std::filesystem::path& path) { return path.string() + fmt::format(".tmp.{}", getpid()); }
+std::filesystem::path temporary_name(const std::filesystem::path& path) { return path.string() + fmt::format("{}{}", kTemporaryMark, getpid()); }
 
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& path) {
   {

@@ -3,6 +3,9 @@
 
 namespace clothbench {
 
+/// Between a file's name and the process that writes it.
+inline constexpr char kTemporaryMark[] = ".tmp.";
+
 /// `<path>.tmp.<pid>`: what a file is called until it is whole.
 std::filesystem::path temporary_name(const std::filesystem::path& path);
 

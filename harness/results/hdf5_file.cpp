@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <numeric>
 
 #include "results/files.hpp"
@@ -44,6 +45,13 @@ void number_attribute(hid_t at, const std::string& name, hid_t file_type, hid_t 
 void number_attribute(hid_t at, const std::string& name, double v) {
   number_attribute<double>(at, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {v}, true);
 }
+/// A number, a text, a list of numbers: what StoredGroup's attributes may be.
+void json_attribute(hid_t at, const std::string& name, const nlohmann::json& value) {
+  if (value.is_string()) return text_attribute(at, name, value.get<std::string>());
+  const bool list = value.is_array();
+  const auto numbers = list ? value.get<std::vector<double>>() : std::vector<double>{value.get<double>()};
+  number_attribute(at, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, numbers, !list);
+}
 void integer_attribute(hid_t at, const std::string& name, std::int64_t v) {
   number_attribute<std::int64_t>(at, name, H5T_STD_I64LE, H5T_NATIVE_INT64, {v}, true);
 }
@@ -55,10 +63,8 @@ struct Label {
 Id dataset(hid_t at, const std::string& name, hid_t type, const Dims& dims, const Label& label, hid_t properties) {
   const Id space = h5::space(dims);
   Id d(H5Dcreate2(at, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose, "dataset " + name);
-  if (!label.long_name.empty()) {
-    text_attribute(d, "units", label.units);
-    text_attribute(d, "long_name", label.long_name);
-  }
+  text_attribute(d, "units", label.units);
+  text_attribute(d, "long_name", label.long_name);
   return d;
 }
 
@@ -81,13 +87,14 @@ struct Types<std::int64_t> {
 };
 
 template <class T>
-Id write_numbers(hid_t at, const std::string& name, const Dims& dims, const std::vector<T>& values, const Label& label = {},
+Id write_numbers(hid_t at, const std::string& name, const Dims& dims, const std::vector<T>& values, const Label& label,
                  const Dims& chunk = {}) {
   const Id properties = creation(H5P_DATASET_CREATE);
-  if (!chunk.empty()) {
+  // HDF5 has no empty chunks; a dataset without values needs none.
+  if (!chunk.empty() && !values.empty()) {
     h5::check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "H5Pset_chunk");
     h5::check(H5Pset_shuffle(properties), "H5Pset_shuffle");
-    h5::check(H5Pset_deflate(properties, 3), "H5Pset_deflate");
+    h5::check(H5Pset_deflate(properties, 4), "H5Pset_deflate");
   }
   Id d = dataset(at, name, Types<T>::file(), dims, label, properties);
   if (!values.empty()) h5::check(H5Dwrite(d, Types<T>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "writing " + name);
@@ -142,6 +149,7 @@ class Writer {
     write_strings(file_, "header_json", {header_text()}, {"1", "everything known before the first frame, as JSON"});
     scalars();
     if (!r_.trials.empty()) timing();
+    for (const StoredGroup& g : r_.replay) stored(g);
     if (!r_.accuracy.time_s.empty()) {
       metrics();
       vtkhdf();
@@ -173,7 +181,7 @@ class Writer {
     text_attribute(file_, "scenario_json", h.scenario_json);
     text_attribute(file_, "scenario_sha256", h.scenario_sha256);
     for (const char* key : {"created", "git_commit", "git_dirty", "build_type", "gpu", "driver", "gpu_is_software", "cpu", "shader_compiler",
-                            "clock_policy", "protocol"})
+                            "clock_policy", "protocol", "assets"})
       text_attribute(file_, key, from_environment(key));
   }
 
@@ -184,6 +192,7 @@ class Writer {
     text_attribute(outcome, "class", r_.outcome.klass);
     integer_attribute(outcome, "failed_frame", r_.outcome.failed_frame);
     text_attribute(outcome, "message", r_.outcome.message);
+    text_attribute(outcome, "expect", r_.outcome.expect);
     for (const auto& [key, value] : r_.header.environment.items())
       if (!value.is_structured()) text_attribute(environment, key, value.is_string() ? value.get<std::string>() : value.dump());
   }
@@ -219,6 +228,23 @@ class Writer {
     }
   }
 
+  /// Arrays as they come, each with its dimensions; those of a group share them by name.
+  void stored(const StoredGroup& group) {
+    const Id g = make_group(file_, group.path);
+    for (const auto& [name, value] : group.attributes.items()) json_attribute(g, name, value);
+    std::map<std::string, Id> scales;
+    for (const StoredArray& a : group.arrays) {
+      for (std::size_t k = 0; k < a.dims.size(); ++k)
+        if (!scales.contains(a.dims[k])) scales.emplace(a.dims[k], index_scale(g, a.dims[k], a.shape[k], a.dims[k]));
+      const Label label{a.units, a.long_name};
+      const Dims dims(a.shape.begin(), a.shape.end());
+      const Id d = a.integer ? write_numbers(g, a.name, dims, std::vector<std::int64_t>(a.values.begin(), a.values.end()), label, dims)
+                             : write_numbers(g, a.name, dims, a.values, label, dims);
+      for (std::size_t k = 0; k < a.dims.size(); ++k)
+        h5::check(H5DSattach_scale(d, scales.at(a.dims[k]), static_cast<unsigned>(k)), "attaching a dimension");
+    }
+  }
+
   void metrics() {
     const Id g = make_group(file_, "metrics");
     const std::size_t count = r_.accuracy.time_s.size();
@@ -233,10 +259,11 @@ class Writer {
     const std::int64_t count = connectivity.empty() ? 0 : static_cast<std::int64_t>(connectivity.size()) / corners;
     std::vector<std::int64_t> offsets;
     for (std::int64_t k = 0; k <= count; ++k) offsets.push_back(k * corners);
-    write_numbers(c, "NumberOfCells", {steps}, std::vector<std::int64_t>(steps, count));
-    write_numbers(c, "NumberOfConnectivityIds", {steps}, std::vector<std::int64_t>(steps, static_cast<std::int64_t>(connectivity.size())));
-    write_numbers(c, "Offsets", {offsets.size()}, offsets);
-    write_numbers(c, "Connectivity", {connectivity.size()}, connectivity);
+    const auto ids = static_cast<std::int64_t>(connectivity.size());
+    write_numbers(c, "NumberOfCells", {steps}, std::vector<std::int64_t>(steps, count), {"1", "cells of each frame"});
+    write_numbers(c, "NumberOfConnectivityIds", {steps}, std::vector<std::int64_t>(steps, ids), {"1", "corners of all cells of each frame"});
+    write_numbers(c, "Offsets", {offsets.size()}, offsets, {"1", "where each cell begins in Connectivity"});
+    write_numbers(c, "Connectivity", {connectivity.size()}, connectivity, {"1", "points of each cell"});
   }
 
   void vtkhdf() {
@@ -251,7 +278,7 @@ class Writer {
       const Id a(H5Acreate2(g, "Type", type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "attribute Type");
       h5::check(H5Awrite(a, type, "PolyData"), "attribute Type");
     }
-    write_numbers(g, "NumberOfPoints", {steps}, std::vector<std::int64_t>(steps, static_cast<std::int64_t>(points)));
+    write_numbers(g, "NumberOfPoints", {steps}, std::vector<std::int64_t>(steps, static_cast<std::int64_t>(points)), {"1", "points of each frame"});
     write_numbers(g, "Points", {steps * points, 3}, r_.accuracy.position, {"m", "vertex positions, frame after frame"}, {points, 3});
     for (const char* kind : {"Vertices", "Lines", "Strips"}) cells(g, kind, steps, {}, 1);
     cells(g, "Polygons", steps, {r_.header.triangles.begin(), r_.header.triangles.end()}, 3);
@@ -262,13 +289,13 @@ class Writer {
       part[k] = static_cast<std::int64_t>(k);
       offset[k] = static_cast<std::int64_t>(k * points);
     }
-    write_numbers(s, "Values", {steps}, r_.accuracy.time_s);
-    write_numbers(s, "PartOffsets", {steps}, part);
-    write_numbers(s, "NumberOfParts", {steps}, std::vector<std::int64_t>(steps, 1));
-    write_numbers(s, "PointOffsets", {steps}, offset);
+    write_numbers(s, "Values", {steps}, r_.accuracy.time_s, {"s", "time"});
+    write_numbers(s, "PartOffsets", {steps}, part, {"1", "first part of each frame"});
+    write_numbers(s, "NumberOfParts", {steps}, std::vector<std::int64_t>(steps, 1), {"1", "parts of each frame"});
+    write_numbers(s, "PointOffsets", {steps}, offset, {"1", "first point of each frame"});
     // The topology is stored once: every step starts at cell 0.
     for (const char* name : {"CellOffsets", "ConnectivityIdOffsets"})
-      write_numbers(s, name, {steps, 4}, std::vector<std::int64_t>(4 * steps, 0));
+      write_numbers(s, name, {steps, 4}, std::vector<std::int64_t>(4 * steps, 0), {"1", "first of each kind of cell"});
     make_group(s, "PointDataOffsets");
   }
 

@@ -14,7 +14,8 @@ inline constexpr bool kWithHdf5 = false;  // the two functions below then throw
 /// One result file, layout in results/README.md. tmp + fsync + rename; throws Error naming the file.
 void write_hdf5(const std::filesystem::path&, const CellRecord&);
 
-/// Reads one back; without `with_trajectory` positions and metric series stay empty.
+/// Reads one back; without `with_trajectory` positions and metric series stay empty. `replay` always does: it is there
+/// for viewers, and nothing here replays.
 CellRecord read_hdf5(const std::filesystem::path&, bool with_trajectory);
 
 }  // namespace clothbench

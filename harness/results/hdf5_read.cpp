@@ -93,7 +93,8 @@ void read_scalars(hid_t file, CellRecord& r) {
   h5::check(H5Aiterate2(summary, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_name, &names), "listing /summary");
   for (const std::string& n : names) r.summary[n] = number_attribute(summary, n.c_str());
   r.outcome = {text_attribute(outcome, "status"), text_attribute(outcome, "class"), static_cast<int>(number_attribute(outcome, "failed_frame")),
-               text_attribute(outcome, "message")};
+               text_attribute(outcome, "message"),
+               H5Aexists(outcome, "expect") > 0 ? text_attribute(outcome, "expect") : ""};
 }
 
 void read_trials(hid_t file, CellRecord& r) {

@@ -219,4 +219,40 @@ AccuracyPass read_accuracy_file(const std::filesystem::path& path) {
   });
 }
 
+/// One frame: the values of all arrays one after another, f64. What they are stands in the header.
+void write_replay_file(const std::filesystem::path& path, const std::vector<StoredGroup>& groups) {
+  nlohmann::json described = nlohmann::json::array();
+  Bytes all;
+  for (const StoredGroup& g : groups) {
+    nlohmann::json arrays = nlohmann::json::array();
+    for (const StoredArray& a : g.arrays) {
+      arrays.push_back({{"name", a.name}, {"units", a.units}, {"long_name", a.long_name}, {"dims", a.dims}, {"shape", a.shape}, {"integer", a.integer},
+                        {"count", a.values.size()}});
+      append(all, a.values.data(), a.values.size());
+    }
+    described.push_back({{"path", g.path}, {"attributes", g.attributes}, {"arrays", arrays}});
+  }
+  write_raw(path, {{"kind", "replay"}, {"groups", described}}, {all});
+}
+
+std::vector<StoredGroup> read_replay_file(const std::filesystem::path& path) {
+  return naming(path, [&] {
+    const RawFile file = read_raw(path);
+    if (!file.complete || file.frames.size() != 1) throw Error("damaged: not all of it is there");
+    Taker taker(file.frames[0]);
+    std::vector<StoredGroup> groups;
+    for (const auto& g : file.header.at("groups")) {
+      StoredGroup& group = groups.emplace_back();
+      group.path = g.at("path").get<std::string>();
+      group.attributes = g.at("attributes");
+      for (const auto& a : g.at("arrays")) {
+        StoredArray& array = group.arrays.emplace_back();
+        array = {a.at("name"), a.at("units"), a.at("long_name"), a.at("dims"), a.at("shape"), a.at("integer"), {}};
+        taker.take(array.values, a.at("count").get<std::size_t>());
+      }
+    }
+    return groups;
+  });
+}
+
 }  // namespace clothbench

@@ -35,5 +35,7 @@ void write_trial_file(const std::filesystem::path&, const TimedTrial&, std::size
 TimedTrial read_trial_file(const std::filesystem::path&);
 void write_accuracy_file(const std::filesystem::path&, const AccuracyPass&, std::uint32_t vertices);
 AccuracyPass read_accuracy_file(const std::filesystem::path&);
+void write_replay_file(const std::filesystem::path&, const std::vector<StoredGroup>&);
+std::vector<StoredGroup> read_replay_file(const std::filesystem::path&);
 
 }  // namespace clothbench

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "clothbench/error.hpp"
+#include "results/files.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/raw_file.hpp"
 #include "results/xdmf.hpp"
@@ -21,7 +22,7 @@ fs::path trial_file(const fs::path& part, int k) { return part / fmt::format("tr
 
 nlohmann::json outcome_json(const Outcome& o, const std::map<std::string, double>& summary) {
   return {{"kind", "outcome"}, {"status", o.status}, {"class", o.klass}, {"failed_frame", o.failed_frame}, {"message", o.message},
-          {"summary", summary}};  // NaN becomes null
+          {"expect", o.expect}, {"summary", summary}};  // NaN becomes null
 }
 
 /// Everything in a part folder. Damaged or foreign trial files count as not there.
@@ -40,9 +41,10 @@ CellRecord read_part(const fs::path& part) {
   }
   std::sort(record.trials.begin(), record.trials.end(), [](const auto& a, const auto& b) { return a.index < b.index; });
   if (fs::exists(part / "accuracy.raw")) record.accuracy = read_accuracy_file(part / "accuracy.raw");
+  if (fs::exists(part / "replay.raw")) record.replay = read_replay_file(part / "replay.raw");
   if (fs::exists(part / "outcome.raw")) {
     const nlohmann::json o = read_raw(part / "outcome.raw").header;
-    record.outcome = {o.at("status"), o.at("class"), o.at("failed_frame"), o.at("message")};
+    record.outcome = {o.at("status"), o.at("class"), o.at("failed_frame"), o.at("message"), o.value("expect", "")};
     for (const auto& [key, value] : o.at("summary").items()) record.summary[key] = value.is_null() ? kMissing : value.get<double>();
   }
   return record;
@@ -89,6 +91,11 @@ void CellWriter::write_accuracy(const AccuracyPass& pass) {
   write_accuracy_file(part_folder(dir_, cell_name(header_)) / "accuracy.raw", pass, header_.vertices);
 }
 
+void CellWriter::write_replay(const std::vector<StoredGroup>& groups) {
+  const fs::path file = part_folder(dir_, cell_name(header_)) / "replay.raw";
+  if (!groups.empty() && !fs::exists(file)) write_replay_file(file, groups);
+}
+
 fs::path CellWriter::finish(const Outcome& outcome, const std::map<std::string, double>& summary) {
   const fs::path part = part_folder(dir_, cell_name(header_));
   write_raw(part / "outcome.raw", outcome_json(outcome, summary), {});
@@ -102,6 +109,21 @@ CellRecord CellWriter::recovered() const { return read_part(part_folder(dir_, ce
 
 bool cell_finished(const fs::path& dir, const std::string& cell) {
   return fs::exists(dir / (cell + ".h5")) || (!kWithHdf5 && fs::exists(part_folder(dir, cell) / "outcome.raw"));
+}
+
+void remove_leftovers(const fs::path& dir, const std::string& cell) {
+  std::error_code ec;
+  const fs::path part = part_folder(dir, cell);
+  if (kWithHdf5 && fs::exists(dir / (cell + ".h5"), ec)) fs::remove_all(part, ec);
+  std::vector<fs::path> stale;
+  for (const auto& entry : fs::directory_iterator(part, ec))
+    if (entry.path().filename().string().find(kTemporaryMark) != std::string::npos) stale.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(dir, ec)) {
+    const std::string name = entry.path().filename().string();
+    for (const char* kind : {".h5", ".xdmf"})
+      if (name.starts_with(cell + kind + kTemporaryMark)) stale.push_back(entry.path());
+  }
+  for (const fs::path& file : stale) fs::remove(file, ec);
 }
 
 CellRecord read_cell(const fs::path& path) { return fs::is_directory(path) ? read_part(path) : read_hdf5(path, true); }

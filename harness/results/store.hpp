@@ -20,6 +20,8 @@ class CellWriter {
   CellWriter(std::filesystem::path dir, CellHeader header);
   void write_trial(const TimedTrial&);
   void write_accuracy(const AccuracyPass&);
+  /// What moved, one file `replay.raw`; known before the first frame, so a resumed run leaves it as it is.
+  void write_replay(const std::vector<StoredGroup>&);
   /// Returns the path of the finished file (the .h5, or the part folder without HDF5).
   std::filesystem::path finish(const Outcome&, const std::map<std::string, double>& summary);
   /// What an interrupted run of the same cell left here (same scenario_sha256 and settings; anything else is an
@@ -33,6 +35,10 @@ class CellWriter {
 
 /// True if `<dir>/<cell>.h5` (or, without HDF5, `outcome.raw` in its part folder) exists.
 bool cell_finished(const std::filesystem::path& dir, const std::string& cell);
+
+/// Removes what a killed run of this cell left behind and nobody will read: files under their temporary names, and the
+/// part folder of a cell whose .h5 is there. Only for the one process that works on the cell.
+void remove_leftovers(const std::filesystem::path& dir, const std::string& cell);
 
 /// Reads a finished file (.h5) or a part folder. Throws Error naming the file and what is wrong with it.
 CellRecord read_cell(const std::filesystem::path&);

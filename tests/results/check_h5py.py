@@ -18,13 +18,20 @@ with h5py.File(path) as f:
     assert f["VTKHDF"].attrs["Type"] == b"PolyData" and list(f["VTKHDF"].attrs["Version"]) == [2, 0]
     assert f["VTKHDF/Steps"].attrs["NSteps"] == 5
     assert f["VTKHDF/Polygons/NumberOfCells"][0] == 4 and f["VTKHDF/Lines/Offsets"][:].tolist() == [0]
+    assert f["outcome"].attrs["expect"] == "broken: stretch_max 2 > 1"
+    assert f["colliders"].attrs["count"] == 1 and f["colliders/0"].attrs["shape"] == "capsules"
+    assert f["colliders/0"].attrs["normal"].tolist() == [0, 1, 0.1]
+    capsules = f["colliders/0/capsules"]
+    assert capsules.shape == (2, 3, 7) and capsules.dtype == np.float64 and capsules[1, 2, 6] == 0.1 * 41
+    assert f["colliders/0/triangles"][:].tolist() == [[0, 1, 2], [0, 2, 3]] and f["colliders/0/triangles"].dtype == np.int64
     def labelled(name, item):
-        if isinstance(item, h5py.Dataset) and not name.startswith("VTKHDF"):
-            assert "units" in item.attrs and "long_name" in item.attrs or name == "triangles", name
+        if isinstance(item, h5py.Dataset):
+            assert item.attrs["units"] and item.attrs["long_name"], name
     f.visititems(labelled)
 
 shapes = {"timing": {"trial": 3, "frame": 4, "stage": 2}, "bandwidth": {"trial": 3, "frame": 4, "stage": 2}, "metrics": {"frame": 5},
-          "trajectory": {"time_s": 5, "vertex": 6, "xyz": 3}}
+          "trajectory": {"time_s": 5, "vertex": 6, "xyz": 3},
+          "colliders/0": {"frame": 2, "capsule": 3, "value": 7, "triangle": 2, "corner": 3}}
 for group, sizes in shapes.items():
     with xr.open_dataset(path, engine="h5netcdf", group=group) as d:
         assert dict(d.sizes) == sizes, (group, dict(d.sizes))

@@ -49,6 +49,7 @@ TEST_F(Hdf5, RoundTrip) {
   }
   EXPECT_EQ(b.outcome.status, "diverged");
   EXPECT_EQ(b.outcome.message, r.outcome.message);
+  EXPECT_EQ(b.outcome.expect, r.outcome.expect);
   EXPECT_EQ(b.summary.at("fps_median"), 123.4567890123);
   EXPECT_TRUE(std::isnan(b.summary.at("read_B_per_frame")));
   EXPECT_TRUE(read_hdf5(dir_ / "x.h5", false).accuracy.position.empty());
@@ -63,6 +64,38 @@ TEST_F(Hdf5, ACellWithoutFramesIsAFileToo) {
   EXPECT_EQ(read_hdf5(dir_ / "x.h5", true).outcome.status, "unsupported");
 }
 
+TEST_F(Hdf5, TrialsOfASolverWithoutStagesAreAFileToo) {
+  CellRecord r = sample_cell();
+  r.header.stages.clear();
+  for (TimedTrial& t : r.trials) t.stage_device_s = t.stage_read_B = t.stage_write_B = {};
+  write_hdf5(dir_ / "x.h5", r);
+  const CellRecord b = read_hdf5(dir_ / "x.h5", true);
+  ASSERT_EQ(b.trials.size(), 3u);
+  EXPECT_TRUE(same(b.trials[0], r.trials[0]));
+}
+
+TEST_F(Hdf5, WhatAKilledRunLeftIsRemovedAndNothingElse) {
+  const CellRecord r = sample_cell();
+  const std::string cell = cell_name(r.header);
+  CellWriter writer(dir_, r.header);
+  writer.write_trial(r.trials[0]);
+  const fs::path part = dir_ / (cell + ".part");
+  for (const fs::path& litter : {part / "trial-1.raw.tmp.77", dir_ / (cell + ".h5.tmp.77"), dir_ / (cell + ".xdmf.tmp.77"),
+                                 dir_ / "another__cell.h5.tmp.77"})
+    std::ofstream(litter) << "half";
+  remove_leftovers(dir_, cell);
+  EXPECT_FALSE(fs::exists(part / "trial-1.raw.tmp.77"));
+  EXPECT_FALSE(fs::exists(dir_ / (cell + ".h5.tmp.77")));
+  EXPECT_FALSE(fs::exists(dir_ / (cell + ".xdmf.tmp.77")));
+  EXPECT_TRUE(fs::exists(dir_ / "another__cell.h5.tmp.77")) << "another cell's, maybe of a running process";
+  EXPECT_EQ(writer.recovered().trials.size(), 1u) << "a finished trial is no litter";
+  // Killed between the rename of the file and the removal of its part folder.
+  write_hdf5(dir_ / (cell + ".h5"), r);
+  remove_leftovers(dir_, cell);
+  EXPECT_FALSE(fs::exists(part));
+  EXPECT_TRUE(fs::exists(dir_ / (cell + ".h5")));
+}
+
 TEST_F(Hdf5, SameRunSameBytesAlsoThroughRawFiles) {
   const CellRecord r = sample_cell();
   write_hdf5(dir_ / "direct.h5", r);
@@ -72,18 +105,20 @@ TEST_F(Hdf5, SameRunSameBytesAlsoThroughRawFiles) {
   CellWriter writer(dir_, r.header);
   for (const TimedTrial& t : r.trials) writer.write_trial(t);
   writer.write_accuracy(r.accuracy);
+  writer.write_replay(r.replay);
   const fs::path part = dir_ / (cell_name(r.header) + ".part"), copy = dir_ / "phone" / (cell_name(r.header) + ".part");
   const fs::path direct = [&] {
     // finish() removes the part folder, so keep a copy with the outcome in it.
     CellWriter other(dir_ / "other", r.header);
     for (const TimedTrial& t : r.trials) other.write_trial(t);
     other.write_accuracy(r.accuracy);
+    other.write_replay(r.replay);
     return other.finish(r.outcome, r.summary);
   }();
   fs::create_directories(copy);
   fs::copy(part, copy, fs::copy_options::recursive);
   nlohmann::json outcome = {{"kind", "outcome"}, {"status", r.outcome.status}, {"class", r.outcome.klass}, {"failed_frame", r.outcome.failed_frame},
-                            {"message", r.outcome.message}, {"summary", r.summary}};
+                            {"message", r.outcome.message}, {"expect", r.outcome.expect}, {"summary", r.summary}};
   write_raw(copy / "outcome.raw", outcome, {});
   const auto imported = import_raw(dir_ / "phone");
   ASSERT_EQ(imported.size(), 1u);

@@ -15,5 +15,6 @@ int main(int argc, char** argv) {
   CellWriter writer(argv[1], r.header);
   for (const TimedTrial& t : r.trials) writer.write_trial(t);
   writer.write_accuracy(r.accuracy);
+  writer.write_replay(r.replay);
   std::puts(writer.finish(r.outcome, r.summary).c_str());
 }

@@ -48,6 +48,17 @@ TEST_F(Raw, TrialsAndAccuracyRoundTripBitForBit) {
   EXPECT_EQ(a.time_s, r.accuracy.time_s);
   ASSERT_EQ(a.metrics.size(), 2u);
   EXPECT_TRUE(same(a.metrics[0].values, r.accuracy.metrics[0].values));
+  write_replay_file(dir_ / "r.raw", r.replay);
+  const std::vector<StoredGroup> replay = read_replay_file(dir_ / "r.raw");
+  ASSERT_EQ(replay.size(), 2u);
+  EXPECT_EQ(replay[1].attributes, r.replay[1].attributes);
+  ASSERT_EQ(replay[1].arrays.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(replay[1].arrays[k].values, r.replay[1].arrays[k].values);
+    EXPECT_EQ(replay[1].arrays[k].dims, r.replay[1].arrays[k].dims);
+    EXPECT_EQ(replay[1].arrays[k].shape, r.replay[1].arrays[k].shape);
+    EXPECT_EQ(replay[1].arrays[k].integer, k == 1);
+  }
   EXPECT_EQ(header_to_json(header_from_json(header_to_json(r.header))), header_to_json(r.header));
 }
 

@@ -16,6 +16,8 @@ struct Outcome {
   std::string klass = "ok";  ///< F0..F8 or ok
   int failed_frame = -1;
   std::string message;
+  /// Of the scene's `expect`: "kept", "broken: " and what, "not measured", or "" if the scene expects nothing.
+  std::string expect = {};
 };
 
 struct StageRecord {
@@ -58,11 +60,28 @@ struct AccuracyPass {
   std::vector<MetricSeries> metrics;
 };
 
+/// An array beside the series. Integers are exact in a double.
+struct StoredArray {
+  std::string name, units, long_name;
+  std::vector<std::string> dims;     ///< names, slowest first
+  std::vector<std::uint64_t> shape;  ///< as many
+  bool integer = false;
+  std::vector<double> values;
+};
+
+/// Arrays and attributes (numbers, texts, lists of numbers) at one place of the file, such as "colliders/0".
+struct StoredGroup {
+  std::string path;
+  nlohmann::json attributes = nlohmann::json::object();
+  std::vector<StoredArray> arrays;
+};
+
 /// One cell: one scene x one solver x one setting. What a result file holds.
 struct CellRecord {
   CellHeader header;
   std::vector<TimedTrial> trials;
   AccuracyPass accuracy;
+  std::vector<StoredGroup> replay;  ///< colliders and grips with their motion; see replay_of in harness/runner
   Outcome outcome;
   std::map<std::string, double> summary;  ///< every scalar a table prints; NaN = missing
 };
