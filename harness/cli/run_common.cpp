@@ -69,7 +69,8 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
   if (!result.faults.empty()) console.exit_code = ExitCode::CheckFailed;
   if (console.json) {
     nlohmann::json j = {{"out", out.string()}, {"ok", result.cells_ok}, {"unsupported", result.cells_unsupported},
-                        {"failed", result.cells_failed}, {"faults", result.faults}};
+                        {"failed", result.cells_failed}, {"faults", result.faults}, {"expect_kept", result.expect_kept},
+                        {"expect_broken", result.expect_broken}};
     fmt::print("{}\n", j.dump(2));
     return;
   }

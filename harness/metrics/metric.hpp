@@ -17,11 +17,27 @@ struct MetricContext {
   const nlohmann::json& settings;  ///< complete
 };
 
+/// How the cloth touches all colliders of the scene in one frame; collider_contact.hpp says how they are put together.
+/// All are NaN if the cloth is not finite, and those that no collider of the scene defines always.
+struct SceneContact {
+  double length_m, pairs, cloth_fraction;
+  double tunnelled_fraction, tunnelled_depth_m;
+  double depth_m, depth_vertex_m, depth_p99_m, depth_mean_m, area_m2;
+};
+
+/// One frame of an accuracy pass.
+struct MetricFrame {
+  const MetricContext& context;
+  int index;  ///< 0 = initial state
+  const ClothState& state;
+  const SceneContact* contact;  ///< null where the scene has no collider
+};
+
 /// One number a frame. A scene pays for a metric only if `applies` says so. A state that is not finite gives NaN.
 struct Metric {
   std::string name, units, long_name;
   std::function<bool(const Scene&)> applies;
-  std::function<double(const MetricContext&, int frame, const ClothState&)> value;
+  std::function<double(const MetricFrame&)> value;
 };
 
 /// All metrics: one file and one row each (metrics.cpp).
@@ -35,18 +51,24 @@ inline double norm(double x, double y, double z) { return std::sqrt(x * x + y * 
 
 /// Greatest (or root mean square) distance of a vertex from the free fall of the solver's own integrator, over
 /// |g| T^2 / 2; NaN at T = 0.
-double free_fall_error_max(const MetricContext&, int frame, const ClothState&);
-double free_fall_error_rms(const MetricContext&, int frame, const ClothState&);
+double free_fall_error_max(const MetricFrame&);
+double free_fall_error_rms(const MetricFrame&);
 
 /// (|x| - l)/l over the structural edges: greatest, root mean square, mean.
-double stretch_max(const MetricContext&, int frame, const ClothState&);
-double stretch_rms(const MetricContext&, int frame, const ClothState&);
-double stretch_mean(const MetricContext&, int frame, const ClothState&);
+double stretch_max(const MetricFrame&);
+double stretch_rms(const MetricFrame&);
+double stretch_mean(const MetricFrame&);
 
-/// |P - P0 - M g t| / (M sqrt(|g| L)), L the longer side.
-double momentum_error(const MetricContext&, int frame, const ClothState&);
+/// |P - P0 - M g t| / (M (sqrt(|g| L) + |v0|)), L the longer side, v0 the initial velocity.
+double momentum_error(const MetricFrame&);
 
 /// Greatest vertex speed [m/s].
-double speed_max(const MetricContext&, int frame, const ClothState&);
+double speed_max(const MetricFrame&);
+
+/// Sum over the vertices of m v^2 / 2 [J].
+double kinetic_energy(const MetricFrame&);
+
+/// Work done against gravity since the start, the sum of -m g . (x - x0) [J].
+double gravity_energy(const MetricFrame&);
 
 }  // namespace clothbench

@@ -1,27 +1,65 @@
 #include "metrics/metric.hpp"
 
+#include <algorithm>
+
+#include "metrics/collider_contact.hpp"
+
 namespace clothbench {
 namespace {
 
 bool always(const Scene&) { return true; }
 
-bool falls_freely(const Scene& s) {
-  return s.pins.vertices.empty() && (s.needs & kColliderFeatures).empty() && s.gravity_m_per_s2 != Vec3{};
+bool has_gravity(const Scene& s) { return s.gravity_m_per_s2 != Vec3{}; }
+
+bool touches_nothing(const Scene& s) { return s.pins.vertices.empty() && s.grips.vertices.empty() && s.colliders.empty(); }
+
+bool falls_freely(const Scene& s) { return touches_nothing(s) && has_gravity(s); }
+
+bool keeps_momentum(const Scene& s) {
+  const bool has_scale = has_gravity(s) || s.cloth.initial_velocity_m_per_s != Vec3{};
+  return touches_nothing(s) && !s.needs.has(Feature::Damping) && has_scale;
 }
 
-bool keeps_momentum(const Scene& s) { return falls_freely(s) && !s.needs.has(Feature::Damping); }
+bool touches(const Scene& s) { return kWithContactMetrics && !s.colliders.empty(); }
+
+bool can_tunnel(const Scene& s) {
+  return kWithContactMetrics && std::any_of(s.colliders.begin(), s.colliders.end(), counts_crossings);
+}
+
+bool has_depth(const Scene& s) {
+  return kWithContactMetrics && std::any_of(s.colliders.begin(), s.colliders.end(), has_inside);
+}
+
+auto contact(double SceneContact::*field) {
+  return [field](const MetricFrame& f) { return f.contact->*field; };
+}
 
 }  // namespace
 
 const std::vector<Metric>& metrics() {
+  using C = SceneContact;
   static const std::vector<Metric> all = {
       {"free_fall_error", "1", "greatest distance from free fall over g T^2 / 2", falls_freely, free_fall_error_max},
       {"free_fall_error_rms", "1", "root mean square distance from free fall over g T^2 / 2", falls_freely, free_fall_error_rms},
       {"stretch_max", "1", "greatest strain of the structural edges", always, stretch_max},
       {"stretch_rms", "1", "root mean square strain of the structural edges", always, stretch_rms},
       {"stretch_mean", "1", "mean strain of the structural edges", always, stretch_mean},
-      {"momentum_error", "1", "momentum beside gravity's share, over M sqrt(g L)", keeps_momentum, momentum_error},
+      {"momentum_error", "1", "momentum beside gravity's share, over M (sqrt(g L) + v0)", keeps_momentum, momentum_error},
       {"speed_max", "m s-1", "greatest vertex speed", always, speed_max},
+      {"kinetic_energy_J", "J", "kinetic energy", always, kinetic_energy},
+      {"gravity_energy_J", "J", "work done against gravity since the start", has_gravity, gravity_energy},
+      {"contact_length_m", "m", "length of the curves in which cloth and colliders cross", touches, contact(&C::length_m)},
+      {"contact_pairs", "1", "pairs of cloth triangle and collider triangle or capsule that meet", touches, contact(&C::pairs)},
+      {"contact_cloth_fraction", "1", "share of the cloth's triangles in such a pair", touches, contact(&C::cloth_fraction)},
+      {"tunnelled_fraction", "1", "share of the cloth on the other side of a mesh than it began", can_tunnel,
+       contact(&C::tunnelled_fraction)},
+      {"tunnelled_depth_m", "m", "greatest distance of a tunnelled vertex from the mesh", can_tunnel,
+       contact(&C::tunnelled_depth_m)},
+      {"depth_m", "m", "greatest depth in a collider, between the vertices too", has_depth, contact(&C::depth_m)},
+      {"depth_vertex_m", "m", "greatest depth of a vertex in a collider", has_depth, contact(&C::depth_vertex_m)},
+      {"depth_p99_m", "m", "depth that 99 % of the penetrating area keeps below", has_depth, contact(&C::depth_p99_m)},
+      {"depth_mean_m", "m", "mean depth of the penetrating area", has_depth, contact(&C::depth_mean_m)},
+      {"penetrating_area_m2", "m2", "area of the cloth inside colliders", has_depth, contact(&C::area_m2)},
   };
   return all;
 }

@@ -1,32 +1,49 @@
+#include <algorithm>
 #include <cmath>
 
 #include "metrics/metric.hpp"
 
 namespace clothbench {
 
-double momentum_error(const MetricContext& c, int frame, const ClothState& state) {
-  const Scene& s = c.scene;
+double momentum_error(const MetricFrame& f) {
+  const Scene& s = f.context.scene;
   const std::vector<double> mass = vertex_masses(s);
-  const Vec3 g = s.gravity_m_per_s2;
-  const double t = frame * s.time.dt();
+  const Vec3 g = s.gravity_m_per_s2, v0 = s.cloth.initial_velocity_m_per_s;
+  const double t = f.index * s.time.dt();
   double total = 0;
   Vec3 excess{};
   for (std::size_t v = 0; v < mass.size(); ++v) {
     total += mass[v];
-    for (std::size_t k = 0; k < 3; ++k)
-      excess[k] += mass[v] * (state.velocity[3 * v + k] - s.cloth.initial_velocity_m_per_s[k] - g[k] * t);
+    for (std::size_t k = 0; k < 3; ++k) excess[k] += mass[v] * (f.state.velocity[3 * v + k] - v0[k] - g[k] * t);
   }
-  const double length = s.cloth.width_m < s.cloth.height_m ? s.cloth.height_m : s.cloth.width_m;
-  return norm(excess[0], excess[1], excess[2]) / (total * std::sqrt(norm(g[0], g[1], g[2]) * length));
+  const double length = std::max(s.cloth.width_m, s.cloth.height_m);
+  const double speed = std::sqrt(norm(g[0], g[1], g[2]) * length) + norm(v0[0], v0[1], v0[2]);
+  return norm(excess[0], excess[1], excess[2]) / (total * speed);
 }
 
-double speed_max(const MetricContext&, int, const ClothState& state) {
+double speed_max(const MetricFrame& f) {
   double most = 0;
-  for (std::size_t v = 0; v < state.velocity.size(); v += 3) {
-    const double speed = norm(state.velocity[v], state.velocity[v + 1], state.velocity[v + 2]);
+  for (std::size_t v = 0; v < f.state.velocity.size(); v += 3) {
+    const double speed = norm(f.state.velocity[v], f.state.velocity[v + 1], f.state.velocity[v + 2]);
     most = max_or_nan(most, speed);
   }
   return most;
+}
+
+double kinetic_energy(const MetricFrame& f) {
+  const std::vector<double> mass = vertex_masses(f.context.scene);
+  double energy = 0;
+  for (std::size_t k = 0; k < f.state.velocity.size(); ++k)
+    energy += 0.5 * mass[k / 3] * f.state.velocity[k] * f.state.velocity[k];
+  return energy;
+}
+
+double gravity_energy(const MetricFrame& f) {
+  const std::vector<double> mass = vertex_masses(f.context.scene), start = initial_positions(f.context.scene);
+  double energy = 0;
+  for (std::size_t k = 0; k < start.size(); ++k)
+    energy -= mass[k / 3] * f.context.scene.gravity_m_per_s2[k % 3] * (f.state.position[k] - start[k]);
+  return energy;
 }
 
 }  // namespace clothbench

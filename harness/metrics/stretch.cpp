@@ -26,22 +26,22 @@ double edge_count(const Cloth& c) { return (c.columns - 1.0) * c.rows + (c.rows 
 
 }  // namespace
 
-double stretch_max(const MetricContext& c, int, const ClothState& state) {
+double stretch_max(const MetricFrame& f) {
   double most = -1;
-  for_each_strain(c.scene.cloth, state, [&](double e) { most = max_or_nan(most, e); });
+  for_each_strain(f.context.scene.cloth, f.state, [&](double e) { most = max_or_nan(most, e); });
   return most;
 }
 
-double stretch_rms(const MetricContext& c, int, const ClothState& state) {
+double stretch_rms(const MetricFrame& f) {
   double sum = 0;
-  for_each_strain(c.scene.cloth, state, [&](double e) { sum += e * e; });
-  return std::sqrt(sum / edge_count(c.scene.cloth));
+  for_each_strain(f.context.scene.cloth, f.state, [&](double e) { sum += e * e; });
+  return std::sqrt(sum / edge_count(f.context.scene.cloth));
 }
 
-double stretch_mean(const MetricContext& c, int, const ClothState& state) {
+double stretch_mean(const MetricFrame& f) {
   double sum = 0;
-  for_each_strain(c.scene.cloth, state, [&](double e) { sum += e; });
-  return sum / edge_count(c.scene.cloth);
+  for_each_strain(f.context.scene.cloth, f.state, [&](double e) { sum += e; });
+  return sum / edge_count(f.context.scene.cloth);
 }
 
 }  // namespace clothbench

@@ -33,7 +33,7 @@ std::string summary_csv(const std::vector<CellRecord>& cells, const std::vector<
                                                 "clock_policy", "created"};
   std::vector<std::string> head = {"family", "paper_table", "scene",        "solver", "setting",
                                    "sides",  "repeat",      "resolution",   "grid_x", "grid_y",
-                                   "status", "class",       "failed_frame", "message"};
+                                   "status", "class",       "failed_frame", "message", "expect"};
   head.insert(head.end(), environment.begin(), environment.end());
   head.insert(head.end(), names.begin(), names.end());
   std::string out = csv_row(head);
@@ -53,7 +53,8 @@ std::string summary_csv(const std::vector<CellRecord>& cells, const std::vector<
                                       c.outcome.status,
                                       c.outcome.klass,
                                       c.outcome.failed_frame < 0 ? "" : std::to_string(c.outcome.failed_frame),
-                                      c.outcome.message};
+                                      c.outcome.message,
+                                      c.outcome.expect};
       for (const char* key : environment) row.push_back(environment_text(c, key));
       for (const std::string& name : names) row.push_back(exact(summary_value(c, name)));
       out += csv_row(row);
@@ -127,7 +128,8 @@ nlohmann::json cells_json(const std::vector<CellRecord>& cells) {
                     {{"status", c.outcome.status},
                      {"class", c.outcome.klass},
                      {"failed_frame", c.outcome.failed_frame},
-                     {"message", c.outcome.message}}},
+                     {"message", c.outcome.message},
+                     {"expect", c.outcome.expect}}},
                    {"summary", summary},
                    {"environment", c.header.environment}});
   }

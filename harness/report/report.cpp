@@ -103,6 +103,8 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
   }
   if (const Table failed = failed_table(cells); failed.rows.size() > 1) tables += failed.markdown() + "\n";
 
+  if (const Table broken = expect_table(cells); broken.rows.size() > 1) tables += broken.markdown() + "\n";
+
   bool has_python = false;
   const std::string no_figures = draw_figures(options.out, has_python);
   write("report.md", "# clothbench report\n\n" + head + "\n" + tables +
@@ -125,6 +127,10 @@ void print_console_report(const std::vector<fs::path>& runs) {
     const auto& row = failed.rows[r];  // messages are sentences: lines, not columns
     fmt::print("{}", wrapped(row[0] + ": " + row[1] + ": " + row[2] + ": " + row[3], 2, kConsoleColumns));
   }
+  const Table broken = expect_table(cells);
+  if (broken.rows.size() > 1) fmt::print("\n{} ({})\n", broken.title, broken.note.substr(0, broken.note.size() - 1));
+  for (std::size_t r = 1; r < broken.rows.size(); ++r)
+    fmt::print("{}", wrapped(broken.rows[r][0] + ": " + broken.rows[r][1] + ": " + broken.rows[r][2], 2, kConsoleColumns));
 }
 
 }  // namespace clothbench

@@ -28,6 +28,10 @@ std::vector<Table> fps_tables(const Family&, const nlohmann::json& published);
 /// Cells that did not end well, by solver, status and message; no rows but the header if there is none.
 Table failed_table(const std::vector<CellRecord>& cells);
 
+/// Cells that broke what their scene expects, by scene and solver; the note counts the others. No rows but the header if
+/// there is none.
+Table expect_table(const std::vector<CellRecord>& cells);
+
 enum class Format { Markdown, Console };
 
 /// What a reader must know first: whether the device is software; device, protocol and commit, one line for each

@@ -134,4 +134,17 @@ Table failed_table(const std::vector<CellRecord>& cells) {
   return t;
 }
 
+Table expect_table(const std::vector<CellRecord>& cells) {
+  Table t{"Expectations that were broken", "", {{"scene", "solver", "verdict"}}};
+  std::size_t kept = 0, unknown = 0;
+  for (const CellRecord& c : cells) {
+    kept += c.outcome.expect == "kept";
+    unknown += c.outcome.expect == "not measured";
+    if (c.outcome.expect.starts_with("broken"))
+      t.rows.push_back({c.header.scene, Series{c.header.solver, c.header.setting, ""}.label(), c.outcome.expect});
+  }
+  t.note = fmt::format("{} kept, {} not measured.", kept, unknown);
+  return t;
+}
+
 }  // namespace clothbench

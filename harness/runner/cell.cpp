@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "metrics/metric.hpp"
+#include "metrics/metric_pass.hpp"
 #include "runner/environment.hpp"
 #include "runner/stage_check.hpp"
 
@@ -76,6 +76,7 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
   if (!missing.empty()) {
     outcome_ = {"unsupported", "ok", -1, info.name + " has no " + join(missing)};
     header_.environment = describe_environment({}, protocol);
+    if (!scene.assets.empty()) header_.environment["assets"] = scene.assets;
     return;
   }
   solver_ = spec_.entry->make(spec_.settings, device_);
@@ -83,6 +84,7 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
   solver_->load(scene);
   header_.load_s = seconds_since(start);
   header_.environment = describe_environment(solver_->device(), protocol);
+  if (!scene.assets.empty()) header_.environment["assets"] = scene.assets;
   plan_ = solver_->plan();
   header_.plan = plan_json(plan_);
   for (const StagePlan& s : plan_.stages) {
@@ -121,12 +123,7 @@ AccuracyPass Cell::run_accuracy(double duration_s) {
   const int frames = accuracy_frames(duration_s);
   const MetricContext context{scene, *spec_.entry, spec_.settings};
   AccuracyPass pass;
-  std::vector<const Metric*> wanted;
-  for (const Metric& m : metrics())
-    if (m.applies(scene)) {
-      wanted.push_back(&m);
-      pass.metrics.push_back({m.name, m.units, m.long_name, {}});
-    }
+  MetricPass metrics(context);
   solver_->reset();
   ClothState state;
   for (int frame = 0; frame <= frames; ++frame) {
@@ -137,9 +134,10 @@ AccuracyPass Cell::run_accuracy(double duration_s) {
       fail(StepStatus::NotFinite, frame);
     pass.time_s.push_back(frame * scene.time.dt());
     for (double x : state.position) pass.position.push_back(static_cast<float>(x));
-    for (std::size_t m = 0; m < wanted.size(); ++m) pass.metrics[m].values.push_back(wanted[m]->value(context, frame, state));
+    metrics.add(state);
     if (outcome_.status != "ok") break;
   }
+  pass.metrics = metrics.take();
   return pass;
 }
 

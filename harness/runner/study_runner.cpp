@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "runner/expect.hpp"
+#include "runner/replay.hpp"
+
 namespace clothbench {
 namespace {
 
@@ -65,6 +68,7 @@ class GroupRun {
 
   void open(const CellSpec& spec) {
     const std::string name = cell_name(header_of(spec));
+    if (options_.resume) remove_leftovers(options_.out, name);
     if (cell_finished(options_.out, name)) {
       if (!options_.resume)
         throw Error(fmt::format("{}: {} is already there; give another --out, or --resume to go on with this folder",
@@ -82,6 +86,7 @@ class GroupRun {
       r.record.trials = before.trials;
       r.record.accuracy = before.accuracy;
     }
+    if (r.cell->alive()) r.writer->write_replay(replay_of(*spec.scene));
     running_.push_back(std::move(r));
   }
 
@@ -111,7 +116,13 @@ class GroupRun {
     else if (outcome.status == "unsupported") ++result_.cells_unsupported;
     else ++result_.cells_failed;
     r.record.outcome = outcome;
-    result_.files.push_back(r.writer->finish(outcome, summarise(r.cell->spec(), r.cell->plan(), r.record)));
+    std::map<std::string, double> summary = summarise(r.cell->spec(), r.cell->plan(), r.record);
+    Verdict verdict = judge(*r.cell->spec().scene, outcome, r.record.accuracy, summary);
+    if (verdict.text == "kept") ++result_.expect_kept;
+    if (verdict.text.starts_with("broken")) result_.expect_broken.push_back(r.name() + ": " + verdict.text);
+    outcome.expect = std::move(verdict.text);
+    summary.merge(verdict.scalars);
+    result_.files.push_back(r.writer->finish(outcome, summary));
     ++done_;
   }
 

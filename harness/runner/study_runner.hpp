@@ -29,6 +29,8 @@ struct RunOptions {
 struct RunResult {
   std::vector<std::filesystem::path> files;
   int cells_ok = 0, cells_unsupported = 0, cells_failed = 0;
+  int expect_kept = 0;                     ///< cells that keep what their scene expects
+  std::vector<std::string> expect_broken;  ///< those that do not, and how; a result, not a fault
   int validation_messages = 0;
   std::vector<std::string> faults;  ///< cells that broke a rule of the harness (stages, validation): the run fails
 };

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
+#include "metrics/metric.hpp"
 #include "runner/cell.hpp"
 
 namespace clothbench {
@@ -58,6 +60,44 @@ double at_end(const AccuracyPass& pass, const std::string& name) {
   return kMissing;
 }
 
+/// Greatest value of a series from a time on, NaN if any is; missing if the scene has no such series.
+double greatest(const AccuracyPass& pass, const std::string& name, double from_s = 0) {
+  for (const MetricSeries& m : pass.metrics) {
+    if (m.name != name || m.values.empty()) continue;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t f = 0; f < m.values.size(); ++f)
+      if (pass.time_s[f] >= from_s) most = max_or_nan(most, m.values[f]);
+    return most;
+  }
+  return kMissing;
+}
+
+/// Over the last half second of the scene; missing if the pass does not reach its end.
+double settled(const AccuracyPass& pass, const TimeSpan& time, const std::string& name) {
+  constexpr double kSettled_s = 0.5;
+  if (pass.time_s.size() != static_cast<std::size_t>(time.frames()) + 1) return kMissing;
+  // Half a frame earlier, so that rounding leaves no frame out.
+  return greatest(pass, name, pass.time_s.back() - kSettled_s - 0.5 * time.dt());
+}
+
+/// What the accuracy pass gives: how much of the cloth got where it must not, and how far it was stretched.
+void summarise_pass(const AccuracyPass& pass, const TimeSpan& time, std::map<std::string, double>& s) {
+  s["free_fall_error"] = at_end(pass, "free_fall_error");
+  s["free_fall_error_rms"] = at_end(pass, "free_fall_error_rms");
+  s["contact_length_settled_m"] = settled(pass, time, "contact_length_m");
+  s["contact_length_max_m"] = greatest(pass, "contact_length_m");
+  s["tunnelled_fraction_max"] = greatest(pass, "tunnelled_fraction");
+  s["tunnelled_fraction_end"] = at_end(pass, "tunnelled_fraction");
+  s["tunnelled_depth_max_m"] = greatest(pass, "tunnelled_depth_m");
+  s["depth_max_m"] = greatest(pass, "depth_m");
+  s["depth_vertex_max_m"] = greatest(pass, "depth_vertex_m");
+  s["depth_p99_m"] = greatest(pass, "depth_p99_m");
+  s["depth_mean_m"] = greatest(pass, "depth_mean_m");
+  s["penetrating_area_max_m2"] = greatest(pass, "penetrating_area_m2");
+  s["stretch_max"] = greatest(pass, "stretch_max");
+  s["stretch_max_end"] = at_end(pass, "stretch_max");
+}
+
 double bytes_per_frame(const std::vector<TimedTrial>& trials, std::vector<double> TimedTrial::*bytes) {
   if (trials.empty() || trials.front().frames() == 0) return kMissing;
   const TimedTrial& t = trials.front();
@@ -97,8 +137,7 @@ std::map<std::string, double> summarise(const CellSpec& spec, const Plan& plan, 
   s["frame_wall_median_s"] = median(wall);
   s["frame_wall_iqr_s"] = quantile(wall, 0.75) - quantile(wall, 0.25);
   s["frame_device_median_s"] = median(device);
-  s["free_fall_error"] = at_end(record.accuracy, "free_fall_error");
-  s["free_fall_error_rms"] = at_end(record.accuracy, "free_fall_error_rms");
+  summarise_pass(record.accuracy, spec.scene->time, s);
   s["read_B_per_frame"] = bytes_per_frame(record.trials, &TimedTrial::stage_read_B);
   s["write_B_per_frame"] = bytes_per_frame(record.trials, &TimedTrial::stage_write_B);
   s["bandwidth_read_peak_B_per_s"] = median(read_peak);

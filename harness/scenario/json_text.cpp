@@ -73,6 +73,11 @@ const json& resolve(const json& schema, const json& root) {
   return root.at(json::json_pointer(schema["$ref"].get<std::string>().substr(1)));
 }
 
+/// An object that is right without any key, so that its defaults may stand for it.
+bool may_be_empty(const json& s) {
+  return s.contains("properties") && !s.contains("required") && !s.contains("minProperties") && s.value("type", json()) == "object";
+}
+
 void fill(json& value, const json& schema, const json& root) {
   const json& s = resolve(schema, root);
   if (value.is_object() && s.contains("properties"))
@@ -80,7 +85,7 @@ void fill(json& value, const json& schema, const json& root) {
       const json& target = resolve(sub, root);
       if (!value.contains(key)) {
         if (sub.contains("default")) value[key] = sub["default"];
-        else if (target.contains("properties") && !target.contains("required") && target.value("type", json()) == "object") value[key] = json::object();
+        else if (may_be_empty(target)) value[key] = json::object();
         else continue;
       }
       fill(value[key], sub, root);

@@ -82,6 +82,21 @@ Cloth read_cloth(const json& j, const std::string& source) {
   return c;
 }
 
+/// The schema knows the names; here the bounds must leave something between them.
+void read_expect(const json& j, Scene& s, const std::string& source) {
+  for (const auto& [name, bounds] : j.items()) {
+    if (name == "outcome") {
+      s.expected_outcome = bounds.get<std::string>();
+      continue;
+    }
+    Expectation e{name, {}, {}};
+    if (bounds.contains("at_least")) e.at_least = bounds["at_least"].get<double>();
+    if (bounds.contains("at_most")) e.at_most = bounds["at_most"].get<double>();
+    if (e.at_least && e.at_most && *e.at_least > *e.at_most) refuse(source, "/expect/" + name, "at_least is above at_most");
+    s.expect.push_back(std::move(e));
+  }
+}
+
 void check_assumed(const json& scenario, const std::string& source) {
   for (std::size_t k = 0; k < scenario["assumed"].size(); ++k) {
     const auto entry = scenario["assumed"][k].get<std::string>();
@@ -182,6 +197,7 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   s.material.bending_rigidity_N_m = material["bending_rigidity_N_m"].get<double>();
   s.material.damping_per_s = material["damping_per_s"].get<double>();
   s.pins = read_pins(scenario["pins"], s.cloth, source);
+  if (scenario.contains("expect")) read_expect(scenario["expect"], s, source);
   s.gravity_m_per_s2 = vec3(scenario["gravity_m_per_s2"]);
   s.time = {scenario["time"]["frame_rate_hz"].get<double>(), scenario["time"]["duration_s"].get<double>()};
   if (!(s.time.duration_s * s.time.frame_rate_hz <= kMostFrames)) refuse(source, "/time/duration_s", fmt::format("at most {} frames", kMostFrames));

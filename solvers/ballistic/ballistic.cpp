@@ -70,10 +70,10 @@ class Ballistic final : public ClothSolver {
 void register_ballistic(std::vector<SolverEntry>& out) {
   out.push_back({describe(),
                  [](const nlohmann::json&, const DeviceOptions&) { return std::make_unique<Ballistic>(); },
-                 // Semi-implicit Euler: sum_{k=1..n} k g h^2.
+                 // Semi-implicit Euler: n v0 h + sum_{k=1..n} k g h^2.
                  [](const Scene& s, const nlohmann::json&, int n) {
                    const double h = s.time.dt();
-                   return s.gravity_m_per_s2[1] * h * h * n * (n + 1) / 2;
+                   return s.cloth.initial_velocity_m_per_s[1] * h * n + s.gravity_m_per_s2[1] * h * h * n * (n + 1) / 2;
                  }});
 }
 

@@ -241,7 +241,7 @@ double paper_free_fall_m(const Scene& scene, const nlohmann::json& settings, int
   const int substeps = settings["substeps"].get<int>();
   const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1];
   const double keep = scene.needs.has(Feature::Damping) ? std::max(0.0, 1 - scene.material.damping_per_s * h) : 1;
-  double v = 0, x = 0;
+  double v = scene.cloth.initial_velocity_m_per_s[1], x = 0;
   for (long i = 0; i < static_cast<long>(frames) * substeps; ++i) {
     v = (v + g * h) * keep;
     x += v * h;

@@ -220,7 +220,7 @@ double xpbd_free_fall_m(const Scene& scene, const nlohmann::json& settings, int 
   const int substeps = settings["substeps"].get<int>();
   const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1];
   const double loss = scene.needs.has(Feature::Damping) ? -std::expm1(-scene.material.damping_per_s * h) : 0;
-  double v = 0, x = 0;
+  double v = scene.cloth.initial_velocity_m_per_s[1], x = 0;
   for (long i = 0; i < static_cast<long>(frames) * substeps; ++i) {
     v += g * h - loss * v;
     x += v * h;

@@ -96,6 +96,19 @@ TEST(Tables, CellsThatFailedSayHow) {
   EXPECT_EQ(failed_table(study()).rows.size(), 1u);
 }
 
+TEST(Tables, BrokenExpectationsAreListedAndTheOthersCounted) {
+  std::vector<CellRecord> cells = study();
+  EXPECT_EQ(expect_table(cells).rows.size(), 1u) << "nothing expected";
+  cells[0].outcome.expect = "broken: tunnelled_fraction_max 0.2 > 0";
+  cells[1].outcome.expect = "kept";
+  cells[2].outcome.expect = "not measured";
+  const Table t = expect_table(cells);
+  ASSERT_EQ(t.rows.size(), 2u);
+  EXPECT_EQ(t.rows[1][0], cells[0].header.scene);
+  EXPECT_EQ(t.rows[1][2], "broken: tunnelled_fraction_max 0.2 > 0");
+  EXPECT_EQ(t.note, "1 kept, 1 not measured.");
+}
+
 TEST(Tables, EveryLineFitsTheTerminal) {
   std::vector<CellRecord> cells;
   for (const int n : {8, 16, 32, 64, 128})

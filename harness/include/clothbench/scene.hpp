@@ -54,6 +54,12 @@ struct TimeSpan {
   int frames() const { return static_cast<int>(duration_s * frame_rate_hz + 0.5); }
 };
 
+/// What a right result looks like: a bound on a scalar of the summary.
+struct Expectation {
+  std::string name;
+  std::optional<double> at_least, at_most;
+};
+
 /// The completed scene: what runs and what is stored. Plain data, SI units, right-handed, +y up.
 struct Scene {
   std::string name, why;
@@ -67,6 +73,8 @@ struct Scene {
   Vec3 gravity_m_per_s2{};
   TimeSpan time;
   FeatureSet needs;
+  std::string expected_outcome;  ///< a status of Outcome, "" = any
+  std::vector<Expectation> expect;
   std::string json;    ///< completed scenario, canonical dump
   std::string sha256;  ///< of `json`
   std::string source;  ///< path of the file it came from, for messages

@@ -122,7 +122,8 @@ struct SolverEntry {
   SolverInfo info;
   std::function<std::unique_ptr<ClothSolver>(const nlohmann::json& settings, const DeviceOptions&)> make;
   /// Exact velocity-update order of the integrator, for the free-fall check: position after n frames of a body
-  /// that only falls, relative to its start [m] (vertical component, downwards negative).
+  /// that only falls, relative to its start [m] (vertical component, downwards negative), from the scene's vertical
+  /// gravity, vertical initial velocity and damping.
   std::function<double(const Scene&, const nlohmann::json& settings, int frames)> free_fall_m;
   /// Devices this backend could run on, in the order of --device; empty function = the CPU alone.
   std::function<std::vector<DeviceInfo>()> devices = nullptr;

@@ -1,0 +1,26 @@
+#include "metrics/metric_pass.hpp"
+
+#include "metrics/collider_contact.hpp"
+
+namespace clothbench {
+
+MetricPass::MetricPass(const MetricContext& context) : context_(context) {
+  for (const Metric& m : metrics()) {
+    if (!m.applies(context.scene)) continue;
+    wanted_.push_back(&m);
+    series_.push_back({m.name, m.units, m.long_name, {}});
+  }
+  if (kWithContactMetrics && !context.scene.colliders.empty()) contact_ = std::make_unique<ColliderContact>(context.scene);
+}
+
+MetricPass::~MetricPass() = default;
+
+void MetricPass::add(const ClothState& state) {
+  SceneContact contact{};
+  if (contact_) contact = contact_->probe(frame_, state.position);
+  const MetricFrame frame{context_, frame_, state, contact_ ? &contact : nullptr};
+  for (std::size_t m = 0; m < wanted_.size(); ++m) series_[m].values.push_back(wanted_[m]->value(frame));
+  ++frame_;
+}
+
+}  // namespace clothbench

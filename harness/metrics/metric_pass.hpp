@@ -1,0 +1,36 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "clothbench/record.hpp"
+#include "metrics/metric.hpp"
+
+namespace clothbench {
+
+class ColliderContact;
+
+/// The metrics of one accuracy pass over one cell: those that apply to its scene, each evaluated once a frame. Keeps what
+/// has to be remembered from frame to frame (where the cloth was when a collider passed it), so frames come in order.
+class MetricPass {
+ public:
+  /// What `context` refers to outlives the pass.
+  explicit MetricPass(const MetricContext& context);
+  ~MetricPass();
+  MetricPass(const MetricPass&) = delete;
+  MetricPass& operator=(const MetricPass&) = delete;
+
+  /// State at the end of the next frame; the first call is frame 0, the initial state.
+  void add(const ClothState&);
+
+  /// One series a metric, in the order of metrics().
+  std::vector<MetricSeries> take() { return std::move(series_); }
+
+ private:
+  MetricContext context_;
+  std::vector<const Metric*> wanted_;
+  std::vector<MetricSeries> series_;
+  std::unique_ptr<ColliderContact> contact_;  ///< null where there is nothing to touch
+  int frame_ = 0;
+};
+
+}  // namespace clothbench

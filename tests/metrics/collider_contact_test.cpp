@@ -1,0 +1,137 @@
+// One collider of each shape against figures worked out here, and the time a frame takes.
+#include "metrics/collider_contact.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "metrics/contact/shapes.hpp"
+#include "scenario/load.hpp"
+
+#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
+#define CLOTHBENCH_TIMES_COUNT 1
+#endif
+
+namespace clothbench {
+namespace {
+
+SceneContact at_height(const Scene& scene, double y) {
+  std::vector<double> x = initial_positions(scene);
+  for (std::size_t k = 1; k < x.size(); k += 3) x[k] = y;
+  return ColliderContact(scene).probe(0, x);
+}
+
+TEST(ColliderContact, APlaneIsAHalfSpace) {
+  const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]"});
+  const SceneContact above = at_height(scene, 0.001), below = at_height(scene, -0.02);
+  EXPECT_EQ(above.depth_m, 0);
+  EXPECT_EQ(above.area_m2, 0);
+  EXPECT_EQ(above.depth_mean_m, 0);
+  for (double depth : {below.depth_m, below.depth_vertex_m, below.depth_p99_m, below.depth_mean_m}) EXPECT_NEAR(depth, 0.02, 1e-15);
+  EXPECT_NEAR(below.area_m2, 0.36, 1e-14);
+  EXPECT_EQ(below.length_m, 0) << "nothing crosses the surface";
+  EXPECT_TRUE(std::isnan(below.tunnelled_fraction));
+
+  // Tilted about x by y = z/10: cut along z = 0, the half z < 0 behind.
+  std::vector<double> x = initial_positions(scene);
+  for (std::size_t k = 0; k < x.size(); k += 3) x[k + 1] = 0.1 * (x[k + 2] + 0.01);
+  const SceneContact tilted = ColliderContact(scene).probe(0, x);
+  const double stretch = std::sqrt(1.01);
+  EXPECT_NEAR(tilted.length_m, 0.6, 1e-12);
+  EXPECT_NEAR(tilted.area_m2, 0.6 * 0.29 * stretch, 1e-12);
+  EXPECT_NEAR(tilted.depth_m, 0.029, 1e-12);
+  EXPECT_NEAR(tilted.depth_mean_m, 0.0145, 1e-12);
+}
+
+TEST(ColliderContact, ABoxIsSolidWhicheverWayItIsTurned) {
+  // A 0.6 m sheet, level, 1 cm under the top of a box of 0.3 m; then the box turned about the vertical.
+  for (const char* turn : {"colliders.0.rotation_deg=[0,0,0]", "colliders.0.rotation_deg=[0,30,0]", "colliders.0.rotation_deg=[90,0,0]"}) {
+    const Scene scene = load_scene("contact/box", {"cloth.grid=[61,61]", turn});
+    const SceneContact s = at_height(scene, 0.14);
+    EXPECT_NEAR(s.length_m, 1.2, 1e-9) << turn;
+    EXPECT_NEAR(s.depth_m, 0.01, 1e-12) << turn;
+    EXPECT_NEAR(s.area_m2, 0.09, 0.05 * 0.09) << turn << ": edges of the area lie between samples";
+    EXPECT_EQ(at_height(scene, 0.151).area_m2, 0) << turn;
+    EXPECT_EQ(at_height(scene, 0.151).depth_m, 0) << turn;
+  }
+}
+
+TEST(ColliderContact, CapsulesAreWhereTheirFrameHasThem) {
+  const Scene scene = load_scene("paper/capsule-sweep", {"cloth.grid=[17,17]"});
+  const std::vector<double> x = initial_positions(scene);
+  ColliderContact contact(scene);
+  int inside = 0;
+  for (int frame = 0; frame <= scene.time.frames(); ++frame) {
+    const SceneContact s = contact.probe(frame, x);
+    double deepest = 0;
+    for (std::size_t v = 0; v < x.size(); v += 3)
+      for (const Capsule& c : scene.motion[static_cast<std::size_t>(frame)].colliders[0].capsules) {
+        const contact::Capsule shape{contact::Point<3>::Map(c.a_m.data()), contact::Point<3>::Map(c.b_m.data()), c.radius_m};
+        deepest = std::max(deepest, -contact::signed_distance(contact::Point<3>::Map(&x[v]), shape));
+      }
+    EXPECT_DOUBLE_EQ(s.depth_vertex_m, deepest) << "frame " << frame;
+    inside += deepest > 0;
+  }
+  EXPECT_GT(inside, 10) << "the hand must meet the cloth for this to say anything";
+}
+
+TEST(ColliderContact, SeveralCollidersAddUp) {
+  const Scene one = load_scene("contact/sphere", {"cloth.grid=[33,33]"});
+  const Scene two = load_scene("contact/sphere", {"cloth.grid=[33,33]", R"(colliders=[
+    {"type":"sphere","center_m":[-0.15,0,0],"radius_m":0.1},{"type":"sphere","center_m":[0.15,0.02,0],"radius_m":0.1}])"});
+  const auto single = [](const char* centre, double y) {
+    return at_height(load_scene("contact/sphere", {"cloth.grid=[33,33]", "colliders.0.radius_m=0.1", centre}), y);
+  };
+  const SceneContact left = single("colliders.0.center_m=[-0.15,0,0]", 0.09), right = single("colliders.0.center_m=[0.15,0.02,0]", 0.09);
+  const SceneContact both = at_height(two, 0.09);
+  EXPECT_NEAR(both.length_m, left.length_m + right.length_m, 1e-12);
+  EXPECT_NEAR(both.area_m2, left.area_m2 + right.area_m2, 1e-15);
+  EXPECT_EQ(both.depth_m, right.depth_m);
+  EXPECT_NEAR(both.depth_mean_m * both.area_m2, left.depth_mean_m * left.area_m2 + right.depth_mean_m * right.area_m2, 1e-15);
+  EXPECT_GT(left.area_m2, 0);
+}
+
+TEST(ColliderContact, NotFiniteIsNaNAndStaysSoForCrossings) {
+  const Scene scene = load_scene("contact/open-sheet", {"cloth.grid=[9,9]"});
+  std::vector<double> x = initial_positions(scene);
+  ColliderContact contact(scene);
+  EXPECT_EQ(contact.probe(0, x).tunnelled_fraction, 0);
+  x[7] = std::nan("");
+  EXPECT_TRUE(std::isnan(contact.probe(1, x).tunnelled_fraction));
+  EXPECT_TRUE(std::isnan(contact.probe(2, x).length_m));
+  const SceneContact healed = contact.probe(3, initial_positions(scene));
+  EXPECT_EQ(healed.length_m, 0);
+  EXPECT_TRUE(std::isnan(healed.tunnelled_fraction)) << "nobody knows which way it went";
+
+  const Scene plane = load_scene("contact/plane", {"cloth.grid=[9,9]"});
+  const SceneContact s = ColliderContact(plane).probe(0, x);
+  for (double v : {s.length_m, s.depth_m, s.depth_mean_m, s.area_m2}) EXPECT_TRUE(std::isnan(v));
+}
+
+double seconds(const auto& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// 32 x 32 vertices slanting down through the table of a whole room, which is worse than lying on it.
+TEST(ColliderContact, AFrameAgainstTheWholeRoomIsQuick) {
+  const Scene scene = load_scene("paper/desk-flat-low", {"colliders.0.cut=none"});
+  ColliderContact contact(scene);
+  std::vector<double> x = initial_positions(scene);
+  contact.probe(0, x);
+  const double last = static_cast<double>(x.size()) - 2;
+  for (std::size_t k = 1; k < x.size(); k += 3) x[k] -= 0.6 * static_cast<double>(k - 1) / last;
+  SceneContact s{};
+  const double time = seconds([&] { s = contact.probe(1, x); });
+  EXPECT_GT(s.length_m, 0.1);
+  std::printf("  a frame against a room of %zu triangles: %.4f s (contour %.2f m; 0.5 s allowed)\n",
+              scene.colliders[0].mesh->triangles.size(), time, s.length_m);
+#if CLOTHBENCH_TIMES_COUNT
+  EXPECT_LT(time, 2.0) << "four times what is promised of an idle machine";
+#endif
+}
+
+}  // namespace
+}  // namespace clothbench

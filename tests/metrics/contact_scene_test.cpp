@@ -1,0 +1,171 @@
+// From a scene file to the result file: a cloth that goes where it is told meets colliders, and the file says how far.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "../scenario/scratch_folder.hpp"
+#include "prescribed_solver.hpp"
+#include "results/store.hpp"
+#include "runner/study_runner.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Runs one cell without timed trials and reads its file back.
+CellRecord run(const Scene& scene, const SolverEntry& entry, const ScratchFolder& folder, double accuracy_s = 0) {
+  CellPlan plan;
+  plan.groups = {{{&scene, &entry, nlohmann::json::object()}}};
+  plan.rules.trials = 0;
+  plan.rules.accuracy_duration_s = accuracy_s > 0 ? accuracy_s : scene.time.duration_s;
+  plan.protocol = "test";
+  RunOptions options;
+  options.out = folder.path();
+  const RunResult result = run_cells(plan, options);
+  EXPECT_EQ(result.files.size(), 1u);
+  EXPECT_TRUE(result.faults.empty());
+  return read_cell(result.files.at(0));
+}
+
+const std::vector<double>& series(const CellRecord& r, const std::string& name) {
+  for (const MetricSeries& m : r.accuracy.metrics)
+    if (m.name == name) return m.values;
+  throw std::runtime_error("no metric " + name);
+}
+
+bool has_series(const CellRecord& r, const std::string& name) {
+  for (const MetricSeries& m : r.accuracy.metrics)
+    if (m.name == name) return true;
+  return false;
+}
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+const char* const kSphereScene = R"({"name":"sphere-test","why":"A sheet pushed into a sphere.",
+  "cloth":{"grid":[97,97],"size_m":[0.24,0.24],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"center_m":[0,0.2,0]}},
+  "material":{"membrane_stiffness_N_per_m":1000},
+  "colliders":[{"type":"sphere","center_m":[0,0,0],"radius_m":0.1}],
+  "time":{"frame_rate_hz":20,"duration_s":1},
+  "expect":{"outcome":"ok","depth_max_m":{"at_most":0.0100001},"contact_length_settled_m":{"at_least":0.27,"at_most":0.28}}})";
+
+// R = 0.1 m, d = 0.01 m: contour 2 pi sqrt(2Rd - d^2), area pi (2Rd - d^2), mean depth R - 2/3 (R^3 - (R-d)^3)/(2Rd - d^2).
+TEST(ContactScene, ASheetLoweredIntoASphereGivesTheClosedForms) {
+  const ScratchFolder folder;
+  const Scene scene = load_scene(folder.file("scene.json", kSphereScene));
+  const SolverEntry solver = prescribed(lifted([](int frame) { return frame < 4 ? 0.0 : -0.11; }));
+  const CellRecord r = run(scene, solver, folder);
+  const auto at = [&](const char* name) { return r.summary.at(name); };
+  EXPECT_EQ(series(r, "contact_length_m")[3], 0);
+  EXPECT_EQ(series(r, "depth_mean_m")[3], 0);
+  EXPECT_NEAR(at("contact_length_settled_m"), 0.2738777, 5e-4 * 0.2738777);
+  EXPECT_NEAR(at("contact_length_max_m"), at("contact_length_settled_m"), 1e-12);
+  EXPECT_NEAR(at("penetrating_area_max_m2"), 0.00596903, 5e-4 * 0.00596903);
+  EXPECT_NEAR(at("depth_mean_m"), 4.91228e-3, 1e-3 * 4.91228e-3);
+  EXPECT_NEAR(at("depth_max_m"), 0.01, 1e-12);
+  EXPECT_NEAR(at("depth_vertex_max_m"), 0.01, 1e-12) << "a vertex is under the top";
+  EXPECT_NEAR(at("depth_p99_m"), 0.1 - std::sqrt(0.0081 + 0.01 * 0.0019), 1e-4);
+  EXPECT_TRUE(std::isnan(at("tunnelled_fraction_max"))) << "not defined for a sphere";
+  EXPECT_FALSE(has_series(r, "tunnelled_fraction"));
+  EXPECT_NEAR(at("stretch_max"), 0, 1e-12);
+  EXPECT_EQ(r.outcome.expect, "kept");
+  EXPECT_EQ(at("expect.outcome"), 1);
+  EXPECT_EQ(at("expect.depth_max_m"), 1);
+}
+
+TEST(ContactScene, ABrokenExpectationSaysWhatAndHowMuch) {
+  const ScratchFolder folder;
+  const Scene scene = load_scene(folder.file("scene.json", with(kSphereScene, "0.0100001", "0.005")));
+  const CellRecord r = run(scene, prescribed(lifted([](int frame) { return frame < 4 ? 0.0 : -0.11; })), folder);
+  EXPECT_EQ(r.outcome.expect, "broken: depth_max_m 0.01 > 0.005");
+  EXPECT_EQ(r.outcome.status, "ok") << "a broken expectation is no failure of the solver";
+  EXPECT_EQ(r.summary.at("expect.depth_max_m"), 0);
+  EXPECT_EQ(r.summary.at("expect.outcome"), 1);
+}
+
+TEST(ContactScene, AShortAccuracyPassMeasuresNoExpectation) {
+  const ScratchFolder folder;
+  const Scene scene = load_scene(folder.file("scene.json", kSphereScene));
+  const CellRecord r = run(scene, prescribed(lifted([](int) { return 0.0; })), folder, 0.5);
+  EXPECT_EQ(r.outcome.expect, "not measured");
+  EXPECT_TRUE(std::isnan(r.summary.at("expect.depth_max_m")));
+  EXPECT_TRUE(std::isnan(r.summary.at("contact_length_settled_m")));
+}
+
+TEST(ContactScene, ANaNIsInTheSummaryAndBreaksTheExpectation) {
+  const ScratchFolder folder;
+  const Scene scene = load_scene(folder.file("scene.json", kSphereScene));
+  const SolverEntry solver = prescribed([](int frame, std::vector<double>& x) {
+    if (frame >= 7) x[100] = kMissing;
+  });
+  const CellRecord r = run(scene, solver, folder);
+  EXPECT_EQ(r.outcome.status, "not_finite");
+  EXPECT_EQ(r.outcome.failed_frame, 7) << "the first frame that is not finite";
+  for (const char* name : {"contact_length_max_m", "depth_max_m", "depth_vertex_max_m", "depth_mean_m", "penetrating_area_max_m2",
+                           "stretch_max", "stretch_max_end"})
+    EXPECT_TRUE(std::isnan(r.summary.at(name))) << name;
+  EXPECT_EQ(r.outcome.expect,
+            "broken: outcome not_finite, expected ok; contact_length_settled_m has no value; depth_max_m has no value");
+  EXPECT_EQ(r.summary.at("expect.outcome"), 0);
+  EXPECT_EQ(r.summary.at("expect.depth_max_m"), 0);
+}
+
+// A curtain of 1 m through the middle of an open patch, half-way and back.
+TEST(ContactScene, ACurtainHalfWayThroughAPatchHasTunnelledByHalf) {
+  const ScratchFolder folder;
+  const Scene scene = load_scene(folder.file("scene.json", R"({"name":"curtain","why":"A curtain through an open patch.",
+    "cloth":{"grid":[16,16],"size_m":[1,1],"areal_density_kg_per_m2":0.2,"sides":"double",
+             "pose":{"center_m":[0,0.6,0],"axis_u":[1,0,0],"axis_v":[0,-1,0]}},
+    "material":{"membrane_stiffness_N_per_m":1000},
+    "colliders":[{"type":"mesh","positions_m":[[-0.6,0,-0.6],[0.6,0,-0.6],[0.6,0,0.6],[-0.6,0,0.6]],"triangles":[[0,3,2],[0,2,1]]}],
+    "time":{"frame_rate_hz":20,"duration_s":1},
+    "expect":{"tunnelled_fraction_end":{"at_most":0},"tunnelled_fraction_max":{"at_most":0}}})"));
+  const SolverEntry solver = prescribed(lifted([](int frame) { return -0.06 * std::min(frame, 20 - frame); }));
+  const CellRecord r = run(scene, solver, folder);
+  const std::vector<double>&tunnelled = series(r, "tunnelled_fraction"), &length = series(r, "contact_length_m");
+  EXPECT_NEAR(tunnelled[10], 0.5, 1e-12);
+  EXPECT_NEAR(length[10], 1, 1e-12);
+  EXPECT_NEAR(r.summary.at("tunnelled_fraction_max"), 0.5, 1e-12);
+  EXPECT_EQ(r.summary.at("tunnelled_fraction_end"), 0) << "back the way it came";
+  EXPECT_NEAR(r.summary.at("tunnelled_depth_max_m"), 0.5, 1e-12);
+  EXPECT_TRUE(std::isnan(r.summary.at("depth_max_m"))) << "an open patch has no inside";
+  EXPECT_EQ(r.outcome.expect, "broken: tunnelled_fraction_max 0.5 > 0");
+}
+
+TEST(ContactScene, AHandPushedThroughAStillClothTunnelsAndComesBack) {
+  const ScratchFolder folder;
+  const Scene scene = load_scene("paper/hand-push");
+  const auto start = std::chrono::steady_clock::now();
+  const CellRecord r = run(scene, prescribed([](int, std::vector<double>&) {}), folder);
+  const double frame_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / scene.time.frames();
+  std::printf("  a frame against a skinned hand of %zu triangles: %.4f s\n", scene.colliders[0].mesh->triangles.size(), frame_s);
+  EXPECT_GT(r.summary.at("tunnelled_fraction_max"), 0);
+  EXPECT_EQ(r.summary.at("tunnelled_fraction_end"), 0);
+  EXPECT_GT(r.summary.at("contact_length_max_m"), 0.1) << "the cloth is round the arm";
+  EXPECT_GT(r.summary.at("depth_max_m"), 0.005) << "a hand is that thick";
+  EXPECT_LT(r.summary.at("depth_max_m"), 0.05);
+  EXPECT_EQ(r.header.environment.at("assets"), "procedural");
+}
+
+// Every scene's expectations must be about something its metrics measure: "has no value" would break them for all.
+TEST(ContactScene, NoSceneExpectsWhatItDoesNotMeasure) {
+  for (const auto& file : std::filesystem::recursive_directory_iterator(scenario_root())) {
+    const std::string folder_name = file.path().parent_path().filename().string();
+    if (file.path().extension() != ".json" || (folder_name != "paper" && folder_name != "contact")) continue;
+    const ScratchFolder folder;
+    const Scene scene = load_scene(file.path().string(), {"cloth.grid=[9,9]"});
+    const CellRecord r = run(scene, prescribed([](int, std::vector<double>&) {}), folder);
+    EXPECT_EQ(r.outcome.expect.find("no value"), std::string::npos) << scene.name << ": " << r.outcome.expect;
+    EXPECT_NE(r.outcome.expect, "not measured") << scene.name;
+  }
+}
+
+}  // namespace
+}  // namespace clothbench

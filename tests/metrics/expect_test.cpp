@@ -1,0 +1,96 @@
+#include "runner/expect.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "clothbench/error.hpp"
+#include "clothbench/solver.hpp"
+#include "runner/cell.hpp"
+#include "scenario/json_text.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+Scene scene_expecting(const std::string& expect) {
+  return load_scene("paper/gravity", {"cloth.grid=[3,3]", "time.duration_s=1", "expect=" + expect});
+}
+
+AccuracyPass whole_pass(const Scene& scene) {
+  AccuracyPass pass;
+  for (int f = 0; f <= scene.time.frames(); ++f) pass.time_s.push_back(f * scene.time.dt());
+  return pass;
+}
+
+Verdict verdict(const std::string& expect, const std::map<std::string, double>& summary, const std::string& status = "ok") {
+  const Scene scene = scene_expecting(expect);
+  Outcome outcome;
+  outcome.status = status;
+  return judge(scene, outcome, whole_pass(scene), summary);
+}
+
+TEST(Expect, BoundsIncludeTheirEnds) {
+  const char* bounds = R"({"stretch_max":{"at_least":0.1,"at_most":0.2}})";
+  for (double v : {0.1, 0.15, 0.2}) EXPECT_EQ(verdict(bounds, {{"stretch_max", v}}).text, "kept") << v;
+  EXPECT_EQ(verdict(bounds, {{"stretch_max", 0.21}}).text, "broken: stretch_max 0.21 > 0.2");
+  EXPECT_EQ(verdict(bounds, {{"stretch_max", 0.09}}).text, "broken: stretch_max 0.09 < 0.1");
+}
+
+TEST(Expect, NoValueBreaks) {
+  const char* bounds = R"({"stretch_max":{"at_most":0.2}})";
+  for (const auto& summary : {std::map<std::string, double>{}, {{"stretch_max", kMissing}}, {{"stretch_max", -INFINITY}}}) {
+    const Verdict v = verdict(bounds, summary);
+    EXPECT_EQ(v.text, "broken: stretch_max has no value");
+    EXPECT_EQ(v.scalars.at("expect.stretch_max"), 0);
+  }
+}
+
+TEST(Expect, OutcomesAreCompared) {
+  EXPECT_EQ(verdict(R"({"outcome":"ok"})", {}, "timed_out").text, "broken: outcome timed_out, expected ok");
+  EXPECT_EQ(verdict(R"({"outcome":"not_finite"})", {}, "not_finite").text, "kept") << "a scene may be meant to break solvers";
+  EXPECT_EQ(verdict(R"({"outcome":"ok"})", {}, "unsupported").text, "not measured");
+  EXPECT_EQ(verdict("{}", {}).text, "");
+}
+
+TEST(Expect, AFailureBeforeTheEndIsMeasuredAShortPassIsNot) {
+  const Scene scene = scene_expecting(R"({"outcome":"ok"})");
+  AccuracyPass pass;
+  pass.time_s = {0, 1 / 72.0};
+  Outcome outcome;
+  EXPECT_EQ(judge(scene, outcome, pass, {}).text, "not measured");
+  outcome.status = "diverged";
+  EXPECT_EQ(judge(scene, outcome, pass, {}).text, "broken: outcome diverged, expected ok");
+}
+
+TEST(Expect, MistakesAreRefusedWithTheNearestName) {
+  const auto message = [](const std::string& expect) {
+    try {
+      scene_expecting(expect);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(message(R"({"tunneled_fraction_max":{"at_most":0}})").find("nearest known: tunnelled_fraction_max"), std::string::npos);
+  EXPECT_NE(message(R"({"stretch_max":{"atmost":0}})").find("nearest known: at_most"), std::string::npos);
+  EXPECT_NE(message(R"({"stretch_max":{}})").find("/expect/stretch_max"), std::string::npos);
+  EXPECT_NE(message(R"({"stretch_max":{"at_most":1,"at_least":2}})").find("at_least is above at_most"), std::string::npos);
+  EXPECT_NE(message(R"({"outcome":"fine"})").find("/expect/outcome"), std::string::npos);
+  EXPECT_EQ(message(R"({"stretch_max":{"at_most":1}})"), "");
+}
+
+// The schema's names are those of the summary: an expectation that can never have a value is no use.
+TEST(Expect, EveryNameTheSchemaKnowsIsInTheSummary) {
+  const Scene scene = scene_expecting("{}");
+  const SolverEntry& entry = find_solver("ballistic");
+  const auto summary = summarise({&scene, &entry, nlohmann::json::object()}, {}, {});
+  const nlohmann::json schema = nlohmann::json::parse(kSceneSchema);
+  for (const auto& [name, unused] : schema["properties"]["expect"]["properties"].items()) {
+    if (name == "outcome") continue;
+    EXPECT_TRUE(summary.contains(name)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace clothbench
