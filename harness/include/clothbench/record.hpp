@@ -65,6 +65,7 @@ struct CellRecord {
   AccuracyPass accuracy;
   Outcome outcome;
   std::map<std::string, double> summary;  ///< every scalar a table prints; NaN = missing
+  std::string file = {};                  ///< where a report read it; empty: nowhere
 };
 
 }  // namespace clothbench
