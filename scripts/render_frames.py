@@ -20,7 +20,7 @@ FRONT, BACK = np.array([0.83, 0.48, 0.20]), np.array([0.25, 0.50, 0.76])
 COLLIDER, BACKGROUND = np.array([0.74, 0.72, 0.68]), np.array([1.0, 1.0, 1.0])
 LIGHT = np.array([-0.35, 0.75, 0.55])  # in the camera's frame: from the upper left, behind the viewer
 WIDTH, HEIGHT, SAMPLES = 420, 360, 2   # of a picture; samples a pixel and axis
-NEAR_M = 0.35  # colliders further from the cloth's place than this are left out: a room has more walls than its desk
+NEAR_M = 0.25  # colliders further from the cloth's place than this are left out: a room has more walls than its desk
 
 
 class Mesh:
@@ -187,7 +187,7 @@ def draw(image, depth, mesh, view, middle, scale):
         target[hit] = z[hit]
         n = unit(w[hit] @ smooth[t]) if mesh.grid else unit(normal)[None]
         facing = 1.0 if normal[2] > 0 else -1.0
-        bright = 0.42 + 0.58 * np.clip(facing * (n @ light), 0, 1)
+        bright = 0.58 + 0.42 * np.clip(facing * (n @ light), 0, 1)
         colour = COLLIDER if mesh.grid is None else FRONT if facing > 0 else BACK
         rgb = colour * bright[:, None] * np.ones((len(z[hit]), 1))
         if mesh.grid:
@@ -207,13 +207,20 @@ def on_line(weights, triangle, grid, every=4, half_width=0.12):
 
 
 def fit(all_meshes, view, run):
-    """Middle and pixels a metre that show everything near the place where the cloth began."""
-    points = np.concatenate([m.points[np.unique(m.triangles)] if m.grid is None else m.points for meshes in all_meshes for m in meshes])
-    points = points[np.isfinite(points).all(1)]
-    low, high = run.low - [NEAR_M, 1.6 * run.reach + NEAR_M, NEAR_M], run.high + NEAR_M
-    seen = np.clip(points, low, high) @ view.T
+    """Middle and pixels a metre that show the colliders, where the cloth began, and where it is if not far from both."""
+    solid = [m.points[np.unique(m.triangles)] for meshes in all_meshes for m in meshes if m.grid is None]
+    place = np.concatenate([[run.low, run.high], *solid])
+    margin = 0.3 * run.reach
+    cloth = np.concatenate([m.points for meshes in all_meshes for m in meshes if m.grid is not None] + [place])
+    points = np.clip(cloth[np.isfinite(cloth).all(1)], place.min(0) - margin, place.max(0) + margin)
+    seen = np.concatenate([points, place]) @ view.T
     least, most = seen.min(0)[:2], seen.max(0)[:2]
     return (least + most) / 2, 0.94 * SAMPLES * min(WIDTH / (most[0] - least[0]), HEIGHT / (most[1] - least[1]))
+
+
+def in_picture(mesh, view, middle, scale):
+    away = np.abs((mesh.points @ view.T)[:, :2] - middle) * scale
+    return bool(((away[:, 0] < WIDTH * SAMPLES / 2) & (away[:, 1] < HEIGHT * SAMPLES / 2)).any())
 
 
 def picture(meshes, view, middle, scale):
@@ -241,7 +248,8 @@ def main():
     meshes = [[r.meshes(r.frame(t)) for t in times] for r in runs]
     middle, scale = fit([m for row in meshes for m in row], view, runs[0])
     fig, panels = plt.subplots(len(runs), len(times), squeeze=False, layout="constrained",
-                               figsize=(2.1 * len(times) + 0.3, 2.1 * HEIGHT / WIDTH * len(runs) + 0.3))
+                               figsize=(2.1 * len(times) + 0.25, 2.1 * HEIGHT / WIDTH * len(runs) + 0.25))
+    fig.set_constrained_layout_pads(w_pad=0.01, h_pad=0.03, wspace=0.01, hspace=0.01)
     for row, run in enumerate(runs):
         for column, t in enumerate(times):
             ax = panels[row][column]
@@ -252,8 +260,10 @@ def main():
                 side.set_visible(False)
             if row == 0:
                 ax.set_title(f"{t:g} s", fontsize=8)
-            if t > run.time_s[-1] + 1e-9:
-                ax.text(0.5, 0.02, f"ended at {run.time_s[-1]:.3g} s", transform=ax.transAxes, ha="center", fontsize=7, color="0.3")
+            notes = [f"ended at {run.time_s[-1]:.3g} s"] if t > run.time_s[-1] + 1e-9 else []
+            if not in_picture(meshes[row][column][0], view, middle, scale):
+                notes.append("cloth out of the picture")
+            ax.text(0.5, 0.02, ", ".join(notes), transform=ax.transAxes, ha="center", fontsize=7, color="0.3")
         panels[row][0].set_ylabel(labels[row], fontsize=9)
     fig.savefig(pathlib.Path(a.out), dpi=200, metadata={"Software": None} if a.out.endswith(".png") else None)
 

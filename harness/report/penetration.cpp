@@ -8,6 +8,8 @@
 #include <set>
 #include <tuple>
 
+#include "clothbench/feature.hpp"
+
 namespace clothbench {
 namespace {
 
@@ -117,6 +119,16 @@ Table by_scene(const ContactSetUp& s, const std::string& title, const std::strin
   return t;
 }
 
+/// True if the solver declares to ignore all contact and grips: then a kept expectation is luck.
+bool touches_nothing(const CellRecord& c) {
+  const json features = c.header.environment.is_object() ? c.header.environment.value("solver_features", json()) : json();
+  if (!features.is_object() || !filled(features, "ignores")) return false;
+  const json& ignored = features["ignores"];
+  bool all = std::find(ignored.begin(), ignored.end(), name_of(Feature::MovingPins)) != ignored.end();
+  kColliderFeatures.for_each([&](Feature f) { all = all && std::find(ignored.begin(), ignored.end(), name_of(f)) != ignored.end(); });
+  return all;
+}
+
 /// The bound a scene puts on a summary value, as text: "at most 0".
 std::string bound(const json& scenario, const std::string& name) {
   const json e = scenario.is_object() ? scenario.value("expect", json::object()).value(name, json()) : json();
@@ -168,6 +180,7 @@ std::string verdict(const CellRecord& c) {
     if (v == 0) return "broken";
     measured = measured && v == 1;
   }
+  if (any && measured && touches_nothing(c)) return "ignored";
   return !any ? "–" : measured ? "kept" : "not measured";
 }
 
@@ -179,7 +192,8 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
         if (std::find(solvers.begin(), solvers.end(), r.series.label()) == solvers.end()) solvers.push_back(r.series.label());
   std::sort(solvers.begin(), solvers.end());
   Table t{"Penetration: does each solver keep what the scene expects?",
-          "Kept: every bound of the scene's `expect`, measured over the whole scene. – : not run, or nothing to expect. In "
+          "Kept: every bound of the scene's `expect`, measured over the whole scene. Ignored: kept by a solver that "
+          "touches nothing. – : not run, or nothing to expect. In "
           "the tables below, tunnelled: share of the cloth on the other side of a mesh than it began. Contour: length of the "
           "curves in which cloth and colliders cross; settled: the most in the last 0.5 s. Depth: how far the cloth is inside "
           "a collider, margin not counted. Strain: of the structural edges. Time: median over the timed frames.",

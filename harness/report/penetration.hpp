@@ -35,8 +35,8 @@ struct ContactSetUp {
 /// Sorts the cells with contact; the others are left out. `cells` must outlive the answer.
 std::vector<ContactSetUp> set_ups(const std::vector<CellRecord>& cells);
 
-/// What came of the scene's `expect`: "kept", "broken", "not measured", "–" if it expects nothing measurable; how the
-/// cell ended if it did not end well.
+/// What came of the scene's `expect`: "kept", "broken", "not measured", "–" if it expects nothing measurable, "ignored"
+/// if it was kept by a solver that ignores all contact; how the cell ended if it did not end well.
 std::string verdict(const CellRecord&);
 
 /// Rows: scenes; columns: solvers; entries: `verdict`.
