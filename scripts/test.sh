@@ -11,10 +11,25 @@ build() {
 }
 tests() { ctest --test-dir build/release --output-on-failure -j "${JOBS:-2}" "${selection[@]}"; }
 
+# What penetrates what, against the committed baseline; gates nothing that depends on the machine's speed.
+penetration() {
+  local baseline=results/baselines/penetration.json out=build/penetration-quick
+  rm -rf "$out"
+  build/release/clothbench study penetration --quick --out "$out" >"$out.txt" || { tail -20 "$out.txt"; return 1; }
+  tail -1 "$out.txt"
+  if [ ! -f "$baseline" ]; then
+    echo "penetration: no $baseline to check against"
+    return 0
+  fi
+  build/release/clothbench check "$out" --baseline "$baseline" --junit build/penetration-quick.xml
+}
+
 selection=(-LE slow)
 [ "${1:-}" = --full ] && selection=()
 mkdir -p build
 stage set-up 4 scripts/bootstrap.sh --tests
+stage assets 8 scripts/fetch-assets.sh
 stage build 8 build
 stage tests 8 tests
+stage contact 3 penetration
 print_budget

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Puts the tables of a committed reference report into README.md, between its two table3 markers.
+"""Puts tables of a committed reference report into README.md, between the markers of each part the report has.
 
 usage: update_readme.py results/reference/<folder>
 """
@@ -7,7 +7,13 @@ import pathlib
 import re
 import sys
 
-WANTED = ("Table 3", "Frames per second, uncapped", "GPU time", "Free-fall error")
+# Part of the README: titles of the tables it shows, figure below them (file, words), table it must have.
+PARTS = {
+    "table3": (("Table 3", "Frames per second, uncapped", "GPU time", "Free-fall error"), ("fig4.png", "Frames per second by resolution"), "Table 3"),
+    "penetration": (("Penetration:", "Cloth on meshes", "A hand", "Hands hold", "Cloth on plain shapes", "SubMesh"),
+                    ("penetration-rooms.png", "Penetration over time"), "Penetration:"),
+    "table4": (("Table 4",), None, "Penetration:"),
+}
 
 
 def main():
@@ -16,16 +22,26 @@ def main():
     folder = pathlib.Path(sys.argv[1])
     report = (folder / "report.md").read_text(encoding="utf-8")
     head, *tables = re.split(r"^### ", report, flags=re.M)
-    device = next(line for line in head.splitlines() if line.startswith("GPU "))
-    chosen = ["### " + t.strip() for t in tables if t.startswith(WANTED)]
-    text = "\n\n".join([f"Measured: {device} ([whole report]({folder.as_posix()}/report.md)).", *chosen,
-                        f"![Frames per second by resolution]({folder.as_posix()}/fig4.png)"])
+    device = next((line for line in head.splitlines() if line.startswith("GPU ")), "no GPU")
     readme = pathlib.Path(__file__).resolve().parent.parent / "README.md"
-    old = readme.read_text(encoding="utf-8")
-    new, count = re.subn(r"(<!-- table3 begin -->\n).*?(<!-- table3 end -->)", lambda m: m[1] + text + "\n" + m[2], old, flags=re.S)
-    if count != 1:
-        sys.exit("README.md: expected one pair of table3 markers")
-    readme.write_text(new, encoding="utf-8")
+    text = readme.read_text(encoding="utf-8")
+    done = []
+    for part, (wanted, figure, needed) in PARTS.items():
+        if not any(t.startswith(needed) for t in tables):
+            continue
+        lines = [f"Measured: {device} ([whole report]({folder.as_posix()}/report.md))."]
+        lines += ["### " + t.strip() for t in tables if t.startswith(wanted)]
+        if figure and (folder / figure[0]).exists():
+            lines.append(f"![{figure[1]}]({folder.as_posix()}/{figure[0]})")
+        new = "\n\n".join(lines)
+        text, count = re.subn(rf"(<!-- {part} begin -->\n).*?(<!-- {part} end -->)", lambda m: m[1] + new + "\n" + m[2], text, flags=re.S)
+        if count != 1:
+            sys.exit(f"README.md: expected one pair of {part} markers")
+        done.append(part)
+    if not done:
+        sys.exit(f"{folder}/report.md: none of the tables that the README shows")
+    readme.write_text(text, encoding="utf-8")
+    print("README.md: " + ", ".join(done))
 
 
 if __name__ == "__main__":

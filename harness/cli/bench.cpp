@@ -81,7 +81,7 @@ void add_bench(CLI::App& app, Console& console) {
     benchmark::Initialize(&argc, argv.data());
     if (argc > 1) throw Error(std::string("bench: unknown argument ") + argv[1]);
     const Study study = load_study(study_name);
-    const CellPlan plan = plan_study(study, false, {});
+    const CellPlan plan = plan_study(study);
     add_context(plan, flags);
     for (const auto& group : plan.groups)
       for (const CellSpec& c : group) {

@@ -45,6 +45,10 @@ void DeviceFlags::add_to(CLI::App& app) {
   app.add_flag("--allow-no-device", allow_no_device, "Leave GPU solvers out where there is no Vulkan device");
 }
 
+void add_require_assets(CLI::App& app, bool& required) {
+  app.add_flag("--require-assets", required, "Fail where a scene's rooms or hands would be procedural stand-ins (scripts/fetch-assets.sh gets the scans)");
+}
+
 StatusLine::StatusLine(bool enabled) : enabled_(enabled && isatty(STDERR_FILENO) != 0), start_s_(now_s()) {}
 
 StatusLine::~StatusLine() {

@@ -6,6 +6,7 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
+#include "scenario/load.hpp"
 
 namespace clothbench {
 
@@ -40,6 +41,10 @@ struct DeviceFlags {
   bool allow_no_device = false;
   void add_to(CLI::App&);
 };
+
+/// --require-assets: stand-ins for rooms and hands are an Error.
+void add_require_assets(CLI::App&, bool& required);
+inline Assets asset_policy(bool required) { return required ? Assets::Required : Assets::MayBeProcedural; }
 
 /// A line on the terminal that is rewritten in place; silent in a pipe.
 class StatusLine {

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "assets/assets.hpp"
 #include "cli/command.hpp"
 #include "metrics/metric.hpp"
+#include "report/features.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
 
@@ -38,7 +40,7 @@ nlohmann::json list_files(const char* folder) {
 
 nlohmann::json list_scenarios() {
   nlohmann::json rows = nlohmann::json::array();
-  for (const char* folder : {"paper", "validation", "stability"})
+  for (const char* folder : {"paper", "contact", "validation", "stability"})
     for (auto& row : list_files(folder)) {
       row["why"] = load_scene(row["name"].get<std::string>()).why;
       rows.push_back(row);
@@ -63,6 +65,17 @@ nlohmann::json list_metrics() {
   return rows;
 }
 
+nlohmann::json list_assets() {
+  const assets::AssetSource source = assets::locate_assets(false);
+  return {{{"name", source.kind()}, {"summary", source.reason}, {"folder", source.root.string()}}};
+}
+
+std::vector<SolverFeatures> features() {
+  std::vector<SolverFeatures> out;
+  for (const SolverEntry& e : solvers()) out.push_back(declared_features(e.info));
+  return out;
+}
+
 void print_rows(const nlohmann::json& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto& r = rows[i];
@@ -80,16 +93,19 @@ void print_rows(const nlohmann::json& rows) {
 
 void add_list(CLI::App& app, Console& console) {
   static std::string what = "solvers";
-  CLI::App* cmd = app.add_subcommand("list", "What there is: solvers, scenarios, studies, devices or metrics");
-  cmd->add_option("what", what, "solvers | scenarios | studies | devices | metrics")
-      ->check(CLI::IsMember({"solvers", "scenarios", "studies", "devices", "metrics"}));
+  CLI::App* cmd = app.add_subcommand("list", "What there is: solvers, features, scenarios, studies, devices, metrics or assets");
+  cmd->add_option("what", what, "solvers | features | scenarios | studies | devices | metrics | assets")
+      ->check(CLI::IsMember({"solvers", "features", "scenarios", "studies", "devices", "metrics", "assets"}));
   cmd->callback([&console] {
     const nlohmann::json rows = what == "solvers"     ? list_solvers()
                                 : what == "scenarios" ? list_scenarios()
                                 : what == "studies"   ? list_files("studies")
                                 : what == "devices"   ? list_devices()
+                                : what == "features"  ? feature_json(features(), false)
+                                : what == "assets"    ? list_assets()
                                                       : list_metrics();
     if (console.json) fmt::print("{}\n", rows.dump(2));
+    else if (what == "features") fmt::print("{}", feature_table(features(), false).console());
     else if (rows.empty()) fmt::print("no {}\n", what);
     else print_rows(rows);
   });

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "cli/command.hpp"
 #include "cli/run_common.hpp"
@@ -14,40 +13,38 @@ struct Arguments {
   std::string study;
   std::vector<std::string> set, only;
   int trials = 0;
-  bool full = false, quick = false;
+  bool full = false, short_trials = false, quick = false, require_assets = false;
   RunFlags run;
 };
 
-}  // namespace
-
-namespace {
-
-/// The study's solvers, or those of them that `only` names; one that the study does not know joins with its defaults.
-std::vector<StudySolver> chosen(const Study& study, const std::vector<std::string>& only) {
-  if (only.empty()) return study.solvers;
-  std::vector<StudySolver> out;
-  for (const StudySolver& s : study.solvers)
-    if (std::find(only.begin(), only.end(), s.solver) != only.end()) out.push_back(s);
-  for (const std::string& name : std::set<std::string>(only.begin(), only.end()))
-    if (std::none_of(out.begin(), out.end(), [&](const StudySolver& s) { return s.solver == name; }))
-      out.push_back({name, "default", nlohmann::json::object()});
-  return out;
+/// Null if this build does not have it.
+const SolverEntry* built_in(const std::string& name) {
+  for (const SolverEntry& e : solvers())
+    if (e.info.name == name) return &e;
+  return nullptr;
 }
 
 }  // namespace
 
-CellPlan plan_study(const Study& study, bool full, const std::vector<std::string>& only) {
-  const StudyRules& rules = full ? study.full_rules : study.short_rules;
+CellPlan plan_study(const Study& study) {
+  const StudyRules& rules = study.rules;
   CellPlan plan;
-  plan.protocol = full ? "full" : "short";
+  plan.protocol = study.length == StudyLength::Full ? "full" : study.length == StudyLength::Quick ? "quick" : "short";
   plan.rules = {study.trials, rules.frames, rules.max_wall_s, rules.min_frames, rules.warmup_s, study.drop_frames, study.accuracy_duration_s};
-  for (const std::string& name : only) find_solver(name);
-  const std::vector<StudySolver> solvers = chosen(study, only);
+  std::vector<const SolverEntry*> entries;
+  for (const StudySolver& s : study.solvers) entries.push_back(s.joined ? &find_solver(s.solver) : built_in(s.solver));
   for (const Study::Item& item : study.scenes) {
     if (plan.groups.size() <= static_cast<std::size_t>(item.group)) plan.groups.resize(static_cast<std::size_t>(item.group) + 1);
-    for (const StudySolver& s : solvers) {
-      const SolverEntry& entry = find_solver(s.solver);
-      plan.groups[static_cast<std::size_t>(item.group)].push_back({&item.scene, &entry, complete_settings(entry.info, s.settings), s.label});
+    for (const std::size_t k : item.solvers) {
+      const StudySolver& s = study.solvers[k];
+      if (entries[k] == nullptr) {
+        auto absent = std::make_shared<SolverEntry>();
+        absent->info.name = s.solver;
+        entries[k] = absent.get();
+        plan.not_built.push_back(std::move(absent));
+      }
+      const nlohmann::json settings = entries[k]->make ? complete_settings(entries[k]->info, s.settings) : s.settings;
+      plan.groups[static_cast<std::size_t>(item.group)].push_back({&item.scene, entries[k], settings, s.label});
     }
   }
   return plan;
@@ -57,21 +54,24 @@ void add_study(CLI::App& app, Console& console) {
   static Arguments a;
   CLI::App* cmd = app.add_subcommand("study", "Run every cell of a study");
   cmd->add_option("study", a.study, "Study file or name, such as table3")->required();
-  cmd->add_flag("--quick,--short", a.quick, "The short protocol (the default): sized for a software device on 2 cores");
-  cmd->add_flag("--full", a.full, "The long protocol")->excludes("--quick");
+  CLI::Option* quick = cmd->add_flag("--quick", a.quick, "Fewer scenes and solvers, as the study says: for a software device on 2 cores");
+  CLI::Option* brief = cmd->add_flag("--short", a.short_trials, "Every cell with short trials (the default)")->excludes(quick);
+  cmd->add_flag("--full", a.full, "Every cell with long trials")->excludes(quick)->excludes(brief);
   cmd->add_option("--trials", a.trials, "Trials a cell, instead of the study's")->check(CLI::Range(1, 1000));
-  cmd->add_option("--solver", a.only, "Only these solvers; one that the study does not name runs with its default settings");
+  cmd->add_option("--solver", a.only, "Only these solvers; one that the study does not name joins with its default settings");
   cmd->add_option("--set", a.set, "Override a scene key in every cell: cloth.size_m=[0.5,0.5]");
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
   cmd->add_flag("--resume", a.run.resume, "Go on with the folder of an interrupted study");
+  add_require_assets(*cmd, a.require_assets);
   a.run.device.add_to(*cmd);
   cmd->footer("Example: clothbench study table3 --out results/runs/mine");
   cmd->callback([&console] {
     const Overrides overrides = split_overrides(a.set);
     if (!overrides.solver.empty()) throw Error("--set solver.…: a study's solver settings stand in its file");
     if (a.run.resume && a.run.out.empty()) throw Error("--resume: say which folder with --out");
-    const Study study = load_study(a.study, overrides.scene);
-    CellPlan plan = plan_study(study, a.full, a.only);
+    const StudyLength length = a.full ? StudyLength::Full : a.quick ? StudyLength::Quick : StudyLength::Short;
+    const Study study = load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only});
+    CellPlan plan = plan_study(study);
     if (a.trials > 0) plan.rules.trials = a.trials;
     StudyManifest manifest;
     manifest.study = study.name;

@@ -4,8 +4,8 @@
 
 namespace clothbench {
 
-/// A study's cells with the short or the full protocol, of the solvers in `only` (the study's if empty; one
-/// that it does not name has its default settings). The study must outlive the plan. Throws Error for a solver or setting this build does not have.
-CellPlan plan_study(const Study&, bool full, const std::vector<std::string>& only);
+/// A study's cells. The study must outlive the plan. Solvers that the study names and this build does not have become
+/// `unsupported` cells; throws Error for one that neither names, and for an unknown setting.
+CellPlan plan_study(const Study&);
 
 }  // namespace clothbench

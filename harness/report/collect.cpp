@@ -20,14 +20,20 @@ CellRecord missing_cell(const std::string& name, bool started) {
   return c;
 }
 
+CellRecord read(const fs::path& path) {
+  CellRecord c = read_cell_summary(path);
+  c.file = path.string();
+  return c;
+}
+
 void collect_folder(const fs::path& dir, std::vector<CellRecord>& cells) {
   const std::size_t first = cells.size();
   for (const std::string& name : read_manifest(dir).cells) {
     const fs::path file = dir / (name + ".h5"), part = dir / (name + ".part");
     if (fs::exists(file))
-      cells.push_back(read_cell_summary(file));
+      cells.push_back(read(file));
     else if (fs::exists(part / "outcome.raw"))
-      cells.push_back(read_cell_summary(part));
+      cells.push_back(read(part));
     else
       cells.push_back(missing_cell(name, fs::exists(part)));
   }
@@ -51,7 +57,7 @@ std::vector<CellRecord> collect(const std::vector<fs::path>& runs) {
     if (fs::is_directory(run) && last.extension() != ".part")
       collect_folder(run, cells);
     else
-      cells.push_back(read_cell_summary(run));
+      cells.push_back(read(run));
   }
   return cells;
 }

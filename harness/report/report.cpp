@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 
 #include "clothbench/error.hpp"
+#include "report/features.hpp"
 #include "report/paths.hpp"
+#include "report/penetration.hpp"
+#include "report/room_pair.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -22,7 +26,6 @@ const std::vector<std::string> kBandwidthNames = {"read_B_per_frame",
                                                   "bandwidth_write_mean_B_per_s",
                                                   "bandwidth_window_s"};
 const std::vector<std::string> kMemoryNames = {"device_memory_B", "dispatches", "load_s"};
-constexpr const char* kFigures[] = {"fig4.svg", "fig4.png", "fig5.svg", "fig5.png"};
 
 /// A word that the shell takes as it stands.
 std::string quoted(const fs::path& path) {
@@ -31,26 +34,38 @@ std::string quoted(const fs::path& path) {
   return out + "'";
 }
 
-/// Figures from cells.csv. Returns what went wrong, or nothing; a missing matplotlib is told apart by `has_python`.
-std::string draw_figures(const fs::path& out, bool& has_python) {
-  for (const char* file : kFigures) fs::remove(out / file);  // an older run's figures are not this report's
-  const fs::path script = fs::path(kScriptsRoot) / "plot_report.py";
-  for (const char* python : {"/usr/bin/python3", "python3"}) {
-    if (std::system((std::string(python) + " -c 'import matplotlib' >/dev/null 2>&1").c_str()) != 0) continue;
-    has_python = true;
-    const std::string command = fmt::format("{} {} {} {}", python, quoted(script), quoted(out / "cells.csv"),
-                                            quoted(fs::path(kResultsRoot) / "paper-table3.json"));
-    return std::system(command.c_str()) == 0 ? "" : "Figures were left out: this command failed: " + command;
-  }
-  has_python = false;
-  return "Figures were left out: no Python with matplotlib (Debian: python3-matplotlib).";
+/// A Python with matplotlib; empty if there is none.
+std::string find_python() {
+  for (const char* python : {"/usr/bin/python3", "python3"})
+    if (std::system((std::string(python) + " -c 'import matplotlib' >/dev/null 2>&1").c_str()) == 0) return python;
+  return "";
+}
+
+/// Figures of what the cells show. Returns what went wrong, or nothing; a missing matplotlib is told apart by
+/// `has_python`.
+std::string draw_figures(const fs::path& out, bool rates, bool penetration, bool& has_python) {
+  for (const auto& file : fs::directory_iterator(out))  // an older run's figures are not this report's
+    if (file.path().extension() == ".svg" || file.path().extension() == ".png") {
+      const std::string stem = file.path().stem().string();
+      if (stem == "fig4" || stem == "fig5" || stem.starts_with("penetration-")) fs::remove(file.path());
+    }
+  const std::string python = find_python();
+  has_python = !python.empty();
+  if (!has_python) return "Figures were left out: no Python with matplotlib (Debian: python3-matplotlib).";
+  std::vector<std::string> commands;
+  const auto add = [&](const char* script, const fs::path& a, const fs::path& b) {
+    commands.push_back(fmt::format("{} {} {} {}", python, quoted(fs::path(kScriptsRoot) / script), quoted(a), b.empty() ? "" : quoted(b)));
+  };
+  if (rates) add("plot_report.py", out / "cells.csv", fs::path(kResultsRoot) / "paper-table3.json");
+  if (penetration) add("plot_penetration.py", out / "penetration-series.csv", {});
+  for (const std::string& command : commands)
+    if (std::system(command.c_str()) != 0) return "Figures were left out: this command failed: " + command;
+  return "";
 }
 
 std::string figures_markdown(const std::vector<CellRecord>& cells) {
   const std::string windows = window_note(cells);
-  return fmt::format(R"(### Figures
-
-![Frames per second by resolution](fig4.svg)
+  return fmt::format(R"(![Frames per second by resolution](fig4.svg)
 
 Fig. 4: frames per second by resolution, uncapped; bars: half the range of the trials; a cross on the lower edge: a cell
 that failed; grey: published (Quest 3, capped at 72 Hz, rendering included). Ballistic, the harness without a cloth
@@ -63,6 +78,38 @@ modelled. The paper's values are published as a graph alone.
 
 )",
                      windows.empty() ? "" : " over " + windows);
+}
+
+std::string penetration_figures_markdown(const std::vector<ContactSetUp>& ups) {
+  std::string out;
+  for (const ContactSetUp& u : ups)
+    out += fmt::format("![{}: penetration over time](penetration-{}.svg)\n\n{}, over time. A cross: where a run failed. Ballistic, which nothing stops, is left out.\n\n", u.title, u.kind, u.title);
+  return out;
+}
+
+/// Cells with contact, and the others; copies.
+std::pair<std::vector<CellRecord>, std::vector<CellRecord>> by_contact(const std::vector<CellRecord>& cells) {
+  std::pair<std::vector<CellRecord>, std::vector<CellRecord>> out;
+  for (const CellRecord& c : cells) (has_contact(c) ? out.first : out.second).push_back(c);
+  return out;
+}
+
+/// Tables of the cells with contact, in the order they are printed; none if there are none. Memory and bytes of each
+/// set-up only in files.
+std::vector<Table> penetration_tables(const std::vector<ContactSetUp>& ups, const std::vector<RoomPair>& pairs, bool with_costs) {
+  if (ups.empty()) return {};
+  std::vector<Table> out = {verdict_table(ups)};
+  for (const ContactSetUp& u : ups) {
+    out.push_back(contact_table(u));
+    if (with_costs) out.push_back(cost_table(u));
+  }
+  if (const Table broken = broken_table(ups); broken.rows.size() > 1) out.push_back(broken);
+  if (!pairs.empty()) out.push_back(room_table(pairs));
+  return out;
+}
+
+bool any_known(const std::vector<SolverFeatures>& solvers) {
+  return std::any_of(solvers.begin(), solvers.end(), [](const SolverFeatures& s) { return s.known; });
 }
 
 }  // namespace
@@ -88,10 +135,12 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
   write("bandwidth.csv", summary_csv(cells, kBandwidthNames));
   write("memory.csv", summary_csv(cells, kMemoryNames));
 
+  const auto [contact, rest] = by_contact(cells);
+  const std::vector<ContactSetUp> ups = set_ups(contact);
   const std::string head = headline(cells, Format::Markdown);
   std::string tables;
   bool wrote_table3 = false;
-  for (const Family& family : families(cells)) {
+  for (const Family& family : families(rest)) {
     std::string text;
     for (const Table& t : fps_tables(family, published)) text += t.markdown() + "\n";
     tables += text;
@@ -101,14 +150,28 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     write("table3.json", table3_json(family, published).dump(1) + "\n");
     wrote_table3 = true;
   }
+  if (!ups.empty()) {
+    const std::vector<RoomPair> pairs = room_pairs(contact);
+    std::string text;
+    for (const Table& t : penetration_tables(ups, pairs, true)) text += t.markdown() + "\n";
+    tables += text;
+    write("penetration.md", "# Penetration\n\n" + head + "\n" + text);
+    write("penetration.csv", summary_csv(contact, contact_names()));
+    write("penetration.json", nlohmann::json{{"cells", penetration_json(ups)}, {"rooms", room_json(pairs)}}.dump(1) + "\n");
+    write("penetration-series.csv", series_csv(ups));
+  }
+  if (const auto solvers = solver_features(cells); any_known(solvers)) {
+    tables += feature_table(solvers, true).markdown() + "\n";
+    write("features.json", feature_json(solvers, true).dump(1) + "\n");
+  }
   if (const Table failed = failed_table(cells); failed.rows.size() > 1) tables += failed.markdown() + "\n";
 
   if (const Table broken = expect_table(cells); broken.rows.size() > 1) tables += broken.markdown() + "\n";
 
   bool has_python = false;
-  const std::string no_figures = draw_figures(options.out, has_python);
-  write("report.md", "# clothbench report\n\n" + head + "\n" + tables +
-                         (no_figures.empty() ? figures_markdown(cells) : no_figures + "\n\n") +
+  const std::string no_figures = draw_figures(options.out, !rest.empty(), !ups.empty(), has_python);
+  const std::string figures = "### Figures\n\n" + (rest.empty() ? "" : figures_markdown(rest)) + penetration_figures_markdown(ups);
+  write("report.md", "# clothbench report\n\n" + head + "\n" + tables + (no_figures.empty() ? figures : no_figures + "\n\n") +
                          "`cells.csv` and `cells.json` hold every summary value of every cell in full precision.\n");
   if (no_figures.empty()) return;
   if (has_python) throw Error(no_figures, ExitCode::CheckFailed);
@@ -119,8 +182,12 @@ void print_console_report(const std::vector<fs::path>& runs) {
   const std::vector<CellRecord> cells = collect(runs);
   const nlohmann::json published = published_table3();
   fmt::print("{}", headline(cells, Format::Console));
-  for (const Family& family : families(cells))
+  const auto [contact, rest] = by_contact(cells);
+  for (const Family& family : families(rest))
     for (const Table& t : fps_tables(family, published)) fmt::print("{}", t.console());
+  for (const Table& t : penetration_tables(set_ups(contact), room_pairs(contact), false)) fmt::print("{}", t.console());
+  if (const auto solvers = solver_features(cells); !contact.empty() && any_known(solvers))
+    fmt::print("{}", feature_table(solvers, true).console());
   const Table failed = failed_table(cells);
   if (failed.rows.size() > 1) fmt::print("\n{}\n", failed.title);
   for (std::size_t r = 1; r < failed.rows.size(); ++r) {

@@ -1,6 +1,9 @@
 #include "report/table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace clothbench {
@@ -22,6 +25,17 @@ std::string markdown_cell(const std::string& text) {
 }
 
 }  // namespace
+
+std::string significant(double v, int digits) {
+  if (!std::isfinite(v)) return "–";
+  const int before = v == 0 ? 1 : static_cast<int>(std::floor(std::log10(std::abs(v)))) + 1;
+  return fmt::format("{:.{}f}", v, std::max(0, digits - before));
+}
+
+std::string paired(double a, double b, const std::string& between, int digits) {
+  if (!std::isfinite(a) && !std::isfinite(b)) return "–";
+  return significant(a, digits) + between + significant(b, digits);
+}
 
 std::size_t display_width(const std::string& s) {
   // Bytes that do not continue a UTF-8 sequence.

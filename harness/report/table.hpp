@@ -18,6 +18,12 @@ struct Table {
   std::string console() const;
 };
 
+/// `digits` significant digits without an exponent; "–" for a missing value.
+std::string significant(double v, int digits);
+
+/// Two of them with something between; "–" if both are missing.
+std::string paired(double a, double b, const std::string& between, int digits);
+
 /// Characters on screen of UTF-8 text without combining or double-width characters.
 std::size_t display_width(const std::string&);
 

@@ -8,13 +8,6 @@
 namespace clothbench {
 namespace {
 
-/// `digits` significant digits without an exponent; "–" for a missing value.
-std::string significant(double v, int digits) {
-  if (!std::isfinite(v)) return "–";
-  const int before = v == 0 ? 1 : static_cast<int>(std::floor(std::log10(std::abs(v)))) + 1;
-  return fmt::format("{:.{}f}", v, std::max(0, digits - before));
-}
-
 /// Four digits at most; beyond that in thousands or millions.
 std::string fps(double v) {
   if (!std::isfinite(v)) return "–";
@@ -26,11 +19,6 @@ std::string with_spread(double v, double spread) {
   if (!std::isfinite(v)) return "–";
   return fps(v) + " ± " +
          (std::isfinite(spread) ? fmt::format("{:.{}f} %", 100 * spread, spread >= 0.0995 ? 0 : 1) : "–");
-}
-
-std::string pair(double a, double b, const char* between, int digits) {
-  if (!std::isfinite(a) && !std::isfinite(b)) return "–";
-  return significant(a, digits) + between + significant(b, digits);
 }
 
 /// Published values as they are printed there: to the unit.
@@ -93,14 +81,14 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
   t.push_back(family.table("kB a frame, read / written" + scene,
                            "Counted loads and stores of the shaders; missing for CPU solvers, never modelled.",
                            [&](const CellRecord& c) {
-                             return pair(1e-3 * v(c, "read_B_per_frame"), 1e-3 * v(c, "write_B_per_frame"), " / ", 3);
+                             return paired(1e-3 * v(c, "read_B_per_frame"), 1e-3 * v(c, "write_B_per_frame"), " / ", 3);
                            }));
   const std::string windows = window_note(cells);
   t.push_back(family.table(
       "Peak bandwidth, read / written [GB/s]" + scene,
       "The same counted bytes over wall time; " + (windows.empty() ? "no cell has any." : windows + "."),
       [&](const CellRecord& c) {
-        return pair(1e-9 * v(c, "bandwidth_read_peak_B_per_s"), 1e-9 * v(c, "bandwidth_write_peak_B_per_s"), " / ", 3);
+        return paired(1e-9 * v(c, "bandwidth_read_peak_B_per_s"), 1e-9 * v(c, "bandwidth_write_peak_B_per_s"), " / ", 3);
       }));
   t.push_back(family.table("Device memory [kB] · dispatches a frame" + scene,
                            "Buffers in device-local memory. – on a CPU.", [&](const CellRecord& c) {

@@ -132,11 +132,12 @@ herr_t collect_link(hid_t, const char* name, const H5L_info_t*, void* out) {
   return 0;
 }
 
-void read_accuracy(hid_t file, CellRecord& r) {
+void read_accuracy(hid_t file, CellRecord& r, bool with_trajectory) {
   const Id metrics = open_group(file, "metrics");
   r.accuracy.time_s = numbers<double>(metrics, "time_s", H5T_NATIVE_DOUBLE);
-  r.accuracy.position = numbers<float>(file, "VTKHDF/Points", H5T_NATIVE_FLOAT);
-  for (std::int64_t v : numbers<std::int64_t>(file, "triangles", H5T_NATIVE_INT64)) r.header.triangles.push_back(static_cast<std::uint32_t>(v));
+  if (with_trajectory) r.accuracy.position = numbers<float>(file, "VTKHDF/Points", H5T_NATIVE_FLOAT);
+  if (with_trajectory)
+    for (std::int64_t v : numbers<std::int64_t>(file, "triangles", H5T_NATIVE_INT64)) r.header.triangles.push_back(static_cast<std::uint32_t>(v));
   std::vector<std::string> names;
   h5::check(H5Literate(metrics, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_link, &names), "listing /metrics");
   for (const std::string& n : names) {
@@ -161,7 +162,7 @@ CellRecord read_hdf5(const std::filesystem::path& path, bool with_trajectory) {
     r.header = header_from_json(header);
     read_scalars(file, r);
     if (exists(file, "timing")) read_trials(file, r);
-    if (with_trajectory && exists(file, "metrics")) read_accuracy(file, r);
+    if (exists(file, "metrics")) read_accuracy(file, r, with_trajectory);
     return r;
   } catch (const nlohmann::json::exception& e) {
     throw Error(path.string() + ": header_json: " + e.what());

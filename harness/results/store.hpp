@@ -43,7 +43,7 @@ void remove_leftovers(const std::filesystem::path& dir, const std::string& cell)
 /// Reads a finished file (.h5) or a part folder. Throws Error naming the file and what is wrong with it.
 CellRecord read_cell(const std::filesystem::path&);
 
-/// Without the trajectory: what tables need. Cheap also for large cells.
+/// Without positions and triangles: what tables and figures need. Cheap also for large cells.
 CellRecord read_cell_summary(const std::filesystem::path&);
 
 /// Part folders of a run made without HDF5 -> the same .h5 a direct run gives. Returns the new files.

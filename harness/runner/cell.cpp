@@ -73,10 +73,11 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
   for (const auto& t : triangles(scene.cloth)) header_.triangles.insert(header_.triangles.end(), t.begin(), t.end());
 
   const FeatureSet missing = unsupported(info, scene.needs);
-  if (!missing.empty()) {
-    outcome_ = {"unsupported", "ok", -1, info.name + " has no " + join(missing)};
+  if (!spec_.entry->make || !missing.empty()) {
+    outcome_ = {"unsupported", "ok", -1, spec_.entry->make ? info.name + " has no " + join(missing) : "not in this build"};
     header_.environment = describe_environment({}, protocol);
     if (!scene.assets.empty()) header_.environment["assets"] = scene.assets;
+    if (spec_.entry->make) header_.environment["solver_features"] = describe_features(info);
     return;
   }
   solver_ = spec_.entry->make(spec_.settings, device_);
@@ -85,6 +86,7 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
   header_.load_s = seconds_since(start);
   header_.environment = describe_environment(solver_->device(), protocol);
   if (!scene.assets.empty()) header_.environment["assets"] = scene.assets;
+  header_.environment["solver_features"] = describe_features(info);
   plan_ = solver_->plan();
   header_.plan = plan_json(plan_);
   for (const StagePlan& s : plan_.stages) {
@@ -157,8 +159,9 @@ TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
   trial.index = index;
   warm_up(rules);
   const std::size_t stages = plan_.stages.size();
+  const int asked = rules.frames > 0 ? rules.frames : spec_.scene->time.frames();
   double elapsed = 0;
-  for (int frame = 0; frame < (frames > 0 ? frames : rules.frames); ++frame) {
+  for (int frame = 0; frame < (frames > 0 ? frames : asked); ++frame) {
     const bool out_of_time = frames == 0 && rules.max_wall_s > 0 && elapsed >= rules.max_wall_s && frame >= rules.min_frames;
     if (out_of_time) break;
     stop_if_interrupted();

@@ -20,7 +20,7 @@ struct CellSpec {
 /// How long and how often; see results/README.md, "protocols".
 struct TrialRules {
   int trials = 5;
-  int frames = 72;         ///< wanted per trial
+  int frames = 72;         ///< wanted per trial; 0 = as many as the scene has
   double max_wall_s = 0;   ///< a trial stops after this much wall time; 0 = no limit
   int min_frames = 12;     ///< ... but never before this many frames
   double warmup_s = 0.1;   ///< before each trial, outside the clock
@@ -35,8 +35,8 @@ bool interrupt_requested();
 /// A loaded solver and what has been measured of it.
 class Cell {
  public:
-  /// Loads the solver. A feature the backend does not have makes the outcome `unsupported`; a failed load of a
-  /// scene it claims to support is an Error.
+  /// Loads the solver. A feature the backend does not have, or an entry without `make`, makes the outcome `unsupported`;
+  /// a failed load of a scene it claims to support is an Error.
   Cell(CellSpec spec, const DeviceOptions& device, const std::string& protocol);
 
   const CellSpec& spec() const { return spec_; }

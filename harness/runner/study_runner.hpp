@@ -13,7 +13,9 @@ namespace clothbench {
 struct CellPlan {
   std::vector<std::vector<CellSpec>> groups;
   TrialRules rules;
-  std::string protocol;  ///< "short" or "full", stored with every cell
+  std::string protocol;  ///< "short", "full" or "quick", stored with every cell
+  /// Solvers that a study names and this build lacks: entries without `make`, whose cells become `unsupported`.
+  std::vector<std::shared_ptr<const SolverEntry>> not_built;
 
   std::size_t size() const;
 };

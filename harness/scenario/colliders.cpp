@@ -36,7 +36,8 @@ struct Moving {
 
 class Reader {
  public:
-  Reader(json& scenario, Scene& scene, const std::string& source) : scenario_(scenario), scene_(scene), source_(source) {}
+  Reader(json& scenario, Scene& scene, const std::string& source, Assets wanted)
+      : scenario_(scenario), scene_(scene), source_(source), wanted_(wanted) {}
 
   void read() {
     json& list = scenario_["colliders"];
@@ -60,7 +61,7 @@ class Reader {
   }
 
   const assets::AssetSource& assets() {
-    if (!assets_) assets_ = assets::locate_assets(false);
+    if (!assets_) assets_ = assets::locate_assets(wanted_ == Assets::Required);
     return *assets_;
   }
 
@@ -281,6 +282,7 @@ class Reader {
   json& scenario_;
   Scene& scene_;
   const std::string& source_;
+  Assets wanted_;
   std::string at_;
   std::optional<assets::AssetSource> assets_;
   std::map<std::size_t, std::pair<assets::Table, ColliderMesh>> tables_;  ///< by collider; with the mesh round it
@@ -290,6 +292,8 @@ class Reader {
 
 }  // namespace
 
-void read_colliders(json& scenario, Scene& scene, const std::string& source) { Reader(scenario, scene, source).read(); }
+void read_colliders(json& scenario, Scene& scene, const std::string& source, Assets assets) {
+  Reader(scenario, scene, source, assets).read();
+}
 
 }  // namespace clothbench

@@ -180,7 +180,7 @@ void apply_override(json& scenario, const std::string& assignment, const std::st
   *at = std::move(value);
 }
 
-Scene scene_from_json(json scenario, const std::string& source, const std::vector<std::string>& overrides) {
+Scene scene_from_json(json scenario, const std::string& source, const std::vector<std::string>& overrides, Assets assets) {
   for (const std::string& o : overrides) apply_override(scenario, o, source);
   validate_json(scenario, kSceneSchema, source);
   fill_defaults(scenario, kSceneSchema);
@@ -202,16 +202,16 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   s.time = {scenario["time"]["frame_rate_hz"].get<double>(), scenario["time"]["duration_s"].get<double>()};
   if (!(s.time.duration_s * s.time.frame_rate_hz <= kMostFrames)) refuse(source, "/time/duration_s", fmt::format("at most {} frames", kMostFrames));
   if (s.time.frames() < 1) refuse(source, "/time/duration_s", "at least one frame");
-  read_colliders(scenario, s, source);
+  read_colliders(scenario, s, source, assets);
   s.needs = derive_needs(s);
   s.json = scenario.dump();
   s.sha256 = sha256(s.json);
   return s;
 }
 
-Scene load_scene(const std::string& name_or_path, const std::vector<std::string>& overrides) {
+Scene load_scene(const std::string& name_or_path, const std::vector<std::string>& overrides, Assets assets) {
   const std::filesystem::path file = find_scenario(name_or_path);
-  return scene_from_json(parse_json(read_text(file), file.string()), file.string(), overrides);
+  return scene_from_json(parse_json(read_text(file), file.string()), file.string(), overrides, assets);
 }
 
 }  // namespace clothbench

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 
+#include "clothbench/solver.hpp"
 #include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 
@@ -12,14 +15,33 @@ namespace clothbench {
 namespace {
 
 using nlohmann::json;
+using Words = std::vector<std::string>;
+
+constexpr double kFpsAccuracy_s = 0.5;
 
 StudyRules read_rules(const json& j) {
   return {j["frames"].get<int>(), j["min_frames"].get<int>(), j["max_wall_s"].get<double>(), j["warmup_s"].get<double>()};
 }
 
+/// {"cloth.sides": "double"} as `--set` writes it.
+Words assignments(const json& set) {
+  Words out;
+  for (const auto& [key, value] : set.items()) out.push_back(key + "=" + value.dump());
+  return out;
+}
+
+bool contains(const Words& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// An empty choice is no choice.
+bool chosen(const Words& choice, const Words& labels) {
+  return choice.empty() || std::any_of(labels.begin(), labels.end(), [&](const auto& l) { return contains(choice, l); });
+}
+
 struct Variant {
   std::string suffix;
-  std::vector<std::string> overrides;
+  Words overrides, labels;
 };
 
 /// Product of the axes, the first varying slowest.
@@ -34,7 +56,8 @@ std::vector<Variant> expand(const json& axes, const std::string& pointer, const 
     for (const Variant& v : all)
       for (std::size_t k = 0; k < axis["values"].size(); ++k) {
         Variant w = v;
-        w.suffix += "-" + axis["labels"][k].get<std::string>();
+        w.labels.push_back(axis["labels"][k].get<std::string>());
+        w.suffix += "-" + w.labels.back();
         w.overrides.push_back(axis["key"].get<std::string>() + "=" + axis["values"][k].dump());
         next.push_back(std::move(w));
       }
@@ -43,7 +66,145 @@ std::vector<Variant> expand(const json& axes, const std::string& pointer, const 
   return all;
 }
 
+/// Builds a Study from its completed file.
+class Builder {
+ public:
+  Builder(json definition, const std::filesystem::path& file, const StudyOptions& options)
+      : j_(std::move(definition)), file_(file), source_(file.string()), options_(options) {}
+
+  Study build() {
+    study_.length = options_.length;
+    if (study_.length == StudyLength::Quick) {
+      if (!j_.contains("quick")) throw Error(source_ + ": \"quick\" is missing: this study has no quick form");
+      quick_ = j_["quick"];
+    }
+    study_.name = j_["name"].get<std::string>();
+    study_.why = j_["why"].get<std::string>();
+    study_.protocol = j_["protocol"].get<std::string>();
+    study_.trials = (quick_.is_null() ? j_ : quick_)["trials"].get<int>();
+    study_.drop_frames = j_["drop_frames"].get<int>();
+    study_.rules = read_rules(!quick_.is_null() ? quick_["rules"] : j_[study_.length == StudyLength::Full ? "full" : "short"]);
+    const double standard_s = study_.protocol == "fps" ? kFpsAccuracy_s : std::numeric_limits<double>::infinity();
+    study_.accuracy_duration_s = j_.value("accuracy_duration_s", standard_s);
+    read_solvers();
+    for (std::size_t k = 0; k < j_["scenes"].size(); ++k) read_scene(k);
+    check_words();
+    if (study_.scenes.empty()) throw Error(source_ + ": no scene with a solver is left");
+    study_.definition = std::move(j_);
+    return std::move(study_);
+  }
+
+ private:
+  void read_solvers() {
+    Words named;
+    for (std::size_t k = 0; k < j_["solvers"].size(); ++k) {
+      const json& s = j_["solvers"][k];
+      StudySolver solver{s["solver"].get<std::string>(), s["label"].get<std::string>(), s["settings"], assignments(s["set"]),
+                         s["only"].get<Words>()};
+      solver_names_.push_back(solver.name());
+      stays_.push_back(stays(solver));
+      named.push_back(solver.solver);
+      study_.solvers.push_back(std::move(solver));
+    }
+    for (const std::string& name : options_.solvers) {
+      if (contains(named, name)) continue;
+      study_.solvers.push_back({name, "default", json::object(), {}, {}, true});
+      stays_.push_back(true);
+      named.push_back(name);
+    }
+  }
+
+  /// A solver that was asked for stays although the quick form leaves it out, but not each of its settings.
+  bool stays(const StudySolver& s) const {
+    const Words quick = quick_.is_null() ? Words{} : quick_["solvers"].get<Words>();
+    const bool in_quick = quick.empty() || contains(quick, s.name());
+    if (options_.solvers.empty()) return in_quick;
+    const bool quick_has_it = std::any_of(quick.begin(), quick.end(), [&](const std::string& q) { return q == s.solver || q.starts_with(s.solver + " "); });
+    return contains(options_.solvers, s.solver) && (in_quick || !quick_has_it);
+  }
+
+  void read_scene(std::size_t k) {
+    const json& item = j_["scenes"][k];
+    const std::string pointer = fmt::format("/scenes/{}", k), scene_file = item["file"].get<std::string>();
+    std::filesystem::path path = scene_file;
+    if (path.is_relative() && std::filesystem::exists(file_.parent_path() / path)) path = file_.parent_path() / path;
+    if (!std::filesystem::exists(path)) throw Error(source_ + ": " + pointer + "/file: \"" + scene_file + "\": no such file");
+    const json scenario = parse_json(read_text(path), path.string());
+    const json name_at = scenario.is_object() ? scenario.value("name", json()) : json();
+    const std::string name = name_at.is_string() ? name_at.get<std::string>() : "";
+    for (Variant& v : expand(item["axes"], pointer, source_)) {
+      const auto labels = item["labels"].get<Words>();
+      v.labels.insert(v.labels.end(), labels.begin(), labels.end());
+      v.labels.push_back(name + v.suffix);
+      labels_.insert(v.labels.begin(), v.labels.end());
+      if (!quick_.is_null() && !chosen(quick_["scenes"].get<Words>(), v.labels)) continue;
+      add_forms(scenario, path.string(), v, pointer);
+    }
+  }
+
+  /// One item for all solvers that change nothing or the same; their cells must differ in name.
+  void add_forms(const json& scenario, const std::string& path, const Variant& v, const std::string& pointer) {
+    std::map<Words, std::size_t> forms;
+    for (std::size_t s = 0; s < study_.solvers.size(); ++s) {
+      const StudySolver& solver = study_.solvers[s];
+      if (!stays_[s] || !chosen(solver.only, v.labels)) continue;
+      const auto [at, is_new] = forms.emplace(solver.set, study_.scenes.size());
+      if (is_new) {
+        Words all = v.overrides;
+        const Words quick = quick_.is_null() ? Words{} : assignments(quick_["set"]);
+        for (const Words* more : {&solver.set, &quick, &options_.overrides}) all.insert(all.end(), more->begin(), more->end());
+        Scene scene = scene_from_json(scenario, path, all, options_.assets);
+        scene.name += v.suffix;
+        const int group = group_of(scene);
+        study_.scenes.push_back({std::move(scene), group, {}});
+      }
+      Study::Item& item = study_.scenes[at->second];
+      item.solvers.push_back(s);
+      if (!cells_.insert(item.scene.name + " " + solver.name()).second)
+        throw Error(fmt::format("{}: {}: two cells are named \"{}\" with {}; labels must differ", source_, pointer, item.scene.name,
+                                solver.name()));
+    }
+  }
+
+  int group_of(const Scene& scene) {
+    const bool by_scene = study_.protocol == "penetration";
+    const std::string key = by_scene ? scene.name : fmt::format("{} {}", scene.cloth.columns, scene.cloth.rows);
+    return groups_.emplace(key, static_cast<int>(groups_.size())).first->second;
+  }
+
+  /// A word that chooses nothing is a misspelt one.
+  void check_words() const {
+    const auto check = [&](const std::string& pointer, const json& words, const Words& known) {
+      for (std::size_t k = 0; k < words.size(); ++k) {
+        const auto word = words[k].get<std::string>();
+        if (contains(known, word)) continue;
+        const std::string near = nearest(word, known);
+        throw Error(fmt::format("{}: {}/{}: \"{}\" names none{}", source_, pointer, k, word,
+                                near.empty() ? "" : "; nearest known: " + near));
+      }
+    };
+    const Words labels(labels_.begin(), labels_.end());
+    for (std::size_t s = 0; s < j_["solvers"].size(); ++s)
+      check(fmt::format("/solvers/{}/only", s), j_["solvers"][s]["only"], labels);
+    if (!j_.contains("quick")) return;
+    check("/quick/scenes", j_["quick"]["scenes"], labels);
+    check("/quick/solvers", j_["quick"]["solvers"], solver_names_);
+  }
+
+  json j_, quick_;  ///< quick_: null unless the quick form was asked for
+  const std::filesystem::path file_;
+  const std::string source_;
+  const StudyOptions& options_;
+  Study study_;
+  Words solver_names_;
+  std::vector<bool> stays_;         ///< by solver
+  std::set<std::string> labels_, cells_;
+  std::map<std::string, int> groups_;
+};
+
 }  // namespace
+
+std::string StudySolver::name() const { return label == "default" ? solver : solver + " " + label; }
 
 bool is_study(const std::string& name_or_path) {
   const std::filesystem::path file = find_scenario(name_or_path);
@@ -51,47 +212,13 @@ bool is_study(const std::string& name_or_path) {
   return j.is_object() && j.contains("protocol");
 }
 
-Study load_study(const std::string& name_or_path, const std::vector<std::string>& overrides) {
+Study load_study(const std::string& name_or_path, const StudyOptions& options) {
   const std::filesystem::path file = find_scenario(name_or_path);
   const std::string source = file.string();
   json j = parse_json(read_text(file), source);
   validate_json(j, kStudySchema, source);
   fill_defaults(j, kStudySchema);
-
-  Study study;
-  study.name = j["name"].get<std::string>();
-  study.why = j["why"].get<std::string>();
-  study.protocol = j["protocol"].get<std::string>();
-  study.trials = j["trials"].get<int>();
-  study.drop_frames = j["drop_frames"].get<int>();
-  study.accuracy_duration_s = j["accuracy_duration_s"].get<double>();
-  study.short_rules = read_rules(j["short"]);
-  study.full_rules = read_rules(j["full"]);
-  for (const json& s : j["solvers"])
-    study.solvers.push_back({s["solver"].get<std::string>(), s["label"].get<std::string>(), s["settings"]});
-
-  std::map<std::pair<int, int>, int> groups;
-  std::set<std::string> names;
-  for (std::size_t k = 0; k < j["scenes"].size(); ++k) {
-    const json& item = j["scenes"][k];
-    const std::string pointer = fmt::format("/scenes/{}", k), scene_file = item["file"].get<std::string>();
-    std::filesystem::path path = scene_file;
-    if (path.is_relative() && std::filesystem::exists(file.parent_path() / path)) path = file.parent_path() / path;
-    if (!std::filesystem::exists(path)) throw Error(source + ": " + pointer + "/file: \"" + scene_file + "\": no such file");
-    const json scenario = parse_json(read_text(path), path.string());
-    for (const Variant& v : expand(item["axes"], pointer, source)) {
-      std::vector<std::string> all = v.overrides;
-      all.insert(all.end(), overrides.begin(), overrides.end());
-      Scene scene = scene_from_json(scenario, path.string(), all);
-      scene.name += v.suffix;
-      if (!names.insert(scene.name).second) throw Error(source + ": " + pointer + ": two scenes are named \"" + scene.name + "\"; labels must differ");
-      const int next = static_cast<int>(groups.size());
-      const int group = groups.emplace(std::pair{scene.cloth.columns, scene.cloth.rows}, next).first->second;
-      study.scenes.push_back({std::move(scene), group});
-    }
-  }
-  study.definition = std::move(j);
-  return study;
+  return Builder(std::move(j), file, options).build();
 }
 
 }  // namespace clothbench

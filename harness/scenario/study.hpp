@@ -4,13 +4,18 @@
 #include <vector>
 
 #include "clothbench/scene.hpp"
+#include "scenario/load.hpp"
 
 namespace clothbench {
 
 /// One solver with one set of settings, as a study names it.
 struct StudySolver {
   std::string solver, label;
-  nlohmann::json settings;  ///< as given; `complete_settings` adds the rest
+  nlohmann::json settings;        ///< as given; `complete_settings` adds the rest
+  std::vector<std::string> set;   ///< changes to the scenes for this solver alone, `dotted.key=JSON`
+  std::vector<std::string> only;  ///< labels of the scenes it runs; empty: all
+  bool joined = false;            ///< not of the study but of StudyOptions::solvers
+  std::string name() const;       ///< as tables name it: "paper", "paper whole-room"
 };
 
 /// How long a trial is; the same words as in the file.
@@ -19,24 +24,40 @@ struct StudyRules {
   double max_wall_s = 0, warmup_s = 0;
 };
 
-/// A study with its axes expanded. Scenes of one `group` have the same grid; their cells are run interleaved.
+/// Which of its protocols a study runs: trials as in its "short", "full" or "quick"; quick also leaves out scenes and
+/// solvers.
+enum class StudyLength { Short, Full, Quick };
+
+struct StudyOptions {
+  std::vector<std::string> overrides;  ///< applied to every scene, after everything the study says
+  StudyLength length = StudyLength::Short;
+  Assets assets = Assets::MayBeProcedural;
+  /// Only these, if any. One that the study does not name joins it, with its default settings and every scene as it is.
+  std::vector<std::string> solvers = {};
+};
+
+/// A study with its axes expanded. Cells of one `group` are run interleaved: with the protocol fps those of one grid,
+/// with penetration those of one scene.
 struct Study {
+  /// A scene in one form, and the solvers that run it so. A solver's own changes make another form of the same name.
   struct Item {
     Scene scene;  ///< name = base name and the labels of its axis values
     int group = 0;
+    std::vector<std::size_t> solvers;  ///< indices into Study::solvers
   };
   std::string name, why, protocol;
+  StudyLength length = StudyLength::Short;
   std::vector<Item> scenes;
   std::vector<StudySolver> solvers;
   int trials = 0, drop_frames = 0;
-  double accuracy_duration_s = 0;
-  StudyRules short_rules, full_rules;
+  double accuracy_duration_s = 0;  ///< infinite: the whole scene
+  StudyRules rules;                ///< of `length`
   nlohmann::json definition;  ///< completed study file
 };
 
-/// Loads a study by path or name ("table3"). Throws Error as `load_scene` does. Solver names are not looked up.
-/// `overrides` are applied to every scene after its axes.
-Study load_study(const std::string& name_or_path, const std::vector<std::string>& overrides = {});
+/// Loads a study by path or name ("table3"). Throws Error as `load_scene` does, and if the study has no "quick" where
+/// that is asked for. Solver names are not looked up.
+Study load_study(const std::string& name_or_path, const StudyOptions& = {});
 
 /// True if the file is a study rather than a scene (has "protocol").
 bool is_study(const std::string& name_or_path);

@@ -91,7 +91,7 @@ TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {
 }
 
 TEST_F(Cli, ListsAreReadableByMachines) {
-  for (const char* what : {"solvers", "scenarios", "studies", "devices", "metrics"}) {
+  for (const char* what : {"solvers", "features", "scenarios", "studies", "devices", "metrics", "assets"}) {
     const nlohmann::json rows = json_of(std::string("list ") + what);
     EXPECT_TRUE(rows.is_array()) << what;
     EXPECT_FALSE(std::string(what) != "devices" && rows.empty()) << what;
@@ -135,6 +135,49 @@ TEST_F(Cli, StudyThenReport) {
   const Answer report = clothbench_command("report " + out.string() + " -o " + (dir_ / "report").string());
   EXPECT_EQ(report.code, 0) << report.text;
   EXPECT_TRUE(fs::exists(dir_ / "report" / "report.md"));
+}
+
+TEST_F(Cli, SolversThatWereNotBuiltAreRows) {
+  const fs::path file = dir_ / "absent.json", out = dir_ / "absent";
+  std::ofstream(file) << R"({"name":"absent","why":"A test.","protocol":"penetration",
+    "scenes":[{"file":")" << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/contact/plane.json","labels":["a"]},
+              {"file":")" << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/contact/sphere.json"}],
+    "solvers":[{"solver":"ballistic","set":{"time.duration_s":0.25}},{"solver":"not-there","settings":{"x":1}}],"trials":1,
+    "short":{"frames":0,"max_wall_s":0,"min_frames":1,"warmup_s":0},"full":{"frames":0,"max_wall_s":0,"min_frames":1,"warmup_s":0},
+    "quick":{"scenes":["a"],"rules":{"frames":4,"max_wall_s":0,"min_frames":4,"warmup_s":0}}})";
+  const Answer a = clothbench_command("study " + file.string() + " --out " + out.string());
+  ASSERT_EQ(a.code, 0) << a.text;
+  const CellRecord absent = read_cell(out / "plane-drop__not-there__default.h5");
+  EXPECT_EQ(absent.outcome.status, "unsupported");
+  EXPECT_EQ(absent.outcome.message, "not in this build");
+  EXPECT_FALSE(absent.header.environment.contains("solver_features"));
+  const CellRecord here = read_cell(out / "sphere-drop__ballistic__default.h5");
+  EXPECT_EQ(here.outcome.status, "ok");
+  EXPECT_EQ(here.accuracy.time_s.size(), 19u) << "the whole of the scene as this solver runs it";
+  EXPECT_EQ(here.trials.at(0).frames(), 18) << "frames 0: from beginning to end";
+  EXPECT_TRUE(here.header.environment.at("solver_features").at("ignores").is_array());
+  const std::string report = (dir_ / "report").string();
+  ASSERT_EQ(clothbench_command("report " + out.string() + " -o " + report).code, 0);
+  for (const char* name : {"penetration.md", "penetration.csv", "penetration.json", "penetration-series.csv", "features.json"})
+    EXPECT_TRUE(fs::exists(fs::path(report) / name)) << name;
+
+  EXPECT_EQ(json_of("study " + file.string() + " --quick --out " + (dir_ / "quick").string()).at("ok"), 1);
+  EXPECT_EQ(read_cell(dir_ / "quick" / "plane-drop__ballistic__default.h5").header.environment.at("protocol"), "quick");
+  EXPECT_EQ(clothbench_command("study " + small_study() + " --quick --out " + (dir_ / "q").string()).code, 2) << "it has no quick form";
+  EXPECT_EQ(clothbench_command("study " + file.string() + " --solver balistic --out " + (dir_ / "b").string()).code, 2);
+}
+
+TEST_F(Cli, RequiredAssetsMustBeThere) {
+  const std::string to = " --solver ballistic --trials 0 --out " + (dir_ / "o").string();
+  ASSERT_EQ(setenv("CLOTHBENCH_ASSETS", "procedural", 1), 0);
+  EXPECT_EQ(json_of("list assets").at(0).at("name"), "procedural");
+  const Answer a = clothbench_command("run paper/desk-flat-low --require-assets" + to);
+  EXPECT_EQ(a.code, 2) << a.text;
+  EXPECT_NE(a.text.find("assets required"), std::string::npos) << a.text;
+  EXPECT_EQ(clothbench_command("run paper/gravity --require-assets" + to).code, 0) << "a scene that uses none";
+  EXPECT_EQ(clothbench_command("study penetration --quick --require-assets --out " + (dir_ / "s").string()).code, 2);
+  EXPECT_FALSE(fs::exists(dir_ / "s")) << "nothing has begun";
+  unsetenv("CLOTHBENCH_ASSETS");
 }
 
 /// Starts the study, lets it run for a while and sends it a signal.

@@ -2,12 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
+#include "scenario/load.hpp"
+#include "scratch_folder.hpp"
 
 namespace clothbench {
 namespace {
@@ -46,6 +52,156 @@ TEST(Study, FaultsNameFileAndPointer) {
   EXPECT_NE(fault("\"labels\": [\"8\", ", "\"labels\": [").find("/scenes/0/axes/0/labels"), std::string::npos);
   EXPECT_NE(fault("[8, 8]", "[0, 8]").find("/cloth/grid/0"), std::string::npos);
   EXPECT_NE(fault("../paper/gravity.json", "nowhere.json").find("nowhere.json"), std::string::npos);
+}
+
+/// A study of two scenes, the first in two sizes, with `more` after its solvers.
+std::string study_text(const std::string& solvers, const std::string& more = "", const std::string& protocol = "fps") {
+  const std::string root = CLOTHBENCH_SOURCE_DIR "/scenarios/";
+  return R"({"name":"s","why":"A test.","protocol":")" + protocol + R"(","scenes":[
+    {"file":")" + root + R"(paper/gravity.json","labels":["free"],
+     "axes":[{"key":"cloth.grid","values":[[8,8],[9,7]],"labels":["8","9x7"]}]},
+    {"file":")" + root + R"(contact/sphere.json","labels":["shape"]}],
+    "solvers":)" + solvers + R"(,"trials":5,
+    "short":{"frames":72,"max_wall_s":2,"min_frames":12,"warmup_s":0.1},
+    "full":{"frames":360,"max_wall_s":0,"min_frames":36,"warmup_s":0.2})" + more + "}";
+}
+
+Study study_of(const std::string& text, StudyOptions options = {}) {
+  const ScratchFolder folder;
+  return load_study(folder.file("s.json", text), options);
+}
+
+std::string message_of(const std::string& text, StudyOptions options = {}) {
+  try {
+    study_of(text, options);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+/// Names of who runs what, with the sides of the cloth they get.
+std::vector<std::string> cells(const Study& s) {
+  std::vector<std::string> out;
+  for (const Study::Item& item : s.scenes)
+    for (const std::size_t k : item.solvers)
+      out.push_back(item.scene.name + " " + s.solvers[k].name() +
+                    (item.scene.cloth.sides == Sides::DoubleDuplicated ? " duplicated" : ""));
+  return out;
+}
+
+TEST(Study, SolversChangeScenesForThemselvesAlone) {
+  const Study s = study_of(study_text(R"([{"solver":"a","only":["shape"],"set":{"cloth.sides":"double-duplicated","colliders.0.radius_m":0.2}},
+                                          {"solver":"b"},{"solver":"a","label":"x","only":["9x7","shape"]}])", "", "penetration"));
+  EXPECT_EQ(cells(s), (std::vector<std::string>{"gravity-8 b", "gravity-9x7 b", "gravity-9x7 a x", "sphere-drop a duplicated",
+                                                "sphere-drop b", "sphere-drop a x"}));
+  const Scene& changed = s.scenes[2].scene;
+  EXPECT_EQ(changed.colliders.at(0).radius_m, 0.2);
+  EXPECT_TRUE(changed.needs.has(Feature::DuplicatedLayer));
+  EXPECT_NE(changed.json.find("double-duplicated"), std::string::npos) << "what is stored is what runs";
+  EXPECT_NE(changed.sha256, s.scenes[3].scene.sha256);
+  EXPECT_EQ(s.scenes[2].group, s.scenes[3].group) << "all forms of a scene are timed in turns";
+  EXPECT_NE(s.scenes[1].group, s.scenes[2].group);
+}
+
+TEST(Study, AccuracyPassOfPenetrationIsTheWholeScene) {
+  EXPECT_TRUE(std::isinf(study_of(study_text(R"([{"solver":"a"}])", "", "penetration")).accuracy_duration_s));
+  EXPECT_EQ(study_of(study_text(R"([{"solver":"a"}])")).accuracy_duration_s, 0.5);
+  EXPECT_EQ(study_of(study_text(R"([{"solver":"a"}])", R"(,"accuracy_duration_s":2)")).accuracy_duration_s, 2);
+}
+
+TEST(Study, QuickLeavesOutAndShortens) {
+  const std::string solvers = R"([{"solver":"a"},{"solver":"a","label":"x"},{"solver":"b"}])";
+  const std::string text = study_text(solvers, R"(,"quick":{"scenes":["8","sphere-drop"],"solvers":["a x","b"],"trials":2,
+    "rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0},"set":{"time.duration_s":0.25}})");
+  const Study quick = study_of(text, {{}, StudyLength::Quick});
+  EXPECT_EQ(cells(quick), (std::vector<std::string>{"gravity-8 a x", "gravity-8 b", "sphere-drop a x", "sphere-drop b"}));
+  EXPECT_EQ(quick.trials, 2);
+  EXPECT_EQ(quick.rules.frames, 5);
+  EXPECT_EQ(quick.scenes[0].scene.time.frames(), 18);
+  EXPECT_EQ(study_of(text, {{"time.duration_s=1"}, StudyLength::Quick}).scenes[0].scene.time.frames(), 72) << "--set comes last";
+  const Study whole = study_of(text), full = study_of(text, {{}, StudyLength::Full});
+  EXPECT_EQ(cells(whole).size(), 9u);
+  EXPECT_EQ(whole.trials, 5);
+  EXPECT_EQ(whole.rules.frames, 72);
+  EXPECT_EQ(full.rules.frames, 360);
+  EXPECT_NE(message_of(study_text(solvers), {{}, StudyLength::Quick}).find("\"quick\" is missing"), std::string::npos);
+}
+
+TEST(Study, SolversAskedForAloneOrJoined) {
+  const std::string text = study_text(R"([{"solver":"a"},{"solver":"a","label":"x","set":{"cloth.sides":"double"}},{"solver":"b"}])",
+                                      R"(,"quick":{"scenes":["8"],"solvers":["a"],"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0}})");
+  const auto asked = [&](StudyLength length, std::vector<std::string> solvers) {
+    const Study s = study_of(text, {{}, length, Assets::MayBeProcedural, std::move(solvers)});
+    EXPECT_EQ(s.solvers.size(), 4u);
+    EXPECT_TRUE(s.solvers.back().joined);
+    std::vector<std::string> gravity8;
+    for (const std::string& c : cells(s))
+      if (c.starts_with("gravity-8 ")) gravity8.push_back(c.substr(10));
+    return gravity8;
+  };
+  EXPECT_EQ(asked(StudyLength::Short, {"mine", "a"}), (std::vector<std::string>{"a", "mine", "a x"}));
+  EXPECT_EQ(asked(StudyLength::Quick, {"mine", "a"}), (std::vector<std::string>{"a", "mine"}));
+  EXPECT_EQ(asked(StudyLength::Quick, {"b", "mine"}), (std::vector<std::string>{"b", "mine"})) << "asked for by name";
+}
+
+TEST(Study, WordsThatChooseNothingAreFaults) {
+  const auto quick = [](const std::string& inside) {
+    return study_text(R"([{"solver":"a"}])", R"(,"quick":{"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0},)" + inside + "}");
+  };
+  EXPECT_EQ(message_of(quick(R"("scenes":["shape"])")), "");
+  EXPECT_NE(message_of(quick(R"("scenes":["shapes"])")).find("/quick/scenes/0: \"shapes\" names none; nearest known: shape"), std::string::npos);
+  EXPECT_NE(message_of(quick(R"("solvers":["a x"])")).find("/quick/solvers/0"), std::string::npos);
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape","fre"]}])")).find("/solvers/0/only/1"), std::string::npos);
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a"},{"solver":"a"}])")).find("two cells are named"), std::string::npos);
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a","set":{"cloth.side":"double"}}])")).find("nearest known: sides"), std::string::npos);
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape"],"set":{"colliders.1.friction":0}}])"))
+                .find("/colliders/1: expected an item"), std::string::npos);
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape"],"set":{"colliders.x.friction":0}}])")).find("/colliders/x"), std::string::npos);
+}
+
+TEST(Study, PenetrationHasEveryCombinationItNames) {
+  const Study s = load_study("penetration");
+  std::set<std::string> scenes;
+  for (const Study::Item& item : s.scenes) {
+    scenes.insert(item.scene.name);
+    EXPECT_FALSE(item.scene.colliders.empty() && item.scene.grips.vertices.empty()) << item.scene.name << " touches nothing";
+    for (const std::size_t k : item.solvers)
+      if (s.solvers[k].solver == "paper") {
+        // It knows no two-sided contact without a second layer.
+        EXPECT_EQ(item.scene.cloth.sides == Sides::Double, item.scene.colliders.empty()) << item.scene.name;
+      }
+  }
+  EXPECT_EQ(scenes.size(), 13u);
+  const auto all = cells(s);
+  EXPECT_EQ(std::count(all.begin(), all.end(), "desk-flat-low paper whole-room duplicated"), 1);
+  const Study quick = load_study("penetration", {{}, StudyLength::Quick});
+  for (const std::string& cell : cells(quick)) EXPECT_EQ(cell.find("whole-room"), std::string::npos);
+}
+
+TEST(Study, SubMeshAndWholeRoomBeginAlike) {
+  const Study s = load_study("penetration");
+  const Scene* cut = nullptr;
+  const Scene* whole = nullptr;
+  for (const Study::Item& item : s.scenes)
+    for (const std::size_t k : item.solvers)
+      if (item.scene.name == "desk-flat-low" && s.solvers[k].solver == "paper")
+        (s.solvers[k].label == "default" ? cut : whole) = &item.scene;
+  ASSERT_TRUE(cut != nullptr && whole != nullptr);
+  EXPECT_EQ(initial_positions(*cut), initial_positions(*whole));
+  EXPECT_GT(whole->colliders.at(0).mesh->triangles.size(), cut->colliders.at(0).mesh->triangles.size());
+}
+
+TEST(Study, RequiredAssetsMustBeThere) {
+  const char* before = std::getenv("CLOTHBENCH_ASSETS");
+  const std::string kept = before == nullptr ? "" : before;
+  ASSERT_EQ(setenv("CLOTHBENCH_ASSETS", "procedural", 1), 0);
+  EXPECT_NO_THROW(load_scene("paper/desk-flat-low"));
+  EXPECT_NO_THROW(load_scene("paper/gravity", {}, Assets::Required)) << "a scene that uses none";
+  EXPECT_THROW(load_scene("paper/desk-flat-low", {}, Assets::Required), Error);
+  EXPECT_THROW(load_scene("paper/two-hand-stretch-2mps", {}, Assets::Required), Error);
+  EXPECT_THROW(load_study("penetration", {{}, StudyLength::Short, Assets::Required}), Error);
+  before == nullptr ? unsetenv("CLOTHBENCH_ASSETS") : setenv("CLOTHBENCH_ASSETS", kept.c_str(), 1);
 }
 
 TEST(Settings, AreCompletedAndChecked) {

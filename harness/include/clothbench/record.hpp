@@ -84,6 +84,7 @@ struct CellRecord {
   std::vector<StoredGroup> replay;  ///< colliders and grips with their motion; see replay_of in harness/runner
   Outcome outcome;
   std::map<std::string, double> summary;  ///< every scalar a table prints; NaN = missing
+  std::string file = {};                  ///< where a report read it; empty: nowhere
 };
 
 }  // namespace clothbench

@@ -1,0 +1,102 @@
+#include "report/features.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+std::optional<Feature> feature(const json& name) {
+  for (std::size_t k = 0; k < kFeatureCount; ++k)
+    if (name.is_string() && name.get<std::string>() == kFeatureNames[k]) return static_cast<Feature>(k);
+  return std::nullopt;
+}
+
+/// Names of a later version that this build does not know are left out.
+FeatureSet feature_set(const json& names) {
+  FeatureSet set;
+  if (names.is_array())
+    for (const json& name : names)
+      if (const auto f = feature(name)) set.add(*f);
+  return set;
+}
+
+std::string words(std::string_view name) {
+  std::string out(name);
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
+void add_cell(SolverFeatures& s, const CellRecord& c) {
+  const json declared = c.header.environment.is_object() ? c.header.environment.value("solver_features", json()) : json();
+  if (declared.is_object()) {
+    s.known = true;
+    s.supports |= feature_set(declared.value("supports", json()));
+    s.ignores |= feature_set(declared.value("ignores", json()));
+    for (const json& pair : declared.value("only_with", json::array())) {
+      if (!pair.is_array() || pair.size() != 2) continue;
+      const auto f = feature(pair[0]), beside = feature(pair[1]);
+      if (f && beside && std::find(s.only_with.begin(), s.only_with.end(), std::pair{*f, *beside}) == s.only_with.end())
+        s.only_with.emplace_back(*f, *beside);
+    }
+  }
+  if (c.outcome.status != "ok") return;
+  for (const StageRecord& stage : c.header.stages) s.shown |= feature_set(stage.serves);
+}
+
+}  // namespace
+
+std::vector<SolverFeatures> solver_features(const std::vector<CellRecord>& cells) {
+  std::vector<SolverFeatures> out;
+  for (const CellRecord& c : cells) {
+    auto at = std::find_if(out.begin(), out.end(), [&](const SolverFeatures& s) { return s.solver == c.header.solver; });
+    if (at == out.end()) {
+      out.emplace_back();
+      out.back().solver = c.header.solver;
+      at = out.end() - 1;
+    }
+    add_cell(*at, c);
+  }
+  return out;
+}
+
+SolverFeatures declared_features(const SolverInfo& info) {
+  return {info.name, true, info.supports, info.ignores, info.only_with, {}};
+}
+
+std::string feature_text(const SolverFeatures& s, Feature f, bool with_results) {
+  if (!s.known) return "not built";
+  if (s.ignores.has(f)) return "ignored";
+  if (!s.supports.has(f)) return "no";
+  std::string text = with_results && !s.shown.has(f) ? "declared" : "yes";
+  for (const auto& [what, beside] : s.only_with)
+    if (what == f) text += " (only with " + words(name_of(beside)) + ")";
+  return text;
+}
+
+Table feature_table(const std::vector<SolverFeatures>& solvers, bool with_results) {
+  Table t{"Table 4: features", "Ignored: runs without serving it.", {{"feature"}}};
+  if (with_results)
+    t.note = "Yes: a stage served it in a cell that ended well; declared: the solver says so and no cell here needed it. " + t.note;
+  for (const SolverFeatures& s : solvers) t.rows[0].push_back(s.solver);
+  for (std::size_t k = 0; k < kFeatureCount; ++k) {
+    std::vector<std::string> row = {words(kFeatureNames[k])};
+    for (const SolverFeatures& s : solvers) row.push_back(feature_text(s, static_cast<Feature>(k), with_results));
+    t.rows.push_back(std::move(row));
+  }
+  return t;
+}
+
+json feature_json(const std::vector<SolverFeatures>& solvers, bool with_results) {
+  json rows = json::array();
+  for (std::size_t k = 0; k < kFeatureCount; ++k) {
+    json row = {{"name", kFeatureNames[k]}, {"solvers", json::object()}};
+    for (const SolverFeatures& s : solvers) row["solvers"][s.solver] = feature_text(s, static_cast<Feature>(k), with_results);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace clothbench

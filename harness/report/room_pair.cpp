@@ -1,0 +1,145 @@
+#include "report/room_pair.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/grid.hpp"
+#include "results/store.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+struct Parts {
+  std::string rest;  ///< the scenario without the cuts
+  bool whole = false, room = false;
+};
+
+Parts parts_of(const CellRecord& c) {
+  json s = json::parse(c.header.scenario_json, nullptr, false);
+  Parts p;
+  if (!s.is_object() || !s.contains("colliders") || !s["colliders"].is_array()) return p;
+  for (json& collider : s["colliders"]) {
+    if (!collider.is_object() || collider.value("type", "") != "room") continue;
+    p.room = true;
+    p.whole = collider.value("cut", "") == "none";
+    collider.erase("cut");
+  }
+  p.rest = s.dump();
+  return p;
+}
+
+std::vector<float> positions(const CellRecord& c) {
+  if (!c.accuracy.position.empty() || c.file.empty()) return c.accuracy.position;
+  return read_cell(c.file).accuracy.position;
+}
+
+/// NaN if either is.
+double greater(double a, double b) { return b <= a || std::isnan(a) ? a : b; }
+
+void measure(RoomPair& pair) {
+  const std::vector<float> a = positions(*pair.cut), b = positions(*pair.whole);
+  const std::size_t frame = 3 * static_cast<std::size_t>(pair.cut->header.vertices);
+  if (a.empty() || a.size() != b.size() || frame == 0 || a.size() % frame != 0) return;
+  double most = 0;
+  for (std::size_t k = 0; k < a.size(); k += 3) {
+    if (k % frame == 0) pair.distance_end_m = 0;
+    double squared = 0;
+    for (std::size_t x = k; x < k + 3; ++x) squared += (double{a[x]} - b[x]) * (double{a[x]} - b[x]);
+    const double d = std::sqrt(squared);
+    pair.distance_end_m = greater(pair.distance_end_m, d);
+    most = greater(most, d);
+  }
+  pair.distance_max_m = most;
+}
+
+/// Device time of the stages that serve meshes that stand still; NaN if there is none.
+double mesh_stages_s(const CellRecord& c) {
+  double sum = kMissing;
+  for (const StageRecord& s : c.header.stages)
+    if (std::find(s.serves.begin(), s.serves.end(), "static_mesh") != s.serves.end()) {
+      const double t = summary_value(c, "stage_device_median_s." + s.name);
+      sum = std::isnan(sum) ? t : sum + t;
+    }
+  return sum;
+}
+
+struct Quantity {
+  const char* head;
+  double scale;
+  double (*value)(const CellRecord&);
+};
+
+const Quantity kQuantities[] = {
+    {"wall [ms]", 1e3, [](const CellRecord& c) { return summary_value(c, "frame_wall_median_s"); }},
+    {"GPU [ms]", 1e3, [](const CellRecord& c) { return summary_value(c, "frame_device_median_s"); }},
+    {"mesh stages [ms]", 1e3, mesh_stages_s},
+    {"read [kB]", 1e-3, [](const CellRecord& c) { return summary_value(c, "read_B_per_frame"); }},
+    {"written [kB]", 1e-3, [](const CellRecord& c) { return summary_value(c, "write_B_per_frame"); }},
+    {"memory [kB]", 1e-3, [](const CellRecord& c) { return summary_value(c, "device_memory_B"); }},
+    {"load [ms]", 1e3, [](const CellRecord& c) { return summary_value(c, "load_s"); }},
+};
+
+std::string distance(double m) { return std::isfinite(m) ? fmt::format("{:.3g} m", m) : "not measured"; }
+
+}  // namespace
+
+std::vector<RoomPair> room_pairs(const std::vector<CellRecord>& cells) {
+  std::vector<Parts> parts;
+  for (const CellRecord& c : cells) parts.push_back(parts_of(c));
+  std::vector<RoomPair> out;
+  for (std::size_t w = 0; w < cells.size(); ++w) {
+    if (!parts[w].room || !parts[w].whole || cells[w].outcome.status == "missing") continue;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const bool same = parts[k].room && !parts[k].whole && parts[k].rest == parts[w].rest && cells[k].outcome.status != "missing" &&
+                        cells[k].header.solver == cells[w].header.solver && cells[k].header.settings == cells[w].header.settings;
+      if (!same) continue;
+      out.push_back({&cells[k], &cells[w]});
+      measure(out.back());
+      break;
+    }
+  }
+  return out;
+}
+
+Table room_table(const std::vector<RoomPair>& pairs) {
+  Table t{"SubMesh against the whole room (section 3.2.4)", "", {{"scene", "solver", "mesh"}}};
+  for (const Quantity& q : kQuantities) t.rows[0].emplace_back(q.head);
+  for (const RoomPair& p : pairs) {
+    const auto row = [&](const char* mesh, const auto& text) {
+      std::vector<std::string> r = {p.cut->header.scene, p.cut->header.solver, mesh};
+      for (const Quantity& q : kQuantities) r.push_back(text(q));
+      t.rows.push_back(std::move(r));
+    };
+    const auto of = [](const CellRecord& c) {
+      return [&c](const Quantity& q) { return c.outcome.status == "ok" ? significant(q.scale * q.value(c), 3) : c.outcome.status; };
+    };
+    row("SubMesh", of(*p.cut));
+    row("whole room", of(*p.whole));
+    row("ratio", [&](const Quantity& q) { return significant(q.value(*p.whole) / q.value(*p.cut), 3); });
+    t.note += fmt::format("{}{}, {}: greatest distance between the positions of the two, at the end {}, over all frames {}.", t.note.empty() ? "" : " ",
+                          p.cut->header.scene, p.cut->header.solver, distance(p.distance_end_m), distance(p.distance_max_m));
+  }
+  return t;
+}
+
+json room_json(const std::vector<RoomPair>& pairs) {
+  const auto or_null = [](double v) { return std::isfinite(v) ? json(v) : json(); };
+  json out = json::array();
+  for (const RoomPair& p : pairs) {
+    json row = {{"scene", p.cut->header.scene}, {"solver", p.cut->header.solver},
+                {"distance_end_m", or_null(p.distance_end_m)}, {"distance_max_m", or_null(p.distance_max_m)}};
+    for (const auto& [name, cell] : {std::pair{"sub_mesh", p.cut}, std::pair{"whole_room", p.whole}}) {
+      json& part = row[name] = {{"setting", cell->header.setting}, {"status", cell->outcome.status}, {"mesh_stages_s", or_null(mesh_stages_s(*cell))}};
+      for (const char* key : {"frame_wall_median_s", "frame_device_median_s", "read_B_per_frame", "write_B_per_frame", "device_memory_B", "load_s"})
+        part[key] = or_null(summary_value(*cell, key));
+    }
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
+}  // namespace clothbench
