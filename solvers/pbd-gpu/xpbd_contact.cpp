@@ -67,8 +67,10 @@ std::vector<std::uint32_t> border_edges(const std::vector<double>& positions,
   std::map<Vec3, std::uint32_t> places;
   std::vector<std::uint32_t> place;
   for (std::size_t v = 0; v < positions.size(); v += 3)
-    place.push_back(places.try_emplace({positions[v], positions[v + 1], positions[v + 2]},
-                                       static_cast<std::uint32_t>(places.size())).first->second);
+    place.push_back(
+        places
+            .try_emplace({positions[v], positions[v + 1], positions[v + 2]}, static_cast<std::uint32_t>(places.size()))
+            .first->second);
   const auto opposite = [&](const std::array<std::uint32_t, 3>& t, std::size_t k) {
     return std::minmax(place[t[(k + 1) % 3]], place[t[(k + 2) % 3]]);
   };
@@ -80,6 +82,16 @@ std::vector<std::uint32_t> border_edges(const std::vector<double>& positions,
     for (std::size_t k = 0; k < 3; ++k)
       if (triangles_at[opposite(triangles[t], k)] == 1) bits[t] |= 1u << k;
   return bits;
+}
+
+std::uint32_t samples_needed(const Scene& scene, std::uint32_t wanted) {
+  const double du = scene.cloth.du(), dv = scene.cloth.dv(), squared = du * du + dv * dv;
+  const auto needed = [&](const Collider& c) {
+    if (c.shape == Collider::Shape::Plane) return false;
+    // Height over a chord of length l of a circle of radius r: l^2 / 8r, for l well below r; stretched by half, twice.
+    return c.shape != Collider::Shape::Sphere || !(2 * squared / (8 * c.radius_m) <= c.margin_m);
+  };
+  return std::any_of(scene.colliders.begin(), scene.colliders.end(), needed) ? wanted : 0;
 }
 
 Clusters cluster(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
@@ -97,8 +109,15 @@ Clusters cluster(const std::vector<double>& positions, const std::vector<std::ar
 }
 
 XpbdContact::XpbdContact(GpuSolver& solver, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
-                 const Buffer& positions, const Buffer& velocities, std::uint32_t samples)
-    : solver_(solver), scene_(scene), colliders_(colliders), x_(positions), v_(velocities), samples_(samples) {
+                         const Buffer& positions, const Buffer& velocities, std::uint32_t samples)
+    : solver_(solver),
+      scene_(scene),
+      colliders_(colliders),
+      x_(positions),
+      v_(velocities),
+      samples_(samples_needed(scene, samples)) {
+  if (samples == 0) solver_.leave_out("contact samples", "setting contact_samples=0");
+  if (samples_ < samples) solver_.leave_out("contact samples", "no edge of the cloth reaches between two vertices");
   const FeatureSet meshes = scene.needs & FeatureSet{Feature::StaticMesh, Feature::MovingMesh};
   if (meshes.empty())
     solver_.leave_out("BroadPhase", "the scene has no mesh to collide with");
@@ -120,10 +139,7 @@ void XpbdContact::add_sides(Vec3 origin_m) {
     side.push_back({at(0), at(1), at(2), 0});
   }
   side_ = &solver_.add_vec4_buffer("contact sides", side);
-  if (samples_ == 0) {
-    solver_.leave_out("contact samples", "setting contact_samples=0");
-    return;
-  }
+  if (samples_ == 0) return;
   const std::size_t steps[] = {1, columns, columns + 1};
   for (std::size_t f = 0; f < 3 * samples_; ++f)
     for (std::size_t i = 0; i + steps[f / samples_] < n; ++i) {
@@ -281,7 +297,8 @@ void XpbdContact::record_substep(int s, int substeps, double dt_s) {
   }
   Traffic t;
   for (std::size_t i = 0; i < n; ++i) {
-    const double right = i % columns + 1 < columns, left = i % columns > 0, down = i / columns + 1 < rows, up = i / columns > 0;
+    const double right = i % columns + 1 < columns, left = i % columns > 0, down = i / columns + 1 < rows,
+                 up = i / columns > 0;
     const double beside = samples_ * (right + left + down + up + right * down + left * up);
     t.read_B += 16 + (w[i] > 0 ? 32 + 16 * beside + around : 0.0);
     t.write_B += w[i] > 0 ? 48 : 16;

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "xpbd_contact.hpp"
 #include "gpu_solver.hpp"
+#include "xpbd_contact.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -108,7 +108,7 @@ class Xpbd final : public GpuSolver {
       leave_out("contact", "the scene has no collider");
     else
       contact_ = std::make_unique<XpbdContact>(*this, scene(), origin, *colliders(), *x_, *v_,
-                                           settings()["contact_samples"].get<std::uint32_t>());
+                                               settings()["contact_samples"].get<std::uint32_t>());
   }
 
   /// Bytes of one dispatch: with m = vertices of a constraint, 16 m for positions, and another 16 m read and 32 m
@@ -216,13 +216,14 @@ SolverInfo xpbd_info() {
   info.version = "1";
   info.precision = "float32";
   info.on_gpu = true;
-  info.supports = {Feature::Stretch,  Feature::Shear,      Feature::Bend,       Feature::Damping,  Feature::Pins,
-                   Feature::MovingPins, Feature::Sphere,   Feature::Box,        Feature::Plane,    Feature::Capsules,
+  info.supports = {Feature::Stretch,    Feature::Shear,      Feature::Bend,     Feature::Damping,    Feature::Pins,
+                   Feature::MovingPins, Feature::Sphere,     Feature::Box,      Feature::Plane,      Feature::Capsules,
                    Feature::StaticMesh, Feature::MovingMesh, Feature::Friction, Feature::DoubleSided};
-  info.settings = {{"substeps", "10", "substeps a frame"},
-                   {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
-                   {"contact_samples", "1", "points on each edge that take part in contact beside its two vertices, 0 to 16"},
-                   {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+  info.settings = {
+      {"substeps", "10", "substeps a frame"},
+      {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
+      {"contact_samples", "1", "points on each edge that take part in contact beside its two vertices, 0 to 16"},
+      {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   return info;
 }
 

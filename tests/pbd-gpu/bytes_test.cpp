@@ -31,7 +31,7 @@ class Bytes : public Gpu {
         EXPECT_GT(costs[k].read_B, 0);
       } else {
         EXPECT_EQ(counted[k].read_B, costs[k].read_B)
-          << solver_name << " " << s.name << " " << scene.cloth.columns << "x" << scene.cloth.rows;
+            << solver_name << " " << s.name << " " << scene.cloth.columns << "x" << scene.cloth.rows;
       }
       EXPECT_EQ(counted[k].write_B, costs[k].write_B)
           << solver_name << " " << s.name << " " << scene.cloth.columns << "x" << scene.cloth.rows;

@@ -61,7 +61,8 @@ class Watch {
       const FrameMotion* start = scene.motion.empty() ? nullptr : &scene.motion.front();
       std::optional<ContactProbe>& probe = probes_.emplace_back();
       if (c.shape == Collider::Shape::Mesh) {
-        const std::vector<double> at = posed_positions(*c.mesh, start != nullptr ? start->colliders.at(k) : ColliderPose{});
+        const std::vector<double> at =
+            posed_positions(*c.mesh, start != nullptr ? start->colliders.at(k) : ColliderPose{});
         probe.emplace(cloth, contact::TriangleMeshView{at, c.mesh->triangles});
       } else if (c.shape == Collider::Shape::Sphere || c.shape == Collider::Shape::Capsules) {
         probe.emplace(cloth, shapes(c, start, k));

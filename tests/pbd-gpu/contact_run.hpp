@@ -13,9 +13,9 @@ struct ContactRun {
   double vertex_depth_m = 0;                    ///< of closed colliders
   double stretch = 0, stretch_end = 0;          ///< greatest structural edge over its rest length, less 1
   double kinetic_end_J = 0;
-  double drift_end_m_per_s = 0;                 ///< greatest speed of a vertex over the last half second, by displacement
+  double drift_end_m_per_s = 0;  ///< greatest speed of a vertex over the last half second, by displacement
   bool finite = true;
-  double step_s = 0;                            ///< mean wall time of a frame
+  double step_s = 0;  ///< mean wall time of a frame
   ClothState end;
 };
 

@@ -55,9 +55,9 @@ Scene falling(int columns, int rows) {
 }
 
 void expect_close(const Scene& s, int substeps, int samples, int frames, const std::string& what) {
-  ContactReference reference(s, substeps, samples);
-  const auto solver = make_xpbd(
-      complete_settings(xpbd_info(), {{"substeps", substeps}, {"contact_samples", samples}}), {-1, true});
+  ContactReference reference(s, substeps, static_cast<int>(samples_needed(s, static_cast<std::uint32_t>(samples))));
+  const auto solver =
+      make_xpbd(complete_settings(xpbd_info(), {{"substeps", substeps}, {"contact_samples", samples}}), {-1, true});
   solver->load(s);
   ClothState state;
   for (int f = 0; f < frames; ++f) {
@@ -76,6 +76,7 @@ TEST_F(Gpu, ContactAgreesWithDoublePrecisionKindByKind) {
   for (double friction : {0.0, kContactFriction}) {
     const std::vector<std::pair<std::string, Collider>> kinds = {
         {"plane", plane({0, 0.05, 0}, {0.6, 0.8, 0}, friction)},
+        {"small sphere", sphere({0.02, 0.04, 0.03}, 0.09, friction)},
         {"sphere", sphere({0.02, 0.01, 0.03}, 0.13, friction)},
         {"box", box({0.03, 0.01, 0.01}, {0.3, 0.07, 0.2}, friction)},
         {"capsules", capsules({0, 0.04, 0}, friction)},
@@ -147,9 +148,11 @@ TEST_F(Gpu, AFastSheetStopsAtAThinMeshFromEitherSide) {
 
 TEST_F(Gpu, ClothHoldsOnAnInclineUpToTheAngleOfFrictionAndSlidesBeyond) {
   const double friction = 0.5, g = 9.81, T = 0.5;
-  for (double share : {0.98, 1.1}) {  // of the tangent
+  for (const auto& [share, samples] : {std::pair{0.98, false}, {1.1, false}, {0.98, true}, {1.1, true}}) {
     const double angle = std::atan(share * friction), sine = std::sin(angle), cosine = std::cos(angle);
     Scene s = with_collider(sheet(5, 5, 0.4, 0.4), plane({0, 0, 0}, {sine, cosine, 0}, friction));
+    // A box far away: edges might pass into it, so there are samples.
+    if (samples) s = with_collider(s, box({9, 9, 9}, {1, 1, 1}, friction));
     s.cloth.axis_u = {cosine, -sine, 0};
     s.cloth.center_m = {0.02 * sine, 0.02 * cosine, 0};
     const auto solver = make("xpbd");
@@ -159,7 +162,8 @@ TEST_F(Gpu, ClothHoldsOnAnInclineUpToTheAngleOfFrictionAndSlidesBeyond) {
     for (std::size_t i = 0; i < start.size(); i += 3) {
       const double slid = cosine * (state.position[i] - start[i]) - sine * (state.position[i + 1] - start[i + 1]);
       const double expected = std::max(0.0, 0.5 * g * (sine - friction * cosine) * T * T);
-      EXPECT_NEAR(slid, expected, std::max(1e-5, 0.02 * expected)) << "tangent " << share << " of the friction";
+      EXPECT_NEAR(slid, expected, std::max(1e-5, 0.02 * expected))
+          << "tangent " << share << " of the friction, samples " << samples;
     }
   }
 }
@@ -189,6 +193,8 @@ TEST_F(Gpu, ContactIsLeftOutPieceByPiece) {
   const Scene plain = sheet(5, 4);
   const std::vector<Case> cases = {
       {plain, {}, false},
+      {with_collider(plain, plane({0, -0.2, 0}, {0, 1, 0})), {"contact_vertices"}, false},
+      {with_collider(plain, sphere({0, -9, 0}, 8)), {"contact_vertices"}, false},
       {with_collider(plain, sphere({0, -0.2, 0}, 0.1)), {"contact_samples", "contact_vertices"}, false},
       {moving(with_collider(plain, capsules({0, -0.2, 0}))), {"contact_samples", "contact_vertices"}, false},
       {with_collider(plain, open_sheet({0, -0.2, 0}, 0.1)),
@@ -217,7 +223,7 @@ TEST_F(Gpu, ContactIsLeftOutPieceByPiece) {
     }
   }
   const auto without = make("xpbd", {{"contact_samples", 0}});
-  without->load(cases[1].scene);
+  without->load(cases[3].scene);
   for (const BufferPlan& b : without->plan().buffers) EXPECT_EQ(b.name.find("sample"), std::string::npos) << b.name;
 }
 
