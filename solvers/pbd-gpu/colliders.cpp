@@ -108,7 +108,8 @@ MeshBuffers ColliderBuffers::add_meshes(const char* kind, bool moving_ones) {
   if (moving_ones && keep_start_)
     result.start_positions =
         &solver_.add_buffer(name + " start positions", positions.size() * sizeof(vec4), bytes_of(positions));
-  result.triangles = &solver_.add_buffer(name + " triangles", triangles.size() * sizeof(uvec4), bytes_of(triangles));
+  if (!keep_start_)
+    result.triangles = &solver_.add_buffer(name + " triangles", triangles.size() * sizeof(uvec4), bytes_of(triangles));
   return result;
 }
 

@@ -21,7 +21,7 @@ struct MeshRange {
 /// scene has none.
 struct MeshBuffers {
   std::vector<MeshRange> ranges;
-  const vulkan::Buffer* triangles = nullptr;        ///< uvec4 each: corners, and the collider's index
+  const vulkan::Buffer* triangles = nullptr;        ///< uvec4 each: corners, collider's index; not with keep_start
   const vulkan::Buffer* positions = nullptr;        ///< vec4 each; of what moves, at the frame's end
   const vulkan::Buffer* start_positions = nullptr;  ///< of what moves, at the frame's start; only if asked for
 };
@@ -43,11 +43,13 @@ class ColliderBuffers {
  public:
   /// Adds buffers, the stages the scene needs and their kernels to `solver`. Positions are relative to `origin_m`,
   /// subtracted in double. With `keep_start`, positions of moving meshes at the frame's start are kept as well
-  /// (capsules always carry both).
+  /// (capsules always carry both), and triangles are left to the method, which has them in an order of its own.
   ColliderBuffers(GpuSolver& solver, const Scene& scene, Vec3 origin_m, bool keep_start);
 
   ShapeBuffer planes, spheres, boxes, capsules;
   MeshBuffers standing, moving;
+
+  Vec3 origin_m() const { return origin_m_; }
 
   /// Upload and skinning, into the frame; to be called before anything reads what moves.
   void record();

@@ -13,6 +13,8 @@ namespace clothbench::pbd_gpu {
 
 inline constexpr std::uint32_t kGroupSize = 64;
 
+class XpbdContact;
+
 /// Bytes of one dispatch, counted from the scene (no contention retries of atomics).
 struct Traffic {
   double read_B = 0, write_B = 0;
@@ -85,6 +87,7 @@ class GpuSolver : public ClothSolver {
 
  private:
   friend ColliderBuffers;
+  friend XpbdContact;
   friend GripBuffer;
   friend class PaperContact;
   struct Initial {

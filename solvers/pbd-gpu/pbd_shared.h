@@ -112,7 +112,38 @@ struct GripConstants {
   uint unused0;
 };
 
+/// Contact of `xpbd`: at most 16 neighbouring triangles of one mesh, and the box round their way through the frame.
+struct MeshCluster {
+  uint first, count;
+  float margin, friction;
+};
+
+struct ClusterBox {
+  vec4 low;   // w: how far any of their corners goes in the frame
+  vec4 high;
+};
+
+struct BoxConstants {
+  uint first, count;
+};
+
+/// Push constants of the contact kernels of `xpbd`.
+struct ContactConstants {
+  uint columns, rows;
+  uint words;            // 32-bit words of clusters a vertex may touch
+  float begin, part;     // where the substep begins and how long it is, as fractions of the frame
+  float frames_per_s;
+  float least_margin_m;  // margins below it count as this
+  float border_margin_m; // and those round an open border below this as this
+  float reach_m;         // added to the way a vertex may go in the frame
+  float sample_reach_m;  // farthest a sample lies from its first vertex
+};
+
 #ifdef __cplusplus
+static_assert(sizeof(MeshCluster) == 16);
+static_assert(sizeof(ClusterBox) == 32);
+static_assert(sizeof(BoxConstants) == 8);
+static_assert(sizeof(ContactConstants) == 40);
 static_assert(sizeof(PlaneShape) == 32);
 static_assert(sizeof(SphereShape) == 32);
 static_assert(sizeof(BoxShape) == 80);

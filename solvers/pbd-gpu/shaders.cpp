@@ -157,6 +157,55 @@ CODE(satisfy_mesh_collisions_counted)
 }
 ;
 
+CODE(contact_boxes)
+#include "contact_boxes.inc"
+}
+;
+CODE(contact_boxes_counted)
+#include "contact_boxes_counted.inc"
+}
+;
+CODE(contact_candidates)
+#include "contact_candidates.inc"
+}
+;
+CODE(contact_candidates_counted)
+#include "contact_candidates_counted.inc"
+}
+;
+CODE(contact_samples)
+#include "contact_samples.inc"
+}
+;
+CODE(contact_samples_counted)
+#include "contact_samples_counted.inc"
+}
+;
+CODE(contact_samples_mesh)
+#include "contact_samples_mesh.inc"
+}
+;
+CODE(contact_samples_mesh_counted)
+#include "contact_samples_mesh_counted.inc"
+}
+;
+CODE(contact_vertices)
+#include "contact_vertices.inc"
+}
+;
+CODE(contact_vertices_counted)
+#include "contact_vertices_counted.inc"
+}
+;
+CODE(contact_vertices_mesh)
+#include "contact_vertices_mesh.inc"
+}
+;
+CODE(contact_vertices_mesh_counted)
+#include "contact_vertices_mesh_counted.inc"
+}
+;
+
 }  // namespace
 
 namespace shaders {
@@ -180,6 +229,12 @@ SHADER(kSatisfySphereCollisions, satisfy_sphere_collisions);
 SHADER(kSatisfyCubeCollisions, satisfy_cube_collisions);
 SHADER(kSatisfyCapsuleCollisions, satisfy_capsule_collisions);
 SHADER(kSatisfyMeshCollisions, satisfy_mesh_collisions);
+SHADER(kContactBoxes, contact_boxes);
+SHADER(kContactCandidates, contact_candidates);
+SHADER(kContactSamples, contact_samples);
+SHADER(kContactSamplesMesh, contact_samples_mesh);
+SHADER(kContactVertices, contact_vertices);
+SHADER(kContactVerticesMesh, contact_vertices_mesh);
 }  // namespace shaders
 
 }  // namespace clothbench::pbd_gpu

@@ -13,7 +13,8 @@ namespace shaders {
 extern const Shader kApplyExternalForces, kDampVelocities, kApplyExplicitEuler, kProjectConstraintDeltas,
     kProjectConstraintDeltasNative, kAverageConstraintDeltas, kUpdatePositions, kIntegrate, kProjectDistance,
     kProjectBending, kProjectDistanceIterated, kProjectBendingIterated, kSkinMesh, kSkinMeshKeepStart, kMoveGrips,
-    kSatisfySphereCollisions, kSatisfyCubeCollisions, kSatisfyCapsuleCollisions, kSatisfyMeshCollisions;
+    kSatisfySphereCollisions, kSatisfyCubeCollisions, kSatisfyCapsuleCollisions, kSatisfyMeshCollisions, kContactBoxes,
+    kContactCandidates, kContactSamples, kContactSamplesMesh, kContactVertices, kContactVerticesMesh;
 }
 
 }  // namespace clothbench::pbd_gpu

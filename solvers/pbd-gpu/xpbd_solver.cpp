@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "gpu_solver.hpp"
+#include "xpbd_contact.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -39,14 +40,14 @@ class Xpbd final : public GpuSolver {
  private:
   void build() override {
     const std::vector<double> start = initial_positions(scene());
-    w_ = inverse_masses(scene());
+    const std::vector<float>& w = inverse_mass_now();
     const Vec3 v0 = scene().cloth.initial_velocity_m_per_s, origin = scene().cloth.center_m;
     vec4s position, velocity;
-    for (std::size_t i = 0; i < w_.size(); ++i) {
+    for (std::size_t i = 0; i < w.size(); ++i) {
       // Relative to the cloth's first centre: a scene far from the world's origin loses no digits.
       const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k] - origin[k]); };
-      const auto speed = [&](std::size_t k) { return w_[i] > 0 ? static_cast<float>(v0[k]) : 0.0f; };
-      position.push_back({at(0), at(1), at(2), w_[i]});
+      const auto speed = [&](std::size_t k) { return w[i] > 0 ? static_cast<float>(v0[k]) : 0.0f; };
+      position.push_back({at(0), at(1), at(2), w[i]});
       velocity.push_back({speed(0), speed(1), speed(2), 0});
     }
     x_ = &add_vec4_buffer("positions", position);
@@ -54,8 +55,9 @@ class Xpbd final : public GpuSolver {
     rx_ = &add_buffer("position rests", x_->bytes());
     rv_ = &add_buffer("velocity rests", v_->bytes());
     set_state(*x_, *v_, origin);
+    add_colliders(origin, true);
     build_families();
-    build_stages();
+    build_stages(origin);
   }
 
   void build_families() {
@@ -70,7 +72,7 @@ class Xpbd final : public GpuSolver {
       bend_ = {{1, 0, 2, 3, 0, du * du * du / (B * dv)}, {0, 1, 2, 3, 0, dv * dv * dv / (B * du)}};
   }
 
-  void build_stages() {
+  void build_stages(Vec3 origin) {
     const FeatureSet needs = scene().needs;
     const auto push = static_cast<std::uint32_t>(sizeof(XpbdConstants));
     const bool damped = needs.has(Feature::Damping);
@@ -79,13 +81,15 @@ class Xpbd final : public GpuSolver {
         stage_integrate_, shaders::kIntegrate,
         {{x_, Access::ReadWrite}, {v_, Access::ReadWrite}, {rx_, Access::ReadWrite}, {rv_, Access::ReadWrite}}, push,
         {damped ? 1u : 0u});
+    add_grips(origin, 1);
+    if (grips() != nullptr) move_grips_ = &grips()->add_kernel(*x_, *v_);
     if (!damped) leave_out("damping", "the scene has none");
     const bool keep = settings()["iterations"].get<int>() > 1;
     const Shader& distance = keep ? shaders::kProjectDistanceIterated : shaders::kProjectDistance;
     const auto state = [&](const char* name, std::uint64_t multiplier_bytes) {
       std::vector<vulkan::Binding> b = {{x_, Access::ReadWrite}, {v_, Access::ReadWrite}};
       // Two families each; a constraint is named by its first vertex.
-      if (keep) b.push_back({&add_buffer(name, 2 * w_.size() * multiplier_bytes), Access::ReadWrite});
+      if (keep) b.push_back({&add_buffer(name, 2 * inverse_mass_now().size() * multiplier_bytes), Access::ReadWrite});
       return b;
     };
     if (!keep) leave_out("multipliers", "setting iterations=1: they would start at 0 and be dropped");
@@ -100,7 +104,11 @@ class Xpbd final : public GpuSolver {
     } else {
       leave_out("ProjectBending", "the scene has no bending");
     }
-    if ((needs & kColliderFeatures).empty()) leave_out("contact", "the scene has no collider");
+    if ((needs & kColliderFeatures).empty())
+      leave_out("contact", "the scene has no collider");
+    else
+      contact_ = std::make_unique<XpbdContact>(*this, scene(), origin, *colliders(), *x_, *v_,
+                                               settings()["contact_samples"].get<std::uint32_t>());
   }
 
   /// Bytes of one dispatch: with m = vertices of a constraint, 16 m for positions, and another 16 m read and 32 m
@@ -110,7 +118,7 @@ class Xpbd final : public GpuSolver {
     const double multiplier = settings()["iterations"].get<int>() == 1 ? 0 : vertices == 3 ? 16 : 4;
     for_each(f, colour, [&](std::size_t first, std::size_t step) {
       bool any_free = false;
-      for (int k = 0; k < vertices; ++k) any_free |= w_[first + static_cast<std::size_t>(k) * step] > 0;
+      for (int k = 0; k < vertices; ++k) any_free |= inverse_mass_now()[first + static_cast<std::size_t>(k) * step] > 0;
       t.read_B += 16.0 * vertices * (any_free ? 2 : 1) + (any_free && iteration > 0 ? multiplier : 0);
       t.write_B += any_free ? 32.0 * vertices + multiplier : 0.0;
     });
@@ -159,8 +167,9 @@ class Xpbd final : public GpuSolver {
     c.rows = static_cast<std::uint32_t>(scene().cloth.rows);
     c.h = static_cast<float>(h);
     c.loss = static_cast<float>(-std::expm1(-scene().material.damping_per_s * h));
-    const auto n = static_cast<double>(w_.size());
-    const auto f = static_cast<double>(std::count_if(w_.begin(), w_.end(), [](float w) { return w > 0; }));
+    const std::vector<float>& w = inverse_mass_now();
+    const auto n = static_cast<double>(w.size());
+    const auto f = static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }));
     struct Constraints {
       int stage;
       const vulkan::Kernel* kernel;
@@ -171,23 +180,30 @@ class Xpbd final : public GpuSolver {
                                        {stage_shear_, shear_distance_, &shear_, 2},
                                        {stage_bend_, bending_, &bend_, 3}};
     const auto iterations = settings()["iterations"].get<std::uint32_t>();
+    if (colliders() != nullptr) colliders()->record();
+    if (grips() != nullptr) grips()->record_upload();
+    if (contact_) contact_->record_frame(dt_s, substeps);
     for (int s = 0; s < substeps; ++s) {
-      dispatch(stage_integrate_, *integrate_, w_.size(), c, {16 * n + 48 * f, 64 * f});
+      // First, so that a vertex let go is free in all of its frame.
+      if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
+      dispatch(stage_integrate_, *integrate_, w.size(), c, {16 * n + 48 * f, 64 * f});
       for (c.iteration = 0; c.iteration < iterations; ++c.iteration) {
         for (const auto& [stage, kernel, families, vertices] : constraints)
           for (std::size_t k = 0; k < families->size(); ++k) {
-            c.multiplier_first = static_cast<std::uint32_t>(k * w_.size());
+            c.multiplier_first = static_cast<std::uint32_t>(k * w.size());
             project(stage, *kernel, (*families)[k], c, vertices);
           }
       }
+      if (contact_) contact_->record_substep(s, substeps, dt_s);
     }
   }
 
-  std::vector<float> w_;
+  std::unique_ptr<XpbdContact> contact_;
   std::vector<Family> stretch_, shear_, bend_;
   int stage_integrate_ = -1, stage_stretch_ = -1, stage_shear_ = -1, stage_bend_ = -1;
   vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *rx_ = nullptr, *rv_ = nullptr;
   vulkan::Kernel *integrate_ = nullptr, *distance_ = nullptr, *shear_distance_ = nullptr, *bending_ = nullptr;
+  const vulkan::Kernel* move_grips_ = nullptr;
 };
 
 }  // namespace
@@ -200,10 +216,14 @@ SolverInfo xpbd_info() {
   info.version = "1";
   info.precision = "float32";
   info.on_gpu = true;
-  info.supports = {Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins};
-  info.settings = {{"substeps", "10", "substeps a frame"},
-                   {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
-                   {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+  info.supports = {Feature::Stretch,    Feature::Shear,      Feature::Bend,     Feature::Damping,    Feature::Pins,
+                   Feature::MovingPins, Feature::Sphere,     Feature::Box,      Feature::Plane,      Feature::Capsules,
+                   Feature::StaticMesh, Feature::MovingMesh, Feature::Friction, Feature::DoubleSided};
+  info.settings = {
+      {"substeps", "10", "substeps a frame"},
+      {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
+      {"contact_samples", "1", "points on each edge that take part in contact beside its two vertices, 0 to 16"},
+      {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   return info;
 }
 
@@ -212,6 +232,8 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
     throw Error("solver xpbd: setting substeps: expected 1 to 4096; found " + settings["substeps"].dump());
   if (!(settings["iterations"].get<double>() >= 1 && settings["iterations"].get<double>() <= 4096))
     throw Error("solver xpbd: setting iterations: expected 1 to 4096; found " + settings["iterations"].dump());
+  if (!(settings["contact_samples"].get<double>() >= 0 && settings["contact_samples"].get<double>() <= 16))
+    throw Error("solver xpbd: setting contact_samples: expected 0 to 16; found " + settings["contact_samples"].dump());
   return std::make_unique<Xpbd>(xpbd_info(), settings, device, count_bytes);
 }
 

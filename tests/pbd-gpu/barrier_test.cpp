@@ -24,7 +24,10 @@ std::vector<Cell> cells() {
           {"paper", {{"iterations", 2}, {"substeps", 2}}, moving(doubled(full), {3, 20}, 2)},
           {"xpbd", {{"substeps", 2}}, plain},
           {"xpbd", {{"substeps", 2}}, full},
-          {"xpbd", {{"substeps", 2}, {"iterations", 2}}, full}};
+          {"xpbd", {{"substeps", 2}, {"iterations", 2}}, full},
+          {"xpbd", {{"substeps", 2}}, everything(full)},
+          {"xpbd", {{"substeps", 2}, {"contact_samples", 0}}, everything(full)},
+          {"xpbd", {{"substeps", 2}}, moving(with_collider(full, sphere({0, 0, 0}, 0.1)), {3, 20}, 2)}};
 }
 
 using Barriers = Gpu;

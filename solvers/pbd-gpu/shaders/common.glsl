@@ -18,6 +18,7 @@ layout(std430, binding = COUNTER_BINDING) buffer Counter { uint counted_read, co
 #define LOAD4(array, i) (atomicAdd(counted_read, 4u), array[i])
 #define STORE16(array, i, value) { atomicAdd(counted_write, 16u); array[i] = (value); }
 #define STORE4(array, i, value) { atomicAdd(counted_write, 4u); array[i] = (value); }
+#define STORE32(array, i, value) { atomicAdd(counted_write, 32u); array[i] = (value); }
 #define COUNT_ATOMIC { atomicAdd(counted_read, 4u); atomicAdd(counted_write, 4u); }
 #else
 #define LOAD(bytes, array, i) (array[i])
@@ -26,5 +27,6 @@ layout(std430, binding = COUNTER_BINDING) buffer Counter { uint counted_read, co
 #define LOAD4(array, i) (array[i])
 #define STORE16(array, i, value) { array[i] = (value); }
 #define STORE4(array, i, value) { array[i] = (value); }
+#define STORE32(array, i, value) { array[i] = (value); }
 #define COUNT_ATOMIC
 #endif

@@ -1,0 +1,59 @@
+// Takes a point of the cloth from where it was at the substep's start, on the right side of everything, towards where
+// integration and constraints have put it, without passing through anything on the way: conservative advancement
+// (Mirtich 1996) in space and time, against planes. Where it is at the end is the side it remembers.
+const uint kSteps = 8u;
+bool touched;  // something was heeded
+
+/// The contact's answer: no approach is left in the velocity, Coulomb friction takes of the rest, and the way left goes
+/// no nearer than the margin. A push out of the margin moves the point but is no velocity: it would pop.
+void heed(Touch t, inout vec3 vel) {
+  vec3 surface = t.delta * p.frames_per_s;
+  vec3 relative = vel - surface;
+  float approach = max(0.0, -dot(relative, t.n));
+  relative += approach * t.n;
+  vec3 way = left - part * t.delta;
+  float along = dot(way, t.n);
+  vec3 slide = way - along * t.n;
+  if (FRICTION == 1u) {
+    float most = t.friction * approach;
+    vec3 slip = relative - dot(relative, t.n) * t.n;
+    float speed = length(slip), l = length(slide);
+    if (speed > 0.0) relative -= slip * min(1.0, most / speed);
+    if (l > 0.0) slide *= max(0.0, 1.0 - most * part / (p.frames_per_s * l));
+  }
+  vel = surface + relative;
+  left = part * t.delta + slide + max(along, -t.gap) * t.n;
+  heeded = t.n;
+  touched = true;
+}
+
+/// Where the point is at the substep's end; `vel` is its velocity.
+vec3 advance(vec3 from, vec3 to, uint owner, inout vec3 vel) {
+  at = from;
+  left = to - from;
+  now = p.begin;
+  part = p.part;
+  heeded = vec3(0.0);
+  touched = false;
+  for (uint k = 0u; k < kSteps; ++k) {
+    look_round(owner);
+    bool first = heeded == vec3(0.0);
+    bool by_nearest = first && nearest.gap < kSlack * nearest.margin && nearest.need > kTolerance * nearest.margin;
+    bool by_other = !by_nearest && other.gap < kFar && (!first || dot(other.n, nearest.n) < kOther);
+    if ((by_nearest || by_other) && k + 1u < kSteps) {
+      if (by_nearest) heed(nearest, vel); else heed(other, vel);
+      // What stands still is free of a way shorter than the distance to the nearest of it. Else: is it free now?
+      float spare = nearest.gap + (1.0 - kKeep) * nearest.margin;
+      if (MOVING == 0u && !crowded && spare > 0.0 && dot(left, left) < spare * spare) return at + left;
+      continue;
+    }
+    at += free_part * left;
+    now += free_part * part;
+    left *= 1.0 - free_part;
+    part *= 1.0 - free_part;
+    heeded = vec3(0.0);
+    if (free_part == 1.0) return at;
+  }
+  // An unfinished search counts as a hit: the point goes no further than what is next to it.
+  return at + part * nearest.delta;
+}

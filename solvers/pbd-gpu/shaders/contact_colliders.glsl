@@ -1,0 +1,188 @@
+// What the cloth touches, and what of it is near one point. Included after FIRST_COLLIDER_BINDING is set and the push
+// constants `p` are there. Kinds the scene lacks have a count of 0, a constant, so that their code is dropped; the
+// variant without MESHES has no buffer for meshes either.
+layout(constant_id = 1) const uint PLANES = 0u;
+layout(constant_id = 2) const uint SPHERES = 0u;
+layout(constant_id = 3) const uint BOXES = 0u;
+layout(constant_id = 4) const uint CAPSULES = 0u;
+layout(constant_id = 5) const uint FRICTION = 0u;
+layout(constant_id = 6) const uint STANDING_CLUSTERS = 0u;
+layout(constant_id = 7) const uint SAMPLES = 0u;  // an edge
+layout(constant_id = 8) const uint MOVING = 0u;   // whether any collider moves
+
+layout(std430, binding = FIRST_COLLIDER_BINDING) readonly buffer Planes { PlaneShape planes[]; };
+layout(std430, binding = FIRST_COLLIDER_BINDING + 1) readonly buffer Spheres { SphereShape spheres[]; };
+layout(std430, binding = FIRST_COLLIDER_BINDING + 2) readonly buffer Boxes { BoxShape boxes[]; };
+layout(std430, binding = FIRST_COLLIDER_BINDING + 3) readonly buffer Capsules { CapsuleShape capsules[]; };
+#ifdef MESHES
+layout(std430, binding = FIRST_COLLIDER_BINDING + 4) readonly buffer Clusters { MeshCluster clusters[]; };
+layout(std430, binding = FIRST_COLLIDER_BINDING + 5) readonly buffer ClusterBoxes { ClusterBox cluster_boxes[]; };
+layout(std430, binding = FIRST_COLLIDER_BINDING + 6) readonly buffer Triangles { uvec4 triangles[]; };
+layout(std430, binding = FIRST_COLLIDER_BINDING + 7) readonly buffer Standing { vec4 standing[]; };
+layout(std430, binding = FIRST_COLLIDER_BINDING + 8) readonly buffer MovingStart { vec4 moving_start[]; };
+layout(std430, binding = FIRST_COLLIDER_BINDING + 9) readonly buffer MovingEnd { vec4 moving_end[]; };
+layout(std430, binding = FIRST_COLLIDER_BINDING + 10) readonly buffer Candidates { uint candidates[]; };
+layout(std430, binding = FIRST_COLLIDER_BINDING + 11) readonly buffer Reaches { vec4 reaches[]; };
+#endif
+
+// Shares of a margin. A move may end nothing closer than kKeep of it: far above the rounding of float32 positions,
+// below which the side would be lost; rarely felt, since contact holds the cloth at the whole margin.
+const float kKeep = 0.02;
+// Contact begins this much outside the margin, or a resting vertex would fall back to it only every other substep and
+// creep in the one between.
+const float kSlack = 0.05;
+const float kTolerance = 1e-4;  // a push by less is none
+const float kTaken = 0.9;       // of the free way, the rest is left for rounding
+const float kOther = 0.8;       // cosine above which two normals are one contact's: neighbours in a nearly flat mesh
+const float kFar = 1e30;
+
+/// One convex piece of a collider as one point of the cloth sees it.
+struct Touch {
+  float gap;             // distance beyond the margin
+  float need;            // by how much the way left would end inside the margin of this piece, taken as a plane
+  float margin, friction;
+  vec3 n, delta;         // from the piece to the point; way of its nearest point in the whole frame
+};
+
+// The point asked about: where it is, the way left to it in this substep, time as fraction of the frame, time left, and
+// the normal of the contact that was just heeded.
+vec3 at, left, heeded;
+float now, part;
+// The answer: the nearest piece, the nearest of those to heed, and which share of the way left passes through nothing.
+Touch nearest, other;
+float free_part;
+bool crowded;  // two pieces are in contact that are not neighbours in a nearly flat mesh
+
+/// A convex piece at distance d lies wholly behind the plane through its nearest point across n. So the way is free
+/// of it as long as the point stays before that plane, whatever the piece's shape: nothing to solve, no root to miss.
+void consider(float d, vec3 n, vec3 delta, float margin, float friction) {
+  float m = max(margin, p.least_margin_m);
+  float closing = -dot(left - part * delta, n);
+  float spare = d - kKeep * m;
+  if (closing > spare && closing > 0.0) free_part = min(free_part, kTaken * max(spare, 0.0) / closing);
+  Touch t = Touch(d - m, closing - d + m, m, friction, n, delta);
+  if (max(t.gap, nearest.gap) < kSlack * m && dot(n, nearest.n) < kOther) crowded = true;
+  if (t.gap < nearest.gap) nearest = t;
+  if (t.gap < kSlack * m && t.need > kTolerance * m && t.gap < other.gap && dot(n, heeded) < kOther) other = t;
+}
+
+vec3 direction(vec3 d, float l, vec3 otherwise) { return l > 0.0 ? d / l : otherwise; }
+
+void consider_shapes() {
+  for (uint k = 0u; k < PLANES; ++k) {
+    PlaneShape s = LOAD(32u, planes, k);
+    consider(dot(at, s.normal.xyz) - s.normal.w, s.normal.xyz, vec3(0.0), s.margin, s.friction);
+  }
+  for (uint k = 0u; k < SPHERES; ++k) {
+    SphereShape s = LOAD(32u, spheres, k);
+    vec3 d = at - s.center.xyz;
+    float l = length(d);
+    consider(l - s.radius, direction(d, l, vec3(0.0, 1.0, 0.0)), vec3(0.0), s.margin, s.friction);
+  }
+  for (uint k = 0u; k < BOXES; ++k) {
+    BoxShape s = LOAD(80u, boxes, k);
+    mat3 axes = mat3(s.axis_x.xyz, s.axis_y.xyz, s.axis_z.xyz);
+    vec3 local = (at - s.center.xyz) * axes, half_extent = vec3(s.axis_x.w, s.axis_y.w, s.axis_z.w);
+    vec3 beyond = abs(local) - half_extent, way = sign(local);
+    float l = length(max(beyond, 0.0)), deepest = max(beyond.x, max(beyond.y, beyond.z));
+    // Inside, the nearest face; a corner of the box is as far as its nearest point, outside.
+    vec3 face = beyond.x == deepest ? vec3(1, 0, 0) : beyond.y == deepest ? vec3(0, 1, 0) : vec3(0, 0, 1);
+    vec3 n = l > 0.0 ? max(beyond, 0.0) * way / l : face * mix(vec3(-1.0), vec3(1.0), greaterThanEqual(local, vec3(0.0)));
+    consider(l > 0.0 ? l : deepest, axes * n, vec3(0.0), s.margin, s.friction);
+  }
+  for (uint k = 0u; k < CAPSULES; ++k) {
+    CapsuleShape s = LOAD(64u, capsules, k);
+    vec3 a = mix(s.a0.xyz, s.a1.xyz, now), ab = mix(s.b0.xyz, s.b1.xyz, now) - a;
+    float squared = dot(ab, ab), t = squared > 0.0 ? clamp(dot(at - a, ab) / squared, 0.0, 1.0) : 0.0;
+    vec3 d = at - a - t * ab;
+    float l = length(d);
+    vec3 delta = mix(s.a1.xyz - s.a0.xyz, s.b1.xyz - s.b0.xyz, t);
+    consider(l - s.a0.w, direction(d, l, vec3(0.0, 1.0, 0.0)), delta, s.b0.w, s.b1.w);
+  }
+}
+
+#ifdef MESHES
+vec3 weights_on_edge(vec3 q, vec3 a, vec3 ab, out float squared) {
+  float l = dot(ab, ab), t = l > 0.0 ? clamp(dot(q - a, ab) / l, 0.0, 1.0) : 0.0;
+  vec3 d = q - a - t * ab;
+  squared = dot(d, d);
+  return vec3(1.0 - t, t, 0.0);
+}
+
+/// Barycentric weights of the point of triangle abc nearest to q. Triangles without area are their edges.
+vec3 nearest_weights(vec3 q, vec3 a, vec3 b, vec3 c) {
+  vec3 ab = b - a, ac = c - a, aq = q - a, n = cross(ab, ac);
+  float all = dot(n, n), wc = dot(cross(ab, aq), n), wb = dot(cross(aq, ac), n), wa = all - wb - wc;
+  if (all > 0.0 && wa >= 0.0 && wb >= 0.0 && wc >= 0.0) return vec3(wa, wb, wc) / all;
+  float best, second, third;
+  vec3 w = weights_on_edge(q, a, ab, best);
+  vec3 on_bc = weights_on_edge(q, b, c - b, second), on_ca = weights_on_edge(q, c, a - c, third);
+  if (second < best) {
+    w = on_bc.zxy;
+    best = second;
+  }
+  return third < best ? on_ca.yzx : w;
+}
+
+void consider_triangle(uvec4 corners, bool moving, float reach, float margin, float friction) {
+  vec3 a, b, c, da = vec3(0.0), db = vec3(0.0), dc = vec3(0.0);
+  if (moving) {
+    a = LOAD16(moving_start, corners.x).xyz;
+    b = LOAD16(moving_start, corners.y).xyz;
+    c = LOAD16(moving_start, corners.z).xyz;
+    da = LOAD16(moving_end, corners.x).xyz - a;
+    db = LOAD16(moving_end, corners.y).xyz - b;
+    dc = LOAD16(moving_end, corners.z).xyz - c;
+    a += now * da;
+    b += now * db;
+    c += now * dc;
+  } else {
+    a = LOAD16(standing, corners.x).xyz;
+    b = LOAD16(standing, corners.y).xyz;
+    c = LOAD16(standing, corners.z).xyz;
+  }
+  vec3 apart = max(max(min(a, min(b, c)) - at, at - max(a, max(b, c))), 0.0);
+  if (dot(apart, apart) > reach * reach) return;
+  vec3 w = nearest_weights(at, a, b, c);
+  // An open border is a knife: what passes it between two points of the cloth must be nearer to one of them than half
+  // their distance.
+  bool border = (w.x == 0.0 && (corners.w & 1u) != 0u) || (w.y == 0.0 && (corners.w & 2u) != 0u) ||
+                (w.z == 0.0 && (corners.w & 4u) != 0u);
+  if (border) margin = max(margin, p.border_margin_m);
+  vec3 d = at - (w.x * a + w.y * b + w.z * c), flat_normal = cross(b - a, c - a);
+  float l = length(d);
+  consider(l, direction(d, l, direction(flat_normal, length(flat_normal), vec3(0.0, 1.0, 0.0))),
+           w.x * da + w.y * db + w.z * dc, margin, friction);
+}
+
+/// `owner`: the vertex whose list of clusters holds all that the point can meet in this frame.
+void consider_meshes(uint owner) {
+  float way = length(left);
+  for (uint word = 0u; word < p.words; ++word) {
+    uint bits = LOAD4(candidates, word * p.columns * p.rows + owner);
+    while (bits != 0u) {
+      uint k = 32u * word + uint(findLSB(bits));
+      bits &= bits - 1u;
+      ClusterBox box = LOAD(32u, cluster_boxes, k);
+      MeshCluster cluster = LOAD16(clusters, k);
+      vec3 apart = max(max(box.low.xyz - at, at - box.high.xyz), 0.0);
+      float reach = way + (1.0 + kSlack) * max(cluster.margin, max(p.least_margin_m, p.border_margin_m)) + part * box.low.w;
+      if (dot(apart, apart) > reach * reach) continue;
+      for (uint t = 0u; t < cluster.count; ++t)
+        consider_triangle(LOAD16(triangles, cluster.first + t), k >= STANDING_CLUSTERS, reach, cluster.margin,
+                          cluster.friction);
+    }
+  }
+}
+#endif
+
+void look_round(uint owner) {
+  nearest = Touch(kFar, 0.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
+  other = nearest;
+  free_part = 1.0;
+  crowded = false;
+  consider_shapes();
+#ifdef MESHES
+  consider_meshes(owner);
+#endif
+}

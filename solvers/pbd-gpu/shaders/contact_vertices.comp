@@ -1,0 +1,76 @@
+#version 450
+// End of a substep: every vertex goes from where it was at the substep's start as far towards where it now is as contact
+// lets it, after taking its share of what the samples on its edges need. X.w = inverse mass, 0 where pinned or held.
+#ifdef MESHES
+#define COUNTER_BINDING 16
+#else
+#define COUNTER_BINDING 8
+#endif
+#define FIRST_COLLIDER_BINDING 4
+#extension GL_GOOGLE_include_directive : require
+#include "common.glsl"
+layout(std430, binding = 0) buffer Positions { vec4 x[]; };
+layout(std430, binding = 1) buffer Velocities { vec4 v[]; };
+layout(std430, binding = 2) buffer Sides { vec4 side[]; };  // where the vertex was at the substep's start
+layout(std430, binding = 3) readonly buffer Corrections { vec4 corrections[]; };  // two a sample: way, velocity
+layout(push_constant) uniform Push { ContactConstants p; };
+#include "contact_colliders.glsl"
+#include "contact_advance.glsl"
+
+vec3 sum_x, sum_v;
+float weight_x, weight_v;
+
+/// The samples of the edge that `first` names.
+void gather(uint family, uint first) {
+  for (uint k = 0u; k < SAMPLES; ++k) {
+    uint s = (family * SAMPLES + k) * p.columns * p.rows + first;
+    vec4 c = LOAD16(corrections, 2u * s);
+    if (c.w == 0.0) continue;
+    vec3 way = c.w * c.xyz, gain = c.w * LOAD16(corrections, 2u * s + 1u).xyz;
+    float l = length(way), g = length(gain);
+    sum_x += l * way;
+    sum_v += g * gain;
+    weight_x += l;
+    weight_v += g;
+  }
+}
+
+/// What the samples on the up to six edges of the vertex ask for, in a fixed order: the mean weighted by how much each
+/// asks. Equal wishes give that wish, as on a plane, and one among many that are content is not outvoted, as on a corner.
+void gather_samples(uint i) {
+  uint column = i % p.columns, row = i / p.columns;
+  bool right = column + 1u < p.columns, left_of = column > 0u, down = row + 1u < p.rows, up = row > 0u;
+  if (right) gather(0u, i);
+  if (left_of) gather(0u, i - 1u);
+  if (down) gather(1u, i);
+  if (up) gather(1u, i - p.columns);
+  if (right && down) gather(2u, i);
+  if (left_of && up) gather(2u, i - p.columns - 1u);
+}
+
+void main() {
+  uint i = item();
+  if (i >= p.columns * p.rows) return;
+  vec4 to = LOAD16(x, i);
+  if (to.w == 0.0) {
+    STORE16(side, i, to);
+    return;
+  }
+  vec3 vel = LOAD16(v, i).xyz, from = LOAD16(side, i).xyz;
+  sum_x = sum_v = vec3(0.0);
+  weight_x = weight_v = 0.0;
+  if (SAMPLES > 0u) gather_samples(i);
+  if (weight_x > 0.0) to.xyz += sum_x / weight_x;
+  if (weight_v > 0.0) vel += sum_v / weight_v;
+#ifdef MESHES
+  // The list of clusters holds for this way and no further.
+  vec4 reach = LOAD16(reaches, i);
+  vec3 way = to.xyz - reach.xyz;
+  to.xyz = reach.xyz + way * min(1.0, reach.w / max(length(way), 1e-30));
+#endif
+  // A vertex that is no number stays none, for the runner to find.
+  if (dot(to.xyz, to.xyz) < kFar) to.xyz = advance(from, to.xyz, i, vel);
+  STORE16(x, i, to);
+  STORE16(v, i, vec4(vel, 0.0));
+  STORE16(side, i, to);
+}

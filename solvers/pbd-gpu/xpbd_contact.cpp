@@ -1,0 +1,309 @@
+#include "xpbd_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "gpu_solver.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+using vulkan::Access;
+using vulkan::Buffer;
+
+/// A margin below this share of the cells' size counts as this: 0.16 mm for a cloth of half a metre and 32 vertices. It
+/// keeps the side of a vertex apart from the rounding of its position. More holds the cloth off visibly.
+constexpr double kLeastMargin = 0.01;
+
+template <class T>
+std::vector<std::uint8_t> bytes_of(const std::vector<T>& items) {
+  std::vector<std::uint8_t> bytes(items.size() * sizeof(T));
+  std::memcpy(bytes.data(), items.data(), bytes.size());
+  return bytes;
+}
+
+/// Round an open border, half the greatest distance between two points of an edge that take part in contact, and a
+/// tenth for stretch.
+constexpr double kBorder = 0.55;
+
+double longer_side(const Cloth& c) { return std::max(c.du(), c.dv()); }
+
+void split(const std::vector<Vec3>& centroids, std::vector<std::uint32_t>::iterator first,
+           std::vector<std::uint32_t>::iterator last, std::vector<std::uint32_t>& sizes) {
+  const auto count = static_cast<std::size_t>(last - first);
+  if (count <= Clusters::kClusterSize) {
+    if (count > 0) sizes.push_back(static_cast<std::uint32_t>(count));
+    return;
+  }
+  Vec3 low = centroids[*first], high = low;
+  for (auto t = first; t != last; ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], centroids[*t][k]);
+      high[k] = std::max(high[k], centroids[*t][k]);
+    }
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+  // Ties by index: the same clusters on every machine.
+  const auto middle = first + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(first, middle, last, [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(centroids[a][axis], a) < std::pair(centroids[b][axis], b);
+  });
+  std::sort(first, middle);
+  std::sort(middle, last);
+  split(centroids, first, middle, sizes);
+  split(centroids, middle, last, sizes);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> border_edges(const std::vector<double>& positions,
+                                        const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  // Scans and hands repeat vertices along seams of their textures: one place is one vertex.
+  std::map<Vec3, std::uint32_t> places;
+  std::vector<std::uint32_t> place;
+  for (std::size_t v = 0; v < positions.size(); v += 3)
+    place.push_back(
+        places
+            .try_emplace({positions[v], positions[v + 1], positions[v + 2]}, static_cast<std::uint32_t>(places.size()))
+            .first->second);
+  const auto opposite = [&](const std::array<std::uint32_t, 3>& t, std::size_t k) {
+    return std::minmax(place[t[(k + 1) % 3]], place[t[(k + 2) % 3]]);
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> triangles_at;
+  for (const auto& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++triangles_at[opposite(t, k)];
+  std::vector<std::uint32_t> bits(triangles.size(), 0);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (triangles_at[opposite(triangles[t], k)] == 1) bits[t] |= 1u << k;
+  return bits;
+}
+
+std::uint32_t samples_needed(const Scene& scene, std::uint32_t wanted) {
+  const double du = scene.cloth.du(), dv = scene.cloth.dv(), squared = du * du + dv * dv;
+  const auto needed = [&](const Collider& c) {
+    if (c.shape == Collider::Shape::Plane) return false;
+    // Height over a chord of length l of a circle of radius r: l^2 / 8r, for l well below r; stretched by half, twice.
+    return c.shape != Collider::Shape::Sphere || !(2 * squared / (8 * c.radius_m) <= c.margin_m);
+  };
+  return std::any_of(scene.colliders.begin(), scene.colliders.end(), needed) ? wanted : 0;
+}
+
+Clusters cluster(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  std::vector<Vec3> centroids;
+  for (const auto& t : triangles) {
+    Vec3& c = centroids.emplace_back(Vec3{});
+    for (const std::uint32_t v : t)
+      for (std::size_t k = 0; k < 3; ++k) c[k] += positions[3 * v + k] / 3;
+  }
+  Clusters result;
+  result.triangles.resize(triangles.size());
+  std::iota(result.triangles.begin(), result.triangles.end(), 0u);
+  split(centroids, result.triangles.begin(), result.triangles.end(), result.sizes);
+  return result;
+}
+
+XpbdContact::XpbdContact(GpuSolver& solver, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
+                         const Buffer& positions, const Buffer& velocities, std::uint32_t samples)
+    : solver_(solver),
+      scene_(scene),
+      colliders_(colliders),
+      x_(positions),
+      v_(velocities),
+      samples_(samples_needed(scene, samples)) {
+  if (samples == 0) solver_.leave_out("contact samples", "setting contact_samples=0");
+  if (samples_ < samples) solver_.leave_out("contact samples", "no edge of the cloth reaches between two vertices");
+  const FeatureSet meshes = scene.needs & FeatureSet{Feature::StaticMesh, Feature::MovingMesh};
+  if (meshes.empty())
+    solver_.leave_out("BroadPhase", "the scene has no mesh to collide with");
+  else
+    stage_broad_ = solver_.add_stage("BroadPhase", meshes);
+  stage_contact_ = solver_.add_stage(
+      "Contact", scene.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided}));
+  add_sides(origin_m);
+  if (!meshes.empty()) add_meshes();
+  add_kernels();
+}
+
+void XpbdContact::add_sides(Vec3 origin_m) {
+  const std::vector<double> start = initial_positions(scene_);
+  const std::size_t n = scene_.cloth.vertex_count(), columns = static_cast<std::size_t>(scene_.cloth.columns);
+  std::vector<vec4> side, sample_side(3 * samples_ * n, vec4{});
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k] - origin_m[k]); };
+    side.push_back({at(0), at(1), at(2), 0});
+  }
+  side_ = &solver_.add_vec4_buffer("contact sides", side);
+  if (samples_ == 0) return;
+  const std::size_t steps[] = {1, columns, columns + 1};
+  for (std::size_t f = 0; f < 3 * samples_; ++f)
+    for (std::size_t i = 0; i + steps[f / samples_] < n; ++i) {
+      const vec4 &a = side[i], &b = side[i + steps[f / samples_]];
+      const float t = static_cast<float>(f % samples_ + 1) / static_cast<float>(samples_ + 1);
+      sample_side[f * n + i] = {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z), 0};
+    }
+  sample_side_ = &solver_.add_vec4_buffer("contact sides of samples", sample_side);
+  corrections_ = &solver_.add_buffer("contact corrections", 2 * sample_side.size() * sizeof(vec4));
+}
+
+void XpbdContact::add_meshes() {
+  std::vector<MeshCluster> clusters;
+  std::vector<ClusterBox> boxes;
+  std::vector<uvec4> triangles;
+  for (const bool moving : {false, true}) {
+    const MeshBuffers& meshes = moving ? colliders_.moving : colliders_.standing;
+    const auto clusters_before = static_cast<std::uint32_t>(clusters.size());
+    const std::size_t triangles_before = triangles.size();
+    for (const MeshRange& range : meshes.ranges) {
+      const ColliderMesh& mesh = *scene_.colliders[range.collider].mesh;
+      const std::vector<double> at =
+          moving ? posed_positions(mesh, scene_.motion.at(0).colliders.at(range.collider)) : mesh.positions;
+      const Clusters c = cluster(at, mesh.triangles);
+      const std::vector<std::uint32_t> borders = border_edges(at, mesh.triangles);
+      std::size_t next = 0;
+      for (const std::uint32_t size : c.sizes) {
+        clusters.push_back({static_cast<uint>(triangles.size()), size, range.margin_m, range.friction});
+        constexpr float kFar = std::numeric_limits<float>::max();
+        float low[3] = {kFar, kFar, kFar}, high[3] = {-kFar, -kFar, -kFar};
+        for (const std::size_t end = next + size; next < end; ++next) {
+          const auto& t = mesh.triangles[c.triangles[next]];
+          triangles.push_back({range.first_vertex + t[0], range.first_vertex + t[1], range.first_vertex + t[2],
+                               borders[c.triangles[next]]});
+          for (const std::uint32_t v : t)
+            for (std::size_t k = 0; k < 3; ++k) {
+              const auto x = static_cast<float>(at[3 * v + k] - colliders_.origin_m()[k]);
+              low[k] = std::min(low[k], x);
+              high[k] = std::max(high[k], x);
+            }
+        }
+        boxes.push_back({{low[0], low[1], low[2], 0}, {high[0], high[1], high[2], 0}});
+      }
+    }
+    (moving ? moving_clusters_ : standing_clusters_) = static_cast<std::uint32_t>(clusters.size()) - clusters_before;
+    if (moving) moving_triangles_ = static_cast<std::uint32_t>(triangles.size() - triangles_before);
+  }
+  const std::size_t n = scene_.cloth.vertex_count(), words = (clusters.size() + 31) / 32;
+  clusters_ = &solver_.add_buffer("collider clusters", clusters.size() * sizeof(MeshCluster), bytes_of(clusters));
+  boxes_ = &solver_.add_buffer("collider cluster boxes", boxes.size() * sizeof(ClusterBox), bytes_of(boxes));
+  triangles_ = &solver_.add_buffer("collider triangles", triangles.size() * sizeof(uvec4), bytes_of(triangles));
+  candidates_ = &solver_.add_buffer("contact candidates", n * words * 4);
+  reaches_ = &solver_.add_buffer("contact reaches", n * sizeof(vec4));
+}
+
+void XpbdContact::add_kernels() {
+  const ColliderBuffers& c = colliders_;
+  // A binding whose kind the scene lacks is never read: the positions stand in.
+  const auto or_none = [&](const Buffer* b) { return vulkan::Binding{b != nullptr ? b : &x_, Access::Read}; };
+  std::vector<vulkan::Binding> colliders = {or_none(c.planes.buffer), or_none(c.spheres.buffer),
+                                            or_none(c.boxes.buffer), or_none(c.capsules.buffer)};
+  const bool meshes = clusters_ != nullptr;
+  const auto read = [](const Buffer* b) { return vulkan::Binding{b, Access::Read}; };
+  if (meshes)
+    for (const vulkan::Binding& b :
+         {read(clusters_), read(boxes_), read(triangles_), or_none(c.standing.positions),
+          or_none(c.moving.start_positions), or_none(c.moving.positions), read(candidates_), read(reaches_)})
+      colliders.push_back(b);
+  const std::vector<std::uint32_t> counts = {c.planes.count,
+                                             c.spheres.count,
+                                             c.boxes.count,
+                                             c.capsules.count,
+                                             scene_.needs.has(Feature::Friction) ? 1u : 0u,
+                                             standing_clusters_,
+                                             samples_,
+                                             scene_.motion.empty() ? 0u : 1u};
+  constexpr auto kPush = static_cast<std::uint32_t>(sizeof(ContactConstants));
+  if (moving_clusters_ > 0)
+    find_boxes_ = &solver_.add_kernel(stage_broad_, shaders::kContactBoxes,
+                                      {read(clusters_),
+                                       {boxes_, Access::Write},
+                                       read(triangles_),
+                                       read(c.moving.start_positions),
+                                       read(c.moving.positions)},
+                                      sizeof(BoxConstants));
+  if (meshes)
+    find_candidates_ = &solver_.add_kernel(
+        stage_broad_, shaders::kContactCandidates,
+        {read(&x_), read(&v_), read(clusters_), read(boxes_), {candidates_, Access::Write}, {reaches_, Access::Write}},
+        kPush, {standing_clusters_, moving_clusters_});
+  if (samples_ > 0) {
+    std::vector<vulkan::Binding> b = {read(&x_), read(&v_), read(side_), {corrections_, Access::Write}};
+    b.insert(b.end(), colliders.begin(), colliders.end());
+    b.push_back({sample_side_, Access::ReadWrite});
+    sample_ = &solver_.add_kernel(stage_contact_, meshes ? shaders::kContactSamplesMesh : shaders::kContactSamples, b,
+                                  kPush, counts);
+  }
+  std::vector<vulkan::Binding> b = {
+      {&x_, Access::ReadWrite}, {&v_, Access::ReadWrite}, {side_, Access::ReadWrite}, or_none(corrections_)};
+  b.insert(b.end(), colliders.begin(), colliders.end());
+  vertices_ = &solver_.add_kernel(stage_contact_, meshes ? shaders::kContactVerticesMesh : shaders::kContactVertices, b,
+                                  kPush, counts);
+}
+
+ContactConstants XpbdContact::constants(double dt_s, int substeps) const {
+  const Cloth& c = scene_.cloth;
+  const Vec3 g = scene_.gravity_m_per_s2;
+  ContactConstants k{};
+  k.columns = static_cast<uint>(c.columns);
+  k.rows = static_cast<uint>(c.rows);
+  k.words = (standing_clusters_ + moving_clusters_ + 31) / 32;
+  k.part = static_cast<float>(1.0 / substeps);
+  k.frames_per_s = static_cast<float>(1 / dt_s);
+  k.least_margin_m = static_cast<float>(kLeastMargin * std::min(c.du(), c.dv()));
+  k.border_margin_m = static_cast<float>(kBorder * std::hypot(c.du(), c.dv()) / (samples_ + 1));
+  // A vertex at rest may be hit by its neighbours: a cell's length a frame, and gravity's share.
+  k.reach_m = static_cast<float>(longer_side(c) + std::hypot(g[0], g[1], g[2]) * dt_s * dt_s);
+  // Half a diagonal to the middle of an edge, and as much again that the sample may lag or the edge be stretched.
+  k.sample_reach_m = samples_ > 0 ? static_cast<float>(std::hypot(c.du(), c.dv())) : 0.0f;
+  return k;
+}
+
+void XpbdContact::record_frame(double dt_s, int substeps) {
+  if (clusters_ == nullptr) return;
+  const double n = static_cast<double>(scene_.cloth.vertex_count()), all = standing_clusters_ + moving_clusters_,
+               t = moving_triangles_, moving = moving_clusters_;
+  if (find_boxes_ != nullptr)
+    solver_.dispatch(stage_broad_, *find_boxes_, moving_clusters_, BoxConstants{standing_clusters_, moving_clusters_},
+                     {16 * moving + 112 * t, 32 * moving});
+  const ContactConstants k = constants(dt_s, substeps);
+  solver_.dispatch(stage_broad_, *find_candidates_, scene_.cloth.vertex_count(), k,
+                   {n * (32 + 16 * moving + 48 * all), n * (16 + 4.0 * k.words)});
+}
+
+void XpbdContact::record_substep(int s, int substeps, double dt_s) {
+  ContactConstants k = constants(dt_s, substeps);
+  k.begin = static_cast<float>(static_cast<double>(s) / substeps);
+  const std::vector<float>& w = solver_.inverse_mass_now();
+  const std::size_t n = w.size(), columns = k.columns, rows = k.rows;
+  // What is read and written whatever the cloth does; colliders that come near cost more.
+  const double shapes = 32.0 * colliders_.planes.count + 32.0 * colliders_.spheres.count +
+                        80.0 * colliders_.boxes.count + 64.0 * colliders_.capsules.count;
+  const double around = shapes + (clusters_ != nullptr ? 16 + 4.0 * k.words : 0.0);
+  if (samples_ > 0) {
+    Traffic t;
+    for (std::size_t family = 0; family < 3; ++family)
+      for (std::size_t i = 0; i < n; ++i) {
+        const bool right = family != 1, down = family != 0;
+        if ((right && i % columns + 1 == columns) || (down && i / columns + 1 == rows)) continue;
+        const bool any_free = w[i] > 0 || w[i + (right ? 1 : 0) + (down ? columns : 0)] > 0;
+        t.read_B += samples_ * (32 + (any_free ? 80 + around : 0.0));
+        t.write_B += samples_ * (any_free ? 48.0 : 0.0);
+      }
+    solver_.dispatch(stage_contact_, *sample_, 3 * samples_ * n, k, t);
+  }
+  Traffic t;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double right = i % columns + 1 < columns, left = i % columns > 0, down = i / columns + 1 < rows,
+                 up = i / columns > 0;
+    const double beside = samples_ * (right + left + down + up + right * down + left * up);
+    t.read_B += 16 + (w[i] > 0 ? 32 + 16 * beside + around : 0.0);
+    t.write_B += w[i] > 0 ? 48 : 16;
+  }
+  solver_.dispatch(stage_contact_, *vertices_, n, k, t);
+}
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,59 @@
+#pragma once
+#include <vector>
+
+#include "colliders.hpp"
+
+namespace clothbench::pbd_gpu {
+
+/// Triangles of a mesh in clusters of neighbours, for boxes round them: at most `kClusterSize` each, every triangle in
+/// exactly one. Halves along the longest side of the centroids' box, over and over.
+struct Clusters {
+  static constexpr std::size_t kClusterSize = 16;
+  std::vector<std::uint32_t> triangles;  ///< indices, cluster after cluster
+  std::vector<std::uint32_t> sizes;      ///< one a cluster
+};
+Clusters cluster(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles);
+
+/// A word a triangle: bit k is set if the edge opposite its corner k belongs to no other triangle.
+std::vector<std::uint32_t> border_edges(const std::vector<double>& positions,
+                                        const std::vector<std::array<std::uint32_t, 3>>& triangles);
+
+/// `wanted` if the edges of the scene's cloth can pass into something between two vertices that are a margin away, else
+/// 0: nothing does into planes, and into a ball only an edge long enough for its height over the chord.
+std::uint32_t samples_needed(const Scene& scene, std::uint32_t wanted);
+
+/// Contact of `xpbd` with what is in the scene. It works on positions, velocities and where the vertices were at the
+/// substep's start, and knows nothing of how constraints are solved: it comes last in a substep and has the last word.
+/// README, "Contact in xpbd", has the method.
+class XpbdContact {
+ public:
+  /// Adds buffers, the stages BroadPhase (meshes only) and Contact, and their kernels. `positions` (.w = inverse mass)
+  /// and `velocities` hold one vec4 a vertex, relative to `origin_m`.
+  XpbdContact(GpuSolver& solver, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
+              const vulkan::Buffer& positions, const vulkan::Buffer& velocities, std::uint32_t samples);
+
+  /// Start of a frame, after the colliders' own record().
+  void record_frame(double dt_s, int substeps);
+  /// End of substep s.
+  void record_substep(int s, int substeps, double dt_s);
+
+ private:
+  void add_meshes();
+  void add_sides(Vec3 origin_m);
+  void add_kernels();
+  ContactConstants constants(double dt_s, int substeps) const;
+
+  GpuSolver& solver_;
+  const Scene& scene_;
+  const ColliderBuffers& colliders_;
+  const vulkan::Buffer &x_, &v_;
+  const std::uint32_t samples_;  ///< an edge
+  std::uint32_t standing_clusters_ = 0, moving_clusters_ = 0, moving_triangles_ = 0;
+  int stage_broad_ = -1, stage_contact_ = -1;
+  const vulkan::Buffer *side_ = nullptr, *sample_side_ = nullptr, *corrections_ = nullptr;
+  const vulkan::Buffer *clusters_ = nullptr, *boxes_ = nullptr, *triangles_ = nullptr, *candidates_ = nullptr,
+                       *reaches_ = nullptr;
+  const vulkan::Kernel *find_boxes_ = nullptr, *find_candidates_ = nullptr, *vertices_ = nullptr, *sample_ = nullptr;
+};
+
+}  // namespace clothbench::pbd_gpu
