@@ -1,0 +1,67 @@
+#pragma once
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <memory>
+#include <vector>
+
+#include "clothbench/scene.hpp"
+
+namespace clothbench::bullet_baseline {
+
+btVector3 to_bullet(const Vec3&);
+
+/// What a mesh becomes in Bullet.
+enum class MeshAs {
+  Triangles,  ///< a thin rigid body for each triangle
+  Bvh         ///< one btBvhTriangleMeshShape: soft bodies meet it as slabs that reach 0.1 m from either side
+};
+
+/// A scene's colliders as rigid bodies of a Bullet world: static ones, and kinematic ones for capsules.
+///
+/// Shapes are exact where Bullet's are (sphere, box, capsule). A plane is the top of a large box, as the ground is in
+/// Bullet's own examples: btStaticPlaneShape meets soft bodies as such a slab too. Triangles of a moving mesh keep the
+/// shape they have at the start and follow in place and turn alone.
+class ColliderBodies {
+ public:
+  /// Adds the bodies to `world`, which must outlive this. Throws Error on a capsule that changes its length.
+  ColliderBodies(const Scene&, btDiscreteDynamicsWorld& world, MeshAs);
+  ~ColliderBodies();
+  ColliderBodies(const ColliderBodies&) = delete;
+  ColliderBodies& operator=(const ColliderBodies&) = delete;
+
+  /// What moves goes to where it is at `share` of the way from one instant to the next, on straight lines.
+  /// Bullet works out their velocities in the step that follows.
+  void move(const FrameMotion& from, const FrameMotion& to, double share);
+
+ private:
+  struct Body {
+    std::unique_ptr<btTriangleMesh> triangles;  ///< of MeshAs::Bvh, whose shape only refers to them
+    std::unique_ptr<btCollisionShape> shape;
+    std::unique_ptr<btDefaultMotionState> motion;
+    std::unique_ptr<btRigidBody> body;
+  };
+  struct MovingCapsule {
+    std::size_t collider, capsule, body;
+    btQuaternion turn;
+  };
+  struct MovingTriangle {
+    std::size_t collider, triangle, body;
+  };
+
+  void add(std::unique_ptr<btCollisionShape>, const btTransform&, const Collider&, bool moves);
+  void add_static(const Collider&);
+  void add_mesh(const Scene&, std::size_t collider);
+  void add_whole_mesh(const Collider&);
+  void add_capsules(const Scene&, std::size_t collider);
+
+  void move_triangles(const FrameMotion& from, const FrameMotion& to, double share);
+
+  const std::vector<Collider>& colliders_;
+  btDiscreteDynamicsWorld& world_;
+  std::vector<Body> bodies_;
+  std::vector<MovingCapsule> capsules_;
+  std::vector<MovingTriangle> triangles_;  ///< those of one mesh in a row
+};
+
+}  // namespace clothbench::bullet_baseline

@@ -1,0 +1,194 @@
+// Bullet's force-based deformable body: btDeformableMultiBodyDynamicsWorld with springs in N/m.
+#include <BulletSoftBody/btDeformableBodySolver.h>
+#include <BulletSoftBody/btDeformableGravityForce.h>
+#include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bullet-baseline/bullet_solver.hpp"
+#include "bullet-baseline/grid_springs.hpp"
+
+namespace clothbench::bullet_baseline {
+namespace {
+
+SolverInfo describe() {
+  SolverInfo info = common_info();
+  info.name = "bullet-deformable";
+  info.summary = "Bullet's deformable body with springs in N/m (btDeformableMultiBodyDynamicsWorld) on one CPU core";
+  info.settings = {{"substeps", "0", "substeps a frame; 0: explicit, as many as keep the stiffest vertex stable, implicit, 4"},
+                   {"implicit", "false", "backward Euler (one Newton step, conjugate gradients, projection); blows up on contact"},
+                   collision_margin_spec(),
+                   mesh_spec(),
+                   voxel_spec()};
+  return info;
+}
+
+struct DeformableWorld {
+  btSoftBodyRigidBodyCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  btDeformableBodySolver cloth_solver;
+  btDeformableMultiBodyConstraintSolver contact_solver;
+  btDeformableMultiBodyDynamicsWorld world{&dispatcher, &broadphase, &contact_solver, &configuration, &cloth_solver};
+
+  DeformableWorld() { contact_solver.setDeformableSolver(&cloth_solver); }
+};
+
+/// Stiffness of every link, in the order in which they are added [N/m].
+///
+/// On cells a x b an isotropic sheet of Poisson ratio 1/3 takes, along a, Y (9/8 b/a - 3/8 a/b), half on border lines,
+/// and on each diagonal 3/16 Y (a^2 + b^2)/(a b); on square cells 3/4 Y and 3/8 Y.
+class LinkStiffness {
+ public:
+  explicit LinkStiffness(const Scene& s) : s_(s), a_(s.cloth.du()), b_(s.cloth.dv()), y_(s.material.membrane_stiffness_N_per_m.value_or(kStiff_N_per_m)) {}
+
+  double of(const Edge& e) const {
+    const Cloth& c = s_.cloth;
+    if (e.kind == EdgeKind::Shear) return 3.0 / 16 * y_ * (a_ * a_ + b_ * b_) / (a_ * b_);
+    const auto columns = static_cast<std::uint32_t>(c.columns), last_row = static_cast<std::uint32_t>(c.rows) - 1;
+    const bool along_u = e.a / columns == e.b / columns;
+    const std::uint32_t line = along_u ? e.a / columns : e.a % columns;
+    const bool border = line == 0 || line == (along_u ? last_row : columns - 1);
+    const double own = along_u ? a_ : b_, other = along_u ? b_ : a_;
+    if (e.kind == EdgeKind::SkipOne) return s_.material.bending_rigidity_N_m * other / (own * own * own) * (border ? 0.5 : 1);
+    return std::max(y_ * (9.0 / 8 * other / own - 3.0 / 8 * own / other), 0.1 * y_ * other / own) * (border ? 0.5 : 1);
+  }
+
+ private:
+  /// For scenes whose cloth does not stretch: a spring can only come near, and explicit substeps grow with its root.
+  static constexpr double kStiff_N_per_m = 1e4;
+
+  const Scene& s_;
+  const double a_, b_, y_;
+};
+
+constexpr EdgeKind kKinds[] = {EdgeKind::Structural, EdgeKind::Shear, EdgeKind::SkipOne};
+
+bool linked(const Scene& scene, EdgeKind kind) { return kind != EdgeKind::SkipOne || scene.needs.has(Feature::Bend); }
+
+/// An upper bound of the flat sheet's highest angular frequency [1/s].
+///
+/// Of a mass-spring system sum k (n.(x_i - x_j))^2 <= 2 sum_i x_i.S_i x_i with S_i = sum k n n^T over the links of
+/// vertex i, hence omega^2 <= 2 max_i lambda_max(S_i)/m_i.
+double stiffest_rad_per_s(const Scene& scene) {
+  const std::vector<double> mass = vertex_masses(scene);
+  const LinkStiffness stiffness(scene);
+  const double a = scene.cloth.du(), b = scene.cloth.dv();
+  const auto columns = static_cast<std::uint32_t>(scene.cloth.columns);
+  std::vector<std::array<double, 3>> sums(mass.size(), {0, 0, 0});  // S_uu, S_uv, S_vv
+  for (EdgeKind kind : kKinds) {
+    if (!linked(scene, kind)) continue;
+    for (const Edge& e : edges(scene.cloth, kind)) {
+      const double u = a * (static_cast<double>(e.b % columns) - static_cast<double>(e.a % columns));
+      const double v = b * (static_cast<double>(e.b / columns) - static_cast<double>(e.a / columns));
+      const double k = stiffness.of(e) / (u * u + v * v);
+      for (std::uint32_t i : {e.a, e.b}) {
+        sums[i][0] += k * u * u;
+        sums[i][1] += k * u * v;
+        sums[i][2] += k * v * v;
+      }
+    }
+  }
+  double most = 0;
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    const auto& [uu, uv, vv] = sums[i];
+    most = std::max(most, ((uu + vv) / 2 + std::hypot((uu - vv) / 2, uv)) / mass[i]);
+  }
+  return std::sqrt(2 * most);
+}
+
+int substeps_of(const Scene& scene, const nlohmann::json& settings) {
+  const int asked = settings["substeps"].get<int>();
+  if (asked > 0) return asked;
+  if (settings["implicit"].get<bool>()) return 4;
+  // Semi-implicit Euler is stable below 2/omega; a fifth is left for cloth that is stretched.
+  return std::max(1, static_cast<int>(std::ceil(scene.time.dt() * stiffest_rad_per_s(scene) / (2 * 0.8))));
+}
+
+class BulletDeformable final : public BulletSolver {
+ public:
+  explicit BulletDeformable(const nlohmann::json& s)
+      : BulletSolver(describe(), s), settings_(s), implicit_(s["implicit"].get<bool>()) {
+    integer_setting(info(), s, "substeps", 0, 4096);
+  }
+  ~BulletDeformable() override { drop(); }
+
+ private:
+  int substeps_for(const Scene& scene) const override { return substeps_of(scene, settings_); }
+
+  void build() override {
+    parts_ = std::make_unique<DeformableWorld>();
+    btDeformableMultiBodyDynamicsWorld& w = parts_->world;
+    set_surroundings(w.getWorldInfo());
+    const btVector3 gravity = to_bullet(scene().gravity_m_per_s2);
+    w.setGravity(gravity);
+    w.setImplicit(implicit_);
+    // Without it implicit steps do not move at all: Bullet's other preconditioner does not know them.
+    w.setUseProjection(true);
+    body_ = new_body(w.getWorldInfo());
+    std::vector<btScalar> stiffness;
+    for (EdgeKind kind : kKinds) {
+      if (!linked(scene(), kind)) continue;
+      add_links(*body_, scene().cloth, kind);
+      for (const Edge& e : edges(scene().cloth, kind)) stiffness.push_back(static_cast<btScalar>(LinkStiffness(scene()).of(e)));
+    }
+    // Nodes meet rigid bodies, faces do not: PyBullet's face contacts make this cloth jump, and cost five times as much.
+    if (touches()) body_->m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
+    w.addSoftBody(body_.get());
+    springs_ = std::make_unique<GridSprings>(std::move(stiffness));
+    gravity_ = std::make_unique<btDeformableGravityForce>(gravity);
+    w.addForce(body_.get(), springs_.get());
+    w.addForce(body_.get(), gravity_.get());
+  }
+
+  void tear_down() override {
+    if (parts_ && body_) parts_->world.removeSoftBody(body_.get());
+    parts_.reset();
+  }
+
+  btDiscreteDynamicsWorld* world() override { return &parts_->world; }
+
+  void substep(btScalar h) override {
+    if (scene().needs.has(Feature::Damping)) {
+      // Bullet's own drag is lost in implicit steps.
+      const auto keep = static_cast<btScalar>(kept_share(scene(), static_cast<double>(h)));
+      for (int i = 0; i < body_->m_nodes.size(); ++i) {
+        btSoftBody::Node& n = body_->m_nodes[i];
+        if (n.m_im > 0) n.m_v = n.m_vn = n.m_v * keep;
+      }
+    }
+    parts_->world.stepSimulation(h, 0);
+  }
+
+  void masses_changed() override {}  // Bullet reads them anew every step
+
+  const nlohmann::json settings_;
+  const bool implicit_;
+  std::unique_ptr<DeformableWorld> parts_;
+  std::unique_ptr<GridSprings> springs_;
+  std::unique_ptr<btDeformableGravityForce> gravity_;
+};
+
+/// v <- e^(-c h) v + g h, x <- x + h v every substep.
+double free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
+  const int substeps = substeps_of(scene, settings);
+  const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1], keep = kept_share(scene, h);
+  double v = 0, x = 0;
+  for (long i = 0; i < static_cast<long>(frames) * substeps; ++i) {
+    v = keep * v + g * h;
+    x += v * h;
+  }
+  return x;
+}
+
+}  // namespace
+
+SolverEntry deformable_entry() {
+  return {describe(), [](const nlohmann::json& s, const DeviceOptions&) { return std::make_unique<BulletDeformable>(s); }, free_fall_m};
+}
+
+}  // namespace clothbench::bullet_baseline

@@ -1,0 +1,31 @@
+#pragma once
+#include <BulletSoftBody/btDeformableMassSpringForce.h>
+
+#include <vector>
+
+namespace clothbench::bullet_baseline {
+
+/// btDeformableMassSpringForce with a stiffness of its own for each link: Bullet's has two in all, and an isotropic grid
+/// needs one along each direction, half of each on the borders, one on the diagonals and one for bending.
+///
+/// Bullet's energy, k/2 (|d| - r)^2 with its exact second derivative, which is indefinite where a link is compressed.
+/// Nothing is damped here: Bullet's spring damping is relative to neighbours, the scenes' is not.
+class GridSprings final : public btDeformableMassSpringForce {
+ public:
+  /// Stiffness of each link of the one body it will be given [N/m, in Bullet's units].
+  explicit GridSprings(std::vector<btScalar> stiffness) : stiffness_(std::move(stiffness)) {}
+
+  void addScaledElasticForce(btScalar scale, TVStack& force) override;
+  void addScaledElasticForceDifferential(btScalar scale, const TVStack& dx, TVStack& df) override;
+  double totalElasticEnergy(btScalar dt) override;
+  void addScaledDampingForce(btScalar, TVStack&) override {}
+  void addScaledDampingForceDifferential(btScalar, const TVStack&, TVStack&) override {}
+  void buildDampingForceDifferentialDiagonal(btScalar, TVStack&) override {}
+
+ private:
+  const btSoftBody& body() { return *m_softBodies[0]; }
+
+  const std::vector<btScalar> stiffness_;
+};
+
+}  // namespace clothbench::bullet_baseline
