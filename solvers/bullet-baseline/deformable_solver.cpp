@@ -177,7 +177,7 @@ class BulletDeformable final : public BulletSolver {
 double free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
   const int substeps = substeps_of(scene, settings);
   const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1], keep = kept_share(scene, h);
-  double v = 0, x = 0;
+  double v = scene.cloth.initial_velocity_m_per_s[1], x = 0;
   for (long i = 0; i < static_cast<long>(frames) * substeps; ++i) {
     v = keep * v + g * h;
     x += v * h;
