@@ -15,7 +15,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
-from matplotlib.ticker import MaxNLocator  # noqa: E402
+from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator  # noqa: E402
 
 from plot_report import COLOURS, FAILED, FLOOR, SPARE, STYLE, gid, number, save  # noqa: E402
 
@@ -26,6 +26,7 @@ QUANTITIES = {"contact_length_m": ("contour [mm]", 1e3), "tunnelled_fraction": (
 # What tells solvers apart, by set-up; a column that no cell has is left out.
 SHOWN = {"rooms": ["contact_length_m", "tunnelled_fraction", "tunnelled_depth_m"], "hand": ["contact_length_m", "tunnelled_fraction", "depth_m"],
          "capsules": ["contact_length_m", "depth_m"], "shapes": ["contact_length_m", "depth_m"], "grip": ["stretch_max"]}
+DEEP, DEEP_MM = {"tunnelled_depth_m", "depth_m"}, 50  # from here on their axis is logarithmic above 1 mm
 DASHES = ["-", (0, (5, 1.5)), (0, (2, 1.2)), (0, (5, 1.5, 1, 1.5)), (0, (1, 1))]
 MORE_COLOURS = {"bullet-deformable": "#E69F00", "paper whole-room": "#CC79A7"}
 
@@ -73,6 +74,15 @@ def draw(ax, cells, column, look):
             drawn.add(name)
     ax.set_ylabel(title)
     ax.set_xlim(left=0)
+    if column in DEEP and any(max(line.get_ydata()) > DEEP_MM for line in ax.lines):
+        # What fell through goes on falling: metres beside millimetres. Linear up to the 1 mm that scenes allow.
+        ax.set_yscale("symlog", linthresh=1)
+        ax.set_ylim(bottom=-0.15)
+        ax.yaxis.set_major_locator(FixedLocator([0, 1, 10, 100, 1000, 10000, 100000]))
+        ax.yaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
+        ax.minorticks_off()
+        ax.grid(True, linewidth=0.4, alpha=0.5)
+        return drawn
     top = ax.get_ylim()[1] if ax.lines else 0
     top = top if top > 1e-3 else 1  # nothing but zeros
     ax.set_ylim(-0.04 * top, top)  # a line at 0 must be told from the axis

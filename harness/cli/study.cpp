@@ -30,11 +30,13 @@ CellPlan plan_study(const Study& study) {
   const StudyRules& rules = study.rules;
   CellPlan plan;
   plan.protocol = study.length == StudyLength::Full ? "full" : study.length == StudyLength::Quick ? "quick" : "short";
-  plan.rules = {study.trials, rules.frames, rules.max_wall_s, rules.min_frames, rules.warmup_s, study.drop_frames, study.accuracy_duration_s};
+  plan.rules = {study.trials,   rules.frames,      rules.max_wall_s,         rules.min_frames,
+                rules.warmup_s, study.drop_frames, study.accuracy_duration_s};
   std::vector<const SolverEntry*> entries;
   for (const StudySolver& s : study.solvers) entries.push_back(s.joined ? &find_solver(s.solver) : built_in(s.solver));
   for (const Study::Item& item : study.scenes) {
-    if (plan.groups.size() <= static_cast<std::size_t>(item.group)) plan.groups.resize(static_cast<std::size_t>(item.group) + 1);
+    if (plan.groups.size() <= static_cast<std::size_t>(item.group))
+      plan.groups.resize(static_cast<std::size_t>(item.group) + 1);
     for (const std::size_t k : item.solvers) {
       const StudySolver& s = study.solvers[k];
       if (entries[k] == nullptr) {
@@ -54,11 +56,14 @@ void add_study(CLI::App& app, Console& console) {
   static Arguments a;
   CLI::App* cmd = app.add_subcommand("study", "Run every cell of a study");
   cmd->add_option("study", a.study, "Study file or name, such as table3")->required();
-  CLI::Option* quick = cmd->add_flag("--quick", a.quick, "Fewer scenes and solvers, as the study says: for a software device on 2 cores");
-  CLI::Option* brief = cmd->add_flag("--short", a.short_trials, "Every cell with short trials (the default)")->excludes(quick);
+  CLI::Option* quick = cmd->add_flag("--quick", a.quick,
+                                     "Fewer scenes and solvers, as the study says: for a software device on 2 cores");
+  CLI::Option* brief =
+      cmd->add_flag("--short", a.short_trials, "Every cell with short trials (the default)")->excludes(quick);
   cmd->add_flag("--full", a.full, "Every cell with long trials")->excludes(quick)->excludes(brief);
   cmd->add_option("--trials", a.trials, "Trials a cell, instead of the study's")->check(CLI::Range(1, 1000));
-  cmd->add_option("--solver", a.only, "Only these solvers; one that the study does not name joins with its default settings");
+  cmd->add_option("--solver", a.only,
+                  "Only these solvers; one that the study does not name joins with its default settings");
   cmd->add_option("--set", a.set, "Override a scene key in every cell: cloth.size_m=[0.5,0.5]");
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
   cmd->add_flag("--resume", a.run.resume, "Go on with the folder of an interrupted study");

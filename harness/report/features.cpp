@@ -30,7 +30,8 @@ std::string words(std::string_view name) {
 }
 
 void add_cell(SolverFeatures& s, const CellRecord& c) {
-  const json declared = c.header.environment.is_object() ? c.header.environment.value("solver_features", json()) : json();
+  const json declared =
+      c.header.environment.is_object() ? c.header.environment.value("solver_features", json()) : json();
   if (declared.is_object()) {
     s.known = true;
     s.supports |= feature_set(declared.value("supports", json()));
@@ -51,7 +52,8 @@ void add_cell(SolverFeatures& s, const CellRecord& c) {
 std::vector<SolverFeatures> solver_features(const std::vector<CellRecord>& cells) {
   std::vector<SolverFeatures> out;
   for (const CellRecord& c : cells) {
-    auto at = std::find_if(out.begin(), out.end(), [&](const SolverFeatures& s) { return s.solver == c.header.solver; });
+    auto at =
+        std::find_if(out.begin(), out.end(), [&](const SolverFeatures& s) { return s.solver == c.header.solver; });
     if (at == out.end()) {
       out.emplace_back();
       out.back().solver = c.header.solver;
@@ -79,7 +81,9 @@ std::string feature_text(const SolverFeatures& s, Feature f, bool with_results) 
 Table feature_table(const std::vector<SolverFeatures>& solvers, bool with_results) {
   Table t{"Table 4: features", "Ignored: runs without serving it.", {{"feature"}}};
   if (with_results)
-    t.note = "Yes: a stage served it in a cell that ended well; declared: the solver says so and no cell here needed it. " + t.note;
+    t.note =
+        "Yes: a stage served it in a cell that ended well; declared: the solver says so and no cell here needed it. " +
+        t.note;
   for (const SolverFeatures& s : solvers) t.rows[0].push_back(s.solver);
   for (std::size_t k = 0; k < kFeatureCount; ++k) {
     std::vector<std::string> row = {words(kFeatureNames[k])};
@@ -93,7 +97,8 @@ json feature_json(const std::vector<SolverFeatures>& solvers, bool with_results)
   json rows = json::array();
   for (std::size_t k = 0; k < kFeatureCount; ++k) {
     json row = {{"name", kFeatureNames[k]}, {"solvers", json::object()}};
-    for (const SolverFeatures& s : solvers) row["solvers"][s.solver] = feature_text(s, static_cast<Feature>(k), with_results);
+    for (const SolverFeatures& s : solvers)
+      row["solvers"][s.solver] = feature_text(s, static_cast<Feature>(k), with_results);
     rows.push_back(std::move(row));
   }
   return rows;

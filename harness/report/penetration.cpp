@@ -88,7 +88,8 @@ const std::vector<Column> kContactColumns = {
     {"strain, most / end [%]", {"stretch_max", "stretch_max_end"}, percent},
 };
 
-Table by_scene(const ContactSetUp& s, const std::string& title, const std::string& note, const std::vector<Column>& columns,
+Table by_scene(const ContactSetUp& s, const std::string& title, const std::string& note,
+               const std::vector<Column>& columns,
                const std::function<void(const ContactRow&, std::vector<std::string>&)>& more) {
   Table t{title, note, {{"scene", "solver", "sides"}}};
   std::vector<Column> shown;
@@ -96,8 +97,9 @@ Table by_scene(const ContactSetUp& s, const std::string& title, const std::strin
     const auto known = [&](const ContactRow& r) {
       return std::any_of(c.names.begin(), c.names.end(), [&](const char* n) { return std::isfinite(value(r, n)); });
     };
-    if (std::any_of(s.scenes.begin(), s.scenes.end(),
-                    [&](const ContactScene& scene) { return std::any_of(scene.rows.begin(), scene.rows.end(), known); }))
+    if (std::any_of(s.scenes.begin(), s.scenes.end(), [&](const ContactScene& scene) {
+          return std::any_of(scene.rows.begin(), scene.rows.end(), known);
+        }))
       shown.push_back(c);
   }
   for (const Column& c : shown) t.rows[0].push_back(c.head);
@@ -121,11 +123,13 @@ Table by_scene(const ContactSetUp& s, const std::string& title, const std::strin
 
 /// True if the solver declares to ignore all contact and grips: then a kept expectation is luck.
 bool touches_nothing(const CellRecord& c) {
-  const json features = c.header.environment.is_object() ? c.header.environment.value("solver_features", json()) : json();
+  const json features =
+      c.header.environment.is_object() ? c.header.environment.value("solver_features", json()) : json();
   if (!features.is_object() || !filled(features, "ignores")) return false;
   const json& ignored = features["ignores"];
   bool all = std::find(ignored.begin(), ignored.end(), name_of(Feature::MovingPins)) != ignored.end();
-  kColliderFeatures.for_each([&](Feature f) { all = all && std::find(ignored.begin(), ignored.end(), name_of(f)) != ignored.end(); });
+  kColliderFeatures.for_each(
+      [&](Feature f) { all = all && std::find(ignored.begin(), ignored.end(), name_of(f)) != ignored.end(); });
   return all;
 }
 
@@ -152,12 +156,15 @@ std::vector<ContactSetUp> set_ups(const std::vector<CellRecord>& cells) {
   for (const CellRecord& c : cells) {
     if (!has_contact(c)) continue;
     const json scenario = scenario_of(c);
-    ContactSetUp& up = *std::find_if(all.begin(), all.end(), [kind = kind_of(scenario)](const ContactSetUp& u) { return u.kind == kind; });
+    ContactSetUp& up = *std::find_if(all.begin(), all.end(),
+                                     [kind = kind_of(scenario)](const ContactSetUp& u) { return u.kind == kind; });
     if (up.title.back() != ')') up.title += paper_place(scenario);
-    auto scene = std::find_if(up.scenes.begin(), up.scenes.end(), [&](const auto& s) { return s.name == c.header.scene; });
+    auto scene =
+        std::find_if(up.scenes.begin(), up.scenes.end(), [&](const auto& s) { return s.name == c.header.scene; });
     if (scene == up.scenes.end()) scene = up.scenes.insert(up.scenes.end(), {c.header.scene, {}});
     ContactRow row{&c, {c.header.solver, c.header.setting, sides_of(scenario)}};
-    while (std::any_of(scene->rows.begin(), scene->rows.end(), [&](const ContactRow& r) { return r.series == row.series; }))
+    while (std::any_of(scene->rows.begin(), scene->rows.end(),
+                       [&](const ContactRow& r) { return r.series == row.series; }))
       ++row.series.repeat;
     scene->rows.push_back(std::move(row));
   }
@@ -189,13 +196,16 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
   for (const ContactSetUp& u : ups)
     for (const ContactScene& s : u.scenes)
       for (const ContactRow& r : s.rows)
-        if (std::find(solvers.begin(), solvers.end(), r.series.label()) == solvers.end()) solvers.push_back(r.series.label());
+        if (std::find(solvers.begin(), solvers.end(), r.series.label()) == solvers.end())
+          solvers.push_back(r.series.label());
   std::sort(solvers.begin(), solvers.end());
   Table t{"Penetration: does each solver keep what the scene expects?",
           "Kept: every bound of the scene's `expect`, measured over the whole scene. Ignored: kept by a solver that "
           "touches nothing. – : not run, or nothing to expect. In "
-          "the tables below, tunnelled: share of the cloth on the other side of a mesh than it began. Contour: length of the "
-          "curves in which cloth and colliders cross; settled: the most in the last 0.5 s. Depth: how far the cloth is inside "
+          "the tables below, tunnelled: share of the cloth on the other side of a mesh than it began. Contour: length "
+          "of the "
+          "curves in which cloth and colliders cross; settled: the most in the last 0.5 s. Depth: how far the cloth is "
+          "inside "
           "a collider, margin not counted. Strain: of the structural edges. Time: median over the timed frames.",
           {{"scene"}}};
   t.rows[0].insert(t.rows[0].end(), solvers.begin(), solvers.end());
@@ -203,7 +213,8 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
     for (const ContactScene& s : u.scenes) {
       std::vector<std::string> row = {s.name};
       for (const std::string& solver : solvers) {
-        const auto at = std::find_if(s.rows.begin(), s.rows.end(), [&](const ContactRow& r) { return r.series.label() == solver; });
+        const auto at =
+            std::find_if(s.rows.begin(), s.rows.end(), [&](const ContactRow& r) { return r.series.label() == solver; });
         row.push_back(at == s.rows.end() ? "–" : verdict(*at->cell));
       }
       t.rows.push_back(std::move(row));
@@ -213,21 +224,23 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
 
 Table contact_table(const ContactSetUp& s) {
   Table t = by_scene(s, s.title, "", kContactColumns, [](const ContactRow& r, std::vector<std::string>& row) {
-                       row.push_back(paired(1e3 * value(r, "frame_wall_median_s"), 1e3 * value(r, "frame_device_median_s"), " / ", 3));
-                       row.push_back(verdict(*r.cell));
-                     });
+    row.push_back(paired(1e3 * value(r, "frame_wall_median_s"), 1e3 * value(r, "frame_device_median_s"), " / ", 3));
+    row.push_back(verdict(*r.cell));
+  });
   t.rows[0].insert(t.rows[0].end(), {"wall / GPU [ms]", "expected"});
   return t;
 }
 
 Table cost_table(const ContactSetUp& s) {
-  Table t = by_scene(s, "Cost: " + s.title, "Bytes: counted loads and stores of the shaders, a frame. Memory: device-local buffers. – on a CPU.", {},
-                     [](const ContactRow& r, std::vector<std::string>& row) {
-                       row.push_back(paired(1e-3 * value(r, "read_B_per_frame"), 1e-3 * value(r, "write_B_per_frame"), " / ", 3));
-                       row.push_back(significant(1e-3 * value(r, "device_memory_B"), 4));
-                       row.push_back(significant(value(r, "dispatches"), 1));
-                       row.push_back(significant(1e3 * value(r, "load_s"), 3));
-                     });
+  Table t = by_scene(
+      s, "Cost: " + s.title,
+      "Bytes: counted loads and stores of the shaders, a frame. Memory: device-local buffers. – on a CPU.", {},
+      [](const ContactRow& r, std::vector<std::string>& row) {
+        row.push_back(paired(1e-3 * value(r, "read_B_per_frame"), 1e-3 * value(r, "write_B_per_frame"), " / ", 3));
+        row.push_back(significant(1e-3 * value(r, "device_memory_B"), 4));
+        row.push_back(significant(value(r, "dispatches"), 1));
+        row.push_back(significant(1e3 * value(r, "load_s"), 3));
+      });
   t.rows[0].insert(t.rows[0].end(), {"kB read / written", "memory [kB]", "dispatches", "load [ms]"});
   return t;
 }
@@ -242,7 +255,9 @@ Table broken_table(const std::vector<ContactSetUp>& ups) {
           const std::string what = name.substr(kExpect.size());
           const double found = summary_value(*r.cell, what);
           t.rows.push_back({s.name, r.series.label(), what, bound(scenario_of(*r.cell), what),
-                            what == "outcome" ? ending(*r.cell) : std::isfinite(found) ? fmt::format("{:.4g}", found) : "–"});
+                            what == "outcome"      ? ending(*r.cell)
+                            : std::isfinite(found) ? fmt::format("{:.4g}", found)
+                                                   : "–"});
         }
   return t;
 }

@@ -25,10 +25,20 @@ const MetricSeries* find(const CellRecord& c, const std::string& name) {
 }  // namespace
 
 const std::vector<std::string>& contact_names() {
-  static const std::vector<std::string> names = {
-      "tunnelled_fraction_max", "tunnelled_fraction_end", "tunnelled_depth_max_m", "contact_length_max_m", "contact_length_settled_m",
-      "depth_max_m",            "depth_vertex_max_m",     "depth_p99_m",           "depth_mean_m",         "penetrating_area_max_m2",
-      "stretch_max",            "stretch_max_end",        "frame_wall_median_s",   "frame_device_median_s"};
+  static const std::vector<std::string> names = {"tunnelled_fraction_max",
+                                                 "tunnelled_fraction_end",
+                                                 "tunnelled_depth_max_m",
+                                                 "contact_length_max_m",
+                                                 "contact_length_settled_m",
+                                                 "depth_max_m",
+                                                 "depth_vertex_max_m",
+                                                 "depth_p99_m",
+                                                 "depth_mean_m",
+                                                 "penetrating_area_max_m2",
+                                                 "stretch_max",
+                                                 "stretch_max_end",
+                                                 "frame_wall_median_s",
+                                                 "frame_device_median_s"};
   return names;
 }
 
@@ -37,8 +47,10 @@ json penetration_json(const std::vector<ContactSetUp>& ups) {
   for (const ContactSetUp& u : ups)
     for (const ContactScene& s : u.scenes)
       for (const ContactRow& r : s.rows) {
-        json row = {{"set_up", u.kind}, {"scene", s.name}, {"solver", r.series.solver}, {"setting", r.series.setting},
-                    {"sides", r.series.sides}, {"status", r.cell->outcome.status}, {"expect", verdict(*r.cell)}};
+        json row = {{"set_up", u.kind},          {"scene", s.name},
+                    {"solver", r.series.solver}, {"setting", r.series.setting},
+                    {"sides", r.series.sides},   {"status", r.cell->outcome.status},
+                    {"expect", verdict(*r.cell)}};
         if (r.cell->outcome.failed_frame >= 0) row["failed_frame"] = r.cell->outcome.failed_frame;
         for (const std::string& name : contact_names()) row[name] = or_null(summary_value(*r.cell, name));
         out.push_back(std::move(row));
@@ -47,7 +59,8 @@ json penetration_json(const std::vector<ContactSetUp>& ups) {
 }
 
 std::string series_csv(const std::vector<ContactSetUp>& ups) {
-  std::vector<std::string> head = {"set_up", "scene", "solver", "setting", "sides", "repeat", "status", "failed_frame", "time_s"};
+  std::vector<std::string> head = {"set_up", "scene",  "solver",       "setting", "sides",
+                                   "repeat", "status", "failed_frame", "time_s"};
   head.insert(head.end(), kSeries.begin(), kSeries.end());
   std::string out = csv_row(head);
   for (const ContactSetUp& u : ups)
@@ -57,8 +70,14 @@ std::string series_csv(const std::vector<ContactSetUp>& ups) {
         std::vector<const MetricSeries*> found;
         for (const std::string& name : kSeries) found.push_back(find(c, name));
         for (std::size_t frame = 0; frame < c.accuracy.time_s.size(); ++frame) {
-          std::vector<std::string> row = {u.kind, s.name, r.series.solver, r.series.setting, r.series.sides, std::to_string(r.series.repeat),
-                                          c.outcome.status, c.outcome.failed_frame < 0 ? "" : std::to_string(c.outcome.failed_frame),
+          std::vector<std::string> row = {u.kind,
+                                          s.name,
+                                          r.series.solver,
+                                          r.series.setting,
+                                          r.series.sides,
+                                          std::to_string(r.series.repeat),
+                                          c.outcome.status,
+                                          c.outcome.failed_frame < 0 ? "" : std::to_string(c.outcome.failed_frame),
                                           fmt::format("{:.6g}", c.accuracy.time_s[frame])};
           for (const MetricSeries* m : found) {
             const double v = m != nullptr && frame < m->values.size() ? m->values[frame] : kMissing;

@@ -54,7 +54,8 @@ std::string draw_figures(const fs::path& out, bool rates, bool penetration, bool
   if (!has_python) return "Figures were left out: no Python with matplotlib (Debian: python3-matplotlib).";
   std::vector<std::string> commands;
   const auto add = [&](const char* script, const fs::path& a, const fs::path& b) {
-    commands.push_back(fmt::format("{} {} {} {}", python, quoted(fs::path(kScriptsRoot) / script), quoted(a), b.empty() ? "" : quoted(b)));
+    commands.push_back(fmt::format("{} {} {} {}", python, quoted(fs::path(kScriptsRoot) / script), quoted(a),
+                                   b.empty() ? "" : quoted(b)));
   };
   if (rates) add("plot_report.py", out / "cells.csv", fs::path(kResultsRoot) / "paper-table3.json");
   if (penetration) add("plot_penetration.py", out / "penetration-series.csv", {});
@@ -83,7 +84,10 @@ modelled. The paper's values are published as a graph alone.
 std::string penetration_figures_markdown(const std::vector<ContactSetUp>& ups) {
   std::string out;
   for (const ContactSetUp& u : ups)
-    out += fmt::format("![{}: penetration over time](penetration-{}.svg)\n\n{}, over time. A cross: where a run failed. Ballistic, which nothing stops, is left out.\n\n", u.title, u.kind, u.title);
+    out += fmt::format(
+        "![{}: penetration over time](penetration-{}.svg)\n\n{}, over time. A cross: where a run failed. Ballistic, "
+        "which nothing stops, is left out.\n\n",
+        u.title, u.kind, u.title);
   return out;
 }
 
@@ -96,7 +100,8 @@ std::pair<std::vector<CellRecord>, std::vector<CellRecord>> by_contact(const std
 
 /// Tables of the cells with contact, in the order they are printed; none if there are none. Memory and bytes of each
 /// set-up only in files.
-std::vector<Table> penetration_tables(const std::vector<ContactSetUp>& ups, const std::vector<RoomPair>& pairs, bool with_costs) {
+std::vector<Table> penetration_tables(const std::vector<ContactSetUp>& ups, const std::vector<RoomPair>& pairs,
+                                      bool with_costs) {
   if (ups.empty()) return {};
   std::vector<Table> out = {verdict_table(ups)};
   for (const ContactSetUp& u : ups) {
@@ -157,7 +162,8 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     tables += text;
     write("penetration.md", "# Penetration\n\n" + head + "\n" + text);
     write("penetration.csv", summary_csv(contact, contact_names()));
-    write("penetration.json", nlohmann::json{{"cells", penetration_json(ups)}, {"rooms", room_json(pairs)}}.dump(1) + "\n");
+    write("penetration.json",
+          nlohmann::json{{"cells", penetration_json(ups)}, {"rooms", room_json(pairs)}}.dump(1) + "\n");
     write("penetration-series.csv", series_csv(ups));
   }
   if (const auto solvers = solver_features(cells); any_known(solvers)) {
@@ -170,8 +176,10 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
 
   bool has_python = false;
   const std::string no_figures = draw_figures(options.out, !rest.empty(), !ups.empty(), has_python);
-  const std::string figures = "### Figures\n\n" + (rest.empty() ? "" : figures_markdown(rest)) + penetration_figures_markdown(ups);
-  write("report.md", "# clothbench report\n\n" + head + "\n" + tables + (no_figures.empty() ? figures : no_figures + "\n\n") +
+  const std::string figures =
+      "### Figures\n\n" + (rest.empty() ? "" : figures_markdown(rest)) + penetration_figures_markdown(ups);
+  write("report.md", "# clothbench report\n\n" + head + "\n" + tables +
+                         (no_figures.empty() ? figures : no_figures + "\n\n") +
                          "`cells.csv` and `cells.json` hold every summary value of every cell in full precision.\n");
   if (no_figures.empty()) return;
   if (has_python) throw Error(no_figures, ExitCode::CheckFailed);

@@ -94,8 +94,9 @@ std::vector<RoomPair> room_pairs(const std::vector<CellRecord>& cells) {
   for (std::size_t w = 0; w < cells.size(); ++w) {
     if (!parts[w].room || !parts[w].whole || cells[w].outcome.status == "missing") continue;
     for (std::size_t k = 0; k < cells.size(); ++k) {
-      const bool same = parts[k].room && !parts[k].whole && parts[k].rest == parts[w].rest && cells[k].outcome.status != "missing" &&
-                        cells[k].header.solver == cells[w].header.solver && cells[k].header.settings == cells[w].header.settings;
+      const bool same = parts[k].room && !parts[k].whole && parts[k].rest == parts[w].rest &&
+                        cells[k].outcome.status != "missing" && cells[k].header.solver == cells[w].header.solver &&
+                        cells[k].header.settings == cells[w].header.settings;
       if (!same) continue;
       out.push_back({&cells[k], &cells[w]});
       measure(out.back());
@@ -115,13 +116,17 @@ Table room_table(const std::vector<RoomPair>& pairs) {
       t.rows.push_back(std::move(r));
     };
     const auto of = [](const CellRecord& c) {
-      return [&c](const Quantity& q) { return c.outcome.status == "ok" ? significant(q.scale * q.value(c), 3) : c.outcome.status; };
+      return [&c](const Quantity& q) {
+        return c.outcome.status == "ok" ? significant(q.scale * q.value(c), 3) : c.outcome.status;
+      };
     };
     row("SubMesh", of(*p.cut));
     row("whole room", of(*p.whole));
     row("ratio", [&](const Quantity& q) { return significant(q.value(*p.whole) / q.value(*p.cut), 3); });
-    t.note += fmt::format("{}{}, {}: greatest distance between the positions of the two, at the end {}, over all frames {}.", t.note.empty() ? "" : " ",
-                          p.cut->header.scene, p.cut->header.solver, distance(p.distance_end_m), distance(p.distance_max_m));
+    t.note +=
+        fmt::format("{}{}, {}: greatest distance between the positions of the two, at the end {}, over all frames {}.",
+                    t.note.empty() ? "" : " ", p.cut->header.scene, p.cut->header.solver, distance(p.distance_end_m),
+                    distance(p.distance_max_m));
   }
   return t;
 }
@@ -130,11 +135,16 @@ json room_json(const std::vector<RoomPair>& pairs) {
   const auto or_null = [](double v) { return std::isfinite(v) ? json(v) : json(); };
   json out = json::array();
   for (const RoomPair& p : pairs) {
-    json row = {{"scene", p.cut->header.scene}, {"solver", p.cut->header.solver},
-                {"distance_end_m", or_null(p.distance_end_m)}, {"distance_max_m", or_null(p.distance_max_m)}};
+    json row = {{"scene", p.cut->header.scene},
+                {"solver", p.cut->header.solver},
+                {"distance_end_m", or_null(p.distance_end_m)},
+                {"distance_max_m", or_null(p.distance_max_m)}};
     for (const auto& [name, cell] : {std::pair{"sub_mesh", p.cut}, std::pair{"whole_room", p.whole}}) {
-      json& part = row[name] = {{"setting", cell->header.setting}, {"status", cell->outcome.status}, {"mesh_stages_s", or_null(mesh_stages_s(*cell))}};
-      for (const char* key : {"frame_wall_median_s", "frame_device_median_s", "read_B_per_frame", "write_B_per_frame", "device_memory_B", "load_s"})
+      json& part = row[name] = {{"setting", cell->header.setting},
+                                {"status", cell->outcome.status},
+                                {"mesh_stages_s", or_null(mesh_stages_s(*cell))}};
+      for (const char* key : {"frame_wall_median_s", "frame_device_median_s", "read_B_per_frame", "write_B_per_frame",
+                              "device_memory_B", "load_s"})
         part[key] = or_null(summary_value(*cell, key));
     }
     out.push_back(std::move(row));

@@ -84,12 +84,13 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
                              return paired(1e-3 * v(c, "read_B_per_frame"), 1e-3 * v(c, "write_B_per_frame"), " / ", 3);
                            }));
   const std::string windows = window_note(cells);
-  t.push_back(family.table(
-      "Peak bandwidth, read / written [GB/s]" + scene,
-      "The same counted bytes over wall time; " + (windows.empty() ? "no cell has any." : windows + "."),
-      [&](const CellRecord& c) {
-        return paired(1e-9 * v(c, "bandwidth_read_peak_B_per_s"), 1e-9 * v(c, "bandwidth_write_peak_B_per_s"), " / ", 3);
-      }));
+  t.push_back(
+      family.table("Peak bandwidth, read / written [GB/s]" + scene,
+                   "The same counted bytes over wall time; " + (windows.empty() ? "no cell has any." : windows + "."),
+                   [&](const CellRecord& c) {
+                     return paired(1e-9 * v(c, "bandwidth_read_peak_B_per_s"),
+                                   1e-9 * v(c, "bandwidth_write_peak_B_per_s"), " / ", 3);
+                   }));
   t.push_back(family.table("Device memory [kB] · dispatches a frame" + scene,
                            "Buffers in device-local memory. – on a CPU.", [&](const CellRecord& c) {
                              const double m = v(c, "device_memory_B"), d = v(c, "dispatches");

@@ -20,7 +20,8 @@ using Words = std::vector<std::string>;
 constexpr double kFpsAccuracy_s = 0.5;
 
 StudyRules read_rules(const json& j) {
-  return {j["frames"].get<int>(), j["min_frames"].get<int>(), j["max_wall_s"].get<double>(), j["warmup_s"].get<double>()};
+  return {j["frames"].get<int>(), j["min_frames"].get<int>(), j["max_wall_s"].get<double>(),
+          j["warmup_s"].get<double>()};
 }
 
 /// {"cloth.sides": "double"} as `--set` writes it.
@@ -36,7 +37,8 @@ bool contains(const Words& words, const std::string& word) {
 
 /// An empty choice is no choice.
 bool chosen(const Words& choice, const Words& labels) {
-  return choice.empty() || std::any_of(labels.begin(), labels.end(), [&](const auto& l) { return contains(choice, l); });
+  return choice.empty() ||
+         std::any_of(labels.begin(), labels.end(), [&](const auto& l) { return contains(choice, l); });
 }
 
 struct Variant {
@@ -83,7 +85,8 @@ class Builder {
     study_.protocol = j_["protocol"].get<std::string>();
     study_.trials = (quick_.is_null() ? j_ : quick_)["trials"].get<int>();
     study_.drop_frames = j_["drop_frames"].get<int>();
-    study_.rules = read_rules(!quick_.is_null() ? quick_["rules"] : j_[study_.length == StudyLength::Full ? "full" : "short"]);
+    study_.rules =
+        read_rules(!quick_.is_null() ? quick_["rules"] : j_[study_.length == StudyLength::Full ? "full" : "short"]);
     const double standard_s = study_.protocol == "fps" ? kFpsAccuracy_s : std::numeric_limits<double>::infinity();
     study_.accuracy_duration_s = j_.value("accuracy_duration_s", standard_s);
     read_solvers();
@@ -99,8 +102,8 @@ class Builder {
     Words named;
     for (std::size_t k = 0; k < j_["solvers"].size(); ++k) {
       const json& s = j_["solvers"][k];
-      StudySolver solver{s["solver"].get<std::string>(), s["label"].get<std::string>(), s["settings"], assignments(s["set"]),
-                         s["only"].get<Words>()};
+      StudySolver solver{s["solver"].get<std::string>(), s["label"].get<std::string>(), s["settings"],
+                         assignments(s["set"]), s["only"].get<Words>()};
       solver_names_.push_back(solver.name());
       stays_.push_back(stays(solver));
       named.push_back(solver.solver);
@@ -119,7 +122,9 @@ class Builder {
     const Words quick = quick_.is_null() ? Words{} : quick_["solvers"].get<Words>();
     const bool in_quick = quick.empty() || contains(quick, s.name());
     if (options_.solvers.empty()) return in_quick;
-    const bool quick_has_it = std::any_of(quick.begin(), quick.end(), [&](const std::string& q) { return q == s.solver || q.starts_with(s.solver + " "); });
+    const bool quick_has_it = std::any_of(quick.begin(), quick.end(), [&](const std::string& q) {
+      return q == s.solver || q.starts_with(s.solver + " ");
+    });
     return contains(options_.solvers, s.solver) && (in_quick || !quick_has_it);
   }
 
@@ -128,7 +133,8 @@ class Builder {
     const std::string pointer = fmt::format("/scenes/{}", k), scene_file = item["file"].get<std::string>();
     std::filesystem::path path = scene_file;
     if (path.is_relative() && std::filesystem::exists(file_.parent_path() / path)) path = file_.parent_path() / path;
-    if (!std::filesystem::exists(path)) throw Error(source_ + ": " + pointer + "/file: \"" + scene_file + "\": no such file");
+    if (!std::filesystem::exists(path))
+      throw Error(source_ + ": " + pointer + "/file: \"" + scene_file + "\": no such file");
     const json scenario = parse_json(read_text(path), path.string());
     const json name_at = scenario.is_object() ? scenario.value("name", json()) : json();
     const std::string name = name_at.is_string() ? name_at.get<std::string>() : "";
@@ -152,7 +158,8 @@ class Builder {
       if (is_new) {
         Words all = v.overrides;
         const Words quick = quick_.is_null() ? Words{} : assignments(quick_["set"]);
-        for (const Words* more : {&solver.set, &quick, &options_.overrides}) all.insert(all.end(), more->begin(), more->end());
+        for (const Words* more : {&solver.set, &quick, &options_.overrides})
+          all.insert(all.end(), more->begin(), more->end());
         Scene scene = scene_from_json(scenario, path, all, options_.assets);
         scene.name += v.suffix;
         const int group = group_of(scene);
@@ -161,8 +168,8 @@ class Builder {
       Study::Item& item = study_.scenes[at->second];
       item.solvers.push_back(s);
       if (!cells_.insert(item.scene.name + " " + solver.name()).second)
-        throw Error(fmt::format("{}: {}: two cells are named \"{}\" with {}; labels must differ", source_, pointer, item.scene.name,
-                                solver.name()));
+        throw Error(fmt::format("{}: {}: two cells are named \"{}\" with {}; labels must differ", source_, pointer,
+                                item.scene.name, solver.name()));
     }
   }
 
@@ -197,7 +204,7 @@ class Builder {
   const StudyOptions& options_;
   Study study_;
   Words solver_names_;
-  std::vector<bool> stays_;         ///< by solver
+  std::vector<bool> stays_;  ///< by solver
   std::set<std::string> labels_, cells_;
   std::map<std::string, int> groups_;
 };

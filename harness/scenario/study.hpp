@@ -52,7 +52,7 @@ struct Study {
   int trials = 0, drop_frames = 0;
   double accuracy_duration_s = 0;  ///< infinite: the whole scene
   StudyRules rules;                ///< of `length`
-  nlohmann::json definition;  ///< completed study file
+  nlohmann::json definition;       ///< completed study file
 };
 
 /// Loads a study by path or name ("table3"). Throws Error as `load_scene` does, and if the study has no "quick" where

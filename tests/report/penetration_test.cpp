@@ -17,12 +17,16 @@ CellRecord desk_cell(const std::string& solver, const std::string& setting, cons
   CellRecord c = fake_cell(solver, 32, "double-duplicated", 0.004);
   c.header.scene = "desk-flat-low";
   c.header.setting = setting;
-  c.header.scenario_json = R"({"name":"desk-flat-low","paper":{"section":"4.2","table":5},"cloth":{"grid":[32,32],"sides":"double-duplicated"},
-    "colliders":[{"type":"room","cut":")" + cut + R"("}],"expect":{"outcome":"ok","tunnelled_fraction_max":{"at_most":0},"stretch_max":{"at_least":0.5,"at_most":1}}})";
+  c.header.scenario_json =
+      R"({"name":"desk-flat-low","paper":{"section":"4.2","table":5},"cloth":{"grid":[32,32],"sides":"double-duplicated"},
+    "colliders":[{"type":"room","cut":")" +
+      cut +
+      R"("}],"expect":{"outcome":"ok","tunnelled_fraction_max":{"at_most":0},"stretch_max":{"at_least":0.5,"at_most":1}}})";
   c.header.stages = {{"Integrate", {}, 1}, {"Mesh", {"static_mesh", "friction"}, 1}};
-  c.header.environment["solver_features"] = {{"supports", {"static_mesh", "friction", "sphere"}},
-                                             {"ignores", nlohmann::json::array()},
-                                             {"only_with", nlohmann::json::array({nlohmann::json::array({"static_mesh", "duplicated_layer"})})}};
+  c.header.environment["solver_features"] = {
+      {"supports", {"static_mesh", "friction", "sphere"}},
+      {"ignores", nlohmann::json::array()},
+      {"only_with", nlohmann::json::array({nlohmann::json::array({"static_mesh", "duplicated_layer"})})}};
   c.summary["tunnelled_fraction_max"] = 0;
   c.summary["tunnelled_fraction_end"] = 0;
   c.summary["contact_length_max_m"] = 0.0123;
@@ -59,7 +63,8 @@ TEST(Penetration, SetUpsAreToldByWhatTouches) {
       of_scene(any, "push", R"({"colliders":[{"type":"plane"},{"type":"hand_mesh"}]})"),
       of_scene(any, "pull", R"({"paper":{"section":"4.4"},"grips":[{"track":"x"}]})"),
       of_scene(any, "sheet", R"({"colliders":[{"type":"mesh"}]})"),
-      of_scene(any, "odd", "not JSON"), of_scene(any, "odder", R"({"colliders":3,"grips":"x"})"),
+      of_scene(any, "odd", "not JSON"),
+      of_scene(any, "odder", R"({"colliders":3,"grips":"x"})"),
       of_scene(any, "oddest", R"({"colliders":[7]})")};
   EXPECT_FALSE(has_contact(cells[1]));
   const std::vector<ContactSetUp> ups = set_ups(cells);
@@ -79,7 +84,8 @@ TEST(Penetration, SetUpsAreToldByWhatTouches) {
 }
 
 TEST(Penetration, TableShowsNumbersInTheirUnits) {
-  std::vector<CellRecord> cells = {desk_cell("xpbd", "default", "any_vertex_inside"), desk_cell("paper", "default", "any_vertex_inside")};
+  std::vector<CellRecord> cells = {desk_cell("xpbd", "default", "any_vertex_inside"),
+                                   desk_cell("paper", "default", "any_vertex_inside")};
   cells[1].summary["tunnelled_fraction_max"] = 0.3456;
   cells[1].summary["tunnelled_fraction_end"] = 0.0004;
   cells[1].summary["expect.tunnelled_fraction_max"] = 0;
@@ -87,7 +93,8 @@ TEST(Penetration, TableShowsNumbersInTheirUnits) {
   EXPECT_EQ(cell_of(t, "desk-flat-low", "xpbd", "tunnelled, most / end [%]"), "0 / 0");
   EXPECT_EQ(cell_of(t, "desk-flat-low", "paper", "tunnelled, most / end [%]"), "34.6 / <0.1");
   EXPECT_EQ(cell_of(t, "desk-flat-low", "xpbd", "contour, most / settled [mm]"), "12.3 / 0");
-  EXPECT_EQ(cell_of(t, "desk-flat-low", "xpbd", "tunnelled depth [mm]"), "<0.01") << "what is not nothing never reads as nothing";
+  EXPECT_EQ(cell_of(t, "desk-flat-low", "xpbd", "tunnelled depth [mm]"), "<0.01")
+      << "what is not nothing never reads as nothing";
   EXPECT_EQ(cell_of(t, "desk-flat-low", "xpbd", "wall / GPU [ms]"), "4.00 / 3.60");
   EXPECT_EQ(cell_of(t, "desk-flat-low", "xpbd", "expected"), "kept");
   EXPECT_EQ(cell_of(t, "desk-flat-low", "paper", "expected"), "broken");
@@ -95,7 +102,8 @@ TEST(Penetration, TableShowsNumbersInTheirUnits) {
   EXPECT_EQ(t.markdown().find("nan"), std::string::npos);
   const Table broken = broken_table(set_ups(cells));
   ASSERT_EQ(broken.rows.size(), 2u);
-  EXPECT_EQ(broken.rows[1], (std::vector<std::string>{"desk-flat-low", "paper", "tunnelled_fraction_max", "at most 0", "0.3456"}));
+  EXPECT_EQ(broken.rows[1],
+            (std::vector<std::string>{"desk-flat-low", "paper", "tunnelled_fraction_max", "at most 0", "0.3456"}));
 }
 
 TEST(Penetration, VerdictNeverHidesAFailure) {
@@ -117,9 +125,11 @@ TEST(Penetration, VerdictNeverHidesAFailure) {
 }
 
 TEST(Penetration, OverviewHasAColumnForEverySetting) {
-  std::vector<CellRecord> cells = {desk_cell("xpbd", "default", "any_vertex_inside"), desk_cell("paper", "whole-room", "none"),
-                                   with_outcome(desk_cell("bullet-deformable", "default", "any_vertex_inside"), "unsupported", -1, "not in this build"),
-                                   of_scene(desk_cell("xpbd", "default", ""), "ball", R"({"colliders":[{"type":"sphere"}]})")};
+  std::vector<CellRecord> cells = {
+      desk_cell("xpbd", "default", "any_vertex_inside"), desk_cell("paper", "whole-room", "none"),
+      with_outcome(desk_cell("bullet-deformable", "default", "any_vertex_inside"), "unsupported", -1,
+                   "not in this build"),
+      of_scene(desk_cell("xpbd", "default", ""), "ball", R"({"colliders":[{"type":"sphere"}]})")};
   const auto rows = parse_markdown(verdict_table(set_ups(cells)).markdown());
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0], (std::vector<std::string>{"scene", "bullet-deformable", "paper whole-room", "xpbd"}));
@@ -147,7 +157,8 @@ TEST(Penetration, JsonHasNullForMissing) {
 }
 
 TEST(RoomPair, DistanceIsMeasuredVertexByVertex) {
-  std::vector<CellRecord> cells = {desk_cell("paper", "default", "any_vertex_inside"), desk_cell("paper", "whole-room", "none"),
+  std::vector<CellRecord> cells = {desk_cell("paper", "default", "any_vertex_inside"),
+                                   desk_cell("paper", "whole-room", "none"),
                                    desk_cell("xpbd", "default", "any_vertex_inside")};
   cells[1].accuracy.position[4] = 0.5f;   // first frame, second vertex
   cells[1].accuracy.position[8] = 0.25f;  // last frame, first vertex
@@ -164,11 +175,13 @@ TEST(RoomPair, DistanceIsMeasuredVertexByVertex) {
   EXPECT_EQ(rows[0][3], "wall [ms]");
   EXPECT_EQ(rows[3][3], "3.00");
   EXPECT_EQ(rows[3][5], "100") << "of the stages that serve static meshes";
-  EXPECT_NE(room_table(pairs).note.find("at the end 0.25 m, over all frames 0.5 m"), std::string::npos) << room_table(pairs).note;
+  EXPECT_NE(room_table(pairs).note.find("at the end 0.25 m, over all frames 0.5 m"), std::string::npos)
+      << room_table(pairs).note;
 }
 
 TEST(RoomPair, WhatDiffersOtherwiseOrIsNotMeasuredIsNotCompared) {
-  std::vector<CellRecord> cells = {desk_cell("paper", "default", "any_vertex_inside"), desk_cell("paper", "whole-room", "none")};
+  std::vector<CellRecord> cells = {desk_cell("paper", "default", "any_vertex_inside"),
+                                   desk_cell("paper", "whole-room", "none")};
   cells[1].accuracy.position.pop_back();
   EXPECT_TRUE(std::isnan(room_pairs(cells).at(0).distance_end_m)) << "trajectories of different lengths";
   EXPECT_NE(room_table(room_pairs(cells)).note.find("not measured"), std::string::npos);
@@ -185,11 +198,13 @@ TEST(RoomPair, WhatDiffersOtherwiseOrIsNotMeasuredIsNotCompared) {
 }
 
 TEST(Features, ComeFromTheResultFilesAlone) {
-  std::vector<CellRecord> cells = {desk_cell("paper", "default", "none"),
-                                   with_outcome(desk_cell("absent", "default", "none"), "unsupported", -1, "not in this build"),
-                                   desk_cell("ignorant", "default", "none")};
+  std::vector<CellRecord> cells = {
+      desk_cell("paper", "default", "none"),
+      with_outcome(desk_cell("absent", "default", "none"), "unsupported", -1, "not in this build"),
+      desk_cell("ignorant", "default", "none")};
   cells[1].header.environment.erase("solver_features");
-  cells[2].header.environment["solver_features"] = {{"supports", {"plane", "antigravity"}}, {"ignores", {"sphere"}}, {"only_with", {{"plane"}}}};
+  cells[2].header.environment["solver_features"] = {
+      {"supports", {"plane", "antigravity"}}, {"ignores", {"sphere"}}, {"only_with", {{"plane"}}}};
   cells[2].header.stages.clear();
   const Table t = feature_table(solver_features(cells), true);
   const auto text = [&](const std::string& feature, std::size_t column) {
@@ -207,8 +222,13 @@ TEST(Features, ComeFromTheResultFilesAlone) {
   EXPECT_EQ(text("sphere", 3), "ignored");
   EXPECT_EQ(text("plane", 3), "declared");
   cells[0].outcome.status = "diverged";
-  EXPECT_EQ(feature_text(solver_features(cells).at(0), Feature::Friction, true), "declared") << "a run that failed shows nothing";
-  EXPECT_EQ(feature_json(solver_features(cells), true).at(static_cast<std::size_t>(Feature::Sphere)).at("solvers").at("ignorant"), "ignored");
+  EXPECT_EQ(feature_text(solver_features(cells).at(0), Feature::Friction, true), "declared")
+      << "a run that failed shows nothing";
+  EXPECT_EQ(feature_json(solver_features(cells), true)
+                .at(static_cast<std::size_t>(Feature::Sphere))
+                .at("solvers")
+                .at("ignorant"),
+            "ignored");
 }
 
 }  // namespace

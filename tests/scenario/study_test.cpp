@@ -58,12 +58,16 @@ TEST(Study, FaultsNameFileAndPointer) {
 std::string study_text(const std::string& solvers, const std::string& more = "", const std::string& protocol = "fps") {
   const std::string root = CLOTHBENCH_SOURCE_DIR "/scenarios/";
   return R"({"name":"s","why":"A test.","protocol":")" + protocol + R"(","scenes":[
-    {"file":")" + root + R"(paper/gravity.json","labels":["free"],
+    {"file":")" +
+         root + R"(paper/gravity.json","labels":["free"],
      "axes":[{"key":"cloth.grid","values":[[8,8],[9,7]],"labels":["8","9x7"]}]},
-    {"file":")" + root + R"(contact/sphere.json","labels":["shape"]}],
-    "solvers":)" + solvers + R"(,"trials":5,
+    {"file":")" +
+         root + R"(contact/sphere.json","labels":["shape"]}],
+    "solvers":)" +
+         solvers + R"(,"trials":5,
     "short":{"frames":72,"max_wall_s":2,"min_frames":12,"warmup_s":0.1},
-    "full":{"frames":360,"max_wall_s":0,"min_frames":36,"warmup_s":0.2})" + more + "}";
+    "full":{"frames":360,"max_wall_s":0,"min_frames":36,"warmup_s":0.2})" +
+         more + "}";
 }
 
 Study study_of(const std::string& text, StudyOptions options = {}) {
@@ -91,10 +95,12 @@ std::vector<std::string> cells(const Study& s) {
 }
 
 TEST(Study, SolversChangeScenesForThemselvesAlone) {
-  const Study s = study_of(study_text(R"([{"solver":"a","only":["shape"],"set":{"cloth.sides":"double-duplicated","colliders.0.radius_m":0.2}},
-                                          {"solver":"b"},{"solver":"a","label":"x","only":["9x7","shape"]}])", "", "penetration"));
-  EXPECT_EQ(cells(s), (std::vector<std::string>{"gravity-8 b", "gravity-9x7 b", "gravity-9x7 a x", "sphere-drop a duplicated",
-                                                "sphere-drop b", "sphere-drop a x"}));
+  const Study s = study_of(study_text(
+      R"([{"solver":"a","only":["shape"],"set":{"cloth.sides":"double-duplicated","colliders.0.radius_m":0.2}},
+                                          {"solver":"b"},{"solver":"a","label":"x","only":["9x7","shape"]}])",
+      "", "penetration"));
+  EXPECT_EQ(cells(s), (std::vector<std::string>{"gravity-8 b", "gravity-9x7 b", "gravity-9x7 a x",
+                                                "sphere-drop a duplicated", "sphere-drop b", "sphere-drop a x"}));
   const Scene& changed = s.scenes[2].scene;
   EXPECT_EQ(changed.colliders.at(0).radius_m, 0.2);
   EXPECT_TRUE(changed.needs.has(Feature::DuplicatedLayer));
@@ -112,14 +118,17 @@ TEST(Study, AccuracyPassOfPenetrationIsTheWholeScene) {
 
 TEST(Study, QuickLeavesOutAndShortens) {
   const std::string solvers = R"([{"solver":"a"},{"solver":"a","label":"x"},{"solver":"b"}])";
-  const std::string text = study_text(solvers, R"(,"quick":{"scenes":["8","sphere-drop"],"solvers":["a x","b"],"trials":2,
+  const std::string text =
+      study_text(solvers, R"(,"quick":{"scenes":["8","sphere-drop"],"solvers":["a x","b"],"trials":2,
     "rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0},"set":{"time.duration_s":0.25}})");
   const Study quick = study_of(text, {{}, StudyLength::Quick});
-  EXPECT_EQ(cells(quick), (std::vector<std::string>{"gravity-8 a x", "gravity-8 b", "sphere-drop a x", "sphere-drop b"}));
+  EXPECT_EQ(cells(quick),
+            (std::vector<std::string>{"gravity-8 a x", "gravity-8 b", "sphere-drop a x", "sphere-drop b"}));
   EXPECT_EQ(quick.trials, 2);
   EXPECT_EQ(quick.rules.frames, 5);
   EXPECT_EQ(quick.scenes[0].scene.time.frames(), 18);
-  EXPECT_EQ(study_of(text, {{"time.duration_s=1"}, StudyLength::Quick}).scenes[0].scene.time.frames(), 72) << "--set comes last";
+  EXPECT_EQ(study_of(text, {{"time.duration_s=1"}, StudyLength::Quick}).scenes[0].scene.time.frames(), 72)
+      << "--set comes last";
   const Study whole = study_of(text), full = study_of(text, {{}, StudyLength::Full});
   EXPECT_EQ(cells(whole).size(), 9u);
   EXPECT_EQ(whole.trials, 5);
@@ -129,8 +138,9 @@ TEST(Study, QuickLeavesOutAndShortens) {
 }
 
 TEST(Study, SolversAskedForAloneOrJoined) {
-  const std::string text = study_text(R"([{"solver":"a"},{"solver":"a","label":"x","set":{"cloth.sides":"double"}},{"solver":"b"}])",
-                                      R"(,"quick":{"scenes":["8"],"solvers":["a"],"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0}})");
+  const std::string text = study_text(
+      R"([{"solver":"a"},{"solver":"a","label":"x","set":{"cloth.sides":"double"}},{"solver":"b"}])",
+      R"(,"quick":{"scenes":["8"],"solvers":["a"],"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0}})");
   const auto asked = [&](StudyLength length, std::vector<std::string> solvers) {
     const Study s = study_of(text, {{}, length, Assets::MayBeProcedural, std::move(solvers)});
     EXPECT_EQ(s.solvers.size(), 4u);
@@ -147,17 +157,26 @@ TEST(Study, SolversAskedForAloneOrJoined) {
 
 TEST(Study, WordsThatChooseNothingAreFaults) {
   const auto quick = [](const std::string& inside) {
-    return study_text(R"([{"solver":"a"}])", R"(,"quick":{"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0},)" + inside + "}");
+    return study_text(R"([{"solver":"a"}])",
+                      R"(,"quick":{"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0},)" + inside + "}");
   };
   EXPECT_EQ(message_of(quick(R"("scenes":["shape"])")), "");
-  EXPECT_NE(message_of(quick(R"("scenes":["shapes"])")).find("/quick/scenes/0: \"shapes\" names none; nearest known: shape"), std::string::npos);
+  EXPECT_NE(
+      message_of(quick(R"("scenes":["shapes"])")).find("/quick/scenes/0: \"shapes\" names none; nearest known: shape"),
+      std::string::npos);
   EXPECT_NE(message_of(quick(R"("solvers":["a x"])")).find("/quick/solvers/0"), std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape","fre"]}])")).find("/solvers/0/only/1"), std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a"},{"solver":"a"}])")).find("two cells are named"), std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a","set":{"cloth.side":"double"}}])")).find("nearest known: sides"), std::string::npos);
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape","fre"]}])")).find("/solvers/0/only/1"),
+            std::string::npos);
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a"},{"solver":"a"}])")).find("two cells are named"),
+            std::string::npos);
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a","set":{"cloth.side":"double"}}])")).find("nearest known: sides"),
+            std::string::npos);
   EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape"],"set":{"colliders.1.friction":0}}])"))
-                .find("/colliders/1: expected an item"), std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape"],"set":{"colliders.x.friction":0}}])")).find("/colliders/x"), std::string::npos);
+                .find("/colliders/1: expected an item"),
+            std::string::npos);
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape"],"set":{"colliders.x.friction":0}}])"))
+                .find("/colliders/x"),
+            std::string::npos);
 }
 
 TEST(Study, PenetrationHasEveryCombinationItNames) {
@@ -165,7 +184,8 @@ TEST(Study, PenetrationHasEveryCombinationItNames) {
   std::set<std::string> scenes;
   for (const Study::Item& item : s.scenes) {
     scenes.insert(item.scene.name);
-    EXPECT_FALSE(item.scene.colliders.empty() && item.scene.grips.vertices.empty()) << item.scene.name << " touches nothing";
+    EXPECT_FALSE(item.scene.colliders.empty() && item.scene.grips.vertices.empty())
+        << item.scene.name << " touches nothing";
     for (const std::size_t k : item.solvers)
       if (s.solvers[k].solver == "paper") {
         // It knows no two-sided contact without a second layer.
