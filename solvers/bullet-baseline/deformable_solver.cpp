@@ -140,8 +140,7 @@ class BulletDeformable final : public BulletSolver {
       for (const Edge& e : edges(scene().cloth, kind))
         stiffness.push_back(static_cast<btScalar>(LinkStiffness(scene()).of(e)));
     }
-    // Nodes meet rigid bodies, faces do not: PyBullet's face contacts make this cloth jump, and cost five times as
-    // much.
+    // Nodes meet rigid bodies, faces do not: PyBullet's face contacts make this cloth jump, at three times the cost.
     if (touches()) body_->m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
     w.addSoftBody(body_.get());
     springs_ = std::make_unique<GridSprings>(std::move(stiffness));
