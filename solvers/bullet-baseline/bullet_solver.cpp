@@ -17,18 +17,21 @@ SolverInfo common_info() {
   info.folder = "solvers/bullet-baseline";
   info.version = version();
   info.precision = sizeof(btScalar) == 4 ? "float32" : "float64";
-  info.supports = {Feature::Stretch, Feature::Shear,  Feature::Bend,     Feature::Damping,    Feature::Pins,
-                   Feature::MovingPins, Feature::Sphere, Feature::Box,   Feature::Plane,      Feature::Capsules,
+  info.supports = {Feature::Stretch,    Feature::Shear,      Feature::Bend,     Feature::Damping,    Feature::Pins,
+                   Feature::MovingPins, Feature::Sphere,     Feature::Box,      Feature::Plane,      Feature::Capsules,
                    Feature::StaticMesh, Feature::MovingMesh, Feature::Friction, Feature::DoubleSided};
   return info;
 }
 
 SettingSpec collision_margin_spec() {
-  return {"collision_margin_m", "0.02", "distance at which contact holds the cloth [m]: PyBullet's default. 0: the scene's margin_m"};
+  return {"collision_margin_m", "0.02",
+          "distance at which contact holds the cloth [m]: PyBullet's default. 0: the scene's margin_m"};
 }
 
 SettingSpec mesh_spec() {
-  return {"mesh", "\"triangles\"", "a mesh becomes thin triangles, or \"bvh\": Bullet's own static mesh, which soft bodies meet as slabs 0.1 m thick either way"};
+  return {"mesh", "\"triangles\"",
+          "a mesh becomes thin triangles, or \"bvh\": Bullet's own static mesh, which soft bodies meet as slabs 0.1 m "
+          "thick either way"};
 }
 
 SettingSpec voxel_spec() {
@@ -42,16 +45,17 @@ double kept_share(const Scene& scene, double h) {
 int integer_setting(const SolverInfo& info, const nlohmann::json& settings, const char* name, int least, int most) {
   const auto value = settings[name].get<long long>();
   if (!(value >= least && value <= most))
-    throw Error("solver " + info.name + ": setting " + name + ": expected " + std::to_string(least) + " to " + std::to_string(most) +
-                "; found " + settings[name].dump());
+    throw Error("solver " + info.name + ": setting " + name + ": expected " + std::to_string(least) + " to " +
+                std::to_string(most) + "; found " + settings[name].dump());
   return static_cast<int>(value);
 }
 
-double number_setting(const SolverInfo& info, const nlohmann::json& settings, const char* name, double least, double most) {
+double number_setting(const SolverInfo& info, const nlohmann::json& settings, const char* name, double least,
+                      double most) {
   const auto value = settings[name].get<double>();
   if (!(value > least && value <= most))
-    throw Error("solver " + info.name + ": setting " + name + ": expected more than " + std::to_string(least) + ", at most " +
-                std::to_string(most) + "; found " + settings[name].dump());
+    throw Error("solver " + info.name + ": setting " + name + ": expected more than " + std::to_string(least) +
+                ", at most " + std::to_string(most) + "; found " + settings[name].dump());
   return value;
 }
 
@@ -61,9 +65,11 @@ BulletSolver::BulletSolver(SolverInfo info, const nlohmann::json& settings)
       mesh_(settings["mesh"] == "bvh" ? MeshAs::Bvh : MeshAs::Triangles),
       voxel_m_(number_setting(info_, settings, "sdf_voxel_m", 0, 1)) {
   if (settings["mesh"] != "bvh" && settings["mesh"] != "triangles")
-    throw Error("solver " + info_.name + ": setting mesh: expected \"triangles\" or \"bvh\"; found " + settings["mesh"].dump());
+    throw Error("solver " + info_.name + ": setting mesh: expected \"triangles\" or \"bvh\"; found " +
+                settings["mesh"].dump());
   if (!(collision_margin_m_ >= 0 && collision_margin_m_ <= 1))
-    throw Error("solver " + info_.name + ": setting collision_margin_m: expected 0 to 1; found " + settings["collision_margin_m"].dump());
+    throw Error("solver " + info_.name + ": setting collision_margin_m: expected 0 to 1; found " +
+                settings["collision_margin_m"].dump());
 }
 
 DeviceInfo BulletSolver::device() const { return {"CPU", version(), "C++", false, "{}"}; }

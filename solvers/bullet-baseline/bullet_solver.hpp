@@ -83,7 +83,7 @@ class BulletSolver : public ClothSolver {
   int substeps_ = 0;
   const Scene* scene_ = nullptr;
   std::unique_ptr<ColliderBodies> colliders_;
-  FrameMotion now_;               ///< at the end of the last frame; empty where nothing moves
+  FrameMotion now_;                  ///< at the end of the last frame; empty where nothing moves
   std::vector<btScalar> free_mass_;  ///< of all vertices, held ones too
 };
 

@@ -13,6 +13,8 @@ namespace {
 constexpr double kGroundHalf_m = 10;
 /// By how much a triangle is thicker than a triangle; what PyBullet gives its collision shapes.
 constexpr btScalar kTriangleMargin_m = 0.001F;
+/// Bullet extrudes a mesh's triangles by 0.06 m either way for soft bodies, and gives that a margin of 0.04 m.
+constexpr btScalar kSlabHalf_m = 0.1F;
 /// A capsule's length may differ from that at the start by this much: its shape is made once.
 constexpr double kLengthTolerance_m = 1e-3;
 
@@ -21,9 +23,7 @@ btVector3 direction(const Capsule& c, const btVector3& otherwise) {
   return along.length2() > 0 ? along.normalized() : otherwise;
 }
 
-double length(const Capsule& c) {
-  return std::hypot(c.b_m[0] - c.a_m[0], c.b_m[1] - c.a_m[1], c.b_m[2] - c.a_m[2]);
-}
+double length(const Capsule& c) { return std::hypot(c.b_m[0] - c.a_m[0], c.b_m[1] - c.a_m[1], c.b_m[2] - c.a_m[2]); }
 
 Capsule between(const Capsule& from, const Capsule& to, double share) {
   Capsule out = from;
@@ -72,23 +72,27 @@ void check_lengths(const Scene& scene) {
   for (const FrameMotion& m : scene.motion)
     for (std::size_t c = 0; c < scene.colliders.size(); ++c)
       for (std::size_t k = 0; k < scene.colliders[c].capsules.size(); ++k)
-        if (!(std::abs(length(m.colliders[c].capsules[k]) - length(scene.colliders[c].capsules[k])) <= kLengthTolerance_m))
+        if (!(std::abs(length(m.colliders[c].capsules[k]) - length(scene.colliders[c].capsules[k])) <=
+              kLengthTolerance_m))
           throw Error("collider " + scene.colliders[c].name + ": capsule " + std::to_string(k) +
                       " changes its length by more than 1 mm, which Bullet's rigid bodies cannot");
 }
 
 }  // namespace
 
-btVector3 to_bullet(const Vec3& v) { return {static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2])}; }
+btVector3 to_bullet(const Vec3& v) {
+  return {static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2])};
+}
 
-ColliderBodies::ColliderBodies(const Scene& scene, btDiscreteDynamicsWorld& world, MeshAs mesh) : colliders_(scene.colliders), world_(world) {
+ColliderBodies::ColliderBodies(const Scene& scene, btDiscreteDynamicsWorld& world, MeshAs mesh)
+    : colliders_(scene.colliders), world_(world) {
   check_lengths(scene);
   for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
     const Collider& c = scene.colliders[k];
     if (c.shape == Collider::Shape::Capsules)
       add_capsules(scene, k);
     else if (c.shape == Collider::Shape::Mesh)
-      mesh == MeshAs::Triangles ? add_mesh(scene, k) : add_whole_mesh(c);
+      mesh == MeshAs::Triangles || c.moves() ? add_mesh(scene, k) : add_whole_mesh(c);
     else
       add_static(c);
   }
@@ -98,7 +102,8 @@ ColliderBodies::~ColliderBodies() {
   for (Body& b : bodies_) world_.removeRigidBody(b.body.get());
 }
 
-void ColliderBodies::add(std::unique_ptr<btCollisionShape> shape, const btTransform& at, const Collider& c, bool moves) {
+void ColliderBodies::add(std::unique_ptr<btCollisionShape> shape, const btTransform& at, const Collider& c,
+                         bool moves) {
   Body b;
   b.shape = std::move(shape);
   b.motion = std::make_unique<btDefaultMotionState>(at);
@@ -131,7 +136,8 @@ void ColliderBodies::add_static(const Collider& c) {
 
 void ColliderBodies::add_mesh(const Scene& scene, std::size_t collider) {
   const Collider& c = scene.colliders[collider];
-  const std::vector<double> x = posed_positions(*c.mesh, scene.motion.empty() ? ColliderPose{} : scene.motion.front().colliders[collider]);
+  const std::vector<double> x =
+      posed_positions(*c.mesh, scene.motion.empty() ? ColliderPose{} : scene.motion.front().colliders[collider]);
   for (std::size_t t = 0; t < c.mesh->triangles.size(); ++t) {
     const Corners corners = corners_of(*c.mesh, t, x);
     const btTransform at = place(corners);
@@ -149,7 +155,10 @@ void ColliderBodies::add_whole_mesh(const Collider& c) {
     const Corners corners = corners_of(*c.mesh, t, c.mesh->positions);
     triangles->addTriangle(corners[0], corners[1], corners[2]);
   }
-  add(std::make_unique<btBvhTriangleMeshShape>(triangles.get(), true), btTransform::getIdentity(), c, false);
+  auto shape = std::make_unique<btBvhTriangleMeshShape>(triangles.get(), true);
+  // The mesh's box must hold the slabs, or the cloth first meets them when it is deep inside and is thrown out.
+  shape->setMargin(kSlabHalf_m);
+  add(std::move(shape), btTransform::getIdentity(), c, false);
   bodies_.back().triangles = std::move(triangles);
 }
 
@@ -159,13 +168,16 @@ void ColliderBodies::add_capsules(const Scene& scene, std::size_t collider) {
     btQuaternion turn = btQuaternion::getIdentity();
     const btTransform at = place(c.capsules[k], turn);
     capsules_.push_back({collider, k, bodies_.size(), turn});
-    add(std::make_unique<btCapsuleShape>(static_cast<btScalar>(c.capsules[k].radius_m), static_cast<btScalar>(length(c.capsules[k]))), at, c, true);
+    add(std::make_unique<btCapsuleShape>(static_cast<btScalar>(c.capsules[k].radius_m),
+                                         static_cast<btScalar>(length(c.capsules[k]))),
+        at, c, true);
   }
 }
 
 void ColliderBodies::move(const FrameMotion& from, const FrameMotion& to, double share) {
   for (MovingCapsule& m : capsules_) {
-    const Capsule c = between(from.colliders[m.collider].capsules[m.capsule], to.colliders[m.collider].capsules[m.capsule], share);
+    const Capsule c =
+        between(from.colliders[m.collider].capsules[m.capsule], to.colliders[m.collider].capsules[m.capsule], share);
     bodies_[m.body].motion->setWorldTransform(place(c, m.turn));
   }
   if (!triangles_.empty()) move_triangles(from, to, share);

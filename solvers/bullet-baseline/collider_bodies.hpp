@@ -14,7 +14,8 @@ btVector3 to_bullet(const Vec3&);
 /// What a mesh becomes in Bullet.
 enum class MeshAs {
   Triangles,  ///< a thin rigid body for each triangle
-  Bvh         ///< one btBvhTriangleMeshShape: soft bodies meet it as slabs that reach 0.1 m from either side
+  Bvh  ///< one btBvhTriangleMeshShape for what stands still: soft bodies meet it as slabs that reach 0.1 m from either
+       ///< side
 };
 
 /// A scene's colliders as rigid bodies of a Bullet world: static ones, and kinematic ones for capsules.

@@ -19,11 +19,12 @@ SolverInfo describe() {
   SolverInfo info = common_info();
   info.name = "bullet-deformable";
   info.summary = "Bullet's deformable body with springs in N/m (btDeformableMultiBodyDynamicsWorld) on one CPU core";
-  info.settings = {{"substeps", "0", "substeps a frame; 0: explicit, as many as keep the stiffest vertex stable, implicit, 4"},
-                   {"implicit", "false", "backward Euler (one Newton step, conjugate gradients, projection); blows up on contact"},
-                   collision_margin_spec(),
-                   mesh_spec(),
-                   voxel_spec()};
+  info.settings = {
+      {"substeps", "0", "substeps a frame; 0: explicit, as many as keep the stiffest vertex stable, implicit, 4"},
+      {"implicit", "false", "backward Euler (one Newton step, conjugate gradients, projection); blows up on contact"},
+      collision_margin_spec(),
+      mesh_spec(),
+      voxel_spec()};
   return info;
 }
 
@@ -44,7 +45,8 @@ struct DeformableWorld {
 /// and on each diagonal 3/16 Y (a^2 + b^2)/(a b); on square cells 3/4 Y and 3/8 Y.
 class LinkStiffness {
  public:
-  explicit LinkStiffness(const Scene& s) : s_(s), a_(s.cloth.du()), b_(s.cloth.dv()), y_(s.material.membrane_stiffness_N_per_m.value_or(kStiff_N_per_m)) {}
+  explicit LinkStiffness(const Scene& s)
+      : s_(s), a_(s.cloth.du()), b_(s.cloth.dv()), y_(s.material.membrane_stiffness_N_per_m.value_or(kStiff_N_per_m)) {}
 
   double of(const Edge& e) const {
     const Cloth& c = s_.cloth;
@@ -54,7 +56,8 @@ class LinkStiffness {
     const std::uint32_t line = along_u ? e.a / columns : e.a % columns;
     const bool border = line == 0 || line == (along_u ? last_row : columns - 1);
     const double own = along_u ? a_ : b_, other = along_u ? b_ : a_;
-    if (e.kind == EdgeKind::SkipOne) return s_.material.bending_rigidity_N_m * other / (own * own * own) * (border ? 0.5 : 1);
+    if (e.kind == EdgeKind::SkipOne)
+      return s_.material.bending_rigidity_N_m * other / (own * own * own) * (border ? 0.5 : 1);
     return std::max(y_ * (9.0 / 8 * other / own - 3.0 / 8 * own / other), 0.1 * y_ * other / own) * (border ? 0.5 : 1);
   }
 
@@ -134,9 +137,10 @@ class BulletDeformable final : public BulletSolver {
     for (EdgeKind kind : kKinds) {
       if (!linked(scene(), kind)) continue;
       add_links(*body_, scene().cloth, kind);
-      for (const Edge& e : edges(scene().cloth, kind)) stiffness.push_back(static_cast<btScalar>(LinkStiffness(scene()).of(e)));
+      for (const Edge& e : edges(scene().cloth, kind))
+        stiffness.push_back(static_cast<btScalar>(LinkStiffness(scene()).of(e)));
     }
-    // Nodes meet rigid bodies, faces do not: PyBullet's face contacts make this cloth jump, and cost five times as much.
+    // Nodes meet rigid bodies, faces do not: PyBullet's face contacts make this cloth jump, at three times the cost.
     if (touches()) body_->m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
     w.addSoftBody(body_.get());
     springs_ = std::make_unique<GridSprings>(std::move(stiffness));
@@ -188,7 +192,9 @@ double free_fall_m(const Scene& scene, const nlohmann::json& settings, int frame
 }  // namespace
 
 SolverEntry deformable_entry() {
-  return {describe(), [](const nlohmann::json& s, const DeviceOptions&) { return std::make_unique<BulletDeformable>(s); }, free_fall_m};
+  return {describe(),
+          [](const nlohmann::json& s, const DeviceOptions&) { return std::make_unique<BulletDeformable>(s); },
+          free_fall_m};
 }
 
 }  // namespace clothbench::bullet_baseline

@@ -31,7 +31,8 @@ void GridSprings::addScaledElasticForceDifferential(btScalar scale, const TVStac
     // dF = k (n n^T + (1 - r/|d|) (1 - n n^T)) (dx_1 - dx_0)
     const btVector3 n = d / length, apart = dx[l.m_n[1]->index] - dx[l.m_n[0]->index];
     const btScalar along = n.dot(apart), slack = l.m_rl / length;
-    const btVector3 change = (apart * (1 - slack) + n * (along * slack)) * (scale * stiffness_[static_cast<std::size_t>(i)]);
+    const btVector3 change =
+        (apart * (1 - slack) + n * (along * slack)) * (scale * stiffness_[static_cast<std::size_t>(i)]);
     df[l.m_n[0]->index] += change;
     df[l.m_n[1]->index] -= change;
   }

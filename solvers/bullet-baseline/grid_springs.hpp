@@ -5,8 +5,8 @@
 
 namespace clothbench::bullet_baseline {
 
-/// btDeformableMassSpringForce with a stiffness of its own for each link: Bullet's has two in all, and an isotropic grid
-/// needs one along each direction, half of each on the borders, one on the diagonals and one for bending.
+/// btDeformableMassSpringForce with a stiffness of its own for each link: Bullet's has two in all, and an isotropic
+/// grid needs one along each direction, half of each on the borders, one on the diagonals and one for bending.
 ///
 /// Bullet's energy, k/2 (|d| - r)^2 with its exact second derivative, which is indefinite where a link is compressed.
 /// Nothing is damped here: Bullet's spring damping is relative to neighbours, the scenes' is not.

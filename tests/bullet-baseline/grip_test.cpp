@@ -68,7 +68,8 @@ TEST_P(Bullet, AVertexLetGoFallsFreely) {
   EXPECT_EQ(held.position, after(*make_solver(GetParam()), s, 0).position);
   const ClothState state = run(*solver, s, 4, 22);
   const double fall = entry.free_fall_m(s, complete_settings(entry.info, nlohmann::json::object()), 18);
-  for (std::size_t k = 0; k < start.size(); ++k) EXPECT_NEAR(state.position[k] - held.position[k], k % 3 == 1 ? fall : 0, 1e-4 * std::abs(fall));
+  for (std::size_t k = 0; k < start.size(); ++k)
+    EXPECT_NEAR(state.position[k] - held.position[k], k % 3 == 1 ? fall : 0, 1e-4 * std::abs(fall));
 }
 
 }  // namespace

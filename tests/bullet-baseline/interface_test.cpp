@@ -18,7 +18,9 @@ TEST_P(Bullet, SaysWhatItCannotDo) {
   const SolverInfo& info = entry_of(GetParam()).info;
   for (Feature f : {Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render})
     EXPECT_EQ(unsupported(info, {Feature::Stretch, f}), FeatureSet{f});
-  EXPECT_TRUE(unsupported(info, kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::MovingPins}).empty());
+  EXPECT_TRUE(
+      unsupported(info, kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::MovingPins})
+          .empty());
 }
 
 TEST_P(Bullet, PaysForNoColliderThatIsNotThere) {
@@ -63,7 +65,8 @@ TEST_P(Bullet, RefusesSettingsByName) {
   };
   for (const auto& [key, value] : std::map<const char*, nlohmann::json>{
            {"substeps", -1}, {"collision_margin_m", -0.1}, {"sdf_voxel_m", 0.0}, {"mesh", "hull"}}) {
-    EXPECT_NE(message(key, value).find(GetParam() + ": setting " + key), std::string::npos) << key << ": " << message(key, value);
+    EXPECT_NE(message(key, value).find(GetParam() + ": setting " + key), std::string::npos)
+        << key << ": " << message(key, value);
     EXPECT_NE(message(key, value).find(value.dump()), std::string::npos) << key;
   }
 }

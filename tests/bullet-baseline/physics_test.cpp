@@ -25,7 +25,8 @@ TEST_P(Bullet, FreeFallIsThatOfItsIntegrator) {
   }
 }
 
-/// A sheet that starts stretched and in motion, without gravity: it contracts, and its centre of mass knows nothing of it.
+/// A sheet that starts stretched and in motion, without gravity: it contracts, and its centre of mass knows nothing of
+/// it.
 TEST_P(Bullet, KeepsMomentumAndKnowsItsRestLengths) {
   for (const auto& [columns, rows] : kSizes) {
     Scene s = with_bending(sheet(columns, rows));
@@ -38,7 +39,8 @@ TEST_P(Bullet, KeepsMomentumAndKnowsItsRestLengths) {
     double narrowest = 1.05;
     for (int f = 0; f < 36; ++f) {
       state = run(*solver, s, f, f + 1);
-      narrowest = std::min(narrowest, vertex(state.position, static_cast<std::size_t>(columns) - 1)[0] - vertex(state.position, 0)[0]);
+      narrowest = std::min(
+          narrowest, vertex(state.position, static_cast<std::size_t>(columns) - 1)[0] - vertex(state.position, 0)[0]);
     }
     EXPECT_LT(narrowest, 1.02) << "links have the scene's rest lengths, not those of the start";
     const std::vector<double> mass = vertex_masses(s), start = initial_positions(s);
@@ -52,7 +54,8 @@ TEST_P(Bullet, KeepsMomentumAndKnowsItsRestLengths) {
       }
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_NEAR(p[k] / total, s.cloth.initial_velocity_m_per_s[k], 5e-4 * norm(s.cloth.initial_velocity_m_per_s)) << columns;
+      EXPECT_NEAR(p[k] / total, s.cloth.initial_velocity_m_per_s[k], 5e-4 * norm(s.cloth.initial_velocity_m_per_s))
+          << columns;
       EXPECT_NEAR(moved[k] / total, 0.5 * s.cloth.initial_velocity_m_per_s[k], 1e-4 * s.cloth.width_m) << columns;
     }
   }

@@ -57,7 +57,8 @@ inline const SolverEntry& entry_of(const std::string& name) {
   throw Error("no solver " + name);
 }
 
-inline std::unique_ptr<ClothSolver> make_solver(const std::string& name, const nlohmann::json& given = nlohmann::json::object()) {
+inline std::unique_ptr<ClothSolver> make_solver(const std::string& name,
+                                                const nlohmann::json& given = nlohmann::json::object()) {
   const SolverEntry& e = entry_of(name);
   return e.make(complete_settings(e.info, given), {});
 }
