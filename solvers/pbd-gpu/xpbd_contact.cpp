@@ -26,9 +26,10 @@ std::vector<std::uint8_t> bytes_of(const std::vector<T>& items) {
   return bytes;
 }
 
-/// Round an open border, half the greatest distance between two points of an edge that take part in contact, and a
-/// tenth for stretch.
-constexpr double kBorder = 0.55;
+/// Share of the greatest distance between two points of an edge that take part in contact: round an open border half of
+/// it keeps a straight edge off, 1/sqrt(2) an edge that hangs round it at a right angle, and also the corner of a sheet
+/// off the middle of a cell, where there is no point that could feel it.
+constexpr double kBorder = 0.72;
 
 double longer_side(const Cloth& c) { return std::max(c.du(), c.dv()); }
 
