@@ -57,7 +57,7 @@ ContactReference::ContactReference(const Scene& scene, int substeps, int samples
   for (const Collider& k : scene.colliders)
     borders_.push_back(k.mesh ? border_edges(k.mesh->positions, k.mesh->triangles) : std::vector<std::uint32_t>());
   least_margin_ = 0.01 * std::min(c.du(), c.dv());
-  border_margin_ = 0.55 * std::hypot(c.du(), c.dv()) / (samples + 1);
+  border_margin_ = 0.72 * std::hypot(c.du(), c.dv()) / (samples + 1);
 }
 
 void ContactReference::add_shape(const Collider& c, std::size_t index, const V& at, double now,
