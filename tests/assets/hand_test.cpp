@@ -98,7 +98,7 @@ TEST_P(Hands, PalmFrame) {
 
 TEST_P(Hands, PinchMeets) {
   NEED_NPM_ASSETS(source);
-  const HandPose& pose = open_hand(source, GetParam()).pose("pinch");
+  const HandPose pose = open_hand(source, GetParam()).pose("pinch");
   EXPECT_LT((pose.joints[kThumb + 3].translation() - pose.joints[kIndex + 4].translation()).norm(), 0.005);
 }
 

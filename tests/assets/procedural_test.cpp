@@ -68,7 +68,7 @@ TEST(ProceduralHand, RestIsRelaxed) {
 }
 
 TEST(ProceduralHand, PinchMeetsAndMetacarpalsMakeAPalm) {
-  const HandPose& pinch = procedural_hand(Side::Right).pose("pinch");
+  const HandPose pinch = procedural_hand(Side::Right).pose("pinch");
   EXPECT_LT((pinch.joints[kThumb + 3].translation() - pinch.joints[kIndex + 4].translation()).norm(), 0.003);
   const auto c = capsules(pinch);
   for (std::size_t i = 0; i + 1 < 4; ++i)
