@@ -129,7 +129,8 @@ std::filesystem::path find_scenario(const std::string& name_or_path) {
 }
 
 FeatureSet derive_needs(const Scene& scene) {
-  FeatureSet needs = {Feature::Stretch, Feature::Shear};
+  FeatureSet needs = {Feature::Stretch};
+  if (scene.material.shear) needs.add(Feature::Shear);
   if (scene.material.bending_rigidity_N_m > 0) needs.add(Feature::Bend);
   if (scene.material.damping_per_s > 0) needs.add(Feature::Damping);
   if (!scene.pins.vertices.empty()) needs.add(Feature::Pins);
@@ -196,6 +197,7 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
     s.material.membrane_stiffness_N_per_m = material["membrane_stiffness_N_per_m"].get<double>();
   s.material.bending_rigidity_N_m = material["bending_rigidity_N_m"].get<double>();
   s.material.damping_per_s = material["damping_per_s"].get<double>();
+  s.material.shear = material["shear"].get<bool>();
   s.pins = read_pins(scenario["pins"], s.cloth, source);
   if (scenario.contains("expect")) read_expect(scenario["expect"], s, source);
   s.gravity_m_per_s2 = vec3(scenario["gravity_m_per_s2"]);

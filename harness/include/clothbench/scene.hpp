@@ -33,6 +33,7 @@ struct Cloth {
 struct Material {
   std::optional<double> membrane_stiffness_N_per_m;  ///< Y = E h; empty = inextensible
   double bending_rigidity_N_m = 0;                   ///< B; 0 = bending off
+  bool shear = true;                                 ///< false: strips that do not feel one another, no diagonals
   double damping_per_s = 0;                          ///< mass-proportional: dv/dt = -c v
 };
 

@@ -1,0 +1,256 @@
+#include "integrator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clothbench::reference {
+namespace {
+
+constexpr int kMostIterations = 60;
+
+Vector masses3(const Model& m) {
+  Vector out(static_cast<Eigen::Index>(3 * m.vertices()));
+  for (std::size_t v = 0; v < m.vertices(); ++v) out.segment<3>(static_cast<Eigen::Index>(3 * v)).setConstant(m.mass()[v]);
+  return out;
+}
+
+/// Takes the free entries of a 3-per-vertex vector, or puts them back (adding).
+void gather(const Model& m, const Vector& full, Vector& out) {
+  for (std::size_t v = 0; v < m.vertices(); ++v)
+    if (!m.held(v)) out.segment<3>(m.dof(v)) = full.segment<3>(static_cast<Eigen::Index>(3 * v));
+}
+
+void put_held(const Model& m, const Vector& from, Vector& to) {
+  for (std::size_t v = 0; v < m.vertices(); ++v)
+    if (m.held(v)) to.segment<3>(static_cast<Eigen::Index>(3 * v)) = from.segment<3>(static_cast<Eigen::Index>(3 * v));
+}
+
+void add_mass(const Model& m, double scale, Triplets& out) {
+  for (std::size_t v = 0; v < m.vertices(); ++v)
+    if (!m.held(v))
+      for (int k = 0; k < 3; ++k) out.emplace_back(m.dof(v) + k, m.dof(v) + k, scale * m.mass()[v]);
+}
+
+void add_compliance(const Model& m, double scale, int first, Triplets& out) {
+  for (std::size_t s = 0; s < m.springs(); ++s) {
+    const int row = first + static_cast<int>(s);
+    const Spring& k = m.spring_list()[s];
+    // A spring between two held vertices takes no part: its row says lambda = 0.
+    out.emplace_back(row, row, m.held(k.a) && m.held(k.b) ? -1 : -scale * k.compliance);
+  }
+}
+
+double largest(const Vector& v) {
+  double most = 0;
+  for (double x : v) most = std::abs(x) <= most ? most : std::abs(x);  // NaN stays
+  return most;
+}
+
+/// One implicit step in the unknowns y (position where forces are taken) and lambda:
+///   M (mass_scale * (y - base)) = force(y) - G(y)^T lambda,   C(y) = compliance * lambda.
+/// Both implicit integrators are of this form.
+StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolerance, double mass_scale, const Vector& base, Vector& y,
+                          Vector& lambda) {
+  const int n = m.free_dofs(), all = n + static_cast<int>(m.springs());
+  const Vector mass = masses3(m);
+  Vector compliance(lambda.size());
+  for (std::size_t s = 0; s < m.springs(); ++s) compliance[static_cast<Eigen::Index>(s)] = m.spring_list()[s].compliance;
+  for (int i = 0; i < kMostIterations; ++i) {
+    Vector f = m.force(y);
+    m.add_tension(y, lambda, f);
+    const Vector r = f - mass_scale * mass.cwiseProduct(y - base);
+    const Vector c = compliance.cwiseProduct(lambda) - m.constraints(y);
+    Vector rhs(all), acceleration = Vector::Zero(std::max(n, 1));
+    Vector free_part = Vector::Zero(n);
+    gather(m, r, free_part);
+    rhs.head(n) = free_part;
+    rhs.tail(all - n) = c;
+    gather(m, r.cwiseQuotient(mass), acceleration);
+    const double residual = std::max(largest(acceleration), mass_scale * largest(c));
+    Triplets lower;
+    add_mass(m, mass_scale, lower);
+    m.add_stiffness(y, lambda, 1, lower);
+    m.add_gradient(y, 1, n, lower);
+    add_compliance(m, 1, n, lower);
+    system.solve(all, lower, rhs);
+    if (!system.ok() || !rhs.allFinite()) return StepStatus::NotFinite;
+    for (std::size_t v = 0; v < m.vertices(); ++v)
+      if (!m.held(v)) y.segment<3>(static_cast<Eigen::Index>(3 * v)) += rhs.segment<3>(m.dof(v));
+    lambda += rhs.tail(all - n);
+    if (residual <= tolerance.acceleration && largest(rhs.head(n)) <= tolerance.length_m) return StepStatus::Ok;
+  }
+  return StepStatus::Diverged;
+}
+
+class Bdf2 final : public Integrator {
+ public:
+  using Integrator::Integrator;
+
+  void restart() override {
+    Integrator::restart();
+    before_.x.resize(0);
+  }
+
+  StepStatus step(State& s, const Vector& held_x, double h) override {
+    const bool first = before_.x.size() == 0 || h != h_;
+    if (first) system_.forget();
+    const double c = model_.damping_per_s();
+    // x' = (k0 x + px)/h and v' = (k0 v + pv)/h with the history in px, pv.
+    const double k0 = first ? 1.0 : 1.5;
+    const Vector px = first ? Vector(-s.x) : Vector(-2 * s.x + 0.5 * before_.x);
+    const Vector pv = first ? Vector(-s.v) : Vector(-2 * s.v + 0.5 * before_.v);
+    // M ((k0 (k0 x + px)/h + pv)/h + c (k0 x + px)/h) = F: in the form mass_scale (x - base).
+    const double a = k0 / h * (k0 / h + c);
+    const Vector base = -((k0 / h + c) / h * px + pv / h) / a;
+    Vector x = s.x + h * s.v, lambda = s.lambda;
+    put_held(model_, held_x, x);
+    const StepStatus status = solve_implicit(model_, system_, tolerance_, a, base, x, lambda);
+    if (status != StepStatus::Ok) return status;
+    const Vector v = (k0 * x + px) / h;
+    before_ = s;
+    h_ = h;
+    s = {x, v, lambda};
+    return StepStatus::Ok;
+  }
+
+ private:
+  State before_;
+  double h_ = 0;
+};
+
+class Midpoint final : public Integrator {
+ public:
+  using Integrator::Integrator;
+
+  StepStatus step(State& s, const Vector& held_x, double h) override {
+    // y = (x + x')/2, v' = 4 (y - x)/h - ... : M (v' - v)/h + c M (v + v')/2 = F(y), v' = 4 (y - x)/h - v - ...
+    // with x' = x + h (v + v')/2, so (v + v')/2 = 2 (y - x)/h and v' - v = 4 (y - x)/h - 2 v.
+    const double c = model_.damping_per_s(), a = 4 / (h * h) + 2 * c / h;
+    const Vector base = s.x + 2 / h * s.v / a;
+    Vector y = s.x + h / 2 * s.v, lambda = s.lambda;
+    put_held(model_, Vector(0.5 * (s.x + held_x)), y);
+    const StepStatus status = solve_implicit(model_, system_, tolerance_, a, base, y, lambda);
+    if (status != StepStatus::Ok) return status;
+    const Vector v = 4 / h * (y - s.x) - s.v;
+    s = {2 * y - s.x, v, lambda};
+    return StepStatus::Ok;
+  }
+};
+
+class Rattle final : public Integrator {
+ public:
+  using Integrator::Integrator;
+
+  StepStatus step(State& s, const Vector& held_x, double h) override {
+    if (!(h * model_.highest_bending_frequency() < 2)) return StepStatus::Diverged;
+    const Vector mass = masses3(model_);
+    const double keep = std::exp(-model_.damping_per_s() * h / 2);  // half a step of drag on either side
+    const Vector v_half = keep * s.v + h / 2 * model_.force(s.x).cwiseQuotient(mass);
+    Vector x = s.x + h * v_half, lambda = s.lambda;
+    put_held(model_, held_x, x);
+    if (const StepStatus status = to_manifold(s.x, h, mass, x, lambda); status != StepStatus::Ok) return status;
+    Vector v = keep * ((x - s.x) / h + h / 2 * model_.force(x).cwiseQuotient(mass));
+    for (std::size_t i = 0; i < model_.vertices(); ++i)
+      if (model_.held(i)) v.segment<3>(static_cast<Eigen::Index>(3 * i)) = ((x - s.x) / h).segment<3>(static_cast<Eigen::Index>(3 * i));
+    if (const StepStatus status = to_tangent(x, mass, v); status != StepStatus::Ok) return status;
+    s = {x, v, lambda};
+    return StepStatus::Ok;
+  }
+
+ private:
+  /// x <- x - h^2/2 M^-1 G(from)^T lambda with C(x) = 0, by Newton on lambda with the exact Jacobian G(x) M^-1 G(from)^T
+  /// replaced by the symmetric one at `from`, whose fixed point is the same.
+  StepStatus to_manifold(const Vector& from, double h, const Vector& mass, Vector& x, Vector& lambda) {
+    const double scale = h * h / 2;
+    const Vector free = x;
+    for (int i = 0; i < kMostIterations; ++i) {
+      Vector pull = Vector::Zero(x.size());
+      model_.add_tension(from, lambda, pull);
+      for (std::size_t v = 0; v < model_.vertices(); ++v)
+        if (!model_.held(v)) {
+          const auto k = static_cast<Eigen::Index>(3 * v);
+          x.segment<3>(k) = free.segment<3>(k) + scale * pull.segment<3>(k) / mass[k];
+        }
+      const Vector c = model_.constraints(x);
+      if (!c.allFinite()) return StepStatus::NotFinite;
+      if (largest(c) <= tolerance_.length_m) return StepStatus::Ok;
+      Vector zero = Vector::Zero(model_.free_dofs());
+      const Vector correction = multipliers(from, zero, c);
+      if (!system_.ok()) return StepStatus::NotFinite;
+      lambda += correction / scale;
+    }
+    return StepStatus::Diverged;
+  }
+
+  StepStatus to_tangent(const Vector& x, const Vector& mass, Vector& v) {
+    Vector rate = Vector::Zero(static_cast<Eigen::Index>(model_.springs()));
+    for (std::size_t s = 0; s < model_.springs(); ++s) {
+      const Spring& k = model_.spring_list()[s];
+      const Eigen::Vector3d d = x.segment<3>(3 * k.b) - x.segment<3>(3 * k.a), dv = v.segment<3>(3 * k.b) - v.segment<3>(3 * k.a);
+      rate[static_cast<Eigen::Index>(s)] = d.normalized().dot(dv);
+    }
+    Vector zero = Vector::Zero(model_.free_dofs());
+    const Vector impulse = multipliers(x, zero, rate);
+    if (!system_.ok()) return StepStatus::NotFinite;
+    Vector pull = Vector::Zero(x.size());
+    model_.add_tension(x, impulse, pull);
+    for (std::size_t i = 0; i < model_.vertices(); ++i)
+      if (!model_.held(i)) v.segment<3>(static_cast<Eigen::Index>(3 * i)) += pull.segment<3>(static_cast<Eigen::Index>(3 * i)) / mass[static_cast<Eigen::Index>(3 * i)];
+    return v.allFinite() ? StepStatus::Ok : StepStatus::NotFinite;
+  }
+
+  /// lambda with G M^-1 G^T lambda = c, from [M G^T; G 0] [y; -lambda] = [0; ...].
+  Vector multipliers(const Vector& x, Vector& top, const Vector& c) {
+    const int n = model_.free_dofs(), all = n + static_cast<int>(model_.springs());
+    Triplets lower;
+    add_mass(model_, 1, lower);
+    model_.add_gradient(x, 1, n, lower);
+    add_compliance(model_, 0, n, lower);
+    Vector rhs(all);
+    rhs.head(n) = top;
+    rhs.tail(all - n) = -c;
+    system_.solve(all, lower, rhs);
+    return rhs.tail(all - n);
+  }
+};
+
+}  // namespace
+
+/// Without compliance the lower block is 0 and a factorisation without pivoting meets zero pivots. A little is taken
+/// off it (the matrix is then quasi-definite, and every ordering works: Vanderbei 1995), and refinement against the
+/// true matrix takes the difference out again.
+void SaddlePoint::solve(int size, const Triplets& lower, Vector& rhs) {
+  constexpr double kShift = 1e-9;  // of the greatest entry of G A^-1 G^T's diagonal, which is 2 / smallest diagonal of A
+  constexpr int kRefinements = 6;
+  Eigen::SparseMatrix<double> K(size, size);
+  K.setFromTriplets(lower.begin(), lower.end());
+  Eigen::SparseMatrix<double> shifted = K;
+  double least = INFINITY;
+  for (int k = 0; k < size; ++k)
+    if (K.coeff(k, k) > 0) least = std::min(least, K.coeff(k, k));
+  for (int k = 0; k < size; ++k)
+    if (!(K.coeff(k, k) > 0)) shifted.coeffRef(k, k) -= kShift * 2 / least;
+  if (!analysed_) {
+    ldlt_.analyzePattern(shifted);
+    analysed_ = true;
+  }
+  ldlt_.factorize(shifted);
+  ok_ = ldlt_.info() == Eigen::Success;
+  if (!ok_) return;
+  const Vector b = rhs;
+  rhs = ldlt_.solve(b);
+  double before = INFINITY;
+  for (int i = 0; i < kRefinements; ++i) {
+    const Vector r = b - K.selfadjointView<Eigen::Lower>() * rhs;
+    const double size_of_r = r.norm();
+    if (!(size_of_r < 0.5 * before)) break;
+    before = size_of_r;
+    rhs += ldlt_.solve(r);
+  }
+}
+
+std::unique_ptr<Integrator> make_bdf2(Model& m, Tolerance t) { return std::make_unique<Bdf2>(m, t); }
+std::unique_ptr<Integrator> make_midpoint(Model& m, Tolerance t) { return std::make_unique<Midpoint>(m, t); }
+std::unique_ptr<Integrator> make_rattle(Model& m, Tolerance t) { return std::make_unique<Rattle>(m, t); }
+
+}  // namespace clothbench::reference

@@ -1,0 +1,182 @@
+#include "model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clothbench::reference {
+namespace {
+
+/// Spring stiffnesses [N/m] whose homogenised sheet has uniaxial stiffness Y: isotropic with Poisson ratio 1/3 where
+/// the scene shears (Y (9/8 b/a - 3/8 a/b) along a x b cells, 3/16 Y (a^2 + b^2)/(a b) on the diagonals; the only ratio
+/// central springs allow), plain strips Y b/a without interaction where it does not. Beyond an aspect of about 1.6 the
+/// long spring would fall under a tenth of its strip's stiffness and is held there: the sheet is then stiffer than Y.
+struct Stiffness {
+  double along_u, along_v, diagonal;
+};
+
+Stiffness stiffness(const Scene& s) {
+  const double a = s.cloth.du(), b = s.cloth.dv(), Y = *s.material.membrane_stiffness_N_per_m;
+  if (!s.needs.has(Feature::Shear)) return {Y * b / a, Y * a / b, 0};
+  const auto along = [Y](double length, double width) {
+    return Y * std::max(9.0 / 8 * width / length - 3.0 / 8 * length / width, 0.1 * width / length);
+  };
+  return {along(a, b), along(b, a), 3.0 / 16 * Y * (a * a + b * b) / (a * b)};
+}
+
+bool on_border(const Cloth& c, const Edge& e) {
+  const auto columns = static_cast<std::uint32_t>(c.columns), rows = static_cast<std::uint32_t>(c.rows);
+  const std::uint32_t ia = e.a % columns, ja = e.a / columns, ib = e.b % columns, jb = e.b / columns;
+  if (ja == jb) return ja == 0 || ja == rows - 1;
+  return ia == ib && (ia == 0 || ia == columns - 1);
+}
+
+bool pinned(std::uint32_t v, const Scene& s) {
+  return std::binary_search(s.pins.vertices.begin(), s.pins.vertices.end(), v);
+}
+
+using Map3 = Eigen::Map<const Eigen::Vector3d>;
+Map3 at(const Vector& x, std::uint32_t v) { return Map3(x.data() + 3 * v); }
+
+/// Adds a symmetric 3x3 block that couples two free vertices (lower triangle of the whole).
+void add_block(const Eigen::Matrix3d& block, int row, int column, Triplets& out) {
+  if (row < 0 || column < 0) return;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      if (row + r >= column + c) out.emplace_back(row + r, column + c, block(r, c));
+}
+
+}  // namespace
+
+Model::Model(const Scene& scene) : mass_(vertex_masses(scene)) {
+  const Cloth& c = scene.cloth;
+  inextensible_ = !scene.material.membrane_stiffness_N_per_m.has_value();
+  damping_per_s_ = scene.material.damping_per_s;
+  gravity_ = Eigen::Vector3d::Map(scene.gravity_m_per_s2.data());
+  Stiffness k{};
+  if (!inextensible_) k = stiffness(scene);
+  const auto add = [&](EdgeKind kind) {
+    for (const Edge& e : edges(c, kind)) {
+      const bool along_u = e.b == e.a + 1;
+      double of_edge = kind == EdgeKind::Shear ? k.diagonal : along_u ? k.along_u : k.along_v;
+      // The border carries half the width.
+      if (kind == EdgeKind::Structural && on_border(c, e)) of_edge /= 2;
+      springs_.push_back({e.a, e.b, e.rest_m, inextensible_ ? 0 : 1 / of_edge});
+    }
+  };
+  add(EdgeKind::Structural);
+  if (scene.needs.has(Feature::Shear)) add(EdgeKind::Shear);
+  if (scene.needs.has(Feature::Bend)) {
+    const double B = scene.material.bending_rigidity_N_m;
+    for (const Edge& e : edges(c, EdgeKind::SkipOne)) {
+      const bool along_u = e.b == e.a + 2;
+      const double a = along_u ? c.du() : c.dv(), w = along_u ? c.dv() : c.du();
+      // Two pinned vertices in a row are a clamp: its hinge stands for half a cell, so it is twice as stiff.
+      const std::uint32_t b = (e.a + e.b) / 2;
+      const bool clamp = pinned(e.a, scene) + pinned(b, scene) + pinned(e.b, scene) == 2 && pinned(b, scene);
+      const double share = (on_border(c, e) ? 0.5 : 1) * (clamp ? 2 : 1);
+      lines_.push_back({e.a, (e.a + e.b) / 2, e.b, share * B * w / (a * a * a)});
+    }
+  }
+  std::vector<std::uint8_t> held(mass_.size(), 0);
+  for (std::uint32_t v : scene.pins.vertices) held[v] = 1;
+  for (std::uint32_t v : scene.grips.vertices) held[v] = 1;
+  hold(held);
+}
+
+void Model::hold(const std::vector<std::uint8_t>& held) {
+  dof_.assign(mass_.size(), -1);
+  free_dofs_ = 0;
+  for (std::size_t v = 0; v < mass_.size(); ++v)
+    if (held[v] == 0) {
+      dof_[v] = free_dofs_;
+      free_dofs_ += 3;
+    }
+}
+
+Vector Model::constraints(const Vector& x) const {
+  Vector C(static_cast<Eigen::Index>(springs_.size()));
+  for (std::size_t s = 0; s < springs_.size(); ++s) {
+    const bool rigid = held(springs_[s].a) && held(springs_[s].b);  // nothing can change it
+    C[static_cast<Eigen::Index>(s)] = rigid ? 0 : (at(x, springs_[s].b) - at(x, springs_[s].a)).norm() - springs_[s].rest_m;
+  }
+  return C;
+}
+
+Vector Model::force(const Vector& x) const {
+  Vector f(x.size());
+  for (std::size_t v = 0; v < mass_.size(); ++v) f.segment<3>(static_cast<Eigen::Index>(3 * v)) = mass_[v] * gravity_;
+  for (const BendLine& l : lines_) {
+    const Eigen::Vector3d pull = l.stiffness * (at(x, l.a) - 2 * at(x, l.b) + at(x, l.c));
+    f.segment<3>(3 * l.a) -= pull;
+    f.segment<3>(3 * l.b) += 2 * pull;
+    f.segment<3>(3 * l.c) -= pull;
+  }
+  return f;
+}
+
+void Model::add_tension(const Vector& x, const Vector& lambda, Vector& out) const {
+  for (std::size_t s = 0; s < springs_.size(); ++s) {
+    const Eigen::Vector3d n = (at(x, springs_[s].b) - at(x, springs_[s].a)).normalized() * lambda[static_cast<Eigen::Index>(s)];
+    out.segment<3>(3 * springs_[s].a) += n;
+    out.segment<3>(3 * springs_[s].b) -= n;
+  }
+}
+
+void Model::add_stiffness(const Vector& x, const Vector& lambda, double scale, Triplets& out) const {
+  for (std::size_t s = 0; s < springs_.size(); ++s) {
+    const Eigen::Vector3d d = at(x, springs_[s].b) - at(x, springs_[s].a);
+    const double length = d.norm();
+    const Eigen::Vector3d n = d / length;
+    const Eigen::Matrix3d H = scale * lambda[static_cast<Eigen::Index>(s)] / length * (Eigen::Matrix3d::Identity() - n * n.transpose());
+    const int a = dof_[springs_[s].a], b = dof_[springs_[s].b];
+    add_block(H, a, a, out);
+    add_block(H, b, b, out);
+    add_block(-H, std::max(a, b), std::min(a, b), out);
+  }
+  constexpr double kStencil[3] = {1, -2, 1};
+  for (const BendLine& l : lines_) {
+    const int dof[3] = {dof_[l.a], dof_[l.b], dof_[l.c]};
+    for (int p = 0; p < 3; ++p)
+      for (int q = 0; q < 3; ++q)
+        if (dof[p] >= dof[q]) add_block(scale * l.stiffness * kStencil[p] * kStencil[q] * Eigen::Matrix3d::Identity(), dof[p], dof[q], out);
+  }
+}
+
+void Model::add_gradient(const Vector& x, double scale, int first_row, Triplets& out) const {
+  for (std::size_t s = 0; s < springs_.size(); ++s) {
+    const Eigen::Vector3d n = scale * (at(x, springs_[s].b) - at(x, springs_[s].a)).normalized();
+    const int row = first_row + static_cast<int>(s), a = dof_[springs_[s].a], b = dof_[springs_[s].b];
+    for (int k = 0; k < 3; ++k) {
+      if (a >= 0) out.emplace_back(row, a + k, -n[k]);
+      if (b >= 0) out.emplace_back(row, b + k, n[k]);
+    }
+  }
+}
+
+double Model::energy(const Vector& x, const Vector& v) const {
+  double e = 0;
+  for (std::size_t i = 0; i < mass_.size(); ++i) {
+    const auto k = static_cast<std::uint32_t>(i);
+    e += mass_[i] * (0.5 * at(v, k).squaredNorm() - gravity_.dot(at(x, k)));
+  }
+  const Vector C = constraints(x);
+  for (std::size_t s = 0; s < springs_.size(); ++s)
+    if (springs_[s].compliance > 0) e += 0.5 * C[static_cast<Eigen::Index>(s)] * C[static_cast<Eigen::Index>(s)] / springs_[s].compliance;
+  for (const BendLine& l : lines_) e += 0.5 * l.stiffness * (at(x, l.a) - 2 * at(x, l.b) + at(x, l.c)).squaredNorm();
+  return e;
+}
+
+double Model::highest_bending_frequency() const {
+  // Gershgorin: a row of the stencil's matrix sums to at most 16 stiffness in each direction.
+  std::vector<double> row(mass_.size(), 0);
+  for (const BendLine& l : lines_) {
+    row[l.a] += 4 * l.stiffness;
+    row[l.b] += 8 * l.stiffness;
+    row[l.c] += 4 * l.stiffness;
+  }
+  double square = 0;
+  for (std::size_t v = 0; v < mass_.size(); ++v) square = std::max(square, row[v] / mass_[v]);
+  return std::sqrt(square);
+}
+
+}  // namespace clothbench::reference

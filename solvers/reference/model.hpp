@@ -1,0 +1,74 @@
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <vector>
+
+#include "clothbench/scene.hpp"
+
+namespace clothbench::reference {
+
+using Vector = Eigen::VectorXd;
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+/// C(x) = |x_b - x_a| - rest, held by a multiplier: C = compliance * lambda, so that compliance 0 is a constraint and
+/// not a large stiffness. lambda [N] is the tension.
+struct Spring {
+  std::uint32_t a, b;
+  double rest_m, compliance;
+};
+
+/// E = 1/2 stiffness |x_a - 2 x_b + x_c|^2, of a line of equal cells.
+struct BendLine {
+  std::uint32_t a, b, c;
+  double stiffness;  // N/m
+};
+
+/// The discrete cloth: the continuum's maps (README), vertex masses, and which degrees of freedom there are.
+class Model {
+ public:
+  explicit Model(const Scene&);
+
+  std::size_t vertices() const { return mass_.size(); }
+  std::size_t springs() const { return springs_.size(); }
+  const std::vector<Spring>& spring_list() const { return springs_; }
+  const std::vector<double>& mass() const { return mass_; }
+  bool inextensible() const { return inextensible_; }
+  double damping_per_s() const { return damping_per_s_; }
+  const Eigen::Vector3d& gravity() const { return gravity_; }
+
+  /// Lets go of these vertices (all others keep their state); `held` is 1 for vertices whose position is given.
+  void hold(const std::vector<std::uint8_t>& held);
+  bool held(std::size_t vertex) const { return dof_[vertex] < 0; }
+  /// First degree of freedom of a free vertex; negative if held.
+  int dof(std::size_t vertex) const { return dof_[vertex]; }
+  int free_dofs() const { return free_dofs_; }
+
+  /// C of every spring at x (3 * vertices).
+  Vector constraints(const Vector& x) const;
+  /// Gravity and bending force [N] at x, 3 * vertices.
+  Vector force(const Vector& x) const;
+  /// Adds -G(x)^T lambda [N] to `out`, 3 * vertices.
+  void add_tension(const Vector& x, const Vector& lambda, Vector& out) const;
+  /// Appends d(-force)/dx + sum lambda d^2 C/dx^2 of the free degrees of freedom, times `scale`, lower triangle.
+  void add_stiffness(const Vector& x, const Vector& lambda, double scale, Triplets& out) const;
+  /// Appends G(x) * scale at rows `first_row`...; columns of held vertices left out.
+  void add_gradient(const Vector& x, double scale, int first_row, Triplets& out) const;
+
+  /// Kinetic, gravitational and elastic energy [J]; elastic is 0 for springs without compliance.
+  double energy(const Vector& x, const Vector& v) const;
+  /// Highest frequency [1/s] of the bending forces, for the explicit integrator's limit.
+  double highest_bending_frequency() const;
+
+ private:
+  std::vector<double> mass_;
+  std::vector<Spring> springs_;
+  std::vector<BendLine> lines_;
+  std::vector<int> dof_;
+  int free_dofs_ = 0;
+  bool inextensible_ = false;
+  double damping_per_s_ = 0;
+  Eigen::Vector3d gravity_;
+};
+
+}  // namespace clothbench::reference

@@ -1,0 +1,168 @@
+// The judge's solver: double precision, implicit, sparse direct solves, constraints where there is no compliance.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "clothbench/error.hpp"
+#include "clothbench/record.hpp"
+#include "integrator.hpp"
+
+namespace clothbench {
+namespace {
+
+using namespace reference;
+
+SolverInfo describe() {
+  SolverInfo info;
+  info.name = "reference";
+  info.folder = "solvers/reference";
+  info.summary = "double precision, implicit, sparse direct: the yardstick for errors, not for time";
+  info.version = "1";
+  info.precision = "float64";
+  info.supports = {Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins, Feature::MovingPins};
+  info.settings = {
+      {"substeps", "16", "steps a frame"},
+      {"integrator", "\"bdf2\"", "bdf2 | conservative: implicit midpoint, or RATTLE where the cloth is inextensible"},
+      {"tolerance", "1e-8", "Newton's method stops at this residual acceleration, in units of gravity"}};
+  return info;
+}
+
+class Reference final : public ClothSolver {
+ public:
+  explicit Reference(const nlohmann::json& settings)
+      : substeps_(settings["substeps"].get<int>()),
+        conservative_(settings["integrator"] == "conservative"),
+        tolerance_(settings["tolerance"].get<double>()) {}
+
+  const SolverInfo& info() const override { return info_; }
+  DeviceInfo device() const override { return {"CPU", "", "C++20", false, "{}"}; }
+
+  void load(const Scene& scene) override {
+    scene_ = &scene;
+    reset();
+  }
+
+  void reset() override {
+    const Scene& s = *scene_;
+    model_ = std::make_unique<Model>(s);
+    const double L = std::max(s.cloth.width_m, s.cloth.height_m);
+    const Vec3& g = s.gravity_m_per_s2;
+    double acceleration = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    if (acceleration == 0) acceleration = L / (s.time.duration_s * s.time.duration_s);
+    const Tolerance t{tolerance_ * acceleration, 1e-12 * L};
+    integrator_ = !conservative_           ? make_bdf2(*model_, t)
+                  : model_->inextensible() ? make_rattle(*model_, t)
+                                           : make_midpoint(*model_, t);
+    const auto n = static_cast<Eigen::Index>(3 * model_->vertices());
+    const std::vector<double> start = initial_positions(s);
+    state_.x = Vector::Map(start.data(), n);
+    state_.v.resize(n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const bool held = model_->held(static_cast<std::size_t>(k / 3));
+      state_.v[k] = held ? 0 : s.cloth.initial_velocity_m_per_s[static_cast<std::size_t>(k % 3)];
+    }
+    state_.lambda = Vector::Zero(static_cast<Eigen::Index>(model_->springs()));
+    grips_from_.clear();
+    for (std::uint32_t v : s.grips.vertices) grips_from_.push_back({start[3 * v], start[3 * v + 1], start[3 * v + 2]});
+    grip_held_.assign(s.grips.vertices.size(), 1);
+  }
+
+  StepStatus step(const FrameInput& frame) override {
+    std::vector<Vec3> to = grips_from_;
+    if (frame.motion != nullptr && !to.empty()) to = frame.motion->grip_position_m;
+    const double h = frame.dt_s / substeps_;
+    for (int k = 0; k < substeps_; ++k) {
+      Vector held_x = state_.x;
+      const double t = static_cast<double>(k + 1) / substeps_;
+      for (std::size_t i = 0; i < to.size(); ++i)
+        if (grip_held_[i] != 0)
+          for (std::size_t c = 0; c < 3; ++c)
+            held_x[static_cast<Eigen::Index>(3 * scene_->grips.vertices[i] + c)] = (1 - t) * grips_from_[i][c] + t * to[i][c];
+      if (const StepStatus s = integrator_->step(state_, held_x, h); s != StepStatus::Ok) return s;
+    }
+    grips_from_ = to;
+    if (frame.motion != nullptr) let_go(frame.motion->grip_held);
+    return StepStatus::Ok;
+  }
+
+  void read_state(ClothState& out) const override {
+    out.position.assign(state_.x.begin(), state_.x.end());
+    out.velocity.assign(state_.v.begin(), state_.v.end());
+  }
+
+  FrameCost last_cost() const override { return {kMissing, {kMissing}, {kMissing}, {kMissing}}; }
+
+  Plan plan() const override {
+    Plan p;
+    p.stages = {{"step", scene_->needs & info_.supports, 0, kMissing, kMissing}};
+    if (!scene_->needs.has(Feature::Bend)) p.left_out.push_back({"bending", "the scene has none"});
+    if (!scene_->needs.has(Feature::Shear)) p.left_out.push_back({"diagonals", "the scene has no shear stiffness"});
+    return p;
+  }
+
+ private:
+  void let_go(const std::vector<std::uint8_t>& held) {
+    if (held == grip_held_ || held.empty()) return;
+    std::vector<std::uint8_t> all(model_->vertices(), 0);
+    for (std::uint32_t v : scene_->pins.vertices) all[v] = 1;
+    for (std::size_t i = 0; i < held.size(); ++i) all[scene_->grips.vertices[i]] = held[i];
+    grip_held_ = held;
+    model_->hold(all);
+    integrator_->restart();
+  }
+
+  const SolverInfo info_ = describe();
+  const int substeps_;
+  const bool conservative_;
+  const double tolerance_;
+  const Scene* scene_ = nullptr;
+  std::unique_ptr<Model> model_;
+  std::unique_ptr<Integrator> integrator_;
+  State state_;
+  std::vector<Vec3> grips_from_;
+  std::vector<std::uint8_t> grip_held_;
+};
+
+/// The same recurrences for one particle that only falls (RATTLE and the midpoint rule agree on it without damping).
+double free_fall_m(const Scene& s, const nlohmann::json& settings, int frames) {
+  const int substeps = settings["substeps"].get<int>();
+  const double h = s.time.dt() / substeps, g = s.gravity_m_per_s2[1], c = s.material.damping_per_s;
+  const bool conservative = settings["integrator"] == "conservative";
+  const bool rattle = conservative && !s.material.membrane_stiffness_N_per_m.has_value();
+  double x = 0, v = 0, x_before = 0, v_before = 0;
+  for (long i = 0; i < static_cast<long>(frames) * substeps; ++i) {
+    double x_next = 0, v_next = 0;
+    if (rattle) {
+      const double keep = std::exp(-c * h / 2), half = keep * v + h / 2 * g;
+      x_next = x + h * half;
+      v_next = keep * (half + h / 2 * g);
+    } else if (conservative) {
+      v_next = (v * (1 - c * h / 2) + h * g) / (1 + c * h / 2);
+      x_next = x + h / 2 * (v + v_next);
+    } else {
+      const double k0 = i == 0 ? 1 : 1.5, pv = i == 0 ? -v : -2 * v + 0.5 * v_before, px = i == 0 ? -x : -2 * x + 0.5 * x_before;
+      v_next = (h * g - pv) / (k0 + c * h);
+      x_next = (h * v_next - px) / k0;
+    }
+    x_before = x;
+    v_before = v;
+    x = x_next;
+    v = v_next;
+  }
+  return x;
+}
+
+std::unique_ptr<ClothSolver> make(const nlohmann::json& s, const DeviceOptions&) {
+  if (!(s["substeps"].get<double>() >= 1 && s["substeps"].get<double>() <= 1e6))
+    throw Error("solver reference: setting substeps: expected 1 to 1000000; found " + s["substeps"].dump());
+  if (s["integrator"] != "bdf2" && s["integrator"] != "conservative")
+    throw Error("solver reference: setting integrator: expected \"bdf2\" or \"conservative\"; found " + s["integrator"].dump());
+  if (!(s["tolerance"].get<double>() > 0 && s["tolerance"].get<double>() <= 1))
+    throw Error("solver reference: setting tolerance: expected above 0, at most 1; found " + s["tolerance"].dump());
+  return std::make_unique<Reference>(s);
+}
+
+}  // namespace
+
+void register_reference(std::vector<SolverEntry>& out) { out.push_back({describe(), make, free_fall_m}); }
+
+}  // namespace clothbench
