@@ -213,6 +213,7 @@ Plan BulletSolver::plan() const {
   Plan p;
   // Bullet's step is one piece of work: links of all kinds, damping, pins and grips are served together.
   p.stages = {{"Step", scene_->needs - kContact, 0, kMissing, kMissing}};
+  if (!scene_->needs.has(Feature::Shear)) p.left_out.push_back({"diagonals", "the scene has no shear stiffness"});
   if (!scene_->needs.has(Feature::Bend)) p.left_out.push_back({"skip-one links", "the scene has no bending"});
   if (!touches()) {
     p.left_out.push_back({"rigid bodies and their distance fields", "the scene has no collider"});

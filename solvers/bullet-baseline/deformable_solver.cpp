@@ -42,7 +42,7 @@ struct DeformableWorld {
 /// Stiffness of every link, in the order in which they are added [N/m].
 ///
 /// On cells a x b an isotropic sheet of Poisson ratio 1/3 takes, along a, Y (9/8 b/a - 3/8 a/b), half on border lines,
-/// and on each diagonal 3/16 Y (a^2 + b^2)/(a b); on square cells 3/4 Y and 3/8 Y.
+/// and on each diagonal 3/16 Y (a^2 + b^2)/(a b); on square cells 3/4 Y and 3/8 Y. Without shear: strips of Y b/a.
 class LinkStiffness {
  public:
   explicit LinkStiffness(const Scene& s)
@@ -58,6 +58,7 @@ class LinkStiffness {
     const double own = along_u ? a_ : b_, other = along_u ? b_ : a_;
     if (e.kind == EdgeKind::SkipOne)
       return s_.material.bending_rigidity_N_m * other / (own * own * own) * (border ? 0.5 : 1);
+    if (!s_.needs.has(Feature::Shear)) return y_ * other / own * (border ? 0.5 : 1);
     return std::max(y_ * (9.0 / 8 * other / own - 3.0 / 8 * own / other), 0.1 * y_ * other / own) * (border ? 0.5 : 1);
   }
 
@@ -71,7 +72,10 @@ class LinkStiffness {
 
 constexpr EdgeKind kKinds[] = {EdgeKind::Structural, EdgeKind::Shear, EdgeKind::SkipOne};
 
-bool linked(const Scene& scene, EdgeKind kind) { return kind != EdgeKind::SkipOne || scene.needs.has(Feature::Bend); }
+bool linked(const Scene& scene, EdgeKind kind) {
+  if (kind == EdgeKind::Shear) return scene.needs.has(Feature::Shear);
+  return kind != EdgeKind::SkipOne || scene.needs.has(Feature::Bend);
+}
 
 /// An upper bound of the flat sheet's highest angular frequency [1/s].
 ///

@@ -53,7 +53,7 @@ class BulletSoft final : public BulletSolver {
     body_->m_cfg.piterations = iterations_;
     body_->m_materials[0]->m_kLST = static_cast<btScalar>(relaxation_);
     add_links(*body_, scene().cloth, EdgeKind::Structural);
-    add_links(*body_, scene().cloth, EdgeKind::Shear);
+    if (scene().needs.has(Feature::Shear)) add_links(*body_, scene().cloth, EdgeKind::Shear);
     if (scene().needs.has(Feature::Bend)) add_links(*body_, scene().cloth, EdgeKind::SkipOne);
     body_->updateLinkConstants();
     if (!touching_) return;

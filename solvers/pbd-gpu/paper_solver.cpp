@@ -53,7 +53,8 @@ class Paper final : public GpuSolver {
   template <class Fn>
   void for_each_constraint(Fn fn) const {
     const auto n = static_cast<std::uint32_t>(scene().cloth.vertex_count());
-    std::vector<EdgeKind> kinds = {EdgeKind::Structural, EdgeKind::Shear};
+    std::vector<EdgeKind> kinds = {EdgeKind::Structural};
+    if (scene().needs.has(Feature::Shear)) kinds.push_back(EdgeKind::Shear);
     if (scene().needs.has(Feature::Bend)) kinds.push_back(EdgeKind::SkipOne);
     for (std::uint32_t layer = 0; layer < static_cast<std::uint32_t>(layers_); ++layer)
       for (EdgeKind kind : kinds)
@@ -128,6 +129,7 @@ class Paper final : public GpuSolver {
     } else {
       leave_out("Readback", "setting readback=none");
     }
+    if (!needs.has(Feature::Shear)) leave_out("diagonal distance constraints", "the scene has no shear stiffness");
     if (!needs.has(Feature::Bend)) leave_out("skip-one distance constraints", "the scene has no bending");
     if ((needs & kColliderFeatures).empty()) leave_out("SatisfyCollisions", "the scene has no collider");
     if (!needs.has(Feature::DuplicatedLayer)) leave_out("second layer", "the cloth is not double-duplicated");

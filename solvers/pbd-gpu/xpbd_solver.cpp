@@ -13,12 +13,13 @@ using vulkan::Access;
 /// Springs whose homogenised sheet is isotropic with uniaxial stiffness Y and Poisson ratio 1/3, the only ratio central
 /// springs allow (C12 = C66): for square cells 3/4 Y along the grid and 3/8 Y on each diagonal. On du x dv cells the
 /// same conditions give the values below; beyond an aspect of about 1.6 the grid spring would fall under a tenth of
-/// its strip's stiffness and is held there, which makes the sheet stiffer than Y.
+/// its strip's stiffness and is held there, which makes the sheet stiffer than Y. Without shear: strips of stiffness Y.
 struct Springs {
   double along_u, along_v, diagonal;  // N/m
 };
 
-Springs springs(double Y, double du, double dv) {
+Springs springs(double Y, double du, double dv, bool shear) {
+  if (!shear) return {Y * dv / du, Y * du / dv, 0};
   const double diagonal = 3.0 / 16 * Y * (du * du + dv * dv) / (du * dv);
   const auto along = [Y](double length, double width) {
     return Y * std::max(9.0 / 8 * width / length - 3.0 / 8 * length / width, 0.1 * width / length);
@@ -64,9 +65,10 @@ class Xpbd final : public GpuSolver {
     const Cloth& c = scene().cloth;
     const double du = c.du(), dv = c.dv();
     Springs k{INFINITY, INFINITY, INFINITY};
-    if (const auto Y = scene().material.membrane_stiffness_N_per_m) k = springs(*Y, du, dv);
+    if (const auto Y = scene().material.membrane_stiffness_N_per_m) k = springs(*Y, du, dv, scene().needs.has(Feature::Shear));
     stretch_ = {{1, 0, 1, 2, du, 1 / k.along_u}, {0, 1, 1, 2, dv, 1 / k.along_v}};
-    shear_ = {{1, 1, 1, 2, std::hypot(du, dv), 1 / k.diagonal}, {-1, 1, 1, 2, std::hypot(du, dv), 1 / k.diagonal}};
+    if (scene().needs.has(Feature::Shear))
+      shear_ = {{1, 1, 1, 2, std::hypot(du, dv), 1 / k.diagonal}, {-1, 1, 1, 2, std::hypot(du, dv), 1 / k.diagonal}};
     // E = (B w / 2 a^3) |x0 - 2 x1 + x2|^2 on each line, w the strip's width.
     if (const double B = scene().material.bending_rigidity_N_m; scene().needs.has(Feature::Bend))
       bend_ = {{1, 0, 2, 3, 0, du * du * du / (B * dv)}, {0, 1, 2, 3, 0, dv * dv * dv / (B * du)}};
@@ -95,8 +97,12 @@ class Xpbd final : public GpuSolver {
     if (!keep) leave_out("multipliers", "setting iterations=1: they would start at 0 and be dropped");
     stage_stretch_ = add_stage("ProjectStretch", {Feature::Stretch});
     distance_ = &add_kernel(stage_stretch_, distance, state("stretch multipliers", 4), push);
-    stage_shear_ = add_stage("ProjectShear", {Feature::Shear});
-    shear_distance_ = &add_kernel(stage_shear_, distance, state("shear multipliers", 4), push);
+    if (needs.has(Feature::Shear)) {
+      stage_shear_ = add_stage("ProjectShear", {Feature::Shear});
+      shear_distance_ = &add_kernel(stage_shear_, distance, state("shear multipliers", 4), push);
+    } else {
+      leave_out("ProjectShear", "the scene has no shear stiffness");
+    }
     if (needs.has(Feature::Bend)) {
       stage_bend_ = add_stage("ProjectBending", {Feature::Bend});
       bending_ = &add_kernel(stage_bend_, keep ? shaders::kProjectBendingIterated : shaders::kProjectBending,

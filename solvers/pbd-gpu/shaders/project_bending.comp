@@ -24,7 +24,9 @@ void main() {
   vec4 a = LOAD16(x, i0), b = LOAD16(x, i1), c = LOAD16(x, i2);
   float w = a.w + 4.0 * b.w + c.w;
   if (w == 0.0) return;
-  float alpha = compliance(at);
+  // Two held vertices in a row are a clamp: its hinge bends half a cell, 2 B/a.
+  bool clamp = b.w == 0.0 && (a.w == 0.0) != (c.w == 0.0);
+  float alpha = (clamp ? 0.5 : 1.0) * compliance(at);
   vec3 C = a.xyz - 2.0 * b.xyz + c.xyz;
 #ifdef KEEP_MULTIPLIERS
   uint im = p.multiplier_first + i0;
