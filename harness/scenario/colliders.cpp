@@ -224,9 +224,52 @@ class Reader {
     pose["axis_v"] = at.axis_v;
   }
 
-  void grip(const json& j) {
-    Grip g{moving(j), {}};
-    const assets::HandSample start = assets::sample(g.by.track, g.by.hand, 0);
+  /// Speeds up as sin^2(pi t / 2 T), then keeps its velocity.
+  struct Bar {
+    Vec3 velocity{};
+    double ramp_s = 0;
+
+    double seconds_at_full_speed(double t) const {
+      if (t >= ramp_s) return t - ramp_s / 2;
+      return t / 2 - ramp_s / (2 * std::numbers::pi) * std::sin(std::numbers::pi * t / ramp_s);
+    }
+  };
+
+  struct Grip {
+    std::optional<Moving> by;  ///< a hand; otherwise the bar
+    Bar bar;
+    std::vector<std::uint32_t> vertices;
+  };
+
+  void grip(json& j) {
+    const bool edge = j.contains("edge");
+    const json schema = json::parse(kSceneSchema);
+    json sub = schema["definitions"][edge ? "grip_edge" : "grip_hand"];
+    sub["definitions"] = schema["definitions"];
+    validate_json(j, sub.dump(), source_, at_);
+    fill_defaults(j, sub.dump());
+    Grip g = edge ? edge_grip(j) : hand_grip(j);
+    for (std::uint32_t v : g.vertices) {
+      for (std::uint32_t w : scene_.grips.vertices)
+        if (v == w) refuse("", fmt::format("vertex {} is held by two hands", v));
+      for (std::uint32_t w : scene_.pins.vertices)
+        if (v == w) refuse("", fmt::format("vertex {} is pinned as well", v));
+      scene_.grips.vertices.push_back(v);
+    }
+    grips_.push_back(std::move(g));
+  }
+
+  Grip edge_grip(const json& j) const {
+    Grip g;
+    g.bar = {vec3(j["velocity_m_per_s"]), j["ramp_s"].get<double>()};
+    g.vertices = edge_vertices(scene_.cloth, j["edge"].get<std::string>());
+    return g;
+  }
+
+  Grip hand_grip(const json& j) {
+    Grip g;
+    g.by = moving(j);
+    const assets::HandSample start = assets::sample(g.by->track, g.by->hand, 0);
     if (!start.grip) refuse("/track", "this hand does not hold anything at time 0 (\"grip\": true in its first key)");
     const double radius = j["radius_m"].get<double>();
     const assets::Vector pinch = assets::pinch_point(start.pose);
@@ -234,14 +277,7 @@ class Reader {
     for (std::size_t v = 0; v < x.size() / 3; ++v)
       if ((assets::Vector::Map(x.data() + 3 * v) - pinch).norm() <= radius) g.vertices.push_back(static_cast<std::uint32_t>(v));
     if (g.vertices.empty()) refuse("/radius_m", fmt::format("no vertex within {} m of the pinch point ({:.4f}, {:.4f}, {:.4f})", radius, pinch.x(), pinch.y(), pinch.z()));
-    for (std::uint32_t v : g.vertices) {
-      for (std::uint32_t w : scene_.grips.vertices)
-        if (v == w) refuse("/radius_m", fmt::format("vertex {} is held by two hands", v));
-      for (std::uint32_t w : scene_.pins.vertices)
-        if (v == w) refuse("/radius_m", fmt::format("vertex {} is pinned as well", v));
-      scene_.grips.vertices.push_back(v);
-    }
-    grips_.push_back(std::move(g));
+    return g;
   }
 
   /// Held vertices follow the hand rigidly: the frame of its pinch, turned as its palm.
@@ -263,22 +299,29 @@ class Reader {
         const Collider& c = scene_.colliders[k];
         m.colliders.push_back(c.moves() ? pose_at(*hands_[k], c.shape == Collider::Shape::Mesh, t) : ColliderPose{});
       }
-      for (const Grip& g : grips_) {
-        const assets::HandSample start = assets::sample(g.by.track, g.by.hand, 0), now = assets::sample(g.by.track, g.by.hand, t);
-        const assets::Frame move = pinch_frame(now.pose) * pinch_frame(start.pose).inverse();
-        for (std::uint32_t v : g.vertices) {
-          const bool before = frame == 0 || scene_.motion[scene_.motion.size() - 2].grip_held[m.grip_held.size()] != 0;
-          m.grip_position_m.push_back(vec3(assets::Vector(move * assets::Vector::Map(x.data() + 3 * v))));
-          m.grip_held.push_back(before && now.grip ? 1 : 0);
-        }
-      }
+      for (const Grip& g : grips_) g.by ? move_by_hand(g, t, x, m) : move_by_bar(g, t, x, m);
     }
   }
 
-  struct Grip {
-    Moving by;
-    std::vector<std::uint32_t> vertices;
-  };
+  void move_by_hand(const Grip& g, double t, const std::vector<double>& x, FrameMotion& m) const {
+    const assets::HandSample start = assets::sample(g.by->track, g.by->hand, 0), now = assets::sample(g.by->track, g.by->hand, t);
+    const assets::Frame move = pinch_frame(now.pose) * pinch_frame(start.pose).inverse();
+    for (std::uint32_t v : g.vertices) {
+      const bool before = scene_.motion.size() == 1 || scene_.motion[scene_.motion.size() - 2].grip_held[m.grip_held.size()] != 0;
+      m.grip_position_m.push_back(vec3(assets::Vector(move * assets::Vector::Map(x.data() + 3 * v))));
+      m.grip_held.push_back(before && now.grip ? 1 : 0);
+    }
+  }
+
+  static void move_by_bar(const Grip& g, double t, const std::vector<double>& x, FrameMotion& m) {
+    const double seconds = g.bar.seconds_at_full_speed(t);
+    for (std::uint32_t v : g.vertices) {
+      Vec3& to = m.grip_position_m.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) to[k] = x[3 * v + k] + seconds * g.bar.velocity[k];
+      m.grip_held.push_back(1);
+    }
+  }
+
   json& scenario_;
   Scene& scene_;
   const std::string& source_;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "clothbench/scene.hpp"
 
@@ -9,13 +10,57 @@ namespace {
 /// Length share of grid line `i` of `n`, in cells: half a cell at the border.
 double share(int i, int n) { return i == 0 || i == n - 1 ? 0.5 : 1.0; }
 
+/// Angle between neighbouring chords of an arc of n equal chords whose ends are `span` chords apart:
+/// sin(n d/2) / sin(d/2) = span, which falls from n at d = 0 to 0 at d = 2 pi/n.
+double chord_angle(int n, double span) {
+  double low = 0, high = 2 * std::numbers::pi / n;
+  for (int k = 0; k < 200 && low < high; ++k) {
+    const double d = low + (high - low) / 2;
+    if (d == low || d == high) break;
+    (std::sin(n * d / 2) > span * std::sin(d / 2) ? low : high) = d;
+  }
+  return high;
+}
+
+/// Where grid line `i` of an arc is: along its chord from the middle, and below it. Source: circle through n chords.
+std::array<double, 2> on_arc(const Cloth& c, int i) {
+  const int n = c.columns - 1;
+  const double d = chord_angle(n, c.span_m / c.du()), radius = c.du() / (2 * std::sin(d / 2));
+  return {radius * std::sin((i - n / 2.0) * d), radius * (std::cos((i - n / 2.0) * d) - std::cos(n * d / 2))};
+}
+
+/// The grid line `inwards` lines from an edge.
+std::vector<std::uint32_t> grid_line(const Cloth& c, const std::string& edge, int inwards) {
+  const bool along_v = edge[0] == 'u';
+  const int last = (along_v ? c.columns : c.rows) - 1, fixed = edge[1] == '0' ? inwards : last - inwards;
+  std::vector<std::uint32_t> out;
+  for (int k = 0; k < (along_v ? c.rows : c.columns); ++k)
+    out.push_back(static_cast<std::uint32_t>(along_v ? k * c.columns + fixed : fixed * c.columns + k));
+  return out;
+}
+
 }  // namespace
 
 Vec3 Scene::rest_position(int i, int j) const {
-  const double u = i * cloth.du() - cloth.width_m / 2, v = j * cloth.dv() - cloth.height_m / 2;
+  std::array<double, 2> at = {i * cloth.du() - cloth.width_m / 2, 0};
+  if (cloth.span_m > 0) at = on_arc(cloth, i);
+  const double v = j * cloth.dv() - cloth.height_m / 2;
+  const Vec3 &a = cloth.axis_u, &b = cloth.axis_v;
+  const Vec3 normal = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   Vec3 p{};
-  for (int k = 0; k < 3; ++k) p[k] = cloth.center_m[k] + u * cloth.axis_u[k] + v * cloth.axis_v[k];
+  for (std::size_t k = 0; k < 3; ++k) {
+    p[k] = cloth.center_m[k] + at[0] * a[k] + v * b[k];
+    if (cloth.span_m > 0) p[k] += at[1] * normal[k];
+  }
   return p;
+}
+
+std::vector<std::uint32_t> edge_vertices(const Cloth& c, const std::string& edge) { return grid_line(c, edge, 0); }
+
+std::vector<std::uint32_t> clamp_vertices(const Cloth& c, const std::string& edge) {
+  std::vector<std::uint32_t> out = grid_line(c, edge, 0);
+  for (std::uint32_t v : grid_line(c, edge, 1)) out.push_back(v);
+  return out;
 }
 
 std::vector<double> vertex_masses(const Scene& scene) {

@@ -33,20 +33,16 @@ std::uint32_t corner(const Cloth& c, const std::string& name) {
   return static_cast<std::uint32_t>(j * c.columns + i);
 }
 
-void add_edge(const Cloth& c, const std::string& edge, std::set<std::uint32_t>& out) {
-  const bool along_v = edge[0] == 'u';
-  const int fixed = edge[1] == '0' ? 0 : (along_v ? c.columns : c.rows) - 1;
-  for (int k = 0; k < (along_v ? c.rows : c.columns); ++k)
-    out.insert(static_cast<std::uint32_t>(along_v ? k * c.columns + fixed : fixed * c.columns + k));
-}
-
 Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
   std::set<std::uint32_t> pinned;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const json& pin = list[k];
     if (pin.contains("corners"))
       for (const auto& name : pin["corners"]) pinned.insert(corner(c, name.get<std::string>()));
-    if (pin.contains("edge")) add_edge(c, pin["edge"].get<std::string>(), pinned);
+    if (pin.contains("edge"))
+      for (std::uint32_t v : edge_vertices(c, pin["edge"].get<std::string>())) pinned.insert(v);
+    if (pin.contains("clamp"))
+      for (std::uint32_t v : clamp_vertices(c, pin["clamp"].get<std::string>())) pinned.insert(v);
     if (pin.contains("vertices"))
       for (std::size_t v = 0; v < pin["vertices"].size(); ++v) {
         const auto index = pin["vertices"][v].get<std::uint64_t>();
@@ -72,6 +68,9 @@ Cloth read_cloth(const json& j, const std::string& source) {
   c.center_m = vec3(j["pose"]["center_m"]);
   c.axis_u = vec3(j["pose"]["axis_u"]);
   c.axis_v = vec3(j["pose"]["axis_v"]);
+  c.span_m = j["pose"].value("span_m", 0.0);
+  if (!(c.span_m < c.width_m)) refuse(source, "/cloth/pose/span_m", fmt::format("expected less than the width, {} m", c.width_m));
+  if (c.span_m > 0 && c.columns < 3) refuse(source, "/cloth/grid/0", "expected at least 3 columns, for a sheet that starts bent");
   c.initial_velocity_m_per_s = vec3(j["initial_velocity_m_per_s"]);
   constexpr double kOrthonormal = 1e-9;
   for (const char* name : {"axis_u", "axis_v"}) {
@@ -205,6 +204,7 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   if (!(s.time.duration_s * s.time.frame_rate_hz <= kMostFrames)) refuse(source, "/time/duration_s", fmt::format("at most {} frames", kMostFrames));
   if (s.time.frames() < 1) refuse(source, "/time/duration_s", "at least one frame");
   read_colliders(scenario, s, source, assets);
+  if (scenario.contains("truth")) s.truth_card = scenario["truth"]["card"].get<std::string>();
   s.needs = derive_needs(s);
   s.json = scenario.dump();
   s.sha256 = sha256(s.json);

@@ -22,6 +22,8 @@ struct Cloth {
   double areal_density_kg_per_m2 = 0;
   Sides sides = Sides::Single;
   Vec3 center_m{}, axis_u{}, axis_v{};
+  /// Above 0: starts bent along u into an arc, towards axis_u x axis_v, its edges u0 and u1 this far apart.
+  double span_m = 0;
   Vec3 initial_velocity_m_per_s{};
 
   std::size_t vertex_count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
@@ -81,6 +83,9 @@ struct Scene {
   std::string source;  ///< path of the file it came from, for messages
   std::string assets;  ///< where rooms and hands came from: "npm", "procedural", or "" if the scene has none
 
+  std::string truth_card;  ///< of the exact answer, "" = none; see harness/truth/card.hpp
+
+  /// Where vertex (i, j) starts [m].
   Vec3 rest_position(int i, int j) const;
   /// Motion at the end of frame `index` (0 = the first); null where nothing moves. Stands still after the scene's end.
   const FrameMotion* motion_after(int index) const;
@@ -92,6 +97,11 @@ std::vector<double> vertex_masses(const Scene&);
 
 /// Initial positions [m], size 3*vertex_count, xyz interleaved.
 std::vector<double> initial_positions(const Scene&);
+
+/// Vertices of an edge: "u0" and "u1" run along v, "v0" and "v1" along u; ascending.
+std::vector<std::uint32_t> edge_vertices(const Cloth&, const std::string& edge);
+/// The same and the grid line beside it, whose being held keeps the edge's direction too.
+std::vector<std::uint32_t> clamp_vertices(const Cloth&, const std::string& edge);
 
 /// Triangles of the render and metric mesh, 3 indices each, 2 per cell, all wound alike (normal = axis_u x axis_v).
 std::vector<std::array<std::uint32_t, 3>> triangles(const Cloth&);

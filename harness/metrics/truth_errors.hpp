@@ -1,0 +1,55 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+
+#include "clothbench/record.hpp"
+#include "clothbench/scene.hpp"
+#include "clothbench/solver.hpp"
+#include "truth/card.hpp"
+#include "truth/norms.hpp"
+
+namespace clothbench {
+
+/// Distance of one frame from the scene's truth. Positions are compared on the fixed 33 x 33 material lattice, over the
+/// longer side. A state that is not finite gives NaN; so does what the card has no answer for.
+struct TruthErrors {
+  double e2 = kMissing, greatest = kMissing;  ///< positions: RMS, greatest
+  double speed = kMissing;                    ///< speeds: RMS, over the card's speed scale
+  double quantity = kMissing;                 ///< the card's quantity of this state
+  double quantity_error = kMissing;           ///< |quantity - true| over the card's scale
+  double stretch_rms = kMissing, stretch_p99 = kMissing, stretch_max = kMissing;  ///< strain less true strain, edges along u
+};
+
+/// Judges the frames of one scene by its card.
+class TruthJudge {
+ public:
+  /// Throws Error if the scene has no card, or is not what its card answers.
+  explicit TruthJudge(const Scene&);
+  const truth::Card& card() const { return card_; }
+  TruthErrors judge(int frame, const ClothState&) const;
+  /// What ranks runs (see Card), of the mesh's own truth against the continuum: the floor that no time step removes.
+  double space_error() const;
+
+ private:
+  double lattice_e2(const std::vector<double>& a, const std::vector<double>& b) const;
+  double space_error(int frame) const;
+
+  const Scene& scene_;
+  truth::Card card_;
+  truth::MaterialLattice lattice_;
+  truth::LatticeSampler sampler_;
+};
+
+/// Scalars of a whole accuracy pass by its truth series: `truth_error` (what ranks), `truth_e2`, `truth_max`,
+/// `truth_speed_error`, `truth_quantity`, `truth_quantity_error`, `truth_stretch_rms/_p99/_max`, `energy_gain`,
+/// `energy_drift`. Moving truths: RMS over time, of stretch and energy the greatest; truths of rest: the last frame. NaN if
+/// the pass is not whole. Empty for a scene without a card.
+std::map<std::string, double> summarise_truth(const Scene&, const AccuracyPass&);
+
+/// Energy of a strip (kinetic, of gravity, of its springs along the grid) less that at the start, over M g L, L the
+/// longer side. For scenes that should keep it: no damping, shear, bending, hands or colliders.
+bool keeps_energy(const Scene&);
+double energy_rise(const Scene&, const ClothState&);
+
+}  // namespace clothbench
