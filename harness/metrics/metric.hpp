@@ -25,12 +25,15 @@ struct SceneContact {
   double depth_m, depth_vertex_m, depth_p99_m, depth_mean_m, area_m2;
 };
 
+struct TruthErrors;
+
 /// One frame of an accuracy pass.
 struct MetricFrame {
   const MetricContext& context;
   int index;  ///< 0 = initial state
   const ClothState& state;
   const SceneContact* contact;  ///< null where the scene has no collider
+  const TruthErrors* truth = nullptr;  ///< null where the scene states no truth
 };
 
 /// One number a frame. A scene pays for a metric only if `applies` says so. A state that is not finite gives NaN.
@@ -70,5 +73,8 @@ double kinetic_energy(const MetricFrame&);
 
 /// Work done against gravity since the start, the sum of -m g . (x - x0) [J].
 double gravity_energy(const MetricFrame&);
+
+/// Energy less that at the start, over M g L, of scenes that keep it: see energy_rise in truth_errors.hpp.
+double energy_rise(const MetricFrame&);
 
 }  // namespace clothbench

@@ -1,6 +1,7 @@
 #include "metrics/metric_pass.hpp"
 
 #include "metrics/collider_contact.hpp"
+#include "metrics/truth_errors.hpp"
 
 namespace clothbench {
 
@@ -11,6 +12,7 @@ MetricPass::MetricPass(const MetricContext& context) : context_(context) {
     series_.push_back({m.name, m.units, m.long_name, {}});
   }
   if (kWithContactMetrics && !context.scene.colliders.empty()) contact_ = std::make_unique<ColliderContact>(context.scene);
+  if (!context.scene.truth_card.empty()) judge_ = std::make_unique<TruthJudge>(context.scene);
 }
 
 MetricPass::~MetricPass() = default;
@@ -18,7 +20,9 @@ MetricPass::~MetricPass() = default;
 void MetricPass::add(const ClothState& state) {
   SceneContact contact{};
   if (contact_) contact = contact_->probe(frame_, state.position);
-  const MetricFrame frame{context_, frame_, state, contact_ ? &contact : nullptr};
+  TruthErrors truth;
+  if (judge_) truth = judge_->judge(frame_, state);
+  const MetricFrame frame{context_, frame_, state, contact_ ? &contact : nullptr, judge_ ? &truth : nullptr};
   for (std::size_t m = 0; m < wanted_.size(); ++m) series_[m].values.push_back(wanted_[m]->value(frame));
   ++frame_;
 }

@@ -8,6 +8,7 @@
 namespace clothbench {
 
 class ColliderContact;
+class TruthJudge;
 
 /// The metrics of one accuracy pass over one cell: those that apply to its scene, each evaluated once a frame. Keeps what
 /// has to be remembered from frame to frame (where the cloth was when a collider passed it), so frames come in order.
@@ -30,6 +31,7 @@ class MetricPass {
   std::vector<const Metric*> wanted_;
   std::vector<MetricSeries> series_;
   std::unique_ptr<ColliderContact> contact_;  ///< null where there is nothing to touch
+  std::unique_ptr<TruthJudge> judge_;         ///< null where the scene states no truth
   int frame_ = 0;
 };
 

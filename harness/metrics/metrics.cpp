@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "metrics/collider_contact.hpp"
+#include "metrics/truth_errors.hpp"
 
 namespace clothbench {
 namespace {
@@ -34,10 +35,19 @@ auto contact(double SceneContact::*field) {
   return [field](const MetricFrame& f) { return f.contact->*field; };
 }
 
+bool has_truth(const Scene& s) { return !s.truth_card.empty(); }
+
+auto from_truth(double TruthErrors::*field) {
+  return [field](const MetricFrame& f) { return f.truth->*field; };
+}
+
+bool truth_keeps_energy(const Scene& s) { return has_truth(s) && keeps_energy(s); }
+
 }  // namespace
 
 const std::vector<Metric>& metrics() {
   using C = SceneContact;
+  using T = TruthErrors;
   static const std::vector<Metric> all = {
       {"free_fall_error", "1", "greatest distance from free fall over g T^2 / 2", falls_freely, free_fall_error_max},
       {"free_fall_error_rms", "1", "root mean square distance from free fall over g T^2 / 2", falls_freely, free_fall_error_rms},
@@ -60,6 +70,16 @@ const std::vector<Metric>& metrics() {
       {"depth_p99_m", "m", "depth that 99 % of the penetrating area keeps below", has_depth, contact(&C::depth_p99_m)},
       {"depth_mean_m", "m", "mean depth of the penetrating area", has_depth, contact(&C::depth_mean_m)},
       {"penetrating_area_m2", "m2", "area of the cloth inside colliders", has_depth, contact(&C::area_m2)},
+      {"truth_error_e2", "1", "RMS distance from the truth on the material lattice, over the longer side", has_truth, from_truth(&T::e2)},
+      {"truth_error_max", "1", "greatest distance from the truth on the material lattice, over the longer side", has_truth,
+       from_truth(&T::greatest)},
+      {"truth_speed_error", "1", "RMS error of speed on the material lattice, over the card's scale", has_truth, from_truth(&T::speed)},
+      {"truth_quantity", "1", "the card's quantity, in SI units", has_truth, from_truth(&T::quantity)},
+      {"truth_quantity_error", "1", "error of the card's quantity, over its scale", has_truth, from_truth(&T::quantity_error)},
+      {"truth_stretch_rms", "1", "RMS of strain less true strain, edges along u", has_truth, from_truth(&T::stretch_rms)},
+      {"truth_stretch_p99", "1", "99th percentile of strain less true strain", has_truth, from_truth(&T::stretch_p99)},
+      {"truth_stretch_max", "1", "greatest strain less true strain", has_truth, from_truth(&T::stretch_max)},
+      {"energy_rise", "1", "energy less that at the start, over M g L", truth_keeps_energy, energy_rise},
   };
   return all;
 }

@@ -113,7 +113,9 @@ bool keeps_energy(const Scene& s) {
   return (s.needs & loses).empty() && s.gravity_m_per_s2 != Vec3{} && s.cloth.span_m == 0;
 }
 
-double energy_rise(const Scene& s, const ClothState& state) {
+double energy_rise(const MetricFrame& f) {
+  const Scene& s = f.context.scene;
+  const ClothState& state = f.state;
   const Cloth& c = s.cloth;
   const std::vector<double> mass = vertex_masses(s), start = initial_positions(s);
   std::vector<std::uint8_t> held(mass.size(), 0);

@@ -47,9 +47,8 @@ class TruthJudge {
 /// the pass is not whole. Empty for a scene without a card.
 std::map<std::string, double> summarise_truth(const Scene&, const AccuracyPass&);
 
-/// Energy of a strip (kinetic, of gravity, of its springs along the grid) less that at the start, over M g L, L the
-/// longer side. For scenes that should keep it: no damping, shear, bending, hands or colliders.
+/// Scenes whose strips keep kinetic, gravity's and spring energy (metric energy_rise): no damping, shear, bending, hands or
+/// colliders.
 bool keeps_energy(const Scene&);
-double energy_rise(const Scene&, const ClothState&);
 
 }  // namespace clothbench

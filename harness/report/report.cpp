@@ -11,6 +11,7 @@
 #include "report/paths.hpp"
 #include "report/penetration.hpp"
 #include "report/room_pair.hpp"
+#include "report/work_precision.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -43,11 +44,11 @@ std::string find_python() {
 
 /// Figures of what the cells show. Returns what went wrong, or nothing; a missing matplotlib is told apart by
 /// `has_python`.
-std::string draw_figures(const fs::path& out, bool rates, bool penetration, bool& has_python) {
+std::string draw_figures(const fs::path& out, bool rates, bool penetration, bool work, bool& has_python) {
   for (const auto& file : fs::directory_iterator(out))  // an older run's figures are not this report's
     if (file.path().extension() == ".svg" || file.path().extension() == ".png") {
       const std::string stem = file.path().stem().string();
-      if (stem == "fig4" || stem == "fig5" || stem.starts_with("penetration-")) fs::remove(file.path());
+      if (stem == "fig4" || stem == "fig5" || stem.starts_with("penetration-") || stem.starts_with("work-precision-")) fs::remove(file.path());
     }
   const std::string python = find_python();
   has_python = !python.empty();
@@ -59,6 +60,7 @@ std::string draw_figures(const fs::path& out, bool rates, bool penetration, bool
   };
   if (rates) add("plot_report.py", out / "cells.csv", fs::path(kResultsRoot) / "paper-table3.json");
   if (penetration) add("plot_penetration.py", out / "penetration-series.csv", {});
+  if (work) add("plot_work_precision.py", out / "work-precision.csv", {});
   for (const std::string& command : commands)
     if (std::system(command.c_str()) != 0) return "Figures were left out: this command failed: " + command;
   return "";
@@ -91,10 +93,21 @@ std::string penetration_figures_markdown(const std::vector<ContactSetUp>& ups) {
   return out;
 }
 
-/// Cells with contact, and the others; copies.
-std::pair<std::vector<CellRecord>, std::vector<CellRecord>> by_contact(const std::vector<CellRecord>& cells) {
-  std::pair<std::vector<CellRecord>, std::vector<CellRecord>> out;
-  for (const CellRecord& c : cells) (has_contact(c) ? out.first : out.second).push_back(c);
+std::string work_figures_markdown(const std::vector<WorkDiagram>& diagrams) {
+  std::string out;
+  for (const WorkDiagram& d : diagrams)
+    out += fmt::format("![{}: error against run time](work-precision-{}.svg)\n\n{}: every point thin, each solver's front thick, dashed the same by the GPU's own clock; crosses in the margin: cells that failed.\n\n", d.scene, d.scene, d.scene);
+  return out;
+}
+
+/// Cells by what is told of them; copies.
+struct Parts {
+  std::vector<CellRecord> contact, truth, rest;
+};
+
+Parts parts_of(const std::vector<CellRecord>& cells) {
+  Parts out;
+  for (const CellRecord& c : cells) (has_truth(c) ? out.truth : has_contact(c) ? out.contact : out.rest).push_back(c);
   return out;
 }
 
@@ -140,8 +153,9 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
   write("bandwidth.csv", summary_csv(cells, kBandwidthNames));
   write("memory.csv", summary_csv(cells, kMemoryNames));
 
-  const auto [contact, rest] = by_contact(cells);
+  const auto [contact, truth, rest] = parts_of(cells);
   const std::vector<ContactSetUp> ups = set_ups(contact);
+  const std::vector<WorkDiagram> diagrams = work_diagrams(truth);
   const std::string head = headline(cells, Format::Markdown);
   std::string tables;
   bool wrote_table3 = false;
@@ -166,6 +180,13 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
           nlohmann::json{{"cells", penetration_json(ups)}, {"rooms", room_json(pairs)}}.dump(1) + "\n");
     write("penetration-series.csv", series_csv(ups));
   }
+  if (!diagrams.empty()) {
+    const std::string text = work_table(diagrams).markdown() + "\n" + truth_table(diagrams).markdown() + "\n";
+    tables += text;
+    write("work-precision.md", "# Error against run time\n\n" + head + "\n" + text);
+    write("work-precision.csv", work_csv(diagrams));
+    write("work-precision.json", work_json(diagrams).dump(1) + "\n");
+  }
   if (const auto solvers = solver_features(cells); any_known(solvers)) {
     tables += feature_table(solvers, true).markdown() + "\n";
     write("features.json", feature_json(solvers, true).dump(1) + "\n");
@@ -175,11 +196,10 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
   if (const Table broken = expect_table(cells); broken.rows.size() > 1) tables += broken.markdown() + "\n";
 
   bool has_python = false;
-  const std::string no_figures = draw_figures(options.out, !rest.empty(), !ups.empty(), has_python);
-  const std::string figures =
-      "### Figures\n\n" + (rest.empty() ? "" : figures_markdown(rest)) + penetration_figures_markdown(ups);
-  write("report.md", "# clothbench report\n\n" + head + "\n" + tables +
-                         (no_figures.empty() ? figures : no_figures + "\n\n") +
+  const std::string no_figures = draw_figures(options.out, !rest.empty(), !ups.empty(), !diagrams.empty(), has_python);
+  const std::string figures = "### Figures\n\n" + (rest.empty() ? "" : figures_markdown(rest)) + penetration_figures_markdown(ups) +
+                              work_figures_markdown(diagrams);
+  write("report.md", "# clothbench report\n\n" + head + "\n" + tables + (no_figures.empty() ? figures : no_figures + "\n\n") +
                          "`cells.csv` and `cells.json` hold every summary value of every cell in full precision.\n");
   if (no_figures.empty()) return;
   if (has_python) throw Error(no_figures, ExitCode::CheckFailed);
@@ -190,10 +210,12 @@ void print_console_report(const std::vector<fs::path>& runs) {
   const std::vector<CellRecord> cells = collect(runs);
   const nlohmann::json published = published_table3();
   fmt::print("{}", headline(cells, Format::Console));
-  const auto [contact, rest] = by_contact(cells);
+  const auto [contact, truth, rest] = parts_of(cells);
   for (const Family& family : families(rest))
     for (const Table& t : fps_tables(family, published)) fmt::print("{}", t.console());
   for (const Table& t : penetration_tables(set_ups(contact), room_pairs(contact), false)) fmt::print("{}", t.console());
+  if (const auto diagrams = work_diagrams(truth); !diagrams.empty())
+    fmt::print("{}{}", work_table(diagrams).console(), truth_table(diagrams).console());
   if (const auto solvers = solver_features(cells); !contact.empty() && any_known(solvers))
     fmt::print("{}", feature_table(solvers, true).console());
   const Table failed = failed_table(cells);

@@ -120,9 +120,10 @@ bool Cell::usable(const AccuracyPass& pass, double duration_s) const {
   return true;
 }
 
-AccuracyPass Cell::run_accuracy(double duration_s) {
+AccuracyPass Cell::run_accuracy(const TrialRules& rules) {
   const Scene& scene = *spec_.scene;
-  const int frames = accuracy_frames(duration_s);
+  const int frames = accuracy_frames(rules.accuracy_duration_s);
+  const auto start = Clock::now();
   const MetricContext context{scene, *spec_.entry, spec_.settings};
   AccuracyPass pass;
   MetricPass metrics(context);
@@ -137,6 +138,8 @@ AccuracyPass Cell::run_accuracy(double duration_s) {
     pass.time_s.push_back(frame * scene.time.dt());
     for (double x : state.position) pass.position.push_back(static_cast<float>(x));
     metrics.add(state);
+    if (outcome_.status == "ok" && rules.cell_limit_s > 0 && seconds_since(start) > rules.cell_limit_s && frame < frames)
+      outcome_ = {"timed_out", "F8", frame, fmt::format("the accuracy pass was not through after {:g} s", rules.cell_limit_s)};
     if (outcome_.status != "ok") break;
   }
   pass.metrics = metrics.take();
@@ -183,8 +186,7 @@ TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
     trial.stage_read_B.insert(trial.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
     trial.stage_write_B.insert(trial.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
   }
-  constexpr int kProfiledFrames = 12;
-  if (outcome_.status == "ok") profile_stages(trial, kProfiledFrames);
+  if (outcome_.status == "ok" && rules.profiled_frames > 0) profile_stages(trial, rules.profiled_frames);
   return trial;
 }
 

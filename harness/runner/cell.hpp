@@ -15,6 +15,7 @@ struct CellSpec {
   const SolverEntry* entry = nullptr;
   nlohmann::json settings;
   std::string setting = "default";
+  std::map<std::string, double> scene_values = {};  ///< into every cell's summary: what is known of the scene itself
 };
 
 /// How long and how often; see results/README.md, "protocols".
@@ -26,6 +27,8 @@ struct TrialRules {
   double warmup_s = 0.1;   ///< before each trial, outside the clock
   int drop_frames = 72;    ///< the scene restarts, outside the clock, after this many frames; 0 = never
   double accuracy_duration_s = 0.5;  ///< simulated time of the untimed pass
+  double cell_limit_s = 0;           ///< wall time of the untimed pass after which the cell is `timed_out`; 0 = no limit
+  int profiled_frames = 12;          ///< of each trial, run again with a timestamp round every stage; 0 = none
 };
 
 /// Thrown between frames once the user pressed Ctrl-C (`request_interrupt`).
@@ -49,7 +52,7 @@ class Cell {
   /// failure is met again instead of forgotten.
   bool usable(const AccuracyPass& pass, double duration_s) const;
   /// Untimed pass: positions and metrics at every frame, frame 0 = initial state.
-  AccuracyPass run_accuracy(double duration_s);
+  AccuracyPass run_accuracy(const TrialRules& rules);
   /// One timed trial. `frames` > 0 asks for exactly that many (so that all trials of a cell agree).
   TimedTrial run_trial(int index, const TrialRules& rules, int frames);
   /// Validation messages so far; a run with any is not ok.

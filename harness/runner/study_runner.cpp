@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runner/expect.hpp"
+#include "runner/reference.hpp"
 #include "runner/replay.hpp"
 
 namespace clothbench {
@@ -92,7 +93,7 @@ class GroupRun {
 
   void accuracy(Running& r) {
     note(r.name() + ": accuracy");
-    r.record.accuracy = r.cell->run_accuracy(plan_.rules.accuracy_duration_s);
+    r.record.accuracy = r.cell->run_accuracy(plan_.rules);
     r.writer->write_accuracy(r.record.accuracy);
   }
 
@@ -141,9 +142,22 @@ std::size_t CellPlan::size() const {
   return n;
 }
 
-RunResult run_cells(const CellPlan& plan, const RunOptions& options) {
+RunResult run_cells(const CellPlan& given, const RunOptions& options) {
   RunResult result;
   std::size_t done = 0;
+  CellPlan plan = given;
+  if (plan.references) {
+    std::vector<const Scene*> scenes;
+    for (const auto& group : plan.groups)
+      for (const CellSpec& c : group) scenes.push_back(c.scene);
+    const auto note = [&](const std::string& what) {
+      if (options.progress) options.progress(what, 0, plan.size());
+    };
+    const auto found = references(scenes, options.reference_cache, note);
+    for (auto& group : plan.groups)
+      for (CellSpec& c : group)
+        if (const auto r = found.find(c.scene->sha256); r != found.end()) c.scene_values = r->second.scalars();
+  }
   for (const auto& group : plan.groups) GroupRun(plan, options, result, done).run(group);
   if (options.progress) options.progress("", done, plan.size());
   return result;

@@ -16,6 +16,7 @@ struct CellPlan {
   std::string protocol;  ///< "short", "full" or "quick", stored with every cell
   /// Solvers that a study names and this build lacks: entries without `make`, whose cells become `unsupported`.
   std::vector<std::shared_ptr<const SolverEntry>> not_built;
+  bool references = false;  ///< store the reference solution of each scene's truth with its cells
 
   std::size_t size() const;
 };
@@ -26,6 +27,7 @@ struct RunOptions {
   DeviceOptions device;
   /// Called before each piece of work with what it is and how many of how many pieces are done.
   std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress;
+  std::filesystem::path reference_cache = "results/runs/reference-cache";  ///< for plans with references
 };
 
 struct RunResult {

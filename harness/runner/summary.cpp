@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "metrics/metric.hpp"
+#include "metrics/truth_errors.hpp"
 #include "runner/cell.hpp"
 
 namespace clothbench {
@@ -138,6 +139,8 @@ std::map<std::string, double> summarise(const CellSpec& spec, const Plan& plan, 
   s["frame_wall_iqr_s"] = quantile(wall, 0.75) - quantile(wall, 0.25);
   s["frame_device_median_s"] = median(device);
   summarise_pass(record.accuracy, spec.scene->time, s);
+  s.merge(summarise_truth(*spec.scene, record.accuracy));
+  for (const auto& [name, value] : spec.scene_values) s[name] = value;
   s["read_B_per_frame"] = bytes_per_frame(record.trials, &TimedTrial::stage_read_B);
   s["write_B_per_frame"] = bytes_per_frame(record.trials, &TimedTrial::stage_write_B);
   s["bandwidth_read_peak_B_per_s"] = median(read_peak);

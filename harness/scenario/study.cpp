@@ -89,6 +89,8 @@ class Builder {
         read_rules(!quick_.is_null() ? quick_["rules"] : j_[study_.length == StudyLength::Full ? "full" : "short"]);
     const double standard_s = study_.protocol == "fps" ? kFpsAccuracy_s : std::numeric_limits<double>::infinity();
     study_.accuracy_duration_s = j_.value("accuracy_duration_s", standard_s);
+    study_.cell_limit_s = j_["cell_limit_s"].get<double>();
+    study_.stage_times = j_["stage_times"].get<bool>();
     read_solvers();
     for (std::size_t k = 0; k < j_["scenes"].size(); ++k) read_scene(k);
     check_words();
@@ -105,9 +107,12 @@ class Builder {
       StudySolver solver{s["solver"].get<std::string>(), s["label"].get<std::string>(), s["settings"],
                          assignments(s["set"]), s["only"].get<Words>()};
       solver_names_.push_back(solver.name());
-      stays_.push_back(stays(solver));
       named.push_back(solver.solver);
-      study_.solvers.push_back(std::move(solver));
+      const bool stay = stays(solver);
+      for (StudySolver& rung : climb(solver, k)) {
+        stays_.push_back(stay);
+        study_.solvers.push_back(std::move(rung));
+      }
     }
     for (const std::string& name : options_.solvers) {
       if (contains(named, name)) continue;
@@ -115,6 +120,34 @@ class Builder {
       stays_.push_back(true);
       named.push_back(name);
     }
+  }
+
+  /// The solver with every setting of the ladder that it has knobs for; itself alone if it climbs none.
+  std::vector<StudySolver> climb(const StudySolver& solver, std::size_t k) const {
+    const json& entry = j_["solvers"][k];
+    if (!entry.contains("ladder")) return {solver};
+    const json ladder = !quick_.is_null() && quick_.contains("ladder") ? quick_["ladder"] : j_.value("ladder", json());
+    if (!ladder.is_object()) throw Error(fmt::format("{}: /solvers/{}/ladder: the study has no \"ladder\"", source_, k));
+    const int most = ladder["product_at_most"].get<int>(), ratio = ladder["ratio"].get<int>();
+    std::vector<std::pair<int, StudySolver>> rungs = {{1, solver}};
+    rungs[0].second.label.clear();
+    for (const auto& knob : entry["ladder"].get<Words>()) {
+      std::vector<std::pair<int, StudySolver>> next;
+      for (const auto& [product, rung] : rungs)
+        for (int value = 1; product * value <= most; value *= ratio) {
+          StudySolver s = rung;
+          s.settings[knob] = value;
+          s.label += fmt::format("{}{}={}", s.label.empty() ? "" : ",", knob, value);
+          next.emplace_back(product * value, std::move(s));
+        }
+      rungs = std::move(next);
+    }
+    std::vector<StudySolver> out;
+    for (auto& [product, rung] : rungs) {
+      if (rung.label.empty()) rung.label = solver.label;
+      out.push_back(std::move(rung));
+    }
+    return out;
   }
 
   /// A solver that was asked for stays although the quick form leaves it out, but not each of its settings.
@@ -130,6 +163,7 @@ class Builder {
 
   void read_scene(std::size_t k) {
     const json& item = j_["scenes"][k];
+    if (item["only_full"].get<bool>() && study_.length != StudyLength::Full) return;
     const std::string pointer = fmt::format("/scenes/{}", k), scene_file = item["file"].get<std::string>();
     std::filesystem::path path = scene_file;
     if (path.is_relative() && std::filesystem::exists(file_.parent_path() / path)) path = file_.parent_path() / path;
@@ -174,7 +208,7 @@ class Builder {
   }
 
   int group_of(const Scene& scene) {
-    const bool by_scene = study_.protocol == "penetration";
+    const bool by_scene = study_.protocol != "fps";
     const std::string key = by_scene ? scene.name : fmt::format("{} {}", scene.cloth.columns, scene.cloth.rows);
     return groups_.emplace(key, static_cast<int>(groups_.size())).first->second;
   }

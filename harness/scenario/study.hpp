@@ -51,6 +51,8 @@ struct Study {
   std::vector<StudySolver> solvers;
   int trials = 0, drop_frames = 0;
   double accuracy_duration_s = 0;  ///< infinite: the whole scene
+  double cell_limit_s = 0;         ///< 0 = none
+  bool stage_times = true;
   StudyRules rules;                ///< of `length`
   nlohmann::json definition;       ///< completed study file
 };

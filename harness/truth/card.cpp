@@ -37,7 +37,7 @@ struct Strip {
   const Scene& scene;
   int links;
   double length_m, g;
-  Vec3 start, along, up;  // middle of edge u0; axis_u; against gravity
+  Vec3 start{}, along{}, up{};  // middle of edge u0; axis_u; against gravity
 
   explicit Strip(const Scene& s) : scene(s), links(s.cloth.columns - 1), length_m(s.cloth.width_m), g(length(s.gravity_m_per_s2)) {
     along = s.cloth.axis_u;

@@ -18,6 +18,7 @@ SolverInfo describe() {
   info.summary = "double precision, implicit, sparse direct: the yardstick for errors, not for time";
   info.version = "1";
   info.precision = "float64";
+  info.time_order = 2;
   info.supports = {Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins, Feature::MovingPins};
   info.settings = {
       {"substeps", "16", "steps a frame"},

@@ -49,6 +49,7 @@ class Conformance : public ::testing::TestWithParam<Case> {
     // Four vertices have none near a hand.
     if (c.grid == "[2,2]" && c.scene.find("stretch") != std::string::npos)
       for (const char* hand : {"0", "1"}) overrides.push_back(std::string("grips.") + hand + ".radius_m=0.6");
+    if (c.grid == "[2,2]" && c.scene.find("catenary") != std::string::npos) overrides.back() = "cloth.grid=[3,2]";  // 2 columns cannot bend
     scene_ = load_scene(c.scene, overrides);
     entry_ = &find_solver(c.solver);
     try {

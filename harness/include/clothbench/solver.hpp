@@ -30,6 +30,7 @@ struct SolverInfo {
   /// Features supported only beside another: {StaticMesh, DuplicatedLayer} = meshes only with a duplicated layer.
   std::vector<std::pair<Feature, Feature>> only_with = {};
   std::vector<SettingSpec> settings;
+  int time_order = 1;  ///< order of accuracy in the time step that the integrator declares, everything else solved
 };
 
 /// What of a scene's needs the solver cannot do, `only_with` taken into account; empty if it can run the scene.

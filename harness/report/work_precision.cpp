@@ -1,0 +1,209 @@
+#include "report/work_precision.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "report/grid.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kRealTime_ms_per_s = 1000;  // a 72 Hz frame simulates 1/72 s in 1/72 s
+
+json scenario_of(const CellRecord& c) { return json::parse(c.header.scenario_json, nullptr, false); }
+
+std::string card_of(const json& scenario) { return scenario.is_object() ? scenario.value(json::json_pointer("/truth/card"), std::string()) : ""; }
+
+/// What ranks a card's runs; the cards themselves are in harness/truth/card.hpp, a report reads only files.
+std::string ranking_of(const std::string& card) {
+  if (card == "heavy-strip") return "stretch of the strip at rest / its truth";
+  if (card == "two-hand-pull") return "greatest strain, RMS over time / (v0/c)";
+  return card == "catenary" || card == "cantilever" ? "RMS distance at rest / L" : "RMS distance over space and time / L";
+}
+
+WorkPoint point_of(const CellRecord& c, const json& scenario) {
+  WorkPoint p;
+  p.cell = &c;
+  p.solver = c.header.solver;
+  p.setting = c.header.setting;
+  p.ok = c.outcome.status == "ok";
+  p.device_ms_per_s = kMissing;
+  const double frames_per_s = scenario.value(json::json_pointer("/time/frame_rate_hz"), kMissing);
+  p.wall_ms_per_s = 1e3 * frames_per_s * summary_value(c, "frame_wall_median_s");
+  p.device_ms_per_s = 1e3 * frames_per_s * summary_value(c, "frame_device_median_s");
+  p.on_gpu = std::isfinite(p.device_ms_per_s);
+  p.error = summary_value(c, "truth_error");
+  return p;
+}
+
+bool drawn(const WorkPoint& p) { return p.ok && std::isfinite(p.error) && std::isfinite(p.wall_ms_per_s); }
+
+void mark_front(std::vector<WorkPoint>& points) {
+  for (WorkPoint& p : points) {
+    p.on_front = drawn(p);
+    for (const WorkPoint& q : points)
+      if (q.solver == p.solver && drawn(q) && q.wall_ms_per_s <= p.wall_ms_per_s && q.error <= p.error &&
+          (q.wall_ms_per_s < p.wall_ms_per_s || q.error < p.error))
+        p.on_front = false;
+  }
+}
+
+const WorkPoint* best(const WorkDiagram& d, const std::string& solver, const std::function<bool(const WorkPoint&)>& counts,
+                      double WorkPoint::*by) {
+  const WorkPoint* out = nullptr;
+  for (const WorkPoint& p : d.points)
+    if (p.solver == solver && drawn(p) && counts(p) && (out == nullptr || p.*by < out->*by)) out = &p;
+  return out;
+}
+
+std::string time_text(const WorkPoint* p) {
+  return p == nullptr ? "–" : fmt::format("{:.3g} ({})", p->wall_ms_per_s, p->setting);
+}
+
+std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.1e}", v) : "–"; }
+
+/// No solver is told apart below the floor.
+std::string error_text(const WorkDiagram& d, const WorkPoint* p) {
+  if (p == nullptr) return "–";
+  const bool below = p->error < d.floor();
+  return fmt::format("{}{:.2g} ({})", below ? "≤ " : "", below ? d.floor() : p->error, p->setting);
+}
+
+std::vector<std::string> solvers_of(const WorkDiagram& d) {
+  std::vector<std::string> out;
+  for (const WorkPoint& p : d.points)
+    if (std::find(out.begin(), out.end(), p.solver) == out.end()) out.push_back(p.solver);
+  return out;
+}
+
+json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
+std::string exact(double v) { return std::isfinite(v) ? fmt::format("{}", v) : ""; }
+
+}  // namespace
+
+double WorkDiagram::best_error() const {
+  double least = kMissing;
+  for (const WorkPoint& p : points)
+    if (drawn(p) && p.solver != "reference" && !(least <= p.error)) least = p.error;
+  return least;
+}
+
+std::string WorkDiagram::refused() const {
+  if (!std::isfinite(uncertainty)) return "no reference solution";
+  // The truth itself is exact where the reference confirms it; the reference's own doubt is what counts here.
+  if (!(floor() < best_error())) return fmt::format("3 U_ref {:.1e} is not below the best error {:.1e}", floor(), best_error());
+  return "";
+}
+
+bool has_truth(const CellRecord& c) { return !card_of(scenario_of(c)).empty(); }
+
+std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells) {
+  std::vector<WorkDiagram> out;
+  for (const CellRecord& c : cells) {
+    const json scenario = scenario_of(c);
+    const std::string card = card_of(scenario);
+    if (card.empty()) continue;
+    auto at = std::find_if(out.begin(), out.end(), [&](const WorkDiagram& d) { return d.scene == c.header.scene; });
+    if (at == out.end()) {
+      out.push_back({c.header.scene, card, ranking_of(card), {}});
+      at = out.end() - 1;
+    }
+    at->points.push_back(point_of(c, scenario));
+    const auto take = [&](double& to, const char* name) {
+      if (!std::isfinite(to)) to = summary_value(c, name);
+    };
+    take(at->space_error, "truth_space_error");
+    take(at->uncertainty, "reference_uncertainty");
+    take(at->truth_distance, "reference_truth_distance");
+    take(at->order_bdf2, "reference_order_bdf2");
+    take(at->order_conservative, "reference_order_conservative");
+  }
+  for (WorkDiagram& d : out) {
+    mark_front(d.points);
+    std::stable_sort(d.points.begin(), d.points.end(), [](const WorkPoint& a, const WorkPoint& b) {
+      if (a.solver != b.solver) return a.solver < b.solver;
+      return a.wall_ms_per_s < b.wall_ms_per_s;
+    });
+  }
+  return out;
+}
+
+Table work_table(const std::vector<WorkDiagram>& diagrams) {
+  Table t{"Error against run time",
+          "Times in ms of wall time per simulated second; in brackets the setting. In real time: a frame of 1/72 s takes at "
+          "most 1/72 s. ≤: below three times the reference's uncertainty. Failed: cells without a finite error. A scene that "
+          "is refused ranks nobody; see the next table.",
+          {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed"}}};
+  for (const WorkDiagram& d : diagrams) {
+    const std::string refused = d.refused();
+    for (const std::string& solver : solvers_of(d)) {
+      const auto within = [](double most) { return [most](const WorkPoint& p) { return p.error <= most; }; };
+      const auto real_time = [](const WorkPoint& p) { return p.wall_ms_per_s <= kRealTime_ms_per_s; };
+      std::size_t failed = 0, all = 0;
+      for (const WorkPoint& p : d.points)
+        if (p.solver == solver) {
+          ++all;
+          if (!drawn(p)) ++failed;
+        }
+      t.rows.push_back({d.scene + (refused.empty() ? "" : " (refused)"), solver,
+                        time_text(best(d, solver, within(1e-2), &WorkPoint::wall_ms_per_s)),
+                        time_text(best(d, solver, within(1e-3), &WorkPoint::wall_ms_per_s)),
+                        error_text(d, best(d, solver, real_time, &WorkPoint::error)),
+                        error_text(d, best(d, solver, [](const WorkPoint&) { return true; }, &WorkPoint::error)),
+                        fmt::format("{} of {}", failed, all)});
+    }
+  }
+  return t;
+}
+
+Table truth_table(const std::vector<WorkDiagram>& diagrams) {
+  Table t{"Truths and their reference solutions",
+          "Space: the same mesh's exact solution against the continuum. U_ref: uncertainty of the reference solution (two "
+          "integrators, three time steps) of the card's quantity, over its scale; its distance from the truth must be below it. "
+          "Order: observed, 2 declared; – where all time steps agree.",
+          {{"scene", "error", "space", "U_ref", "reference − truth", "order BDF2", "order conservative", "ranks"}}};
+  const auto order = [](double v) { return std::isfinite(v) ? fmt::format("{:.2f}", v) : std::string("–"); };
+  for (const WorkDiagram& d : diagrams) {
+    const std::string refused = d.refused();
+    t.rows.push_back({d.scene, d.ranking, number(d.space_error), number(d.uncertainty), number(d.truth_distance), order(d.order_bdf2),
+                      order(d.order_conservative), refused.empty() ? "yes" : "REFUSED: " + refused});
+  }
+  return t;
+}
+
+std::string work_csv(const std::vector<WorkDiagram>& diagrams) {
+  std::string out = csv_row({"scene", "card", "ranking", "space_error", "floor", "refused", "solver", "setting", "status", "gpu",
+                             "gpu_is_software", "on_gpu", "wall_ms_per_s", "device_ms_per_s", "error", "on_front"});
+  for (const WorkDiagram& d : diagrams)
+    for (const WorkPoint& p : d.points) {
+      const json& e = p.cell->header.environment;
+      const std::string software = e.is_object() && e.value("gpu_is_software", json()) == json(true) ? "true" : "false";
+      out += csv_row({d.scene, d.card, d.ranking, exact(d.space_error), exact(d.floor()), d.refused(), p.solver, p.setting,
+                      p.cell->outcome.status, e.is_object() ? e.value("gpu", "") : "", software, p.on_gpu ? "true" : "false",
+                      exact(p.wall_ms_per_s), exact(p.device_ms_per_s), exact(p.error), p.on_front ? "true" : "false"});
+    }
+  return out;
+}
+
+json work_json(const std::vector<WorkDiagram>& diagrams) {
+  json out = json::array();
+  for (const WorkDiagram& d : diagrams) {
+    json points = json::array();
+    for (const WorkPoint& p : d.points)
+      points.push_back({{"solver", p.solver}, {"setting", p.setting}, {"settings", p.cell->header.settings},
+                        {"status", p.cell->outcome.status}, {"wall_ms_per_s", or_null(p.wall_ms_per_s)},
+                        {"device_ms_per_s", or_null(p.device_ms_per_s)}, {"error", or_null(p.error)}, {"on_front", p.on_front}});
+    out.push_back({{"scene", d.scene}, {"card", d.card}, {"ranking", d.ranking}, {"space_error", or_null(d.space_error)},
+                   {"reference_uncertainty", or_null(d.uncertainty)}, {"reference_truth_distance", or_null(d.truth_distance)},
+                   {"reference_order_bdf2", or_null(d.order_bdf2)}, {"reference_order_conservative", or_null(d.order_conservative)},
+                   {"refused", d.refused()}, {"points", std::move(points)}});
+  }
+  return out;
+}
+
+}  // namespace clothbench

@@ -1,0 +1,52 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "clothbench/record.hpp"
+#include "report/table.hpp"
+
+namespace clothbench {
+
+/// One cell in a work-precision diagram.
+struct WorkPoint {
+  const CellRecord* cell = nullptr;
+  std::string solver, setting;
+  bool on_gpu = false, ok = false;
+  double wall_ms_per_s = kMissing;    ///< median wall time, ms per simulated second
+  double device_ms_per_s = kMissing;  ///< the same of the device's own clock; NaN on a CPU
+  double error = kMissing;            ///< what ranks (the card's), as measured
+  bool on_front = false;              ///< no other point of its solver is as fast and more accurate
+};
+
+/// All cells of one scene with a truth, and what is known of its truth.
+struct WorkDiagram {
+  std::string scene, card, ranking;  ///< ranking: what the error is, in words
+  std::vector<WorkPoint> points;     ///< by solver, then time
+  double space_error = kMissing;     ///< this mesh's truth against the continuum
+  double uncertainty = kMissing;     ///< U_ref over the quantity's scale
+  double truth_distance = kMissing, order_bdf2 = kMissing, order_conservative = kMissing;  ///< of the reference
+  double floor() const { return 3 * uncertainty; }  ///< errors below it are not told apart; NaN if unknown
+  double best_error() const;                        ///< of all points that ended well; NaN if there is none
+  /// Why no solver is ranked on it: the reference is missing, or not below a third of the best error. "" if it is.
+  std::string refused() const;
+};
+
+/// True for a cell whose scene states its truth.
+bool has_truth(const CellRecord&);
+
+/// One diagram a scene, in the order of first appearance. `cells` must outlive the answer.
+std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells);
+
+/// Rows: scenes and solvers; time to 1 % and 0.1 %, best error in real time (a displayed frame of 1/72 s takes at most as
+/// long), best error at all, each with its setting, and how many cells failed.
+Table work_table(const std::vector<WorkDiagram>&);
+
+/// One row a scene: what the error is, floors, the reference's orders, its distance from the truth, and whether it ranks.
+Table truth_table(const std::vector<WorkDiagram>&);
+
+/// One row a point, full precision; what the figures are drawn from.
+std::string work_csv(const std::vector<WorkDiagram>&);
+nlohmann::json work_json(const std::vector<WorkDiagram>&);
+
+}  // namespace clothbench

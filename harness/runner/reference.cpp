@@ -1,0 +1,210 @@
+#include "runner/reference.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "clothbench/error.hpp"
+#include "clothbench/record.hpp"
+#include "clothbench/solver.hpp"
+#include "metrics/truth_errors.hpp"
+#include "results/store.hpp"
+#include "scenario/load.hpp"
+#include "truth/card.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr int kMovingSteps = 512;  // of a whole scene, coarsest level
+constexpr int kSettlingSubsteps = 8;  // enough for the midpoint rule to damp what the start set going
+constexpr double kTolerance = 1e-8;
+constexpr double kOrder = 2;  // of both integrators
+constexpr double kRounding = 1e-10;  // of the scale: differences below it have no order
+
+/// The scene with two rows: all move alike.
+Scene two_rows(const Scene& s) {
+  Scene out = scene_from_json(json::parse(s.json), s.source, {fmt::format("cloth.grid=[{},2]", s.cloth.columns)});
+  out.name = s.name;
+  return out;
+}
+
+struct Run {
+  double value = kMissing;   ///< at the end
+  double unrest = kMissing;  ///< change over the last tenth
+};
+
+Run run_quantity(const Scene& scene, const truth::Card& card, const char* integrator, int substeps, double tolerance) {
+  const SolverEntry& entry = find_solver("reference");
+  const json settings = complete_settings(entry.info, {{"integrator", integrator}, {"substeps", substeps}, {"tolerance", tolerance}});
+  const auto solver = entry.make(settings, {});
+  solver->load(scene);
+  const double dt = scene.time.dt();
+  const int frames = scene.time.frames();
+  ClothState state;
+  const auto quantity = [&] {
+    solver->read_state(state);
+    return card.quantity(truth::column_means(scene.cloth, state.position));
+  };
+  double before = kMissing;
+  for (int f = 0; f < frames; ++f) {
+    if (f == frames - (frames + 9) / 10) before = quantity();
+    if (solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}) != StepStatus::Ok)
+      throw Error(fmt::format("{}: the reference ({}, {} substeps) failed in frame {}", scene.source, integrator, substeps, f));
+  }
+  const double value = quantity();
+  return {value, std::abs(value - before)};
+}
+
+struct Extrapolated {
+  double value, uncertainty, order;
+};
+
+/// Finest first.
+Extrapolated extrapolate(double f1, double f2, double f3, double scale) {
+  const double near = f1 - f2, far = f2 - f3;
+  if (std::abs(near) <= kRounding * scale) return {f1, std::abs(near), kMissing};
+  const double order = std::log2(far / near);
+  const bool as_declared = std::abs(order - kOrder) <= 0.5;
+  const double p = as_declared ? order : kOrder, rest = near / (std::pow(2, p) - 1);
+  return {f1 + rest, (as_declared ? 1.25 : 3) * std::abs(rest), order};
+}
+
+json to_json(const ReferenceResult& r) {
+  json j = {{"scale", r.scale}, {"least_substeps", r.least_substeps}};
+  for (const auto& [name, value] : r.scalars()) j[name] = value;  // NaN becomes null
+  return j;
+}
+
+double number(const json& j, const char* key) { return j.at(key).is_null() ? kMissing : j.at(key).get<double>(); }
+
+ReferenceResult from_json(const json& j) {
+  ReferenceResult r;
+  r.scale = number(j, "scale");
+  r.least_substeps = j.at("least_substeps");
+  r.truth = number(j, "truth_value");
+  r.value = number(j, "reference_value");
+  r.uncertainty = number(j, "reference_uncertainty");
+  r.order_bdf2 = number(j, "reference_order_bdf2");
+  r.order_conservative = number(j, "reference_order_conservative");
+  r.truth_distance = number(j, "reference_truth_distance");
+  r.space_error = number(j, "truth_space_error");
+  return r;
+}
+
+bool has_reference_solver() {
+  return std::any_of(solvers().begin(), solvers().end(), [](const SolverEntry& e) { return e.info.name == "reference"; });
+}
+
+/// Everything the result depends on is in its name: the scene, and what computes it.
+fs::path cache_file(const fs::path& cache, const Scene& s) {
+  return cache / fmt::format("{}-{}-{}.json", s.sha256, find_solver("reference").info.version, kMovingSteps);
+}
+
+bool read_cached(const fs::path& file, ReferenceResult& out) {
+  std::ifstream in(file);
+  const json j = in ? json::parse(in, nullptr, false) : json();
+  if (!j.is_object()) return false;
+  try {
+    out = from_json(j);
+  } catch (const json::exception&) {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::map<std::string, double> ReferenceResult::scalars() const {
+  return {{"truth_value", truth},
+          {"truth_space_error", space_error},
+          {"reference_value", value},
+          {"reference_uncertainty", uncertainty},
+          {"reference_order_bdf2", order_bdf2},
+          {"reference_order_conservative", order_conservative},
+          {"reference_truth_distance", truth_distance}};
+}
+
+ReferenceResult compute_reference(const Scene& whole) {
+  const Scene scene = two_rows(whole);
+  const TruthJudge judge(scene);
+  const truth::Card& card = judge.card();
+  const int frames = scene.time.frames();
+  const auto per_frame = static_cast<unsigned>(std::max(1, (kMovingSteps + frames - 1) / frames));
+  ReferenceResult r;
+  r.least_substeps = card.settles ? kSettlingSubsteps : static_cast<int>(std::bit_ceil(per_frame));
+  r.scale = card.quantity_scale;
+  r.truth = card.quantity(card.columns(frames));
+  Extrapolated found[2];
+  double coarsest = 0;
+  for (int i = 0; i < 2; ++i) {
+    Run f[3];
+    for (int level = 0; level < 3; ++level)
+      f[level] = run_quantity(scene, card, i == 0 ? "bdf2" : "conservative", r.least_substeps << level, kTolerance);
+    if (i == 0) coarsest = f[0].value;
+    found[i] = card.settles ? Extrapolated{f[2].value, std::max(std::abs(f[2].value - f[1].value), f[2].unrest), kMissing}
+                            : extrapolate(f[2].value, f[1].value, f[0].value, r.scale);
+  }
+  const double strict = run_quantity(scene, card, "bdf2", r.least_substeps, kTolerance / 10).value;
+  r.order_bdf2 = found[0].order;
+  r.order_conservative = found[1].order;
+  r.value = (found[0].value + found[1].value) / 2;
+  const double between = std::abs(found[0].value - found[1].value), of_tolerance = std::abs(coarsest - strict);
+  r.uncertainty = std::max({found[0].uncertainty, found[1].uncertainty, between, of_tolerance}) / r.scale;
+  r.truth_distance = std::abs(r.value - r.truth) / r.scale;
+  r.space_error = judge.space_error();
+  return r;
+}
+
+std::map<std::string, ReferenceResult> references(const std::vector<const Scene*>& scenes, const fs::path& cache,
+                                                  const std::function<void(const std::string&)>& note) {
+  std::map<std::string, ReferenceResult> out;
+  if (!has_reference_solver()) return out;
+  std::vector<const Scene*> lacking;
+  std::set<std::string> seen;
+  for (const Scene* s : scenes) {
+    if (s->truth_card.empty() || !seen.insert(s->sha256).second) continue;
+    ReferenceResult r;
+    if (read_cached(cache_file(cache, *s), r))
+      out[s->sha256] = r;
+    else
+      lacking.push_back(s);
+  }
+  if (lacking.empty()) return out;
+  fs::create_directories(cache);
+  std::atomic<std::size_t> next{0};
+  std::mutex guard;
+  std::string failed;
+  const auto work = [&] {
+    for (std::size_t k = next++; k < lacking.size(); k = next++) {
+      try {
+        const ReferenceResult r = compute_reference(*lacking[k]);
+        write_file_atomically(cache_file(cache, *lacking[k]), to_json(r).dump(2) + "\n");
+        const std::scoped_lock lock(guard);
+        out[lacking[k]->sha256] = r;
+      } catch (const std::exception& e) {
+        const std::scoped_lock lock(guard);
+        failed = e.what();
+      }
+    }
+  };
+  if (note) note(fmt::format("reference solutions of {} scenes", lacking.size()));
+  std::vector<std::jthread> threads;
+  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+  for (std::size_t k = 0; k < std::min(cores, lacking.size()); ++k) threads.emplace_back(work);
+  threads.clear();  // joins
+  if (!failed.empty()) throw Error(failed, ExitCode::CheckFailed);
+  return out;
+}
+
+}  // namespace clothbench

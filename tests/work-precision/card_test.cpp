@@ -1,0 +1,180 @@
+// Cards: from a scene to its exact answer, and a run's distance from it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "clothbench/error.hpp"
+#include "metrics/metric_pass.hpp"
+#include "metrics/truth_errors.hpp"
+#include "scenario/load.hpp"
+#include "truth/card.hpp"
+#include "truth/free_fall.hpp"
+#include "truth/pull_chain.hpp"
+#include "truth/pull_wave.hpp"
+
+namespace clothbench {
+namespace {
+
+const char* const kScenes[] = {"free-fall", "pendulum",      "swing-strip",    "heavy-strip",  "catenary",
+                               "cantilever-1", "cantilever-10", "cantilever-100", "two-hand-pull"};
+
+Scene scene(const std::string& name, const std::vector<std::string>& set = {}) { return load_scene("validation/" + name, set); }
+
+/// The truth itself as a run's state.
+ClothState truth_state(const Scene& s, const truth::Card& card, int frame) {
+  const std::vector<Vec3> speeds = card.column_speeds ? card.column_speeds(frame) : std::vector<Vec3>(static_cast<std::size_t>(s.cloth.columns));
+  return {truth::vertex_values(s.cloth, card.columns(frame), true), truth::vertex_values(s.cloth, speeds, false)};
+}
+
+class Cards : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Every, Cards, ::testing::ValuesIn(kScenes), [](const auto& i) {
+  std::string name = i.param;
+  for (char& c : name)
+    if (c == '-') c = '_';
+  return name;
+});
+
+TEST_P(Cards, TheTruthIsNoDistanceFromItself) {
+  const Scene s = scene(GetParam());
+  const TruthJudge judge(s);
+  const int last = s.time.frames();
+  ClothState state = truth_state(s, judge.card(), last);
+  const TruthErrors e = judge.judge(last, state);
+  EXPECT_EQ(e.e2, 0);
+  EXPECT_EQ(e.greatest, 0);
+  EXPECT_NEAR(e.quantity_error, 0, 1e-12);
+  EXPECT_NEAR(e.stretch_rms, 0, 1e-12);
+  if (judge.card().column_speeds) {
+    EXPECT_EQ(e.speed, 0);
+  }
+  for (std::size_t k = 1; k < state.position.size(); k += 3) state.position[k] += 0.01;
+  EXPECT_NEAR(judge.judge(last, state).e2, 0.01 / std::max(s.cloth.width_m, s.cloth.height_m), 1e-9);
+  state.position[4] = NAN;
+  EXPECT_TRUE(std::isnan(judge.judge(last, state).e2));
+  EXPECT_TRUE(std::isnan(judge.judge(last, state).quantity_error));
+}
+
+/// Held vertices of the truth are where the scene holds them, and moving truths begin where the scene does.
+TEST_P(Cards, AgreeWithTheScene) {
+  const Scene s = scene(GetParam());
+  const auto card = truth::card_of(s);
+  ASSERT_TRUE(card);
+  const std::vector<double> start = initial_positions(s), end = truth_state(s, *card, s.time.frames()).position;
+  for (std::uint32_t v : s.pins.vertices)
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(end[3 * v + k], start[3 * v + k], 1e-12) << v;
+  for (std::size_t i = 0; i < s.grips.vertices.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(end[3 * s.grips.vertices[i] + k], s.motion.back().grip_position_m[i][k], 1e-12);
+  if (card->settles) return;
+  const std::vector<double> first = truth_state(s, *card, 0).position;
+  for (std::size_t k = 0; k < start.size(); ++k) EXPECT_NEAR(first[k], start[k], 1e-12);
+}
+
+/// Order 2 in the cell's size. The lattice's points are nodes of 32 cells but not of 16, which adds to the coarse error.
+TEST(SpaceError, FallsWithTheCell) {
+  for (const char* name : {"catenary", "swing-strip"}) {
+    const Scene coarse = scene(name, {"cloth.grid=[17,3]"}), fine = scene(name);
+    const double ratio = TruthJudge(coarse).space_error() / TruthJudge(fine).space_error();
+    EXPECT_GT(ratio, 2.5) << name;
+    EXPECT_LT(ratio, 8) << name;
+  }
+  const Scene heavy = scene("heavy-strip"), fall = scene("free-fall");
+  EXPECT_LT(TruthJudge(heavy).space_error(), 1e-12) << "rows of springs are exact at the rows";
+  EXPECT_EQ(TruthJudge(fall).space_error(), 0);
+}
+
+TEST(PulledChain, FollowsTheWaveWithinAHundredth) {
+  const truth::TwoHandPull hands{1, 0.2, 1000, 10, 1 / std::sqrt(5000.0)};
+  std::vector<double> times, first, last;
+  for (int k = 0; k <= 400; ++k) {
+    times.push_back(k * 0.02 / 400);
+    last.push_back(truth::hand_way_m(hands, times.back()));
+    first.push_back(-last.back());
+  }
+  double worst[2] = {};
+  for (int level = 0; level < 2; ++level) {
+    const int links = 32 << level;
+    const auto states = truth::pull({links, 1, 0.2, 1000}, times, first, last);
+    for (int i = 0; i <= links; ++i) {
+      const double x = static_cast<double>(i) / links - 0.5;
+      const double off = states.back().displacement_m[static_cast<std::size_t>(i)] - truth::pull_displacement_m(hands, x, times.back());
+      worst[level] = std::max(worst[level], std::abs(off) / last.back());
+    }
+  }
+  EXPECT_LT(worst[0], 0.01);
+  EXPECT_LT(worst[1], 0.5 * worst[0]);
+}
+
+/// Semi-implicit Euler of one step a frame is g t dt/2 behind free fall: what the ballistic solver's error must be.
+TEST(TruthMetrics, BallisticIsBehindByItsOwnStep) {
+  const Scene s = scene("free-fall");
+  const SolverEntry& entry = find_solver("ballistic");
+  const nlohmann::json settings = nlohmann::json::object();
+  const auto solver = entry.make(settings, {});
+  solver->load(s);
+  const MetricContext context{s, entry, settings};
+  MetricPass metrics(context);
+  AccuracyPass pass;
+  ClothState state;
+  const double dt = s.time.dt();
+  for (int f = 0; f <= s.time.frames(); ++f) {
+    if (f > 0) {
+      ASSERT_EQ(solver->step({f - 1, f * dt, dt, nullptr}), StepStatus::Ok);
+    }
+    solver->read_state(state);
+    metrics.add(state);
+    pass.time_s.push_back(f * dt);
+  }
+  pass.metrics = metrics.take();
+  std::vector<double> expected;
+  for (const double t : pass.time_s) expected.push_back(0.5 * 9.81 * t * dt);
+  for (const MetricSeries& m : pass.metrics) {
+    if (m.name != "truth_error_e2") continue;
+    for (std::size_t f = 0; f < expected.size(); ++f) EXPECT_NEAR(m.values[f], expected[f], 1e-12);
+  }
+  const auto summary = summarise_truth(s, pass);
+  EXPECT_NEAR(summary.at("truth_error"), truth::time_rms(pass.time_s, expected), 1e-12);
+  EXPECT_NEAR(summary.at("truth_quantity"), 0.5 * 9.81 * (0.25 + 0.5 * dt), 1e-9);
+  EXPECT_NEAR(summary.at("energy_drift"), 0, 0.1);
+  pass.time_s.pop_back();
+  EXPECT_TRUE(std::isnan(summarise_truth(s, pass).at("truth_error"))) << "a pass that broke off has no error";
+}
+
+TEST(Cards, RefuseScenesTheyDoNotAnswer) {
+  const auto message = [](const std::string& name, const std::vector<std::string>& set) -> std::string {
+    try {
+      truth::card_of(scene(name, set));
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message("swing-strip", {"material.shear=true"}).find("/truth/card: \"swing-strip\" needs \"shear\": false"), std::string::npos);
+  EXPECT_NE(message("swing-strip", {"time.duration_s=2"}).find("chaos"), std::string::npos);
+  EXPECT_NE(message("swing-strip", {"material.damping_per_s=1"}).find("no damping"), std::string::npos);
+  EXPECT_NE(message("heavy-strip", {"material.membrane_stiffness_N_per_m=inextensible"}).find("N/m"), std::string::npos);
+  EXPECT_NE(message("cantilever-10", {"material.membrane_stiffness_N_per_m=1000"}).find("1e-7"), std::string::npos);
+  EXPECT_NE(message("two-hand-pull", {"grips.0.ramp_s=0.01"}).find("one ramp_s"), std::string::npos);
+  EXPECT_NE(message("free-fall", {"pins=[{\"edge\":\"u0\"}]"}).find("nothing that is held"), std::string::npos);
+  EXPECT_EQ(message("swing-strip", {"gravity_m_per_s2=[0,-4.905,0]", "cloth.size_m=[0.5,0.0625]"}), "") << "any parameter will do";
+}
+
+TEST(Span, TheArcHangsAndItsCellsKeepTheirLengths) {
+  const Scene s = scene("catenary");
+  const std::vector<double> x = initial_positions(s);
+  const Cloth& c = s.cloth;
+  double lowest = 0;
+  for (int i = 0; i + 1 < c.columns; ++i) {
+    const auto a = static_cast<std::size_t>(3 * i);
+    EXPECT_NEAR(std::hypot(x[a + 3] - x[a], x[a + 4] - x[a + 1]), c.du(), 1e-14);
+    lowest = std::min(lowest, x[a + 1]);
+  }
+  EXPECT_NEAR(x[static_cast<std::size_t>(3 * (c.columns - 1))] - x[0], 0.8, 1e-12);
+  EXPECT_NEAR(x[1], 0, 1e-12);
+  EXPECT_LT(lowest, -0.2);
+  EXPECT_THROW(scene("catenary", {"cloth.pose.span_m=1.0"}), Error);
+  EXPECT_THROW(scene("catenary", {"cloth.grid=[2,2]"}), Error);
+}
+
+}  // namespace
+}  // namespace clothbench

@@ -1,0 +1,80 @@
+// The order in time that a solver's integrator declares, observed on the pendulum.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "clothbench/error.hpp"
+#include "metrics/metric_pass.hpp"
+#include "metrics/truth_errors.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+constexpr int kIterations = 64;  // solved: what remains is the integrator's
+
+bool has(const SolverInfo& info, const char* setting) {
+  for (const SettingSpec& s : info.settings)
+    if (s.name == setting) return true;
+  return false;
+}
+
+class Order : public ::testing::TestWithParam<std::string> {};
+
+std::vector<std::string> names() {
+  std::vector<std::string> out;
+  for (const SolverEntry& e : solvers())
+    if (e.info.ignores.empty() && has(e.info, "substeps")) out.push_back(e.info.name);
+  return out;
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Order, ::testing::ValuesIn(names()), [](const auto& i) {
+  std::string name = i.param;
+  for (char& c : name)
+    if (c == '-') c = '_';
+  return name;
+});
+
+double truth_error(const Scene& s, const SolverEntry& entry, int substeps) {
+  nlohmann::json given = {{"substeps", substeps}};
+  if (has(entry.info, "iterations")) given["iterations"] = kIterations;
+  if (has(entry.info, "implicit")) given["implicit"] = true;
+  const nlohmann::json settings = complete_settings(entry.info, given);
+  const auto solver = entry.make(settings, {});
+  solver->load(s);
+  const MetricContext context{s, entry, settings};
+  MetricPass metrics(context);
+  AccuracyPass pass;
+  ClothState state;
+  const double dt = s.time.dt();
+  for (int f = 0; f <= s.time.frames(); ++f) {
+    if (f > 0) {
+      EXPECT_EQ(solver->step({f - 1, f * dt, dt, nullptr}), StepStatus::Ok);
+    }
+    solver->read_state(state);
+    metrics.add(state);
+    pass.time_s.push_back(f * dt);
+  }
+  pass.metrics = metrics.take();
+  return summarise_truth(s, pass).at("truth_error");
+}
+
+TEST_P(Order, IsAsDeclared) {
+  const SolverEntry& entry = find_solver(GetParam());
+  const Scene s = load_scene("validation/pendulum");
+  if (!unsupported(entry.info, s.needs).empty()) GTEST_SKIP() << "unsupported";
+  try {
+    const double e1 = truth_error(s, entry, 4), e2 = truth_error(s, entry, 8), e3 = truth_error(s, entry, 16);
+    EXPECT_NEAR(std::log2(e1 / e2), entry.info.time_order, 0.25) << e1 << " " << e2 << " " << e3;
+    EXPECT_NEAR(std::log2(e2 / e3), entry.info.time_order, 0.25) << e1 << " " << e2 << " " << e3;
+    EXPECT_LT(e3, 0.01);
+  } catch (const Error& e) {
+    const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
+    if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
+    FAIL() << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace clothbench

@@ -1,0 +1,103 @@
+// The quick study from the command line to its report; and what the report makes of points that are known.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "report/work_precision.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+CellRecord cell(const std::string& solver, const std::string& setting, double frame_s, double error, const std::string& status = "ok") {
+  CellRecord c;
+  c.header.scene = "swing";
+  c.header.solver = solver;
+  c.header.setting = setting;
+  c.header.settings = json::object();
+  c.header.scenario_json = R"({"name":"swing","truth":{"card":"swing-strip"},"time":{"frame_rate_hz":60}})";
+  c.header.environment = {{"gpu", "CPU"}};
+  c.outcome.status = status;
+  c.summary = {{"frame_wall_median_s", frame_s}, {"truth_error", error}, {"reference_uncertainty", 1e-5}, {"truth_space_error", 2e-3}};
+  return c;
+}
+
+const std::vector<std::string>& row_of(const Table& t, const std::string& solver) {
+  for (const auto& row : t.rows)
+    if (row.at(1) == solver) return row;
+  throw std::runtime_error("no row of " + solver);
+}
+
+TEST(WorkTable, FindsTheFrontAndTimesToAccuracy) {
+  const std::vector<CellRecord> cells = {cell("a", "fast", 1e-3, 0.5),   cell("a", "good", 4e-3, 8e-3), cell("a", "worse", 5e-3, 9e-3),
+                                         cell("a", "best", 0.1, 5e-4),   cell("a", "lost", 1e-3, 1e-9, "not_finite"),
+                                         cell("b", "tiny", 2e-3, 1e-6), cell("b", "nan", 2e-3, NAN)};
+  const auto diagrams = work_diagrams(cells);
+  ASSERT_EQ(diagrams.size(), 1u);
+  std::vector<std::string> front;
+  for (const WorkPoint& p : diagrams[0].points)
+    if (p.on_front) front.push_back(p.setting);
+  EXPECT_EQ(front, (std::vector<std::string>{"fast", "good", "best", "tiny"}));
+  EXPECT_NEAR(diagrams[0].points[0].wall_ms_per_s, 60, 1e-9) << "1 ms a frame at 60 Hz";
+  const Table t = work_table(diagrams);
+  EXPECT_EQ(row_of(t, "a")[2], "240 (good)");
+  EXPECT_EQ(row_of(t, "a")[3], "6e+03 (best)");
+  EXPECT_EQ(row_of(t, "a")[4], "0.008 (good)") << "6 s a second is not real time";
+  EXPECT_EQ(row_of(t, "a")[6], "1 of 5");
+  EXPECT_EQ(row_of(t, "b")[5], "≤ 3e-05 (tiny)") << "nobody is better than the reference is certain";
+  EXPECT_EQ(row_of(t, "b")[6], "1 of 2");
+  EXPECT_NE(diagrams[0].refused(), "") << "the best error is below 3 U_ref";
+}
+
+TEST(WorkTable, RefusesWithoutACertainReference) {
+  std::vector<CellRecord> cells = {cell("a", "x", 1e-3, 1e-4)};
+  EXPECT_EQ(work_diagrams(cells)[0].refused(), "");
+  cells[0].summary["reference_uncertainty"] = 1e-4 / 2;
+  EXPECT_NE(work_diagrams(cells)[0].refused(), "");
+  EXPECT_NE(truth_table(work_diagrams(cells)).markdown().find("REFUSED"), std::string::npos);
+  cells[0].summary["reference_uncertainty"] = NAN;
+  EXPECT_EQ(work_diagrams(cells)[0].refused(), "no reference solution");
+  cells[0].header.scenario_json = "{}";
+  EXPECT_TRUE(work_diagrams(cells).empty());
+}
+
+int run(const std::string& arguments) {
+  const int status = std::system((std::string(CLOTHBENCH_COMMAND) + " " + arguments).c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(QuickStudy, RunsReportsAndDraws) {
+  const fs::path dir = fs::temp_directory_path() / ("clothbench-work-precision-" + std::to_string(getpid()));
+  const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
+  const std::string device = allowed != nullptr && std::string(allowed) == "1" ? " --allow-no-device" : "";
+  ASSERT_EQ(run("study work-precision --quick --out " + (dir / "run").string() + device + " > /dev/null"), 0);
+  ASSERT_EQ(run("report " + (dir / "run").string() + " -o " + (dir / "report").string() + " > /dev/null"), 0);
+  std::ifstream in(dir / "report/work-precision.json");
+  const json diagrams = json::parse(in);
+  ASSERT_EQ(diagrams.size(), 2u);
+  for (const json& d : diagrams) {
+    EXPECT_EQ(d["refused"], "") << d["scene"];
+    EXPECT_LT(d["reference_truth_distance"].get<double>(), std::max(5e-7, d["reference_uncertainty"].get<double>()));
+    double coarse = NAN, fine = NAN;
+    for (const json& p : d["points"]) {
+      if (p["solver"] != "reference") continue;
+      EXPECT_EQ(p["status"], "ok");
+      if (p["setting"] == "substeps=1") coarse = p["error"].get<double>();
+      if (p["setting"] == "substeps=64") fine = p["error"].get<double>();
+    }
+    EXPECT_LT(fine, 1e-2 * coarse);
+    EXPECT_GT(fs::file_size(dir / "report" / ("work-precision-" + d["scene"].get<std::string>() + ".png")), 5000u);
+  }
+  fs::remove_all(dir);
+}
+
+}  // namespace
+}  // namespace clothbench
