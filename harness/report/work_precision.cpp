@@ -61,8 +61,17 @@ const WorkPoint* best(const WorkDiagram& d, const std::string& solver, const std
   return out;
 }
 
+/// "64×1" of "substeps=64,iterations=1"; any other setting as it is.
+std::string short_setting(const WorkPoint& p) {
+  const std::string first = "substeps=", second = ",iterations=";
+  const std::size_t at = p.setting.find(second);
+  if (!p.setting.starts_with(first)) return p.setting;
+  if (at == std::string::npos) return p.setting.substr(first.size());
+  return p.setting.substr(first.size(), at - first.size()) + "×" + p.setting.substr(at + second.size());
+}
+
 std::string time_text(const WorkPoint* p) {
-  return p == nullptr ? "–" : fmt::format("{:.3g} ({})", p->wall_ms_per_s, p->setting);
+  return p == nullptr ? "–" : fmt::format("{:.3g} ({})", p->wall_ms_per_s, short_setting(*p));
 }
 
 std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.1e}", v) : "–"; }
@@ -71,7 +80,7 @@ std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.1e}", v
 std::string error_text(const WorkDiagram& d, const WorkPoint* p) {
   if (p == nullptr) return "–";
   const bool below = p->error < d.floor();
-  return fmt::format("{}{:.2g} ({})", below ? "≤ " : "", below ? d.floor() : p->error, p->setting);
+  return fmt::format("{}{:.2g} ({})", below ? "≤ " : "", below ? d.floor() : p->error, short_setting(*p));
 }
 
 std::vector<std::string> solvers_of(const WorkDiagram& d) {
@@ -135,7 +144,7 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells) {
 
 Table work_table(const std::vector<WorkDiagram>& diagrams) {
   Table t{"Error against run time",
-          "Times in ms of wall time per simulated second; in brackets the setting. In real time: a frame of 1/72 s takes at "
+          "Times in ms of wall time per simulated second; in brackets substeps × iterations. In real time: a frame of 1/72 s takes at "
           "most 1/72 s. ≤: below three times the reference's uncertainty. Failed: cells without a finite error. A scene that "
           "is refused ranks nobody; see the next table.",
           {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed"}}};
@@ -144,18 +153,19 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
     for (const std::string& solver : solvers_of(d)) {
       const auto within = [](double most) { return [most](const WorkPoint& p) { return p.error <= most; }; };
       const auto real_time = [](const WorkPoint& p) { return p.wall_ms_per_s <= kRealTime_ms_per_s; };
-      std::size_t failed = 0, all = 0;
+      std::size_t failed = 0, all = 0, able = 0;
       for (const WorkPoint& p : d.points)
         if (p.solver == solver) {
           ++all;
           if (!drawn(p)) ++failed;
+          if (p.cell->outcome.status != "unsupported" && p.cell->outcome.status != "missing") ++able;
         }
       t.rows.push_back({d.scene + (refused.empty() ? "" : " (refused)"), solver,
                         time_text(best(d, solver, within(1e-2), &WorkPoint::wall_ms_per_s)),
                         time_text(best(d, solver, within(1e-3), &WorkPoint::wall_ms_per_s)),
                         error_text(d, best(d, solver, real_time, &WorkPoint::error)),
                         error_text(d, best(d, solver, [](const WorkPoint&) { return true; }, &WorkPoint::error)),
-                        fmt::format("{} of {}", failed, all)});
+                        able == 0 ? "unsupported" : fmt::format("{} of {}", failed, all)});
     }
   }
   return t;
