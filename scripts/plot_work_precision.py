@@ -10,6 +10,7 @@ import csv
 import math
 import pathlib
 import sys
+import textwrap
 
 import matplotlib
 
@@ -106,8 +107,8 @@ def draw(scene, rows, path):
     title = scene + (f" – REFUSED: {first['refused']}" if first["refused"] else "")
     ax.set_title(title, fontsize=8, loc="left", pad=10)
     note = "; ".join(gpus + ([f"unsupported: {', '.join(absent)}"] if absent else []))
-    ax.legend(handles=entries, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, title=note or None,
-              title_fontsize=6.5)
+    ax.legend(handles=entries, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, borderaxespad=0)
+    ax.text(0, -0.2, textwrap.fill(note, 100), transform=ax.transAxes, fontsize=6.5, color="0.35", va="top")
     fig.savefig(path.with_suffix(".svg"), bbox_inches="tight", metadata={"Date": None})
     fig.savefig(path.with_suffix(".png"), bbox_inches="tight", dpi=160)
     plt.close(fig)

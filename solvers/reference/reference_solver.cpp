@@ -129,7 +129,7 @@ double free_fall_m(const Scene& s, const nlohmann::json& settings, int frames) {
   const double h = s.time.dt() / substeps, g = s.gravity_m_per_s2[1], c = s.material.damping_per_s;
   const bool conservative = settings["integrator"] == "conservative";
   const bool rattle = conservative && !s.material.membrane_stiffness_N_per_m.has_value();
-  double x = 0, v = 0, x_before = 0, v_before = 0;
+  double x = 0, v = s.cloth.initial_velocity_m_per_s[1], x_before = 0, v_before = 0;
   for (long i = 0; i < static_cast<long>(frames) * substeps; ++i) {
     double x_next = 0, v_next = 0;
     if (rattle) {
