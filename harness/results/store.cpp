@@ -67,7 +67,10 @@ std::string cell_name(const CellHeader& h) {
   return name;
 }
 
-CellWriter::CellWriter(fs::path dir, CellHeader header) : dir_(std::move(dir)), header_(std::move(header)) {
+Finish best_finish() { return kWithHdf5 ? Finish::Hdf5 : Finish::Raw; }
+
+CellWriter::CellWriter(fs::path dir, CellHeader header, Finish finish)
+    : dir_(std::move(dir)), header_(std::move(header)), finish_(finish) {
   const fs::path part = part_folder(dir_, cell_name(header_)), file = part / "header.raw";
   std::error_code ec;
   fs::create_directories(part, ec);
@@ -99,7 +102,7 @@ void CellWriter::write_replay(const std::vector<StoredGroup>& groups) {
 fs::path CellWriter::finish(const Outcome& outcome, const std::map<std::string, double>& summary) {
   const fs::path part = part_folder(dir_, cell_name(header_));
   write_raw(part / "outcome.raw", outcome_json(outcome, summary), {});
-  if (!kWithHdf5) return part;
+  if (finish_ == Finish::Raw) return part;
   const fs::path file = write_finished(dir_, read_part(part));
   fs::remove_all(part);
   return file;
@@ -130,7 +133,7 @@ CellRecord read_cell(const fs::path& path) { return fs::is_directory(path) ? rea
 CellRecord read_cell_summary(const fs::path& path) { return fs::is_directory(path) ? read_part(path) : read_hdf5(path, false); }
 
 std::vector<fs::path> import_raw(const fs::path& dir_or_part) {
-  if (!kWithHdf5) throw Error("import: this build has no HDF5");
+  if (!kWithHdf5) throw Error("import: this build has no HDF5; run it on another machine");
   if (!fs::is_directory(dir_or_part)) throw Error(dir_or_part.string() + ": expected a study folder or a .part folder");
   std::vector<fs::path> parts, files;
   if (dir_or_part.extension() == ".part") parts.push_back(dir_or_part);

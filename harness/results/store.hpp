@@ -11,18 +11,22 @@ namespace clothbench {
 /// "<scene>__<solver>__<setting>", with characters outside [A-Za-z0-9._=-] replaced by '-'.
 std::string cell_name(const CellHeader&);
 
+/// What a cell ends as: one HDF5 file, or the raw files it was written to (all that a build without HDF5 can).
+enum class Finish { Hdf5, Raw };
+Finish best_finish();
+
 /// Writes one cell, crash-safe. Every finished trial is one raw file `<dir>/<cell>.part/trial-<k>.raw` (written under
 /// another name, fsync, rename), the accuracy pass one `accuracy.raw`. `finish` turns them into
-/// `<dir>/<cell>.h5` + `<cell>.xdmf` (tmp + fsync + rename) and removes the part folder; without HDF5 the part folder
+/// `<dir>/<cell>.h5` + `<cell>.xdmf` (tmp + fsync + rename) and removes the part folder; with Finish::Raw the part folder
 /// stays, with `outcome.raw` beside the trials. SIGKILL at any moment loses at most what has not been handed over.
 class CellWriter {
  public:
-  CellWriter(std::filesystem::path dir, CellHeader header);
+  CellWriter(std::filesystem::path dir, CellHeader header, Finish finish = best_finish());
   void write_trial(const TimedTrial&);
   void write_accuracy(const AccuracyPass&);
   /// What moved, one file `replay.raw`; known before the first frame, so a resumed run leaves it as it is.
   void write_replay(const std::vector<StoredGroup>&);
-  /// Returns the path of the finished file (the .h5, or the part folder without HDF5).
+  /// Returns the path of the finished file (the .h5, or the part folder with Finish::Raw).
   std::filesystem::path finish(const Outcome&, const std::map<std::string, double>& summary);
   /// What an interrupted run of the same cell left here (same scenario_sha256 and settings; anything else is an
   /// Error naming both): trials and accuracy pass, already valid.
@@ -31,6 +35,7 @@ class CellWriter {
  private:
   std::filesystem::path dir_;
   CellHeader header_;
+  Finish finish_;
 };
 
 /// True if `<dir>/<cell>.h5` (or, without HDF5, `outcome.raw` in its part folder) exists.
