@@ -1,11 +1,17 @@
-# Run at every build: cmake -D SOURCE_DIR= -D OUTPUT= -D COMPILER= -D BUILD_TYPE= -D VERSION= -P build_info.cmake
+# Run at every build: cmake -D SOURCE_DIR= -D OUTPUT= -D COMPILER= -D BUILD_TYPE= -D VERSION= -D GLSLC= -P build_info.cmake
 # The file is rewritten only when its content changes, so a commit costs one small compilation.
 execute_process(COMMAND git rev-parse HEAD WORKING_DIRECTORY ${SOURCE_DIR}
   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 execute_process(COMMAND git status --porcelain --untracked-files=no WORKING_DIRECTORY ${SOURCE_DIR}
   OUTPUT_VARIABLE changes OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-execute_process(COMMAND glslc --version OUTPUT_VARIABLE glslc ERROR_QUIET)
-string(REGEX REPLACE "\n.*" "" glslc "${glslc}")
+set(glslc "")
+if(GLSLC)
+  # Three lines: shaderc, its SPIRV-Tools and its glslang. Each shapes the code.
+  execute_process(COMMAND ${GLSLC} --version OUTPUT_VARIABLE glslc ERROR_QUIET)
+  string(REGEX REPLACE "\n\n.*" "" glslc "${glslc}")
+  string(STRIP "${glslc}" glslc)
+  string(REPLACE "\n" ", " glslc "${glslc}")
+endif()
 if(NOT commit)
   set(commit "unknown")
 endif()

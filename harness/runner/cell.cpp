@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "metrics/metric_pass.hpp"
 #include "runner/environment.hpp"
@@ -15,11 +16,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::atomic<bool> interrupted{false};
+std::atomic<bool> interrupted{false}, held{false};
+std::atomic<int> holds{0};
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 void stop_if_interrupted() {
+  while (held && !interrupted) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   if (interrupted) throw Error("interrupted; every finished trial is kept (continue with --resume)", ExitCode::Interrupted);
 }
 
@@ -59,6 +62,12 @@ std::optional<nlohmann::json> with_stage_times(const SolverEntry& entry, nlohman
 
 void request_interrupt() { interrupted = true; }
 bool interrupt_requested() { return interrupted; }
+void clear_interrupt() { interrupted = false; }
+void hold_runs(bool on) {
+  if (on && !held.exchange(true)) ++holds;
+  if (!on) held = false;
+}
+int times_held() { return holds; }
 
 Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protocol) : spec_(std::move(spec)), device_(device) {
   const Scene& scene = *spec_.scene;

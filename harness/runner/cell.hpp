@@ -34,6 +34,14 @@ struct TrialRules {
 /// Thrown between frames once the user pressed Ctrl-C (`request_interrupt`).
 void request_interrupt();
 bool interrupt_requested();
+/// Before another run in the same process.
+void clear_interrupt();
+
+/// While held, runs wait between frames: for a device whose activity is paused. Waits are never timed, and a trial that
+/// was held is run again, since its device went to sleep.
+void hold_runs(bool held);
+/// How often runs have been held so far.
+int times_held();
 
 /// A loaded solver and what has been measured of it.
 class Cell {

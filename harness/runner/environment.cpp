@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "runner/build_info.hpp"
+#include "runner/sensors.hpp"
 
 namespace clothbench {
 namespace {
@@ -25,12 +26,6 @@ std::string operating_system() {
   utsname u{};
   if (uname(&u) != 0) return "unknown";
   return std::string(u.sysname) + " " + u.release + " " + u.machine;
-}
-
-std::string clock_policy() {
-  std::ifstream in("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
-  std::string governor;
-  return in >> governor ? "cpu governor " + governor + ", gpu default" : "not readable";
 }
 
 }  // namespace
@@ -59,6 +54,7 @@ nlohmann::json describe_environment(const DeviceInfo& device, const std::string&
   e["api"] = device.api;
   e["gpu_is_software"] = device.is_software;
   e["gpu_properties"] = nlohmann::json::parse(device.properties_json, nullptr, false);
+  e["device_profile"] = e["gpu_properties"].value("device_profile", std::string("none"));
   e["cpu"] = cpu_model();
   e["cpu_threads"] = std::thread::hardware_concurrency();
   e["os"] = operating_system();
@@ -69,7 +65,8 @@ nlohmann::json describe_environment(const DeviceInfo& device, const std::string&
   e["git_commit"] = build_info::kGitCommit;
   e["git_dirty"] = build_info::kGitDirty;
   e["created"] = utc_now();
-  e["clock_policy"] = clock_policy();
+  e["sensors"] = read_sensors();
+  e["clock_policy"] = clock_policy(e["sensors"]);
   e["protocol"] = protocol;
   return e;
 }

@@ -5,6 +5,7 @@
 #include "runner/expect.hpp"
 #include "runner/reference.hpp"
 #include "runner/replay.hpp"
+#include "runner/sensors.hpp"
 
 namespace clothbench {
 namespace {
@@ -14,6 +15,7 @@ struct Running {
   std::unique_ptr<Cell> cell;
   std::unique_ptr<CellWriter> writer;
   CellRecord record;
+  nlohmann::json sensors;  ///< after its last trial, before the device cools down
 
   bool has_trial(int k) const {
     for (const TimedTrial& t : record.trials)
@@ -99,7 +101,13 @@ class GroupRun {
 
   void trial(Running& r, int k, const TrialRules& rules) {
     note(fmt::format("{}: trial {} of {}", r.name(), k + 1, plan_.rules.trials));
-    TimedTrial t = r.cell->run_trial(k, rules, r.frames());
+    TimedTrial t;
+    int before = 0;
+    do {
+      before = times_held();
+      t = r.cell->run_trial(k, rules, r.frames());
+    } while (times_held() != before && r.cell->alive());
+    r.sensors = read_sensors();
     if (t.frames() == 0) return;
     r.writer->write_trial(t);
     r.record.trials.push_back(std::move(t));
@@ -118,6 +126,8 @@ class GroupRun {
     else ++result_.cells_failed;
     r.record.outcome = outcome;
     std::map<std::string, double> summary = summarise(r.cell->spec(), r.cell->plan(), r.record);
+    summarise_sensors(r.record.header.environment.value("sensors", nlohmann::json::object()), "start", summary);
+    summarise_sensors(r.sensors.is_null() ? nlohmann::json::object() : r.sensors, "end", summary);
     Verdict verdict = judge(*r.cell->spec().scene, outcome, r.record.accuracy, summary);
     if (verdict.text == "kept") ++result_.expect_kept;
     if (verdict.text.starts_with("broken")) result_.expect_broken.push_back(r.name() + ": " + verdict.text);
