@@ -41,6 +41,9 @@ std::string Overrides::label() const {
 
 void DeviceFlags::add_to(CLI::App& app) {
   app.add_option("--device", options.index, "Vulkan device number (see `list devices`); default: the best present");
+  app.add_option("--device-profile", options.profile,
+                 "Stand in for a class of devices: adreno-like (32 KiB shared memory, groups of 256, no float atomics, "
+                 "64 dispatches a submission)");
   app.add_flag("--validate", options.validation, "Vulkan core and synchronization validation; any message fails the run");
   app.add_flag("--allow-no-device", allow_no_device, "Leave GPU solvers out where there is no Vulkan device");
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
@@ -17,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Case {
-  std::string solver, scene, sides, grid;
+  std::string solver, scene, sides, grid, profile;
 };
 
 std::vector<Case> cases() {
@@ -29,13 +30,16 @@ std::vector<Case> cases() {
       if (file.path().extension() != ".json" || folder == "schema" || folder == "studies" || folder == "assets") continue;
       for (const char* sides : {"single", "double-duplicated", "double"})
         for (const char* grid : {"[2,2]", "[9,7]", "[17,33]"})  // not multiples of any workgroup
-          all.push_back({e.info.name, relative.replace_extension().string(), sides, grid});
+          for (const char* profile : {"", "adreno-like"})
+            if (*profile == '\0' || (e.info.on_gpu && std::string(grid) == "[17,33]"))
+              all.push_back({e.info.name, relative.replace_extension().string(), sides, grid, profile});
     }
   return all;
 }
 
 std::string case_name(const ::testing::TestParamInfo<Case>& info) {
-  std::string name = info.param.solver + "_" + info.param.scene + "_" + info.param.sides + "_" + info.param.grid;
+  std::string name = info.param.solver + "_" + info.param.scene + "_" + info.param.sides + "_" + info.param.grid +
+                     (info.param.profile.empty() ? "" : "_" + info.param.profile);
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
   return name;
@@ -53,7 +57,7 @@ class Conformance : public ::testing::TestWithParam<Case> {
     scene_ = load_scene(c.scene, overrides);
     entry_ = &find_solver(c.solver);
     try {
-      solver_ = entry_->make(complete_settings(entry_->info, nlohmann::json::object()), {-1, true});
+      solver_ = entry_->make(complete_settings(entry_->info, nlohmann::json::object()), {-1, true, c.profile});
     } catch (const Error& e) {
       const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
       if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
@@ -97,6 +101,12 @@ TEST_P(Conformance, DoesWhatABackendMust) {
   ASSERT_EQ(start.velocity.size(), rest.size());
   for (std::size_t k = 0; k < rest.size(); ++k)
     EXPECT_NEAR(start.position[k], rest[k], 1e-6 * scene_.cloth.width_m) << "the cloth starts where the scene puts it";
+
+  if (!GetParam().profile.empty()) {
+    const DeviceInfo device = solver_->device();
+    EXPECT_NE(device.name.find(GetParam().profile), std::string::npos) << "no result passes for the device's own";
+    EXPECT_EQ(nlohmann::json::parse(device.properties_json).at("device_profile"), GetParam().profile);
+  }
 
   run(6);
   solver_->read_state(once);

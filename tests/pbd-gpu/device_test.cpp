@@ -100,6 +100,12 @@ TEST_F(Gpu, ListIsNotEmptyAndBadIndexIsNoDevice) {
   EXPECT_GE(properties["limits"]["maxComputeWorkGroupCount"][0], 65535);
   EXPECT_GT(properties["limits"]["timestampPeriod"], 0);
   EXPECT_FALSE(properties["memory_heaps"].empty());
+  EXPECT_EQ(properties["features"].size(), 55u + 7) << "every feature of Vulkan 1.0, and those chained";
+  EXPECT_EQ(properties["features"]["shaderBufferFloat32AtomicAdd"], device_->has_float_atomics());
+  EXPECT_EQ(properties["device_uuid"].get<std::string>().size(), 32u);
+  EXPECT_EQ(properties["extensions"].size(), properties["extension_versions"].size());
+  EXPECT_GT(properties["queue_families"][0]["count"], 0);
+  EXPECT_FALSE(properties["memory_types"].empty());
   try {
     vulkan::Device::get({1000, false});
     ADD_FAILURE();

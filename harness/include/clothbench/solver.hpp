@@ -95,6 +95,9 @@ struct ClothState {
 struct DeviceOptions {
   int index = -1;           ///< -1: best present
   bool validation = false;  ///< Vulkan core + synchronization validation; any message makes the run fail
+  /// A class of devices to stand in for, such as "adreno-like": less memory, smaller groups, shorter submissions.
+  /// Empty: $CLOTHBENCH_DEVICE_PROFILE, else the device as it is.
+  std::string profile = "";
 };
 
 /// A cloth backend. Life: construct -> load -> (reset -> step...)*. Never sees a metric, a clock or a file.

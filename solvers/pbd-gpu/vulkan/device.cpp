@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <map>
 #include <mutex>
+#include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "vulkan/device_info.hpp"
 
@@ -54,6 +57,11 @@ bool layer_present(const char* name) {
   return std::any_of(layers.begin(), layers.end(), [&](const auto& l) { return std::strcmp(l.layerName, name) == 0; });
 }
 
+std::string profile_name(const DeviceOptions& options) {
+  const char* from_environment = std::getenv("CLOTHBENCH_DEVICE_PROFILE");
+  return !options.profile.empty() ? options.profile : from_environment != nullptr ? from_environment : "";
+}
+
 VkApplicationInfo application() {
   VkApplicationInfo app{};
   app.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
@@ -74,9 +82,9 @@ void check(VkResult result, const char* call) {
 
 std::shared_ptr<Device> Device::get(const DeviceOptions& options) {
   static std::mutex mutex;
-  static std::map<std::pair<int, bool>, std::weak_ptr<Device>> cache;
+  static std::map<std::tuple<int, bool, std::string>, std::weak_ptr<Device>> cache;
   const std::lock_guard lock(mutex);
-  auto& slot = cache[{options.index, options.validation}];
+  auto& slot = cache[{options.index, options.validation, profile_name(options)}];
   if (auto device = slot.lock(); device && !device->lost()) return device;
   std::shared_ptr<Device> device(new Device(options));
   slot = device;
@@ -100,6 +108,7 @@ Device::Device(const DeviceOptions& options) {
   try {
     create_instance(options.validation);
     choose_physical(options.index);
+    apply_profile(profile_name(options));
     create_device();
   } catch (...) {
     release();
@@ -170,6 +179,16 @@ void Device::choose_physical(int index) {
   vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
 }
 
+void Device::apply_profile(const std::string& name) {
+  if (name.empty()) return;
+  profile_ = &find_profile(name);
+  VkPhysicalDeviceLimits& l = properties_.limits;
+  l.maxComputeSharedMemorySize = std::min(l.maxComputeSharedMemorySize, profile_->shared_memory_B);
+  l.maxComputeWorkGroupInvocations = std::min(l.maxComputeWorkGroupInvocations, profile_->group_invocations);
+  l.maxComputeWorkGroupSize[0] = std::min(l.maxComputeWorkGroupSize[0], profile_->group_invocations);
+  l.maxComputeWorkGroupSize[1] = l.maxComputeWorkGroupSize[2] = 1;
+}
+
 void Device::create_device() {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, nullptr);
@@ -195,7 +214,8 @@ void Device::create_device() {
   atomics.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_FEATURES_EXT;
   const char* atomic_extension = VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME;
   const auto names = extensions(physical_);
-  if (std::find(names.begin(), names.end(), atomic_extension) != names.end()) {
+  const bool may_use_atomics = profile_ == nullptr || profile_->float_atomics;
+  if (may_use_atomics && std::find(names.begin(), names.end(), atomic_extension) != names.end()) {
     VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &atomics, {}};
     vkGetPhysicalDeviceFeatures2(physical_, &features);
     float_atomics_ = atomics.shaderBufferFloat32AtomicAdd == VK_TRUE;
@@ -238,7 +258,17 @@ void Device::release() {
   if (instance_ != VK_NULL_HANDLE) vkDestroyInstance(instance_, nullptr);
 }
 
-DeviceInfo Device::info() const { return describe(physical_); }
+DeviceInfo Device::info() const {
+  DeviceInfo info = describe(physical_);
+  if (profile_ == nullptr) return info;
+  // A result under a profile must never pass for one of the device itself.
+  info.name += " [" + profile_->name + "]";
+  nlohmann::json j = nlohmann::json::parse(info.properties_json);
+  j["device_profile"] = profile_->name;
+  j["limits_under_profile"] = limits_json(properties_.limits);
+  info.properties_json = j.dump();
+  return info;
+}
 
 std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const {
   for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)

@@ -9,6 +9,7 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
+#include "vulkan/profile.hpp"
 
 namespace clothbench::vulkan {
 
@@ -26,7 +27,7 @@ class Failure : public Error {
 void check(VkResult result, const char* call);
 
 /// Instance, device and its one compute queue (Vulkan 1.1 core, no required extension). One a process for each
-/// (index, validation), shared by all solvers.
+/// (index, validation, profile), shared by all solvers.
 class Device {
  public:
   /// The device `options.index`, or the best present: discrete, integrated, virtual, then CPU. Throws Error with
@@ -42,7 +43,10 @@ class Device {
   VkQueue queue() const { return queue_; }
   VkCommandPool command_pool() const { return pool_; }
   VkPipelineCache pipeline_cache() const { return cache_; }
+  /// Of the device, cut down to the profile where there is one.
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
+  const Profile* profile() const { return profile_; }  ///< null: the device as it is
+  std::uint32_t dispatches_per_submit() const { return profile_ != nullptr ? profile_->dispatches_per_submit : ~0u; }
   bool has_float_atomics() const { return float_atomics_; }  ///< VK_EXT_shader_atomic_float, buffer float32 add
   bool is_software() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   DeviceInfo info() const;
@@ -67,11 +71,13 @@ class Device {
 
  private:
   explicit Device(const DeviceOptions& options);
+  void apply_profile(const std::string& name);
   void create_instance(bool validation);
   void choose_physical(int index);
   void create_device();
   void release();
 
+  const Profile* profile_ = nullptr;
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;

@@ -14,6 +14,9 @@ Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std
     if (b.buffer->bytes() > device_->limits().maxStorageBufferRange)
       throw Error(fmt::format("{}: buffer \"{}\" of {} B is larger than this device binds ({} B)", name_,
                               b.buffer->name(), b.buffer->bytes(), device_->limits().maxStorageBufferRange));
+  if (const Profile* profile = device_->profile())
+    if (const std::string why = breach(*profile, needs_of(code_, specialization)); !why.empty())
+      throw Error(fmt::format("kernel {}: does not run under device profile {}: {}", name_, profile->name, why));
   create_layout(push_bytes);
   create_set();
   create_pipeline(specialization);

@@ -16,11 +16,6 @@ struct Binding {
   Access access;
 };
 
-struct SpirV {
-  const std::uint32_t* words;
-  std::size_t bytes;
-};
-
 /// One compute pipeline with its buffers bound: binding k of set 0 is bindings[k].
 class Kernel {
  public:

@@ -19,12 +19,6 @@ constexpr VkAccessFlags kAll = kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_T
 }  // namespace
 
 Program::Program(std::shared_ptr<Device> device) : device_(std::move(device)) {
-  VkCommandBufferAllocateInfo allocate{};
-  allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  allocate.commandPool = device_->command_pool();
-  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  allocate.commandBufferCount = 1;
-  check(vkAllocateCommandBuffers(device_->handle(), &allocate, &commands_), "vkAllocateCommandBuffers");
   VkFenceCreateInfo fence{};
   fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
   check(vkCreateFence(device_->handle(), &fence, nullptr, &fence_), "vkCreateFence");
@@ -35,7 +29,9 @@ Program::~Program() {
   vkDeviceWaitIdle(device_->handle());
   vkDestroyQueryPool(device_->handle(), queries_, nullptr);
   vkDestroyFence(device_->handle(), fence_, nullptr);
-  vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands_);
+  if (!buffers_.empty())
+    vkFreeCommandBuffers(device_->handle(), device_->command_pool(), static_cast<std::uint32_t>(buffers_.size()),
+                         buffers_.data());
 }
 
 Program::Touched Program::touched(const Step& s) {
@@ -79,9 +75,31 @@ void Program::timestamp(std::uint32_t query) {
   if (query_count_ > 0) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, query);
 }
 
+/// Starts the next submission's command buffer. Submissions to one queue run in order and barriers reach over them, so
+/// a split changes nothing else.
+void Program::begin() {
+  if (submits_.size() == buffers_.size()) {
+    VkCommandBufferAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    allocate.commandPool = device_->command_pool();
+    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    allocate.commandBufferCount = 1;
+    VkCommandBuffer next = VK_NULL_HANDLE;
+    check(vkAllocateCommandBuffers(device_->handle(), &allocate, &next), "vkAllocateCommandBuffers");
+    buffers_.push_back(next);
+  }
+  commands_ = buffers_[submits_.size()];
+  submits_.push_back(0);
+  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");
+  VkCommandBufferBeginInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
+}
+
 void Program::record(bool time_stages) {
   time_stages_ = time_stages;
   recorded_.clear();
+  submits_.clear();
   vkDestroyQueryPool(device_->handle(), queries_, nullptr);
   queries_ = VK_NULL_HANDLE;
   query_count_ = !device_->has_timestamps() ? 0 : time_stages ? static_cast<std::uint32_t>(steps_.size()) + 1 : 2;
@@ -92,10 +110,7 @@ void Program::record(bool time_stages) {
     info.queryCount = query_count_;
     check(vkCreateQueryPool(device_->handle(), &info, nullptr, &queries_), "vkCreateQueryPool");
   }
-  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");
-  VkCommandBufferBeginInfo begin{};
-  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  begin();
   if (query_count_ > 0) vkCmdResetQueryPool(commands_, queries_, 0, query_count_);
   // What earlier submissions wrote or read, before anything here reads or writes it. What the host wrote is visible to
   // every submission after it.
@@ -105,12 +120,18 @@ void Program::record(bool time_stages) {
   const Kernel* bound = nullptr;
   for (std::uint32_t k = 0; k < steps_.size(); ++k) {
     const Step& s = steps_[k];
+    if (s.kernel != nullptr && submits_.back() == device_->dispatches_per_submit()) {
+      end();
+      begin();
+      bound = nullptr;
+    }
     barrier_if_needed(touched(s), since);
     if (s.kernel != nullptr) {
       if (bound != s.kernel) s.kernel->bind(commands_);
       bound = s.kernel;
       s.kernel->push(commands_, s.constants);
       vkCmdDispatch(commands_, s.groups.x, s.groups.y, 1);
+      ++submits_.back();
     } else {
       const VkBufferCopy region{0, 0, std::min(s.from->bytes(), s.to->bytes())};
       vkCmdCopyBuffer(commands_, s.from->handle(), s.to->handle(), 1, &region);
@@ -126,7 +147,7 @@ void Program::record(bool time_stages) {
                        [](const Buffer* b) { return b->place() == Buffer::Place::Host; });
   });
   if (for_host) barrier(kWork, VK_PIPELINE_STAGE_HOST_BIT, kWrites, VK_ACCESS_HOST_READ_BIT);
-  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+  end();
 }
 
 void Program::wait(double patience_s) {
@@ -138,11 +159,15 @@ void Program::wait(double patience_s) {
 
 void Program::run(double patience_s) {
   if (in_flight_) wait(patience_s);
-  VkSubmitInfo submit{};
-  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &commands_;
-  check(vkQueueSubmit(device_->queue(), 1, &submit, fence_), "vkQueueSubmit");
+  for (std::size_t k = 0; k < submits_.size(); ++k) {
+    VkSubmitInfo submit{};
+    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &buffers_[k];
+    // The last submission's fence waits for all before it too.
+    const bool last = k + 1 == submits_.size();
+    check(vkQueueSubmit(device_->queue(), 1, &submit, last ? fence_ : VK_NULL_HANDLE), "vkQueueSubmit");
+  }
   in_flight_ = true;
   wait(patience_s);
   if (query_count_ == 0) return;

@@ -33,6 +33,9 @@ class Program {
   /// `patience_s`, VK_ERROR_DEVICE_LOST, ...).
   void run(double patience_s);
 
+  /// Dispatches in each submission: one, or as many as the device profile's dispatches_per_submit asks for.
+  const std::vector<std::uint32_t>& submits() const { return submits_; }
+
   double device_s() const;                        ///< first to last timestamp of the last run; NaN without timestamps
   std::vector<double> stage_s(int stages) const;  ///< summed by stage; NaN unless recorded with time_stages
   int dispatches(int stage) const;
@@ -65,10 +68,14 @@ class Program {
   void barrier_if_needed(const Touched& next, Touched& since);
   void wait(double patience_s);
   void timestamp(std::uint32_t query);
+  void begin();
+  void end() { check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer"); }
 
   std::shared_ptr<Device> device_;
   std::vector<Step> steps_;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;  ///< being recorded; one of:
+  std::vector<VkCommandBuffer> buffers_;       ///< one a submission, kept from record to record
+  std::vector<std::uint32_t> submits_;
   VkFence fence_ = VK_NULL_HANDLE;
   VkQueryPool queries_ = VK_NULL_HANDLE;
   std::uint32_t query_count_ = 0;
