@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what clothbench needs from Debian 12, and only what is missing. Sourced or run by run.sh and test.sh.
-#   scripts/bootstrap.sh [--tests]     --tests: also what only the tests use
+#   scripts/bootstrap.sh [--tests] [--arm64]     --tests: also what only the tests use
+#                                                --arm64: also the cross build and the packaging of the APK
 set -euo pipefail
 
 packages=(g++ cmake ninja-build ccache
@@ -8,9 +9,16 @@ packages=(g++ cmake ninja-build ccache
           libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libvalijson-dev libhdf5-dev libcli11-dev
           libfmt-dev libboost-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev
           python3-h5py python3-matplotlib git)
-if [ "${1:-}" = --tests ]; then
-  packages+=(libgtest-dev vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf python3-paraview)
-fi
+for argument in "$@"; do
+  case $argument in
+    --tests) packages+=(libgtest-dev vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf
+                        python3-paraview) ;;
+    --arm64) packages+=(g++-aarch64-linux-gnu qemu-user-static aapt zipalign apksigner android-framework-res
+                        default-jre-headless android-platform-frameworks-native-headers android-liblog-dev
+                        android-libnativehelper-dev) ;;
+    *) echo "set-up: $argument: expected --tests or --arm64" >&2; exit 2 ;;
+  esac
+done
 
 missing=()
 for package in "${packages[@]}"; do

@@ -63,7 +63,9 @@ void add_context(const CellPlan& plan, const DeviceFlags& flags) {
 
 void add_bench(CLI::App& app, Console& console) {
   static DeviceFlags flags;
-  static std::string study_name = "table3";
+  static std::string study_name;
+  flags = {};
+  study_name = "table3";
   CLI::App* cmd = app.add_subcommand("bench", "The cells of a study under Google Benchmark; takes its --benchmark_… flags");
   cmd->add_option("--study", study_name, "Study")->capture_default_str();
   flags.add_to(*cmd);

@@ -78,6 +78,7 @@ void check(const Arguments& a, const std::vector<CellRecord>& cells, Console& co
 
 void add_check(CLI::App& app, Console& console) {
   static Arguments a;
+  a = {};
   CLI::App* cmd = app.add_subcommand(
       "check", "Hold results to a baseline: outcome, stages, dispatches, error, penetration; never times");
   cmd->add_option("runs", a.runs, "Study folders or result files")->required();

@@ -7,6 +7,7 @@ namespace clothbench {
 
 void add_import(CLI::App& app, Console& console) {
   static std::vector<std::string> folders;
+  folders = {};
   CLI::App* cmd = app.add_subcommand("import", "Turn raw run files (a device without HDF5, an interrupted run) into HDF5 files");
   cmd->add_option("folder", folders, "Study folders or part folders")->required();
   cmd->callback([&console] {

@@ -92,7 +92,8 @@ void print_rows(const nlohmann::json& rows) {
 }  // namespace
 
 void add_list(CLI::App& app, Console& console) {
-  static std::string what = "solvers";
+  static std::string what;
+  what = "solvers";
   CLI::App* cmd = app.add_subcommand("list", "What there is: solvers, features, scenarios, studies, devices, metrics or assets");
   cmd->add_option("what", what, "solvers | features | scenarios | studies | devices | metrics | assets")
       ->check(CLI::IsMember({"solvers", "features", "scenarios", "studies", "devices", "metrics", "assets"}));

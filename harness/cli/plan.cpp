@@ -62,6 +62,7 @@ void print(const nlohmann::json& p) {
 
 void add_plan(CLI::App& app, Console& console) {
   static Arguments a;
+  a = {};
   CLI::App* cmd = app.add_subcommand("plan", "What a solver would run for a scene: kernels, dispatches, buffers, bytes, and what it leaves out");
   cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
   cmd->add_option("--solver", a.solvers, "Solvers; default: all");

@@ -7,7 +7,9 @@ namespace clothbench {
 
 void add_report(CLI::App& app, Console& console) {
   static std::vector<std::string> runs;
-  static std::string out = "report";
+  static std::string out;
+  runs = {};
+  out = "report";
   CLI::App* cmd = app.add_subcommand("report", "Tables (Markdown, CSV, JSON) and figures (SVG, PNG) from result files");
   cmd->add_option("runs", runs, "Study folders or result files")->required();
   cmd->add_option("-o,--out", out, "Folder to write to")->capture_default_str();

@@ -13,7 +13,7 @@ struct Arguments {
   std::vector<std::string> scenes, solvers, set;
   std::string out;
   int trials = 1;
-  bool require_assets = false;
+  bool require_assets = false, resume = false;
   DeviceFlags device;
 };
 
@@ -21,6 +21,7 @@ struct Arguments {
 
 void add_run(CLI::App& app, Console& console) {
   static Arguments a;
+  a = {};
   CLI::App* cmd = app.add_subcommand("run", "Run scenes with solvers: one accuracy pass over the whole scene, then timed trials");
   cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
   cmd->add_option("--solver", a.solvers, "Solvers (default xpbd)");
@@ -28,9 +29,11 @@ void add_run(CLI::App& app, Console& console) {
   cmd->add_option("--trials", a.trials, "Timed trials")->check(CLI::Range(0, 1000))->capture_default_str();
   cmd->add_option("--out", a.out, "Folder for the result files; default results/runs/run-<UTC>");
   add_require_assets(*cmd, a.require_assets);
+  cmd->add_flag("--resume", a.resume, "Go on with the folder of an interrupted run");
   a.device.add_to(*cmd);
   cmd->footer("Example: clothbench run paper/gravity --solver paper --set cloth.grid=[64,64] --set solver.iterations=20");
   cmd->callback([&console] {
+    if (a.resume && a.out.empty()) throw Error("--resume: say which folder with --out");
     const Overrides overrides = split_overrides(a.set);
     if (a.solvers.empty()) a.solvers = {"xpbd"};
     std::vector<Scene> scenes;
@@ -51,7 +54,7 @@ void add_run(CLI::App& app, Console& console) {
     }
     StudyManifest manifest;
     manifest.study = "run";
-    run_and_tell(plan, manifest, {a.out, false, a.device}, console);
+    run_and_tell(plan, manifest, {a.out, a.resume, a.device}, console);
   });
 }
 

@@ -56,6 +56,7 @@ CellPlan plan_study(const Study& study) {
 
 void add_study(CLI::App& app, Console& console) {
   static Arguments a;
+  a = {};
   CLI::App* cmd = app.add_subcommand("study", "Run every cell of a study");
   cmd->add_option("study", a.study, "Study file or name, such as table3")->required();
   CLI::Option* quick = cmd->add_flag("--quick", a.quick,

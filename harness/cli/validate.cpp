@@ -8,6 +8,7 @@ namespace clothbench {
 
 void add_validate(CLI::App& app, Console& console) {
   static std::vector<std::string> files;
+  files = {};
   CLI::App* cmd = app.add_subcommand("validate", "Check scenario and study files");
   cmd->add_option("file", files, "Files or names")->required();
   cmd->callback([&console] {

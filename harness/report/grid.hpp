@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "clothbench/record.hpp"
@@ -24,7 +25,11 @@ struct Series {
   std::string solver, setting, sides;
   int repeat = 1;  ///< 2, 3, ... where several files hold the same cell
   std::string label() const;
-  auto operator<=>(const Series&) const = default;
+  bool operator==(const Series&) const = default;
+  // Not <=>: strings have none yet in the libc++ of Android's NDK r25.
+  bool operator<(const Series& o) const {
+    return std::tie(solver, setting, sides, repeat) < std::tie(o.solver, o.setting, o.sides, o.repeat);
+  }
 };
 
 /// A cell and where it stands. Points into the vector it was made from.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 
 #include "clothbench/error.hpp"
 #include "report/features.hpp"
@@ -132,12 +131,7 @@ bool any_known(const std::vector<SolverFeatures>& solvers) {
 
 }  // namespace
 
-nlohmann::json published_table3() {
-  const fs::path file = fs::path(kResultsRoot) / "paper-table3.json";
-  std::ifstream in(file);
-  if (!in) throw Error(file.string() + ": cannot be opened");
-  return nlohmann::json::parse(in);
-}
+nlohmann::json published_table3() { return nlohmann::json::parse(kPublishedTable3); }
 
 void write_report(const std::vector<fs::path>& runs, const ReportOptions& options) {
   const std::vector<CellRecord> cells = collect(runs);

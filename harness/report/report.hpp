@@ -18,7 +18,7 @@ struct ReportOptions {
 /// rows with status "missing". Throws Error naming the file that cannot be read.
 std::vector<CellRecord> collect(const std::vector<std::filesystem::path>& runs);
 
-/// results/paper-table3.json. Throws Error naming the file.
+/// results/paper-table3.json, as it was when this was built.
 nlohmann::json published_table3();
 
 /// Tables of one scene at its resolutions; pure functions of the cells. Where the scene is the paper's Table 3 the

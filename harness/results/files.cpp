@@ -43,7 +43,9 @@ void publish(const std::filesystem::path& temporary, const std::filesystem::path
   if (std::rename(temporary.c_str(), path.c_str()) != 0) fail(path, "cannot be renamed into place");
   const auto folder = path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
   const Descriptor dir(folder, O_RDONLY | O_DIRECTORY);
-  if (dir.get() < 0 || fsync(dir.get()) != 0) fail(folder, "cannot be synced");
+  if (dir.get() < 0) fail(folder, "cannot be opened");
+  // Some file systems, a phone's shared storage among them, do not sync folders.
+  if (fsync(dir.get()) != 0 && errno != EINVAL && errno != ENOTSUP) fail(folder, "cannot be synced");
 }
 
 void write_file_atomically(const std::filesystem::path& path, const std::string& content) {

@@ -1,0 +1,20 @@
+# Toolchain file: arm64 Linux with Debian's cross compiler, run under qemu-user. A stand-in for a headset, so that the
+# same sources and the same arm64 code are tested where there is none.
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+# Unpacked by scripts/fetch-arm64-root.sh.
+set(CLOTHBENCH_ARM64_ROOT "${CMAKE_CURRENT_LIST_DIR}/../../build/arm64-root" CACHE PATH "Debian's arm64 packages, unpacked")
+get_filename_component(CLOTHBENCH_ARM64_ROOT "${CLOTHBENCH_ARM64_ROOT}" ABSOLUTE)
+set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CLOTHBENCH_ARM64_ROOT)
+set(CMAKE_FIND_ROOT_PATH ${CLOTHBENCH_ARM64_ROOT})
+set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+set(arm64_libraries ${CLOTHBENCH_ARM64_ROOT}/usr/lib/aarch64-linux-gnu)
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,-rpath-link,${arm64_libraries} -Wl,-z,max-page-size=16384")
+set(CMAKE_SHARED_LINKER_FLAGS_INIT "-Wl,-rpath-link,${arm64_libraries} -Wl,-z,max-page-size=16384")
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64-static;-L;${CLOTHBENCH_ARM64_ROOT})

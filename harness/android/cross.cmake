@@ -1,0 +1,53 @@
+# Included when the build is for another machine: where its packages come from.
+#
+# Header-only packages are the build machine's own, linked one by one into a folder, because its whole include folder
+# would bring in the wrong C library. Compiled ones belong to the target: Vulkan to the NDK or to CMAKE_FIND_ROOT_PATH,
+# Bullet to CLOTHBENCH_BULLET_SOURCE or CMAKE_FIND_ROOT_PATH. HDF5 and Google Benchmark are not used on a device.
+set(CLOTHBENCH_HEADERS /usr/include CACHE PATH "Where the header-only packages lie (CLI, boost, eigen3, fmt, nlohmann, valijson, tiny_gltf.h)")
+set(CLOTHBENCH_BULLET_SOURCE "" CACHE PATH "Bullet's source tree, built with the solver; empty: look for libraries")
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+set(staged ${CMAKE_BINARY_DIR}/headers)
+file(MAKE_DIRECTORY ${staged})
+function(clothbench_header_link name)
+  if(NOT EXISTS ${CLOTHBENCH_HEADERS}/${name})
+    message(FATAL_ERROR "CLOTHBENCH_HEADERS=${CLOTHBENCH_HEADERS}: no ${name} (Debian: scripts/bootstrap.sh)")
+  endif()
+  file(CREATE_LINK ${CLOTHBENCH_HEADERS}/${name} ${staged}/${name} SYMBOLIC)
+endfunction()
+# clothbench_header_package(<package> <target> <folder to link> <include folder below the links> [definitions])
+function(clothbench_header_package package target folder include)
+  clothbench_header_link(${folder})
+  # Every later find_package(<package>) finds this file first.
+  file(WRITE ${CMAKE_FIND_PACKAGE_REDIRECTS_DIR}/${package}Config.cmake "
+if(NOT TARGET ${target})
+  add_library(${target} INTERFACE IMPORTED)
+  set_target_properties(${target} PROPERTIES INTERFACE_INCLUDE_DIRECTORIES \"${staged}/${include}\"
+    INTERFACE_COMPILE_DEFINITIONS \"${ARGN}\")
+endif()
+set(${package}_FOUND TRUE)
+")
+  # The build machine's own set-up sees to versions.
+  file(WRITE ${CMAKE_FIND_PACKAGE_REDIRECTS_DIR}/${package}ConfigVersion.cmake "set(PACKAGE_VERSION_COMPATIBLE TRUE)\n")
+endfunction()
+clothbench_header_package(nlohmann_json nlohmann_json::nlohmann_json nlohmann .)
+# Compiled where the target has it: its code in every source costs a third of the compile time.
+find_library(CLOTHBENCH_FMT_LIBRARY fmt)
+if(CLOTHBENCH_FMT_LIBRARY)
+  clothbench_header_package(fmt fmt::fmt fmt .)
+  file(APPEND ${CMAKE_FIND_PACKAGE_REDIRECTS_DIR}/fmtConfig.cmake
+    "set_target_properties(fmt::fmt PROPERTIES INTERFACE_LINK_LIBRARIES ${CLOTHBENCH_FMT_LIBRARY})\n")
+else()
+  clothbench_header_package(fmt fmt::fmt fmt . FMT_HEADER_ONLY=1)
+endif()
+clothbench_header_package(CLI11 CLI11::CLI11 CLI .)
+clothbench_header_package(valijson valijson valijson . VALIJSON_USE_EXCEPTIONS=1)
+clothbench_header_package(Eigen3 Eigen3::Eigen eigen3 eigen3)
+clothbench_header_package(Boost Boost::headers boost .)
+clothbench_header_link(tiny_gltf.h)
+set(CLOTHBENCH_TINYGLTF_INCLUDE ${staged} CACHE PATH "" FORCE)
+
+if(ANDROID AND NOT CLOTHBENCH_BULLET_SOURCE AND CLOTHBENCH_WITH_BULLET_BASELINE)
+  message(STATUS "bullet-baseline is left out: give Bullet's source tree with -DCLOTHBENCH_BULLET_SOURCE=…")
+  set(CLOTHBENCH_WITH_BULLET_BASELINE OFF)
+endif()

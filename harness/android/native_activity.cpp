@@ -1,0 +1,150 @@
+// The activity as Android calls it: own ANativeActivity callbacks around a Session; nothing is drawn. Everything that can
+// be tested without Android lies in session, packed_assets and stdout_tap.
+#include <android/asset_manager.h>
+#include <android/input.h>
+#include <android/log.h>
+#include <android/looper.h>
+#include <android/native_activity.h>
+#include <android/window.h>
+#include <jni.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <exception>
+#include <mutex>
+
+#include "android/packed_assets.hpp"
+#include "android/session.hpp"
+#include "android/stdout_tap.hpp"
+#include "cli/command_line.hpp"
+
+namespace clothbench::android {
+namespace {
+
+constexpr const char* kTag = "clothbench";
+
+void to_log(const std::string& line) { __android_log_write(ANDROID_LOG_INFO, kTag, line.c_str()); }
+
+StdoutTap& tap() {
+  static StdoutTap the_tap(to_log);
+  return the_tap;
+}
+
+/// The activity behind a session; null once destroyed.
+class ActivitySystem final : public System {
+ public:
+  explicit ActivitySystem(ANativeActivity* activity) : activity_(activity) {}
+  void log(const std::string& line) override { to_log(line); }
+  void flush() override { tap().flush(); }
+  void finish() override {
+    const std::lock_guard lock(mutex_);
+    if (activity_ != nullptr) ANativeActivity_finish(activity_);
+  }
+  void forget() {
+    const std::lock_guard lock(mutex_);
+    activity_ = nullptr;
+  }
+
+ private:
+  std::mutex mutex_;
+  ANativeActivity* activity_;
+};
+
+struct Instance {
+  std::shared_ptr<ActivitySystem> system;
+  std::unique_ptr<Session> session;
+};
+
+Instance* instance_of(ANativeActivity* a) { return static_cast<Instance*>(a->instance); }
+
+/// getIntent().getStringExtra(name); empty if there is none.
+std::string intent_extra(ANativeActivity* a, const char* name) {
+  JNIEnv* env = a->env;
+  const jmethodID get_intent = env->GetMethodID(env->GetObjectClass(a->clazz), "getIntent", "()Landroid/content/Intent;");
+  jobject intent = env->CallObjectMethod(a->clazz, get_intent);
+  if (intent == nullptr) return "";
+  const jmethodID get_extra =
+      env->GetMethodID(env->GetObjectClass(intent), "getStringExtra", "(Ljava/lang/String;)Ljava/lang/String;");
+  const auto value = static_cast<jstring>(env->CallObjectMethod(intent, get_extra, env->NewStringUTF(name)));
+  if (value == nullptr) return "";
+  const char* text = env->GetStringUTFChars(value, nullptr);
+  std::string result = text != nullptr ? text : "";
+  env->ReleaseStringUTFChars(value, text);
+  return result;
+}
+
+std::optional<std::string> read_asset(AAssetManager* manager, const std::string& path) {
+  AAsset* asset = AAssetManager_open(manager, path.c_str(), AASSET_MODE_STREAMING);
+  if (asset == nullptr) return std::nullopt;
+  std::string content(static_cast<std::size_t>(AAsset_getLength64(asset)), '\0');
+  std::size_t at = 0;
+  while (at < content.size()) {
+    const int n = AAsset_read(asset, content.data() + at, content.size() - at);
+    if (n <= 0) break;
+    at += static_cast<std::size_t>(n);
+  }
+  AAsset_close(asset);
+  content.resize(at);
+  return content;
+}
+
+/// Scenes and assets become plain files; results go, and relative paths lead, to the files folder.
+void prepare(ANativeActivity* a, const std::string& files) {
+  const std::filesystem::path packed = std::filesystem::path(a->internalDataPath) / "packed";
+  unpack_assets([a](const std::string& path) { return read_asset(a->assetManager, path); }, packed);
+  setenv("CLOTHBENCH_SCENARIOS", (packed / "scenarios").c_str(), 1);
+  if (std::filesystem::exists(packed / "assets")) setenv("CLOTHBENCH_ASSETS", (packed / "assets").c_str(), 1);
+  std::filesystem::create_directories(files);
+  if (chdir(files.c_str()) != 0) to_log("cannot change to " + files);
+}
+
+/// Input that nobody takes would make the system call the activity hung.
+int drain_input(int, int, void* queue) {
+  AInputEvent* event = nullptr;
+  while (AInputQueue_getEvent(static_cast<AInputQueue*>(queue), &event) >= 0) {
+    if (AInputQueue_preDispatchEvent(static_cast<AInputQueue*>(queue), event) == 0)
+      AInputQueue_finishEvent(static_cast<AInputQueue*>(queue), event, 0);
+  }
+  return 1;
+}
+
+void set_callbacks(ANativeActivityCallbacks& c) {
+  c.onPause = [](ANativeActivity* a) { instance_of(a)->session->pause(); };
+  c.onResume = [](ANativeActivity* a) { instance_of(a)->session->resume(); };
+  c.onLowMemory = [](ANativeActivity* a) { instance_of(a)->session->low_memory(); };
+  c.onDestroy = [](ANativeActivity* a) {
+    Instance* instance = instance_of(a);
+    instance->system->forget();
+    instance->session->destroy();
+    delete instance;
+    a->instance = nullptr;
+  };
+  c.onInputQueueCreated = [](ANativeActivity*, AInputQueue* queue) {
+    AInputQueue_attachLooper(queue, ALooper_forThread(), ALOOPER_POLL_CALLBACK, drain_input, queue);
+  };
+  c.onInputQueueDestroyed = [](ANativeActivity*, AInputQueue* queue) { AInputQueue_detachLooper(queue); };
+}
+
+}  // namespace
+}  // namespace clothbench::android
+
+extern "C" __attribute__((visibility("default"))) void ANativeActivity_onCreate(ANativeActivity* activity, void*, size_t) {
+  using namespace clothbench;
+  using namespace clothbench::android;
+  const char* external = activity->externalDataPath;
+  const std::string files = external != nullptr && *external != '\0' ? external : activity->internalDataPath;
+  auto* instance = new Instance;
+  instance->system = std::make_shared<ActivitySystem>(activity);
+  activity->instance = instance;
+  Command command = run_command_line;
+  try {
+    tap();
+    prepare(activity, files);
+  } catch (const std::exception& e) {
+    to_log(std::string("error: ") + e.what());
+    command = [](const std::vector<std::string>&) { return 1; };
+  }
+  ANativeActivity_setWindowFlags(activity, AWINDOW_FLAG_KEEP_SCREEN_ON, 0);
+  instance->session = std::make_unique<Session>(Launch{files, intent_extra(activity, "args")}, instance->system, command);
+  set_callbacks(*activity->callbacks);
+}

@@ -1,0 +1,127 @@
+#include "android/packed_assets.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "clothbench/error.hpp"
+#include "scenario/load.hpp"
+#include "scenario/sha256.hpp"
+#include "scenario/study.hpp"
+
+namespace clothbench::android {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<std::string> file_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return std::nullopt;
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class PackedAssets : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = fs::temp_directory_path() / ("clothbench-assets-" + std::to_string(getpid()) + "-" +
+                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(dir_);
+  }
+  void TearDown() override {
+    unsetenv("CLOTHBENCH_SCENARIOS");
+    fs::remove_all(dir_);
+  }
+  AssetReader reader() {
+    return [this](const std::string& path) -> std::optional<std::string> {
+      ++reads_;
+      const auto it = packed_.find(path);
+      if (it == packed_.end()) return std::nullopt;
+      return it->second;
+    };
+  }
+  void add(const std::string& path, const std::string& content) {
+    packed_[path] = content;
+    packed_["index.txt"] += std::to_string(content.size()) + " " + sha256(content) + " " + path + "\n";
+  }
+  std::string refusal() {
+    try {
+      unpack_assets(reader(), dir_ / "to");
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  }
+
+  fs::path dir_;
+  std::map<std::string, std::string> packed_;
+  int reads_ = 0;
+};
+
+TEST_F(PackedAssets, UnpackOnceAndAgainWhenTheyChange) {
+  add("scenarios/a.json", "{}");
+  add("assets/room with blanks.bin", std::string("\0\1\2", 3));
+  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(file_text(dir_ / "to/assets/room with blanks.bin"), std::string("\0\1\2", 3));
+  reads_ = 0;
+  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(reads_, 1) << "the index alone";
+  packed_.clear();
+  add("scenarios/b.json", "[]");
+  EXPECT_EQ(refusal(), "");
+  EXPECT_FALSE(fs::exists(dir_ / "to/scenarios/a.json")) << "what is no longer packed is gone";
+  // Interrupted before its end: no index, so all of it is done again.
+  fs::remove(dir_ / "to/index.txt");
+  fs::remove(dir_ / "to/scenarios/b.json");
+  EXPECT_EQ(refusal(), "");
+  EXPECT_TRUE(fs::exists(dir_ / "to/scenarios/b.json"));
+}
+
+TEST_F(PackedAssets, FaultsNameTheFile) {
+  EXPECT_NE(refusal().find("index.txt"), std::string::npos);
+  packed_["index.txt"] = "";
+  EXPECT_NE(refusal().find("empty"), std::string::npos);
+  for (const char* line : {"x", "3 abc scenarios/a.json", "-"}) {
+    packed_["index.txt"] = std::string(line) + "\n";
+    EXPECT_NE(refusal().find("line 1"), std::string::npos) << line << refusal();
+  }
+  for (const char* path : {"../out.json", "/etc/out.json", "scenarios/../../out.json", ""}) {
+    packed_.clear();
+    add(path, "{}");
+    EXPECT_NE(refusal().find("line 1"), std::string::npos) << path;
+  }
+  packed_.clear();
+  add("scenarios/a.json", "{}");
+  packed_["scenarios/a.json"] = "[]";
+  EXPECT_NE(refusal().find("scenarios/a.json"), std::string::npos) << "same size, other bytes";
+  packed_.erase("scenarios/a.json");
+  EXPECT_NE(refusal().find("scenarios/a.json: missing"), std::string::npos) << refusal();
+}
+
+TEST_F(PackedAssets, WhatTheScriptPacksIsWhatTheProgramNeeds) {
+  const fs::path rooms = dir_ / "rooms";
+  fs::create_directories(rooms / "@iwer/sem/captures");
+  std::ofstream(rooms / "@iwer/sem/captures/room.json") << "room";
+  std::ofstream(rooms / "@iwer/sem/unused.js") << "code";
+  const std::string command = std::string(PYTHON) + " " + CLOTHBENCH_SOURCE_DIR + "/harness/android/pack_assets.py " +
+                              (dir_ / "packed").string() + " --assets " + rooms.string() + " >/dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const auto first = file_text(dir_ / "packed/index.txt");
+  ASSERT_EQ(std::system(command.c_str()), 0) << "again into the same folder";
+  EXPECT_EQ(file_text(dir_ / "packed/index.txt"), first);
+  unpack_assets([&](const std::string& path) { return file_text(dir_ / "packed" / path); }, dir_ / "to");
+  EXPECT_EQ(file_text(dir_ / "to/assets/@iwer/sem/captures/room.json"), "room");
+  EXPECT_FALSE(fs::exists(dir_ / "to/assets/@iwer/sem/unused.js"));
+  setenv("CLOTHBENCH_SCENARIOS", (dir_ / "to/scenarios").c_str(), 1);
+  const Study study = load_study("table3");
+  EXPECT_EQ(study.scenes.size(), 15u);
+  EXPECT_EQ(study.scenes.front().scene.source.rfind((dir_ / "to").string(), 0), 0u) << study.scenes.front().scene.source;
+}
+
+}  // namespace
+}  // namespace clothbench::android

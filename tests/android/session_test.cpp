@@ -1,0 +1,342 @@
+// The life of the activity with a fake system around it: arguments, order of life-cycle calls, resuming, RESULT line.
+#include "android/session.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <fstream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+
+#include "clothbench/error.hpp"
+#include "runner/cell.hpp"
+
+namespace clothbench::android {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+class FakeSystem final : public System {
+ public:
+  void log(const std::string& line) override {
+    const std::lock_guard lock(mutex_);
+    lines_.push_back(line);
+    changed_.notify_all();
+  }
+  void flush() override { ++flushes; }
+  void finish() override {
+    const std::lock_guard lock(mutex_);
+    ++finishes_;
+    changed_.notify_all();
+  }
+  bool wait_for_result() {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, 20s, [&] { return result_line() != ""; });
+  }
+  bool wait_for_finish() {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, 20s, [&] { return finishes_ > 0; });
+  }
+  std::vector<std::string> lines() {
+    const std::lock_guard lock(mutex_);
+    return lines_;
+  }
+  std::string last() {
+    const auto all = lines();
+    return all.empty() ? "" : all.back();
+  }
+  int finishes() {
+    const std::lock_guard lock(mutex_);
+    return finishes_;
+  }
+  std::atomic<int> flushes{0};
+
+ private:
+  std::string result_line() const {
+    for (const std::string& l : lines_)
+      if (l.rfind("RESULT ", 0) == 0) return l;
+    return "";
+  }
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::string> lines_;
+  int finishes_ = 0;
+};
+
+std::string value_after(const std::vector<std::string>& words, const std::string& option) {
+  for (std::size_t k = 0; k + 1 < words.size(); ++k)
+    if (words[k] == option) return words[k + 1];
+  return "";
+}
+
+/// Commands that were run, in order; each call runs `body`.
+struct Commands {
+  std::mutex mutex;
+  std::vector<std::vector<std::string>> calls;
+  std::function<int(const std::vector<std::string>&)> body = [](const auto&) { return 0; };
+
+  static Command of(const std::shared_ptr<Commands>& self) {
+    return [self](const std::vector<std::string>& words) {
+      {
+        const std::lock_guard lock(self->mutex);
+        self->calls.push_back(words);
+      }
+      // As a run does, so that the next one's folder is another.
+      if (const std::string out = value_after(words, "--out"); out.rfind(fs::temp_directory_path().string(), 0) == 0) fs::create_directories(out);
+      return self->body(words);
+    };
+  }
+  std::vector<std::vector<std::string>> all() {
+    const std::lock_guard lock(mutex);
+    return calls;
+  }
+};
+
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// Stands in for a run: frames of 1 ms until interrupted.
+int frames(int count) {
+  for (int k = 0; k < count; ++k) {
+    if (interrupt_requested()) return 130;
+    std::this_thread::sleep_for(1ms);
+  }
+  return 0;
+}
+
+class SessionTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    files_ = fs::temp_directory_path() / ("clothbench-session-" + std::to_string(getpid()) + "-" +
+                                          ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(files_);
+    fs::create_directories(files_);
+  }
+  void TearDown() override {
+    sessions_.clear();
+    fs::remove_all(files_);
+    clear_interrupt();
+    hold_runs(false);
+  }
+  /// An activity that lives until it is destroyed, or the test ends.
+  Session* start(const std::string& extra) {
+    sessions_.push_back(std::make_unique<Session>(Launch{files_, extra}, system_, Commands::of(commands_)));
+    return sessions_.back().get();
+  }
+  /// Another activity of the same or a later process: a log of its own.
+  void renew() { system_ = std::make_shared<FakeSystem>(); }
+
+  fs::path files_;
+  std::shared_ptr<FakeSystem> system_ = std::make_shared<FakeSystem>();
+  std::shared_ptr<Commands> commands_ = std::make_shared<Commands>();
+  std::vector<std::unique_ptr<Session>> sessions_;
+};
+
+TEST(Words, AreSplitAsAShellDoes) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(split_words("run  paper/gravity\t--set cloth.grid=[8,8]"), (Words{"run", "paper/gravity", "--set", "cloth.grid=[8,8]"}));
+  EXPECT_EQ(split_words(R"(a "b c" 'd "e' f\ g "" "x\"y")"), (Words{"a", "b c", "d \"e", "f g", "", "x\"y"}));
+  EXPECT_EQ(split_words("   "), Words{});
+  EXPECT_THROW(split_words("a \"b"), Error);
+  EXPECT_EQ(command_lines("# none\n\n study table3 \r\nlist devices\n"), (Words{"study table3", "list devices"}));
+}
+
+TEST_F(SessionTest, TheExtraComesBeforeTheFileAndTheFileBeforeTheDefault) {
+  std::ofstream(files_ / "args.txt") << "# what to run\nlist solvers\nlist devices\n";
+  start("list metrics");
+  ASSERT_TRUE(system_->wait_for_result());
+  start("");
+  while (commands_->all().size() < 3) std::this_thread::sleep_for(1ms);
+  fs::remove(files_ / "args.txt");
+  start("")->resume();
+  while (commands_->all().size() < 4) std::this_thread::sleep_for(1ms);
+  const auto calls = commands_->all();
+  EXPECT_EQ(calls[0], (std::vector<std::string>{"list", "metrics"}));
+  EXPECT_EQ(calls[1], (std::vector<std::string>{"list", "solvers"}));
+  EXPECT_EQ(calls[2], (std::vector<std::string>{"list", "devices"}));
+  EXPECT_EQ(calls[3][0], "study");
+  EXPECT_EQ(calls[3][1], "table3");
+}
+
+TEST_F(SessionTest, TheLastLineIsTheResultAndThenTheActivityEnds) {
+  Session* const session = start("clothbench run paper/gravity --solver ballistic");
+  ASSERT_TRUE(system_->wait_for_finish());
+  const std::string out = value_after(commands_->all().at(0), "--out");
+  EXPECT_EQ(commands_->all()[0][0], "run") << "the program's own name may stand before";
+  EXPECT_EQ(fs::path(out).parent_path(), files_ / "runs");
+  EXPECT_EQ(system_->last(), "RESULT PASS " + out);
+  EXPECT_EQ(system_->flushes, 1) << "what the run printed comes before the result";
+  EXPECT_EQ(system_->finishes(), 1);
+  session->low_memory();
+  session->pause();
+  EXPECT_EQ(system_->last(), "RESULT PASS " + out) << "nothing is logged after it";
+}
+
+TEST_F(SessionTest, AFailedCommandFailsTheResultAndTheNextStillRuns) {
+  std::ofstream(files_ / "args.txt") << "study a\nstudy b\n";
+  commands_->body = [](const auto& words) { return words[1] == "a" ? 3 : 0; };
+  start("");
+  ASSERT_TRUE(system_->wait_for_result());
+  ASSERT_EQ(commands_->all().size(), 2u);
+  EXPECT_EQ(system_->last(), "RESULT FAIL " + value_after(commands_->all()[1], "--out"));
+}
+
+TEST_F(SessionTest, WhatIsWrongBeforeTheRunIsAResultToo) {
+  start("run \"unclosed");
+  ASSERT_TRUE(system_->wait_for_result());
+  EXPECT_EQ(system_->last(), "RESULT FAIL " + files_.string());
+  renew();
+  commands_->body = [](const auto&) -> int { throw std::runtime_error("thrown"); };
+  start("list solvers");
+  ASSERT_TRUE(system_->wait_for_result());
+  EXPECT_EQ(system_->last(), "RESULT FAIL " + files_.string());
+  renew();
+  // A file where the folder should be.
+  files_ /= "file";
+  std::ofstream(files_) << "x";
+  start("study a");
+  ASSERT_TRUE(system_->wait_for_result());
+  EXPECT_EQ(system_->last(), "RESULT FAIL " + files_.string());
+  files_ = files_.parent_path();
+}
+
+TEST_F(SessionTest, DestroyedItStopsAndTheSameStartGoesOn) {
+  commands_->body = [](const auto&) { return frames(5000); };
+  Session* session = start("study table3");
+  while (commands_->all().empty()) std::this_thread::sleep_for(1ms);
+  session->destroy();
+  EXPECT_EQ(system_->last().rfind("RESULT FAIL ", 0), 0u) << system_->last();
+  EXPECT_EQ(system_->finishes(), 0) << "a destroyed activity is not asked to end";
+  const std::string out = value_after(commands_->all().at(0), "--out");
+  EXPECT_FALSE(contains(commands_->all()[0], "--resume"));
+
+  renew();
+  commands_->body = [](const auto&) { return frames(3); };
+  session = start("study table3");
+  ASSERT_TRUE(system_->wait_for_finish());
+  EXPECT_EQ(value_after(commands_->all().at(1), "--out"), out) << "the same folder";
+  EXPECT_TRUE(contains(commands_->all()[1], "--resume"));
+  EXPECT_EQ(system_->last(), "RESULT PASS " + out);
+
+  renew();
+  session = start("study table3");
+  ASSERT_TRUE(system_->wait_for_finish());
+  EXPECT_NE(value_after(commands_->all().at(2), "--out"), out) << "an ended run is not gone on with";
+  EXPECT_FALSE(contains(commands_->all()[2], "--resume"));
+}
+
+TEST_F(SessionTest, OtherArgumentsBeginAnew) {
+  commands_->body = [](const auto&) { return frames(5000); };
+  Session* session = start("study table3 --trials 2");
+  while (commands_->all().empty()) std::this_thread::sleep_for(1ms);
+  session->destroy();
+  renew();
+  commands_->body = [](const auto&) { return 0; };
+  session = start("study table3");
+  ASSERT_TRUE(system_->wait_for_finish());
+  EXPECT_FALSE(contains(commands_->all().at(1), "--resume"));
+}
+
+TEST_F(SessionTest, KilledBetweenTwoCommandsTheFirstIsNotRunAgain) {
+  // What a process killed in its second command leaves behind.
+  std::ofstream(files_ / "session.json") << R"({"commands":[
+    {"line":"study a","state":"pass","out":"/somewhere/a","exit_code":0},
+    {"line":"study b","state":"pending","out":"/somewhere/b"}]})";
+  std::ofstream(files_ / "args.txt") << "study a\nstudy b\n";
+  start("");
+  ASSERT_TRUE(system_->wait_for_finish());
+  ASSERT_EQ(commands_->all().size(), 1u);
+  EXPECT_EQ(value_after(commands_->all()[0], "--out"), "/somewhere/b");
+  EXPECT_TRUE(contains(commands_->all()[0], "--resume"));
+  EXPECT_EQ(system_->last(), "RESULT PASS /somewhere/b");
+}
+
+TEST_F(SessionTest, ADamagedLedgerBeginsAnew) {
+  for (const char* text : {"", "{", "[]", R"({"commands":3})", R"({"commands":[1]})", R"({"commands":[{"line":"study a"}]})"}) {
+    std::ofstream(files_ / "session.json") << text;
+    renew();
+    start("study b");
+    ASSERT_TRUE(system_->wait_for_finish()) << text;
+    EXPECT_EQ(system_->last().rfind("RESULT PASS", 0), 0u) << text << system_->last();
+  }
+}
+
+TEST_F(SessionTest, TheGivenFolderIsKept) {
+  start("study table3 --out mine");
+  ASSERT_TRUE(system_->wait_for_finish());
+  EXPECT_EQ(commands_->all().at(0), (std::vector<std::string>{"study", "table3", "--out", "mine"}));
+  EXPECT_EQ(system_->last(), "RESULT PASS mine");
+}
+
+TEST_F(SessionTest, PausedItHoldsAndResumedItGoesOn) {
+  const int before = times_held();
+  commands_->body = [](const auto&) { return frames(60); };
+  Session* const session = start("study table3");
+  while (commands_->all().empty()) std::this_thread::sleep_for(1ms);
+  session->pause();
+  session->pause();
+  EXPECT_EQ(times_held(), before + 1) << "twice paused is once held";
+  session->resume();
+  ASSERT_TRUE(system_->wait_for_finish());
+  EXPECT_EQ(system_->last().rfind("RESULT PASS", 0), 0u);
+}
+
+TEST_F(SessionTest, ASecondSessionWaitsForTheFirst) {
+  std::atomic<int> inside{0}, most{0};
+  commands_->body = [&](const auto&) {
+    most = std::max<int>(most, ++inside);
+    const int code = frames(40);
+    --inside;
+    return code;
+  };
+  start("study a");
+  const auto first = system_;
+  renew();
+  start("study b");
+  ASSERT_TRUE(system_->wait_for_finish());
+  ASSERT_TRUE(first->wait_for_finish());
+  EXPECT_EQ(most, 1);
+  EXPECT_EQ(commands_->all().size(), 2u);
+}
+
+TEST_F(SessionTest, AnyOrderOfCallsEndsInOneResult) {
+  std::mt19937 random(3);
+  for (int life = 0; life < 60; ++life) {
+    renew();
+    fs::remove(files_ / "session.json");
+    commands_->body = [](const auto&) { return frames(12); };
+    Session* session = start("study table3");
+    bool destroyed = false;
+    for (int call = 0; call < 8; ++call) {
+      switch (random() % 6) {
+        case 0: session->pause(); break;
+        case 1: session->resume(); break;
+        case 2: session->low_memory(); break;
+        case 3:
+          session->destroy();
+          destroyed = true;
+          break;
+        default: std::this_thread::sleep_for(std::chrono::milliseconds(random() % 4));
+      }
+    }
+    if (!destroyed) session->resume();
+    ASSERT_TRUE(system_->wait_for_result()) << "life " << life;
+    session->destroy();
+    int results = 0;
+    for (const std::string& line : system_->lines()) results += line.rfind("RESULT ", 0) == 0 ? 1 : 0;
+    EXPECT_EQ(results, 1) << "life " << life;
+    EXPECT_EQ(system_->last().rfind("RESULT ", 0), 0u) << "life " << life << ": " << system_->last();
+    EXPECT_LE(system_->finishes(), 1);
+  }
+}
+
+}  // namespace
+}  // namespace clothbench::android

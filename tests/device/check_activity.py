@@ -1,0 +1,94 @@
+"""The activity's library under a fake Android: arguments, life-cycle orders, results, resuming after a kill."""
+import json
+import time
+
+from device import *
+
+ARGS = "study small.json"
+STUDY = {
+    "name": "small", "why": "A test.", "protocol": "fps",
+    "scenes": [{"file": "paper/gravity.json", "axes": [{"key": "cloth.grid", "values": [[8, 8], [9, 7]], "labels": ["8", "9x7"]}]}],
+    "solvers": [{"solver": "ballistic"}, {"solver": "xpbd"}], "trials": 3,
+    "short": {"frames": 24, "max_wall_s": 1, "min_frames": 12, "warmup_s": 0.05},
+    "full": {"frames": 48, "max_wall_s": 0, "min_frames": 48, "warmup_s": 0.05}, "drop_frames": 12, "accuracy_duration_s": 0.2}
+
+
+def host(folder, args, *steps):
+    return qemu(BUILD / "fake_host", BUILD / "libclothbench_quest.so", folder / "files", folder / "internal", args, *steps)
+
+
+def fresh(parent, name):
+    folder = parent / name
+    (folder / "files").mkdir(parents=True)
+    (folder / "internal").mkdir()
+    # Scenes are named relative to the study's own folder.
+    study = json.loads(json.dumps(STUDY))
+    study["scenes"][0]["file"] = str(folder / "internal/packed/scenarios/paper/gravity.json")
+    (folder / "files" / "small.json").write_text(json.dumps(study))
+    return folder
+
+
+def result_of(text):
+    lines = [l for l in text.splitlines() if l.startswith("I clothbench: ")]
+    assert lines and lines[-1].startswith("I clothbench: RESULT "), f"the last line is not the result:\n{text}"
+    assert sum(": RESULT " in l for l in lines) == 1, text
+    return lines[-1].split()[3:5]
+
+
+def trials(out):
+    return {p.name: len(list(p.glob("trial-*.raw"))) for p in out.glob("*.part")}
+
+
+with Folder() as top:
+    environment = {**os.environ, "FAKE_ASSETS": str(BUILD / "packed-assets")}
+    call = lambda command: must(command, env=environment, timeout=240)
+
+    # One undisturbed life, arguments by intent extra.
+    f = fresh(top, "plain")
+    verdict, out = result_of(text := call(host(f, ARGS, "create", "resume", "finish", "pause", "destroy")))
+    assert verdict == "PASS" and pathlib.Path(out).parent == f / "files/runs", text
+    assert "cells ok" in text, "what the command prints stands in the log:\n" + text
+    assert len(trials(pathlib.Path(out))) == 4 and set(trials(pathlib.Path(out)).values()) == {3}, trials(pathlib.Path(out))
+    if HOST_COMMAND.exists():
+        assert len(must([HOST_COMMAND, "import", out]).split()) == 4
+    print("ok: undisturbed", out)
+
+    # Arguments from args.txt; a command that fails.
+    f = fresh(top, "file")
+    (f / "files/args.txt").write_text("# nothing\nrun no-such-scene\n")
+    verdict, _ = result_of(text := call(host(f, "", "create", "resume", "finish", "destroy")))
+    assert verdict == "FAIL" and "no-such-scene: no such file" in text, text
+    print("ok: args.txt, failure")
+
+    # Paused, resumed, short of memory; destroyed in mid-run; created again in the same process.
+    f = fresh(top, "lives")
+    text = call(host(f, ARGS, "create", "resume", "150", "pause", "lowmemory", "100", "resume", "200", "lowmemory", "destroy"))
+    verdict, out = result_of(text)
+    assert "paused" in text and "low on memory" in text, text
+    text = call(host(f, ARGS, "create", "pause", "destroy", "create", "resume", "finish", "pause", "resume", "destroy"))
+    assert text.count(": RESULT ") == 2 and text.rstrip().splitlines()[-1].startswith("I clothbench: RESULT PASS"), text
+    print("ok: pause, resume, low memory, destroy, create again")
+
+    # Killed at some moments; started again with the same arguments it ends whole, in the same folder.
+    f = fresh(top, "killed")
+    for least in (1, 2, 7):  # trials finished before the kill
+        child = subprocess.Popen(host(f, ARGS, "create", "resume", "finish", "destroy"), env=environment,
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while len(list(f.glob("files/runs/*/*.part/trial-*.raw"))) < least and child.poll() is None:
+            time.sleep(0.01)
+        child.kill()
+        child.wait()
+    before = sum(len(list(p.glob("trial-*.raw"))) for p in f.glob("files/runs/*/*.part"))
+    verdict, out = result_of(text := call(host(f, ARGS, "create", "resume", "finish", "destroy")))
+    assert verdict == "PASS" and set(trials(pathlib.Path(out)).values()) == {3}, text
+    assert len(list(f.glob("files/runs/*"))) == 1 and "going on with" in text, text
+    print(f"ok: killed three times, the last with {before} of 12 trials done, then whole")
+
+    # Damaged assets are a result too.
+    f = fresh(top, "damaged")
+    shutil.copytree(BUILD / "packed-assets", f / "packed")
+    (f / "packed/scenarios/paper/gravity.json").write_text("{}")
+    environment["FAKE_ASSETS"] = str(f / "packed")
+    verdict, _ = result_of(text := call(host(f, ARGS, "create", "finish", "destroy")))
+    assert verdict == "FAIL" and "gravity.json" in text, text
+    print("ok: damaged assets")

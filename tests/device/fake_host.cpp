@@ -1,0 +1,98 @@
+// A fake Android around the activity's library: loads it, hands it an ANativeActivity and the few JNI calls it makes,
+// and plays a life given as words.
+//   fake_host LIBRARY FILES INTERNAL ARGS STEP...
+// STEP: create | resume | pause | lowmemory | destroy | finish (wait for the activity to ask for its end) | <number> (ms)
+#include <android/native_activity.h>
+#include <dlfcn.h>
+#include <jni.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <thread>
+
+extern "C" std::atomic<int> fake_finishes;
+
+namespace {
+
+std::string intent_args;
+int object, intent, klass, text;
+int get_intent_method, get_extra_method;
+
+template <class T>
+T as(int& thing) { return reinterpret_cast<T>(&thing); }
+
+[[noreturn]] void refuse(const char* what) {
+  std::fprintf(stderr, "fake host: %s\n", what);
+  std::_Exit(9);
+}
+
+jobject call(JNIEnv*, jobject who, jmethodID method, va_list words) {
+  if (method == as<jmethodID>(get_intent_method) && who == as<jobject>(object)) return as<jobject>(intent);
+  if (method != as<jmethodID>(get_extra_method) || who != as<jobject>(intent)) refuse("a method called on the wrong object");
+  const auto* name = reinterpret_cast<const char*>(va_arg(words, jobject));
+  if (std::strcmp(name, "args") != 0) refuse("asked for another extra than args");
+  return intent_args.empty() ? nullptr : as<jobject>(text);
+}
+
+JNINativeInterface functions() {
+  JNINativeInterface f{};
+  f.GetObjectClass = [](JNIEnv*, jobject) { return as<jclass>(klass); };
+  f.GetMethodID = [](JNIEnv*, jclass, const char* name, const char* signature) -> jmethodID {
+    if (std::strcmp(name, "getIntent") == 0 && std::strcmp(signature, "()Landroid/content/Intent;") == 0)
+      return as<jmethodID>(get_intent_method);
+    if (std::strcmp(name, "getStringExtra") == 0 && std::strcmp(signature, "(Ljava/lang/String;)Ljava/lang/String;") == 0)
+      return as<jmethodID>(get_extra_method);
+    refuse(name);
+  };
+  f.CallObjectMethodV = call;
+  f.NewStringUTF = [](JNIEnv*, const char* s) { return reinterpret_cast<jstring>(const_cast<char*>(s)); };
+  f.GetStringUTFChars = [](JNIEnv*, jstring, jboolean*) { return intent_args.c_str(); };
+  f.ReleaseStringUTFChars = [](JNIEnv*, jstring, const char*) {};
+  return f;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 6) return 2;
+  void* library = dlopen(argv[1], RTLD_NOW);
+  if (library == nullptr) refuse(dlerror());
+  const auto create = reinterpret_cast<ANativeActivity_createFunc*>(dlsym(library, "ANativeActivity_onCreate"));
+  if (create == nullptr) refuse("no ANativeActivity_onCreate");
+  intent_args = argv[4];
+  const JNINativeInterface table = functions();
+  JNIEnv env{};
+  env.functions = &table;
+  ANativeActivityCallbacks callbacks{};
+  ANativeActivity activity{};
+  activity.callbacks = &callbacks;
+  activity.env = &env;
+  activity.clazz = as<jobject>(object);
+  activity.externalDataPath = argv[2];
+  activity.internalDataPath = argv[3];
+  activity.sdkVersion = 34;
+  for (int k = 5; k < argc; ++k) {
+    const std::string step = argv[k];
+    if (step == "create") {
+      callbacks = {};
+      create(&activity, nullptr, 0);
+    } else if (step == "resume") {
+      callbacks.onResume(&activity);
+    } else if (step == "pause") {
+      callbacks.onPause(&activity);
+    } else if (step == "lowmemory") {
+      callbacks.onLowMemory(&activity);
+    } else if (step == "destroy") {
+      callbacks.onDestroy(&activity);
+    } else if (step == "finish") {
+      while (fake_finishes.exchange(0) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    } else {
+      std::this_thread::sleep_for(std::chrono::milliseconds(std::atoi(step.c_str())));
+    }
+  }
+  return 0;
+}

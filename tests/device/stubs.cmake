@@ -1,0 +1,17 @@
+# NDK headers (Debian: android-platform-frameworks-native-headers, android-liblog-dev, android-libnativehelper-dev) and
+# stand-ins for libandroid and liblog, for the arm64-linux test build of the activity.
+set(ndk ${CMAKE_BINARY_DIR}/ndk-headers)
+file(MAKE_DIRECTORY ${ndk})
+foreach(pair "android/android;android" "android/nativehelper/jni.h;jni.h")
+  list(GET pair 0 from)
+  list(GET pair 1 to)
+  if(NOT EXISTS ${CLOTHBENCH_HEADERS}/${from})
+    message(FATAL_ERROR "${CLOTHBENCH_HEADERS}/${from} is missing (Debian: scripts/bootstrap.sh --arm64)")
+  endif()
+  file(CREATE_LINK ${CLOTHBENCH_HEADERS}/${from} ${ndk}/${to} SYMBOLIC)
+endforeach()
+foreach(library android log)
+  add_library(${library} SHARED ${CMAKE_CURRENT_LIST_DIR}/stubs/lib${library}.cpp)
+  target_include_directories(${library} SYSTEM PUBLIC ${ndk} ${CMAKE_CURRENT_LIST_DIR}/stubs)
+  set_target_properties(${library} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/stubs)
+endforeach()
