@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "clothbench/record.hpp"
@@ -12,7 +13,11 @@ namespace clothbench {
 /// What a cell is found by. `assets` tells npm from procedural rooms and hands; empty where the result does not say.
 struct CellKey {
   std::string scene, solver, setting, assets;
-  auto operator<=>(const CellKey&) const = default;
+  // Not <=>: strings have none yet in the libc++ of Android's NDK r25.
+  bool operator==(const CellKey&) const = default;
+  bool operator<(const CellKey& o) const {
+    return std::tie(scene, solver, setting, assets) < std::tie(o.scene, o.solver, o.setting, o.assets);
+  }
 
   std::string file_name() const;  ///< "<scene>__<solver>__<setting>", as the result file is called
   std::string text() const;       ///< the same with the assets in brackets, if known

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <fstream>
+#include <future>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -199,10 +200,10 @@ std::map<std::string, ReferenceResult> references(const std::vector<const Scene*
     }
   };
   if (note) note(fmt::format("reference solutions of {} scenes", lacking.size()));
-  std::vector<std::jthread> threads;
+  std::vector<std::future<void>> workers;  // joined when destroyed; the libc++ of NDK r25 has no jthread
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-  for (std::size_t k = 0; k < std::min(cores, lacking.size()); ++k) threads.emplace_back(work);
-  threads.clear();  // joins
+  for (std::size_t k = 0; k < std::min(cores, lacking.size()); ++k) workers.push_back(std::async(std::launch::async, work));
+  workers.clear();
   if (!failed.empty()) throw Error(failed, ExitCode::CheckFailed);
   return out;
 }

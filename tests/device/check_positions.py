@@ -19,7 +19,7 @@ SCENES = [
     ("hang", "paper/gravity", ["--set", "cloth.grid=[9,7]", "--set", "time.duration_s=0.5",
                                "--set", 'pins=[{"corners":["u0v0","u1v0"]}]'], list(TOLERANCE)),
     ("sweep", "paper/capsule-sweep", ["--set", "cloth.grid=[9,7]", "--set", "time.duration_s=1.5",
-                                       "--set", "cloth.sides=single"], ["paper", "ballistic"]),
+                                       "--set", "cloth.sides=single"], ["xpbd", "paper", "ballistic"]),
 ]
 
 

@@ -29,7 +29,7 @@ struct Contact {
   }
   void box(V& at, const V& from, const Collider& c) {
     double least = 1e300;
-    V normal;
+    V normal = V::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
       const double along = (at - vector(c.center_m)).dot(vector(c.axes[k]));
       const double depth = c.half_extent_m[k] + c.margin_m - std::abs(along);
