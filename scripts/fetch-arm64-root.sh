@@ -20,8 +20,16 @@ mkdir -p "$root" "$state"/{lists/partial,cache/archives/partial}
 keyring=/usr/share/keyrings/debian-archive-keyring.gpg
 signed=""
 [ -f "$keyring" ] && signed="[signed-by=$keyring] "
-apt-get indextargets --format "deb $signed\$(REPO_URI) \$(RELEASE) \$(COMPONENT)" 'Created-By: Packages' 'Origin: Debian' |
-  sort -u >"$state/sources.list"
+mirrors() {
+  apt-get indextargets --format "deb $signed\$(REPO_URI) \$(RELEASE) \$(COMPONENT)" 'Created-By: Packages' 'Origin: Debian' |
+    sort -u >"$state/sources.list"
+}
+mirrors
+# A fresh image may have no lists yet.
+if [ ! -s "$state/sources.list" ] && [ "$(id -u)" -eq 0 ]; then
+  apt-get update >/dev/null 2>&1 || true
+  mirrors
+fi
 if [ ! -s "$state/sources.list" ]; then
   echo "arm64 packages: apt knows no Debian mirror (is this Debian? then run apt-get update once)" >&2
   exit 1
