@@ -26,6 +26,8 @@ void add_report(CLI::App&, Console&);
 void add_import(CLI::App&, Console&);
 void add_check(CLI::App&, Console&);
 void add_bench(CLI::App&, Console&);
+void add_metamorphic(CLI::App&, Console&);
+void add_threshold(CLI::App&, Console&);
 
 /// `--set` arguments: `solver.<name>=<JSON>` go to the solver, everything else to the scene.
 struct Overrides {

@@ -33,6 +33,8 @@ int run_command_line(const std::vector<std::string>& words) {
   add_report(app, console);
   add_import(app, console);
   add_check(app, console);
+  add_metamorphic(app, console);
+  add_threshold(app, console);
 #ifdef CLOTHBENCH_WITH_BENCH
   add_bench(app, console);
 #endif

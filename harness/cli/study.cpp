@@ -13,6 +13,7 @@ struct Arguments {
   std::string study;
   std::vector<std::string> set, only;
   int trials = 0;
+  std::optional<std::uint64_t> seed;
   bool full = false, short_trials = false, quick = false, require_assets = false;
   RunFlags run;
 };
@@ -70,6 +71,7 @@ void add_study(CLI::App& app, Console& console) {
   cmd->add_option("--set", a.set, "Override a scene key in every cell: cloth.size_m=[0.5,0.5]");
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
   cmd->add_flag("--resume", a.run.resume, "Go on with the folder of an interrupted study");
+  add_seed(*cmd, a.seed);
   add_require_assets(*cmd, a.require_assets);
   a.run.device.add_to(*cmd);
   cmd->footer("Example: clothbench study table3 --out results/runs/mine");
@@ -78,7 +80,9 @@ void add_study(CLI::App& app, Console& console) {
     if (!overrides.solver.empty()) throw Error("--set solver.…: a study's solver settings stand in its file");
     if (a.run.resume && a.run.out.empty()) throw Error("--resume: say which folder with --out");
     const StudyLength length = a.full ? StudyLength::Full : a.quick ? StudyLength::Quick : StudyLength::Short;
-    const Study study = load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only});
+    Study study = load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only});
+    for (Study::Item& item : study.scenes) item.scene = at_seed(std::move(item.scene), a.seed, console);
+    if (a.seed) study.definition["seed"] = *a.seed;
     CellPlan plan = plan_study(study);
     if (a.trials > 0) plan.rules.trials = a.trials;
     StudyManifest manifest;

@@ -23,6 +23,8 @@ std::string card_of(const json& scenario) { return scenario.is_object() ? scenar
 std::string ranking_of(const std::string& card) {
   if (card == "heavy-strip") return "stretch of the strip at rest / its truth";
   if (card == "two-hand-pull") return "greatest strain, RMS over time / (v0/c)";
+  if (card == "incline") return "way along the slope, RMS over time / way at the end (at rest: L)";
+  if (card == "capstan" || card == "atwood") return "way over the cylinder, RMS over time / way at the end (at rest: L)";
   return card == "catenary" || card == "cantilever" ? "RMS distance at rest / L" : "RMS distance over space and time / L";
 }
 

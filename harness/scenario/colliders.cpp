@@ -79,6 +79,7 @@ class Reader {
     if (type == "plane") plane(j, c);
     if (type == "sphere") sphere(j, c);
     if (type == "box") box(j, c);
+    if (type == "cylinder") cylinder(j, c);
     if (type == "mesh") mesh(j, c);
     if (type == "room") room(j, c);
     if (type == "hand_capsules" || type == "hand_mesh") hand(j, c, type == "hand_mesh");
@@ -111,6 +112,15 @@ class Reader {
     const Eigen::Matrix3d r = (Turn(turn[2] * kRadians, Eigen::Vector3d::UnitZ()) * Turn(turn[1] * kRadians, Eigen::Vector3d::UnitY()) *
                                Turn(turn[0] * kRadians, Eigen::Vector3d::UnitX())).toRotationMatrix();
     for (int k = 0; k < 3; ++k) c.axes[static_cast<std::size_t>(k)] = vec3(assets::Vector(r.col(k)));
+  }
+
+  void cylinder(const json& j, Collider& c) const {
+    c.shape = Collider::Shape::Mesh;
+    const Vec3 axis = vec3(j["axis"]);
+    const double squared = axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2];
+    if (!(std::abs(squared - 1) <= kUnit)) refuse("/axis", "expected a vector of length 1");
+    c.mesh = mesh_of(assets::prism(assets::Vector(axis[0], axis[1], axis[2]), assets::Vector::Map(vec3(j["center_m"]).data()),
+                                   j["radius_m"].get<double>(), j["length_m"].get<double>(), j["sides"].get<std::uint32_t>()));
   }
 
   static std::shared_ptr<ColliderMesh> mesh_of(const assets::TriangleMesh& from) {

@@ -163,7 +163,10 @@ class Builder {
 
   void read_scene(std::size_t k) {
     const json& item = j_["scenes"][k];
-    if (item["only_full"].get<bool>() && study_.length != StudyLength::Full) return;
+    if (item["only_full"].get<bool>() && study_.length != StudyLength::Full) {
+      for (const auto& label : item["labels"].get<Words>()) labels_.insert(label);  // words of the study all the same
+      return;
+    }
     const std::string pointer = fmt::format("/scenes/{}", k), scene_file = item["file"].get<std::string>();
     std::filesystem::path path = scene_file;
     if (path.is_relative() && std::filesystem::exists(file_.parent_path() / path)) path = file_.parent_path() / path;

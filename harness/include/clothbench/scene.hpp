@@ -24,6 +24,9 @@ struct Cloth {
   Vec3 center_m{}, axis_u{}, axis_v{};
   /// Above 0: starts bent along u into an arc, towards axis_u x axis_v, its edges u0 and u1 this far apart.
   double span_m = 0;
+  /// Above 0: starts over a cylinder along axis_v round center_m, its rows this far from the axis where they touch and
+  /// hanging along axis_u x axis_v elsewhere, its middle `drape_offset_m` from the top, towards u1.
+  double drape_radius_m = 0, drape_offset_m = 0;
   Vec3 initial_velocity_m_per_s{};
 
   std::size_t vertex_count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
@@ -83,6 +86,7 @@ struct Scene {
   std::string source;  ///< path of the file it came from, for messages
   std::string assets;  ///< where rooms and hands came from: "npm", "procedural", or "" if the scene has none
 
+  std::optional<std::uint64_t> seed;  ///< its parameters were drawn by this number
   std::string truth_card;  ///< of the exact answer, "" = none; see harness/truth/card.hpp
 
   /// Where vertex (i, j) starts [m].
@@ -97,6 +101,11 @@ std::vector<double> vertex_masses(const Scene&);
 
 /// Initial positions [m], size 3*vertex_count, xyz interleaved.
 std::vector<double> initial_positions(const Scene&);
+
+/// Turn [rad] from one row on the cylinder to the next, of a sheet that starts draped. Needs drape_radius_m > du/2.
+double drape_turn_rad(const Cloth&);
+/// Where row `i` of a draped sheet lies [m] that has run `offset_m` towards u1, middle line of the sheet.
+Vec3 draped_row(const Cloth&, int i, double offset_m);
 
 /// Vertices of an edge: "u0" and "u1" run along v, "v0" and "v1" along u; ascending.
 std::vector<std::uint32_t> edge_vertices(const Cloth&, const std::string& edge);
