@@ -33,7 +33,7 @@ CellPlan plan_study(const Study& study) {
   plan.rules = {study.trials, rules.frames, rules.max_wall_s, rules.min_frames, rules.warmup_s, study.drop_frames, study.accuracy_duration_s,
                 study.cell_limit_s};
   if (!study.stage_times) plan.rules.profiled_frames = 0;
-  plan.references = study.protocol == "work-precision";
+  plan.references = plan.material_cards = study.protocol == "work-precision";
   std::vector<const SolverEntry*> entries;
   for (const StudySolver& s : study.solvers) entries.push_back(s.joined ? &find_solver(s.solver) : built_in(s.solver));
   for (const Study::Item& item : study.scenes) {
