@@ -58,7 +58,7 @@ void add_card(CLI::App& app, Console& console) {
       fmt::print("{}\n", material_json(materials).dump(2));
       return;
     }
-    fmt::print("{}", material_table(materials).console());
+    fmt::print("{}{}", material_table(materials).console(), material_verdicts(materials).console());
     for (const CellRecord& c : cards)
       if (!c.outcome.message.empty()) fmt::print("  {} {}: {}\n", c.header.solver, c.header.setting, c.outcome.message);
   });

@@ -10,6 +10,8 @@
 namespace clothbench {
 namespace {
 
+constexpr double kFullLimit_s = 20, kShortLimit_s = 5;  // wall time of a patch
+
 struct Wanted {
   const SolverEntry* entry;
   nlohmann::json settings;
@@ -61,7 +63,7 @@ void add_material_cards(const CellPlan& plan, const RunOptions& options, StudyMa
     const Wanted& w = wanted[k];
     if (cell_finished(options.out, w.name())) continue;
     if (options.progress) options.progress(w.name(), k, wanted.size());
-    const CellRecord card = measure_material(*w.entry, w.settings, w.setting, w.full, options.device, plan.protocol);
+    const CellRecord card = measure_material(*w.entry, w.settings, w.setting, w.full, options.device, plan.protocol, w.full ? kFullLimit_s : kShortLimit_s);
     CellWriter(options.out, card.header).finish(card.outcome, card.summary);
   }
 }

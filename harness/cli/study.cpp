@@ -13,7 +13,7 @@ struct Arguments {
   std::string study;
   std::vector<std::string> set, only;
   int trials = 0;
-  bool full = false, short_trials = false, quick = false, require_assets = false;
+  bool full = false, short_trials = false, quick = false, require_assets = false, no_cards = false;
   RunFlags run;
 };
 
@@ -70,6 +70,7 @@ void add_study(CLI::App& app, Console& console) {
   cmd->add_option("--set", a.set, "Override a scene key in every cell: cloth.size_m=[0.5,0.5]");
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
   cmd->add_flag("--resume", a.run.resume, "Go on with the folder of an interrupted study");
+  cmd->add_flag("--no-cards", a.no_cards, "No material cards after a work-precision study (then no solver is left unranked for its stiffness)");
   add_require_assets(*cmd, a.require_assets);
   a.run.device.add_to(*cmd);
   cmd->footer("Example: clothbench study table3 --out results/runs/mine");
@@ -81,6 +82,7 @@ void add_study(CLI::App& app, Console& console) {
     const Study study = load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only});
     CellPlan plan = plan_study(study);
     if (a.trials > 0) plan.rules.trials = a.trials;
+    if (a.no_cards) plan.material_cards = false;
     StudyManifest manifest;
     manifest.study = study.name;
     manifest.definition = study.definition;

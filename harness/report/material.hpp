@@ -38,7 +38,7 @@ std::vector<SolverMaterial> solver_materials(const std::vector<CellRecord>& cell
 /// cantilever on B): "" if it can be, the card does not depend on it, or no card says otherwise.
 std::string stiffness_flag(const std::vector<SolverMaterial>&, const std::string& solver, const std::string& truth_card);
 
-/// Rows: solvers at their settings; moduli over what the scenes state, and the verdicts.
+/// Rows: solvers at their settings; moduli over what the scenes state.
 Table material_table(const std::vector<SolverMaterial>&);
 /// The verdicts alone.
 Table material_verdicts(const std::vector<SolverMaterial>&);

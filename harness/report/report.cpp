@@ -200,7 +200,7 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     write("work-precision.json", work_json(diagrams).dump(1) + "\n");
   }
   if (!materials.empty()) {
-    const std::string text = material_table(materials).markdown() + "\n";
+    const std::string text = material_table(materials).markdown() + "\n" + material_verdicts(materials).markdown() + "\n";
     tables += text;
     write("material.md", "# Material card\n\n" + head + "\n" + text);
     write("material.json", material_json(materials).dump(1) + "\n");
@@ -244,7 +244,7 @@ void print_console_report(const std::vector<fs::path>& runs) {
   for (const Table& t : penetration_tables(set_ups(contact), room_pairs(contact), false)) fmt::print("{}", t.console());
   if (const auto diagrams = work_diagrams(truth, materials); !diagrams.empty())
     fmt::print("{}{}{}{}", work_table(diagrams).console(), truth_table(diagrams).console(), winners_table(diagrams).console(), ranks_table(diagrams).console());
-  if (!materials.empty()) fmt::print("{}", material_table(materials).console());
+  if (!materials.empty()) fmt::print("{}{}", material_table(materials).console(), material_verdicts(materials).console());
   if (!costs.empty()) fmt::print("{}{}", feature_cost_table(costs).console(), no_op_table(costs).console());
   if (const auto solvers = solver_features(cells); !contact.empty() && any_known(solvers))
     fmt::print("{}", feature_table(solvers, true).console());

@@ -29,7 +29,7 @@ json scenario(Patch patch, json cloth, json of_material, json pins, json gravity
           {"material", std::move(of_material)},
           {"pins", std::move(pins)},
           {"gravity_m_per_s2", std::move(gravity)},
-          {"time", {{"frame_rate_hz", 60}, {"duration_s", 4}}}};
+          {"time", {{"frame_rate_hz", 60}, {"duration_s", 3}}}};
 }
 
 /// 1 m x 0.25 m, 32 x 8 cells, hanging along u, or with u and v exchanged along v.
