@@ -100,7 +100,9 @@ def draw(scene, rows, path):
             entries.append(Line2D([], [], linestyle="none", label=f"{label} {value:.1e}: below"))
     floors = [number(first[key]) for key in ("space_error", "floor") if number(first[key]) > 0]
     if floors and max(floors) > ax.get_ylim()[0]:
-        ax.axhspan(ax.get_ylim()[0], max(floors), color="0.92", zorder=-1, linewidth=0, gid="not-told-apart")
+        low, high = ax.get_ylim()
+        ax.set_ylim(low, max(high, 1.2 * max(floors)))  # the shade must not add a margin of its own
+        ax.axhspan(low, max(floors), color="0.92", zorder=-1, linewidth=0, gid="not-told-apart")
         entries.append(Patch(color="0.92", label=f"not told apart: ≤ {max(floors):.1e}"))
     ax.axvline(REAL_TIME, color="0.7", linewidth=0.9, zorder=0, gid="real-time")
     entries.append(Line2D([], [], color="0.7", linewidth=0.9, label="real time"))

@@ -16,7 +16,8 @@ struct Arguments {
 };
 
 /// The card at the settings given, and short ones where it is looked whether it holds.
-void measure(const SolverEntry& entry, const Overrides& overrides, const Arguments& a, StatusLine& line, std::vector<CellRecord>& out) {
+void measure(const SolverEntry& entry, const Overrides& overrides, const Arguments& a, StatusLine& line,
+             std::vector<CellRecord>& out) {
   const nlohmann::json settings = complete_settings(entry.info, overrides.solver);
   const auto one = [&](const nlohmann::json& s, const std::string& label, bool full) {
     line.show(entry.info.name + " " + label, out.size(), 0);
@@ -36,15 +37,19 @@ void measure(const SolverEntry& entry, const Overrides& overrides, const Argumen
 
 void add_card(CLI::App& app, Console& console) {
   static Arguments a;
-  CLI::App* cmd = app.add_subcommand("card", "Measure what solvers make of a scene's stiffness: moduli at 0, 45 and 90 degrees, bending, and whether they hold over settings");
+  CLI::App* cmd = app.add_subcommand("card",
+                                     "Measure what solvers make of a scene's stiffness: moduli at 0, 45 and 90 "
+                                     "degrees, bending, and whether they hold over settings");
   cmd->add_option("solver", a.solvers, "Solvers; default: all");
   cmd->add_option("--set", a.set, "Setting of the solver: solver.substeps=20");
-  cmd->add_flag("--no-sweep", a.no_sweep, "Only at the settings given, not with four times the substeps and iterations too");
+  cmd->add_flag("--no-sweep", a.no_sweep,
+                "Only at the settings given, not with four times the substeps and iterations too");
   a.device.add_to(*cmd);
   cmd->footer("Example: clothbench card xpbd --set solver.substeps=64");
   cmd->callback([&console] {
     const Overrides overrides = split_overrides(a.set);
-    if (!overrides.scene.empty()) throw Error("--set " + overrides.scene[0] + ": expected solver.<name>=<value>; the patches are fixed");
+    if (!overrides.scene.empty())
+      throw Error("--set " + overrides.scene[0] + ": expected solver.<name>=<value>; the patches are fixed");
     if (a.solvers.empty())
       for (const SolverEntry& e : solvers())
         if (!e.info.ignores.has(Feature::Stretch)) a.solvers.push_back(e.info.name);

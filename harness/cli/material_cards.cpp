@@ -31,7 +31,8 @@ std::vector<const SolverEntry*> solvers_of(const CellPlan& plan) {
   std::vector<const SolverEntry*> out;
   for (const auto& group : plan.groups)
     for (const CellSpec& c : group)
-      if (c.entry->make && std::none_of(out.begin(), out.end(), [&](const SolverEntry* e) { return e->info.name == c.entry->info.name; }))
+      if (c.entry->make && std::none_of(out.begin(), out.end(),
+                                        [&](const SolverEntry* e) { return e->info.name == c.entry->info.name; }))
         out.push_back(c.entry);
   return out;
 }
@@ -46,8 +47,10 @@ std::vector<Wanted> wanted_cards(const CellPlan& plan, const std::filesystem::pa
     if (e->info.name == "reference") continue;
     for (const WorkDiagram& d : diagrams)
       for (const WorkPoint& p : d.points) {
-        const bool known = std::any_of(all.begin(), all.end(), [&](const Wanted& w) { return w.entry == e && w.setting == p.setting; });
-        if (p.solver == e->info.name && p.on_front && !known) all.push_back({e, p.cell->header.settings, p.setting, false});
+        const bool known = std::any_of(all.begin(), all.end(),
+                                       [&](const Wanted& w) { return w.entry == e && w.setting == p.setting; });
+        if (p.solver == e->info.name && p.on_front && !known)
+          all.push_back({e, p.cell->header.settings, p.setting, false});
       }
   }
   return all;
@@ -63,7 +66,8 @@ void add_material_cards(const CellPlan& plan, const RunOptions& options, StudyMa
     const Wanted& w = wanted[k];
     if (cell_finished(options.out, w.name())) continue;
     if (options.progress) options.progress(w.name(), k, wanted.size());
-    const CellRecord card = measure_material(*w.entry, w.settings, w.setting, w.full, options.device, plan.protocol, w.full ? kFullLimit_s : kShortLimit_s);
+    const CellRecord card = measure_material(*w.entry, w.settings, w.setting, w.full, options.device, plan.protocol,
+                                             w.full ? kFullLimit_s : kShortLimit_s);
     CellWriter(options.out, card.header).finish(card.outcome, card.summary);
   }
 }

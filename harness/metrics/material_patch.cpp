@@ -16,7 +16,8 @@ struct Sheet {
   const std::vector<double>& x;
   bool along_v;
 
-  Sheet(const Scene& s, const std::vector<double>& position) : scene(s), x(position), along_v(s.cloth.rows > s.cloth.columns) {}
+  Sheet(const Scene& s, const std::vector<double>& position)
+      : scene(s), x(position), along_v(s.cloth.rows > s.cloth.columns) {}
 
   int n() const { return (along_v ? scene.cloth.rows : scene.cloth.columns) - 1; }
   int across() const { return (along_v ? scene.cloth.columns : scene.cloth.rows) - 1; }
@@ -32,7 +33,8 @@ struct Sheet {
   double moved(int s, int t, const Vec3& direction) const {
     const int i = along_v ? t : s, j = along_v ? s : t;
     const Vec3 from = scene.rest_position(i, j);
-    const auto k = 3 * (static_cast<std::size_t>(j) * static_cast<std::size_t>(scene.cloth.columns) + static_cast<std::size_t>(i));
+    const auto k =
+        3 * (static_cast<std::size_t>(j) * static_cast<std::size_t>(scene.cloth.columns) + static_cast<std::size_t>(i));
     return dot({x[k] - from[0], x[k + 1] - from[1], x[k + 2] - from[2]}, direction);
   }
 };
@@ -57,13 +59,16 @@ std::map<std::string, double> hang(const Sheet& p) {
   const double contraction = -(p.moved(s, t, p.aside()) - p.moved(s, 0, p.aside())) / (t * p.cell_across_m());
   const double slope = (p.moved(s + 1, m, p.aside()) - p.moved(s - 1, m, p.aside())) / (2 * p.cell_m()) +
                        (p.moved(s, m + 1, p.along()) - p.moved(s, m - 1, p.along())) / (2 * p.cell_across_m());
-  return {{"E_0", hang_modulus(p, m)}, {"nu", strain > 0 ? contraction / strain : kMissing}, {"skew", strain > 0 ? slope / strain : kMissing}};
+  return {{"E_0", hang_modulus(p, m)},
+          {"nu", strain > 0 ? contraction / strain : kMissing},
+          {"skew", strain > 0 ? slope / strain : kMissing}};
 }
 
 /// Across the band between its held edges, in the middle of their length: G v'' = -rho g.
 double shear_modulus(const Sheet& p) {
   const int half = p.n() / 2, m = p.across() / 2, reach = m / 2;
-  const double bulge = 2 * p.moved(half, m, p.along()) - p.moved(half, m - reach, p.along()) - p.moved(half, m + reach, p.along());
+  const double bulge =
+      2 * p.moved(half, m, p.along()) - p.moved(half, m - reach, p.along()) - p.moved(half, m + reach, p.along());
   const double s = reach * p.cell_across_m();
   return over(p.weight() * s * s, bulge) / *p.scene.material.membrane_stiffness_N_per_m;
 }
@@ -103,7 +108,8 @@ double diagonal_modulus(const Scene& scene, const std::vector<double>& x) {
   for (double& d : down) d /= p.g();
   const auto w = [&](int k) { return p.moved(m + k, m - k, down); };
   const double s = std::sqrt(2.0) * p.cell_m();
-  return over(p.weight() * s * s * s * s, w(-2) - 4 * w(-1) + 6 * w(0) - 4 * w(1) + w(2)) / scene.material.bending_rigidity_N_m;
+  return over(p.weight() * s * s * s * s, w(-2) - 4 * w(-1) + 6 * w(0) - 4 * w(1) + w(2)) /
+         scene.material.bending_rigidity_N_m;
 }
 
 }  // namespace
@@ -111,15 +117,25 @@ double diagonal_modulus(const Scene& scene, const std::vector<double>& x) {
 std::map<std::string, double> patch_moduli(Patch patch, const Scene& scene, const std::vector<double>& position) {
   const Sheet p(scene, position);
   switch (patch) {
-    case Patch::HangU: return hang(p);
-    case Patch::HangV: return {{"E_90", hang(p).at("E_0")}};
-    case Patch::HangStiffer: return {{"E_stiffer", hang(p).at("E_0")}};
-    case Patch::HangStrip: return {{"E_strip", hang_modulus(p, p.across() / 2)}, {"strip_border", hang_modulus(p, 0) / hang_modulus(p, p.across() / 2)}};
-    case Patch::Shear: return {{"G", shear_modulus(p)}};
-    case Patch::BendU: return {{"B_0", bend_modulus(p)}};
-    case Patch::BendV: return {{"B_90", bend_modulus(p)}};
-    case Patch::BendStiffer: return {{"B_stiffer", bend_modulus(p)}};
-    case Patch::BendDiagonal: break;
+    case Patch::HangU:
+      return hang(p);
+    case Patch::HangV:
+      return {{"E_90", hang(p).at("E_0")}};
+    case Patch::HangStiffer:
+      return {{"E_stiffer", hang(p).at("E_0")}};
+    case Patch::HangStrip:
+      return {{"E_strip", hang_modulus(p, p.across() / 2)},
+              {"strip_border", hang_modulus(p, 0) / hang_modulus(p, p.across() / 2)}};
+    case Patch::Shear:
+      return {{"G", shear_modulus(p)}};
+    case Patch::BendU:
+      return {{"B_0", bend_modulus(p)}};
+    case Patch::BendV:
+      return {{"B_90", bend_modulus(p)}};
+    case Patch::BendStiffer:
+      return {{"B_stiffer", bend_modulus(p)}};
+    case Patch::BendDiagonal:
+      break;
   }
   return {{"B_45", diagonal_modulus(scene, position)}};
 }

@@ -11,13 +11,13 @@ namespace clothbench {
 /// Positions may move by this much of the cloth's longer side when something irrelevant is switched on.
 inline constexpr double kNoOp = 1e-6;
 
-/// A scene as it is, and with what it has no use for switched on (harness/scenario/irrelevant.hpp): what leaving out what
-/// a scene does not need is worth.
+/// A scene as it is, and with what it has no use for switched on (harness/scenario/irrelevant.hpp): what leaving out
+/// what a scene does not need is worth.
 struct FeatureCost {
   const CellRecord* needed = nullptr;
   const CellRecord* all = nullptr;
   std::vector<std::string> added;  ///< features
-  double moved = kMissing;         ///< greatest distance of a vertex in one from the other, over the cloth's longer side
+  double moved = kMissing;  ///< greatest distance of a vertex in one from the other, over the cloth's longer side
   bool no_op() const { return moved <= kNoOp; }  ///< false where not measured
 };
 

@@ -3,8 +3,8 @@
 
 namespace clothbench {
 
-/// Greatest distance of a vertex in one cell from the same vertex in another [m]. NaN where the two have no trajectories of
-/// the same length.
+/// Greatest distance of a vertex in one cell from the same vertex in another [m]. NaN where the two have no
+/// trajectories of the same length.
 struct Apart {
   double end_m = kMissing, max_m = kMissing;
 };

@@ -20,7 +20,8 @@ std::set<std::string> ranked(const WorkDiagram& d) {
   if (!d.refused().empty()) return out;
   for (const WorkPoint& p : d.points) {
     const std::string& status = p.cell->outcome.status;
-    if (p.solver != "reference" && !d.flagged.contains(p.solver) && status != "unsupported" && status != "missing") out.insert(p.solver);
+    if (p.solver != "reference" && !d.flagged.contains(p.solver) && status != "unsupported" && status != "missing")
+      out.insert(p.solver);
   }
   return out;
 }
@@ -32,13 +33,17 @@ struct Criterion {
 };
 
 Criterion time_to(const char* name, double error) {
-  return {name, [error](const WorkDiagram&, const WorkPoint& p) { return p.error <= error ? p.wall_ms_per_s : INFINITY; }};
+  return {name,
+          [error](const WorkDiagram&, const WorkPoint& p) { return p.error <= error ? p.wall_ms_per_s : INFINITY; }};
 }
 
 const std::vector<Criterion>& criteria() {
   static const std::vector<Criterion> all = {
-      time_to("time to 1 %", 1e-2), time_to("time to 0.1 %", 1e-3),
-      {"error in real time", [](const WorkDiagram& d, const WorkPoint& p) { return p.wall_ms_per_s <= kRealTime_ms_per_s ? std::max(p.error, d.rank_floor()) : INFINITY; }}};
+      time_to("time to 1 %", 1e-2),
+      time_to("time to 0.1 %", 1e-3),
+      {"error in real time", [](const WorkDiagram& d, const WorkPoint& p) {
+         return p.wall_ms_per_s <= kRealTime_ms_per_s ? std::max(p.error, d.rank_floor()) : INFINITY;
+       }}};
   return all;
 }
 
@@ -59,7 +64,9 @@ int rank(const WorkDiagram& d, const std::string& solver, const Criterion& c) {
 }  // namespace
 
 Table winners_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{"Who is first", "Of the solvers that are ranked; several where none can be told apart. Times in ms of wall time per simulated second. ≤: at the floor.",
+  Table t{"Who is first",
+          "Of the solvers that are ranked; several where none can be told apart. Times in ms of wall time per "
+          "simulated second. ≤: at the floor.",
           {{"scene", "solvers ranked"}}};
   for (const Criterion& c : criteria()) t.rows[0].emplace_back(c.name);
   t.rows[0].emplace_back("not ranked");
@@ -75,7 +82,9 @@ Table winners_table(const std::vector<WorkDiagram>& diagrams) {
           value = least(d, s, c);
         }
       const bool is_error = &c == &criteria().back();
-      row.push_back(names.empty() ? "–" : fmt::format("{} ({}{:.2g})", names, is_error && value <= d.rank_floor() ? "≤ " : "", value));
+      row.push_back(names.empty()
+                        ? "–"
+                        : fmt::format("{} ({}{:.2g})", names, is_error && value <= d.rank_floor() ? "≤ " : "", value));
     }
     std::string flagged;
     for (const auto& [solver, why] : d.flagged) flagged += (flagged.empty() ? "" : ", ") + solver;
@@ -86,7 +95,10 @@ Table winners_table(const std::vector<WorkDiagram>& diagrams) {
 }
 
 Table ranks_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{"Ranks", "Geometric mean over the scenes that rank the solver; 1 is first in all of them. Errors of different scenes are never averaged.", {{"solver", "scenes"}}};
+  Table t{"Ranks",
+          "Geometric mean over the scenes that rank the solver; 1 is first in all of them. Errors of different scenes "
+          "are never averaged.",
+          {{"solver", "scenes"}}};
   for (const Criterion& c : criteria()) t.rows[0].push_back(std::string("rank by ") + c.name);
   std::set<std::string> all;
   for (const WorkDiagram& d : diagrams) all.merge(ranked(d));

@@ -16,8 +16,8 @@ namespace {
 using nlohmann::json;
 using Moduli = std::map<std::string, double>;
 
-constexpr int kWindow = 15;           // frames, a quarter of a second
-constexpr int kLeastFrames = 45;      // an overdamped sheet creeps at first
+constexpr int kWindow = 15;       // frames, a quarter of a second
+constexpr int kLeastFrames = 45;  // an overdamped sheet creeps at first
 constexpr double kAtRest = 1e-4;
 
 struct Result {
@@ -45,8 +45,10 @@ Result settle(ClothSolver& solver, Patch patch, const Scene& scene, double limit
   ClothState state;
   Result r;
   for (int f = 0; f < scene.time.frames(); ++f) {
-    if (interrupt_requested()) throw Error("interrupted; finished cells are kept (continue with --resume)", ExitCode::Interrupted);
-    if (solver.step({f, (f + 1) * dt, dt, nullptr}) != StepStatus::Ok) return {{}, kMissing, fmt::format("failed in frame {}", f + 1)};
+    if (interrupt_requested())
+      throw Error("interrupted; finished cells are kept (continue with --resume)", ExitCode::Interrupted);
+    if (solver.step({f, (f + 1) * dt, dt, nullptr}) != StepStatus::Ok)
+      return {{}, kMissing, fmt::format("failed in frame {}", f + 1)};
     solver.read_state(state);
     past.push_back(patch_moduli(patch, scene, state.position));
     if (f >= kWindow) r.unrest = change(past.back(), past[past.size() - 1 - kWindow]);
@@ -67,7 +69,8 @@ CellRecord measure_material(const SolverEntry& entry, const json& settings, cons
   c.header.solver = entry.info.name;
   c.header.setting = setting;
   c.header.settings = settings;
-  json scenario = {{"name", kMaterialCardScene}, {"material_card", full ? "full" : "short"}, {"patches", json::array()}};
+  json scenario = {
+      {"name", kMaterialCardScene}, {"material_card", full ? "full" : "short"}, {"patches", json::array()}};
   std::vector<std::pair<Patch, Scene>> scenes;
   for (const Patch p : patches(full)) {
     scenes.emplace_back(p, patch_scene(p));
@@ -93,7 +96,8 @@ CellRecord measure_material(const SolverEntry& entry, const json& settings, cons
     c.header.environment = describe_environment(solver->device(), protocol);
     c.header.environment["solver_features"] = describe_features(entry.info);
     Result r = settle(*solver, patch, scene, limit_s);
-    if (!r.fault.empty()) c.outcome.message += fmt::format("{}{}: {}", c.outcome.message.empty() ? "" : "; ", patch_name(patch), r.fault);
+    if (!r.fault.empty())
+      c.outcome.message += fmt::format("{}{}: {}", c.outcome.message.empty() ? "" : "; ", patch_name(patch), r.fault);
     all.merge(r.moduli);
     if (!(r.unrest <= unrest) && r.fault.empty()) unrest = r.unrest;
   }

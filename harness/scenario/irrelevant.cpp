@@ -13,13 +13,16 @@ constexpr double kFriction = 0.5;
 
 /// Colliders of one kind each, on every side of the cloth. A sheet falls 4.9 m in a second: nothing comes near.
 std::vector<std::pair<Feature, json>> far_colliders() {
-  return {{Feature::Sphere, {{"type", "sphere"}, {"center_m", {kFar, 0, 0}}, {"radius_m", 1}}},
-          {Feature::Box, {{"type", "box"}, {"center_m", {-kFar, 0, 0}}, {"size_m", {1, 1, 1}}}},
-          {Feature::Plane, {{"type", "plane"}, {"point_m", {0, -kFar, 0}}, {"normal", {0, 1, 0}}}},
-          {Feature::Capsules, {{"type", "hand_capsules"}, {"track", "assets/right-hand-sweep.json"}, {"offset_m", {0, 0, kFar}}}},
-          {Feature::StaticMesh,
-           {{"type", "mesh"}, {"positions_m", {{-1, 0, -kFar}, {1, 0, -kFar}, {0, 1, -kFar}}}, {"triangles", {{0, 1, 2}}}}},
-          {Feature::MovingMesh, {{"type", "hand_mesh"}, {"track", "assets/right-hand-sweep.json"}, {"offset_m", {kFar, 0, kFar}}}}};
+  return {
+      {Feature::Sphere, {{"type", "sphere"}, {"center_m", {kFar, 0, 0}}, {"radius_m", 1}}},
+      {Feature::Box, {{"type", "box"}, {"center_m", {-kFar, 0, 0}}, {"size_m", {1, 1, 1}}}},
+      {Feature::Plane, {{"type", "plane"}, {"point_m", {0, -kFar, 0}}, {"normal", {0, 1, 0}}}},
+      {Feature::Capsules,
+       {{"type", "hand_capsules"}, {"track", "assets/right-hand-sweep.json"}, {"offset_m", {0, 0, kFar}}}},
+      {Feature::StaticMesh,
+       {{"type", "mesh"}, {"positions_m", {{-1, 0, -kFar}, {1, 0, -kFar}, {0, 1, -kFar}}}, {"triangles", {{0, 1, 2}}}}},
+      {Feature::MovingMesh,
+       {{"type", "hand_mesh"}, {"track", "assets/right-hand-sweep.json"}, {"offset_m", {kFar, 0, kFar}}}}};
 }
 
 }  // namespace
@@ -53,6 +56,9 @@ json with_irrelevant(json scenario, FeatureSet needs, FeatureSet wanted) {
     scenario["cloth"]["sides"] = "double";
     note(Feature::DoubleSided);
   }
+  // Sides matter to nobody while there is nothing to touch; now a solver must have them.
+  if (doubled && own == 0 && !colliders.empty() && !wanted.has(Feature::DoubleSided))
+    scenario["cloth"]["sides"] = "single";
   if (added.empty()) return scenario;
   if (!colliders.empty()) scenario["colliders"] = std::move(colliders);
   scenario["irrelevant"] = std::move(added);

@@ -12,10 +12,12 @@ namespace {
 
 TEST(MaterialCard, TheReferenceIsTheIsotropicSheetItDeclares) {
   const SolverEntry& entry = find_solver("reference");
-  const CellRecord c = measure_material(entry, complete_settings(entry.info, {{"substeps", 4}}), "default", true, {}, "test", 300);
+  const CellRecord c =
+      measure_material(entry, complete_settings(entry.info, {{"substeps", 4}}), "default", true, {}, "test", 300);
   EXPECT_EQ(c.outcome.status + c.outcome.message, "ok");
   const auto value = [&](const char* name) { return c.summary.at(std::string("material_") + name); };
-  for (const char* name : {"E_0", "E_45", "E_90", "E_strip", "E_stiffer", "strip_border"}) EXPECT_NEAR(value(name), 1, 2e-3) << name;
+  for (const char* name : {"E_0", "E_45", "E_90", "E_strip", "E_stiffer", "strip_border"})
+    EXPECT_NEAR(value(name), 1, 2e-3) << name;
   EXPECT_NEAR(value("nu"), 1.0 / 3, 2e-3);
   EXPECT_NEAR(value("G"), 0.375, 2e-3);
   for (const char* name : {"B_0", "B_90", "B_stiffer"}) EXPECT_NEAR(value(name), 1, 5e-3) << name;
@@ -25,7 +27,8 @@ TEST(MaterialCard, TheReferenceIsTheIsotropicSheetItDeclares) {
 
 TEST(MaterialCard, WhoDoesNotStretchHasNone) {
   const SolverEntry& entry = find_solver("ballistic");
-  EXPECT_EQ(measure_material(entry, nlohmann::json::object(), "default", true, {}, "test").outcome.status, "unsupported");
+  EXPECT_EQ(measure_material(entry, nlohmann::json::object(), "default", true, {}, "test").outcome.status,
+            "unsupported");
 }
 
 TEST(MaterialCard, SettingsAreSweptByName) {

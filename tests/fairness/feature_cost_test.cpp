@@ -1,4 +1,6 @@
 // What is irrelevant: how it gets into a scene, that it moves nothing, and the study of its cost from the command line.
+#include "report/feature_cost.hpp"
+
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,7 +11,6 @@
 #include <fstream>
 
 #include "clothbench/error.hpp"
-#include "report/feature_cost.hpp"
 #include "runner/stage_check.hpp"
 #include "scenario/irrelevant.hpp"
 #include "scenario/load.hpp"
@@ -30,7 +31,8 @@ Scene with_all(const std::string& scene, const SolverInfo& info) {
   FeatureSet wanted = info.supports;
   for (const auto& [feature, beside] : info.only_with)
     if (!plain.needs.has(beside)) wanted = wanted - FeatureSet{feature};
-  return scene_from_json(with_irrelevant(file_of(scene), plain.needs, wanted), CLOTHBENCH_SOURCE_DIR "/scenarios/" + scene + ".json");
+  return scene_from_json(with_irrelevant(file_of(scene), plain.needs, wanted),
+                         CLOTHBENCH_SOURCE_DIR "/scenarios/" + scene + ".json");
 }
 
 TEST(Irrelevant, AddsWhatTheSceneLacksFarAway) {
@@ -54,8 +56,10 @@ TEST(Irrelevant, LeavesAFullSceneAlone) {
   const FeatureSet needs = load_scene("paper/gravity").needs;
   EXPECT_EQ(with_irrelevant(scene, needs, needs), scene);
   EXPECT_EQ(with_irrelevant(scene, needs, {}), scene);
-  const json touched = with_irrelevant(file_of("contact/sphere"), load_scene("contact/sphere").needs, {Feature::DoubleSided, Feature::Box});
-  EXPECT_EQ(touched["cloth"]["sides"], file_of("contact/sphere")["cloth"]["sides"]) << "a cloth that touches something keeps its sides";
+  const json touched = with_irrelevant(file_of("contact/sphere"), load_scene("contact/sphere").needs,
+                                       {Feature::DoubleSided, Feature::Box});
+  EXPECT_EQ(touched["cloth"]["sides"], file_of("contact/sphere")["cloth"]["sides"])
+      << "a cloth that touches something keeps its sides";
   EXPECT_EQ(touched["colliders"].size(), 2u);
 }
 
@@ -66,7 +70,8 @@ struct Case {
 std::vector<Case> cases() {
   std::vector<Case> out;
   for (const SolverEntry& e : solvers())
-    for (const char* scene : {"paper/gravity", "validation/swing-strip", "validation/catenary", "validation/two-hand-pull", "paper/two-hand-stretch-2mps"})
+    for (const char* scene : {"paper/gravity", "validation/swing-strip", "validation/catenary",
+                              "validation/two-hand-pull", "paper/two-hand-stretch-2mps"})
       if (e.info.ignores.empty()) out.push_back({e.info.name, scene});
   return out;
 }
@@ -98,6 +103,7 @@ TEST_P(NoOp, MovesNothing) {
   constexpr int kFrames = 10;
   const SolverEntry& entry = find_solver(GetParam().solver);
   const Scene plain = load_scene(GetParam().scene), all = with_all(GetParam().scene, entry.info);
+  EXPECT_TRUE(unsupported(entry.info, all.needs).empty());
   if (all.needs == plain.needs) GTEST_SKIP() << "nothing to switch on";
   try {
     const std::vector<double> a = run(entry, plain, kFrames), b = run(entry, all, kFrames);
@@ -125,7 +131,8 @@ int command(const std::string& arguments) {
 
 TEST(QuickStudy, PairsCellsAndReportsTheirCost) {
   const fs::path dir = fs::temp_directory_path() / ("clothbench-feature-cost-" + std::to_string(getpid()));
-  ASSERT_EQ(command("study feature-cost --quick --solver bullet-soft --out " + (dir / "run").string() + " > /dev/null"), 0);
+  ASSERT_EQ(command("study feature-cost --quick --solver bullet-soft --out " + (dir / "run").string() + " > /dev/null"),
+            0);
   ASSERT_EQ(command("report " + (dir / "run").string() + " -o " + (dir / "report").string() + " > /dev/null"), 0);
   std::ifstream in(dir / "report/feature-cost.json");
   const json rows = json::parse(in);

@@ -27,7 +27,8 @@ std::vector<double> moved(const Scene& s, Fn displacement) {
 Vec3 hang(const Scene& s, double E, double nu, double drift, double along, double across, bool along_v) {
   const double L = along_v ? s.cloth.height_m : s.cloth.width_m, w = along_v ? s.cloth.width_m : s.cloth.height_m;
   const double q = kDensity * 50 / E, t = across - w / 2;
-  const double down = q * (L * along - along * along / 2 - nu * t * t / 2), aside = -nu * q * (L - along) * t + drift * q * (L * along - along * along / 2);
+  const double down = q * (L * along - along * along / 2 - nu * t * t / 2),
+               aside = -nu * q * (L - along) * t + drift * q * (L * along - along * along / 2);
   const Vec3& a = along_v ? s.cloth.axis_v : s.cloth.axis_u;
   const Vec3& b = along_v ? s.cloth.axis_u : s.cloth.axis_v;
   return {down * a[0] + aside * b[0], down * a[1] + aside * b[1], down * a[2] + aside * b[2]};
@@ -45,13 +46,16 @@ TEST(Patches, ReadUniaxialModuli) {
       EXPECT_NEAR(m.at("skew"), 0.5, 1e-9);
     }
   }
-  EXPECT_EQ(*patch_scene(Patch::HangStiffer).material.membrane_stiffness_N_per_m, 2 * *patch_scene(Patch::HangU).material.membrane_stiffness_N_per_m);
+  EXPECT_EQ(*patch_scene(Patch::HangStiffer).material.membrane_stiffness_N_per_m,
+            2 * *patch_scene(Patch::HangU).material.membrane_stiffness_N_per_m);
   EXPECT_FALSE(patch_scene(Patch::HangStrip).needs.has(Feature::Shear));
 }
 
 TEST(Patches, ReadTheShearModulus) {
   const Scene s = patch_scene(Patch::Shear);
-  const auto x = moved(s, [&](double u, double) { return Vec3{0, -kDensity * 150 / (2 * 260.0) * u * (s.cloth.width_m - u), 0}; });
+  const auto x = moved(s, [&](double u, double) {
+    return Vec3{0, -kDensity * 150 / (2 * 260.0) * u * (s.cloth.width_m - u), 0};
+  });
   EXPECT_NEAR(patch_moduli(Patch::Shear, s, x).at("G"), 0.26, 1e-9);
 }
 
@@ -83,7 +87,9 @@ TEST(Patches, ReadRigidities) {
 
 /// Homogenised lattices of springs; columns E_0, nu, G and E_45 as 2 x 2 stiffness matrices give them.
 TEST(Patches, TurnModuliBy45Degrees) {
-  const auto at_45 = [](double E, double nu, double G, double skew = 0) { return modulus_at_45({{"E_0", E}, {"E_90", E}, {"nu", nu}, {"G", G}, {"skew", skew}}); };
+  const auto at_45 = [](double E, double nu, double G, double skew = 0) {
+    return modulus_at_45({{"E_0", E}, {"E_90", E}, {"nu", nu}, {"G", G}, {"skew", skew}});
+  };
   EXPECT_NEAR(at_45(1, 1.0 / 3, 0.375), 1, 1e-12) << "3/4 Y, 3/8 Y";
   EXPECT_NEAR(at_45(1.5, 0.5, 1), 2.4, 1e-12) << "both springs alike";
   EXPECT_NEAR(at_45(1.2, 0.2, 0.25), 0.75, 1e-12) << "areas over squared lengths, alternating diagonals";

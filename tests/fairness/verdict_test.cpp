@@ -11,13 +11,15 @@ namespace {
 
 using nlohmann::json;
 
-CellRecord card(const std::string& solver, const std::string& setting, bool full, std::map<std::string, double> moduli) {
+CellRecord card(const std::string& solver, const std::string& setting, bool full,
+                std::map<std::string, double> moduli) {
   CellRecord c;
   c.header.scene = "material-card";
   c.header.solver = solver;
   c.header.setting = setting;
   c.header.settings = json::object();
-  c.header.scenario_json = full ? R"({"name":"material-card","material_card":"full"})" : R"({"name":"material-card","material_card":"short"})";
+  c.header.scenario_json = full ? R"({"name":"material-card","material_card":"full"})"
+                                : R"({"name":"material-card","material_card":"short"})";
   for (const auto& [name, value] : moduli) c.summary["material_" + name] = value;
   return c;
 }
@@ -29,7 +31,8 @@ std::map<std::string, double> right() {
 MaterialVerdict verdict_of(const std::vector<CellRecord>& cells) { return solver_materials(cells).at(0).verdict; }
 
 TEST(Verdict, AParameterIsHeardAndHeld) {
-  std::vector<CellRecord> cells = {card("a", "default", true, right()), card("a", "substeps=40", false, {{"E_0", 1.04}, {"E_strip", 0.97}, {"B_0", 1}})};
+  std::vector<CellRecord> cells = {card("a", "default", true, right()),
+                                   card("a", "substeps=40", false, {{"E_0", 1.04}, {"E_strip", 0.97}, {"B_0", 1}})};
   EXPECT_EQ(verdict_of(cells).strip + verdict_of(cells).sheet + verdict_of(cells).bending, "");
   cells[1].summary["material_E_0"] = 1.06;
   EXPECT_EQ(verdict_of(cells).strip, "");
@@ -51,15 +54,20 @@ TEST(Verdict, WithoutACardNobodyIsFlagged) {
   EXPECT_EQ(stiffness_flag(solver_materials(cells), "a", "heavy-strip"), "") << "no card at the default setting";
 }
 
-CellRecord cell(const std::string& scene, const std::string& truth, const std::string& solver, double frame_s, double error, double device_s = NAN) {
+CellRecord cell(const std::string& scene, const std::string& truth, const std::string& solver, double frame_s,
+                double error, double device_s = NAN) {
   CellRecord c;
   c.header.scene = scene;
   c.header.solver = solver;
   c.header.setting = "default";
   c.header.settings = json::object();
-  c.header.scenario_json = json{{"name", scene}, {"truth", {{"card", truth}}}, {"time", {{"frame_rate_hz", 60}}}}.dump();
+  c.header.scenario_json =
+      json{{"name", scene}, {"truth", {{"card", truth}}}, {"time", {{"frame_rate_hz", 60}}}}.dump();
   c.header.environment = {{"gpu", "CPU"}};
-  c.summary = {{"frame_wall_median_s", frame_s}, {"frame_device_median_s", device_s}, {"truth_error", error}, {"reference_uncertainty", 1e-7}};
+  c.summary = {{"frame_wall_median_s", frame_s},
+               {"frame_device_median_s", device_s},
+               {"truth_error", error},
+               {"reference_uncertainty", 1e-7}};
   return c;
 }
 
@@ -68,8 +76,9 @@ TEST(Verdict, UnrankedSolversAreShownButNeverFirst) {
   deaf["E_stiffer"] = 0.5;
   const std::vector<CellRecord> cards = {card("deaf", "default", true, deaf), card("good", "default", true, right())};
   const auto materials = solver_materials(cards);
-  const std::vector<CellRecord> cells = {cell("hang", "heavy-strip", "deaf", 1e-3, 1e-5), cell("hang", "heavy-strip", "good", 2e-3, 5e-3, 1e-3),
-                                         cell("swing", "swing-strip", "deaf", 1e-3, 1e-5), cell("swing", "swing-strip", "good", 2e-3, 5e-3)};
+  const std::vector<CellRecord> cells = {
+      cell("hang", "heavy-strip", "deaf", 1e-3, 1e-5), cell("hang", "heavy-strip", "good", 2e-3, 5e-3, 1e-3),
+      cell("swing", "swing-strip", "deaf", 1e-3, 1e-5), cell("swing", "swing-strip", "good", 2e-3, 5e-3)};
   const auto diagrams = work_diagrams(cells, materials);
   EXPECT_TRUE(diagrams[0].flagged.contains("deaf"));
   EXPECT_TRUE(diagrams[1].flagged.empty()) << "a swing asks for no stiffness";
@@ -86,11 +95,13 @@ TEST(Verdict, UnrankedSolversAreShownButNeverFirst) {
   const Table ranks = ranks_table(diagrams);
   ASSERT_EQ(ranks.rows.size(), 3u);
   EXPECT_EQ(ranks.rows[1], (std::vector<std::string>{"deaf", "1", "1.00", "1.00", "1.00"}));
-  EXPECT_EQ(ranks.rows[2], (std::vector<std::string>{"good", "2", "1.41", "1.41", "1.41"})) << "first of one, then second of two";
+  EXPECT_EQ(ranks.rows[2], (std::vector<std::string>{"good", "2", "1.41", "1.41", "1.41"}))
+      << "first of one, then second of two";
 }
 
 TEST(Floors, ErrorsBelowTheMeshsOwnShareARank) {
-  std::vector<CellRecord> cells = {cell("s", "swing-strip", "a", 1e-3, 1e-4), cell("s", "swing-strip", "b", 1e-3, 9e-4), cell("s", "swing-strip", "c", 1e-3, 3e-3)};
+  std::vector<CellRecord> cells = {cell("s", "swing-strip", "a", 1e-3, 1e-4), cell("s", "swing-strip", "b", 1e-3, 9e-4),
+                                   cell("s", "swing-strip", "c", 1e-3, 3e-3)};
   for (CellRecord& c : cells) c.summary["truth_space_error"] = 2e-3;
   const auto d = work_diagrams(cells);
   EXPECT_EQ(d[0].rank_floor(), 2e-3);
