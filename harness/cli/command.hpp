@@ -20,6 +20,7 @@ struct Console {
 void add_list(CLI::App&, Console&);
 void add_validate(CLI::App&, Console&);
 void add_plan(CLI::App&, Console&);
+void add_card(CLI::App&, Console&);
 void add_run(CLI::App&, Console&);
 void add_study(CLI::App&, Console&);
 void add_report(CLI::App&, Console&);

@@ -28,6 +28,7 @@ int run_command_line(const std::vector<std::string>& words) {
   add_list(app, console);
   add_validate(app, console);
   add_plan(app, console);
+  add_card(app, console);
   add_run(app, console);
   add_study(app, console);
   add_report(app, console);

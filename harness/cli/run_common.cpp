@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "cli/material_cards.hpp"
 #include "report/report.hpp"
 #include "runner/environment.hpp"
 #include "truth/draw.hpp"
@@ -83,6 +84,7 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
     RunOptions options{out, flags.resume, flags.device.options,
                        [&](const std::string& what, std::size_t done, std::size_t total) { line.show(what, done, total); }};
     result = run_cells(plan, options);
+    if (plan.material_cards) add_material_cards(plan, options, manifest);
   }
   for (const std::string& fault : result.faults) fmt::print(stderr, "FAULT {}\n", fault);
   if (!result.faults.empty()) console.exit_code = ExitCode::CheckFailed;

@@ -14,7 +14,6 @@ struct Arguments {
   std::vector<std::string> set, only;
   int trials = 0;
   std::optional<std::uint64_t> seed;
-  bool full = false, short_trials = false, quick = false, require_assets = false;
   RunFlags run;
 };
 
@@ -34,7 +33,7 @@ CellPlan plan_study(const Study& study) {
   plan.rules = {study.trials, rules.frames, rules.max_wall_s, rules.min_frames, rules.warmup_s, study.drop_frames, study.accuracy_duration_s,
                 study.cell_limit_s};
   if (!study.stage_times) plan.rules.profiled_frames = 0;
-  plan.references = study.protocol == "work-precision";
+  plan.references = plan.material_cards = study.protocol == "work-precision";
   std::vector<const SolverEntry*> entries;
   for (const StudySolver& s : study.solvers) entries.push_back(s.joined ? &find_solver(s.solver) : built_in(s.solver));
   for (const Study::Item& item : study.scenes) {
@@ -85,6 +84,7 @@ void add_study(CLI::App& app, Console& console) {
     if (a.seed) study.definition["seed"] = *a.seed;
     CellPlan plan = plan_study(study);
     if (a.trials > 0) plan.rules.trials = a.trials;
+    if (a.no_cards) plan.material_cards = false;
     StudyManifest manifest;
     manifest.study = study.name;
     manifest.definition = study.definition;

@@ -32,6 +32,7 @@ Vec3 vec3(const assets::Vector& v) { return {v.x(), v.y(), v.z()}; }
 struct Moving {
   assets::Hand hand;
   assets::HandTrack track;
+  assets::Vector offset = assets::Vector::Zero();  ///< of the whole track
 };
 
 class Reader {
@@ -182,6 +183,7 @@ class Reader {
 
   void hand(const json& j, Collider& c, bool as_mesh) {
     Moving m = moving(j);
+    if (j.contains("offset_m")) m.offset = assets::Vector::Map(vec3(j["offset_m"]).data());
     c.name = fs::path(j["track"].get<std::string>()).stem().string();
     c.shape = as_mesh ? Collider::Shape::Mesh : Collider::Shape::Capsules;
     if (as_mesh) {
@@ -202,11 +204,11 @@ class Reader {
     const assets::HandSample now = assets::sample(m.track, m.hand, time_s);
     ColliderPose pose;
     if (!as_mesh) {
-      for (const assets::Capsule& c : assets::capsules(now.pose)) pose.capsules.push_back({vec3(c.a), vec3(c.b), c.radius_m});
+      for (const assets::Capsule& c : assets::capsules(now.pose)) pose.capsules.push_back({vec3(assets::Vector(c.a + m.offset)), vec3(assets::Vector(c.b + m.offset)), c.radius_m});
       return pose;
     }
     for (std::size_t k = 0; k < assets::kJointCount; ++k) {
-      const Eigen::Affine3d skin = now.pose.joints[k] * m.hand.mesh.inverse_bind[k];
+      const Eigen::Affine3d skin = Eigen::Translation3d(m.offset) * (now.pose.joints[k] * m.hand.mesh.inverse_bind[k]);
       Affine& a = pose.joints.emplace_back();
       for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 4; ++column) a[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = skin.matrix()(row, column);
