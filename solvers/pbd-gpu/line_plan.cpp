@@ -144,12 +144,13 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   // Of a frame of 1/72 s. A link must not turn by more than about half a radian a substep.
   constexpr Rule kAlternated[] = {{2, 20}, {6, 12}, {20, 6}}, kTethered[] = {{3, 25}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
-                 kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
+                 kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}}, kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
   const Rule rule = !touched                           ? kUntouched[k]
                     : alternated                       ? kAlternated[k]
                     : !tethers.to.empty()              ? kTethered[k]
                     : !scene.needs.has(Feature::Shear) ? kStrips[k]
-                                                       : kSheet[k];
+                    : scene.grips.vertices.empty()     ? kSheet[k]
+                                                       : kPulled[k];
   const double per_frame = std::max(rule.least, links / rule.links_a_substep) * 72 * scene.time.dt();
   const long whole = alternated ? 2 * std::max(1L, std::lround(per_frame / 2)) : std::lround(per_frame);
   return static_cast<int>(std::clamp(whole, 1L, 4096L));
@@ -158,15 +159,18 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
 LineShape frame_shape(int columns, int rows, std::uint32_t vertices, const LineDevice& device) {
   const auto longest = static_cast<std::uint32_t>(std::max(columns, rows));
   if (longest > 32) return {};
-  for (const std::uint32_t k : {vertices, 4u, 8u, 16u}) {
-    if (k == 0 || (vertices != 0 && k != vertices)) continue;
+  const std::uint32_t first = vertices != 0 ? vertices : device.wide ? 2 : 4;
+  for (const std::uint32_t k : {first, 4u, 8u, 16u}) {
+    if (vertices != 0 && k != vertices) continue;
     LineShape s{std::bit_ceil((longest + k - 1) / k), k, 0, false};
     s.shuffles = s.lanes <= device.subgroup;
     // Whole subgroups, so that threads number as their lanes do; and one for each row of bits of held vertices.
     const std::uint32_t whole = std::max(device.subgroup, 32u);
     s.threads = (s.lanes * longest + whole - 1) / whole * whole;
     const std::uint32_t state_B = 6 * 4 * 34 * static_cast<std::uint32_t>(rows) + 128;
-    if (s.threads <= device.most_threads && state_B + (s.shuffles ? 0 : 16 * s.threads) <= device.shared_B) return s;
+    // Twice the threads are worth it for shuffles, not for barriers.
+    const std::uint32_t most = k < 4 && (s.shuffles || vertices != 0) ? device.most_threads : std::min(256u, device.most_threads);
+    if (s.threads <= most && state_B + (s.shuffles ? 0 : 16 * s.threads) <= device.shared_B) return s;
   }
   return {};
 }

@@ -78,10 +78,8 @@ LineDevice Lines::device() const {
   const vulkan::Device& d = solver_.vulkan_device();
   LineDevice line;
   if (solver_.settings()["shuffles"].get<bool>()) line.subgroup = d.shuffled_lanes();
-  // 256 threads where no more is asked for: some devices that allow 1024 have registers for few such groups.
   line.most_threads = std::min(d.limits().maxComputeWorkGroupInvocations, d.limits().maxComputeWorkGroupSize[0]);
-  const auto vertices = solver_.settings()["vertices_a_thread"].get<std::uint32_t>();
-  if (vertices == 0 || vertices >= 4) line.most_threads = std::min(line.most_threads, 256u);
+  line.wide = d.is_discrete();
   line.shared_B = std::min(d.limits().maxComputeSharedMemorySize, 32768u);
   return line;
 }

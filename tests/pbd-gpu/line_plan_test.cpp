@@ -75,7 +75,7 @@ TEST(Substeps, FollowTheRule) {
 }
 
 TEST(Shapes, FitDevices) {
-  const LineDevice lavapipe{8, 1024, 32768}, nvidia{32, 1024, 49152}, adreno{64, 256, 32768}, least{0, 128, 16384};
+  const LineDevice lavapipe{8, 1024, 32768}, nvidia{32, 1024, 32768, true}, adreno{64, 256, 32768}, least{0, 128, 16384};
   for (const LineDevice& d : {lavapipe, nvidia, adreno, least})
     for (const int n : {2, 3, 7, 17, 32, 33, 64, 100, 129, 256, 512, 1000, 1024}) {
       for (const LineShape& s : {frame_shape(n, 2, 0, d), frame_shape(n, n, 0, d), pass_shape(n, 0, d)}) {
@@ -83,7 +83,7 @@ TEST(Shapes, FitDevices) {
           EXPECT_TRUE(n > 32 || d.shared_B < 32768) << n;
           continue;
         }
-        EXPECT_LE(s.threads, std::min(256u, d.most_threads));
+        EXPECT_LE(s.threads, std::min(d.wide ? 512u : 256u, d.most_threads));
         EXPECT_GE(s.lanes * s.vertices, static_cast<std::uint32_t>(n));
         EXPECT_EQ(s.lanes & (s.lanes - 1), 0u);
         EXPECT_EQ(s.threads % s.lanes, 0u);
@@ -93,6 +93,8 @@ TEST(Shapes, FitDevices) {
         }
       }
     }
+  EXPECT_EQ(frame_shape(32, 32, 0, nvidia).threads, 512u);
+  EXPECT_EQ(frame_shape(32, 32, 0, adreno).threads, 256u);
   EXPECT_THROW(pass_shape(8193, 0, nvidia), Error);
 }
 

@@ -51,6 +51,7 @@ class Device {
   bool is_software() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   /// Lanes of a subgroup that compute shaders can shuffle values between; 0 where they cannot.
   std::uint32_t shuffled_lanes() const { return shuffled_lanes_; }
+  bool is_discrete() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU; }
   DeviceInfo info() const;
 
   /// Memory type with all of `wanted`, or kNoMemory.
