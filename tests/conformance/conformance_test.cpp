@@ -59,6 +59,9 @@ class Conformance : public ::testing::TestWithParam<Case> {
       overrides.back() = c.grid == "[2,2]" ? "cloth.grid=[17,2]" : "cloth.grid=[17,7]";
     scene_ = load_scene(c.scene, overrides);
     entry_ = &find_solver(c.solver);
+    // Its constraints are exact: a sheet with inextensible diagonals too has more of them than ways to move.
+    if (c.solver == "reference" && !scene_.material.membrane_stiffness_N_per_m && scene_.needs.has(Feature::Shear))
+      GTEST_SKIP() << "diverges: over-determined";
     try {
       solver_ = entry_->make(complete_settings(entry_->info, nlohmann::json::object()), {-1, true, c.profile});
     } catch (const Error& e) {
