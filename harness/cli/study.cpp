@@ -14,6 +14,7 @@ struct Arguments {
   std::vector<std::string> set, only;
   int trials = 0;
   std::optional<std::uint64_t> seed;
+  bool full = false, short_trials = false, quick = false, require_assets = false, no_cards = false;
   RunFlags run;
 };
 
@@ -71,6 +72,7 @@ void add_study(CLI::App& app, Console& console) {
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
   cmd->add_flag("--resume", a.run.resume, "Go on with the folder of an interrupted study");
   add_seed(*cmd, a.seed);
+  cmd->add_flag("--no-cards", a.no_cards, "No material cards after a work-precision study (then no solver is left unranked for its stiffness)");
   add_require_assets(*cmd, a.require_assets);
   a.run.device.add_to(*cmd);
   cmd->footer("Example: clothbench study table3 --out results/runs/mine");
