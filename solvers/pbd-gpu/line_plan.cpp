@@ -145,7 +145,10 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   constexpr Rule kAlternated[] = {{2, 20}, {6, 12}, {20, 6}}, kTethered[] = {{3, 25}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
                  kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}}, kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
+  // A hand pushes a cloth in ways that no tether knows of.
+  const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   const Rule rule = !touched                           ? kUntouched[k]
+                    : driven                           ? kSheet[k]
                     : alternated                       ? kAlternated[k]
                     : !tethers.to.empty()              ? kTethered[k]
                     : !scene.needs.has(Feature::Shear) ? kStrips[k]
