@@ -120,8 +120,12 @@ double WorkDiagram::rank_floor() const {
 
 std::string WorkDiagram::refused() const {
   if (!std::isfinite(uncertainty)) return "no reference solution";
-  // The truth itself is exact where the reference confirms it; the reference's own doubt is what counts here.
-  if (!(floor() < best_error())) return fmt::format("3 U_ref {:.1e} is not below the best error {:.1e}", floor(), best_error());
+  // The truth itself is exact where the reference confirms it; the reference's own doubt is what counts here. Nobody is
+  // ranked below the error of the mesh, so an error below that asks no more of the reference.
+  const double best = best_error();
+  if (!std::isfinite(best)) return "no solver that is judged on it has an error";
+  const double least = std::max(best, std::isfinite(space_error) ? space_error : 0.0);
+  if (!(floor() < least)) return fmt::format("3 U_ref {:.1e} is not below the best error {:.1e}", floor(), least);
   return "";
 }
 

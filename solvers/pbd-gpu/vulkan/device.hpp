@@ -27,7 +27,7 @@ class Failure : public Error {
 void check(VkResult result, const char* call);
 
 /// Instance, device and its one compute queue (Vulkan 1.1 core, no required extension). One a process for each
-/// (index, validation, profile), shared by all solvers.
+/// (index, validation, profile), shared by all solvers and kept until the process ends.
 class Device {
  public:
   /// The device `options.index`, or the best present: discrete, integrated, virtual, then CPU. Throws Error with
