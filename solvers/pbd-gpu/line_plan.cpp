@@ -141,7 +141,8 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   const bool touched = !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins})).empty();
   const Tethers tethers = settings.value("tethers", true) ? tethers_of(scene) : Tethers{};
   const bool alternated = can_alternate(scene, tethers);
-  // Of a frame of 1/72 s. A link must not turn by more than about half a radian a substep.
+  // Of a frame, however long it is: a number of seconds in here would be one that similar scenes do not share. A link must not
+  // turn by more than about half a radian a substep.
   constexpr Rule kAlternated[] = {{2, 20}, {6, 12}, {20, 6}}, kTethered[] = {{3, 25}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
                  kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}}, kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
@@ -154,7 +155,7 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
                     : !scene.needs.has(Feature::Shear) ? kStrips[k]
                     : scene.grips.vertices.empty()     ? kSheet[k]
                                                        : kPulled[k];
-  const double per_frame = std::max(rule.least, links / rule.links_a_substep) * 72 * scene.time.dt();
+  const double per_frame = std::max(rule.least, links / rule.links_a_substep);
   const long whole = alternated ? 2 * std::max(1L, std::lround(per_frame / 2)) : std::lround(per_frame);
   return static_cast<int>(std::clamp(whole, 1L, 4096L));
 }
