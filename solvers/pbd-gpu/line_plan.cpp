@@ -39,7 +39,6 @@ std::vector<PinnedRectangle> rectangles(const Cloth& c, const std::vector<std::u
   return found;
 }
 
-double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 
 /// Does the cloth start within its tethers? If not, its pins are farther apart than it is long, or it starts stretched.
 bool start_within(const Scene& s, const Tethers& t) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -7,6 +8,9 @@
 #include "clothbench/scene.hpp"
 
 namespace clothbench::pbd_gpu {
+
+/// Length of a vector.
+inline double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 
 /// Pinned vertices that fill a rectangle of the grid, first and last included: a corner, an edge, a clamp.
 struct PinnedRectangle {

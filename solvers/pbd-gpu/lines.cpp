@@ -36,7 +36,6 @@ Tethers tethers_if(bool wanted, const Scene& scene) {
   return none;
 }
 
-double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 
 }  // namespace
 
