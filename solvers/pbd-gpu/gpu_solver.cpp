@@ -152,6 +152,7 @@ void GpuSolver::reset() {
     grips_->reset();
     update_inverse_masses();
   }
+  if (missed_ != nullptr) std::memset(missed_->mapped(), 0, sizeof(std::uint32_t));
   ready_ = run(*upload_);
 }
 
@@ -160,7 +161,11 @@ StepStatus GpuSolver::step(const FrameInput& frame) {
   if (frame.dt_s != dt_s_) record(frame.dt_s);
   if (colliders_) colliders_->write(frame.motion);
   if (grips_ && grips_->write(frame.motion)) update_inverse_masses();
-  return run(*frame_);
+  const StepStatus status = run(*frame_);
+  if (status != StepStatus::Ok || missed_ == nullptr) return status;
+  std::uint32_t missed = 0;
+  std::memcpy(&missed, missed_->mapped(), sizeof missed);
+  return missed == 0 ? StepStatus::Ok : StepStatus::TimedOut;
 }
 
 void GpuSolver::read_state(ClothState& state) const {

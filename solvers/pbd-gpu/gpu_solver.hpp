@@ -63,6 +63,9 @@ class GpuSolver : public ClothSolver {
   /// Read back by read_state: the first `vertex_count` vec4 of each.
   void set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m);
 
+  /// A word in host memory that a kernel sets where workgroups waited for one another in vain: such a frame is TimedOut.
+  void set_missed(const vulkan::Buffer& word) { missed_ = &word; }
+
   int add_stage(const std::string& name, FeatureSet serves);
   vulkan::Kernel& add_kernel(int stage, const Shader& shader, std::vector<vulkan::Binding> bindings,
                              std::uint32_t push_bytes, std::vector<std::uint32_t> specialization = {},
@@ -118,6 +121,7 @@ class GpuSolver : public ClothSolver {
   Vec3 origin_m_{};
   std::vector<float> inverse_mass_now_;
   bool only_counting_ = false;
+  const vulkan::Buffer* missed_ = nullptr;
   // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
   std::vector<Initial> initials_;

@@ -159,7 +159,8 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   return static_cast<int>(std::clamp(whole, 1L, 4096L));
 }
 
-LineShape frame_shape(int columns, int rows, std::uint32_t vertices, const LineDevice& device) {
+LineShape frame_shape(int columns, int rows, const LineWish& wish, const LineDevice& device) {
+  const std::uint32_t vertices = wish.vertices;
   const auto longest = static_cast<std::uint32_t>(std::max(columns, rows));
   if (longest > 32) return {};
   const std::uint32_t first = vertices != 0 ? vertices : device.wide ? 2 : 4;
@@ -167,7 +168,9 @@ LineShape frame_shape(int columns, int rows, std::uint32_t vertices, const LineD
     if (vertices != 0 && k != vertices) continue;
     LineShape s{std::bit_ceil((longest + k - 1) / k), k, 0, false};
     s.shuffles = s.lanes <= device.subgroup;
-    // Whole subgroups, so that threads number as their lanes do; and one for each row of bits of held vertices.
+    if (s.shuffles) s.beside = wish.beside != 0 ? wish.beside : 1;
+  s.threads = std::max(s.threads, s.lanes * s.beside);
+  // Whole subgroups, so that threads number as their lanes do; and one for each row of bits of held vertices.
     const std::uint32_t whole = std::max(device.subgroup, 32u);
     s.threads = (s.lanes * longest + whole - 1) / whole * whole;
     const std::uint32_t state_B = 6 * 4 * 34 * static_cast<std::uint32_t>(rows) + 128;
@@ -178,20 +181,22 @@ LineShape frame_shape(int columns, int rows, std::uint32_t vertices, const LineD
   return {};
 }
 
-LineShape pass_shape(int length, std::uint32_t vertices, const LineDevice& device) {
+LineShape pass_shape(int length, const LineWish& wish, const LineDevice& device) {
   const auto n = static_cast<std::uint32_t>(length);
-  const std::uint32_t most = std::min(256u, device.most_threads);
+  const std::uint32_t most = std::min(wish.threads != 0 ? wish.threads : 256u, device.most_threads);
   LineShape s;
   for (const std::uint32_t k : {2u, 4u, 8u, 16u, 32u}) {
     const std::uint32_t lanes = std::bit_ceil((n + k - 1) / k);
-    if (lanes > most || k < (vertices != 0 ? vertices : 4)) continue;
-    s = {lanes, k, std::max(lanes, std::min(64u, most)), lanes <= device.subgroup};
-    // Four vertices a thread by shuffles, or eight: past that registers run out, and memory is shared instead.
-    if (vertices != 0 || s.shuffles || k >= 8) break;
+    if (lanes > most || k < (wish.vertices != 0 ? wish.vertices : device.wide ? 2 : 4)) continue;
+    s = {lanes, k, std::max(lanes, wish.threads != 0 ? most : std::min(64u, most)), device.subgroup > 0};
+    break;
   }
   if (s.lanes == 0)
     throw Error("solver xpbd: a cloth of " + std::to_string(length) + " vertices a side; expected at most " +
                 std::to_string(32 * most));
+  if (s.shuffles) s.beside = wish.beside != 0 ? wish.beside : 1;
+  s.threads = std::max(s.threads, s.lanes * s.beside);
+  // Whole subgroups, so that threads number as their lanes do.
   if (s.shuffles) s.threads = (s.threads + device.subgroup - 1) / device.subgroup * device.subgroup;
   return s;
 }

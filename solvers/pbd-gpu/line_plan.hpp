@@ -45,7 +45,7 @@ int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 struct LineDevice {
   std::uint32_t subgroup = 0;  ///< lanes that exchange by shuffles; 0 = none
   std::uint32_t most_threads = 128, shared_B = 16384;
-  /// Two vertices a thread and up to 512 threads a workgroup: faster by 10 to 15 % on an H200; elsewhere registers
+  /// Two vertices a thread and up to 512 threads a workgroup: faster by 8 to 14 % on an H200; elsewhere registers
   /// may be few.
   bool wide = false;
 };
@@ -54,13 +54,17 @@ struct LineDevice {
 struct LineShape {
   std::uint32_t lanes = 0, vertices = 0, threads = 0;
   bool shuffles = false;
+  std::uint32_t beside = 1;  ///< neighbouring chains whose threads take turns
   std::uint32_t chains_a_group() const { return threads / lanes; }
 };
+/// What the user asks of shapes; 0 leaves the choice here.
+struct LineWish {
+  std::uint32_t vertices = 0, threads = 0, beside = 0;
+};
 /// Of the kernel that takes a whole cloth through a frame; threads = 0 if the cloth or the device does not fit it.
-/// `vertices` = 0 chooses.
-LineShape frame_shape(int columns, int rows, std::uint32_t vertices, const LineDevice&);
+LineShape frame_shape(int columns, int rows, const LineWish&, const LineDevice&);
 /// Of the kernel of one family of lines of `length` vertices. Throws Error past 8192.
-LineShape pass_shape(int length, std::uint32_t vertices, const LineDevice&);
+LineShape pass_shape(int length, const LineWish&, const LineDevice&);
 
 /// Rounds of cyclic reduction after which what is left of the bending matrix is below a ten-millionth: with alpha well
 /// above the inverse masses hinges hardly feel one another. At most log2(lanes).

@@ -12,6 +12,15 @@ using vulkan::Access;
 /// without. Ten times as much shows in the length of the cloth, a tenth lets links of some cloths blow up.
 constexpr double kFirmness = 1e-3;
 
+/// Looks at who has come to a barrier of the whole dispatch, at loading and in a frame: some 10 ms and 1 s. A look takes
+/// some 0.5 us on a GPU and 3 ns on a CPU.
+struct Patience {
+  std::uint32_t at_loading, in_a_frame;
+};
+Patience patience(const vulkan::Device& d) {
+  return d.is_software() ? Patience{1u << 24, 1u << 30} : Patience{1u << 14, 1u << 21};
+}
+
 /// Springs whose homogenised sheet is isotropic with uniaxial stiffness Y and Poisson ratio 1/3, the only ratio central
 /// springs allow (C12 = C66): for square cells 3/4 Y along the grid and 3/8 Y on each diagonal. On du x dv cells the
 /// same conditions give the values below; beyond an aspect of about 1.6 the grid spring would fall under a tenth of
@@ -65,12 +74,18 @@ Lines::Lines(GpuSolver& solver, const Scene& scene, const vulkan::Buffer& x, con
     link_multipliers_ = &solver_.add_buffer("link multipliers", (scene.needs.has(Feature::Shear) ? 4 : 2) * n * 4);
   if (keep_ && scene.needs.has(Feature::Bend))
     hinge_multipliers_ = &solver_.add_buffer("hinge multipliers", 2 * n * sizeof(vec4));
-  const auto vertices = solver.settings()["vertices_a_thread"].get<std::uint32_t>();
-  const LineShape frame = frame_shape(scene.cloth.columns, scene.cloth.rows, vertices, device());
-  if (frame.threads > 0 && solver.settings()["one_dispatch"].get<bool>())
+  const bool one = solver.settings()["one_dispatch"].get<bool>();
+  const LineShape frame = frame_shape(scene.cloth.columns, scene.cloth.rows, wish(), device());
+  if (frame.threads > 0 && one)
     add_frame(frame);
-  else
+  else if (!one || !add_resident())
     add_passes();
+}
+
+LineWish Lines::wish() const {
+  return {solver_.settings()["vertices_a_thread"].get<std::uint32_t>(),
+          solver_.settings()["threads_a_group"].get<std::uint32_t>(),
+          solver_.settings()["lines_beside"].get<std::uint32_t>()};
 }
 
 LineDevice Lines::device() const {
@@ -111,6 +126,8 @@ std::vector<std::uint32_t> Lines::specialization(const LineShape& shape) const {
     s.push_back(r.first_column | r.first_row << 16);
     s.push_back(r.last_column | r.last_row << 16);
   }
+  s.push_back(std::max(1u, device().subgroup));
+  s.push_back(shape.beside);
   return s;
 }
 
@@ -145,22 +162,76 @@ void Lines::add_frame(const LineShape& shape) {
                                bindings(grips), sizeof(LineConstants), s, shape.threads);
 }
 
+void Lines::add_firmness() {
+  if (!firm_) return;
+  std::vector<std::uint8_t> bytes(taut_.size() * 4);
+  for (std::size_t k = 0; k < taut_.size(); ++k) {
+    const float least = taut_[k] != 0 ? static_cast<float>(kFirmness) : 0.0f;
+    std::memcpy(&bytes[4 * k], &least, 4);
+  }
+  firmness_ = &solver_.add_buffer("firmness", bytes.size(), bytes);
+}
+
+/// False where the device does not run all workgroups at once, or nobody can tell.
+bool Lines::add_resident() {
+  const std::string wanted = solver_.settings()["device_barrier"];
+  const bool may = wanted == "always" || (wanted == "auto" && device().wide);
+  if (!may || device().subgroup == 0) return false;
+  const LineShape shape = pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), wish(), device());
+  const auto chains = static_cast<std::uint32_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
+  const vulkan::Groups groups = vulkan::groups_for(chains, shape.chains_a_group());
+  vulkan::Buffer meeting(solver_.device_, "meeting", 8, vulkan::Buffer::Place::Device),
+      zeros(solver_.device_, "meeting (initial)", 8, vulkan::Buffer::Place::Host),
+      missed(solver_.device_, "missed", 4, vulkan::Buffer::Place::Host);
+  std::memset(zeros.mapped(), 0, 8);
+  std::memset(missed.mapped(), 0, 4);
+  const auto with_barrier = [&](const vulkan::Buffer& m, const vulkan::Buffer& none) {
+    std::vector<vulkan::Binding> b = bindings(firmness_);
+    b.push_back({&m, Access::ReadWrite});
+    b.push_back({&none, Access::Write});
+    return b;
+  };
+  std::vector<std::uint32_t> s = specialization(shape);
+  {
+    std::vector<std::uint32_t> trial = s;
+    trial.insert(trial.begin(), shape.threads);
+    const vulkan::Kernel kernel(solver_.device_, "line_pass_resident", shaders::kLinesResident[keep_ ? 1 : 0].code, trial,
+                                with_barrier(meeting, missed), sizeof(LineConstants));
+    vulkan::Program program(solver_.device_);
+    program.copy(0, zeros, meeting);
+    LineConstants c{};
+    c.patience = patience(*solver_.device_).at_loading;
+    program.dispatch(0, kernel, groups, c);
+    program.record(false);
+    program.run(2);
+    std::uint32_t failed = 0;
+    std::memcpy(&failed, missed.mapped(), 4);
+    if (failed != 0) {
+      if (wanted == "always")
+        throw Error("solver xpbd: setting device_barrier=always: this device does not run " +
+                    std::to_string(groups.x * groups.y) + " workgroups of " + std::to_string(shape.threads) + " at once");
+      return false;
+    }
+  }
+  add_firmness();
+  shape_[0] = shape_[1] = shape_[2] = shape;
+  const FeatureSet serves{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins};
+  stage_frame_ = solver_.add_stage("Lines", scene_.needs & serves);
+  meeting_ = &solver_.add_buffer("meeting", 8);
+  vulkan::Buffer& host = solver_.add_host_buffer("missed", 4);
+  std::memset(host.mapped(), 0, 4);
+  solver_.set_missed(host);
+  missed_ = &host;
+  resident_ = &solver_.add_kernel(stage_frame_, shaders::kLinesResident[keep_ ? 1 : 0], with_barrier(*meeting_, host),
+                                  sizeof(LineConstants), s, shape.threads);
+  return true;
+}
+
 void Lines::add_passes() {
   const FeatureSet needs = scene_.needs;
-  const auto vertices = solver_.settings()["vertices_a_thread"].get<std::uint32_t>();
-  shape_[0] = pass_shape(scene_.cloth.columns, vertices, device());
-  shape_[1] = shape_[2] = pass_shape(scene_.cloth.rows, vertices, device());
-  if (firm_) {
-    vulkan::Buffer& b = solver_.add_buffer("firmness", taut_.size() * 4, [&] {
-      std::vector<std::uint8_t> bytes(taut_.size() * 4);
-      for (std::size_t k = 0; k < taut_.size(); ++k) {
-        const float least = taut_[k] != 0 ? static_cast<float>(kFirmness) : 0.0f;
-        std::memcpy(&bytes[4 * k], &least, 4);
-      }
-      return bytes;
-    }());
-    firmness_ = &b;
-  }
+  shape_[0] = pass_shape(scene_.cloth.columns, wish(), device());
+  shape_[1] = shape_[2] = pass_shape(scene_.cloth.rows, wish(), device());
+  add_firmness();
   const char* const names[] = {"Rows", "Columns", "Diagonals"};
   const FeatureSet serves[] = {{Feature::Stretch, Feature::Bend, Feature::Damping, Feature::Pins},
                                {Feature::Stretch, Feature::Bend},
@@ -207,6 +278,8 @@ LineConstants Lines::constants(double dt_s, int substeps) const {
   c.substep_part = f(1.0 / substeps);
   c.frames_per_s = f(1 / dt_s);
   c.iterations = iterations_;
+  c.per_h = f(1 / h);
+  c.patience = patience(*solver_.device_).in_a_frame;
   return c;
 }
 
@@ -235,30 +308,53 @@ Traffic Lines::multiplier_traffic(std::uint32_t family, std::uint32_t iteration)
   return {iteration > 0 ? 2 * bytes : 0, bytes};
 }
 
+/// Of one family: every vertex is read, free ones are written; what the first integrates, its rests and tethers too.
+Traffic Lines::pass_traffic(std::uint32_t family, std::uint32_t iteration, bool first) const {
+  const std::vector<float>& w = solver_.inverse_mass_now();
+  const auto n = static_cast<double>(w.size());
+  const auto free = static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }));
+  const auto chains = static_cast<double>(family == 0 ? scene_.cloth.rows : scene_.cloth.columns);
+  Traffic t = multiplier_traffic(family, iteration);
+  t.read_B += 32 * n + (firmness_ != nullptr ? 4.0 * shape_[std::min(family, 2u)].lanes * chains : 0);
+  t.write_B += 32 * free;
+  if (first) {
+    t.read_B += 32 * n + 16 * static_cast<double>(tethers_.to.size()) * free;
+    t.write_B += 32 * free;
+  }
+  return t;
+}
+
 void Lines::record(int first, int count, int substeps, double dt_s) {
   LineConstants c = constants(dt_s, substeps);
   c.first_substep = static_cast<std::uint32_t>(first);
   c.substeps = static_cast<std::uint32_t>(count);
-  if (frame_ == nullptr) {
+  if (frame_ == nullptr && resident_ == nullptr) {
     record_passes(c, alternate_ && first % 2 != 0);
     return;
   }
   const auto n = static_cast<double>(scene_.cloth.vertex_count());
-  Traffic t{64 * n + static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count), 64 * n};
   const std::uint32_t families = scene_.needs.has(Feature::Shear) ? 4 : 2;
-  for (std::uint32_t iteration = 0; iteration < iterations_ && keep_; ++iteration)
-    for (std::uint32_t family = 0; family < families; ++family) {
-      const Traffic m = multiplier_traffic(family, iteration);
-      t.read_B += count * m.read_B;
-      t.write_B += count * m.write_B;
-    }
-  solver_.dispatch_groups(stage_frame_, *frame_, {1, 1}, c, t);
+  Traffic t;
+  if (frame_ != nullptr)
+    t = {64 * n + static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count), 64 * n};
+  for (int s = first; s < first + count; ++s)
+    for (std::uint32_t iteration = 0; iteration < iterations_; ++iteration)
+      for (std::uint32_t turn = 0; turn < families; ++turn) {
+        const std::uint32_t family = alternate_ && s % 2 != 0 ? families - 1 - turn : turn;
+        const Traffic m = frame_ != nullptr ? multiplier_traffic(family, iteration)
+                                            : pass_traffic(family, iteration, turn == 0 && iteration == 0);
+        t.read_B += m.read_B;
+        t.write_B += m.write_B;
+      }
+  if (frame_ != nullptr) {
+    solver_.dispatch_groups(stage_frame_, *frame_, {1, 1}, c, t);
+    return;
+  }
+  const auto chains = static_cast<std::uint32_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
+  solver_.dispatch_groups(stage_frame_, *resident_, vulkan::groups_for(chains, shape_[0].chains_a_group()), c, t);
 }
 
 void Lines::record_passes(LineConstants c, bool reversed) {
-  const std::vector<float>& w = solver_.inverse_mass_now();
-  const auto n = static_cast<double>(w.size());
-  const auto free = static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }));
   const std::uint32_t families = scene_.needs.has(Feature::Shear) ? 4 : 2;
   for (c.iteration = 0; c.iteration < iterations_; ++c.iteration)
     for (std::uint32_t turn = 0; turn < families; ++turn) {
@@ -267,16 +363,9 @@ void Lines::record_passes(LineConstants c, bool reversed) {
       const bool last = turn + 1 == families && c.iteration + 1 == iterations_;
       c.turn = (first ? LINES_FIRST : 0) | (last ? LINES_LAST : 0);
       const std::size_t kind = std::min(c.family, 2u);
-      const LineShape& shape = shape_[kind];
       const auto chains = static_cast<std::uint32_t>(c.family == 0 ? scene_.cloth.rows : scene_.cloth.columns);
-      Traffic t = multiplier_traffic(c.family, c.iteration);
-      t.read_B += 16 * n + 16 * free + (firmness_ != nullptr ? 4.0 * shape.lanes * chains : 0);
-      t.write_B += 32 * free;
-      if (first) {
-        t.read_B += (32 + 16 * static_cast<double>(tethers_.to.size())) * free;
-        t.write_B += 32 * free;
-      }
-      solver_.dispatch_groups(stage_[kind], *pass_[kind], vulkan::groups_for(chains, shape.chains_a_group()), c, t);
+      solver_.dispatch_groups(stage_[kind], *pass_[kind], vulkan::groups_for(chains, shape_[kind].chains_a_group()), c,
+                              pass_traffic(c.family, c.iteration, first));
     }
 }
 

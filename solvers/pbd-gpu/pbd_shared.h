@@ -67,6 +67,8 @@ struct LineConstants {
   float frames_per_s;
   uint iterations;
   uint family, turn, iteration;  // of one pass
+  uint patience;                 // looks at who has come to a barrier of the whole dispatch
+  float per_h;                   // 1/h
 };
 
 // Colliders. Lengths in metres, positions relative to the method's origin.
@@ -167,6 +169,6 @@ static_assert(sizeof(JointMatrix) == 48);
 static_assert(sizeof(GripVertex) == 48);
 static_assert(sizeof(DistanceConstraint) == 16);
 static_assert(sizeof(PaperConstants) == 48);
-static_assert(sizeof(LineConstants) == 112);
+static_assert(sizeof(LineConstants) == 120);
 }  // namespace clothbench::pbd_gpu
 #endif

@@ -231,6 +231,23 @@ CODE(line_pass_shuffle_keep_counted)
 }
 ;
 
+CODE(line_pass_resident)
+#include "line_pass_resident.inc"
+}
+;
+CODE(line_pass_resident_counted)
+#include "line_pass_resident_counted.inc"
+}
+;
+CODE(line_pass_resident_keep)
+#include "line_pass_resident_keep.inc"
+}
+;
+CODE(line_pass_resident_keep_counted)
+#include "line_pass_resident_keep_counted.inc"
+}
+;
+
 }  // namespace
 
 namespace shaders {
@@ -260,6 +277,7 @@ SHADER(kContactVerticesMesh, contact_vertices_mesh);
   const Shader constant[2][2] = {{CODES(id), CODES(id##_keep)}, {CODES(id##_shuffle), CODES(id##_shuffle_keep)}}
 LINES(kLineFrame, line_frame);
 LINES(kLinePass, line_pass);
+const Shader kLinesResident[2] = {CODES(line_pass_resident), CODES(line_pass_resident_keep)};
 }  // namespace shaders
 
 }  // namespace clothbench::pbd_gpu

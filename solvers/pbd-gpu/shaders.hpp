@@ -17,6 +17,8 @@ extern const Shader kApplyExternalForces, kDampVelocities, kApplyExplicitEuler, 
 
 /// By whether subgroups exchange by shuffles [0] and multipliers are kept [1].
 extern const Shader kLineFrame[2][2], kLinePass[2][2];
+/// With shuffles; by whether multipliers are kept.
+extern const Shader kLinesResident[2];
 }
 
 }  // namespace clothbench::pbd_gpu

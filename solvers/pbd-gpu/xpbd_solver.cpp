@@ -34,7 +34,7 @@ class Xpbd final : public GpuSolver {
     add_colliders(origin, true);
     add_grips(origin, 1);
     lines_ = std::make_unique<Lines>(*this, scene(), *x_, *v_, *rx_, *rv_);
-    if (grips() != nullptr && !lines_->whole_frame()) move_grips_ = &grips()->add_kernel(*x_, *v_);
+    if (grips() != nullptr && !lines_->moves_grips()) move_grips_ = &grips()->add_kernel(*x_, *v_);
     if ((scene().needs & kColliderFeatures).empty())
       leave_out("contact", "the scene has no collider");
     else
@@ -84,9 +84,12 @@ SolverInfo xpbd_info() {
       {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
       {"contact_samples", "1", "points on each edge that take part in contact beside its two vertices, 0 to 16"},
       {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
-      {"one_dispatch", "true", "up to 32 x 32 vertices a whole frame in one dispatch; false: one a family of lines"},
+      {"one_dispatch", "true", "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
+      {"device_barrier", "\"auto\"", "one dispatch of many workgroups that wait for one another: auto (discrete GPUs that run them all at once), always, never"},
       {"shuffles", "true", "threads of a line exchange by subgroup shuffles where lines fit a subgroup"},
       {"vertices_a_thread", "0", "of a line: 2, 4, 8, 16 or 32; 0: by line and device"},
+      {"threads_a_group", "0", "of one family's workgroups: 32 to 1024; 0: by line and device"},
+      {"lines_beside", "0", "neighbouring lines whose threads take turns, so that memory is read by whole sectors: 1, 2 or 4; 0: by line and device"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   return info;
 }
@@ -101,6 +104,13 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   if (vertices != 0 && vertices != 2 && vertices != 4 && vertices != 8 && vertices != 16 && vertices != 32)
     throw Error("solver xpbd: setting vertices_a_thread: expected 0, 2, 4, 8, 16 or 32; found " +
                 settings["vertices_a_thread"].dump());
+  const double threads = settings["threads_a_group"].get<double>();
+  if (threads != 0 && !(threads >= 32 && threads <= 1024 && std::exp2(std::round(std::log2(threads))) == threads))
+    throw Error("solver xpbd: setting threads_a_group: expected 0 or a power of two from 32 to 1024; found " +
+                settings["threads_a_group"].dump());
+  const nlohmann::json& barrier = settings["device_barrier"];
+  if (barrier != "auto" && barrier != "always" && barrier != "never")
+    throw Error("solver xpbd: setting device_barrier: expected auto, always or never; found " + barrier.dump());
   if (!(settings["iterations"].get<double>() >= 1 && settings["iterations"].get<double>() <= 4096))
     throw Error("solver xpbd: setting iterations: expected 1 to 4096; found " + settings["iterations"].dump());
   if (!(settings["contact_samples"].get<double>() >= 0 && settings["contact_samples"].get<double>() <= 16))

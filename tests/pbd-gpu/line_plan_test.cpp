@@ -78,7 +78,7 @@ TEST(Shapes, FitDevices) {
   const LineDevice lavapipe{8, 1024, 32768}, nvidia{32, 1024, 32768, true}, adreno{64, 256, 32768}, least{0, 128, 16384};
   for (const LineDevice& d : {lavapipe, nvidia, adreno, least})
     for (const int n : {2, 3, 7, 17, 32, 33, 64, 100, 129, 256, 512, 1000, 1024}) {
-      for (const LineShape& s : {frame_shape(n, 2, 0, d), frame_shape(n, n, 0, d), pass_shape(n, 0, d)}) {
+      for (const LineShape& s : {frame_shape(n, 2, {}, d), frame_shape(n, n, {}, d), pass_shape(n, {}, d)}) {
         if (s.threads == 0) {
           EXPECT_TRUE(n > 32 || d.shared_B < 32768) << n;
           continue;
@@ -88,14 +88,13 @@ TEST(Shapes, FitDevices) {
         EXPECT_EQ(s.lanes & (s.lanes - 1), 0u);
         EXPECT_EQ(s.threads % s.lanes, 0u);
         if (s.shuffles) {
-          EXPECT_LE(s.lanes, d.subgroup);
           EXPECT_EQ(s.threads % d.subgroup, 0u) << "whole subgroups";
         }
       }
     }
-  EXPECT_EQ(frame_shape(32, 32, 0, nvidia).threads, 512u);
-  EXPECT_EQ(frame_shape(32, 32, 0, adreno).threads, 256u);
-  EXPECT_THROW(pass_shape(8193, 0, nvidia), Error);
+  EXPECT_EQ(frame_shape(32, 32, {}, nvidia).threads, 512u);
+  EXPECT_EQ(frame_shape(32, 32, {}, adreno).threads, 256u);
+  EXPECT_THROW(pass_shape(8193, {}, nvidia), Error);
 }
 
 TEST(BendRounds, AreFewWhereBendingIsSoft) {

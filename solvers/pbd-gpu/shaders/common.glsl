@@ -20,6 +20,7 @@ layout(std430, binding = COUNTER_BINDING) buffer Counter { uint counted_read, co
 #define STORE4(array, i, value) { atomicAdd(counted_write, 4u); array[i] = (value); }
 #define STORE32(array, i, value) { atomicAdd(counted_write, 32u); array[i] = (value); }
 #define COUNT_ATOMIC { atomicAdd(counted_read, 4u); atomicAdd(counted_write, 4u); }
+#define COUNT_READ(bytes) { atomicAdd(counted_read, bytes); }
 #else
 #define LOAD(bytes, array, i) (array[i])
 #define LOAD16_OF(member) (member)
@@ -29,4 +30,5 @@ layout(std430, binding = COUNTER_BINDING) buffer Counter { uint counted_read, co
 #define STORE4(array, i, value) { array[i] = (value); }
 #define STORE32(array, i, value) { array[i] = (value); }
 #define COUNT_ATOMIC
+#define COUNT_READ(bytes) {}
 #endif

@@ -12,6 +12,7 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 #include "common.glsl"
+#define ONE_LETTER_EACH  // shared memory is for the state
 layout(std430, binding = 0) buffer Positions { vec4 x[]; };
 layout(std430, binding = 1) buffer Velocities { vec4 v[]; };
 layout(std430, binding = 2) buffer PositionRests { vec4 rx[]; };
@@ -22,11 +23,11 @@ layout(std430, binding = 5) buffer LinkMultipliers { float link_multipliers[]; }
 layout(std430, binding = 6) buffer HingeMultipliers { vec4 hinge_multipliers[]; };
 #endif
 #include "lines.glsl"
-layout(constant_id = 16) const uint GRIPS = 0u;
-layout(constant_id = 17) const uint FIRM_0 = 0u;  // chains of each family that need `least`, a bit each
-layout(constant_id = 18) const uint FIRM_1 = 0u;
-layout(constant_id = 19) const uint FIRM_2 = 0u;
-layout(constant_id = 20) const uint FIRM_3 = 0u;
+layout(constant_id = 18) const uint GRIPS = 0u;
+layout(constant_id = 19) const uint FIRM_0 = 0u;  // chains of each family that need `least`, a bit each
+layout(constant_id = 20) const uint FIRM_1 = 0u;
+layout(constant_id = 21) const uint FIRM_2 = 0u;
+layout(constant_id = 22) const uint FIRM_3 = 0u;
 
 // 34 words a row: threads of 4 vertices on rows, columns and both diagonals meet in a bank at most two at a time.
 const uint kStride = 34u;
@@ -34,7 +35,7 @@ shared float px[kStride * ROWS], py[kStride * ROWS], pz[kStride * ROWS];
 shared float vx[kStride * ROWS], vy[kStride * ROWS], vz[kStride * ROWS];
 shared uint held[32];  // a bit a vertex, a word a row
 
-vec3 anchor(uvec2 at) {
+vec3 anchor(uvec2 at, uint k) {
   uint o = at.y * kStride + at.x;
   return vec3(px[o], py[o], pz[o]);
 }

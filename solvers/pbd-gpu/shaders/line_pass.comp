@@ -1,10 +1,19 @@
 #version 450
-// One family of lines of a cloth of any size, its state in memory. The first family of a substep integrates what it loads,
+// Families of lines of a cloth of any size, its state in memory. The first family of a substep integrates what it loads,
 // the last limits what it stores; every family has every vertex exactly once, so in place is in order.
+// A dispatch is one family, or with RESIDENT any number of substeps: then all its workgroups run at once, and wait for
+// one another after each family.
 #ifdef KEEP_MULTIPLIERS
-#define COUNTER_BINDING 7
+#define AFTER_MULTIPLIERS 7
 #else
-#define COUNTER_BINDING 5
+#define AFTER_MULTIPLIERS 5
+#endif
+#ifdef RESIDENT
+#define COUNTER_BINDING AFTER_MULTIPLIERS + 2
+#define STATE coherent buffer
+#else
+#define COUNTER_BINDING AFTER_MULTIPLIERS
+#define STATE buffer
 #endif
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -13,10 +22,10 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 #include "common.glsl"
-layout(std430, binding = 0) buffer Positions { vec4 x[]; };
-layout(std430, binding = 1) buffer Velocities { vec4 v[]; };
-layout(std430, binding = 2) buffer PositionRests { vec4 rx[]; };
-layout(std430, binding = 3) buffer VelocityRests { vec4 rv[]; };
+layout(std430, binding = 0) STATE Positions { vec4 x[]; };
+layout(std430, binding = 1) STATE Velocities { vec4 v[]; };
+layout(std430, binding = 2) STATE PositionRests { vec4 rx[]; };
+layout(std430, binding = 3) STATE VelocityRests { vec4 rv[]; };
 layout(std430, binding = 4) readonly buffer Firmness { float firmness[]; };  // a number a chain, families in turn
 #ifdef KEEP_MULTIPLIERS
 layout(std430, binding = 5) buffer LinkMultipliers { float link_multipliers[]; };
@@ -25,45 +34,74 @@ layout(std430, binding = 6) buffer HingeMultipliers { vec4 hinge_multipliers[]; 
 #include "lines.glsl"
 
 /// Pinned vertices are never written, so reading them here races with nothing.
-vec3 anchor(uvec2 at) { return LOAD16(x, index_of(at)).xyz; }
+vec3 anchor(uvec2 at, uint k) {
+  if (w[k] > 0.0) COUNT_READ(16u)
+  return x[index_of(at)].xyz;
+}
 #include "lines_integrate.glsl"
+#ifdef RESIDENT
+#include "device_barrier.glsl"
+#endif
 
-void main() {
-  set_thread();
-  lane = thread % LANES;
-  chain = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * (THREADS / LANES) + thread / LANES;
-  family = p.family;
-  iteration = p.iteration;
-  bool first = (p.turn & LINES_FIRST) != 0u;
+void pass(bool first, bool last) {
+  uint at[K];
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
-    pos[k] = vel[k] = rest_pos[k] = rest_vel[k] = vec3(0.0);
-    w[k] = 0.0;
-    if (!on_chain(i)) continue;
-    uint o = index_of(vertex(i));
-    vec4 at = LOAD16(x, o);
-    pos[k] = at.xyz;
-    w[k] = at.w;
-    if (w[k] == 0.0) continue;
-    vel[k] = LOAD16(v, o).xyz;
-    if (!first) continue;
-    rest_pos[k] = LOAD16(rx, o).xyz;
-    rest_vel[k] = LOAD16(rv, o).xyz;
+    bool is = on_chain(i);
+    at[k] = is ? index_of(vertex(i)) : 0u;
+    if (is) COUNT_READ(first ? 64u : 32u)
+    vec4 here = x[at[k]];
+    pos[k] = here.xyz;
+    w[k] = is ? here.w : 0.0;
+    vel[k] = v[at[k]].xyz;
+    if (first) {
+      rest_pos[k] = rx[at[k]].xyz;
+      rest_vel[k] = rv[at[k]].xyz;
+    }
   }
-  if (first) integrate();
-  if (kBends && family < 2u) bend();
   float least = 0.0;
   if ((FEATURES & LINES_FIRM) != 0u && chain < chain_count())
     least = LOAD4(firmness, family * max(COLUMNS, ROWS) + chain);
+  if (first) {
+    integrate();
+    [[unroll]] for (uint k = 0u; k < K; ++k) {
+      if (w[k] == 0.0) continue;
+      STORE16(rx, at[k], vec4(rest_pos[k], 0.0));
+      STORE16(rv, at[k], vec4(rest_vel[k], 0.0));
+    }
+  }
+  if (kBends && family < 2u) bend();
   stretch(least);
-  if ((p.turn & LINES_LAST) != 0u) limit_speed();
+  if (last) limit_speed();
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     if (w[k] == 0.0) continue;
-    uint o = index_of(vertex(lane * K + k));
-    STORE16(x, o, vec4(pos[k], w[k]));
-    STORE16(v, o, vec4(vel[k], 0.0));
-    if (!first) continue;
-    STORE16(rx, o, vec4(rest_pos[k], 0.0));
-    STORE16(rv, o, vec4(rest_vel[k], 0.0));
+    STORE16(x, at[k], vec4(pos[k], w[k]));
+    STORE16(v, at[k], vec4(vel[k], 0.0));
   }
+}
+
+void main() {
+  set_thread();
+  lane = thread / BESIDE % LANES;
+  chain = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * (THREADS / LANES) +
+          thread / (LANES * BESIDE) * BESIDE + thread % BESIDE;
+#ifdef RESIDENT
+  const uint families = kShears ? 4u : 2u;
+  if (p.substeps == 0u && !meet()) return;  // asked only whether all can
+  for (uint s = 0u; s < p.substeps; ++s) {
+    bool reversed = (FEATURES & LINES_ALTERNATE) != 0u && (p.first_substep + s & 1u) != 0u;
+    for (iteration = 0u; iteration < p.iterations; ++iteration)
+      for (uint turn = 0u; turn < families; ++turn) {
+        bool first = turn == 0u && iteration == 0u;
+        if (!(first && s == 0u) && !meet()) return;
+        family = reversed ? families - 1u - turn : turn;
+        pass(first, turn + 1u == families && iteration + 1u == p.iterations);
+      }
+  }
+  leave();
+#else
+  family = p.family;
+  iteration = p.iteration;
+  pass((p.turn & LINES_FIRST) != 0u, (p.turn & LINES_LAST) != 0u);
+#endif
 }

@@ -17,6 +17,8 @@ layout(constant_id = 12) const uint TETHER_2 = 0u;
 layout(constant_id = 13) const uint TETHER_2_LAST = 0u;
 layout(constant_id = 14) const uint TETHER_3 = 0u;
 layout(constant_id = 15) const uint TETHER_3_LAST = 0u;
+layout(constant_id = 16) const uint SUBGROUP = 1u;  // threads that exchange by shuffles
+layout(constant_id = 17) const uint BESIDE = 1u;  // neighbouring chains whose threads take turns, so that columns too are read by whole sectors
 layout(push_constant) uniform Push { LineConstants p; };
 
 const bool kBends = (FEATURES & LINES_BEND) != 0u;
@@ -29,7 +31,9 @@ float w[K];
 
 uint chain_length() { return family == 0u ? COLUMNS : ROWS; }
 uint chain_count() { return family == 0u ? ROWS : COLUMNS; }
-bool on_chain(uint i) { return chain < chain_count() && i < chain_length(); }
+// Square cloths that fill their threads need no test.
+const bool kExact = COLUMNS == ROWS && LANES * K == COLUMNS && COLUMNS % (THREADS / LANES) == 0u;
+bool on_chain(uint i) { return kExact ? i < COLUMNS : chain < chain_count() && i < chain_length(); }
 
 /// Column and row of vertex i of the chain.
 uvec2 vertex(uint i) {
@@ -51,25 +55,68 @@ bool goes_on(uint i) {
 /// Lines on the border carry half the width, so they are twice as compliant.
 float border() { return family < 2u && (chain == 0u || chain + 1u == chain_count()) ? 2.0 : 1.0; }
 
-// What neighbours n threads away on the same chain hold; what is beyond a chain's ends is anything finite.
+// What neighbours n threads away on the same chain hold; what is beyond a chain's ends is anything finite. By shuffles
+// within a subgroup, else through shared memory.
 #ifdef SHUFFLES
 void set_thread() { thread = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
-void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
-  uint self = gl_SubgroupInvocationID;
-  below = subgroupShuffle(mine, lane >= n ? self - n : self);
-  above = subgroupShuffle(mine, lane + n < LANES ? self + n : self);
+const uint PARTS = LANES * BESIDE > SUBGROUP ? LANES * BESIDE / SUBGROUP : 1u;  // subgroups that a chain lies on
+const uint PART = LANES / PARTS;                                               // its threads in one of them
+const uint LETTERS_HELD = PARTS > 1u ? 2u * THREADS : 1u;
+bool apart = false;  // the rows a thread holds concern its own subgroup alone
+#else
+void set_thread() { thread = gl_LocalInvocationIndex; }
+const uint PARTS = 1u, PART = LANES;
+const uint LETTERS_HELD = 2u * THREADS;
+#endif
+
+#if defined(SHUFFLES) || !defined(ONE_LETTER_EACH)
+// Two pages in turn: while some threads still read one, others write the other.
+shared vec4 letters[LETTERS_HELD];
+uint page = 0u;
+uint post(vec4 mine) {
+  uint here = page;
+  page = THREADS - page;
+  letters[here + thread] = mine;
+  barrier();  // the writes before the neighbours' reads
+  return here;
 }
 #else
 shared vec4 letters[THREADS];
-void set_thread() { thread = gl_LocalInvocationIndex; }
-void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
+uint post(vec4 mine) {
   barrier();  // all reads of the last exchange before the writes of this one
   letters[thread] = mine;
   barrier();  // the writes before the neighbours' reads
-  below = letters[lane >= n ? thread - n : thread];
-  above = letters[lane + n < LANES ? thread + n : thread];
+  return 0u;
 }
 #endif
+
+void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
+#ifdef SHUFFLES
+  if (PARTS == 1u || apart) {
+    uint self = gl_SubgroupInvocationID, at = lane % PART;
+    below = subgroupShuffle(mine, at >= n ? self - n * BESIDE : self);
+    above = subgroupShuffle(mine, at + n < PART ? self + n * BESIDE : self);
+    return;
+  }
+#endif
+  uint here = post(mine);
+  below = letters[here + (lane >= n ? thread - n * BESIDE : thread)];
+  above = letters[here + (lane + n < LANES ? thread + n * BESIDE : thread)];
+}
+
+/// After log2(PARTS) rounds of cyclic reduction every PARTS-th row makes a system of its own: the thread's row goes to the
+/// subgroup that solves its system, and another comes.
+vec4 to_part(vec4 mine) {
+  uint here = post(mine);
+  return letters[here + thread + (lane % PART * PARTS + lane / PART - lane) * BESIDE];
+}
+
+/// The thread's own row again, and the one before it (anything finite at a chain's start).
+vec4 from_part(vec4 mine, out vec4 below) {
+  uint start = post(mine) + thread - lane * BESIDE, last = lane > 0u ? lane - 1u : 0u;
+  below = letters[start + (last % PARTS * PART + last / PARTS) * BESIDE];
+  return letters[start + (lane % PARTS * PART + lane / PARTS) * BESIDE];
+}
 
 float link_lower[K], link_diagonal[K], link_upper[K], link_right[K];
 void exchange_link(uint n, float a, float c, float d, out float a_below, out float c_below, out float d_below,
@@ -79,8 +126,19 @@ void exchange_link(uint n, float a, float c, float d, out float a_below, out flo
   a_below = below.x; c_below = below.y; d_below = below.z;
   a_above = above.x; c_above = above.y; d_above = above.z;
 }
+void to_part_link(inout float a, inout float c, inout float d) {
+  vec4 row = to_part(vec4(a, c, d, 0.0));
+  a = row.x; c = row.y; d = row.z;
+}
+void from_part_link(inout float d, out float d_below) {
+  vec4 below;
+  d = from_part(vec4(d), below).x;
+  d_below = below.x;
+}
 #define SOLVE solve_links
 #define LETTERS exchange_link
+#define TO_PART to_part_link
+#define FROM_PART from_part_link
 #define MATRIX float
 #define VECTOR float
 #define M K
@@ -111,8 +169,23 @@ void exchange_hinge(uint n, mat2 a, mat2 c, mat3x2 d, out mat2 a_below, out mat2
   d_below = mat3x2(below.xy, below.zw, z_below.xy);
   d_above = mat3x2(above.xy, above.zw, z_above.xy);
 }
+void to_part_hinge(inout mat2 a, inout mat2 c, inout mat3x2 d) {
+  vec4 row = to_part(vec4(a[0], a[1]));
+  a = mat2(row.xy, row.zw);
+  row = to_part(vec4(c[0], c[1]));
+  c = mat2(row.xy, row.zw);
+  row = to_part(vec4(d[0], d[1]));
+  d = mat3x2(row.xy, row.zw, to_part(vec4(d[2], 0.0, 0.0)).xy);
+}
+void from_part_hinge(inout mat3x2 d, out mat3x2 d_below) {
+  vec4 below, z_below, row = from_part(vec4(d[0], d[1]), below);
+  d = mat3x2(row.xy, row.zw, from_part(vec4(d[2], 0.0, 0.0), z_below).xy);
+  d_below = mat3x2(below.xy, below.zw, z_below.xy);
+}
 #define SOLVE solve_hinges
 #define LETTERS exchange_hinge
+#define TO_PART to_part_hinge
+#define FROM_PART from_part_hinge
 #define MATRIX mat2
 #define VECTOR mat3x2
 #define M BLOCKS
@@ -126,7 +199,7 @@ void exchange_hinge(uint n, mat2 a, mat2 c, mat3x2 d, out mat2 a_below, out mat2
 
 void move(uint k, vec3 step) {
   pos[k] += step;
-  vel[k] += step / p.h;
+  vel[k] += step * p.per_h;
 }
 
 /// Distance constraints of all links of the chain (Macklin, Mueller & Chentanez 2016, eq. 18, for all at once):
@@ -142,9 +215,10 @@ void stretch(float least) {
     vec4 next = above;
     if (k + 1u < K) next = vec4(pos[k + 1u], w[k + 1u]);
     vec3 e = next.xyz - pos[k];
-    float l = length(e), sum = w[k] + next.w;
-    bool is = goes_on(lane * K + k) && sum > 0.0 && l > 0.0;
-    g[k] = is ? e / l : vec3(0.0);
+    float square = dot(e, e), sum = w[k] + next.w;
+    bool is = goes_on(lane * K + k) && sum > 0.0 && square > 0.0;
+    float per_l = inversesqrt(square), l = square * per_l;
+    g[k] = is ? e * per_l : vec3(0.0);
     link_diagonal[k] = is ? sum + max(alpha, least * max(w[k], next.w)) : 1.0;
     link_right[k] = is ? rest - l : 0.0;
 #ifdef KEEP_MULTIPLIERS

@@ -1,10 +1,10 @@
 // A tridiagonal system along a chain, MATRIX a row: LOWER u[i-1] + DIAGONAL u[i] + UPPER u[i+1] = RIGHT. Every thread
-// holds M consecutive rows of it. Included once for each kind of entry, with the macros set: SOLVE and its LETTERS,
+// holds M consecutive rows of it. Included once for each kind of entry, with the macros set: SOLVE and its LETTERS, TO_PART and FROM_PART,
 // MATRIX, VECTOR, M, UNIT, INVERSE and the four arrays. Threads of a chain beyond its end hold rows of UNIT.
 //
 // Each thread eliminates its own rows, until one a thread is left that knows its neighbours' (Wang 1981, "A parallel
 // method for tridiagonal equations"); those are solved by parallel cyclic reduction (Hockney & Jesshope 1981), in
-// `rounds` rounds, log2(LANES) of them exactly. RIGHT becomes the solution; `before` the row before the thread's first.
+// `rounds` rounds, log2(LANES) of them exactly; over several subgroups until each has a system of its own, then by shuffles. RIGHT becomes the solution; `before` the row before the thread's first.
 void SOLVE(uint rounds, out VECTOR before) {
   MATRIX f = INVERSE(DIAGONAL[0]);
   LOWER[0] = f * LOWER[0];
@@ -37,20 +37,43 @@ void SOLVE(uint rounds, out VECTOR before) {
   c = -(f * (UPPER[last] * c_above));
   d = f * (RIGHT[last] - UPPER[last] * d_above);
   // Past a chain's ends a and c are 0, so what a missing neighbour would say is not heard.
-  for (uint n = 1u; n < LANES && rounds > 0u; n <<= 1u, --rounds) {
-    LETTERS(n, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above);
-    f = INVERSE(UNIT - a * c_below - c * a_above);
-    d = f * (d - a * d_below - c * d_above);
-    a = -(f * (a * a_below));
+#define REDUCE(n) \
+    LETTERS(n, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above); \
+    f = INVERSE(UNIT - a * c_below - c * a_above); \
+    d = f * (d - a * d_below - c * d_above); \
+    a = -(f * (a * a_below)); \
     c = -(f * (c * c_above));
+#ifdef SHUFFLES
+  if (PARTS > 1u) {
+    [[unroll]] for (uint n = 1u; n < PARTS; n <<= 1u) {
+      if (rounds == 0u) break;
+      REDUCE(n)
+      --rounds;
+    }
+    TO_PART(a, c, d);
+    apart = true;
+    [[unroll]] for (uint n = 1u; n < PART; n <<= 1u) {
+      if (rounds == 0u) break;
+      REDUCE(n)
+      --rounds;
+    }
+    apart = false;
+    FROM_PART(d, d_below);
+  } else
+#endif
+  {
+    for (uint n = 1u; n < LANES && rounds > 0u; n <<= 1u, --rounds) { REDUCE(n) }
+    LETTERS(1u, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above);
   }
-  LETTERS(1u, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above);
+#undef REDUCE
   before = lane > 0u ? d_below : d - d;
   RIGHT[last] = d;
   [[unroll]] for (uint k = 0u; k < last; ++k) RIGHT[k] -= LOWER[k] * before + UPPER[k] * d;
 }
 #undef SOLVE
 #undef LETTERS
+#undef TO_PART
+#undef FROM_PART
 #undef MATRIX
 #undef VECTOR
 #undef M
