@@ -52,6 +52,7 @@ vulkan::Buffer& GpuSolver::add_host_buffer(const std::string& name, std::uint64_
 
 void GpuSolver::set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m) {
   origin_m_ = origin_m;
+  position_ = &position;
   const std::uint64_t bytes = scene_->cloth.vertex_count() * sizeof(vec4);
   read_position_ = std::make_unique<vulkan::Buffer>(device_, "read position", bytes, vulkan::Buffer::Place::Host);
   read_velocity_ = std::make_unique<vulkan::Buffer>(device_, "read velocity", bytes, vulkan::Buffer::Place::Host);
@@ -99,6 +100,7 @@ void GpuSolver::load(const Scene& scene) {
   download_ = std::make_unique<vulkan::Program>(device_);
   inverse_mass_now_ = inverse_masses(scene);
   build();
+  device_->keep_pipelines();
   upload_->record(false);
   download_->record(false);
   record(scene.time.dt());
@@ -194,6 +196,17 @@ FrameCost GpuSolver::last_cost() const {
 }
 
 Plan GpuSolver::plan() const { return plan_; }
+
+std::vector<float> GpuSolver::device_positions() const {
+  vulkan::Buffer host(device_, "all positions", position_->bytes(), vulkan::Buffer::Place::Host);
+  vulkan::Program fetch(device_);
+  fetch.copy(0, *position_, host);
+  fetch.record(false);
+  run(fetch);
+  std::vector<float> all(host.bytes() / sizeof(float));
+  std::memcpy(all.data(), host.mapped(), host.bytes());
+  return all;
+}
 
 std::vector<Traffic> GpuSolver::counted() {
   std::vector<Traffic> all;

@@ -39,6 +39,8 @@ class GpuSolver : public ClothSolver {
 
   /// Bytes each stage's instrumented kernels counted since the last call; needs `count_bytes`.
   std::vector<Traffic> counted();
+  /// Positions as the device holds them, of every copy or layer of the cloth, relative to the method's origin; for tests.
+  std::vector<float> device_positions() const;
   /// What is submitted for set-up, a frame and reading back, for the test of the barriers.
   const vulkan::Program& upload_program() const { return *upload_; }
   const vulkan::Program& frame_program() const { return *frame_; }
@@ -126,6 +128,7 @@ class GpuSolver : public ClothSolver {
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
   std::vector<Initial> initials_;
   std::vector<vulkan::Buffer*> counters_;  ///< one a stage
+  const vulkan::Buffer* position_ = nullptr;
   std::unique_ptr<vulkan::Buffer> read_position_, read_velocity_;
   std::vector<std::unique_ptr<vulkan::Kernel>> kernels_;
   std::unique_ptr<ColliderBuffers> colliders_;

@@ -88,12 +88,6 @@ Tethers tethers_of(const Scene& scene) {
   return t;
 }
 
-bool can_alternate(const Scene& scene, const Tethers& tethers) {
-  constexpr double kStiff_N_per_m = 1e4;
-  const auto Y = scene.material.membrane_stiffness_N_per_m;
-  return !tethers.to.empty() && (!Y || *Y >= kStiff_N_per_m);
-}
-
 std::vector<std::uint8_t> taut_chains(const Scene& scene) {
   const Cloth& c = scene.cloth;
   const int most = std::max(c.columns, c.rows);
@@ -139,24 +133,23 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   const int k = quality == "fast" ? 0 : quality == "default" ? 1 : 2;
   const bool touched = !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins})).empty();
   const Tethers tethers = settings.value("tethers", true) ? tethers_of(scene) : Tethers{};
-  const bool alternated = can_alternate(scene, tethers);
+  const auto Y = scene.material.membrane_stiffness_N_per_m;
+  const bool stiff = !Y || *Y >= 1e4;
   // Of a frame, however long it is: a number of seconds in here would be one that similar scenes do not share. A link must not
   // turn by more than about half a radian a substep.
-  constexpr Rule kAlternated[] = {{2, 20}, {6, 12}, {20, 6}}, kTethered[] = {{3, 25}, {5, 12}, {20, 6}},
+  constexpr Rule kStiff[] = {{2, 24}, {5, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
                  kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}}, kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
   // A hand pushes a cloth in ways that no tether knows of.
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   const Rule rule = !touched                           ? kUntouched[k]
                     : driven                           ? kSheet[k]
-                    : alternated                       ? kAlternated[k]
-                    : !tethers.to.empty()              ? kTethered[k]
+                    : !tethers.to.empty()              ? (stiff ? kStiff[k] : kTethered[k])
                     : !scene.needs.has(Feature::Shear) ? kStrips[k]
                     : scene.grips.vertices.empty()     ? kSheet[k]
                                                        : kPulled[k];
   const double per_frame = std::max(rule.least, links / rule.links_a_substep);
-  const long whole = alternated ? 2 * std::max(1L, std::lround(per_frame / 2)) : std::lround(per_frame);
-  return static_cast<int>(std::clamp(whole, 1L, 4096L));
+  return static_cast<int>(std::clamp(std::lround(per_frame), 1L, 4096L));
 }
 
 LineShape frame_shape(int columns, int rows, const LineWish& wish, const LineDevice& device) {
@@ -181,24 +174,28 @@ LineShape frame_shape(int columns, int rows, const LineWish& wish, const LineDev
   return {};
 }
 
+/// What a barrier over all workgroups takes of shared memory.
+constexpr std::uint32_t kBarrier_B = 16;
+
 LineShape pass_shape(int length, const LineWish& wish, const LineDevice& device) {
   const auto n = static_cast<std::uint32_t>(length);
-  const std::uint32_t most = std::min(wish.threads != 0 ? wish.threads : 256u, device.most_threads);
-  LineShape s;
+  const bool choose = device.wide && device.subgroup > 0;
+  const std::uint32_t vertices = wish.vertices != 0 ? wish.vertices : choose && n <= 384 ? 2 : 4;
+  const std::uint32_t beside = device.subgroup == 0 ? 1 : wish.beside != 0 ? wish.beside : !choose || n <= 192 ? 1 : n <= 384 ? 2 : 4;
+  // A wish for threads is for all of them; else as few as hold whole subgroups and lines.
+  const std::uint32_t most = std::min(wish.threads != 0 ? wish.threads : choose ? 1024u : 256u, device.most_threads);
+  const std::uint32_t least = wish.threads != 0 ? most : std::min(choose ? device.subgroup : 64u, most);
   for (const std::uint32_t k : {2u, 4u, 8u, 16u, 32u}) {
     const std::uint32_t lanes = std::bit_ceil((n + k - 1) / k);
-    if (lanes > most || k < (wish.vertices != 0 ? wish.vertices : device.wide ? 2 : 4)) continue;
-    s = {lanes, k, std::max(lanes, wish.threads != 0 ? most : std::min(64u, most)), device.subgroup > 0};
-    break;
+    if (k < vertices || lanes * beside > most) continue;
+    LineShape s{lanes, k, std::max(lanes * beside, least), device.subgroup > 0, beside};
+    // Whole subgroups, so that threads number as their lanes do.
+    if (s.shuffles) s.threads = (s.threads + device.subgroup - 1) / device.subgroup * device.subgroup;
+    const bool letters = !s.shuffles || lanes * beside > device.subgroup;
+    if ((letters ? 32 * s.threads : 0) + kBarrier_B <= device.shared_B) return s;
   }
-  if (s.lanes == 0)
-    throw Error("solver xpbd: a cloth of " + std::to_string(length) + " vertices a side; expected at most " +
-                std::to_string(32 * most));
-  if (s.shuffles) s.beside = wish.beside != 0 ? wish.beside : 1;
-  s.threads = std::max(s.threads, s.lanes * s.beside);
-  // Whole subgroups, so that threads number as their lanes do.
-  if (s.shuffles) s.threads = (s.threads + device.subgroup - 1) / device.subgroup * device.subgroup;
-  return s;
+  throw Error("solver xpbd: a cloth of " + std::to_string(length) + " vertices a side; expected at most " +
+              std::to_string(32 * most / beside));
 }
 
 std::uint32_t bend_rounds(double alpha, double most_inverse_mass, const LineShape& shape) {

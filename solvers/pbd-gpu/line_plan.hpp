@@ -30,10 +30,6 @@ struct Tethers {
 /// whose springs give by far less than the slack of 5 rho g L / Y under its own weight (and 2 v0 / c by its speed).
 Tethers tethers_of(const Scene&);
 
-/// May every other substep go through the families in reverse? Over an even number of them in a frame it takes the bias
-/// out of their order, which is most of the error of stiff cloth, but needs tethers: without, it adds energy.
-bool can_alternate(const Scene&, const Tethers&);
-
 /// Of each chain of the four families (rows, columns, both diagonals; max(columns, rows) each): 1 if two held vertices
 /// may pull it taut, so that its inextensible links are one more than there are ways to move, else 0.
 std::vector<std::uint8_t> taut_chains(const Scene&);
@@ -45,8 +41,8 @@ int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 struct LineDevice {
   std::uint32_t subgroup = 0;  ///< lanes that exchange by shuffles; 0 = none
   std::uint32_t most_threads = 128, shared_B = 16384;
-  /// Two vertices a thread and up to 512 threads a workgroup: faster by 8 to 14 % on an H200; elsewhere registers
-  /// may be few.
+  /// Two vertices a thread and workgroups of up to 1024 threads: faster by 8 to 14 % on an H200 up to 32 x 32, by a quarter
+  /// above; elsewhere registers may be few.
   bool wide = false;
 };
 
@@ -63,7 +59,8 @@ struct LineWish {
 };
 /// Of the kernel that takes a whole cloth through a frame; threads = 0 if the cloth or the device does not fit it.
 LineShape frame_shape(int columns, int rows, const LineWish&, const LineDevice&);
-/// Of the kernel of one family of lines of `length` vertices. Throws Error past 8192.
+/// Of the kernel of one family of lines of `length` vertices. On wide devices two vertices a thread are fastest up to some
+/// 384 (of an H200), and reading 2 or 4 neighbouring columns at once from 192 on. Throws Error past 8192.
 LineShape pass_shape(int length, const LineWish&, const LineDevice&);
 
 /// Rounds of cyclic reduction after which what is left of the bending matrix is below a ten-millionth: with alpha well

@@ -12,6 +12,9 @@ using vulkan::Access;
 /// without. Ten times as much shows in the length of the cloth, a tenth lets links of some cloths blow up.
 constexpr double kFirmness = 1e-3;
 
+/// A trial that takes longer has no device to itself, or none that is well: an error either way.
+constexpr double kTrialPatience_s = 60;
+
 /// Looks at who has come to a barrier of the whole dispatch, at loading and in a frame: some 10 ms and 1 s. A look takes
 /// some 0.5 us on a GPU and 3 ns on a CPU.
 struct Patience {
@@ -59,8 +62,8 @@ Lines::Lines(GpuSolver& solver, const Scene& scene, const vulkan::Buffer& x, con
       tethers_(tethers_if(solver.settings()["tethers"].get<bool>(), scene)),
       taut_(taut_chains(scene)),
       iterations_(solver.settings()["iterations"].get<std::uint32_t>()),
+      batch_(solver.settings()["batch"].get<std::uint32_t>()),
       keep_(iterations_ > 1 && (scene.material.membrane_stiffness_N_per_m || scene.needs.has(Feature::Bend))),
-      alternate_(can_alternate(scene, tethers_) && xpbd_substeps(scene, solver.settings()) % 2 == 0),
       firm_(std::any_of(taut_.begin(), taut_.end(), [](std::uint8_t t) { return t != 0; })) {
   if (tethers_.to.empty()) solver_.leave_out("tethers", tethers_.why_not);
   if (!scene.needs.has(Feature::Damping)) solver_.leave_out("damping", "the scene has none");
@@ -78,8 +81,12 @@ Lines::Lines(GpuSolver& solver, const Scene& scene, const vulkan::Buffer& x, con
   const LineShape frame = frame_shape(scene.cloth.columns, scene.cloth.rows, wish(), device());
   if (frame.threads > 0 && one)
     add_frame(frame);
+  else if (batch_ > 1)
+    throw Error("solver xpbd: setting batch: takes cloths that fit one workgroup each (32 x 32 vertices, one_dispatch)");
   else if (!one || !add_resident())
     add_passes();
+  if (batch_ > 1 && (keep_ || !scene.grips.vertices.empty() || !scene.colliders.empty()))
+    throw Error("solver xpbd: setting batch: takes no hands, no colliders, and one iteration a substep where anything is compliant");
 }
 
 LineWish Lines::wish() const {
@@ -94,7 +101,7 @@ LineDevice Lines::device() const {
   if (solver_.settings()["shuffles"].get<bool>()) line.subgroup = d.shuffled_lanes();
   line.most_threads = std::min(d.limits().maxComputeWorkGroupInvocations, d.limits().maxComputeWorkGroupSize[0]);
   line.wide = d.is_discrete();
-  line.shared_B = std::min(d.limits().maxComputeSharedMemorySize, 32768u);
+  line.shared_B = line.wide ? d.limits().maxComputeSharedMemorySize : std::min(d.limits().maxComputeSharedMemorySize, 32768u);
   return line;
 }
 
@@ -108,7 +115,6 @@ std::uint32_t Lines::features() const {
   // What moves may drive the cloth as fast as it likes, and so may springs that start stretched.
   const bool driven = needs.has(Feature::MovingMesh) || needs.has(Feature::Capsules);
   if (!tethers_.to.empty() && !driven) f |= LINES_LIMIT_SPEED;
-  if (alternate_) f |= LINES_ALTERNATE;
   if (firm_) f |= LINES_FIRM;
   return f;
 }
@@ -203,7 +209,7 @@ bool Lines::add_resident() {
     c.patience = patience(*solver_.device_).at_loading;
     program.dispatch(0, kernel, groups, c);
     program.record(false);
-    program.run(2);
+    program.run(kTrialPatience_s);
     std::uint32_t failed = 0;
     std::memcpy(&failed, missed.mapped(), 4);
     if (failed != 0) {
@@ -308,20 +314,24 @@ Traffic Lines::multiplier_traffic(std::uint32_t family, std::uint32_t iteration)
   return {iteration > 0 ? 2 * bytes : 0, bytes};
 }
 
-/// Of one family: every vertex is read, free ones are written; what the first integrates, its rests and tethers too.
+/// Of one family: every vertex is read, free ones are written; the first also reads where tethers end.
 Traffic Lines::pass_traffic(std::uint32_t family, std::uint32_t iteration, bool first) const {
   const std::vector<float>& w = solver_.inverse_mass_now();
   const auto n = static_cast<double>(w.size());
   const auto free = static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }));
   const auto chains = static_cast<double>(family == 0 ? scene_.cloth.rows : scene_.cloth.columns);
   Traffic t = multiplier_traffic(family, iteration);
-  t.read_B += 32 * n + (firmness_ != nullptr ? 4.0 * shape_[std::min(family, 2u)].lanes * chains : 0);
+  t.read_B += 32 * n + (firmness_ != nullptr ? 4.0 * shape_[std::min(family, 2u)].lanes * chains : 0) +
+              (first ? 16 * static_cast<double>(tethers_.to.size()) * free : 0);
   t.write_B += 32 * free;
-  if (first) {
-    t.read_B += 32 * n + 16 * static_cast<double>(tethers_.to.size()) * free;
-    t.write_B += 32 * free;
-  }
   return t;
+}
+
+/// Of what sums could not hold, in each dispatch that integrates.
+Traffic Lines::rests_traffic() const {
+  const std::vector<float>& w = solver_.inverse_mass_now();
+  return {32.0 * static_cast<double>(w.size()),
+          32.0 * static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }))};
 }
 
 void Lines::record(int first, int count, int substeps, double dt_s) {
@@ -329,43 +339,45 @@ void Lines::record(int first, int count, int substeps, double dt_s) {
   c.first_substep = static_cast<std::uint32_t>(first);
   c.substeps = static_cast<std::uint32_t>(count);
   if (frame_ == nullptr && resident_ == nullptr) {
-    record_passes(c, alternate_ && first % 2 != 0);
+    record_passes(c);
     return;
   }
   const auto n = static_cast<double>(scene_.cloth.vertex_count());
+  Traffic t = resident_ != nullptr ? rests_traffic() : Traffic{64 * n * batch_, 64 * n * batch_};
+  if (frame_ != nullptr) t.read_B += static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count);
   const std::uint32_t families = scene_.needs.has(Feature::Shear) ? 4 : 2;
-  Traffic t;
-  if (frame_ != nullptr)
-    t = {64 * n + static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count), 64 * n};
-  for (int s = first; s < first + count; ++s)
-    for (std::uint32_t iteration = 0; iteration < iterations_; ++iteration)
-      for (std::uint32_t turn = 0; turn < families; ++turn) {
-        const std::uint32_t family = alternate_ && s % 2 != 0 ? families - 1 - turn : turn;
-        const Traffic m = frame_ != nullptr ? multiplier_traffic(family, iteration)
-                                            : pass_traffic(family, iteration, turn == 0 && iteration == 0);
-        t.read_B += m.read_B;
-        t.write_B += m.write_B;
-      }
+  for (std::uint32_t iteration = 0; iteration < iterations_; ++iteration)
+    for (std::uint32_t family = 0; family < families; ++family) {
+      const Traffic m = frame_ != nullptr ? multiplier_traffic(family, iteration)
+                                          : pass_traffic(family, iteration, family + 1 == families && iteration == 0);
+      t.read_B += count * m.read_B;
+      t.write_B += count * m.write_B;
+    }
   if (frame_ != nullptr) {
-    solver_.dispatch_groups(stage_frame_, *frame_, {1, 1}, c, t);
+    solver_.dispatch_groups(stage_frame_, *frame_, vulkan::groups_for(batch_, 1), c, t);
     return;
   }
   const auto chains = static_cast<std::uint32_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
   solver_.dispatch_groups(stage_frame_, *resident_, vulkan::groups_for(chains, shape_[0].chains_a_group()), c, t);
 }
 
-void Lines::record_passes(LineConstants c, bool reversed) {
+/// Diagonals first: threads have the last word, columns before rows.
+void Lines::record_passes(LineConstants c) {
   const std::uint32_t families = scene_.needs.has(Feature::Shear) ? 4 : 2;
   for (c.iteration = 0; c.iteration < iterations_; ++c.iteration)
     for (std::uint32_t turn = 0; turn < families; ++turn) {
-      c.family = reversed ? families - 1 - turn : turn;
+      c.family = families - 1 - turn;
       const bool first = turn == 0 && c.iteration == 0;
       const bool last = turn + 1 == families && c.iteration + 1 == iterations_;
       c.turn = (first ? LINES_FIRST : 0) | (last ? LINES_LAST : 0);
       const std::size_t kind = std::min(c.family, 2u);
       const auto chains = static_cast<std::uint32_t>(c.family == 0 ? scene_.cloth.rows : scene_.cloth.columns);
-      solver_.dispatch_groups(stage_[kind], *pass_[kind], vulkan::groups_for(chains, shape_[kind].chains_a_group()), c,
-                              pass_traffic(c.family, c.iteration, first));
+      Traffic t = pass_traffic(c.family, c.iteration, first);
+      if (first) {
+        t.read_B += rests_traffic().read_B;
+        t.write_B += rests_traffic().write_B;
+      }
+      solver_.dispatch_groups(stage_[kind], *pass_[kind], vulkan::groups_for(chains, shape_[kind].chains_a_group()), c, t);
     }
 }
 

@@ -39,19 +39,19 @@ class Lines {
   void add_firmness();
   LineWish wish() const;
   Traffic pass_traffic(std::uint32_t family, std::uint32_t iteration, bool first) const;
+  Traffic rests_traffic() const;
   LineConstants constants(double dt_s, int substeps) const;
   Constraints count(std::uint32_t family) const;
   Traffic multiplier_traffic(std::uint32_t family, std::uint32_t iteration) const;
-  void record_passes(LineConstants c, bool reversed);
+  void record_passes(LineConstants c);
 
   GpuSolver& solver_;
   const Scene& scene_;
   const vulkan::Buffer &x_, &v_, &rx_, &rv_;
   const Tethers tethers_;
   const std::vector<std::uint8_t> taut_;
-  const std::uint32_t iterations_;
+  const std::uint32_t iterations_, batch_;
   const bool keep_;  ///< multipliers, from one iteration to the next
-  const bool alternate_;
   bool firm_ = false;
   const vulkan::Buffer *link_multipliers_ = nullptr, *hinge_multipliers_ = nullptr, *firmness_ = nullptr;
   int stage_frame_ = -1;

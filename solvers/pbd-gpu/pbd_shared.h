@@ -43,8 +43,7 @@ struct PaperContactConstants {
 #define LINES_SHEAR 4u
 #define LINES_ELASTIC 8u       // links have a compliance
 #define LINES_LIMIT_SPEED 16u
-#define LINES_ALTERNATE 32u    // families in reverse in every other substep
-#define LINES_FIRM 64u         // chains pulled taut between two held vertices
+#define LINES_FIRM 32u         // chains pulled taut between two held vertices
 // LineConstants::turn
 #define LINES_FIRST 1u
 #define LINES_LAST 2u

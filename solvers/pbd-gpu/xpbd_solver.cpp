@@ -26,6 +26,14 @@ class Xpbd final : public GpuSolver {
       position.push_back({at(0), at(1), at(2), w[i]});
       velocity.push_back({speed(0), speed(1), speed(2), 0});
     }
+    const auto batch = settings()["batch"].get<std::size_t>();
+    const std::size_t one = position.size();
+    position.reserve(batch * one);
+    velocity.reserve(batch * one);
+    for (std::size_t i = one; i < batch * one; ++i) {
+      position.push_back(position[i - one]);
+      velocity.push_back(velocity[i - one]);
+    }
     x_ = &add_vec4_buffer("positions", position);
     v_ = &add_vec4_buffer("velocities", velocity);
     rx_ = &add_buffer("position rests", x_->bytes());
@@ -82,6 +90,7 @@ SolverInfo xpbd_info() {
       {"quality", "\"default\"", "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
       {"substeps", "0", "substeps a frame; 0: by quality"},
       {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
+      {"batch", "1", "as many copies of the cloth in one dispatch (metrics are of the first): throughput"},
       {"contact_samples", "1", "points on each edge that take part in contact beside its two vertices, 0 to 16"},
       {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
       {"one_dispatch", "true", "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
@@ -104,6 +113,8 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   if (vertices != 0 && vertices != 2 && vertices != 4 && vertices != 8 && vertices != 16 && vertices != 32)
     throw Error("solver xpbd: setting vertices_a_thread: expected 0, 2, 4, 8, 16 or 32; found " +
                 settings["vertices_a_thread"].dump());
+  if (!(settings["batch"].get<double>() >= 1 && settings["batch"].get<double>() <= 262144))
+    throw Error("solver xpbd: setting batch: expected 1 to 262144; found " + settings["batch"].dump());
   const double threads = settings["threads_a_group"].get<double>();
   if (threads != 0 && !(threads >= 32 && threads <= 1024 && std::exp2(std::round(std::log2(threads))) == threads))
     throw Error("solver xpbd: setting threads_a_group: expected 0 or a power of two from 32 to 1024; found " +

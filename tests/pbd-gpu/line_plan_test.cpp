@@ -56,21 +56,20 @@ TEST(TautLines, AreThoseStraightBetweenHeldVertices) {
 TEST(Substeps, FollowTheRule) {
   const auto of = [](const Scene& s, const char* quality) { return xpbd_substeps(s, {{"quality", quality}}); };
   Scene hang = with_pins(sheet(32, 32));
-  EXPECT_EQ(of(hang, "default"), 5) << "soft: tethers with slack, no turns";
+  EXPECT_EQ(of(hang, "default"), 5) << "soft: tethers with slack";
   hang.material.membrane_stiffness_N_per_m.reset();
   EXPECT_EQ(of(hang, "fast"), 2);
-  EXPECT_EQ(of(hang, "default"), 6);
+  EXPECT_EQ(of(hang, "default"), 5);
   EXPECT_EQ(of(hang, "accurate"), 20);
   EXPECT_EQ(xpbd_substeps(hang, {{"quality", "fast"}, {"substeps", 7}}), 7);
   EXPECT_EQ(xpbd_substeps(hang, {{"tethers", false}}), 10);
   hang.time.frame_rate_hz = 36;
   EXPECT_EQ(of(hang, "fast"), 2) << "as many a frame: a rule in seconds would tell similar scenes apart";
-  for (const int n : {64, 128, 256, 512, 1024})
-    for (const char* quality : {"fast", "default", "accurate"}) {
-      Scene s = with_pins(sheet(n, 9));
-      s.material.membrane_stiffness_N_per_m.reset();
-      EXPECT_EQ(of(s, quality) % 2, 0) << "turns are balanced within a frame";
-    }
+  for (const auto& [n, fast] : {std::pair{64, 3}, {128, 5}, {256, 11}, {512, 21}, {1024, 43}}) {
+    Scene s = with_pins(sheet(n, 9));
+    s.material.membrane_stiffness_N_per_m.reset();
+    EXPECT_EQ(of(s, "fast"), fast);
+  }
   EXPECT_EQ(of(sheet(128, 128), "default"), 5) << "nothing touches it";
 }
 
@@ -83,10 +82,10 @@ TEST(Shapes, FitDevices) {
           EXPECT_TRUE(n > 32 || d.shared_B < 32768) << n;
           continue;
         }
-        EXPECT_LE(s.threads, std::min(d.wide ? 512u : 256u, d.most_threads));
+        EXPECT_LE(s.threads, std::min(d.wide ? 1024u : 256u, d.most_threads));
         EXPECT_GE(s.lanes * s.vertices, static_cast<std::uint32_t>(n));
         EXPECT_EQ(s.lanes & (s.lanes - 1), 0u);
-        EXPECT_EQ(s.threads % s.lanes, 0u);
+        EXPECT_EQ(s.threads % (s.lanes * s.beside), 0u);
         if (s.shuffles) {
           EXPECT_EQ(s.threads % d.subgroup, 0u) << "whole subgroups";
         }
@@ -94,6 +93,9 @@ TEST(Shapes, FitDevices) {
     }
   EXPECT_EQ(frame_shape(32, 32, {}, nvidia).threads, 512u);
   EXPECT_EQ(frame_shape(32, 32, {}, adreno).threads, 256u);
+  const LineShape wide = pass_shape(512, {}, nvidia);
+  EXPECT_EQ(wide.beside * wide.lanes, 512u);
+  EXPECT_EQ(pass_shape(64, {2, 128, 2}, nvidia).threads, 128u) << "wishes are granted";
   EXPECT_THROW(pass_shape(8193, {}, nvidia), Error);
 }
 

@@ -98,12 +98,10 @@ std::vector<V> solved(std::vector<std::vector<double>> a, std::vector<V> b) {
 
 double dot(V a, V b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// XPBD on whole lines in double: rows with bending before stretch, columns likewise, both diagonals; where asked, in
-/// reverse in odd substeps.
+/// XPBD on whole lines in double: both diagonals, columns with bending before stretch, rows likewise.
 class LineModel {
  public:
-  LineModel(const Scene& s, Model& m, bool tethered, bool alternated)
-      : s_(s), m_(m), alternated_(alternated), taut_(taut_chains(s)) {
+  LineModel(const Scene& s, Model& m, bool tethered) : s_(s), m_(m), taut_(taut_chains(s)) {
     if (tethered) tethers_ = tethers_of(s);
   }
 
@@ -114,7 +112,7 @@ class LineModel {
       integrate();
       multipliers_.clear();
       for (int it = 0; it < iterations; ++it)
-        for (int turn = 0; turn < families; ++turn) family(alternated_ && n % 2 == 1 ? families - 1 - turn : turn);
+        for (int turn = 0; turn < families; ++turn) family(families - 1 - turn);
     }
   }
 
@@ -227,7 +225,6 @@ class LineModel {
 
   const Scene& s_;
   Model& m_;
-  const bool alternated_;
   const std::vector<std::uint8_t> taut_;
   Tethers tethers_;
   double h_ = 0;
@@ -251,7 +248,9 @@ std::vector<nlohmann::json> variants() {
           {{"one_dispatch", false}},
           {{"one_dispatch", false}, {"shuffles", false}},
           {{"vertices_a_thread", 2}},
-          {{"one_dispatch", false}, {"vertices_a_thread", 8}}};
+          {{"one_dispatch", false}, {"vertices_a_thread", 8}},
+          {{"one_dispatch", false}, {"vertices_a_thread", 2}, {"lines_beside", 2}},
+          {{"one_dispatch", false}, {"vertices_a_thread", 2}, {"lines_beside", 4}, {"threads_a_group", 128}}};
 }
 
 TEST_F(Gpu, OneFrameAgreesWithDoublePrecision) {
@@ -275,11 +274,11 @@ TEST_F(Gpu, OneFrameAgreesWithDoublePrecision) {
       const auto paper = make("paper");
       paper->load(s);
       expect_close(m, after(*paper, s, 1), 1 / s.time.dt(), "paper " + what);
-      // With 10 substeps of 3 iterations the sheet, let go from 7 % of stretch, is back and buckling by the end of the
-      // frame: a one-ulp change of the start already moves it by 1e-6 m in double. Hence 4.
-      for (const auto& [substeps, iterations] : {std::pair{10, 1}, {4, 3}}) {
+      // With more iterations the sheet, let go from 7 % of stretch, is back and buckling by the end of the frame: a one-ulp
+      // change of the start already moves it by 1e-6 m in double.
+      for (const auto& [substeps, iterations] : {std::pair{10, 1}, {4, 2}}) {
         m = start(s);
-        LineModel(s, m, false, false).frame(substeps, iterations);
+        LineModel(s, m, false).frame(substeps, iterations);
         // In turns: a pipeline takes a CPU device a good part of a second to make.
         nlohmann::json settings = {{"substeps", substeps}, {"iterations", iterations}};
         settings.update(variants()[turn++ % variants().size()]);
@@ -291,7 +290,7 @@ TEST_F(Gpu, OneFrameAgreesWithDoublePrecision) {
     }
 }
 
-TEST_F(Gpu, TethersAndTurnsAgreeWithDoublePrecision) {
+TEST_F(Gpu, TethersAgreeWithDoublePrecision) {
   std::size_t turn = 0;
   for (const auto& [columns, rows] : {std::pair{2, 2}, {9, 7}, {5, 20}, {33, 17}})
     for (const bool shear : {true, false})
@@ -302,7 +301,7 @@ TEST_F(Gpu, TethersAndTurnsAgreeWithDoublePrecision) {
         if (edge) s.pins.vertices = edge_vertices(s.cloth, "v0");
         ASSERT_FALSE(tethers_of(s).to.empty());
         Model m = start(s);
-        LineModel(s, m, true, true).frame(4, 1);
+        LineModel(s, m, true).frame(4, 1);
         nlohmann::json settings = {{"substeps", 4}};
         settings.update(variants()[turn++ % variants().size()]);
         const auto xpbd = make("xpbd", settings);

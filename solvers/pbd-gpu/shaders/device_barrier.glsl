@@ -1,25 +1,23 @@
 // A barrier over all workgroups of a dispatch. Vulkan does not promise that they run at once; whether they do is tried at
 // loading (`p.substeps` = 0), and waiting is bounded: who waits in vain says so and returns, and the host sees it.
-layout(std430, binding = AFTER_MULTIPLIERS) coherent buffer Meeting { uint arrived, left; };
-layout(std430, binding = AFTER_MULTIPLIERS + 1) coherent buffer Missed { uint missed; };  // in host memory
+layout(std430, binding = AFTER_MULTIPLIERS) coherent volatile buffer Meeting { uint arrived, left; };
+layout(std430, binding = AFTER_MULTIPLIERS + 1) coherent volatile buffer Missed { uint missed; };  // in host memory
 shared bool all_came;
 
 /// What any thread of the dispatch wrote before, all read after. False where somebody did not come in `p.patience` looks.
+/// The writers' memoryBarrierBuffer() makes coherent writes visible to any later coherent read of any invocation (GLSL
+/// 4.60, 8.17); readers need none, and one would cost a tenth of the frame.
 bool meet() {
-  groupMemoryBarrier();
+  memoryBarrierBuffer();
   barrier();  // this workgroup's writes before its arrival
   if (gl_LocalInvocationIndex == 0u) {
-    memoryBarrierBuffer();
     uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y, seen = atomicAdd(arrived, 1u) + 1u;
     uint all = (seen + groups - 1u) / groups * groups;
-    // Looks are atomic, which no compiler may drop. What was seen last counts, not the looks left: lavapipe ends every
-    // loop of its own after 65535.
-    for (uint looks = 0u; looks < p.patience && seen < all; ++looks) seen = atomicOr(arrived, 0u);
+    // What was seen last counts, not the looks left: lavapipe ends every loop of its own after 65535.
+    for (uint looks = 0u; looks < p.patience && seen < all; ++looks) seen = arrived;
     all_came = seen >= all;
     if (!all_came) missed = 1u;
-    memoryBarrierBuffer();
   }
-  groupMemoryBarrier();
   barrier();  // the others' arrival before this workgroup's reads
   return all_came;
 }

@@ -1,5 +1,5 @@
 #version 450
-// A cloth of at most 32 x 32 vertices: one workgroup takes it through `substeps` substeps, its state in shared memory.
+// Cloths of at most 32 x 32 vertices: one workgroup takes each through `substeps` substeps, its state in shared memory.
 #ifdef KEEP_MULTIPLIERS
 #define COUNTER_BINDING 7
 #else
@@ -81,11 +81,11 @@ void load() {
     uint i = lane * K + k;
     if (!on_chain(i)) continue;
     uint o = index_of(vertex(i));
-    vec4 at = LOAD16(x, o);
-    put(vertex(i), at.xyz, LOAD16(v, o).xyz);
+    vec4 here = LOAD16(x, o);
+    put(vertex(i), here.xyz, LOAD16(v, o).xyz);
     rest_pos[k] = LOAD16(rx, o).xyz;
     rest_vel[k] = LOAD16(rv, o).xyz;
-    if (at.w == 0.0) atomicOr(held[chain], 1u << i);
+    if (here.w == 0.0) atomicOr(held[vertex(i).y], 1u << vertex(i).x);
   }
   barrier();  // the state and the bits of pinned vertices before hands change them and all read them
   for (uint g = thread; g < GRIPS; g += THREADS) {
@@ -123,30 +123,23 @@ void move_held(uint substep) {
 }
 
 void main() {
+  first_vertex = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * COLUMNS * ROWS;
+  if (first_vertex >= x.length()) return;  // the last row of workgroups may be longer than it need be
   set_thread();
   lane = thread % LANES;
   chain = thread / LANES;
-  family = 0u;
+  const uint families = kShears ? 4u : 2u;
+  family = families - 1u;
   [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = vec3(0.0);
   load();
   barrier();  // what load() wrote before all read it
-  const uint families = kShears ? 4u : 2u;
   for (uint s = 0u; s < p.substeps; ++s) {
     if (GRIPS > 0u) move_held(s);
-    bool reversed = (FEATURES & LINES_ALTERNATE) != 0u && (p.first_substep + s & 1u) != 0u;
-    family = 0u;
-    take();
-    integrate();
-    if (reversed) {
-      give();
-      barrier();  // integrated positions before the last family reads them
-    }
     for (iteration = 0u; iteration < p.iterations; ++iteration)
       for (uint turn = 0u; turn < families; ++turn) {
-        if (turn > 0u || iteration > 0u || reversed) {
-          family = reversed ? families - 1u - turn : turn;
-          take();
-        }
+        family = families - 1u - turn;
+        take();
+        if (turn == 0u && iteration == 0u) integrate();
         if (kBends && family < 2u) bend();
         uint firm = family == 0u ? FIRM_0 : family == 1u ? FIRM_1 : family == 2u ? FIRM_2 : FIRM_3;
         stretch(chain < 32u && (firm >> chain & 1u) != 0u ? p.firmness : 0.0);
@@ -155,7 +148,7 @@ void main() {
         barrier();  // this family's writes before the next one's reads
       }
   }
-  family = 0u;
+  family = families - 1u;  // whose chains a thread's rests are of
   take();
   store();
 }

@@ -43,18 +43,20 @@ vec3 anchor(uvec2 at, uint k) {
 #include "device_barrier.glsl"
 #endif
 
-void pass(bool first, bool last) {
+// Rests are of the first family's chains, so threads that stay with them keep them from substep to substep.
+void pass(uint substep, bool first, bool last) {
   uint at[K];
+  bool fetches = first && substep == 0u;
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
     bool is = on_chain(i);
     at[k] = is ? index_of(vertex(i)) : 0u;
-    if (is) COUNT_READ(first ? 64u : 32u)
+    if (is) COUNT_READ(fetches ? 64u : 32u)
     vec4 here = x[at[k]];
     pos[k] = here.xyz;
     w[k] = is ? here.w : 0.0;
     vel[k] = v[at[k]].xyz;
-    if (first) {
+    if (fetches) {
       rest_pos[k] = rx[at[k]].xyz;
       rest_vel[k] = rv[at[k]].xyz;
     }
@@ -65,7 +67,7 @@ void pass(bool first, bool last) {
   if (first) {
     integrate();
     [[unroll]] for (uint k = 0u; k < K; ++k) {
-      if (w[k] == 0.0) continue;
+      if (substep + 1u < p.substeps || w[k] == 0.0) continue;
       STORE16(rx, at[k], vec4(rest_pos[k], 0.0));
       STORE16(rv, at[k], vec4(rest_vel[k], 0.0));
     }
@@ -85,23 +87,22 @@ void main() {
   lane = thread / BESIDE % LANES;
   chain = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * (THREADS / LANES) +
           thread / (LANES * BESIDE) * BESIDE + thread % BESIDE;
+  [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = vec3(0.0);
 #ifdef RESIDENT
   const uint families = kShears ? 4u : 2u;
   if (p.substeps == 0u && !meet()) return;  // asked only whether all can
-  for (uint s = 0u; s < p.substeps; ++s) {
-    bool reversed = (FEATURES & LINES_ALTERNATE) != 0u && (p.first_substep + s & 1u) != 0u;
+  for (uint s = 0u; s < p.substeps; ++s)
     for (iteration = 0u; iteration < p.iterations; ++iteration)
       for (uint turn = 0u; turn < families; ++turn) {
         bool first = turn == 0u && iteration == 0u;
         if (!(first && s == 0u) && !meet()) return;
-        family = reversed ? families - 1u - turn : turn;
-        pass(first, turn + 1u == families && iteration + 1u == p.iterations);
+        family = families - 1u - turn;
+        pass(s, first, turn + 1u == families && iteration + 1u == p.iterations);
       }
-  }
   leave();
 #else
   family = p.family;
   iteration = p.iteration;
-  pass((p.turn & LINES_FIRST) != 0u, (p.turn & LINES_LAST) != 0u);
+  pass(0u, (p.turn & LINES_FIRST) != 0u, (p.turn & LINES_LAST) != 0u);
 #endif
 }

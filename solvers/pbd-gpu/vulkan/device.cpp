@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "vulkan/device_info.hpp"
+#include "vulkan/pipeline_cache.hpp"
 
 namespace clothbench::vulkan {
 namespace {
@@ -243,9 +244,22 @@ void Device::create_device() {
   pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   pool.queueFamilyIndex = family_;
   check(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "vkCreateCommandPool");
+  const std::vector<std::uint8_t> kept = read_pipeline_cache(pipeline_cache_file(properties_), properties_);
   VkPipelineCacheCreateInfo cache{};
   cache.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
+  cache.initialDataSize = kept.size();
+  cache.pInitialData = kept.data();
   check(vkCreatePipelineCache(device_, &cache, nullptr, &cache_), "vkCreatePipelineCache");
+  check(vkGetPipelineCacheData(device_, cache_, &cache_kept_B_, nullptr), "vkGetPipelineCacheData");
+}
+
+void Device::keep_pipelines() {
+  std::size_t bytes = 0;
+  if (vkGetPipelineCacheData(device_, cache_, &bytes, nullptr) != VK_SUCCESS || bytes == cache_kept_B_) return;
+  std::vector<std::uint8_t> data(bytes);
+  if (vkGetPipelineCacheData(device_, cache_, &bytes, data.data()) != VK_SUCCESS) return;
+  data.resize(bytes);
+  if (write_pipeline_cache(pipeline_cache_file(properties_), data)) cache_kept_B_ = bytes;
 }
 
 Device::~Device() { release(); }

@@ -43,6 +43,8 @@ class Device {
   VkQueue queue() const { return queue_; }
   VkCommandPool command_pool() const { return pool_; }
   VkPipelineCache pipeline_cache() const { return cache_; }
+  /// Writes the pipelines made since the last time to this user's cache, if there are any and it can.
+  void keep_pipelines();
   /// Of the device, cut down to the profile where there is one.
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
   const Profile* profile() const { return profile_; }  ///< null: the device as it is
@@ -91,6 +93,7 @@ class Device {
   std::uint32_t family_ = 0, timestamp_bits_ = 0;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   VkPipelineCache cache_ = VK_NULL_HANDLE;
+  std::size_t cache_kept_B_ = 0;
   bool float_atomics_ = false;
   std::uint32_t shuffled_lanes_ = 0;
   std::atomic<bool> lost_{false};
