@@ -45,6 +45,8 @@ struct Strip {
     if (g > 0) up = (-1 / g) * s.gravity_m_per_s2;
     need(!s.needs.has(Feature::Shear), "\"shear\": false in its material: rows that do not feel one another");
     need((s.needs & kColliderFeatures).empty(), "no collider");
+    need(!s.needs.has(Feature::UnevenGrid) && !s.needs.has(Feature::Regions), "cells of one width and one stiffness");
+    need(!s.needs.has(Feature::Spin), "a start that does not turn");
     need(std::abs(dot(s.cloth.axis_v, up)) <= kLevel, "axis_v at right angles to gravity");
   }
 
@@ -58,6 +60,16 @@ struct Strip {
   }
   void need_flat() const { need(scene.cloth.span_m == 0, "a flat start"); }
   void need_rest() const { need(length(scene.cloth.initial_velocity_m_per_s) == 0, "a start at rest"); }
+  /// Extra weight per width that hangs on edge u1, if masses are scaled there and nowhere else.
+  double end_load_N_per_m() const {
+    const Cloth& c = scene.cloth;
+    if (c.mass_factors.empty()) return 0;
+    const double factor = c.mass_factors.back();
+    for (std::size_t v = 0; v < c.mass_factors.size(); ++v)
+      need(c.mass_factors[v] == ((v + 1) % static_cast<std::size_t>(c.columns) == 0 ? factor : 1), "masses scaled on edge u1 at most, all alike");
+    return (factor - 1) * c.areal_density_kg_per_m2 * c.du() / 2 * g;
+  }
+  void need_even_masses() const { need(scene.cloth.mass_factors.empty(), "masses that are not scaled"); }
   void need_pins(std::vector<std::uint32_t> expected, const std::string& what) const {
     std::sort(expected.begin(), expected.end());
     need(scene.pins.vertices == expected && scene.grips.vertices.empty(), what);
@@ -73,7 +85,7 @@ struct Strip {
   }
   std::vector<std::uint32_t> edge(const char* name) const { return edge_vertices(scene.cloth, name); }
   Vec3 at(double x, double z) const { return start + x * along + z * up; }
-  double time_s(int frame) const { return frame * scene.time.dt(); }
+  double time_s(int frame) const { return scene.time.at(frame); }
   std::vector<double> times_s() const {
     std::vector<double> out;
     for (int f = 0; f <= scene.time.frames(); ++f) out.push_back(time_s(f));
@@ -97,6 +109,7 @@ std::function<double(const Columns&)> tip(const Vec3& start, const Vec3& directi
 
 Card free_fall(const Strip& s) {
   s.need_gravity();
+  s.need_even_masses();
   s.need_pins({}, "nothing that is held");
   s.need_damping(false);
   s.need_flat();
@@ -133,6 +146,7 @@ Card pendulum(const Strip& s) {
   s.need_pins(s.edge("u0"), "edge u0 pinned and nothing else held");
   s.need_inextensible();
   s.need_damping(false);
+  s.need_even_masses();
   Card card = s.card();
   card.quantity_name = "angle from the vertical";
   card.quantity_scale = std::numbers::pi / 2;
@@ -161,8 +175,9 @@ Card swing_strip(const Strip& s) {
   s.need_inextensible();
   s.need_no_bending();
   s.need_damping(false);
+  s.need_even_masses();
   const double horizon_s = 0.5 * std::sqrt(s.length_m * 9.81 / s.g);
-  s.need(s.scene.time.duration_s <= horizon_s * (1 + 1e-9), "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): then comes chaos");
+  s.need(s.time_s(s.scene.time.frames()) <= horizon_s * (1 + 1e-9), "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): then comes chaos");
   Card card = s.card();
   card.quantity_name = "distance of the free end from the wall";
   card.quantity = tip(s.start, s.along);
@@ -197,7 +212,7 @@ Card heavy_strip(const Strip& s) {
   s.need_pins(s.edge("u0"), "edge u0 pinned and nothing else held");
   s.need_no_bending();
   s.need_damping(true);
-  const HeavyStrip strip{s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), s.g, 0, StretchLaw::EngineeringSpring};
+  const HeavyStrip strip{s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), s.g, s.end_load_N_per_m(), StretchLaw::EngineeringSpring};
   Card card = s.card();
   card.settles = card.by_quantity = true;
   card.quantity_name = "stretch of the strip";
@@ -224,6 +239,7 @@ Card catenary(const Strip& s) {
   s.need_inextensible();
   s.need_no_bending();
   s.need_damping(true);
+  s.need_even_masses();
   Card card = s.card();
   card.settles = true;
   card.quantity_name = "sag";
@@ -252,6 +268,7 @@ Card cantilever(const Strip& s) {
   s.need_pins(clamp_vertices(s.scene.cloth, "u0"), "edge u0 clamped and nothing else held");
   s.need_damping(true);
   s.need(s.scene.needs.has(Feature::Bend), "a bending rigidity");
+  s.need_even_masses();
   const double cell = s.scene.cloth.du(), free_m = s.length_m - cell, weight = s.scene.cloth.areal_density_kg_per_m2 * s.g;
   const auto Y = s.scene.material.membrane_stiffness_N_per_m;
   s.need(!Y || weight * free_m / *Y <= kMostStrain, "a membrane that its own weight stretches by 1e-7 at most");
@@ -293,6 +310,9 @@ TwoHandPull bars_of(const Strip& s) {
   const double speed = dot(velocity(1), s.along), ramp_s = grips[0].at("ramp_s").get<double>();
   const bool alike = length(velocity(0) + velocity(1)) <= 1e-9 * speed && length(velocity(1) - speed * s.along) <= 1e-9 * speed &&
                      grips[1].at("ramp_s").get<double>() == ramp_s;
+  for (const nlohmann::json& grip : grips)
+    for (const char* key : {"stop_s", "release_s", "jumps"}) s.need(!grip.contains(key), std::string("bars without \"") + key + "\"");
+  s.need_even_masses();
   s.need(speed > 0 && alike && s.scene.pins.vertices.empty(), kBars);
   return {s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), speed, ramp_s};
 }
