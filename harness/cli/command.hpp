@@ -21,6 +21,7 @@ void add_list(CLI::App&, Console&);
 void add_validate(CLI::App&, Console&);
 void add_plan(CLI::App&, Console&);
 void add_run(CLI::App&, Console&);
+void add_run_cell(CLI::App&, Console&);
 void add_study(CLI::App&, Console&);
 void add_report(CLI::App&, Console&);
 void add_import(CLI::App&, Console&);

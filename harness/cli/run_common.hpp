@@ -1,6 +1,7 @@
 #pragma once
 #include "cli/command.hpp"
 #include "runner/study_runner.hpp"
+#include "scenario/study.hpp"
 
 namespace clothbench {
 
@@ -9,6 +10,16 @@ struct RunFlags {
   bool resume = false;
   DeviceFlags device;
 };
+
+/// results/runs/<study>-<UTC>
+std::filesystem::path default_folder(const std::string& study);
+
+/// True if GPU solvers have a device; false if there is none and that is allowed. Throws Error otherwise, and for a --device
+/// that there is not.
+bool check_device(const SolverEntry& gpu, const DeviceFlags&);
+
+/// The same for a study whose cells run in processes of their own (protocol stability-map). `only`: solvers of its maps.
+void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only, Console& console);
 
 /// Writes the manifest, runs the cells with a status line and prints what came of it. Sets the console's exit code to
 /// CheckFailed if a cell broke a rule of the harness.

@@ -79,6 +79,10 @@ void add_study(CLI::App& app, Console& console) {
     if (a.run.resume && a.run.out.empty()) throw Error("--resume: say which folder with --out");
     const StudyLength length = a.full ? StudyLength::Full : a.quick ? StudyLength::Quick : StudyLength::Short;
     const Study study = load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only});
+    if (study.protocol == "stability-map") {
+      run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, console);
+      return;
+    }
     CellPlan plan = plan_study(study);
     if (a.trials > 0) plan.rules.trials = a.trials;
     StudyManifest manifest;
