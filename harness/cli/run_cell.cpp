@@ -5,7 +5,8 @@ namespace clothbench {
 
 void add_run_cell(CLI::App& app, Console& console) {
   static std::string request, answer;
-  CLI::App* cmd = app.add_subcommand("run-cell", "One cell in this process, for a study that runs each in one of its own");
+  CLI::App* cmd =
+      app.add_subcommand("run-cell", "One cell in this process, for a study that runs each in one of its own");
   cmd->group("");  // not for people
   cmd->add_option("request", request)->required();
   cmd->add_option("answer", answer)->required();

@@ -49,9 +49,11 @@ nlohmann::json settle(Study& study, const DeviceFlags& flags, std::vector<std::s
 
 }  // namespace
 
-void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only, Console& console) {
+void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only,
+                            Console& console) {
   const nlohmann::json environment = settle(study, flags.device, only);
-  const std::filesystem::path out = flags.out.empty() ? default_folder(manifest.study) : std::filesystem::path(flags.out);
+  const std::filesystem::path out =
+      flags.out.empty() ? default_folder(manifest.study) : std::filesystem::path(flags.out);
   std::filesystem::create_directories(out);
   manifest.created = utc_now();
   manifest.command_line = console.command_line;
@@ -74,19 +76,21 @@ void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags&
     options.resume = flags.resume;
     options.solvers = only;
     options.environment = environment;
-    options.progress = [&](const std::string& what, std::size_t done, std::size_t total) { line.show(what, done, total); };
+    options.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
+      line.show(what, done, total);
+    };
     counts = run_stability_cells(study, options);
     add(counts, run_stability_maps(study, options));
   }
   if (console.json) {
-    nlohmann::json j = {{"out", out.string()}, {"stable", counts.stable}, {"degraded", counts.degraded}, {"failed", counts.failed},
-                        {"unsupported", counts.unsupported}, {"crashed", counts.crashed}};
+    nlohmann::json j = {{"out", out.string()},     {"stable", counts.stable},           {"degraded", counts.degraded},
+                        {"failed", counts.failed}, {"unsupported", counts.unsupported}, {"crashed", counts.crashed}};
     fmt::print("{}\n", j.dump(2));
     return;
   }
   print_console_report({out});
-  fmt::print("\n{} runs stable, {} degraded, {} failed ({} of them crashed or hung), {} unsupported; results in {}\n", counts.stable,
-             counts.degraded, counts.failed, counts.crashed, counts.unsupported, out.string());
+  fmt::print("\n{} runs stable, {} degraded, {} failed ({} of them crashed or hung), {} unsupported; results in {}\n",
+             counts.stable, counts.degraded, counts.failed, counts.crashed, counts.unsupported, out.string());
 }
 
 }  // namespace clothbench

@@ -15,9 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* kExtremes[] = {"stability_speed_max", "stability_energy_gain_max", "stability_strain_excess_max",
-                                     "stability_strain_p99_max", "stability_bad_geometry_max", "stability_depth_max",
-                                     "stability_unrest_max", "stability_fall_error_max"};
+constexpr const char* kExtremes[] = {"stability_speed_max",         "stability_energy_gain_max",
+                                     "stability_strain_excess_max", "stability_strain_p99_max",
+                                     "stability_bad_geometry_max",  "stability_depth_max",
+                                     "stability_unrest_max",        "stability_fall_error_max"};
 constexpr const char* kGrades[] = {"stable", "degraded", "failed"};
 
 json scenario_of(const CellRecord& c) { return json::parse(c.header.scenario_json, nullptr, false); }
@@ -29,7 +30,8 @@ std::string case_of(const json& scenario) {
 }
 
 std::string solver_of(const CellRecord& c) {
-  return c.header.setting == "default" || c.header.setting.empty() ? c.header.solver : c.header.solver + " " + c.header.setting;
+  return c.header.setting == "default" || c.header.setting.empty() ? c.header.solver
+                                                                   : c.header.solver + " " + c.header.setting;
 }
 
 /// 0 stable, 1 degraded, 2 failed; -1 where the solver cannot run it or it has not been run.
@@ -39,7 +41,9 @@ int grade_of(const CellRecord& c) {
   return at != c.summary.end() && std::isfinite(at->second) ? static_cast<int>(at->second) : 2;
 }
 
-std::string class_of(const CellRecord& c) { return c.outcome.klass == "ok" || c.outcome.klass.empty() ? "F8" : c.outcome.klass; }
+std::string class_of(const CellRecord& c) {
+  return c.outcome.klass == "ok" || c.outcome.klass.empty() ? "F8" : c.outcome.klass;
+}
 
 struct Tally {
   int count[3] = {0, 0, 0}, unsupported = 0, missing = 0;
@@ -103,14 +107,19 @@ json stability_maps(const std::vector<fs::path>& runs) {
     if (!fs::is_regular_file(file, ec)) continue;
     std::ifstream in(file);
     const json j = json::parse(in, nullptr, false);
-    if (!j.is_object() || j.value("format", "") != "clothbench-stability") throw Error(file.string() + ": not maps of a stability study");
+    if (!j.is_object() || j.value("format", "") != "clothbench-stability")
+      throw Error(file.string() + ": not maps of a stability study");
     for (const json& map : j.at("maps")) all.push_back(map);
   }
   return all;
 }
 
 Table robustness_table(const std::vector<CellRecord>& cells) {
-  Table t{"Robustness", "Runs of each case that were stable; degraded: strain or unrest out of bounds (F3, F6) and nothing else; failed: any other class. F0 not finite, F1 speed, F2 energy gain, F3 strain, F4 geometry, F5 contact, F6 unrest, F7 stagnation, F8 budget, crash or device.", {}};
+  Table t{"Robustness",
+          "Runs of each case that were stable; degraded: strain or unrest out of bounds (F3, F6) and nothing else; "
+          "failed: any other class. F0 not finite, F1 speed, F2 energy gain, F3 strain, F4 geometry, F5 contact, F6 "
+          "unrest, F7 stagnation, F8 budget, crash or device.",
+          {}};
   std::vector<std::string> cases, solvers;
   std::map<std::pair<std::string, std::string>, Tally> tally;
   std::map<std::string, Tally> whole;
@@ -138,14 +147,19 @@ Table robustness_table(const std::vector<CellRecord>& cells) {
 }
 
 Table headline_table(const json& maps) {
-  Table t{"Largest stable values", "The least over all rows and seeds of a map. ≥: the whole range is good in every row. none: some row has no good value in the range.", {{"map", "solver", "largest"}}};
-  for (const json& m : maps) t.note += " " + m.at("title").get<std::string>() + ": " + m.at("headline").get<std::string>() + ".";
+  Table t{"Largest stable values",
+          "The least over all rows and seeds of a map. ≥: the whole range is good in every row. none: some row has no "
+          "good value in the range.",
+          {{"map", "solver", "largest"}}};
+  for (const json& m : maps)
+    t.note += " " + m.at("title").get<std::string>() + ": " + m.at("headline").get<std::string>() + ".";
   for (const json& m : maps)
     for (const json& s : m.at("solvers")) {
       std::string value = "unsupported";
       if (!s.at("unsupported").get<bool>()) {
         const double largest = s.at("largest").is_null() ? 0 : s.at("largest").get<double>();
-        value = largest == 0 ? "none" : with_unit((s.at("open").get<bool>() ? "≥ " : "") + short_number(largest), m.at("x"));
+        value = largest == 0 ? "none"
+                             : with_unit((s.at("open").get<bool>() ? "≥ " : "") + short_number(largest), m.at("x"));
       }
       t.rows.push_back({m.at("title"), name_of(s), value});
     }
@@ -153,7 +167,9 @@ Table headline_table(const json& maps) {
 }
 
 Table boundary_table(const json& maps) {
-  Table t{"Boundaries", "Last good value of x in every row (least of its seeds), to 0.05 decades; ≥: nothing in the range is bad.", {{"map", "solver", "y", "last good x", "first bad x", "seeds"}}};
+  Table t{"Boundaries",
+          "Last good value of x in every row (least of its seeds), to 0.05 decades; ≥: nothing in the range is bad.",
+          {{"map", "solver", "y", "last good x", "first bad x", "seeds"}}};
   for (const json& m : maps)
     for (const json& s : m.at("solvers"))
       for (const json& row : s.at("rows")) {
@@ -180,18 +196,27 @@ Table first_failure_table(const std::vector<CellRecord>& cells) {
     if (c.outcome.failed_frame >= 0) text += fmt::format(" ({})", c.outcome.failed_frame);
     if (c.outcome.status != "ok" && c.outcome.status != "diverged") text += " " + c.outcome.status;
   }
-  for (const auto& [key, text] : runs) t.rows.push_back({std::get<0>(key), kGrades[-std::get<1>(key)], std::get<2>(key), text});
+  for (const auto& [key, text] : runs)
+    t.rows.push_back({std::get<0>(key), kGrades[-std::get<1>(key)], std::get<2>(key), text});
   return t;
 }
 
 std::string stability_csv(const std::vector<CellRecord>& cells) {
-  std::vector<std::string> head = {"case", "scene", "solver", "setting", "status", "grade", "class", "frame", "message"};
+  std::vector<std::string> head = {"case",  "scene", "solver", "setting", "status",
+                                   "grade", "class", "frame",  "message"};
   head.insert(head.end(), std::begin(kExtremes), std::end(kExtremes));
   std::string out = csv_row(head);
   for (const CellRecord& c : cells) {
     const int grade = grade_of(c);
-    std::vector<std::string> row = {scenario_of(c)["stability"].value("case", ""), c.header.scene, c.header.solver, c.header.setting, c.outcome.status,
-                                    grade < 0 ? "" : kGrades[grade], grade > 0 ? class_of(c) : "", c.outcome.failed_frame < 0 ? "" : std::to_string(c.outcome.failed_frame), c.outcome.message};
+    std::vector<std::string> row = {scenario_of(c)["stability"].value("case", ""),
+                                    c.header.scene,
+                                    c.header.solver,
+                                    c.header.setting,
+                                    c.outcome.status,
+                                    grade < 0 ? "" : kGrades[grade],
+                                    grade > 0 ? class_of(c) : "",
+                                    c.outcome.failed_frame < 0 ? "" : std::to_string(c.outcome.failed_frame),
+                                    c.outcome.message};
     for (const char* name : kExtremes) {
       const auto at = c.summary.find(name);
       row.push_back(at == c.summary.end() ? "" : exact(at->second));

@@ -12,8 +12,8 @@ namespace clothbench {
 /// Whether a cell's scene is judged frame by frame (has a "stability" block).
 bool is_stability(const CellRecord&);
 
-/// The maps of study folders, in order: what stands in their stability.json; see runner/stability_study.hpp. Throws Error
-/// naming a file that is none.
+/// The maps of study folders, in order: what stands in their stability.json; see runner/stability_study.hpp. Throws
+/// Error naming a file that is none.
 nlohmann::json stability_maps(const std::vector<std::filesystem::path>& runs);
 
 /// Solver x case: how many runs of the case were stable, degraded and failed, with the classes of those that were not.

@@ -19,7 +19,8 @@ double number(const std::string& text, const std::string& whole) {
 
 }  // namespace
 
-Boundary find_boundary(const std::vector<double>& values, double decades, int after_bad, const std::function<bool(double)>& good) {
+Boundary find_boundary(const std::vector<double>& values, double decades, int after_bad,
+                       const std::function<bool(double)>& good) {
   Boundary b{0, std::numeric_limits<double>::infinity()};
   int beyond = 0;
   for (double x : values) {
@@ -54,9 +55,12 @@ double evaluate(const std::string& expression, double x, double y) {
       continue;
     }
     const double base = factor[0] == 'x' ? x : y;
-    if (factor.size() == 1) out *= base;
-    else if (factor[1] == '^') out *= std::pow(base, number(factor.substr(2), expression));
-    else number(factor, expression);
+    if (factor.size() == 1)
+      out *= base;
+    else if (factor[1] == '^')
+      out *= std::pow(base, number(factor.substr(2), expression));
+    else
+      number(factor, expression);
   }
   return out;
 }

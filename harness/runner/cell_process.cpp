@@ -92,9 +92,19 @@ CellAnswer run_here(const CellRequest& r, const SolverLookup& lookup) {
 }  // namespace
 
 json to_json(const CellRequest& r) {
-  return {{"scenario", r.scenario}, {"source", r.source}, {"set", r.set}, {"name", r.name}, {"solver", r.solver},
-          {"setting", r.setting}, {"settings", r.settings}, {"device", r.device.index}, {"validate", r.device.validation}, {"profile", r.device.profile},
-          {"protocol", r.protocol}, {"limit_s", r.limit_s}, {"out", r.out.string()}};
+  return {{"scenario", r.scenario},
+          {"source", r.source},
+          {"set", r.set},
+          {"name", r.name},
+          {"solver", r.solver},
+          {"setting", r.setting},
+          {"settings", r.settings},
+          {"device", r.device.index},
+          {"validate", r.device.validation},
+          {"profile", r.device.profile},
+          {"protocol", r.protocol},
+          {"limit_s", r.limit_s},
+          {"out", r.out.string()}};
 }
 
 CellRequest request_from_json(const json& j) {
@@ -116,14 +126,20 @@ CellRequest request_from_json(const json& j) {
 }
 
 json to_json(const CellAnswer& a) {
-  return {{"status", a.outcome.status}, {"class", a.outcome.klass}, {"failed_frame", a.outcome.failed_frame},
-          {"message", a.outcome.message}, {"expect", a.outcome.expect}, {"summary", a.summary}, {"wall_s", a.wall_s}};
+  return {{"status", a.outcome.status},
+          {"class", a.outcome.klass},
+          {"failed_frame", a.outcome.failed_frame},
+          {"message", a.outcome.message},
+          {"expect", a.outcome.expect},
+          {"summary", a.summary},
+          {"wall_s", a.wall_s}};
 }
 
 CellAnswer answer_from_json(const json& j) {
   CellAnswer a;
   a.outcome = {j.at("status"), j.at("class"), j.at("failed_frame"), j.at("message"), j.value("expect", "")};
-  for (const auto& [key, value] : j.at("summary").items()) a.summary[key] = value.is_null() ? kMissing : value.get<double>();
+  for (const auto& [key, value] : j.at("summary").items())
+    a.summary[key] = value.is_null() ? kMissing : value.get<double>();
   a.wall_s = j.at("wall_s").is_null() ? kMissing : j.at("wall_s").get<double>();
   return a;
 }
@@ -162,7 +178,8 @@ CellAnswer run_in_process(const CellRequest& r, const fs::path& program, const f
   CellAnswer out;
   out.wall_s = end.wall_s;
   const bool hung = end.how == ChildEnd::How::TimedOut;
-  out.outcome = {hung ? "timed_out" : "crashed", "F8", -1, "its process: " + end.text() + (words.empty() ? "" : "; last words: " + words)};
+  out.outcome = {hung ? "timed_out" : "crashed", "F8", -1,
+                 "its process: " + end.text() + (words.empty() ? "" : "; last words: " + words)};
   out.summary = summarise_stability(scene_of(r), {}, out.outcome);
   if (!r.out.empty()) write_failure(r, out);
   return out;

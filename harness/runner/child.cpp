@@ -39,9 +39,12 @@ pid_t start(const std::vector<std::string>& argv, const std::filesystem::path& l
 
 std::string ChildEnd::text() const {
   switch (how) {
-    case How::Exited: return fmt::format("exit status {}", code);
-    case How::Signalled: return fmt::format("signal {} ({})", code, strsignal(code));
-    case How::TimedOut: return fmt::format("killed after {:.1f} s", wall_s);
+    case How::Exited:
+      return fmt::format("exit status {}", code);
+    case How::Signalled:
+      return fmt::format("signal {} ({})", code, strsignal(code));
+    case How::TimedOut:
+      return fmt::format("killed after {:.1f} s", wall_s);
   }
   return "";
 }

@@ -15,8 +15,8 @@ struct ChildEnd {
   std::string text() const;
 };
 
-/// Runs a program (argv[0]: its path) with its output going to `log`, and kills it after `limit_s` (0 = never) or on Ctrl-C,
-/// which then throws the interrupt. Throws Error if it cannot be started.
+/// Runs a program (argv[0]: its path) with its output going to `log`, and kills it after `limit_s` (0 = never) or on
+/// Ctrl-C, which then throws the interrupt. Throws Error if it cannot be started.
 ChildEnd run_child(const std::vector<std::string>& argv, double limit_s, const std::filesystem::path& log);
 
 /// This program's own file, to be run again. Throws Error in an app.

@@ -26,7 +26,8 @@ const char* protocol_name(StudyLength length) {
 }
 
 void stop_if_interrupted() {
-  if (interrupt_requested()) throw Error("interrupted; finished cells are kept (continue with --resume)", ExitCode::Interrupted);
+  if (interrupt_requested())
+    throw Error("interrupted; finished cells are kept (continue with --resume)", ExitCode::Interrupted);
 }
 
 bool on_gpu(const std::string& solver) {
@@ -76,7 +77,9 @@ class Probes {
 
 double grade_of(const CellAnswer& a) {
   const auto at = a.summary.find("stability_grade");
-  return at != a.summary.end() && std::isfinite(at->second) ? at->second : a.outcome.status == "unsupported" ? kMissing : 2;
+  return at != a.summary.end() && std::isfinite(at->second) ? at->second
+         : a.outcome.status == "unsupported"                ? kMissing
+                                                            : 2;
 }
 
 /// One map of one study.
@@ -96,11 +99,13 @@ class Map {
 
   /// `keep` is called whenever a row is done, with the map as it then stands.
   void run(const std::function<void(const json&)>& keep) {
-    json out = {{"name", j_["name"]}, {"title", j_["title"]}, {"scene", j_["scene"]}, {"good", j_["good"]}, {"headline", j_["headline"]},
-                {"theory", json::array()}, {"solvers", json::array()}};
+    json out = {{"name", j_["name"]},      {"title", j_["title"]},       {"scene", j_["scene"]},
+                {"good", j_["good"]},      {"headline", j_["headline"]}, {"theory", json::array()},
+                {"solvers", json::array()}};
     for (const char* axis : {"x", "y"}) out[axis] = {{"label", j_[axis]["label"]}, {"unit", j_[axis]["unit"]}};
     for (const json& solver : j_["solvers"]) {
-      if (!o_.solvers.empty() && std::find(o_.solvers.begin(), o_.solvers.end(), solver["solver"]) == o_.solvers.end()) continue;
+      if (!o_.solvers.empty() && std::find(o_.solvers.begin(), o_.solvers.end(), solver["solver"]) == o_.solvers.end())
+        continue;
       if (out["theory"].empty()) out["theory"] = lines(solver);
       out["solvers"].push_back(begin(solver));
       const std::size_t at = out["solvers"].size() - 1;
@@ -115,8 +120,15 @@ class Map {
 
  private:
   static json begin(const json& solver) {
-    return {{"solver", solver["solver"]}, {"setting", solver["label"]}, {"on_gpu", on_gpu(solver["solver"])}, {"unsupported", false},
-            {"message", ""}, {"probes", json::array()}, {"rows", json::array()}, {"largest", json()}, {"open", true}};
+    return {{"solver", solver["solver"]},
+            {"setting", solver["label"]},
+            {"on_gpu", on_gpu(solver["solver"])},
+            {"unsupported", false},
+            {"message", ""},
+            {"probes", json::array()},
+            {"rows", json::array()},
+            {"largest", json()},
+            {"open", true}};
   }
 
   int substeps_at(const json& solver, double x, double y) const {
@@ -155,11 +167,15 @@ class Map {
 
   const CellAnswer& probe(const json& solver, double x, double y, int seed, json& told) {
     const auto label = solver["label"].get<std::string>();
-    const std::string key = fmt::format("{}|{}|{}|{:.17g}|{:.17g}|{}", j_["name"].get<std::string>(), solver["solver"].get<std::string>(), label, x, y, seed);
+    const std::string key = fmt::format("{}|{}|{}|{:.17g}|{:.17g}|{}", j_["name"].get<std::string>(),
+                                        solver["solver"].get<std::string>(), label, x, y, seed);
     const CellAnswer* found = probes_.find(key);
     if (found == nullptr) {
       stop_if_interrupted();
-      if (o_.progress) o_.progress(fmt::format("{} {}: x = {:.4g}, y = {:.4g}", j_["name"].get<std::string>(), solver["solver"].get<std::string>(), x, y), 0, 0);
+      if (o_.progress)
+        o_.progress(fmt::format("{} {}: x = {:.4g}, y = {:.4g}", j_["name"].get<std::string>(),
+                                solver["solver"].get<std::string>(), x, y),
+                    0, 0);
       CellRequest r;
       r.scenario = scenario_;
       r.source = file_.string();
@@ -174,8 +190,14 @@ class Map {
       found = &probes_.add(key, run_in_process(r, o_.program, o_.out / "scratch"));
     }
     counts_.add(*found);
-    told["probes"].push_back({{"x", x}, {"y", y}, {"seed", seed}, {"status", found->outcome.status}, {"class", found->outcome.klass},
-                              {"grade", or_null(grade_of(*found))}, {"frame", found->outcome.failed_frame}, {"message", found->outcome.message}});
+    told["probes"].push_back({{"x", x},
+                              {"y", y},
+                              {"seed", seed},
+                              {"status", found->outcome.status},
+                              {"class", found->outcome.klass},
+                              {"grade", or_null(grade_of(*found))},
+                              {"frame", found->outcome.failed_frame},
+                              {"message", found->outcome.message}});
     return *found;
   }
 
@@ -213,7 +235,8 @@ class Map {
       if (x_[k] <= b.last_good) low = k;
       if (x_[k] >= b.first_bad) high = std::min(high, k);
     }
-    return {x_.begin() + static_cast<std::ptrdiff_t>(low > 0 ? low - 1 : 0), x_.begin() + static_cast<std::ptrdiff_t>(std::min(high + 2, x_.size()))};
+    return {x_.begin() + static_cast<std::ptrdiff_t>(low > 0 ? low - 1 : 0),
+            x_.begin() + static_cast<std::ptrdiff_t>(std::min(high + 2, x_.size()))};
   }
 
   const json& j_;
@@ -231,10 +254,14 @@ class Map {
 
 void StabilityCounts::add(const CellAnswer& a) {
   const double grade = grade_of(a);
-  if (a.outcome.status == "unsupported") ++unsupported;
-  else if (grade == 0) ++stable;
-  else if (grade == 1) ++degraded;
-  else ++failed;
+  if (a.outcome.status == "unsupported")
+    ++unsupported;
+  else if (grade == 0)
+    ++stable;
+  else if (grade == 1)
+    ++degraded;
+  else
+    ++failed;
   if (a.outcome.status == "crashed" || a.outcome.message.starts_with("its process")) ++crashed;
 }
 
@@ -254,8 +281,11 @@ StabilityCounts run_stability_cells(const Study& study, const StabilityOptions& 
       h.setting = s.label;
       const std::string cell = cell_name(h);
       if (cell_finished(o.out, cell)) {
-        if (!o.resume) throw Error(fmt::format("{}: {} is already there; give another --out, or --resume to go on with this folder", o.out.string(), cell));
-        const CellRecord before = read_cell_summary(fs::exists(o.out / (cell + ".h5")) ? o.out / (cell + ".h5") : o.out / (cell + ".part"));
+        if (!o.resume)
+          throw Error(fmt::format("{}: {} is already there; give another --out, or --resume to go on with this folder",
+                                  o.out.string(), cell));
+        const CellRecord before =
+            read_cell_summary(fs::exists(o.out / (cell + ".h5")) ? o.out / (cell + ".h5") : o.out / (cell + ".part"));
         counts.add({before.outcome, before.summary, kMissing});
         continue;
       }
@@ -290,7 +320,11 @@ StabilityCounts run_stability_maps(const Study& study, const StabilityOptions& o
       now = so_far;
       json all = finished;
       all.push_back(now);
-      write_file_atomically(o.out / "stability.json", json{{"format", "clothbench-stability"}, {"format_version", 1}, {"environment", o.environment}, {"maps", all}}.dump(1) + "\n");
+      write_file_atomically(
+          o.out / "stability.json",
+          json{{"format", "clothbench-stability"}, {"format_version", 1}, {"environment", o.environment}, {"maps", all}}
+                  .dump(1) +
+              "\n");
     });
     if (!now.is_null() && !now["solvers"].empty()) finished.push_back(now);
   }

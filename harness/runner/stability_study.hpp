@@ -16,7 +16,7 @@ struct StabilityOptions {
   std::filesystem::path program;  ///< what is run as a child
   DeviceOptions device;
   bool resume = false;
-  nlohmann::json environment = {};  ///< stored with the maps
+  nlohmann::json environment = {};        ///< stored with the maps
   std::vector<std::string> solvers = {};  ///< of the maps, if any are named
   std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress = nullptr;
 };
@@ -28,18 +28,20 @@ struct StabilityCounts {
   void add(const CellAnswer&);
 };
 
-/// Every cell of the study's scenes, one process each, with a result file each; cells that are there already are passed over with
-/// `resume`.
+/// Every cell of the study's scenes, one process each, with a result file each; cells that are there already are passed
+/// over with `resume`.
 StabilityCounts run_stability_cells(const Study&, const StabilityOptions&);
 
-/// The study's maps: for every row (y) and solver the values of x in order, then the boundary by bisection, for every seed. Each
-/// probe is a cell in a process of its own; its answer is appended to stability-probes.jsonl, and read back from there instead
-/// of run again with `resume`. Writes stability.json after every row:
+/// The study's maps: for every row (y) and solver the values of x in order, then the boundary by bisection, for every
+/// seed. Each probe is a cell in a process of its own; its answer is appended to stability-probes.jsonl, and read back
+/// from there instead of run again with `resume`. Writes stability.json after every row:
 ///   {maps: [{name, title, scene, good, headline, x: {label, unit}, y: {label, unit},
 ///            theory: [{name, label, points: [[x, y]]}],
-///            solvers: [{solver, setting, on_gpu, unsupported, probes: [{x, y, seed, status, class, grade, frame, message}],
+///            solvers: [{solver, setting, on_gpu, unsupported, probes: [{x, y, seed, status, class, grade, frame,
+///            message}],
 ///                       rows: [{y, seeds: [{last_good, first_bad}]}], largest, open}]}]}
-/// `largest` is the least over rows and seeds of `last_good`; `open` that no row turned at all; first_bad null = none is bad.
+/// `largest` is the least over rows and seeds of `last_good`; `open` that no row turned at all; first_bad null = none
+/// is bad.
 StabilityCounts run_stability_maps(const Study&, const StabilityOptions&);
 
 }  // namespace clothbench

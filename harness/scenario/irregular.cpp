@@ -43,8 +43,11 @@ class Reader {
       c.column_factors[column] = list[k]["factor"].get<double>();
     }
     for (std::size_t line = 0; line <= c.column_factors.size(); ++line) {
-      const double left = line > 0 ? c.column_factors[line - 1] : 0, right = line < c.column_factors.size() ? c.column_factors[line] : 0;
-      if (!(left + right > 0)) refuse(source_, "/cloth/column_factors", fmt::format("grid line {} is beside no cell that has a width: its vertices would have no mass", line));
+      const double left = line > 0 ? c.column_factors[line - 1] : 0,
+                   right = line < c.column_factors.size() ? c.column_factors[line] : 0;
+      if (!(left + right > 0))
+        refuse(source_, "/cloth/column_factors",
+               fmt::format("grid line {} is beside no cell that has a width: its vertices would have no mass", line));
     }
     if (c.span_m > 0) refuse(source_, "/cloth/pose/span_m", "a sheet that starts as an arc has columns of one width");
   }
@@ -55,7 +58,8 @@ class Reader {
     if (j.contains("vertices"))
       for (const json& v : j["vertices"]) {
         if (v.get<std::size_t>() >= s_.cloth.vertex_count())
-          refuse(source_, pointer, fmt::format("vertex {} of {} (the first is 0)", v.get<std::size_t>(), s_.cloth.vertex_count()));
+          refuse(source_, pointer,
+                 fmt::format("vertex {} of {} (the first is 0)", v.get<std::size_t>(), s_.cloth.vertex_count()));
         out.push_back(v.get<std::uint32_t>());
       }
     if (out.empty()) refuse(source_, pointer, "expected \"edge\" or \"vertices\"");
@@ -116,7 +120,9 @@ double scattered(std::uint64_t n) {
 
 }  // namespace
 
-void read_irregular(const json& scenario, Scene& scene, const std::string& source) { Reader(scenario, scene, source).read(); }
+void read_irregular(const json& scenario, Scene& scene, const std::string& source) {
+  Reader(scenario, scene, source).read();
+}
 
 void read_frame_times(const json& time, Scene& scene, const std::string& source) {
   const bool hitch = time.contains("hitch"), jitter = time.contains("jitter");
@@ -130,7 +136,8 @@ void read_frame_times(const json& time, Scene& scene, const std::string& source)
     double dt = span.dt();
     if (jitter) {
       const auto seed = time["jitter"]["seed"].get<std::uint64_t>();
-      dt *= 1 + time["jitter"]["share"].get<double>() * (2 * scattered(static_cast<std::uint64_t>(f) + 1 + 97 * seed) - 1);
+      dt *= 1 +
+            time["jitter"]["share"].get<double>() * (2 * scattered(static_cast<std::uint64_t>(f) + 1 + 97 * seed) - 1);
     }
     if (f == slow) dt = time["hitch"]["dt_s"].get<double>();
     ends.push_back(ends.back() + dt);

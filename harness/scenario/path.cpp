@@ -51,15 +51,17 @@ void note_jumps(const Path& path, Scene& scene) {
   }
 }
 
-Capsule moved_capsule(const Path& path, const Vec3& center, const Vec3& axis, double length_m, double radius_m, const Vec3& spin,
-                      double time_s) {
+Capsule moved_capsule(const Path& path, const Vec3& center, const Vec3& axis, double length_m, double radius_m,
+                      const Vec3& spin, double time_s) {
   // Rodrigues' formula.
   const double rate = std::sqrt(spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2]);
   Vec3 turned = axis;
   if (rate > 0) {
     const Vec3 w = {spin[0] / rate, spin[1] / rate, spin[2] / rate};
-    const double c = std::cos(rate * time_s), s = std::sin(rate * time_s), along = w[0] * axis[0] + w[1] * axis[1] + w[2] * axis[2];
-    const Vec3 across = {w[1] * axis[2] - w[2] * axis[1], w[2] * axis[0] - w[0] * axis[2], w[0] * axis[1] - w[1] * axis[0]};
+    const double c = std::cos(rate * time_s), s = std::sin(rate * time_s),
+                 along = w[0] * axis[0] + w[1] * axis[1] + w[2] * axis[2];
+    const Vec3 across = {w[1] * axis[2] - w[2] * axis[1], w[2] * axis[0] - w[0] * axis[2],
+                         w[0] * axis[1] - w[1] * axis[0]};
     for (std::size_t k = 0; k < 3; ++k) turned[k] = axis[k] * c + across[k] * s + w[k] * along * (1 - c);
   }
   const Vec3 way = path.way(time_s);

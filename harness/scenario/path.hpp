@@ -8,8 +8,8 @@
 
 namespace clothbench {
 
-/// How a bar or a capsule moves. Speeds up as sin^2(pi t / 2 ramp_s), then keeps its velocity until it stops; jumps come on
-/// top, within the frame in which they fall.
+/// How a bar or a capsule moves. Speeds up as sin^2(pi t / 2 ramp_s), then keeps its velocity until it stops; jumps
+/// come on top, within the frame in which they fall.
 struct Path {
   Vec3 velocity_m_per_s{};
   double ramp_s = 0, start_s = 0;

@@ -15,7 +15,8 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
 /// SplitMix64 (Steele, Lea & Flood 2014), one stream a vertex: its numbers do not depend on what is pinned elsewhere.
 class Random {
  public:
-  Random(std::uint64_t seed, std::uint64_t stream) : state_(seed * 0x9E3779B97F4A7C15u + (stream + 1) * 0xD1B54A32D192ED03u) {}
+  Random(std::uint64_t seed, std::uint64_t stream)
+      : state_(seed * 0x9E3779B97F4A7C15u + (stream + 1) * 0xD1B54A32D192ED03u) {}
 
   /// In [0, 1), 53 bits.
   double uniform() {
@@ -42,7 +43,8 @@ Vec3 shaped(const Cloth& c, int i, Random& random) {
   const double turn = 2 * std::numbers::pi * random.uniform(), share = random.uniform();
   const double u = c.line_u_m(i) - c.width_m / 2;
   switch (s.shape) {
-    case Start::Shape::Rest: return {};
+    case Start::Shape::Rest:
+      return {};
     case Start::Shape::Sphere: {
       const double height = 2 * share - 1, ring = std::sqrt(1 - height * height);  // Archimedes: uniform in height
       return {s.radius_m * ring * std::cos(turn), s.radius_m * ring * std::sin(turn), s.radius_m * height};
@@ -51,9 +53,12 @@ Vec3 shaped(const Cloth& c, int i, Random& random) {
       const double r = s.radius_m * std::sqrt(share);
       return {r * std::cos(turn), r * std::sin(turn), 0};
     }
-    case Start::Shape::Line: return {u, 0, 0};
-    case Start::Shape::Point: return {0, 0, 0};
-    case Start::Shape::Folded: break;  // needs j: see below
+    case Start::Shape::Line:
+      return {u, 0, 0};
+    case Start::Shape::Point:
+      return {0, 0, 0};
+    case Start::Shape::Folded:
+      break;  // needs j: see below
   }
   return {};
 }

@@ -45,8 +45,7 @@ struct Strip {
     if (g > 0) up = (-1 / g) * s.gravity_m_per_s2;
     need(!s.needs.has(Feature::Shear), "\"shear\": false in its material: rows that do not feel one another");
     need((s.needs & kColliderFeatures).empty(), "no collider");
-    need(!s.needs.has(Feature::UnevenGrid) && !s.needs.has(Feature::Regions), "cells of one width and one stiffness");
-    need(!s.needs.has(Feature::Spin), "a start that does not turn");
+    need((s.needs & FeatureSet{Feature::UnevenGrid, Feature::Regions, Feature::Spin}).empty(), "even cells and no spin");
     need(std::abs(dot(s.cloth.axis_v, up)) <= kLevel, "axis_v at right angles to gravity");
   }
 
@@ -62,8 +61,8 @@ struct Strip {
   void need_rest() const { need(length(scene.cloth.initial_velocity_m_per_s) == 0, "a start at rest"); }
   /// Extra weight per width that hangs on edge u1, if masses are scaled there and nowhere else.
   double end_load_N_per_m() const {
+    if (scene.cloth.mass_factors.empty()) return 0;
     const Cloth& c = scene.cloth;
-    if (c.mass_factors.empty()) return 0;
     const double factor = c.mass_factors.back();
     for (std::size_t v = 0; v < c.mass_factors.size(); ++v)
       need(c.mass_factors[v] == ((v + 1) % static_cast<std::size_t>(c.columns) == 0 ? factor : 1), "masses scaled on edge u1 at most, all alike");

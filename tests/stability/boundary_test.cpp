@@ -1,10 +1,11 @@
+#include "runner/boundary.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 
 #include "clothbench/error.hpp"
-#include "runner/boundary.hpp"
 #include "runner/stability_theory.hpp"
 #include "scenario/load.hpp"
 
@@ -53,8 +54,13 @@ TEST(Expressions, AreProductsOfPowers) {
 }
 
 Scene sheet(const char* material) {
-  return scene_from_json(nlohmann::json::parse(std::string(R"({"name": "sheet", "why": "of the paper, in a test", "cloth": {"grid": [32, 32], "size_m": [1, 1],
-    "areal_density_kg_per_m2": 0.2, "sides": "single"}, "material": )") + material + R"(, "time": {"frame_rate_hz": 60, "duration_s": 1}})"), "test");
+  return scene_from_json(
+      nlohmann::json::parse(
+          std::string(
+              R"({"name": "sheet", "why": "of the paper, in a test", "cloth": {"grid": [32, 32], "size_m": [1, 1],
+    "areal_density_kg_per_m2": 0.2, "sides": "single"}, "material": )") +
+          material + R"(, "time": {"frame_rate_hz": 60, "duration_s": 1}})"),
+      "test");
 }
 
 TEST(Theory, HighestFrequencyOfTheSheetOf32) {
@@ -67,7 +73,8 @@ TEST(Theory, HighestFrequencyOfTheSheetOf32) {
 }
 
 TEST(Theory, Float32FreezesAtATenthOfAKilometre) {
-  // Between 512 and 1024 m an ulp is 6.1e-5 m and half of it is gravity's way in 1.76 ms: 10 substeps of 1/60 s are shorter.
+  // Between 512 and 1024 m an ulp is 6.1e-5 m and half of it is gravity's way in 1.76 ms: 10 substeps of 1/60 s are
+  // shorter.
   const Scene s = sheet(R"({"membrane_stiffness_N_per_m": 1000})");
   EXPECT_EQ(theory("float32-stagnation", s, 10), 512);
   EXPECT_EQ(theory("float32-stagnation", s, 8), 1024);

@@ -13,7 +13,8 @@ namespace {
 using nlohmann::json;
 
 json base() {
-  return json::parse(R"({"name": "uneven", "why": "an uneven sheet in a test", "cloth": {"grid": [5, 3], "size_m": [1, 0.5],
+  return json::parse(
+      R"({"name": "uneven", "why": "an uneven sheet in a test", "cloth": {"grid": [5, 3], "size_m": [1, 0.5],
     "areal_density_kg_per_m2": 0.2, "sides": "single"}, "material": {"membrane_stiffness_N_per_m": 1000}, "time": {"frame_rate_hz": 60, "duration_s": 0.5}})");
 }
 Scene load(const std::vector<std::string>& set) { return scene_from_json(base(), "test", set); }
@@ -44,7 +45,8 @@ TEST(Columns, FillTheWidthAndKeepTheMass) {
   EXPECT_NEAR(narrow.rest_m, 0.001 / 3.001, 1e-12);
   const std::vector<double> x = initial_positions(s);
   EXPECT_NEAR(x[3 * narrow.b] - x[3 * narrow.a], narrow.rest_m, 1e-12);
-  EXPECT_NE(complaint({R"(cloth.column_factors=[{"column": 4, "factor": 2}])"}).find("/cloth/column_factors/0/column"), std::string::npos);
+  EXPECT_NE(complaint({R"(cloth.column_factors=[{"column": 4, "factor": 2}])"}).find("/cloth/column_factors/0/column"),
+            std::string::npos);
 }
 
 TEST(Columns, OfWidthZeroHaveNoLength) {
@@ -55,12 +57,17 @@ TEST(Columns, OfWidthZeroHaveNoLength) {
 }
 
 TEST(Masses, AreScaledWhereTold) {
-  const Scene even = load({}), s = load({R"(cloth.mass_factors=[{"edge": "u1", "factor": 1000}, {"vertices": [6], "factor": 0.0001}])"});
+  const Scene even = load({}),
+              s = load({R"(cloth.mass_factors=[{"edge": "u1", "factor": 1000}, {"vertices": [6], "factor": 0.0001}])"});
   const auto a = vertex_masses(even), b = vertex_masses(s);
-  for (std::size_t v = 0; v < a.size(); ++v) EXPECT_DOUBLE_EQ(b[v], a[v] * (v % 5 == 4 ? 1000 : v == 6 ? 1e-4 : 1)) << v;
-  EXPECT_NE(complaint({R"(cloth.mass_factors=[{"edge": "u1", "factor": 0}])"}).find("/cloth/mass_factors/0/factor"), std::string::npos);
-  EXPECT_NE(complaint({R"(cloth.mass_factors=[{"vertices": [15], "factor": 2}])"}).find("vertex 15 of 15"), std::string::npos);
-  EXPECT_NE(complaint({R"(cloth.mass_factors=[{"factor": 2}])"}).find("expected \"edge\" or \"vertices\""), std::string::npos);
+  for (std::size_t v = 0; v < a.size(); ++v)
+    EXPECT_DOUBLE_EQ(b[v], a[v] * (v % 5 == 4 ? 1000 : v == 6 ? 1e-4 : 1)) << v;
+  EXPECT_NE(complaint({R"(cloth.mass_factors=[{"edge": "u1", "factor": 0}])"}).find("/cloth/mass_factors/0/factor"),
+            std::string::npos);
+  EXPECT_NE(complaint({R"(cloth.mass_factors=[{"vertices": [15], "factor": 2}])"}).find("vertex 15 of 15"),
+            std::string::npos);
+  EXPECT_NE(complaint({R"(cloth.mass_factors=[{"factor": 2}])"}).find("expected \"edge\" or \"vertices\""),
+            std::string::npos);
 }
 
 TEST(Regions, ChangeTheStiffnessOfTheirColumns) {
@@ -73,11 +80,14 @@ TEST(Regions, ChangeTheStiffnessOfTheirColumns) {
     if (e.b == e.a + 5 && e.a == 2) {  // on the line between both
       EXPECT_EQ(membrane_stiffness(s, e), (1000 + 1e6) / 2);
     }
-  EXPECT_NE(complaint({R"(material.regions=[{"columns": [2, 4], "membrane_stiffness_N_per_m": 1}])"}).find("/material/regions/0/columns"), std::string::npos);
+  EXPECT_NE(complaint({R"(material.regions=[{"columns": [2, 4], "membrane_stiffness_N_per_m": 1}])"})
+                .find("/material/regions/0/columns"),
+            std::string::npos);
 }
 
 TEST(Starts, AreSeededAndLeaveWhatIsPinned) {
-  const std::vector<std::string> set = {R"(pins=[{"edge": "u0"}])", R"(cloth.start={"shape": "sphere", "radius_m": 0.7, "seed": 3})"};
+  const std::vector<std::string> set = {R"(pins=[{"edge": "u0"}])",
+                                        R"(cloth.start={"shape": "sphere", "radius_m": 0.7, "seed": 3})"};
   const Scene s = load(set);
   const std::vector<double> x = initial_positions(s), again = initial_positions(load(set));
   EXPECT_EQ(x, again);
@@ -101,7 +111,8 @@ TEST(Starts, SquashFoldMergeAndMove) {
   for (std::size_t v = 0; v < 5; ++v) EXPECT_NEAR(folded[3 * v], v % 2 == 0 ? -0.5 : -0.25, 1e-12);
   const auto merged = initial_positions(load({R"(cloth.start={"shape": "rest", "merge": [[2, 7, 12]]})"}));
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(merged[3 * 12 + k], merged[3 * 2 + k]);
-  const auto moved = initial_positions(load({R"(pins=[{"edge": "u0"}])", R"(cloth.start={"shape": "rest", "move": [{"edge": "u0", "by_m": [0, 2, 0]}]})"}));
+  const auto moved = initial_positions(load(
+      {R"(pins=[{"edge": "u0"}])", R"(cloth.start={"shape": "rest", "move": [{"edge": "u0", "by_m": [0, 2, 0]}]})"}));
   EXPECT_EQ(moved[1], 2);
 }
 
@@ -143,7 +154,8 @@ TEST(Frames, JitterStaysInItsShare) {
 }
 
 TEST(Hands, StopLetGoAndJump) {
-  const Scene s = load({R"(grips=[{"edge": "u1", "velocity_m_per_s": [1, 0, 0], "stop_s": 0.1, "release_s": 0.3, "jumps": [{"time_s": 0.2, "by_m": [0, 0.5, 0]}]}])"});
+  const Scene s = load(
+      {R"(grips=[{"edge": "u1", "velocity_m_per_s": [1, 0, 0], "stop_s": 0.1, "release_s": 0.3, "jumps": [{"time_s": 0.2, "by_m": [0, 0.5, 0]}]}])"});
   const auto at = [&](int f) { return s.motion[static_cast<std::size_t>(f)]; };
   EXPECT_NEAR(at(6).grip_position_m[0][0], 0.6, 1e-12);
   EXPECT_NEAR(at(12).grip_position_m[0][0], 0.6, 1e-12);
@@ -157,7 +169,8 @@ TEST(Hands, StopLetGoAndJump) {
 }
 
 TEST(Capsules, MoveJumpAndTurn) {
-  const Scene s = load({R"(colliders=[{"type": "capsule", "center_m": [0, 1, 0], "radius_m": 0.1, "length_m": 0.4, "velocity_m_per_s": [0, -1, 0], "start_s": 0.1, "spin_rad_per_s": [0, 0, 3.141592653589793], "jumps": [{"time_s": 0, "by_m": [0, 0, 2]}]}])"});
+  const Scene s = load(
+      {R"(colliders=[{"type": "capsule", "center_m": [0, 1, 0], "radius_m": 0.1, "length_m": 0.4, "velocity_m_per_s": [0, -1, 0], "start_s": 0.1, "spin_rad_per_s": [0, 0, 3.141592653589793], "jumps": [{"time_s": 0, "by_m": [0, 0, 2]}]}])"});
   EXPECT_TRUE(s.needs.has(Feature::Capsules));
   const Capsule end = s.motion.back().colliders[0].capsules[0];  // half a turn a second, for half a second
   EXPECT_NEAR(end.a_m[0], 0, 1e-12);
@@ -168,8 +181,14 @@ TEST(Capsules, MoveJumpAndTurn) {
 
 TEST(Pins, OfOneVertexTwiceAreOneOrRefused) {
   EXPECT_EQ(load({R"(pins=[{"vertices": [0, 0]}, {"edge": "u0"}])"}).pins.vertices.size(), 3u);
-  EXPECT_NE(complaint({R"(pins=[{"edge": "u0"}])", R"(grips=[{"edge": "u0", "velocity_m_per_s": [1, 0, 0]}])"}).find("is pinned as well"), std::string::npos);
-  EXPECT_NE(complaint({R"(grips=[{"edge": "u0", "velocity_m_per_s": [1, 0, 0]}, {"edge": "v0", "velocity_m_per_s": [0, 1, 0]}])"}).find("held by two hands"), std::string::npos);
+  EXPECT_NE(complaint({R"(pins=[{"edge": "u0"}])", R"(grips=[{"edge": "u0", "velocity_m_per_s": [1, 0, 0]}])"})
+                .find("is pinned as well"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint(
+          {R"(grips=[{"edge": "u0", "velocity_m_per_s": [1, 0, 0]}, {"edge": "v0", "velocity_m_per_s": [0, 1, 0]}])"})
+          .find("held by two hands"),
+      std::string::npos);
 }
 
 }  // namespace

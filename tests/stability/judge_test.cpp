@@ -21,11 +21,14 @@ class Judge : public ::testing::Test {
  protected:
   /// A hanging sheet of 9 x 9 cells of 0.125 m, all classes judged, 60 frames.
   void load(const std::vector<std::string>& set = {}) {
-    std::vector<std::string> all = {R"(stability={"case": "S01", "judged": ["F0", "F1", "F2", "F3", "F4", "F5", "F6", "F7"], "settle_s": 0.5})"};
+    std::vector<std::string> all = {
+        R"(stability={"case": "S01", "judged": ["F0", "F1", "F2", "F3", "F4", "F5", "F6", "F7"], "settle_s": 0.5})"};
     all.insert(all.end(), set.begin(), set.end());
-    scene_ = scene_from_json(json::parse(R"({"name": "judged", "why": "frames made by hand", "cloth": {"grid": [9, 9], "size_m": [1, 1],
+    scene_ = scene_from_json(
+        json::parse(R"({"name": "judged", "why": "frames made by hand", "cloth": {"grid": [9, 9], "size_m": [1, 1],
       "areal_density_kg_per_m2": 0.2, "sides": "single", "pose": {"axis_u": [1, 0, 0], "axis_v": [0, -1, 0]}},
-      "material": {"membrane_stiffness_N_per_m": "inextensible"}, "pins": [{"edge": "v0"}], "time": {"frame_rate_hz": 60, "duration_s": 1}})"), "test", all);
+      "material": {"membrane_stiffness_N_per_m": "inextensible"}, "pins": [{"edge": "v0"}], "time": {"frame_rate_hz": 60, "duration_s": 1}})"),
+        "test", all);
     entry_.free_fall_m = [](const Scene& s, const json&, int n) {
       const double t = n * s.time.dt();
       return 0.5 * s.gravity_m_per_s2[1] * t * t;
@@ -35,14 +38,17 @@ class Judge : public ::testing::Test {
     rest_.velocity.assign(rest_.position.size(), 0);
     next_ = 0;
   }
-  StabilityFrame add(const ClothState& s, const SceneContact* contact = nullptr) { return judge_->judge(next_++, s, contact, nullptr); }
+  StabilityFrame add(const ClothState& s, const SceneContact* contact = nullptr) {
+    return judge_->judge(next_++, s, contact, nullptr);
+  }
   /// Rest, up to before frame `frame`.
   void rest_until(int frame) {
     while (next_ < frame) add(rest_);
   }
   ClothState stretched(double factor) const {
     ClothState s = rest_;
-    for (std::size_t v = 0; v < s.position.size() / 3; ++v) s.position[3 * v + 1] = 0.5 + factor * (rest_.position[3 * v + 1] - 0.5);
+    for (std::size_t v = 0; v < s.position.size() / 3; ++v)
+      s.position[3 * v + 1] = 0.5 + factor * (rest_.position[3 * v + 1] - 0.5);
     return s;
   }
 

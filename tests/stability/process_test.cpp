@@ -18,14 +18,16 @@ namespace fs = std::filesystem;
 class Process : public ::testing::Test {
  protected:
   void SetUp() override {
-    dir_ = fs::temp_directory_path() / ("clothbench-process-" + std::to_string(::getpid()) + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    dir_ = fs::temp_directory_path() / ("clothbench-process-" + std::to_string(::getpid()) +
+                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(dir_);
   }
   void TearDown() override { fs::remove_all(dir_); }
 
   CellAnswer run(const std::string& solver, double limit_s = 0, bool keep = true) const {
     CellRequest r;
-    r.scenario = nlohmann::json::parse(R"({"name": "fall", "why": "falls in a test", "cloth": {"grid": [3, 3], "size_m": [1, 1],
+    r.scenario =
+        nlohmann::json::parse(R"({"name": "fall", "why": "falls in a test", "cloth": {"grid": [3, 3], "size_m": [1, 1],
       "areal_density_kg_per_m2": 0.2, "sides": "single"}, "material": {"membrane_stiffness_N_per_m": 1000},
       "time": {"frame_rate_hz": 60, "duration_s": 0.5}, "stability": {"case": "S02", "judged": ["F0", "F1", "F2", "F3", "F7"]}})");
     r.source = "test";

@@ -21,20 +21,49 @@ using nlohmann::json;
 class StabilityStudy : public ::testing::Test {
  protected:
   void SetUp() override {
-    dir_ = fs::temp_directory_path() / ("clothbench-stability-" + std::to_string(::getpid()) + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    dir_ = fs::temp_directory_path() / ("clothbench-stability-" + std::to_string(::getpid()) +
+                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(dir_);
     // The falling stone of the child is out of all bounds once its cloth starts faster than ten times a fall.
-    write("thrown.json", {{"name", "thrown"}, {"why", "thrown ever faster in a test"},
-      {"cloth", {{"grid", {3, 3}}, {"size_m", {1, 1}}, {"areal_density_kg_per_m2", 0.2}, {"sides", "single"}, {"start", {{"shape", "rest"}, {"noise_m", 1e-6}}}}},
-      {"material", {{"membrane_stiffness_N_per_m", 1000}}}, {"gravity_m_per_s2", {0, -1, 0}}, {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}},
-      {"stability", {{"case", "S16"}, {"judged", {"F0", "F1", "F2", "F3", "F7"}}}}});
-    study_json_ = {{"name", "maps"}, {"why", "maps in a test"}, {"protocol", "stability-map"},
-      {"scenes", {{{"file", "thrown.json"}}}}, {"solvers", {{{"solver", "falls"}}, {{"solver", "crashes"}}}}, {"trials", 1}, {"cell_limit_s", 20},
-      {"short", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}}, {"full", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}},
-      {"maps", {{{"name", "gravity"}, {"title", "Gravity and damping"}, {"scene", (dir_ / "thrown.json").string()}, {"good", "stable"}, {"headline", "largest gravity"},
-        {"theory", {"explicit-limit"}}, {"solvers", {{{"solver", "falls"}}, {{"solver", "nan"}}}},
-        {"x", {{"label", "gravity"}, {"unit", "m/s2"}, {"values", {1, 10, 100}}, {"set", {{"gravity_m_per_s2", {0, "-x", 0}}}}}},
-        {"y", {{"label", "damping"}, {"unit", "1/s"}, {"values", {1, 2}}, {"set", {{"cloth.areal_density_kg_per_m2", "0.1*y"}}}}}}}}};
+    write("thrown.json", {{"name", "thrown"},
+                          {"why", "thrown ever faster in a test"},
+                          {"cloth",
+                           {{"grid", {3, 3}},
+                            {"size_m", {1, 1}},
+                            {"areal_density_kg_per_m2", 0.2},
+                            {"sides", "single"},
+                            {"start", {{"shape", "rest"}, {"noise_m", 1e-6}}}}},
+                          {"material", {{"membrane_stiffness_N_per_m", 1000}}},
+                          {"gravity_m_per_s2", {0, -1, 0}},
+                          {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}},
+                          {"stability", {{"case", "S16"}, {"judged", {"F0", "F1", "F2", "F3", "F7"}}}}});
+    study_json_ = {{"name", "maps"},
+                   {"why", "maps in a test"},
+                   {"protocol", "stability-map"},
+                   {"scenes", {{{"file", "thrown.json"}}}},
+                   {"solvers", {{{"solver", "falls"}}, {{"solver", "crashes"}}}},
+                   {"trials", 1},
+                   {"cell_limit_s", 20},
+                   {"short", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}},
+                   {"full", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}},
+                   {"maps",
+                    {{{"name", "gravity"},
+                      {"title", "Gravity and damping"},
+                      {"scene", (dir_ / "thrown.json").string()},
+                      {"good", "stable"},
+                      {"headline", "largest gravity"},
+                      {"theory", {"explicit-limit"}},
+                      {"solvers", {{{"solver", "falls"}}, {{"solver", "nan"}}}},
+                      {"x",
+                       {{"label", "gravity"},
+                        {"unit", "m/s2"},
+                        {"values", {1, 10, 100}},
+                        {"set", {{"gravity_m_per_s2", {0, "-x", 0}}}}}},
+                      {"y",
+                       {{"label", "damping"},
+                        {"unit", "1/s"},
+                        {"values", {1, 2}},
+                        {"set", {{"cloth.areal_density_kg_per_m2", "0.1*y"}}}}}}}}};
     write("maps.json", study_json_);
   }
   void TearDown() override { fs::remove_all(dir_); }
@@ -68,7 +97,8 @@ TEST_F(StabilityStudy, RunsEveryCellAndOneCrashIsOneRow) {
   EXPECT_EQ(again.failed, 1);
   std::vector<CellRecord> cells;
   for (const auto& entry : fs::directory_iterator(dir_ / "out"))
-    if (entry.path().extension() == ".h5" || entry.path().extension() == ".part") cells.push_back(read_cell_summary(entry.path()));
+    if (entry.path().extension() == ".h5" || entry.path().extension() == ".part")
+      cells.push_back(read_cell_summary(entry.path()));
   ASSERT_EQ(cells.size(), 2u);
   for (const CellRecord& c : cells) EXPECT_TRUE(is_stability(c));
   const Table table = robustness_table(cells);

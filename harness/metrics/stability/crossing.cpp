@@ -60,7 +60,8 @@ CapsuleCrossing::CapsuleCrossing(const Scene& s) : scene_(s), triangles_(triangl
 
 int CapsuleCrossing::add(int frame, const std::vector<double>& x) {
   // A teleport is no path; what lies behind the cloth after it is there by the scene's will.
-  const auto jumps = std::any_of(scene_.jumps.begin(), scene_.jumps.end(), [&](const Jump& j) { return j.frame == frame; });
+  const auto jumps =
+      std::any_of(scene_.jumps.begin(), scene_.jumps.end(), [&](const Jump& j) { return j.frame == frame; });
   if (frame > 0 && !jumps)
     for (std::size_t n = 0; n < colliders_.size(); ++n) {
       const auto middle = [&](int f) {

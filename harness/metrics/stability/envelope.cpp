@@ -18,7 +18,8 @@ class Holders {
   explicit Holders(const Scene& s) : s_(s), start_(initial_positions(s)) {
     const auto& pins = s.pins.vertices;
     for (std::size_t i = 0; i < pins.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j) between_pins_ = std::max(between_pins_, strain(pins[i], at(pins[i]), pins[j], at(pins[j])));
+      for (std::size_t j = 0; j < i; ++j)
+        between_pins_ = std::max(between_pins_, strain(pins[i], at(pins[i]), pins[j], at(pins[j])));
   }
 
   /// Greatest strain between two that are held.
@@ -28,9 +29,11 @@ class Holders {
     const auto& grips = s_.grips.vertices;
     for (std::size_t i = 0; i < grips.size(); ++i) {
       if (m->grip_held[i] == 0) continue;
-      for (std::uint32_t pin : s_.pins.vertices) most = std::max(most, strain(grips[i], m->grip_position_m[i], pin, at(pin)));
+      for (std::uint32_t pin : s_.pins.vertices)
+        most = std::max(most, strain(grips[i], m->grip_position_m[i], pin, at(pin)));
       for (std::size_t j = 0; j < i; ++j)
-        if (m->grip_held[j] != 0) most = std::max(most, strain(grips[i], m->grip_position_m[i], grips[j], m->grip_position_m[j]));
+        if (m->grip_held[j] != 0)
+          most = std::max(most, strain(grips[i], m->grip_position_m[i], grips[j], m->grip_position_m[j]));
     }
     return most;
   }
@@ -74,7 +77,10 @@ std::pair<double, double> start_of(const Scene& s) {
     }
   for (const Edge& e : edges(s.cloth, EdgeKind::Structural))
     if (e.rest_m > 0)
-      strain = std::max(strain, distance({x[3 * e.a], x[3 * e.a + 1], x[3 * e.a + 2]}, {x[3 * e.b], x[3 * e.b + 1], x[3 * e.b + 2]}) / e.rest_m - 1);
+      strain = std::max(
+          strain, distance({x[3 * e.a], x[3 * e.a + 1], x[3 * e.a + 2]}, {x[3 * e.b], x[3 * e.b + 1], x[3 * e.b + 2]}) /
+                          e.rest_m -
+                      1);
   return {far, strain};
 }
 
@@ -95,11 +101,14 @@ double greatest_stiffness(const Scene& s) {
 std::vector<Bounds> envelope(const Scene& s) {
   const Cloth& c = s.cloth;
   const std::vector<double> mass = vertex_masses(s);
-  const double M = std::accumulate(mass.begin(), mass.end(), 0.0), g = length(s.gravity_m_per_s2), Y = greatest_stiffness(s);
+  const double M = std::accumulate(mass.begin(), mass.end(), 0.0), g = length(s.gravity_m_per_s2),
+               Y = greatest_stiffness(s);
   double softest = Y;
-  for (const StiffnessRegion& r : s.material.regions) softest = std::min(softest, r.membrane_stiffness_N_per_m.value_or(softest));
+  for (const StiffnessRegion& r : s.material.regions)
+    softest = std::min(softest, r.membrane_stiffness_N_per_m.value_or(softest));
   if (s.material.membrane_stiffness_N_per_m) softest = std::min(softest, *s.material.membrane_stiffness_N_per_m);
-  const double wave = Y > 0 ? std::sqrt(Y / c.areal_density_kg_per_m2) : 0, diagonal = std::hypot(c.width_m, c.height_m);
+  const double wave = Y > 0 ? std::sqrt(Y / c.areal_density_kg_per_m2) : 0,
+               diagonal = std::hypot(c.width_m, c.height_m);
   const double shorter = std::min(c.width_m, c.height_m);
   const bool held = !s.pins.vertices.empty() || !s.grips.vertices.empty();
   const auto [far, start_strain] = start_of(s);
@@ -123,7 +132,8 @@ std::vector<Bounds> envelope(const Scene& s) {
     }
     if (f > 0 && now != nullptr) {
       const FrameMotion& before = s.motion[static_cast<std::size_t>(f - 1)];
-      const double dt = s.time.dt_after(f - 1), hand = step_of(before, *now, true), collider = step_of(before, *now, false);
+      const double dt = s.time.dt_after(f - 1), hand = step_of(before, *now, true),
+                   collider = step_of(before, *now, false);
       path += hand + collider;
       if (!b.jumped) {
         v_hand = std::max(v_hand, hand / dt);
@@ -132,13 +142,15 @@ std::vector<Bounds> envelope(const Scene& s) {
     }
     b.imposed_strain = holders.imposed(now);
     imposed = std::max(imposed, b.imposed_strain);
-    const double t = s.time.at(f), H = (held ? 2 : 1) * diagonal + far + (held ? 0 : 0.5 * g * t * t), fall = std::sqrt(2 * g * H);
+    const double t = s.time.at(f), H = (held ? 2 : 1) * diagonal + far + (held ? 0 : 0.5 * g * t * t),
+                 fall = std::sqrt(2 * g * H);
     b.strain = std::max(0.0, imposed) + loads + (s.stability.when_relaxed ? 0 : std::max(0.0, start_strain));
     // Cloth that has fallen slack is jerked to a stop: v/c.
     if (wave > 0) b.strain += (3 * v_hand + 2 * v_collider + (held || !s.colliders.empty() ? fall : 0)) / wave;
     b.speed_m_per_s = std::max({fall, v_hand, v_collider, v0});
     // Without compliance what is drawn back goes back within a frame.
-    b.speed_m_per_s = std::max(b.speed_m_per_s, wave > 0 ? b.strain * wave : imposed * std::max(c.width_m, c.height_m) / s.time.dt());
+    b.speed_m_per_s =
+        std::max(b.speed_m_per_s, wave > 0 ? b.strain * wave : imposed * std::max(c.width_m, c.height_m) / s.time.dt());
     b.jump_speed_m_per_s = std::max(jump_speed, far > 0 && wave > 0 ? start_strain * wave : 0);
     const double v = 2 * std::max(v_hand, v_collider), way = std::min(path, 1e3 * diagonal);
     b.work_J = 0.5 * M * v * v + M * g * way + Y * shorter * b.strain * way;

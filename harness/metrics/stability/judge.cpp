@@ -37,8 +37,10 @@ std::vector<std::array<std::uint32_t, 4>> folds_of(const std::vector<std::array<
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
       const auto other = open.find({b, a});
-      if (other == open.end()) open[{a, b}] = {a, b, c};
-      else out.push_back({other->second[0], other->second[1], other->second[2], c});
+      if (other == open.end())
+        open[{a, b}] = {a, b, c};
+      else
+        out.push_back({other->second[0], other->second[1], other->second[2], c});
     }
   return out;
 }
@@ -73,7 +75,8 @@ StabilityJudge::StabilityJudge(const MetricContext& context)
   stiffness_ = greatest_stiffness(scene_);
 }
 
-StabilityFrame StabilityJudge::judge(int frame, const ClothState& state, const SceneContact* contact, const TruthErrors* truth) {
+StabilityFrame StabilityJudge::judge(int frame, const ClothState& state, const SceneContact* contact,
+                                     const TruthErrors* truth) {
   StabilityFrame out;
   if (!finite(state.position) || !finite(state.velocity)) {
     out.classes = bit(0);
@@ -109,7 +112,8 @@ double StabilityJudge::visible_energy(const ClothState& s) const {
   for (std::size_t v = 0; v < mass_.size(); ++v)
     for (std::size_t k = 0; k < 3; ++k) {
       const double speed = s.velocity[3 * v + k];
-      energy += mass_[v] * (0.5 * speed * speed - scene_.gravity_m_per_s2[k] * (s.position[3 * v + k] - start_[3 * v + k]));
+      energy +=
+          mass_[v] * (0.5 * speed * speed - scene_.gravity_m_per_s2[k] * (s.position[3 * v + k] - start_[3 * v + k]));
     }
   return energy;
 }
@@ -128,8 +132,10 @@ void StabilityJudge::judge_motion(int frame, const ClothState& state, const Stra
     work_base_J_ = base.work_J;
   }
   const StabilityRules& rules = scene_.stability;
-  if (!rules.when_relaxed) relaxed_ = true;
-  else if (b.jumped) relaxed_ = false;
+  if (!rules.when_relaxed)
+    relaxed_ = true;
+  else if (b.jumped)
+    relaxed_ = false;
   else if (!relaxed_ && strain.mean < kRelaxed) {
     relaxed_ = ever_relaxed_ = true;
     set_base();
@@ -153,8 +159,8 @@ bool StabilityJudge::settled(int frame) const {
   return frame == scene_.time.frames() || (from > 0 && scene_.time.at(frame) >= from);
 }
 
-/// F3. A card of a motion knows every edge; one of a shape at rest only once it is there; without a card loads and hands bound
-/// the truth from above.
+/// F3. A card of a motion knows every edge; one of a shape at rest only once it is there; without a card loads and
+/// hands bound the truth from above.
 void StabilityJudge::judge_strain(int frame, const Strain& strain, const TruthErrors* truth, StabilityFrame& out) {
   const StabilityRules& rules = scene_.stability;
   if (!relaxed_) {
@@ -167,7 +173,8 @@ void StabilityJudge::judge_strain(int frame, const Strain& strain, const TruthEr
   out.strain_excess = known ? truth->stretch_max : strain.greatest - b.strain;
   out.strain_p99 = known ? truth->stretch_p99 : strain.p99 - b.strain;
   stretched_frames_ = out.strain_excess > kStrain ? stretched_frames_ + 1 : 0;
-  if (stretched_frames_ > kStrainFrames || !(out.strain_p99 <= kStrainP99) || !(out.strain_excess <= kTorn)) out.classes |= bit(3);
+  if (stretched_frames_ > kStrainFrames || !(out.strain_p99 <= kStrainP99) || !(out.strain_excess <= kTorn))
+    out.classes |= bit(3);
   if (at_rest_ && truth != nullptr && frame == scene_.time.frames()) {
     const double right = at_rest_->quantity(at_rest_->columns(frame));
     const double most = std::max(kQuantity * std::abs(right), kQuantityLength * longer_m_);
@@ -193,16 +200,19 @@ void StabilityJudge::judge_geometry(const ClothState& state, StabilityFrame& out
     const Vec3 a = area_vector(state.position, f[0], f[1], f[2]), b = area_vector(state.position, f[1], f[0], f[3]);
     if (dot(a, b) < sharpest * length(a) * length(b)) folded += 1;
   }
-  out.bad_geometry = std::max(counted > 0 ? bad / counted : 0, folds_.empty() ? 0 : folded / static_cast<double>(folds_.size()));
+  out.bad_geometry =
+      std::max(counted > 0 ? bad / counted : 0, folds_.empty() ? 0 : folded / static_cast<double>(folds_.size()));
   if (!(out.bad_geometry <= kBadShare)) out.classes |= bit(4);
 }
 
-void StabilityJudge::judge_contact(int frame, const ClothState& state, const SceneContact* contact, StabilityFrame& out) {
+void StabilityJudge::judge_contact(int frame, const ClothState& state, const SceneContact* contact,
+                                   StabilityFrame& out) {
   if (contact == nullptr || (scene_.stability.judged & bit(5)) == 0) return;
   const bool through = (crossing_ && crossing_->add(frame, state.position) != 0) || contact->tunnelled_fraction > 0;
   double margin = 0;
   for (const Collider& c : scene_.colliders) margin = std::max(margin, c.margin_m);
-  const double cell = std::max(scene_.cloth.du(), scene_.cloth.dv()), limit = std::max(kDepthMargins * margin, kDepthCells * cell);
+  const double cell = std::max(scene_.cloth.du(), scene_.cloth.dv()),
+               limit = std::max(kDepthMargins * margin, kDepthCells * cell);
   // Grace: what starts, or has just been put, inside may be on its way out.
   double since = scene_.time.at(frame);
   for (const Jump& jump : scene_.jumps)
@@ -226,7 +236,8 @@ void StabilityJudge::judge_rest(int frame, const ClothState& state, StabilityFra
     settled_s_ = scene_.time.at(frame);
   }
   const double since = scene_.time.at(frame) - settled_s_;
-  for (std::size_t k = 0; k < settled_at_.size(); ++k) moved += (state.position[k] - settled_at_[k]) * (state.position[k] - settled_at_[k]);
+  for (std::size_t k = 0; k < settled_at_.size(); ++k)
+    moved += (state.position[k] - settled_at_[k]) * (state.position[k] - settled_at_[k]);
   const double drift = std::sqrt(moved / static_cast<double>(mass_.size())) / longer_m_;
   // Over less than this the noise of a cloth that is still settling would pass for a rate.
   if (since >= kDriftFrom_s && !(drift <= kDriftPerMinute * since / 60)) restless = true;
@@ -235,7 +246,8 @@ void StabilityJudge::judge_rest(int frame, const ClothState& state, StabilityFra
 
 /// F7: the centre of mass against the solver's own integrator, which has no other error than rounding.
 void StabilityJudge::judge_fall(int frame, const ClothState& state, StabilityFrame& out) const {
-  const bool falls = scene_.pins.vertices.empty() && scene_.grips.vertices.empty() && scene_.colliders.empty() && g_ > 0;
+  const bool falls =
+      scene_.pins.vertices.empty() && scene_.grips.vertices.empty() && scene_.colliders.empty() && g_ > 0;
   if ((scene_.stability.judged & bit(7)) == 0 || !falls || !scene_.time.ends_s.empty()) return;
   const double t = scene_.time.at(frame);
   if (t < kFallFrom_s || frame < 2) return;

@@ -16,17 +16,17 @@ struct TruthErrors;
 
 /// Thresholds of the outcome classes. All are ours; published work rarely prints its own.
 namespace stability {
-inline constexpr double kSpeed = 10;            ///< F1: times v_char
-inline constexpr double kGain = 0.1;            ///< F2: energy gained over M g L
-inline constexpr double kStrain = 0.10;         ///< F3: greatest strain beyond the truth, for more than ...
-inline constexpr int kStrainFrames = 3;         ///< ... so many frames in a row
-inline constexpr double kStrainP99 = 0.05;      ///< F3: 99th percentile, in any frame
-inline constexpr double kTorn = 1;              ///< F3: strain beyond the truth in any frame
+inline constexpr double kSpeed = 10;        ///< F1: times v_char
+inline constexpr double kGain = 0.1;        ///< F2: energy gained over M g L
+inline constexpr double kStrain = 0.10;     ///< F3: greatest strain beyond the truth, for more than ...
+inline constexpr int kStrainFrames = 3;     ///< ... so many frames in a row
+inline constexpr double kStrainP99 = 0.05;  ///< F3: 99th percentile, in any frame
+inline constexpr double kTorn = 1;          ///< F3: strain beyond the truth in any frame
 inline constexpr double kAreaLow = 0.05, kAreaHigh = 4, kFoldDegrees = 170, kBadShare = 0.01;  // F4
 inline constexpr double kDepthMargins = 2, kDepthCells = 0.25, kContactGrace_s = 0.25;         // F5
 inline constexpr double kUnrest = 1e-3, kDriftPerMinute = 1e-3, kDriftFrom_s = 10;             // F6
 inline constexpr double kFall = 0.01, kFallFrom_s = 0.1;                                       // F7
-inline constexpr double kRelaxed = 0.01;        ///< mean |strain| from which on F1 to F3 count, where they wait
+inline constexpr double kRelaxed = 0.01;  ///< mean |strain| from which on F1 to F3 count, where they wait
 inline constexpr double kQuantity = 0.02, kQuantityLength = 1e-3;  ///< F3 at the end: the truth's quantity at rest
 }  // namespace stability
 
@@ -35,9 +35,9 @@ inline constexpr double kQuantity = 0.02, kQuantityLength = 1e-3;  ///< F3 at th
 ///   F5 contact      F6 unrest     F7 stagnation    (F8, budget and device, is the runner's)
 /// Numbers are what the thresholds above are for; NaN where the scene has none or they do not count yet.
 struct StabilityFrame {
-  unsigned classes = 0;  ///< bit k: Fk, of those that the scene judges
-  double speed = kMissing;         ///< greatest vertex speed over v_char
-  double energy_gain = kMissing;   ///< over M g L (M v_char^2 without gravity)
+  unsigned classes = 0;           ///< bit k: Fk, of those that the scene judges
+  double speed = kMissing;        ///< greatest vertex speed over v_char
+  double energy_gain = kMissing;  ///< over M g L (M v_char^2 without gravity)
   double strain_excess = kMissing, strain_p99 = kMissing;
   double bad_geometry = kMissing;  ///< share of triangles or folds, the greater
   double depth = kMissing;         ///< over its limit; infinite: tunnelled
@@ -47,9 +47,9 @@ struct StabilityFrame {
 
 /// Judges the frames of one run, in order, by its scene's rules: a pure function of frames, scene and truth.
 ///
-/// Energy is what can be seen, kinetic and gravity's, against all there was at the start, elastic included (by the strain,
-/// E = Y A e^2/2), and all that hands and colliders can have put in; so a model's own elastic energy, which solvers without
-/// a modulus do not have, is never charged to it twice.
+/// Energy is what can be seen, kinetic and gravity's, against all there was at the start, elastic included (by the
+/// strain, E = Y A e^2/2), and all that hands and colliders can have put in; so a model's own elastic energy, which
+/// solvers without a modulus do not have, is never charged to it twice.
 class StabilityJudge {
  public:
   explicit StabilityJudge(const MetricContext&);

@@ -39,7 +39,8 @@ StabilityVerdict stability_verdict(const AccuracyPass& pass) {
   return out;
 }
 
-std::map<std::string, double> summarise_stability(const Scene& scene, const AccuracyPass& pass, const Outcome& outcome) {
+std::map<std::string, double> summarise_stability(const Scene& scene, const AccuracyPass& pass,
+                                                  const Outcome& outcome) {
   std::map<std::string, double> out;
   if (scene.stability.name.empty()) return out;
   StabilityVerdict v = stability_verdict(pass);
@@ -50,8 +51,9 @@ std::map<std::string, double> summarise_stability(const Scene& scene, const Accu
   out["stability_grade"] = judged ? static_cast<double>(v.grade) : kMissing;
   out["stability_class"] = judged && v.klass != "ok" ? v.klass[1] - '0' : kMissing;
   out["stability_frame"] = judged && v.frame >= 0 ? v.frame : kMissing;
-  for (const char* name : {"stability_speed", "stability_energy_gain", "stability_strain_excess", "stability_strain_p99",
-                           "stability_bad_geometry", "stability_depth", "stability_unrest", "stability_fall_error"}) {
+  for (const char* name :
+       {"stability_speed", "stability_energy_gain", "stability_strain_excess", "stability_strain_p99",
+        "stability_bad_geometry", "stability_depth", "stability_unrest", "stability_fall_error"}) {
     double most = kMissing;
     if (const std::vector<double>* values = series(pass, name))
       for (double value : *values)
@@ -63,15 +65,19 @@ std::map<std::string, double> summarise_stability(const Scene& scene, const Accu
 
 const char* name_of(StabilityVerdict::Grade g) {
   switch (g) {
-    case StabilityVerdict::Grade::Stable: return "stable";
-    case StabilityVerdict::Grade::Degraded: return "degraded";
-    case StabilityVerdict::Grade::Failed: return "failed";
+    case StabilityVerdict::Grade::Stable:
+      return "stable";
+    case StabilityVerdict::Grade::Degraded:
+      return "degraded";
+    case StabilityVerdict::Grade::Failed:
+      return "failed";
   }
   return "";
 }
 
 std::string class_name(int k) {
-  static constexpr const char* kNames[] = {"not finite", "speed", "energy gain", "strain", "geometry", "contact", "unrest", "stagnation", "budget or device"};
+  static constexpr const char* kNames[] = {"not finite", "speed",  "energy gain", "strain",          "geometry",
+                                           "contact",    "unrest", "stagnation",  "budget or device"};
   return "F" + std::to_string(k) + " " + kNames[k];
 }
 
