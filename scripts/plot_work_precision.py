@@ -4,7 +4,8 @@
 usage: plot_work_precision.py WORK-PRECISION.csv
 Writes work-precision-<scene>.svg and .png beside the CSV: error against wall time, both logarithmic. All points thin, the
 front of each solver (nothing faster and more accurate) thick; the same front over the device's own clock dashed; cells
-without an error as crosses in the upper margin; the floors below which solvers are not told apart.
+without an error as crosses in the upper margin; the floors, shaded below the higher one: there solvers are not told apart.
+Solvers whose stiffness is no parameter, where the scene depends on it, pale and dotted: they are not ranked.
 """
 import csv
 import math
@@ -17,6 +18,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
+from matplotlib.patches import Patch  # noqa: E402
 
 # Okabe & Ito's palette, readable with every common colour blindness; as in plot_report.py.
 COLOURS = {"paper": "#D55E00", "xpbd": "#0072B2", "bullet-soft": "#009E73", "bullet-deformable": "#CC79A7",
@@ -69,9 +71,10 @@ def draw(scene, rows, path):
         marker = MARKERS.get(name, "P")
         ax.plot([number(r["wall_ms_per_s"]) for r in good], [number(r["error"]) for r in good], marker, color=colour,
                 markersize=3, markerfacecolor="none", markeredgewidth=0.5, alpha=0.6, gid=f"points-{name}")
+        unranked = any(r.get("not_ranked") for r in mine)
         line = front([(number(r["wall_ms_per_s"]), number(r["error"])) for r in good])
-        ax.plot(*zip(*line) if line else ([], []), marker, linestyle="-", color=colour, linewidth=1.8, markersize=4,
-                gid=f"front-{name}")
+        ax.plot(*zip(*line) if line else ([], []), marker, linestyle=":" if unranked else "-", color=colour, linewidth=1.8, markersize=4,
+                alpha=0.35 if unranked else 1.0, gid=f"front-{name}")
         device = front([(number(r["device_ms_per_s"]), number(r["error"])) for r in good if number(r["device_ms_per_s"]) > 0])
         if device:
             ax.plot(*zip(*device), linestyle="--", color=colour, linewidth=1.0, gid=f"device-{name}")
@@ -84,8 +87,8 @@ def draw(scene, rows, path):
             if len(known) < len(bad):
                 ax.plot([1.0], [1.0], "x", color=colour, markersize=4, transform=ax.transAxes, clip_on=False,
                         gid=f"failed-untimed-{name}")
-        label = name + (f" ({len(bad)} of {len(mine)} failed)" if bad else "")
-        entries.append(Line2D([], [], color=colour, marker=marker, linewidth=1.8, markersize=4, label=label))
+        label = name + (f" ({len(bad)} of {len(mine)} failed)" if bad else "") + (" – not ranked" if unranked else "")
+        entries.append(Line2D([], [], color=colour, marker=marker, linestyle=":" if unranked else "-", linewidth=1.8, markersize=4, label=label))
     first = rows[0]
     for key, style, label in (("space_error", ":", "error of the mesh"), ("floor", "-.", "3 × reference's uncertainty")):
         value = number(first[key])
@@ -95,6 +98,12 @@ def draw(scene, rows, path):
             entries.append(Line2D([], [], color="0.4", linewidth=0.9, linestyle=style, label=f"{label} {value:.1e}"))
         elif value > 0:
             entries.append(Line2D([], [], linestyle="none", label=f"{label} {value:.1e}: below"))
+    floors = [number(first[key]) for key in ("space_error", "floor") if number(first[key]) > 0]
+    if floors and max(floors) > ax.get_ylim()[0]:
+        low, high = ax.get_ylim()
+        ax.set_ylim(low, max(high, 1.2 * max(floors)))  # the shade must not add a margin of its own
+        ax.axhspan(low, max(floors), color="0.92", zorder=-1, linewidth=0, gid="not-told-apart")
+        entries.append(Patch(color="0.92", label=f"not told apart: ≤ {max(floors):.1e}"))
     ax.axvline(REAL_TIME, color="0.7", linewidth=0.9, zorder=0, gid="real-time")
     entries.append(Line2D([], [], color="0.7", linewidth=0.9, label="real time"))
     if any(number(r["device_ms_per_s"]) > 0 for r in rows):

@@ -1,6 +1,8 @@
 #include "assets/mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <tuple>
 
 namespace clothbench::assets {
@@ -103,6 +105,27 @@ Box bounding_box(const TriangleMesh& mesh) {
   Box box;
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) box.extend(mesh.vertex(i));
   return box;
+}
+
+TriangleMesh prism(const Vector& axis, const Vector& center, double radius, double length, std::uint32_t sides) {
+  const Vector a = axis.unitOrthogonal(), b = axis.cross(a), half = 0.5 * length * axis;
+  TriangleMesh mesh;
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    const double angle = 2 * std::numbers::pi * k / sides;
+    const Vector rim = center + radius * (std::cos(angle) * a + std::sin(angle) * b);
+    mesh.add_vertex(rim - half);
+    mesh.add_vertex(rim + half);
+  }
+  mesh.add_vertex(center - half);
+  mesh.add_vertex(center + half);
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    const std::uint32_t p = 2 * k, q = 2 * ((k + 1) % sides), low = 2 * sides, high = low + 1;
+    mesh.triangles.push_back({p, q, q + 1});
+    mesh.triangles.push_back({p, q + 1, p + 1});
+    mesh.triangles.push_back({low, q, p});
+    mesh.triangles.push_back({high, p + 1, q + 1});
+  }
+  return mesh;
 }
 
 }  // namespace clothbench::assets

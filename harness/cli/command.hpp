@@ -20,6 +20,7 @@ struct Console {
 void add_list(CLI::App&, Console&);
 void add_validate(CLI::App&, Console&);
 void add_plan(CLI::App&, Console&);
+void add_card(CLI::App&, Console&);
 void add_run(CLI::App&, Console&);
 void add_run_cell(CLI::App&, Console&);
 void add_study(CLI::App&, Console&);
@@ -27,6 +28,8 @@ void add_report(CLI::App&, Console&);
 void add_import(CLI::App&, Console&);
 void add_check(CLI::App&, Console&);
 void add_bench(CLI::App&, Console&);
+void add_metamorphic(CLI::App&, Console&);
+void add_threshold(CLI::App&, Console&);
 
 /// `--set` arguments: `solver.<name>=<JSON>` go to the solver, everything else to the scene.
 struct Overrides {

@@ -28,12 +28,15 @@ int run_command_line(const std::vector<std::string>& words) {
   add_list(app, console);
   add_validate(app, console);
   add_plan(app, console);
+  add_card(app, console);
   add_run(app, console);
   add_run_cell(app, console);
   add_study(app, console);
   add_report(app, console);
   add_import(app, console);
   add_check(app, console);
+  add_metamorphic(app, console);
+  add_threshold(app, console);
 #ifdef CLOTHBENCH_WITH_BENCH
   add_bench(app, console);
 #endif

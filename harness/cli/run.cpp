@@ -13,6 +13,7 @@ struct Arguments {
   std::vector<std::string> scenes, solvers, set;
   std::string out;
   int trials = 1;
+  std::optional<std::uint64_t> seed;
   bool require_assets = false, resume = false;
   DeviceFlags device;
 };
@@ -28,6 +29,7 @@ void add_run(CLI::App& app, Console& console) {
   cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
   cmd->add_option("--trials", a.trials, "Timed trials")->check(CLI::Range(0, 1000))->capture_default_str();
   cmd->add_option("--out", a.out, "Folder for the result files; default results/runs/run-<UTC>");
+  add_seed(*cmd, a.seed);
   add_require_assets(*cmd, a.require_assets);
   cmd->add_flag("--resume", a.resume, "Go on with the folder of an interrupted run");
   a.device.add_to(*cmd);
@@ -37,7 +39,7 @@ void add_run(CLI::App& app, Console& console) {
     const Overrides overrides = split_overrides(a.set);
     if (a.solvers.empty()) a.solvers = {"xpbd"};
     std::vector<Scene> scenes;
-    for (const std::string& file : a.scenes) scenes.push_back(load_scene(file, overrides.scene, asset_policy(a.require_assets)));
+    for (const std::string& file : a.scenes) scenes.push_back(at_seed(load_scene(file, overrides.scene, asset_policy(a.require_assets)), a.seed, console));
     CellPlan plan;
     plan.protocol = "run";
     plan.rules.trials = a.trials;

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
+#include "cli/material_cards.hpp"
 #include "report/report.hpp"
 #include "runner/environment.hpp"
+#include "truth/draw.hpp"
 
 namespace clothbench {
 std::filesystem::path default_folder(const std::string& study) {
@@ -46,6 +49,23 @@ void settle_device(CellPlan& plan, const DeviceFlags& flags) {
 
 }  // namespace
 
+void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
+  app.add_option("--seed", seed, "Draw the parameters of scenes with a truth by this number, and evaluate the truth there");
+}
+
+Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, const Console& console) {
+  if (!seed) return scene;
+  static std::set<std::string> told;
+  truth::DrawnScene drawn = truth::draw(scene, *seed);
+  if (!console.json && told.insert(scene.name).second) {
+    std::string text;
+    for (const auto& [name, value] : drawn.values) text += fmt::format(" {}={:.6g}", name, value);
+    fmt::print("{} --seed {}:{} frame_rate_hz={:.6g} duration_s={:.6g}\n", scene.name, *seed, text, drawn.scene.time.frame_rate_hz,
+               drawn.scene.time.duration_s);
+  }
+  return std::move(drawn.scene);
+}
+
 void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, Console& console) {
   settle_device(plan, flags.device);
   const std::filesystem::path out = flags.out.empty() ? default_folder(manifest.study) : std::filesystem::path(flags.out);
@@ -68,6 +88,7 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
     RunOptions options{out, flags.resume, flags.device.options,
                        [&](const std::string& what, std::size_t done, std::size_t total) { line.show(what, done, total); }};
     result = run_cells(plan, options);
+    if (plan.material_cards) add_material_cards(plan, options, manifest);
   }
   for (const std::string& fault : result.faults) fmt::print(stderr, "FAULT {}\n", fault);
   if (!result.faults.empty()) console.exit_code = ExitCode::CheckFailed;

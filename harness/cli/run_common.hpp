@@ -1,4 +1,7 @@
 #pragma once
+#include <cstdint>
+#include <optional>
+
 #include "cli/command.hpp"
 #include "runner/study_runner.hpp"
 #include "scenario/study.hpp"
@@ -20,6 +23,11 @@ bool check_device(const SolverEntry& gpu, const DeviceFlags&);
 
 /// The same for a study whose cells run in processes of their own (protocol stability-map). `only`: solvers of its maps.
 void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only, Console& console);
+/// The option --seed of commands whose scenes have a truth.
+void add_seed(CLI::App&, std::optional<std::uint64_t>& seed);
+
+/// The scene at the parameters drawn by `seed`, told to the user once for each name; the scene itself without one.
+Scene at_seed(Scene, const std::optional<std::uint64_t>& seed, const Console&);
 
 /// Writes the manifest, runs the cells with a status line and prints what came of it. Sets the console's exit code to
 /// CheckFailed if a cell broke a rule of the harness.

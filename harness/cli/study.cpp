@@ -13,7 +13,8 @@ struct Arguments {
   std::string study;
   std::vector<std::string> set, only;
   int trials = 0;
-  bool full = false, short_trials = false, quick = false, require_assets = false;
+  std::optional<std::uint64_t> seed;
+  bool full = false, short_trials = false, quick = false, require_assets = false, no_cards = false;
   RunFlags run;
 };
 
@@ -33,7 +34,7 @@ CellPlan plan_study(const Study& study) {
   plan.rules = {study.trials, rules.frames, rules.max_wall_s, rules.min_frames, rules.warmup_s, study.drop_frames, study.accuracy_duration_s,
                 study.cell_limit_s};
   if (!study.stage_times) plan.rules.profiled_frames = 0;
-  plan.references = study.protocol == "work-precision";
+  plan.references = plan.material_cards = study.protocol == "work-precision";
   std::vector<const SolverEntry*> entries;
   for (const StudySolver& s : study.solvers) entries.push_back(s.joined ? &find_solver(s.solver) : built_in(s.solver));
   for (const Study::Item& item : study.scenes) {
@@ -70,6 +71,8 @@ void add_study(CLI::App& app, Console& console) {
   cmd->add_option("--set", a.set, "Override a scene key in every cell: cloth.size_m=[0.5,0.5]");
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
   cmd->add_flag("--resume", a.run.resume, "Go on with the folder of an interrupted study");
+  add_seed(*cmd, a.seed);
+  cmd->add_flag("--no-cards", a.no_cards, "No material cards after a work-precision study (then no solver is left unranked for its stiffness)");
   add_require_assets(*cmd, a.require_assets);
   a.run.device.add_to(*cmd);
   cmd->footer("Example: clothbench study table3 --out results/runs/mine");
@@ -78,13 +81,17 @@ void add_study(CLI::App& app, Console& console) {
     if (!overrides.solver.empty()) throw Error("--set solver.…: a study's solver settings stand in its file");
     if (a.run.resume && a.run.out.empty()) throw Error("--resume: say which folder with --out");
     const StudyLength length = a.full ? StudyLength::Full : a.quick ? StudyLength::Quick : StudyLength::Short;
-    const Study study = load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only});
+    Study study = load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only});
+    for (Study::Item& item : study.scenes) item.scene = at_seed(std::move(item.scene), a.seed, console);
+    if (a.seed) study.definition["seed"] = *a.seed;
     if (study.protocol == "stability-map") {
+      if (a.trials > 0) throw Error("--trials: protocol stability-map judges one run of every cell");
       run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, console);
       return;
     }
     CellPlan plan = plan_study(study);
     if (a.trials > 0) plan.rules.trials = a.trials;
+    if (a.no_cards) plan.material_cards = false;
     StudyManifest manifest;
     manifest.study = study.name;
     manifest.definition = study.definition;

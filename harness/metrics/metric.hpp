@@ -59,10 +59,11 @@ inline double norm(double x, double y, double z) { return std::sqrt(x * x + y * 
 double free_fall_error_max(const MetricFrame&);
 double free_fall_error_rms(const MetricFrame&);
 
-/// (|x| - l)/l over the structural edges: greatest, root mean square, mean.
+/// (|x| - l)/l over the structural edges: greatest, root mean square, mean; mean of what is above 0.
 double stretch_max(const MetricFrame&);
 double stretch_rms(const MetricFrame&);
 double stretch_mean(const MetricFrame&);
+double stretch_mean_positive(const MetricFrame&);
 
 /// |P - P0 - M g t| / (M (sqrt(|g| L) + |v0|)), L the longer side, v0 the initial velocity.
 double momentum_error(const MetricFrame&);

@@ -63,6 +63,7 @@ const std::vector<Metric>& metrics() {
       {"stretch_max", "1", "greatest strain of the structural edges", always, stretch_max},
       {"stretch_rms", "1", "root mean square strain of the structural edges", always, stretch_rms},
       {"stretch_mean", "1", "mean strain of the structural edges", always, stretch_mean},
+      {"stretch_mean_positive", "1", "mean strain of the structural edges, those that are short counted as 0", always, stretch_mean_positive},
       {"momentum_error", "1", "momentum beside gravity's share, over M (sqrt(g L) + v0)", keeps_momentum, momentum_error},
       {"speed_max", "m s-1", "greatest vertex speed", always, speed_max},
       {"kinetic_energy_J", "J", "kinetic energy", always, kinetic_energy},

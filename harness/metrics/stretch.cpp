@@ -44,4 +44,10 @@ double stretch_mean(const MetricFrame& f) {
   return sum / edge_count(f.context.scene.cloth);
 }
 
+double stretch_mean_positive(const MetricFrame& f) {
+  double sum = 0;
+  for_each_strain(f.context.scene.cloth, f.state, [&](double e) { sum += e <= 0 ? 0 : e; });
+  return sum / edge_count(f.context.scene.cloth);
+}
+
 }  // namespace clothbench

@@ -110,7 +110,7 @@ double TruthJudge::space_error() const {
 
 bool keeps_energy(const Scene& s) {
   const FeatureSet loses = FeatureSet{Feature::Damping, Feature::Shear, Feature::Bend, Feature::MovingPins} | kColliderFeatures;
-  return (s.needs & loses).empty() && s.gravity_m_per_s2 != Vec3{} && s.cloth.span_m == 0;
+  return (s.needs & loses).empty() && s.gravity_m_per_s2 != Vec3{} && s.cloth.span_m == 0 && s.cloth.drape_radius_m == 0;
 }
 
 double energy_rise(const MetricFrame& f) {

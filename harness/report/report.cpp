@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <set>
 
 #include "clothbench/error.hpp"
+#include "report/feature_cost.hpp"
 #include "report/features.hpp"
+#include "report/material.hpp"
 #include "report/paths.hpp"
 #include "report/penetration.hpp"
 #include "report/room_pair.hpp"
@@ -117,9 +120,13 @@ struct Parts {
   std::vector<CellRecord> stability, contact, truth, rest;
 };
 
-Parts parts_of(const std::vector<CellRecord>& cells) {
+/// Cells of a comparison of costs, by address, and material cards have tables of their own.
+Parts parts_of(const std::vector<CellRecord>& cells, const std::vector<FeatureCost>& costs) {
   Parts out;
-  for (const CellRecord& c : cells) (is_stability(c) ? out.stability : has_truth(c) ? out.truth : has_contact(c) ? out.contact : out.rest).push_back(c);
+  std::set<const CellRecord*> told;
+  for (const FeatureCost& f : costs) told.insert({f.needed, f.all});
+  for (const CellRecord& c : cells)
+    if (!told.contains(&c) && !is_material_card(c) && !is_all_on(c)) (is_stability(c) ? out.stability : has_truth(c) ? out.truth : has_contact(c) ? out.contact : out.rest).push_back(c);
   return out;
 }
 
@@ -155,6 +162,15 @@ std::vector<CellRecord> without_stability(std::vector<CellRecord> cells) {
   return cells;
 }
 
+/// One page: ranks, firsts, what stiffness means to whom, what is not a no-op. Empty without diagrams.
+std::string summary_page(const std::vector<WorkDiagram>& diagrams, const std::vector<SolverMaterial>& materials, const std::vector<FeatureCost>& costs) {
+  if (diagrams.empty()) return "";
+  std::string out = ranks_table(diagrams).markdown() + "\n" + winners_table(diagrams).markdown() + "\n";
+  if (!materials.empty()) out += material_verdicts(materials).markdown() + "\n";
+  if (!costs.empty()) out += no_op_table(costs).markdown() + "\n";
+  return out;
+}
+
 bool any_known(const std::vector<SolverFeatures>& solvers) {
   return std::any_of(solvers.begin(), solvers.end(), [](const SolverFeatures& s) { return s.known; });
 }
@@ -177,10 +193,12 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
   write("bandwidth.csv", summary_csv(cells, kBandwidthNames));
   write("memory.csv", summary_csv(cells, kMemoryNames));
 
-  const auto [stability, contact, truth, rest] = parts_of(cells);
+  const std::vector<FeatureCost> costs = feature_costs(cells);
+  const std::vector<SolverMaterial> materials = solver_materials(cells);
+  const auto [stability, contact, truth, rest] = parts_of(cells, costs);
   const nlohmann::json maps = stability_maps(runs);
   const std::vector<ContactSetUp> ups = set_ups(contact);
-  const std::vector<WorkDiagram> diagrams = work_diagrams(truth);
+  const std::vector<WorkDiagram> diagrams = work_diagrams(truth, materials);
   const std::string head = headline(cells, Format::Markdown);
   std::string tables;
   bool wrote_table3 = false;
@@ -220,6 +238,20 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     write("stability.csv", stability_csv(stability));
     write("stability.json", nlohmann::json{{"format", "clothbench-stability"}, {"format_version", 1}, {"maps", maps}}.dump(1) + "\n");
   }
+  if (!materials.empty()) {
+    const std::string text = material_table(materials).markdown() + "\n" + material_verdicts(materials).markdown() + "\n";
+    tables += text;
+    write("material.md", "# Material card\n\n" + head + "\n" + text);
+    write("material.json", material_json(materials).dump(1) + "\n");
+  }
+  if (!costs.empty()) {
+    const std::string text = feature_cost_table(costs).markdown() + "\n" + no_op_table(costs).markdown() + "\n";
+    tables += text;
+    write("feature-cost.md", "# Feature cost\n\n" + head + "\n" + text);
+    write("feature-cost.csv", feature_cost_csv(costs));
+    write("feature-cost.json", feature_cost_json(costs).dump(1) + "\n");
+  }
+  if (const std::string page = summary_page(diagrams, materials, costs); !page.empty()) write("summary.md", "# Summary\n\n" + head + "\n" + page);
   if (const auto solvers = solver_features(cells); any_known(solvers)) {
     tables += feature_table(solvers, true).markdown() + "\n";
     write("features.json", feature_json(solvers, true).dump(1) + "\n");
@@ -243,12 +275,16 @@ void print_console_report(const std::vector<fs::path>& runs) {
   const std::vector<CellRecord> cells = collect(runs);
   const nlohmann::json published = published_table3();
   fmt::print("{}", headline(cells, Format::Console));
-  const auto [stability, contact, truth, rest] = parts_of(cells);
+  const std::vector<FeatureCost> costs = feature_costs(cells);
+  const std::vector<SolverMaterial> materials = solver_materials(cells);
+  const auto [stability, contact, truth, rest] = parts_of(cells, costs);
   for (const Family& family : families(rest))
     for (const Table& t : fps_tables(family, published)) fmt::print("{}", t.console());
   for (const Table& t : penetration_tables(set_ups(contact), room_pairs(contact), false)) fmt::print("{}", t.console());
-  if (const auto diagrams = work_diagrams(truth); !diagrams.empty())
-    fmt::print("{}{}", work_table(diagrams).console(), truth_table(diagrams).console());
+  if (const auto diagrams = work_diagrams(truth, materials); !diagrams.empty())
+    fmt::print("{}{}{}{}", work_table(diagrams).console(), truth_table(diagrams).console(), winners_table(diagrams).console(), ranks_table(diagrams).console());
+  if (!materials.empty()) fmt::print("{}{}", material_table(materials).console(), material_verdicts(materials).console());
+  if (!costs.empty()) fmt::print("{}{}", feature_cost_table(costs).console(), no_op_table(costs).console());
   if (const auto solvers = solver_features(cells); !contact.empty() && any_known(solvers))
     fmt::print("{}", feature_table(solvers, true).console());
   for (const Table& t : stability_tables(stability, stability_maps(runs), false)) fmt::print("{}", t.console());

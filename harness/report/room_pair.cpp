@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "report/grid.hpp"
-#include "results/store.hpp"
+#include "report/trajectories.hpp"
 
 namespace clothbench {
 namespace {
@@ -32,28 +32,10 @@ Parts parts_of(const CellRecord& c) {
   return p;
 }
 
-std::vector<float> positions(const CellRecord& c) {
-  if (!c.accuracy.position.empty() || c.file.empty()) return c.accuracy.position;
-  return read_cell(c.file).accuracy.position;
-}
-
-/// NaN if either is.
-double greater(double a, double b) { return b <= a || std::isnan(a) ? a : b; }
-
 void measure(RoomPair& pair) {
-  const std::vector<float> a = positions(*pair.cut), b = positions(*pair.whole);
-  const std::size_t frame = 3 * static_cast<std::size_t>(pair.cut->header.vertices);
-  if (a.empty() || a.size() != b.size() || frame == 0 || a.size() % frame != 0) return;
-  double most = 0;
-  for (std::size_t k = 0; k < a.size(); k += 3) {
-    if (k % frame == 0) pair.distance_end_m = 0;
-    double squared = 0;
-    for (std::size_t x = k; x < k + 3; ++x) squared += (double{a[x]} - b[x]) * (double{a[x]} - b[x]);
-    const double d = std::sqrt(squared);
-    pair.distance_end_m = greater(pair.distance_end_m, d);
-    most = greater(most, d);
-  }
-  pair.distance_max_m = most;
+  const Apart apart = trajectories_apart(*pair.cut, *pair.whole);
+  pair.distance_end_m = apart.end_m;
+  pair.distance_max_m = apart.max_m;
 }
 
 /// Device time of the stages that serve meshes that stand still; NaN if there is none.

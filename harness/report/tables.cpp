@@ -50,6 +50,12 @@ std::string capped_note(const Family& f, bool paper) {
   return note;
 }
 
+/// A table is for families where a cell has such a value.
+bool any_value(const Family& family, const char* name) {
+  return std::any_of(family.cells.begin(), family.cells.end(),
+                     [&](const PlacedCell& p) { return std::isfinite(summary_value(*p.cell, name)); });
+}
+
 }  // namespace
 
 std::vector<Table> fps_tables(const Family& family, const nlohmann::json& published) {
@@ -72,12 +78,20 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
   t.push_back(family.table("GPU time a frame [ms]" + scene,
                            "Median; first to last timestamp of the frame's one submission. – on a CPU.",
                            [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_device_median_s"), 3); }));
-  t.push_back(family.table("Free-fall error over gT²/2 at T = 0.5 s" + scene,
-                           "Greatest distance of a vertex from the closed form of the solver's own integrator.",
-                           [&](const CellRecord& c) {
-                             const double e = v(c, "free_fall_error");
-                             return std::isfinite(e) ? fmt::format("{:.1e}", e) : std::string("–");
-                           }));
+  if (any_value(family, "free_fall_error"))
+    t.push_back(family.table("Free-fall error over gT²/2 at T = 0.5 s" + scene,
+                             "Greatest distance of a vertex from the closed form of the solver's own integrator.",
+                             [&](const CellRecord& c) {
+                               const double e = v(c, "free_fall_error");
+                               return std::isfinite(e) ? fmt::format("{:.1e}", e) : std::string("–");
+                             }));
+  if (any_value(family, "stretch_max_last_second"))
+    t.push_back(family.table("Stretch of structural edges in the last second, mean / greatest [%]" + scene,
+                             "Over edges and frames; edges shorter than at rest count as 0 in the mean.",
+                             [&](const CellRecord& c) {
+                               return paired(100 * v(c, "stretch_mean_last_second"),
+                                             100 * v(c, "stretch_max_last_second"), " / ", 2);
+                             }));
   t.push_back(family.table("kB a frame, read / written" + scene,
                            "Counted loads and stores of the shaders; missing for CPU solvers, never modelled.",
                            [&](const CellRecord& c) {

@@ -1,9 +1,11 @@
 #pragma once
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "clothbench/record.hpp"
+#include "report/material.hpp"
 #include "report/table.hpp"
 
 namespace clothbench {
@@ -26,8 +28,11 @@ struct WorkDiagram {
   double space_error = kMissing;     ///< this mesh's truth against the continuum
   double uncertainty = kMissing;     ///< U_ref over the quantity's scale
   double truth_distance = kMissing, order_bdf2 = kMissing, order_conservative = kMissing;  ///< of the reference
-  double floor() const { return 3 * uncertainty; }  ///< errors below it are not told apart; NaN if unknown
-  double best_error() const;                        ///< of all points that ended well; NaN if there is none
+  std::map<std::string, std::string> flagged = {};  ///< solvers shown but not ranked, and why (stiffness_flag)
+  double floor() const { return 3 * uncertainty; }  ///< of certainty; NaN if unknown
+  /// Errors below it are not told apart: the greater of floor() and space_error, as far as they are known; 0 if neither is.
+  double rank_floor() const;
+  double best_error() const;  ///< of all ranked solvers' points that ended well; NaN if there is none
   /// Why no solver is ranked on it: the reference is missing, or not below a third of the best error. "" if it is.
   std::string refused() const;
 };
@@ -36,11 +41,19 @@ struct WorkDiagram {
 bool has_truth(const CellRecord&);
 
 /// One diagram a scene, in the order of first appearance. `cells` must outlive the answer.
-std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells);
+std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells, const std::vector<SolverMaterial>& = {});
 
 /// Rows: scenes and solvers; time to 1 % and 0.1 %, best error in real time (a displayed frame of 1/72 s takes at most as
-/// long), best error at all, each with its setting, and how many cells failed.
+/// long), best error at all, each with its setting; how many cells failed; the first two by the GPU's own clock; whether the
+/// solver is ranked.
 Table work_table(const std::vector<WorkDiagram>&);
+
+/// The best of the ranked solvers (but the reference) of each scene.
+Table winners_table(const std::vector<WorkDiagram>&);
+
+/// Rows: solvers; geometric means over the scenes that rank them of their ranks, never of errors; equal errors at the floor
+/// share a rank, and so do all who do not get there.
+Table ranks_table(const std::vector<WorkDiagram>&);
 
 /// One row a scene: what the error is, floors, the reference's orders, its distance from the truth, and whether it ranks.
 Table truth_table(const std::vector<WorkDiagram>&);

@@ -181,7 +181,7 @@ class Writer {
     text_attribute(file_, "scenario_json", h.scenario_json);
     text_attribute(file_, "scenario_sha256", h.scenario_sha256);
     for (const char* key : {"created", "git_commit", "git_dirty", "build_type", "gpu", "driver", "gpu_is_software", "cpu", "shader_compiler",
-                            "clock_policy", "protocol", "assets"})
+                            "clock_policy", "protocol", "assets", "seed"})
       text_attribute(file_, key, from_environment(key));
   }
 

@@ -62,6 +62,11 @@ std::optional<nlohmann::json> with_stage_times(const SolverEntry& entry, nlohman
   return settings;
 }
 
+void describe_scene(const Scene& scene, nlohmann::json& environment) {
+  if (!scene.assets.empty()) environment["assets"] = scene.assets;
+  if (scene.seed) environment["seed"] = std::to_string(*scene.seed);
+}
+
 }  // namespace
 
 void request_interrupt() { interrupted = true; }
@@ -89,7 +94,7 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
   if (!spec_.entry->make || !missing.empty()) {
     outcome_ = {"unsupported", "ok", -1, spec_.entry->make ? info.name + " has no " + join(missing) : "not in this build"};
     header_.environment = describe_environment({}, protocol);
-    if (!scene.assets.empty()) header_.environment["assets"] = scene.assets;
+    describe_scene(scene, header_.environment);
     if (spec_.entry->make) header_.environment["solver_features"] = describe_features(info);
     return;
   }
@@ -98,7 +103,7 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
   solver_->load(scene);
   header_.load_s = seconds_since(start);
   header_.environment = describe_environment(solver_->device(), protocol);
-  if (!scene.assets.empty()) header_.environment["assets"] = scene.assets;
+  describe_scene(scene, header_.environment);
   header_.environment["solver_features"] = describe_features(info);
   plan_ = solver_->plan();
   header_.plan = plan_json(plan_);

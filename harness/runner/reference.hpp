@@ -35,7 +35,8 @@ ReferenceResult compute_reference(const Scene&);
 
 /// Results for these scenes by their SHA-256, those that `cache` lacks computed on all cores and added to it (one file
 /// each; an unreadable one counts as lacking). `note` is told of each before it is begun. Scenes without a card are
-/// passed over; so are all where the build has no solver `reference`.
+/// passed over; so are all where the build has no solver `reference`. Contact is out of its scope: those scenes' truth is a
+/// closed form, with no value of the reference and an uncertainty of 0.
 std::map<std::string, ReferenceResult> references(const std::vector<const Scene*>& scenes, const std::filesystem::path& cache,
                                                   const std::function<void(const std::string&)>& note);
 

@@ -17,6 +17,7 @@ struct CellPlan {
   /// Solvers that a study names and this build lacks: entries without `make`, whose cells become `unsupported`.
   std::vector<std::shared_ptr<const SolverEntry>> not_built;
   bool references = false;  ///< store the reference solution of each scene's truth with its cells
+  bool material_cards = false;  ///< measure every solver's material card at its default setting and those of its fronts
 
   std::size_t size() const;
 };

@@ -74,6 +74,18 @@ double greatest(const AccuracyPass& pass, const std::string& name, double from_s
   return kMissing;
 }
 
+/// Mean of a series from a time on, NaN if any is; missing if the scene has no such series.
+double mean_from(const AccuracyPass& pass, const std::string& name, double from_s) {
+  for (const MetricSeries& m : pass.metrics) {
+    if (m.name != name) continue;
+    std::vector<double> late;
+    for (std::size_t f = 0; f < m.values.size(); ++f)
+      if (pass.time_s[f] >= from_s) late.push_back(m.values[f]);
+    return mean(late);
+  }
+  return kMissing;
+}
+
 /// Over the last half second of the scene; missing if the pass does not reach its end.
 double settled(const AccuracyPass& pass, const TimeSpan& time, const std::string& name) {
   constexpr double kSettled_s = 0.5;
@@ -98,6 +110,12 @@ void summarise_pass(const AccuracyPass& pass, const TimeSpan& time, std::map<std
   s["penetrating_area_max_m2"] = greatest(pass, "penetrating_area_m2");
   s["stretch_max"] = greatest(pass, "stretch_max");
   s["stretch_max_end"] = at_end(pass, "stretch_max");
+  // Over the last second: half a frame later, so that rounding takes no frame in.
+  constexpr double kLast_s = 1;
+  const bool whole = pass.time_s.size() == static_cast<std::size_t>(time.frames()) + 1;
+  const double from_s = whole ? pass.time_s.back() - kLast_s + 0.5 * time.dt() : kMissing;
+  s["stretch_max_last_second"] = whole ? greatest(pass, "stretch_max", from_s) : kMissing;
+  s["stretch_mean_last_second"] = whole ? mean_from(pass, "stretch_mean_positive", from_s) : kMissing;
 }
 
 double bytes_per_frame(const std::vector<TimedTrial>& trials, std::vector<double> TimedTrial::*bytes) {

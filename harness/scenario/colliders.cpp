@@ -34,6 +34,7 @@ Vec3 vec3(const assets::Vector& v) { return {v.x(), v.y(), v.z()}; }
 struct Moving {
   assets::Hand hand;
   assets::HandTrack track;
+  assets::Vector offset = assets::Vector::Zero();  ///< of the whole track
 };
 
 class Reader {
@@ -82,6 +83,7 @@ class Reader {
     if (type == "sphere") sphere(j, c);
     if (type == "box") box(j, c);
     if (type == "capsule") capsule(j, c);
+    if (type == "cylinder") cylinder(j, c);
     if (type == "mesh") mesh(j, c);
     if (type == "room") room(j, c);
     if (type == "hand_capsules" || type == "hand_mesh") hand(j, c, type == "hand_mesh");
@@ -126,6 +128,15 @@ class Reader {
     c.capsules = {at(0)};
     note_jumps(path, scene_);
     capsules_[scene_.colliders.size()] = at;
+  }
+
+  void cylinder(const json& j, Collider& c) const {
+    c.shape = Collider::Shape::Mesh;
+    const Vec3 axis = vec3(j["axis"]);
+    const double squared = axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2];
+    if (!(std::abs(squared - 1) <= kUnit)) refuse("/axis", "expected a vector of length 1");
+    c.mesh = mesh_of(assets::prism(assets::Vector(axis[0], axis[1], axis[2]), assets::Vector::Map(vec3(j["center_m"]).data()),
+                                   j["radius_m"].get<double>(), j["length_m"].get<double>(), j["sides"].get<std::uint32_t>()));
   }
 
   static std::shared_ptr<ColliderMesh> mesh_of(const assets::TriangleMesh& from) {
@@ -187,6 +198,7 @@ class Reader {
 
   void hand(const json& j, Collider& c, bool as_mesh) {
     Moving m = moving(j);
+    if (j.contains("offset_m")) m.offset = assets::Vector::Map(vec3(j["offset_m"]).data());
     c.name = fs::path(j["track"].get<std::string>()).stem().string();
     c.shape = as_mesh ? Collider::Shape::Mesh : Collider::Shape::Capsules;
     if (as_mesh) {
@@ -207,11 +219,11 @@ class Reader {
     const assets::HandSample now = assets::sample(m.track, m.hand, time_s);
     ColliderPose pose;
     if (!as_mesh) {
-      for (const assets::Capsule& c : assets::capsules(now.pose)) pose.capsules.push_back({vec3(c.a), vec3(c.b), c.radius_m});
+      for (const assets::Capsule& c : assets::capsules(now.pose)) pose.capsules.push_back({vec3(assets::Vector(c.a + m.offset)), vec3(assets::Vector(c.b + m.offset)), c.radius_m});
       return pose;
     }
     for (std::size_t k = 0; k < assets::kJointCount; ++k) {
-      const Eigen::Affine3d skin = now.pose.joints[k] * m.hand.mesh.inverse_bind[k];
+      const Eigen::Affine3d skin = Eigen::Translation3d(m.offset) * (now.pose.joints[k] * m.hand.mesh.inverse_bind[k]);
       Affine& a = pose.joints.emplace_back();
       for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 4; ++column) a[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = skin.matrix()(row, column);

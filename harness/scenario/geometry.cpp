@@ -29,6 +29,11 @@ std::array<double, 2> on_arc(const Cloth& c, int i) {
   return {radius * std::sin((i - n / 2.0) * d), radius * (std::cos((i - n / 2.0) * d) - std::cos(n * d / 2))};
 }
 
+Vec3 normal_of(const Cloth& c) {
+  const Vec3 &a = c.axis_u, &b = c.axis_v;
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 /// The grid line `inwards` lines from an edge.
 std::vector<std::uint32_t> grid_line(const Cloth& c, const std::string& edge, int inwards) {
   const bool along_v = edge[0] == 'u';
@@ -55,13 +60,36 @@ Vec3 Scene::rest_position(int i, int j) const {
   std::array<double, 2> at = {cloth.line_u_m(i) - cloth.width_m / 2, 0};
   if (cloth.span_m > 0) at = on_arc(cloth, i);
   const double v = j * cloth.dv() - cloth.height_m / 2;
-  const Vec3 &a = cloth.axis_u, &b = cloth.axis_v;
-  const Vec3 normal = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  const Vec3 &a = cloth.axis_u, &b = cloth.axis_v, normal = normal_of(cloth);
   Vec3 p{};
+  if (cloth.drape_radius_m > 0) {
+    p = draped_row(cloth, i, cloth.drape_offset_m);
+    for (std::size_t k = 0; k < 3; ++k) p[k] += v * b[k];
+    return p;
+  }
   for (std::size_t k = 0; k < 3; ++k) {
     p[k] = cloth.center_m[k] + at[0] * a[k] + v * b[k];
     if (cloth.span_m > 0) p[k] += at[1] * normal[k];
   }
+  return p;
+}
+
+double drape_turn_rad(const Cloth& c) { return 2 * std::asin(c.du() / (2 * c.drape_radius_m)); }
+
+Vec3 draped_row(const Cloth& c, int i, double offset_m) {
+  // Angle from the horizontal on side u0. A row less than half a turn below the axis hangs as far from it as one that
+  // touches, so both rules meet there.
+  const double turn = drape_turn_rad(c), middle = (c.columns - 1) / 2.0 - offset_m / c.du();
+  const auto angle_of = [&](double row) { return std::numbers::pi / 2 + (row - middle) * turn; };
+  const double slack = 1e-9 * turn;
+  const int first = static_cast<int>(std::ceil(middle - (std::numbers::pi / 2 + turn / 2 - slack) / turn)),
+            last = static_cast<int>(std::floor(middle + (std::numbers::pi / 2 + turn / 2 - slack) / turn));
+  const int on = std::clamp(i, first, last);
+  const double angle = angle_of(on), hang = std::abs(i - on) * c.du();
+  const Vec3 normal = normal_of(c);
+  Vec3 p{};
+  for (std::size_t k = 0; k < 3; ++k)
+    p[k] = c.center_m[k] - c.drape_radius_m * std::cos(angle) * c.axis_u[k] + (hang - c.drape_radius_m * std::sin(angle)) * normal[k];
   return p;
 }
 

@@ -72,6 +72,12 @@ Cloth read_cloth(const json& j, const std::string& source) {
   c.span_m = j["pose"].value("span_m", 0.0);
   if (!(c.span_m < c.width_m)) refuse(source, "/cloth/pose/span_m", fmt::format("expected less than the width, {} m", c.width_m));
   if (c.span_m > 0 && c.columns < 3) refuse(source, "/cloth/grid/0", "expected at least 3 columns, for a sheet that starts bent");
+  if (j["pose"].contains("drape")) {
+    if (c.span_m > 0) refuse(source, "/cloth/pose/drape", "expected either span_m or drape");
+    c.drape_radius_m = j["pose"]["drape"]["radius_m"].get<double>();
+    c.drape_offset_m = j["pose"]["drape"].value("offset_m", 0.0);
+    if (!(c.du() < 2 * c.drape_radius_m)) refuse(source, "/cloth/pose/drape/radius_m", fmt::format("expected more than half a cell, {} m", c.du() / 2));
+  }
   c.initial_velocity_m_per_s = vec3(j["initial_velocity_m_per_s"]);
   constexpr double kOrthonormal = 1e-9;
   for (const char* name : {"axis_u", "axis_v"}) {
@@ -212,6 +218,7 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   read_frame_times(scenario["time"], s, source);
   read_colliders(scenario, s, source, assets);
   read_stability(scenario, s);
+  if (scenario.contains("seed")) s.seed = scenario["seed"].get<std::uint64_t>();
   if (scenario.contains("truth")) s.truth_card = scenario["truth"]["card"].get<std::string>();
   s.needs = derive_needs(s);
   s.json = scenario.dump();

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "clothbench/solver.hpp"
+#include "scenario/irrelevant.hpp"
 #include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 
@@ -18,6 +19,19 @@ using nlohmann::json;
 using Words = std::vector<std::string>;
 
 constexpr double kFpsAccuracy_s = 0.5;
+constexpr const char* kAllOn = "all-on";
+
+/// What of its features a solver could be given in this scene; none if the build does not have it.
+FeatureSet usable_features(const std::string& solver, FeatureSet needs) {
+  for (const SolverEntry& e : solvers()) {
+    if (e.info.name != solver || !e.make) continue;
+    FeatureSet out = e.info.supports;
+    for (const auto& [feature, beside] : e.info.only_with)
+      if (!needs.has(beside)) out = out - FeatureSet{feature};
+    return out;
+  }
+  return {};
+}
 
 StudyRules read_rules(const json& j) {
   return {j["frames"].get<int>(), j["min_frames"].get<int>(), j["max_wall_s"].get<double>(),
@@ -92,6 +106,7 @@ class Builder {
     study_.cell_limit_s = j_["cell_limit_s"].get<double>();
     study_.stage_times = j_["stage_times"].get<bool>();
     read_solvers();
+    if (study_.protocol == "feature-cost") add_all_on();
     for (std::size_t k = 0; k < j_["scenes"].size(); ++k) read_scene(k);
     check_words();
     if (study_.scenes.empty()) throw Error(source_ + ": no scene with a solver is left");
@@ -119,6 +134,18 @@ class Builder {
       study_.solvers.push_back({name, "default", json::object(), {}, {}, true});
       stays_.push_back(true);
       named.push_back(name);
+    }
+  }
+
+  /// Every solver once more.
+  void add_all_on() {
+    const std::size_t count = study_.solvers.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      StudySolver s = study_.solvers[k];
+      s.label = s.label == "default" ? kAllOn : s.label + "," + kAllOn;
+      s.all_on = true;
+      study_.solvers.push_back(std::move(s));
+      stays_.push_back(stays_[k]);
     }
   }
 
@@ -163,7 +190,10 @@ class Builder {
 
   void read_scene(std::size_t k) {
     const json& item = j_["scenes"][k];
-    if (item["only_full"].get<bool>() && study_.length != StudyLength::Full) return;
+    if (item["only_full"].get<bool>() && study_.length != StudyLength::Full) {
+      for (const auto& label : item["labels"].get<Words>()) labels_.insert(label);  // words of the study all the same
+      return;
+    }
     const std::string pointer = fmt::format("/scenes/{}", k), scene_file = item["file"].get<std::string>();
     std::filesystem::path path = scene_file;
     if (path.is_relative() && std::filesystem::exists(file_.parent_path() / path)) path = file_.parent_path() / path;
@@ -188,13 +218,25 @@ class Builder {
     for (std::size_t s = 0; s < study_.solvers.size(); ++s) {
       const StudySolver& solver = study_.solvers[s];
       if (!stays_[s] || !chosen(solver.only, v.labels)) continue;
-      const auto [at, is_new] = forms.emplace(solver.set, study_.scenes.size());
+      Words key = solver.set;
+      if (solver.all_on) key.push_back(kAllOn + solver.solver);
+      const auto [at, is_new] = forms.emplace(key, study_.scenes.size());
       if (is_new) {
         Words all = v.overrides;
         const Words quick = quick_.is_null() ? Words{} : assignments(quick_["set"]);
         for (const Words* more : {&solver.set, &quick, &options_.overrides})
           all.insert(all.end(), more->begin(), more->end());
         Scene scene = scene_from_json(scenario, path, all, options_.assets);
+        if (solver.all_on) {
+          json form = scenario;
+          for (const std::string& o : all) apply_override(form, o, path);
+          form = with_irrelevant(std::move(form), scene.needs, usable_features(solver.solver, scene.needs));
+          if (!form.contains("irrelevant")) {  // there is nothing to switch on
+            forms.erase(at);
+            continue;
+          }
+          scene = scene_from_json(std::move(form), path, {}, options_.assets);
+        }
         scene.name += v.suffix;
         const int group = group_of(scene);
         study_.scenes.push_back({std::move(scene), group, {}});

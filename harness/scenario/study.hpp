@@ -15,6 +15,7 @@ struct StudySolver {
   std::vector<std::string> set;   ///< changes to the scenes for this solver alone, `dotted.key=JSON`
   std::vector<std::string> only;  ///< labels of the scenes it runs; empty: all
   bool joined = false;            ///< not of the study but of StudyOptions::solvers
+  bool all_on = false;            ///< every other feature it has switched on where it cannot matter (irrelevant.hpp)
   std::string name() const;       ///< as tables name it: "paper", "paper whole-room"
 };
 

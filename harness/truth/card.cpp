@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "clothbench/error.hpp"
+#include "truth/card_strip.hpp"
 #include "truth/catenary.hpp"
 #include "truth/discrete_elastica.hpp"
 #include "truth/elastica.hpp"
@@ -20,86 +21,6 @@
 
 namespace clothbench::truth {
 namespace {
-
-using Columns = std::vector<Vec3>;
-
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec3 operator+(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Vec3 operator-(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec3 operator*(double k, const Vec3& a) { return {k * a[0], k * a[1], k * a[2]}; }
-double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
-
-/// std::max would lose a NaN.
-double greater(double a, double b) { return b <= a || a != a ? a : b; }
-
-/// A scene as the cards see it, and its complaints.
-struct Strip {
-  const Scene& scene;
-  int links;
-  double length_m, g;
-  Vec3 start{}, along{}, up{};  // middle of edge u0; axis_u; against gravity
-
-  explicit Strip(const Scene& s) : scene(s), links(s.cloth.columns - 1), length_m(s.cloth.width_m), g(length(s.gravity_m_per_s2)) {
-    along = s.cloth.axis_u;
-    start = s.cloth.center_m - (s.cloth.span_m > 0 ? s.cloth.span_m : length_m) / 2 * along;
-    if (g > 0) up = (-1 / g) * s.gravity_m_per_s2;
-    need(!s.needs.has(Feature::Shear), "\"shear\": false in its material: rows that do not feel one another");
-    need((s.needs & kColliderFeatures).empty(), "no collider");
-    need((s.needs & FeatureSet{Feature::UnevenGrid, Feature::Regions, Feature::Spin}).empty(), "even cells and no spin");
-    need(std::abs(dot(s.cloth.axis_v, up)) <= kLevel, "axis_v at right angles to gravity");
-  }
-
-  void need(bool good, const std::string& what) const {
-    if (!good) throw Error(scene.source + ": /truth/card: \"" + scene.truth_card + "\" needs " + what);
-  }
-  void need_gravity() const { need(g > 0, "gravity"); }
-  void need_level() const {
-    need_gravity();
-    need(std::abs(dot(along, up)) <= kLevel, "a sheet whose axis_u is level");
-  }
-  void need_flat() const { need(scene.cloth.span_m == 0, "a flat start"); }
-  void need_rest() const { need(length(scene.cloth.initial_velocity_m_per_s) == 0, "a start at rest"); }
-  /// Extra weight per width that hangs on edge u1, if masses are scaled there and nowhere else.
-  double end_load_N_per_m() const {
-    if (scene.cloth.mass_factors.empty()) return 0;
-    const Cloth& c = scene.cloth;
-    const double factor = c.mass_factors.back();
-    for (std::size_t v = 0; v < c.mass_factors.size(); ++v)
-      need(c.mass_factors[v] == ((v + 1) % static_cast<std::size_t>(c.columns) == 0 ? factor : 1), "masses scaled on edge u1 at most, all alike");
-    return (factor - 1) * c.areal_density_kg_per_m2 * c.du() / 2 * g;
-  }
-  void need_even_masses() const { need(scene.cloth.mass_factors.empty(), "masses that are not scaled"); }
-  void need_pins(std::vector<std::uint32_t> expected, const std::string& what) const {
-    std::sort(expected.begin(), expected.end());
-    need(scene.pins.vertices == expected && scene.grips.vertices.empty(), what);
-  }
-  void need_inextensible() const { need(!scene.material.membrane_stiffness_N_per_m, "an inextensible material"); }
-  double need_stiffness() const {
-    need(scene.material.membrane_stiffness_N_per_m.has_value(), "a membrane stiffness in N/m");
-    return *scene.material.membrane_stiffness_N_per_m;
-  }
-  void need_no_bending() const { need(!scene.needs.has(Feature::Bend), "no bending rigidity"); }
-  void need_damping(bool damped) const {
-    need(scene.needs.has(Feature::Damping) == damped, damped ? "damping, to come to rest" : "no damping");
-  }
-  std::vector<std::uint32_t> edge(const char* name) const { return edge_vertices(scene.cloth, name); }
-  Vec3 at(double x, double z) const { return start + x * along + z * up; }
-  double time_s(int frame) const { return scene.time.at(frame); }
-  std::vector<double> times_s() const {
-    std::vector<double> out;
-    for (int f = 0; f <= scene.time.frames(); ++f) out.push_back(time_s(f));
-    return out;
-  }
-  Card card() const {
-    Card c;
-    c.name = scene.truth_card;
-    c.quantity_scale = length_m;
-    c.speed_scale_m_per_s = std::sqrt(g * length_m);
-    return c;
-  }
-
-  static constexpr double kLevel = 1e-9;
-};
 
 /// Distance of the last column from the middle of edge u0 along `direction`.
 std::function<double(const Columns&)> tip(const Vec3& start, const Vec3& direction) {
@@ -114,7 +35,7 @@ Card free_fall(const Strip& s) {
   s.need_flat();
   Card card = s.card();
   card.quantity_name = "fall of the centre of mass";
-  const double whole = s.scene.time.frames() * s.scene.time.dt();
+  const double whole = s.time_s(s.scene.time.frames());
   card.quantity_scale = 0.5 * s.g * whole * whole;
   const auto fallen = [s, v0 = s.scene.cloth.initial_velocity_m_per_s](double share, int frame) {
     const double t = s.time_s(frame);
@@ -366,6 +287,11 @@ Card two_hand_pull(const Strip& s) {
 std::optional<Card> card_of(const Scene& scene) {
   if (scene.truth_card.empty()) return std::nullopt;
   const Strip s(scene);
+  if (scene.truth_card == "incline") return incline(s);
+  s.need_rows();
+  if (scene.truth_card == "capstan") return capstan(s);
+  if (scene.truth_card == "atwood") return atwood(s);
+  s.need((scene.needs & kColliderFeatures).empty(), "no collider");
   if (scene.truth_card == "free-fall") return free_fall(s);
   if (scene.truth_card == "pendulum") return pendulum(s);
   if (scene.truth_card == "swing-strip") return swing_strip(s);

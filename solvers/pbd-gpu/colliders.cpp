@@ -213,7 +213,6 @@ GripBuffer::GripBuffer(GpuSolver& solver, const Scene& scene, Vec3 origin_m, std
   grips_ = &solver_.add_buffer("grips", bytes, bytes_of(all));
   host_ = &solver_.add_host_buffer("grips (upload)", bytes);
   stage_upload_ = solver_.add_stage("UploadGrips", {Feature::MovingPins});
-  stage_move_ = solver_.add_stage("MoveGrips", {Feature::MovingPins});
 }
 
 std::vector<GripVertex> GripBuffer::entries(const FrameMotion& start, const FrameMotion& end) const {
@@ -232,6 +231,7 @@ std::vector<GripVertex> GripBuffer::entries(const FrameMotion& start, const Fram
 }
 
 const vulkan::Kernel& GripBuffer::add_kernel(const Buffer& positions, const Buffer& velocities) {
+  if (stage_move_ < 0) stage_move_ = solver_.add_stage("MoveGrips", {Feature::MovingPins});
   return solver_.add_kernel(stage_move_, shaders::kMoveGrips,
                             {{grips_, Access::Read}, {&positions, Access::ReadWrite}, {&velocities, Access::ReadWrite}},
                             sizeof(GripConstants));

@@ -88,6 +88,7 @@ class GripBuffer {
   /// let go it sets .w to the inverse mass and leaves the rest as it is. May be added for several pairs of buffers.
   const vulkan::Kernel& add_kernel(const vulkan::Buffer& positions, const vulkan::Buffer& velocities);
   void record_upload();
+  const vulkan::Buffer& buffer() const { return *grips_; }  ///< GripVertex each, for kernels that move them themselves
   /// `fraction` of the way through the frame, 0 to 1.
   void record_move(const vulkan::Kernel&, double fraction, double frame_s);
 

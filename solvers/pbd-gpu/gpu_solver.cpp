@@ -68,9 +68,10 @@ int GpuSolver::add_stage(const std::string& name, FeatureSet serves) {
 }
 
 vulkan::Kernel& GpuSolver::add_kernel(int stage, const Shader& shader, std::vector<vulkan::Binding> bindings,
-                                      std::uint32_t push_bytes, std::vector<std::uint32_t> specialization) {
+                                      std::uint32_t push_bytes, std::vector<std::uint32_t> specialization,
+                                      std::uint32_t group_size) {
   if (count_bytes_) bindings.push_back({counters_[static_cast<std::size_t>(stage)], vulkan::Access::ReadWrite});
-  specialization.insert(specialization.begin(), kGroupSize);
+  specialization.insert(specialization.begin(), group_size);
   kernels_.push_back(std::make_unique<vulkan::Kernel>(device_, shader.name, count_bytes_ ? shader.counted : shader.code,
                                                       std::move(specialization), std::move(bindings), push_bytes));
   return *kernels_.back();

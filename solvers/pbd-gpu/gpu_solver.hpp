@@ -14,6 +14,7 @@ namespace clothbench::pbd_gpu {
 inline constexpr std::uint32_t kGroupSize = 64;
 
 class XpbdContact;
+class Lines;
 
 /// Bytes of one dispatch, counted from the scene (no contention retries of atomics).
 struct Traffic {
@@ -64,7 +65,8 @@ class GpuSolver : public ClothSolver {
 
   int add_stage(const std::string& name, FeatureSet serves);
   vulkan::Kernel& add_kernel(int stage, const Shader& shader, std::vector<vulkan::Binding> bindings,
-                             std::uint32_t push_bytes, std::vector<std::uint32_t> specialization = {});
+                             std::uint32_t push_bytes, std::vector<std::uint32_t> specialization = {},
+                             std::uint32_t group_size = kGroupSize);
   /// What the scene has of colliders and grips, relative to `origin_m`; their stages come where these are called.
   void add_colliders(Vec3 origin_m, bool keep_start);
   void add_grips(Vec3 origin_m, std::uint32_t layers);
@@ -79,7 +81,12 @@ class GpuSolver : public ClothSolver {
   template <class Constants>
   void dispatch(int stage, const vulkan::Kernel& kernel, std::uint64_t items, const Constants& constants,
                 Traffic traffic) {
-    if (!only_counting_) frame_->dispatch(stage, kernel, vulkan::groups_for(items, kGroupSize), constants);
+    dispatch_groups(stage, kernel, vulkan::groups_for(items, kGroupSize), constants, traffic);
+  }
+  template <class Constants>
+  void dispatch_groups(int stage, const vulkan::Kernel& kernel, vulkan::Groups groups, const Constants& constants,
+                       Traffic traffic) {
+    if (!only_counting_) frame_->dispatch(stage, kernel, groups, constants);
     plan_.stages[static_cast<std::size_t>(stage)].read_B += traffic.read_B;
     plan_.stages[static_cast<std::size_t>(stage)].write_B += traffic.write_B;
   }
@@ -88,6 +95,7 @@ class GpuSolver : public ClothSolver {
  private:
   friend ColliderBuffers;
   friend XpbdContact;
+  friend Lines;
   friend GripBuffer;
   friend class PaperContact;
   struct Initial {

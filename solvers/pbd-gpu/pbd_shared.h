@@ -37,22 +37,36 @@ struct PaperContactConstants {
   float margin, depth, friction;  // of a mesh
 };
 
-/// Push constants of every `xpbd` kernel. A family of constraints joins grid vertex (i, j) with (i + di, j + dj) (and,
-/// for bending, (i + 2 di, j + 2 dj)); a colour takes every `stride`-th line, so that no two share a vertex.
-struct XpbdConstants {
-  vec4 gravity_h;  // g h [m/s]
-  uint columns, rows;
-  int di, dj;
-  uint colour, stride;
-  uint along, count;      // constraints along the unstrided direction; in all
-  float h;                // substep [s]
-  float rest_m;           // rest length of a distance constraint
-  float alpha;            // compliance over h^2 [1/kg], interior
-  float alpha_border;     // the same on the border lines, which carry half the width
-  float loss;             // 1 - exp(-c h)
-  uint i_first;           // first i of the family: 1 for the diagonal that runs down-left
-  uint multiplier_first;  // of this family, where multipliers are kept
-  uint iteration;         // 0 takes them as 0
+// What a scene asks of the line kernels of `xpbd`: bits of their constant FEATURES.
+#define LINES_DAMPING 1u
+#define LINES_BEND 2u
+#define LINES_SHEAR 4u
+#define LINES_ELASTIC 8u       // links have a compliance
+#define LINES_LIMIT_SPEED 16u
+#define LINES_ALTERNATE 32u    // families in reverse in every other substep
+#define LINES_FIRM 64u         // chains pulled taut between two held vertices
+// LineConstants::turn
+#define LINES_FIRST 1u
+#define LINES_LAST 2u
+
+/// Push constants of the line kernels of `xpbd`.
+struct LineConstants {
+  vec4 gravity_h;        // g h [m/s]
+  float h;               // substep [s]
+  float loss;            // 1 - exp(-c h)
+  float speed_limit;     // [m/s]
+  float tether_stretch;  // 1 + slack
+  float rest_u, rest_v, rest_d;     // rest lengths of links [m]
+  float alpha_u, alpha_v, alpha_d;  // compliance over h^2 [1/kg] of links, inside
+  float bend_u, bend_v;             // the same of bending
+  float inverse_mass;               // of a vertex inside [1/kg]
+  float firmness;                   // of chains that need it: least alpha over inverse mass
+  uint bend_rounds_u, bend_rounds_v;
+  uint first_substep, substeps;  // of this dispatch
+  float substep_part;            // of a frame
+  float frames_per_s;
+  uint iterations;
+  uint family, turn, iteration;  // of one pass
 };
 
 // Colliders. Lengths in metres, positions relative to the method's origin.
@@ -153,6 +167,6 @@ static_assert(sizeof(JointMatrix) == 48);
 static_assert(sizeof(GripVertex) == 48);
 static_assert(sizeof(DistanceConstraint) == 16);
 static_assert(sizeof(PaperConstants) == 48);
-static_assert(sizeof(XpbdConstants) == 80);
+static_assert(sizeof(LineConstants) == 112);
 }  // namespace clothbench::pbd_gpu
 #endif

@@ -58,47 +58,7 @@ CODE(update_positions_counted)
 #include "update_positions_counted.inc"
 }
 ;
-CODE(integrate)
-#include "integrate.inc"
-}
-;
-CODE(integrate_counted)
-#include "integrate_counted.inc"
-}
-;
-CODE(project_distance)
-#include "project_distance.inc"
-}
-;
-CODE(project_distance_counted)
-#include "project_distance_counted.inc"
-}
-;
-CODE(project_bending)
-#include "project_bending.inc"
-}
-;
-CODE(project_bending_counted)
-#include "project_bending_counted.inc"
-}
-;
 
-CODE(project_distance_iterated)
-#include "project_distance_iterated.inc"
-}
-;
-CODE(project_distance_iterated_counted)
-#include "project_distance_iterated_counted.inc"
-}
-;
-CODE(project_bending_iterated)
-#include "project_bending_iterated.inc"
-}
-;
-CODE(project_bending_iterated_counted)
-#include "project_bending_iterated_counted.inc"
-}
-;
 
 CODE(skin_mesh)
 #include "skin_mesh.inc"
@@ -206,10 +166,76 @@ CODE(contact_vertices_mesh_counted)
 }
 ;
 
+CODE(line_frame)
+#include "line_frame.inc"
+}
+;
+CODE(line_frame_counted)
+#include "line_frame_counted.inc"
+}
+;
+CODE(line_frame_shuffle)
+#include "line_frame_shuffle.inc"
+}
+;
+CODE(line_frame_shuffle_counted)
+#include "line_frame_shuffle_counted.inc"
+}
+;
+CODE(line_frame_keep)
+#include "line_frame_keep.inc"
+}
+;
+CODE(line_frame_keep_counted)
+#include "line_frame_keep_counted.inc"
+}
+;
+CODE(line_frame_shuffle_keep)
+#include "line_frame_shuffle_keep.inc"
+}
+;
+CODE(line_frame_shuffle_keep_counted)
+#include "line_frame_shuffle_keep_counted.inc"
+}
+;
+CODE(line_pass)
+#include "line_pass.inc"
+}
+;
+CODE(line_pass_counted)
+#include "line_pass_counted.inc"
+}
+;
+CODE(line_pass_shuffle)
+#include "line_pass_shuffle.inc"
+}
+;
+CODE(line_pass_shuffle_counted)
+#include "line_pass_shuffle_counted.inc"
+}
+;
+CODE(line_pass_keep)
+#include "line_pass_keep.inc"
+}
+;
+CODE(line_pass_keep_counted)
+#include "line_pass_keep_counted.inc"
+}
+;
+CODE(line_pass_shuffle_keep)
+#include "line_pass_shuffle_keep.inc"
+}
+;
+CODE(line_pass_shuffle_keep_counted)
+#include "line_pass_shuffle_keep_counted.inc"
+}
+;
+
 }  // namespace
 
 namespace shaders {
-#define SHADER(constant, id) const Shader constant = {#id, {id, sizeof id}, {id##_counted, sizeof id##_counted}}
+#define CODES(id) {#id, {id, sizeof id}, {id##_counted, sizeof id##_counted}}
+#define SHADER(constant, id) const Shader constant = CODES(id)
 SHADER(kApplyExternalForces, apply_external_forces);
 SHADER(kDampVelocities, damp_velocities);
 SHADER(kApplyExplicitEuler, apply_explicit_euler);
@@ -217,11 +243,6 @@ SHADER(kProjectConstraintDeltas, project_constraint_deltas);
 SHADER(kProjectConstraintDeltasNative, project_constraint_deltas_native);
 SHADER(kAverageConstraintDeltas, average_constraint_deltas);
 SHADER(kUpdatePositions, update_positions);
-SHADER(kIntegrate, integrate);
-SHADER(kProjectDistance, project_distance);
-SHADER(kProjectBending, project_bending);
-SHADER(kProjectDistanceIterated, project_distance_iterated);
-SHADER(kProjectBendingIterated, project_bending_iterated);
 SHADER(kSkinMesh, skin_mesh);
 SHADER(kSkinMeshKeepStart, skin_mesh_keep_start);
 SHADER(kMoveGrips, move_grips);
@@ -235,6 +256,10 @@ SHADER(kContactSamples, contact_samples);
 SHADER(kContactSamplesMesh, contact_samples_mesh);
 SHADER(kContactVertices, contact_vertices);
 SHADER(kContactVerticesMesh, contact_vertices_mesh);
+#define LINES(constant, id) \
+  const Shader constant[2][2] = {{CODES(id), CODES(id##_keep)}, {CODES(id##_shuffle), CODES(id##_shuffle_keep)}}
+LINES(kLineFrame, line_frame);
+LINES(kLinePass, line_pass);
 }  // namespace shaders
 
 }  // namespace clothbench::pbd_gpu

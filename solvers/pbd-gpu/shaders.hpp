@@ -11,10 +11,12 @@ struct Shader {
 
 namespace shaders {
 extern const Shader kApplyExternalForces, kDampVelocities, kApplyExplicitEuler, kProjectConstraintDeltas,
-    kProjectConstraintDeltasNative, kAverageConstraintDeltas, kUpdatePositions, kIntegrate, kProjectDistance,
-    kProjectBending, kProjectDistanceIterated, kProjectBendingIterated, kSkinMesh, kSkinMeshKeepStart, kMoveGrips,
+    kProjectConstraintDeltasNative, kAverageConstraintDeltas, kUpdatePositions, kSkinMesh, kSkinMeshKeepStart, kMoveGrips,
     kSatisfySphereCollisions, kSatisfyCubeCollisions, kSatisfyCapsuleCollisions, kSatisfyMeshCollisions, kContactBoxes,
     kContactCandidates, kContactSamples, kContactSamplesMesh, kContactVertices, kContactVerticesMesh;
+
+/// By whether subgroups exchange by shuffles [0] and multipliers are kept [1].
+extern const Shader kLineFrame[2][2], kLinePass[2][2];
 }
 
 }  // namespace clothbench::pbd_gpu

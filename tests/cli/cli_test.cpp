@@ -228,5 +228,31 @@ TEST_F(Cli, OwnOverheadIsUnderOnePercentOfAFrame) {
     }
 }
 
+TEST_F(Cli, SeedDrawsAndIsStored) {
+  const std::string run = "run validation/swing-strip --solver ballistic --trials 0 --out " + dir_.string();
+  const Answer one = clothbench_command(run + "/one --seed 7"), two = clothbench_command(run + "/two --seed 7");
+  EXPECT_EQ(one.code, 0) << one.text;
+  EXPECT_NE(one.text.find("swing-strip --seed 7: length_m=0.240201"), std::string::npos) << one.text;
+  std::string scenes[2];
+  for (int k = 0; k < 2; ++k)
+    for (const auto& file : fs::directory_iterator(dir_ / (k == 0 ? "one" : "two")))
+      if (file.path().extension() == ".h5") scenes[k] = read_cell(file.path()).header.scenario_json;
+  EXPECT_EQ(scenes[0], scenes[1]);
+  EXPECT_NE(scenes[0].find("\"seed\":7"), std::string::npos);
+  const Answer none = clothbench_command("run paper/gravity --solver ballistic --trials 0 --seed 7 --out " + (dir_ / "none").string());
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.text.find("no truth"), std::string::npos) << none.text;
+}
+
+TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
+  const nlohmann::json properties = json_of("metamorphic ballistic");
+  ASSERT_EQ(properties.size(), 21u);
+  for (const auto& p : properties) EXPECT_TRUE(p["status"] == "kept") << p.dump();
+  const nlohmann::json found = json_of("threshold validation/incline-stick --solver ballistic");
+  EXPECT_EQ(found[0]["bound"], ">= ") << "it falls through at any friction";
+  EXPECT_EQ(clothbench_command("threshold validation/atwood --solver ballistic").code, 2);
+  EXPECT_EQ(clothbench_command("metamorphic ballistic --set cloth.grid=[3,3]").code, 2);
+}
+
 }  // namespace
 }  // namespace clothbench

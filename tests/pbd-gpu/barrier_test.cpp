@@ -69,7 +69,7 @@ TEST_F(Barriers, NoneIsMissingAndNoneIsThereInVain) {
         EXPECT_NE(hazard(events, {p, k}), "")
             << cell.solver << cell.settings << ": without barrier " << k << " of " << barriers;
     }
-    EXPECT_GT(dropped, 5);
+    EXPECT_GE(dropped, 4) << "before and after what each program does";
   }
 }
 

@@ -24,7 +24,7 @@ constexpr int kHalfSecond = 36;
 TEST_F(Gpu, FreeFallOfXpbdIsExactToTwoMillionths) {
   for (int n : {8, 33, 64, 128}) {
     const Scene s = with_damping(with_bending(sheet(n, n)));
-    const auto solver = make("xpbd");
+    const auto solver = make("xpbd", {{"substeps", 10}});
     solver->load(s);
     const double error = free_fall_error(*solver, s, kHalfSecond, xpbd_free_fall_m(s, {{"substeps", 10}}, kHalfSecond));
     EXPECT_LE(error, 2e-6) << n;
@@ -36,7 +36,7 @@ TEST_F(Gpu, FreeFallOfATiltedSheetIsExactToo) {
   const double c = std::sqrt(0.5);
   s.cloth.axis_u = {c, c, 0};
   s.cloth.axis_v = {-0.5, 0.5, c};
-  const auto solver = make("xpbd");
+  const auto solver = make("xpbd", {{"substeps", 10}});
   solver->load(s);
   EXPECT_LE(free_fall_error(*solver, s, kHalfSecond, xpbd_free_fall_m(s, {{"substeps", 10}}, kHalfSecond)), 2e-6);
 }
@@ -83,7 +83,7 @@ TEST_F(Gpu, XpbdKeepsMomentum) {
     s.cloth.axis_v = {0, 0.2, 1};
     s.cloth.initial_velocity_m_per_s = {0.3, -0.2, 0.1};
     s.gravity_m_per_s2 = {};
-    const auto solver = make("xpbd", {{"iterations", iterations}});
+    const auto solver = make("xpbd", {{"substeps", 20}, {"iterations", iterations}});
     solver->load(s);
     const ClothState state = after(*solver, s, 36);
     const std::vector<double> mass = vertex_masses(s), start = initial_positions(s);

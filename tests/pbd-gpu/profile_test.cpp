@@ -21,11 +21,14 @@ TEST(Profile, UnknownNamesTheKnown) {
 }
 
 TEST(Profile, NeedsAreReadFromTheCode) {
-  const vulkan::ShaderNeeds plain = vulkan::needs_of(shaders::kIntegrate.code, {96});
+  const vulkan::ShaderNeeds plain = vulkan::needs_of(shaders::kUpdatePositions.code, {96});
   EXPECT_EQ(plain.group[0], 96u) << "the specialized size, not the default";
   EXPECT_EQ(plain.group[1], 1u);
   EXPECT_EQ(plain.shared_memory_B, 0u);
   EXPECT_FALSE(plain.float_atomics);
+  // Arrays as long as a product of constants: 32 rows of 34 words, six of them, a word a row, and a letter a thread.
+  const vulkan::ShaderNeeds lines = vulkan::needs_of(shaders::kLineFrame[0][0].code, {256, 8, 4, 32, 32, 256});
+  EXPECT_EQ(lines.shared_memory_B, 6u * 32 * 34 * 4 + 32 * 4 + 256 * 16);
   EXPECT_TRUE(vulkan::needs_of(shaders::kProjectConstraintDeltasNative.code, {64}).float_atomics);
 }
 
@@ -108,7 +111,7 @@ TEST_F(Profiles, AKernelThatWouldNotRunThereIsRefused) {
 /// More than 64 dispatches a frame, whatever a frame of the solver takes by itself.
 TEST_F(Profiles, LongFramesAreSplitAndComeOutTheSame) {
   const Scene s = with_pins(with_damping(with_bending(sheet(9, 7))));
-  const nlohmann::json settings = complete_settings(xpbd_info(), {{"substeps", 40}, {"stage_times", false}});
+  const nlohmann::json settings = complete_settings(xpbd_info(), {{"substeps", 40}, {"one_dispatch", false}, {"stage_times", false}});
   const auto whole = make_xpbd(settings, options()), split = make_xpbd(settings, {-1, true, "adreno-like"});
   whole->load(s);
   split->load(s);

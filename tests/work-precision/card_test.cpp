@@ -7,7 +7,10 @@
 #include "metrics/metric_pass.hpp"
 #include "metrics/truth_errors.hpp"
 #include "scenario/load.hpp"
+#include "truth/atwood.hpp"
+#include "truth/capstan.hpp"
 #include "truth/card.hpp"
+#include "truth/draw.hpp"
 #include "truth/free_fall.hpp"
 #include "truth/pull_chain.hpp"
 #include "truth/pull_wave.hpp"
@@ -16,7 +19,8 @@ namespace clothbench {
 namespace {
 
 const char* const kScenes[] = {"free-fall", "pendulum",      "swing-strip",    "heavy-strip",  "catenary",
-                               "cantilever-1", "cantilever-10", "cantilever-100", "two-hand-pull"};
+                               "cantilever-1", "cantilever-10", "cantilever-100", "two-hand-pull", "incline-stick",
+                               "incline-slip", "incline-stop", "capstan-hold", "capstan-slip", "atwood"};
 
 Scene scene(const std::string& name, const std::vector<std::string>& set = {}) { return load_scene("validation/" + name, set); }
 
@@ -157,6 +161,91 @@ TEST(Cards, RefuseScenesTheyDoNotAnswer) {
   EXPECT_NE(message("two-hand-pull", {"grips.0.ramp_s=0.01"}).find("one ramp_s"), std::string::npos);
   EXPECT_NE(message("free-fall", {"pins=[{\"edge\":\"u0\"}]"}).find("nothing that is held"), std::string::npos);
   EXPECT_EQ(message("swing-strip", {"gravity_m_per_s2=[0,-4.905,0]", "cloth.size_m=[0.5,0.0625]"}), "") << "any parameter will do";
+}
+
+TEST(Cards, ContactIsRefusedWhereTheClosedFormDoesNotHold) {
+  const auto refused = [](const std::string& name, const std::vector<std::string>& set, const std::string& why) {
+    try {
+      truth::card_of(scene(name, set));
+      ADD_FAILURE() << name << ": expected a refusal for " << why;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(why), std::string::npos) << e.what();
+    }
+  };
+  refused("incline-stick", {"colliders.0.margin_m=0.01"}, "at the collider's margin");
+  refused("incline-stick", {"colliders.0.size_m=[0.2,0.1,1]"}, "all under the sheet");
+  refused("incline-stop", {"colliders.0.size_m=[0.3,0.1,1]"}, "under all of the sheet's way");
+  refused("incline-slip", {"cloth.initial_velocity_m_per_s=[0,0,1]"}, "straight downhill");
+  refused("incline-slip", {"material.damping_per_s=1"}, "no damping");
+  refused("capstan-hold", {"cloth.grid=[43,5]"}, "lie evenly");
+  refused("capstan-hold", {"material.membrane_stiffness_N_per_m=1000"}, "inextensible");
+  refused("capstan-hold", {"colliders.0.radius_m=0.09"}, "drape radius");
+  refused("capstan-hold", {"colliders.0.friction=0"}, "friction");
+  refused("atwood", {"colliders.0.friction=0.1"}, "no friction");
+  refused("atwood", {"time.duration_s=1"}, "leaves the cylinder");
+  EXPECT_EQ(truth::card_of(scene("incline-stick", {"gravity_m_per_s2=[0,-1.6,0]"}))->quantity_scale, 0.25) << "any parameter will do";
+}
+
+TEST(Cards, ThresholdsAreWhereTheClosedFormsTurn) {
+  const auto stick = *truth::card_of(scene("incline-stick"))->threshold;
+  EXPECT_NEAR(stick.exact, std::tan(16 * 3.14159265358979 / 180), 1e-12);
+  EXPECT_NEAR(stick.error(std::tan(15.9 * 3.14159265358979 / 180)), 0.1, 1e-9);
+  const auto hold = *truth::card_of(scene("capstan-hold"))->threshold;
+  EXPECT_NEAR(hold.error(hold.exact), 0, 1e-12);
+  EXPECT_LT(hold.exact, 0.3);
+  for (const double side : {-1e-6, 1e-6}) {
+    const Scene s = scene("capstan-hold", {"colliders.0.friction=" + std::to_string(hold.exact * (1 + 1e3 * side))});
+    const auto card = truth::card_of(s);
+    EXPECT_EQ(card->quantity(card->columns(s.time.frames())) == 0, side > 0);
+  }
+  EXPECT_FALSE(truth::card_of(scene("incline-stop"))->threshold);
+  EXPECT_FALSE(truth::card_of(scene("atwood"))->threshold);
+}
+
+TEST(SlidingCapstan, IsAtwoodsWithoutFrictionAndStartsAtTheThreshold) {
+  const truth::HeavyCapstan free{0, 0.05, 0.2, 9.81};
+  const truth::Atwood atwood{0.8 + 0.05 * 3.14159265358979, 0.05, 0.1, 9.81};
+  const std::vector<double> times = {0, 0.1, 0.2, 0.3};
+  const auto states = truth::slide(free, 0.3, 0.5, 0, times);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    EXPECT_NEAR(states[k].way_m, truth::atwood_offset_m(atwood, times[k]) - 0.1, 1e-10);
+    EXPECT_NEAR(states[k].speed_m_per_s, truth::atwood_speed_m_per_s(atwood, times[k]), 1e-9);
+  }
+  const truth::HeavyCapstan rough{0.3, 0.05, 0.2, 9.81};
+  for (const int turns : {0, 12}) {
+    const double most = turns == 0 ? truth::greatest_overhang_m(rough, 0.2) : truth::polygonal_greatest_overhang_m(rough, 0.2, turns);
+    EXPECT_EQ(truth::slide(rough, 0.2, 0.999 * most, turns, times).back().way_m, 0);
+    EXPECT_GT(truth::slide(rough, 0.2, 1.001 * most, turns, times).back().way_m, 0);
+    EXPECT_LT(truth::slide(rough, 0.2, 1.001 * most, turns, times).back().way_m, 1e-3);
+  }
+  EXPECT_THROW(truth::slide(rough, 0.2, 5, 0, std::vector<double>{0, 3}), Error) << "the light end is over";
+  EXPECT_THROW(truth::slide(rough, 2, 0.1, 0, times), Error) << "it would slip to the other side";
+}
+
+TEST(Seed, DrawsScenesThatTheirCardsAnswerAndTheSameOnesAgain) {
+  for (const char* name : kScenes) {
+    const Scene s = scene(name);
+    for (const std::uint64_t seed : {0ull, 1ull, 2ull, 3ull, 7ull, 123456789012345ull}) {
+      const auto one = truth::draw(s, seed), two = truth::draw(s, seed);
+      EXPECT_EQ(one.scene.json, two.scene.json);
+      EXPECT_EQ(one.scene.seed, seed);
+      EXPECT_EQ(one.scene.name, s.name);
+      EXPECT_NE(truth::draw(s, seed + 1).scene.sha256, one.scene.sha256);
+      EXPECT_GE(one.scene.time.frames(), 8);
+      const auto [L, g] = std::pair{one.scene.cloth.width_m, one.scene.gravity_m_per_s2};
+      EXPECT_TRUE(L >= 0.1 && L <= 2) << name;
+      const double gravity = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+      EXPECT_TRUE(gravity == 0 || (gravity >= 1 - 1e-9 && gravity <= 25 + 1e-9)) << name;
+      const auto before = truth::card_of(s), after = truth::card_of(one.scene);
+      const auto moves = [](const truth::Card& c, const Scene& of) { return std::abs(c.quantity(c.columns(of.time.frames()))) > 1e-9; };
+      EXPECT_EQ(moves(*before, s), moves(*after, one.scene)) << name << ": what holds still holds, what slips slips";
+    }
+  }
+  // Recorded: the same numbers on every machine.
+  const auto values = truth::draw(scene("swing-strip"), 7).values;
+  EXPECT_NEAR(values[0].second, 0.240201, 1e-6);
+  EXPECT_NEAR(values[2].second, 16.5236, 1e-4);
+  EXPECT_THROW(truth::draw(load_scene("paper/gravity"), 1), Error);
 }
 
 TEST(Span, TheArcHangsAndItsCellsKeepTheirLengths) {

@@ -52,15 +52,18 @@ TEST(WorkTable, FindsTheFrontAndTimesToAccuracy) {
   EXPECT_EQ(row_of(t, "a")[3], "6e+03 (best)");
   EXPECT_EQ(row_of(t, "a")[4], "0.008 (good)") << "6 s a second is not real time";
   EXPECT_EQ(row_of(t, "a")[6], "1 of 5");
-  EXPECT_EQ(row_of(t, "b")[5], "≤ 3e-05 (tiny)") << "nobody is better than the reference is certain";
+  EXPECT_EQ(row_of(t, "b")[5], "≤ 0.002 (tiny)") << "nobody is better than the mesh itself";
   EXPECT_EQ(row_of(t, "b")[6], "1 of 2");
-  EXPECT_NE(diagrams[0].refused(), "") << "the best error is below 3 U_ref";
+  EXPECT_EQ(diagrams[0].refused(), "") << "the best error is below 3 U_ref, and so below the mesh's own: nobody is ranked there";
 }
 
 TEST(WorkTable, RefusesWithoutACertainReference) {
   std::vector<CellRecord> cells = {cell("a", "x", 1e-3, 1e-4)};
   EXPECT_EQ(work_diagrams(cells)[0].refused(), "");
+  cells[0].summary["truth_space_error"] = 1e-3;
   cells[0].summary["reference_uncertainty"] = 1e-4 / 2;
+  EXPECT_EQ(work_diagrams(cells)[0].refused(), "") << "the mesh's own error is above 3 U_ref";
+  cells[0].summary["truth_space_error"] = 0;
   EXPECT_NE(work_diagrams(cells)[0].refused(), "");
   EXPECT_NE(truth_table(work_diagrams(cells)).markdown().find("REFUSED"), std::string::npos);
   cells[0].summary["reference_uncertainty"] = NAN;

@@ -45,6 +45,9 @@ struct Cloth {
   Vec3 center_m{}, axis_u{}, axis_v{};
   /// Above 0: starts bent along u into an arc, towards axis_u x axis_v, its edges u0 and u1 this far apart.
   double span_m = 0;
+  /// Above 0: starts over a cylinder along axis_v round center_m, its rows this far from the axis where they touch and
+  /// hanging along axis_u x axis_v elsewhere, its middle `drape_offset_m` from the top, towards u1.
+  double drape_radius_m = 0, drape_offset_m = 0;
   Vec3 initial_velocity_m_per_s{};
   Vec3 spin_rad_per_s{};               ///< about center_m, on top of the velocity
   std::vector<double> column_factors;  ///< relative width of every cell along u; empty = all alike. They fill width_m
@@ -90,7 +93,7 @@ struct TimeSpan {
   double dt() const { return 1.0 / frame_rate_hz; }
   int frames() const { return static_cast<int>(duration_s * frame_rate_hz + 0.5); }
   /// Ends of the frames where they are not all alike (a hitch, a jitter), frames() + 1 of them from 0 on; empty = even.
-  std::vector<double> ends_s;
+  std::vector<double> ends_s = {};
   /// Time at the end of frame `frame` (0: the start), and the length of frame `frame` + 1.
   double at(int frame) const { return ends_s.empty() ? frame * dt() : ends_s.at(static_cast<std::size_t>(frame)); }
   double dt_after(int frame) const { return ends_s.empty() ? dt() : at(frame + 1) - at(frame); }
@@ -139,6 +142,7 @@ struct Scene {
 
   std::vector<Jump> jumps;
   StabilityRules stability;
+  std::optional<std::uint64_t> seed;  ///< its parameters were drawn by this number
   std::string truth_card;  ///< of the exact answer, "" = none; see harness/truth/card.hpp
 
   /// Where vertex (i, j) starts [m].
@@ -160,6 +164,11 @@ std::vector<double> initial_velocities(const Scene&);
 
 /// Y of a structural or shear edge [N/m], of the cell it lies in or (across u) the mean of its two; empty = inextensible.
 std::optional<double> membrane_stiffness(const Scene&, const struct Edge&);
+
+/// Turn [rad] from one row on the cylinder to the next, of a sheet that starts draped. Needs drape_radius_m > du/2.
+double drape_turn_rad(const Cloth&);
+/// Where row `i` of a draped sheet lies [m] that has run `offset_m` towards u1, middle line of the sheet.
+Vec3 draped_row(const Cloth&, int i, double offset_m);
 
 /// Vertices of an edge: "u0" and "u1" run along v, "v0" and "v1" along u; ascending.
 std::vector<std::uint32_t> edge_vertices(const Cloth&, const std::string& edge);

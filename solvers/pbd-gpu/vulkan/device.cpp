@@ -82,12 +82,12 @@ void check(VkResult result, const char* call) {
 
 std::shared_ptr<Device> Device::get(const DeviceOptions& options) {
   static std::mutex mutex;
-  static std::map<std::tuple<int, bool, std::string>, std::weak_ptr<Device>> cache;
+  // Kept to the end of the process, and not destroyed then: drivers fail to load again after some hundred times (NVIDIA 580:
+  // VK_ERROR_INCOMPATIBLE_DRIVER), and their own clean-up at exit may come first.
+  static auto& cache = *new std::map<std::tuple<int, bool, std::string>, std::shared_ptr<Device>>;
   const std::lock_guard lock(mutex);
-  auto& slot = cache[{options.index, options.validation, profile_name(options)}];
-  if (auto device = slot.lock(); device && !device->lost()) return device;
-  std::shared_ptr<Device> device(new Device(options));
-  slot = device;
+  auto& device = cache[{options.index, options.validation, profile_name(options)}];
+  if (!device || device->lost()) device.reset(new Device(options));
   return device;
 }
 
@@ -177,6 +177,13 @@ void Device::choose_physical(int index) {
   }
   vkGetPhysicalDeviceProperties(physical_, &properties_);
   vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
+  VkPhysicalDeviceSubgroupProperties subgroup{};
+  subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroup, {}};
+  vkGetPhysicalDeviceProperties2(physical_, &properties);
+  const bool shuffles = (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0 &&
+                        (subgroup.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT) != 0;
+  shuffled_lanes_ = shuffles ? subgroup.subgroupSize : 0;
 }
 
 void Device::apply_profile(const std::string& name) {

@@ -27,7 +27,7 @@ class Failure : public Error {
 void check(VkResult result, const char* call);
 
 /// Instance, device and its one compute queue (Vulkan 1.1 core, no required extension). One a process for each
-/// (index, validation, profile), shared by all solvers.
+/// (index, validation, profile), shared by all solvers and kept until the process ends.
 class Device {
  public:
   /// The device `options.index`, or the best present: discrete, integrated, virtual, then CPU. Throws Error with
@@ -49,6 +49,9 @@ class Device {
   std::uint32_t dispatches_per_submit() const { return profile_ != nullptr ? profile_->dispatches_per_submit : ~0u; }
   bool has_float_atomics() const { return float_atomics_; }  ///< VK_EXT_shader_atomic_float, buffer float32 add
   bool is_software() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+  /// Lanes of a subgroup that compute shaders can shuffle values between; 0 where they cannot.
+  std::uint32_t shuffled_lanes() const { return shuffled_lanes_; }
+  bool is_discrete() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU; }
   DeviceInfo info() const;
 
   /// Memory type with all of `wanted`, or kNoMemory.
@@ -89,6 +92,7 @@ class Device {
   VkCommandPool pool_ = VK_NULL_HANDLE;
   VkPipelineCache cache_ = VK_NULL_HANDLE;
   bool float_atomics_ = false;
+  std::uint32_t shuffled_lanes_ = 0;
   std::atomic<bool> lost_{false};
   mutable std::mutex messages_mutex_;
   std::vector<std::string> messages_;

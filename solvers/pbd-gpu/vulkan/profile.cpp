@@ -14,7 +14,8 @@ namespace {
 constexpr std::uint32_t kOpExecutionMode = 16, kOpCapability = 17, kOpTypeInt = 21, kOpTypeFloat = 22,
                         kOpTypeVector = 23, kOpTypeMatrix = 24, kOpTypeArray = 28, kOpTypeStruct = 30,
                         kOpTypePointer = 32, kOpConstant = 43, kOpConstantComposite = 44, kOpSpecConstant = 50,
-                        kOpSpecConstantComposite = 51, kOpVariable = 59, kOpDecorate = 71;
+                        kOpSpecConstantComposite = 51, kOpSpecConstantOp = 52, kOpVariable = 59, kOpDecorate = 71,
+                        kIMul = 132;
 constexpr std::uint32_t kModeLocalSize = 17, kDecorationSpecId = 1, kDecorationBuiltIn = 11, kBuiltInWorkgroupSize = 25,
                         kClassWorkgroup = 4;
 const std::set<std::uint32_t> kAtomicFloat = {5612, 5613, 5616, 6033, 6034, 6095};
@@ -46,6 +47,9 @@ class Reader {
       case kOpTypePointer: size_[w[1]] = size_[w[3]]; break;
       case kOpConstant: value_[w[2]] = w[3]; break;
       case kOpSpecConstant: value_[w[2]] = specialized(w[2], w[3]); break;
+      case kOpSpecConstantOp:
+        if (w[3] == kIMul) value_[w[2]] = value_[w[4]] * value_[w[5]];
+        break;
       case kOpConstantComposite:
       case kOpSpecConstantComposite:
         // The built-in overrides the execution mode (section 3.21, WorkgroupSize).

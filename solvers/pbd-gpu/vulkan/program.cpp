@@ -16,6 +16,13 @@ constexpr VkPipelineStageFlags kWork = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK
 constexpr VkAccessFlags kWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
 constexpr VkAccessFlags kAll = kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
 
+VkAccessFlags accesses(VkPipelineStageFlags stages) {
+  VkAccessFlags a = 0;
+  if ((stages & VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT) != 0) a |= VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
+  if ((stages & VK_PIPELINE_STAGE_TRANSFER_BIT) != 0) a |= VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+  return a;
+}
+
 }  // namespace
 
 Program::Program(std::shared_ptr<Device> device) : device_(std::move(device)) {
@@ -36,6 +43,7 @@ Program::~Program() {
 
 Program::Touched Program::touched(const Step& s) {
   Touched t;
+  t.stages = s.kernel == nullptr ? VK_PIPELINE_STAGE_TRANSFER_BIT : VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
   if (s.kernel == nullptr) {
     t.read.insert(s.from);
     t.written.insert(s.to);
@@ -58,17 +66,21 @@ void Program::barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, V
   recorded_.push_back({true, before, after, written, next, nullptr, nullptr, nullptr});
 }
 
-void Program::barrier_if_needed(const Touched& next, Touched& since) {
+void Program::barrier_if_needed(const Touched& next, Unordered& since) {
+  Touched& before = next.stages == VK_PIPELINE_STAGE_TRANSFER_BIT ? since.for_transfer : since.for_compute;
   const bool hazard =
-      meet(since.written, next.read) || meet(since.written, next.written) || meet(since.read, next.written);
+      meet(before.written, next.read) || meet(before.written, next.written) || meet(before.read, next.written);
   if (hazard) {
-    // Orders what the steps since the last barrier wrote before what this step reads or writes, and what they read
+    // Orders what the steps since the last such barrier wrote before what this step reads or writes, and what they read
     // before what it writes.
-    barrier(kWork, kWork, kWrites, kAll);
-    since = {};
+    barrier(before.stages, next.stages, accesses(before.stages) & kWrites, accesses(next.stages));
+    before = {};
   }
-  since.read.insert(next.read.begin(), next.read.end());
-  since.written.insert(next.written.begin(), next.written.end());
+  for (Touched* t : {&since.for_compute, &since.for_transfer}) {
+    t->read.insert(next.read.begin(), next.read.end());
+    t->written.insert(next.written.begin(), next.written.end());
+    t->stages |= next.stages;
+  }
 }
 
 void Program::timestamp(std::uint32_t query) {
@@ -116,7 +128,7 @@ void Program::record(bool time_stages) {
   // every submission after it.
   barrier(kWork, kWork, kWrites, kAll);
   timestamp(0);
-  Touched since;
+  Unordered since;
   const Kernel* bound = nullptr;
   for (std::uint32_t k = 0; k < steps_.size(); ++k) {
     const Step& s = steps_[k];

@@ -62,10 +62,15 @@ class Program {
   };
   struct Touched {
     std::set<const Buffer*> read, written;
+    VkPipelineStageFlags stages = 0;
+  };
+  /// What steps touched that no barrier has yet ordered before a later dispatch, and before a later copy.
+  struct Unordered {
+    Touched for_compute, for_transfer;
   };
   static Touched touched(const Step&);
   void barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written, VkAccessFlags next);
-  void barrier_if_needed(const Touched& next, Touched& since);
+  void barrier_if_needed(const Touched& next, Unordered& since);
   void wait(double patience_s);
   void timestamp(std::uint32_t query);
   void begin();

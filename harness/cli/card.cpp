@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/command.hpp"
+#include "report/material.hpp"
+#include "runner/material_card.hpp"
+
+namespace clothbench {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> solvers, set;
+  bool no_sweep = false;
+  DeviceFlags device;
+};
+
+/// The card at the settings given, and short ones where it is looked whether it holds.
+void measure(const SolverEntry& entry, const Overrides& overrides, const Arguments& a, StatusLine& line,
+             std::vector<CellRecord>& out) {
+  const nlohmann::json settings = complete_settings(entry.info, overrides.solver);
+  const auto one = [&](const nlohmann::json& s, const std::string& label, bool full) {
+    line.show(entry.info.name + " " + label, out.size(), 0);
+    try {
+      out.push_back(measure_material(entry, s, label, full, a.device.options, "card"));
+    } catch (const Error& e) {
+      if (e.code() != ExitCode::NoDevice || !a.device.allow_no_device) throw;
+      fmt::print(stderr, "no Vulkan device: {} is left out\n", entry.info.name);
+    }
+  };
+  one(settings, overrides.label(), true);
+  if (a.no_sweep || out.empty() || out.back().outcome.status == "unsupported") return;
+  for (const auto& [label, s] : swept_settings(entry.info, settings)) one(s, label, false);
+}
+
+}  // namespace
+
+void add_card(CLI::App& app, Console& console) {
+  static Arguments a;
+  CLI::App* cmd = app.add_subcommand("card",
+                                     "Measure what solvers make of a scene's stiffness: moduli at 0, 45 and 90 "
+                                     "degrees, bending, and whether they hold over settings");
+  cmd->add_option("solver", a.solvers, "Solvers; default: all");
+  cmd->add_option("--set", a.set, "Setting of the solver: solver.substeps=20");
+  cmd->add_flag("--no-sweep", a.no_sweep,
+                "Only at the settings given, not with four times the substeps and iterations too");
+  a.device.add_to(*cmd);
+  cmd->footer("Example: clothbench card xpbd --set solver.substeps=64");
+  cmd->callback([&console] {
+    const Overrides overrides = split_overrides(a.set);
+    if (!overrides.scene.empty())
+      throw Error("--set " + overrides.scene[0] + ": expected solver.<name>=<value>; the patches are fixed");
+    if (a.solvers.empty())
+      for (const SolverEntry& e : solvers())
+        if (!e.info.ignores.has(Feature::Stretch)) a.solvers.push_back(e.info.name);
+    std::vector<CellRecord> cards;
+    {
+      StatusLine line(!console.json);
+      for (const std::string& name : a.solvers) measure(find_solver(name), overrides, a, line, cards);
+    }
+    const auto materials = solver_materials(cards);
+    if (console.json) {
+      fmt::print("{}\n", material_json(materials).dump(2));
+      return;
+    }
+    fmt::print("{}{}", material_table(materials).console(), material_verdicts(materials).console());
+    for (const CellRecord& c : cards)
+      if (!c.outcome.message.empty()) fmt::print("  {} {}: {}\n", c.header.solver, c.header.setting, c.outcome.message);
+  });
+}
+
+}  // namespace clothbench

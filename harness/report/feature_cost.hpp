@@ -1,0 +1,38 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "clothbench/record.hpp"
+#include "report/table.hpp"
+
+namespace clothbench {
+
+/// Positions may move by this much of the cloth's longer side when something irrelevant is switched on.
+inline constexpr double kNoOp = 1e-6;
+
+/// A scene as it is, and with what it has no use for switched on (harness/scenario/irrelevant.hpp): what leaving out
+/// what a scene does not need is worth.
+struct FeatureCost {
+  const CellRecord* needed = nullptr;
+  const CellRecord* all = nullptr;
+  std::vector<std::string> added;  ///< features
+  double moved = kMissing;  ///< greatest distance of a vertex in one from the other, over the cloth's longer side
+  bool no_op() const { return moved <= kNoOp; }  ///< false where not measured
+};
+
+/// True for a cell with something irrelevant in its scene.
+bool is_all_on(const CellRecord&);
+
+/// Every cell with something irrelevant, with its partner in the same folder: same scene, solver and setting. Those
+/// without a partner are left out. Reads trajectories. `cells` must outlive the answer.
+std::vector<FeatureCost> feature_costs(const std::vector<CellRecord>& cells);
+
+/// Rows: scene x solver: times of both, their ratio, dispatches, bytes, memory, how far the cloth moved.
+Table feature_cost_table(const std::vector<FeatureCost>&);
+/// Which solvers keep the no-op rule: rows solvers, in how many of their scenes nothing moved, worst scene.
+Table no_op_table(const std::vector<FeatureCost>&);
+nlohmann::json feature_cost_json(const std::vector<FeatureCost>&);
+std::string feature_cost_csv(const std::vector<FeatureCost>&);
+
+}  // namespace clothbench

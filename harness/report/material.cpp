@@ -1,0 +1,150 @@
+#include "report/material.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/grid.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kNotMeasured = "not measured";
+constexpr const char* kModuli[] = {"E_0",          "E_45",      "E_90", "nu",   "G",    "E_strip",
+                                   "strip_border", "E_stiffer", "B_0",  "B_45", "B_90", "B_stiffer"};
+
+json scenario_of(const CellRecord& c) { return json::parse(c.header.scenario_json, nullptr, false); }
+
+bool is_full(const CellRecord& c) {
+  const json s = scenario_of(c);
+  return s.is_object() && s.value("material_card", "") == "full";
+}
+
+double modulus(const CellRecord& c, const char* name) { return summary_value(c, std::string("material_") + name); }
+
+/// `stiffer`: the modulus of a sheet with twice the stiffness, over its own.
+std::string verdict(const SolverMaterial& m, const char* name, const char* like, const char* stiffer) {
+  const CellRecord* standard = nullptr;
+  for (const CellRecord* c : m.cards)
+    if (standard == nullptr && is_full(*c)) standard = c;
+  if (standard == nullptr || standard->outcome.status == "unsupported") return kNotMeasured;
+  const double value = modulus(*standard, name);
+  if (!std::isfinite(value)) return "no value at rest";
+  if (!(value > kHeldModulus)) return fmt::format("none: {:.2g} of what is asked for", value);
+  const double answer = 2 * modulus(*standard, stiffer) / modulus(*standard, like);
+  if (!(std::abs(answer / 2 - 1) <= kHeldModulus))
+    return fmt::format("does not follow: twice of it gives {:.3g} times as much", answer);
+  for (const CellRecord* c : m.cards) {
+    const double here = modulus(*c, name);
+    if (!(std::abs(here / value - 1) <= kHeldModulus))
+      return std::isfinite(here) ? fmt::format("depends on settings: {:.3g} at {}, {:.3g} at {}", value,
+                                               standard->header.setting, here, c->header.setting)
+                                 : fmt::format("no value at {}", c->header.setting);
+  }
+  return "";
+}
+
+std::string ratio(double v) {
+  if (!std::isfinite(v)) return "–";
+  return v >= 1e4 || (v != 0 && std::abs(v) < 1e-3) ? fmt::format("{:.1e}", v) : fmt::format("{:.3g}", v);
+}
+
+std::string yes_or(const std::string& why) { return why.empty() ? "yes" : why == kNotMeasured ? "–" : "NO: " + why; }
+
+}  // namespace
+
+bool is_material_card(const CellRecord& c) {
+  const json s = scenario_of(c);
+  return s.is_object() && s.contains("material_card");
+}
+
+std::vector<SolverMaterial> solver_materials(const std::vector<CellRecord>& cells) {
+  std::vector<SolverMaterial> out;
+  for (const CellRecord& c : cells) {
+    if (!is_material_card(c)) continue;
+    auto at =
+        std::find_if(out.begin(), out.end(), [&](const SolverMaterial& m) { return m.solver == c.header.solver; });
+    if (at == out.end()) at = out.insert(out.end(), {c.header.solver, {}, {}});
+    at->cards.push_back(&c);
+  }
+  for (SolverMaterial& m : out) {
+    std::stable_partition(m.cards.begin(), m.cards.end(), [](const CellRecord* c) { return is_full(*c); });
+    m.verdict = {verdict(m, "E_strip", "E_0", "E_stiffer"), verdict(m, "E_0", "E_0", "E_stiffer"),
+                 verdict(m, "B_0", "B_0", "B_stiffer")};
+  }
+  return out;
+}
+
+std::string stiffness_flag(const std::vector<SolverMaterial>& all, const std::string& solver,
+                           const std::string& truth_card) {
+  const bool of_y = truth_card == "heavy-strip" || truth_card == "two-hand-pull", of_b = truth_card == "cantilever";
+  for (const SolverMaterial& m : all) {
+    if (m.solver != solver || !(of_y || of_b)) continue;
+    const std::string& why = of_y ? m.verdict.strip : m.verdict.bending;
+    return why == kNotMeasured ? "" : why;
+  }
+  return "";
+}
+
+Table material_table(const std::vector<SolverMaterial>& all) {
+  Table t{
+      "Material card: what solvers make of the stiffness they are given",
+      "Measured on hanging, sliding and bending patches at rest. E, G and B over the scene's Y, Y and B at 0, 45 and "
+      "90° to the grid; "
+      "right values: 1, 1, 1, ν = 1/3 and G = 0.375 for central springs, strip 1 (no shear), border 1. B at 45°: of "
+      "developable "
+      "bending; 0.5 for lines along the grid, which resist no twist. ×2: measured for twice the stiffness, over once.",
+      {{"solver", "setting", "E 0", "E 45", "E 90", "ν", "G", "strip", "border", "E ×2", "B 0", "B 45", "B 90",
+        "B ×2"}}};
+  for (const SolverMaterial& m : all)
+    for (const CellRecord* c : m.cards) {
+      std::vector<std::string> row = {m.solver, c->header.setting};
+      for (const char* name : kModuli) {
+        double v = modulus(*c, name);
+        if (std::string(name) == "E_stiffer") v *= 2 / modulus(*c, "E_0");
+        if (std::string(name) == "B_stiffer") v *= 2 / modulus(*c, "B_0");
+        row.push_back(ratio(v));
+      }
+      if (c->outcome.status != "ok") row[2] = c->outcome.status;
+      t.rows.push_back(std::move(row));
+    }
+  return t;
+}
+
+Table material_verdicts(const std::vector<SolverMaterial>& all) {
+  Table t{"Is stiffness a parameter?",
+          "Measured: within 5 % when doubled and over settings. NO: not ranked where the scene depends on it.",
+          {{"solver", "settings", "Y of strips", "Y of sheets", "B"}}};
+  for (const SolverMaterial& m : all)
+    t.rows.push_back({m.solver, std::to_string(m.cards.size()), yes_or(m.verdict.strip), yes_or(m.verdict.sheet),
+                      yes_or(m.verdict.bending)});
+  return t;
+}
+
+json material_json(const std::vector<SolverMaterial>& all) {
+  json out = json::array();
+  for (const SolverMaterial& m : all) {
+    json cards = json::array();
+    for (const CellRecord* c : m.cards) {
+      json card = {{"setting", c->header.setting},
+                   {"settings", c->header.settings},
+                   {"full", is_full(*c)},
+                   {"status", c->outcome.status},
+                   {"message", c->outcome.message}};
+      for (const auto& [name, value] : c->summary)
+        if (name.starts_with("material_")) card[name.substr(9)] = std::isfinite(value) ? json(value) : json();
+      cards.push_back(std::move(card));
+    }
+    out.push_back({{"solver", m.solver},
+                   {"strip_Y", m.verdict.strip},
+                   {"sheet_Y", m.verdict.sheet},
+                   {"B", m.verdict.bending},
+                   {"cards", std::move(cards)}});
+  }
+  return out;
+}
+
+}  // namespace clothbench

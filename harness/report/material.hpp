@@ -1,0 +1,48 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "clothbench/record.hpp"
+#include "report/table.hpp"
+
+namespace clothbench {
+
+/// A modulus that differs by no more than this between settings, and from half of what a doubled one gives, is the
+/// solver's parameter.
+inline constexpr double kHeldModulus = 0.05;
+
+/// True for a cell that is a material card (harness/runner/material_card.hpp).
+bool is_material_card(const CellRecord&);
+
+/// Whether one of a scene's stiffnesses reaches the cloth: "" if so, otherwise why not. A solver listens if doubling
+/// the stiffness doubles what is measured, and holds if every setting measured gives what the default gives, both
+/// within kHeldModulus. "not measured" where there is no card, or no value at the default setting.
+struct MaterialVerdict {
+  std::string strip;    ///< Y of scenes with `shear: false`
+  std::string sheet;    ///< Y of the others
+  std::string bending;  ///< B
+};
+
+/// All cards of one solver: the full one first, then those of other settings in the order given.
+struct SolverMaterial {
+  std::string solver;
+  std::vector<const CellRecord*> cards;
+  MaterialVerdict verdict;
+};
+
+/// By solver, in the order of first appearance. `cells` may hold others, and must outlive the answer.
+std::vector<SolverMaterial> solver_materials(const std::vector<CellRecord>& cells);
+
+/// Why this solver's stiffness cannot be judged on a scene of this truth card (heavy-strip and two-hand-pull depend on
+/// Y, cantilever on B): "" if it can be, the card does not depend on it, or no card says otherwise.
+std::string stiffness_flag(const std::vector<SolverMaterial>&, const std::string& solver,
+                           const std::string& truth_card);
+
+/// Rows: solvers at their settings; moduli over what the scenes state.
+Table material_table(const std::vector<SolverMaterial>&);
+/// The verdicts alone.
+Table material_verdicts(const std::vector<SolverMaterial>&);
+nlohmann::json material_json(const std::vector<SolverMaterial>&);
+
+}  // namespace clothbench

@@ -1,0 +1,235 @@
+#include "runner/metamorphic.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "clothbench/error.hpp"
+#include "scenario/change.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kSame = 1e-4, kNothing = 1e-6;
+constexpr double kFar_m = 100;
+
+struct Failed {
+  std::string how;
+};
+
+/// Every frame's positions and velocities.
+using Trace = std::vector<ClothState>;
+
+Trace trace_of(ClothSolver& solver, const Scene& s) {
+  Trace out(1);
+  solver.read_state(out.back());
+  const double dt = s.time.dt();
+  for (int f = 0; f < s.time.frames(); ++f) {
+    if (solver.step({f, (f + 1) * dt, dt, s.motion_after(f)}) != StepStatus::Ok) throw Failed{"failed"};
+    solver.read_state(out.emplace_back());
+  }
+  return out;
+}
+
+/// What the changed run should have been: x -> map, velocities alike without the offset.
+struct Expected {
+  SceneChange change;
+  std::vector<std::uint32_t> new_to_old;  ///< empty: as they were
+};
+
+void compare(const Trace& base, const Trace& run, const Expected& by, double longer_side_m, MetamorphicResult& out) {
+  const double speed = by.change.length / by.change.time;
+  for (std::size_t f = 0; f < base.size(); ++f)
+    for (std::size_t v = 0; 3 * v < run[f].position.size(); ++v) {
+      const std::size_t old = by.new_to_old.empty() ? v : by.new_to_old[v];
+      Vec3 x{}, dx{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        x[k] = by.change.length * base[f].position[3 * old + k];
+        dx[k] = speed * base[f].velocity[3 * old + k];
+      }
+      x = by.change.turned(x);
+      dx = by.change.turned(dx);
+      double squared = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double off = run[f].position[3 * v + k] - x[k];
+        squared += off * off;
+        if (!(off == 0 && run[f].velocity[3 * v + k] == dx[k])) out.bitwise = false;
+      }
+      const double distance = std::sqrt(squared) / (by.change.length * longer_side_m);
+      if (!(distance <= out.distance)) out.distance = distance;  // a NaN stays
+    }
+}
+
+class Tester {
+ public:
+  Tester(const SolverEntry& entry, const json& settings, const DeviceOptions& device, const Scene& scene)
+      : entry_(entry), settings_(settings), device_(device), scene_(scene), json_(json::parse(scene.json)),
+        side_(std::max(scene.cloth.width_m, scene.cloth.height_m)) {}
+
+  MetamorphicResult test(const std::string& property) {
+    MetamorphicResult out{property, scene_.name, "", 0, true, kSame};
+    if (!supported(scene_)) return unsupported_row(out);
+    try {
+      if (base_.empty()) base_ = run(scene_);
+      if (property == "similarity-2") similar(out, 2, 2, 4, 0);
+      if (property == "similarity") similar(out, 1.7, 0.6, 3.1, kSame);
+      if (property == "mirror") mirror(out);
+      if (property == "rotation") rotate(out);
+      if (property == "renumbering") renumber(out);
+      if (property == "repeat") repeat(out);
+      if (property == "no-op") far_colliders(out);
+    } catch (const Failed& f) {
+      out.status = f.how;
+      out.bitwise = false;
+      out.distance = std::nan("");
+    }
+    if (out.status.empty()) out.status = (out.at_most == 0 ? out.bitwise : out.distance <= out.at_most) ? "kept" : "broken";
+    return out;
+  }
+
+ private:
+  bool supported(const Scene& s) const { return unsupported(entry_.info, s.needs).empty(); }
+
+  static MetamorphicResult unsupported_row(MetamorphicResult out) {
+    out.status = "unsupported";
+    out.bitwise = false;
+    out.distance = std::nan("");
+    return out;
+  }
+
+  Trace run(const Scene& s, const std::optional<json>& settings = {}) const {
+    const auto solver = entry_.make(settings ? *settings : settings_, device_);
+    solver->load(s);
+    return trace_of(*solver, s);
+  }
+
+  Scene made(json scenario) const {
+    scenario.erase("truth");  // positions alone are compared
+    return scene_from_json(std::move(scenario), scene_.source);
+  }
+
+  void changed(MetamorphicResult& out, const SceneChange& change) const {
+    compare(base_, run(made(change_scene(json_, change, scene_.source))), {change, {}}, side_, out);
+  }
+
+  void similar(MetamorphicResult& out, double length, double time, double mass, double at_most) const {
+    SceneChange c;
+    c.length = length;
+    c.time = time;
+    c.mass = mass;
+    out.at_most = at_most;
+    changed(out, c);
+  }
+
+  void mirror(MetamorphicResult& out) const {
+    SceneChange c;
+    c.turn[0][0] = -1;
+    changed(out, c);
+  }
+
+  void rotate(MetamorphicResult& out) const {
+    // Rows of the rotations by 1 rad about (1, 2, 2)/3 and by 2.5 rad about (2, -1, 2)/3: Rodrigues' formula.
+    for (const auto& [axis, angle] : {std::pair{Vec3{1.0 / 3, 2.0 / 3, 2.0 / 3}, 1.0}, std::pair{Vec3{2.0 / 3, -1.0 / 3, 2.0 / 3}, 2.5}}) {
+      SceneChange c;
+      const double s = std::sin(angle), k = 1 - std::cos(angle);
+      const Vec3 cross[3] = {{0, -axis[2], axis[1]}, {axis[2], 0, -axis[0]}, {-axis[1], axis[0], 0}};
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) c.turn[i][j] = (i == j ? 1 - k : 0) + s * cross[i][j] + k * axis[i] * axis[j];
+      changed(out, c);
+    }
+  }
+
+  void renumber(MetamorphicResult& out) const {
+    for (const Renumbering by : {Renumbering::FlipU, Renumbering::FlipV, Renumbering::Transpose}) {
+      Expected expected;
+      const Scene other = made(renumber_scene(json_, by, scene_.source, expected.new_to_old));
+      compare(base_, run(other), expected, side_, out);
+    }
+    if (!(out.distance > kSame)) return;
+    // Twice as many frames of half the length: what the order of vertices does must be less than what the step does.
+    json halved = json_;
+    halved["time"]["frame_rate_hz"] = 2 * scene_.time.frame_rate_hz;
+    const Trace finer = run(made(std::move(halved)));
+    Trace there;
+    for (std::size_t f = 0; f < finer.size(); f += 2) there.push_back(finer[f]);
+    MetamorphicResult own;
+    compare(base_, there, {}, side_, own);
+    out.at_most = std::max(kSame, own.distance);
+  }
+
+  void repeat(MetamorphicResult& out) const {
+    out.at_most = 0;
+    const auto solver = entry_.make(settings_, device_);
+    solver->load(scene_);
+    compare(base_, trace_of(*solver, scene_), {}, side_, out);
+    solver->reset();
+    compare(base_, trace_of(*solver, scene_), {}, side_, out);
+  }
+
+  void far_colliders(MetamorphicResult& out) const {
+    out.at_most = kNothing;
+    const json at = {0, kFar_m, 0};
+    const json far[] = {{{"type", "sphere"}, {"center_m", at}, {"radius_m", 0.5}, {"friction", 0.5}},
+                        {{"type", "box"}, {"center_m", at}, {"size_m", {1, 1, 1}}, {"friction", 0.5}},
+                        {{"type", "cylinder"}, {"center_m", at}, {"radius_m", 0.5}, {"length_m", 1}, {"sides", 12}, {"friction", 0.5}}};
+    bool any = false;
+    for (const json& collider : far) {
+      json with = json_;
+      with["colliders"].push_back(collider);
+      const Scene s = made(std::move(with));
+      if (!supported(s)) continue;
+      any = true;
+      compare(base_, run(s), {}, side_, out);
+    }
+    if (!any) out = unsupported_row(out);
+  }
+
+  const SolverEntry& entry_;
+  const json& settings_;
+  const DeviceOptions& device_;
+  const Scene& scene_;
+  const json json_;
+  const double side_;
+  Trace base_;
+};
+
+}  // namespace
+
+const std::vector<MetamorphicProperty>& metamorphic_properties() {
+  static const std::vector<MetamorphicProperty> all = {
+      {"similarity-2", "lengths ×2, time ×2, mass ×4: the same bits"},
+      {"similarity", "lengths ×1.7, time ×0.6, mass ×3.1"},
+      {"mirror", "x → −x"},
+      {"rotation", "the whole scene and gravity turned"},
+      {"renumbering", "vertices numbered from another corner, or along the other side; bound: 1e-4, or what frames half as long change"},
+      {"repeat", "run again, and after reset: the same bits"},
+      {"no-op", "a ball, a box or a mesh 100 m away"}};
+  return all;
+}
+
+std::vector<Scene> metamorphic_scenes() {
+  std::vector<Scene> out;
+  for (const char* name : {"metamorphic/sheet", "validation/swing-strip", "validation/incline-stop"}) out.push_back(load_scene(name));
+  return out;
+}
+
+std::vector<MetamorphicResult> run_metamorphic(const SolverEntry& entry, const json& settings, const DeviceOptions& device,
+                                               const std::vector<Scene>& scenes, const std::function<void(const std::string&)>& note) {
+  std::vector<MetamorphicResult> out;
+  for (const Scene& s : scenes) {
+    Tester tester(entry, settings, device, s);
+    for (const MetamorphicProperty& p : metamorphic_properties()) {
+      if (note) note(fmt::format("{}: {} on {}", entry.info.name, p.name, s.name));
+      out.push_back(tester.test(p.name));
+    }
+  }
+  return out;
+}
+
+}  // namespace clothbench

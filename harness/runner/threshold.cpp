@@ -1,0 +1,58 @@
+#include "runner/threshold.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "clothbench/error.hpp"
+#include "scenario/load.hpp"
+#include "truth/card.hpp"
+
+namespace clothbench {
+namespace {
+
+constexpr double kLow = 0.5, kHigh = 1.5, kFinest = 1e-3;
+
+bool held(const Scene& scene, const truth::Card& card, double limit_m, const SolverEntry& entry, const nlohmann::json& settings,
+          const DeviceOptions& device) {
+  const auto solver = entry.make(settings, device);
+  solver->load(scene);
+  const double dt = scene.time.dt();
+  for (int f = 0; f < scene.time.frames(); ++f)
+    if (solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}) != StepStatus::Ok) return false;
+  ClothState state;
+  solver->read_state(state);
+  return std::abs(card.quantity(truth::column_means(scene.cloth, state.position))) <= limit_m;
+}
+
+}  // namespace
+
+FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings, const DeviceOptions& device) {
+  const auto card = truth::card_of(scene);
+  if (!card || !card->threshold) throw Error(scene.source + ": this scene has no threshold: expected one at rest on a slope or over a cylinder, with friction");
+  if (!unsupported(entry.info, scene.needs).empty()) throw Error(entry.info.name + " cannot run " + scene.name);
+  const truth::Threshold& t = *card->threshold;
+  FoundThreshold out;
+  out.exact = t.exact;
+  const auto holds = [&](double friction) {
+    ++out.runs;
+    const Scene tried = scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", t.key, friction)});
+    return held(tried, *card, t.held_below_m, entry, settings, device);
+  };
+  double low = kLow * t.exact, high = kHigh * t.exact;
+  if (!holds(high)) {
+    out.slips_at_most = true;
+    out.found = high;
+  } else if (holds(low)) {
+    out.holds_at_least = true;
+    out.found = low;
+  } else {
+    while (high - low > kFinest * t.exact) (holds((low + high) / 2) ? high : low) = (low + high) / 2;
+    out.found = (low + high) / 2;
+  }
+  out.error = t.error(out.found);
+  return out;
+}
+
+}  // namespace clothbench

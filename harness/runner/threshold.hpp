@@ -1,0 +1,21 @@
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+
+#include "clothbench/scene.hpp"
+#include "clothbench/solver.hpp"
+
+namespace clothbench {
+
+/// Where a scene begins to hold for one solver, against the closed form.
+struct FoundThreshold {
+  double exact = 0, found = 0;  ///< coefficients of friction
+  double error = 0;             ///< in the card's own words: degrees of the critical angle, share of the overhang
+  bool holds_at_least = false, slips_at_most = false;  ///< at 0.5 and 1.5 times the exact one: found is then that end
+  int runs = 0;
+};
+
+/// Bisects the coefficient of friction between 0.5 and 1.5 of the exact one, to 1e-3 of it; each try is a run of the whole
+/// scene. A run that fails slips. Throws Error if the scene's card has no threshold (see truth/card.hpp) or the solver cannot run it.
+FoundThreshold find_threshold(const Scene&, const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&);
+
+}  // namespace clothbench

@@ -1,0 +1,250 @@
+#include "truth/draw.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
+
+#include "clothbench/error.hpp"
+#include "scenario/change.hpp"
+#include "scenario/load.hpp"
+#include "truth/atwood.hpp"
+#include "truth/capstan.hpp"
+#include "truth/card.hpp"
+
+namespace clothbench::truth {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kFewestFrames = 8;
+constexpr double kMostFrameRate_hz = 9999;
+
+/// The engine's numbers are the standard's; its distributions are each library's own.
+class Dice {
+ public:
+  Dice(std::uint64_t seed, const std::string& card) {
+    std::vector<std::uint32_t> words = {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)};
+    for (const char c : card) words.push_back(static_cast<unsigned char>(c));
+    std::seed_seq sequence(words.begin(), words.end());
+    engine_.seed(sequence);
+  }
+  double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+  double between(double low, double high) { return low + (high - low) * unit(); }
+  double log_between(double low, double high) { return low * std::pow(high / low, unit()); }
+  int whole(int low, int high) { return low + static_cast<int>(unit() * (high - low + 1)); }
+
+  /// Uniform in SO(3). Source: Shoemake, Graphics Gems III, 1992.
+  std::array<Vec3, 3> rotation() {
+    const double u = unit(), a = 2 * kPi * unit(), b = 2 * kPi * unit();
+    const double x = std::sqrt(1 - u) * std::sin(a), y = std::sqrt(1 - u) * std::cos(a), z = std::sqrt(u) * std::sin(b), w = std::sqrt(u) * std::cos(b);
+    return {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+             {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+             {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+class Drawing {
+ public:
+  Drawing(const Scene& s, std::uint64_t seed)
+      : scene_(s), seed_(seed), dice_(seed, s.truth_card), rate_hz_(s.time.frame_rate_hz), j_(json::parse(s.json)) {}
+
+  DrawnScene draw() {
+    const std::string& card = scene_.truth_card;
+    const double old = scene_.cloth.width_m, old_g = norm(scene_.gravity_m_per_s2);
+    note("length_m", length_ = dice_.between(0.1, 2));
+    note("areal_density_kg_per_m2", density_ = dice_.between(0.05, 1));
+    if (old_g > 0) note("gravity_m_per_s2", g_ = dice_.between(1, 25));
+    SceneChange sized;
+    sized.length = length_ / old;
+    sized.time = old_g > 0 && card != "free-fall" ? std::sqrt(sized.length * old_g / g_) : 1;
+    j_ = change_scene(std::move(j_), sized, scene_.source);
+    if (old_g > 0) set_gravity(scaled(g_ / old_g, scene_.gravity_m_per_s2));
+    j_["cloth"]["areal_density_kg_per_m2"] = density_;
+    const bool keeps_rate = card != "two-hand-pull";
+    if (card == "free-fall") draw_stiffness(100);
+    if (card == "heavy-strip") draw_stiffness(std::max(100.0, 100 * density_ * g_ * length_));  // strains of 1 % at most
+    if (card == "catenary") span();
+    if (card == "cantilever") bending();
+    if (card == "two-hand-pull") pull();
+    if (card == "incline") slope();
+    if (card == "capstan") overhangs();
+    if (card == "atwood") weights();
+    if (keeps_rate) j_["time"]["frame_rate_hz"] = rate_hz_;
+    j_ = change_scene(std::move(j_), elsewhere(), scene_.source);
+    enough_frames();
+    j_["seed"] = seed_;
+    DrawnScene out{scene_from_json(std::move(j_), scene_.source), std::move(values_)};
+    out.scene.name = scene_.name;
+    card_of(out.scene);  // refuses what it does not answer
+    return out;
+  }
+
+ private:
+  static double norm(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+  static Vec3 scaled(double k, const Vec3& v) { return {k * v[0], k * v[1], k * v[2]}; }
+  void note(const std::string& name, double value) { values_.emplace_back(name, value); }
+  void set_gravity(const Vec3& g) { j_["gravity_m_per_s2"] = g; }
+  double stretch_time() const { return length_ / std::sqrt(stiffness_ / density_); }
+
+  void draw_stiffness(double least, double most = 1e6) {
+    note("membrane_stiffness_N_per_m", stiffness_ = dice_.log_between(least, most));
+    j_["material"]["membrane_stiffness_N_per_m"] = stiffness_;
+  }
+
+  void span() {
+    const double share = dice_.between(0.5, 0.95);
+    note("span_over_length", share);
+    j_["cloth"]["pose"]["span_m"] = share * length_;
+  }
+
+  void bending() {
+    const double free_m = length_ * (1 - 1.0 / (scene_.cloth.columns - 1)), gamma = dice_.log_between(1, 1000);
+    note("weight_over_bending", gamma);
+    j_["material"]["bending_rigidity_N_m"] = density_ * g_ * free_m * free_m * free_m / gamma;
+    // As stiff against its weight as it was: a strip that the card takes for inextensible.
+    const double weight = density_ * g_ * length_, before = scene_.cloth.areal_density_kg_per_m2 * norm(scene_.gravity_m_per_s2) * scene_.cloth.width_m;
+    if (const auto Y = scene_.material.membrane_stiffness_N_per_m) j_["material"]["membrane_stiffness_N_per_m"] = *Y * weight / before;
+  }
+
+  void pull() {
+    const Cloth& c = scene_.cloth;
+    const double before = c.width_m / std::sqrt(*scene_.material.membrane_stiffness_N_per_m / c.areal_density_kg_per_m2);
+    // A frame for every so much of the wave's way; the format knows no more than so many a second.
+    const double shortest = before * rate_hz_ / kMostFrameRate_hz;
+    draw_stiffness(100, std::min(1e6, density_ * std::pow(length_ / shortest, 2)));
+    SceneChange paced;
+    paced.time = stretch_time() / before;
+    const double share = dice_.between(0.05, 0.3), speed = share * length_ / stretch_time();
+    note("hand_speed_over_wave_speed", share);
+    j_["time"]["frame_rate_hz"] = rate_hz_ / paced.time;
+    j_["time"]["duration_s"] = scene_.time.duration_s * paced.time;
+    for (std::size_t k = 0; k < 2; ++k) {
+      j_["grips"][k]["velocity_m_per_s"] = scaled(k == 0 ? -speed : speed, c.axis_u);
+      j_["grips"][k]["ramp_s"] = stretch_time();
+    }
+  }
+
+  /// Gravity turns, the face stays; the box is made as long as the way.
+  void slope() {
+    const Threshold* old = nullptr;
+    const auto card = card_of(scene_);
+    if (card->threshold) old = &*card->threshold;
+    const double friction = dice_.between(0.1, 0.8), critical = std::atan(friction);
+    const bool stops = old == nullptr, sticks = !stops && scene_.colliders[0].friction >= old->exact;
+    double angle = critical + dice_.between(0.3, 3) * kPi / 180 * (sticks ? -1 : 1), speed = 0;
+    if (stops) {
+      angle = dice_.between(0, critical / 2);
+      speed = dice_.between(0.5, 2) * std::sqrt(g_ * length_);
+      note("speed_m_per_s", speed);
+    }
+    note("friction", friction);
+    note("angle_deg", angle * 180 / kPi);
+    const Vec3 d = slope_direction();
+    const Vec3 &u = scene_.cloth.axis_u, &v = scene_.cloth.axis_v;
+    const Vec3 n = {v[1] * u[2] - v[2] * u[1], v[2] * u[0] - v[0] * u[2], v[0] * u[1] - v[1] * u[0]};
+    Vec3 gravity{};
+    for (std::size_t k = 0; k < 3; ++k) gravity[k] = g_ * (std::sin(angle) * d[k] - std::cos(angle) * n[k]);
+    set_gravity(gravity);
+    j_["cloth"]["initial_velocity_m_per_s"] = scaled(speed, d);
+    json& face = j_["colliders"][0];
+    face["friction"] = friction;
+    const double slowing = g_ * (friction * std::cos(angle) - std::sin(angle)), T = j_["time"]["duration_s"].get<double>();
+    if (stops) j_["time"]["duration_s"] = 1.5 * speed / slowing;
+    const double way = stops ? speed * speed / (2 * slowing) : sticks ? 0 : -0.5 * slowing * T * T;
+    if (face["type"] == "box")
+      for (const std::size_t k : {0u, 2u}) face["size_m"][k] = 2 * (2 * length_ + 1.5 * way);
+  }
+
+  Vec3 slope_direction() const {
+    const Vec3& u = scene_.cloth.axis_u;
+    if (norm(scene_.cloth.initial_velocity_m_per_s) > 0) return scaled(1 / norm(scene_.cloth.initial_velocity_m_per_s), scene_.cloth.initial_velocity_m_per_s);
+    const Vec3& g = scene_.gravity_m_per_s2;
+    const double along = u[0] * g[0] + u[1] * g[1] + u[2] * g[2];
+    return along < 0 ? scaled(-1, u) : u;
+  }
+
+  /// Rows on the cylinder and below it, of a strip as long as was drawn.
+  void drape(int turns, int light, int heavy) {
+    const int links = light + heavy + turns - 1;
+    const double cell = length_ / links, radius = cell / (2 * std::sin(kPi / (2 * turns)));
+    json &cloth = j_["cloth"], &cylinder = j_["colliders"][0];
+    cloth["grid"][0] = links + 1;
+    cloth["size_m"] = {length_, 4 * cell};
+    cloth["pose"]["drape"] = {{"radius_m", radius}, {"offset_m", 0.5 * (heavy - light) * cell}};
+    const double margin = 0.04 * radius;
+    cylinder["margin_m"] = margin;
+    cylinder["radius_m"] = radius - margin;
+    cylinder["length_m"] = 12 * cell;
+    note("radius_m", radius);
+    note("turns", turns);
+  }
+
+  void overhangs() {
+    const auto before = card_of(scene_);
+    const bool holds = before->quantity(before->columns(scene_.time.frames())) == 0;
+    const int turns = dice_.whole(9, 15), light = dice_.whole(5, 9);
+    const double friction = dice_.between(0.1, 0.4), cell = 1, radius = cell / (2 * std::sin(kPi / (2 * turns)));
+    const HeavyCapstan cylinder{friction, radius, 1, 1};
+    const double most = polygonal_greatest_overhang_m(cylinder, light - 0.5, turns), factor = dice_.between(0.1, 0.3);
+    const int heavy = holds ? std::max(light, static_cast<int>(std::floor((1 - factor) * most + 0.5)))
+                            : static_cast<int>(std::ceil((1 + factor) * most + 0.5));
+    note("friction", friction);
+    j_["colliders"][0]["friction"] = friction;
+    drape(turns, light, heavy);
+    if (holds) return;
+    // While a third of the light side runs off.
+    const double real = length_ / (light + heavy + turns - 1);
+    const HeavyCapstan real_cylinder{friction, radius * real, density_, g_};
+    double T = 0.05 * std::sqrt(length_ / g_);
+    while (slide(real_cylinder, (light - 0.5) * real, (heavy - 0.5) * real, turns, std::vector<double>{0, 1.1 * T}).back().way_m < (light - 0.5) * real / 3) T *= 1.1;
+    j_["time"]["duration_s"] = T;
+  }
+
+  void weights() {
+    const int turns = dice_.whole(9, 15), light = dice_.whole(16, 26), heavy = light + dice_.whole(4, 8);
+    drape(turns, light, heavy);
+    const double cell = length_ / (light + heavy + turns - 1);
+    const Atwood a{length_, cell / (2 * std::sin(kPi / (2 * turns))), 0.5 * (heavy - light) * cell, g_};
+    j_["time"]["duration_s"] = 0.8 * atwood_end_s(a);
+  }
+
+  SceneChange elsewhere() {
+    SceneChange c;
+    c.turn = dice_.rotation();
+    for (double& x : c.offset_m) x = dice_.between(-1, 1) * 10 / std::sqrt(3.0);
+    note("origin_away_m", norm(c.offset_m));
+    return c;
+  }
+
+  void enough_frames() {
+    json& time = j_["time"];
+    const double T = time["duration_s"].get<double>(), least = kFewestFrames / T;
+    double rate = time["frame_rate_hz"].get<double>();
+    while (rate < least) rate *= 2;
+    time["frame_rate_hz"] = rate;
+    time["duration_s"] = std::floor(T * rate * (1 + 1e-12)) / rate;  // whole frames, and no horizon passed
+  }
+
+  const Scene& scene_;
+  std::uint64_t seed_;
+  Dice dice_;
+  double rate_hz_;
+  json j_;
+  double length_ = 0, density_ = 0, g_ = 0, stiffness_ = 0;
+  std::vector<std::pair<std::string, double>> values_;
+};
+
+}  // namespace
+
+DrawnScene draw(const Scene& scene, std::uint64_t seed) {
+  if (scene.truth_card.empty()) throw Error(scene.source + ": --seed: the scene has no truth to evaluate at drawn parameters");
+  card_of(scene);
+  return Drawing(scene, seed).draw();
+}
+
+}  // namespace clothbench::truth

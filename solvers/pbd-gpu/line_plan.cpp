@@ -1,0 +1,208 @@
+#include "line_plan.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "clothbench/error.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// Pinned vertices that touch one another, as the rectangle they fill, or the first alone if they fill none.
+std::vector<PinnedRectangle> rectangles(const Cloth& c, const std::vector<std::uint32_t>& pinned) {
+  const auto columns = static_cast<std::uint32_t>(c.columns), rows = static_cast<std::uint32_t>(c.rows);
+  std::vector<std::uint8_t> left(c.vertex_count(), 0);
+  for (const std::uint32_t v : pinned) left[v] = 1;
+  std::vector<PinnedRectangle> found;
+  for (std::uint32_t v = 0; v < left.size(); ++v) {
+    if (left[v] == 0) continue;
+    PinnedRectangle r{v % columns, v / columns, v % columns, v / columns};
+    std::size_t count = 0;
+    std::vector<std::uint32_t> next = {v};
+    left[v] = 0;
+    while (!next.empty()) {
+      const std::uint32_t i = next.back() % columns, j = next.back() / columns;
+      next.pop_back();
+      ++count;
+      r = {std::min(r.first_column, i), std::min(r.first_row, j), std::max(r.last_column, i), std::max(r.last_row, j)};
+      for (const auto& [a, b] : {std::pair{i + 1, j}, {i - 1, j}, {i, j + 1}, {i, j - 1}}) {
+        if (a >= columns || b >= rows || left[b * columns + a] == 0) continue;
+        left[b * columns + a] = 0;
+        next.push_back(b * columns + a);
+      }
+    }
+    const bool full = count == std::size_t{r.last_column - r.first_column + 1} * (r.last_row - r.first_row + 1);
+    found.push_back(full ? r : PinnedRectangle{v % columns, v / columns, v % columns, v / columns});
+  }
+  return found;
+}
+
+
+/// Does the cloth start within its tethers? If not, its pins are farther apart than it is long, or it starts stretched.
+bool start_within(const Scene& s, const Tethers& t) {
+  const Cloth& c = s.cloth;
+  const std::vector<double> x = initial_positions(s);
+  for (int j = 0; j < c.rows; ++j)
+    for (int i = 0; i < c.columns; ++i)
+      for (const PinnedRectangle& r : t.to) {
+        const int a = std::clamp(i, static_cast<int>(r.first_column), static_cast<int>(r.last_column)),
+                  b = std::clamp(j, static_cast<int>(r.first_row), static_cast<int>(r.last_row));
+        const double u = std::abs(i - a) * c.du(), v = std::abs(j - b) * c.dv();
+        const double reach = s.needs.has(Feature::Shear) ? std::hypot(u, v) : u + v;
+        const auto at = [&](int column, int row, std::size_t k) {
+          return x[3 * static_cast<std::size_t>(row * c.columns + column) + k];
+        };
+        Vec3 e{};
+        for (std::size_t k = 0; k < 3; ++k) e[k] = at(i, j, k) - at(a, b, k);
+        if (!(norm(e) <= t.stretch * reach + 1e-6 * c.width_m)) return false;
+      }
+  return true;
+}
+
+}  // namespace
+
+Tethers tethers_of(const Scene& scene) {
+  Tethers t;
+  const Cloth& c = scene.cloth;
+  if (!scene.grips.vertices.empty()) {
+    t.why_not = "hands move what holds the cloth";
+    return t;
+  }
+  if (scene.pins.vertices.empty()) {
+    t.why_not = "nothing is pinned";
+    return t;
+  }
+  t.to = rectangles(c, scene.pins.vertices);
+  if (t.to.size() > Tethers::kMost) t.to.resize(Tethers::kMost);
+  if (const auto Y = scene.material.membrane_stiffness_N_per_m) {
+    const double rho = c.areal_density_kg_per_m2, length = std::hypot(c.width_m, c.height_m);
+    t.stretch += 5 * rho * norm(scene.gravity_m_per_s2) * length / *Y +
+                 2 * norm(scene.cloth.initial_velocity_m_per_s) * std::sqrt(rho / *Y);
+  }
+  if (!start_within(scene, t)) {
+    t.to.clear();
+    t.why_not = "the cloth starts stretched";
+  }
+  return t;
+}
+
+bool can_alternate(const Scene& scene, const Tethers& tethers) {
+  constexpr double kStiff_N_per_m = 1e4;
+  const auto Y = scene.material.membrane_stiffness_N_per_m;
+  return !tethers.to.empty() && (!Y || *Y >= kStiff_N_per_m);
+}
+
+std::vector<std::uint8_t> taut_chains(const Scene& scene) {
+  const Cloth& c = scene.cloth;
+  const int most = std::max(c.columns, c.rows);
+  std::vector<std::uint8_t> taut(4 * static_cast<std::size_t>(most), 0);
+  std::vector<std::uint8_t> held(c.vertex_count(), 0);
+  for (const std::uint32_t v : scene.pins.vertices) held[v] = 1;
+  for (const std::uint32_t v : scene.grips.vertices) held[v] = 1;
+  const std::vector<double> x = initial_positions(scene);
+  // A chord shorter than this share of the chain between leaves it room to sag, and the system its rank.
+  constexpr double kTaut = 0.99;
+  const int steps[4][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
+  for (int family = 0; family < 4; ++family) {
+    const auto [di, dj] = std::pair(steps[family][0], steps[family][1]);
+    const double link = std::hypot(di * c.du(), dj * c.dv());
+    for (std::uint32_t v = 0; v < held.size(); ++v) {
+      if (held[v] == 0) continue;
+      const int i = static_cast<int>(v) % c.columns, j = static_cast<int>(v) / c.columns;
+      for (int n = 1, a = i + di, b = j + dj; a >= 0 && a < c.columns && b < c.rows; ++n, a += di, b += dj) {
+        const auto other = static_cast<std::size_t>(b * c.columns + a);
+        if (held[other] == 0) continue;
+        Vec3 e{};
+        for (std::size_t k = 0; k < 3; ++k) e[k] = x[3 * other + k] - x[3 * v + k];
+        const int chain = family == 0   ? j
+                          : family == 1 ? i
+                          : family == 2 ? (i - j % c.columns + c.columns) % c.columns
+                                        : (i + j) % c.columns;
+        if (n > 1 && (!scene.grips.vertices.empty() || norm(e) > kTaut * n * link))
+          taut[static_cast<std::size_t>(family * most + chain)] = 1;
+        break;
+      }
+    }
+  }
+  return taut;
+}
+
+int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
+  if (const int given = settings.value("substeps", 0); given > 0) return given;
+  const std::string quality = settings.value("quality", "default");
+  const double links = std::max(scene.cloth.columns, scene.cloth.rows) - 1;
+  struct Rule {
+    double least, links_a_substep;
+  };
+  const int k = quality == "fast" ? 0 : quality == "default" ? 1 : 2;
+  const bool touched = !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins})).empty();
+  const Tethers tethers = settings.value("tethers", true) ? tethers_of(scene) : Tethers{};
+  const bool alternated = can_alternate(scene, tethers);
+  // Of a frame, however long it is: a number of seconds in here would be one that similar scenes do not share. A link must not
+  // turn by more than about half a radian a substep.
+  constexpr Rule kAlternated[] = {{2, 20}, {6, 12}, {20, 6}}, kTethered[] = {{3, 25}, {5, 12}, {20, 6}},
+                 kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
+                 kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}}, kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
+  // A hand pushes a cloth in ways that no tether knows of.
+  const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
+  const Rule rule = !touched                           ? kUntouched[k]
+                    : driven                           ? kSheet[k]
+                    : alternated                       ? kAlternated[k]
+                    : !tethers.to.empty()              ? kTethered[k]
+                    : !scene.needs.has(Feature::Shear) ? kStrips[k]
+                    : scene.grips.vertices.empty()     ? kSheet[k]
+                                                       : kPulled[k];
+  const double per_frame = std::max(rule.least, links / rule.links_a_substep);
+  const long whole = alternated ? 2 * std::max(1L, std::lround(per_frame / 2)) : std::lround(per_frame);
+  return static_cast<int>(std::clamp(whole, 1L, 4096L));
+}
+
+LineShape frame_shape(int columns, int rows, std::uint32_t vertices, const LineDevice& device) {
+  const auto longest = static_cast<std::uint32_t>(std::max(columns, rows));
+  if (longest > 32) return {};
+  const std::uint32_t first = vertices != 0 ? vertices : device.wide ? 2 : 4;
+  for (const std::uint32_t k : {first, 4u, 8u, 16u}) {
+    if (vertices != 0 && k != vertices) continue;
+    LineShape s{std::bit_ceil((longest + k - 1) / k), k, 0, false};
+    s.shuffles = s.lanes <= device.subgroup;
+    // Whole subgroups, so that threads number as their lanes do; and one for each row of bits of held vertices.
+    const std::uint32_t whole = std::max(device.subgroup, 32u);
+    s.threads = (s.lanes * longest + whole - 1) / whole * whole;
+    const std::uint32_t state_B = 6 * 4 * 34 * static_cast<std::uint32_t>(rows) + 128;
+    // Twice the threads are worth it for shuffles, not for barriers.
+    const std::uint32_t most = k < 4 && (s.shuffles || vertices != 0) ? device.most_threads : std::min(256u, device.most_threads);
+    if (s.threads <= most && state_B + (s.shuffles ? 0 : 16 * s.threads) <= device.shared_B) return s;
+  }
+  return {};
+}
+
+LineShape pass_shape(int length, std::uint32_t vertices, const LineDevice& device) {
+  const auto n = static_cast<std::uint32_t>(length);
+  const std::uint32_t most = std::min(256u, device.most_threads);
+  LineShape s;
+  for (const std::uint32_t k : {2u, 4u, 8u, 16u, 32u}) {
+    const std::uint32_t lanes = std::bit_ceil((n + k - 1) / k);
+    if (lanes > most || k < (vertices != 0 ? vertices : 4)) continue;
+    s = {lanes, k, std::max(lanes, std::min(64u, most)), lanes <= device.subgroup};
+    // Four vertices a thread by shuffles, or eight: past that registers run out, and memory is shared instead.
+    if (vertices != 0 || s.shuffles || k >= 8) break;
+  }
+  if (s.lanes == 0)
+    throw Error("solver xpbd: a cloth of " + std::to_string(length) + " vertices a side; expected at most " +
+                std::to_string(32 * most));
+  if (s.shuffles) s.threads = (s.threads + device.subgroup - 1) / device.subgroup * device.subgroup;
+  return s;
+}
+
+std::uint32_t bend_rounds(double alpha, double most_inverse_mass, const LineShape& shape) {
+  const auto all = static_cast<std::uint32_t>(std::countr_zero(shape.lanes));
+  // Entries of the inverse of a matrix of bandwidth 2 fall at least like q^(distance / 2).
+  const double q = 10 * most_inverse_mass / (6 * most_inverse_mass + alpha);
+  for (std::uint32_t rounds = 0; rounds < all; ++rounds)
+    if (q < 1 && std::pow(q, shape.vertices * std::exp2(rounds) / 2) < 1e-7) return rounds;
+  return all;
+}
+
+}  // namespace clothbench::pbd_gpu

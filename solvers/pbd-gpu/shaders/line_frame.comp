@@ -1,0 +1,160 @@
+#version 450
+// A cloth of at most 32 x 32 vertices: one workgroup takes it through `substeps` substeps, its state in shared memory.
+#ifdef KEEP_MULTIPLIERS
+#define COUNTER_BINDING 7
+#else
+#define COUNTER_BINDING 5
+#endif
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#ifdef SHUFFLES
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#endif
+#include "common.glsl"
+layout(std430, binding = 0) buffer Positions { vec4 x[]; };
+layout(std430, binding = 1) buffer Velocities { vec4 v[]; };
+layout(std430, binding = 2) buffer PositionRests { vec4 rx[]; };
+layout(std430, binding = 3) buffer VelocityRests { vec4 rv[]; };
+layout(std430, binding = 4) readonly buffer Grips { GripVertex grips[]; };
+#ifdef KEEP_MULTIPLIERS
+layout(std430, binding = 5) buffer LinkMultipliers { float link_multipliers[]; };
+layout(std430, binding = 6) buffer HingeMultipliers { vec4 hinge_multipliers[]; };
+#endif
+#include "lines.glsl"
+layout(constant_id = 16) const uint GRIPS = 0u;
+layout(constant_id = 17) const uint FIRM_0 = 0u;  // chains of each family that need `least`, a bit each
+layout(constant_id = 18) const uint FIRM_1 = 0u;
+layout(constant_id = 19) const uint FIRM_2 = 0u;
+layout(constant_id = 20) const uint FIRM_3 = 0u;
+
+// 34 words a row: threads of 4 vertices on rows, columns and both diagonals meet in a bank at most two at a time.
+const uint kStride = 34u;
+shared float px[kStride * ROWS], py[kStride * ROWS], pz[kStride * ROWS];
+shared float vx[kStride * ROWS], vy[kStride * ROWS], vz[kStride * ROWS];
+shared uint held[32];  // a bit a vertex, a word a row
+
+vec3 anchor(uvec2 at) {
+  uint o = at.y * kStride + at.x;
+  return vec3(px[o], py[o], pz[o]);
+}
+#include "lines_integrate.glsl"
+
+float inverse_mass(uvec2 at) {
+  if ((held[at.y] >> at.x & 1u) != 0u) return 0.0;
+  bool side = at.x == 0u || at.x + 1u == COLUMNS, end = at.y == 0u || at.y + 1u == ROWS;
+  return p.inverse_mass * (side ? 2.0 : 1.0) * (end ? 2.0 : 1.0);
+}
+
+void put(uvec2 at, vec3 position, vec3 velocity) {
+  uint o = at.y * kStride + at.x;
+  px[o] = position.x;
+  py[o] = position.y;
+  pz[o] = position.z;
+  vx[o] = velocity.x;
+  vy[o] = velocity.y;
+  vz[o] = velocity.z;
+}
+
+/// The thread's vertices on its chain of `family`.
+void take() {
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uint i = lane * K + k;
+    uvec2 at = on_chain(i) ? vertex(i) : uvec2(0u);
+    uint o = at.y * kStride + at.x;
+    pos[k] = vec3(px[o], py[o], pz[o]);
+    vel[k] = vec3(vx[o], vy[o], vz[o]);
+    w[k] = on_chain(i) ? inverse_mass(at) : 0.0;
+  }
+}
+
+void give() {
+  [[unroll]] for (uint k = 0u; k < K; ++k)
+    if (w[k] > 0.0) put(vertex(lane * K + k), pos[k], vel[k]);
+}
+
+void load() {
+  if (thread < 32u) held[thread] = 0u;
+  barrier();  // the clearing before the bits are set
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uint i = lane * K + k;
+    if (!on_chain(i)) continue;
+    uint o = index_of(vertex(i));
+    vec4 at = LOAD16(x, o);
+    put(vertex(i), at.xyz, LOAD16(v, o).xyz);
+    rest_pos[k] = LOAD16(rx, o).xyz;
+    rest_vel[k] = LOAD16(rv, o).xyz;
+    if (at.w == 0.0) atomicOr(held[chain], 1u << i);
+  }
+  barrier();  // the state and the bits of pinned vertices before hands change them and all read them
+  for (uint g = thread; g < GRIPS; g += THREADS) {
+    GripVertex grip = LOAD(48u, grips, g);
+    uint bit = 1u << grip.vertex % COLUMNS;
+    if (grip.held != 0u) atomicOr(held[grip.vertex / COLUMNS], bit);
+    else atomicAnd(held[grip.vertex / COLUMNS], ~bit);
+  }
+}
+
+void store() {
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uint i = lane * K + k;
+    if (!on_chain(i)) continue;
+    uint o = index_of(vertex(i));
+    STORE16(x, o, vec4(pos[k], w[k]));
+    STORE16(v, o, vec4(vel[k], 0.0));
+    STORE16(rx, o, vec4(rest_pos[k], 0.0));
+    STORE16(rv, o, vec4(rest_vel[k], 0.0));
+  }
+}
+
+/// Held vertices go where hands take them, on a straight line through the frame.
+void move_held(uint substep) {
+  barrier();  // reads of the last substep before held vertices move
+  float fraction = float(p.first_substep + substep + 1u) * p.substep_part;
+  for (uint g = thread; g < GRIPS; g += THREADS) {
+    GripVertex grip = LOAD(48u, grips, g);
+    if (grip.held == 0u) continue;
+    put(uvec2(grip.vertex % COLUMNS, grip.vertex / COLUMNS),
+        grip.from.xyz * (1.0 - fraction) + grip.to.xyz * fraction,
+        (grip.to.xyz - grip.from.xyz) * p.frames_per_s);
+  }
+  barrier();  // their new places before all read them
+}
+
+void main() {
+  set_thread();
+  lane = thread % LANES;
+  chain = thread / LANES;
+  family = 0u;
+  [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = vec3(0.0);
+  load();
+  barrier();  // what load() wrote before all read it
+  const uint families = kShears ? 4u : 2u;
+  for (uint s = 0u; s < p.substeps; ++s) {
+    if (GRIPS > 0u) move_held(s);
+    bool reversed = (FEATURES & LINES_ALTERNATE) != 0u && (p.first_substep + s & 1u) != 0u;
+    family = 0u;
+    take();
+    integrate();
+    if (reversed) {
+      give();
+      barrier();  // integrated positions before the last family reads them
+    }
+    for (iteration = 0u; iteration < p.iterations; ++iteration)
+      for (uint turn = 0u; turn < families; ++turn) {
+        if (turn > 0u || iteration > 0u || reversed) {
+          family = reversed ? families - 1u - turn : turn;
+          take();
+        }
+        if (kBends && family < 2u) bend();
+        uint firm = family == 0u ? FIRM_0 : family == 1u ? FIRM_1 : family == 2u ? FIRM_2 : FIRM_3;
+        stretch(chain < 32u && (firm >> chain & 1u) != 0u ? p.firmness : 0.0);
+        if (turn + 1u == families && iteration + 1u == p.iterations) limit_speed();
+        give();
+        barrier();  // this family's writes before the next one's reads
+      }
+  }
+  family = 0u;
+  take();
+  store();
+}

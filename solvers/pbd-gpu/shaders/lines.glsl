@@ -1,0 +1,247 @@
+// XPBD on whole grid lines at once. A chain is a line of one of four families: 0 rows, 1 columns, 2 and 3 the diagonals,
+// wrapped round the cloth's sides so that all have as many vertices, and cut where they wrap. The links of a chain are a
+// tridiagonal system in their multipliers, its bending hinges a pentadiagonal one; both are solved directly.
+// LANES threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
+layout(constant_id = 1) const uint LANES = 8u;  // a power of two
+layout(constant_id = 2) const uint K = 4u;      // even where the scene bends
+layout(constant_id = 3) const uint COLUMNS = 2u;
+layout(constant_id = 4) const uint ROWS = 2u;
+layout(constant_id = 5) const uint THREADS = 64u;  // of a workgroup: local_size_x
+layout(constant_id = 6) const uint FEATURES = 0u;  // LINES_..., pbd_shared.h
+layout(constant_id = 7) const uint TETHERS = 0u;   // rectangles of pinned vertices: column and row of first and last
+layout(constant_id = 8) const uint TETHER_0 = 0u;
+layout(constant_id = 9) const uint TETHER_0_LAST = 0u;
+layout(constant_id = 10) const uint TETHER_1 = 0u;
+layout(constant_id = 11) const uint TETHER_1_LAST = 0u;
+layout(constant_id = 12) const uint TETHER_2 = 0u;
+layout(constant_id = 13) const uint TETHER_2_LAST = 0u;
+layout(constant_id = 14) const uint TETHER_3 = 0u;
+layout(constant_id = 15) const uint TETHER_3_LAST = 0u;
+layout(push_constant) uniform Push { LineConstants p; };
+
+const bool kBends = (FEATURES & LINES_BEND) != 0u;
+const bool kShears = (FEATURES & LINES_SHEAR) != 0u;
+const bool kElastic = (FEATURES & LINES_ELASTIC) != 0u;
+
+uint thread, lane, chain, family, iteration;
+vec3 pos[K], vel[K];
+float w[K];
+
+uint chain_length() { return family == 0u ? COLUMNS : ROWS; }
+uint chain_count() { return family == 0u ? ROWS : COLUMNS; }
+bool on_chain(uint i) { return chain < chain_count() && i < chain_length(); }
+
+/// Column and row of vertex i of the chain.
+uvec2 vertex(uint i) {
+  if (family == 0u) return uvec2(i, chain);
+  if (family == 1u) return uvec2(chain, i);
+  return uvec2((family == 2u ? chain + i : chain + COLUMNS - i % COLUMNS) % COLUMNS, i);
+}
+
+uint index_of(uvec2 v) { return v.y * COLUMNS + v.x; }
+
+/// Is there a link from vertex i to vertex i + 1?
+bool goes_on(uint i) {
+  if (!on_chain(i + 1u)) return false;
+  if (family < 2u) return true;
+  uint column = vertex(i).x;
+  return family == 2u ? column + 1u < COLUMNS : column > 0u;
+}
+
+/// Lines on the border carry half the width, so they are twice as compliant.
+float border() { return family < 2u && (chain == 0u || chain + 1u == chain_count()) ? 2.0 : 1.0; }
+
+// What neighbours n threads away on the same chain hold; what is beyond a chain's ends is anything finite.
+#ifdef SHUFFLES
+void set_thread() { thread = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
+void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
+  uint self = gl_SubgroupInvocationID;
+  below = subgroupShuffle(mine, lane >= n ? self - n : self);
+  above = subgroupShuffle(mine, lane + n < LANES ? self + n : self);
+}
+#else
+shared vec4 letters[THREADS];
+void set_thread() { thread = gl_LocalInvocationIndex; }
+void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
+  barrier();  // all reads of the last exchange before the writes of this one
+  letters[thread] = mine;
+  barrier();  // the writes before the neighbours' reads
+  below = letters[lane >= n ? thread - n : thread];
+  above = letters[lane + n < LANES ? thread + n : thread];
+}
+#endif
+
+float link_lower[K], link_diagonal[K], link_upper[K], link_right[K];
+void exchange_link(uint n, float a, float c, float d, out float a_below, out float c_below, out float d_below,
+                   out float a_above, out float c_above, out float d_above) {
+  vec4 below, above;
+  exchange(vec4(a, c, d, 0.0), n, below, above);
+  a_below = below.x; c_below = below.y; d_below = below.z;
+  a_above = above.x; c_above = above.y; d_above = above.z;
+}
+#define SOLVE solve_links
+#define LETTERS exchange_link
+#define MATRIX float
+#define VECTOR float
+#define M K
+#define UNIT 1.0
+#define INVERSE(x) (1.0 / (x))
+#define LOWER link_lower
+#define DIAGONAL link_diagonal
+#define UPPER link_upper
+#define RIGHT link_right
+#include "tridiagonal.glsl"
+
+// Two hinges make a block, and what couples a hinge with the next two becomes tridiagonal in blocks.
+const uint BLOCKS = K > 1u ? K / 2u : 1u;
+mat2 hinge_lower[BLOCKS], hinge_diagonal[BLOCKS], hinge_upper[BLOCKS];
+mat3x2 hinge_right[BLOCKS];  // a column a coordinate
+void exchange_hinge(uint n, mat2 a, mat2 c, mat3x2 d, out mat2 a_below, out mat2 c_below, out mat3x2 d_below,
+                    out mat2 a_above, out mat2 c_above, out mat3x2 d_above) {
+  vec4 below, above;
+  exchange(vec4(a[0], a[1]), n, below, above);
+  a_below = mat2(below.xy, below.zw);
+  a_above = mat2(above.xy, above.zw);
+  exchange(vec4(c[0], c[1]), n, below, above);
+  c_below = mat2(below.xy, below.zw);
+  c_above = mat2(above.xy, above.zw);
+  vec4 z_below, z_above;
+  exchange(vec4(d[0], d[1]), n, below, above);
+  exchange(vec4(d[2], 0.0, 0.0), n, z_below, z_above);
+  d_below = mat3x2(below.xy, below.zw, z_below.xy);
+  d_above = mat3x2(above.xy, above.zw, z_above.xy);
+}
+#define SOLVE solve_hinges
+#define LETTERS exchange_hinge
+#define MATRIX mat2
+#define VECTOR mat3x2
+#define M BLOCKS
+#define UNIT mat2(1.0)
+#define INVERSE(x) inverse(x)
+#define LOWER hinge_lower
+#define DIAGONAL hinge_diagonal
+#define UPPER hinge_upper
+#define RIGHT hinge_right
+#include "tridiagonal.glsl"
+
+void move(uint k, vec3 step) {
+  pos[k] += step;
+  vel[k] += step / p.h;
+}
+
+/// Distance constraints of all links of the chain (Macklin, Mueller & Chentanez 2016, eq. 18, for all at once):
+/// (G M^-1 G^T + alpha) dlambda = -C - alpha lambda. `least` is a share of the inverse mass that alpha is at least.
+void stretch(float least) {
+  vec4 below, above, none;
+  exchange(vec4(pos[0], w[0]), 1u, none, above);
+  float w_above = above.w;
+  float alpha = (family == 0u ? p.alpha_u : family == 1u ? p.alpha_v : p.alpha_d) * border();
+  float rest = family == 0u ? p.rest_u : family == 1u ? p.rest_v : p.rest_d;
+  vec3 g[K];
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    vec4 next = above;
+    if (k + 1u < K) next = vec4(pos[k + 1u], w[k + 1u]);
+    vec3 e = next.xyz - pos[k];
+    float l = length(e), sum = w[k] + next.w;
+    bool is = goes_on(lane * K + k) && sum > 0.0 && l > 0.0;
+    g[k] = is ? e / l : vec3(0.0);
+    link_diagonal[k] = is ? sum + max(alpha, least * max(w[k], next.w)) : 1.0;
+    link_right[k] = is ? rest - l : 0.0;
+#ifdef KEEP_MULTIPLIERS
+    if (kElastic && is && iteration > 0u)
+      link_right[k] -= alpha * LOAD4(link_multipliers, family * COLUMNS * ROWS + index_of(vertex(lane * K + k)));
+#endif
+  }
+  exchange(vec4(g[K - 1u], 0.0), 1u, below, none);
+  exchange(vec4(g[0], 0.0), 1u, none, above);
+  vec3 g_below = lane > 0u ? below.xyz : vec3(0.0), g_above = lane + 1u < LANES ? above.xyz : vec3(0.0);
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    vec3 before = g_below, next = g_above;
+    float w_next = w_above;
+    if (k > 0u) before = g[k - 1u];
+    if (k + 1u < K) { next = g[k + 1u]; w_next = w[k + 1u]; }
+    link_lower[k] = -w[k] * dot(before, g[k]);
+    link_upper[k] = -w_next * dot(g[k], next);
+  }
+  float lambda_below;
+  solve_links(32u, lambda_below);
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    vec3 pull = lambda_below * g_below;
+    if (k > 0u) pull = link_right[k - 1u] * g[k - 1u];
+    move(k, w[k] * (pull - link_right[k] * g[k]));
+#ifdef KEEP_MULTIPLIERS
+    if (kElastic && g[k] != vec3(0.0)) {
+      uint at = family * COLUMNS * ROWS + index_of(vertex(lane * K + k));
+      float lambda = link_right[k];
+      if (iteration > 0u) lambda += LOAD4(link_multipliers, at);
+      STORE4(link_multipliers, at, lambda);
+    }
+#endif
+  }
+}
+
+/// Bending along rows and columns: vector constraints C = x[i-1] - 2 x[i] + x[i+1] of the quadratic energy
+/// (B w / 2 a^3) |C|^2 (Bergou et al. 2006 on a line), compliance a^3 / (B w), gradients 1, -2, 1.
+void bend() {
+  vec4 below, above, none;
+  exchange(vec4(pos[K - 1u], w[K - 1u]), 1u, below, none);
+  exchange(vec4(pos[0], w[0]), 1u, none, above);
+  float alpha = (family == 0u ? p.bend_u : p.bend_v) * border();
+  uint n = chain_length(), first = lane * K;
+#ifdef KEEP_MULTIPLIERS
+  bool is_hinge[K];
+#endif
+  [[unroll]] for (uint r = 0u; r < BLOCKS; ++r) {
+    vec2 diagonal, near_below, far_below, near_above, far_above;
+    vec3 right[2];
+    [[unroll]] for (uint h = 0u; h < 2u; ++h) {
+      uint k = 2u * r + h, i = first + k;
+      vec4 last = below, next = above;
+      if (k > 0u) last = vec4(pos[k - 1u], w[k - 1u]);
+      if (k + 1u < K) next = vec4(pos[k + 1u], w[k + 1u]);
+      bool is = i >= 1u && on_chain(i + 1u) && last.w + w[k] + next.w > 0.0;
+      // Two held vertices in a row are a clamp: its hinge bends half a cell, 2 B/a.
+      float a = w[k] == 0.0 && (last.w == 0.0) != (next.w == 0.0) ? 0.5 * alpha : alpha;
+      diagonal[h] = is ? last.w + 4.0 * w[k] + next.w + a : 1.0;
+      near_below[h] = is && i >= 2u ? -2.0 * (last.w + w[k]) : 0.0;
+      far_below[h] = is && i >= 3u ? last.w : 0.0;
+      near_above[h] = is && i + 2u < n ? -2.0 * (w[k] + next.w) : 0.0;
+      far_above[h] = is && i + 3u < n ? next.w : 0.0;
+      right[h] = is ? 2.0 * pos[k] - last.xyz - next.xyz : vec3(0.0);
+#ifdef KEEP_MULTIPLIERS
+      is_hinge[k] = is;
+      if (is && iteration > 0u)
+        right[h] -= a * LOAD16(hinge_multipliers, family * COLUMNS * ROWS + index_of(vertex(i))).xyz;
+#endif
+    }
+    hinge_diagonal[r] = mat2(diagonal[0], near_below[1], near_above[0], diagonal[1]);
+    hinge_lower[r] = mat2(far_below[0], 0.0, near_below[0], far_below[1]);
+    hinge_upper[r] = mat2(far_above[0], near_above[1], 0.0, far_above[1]);
+    hinge_right[r] =
+        mat3x2(right[0].x, right[1].x, right[0].y, right[1].y, right[0].z, right[1].z);
+  }
+  mat3x2 block_below;
+  solve_hinges(family == 0u ? p.bend_rounds_u : p.bend_rounds_v, block_below);
+  vec3 lambda[K];
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uint r = k / 2u, h = k % 2u;
+    lambda[k] = vec3(hinge_right[r][0][h], hinge_right[r][1][h], hinge_right[r][2][h]);
+  }
+  exchange(vec4(lambda[0], 0.0), 1u, none, above);
+  vec3 lambda_below = vec3(block_below[0].y, block_below[1].y, block_below[2].y),
+       lambda_above = lane + 1u < LANES ? above.xyz : vec3(0.0);
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    vec3 last = lambda_below, next = lambda_above;
+    if (k > 0u) last = lambda[k - 1u];
+    if (k + 1u < K) next = lambda[k + 1u];
+    move(k, w[k] * (last - 2.0 * lambda[k] + next));
+#ifdef KEEP_MULTIPLIERS
+    if (is_hinge[k]) {
+      uint at = family * COLUMNS * ROWS + index_of(vertex(first + k));
+      vec3 sum = lambda[k];
+      if (iteration > 0u) sum += LOAD16(hinge_multipliers, at).xyz;
+      STORE16(hinge_multipliers, at, vec4(sum, 0.0));
+    }
+#endif
+  }
+}

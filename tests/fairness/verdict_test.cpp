@@ -1,0 +1,115 @@
+// Which stiffness is a parameter, and what that does to the tables.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "report/material.hpp"
+#include "report/work_precision.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+CellRecord card(const std::string& solver, const std::string& setting, bool full,
+                std::map<std::string, double> moduli) {
+  CellRecord c;
+  c.header.scene = "material-card";
+  c.header.solver = solver;
+  c.header.setting = setting;
+  c.header.settings = json::object();
+  c.header.scenario_json = full ? R"({"name":"material-card","material_card":"full"})"
+                                : R"({"name":"material-card","material_card":"short"})";
+  for (const auto& [name, value] : moduli) c.summary["material_" + name] = value;
+  return c;
+}
+
+std::map<std::string, double> right() {
+  return {{"E_0", 1}, {"E_strip", 1.01}, {"E_stiffer", 1}, {"B_0", 0.98}, {"B_stiffer", 0.98}};
+}
+
+MaterialVerdict verdict_of(const std::vector<CellRecord>& cells) { return solver_materials(cells).at(0).verdict; }
+
+TEST(Verdict, AParameterIsHeardAndHeld) {
+  std::vector<CellRecord> cells = {card("a", "default", true, right()),
+                                   card("a", "substeps=40", false, {{"E_0", 1.04}, {"E_strip", 0.97}, {"B_0", 1}})};
+  EXPECT_EQ(verdict_of(cells).strip + verdict_of(cells).sheet + verdict_of(cells).bending, "");
+  cells[1].summary["material_E_0"] = 1.06;
+  EXPECT_EQ(verdict_of(cells).strip, "");
+  EXPECT_EQ(verdict_of(cells).sheet, "depends on settings: 1 at default, 1.06 at substeps=40");
+  cells[1].summary["material_E_0"] = NAN;
+  EXPECT_EQ(verdict_of(cells).sheet, "no value at substeps=40");
+  cells[0].summary["material_E_stiffer"] = 0.5;  // what is measured does not change with Y
+  EXPECT_NE(verdict_of(cells).strip, "");
+  cells[0].summary["material_E_stiffer"] = NAN;
+  EXPECT_NE(verdict_of(cells).strip, "");
+  cells[0].summary["material_B_0"] = 0;
+  EXPECT_EQ(verdict_of(cells).bending, "none: 0 of what is asked for");
+}
+
+TEST(Verdict, WithoutACardNobodyIsFlagged) {
+  const auto full = solver_materials({});
+  EXPECT_EQ(stiffness_flag(full, "a", "heavy-strip"), "");
+  const std::vector<CellRecord> cells = {card("a", "substeps=2", false, right())};
+  EXPECT_EQ(stiffness_flag(solver_materials(cells), "a", "heavy-strip"), "") << "no card at the default setting";
+}
+
+CellRecord cell(const std::string& scene, const std::string& truth, const std::string& solver, double frame_s,
+                double error, double device_s = NAN) {
+  CellRecord c;
+  c.header.scene = scene;
+  c.header.solver = solver;
+  c.header.setting = "default";
+  c.header.settings = json::object();
+  c.header.scenario_json =
+      json{{"name", scene}, {"truth", {{"card", truth}}}, {"time", {{"frame_rate_hz", 60}}}}.dump();
+  c.header.environment = {{"gpu", "CPU"}};
+  c.summary = {{"frame_wall_median_s", frame_s},
+               {"frame_device_median_s", device_s},
+               {"truth_error", error},
+               {"reference_uncertainty", 1e-7}};
+  return c;
+}
+
+TEST(Verdict, UnrankedSolversAreShownButNeverFirst) {
+  auto deaf = right();
+  deaf["E_stiffer"] = 0.5;
+  const std::vector<CellRecord> cards = {card("deaf", "default", true, deaf), card("good", "default", true, right())};
+  const auto materials = solver_materials(cards);
+  const std::vector<CellRecord> cells = {
+      cell("hang", "heavy-strip", "deaf", 1e-3, 1e-5), cell("hang", "heavy-strip", "good", 2e-3, 5e-3, 1e-3),
+      cell("swing", "swing-strip", "deaf", 1e-3, 1e-5), cell("swing", "swing-strip", "good", 2e-3, 5e-3)};
+  const auto diagrams = work_diagrams(cells, materials);
+  EXPECT_TRUE(diagrams[0].flagged.contains("deaf"));
+  EXPECT_TRUE(diagrams[1].flagged.empty()) << "a swing asks for no stiffness";
+  EXPECT_EQ(diagrams[0].best_error(), 5e-3);
+  const Table t = work_table(diagrams);
+  EXPECT_EQ(t.rows[1][1], "deaf");
+  EXPECT_EQ(t.rows[1][9], "NO: stiffness not a parameter");
+  EXPECT_EQ(t.rows[1][2], "60 (default)") << "shown all the same";
+  EXPECT_EQ(t.rows[2][7], "60 (default)") << "by the GPU's clock half of its wall time";
+  EXPECT_EQ(t.rows[2][9], "yes");
+  const Table first = winners_table(diagrams);
+  EXPECT_EQ(first.rows[1][2], "good (1.2e+02)");
+  EXPECT_EQ(first.rows[2][2], "deaf (60)");
+  const Table ranks = ranks_table(diagrams);
+  ASSERT_EQ(ranks.rows.size(), 3u);
+  EXPECT_EQ(ranks.rows[1], (std::vector<std::string>{"deaf", "1", "1.00", "1.00", "1.00"}));
+  EXPECT_EQ(ranks.rows[2], (std::vector<std::string>{"good", "2", "1.41", "1.41", "1.41"}))
+      << "first of one, then second of two";
+}
+
+TEST(Floors, ErrorsBelowTheMeshsOwnShareARank) {
+  std::vector<CellRecord> cells = {cell("s", "swing-strip", "a", 1e-3, 1e-4), cell("s", "swing-strip", "b", 1e-3, 9e-4),
+                                   cell("s", "swing-strip", "c", 1e-3, 3e-3)};
+  for (CellRecord& c : cells) c.summary["truth_space_error"] = 2e-3;
+  const auto d = work_diagrams(cells);
+  EXPECT_EQ(d[0].rank_floor(), 2e-3);
+  EXPECT_EQ(work_table(d).rows[1][4], "≤ 0.002 (default)");
+  EXPECT_EQ(work_table(d).rows[3][4], "0.003 (default)");
+  EXPECT_EQ(winners_table(d).rows[1][4], "a, b (≤ 0.002)");
+  EXPECT_EQ(ranks_table(d).rows[3][4], "3.00");
+}
+
+}  // namespace
+}  // namespace clothbench

@@ -1,0 +1,110 @@
+// How lines are planned: tethers, taut lines, substeps, threads. No device.
+#include "line_plan.hpp"
+
+#include "gpu_fixture.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+Scene pinned(Scene s, std::vector<std::uint32_t> vertices) {
+  s.pins.vertices = std::move(vertices);
+  s.needs.add(Feature::Pins);
+  return s;
+}
+
+TEST(Tethers, GoToCornersEdgesAndClamps) {
+  const Scene s = sheet(9, 7);
+  using R = std::vector<PinnedRectangle>;
+  EXPECT_EQ(tethers_of(with_pins(s)).to, (R{{0, 0, 0, 0}, {8, 0, 8, 0}}));
+  EXPECT_EQ(tethers_of(pinned(s, edge_vertices(s.cloth, "u1"))).to, (R{{8, 0, 8, 6}}));
+  EXPECT_EQ(tethers_of(pinned(s, clamp_vertices(s.cloth, "v0"))).to, (R{{0, 0, 8, 1}}));
+  EXPECT_EQ(tethers_of(pinned(s, {0, 1, 9})).to, (R{{0, 0, 0, 0}})) << "an L fills no rectangle: one of its vertices";
+  EXPECT_EQ(tethers_of(pinned(s, {0, 2, 4, 6, 8, 62})).to.size(), Tethers::kMost);
+}
+
+TEST(Tethers, AreNoneWhereTheyWouldBeWrong) {
+  EXPECT_EQ(tethers_of(sheet(9, 7)).why_not, "nothing is pinned");
+  Scene held = with_pins(sheet(9, 7));
+  held.grips.vertices = {30};
+  EXPECT_TRUE(tethers_of(held).to.empty());
+  EXPECT_FALSE(tethers_of(held).why_not.empty());
+  Scene stretched = with_pins(sheet(9, 7));
+  stretched.cloth.axis_u = {1.07, 0, 0};
+  EXPECT_EQ(tethers_of(stretched).why_not, "the cloth starts stretched");
+}
+
+TEST(Tethers, GiveElasticClothItsSlack) {
+  Scene s = with_pins(sheet(9, 7));
+  EXPECT_NEAR(tethers_of(s).stretch - 1, 5 * 0.2 * 9.81 * std::sqrt(2.0) / 1000, 1e-12);
+  s.material.membrane_stiffness_N_per_m.reset();
+  EXPECT_EQ(tethers_of(s).stretch, 1);
+}
+
+TEST(TautLines, AreThoseStraightBetweenHeldVertices) {
+  Scene s = with_pins(sheet(9, 7));
+  std::vector<std::uint8_t> expected(36, 0);
+  expected[0] = 1;  // row 0
+  EXPECT_EQ(taut_chains(s), expected);
+  s = pinned(s, {1, 31});  // (1, 0) and (4, 3): on the diagonal that begins at column 1
+  expected.assign(36, 0);
+  expected[18 + 1] = 1;
+  EXPECT_EQ(taut_chains(s), expected);
+  s = pinned(s, edge_vertices(s.cloth, "u0"));
+  EXPECT_EQ(taut_chains(s), std::vector<std::uint8_t>(36, 0)) << "vertices side by side leave no link between them";
+}
+
+TEST(Substeps, FollowTheRule) {
+  const auto of = [](const Scene& s, const char* quality) { return xpbd_substeps(s, {{"quality", quality}}); };
+  Scene hang = with_pins(sheet(32, 32));
+  EXPECT_EQ(of(hang, "default"), 5) << "soft: tethers with slack, no turns";
+  hang.material.membrane_stiffness_N_per_m.reset();
+  EXPECT_EQ(of(hang, "fast"), 2);
+  EXPECT_EQ(of(hang, "default"), 6);
+  EXPECT_EQ(of(hang, "accurate"), 20);
+  EXPECT_EQ(xpbd_substeps(hang, {{"quality", "fast"}, {"substeps", 7}}), 7);
+  EXPECT_EQ(xpbd_substeps(hang, {{"tethers", false}}), 10);
+  hang.time.frame_rate_hz = 36;
+  EXPECT_EQ(of(hang, "fast"), 2) << "as many a frame: a rule in seconds would tell similar scenes apart";
+  for (const int n : {64, 128, 256, 512, 1024})
+    for (const char* quality : {"fast", "default", "accurate"}) {
+      Scene s = with_pins(sheet(n, 9));
+      s.material.membrane_stiffness_N_per_m.reset();
+      EXPECT_EQ(of(s, quality) % 2, 0) << "turns are balanced within a frame";
+    }
+  EXPECT_EQ(of(sheet(128, 128), "default"), 5) << "nothing touches it";
+}
+
+TEST(Shapes, FitDevices) {
+  const LineDevice lavapipe{8, 1024, 32768}, nvidia{32, 1024, 32768, true}, adreno{64, 256, 32768}, least{0, 128, 16384};
+  for (const LineDevice& d : {lavapipe, nvidia, adreno, least})
+    for (const int n : {2, 3, 7, 17, 32, 33, 64, 100, 129, 256, 512, 1000, 1024}) {
+      for (const LineShape& s : {frame_shape(n, 2, 0, d), frame_shape(n, n, 0, d), pass_shape(n, 0, d)}) {
+        if (s.threads == 0) {
+          EXPECT_TRUE(n > 32 || d.shared_B < 32768) << n;
+          continue;
+        }
+        EXPECT_LE(s.threads, std::min(d.wide ? 512u : 256u, d.most_threads));
+        EXPECT_GE(s.lanes * s.vertices, static_cast<std::uint32_t>(n));
+        EXPECT_EQ(s.lanes & (s.lanes - 1), 0u);
+        EXPECT_EQ(s.threads % s.lanes, 0u);
+        if (s.shuffles) {
+          EXPECT_LE(s.lanes, d.subgroup);
+          EXPECT_EQ(s.threads % d.subgroup, 0u) << "whole subgroups";
+        }
+      }
+    }
+  EXPECT_EQ(frame_shape(32, 32, 0, nvidia).threads, 512u);
+  EXPECT_EQ(frame_shape(32, 32, 0, adreno).threads, 256u);
+  EXPECT_THROW(pass_shape(8193, 0, nvidia), Error);
+}
+
+TEST(BendRounds, AreFewWhereBendingIsSoft) {
+  const LineShape shape{32, 4, 64, true};
+  EXPECT_EQ(bend_rounds(1e12, 1e4, shape), 0u);
+  EXPECT_EQ(bend_rounds(1, 1e4, shape), 5u);
+  for (double alpha = 1e12; alpha > 1; alpha /= 10)
+    EXPECT_LE(bend_rounds(alpha, 1e4, shape), bend_rounds(alpha / 10, 1e4, shape));
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,163 @@
+// What the line solver is for: little stretch for few substeps, the truth cards, and that it stays whole where lines are
+// singular. Bounds are a little above what it measures, which is what a sequential double-precision emulation of the same
+// method gives.
+#include <cmath>
+
+#include "clothbench/record.hpp"
+#include "contact_scenes.hpp"
+#include "metrics/metric_pass.hpp"
+#include "metrics/truth_errors.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+class LineScenes : public Gpu {
+ protected:
+  struct Result {
+    AccuracyPass pass;
+    double last_second(const std::string& name, bool greatest) const {
+      for (const MetricSeries& m : pass.metrics) {
+        if (m.name != name) continue;
+        const std::size_t from = m.values.size() - 72;
+        double most = 0, sum = 0;
+        for (std::size_t f = from; f < m.values.size(); ++f) {
+          most = max_or_nan(most, m.values[f]);
+          sum += m.values[f] / 72;
+        }
+        return greatest ? most : sum;
+      }
+      return kMissing;
+    }
+  };
+
+  static Result run(const Scene& scene, const nlohmann::json& given) {
+    const SolverEntry entry{xpbd_info(), nullptr, xpbd_free_fall_m};
+    const nlohmann::json settings = complete_settings(entry.info, given);
+    const auto solver = make_xpbd(settings, {});
+    solver->load(scene);
+    const MetricContext context{scene, entry, settings};
+    MetricPass metrics(context);
+    Result r;
+    ClothState state;
+    for (int f = 0; f <= scene.time.frames(); ++f) {
+      const double dt = scene.time.dt();
+      if (f > 0) {
+        EXPECT_EQ(solver->step({f - 1, f * dt, dt, scene.motion_after(f - 1)}), StepStatus::Ok);
+      }
+      solver->read_state(state);
+      metrics.add(state);
+      r.pass.time_s.push_back(f * dt);
+    }
+    r.pass.metrics = metrics.take();
+    return r;
+  }
+};
+
+class SlowLineScenes : public LineScenes {};
+
+/// Mean over the edges and frames of the last second, and the greatest; the emulation's values are about half of these.
+TEST_F(SlowLineScenes, HangStretchesLittle) {
+  struct Row {
+    int n, substeps;
+    double mean, most;
+  };
+  for (const Row& row : {Row{32, 2, 1e-4, 0.05}, Row{32, 4, 3e-5, 0.015}, Row{32, 5, 4e-4, 0.02}, Row{32, 10, 6e-6, 0.005},
+                         Row{64, 4, 5e-5, 0.07}, Row{64, 6, 2e-5, 0.02}, Row{64, 5, 4e-4, 0.06}}) {
+    const Scene s = load_scene("validation/hang", {"cloth.grid=[" + std::to_string(row.n) + "," + std::to_string(row.n) + "]"});
+    const Result r = run(s, {{"substeps", row.substeps}});
+    EXPECT_LE(r.last_second("stretch_mean_positive", false), row.mean) << row.n << " substeps " << row.substeps;
+    EXPECT_LE(r.last_second("stretch_max", true), row.most) << row.n << " substeps " << row.substeps;
+  }
+}
+
+TEST_F(SlowLineScenes, ElasticSheetStretchesAsMuchAsInManySubsteps) {
+  const Scene s = load_scene("validation/hang-elastic", {"cloth.grid=[32,32]"});
+  const double many = run(s, {{"substeps", 60}, {"tethers", false}}).last_second("stretch_mean_positive", false);
+  const double mean = run(s, {{"substeps", 10}}).last_second("stretch_mean_positive", false);
+  EXPECT_NEAR(mean, many, 0.25 * many);
+}
+
+TEST_F(LineScenes, TruthCardsAreMetAtLowCost) {
+  struct Row {
+    const char* scene;
+    int substeps;
+    double error;
+  };
+  // Of 60 Hz frames; 960 Hz in the last.
+  for (const Row& row : {Row{"swing-strip", 3, 4.5e-3}, {"swing-strip", 5, 2.7e-3}, {"swing-strip", 10, 1.5e-3},
+                         {"catenary", 5, 4e-5}, {"cantilever-10", 5, 3.8e-3}, {"cantilever-10", 10, 1.4e-3},
+                         {"heavy-strip", 3, 5e-4}, {"two-hand-pull", 1, 0.065}}) {
+    const Scene s = load_scene(std::string("validation/") + row.scene);
+    const auto summary = summarise_truth(s, run(s, {{"substeps", row.substeps}}).pass);
+    EXPECT_LE(summary.at("truth_error"), row.error) << row.scene << " substeps " << row.substeps;
+    if (keeps_energy(s)) {
+      EXPECT_LE(summary.at("energy_gain"), 1e-3) << row.scene << ": of M g L";
+    }
+  }
+}
+
+TEST_F(LineScenes, StayFiniteOnAnyGridAndRepeat) {
+  for (const auto& [columns, rows] : {std::pair{2, 2}, {2, 33}, {33, 2}, {3, 31}, {31, 3}, {32, 32}, {5, 47}, {41, 40}})
+    for (const bool one_dispatch : {true, false}) {
+      Scene s = with_pins(sheet(columns, rows));
+      s.material.membrane_stiffness_N_per_m.reset();
+      const auto solver = make("xpbd", {{"one_dispatch", one_dispatch}});
+      solver->load(s);
+      const ClothState first = after(*solver, s, 8);
+      for (const double x : first.position) ASSERT_TRUE(std::isfinite(x)) << columns << "x" << rows;
+      for (int repeat = 1; repeat < (columns == 32 ? 20 : 3); ++repeat) {
+        solver->reset();
+        ASSERT_EQ(after(*solver, s, 8).position, first.position) << columns << "x" << rows << " repeat " << repeat;
+      }
+    }
+}
+
+/// Two edges held farther apart than an inextensible sheet is long: nothing is right, but nothing may blow up.
+TEST_F(LineScenes, InfeasiblePinsStayFinite) {
+  for (const bool shear : {true, false})
+    for (const bool one_dispatch : {true, false}) {
+      Scene s = with_damping(sheet(17, 9));
+      s.material.membrane_stiffness_N_per_m.reset();
+      if (!shear) s.needs = s.needs - FeatureSet{Feature::Shear};
+      s.cloth.axis_u = {1.05, 0, 0};
+      s.pins.vertices = edge_vertices(s.cloth, "u0");
+      for (const std::uint32_t v : edge_vertices(s.cloth, "u1")) s.pins.vertices.push_back(v);
+      s.needs.add(Feature::Pins);
+      const auto solver = make("xpbd", {{"one_dispatch", one_dispatch}});
+      solver->load(s);
+      const ClothState state = after(*solver, s, 72);
+      for (const double x : state.position) EXPECT_LT(std::abs(x), 2) << "of a sheet of 1 m";
+      for (const double v : state.velocity) EXPECT_LT(std::abs(v), 50);
+    }
+}
+
+TEST_F(LineScenes, HandsThatPullAStiffSheetApartLeaveItWhole) {
+  Scene s = moving(with_damping(sheet(17, 17)), {0, 16}, 20);
+  s.material.membrane_stiffness_N_per_m.reset();
+  const auto one = make("xpbd"), many = make("xpbd", {{"one_dispatch", false}});
+  for (const auto& solver : {one.get(), many.get()}) {
+    solver->load(s);
+    const ClothState state = after(*solver, s, 40);
+    for (const double x : state.position) EXPECT_LT(std::abs(x), 10);
+  }
+}
+
+TEST_F(LineScenes, OneDispatchAFrameOrFourASubstep) {
+  const auto dispatches = [](const Scene& s, const nlohmann::json& settings) {
+    const auto solver = make("xpbd", settings);
+    solver->load(s);
+    int n = 0;
+    for (const StagePlan& stage : solver->plan().stages) n += stage.dispatches;
+    return n;
+  };
+  EXPECT_EQ(dispatches(with_bending(sheet(32, 32)), {{"substeps", 7}}), 1);
+  EXPECT_EQ(dispatches(with_bending(sheet(33, 32)), {{"substeps", 7}}), 28);
+  Scene strips = sheet(33, 32);
+  strips.needs = strips.needs - FeatureSet{Feature::Shear};
+  EXPECT_EQ(dispatches(strips, {{"substeps", 7}}), 14);
+  EXPECT_EQ(dispatches(with_collider(sheet(32, 32), box({0, 0, 0}, {0.1, 0.1, 0.1})), {{"substeps", 7}}), 3 * 7) << "lines, samples, vertices";
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu
