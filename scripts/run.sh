@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The main job: set up, build, run a study on the best Vulkan device present, print its tables.
-#   scripts/run.sh [STUDY] [--full | --quick] [options of `clothbench study`]     STUDY: table3 (the default), penetration
+#   scripts/run.sh [STUDY] [--full | --quick] [options of `clothbench study`]     STUDY: table3 (the default), penetration, stability
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/budget.sh

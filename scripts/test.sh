@@ -24,6 +24,15 @@ penetration() {
   build/release/clothbench check "$out" --baseline "$baseline" --junit build/penetration-quick.xml
 }
 
+# Stiff and extreme cases: every run ends in a row, whatever becomes of the solver, and none of its processes dies.
+stability() {
+  local out=build/stability-quick
+  rm -rf "$out"
+  build/release/clothbench study stability --quick --out "$out" >"$out.txt" || { tail -20 "$out.txt"; return 1; }
+  tail -1 "$out.txt"
+  grep -q '(0 of them crashed or hung)' "$out.txt"
+}
+
 selection=(-LE slow)
 [ "${1:-}" = --full ] && selection=()
 mkdir -p build
@@ -32,4 +41,5 @@ stage assets 8 scripts/fetch-assets.sh
 stage build 8 build
 stage tests 8 tests
 stage contact 3 penetration
+stage stability 4 stability
 print_budget

@@ -22,6 +22,7 @@ void add_validate(CLI::App&, Console&);
 void add_plan(CLI::App&, Console&);
 void add_card(CLI::App&, Console&);
 void add_run(CLI::App&, Console&);
+void add_run_cell(CLI::App&, Console&);
 void add_study(CLI::App&, Console&);
 void add_report(CLI::App&, Console&);
 void add_import(CLI::App&, Console&);

@@ -30,6 +30,7 @@ int run_command_line(const std::vector<std::string>& words) {
   add_plan(app, console);
   add_card(app, console);
   add_run(app, console);
+  add_run_cell(app, console);
   add_study(app, console);
   add_report(app, console);
   add_import(app, console);

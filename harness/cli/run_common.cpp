@@ -11,13 +11,28 @@
 #include "truth/draw.hpp"
 
 namespace clothbench {
-namespace {
-
 std::filesystem::path default_folder(const std::string& study) {
   std::string stamp = utc_now();
   stamp.erase(std::remove_if(stamp.begin(), stamp.end(), [](char c) { return c == '-' || c == ':'; }), stamp.end());
   return std::filesystem::path("results/runs") / (study + "-" + stamp);
 }
+
+bool check_device(const SolverEntry& gpu, const DeviceFlags& flags) {
+  const std::vector<DeviceInfo> devices = gpu.devices();
+  if (devices.empty()) {
+    if (!flags.allow_no_device)
+      throw Error("no Vulkan device is present; install a driver (Debian: mesa-vulkan-drivers) or give --allow-no-device",
+                  ExitCode::NoDevice);
+    fmt::print(stderr, "no Vulkan device: GPU solvers are left out\n");
+    return false;
+  }
+  if (flags.options.index >= static_cast<int>(devices.size()))
+    throw Error(fmt::format("--device {}: there are {} devices (see `clothbench list devices`)", flags.options.index,
+                            devices.size()), ExitCode::NoDevice);
+  return true;
+}
+
+namespace {
 
 /// Says what GPU solvers will run on, before anything is measured. Drops them where there is no device and that is
 /// allowed.
@@ -27,20 +42,9 @@ void settle_device(CellPlan& plan, const DeviceFlags& flags) {
     for (const CellSpec& c : group)
       if (c.entry->info.on_gpu && c.entry->devices) gpu = c.entry;
   if (gpu == nullptr) return;
-  const std::vector<DeviceInfo> devices = gpu->devices();
-  if (devices.empty()) {
-    if (!flags.allow_no_device)
-      throw Error("no Vulkan device is present; install a driver (Debian: mesa-vulkan-drivers) or give --allow-no-device",
-                  ExitCode::NoDevice);
-    fmt::print(stderr, "no Vulkan device: GPU solvers are left out\n");
-    for (auto& group : plan.groups)
-      group.erase(std::remove_if(group.begin(), group.end(), [](const CellSpec& c) { return c.entry->info.on_gpu; }),
-                  group.end());
-    return;
-  }
-  if (flags.options.index >= static_cast<int>(devices.size()))
-    throw Error(fmt::format("--device {}: there are {} devices (see `clothbench list devices`)", flags.options.index,
-                            devices.size()), ExitCode::NoDevice);
+  if (check_device(*gpu, flags)) return;
+  for (auto& group : plan.groups)
+    group.erase(std::remove_if(group.begin(), group.end(), [](const CellSpec& c) { return c.entry->info.on_gpu; }), group.end());
 }
 
 }  // namespace

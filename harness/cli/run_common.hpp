@@ -4,6 +4,7 @@
 
 #include "cli/command.hpp"
 #include "runner/study_runner.hpp"
+#include "scenario/study.hpp"
 
 namespace clothbench {
 
@@ -13,6 +14,15 @@ struct RunFlags {
   DeviceFlags device;
 };
 
+/// results/runs/<study>-<UTC>
+std::filesystem::path default_folder(const std::string& study);
+
+/// True if GPU solvers have a device; false if there is none and that is allowed. Throws Error otherwise, and for a --device
+/// that there is not.
+bool check_device(const SolverEntry& gpu, const DeviceFlags&);
+
+/// The same for a study whose cells run in processes of their own (protocol stability-map). `only`: solvers of its maps.
+void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only, Console& console);
 /// The option --seed of commands whose scenes have a truth.
 void add_seed(CLI::App&, std::optional<std::uint64_t>& seed);
 

@@ -84,6 +84,11 @@ void add_study(CLI::App& app, Console& console) {
     Study study = load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only});
     for (Study::Item& item : study.scenes) item.scene = at_seed(std::move(item.scene), a.seed, console);
     if (a.seed) study.definition["seed"] = *a.seed;
+    if (study.protocol == "stability-map") {
+      if (a.trials > 0) throw Error("--trials: protocol stability-map judges one run of every cell");
+      run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, console);
+      return;
+    }
     CellPlan plan = plan_study(study);
     if (a.trials > 0) plan.rules.trials = a.trials;
     if (a.no_cards) plan.material_cards = false;

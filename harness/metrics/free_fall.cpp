@@ -30,7 +30,7 @@ template <class Fold>
 double fold_errors(const MetricFrame& f, Fold fold) {
   if (f.index == 0) return kMissing;
   const Scene& s = f.context.scene;
-  const double t = f.index * s.time.dt();
+  const double t = s.time.at(f.index);
   const Vec3 g = s.gravity_m_per_s2, way = fall(f.context, f.index);
   const double scale = 0.5 * norm(g[0], g[1], g[2]) * t * t;
   const std::vector<double> start = initial_positions(s);

@@ -26,6 +26,7 @@ struct SceneContact {
 };
 
 struct TruthErrors;
+struct StabilityFrame;
 
 /// One frame of an accuracy pass.
 struct MetricFrame {
@@ -34,6 +35,7 @@ struct MetricFrame {
   const ClothState& state;
   const SceneContact* contact;  ///< null where the scene has no collider
   const TruthErrors* truth = nullptr;  ///< null where the scene states no truth
+  const StabilityFrame* stability = nullptr;  ///< null where the scene is not judged
 };
 
 /// One number a frame. A scene pays for a metric only if `applies` says so. A state that is not finite gives NaN.

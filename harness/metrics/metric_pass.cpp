@@ -1,6 +1,7 @@
 #include "metrics/metric_pass.hpp"
 
 #include "metrics/collider_contact.hpp"
+#include "metrics/stability/judge.hpp"
 #include "metrics/truth_errors.hpp"
 
 namespace clothbench {
@@ -13,6 +14,7 @@ MetricPass::MetricPass(const MetricContext& context) : context_(context) {
   }
   if (kWithContactMetrics && !context.scene.colliders.empty()) contact_ = std::make_unique<ColliderContact>(context.scene);
   if (!context.scene.truth_card.empty()) judge_ = std::make_unique<TruthJudge>(context.scene);
+  if (!context.scene.stability.name.empty()) stability_ = std::make_unique<StabilityJudge>(context_);
 }
 
 MetricPass::~MetricPass() = default;
@@ -22,7 +24,10 @@ void MetricPass::add(const ClothState& state) {
   if (contact_) contact = contact_->probe(frame_, state.position);
   TruthErrors truth;
   if (judge_) truth = judge_->judge(frame_, state);
-  const MetricFrame frame{context_, frame_, state, contact_ ? &contact : nullptr, judge_ ? &truth : nullptr};
+  StabilityFrame stability;
+  if (stability_) stability = stability_->judge(frame_, state, contact_ ? &contact : nullptr, judge_ ? &truth : nullptr);
+  lost_ = lost_ || (stability.classes & 7u) != 0;
+  const MetricFrame frame{context_, frame_, state, contact_ ? &contact : nullptr, judge_ ? &truth : nullptr, stability_ ? &stability : nullptr};
   for (std::size_t m = 0; m < wanted_.size(); ++m) series_[m].values.push_back(wanted_[m]->value(frame));
   ++frame_;
 }

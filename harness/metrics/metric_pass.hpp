@@ -8,6 +8,7 @@
 namespace clothbench {
 
 class ColliderContact;
+class StabilityJudge;
 class TruthJudge;
 
 /// The metrics of one accuracy pass over one cell: those that apply to its scene, each evaluated once a frame. Keeps what
@@ -22,6 +23,8 @@ class MetricPass {
 
   /// State at the end of the next frame; the first call is frame 0, the initial state.
   void add(const ClothState&);
+  /// Whether a stability class has been met that a run does not come back from: not finite, speed or energy out of bounds.
+  bool lost() const { return lost_; }
 
   /// One series a metric, in the order of metrics().
   std::vector<MetricSeries> take() { return std::move(series_); }
@@ -32,6 +35,8 @@ class MetricPass {
   std::vector<MetricSeries> series_;
   std::unique_ptr<ColliderContact> contact_;  ///< null where there is nothing to touch
   std::unique_ptr<TruthJudge> judge_;         ///< null where the scene states no truth
+  std::unique_ptr<StabilityJudge> stability_;  ///< null where the scene is not judged
+  bool lost_ = false;
   int frame_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "metrics/collider_contact.hpp"
+#include "metrics/stability/judge.hpp"
 #include "metrics/truth_errors.hpp"
 
 namespace clothbench {
@@ -14,7 +15,8 @@ bool has_gravity(const Scene& s) { return s.gravity_m_per_s2 != Vec3{}; }
 
 bool touches_nothing(const Scene& s) { return s.pins.vertices.empty() && s.grips.vertices.empty() && s.colliders.empty(); }
 
-bool falls_freely(const Scene& s) { return touches_nothing(s) && has_gravity(s); }
+/// An integrator declares its fall for even frames.
+bool falls_freely(const Scene& s) { return touches_nothing(s) && has_gravity(s) && s.time.ends_s.empty() && s.cloth.spin_rad_per_s == Vec3{}; }
 
 bool keeps_momentum(const Scene& s) {
   const bool has_scale = has_gravity(s) || s.cloth.initial_velocity_m_per_s != Vec3{};
@@ -41,6 +43,12 @@ auto from_truth(double TruthErrors::*field) {
   return [field](const MetricFrame& f) { return f.truth->*field; };
 }
 
+bool is_judged(const Scene& s) { return !s.stability.name.empty(); }
+
+auto from_judge(double StabilityFrame::*field) {
+  return [field](const MetricFrame& f) { return f.stability->*field; };
+}
+
 bool truth_keeps_energy(const Scene& s) { return has_truth(s) && keeps_energy(s); }
 
 }  // namespace
@@ -48,6 +56,7 @@ bool truth_keeps_energy(const Scene& s) { return has_truth(s) && keeps_energy(s)
 const std::vector<Metric>& metrics() {
   using C = SceneContact;
   using T = TruthErrors;
+  using S = StabilityFrame;
   static const std::vector<Metric> all = {
       {"free_fall_error", "1", "greatest distance from free fall over g T^2 / 2", falls_freely, free_fall_error_max},
       {"free_fall_error_rms", "1", "root mean square distance from free fall over g T^2 / 2", falls_freely, free_fall_error_rms},
@@ -81,6 +90,17 @@ const std::vector<Metric>& metrics() {
       {"truth_stretch_p99", "1", "99th percentile of strain less true strain", has_truth, from_truth(&T::stretch_p99)},
       {"truth_stretch_max", "1", "greatest strain less true strain", has_truth, from_truth(&T::stretch_max)},
       {"energy_rise", "1", "energy less that at the start, over M g L", truth_keeps_energy, energy_rise},
+      {"stability_classes", "1", "outcome classes of the frame: sum of 2^k over F0 to F7", is_judged,
+       [](const MetricFrame& f) { return static_cast<double>(f.stability->classes); }},
+      {"stability_speed", "1", "greatest vertex speed over the greatest that physics allows", is_judged, from_judge(&S::speed)},
+      {"stability_energy_gain", "1", "energy gained over M g L", is_judged, from_judge(&S::energy_gain)},
+      {"stability_strain_excess", "1", "greatest strain beyond the truth", is_judged, from_judge(&S::strain_excess)},
+      {"stability_strain_p99", "1", "99th percentile of strain beyond the truth", is_judged, from_judge(&S::strain_p99)},
+      {"stability_bad_geometry", "1", "share of triangles squashed or blown up, or of folds over 170 degrees", is_judged,
+       from_judge(&S::bad_geometry)},
+      {"stability_depth", "1", "depth in a collider over its limit; infinite once it has passed through", is_judged, from_judge(&S::depth)},
+      {"stability_unrest", "1", "RMS speed over sqrt(g L), once settled", is_judged, from_judge(&S::unrest)},
+      {"stability_fall_error", "1", "error of the centre of mass's fall over g T^2 / 2", is_judged, from_judge(&S::fall_error)},
   };
   return all;
 }

@@ -9,7 +9,7 @@ double momentum_error(const MetricFrame& f) {
   const Scene& s = f.context.scene;
   const std::vector<double> mass = vertex_masses(s);
   const Vec3 g = s.gravity_m_per_s2, v0 = s.cloth.initial_velocity_m_per_s;
-  const double t = f.index * s.time.dt();
+  const double t = s.time.at(f.index);
   double total = 0;
   Vec3 excess{};
   for (std::size_t v = 0; v < mass.size(); ++v) {

@@ -13,6 +13,7 @@
 #include "report/paths.hpp"
 #include "report/penetration.hpp"
 #include "report/room_pair.hpp"
+#include "report/stability.hpp"
 #include "report/work_precision.hpp"
 #include "results/store.hpp"
 
@@ -46,11 +47,11 @@ std::string find_python() {
 
 /// Figures of what the cells show. Returns what went wrong, or nothing; a missing matplotlib is told apart by
 /// `has_python`.
-std::string draw_figures(const fs::path& out, bool rates, bool penetration, bool work, bool& has_python) {
+std::string draw_figures(const fs::path& out, bool rates, bool penetration, bool work, bool stability, bool& has_python) {
   for (const auto& file : fs::directory_iterator(out))  // an older run's figures are not this report's
     if (file.path().extension() == ".svg" || file.path().extension() == ".png") {
       const std::string stem = file.path().stem().string();
-      if (stem == "fig4" || stem == "fig5" || stem.starts_with("penetration-") || stem.starts_with("work-precision-")) fs::remove(file.path());
+      if (stem == "fig4" || stem == "fig5" || stem.starts_with("penetration-") || stem.starts_with("work-precision-") || stem.starts_with("stability-")) fs::remove(file.path());
     }
   const std::string python = find_python();
   has_python = !python.empty();
@@ -63,6 +64,7 @@ std::string draw_figures(const fs::path& out, bool rates, bool penetration, bool
   if (rates) add("plot_report.py", out / "cells.csv", fs::path(kResultsRoot) / "paper-table3.json");
   if (penetration) add("plot_penetration.py", out / "penetration-series.csv", {});
   if (work) add("plot_work_precision.py", out / "work-precision.csv", {});
+  if (stability) add("plot_stability.py", out / "stability.json", out / "stability.csv");
   for (const std::string& command : commands)
     if (std::system(command.c_str()) != 0) return "Figures were left out: this command failed: " + command;
   return "";
@@ -102,9 +104,20 @@ std::string work_figures_markdown(const std::vector<WorkDiagram>& diagrams) {
   return out;
 }
 
+std::string stability_figures_markdown(const nlohmann::json& maps, bool cases) {
+  std::string out;
+  if (cases) out += "![Robustness by case](stability-cases.svg)\n\nShare of every case's runs that were stable, degraded and failed.\n\n";
+  for (const nlohmann::json& m : maps) {
+    const auto name = m.at("name").get<std::string>(), title = m.at("title").get<std::string>();
+    out += fmt::format("![{}](stability-{}.svg)\n\n{}: every probe by its outcome class; the line is where it turns, wide where seeds differ. Above each panel: {}.\n\n", title, name, title,
+                       m.at("headline").get<std::string>());
+  }
+  return out;
+}
+
 /// Cells by what is told of them; copies.
 struct Parts {
-  std::vector<CellRecord> contact, truth, rest;
+  std::vector<CellRecord> stability, contact, truth, rest;
 };
 
 /// Cells of a comparison of costs, by address, and material cards have tables of their own.
@@ -113,7 +126,7 @@ Parts parts_of(const std::vector<CellRecord>& cells, const std::vector<FeatureCo
   std::set<const CellRecord*> told;
   for (const FeatureCost& f : costs) told.insert({f.needed, f.all});
   for (const CellRecord& c : cells)
-    if (!told.contains(&c) && !is_material_card(c) && !is_all_on(c)) (has_truth(c) ? out.truth : has_contact(c) ? out.contact : out.rest).push_back(c);
+    if (!told.contains(&c) && !is_material_card(c) && !is_all_on(c)) (is_stability(c) ? out.stability : has_truth(c) ? out.truth : has_contact(c) ? out.contact : out.rest).push_back(c);
   return out;
 }
 
@@ -130,6 +143,23 @@ std::vector<Table> penetration_tables(const std::vector<ContactSetUp>& ups, cons
   if (const Table broken = broken_table(ups); broken.rows.size() > 1) out.push_back(broken);
   if (!pairs.empty()) out.push_back(room_table(pairs));
   return out;
+}
+
+/// Robustness, headline numbers and, `in_full`, every boundary and every run that was not stable.
+std::vector<Table> stability_tables(const std::vector<CellRecord>& cells, const nlohmann::json& maps, bool in_full) {
+  std::vector<Table> out;
+  if (!cells.empty()) out.push_back(robustness_table(cells));
+  if (!maps.empty()) out.push_back(headline_table(maps));
+  if (!in_full) return out;
+  if (!maps.empty()) out.push_back(boundary_table(maps));
+  if (Table t = first_failure_table(cells); t.rows.size() > 1) out.push_back(std::move(t));
+  return out;
+}
+
+/// Their failures are what the stability tables are about.
+std::vector<CellRecord> without_stability(std::vector<CellRecord> cells) {
+  std::erase_if(cells, is_stability);
+  return cells;
 }
 
 /// One page: ranks, firsts, what stiffness means to whom, what is not a no-op. Empty without diagrams.
@@ -165,7 +195,8 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
 
   const std::vector<FeatureCost> costs = feature_costs(cells);
   const std::vector<SolverMaterial> materials = solver_materials(cells);
-  const auto [contact, truth, rest] = parts_of(cells, costs);
+  const auto [stability, contact, truth, rest] = parts_of(cells, costs);
+  const nlohmann::json maps = stability_maps(runs);
   const std::vector<ContactSetUp> ups = set_ups(contact);
   const std::vector<WorkDiagram> diagrams = work_diagrams(truth, materials);
   const std::string head = headline(cells, Format::Markdown);
@@ -199,6 +230,14 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     write("work-precision.csv", work_csv(diagrams));
     write("work-precision.json", work_json(diagrams).dump(1) + "\n");
   }
+  if (!stability.empty() || !maps.empty()) {
+    std::string text;
+    for (const Table& t : stability_tables(stability, maps, true)) text += t.markdown() + "\n";
+    tables += text;
+    write("stability.md", "# Stability\n\n" + head + "\n" + text);
+    write("stability.csv", stability_csv(stability));
+    write("stability.json", nlohmann::json{{"format", "clothbench-stability"}, {"format_version", 1}, {"maps", maps}}.dump(1) + "\n");
+  }
   if (!materials.empty()) {
     const std::string text = material_table(materials).markdown() + "\n" + material_verdicts(materials).markdown() + "\n";
     tables += text;
@@ -217,14 +256,14 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     tables += feature_table(solvers, true).markdown() + "\n";
     write("features.json", feature_json(solvers, true).dump(1) + "\n");
   }
-  if (const Table failed = failed_table(cells); failed.rows.size() > 1) tables += failed.markdown() + "\n";
+  if (const Table failed = failed_table(without_stability(cells)); failed.rows.size() > 1) tables += failed.markdown() + "\n";
 
-  if (const Table broken = expect_table(cells); broken.rows.size() > 1) tables += broken.markdown() + "\n";
+  if (const Table broken = expect_table(without_stability(cells)); broken.rows.size() > 1) tables += broken.markdown() + "\n";
 
   bool has_python = false;
-  const std::string no_figures = draw_figures(options.out, !rest.empty(), !ups.empty(), !diagrams.empty(), has_python);
+  const std::string no_figures = draw_figures(options.out, !rest.empty(), !ups.empty(), !diagrams.empty(), !stability.empty() || !maps.empty(), has_python);
   const std::string figures = "### Figures\n\n" + (rest.empty() ? "" : figures_markdown(rest)) + penetration_figures_markdown(ups) +
-                              work_figures_markdown(diagrams);
+                              work_figures_markdown(diagrams) + stability_figures_markdown(maps, !stability.empty());
   write("report.md", "# clothbench report\n\n" + head + "\n" + tables + (no_figures.empty() ? figures : no_figures + "\n\n") +
                          "`cells.csv` and `cells.json` hold every summary value of every cell in full precision.\n");
   if (no_figures.empty()) return;
@@ -238,7 +277,7 @@ void print_console_report(const std::vector<fs::path>& runs) {
   fmt::print("{}", headline(cells, Format::Console));
   const std::vector<FeatureCost> costs = feature_costs(cells);
   const std::vector<SolverMaterial> materials = solver_materials(cells);
-  const auto [contact, truth, rest] = parts_of(cells, costs);
+  const auto [stability, contact, truth, rest] = parts_of(cells, costs);
   for (const Family& family : families(rest))
     for (const Table& t : fps_tables(family, published)) fmt::print("{}", t.console());
   for (const Table& t : penetration_tables(set_ups(contact), room_pairs(contact), false)) fmt::print("{}", t.console());
@@ -248,13 +287,14 @@ void print_console_report(const std::vector<fs::path>& runs) {
   if (!costs.empty()) fmt::print("{}{}", feature_cost_table(costs).console(), no_op_table(costs).console());
   if (const auto solvers = solver_features(cells); !contact.empty() && any_known(solvers))
     fmt::print("{}", feature_table(solvers, true).console());
-  const Table failed = failed_table(cells);
+  for (const Table& t : stability_tables(stability, stability_maps(runs), false)) fmt::print("{}", t.console());
+  const Table failed = failed_table(without_stability(cells));
   if (failed.rows.size() > 1) fmt::print("\n{}\n", failed.title);
   for (std::size_t r = 1; r < failed.rows.size(); ++r) {
     const auto& row = failed.rows[r];  // messages are sentences: lines, not columns
     fmt::print("{}", wrapped(row[0] + ": " + row[1] + ": " + row[2] + ": " + row[3], 2, kConsoleColumns));
   }
-  const Table broken = expect_table(cells);
+  const Table broken = expect_table(without_stability(cells));
   if (broken.rows.size() > 1) fmt::print("\n{} ({})\n", broken.title, broken.note.substr(0, broken.note.size() - 1));
   for (std::size_t r = 1; r < broken.rows.size(); ++r)
     fmt::print("{}", wrapped(broken.rows[r][0] + ": " + broken.rows[r][1] + ": " + broken.rows[r][2], 2, kConsoleColumns));

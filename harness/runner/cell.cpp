@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "metrics/metric_pass.hpp"
+#include "metrics/stability/judge.hpp"
 #include "runner/environment.hpp"
 #include "runner/stage_check.hpp"
 
@@ -27,8 +28,11 @@ void stop_if_interrupted() {
 }
 
 FrameInput frame_input(const Scene& scene, int index) {
-  const double dt = scene.time.dt();
-  return {index, (index + 1) * dt, dt, scene.motion_after(index)};
+  // Trials run on past the scene's end; frames there are even.
+  const bool within = index < scene.time.frames();
+  const double dt = within ? scene.time.dt_after(index) : scene.time.dt();
+  const double end = within ? scene.time.at(index + 1) : scene.time.at(scene.time.frames()) + (index + 1 - scene.time.frames()) * dt;
+  return {index, scene.time.ends_s.empty() ? (index + 1) * dt : end, dt, scene.motion_after(index)};
 }
 
 bool all_finite(const std::vector<double>& values) {
@@ -150,9 +154,10 @@ AccuracyPass Cell::run_accuracy(const TrialRules& rules) {
     solver_->read_state(state);
     if (outcome_.status == "ok" && !(all_finite(state.position) && all_finite(state.velocity)))
       fail(StepStatus::NotFinite, frame);
-    pass.time_s.push_back(frame * scene.time.dt());
+    pass.time_s.push_back(scene.time.at(frame));
     for (double x : state.position) pass.position.push_back(static_cast<float>(x));
     metrics.add(state);
+    if (outcome_.status == "ok" && metrics.lost()) outcome_ = {"diverged", "F1", frame, "speed or energy out of all bounds"};
     // A pass that was held may take any time.
     if (outcome_.status == "ok" && rules.cell_limit_s > 0 && times_held() == held_before &&
         seconds_since(start) > rules.cell_limit_s && frame < frames)
@@ -160,6 +165,13 @@ AccuracyPass Cell::run_accuracy(const TrialRules& rules) {
     if (outcome_.status != "ok") break;
   }
   pass.metrics = metrics.take();
+  const StabilityVerdict verdict = stability_verdict(pass);
+  if (verdict.klass != "ok" && outcome_.klass != "F8") {
+    outcome_.klass = verdict.klass;
+    outcome_.failed_frame = verdict.frame;
+    if (outcome_.message.empty() || outcome_.status == "diverged")
+      outcome_.message = fmt::format("{}: {}", name_of(verdict.grade), class_name(verdict.klass[1] - '0'));
+  }
   return pass;
 }
 

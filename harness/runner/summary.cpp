@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "metrics/metric.hpp"
+#include "metrics/stability/judge.hpp"
 #include "metrics/truth_errors.hpp"
 #include "runner/cell.hpp"
 
@@ -158,6 +159,7 @@ std::map<std::string, double> summarise(const CellSpec& spec, const Plan& plan, 
   s["frame_device_median_s"] = median(device);
   summarise_pass(record.accuracy, spec.scene->time, s);
   s.merge(summarise_truth(*spec.scene, record.accuracy));
+  s.merge(summarise_stability(*spec.scene, record.accuracy, record.outcome));
   for (const auto& [name, value] : spec.scene_values) s[name] = value;
   s["read_B_per_frame"] = bytes_per_frame(record.trials, &TimedTrial::stage_read_B);
   s["write_B_per_frame"] = bytes_per_frame(record.trials, &TimedTrial::stage_write_B);

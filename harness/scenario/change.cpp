@@ -119,6 +119,20 @@ class Changer {
   const std::string& source_;
 };
 
+/// Irregular scenes are made for one place, one size and one numbering.
+void refuse_irregular(const json& s, const std::string& source) {
+  const auto check = [&](const json& object, std::initializer_list<const char*> keys) {
+    for (const char* key : keys)
+      if (object.contains(key)) throw Error(source + ": a scene with \"" + key + "\" cannot be moved, scaled or renumbered");
+  };
+  check(s["cloth"], {"spin_rad_per_s", "column_factors", "mass_factors", "start"});
+  check(s["material"], {"regions"});
+  check(s["time"], {"hitch", "jitter"});
+  for (const json& grip : s["grips"]) check(grip, {"stop_s", "release_s", "jumps"});
+  for (const json& collider : s["colliders"])
+    if (collider["type"] == "capsule") throw Error(source + ": a scene with a collider of type capsule cannot be moved, scaled or renumbered");
+}
+
 /// What an edge or corner of the old numbering is called in the new one.
 std::string renamed(const std::string& name, Renumbering by) {
   std::string out = name;
@@ -155,9 +169,13 @@ Vec3 SceneChange::turned(const Vec3& v) const {
 
 bool SceneChange::mirrors() const { return matrix_of(*this).determinant() < 0; }
 
-json change_scene(json scenario, const SceneChange& c, const std::string& source) { return Changer(c, source).changed(std::move(scenario)); }
+json change_scene(json scenario, const SceneChange& c, const std::string& source) {
+  refuse_irregular(scenario, source);
+  return Changer(c, source).changed(std::move(scenario));
+}
 
 json renumber_scene(json s, Renumbering by, const std::string& source, std::vector<std::uint32_t>& new_to_old) {
+  refuse_irregular(s, source);
   json &cloth = s["cloth"], &pose = cloth["pose"];
   for (const json& grip : s["grips"])
     if (!grip.contains("edge")) throw Error(source + ": a sheet that a hand holds cannot be renumbered");

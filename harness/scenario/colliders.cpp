@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "clothbench/error.hpp"
 #include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
+#include "scenario/path.hpp"
 #include "scenario/table_pose.hpp"
 
 namespace clothbench {
@@ -80,6 +82,7 @@ class Reader {
     if (type == "plane") plane(j, c);
     if (type == "sphere") sphere(j, c);
     if (type == "box") box(j, c);
+    if (type == "capsule") capsule(j, c);
     if (type == "cylinder") cylinder(j, c);
     if (type == "mesh") mesh(j, c);
     if (type == "room") room(j, c);
@@ -113,6 +116,18 @@ class Reader {
     const Eigen::Matrix3d r = (Turn(turn[2] * kRadians, Eigen::Vector3d::UnitZ()) * Turn(turn[1] * kRadians, Eigen::Vector3d::UnitY()) *
                                Turn(turn[0] * kRadians, Eigen::Vector3d::UnitX())).toRotationMatrix();
     for (int k = 0; k < 3; ++k) c.axes[static_cast<std::size_t>(k)] = vec3(assets::Vector(r.col(k)));
+  }
+
+  void capsule(const json& j, Collider& c) {
+    c.shape = Collider::Shape::Capsules;
+    const Path path = Path::read(j);
+    const Vec3 center = vec3(j["center_m"]), axis = vec3(j["axis"]), spin = vec3(j["spin_rad_per_s"]);
+    const double length = j["length_m"].get<double>(), radius = j["radius_m"].get<double>();
+    if (!(std::abs(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2] - 1) <= kUnit)) refuse("/axis", "expected a vector of length 1");
+    const auto at = [=](double t) { return moved_capsule(path, center, axis, length, radius, spin, t); };
+    c.capsules = {at(0)};
+    note_jumps(path, scene_);
+    capsules_[scene_.colliders.size()] = at;
   }
 
   void cylinder(const json& j, Collider& c) const {
@@ -236,20 +251,9 @@ class Reader {
     pose["axis_v"] = at.axis_v;
   }
 
-  /// Speeds up as sin^2(pi t / 2 T), then keeps its velocity.
-  struct Bar {
-    Vec3 velocity{};
-    double ramp_s = 0;
-
-    double seconds_at_full_speed(double t) const {
-      if (t >= ramp_s) return t - ramp_s / 2;
-      return t / 2 - ramp_s / (2 * std::numbers::pi) * std::sin(std::numbers::pi * t / ramp_s);
-    }
-  };
-
   struct Grip {
     std::optional<Moving> by;  ///< a hand; otherwise the bar
-    Bar bar;
+    Path bar;
     std::vector<std::uint32_t> vertices;
   };
 
@@ -271,9 +275,10 @@ class Reader {
     grips_.push_back(std::move(g));
   }
 
-  Grip edge_grip(const json& j) const {
+  Grip edge_grip(const json& j) {
     Grip g;
-    g.bar = {vec3(j["velocity_m_per_s"]), j["ramp_s"].get<double>()};
+    g.bar = Path::read(j);
+    note_jumps(g.bar, scene_);
     g.vertices = edge_vertices(scene_.cloth, j["edge"].get<std::string>());
     return g;
   }
@@ -305,10 +310,14 @@ class Reader {
     if (!any) return;
     const std::vector<double> x = initial_positions(scene_);
     for (int frame = 0; frame <= scene_.time.frames(); ++frame) {
-      const double t = frame * scene_.time.dt();
+      const double t = scene_.time.at(frame);
       FrameMotion& m = scene_.motion.emplace_back();
       for (std::size_t k = 0; k < scene_.colliders.size(); ++k) {
         const Collider& c = scene_.colliders[k];
+        if (const auto capsule = capsules_.find(k); capsule != capsules_.end()) {
+          m.colliders.push_back({{capsule->second(t)}, {}});
+          continue;
+        }
         m.colliders.push_back(c.moves() ? pose_at(*hands_[k], c.shape == Collider::Shape::Mesh, t) : ColliderPose{});
       }
       for (const Grip& g : grips_) g.by ? move_by_hand(g, t, x, m) : move_by_bar(g, t, x, m);
@@ -326,11 +335,11 @@ class Reader {
   }
 
   static void move_by_bar(const Grip& g, double t, const std::vector<double>& x, FrameMotion& m) {
-    const double seconds = g.bar.seconds_at_full_speed(t);
+    const Vec3 way = g.bar.way(t);
     for (std::uint32_t v : g.vertices) {
       Vec3& to = m.grip_position_m.emplace_back();
-      for (std::size_t k = 0; k < 3; ++k) to[k] = x[3 * v + k] + seconds * g.bar.velocity[k];
-      m.grip_held.push_back(1);
+      for (std::size_t k = 0; k < 3; ++k) to[k] = x[3 * v + k] + way[k];
+      m.grip_held.push_back(g.bar.held(t) ? 1 : 0);
     }
   }
 
@@ -342,6 +351,7 @@ class Reader {
   std::optional<assets::AssetSource> assets_;
   std::map<std::size_t, std::pair<assets::Table, ColliderMesh>> tables_;  ///< by collider; with the mesh round it
   std::vector<std::optional<Moving>> hands_;     ///< by collider
+  std::map<std::size_t, std::function<Capsule(double)>> capsules_;  ///< by collider
   std::vector<Grip> grips_;
 };
 

@@ -46,8 +46,18 @@ std::vector<std::uint32_t> grid_line(const Cloth& c, const std::string& edge, in
 
 }  // namespace
 
+double Cloth::line_u_m(int i) const {
+  if (column_factors.empty()) return i * du();
+  double before = 0, all = 0;
+  for (std::size_t k = 0; k < column_factors.size(); ++k) {
+    all += column_factors[k];
+    if (k < static_cast<std::size_t>(i)) before += column_factors[k];
+  }
+  return i + 1 == columns ? width_m : width_m * (before / all);
+}
+
 Vec3 Scene::rest_position(int i, int j) const {
-  std::array<double, 2> at = {i * cloth.du() - cloth.width_m / 2, 0};
+  std::array<double, 2> at = {cloth.line_u_m(i) - cloth.width_m / 2, 0};
   if (cloth.span_m > 0) at = on_arc(cloth, i);
   const double v = j * cloth.dv() - cloth.height_m / 2;
   const Vec3 &a = cloth.axis_u, &b = cloth.axis_v, normal = normal_of(cloth);
@@ -96,18 +106,17 @@ std::vector<double> vertex_masses(const Scene& scene) {
   const double cell = c.areal_density_kg_per_m2 * c.du() * c.dv();
   std::vector<double> mass;
   mass.reserve(c.vertex_count());
+  // Of even cells exactly as ever; of others half of each neighbour.
+  const auto width = [&](int i) {
+    if (c.column_factors.empty()) return share(i, c.columns);
+    return (c.line_u_m(std::min(i + 1, c.columns - 1)) - c.line_u_m(std::max(i - 1, 0))) / 2 / c.du();
+  };
+  std::vector<double> widths;
+  for (int i = 0; i < c.columns; ++i) widths.push_back(width(i));
   for (int j = 0; j < c.rows; ++j)
-    for (int i = 0; i < c.columns; ++i) mass.push_back(cell * share(i, c.columns) * share(j, c.rows));
+    for (int i = 0; i < c.columns; ++i) mass.push_back(cell * widths[static_cast<std::size_t>(i)] * share(j, c.rows));
+  for (std::size_t v = 0; v < c.mass_factors.size(); ++v) mass[v] *= c.mass_factors[v];
   return mass;
-}
-
-std::vector<double> initial_positions(const Scene& scene) {
-  std::vector<double> x;
-  x.reserve(3 * scene.cloth.vertex_count());
-  for (int j = 0; j < scene.cloth.rows; ++j)
-    for (int i = 0; i < scene.cloth.columns; ++i)
-      for (double value : scene.rest_position(i, j)) x.push_back(value);
-  return x;
 }
 
 std::vector<std::array<std::uint32_t, 3>> triangles(const Cloth& c) {
@@ -134,11 +143,14 @@ std::vector<Edge> edges(const Cloth& c, EdgeKind kind) {
   }
   std::vector<Edge> out;
   for (const Step& s : steps) {
-    const double rest = std::hypot(s.di * c.du(), s.dj * c.dv());
+    const double even = std::hypot(s.di * c.du(), s.dj * c.dv());
+    const auto rest = [&](int i) {
+      return c.column_factors.empty() ? even : std::hypot(c.line_u_m(i + s.di) - c.line_u_m(i), s.dj * c.dv());
+    };
     for (int j = 0; j + s.dj < c.rows; ++j)
       for (int i = std::max(0, -s.di); i + std::max(0, s.di) < c.columns; ++i)
         out.push_back({static_cast<std::uint32_t>(j * c.columns + i),
-                       static_cast<std::uint32_t>((j + s.dj) * c.columns + i + s.di), rest, kind});
+                       static_cast<std::uint32_t>((j + s.dj) * c.columns + i + s.di), rest(i), kind});
   }
   return out;
 }

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "scenario/colliders.hpp"
+#include "scenario/irregular.hpp"
 #include "scenario/json_text.hpp"
 #include "scenario/paths.hpp"
 #include "scenario/sha256.hpp"
@@ -144,6 +145,9 @@ FeatureSet derive_needs(const Scene& scene) {
     needs.add(c.feature());
     if (c.friction > 0) needs.add(Feature::Friction);
   }
+  if (!scene.cloth.column_factors.empty()) needs.add(Feature::UnevenGrid);
+  if (!scene.material.regions.empty()) needs.add(Feature::Regions);
+  if (scene.cloth.spin_rad_per_s != Vec3{}) needs.add(Feature::Spin);
   if (scene.cloth.sides == Sides::DoubleDuplicated) needs.add(Feature::DuplicatedLayer);
   // Two-sided contact is a matter of contact: with nothing to touch there is nothing to do for it.
   if (scene.cloth.sides == Sides::Double && !(needs & kColliderFeatures).empty()) needs.add(Feature::DoubleSided);
@@ -203,13 +207,17 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   s.material.bending_rigidity_N_m = material["bending_rigidity_N_m"].get<double>();
   s.material.damping_per_s = material["damping_per_s"].get<double>();
   s.material.shear = material["shear"].get<bool>();
+  read_irregular(scenario, s, source);
   s.pins = read_pins(scenario["pins"], s.cloth, source);
   if (scenario.contains("expect")) read_expect(scenario["expect"], s, source);
   s.gravity_m_per_s2 = vec3(scenario["gravity_m_per_s2"]);
-  s.time = {scenario["time"]["frame_rate_hz"].get<double>(), scenario["time"]["duration_s"].get<double>()};
+  s.time.frame_rate_hz = scenario["time"]["frame_rate_hz"].get<double>();
+  s.time.duration_s = scenario["time"]["duration_s"].get<double>();
   if (!(s.time.duration_s * s.time.frame_rate_hz <= kMostFrames)) refuse(source, "/time/duration_s", fmt::format("at most {} frames", kMostFrames));
   if (s.time.frames() < 1) refuse(source, "/time/duration_s", "at least one frame");
+  read_frame_times(scenario["time"], s, source);
   read_colliders(scenario, s, source, assets);
+  read_stability(scenario, s);
   if (scenario.contains("seed")) s.seed = scenario["seed"].get<std::uint64_t>();
   if (scenario.contains("truth")) s.truth_card = scenario["truth"]["card"].get<std::string>();
   s.needs = derive_needs(s);

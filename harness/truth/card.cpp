@@ -29,12 +29,13 @@ std::function<double(const Columns&)> tip(const Vec3& start, const Vec3& directi
 
 Card free_fall(const Strip& s) {
   s.need_gravity();
+  s.need_even_masses();
   s.need_pins({}, "nothing that is held");
   s.need_damping(false);
   s.need_flat();
   Card card = s.card();
   card.quantity_name = "fall of the centre of mass";
-  const double whole = s.scene.time.frames() * s.scene.time.dt();
+  const double whole = s.time_s(s.scene.time.frames());
   card.quantity_scale = 0.5 * s.g * whole * whole;
   const auto fallen = [s, v0 = s.scene.cloth.initial_velocity_m_per_s](double share, int frame) {
     const double t = s.time_s(frame);
@@ -65,6 +66,7 @@ Card pendulum(const Strip& s) {
   s.need_pins(s.edge("u0"), "edge u0 pinned and nothing else held");
   s.need_inextensible();
   s.need_damping(false);
+  s.need_even_masses();
   Card card = s.card();
   card.quantity_name = "angle from the vertical";
   card.quantity_scale = std::numbers::pi / 2;
@@ -93,8 +95,9 @@ Card swing_strip(const Strip& s) {
   s.need_inextensible();
   s.need_no_bending();
   s.need_damping(false);
+  s.need_even_masses();
   const double horizon_s = 0.5 * std::sqrt(s.length_m * 9.81 / s.g);
-  s.need(s.scene.time.duration_s <= horizon_s * (1 + 1e-9), "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): then comes chaos");
+  s.need(s.time_s(s.scene.time.frames()) <= horizon_s * (1 + 1e-9), "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): then comes chaos");
   Card card = s.card();
   card.quantity_name = "distance of the free end from the wall";
   card.quantity = tip(s.start, s.along);
@@ -129,7 +132,7 @@ Card heavy_strip(const Strip& s) {
   s.need_pins(s.edge("u0"), "edge u0 pinned and nothing else held");
   s.need_no_bending();
   s.need_damping(true);
-  const HeavyStrip strip{s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), s.g, 0, StretchLaw::EngineeringSpring};
+  const HeavyStrip strip{s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), s.g, s.end_load_N_per_m(), StretchLaw::EngineeringSpring};
   Card card = s.card();
   card.settles = card.by_quantity = true;
   card.quantity_name = "stretch of the strip";
@@ -156,6 +159,7 @@ Card catenary(const Strip& s) {
   s.need_inextensible();
   s.need_no_bending();
   s.need_damping(true);
+  s.need_even_masses();
   Card card = s.card();
   card.settles = true;
   card.quantity_name = "sag";
@@ -184,6 +188,7 @@ Card cantilever(const Strip& s) {
   s.need_pins(clamp_vertices(s.scene.cloth, "u0"), "edge u0 clamped and nothing else held");
   s.need_damping(true);
   s.need(s.scene.needs.has(Feature::Bend), "a bending rigidity");
+  s.need_even_masses();
   const double cell = s.scene.cloth.du(), free_m = s.length_m - cell, weight = s.scene.cloth.areal_density_kg_per_m2 * s.g;
   const auto Y = s.scene.material.membrane_stiffness_N_per_m;
   s.need(!Y || weight * free_m / *Y <= kMostStrain, "a membrane that its own weight stretches by 1e-7 at most");
@@ -225,6 +230,9 @@ TwoHandPull bars_of(const Strip& s) {
   const double speed = dot(velocity(1), s.along), ramp_s = grips[0].at("ramp_s").get<double>();
   const bool alike = length(velocity(0) + velocity(1)) <= 1e-9 * speed && length(velocity(1) - speed * s.along) <= 1e-9 * speed &&
                      grips[1].at("ramp_s").get<double>() == ramp_s;
+  for (const nlohmann::json& grip : grips)
+    for (const char* key : {"stop_s", "release_s", "jumps"}) s.need(!grip.contains(key), std::string("bars without \"") + key + "\"");
+  s.need_even_masses();
   s.need(speed > 0 && alike && s.scene.pins.vertices.empty(), kBars);
   return {s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), speed, ramp_s};
 }

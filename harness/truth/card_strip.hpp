@@ -35,6 +35,7 @@ struct Strip {
   }
 
   void need_rows() const {
+    need((scene.needs & FeatureSet{Feature::UnevenGrid, Feature::Regions, Feature::Spin}).empty(), "even cells and no spin");
     need(!scene.needs.has(Feature::Shear), "\"shear\": false in its material: rows that do not feel one another");
     need(std::abs(dot(scene.cloth.axis_v, up)) <= kLevel, "axis_v at right angles to gravity");
   }
@@ -49,6 +50,16 @@ struct Strip {
   }
   void need_flat() const { need(scene.cloth.span_m == 0 && scene.cloth.drape_radius_m == 0, "a flat start"); }
   void need_rest() const { need(length(scene.cloth.initial_velocity_m_per_s) == 0, "a start at rest"); }
+  /// Extra weight per width that hangs on edge u1, if masses are scaled there and nowhere else.
+  double end_load_N_per_m() const {
+    if (scene.cloth.mass_factors.empty()) return 0;
+    const Cloth& c = scene.cloth;
+    const double factor = c.mass_factors.back();
+    for (std::size_t v = 0; v < c.mass_factors.size(); ++v)
+      need(c.mass_factors[v] == ((v + 1) % static_cast<std::size_t>(c.columns) == 0 ? factor : 1), "masses scaled on edge u1 at most, all alike");
+    return (factor - 1) * c.areal_density_kg_per_m2 * c.du() / 2 * g;
+  }
+  void need_even_masses() const { need(scene.cloth.mass_factors.empty(), "masses that are not scaled"); }
   void need_pins(std::vector<std::uint32_t> expected, const std::string& what) const {
     std::sort(expected.begin(), expected.end());
     need(scene.pins.vertices == expected && scene.grips.vertices.empty(), what);
@@ -64,7 +75,7 @@ struct Strip {
   }
   std::vector<std::uint32_t> edge(const char* name) const { return edge_vertices(scene.cloth, name); }
   Vec3 at(double x, double z) const { return start + x * along + z * up; }
-  double time_s(int frame) const { return frame * scene.time.dt(); }
+  double time_s(int frame) const { return scene.time.at(frame); }
   std::vector<double> times_s() const {
     std::vector<double> out;
     for (int f = 0; f <= scene.time.frames(); ++f) out.push_back(time_s(f));

@@ -63,6 +63,7 @@ Draped draped(const Strip& s) {
   const Vec3 down = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   s.need(std::abs(dot(down, s.up) + 1) <= Strip::kLevel, "axis_u x axis_v down");
   s.need_rest();
+  s.need_even_masses();
   s.need_pins({}, "nothing that is held");
   s.need_inextensible();
   s.need_no_bending();
@@ -129,11 +130,12 @@ Card over_cylinder(const Strip& s, const std::function<double(int)>& way, bool m
 Card incline(const Strip& s) {
   s.need_gravity();
   s.need_flat();
+  s.need_even_masses();
   s.need_pins({}, "nothing that is held");
   s.need_damping(false);
   const Cloth& c = s.scene.cloth;
   const Collider& collider = only_collider(s, "a plane or a box");
-  const double most = s.scene.time.frames() * s.scene.time.dt();
+  const double most = s.time_s(s.scene.time.frames());
   const Vec3 v0 = c.initial_velocity_m_per_s;
   Face face = face_of(s, collider, {});
   const auto downhill = [&] {

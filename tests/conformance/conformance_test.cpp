@@ -27,6 +27,7 @@ std::vector<Case> cases() {
     for (const auto& file : fs::recursive_directory_iterator(CLOTHBENCH_SOURCE_DIR "/scenarios")) {
       fs::path relative = fs::relative(file.path(), CLOTHBENCH_SOURCE_DIR "/scenarios");
       const std::string folder = relative.begin()->string();
+      if (folder == "stability") continue;  // they name vertices of their own grids, and are there to fail
       if (file.path().extension() != ".json" || folder == "schema" || folder == "studies" || folder == "assets") continue;
       for (const char* sides : {"single", "double-duplicated", "double"})
         for (const char* grid : {"[2,2]", "[9,7]", "[17,33]"})  // not multiples of any workgroup

@@ -27,6 +27,9 @@ enum class Feature : std::uint8_t {
   DuplicatedLayer,  ///< the paper's second, oppositely wound layer of particles tied to the first
   SelfCollision,
   Render,
+  UnevenGrid,       ///< cells of different widths (cloth.column_factors)
+  Regions,          ///< a membrane stiffness that changes from column to column (material.regions)
+  Spin,             ///< a start that turns: another velocity at every vertex
   Count
 };
 
@@ -35,7 +38,7 @@ inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::C
 inline constexpr std::array<std::string_view, kFeatureCount> kFeatureNames = {
     "stretch",     "shear",       "bend",     "damping",      "pins",             "moving_pins",    "sphere", "box", "plane",
     "capsules",    "static_mesh", "moving_mesh", "friction",  "double_sided",     "duplicated_layer",
-    "self_collision", "render"};
+    "self_collision", "render",   "uneven_grid", "regions", "spin"};
 
 constexpr std::string_view name_of(Feature f) { return kFeatureNames[static_cast<std::size_t>(f)]; }
 

@@ -10,7 +10,7 @@ namespace clothbench {
 
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// How a cell ended. `status` is one of ok, not_finite, diverged, device_lost, timed_out, unsupported, error.
+/// How a cell ended. `status` is one of ok, not_finite, diverged, device_lost, timed_out, crashed, unsupported, error.
 struct Outcome {
   std::string status = "ok";
   std::string klass = "ok";  ///< F0..F8 or ok

@@ -14,6 +14,27 @@ namespace clothbench {
 /// How the paper's "single-sided" and "double-sided" cloths are told apart; see docs of `cloth.sides` in the schema.
 enum class Sides { Single, DoubleDuplicated, Double };
 
+/// Where vertices start that do not start at rest: everything that is not pinned, unless said otherwise. Seeded, so that
+/// one seed is one start, bit for bit.
+struct Start {
+  /// Sphere: uniform on a sphere. Plane: uniform on a disc in the sheet's plane. Line: on its middle line along u. Point:
+  /// all at its centre. Folded: folded along u like a map, fold on fold.
+  enum class Shape : std::uint8_t { Rest, Sphere, Plane, Line, Point, Folded };
+  Shape shape = Shape::Rest;
+  double radius_m = 0;         ///< of the sphere or the disc
+  int folds = 0;               ///< leaves of a folded sheet
+  double noise_m = 0;          ///< standard deviation of every coordinate
+  std::uint64_t seed = 0;
+  std::vector<std::vector<std::uint32_t>> merged;  ///< all vertices of a list start where its first one does
+  struct Move {
+    std::vector<std::uint32_t> vertices;
+    Vec3 by_m{};
+  };
+  std::vector<Move> moved;     ///< pinned ones too: they are then held there
+
+  bool at_rest() const { return shape == Shape::Rest && noise_m == 0 && merged.empty() && moved.empty(); }
+};
+
 /// Rectangular sheet. Vertex (i, j) has index j*columns + i, material coordinates (i*du, j*dv), and lies in the plane
 /// spanned by `axis_u` and `axis_v` (orthonormal) around `center_m`.
 struct Cloth {
@@ -28,10 +49,22 @@ struct Cloth {
   /// hanging along axis_u x axis_v elsewhere, its middle `drape_offset_m` from the top, towards u1.
   double drape_radius_m = 0, drape_offset_m = 0;
   Vec3 initial_velocity_m_per_s{};
+  Vec3 spin_rad_per_s{};               ///< about center_m, on top of the velocity
+  std::vector<double> column_factors;  ///< relative width of every cell along u; empty = all alike. They fill width_m
+  std::vector<double> mass_factors;    ///< one per vertex; empty = all 1
+  Start start;
 
   std::size_t vertex_count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   double du() const { return width_m / (columns - 1); }
   double dv() const { return height_m / (rows - 1); }
+  /// Rest coordinate of grid line `i` along u, 0 to width_m, whatever the cells' widths; du() is their mean.
+  double line_u_m(int i) const;
+};
+
+/// A membrane stiffness of the cells of columns `first` to `last` (the first cell is 0), instead of the sheet's.
+struct StiffnessRegion {
+  int first = 0, last = 0;
+  std::optional<double> membrane_stiffness_N_per_m;
 };
 
 /// Continuum data only; every solver maps it onto its own model and says how (its README).
@@ -40,6 +73,7 @@ struct Material {
   double bending_rigidity_N_m = 0;                   ///< B; 0 = bending off
   bool shear = true;                                 ///< false: strips that do not feel one another, no diagonals
   double damping_per_s = 0;                          ///< mass-proportional: dv/dt = -c v
+  std::vector<StiffnessRegion> regions;              ///< later ones over earlier ones
 };
 
 /// Vertices held at their initial position for the whole run.
@@ -58,6 +92,26 @@ struct TimeSpan {
   double duration_s = 0;
   double dt() const { return 1.0 / frame_rate_hz; }
   int frames() const { return static_cast<int>(duration_s * frame_rate_hz + 0.5); }
+  /// Ends of the frames where they are not all alike (a hitch, a jitter), frames() + 1 of them from 0 on; empty = even.
+  std::vector<double> ends_s = {};
+  /// Time at the end of frame `frame` (0: the start), and the length of frame `frame` + 1.
+  double at(int frame) const { return ends_s.empty() ? frame * dt() : ends_s.at(static_cast<std::size_t>(frame)); }
+  double dt_after(int frame) const { return ends_s.empty() ? dt() : at(frame + 1) - at(frame); }
+};
+
+/// A grip or a collider that is somewhere else from one frame to the next.
+struct Jump {
+  int frame = 0;  ///< at whose end it has jumped; the first is 1
+  double distance_m = 0;
+};
+
+/// How a run of the scene is judged frame by frame, by the classes F0 to F8 of metrics/stability.
+struct StabilityRules {
+  std::string name;       ///< of the case: "S01"; empty = not judged
+  std::uint32_t judged = 0;  ///< bit k: class Fk counts
+  bool when_relaxed = false;  ///< F1 to F3 count from the first frame on whose mean |strain| is below 1 %
+  double relax_s = 0;     ///< it is to come by then; 0 = whenever
+  double settle_s = 0;    ///< F6 counts from here on
 };
 
 /// What a right result looks like: a bound on a scalar of the summary.
@@ -86,6 +140,8 @@ struct Scene {
   std::string source;  ///< path of the file it came from, for messages
   std::string assets;  ///< where rooms and hands came from: "npm", "procedural", or "" if the scene has none
 
+  std::vector<Jump> jumps;
+  StabilityRules stability;
   std::optional<std::uint64_t> seed;  ///< its parameters were drawn by this number
   std::string truth_card;  ///< of the exact answer, "" = none; see harness/truth/card.hpp
 
@@ -96,11 +152,18 @@ struct Scene {
 };
 
 /// Lumped vertex masses [kg], size vertex_count: quarter of each adjacent cell ("quad-lumped": interior rho*du*dv,
-/// edge half, corner quarter).
+/// edge half, corner quarter), times the vertex's factor.
 std::vector<double> vertex_masses(const Scene&);
 
 /// Initial positions [m], size 3*vertex_count, xyz interleaved.
 std::vector<double> initial_positions(const Scene&);
+
+/// Initial velocities [m/s], size 3*vertex_count, xyz interleaved: velocity and spin, about the centre of the sheet. What is
+/// pinned has one too; a solver holds it all the same.
+std::vector<double> initial_velocities(const Scene&);
+
+/// Y of a structural or shear edge [N/m], of the cell it lies in or (across u) the mean of its two; empty = inextensible.
+std::optional<double> membrane_stiffness(const Scene&, const struct Edge&);
 
 /// Turn [rad] from one row on the cylinder to the next, of a sheet that starts draped. Needs drape_radius_m > du/2.
 double drape_turn_rad(const Cloth&);

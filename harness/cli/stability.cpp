@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cli/run_common.hpp"
+#include "report/report.hpp"
+#include "runner/child.hpp"
+#include "runner/environment.hpp"
+#include "runner/stability_study.hpp"
+
+namespace clothbench {
+namespace {
+
+void add(StabilityCounts& a, const StabilityCounts& b) {
+  a.stable += b.stable;
+  a.degraded += b.degraded;
+  a.failed += b.failed;
+  a.unsupported += b.unsupported;
+  a.crashed += b.crashed;
+}
+
+/// The environment of all its processes; without GPU solvers where there is no device and that is allowed.
+nlohmann::json settle(Study& study, const DeviceFlags& flags, std::vector<std::string>& only) {
+  const SolverEntry* gpu = nullptr;
+  for (const SolverEntry& e : solvers())
+    if (e.devices && e.info.on_gpu) gpu = &e;
+  DeviceInfo device;
+  if (gpu != nullptr && check_device(*gpu, flags)) {
+    const std::vector<DeviceInfo> all = gpu->devices();
+    std::size_t best = 0;
+    for (std::size_t k = all.size(); k-- > 0;)
+      if (!all[k].is_software) best = k;
+    device = all[flags.options.index >= 0 ? static_cast<std::size_t>(flags.options.index) : best];
+  } else if (gpu != nullptr) {
+    const auto is_gpu = [](const std::string& name) {
+      for (const SolverEntry& e : solvers())
+        if (e.info.name == name) return e.info.on_gpu;
+      return false;
+    };
+    for (Study::Item& item : study.scenes)
+      std::erase_if(item.solvers, [&](std::size_t k) { return is_gpu(study.solvers[k].solver); });
+    if (only.empty())
+      for (const SolverEntry& e : solvers())
+        if (!e.info.on_gpu) only.push_back(e.info.name);
+    std::erase_if(only, is_gpu);
+  }
+  return describe_environment(device, "stability-map");
+}
+
+}  // namespace
+
+void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only,
+                            Console& console) {
+  const nlohmann::json environment = settle(study, flags.device, only);
+  const std::filesystem::path out =
+      flags.out.empty() ? default_folder(manifest.study) : std::filesystem::path(flags.out);
+  std::filesystem::create_directories(out);
+  manifest.created = utc_now();
+  manifest.command_line = console.command_line;
+  for (const Study::Item& item : study.scenes)
+    for (const std::size_t k : item.solvers) {
+      CellHeader h;
+      h.scene = item.scene.name;
+      h.solver = study.solvers[k].solver;
+      h.setting = study.solvers[k].label;
+      manifest.cells.push_back(cell_name(h));
+    }
+  write_manifest(out, manifest);
+  StabilityCounts counts;
+  {
+    StatusLine line(!console.json);
+    StabilityOptions options;
+    options.out = out;
+    options.program = own_program();
+    options.device = flags.device.options;
+    options.resume = flags.resume;
+    options.solvers = only;
+    options.environment = environment;
+    options.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
+      line.show(what, done, total);
+    };
+    counts = run_stability_cells(study, options);
+    add(counts, run_stability_maps(study, options));
+  }
+  if (console.json) {
+    nlohmann::json j = {{"out", out.string()},     {"stable", counts.stable},           {"degraded", counts.degraded},
+                        {"failed", counts.failed}, {"unsupported", counts.unsupported}, {"crashed", counts.crashed}};
+    fmt::print("{}\n", j.dump(2));
+    return;
+  }
+  print_console_report({out});
+  fmt::print("\n{} runs stable, {} degraded, {} failed ({} of them crashed or hung), {} unsupported; results in {}\n",
+             counts.stable, counts.degraded, counts.failed, counts.crashed, counts.unsupported, out.string());
+}
+
+}  // namespace clothbench

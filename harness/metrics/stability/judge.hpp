@@ -1,0 +1,109 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "clothbench/record.hpp"
+#include "metrics/metric.hpp"
+#include "metrics/stability/crossing.hpp"
+#include "metrics/stability/envelope.hpp"
+#include "truth/card.hpp"
+
+namespace clothbench {
+
+struct TruthErrors;
+
+/// Thresholds of the outcome classes. All are ours; published work rarely prints its own.
+namespace stability {
+inline constexpr double kSpeed = 10;        ///< F1: times v_char
+inline constexpr double kGain = 0.1;        ///< F2: energy gained over M g L
+inline constexpr double kStrain = 0.10;     ///< F3: greatest strain beyond the truth, for more than ...
+inline constexpr int kStrainFrames = 3;     ///< ... so many frames in a row
+inline constexpr double kStrainP99 = 0.05;  ///< F3: 99th percentile, in any frame
+inline constexpr double kTorn = 1;          ///< F3: strain beyond the truth in any frame
+inline constexpr double kAreaLow = 0.05, kAreaHigh = 4, kFoldDegrees = 170, kBadShare = 0.01;  // F4
+inline constexpr double kDepthMargins = 2, kDepthCells = 0.25, kContactGrace_s = 0.25;         // F5
+inline constexpr double kUnrest = 1e-3, kDriftPerMinute = 1e-3, kDriftFrom_s = 10;             // F6
+inline constexpr double kFall = 0.01, kFallFrom_s = 0.1;                                       // F7
+inline constexpr double kRelaxed = 0.01;  ///< mean |strain| from which on F1 to F3 count, where they wait
+inline constexpr double kQuantity = 0.02, kQuantityLength = 1e-3;  ///< F3 at the end: the truth's quantity at rest
+}  // namespace stability
+
+/// One frame by the outcome classes
+///   F0 not finite   F1 speed      F2 energy gain   F3 strain     F4 geometry
+///   F5 contact      F6 unrest     F7 stagnation    (F8, budget and device, is the runner's)
+/// Numbers are what the thresholds above are for; NaN where the scene has none or they do not count yet.
+struct StabilityFrame {
+  unsigned classes = 0;           ///< bit k: Fk, of those that the scene judges
+  double speed = kMissing;        ///< greatest vertex speed over v_char
+  double energy_gain = kMissing;  ///< over M g L (M v_char^2 without gravity)
+  double strain_excess = kMissing, strain_p99 = kMissing;
+  double bad_geometry = kMissing;  ///< share of triangles or folds, the greater
+  double depth = kMissing;         ///< over its limit; infinite: tunnelled
+  double unrest = kMissing;        ///< RMS speed over sqrt(g L)
+  double fall_error = kMissing;    ///< of the centre of mass, over g T^2/2
+};
+
+/// Judges the frames of one run, in order, by its scene's rules: a pure function of frames, scene and truth.
+///
+/// Energy is what can be seen, kinetic and gravity's, against all there was at the start, elastic included (by the
+/// strain, E = Y A e^2/2), and all that hands and colliders can have put in; so a model's own elastic energy, which
+/// solvers without a modulus do not have, is never charged to it twice.
+class StabilityJudge {
+ public:
+  explicit StabilityJudge(const MetricContext&);
+  StabilityFrame judge(int frame, const ClothState&, const SceneContact*, const TruthErrors*);
+
+ private:
+  struct Strain {
+    double mean, rms, greatest, p99;  ///< mean of |e|; the others signed
+  };
+  Strain strain_of(const std::vector<double>& x) const;
+  void judge_motion(int frame, const ClothState&, const Strain&, StabilityFrame&);
+  void judge_strain(int frame, const Strain&, const TruthErrors*, StabilityFrame&);
+  void judge_geometry(const ClothState&, StabilityFrame&) const;
+  void judge_contact(int frame, const ClothState&, const SceneContact*, StabilityFrame&);
+  void judge_rest(int frame, const ClothState&, StabilityFrame&);
+  void judge_fall(int frame, const ClothState&, StabilityFrame&) const;
+  double visible_energy(const ClothState&) const;
+  bool settled(int frame) const;
+
+  const MetricContext context_;
+  const Scene& scene_;
+  const std::vector<stability::Bounds> bounds_;
+  const std::vector<double> mass_, start_;
+  const std::vector<Edge> edges_;
+  const std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::vector<std::array<std::uint32_t, 4>> folds_;  ///< two triangles' corners: shared edge, then the two others
+  std::optional<truth::Card> at_rest_;               ///< the scene's card if it is about a shape at rest
+  std::unique_ptr<stability::CapsuleCrossing> crossing_;
+  double total_mass_ = 0, longer_m_ = 0, g_ = 0, stiffness_ = 0;
+  bool relaxed_ = false, ever_relaxed_ = false;
+  int stretched_frames_ = 0;
+  double energy_base_J_ = 0, work_base_J_ = 0;
+  std::vector<double> settled_at_;
+  double settled_s_ = 0;
+};
+
+/// What a whole pass comes to.
+struct StabilityVerdict {
+  enum class Grade { Stable, Degraded, Failed };
+  Grade grade = Grade::Stable;
+  std::string klass = "ok";  ///< of the first frame that is worst
+  int frame = -1;            ///< that frame
+};
+
+/// From a pass's series `stability_classes`: failed by any of F0, F1, F2, F4, F5, F7, degraded by F3 or F6.
+StabilityVerdict stability_verdict(const AccuracyPass&);
+
+/// `stability_grade` (0 stable, 1 degraded, 2 failed), `stability_frame`, `stability_class` (the number of F) and the
+/// extremes of the series. Empty for a scene that is not judged.
+std::map<std::string, double> summarise_stability(const Scene&, const AccuracyPass&, const Outcome&);
+
+const char* name_of(StabilityVerdict::Grade);
+
+/// A sentence on a class: "F2 energy gain".
+std::string class_name(int k);
+
+}  // namespace clothbench

@@ -1,0 +1,229 @@
+#include "report/stability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include "clothbench/error.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* kExtremes[] = {"stability_speed_max",         "stability_energy_gain_max",
+                                     "stability_strain_excess_max", "stability_strain_p99_max",
+                                     "stability_bad_geometry_max",  "stability_depth_max",
+                                     "stability_unrest_max",        "stability_fall_error_max"};
+constexpr const char* kGrades[] = {"stable", "degraded", "failed"};
+
+json scenario_of(const CellRecord& c) { return json::parse(c.header.scenario_json, nullptr, false); }
+
+/// "S01 s01-stiffness"
+std::string case_of(const json& scenario) {
+  const auto name = scenario.value("name", "");
+  return scenario["stability"].value("case", "") + " " + (name.size() > 4 && name[3] == '-' ? name.substr(4) : name);
+}
+
+std::string solver_of(const CellRecord& c) {
+  return c.header.setting == "default" || c.header.setting.empty() ? c.header.solver
+                                                                   : c.header.solver + " " + c.header.setting;
+}
+
+/// 0 stable, 1 degraded, 2 failed; -1 where the solver cannot run it or it has not been run.
+int grade_of(const CellRecord& c) {
+  if (c.outcome.status == "unsupported" || c.outcome.status == "missing") return -1;
+  const auto at = c.summary.find("stability_grade");
+  return at != c.summary.end() && std::isfinite(at->second) ? static_cast<int>(at->second) : 2;
+}
+
+std::string class_of(const CellRecord& c) {
+  return c.outcome.klass == "ok" || c.outcome.klass.empty() ? "F8" : c.outcome.klass;
+}
+
+struct Tally {
+  int count[3] = {0, 0, 0}, unsupported = 0, missing = 0;
+  std::map<std::string, int> classes[3];
+
+  void add(const CellRecord& c) {
+    const int grade = grade_of(c);
+    if (grade < 0) {
+      ++(c.outcome.status == "missing" ? missing : unsupported);
+      return;
+    }
+    ++count[grade];
+    if (grade > 0) ++classes[grade][class_of(c)];
+  }
+
+  std::string text() const {
+    const int all = count[0] + count[1] + count[2];
+    if (all == 0) return unsupported > 0 ? "unsupported" : "–";
+    std::string out = fmt::format("{}/{} stable", count[0], all);
+    for (int grade : {1, 2}) {
+      if (count[grade] == 0) continue;
+      out += fmt::format(", {} {} (", count[grade], kGrades[grade]);
+      bool first = true;
+      for (const auto& [klass, n] : classes[grade]) {
+        out += (first ? "" : ", ") + klass + (classes[grade].size() > 1 ? fmt::format(" {}", n) : "");
+        first = false;
+      }
+      out += ")";
+    }
+    return out;
+  }
+};
+
+std::string exact(double v) { return std::isfinite(v) ? fmt::format("{}", v) : v > 0 ? "inf" : ""; }
+
+/// 3 digits, with an exponent where that is shorter.
+std::string short_number(double v) { return fmt::format("{:.3g}", v); }
+
+std::string name_of(const json& solver) {
+  const auto setting = solver.value("setting", "default");
+  return solver.at("solver").get<std::string>() + (setting == "default" ? "" : " " + setting);
+}
+
+std::string with_unit(const std::string& value, const json& axis) {
+  const auto unit = axis.value("unit", "");
+  return unit.empty() ? value : value + " " + unit;
+}
+
+}  // namespace
+
+bool is_stability(const CellRecord& c) {
+  const json scenario = scenario_of(c);
+  return scenario.is_object() && scenario.contains("stability");
+}
+
+json stability_maps(const std::vector<fs::path>& runs) {
+  json all = json::array();
+  for (const fs::path& run : runs) {
+    const fs::path file = run / "stability.json";
+    std::error_code ec;
+    if (!fs::is_regular_file(file, ec)) continue;
+    std::ifstream in(file);
+    const json j = json::parse(in, nullptr, false);
+    if (!j.is_object() || j.value("format", "") != "clothbench-stability")
+      throw Error(file.string() + ": not maps of a stability study");
+    for (const json& map : j.at("maps")) all.push_back(map);
+  }
+  return all;
+}
+
+Table robustness_table(const std::vector<CellRecord>& cells) {
+  Table t{"Robustness",
+          "Runs of each case that were stable; degraded: strain or unrest out of bounds (F3, F6) and nothing else; "
+          "failed: any other class. F0 not finite, F1 speed, F2 energy gain, F3 strain, F4 geometry, F5 contact, F6 "
+          "unrest, F7 stagnation, F8 budget, crash or device.",
+          {}};
+  std::vector<std::string> cases, solvers;
+  std::map<std::pair<std::string, std::string>, Tally> tally;
+  std::map<std::string, Tally> whole;
+  for (const CellRecord& c : cells) {
+    const std::string solver = solver_of(c), kase = case_of(scenario_of(c));
+    if (std::find(cases.begin(), cases.end(), kase) == cases.end()) cases.push_back(kase);
+    if (std::find(solvers.begin(), solvers.end(), solver) == solvers.end()) solvers.push_back(solver);
+    tally[{kase, solver}].add(c);
+    whole[solver].add(c);
+  }
+  t.rows.push_back({"case"});
+  t.rows.back().insert(t.rows.back().end(), solvers.begin(), solvers.end());
+  const auto row = [&](const std::string& title, const auto& of) {
+    std::vector<std::string> r = {title};
+    for (const std::string& s : solvers) r.push_back(of(s));
+    t.rows.push_back(std::move(r));
+  };
+  for (const std::string& kase : cases)
+    row(kase, [&](const std::string& s) {
+      const auto at = tally.find({kase, s});
+      return at == tally.end() ? std::string("–") : at->second.text();
+    });
+  row("all", [&](const std::string& s) { return whole[s].text(); });
+  return t;
+}
+
+Table headline_table(const json& maps) {
+  Table t{"Largest stable values",
+          "The least over all rows and seeds of a map. ≥: the whole range is good in every row. none: some row has no "
+          "good value in the range.",
+          {{"map", "solver", "largest"}}};
+  for (const json& m : maps)
+    t.note += " " + m.at("title").get<std::string>() + ": " + m.at("headline").get<std::string>() + ".";
+  for (const json& m : maps)
+    for (const json& s : m.at("solvers")) {
+      std::string value = "unsupported";
+      if (!s.at("unsupported").get<bool>()) {
+        const double largest = s.at("largest").is_null() ? 0 : s.at("largest").get<double>();
+        value = largest == 0 ? "none"
+                             : with_unit((s.at("open").get<bool>() ? "≥ " : "") + short_number(largest), m.at("x"));
+      }
+      t.rows.push_back({m.at("title"), name_of(s), value});
+    }
+  return t;
+}
+
+Table boundary_table(const json& maps) {
+  Table t{"Boundaries",
+          "Last good value of x in every row (least of its seeds), to 0.05 decades; ≥: nothing in the range is bad.",
+          {{"map", "solver", "y", "last good x", "first bad x", "seeds"}}};
+  for (const json& m : maps)
+    for (const json& s : m.at("solvers"))
+      for (const json& row : s.at("rows")) {
+        double good = INFINITY, bad = INFINITY;
+        for (const json& seed : row.at("seeds")) {
+          good = std::min(good, seed.at("last_good").get<double>());
+          if (!seed.at("first_bad").is_null()) bad = std::min(bad, seed.at("first_bad").get<double>());
+        }
+        t.rows.push_back({m.at("name"), name_of(s), with_unit(short_number(row.at("y")), m.at("y")),
+                          good == 0 ? "none" : (std::isfinite(bad) ? "" : "≥ ") + short_number(good),
+                          std::isfinite(bad) ? short_number(bad) : "–", std::to_string(row.at("seeds").size())});
+      }
+  return t;
+}
+
+Table first_failure_table(const std::vector<CellRecord>& cells) {
+  Table t{"What was not stable", "In brackets the first such frame.", {{"solver", "grade", "class", "runs"}}};
+  std::map<std::tuple<std::string, int, std::string>, std::string> runs;
+  for (const CellRecord& c : cells) {
+    const int grade = grade_of(c);
+    if (grade < 1) continue;
+    std::string& text = runs[{solver_of(c), -grade, class_of(c)}];
+    text += (text.empty() ? "" : ", ") + c.header.scene;
+    if (c.outcome.failed_frame >= 0) text += fmt::format(" ({})", c.outcome.failed_frame);
+    if (c.outcome.status != "ok" && c.outcome.status != "diverged") text += " " + c.outcome.status;
+  }
+  for (const auto& [key, text] : runs)
+    t.rows.push_back({std::get<0>(key), kGrades[-std::get<1>(key)], std::get<2>(key), text});
+  return t;
+}
+
+std::string stability_csv(const std::vector<CellRecord>& cells) {
+  std::vector<std::string> head = {"case",  "scene", "solver", "setting", "status",
+                                   "grade", "class", "frame",  "message"};
+  head.insert(head.end(), std::begin(kExtremes), std::end(kExtremes));
+  std::string out = csv_row(head);
+  for (const CellRecord& c : cells) {
+    const int grade = grade_of(c);
+    std::vector<std::string> row = {scenario_of(c)["stability"].value("case", ""),
+                                    c.header.scene,
+                                    c.header.solver,
+                                    c.header.setting,
+                                    c.outcome.status,
+                                    grade < 0 ? "" : kGrades[grade],
+                                    grade > 0 ? class_of(c) : "",
+                                    c.outcome.failed_frame < 0 ? "" : std::to_string(c.outcome.failed_frame),
+                                    c.outcome.message};
+    for (const char* name : kExtremes) {
+      const auto at = c.summary.find(name);
+      row.push_back(at == c.summary.end() ? "" : exact(at->second));
+    }
+    out += csv_row(row);
+  }
+  return out;
+}
+
+}  // namespace clothbench

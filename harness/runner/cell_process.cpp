@@ -1,0 +1,188 @@
+#include "runner/cell_process.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+
+#include "metrics/stability/judge.hpp"
+#include "results/store.hpp"
+#include "runner/cell.hpp"
+#include "runner/child.hpp"
+#include "runner/environment.hpp"
+#include "runner/expect.hpp"
+#include "runner/replay.hpp"
+#include "scenario/json_text.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+Scene scene_of(const CellRequest& r) {
+  Scene scene = scene_from_json(r.scenario, r.source, r.set);
+  scene.name = r.name;
+  return scene;
+}
+
+/// The last line that a child wrote, shortened: mostly why it ended.
+std::string last_words(const fs::path& log) {
+  std::ifstream in(log);
+  std::string last;
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty()) last = line;
+  return last.size() > 300 ? last.substr(0, 300) + "…" : last;
+}
+
+/// The file of a cell whose process could not write it.
+void write_failure(const CellRequest& r, const CellAnswer& answer) {
+  const Scene scene = scene_of(r);
+  CellHeader h;
+  h.scene = scene.name;
+  h.solver = r.solver;
+  h.setting = r.setting;
+  h.settings = r.settings;
+  h.scenario_json = scene.json;
+  h.scenario_sha256 = scene.sha256;
+  h.environment = describe_environment({}, r.protocol);
+  h.vertices = static_cast<std::uint32_t>(scene.cloth.vertex_count());
+  for (const auto& t : triangles(scene.cloth)) h.triangles.insert(h.triangles.end(), t.begin(), t.end());
+  if (cell_finished(r.out, cell_name(h))) return;
+  // What it left half-written is not to be mistaken for the beginning of this.
+  std::error_code ignored;
+  fs::remove_all(r.out / (cell_name(h) + ".part"), ignored);
+  CellWriter(r.out, h).finish(answer.outcome, answer.summary);
+}
+
+CellAnswer run_here(const CellRequest& r, const SolverLookup& lookup) {
+  const auto began = std::chrono::steady_clock::now();
+  const Scene scene = scene_of(r);
+  const SolverEntry& entry = lookup(r.solver);
+  const json settings = entry.make ? complete_settings(entry.info, r.settings) : r.settings;
+  Cell cell({&scene, &entry, settings, r.setting}, r.device, r.protocol);
+  CellRecord record;
+  record.header = cell.header();
+  TrialRules rules;
+  rules.trials = 0;
+  rules.accuracy_duration_s = scene.time.duration_s;
+  rules.cell_limit_s = r.limit_s;
+  if (cell.alive()) record.accuracy = cell.run_accuracy(rules);
+  record.outcome = cell.outcome();
+  if (const int messages = cell.validation_messages(); messages > 0)
+    record.outcome = {"error", "ok", -1, fmt::format("{} validation messages", messages)};
+  CellAnswer answer;
+  answer.summary = summarise(cell.spec(), cell.plan(), record);
+  Verdict verdict = judge(scene, record.outcome, record.accuracy, answer.summary);
+  record.outcome.expect = verdict.text;
+  answer.summary.merge(verdict.scalars);
+  answer.outcome = record.outcome;
+  answer.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  if (r.out.empty()) return answer;
+  CellWriter writer(r.out, cell.header());
+  if (!record.accuracy.time_s.empty()) {
+    writer.write_replay(replay_of(scene));
+    writer.write_accuracy(record.accuracy);
+  }
+  writer.finish(answer.outcome, answer.summary);
+  return answer;
+}
+
+}  // namespace
+
+json to_json(const CellRequest& r) {
+  return {{"scenario", r.scenario},
+          {"source", r.source},
+          {"set", r.set},
+          {"name", r.name},
+          {"solver", r.solver},
+          {"setting", r.setting},
+          {"settings", r.settings},
+          {"device", r.device.index},
+          {"validate", r.device.validation},
+          {"profile", r.device.profile},
+          {"protocol", r.protocol},
+          {"limit_s", r.limit_s},
+          {"out", r.out.string()}};
+}
+
+CellRequest request_from_json(const json& j) {
+  CellRequest r;
+  r.scenario = j.at("scenario");
+  r.source = j.at("source");
+  r.set = j.at("set").get<std::vector<std::string>>();
+  r.name = j.at("name");
+  r.solver = j.at("solver");
+  r.setting = j.at("setting");
+  r.settings = j.at("settings");
+  r.device.index = j.at("device");
+  r.device.validation = j.at("validate");
+  r.device.profile = j.at("profile");
+  r.protocol = j.at("protocol");
+  r.limit_s = j.at("limit_s");
+  r.out = j.at("out").get<std::string>();
+  return r;
+}
+
+json to_json(const CellAnswer& a) {
+  return {{"status", a.outcome.status},
+          {"class", a.outcome.klass},
+          {"failed_frame", a.outcome.failed_frame},
+          {"message", a.outcome.message},
+          {"expect", a.outcome.expect},
+          {"summary", a.summary},
+          {"wall_s", a.wall_s}};
+}
+
+CellAnswer answer_from_json(const json& j) {
+  CellAnswer a;
+  a.outcome = {j.at("status"), j.at("class"), j.at("failed_frame"), j.at("message"), j.value("expect", "")};
+  for (const auto& [key, value] : j.at("summary").items())
+    a.summary[key] = value.is_null() ? kMissing : value.get<double>();
+  a.wall_s = j.at("wall_s").is_null() ? kMissing : j.at("wall_s").get<double>();
+  return a;
+}
+
+CellAnswer run_request(const CellRequest& r, const SolverLookup& lookup) {
+  try {
+    return run_here(r, lookup);
+  } catch (const std::exception& e) {  // what a solver cannot load is a row of the table, whatever it throws
+    CellAnswer answer;
+    answer.outcome = {"error", "F8", -1, e.what()};
+    return answer;
+  }
+}
+
+int run_cell_main(const fs::path& request, const fs::path& answer, const SolverLookup& lookup) {
+  const CellRequest r = request_from_json(parse_json(read_text(request), request.string()));
+  write_file_atomically(answer, to_json(run_request(r, lookup)).dump() + "\n");
+  return 0;
+}
+
+CellAnswer run_in_process(const CellRequest& r, const fs::path& program, const fs::path& scratch) {
+  fs::create_directories(scratch);
+  const fs::path request = scratch / "request.json", answer = scratch / "answer.json", log = scratch / "output.txt";
+  std::error_code ignored;
+  fs::remove(answer, ignored);
+  write_file_atomically(request, to_json(r).dump() + "\n");
+  const ChildEnd end = run_child({program.string(), "run-cell", request.string(), answer.string()},
+                                 r.limit_s > 0 ? 1.2 * r.limit_s + 5 : 0, log);
+  if (end.how == ChildEnd::How::Exited && end.code == 0 && fs::exists(answer)) {
+    const CellAnswer a = answer_from_json(parse_json(read_text(answer), answer.string()));
+    // A cell that could not be loaded has written nothing.
+    if (a.outcome.status == "error" && !r.out.empty()) write_failure(r, a);
+    return a;
+  }
+  const std::string words = last_words(log);
+  CellAnswer out;
+  out.wall_s = end.wall_s;
+  const bool hung = end.how == ChildEnd::How::TimedOut;
+  out.outcome = {hung ? "timed_out" : "crashed", "F8", -1,
+                 "its process: " + end.text() + (words.empty() ? "" : "; last words: " + words)};
+  out.summary = summarise_stability(scene_of(r), {}, out.outcome);
+  if (!r.out.empty()) write_failure(r, out);
+  return out;
+}
+
+}  // namespace clothbench

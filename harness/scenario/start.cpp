@@ -1,0 +1,144 @@
+// Where vertices are, how heavy and how fast, before anything moves: the parts of a scene that are not a sheet at rest.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "clothbench/scene.hpp"
+
+namespace clothbench {
+namespace {
+
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// SplitMix64 (Steele, Lea & Flood 2014), one stream a vertex: its numbers do not depend on what is pinned elsewhere.
+class Random {
+ public:
+  Random(std::uint64_t seed, std::uint64_t stream)
+      : state_(seed * 0x9E3779B97F4A7C15u + (stream + 1) * 0xD1B54A32D192ED03u) {}
+
+  /// In [0, 1), 53 bits.
+  double uniform() {
+    state_ += 0x9E3779B97F4A7C15u;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+  }
+
+  /// Standard normal, by Box and Muller.
+  double normal() {
+    const double r = std::sqrt(-2 * std::log(1 - uniform()));
+    return r * std::cos(2 * std::numbers::pi * uniform());
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Place of vertex (i, j) in the frame (axis_u, axis_v, normal) about the centre.
+Vec3 shaped(const Cloth& c, int i, Random& random) {
+  const Start& s = c.start;
+  const double turn = 2 * std::numbers::pi * random.uniform(), share = random.uniform();
+  const double u = c.line_u_m(i) - c.width_m / 2;
+  switch (s.shape) {
+    case Start::Shape::Rest:
+      return {};
+    case Start::Shape::Sphere: {
+      const double height = 2 * share - 1, ring = std::sqrt(1 - height * height);  // Archimedes: uniform in height
+      return {s.radius_m * ring * std::cos(turn), s.radius_m * ring * std::sin(turn), s.radius_m * height};
+    }
+    case Start::Shape::Plane: {
+      const double r = s.radius_m * std::sqrt(share);
+      return {r * std::cos(turn), r * std::sin(turn), 0};
+    }
+    case Start::Shape::Line:
+      return {u, 0, 0};
+    case Start::Shape::Point:
+      return {0, 0, 0};
+    case Start::Shape::Folded:
+      break;  // needs j: see below
+  }
+  return {};
+}
+
+/// A triangular wave: leaf by leaf there and back.
+double folded_u(const Cloth& c, int i) {
+  const double leaf = c.width_m / c.start.folds, u = c.line_u_m(i);
+  const double in_pair = std::fmod(u, 2 * leaf);
+  return in_pair <= leaf ? in_pair : 2 * leaf - in_pair;
+}
+
+void put_shape(const Scene& scene, const std::vector<std::uint8_t>& pinned, std::vector<double>& x) {
+  const Cloth& c = scene.cloth;
+  const Vec3 normal = cross(c.axis_u, c.axis_v);
+  for (int j = 0; j < c.rows; ++j)
+    for (int i = 0; i < c.columns; ++i) {
+      const auto v = static_cast<std::size_t>(j * c.columns + i);
+      Random random(c.start.seed, v);
+      Vec3 p = shaped(c, i, random);
+      if (c.start.shape == Start::Shape::Folded) p = {folded_u(c, i) - c.width_m / 2, j * c.dv() - c.height_m / 2, 0};
+      if (pinned[v] != 0) continue;
+      for (std::size_t k = 0; k < 3; ++k)
+        x[3 * v + k] = c.center_m[k] + p[0] * c.axis_u[k] + p[1] * c.axis_v[k] + p[2] * normal[k];
+    }
+}
+
+}  // namespace
+
+std::vector<double> initial_positions(const Scene& scene) {
+  const Cloth& c = scene.cloth;
+  std::vector<double> x;
+  x.reserve(3 * c.vertex_count());
+  for (int j = 0; j < c.rows; ++j)
+    for (int i = 0; i < c.columns; ++i)
+      for (double value : scene.rest_position(i, j)) x.push_back(value);
+  const Start& s = c.start;
+  if (s.at_rest()) return x;
+  std::vector<std::uint8_t> pinned(c.vertex_count(), 0);
+  for (std::uint32_t v : scene.pins.vertices) pinned[v] = 1;
+  if (s.shape != Start::Shape::Rest) put_shape(scene, pinned, x);
+  for (const auto& group : s.merged)
+    for (std::uint32_t v : group) std::copy_n(x.begin() + 3 * group.front(), 3, x.begin() + 3 * v);
+  for (const Start::Move& m : s.moved)
+    for (std::uint32_t v : m.vertices)
+      for (std::size_t k = 0; k < 3; ++k) x[3 * v + k] += m.by_m[k];
+  if (s.noise_m > 0)
+    for (std::size_t v = 0; v < pinned.size(); ++v) {
+      Random random(~s.seed, v);
+      for (std::size_t k = 0; k < 3; ++k)
+        if (const double by = s.noise_m * random.normal(); pinned[v] == 0) x[3 * v + k] += by;
+    }
+  return x;
+}
+
+std::vector<double> initial_velocities(const Scene& scene) {
+  const Cloth& c = scene.cloth;
+  const std::vector<double> x = initial_positions(scene);
+  std::vector<double> v;
+  v.reserve(x.size());
+  for (std::size_t i = 0; i < c.vertex_count(); ++i) {
+    const Vec3 arm = {x[3 * i] - c.center_m[0], x[3 * i + 1] - c.center_m[1], x[3 * i + 2] - c.center_m[2]};
+    const Vec3 turning = cross(c.spin_rad_per_s, arm);
+    for (std::size_t k = 0; k < 3; ++k) v.push_back(c.initial_velocity_m_per_s[k] + turning[k]);
+  }
+  return v;
+}
+
+std::optional<double> membrane_stiffness(const Scene& scene, const Edge& e) {
+  const Material& m = scene.material;
+  const auto of_cell = [&](int column) {
+    std::optional<double> Y = m.membrane_stiffness_N_per_m;
+    for (const StiffnessRegion& r : m.regions)
+      if (column >= r.first && column <= r.last) Y = r.membrane_stiffness_N_per_m;
+    return Y;
+  };
+  const int columns = scene.cloth.columns, a = static_cast<int>(e.a) % columns, b = static_cast<int>(e.b) % columns;
+  if (a != b) return of_cell(std::min(a, b));
+  const auto left = of_cell(std::max(a - 1, 0)), right = of_cell(std::min(a, columns - 2));
+  if (!left || !right) return std::nullopt;
+  return (*left + *right) / 2;
+}
+
+}  // namespace clothbench

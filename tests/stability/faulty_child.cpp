@@ -1,0 +1,87 @@
+// Stands in for `clothbench run-cell` with solvers that go wrong as their name says, in frame 3.
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <thread>
+
+#include "clothbench/error.hpp"
+#include "runner/cell_process.hpp"
+
+namespace clothbench {
+namespace {
+
+/// Falls as a stone, until it does not.
+class Faulty final : public ClothSolver {
+ public:
+  explicit Faulty(SolverInfo info) : info_(std::move(info)) {}
+  const SolverInfo& info() const override { return info_; }
+  DeviceInfo device() const override { return {"CPU", "", "C++20", false, "{}"}; }
+  void load(const Scene& s) override {
+    if (info_.name == "refuses") throw Error("solver refuses: no such cloth");
+    if (info_.name == "no-memory") throw std::bad_alloc();
+    scene_ = &s;
+    reset();
+  }
+  void reset() override {
+    x_ = initial_positions(*scene_);
+    v_.assign(x_.size(), 0);
+  }
+  StepStatus step(const FrameInput& f) override {
+    for (std::size_t k = 0; k < x_.size(); ++k) x_[k] += f.dt_s * (v_[k] += scene_->gravity_m_per_s2[k % 3] * f.dt_s);
+    if (f.index != 2) return StepStatus::Ok;
+    if (info_.name == "crashes") std::raise(SIGSEGV);
+    if (info_.name == "aborts") {
+      std::fprintf(stderr, "the assertion failed\n");
+      std::fflush(stderr);
+      std::abort();
+    }
+    if (info_.name == "exits") std::_Exit(2);
+    if (info_.name == "hangs")
+      while (true) std::this_thread::sleep_for(std::chrono::seconds(1));
+    if (info_.name == "throws") throw std::runtime_error("thrown in a frame");
+    if (info_.name == "loses-device") return StepStatus::DeviceLost;
+    if (info_.name == "nan") x_[4] = std::numeric_limits<double>::quiet_NaN();
+    return StepStatus::Ok;
+  }
+  void read_state(ClothState& s) const override {
+    s.position = x_;
+    s.velocity = v_;
+  }
+  FrameCost last_cost() const override { return {0, {0}, {0}, {0}}; }
+  Plan plan() const override {
+    Plan p;
+    p.stages = {{"fall", {}, 0, 0, 0}};
+    return p;
+  }
+
+ private:
+  const SolverInfo info_;
+  const Scene* scene_ = nullptr;
+  std::vector<double> x_, v_;
+};
+
+const SolverEntry& look_up(const std::string& name) {
+  static SolverEntry entry;
+  SolverInfo info;
+  info.name = name;
+  info.precision = "float64";
+  for (std::size_t i = 0; i < kFeatureCount; ++i) info.ignores.add(static_cast<Feature>(i));
+  entry.info = info;
+  entry.make = [info](const nlohmann::json&, const DeviceOptions&) { return std::make_unique<Faulty>(info); };
+  entry.free_fall_m = [](const Scene& s, const nlohmann::json&, int n) {
+    const double h = s.time.dt();
+    return s.gravity_m_per_s2[1] * h * h * n * (n + 1) / 2;
+  };
+  return entry;
+}
+
+}  // namespace
+}  // namespace clothbench
+
+int main(int argc, char** argv) {
+  if (argc != 4) return 64;
+  return clothbench::run_cell_main(argv[2], argv[3], clothbench::look_up);
+}

@@ -1,0 +1,126 @@
+// What becomes of a cell whose process does not end well: a row with its reason, and the study goes on.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "clothbench/error.hpp"
+#include "results/store.hpp"
+#include "runner/cell_process.hpp"
+#include "runner/child.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Process : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = fs::temp_directory_path() / ("clothbench-process-" + std::to_string(::getpid()) +
+                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(dir_);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  CellAnswer run(const std::string& solver, double limit_s = 0, bool keep = true) const {
+    CellRequest r;
+    r.scenario =
+        nlohmann::json::parse(R"({"name": "fall", "why": "falls in a test", "cloth": {"grid": [3, 3], "size_m": [1, 1],
+      "areal_density_kg_per_m2": 0.2, "sides": "single"}, "material": {"membrane_stiffness_N_per_m": 1000},
+      "time": {"frame_rate_hz": 60, "duration_s": 0.5}, "stability": {"case": "S02", "judged": ["F0", "F1", "F2", "F3", "F7"]}})");
+    r.source = "test";
+    r.name = "fall-" + solver;
+    r.solver = solver;
+    r.setting = "default";
+    r.protocol = "quick";
+    r.limit_s = limit_s;
+    if (keep) r.out = dir_;
+    return run_in_process(r, FAULTY_CHILD, dir_ / "scratch");
+  }
+  CellRecord file(const std::string& solver) const {
+    const std::string cell = "fall-" + solver + "__" + solver + "__default";
+    return read_cell_summary(fs::exists(dir_ / (cell + ".h5")) ? dir_ / (cell + ".h5") : dir_ / (cell + ".part"));
+  }
+
+  fs::path dir_;
+};
+
+TEST_F(Process, AWellBehavedSolverIsStable) {
+  const CellAnswer a = run("falls");
+  EXPECT_EQ(a.outcome.status, "ok");
+  EXPECT_EQ(a.outcome.klass, "ok");
+  EXPECT_EQ(a.summary.at("stability_grade"), 0);
+  EXPECT_EQ(file("falls").outcome.status, "ok");
+}
+
+TEST_F(Process, ACrashIsStoredWithItsSignal) {
+  const CellAnswer a = run("crashes");
+  EXPECT_EQ(a.outcome.status, "crashed");
+  EXPECT_EQ(a.outcome.klass, "F8");
+  EXPECT_NE(a.outcome.message.find("signal 11"), std::string::npos) << a.outcome.message;
+  EXPECT_EQ(a.summary.at("stability_grade"), 2);
+  const CellRecord stored = file("crashes");
+  EXPECT_EQ(stored.outcome.status, "crashed");
+  EXPECT_EQ(stored.outcome.message, a.outcome.message);
+  EXPECT_EQ(stored.summary.at("stability_grade"), 2);
+}
+
+TEST_F(Process, AnAbortKeepsItsLastWords) {
+  const CellAnswer a = run("aborts");
+  EXPECT_EQ(a.outcome.status, "crashed");
+  EXPECT_NE(a.outcome.message.find("the assertion failed"), std::string::npos) << a.outcome.message;
+}
+
+TEST_F(Process, AnExitWithoutAnswerIsACrash) {
+  const CellAnswer a = run("exits");
+  EXPECT_EQ(a.outcome.status, "crashed");
+  EXPECT_NE(a.outcome.message.find("exit status 2"), std::string::npos) << a.outcome.message;
+}
+
+TEST_F(Process, AHangIsKilledAndTimedOut) {
+  const CellAnswer a = run("hangs", 0.5);
+  EXPECT_EQ(a.outcome.status, "timed_out");
+  EXPECT_EQ(a.outcome.klass, "F8");
+  EXPECT_LT(a.wall_s, 30);
+  EXPECT_EQ(file("hangs").outcome.status, "timed_out");
+}
+
+TEST_F(Process, WhatASolverThrowsIsARow) {
+  for (const char* solver : {"throws", "refuses", "no-memory"}) {
+    const CellAnswer a = run(solver);
+    EXPECT_EQ(a.outcome.status, "error") << solver;
+    EXPECT_FALSE(a.outcome.message.empty()) << solver;
+    EXPECT_EQ(file(solver).outcome.message, a.outcome.message) << solver;
+  }
+}
+
+TEST_F(Process, ALostDeviceIsF8InItsFrame) {
+  const CellAnswer a = run("loses-device");
+  EXPECT_EQ(a.outcome.status, "device_lost");
+  EXPECT_EQ(a.outcome.klass, "F8");
+  EXPECT_EQ(a.outcome.failed_frame, 3);
+  EXPECT_EQ(a.summary.at("stability_grade"), 2);
+}
+
+TEST_F(Process, NotANumberIsF0InItsFrame) {
+  const CellAnswer a = run("nan");
+  EXPECT_EQ(a.outcome.status, "not_finite");
+  EXPECT_EQ(a.outcome.klass, "F0");
+  EXPECT_EQ(a.outcome.failed_frame, 3);
+  EXPECT_EQ(a.summary.at("stability_grade"), 2);
+  EXPECT_EQ(a.summary.at("stability_class"), 0);
+}
+
+TEST_F(Process, WithoutAFolderNothingIsKept) {
+  EXPECT_EQ(run("falls", 0, false).outcome.status, "ok");
+  for (const auto& entry : fs::directory_iterator(dir_)) EXPECT_EQ(entry.path().filename(), "scratch");
+}
+
+TEST(Child, AProgramThatIsNotThereIsAnError) {
+  EXPECT_THROW(run_child({"/no/such/program"}, 1, fs::temp_directory_path() / "clothbench-no-program.txt"), Error);
+}
+
+}  // namespace
+}  // namespace clothbench

@@ -1,0 +1,174 @@
+// The study's driver with a solver of its own in a child: maps, bisection, resume; and what a report makes of them.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "clothbench/error.hpp"
+#include "report/stability.hpp"
+#include "results/store.hpp"
+#include "runner/stability_study.hpp"
+#include "scenario/json_text.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class StabilityStudy : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = fs::temp_directory_path() / ("clothbench-stability-" + std::to_string(::getpid()) +
+                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(dir_);
+    // The falling stone of the child is out of all bounds once its cloth starts faster than ten times a fall.
+    write("thrown.json", {{"name", "thrown"},
+                          {"why", "thrown ever faster in a test"},
+                          {"cloth",
+                           {{"grid", {3, 3}},
+                            {"size_m", {1, 1}},
+                            {"areal_density_kg_per_m2", 0.2},
+                            {"sides", "single"},
+                            {"start", {{"shape", "rest"}, {"noise_m", 1e-6}}}}},
+                          {"material", {{"membrane_stiffness_N_per_m", 1000}}},
+                          {"gravity_m_per_s2", {0, -1, 0}},
+                          {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}},
+                          {"stability", {{"case", "S16"}, {"judged", {"F0", "F1", "F2", "F3", "F7"}}}}});
+    study_json_ = {{"name", "maps"},
+                   {"why", "maps in a test"},
+                   {"protocol", "stability-map"},
+                   {"scenes", {{{"file", "thrown.json"}}}},
+                   {"solvers", {{{"solver", "falls"}}, {{"solver", "crashes"}}}},
+                   {"trials", 1},
+                   {"cell_limit_s", 20},
+                   {"short", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}},
+                   {"full", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}},
+                   {"maps",
+                    {{{"name", "gravity"},
+                      {"title", "Gravity and damping"},
+                      {"scene", (dir_ / "thrown.json").string()},
+                      {"good", "stable"},
+                      {"headline", "largest gravity"},
+                      {"theory", {"explicit-limit"}},
+                      {"solvers", {{{"solver", "falls"}}, {{"solver", "nan"}}}},
+                      {"x",
+                       {{"label", "gravity"},
+                        {"unit", "m/s2"},
+                        {"values", {1, 10, 100}},
+                        {"set", {{"gravity_m_per_s2", {0, "-x", 0}}}}}},
+                      {"y",
+                       {{"label", "damping"},
+                        {"unit", "1/s"},
+                        {"values", {1, 2}},
+                        {"set", {{"cloth.areal_density_kg_per_m2", "0.1*y"}}}}}}}}};
+    write("maps.json", study_json_);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+  void write(const char* name, const json& j) const { std::ofstream(dir_ / name) << j.dump(); }
+  StabilityOptions options(bool resume) const {
+    StabilityOptions o;
+    o.out = dir_ / "out";
+    o.program = FAULTY_CHILD;
+    o.resume = resume;
+    fs::create_directories(o.out);
+    return o;
+  }
+  json maps() const {
+    std::ifstream in(dir_ / "out" / "stability.json");
+    return json::parse(in).at("maps");
+  }
+
+  fs::path dir_;
+  json study_json_;
+};
+
+TEST_F(StabilityStudy, RunsEveryCellAndOneCrashIsOneRow) {
+  const Study study = load_study((dir_ / "maps.json").string());
+  const StabilityCounts counts = run_stability_cells(study, options(false));
+  EXPECT_EQ(counts.stable, 1);
+  EXPECT_EQ(counts.failed, 1);
+  EXPECT_EQ(counts.crashed, 1);
+  EXPECT_THROW(run_stability_cells(study, options(false)), Error);
+  const StabilityCounts again = run_stability_cells(study, options(true));
+  EXPECT_EQ(again.stable, 1);
+  EXPECT_EQ(again.failed, 1);
+  std::vector<CellRecord> cells;
+  for (const auto& entry : fs::directory_iterator(dir_ / "out"))
+    if (entry.path().extension() == ".h5" || entry.path().extension() == ".part")
+      cells.push_back(read_cell_summary(entry.path()));
+  ASSERT_EQ(cells.size(), 2u);
+  for (const CellRecord& c : cells) EXPECT_TRUE(is_stability(c));
+  const Table table = robustness_table(cells);
+  ASSERT_EQ(table.rows.size(), 3u);  // header, S16, all
+  for (std::size_t k = 1; k < 3; ++k) {
+    const std::string text = table.rows[1][k];
+    EXPECT_EQ(text, table.rows[0][k] == "falls" ? "1/1 stable" : "0/1 stable, 1 failed (F8)");
+  }
+  const Table failures = first_failure_table(cells);
+  ASSERT_EQ(failures.rows.size(), 2u);
+  EXPECT_NE(failures.rows[1][3].find("crashed"), std::string::npos);
+  EXPECT_NE(stability_csv(cells).find("crashed,failed,F8"), std::string::npos);
+}
+
+TEST_F(StabilityStudy, MapsEndInOneNumberASolver) {
+  const Study study = load_study((dir_ / "maps.json").string());
+  run_stability_maps(study, options(false));
+  const json m = maps().at(0);
+  ASSERT_EQ(m.at("solvers").size(), 2u);
+  const json& falls = m.at("solvers").at(0);
+  EXPECT_EQ(falls.at("largest"), 100);
+  EXPECT_TRUE(falls.at("open").get<bool>());
+  EXPECT_EQ(falls.at("rows").size(), 2u);
+  EXPECT_EQ(falls.at("probes").size(), 6u);
+  const json& nan = m.at("solvers").at(1);
+  EXPECT_EQ(nan.at("largest"), 0);
+  EXPECT_EQ(nan.at("probes").at(0).at("class"), "F0");
+  EXPECT_EQ(m.at("theory").at(0).at("points").size(), 2u);
+  const Table table = headline_table(maps());
+  ASSERT_EQ(table.rows.size(), 3u);
+  EXPECT_EQ(table.rows[1][2], "≥ 100 m/s2");
+  EXPECT_EQ(table.rows[2][2], "none");
+  EXPECT_EQ(boundary_table(maps()).rows.size(), 5u);
+}
+
+TEST_F(StabilityStudy, ResumesFromItsProbesEvenAfterATornLine) {
+  const Study study = load_study((dir_ / "maps.json").string());
+  run_stability_maps(study, options(false));
+  const json whole = maps();
+  const fs::path probes = dir_ / "out" / "stability-probes.jsonl";
+  std::ofstream(probes, std::ios::app) << R"({"key": "gravity|fa)";
+  const auto size = fs::file_size(probes);
+  run_stability_maps(study, options(true));
+  EXPECT_EQ(maps(), whole);
+  EXPECT_EQ(fs::file_size(probes), size);  // nothing was run again
+}
+
+TEST(StabilityCases, AreAllThereAndLoad) {
+  std::set<std::string> cases;
+  std::size_t full = 0;
+  for (const StudyLength length : {StudyLength::Quick, StudyLength::Short, StudyLength::Full}) {
+    const Study study = load_study("stability", {{}, length});
+    full = study.scenes.size();
+    for (const Study::Item& item : study.scenes) {
+      EXPECT_FALSE(item.scene.stability.name.empty()) << item.scene.name;
+      EXPECT_NE(item.scene.stability.judged & 1u, 0u) << item.scene.name << " does not judge F0";
+      cases.insert(item.scene.stability.name);
+      const std::string number = item.scene.name.substr(1, 2);
+      EXPECT_EQ(item.scene.stability.name, "S" + number) << item.scene.name;
+    }
+  }
+  EXPECT_EQ(cases.size(), 26u);
+  EXPECT_GE(full, 150u);
+}
+
+TEST_F(StabilityStudy, SaysWhatIsWrongWithAMap) {
+  study_json_["maps"][0]["x"]["values"] = {1, 0};
+  write("maps.json", study_json_);
+  EXPECT_THROW(load_study((dir_ / "maps.json").string()), Error);
+}
+
+}  // namespace
+}  // namespace clothbench
