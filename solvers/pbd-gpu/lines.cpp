@@ -134,6 +134,9 @@ std::vector<std::uint32_t> Lines::specialization(const LineShape& shape) const {
   }
   s.push_back(std::max(1u, device().subgroup));
   s.push_back(shape.beside);
+  const auto columns = static_cast<std::uint32_t>(scene_.cloth.columns), rows = static_cast<std::uint32_t>(scene_.cloth.rows);
+  const bool square = columns == rows && shape.lanes * shape.vertices == columns && columns % shape.chains_a_group() == 0;
+  s.push_back(square ? 1 : 0);
   return s;
 }
 

@@ -23,11 +23,11 @@ layout(std430, binding = 5) buffer LinkMultipliers { float link_multipliers[]; }
 layout(std430, binding = 6) buffer HingeMultipliers { vec4 hinge_multipliers[]; };
 #endif
 #include "lines.glsl"
-layout(constant_id = 18) const uint GRIPS = 0u;
-layout(constant_id = 19) const uint FIRM_0 = 0u;  // chains of each family that need `least`, a bit each
-layout(constant_id = 20) const uint FIRM_1 = 0u;
-layout(constant_id = 21) const uint FIRM_2 = 0u;
-layout(constant_id = 22) const uint FIRM_3 = 0u;
+layout(constant_id = 19) const uint GRIPS = 0u;
+layout(constant_id = 20) const uint FIRM_0 = 0u;  // chains of each family that need `least`, a bit each
+layout(constant_id = 21) const uint FIRM_1 = 0u;
+layout(constant_id = 22) const uint FIRM_2 = 0u;
+layout(constant_id = 23) const uint FIRM_3 = 0u;
 
 // 34 words a row: threads of 4 vertices on rows, columns and both diagonals meet in a bank at most two at a time.
 const uint kStride = 34u;

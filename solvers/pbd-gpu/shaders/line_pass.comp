@@ -49,12 +49,15 @@ void pass(uint substep, bool first, bool last) {
   bool fetches = first && substep == 0u;
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
-    bool is = on_chain(i);
-    at[k] = is ? index_of(vertex(i)) : 0u;
-    if (is) COUNT_READ(fetches ? 64u : 32u)
+    pos[k] = vel[k] = vec3(0.0);
+    w[k] = 0.0;
+    at[k] = 0u;
+    if (!(EXACT || on_chain(i))) continue;
+    at[k] = index_of(vertex(i));
+    COUNT_READ(fetches ? 64u : 32u)
     vec4 here = x[at[k]];
     pos[k] = here.xyz;
-    w[k] = is ? here.w : 0.0;
+    w[k] = here.w;
     vel[k] = v[at[k]].xyz;
     if (fetches) {
       rest_pos[k] = rx[at[k]].xyz;

@@ -19,6 +19,7 @@ layout(constant_id = 14) const uint TETHER_3 = 0u;
 layout(constant_id = 15) const uint TETHER_3_LAST = 0u;
 layout(constant_id = 16) const uint SUBGROUP = 1u;  // threads that exchange by shuffles
 layout(constant_id = 17) const uint BESIDE = 1u;  // neighbouring chains whose threads take turns, so that columns too are read by whole sectors
+layout(constant_id = 18) const bool EXACT = false;  // all vertices of all threads are on chains
 layout(push_constant) uniform Push { LineConstants p; };
 
 const bool kBends = (FEATURES & LINES_BEND) != 0u;
@@ -31,9 +32,7 @@ float w[K];
 
 uint chain_length() { return family == 0u ? COLUMNS : ROWS; }
 uint chain_count() { return family == 0u ? ROWS : COLUMNS; }
-// Square cloths that fill their threads need no test.
-const bool kExact = COLUMNS == ROWS && LANES * K == COLUMNS && COLUMNS % (THREADS / LANES) == 0u;
-bool on_chain(uint i) { return kExact ? i < COLUMNS : chain < chain_count() && i < chain_length(); }
+bool on_chain(uint i) { return EXACT ? i < COLUMNS : chain < chain_count() && i < chain_length(); }
 
 /// Column and row of vertex i of the chain.
 uvec2 vertex(uint i) {
