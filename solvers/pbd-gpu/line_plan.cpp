@@ -137,7 +137,7 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   const bool stiff = !Y || *Y >= 1e4;
   // Of a frame, however long it is: a number of seconds in here would be one that similar scenes do not share. A link must not
   // turn by more than about half a radian a substep.
-  constexpr Rule kStiff[] = {{2, 24}, {5, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
+  constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
                  kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}}, kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
   // A hand pushes a cloth in ways that no tether knows of.

@@ -59,7 +59,7 @@ TEST(Substeps, FollowTheRule) {
   EXPECT_EQ(of(hang, "default"), 5) << "soft: tethers with slack";
   hang.material.membrane_stiffness_N_per_m.reset();
   EXPECT_EQ(of(hang, "fast"), 2);
-  EXPECT_EQ(of(hang, "default"), 5);
+  EXPECT_EQ(of(hang, "default"), 6);
   EXPECT_EQ(of(hang, "accurate"), 20);
   EXPECT_EQ(xpbd_substeps(hang, {{"quality", "fast"}, {"substeps", 7}}), 7);
   EXPECT_EQ(xpbd_substeps(hang, {{"tethers", false}}), 10);
