@@ -238,7 +238,7 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
       if (p.on_front) page.fronts.insert(p.cell->file);
   if (!diagrams.empty()) told("summary", "Summary", {ranks_table(diagrams), winners_table(diagrams)});
   told("environment", "Environment", {environment_table(cells)});
-  const std::string no_page = write_page(options.out, cells, page);
+  const std::string no_page = write_page(options.out, cells, page, page_template());
   if (!no_page.empty()) fmt::print(stderr, "{}\n", no_page);
 
   bool has_python = false;

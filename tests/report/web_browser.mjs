@@ -61,7 +61,55 @@ async function check_figures() {
   }
 }
 
-/// Pixels of the canvas that differ between two times; what a motionless or empty view would not have.
+/// What a button saves, instead of saving it.
+async function saved(label) {
+  await page.evaluate(() => {
+    window.saved = null;
+    URL.createObjectURL = blob => { window.saved = blob; return 'blob:none'; };
+    HTMLAnchorElement.prototype.click = () => {};
+  });
+  await page.evaluate(l => document.querySelector(`button[aria-label="${l}"]`).click(), label);
+  await page.waitForFunction(() => window.saved, {timeout: 20000});
+  return page.evaluate(async () => ({type: window.saved.type, bytes: Array.from(new Uint8Array(await window.saved.arrayBuffer()))}));
+}
+const text_of = file => Buffer.from(file.bytes).toString('utf8');
+
+async function check_downloads() {
+  const table = await page.evaluate(() => window.clothbench.document.sections.flatMap(s => s.tables).find(t => t.rows.length > 2));
+  const name = table.title;
+  const csv = text_of(await saved(`${name}: download as CSV`)), markdown = text_of(await saved(`${name}: download as Markdown`)), tex = text_of(await saved(`${name}: download as LaTeX`));
+  equal(csv.trim().split('\n').length, table.rows.length, 'lines of a table as CSV');
+  equal(markdown.split('\n').filter(l => l.startsWith('|')).length, table.rows.length + 1, 'lines of a table as Markdown');
+  equal(tex.split('\n').filter(l => l.endsWith('\\\\')).length, table.rows.length, 'rows of a table as LaTeX');
+  check(['\\toprule', '\\midrule', '\\bottomrule'].every(r => tex.includes(r)) && !/[^\x00-\x7f]/.test(tex), 'LaTeX has booktabs rules and plain characters alone');
+  const figure = await page.$eval('figure h3', e => e.textContent), points = await page.$$eval('figure:first-of-type .points_marks > path', l => l.length);
+  const svg = text_of(await saved(`${figure}: download as SVG`)), png = await saved(`${figure}: download as PNG`);
+  check(svg.startsWith('<svg') && (svg.match(/points_marks[^]*?<\/g>/)?.[0].match(/<path/g) ?? []).length >= Math.min(points, 1), 'a figure as SVG has its points');
+  const width = Buffer.from(png.bytes).readUInt32BE(16);
+  check(png.bytes[1] === 0x50 && width > 1500, `a figure as PNG, ${width} pixels wide`);
+}
+
+async function check_hover() {
+  const point = await page.$('.points_marks > path');
+  await point.hover();
+  await page.waitForFunction(() => document.querySelector('#vg-tooltip-element.visible')?.textContent.length > 10, {timeout: 5000});
+  check(true, 'hover over a point: ' + await page.$eval('#vg-tooltip-element', e => e.innerText.replace(/\s+/g, ' ')));
+}
+
+async function check_themes() {
+  const look = () => page.evaluate(() => ({back: getComputedStyle(document.body).backgroundColor, axis: getComputedStyle(document.querySelector('.plot .role-axis-label text')).fill,
+    points: document.querySelectorAll('.points_marks > path').length}));
+  const light = await look();
+  await page.click('#theme');
+  const dark = await look();
+  check(light.back !== dark.back && light.axis !== dark.axis, `the button changes page and figures (${light.back} to ${dark.back})`);
+  equal(dark.points, light.points, 'points in the dark');
+  if (shots) await page.screenshot({path: join(shots, 'dark.png')});
+  await page.click('#theme');
+  equal(await look(), light, 'and back');
+}
+
+/// One channel of every pixel of the canvas.
 const picture = () => page.$eval('#stage canvas', c => {
   const copy = document.createElement('canvas');
   [copy.width, copy.height] = [c.width, c.height];
@@ -72,12 +120,13 @@ const picture = () => page.$eval('#stage canvas', c => {
 const positions = () => page.evaluate(() => window.clothbench.viewer.panels.map(p => Array.from(p.position)));
 const drawn = () => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
 
-async function check_viewer() {
-  if (!await page.evaluate(() => window.clothbench.document.motions.cells.length)) return console.log('no motions in this report');
+async function check_motion() {
   await page.waitForFunction(() => window.clothbench.viewer.panels.length > 0, {timeout: 60000});
   await page.evaluate(() => window.clothbench.viewer.ready);
-  const before = await positions(), picture_before = await picture();
   await page.focus('#stage canvas');
+  await page.keyboard.press('Home');
+  await drawn();
+  const before = await positions(), picture_before = await picture();
   await page.keyboard.press('End');
   await drawn();
   const after = await positions(), picture_after = await picture();
@@ -87,13 +136,51 @@ async function check_viewer() {
   await page.keyboard.press('Home');
   await drawn();
   check(JSON.stringify(await positions()) === JSON.stringify(before), 'Home brings them back');
+  await page.keyboard.press('ArrowRight');
+  equal(await page.evaluate(() => window.clothbench.viewer.time), await page.evaluate(() => window.clothbench.viewer.panels[0].motion.time_s[1]), 'an arrow goes to the next frame');
+  await page.keyboard.press('Space');
+  await page.waitForFunction(() => window.clothbench.viewer.time > window.clothbench.viewer.panels[0].motion.time_s[2], {timeout: 10000});
+  await page.keyboard.press('Space');
+  equal(await page.evaluate(() => window.clothbench.viewer.playing), false, 'Space plays and stops; playing');
+}
+
+/// The page's own strain and depth against what the files say of the same frames.
+async function check_colours() {
+  const results = await page.evaluate(async () => {
+    const v = window.clothbench.viewer, out = [];
+    for (const cell of v.motions.cells) {
+      if (!cell.metrics.stretch_max || cell.columns.length !== cell.grid[0]) continue;
+      await v.set([cell]);
+      const [p] = v.panels, f = cell.frames.length - 1;
+      const tolerance = 4 * cell.step_m / Math.min(...p.edges.map(e => e[2])) + 1e-5;
+      const strain = p.show(cell.time_s[f], 'strain', 1).greatest, penetration = p.show(cell.time_s[f], 'penetration', 1);
+      out.push({name: `${cell.scene} ${cell.label}`, strain, stored: cell.metrics.stretch_max[f], tolerance, depth: penetration.greatest, crossing: penetration.crossing, stored_depth: cell.metrics.depth_m?.[f],
+        stored_contour: cell.metrics.contact_length_m?.[f]});
+    }
+    return out;
+  });
+  const off = results.filter(r => !(r.strain >= r.stored - r.tolerance));
+  equal(off, [], `strain of ${results.length} motions below what the file says`);
+  const stretched = results.filter(r => r.stored > 0.05);
+  check(stretched.every(r => Math.abs(r.strain - r.stored) <= r.tolerance || r.strain > r.stored), `strain agrees where it is large (${stretched.length} motions)`);
+  const deep = results.filter(r => r.stored_depth > 0.005);
+  check(deep.every(r => r.depth > 0 || r.crossing > 0), `what is deep in a collider is coloured (${deep.map(r => `${r.name} ${(1e3 * r.depth).toFixed(1)} mm`).join(', ') || 'none'})`);
+  const clear = results.filter(r => r.stored_depth === 0 && r.stored_contour === 0);
+  check(clear.every(r => (r.depth ?? 0) < 1e-4 && r.crossing === 0), `what touches nothing is not (${clear.length} motions)`);
 }
 
 try {
   await page.waitForFunction(() => window.clothbench?.document, {timeout: 60000});
   await check_tables();
   await check_figures();
-  await check_viewer();
+  await check_downloads();
+  await check_hover();
+  await check_themes();
+  if (await page.evaluate(() => window.clothbench.document.motions.cells.length)) {
+    await check_motion();
+    await check_colours();
+  } else console.log('no motions in this report');
+  check((await page.pdf({format: 'A4'})).length > 20000, 'it prints');
 } catch (error) {
   problems.push(String(error.stack ?? error));
 }

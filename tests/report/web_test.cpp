@@ -187,6 +187,14 @@ TEST_F(WebFiles, DataNeverBreaksOutOfItsElement) {
   EXPECT_THROW(page_html("no place", document, {}), Error);
 }
 
+TEST_F(WebFiles, WithoutATemplateNoOlderPageStays) {
+  const std::vector<CellRecord> cells = collect({dir_ / "run"});
+  EXPECT_EQ(write_page(dir_, cells, {}, {"<html><!--clothbench:data--></html>", ""}), "");
+  EXPECT_GT(fs::file_size(dir_ / "index.html"), 1000u);
+  EXPECT_EQ(write_page(dir_, cells, {}, {"", "there was no Node when this was built"}), "The interactive page was left out: there was no Node when this was built.");
+  EXPECT_FALSE(fs::exists(dir_ / "index.html"));
+}
+
 TEST_F(WebFiles, RatesKeepFullPrecisionAndMissingIsNull) {
   std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1.0 / 3001), fake_cell("bullet-soft", 8, "single", 0.01, false)};
   const nlohmann::json rates = nlohmann::json::parse(rates_json(families(cells), published_table3()).dump());

@@ -21,8 +21,7 @@ function(give_up why)
   message(STATUS "The report's page is left out: ${why}. Once that is mended, delete ${WORK}/template.cpp and build again.")
   file(WRITE ${WORK}/template.cpp "#include \"report/web/template.hpp\"
 namespace clothbench {
-std::string page_template() { return {}; }
-std::string page_template_missing() { return \"${why} when this was built\"; }
+PageTemplate page_template() { return {\"\", \"${why} when this was built\"}; }
 }  // namespace clothbench
 ")
 endfunction()

@@ -53,11 +53,10 @@ for (let at = 0; at < bytes.length;) {
 }
 writeFileSync(join(out, 'template.cpp'), `#include "report/web/template.hpp"
 namespace clothbench {
-std::string page_template() {
+PageTemplate page_template() {
   static const char text[] =
 ${pieces.join('\n')};
-  return {text, sizeof text - 1};
+  return {{text, sizeof text - 1}, {}};
 }
-std::string page_template_missing() { return {}; }
 }  // namespace clothbench
 `);

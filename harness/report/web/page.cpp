@@ -50,14 +50,13 @@ std::string page_html(const std::string& html, const json& document, const std::
   return html.substr(0, at) + data + html.substr(at + sizeof kDataMark - 1);
 }
 
-std::string write_page(const fs::path& out, const std::vector<CellRecord>& cells, const Page& page) {
-  const std::string html = page_template();
-  if (html.empty()) {
+std::string write_page(const fs::path& out, const std::vector<CellRecord>& cells, const Page& page, const PageTemplate& from) {
+  if (from.html.empty()) {
     fs::remove(out / "index.html");  // an older run's page is not this report's
-    return std::string("The interactive page was left out: ") + page_template_missing() + ".";
+    return "The interactive page was left out: " + from.missing + ".";
   }
   const Motions motions = motions_of(cells, page.fronts);
-  write_file_atomically(out / "index.html", page_html(html, page_document(cells, page, motions), motions.blobs));
+  write_file_atomically(out / "index.html", page_html(from.html, page_document(cells, page, motions), motions.blobs));
   return "";
 }
 

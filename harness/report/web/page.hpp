@@ -9,6 +9,7 @@
 #include "report/grid.hpp"
 #include "report/penetration.hpp"
 #include "report/table.hpp"
+#include "report/web/template.hpp"
 
 namespace clothbench {
 
@@ -60,6 +61,6 @@ std::string page_html(const std::string& html, const nlohmann::json& document, c
 
 /// Writes `index.html`; an older one is removed where none can be made. Returns why there is none, or nothing. Throws
 /// Error if a file cannot be read or written.
-std::string write_page(const std::filesystem::path& out, const std::vector<CellRecord>& cells, const Page&);
+std::string write_page(const std::filesystem::path& out, const std::vector<CellRecord>& cells, const Page&, const PageTemplate&);
 
 }  // namespace clothbench

@@ -3,9 +3,12 @@
 
 namespace clothbench {
 
-/// The page without data, as bundle.mjs made it when this was built; empty if it could not.
-std::string page_template();
-/// Why it is empty, as the end of a sentence.
-std::string page_template_missing();
+/// The page without data, as bundle.mjs made it when this was built.
+struct PageTemplate {
+  std::string html;     ///< empty if it could not be made
+  std::string missing;  ///< then why, as the end of a sentence
+};
+
+PageTemplate page_template();
 
 }  // namespace clothbench

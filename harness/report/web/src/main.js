@@ -18,11 +18,10 @@ function headline(text) {
 }
 
 function section(s, id, figures) {
-  const [first, ...rest] = s.tables.map(table_block);
-  // The table that counts, then the figures, then the others; diagrams before the table that sums them up.
-  if (s.id === 'work-precision') rest.unshift(...figures.splice(0).map(f => f.block), first);
-  const lead = s.id === 'work-precision' ? [] : first ?? [];
-  return element('section', {id, 'aria-labelledby': `${id}-title`}, element('h2', {id: `${id}-title`}, s.title), lead, figures.map(f => f.block), rest);
+  // The table that counts, then the figures, then the others; diagrams stand before the table that sums them up.
+  const blocks = s.tables.map(table_block), first = s.id === 'work-precision' ? 0 : 1;
+  return element('section', {id, 'aria-labelledby': `${id}-title`}, element('h2', {id: `${id}-title`}, s.title),
+    blocks.slice(0, first), figures.map(f => f.block), blocks.slice(first));
 }
 
 function start() {

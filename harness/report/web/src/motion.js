@@ -81,10 +81,11 @@ export class Motion {
     return out;
   }
 
-  box() {
-    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-    for (let k = 0; k < this.position.length; ++k) {
-      const x = this.position[k], a = k % 3;
+  /// Least and greatest corner of one frame.
+  box(frame) {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], size = 3 * this.vertices;
+    for (let k = 0; k < size; ++k) {
+      const x = this.position[frame * size + k], a = k % 3;
       if (x < low[a]) low[a] = x;
       if (x > high[a]) high[a] = x;
     }

@@ -40,11 +40,11 @@ export class Panel {
     const uv = Array.from({length: motion.vertices}, (_, v) => [(v % motion.columns) / (motion.columns - 1), Math.floor(v / motion.columns) / (motion.rows - 1)]);
     g.setAttribute('uv', new THREE.BufferAttribute(new Float32Array(uv.flat()), 2));
     this.checks = checks(motion.cell.size_m);
-    this.cloth = new THREE.Mesh(g, new THREE.MeshStandardMaterial({vertexColors: true, side: THREE.DoubleSide, roughness: 0.85, metalness: 0,
-      polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1}));
+    this.cloth = new THREE.Mesh(g, new THREE.MeshStandardMaterial({vertexColors: true, side: THREE.DoubleSide, roughness: 0.85, metalness: 0}));
     this.wires = new THREE.LineSegments(new THREE.BufferGeometry().setAttribute('position', g.attributes.position).setIndex(this.edges.flatMap(e => [e[0], e[1]])),
       new THREE.LineBasicMaterial({color: 0x000000, transparent: true, opacity: 0.35}));
-    this.solid = new THREE.MeshStandardMaterial({color: 0xb9a58c, side: THREE.DoubleSide, roughness: 1, metalness: 0});
+    this.solid = new THREE.MeshStandardMaterial({color: 0xb9a58c, side: THREE.DoubleSide, roughness: 1, metalness: 0,
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});  // a cloth that lies on it is seen
     this.colliders = make_colliders(colliders);
     this.group = new THREE.Group();
     for (const c of this.colliders) {
@@ -62,6 +62,19 @@ export class Panel {
     const [motion, colliders] = await Promise.all([Motion.load(cell), load_colliders(groups)]);
     return new Panel(motion, colliders);
   }
+
+  /// What the camera should see: where the cloth starts, and as much of its way and of the colliders as is near. A cloth that slides
+  /// off a desk falls for metres, and would be a dot if all of that were to fit.
+  view_box() {
+    const box = frame => { const {low, high} = this.motion.box(frame); return new THREE.Box3(new THREE.Vector3(...low), new THREE.Vector3(...high)); };
+    const start = box(0), extent = start.getSize(new THREE.Vector3()), near = start.clone().expandByScalar(0.6 * Math.max(...extent)), out = start.clone();
+    const add = other => { other.intersect(near); if (!other.isEmpty()) out.union(other); };
+    for (let f = 1; f < this.motion.time_s.length; ++f) add(box(f));
+    for (const c of this.colliders) { c.move?.(0); add(new THREE.Box3().setFromObject(c.object)); }
+    return out;
+  }
+
+  middle(out) { return new THREE.Box3().setFromArray(this.position).getCenter(out); }
 
   /// Moves everything to `time` and colours the cloth: by "checks", "strain" (`most`: strain at the ramp's end) or
   /// "penetration" (`most` in m). Returns what the vertices' colours show at most, or null.

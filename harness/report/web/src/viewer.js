@@ -8,12 +8,13 @@ import {on_theme, theme} from './theme.js';
 const kMostPanels = 6;
 const kViews = {front: [0, 0.12, 1], top: [0, 1, 0.001], corner: [0.75, 0.55, 0.8]};
 const kScales = {strain: [0.01, 0.05, 0.2, 1].map(v => ({value: v, text: `${100 * v} %`})), penetration: [1, 5, 20].map(v => ({value: v * 1e-3, text: `${v} mm`}))};
-const kWords = {stretch_max: ['strain', v => `${(100 * v).toPrecision(3)} %`], tunnelled_fraction: ['tunnelled', v => `${(100 * v).toPrecision(3)} %`],
-  contact_length_m: ['contour', v => `${(1e3 * v).toPrecision(3)} mm`], depth_m: ['depth', v => `${(1e3 * v).toPrecision(3)} mm`]};
+const percent = v => v === 0 ? '0' : `${(100 * v).toPrecision(3)} %`, millimetres = v => v === 0 ? '0' : `${(1e3 * v).toPrecision(3)} mm`;
+const kWords = {stretch_max: ['strain', percent], tunnelled_fraction: ['tunnelled', percent],
+  contact_length_m: ['contour', millimetres], depth_m: ['depth', millimetres]};
 
 class Viewer {
   constructor(root, motions) {
-    Object.assign(this, {root, motions, panels: [], time: 0, end: 0, speed: 1, playing: false, colouring: 'checks', most: {strain: 0.05, penetration: 5e-3}, colliders: true, wires: false, last: 0, stale: true});
+    Object.assign(this, {root, motions, panels: [], time: 0, end: 0, speed: 1, playing: false, colouring: 'checks', most: {strain: 0.05, penetration: 5e-3}, chosen: {}, colliders: true, wires: false, follow: false, last: 0, stale: true});
     this.build();
     try {
       this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, antialias: true, preserveDrawingBuffer: true});
@@ -52,11 +53,11 @@ class Viewer {
       return element('label', {}, box, text);
     };
     this.root.append(
-      element('p', {class: 'soft'}, 'Positions as the result files have them, thinned and rounded to fit this page; under each motion stands by how much. Between stored frames the motion is drawn on straight lines.'),
+      element('p', {class: 'soft'}, 'Positions as the result files have them, thinned and rounded to fit this page; by how much stands below. Between stored frames the motion is drawn on straight lines.'),
       element('div', {class: 'bar'}, this.scene_list, this.add_button,
         element('span', {class: 'bar', role: 'group', 'aria-label': 'View'}, Object.keys(kViews).map(v => element('button', {type: 'button', onclick: () => this.view(v)}, v[0].toUpperCase() + v.slice(1)))),
         element('button', {type: 'button', onclick: () => this.picture()}, 'PNG')),
-      element('div', {class: 'bar'}, colouring, this.legend, toggle('colliders', 'colliders'), toggle('grid', 'wires')),
+      element('div', {class: 'bar'}, colouring, this.legend, toggle('colliders', 'colliders'), toggle('grid', 'wires'), toggle('follow', 'follow')),
       this.stage,
       element('div', {class: 'bar'}, this.play_button, element('button', {type: 'button', 'aria-label': 'One frame back', onclick: () => this.step(-1)}, '◂'),
         element('button', {type: 'button', 'aria-label': 'One frame on', onclick: () => this.step(1)}, '▸'), this.scrub, this.clock,
@@ -115,13 +116,14 @@ class Viewer {
     this.end = Math.max(0, ...this.panels.map(p => p.motion.time_s.at(-1)));
     this.scrub.max = String(this.end || 1);
     this.radius = 0.1;
-    const middles = {};
+    this.middles = {};
     for (const p of this.panels) {
-      const {low, high} = p.motion.box(), middle = middles[p.motion.cell.scene] ??= low.map((x, a) => -(x + high[a]) / 2);
-      this.radius = Math.max(this.radius, Math.hypot(...low.map((x, a) => high[a] - x)) / 2);
-      p.scene.position.set(...middle);
+      const box = p.view_box();
+      this.middles[p.motion.cell.scene] ??= box.getCenter(new THREE.Vector3()).negate();
+      this.radius = Math.max(this.radius, box.getSize(new THREE.Vector3()).length() / 2);
     }
-    const columns = this.columns = Math.min(3, this.panels.length), rows = this.rows = Math.ceil(this.panels.length / Math.max(columns, 1));
+    this.colour(this.colouring);
+    const columns = this.columns = Math.min(3, this.panels.length, Math.max(1, Math.floor(this.stage.clientWidth / 230))), rows = this.rows = Math.ceil(this.panels.length / Math.max(columns, 1));
     this.overlay.style.grid = `repeat(${rows}, 1fr) / repeat(${columns}, 1fr)`;
     this.overlay.replaceChildren(...this.panels.map((p, k) => this.label(p, k)));
     this.notes.replaceChildren(...this.panels.map(p => element('li', {}, `${this.name(p.motion.cell)}: ${p.motion.thinning()}.`)));
@@ -154,7 +156,7 @@ class Viewer {
     const away = this.radius / Math.sin(THREE.MathUtils.degToRad(this.camera.fov / 2)) * 1.05;
     const tile = this.stage.clientWidth / this.columns / (this.stage.clientHeight / this.rows);
     this.controls.target.set(0, 0, 0);
-    this.camera.position.set(...kViews[name]).normalize().multiplyScalar(away / Math.min(1, tile));
+    this.camera.position.set(...kViews[name]).normalize().multiplyScalar(0.85 * away / Math.min(1, tile));
     this.camera.up.set(0, 1, 0);
     this.controls.update();
     this.stale = true;
@@ -164,8 +166,14 @@ class Viewer {
     this.colouring = kind;
     this.colour_list.value = kind;
     this.legend.replaceChildren();
+    if (kind === 'strain' && !this.chosen.strain) {
+      // The least that holds nine of ten frames' greatest strain to a half.
+      const all = this.panels.flatMap(p => p.motion.cell.metrics.stretch_max ?? []).filter(v => v !== null).sort((a, b) => a - b);
+      const most = all[Math.floor(0.9 * all.length)] ?? 0.05;
+      this.most.strain = (kScales.strain.find(s => s.value >= most / 2) ?? kScales.strain.at(-1)).value;
+    }
     if (kind !== 'checks') {
-      const scale = select('0 to', kScales[kind].map(s => ({value: String(s.value), text: s.text})), String(this.most[kind]), v => { this.most[kind] = Number(v); this.stale = true; });
+      const scale = select('0 to', kScales[kind].map(s => ({value: String(s.value), text: s.text})), String(this.most[kind]), v => { this.most[kind] = Number(v); this.chosen[kind] = true; this.stale = true; });
       this.legend.append(element('span', {class: 'ramp', style: `background: ${ramp_css}`, role: 'img', 'aria-label': 'colour ramp from dark violet to yellow'}), scale);
       if (kind === 'penetration') this.legend.append(element('span', {class: 'ramp', style: `background: ${crossing_css}; width: .9rem`}), element('span', {class: 'soft'}, 'crosses a mesh'));
     }
@@ -213,6 +221,8 @@ class Viewer {
     this.camera.updateProjectionMatrix();
     this.panels.forEach((p, k) => {
       const shown = p.show(this.time, this.colouring, this.most[this.colouring]);
+      if (this.follow) p.middle(p.scene.position).negate();
+      else p.scene.position.copy(this.middles[p.motion.cell.scene]);
       p.group.visible = this.colliders;
       p.wires.visible = this.wires;
       p.scene.background = new THREE.Color(theme() === 'dark' ? 0x1a2028 : 0xf2f4f6);
