@@ -151,7 +151,8 @@ async function check_colours() {
     for (const cell of v.motions.cells) {
       if (!cell.metrics.stretch_max || cell.columns.length !== cell.grid[0]) continue;
       await v.set([cell]);
-      const [p] = v.panels, f = cell.frames.length - 1;
+      const contour = cell.metrics.contact_length_m ?? [], touching = contour.indexOf(Math.max(...contour));
+      const [p] = v.panels, f = touching > 0 ? touching : cell.frames.length - 1;
       const tolerance = 4 * cell.step_m / Math.min(...p.edges.map(e => e[2])) + 1e-5;
       const strain = p.show(cell.time_s[f], 'strain', 1).greatest, penetration = p.show(cell.time_s[f], 'penetration', 1);
       out.push({name: `${cell.scene} ${cell.label}`, strain, stored: cell.metrics.stretch_max[f], tolerance, depth: penetration.greatest, crossing: penetration.crossing, stored_depth: cell.metrics.depth_m?.[f],
@@ -161,8 +162,11 @@ async function check_colours() {
   });
   const off = results.filter(r => !(r.strain >= r.stored - r.tolerance));
   equal(off, [], `strain of ${results.length} motions below what the file says`);
-  const stretched = results.filter(r => r.stored > 0.05);
-  check(stretched.every(r => Math.abs(r.strain - r.stored) <= r.tolerance || r.strain > r.stored), `strain agrees where it is large (${stretched.length} motions)`);
+  // What the page shows may be greater: it counts edges that are too short, too.
+  const stretched = results.filter(r => r.stored > 0.005), agree = stretched.filter(r => Math.abs(r.strain - r.stored) <= r.tolerance);
+  check(agree.length > 0 && 2 * agree.length >= stretched.length, `strain is the file's in ${agree.length} of ${stretched.length} stretched motions`);
+  const crossed = results.filter(r => r.stored_contour > 0.1);
+  check(crossed.every(r => r.crossing > 0 || r.depth > 0), `what crosses is coloured (${crossed.map(r => `${r.name} ${r.crossing}`).join(', ') || 'none'})`);
   const deep = results.filter(r => r.stored_depth > 0.005);
   check(deep.every(r => r.depth > 0 || r.crossing > 0), `what is deep in a collider is coloured (${deep.map(r => `${r.name} ${(1e3 * r.depth).toFixed(1)} mm`).join(', ') || 'none'})`);
   const clear = results.filter(r => r.stored_depth === 0 && r.stored_contour === 0);

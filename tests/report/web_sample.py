@@ -22,7 +22,7 @@ def clothbench(*arguments):
 runs = out / "runs"
 runs.mkdir(parents=True)
 clothbench("study", "table3", "--quick", "--trials", "1", *solvers, "--out", str(runs / "table3"), "--allow-no-device")
-clothbench("run", "contact/sphere", "contact/box", "contact/plane", "contact/open-sheet", "paper/capsule-sweep", "paper/hand-push", "paper/two-hand-stretch-2mps",
+clothbench("run", "contact/sphere", "contact/box", "contact/plane", "contact/open-sheet", "paper/desk-corner-low", "paper/capsule-sweep", "paper/hand-push", "paper/two-hand-stretch-2mps",
            *solvers, "--set", "cloth.grid=[17,13]", "--set", "time.duration_s=0.75", "--out", str(runs / "contact"))
 for steps in "1", "4":
     clothbench("run", "validation/free-fall", "--solver", "bullet-soft", "--set", f"solver.substeps={steps}", "--out", str(runs / f"truth-{steps}"))

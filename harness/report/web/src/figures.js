@@ -3,7 +3,7 @@ import {select} from './dom.js';
 import {plot_figure} from './plot.js';
 import {palette} from './theme.js';
 
-const kSides = {domain: ['single', 'double-duplicated', 'double', '–'], dash: [[1, 0], [6, 4], [2, 3], [1, 0]], shape: ['circle', 'square', 'triangle-up', 'circle']};
+const kSides = {domain: ['single', 'double-duplicated', 'double', 'not stated'], dash: [[1, 0], [6, 4], [2, 3], [1, 0]], shape: ['circle', 'square', 'triangle-up', 'circle']};
 const kFailed = ['not_finite', 'diverged', 'device_lost', 'timed_out', 'error'];
 const is_floor = s => s.solver === 'ballistic';  // what the harness itself costs: no cloth solver
 const unique = list => [...new Set(list)];
@@ -25,11 +25,11 @@ function rate_rows(family) {
   const rows = [];
   for (const s of family.series)
     for (const p of s.points)
-      if (!is_floor(s)) rows.push({label: s.label, sides: s.sides || '–', width: p.width, resolution: p.resolution, status: p.status, fps: p.fps,
+      if (!is_floor(s)) rows.push({label: s.label, sides: s.sides || 'not stated', width: p.width, resolution: p.resolution, status: p.status, fps: p.fps,
         low: p.fps * (1 - (p.spread ?? 0)), high: p.fps * (1 + (p.spread ?? 0)), read: p.read_B_per_s, write: p.write_B_per_s});
   for (const s of family.published ?? [])
     for (const p of s.points)
-      rows.push({label: `published: ${s.label}`, sides: kSides.domain.includes(s.sides) ? s.sides : '–', width: p.width, resolution: `${p.width}²`, status: 'ok', fps: p.fps, low: p.fps, high: p.fps});
+      rows.push({label: `published: ${s.label}`, sides: kSides.domain.includes(s.sides) ? s.sides : 'not stated', width: p.width, resolution: `${p.width}²`, status: 'ok', fps: p.fps, low: p.fps, high: p.fps});
   return rows;
 }
 
@@ -52,7 +52,7 @@ function rates_figure(family, index) {
     const y = {field: 'fps', type: 'quantitative', title: 'frames per second', scale: {type: 'log', nice: true}, axis: {format: '~s', values: decades([...good.map(r => r.fps), 72])}};
     return {width: width - 270, height: 360, data: {values: good}, layer: [
       {name: 'cap', data: {values: [{fps: 72}]}, mark: {type: 'rule', strokeDash: [3, 3]}, encoding: {y}},
-      {name: 'cap_text', data: {values: [{fps: 72}]}, mark: {type: 'text', align: 'left', baseline: 'bottom', dx: 4, text: '72 Hz, the display'}, encoding: {x: {value: 0}, y}},
+      {name: 'cap_text', data: {values: [{fps: 72}]}, mark: {type: 'text', align: 'left', baseline: 'top', dx: 4, dy: 5, text: '72 Hz, the display'}, encoding: {x: {value: 0}, y}},
       {name: 'spread', mark: {type: 'rule', aria: false}, encoding: {x, y: {...y, field: 'low'}, y2: {field: 'high'}, color, opacity: fade}},
       {name: 'lines', mark: {type: 'line', strokeWidth: 1.8}, encoding: {x, y, color, strokeDash: sides.strokeDash, opacity: fade}},
       {name: 'points', ...picked, mark: {type: 'point', filled: true, size: 46}, encoding: {x, y, color, shape: sides.shape, opacity: fade, tooltip: tip}},

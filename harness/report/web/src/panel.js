@@ -74,6 +74,15 @@ export class Panel {
     return out;
   }
 
+  /// From which corner the cloth stands before its colliders: signs of x and z.
+  side() {
+    const solid = new THREE.Box3(), {low, high} = this.motion.box(0);
+    for (const c of this.colliders) solid.union(new THREE.Box3().setFromObject(c.object));
+    if (solid.isEmpty()) return [1, 1];
+    const from = solid.getCenter(new THREE.Vector3()), slack = 0.02 * Math.hypot(...low.map((x, a) => high[a] - x));
+    return [0, 2].map(a => (low[a] + high[a]) / 2 - from.getComponent(a) < -slack ? -1 : 1);
+  }
+
   middle(out) { return new THREE.Box3().setFromArray(this.position).getCenter(out); }
 
   /// Moves everything to `time` and colours the cloth: by "checks", "strain" (`most`: strain at the ramp's end) or

@@ -7,8 +7,10 @@ import {on_theme, theme} from './theme.js';
 
 const kMostPanels = 6;
 const kViews = {front: [0, 0.12, 1], top: [0, 1, 0.001], corner: [0.75, 0.55, 0.8]};
-const kScales = {strain: [0.01, 0.05, 0.2, 1].map(v => ({value: v, text: `${100 * v} %`})), penetration: [1, 5, 20].map(v => ({value: v * 1e-3, text: `${v} mm`}))};
-const percent = v => v === 0 ? '0' : `${(100 * v).toPrecision(3)} %`, millimetres = v => v === 0 ? '0' : `${(1e3 * v).toPrecision(3)} mm`;
+const kScales = {strain: [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1].map(v => ({value: v, text: `${100 * v} %`})), penetration: [1, 5, 20].map(v => ({value: v * 1e-3, text: `${v} mm`}))};
+/// Three digits; what is not nothing never reads as 0.
+const number = (v, unit) => v === 0 ? '0' : v < 1e-3 ? `<0.001 ${unit}` : `${v.toPrecision(3)} ${unit}`;
+const percent = v => number(100 * v, '%'), millimetres = v => number(1e3 * v, 'mm');
 const kWords = {stretch_max: ['strain', percent], tunnelled_fraction: ['tunnelled', percent],
   contact_length_m: ['contour', millimetres], depth_m: ['depth', millimetres]};
 
@@ -29,7 +31,7 @@ class Viewer {
     this.controls.addEventListener('change', () => { this.stale = true; });
     this.controls.enablePan = true;
     new ResizeObserver(() => this.resize()).observe(this.stage);
-    on_theme(() => { this.stale = true; });
+    on_theme(() => this.draw());  // at once: a page about to be printed waits for no frame
     const frame = now => { this.tick(now); requestAnimationFrame(frame); };
     requestAnimationFrame(frame);
   }
@@ -85,7 +87,7 @@ class Viewer {
     const list = this.scene_list.querySelector('select');
     list.value = scene;
     await this.set([...first, ...others].slice(0, Math.min(kMostPanels, Math.max(first.length, 2))));
-    this.view(cells[0].colliders === undefined ? 'front' : 'corner');
+    this.view('corner');
     say(`${scene}: ${this.panels.length} motions`);
   }
 
@@ -123,7 +125,7 @@ class Viewer {
       this.radius = Math.max(this.radius, box.getSize(new THREE.Vector3()).length() / 2);
     }
     this.colour(this.colouring);
-    const columns = this.columns = Math.min(3, this.panels.length, Math.max(1, Math.floor(this.stage.clientWidth / 230))), rows = this.rows = Math.ceil(this.panels.length / Math.max(columns, 1));
+    const columns = this.columns = Math.min(this.panels.length === 4 ? 2 : 3, this.panels.length, Math.max(1, Math.floor(this.stage.clientWidth / 230))), rows = this.rows = Math.ceil(this.panels.length / Math.max(columns, 1));
     this.overlay.style.grid = `repeat(${rows}, 1fr) / repeat(${columns}, 1fr)`;
     this.overlay.replaceChildren(...this.panels.map((p, k) => this.label(p, k)));
     this.notes.replaceChildren(...this.panels.map(p => element('li', {}, `${this.name(p.motion.cell)}: ${p.motion.thinning()}.`)));
@@ -156,7 +158,8 @@ class Viewer {
     const away = this.radius / Math.sin(THREE.MathUtils.degToRad(this.camera.fov / 2)) * 1.05;
     const tile = this.stage.clientWidth / this.columns / (this.stage.clientHeight / this.rows);
     this.controls.target.set(0, 0, 0);
-    this.camera.position.set(...kViews[name]).normalize().multiplyScalar(0.85 * away / Math.min(1, tile));
+    const [x, y, z] = kViews[name], [side_x, side_z] = name === 'corner' ? this.panels[0]?.side() ?? [1, 1] : [1, 1];
+    this.camera.position.set(x * side_x, y, z * side_z).normalize().multiplyScalar(0.85 * away / Math.min(1, tile));
     this.camera.up.set(0, 1, 0);
     this.controls.update();
     this.stale = true;
@@ -211,6 +214,7 @@ class Viewer {
 
   draw() {
     this.stale = false;
+    if (!this.panels.length) return;
     this.scrub.value = String(this.time);
     this.clock.textContent = `${this.time.toFixed(3)} s of ${this.end.toFixed(2)} s`;
     this.scrub.setAttribute('aria-valuetext', this.clock.textContent);
