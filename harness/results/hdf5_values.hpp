@@ -32,7 +32,8 @@ std::vector<T> numbers(hid_t at, const char* name, hid_t type, Dims* shape = nul
   const Id d(H5Dopen2(at, name, H5P_DEFAULT), H5Dclose, std::string("opening ") + name);
   const Dims dims = dims_of(d);
   std::vector<T> values(product(dims));
-  if (!values.empty()) check(H5Dread(d, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), std::string("reading ") + name);
+  if (!values.empty())
+    check(H5Dread(d, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), std::string("reading ") + name);
   if (shape != nullptr) *shape = dims;
   return values;
 }
@@ -48,8 +49,8 @@ inline void require_text(hid_t type) {
 }
 
 inline std::string text_attribute(hid_t at, const char* name) {
-  const Id a(H5Aopen(at, name, H5P_DEFAULT), H5Aclose, std::string("attribute ") + name), stored(H5Aget_type(a), H5Tclose, "H5Aget_type"),
-      type = string_type();
+  const Id a(H5Aopen(at, name, H5P_DEFAULT), H5Aclose, std::string("attribute ") + name),
+      stored(H5Aget_type(a), H5Tclose, "H5Aget_type"), type = string_type();
   require_text(stored);
   char* text = nullptr;
   check(H5Aread(a, type, &text), std::string("attribute ") + name);
@@ -57,8 +58,8 @@ inline std::string text_attribute(hid_t at, const char* name) {
 }
 
 inline std::string text_dataset(hid_t at, const char* name) {
-  const Id d(H5Dopen2(at, name, H5P_DEFAULT), H5Dclose, std::string("opening ") + name), stored(H5Dget_type(d), H5Tclose, "H5Dget_type"),
-      type = string_type();
+  const Id d(H5Dopen2(at, name, H5P_DEFAULT), H5Dclose, std::string("opening ") + name),
+      stored(H5Dget_type(d), H5Tclose, "H5Dget_type"), type = string_type();
   require_text(stored);
   if (product(dims_of(d)) != 1) throw Error(std::string(name) + ": expected one text");
   char* text = nullptr;
@@ -67,7 +68,8 @@ inline std::string text_dataset(hid_t at, const char* name) {
 }
 
 inline double number_attribute(hid_t at, const char* name) {
-  const Id a(H5Aopen(at, name, H5P_DEFAULT), H5Aclose, std::string("attribute ") + name), space(H5Aget_space(a), H5Sclose, "H5Aget_space");
+  const Id a(H5Aopen(at, name, H5P_DEFAULT), H5Aclose, std::string("attribute ") + name),
+      space(H5Aget_space(a), H5Sclose, "H5Aget_space");
   if (H5Sget_simple_extent_npoints(space) != 1) throw Error(std::string("attribute ") + name + ": expected one number");
   double v = kMissing;
   check(H5Aread(a, H5T_NATIVE_DOUBLE, &v), std::string("attribute ") + name);

@@ -25,7 +25,8 @@ Replay waving(std::size_t frames, std::size_t columns, std::size_t rows) {
     r.time_s.push_back(0.04 * static_cast<double>(f));
     for (std::size_t j = 0; j < rows; ++j)
       for (std::size_t i = 0; i < columns; ++i) {
-        const double t = 0.04 * static_cast<double>(f), u = 0.1 * static_cast<double>(i), v = 0.1 * static_cast<double>(j);
+        const double t = 0.04 * static_cast<double>(f), u = 0.1 * static_cast<double>(i),
+                     v = 0.1 * static_cast<double>(j);
         for (const double x : {u - 7.3 * t, std::sin(3 * u + 5 * t) * 0.2 + 4, v + 0.5 * 9.81 * t * t})
           r.position.push_back(static_cast<float>(x));
       }
@@ -44,7 +45,10 @@ std::vector<double> unpacked(const PackedMotion& m) {
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t f = k / (3 * n), v = k % n;
     const long long origin = m.origin[k / n], r = planes[k] + 256 * planes[count + k];
-    const long long predicted = f > 1 ? 2 * x[k - 3 * n] - x[k - 6 * n] : f == 1 ? x[k - 3 * n] : v == 0 ? origin : x[k - 1];
+    const long long predicted = f > 1    ? 2 * x[k - 3 * n] - x[k - 6 * n]
+                                : f == 1 ? x[k - 3 * n]
+                                : v == 0 ? origin
+                                         : x[k - 1];
     long long u = (predicted - origin + r) % 65536;
     if (u < 0) u += 65536;
     EXPECT_LE(u, 32766);
@@ -53,7 +57,8 @@ std::vector<double> unpacked(const PackedMotion& m) {
   std::vector<double> out(count);  // (frame, vertex, xyz)
   for (std::size_t f = 0; f < m.frames.size(); ++f)
     for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t v = 0; v < n; ++v) out[(f * n + v) * 3 + a] = m.step_m * static_cast<double>(x[(f * 3 + a) * n + v]);
+      for (std::size_t v = 0; v < n; ++v)
+        out[(f * n + v) * 3 + a] = m.step_m * static_cast<double>(x[(f * 3 + a) * n + v]);
   return out;
 }
 
@@ -77,7 +82,8 @@ TEST(PackedMotion, KeepsEveryNthRowAndColumnAndTheLast) {
   EXPECT_EQ(m.columns, (std::vector<std::size_t>{0, 3, 6, 7}));
   EXPECT_EQ(m.rows, (std::vector<std::size_t>{0, 3, 4}));
   const std::vector<double> x = unpacked(m);
-  EXPECT_NEAR(x[3 * (2 * 12 + 1 * 4 + 3)], r.position[3 * (2 * 40 + 3 * 8 + 7)], m.step_m) << "frame 2, row 3, column 7";
+  EXPECT_NEAR(x[3 * (2 * 12 + 1 * 4 + 3)], r.position[3 * (2 * 40 + 3 * 8 + 7)], m.step_m)
+      << "frame 2, row 3, column 7";
 }
 
 TEST(PackedMotion, EndsWhereTheClothIsNoMore) {
@@ -93,7 +99,14 @@ TEST(PackedMotion, EndsWhereTheClothIsNoMore) {
 }
 
 TEST(PackedMotion, Base64AsInRfc4648) {
-  const char* const pairs[][2] = {{"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foob", "Zm9vYg=="}, {"fooba", "Zm9vYmE="}, {"foobar", "Zm9vYmFy"}, {"\xff\xfe", "//4="}};
+  const char* const pairs[][2] = {{"", ""},
+                                  {"f", "Zg=="},
+                                  {"fo", "Zm8="},
+                                  {"foo", "Zm9v"},
+                                  {"foob", "Zm9vYg=="},
+                                  {"fooba", "Zm9vYmE="},
+                                  {"foobar", "Zm9vYmFy"},
+                                  {"\xff\xfe", "//4="}};
   for (const auto& [bytes, text] : pairs) EXPECT_EQ(base64(bytes), text);
 }
 
@@ -102,7 +115,8 @@ class WebFiles : public ::testing::Test {
   void SetUp() override {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
     dir_ = fs::temp_directory_path() / ("clothbench-web-" + std::to_string(getpid()) + "-" + info->name());
-    StudyManifest manifest{"table3", "2026-01-01T00:00:00Z", "clothbench study </script><b>table3", nlohmann::json::object(), {}};
+    StudyManifest manifest{
+        "table3", "2026-01-01T00:00:00Z", "clothbench study </script><b>table3", nlohmann::json::object(), {}};
     fs::create_directories(dir_ / "run");
     for (const int n : {9, 17})
       for (const char* solver : {"xpbd", "paper"}) {
@@ -116,7 +130,8 @@ class WebFiles : public ::testing::Test {
         CellWriter writer(dir_ / "run", c.header);
         writer.write_accuracy(c.accuracy);
         writer.write_replay({{"colliders", {{"count", 1}, {"frame_rate_hz", 72.0}}, {}},
-                             {"colliders/0", {{"shape", "mesh"}, {"name", "ü"}, {"closed", 1}},
+                             {"colliders/0",
+                              {{"shape", "mesh"}, {"name", "ü"}, {"closed", 1}},
                               {{"position_m", "m", "", {"vertex", "xyz"}, {3, 3}, false, {0, 0, 0, 1, 0, 0, 0, 1, 0.5}},
                                {"triangles", "1", "", {"triangle", "corner"}, {1, 3}, true, {0, 1, 2}}}}});
         writer.finish(c.outcome, c.summary);
@@ -135,7 +150,8 @@ TEST_F(WebFiles, ReplayHasEveryNthFrameAndTheColliders) {
   EXPECT_EQ(r.frames, (std::vector<std::size_t>{0, 40, 80, 89}));
   ASSERT_EQ(r.position.size(), 4u * 243);
   for (std::size_t k = 0; k < 4; ++k)
-    for (std::size_t v = 0; v < 243; ++v) ASSERT_EQ(r.position[k * 243 + v], whole.accuracy.position[r.frames[k] * 243 + v]);
+    for (std::size_t v = 0; v < 243; ++v)
+      ASSERT_EQ(r.position[k * 243 + v], whole.accuracy.position[r.frames[k] * 243 + v]);
   ASSERT_EQ(r.groups.size(), 2u);
   EXPECT_EQ(r.groups[1].attributes.at("shape"), "mesh");
   EXPECT_EQ(r.groups[1].attributes.at("closed"), 1.0);
@@ -163,7 +179,8 @@ TEST_F(WebFiles, ThinsUntilThePageIsSmallAndSaysSo) {
   EXPECT_GT(few.document["cells"].size(), 0u);
   const Motions none = motions_of(cells, {}, 10);
   EXPECT_TRUE(none.document["cells"].empty());
-  EXPECT_EQ(none.document["left_out"].at(0), "4 motions: too large at the coarsest thinning, or not finite from the start.");
+  EXPECT_EQ(none.document["left_out"].at(0),
+            "4 motions: too large at the coarsest thinning, or not finite from the start.");
 }
 
 TEST_F(WebFiles, DataNeverBreaksOutOfItsElement) {
@@ -191,12 +208,14 @@ TEST_F(WebFiles, WithoutATemplateNoOlderPageStays) {
   const std::vector<CellRecord> cells = collect({dir_ / "run"});
   EXPECT_EQ(write_page(dir_, cells, {}, {"<html><!--clothbench:data--></html>", ""}), "");
   EXPECT_GT(fs::file_size(dir_ / "index.html"), 1000u);
-  EXPECT_EQ(write_page(dir_, cells, {}, {"", "there was no Node when this was built"}), "The interactive page was left out: there was no Node when this was built.");
+  EXPECT_EQ(write_page(dir_, cells, {}, {"", "there was no Node when this was built"}),
+            "The interactive page was left out: there was no Node when this was built.");
   EXPECT_FALSE(fs::exists(dir_ / "index.html"));
 }
 
 TEST_F(WebFiles, RatesKeepFullPrecisionAndMissingIsNull) {
-  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1.0 / 3001), fake_cell("bullet-soft", 8, "single", 0.01, false)};
+  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1.0 / 3001),
+                                   fake_cell("bullet-soft", 8, "single", 0.01, false)};
   const nlohmann::json rates = nlohmann::json::parse(rates_json(families(cells), published_table3()).dump());
   ASSERT_EQ(rates.size(), 1u);
   EXPECT_EQ(rates[0]["published"].size(), 3u);
@@ -210,7 +229,8 @@ TEST_F(WebFiles, RatesKeepFullPrecisionAndMissingIsNull) {
 }
 
 TEST(Environment, OneColumnForEachPlace) {
-  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1), fake_cell("xpbd", 9, "single", 1), fake_cell("bullet-soft", 8, "single", 1, false)};
+  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1), fake_cell("xpbd", 9, "single", 1),
+                                   fake_cell("bullet-soft", 8, "single", 1, false)};
   cells.push_back({});
   const Table t = environment_table(cells);
   EXPECT_EQ(t.rows.at(0), (std::vector<std::string>{"what", "2 cells", "1 cell"}));

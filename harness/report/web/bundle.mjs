@@ -1,10 +1,10 @@
 // Makes the page without data: template.html, and template.cpp which holds it.
 //   node bundle.mjs SRC README.md OUT      run beside node_modules
-import {readFileSync, writeFileSync} from 'node:fs';
-import {dirname, join} from 'node:path';
-import {fileURLToPath} from 'node:url';
 import {build} from 'esbuild';
 import {marked} from 'marked';
+import {existsSync, readdirSync, readFileSync, writeFileSync} from 'node:fs';
+import {dirname, join} from 'node:path';
+import {fileURLToPath} from 'node:url';
 
 const [source, readme, out] = process.argv.slice(2);
 const packages = join(dirname(fileURLToPath(import.meta.url)), 'node_modules');
@@ -22,21 +22,56 @@ function section(title) {
 const script_safe = text => text.replaceAll('<!--', '\\x3C!--').replaceAll(/<\/(script)/gi, '<\\/$1');
 
 async function bundled(entry, options) {
-  const result = await build({entryPoints: [join(source, entry)], bundle: true, minify: true, write: false, charset: 'ascii',
-    target: ['chrome109', 'firefox115', 'safari16.4'], legalComments: 'none', nodePaths: [packages], logLevel: 'warning', ...options});
-  return result.outputFiles[0].text;
+  const result = await build({
+    entryPoints: [join(source, entry)],
+    bundle: true,
+    minify: true,
+    write: false,
+    charset: 'ascii',
+    target: ['chrome109', 'firefox115', 'safari16.4'],
+    legalComments: 'none',
+    metafile: true,
+    nodePaths: [packages],
+    logLevel: 'warning',
+    ...options
+  });
+  return {text: result.outputFiles[0].text, inputs: Object.keys(result.metafile.inputs)};
 }
 
-const script = script_safe(await bundled('main.js', {format: 'iife'}));
-const style = (await bundled('style.css', {})).trim();
-const licences = ['three', 'three-mesh-bvh', 'vega', 'vega-lite', 'vega-tooltip'].map(name => {
-  const info = JSON.parse(readFileSync(join(packages, name, 'package.json'), 'utf8'));
-  return `${name} ${info.version} (${info.license})`;
-});
-const parts = {style, script, rules: section('Rules of the comparison'), limits: section('Limits'), packages: licences.join(', ')};
+const escaped = text => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;');
+
+/// Name, version and licence of every package in the bundle; texts that are the same stand once.
+function licences(inputs) {
+  const names =
+      [...new Set(inputs.map(i => i.match(/.*node_modules\/((?:@[^/]+\/)?[^/]+)\//)?.[1]).filter(Boolean))].sort();
+  const texts = new Map();
+  for (const name of names) {
+    const folder = join(packages, name), info = JSON.parse(readFileSync(join(folder, 'package.json'), 'utf8'));
+    const file = readdirSync(folder).find(f => /^(licen[cs]e|copying)/i.test(f));
+    if (!file && !info.license) throw new Error(`${name}: no licence`);
+    // Some packages of a collection leave the text to the collection.
+    const text = file && existsSync(join(folder, file)) ?
+        readFileSync(join(folder, file), 'utf8').trim() :
+        `Licence: ${info.license}, ${info.author?.name ?? info.author ?? ''}`;
+    texts.set(text, [...(texts.get(text) ?? []), `${name} ${info.version}`]);
+  }
+  return [...texts].map(([text, who]) => `<h4>${escaped(who.join(', '))}</h4><pre>${escaped(text)}</pre>`).join('\n');
+}
+
+const program = await bundled('main.js', {format: 'iife'});
+const script = script_safe(program.text), style = (await bundled('style.css', {})).text.trim();
+const parts = {
+  style,
+  script,
+  rules: section('Rules of the comparison'),
+  limits: section('Limits'),
+  licences: licences(program.inputs)
+};
 const html = readFileSync(join(source, 'index.html'), 'utf8').replace(/<!--part:(\w+)-->/g, (mark, name) => {
   if (!(name in parts)) throw new Error(`index.html: unknown mark ${mark}`);
-  return name === 'script' ? `<script>${parts.script}</script>` : name === 'style' ? `<style>${parts.style}</style>` : parts[name];
+  return name === 'script' ? `<script>${parts.script}</script>` :
+      name === 'style' ? `<style>${parts.style}</style>` :
+                         parts[name];
 });
 writeFileSync(join(out, 'template.html'), html);
 

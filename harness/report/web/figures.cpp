@@ -34,14 +34,18 @@ json published_series(const json& published) {
 }
 
 json rate_point(const CellRecord& c, const Resolution& r) {
-  return {{"width", width_of(r)}, {"resolution", r.label()}, {"status", c.outcome.status},
-          {"fps", or_null(summary_value(c, "fps_median"))}, {"spread", or_null(summary_value(c, "fps_spread"))},
+  return {{"width", width_of(r)},
+          {"resolution", r.label()},
+          {"status", c.outcome.status},
+          {"fps", or_null(summary_value(c, "fps_median"))},
+          {"spread", or_null(summary_value(c, "fps_spread"))},
           {"device_s", or_null(summary_value(c, "frame_device_median_s"))},
           {"read_B_per_s", or_null(summary_value(c, "bandwidth_read_peak_B_per_s"))},
           {"write_B_per_s", or_null(summary_value(c, "bandwidth_write_peak_B_per_s"))}};
 }
 
-const char* const kSeries[] = {"tunnelled_fraction", "tunnelled_depth_m", "contact_length_m", "depth_m", "depth_vertex_m", "stretch_max"};
+const char* const kSeries[] = {"tunnelled_fraction", "tunnelled_depth_m", "contact_length_m", "depth_m",
+                               "depth_vertex_m",     "stretch_max"};
 
 json contact_row(const ContactRow& r) {
   const CellRecord& c = *r.cell;
@@ -54,8 +58,9 @@ json contact_row(const ContactRow& r) {
     for (const double v : m.values) values.push_back(six_digits(v));
     metrics[m.name] = {{"units", m.units}, {"long_name", m.long_name}, {"values", std::move(values)}};
   }
-  return {{"label", r.series.label()}, {"solver", r.series.solver}, {"setting", r.series.setting}, {"sides", r.series.sides},
-          {"status", c.outcome.status}, {"failed_frame", c.outcome.failed_frame}, {"time_s", std::move(time_s)}, {"metrics", std::move(metrics)}};
+  return {{"label", r.series.label()},   {"solver", r.series.solver},    {"setting", r.series.setting},
+          {"sides", r.series.sides},     {"status", c.outcome.status},   {"failed_frame", c.outcome.failed_frame},
+          {"time_s", std::move(time_s)}, {"metrics", std::move(metrics)}};
 }
 
 }  // namespace
@@ -68,7 +73,11 @@ json rates_json(const std::vector<Family>& all, const json& published) {
       json points = json::array();
       for (const Resolution& r : f.resolutions())
         if (const CellRecord* c = f.find(s, r)) points.push_back(rate_point(*c, r));
-      series.push_back({{"label", s.label()}, {"solver", s.solver}, {"setting", s.setting}, {"sides", s.sides}, {"points", std::move(points)}});
+      series.push_back({{"label", s.label()},
+                        {"solver", s.solver},
+                        {"setting", s.setting},
+                        {"sides", s.sides},
+                        {"points", std::move(points)}});
     }
     out.push_back({{"name", f.name}, {"paper_table", f.paper_table}, {"series", std::move(series)}});
     if (f.paper_table == 3) out.back()["published"] = published_series(published);
@@ -91,14 +100,24 @@ json contact_series_json(const std::vector<ContactSetUp>& ups) {
 }
 
 Table environment_table(const std::vector<CellRecord>& cells) {
-  static constexpr std::pair<const char*, const char*> kKeys[] = {
-      {"gpu", "GPU"}, {"gpu_is_software", "GPU is software"}, {"device_profile", "device profile"}, {"driver", "driver"}, {"cpu", "CPU"},
-      {"shader_compiler", "shader compiler"}, {"clock_policy", "clocks"}, {"protocol", "protocol"}, {"git_commit", "commit"},
-      {"git_dirty", "local changes"}, {"build_type", "build"}, {"assets", "assets"}};
+  static constexpr std::pair<const char*, const char*> kKeys[] = {{"gpu", "GPU"},
+                                                                  {"gpu_is_software", "GPU is software"},
+                                                                  {"device_profile", "device profile"},
+                                                                  {"driver", "driver"},
+                                                                  {"cpu", "CPU"},
+                                                                  {"shader_compiler", "shader compiler"},
+                                                                  {"clock_policy", "clocks"},
+                                                                  {"protocol", "protocol"},
+                                                                  {"git_commit", "commit"},
+                                                                  {"git_dirty", "local changes"},
+                                                                  {"build_type", "build"},
+                                                                  {"assets", "assets"}};
   const auto text = [](const json& e, const char* key) -> std::string {
     const json v = e.is_object() ? e.value(key, json()) : json();
     if (v.is_boolean()) return v.get<bool>() ? "yes" : "no";
-    return v.is_string() && !v.get<std::string>().empty() ? v.get<std::string>() : v.is_null() || v.is_string() ? "–" : v.dump();
+    return v.is_string() && !v.get<std::string>().empty() ? v.get<std::string>()
+           : v.is_null() || v.is_string()                 ? "–"
+                                                          : v.dump();
   };
   std::vector<std::pair<std::vector<std::string>, std::size_t>> places;
   for (const CellRecord& c : cells) {
@@ -106,15 +125,18 @@ Table environment_table(const std::vector<CellRecord>& cells) {
     std::vector<std::string> place;
     for (const auto& [key, label] : kKeys) place.push_back(text(c.header.environment, key));
     const auto same = std::find_if(places.begin(), places.end(), [&](const auto& p) { return p.first == place; });
-    if (same == places.end()) places.push_back({place, 1});
-    else ++same->second;
+    if (same == places.end())
+      places.push_back({place, 1});
+    else
+      ++same->second;
   }
   Table t{"Where the cells ran", "As each result file says.", {{"what"}}};
   for (const auto& p : places) t.rows[0].push_back(fmt::format("{} cell{}", p.second, p.second == 1 ? "" : "s"));
   for (std::size_t k = 0; k < std::size(kKeys); ++k) {
     std::vector<std::string> row = {kKeys[k].second};
     for (const auto& p : places) row.push_back(p.first[k]);
-    if (std::any_of(row.begin() + 1, row.end(), [](const std::string& s) { return s != "–"; })) t.rows.push_back(std::move(row));
+    if (std::any_of(row.begin() + 1, row.end(), [](const std::string& s) { return s != "–"; }))
+      t.rows.push_back(std::move(row));
   }
   return t;
 }

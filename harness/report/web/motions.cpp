@@ -18,14 +18,15 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMostCells = 120;
-constexpr std::size_t kMostFloats = 100'000'000;     // of one cell in memory: 400 MB
-constexpr std::size_t kMostCollider_B = 3'000'000;   // of one scene's colliders, packed
+constexpr std::size_t kMostFloats = 100'000'000;    // of one cell in memory: 400 MB
+constexpr std::size_t kMostCollider_B = 3'000'000;  // of one scene's colliders, packed
 
 /// Coarser from line to line: frames first, as between them the viewer interpolates.
 struct Level {
   std::size_t frame_stride, most_width;
 };
-constexpr Level kLevels[] = {{1, 65}, {2, 65}, {3, 65}, {4, 65}, {4, 33}, {6, 33}, {8, 33}, {12, 33}, {12, 17}, {24, 17}};
+constexpr Level kLevels[] = {{1, 65}, {2, 65}, {3, 65},  {4, 65},  {4, 33},
+                             {6, 33}, {8, 33}, {12, 33}, {12, 17}, {24, 17}};
 
 struct Candidate {
   const CellRecord* cell = nullptr;
@@ -42,7 +43,8 @@ int rank_of(const CellRecord& c, const std::set<std::string>& fronts) {
   return has_contact(c) ? 0 : 2;
 }
 
-std::vector<Candidate> candidates(const std::vector<CellRecord>& cells, const std::set<std::string>& fronts, std::size_t& without) {
+std::vector<Candidate> candidates(const std::vector<CellRecord>& cells, const std::set<std::string>& fronts,
+                                  std::size_t& without) {
   std::vector<Candidate> out;
   std::map<std::tuple<int, std::string, std::string>, std::size_t> turns;
   for (const CellRecord& c : cells) {
@@ -62,7 +64,9 @@ std::vector<Candidate> candidates(const std::vector<CellRecord>& cells, const st
     out.push_back(std::move(k));
   }
   // Every solver's first cell of each scene comes before any second.
-  std::stable_sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) { return std::pair(a.rank, a.turn) < std::pair(b.rank, b.turn); });
+  std::stable_sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
+    return std::pair(a.rank, a.turn) < std::pair(b.rank, b.turn);
+  });
   return out;
 }
 
@@ -80,7 +84,8 @@ class Packer {
       if (frames / level.frame_stride * 3 * k.cell->header.vertices > kMostFloats) continue;
       const std::size_t width = std::max(k.columns, k.rows);
       const Replay replay = read_replay(k.cell->file, level.frame_stride);
-      const PackedMotion motion = pack_motion(replay, k.columns, k.rows, (width + level.most_width - 1) / level.most_width);
+      const PackedMotion motion =
+          pack_motion(replay, k.columns, k.rows, (width + level.most_width - 1) / level.most_width);
       if (motion.frames.empty()) return false;
       if (const std::size_t size = (motion.bytes.size() + 2) / 3 * 4; size > share) continue;
       store(k, replay, motion);
@@ -101,22 +106,40 @@ class Packer {
 
   void store(const Candidate& k, const Replay& replay, const PackedMotion& motion) {
     const CellRecord& c = *k.cell;
-    const auto size = [&](int axis) { return k.scenario.value(json::json_pointer(fmt::format("/cloth/size_m/{}", axis)), 0.0); };
+    const auto size = [&](int axis) {
+      return k.scenario.value(json::json_pointer(fmt::format("/cloth/size_m/{}", axis)), 0.0);
+    };
     json time_s = json::array(), metrics = json::object();
     for (std::size_t f = 0; f < motion.frames.size(); ++f) time_s.push_back(replay.time_s[f]);
     for (const char* name : {"stretch_max", "tunnelled_fraction", "contact_length_m", "depth_m"})
       for (const MetricSeries& m : c.accuracy.metrics)
         if (m.name == name) {
           json values = json::array();
-          for (const std::size_t f : motion.frames) values.push_back(f < m.values.size() && std::isfinite(m.values[f]) ? json(std::stod(fmt::format("{:.6g}", m.values[f]))) : json());
+          for (const std::size_t f : motion.frames)
+            values.push_back(f < m.values.size() && std::isfinite(m.values[f])
+                                 ? json(std::stod(fmt::format("{:.6g}", m.values[f])))
+                                 : json());
           metrics[name] = std::move(values);
         }
-    json e = {{"scene", c.header.scene}, {"solver", c.header.solver}, {"setting", c.header.setting},
-              {"label", Series{c.header.solver, c.header.setting, ""}.label()}, {"sides", k.scenario.value(json::json_pointer("/cloth/sides"), "")},
-              {"status", c.outcome.status}, {"failed_frame", c.outcome.failed_frame}, {"message", c.outcome.message},
-              {"grid", {k.columns, k.rows}}, {"size_m", {size(0), size(1)}}, {"frames_stored", c.accuracy.time_s.size()},
-              {"frames", motion.frames}, {"time_s", std::move(time_s)}, {"columns", motion.columns}, {"rows", motion.rows},
-              {"step_m", motion.step_m}, {"origin", motion.origin}, {"cut_at", motion.cut_at}, {"metrics", std::move(metrics)}};
+    json e = {{"scene", c.header.scene},
+              {"solver", c.header.solver},
+              {"setting", c.header.setting},
+              {"label", Series{c.header.solver, c.header.setting, ""}.label()},
+              {"sides", k.scenario.value(json::json_pointer("/cloth/sides"), "")},
+              {"status", c.outcome.status},
+              {"failed_frame", c.outcome.failed_frame},
+              {"message", c.outcome.message},
+              {"grid", {k.columns, k.rows}},
+              {"size_m", {size(0), size(1)}},
+              {"frames_stored", c.accuracy.time_s.size()},
+              {"frames", motion.frames},
+              {"time_s", std::move(time_s)},
+              {"columns", motion.columns},
+              {"rows", motion.rows},
+              {"step_m", motion.step_m},
+              {"origin", motion.origin},
+              {"cut_at", motion.cut_at},
+              {"metrics", std::move(metrics)}};
     if (const std::string which = colliders(c, replay.groups); !which.empty()) e["colliders"] = std::stoul(which);
     e["blob"] = blob(motion.bytes);
     out_.document["cells"].push_back(std::move(e));
@@ -143,7 +166,8 @@ class Packer {
     const auto [at, is_new] = seen_.try_emplace(key, "");
     if (!is_new) return at->second;
     if (total > kMostCollider_B) {
-      left_out().push_back(fmt::format("The colliders of {}: {:.1f} MB.", c.header.scene, 1e-6 * static_cast<double>(total)));
+      left_out().push_back(
+          fmt::format("The colliders of {}: {:.1f} MB.", c.header.scene, 1e-6 * static_cast<double>(total)));
       return "";
     }
     std::size_t next = 0;
@@ -183,7 +207,9 @@ Motions motions_of(const std::vector<CellRecord>& cells, const std::set<std::str
   Motions out = packer.take();
   auto& shown = out.document["cells"];
   std::stable_sort(shown.begin(), shown.end(), [](const json& a, const json& b) {
-    const auto key = [](const json& j) { return std::tuple(j["scene"].get<std::string>(), j["solver"].get<std::string>(), j["setting"].get<std::string>()); };
+    const auto key = [](const json& j) {
+      return std::tuple(j["scene"].get<std::string>(), j["solver"].get<std::string>(), j["setting"].get<std::string>());
+    };
     return key(a) < key(b);
   });
   return out;

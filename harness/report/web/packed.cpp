@@ -16,7 +16,8 @@ constexpr double kMostGrowth = 20;  // of a cloth that still shows something
 std::string deflated(const std::string& bytes) {
   uLongf size = compressBound(bytes.size());
   std::string out(size, '\0');
-  const int status = compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), 6);
+  const int status = compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                               reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), 6);
   if (status != Z_OK) throw Error("zlib: compress2 failed with " + std::to_string(status), ExitCode::CheckFailed);
   out.resize(size);
   return out;
@@ -87,7 +88,10 @@ PackedMotion pack_motion(const Replay& replay, std::size_t columns, std::size_t 
       for (const std::size_t j : out.rows)
         for (const std::size_t i : out.columns) {
           now[k] = std::llround(replay.position[3 * (f * vertices + j * columns + i) + a] / out.step_m);
-          const std::int64_t predicted = f > 1 ? 2 * before[k] - earlier[k] : f == 1 ? before[k] : k % kept == 0 ? origin : now[k - 1];
+          const std::int64_t predicted = f > 1           ? 2 * before[k] - earlier[k]
+                                         : f == 1        ? before[k]
+                                         : k % kept == 0 ? origin
+                                                         : now[k - 1];
           residuals.push_back(static_cast<std::uint32_t>((now[k] - predicted) & 0xffff));
           ++k;
         }
@@ -114,8 +118,10 @@ std::string base64(const std::string& bytes) {
   out.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t k = 0; k < bytes.size(); k += 3) {
     std::uint32_t group = 0;
-    for (std::size_t b = 0; b < 3; ++b) group = group << 8 | (k + b < bytes.size() ? static_cast<unsigned char>(bytes[k + b]) : 0u);
-    for (std::size_t d = 0; d < 4; ++d) out.push_back(k + d > bytes.size() ? '=' : kDigits[(group >> (18 - 6 * d)) & 63u]);
+    for (std::size_t b = 0; b < 3; ++b)
+      group = group << 8 | (k + b < bytes.size() ? static_cast<unsigned char>(bytes[k + b]) : 0u);
+    for (std::size_t d = 0; d < 4; ++d)
+      out.push_back(k + d > bytes.size() ? '=' : kDigits[(group >> (18 - 6 * d)) & 63u]);
   }
   return out;
 }

@@ -12,8 +12,9 @@ inline constexpr double kPackedSteps = 32766;
 
 /// A cloth's motion, thinned and quantised for the page of a report.
 /// Frame f, axis a, vertex v: x = step_m · (origin[3f + a] + u), u in [0, 32766]. `bytes`: zlib of all low bytes, then
-/// all high bytes, of the differences r (frame, axis, vertex; modulo 2^16) between origin + u and what the frames before
-/// predict: X' = 2 X(f-1) - X(f-2), in frame 1 X' = X(0), in frame 0 the vertex before, and for vertex 0 the origin.
+/// all high bytes, of the differences r (frame, axis, vertex; modulo 2^16) between origin + u and what the frames
+/// before predict: X' = 2 X(f-1) - X(f-2), in frame 1 X' = X(0), in frame 0 the vertex before, and for vertex 0 the
+/// origin.
 struct PackedMotion {
   std::vector<std::size_t> frames;         ///< of the cell's, kept
   std::vector<std::size_t> columns, rows;  ///< of the cloth's grid, kept

@@ -21,8 +21,10 @@ std::string script_safe(const std::string& json_text) {
   std::string out;
   out.reserve(json_text.size());
   for (const char c : json_text)
-    if (c == '<') out += "\\u003c";
-    else out += c;
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
   return out;
 }
 
@@ -35,14 +37,17 @@ json page_document(const std::vector<CellRecord>& cells, const Page& page, const
     for (const Table& t : s.tables) tables.push_back(table_json(t));
     sections.push_back({{"id", s.id}, {"title", s.title}, {"tables", std::move(tables)}});
   }
-  return {{"format", "clothbench-report"}, {"format_version", 1}, {"cells", cells.size()}, {"headline", page.headline},
-          {"sections", std::move(sections)}, {"rates", page.rates}, {"penetration", page.penetration}, {"work", page.work},
-          {"commands", page.commands}, {"motions", motions.document}};
+  return {{"format", "clothbench-report"},   {"format_version", 1},
+          {"cells", cells.size()},           {"headline", page.headline},
+          {"sections", std::move(sections)}, {"rates", page.rates},
+          {"penetration", page.penetration}, {"work", page.work},
+          {"commands", page.commands},       {"motions", motions.document}};
 }
 
 std::string page_html(const std::string& html, const json& document, const std::vector<std::string>& blobs) {
   const std::size_t at = html.find(kDataMark);
-  if (at == std::string::npos) throw Error("the page's template has no place for data: this build is broken", ExitCode::CheckFailed);
+  if (at == std::string::npos)
+    throw Error("the page's template has no place for data: this build is broken", ExitCode::CheckFailed);
   std::string data = "<script type=\"application/json\" id=\"clothbench-data\">" +
                      script_safe(document.dump(-1, ' ', true, json::error_handler_t::replace)) + "</script>\n";
   for (std::size_t k = 0; k < blobs.size(); ++k)
@@ -50,7 +55,8 @@ std::string page_html(const std::string& html, const json& document, const std::
   return html.substr(0, at) + data + html.substr(at + sizeof kDataMark - 1);
 }
 
-std::string write_page(const fs::path& out, const std::vector<CellRecord>& cells, const Page& page, const PageTemplate& from) {
+std::string write_page(const fs::path& out, const std::vector<CellRecord>& cells, const Page& page,
+                       const PageTemplate& from) {
   if (from.html.empty()) {
     fs::remove(out / "index.html");  // an older run's page is not this report's
     return "The interactive page was left out: " + from.missing + ".";

@@ -43,15 +43,16 @@ std::vector<std::string> commands_of(const std::vector<std::filesystem::path>& r
 /// Bytes of packed motion and colliders, in base64, that one page holds.
 inline constexpr std::size_t kMotionBudget_B = 13'000'000;
 
-/// Motions of the cells, for the viewer. `cells`: scene, solver, how thinned, index into `blobs`; `colliders`: each once;
-/// `left_out`: in words. `blobs`: base64 of zlib (packed.hpp).
+/// Motions of the cells, for the viewer. `cells`: scene, solver, how thinned, index into `blobs`; `colliders`: each
+/// once; `left_out`: in words. `blobs`: base64 of zlib (packed.hpp).
 struct Motions {
   nlohmann::json document;
   std::vector<std::string> blobs;
 };
 
 /// Reads trajectories from the cells' files, thinned until they fit the budget: frames first, then the grid.
-Motions motions_of(const std::vector<CellRecord>& cells, const std::set<std::string>& fronts, std::size_t budget_B = kMotionBudget_B);
+Motions motions_of(const std::vector<CellRecord>& cells, const std::set<std::string>& fronts,
+                   std::size_t budget_B = kMotionBudget_B);
 
 /// The document of the page, without blobs.
 nlohmann::json page_document(const std::vector<CellRecord>& cells, const Page&, const Motions&);
@@ -61,6 +62,7 @@ std::string page_html(const std::string& html, const nlohmann::json& document, c
 
 /// Writes `index.html`; an older one is removed where none can be made. Returns why there is none, or nothing. Throws
 /// Error if a file cannot be read or written.
-std::string write_page(const std::filesystem::path& out, const std::vector<CellRecord>& cells, const Page&, const PageTemplate&);
+std::string write_page(const std::filesystem::path& out, const std::vector<CellRecord>& cells, const Page&,
+                       const PageTemplate&);
 
 }  // namespace clothbench

@@ -23,23 +23,28 @@ function box(a) {
   const mesh = new THREE.Mesh(new THREE.BoxGeometry(2 * half[0], 2 * half[1], 2 * half[2]));
   mesh.setRotationFromMatrix(new THREE.Matrix4().makeBasis(...axes));
   mesh.position.copy(c);
-  return {object: mesh, depth: x => {
-    const d = x.clone().sub(c);
-    return Math.min(...axes.map((u, k) => half[k] - Math.abs(u.dot(d))));
-  }};
+  return {
+    object: mesh,
+    depth: x => {
+      const d = x.clone().sub(c);
+      return Math.min(...axes.map((u, k) => half[k] - Math.abs(u.dot(d))));
+    }
+  };
 }
 
 /// Ends a and b and radius of each capsule at a time; frames as many a second as the scene has.
 function capsules(array, rate) {
   const [frames, count] = array.shape, group = new THREE.Group(), parts = [];
   for (let k = 0; k < count; ++k) {
-    const shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 20, 1, true)), ends = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1, 20, 14)));
+    const shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 20, 1, true)),
+          ends = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1, 20, 14)));
     group.add(shaft, ...ends);
     parts.push({shaft, ends, a: new THREE.Vector3(), b: new THREE.Vector3(), radius: 0});
   }
   const up = new THREE.Vector3(0, 1, 0), line = new THREE.Line3(), nearest = new THREE.Vector3();
   const move = time => {
-    const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), g = Math.min(f + 1, frames - 1), w = at - f;
+    const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), g = Math.min(f + 1, frames - 1),
+          w = at - f;
     parts.forEach((p, k) => {
       const value = j => array.values[(f * count + k) * 7 + j] * (1 - w) + array.values[(g * count + k) * 7 + j] * w;
       p.a.set(value(0), value(1), value(2));
@@ -49,10 +54,18 @@ function capsules(array, rate) {
       p.shaft.position.copy(p.a).addScaledVector(way, 0.5);
       p.shaft.scale.set(p.radius, Math.max(length, 1e-9), p.radius);
       if (length > 0) p.shaft.quaternion.setFromUnitVectors(up, way.normalize());
-      p.ends.forEach((e, n) => { e.position.copy(n ? p.b : p.a); e.scale.setScalar(p.radius); });
+      p.ends.forEach((e, n) => {
+        e.position.copy(n ? p.b : p.a);
+        e.scale.setScalar(p.radius);
+      });
     });
   };
-  return {object: group, move, depth: x => Math.max(...parts.map(p => p.radius - line.set(p.a, p.b).closestPointToPoint(x, true, nearest).distanceTo(x)))};
+  return {
+    object: group,
+    move,
+    depth: x =>
+        Math.max(...parts.map(p => p.radius - line.set(p.a, p.b).closestPointToPoint(x, true, nearest).distanceTo(x)))
+  };
 }
 
 /// A mesh that stands still, or follows its joints: x(t) = Σ weight · matrix(t) (position, 1).
@@ -64,17 +77,21 @@ function triangle_mesh(arrays, rate) {
   const tree = new MeshBVH(geometry);  // sorts the index
   let move = null;
   if (arrays.joint_matrix) {
-    const [frames, joints] = arrays.joint_matrix.shape, m = arrays.joint_matrix.values, index = arrays.joint_index.values, weight = arrays.joint_weight.values;
+    const [frames, joints] = arrays.joint_matrix.shape, m = arrays.joint_matrix.values,
+                   index = arrays.joint_index.values, weight = arrays.joint_weight.values;
     move = time => {
-      const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), g = Math.min(f + 1, frames - 1), w = at - f;
+      const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), g = Math.min(f + 1, frames - 1),
+            w = at - f;
       for (let v = 0; v < position.length / 3; ++v)
         for (let r = 0; r < 3; ++r) {
           let sum = 0;
           for (let s = 0; s < 4; ++s) {
             const share = weight[4 * v + s];
             if (share === 0) continue;
-            const one = (f * joints + index[4 * v + s]) * 12 + 4 * r, two = (g * joints + index[4 * v + s]) * 12 + 4 * r;
-            for (let c = 0; c < 4; ++c) sum += share * (m[one + c] * (1 - w) + m[two + c] * w) * (c < 3 ? rest[3 * v + c] : 1);
+            const one = (f * joints + index[4 * v + s]) * 12 + 4 * r,
+                  two = (g * joints + index[4 * v + s]) * 12 + 4 * r;
+            for (let c = 0; c < 4; ++c)
+              sum += share * (m[one + c] * (1 - w) + m[two + c] * w) * (c < 3 ? rest[3 * v + c] : 1);
           }
           position[3 * v + r] = sum;
         }
@@ -99,17 +116,22 @@ function triangle_mesh(arrays, rate) {
 
 /// Small balls where hands hold the cloth.
 function grips(arrays, rate) {
-  const [frames, count] = arrays.target_m.shape, x = arrays.target_m.values, held = arrays.held.values, group = new THREE.Group();
+  const [frames, count] = arrays.target_m.shape, x = arrays.target_m.values, held = arrays.held.values,
+                 group = new THREE.Group();
   const balls = Array.from({length: count}, () => new THREE.Mesh(new THREE.SphereGeometry(0.012, 16, 12)));
   group.add(...balls);
-  return {object: group, move: time => {
-    const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), g = Math.min(f + 1, frames - 1), w = at - f;
-    balls.forEach((b, k) => {
-      const value = a => x[3 * (f * count + k) + a] * (1 - w) + x[3 * (g * count + k) + a] * w;
-      b.position.set(value(0), value(1), value(2));
-      b.visible = held[f * count + k] > 0;
-    });
-  }};
+  return {
+    object: group,
+    move: time => {
+      const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), g = Math.min(f + 1, frames - 1),
+            w = at - f;
+      balls.forEach((b, k) => {
+        const value = a => x[3 * (f * count + k) + a] * (1 - w) + x[3 * (g * count + k) + a] * w;
+        b.position.set(value(0), value(1), value(2));
+        b.visible = held[f * count + k] > 0;
+      });
+    }
+  };
 }
 
 /// Objects to draw of a scene's colliders (motion.js, load_colliders), each with `object`, and where it has them

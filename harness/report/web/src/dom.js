@@ -11,8 +11,9 @@ export function element(tag, attributes = {}, ...children) {
 }
 
 export function select(label, options, value, changed) {
-  const list = element('select', {onchange: () => changed(list.value)},
-    options.map(o => element('option', {value: o.value, selected: o.value === value}, o.text)));
+  const list = element(
+      'select', {onchange: () => changed(list.value)},
+      options.map(o => element('option', {value: o.value, selected: o.value === value}, o.text)));
   return element('label', {}, label, list);
 }
 

@@ -5,7 +5,10 @@ import {table_block} from './tables.js';
 import {start_theme} from './theme.js';
 import {start_viewer} from './viewer.js';
 
-const kOrder = ['summary', 'rates', 'work-precision', 'penetration', 'stability', 'material', 'feature-cost', 'features', 'failed', 'expect', 'environment'];
+const kOrder = [
+  'summary', 'rates', 'work-precision', 'penetration', 'material', 'feature-cost', 'features', 'failed', 'expect',
+  'environment'
+];
 const kAfterViewer = ['material', 'feature-cost', 'features', 'failed', 'expect', 'environment'];
 const rank = id => kOrder.includes(id) ? kOrder.indexOf(id) : kOrder.length;
 
@@ -13,22 +16,29 @@ const rank = id => kOrder.includes(id) ? kOrder.indexOf(id) : kOrder.length;
 function headline(text) {
   return text.split(/\n+/).filter(Boolean).map(line => {
     const parts = line.split('**');
-    return element('p', {class: parts.length > 1 ? 'warning' : 'soft'}, parts.map((p, k) => k % 2 ? element('strong', {}, p) : p));
+    return element(
+        'p', {class: parts.length > 1 ? 'warning' : 'soft'}, parts.map((p, k) => k % 2 ? element('strong', {}, p) : p));
   });
 }
 
 function section(s, id, figures) {
   // The table that counts, then the figures, then the others; diagrams stand before the table that sums them up.
   const blocks = s.tables.map(table_block), first = s.id === 'work-precision' ? 0 : 1;
-  return element('section', {id, 'aria-labelledby': `${id}-title`}, element('h2', {id: `${id}-title`}, s.title),
-    blocks.slice(0, first), figures.map(f => f.block), blocks.slice(first));
+  return element(
+      'section', {id, 'aria-labelledby': `${id}-title`}, element('h2', {id: `${id}-title`}, s.title),
+      blocks.slice(0, first), figures.map(f => f.block), blocks.slice(first));
 }
 
 function start() {
   const doc = JSON.parse(document.getElementById('clothbench-data').textContent);
   start_theme();
-  document.getElementById('headline').append(...headline(doc.headline),
-    ...(doc.commands.length ? [element('p', {class: 'soft'}, 'Made by ', doc.commands.flatMap((c, k) => [k ? ', ' : '', element('code', {}, c)]), '.')] : []));
+  document.getElementById('headline')
+      .append(
+          ...headline(doc.headline),
+          ...(doc.commands.length ? [element(
+                                        'p', {class: 'soft'}, 'Made by ',
+                                        doc.commands.flatMap((c, k) => [k ? ', ' : '', element('code', {}, c)]), '.')] :
+                                    []));
 
   const figures = make_figures(doc), links = [], seen = {};
   const sorted = doc.sections.map((s, k) => ({s, k})).sort((a, b) => rank(a.s.id) - rank(b.s.id) || a.k - b.k);
@@ -40,8 +50,12 @@ function start() {
     links.push({id, title: s.title, later: kAfterViewer.includes(s.id)});
   }
   const has_viewer = doc.motions.cells.length > 0;
-  const all = [...links.filter(l => !l.later), ...(has_viewer ? [{id: 'viewer-section', title: 'Motions'}] : []), ...links.filter(l => l.later), {id: 'rules', title: 'Rules and limits'}];
-  document.getElementById('contents').append(element('ul', {}, all.map(l => element('li', {}, element('a', {href: `#${l.id}`}, l.title)))));
+  const all = [
+    ...links.filter(l => !l.later), ...(has_viewer ? [{id: 'viewer-section', title: 'Motions'}] : []),
+    ...links.filter(l => l.later), {id: 'rules', title: 'Rules and limits'}
+  ];
+  document.getElementById('contents')
+      .append(element('ul', {}, all.map(l => element('li', {}, element('a', {href: `#${l.id}`}, l.title)))));
   start_plots();
   // For the browser's console, and for tests.
   window.clothbench = {document: doc};

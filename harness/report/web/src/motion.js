@@ -46,7 +46,8 @@ export class Motion {
     let low = 0, high = t.length - 1;
     while (high - low > 1) {
       const middle = (low + high) >> 1;
-      if (t[middle] <= time) low = middle; else high = middle;
+      if (t[middle] <= time) low = middle;
+      else high = middle;
     }
     return [low, (time - t[low]) / (t[high] - t[low])];
   }
@@ -95,10 +96,11 @@ export class Motion {
   /// What was left out of it, in words.
   thinning() {
     const {cell} = this, kept = cell.frames.length, grid = cell.grid[0] * cell.grid[1];
-    const step = cell.step_m >= 1e-3 ? `${(1e3 * cell.step_m).toPrecision(2)} mm` : `${(1e6 * cell.step_m).toPrecision(2)} µm`;
+    const step =
+        cell.step_m >= 1e-3 ? `${(1e3 * cell.step_m).toPrecision(2)} mm` : `${(1e6 * cell.step_m).toPrecision(2)} µm`;
     return `${kept === cell.frames_stored ? 'every frame' : `${kept} of ${cell.frames_stored} frames`}, ` +
-      `${this.vertices === grid ? 'every vertex' : `${this.vertices} of ${grid} vertices`}, positions to ${step}` +
-      (cell.cut_at >= 0 ? `; ends where it flew apart or was not finite, frame ${cell.cut_at}` : '');
+        `${this.vertices === grid ? 'every vertex' : `${this.vertices} of ${grid} vertices`}, positions to ${step}` +
+        (cell.cut_at >= 0 ? `; ends where it flew apart or was not finite, frame ${cell.cut_at}` : '');
   }
 }
 
@@ -106,7 +108,12 @@ export class Motion {
 export function strain(edges, position, out) {
   out.fill(0);
   for (const [a, b, rest] of edges) {
-    const e = Math.abs(Math.hypot(position[3 * a] - position[3 * b], position[3 * a + 1] - position[3 * b + 1], position[3 * a + 2] - position[3 * b + 2]) / rest - 1);
+    const e = Math.abs(
+        Math.hypot(
+            position[3 * a] - position[3 * b], position[3 * a + 1] - position[3 * b + 1],
+            position[3 * a + 2] - position[3 * b + 2]) /
+            rest -
+        1);
     if (e > out[a]) out[a] = e;
     if (e > out[b]) out[b] = e;
   }

@@ -1,5 +1,6 @@
 // One motion in its own scene: cloth, colliders, colours.
 import * as THREE from 'three';
+
 import {make_colliders, penetration} from './colliders.js';
 import {load_colliders, Motion, strain} from './motion.js';
 
@@ -35,20 +36,36 @@ export class Panel {
     this.edges = motion.structural();
     const g = this.geometry = new THREE.BufferGeometry();
     g.setAttribute('position', new THREE.BufferAttribute(this.position, 3).setUsage(THREE.DynamicDrawUsage));
-    g.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * motion.vertices), 3).setUsage(THREE.DynamicDrawUsage));
+    g.setAttribute(
+        'color', new THREE.BufferAttribute(new Float32Array(3 * motion.vertices), 3).setUsage(THREE.DynamicDrawUsage));
     g.setIndex(motion.triangles());
-    const uv = Array.from({length: motion.vertices}, (_, v) => [(v % motion.columns) / (motion.columns - 1), Math.floor(v / motion.columns) / (motion.rows - 1)]);
+    const uv = Array.from(
+        {length: motion.vertices},
+        (_, v) => [(v % motion.columns) / (motion.columns - 1), Math.floor(v / motion.columns) / (motion.rows - 1)]);
     g.setAttribute('uv', new THREE.BufferAttribute(new Float32Array(uv.flat()), 2));
     this.checks = checks(motion.cell.size_m);
-    this.cloth = new THREE.Mesh(g, new THREE.MeshStandardMaterial({vertexColors: true, side: THREE.DoubleSide, roughness: 0.85, metalness: 0}));
-    this.wires = new THREE.LineSegments(new THREE.BufferGeometry().setAttribute('position', g.attributes.position).setIndex(this.edges.flatMap(e => [e[0], e[1]])),
-      new THREE.LineBasicMaterial({color: 0x000000, transparent: true, opacity: 0.35}));
-    this.solid = new THREE.MeshStandardMaterial({color: 0xb9a58c, side: THREE.DoubleSide, roughness: 1, metalness: 0,
-      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});  // a cloth that lies on it is seen
+    this.cloth = new THREE.Mesh(
+        g, new THREE.MeshStandardMaterial({vertexColors: true, side: THREE.DoubleSide, roughness: 0.85, metalness: 0}));
+    this.wires = new THREE.LineSegments(
+        new THREE.BufferGeometry()
+            .setAttribute('position', g.attributes.position)
+            .setIndex(this.edges.flatMap(e => [e[0], e[1]])),
+        new THREE.LineBasicMaterial({color: 0x000000, transparent: true, opacity: 0.35}));
+    this.solid = new THREE.MeshStandardMaterial({
+      color: 0xb9a58c,
+      side: THREE.DoubleSide,
+      roughness: 1,
+      metalness: 0,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1
+    });  // a cloth that lies on it is seen
     this.colliders = make_colliders(colliders);
     this.group = new THREE.Group();
     for (const c of this.colliders) {
-      c.object.traverse(o => { if (o.isMesh) o.material = this.solid; });
+      c.object.traverse(o => {
+        if (o.isMesh) o.material = this.solid;
+      });
       this.group.add(c.object);
     }
     for (const o of [this.cloth, this.wires]) o.frustumCulled = false;
@@ -63,14 +80,24 @@ export class Panel {
     return new Panel(motion, colliders);
   }
 
-  /// What the camera should see: where the cloth starts, and as much of its way and of the colliders as is near. A cloth that slides
-  /// off a desk falls for metres, and would be a dot if all of that were to fit.
+  /// What the camera should see: where the cloth starts, and as much of its way and of the colliders as is near. A
+  /// cloth that slides off a desk falls for metres, and would be a dot if all of that were to fit.
   view_box() {
-    const box = frame => { const {low, high} = this.motion.box(frame); return new THREE.Box3(new THREE.Vector3(...low), new THREE.Vector3(...high)); };
-    const start = box(0), extent = start.getSize(new THREE.Vector3()), near = start.clone().expandByScalar(0.6 * Math.max(...extent)), out = start.clone();
-    const add = other => { other.intersect(near); if (!other.isEmpty()) out.union(other); };
+    const box = frame => {
+      const {low, high} = this.motion.box(frame);
+      return new THREE.Box3(new THREE.Vector3(...low), new THREE.Vector3(...high));
+    };
+    const start = box(0), extent = start.getSize(new THREE.Vector3()),
+          near = start.clone().expandByScalar(0.6 * Math.max(...extent)), out = start.clone();
+    const add = other => {
+      other.intersect(near);
+      if (!other.isEmpty()) out.union(other);
+    };
     for (let f = 1; f < this.motion.time_s.length; ++f) add(box(f));
-    for (const c of this.colliders) { c.move?.(0); add(new THREE.Box3().setFromObject(c.object)); }
+    for (const c of this.colliders) {
+      c.move?.(0);
+      add(new THREE.Box3().setFromObject(c.object));
+    }
     return out;
   }
 
@@ -94,7 +121,8 @@ export class Panel {
     let greatest = null, crossing = 0;
     if (colouring === 'strain') strain(this.edges, position, this.value);
     if (colouring === 'penetration') penetration(this.colliders, this.edges, position, this.value);
-    const colour = new THREE.Color(), out = geometry.attributes.color.array, map = colouring === 'checks' ? this.checks : null;
+    const colour = new THREE.Color(), out = geometry.attributes.color.array,
+          map = colouring === 'checks' ? this.checks : null;
     if (this.cloth.material.map !== map) Object.assign(this.cloth.material, {map, needsUpdate: true});
     for (let v = 0; v < motion.vertices; ++v) {
       if (colouring === 'checks') colour.set(0xffffff);
@@ -102,7 +130,9 @@ export class Panel {
         const x = this.value[v];
         if (x < 0) ++crossing;
         else greatest = Math.max(greatest ?? 0, x);
-        x < 0 ? colour.copy(kCrossing) : colouring === 'penetration' && x === 0 ? colour.set(0xc9d1da) : ramp(x / most, colour);
+        x < 0                                      ? colour.copy(kCrossing) :
+            colouring === 'penetration' && x === 0 ? colour.set(0xc9d1da) :
+                                                     ramp(x / most, colour);
       }
       colour.toArray(out, 3 * v);
     }
@@ -112,7 +142,9 @@ export class Panel {
   }
 
   dispose() {
-    this.scene.traverse(o => { o.geometry?.dispose(); });
+    this.scene.traverse(o => {
+      o.geometry?.dispose();
+    });
     this.checks.dispose();
     for (const m of [this.cloth.material, this.wires.material, this.solid]) m.dispose();
   }
