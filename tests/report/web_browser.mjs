@@ -60,10 +60,22 @@ async function check_tables() {
                 .map(t => [t.rows.length, t.rows[0].length])
                 .sort());
   equal(sizes.sort(), wanted, 'rows and columns of the tables');
+  const hidden = await page.$$eval(
+      'h2, h3, table, figure',
+      list => list.filter(e => {
+        const b = e.getBoundingClientRect(), main = document.querySelector('main').getBoundingClientRect();
+        return !(b.width > 0 && b.height > 0 && b.bottom <= main.bottom + 1);
+      }).length);
+  equal(hidden, 0, 'headings, tables and figures cut off or without extent');
   const unnamed = await page.$$eval(
       'button, select, input, canvas',
       list => list.filter(e => !(e.getAttribute('aria-label') || e.textContent.trim() || e.labels?.length)).length);
   equal(unnamed, 0, 'controls without a name');
+  const twice = await page.$$eval('button[aria-label*="download as"]', list => {
+    const names = list.map(b => b.getAttribute('aria-label'));
+    return names.filter((n, k) => names.indexOf(n) !== k);
+  });
+  equal(twice, [], 'downloads that share a name');
 }
 
 async function check_figures() {

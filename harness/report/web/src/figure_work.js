@@ -105,7 +105,7 @@ export function work_figure(diagrams) {
   const words = d => d.refused ? `${d.scene} (refused)` : d.scene;
   figure = plot_figure({
     id: 'work',
-    title: 'Error against run time',
+    title: 'Error against run time: every setting',
     spec,
     remark,
     controls: [

@@ -388,7 +388,7 @@ export function start_viewer(root, motions) {
   const viewer = new Viewer(root, motions);
   if (!viewer.broken) {
     // The first scene with something to touch says most.
-    const cell = motions.cells.find(c => c.colliders !== undefined) ?? motions.cells[0];
+    const cell = motions.cells.find(c => c.colliders !== undefined && c.setting !== 'all-on') ?? motions.cells[0];
     viewer.ready = viewer.show_scene(cell.scene);
   }
   return viewer;
