@@ -6,13 +6,15 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build ccache
           glslc spirv-tools libvulkan-dev mesa-vulkan-drivers
-          libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libvalijson-dev libhdf5-dev libcli11-dev
+          libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libvalijson-dev libhdf5-dev zlib1g-dev libcli11-dev
           libfmt-dev libboost-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev
           python3-h5py python3-matplotlib git)
+# The report's page is bundled with Node 18 or later. Debian's npm and one from elsewhere conflict: any that is there is used.
+command -v npm >/dev/null || packages+=(nodejs npm)
 for argument in "$@"; do
   case $argument in
     --tests) packages+=(libgtest-dev vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf
-                        python3-paraview) ;;
+                        python3-paraview chromium) ;;
     --arm64) packages+=(g++-aarch64-linux-gnu qemu-user-static aapt zipalign apksigner android-framework-res
                         default-jre-headless android-platform-frameworks-native-headers android-liblog-dev
                         android-libnativehelper-dev) ;;

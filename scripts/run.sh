@@ -31,5 +31,5 @@ stage study $study_limit build/release/clothbench study "$study" --out "$out" "$
 stage report 1 build/release/clothbench report "$out" -o "$out/report"
 echo
 echo "results: $out/*.h5 (HDF5; .xdmf beside each opens in ParaView)"
-echo "report:  $out/report/report.md"
+echo "report:  $out/report/index.html (open it in a browser), report.md beside it"
 print_budget

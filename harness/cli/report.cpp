@@ -10,7 +10,7 @@ void add_report(CLI::App& app, Console& console) {
   static std::string out;
   runs = {};
   out = "report";
-  CLI::App* cmd = app.add_subcommand("report", "Tables (Markdown, CSV, JSON) and figures (SVG, PNG) from result files");
+  CLI::App* cmd = app.add_subcommand("report", "An interactive page, tables (Markdown, CSV, JSON) and figures (SVG, PNG) from result files");
   cmd->add_option("runs", runs, "Study folders or result files")->required();
   cmd->add_option("-o,--out", out, "Folder to write to")->capture_default_str();
   cmd->footer("Example: clothbench report results/runs/table3-20260101T000000Z -o report");
@@ -22,7 +22,8 @@ void add_report(CLI::App& app, Console& console) {
     if (console.json) fmt::print("{}\n", nlohmann::json{{"out", out}}.dump(2));
     else {
       print_console_report(paths);
-      fmt::print("\nreport: {}/report.md\n", out);
+      const bool page = std::filesystem::exists(options.out / "index.html");
+      fmt::print("\nreport: {}/{}\n", out, page ? "index.html (to look at), report.md" : "report.md");
     }
   });
 }

@@ -14,6 +14,7 @@
 #include "report/penetration.hpp"
 #include "report/room_pair.hpp"
 #include "report/stability.hpp"
+#include "report/web/page.hpp"
 #include "report/work_precision.hpp"
 #include "results/store.hpp"
 
@@ -201,10 +202,18 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
   const std::vector<WorkDiagram> diagrams = work_diagrams(truth, materials);
   const std::string head = headline(cells, Format::Markdown);
   std::string tables;
-  bool wrote_table3 = false;
-  for (const Family& family : families(rest)) {
+  Page page;
+  // The page has the same tables as report.md: they are told once.
+  const auto told = [&](const char* id, const std::string& title, std::vector<Table> of) {
     std::string text;
-    for (const Table& t : fps_tables(family, published)) text += t.markdown() + "\n";
+    for (const Table& t : of) text += t.markdown() + "\n";
+    page.sections.push_back({id, title, std::move(of)});
+    return text;
+  };
+  const std::vector<Family> rates = families(rest);
+  bool wrote_table3 = false;
+  for (const Family& family : rates) {
+    const std::string text = told("rates", family.paper_table == 3 ? "Table 3" : "Rates: " + family.name, fps_tables(family, published));
     tables += text;
     if (family.paper_table != 3 || wrote_table3) continue;
     write("table3.md", "# Table 3\n\n" + head + "\n" + text);
@@ -214,8 +223,7 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
   }
   if (!ups.empty()) {
     const std::vector<RoomPair> pairs = room_pairs(contact);
-    std::string text;
-    for (const Table& t : penetration_tables(ups, pairs, true)) text += t.markdown() + "\n";
+    const std::string text = told("penetration", "Penetration", penetration_tables(ups, pairs, true));
     tables += text;
     write("penetration.md", "# Penetration\n\n" + head + "\n" + text);
     write("penetration.csv", summary_csv(contact, contact_names()));
@@ -224,47 +232,59 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     write("penetration-series.csv", series_csv(ups));
   }
   if (!diagrams.empty()) {
-    const std::string text = work_table(diagrams).markdown() + "\n" + truth_table(diagrams).markdown() + "\n";
+    const std::string text = told("work-precision", "Error against run time", {work_table(diagrams), truth_table(diagrams)});
     tables += text;
     write("work-precision.md", "# Error against run time\n\n" + head + "\n" + text);
     write("work-precision.csv", work_csv(diagrams));
     write("work-precision.json", work_json(diagrams).dump(1) + "\n");
   }
   if (!stability.empty() || !maps.empty()) {
-    std::string text;
-    for (const Table& t : stability_tables(stability, maps, true)) text += t.markdown() + "\n";
+    const std::string text = told("stability", "Stability", stability_tables(stability, maps, true));
     tables += text;
     write("stability.md", "# Stability\n\n" + head + "\n" + text);
     write("stability.csv", stability_csv(stability));
     write("stability.json", nlohmann::json{{"format", "clothbench-stability"}, {"format_version", 1}, {"maps", maps}}.dump(1) + "\n");
   }
   if (!materials.empty()) {
-    const std::string text = material_table(materials).markdown() + "\n" + material_verdicts(materials).markdown() + "\n";
+    const std::string text = told("material", "Material card", {material_table(materials), material_verdicts(materials)});
     tables += text;
     write("material.md", "# Material card\n\n" + head + "\n" + text);
     write("material.json", material_json(materials).dump(1) + "\n");
   }
   if (!costs.empty()) {
-    const std::string text = feature_cost_table(costs).markdown() + "\n" + no_op_table(costs).markdown() + "\n";
+    const std::string text = told("feature-cost", "Feature cost", {feature_cost_table(costs), no_op_table(costs)});
     tables += text;
     write("feature-cost.md", "# Feature cost\n\n" + head + "\n" + text);
     write("feature-cost.csv", feature_cost_csv(costs));
     write("feature-cost.json", feature_cost_json(costs).dump(1) + "\n");
   }
-  if (const std::string page = summary_page(diagrams, materials, costs); !page.empty()) write("summary.md", "# Summary\n\n" + head + "\n" + page);
+  if (const std::string text = summary_page(diagrams, materials, costs); !text.empty()) write("summary.md", "# Summary\n\n" + head + "\n" + text);
   if (const auto solvers = solver_features(cells); any_known(solvers)) {
-    tables += feature_table(solvers, true).markdown() + "\n";
+    tables += told("features", "Features", {feature_table(solvers, true)});
     write("features.json", feature_json(solvers, true).dump(1) + "\n");
   }
-  if (const Table failed = failed_table(without_stability(cells)); failed.rows.size() > 1) tables += failed.markdown() + "\n";
+  if (const Table failed = failed_table(without_stability(cells)); failed.rows.size() > 1) tables += told("failed", "Cells without a result", {failed});
+  if (const Table broken = expect_table(without_stability(cells)); broken.rows.size() > 1) tables += told("expect", "Expectations", {broken});
 
-  if (const Table broken = expect_table(without_stability(cells)); broken.rows.size() > 1) tables += broken.markdown() + "\n";
+  page.headline = head;
+  page.rates = rates_json(rates, published);
+  page.penetration = contact_series_json(ups);
+  page.work = work_json(diagrams);
+  page.commands = commands_of(runs);
+  for (const WorkDiagram& d : diagrams)
+    for (const WorkPoint& p : d.points)
+      if (p.on_front) page.fronts.insert(p.cell->file);
+  if (!diagrams.empty()) told("summary", "Summary", {ranks_table(diagrams), winners_table(diagrams)});
+  told("environment", "Environment", {environment_table(cells)});
+  const std::string no_page = write_page(options.out, cells, page, page_template());
+  if (!no_page.empty()) fmt::print(stderr, "{}\n", no_page);
 
   bool has_python = false;
   const std::string no_figures = draw_figures(options.out, !rest.empty(), !ups.empty(), !diagrams.empty(), !stability.empty() || !maps.empty(), has_python);
   const std::string figures = "### Figures\n\n" + (rest.empty() ? "" : figures_markdown(rest)) + penetration_figures_markdown(ups) +
                               work_figures_markdown(diagrams) + stability_figures_markdown(maps, !stability.empty());
   write("report.md", "# clothbench report\n\n" + head + "\n" + tables + (no_figures.empty() ? figures : no_figures + "\n\n") +
+                         (no_page.empty() ? "`index.html` shows all of this interactively, with the motions. " : no_page + "\n\n") +
                          "`cells.csv` and `cells.json` hold every summary value of every cell in full precision.\n");
   if (no_figures.empty()) return;
   if (has_python) throw Error(no_figures, ExitCode::CheckFailed);

@@ -60,7 +60,8 @@ nlohmann::json cells_json(const std::vector<CellRecord>& cells);
 /// Writes report.md, cells.csv, cells.json, bandwidth.csv, memory.csv, features.json; for the paper's Table 3 also
 /// table3.md, .csv and .json; for scenes with contact penetration.md, .csv and .json and penetration-series.csv; and
 /// for scenes with a truth work-precision.md, .csv, .json and a page of summary.md; for material cards material.md and
-/// .json; for costs of features feature-cost.md, .csv and .json; the figures fig4 and fig5, penetration-<set-up> (SVG, PNG; left out, with a line saying so, where there is no Python
+/// .json; for costs of features feature-cost.md, .csv and .json; the page index.html (left out, with a line saying so,
+/// where this was built without Node); the figures fig4 and fig5, penetration-<set-up> (SVG, PNG; left out, with a line saying so, where there is no Python
 /// with matplotlib). Throws Error if a file cannot be read or written, or the figures cannot be drawn (the tables are
 /// written by then).
 void write_report(const std::vector<std::filesystem::path>& runs, const ReportOptions&);

@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "clothbench/record.hpp"
+#include "results/store.hpp"
 
 namespace clothbench {
 
@@ -14,8 +15,11 @@ inline constexpr bool kWithHdf5 = false;  // the two functions below then throw
 /// One result file, layout in results/README.md. tmp + fsync + rename; throws Error naming the file.
 void write_hdf5(const std::filesystem::path&, const CellRecord&);
 
-/// Reads one back; without `with_trajectory` positions and metric series stay empty. `replay` always does: it is there
-/// for viewers, and nothing here replays.
+/// Reads one back; without `with_trajectory` positions and metric series stay empty. `replay` always does: see
+/// read_hdf5_replay.
 CellRecord read_hdf5(const std::filesystem::path&, bool with_trajectory);
+
+/// What `read_replay` gives of a finished file.
+Replay read_hdf5_replay(const std::filesystem::path&, std::size_t stride);
 
 }  // namespace clothbench

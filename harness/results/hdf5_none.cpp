@@ -9,4 +9,6 @@ void write_hdf5(const std::filesystem::path& path, const CellRecord&) {
 
 CellRecord read_hdf5(const std::filesystem::path& path, bool) { throw Error(path.string() + ": this build reads no HDF5"); }
 
+Replay read_hdf5_replay(const std::filesystem::path& path, std::size_t) { throw Error(path.string() + ": this build reads no HDF5"); }
+
 }  // namespace clothbench

@@ -132,6 +132,29 @@ void remove_leftovers(const fs::path& dir, const std::string& cell) {
 CellRecord read_cell(const fs::path& path) { return fs::is_directory(path) ? read_part(path) : read_hdf5(path, true); }
 CellRecord read_cell_summary(const fs::path& path) { return fs::is_directory(path) ? read_part(path) : read_hdf5(path, false); }
 
+std::vector<std::size_t> every(std::size_t count, std::size_t stride) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < count; k += stride) out.push_back(k);
+  if (count > 0 && out.back() + 1 != count) out.push_back(count - 1);
+  return out;
+}
+
+Replay read_replay(const fs::path& path, std::size_t stride) {
+  if (!fs::is_directory(path)) return read_hdf5_replay(path, stride);
+  CellRecord c = read_part(path);
+  Replay r;
+  const std::size_t row = 3 * static_cast<std::size_t>(c.header.vertices);
+  if (c.accuracy.position.size() < row * c.accuracy.time_s.size()) throw Error(path.string() + ": accuracy.raw: positions do not fit the times");
+  r.frames = every(c.accuracy.time_s.size(), stride);
+  for (const std::size_t f : r.frames) {
+    r.time_s.push_back(c.accuracy.time_s[f]);
+    const auto at = c.accuracy.position.begin() + static_cast<std::ptrdiff_t>(f * row);
+    r.position.insert(r.position.end(), at, at + static_cast<std::ptrdiff_t>(row));
+  }
+  if (!r.frames.empty()) r.groups = std::move(c.replay);
+  return r;
+}
+
 std::vector<fs::path> import_raw(const fs::path& dir_or_part) {
   if (!kWithHdf5) throw Error("import: this build has no HDF5; run it on another machine");
   if (!fs::is_directory(dir_or_part)) throw Error(dir_or_part.string() + ": expected a study folder or a .part folder");

@@ -51,6 +51,21 @@ CellRecord read_cell(const std::filesystem::path&);
 /// Without positions and triangles: what tables and figures need. Cheap also for large cells.
 CellRecord read_cell_summary(const std::filesystem::path&);
 
+/// What a viewer needs of a cell: some of its frames, and what moved, at every frame of the scene.
+struct Replay {
+  std::vector<std::size_t> frames;  ///< ascending; 0 is the initial state
+  std::vector<double> time_s;       ///< of each
+  std::vector<float> position;      ///< (frame, vertex, xyz) [m]
+  std::vector<StoredGroup> groups;  ///< "colliders", "colliders/0", ..., "colliders/grips"; empty without colliders and grips
+};
+
+/// 0, stride, 2 stride, ... below `count`, and the last one. `stride` at least 1.
+std::vector<std::size_t> every(std::size_t count, std::size_t stride);
+
+/// Every `stride`-th frame and the last of a finished file (.h5) or a part folder; no frames where it has no trajectory.
+/// Throws Error naming the file and what is wrong with it.
+Replay read_replay(const std::filesystem::path&, std::size_t stride);
+
 /// Part folders of a run made without HDF5 -> the same .h5 a direct run gives. Returns the new files.
 std::vector<std::filesystem::path> import_raw(const std::filesystem::path& dir_or_part);
 

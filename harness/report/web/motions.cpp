@@ -1,0 +1,218 @@
+// Which motions the viewer gets, and how much of each.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "report/feature_cost.hpp"
+#include "report/penetration.hpp"
+#include "report/web/packed.hpp"
+#include "report/web/page.hpp"
+#include "report/work_precision.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostCells = 120;
+constexpr std::size_t kMostFloats = 100'000'000;    // of one cell in memory: 400 MB
+constexpr std::size_t kMostCollider_B = 3'000'000;  // of one scene's colliders, packed
+
+/// Coarser from line to line: frames first, as between them the viewer interpolates.
+struct Level {
+  std::size_t frame_stride, most_width;
+};
+constexpr Level kLevels[] = {{1, 65}, {2, 65}, {3, 65},  {4, 65},  {4, 33},
+                             {6, 33}, {8, 33}, {12, 33}, {12, 17}, {24, 17}};
+
+struct Candidate {
+  const CellRecord* cell = nullptr;
+  json scenario;
+  std::size_t columns = 0, rows = 0;
+  int rank = 0;
+  std::size_t turn = 0;  // among those of its scene, solver and rank
+};
+
+/// What a page shows first where not everything fits.
+int rank_of(const CellRecord& c, const std::set<std::string>& fronts) {
+  if (is_all_on(c)) return 4;
+  if (has_truth(c)) return fronts.contains(c.file) || c.header.setting == "default" ? 1 : 3;
+  return has_contact(c) ? 0 : 2;
+}
+
+std::vector<Candidate> candidates(const std::vector<CellRecord>& cells, const std::set<std::string>& fronts,
+                                  std::size_t& without) {
+  std::vector<Candidate> out;
+  std::map<std::tuple<int, std::string, std::string>, std::size_t> turns;
+  for (const CellRecord& c : cells) {
+    if (c.file.empty() || c.accuracy.time_s.empty()) continue;
+    Candidate k{&c, json::parse(c.header.scenario_json, nullptr, false)};
+    const json grid = k.scenario.is_object() ? k.scenario.value(json::json_pointer("/cloth/grid"), json()) : json();
+    if (grid.is_array() && grid.size() == 2 && grid[0].is_number_unsigned() && grid[1].is_number_unsigned()) {
+      k.columns = grid[0];
+      k.rows = grid[1];
+    }
+    if (k.columns < 2 || k.rows < 2 || k.columns * k.rows != c.header.vertices) {
+      ++without;
+      continue;
+    }
+    k.rank = rank_of(c, fronts);
+    k.turn = turns[{k.rank, c.header.scene, c.header.solver}]++;
+    out.push_back(std::move(k));
+  }
+  // Every solver's first cell of each scene comes before any second.
+  std::stable_sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
+    return std::pair(a.rank, a.turn) < std::pair(b.rank, b.turn);
+  });
+  return out;
+}
+
+class Packer {
+ public:
+  explicit Packer(std::size_t budget_B) : left_B_(budget_B) {
+    out_.document = {{"cells", json::array()}, {"colliders", json::array()}, {"left_out", json::array()}};
+  }
+
+  /// The cell's motion in at most its share of what is left; false if it does not fit even at the coarsest.
+  bool add(const Candidate& k, std::size_t cells_left) {
+    const std::size_t share = left_B_ / std::max<std::size_t>(cells_left, 1);
+    const std::size_t frames = k.cell->accuracy.time_s.size();
+    for (const Level& level : kLevels) {
+      if (frames / level.frame_stride * 3 * k.cell->header.vertices > kMostFloats) continue;
+      const std::size_t width = std::max(k.columns, k.rows);
+      const Replay replay = read_replay(k.cell->file, level.frame_stride);
+      const PackedMotion motion =
+          pack_motion(replay, k.columns, k.rows, (width + level.most_width - 1) / level.most_width);
+      if (motion.frames.empty()) return false;
+      if (const std::size_t size = (motion.bytes.size() + 2) / 3 * 4; size > share) continue;
+      store(k, replay, motion);
+      return true;
+    }
+    return false;
+  }
+
+  Motions take() { return std::move(out_); }
+  json& left_out() { return out_.document["left_out"]; }
+
+ private:
+  std::size_t blob(const std::string& bytes) {
+    out_.blobs.push_back(base64(bytes));
+    left_B_ -= std::min(left_B_, out_.blobs.back().size());
+    return out_.blobs.size() - 1;
+  }
+
+  void store(const Candidate& k, const Replay& replay, const PackedMotion& motion) {
+    const CellRecord& c = *k.cell;
+    const auto size = [&](int axis) {
+      return k.scenario.value(json::json_pointer(fmt::format("/cloth/size_m/{}", axis)), 0.0);
+    };
+    json time_s = json::array(), metrics = json::object();
+    for (std::size_t f = 0; f < motion.frames.size(); ++f) time_s.push_back(replay.time_s[f]);
+    for (const char* name : {"stretch_max", "tunnelled_fraction", "contact_length_m", "depth_m"})
+      for (const MetricSeries& m : c.accuracy.metrics)
+        if (m.name == name) {
+          json values = json::array();
+          for (const std::size_t f : motion.frames)
+            values.push_back(f < m.values.size() && std::isfinite(m.values[f])
+                                 ? json(std::stod(fmt::format("{:.6g}", m.values[f])))
+                                 : json());
+          metrics[name] = std::move(values);
+        }
+    json e = {{"scene", c.header.scene},
+              {"solver", c.header.solver},
+              {"setting", c.header.setting},
+              {"label", Series{c.header.solver, c.header.setting, ""}.label()},
+              {"sides", k.scenario.value(json::json_pointer("/cloth/sides"), "")},
+              {"status", c.outcome.status},
+              {"failed_frame", c.outcome.failed_frame},
+              {"message", c.outcome.message},
+              {"grid", {k.columns, k.rows}},
+              {"size_m", {size(0), size(1)}},
+              {"frames_stored", c.accuracy.time_s.size()},
+              {"frames", motion.frames},
+              {"time_s", std::move(time_s)},
+              {"columns", motion.columns},
+              {"rows", motion.rows},
+              {"step_m", motion.step_m},
+              {"origin", motion.origin},
+              {"cut_at", motion.cut_at},
+              {"metrics", std::move(metrics)}};
+    if (const std::string which = colliders(c, replay.groups); !which.empty()) e["colliders"] = std::stoul(which);
+    e["blob"] = blob(motion.bytes);
+    out_.document["cells"].push_back(std::move(e));
+  }
+
+  /// Index of the colliders among those of the page, as text; "" if there are none or they are too large.
+  std::string colliders(const CellRecord& c, const std::vector<StoredGroup>& groups) {
+    if (groups.empty()) return "";
+    json described = json::array();
+    std::vector<std::string> packed;
+    std::size_t total = 0;
+    std::string key;
+    for (const StoredGroup& g : groups) {
+      json arrays = json::object();
+      for (const StoredArray& a : g.arrays) {
+        packed.push_back(a.integer ? pack_words({a.values.begin(), a.values.end()}) : pack_floats(a.values));
+        total += packed.back().size();
+        arrays[a.name] = {{"shape", a.shape}, {"integer", a.integer}};
+      }
+      described.push_back({{"path", g.path}, {"attributes", g.attributes}, {"arrays", std::move(arrays)}});
+    }
+    key = described.dump();
+    for (const std::string& p : packed) key += '\n' + p;
+    const auto [at, is_new] = seen_.try_emplace(key, "");
+    if (!is_new) return at->second;
+    if (total > kMostCollider_B) {
+      left_out().push_back(
+          fmt::format("The colliders of {}: {:.1f} MB.", c.header.scene, 1e-6 * static_cast<double>(total)));
+      return "";
+    }
+    std::size_t next = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      for (const StoredArray& a : groups[g].arrays) described[g]["arrays"][a.name]["blob"] = blob(packed[next++]);
+    out_.document["colliders"].push_back(std::move(described));
+    return at->second = std::to_string(out_.document["colliders"].size() - 1);
+  }
+
+  std::size_t left_B_;
+  Motions out_;
+  std::map<std::string, std::string> seen_;
+};
+
+}  // namespace
+
+Motions motions_of(const std::vector<CellRecord>& cells, const std::set<std::string>& fronts, std::size_t budget_B) {
+  std::size_t without_grid = 0, too_large = 0, beyond = 0;
+  std::vector<Candidate> all = candidates(cells, fronts, without_grid);
+  if (all.size() > kMostCells) {
+    beyond = all.size() - kMostCells;
+    all.resize(kMostCells);
+  }
+  // Small ones first: what they leave of their share is for the others.
+  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+    const auto size = [](const Candidate& k) { return k.columns * k.rows * k.cell->accuracy.time_s.size(); };
+    return size(a) < size(b);
+  });
+  Packer packer(budget_B);
+  for (std::size_t k = 0; k < all.size(); ++k) too_large += !packer.add(all[k], all.size() - k);
+  const auto say = [&](std::size_t n, const char* why) {
+    if (n > 0) packer.left_out().push_back(fmt::format("{} {} {}.", n, n == 1 ? "motion:" : "motions:", why));
+  };
+  say(beyond, "the page holds 120; those of other settings are left out first");
+  say(too_large, "too large at the coarsest thinning, or not finite from the start");
+  say(without_grid, "the cloth is no grid");
+  Motions out = packer.take();
+  auto& shown = out.document["cells"];
+  std::stable_sort(shown.begin(), shown.end(), [](const json& a, const json& b) {
+    const auto key = [](const json& j) {
+      return std::tuple(j["scene"].get<std::string>(), j["solver"].get<std::string>(), j["setting"].get<std::string>());
+    };
+    return key(a) < key(b);
+  });
+  return out;
+}
+
+}  // namespace clothbench

@@ -1,0 +1,166 @@
+// Colliders as they are drawn, and how deep a cloth's vertices are in them.
+import * as THREE from 'three';
+import {MeshBVH} from 'three-mesh-bvh';
+
+const vec = a => new THREE.Vector3(a[0], a[1], a[2]);
+
+function plane(a) {
+  const mesh = new THREE.Mesh(new THREE.PlaneGeometry(4, 4));
+  mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), vec(a.normal).normalize());
+  mesh.position.copy(vec(a.point_m));
+  const n = vec(a.normal).normalize(), p = vec(a.point_m);
+  return {object: mesh, depth: x => -n.dot(x.clone().sub(p))};
+}
+
+function sphere(a) {
+  const mesh = new THREE.Mesh(new THREE.SphereGeometry(a.radius_m, 48, 32)), c = vec(a.center_m);
+  mesh.position.copy(c);
+  return {object: mesh, depth: x => a.radius_m - x.distanceTo(c)};
+}
+
+function box(a) {
+  const half = a.half_extent_m, axes = [vec(a.axis_u), vec(a.axis_v), vec(a.axis_w)], c = vec(a.center_m);
+  const mesh = new THREE.Mesh(new THREE.BoxGeometry(2 * half[0], 2 * half[1], 2 * half[2]));
+  mesh.setRotationFromMatrix(new THREE.Matrix4().makeBasis(...axes));
+  mesh.position.copy(c);
+  return {
+    object: mesh,
+    depth: x => {
+      const d = x.clone().sub(c);
+      return Math.min(...axes.map((u, k) => half[k] - Math.abs(u.dot(d))));
+    }
+  };
+}
+
+/// Ends a and b and radius of each capsule at a time; frames as many a second as the scene has.
+function capsules(array, rate) {
+  const [frames, count] = array.shape, group = new THREE.Group(), parts = [];
+  for (let k = 0; k < count; ++k) {
+    const shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 20, 1, true)),
+          ends = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1, 20, 14)));
+    group.add(shaft, ...ends);
+    parts.push({shaft, ends, a: new THREE.Vector3(), b: new THREE.Vector3(), radius: 0});
+  }
+  const up = new THREE.Vector3(0, 1, 0), line = new THREE.Line3(), nearest = new THREE.Vector3();
+  const move = time => {
+    const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), g = Math.min(f + 1, frames - 1),
+          w = at - f;
+    parts.forEach((p, k) => {
+      const value = j => array.values[(f * count + k) * 7 + j] * (1 - w) + array.values[(g * count + k) * 7 + j] * w;
+      p.a.set(value(0), value(1), value(2));
+      p.b.set(value(3), value(4), value(5));
+      p.radius = value(6);
+      const way = p.b.clone().sub(p.a), length = way.length();
+      p.shaft.position.copy(p.a).addScaledVector(way, 0.5);
+      p.shaft.scale.set(p.radius, Math.max(length, 1e-9), p.radius);
+      if (length > 0) p.shaft.quaternion.setFromUnitVectors(up, way.normalize());
+      p.ends.forEach((e, n) => {
+        e.position.copy(n ? p.b : p.a);
+        e.scale.setScalar(p.radius);
+      });
+    });
+  };
+  return {
+    object: group,
+    move,
+    depth: x =>
+        Math.max(...parts.map(p => p.radius - line.set(p.a, p.b).closestPointToPoint(x, true, nearest).distanceTo(x)))
+  };
+}
+
+/// A mesh that stands still, or follows its joints: x(t) = Σ weight · matrix(t) (position, 1).
+function triangle_mesh(arrays, rate) {
+  const rest = arrays.position_m.values, position = new Float32Array(rest);
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.BufferAttribute(position, 3));
+  geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(arrays.triangles.values), 1));
+  const tree = new MeshBVH(geometry);  // sorts the index
+  let move = null;
+  if (arrays.joint_matrix) {
+    const [frames, joints] = arrays.joint_matrix.shape, m = arrays.joint_matrix.values,
+                   index = arrays.joint_index.values, weight = arrays.joint_weight.values;
+    move = time => {
+      const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), g = Math.min(f + 1, frames - 1),
+            w = at - f;
+      for (let v = 0; v < position.length / 3; ++v)
+        for (let r = 0; r < 3; ++r) {
+          let sum = 0;
+          for (let s = 0; s < 4; ++s) {
+            const share = weight[4 * v + s];
+            if (share === 0) continue;
+            const one = (f * joints + index[4 * v + s]) * 12 + 4 * r,
+                  two = (g * joints + index[4 * v + s]) * 12 + 4 * r;
+            for (let c = 0; c < 4; ++c)
+              sum += share * (m[one + c] * (1 - w) + m[two + c] * w) * (c < 3 ? rest[3 * v + c] : 1);
+          }
+          position[3 * v + r] = sum;
+        }
+      geometry.attributes.position.needsUpdate = true;
+      geometry.computeVertexNormals();
+      geometry.computeBoundingSphere();
+      tree.refit();
+    };
+  }
+  geometry.computeVertexNormals();
+  const ray = new THREE.Ray();
+  /// Does the segment cross the surface?
+  const crosses = (a, b) => {
+    const length = a.distanceTo(b);
+    if (!(length > 0)) return false;
+    ray.origin.copy(a);
+    ray.direction.copy(b).sub(a).divideScalar(length);
+    return tree.raycastFirst(ray, THREE.DoubleSide, 0, length) !== null;
+  };
+  return {object: new THREE.Mesh(geometry), move, crosses};
+}
+
+/// Small balls where hands hold the cloth.
+function grips(arrays, rate) {
+  const [frames, count] = arrays.target_m.shape, x = arrays.target_m.values, held = arrays.held.values,
+                 group = new THREE.Group();
+  const balls = Array.from({length: count}, () => new THREE.Mesh(new THREE.SphereGeometry(0.012, 16, 12)));
+  group.add(...balls);
+  return {
+    object: group,
+    move: time => {
+      const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), g = Math.min(f + 1, frames - 1),
+            w = at - f;
+      balls.forEach((b, k) => {
+        const value = a => x[3 * (f * count + k) + a] * (1 - w) + x[3 * (g * count + k) + a] * w;
+        b.position.set(value(0), value(1), value(2));
+        b.visible = held[f * count + k] > 0;
+      });
+    }
+  };
+}
+
+/// Objects to draw of a scene's colliders (motion.js, load_colliders), each with `object`, and where it has them
+/// `move(time)`, `depth(x)` above 0 inside, `crosses(a, b)`.
+export function make_colliders(groups) {
+  const rate = groups.find(g => g.path === 'colliders')?.attributes.frame_rate_hz ?? 72, out = [];
+  for (const g of groups) {
+    const shape = g.attributes.shape;
+    if (g.path === 'colliders/grips') out.push(grips(g.arrays, rate));
+    else if (shape === 'plane') out.push(plane(g.attributes));
+    else if (shape === 'sphere') out.push(sphere(g.attributes));
+    else if (shape === 'box') out.push(box(g.attributes));
+    else if (shape === 'capsules') out.push(capsules(g.arrays.capsules, rate));
+    else if (shape === 'mesh') out.push(triangle_mesh(g.arrays, rate));
+  }
+  return out;
+}
+
+/// Depth of each vertex in m into `out`: 0 outside; -1 where an edge of the cloth from it crosses a mesh.
+export function penetration(colliders, edges, position, out) {
+  out.fill(0);
+  const x = new THREE.Vector3(), y = new THREE.Vector3();
+  for (const c of colliders) {
+    if (c.depth)
+      for (let v = 0; v < out.length; ++v)
+        if (out[v] >= 0) out[v] = Math.max(out[v], c.depth(x.fromArray(position, 3 * v)));
+    if (c.crosses)
+      for (const [a, b] of edges)
+        if (c.crosses(x.fromArray(position, 3 * a), y.fromArray(position, 3 * b))) out[a] = out[b] = -1;
+  }
+  return out;
+}

@@ -1,0 +1,37 @@
+/// An element with attributes and children; `on…` attributes are listeners, null children are left out.
+export function element(tag, attributes = {}, ...children) {
+  const e = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || value === false) continue;
+    if (name.startsWith('on')) e.addEventListener(name.slice(2), value);
+    else e.setAttribute(name, value === true ? '' : value);
+  }
+  e.append(...children.flat().filter(c => c !== null && c !== undefined));
+  return e;
+}
+
+export function select(label, options, value, changed) {
+  const list = element(
+      'select', {onchange: () => changed(list.value)},
+      options.map(o => element('option', {value: o.value, selected: o.value === value}, o.text)));
+  return element('label', {}, label, list);
+}
+
+export function download(name, type, content) {
+  const url = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], {type}));
+  const link = element('a', {href: url, download: name});
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+/// "Table 3: frames…" -> "table-3-frames"
+export const file_name = title => title.toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-|-$/g, '').slice(0, 60);
+
+/// Announced by screen readers.
+let live = null;
+export function say(text) {
+  live ??= document.body.appendChild(element('div', {class: 'skip', role: 'status', 'aria-live': 'polite'}));
+  live.textContent = text;
+}

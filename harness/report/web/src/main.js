@@ -1,0 +1,67 @@
+import {element} from './dom.js';
+import {make_figures} from './figures.js';
+import {start_plots} from './plot.js';
+import {table_block} from './tables.js';
+import {start_theme} from './theme.js';
+import {start_viewer} from './viewer.js';
+
+const kOrder = [
+  'summary', 'rates', 'work-precision', 'penetration', 'material', 'feature-cost', 'features', 'failed', 'expect',
+  'environment'
+];
+const kAfterViewer = ['material', 'feature-cost', 'features', 'failed', 'expect', 'environment'];
+const rank = id => kOrder.includes(id) ? kOrder.indexOf(id) : kOrder.length;
+
+/// "**" marks what must not be missed; paragraphs are apart by a blank line.
+function headline(text) {
+  return text.split(/\n+/).filter(Boolean).map(line => {
+    const parts = line.split('**');
+    return element(
+        'p', {class: parts.length > 1 ? 'warning' : 'soft'}, parts.map((p, k) => k % 2 ? element('strong', {}, p) : p));
+  });
+}
+
+function section(s, id, figures) {
+  // The table that counts, then the figures, then the others; diagrams stand before the table that sums them up.
+  const blocks = s.tables.map(table_block), first = s.id === 'work-precision' ? 0 : 1;
+  return element(
+      'section', {id, 'aria-labelledby': `${id}-title`}, element('h2', {id: `${id}-title`}, s.title),
+      blocks.slice(0, first), figures.map(f => f.block), blocks.slice(first));
+}
+
+function start() {
+  const doc = JSON.parse(document.getElementById('clothbench-data').textContent);
+  start_theme();
+  document.getElementById('headline')
+      .append(
+          ...headline(doc.headline),
+          ...(doc.commands.length ? [element(
+                                        'p', {class: 'soft'}, 'Made by ',
+                                        doc.commands.flatMap((c, k) => [k ? ', ' : '', element('code', {}, c)]), '.')] :
+                                    []));
+
+  const figures = make_figures(doc), links = [], seen = {};
+  const sorted = doc.sections.map((s, k) => ({s, k})).sort((a, b) => rank(a.s.id) - rank(b.s.id) || a.k - b.k);
+  for (const {s} of sorted) {
+    const nth = seen[s.id] = (seen[s.id] ?? 0) + 1, id = nth > 1 ? `${s.id}-${nth}` : s.id;
+    // Of rates each section has its own two figures; elsewhere all stand in the first.
+    const own = s.id === 'rates' ? figures.rates.slice(2 * nth - 2, 2 * nth) : nth === 1 ? figures[s.id] ?? [] : [];
+    document.getElementById(kAfterViewer.includes(s.id) ? 'later' : 'sections').append(section(s, id, own));
+    links.push({id, title: s.title, later: kAfterViewer.includes(s.id)});
+  }
+  const has_viewer = doc.motions.cells.length > 0;
+  const all = [
+    ...links.filter(l => !l.later), ...(has_viewer ? [{id: 'viewer-section', title: 'Motions'}] : []),
+    ...links.filter(l => l.later), {id: 'rules', title: 'Rules and limits'}
+  ];
+  document.getElementById('contents')
+      .append(element('ul', {}, all.map(l => element('li', {}, element('a', {href: `#${l.id}`}, l.title)))));
+  start_plots();
+  // For the browser's console, and for tests.
+  window.clothbench = {document: doc};
+  if (!has_viewer) return;
+  document.getElementById('viewer-section').hidden = false;
+  window.clothbench.viewer = start_viewer(document.getElementById('viewer'), doc.motions);
+}
+
+start();

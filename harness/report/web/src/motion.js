@@ -1,0 +1,133 @@
+// Packed motions and colliders back into numbers; layout: harness/report/web/packed.hpp.
+
+/// zlib in base64, of all first bytes, then all second, ... of words -> bytes of the words in turn.
+async function words(index, size) {
+  const text = atob(document.getElementById(`blob-${index}`).textContent);
+  const packed = Uint8Array.from(text, c => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
+  const planes = new Uint8Array(await new Response(stream).arrayBuffer()), count = planes.length / size;
+  const out = new Uint8Array(planes.length);
+  for (let b = 0; b < size; ++b)
+    for (let k = 0; k < count; ++k) out[k * size + b] = planes[b * count + k];
+  return out.buffer;
+}
+
+export class Motion {
+  /// `cell`: an entry of the document's motions.
+  static async load(cell) {
+    const m = new Motion();
+    m.cell = cell;
+    m.columns = cell.columns.length;
+    m.rows = cell.rows.length;
+    m.vertices = m.columns * m.rows;
+    m.time_s = cell.time_s;
+    const residual = new Uint16Array(await words(cell.blob, 2)), n = m.vertices;
+    m.position = new Float32Array(residual.length);  // (frame, vertex, xyz)
+    let now = new Int32Array(3 * n), before = new Int32Array(3 * n), earlier = new Int32Array(3 * n);
+    for (let f = 0; f < cell.frames.length; ++f) {
+      for (let a = 0, k = 0; a < 3; ++a) {
+        const origin = cell.origin[3 * f + a];
+        for (let v = 0; v < n; ++v, ++k) {
+          const predicted = f > 1 ? 2 * before[k] - earlier[k] : f === 1 ? before[k] : v === 0 ? origin : now[k - 1];
+          now[k] = origin + ((predicted - origin + residual[3 * n * f + k]) & 0xffff);
+          m.position[3 * (f * n + v) + a] = now[k] * cell.step_m;
+        }
+      }
+      [earlier, before, now] = [before, now, earlier];
+    }
+    return m;
+  }
+
+  /// Index of the last frame at or before `time`, and how far it is to the next, in [0, 1).
+  place(time) {
+    const t = this.time_s;
+    if (!(time > t[0])) return [0, 0];
+    if (time >= t[t.length - 1]) return [t.length - 1, 0];
+    let low = 0, high = t.length - 1;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (t[middle] <= time) low = middle;
+      else high = middle;
+    }
+    return [low, (time - t[low]) / (t[high] - t[low])];
+  }
+
+  /// Positions at `time` into `out` (vertex, xyz), between stored frames on straight lines.
+  at(time, out) {
+    const [f, w] = this.place(time), size = 3 * this.vertices, a = f * size, b = w > 0 ? a + size : a;
+    for (let k = 0; k < size; ++k) out[k] = this.position[a + k] * (1 - w) + this.position[b + k] * w;
+    return out;
+  }
+
+  /// Corners of the triangles, as the solver's grid has them.
+  triangles() {
+    const out = [], c = this.columns;
+    for (let j = 0; j + 1 < this.rows; ++j)
+      for (let i = 0; i + 1 < c; ++i) {
+        const a = j * c + i;
+        out.push(a, a + 1, a + c + 1, a, a + c + 1, a + c);
+      }
+    return out;
+  }
+
+  /// [a, b, rest length in m] of the edges along rows and columns.
+  structural() {
+    const {cell} = this, out = [], c = this.columns;
+    const du = cell.size_m[0] / (cell.grid[0] - 1), dv = cell.size_m[1] / (cell.grid[1] - 1);
+    for (let j = 0; j < this.rows; ++j)
+      for (let i = 0; i < c; ++i) {
+        if (i + 1 < c) out.push([j * c + i, j * c + i + 1, du * (cell.columns[i + 1] - cell.columns[i])]);
+        if (j + 1 < this.rows) out.push([j * c + i, (j + 1) * c + i, dv * (cell.rows[j + 1] - cell.rows[j])]);
+      }
+    return out;
+  }
+
+  /// Least and greatest corner of one frame.
+  box(frame) {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], size = 3 * this.vertices;
+    for (let k = 0; k < size; ++k) {
+      const x = this.position[frame * size + k], a = k % 3;
+      if (x < low[a]) low[a] = x;
+      if (x > high[a]) high[a] = x;
+    }
+    return {low, high};
+  }
+
+  /// What was left out of it, in words.
+  thinning() {
+    const {cell} = this, kept = cell.frames.length, grid = cell.grid[0] * cell.grid[1];
+    const step =
+        cell.step_m >= 1e-3 ? `${(1e3 * cell.step_m).toPrecision(2)} mm` : `${(1e6 * cell.step_m).toPrecision(2)} µm`;
+    return `${kept === cell.frames_stored ? 'every frame' : `${kept} of ${cell.frames_stored} frames`}, ` +
+        `${this.vertices === grid ? 'every vertex' : `${this.vertices} of ${grid} vertices`}, positions to ${step}` +
+        (cell.cut_at >= 0 ? `; ends where it flew apart or was not finite, frame ${cell.cut_at}` : '');
+  }
+}
+
+/// Greatest |length / rest - 1| of the edges at each vertex.
+export function strain(edges, position, out) {
+  out.fill(0);
+  for (const [a, b, rest] of edges) {
+    const e = Math.abs(
+        Math.hypot(
+            position[3 * a] - position[3 * b], position[3 * a + 1] - position[3 * b + 1],
+            position[3 * a + 2] - position[3 * b + 2]) /
+            rest -
+        1);
+    if (e > out[a]) out[a] = e;
+    if (e > out[b]) out[b] = e;
+  }
+  return out;
+}
+
+/// Groups of a scene's colliders with their arrays as numbers.
+export async function load_colliders(groups) {
+  return Promise.all(groups.map(async g => {
+    const arrays = {};
+    for (const [name, a] of Object.entries(g.arrays)) {
+      const bytes = await words(a.blob, 4);
+      arrays[name] = {shape: a.shape, values: a.integer ? new Uint32Array(bytes) : new Float32Array(bytes)};
+    }
+    return {path: g.path, attributes: g.attributes, arrays};
+  }));
+}

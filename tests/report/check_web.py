@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""The page of a report against the result files and the static report, read independently. Exit 77 where the
+build has no page.
+
+usage: check_web.py SAMPLE      what web_sample.py made
+"""
+import base64
+import json
+import pathlib
+import re
+import sys
+import zlib
+
+import h5py
+import numpy as np
+
+sample = pathlib.Path(sys.argv[1])
+report = sample / "report"
+if not (report / "index.html").exists():
+    lines = (report / "report.md").read_text().splitlines()
+    line = next((x for x in lines if x.startswith("The interactive page was left out")), None)
+    if line is None:
+        sys.exit("no index.html, and report.md does not say why")
+    print("SKIPPED:", line)
+    sys.exit(77)
+html = (report / "index.html").read_text(encoding="utf-8")
+doc = json.loads(re.search(r'<script type="application/json" id="clothbench-data">(.*?)</script>', html, re.S)[1])
+blobs = {int(k): v for k, v in re.findall(r'<script type="text/plain" id="blob-(\d+)">([^<]*)</script>', html)}
+files = {}
+for path in sorted((sample / "runs").rglob("*.h5")):
+    with h5py.File(path) as f:
+        files.setdefault(tuple(f.attrs[k] for k in ("scene", "solver", "setting")), path)
+same = lambda a, b: a is None and not np.isfinite(b) or a is not None and a == b  # noqa: E731
+
+# Nothing from elsewhere, and below 20 MB.
+assert len(html) < 20e6, len(html)
+markup = re.sub(r"<(script|style)\b([^>]*)>.*?</\1>", r"<\1\2>", html, flags=re.S)
+assert not re.search(r'<(?:script|link|img)[^>]+(?:src|href)="(?!data:)', markup), "the page asks for another file"
+
+# Tables: those of report.md, cell by cell.
+markdown = (report / "report.md").read_text(encoding="utf-8")
+tables = [t for s in doc["sections"] for t in s["tables"]]
+static = {}
+for block in re.split(r"^### ", markdown, flags=re.M)[1:]:
+    lines = block.splitlines()
+    lines_of_table = [x for x in lines if x.startswith("|") and not x.startswith("|--")]
+    rows = [[c.strip().replace("\\|", "|") for c in re.split(r"(?<!\\)\|", x)[1:-1]] for x in lines_of_table]
+    if rows:
+        static.setdefault(lines[0], rows)
+titles = [t["title"] for t in tables]
+assert set(static) <= set(titles), set(static) - set(titles)
+for t in tables:
+    if t["title"] in static:
+        assert [[c.strip().replace("\n", " ") for c in row] for row in t["rows"]] == static[t["title"]], t["title"]
+assert any(r[0].startswith("published") for r in static["Table 3: frames per second, capped at 72"])
+
+# Points of Figs. 4 and 5, of the diagrams, of the series.
+points = 0
+for family in doc["rates"]:
+    for s in family["series"]:
+        for p in s["points"]:
+            name = f"{family['name']}-{p['width']:g}-{s['sides']}", s["solver"], s["setting"]
+            if name not in files:
+                continue
+            with h5py.File(files[name]) as f:
+                a = f["summary"].attrs
+                assert p["status"] == f["outcome"].attrs["status"]
+                if p["status"] == "ok":
+                    assert same(p["fps"], a["fps_median"]) and same(p["spread"], a["fps_spread"]), name
+                    points += 1
+assert points >= 6, f"only {points} rates were compared"
+(diagram,) = doc["work"]
+for p in diagram["points"]:
+    with h5py.File(files["free-fall", p["solver"], p["setting"]]) as f:
+        assert p["error"] == f["summary"].attrs["truth_error"]
+        rate = json.loads(f.attrs["scenario_json"])["time"]["frame_rate_hz"]
+        assert abs(p["wall_ms_per_s"] / (1e3 * rate * f["summary"].attrs["frame_wall_median_s"]) - 1) < 1e-12
+assert len(diagram["points"]) == 2
+series = 0
+for up in doc["penetration"]:
+    for scene in up["scenes"]:
+        for row in scene["rows"]:
+            with h5py.File(files[scene["name"], row["solver"], row["setting"]]) as f:
+                for name, m in row["metrics"].items():
+                    stored = f["metrics"][name][:]
+                    assert len(stored) == len(m["values"]) == len(row["time_s"])
+                    told = np.array([np.nan if v is None else v for v in m["values"]])
+                    np.testing.assert_allclose(told, np.where(np.isfinite(stored), stored, np.nan), rtol=1e-5, atol=0)
+                    series += 1
+assert series > 10, series
+
+
+def words(index, size):
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(blobs[index], validate=True)), np.uint8)
+    return planes.reshape(size, -1).T.copy().view(f"<u{size}").ravel()
+
+
+# Motions: within half a step of the stored positions, in the order of the grid.
+moved = 0
+for c in doc["motions"]["cells"]:
+    with h5py.File(files[c["scene"], c["solver"], c["setting"]]) as f:
+        stored = f["trajectory/position"][:].astype(float)
+        times = f["trajectory/time_s"][:]
+    assert c["frames_stored"] == len(stored)
+    np.testing.assert_array_equal(c["time_s"], times[c["frames"]])
+    kept = np.add.outer(c["grid"][0] * np.array(c["rows"]), c["columns"]).ravel()
+    residual = words(c["blob"], 2).reshape(len(c["frames"]), 3, len(kept)).astype(np.int64)
+    origin = np.array(c["origin"]).reshape(-1, 3)
+    x = np.zeros_like(residual)
+    for k in range(len(x)):
+        for a in range(3):
+            o = origin[k, a]
+            if k == 0:
+                last = o
+                for v, r in enumerate(residual[0, a]):
+                    last = o + (last - o + r) % 65536
+                    x[0, a, v] = last
+                continue
+            predicted = x[k - 1, a] if k == 1 else 2 * x[k - 1, a] - x[k - 2, a]
+            x[k, a] = o + (predicted - o + residual[k, a]) % 65536
+    error = np.abs(x.transpose(0, 2, 1) * c["step_m"] - stored[c["frames"]][:, kept]).max()
+    assert error <= 0.5001 * c["step_m"], (c["scene"], error, c["step_m"])
+    assert c["step_m"] <= np.ptp(stored[c["frames"]], axis=1).max() / 32000
+    moved += np.ptp(x, axis=0).max() > 0
+assert moved == len(doc["motions"]["cells"]) >= 14, moved
+
+# Colliders: every shape is there, and an array of each kind reads back.
+shapes = {}
+for groups in doc["motions"]["colliders"]:
+    for g in groups:
+        shapes.setdefault(g["attributes"].get("shape", g["path"]), g)
+assert {"sphere", "box", "plane", "mesh", "capsules", "colliders/grips"} <= set(shapes), set(shapes)
+with h5py.File(files["capsule-sweep", "bullet-soft", "default"]) as f:
+    a = shapes["capsules"]["arrays"]["capsules"]
+    told = words(a["blob"], 4).view("<f4").reshape(a["shape"])
+    np.testing.assert_array_equal(told, f["colliders/0/capsules"][:].astype("f4"))
+with h5py.File(files["open-sheet", "bullet-soft", "default"]) as f:
+    cell = next(c for c in doc["motions"]["cells"] if (c["scene"], c["solver"]) == ("open-sheet", "bullet-soft"))
+    sheet = next(g for g in doc["motions"]["colliders"][cell["colliders"]] if g["path"] == "colliders/0")
+    a = sheet["arrays"]["triangles"]
+    np.testing.assert_array_equal(words(a["blob"], 4).reshape(a["shape"]), f["colliders/0/triangles"][:])
+    np.testing.assert_array_equal(shapes["sphere"]["attributes"]["radius_m"], 0.15)
+print(f"{len(tables)} tables, {points} rates, {series} series, {moved} motions, {len(html) / 1e6:.1f} MB")

@@ -1,0 +1,242 @@
+// The page of a report: how motions are packed, thinned and told, and that data cannot break out of the page.
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "clothbench/error.hpp"
+#include "fake_cells.hpp"
+#include "report/web/packed.hpp"
+#include "report/web/page.hpp"
+#include "results/store.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A sheet of columns x rows that waves and drifts.
+Replay waving(std::size_t frames, std::size_t columns, std::size_t rows) {
+  Replay r;
+  for (std::size_t f = 0; f < frames; ++f) {
+    r.frames.push_back(3 * f);
+    r.time_s.push_back(0.04 * static_cast<double>(f));
+    for (std::size_t j = 0; j < rows; ++j)
+      for (std::size_t i = 0; i < columns; ++i) {
+        const double t = 0.04 * static_cast<double>(f), u = 0.1 * static_cast<double>(i),
+                     v = 0.1 * static_cast<double>(j);
+        for (const double x : {u - 7.3 * t, std::sin(3 * u + 5 * t) * 0.2 + 4, v + 0.5 * 9.81 * t * t})
+          r.position.push_back(static_cast<float>(x));
+      }
+  }
+  return r;
+}
+
+/// As packed.hpp says, written again from there.
+std::vector<double> unpacked(const PackedMotion& m) {
+  const std::size_t n = m.columns.size() * m.rows.size(), count = m.frames.size() * 3 * n;
+  std::vector<unsigned char> planes(2 * count);
+  uLongf size = planes.size();
+  EXPECT_EQ(uncompress(planes.data(), &size, reinterpret_cast<const Bytef*>(m.bytes.data()), m.bytes.size()), Z_OK);
+  EXPECT_EQ(size, planes.size());
+  std::vector<long long> x(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t f = k / (3 * n), v = k % n;
+    const long long origin = m.origin[k / n], r = planes[k] + 256 * planes[count + k];
+    const long long predicted = f > 1    ? 2 * x[k - 3 * n] - x[k - 6 * n]
+                                : f == 1 ? x[k - 3 * n]
+                                : v == 0 ? origin
+                                         : x[k - 1];
+    long long u = (predicted - origin + r) % 65536;
+    if (u < 0) u += 65536;
+    EXPECT_LE(u, 32766);
+    x[k] = origin + u;
+  }
+  std::vector<double> out(count);  // (frame, vertex, xyz)
+  for (std::size_t f = 0; f < m.frames.size(); ++f)
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t v = 0; v < n; ++v)
+        out[(f * n + v) * 3 + a] = m.step_m * static_cast<double>(x[(f * 3 + a) * n + v]);
+  return out;
+}
+
+TEST(PackedMotion, IsWithinHalfAStepOfThePositions) {
+  const Replay r = waving(20, 7, 5);
+  const PackedMotion m = pack_motion(r, 7, 5, 1);
+  ASSERT_EQ(m.frames, r.frames);
+  EXPECT_EQ(m.cut_at, -1);
+  const std::vector<double> x = unpacked(m);
+  ASSERT_EQ(x.size(), r.position.size());
+  EXPECT_LT(m.step_m, 2e-5) << "extent over 2^15";
+  double worst = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) worst = std::max(worst, std::abs(x[k] - r.position[k]));
+  EXPECT_LE(worst, 0.5001 * m.step_m);
+  EXPECT_GT(worst, 0.4 * m.step_m) << "what cannot fail: the steps were not used";
+}
+
+TEST(PackedMotion, KeepsEveryNthRowAndColumnAndTheLast) {
+  const Replay r = waving(4, 8, 5);
+  const PackedMotion m = pack_motion(r, 8, 5, 3);
+  EXPECT_EQ(m.columns, (std::vector<std::size_t>{0, 3, 6, 7}));
+  EXPECT_EQ(m.rows, (std::vector<std::size_t>{0, 3, 4}));
+  const std::vector<double> x = unpacked(m);
+  EXPECT_NEAR(x[3 * (2 * 12 + 1 * 4 + 3)], r.position[3 * (2 * 40 + 3 * 8 + 7)], m.step_m)
+      << "frame 2, row 3, column 7";
+}
+
+TEST(PackedMotion, EndsWhereTheClothIsNoMore) {
+  Replay r = waving(6, 4, 4);
+  r.position[3 * (4 * 16 + 2)] = std::nanf("");
+  const PackedMotion nan = pack_motion(r, 4, 4, 1);
+  EXPECT_EQ(nan.frames, (std::vector<std::size_t>{0, 3, 6, 9}));
+  EXPECT_EQ(nan.cut_at, 12);
+  r.position[3 * (2 * 16 + 2)] = 1e7f;
+  EXPECT_EQ(pack_motion(r, 4, 4, 1).cut_at, 6) << "flew apart";
+  r.position[0] = std::numeric_limits<float>::infinity();
+  EXPECT_TRUE(pack_motion(r, 4, 4, 1).frames.empty());
+}
+
+TEST(PackedMotion, Base64AsInRfc4648) {
+  const char* const pairs[][2] = {{"", ""},
+                                  {"f", "Zg=="},
+                                  {"fo", "Zm8="},
+                                  {"foo", "Zm9v"},
+                                  {"foob", "Zm9vYg=="},
+                                  {"fooba", "Zm9vYmE="},
+                                  {"foobar", "Zm9vYmFy"},
+                                  {"\xff\xfe", "//4="}};
+  for (const auto& [bytes, text] : pairs) EXPECT_EQ(base64(bytes), text);
+}
+
+class WebFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    dir_ = fs::temp_directory_path() / ("clothbench-web-" + std::to_string(getpid()) + "-" + info->name());
+    StudyManifest manifest{
+        "table3", "2026-01-01T00:00:00Z", "clothbench study </script><b>table3", nlohmann::json::object(), {}};
+    fs::create_directories(dir_ / "run");
+    for (const int n : {9, 17})
+      for (const char* solver : {"xpbd", "paper"}) {
+        CellRecord c = fake_cell(solver, n, "single", 0.002 * n);
+        const Replay motion = waving(90, static_cast<std::size_t>(n), static_cast<std::size_t>(n));
+        c.header.vertices = static_cast<std::uint32_t>(n * n);
+        c.header.triangles = {0, 1, 2};
+        c.accuracy.time_s = motion.time_s;
+        c.accuracy.position = motion.position;
+        c.outcome = {"timed_out", "F8", 80, "too slow </script><!-- ü"};
+        CellWriter writer(dir_ / "run", c.header);
+        writer.write_accuracy(c.accuracy);
+        writer.write_replay({{"colliders", {{"count", 1}, {"frame_rate_hz", 72.0}}, {}},
+                             {"colliders/0",
+                              {{"shape", "mesh"}, {"name", "ü"}, {"closed", 1}},
+                              {{"position_m", "m", "", {"vertex", "xyz"}, {3, 3}, false, {0, 0, 0, 1, 0, 0, 0, 1, 0.5}},
+                               {"triangles", "1", "", {"triangle", "corner"}, {1, 3}, true, {0, 1, 2}}}}});
+        writer.finish(c.outcome, c.summary);
+        manifest.cells.push_back(cell_name(c.header));
+      }
+    write_manifest(dir_ / "run", manifest);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+  fs::path dir_;
+};
+
+TEST_F(WebFiles, ReplayHasEveryNthFrameAndTheColliders) {
+  const fs::path file = dir_ / "run" / "gravity-9-single__xpbd__default.h5";
+  const CellRecord whole = read_cell(file);
+  const Replay r = read_replay(file, 40);
+  EXPECT_EQ(r.frames, (std::vector<std::size_t>{0, 40, 80, 89}));
+  ASSERT_EQ(r.position.size(), 4u * 243);
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t v = 0; v < 243; ++v)
+      ASSERT_EQ(r.position[k * 243 + v], whole.accuracy.position[r.frames[k] * 243 + v]);
+  ASSERT_EQ(r.groups.size(), 2u);
+  EXPECT_EQ(r.groups[1].attributes.at("shape"), "mesh");
+  EXPECT_EQ(r.groups[1].attributes.at("closed"), 1.0);
+  ASSERT_EQ(r.groups[1].arrays.size(), 2u);
+  EXPECT_EQ(r.groups[1].arrays[0].values.at(8), 0.5);
+  EXPECT_EQ(r.groups[1].arrays[1].shape, (std::vector<std::uint64_t>{1, 3}));
+  EXPECT_THROW(read_replay(dir_ / "none.h5", 1), Error);
+}
+
+TEST_F(WebFiles, ThinsUntilThePageIsSmallAndSaysSo) {
+  const std::vector<CellRecord> cells = collect({dir_ / "run"});
+  const Motions all = motions_of(cells, {});
+  ASSERT_EQ(all.document["cells"].size(), 4u);
+  EXPECT_EQ(all.document["colliders"].size(), 1u) << "the same in every cell: once";
+  EXPECT_EQ(all.blobs.size(), 4u + 2);
+  EXPECT_EQ(all.document["cells"][0]["frames"].size(), 90u);
+  EXPECT_TRUE(all.document["left_out"].empty());
+  std::size_t size = 0, packed = 0;
+  for (const std::string& b : all.blobs) size += b.size();
+  const std::size_t budget = size / 4;
+  const Motions few = motions_of(cells, {}, budget);
+  for (const std::string& b : few.blobs) packed += b.size();
+  EXPECT_LE(packed, budget + 200) << "colliders are small here";
+  for (const auto& c : few.document["cells"]) EXPECT_LT(c["frames"].size(), c["frames_stored"].get<std::size_t>());
+  EXPECT_GT(few.document["cells"].size(), 0u);
+  const Motions none = motions_of(cells, {}, 10);
+  EXPECT_TRUE(none.document["cells"].empty());
+  EXPECT_EQ(none.document["left_out"].at(0),
+            "4 motions: too large at the coarsest thinning, or not finite from the start.");
+}
+
+TEST_F(WebFiles, DataNeverBreaksOutOfItsElement) {
+  const std::vector<CellRecord> cells = collect({dir_ / "run"});
+  Page page;
+  page.sections.push_back({"failed", "Failed", {failed_table(cells)}});
+  page.commands = commands_of({dir_ / "run"});
+  page.rates = rates_json(families(cells), published_table3());
+  const nlohmann::json document = page_document(cells, page, motions_of(cells, {}));
+  const std::string html = page_html("<html><!--clothbench:data--><script>code</script></html>", document, {"QUJD"});
+  std::size_t ends = 0;
+  for (std::size_t at = 0; (at = html.find("</script", at)) != std::string::npos; ++at) ++ends;
+  EXPECT_EQ(ends, 3u) << "data, one blob, the code";
+  EXPECT_EQ(html.find("<!--"), std::string::npos);
+  const std::string mark = "id=\"clothbench-data\">";
+  const std::size_t first = html.find(mark) + mark.size();
+  const nlohmann::json back = nlohmann::json::parse(html.substr(first, html.find("</script", first) - first));
+  EXPECT_EQ(back, nlohmann::json::parse(document.dump()));
+  EXPECT_EQ(back["commands"].at(0), "clothbench study </script><b>table3");
+  EXPECT_NE(back["motions"]["cells"][0]["message"].get<std::string>().find("<!-- ü"), std::string::npos);
+  EXPECT_THROW(page_html("no place", document, {}), Error);
+}
+
+TEST_F(WebFiles, WithoutATemplateNoOlderPageStays) {
+  const std::vector<CellRecord> cells = collect({dir_ / "run"});
+  EXPECT_EQ(write_page(dir_, cells, {}, {"<html><!--clothbench:data--></html>", ""}), "");
+  EXPECT_GT(fs::file_size(dir_ / "index.html"), 1000u);
+  EXPECT_EQ(write_page(dir_, cells, {}, {"", "there was no Node when this was built"}),
+            "The interactive page was left out: there was no Node when this was built.");
+  EXPECT_FALSE(fs::exists(dir_ / "index.html"));
+}
+
+TEST_F(WebFiles, RatesKeepFullPrecisionAndMissingIsNull) {
+  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1.0 / 3001),
+                                   fake_cell("bullet-soft", 8, "single", 0.01, false)};
+  const nlohmann::json rates = nlohmann::json::parse(rates_json(families(cells), published_table3()).dump());
+  ASSERT_EQ(rates.size(), 1u);
+  EXPECT_EQ(rates[0]["published"].size(), 3u);
+  for (const auto& s : rates[0]["series"]) {
+    const auto& p = s["points"].at(0);
+    const bool gpu = s["solver"] == "xpbd";
+    EXPECT_EQ(p["fps"].get<double>(), gpu ? cells[0].summary.at("fps_median") : cells[1].summary.at("fps_median"));
+    EXPECT_EQ(p["read_B_per_s"].is_null(), !gpu);
+    EXPECT_EQ(p["width"], 8.0);
+  }
+}
+
+TEST(Environment, OneColumnForEachPlace) {
+  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1), fake_cell("xpbd", 9, "single", 1),
+                                   fake_cell("bullet-soft", 8, "single", 1, false)};
+  cells.push_back({});
+  const Table t = environment_table(cells);
+  EXPECT_EQ(t.rows.at(0), (std::vector<std::string>{"what", "2 cells", "1 cell"}));
+  EXPECT_EQ(t.rows.at(1), (std::vector<std::string>{"GPU", "Fake GPU", "CPU"}));
+  for (const auto& row : t.rows) EXPECT_NE(row[0], "clocks") << "a row without any value is left out";
+}
+
+}  // namespace
+}  // namespace clothbench
