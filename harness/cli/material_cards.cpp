@@ -13,13 +13,14 @@ namespace clothbench {
 namespace {
 
 constexpr const char* kYardstick = "reference";
-constexpr double kFullLimit_s = 20, kShortLimit_s = 5;  // wall time of a patch
+constexpr double kFullLimit_s = 20, kShortLimit_s = 5;  // wall time of a patch in a full study; the default card's otherwise:
+constexpr double kDefaultLimit_s = 8;
 
 struct Wanted {
   const SolverEntry* entry;
   nlohmann::json settings;
   std::string setting;
-  bool full;
+  bool full, bending = true;
 
   std::string name() const {
     CellHeader h;
@@ -50,7 +51,8 @@ std::vector<Wanted> default_cards(const CellPlan& plan, bool whole) {
 }
 
 /// Settings on the fronts: in a full study all of them; else those on scenes whose answer depends on a stiffness that the
-/// solver's default setting has as a parameter, since no other card can change a verdict that matters.
+/// solver's default setting has as a parameter, since no other card can change a verdict that matters; and of these no
+/// bending where the default has none.
 std::vector<Wanted> front_cards(const CellPlan& plan, const std::filesystem::path& out, bool whole, std::size_t& left_out) {
   const std::vector<CellRecord> cells = collect({out});
   std::vector<CellRecord> defaults;  // a resumed study must want what it wanted before: cards of fronts decide nothing
@@ -64,12 +66,13 @@ std::vector<Wanted> front_cards(const CellPlan& plan, const std::filesystem::pat
   const std::vector<WorkDiagram> diagrams = work_diagrams(cells, materials);
   for (const SolverEntry* e : solvers_of(plan)) {
     if (e->info.ignores.has(Feature::Stretch) || e->info.name == kYardstick) continue;
+    const bool bends = stiffness_flag(materials, e->info.name, {false, false, true}).empty();
     for (const WorkDiagram& d : diagrams)
       for (const WorkPoint& p : d.points) {
         if (p.solver != e->info.name || !p.on_front || p.setting == "default") continue;
         const bool matters = whole || (d.need.any() && !d.flagged.contains(p.solver));
         std::vector<Wanted>& list = matters ? all : without;
-        if (!listed(list, e, p.setting)) list.push_back({e, p.cell->header.settings, p.setting, false});
+        if (!listed(list, e, p.setting)) list.push_back({e, p.cell->header.settings, p.setting, false, whole || bends});
       }
   }
   for (const Wanted& w : without) left_out += !listed(all, w.entry, w.setting);
@@ -89,7 +92,7 @@ void add_material_cards(const CellPlan& plan, const RunOptions& options, StudyMa
       if (options.progress) options.progress(w.name(), k, wanted.size());
       const auto start = std::chrono::steady_clock::now();
       const CellRecord card = measure_material(*w.entry, w.settings, w.setting, w.full, options.device, plan.protocol,
-                                               w.full ? kFullLimit_s : kShortLimit_s);
+                                               !w.full ? kShortLimit_s : whole ? kFullLimit_s : kDefaultLimit_s, w.bending);
       CellWriter(options.out, card.header).finish(card.outcome, card.summary);
       result.card_seconds[w.entry->info.name] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       ++result.cards;
