@@ -2,7 +2,7 @@
 """Work-precision diagrams from a report's work-precision.csv.
 
 usage: plot_work_precision.py WORK-PRECISION.csv
-Writes work-precision-<scene>.svg and .png beside the CSV: error against wall time, both logarithmic. All points thin, the
+Writes work-precision-<scene>.svg and .png beside the CSV: error against wall time (frames pipelined where a solver can), both logarithmic. All points thin, the
 front of each solver (nothing faster and more accurate) thick; the same front over the device's own clock dashed; cells
 without an error as crosses in the upper margin; the floors, shaded below the higher one: there solvers are not told apart.
 Solvers whose stiffness is no parameter, where the scene depends on it, pale and dotted: they are not ranked.
@@ -29,6 +29,7 @@ STYLE = {"font.size": 8, "axes.labelsize": 9, "legend.fontsize": 7.5, "svg.fontt
          "svg.hashsalt": "clothbench", "axes.spines.top": False, "axes.spines.right": False, "axes.axisbelow": True}
 REAL_TIME = 1000  # ms per simulated second
 UNSUPPORTED = {"unsupported", "missing"}
+NOT_RUN = "over_budget"  # of more work than the solver's time on the scene allowed
 
 
 def number(text):
@@ -78,7 +79,8 @@ def draw(scene, rows, path):
         device = front([(number(r["device_ms_per_s"]), number(r["error"])) for r in good if number(r["device_ms_per_s"]) > 0])
         if device:
             ax.plot(*zip(*device), linestyle="--", color=colour, linewidth=1.0, gid=f"device-{name}")
-        bad = [r for r in mine if not drawn(r) and r["status"] not in UNSUPPORTED]
+        bad = [r for r in mine if not drawn(r) and r["status"] not in UNSUPPORTED | {NOT_RUN}]
+        skipped = sum(r["status"] == NOT_RUN for r in mine)
         times = [number(r["wall_ms_per_s"]) for r in bad]
         if bad:  # a cell that never got to be timed stands at the right edge
             known = [t for t in times if t > 0]
@@ -87,7 +89,7 @@ def draw(scene, rows, path):
             if len(known) < len(bad):
                 ax.plot([1.0], [1.0], "x", color=colour, markersize=4, transform=ax.transAxes, clip_on=False,
                         gid=f"failed-untimed-{name}")
-        label = name + (f" ({len(bad)} of {len(mine)} failed)" if bad else "") + (" – not ranked" if unranked else "")
+        label = name + (f" ({len(bad)} of {len(mine)} failed)" if bad else "") + (f" ({skipped} of {len(mine)} not run)" if skipped else "") + (" – not ranked" if unranked else "")
         entries.append(Line2D([], [], color=colour, marker=marker, linestyle=":" if unranked else "-", linewidth=1.8, markersize=4, label=label))
     first = rows[0]
     for key, style, label in (("space_error", ":", "error of the mesh"), ("floor", "-.", "3 × reference's uncertainty")):
@@ -109,7 +111,7 @@ def draw(scene, rows, path):
     if any(number(r["device_ms_per_s"]) > 0 for r in rows):
         entries.append(Line2D([], [], color="0.3", linewidth=1.0, linestyle="--", label="GPU's own clock (dashed)"))
     ax.grid(True, which="major", linewidth=0.4, alpha=0.5)
-    ax.set_xlabel("wall time [ms per simulated second]")
+    ax.set_xlabel("wall time, frames pipelined where a solver can [ms per simulated second]", fontsize=8)
     ax.set_ylabel(f"error\n({first['ranking']})", fontsize=8)
     gpus = sorted({r["gpu"] + (" (software: no speed claims)" if r["gpu_is_software"] == "true" else "") for r in rows
                    if r["on_gpu"] == "true"})

@@ -6,6 +6,9 @@
 #include <chrono>
 #include <cstdio>
 
+#include "results/store.hpp"
+#include "scenario/json_text.hpp"
+
 namespace clothbench {
 namespace {
 
@@ -37,6 +40,16 @@ std::string Overrides::label() const {
   for (const auto& [key, value] : solver.items())
     text += (text.empty() ? "" : ",") + key + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
   return text.empty() ? "default" : text;
+}
+
+void write_between_marks(const std::string& file, const std::string& name, const std::string& text) {
+  const std::string begin = "<!-- " + name + " begin -->\n", end = "<!-- " + name + " end -->";
+  std::string all = read_text(file);
+  const std::size_t from = all.find(begin), to = all.find(end);
+  if (from == std::string::npos || to == std::string::npos || to < from)
+    throw Error(file + ": expected the lines " + begin.substr(0, begin.size() - 1) + " and " + end);
+  all.replace(from + begin.size(), to - from - begin.size(), text);
+  write_file_atomically(file, all);
 }
 
 void DeviceFlags::add_to(CLI::App& app) {

@@ -30,6 +30,11 @@ void add_check(CLI::App&, Console&);
 void add_bench(CLI::App&, Console&);
 void add_metamorphic(CLI::App&, Console&);
 void add_threshold(CLI::App&, Console&);
+void add_friction(CLI::App&, Console&);
+
+/// Replaces what stands between the lines "<!-- NAME begin -->" and "<!-- NAME end -->" of a README. Throws Error naming the
+/// file and the lines if they are not there.
+void write_between_marks(const std::string& file, const std::string& name, const std::string& text);
 
 /// `--set` arguments: `solver.<name>=<JSON>` go to the solver, everything else to the scene.
 struct Overrides {

@@ -37,6 +37,7 @@ int run_command_line(const std::vector<std::string>& words) {
   add_check(app, console);
   add_metamorphic(app, console);
   add_threshold(app, console);
+  add_friction(app, console);
 #ifdef CLOTHBENCH_WITH_BENCH
   add_bench(app, console);
 #endif

@@ -5,10 +5,8 @@
 
 #include "cli/command.hpp"
 #include "report/table.hpp"
-#include "results/store.hpp"
 #include "runner/metamorphic.hpp"
 #include "runner/threshold.hpp"
-#include "scenario/json_text.hpp"
 #include "truth/card.hpp"
 
 namespace clothbench {
@@ -54,22 +52,12 @@ nlohmann::json json_of(const std::string& solver, const MetamorphicResult& r) {
           {"bitwise", r.bitwise}, {"at_most", r.at_most}};
 }
 
-/// Replaces what stands between the marks of a README.
-void write_between_marks(const std::string& file, const std::string& text) {
-  const std::string begin = "<!-- metamorphic begin -->\n", end = "<!-- metamorphic end -->";
-  std::string all = read_text(file);
-  const std::size_t from = all.find(begin), to = all.find(end);
-  if (from == std::string::npos || to == std::string::npos || to < from) throw Error(file + ": expected the lines " + begin.substr(0, begin.size() - 1) + " and " + end);
-  all.replace(from + begin.size(), to - from - begin.size(), text);
-  write_file_atomically(file, all);
-}
-
 }  // namespace
 
 void add_metamorphic(CLI::App& app, Console& console) {
   static Arguments a;
   a = {};
-  CLI::App* cmd = app.add_subcommand("metamorphic", "Properties of a solver that need no truth: similarity, mirror, rotation, renumbering, repeat, no-op");
+  CLI::App* cmd = app.add_subcommand("metamorphic", "Properties of a solver that need no truth: similarity, mirror, rotation, renumbering, repeat, no-op, restart");
   cmd->add_option("solver", a.solvers, "Solvers; default: all");
   cmd->add_option("--set", a.set, "Setting of the solver: solver.substeps=20");
   cmd->add_option("--readme", a.readme, "Also write the tables between the marks <!-- metamorphic begin/end --> of this file");
@@ -93,7 +81,7 @@ void add_metamorphic(CLI::App& app, Console& console) {
       markdown += t.markdown() + "\n";
     }
     if (console.json) fmt::print("{}\n", all.dump(2));
-    if (!a.readme.empty()) write_between_marks(a.readme, markdown);
+    if (!a.readme.empty()) write_between_marks(a.readme, "metamorphic", markdown);
   });
 }
 

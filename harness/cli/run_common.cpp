@@ -47,6 +47,31 @@ void settle_device(CellPlan& plan, const DeviceFlags& flags) {
     group.erase(std::remove_if(group.begin(), group.end(), [](const CellSpec& c) { return c.entry->info.on_gpu; }), group.end());
 }
 
+nlohmann::json seconds_json(const RunResult& r) {
+  nlohmann::json j = nlohmann::json::object();
+  for (const auto& [name, s] : r.seconds) j[name] = {{"cells", s}};
+  for (const auto& [name, s] : r.card_seconds) j[name]["cards"] = s;
+  return j;
+}
+
+/// Where the time went, and what was not measured for its sake.
+void print_spent(const RunResult& r) {
+  std::string text;
+  double all = 0;
+  for (const auto& [name, s] : r.seconds) {
+    const auto cards = r.card_seconds.find(name);
+    text += fmt::format("{}{} {:.1f}", text.empty() ? "" : ", ", name, s);
+    if (cards != r.card_seconds.end()) text += fmt::format(" + {:.1f} on cards", cards->second);
+    all += s + (cards == r.card_seconds.end() ? 0 : cards->second);
+  }
+  fmt::print("seconds: {}; together {:.0f}\n", text, all);
+  if (r.cells_over_budget > 0)
+    fmt::print("not run: {} settings whose solvers had used up their time on the scene (over_budget)\n", r.cells_over_budget);
+  if (r.cards_left_out > 0)
+    fmt::print("not run: material cards of {} settings on fronts, which could change no verdict; a full study measures all\n",
+               r.cards_left_out);
+}
+
 }  // namespace
 
 void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
@@ -88,13 +113,14 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
     RunOptions options{out, flags.resume, flags.device.options,
                        [&](const std::string& what, std::size_t done, std::size_t total) { line.show(what, done, total); }};
     result = run_cells(plan, options);
-    if (plan.material_cards) add_material_cards(plan, options, manifest);
+    if (plan.material_cards) add_material_cards(plan, options, manifest, result);
   }
   for (const std::string& fault : result.faults) fmt::print(stderr, "FAULT {}\n", fault);
   if (!result.faults.empty()) console.exit_code = ExitCode::CheckFailed;
   if (console.json) {
     nlohmann::json j = {{"out", out.string()}, {"ok", result.cells_ok}, {"unsupported", result.cells_unsupported},
-                        {"failed", result.cells_failed}, {"faults", result.faults}, {"expect_kept", result.expect_kept},
+                        {"over_budget", result.cells_over_budget}, {"failed", result.cells_failed},
+                        {"seconds", seconds_json(result)}, {"cards", result.cards}, {"cards_left_out", result.cards_left_out}, {"faults", result.faults}, {"expect_kept", result.expect_kept},
                         {"expect_broken", result.expect_broken}};
     fmt::print("{}\n", j.dump(2));
     return;
@@ -102,6 +128,7 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
   print_console_report({out});
   fmt::print("\n{} cells ok, {} unsupported, {} failed; results in {}\n", result.cells_ok, result.cells_unsupported,
              result.cells_failed, out.string());
+  print_spent(result);
 }
 
 }  // namespace clothbench

@@ -32,7 +32,7 @@ CellPlan plan_study(const Study& study) {
   CellPlan plan;
   plan.protocol = study.length == StudyLength::Full ? "full" : study.length == StudyLength::Quick ? "quick" : "short";
   plan.rules = {study.trials, rules.frames, rules.max_wall_s, rules.min_frames, rules.warmup_s, study.drop_frames, study.accuracy_duration_s,
-                study.cell_limit_s};
+                study.cell_limit_s, rules.ladder_limit_s, rules.agree, study.pipelined};
   if (!study.stage_times) plan.rules.profiled_frames = 0;
   plan.references = plan.material_cards = study.protocol == "work-precision";
   std::vector<const SolverEntry*> entries;
@@ -49,7 +49,7 @@ CellPlan plan_study(const Study& study) {
         plan.not_built.push_back(std::move(absent));
       }
       const nlohmann::json settings = entries[k]->make ? complete_settings(entries[k]->info, s.settings) : s.settings;
-      plan.groups[static_cast<std::size_t>(item.group)].push_back({&item.scene, entries[k], settings, s.label});
+      plan.groups[static_cast<std::size_t>(item.group)].push_back({&item.scene, entries[k], settings, s.label, s.work});
     }
   }
   return plan;

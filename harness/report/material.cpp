@@ -78,13 +78,24 @@ std::vector<SolverMaterial> solver_materials(const std::vector<CellRecord>& cell
   return out;
 }
 
+StiffnessNeed stiffness_need(const CellRecord& c) {
+  constexpr double kDepends = 0.01;
+  StiffnessNeed need;
+  const json scenario = scenario_of(c);
+  if (!scenario.is_object()) return need;
+  const bool shear = scenario.value(json::json_pointer("/material/shear"), true);
+  (shear ? need.sheet : need.strip) = summary_value(c, "truth_dependence_Y") >= kDepends;
+  need.bending = summary_value(c, "truth_dependence_B") >= kDepends;
+  return need;
+}
+
 std::string stiffness_flag(const std::vector<SolverMaterial>& all, const std::string& solver,
-                           const std::string& truth_card) {
-  const bool of_y = truth_card == "heavy-strip" || truth_card == "two-hand-pull", of_b = truth_card == "cantilever";
+                           const StiffnessNeed& need) {
   for (const SolverMaterial& m : all) {
-    if (m.solver != solver || !(of_y || of_b)) continue;
-    const std::string& why = of_y ? m.verdict.strip : m.verdict.bending;
-    return why == kNotMeasured ? "" : why;
+    if (m.solver != solver) continue;
+    for (const auto& [needed, why] : {std::pair{need.strip, &m.verdict.strip}, std::pair{need.sheet, &m.verdict.sheet},
+                                      std::pair{need.bending, &m.verdict.bending}})
+      if (needed && !why->empty() && *why != kNotMeasured) return *why;
   }
   return "";
 }

@@ -34,10 +34,18 @@ struct SolverMaterial {
 /// By solver, in the order of first appearance. `cells` may hold others, and must outlive the answer.
 std::vector<SolverMaterial> solver_materials(const std::vector<CellRecord>& cells);
 
-/// Why this solver's stiffness cannot be judged on a scene of this truth card (heavy-strip and two-hand-pull depend on
-/// Y, cantilever on B): "" if it can be, the card does not depend on it, or no card says otherwise.
-std::string stiffness_flag(const std::vector<SolverMaterial>&, const std::string& solver,
-                           const std::string& truth_card);
+/// The stiffnesses that a scene's answer depends on.
+struct StiffnessNeed {
+  bool strip = false, sheet = false, bending = false;
+  bool any() const { return strip || sheet || bending; }
+};
+
+/// As measured on its truth and stored with its cells (harness/metrics/truth_dependence.hpp): those whose change by a
+/// hundredth moves what ranks the runs by 1e-4 or more. None where nothing is stored.
+StiffnessNeed stiffness_need(const CellRecord&);
+
+/// Why this solver's stiffness cannot be judged on a scene with these needs: "" if it can be, or no card says otherwise.
+std::string stiffness_flag(const std::vector<SolverMaterial>&, const std::string& solver, const StiffnessNeed&);
 
 /// Rows: solvers at their settings; moduli over what the scenes state.
 Table material_table(const std::vector<SolverMaterial>&);

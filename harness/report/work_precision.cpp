@@ -37,7 +37,9 @@ WorkPoint point_of(const CellRecord& c, const json& scenario) {
   p.ok = c.outcome.status == "ok";
   p.device_ms_per_s = kMissing;
   const double frames_per_s = scenario.value(json::json_pointer("/time/frame_rate_hz"), kMissing);
-  p.wall_ms_per_s = 1e3 * frames_per_s * summary_value(c, "frame_wall_median_s");
+  p.fenced_ms_per_s = 1e3 * frames_per_s * summary_value(c, "frame_wall_median_s");
+  const double pipelined = 1e3 * frames_per_s * summary_value(c, "frame_pipelined_median_s");
+  p.wall_ms_per_s = std::isfinite(pipelined) ? pipelined : p.fenced_ms_per_s;
   p.device_ms_per_s = 1e3 * frames_per_s * summary_value(c, "frame_device_median_s");
   p.on_gpu = std::isfinite(p.device_ms_per_s);
   p.error = summary_value(c, "truth_error");
@@ -99,6 +101,10 @@ std::vector<std::string> solvers_of(const WorkDiagram& d) {
   return out;
 }
 
+std::string failed_text(std::size_t failed, std::size_t all, std::size_t over_budget) {
+  return fmt::format("{} of {}", failed, all) + (over_budget > 0 ? fmt::format(", {} not run", over_budget) : "");
+}
+
 json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
 std::string exact(double v) { return std::isfinite(v) ? fmt::format("{}", v) : ""; }
 
@@ -142,8 +148,9 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells, con
       out.push_back({c.header.scene, card, ranking_of(card), {}});
       at = out.end() - 1;
     }
-    if (std::string why = stiffness_flag(materials, c.header.solver, card); !why.empty()) at->flagged[c.header.solver] = std::move(why);
+    if (std::string why = stiffness_flag(materials, c.header.solver, stiffness_need(c)); !why.empty()) at->flagged[c.header.solver] = std::move(why);
     at->points.push_back(point_of(c, scenario));
+    if (!at->need.any()) at->need = stiffness_need(c);
     const auto take = [&](double& to, const char* name) {
       if (!std::isfinite(to)) to = summary_value(c, name);
     };
@@ -165,33 +172,37 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells, con
 
 Table work_table(const std::vector<WorkDiagram>& diagrams) {
   Table t{"Error against run time",
-          "Times in ms of wall time (submit to fence, never pipelined) per simulated second; in brackets substeps × iterations; GPU: by the "
-          "device's own clock. Errors are against the exact answer of the same mesh. In real time: a frame of 1/72 s takes at most 1/72 s. "
+          "Times in ms of wall time per simulated second, frames pipelined (two in flight) where a solver can; in brackets substeps × "
+          "iterations. Fenced: each frame from submission to fence, waited for before the next. GPU: by the device's own clock. Errors are against the exact answer of the same mesh. In real time: a frame of 1/72 s takes at most 1/72 s. "
           "≤: below what tells solvers apart, three times the reference's uncertainty or the mesh's own error. Failed: cells without "
-          "a finite error. A scene that is refused ranks nobody; see the next table. Not ranked: the scene depends on a stiffness that "
+          "a finite error; not run: settings of more work than their solver's time on the scene allowed, each with its reason in its file. A scene that is refused ranks nobody; see the next table. Not ranked: the scene depends on a stiffness that "
           "is no parameter of the solver; see the material card.",
-          {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed", "to 1 %, GPU", "to 0.1 %, GPU", "ranked"}}};
+          {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed", "to 1 %, fenced", "to 0.1 %, fenced", "to 1 %, GPU", "to 0.1 %, GPU", "ranked"}}};
   const auto always = [](const WorkPoint&) { return true; };
   for (const WorkDiagram& d : diagrams) {
     const std::string refused = d.refused();
     for (const std::string& solver : solvers_of(d)) {
-      std::size_t failed = 0, all = 0, able = 0;
+      std::size_t failed = 0, all = 0, able = 0, over_budget = 0;
       for (const WorkPoint& p : d.points)
         if (p.solver == solver) {
           ++all;
-          if (!drawn(p)) ++failed;
+          if (p.cell->outcome.status == "over_budget") ++over_budget;
+          else if (!drawn(p)) ++failed;
           if (p.cell->outcome.status != "unsupported" && p.cell->outcome.status != "missing") ++able;
         }
       const auto by_gpu = [&](double most) {
         const auto counts = [&](const WorkPoint& p) { return timed_on_gpu(p) && p.error <= most; };
         return time_text(best(d, solver, counts, &WorkPoint::device_ms_per_s), &WorkPoint::device_ms_per_s);
       };
+      const auto fenced = [&](double most) {
+        return time_text(best(d, solver, within(most), &WorkPoint::fenced_ms_per_s), &WorkPoint::fenced_ms_per_s);
+      };
       const auto flag = d.flagged.find(solver);
       const bool yardstick = solver == "reference";
       t.rows.push_back({d.scene + (refused.empty() ? "" : " (refused)"), solver, time_text(best(d, solver, within(1e-2), &WorkPoint::wall_ms_per_s)),
                         time_text(best(d, solver, within(1e-3), &WorkPoint::wall_ms_per_s)),
                         error_text(d, best(d, solver, in_real_time, &WorkPoint::error)), error_text(d, best(d, solver, always, &WorkPoint::error)),
-                        able == 0 ? "unsupported" : fmt::format("{} of {}", failed, all), by_gpu(1e-2), by_gpu(1e-3),
+                        able == 0 ? "unsupported" : failed_text(failed, all, over_budget), fenced(1e-2), fenced(1e-3), by_gpu(1e-2), by_gpu(1e-3),
                         flag != d.flagged.end() ? "NO: stiffness not a parameter" : able == 0 || !refused.empty() ? "no" : yardstick ? "yardstick" : "yes"});
     }
   }
@@ -215,14 +226,14 @@ Table truth_table(const std::vector<WorkDiagram>& diagrams) {
 
 std::string work_csv(const std::vector<WorkDiagram>& diagrams) {
   std::string out = csv_row({"scene", "card", "ranking", "space_error", "floor", "refused", "solver", "setting", "status", "gpu",
-                             "gpu_is_software", "on_gpu", "wall_ms_per_s", "device_ms_per_s", "error", "on_front", "not_ranked"});
+                             "gpu_is_software", "on_gpu", "wall_ms_per_s", "fenced_ms_per_s", "device_ms_per_s", "error", "on_front", "not_ranked"});
   for (const WorkDiagram& d : diagrams)
     for (const WorkPoint& p : d.points) {
       const json& e = p.cell->header.environment;
       const std::string software = e.is_object() && e.value("gpu_is_software", json()) == json(true) ? "true" : "false";
       out += csv_row({d.scene, d.card, d.ranking, exact(d.space_error), exact(d.floor()), d.refused(), p.solver, p.setting,
                       p.cell->outcome.status, e.is_object() ? e.value("gpu", "") : "", software, p.on_gpu ? "true" : "false",
-                      exact(p.wall_ms_per_s), exact(p.device_ms_per_s), exact(p.error), p.on_front ? "true" : "false",
+                      exact(p.wall_ms_per_s), exact(p.fenced_ms_per_s), exact(p.device_ms_per_s), exact(p.error), p.on_front ? "true" : "false",
                       d.flagged.contains(p.solver) ? d.flagged.at(p.solver) : ""});
     }
   return out;
@@ -234,7 +245,7 @@ json work_json(const std::vector<WorkDiagram>& diagrams) {
     json points = json::array();
     for (const WorkPoint& p : d.points)
       points.push_back({{"solver", p.solver}, {"setting", p.setting}, {"settings", p.cell->header.settings},
-                        {"status", p.cell->outcome.status}, {"wall_ms_per_s", or_null(p.wall_ms_per_s)},
+                        {"status", p.cell->outcome.status}, {"wall_ms_per_s", or_null(p.wall_ms_per_s)}, {"fenced_ms_per_s", or_null(p.fenced_ms_per_s)},
                         {"device_ms_per_s", or_null(p.device_ms_per_s)}, {"error", or_null(p.error)}, {"on_front", p.on_front}});
     out.push_back({{"scene", d.scene}, {"card", d.card}, {"ranking", d.ranking}, {"space_error", or_null(d.space_error)},
                    {"reference_uncertainty", or_null(d.uncertainty)}, {"reference_truth_distance", or_null(d.truth_distance)},

@@ -15,7 +15,8 @@ struct WorkPoint {
   const CellRecord* cell = nullptr;
   std::string solver, setting;
   bool on_gpu = false, ok = false;
-  double wall_ms_per_s = kMissing;    ///< median wall time, ms per simulated second
+  double wall_ms_per_s = kMissing;    ///< median wall time, ms per simulated second, frames pipelined where the solver can
+  double fenced_ms_per_s = kMissing;  ///< the same from submission to fence, each frame waited for
   double device_ms_per_s = kMissing;  ///< the same of the device's own clock; NaN on a CPU
   double error = kMissing;            ///< what ranks (the card's), as measured
   bool on_front = false;              ///< no other point of its solver is as fast and more accurate
@@ -28,6 +29,7 @@ struct WorkDiagram {
   double space_error = kMissing;     ///< this mesh's truth against the continuum
   double uncertainty = kMissing;     ///< U_ref over the quantity's scale
   double truth_distance = kMissing, order_bdf2 = kMissing, order_conservative = kMissing;  ///< of the reference
+  StiffnessNeed need = {};  ///< what its answer depends on
   std::map<std::string, std::string> flagged = {};  ///< solvers shown but not ranked, and why (stiffness_flag)
   double floor() const { return 3 * uncertainty; }  ///< of certainty; NaN if unknown
   /// Errors below it are not told apart: the greater of floor() and space_error, as far as they are known; 0 if neither is.

@@ -221,6 +221,9 @@ class Writer {
       } else {
         by_frame("frame_wall_s", &TimedTrial::frame_wall_s, {"s", "wall time of a frame"});
         by_frame("frame_device_s", &TimedTrial::frame_device_s, {"s", "device time of a frame, first to last timestamp"});
+        std::vector<double> pipelined;
+        for (const TimedTrial& t : r_.trials) pipelined.push_back(t.pipelined_wall_s);
+        attach(write_numbers(g, "pipelined_wall_s", {trials}, pipelined, {"s", "mean wall time of a frame, two in flight"}), {trial});
         by_stage("stage_device_s", &TimedTrial::stage_device_s, {"s", "device time of a stage, from the profiled twin"});
         number_attribute(g, "load_s", r_.header.load_s);
         for (const StageRecord& s : r_.header.stages) integer_attribute(g, "dispatches." + s.name, s.dispatches);

@@ -35,13 +35,17 @@ void read_trials(hid_t file, CellRecord& r) {
   const auto stage = numbers<double>(timing, "stage_device_s", H5T_NATIVE_DOUBLE);
   const auto read = numbers<double>(bandwidth, "read_B", H5T_NATIVE_DOUBLE), write = numbers<double>(bandwidth, "write_B", H5T_NATIVE_DOUBLE);
   const auto index = numbers<std::int64_t>(timing, "trial", H5T_NATIVE_INT64);
+  const auto pipelined = exists(timing, "pipelined_wall_s") ? numbers<double>(timing, "pipelined_wall_s", H5T_NATIVE_DOUBLE)
+                                                            : std::vector<double>(index.size(), kMissing);
   const std::size_t stages = r.header.stages.size();
+  if (pipelined.size() != index.size()) throw Error("/timing/pipelined_wall_s does not fit /timing/trial");
   if (shape.size() != 2 || index.size() != shape[0] || device.size() != wall.size() || stage.size() != wall.size() * stages ||
       read.size() != stage.size() || write.size() != stage.size())
     throw Error("/timing and /bandwidth do not fit one another");
   for (std::size_t t = 0; t < shape[0]; ++t) {
     TimedTrial trial;
     trial.index = static_cast<int>(index[t]);
+    trial.pipelined_wall_s = pipelined[t];
     for (std::size_t k = t * shape[1]; k < (t + 1) * shape[1]; ++k) {
       if (std::isnan(wall[k])) break;  // padding of a shorter trial
       trial.frame_wall_s.push_back(wall[k]);

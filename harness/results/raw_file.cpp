@@ -165,7 +165,7 @@ void write_trial_file(const std::filesystem::path& path, const TimedTrial& t, st
     for (const auto* series : {&t.stage_device_s, &t.stage_read_B, &t.stage_write_B}) append(b, series->data() + f * stages, stages);
     frames.push_back(std::move(b));
   }
-  write_raw(path, {{"kind", "trial"}, {"index", t.index}, {"stages", stages}, {"frames", frames.size()}}, frames);
+  write_raw(path, {{"kind", "trial"}, {"index", t.index}, {"stages", stages}, {"frames", frames.size()}, {"pipelined_wall_s", t.pipelined_wall_s}}, frames);
 }
 
 TimedTrial read_trial_file(const std::filesystem::path& path) {
@@ -175,6 +175,7 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
     if (!file.complete || file.frames.size() != file.header.at("frames").get<std::size_t>()) throw Error("damaged: not all frames are there");
     TimedTrial t;
     t.index = file.header.at("index").get<int>();
+    if (const auto s = file.header.value("pipelined_wall_s", nlohmann::json()); s.is_number()) t.pipelined_wall_s = s.get<double>();
     for (const Bytes& b : file.frames) {
       Taker taker(b);
       taker.take(t.frame_wall_s, 1);

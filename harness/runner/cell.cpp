@@ -98,6 +98,13 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
     if (spec_.entry->make) header_.environment["solver_features"] = describe_features(info);
     return;
   }
+  if (!spec_.over_budget.empty()) {
+    outcome_ = {"over_budget", "ok", -1, spec_.over_budget};
+    header_.environment = describe_environment({}, protocol);
+    describe_scene(scene, header_.environment);
+    header_.environment["solver_features"] = describe_features(info);
+    return;
+  }
   solver_ = spec_.entry->make(spec_.settings, device_);
   const auto start = Clock::now();
   solver_->load(scene);
@@ -181,6 +188,8 @@ void Cell::warm_up(const TrialRules& rules) {
   const auto start = Clock::now();
   for (int frame = 0; frame < kLeastFrames || seconds_since(start) < rules.warmup_s; ++frame) {
     stop_if_interrupted();
+    // One frame as long as a whole trial should be is warm-up enough.
+    if (frame > 0 && rules.max_wall_s > 0 && seconds_since(start) >= std::max(rules.max_wall_s, rules.warmup_s)) return;
     if (rules.drop_frames > 0 && frame > 0 && frame % rules.drop_frames == 0) solver_->reset();
     if (solver_->step(frame_input(*spec_.scene, frame)) != StepStatus::Ok) return;
   }
@@ -215,8 +224,26 @@ TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
     trial.stage_read_B.insert(trial.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
     trial.stage_write_B.insert(trial.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
   }
+  if (outcome_.status == "ok" && rules.pipelined && solver_->frames_in_flight() > 1) run_pipelined(trial, rules);
   if (outcome_.status == "ok" && rules.profiled_frames > 0) profile_stages(trial, rules.profiled_frames);
   return trial;
+}
+
+/// The frames of the trial again, drop by drop; what a drop's first frame waits for and its last one drains is in the clock.
+void Cell::run_pipelined(TimedTrial& trial, const TrialRules& rules) {
+  double elapsed = 0;
+  const int frames = trial.frames(), drop = rules.drop_frames > 0 ? rules.drop_frames : frames;
+  for (int first = 0; first < frames; first += drop) {
+    stop_if_interrupted();
+    std::vector<FrameInput> inputs;
+    for (int k = 0; k < std::min(drop, frames - first); ++k) inputs.push_back(frame_input(*spec_.scene, k));
+    solver_->reset();
+    const auto start = Clock::now();
+    const StepStatus status = solver_->run_frames(inputs);
+    elapsed += seconds_since(start);
+    if (status != StepStatus::Ok) return fail(status, first);
+  }
+  trial.pipelined_wall_s = elapsed / frames;
 }
 
 /// Per-stage device times come from a twin with timestamps around every stage, run right after the timed frames: the

@@ -15,6 +15,8 @@ struct CellSpec {
   const SolverEntry* entry = nullptr;
   nlohmann::json settings;
   std::string setting = "default";
+  int work = 0;  ///< on a ladder of settings: how many times the work of its first rung
+  std::string over_budget = {};  ///< why it is not run, if so; stored as it is
   std::map<std::string, double> scene_values = {};  ///< into every cell's summary: what is known of the scene itself
 };
 
@@ -28,6 +30,9 @@ struct TrialRules {
   int drop_frames = 72;    ///< the scene restarts, outside the clock, after this many frames; 0 = never
   double accuracy_duration_s = 0.5;  ///< simulated time of the untimed pass
   double cell_limit_s = 0;           ///< wall time of the untimed pass after which the cell is `timed_out`; 0 = no limit
+  double ladder_limit_s = 0;  ///< wall time of loads and untimed passes of one solver's ladder on a scene; 0 = no limit
+  double agree = 0;  ///< trials end once two or more agree to it, half the range of frame rates over the median; 0 = never
+  bool pipelined = false;  ///< also time the frames of a trial without waiting for each, where the solver can
   int profiled_frames = 12;          ///< of each trial, run again with a timestamp round every stage; 0 = none
 };
 
@@ -47,7 +52,7 @@ int times_held();
 class Cell {
  public:
   /// Loads the solver. A feature the backend does not have, or an entry without `make`, makes the outcome `unsupported`;
-  /// a failed load of a scene it claims to support is an Error.
+  /// a failed load of a scene it claims to support is an Error. Nothing is loaded of a spec that is over its budget.
   Cell(CellSpec spec, const DeviceOptions& device, const std::string& protocol);
 
   const CellSpec& spec() const { return spec_; }
@@ -70,6 +75,7 @@ class Cell {
   int accuracy_frames(double duration_s) const;
   void fail(StepStatus status, int frame);
   void warm_up(const TrialRules& rules);
+  void run_pipelined(TimedTrial& trial, const TrialRules& rules);
   void profile_stages(TimedTrial& trial, int frames);
 
   CellSpec spec_;

@@ -10,7 +10,7 @@ namespace clothbench {
 namespace {
 
 bool measured(const Scene& scene, const Outcome& outcome, const AccuracyPass& pass) {
-  if (outcome.status == "unsupported" || outcome.status == "error") return false;
+  if (outcome.status == "unsupported" || outcome.status == "over_budget" || outcome.status == "error") return false;
   if (!kWithContactMetrics && !scene.colliders.empty()) return false;
   return outcome.status != "ok" || pass.time_s.size() == static_cast<std::size_t>(scene.time.frames()) + 1;
 }

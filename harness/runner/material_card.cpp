@@ -63,7 +63,8 @@ Result settle(ClothSolver& solver, Patch patch, const Scene& scene, double limit
 }  // namespace
 
 CellRecord measure_material(const SolverEntry& entry, const json& settings, const std::string& setting, bool full,
-                            const DeviceOptions& device, const std::string& protocol, double limit_s) {
+                            const DeviceOptions& device, const std::string& protocol, double limit_s,
+                            bool bending) {
   CellRecord c;
   c.header.scene = kMaterialCardScene;
   c.header.solver = entry.info.name;
@@ -73,6 +74,7 @@ CellRecord measure_material(const SolverEntry& entry, const json& settings, cons
       {"name", kMaterialCardScene}, {"material_card", full ? "full" : "short"}, {"patches", json::array()}};
   std::vector<std::pair<Patch, Scene>> scenes;
   for (const Patch p : patches(full)) {
+    if (!bending && patch_scene(p).needs.has(Feature::Bend)) continue;
     scenes.emplace_back(p, patch_scene(p));
     scenario["patches"].push_back(json::parse(scenes.back().second.json));
   }

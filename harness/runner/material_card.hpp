@@ -17,8 +17,10 @@ inline constexpr const char* kMaterialCardScene = "material-card";
 /// over the last quarter of a second; header.scenario_json the patches' scenes. Each patch runs until its modulus rests
 /// to 1e-4 or its scene ends (3 s); one that takes more than `limit_s` of wall time, or that fails, leaves its moduli
 /// missing and is named in the outcome's message. Solvers that ignore stretch are `unsupported`.
+/// `bending` false: without the patches of B.
 CellRecord measure_material(const SolverEntry&, const nlohmann::json& settings, const std::string& setting, bool full,
-                            const DeviceOptions&, const std::string& protocol, double limit_s = 20);
+                            const DeviceOptions&, const std::string& protocol, double limit_s = 20,
+                            bool bending = true);
 
 /// Settings at which `clothbench card` looks for a dependence: four times as many substeps, four times as many
 /// iterations, of integer settings of those names (1024 where the default is 0, "the solver chooses"). By short name.

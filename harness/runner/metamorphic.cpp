@@ -84,6 +84,7 @@ class Tester {
       if (property == "renumbering") renumber(out);
       if (property == "repeat") repeat(out);
       if (property == "no-op") far_colliders(out);
+      if (property == "restart") restart(out);
     } catch (const Failed& f) {
       out.status = f.how;
       out.bitwise = false;
@@ -151,8 +152,12 @@ class Tester {
       const Scene other = made(renumber_scene(json_, by, scene_.source, expected.new_to_old));
       compare(base_, run(other), expected, side_, out);
     }
+    allow_own_error(out);
+  }
+
+  /// Twice as many frames of half the length: what a property changes must be less than what the step does.
+  void allow_own_error(MetamorphicResult& out) const {
     if (!(out.distance > kSame)) return;
-    // Twice as many frames of half the length: what the order of vertices does must be less than what the step does.
     json halved = json_;
     halved["time"]["frame_rate_hz"] = 2 * scene_.time.frame_rate_hz;
     const Trace finer = run(made(std::move(halved)));
@@ -161,6 +166,26 @@ class Tester {
     MetamorphicResult own;
     compare(base_, there, {}, side_, own);
     out.at_most = std::max(kSame, own.distance);
+  }
+
+  /// Goes on from the state half way, in a solver that was not there before.
+  void restart(MetamorphicResult& out) const {
+    const auto solver = entry_.make(settings_, device_);
+    solver->load(scene_);
+    const std::size_t half = base_.size() / 2;
+    if (!solver->restart(base_[half])) {
+      out = unsupported_row(out);
+      return;
+    }
+    const double dt = scene_.time.dt();
+    Trace from(base_.begin(), base_.begin() + static_cast<std::ptrdiff_t>(half));
+    solver->read_state(from.emplace_back());
+    for (int f = static_cast<int>(half); f < scene_.time.frames(); ++f) {
+      if (solver->step({f, (f + 1) * dt, dt, scene_.motion_after(f)}) != StepStatus::Ok) throw Failed{"failed"};
+      solver->read_state(from.emplace_back());
+    }
+    compare(base_, from, {}, side_, out);
+    allow_own_error(out);
   }
 
   void repeat(MetamorphicResult& out) const {
@@ -209,7 +234,8 @@ const std::vector<MetamorphicProperty>& metamorphic_properties() {
       {"rotation", "the whole scene and gravity turned"},
       {"renumbering", "vertices numbered from another corner, or along the other side; bound: 1e-4, or what frames half as long change"},
       {"repeat", "run again, and after reset: the same bits"},
-      {"no-op", "a ball, a box or a mesh 100 m away"}};
+      {"no-op", "a ball, a box or a mesh 100 m away"},
+      {"restart", "a new solver goes on from positions and velocities half way; bound: as for renumbering"}};
   return all;
 }
 

@@ -21,7 +21,7 @@ struct MetamorphicResult {
 struct MetamorphicProperty {
   std::string name, doc;
 };
-/// In the order of tables: similarity-2, similarity, mirror, rotation, renumbering, repeat, no-op.
+/// In the order of tables: similarity-2, similarity, mirror, rotation, renumbering, repeat, no-op, restart.
 const std::vector<MetamorphicProperty>& metamorphic_properties();
 
 /// Scenes of the tests: a pinned sheet, the swinging strip, a cloth that is thrown over a level face.
@@ -37,6 +37,8 @@ std::vector<Scene> metamorphic_scenes();
 ///                 solving is the solver's own affair within its own error
 ///   repeat        another solver object, and reset: bit for bit
 ///   no-op         a ball, a box and a mesh with friction 100 m away: 1e-6
+///   restart       another solver object goes on from the positions and velocities half way (ClothSolver::restart): 1e-4, or what
+///                 twice the substeps change; "unsupported" where the solver says that they do not tell all
 /// `note` is told of each before it runs.
 std::vector<MetamorphicResult> run_metamorphic(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                                const std::vector<Scene>& scenes, const std::function<void(const std::string&)>& note = {});

@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
+
+#include "metrics/truth_dependence.hpp"
 #include "runner/expect.hpp"
+#include "runner/ladder.hpp"
 #include "runner/reference.hpp"
 #include "runner/replay.hpp"
 #include "runner/sensors.hpp"
@@ -15,12 +20,25 @@ struct Running {
   std::unique_ptr<Cell> cell;
   std::unique_ptr<CellWriter> writer;
   CellRecord record;
+  double untimed_s = 0;    ///< wall time of its load and its pass
   nlohmann::json sensors;  ///< after its last trial, before the device cools down
 
   bool has_trial(int k) const {
     for (const TimedTrial& t : record.trials)
       if (t.index == k) return true;
     return false;
+  }
+  /// Half the range of the trials' frame rates over their median, as in the summary.
+  bool trials_agree(double to) const {
+    std::vector<double> rates;
+    for (const TimedTrial& t : record.trials) {
+      double wall_s = 0;
+      for (const double w : t.frame_wall_s) wall_s += w;
+      rates.push_back(t.frames() / wall_s);
+    }
+    if (!(to > 0) || rates.size() < 2) return false;
+    std::sort(rates.begin(), rates.end());
+    return (rates.back() - rates.front()) / 2 <= to * (rates[(rates.size() - 1) / 2] + rates[rates.size() / 2]) / 2;
   }
   int frames() const { return record.trials.empty() ? 0 : record.trials.front().frames(); }
   std::string name() const { return cell_name(cell->header()); }
@@ -34,15 +52,28 @@ CellHeader header_of(const CellSpec& spec) {
   return h;
 }
 
+/// Adds the time from its construction to its end.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& to) : to_(to) {}
+  ~Stopwatch() { to_ += seconds(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  double& to_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 class GroupRun {
  public:
   GroupRun(const CellPlan& plan, const RunOptions& options, RunResult& result, std::size_t& done)
-      : plan_(plan), options_(options), result_(result), done_(done) {}
+      : plan_(plan), options_(options), result_(result), done_(done), budget_(plan.rules.ladder_limit_s) {}
 
   void run(const std::vector<CellSpec>& group) {
-    for (const CellSpec& spec : group) open(spec);
-    for (Running& r : running_)
-      if (r.cell->alive() && !r.cell->usable(r.record.accuracy, plan_.rules.accuracy_duration_s)) accuracy(r);
+    running_.reserve(group.size());
+    for (const CellSpec& spec : group) begin(spec);
     for (int k = 0; k < plan_.rules.trials; ++k) round(k);
     for (Running& r : running_) finish(r);
   }
@@ -56,7 +87,9 @@ class GroupRun {
     for (const bool on_gpu : {true, false}) {
       std::vector<Running*> part;
       for (Running& r : running_)
-        if (r.cell->alive() && r.cell->spec().entry->info.on_gpu == on_gpu && !r.has_trial(k)) part.push_back(&r);
+        if (r.cell->alive() && r.cell->spec().entry->info.on_gpu == on_gpu && !r.has_trial(k) &&
+            !r.trials_agree(plan_.rules.agree))
+          part.push_back(&r);
       for (std::size_t i = 0; i < part.size(); ++i) {
         TrialRules rules = plan_.rules;
         if (on_gpu && i == 0) rules.warmup_s *= kWakeUp;
@@ -69,16 +102,40 @@ class GroupRun {
     if (options_.progress) options_.progress(what, done_, plan_.size());
   }
 
-  void open(const CellSpec& spec) {
+  double& seconds_of(const CellSpec& spec) { return result_.seconds[spec.entry->info.name]; }
+
+  /// Load and untimed pass, unless its ladder's budget is used up.
+  void begin(const CellSpec& given) {
+    const Stopwatch watch(seconds_of(given));
+    CellSpec spec = given;
     const std::string name = cell_name(header_of(spec));
     if (options_.resume) remove_leftovers(options_.out, name);
     if (cell_finished(options_.out, name)) {
       if (!options_.resume)
         throw Error(fmt::format("{}: {} is already there; give another --out, or --resume to go on with this folder",
                                 options_.out.string(), name));
+      if (spec.work > 0) recall(spec, name);
       ++done_;
       return;
     }
+    spec.over_budget = budget_.refused(spec);
+    open(spec, name);
+    Running& r = running_.back();
+    if (r.cell->alive() && !r.cell->usable(r.record.accuracy, plan_.rules.accuracy_duration_s)) accuracy(r);
+    r.untimed_s = watch.seconds();
+    if (spec.over_budget.empty()) budget_.spent(spec, r.untimed_s, r.cell->outcome().status);
+  }
+
+  /// What a cell of an earlier run took of its ladder's budget.
+  void recall(const CellSpec& spec, const std::string& name) {
+    const std::filesystem::path file = options_.out / (name + ".h5");
+    const CellRecord before = read_cell_summary(std::filesystem::exists(file) ? file : options_.out / (name + ".part"));
+    const auto took = before.summary.find("untimed_s");
+    if (before.outcome.status != "over_budget" && took != before.summary.end())
+      budget_.spent(spec, took->second, before.outcome.status);
+  }
+
+  void open(const CellSpec& spec, const std::string& name) {
     note(name + ": load");
     Running r;
     r.cell = std::make_unique<Cell>(spec, options_.device, plan_.protocol);
@@ -95,11 +152,14 @@ class GroupRun {
 
   void accuracy(Running& r) {
     note(r.name() + ": accuracy");
-    r.record.accuracy = r.cell->run_accuracy(plan_.rules);
+    TrialRules rules = plan_.rules;
+    rules.cell_limit_s = budget_.cell_limit_s(r.cell->spec(), rules.cell_limit_s);
+    r.record.accuracy = r.cell->run_accuracy(rules);
     r.writer->write_accuracy(r.record.accuracy);
   }
 
   void trial(Running& r, int k, const TrialRules& rules) {
+    const Stopwatch watch(seconds_of(r.cell->spec()));
     note(fmt::format("{}: trial {} of {}", r.name(), k + 1, plan_.rules.trials));
     TimedTrial t;
     int before = 0;
@@ -114,6 +174,7 @@ class GroupRun {
   }
 
   void finish(Running& r) {
+    const Stopwatch watch(seconds_of(r.cell->spec()));
     Outcome outcome = r.cell->outcome();
     const int messages = r.cell->validation_messages();
     if (messages > 0) {
@@ -123,11 +184,13 @@ class GroupRun {
     if (outcome.status == "error") result_.faults.push_back(r.name() + ": " + outcome.message);
     if (outcome.status == "ok") ++result_.cells_ok;
     else if (outcome.status == "unsupported") ++result_.cells_unsupported;
+    else if (outcome.status == "over_budget") ++result_.cells_over_budget;
     else ++result_.cells_failed;
     r.record.outcome = outcome;
     std::map<std::string, double> summary = summarise(r.cell->spec(), r.cell->plan(), r.record);
     summarise_sensors(r.record.header.environment.value("sensors", nlohmann::json::object()), "start", summary);
     summarise_sensors(r.sensors.is_null() ? nlohmann::json::object() : r.sensors, "end", summary);
+    summary["untimed_s"] = r.untimed_s;
     Verdict verdict = judge(*r.cell->spec().scene, outcome, r.record.accuracy, summary);
     if (verdict.text == "kept") ++result_.expect_kept;
     if (verdict.text.starts_with("broken")) result_.expect_broken.push_back(r.name() + ": " + verdict.text);
@@ -141,6 +204,7 @@ class GroupRun {
   const RunOptions& options_;
   RunResult& result_;
   std::size_t& done_;
+  LadderBudget budget_;
   std::vector<Running> running_;
 };
 
@@ -163,10 +227,17 @@ RunResult run_cells(const CellPlan& given, const RunOptions& options) {
     const auto note = [&](const std::string& what) {
       if (options.progress) options.progress(what, 0, plan.size());
     };
+    const Stopwatch watch(result.seconds["reference solutions"]);
     const auto found = references(scenes, options.reference_cache, note);
     for (auto& group : plan.groups)
       for (CellSpec& c : group)
         if (const auto r = found.find(c.scene->sha256); r != found.end()) c.scene_values = r->second.scalars();
+    std::map<std::string, std::map<std::string, double>> dependence;
+    for (auto& group : plan.groups)
+      for (CellSpec& c : group) {
+        if (!dependence.contains(c.scene->sha256)) dependence[c.scene->sha256] = truth_dependence(*c.scene);
+        for (const auto& [name, value] : dependence[c.scene->sha256]) c.scene_values[name] = value;
+      }
   }
   for (const auto& group : plan.groups) GroupRun(plan, options, result, done).run(group);
   if (options.progress) options.progress("", done, plan.size());

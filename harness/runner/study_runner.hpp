@@ -33,7 +33,10 @@ struct RunOptions {
 
 struct RunResult {
   std::vector<std::filesystem::path> files;
-  int cells_ok = 0, cells_unsupported = 0, cells_failed = 0;
+  int cells_ok = 0, cells_unsupported = 0, cells_over_budget = 0, cells_failed = 0;
+  /// Wall time by solver: loads, passes, trials and files; and of "reference solutions".
+  std::map<std::string, double> seconds, card_seconds;  ///< card_seconds: of material cards
+  int cards = 0, cards_left_out = 0;
   int expect_kept = 0;                     ///< cells that keep what their scene expects
   std::vector<std::string> expect_broken;  ///< those that do not, and how; a result, not a fault
   int validation_messages = 0;

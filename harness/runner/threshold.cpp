@@ -4,8 +4,11 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "clothbench/error.hpp"
+#include "clothbench/record.hpp"
+#include "metrics/truth_errors.hpp"
 #include "scenario/load.hpp"
 #include "truth/card.hpp"
 
@@ -14,16 +17,23 @@ namespace {
 
 constexpr double kLow = 0.5, kHigh = 1.5, kFinest = 1e-3;
 
-bool held(const Scene& scene, const truth::Card& card, double limit_m, const SolverEntry& entry, const nlohmann::json& settings,
-          const DeviceOptions& device) {
+/// The last state of a run of the whole scene; none if it fails.
+std::optional<ClothState> last_state(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings,
+                                     const DeviceOptions& device) {
   const auto solver = entry.make(settings, device);
   solver->load(scene);
   const double dt = scene.time.dt();
   for (int f = 0; f < scene.time.frames(); ++f)
-    if (solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}) != StepStatus::Ok) return false;
+    if (solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}) != StepStatus::Ok) return std::nullopt;
   ClothState state;
   solver->read_state(state);
-  return std::abs(card.quantity(truth::column_means(scene.cloth, state.position))) <= limit_m;
+  return state;
+}
+
+bool held(const Scene& scene, const truth::Card& card, double limit_m, const SolverEntry& entry, const nlohmann::json& settings,
+          const DeviceOptions& device) {
+  const auto state = last_state(scene, entry, settings, device);
+  return state && std::abs(card.quantity(truth::column_means(scene.cloth, state->position))) <= limit_m;
 }
 
 }  // namespace
@@ -53,6 +63,12 @@ FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, cons
   }
   out.error = t.error(out.found);
   return out;
+}
+
+double end_error(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings, const DeviceOptions& device) {
+  const TruthJudge judge(scene);
+  const auto state = last_state(scene, entry, settings, device);
+  return state ? judge.judge(scene.time.frames(), *state).quantity_error : kMissing;
 }
 
 }  // namespace clothbench

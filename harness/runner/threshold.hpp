@@ -18,4 +18,8 @@ struct FoundThreshold {
 /// scene. A run that fails slips. Throws Error if the scene's card has no threshold (see truth/card.hpp) or the solver cannot run it.
 FoundThreshold find_threshold(const Scene&, const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&);
 
+/// |quantity - truth| over its scale (see truth/card.hpp) at the end of a run of the whole scene; NaN if the run fails. Throws Error
+/// if the scene has no card.
+double end_error(const Scene&, const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&);
+
 }  // namespace clothbench

@@ -35,7 +35,7 @@ FeatureSet usable_features(const std::string& solver, FeatureSet needs) {
 
 StudyRules read_rules(const json& j) {
   return {j["frames"].get<int>(), j["min_frames"].get<int>(), j["max_wall_s"].get<double>(),
-          j["warmup_s"].get<double>()};
+          j["warmup_s"].get<double>(), j["ladder_limit_s"].get<double>(), j["agree"].get<double>()};
 }
 
 /// {"cloth.sides": "double"} as `--set` writes it.
@@ -105,6 +105,7 @@ class Builder {
     study_.accuracy_duration_s = j_.value("accuracy_duration_s", standard_s);
     study_.cell_limit_s = j_["cell_limit_s"].get<double>();
     study_.stage_times = j_["stage_times"].get<bool>();
+    study_.pipelined = j_["pipelined"].get<bool>();
     read_solvers();
     if (study_.protocol == "feature-cost") add_all_on();
     for (std::size_t k = 0; k < j_["scenes"].size(); ++k) read_scene(k);
@@ -149,32 +150,41 @@ class Builder {
     }
   }
 
-  /// The solver with every setting of the ladder that it has knobs for; itself alone if it climbs none.
+  /// The study's ladder in its form; null where it has none.
+  json ladder() const {
+    if (!quick_.is_null() && quick_.contains("ladder")) return quick_["ladder"];
+    if (study_.length == StudyLength::Short && j_.contains("short_ladder")) return j_["short_ladder"];
+    return j_.value("ladder", json());
+  }
+
+  /// The solver with every setting of the ladder that it has knobs for, from the least work up; itself alone if it
+  /// climbs none.
   std::vector<StudySolver> climb(const StudySolver& solver, std::size_t k) const {
     const json& entry = j_["solvers"][k];
     if (!entry.contains("ladder")) return {solver};
-    const json ladder = !quick_.is_null() && quick_.contains("ladder") ? quick_["ladder"] : j_.value("ladder", json());
+    const json ladder = this->ladder();
     if (!ladder.is_object()) throw Error(fmt::format("{}: /solvers/{}/ladder: the study has no \"ladder\"", source_, k));
     const int most = ladder["product_at_most"].get<int>(), ratio = ladder["ratio"].get<int>();
-    std::vector<std::pair<int, StudySolver>> rungs = {{1, solver}};
-    rungs[0].second.label.clear();
+    std::vector<StudySolver> rungs = {solver};
+    rungs[0].label.clear();
+    rungs[0].work = 1;
     for (const auto& knob : entry["ladder"].get<Words>()) {
-      std::vector<std::pair<int, StudySolver>> next;
-      for (const auto& [product, rung] : rungs)
-        for (int value = 1; product * value <= most; value *= ratio) {
+      const int end = std::min(most, ladder["at_most"].value(knob, most));
+      std::vector<StudySolver> next;
+      for (const StudySolver& rung : rungs)
+        for (int value = 1; rung.work * value <= most && value <= end; value *= ratio) {
           StudySolver s = rung;
           s.settings[knob] = value;
+          s.work *= value;
           s.label += fmt::format("{}{}={}", s.label.empty() ? "" : ",", knob, value);
-          next.emplace_back(product * value, std::move(s));
+          next.push_back(std::move(s));
         }
       rungs = std::move(next);
     }
-    std::vector<StudySolver> out;
-    for (auto& [product, rung] : rungs) {
+    for (StudySolver& rung : rungs)
       if (rung.label.empty()) rung.label = solver.label;
-      out.push_back(std::move(rung));
-    }
-    return out;
+    std::stable_sort(rungs.begin(), rungs.end(), [](const auto& a, const auto& b) { return a.work < b.work; });
+    return rungs;
   }
 
   /// A solver that was asked for stays although the quick form leaves it out, but not each of its settings.

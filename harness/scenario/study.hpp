@@ -15,6 +15,7 @@ struct StudySolver {
   std::vector<std::string> set;   ///< changes to the scenes for this solver alone, `dotted.key=JSON`
   std::vector<std::string> only;  ///< labels of the scenes it runs; empty: all
   bool joined = false;            ///< not of the study but of StudyOptions::solvers
+  int work = 0;                   ///< product of its knobs on the ladder; 0: it climbs none
   bool all_on = false;            ///< every other feature it has switched on where it cannot matter (irrelevant.hpp)
   std::string name() const;       ///< as tables name it: "paper", "paper whole-room"
 };
@@ -23,6 +24,7 @@ struct StudySolver {
 struct StudyRules {
   int frames = 0, min_frames = 0;
   double max_wall_s = 0, warmup_s = 0;
+  double ladder_limit_s = 0, agree = 0;
 };
 
 /// Which of its protocols a study runs: trials as in its "short", "full" or "quick"; quick also leaves out scenes and
@@ -53,7 +55,7 @@ struct Study {
   int trials = 0, drop_frames = 0;
   double accuracy_duration_s = 0;  ///< infinite: the whole scene
   double cell_limit_s = 0;         ///< 0 = none
-  bool stage_times = true;
+  bool stage_times = true, pipelined = false;
   StudyRules rules;                ///< of `length`
   nlohmann::json definition;       ///< completed study file
 };

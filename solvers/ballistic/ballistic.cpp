@@ -50,6 +50,12 @@ class Ballistic final : public ClothSolver {
     out.velocity = v_;
   }
 
+  bool restart(const ClothState& state) override {
+    x_ = state.position;
+    v_ = state.velocity;
+    return true;
+  }
+
   FrameCost last_cost() const override { return {kMissing, {kMissing}, {kMissing}, {kMissing}}; }
 
   Plan plan() const override {

@@ -203,6 +203,18 @@ void BulletSolver::read_state(ClothState& out) const {
     }
 }
 
+bool BulletSolver::restart(const ClothState& state) {
+  if (!scene_->motion.empty()) return false;
+  reset();
+  const auto at = [](const std::vector<double>& of, std::size_t i) { return to_bullet({of.at(3 * i), of.at(3 * i + 1), of.at(3 * i + 2)}); };
+  for (int i = 0; i < body_->m_nodes.size(); ++i) {
+    btSoftBody::Node& n = body_->m_nodes[i];
+    n.m_x = n.m_q = at(state.position, static_cast<std::size_t>(i));
+    n.m_v = n.m_vn = at(state.velocity, static_cast<std::size_t>(i));
+  }
+  return true;
+}
+
 FrameCost BulletSolver::last_cost() const {
   const std::vector<double> missing(plan().stages.size(), kMissing);
   return {kMissing, missing, missing, missing};

@@ -39,6 +39,7 @@ class BulletSolver : public ClothSolver {
   void reset() override;
   StepStatus step(const FrameInput&) override;
   void read_state(ClothState&) const override;
+  bool restart(const ClothState&) override;
   FrameCost last_cost() const override;
   Plan plan() const override;
 

@@ -51,6 +51,8 @@ class ColliderBuffers {
 
   Vec3 origin_m() const { return origin_m_; }
 
+  bool written_each_frame() const { return stage_upload_ >= 0; }
+
   /// Upload and skinning, into the frame; to be called before anything reads what moves.
   void record();
   /// The host's side of a reset: the next frame starts at motion[0].

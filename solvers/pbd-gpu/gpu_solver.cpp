@@ -11,6 +11,9 @@ namespace {
 /// A frame that takes longer is taken for lost. Software devices are slow, real ones reset themselves after some 2 s.
 constexpr double kPatience_s = 2, kSoftwarePatience_s = 60;
 
+/// As an application that shows one frame while the next is computed.
+constexpr int kFramesInFlight = 2;
+
 }  // namespace
 
 std::vector<float> inverse_masses(const Scene& scene) {
@@ -53,6 +56,7 @@ vulkan::Buffer& GpuSolver::add_host_buffer(const std::string& name, std::uint64_
 void GpuSolver::set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m) {
   origin_m_ = origin_m;
   position_ = &position;
+  velocity_ = &velocity;
   const std::uint64_t bytes = scene_->cloth.vertex_count() * sizeof(vec4);
   read_position_ = std::make_unique<vulkan::Buffer>(device_, "read position", bytes, vulkan::Buffer::Place::Host);
   read_velocity_ = std::make_unique<vulkan::Buffer>(device_, "read velocity", bytes, vulkan::Buffer::Place::Host);
@@ -134,9 +138,11 @@ void GpuSolver::update_inverse_masses() {
   only_counting_ = false;
 }
 
-StepStatus GpuSolver::run(vulkan::Program& program) const {
+/// A failed call of Vulkan as the status of a step.
+template <class Fn>
+StepStatus GpuSolver::guarded(Fn submit_or_wait) const {
   try {
-    program.run(device_->is_software() ? kSoftwarePatience_s : kPatience_s);
+    submit_or_wait();
   } catch (const vulkan::Failure& failure) {
     if (failure.result() == VK_TIMEOUT) return StepStatus::TimedOut;
     if (failure.result() == VK_ERROR_DEVICE_LOST) {
@@ -146,6 +152,12 @@ StepStatus GpuSolver::run(vulkan::Program& program) const {
     throw;
   }
   return StepStatus::Ok;
+}
+
+double GpuSolver::patience_s() const { return device_->is_software() ? kSoftwarePatience_s : kPatience_s; }
+
+StepStatus GpuSolver::run(vulkan::Program& program) const {
+  return guarded([&] { program.run(patience_s()); });
 }
 
 void GpuSolver::reset() {
@@ -163,11 +175,37 @@ StepStatus GpuSolver::step(const FrameInput& frame) {
   if (frame.dt_s != dt_s_) record(frame.dt_s);
   if (colliders_) colliders_->write(frame.motion);
   if (grips_ && grips_->write(frame.motion)) update_inverse_masses();
-  const StepStatus status = run(*frame_);
+  return unless_missed(run(*frame_));
+}
+
+StepStatus GpuSolver::unless_missed(StepStatus status) const {
   if (status != StepStatus::Ok || missed_ == nullptr) return status;
   std::uint32_t missed = 0;
   std::memcpy(&missed, missed_->mapped(), sizeof missed);
   return missed == 0 ? StepStatus::Ok : StepStatus::TimedOut;
+}
+
+/// What the host writes or reads every frame has one buffer, which the frame before must be done with.
+int GpuSolver::frames_in_flight() const {
+  const bool host_takes_part = grips_ != nullptr || (colliders_ != nullptr && colliders_->written_each_frame()) ||
+                               settings_.value("readback", "none") != "none";
+  return host_takes_part ? 1 : kFramesInFlight;
+}
+
+StepStatus GpuSolver::run_frames(const std::vector<FrameInput>& frames) {
+  const bool alike = std::all_of(frames.begin(), frames.end(), [&](const FrameInput& f) { return f.dt_s == dt_s_; });
+  if (!alike || frames_in_flight() == 1) return ClothSolver::run_frames(frames);
+  if (ready_ != StepStatus::Ok) return ready_;
+  return unless_missed(guarded([&] {
+    frame_->need_copies(kFramesInFlight);
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      frame_->wait(k % kFramesInFlight, patience_s());
+      frame_->submit(k % kFramesInFlight);
+    }
+    // The oldest first, so that last_cost is the last frame's.
+    for (std::size_t k = frames.size(); k < frames.size() + kFramesInFlight; ++k)
+      frame_->wait(k % kFramesInFlight, patience_s());
+  }));
 }
 
 void GpuSolver::read_state(ClothState& state) const {
@@ -182,6 +220,27 @@ void GpuSolver::read_state(ClothState& state) const {
       state.position[3 * i + k] = origin_m_[k] + static_cast<double>(x[4 * i + k]);
       state.velocity[3 * i + k] = static_cast<double>(v[4 * i + k]);
     }
+}
+
+/// What sums could not hold begins at 0 again, and contact remembers the sides of the start.
+bool GpuSolver::restart(const ClothState& state) {
+  const bool more_layers = position_->bytes() > read_position_->bytes();
+  if (!scene_->motion.empty() || more_layers) return false;
+  reset();
+  // Inverse masses stand beside the positions.
+  if (ready_ != StepStatus::Ok || run(*download_) != StepStatus::Ok) return false;
+  auto* x = static_cast<float*>(read_position_->mapped());
+  auto* v = static_cast<float*>(read_velocity_->mapped());
+  for (std::size_t i = 0; i < scene_->cloth.vertex_count(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      x[4 * i + k] = static_cast<float>(state.position.at(3 * i + k) - origin_m_[k]);
+      v[4 * i + k] = static_cast<float>(state.velocity.at(3 * i + k));
+    }
+  vulkan::Program put(device_);
+  put.copy(0, *read_position_, *position_);
+  put.copy(0, *read_velocity_, *velocity_);
+  put.record(false);
+  return run(put) == StepStatus::Ok;
 }
 
 FrameCost GpuSolver::last_cost() const {

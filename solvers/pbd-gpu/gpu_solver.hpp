@@ -32,7 +32,10 @@ class GpuSolver : public ClothSolver {
   void load(const Scene& scene) override;
   void reset() override;
   StepStatus step(const FrameInput&) override;
+  int frames_in_flight() const override;
+  StepStatus run_frames(const std::vector<FrameInput>&) override;
   void read_state(ClothState&) const override;
+  bool restart(const ClothState&) override;
   FrameCost last_cost() const override;
   Plan plan() const override;
   int validation_messages() const override { return device_->validation_messages(); }
@@ -111,6 +114,10 @@ class GpuSolver : public ClothSolver {
   void count(double dt_s);
   void update_inverse_masses();
   StepStatus run(vulkan::Program& program) const;
+  StepStatus unless_missed(StepStatus status) const;
+  template <class Fn>
+  StepStatus guarded(Fn submit_or_wait) const;
+  double patience_s() const;
 
   const SolverInfo info_;
   const nlohmann::json settings_;
@@ -128,7 +135,7 @@ class GpuSolver : public ClothSolver {
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
   std::vector<Initial> initials_;
   std::vector<vulkan::Buffer*> counters_;  ///< one a stage
-  const vulkan::Buffer* position_ = nullptr;
+  const vulkan::Buffer *position_ = nullptr, *velocity_ = nullptr;  ///< what read_position_ and read_velocity_ are copies of
   std::unique_ptr<vulkan::Buffer> read_position_, read_velocity_;
   std::vector<std::unique_ptr<vulkan::Kernel>> kernels_;
   std::unique_ptr<ColliderBuffers> colliders_;

@@ -90,6 +90,15 @@ class Reference final : public ClothSolver {
     out.velocity.assign(state_.v.begin(), state_.v.end());
   }
 
+  /// BDF2 begins again with a step of backward Euler.
+  bool restart(const ClothState& state) override {
+    if (!scene_->motion.empty()) return false;
+    reset();
+    std::copy(state.position.begin(), state.position.end(), state_.x.begin());
+    std::copy(state.velocity.begin(), state.velocity.end(), state_.v.begin());
+    return true;
+  }
+
   FrameCost last_cost() const override { return {kMissing, {kMissing}, {kMissing}, {kMissing}}; }
 
   Plan plan() const override {

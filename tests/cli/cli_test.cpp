@@ -246,12 +246,19 @@ TEST_F(Cli, SeedDrawsAndIsStored) {
 
 TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
   const nlohmann::json properties = json_of("metamorphic ballistic");
-  ASSERT_EQ(properties.size(), 21u);
+  ASSERT_EQ(properties.size(), 24u);
   for (const auto& p : properties) EXPECT_TRUE(p["status"] == "kept") << p.dump();
   const nlohmann::json found = json_of("threshold validation/incline-stick --solver ballistic");
   EXPECT_EQ(found[0]["bound"], ">= ") << "it falls through at any friction";
   EXPECT_EQ(clothbench_command("threshold validation/atwood --solver ballistic").code, 2);
   EXPECT_EQ(clothbench_command("metamorphic ballistic --set cloth.grid=[3,3]").code, 2);
+  const nlohmann::json friction = json_of("friction ballistic --substeps 64");
+  ASSERT_EQ(friction.size(), 1u) << "it has no substeps";
+  ASSERT_EQ(friction[0]["answers"].size(), 7u);
+  for (const nlohmann::json& answer : friction[0]["answers"])
+    EXPECT_EQ(answer["text"].get<std::string>().find("✓"), std::string::npos) << answer << ": it falls through everything";
+  EXPECT_EQ(friction[0]["answers"][0]["text"], "slips at 1.5 of it");
+  EXPECT_EQ(clothbench_command("friction ballistic --readme " CLOTHBENCH_SOURCE_DIR "/LICENSE").code, 2) << "no marks there";
 }
 
 }  // namespace

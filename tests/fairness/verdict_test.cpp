@@ -3,8 +3,10 @@
 
 #include <cmath>
 
+#include "metrics/truth_dependence.hpp"
 #include "report/material.hpp"
 #include "report/work_precision.hpp"
+#include "scenario/load.hpp"
 
 namespace clothbench {
 namespace {
@@ -49,9 +51,33 @@ TEST(Verdict, AParameterIsHeardAndHeld) {
 
 TEST(Verdict, WithoutACardNobodyIsFlagged) {
   const auto full = solver_materials({});
-  EXPECT_EQ(stiffness_flag(full, "a", "heavy-strip"), "");
+  const StiffnessNeed strip{true, false, false};
+  EXPECT_EQ(stiffness_flag(full, "a", strip), "");
   const std::vector<CellRecord> cells = {card("a", "substeps=2", false, right())};
-  EXPECT_EQ(stiffness_flag(solver_materials(cells), "a", "heavy-strip"), "") << "no card at the default setting";
+  EXPECT_EQ(stiffness_flag(solver_materials(cells), "a", strip), "") << "no card at the default setting";
+}
+
+/// Nobody lists scenes: which stiffness a truth depends on is found by changing it.
+TEST(Dependence, IsMeasuredOnEveryTruth) {
+  const auto need_of = [](const std::string& name, const std::vector<std::string>& set = {}) {
+    const Scene s = load_scene("validation/" + name, set);
+    CellRecord c;
+    c.header.scenario_json = s.json;
+    c.summary = truth_dependence(s);
+    const StiffnessNeed n = stiffness_need(c);
+    return std::string(n.strip ? "strip " : "") + (n.sheet ? "sheet " : "") + (n.bending ? "bending" : "");
+  };
+  EXPECT_EQ(need_of("heavy-strip"), "strip ");
+  EXPECT_EQ(need_of("two-hand-pull"), "strip ");
+  for (const char* name : {"cantilever-1", "cantilever-10", "cantilever-100"}) EXPECT_EQ(need_of(name), "bending") << name;
+  for (const char* name : {"free-fall", "pendulum", "swing-strip", "catenary", "incline-stick", "incline-slip", "incline-stop",
+                           "capstan-hold", "capstan-slip", "atwood"})
+    EXPECT_EQ(need_of(name), "") << name;
+  // The strip's stretch is rho g L^2 / 2 Y: a tenth more stiffness, an eleventh less stretch.
+  const auto heavy = truth_dependence(load_scene("validation/heavy-strip"));
+  EXPECT_NEAR(heavy.at("truth_dependence_Y"), (1 - 1 / 1.1) / std::log(1.1), 1e-6);
+  EXPECT_EQ(need_of("heavy-strip", {"material.membrane_stiffness_N_per_m=1e5"}), "strip ") << "however little it stretches";
+  EXPECT_TRUE(truth_dependence(load_scene("validation/hang")).empty()) << "no truth";
 }
 
 CellRecord cell(const std::string& scene, const std::string& truth, const std::string& solver, double frame_s,
@@ -67,7 +93,8 @@ CellRecord cell(const std::string& scene, const std::string& truth, const std::s
   c.summary = {{"frame_wall_median_s", frame_s},
                {"frame_device_median_s", device_s},
                {"truth_error", error},
-               {"reference_uncertainty", 1e-7}};
+               {"reference_uncertainty", 1e-7},
+               {"truth_dependence_Y", truth == "heavy-strip" ? 1.0 : 0.0}};
   return c;
 }
 
@@ -85,10 +112,10 @@ TEST(Verdict, UnrankedSolversAreShownButNeverFirst) {
   EXPECT_EQ(diagrams[0].best_error(), 5e-3);
   const Table t = work_table(diagrams);
   EXPECT_EQ(t.rows[1][1], "deaf");
-  EXPECT_EQ(t.rows[1][9], "NO: stiffness not a parameter");
+  EXPECT_EQ(t.rows[1][11], "NO: stiffness not a parameter");
   EXPECT_EQ(t.rows[1][2], "60 (default)") << "shown all the same";
-  EXPECT_EQ(t.rows[2][7], "60 (default)") << "by the GPU's clock half of its wall time";
-  EXPECT_EQ(t.rows[2][9], "yes");
+  EXPECT_EQ(t.rows[2][9], "60 (default)") << "by the GPU's clock half of its wall time";
+  EXPECT_EQ(t.rows[2][11], "yes");
   const Table first = winners_table(diagrams);
   EXPECT_EQ(first.rows[1][2], "good (1.2e+02)");
   EXPECT_EQ(first.rows[2][2], "deaf (60)");

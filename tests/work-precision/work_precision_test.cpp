@@ -57,6 +57,25 @@ TEST(WorkTable, FindsTheFrontAndTimesToAccuracy) {
   EXPECT_EQ(diagrams[0].refused(), "") << "the best error is below 3 U_ref, and so below the mesh's own: nobody is ranked there";
 }
 
+TEST(WorkTable, TimesArePipelinedWhereASolverCan) {
+  std::vector<CellRecord> cells = {cell("a", "x", 4e-3, 5e-3), cell("b", "x", 2e-3, 5e-3)};
+  cells[0].summary["frame_pipelined_median_s"] = 1e-3;
+  cells[1].summary["frame_pipelined_median_s"] = NAN;
+  const auto diagrams = work_diagrams(cells);
+  const Table t = work_table(diagrams);
+  EXPECT_EQ(row_of(t, "a")[2], "60 (x)");
+  EXPECT_EQ(row_of(t, "a")[7], "240 (x)") << "from submission to fence";
+  EXPECT_EQ(row_of(t, "b")[2], "120 (x)") << "it waits for each frame";
+  EXPECT_EQ(row_of(t, "b")[7], "120 (x)");
+  EXPECT_NE(winners_table(diagrams).rows[1][2].find("a ("), std::string::npos) << "ranked by the pipelined time";
+}
+
+TEST(WorkTable, WhatIsOverBudgetIsNoFailure) {
+  const std::vector<CellRecord> cells = {cell("a", "x", 4e-3, 5e-3), cell("a", "y", NAN, NAN, "over_budget"),
+                                         cell("a", "z", 1e-3, NAN, "diverged")};
+  EXPECT_EQ(row_of(work_table(work_diagrams(cells)), "a")[6], "1 of 3, 1 not run");
+}
+
 TEST(WorkTable, RefusesWithoutACertainReference) {
   std::vector<CellRecord> cells = {cell("a", "x", 1e-3, 1e-4)};
   EXPECT_EQ(work_diagrams(cells)[0].refused(), "");

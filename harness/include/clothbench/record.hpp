@@ -10,7 +10,8 @@ namespace clothbench {
 
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// How a cell ended. `status` is one of ok, not_finite, diverged, device_lost, timed_out, crashed, unsupported, error.
+/// How a cell ended. `status` is one of ok, not_finite, diverged, device_lost, timed_out, crashed, unsupported, over_budget (not
+/// run: settings of less work had used up its solver's time), error.
 struct Outcome {
   std::string status = "ok";
   std::string klass = "ok";  ///< F0..F8 or ok
@@ -45,6 +46,9 @@ struct TimedTrial {
   int index = 0;
   std::vector<double> frame_wall_s, frame_device_s;
   std::vector<double> stage_device_s, stage_read_B, stage_write_B;  ///< (frame, stage)
+  /// Mean wall time of a frame when the same frames are run again without waiting for each; NaN where the solver keeps
+  /// no more than one in flight, or that was not measured.
+  double pipelined_wall_s = kMissing;
   int frames() const { return static_cast<int>(frame_wall_s.size()); }
 };
 

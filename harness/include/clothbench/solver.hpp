@@ -113,7 +113,19 @@ class ClothSolver {
   virtual void reset() = 0;
   /// One displayed frame, complete on return (the device has finished).
   virtual StepStatus step(const FrameInput&) = 0;
+  /// How many frames of the loaded scene `run_frames` keeps in flight; 1: it is `step` after `step`.
+  virtual int frames_in_flight() const { return 1; }
+  /// As `step` for each, all complete on return, but a frame need not be complete before the next is begun. The cloth
+  /// ends bit for bit as it would by `step`. Stops at the first that does not end well.
+  virtual StepStatus run_frames(const std::vector<FrameInput>& frames) {
+    StepStatus status = StepStatus::Ok;
+    for (std::size_t k = 0; k < frames.size() && status == StepStatus::Ok; ++k) status = step(frames[k]);
+    return status;
+  }
   virtual void read_state(ClothState&) const = 0;
+  /// Goes on from positions and velocities that `read_state` gave on this scene. False, and nothing changes, where they do
+  /// not tell all: a solver that keeps more, a scene in which something moves.
+  virtual bool restart(const ClothState&) { return false; }
   virtual FrameCost last_cost() const = 0;
   virtual Plan plan() const = 0;
   /// Messages of the validation layer so far; 0 where there is none.

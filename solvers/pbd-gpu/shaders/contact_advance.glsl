@@ -38,7 +38,10 @@ vec3 advance(vec3 from, vec3 to, uint owner, inout vec3 vel) {
   for (uint k = 0u; k < kSteps; ++k) {
     look_round(owner);
     bool first = heeded == vec3(0.0);
-    bool by_nearest = first && nearest.gap < kSlack * nearest.margin && nearest.need > kTolerance * nearest.margin;
+    // At first any need counts: what many small substeps fall is below the tolerance, and a cloth would creep down a slope
+    // that holds it.
+    float least = k == 0u ? 0.0 : kTolerance * nearest.margin;
+    bool by_nearest = first && nearest.gap < kSlack * nearest.margin && nearest.need > least;
     bool by_other = !by_nearest && other.gap < kFar && (!first || dot(other.n, nearest.n) < kOther);
     if ((by_nearest || by_other) && k + 1u < kSteps) {
       if (by_nearest) heed(nearest, vel); else heed(other, vel);
@@ -47,6 +50,8 @@ vec3 advance(vec3 from, vec3 to, uint owner, inout vec3 vel) {
       if (MOVING == 0u && !crowded && spare > 0.0 && dot(left, left) < spare * spare) return at + left;
       continue;
     }
+    // Nothing in the way: not by the sum, from + (to - from) is not `to` in its last digit.
+    if (k == 0u && free_part == 1.0) return to;
     at += free_part * left;
     now += free_part * part;
     left *= 1.0 - free_part;

@@ -24,7 +24,7 @@ void main() {
   for (uint k = 0u; k < MOVING_CLUSTERS; ++k)
     carried = max(carried, LOAD16(cluster_boxes, STANDING_CLUSTERS + k).low.w);
   float reach = p.reach_m + 2.0 * length(LOAD16(v, i).xyz) / p.frames_per_s + carried;
-  STORE16(reaches, i, vec4(from, reach));
+  float nearest = 1e30;
   for (uint word = 0u; word < p.words; ++word) {
     uint bits = 0u;
     for (uint k = 32u * word; k < min(32u * word + 32u, STANDING_CLUSTERS + MOVING_CLUSTERS); ++k) {
@@ -32,9 +32,12 @@ void main() {
       // Twice the margin: one to be held at, one for the push of the last substep, made after the way was cut to reach.
       float margin = 2.0 * max(LOAD16(clusters, k).margin, max(p.least_margin_m, p.border_margin_m));
       vec3 apart = max(max(box.low.xyz - from, from - box.high.xyz), 0.0);
-      float range = reach + p.sample_reach_m + margin + p.part * carried;
+      float kept = p.sample_reach_m + margin + p.part * carried, range = reach + kept;
       if (dot(apart, apart) <= range * range) bits |= 1u << (k & 31u);
+      nearest = min(nearest, length(apart) - kept);
     }
     STORE4(candidates, word * p.columns * p.rows + i, bits);
   }
+  // An empty list holds as far as the nearest cluster: what is far away stops nobody.
+  STORE16(reaches, i, vec4(from, max(reach, nearest)));
 }

@@ -66,7 +66,7 @@ void main() {
   // The list of clusters holds for this way and no further.
   vec4 reach = LOAD16(reaches, i);
   vec3 way = to.xyz - reach.xyz;
-  to.xyz = reach.xyz + way * min(1.0, reach.w / max(length(way), 1e-30));
+  if (length(way) > reach.w) to.xyz = reach.xyz + way * (reach.w / length(way));
 #endif
   // A vertex that is no number stays none, for the runner to find.
   if (dot(to.xyz, to.xyz) < kFar) to.xyz = advance(from, to.xyz, i, vel);

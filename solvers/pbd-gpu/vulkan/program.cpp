@@ -25,20 +25,18 @@ VkAccessFlags accesses(VkPipelineStageFlags stages) {
 
 }  // namespace
 
-Program::Program(std::shared_ptr<Device> device) : device_(std::move(device)) {
-  VkFenceCreateInfo fence{};
-  fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  check(vkCreateFence(device_->handle(), &fence, nullptr, &fence_), "vkCreateFence");
-}
+Program::Program(std::shared_ptr<Device> device) : device_(std::move(device)) {}
 
 Program::~Program() {
   // A run that timed out may still be in flight.
   vkDeviceWaitIdle(device_->handle());
-  vkDestroyQueryPool(device_->handle(), queries_, nullptr);
-  vkDestroyFence(device_->handle(), fence_, nullptr);
-  if (!buffers_.empty())
-    vkFreeCommandBuffers(device_->handle(), device_->command_pool(), static_cast<std::uint32_t>(buffers_.size()),
-                         buffers_.data());
+  for (const Copy& c : copies_) {
+    vkDestroyQueryPool(device_->handle(), c.queries, nullptr);
+    vkDestroyFence(device_->handle(), c.fence, nullptr);
+    if (!c.buffers.empty())
+      vkFreeCommandBuffers(device_->handle(), device_->command_pool(), static_cast<std::uint32_t>(c.buffers.size()),
+                           c.buffers.data());
+  }
 }
 
 Program::Touched Program::touched(const Step& s) {
@@ -83,14 +81,14 @@ void Program::barrier_if_needed(const Touched& next, Unordered& since) {
   }
 }
 
-void Program::timestamp(std::uint32_t query) {
-  if (query_count_ > 0) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, query);
+void Program::timestamp(VkQueryPool queries, std::uint32_t query) {
+  if (query_count_ > 0) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries, query);
 }
 
 /// Starts the next submission's command buffer. Submissions to one queue run in order and barriers reach over them, so
 /// a split changes nothing else.
-void Program::begin() {
-  if (submits_.size() == buffers_.size()) {
+void Program::begin(Copy& copy) {
+  if (submits_.size() == copy.buffers.size()) {
     VkCommandBufferAllocateInfo allocate{};
     allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
     allocate.commandPool = device_->command_pool();
@@ -98,9 +96,9 @@ void Program::begin() {
     allocate.commandBufferCount = 1;
     VkCommandBuffer next = VK_NULL_HANDLE;
     check(vkAllocateCommandBuffers(device_->handle(), &allocate, &next), "vkAllocateCommandBuffers");
-    buffers_.push_back(next);
+    copy.buffers.push_back(next);
   }
-  commands_ = buffers_[submits_.size()];
+  commands_ = copy.buffers[submits_.size()];
   submits_.push_back(0);
   check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");
   VkCommandBufferBeginInfo info{};
@@ -110,31 +108,51 @@ void Program::begin() {
 
 void Program::record(bool time_stages) {
   time_stages_ = time_stages;
-  recorded_.clear();
-  submits_.clear();
-  vkDestroyQueryPool(device_->handle(), queries_, nullptr);
-  queries_ = VK_NULL_HANDLE;
   query_count_ = !device_->has_timestamps() ? 0 : time_stages ? static_cast<std::uint32_t>(steps_.size()) + 1 : 2;
+  recorded_copies_ = 0;
+  need_copies(1);
+}
+
+void Program::need_copies(std::size_t count) {
+  while (recorded_copies_ < count) record_copy(recorded_copies_++);
+}
+
+void Program::record_copy(std::size_t k) {
+  if (copies_.size() == k) {
+    VkFenceCreateInfo fence{};
+    fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+    copies_.emplace_back();
+    check(vkCreateFence(device_->handle(), &fence, nullptr, &copies_.back().fence), "vkCreateFence");
+  }
+  Copy& copy = copies_[k];
+  vkDestroyQueryPool(device_->handle(), copy.queries, nullptr);
+  copy.queries = VK_NULL_HANDLE;
   if (query_count_ > 0) {
     VkQueryPoolCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
     info.queryCount = query_count_;
-    check(vkCreateQueryPool(device_->handle(), &info, nullptr, &queries_), "vkCreateQueryPool");
+    check(vkCreateQueryPool(device_->handle(), &info, nullptr, &copy.queries), "vkCreateQueryPool");
   }
-  begin();
-  if (query_count_ > 0) vkCmdResetQueryPool(commands_, queries_, 0, query_count_);
+  recorded_.clear();
+  submits_.clear();
+  record_steps(copy);
+}
+
+void Program::record_steps(Copy& copy) {
+  begin(copy);
+  if (query_count_ > 0) vkCmdResetQueryPool(commands_, copy.queries, 0, query_count_);
   // What earlier submissions wrote or read, before anything here reads or writes it. What the host wrote is visible to
   // every submission after it.
   barrier(kWork, kWork, kWrites, kAll);
-  timestamp(0);
+  timestamp(copy.queries, 0);
   Unordered since;
   const Kernel* bound = nullptr;
   for (std::uint32_t k = 0; k < steps_.size(); ++k) {
     const Step& s = steps_[k];
     if (s.kernel != nullptr && submits_.back() == device_->dispatches_per_submit()) {
       end();
-      begin();
+      begin(copy);
       bound = nullptr;
     }
     barrier_if_needed(touched(s), since);
@@ -149,9 +167,9 @@ void Program::record(bool time_stages) {
       vkCmdCopyBuffer(commands_, s.from->handle(), s.to->handle(), 1, &region);
     }
     recorded_.push_back({false, 0, 0, 0, 0, s.kernel, s.from, s.to});
-    if (time_stages_) timestamp(k + 1);
+    if (time_stages_) timestamp(copy.queries, k + 1);
   }
-  if (!time_stages_) timestamp(1);
+  if (!time_stages_) timestamp(copy.queries, 1);
   // What was written for the host, before it reads it.
   const bool for_host = std::any_of(steps_.begin(), steps_.end(), [](const Step& s) {
     const Touched t = touched(s);
@@ -162,31 +180,38 @@ void Program::record(bool time_stages) {
   end();
 }
 
-void Program::wait(double patience_s) {
-  check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, static_cast<std::uint64_t>(patience_s * 1e9)),
+void Program::wait(std::size_t k, double patience_s) {
+  Copy& copy = copies_.at(k);
+  if (!copy.in_flight) return;
+  check(vkWaitForFences(device_->handle(), 1, &copy.fence, VK_TRUE, static_cast<std::uint64_t>(patience_s * 1e9)),
         "vkWaitForFences");
-  in_flight_ = false;
-  check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
+  copy.in_flight = false;
+  check(vkResetFences(device_->handle(), 1, &copy.fence), "vkResetFences");
+  if (query_count_ == 0) return;
+  ticks_.resize(query_count_);
+  check(vkGetQueryPoolResults(device_->handle(), copy.queries, 0, query_count_, ticks_.size() * 8, ticks_.data(), 8,
+                              VK_QUERY_RESULT_64_BIT),
+        "vkGetQueryPoolResults");
 }
 
-void Program::run(double patience_s) {
-  if (in_flight_) wait(patience_s);
-  for (std::size_t k = 0; k < submits_.size(); ++k) {
+void Program::submit(std::size_t k) {
+  Copy& copy = copies_.at(k);
+  for (std::size_t s = 0; s < submits_.size(); ++s) {
     VkSubmitInfo submit{};
     submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
     submit.commandBufferCount = 1;
-    submit.pCommandBuffers = &buffers_[k];
+    submit.pCommandBuffers = &copy.buffers[s];
     // The last submission's fence waits for all before it too.
-    const bool last = k + 1 == submits_.size();
-    check(vkQueueSubmit(device_->queue(), 1, &submit, last ? fence_ : VK_NULL_HANDLE), "vkQueueSubmit");
+    const bool last = s + 1 == submits_.size();
+    check(vkQueueSubmit(device_->queue(), 1, &submit, last ? copy.fence : VK_NULL_HANDLE), "vkQueueSubmit");
   }
-  in_flight_ = true;
-  wait(patience_s);
-  if (query_count_ == 0) return;
-  ticks_.resize(query_count_);
-  check(vkGetQueryPoolResults(device_->handle(), queries_, 0, query_count_, ticks_.size() * 8, ticks_.data(), 8,
-                              VK_QUERY_RESULT_64_BIT),
-        "vkGetQueryPoolResults");
+  copy.in_flight = true;
+}
+
+void Program::run(double patience_s) {
+  for (std::size_t k = 0; k < copies_.size(); ++k) wait(k, patience_s);
+  submit(0);
+  wait(0, patience_s);
 }
 
 double Program::device_s() const {

@@ -29,9 +29,18 @@ class Program {
   /// Records once; `run` submits the same commands again and again. With `time_stages` a timestamp follows every
   /// step, else only the first and last are taken.
   void record(bool time_stages);
-  /// Submits and waits; after a time-out, first waits for the earlier submission. Throws Failure (VK_TIMEOUT after
+  /// Submits and waits; after a time-out, first waits for the earlier submissions. Throws Failure (VK_TIMEOUT after
   /// `patience_s`, VK_ERROR_DEVICE_LOST, ...).
   void run(double patience_s);
+
+  /// Records what was recorded last once more until there are `count` copies, each with commands, a fence and queries of
+  /// its own, so that as many can be in flight at once. Each begins with a barrier against everything before, so they
+  /// run in the order in which they are submitted.
+  void need_copies(std::size_t count);
+  /// Submits a copy that is not in flight. Throws Failure.
+  void submit(std::size_t copy);
+  /// Waits until a copy is no longer in flight. Throws as `run`.
+  void wait(std::size_t copy, double patience_s);
 
   /// Dispatches in each submission: one, or as many as the device profile's dispatches_per_submit asks for.
   const std::vector<std::uint32_t>& submits() const { return submits_; }
@@ -71,22 +80,28 @@ class Program {
   static Touched touched(const Step&);
   void barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written, VkAccessFlags next);
   void barrier_if_needed(const Touched& next, Unordered& since);
-  void wait(double patience_s);
-  void timestamp(std::uint32_t query);
-  void begin();
+  /// What one submission of the program needs for itself.
+  struct Copy {
+    std::vector<VkCommandBuffer> buffers;  ///< one a submission, kept from record to record
+    VkFence fence = VK_NULL_HANDLE;
+    VkQueryPool queries = VK_NULL_HANDLE;
+    bool in_flight = false;
+  };
+  void record_copy(std::size_t k);
+  void record_steps(Copy&);
+  void timestamp(VkQueryPool queries, std::uint32_t query);
+  void begin(Copy&);
   void end() { check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer"); }
 
   std::shared_ptr<Device> device_;
   std::vector<Step> steps_;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;  ///< being recorded; one of:
-  std::vector<VkCommandBuffer> buffers_;       ///< one a submission, kept from record to record
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;  ///< being recorded
+  std::vector<Copy> copies_;
+  std::size_t recorded_copies_ = 0;            ///< the first of them hold what was recorded last
   std::vector<std::uint32_t> submits_;
-  VkFence fence_ = VK_NULL_HANDLE;
-  VkQueryPool queries_ = VK_NULL_HANDLE;
   std::uint32_t query_count_ = 0;
   bool time_stages_ = false;
   std::vector<Recorded> recorded_;
-  bool in_flight_ = false;
   std::vector<std::uint64_t> ticks_;
 };
 

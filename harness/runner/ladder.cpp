@@ -1,0 +1,39 @@
+#include "runner/ladder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace clothbench {
+
+std::string LadderBudget::refused(const CellSpec& spec) const {
+  const auto at = by_solver_.find(spec.entry->info.name);
+  if (spec.work == 0 || at == by_solver_.end()) return "";
+  const Climbed& c = at->second;
+  if (c.timed_out_work > 0 && spec.work > c.timed_out_work)
+    return fmt::format("not run: {} times the work of a setting that timed out", spec.work / c.timed_out_work);
+  const double expected_s = c.last_s * spec.work / c.last_work;
+  if (limit_s_ > 0 && c.seconds + expected_s > limit_s_)
+    return fmt::format("not run: it would take some {:.2g} s, and {:.2g} of the {:g} s of its solver's ladder are left",
+                       expected_s, std::max(0.0, limit_s_ - c.seconds), limit_s_);
+  return "";
+}
+
+void LadderBudget::spent(const CellSpec& spec, double seconds, const std::string& status) {
+  if (spec.work == 0) return;
+  Climbed& c = by_solver_[spec.entry->info.name];
+  c.seconds += seconds;
+  c.last_s = seconds;
+  c.last_work = spec.work;
+  if (status == "timed_out" && (c.timed_out_work == 0 || spec.work < c.timed_out_work)) c.timed_out_work = spec.work;
+}
+
+double LadderBudget::cell_limit_s(const CellSpec& spec, double cell_limit_s) const {
+  if (spec.work == 0 || limit_s_ == 0) return cell_limit_s;
+  const auto at = by_solver_.find(spec.entry->info.name);
+  const double left_s = limit_s_ - (at == by_solver_.end() ? 0 : at->second.seconds);
+  const double own_s = std::max(left_s, limit_s_ / 2);
+  return cell_limit_s > 0 ? std::min(cell_limit_s, own_s) : own_s;
+}
+
+}  // namespace clothbench

@@ -1,0 +1,106 @@
+// Frames that are not waited for end as those that are; and a cloth goes on from what was read of it.
+#include "contact_scenes.hpp"
+#include "gpu_fixture.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+std::vector<FrameInput> frames_of(const Scene& s, int count) {
+  std::vector<FrameInput> out;
+  for (int f = 0; f < count; ++f) out.push_back({f, (f + 1) * s.time.dt(), s.time.dt(), s.motion_after(f)});
+  return out;
+}
+
+ClothState state_of(const ClothSolver& solver) {
+  ClothState out;
+  solver.read_state(out);
+  return out;
+}
+
+Scene ball_under(Scene s) {
+  Collider c;
+  c.name = "ball";
+  c.shape = Collider::Shape::Sphere;
+  c.center_m = {0, -0.3, 0};
+  c.radius_m = 0.25;
+  c.margin_m = 0.004;
+  s.colliders.push_back(c);
+  s.needs.add(Feature::Sphere);
+  return s;
+}
+
+TEST_F(Gpu, PipelinedFramesAreTheSameBits) {
+  const Scene plain = with_damping(with_pins(with_bending(sheet(9, 7)))), many = with_pins(sheet(40, 37));
+  for (const Scene& s : {plain, many, ball_under(sheet(13, 11))})
+    for (const int count : {1, 2, 7}) {
+      const auto stepped = make("xpbd", {{"substeps", 5}}), flown = make("xpbd", {{"substeps", 5}});
+      stepped->load(s);
+      flown->load(s);
+      EXPECT_EQ(flown->frames_in_flight(), 2);
+      const ClothState expected = after(*stepped, s, count);
+      for (int again = 0; again < 2; ++again) {
+        flown->reset();
+        ASSERT_EQ(flown->run_frames(frames_of(s, count)), StepStatus::Ok);
+        const ClothState found = state_of(*flown);
+        EXPECT_EQ(found.position, expected.position) << count;
+        EXPECT_EQ(found.velocity, expected.velocity) << count;
+      }
+      if (device_->has_timestamps()) {
+        EXPECT_GT(flown->last_cost().device_s, 0);
+      }
+      EXPECT_EQ(flown->last_cost().stage_read_B, stepped->last_cost().stage_read_B);
+      // What follows is stepped again as if nothing had been in flight.
+      EXPECT_EQ(after_frame(*flown, s, count).position, after_frame(*stepped, s, count).position);
+    }
+}
+
+/// Its sums are atomic and come in any order: not the same bits even when stepped twice.
+TEST_F(Gpu, PipelinedFramesOfPaperAreTheSameMotion) {
+  const Scene s = with_pins(sheet(9, 7));
+  const auto stepped = make("paper"), flown = make("paper");
+  stepped->load(s);
+  flown->load(s);
+  EXPECT_EQ(flown->frames_in_flight(), 2);
+  const ClothState expected = after(*stepped, s, 10);
+  ASSERT_EQ(flown->run_frames(frames_of(s, 10)), StepStatus::Ok);
+  const ClothState found = state_of(*flown);
+  for (std::size_t k = 0; k < found.position.size(); ++k)
+    EXPECT_NEAR(found.position[k], expected.position[k], 1e-5 * s.cloth.width_m);
+}
+
+TEST_F(Gpu, WhatTheHostTakesPartInIsWaitedFor) {
+  const Scene held = moving(sheet(9, 7), {0, 8});
+  const auto solver = make("xpbd", {{"substeps", 5}}), stepped = make("xpbd", {{"substeps", 5}});
+  solver->load(held);
+  stepped->load(held);
+  EXPECT_EQ(solver->frames_in_flight(), 1);
+  ASSERT_EQ(solver->run_frames(frames_of(held, 6)), StepStatus::Ok);
+  EXPECT_EQ(state_of(*solver).position, after(*stepped, held, 6).position);
+  const auto reads = make("paper", {{"readback", "blocking"}});
+  reads->load(sheet(9, 7));
+  EXPECT_EQ(reads->frames_in_flight(), 1);
+}
+
+TEST_F(Gpu, AClothGoesOnFromWhatWasReadOfIt) {
+  const Scene s = with_pins(with_bending(sheet(9, 7)));
+  for (const char* name : {"paper", "xpbd"}) {
+    const auto first = make(name), second = make(name);
+    first->load(s);
+    second->load(s);
+    const ClothState half = after(*first, s, 20);
+    ASSERT_TRUE(second->restart(half));
+    const ClothState put = state_of(*second);
+    for (std::size_t k = 0; k < put.position.size(); ++k) ASSERT_NEAR(put.position[k], half.position[k], 1e-7) << name;
+    EXPECT_EQ(put.velocity, half.velocity);
+    for (std::uint32_t v : s.pins.vertices)
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_NEAR(after_frame(*second, s, 20).position[3 * v + k], half.position[3 * v + k], 1e-7) << "pins hold on";
+  }
+  const Scene held = moving(sheet(9, 7), {0, 8});
+  const auto solver = make("xpbd");
+  solver->load(held);
+  EXPECT_FALSE(solver->restart(state_of(*solver))) << "where hands are is not in positions and velocities";
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu
