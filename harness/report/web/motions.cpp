@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMostCells = 120;
-constexpr std::size_t kMostFloats = 100'000'000;    // of one cell in memory: 400 MB
+constexpr std::size_t kMostFloats = 40'000'000;     // of one cell in memory: 160 MB
 constexpr std::size_t kMostCollider_B = 3'000'000;  // of one scene's colliders, packed
 
 /// Coarser from line to line: frames first, as between them the viewer interpolates.
@@ -82,10 +82,13 @@ class Packer {
     const std::size_t frames = k.cell->accuracy.time_s.size();
     for (const Level& level : kLevels) {
       if (frames / level.frame_stride * 3 * k.cell->header.vertices > kMostFloats) continue;
-      const std::size_t width = std::max(k.columns, k.rows);
+      const std::size_t width = std::max(k.columns, k.rows), step = (width + level.most_width - 1) / level.most_width;
+      // Six bytes a vertex, deflated to a fifth at best: what is sure not to fit is not read.
+      const std::size_t least_B = frames / level.frame_stride * (k.columns / step) * (k.rows / step) * 6 / 5;
+      if (least_B > share) continue;
       const Replay replay = read_replay(k.cell->file, level.frame_stride);
       const PackedMotion motion =
-          pack_motion(replay, k.columns, k.rows, (width + level.most_width - 1) / level.most_width);
+          pack_motion(replay, k.columns, k.rows, step);
       if (motion.frames.empty()) return false;
       if (const std::size_t size = (motion.bytes.size() + 2) / 3 * 4; size > share) continue;
       store(k, replay, motion);
