@@ -22,7 +22,7 @@ std::vector<float> inverse_masses(const Scene& scene) {
 }
 
 GpuSolver::GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)
-    : info_(std::move(info)), settings_(settings), count_bytes_(count_bytes), device_(vulkan::Device::get(device)) {}
+    : info_(std::move(info)), given_settings_(settings), settings_(settings), count_bytes_(count_bytes), device_(vulkan::Device::get(device)) {}
 
 vulkan::Buffer& GpuSolver::add_buffer(const std::string& name, std::uint64_t bytes, std::vector<std::uint8_t> initial) {
   using vulkan::Buffer;
@@ -31,7 +31,7 @@ vulkan::Buffer& GpuSolver::add_buffer(const std::string& name, std::uint64_t byt
   plan_.buffers.push_back({name, bytes, true});
   auto staging = std::make_unique<Buffer>(device_, name + " (initial)", bytes, Buffer::Place::Host);
   std::memset(staging->mapped(), 0, bytes);
-  std::memcpy(staging->mapped(), initial.data(), std::min<std::size_t>(initial.size(), bytes));
+  if (!initial.empty()) std::memcpy(staging->mapped(), initial.data(), std::min<std::size_t>(initial.size(), bytes));
   plan_.buffers.push_back({staging->name(), bytes, false});
   upload_->copy(0, *staging, buffer);
   initials_.push_back({&buffer, std::move(staging)});
@@ -94,6 +94,7 @@ void GpuSolver::copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer
 
 void GpuSolver::load(const Scene& scene) {
   scene_ = &scene;
+  settings_ = given_settings_;
   frame_ = std::make_unique<vulkan::Program>(device_);
   upload_ = std::make_unique<vulkan::Program>(device_);
   download_ = std::make_unique<vulkan::Program>(device_);
@@ -152,22 +153,26 @@ void GpuSolver::reset() {
     grips_->reset();
     update_inverse_masses();
   }
-  ready_ = run(*upload_);
+  last_ = ready_ = run(*upload_);
 }
 
 StepStatus GpuSolver::step(const FrameInput& frame) {
-  if (ready_ != StepStatus::Ok) return ready_;
+  if (ready_ != StepStatus::Ok) return last_ = ready_;
   if (frame.dt_s != dt_s_) record(frame.dt_s);
   if (colliders_) colliders_->write(frame.motion);
   if (grips_ && grips_->write(frame.motion)) update_inverse_masses();
-  return run(*frame_);
+  return last_ = run(*frame_);
 }
 
 void GpuSolver::read_state(ClothState& state) const {
   const std::size_t n = scene_->cloth.vertex_count();
   state.position.assign(3 * n, kMissing);
   state.velocity.assign(3 * n, kMissing);
-  if (run(*download_) != StepStatus::Ok) return;  // a lost device has no state
+  if (run(*download_) != StepStatus::Ok) {
+    // A lost device has no state. Where nobody has been told yet, numbers that are none would pass for the solver's own.
+    if (last_ != StepStatus::Ok) return;
+    throw Error("solver " + info_.name + ": the device was lost, or did not answer in time, when its state was read", ExitCode::CheckFailed);
+  }
   const auto* x = static_cast<const float*>(read_position_->mapped());
   const auto* v = static_cast<const float*>(read_velocity_->mapped());
   for (std::size_t i = 0; i < n; ++i)

@@ -145,7 +145,10 @@ void stretch(float least) {
     float l = length(e), sum = w[k] + next.w;
     bool is = goes_on(lane * K + k) && sum > 0.0 && l > 0.0;
     g[k] = is ? e / l : vec3(0.0);
-    link_diagonal[k] = is ? sum + max(alpha, least * max(w[k], next.w)) : 1.0;
+    // A link torn to several times its length between held vertices gives way bit by bit: at once, its multiplier would throw
+    // the rest of the chain, whose pull across itself overshoots.
+    float firm = kElastic || least == 0.0 ? least : max(least, 4.0 * (l / rest - 5.0));
+    link_diagonal[k] = is ? sum + max(alpha, firm * max(w[k], next.w)) : 1.0;
     link_right[k] = is ? rest - l : 0.0;
 #ifdef KEEP_MULTIPLIERS
     if (kElastic && is && iteration > 0u)
