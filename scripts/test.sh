@@ -27,10 +27,17 @@ penetration() {
 # Stiff and extreme cases: every run ends in a row, whatever becomes of the solver, and none of its processes dies.
 stability() {
   local out=build/stability-quick
-  rm -rf "$out"
-  build/release/clothbench study stability --quick --out "$out" >"$out.txt" || { tail -20 "$out.txt"; return 1; }
+  rm -rf "$out" "$out-report"
+  build/release/clothbench study stability --quick --jobs "${JOBS:-2}" --out "$out" >"$out.txt" || { tail -20 "$out.txt"; return 1; }
   tail -1 "$out.txt"
   grep -q '(0 of them crashed or hung)' "$out.txt"
+  # Ours stays finite and bounded whatever the case, and repeats itself.
+  build/release/clothbench report "$out" -o "$out-report" >"$out-report.txt" || { tail -20 "$out-report.txt"; return 1; }
+  if grep -E '^[^,]*,[^,]*,xpbd,[^,]*,[^,]*,[^,]*,F[012],' "$out-report/stability.csv" ||
+    grep -E '^S2[46],xpbd,.*,broken' "$out-report/stability-across.csv"; then
+    echo "stability: xpbd is to be finite, bounded and repeatable in every case"
+    return 1
+  fi
 }
 
 selection=(-LE slow)

@@ -21,8 +21,11 @@ std::filesystem::path default_folder(const std::string& study);
 /// that there is not.
 bool check_device(const SolverEntry& gpu, const DeviceFlags&);
 
-/// The same for a study whose cells run in processes of their own (protocol stability-map). `only`: solvers of its maps.
-void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only, Console& console);
+/// run_and_tell for a study whose cells run in other processes (protocol stability-map), `jobs` at a time. `only`: solvers of
+/// its maps.
+void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only, int jobs,
+                            Console& console);
+
 /// The option --seed of commands whose scenes have a truth.
 void add_seed(CLI::App&, std::optional<std::uint64_t>& seed);
 

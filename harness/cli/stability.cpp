@@ -11,14 +11,6 @@
 namespace clothbench {
 namespace {
 
-void add(StabilityCounts& a, const StabilityCounts& b) {
-  a.stable += b.stable;
-  a.degraded += b.degraded;
-  a.failed += b.failed;
-  a.unsupported += b.unsupported;
-  a.crashed += b.crashed;
-}
-
 /// The environment of all its processes; without GPU solvers where there is no device and that is allowed.
 nlohmann::json settle(Study& study, const DeviceFlags& flags, std::vector<std::string>& only) {
   const SolverEntry* gpu = nullptr;
@@ -50,7 +42,7 @@ nlohmann::json settle(Study& study, const DeviceFlags& flags, std::vector<std::s
 }  // namespace
 
 void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only,
-                            Console& console) {
+                            int jobs, Console& console) {
   const nlohmann::json environment = settle(study, flags.device, only);
   const std::filesystem::path out =
       flags.out.empty() ? default_folder(manifest.study) : std::filesystem::path(flags.out);
@@ -74,13 +66,14 @@ void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags&
     options.program = own_program();
     options.device = flags.device.options;
     options.resume = flags.resume;
+    options.jobs = jobs;
     options.solvers = only;
     options.environment = environment;
     options.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
       line.show(what, done, total);
     };
     counts = run_stability_cells(study, options);
-    add(counts, run_stability_maps(study, options));
+    counts.add(run_stability_maps(study, options));
   }
   if (console.json) {
     nlohmann::json j = {{"out", out.string()},     {"stable", counts.stable},           {"degraded", counts.degraded},

@@ -12,7 +12,7 @@ namespace {
 struct Arguments {
   std::string study;
   std::vector<std::string> set, only;
-  int trials = 0;
+  int trials = 0, jobs = 0;
   std::optional<std::uint64_t> seed;
   bool full = false, short_trials = false, quick = false, require_assets = false, no_cards = false;
   RunFlags run;
@@ -73,6 +73,8 @@ void add_study(CLI::App& app, Console& console) {
   cmd->add_flag("--resume", a.run.resume, "Go on with the folder of an interrupted study");
   add_seed(*cmd, a.seed);
   cmd->add_flag("--no-cards", a.no_cards, "No material cards after a work-precision study (then no solver is left unranked for its stiffness)");
+  cmd->add_option("--jobs", a.jobs, "Processes at a time, of a study whose cells run in processes of their own (default 1)")
+      ->check(CLI::Range(1, 256));
   add_require_assets(*cmd, a.require_assets);
   a.run.device.add_to(*cmd);
   cmd->footer("Example: clothbench study table3 --out results/runs/mine");
@@ -86,9 +88,10 @@ void add_study(CLI::App& app, Console& console) {
     if (a.seed) study.definition["seed"] = *a.seed;
     if (study.protocol == "stability-map") {
       if (a.trials > 0) throw Error("--trials: protocol stability-map judges one run of every cell");
-      run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, console);
+      run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, std::max(1, a.jobs), console);
       return;
     }
+    if (a.jobs > 0) throw Error("--jobs: only studies of protocol stability-map, where nothing is timed");
     CellPlan plan = plan_study(study);
     if (a.trials > 0) plan.rules.trials = a.trials;
     if (a.no_cards) plan.material_cards = false;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "clothbench/error.hpp"
+#include "report/across_runs.hpp"
 #include "report/feature_cost.hpp"
 #include "report/features.hpp"
 #include "report/material.hpp"
@@ -150,6 +151,7 @@ std::vector<Table> penetration_tables(const std::vector<ContactSetUp>& ups, cons
 std::vector<Table> stability_tables(const std::vector<CellRecord>& cells, const nlohmann::json& maps, bool in_full) {
   std::vector<Table> out;
   if (!cells.empty()) out.push_back(robustness_table(cells));
+  if (const auto across = across_runs(cells); !across.empty()) out.push_back(across_table(across));
   if (!maps.empty()) out.push_back(headline_table(maps));
   if (!in_full) return out;
   if (!maps.empty()) out.push_back(boundary_table(maps));
@@ -243,6 +245,7 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     tables += text;
     write("stability.md", "# Stability\n\n" + head + "\n" + text);
     write("stability.csv", stability_csv(stability));
+    write("stability-across.csv", across_csv(across_runs(stability)));
     write("stability.json", nlohmann::json{{"format", "clothbench-stability"}, {"format_version", 1}, {"maps", maps}}.dump(1) + "\n");
   }
   if (!materials.empty()) {

@@ -158,7 +158,12 @@ AccuracyPass Cell::run_accuracy(const TrialRules& rules) {
   for (int frame = 0; frame <= frames; ++frame) {
     stop_if_interrupted();
     if (frame > 0) fail(solver_->step(frame_input(scene, frame - 1)), frame);
-    solver_->read_state(state);
+    try {
+      solver_->read_state(state);
+    } catch (const Error& e) {  // there is none: the device is gone
+      if (outcome_.status == "ok") outcome_ = {"device_lost", "F8", frame, e.what()};
+      break;
+    }
     if (outcome_.status == "ok" && !(all_finite(state.position) && all_finite(state.velocity)))
       fail(StepStatus::NotFinite, frame);
     pass.time_s.push_back(scene.time.at(frame));

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <csignal>
 #include <fstream>
+#include <mutex>
 
 #include "metrics/stability/judge.hpp"
 #include "results/store.hpp"
 #include "runner/cell.hpp"
-#include "runner/child.hpp"
 #include "runner/environment.hpp"
 #include "runner/expect.hpp"
 #include "runner/replay.hpp"
@@ -27,9 +28,10 @@ Scene scene_of(const CellRequest& r) {
   return scene;
 }
 
-/// The last line that a child wrote, shortened: mostly why it ended.
-std::string last_words(const fs::path& log) {
+/// The last line that a child wrote past the first `from` bytes, shortened: mostly why it ended.
+std::string last_words(const fs::path& log, std::uintmax_t from) {
   std::ifstream in(log);
+  in.seekg(static_cast<std::streamoff>(from));
   std::string last;
   for (std::string line; std::getline(in, line);)
     if (!line.empty()) last = line;
@@ -38,6 +40,8 @@ std::string last_words(const fs::path& log) {
 
 /// The file of a cell whose process could not write it.
 void write_failure(const CellRequest& r, const CellAnswer& answer) {
+  static std::mutex mutex;  // the HDF5 library is not for several threads
+  const std::lock_guard lock(mutex);
   const Scene scene = scene_of(r);
   CellHeader h;
   h.scene = scene.name;
@@ -154,32 +158,65 @@ CellAnswer run_request(const CellRequest& r, const SolverLookup& lookup) {
   }
 }
 
-int run_cell_main(const fs::path& request, const fs::path& answer, const SolverLookup& lookup) {
-  const CellRequest r = request_from_json(parse_json(read_text(request), request.string()));
-  write_file_atomically(answer, to_json(run_request(r, lookup)).dump() + "\n");
+int run_cell_main(const fs::path& folder, const SolverLookup& lookup) {
+  // Ctrl-C is the parent's to act on; here it would make a row of a cell that is to be run again.
+  std::signal(SIGINT, SIG_IGN);
+  serve_parent([&](const std::string& number) {
+    const fs::path request = folder / ("request-" + number + ".json");
+    const CellRequest r = request_from_json(parse_json(read_text(request), request.string()));
+    write_file_atomically(folder / ("answer-" + number + ".json"), to_json(run_request(r, lookup)).dump() + "\n");
+  });
   return 0;
 }
 
-CellAnswer run_in_process(const CellRequest& r, const fs::path& program, const fs::path& scratch) {
-  fs::create_directories(scratch);
-  const fs::path request = scratch / "request.json", answer = scratch / "answer.json", log = scratch / "output.txt";
+CellWorker::CellWorker(fs::path program, fs::path scratch) : program_(std::move(program)), scratch_(std::move(scratch)) {
+  fs::create_directories(scratch_);
+}
+
+CellWorker::~CellWorker() = default;
+
+/// The child's answer is in its file, or this is how it ended.
+std::optional<ChildEnd> CellWorker::ask(const CellRequest& r) {
+  constexpr int kCellsAChild = 100;  // what drivers leak is theirs to keep for so long
+  const fs::path log = scratch_ / "output.txt";
+  if (cells_ == kCellsAChild) child_.reset();
+  if (!child_) {
+    child_ = std::make_unique<Child>(std::vector<std::string>{program_.string(), "run-cell", scratch_.string()}, log);
+    ++children_;
+    cells_ = 0;
+  }
   std::error_code ignored;
-  fs::remove(answer, ignored);
-  write_file_atomically(request, to_json(r).dump() + "\n");
-  const ChildEnd end = run_child({program.string(), "run-cell", request.string(), answer.string()},
-                                 r.limit_s > 0 ? 1.2 * r.limit_s + 5 : 0, log);
-  if (end.how == ChildEnd::How::Exited && end.code == 0 && fs::exists(answer)) {
+  said_ = cells_ == 0 ? 0 : fs::file_size(log, ignored);
+  ++number_;
+  ++cells_;
+  write_file_atomically(scratch_ / fmt::format("request-{}.json", number_), to_json(r).dump() + "\n");
+  return child_->ask(std::to_string(number_), r.limit_s > 0 ? 1.2 * r.limit_s + 5 : 0);
+}
+
+CellAnswer CellWorker::run(const CellRequest& r) {
+  std::optional<ChildEnd> end = ask(r);
+  if (end && end->how != ChildEnd::How::TimedOut && cells_ > 1) {
+    child_.reset();
+    end = ask(r);
+  }
+  const fs::path answer = scratch_ / fmt::format("answer-{}.json", number_);
+  if (!end) {
     const CellAnswer a = answer_from_json(parse_json(read_text(answer), answer.string()));
+    std::error_code ignored;
+    fs::remove(answer, ignored);
+    fs::remove(scratch_ / fmt::format("request-{}.json", number_), ignored);
+    const std::string& status = a.outcome.status;
+    if (status == "error" || status == "device_lost" || status == "timed_out") child_.reset();
     // A cell that could not be loaded has written nothing.
-    if (a.outcome.status == "error" && !r.out.empty()) write_failure(r, a);
+    if (status == "error" && !r.out.empty()) write_failure(r, a);
     return a;
   }
-  const std::string words = last_words(log);
+  child_.reset();
+  const std::string words = last_words(scratch_ / "output.txt", said_);
   CellAnswer out;
-  out.wall_s = end.wall_s;
-  const bool hung = end.how == ChildEnd::How::TimedOut;
-  out.outcome = {hung ? "timed_out" : "crashed", "F8", -1,
-                 "its process: " + end.text() + (words.empty() ? "" : "; last words: " + words)};
+  out.wall_s = end->wall_s;
+  out.outcome = {end->how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F8", -1,
+                 "its process: " + end->text() + (words.empty() ? "" : "; last words: " + words)};
   out.summary = summarise_stability(scene_of(r), {}, out.outcome);
   if (!r.out.empty()) write_failure(r, out);
   return out;

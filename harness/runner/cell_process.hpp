@@ -2,10 +2,13 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
+#include "runner/child.hpp"
 
 namespace clothbench {
 
@@ -41,14 +44,30 @@ using SolverLookup = std::function<const SolverEntry&(const std::string&)>;
 /// Runs the cell here: the other side of `run_in_process`.
 CellAnswer run_request(const CellRequest&, const SolverLookup&);
 
-/// What a program does that is run as `PROGRAM run-cell REQUEST.json ANSWER.json`: reads the one, writes the other.
-int run_cell_main(const std::filesystem::path& request, const std::filesystem::path& answer, const SolverLookup&);
+/// What a program does that is run as `PROGRAM run-cell FOLDER`: for every line n of its standard input, until it ends, runs
+/// FOLDER/request-n.json and writes FOLDER/answer-n.json.
+int run_cell_main(const std::filesystem::path& folder, const SolverLookup&);
 
-/// Runs the cell in a child process, `program run-cell …`, killed 5 s (and a fifth) after the cell's own limit. A child
-/// that crashes, hangs or ends without an answer makes the outcome `crashed` or `timed_out` with class F8 and its last
-/// words; where results are kept such a cell gets a result file too. `scratch` is a folder for what passes between the
-/// two.
-CellAnswer run_in_process(const CellRequest&, const std::filesystem::path& program,
-                          const std::filesystem::path& scratch);
+/// Runs cells in a child process, `program run-cell …`. One child takes cell after cell, since making a Vulkan device costs
+/// as much as a small cell; after anything but a result it is replaced. A child is killed 5 s (and a fifth) after the
+/// cell's own limit. One that crashes, hangs or ends without an answer makes the outcome `crashed` or `timed_out` with class F8
+/// and its last words; where results are kept such a cell gets a result file too. A crash in a child that had run other
+/// cells is only believed if it comes again in a fresh one. Not to be shared between threads.
+class CellWorker {
+ public:
+  /// `scratch`: a folder for what passes between the two, of this worker alone.
+  CellWorker(std::filesystem::path program, std::filesystem::path scratch);
+  ~CellWorker();
+  CellAnswer run(const CellRequest&);
+  int children() const { return children_; }  ///< that it has needed so far
+
+ private:
+  std::optional<ChildEnd> ask(const CellRequest&);
+
+  const std::filesystem::path program_, scratch_;
+  std::unique_ptr<Child> child_;
+  int number_ = 0, cells_ = 0, children_ = 0;
+  std::uintmax_t said_ = 0;  ///< bytes of the child's output before the cell
+};
 
 }  // namespace clothbench

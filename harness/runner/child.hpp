@@ -1,5 +1,8 @@
 #pragma once
+#include <sys/types.h>
+
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,9 +18,39 @@ struct ChildEnd {
   std::string text() const;
 };
 
-/// Runs a program (argv[0]: its path) with its output going to `log`, and kills it after `limit_s` (0 = never) or on
-/// Ctrl-C, which then throws the interrupt. Throws Error if it cannot be started.
-ChildEnd run_child(const std::vector<std::string>& argv, double limit_s, const std::filesystem::path& log);
+/// A program that is asked line by line on its standard input, a socket, and answers each with an end of line on the
+/// same socket.
+class Child {
+ public:
+  /// Starts argv[0] (a path), its output going to `log`. Throws Error if it cannot be started.
+  Child(const std::vector<std::string>& argv, const std::filesystem::path& log);
+  ~Child();
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  /// Sends a line and waits for the answer: nothing, or how the child ended instead, killed after `limit_s` (0 = never)
+  /// among others. It is gone then. On Ctrl-C the child is killed and the interrupt thrown.
+  std::optional<ChildEnd> ask(const std::string& line, double limit_s);
+
+ private:
+  int reap(bool kill_it);
+
+  pid_t pid_ = -1;
+  int socket_ = -1;
+};
+
+/// One line from the parent, or nothing once it is gone; and the answer to it.
+std::optional<std::string> next_line_from_parent();
+void answer_parent();
+
+/// The child's side: calls `answer` for every line until there are no more.
+template <class Answer>
+void serve_parent(Answer&& answer) {
+  while (const std::optional<std::string> line = next_line_from_parent()) {
+    answer(*line);
+    answer_parent();
+  }
+}
 
 /// This program's own file, to be run again. Throws Error in an app.
 std::filesystem::path own_program();

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <set>
+#include <memory>
+#include <mutex>
 
 #include "results/store.hpp"
 #include "runner/boundary.hpp"
 #include "runner/cell.hpp"
 #include "runner/stability_theory.hpp"
+#include "runner/worker_pool.hpp"
 #include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 
@@ -58,11 +60,14 @@ class Probes {
     }
     if (!resume) write_file_atomically(file_, "");
   }
+  /// References stay: a map's nodes do not move.
   const CellAnswer* find(const std::string& key) const {
+    const std::lock_guard lock(mutex_);
     const auto at = known_.find(key);
     return at == known_.end() ? nullptr : &at->second;
   }
   const CellAnswer& add(const std::string& key, const CellAnswer& a) {
+    const std::lock_guard lock(mutex_);
     std::ofstream out(file_, std::ios::app);
     out << json{{"key", key}, {"answer", to_json(a)}}.dump() << '\n';
     out.flush();
@@ -72,6 +77,7 @@ class Probes {
 
  private:
   const fs::path file_;
+  mutable std::mutex mutex_;
   std::map<std::string, CellAnswer> known_;
 };
 
@@ -82,11 +88,18 @@ double grade_of(const CellAnswer& a) {
                                                             : 2;
 }
 
-/// One map of one study.
+/// Where one row of a map turns, and what was probed on the way.
+struct Row {
+  json probes = json::array(), seeds = json::array();
+  bool done = false, unsupported = false;
+  std::string message;
+  StabilityCounts counts;
+};
+
+/// One map of one study. Its rows, one a solver and value of y, are independent of one another.
 class Map {
  public:
-  Map(const json& j, const Study& study, const StabilityOptions& o, Probes& probes, StabilityCounts& counts)
-      : j_(j), study_(study), o_(o), probes_(probes), counts_(counts) {
+  Map(const json& j, const Study& study, const StabilityOptions& o, Probes& probes) : j_(j), study_(study), o_(o), probes_(probes) {
     const bool quick = study.length == StudyLength::Quick;
     const json& axes = quick ? j["quick"] : j;
     x_ = (quick ? axes["x"] : axes["x"]["values"]).get<std::vector<double>>();
@@ -95,40 +108,60 @@ class Map {
     file_ = find_scenario(j["scene"].get<std::string>());
     scenario_ = parse_json(read_text(file_), file_.string());
     std::sort(x_.begin(), x_.end());
+    for (const json& solver : j_["solvers"])
+      if (o_.solvers.empty() || std::find(o_.solvers.begin(), o_.solvers.end(), solver["solver"]) != o_.solvers.end())
+        solvers_.push_back(&solver);
+    rows_.resize(solvers_.size(), std::vector<Row>(y_.size()));
+    if (!solvers_.empty()) theory_ = lines(*solvers_.front());
   }
 
-  /// `keep` is called whenever a row is done, with the map as it then stands.
-  void run(const std::function<void(const json&)>& keep) {
-    json out = {{"name", j_["name"]},      {"title", j_["title"]},       {"scene", j_["scene"]},
-                {"good", j_["good"]},      {"headline", j_["headline"]}, {"theory", json::array()},
-                {"solvers", json::array()}};
+  std::size_t solvers() const { return solvers_.size(); }
+  std::size_t rows() const { return y_.size(); }
+
+  Row run(std::size_t solver, std::size_t y, CellWorker& worker) const {
+    Row row;
+    find_turns(*solvers_[solver], y_[y], worker, row);
+    row.done = true;
+    return row;
+  }
+  void keep(std::size_t solver, std::size_t y, Row row) { rows_[solver][y] = std::move(row); }
+
+  void count(StabilityCounts& counts) const {
+    for (const auto& of_solver : rows_)
+      for (const Row& r : of_solver) counts.add(r.counts);
+  }
+
+  /// The map as far as its rows are done.
+  json told() const {
+    json out = {{"name", j_["name"]}, {"title", j_["title"]},       {"scene", j_["scene"]}, {"good", j_["good"]},
+                {"headline", j_["headline"]}, {"theory", theory_}, {"solvers", json::array()}};
     for (const char* axis : {"x", "y"}) out[axis] = {{"label", j_[axis]["label"]}, {"unit", j_[axis]["unit"]}};
-    for (const json& solver : j_["solvers"]) {
-      if (!o_.solvers.empty() && std::find(o_.solvers.begin(), o_.solvers.end(), solver["solver"]) == o_.solvers.end())
-        continue;
-      if (out["theory"].empty()) out["theory"] = lines(solver);
-      out["solvers"].push_back(begin(solver));
-      const std::size_t at = out["solvers"].size() - 1;
-      for (double y : y_) {
-        if (out["solvers"][at]["unsupported"].get<bool>()) break;
-        row(solver, y, out["solvers"][at]);
-        keep(out);
-      }
-      keep(out);
-    }
+    for (std::size_t k = 0; k < solvers_.size(); ++k) out["solvers"].push_back(told(k));
+    return out;
   }
 
  private:
-  static json begin(const json& solver) {
-    return {{"solver", solver["solver"]},
-            {"setting", solver["label"]},
-            {"on_gpu", on_gpu(solver["solver"])},
-            {"unsupported", false},
-            {"message", ""},
-            {"probes", json::array()},
-            {"rows", json::array()},
-            {"largest", json()},
-            {"open", true}};
+  json told(std::size_t k) const {
+    const json& solver = *solvers_[k];
+    json out = {{"solver", solver["solver"]}, {"setting", solver["label"]}, {"on_gpu", on_gpu(solver["solver"])},
+                {"unsupported", false},       {"message", ""},              {"probes", json::array()},
+                {"rows", json::array()},      {"largest", json()},          {"open", true}};
+    for (std::size_t y = 0; y < y_.size(); ++y) {
+      const Row& row = rows_[k][y];
+      if (!row.done) continue;
+      for (const json& p : row.probes) out["probes"].push_back(p);
+      if (row.unsupported) {
+        out["unsupported"] = true;
+        out["message"] = row.message;
+        break;
+      }
+      for (const json& s : row.seeds) {
+        if (!s["first_bad"].is_null()) out["open"] = false;
+        if (out["largest"].is_null() || s["last_good"] < out["largest"]) out["largest"] = s["last_good"];
+      }
+      out["rows"].push_back({{"y", y_[y]}, {"seeds", row.seeds}});
+    }
+    return out;
   }
 
   int substeps_at(const json& solver, double x, double y) const {
@@ -165,17 +198,13 @@ class Map {
     return out;
   }
 
-  const CellAnswer& probe(const json& solver, double x, double y, int seed, json& told) {
+  const CellAnswer& probe(const json& solver, double x, double y, int seed, CellWorker& worker, Row& row) const {
     const auto label = solver["label"].get<std::string>();
     const std::string key = fmt::format("{}|{}|{}|{:.17g}|{:.17g}|{}", j_["name"].get<std::string>(),
                                         solver["solver"].get<std::string>(), label, x, y, seed);
     const CellAnswer* found = probes_.find(key);
     if (found == nullptr) {
       stop_if_interrupted();
-      if (o_.progress)
-        o_.progress(fmt::format("{} {}: x = {:.4g}, y = {:.4g}", j_["name"].get<std::string>(),
-                                solver["solver"].get<std::string>(), x, y),
-                    0, 0);
       CellRequest r;
       r.scenario = scenario_;
       r.source = file_.string();
@@ -187,45 +216,41 @@ class Map {
       r.device = o_.device;
       r.protocol = protocol_name(study_.length);
       r.limit_s = study_.cell_limit_s;
-      found = &probes_.add(key, run_in_process(r, o_.program, o_.out / "scratch"));
+      found = &probes_.add(key, worker.run(r));
     }
-    counts_.add(*found);
-    told["probes"].push_back({{"x", x},
-                              {"y", y},
-                              {"seed", seed},
-                              {"status", found->outcome.status},
-                              {"class", found->outcome.klass},
-                              {"grade", or_null(grade_of(*found))},
-                              {"frame", found->outcome.failed_frame},
-                              {"message", found->outcome.message}});
+    row.counts.add(*found);
+    row.probes.push_back({{"x", x},
+                          {"y", y},
+                          {"seed", seed},
+                          {"status", found->outcome.status},
+                          {"class", found->outcome.klass},
+                          {"grade", or_null(grade_of(*found))},
+                          {"frame", found->outcome.failed_frame},
+                          {"message", found->outcome.message}});
     return *found;
   }
 
-  void row(const json& solver, double y, json& told) {
+  void find_turns(const json& solver, double y, CellWorker& worker, Row& row) const {
     constexpr double kDecades = 0.05;
     const double most = j_["good"] == "stable" ? 0 : 1;
     const bool quick = study_.length == StudyLength::Quick;
-    json seeds = json::array();
     std::vector<double> values = x_;
     for (int seed = 0; seed < seeds_; ++seed) {
       const auto good = [&](double x) {
-        if (told["unsupported"].get<bool>()) return false;
-        const CellAnswer& a = probe(solver, x, y, seed, told);
+        if (row.unsupported) return false;
+        const CellAnswer& a = probe(solver, x, y, seed, worker, row);
         if (a.outcome.status == "unsupported") {
-          told["unsupported"] = true;
-          told["message"] = a.outcome.message;
+          row.unsupported = true;
+          row.message = a.outcome.message;
         }
         return grade_of(a) <= most;
       };
       const int beyond = seed > 0 || quick ? 0 : static_cast<int>(x_.size());
       const Boundary b = find_boundary(values, quick ? 0.25 : kDecades, beyond, good);
-      if (told["unsupported"].get<bool>()) return;
-      seeds.push_back({{"last_good", b.last_good}, {"first_bad", or_null(b.first_bad)}});
-      if (std::isfinite(b.first_bad)) told["open"] = false;
-      if (told["largest"].is_null() || b.last_good < told["largest"].get<double>()) told["largest"] = b.last_good;
+      if (row.unsupported) return;
+      row.seeds.push_back({{"last_good", b.last_good}, {"first_bad", or_null(b.first_bad)}});
       if (seed == 0) values = around(b);
     }
-    told["rows"].push_back({{"y", y}, {"seeds", seeds}});
   }
 
   /// Where other seeds look: the values next to the first one's boundary, and one more on either side.
@@ -243,12 +268,29 @@ class Map {
   const Study& study_;
   const StabilityOptions& o_;
   Probes& probes_;
-  StabilityCounts& counts_;
   std::vector<double> x_, y_;
   int seeds_ = 1;
   fs::path file_;
-  json scenario_;
+  json scenario_, theory_ = json::array();
+  std::vector<const json*> solvers_;
+  std::vector<std::vector<Row>> rows_;  ///< a solver, a value of y
 };
+
+/// A cell that is not there yet.
+CellRequest request_of(const Study& study, const Study::Item& item, const StudySolver& s, const StabilityOptions& o) {
+  CellRequest r;
+  r.scenario = json::parse(item.scene.json);
+  r.source = item.scene.source;
+  r.name = item.scene.name;
+  r.solver = s.solver;
+  r.setting = s.label;
+  r.settings = s.settings;
+  r.device = o.device;
+  r.protocol = protocol_name(study.length);
+  r.limit_s = study.cell_limit_s;
+  r.out = o.out;
+  return r;
+}
 
 }  // namespace
 
@@ -265,43 +307,58 @@ void StabilityCounts::add(const CellAnswer& a) {
   if (a.outcome.status == "crashed" || a.outcome.message.starts_with("its process")) ++crashed;
 }
 
+void StabilityCounts::add(const StabilityCounts& more) {
+  stable += more.stable;
+  degraded += more.degraded;
+  failed += more.failed;
+  unsupported += more.unsupported;
+  crashed += more.crashed;
+}
+
 StabilityCounts run_stability_cells(const Study& study, const StabilityOptions& o) {
   StabilityCounts counts;
-  std::size_t all = 0, done = 0;
-  for (const Study::Item& item : study.scenes) all += item.solvers.size();
+  struct Todo {
+    const Study::Item* item;
+    const StudySolver* solver;
+    double work;
+  };
+  std::vector<Todo> todo;
+  std::size_t all = 0;
   for (const Study::Item& item : study.scenes)
     for (const std::size_t k : item.solvers) {
       const StudySolver& s = study.solvers[k];
-      stop_if_interrupted();
-      if (o.progress) o.progress(item.scene.name + " with " + s.name(), done, all);
-      ++done;
+      ++all;
       CellHeader h;
       h.scene = item.scene.name;
       h.solver = s.solver;
       h.setting = s.label;
       const std::string cell = cell_name(h);
-      if (cell_finished(o.out, cell)) {
-        if (!o.resume)
-          throw Error(fmt::format("{}: {} is already there; give another --out, or --resume to go on with this folder",
-                                  o.out.string(), cell));
-        const CellRecord before =
-            read_cell_summary(fs::exists(o.out / (cell + ".h5")) ? o.out / (cell + ".h5") : o.out / (cell + ".part"));
-        counts.add({before.outcome, before.summary, kMissing});
+      if (!cell_finished(o.out, cell)) {
+        todo.push_back({&item, &s, static_cast<double>(item.scene.time.frames()) * static_cast<double>(item.scene.cloth.vertex_count())});
         continue;
       }
-      CellRequest r;
-      r.scenario = json::parse(item.scene.json);
-      r.source = item.scene.source;
-      r.name = item.scene.name;
-      r.solver = s.solver;
-      r.setting = s.label;
-      r.settings = s.settings;
-      r.device = o.device;
-      r.protocol = protocol_name(study.length);
-      r.limit_s = study.cell_limit_s;
-      r.out = o.out;
-      counts.add(run_in_process(r, o.program, o.out / "scratch"));
+      if (!o.resume)
+        throw Error(fmt::format("{}: {} is already there; give another --out, or --resume to go on with this folder",
+                                o.out.string(), cell));
+      const CellRecord before =
+          read_cell_summary(fs::exists(o.out / (cell + ".h5")) ? o.out / (cell + ".h5") : o.out / (cell + ".part"));
+      counts.add(CellAnswer{before.outcome, before.summary, kMissing});
     }
+  // The longest first, or the last of them is waited for alone.
+  std::stable_sort(todo.begin(), todo.end(), [](const Todo& a, const Todo& b) { return a.work > b.work; });
+  std::size_t done = all - todo.size();
+  std::mutex mutex;
+  std::vector<std::function<void(CellWorker&)>> tasks;
+  for (const Todo& t : todo)
+    tasks.push_back([&, t](CellWorker& worker) {
+      stop_if_interrupted();
+      const CellAnswer a = worker.run(request_of(study, *t.item, *t.solver, o));
+      const std::lock_guard lock(mutex);
+      counts.add(a);
+      ++done;
+      if (o.progress) o.progress(t.item->scene.name + " with " + t.solver->name(), done, all);
+    });
+  run_tasks(tasks, o.jobs, o.program, o.out / "scratch");
   std::error_code ignored;
   fs::remove_all(o.out / "scratch", ignored);
   return counts;
@@ -312,22 +369,37 @@ StabilityCounts run_stability_maps(const Study& study, const StabilityOptions& o
   if (!study.definition.contains("maps")) return counts;
   fs::create_directories(o.out);
   Probes probes(o.out / "stability-probes.jsonl", o.resume);
-  json finished = json::array();
-  for (const json& map : study.definition["maps"]) {
-    if (study.length == StudyLength::Quick && !map.contains("quick")) continue;
-    json now;
-    Map(map, study, o, probes, counts).run([&](const json& so_far) {
-      now = so_far;
-      json all = finished;
-      all.push_back(now);
-      write_file_atomically(
-          o.out / "stability.json",
-          json{{"format", "clothbench-stability"}, {"format_version", 1}, {"environment", o.environment}, {"maps", all}}
-                  .dump(1) +
-              "\n");
-    });
-    if (!now.is_null() && !now["solvers"].empty()) finished.push_back(now);
-  }
+  std::vector<std::unique_ptr<Map>> maps;
+  for (const json& map : study.definition["maps"])
+    if (study.length != StudyLength::Quick || map.contains("quick"))
+      maps.push_back(std::make_unique<Map>(map, study, o, probes));
+  std::mutex mutex;
+  std::size_t done = 0;
+  std::vector<std::function<void(CellWorker&)>> tasks;
+  const auto write = [&] {
+    json all = json::array();
+    for (const auto& map : maps)
+      if (map->solvers() > 0) all.push_back(map->told());
+    write_file_atomically(o.out / "stability.json", json{{"format", "clothbench-stability"},
+                                                         {"format_version", 1},
+                                                         {"environment", o.environment},
+                                                         {"maps", all}}
+                                                            .dump(1) +
+                                                        "\n");
+  };
+  for (const auto& map : maps)
+    for (std::size_t solver = 0; solver < map->solvers(); ++solver)
+      for (std::size_t y = 0; y < map->rows(); ++y)
+        tasks.push_back([&, m = map.get(), solver, y](CellWorker& worker) {
+          Row row = m->run(solver, y, worker);
+          const std::lock_guard lock(mutex);
+          m->keep(solver, y, std::move(row));
+          ++done;
+          write();
+          if (o.progress) o.progress("rows of maps", done, tasks.size());
+        });
+  run_tasks(tasks, o.jobs, o.program, o.out / "scratch");
+  for (const auto& map : maps) map->count(counts);
   std::error_code ignored;
   fs::remove_all(o.out / "scratch", ignored);
   return counts;

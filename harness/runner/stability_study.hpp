@@ -16,6 +16,7 @@ struct StabilityOptions {
   std::filesystem::path program;  ///< what is run as a child
   DeviceOptions device;
   bool resume = false;
+  int jobs = 1;                   ///< processes at a time; nothing here is timed
   nlohmann::json environment = {};        ///< stored with the maps
   std::vector<std::string> solvers = {};  ///< of the maps, if any are named
   std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress = nullptr;
@@ -26,14 +27,15 @@ struct StabilityCounts {
   int stable = 0, degraded = 0, failed = 0, unsupported = 0;
   int crashed = 0;  ///< of the failed: processes that died or hung
   void add(const CellAnswer&);
+  void add(const StabilityCounts&);
 };
 
-/// Every cell of the study's scenes, one process each, with a result file each; cells that are there already are passed
+/// Every cell of the study's scenes, in processes that are replaced after a fault, with a result file each; cells that are there already are passed
 /// over with `resume`.
 StabilityCounts run_stability_cells(const Study&, const StabilityOptions&);
 
 /// The study's maps: for every row (y) and solver the values of x in order, then the boundary by bisection, for every
-/// seed. Each probe is a cell in a process of its own; its answer is appended to stability-probes.jsonl, and read back
+/// seed. Each probe is a cell in such a process; its answer is appended to stability-probes.jsonl, and read back
 /// from there instead of run again with `resume`. Writes stability.json after every row:
 ///   {maps: [{name, title, scene, good, headline, x: {label, unit}, y: {label, unit},
 ///            theory: [{name, label, points: [[x, y]]}],

@@ -2,13 +2,16 @@
 
 namespace clothbench {
 
+/// What is in a stage's data and needs no stage of its own.
+constexpr FeatureSet kData = {Feature::UnevenGrid, Feature::Regions, Feature::Spin};
+
 std::string check_stages(const Scene& scene, const SolverInfo& info, const Plan& plan) {
   std::string fault;
-  const FeatureSet implied = scene.needs - info.ignores;
+  const FeatureSet implied = scene.needs - info.ignores - kData;
   FeatureSet served;
   for (const StagePlan& stage : plan.stages) {
     served |= stage.serves;
-    (stage.serves - implied).for_each([&](Feature f) {
+    (stage.serves - kData - implied).for_each([&](Feature f) {
       fault += "stage " + stage.name + " serves " + std::string(name_of(f)) + ", which the scene does not need; ";
     });
   }

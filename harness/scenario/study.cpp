@@ -227,7 +227,7 @@ class Builder {
     std::map<Words, std::size_t> forms;
     for (std::size_t s = 0; s < study_.solvers.size(); ++s) {
       const StudySolver& solver = study_.solvers[s];
-      if (!stays_[s] || !chosen(solver.only, v.labels)) continue;
+      if (!stays_[s] || !chosen(solver.only, v.labels) || !quick_runs(solver, v.labels)) continue;
       Words key = solver.set;
       if (solver.all_on) key.push_back(kAllOn + solver.solver);
       const auto [at, is_new] = forms.emplace(key, study_.scenes.size());
@@ -259,6 +259,12 @@ class Builder {
     }
   }
 
+  /// The quick form may leave some of its scenes to some of its solvers.
+  bool quick_runs(const StudySolver& s, const Words& labels) const {
+    if (quick_.is_null() || !quick_["only"].contains(s.name())) return true;
+    return chosen(quick_["only"][s.name()].get<Words>(), labels);
+  }
+
   int group_of(const Scene& scene) {
     const bool by_scene = study_.protocol != "fps";
     const std::string key = by_scene ? scene.name : fmt::format("{} {}", scene.cloth.columns, scene.cloth.rows);
@@ -282,6 +288,10 @@ class Builder {
     if (!j_.contains("quick")) return;
     check("/quick/scenes", j_["quick"]["scenes"], labels);
     check("/quick/solvers", j_["quick"]["solvers"], solver_names_);
+    for (const auto& [solver, scenes] : j_["quick"]["only"].items()) {
+      check("/quick/only", json::array({solver}), solver_names_);
+      check("/quick/only/" + solver, scenes, labels);
+    }
   }
 
   json j_, quick_;  ///< quick_: null unless the quick form was asked for

@@ -32,7 +32,7 @@ class Ballistic final : public ClothSolver {
   void reset() override {
     x_ = initial_positions(*scene_);
     v_.assign(x_.size(), 0);
-    for (std::size_t k = 0; k < v_.size(); ++k) v_[k] = scene_->cloth.initial_velocity_m_per_s[k % 3];
+    v_ = initial_velocities(*scene_);
   }
 
   StepStatus step(const FrameInput& frame) override {

@@ -19,7 +19,8 @@ SolverInfo common_info() {
   info.precision = sizeof(btScalar) == 4 ? "float32" : "float64";
   info.supports = {Feature::Stretch,    Feature::Shear,      Feature::Bend,     Feature::Damping,    Feature::Pins,
                    Feature::MovingPins, Feature::Sphere,     Feature::Box,      Feature::Plane,      Feature::Capsules,
-                   Feature::StaticMesh, Feature::MovingMesh, Feature::Friction, Feature::DoubleSided};
+                   Feature::StaticMesh, Feature::MovingMesh, Feature::Friction, Feature::DoubleSided,
+                   Feature::UnevenGrid, Feature::Spin};
   return info;
 }
 
@@ -134,9 +135,11 @@ std::unique_ptr<btSoftBody> BulletSolver::new_body(btSoftBodyWorldInfo& info) {
   made->getCollisionShape()->setMargin(static_cast<btScalar>(contact_margin_m()));
   // Bullet puts slow deformable bodies to sleep after 2 s, and they then hang in the air.
   made->setActivationState(DISABLE_DEACTIVATION);
-  const btVector3 v0 = to_bullet(scene_->cloth.initial_velocity_m_per_s);
-  for (int i = 0; i < made->m_nodes.size(); ++i)
-    if (made->m_nodes[i].m_im > 0) made->m_nodes[i].m_v = made->m_nodes[i].m_vn = v0;
+  const std::vector<double> v = initial_velocities(*scene_);
+  for (int i = 0; i < made->m_nodes.size(); ++i) {
+    const auto k = 3 * static_cast<std::size_t>(i);
+    if (made->m_nodes[i].m_im > 0) made->m_nodes[i].m_v = made->m_nodes[i].m_vn = to_bullet({v[k], v[k + 1], v[k + 2]});
+  }
   return made;
 }
 
@@ -221,7 +224,8 @@ FrameCost BulletSolver::last_cost() const {
 }
 
 Plan BulletSolver::plan() const {
-  constexpr FeatureSet kContact = kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided};
+  constexpr FeatureSet kContact = kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided,
+                   Feature::UnevenGrid, Feature::Spin};
   Plan p;
   // Bullet's step is one piece of work: links of all kinds, damping, pins and grips are served together.
   p.stages = {{"Step", scene_->needs - kContact, 0, kMissing, kMissing}};

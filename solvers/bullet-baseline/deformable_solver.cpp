@@ -18,6 +18,7 @@ namespace {
 SolverInfo describe() {
   SolverInfo info = common_info();
   info.name = "bullet-deformable";
+  info.supports.add(Feature::Regions);
   info.summary = "Bullet's deformable body with springs in N/m (btDeformableMultiBodyDynamicsWorld) on one CPU core";
   info.settings = {
       {"substeps", "0", "substeps a frame; 0: explicit, as many as keep the stiffest vertex stable, implicit, 4"},
@@ -45,21 +46,23 @@ struct DeformableWorld {
 /// and on each diagonal 3/16 Y (a^2 + b^2)/(a b); on square cells 3/4 Y and 3/8 Y. Without shear: strips of Y b/a.
 class LinkStiffness {
  public:
-  explicit LinkStiffness(const Scene& s)
-      : s_(s), a_(s.cloth.du()), b_(s.cloth.dv()), y_(s.material.membrane_stiffness_N_per_m.value_or(kStiff_N_per_m)) {}
+  explicit LinkStiffness(const Scene& s) : s_(s) {}
 
   double of(const Edge& e) const {
     const Cloth& c = s_.cloth;
-    if (e.kind == EdgeKind::Shear) return 3.0 / 16 * y_ * (a_ * a_ + b_ * b_) / (a_ * b_);
+    const auto [own, other] = edge_cell(c, e);
+    const double y = membrane_stiffness(s_, e).value_or(kStiff_N_per_m);
+    if (e.kind == EdgeKind::Shear) return 3.0 / 16 * y * (own * own + other * other) / (own * other);
     const auto columns = static_cast<std::uint32_t>(c.columns), last_row = static_cast<std::uint32_t>(c.rows) - 1;
     const bool along_u = e.a / columns == e.b / columns;
     const std::uint32_t line = along_u ? e.a / columns : e.a % columns;
     const bool border = line == 0 || line == (along_u ? last_row : columns - 1);
-    const double own = along_u ? a_ : b_, other = along_u ? b_ : a_;
-    if (e.kind == EdgeKind::SkipOne)
-      return s_.material.bending_rigidity_N_m * other / (own * own * own) * (border ? 0.5 : 1);
-    if (!s_.needs.has(Feature::Shear)) return y_ * other / own * (border ? 0.5 : 1);
-    return std::max(y_ * (9.0 / 8 * other / own - 3.0 / 8 * own / other), 0.1 * y_ * other / own) * (border ? 0.5 : 1);
+    if (e.kind == EdgeKind::SkipOne) {
+      const double cell = own / 2;
+      return s_.material.bending_rigidity_N_m * other / (cell * cell * cell) * (border ? 0.5 : 1);
+    }
+    if (!s_.needs.has(Feature::Shear)) return y * other / own * (border ? 0.5 : 1);
+    return std::max(y * (9.0 / 8 * other / own - 3.0 / 8 * own / other), 0.1 * y * other / own) * (border ? 0.5 : 1);
   }
 
  private:
@@ -67,7 +70,6 @@ class LinkStiffness {
   static constexpr double kStiff_N_per_m = 1e4;
 
   const Scene& s_;
-  const double a_, b_, y_;
 };
 
 constexpr EdgeKind kKinds[] = {EdgeKind::Structural, EdgeKind::Shear, EdgeKind::SkipOne};
@@ -84,13 +86,14 @@ bool linked(const Scene& scene, EdgeKind kind) {
 double stiffest_rad_per_s(const Scene& scene) {
   const std::vector<double> mass = vertex_masses(scene);
   const LinkStiffness stiffness(scene);
-  const double a = scene.cloth.du(), b = scene.cloth.dv();
+  const double b = scene.cloth.dv();
   const auto columns = static_cast<std::uint32_t>(scene.cloth.columns);
+  const auto line_u = [&](std::uint32_t v) { return scene.cloth.line_u_m(static_cast<int>(v % columns)); };
   std::vector<std::array<double, 3>> sums(mass.size(), {0, 0, 0});  // S_uu, S_uv, S_vv
   for (EdgeKind kind : kKinds) {
     if (!linked(scene, kind)) continue;
     for (const Edge& e : edges(scene.cloth, kind)) {
-      const double u = a * (static_cast<double>(e.b % columns) - static_cast<double>(e.a % columns));
+      const double u = line_u(e.b) - line_u(e.a);
       const double v = b * (static_cast<double>(e.b / columns) - static_cast<double>(e.a / columns));
       const double k = stiffness.of(e) / (u * u + v * v);
       for (std::uint32_t i : {e.a, e.b}) {

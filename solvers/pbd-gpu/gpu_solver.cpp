@@ -25,7 +25,7 @@ std::vector<float> inverse_masses(const Scene& scene) {
 }
 
 GpuSolver::GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)
-    : info_(std::move(info)), settings_(settings), count_bytes_(count_bytes), device_(vulkan::Device::get(device)) {}
+    : info_(std::move(info)), given_settings_(settings), settings_(settings), count_bytes_(count_bytes), device_(vulkan::Device::get(device)) {}
 
 vulkan::Buffer& GpuSolver::add_buffer(const std::string& name, std::uint64_t bytes, std::vector<std::uint8_t> initial) {
   using vulkan::Buffer;
@@ -34,7 +34,7 @@ vulkan::Buffer& GpuSolver::add_buffer(const std::string& name, std::uint64_t byt
   plan_.buffers.push_back({name, bytes, true});
   auto staging = std::make_unique<Buffer>(device_, name + " (initial)", bytes, Buffer::Place::Host);
   std::memset(staging->mapped(), 0, bytes);
-  std::memcpy(staging->mapped(), initial.data(), std::min<std::size_t>(initial.size(), bytes));
+  if (!initial.empty()) std::memcpy(staging->mapped(), initial.data(), std::min<std::size_t>(initial.size(), bytes));
   plan_.buffers.push_back({staging->name(), bytes, false});
   upload_->copy(0, *staging, buffer);
   initials_.push_back({&buffer, std::move(staging)});
@@ -99,6 +99,7 @@ void GpuSolver::copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer
 
 void GpuSolver::load(const Scene& scene) {
   scene_ = &scene;
+  settings_ = given_settings_;
   frame_ = std::make_unique<vulkan::Program>(device_);
   upload_ = std::make_unique<vulkan::Program>(device_);
   download_ = std::make_unique<vulkan::Program>(device_);
@@ -167,15 +168,15 @@ void GpuSolver::reset() {
     update_inverse_masses();
   }
   if (missed_ != nullptr) std::memset(missed_->mapped(), 0, sizeof(std::uint32_t));
-  ready_ = run(*upload_);
+  last_ = ready_ = run(*upload_);
 }
 
 StepStatus GpuSolver::step(const FrameInput& frame) {
-  if (ready_ != StepStatus::Ok) return ready_;
+  if (ready_ != StepStatus::Ok) return last_ = ready_;
   if (frame.dt_s != dt_s_) record(frame.dt_s);
   if (colliders_) colliders_->write(frame.motion);
   if (grips_ && grips_->write(frame.motion)) update_inverse_masses();
-  return unless_missed(run(*frame_));
+  return last_ = unless_missed(run(*frame_));
 }
 
 StepStatus GpuSolver::unless_missed(StepStatus status) const {
@@ -196,7 +197,7 @@ StepStatus GpuSolver::run_frames(const std::vector<FrameInput>& frames) {
   const bool alike = std::all_of(frames.begin(), frames.end(), [&](const FrameInput& f) { return f.dt_s == dt_s_; });
   if (!alike || frames_in_flight() == 1) return ClothSolver::run_frames(frames);
   if (ready_ != StepStatus::Ok) return ready_;
-  return unless_missed(guarded([&] {
+  return last_ = unless_missed(guarded([&] {
     frame_->need_copies(kFramesInFlight);
     for (std::size_t k = 0; k < frames.size(); ++k) {
       frame_->wait(k % kFramesInFlight, patience_s());
@@ -212,7 +213,11 @@ void GpuSolver::read_state(ClothState& state) const {
   const std::size_t n = scene_->cloth.vertex_count();
   state.position.assign(3 * n, kMissing);
   state.velocity.assign(3 * n, kMissing);
-  if (run(*download_) != StepStatus::Ok) return;  // a lost device has no state
+  if (run(*download_) != StepStatus::Ok) {
+    // A lost device has no state. Where nobody has been told yet, numbers that are none would pass for the solver's own.
+    if (last_ != StepStatus::Ok) return;
+    throw Error("solver " + info_.name + ": the device was lost, or did not answer in time, when its state was read", ExitCode::CheckFailed);
+  }
   const auto* x = static_cast<const float*>(read_position_->mapped());
   const auto* v = static_cast<const float*>(read_velocity_->mapped());
   for (std::size_t i = 0; i < n; ++i)

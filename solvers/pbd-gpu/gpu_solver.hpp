@@ -59,6 +59,12 @@ class GpuSolver : public ClothSolver {
 
   const Scene& scene() const { return *scene_; }
   const nlohmann::json& settings() const { return settings_; }
+  /// For this scene alone: a setting that it cannot be run with.
+  void override_setting(const char* name, const nlohmann::json& value, const std::string& why) {
+    if (settings_.at(name) == value) return;
+    settings_[name] = value;
+    leave_out(std::string("setting ") + name, why);
+  }
   vulkan::Device& vulkan_device() const { return *device_; }
 
   /// A device buffer that `reset` fills with these bytes (zeros beyond them).
@@ -120,12 +126,14 @@ class GpuSolver : public ClothSolver {
   double patience_s() const;
 
   const SolverInfo info_;
-  const nlohmann::json settings_;
+  const nlohmann::json given_settings_;
+  nlohmann::json settings_;  ///< the same, but for what the scene does not allow
   const bool count_bytes_;
   std::shared_ptr<vulkan::Device> device_;
   const Scene* scene_ = nullptr;
   double dt_s_ = 0;
   StepStatus ready_ = StepStatus::Ok;  ///< of the last reset
+  StepStatus last_ = StepStatus::Ok;   ///< of the last reset or step
   Plan plan_;
   Vec3 origin_m_{};
   std::vector<float> inverse_mass_now_;

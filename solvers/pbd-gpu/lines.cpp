@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crumpled.hpp"
+
 namespace clothbench::pbd_gpu {
 namespace {
 
@@ -114,7 +116,7 @@ std::uint32_t Lines::features() const {
   if (scene_.material.membrane_stiffness_N_per_m) f |= LINES_ELASTIC;
   // What moves may drive the cloth as fast as it likes, and so may springs that start stretched.
   const bool driven = needs.has(Feature::MovingMesh) || needs.has(Feature::Capsules);
-  if (!tethers_.to.empty() && !driven) f |= LINES_LIMIT_SPEED;
+  if ((!tethers_.to.empty() || starts_crumpled(scene_)) && !driven) f |= LINES_LIMIT_SPEED;
   if (firm_) f |= LINES_FIRM;
   return f;
 }
@@ -263,7 +265,7 @@ LineConstants Lines::constants(double dt_s, int substeps) const {
   c.h = f(h);
   c.loss = f(-std::expm1(-scene_.material.damping_per_s * h));
   c.speed_limit = f(2 * std::sqrt(2 * norm(g) * std::hypot(cloth.width_m, cloth.height_m)) +
-                    2 * norm(cloth.initial_velocity_m_per_s));
+                    2 * norm(cloth.initial_velocity_m_per_s) + norm(cloth.spin_rad_per_s) * std::hypot(cloth.width_m, cloth.height_m));
   c.tether_stretch = f(tethers_.stretch);
   c.rest_u = f(du);
   c.rest_v = f(dv);

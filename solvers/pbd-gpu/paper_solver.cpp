@@ -33,12 +33,12 @@ class Paper final : public GpuSolver {
   void build_particles() {
     const std::vector<double> start = initial_positions(scene());
     const std::vector<float> w = inverse_masses(scene());
-    const Vec3 v0 = scene().cloth.initial_velocity_m_per_s;
+    const std::vector<double> start_velocity = initial_velocities(scene());
     vec4s position, velocity;
     for (int layer = 0; layer < layers_; ++layer)
       for (std::size_t i = 0; i < w.size(); ++i) {
         const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k]); };
-        const auto speed = [&](std::size_t k) { return w[i] > 0 ? static_cast<float>(v0[k]) : 0.0f; };
+        const auto speed = [&](std::size_t k) { return w[i] > 0 ? static_cast<float>(start_velocity[3 * i + k]) : 0.0f; };
         position.push_back({at(0), at(1), at(2), w[i]});
         velocity.push_back({speed(0), speed(1), speed(2), w[i]});
       }
@@ -218,7 +218,7 @@ SolverInfo paper_info() {
   info.supports = {Feature::Stretch,        Feature::Shear,      Feature::Bend,       Feature::Damping,
                    Feature::Pins,           Feature::MovingPins, Feature::Sphere,     Feature::Box,
                    Feature::Capsules,       Feature::StaticMesh, Feature::MovingMesh, Feature::Friction,
-                   Feature::DuplicatedLayer};
+                   Feature::DuplicatedLayer, Feature::UnevenGrid, Feature::Spin};
   // Table 4 of the article: a single-sided cloth does not touch meshes.
   info.only_with = {{Feature::StaticMesh, Feature::DuplicatedLayer}, {Feature::MovingMesh, Feature::DuplicatedLayer}};
   info.settings = {

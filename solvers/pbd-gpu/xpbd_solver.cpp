@@ -1,6 +1,7 @@
 // XPBD in small steps (Macklin, Müller & Chentanez 2016; Macklin et al. 2019), every grid line solved at once.
 #include <cmath>
 
+#include "crumpled.hpp"
 #include "gpu_solver.hpp"
 #include "line_plan.hpp"
 #include "lines.hpp"
@@ -15,14 +16,22 @@ class Xpbd final : public GpuSolver {
 
  private:
   void build() override {
-    const std::vector<double> start = initial_positions(scene());
+    // The kernel of a whole frame has the masses of an even sheet.
+    if (!scene().cloth.mass_factors.empty()) override_setting("one_dispatch", false, "masses are scaled");
+    // The slack of tethers is what an even sheet's own weight stretches.
+    if (!scene().cloth.mass_factors.empty() && scene().material.membrane_stiffness_N_per_m)
+      override_setting("tethers", false, "masses are scaled");
+    crumpled_ = starts_crumpled(scene());
+    std::vector<double> start = initial_positions(scene());
     const std::vector<float>& w = inverse_mass_now();
-    const Vec3 v0 = scene().cloth.initial_velocity_m_per_s, origin = scene().cloth.center_m;
+    if (crumpled_) break_symmetry(scene(), w, start);
+    const std::vector<double> start_velocity = initial_velocities(scene());
+    const Vec3 origin = scene().cloth.center_m;
     vec4s position, velocity;
     for (std::size_t i = 0; i < w.size(); ++i) {
       // Relative to the cloth's first centre: a scene far from the world's origin loses no digits.
       const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k] - origin[k]); };
-      const auto speed = [&](std::size_t k) { return w[i] > 0 ? static_cast<float>(v0[k]) : 0.0f; };
+      const auto speed = [&](std::size_t k) { return w[i] > 0 ? static_cast<float>(start_velocity[3 * i + k]) : 0.0f; };
       position.push_back({at(0), at(1), at(2), w[i]});
       velocity.push_back({speed(0), speed(1), speed(2), 0});
     }
@@ -51,7 +60,8 @@ class Xpbd final : public GpuSolver {
   }
 
   void record_frame(double dt_s) override {
-    const int substeps = xpbd_substeps(scene(), settings());
+    const int substeps = xpbd_substeps(scene(), settings()) * frames_in(dt_s) *
+                         (crumpled_ && settings()["substeps"] == 0 ? kCrumpledSubsteps : 1);
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
     if (contact_) contact_->record_frame(dt_s, substeps);
@@ -67,6 +77,18 @@ class Xpbd final : public GpuSolver {
     }
   }
 
+  /// A frame that lasts as long as several (a hitch) takes the substeps of several: a link turns no farther in one of them,
+  /// and nothing is thrown. Past a second it is the simulation that has fallen behind.
+  int frames_in(double dt_s) const {
+    constexpr double kSlack = 1.25, kMost_s = 1;  // jitter is no hitch
+    const double frame = scene().time.dt();
+    if (!(dt_s > kSlack * frame)) return 1;
+    return static_cast<int>(std::ceil(std::min(dt_s, std::max(kMost_s, frame)) / frame - 1e-9));
+  }
+
+  static constexpr int kCrumpledSubsteps = 2;  ///< times: with fewer a tangle takes longer than a second
+
+  bool crumpled_ = false;
   std::unique_ptr<Lines> lines_;
   std::unique_ptr<XpbdContact> contact_;
   vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *rx_ = nullptr, *rv_ = nullptr;
@@ -85,7 +107,7 @@ SolverInfo xpbd_info() {
   info.on_gpu = true;
   info.supports = {Feature::Stretch,    Feature::Shear,      Feature::Bend,     Feature::Damping,    Feature::Pins,
                    Feature::MovingPins, Feature::Sphere,     Feature::Box,      Feature::Plane,      Feature::Capsules,
-                   Feature::StaticMesh, Feature::MovingMesh, Feature::Friction, Feature::DoubleSided};
+                   Feature::StaticMesh, Feature::MovingMesh, Feature::Friction, Feature::DoubleSided, Feature::Spin};
   info.settings = {
       {"quality", "\"default\"", "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
       {"substeps", "0", "substeps a frame; 0: by quality"},

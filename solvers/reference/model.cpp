@@ -3,24 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clothbench/error.hpp"
+
 namespace clothbench::reference {
 namespace {
 
-/// Spring stiffnesses [N/m] whose homogenised sheet has uniaxial stiffness Y: isotropic with Poisson ratio 1/3 where
+/// Stiffness [N/m] of an inner spring of those whose homogenised sheet has uniaxial stiffness Y: isotropic with Poisson ratio 1/3 where
 /// the scene shears (Y (9/8 b/a - 3/8 a/b) along a x b cells, 3/16 Y (a^2 + b^2)/(a b) on the diagonals; the only ratio
 /// central springs allow), plain strips Y b/a without interaction where it does not. Beyond an aspect of about 1.6 the
 /// long spring would fall under a tenth of its strip's stiffness and is held there: the sheet is then stiffer than Y.
-struct Stiffness {
-  double along_u, along_v, diagonal;
-};
-
-Stiffness stiffness(const Scene& s) {
-  const double a = s.cloth.du(), b = s.cloth.dv(), Y = *s.material.membrane_stiffness_N_per_m;
-  if (!s.needs.has(Feature::Shear)) return {Y * b / a, Y * a / b, 0};
-  const auto along = [Y](double length, double width) {
-    return Y * std::max(9.0 / 8 * width / length - 3.0 / 8 * length / width, 0.1 * width / length);
-  };
-  return {along(a, b), along(b, a), 3.0 / 16 * Y * (a * a + b * b) / (a * b)};
+double stiffness(const Scene& s, const Edge& e) {
+  const auto [a, b] = edge_cell(s.cloth, e);
+  const double Y = *membrane_stiffness(s, e);
+  if (e.kind == EdgeKind::Shear) return 3.0 / 16 * Y * (a * a + b * b) / (a * b);
+  if (!s.needs.has(Feature::Shear)) return Y * b / a;
+  return Y * std::max(9.0 / 8 * b / a - 3.0 / 8 * a / b, 0.1 * b / a);
 }
 
 bool on_border(const Cloth& c, const Edge& e) {
@@ -52,12 +49,12 @@ Model::Model(const Scene& scene) : mass_(vertex_masses(scene)) {
   inextensible_ = !scene.material.membrane_stiffness_N_per_m.has_value();
   damping_per_s_ = scene.material.damping_per_s;
   gravity_ = Eigen::Vector3d::Map(scene.gravity_m_per_s2.data());
-  Stiffness k{};
-  if (!inextensible_) k = stiffness(scene);
+  for (const StiffnessRegion& r : scene.material.regions)
+    if (inextensible_ != !r.membrane_stiffness_N_per_m)
+      throw Error("solver reference: regions of the material: expected all of them inextensible, or none");
   const auto add = [&](EdgeKind kind) {
     for (const Edge& e : edges(c, kind)) {
-      const bool along_u = e.b == e.a + 1;
-      double of_edge = kind == EdgeKind::Shear ? k.diagonal : along_u ? k.along_u : k.along_v;
+      double of_edge = inextensible_ ? 1 : stiffness(scene, e);
       // The border carries half the width.
       if (kind == EdgeKind::Structural && on_border(c, e)) of_edge /= 2;
       springs_.push_back({e.a, e.b, e.rest_m, inextensible_ ? 0 : 1 / of_edge});
@@ -68,8 +65,7 @@ Model::Model(const Scene& scene) : mass_(vertex_masses(scene)) {
   if (scene.needs.has(Feature::Bend)) {
     const double B = scene.material.bending_rigidity_N_m;
     for (const Edge& e : edges(c, EdgeKind::SkipOne)) {
-      const bool along_u = e.b == e.a + 2;
-      const double a = along_u ? c.du() : c.dv(), w = along_u ? c.dv() : c.du();
+      const double a = e.rest_m / 2, w = edge_cell(c, e).across_m;
       // Two pinned vertices in a row are a clamp: its hinge stands for half a cell, so it is twice as stiff.
       const std::uint32_t b = (e.a + e.b) / 2;
       const bool clamp = pinned(e.a, scene) + pinned(b, scene) + pinned(e.b, scene) == 2 && pinned(b, scene);

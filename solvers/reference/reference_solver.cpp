@@ -19,7 +19,8 @@ SolverInfo describe() {
   info.version = "1";
   info.precision = "float64";
   info.time_order = 2;
-  info.supports = {Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins, Feature::MovingPins};
+  info.supports = {Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins, Feature::MovingPins,
+                   Feature::UnevenGrid, Feature::Regions, Feature::Spin};
   info.settings = {
       {"substeps", "16", "steps a frame"},
       {"integrator", "\"bdf2\"", "bdf2 | conservative: implicit midpoint, or RATTLE where the cloth is inextensible"},
@@ -57,9 +58,10 @@ class Reference final : public ClothSolver {
     const std::vector<double> start = initial_positions(s);
     state_.x = Vector::Map(start.data(), n);
     state_.v.resize(n);
+    const std::vector<double> start_velocity = initial_velocities(s);
     for (Eigen::Index k = 0; k < n; ++k) {
       const bool held = model_->held(static_cast<std::size_t>(k / 3));
-      state_.v[k] = held ? 0 : s.cloth.initial_velocity_m_per_s[static_cast<std::size_t>(k % 3)];
+      state_.v[k] = held ? 0 : start_velocity[static_cast<std::size_t>(k)];
     }
     state_.lambda = Vector::Zero(static_cast<Eigen::Index>(model_->springs()));
     grips_from_.clear();

@@ -38,6 +38,7 @@ class Faulty final : public ClothSolver {
       std::fflush(stderr);
       std::abort();
     }
+    if (info_.name == "says") std::fprintf(stderr, "something else\n");
     if (info_.name == "exits") std::_Exit(2);
     if (info_.name == "hangs")
       while (true) std::this_thread::sleep_for(std::chrono::seconds(1));
@@ -82,6 +83,6 @@ const SolverEntry& look_up(const std::string& name) {
 }  // namespace clothbench
 
 int main(int argc, char** argv) {
-  if (argc != 4) return 64;
-  return clothbench::run_cell_main(argv[2], argv[3], clothbench::look_up);
+  if (argc != 3) return 64;
+  return clothbench::run_cell_main(argv[2], clothbench::look_up);
 }

@@ -22,9 +22,13 @@ class Process : public ::testing::Test {
                                         ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(dir_);
   }
-  void TearDown() override { fs::remove_all(dir_); }
+  void TearDown() override {
+    worker_.reset();
+    fs::remove_all(dir_);
+  }
 
-  CellAnswer run(const std::string& solver, double limit_s = 0, bool keep = true) const {
+  CellAnswer run(const std::string& solver, double limit_s = 0, bool keep = true) {
+    if (!worker_) worker_ = std::make_unique<CellWorker>(FAULTY_CHILD, dir_ / "scratch");
     CellRequest r;
     r.scenario =
         nlohmann::json::parse(R"({"name": "fall", "why": "falls in a test", "cloth": {"grid": [3, 3], "size_m": [1, 1],
@@ -37,7 +41,7 @@ class Process : public ::testing::Test {
     r.protocol = "quick";
     r.limit_s = limit_s;
     if (keep) r.out = dir_;
-    return run_in_process(r, FAULTY_CHILD, dir_ / "scratch");
+    return worker_->run(r);
   }
   CellRecord file(const std::string& solver) const {
     const std::string cell = "fall-" + solver + "__" + solver + "__default";
@@ -45,6 +49,7 @@ class Process : public ::testing::Test {
   }
 
   fs::path dir_;
+  std::unique_ptr<CellWorker> worker_;
 };
 
 TEST_F(Process, AWellBehavedSolverIsStable) {
@@ -118,8 +123,30 @@ TEST_F(Process, WithoutAFolderNothingIsKept) {
   for (const auto& entry : fs::directory_iterator(dir_)) EXPECT_EQ(entry.path().filename(), "scratch");
 }
 
+TEST_F(Process, OneChildTakesManyCellsAndIsReplacedAfterAFault) {
+  EXPECT_EQ(run("falls", 0, false).outcome.status, "ok");
+  EXPECT_EQ(run("nan", 0, false).outcome.status, "not_finite");
+  EXPECT_EQ(run("falls", 0, false).outcome.status, "ok");
+  EXPECT_EQ(worker_->children(), 1);
+  EXPECT_EQ(run("loses-device", 0, false).outcome.status, "device_lost");
+  EXPECT_EQ(run("falls", 0, false).outcome.status, "ok");
+  EXPECT_EQ(worker_->children(), 2);
+  // Once in a child with a past, once in one without.
+  EXPECT_EQ(run("crashes", 0, false).outcome.status, "crashed");
+  EXPECT_EQ(worker_->children(), 3);
+  EXPECT_EQ(run("falls", 0, false).outcome.status, "ok");
+  EXPECT_EQ(worker_->children(), 4);
+}
+
+TEST_F(Process, LastWordsAreOfTheCellThatFailed) {
+  EXPECT_EQ(run("says", 0, false).outcome.status, "ok");
+  const CellAnswer a = run("hangs", 0.5, false);
+  EXPECT_EQ(a.outcome.status, "timed_out");
+  EXPECT_EQ(a.outcome.message.find("something else"), std::string::npos) << a.outcome.message;
+}
+
 TEST(Child, AProgramThatIsNotThereIsAnError) {
-  EXPECT_THROW(run_child({"/no/such/program"}, 1, fs::temp_directory_path() / "clothbench-no-program.txt"), Error);
+  EXPECT_THROW(Child({"/no/such/program"}, fs::temp_directory_path() / "clothbench-no-program.txt"), Error);
 }
 
 }  // namespace

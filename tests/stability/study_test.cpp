@@ -7,6 +7,7 @@
 #include <set>
 
 #include "clothbench/error.hpp"
+#include "report/across_runs.hpp"
 #include "report/stability.hpp"
 #include "results/store.hpp"
 #include "runner/stability_study.hpp"
@@ -111,6 +112,58 @@ TEST_F(StabilityStudy, RunsEveryCellAndOneCrashIsOneRow) {
   ASSERT_EQ(failures.rows.size(), 2u);
   EXPECT_NE(failures.rows[1][3].find("crashed"), std::string::npos);
   EXPECT_NE(stability_csv(cells).find("crashed,failed,F8"), std::string::npos);
+}
+
+TEST_F(StabilityStudy, ManyProcessesGiveWhatOneGives) {
+  const Study study = load_study((dir_ / "maps.json").string());
+  run_stability_maps(study, options(false));
+  const json alone = maps();
+  StabilityOptions many = options(false);
+  many.jobs = 4;
+  const StabilityCounts counts = run_stability_maps(study, many);
+  EXPECT_EQ(maps(), alone);
+  EXPECT_EQ(counts.stable, 6);
+  EXPECT_EQ(counts.failed, 6);
+}
+
+TEST_F(StabilityStudy, RunsAreComparedWithOneAnother) {
+  study_json_.erase("maps");
+  study_json_["solvers"] = {{{"solver", "falls"}}, {{"solver", "nan"}}};
+  study_json_["scenes"] = {
+      {{"file", "thrown.json"},
+       {"axes",
+        {{{"key", "stability"}, {"values", {{{"case", "S26"}, {"judged", {"F0"}}}}}, {"labels", {"repeat"}}},
+         {{"key", "cloth.start.seed"}, {"values", {0, 0, 1}}, {"labels", {"0", "again", "1"}}}}}}};
+  for (const double scale : {1.0, 1024.0})
+    study_json_["scenes"].push_back(
+        {{"file", "thrown.json"},
+         {"axes",
+          {{{"key", "stability"}, {"values", {{{"case", "S24"}, {"judged", {"F0"}}}}}, {"labels", {"scale"}}},
+           {{"key", "cloth.start.noise_m"}, {"values", {0}}, {"labels", {"still"}}},
+           {{"key", "gravity_m_per_s2"}, {"values", {{0, -scale, 0}}}, {"labels", {scale == 1 ? "g1" : "g1024"}}},
+           {{"key", "cloth.size_m"}, {"values", {{scale, scale}}}, {"labels", {scale == 1 ? "m" : "km"}}}}}});
+  write("maps.json", study_json_);
+  StabilityOptions many = options(false);
+  many.jobs = 3;
+  run_stability_cells(load_study((dir_ / "maps.json").string()), many);
+  std::vector<CellRecord> cells;
+  for (const auto& entry : fs::directory_iterator(dir_ / "out"))
+    if (entry.path().extension() == ".h5" || entry.path().extension() == ".part") {
+      cells.push_back(read_cell_summary(entry.path()));
+      cells.back().file = entry.path().string();
+    }
+  ASSERT_EQ(cells.size(), 10u);
+  int found = 0;
+  for (const AcrossRuns& a : across_runs(cells)) {
+    SCOPED_TRACE(a.case_name + " " + a.solver + ": " + a.text);
+    EXPECT_TRUE(a.judged());
+    EXPECT_EQ(a.kept(), a.solver == "falls");
+    EXPECT_EQ(a.value == 0, a.solver == "falls");
+    EXPECT_EQ(a.text.find("other seeds") != std::string::npos, a.case_name == "S26" && a.solver == "falls");
+    ++found;
+  }
+  EXPECT_EQ(found, 3) << "both of S26, and of S24 the one that has something to compare with";
+  EXPECT_EQ(across_table(across_runs(cells)).rows.size(), 4u);
 }
 
 TEST_F(StabilityStudy, MapsEndInOneNumberASolver) {

@@ -165,6 +165,13 @@ std::vector<double> initial_velocities(const Scene&);
 /// Y of a structural or shear edge [N/m], of the cell it lies in or (across u) the mean of its two; empty = inextensible.
 std::optional<double> membrane_stiffness(const Scene&, const struct Edge&);
 
+/// The cell a structural or shear edge belongs to [m]: its side along the edge (along u for a diagonal) and the side across,
+/// which for an edge along v is the mean of its two columns'. An edge on the border carries half of it.
+struct EdgeCell {
+  double along_m = 0, across_m = 0;
+};
+EdgeCell edge_cell(const Cloth&, const struct Edge&);
+
 /// Turn [rad] from one row on the cylinder to the next, of a sheet that starts draped. Needs drape_radius_m > du/2.
 double drape_turn_rad(const Cloth&);
 /// Where row `i` of a draped sheet lies [m] that has run `offset_m` towards u1, middle line of the sheet.

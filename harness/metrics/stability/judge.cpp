@@ -54,6 +54,15 @@ std::vector<Edge> structural(const Cloth& c) {
 
 constexpr unsigned bit(int k) { return 1u << k; }
 
+/// Strain of the diagonals as energy: a shear of g strains them by g/2 and stores G g^2/2, G = 3/8 Y; told over Y/2.
+double shear_square(const Scene& scene, const std::vector<double>& x) {
+  if (!scene.needs.has(Feature::Shear)) return 0;
+  double squares = 0;
+  const std::vector<Edge> all = edges(scene.cloth, EdgeKind::Shear);
+  for (const Edge& e : all) squares += std::pow(length(minus(at(x, e.b), at(x, e.a))) / e.rest_m - 1, 2);
+  return 1.5 * squares / static_cast<double>(all.size());
+}
+
 }  // namespace
 
 StabilityJudge::StabilityJudge(const MetricContext& context)
@@ -124,7 +133,7 @@ void StabilityJudge::judge_motion(int frame, const ClothState& state, const Stra
   const Bounds& base = bounds_[0];
   const auto set_base = [&] {
     const double area = scene_.cloth.width_m * scene_.cloth.height_m;
-    energy_base_J_ = visible_energy(state) + 0.5 * stiffness_ * area * strain.rms * strain.rms;
+    energy_base_J_ = visible_energy(state) + 0.5 * stiffness_ * area * (strain.rms * strain.rms + shear_square(scene_, state.position));
     work_base_J_ = b.work_J;
   };
   if (frame == 0) {

@@ -219,7 +219,10 @@ void stretch(float least) {
     bool is = goes_on(lane * K + k) && sum > 0.0 && square > 0.0;
     float per_l = inversesqrt(square), l = square * per_l;
     g[k] = is ? e * per_l : vec3(0.0);
-    link_diagonal[k] = is ? sum + max(alpha, least * max(w[k], next.w)) : 1.0;
+    // A link torn to several times its length between held vertices gives way bit by bit: at once, its multiplier would throw
+    // the rest of the chain, whose pull across itself overshoots.
+    float firm = kElastic || least == 0.0 ? least : max(least, 4.0 * (l / rest - 5.0));
+    link_diagonal[k] = is ? sum + max(alpha, firm * max(w[k], next.w)) : 1.0;
     link_right[k] = is ? rest - l : 0.0;
 #ifdef KEEP_MULTIPLIERS
     if (kElastic && is && iteration > 0u)

@@ -23,6 +23,9 @@ class Buffer {
   void* mapped() const { return mapped_; }  ///< host buffers only
 
  private:
+  void create();
+  void release();
+
   std::shared_ptr<Device> device_;
   std::string name_;
   VkDeviceSize bytes_;

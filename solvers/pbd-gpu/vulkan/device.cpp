@@ -100,7 +100,12 @@ std::vector<DeviceInfo> Device::list() {
   VkInstance instance = VK_NULL_HANDLE;
   if (vkCreateInstance(&info, nullptr, &instance) != VK_SUCCESS) return {};
   std::vector<DeviceInfo> all;
-  for (VkPhysicalDevice p : physical_devices(instance)) all.push_back(describe(p));
+  try {
+    for (VkPhysicalDevice p : physical_devices(instance)) all.push_back(describe(p));
+  } catch (...) {
+    vkDestroyInstance(instance, nullptr);
+    throw;
+  }
   vkDestroyInstance(instance, nullptr);
   return all;
 }

@@ -17,12 +17,19 @@ Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std
   if (const Profile* profile = device_->profile())
     if (const std::string why = breach(*profile, needs_of(code_, specialization)); !why.empty())
       throw Error(fmt::format("kernel {}: does not run under device profile {}: {}", name_, profile->name, why));
-  create_layout(push_bytes);
-  create_set();
-  create_pipeline(specialization);
+  try {
+    create_layout(push_bytes);
+    create_set();
+    create_pipeline(specialization);
+  } catch (...) {  // no destructor runs then
+    release();
+    throw;
+  }
 }
 
-Kernel::~Kernel() {
+Kernel::~Kernel() { release(); }
+
+void Kernel::release() {
   vkDestroyPipeline(device_->handle(), pipeline_, nullptr);
   vkDestroyDescriptorPool(device_->handle(), pool_, nullptr);
   vkDestroyPipelineLayout(device_->handle(), layout_, nullptr);

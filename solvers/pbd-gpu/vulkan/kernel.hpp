@@ -33,6 +33,7 @@ class Kernel {
 
  private:
   void create_layout(std::uint32_t push_bytes);
+  void release();
   void create_set();
   void create_pipeline(const std::vector<std::uint32_t>& specialization);
 
