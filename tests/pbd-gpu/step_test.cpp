@@ -274,18 +274,26 @@ TEST_F(Gpu, OneFrameAgreesWithDoublePrecision) {
       const auto paper = make("paper");
       paper->load(s);
       expect_close(m, after(*paper, s, 1), 1 / s.time.dt(), "paper " + what);
-      // With more iterations the sheet, let go from 7 % of stretch, is back and buckling by the end of the frame: a one-ulp
-      // change of the start already moves it by 1e-6 m in double.
+      // The sheet, let go from 7 % of stretch, may be back and buckling by the end of the frame. How far a last bit of single
+      // precision at the start then moves it in double is what nobody can be asked to be closer than.
       for (const auto& [substeps, iterations] : {std::pair{10, 1}, {4, 2}}) {
         m = start(s);
+        Model nudged = m;
+        for (std::size_t i = 0; i < m.x.size(); ++i)
+          for (std::size_t k = 0; k < 3; ++k)
+            if (m.w[i] > 0) nudged.x[i][k] += ((i + k) % 2 == 0 ? 6e-8 : -6e-8) * std::abs(nudged.x[i][k]);
         LineModel(s, m, false).frame(substeps, iterations);
+        LineModel(s, nudged, false).frame(substeps, iterations);
+        double moved = 0;
+        for (std::size_t i = 0; i < m.x.size(); ++i) moved = std::max(moved, length(m.x[i] - nudged.x[i]));
+        ASSERT_LE(moved, 1e-3) << what << ": nothing would be tested";
         // In turns: a pipeline takes a CPU device a good part of a second to make.
         nlohmann::json settings = {{"substeps", substeps}, {"iterations", iterations}};
         settings.update(variants()[turn++ % variants().size()]);
         const auto xpbd = make("xpbd", settings);
         xpbd->load(s);
         expect_close(m, after(*xpbd, s, 1), substeps / s.time.dt(), "xpbd " + what + settings.dump(),
-                     3e-5);
+                     std::max(3e-5, 10 * moved));
       }
     }
 }
