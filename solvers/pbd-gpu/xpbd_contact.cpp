@@ -212,6 +212,7 @@ void XpbdContact::add_kernels() {
          {read(clusters_), read(boxes_), read(triangles_), or_none(c.standing.positions),
           or_none(c.moving.start_positions), or_none(c.moving.positions), read(candidates_), read(reaches_)})
       colliders.push_back(b);
+  lanes_ = lanes();
   const std::vector<std::uint32_t> counts = {c.planes.count,
                                              c.spheres.count,
                                              c.boxes.count,
@@ -221,7 +222,6 @@ void XpbdContact::add_kernels() {
                                              samples_,
                                              scene_.motion.empty() ? 0u : 1u,
                                              lanes_};
-  lanes_ = lanes();
   const std::size_t shuffles = lanes_ > 1 ? 1 : 0, mesh = meshes ? 1 : 0;
   constexpr auto kPush = static_cast<std::uint32_t>(sizeof(ContactConstants));
   if (moving_clusters_ > 0)
