@@ -129,12 +129,20 @@ CODE(contact_candidates)
 #include "contact_candidates.inc"
 }
 ;
+CODE(contact_candidates_shuffle)
+#include "contact_candidates_shuffle.inc"
+}
+;
 CODE(contact_candidates_counted)
 #include "contact_candidates_counted.inc"
 }
 ;
 CODE(contact_samples)
 #include "contact_samples.inc"
+}
+;
+CODE(contact_samples_shuffle)
+#include "contact_samples_shuffle.inc"
 }
 ;
 CODE(contact_samples_counted)
@@ -145,6 +153,10 @@ CODE(contact_samples_mesh)
 #include "contact_samples_mesh.inc"
 }
 ;
+CODE(contact_samples_mesh_shuffle)
+#include "contact_samples_mesh_shuffle.inc"
+}
+;
 CODE(contact_samples_mesh_counted)
 #include "contact_samples_mesh_counted.inc"
 }
@@ -153,12 +165,20 @@ CODE(contact_vertices)
 #include "contact_vertices.inc"
 }
 ;
+CODE(contact_vertices_shuffle)
+#include "contact_vertices_shuffle.inc"
+}
+;
 CODE(contact_vertices_counted)
 #include "contact_vertices_counted.inc"
 }
 ;
 CODE(contact_vertices_mesh)
 #include "contact_vertices_mesh.inc"
+}
+;
+CODE(contact_vertices_mesh_shuffle)
+#include "contact_vertices_mesh_shuffle.inc"
 }
 ;
 CODE(contact_vertices_mesh_counted)
@@ -268,11 +288,13 @@ SHADER(kSatisfyCubeCollisions, satisfy_cube_collisions);
 SHADER(kSatisfyCapsuleCollisions, satisfy_capsule_collisions);
 SHADER(kSatisfyMeshCollisions, satisfy_mesh_collisions);
 SHADER(kContactBoxes, contact_boxes);
-SHADER(kContactCandidates, contact_candidates);
-SHADER(kContactSamples, contact_samples);
-SHADER(kContactSamplesMesh, contact_samples_mesh);
-SHADER(kContactVertices, contact_vertices);
-SHADER(kContactVerticesMesh, contact_vertices_mesh);
+// Bytes are counted without shuffles: what lanes load together counts once.
+#define SHUFFLED(id) {#id "_shuffle", {id##_shuffle, sizeof id##_shuffle}, {id##_counted, sizeof id##_counted}}
+const Shader kContactCandidates[2] = {CODES(contact_candidates), SHUFFLED(contact_candidates)};
+const Shader kContactSamples[2][2] = {{CODES(contact_samples), SHUFFLED(contact_samples)},
+                                      {CODES(contact_samples_mesh), SHUFFLED(contact_samples_mesh)}};
+const Shader kContactVertices[2][2] = {{CODES(contact_vertices), SHUFFLED(contact_vertices)},
+                                       {CODES(contact_vertices_mesh), SHUFFLED(contact_vertices_mesh)}};
 #define LINES(constant, id) \
   const Shader constant[2][2] = {{CODES(id), CODES(id##_keep)}, {CODES(id##_shuffle), CODES(id##_shuffle_keep)}}
 LINES(kLineFrame, line_frame);

@@ -12,8 +12,10 @@ struct Shader {
 namespace shaders {
 extern const Shader kApplyExternalForces, kDampVelocities, kApplyExplicitEuler, kProjectConstraintDeltas,
     kProjectConstraintDeltasNative, kAverageConstraintDeltas, kUpdatePositions, kSkinMesh, kSkinMeshKeepStart, kMoveGrips,
-    kSatisfySphereCollisions, kSatisfyCubeCollisions, kSatisfyCapsuleCollisions, kSatisfyMeshCollisions, kContactBoxes,
-    kContactCandidates, kContactSamples, kContactSamplesMesh, kContactVertices, kContactVerticesMesh;
+    kSatisfySphereCollisions, kSatisfyCubeCollisions, kSatisfyCapsuleCollisions, kSatisfyMeshCollisions, kContactBoxes;
+
+/// By whether there are meshes [0] and whether lanes share a point by shuffles [1].
+extern const Shader kContactCandidates[2], kContactSamples[2][2], kContactVertices[2][2];
 
 /// By whether subgroups exchange by shuffles [0] and multipliers are kept [1].
 extern const Shader kLineFrame[2][2], kLinePass[2][2];

@@ -31,6 +31,9 @@ std::vector<std::uint8_t> bytes_of(const std::vector<T>& items) {
 /// off the middle of a cell, where there is no point that could feel it.
 constexpr double kBorder = 0.72;
 
+/// A bit for each word of clusters, in words.
+constexpr std::uint32_t blocks_of(std::size_t words) { return static_cast<std::uint32_t>((words + 31) / 32); }
+
 double longer_side(const Cloth& c) { return std::max(c.du(), c.dv()); }
 
 void split(const std::vector<Vec3>& centroids, std::vector<std::uint32_t>::iterator first,
@@ -192,7 +195,7 @@ void XpbdContact::add_meshes() {
   clusters_ = &solver_.add_buffer("collider clusters", clusters.size() * sizeof(MeshCluster), bytes_of(clusters));
   boxes_ = &solver_.add_buffer("collider cluster boxes", boxes.size() * sizeof(ClusterBox), bytes_of(boxes));
   triangles_ = &solver_.add_buffer("collider triangles", triangles.size() * sizeof(uvec4), bytes_of(triangles));
-  candidates_ = &solver_.add_buffer("contact candidates", n * words * 4);
+  candidates_ = &solver_.add_buffer("contact candidates", n * (words + blocks_of(words)) * 4);
   reaches_ = &solver_.add_buffer("contact reaches", n * sizeof(vec4));
 }
 
@@ -209,6 +212,7 @@ void XpbdContact::add_kernels() {
          {read(clusters_), read(boxes_), read(triangles_), or_none(c.standing.positions),
           or_none(c.moving.start_positions), or_none(c.moving.positions), read(candidates_), read(reaches_)})
       colliders.push_back(b);
+  lanes_ = lanes();
   const std::vector<std::uint32_t> counts = {c.planes.count,
                                              c.spheres.count,
                                              c.boxes.count,
@@ -216,7 +220,9 @@ void XpbdContact::add_kernels() {
                                              scene_.needs.has(Feature::Friction) ? 1u : 0u,
                                              standing_clusters_,
                                              samples_,
-                                             scene_.motion.empty() ? 0u : 1u};
+                                             scene_.motion.empty() ? 0u : 1u,
+                                             lanes_};
+  const std::size_t shuffles = lanes_ > 1 ? 1 : 0, mesh = meshes ? 1 : 0;
   constexpr auto kPush = static_cast<std::uint32_t>(sizeof(ContactConstants));
   if (moving_clusters_ > 0)
     find_boxes_ = &solver_.add_kernel(stage_broad_, shaders::kContactBoxes,
@@ -228,21 +234,34 @@ void XpbdContact::add_kernels() {
                                       sizeof(BoxConstants));
   if (meshes)
     find_candidates_ = &solver_.add_kernel(
-        stage_broad_, shaders::kContactCandidates,
+        stage_broad_, shaders::kContactCandidates[shuffles],
         {read(&x_), read(&v_), read(clusters_), read(boxes_), {candidates_, Access::Write}, {reaches_, Access::Write}},
-        kPush, {standing_clusters_, moving_clusters_});
+        kPush, {standing_clusters_, moving_clusters_, lanes_});
   if (samples_ > 0) {
     std::vector<vulkan::Binding> b = {read(&x_), read(&v_), read(side_), {corrections_, Access::Write}};
     b.insert(b.end(), colliders.begin(), colliders.end());
     b.push_back({sample_side_, Access::ReadWrite});
-    sample_ = &solver_.add_kernel(stage_contact_, meshes ? shaders::kContactSamplesMesh : shaders::kContactSamples, b,
-                                  kPush, counts);
+    sample_ = &solver_.add_kernel(stage_contact_, shaders::kContactSamples[mesh][shuffles], b, kPush, counts);
   }
   std::vector<vulkan::Binding> b = {
       {&x_, Access::ReadWrite}, {&v_, Access::ReadWrite}, {side_, Access::ReadWrite}, or_none(corrections_)};
   b.insert(b.end(), colliders.begin(), colliders.end());
-  vertices_ = &solver_.add_kernel(stage_contact_, meshes ? shaders::kContactVerticesMesh : shaders::kContactVertices, b,
-                                  kPush, counts);
+  vertices_ = &solver_.add_kernel(stage_contact_, shaders::kContactVertices[mesh][shuffles], b, kPush, counts);
+}
+
+/// A point looks round alone where threads are few or work together anyway (a CPU's lanes are points); on a discrete GPU a
+/// small cloth's points do not fill the device, and one thread would read triangle after triangle, each read waiting for the last.
+std::uint32_t XpbdContact::lanes() const {
+  const vulkan::Device& d = solver_.vulkan_device();
+  const auto wish = solver_.settings()["contact_lanes"].get<std::uint32_t>();
+  const std::uint32_t most =
+      solver_.count_bytes_ || !solver_.settings()["shuffles"].get<bool>() ? 1 : std::max(1u, d.shuffled_lanes());
+  if (wish != 0) return std::min(wish, most);
+  if (!d.is_discrete()) return 1;
+  constexpr std::uint32_t kMeshLanes = 16, kShapeLanes = 8;
+  const ColliderBuffers& c = colliders_;
+  const std::uint32_t shapes = c.planes.count + c.spheres.count + c.boxes.count + c.capsules.count;
+  return std::min(most, clusters_ != nullptr ? kMeshLanes : shapes >= kShapeLanes ? kShapeLanes : 1);
 }
 
 ContactConstants XpbdContact::constants(double dt_s, int substeps) const {
@@ -271,8 +290,8 @@ void XpbdContact::record_frame(double dt_s, int substeps) {
     solver_.dispatch(stage_broad_, *find_boxes_, moving_clusters_, BoxConstants{standing_clusters_, moving_clusters_},
                      {16 * moving + 112 * t, 32 * moving});
   const ContactConstants k = constants(dt_s, substeps);
-  solver_.dispatch(stage_broad_, *find_candidates_, scene_.cloth.vertex_count(), k,
-                   {n * (32 + 16 * moving + 48 * all), n * (16 + 4.0 * k.words)});
+  solver_.dispatch(stage_broad_, *find_candidates_, lanes_ * scene_.cloth.vertex_count(), k,
+                   {n * (32 + 16 * moving + 48 * all), n * (16 + 4.0 * (k.words + blocks_of(k.words)))});
 }
 
 void XpbdContact::record_substep(int s, int substeps, double dt_s) {
@@ -283,7 +302,7 @@ void XpbdContact::record_substep(int s, int substeps, double dt_s) {
   // What is read and written whatever the cloth does; colliders that come near cost more.
   const double shapes = 32.0 * colliders_.planes.count + 32.0 * colliders_.spheres.count +
                         80.0 * colliders_.boxes.count + 64.0 * colliders_.capsules.count;
-  const double around = shapes + (clusters_ != nullptr ? 16 + 4.0 * k.words : 0.0);
+  const double around = shapes + (clusters_ != nullptr ? 16 + 4.0 * blocks_of(k.words) : 0.0);
   if (samples_ > 0) {
     Traffic t;
     for (std::size_t family = 0; family < 3; ++family)
@@ -294,7 +313,7 @@ void XpbdContact::record_substep(int s, int substeps, double dt_s) {
         t.read_B += samples_ * (32 + (any_free ? 80 + around : 0.0));
         t.write_B += samples_ * (any_free ? 48.0 : 0.0);
       }
-    solver_.dispatch(stage_contact_, *sample_, 3 * samples_ * n, k, t);
+    solver_.dispatch(stage_contact_, *sample_, lanes_ * 3 * samples_ * n, k, t);
   }
   Traffic t;
   for (std::size_t i = 0; i < n; ++i) {
@@ -304,7 +323,7 @@ void XpbdContact::record_substep(int s, int substeps, double dt_s) {
     t.read_B += 16 + (w[i] > 0 ? 32 + 16 * beside + around : 0.0);
     t.write_B += w[i] > 0 ? 48 : 16;
   }
-  solver_.dispatch(stage_contact_, *vertices_, n, k, t);
+  solver_.dispatch(stage_contact_, *vertices_, lanes_ * n, k, t);
 }
 
 }  // namespace clothbench::pbd_gpu

@@ -41,6 +41,7 @@ class XpbdContact {
   void add_meshes();
   void add_sides(Vec3 origin_m);
   void add_kernels();
+  std::uint32_t lanes() const;
   ContactConstants constants(double dt_s, int substeps) const;
 
   GpuSolver& solver_;
@@ -48,6 +49,7 @@ class XpbdContact {
   const ColliderBuffers& colliders_;
   const vulkan::Buffer &x_, &v_;
   const std::uint32_t samples_;  ///< an edge
+  std::uint32_t lanes_ = 1;      ///< threads that look round for one point
   std::uint32_t standing_clusters_ = 0, moving_clusters_ = 0, moving_triangles_ = 0;
   int stage_broad_ = -1, stage_contact_ = -1;
   const vulkan::Buffer *side_ = nullptr, *sample_side_ = nullptr, *corrections_ = nullptr;

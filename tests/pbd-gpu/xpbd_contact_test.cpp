@@ -56,20 +56,24 @@ Scene falling(int columns, int rows) {
 
 void expect_close(const Scene& s, int substeps, int samples, int frames, const std::string& what) {
   ContactReference reference(s, substeps, static_cast<int>(samples_needed(s, static_cast<std::uint32_t>(samples))));
-  const auto solver =
-      make_xpbd(complete_settings(xpbd_info(), {{"substeps", substeps}, {"contact_samples", samples}}), {-1, true});
-  solver->load(s);
-  ClothState state;
+  std::vector<std::unique_ptr<GpuSolver>> solvers;
+  for (const int lanes : {1, 8})
+    solvers
+        .emplace_back(make_xpbd(complete_settings(xpbd_info(), {{"substeps", substeps}, {"contact_samples", samples}, {"contact_lanes", lanes}}),
+                                {-1, true}))
+        ->load(s);
+  std::vector<ClothState> states(solvers.size());
   for (int f = 0; f < frames; ++f) {
     reference.frame(f);
-    state = after_frame(*solver, s, f);
+    for (std::size_t k = 0; k < solvers.size(); ++k) states[k] = after_frame(*solvers[k], s, f);
   }
   EXPECT_GT(reference.heeded, 0) << what;
-  for (std::size_t i = 0; i < reference.x.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_NEAR(state.position[3 * i + k], reference.x[i][static_cast<long>(k)], 1e-5) << what << " vertex " << i;
-      EXPECT_NEAR(state.velocity[3 * i + k], reference.v[i][static_cast<long>(k)], 1e-3) << what << " vertex " << i;
-    }
+  for (const ClothState& state : states)
+    for (std::size_t i = 0; i < reference.x.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(state.position[3 * i + k], reference.x[i][static_cast<long>(k)], 1e-5) << what << " vertex " << i;
+        EXPECT_NEAR(state.velocity[3 * i + k], reference.v[i][static_cast<long>(k)], 1e-3) << what << " vertex " << i;
+      }
 }
 
 TEST_F(Gpu, ContactAgreesWithDoublePrecisionKindByKind) {

@@ -27,16 +27,20 @@ void heed(Touch t, inout vec3 vel) {
   touched = true;
 }
 
-/// Where the point is at the substep's end; `vel` is its velocity.
-vec3 advance(vec3 from, vec3 to, uint owner, inout vec3 vel) {
+/// Where the point is at the substep's end; `vel` is its velocity. Points that are not `wanted` stay at `to`.
+vec3 advance(vec3 from, vec3 to, uint owner, bool wanted, inout vec3 vel) {
   at = from;
   left = to - from;
   now = p.begin;
   part = p.part;
   heeded = vec3(0.0);
   touched = false;
+  bool done = !wanted;
+  vec3 end = to;
   for (uint k = 0u; k < kSteps; ++k) {
-    look_round(owner);
+    if (!ANY(!done)) return end;
+    look_round(owner, !done);
+    if (done) continue;
     bool first = heeded == vec3(0.0);
     // At first any need counts: what many small substeps fall is below the tolerance, and a cloth would creep down a slope
     // that holds it.
@@ -47,18 +51,25 @@ vec3 advance(vec3 from, vec3 to, uint owner, inout vec3 vel) {
       if (by_nearest) heed(nearest, vel); else heed(other, vel);
       // What stands still is free of a way shorter than the distance to the nearest of it. Else: is it free now?
       float spare = nearest.gap + (1.0 - kKeep) * nearest.margin;
-      if (MOVING == 0u && !crowded && spare > 0.0 && dot(left, left) < spare * spare) return at + left;
+      if (MOVING == 0u && !crowded && spare > 0.0 && dot(left, left) < spare * spare) {
+        end = at + left;
+        done = true;
+      }
       continue;
     }
     // Nothing in the way: not by the sum, from + (to - from) is not `to` in its last digit.
-    if (k == 0u && free_part == 1.0) return to;
+    if (k == 0u && free_part == 1.0) {
+      done = true;
+      continue;
+    }
     at += free_part * left;
     now += free_part * part;
     left *= 1.0 - free_part;
     part *= 1.0 - free_part;
     heeded = vec3(0.0);
-    if (free_part == 1.0) return at;
+    // An unfinished search counts as a hit: the point goes no further than what is next to it.
+    end = free_part == 1.0 ? at : at + part * nearest.delta;
+    done = free_part == 1.0;
   }
-  // An unfinished search counts as a hit: the point goes no further than what is next to it.
-  return at + part * nearest.delta;
+  return end;
 }

@@ -36,6 +36,9 @@ const float kTaken = 0.9;       // of the free way, the rest is left for roundin
 const float kOther = 0.8;       // cosine above which two normals are one contact's: neighbours in a nearly flat mesh
 const float kFar = 1e30;
 
+#define LANES_ID 9
+#include "lanes.glsl"
+
 /// One convex piece of a collider as one point of the cloth sees it.
 struct Touch {
   float gap;             // distance beyond the margin
@@ -69,17 +72,17 @@ void consider(float d, vec3 n, vec3 delta, float margin, float friction) {
 vec3 direction(vec3 d, float l, vec3 otherwise) { return l > 0.0 ? d / l : otherwise; }
 
 void consider_shapes() {
-  for (uint k = 0u; k < PLANES; ++k) {
+  for (uint k = lane(); k < PLANES; k += LANES) {
     PlaneShape s = LOAD(32u, planes, k);
     consider(dot(at, s.normal.xyz) - s.normal.w, s.normal.xyz, vec3(0.0), s.margin, s.friction);
   }
-  for (uint k = 0u; k < SPHERES; ++k) {
+  for (uint k = lane(); k < SPHERES; k += LANES) {
     SphereShape s = LOAD(32u, spheres, k);
     vec3 d = at - s.center.xyz;
     float l = length(d);
     consider(l - s.radius, direction(d, l, vec3(0.0, 1.0, 0.0)), vec3(0.0), s.margin, s.friction);
   }
-  for (uint k = 0u; k < BOXES; ++k) {
+  for (uint k = lane(); k < BOXES; k += LANES) {
     BoxShape s = LOAD(80u, boxes, k);
     mat3 axes = mat3(s.axis_x.xyz, s.axis_y.xyz, s.axis_z.xyz);
     vec3 local = (at - s.center.xyz) * axes, half_extent = vec3(s.axis_x.w, s.axis_y.w, s.axis_z.w);
@@ -90,7 +93,7 @@ void consider_shapes() {
     vec3 n = l > 0.0 ? max(beyond, 0.0) * way / l : face * mix(vec3(-1.0), vec3(1.0), greaterThanEqual(local, vec3(0.0)));
     consider(l > 0.0 ? l : deepest, axes * n, vec3(0.0), s.margin, s.friction);
   }
-  for (uint k = 0u; k < CAPSULES; ++k) {
+  for (uint k = lane(); k < CAPSULES; k += LANES) {
     CapsuleShape s = LOAD(64u, capsules, k);
     vec3 a = mix(s.a0.xyz, s.a1.xyz, now), ab = mix(s.b0.xyz, s.b1.xyz, now) - a;
     float squared = dot(ab, ab), t = squared > 0.0 ? clamp(dot(at - a, ab) / squared, 0.0, 1.0) : 0.0;
@@ -155,34 +158,73 @@ void consider_triangle(uvec4 corners, bool moving, float reach, float margin, fl
            w.x * da + w.y * db + w.z * dc, margin, friction);
 }
 
+/// How far from the point a triangle of a cluster may be that can concern it.
+float reach_of(float margin, float cluster_way, float way) {
+  return way + (1.0 + kSlack) * max(margin, max(p.least_margin_m, p.border_margin_m)) + part * cluster_way;
+}
+
 /// `owner`: the vertex whose list of clusters holds all that the point can meet in this frame.
-void consider_meshes(uint owner) {
+void consider_meshes(uint owner, bool wanted) {
   float way = length(left);
-  for (uint word = 0u; word < p.words; ++word) {
-    uint bits = LOAD4(candidates, word * p.columns * p.rows + owner);
-    while (bits != 0u) {
-      uint k = 32u * word + uint(findLSB(bits));
-      bits &= bits - 1u;
-      ClusterBox box = LOAD(32u, cluster_boxes, k);
-      MeshCluster cluster = LOAD16(clusters, k);
-      vec3 apart = max(max(box.low.xyz - at, at - box.high.xyz), 0.0);
-      float reach = way + (1.0 + kSlack) * max(cluster.margin, max(p.least_margin_m, p.border_margin_m)) + part * box.low.w;
-      if (dot(apart, apart) > reach * reach) continue;
-      for (uint t = 0u; t < cluster.count; ++t)
-        consider_triangle(LOAD16(triangles, cluster.first + t), k >= STANDING_CLUSTERS, reach, cluster.margin,
-                          cluster.friction);
+  uint n = p.columns * p.rows, blocks = (p.words + 31u) / 32u;
+  for (uint block = 0u; block < blocks; ++block) {
+    uint words = wanted ? LOAD4(candidates, block * n + owner) : 0u;
+    while (ANY(words != 0u)) {
+      uint first = 0u, bits = 0u, near = 0u;
+      if (words != 0u) {
+        uint word = 32u * block + uint(findLSB(words));
+        words &= words - 1u;
+        first = 32u * word;
+        bits = LOAD4(candidates, (blocks + word) * n + owner) & own_bits();
+      }
+      for (; bits != 0u; bits &= bits - 1u) {
+        uint k = first + uint(findLSB(bits));
+        ClusterBox box = LOAD(32u, cluster_boxes, k);
+        vec3 apart = max(max(box.low.xyz - at, at - box.high.xyz), 0.0);
+        float reach = reach_of(LOAD16(clusters, k).margin, box.low.w, way);
+        if (!(dot(apart, apart) > reach * reach)) near |= bits & (~bits + 1u);
+      }
+      for (near = or_of_lanes(near); near != 0u; near &= near - 1u) {
+        uint k = first + uint(findLSB(near));
+        MeshCluster cluster = LOAD16(clusters, k);
+        float reach = reach_of(cluster.margin, LOAD16_OF(cluster_boxes[k].low).w, way);
+        for (uint t = lane(); t < cluster.count; t += LANES)
+          consider_triangle(LOAD16(triangles, cluster.first + t), k >= STANDING_CLUSTERS, reach, cluster.margin,
+                            cluster.friction);
+      }
     }
   }
 }
 #endif
 
-void look_round(uint owner) {
+#ifdef SHUFFLES
+Touch touch_of(uint from, Touch t) {
+  return Touch(subgroupShuffle(t.gap, from), subgroupShuffle(t.need, from), subgroupShuffle(t.margin, from),
+               subgroupShuffle(t.friction, from), subgroupShuffle(t.n, from), subgroupShuffle(t.delta, from));
+}
+
+/// What every lane has found becomes what the point has found.
+void agree() {
+  if (LANES == 1u) return;
+  free_part = least_of_lanes(free_part);
+  Touch own = nearest;
+  nearest = touch_of(lane_with(least_of_lanes(own.gap), own.gap), own);
+  crowded = crowded || (own.gap < kSlack * own.margin && dot(own.n, nearest.n) < kOther);
+  crowded = or_of_lanes(crowded ? 1u : 0u) != 0u;
+  if (ANY(other.gap < kFar)) other = touch_of(lane_with(least_of_lanes(other.gap), other.gap), other);
+}
+#endif
+
+void look_round(uint owner, bool wanted) {
   nearest = Touch(kFar, 0.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
   other = nearest;
   free_part = 1.0;
   crowded = false;
-  consider_shapes();
+  if (wanted) consider_shapes();
 #ifdef MESHES
-  consider_meshes(owner);
+  consider_meshes(owner, wanted);
+#endif
+#ifdef SHUFFLES
+  agree();
 #endif
 }

@@ -31,7 +31,7 @@ vec3 within(vec3 q, vec3 center, float radius) {
 }
 
 void main() {
-  uint s = item(), n = p.columns * p.rows;
+  uint s = item() / LANES, n = p.columns * p.rows;
   if (s >= 3u * SAMPLES * n) return;
   uint family = s / (SAMPLES * n), i = s % n;
   float t = float(s / n % SAMPLES + 1u) / float(SAMPLES + 1u);
@@ -49,8 +49,8 @@ void main() {
   from = distance(from, side_a) < p.sample_reach_m ? from : side_a;
   to = within(to, reach.xyz, reach.w + p.sample_reach_m);
 #endif
-  touched = false;
-  vec3 end = dot(to, to) < kFar ? advance(from, to, i, vel) : to;
+  vec3 end = advance(from, to, i, dot(to, to) < kFar, vel);
+  if (lane() != 0u) return;
   // Both ends move as the point shall, or the free one by as much more as it is far: a sheet that comes down flat is not
   // deformed, as it would be if shares followed masses, which are halved on the border.
   float share = a.w == 0.0 ? 1.0 / t : b.w == 0.0 ? 1.0 / (1.0 - t) : 1.0;

@@ -49,11 +49,11 @@ void gather_samples(uint i) {
 }
 
 void main() {
-  uint i = item();
+  uint i = item() / LANES;
   if (i >= p.columns * p.rows) return;
   vec4 to = LOAD16(x, i);
   if (to.w == 0.0) {
-    STORE16(side, i, to);
+    if (lane() == 0u) STORE16(side, i, to);
     return;
   }
   vec3 vel = LOAD16(v, i).xyz, from = LOAD16(side, i).xyz;
@@ -69,7 +69,8 @@ void main() {
   if (length(way) > reach.w) to.xyz = reach.xyz + way * (reach.w / length(way));
 #endif
   // A vertex that is no number stays none, for the runner to find.
-  if (dot(to.xyz, to.xyz) < kFar) to.xyz = advance(from, to.xyz, i, vel);
+  to.xyz = advance(from, to.xyz, i, dot(to.xyz, to.xyz) < kFar, vel);
+  if (lane() != 0u) return;
   STORE16(x, i, to);
   STORE16(v, i, vec4(vel, 0.0));
   STORE16(side, i, to);

@@ -219,14 +219,18 @@ void stretch(float least) {
     bool is = goes_on(lane * K + k) && sum > 0.0 && square > 0.0;
     float per_l = inversesqrt(square), l = square * per_l;
     g[k] = is ? e * per_l : vec3(0.0);
-    // A link torn to several times its length between held vertices gives way bit by bit: at once, its multiplier would throw
-    // the rest of the chain, whose pull across itself overshoots.
-    float firm = kElastic || least == 0.0 ? least : max(least, 4.0 * (l / rest - 5.0));
-    link_diagonal[k] = is ? sum + max(alpha, firm * max(w[k], next.w)) : 1.0;
+    // Of chains between held vertices. Strips: tension must not turn a link by more than a substep resolves, or it overshoots and
+    // throws what hangs on it; across itself a chain moves by x += L x, L = dlambda w / l times a second difference, so dlambda w / l
+    // is held below 1. In sheets diagonals hold a kink. An inextensible link torn to several times its length gives way bit by bit.
+    float firm = least;
+    if (least != 0.0 && kElastic && !kShears) firm = max(least, l / rest - 1.0);
+    if (least != 0.0 && !kElastic) firm = max(least, 4.0 * (l / rest - 5.0));
+    float soft = max(alpha, firm * max(w[k], next.w));
+    link_diagonal[k] = is ? sum + soft : 1.0;
     link_right[k] = is ? rest - l : 0.0;
 #ifdef KEEP_MULTIPLIERS
     if (kElastic && is && iteration > 0u)
-      link_right[k] -= alpha * LOAD4(link_multipliers, family * COLUMNS * ROWS + index_of(vertex(lane * K + k)));
+      link_right[k] -= soft * LOAD4(link_multipliers, family * COLUMNS * ROWS + index_of(vertex(lane * K + k)));
 #endif
   }
   exchange(vec4(g[K - 1u], 0.0), 1u, below, none);
