@@ -5,9 +5,14 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/budget.sh
 
-build() {
-  cmake --preset ci >build/configure.log 2>&1 || { tail -30 build/configure.log; return 1; }
+# Argument: whether files are compiled eight at a time, half the work of a first build and more than it for every later one.
+compile() {
+  cmake --preset ci -DCMAKE_UNITY_BUILD="$1" -DCMAKE_UNITY_BUILD_BATCH_SIZE=8 >build/configure.log 2>&1 || { tail -30 build/configure.log; return 1; }
   cmake --build --preset ci -j "${JOBS:-2}"
+}
+build() {
+  [ "${CLOTHBENCH_UNITY:-}" != 1 ] || ! compile ON || return 0
+  compile OFF
 }
 tests() { ctest --test-dir build/release --output-on-failure -j "${JOBS:-2}" "${selection[@]}"; }
 
