@@ -50,7 +50,7 @@ void read_orientation(const JsonAt& at, HandKey& key) {
 }
 
 HandKey read_key(const JsonAt& at, const HandKey* before) {
-  at.only({"time_s", "pose", "blend", "position_m", "rotation_deg", "orientation", "grip"});
+  at.only({"time_s", "pose", "blend", "position_m", "rotation_deg", "orientation", "grip", "sweep"});
   HandKey key = before ? *before : HandKey{};
   const JsonAt time = at.key("time_s");
   key.time_s = time.number();
@@ -65,6 +65,8 @@ HandKey read_key(const JsonAt& at, const HandKey* before) {
   read_orientation(at, key);
   const auto grip = at.maybe("grip");
   key.grip = grip && grip->boolean();
+  const auto sweep = at.maybe("sweep");
+  key.sweep = sweep && sweep->boolean();
   return key;
 }
 
@@ -95,6 +97,24 @@ HandTrack parse_hand_track(const std::string& text, const std::string& source) {
 
 HandTrack read_hand_track(const std::filesystem::path& path) {
   return parse_hand_track(read_text(path), path.string());
+}
+
+HandTrack retimed(HandTrack track, double speed_m_per_s) {
+  if (!(speed_m_per_s > 0)) throw Error(fmt::format("hand track: expected a speed above 0, not {} m/s", speed_m_per_s));
+  double shift_s = 0;
+  bool any = false;
+  for (std::size_t i = 0; i + 1 < track.keys.size(); ++i) {
+    const HandKey& key = track.keys[i];
+    const double before_s = track.keys[i + 1].time_s - (key.time_s - shift_s), way = (track.keys[i + 1].position_m - key.position_m).norm();
+    if (key.sweep && !(way > 0)) throw Error(fmt::format("hand track: key {} is a sweep, but the next key is in the same place", i));
+    const double takes_s = key.sweep ? way / speed_m_per_s : before_s;
+    any = any || key.sweep;
+    shift_s += takes_s - before_s;
+    track.keys[i + 1].time_s += shift_s;
+  }
+  if (!any) throw Error("hand track: none of its keys is a \"sweep\", so there is nothing to go at another speed");
+  if (!(track.duration_s() <= kMostSeconds)) throw Error(fmt::format("hand track: at {} m/s it takes {} s, more than {}", speed_m_per_s, track.duration_s(), kMostSeconds));
+  return track;
 }
 
 HandSample sample(const HandTrack& track, const Hand& hand, double time_s) {

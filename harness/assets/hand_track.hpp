@@ -18,6 +18,7 @@ struct HandKey {
   Vector position_m = Vector::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   bool grip = false;  ///< holds what the pinch point touches, from this key to the next
+  bool sweep = false;  ///< the way to the next key may be gone at another speed, see `retimed`
 };
 
 /// A hand's way through a scene: keys in order of time, at least one.
@@ -31,12 +32,16 @@ struct HandTrack {
 /// Reads a track, for example
 /// {"hand": "right", "anchor": "palm", "why": "...",
 ///  "keys": [{"time_s": 0, "pose": "relaxed", "blend": {"to": "pinch", "amount": 0.5}, "position_m": [0, 1, 0.1],
-///            "rotation_deg": [0, 0, 0], "grip": false}, ...]}
+///            "rotation_deg": [0, 0, 0], "grip": false, "sweep": false}, ...]}
 /// rotation_deg turns about the world's x, then y, then z axis; "orientation": [x, y, z, w] may stand instead. Without
 /// rotation the fingers point to +y and the palm faces -z. `pose` and rotation, where left out, stay as in the key
 /// before; a first key must have a pose. Throws Error with the file and JSON pointer.
 HandTrack read_hand_track(const std::filesystem::path&);
 HandTrack parse_hand_track(const std::string& text, const std::string& source);
+
+/// The track with its sweeps gone at this speed [m/s], and what comes after them earlier or later by as much. Throws Error
+/// if it has no sweep, one without a way, or would take too long.
+HandTrack retimed(HandTrack, double speed_m_per_s);
 
 struct HandSample {
   HandPose pose;  ///< in the world

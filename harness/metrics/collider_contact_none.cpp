@@ -1,6 +1,7 @@
-// In place of collider_contact.cpp where CGAL's kernel is not to be had, as on a device.
+// In place of collider_contact.cpp and collider_passage.cpp where CGAL's kernel is not to be had, as on a device.
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
+#include "metrics/collider_passage.hpp"
 
 namespace clothbench {
 
@@ -9,5 +10,11 @@ struct ColliderContact::Probes {};
 ColliderContact::ColliderContact(const Scene&) { throw Error("this build has no contact metrics"); }
 ColliderContact::~ColliderContact() = default;
 SceneContact ColliderContact::probe(int, const std::vector<double>&) { throw Error("this build has no contact metrics"); }
+
+struct ColliderPassage::Watch {};
+
+ColliderPassage::ColliderPassage(const Scene&) { throw Error("this build has no contact metrics"); }
+ColliderPassage::~ColliderPassage() = default;
+ScenePassage ColliderPassage::probe(int, const std::vector<double>&) { throw Error("this build has no contact metrics"); }
 
 }  // namespace clothbench

@@ -1,5 +1,6 @@
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
+#include "metrics/collider_passage.hpp"
 
 namespace clothbench {
 
@@ -15,5 +16,11 @@ bool has_inside(const Collider& c) {
 }
 
 bool counts_crossings(const Collider& c) { return c.shape == Collider::Shape::Mesh; }
+
+bool has_centre_line(const Collider& c) {
+  constexpr std::size_t kHandJoints = 25;  // of the WebXR Hand Input module
+  if (c.shape == Collider::Shape::Capsules) return true;
+  return c.shape == Collider::Shape::Mesh && c.mesh->skinned() && c.mesh->joint_count == kHandJoints;
+}
 
 }  // namespace clothbench

@@ -25,6 +25,15 @@ struct SceneContact {
   double depth_m, depth_vertex_m, depth_p99_m, depth_mean_m, area_m2;
 };
 
+/// Where the cloth went past the colliders and how it slides on them, in one frame; collider_passage.hpp. All are NaN if the
+/// cloth is not finite, the first two also if it ever was not, and where no collider has a centre line.
+struct ScenePassage {
+  double wrong_side_fraction;  ///< of the samples' area
+  double wrong_side_samples;   ///< how many vertices and cell centres
+  double touching_fraction;    ///< of the vertices' area
+  double slip_m;               ///< mean way that vertices which touch, now and a frame before, slid on the surface
+};
+
 struct TruthErrors;
 struct StabilityFrame;
 
@@ -34,6 +43,7 @@ struct MetricFrame {
   int index;  ///< 0 = initial state
   const ClothState& state;
   const SceneContact* contact;  ///< null where the scene has no collider
+  const ScenePassage* passage = nullptr;  ///< the same
   const TruthErrors* truth = nullptr;  ///< null where the scene states no truth
   const StabilityFrame* stability = nullptr;  ///< null where the scene is not judged
 };
@@ -76,6 +86,12 @@ double kinetic_energy(const MetricFrame&);
 
 /// Work done against gravity since the start, the sum of -m g . (x - x0) [J].
 double gravity_energy(const MetricFrame&);
+
+/// Root mean square angle [rad] between the normals of neighbouring cells.
+double fold_angle_rms(const MetricFrame&);
+
+/// Of that angle the share at wavelengths of up to two cells, which no smooth fold has: 0 smooth, 1 creased at every line.
+double fold_roughness(const MetricFrame&);
 
 /// Energy less that at the start, over M g L, of scenes that keep it: see energy_rise in truth_errors.hpp.
 double energy_rise(const MetricFrame&);

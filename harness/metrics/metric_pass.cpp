@@ -1,6 +1,7 @@
 #include "metrics/metric_pass.hpp"
 
 #include "metrics/collider_contact.hpp"
+#include "metrics/collider_passage.hpp"
 #include "metrics/stability/judge.hpp"
 #include "metrics/truth_errors.hpp"
 
@@ -12,7 +13,10 @@ MetricPass::MetricPass(const MetricContext& context) : context_(context) {
     wanted_.push_back(&m);
     series_.push_back({m.name, m.units, m.long_name, {}});
   }
-  if (kWithContactMetrics && !context.scene.colliders.empty()) contact_ = std::make_unique<ColliderContact>(context.scene);
+  if (kWithContactMetrics && !context.scene.colliders.empty()) {
+    contact_ = std::make_unique<ColliderContact>(context.scene);
+    passage_ = std::make_unique<ColliderPassage>(context.scene);
+  }
   if (!context.scene.truth_card.empty()) judge_ = std::make_unique<TruthJudge>(context.scene);
   if (!context.scene.stability.name.empty()) stability_ = std::make_unique<StabilityJudge>(context_);
 }
@@ -22,12 +26,15 @@ MetricPass::~MetricPass() = default;
 void MetricPass::add(const ClothState& state) {
   SceneContact contact{};
   if (contact_) contact = contact_->probe(frame_, state.position);
+  ScenePassage passage{};
+  if (passage_) passage = passage_->probe(frame_, state.position);
   TruthErrors truth;
   if (judge_) truth = judge_->judge(frame_, state);
   StabilityFrame stability;
   if (stability_) stability = stability_->judge(frame_, state, contact_ ? &contact : nullptr, judge_ ? &truth : nullptr);
   lost_ = lost_ || (stability.classes & 7u) != 0;
-  const MetricFrame frame{context_, frame_, state, contact_ ? &contact : nullptr, judge_ ? &truth : nullptr, stability_ ? &stability : nullptr};
+  const MetricFrame frame{context_, frame_, state, contact_ ? &contact : nullptr, passage_ ? &passage : nullptr,
+                          judge_ ? &truth : nullptr, stability_ ? &stability : nullptr};
   for (std::size_t m = 0; m < wanted_.size(); ++m) series_[m].values.push_back(wanted_[m]->value(frame));
   ++frame_;
 }

@@ -8,6 +8,7 @@
 namespace clothbench {
 
 class ColliderContact;
+class ColliderPassage;
 class StabilityJudge;
 class TruthJudge;
 
@@ -34,6 +35,7 @@ class MetricPass {
   std::vector<const Metric*> wanted_;
   std::vector<MetricSeries> series_;
   std::unique_ptr<ColliderContact> contact_;  ///< null where there is nothing to touch
+  std::unique_ptr<ColliderPassage> passage_;  ///< the same
   std::unique_ptr<TruthJudge> judge_;         ///< null where the scene states no truth
   std::unique_ptr<StabilityJudge> stability_;  ///< null where the scene is not judged
   bool lost_ = false;

@@ -3,11 +3,14 @@
 #include <algorithm>
 
 #include "metrics/collider_contact.hpp"
+#include "metrics/collider_passage.hpp"
 #include "metrics/stability/judge.hpp"
 #include "metrics/truth_errors.hpp"
 
 namespace clothbench {
 namespace {
+
+constexpr int kFoldCells = 6;  // the filter looks at five neighbouring angles
 
 bool always(const Scene&) { return true; }
 
@@ -36,6 +39,20 @@ bool has_depth(const Scene& s) {
 auto contact(double SceneContact::*field) {
   return [field](const MetricFrame& f) { return f.contact->*field; };
 }
+
+bool can_be_passed(const Scene& s) {
+  return kWithContactMetrics && std::any_of(s.colliders.begin(), s.colliders.end(), has_centre_line);
+}
+
+bool has_friction(const Scene& s) {
+  return kWithContactMetrics && std::any_of(s.colliders.begin(), s.colliders.end(), [](const Collider& c) { return c.friction > 0; });
+}
+
+auto passage(double ScenePassage::*field) {
+  return [field](const MetricFrame& f) { return f.passage->*field; };
+}
+
+bool folds(const Scene& s) { return touches(s) && std::min(s.cloth.columns, s.cloth.rows) >= kFoldCells + 1; }
 
 bool has_truth(const Scene& s) { return !s.truth_card.empty(); }
 
@@ -80,6 +97,13 @@ const std::vector<Metric>& metrics() {
       {"depth_p99_m", "m", "depth that 99 % of the penetrating area keeps below", has_depth, contact(&C::depth_p99_m)},
       {"depth_mean_m", "m", "mean depth of the penetrating area", has_depth, contact(&C::depth_mean_m)},
       {"penetrating_area_m2", "m2", "area of the cloth inside colliders", has_depth, contact(&C::area_m2)},
+      {"wrong_side_fraction", "1", "share of the cloth on the wrong side of a moving collider's centre line", can_be_passed,
+       passage(&ScenePassage::wrong_side_fraction)},
+      {"wrong_side_samples", "1", "vertices and cell centres on the wrong side", can_be_passed, passage(&ScenePassage::wrong_side_samples)},
+      {"touching_fraction", "1", "share of the cloth within the margin of a collider", touches, passage(&ScenePassage::touching_fraction)},
+      {"slip_m", "m", "mean way that touching vertices slid on the surface in the frame", has_friction, passage(&ScenePassage::slip_m)},
+      {"fold_angle_rms_rad", "rad", "root mean square angle between the normals of neighbouring cells", folds, fold_angle_rms},
+      {"fold_roughness", "1", "share of that angle at wavelengths of up to two cells", folds, fold_roughness},
       {"truth_error_e2", "1", "RMS distance from the truth on the material lattice, over the longer side", has_truth, from_truth(&T::e2)},
       {"truth_error_max", "1", "greatest distance from the truth on the material lattice, over the longer side", has_truth,
        from_truth(&T::greatest)},

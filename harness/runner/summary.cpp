@@ -7,6 +7,7 @@
 #include "metrics/stability/judge.hpp"
 #include "metrics/truth_errors.hpp"
 #include "runner/cell.hpp"
+#include "runner/contact_summary.hpp"
 
 namespace clothbench {
 namespace {
@@ -160,6 +161,7 @@ std::map<std::string, double> summarise(const CellSpec& spec, const Plan& plan, 
   s["frame_pipelined_median_s"] = median(pipelined);
   s["frame_device_median_s"] = median(device);
   summarise_pass(record.accuracy, spec.scene->time, s);
+  s.merge(summarise_contact(*spec.scene, record.accuracy));
   s.merge(summarise_truth(*spec.scene, record.accuracy));
   s.merge(summarise_stability(*spec.scene, record.accuracy, record.outcome));
   for (const auto& [name, value] : spec.scene_values) s[name] = value;

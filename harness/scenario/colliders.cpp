@@ -192,7 +192,14 @@ class Reader {
   }
 
   Moving moving(const json& j) {
-    const assets::HandTrack track = assets::read_hand_track(track_file(j["track"].get<std::string>()));
+    assets::HandTrack track = assets::read_hand_track(track_file(j["track"].get<std::string>()));
+    if (j.contains("speed_m_per_s")) {
+      try {
+        track = assets::retimed(std::move(track), j["speed_m_per_s"].get<double>());
+      } catch (const Error& e) {
+        refuse("/speed_m_per_s", e.what());
+      }
+    }
     return {assets::open_hand(assets(), track.side), track};
   }
 

@@ -68,6 +68,10 @@ std::vector<Variant> expand(const json& axes, const std::string& pointer, const 
     if (axis["values"].size() != axis["labels"].size())
       throw Error(fmt::format("{}: {}/axes/{}/labels: expected one label a value, {}; found {}", source, pointer, a,
                               axis["values"].size(), axis["labels"].size()));
+    for (const auto& [key, values] : axis["with"].items())
+      if (values.size() != axis["values"].size())
+        throw Error(fmt::format("{}: {}/axes/{}/with/{}: expected one value each of the axis, {}; found {}", source, pointer, a, key,
+                                axis["values"].size(), values.size()));
     std::vector<Variant> next;
     for (const Variant& v : all)
       for (std::size_t k = 0; k < axis["values"].size(); ++k) {
@@ -75,6 +79,7 @@ std::vector<Variant> expand(const json& axes, const std::string& pointer, const 
         w.labels.push_back(axis["labels"][k].get<std::string>());
         w.suffix += "-" + w.labels.back();
         w.overrides.push_back(axis["key"].get<std::string>() + "=" + axis["values"][k].dump());
+        for (const auto& [key, values] : axis["with"].items()) w.overrides.push_back(key + "=" + values[k].dump());
         next.push_back(std::move(w));
       }
     all = std::move(next);

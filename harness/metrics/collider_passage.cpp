@@ -1,0 +1,281 @@
+#include "metrics/collider_passage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "metrics/collider_contact.hpp"
+#include "metrics/contact/surface.hpp"
+#include "metrics/contact/wrong_side.hpp"
+
+namespace clothbench {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kTouchShare = 1e-3;  // of the cloth's shorter side, beyond the margin
+
+using contact::Bone;
+using contact::Nearest;
+using contact::Point;
+using contact::WrongSide;
+
+Point<3> point(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+/// A point of a hand's centre line that moves with one joint.
+struct MedialPoint {
+  std::size_t joint;
+  Point<3> at_rest;
+};
+
+/// First and last joints of the fingers, in the order of the WebXR Hand Input module.
+constexpr std::array<std::array<std::size_t, 2>, 5> kFingers = {{{1, 4}, {5, 9}, {10, 14}, {15, 19}, {20, 24}}};
+
+double weight_of(const ColliderMesh& m, std::size_t vertex, std::size_t joint) {
+  double sum = 0;
+  for (std::size_t k = 0; k < 4; ++k)
+    if (m.joints[vertex][k] == joint) sum += static_cast<double>(m.weights[vertex][k]);
+  return sum;
+}
+
+/// The middle of the flesh round each joint's bone, its vertices weighted as skinning weights them; half-way on to the tip
+/// at the end, where there is flesh to the fingertip but no next bone.
+std::vector<MedialPoint> medial_points(const ColliderMesh& m, std::size_t first, std::size_t last) {
+  std::vector<MedialPoint> out;
+  for (std::size_t j = first; j <= last; ++j) {
+    Point<3> sum = Point<3>::Zero();
+    double all = 0;
+    for (std::size_t v = 0; v < m.vertex_count(); ++v) {
+      const double w = weight_of(m, v, j);
+      sum += w * Point<3>(Point<3>::Map(m.positions.data() + 3 * v));
+      all += w;
+    }
+    if (all >= 1) out.push_back({j, sum / all});
+  }
+  if (out.size() < 2) return {};
+  const std::size_t end = out.back().joint;
+  const Point<3> middle = out.back().at_rest, along = (middle - out[out.size() - 2].at_rest).normalized();
+  double ahead = 0;
+  for (std::size_t v = 0; v < m.vertex_count(); ++v)
+    if (weight_of(m, v, end) >= 0.5) ahead = std::max(ahead, along.dot(Point<3>(Point<3>::Map(m.positions.data() + 3 * v)) - middle));
+  if (ahead > 0) out.push_back({end, middle + 0.5 * ahead * along});
+  return out;
+}
+
+/// The centre line of one collider wherever it is.
+class CentreLine {
+ public:
+  explicit CentreLine(const Collider& c) {
+    if (c.shape != Collider::Shape::Mesh) return;
+    for (const auto& [first, last] : kFingers) {
+      const std::vector<MedialPoint> points = medial_points(*c.mesh, first, last);
+      for (std::size_t k = 1; k < points.size(); ++k) bones_.push_back({points[k - 1], points[k]});
+    }
+  }
+
+  std::vector<Bone> at(const ColliderPose& pose) const {
+    std::vector<Bone> out;
+    for (const Capsule& c : pose.capsules) out.push_back({point(c.a_m), point(c.b_m)});
+    for (const auto& [a, b] : bones_) out.push_back({posed(a, pose), posed(b, pose)});
+    return out;
+  }
+
+ private:
+  static Point<3> posed(const MedialPoint& m, const ColliderPose& pose) {
+    Point<3> out;
+    for (std::size_t row = 0; row < 3; ++row) {
+      const auto& r = pose.joints[m.joint][row];
+      out[static_cast<int>(row)] = r[0] * m.at_rest[0] + r[1] * m.at_rest[1] + r[2] * m.at_rest[2] + r[3];
+    }
+    return out;
+  }
+  std::vector<std::array<MedialPoint, 2>> bones_;
+};
+
+std::vector<contact::Capsule> shapes_of(const Collider& c, const ColliderPose& pose) {
+  if (c.shape == Collider::Shape::Sphere) return {contact::sphere(point(c.center_m), c.radius_m)};
+  std::vector<contact::Capsule> out;
+  for (const Capsule& k : pose.capsules) out.push_back({point(k.a_m), point(k.b_m), k.radius_m});
+  return out;
+}
+
+/// Nearest place of a box's surface, inside it too.
+Nearest nearest_on_box(const Point<3>& p, const Collider& box) {
+  const Point<3> from = p - point(box.center_m);
+  Point<3> at = Point<3>::Zero();
+  double inside = std::numeric_limits<double>::infinity();
+  Point<3> out = Point<3>::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point<3> axis = point(box.axes[k]);
+    const double x = axis.dot(from), h = box.half_extent_m[k];
+    at += std::clamp(x, -h, h) * axis;
+    if (h - std::abs(x) < inside) {
+      inside = h - std::abs(x);
+      out = (x < 0 ? -1 : 1) * axis;
+    }
+  }
+  if (inside >= 0) return {-inside, out, Point<3>::Zero()};
+  const double distance = (from - at).norm();
+  return {distance, (from - at) / distance, Point<3>::Zero()};
+}
+
+}  // namespace
+
+struct ColliderPassage::Watch {
+  explicit Watch(const Scene& s) : scene(s) {
+    tolerance = kTouchShare * std::min(s.cloth.width_m, s.cloth.height_m);
+    const Cloth& c = s.cloth;
+    for (int j = 0; j + 1 < c.rows; ++j)
+      for (int i = 0; i + 1 < c.columns; ++i) {
+        const auto v = static_cast<std::uint32_t>(j * c.columns + i), row = static_cast<std::uint32_t>(c.columns);
+        cells.push_back({v, v + 1, v + row, v + row + 1});
+      }
+    std::vector<double> start = initial_positions(s);
+    vertex_area.assign(c.vertex_count(), 0);
+    for (const auto& cell : cells) {
+      const double area = (c.line_u_m(static_cast<int>(cell[1] % static_cast<std::uint32_t>(c.columns))) -
+                           c.line_u_m(static_cast<int>(cell[0] % static_cast<std::uint32_t>(c.columns)))) * c.dv();
+      cell_area.push_back(area);
+      for (const std::uint32_t v : cell) vertex_area[v] += area / 4;
+    }
+    for (std::size_t k = 0; k < s.colliders.size(); ++k) {
+      lines.emplace_back(s.colliders[k]);
+      sides.emplace_back();
+      still.emplace_back();
+      if (s.colliders[k].mesh && !s.colliders[k].moves()) still[k].emplace(contact::TriangleMeshView{s.colliders[k].mesh->positions, s.colliders[k].mesh->triangles});
+      touched.emplace_back(c.vertex_count(), 0);
+      if (has_centre_line(s.colliders[k])) watch_side(k, start);
+    }
+  }
+
+  const ColliderPose& pose(std::size_t collider, int frame) const {
+    static const ColliderPose nowhere;
+    const FrameMotion* motion = scene.motion_after(frame - 1);
+    return motion ? motion->colliders[collider] : nowhere;
+  }
+
+  void watch_side(std::size_t k, const std::vector<double>& start) {
+    const std::vector<Bone> bones = lines[k].at(pose(k, 0));
+    if (bones.empty()) return;
+    Point<3> middle = Point<3>::Zero(), sheet = Point<3>::Zero();
+    for (const Bone& b : bones) middle += (b[0] + b[1]) / (2.0 * static_cast<double>(bones.size()));
+    for (std::size_t v = 0; v < start.size(); v += 3) sheet += Point<3>(Point<3>::Map(&start[v])) * (3.0 / static_cast<double>(start.size()));
+    const Point<3> normal = point(scene.cloth.axis_u).cross(point(scene.cloth.axis_v)).normalized();
+    const double reach = 4 * (scene.cloth.width_m + scene.cloth.height_m + (middle - sheet).norm());
+    sides[k].emplace(bones, normal.dot(middle - sheet) < 0 ? Point<3>(-normal) : normal, reach, vertex_area.size() + cells.size());
+  }
+
+  std::vector<double> samples_of(const std::vector<double>& x) const {
+    std::vector<double> out = x;
+    for (const auto& cell : cells)
+      for (std::size_t k = 0; k < 3; ++k)
+        out.push_back((x[3 * cell[0] + k] + x[3 * cell[1] + k] + x[3 * cell[2] + k] + x[3 * cell[3] + k]) / 4);
+    return out;
+  }
+
+  void probe_sides(int frame, const std::vector<double>& x, ScenePassage& out) {
+    const bool any = std::any_of(sides.begin(), sides.end(), [](const auto& s) { return s.has_value(); });
+    if (!any) return;
+    out.wrong_side_fraction = out.wrong_side_samples = 0;
+    const std::vector<double> samples = samples_of(x);
+    std::vector<bool> wrong(samples.size() / 3, false);
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      if (!sides[k]) continue;
+      sides[k]->advance(samples, lines[k].at(pose(k, frame)));
+      if (!sides[k]->known()) {
+        out.wrong_side_fraction = out.wrong_side_samples = kNaN;
+        return;
+      }
+      for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] = wrong[i] || sides[k]->wrong(i);
+    }
+    double all = 0, lost = 0;
+    for (std::size_t i = 0; i < wrong.size(); ++i) {
+      const double area = i < vertex_area.size() ? vertex_area[i] : cell_area[i - vertex_area.size()];
+      all += area;
+      if (!wrong[i]) continue;
+      lost += area;
+      out.wrong_side_samples += 1;
+    }
+    out.wrong_side_fraction = lost / all;
+  }
+
+  /// Nearest place of collider k for every vertex within `reach`.
+  std::vector<std::optional<Nearest>> near(std::size_t k, int frame, const std::vector<double>& x, double reach) const {
+    const Collider& c = scene.colliders[k];
+    std::vector<std::optional<Nearest>> out(x.size() / 3);
+    const auto each = [&](auto find) {
+      for (std::size_t v = 0; v < out.size(); ++v) out[v] = find(Point<3>(Point<3>::Map(&x[3 * v])));
+    };
+    const ColliderPose &now = pose(k, frame), &was = pose(k, std::max(frame - 1, 0));
+    if (c.shape == Collider::Shape::Plane) {
+      const Point<3> at = point(c.center_m), normal = point(c.normal);
+      each([&](const Point<3>& p) { return Nearest{normal.dot(p - at), normal, Point<3>::Zero()}; });
+    } else if (c.shape == Collider::Shape::Box) {
+      each([&](const Point<3>& p) { return nearest_on_box(p, c); });
+    } else if (c.shape == Collider::Shape::Mesh) {
+      if (!c.moves()) {
+        each([&](const Point<3>& p) { return (*still[k])(p, reach); });
+        return out;
+      }
+      const std::vector<double> placed = posed_positions(*c.mesh, now), last = posed_positions(*c.mesh, was);
+      const contact::NearSurface surface({placed, c.mesh->triangles});
+      each([&](const Point<3>& p) { return surface(p, reach, last); });
+    } else {
+      const std::vector<contact::Capsule> shapes = shapes_of(c, now), last = shapes_of(c, was);
+      each([&](const Point<3>& p) { return contact::nearest(p, shapes, last); });
+    }
+    return out;
+  }
+
+  void probe_touch(int frame, const std::vector<double>& x, ScenePassage& out) {
+    std::vector<bool> touching(x.size() / 3, false);
+    double slid = 0, kept = 0;
+    for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+      const double reach = scene.colliders[k].margin_m + tolerance;
+      const std::vector<std::optional<Nearest>> found = near(k, frame, x, reach);
+      for (std::size_t v = 0; v < found.size(); ++v) {
+        const bool touch = found[v] && found[v]->distance_m <= reach;
+        if (touch && touched[k][v] != 0 && !before.empty()) {
+          const Point<3> way = Point<3>(Point<3>::Map(&x[3 * v])) - Point<3>(Point<3>::Map(&before[3 * v])) - found[v]->carried_m;
+          slid += (way - found[v]->normal.dot(way) * found[v]->normal).norm();
+          kept += 1;
+        }
+        touched[k][v] = touch;
+        touching[v] = touching[v] || touch;
+      }
+    }
+    double all = 0, part = 0;
+    for (std::size_t v = 0; v < touching.size(); ++v) {
+      all += vertex_area[v];
+      if (touching[v]) part += vertex_area[v];
+    }
+    out.touching_fraction = part / all;
+    out.slip_m = kept > 0 ? slid / kept : 0;
+  }
+
+  const Scene& scene;
+  std::vector<std::array<std::uint32_t, 4>> cells;
+  std::vector<double> vertex_area, cell_area, before;
+  double tolerance = 0;
+  std::vector<CentreLine> lines;
+  std::vector<std::optional<WrongSide>> sides;  ///< one a collider; empty where it has no centre line
+  std::vector<std::vector<char>> touched;       ///< (collider, vertex), at the last frame
+  std::vector<std::optional<contact::NearSurface>> still;  ///< of meshes that stand still
+};
+
+ColliderPassage::ColliderPassage(const Scene& scene) : watch_(std::make_unique<Watch>(scene)) {}
+ColliderPassage::~ColliderPassage() = default;
+
+ScenePassage ColliderPassage::probe(int frame, const std::vector<double>& positions) {
+  ScenePassage out{kNaN, kNaN, kNaN, kNaN};
+  watch_->probe_sides(frame, positions, out);
+  if (!contact::all_finite(positions)) {
+    watch_->before.clear();
+    return out;
+  }
+  watch_->probe_touch(frame, positions, out);
+  watch_->before = positions;
+  return out;
+}
+
+}  // namespace clothbench

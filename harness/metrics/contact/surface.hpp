@@ -1,0 +1,40 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "metrics/contact/shapes.hpp"
+#include "metrics/contact/triangle_mesh.hpp"
+
+namespace clothbench::contact {
+
+/// The surface near a point.
+struct Nearest {
+  double distance_m;   ///< signed for capsules, unsigned for triangles
+  Point<3> normal;     ///< unit, from the surface to the point; zero where the point lies on it or on an axis
+  Point<3> carried_m;  ///< how far that place of the surface moved since the frame before
+};
+
+/// Nearest place of a union of capsules; `before` as many as `now`, which may turn but do not spin about their axes.
+Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before);
+
+/// A triangle mesh whose nearest places are asked for within a bound. The views' arrays must outlive it.
+class NearSurface {
+ public:
+  explicit NearSurface(const TriangleMeshView& now);
+
+  /// The nearest place within `bound_m`, if there is one. `before`: positions at the frame before; empty where the mesh
+  /// stood still.
+  std::optional<Nearest> operator()(const Point<3>& p, double bound_m, std::span<const double> before = {}) const;
+
+ private:
+  TriangleMeshView mesh_;
+  std::vector<std::size_t> source_;  ///< triangles with area, by their place in the mesh
+  BoxTree tree_;
+};
+
+/// Corner weights of the point of a triangle with area that is nearest to p; they are never negative and sum to 1
+/// (Ericson, Real-Time Collision Detection, 5.1.5).
+Point<3> nearest_weights(const Point<3>& p, const Simplex<3>& triangle);
+
+}  // namespace clothbench::contact

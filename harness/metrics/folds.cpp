@@ -1,0 +1,83 @@
+// How smooth the folds are: what of the angle between neighbouring cells changes from one line to the next.
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "metrics/metric.hpp"
+
+namespace clothbench {
+namespace {
+
+/// Below this RMS angle [rad] a sheet is flat, and what is left of its angles rounding.
+constexpr double kFlat_rad = 1e-4;
+
+/// Sums of squares: of the angle between neighbouring cells, everywhere and where the filter has all it looks at, and of what
+/// it lets through.
+struct Angles {
+  double everywhere = 0, all = 0, rough = 0;
+  long steps = 0, count = 0;
+};
+
+std::array<double, 3> cell_normal(const Cloth& c, const std::vector<double>& x, int i, int j) {
+  const auto at = [&](int a, int b, std::size_t k) { return x[3 * static_cast<std::size_t>(b * c.columns + a) + k]; };
+  std::array<double, 3> p{}, q{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    p[k] = at(i + 1, j + 1, k) - at(i, j, k);
+    q[k] = at(i, j + 1, k) - at(i + 1, j, k);
+  }
+  std::array<double, 3> n{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+  const double length = norm(n[0], n[1], n[2]);
+  // A cell without area has no normal; it counts as folded, not as flat.
+  for (double& v : n) v = length == 0 ? 0 : v / length;
+  return n;
+}
+
+/// Along one grid line of cells: steps of the normal from cell to cell, whose length is the angle for small ones, and what of
+/// them a filter lets through that takes out all up to third-order changes: weights (1, -4, 6, -4, 1)/16 pass a
+/// zigzag of two cells whole, 1/4 of a wavelength of 4 and 2 % of one of 8.
+void add_line(const std::vector<std::array<double, 3>>& normals, Angles& sum) {
+  std::vector<std::array<double, 3>> steps;
+  for (std::size_t k = 1; k < normals.size(); ++k)
+    steps.push_back({normals[k][0] - normals[k - 1][0], normals[k][1] - normals[k - 1][1], normals[k][2] - normals[k - 1][2]});
+  for (const auto& s : steps) sum.everywhere += s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+  sum.steps += static_cast<long>(steps.size());
+  for (std::size_t k = 2; k + 2 < steps.size(); ++k) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double rough = (steps[k - 2][a] - 4 * steps[k - 1][a] + 6 * steps[k][a] - 4 * steps[k + 1][a] + steps[k + 2][a]) / 16;
+      sum.rough += rough * rough;
+      sum.all += steps[k][a] * steps[k][a];
+    }
+    ++sum.count;
+  }
+}
+
+Angles angles(const MetricFrame& f) {
+  const Cloth& c = f.context.scene.cloth;
+  const std::vector<double>& x = f.state.position;
+  Angles sum;
+  const auto line = [&](int lines, int length, auto cell) {
+    for (int l = 0; l < lines; ++l) {
+      std::vector<std::array<double, 3>> normals;
+      for (int k = 0; k < length; ++k) normals.push_back(cell(l, k));
+      add_line(normals, sum);
+    }
+  };
+  line(c.rows - 1, c.columns - 1, [&](int l, int k) { return cell_normal(c, x, k, l); });
+  line(c.columns - 1, c.rows - 1, [&](int l, int k) { return cell_normal(c, x, l, k); });
+  return sum;
+}
+
+}  // namespace
+
+double fold_angle_rms(const MetricFrame& f) {
+  const Angles a = angles(f);
+  return std::sqrt(a.everywhere / static_cast<double>(a.steps));
+}
+
+double fold_roughness(const MetricFrame& f) {
+  const Angles a = angles(f);
+  const double all = std::sqrt(a.all / static_cast<double>(a.count));
+  return all < kFlat_rad ? 0 * a.rough : std::sqrt(a.rough / a.all);
+}
+
+}  // namespace clothbench

@@ -1,0 +1,213 @@
+#include "runner/contact_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "metrics/metric.hpp"
+
+namespace clothbench {
+namespace {
+
+constexpr double kSettled_s = 0.5;
+constexpr int kPopFrames = 3;
+
+const std::vector<double>* find(const AccuracyPass& pass, const std::string& name) {
+  for (const MetricSeries& m : pass.metrics)
+    if (m.name == name && !m.values.empty() && m.values.size() == pass.time_s.size()) return &m.values;
+  return nullptr;
+}
+
+double greatest(const std::vector<double>* v, std::size_t from = 0) {
+  if (v == nullptr || from >= v->size()) return kMissing;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t f = from; f < v->size(); ++f) most = max_or_nan(most, (*v)[f]);
+  return most;
+}
+
+/// Mean over time, by trapezoids; NaN if any value is.
+double time_mean(const std::vector<double>& v, const std::vector<double>& t) {
+  if (v.size() < 2) return kMissing;
+  double sum = 0;
+  for (std::size_t f = 1; f < v.size(); ++f) sum += (t[f] - t[f - 1]) * (v[f] + v[f - 1]) / 2;
+  return sum / (t.back() - t.front());
+}
+
+/// Distance [m] of vertex v between two stored frames.
+double moved(const AccuracyPass& pass, std::size_t vertices, std::size_t v, std::size_t from, std::size_t to) {
+  const float *a = &pass.position[3 * (from * vertices + v)], *b = &pass.position[3 * (to * vertices + v)];
+  return norm(static_cast<double>(b[0]) - static_cast<double>(a[0]), static_cast<double>(b[1]) - static_cast<double>(a[1]),
+              static_cast<double>(b[2]) - static_cast<double>(a[2]));
+}
+
+/// Greatest distance that a collider's points cover in a second, from frame to frame; a skinned mesh by some of its vertices.
+double collider_speed(const Scene& scene) {
+  constexpr std::size_t kLooked = 64;
+  double most = 0;
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    const Collider& c = scene.colliders[k];
+    if (!c.moves()) continue;
+    ColliderMesh some;
+    if (c.mesh)
+      for (std::size_t v = 0; v < c.mesh->vertex_count(); v += std::max<std::size_t>(1, c.mesh->vertex_count() / kLooked)) {
+        some.positions.insert(some.positions.end(), &c.mesh->positions[3 * v], &c.mesh->positions[3 * v] + 3);
+        some.joints.push_back(c.mesh->joints[v]);
+        some.weights.push_back(c.mesh->weights[v]);
+        some.joint_count = c.mesh->joint_count;
+      }
+    const auto points = [&](const ColliderPose& pose) {
+      if (c.mesh) return posed_positions(some, pose);
+      std::vector<double> x;
+      for (const Capsule& s : pose.capsules)
+        for (const Vec3& p : {s.a_m, s.b_m}) x.insert(x.end(), p.begin(), p.end());
+      return x;
+    };
+    for (std::size_t f = 1; f < scene.motion.size(); ++f) {
+      const std::vector<double> was = points(scene.motion[f - 1].colliders[k]), is = points(scene.motion[f].colliders[k]);
+      const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
+      for (std::size_t x = 0; x < is.size(); x += 3)
+        most = std::max(most, norm(is[x] - was[x], is[x + 1] - was[x + 1], is[x + 2] - was[x + 2]) / dt);
+    }
+  }
+  return most;
+}
+
+double grip_speed(const Scene& scene) {
+  double most = 0;
+  for (std::size_t f = 1; f < scene.motion.size(); ++f) {
+    const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
+    for (std::size_t g = 0; g < scene.motion[f].grip_position_m.size(); ++g) {
+      const Vec3 &a = scene.motion[f - 1].grip_position_m[g], &b = scene.motion[f].grip_position_m[g];
+      if (scene.motion[f].grip_held[g] != 0) most = std::max(most, norm(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / dt);
+    }
+  }
+  return most;
+}
+
+/// Popping: how far and how fast the cloth goes once a moving collider has left it (the paper's Fig. 8).
+void summarise_popping(const Scene& scene, const AccuracyPass& pass, std::map<std::string, double>& s) {
+  s["pop_displacement_m"] = s["pop_speed_m_per_s"] = s["pop_speed_ratio"] = kMissing;
+  const std::vector<double> *touching = find(pass, "touching_fraction"), *speed = find(pass, "speed_max");
+  const bool moves = std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.moves(); });
+  if (!moves || touching == nullptr || speed == nullptr || !std::isfinite(greatest(touching))) return;
+  std::size_t last = touching->size();
+  while (last > 0 && (*touching)[last - 1] == 0) --last;
+  // Never touched, or touched to the end: nothing was let go.
+  if (last == 0 || last == touching->size()) return;
+  --last;
+  const std::size_t vertices = scene.cloth.vertex_count();
+  double far = 0;
+  for (std::size_t f = last + 1; f < std::min(last + 1 + kPopFrames, pass.time_s.size()); ++f)
+    for (std::size_t v = 0; v < vertices; ++v) far = max_or_nan(far, moved(pass, vertices, v, last, f));
+  s["pop_displacement_m"] = far;
+  s["pop_speed_m_per_s"] = greatest(speed, last + 1);
+  // What may move so fast: what the collider pushed at up to twice its own speed (as off a bat), and what fell as far as the
+  // cloth is long.
+  const Vec3& g = scene.gravity_m_per_s2;
+  const double fall = std::sqrt(2 * norm(g[0], g[1], g[2]) * std::max(scene.cloth.width_m, scene.cloth.height_m));
+  const double limit = std::max(2 * collider_speed(scene), fall);
+  s["pop_speed_ratio"] = limit > 0 ? s["pop_speed_m_per_s"] / limit : kMissing;
+}
+
+/// Frames in which anything is through or inside a collider's surface.
+std::vector<bool> violated(const AccuracyPass& pass) {
+  std::vector<bool> out(pass.time_s.size(), false);
+  for (const char* name : {"contact_length_m", "tunnelled_fraction", "wrong_side_samples"})
+    if (const std::vector<double>* v = find(pass, name))
+      for (std::size_t f = 0; f < out.size(); ++f) out[f] = out[f] || !((*v)[f] == 0);
+  return out;
+}
+
+void summarise_violation(const AccuracyPass& pass, std::map<std::string, double>& s) {
+  s["contact_violated_longest_s"] = s["untangle_s"] = kMissing;
+  if (find(pass, "contact_length_m") == nullptr || pass.time_s.size() < 2) return;
+  const std::vector<bool> bad = violated(pass);
+  // A frame stands for the time up to it.
+  double longest = 0, run = 0, first = kMissing, end = kMissing;
+  for (std::size_t f = 0; f < bad.size(); ++f) {
+    const double dt = f == 0 ? 0 : pass.time_s[f] - pass.time_s[f - 1];
+    run = bad[f] ? run + dt : 0;
+    longest = std::max(longest, run);
+    if (!bad[f]) continue;
+    if (!(first >= 0)) first = pass.time_s[f] - dt;
+    end = pass.time_s[f];
+  }
+  s["contact_violated_longest_s"] = longest;
+  s["untangle_s"] = bad.back() ? std::numeric_limits<double>::infinity() : end - first;
+}
+
+/// Over the last half second: how the cloth trembles (second differences, which a steady drift leaves 0), how it creeps.
+void summarise_rest(const Scene& scene, const AccuracyPass& pass, std::map<std::string, double>& s) {
+  s["rest_jitter_m"] = s["rest_drift_m_per_s"] = s["slip_settled_m"] = kMissing;
+  const std::size_t vertices = scene.cloth.vertex_count(), frames = pass.time_s.size();
+  if (frames != static_cast<std::size_t>(scene.time.frames()) + 1) return;
+  std::size_t from = frames - 1;
+  while (from > 0 && pass.time_s[from - 1] >= pass.time_s.back() - kSettled_s - 0.5 * scene.time.dt()) --from;
+  if (frames - from < 3) return;
+  double jitter = 0, drift = 0;
+  for (std::size_t v = 0; v < vertices; ++v) {
+    for (std::size_t f = from + 1; f + 1 < frames; ++f)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto at = [&](std::size_t frame) { return static_cast<double>(pass.position[3 * (frame * vertices + v) + k]); };
+        const double bend = (at(f + 1) - 2 * at(f) + at(f - 1)) / 2;
+        jitter += bend * bend;
+      }
+    const double way = moved(pass, vertices, v, from, frames - 1);
+    drift += way * way;
+  }
+  const auto n = static_cast<double>(vertices);
+  s["rest_jitter_m"] = std::sqrt(jitter / (n * static_cast<double>(frames - from - 2)));
+  s["rest_drift_m_per_s"] = std::sqrt(drift / n) / (pass.time_s.back() - pass.time_s[from]);
+  if (const std::vector<double>* slip = find(pass, "slip_m")) {
+    s["slip_settled_m"] = 0;
+    for (std::size_t f = from + 1; f < frames; ++f) s["slip_settled_m"] += (*slip)[f];
+  }
+}
+
+}  // namespace
+
+double imposed_speed(const Scene& scene) {
+  const nlohmann::json j = nlohmann::json::parse(scene.json, nullptr, false);
+  double told = 0;
+  for (const char* list : {"colliders", "grips"})
+    if (j.is_object() && j.contains(list))
+      for (const auto& item : j[list])
+        if (item.is_object()) told = std::max(told, item.value("speed_m_per_s", 0.0));
+  if (told > 0) return told;
+  const double seen = std::max(collider_speed(scene), grip_speed(scene));
+  const Vec3& v = scene.cloth.initial_velocity_m_per_s;
+  return seen > 0 ? seen : norm(v[0], v[1], v[2]);
+}
+
+std::map<std::string, double> summarise_contact(const Scene& scene, const AccuracyPass& pass) {
+  std::map<std::string, double> s;
+  if (scene.colliders.empty() && scene.grips.vertices.empty()) return s;
+  s["imposed_speed_m_per_s"] = imposed_speed(scene);
+  if (scene.colliders.empty()) return s;
+  const auto end = [](const std::vector<double>* v) { return v == nullptr ? kMissing : v->back(); };
+  s["wrong_side_samples_max"] = greatest(find(pass, "wrong_side_samples"));
+  s["wrong_side_fraction_max"] = greatest(find(pass, "wrong_side_fraction"));
+  s["wrong_side_fraction_end"] = end(find(pass, "wrong_side_fraction"));
+  s["fold_roughness_end"] = end(find(pass, "fold_roughness"));
+  s["fold_angle_rms_end_rad"] = end(find(pass, "fold_angle_rms_rad"));
+  const std::vector<double>*length = find(pass, "contact_length_m"), *depth = find(pass, "depth_mean_m"), *area = find(pass, "penetrating_area_m2");
+  s["contact_length_mean_m"] = length == nullptr ? kMissing : time_mean(*length, pass.time_s);
+  s["depth_time_mean_m"] = kMissing;
+  if (depth != nullptr && area != nullptr) {
+    std::vector<double> spread;
+    for (std::size_t f = 0; f < depth->size(); ++f) spread.push_back((*depth)[f] * (*area)[f] / (scene.cloth.width_m * scene.cloth.height_m));
+    s["depth_time_mean_m"] = time_mean(spread, pass.time_s);
+  }
+  if (const std::vector<double>* slip = find(pass, "slip_m")) {
+    s["slip_m"] = 0;
+    for (const double way : *slip) s["slip_m"] += way;
+  }
+  summarise_violation(pass, s);
+  summarise_popping(scene, pass, s);
+  summarise_rest(scene, pass, s);
+  return s;
+}
+
+}  // namespace clothbench
