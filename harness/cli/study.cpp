@@ -50,6 +50,7 @@ CellPlan plan_study(const Study& study) {
       }
       const nlohmann::json settings = entries[k]->make ? complete_settings(entries[k]->info, s.settings) : s.settings;
       plan.groups[static_cast<std::size_t>(item.group)].push_back({&item.scene, entries[k], settings, s.label, s.work});
+      plan.groups[static_cast<std::size_t>(item.group)].back().timed = item.timed;
     }
   }
   return plan;

@@ -13,7 +13,7 @@ SceneContact ColliderContact::probe(int, const std::vector<double>&) { throw Err
 
 struct ColliderPassage::Watch {};
 
-ColliderPassage::ColliderPassage(const Scene&) { throw Error("this build has no contact metrics"); }
+ColliderPassage::ColliderPassage(const Scene&, double) { throw Error("this build has no contact metrics"); }
 ColliderPassage::~ColliderPassage() = default;
 ScenePassage ColliderPassage::probe(int, const std::vector<double>&) { throw Error("this build has no contact metrics"); }
 

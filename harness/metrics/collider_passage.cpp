@@ -13,7 +13,8 @@ namespace clothbench {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTouchShare = 1e-3;  // of the cloth's shorter side, beyond the margin
+constexpr double kTouchShare = 1e-3;   // of the cloth's shorter side, beyond the margin
+constexpr double kTouchMargin = 0.1;   // of the margin
 
 using contact::Bone;
 using contact::Nearest;
@@ -66,7 +67,7 @@ std::vector<MedialPoint> medial_points(const ColliderMesh& m, std::size_t first,
 class CentreLine {
  public:
   explicit CentreLine(const Collider& c) {
-    if (c.shape != Collider::Shape::Mesh) return;
+    if (c.shape != Collider::Shape::Mesh || !has_centre_line(c)) return;
     for (const auto& [first, last] : kFingers) {
       const std::vector<MedialPoint> points = medial_points(*c.mesh, first, last);
       for (std::size_t k = 1; k < points.size(); ++k) bones_.push_back({points[k - 1], points[k]});
@@ -122,7 +123,7 @@ Nearest nearest_on_box(const Point<3>& p, const Collider& box) {
 }  // namespace
 
 struct ColliderPassage::Watch {
-  explicit Watch(const Scene& s) : scene(s) {
+  Watch(const Scene& s, double held_at_m) : scene(s), held_at(held_at_m) {
     tolerance = kTouchShare * std::min(s.cloth.width_m, s.cloth.height_m);
     const Cloth& c = s.cloth;
     for (int j = 0; j + 1 < c.rows; ++j)
@@ -231,7 +232,8 @@ struct ColliderPassage::Watch {
     std::vector<bool> touching(x.size() / 3, false);
     double slid = 0, kept = 0;
     for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
-      const double reach = scene.colliders[k].margin_m + tolerance;
+      const double margin = std::max(scene.colliders[k].margin_m, held_at);
+      const double reach = margin + std::max(tolerance, kTouchMargin * margin);
       const std::vector<std::optional<Nearest>> found = near(k, frame, x, reach);
       for (std::size_t v = 0; v < found.size(); ++v) {
         const bool touch = found[v] && found[v]->distance_m <= reach;
@@ -256,14 +258,14 @@ struct ColliderPassage::Watch {
   const Scene& scene;
   std::vector<std::array<std::uint32_t, 4>> cells;
   std::vector<double> vertex_area, cell_area, before;
-  double tolerance = 0;
+  double tolerance = 0, held_at = 0;
   std::vector<CentreLine> lines;
   std::vector<std::optional<WrongSide>> sides;  ///< one a collider; empty where it has no centre line
   std::vector<std::vector<char>> touched;       ///< (collider, vertex), at the last frame
   std::vector<std::optional<contact::NearSurface>> still;  ///< of meshes that stand still
 };
 
-ColliderPassage::ColliderPassage(const Scene& scene) : watch_(std::make_unique<Watch>(scene)) {}
+ColliderPassage::ColliderPassage(const Scene& scene, double held_at_m) : watch_(std::make_unique<Watch>(scene, held_at_m)) {}
 ColliderPassage::~ColliderPassage() = default;
 
 ScenePassage ColliderPassage::probe(int frame, const std::vector<double>& positions) {

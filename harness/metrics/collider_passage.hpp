@@ -14,11 +14,11 @@ bool has_centre_line(const Collider&);
 ///
 /// Samples are the vertices and the centres of the cells, a vertex with its share of area and a cell with its own. A collider
 /// came from the side of the sheet's starting plane on which the middle of its centre line starts. A vertex touches a
-/// collider within its margin and a thousandth of the cloth's shorter side of its surface.
+/// collider up to a tenth beyond the distance at which the solver holds it, or a thousandth of the cloth's shorter side.
 class ColliderPassage {
  public:
-  /// `scene` outlives this.
-  explicit ColliderPassage(const Scene& scene);
+  /// `scene` outlives this. `held_at_m`: where the solver says it holds cloth, if not at the colliders' margins.
+  explicit ColliderPassage(const Scene& scene, double held_at_m = 0);
   ~ColliderPassage();
   ColliderPassage(const ColliderPassage&) = delete;
   ColliderPassage& operator=(const ColliderPassage&) = delete;

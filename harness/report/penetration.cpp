@@ -74,6 +74,10 @@ std::string percent(double v) {
   return v == 0 ? "0" : std::abs(x) < 0.1 ? "<0.1" : significant(x, x < 10 ? 2 : 3);
 }
 
+std::string count(double v) { return std::isfinite(v) ? fmt::format("{:.0f}", v) : "–"; }
+
+std::string number(double v) { return std::isinf(v) ? "never" : significant(v, 2); }
+
 struct Column {
   std::string head;
   std::vector<const char*> names;  ///< summary values it shows
@@ -85,6 +89,10 @@ const std::vector<Column> kContactColumns = {
     {"tunnelled depth [mm]", {"tunnelled_depth_max_m"}, mm},
     {"contour, most / settled [mm]", {"contact_length_max_m", "contact_length_settled_m"}, mm},
     {"depth, vertex / any [mm]", {"depth_vertex_max_m", "depth_max_m"}, mm},
+    {"wrong side [samples]", {"wrong_side_samples_max"}, count},
+    {"crossed, longest [s]", {"contact_violated_longest_s"}, number},
+    {"popping [mm]", {"pop_displacement_m"}, mm},
+    {"popping speed [of limit]", {"pop_speed_ratio"}, number},
     {"strain, most / end [%]", {"stretch_max", "stretch_max_end"}, percent},
 };
 
@@ -206,7 +214,9 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
           "of the "
           "curves in which cloth and colliders cross; settled: the most in the last 0.5 s. Depth: how far the cloth is "
           "inside "
-          "a collider, margin not counted. Strain: of the structural edges. Time: median over the timed frames.",
+          "a collider, margin not counted. Wrong side: vertices and cell centres that a moving hand went through. Crossed: "
+          "longest time with a contour. Popping: greatest way of a vertex within 3 frames after the last contact, and speed over "
+          "the greater of twice the hand's and a fall of the cloth's length. Strain: of the structural edges. Time: median over the timed frames.",
           {{"scene"}}};
   t.rows[0].insert(t.rows[0].end(), solvers.begin(), solvers.end());
   for (const ContactSetUp& u : ups)

@@ -10,6 +10,7 @@
 #include "report/across_runs.hpp"
 #include "report/feature_cost.hpp"
 #include "report/features.hpp"
+#include "report/leak.hpp"
 #include "report/material.hpp"
 #include "report/paths.hpp"
 #include "report/penetration.hpp"
@@ -138,6 +139,7 @@ std::vector<Table> penetration_tables(const std::vector<ContactSetUp>& ups, cons
                                       bool with_costs) {
   if (ups.empty()) return {};
   std::vector<Table> out = {verdict_table(ups)};
+  if (const auto sweeps = speed_sweeps(ups); !sweeps.empty()) out.push_back(leak_table(sweeps));
   for (const ContactSetUp& u : ups) {
     out.push_back(contact_table(u));
     if (with_costs) out.push_back(cost_table(u));
@@ -230,7 +232,7 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     write("penetration.md", "# Penetration\n\n" + head + "\n" + text);
     write("penetration.csv", summary_csv(contact, contact_names()));
     write("penetration.json",
-          nlohmann::json{{"cells", penetration_json(ups)}, {"rooms", room_json(pairs)}}.dump(1) + "\n");
+          nlohmann::json{{"cells", penetration_json(ups)}, {"rooms", room_json(pairs)}, {"first_leaks", leak_json(speed_sweeps(ups))}}.dump(1) + "\n");
     write("penetration-series.csv", series_csv(ups));
   }
   if (!diagrams.empty()) {

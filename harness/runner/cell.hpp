@@ -17,6 +17,7 @@ struct CellSpec {
   std::string setting = "default";
   int work = 0;  ///< on a ladder of settings: how many times the work of its first rung
   std::string over_budget = {};  ///< why it is not run, if so; stored as it is
+  bool timed = true;  ///< false: the accuracy pass alone
   std::map<std::string, double> scene_values = {};  ///< into every cell's summary: what is known of the scene itself
 };
 

@@ -88,7 +88,6 @@ double grip_speed(const Scene& scene) {
 
 /// Popping: how far and how fast the cloth goes once a moving collider has left it (the paper's Fig. 8).
 void summarise_popping(const Scene& scene, const AccuracyPass& pass, std::map<std::string, double>& s) {
-  s["pop_displacement_m"] = s["pop_speed_m_per_s"] = s["pop_speed_ratio"] = kMissing;
   const std::vector<double> *touching = find(pass, "touching_fraction"), *speed = find(pass, "speed_max");
   const bool moves = std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.moves(); });
   if (!moves || touching == nullptr || speed == nullptr || !std::isfinite(greatest(touching))) return;
@@ -121,7 +120,6 @@ std::vector<bool> violated(const AccuracyPass& pass) {
 }
 
 void summarise_violation(const AccuracyPass& pass, std::map<std::string, double>& s) {
-  s["contact_violated_longest_s"] = s["untangle_s"] = kMissing;
   if (find(pass, "contact_length_m") == nullptr || pass.time_s.size() < 2) return;
   const std::vector<bool> bad = violated(pass);
   // A frame stands for the time up to it.
@@ -140,7 +138,6 @@ void summarise_violation(const AccuracyPass& pass, std::map<std::string, double>
 
 /// Over the last half second: how the cloth trembles (second differences, which a steady drift leaves 0), how it creeps.
 void summarise_rest(const Scene& scene, const AccuracyPass& pass, std::map<std::string, double>& s) {
-  s["rest_jitter_m"] = s["rest_drift_m_per_s"] = s["slip_settled_m"] = kMissing;
   const std::size_t vertices = scene.cloth.vertex_count(), frames = pass.time_s.size();
   if (frames != static_cast<std::size_t>(scene.time.frames()) + 1) return;
   std::size_t from = frames - 1;
@@ -166,6 +163,61 @@ void summarise_rest(const Scene& scene, const AccuracyPass& pass, std::map<std::
   }
 }
 
+/// What the hands that hold the cloth pull apart in a frame, over their distance at the start: the most of all pairs of
+/// vertices that lay at least a quarter of the cloth's shorter side apart; at least 1.
+double pulled(const Scene& scene, const std::vector<double>& start, std::size_t frame) {
+  const FrameMotion& m = scene.motion[frame];
+  const double apart = std::min(scene.cloth.width_m, scene.cloth.height_m) / 4;
+  double most = 1;
+  for (std::size_t i = 0; i < scene.grips.vertices.size(); ++i)
+    for (std::size_t k = i + 1; k < scene.grips.vertices.size(); ++k) {
+      if (m.grip_held[i] == 0 || m.grip_held[k] == 0) continue;
+      const double *a = &start[3 * scene.grips.vertices[i]], *b = &start[3 * scene.grips.vertices[k]];
+      const double rest = norm(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+      const Vec3 &p = m.grip_position_m[i], &q = m.grip_position_m[k];
+      if (rest >= apart) most = std::max(most, norm(q[0] - p[0], q[1] - p[1], q[2] - p[2]) / rest);
+    }
+  return most;
+}
+
+/// Whether any hand that holds moves between a frame and the one before.
+bool pulls(const Scene& scene, std::size_t frame) {
+  if (frame == 0) return false;
+  const FrameMotion &was = scene.motion[frame - 1], &is = scene.motion[frame];
+  for (std::size_t g = 0; g < is.grip_held.size(); ++g)
+    if (is.grip_held[g] != 0 && was.grip_position_m[g] != is.grip_position_m[g]) return true;
+  return false;
+}
+
+/// How far the longest edge goes beyond what the hands impose, while they pull, once they hold, and what is left of the
+/// strain a second after they let go (the failure of the paper's Fig. 13).
+void summarise_grips(const Scene& scene, const AccuracyPass& pass, std::map<std::string, double>& s) {
+  const std::vector<double>*most = find(pass, "stretch_max"), *mean = find(pass, "stretch_mean_positive");
+  if (most == nullptr || mean == nullptr || pass.time_s.size() > scene.motion.size()) return;
+  constexpr std::size_t kSettling = 3;  // frames
+  const std::vector<double> start = initial_positions(scene);
+  double all = -1, held = -1;
+  std::size_t moved_at = 0, let_go = 0;
+  for (std::size_t f = 0; f < pass.time_s.size(); ++f) {
+    const auto& holds = scene.motion[f].grip_held;
+    if (std::find(holds.begin(), holds.end(), 1) == holds.end()) break;
+    let_go = f + 1;
+    if (pulls(scene, f)) moved_at = f;
+    const double ratio = (1 + (*most)[f]) / pulled(scene, start, f);
+    all = max_or_nan(all, ratio);
+    // Hands that stand still before they pull are no pull that has ended.
+    if (moved_at == f) held = -1;
+    else if (moved_at > 0 && f >= moved_at + kSettling) held = max_or_nan(held, ratio);
+  }
+  s["grip_edge_ratio_max"] = all == -1 ? kMissing : all;
+  s["grip_edge_ratio_held"] = held == -1 ? kMissing : held;
+  for (std::size_t f = let_go; f < pass.time_s.size(); ++f)
+    if (pass.time_s[f] >= pass.time_s[std::min(let_go, pass.time_s.size() - 1)] + 1 - 1e-9) {
+      s["strain_mean_released"] = (*mean)[f];
+      break;
+    }
+}
+
 }  // namespace
 
 double imposed_speed(const Scene& scene) {
@@ -183,8 +235,14 @@ double imposed_speed(const Scene& scene) {
 
 std::map<std::string, double> summarise_contact(const Scene& scene, const AccuracyPass& pass) {
   std::map<std::string, double> s;
+  for (const char* name : {"imposed_speed_m_per_s", "wrong_side_samples_max", "wrong_side_fraction_max", "wrong_side_fraction_end", "fold_roughness_end",
+                           "fold_angle_rms_end_rad", "contact_length_mean_m", "depth_time_mean_m", "contact_violated_longest_s", "untangle_s",
+                           "pop_displacement_m", "pop_speed_m_per_s", "pop_speed_ratio", "rest_jitter_m", "rest_drift_m_per_s", "slip_m",
+                           "slip_settled_m", "grip_edge_ratio_max", "grip_edge_ratio_held", "strain_mean_released"})
+    s[name] = kMissing;
   if (scene.colliders.empty() && scene.grips.vertices.empty()) return s;
   s["imposed_speed_m_per_s"] = imposed_speed(scene);
+  if (!scene.grips.vertices.empty()) summarise_grips(scene, pass, s);
   if (scene.colliders.empty()) return s;
   const auto end = [](const std::vector<double>* v) { return v == nullptr ? kMissing : v->back(); };
   s["wrong_side_samples_max"] = greatest(find(pass, "wrong_side_samples"));
@@ -194,7 +252,6 @@ std::map<std::string, double> summarise_contact(const Scene& scene, const Accura
   s["fold_angle_rms_end_rad"] = end(find(pass, "fold_angle_rms_rad"));
   const std::vector<double>*length = find(pass, "contact_length_m"), *depth = find(pass, "depth_mean_m"), *area = find(pass, "penetrating_area_m2");
   s["contact_length_mean_m"] = length == nullptr ? kMissing : time_mean(*length, pass.time_s);
-  s["depth_time_mean_m"] = kMissing;
   if (depth != nullptr && area != nullptr) {
     std::vector<double> spread;
     for (std::size_t f = 0; f < depth->size(); ++f) spread.push_back((*depth)[f] * (*area)[f] / (scene.cloth.width_m * scene.cloth.height_m));

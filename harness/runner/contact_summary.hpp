@@ -7,8 +7,8 @@
 
 namespace clothbench {
 
-/// What becomes of contact over the time of an accuracy pass; harness/metrics/README.md has the definitions. Empty for a
-/// scene that neither touches nor holds anything; NaN where a value is not defined or the pass does not tell.
+/// What becomes of contact over the time of an accuracy pass; harness/metrics/README.md has the definitions. Every
+/// name is there; NaN where a value is not defined or the pass does not tell.
 std::map<std::string, double> summarise_contact(const Scene&, const AccuracyPass&);
 
 /// Speed [m/s] that the scene imposes: of the sweep or pull that a hand was told ("speed_m_per_s"), else the greatest of

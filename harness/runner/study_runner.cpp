@@ -87,7 +87,7 @@ class GroupRun {
     for (const bool on_gpu : {true, false}) {
       std::vector<Running*> part;
       for (Running& r : running_)
-        if (r.cell->alive() && r.cell->spec().entry->info.on_gpu == on_gpu && !r.has_trial(k) &&
+        if (r.cell->alive() && r.cell->spec().timed && r.cell->spec().entry->info.on_gpu == on_gpu && !r.has_trial(k) &&
             !r.trials_agree(plan_.rules.agree))
           part.push_back(&r);
       for (std::size_t i = 0; i < part.size(); ++i) {

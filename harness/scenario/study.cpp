@@ -58,6 +58,7 @@ bool chosen(const Words& choice, const Words& labels) {
 struct Variant {
   std::string suffix;
   Words overrides, labels;
+  bool timed = true;
 };
 
 /// Product of the axes, the first varying slowest.
@@ -221,6 +222,7 @@ class Builder {
       const auto labels = item["labels"].get<Words>();
       v.labels.insert(v.labels.end(), labels.begin(), labels.end());
       v.labels.push_back(name + v.suffix);
+      v.timed = item["timed"].get<bool>();
       labels_.insert(v.labels.begin(), v.labels.end());
       if (!quick_.is_null() && !chosen(quick_["scenes"].get<Words>(), v.labels)) continue;
       add_forms(scenario, path.string(), v, pointer);
@@ -254,7 +256,7 @@ class Builder {
         }
         scene.name += v.suffix;
         const int group = group_of(scene);
-        study_.scenes.push_back({std::move(scene), group, {}});
+        study_.scenes.push_back({std::move(scene), group, v.timed, {}});
       }
       Study::Item& item = study_.scenes[at->second];
       item.solvers.push_back(s);

@@ -46,6 +46,7 @@ struct Study {
   struct Item {
     Scene scene;  ///< name = base name and the labels of its axis values
     int group = 0;
+    bool timed = true;                 ///< false: its cells run their accuracy pass alone
     std::vector<std::size_t> solvers;  ///< indices into Study::solvers
   };
   std::string name, why, protocol;

@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include "assets/hand_track.hpp"
+#include "clothbench/error.hpp"
 #include "support.hpp"
 
 namespace clothbench::assets {
@@ -162,6 +163,24 @@ TEST(HandTrack, StretchPullsOutwardsAtItsSpeed) {
       EXPECT_NEAR((palm.linear() * -Vector::UnitZ()).x(), -sign, 1e-3) << "palm to the cloth";
       EXPECT_GT(sign * palm.translation().x(), 0.5) << "hand beside the cloth";
     }
+}
+
+TEST(HandTrack, ASweepIsGoneAtAnotherSpeedAndTheRestComesLater) {
+  const HandTrack track = parse_hand_track(R"({"hand": "right", "keys": [
+    {"time_s": 0, "pose": "relaxed", "position_m": [0, 0, 0]},
+    {"time_s": 1, "position_m": [0, 0, 0], "sweep": true},
+    {"time_s": 2, "position_m": [3, 0, 4]},
+    {"time_s": 2.5, "position_m": [3, 0, 4]},
+    {"time_s": 3, "position_m": [0, 0, 0]}]})", "t");
+  const HandTrack slow = retimed(track, 2);
+  EXPECT_EQ(slow.keys[1].time_s, 1);
+  EXPECT_NEAR(slow.keys[2].time_s, 3.5, 1e-12) << "5 m at 2 m/s";
+  EXPECT_NEAR(slow.keys[3].time_s, 4, 1e-12);
+  EXPECT_NEAR(slow.duration_s(), 4.5, 1e-12);
+  EXPECT_NEAR(retimed(track, 20).duration_s(), 2.25, 1e-12);
+  EXPECT_THROW(retimed(track, 0), Error);
+  EXPECT_THROW(retimed(track, 1e-9), Error) << "longer than a day";
+  EXPECT_THROW(retimed(parse_hand_track(kTwoKeys, "t"), 1), Error) << "no sweep";
 }
 
 }  // namespace

@@ -110,6 +110,41 @@ TEST(Study, SolversChangeScenesForThemselvesAlone) {
   EXPECT_NE(s.scenes[1].group, s.scenes[2].group);
 }
 
+TEST(Study, AnAxisMayChangeOtherKeysAlong) {
+  std::string text = study_text(R"([{"solver":"a"}])");
+  const std::string labels = R"("labels":["8","9x7"]})";
+  const auto with = [&](const std::string& more) {
+    std::string t = text;
+    return t.replace(t.find(labels), labels.size(), R"("labels":["8","9x7"],"with":)" + more + "}");
+  };
+  const Study s = study_of(with(R"({"time.duration_s":[0.25,0.5]})"));
+  EXPECT_EQ(s.scenes[0].scene.time.duration_s, 0.25);
+  EXPECT_EQ(s.scenes[1].scene.time.duration_s, 0.5);
+  EXPECT_NE(message_of(with(R"({"time.duration_s":[0.25]})")).find("/scenes/0/axes/0/with/time.duration_s: expected one value each of the axis, 2; found 1"),
+            std::string::npos);
+}
+
+TEST(Study, SceneFilesMayBeLeftUntimed) {
+  std::string text = study_text(R"([{"solver":"a"}])");
+  EXPECT_TRUE(study_of(text).scenes[0].timed);
+  const std::string shape = R"("labels":["shape"])";
+  const Study s = study_of(text.replace(text.find(shape), shape.size(), shape + R"(,"timed":false)"));
+  EXPECT_TRUE(s.scenes[0].timed);
+  EXPECT_FALSE(s.scenes.back().timed);
+}
+
+// The speed sweeps are part of --full alone, and every one of them loads.
+TEST(Study, PenetrationSweepsSpeedsInFullAlone) {
+  const auto swept = [](StudyLength length) {
+    int n = 0;
+    for (const Study::Item& item : load_study("penetration", {{}, length, Assets::MayBeProcedural}).scenes) n += !item.timed && !item.solvers.empty();
+    return n;
+  };
+  EXPECT_EQ(swept(StudyLength::Quick), 0);
+  EXPECT_EQ(swept(StudyLength::Short), 0);
+  EXPECT_GE(swept(StudyLength::Full), 3 * 4 + 2 * 7 + 7);
+}
+
 TEST(Study, AccuracyPassOfPenetrationIsTheWholeScene) {
   EXPECT_TRUE(std::isinf(study_of(study_text(R"([{"solver":"a"}])", "", "penetration")).accuracy_duration_s));
   EXPECT_EQ(study_of(study_text(R"([{"solver":"a"}])")).accuracy_duration_s, 0.5);
