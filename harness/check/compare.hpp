@@ -37,7 +37,8 @@ struct Checked {
   bool passed() const { return count(Verdict::Failed) == 0; }
 };
 
-/// What of `record` differs from its baseline: the scene, the outcome, the stages, the gated scalars. Where the scene
+/// What of `record` differs from its baseline: the scene, the outcome, the stages, the gated scalars; and whether one of its
+/// trials repeats another. Where the scene
 /// or the outcome differ, the rest is not comparable and left out. Throws Error if the record's scene has no cloth
 /// size.
 std::vector<Finding> compare_cell(const BaselineCell&, const CellRecord& record);

@@ -68,6 +68,18 @@ std::vector<Finding> compare_stages(const BaselineCell& was, const BaselineCell&
            fmt::format("{} stages", is.stages.size()), "", message}};
 }
 
+/// Two trials with the same times frame by frame are one trial twice: a clock of nanoseconds does not repeat itself.
+std::vector<Finding> compare_trials(const CellRecord& r) {
+  for (std::size_t i = 0; i < r.trials.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::vector<double> &a = r.trials[i].frame_wall_s, &b = r.trials[j].frame_wall_s;
+      const bool varies = std::any_of(a.begin(), a.end(), [&](double t) { return t != a.front(); });
+      if (varies && a == b)
+        return {{Verdict::Failed, "trials", "each timed anew", fmt::format("trial {} repeats trial {}", i, j), "", ""}};
+    }
+  return {};
+}
+
 std::string shown(const Gate& g, double v) {
   if (!std::isfinite(v)) return kNotMeasured;
   if (g.rule == Rule::Kept && (v == 0 || v == 1)) return v == 1 ? "kept" : "broken";
@@ -112,7 +124,7 @@ std::vector<Finding> compare_cell(const BaselineCell& was, const CellRecord& rec
              "--update"}};
   std::vector<Finding> out = compare_outcome(was, is, record.outcome.message);
   if (was.status != is.status) return out;
-  for (const auto& part : {compare_stages(was, is), compare_scalars(was, is, length_of(record))})
+  for (const auto& part : {compare_stages(was, is), compare_trials(record), compare_scalars(was, is, length_of(record))})
     out.insert(out.end(), part.begin(), part.end());
   return out;
 }

@@ -87,6 +87,9 @@ double kinetic_energy(const MetricFrame&);
 /// Work done against gravity since the start, the sum of -m g . (x - x0) [J].
 double gravity_energy(const MetricFrame&);
 
+/// Greatest distance [m] of a held vertex from where the hand that holds it has it.
+double grip_error(const MetricFrame&);
+
 /// Root mean square angle [rad] between the normals of neighbouring cells.
 double fold_angle_rms(const MetricFrame&);
 

@@ -102,6 +102,7 @@ const std::vector<Metric>& metrics() {
       {"wrong_side_samples", "1", "vertices and cell centres on the wrong side", can_be_passed, passage(&ScenePassage::wrong_side_samples)},
       {"touching_fraction", "1", "share of the cloth within the margin of a collider", touches, passage(&ScenePassage::touching_fraction)},
       {"slip_m", "m", "mean way that touching vertices slid on the surface in the frame", has_friction, passage(&ScenePassage::slip_m)},
+      {"grip_error_m", "m", "greatest distance of a held vertex from where it is held", [](const Scene& s) { return !s.grips.vertices.empty(); }, grip_error},
       {"fold_angle_rms_rad", "rad", "root mean square angle between the normals of neighbouring cells", folds, fold_angle_rms},
       {"fold_roughness", "1", "share of that angle at wavelengths of up to two cells", folds, fold_roughness},
       {"truth_error_e2", "1", "RMS distance from the truth on the material lattice, over the longer side", has_truth, from_truth(&T::e2)},

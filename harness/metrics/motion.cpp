@@ -46,4 +46,19 @@ double gravity_energy(const MetricFrame& f) {
   return energy;
 }
 
+double grip_error(const MetricFrame& f) {
+  const Scene& scene = f.context.scene;
+  const FrameMotion* motion = scene.motion_after(f.index - 1);
+  double most = 0;
+  // A state that is not finite has no value, held or not.
+  for (const double x : f.state.position) most += 0 * x;
+  for (std::size_t k = 0; motion != nullptr && k < scene.grips.vertices.size(); ++k) {
+    if (motion->grip_held[k] == 0) continue;
+    const double* x = &f.state.position[3 * scene.grips.vertices[k]];
+    const Vec3& at = motion->grip_position_m[k];
+    most = max_or_nan(most, norm(x[0] - at[0], x[1] - at[1], x[2] - at[2]));
+  }
+  return most;
+}
+
 }  // namespace clothbench

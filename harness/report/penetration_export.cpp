@@ -51,6 +51,7 @@ const std::vector<std::string>& contact_names() {
                                                  "rest_drift_m_per_s",
                                                  "fold_roughness_end",
                                                  "fold_angle_rms_end_rad",
+                                                 "grip_error_max_m",
                                                  "grip_edge_ratio_max",
                                                  "grip_edge_ratio_held",
                                                  "strain_mean_released",

@@ -194,6 +194,7 @@ bool pulls(const Scene& scene, std::size_t frame) {
 void summarise_grips(const Scene& scene, const AccuracyPass& pass, std::map<std::string, double>& s) {
   const std::vector<double>*most = find(pass, "stretch_max"), *mean = find(pass, "stretch_mean_positive");
   if (most == nullptr || mean == nullptr || pass.time_s.size() > scene.motion.size()) return;
+  s["grip_error_max_m"] = greatest(find(pass, "grip_error_m"));
   constexpr std::size_t kSettling = 3;  // frames
   const std::vector<double> start = initial_positions(scene);
   double all = -1, held = -1;
@@ -238,7 +239,7 @@ std::map<std::string, double> summarise_contact(const Scene& scene, const Accura
   for (const char* name : {"imposed_speed_m_per_s", "wrong_side_samples_max", "wrong_side_fraction_max", "wrong_side_fraction_end", "fold_roughness_end",
                            "fold_angle_rms_end_rad", "contact_length_mean_m", "depth_time_mean_m", "contact_violated_longest_s", "untangle_s",
                            "pop_displacement_m", "pop_speed_m_per_s", "pop_speed_ratio", "rest_jitter_m", "rest_drift_m_per_s", "slip_m",
-                           "slip_settled_m", "grip_edge_ratio_max", "grip_edge_ratio_held", "strain_mean_released"})
+                           "slip_settled_m", "grip_error_max_m", "grip_edge_ratio_max", "grip_edge_ratio_held", "strain_mean_released"})
     s[name] = kMissing;
   if (scene.colliders.empty() && scene.grips.vertices.empty()) return s;
   s["imposed_speed_m_per_s"] = imposed_speed(scene);

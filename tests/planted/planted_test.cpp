@@ -1,0 +1,81 @@
+// One fault at a time in solver, metrics and records: each must be caught, by what `clothbench check` does with the cell and the
+// same cell of a healthy run as its baseline.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+
+#include "check/compare.hpp"
+#include "trial.hpp"
+
+namespace clothbench {
+namespace {
+
+const Stage& stage(const std::string& name) {
+  static const std::vector<Stage> all = stages();
+  for (const Stage& s : all)
+    if (s.name == name) return s;
+  throw std::runtime_error("no stage " + name);
+}
+
+const CellRecord& healthy(const std::string& name) {
+  static std::map<std::string, CellRecord> known;
+  if (!known.contains(name)) known.emplace(name, run_cell(stage(name)));
+  return known.at(name);
+}
+
+/// What `clothbench check` says of a cell, its failures alone; empty if it lets it pass.
+std::string caught_by(const CellRecord& was, const CellRecord& is) {
+  std::string out;
+  for (const Finding& f : compare_cell(gated_part(was), is))
+    if (f.verdict == Verdict::Failed) out += (out.empty() ? "" : "; ") + f.sentence();
+  return out;
+}
+
+class Planted : public ::testing::Test {
+ protected:
+  // Kernels with faults go into no pipeline cache but this one.
+  static void SetUpTestSuite() { ::setenv("CLOTHBENCH_CACHE", (std::filesystem::temp_directory_path() / "clothbench-planted-cache").c_str(), 1); }
+};
+
+TEST_F(Planted, AHealthyRunPassesTwice) {
+  for (const Stage& s : stages()) {
+    EXPECT_EQ(healthy(s.name).outcome.status, "ok") << s.name << ": " << healthy(s.name).outcome.message;
+    EXPECT_FALSE(healthy(s.name).outcome.expect.starts_with("broken")) << s.name << ": " << healthy(s.name).outcome.expect;
+    EXPECT_EQ(caught_by(healthy(s.name), run_cell(stage(s.name))), "") << s.name;
+  }
+}
+
+TEST_F(Planted, EveryFaultIsCaught) {
+  const std::vector<Fault> all = faults();
+  EXPECT_GE(all.size(), 20u);
+  int missed = 0;
+  for (const Fault& f : all) {
+    std::string caught;
+    try {
+      const CellRecord is = run_cell(stage(f.stage), &f);
+      caught = caught_by(healthy(f.stage), is);
+    } catch (const std::exception& e) {
+      ADD_FAILURE() << f.name << ": " << e.what();
+      continue;
+    }
+    fmt::print("  {:<52} {:<11} {}\n", f.name, f.stage, caught.empty() ? "MISSED" : caught.substr(0, 150));
+    std::fflush(stdout);
+    missed += caught.empty();
+    EXPECT_NE(caught, "") << f.name;
+  }
+  fmt::print("  {} faults, {} caught\n", all.size(), static_cast<int>(all.size()) - missed);
+}
+
+TEST_F(Planted, AFaultThatIsNowhereIsAnError) {
+  Fault gone{"gone", "fall"};
+  gone.shader = ShaderFault{"lines.glsl", "no such text", ""};
+  EXPECT_THROW(run_cell(stage("fall"), &gone), std::runtime_error);
+  gone.shader = ShaderFault{"satisfy_mesh_collisions.comp", "void main() {", "void main() { return;"};
+  EXPECT_THROW(run_cell(stage("fall"), &gone), std::runtime_error) << "no kernel of the run has it";
+}
+
+}  // namespace
+}  // namespace clothbench

@@ -1,0 +1,114 @@
+// Scenes for planted faults: each needs a part of the solver, or has a figure that is known beforehand.
+#include <fmt/format.h>
+
+#include "../metrics/prescribed_solver.hpp"
+#include "scenario/load.hpp"
+#include "trial.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+Stage solved(const std::string& name, Scene scene, int trials = 0) { return {name, std::move(scene), find_solver("xpbd"), trials}; }
+
+Stage told(const std::string& name, const std::string& scene, Path path) {
+  return {name, scene_from_json(json::parse(scene), "planted/" + name), prescribed(std::move(path)), 0};
+}
+
+Scene scene(const std::string& text) { return scene_from_json(json::parse(text), "planted"); }
+
+/// A level cloth of 0.5 m over an open sheet of 200 triangles.
+Scene over_tiles() {
+  std::string positions, corners;
+  for (int j = 0; j <= 10; ++j)
+    for (int i = 0; i <= 10; ++i) positions += fmt::format("{}[{},0,{}]", positions.empty() ? "" : ",", 0.06 * i - 0.3, 0.06 * j - 0.3);
+  for (int j = 0; j < 10; ++j)
+    for (int i = 0; i < 10; ++i) {
+      const int v = 11 * j + i;
+      corners += fmt::format("{}[{},{},{}],[{},{},{}]", corners.empty() ? "" : ",", v, v + 11, v + 12, v, v + 12, v + 1);
+    }
+  return scene(fmt::format(R"({{"name":"tiles","why":"Falls flat onto an open sheet of 200 triangles.",
+    "cloth":{{"grid":[31,31],"size_m":[0.5,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0,-2,0],"pose":{{"center_m":[0.003,0.05,0.002]}}}},
+    "material":{{"membrane_stiffness_N_per_m":1000,"bending_rigidity_N_m":1e-5,"damping_per_s":0.1}},
+    "colliders":[{{"type":"mesh","positions_m":[{}],"triangles":[{}],"margin_m":0.004,"friction":0.3}}],
+    "time":{{"frame_rate_hz":72,"duration_s":0.4}},"expect":{{"outcome":"ok","tunnelled_fraction_max":{{"at_most":0}}}}}})", positions, corners));
+}
+
+const char* const kPushed = R"({"name":"pushed","why":"A capsule pushes a hanging cloth out of its plane and along it.",
+  "cloth":{"grid":[17,17],"size_m":[0.5,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"axis_u":[1,0,0],"axis_v":[0,-1,0]}},
+  "material":{"membrane_stiffness_N_per_m":1000,"bending_rigidity_N_m":1e-5,"damping_per_s":0.1},"pins":[{"edge":"v0"}],
+  "colliders":[{"type":"capsule","center_m":[0.05,0,0.08],"axis":[0,1,0],"length_m":0.2,"radius_m":0.03,"velocity_m_per_s":[-0.1,0,-0.6],"stop_s":0.3,"friction":0.3}],
+  "time":{"frame_rate_hz":72,"duration_s":0.4},
+  "expect":{"outcome":"ok","depth_vertex_max_m":{"at_most":0.001},"wrong_side_samples_max":{"at_most":0}}})";
+
+const char* const kPulled = R"({"name":"pulled","why":"Two bars pull a sheet apart and let go.",
+  "cloth":{"grid":[17,9],"size_m":[0.5,0.25],"areal_density_kg_per_m2":0.2,"sides":"single","pose":{}},
+  "material":{"membrane_stiffness_N_per_m":1000},"gravity_m_per_s2":[0,0,0],
+  "grips":[{"edge":"u0","velocity_m_per_s":[-0.5,0,0],"stop_s":0.2},{"edge":"u1","velocity_m_per_s":[0.5,0,0],"stop_s":0.2}],
+  "time":{"frame_rate_hz":72,"duration_s":0.4},
+  "expect":{"outcome":"ok","grip_edge_ratio_max":{"at_most":1.25},"grip_edge_ratio_held":{"at_most":1.1},"grip_error_max_m":{"at_most":1e-6}}})";
+
+// R = 0.1 m, d = 0.01 m in the last frame: contour 2 pi sqrt(2Rd - d^2), area pi (2Rd - d^2).
+const char* const kPressed = R"({"name":"pressed","why":"A sheet pushed into a sphere.",
+  "cloth":{"grid":[65,65],"size_m":[0.24,0.24],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"center_m":[0,0.2,0]}},
+  "material":{"membrane_stiffness_N_per_m":1000},"colliders":[{"type":"sphere","center_m":[0,0,0],"radius_m":0.1}],
+  "time":{"frame_rate_hz":20,"duration_s":1},
+  "expect":{"outcome":"ok","depth_max_m":{"at_least":0.0099,"at_most":0.0101},"contact_length_max_m":{"at_least":0.2728,"at_most":0.2748},
+            "penetrating_area_max_m2":{"at_least":0.00594,"at_most":0.0060}}})";
+
+// The same into a prism of 96 sides and radius 0.1 m, as wide as the sheet: two lines across.
+const char* const kRolled = R"({"name":"rolled","why":"A sheet pushed into a cylinder made of triangles.",
+  "cloth":{"grid":[33,33],"size_m":[0.24,0.24],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"center_m":[0,0.2,0]}},
+  "material":{"membrane_stiffness_N_per_m":1000},"colliders":[{"type":"cylinder","center_m":[0,0,0],"axis":[0,0,1],"radius_m":0.1,"length_m":0.4}],
+  "time":{"frame_rate_hz":20,"duration_s":1},
+  "expect":{"outcome":"ok","depth_max_m":{"at_least":0.0098,"at_most":0.0101},"contact_length_max_m":{"at_least":0.4799,"at_most":0.4801}}})";
+
+// Half of a curtain of 0.2 m goes through a patch of 0.3 m.
+const char* const kCurtain = R"({"name":"curtain","why":"A curtain lowered half-way through an open patch.",
+  "cloth":{"grid":[21,21],"size_m":[0.2,0.2],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"center_m":[0.003,0.151,0.004],"axis_u":[1,0,0],"axis_v":[0,-1,0]}},
+  "material":{"membrane_stiffness_N_per_m":1000},
+  "colliders":[{"type":"mesh","positions_m":[[-0.15,0,-0.15],[0.15,0,-0.15],[0.15,0,0.15],[-0.15,0,0.15]],"triangles":[[0,3,2],[0,2,1]]}],
+  "time":{"frame_rate_hz":20,"duration_s":1},
+  "expect":{"outcome":"ok","tunnelled_fraction_end":{"at_least":0.45,"at_most":0.55},"contact_length_max_m":{"at_least":0.1999,"at_most":0.2001}}})";
+
+// A capsule comes up into a sheet that stands still: 0.01 m deep in the last frame, 5 mm less the one before.
+const char* const kRising = R"({"name":"rising","why":"A capsule comes up into a sheet that stands still.",
+  "cloth":{"grid":[25,25],"size_m":[0.24,0.24],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{}},
+  "material":{"membrane_stiffness_N_per_m":1000},
+  "colliders":[{"type":"capsule","center_m":[0,-0.24,0],"axis":[0,0,1],"length_m":0.1,"radius_m":0.1,"velocity_m_per_s":[0,0.3,0]}],
+  "time":{"frame_rate_hz":60,"duration_s":0.5},
+  "expect":{"outcome":"ok","depth_max_m":{"at_least":0.0099,"at_most":0.0101}}})";
+
+// From (0.2, 0.1) to (-0.2, -0.1) through a sheet in z = 0: under 0.2 m x 0.3 m of it.
+const char* const kThrough = R"({"name":"through","why":"A finger goes through a sheet that stands still.",
+  "cloth":{"grid":[41,41],"size_m":[1,1],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"axis_u":[1,0,0],"axis_v":[0,-1,0]}},
+  "material":{"membrane_stiffness_N_per_m":1000},
+  "colliders":[{"type":"capsule","center_m":[0.2013,0.0017,0.1],"axis":[0,1,0],"length_m":0.3,"radius_m":0.01,"velocity_m_per_s":[-0.8,0,-0.4]}],
+  "time":{"frame_rate_hz":20,"duration_s":0.5},
+  "expect":{"outcome":"ok","wrong_side_fraction_max":{"at_least":0.055,"at_most":0.065}}})";
+
+double down(int frame, double from, double to, int frames) { return -(from + (to - from) * frame / frames); }
+
+}  // namespace
+
+std::vector<Stage> stages() {
+  std::vector<Stage> out;
+  out.push_back(solved("fall", load_scene("paper/gravity", {"cloth.grid=[9,9]", "time.duration_s=0.75"}), 2));
+  out.push_back(solved("swing", load_scene("validation/swing-strip")));
+  out.push_back(solved("cantilever", load_scene("validation/cantilever-10", {"time.duration_s=2"})));
+  out.push_back(solved("heavy", load_scene("validation/heavy-strip", {"time.duration_s=2"})));
+  out.push_back(solved("slope", load_scene("validation/incline-slip")));
+  out.push_back(solved("ball", load_scene("contact/sphere", {"cloth.grid=[17,17]", "time.duration_s=1", "cloth.pose.center_m=[0,0.2,0]"})));
+  out.push_back(solved("tiles", over_tiles()));
+  out.push_back(solved("pushed", scene(kPushed)));
+  out.push_back(solved("pulled", scene(kPulled)));
+  out.push_back(told("pressed", kPressed, lifted([](int f) { return down(f, 0, 0.11, 20); })));
+  out.push_back(told("rolled", kRolled, lifted([](int f) { return down(f, 0, 0.11, 20); })));
+  out.push_back(told("curtain", kCurtain, lifted([](int f) { return down(f, 0, 0.15, 20); })));
+  out.push_back(told("rising", kRising, [](int, std::vector<double>&) {}));
+  out.push_back(told("through", kThrough, [](int, std::vector<double>&) {}));
+  return out;
+}
+
+}  // namespace clothbench

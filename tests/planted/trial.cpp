@@ -1,0 +1,104 @@
+#include "trial.hpp"
+
+#include <stdexcept>
+
+#include "metrics/metric_pass.hpp"
+#include "runner/cell.hpp"
+#include "runner/expect.hpp"
+#include "runner/replay.hpp"
+
+namespace clothbench {
+namespace {
+
+/// A solver that is told of another scene, or whose answers are changed.
+class Faulty final : public ClothSolver {
+ public:
+  Faulty(std::unique_ptr<ClothSolver> inner, const Fault& fault) : inner_(std::move(inner)), fault_(fault) {}
+
+  const SolverInfo& info() const override { return inner_->info(); }
+  DeviceInfo device() const override { return inner_->device(); }
+  void load(const Scene& scene) override {
+    told_ = scene;
+    if (fault_.scene) fault_.scene(told_);
+    inner_->load(told_);
+  }
+  void reset() override {
+    frame_ = 0;
+    inner_->reset();
+  }
+  StepStatus step(const FrameInput& given) override {
+    FrameInput input = given;
+    input.motion = told_.motion_after(given.index);
+    if (fault_.input) fault_.input(told_, input);
+    ++frame_;
+    const StepStatus status = inner_->step(input);
+    return fault_.status ? fault_.status(frame_) : status;
+  }
+  void read_state(ClothState& out) const override {
+    inner_->read_state(out);
+    if (fault_.state) fault_.state(frame_, out);
+  }
+  FrameCost last_cost() const override { return inner_->last_cost(); }
+  Plan plan() const override {
+    Plan p = inner_->plan();
+    if (fault_.plan) fault_.plan(p);
+    return p;
+  }
+
+ private:
+  std::unique_ptr<ClothSolver> inner_;
+  const Fault& fault_;
+  Scene told_;
+  int frame_ = 0;
+};
+
+bool in_solver(const Fault& f) { return f.scene || f.input || f.state || f.status || f.plan; }
+
+/// The pass's metrics again, by what metrics make of another scene.
+std::vector<MetricSeries> measured_in(const Scene& scene, const Stage& stage, const nlohmann::json& settings, const AccuracyPass& pass) {
+  MetricPass again(MetricContext{scene, stage.entry, settings});
+  const std::size_t numbers = 3 * scene.cloth.vertex_count();
+  for (std::size_t f = 0; f < pass.time_s.size(); ++f) {
+    const auto* x = pass.position.data() + f * numbers;
+    again.add({std::vector<double>(x, x + numbers), std::vector<double>(numbers, 0)});
+  }
+  return again.take();
+}
+
+}  // namespace
+
+CellRecord run_cell(const Stage& stage, const Fault* fault) {
+  SolverEntry entry = stage.entry;
+  if (fault != nullptr && in_solver(*fault))
+    entry.make = [make = stage.entry.make, fault](const nlohmann::json& s, const DeviceOptions& d) { return std::make_unique<Faulty>(make(s, d), *fault); };
+  std::optional<ShaderVariant> variant;
+  if (fault != nullptr && fault->shader) variant.emplace(*fault->shader);
+  CellSpec spec{&stage.scene, &entry, complete_settings(entry.info, nlohmann::json::object())};
+  if (fault != nullptr && fault->settings) fault->settings(spec.settings);
+  TrialRules rules;
+  rules.frames = rules.min_frames = 12;
+  rules.warmup_s = 0;
+  rules.profiled_frames = 0;
+  rules.accuracy_duration_s = stage.scene.time.duration_s;
+  Cell cell(spec, {}, "test");
+  CellRecord record;
+  record.header = cell.header();
+  if (cell.alive()) record.accuracy = cell.run_accuracy(rules);
+  for (int k = 0; k < stage.trials && cell.alive(); ++k) record.trials.push_back(cell.run_trial(k, rules, 0));
+  if (variant && ShaderVariant::exchanged() == 0) throw std::runtime_error(fault->name + ": no kernel of the run has the fault");
+  if (fault != nullptr && fault->metric_scene) {
+    Scene told = stage.scene;
+    fault->metric_scene(told);
+    record.accuracy.metrics = measured_in(told, stage, spec.settings, record.accuracy);
+  }
+  if (fault != nullptr && fault->metrics) fault->metrics(record.accuracy);
+  record.outcome = cell.outcome();
+  record.summary = summarise(spec, cell.plan(), record);
+  const Verdict verdict = judge(stage.scene, record.outcome, record.accuracy, record.summary);
+  record.outcome.expect = verdict.text;
+  for (const auto& [name, value] : verdict.scalars) record.summary[name] = value;
+  if (fault != nullptr && fault->record) fault->record(record);
+  return record;
+}
+
+}  // namespace clothbench

@@ -1,0 +1,46 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clothbench/record.hpp"
+#include "clothbench/solver.hpp"
+#include "shader_variant.hpp"
+
+namespace clothbench {
+
+/// A scene and who runs it.
+struct Stage {
+  std::string name;
+  Scene scene;
+  SolverEntry entry;
+  int trials = 0;
+};
+
+/// One thing that is wrong. Of the places where it may sit only one is filled.
+struct Fault {
+  std::string name, stage;
+  // In the solver: a kernel, what it is given, what it gives back, what it says of itself.
+  std::optional<ShaderFault> shader = {};
+  std::function<void(Scene&)> scene = {};
+  std::function<void(const Scene&, FrameInput&)> input = {};
+  std::function<void(int frame, ClothState&)> state = {};
+  std::function<StepStatus(int frame)> status = {};
+  std::function<void(Plan&)> plan = {};
+  std::function<void(nlohmann::json&)> settings = {};
+  // In the metrics: the scene they are told, or what they make of a pass.
+  std::function<void(Scene&)> metric_scene = {};
+  std::function<void(AccuracyPass&)> metrics = {};
+  // In what is kept of the run.
+  std::function<void(CellRecord&)> record = {};
+};
+
+/// Scenes that are small enough to be run again and again, and need every part of a solver that faults are planted in.
+std::vector<Stage> stages();
+std::vector<Fault> faults();
+
+/// The cell as a run leaves it, with the fault if there is one.
+CellRecord run_cell(const Stage&, const Fault* fault = nullptr);
+
+}  // namespace clothbench
