@@ -19,10 +19,17 @@ using h5::text_dataset;
 
 Id open_group(hid_t file, const char* name) { return Id(H5Gopen2(file, name, H5P_DEFAULT), H5Gclose, std::string("group ") + name); }
 
+/// An attribute that counts something. Throws Error if no int can hold it.
+int whole_attribute(hid_t object, const char* name) {
+  const double v = number_attribute(object, name);
+  if (!(std::abs(v) <= 2e9)) throw Error(std::string("attribute ") + name + ": expected a whole number");
+  return static_cast<int>(v);
+}
+
 void read_scalars(hid_t file, CellRecord& r) {
   const Id summary = open_group(file, "summary"), outcome = open_group(file, "outcome");
   for (const std::string& n : h5::attribute_names(summary)) r.summary[n] = number_attribute(summary, n.c_str());
-  r.outcome = {text_attribute(outcome, "status"), text_attribute(outcome, "class"), static_cast<int>(number_attribute(outcome, "failed_frame")),
+  r.outcome = {text_attribute(outcome, "status"), text_attribute(outcome, "class"), whole_attribute(outcome, "failed_frame"),
                text_attribute(outcome, "message"),
                H5Aexists(outcome, "expect") > 0 ? text_attribute(outcome, "expect") : ""};
 }
@@ -81,8 +88,8 @@ CellRecord read_hdf5(const std::filesystem::path& path, bool with_trajectory) {
   try {
     const Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "opening the file");
     if (text_attribute(file, "format") != "clothbench-run") throw Error("not a clothbench run (attribute format)");
-    if (const double version = number_attribute(file, "format_version"); version != 1)
-      throw Error("format_version " + std::to_string(static_cast<int>(version)) + "; this build reads 1");
+    if (const int version = whole_attribute(file, "format_version"); version != 1)
+      throw Error("format_version " + std::to_string(version) + "; this build reads 1");
     CellRecord r;
     nlohmann::json header = nlohmann::json::parse(text_dataset(file, "header_json"));
     header["triangles"] = nlohmann::json::array();

@@ -1,0 +1,42 @@
+#pragma once
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "clothbench/error.hpp"
+
+namespace clothbench {
+
+/// What a reader may do with any input: take it, or throw Error with a message. Everything else ends the program.
+template <class Read>
+void reads_or_refuses(Read read) {
+  try {
+    read();
+  } catch (const Error& e) {
+    if (std::string(e.what()).empty()) std::abort();
+  }
+}
+
+/// A file with these bytes, as long as it lives; in memory where the system has a place for that.
+class MemoryFile {
+ public:
+  MemoryFile(const void* data, std::size_t size)
+      : path_((std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path().string()) + "/clothbench-fuzz-" + std::to_string(getpid())) {
+    std::ofstream out(path_, std::ios::binary);
+    if (!out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size)).flush()) std::abort();
+  }
+  ~MemoryFile() { std::filesystem::remove(path_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace clothbench

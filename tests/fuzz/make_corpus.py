@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+"""Writes the seeds in corpus/ and the dictionary scene.dict: small inputs that every reader takes, so that fuzzing starts inside.
+
+    tests/fuzz/make_corpus.py          from the scenarios of the repository and what is written out here
+"""
+import base64
+import json
+import pathlib
+import struct
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+JOINTS = ["wrist"] + [f"{f}-{j}" for f, js in [("thumb", ["metacarpal", "phalanx-proximal", "phalanx-distal", "tip"])] for j in js] + [
+    f"{f}-finger-{j}" for f in ("index", "middle", "ring", "pinky")
+    for j in ("metacarpal", "phalanx-proximal", "phalanx-intermediate", "phalanx-distal", "tip")]
+CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+TRIANGLES = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+
+
+def put(kind, name, data):
+    folder = HERE / "corpus" / kind
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_bytes(data)
+
+
+def scenes():
+    for name in ["contact/sphere", "contact/open-sheet", "paper/two-hand-stretch-2mps", "paper/capsule-sweep", "paper/desk-corner-low",
+                 "validation/two-hand-pull", "validation/capstan-slip", "stability/s04-heavy-edge", "stability/s17-collider-spin",
+                 "stability/s22-jitter", "stability/s15-crumpled"]:
+        scene = json.loads((ROOT / "scenarios" / (name + ".json")).read_text())
+        scene["cloth"]["grid"] = [min(9, n) for n in scene["cloth"]["grid"]]
+        scene["time"]["duration_s"] = min(0.1, scene["time"]["duration_s"])
+        scene["why"] = "A seed."
+        put("scene", name.replace("/", "-") + ".json", json.dumps(scene).encode())
+    words = set()
+
+    def walk(j):
+        if isinstance(j, dict):
+            for key, value in j.items():
+                if key == "properties":
+                    words.update(value)
+                if key == "enum":
+                    words.update(v for v in value if isinstance(v, str))
+                walk(value)
+        elif isinstance(j, list):
+            for value in j:
+                walk(value)
+
+    walk(json.loads((ROOT / "scenarios/schema/scene.schema.json").read_text()))
+    (HERE / "scene.dict").write_text("".join(f'"\\"{w}\\""\n' for w in sorted(words)))
+
+
+def rooms():
+    def packed(kind, values):
+        return base64.b64encode(struct.pack(f"<{len(values)}{kind}", *values)).decode()
+    room = {"type": "scene", "version": 1, "spatialEntities": [
+        {"uuid": "t-1", "semanticLabel_META": "TABLE", "locatable_META": {"orientation": {"x": -0.5, "y": 0.5, "z": 0.5, "w": 0.5}},
+         "bounded3D_META": {"offset": {"z": -0.75}, "extent": {"width": 1, "height": 2, "depth": 0.75}}},
+        {"uuid": "m-1", "semanticLabel_META": "UNRECOGNIZED", "locatable_META": {"position": {"y": 2}, "orientation": {"w": 1}},
+         "triangleMesh_META": {"vertices": packed("f", [x for p in CORNERS for x in p]), "indices": packed("I", [v for t in TRIANGLES for v in t])}}]}
+    put("room", "tetrahedron.json", json.dumps(room).encode())
+
+
+def hands():
+    unit = [1.0 if i % 5 == 0 else 0.0 for i in range(16)]
+    parts = [struct.pack("<400f", *(unit * 25)), struct.pack("<12f", *[x for p in CORNERS for x in p]), bytes([0, 1, 2, 3] * 4),
+             struct.pack("<16f", *([0.5, 0.25, 0.25, 0] * 4)), bytes([v for t in TRIANGLES for v in t])]
+    views, at = [], 0
+    for part in parts:
+        views.append({"buffer": 0, "byteOffset": at, "byteLength": len(part)})
+        at += len(part)
+    def accessor(view, component, count, kind):
+        return {"bufferView": view, "componentType": component, "count": count, "type": kind}
+    gltf = {"asset": {"version": "2.0"}, "buffers": [{"byteLength": at}], "bufferViews": views,
+            "accessors": [accessor(0, 5126, 25, "MAT4"), accessor(1, 5126, 4, "VEC3"), accessor(2, 5121, 4, "VEC4"), accessor(3, 5126, 4, "VEC4"),
+                          accessor(4, 5121, 12, "SCALAR")],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 1, "JOINTS_0": 2, "WEIGHTS_0": 3}, "indices": 4, "mode": 4}]}],
+            "nodes": [{"name": n} for n in JOINTS], "skins": [{"inverseBindMatrices": 0, "joints": list(range(25))}]}
+    text, data = json.dumps(gltf, separators=(",", ":")).encode(), b"".join(parts)
+    put("hand", "tetrahedron.parts", text + b"\0" + data)
+    text += b" " * (-len(text) % 4)
+    data += b"\0" * (-len(data) % 4)
+    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(data), 0x004E4942) + data
+    put("hand", "tetrahedron.glb", b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks)
+
+
+def tracks():
+    for name in ["right-hand-sweep", "left-hand-stretch-2mps"]:
+        put("track", name + ".json", (ROOT / "scenarios/assets" / (name + ".json")).read_bytes())
+    put("track", "blend.json", b'{"hand":"left","anchor":"palm","keys":[{"time_s":0,"pose":"relaxed","blend":{"to":"pinch","amount":0.5},'
+        b'"position_m":[0,1,0.1],"orientation":[0,0,0,1],"grip":true,"sweep":true},{"time_s":1,"position_m":[1,1,0]}]}')
+
+
+def raw():
+    def log(header, frames):
+        text = json.dumps(header).encode()
+        return b"CBRAW001" + struct.pack("<I", len(text)) + text + b"\0\0\0\0" + b"".join(
+            struct.pack("<I", k) + f + b"\0\0\0\0" for k, f in enumerate(frames))
+    trial = {"kind": "trial", "frame_B": 48, "frames": 2, "stages": 1, "index": 0, "pipelined_wall_s": 0.5}
+    accuracy = {"kind": "accuracy", "frame_B": 48, "frames": 2, "vertices": 2, "metrics": [{"name": "speed_max", "units": "m s-1", "long_name": "x"}]}
+    replay = {"kind": "replay", "frame_B": 24, "groups": [{"path": "colliders", "attributes": {"count": 1}, "arrays": [
+        {"name": "a", "units": "m", "long_name": "x", "dims": ["frame"], "shape": [2], "integer": False, "count": 2}]}]}
+    cell = {"frame_B": 8, "scene": "s", "solver": "x", "setting": "d", "settings": {}, "scenario_json": "{}", "scenario_sha256": "0", "plan": {},
+            "stages": [{"name": "a", "serves": ["stretch"], "dispatches": 1}], "environment": {}, "vertices": 1, "triangles": [0, 1, 2], "load_s": None}
+    for kind, name, header, sizes in [(1, "trial", trial, [40, 40]), (2, "accuracy", accuracy, [40, 40]), (3, "replay", replay, [16]), (4, "cell", cell, [])]:
+        put("raw", name + ".raw", bytes([2 * kind]) + log(header, [struct.pack("<d", 1.5) * (size // 8) for size in sizes]))
+
+
+def hdf5():
+    put("hdf5", "nothing", b"")
+    for what in range(8):
+        put("hdf5", f"change-{what}", bytes([what, 3, 0, 5, 0, 1, 2, 3, 4, 5, 6, 7]) * 3)
+    put("hdf5", "header", bytes([7, 0, 0, 0, 0]) + b'{"scene":"s","solver":"x","setting":"d","settings":{},"stages":[]}')
+
+
+for write in (scenes, rooms, hands, tracks, raw, hdf5):
+    write()
