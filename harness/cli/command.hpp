@@ -28,6 +28,7 @@ void add_report(CLI::App&, Console&);
 void add_import(CLI::App&, Console&);
 void add_check(CLI::App&, Console&);
 void add_bench(CLI::App&, Console&);
+void add_render(CLI::App&, Console&);
 void add_metamorphic(CLI::App&, Console&);
 void add_threshold(CLI::App&, Console&);
 void add_friction(CLI::App&, Console&);
