@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "cli/command.hpp"
 #include "render/album.hpp"
@@ -19,15 +20,6 @@ struct Arguments {
   bool plain = false, no_movie = false;
   DeviceFlags device;
 };
-
-/// "1200x900". Throws Error.
-void read_size(const std::string& text, render::Shots& shots) {
-  int used = 0;
-  constexpr int kMost = 16384;
-  if (std::sscanf(text.c_str(), "%5dx%5d%n", &shots.width, &shots.height, &used) != 2 || used != static_cast<int>(text.size()) ||
-      shots.width < 1 || shots.height < 1 || shots.width > kMost || shots.height > kMost)
-    throw Error("--size " + text + ": expected WIDTHxHEIGHT in pixels, such as 1200x900");
-}
 
 bool is_cell(const fs::path& p) { return p.extension() == ".h5" || p.extension() == ".part"; }
 
@@ -92,7 +84,7 @@ void render_all(const Arguments& a, const Console& console) {
   if (!a.views.empty()) shots.views.clear();
   for (const std::string& v : a.views) shots.views.push_back(render::view_from(v));
   shots.colour = render::colour_from(a.colour);
-  read_size(a.size, shots);
+  std::tie(shots.width, shots.height) = pixels_of("--size", a.size);
   shots.plain = a.plain;
   shots.movie = !a.no_movie;
   shots.out = a.out;

@@ -9,7 +9,7 @@ namespace clothbench::render {
 namespace {
 
 constexpr std::size_t kEntries = 256;
-constexpr Rgb kNothing = {0.90, 0.90, 0.90};
+constexpr Rgb kNothing = {0.82, 0.89, 0.95};
 
 double to_linear(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
 double to_srgb(double l) { return l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1 / 2.4) - 0.055; }
@@ -69,7 +69,7 @@ Rgb from_lab(const std::array<double, 3>& lab) {
 double round_up(double x) {
   const double power = std::pow(10, std::floor(std::log10(x)));
   for (const double m : {1.0, 2.0, 5.0})
-    if (m * power >= x * (1 - 1e-12)) return m * power;
+    if (m * power >= x * (1 - 1e-6)) return m * power;  // values are float32
   return 10 * power;
 }
 

@@ -25,7 +25,7 @@ struct Scale {
   std::string title, unit;        ///< "stretch", "%"
   double per_unit = 1;            ///< value of one unit: 0.01 for %
   std::vector<Rgb> stops;
-  bool zero_apart = false;        ///< 0 has a colour of its own: light grey
+  bool zero_apart = false;        ///< 0 has a colour of its own
 
   Rgb colour(double value) const;  ///< beyond the ends as at them
 };

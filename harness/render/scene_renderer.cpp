@@ -123,8 +123,14 @@ void SceneRenderer::set_surfaces(const Surfaces& s) {
     vertices.push_back(as_vec4(minus(s.position_m[v], origin_m_), s.look[v]));
     vertices.push_back(as_vec4(s.normal[v], 0));
   }
-  vertices_ = filled("colliders to draw", vertices.data(), vertices.size() * sizeof(vec4));
-  corners_ = filled("corners of colliders to draw", s.triangles.data(), s.triangles.size() * 3 * sizeof(std::uint32_t));
+  const std::size_t bytes = vertices.size() * sizeof(vec4), corner_bytes = s.triangles.size() * 3 * sizeof(std::uint32_t);
+  if (vertices_ && bytes > 0 && vertices_->bytes() == bytes && corners_->bytes() == corner_bytes) {  // only moved
+    std::memcpy(vertices_->mapped(), vertices.data(), bytes);
+    std::memcpy(corners_->mapped(), s.triangles.data(), corner_bytes);
+    return;
+  }
+  vertices_ = filled("colliders to draw", vertices.data(), bytes);
+  corners_ = filled("corners of colliders to draw", s.triangles.data(), corner_bytes);
   corner_count_ = static_cast<std::uint32_t>(3 * s.triangles.size());
   bound_ = false;
 }

@@ -35,8 +35,9 @@ vec3 value_colour(float t) {
 
 vec3 surface_colour() {
   if (!kCloth) return linear(in_look == LOOK_MARK ? kMark : kCollider);
-  if (d.eye.w > 0) return value_colour(in_value);
   const float odd = checker(in_square);
+  // Faint squares, so that the cloth's shape is seen.
+  if (d.eye.w > 0) return value_colour(in_value) * (1 - 0.07 * odd);
   return gl_FrontFacing ? mix(linear(kFront[0]), linear(kFront[1]), odd) : mix(linear(kBack[0]), linear(kBack[1]), odd);
 }
 
