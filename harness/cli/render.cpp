@@ -45,9 +45,10 @@ render::Motion run(const std::string& file, const Arguments& a, const Console& c
   const Scene scene = load_scene(file, overrides.scene);
   const SolverEntry& entry = find_solver(a.solver);
   if (!console.json)
-    fmt::print("{}: a scenario, not a result file: nothing is stored, so {} runs it now ({:g} s of it)\n", file, a.solver,
-               scene.time.duration_s);
-  Cell cell({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()}, a.device.options, "render");
+    fmt::print("{}: a scenario, not a result file: nothing is stored, so {} runs it now ({:g} s of it)\n", file,
+               a.solver, scene.time.duration_s);
+  Cell cell({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()}, a.device.options,
+            "render");
   if (!cell.alive()) throw Error(file + ": " + a.solver + ": " + cell.outcome().status + ": " + cell.outcome().message);
   TrialRules rules;
   rules.accuracy_duration_s = scene.time.duration_s;
@@ -73,8 +74,11 @@ std::vector<render::Motion> motions_of(const std::string& file, const Arguments&
 }
 
 void tell(const render::Taken& t) {
-  if (t.pictures.size() == 1) fmt::print("{}\n", t.pictures[0].string());
-  else if (!t.pictures.empty()) fmt::print("{} pictures: {} … {}\n", t.pictures.size(), t.pictures.front().string(), t.pictures.back().filename().string());
+  if (t.pictures.size() == 1)
+    fmt::print("{}\n", t.pictures[0].string());
+  else if (!t.pictures.empty())
+    fmt::print("{} pictures: {} … {}\n", t.pictures.size(), t.pictures.front().string(),
+               t.pictures.back().filename().string());
   for (const fs::path& m : t.movies) fmt::print("{}\n", m.string());
   if (!t.no_movie.empty()) fmt::print("{}\n", t.no_movie);
 }
@@ -95,10 +99,11 @@ void render_all(const Arguments& a, const Console& console) {
       render::Taken taken;
       {
         StatusLine line(!console.json);
-        taken = render::take(m, shots, a.device.options, [&](const std::string& what, std::size_t done, std::size_t of) {
-          if (interrupt_requested()) throw Error("interrupted; pictures so far are kept", ExitCode::Interrupted);
-          line.show(what, done, of);
-        });
+        taken =
+            render::take(m, shots, a.device.options, [&](const std::string& what, std::size_t done, std::size_t of) {
+              if (interrupt_requested()) throw Error("interrupted; pictures so far are kept", ExitCode::Interrupted);
+              line.show(what, done, of);
+            });
       }
       for (const fs::path& p : taken.pictures) told["pictures"].push_back(p.string());
       for (const fs::path& p : taken.movies) told["movies"].push_back(p.string());
@@ -118,13 +123,16 @@ void add_render(CLI::App& app, Console& console) {
   a.colour = "checker";
   a.size = "1200x900";
   a.solver = "xpbd";
-  CLI::App* cmd = app.add_subcommand("render", "Pictures (PNG) and a movie (MP4, where ffmpeg is present) of stored motions");
+  CLI::App* cmd =
+      app.add_subcommand("render", "Pictures (PNG) and a movie (MP4, where ffmpeg is present) of stored motions");
   cmd->add_option("file", a.files, "Result files (.h5), study folders, or scenarios, which are run first")->required();
   cmd->add_option("-o,--out", a.out, "Folder to write to")->capture_default_str();
-  cmd->add_option("--frames", a.frames, "FRAME, FIRST:LAST or FIRST:LAST:STEP, both included; -1 is the last. Default: all");
+  cmd->add_option("--frames", a.frames,
+                  "FRAME, FIRST:LAST or FIRST:LAST:STEP, both included; -1 is the last. Default: all");
   cmd->add_option("--view", a.views, "front, top or corner (default); more than one may be given");
   cmd->add_option("--colour,--color", a.colour,
-                  "Of the cloth: checker, strain (stretch of the edges), depth (how far it is inside a collider, or through a room)")
+                  "Of the cloth: checker, strain (stretch of the edges), depth (how far it is inside a collider, or "
+                  "through a room)")
       ->capture_default_str();
   cmd->add_option("--size", a.size, "WIDTHxHEIGHT in pixels, legend and caption included")->capture_default_str();
   cmd->add_option("--cell", a.cell, "Of a folder: cells with this in their names");
@@ -133,8 +141,9 @@ void add_render(CLI::App& app, Console& console) {
   cmd->add_option("--solver", a.solver, "Of a scenario: who runs it")->capture_default_str();
   cmd->add_option("--set", a.set, "Of a scenario: override, as with `clothbench run`");
   a.device.add_to(*cmd);
-  cmd->footer("Examples: clothbench render results/runs/mine --cell desk-flat-low__xpbd --view top --colour depth --frames -1\n"
-              "          clothbench render paper/hand-push --frames 0:-1:4 -o push");
+  cmd->footer(
+      "Examples: clothbench render results/runs/mine --cell desk-flat-low__xpbd --view top --colour depth --frames -1\n"
+      "          clothbench render paper/hand-push --frames 0:-1:4 -o push");
   cmd->callback([&console] { render_all(a, console); });
 }
 

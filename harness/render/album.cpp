@@ -46,9 +46,14 @@ std::string caption(const Motion& m, std::size_t frame, bool followed) {
 class Shoot {
  public:
   Shoot(const Motion& motion, const Shots& shots, const DeviceOptions& options)
-      : m_(motion), shots_(shots), layout_(layout_of(shots.width, shots.height, shots.plain, shots.colour != Colour::Checker)),
-        framing_(framing_of(motion, shots.frames)), values_(values_of(motion, shots)),
-        scale_(scale_for(shots.colour, values_)), colours_(table_of(scale_)), device_(vulkan::Device::get(options)),
+      : m_(motion),
+        shots_(shots),
+        layout_(layout_of(shots.width, shots.height, shots.plain, shots.colour != Colour::Checker)),
+        framing_(framing_of(motion, shots.frames)),
+        values_(values_of(motion, shots)),
+        scale_(scale_for(shots.colour, values_)),
+        colours_(table_of(scale_)),
+        device_(vulkan::Device::get(options)),
         renderer_(device_, Offscreen::kFormat),
         images_(device_, {static_cast<std::uint32_t>(layout_.width), static_cast<std::uint32_t>(layout_.height)}, 1) {
     if (!shots.plain) pen_.emplace(layout_.text_px);
@@ -84,8 +89,10 @@ class Shoot {
   Picture draw(std::size_t k, const Camera& camera) {
     const std::size_t f = shots_.frames[k], count = m_.scene.cloth.vertex_count();
     renderer_.write_positions(m_.at(f));
-    if (!values_.empty()) renderer_.write_values(positions_on(scale_, std::span(values_).subspan(k * count, count)), colours_);
-    if (!surfaces_set_ || !m_.scene.motion.empty()) renderer_.set_surfaces(surfaces(m_.scene, static_cast<int>(f), framing_.near));
+    if (!values_.empty())
+      renderer_.write_values(positions_on(scale_, std::span(values_).subspan(k * count, count)), colours_);
+    if (!surfaces_set_ || !m_.scene.motion.empty())
+      renderer_.set_surfaces(surfaces(m_.scene, static_cast<int>(f), framing_.near));
     surfaces_set_ = true;
     images_.draw(renderer_, std::span(&camera, 1));
     Picture out(shots_.width, shots_.height, 255);
@@ -130,12 +137,15 @@ Taken take(const Motion& motion, const Shots& shots, const DeviceOptions& option
 
 std::vector<std::size_t> frames_from(const std::string& text, std::size_t count) {
   const auto fail = [&](const std::string& why) {
-    return Error("--frames " + text + ": " + why + "; expected FRAME, FIRST:LAST or FIRST:LAST:STEP, such as 0:71 or -1");
+    return Error("--frames " + text + ": " + why +
+                 "; expected FRAME, FIRST:LAST or FIRST:LAST:STEP, such as 0:71 or -1");
   };
   std::vector<std::string> parts(1);
   for (const char c : text)
-    if (c == ':') parts.emplace_back();
-    else parts.back() += c;
+    if (c == ':')
+      parts.emplace_back();
+    else
+      parts.back() += c;
   if (parts.size() > 3 || text.empty()) throw fail("not one to three numbers");
   const auto number = [&](const std::string& part, long otherwise) {
     if (part.empty()) return otherwise;
@@ -151,7 +161,8 @@ std::vector<std::size_t> frames_from(const std::string& text, std::size_t count)
     return k;
   };
   const long first = within(number(parts[0], 0));
-  const long last = parts.size() == 1 ? first : within(number(parts[1], -1)), step = parts.size() == 3 ? number(parts[2], 1) : 1;
+  const long last = parts.size() == 1 ? first : within(number(parts[1], -1)),
+             step = parts.size() == 3 ? number(parts[2], 1) : 1;
   if (step < 1) throw fail("a step is at least 1");
   if (last < first) throw fail("the last is before the first");
   std::vector<std::size_t> frames;

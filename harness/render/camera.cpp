@@ -32,7 +32,8 @@ void look(Camera& c, View view) {
 }
 
 /// Where to stand, along one axis of the picture, so that every point is within the slope `tangent` on both sides:
-/// |x - middle| <= tangent (distance - z), z towards the viewer. Exact: the two outermost lines of slope `tangent` meet there.
+/// |x - middle| <= tangent (distance - z), z towards the viewer. Exact: the two outermost lines of slope `tangent` meet
+/// there.
 struct Stand {
   double middle, distance;
 };
@@ -113,8 +114,7 @@ Camera frame(View view, std::span<const double> points, double aspect, double ma
   // A single point, or a sheet seen edge on: any distance would do.
   const double size = std::max({nearest - furthest, distance - nearest, 1e-9});
   distance = std::max(distance, nearest + 0.05 * size);
-  for (std::size_t k = 0; k < 3; ++k)
-    c.eye_m[k] = x.middle * c.right[k] + y.middle * c.up[k] + distance * c.back[k];
+  for (std::size_t k = 0; k < 3; ++k) c.eye_m[k] = x.middle * c.right[k] + y.middle * c.up[k] + distance * c.back[k];
   c.near_m = 0.3 * (distance - nearest);
   c.far_m = 4 * (distance - furthest) + size;
   return c;

@@ -32,13 +32,13 @@ struct Camera {
 /// Where a point is seen: 0..1 from the picture's left and top; empty behind the camera.
 std::optional<std::array<double, 2>> seen_at(const Camera&, const Vec3& point_m);
 
-/// The nearest camera of a view that sees all of `points` (xyz interleaved [m], finite), with `margin` of the picture's width
-/// and height free all round. Front looks along -z, top down with -z upwards in the picture, corner from the front, 30 degrees
-/// to the right and 24 up. `aspect`: width over height. Throws Error without points.
+/// The nearest camera of a view that sees all of `points` (xyz interleaved [m], finite), with `margin` of the picture's
+/// width and height free all round. Front looks along -z, top down with -z upwards in the picture, corner from the
+/// front, 30 degrees to the right and 24 up. `aspect`: width over height. Throws Error without points.
 Camera frame(View, std::span<const double> points, double aspect, double margin = 0.04);
 
-/// Left and right eye of somebody who looks along -z at the middle of a box from `distance_m` away. 110 x 96 degrees is the
-/// field of view of a Quest 3 (Meta's technical specifications), 63 mm apart the mean of adults.
+/// Left and right eye of somebody who looks along -z at the middle of a box from `distance_m` away. 110 x 96 degrees is
+/// the field of view of a Quest 3 (Meta's technical specifications), 63 mm apart the mean of adults.
 std::array<Camera, 2> eyes(const Vec3& middle_m, double distance_m, double near_m, double far_m);
 
 }  // namespace clothbench::render

@@ -65,11 +65,13 @@ Rgb from_lab(const std::array<double, 3>& lab) {
   return out;
 }
 
+constexpr double kRounding = 1 + 1e-6;  // values are float32
+
 /// 1, 2 or 5 times a power of ten, at least x.
 double round_up(double x) {
   const double power = std::pow(10, std::floor(std::log10(x)));
   for (const double m : {1.0, 2.0, 5.0})
-    if (m * power >= x * (1 - 1e-6)) return m * power;  // values are float32
+    if (m * power * kRounding >= x) return m * power;
   return 10 * power;
 }
 
@@ -125,8 +127,8 @@ Scale scale_for(Colour colour, std::span<const float> values) {
     s.stops = {{1.0, 0.88, 0.45}, {0.93, 0.45, 0.20}, {0.65, 0.05, 0.25}, {0.20, 0.0, 0.28}};
     s.zero_apart = true;
   }
-  s.clipped_low = least < s.low;
-  s.clipped_high = most > s.high;
+  s.clipped_low = least < s.low * kRounding;
+  s.clipped_high = most > s.high * kRounding;
   return s;
 }
 
@@ -134,7 +136,8 @@ std::vector<vec4> table_of(const Scale& s) {
   std::vector<vec4> out;
   for (std::size_t k = 0; k < kEntries; ++k) {
     const Rgb c = s.colour(s.low + (s.high - s.low) * static_cast<double>(k) / (kEntries - 1));
-    out.push_back({static_cast<float>(to_linear(c[0])), static_cast<float>(to_linear(c[1])), static_cast<float>(to_linear(c[2])), 1});
+    out.push_back({static_cast<float>(to_linear(c[0])), static_cast<float>(to_linear(c[1])),
+                   static_cast<float>(to_linear(c[2])), 1});
   }
   return out;
 }
@@ -142,7 +145,9 @@ std::vector<vec4> table_of(const Scale& s) {
 std::vector<float> positions_on(const Scale& s, std::span<const float> values) {
   std::vector<float> out;
   for (const float v : values)
-    out.push_back(std::isfinite(v) ? static_cast<float>(std::clamp((static_cast<double>(v) - s.low) / (s.high - s.low), 0.0, 1.0)) : NAN);
+    out.push_back(std::isfinite(v)
+                      ? static_cast<float>(std::clamp((static_cast<double>(v) - s.low) / (s.high - s.low), 0.0, 1.0))
+                      : NAN);
   return out;
 }
 

@@ -20,18 +20,18 @@ Rgb between(std::span<const Rgb> stops, double t);
 
 /// How numbers become colours. Both maps can be told apart without red or green, and get darker away from 0.
 struct Scale {
-  double low = 0, high = 1;       ///< values at the ends of the bar
+  double low = 0, high = 1;                        ///< values at the ends of the bar
   bool clipped_low = false, clipped_high = false;  ///< there are values beyond
-  std::string title, unit;        ///< "stretch", "%"
-  double per_unit = 1;            ///< value of one unit: 0.01 for %
+  std::string title, unit;                         ///< "stretch", "%"
+  double per_unit = 1;                             ///< value of one unit: 0.01 for %
   std::vector<Rgb> stops;
-  bool zero_apart = false;        ///< 0 has a colour of its own
+  bool zero_apart = false;  ///< 0 has a colour of its own
 
   Rgb colour(double value) const;  ///< beyond the ends as at them
 };
 
-/// Ends round numbers that hold 99.5 % of the values: -x..x for strain (a ratio), 0..x for depth [m]. Not finite ones do not
-/// count.
+/// Ends round numbers that hold 99.5 % of the values: -x..x for strain (a ratio), 0..x for depth [m]. Not finite ones
+/// do not count.
 Scale scale_for(Colour, std::span<const float> values);
 
 /// The scale as SceneRenderer::write_values takes it: linear RGB, and values as 0..1.

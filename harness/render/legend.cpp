@@ -22,7 +22,8 @@ std::string number(double x) {
 void fill(Picture& p, int x, int y, int width, int height, const Rgb& c) {
   for (int row = std::max(0, y); row < std::min(p.height, y + height); ++row)
     for (int column = std::max(0, x); column < std::min(p.width, x + width); ++column)
-      for (std::size_t k = 0; k < 3; ++k) p.at(column, row)[k] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(c[k], 0.0, 1.0)));
+      for (std::size_t k = 0; k < 3; ++k)
+        p.at(column, row)[k] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(c[k], 0.0, 1.0)));
 }
 
 }  // namespace
@@ -36,7 +37,8 @@ Layout layout_of(int width, int height, bool plain, bool legend) {
     l.height -= l.caption_height;
   }
   if (l.width < kLeastScene_px || l.height < kLeastScene_px)
-    throw Error(fmt::format("--size {}x{}: too small for the scene{}", width, height, plain ? "" : " beside text (--plain draws none)"));
+    throw Error(fmt::format("--size {}x{}: too small for the scene{}", width, height,
+                            plain ? "" : " beside text (--plain draws none)"));
   return l;
 }
 

@@ -20,7 +20,8 @@ const StoredArray* array_of(const StoredGroup& g, const std::string& name) {
 }
 
 /// Throws unless its shape is `shape`, 0 standing for any length.
-const StoredArray& expect_shape(const StoredGroup& g, const std::string& name, const std::vector<std::uint64_t>& shape) {
+const StoredArray& expect_shape(const StoredGroup& g, const std::string& name,
+                                const std::vector<std::uint64_t>& shape) {
   const StoredArray* a = array_of(g, name);
   bool fits = a != nullptr && a->shape.size() == shape.size();
   std::uint64_t count = 1;
@@ -28,7 +29,8 @@ const StoredArray& expect_shape(const StoredGroup& g, const std::string& name, c
     fits = shape[k] == 0 || shape[k] == a->shape[k];
     count *= a->shape[k];
   }
-  if (!fits || a->values.size() != count) throw Error("/" + g.path + "/" + name + " is missing or of another shape than expected");
+  if (!fits || a->values.size() != count)
+    throw Error("/" + g.path + "/" + name + " is missing or of another shape than expected");
   return *a;
 }
 
@@ -43,7 +45,8 @@ void read_capsules(const StoredGroup& g, Scene& scene, std::size_t k, std::size_
   const double* v = a.values.data();
   for (std::size_t f = 0; f < a.shape[0]; ++f) {
     ColliderPose& pose = frame_of(scene, f, colliders).colliders[k];
-    for (std::size_t i = 0; i < a.shape[1]; ++i, v += 7) pose.capsules.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]});
+    for (std::size_t i = 0; i < a.shape[1]; ++i, v += 7)
+      pose.capsules.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]});
     if (f == 0) scene.colliders[k].capsules = pose.capsules;
   }
 }
@@ -78,8 +81,10 @@ void read_mesh(const StoredGroup& g, Scene& scene, std::size_t k, std::size_t co
   for (const StoredArray& t = expect_shape(g, "triangles", {0, 3}); mesh->triangles.size() < t.shape[0];) {
     const double* v = &t.values[3 * mesh->triangles.size()];
     for (std::size_t i = 0; i < 3; ++i)
-      if (!(v[i] >= 0 && v[i] < static_cast<double>(mesh->vertex_count()))) throw Error("/" + g.path + "/triangles: expected numbers of vertices");
-    mesh->triangles.push_back({static_cast<std::uint32_t>(v[0]), static_cast<std::uint32_t>(v[1]), static_cast<std::uint32_t>(v[2])});
+      if (!(v[i] >= 0 && v[i] < static_cast<double>(mesh->vertex_count())))
+        throw Error("/" + g.path + "/triangles: expected numbers of vertices");
+    mesh->triangles.push_back(
+        {static_cast<std::uint32_t>(v[0]), static_cast<std::uint32_t>(v[1]), static_cast<std::uint32_t>(v[2])});
   }
   mesh->closed = g.attributes.value("closed", 0.0) != 0;
   if (array_of(g, "joint_matrix") != nullptr) read_joints(g, *mesh, scene, k, colliders);
@@ -116,7 +121,8 @@ void read_collider(const StoredGroup& g, Scene& scene, std::size_t k, std::size_
 }
 
 void read_grips(const StoredGroup& g, Scene& scene) {
-  for (const double v : expect_shape(g, "held_vertex", {0}).values) scene.grips.vertices.push_back(static_cast<std::uint32_t>(v));
+  for (const double v : expect_shape(g, "held_vertex", {0}).values)
+    scene.grips.vertices.push_back(static_cast<std::uint32_t>(v));
   const std::size_t count = scene.grips.vertices.size();
   const StoredArray& target = expect_shape(g, "target_m", {0, count, 3});
   const StoredArray& held = expect_shape(g, "held", {target.shape[0], count});
@@ -154,7 +160,8 @@ void read_cloth(const json& scenario, Scene& scene) {
   scene.cloth.height_m = c.at("size_m").at(1).get<double>();
   if (!c.contains("column_factors")) return;
   scene.cloth.column_factors.assign(static_cast<std::size_t>(scene.cloth.columns - 1), 1);
-  for (const json& f : c.at("column_factors")) scene.cloth.column_factors.at(f.at("column").get<std::size_t>()) = f.at("factor").get<double>();
+  for (const json& f : c.at("column_factors"))
+    scene.cloth.column_factors.at(f.at("column").get<std::size_t>()) = f.at("factor").get<double>();
 }
 
 void tell(Motion& m, const CellHeader& header, const Outcome& outcome) {
@@ -183,7 +190,8 @@ Motion stored_motion(const std::filesystem::path& path) {
     read_cloth(scenario, m.scene);
     m.scene.time.frame_rate_hz = scenario.at("time").at("frame_rate_hz").get<double>();
     read_stage(replay.groups, m.scene);
-    m.held = !m.scene.colliders.empty() || !m.scene.grips.vertices.empty() || !scenario.value("pins", json::array()).empty();
+    m.held =
+        !m.scene.colliders.empty() || !m.scene.grips.vertices.empty() || !scenario.value("pins", json::array()).empty();
   } catch (const json::exception& e) {
     throw Error(path.string() + ": scenario_json or /colliders: " + e.what());
   } catch (const std::out_of_range&) {
@@ -193,7 +201,8 @@ Motion stored_motion(const std::filesystem::path& path) {
   }
   m.time_s = std::move(replay.time_s);
   m.position = std::move(replay.position);
-  if (m.scene.cloth.columns < 2 || m.scene.cloth.rows < 2 || m.position.size() != m.frames() * 3 * m.scene.cloth.vertex_count())
+  if (m.scene.cloth.columns < 2 || m.scene.cloth.rows < 2 ||
+      m.position.size() != m.frames() * 3 * m.scene.cloth.vertex_count())
     throw Error(path.string() + ": its positions do not fit the grid of its scenario");
   return m;
 }

@@ -10,7 +10,8 @@ namespace clothbench::render {
 
 /// What pictures are made of: a cloth's way, and what it touches.
 struct Motion {
-  Scene scene;        ///< of one read from a file: grid and sizes of the cloth, colliders and grips with their motion, nothing else
+  Scene scene;        ///< of one read from a file: grid and sizes of the cloth, colliders and grips with their motion,
+                      ///< nothing else
   bool held = false;  ///< pinned or gripped somewhere, or there are colliders: it stays where it is looked for
   std::string name;   ///< of the cell, for files
   std::string title;  ///< for people: "hang · xpbd"
@@ -23,8 +24,8 @@ struct Motion {
   std::vector<double> at(std::size_t frame) const;
 };
 
-/// From a result file (.h5) or the part folder of a run without HDF5. No frames where it has no trajectory. Throws Error naming
-/// the file and what is wrong with it.
+/// From a result file (.h5) or the part folder of a run without HDF5. No frames where it has no trajectory. Throws
+/// Error naming the file and what is wrong with it.
 Motion stored_motion(const std::filesystem::path&);
 
 /// Of a cell that has just run.

@@ -32,17 +32,28 @@ Movie::Movie(std::filesystem::path file, int width, int height, double frames_pe
     : file_(std::move(file)), log_(file_.string() + ".log") {
   // A socket, not a pipe: writing to a program that has ended is then an error instead of a signal.
   int ends[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) throw Error(std::string("socketpair: ") + std::strerror(errno));
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+    throw Error(std::string("socketpair: ") + std::strerror(errno));
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   // H.264 with quarter resolution colour, which every player shows, wants even sizes.
-  const std::vector<std::string> words = {"ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
-                                          fmt::format("{}x{}", width, height), "-r", fmt::format("{:.6g}", frames_per_s), "-i",
-                                          "pipe:0", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-c:v", "libx264", "-crf",
-                                          "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", file_.string()};
+  const std::vector<std::string> words = {"ffmpeg",      "-loglevel",
+                                          "error",       "-y",
+                                          "-f",          "rawvideo",
+                                          "-pix_fmt",    "rgb24",
+                                          "-s",          fmt::format("{}x{}", width, height),
+                                          "-r",          fmt::format("{:.6g}", frames_per_s),
+                                          "-i",          "pipe:0",
+                                          "-vf",         "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
+                                          "-c:v",        "libx264",
+                                          "-crf",        "18",
+                                          "-pix_fmt",    "yuv420p",
+                                          "-movflags",   "+faststart",
+                                          "-f",          "mp4",
+                                          file_.string()};
   std::vector<char*> argv;
   for (const std::string& w : words) argv.push_back(const_cast<char*>(w.c_str()));
   argv.push_back(nullptr);

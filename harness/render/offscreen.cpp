@@ -20,7 +20,8 @@ Offscreen::Offscreen(std::shared_ptr<vulkan::Device> device, VkExtent2D extent, 
   const std::uint32_t most = std::min({device_->limits().maxImageDimension2D, device_->limits().maxFramebufferWidth,
                                        device_->limits().maxFramebufferHeight});
   if (extent.width < 1 || extent.height < 1 || extent.width > most || extent.height > most)
-    throw Error(fmt::format("a picture of {} x {}: this device draws up to {} x {}", extent.width, extent.height, most, most));
+    throw Error(
+        fmt::format("a picture of {} x {}: this device draws up to {} x {}", extent.width, extent.height, most, most));
   for (std::size_t k = 0; k < count; ++k)
     images_.push_back(std::make_unique<Image>(device_, kFormat, extent, VK_SAMPLE_COUNT_1_BIT,
                                               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
@@ -64,7 +65,8 @@ void Offscreen::submit(Record&& record) {
 }
 
 void Offscreen::draw(SceneRenderer& renderer, std::span<const Camera> cameras) {
-  if (cameras.size() != images_.size()) throw Error(fmt::format("{} cameras for {} images", cameras.size(), images_.size()));
+  if (cameras.size() != images_.size())
+    throw Error(fmt::format("{} cameras for {} images", cameras.size(), images_.size()));
   drawn_by_ = &renderer;
   std::vector<Drawing> drawings;
   for (std::size_t k = 0; k < cameras.size(); ++k)
@@ -86,12 +88,13 @@ Picture Offscreen::read(std::size_t k) {
     drawn.srcQueueFamilyIndex = drawn.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     drawn.image = images_.at(k)->handle();
     drawn.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0,
-                         nullptr, 1, &drawn);
+    vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0,
+                         nullptr, 0, nullptr, 1, &drawn);
     VkBufferImageCopy copy{};
     copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     copy.imageExtent = {extent_.width, extent_.height, 1};
-    vkCmdCopyImageToBuffer(commands_, images_[k]->handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, pixels_->handle(), 1, &copy);
+    vkCmdCopyImageToBuffer(commands_, images_[k]->handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, pixels_->handle(), 1,
+                           &copy);
     VkMemoryBarrier copied{};
     copied.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
     copied.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
@@ -101,8 +104,8 @@ Picture Offscreen::read(std::size_t k) {
     back.dstAccessMask = 0;
     std::swap(back.oldLayout, back.newLayout);
     vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                         VK_PIPELINE_STAGE_HOST_BIT | VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, 0, 1, &copied, 0, nullptr, 1,
-                         &back);
+                         VK_PIPELINE_STAGE_HOST_BIT | VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, 0, 1, &copied, 0,
+                         nullptr, 1, &back);
   });
   Picture out(static_cast<int>(extent_.width), static_cast<int>(extent_.height), 0);
   const auto* rgba = static_cast<const std::uint8_t*>(pixels_->mapped());

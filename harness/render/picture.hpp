@@ -13,7 +13,9 @@ struct Picture {
   Picture() = default;
   Picture(int w, int h, std::uint8_t grey)
       : width(w), height(h), rgb(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * 3, grey) {}
-  std::uint8_t* at(int x, int y) { return &rgb[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3]; }
+  std::uint8_t* at(int x, int y) {
+    return &rgb[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3];
+  }
   const std::uint8_t* at(int x, int y) const { return const_cast<Picture*>(this)->at(x, y); }
   /// Puts another one on it, whose upper left corner comes to (x, y); what juts out is cut off.
   void put(const Picture&, int x, int y);

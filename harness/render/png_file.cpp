@@ -24,7 +24,8 @@ void write_png(const std::filesystem::path& path, const Picture& picture) {
 Picture read_png(const std::filesystem::path& path) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
-  if (png_image_begin_read_from_file(&image, path.c_str()) == 0) throw Error(path.string() + ": not a PNG: " + image.message);
+  if (png_image_begin_read_from_file(&image, path.c_str()) == 0)
+    throw Error(path.string() + ": not a PNG: " + image.message);
   image.format = PNG_FORMAT_RGB;
   Picture out(static_cast<int>(image.width), static_cast<int>(image.height), 0);
   if (png_image_finish_read(&image, nullptr, out.rgb.data(), 0, nullptr) == 0)

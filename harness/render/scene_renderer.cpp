@@ -52,21 +52,24 @@ SceneRenderer::~SceneRenderer() = default;
 
 std::unique_ptr<vulkan::Buffer> SceneRenderer::filled(const char* name, const void* data, std::size_t bytes) const {
   // A buffer has at least a byte; shaders read none of one that is there for its binding's sake.
-  auto buffer = std::make_unique<vulkan::Buffer>(device_, name, std::max<std::size_t>(bytes, 16), vulkan::Buffer::Place::Host);
+  auto buffer =
+      std::make_unique<vulkan::Buffer>(device_, name, std::max<std::size_t>(bytes, 16), vulkan::Buffer::Place::Host);
   if (data != nullptr && bytes > 0) std::memcpy(buffer->mapped(), data, bytes);
   return buffer;
 }
 
 void SceneRenderer::set_cloth(const Cloth& cloth, const Vec3& origin_m) {
   if (cloth.columns < 2 || cloth.rows < 2)
-    throw Error(fmt::format("the cloth's grid is {} x {}: expected at least 2 x 2 vertices", cloth.columns, cloth.rows));
+    throw Error(
+        fmt::format("the cloth's grid is {} x {}: expected at least 2 x 2 vertices", cloth.columns, cloth.rows));
   columns_ = cloth.columns;
   rows_ = cloth.rows;
   origin_m_ = origin_m;
   constexpr double kSquares = 8, kMostSquares = 64;  // along the shorter side, along the longer
   const double shorter = std::min(cloth.width_m, cloth.height_m);
   const auto squares = [&](double side) {
-    return static_cast<float>(shorter > 0 ? std::clamp(std::round(kSquares * side / shorter), 1.0, kMostSquares) : kSquares);
+    return static_cast<float>(shorter > 0 ? std::clamp(std::round(kSquares * side / shorter), 1.0, kMostSquares)
+                                          : kSquares);
   };
   squares_u_ = squares(cloth.width_m);
   squares_v_ = squares(cloth.height_m);
@@ -81,7 +84,8 @@ void SceneRenderer::set_cloth(const Cloth& cloth, const Vec3& origin_m) {
 void SceneRenderer::use_positions(const vulkan::Buffer& buffer, const Vec3& buffer_origin_m) {
   const std::size_t bytes = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) * sizeof(vec4);
   if (buffer.bytes() < bytes)
-    throw Error(fmt::format("buffer \"{}\" of {} B: expected a vec4 a vertex, {} B", buffer.name(), buffer.bytes(), bytes));
+    throw Error(
+        fmt::format("buffer \"{}\" of {} B: expected a vec4 a vertex, {} B", buffer.name(), buffer.bytes(), bytes));
   positions_ = &buffer;
   buffer_origin_m_ = buffer_origin_m;
   bound_ = false;
@@ -89,7 +93,8 @@ void SceneRenderer::use_positions(const vulkan::Buffer& buffer, const Vec3& buff
 
 void SceneRenderer::write_positions(std::span<const double> x) {
   const std::size_t vertices = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-  if (x.size() != 3 * vertices) throw Error(fmt::format("{} coordinates: expected {}, xyz of each vertex", x.size(), 3 * vertices));
+  if (x.size() != 3 * vertices)
+    throw Error(fmt::format("{} coordinates: expected {}, xyz of each vertex", x.size(), 3 * vertices));
   if (!own_positions_) own_positions_ = filled("positions to draw", nullptr, vertices * sizeof(vec4));
   auto* to = static_cast<float*>(own_positions_->mapped());
   for (std::size_t v = 0; v < vertices; ++v) {
@@ -111,7 +116,8 @@ void SceneRenderer::write_values(std::span<const float> values, std::span<const 
   bound_ = false;
   if (!by_value_) return;
   if (values.size() != static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) || colours.size() < 2)
-    throw Error(fmt::format("{} values and {} colours: expected one a vertex, and two colours", values.size(), colours.size()));
+    throw Error(
+        fmt::format("{} values and {} colours: expected one a vertex, and two colours", values.size(), colours.size()));
   values_ = filled("values to draw", values.data(), values.size_bytes());
   colours_ = filled("colours of values", colours.data(), colours.size_bytes());
 }
@@ -123,7 +129,8 @@ void SceneRenderer::set_surfaces(const Surfaces& s) {
     vertices.push_back(as_vec4(minus(s.position_m[v], origin_m_), s.look[v]));
     vertices.push_back(as_vec4(s.normal[v], 0));
   }
-  const std::size_t bytes = vertices.size() * sizeof(vec4), corner_bytes = s.triangles.size() * 3 * sizeof(std::uint32_t);
+  const std::size_t bytes = vertices.size() * sizeof(vec4),
+                    corner_bytes = s.triangles.size() * 3 * sizeof(std::uint32_t);
   if (vertices_ && bytes > 0 && vertices_->bytes() == bytes && corners_->bytes() == corner_bytes) {  // only moved
     std::memcpy(vertices_->mapped(), vertices.data(), bytes);
     std::memcpy(corners_->mapped(), s.triangles.data(), corner_bytes);
@@ -168,7 +175,8 @@ void SceneRenderer::record(VkCommandBuffer commands, std::span<const Drawing> dr
 }
 
 void SceneRenderer::record_one(VkCommandBuffer commands, const Drawing& drawing) {
-  if (!targets_ || targets_->extent().width != drawing.extent.width || targets_->extent().height != drawing.extent.height)
+  if (!targets_ || targets_->extent().width != drawing.extent.width ||
+      targets_->extent().height != drawing.extent.height)
     targets_ = std::make_unique<Targets>(device_, pipelines_.pass(), format_, kSampleBit, drawing.extent);
   std::array<VkClearValue, 3> clear{};
   clear[0].color = {{1, 1, 1, 1}};
@@ -181,7 +189,8 @@ void SceneRenderer::record_one(VkCommandBuffer commands, const Drawing& drawing)
   begin.clearValueCount = static_cast<std::uint32_t>(clear.size());
   begin.pClearValues = clear.data();
   vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-  const VkViewport viewport{0, 0, static_cast<float>(drawing.extent.width), static_cast<float>(drawing.extent.height), 0, 1};
+  const VkViewport viewport{0, 0, static_cast<float>(drawing.extent.width), static_cast<float>(drawing.extent.height),
+                            0, 1};
   vkCmdSetViewport(commands, 0, 1, &viewport);
   vkCmdSetScissor(commands, 0, 1, &begin.renderArea);
   const Drawn d = constants(drawing);

@@ -14,21 +14,24 @@
 
 namespace clothbench::render {
 
-/// One picture to draw: into which image, seen how. The image has the renderer's colour format, one sample a pixel and the
-/// usage COLOR_ATTACHMENT; what it held is lost, and it is in the layout COLOR_ATTACHMENT_OPTIMAL afterwards, as an OpenXR
-/// swapchain's image has to be.
+/// One picture to draw: into which image, seen how. The image has the renderer's colour format, one sample a pixel and
+/// the usage COLOR_ATTACHMENT; what it held is lost, and it is in the layout COLOR_ATTACHMENT_OPTIMAL afterwards, as an
+/// OpenXR swapchain's image has to be.
 struct Drawing {
   VkImage image = VK_NULL_HANDLE;
   std::uint32_t layer = 0;
   VkExtent2D extent{};
-  Mat4 view{}, projection{};  ///< view: from metres relative to SceneRenderer::origin(); projection: to Vulkan's clip space
+  Mat4 view{},
+      projection{};  ///< view: from metres relative to SceneRenderer::origin(); projection: to Vulkan's clip space
 };
 
-/// Draws one cloth and what it touches, with several samples a pixel. It knows no window and no frame loop: whoever owns images
-/// (a file to write, an eye of a headset) has it record into a command buffer of theirs, on the queue of the same device.
+/// Draws one cloth and what it touches, with several samples a pixel. It knows no window and no frame loop: whoever
+/// owns images (a file to write, an eye of a headset) has it record into a command buffer of theirs, on the queue of
+/// the same device.
 ///
-/// All its memory is that of the scene it was given. What commands recorded earlier use is replaced by set_cloth, write_values
-/// and set_surfaces, and by a picture of a new size, so nothing of its may be in flight then; write_positions overwrites.
+/// All its memory is that of the scene it was given. What commands recorded earlier use is replaced by set_cloth,
+/// write_values and set_surfaces, and by a picture of a new size, so nothing of its may be in flight then;
+/// write_positions overwrites.
 class SceneRenderer {
  public:
   static constexpr int kSamples = 4;  ///< every device that draws has them (Vulkan 1.1, framebufferColorSampleCounts)
@@ -43,16 +46,17 @@ class SceneRenderer {
   void set_cloth(const Cloth& cloth, const Vec3& origin_m);
   const Vec3& origin() const { return origin_m_; }
 
-  /// Positions come from a buffer of the same device, a vec4 a vertex, first vertex first, relative to `buffer_origin_m`. It
-  /// outlives its use here; each picture shows what it holds then.
+  /// Positions come from a buffer of the same device, a vec4 a vertex, first vertex first, relative to
+  /// `buffer_origin_m`. It outlives its use here; each picture shows what it holds then.
   void use_positions(const vulkan::Buffer& buffer, const Vec3& buffer_origin_m);
-  /// Positions come from here, xyz interleaved [m], one for each vertex (else Error). Any may be NaN: triangles there are left
-  /// out.
+  /// Positions come from here, xyz interleaved [m], one for each vertex (else Error). Any may be NaN: triangles there
+  /// are left out.
   void write_positions(std::span<const double> position_m);
   /// The picture goes with a vertex that began at `start_m`.
   void follow(std::uint32_t vertex, const Vec3& start_m);
 
-  /// Colours the cloth by a number a vertex, 0 to 1 along `colours` (linear RGB, at least 2), NaN grey; without any by checkers.
+  /// Colours the cloth by a number a vertex, 0 to 1 along `colours` (linear RGB, at least 2), NaN grey; without any by
+  /// checkers.
   void write_values(std::span<const float> values, std::span<const vec4> colours);
   void set_surfaces(const Surfaces&);
 

@@ -13,11 +13,14 @@ namespace {
 class StereoDrawer : public FrameDrawer {
  public:
   StereoDrawer(const Scene& scene, const ClothSolver& solver, const DeviceOptions& options, VkExtent2D eye)
-      : scene_(scene), solver_(solver), renderer_(vulkan::Device::get(options), Offscreen::kFormat),
+      : scene_(scene),
+        solver_(solver),
+        renderer_(vulkan::Device::get(options), Offscreen::kFormat),
         images_(vulkan::Device::get(options), eye, 2) {
     near_ = Bounds::none();
     const std::vector<double> start = initial_positions(scene);
-    for (std::size_t v = 0; v < scene.cloth.vertex_count(); ++v) near_.add({start[3 * v], start[3 * v + 1], start[3 * v + 2]});
+    for (std::size_t v = 0; v < scene.cloth.vertex_count(); ++v)
+      near_.add({start[3 * v], start[3 * v + 1], start[3 * v + 2]});
     Vec3 middle{};
     for (std::size_t k = 0; k < 3; ++k) middle[k] = (near_.low[k] + near_.high[k]) / 2;
     const double size = std::max({scene.cloth.width_m, scene.cloth.height_m, near_.diagonal()});
@@ -79,12 +82,12 @@ SolverPositions positions_of(const pbd_gpu::GpuSolver& solver) {
 Rendering stereo_rendering(int width, int height) {
   Rendering r;
   r.describe = [=](const SolverInfo& info) {
-    return fmt::format("2 eyes of {} x {} pixels, {} samples each; positions: {}", width, height, SceneRenderer::kSamples,
-                       info.on_gpu ? "the solver's own buffer" : "read_state, uploaded");
+    return fmt::format("2 eyes of {} x {} pixels, {} samples each; positions: {}", width, height,
+                       SceneRenderer::kSamples, info.on_gpu ? "the solver's own buffer" : "read_state, uploaded");
   };
   r.make = [=](const Scene& scene, const ClothSolver& solver, const DeviceOptions& options) {
-    return std::make_unique<StereoDrawer>(scene, solver, options,
-                                          VkExtent2D{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)});
+    return std::make_unique<StereoDrawer>(
+        scene, solver, options, VkExtent2D{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)});
   };
   return r;
 }

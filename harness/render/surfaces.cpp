@@ -49,7 +49,8 @@ void add_capsule(Surfaces& s, const Capsule& c, int look) {
   const auto first = static_cast<std::uint32_t>(s.position_m.size());
   for (int ring = 0; ring < 2 * kRings; ++ring) {
     const bool far_end = ring >= kRings;
-    const double latitude = (static_cast<double>(far_end ? ring - kRings : ring - kRings + 1) / (kRings - 1)) * std::numbers::pi / 2;
+    const double latitude =
+        (static_cast<double>(far_end ? ring - kRings : ring - kRings + 1) / (kRings - 1)) * std::numbers::pi / 2;
     for (int side = 0; side < kSides; ++side) {
       const double turn = 2 * std::numbers::pi * side / kSides;
       Vec3 n = sum({0, 0, 0}, std::sin(latitude), axis);
@@ -90,7 +91,8 @@ void add_plane(Surfaces& s, const Collider& c, const Bounds& near) {
   const double reach = near.diagonal() / 2;
   std::array<std::uint32_t, 4> corner{};
   for (std::size_t i = 0; i < 4; ++i)
-    corner[i] = add_vertex(s, sum(sum(middle, (i == 1 || i == 2 ? 1 : -1) * reach, x), (i >= 2 ? 1 : -1) * reach, y), c.normal, LOOK_FLAT);
+    corner[i] = add_vertex(s, sum(sum(middle, (i == 1 || i == 2 ? 1 : -1) * reach, x), (i >= 2 ? 1 : -1) * reach, y),
+                           c.normal, LOOK_FLAT);
   s.triangles.push_back({corner[0], corner[1], corner[2]});
   s.triangles.push_back({corner[0], corner[2], corner[3]});
 }
@@ -152,19 +154,28 @@ Surfaces surfaces(const Scene& scene, int frame, const Bounds& near) {
     const Collider& c = scene.colliders[k];
     const ColliderPose& pose = motion != nullptr && k < motion->colliders.size() ? motion->colliders[k] : kStill;
     switch (c.shape) {
-      case Collider::Shape::Plane: add_plane(s, c, near); break;
-      case Collider::Shape::Sphere: add_capsule(s, {c.center_m, c.center_m, c.radius_m}, LOOK_SMOOTH); break;
-      case Collider::Shape::Box: add_box(s, c); break;
+      case Collider::Shape::Plane:
+        add_plane(s, c, near);
+        break;
+      case Collider::Shape::Sphere:
+        add_capsule(s, {c.center_m, c.center_m, c.radius_m}, LOOK_SMOOTH);
+        break;
+      case Collider::Shape::Box:
+        add_box(s, c);
+        break;
       case Collider::Shape::Capsules:
         for (const Capsule& one : pose.capsules.empty() ? c.capsules : pose.capsules) add_capsule(s, one, LOOK_SMOOTH);
         break;
-      case Collider::Shape::Mesh: add_mesh(s, *c.mesh, pose, near); break;
+      case Collider::Shape::Mesh:
+        add_mesh(s, *c.mesh, pose, near);
+        break;
     }
   }
   if (motion == nullptr) return s;
   const double radius = kGrip_m * std::max(scene.cloth.width_m, scene.cloth.height_m);
   for (std::size_t k = 0; k < motion->grip_position_m.size(); ++k)
-    if (motion->grip_held[k] != 0) add_capsule(s, {motion->grip_position_m[k], motion->grip_position_m[k], radius}, LOOK_MARK);
+    if (motion->grip_held[k] != 0)
+      add_capsule(s, {motion->grip_position_m[k], motion->grip_position_m[k], radius}, LOOK_MARK);
   return s;
 }
 

@@ -24,9 +24,9 @@ struct Surfaces {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Colliders and what hands hold, of a scene at the end of frame `frame` (0 = the start). Meshes that stand still lose the
-/// triangles that do not meet `near` (a room has more walls than its desk); planes, which have no end, are drawn as large as it.
-/// What moves is whole. Things that are not finite are left out.
+/// Colliders and what hands hold, of a scene at the end of frame `frame` (0 = the start). Meshes that stand still lose
+/// the triangles that do not meet `near` (a room has more walls than its desk); planes, which have no end, are drawn as
+/// large as it. What moves is whole. Things that are not finite are left out.
 Surfaces surfaces(const Scene&, int frame, const Bounds& near);
 
 }  // namespace clothbench::render

@@ -18,7 +18,8 @@ VkImageView make_view(VkDevice device, VkImage image, VkFormat format, std::uint
   info.viewType = VK_IMAGE_VIEW_TYPE_2D;
   info.format = format;
   const bool depth = format == Pipelines::kDepthFormat;
-  info.subresourceRange = {static_cast<VkImageAspectFlags>(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 1, layer, 1};
+  info.subresourceRange = {
+      static_cast<VkImageAspectFlags>(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 1, layer, 1};
   VkImageView view = VK_NULL_HANDLE;
   check(vkCreateImageView(device, &info, nullptr, &view), "vkCreateImageView");
   return view;
@@ -57,7 +58,8 @@ void Image::create(VkFormat format, VkExtent2D extent, VkSampleCountFlagBits sam
     memory.memoryTypeIndex = device_->memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT);
   if (memory.memoryTypeIndex == vulkan::Device::kNoMemory)
     memory.memoryTypeIndex = device_->memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-  if (memory.memoryTypeIndex == vulkan::Device::kNoMemory) memory.memoryTypeIndex = device_->memory_type(needs.memoryTypeBits, 0);
+  if (memory.memoryTypeIndex == vulkan::Device::kNoMemory)
+    memory.memoryTypeIndex = device_->memory_type(needs.memoryTypeBits, 0);
   check(vkAllocateMemory(device_->handle(), &memory, nullptr, &memory_), "vkAllocateMemory");
   check(vkBindImageMemory(device_->handle(), image_, memory_, 0), "vkBindImageMemory");
   view_ = make_view(device_->handle(), image_, format, 0);
@@ -71,10 +73,14 @@ void Image::release() {
   vkFreeMemory(device_->handle(), memory_, nullptr);
 }
 
-Targets::Targets(std::shared_ptr<vulkan::Device> device, VkRenderPass pass, VkFormat colour, VkSampleCountFlagBits samples,
-                 VkExtent2D extent)
-    : device_(device), pass_(pass), format_(colour), extent_(extent),
-      colour_(device, colour, extent, samples, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT),
+Targets::Targets(std::shared_ptr<vulkan::Device> device, VkRenderPass pass, VkFormat colour,
+                 VkSampleCountFlagBits samples, VkExtent2D extent)
+    : device_(device),
+      pass_(pass),
+      format_(colour),
+      extent_(extent),
+      colour_(device, colour, extent, samples,
+              VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT),
       depth_(device, Pipelines::kDepthFormat, extent, samples,
              VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT) {}
 

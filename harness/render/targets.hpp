@@ -36,7 +36,8 @@ VkImageView make_view(VkDevice, VkImage, VkFormat, std::uint32_t layer);
 /// What pictures of one size are drawn with: samples and depth, and a framebuffer for each image they end in.
 class Targets {
  public:
-  Targets(std::shared_ptr<vulkan::Device> device, VkRenderPass pass, VkFormat colour, VkSampleCountFlagBits samples, VkExtent2D extent);
+  Targets(std::shared_ptr<vulkan::Device> device, VkRenderPass pass, VkFormat colour, VkSampleCountFlagBits samples,
+          VkExtent2D extent);
   ~Targets();
   Targets(const Targets&) = delete;
   Targets& operator=(const Targets&) = delete;

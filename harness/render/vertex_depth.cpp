@@ -46,8 +46,8 @@ struct Posed {
 
 struct Watched {
   const Collider* collider;
-  std::unique_ptr<Posed> posed;                        ///< of a mesh that stands still
-  std::optional<contact::TunnelHistory> history;       ///< of one without an inside
+  std::unique_ptr<Posed> posed;                   ///< of a mesh that stands still
+  std::optional<contact::TunnelHistory> history;  ///< of one without an inside
 };
 
 }  // namespace
@@ -76,13 +76,23 @@ struct VertexDepth::State {
       double depth = NAN;
       if (p.allFinite()) {
         switch (c.shape) {
-          case Collider::Shape::Plane: depth = point(c.normal).dot(point(c.center_m) - p); break;
-          case Collider::Shape::Sphere: depth = c.radius_m - (p - point(c.center_m)).norm(); break;
-          case Collider::Shape::Box: depth = depth_in_box(c, p); break;
-          case Collider::Shape::Capsules: depth = depth_in_capsules(capsules, p); break;
+          case Collider::Shape::Plane:
+            depth = point(c.normal).dot(point(c.center_m) - p);
+            break;
+          case Collider::Shape::Sphere:
+            depth = c.radius_m - (p - point(c.center_m)).norm();
+            break;
+          case Collider::Shape::Box:
+            depth = depth_in_box(c, p);
+            break;
+          case Collider::Shape::Capsules:
+            depth = depth_in_capsules(capsules, p);
+            break;
           case Collider::Shape::Mesh:
-            if (!w.history) depth = mesh->depth(p);
-            else if (history_known) depth = w.history->counts()[v] != 0 ? mesh->tree.distance(p) : 0;
+            if (!w.history)
+              depth = mesh->depth(p);
+            else if (history_known)
+              depth = w.history->counts()[v] != 0 ? mesh->tree.distance(p) : 0;
             break;
         }
       }

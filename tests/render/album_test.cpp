@@ -24,7 +24,8 @@ struct Stored {
   Scene scene;
   Motion direct, read;
   fs::path file;
-  Stored(const std::string& name, const std::vector<std::string>& set, const fs::path& folder) : scene(load_scene(name, set)) {
+  Stored(const std::string& name, const std::vector<std::string>& set, const fs::path& folder)
+      : scene(load_scene(name, set)) {
     const SolverEntry& entry = find_solver("ballistic");
     Cell cell({&scene, &entry, complete_settings(entry.info, nlohmann::json::object())}, {}, "test");
     TrialRules rules;
@@ -63,12 +64,14 @@ TEST_P(Files, HoldAllThatIsDrawn) {
     EXPECT_EQ(drawn.triangles.empty(), s.scene.colliders.empty() && s.scene.grips.vertices.empty());
   }
   EXPECT_EQ(s.read.scene.cloth.vertex_count(), s.scene.cloth.vertex_count());
-  EXPECT_EQ(framing_of(s.read, std::vector<std::size_t>{0, 9}).points, framing_of(s.direct, std::vector<std::size_t>{0, 9}).points);
+  EXPECT_EQ(framing_of(s.read, std::vector<std::size_t>{0, 9}).points,
+            framing_of(s.direct, std::vector<std::size_t>{0, 9}).points);
 }
 
 INSTANTIATE_TEST_SUITE_P(Album, Files,
-                         ::testing::Values("contact/sphere", "contact/box", "contact/plane", "paper/capsule-sweep", "paper/hand-push",
-                                           "paper/desk-flat-low", "paper/two-hand-stretch-2mps", "paper/gravity"));
+                         ::testing::Values("contact/sphere", "contact/box", "contact/plane", "paper/capsule-sweep",
+                                           "paper/hand-push", "paper/desk-flat-low", "paper/two-hand-stretch-2mps",
+                                           "paper/gravity"));
 
 TEST(Album, TakesPicturesOfTheSizeAskedForWithBarAndCaption) {
   const Folder folder("shots");

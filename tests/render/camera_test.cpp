@@ -59,7 +59,8 @@ TEST(Camera, SeesEverythingAndFillsThePictureOneWay) {
 
 TEST(Camera, ViewsLookWhereTheySay) {
   const std::vector<double> square = {-1, 0, -1, 1, 0, -1, -1, 0, 1, 1, 0, 1, 0, 1, 0};
-  const Camera front = frame(View::Front, square, 1), top = frame(View::Top, square, 1), corner = frame(View::Corner, square, 1);
+  const Camera front = frame(View::Front, square, 1), top = frame(View::Top, square, 1),
+               corner = frame(View::Corner, square, 1);
   EXPECT_GT((*seen_at(front, {1, 0, 0}))[0], (*seen_at(front, {0, 0, 0}))[0]) << "+x to the right";
   EXPECT_LT((*seen_at(front, {0, 1, 0}))[1], (*seen_at(front, {0, 0, 0}))[1]) << "+y up";
   EXPECT_LT((*seen_at(top, {0, 0, -1}))[1], (*seen_at(top, {0, 0, 0}))[1]) << "-z up";
@@ -73,7 +74,8 @@ TEST(Camera, FramesAPointAndASheetSeenEdgeOn) {
     for (const View view : {View::Front, View::Top, View::Corner}) {
       const Camera c = frame(view, points, 1.5);
       for (const double x : c.projection()) EXPECT_TRUE(std::isfinite(x));
-      for (std::size_t k = 0; k < points.size(); k += 3) EXPECT_TRUE(seen_at(c, {points[k], points[k + 1], points[k + 2]}).has_value());
+      for (std::size_t k = 0; k < points.size(); k += 3)
+        EXPECT_TRUE(seen_at(c, {points[k], points[k + 1], points[k + 2]}).has_value());
     }
   EXPECT_THROW(frame(View::Front, {}, 1), Error);
 }

@@ -37,7 +37,10 @@ class RenderCommand : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<Folder>("render-command");
-    const Answer a = command("run contact/sphere validation/pendulum --solver ballistic --solver xpbd --trials 0 --set time.duration_s=0.1 --out " + runs());
+    const Answer a = command(
+        "run contact/sphere validation/pendulum --solver ballistic --solver xpbd --trials 0 --set time.duration_s=0.1 "
+        "--out " +
+        runs());
     ASSERT_EQ(a.code, 0) << a.text;
   }
   static void TearDownTestSuite() { folder_.reset(); }
@@ -48,7 +51,10 @@ class RenderCommand : public ::testing::Test {
 std::unique_ptr<Folder> RenderCommand::folder_;
 
 TEST_F(RenderCommand, WritesPicturesOfAFile) {
-  const Answer a = command("--json render " + runs() + "/sphere-drop__xpbd__default.h5 --frames 0:-1:2 --no-movie --size 200x150 --view front --view top --colour depth -o " + out());
+  const Answer a = command("--json render " + runs() +
+                           "/sphere-drop__xpbd__default.h5 --frames 0:-1:2 --no-movie --size 200x150 --view front "
+                           "--view top --colour depth -o " +
+                           out());
   ASSERT_EQ(a.code, 0) << a.text;
   const auto told = nlohmann::json::parse(a.text);
   ASSERT_EQ(told["pictures"].size(), 8u) << "frames 0, 2, 4, 6 of two views";
@@ -69,7 +75,10 @@ TEST_F(RenderCommand, PicksCellsOfAFolder) {
 }
 
 TEST_F(RenderCommand, RunsAScenarioAndSaysSo) {
-  const Answer a = command("render contact/plane --solver ballistic --set cloth.grid=[5,5] --set time.duration_s=0.05 --frames -1 --size 160x120 -o " + out());
+  const Answer a = command(
+      "render contact/plane --solver ballistic --set cloth.grid=[5,5] --set time.duration_s=0.05 --frames -1 --size "
+      "160x120 -o " +
+      out());
   ASSERT_EQ(a.code, 0) << a.text;
   EXPECT_NE(a.text.find("nothing is stored, so ballistic runs it now"), std::string::npos);
   EXPECT_NE(a.text.find("plane-drop__ballistic__default__corner__checker__000004.png"), std::string::npos) << a.text;
@@ -78,7 +87,9 @@ TEST_F(RenderCommand, RunsAScenarioAndSaysSo) {
 TEST_F(RenderCommand, SaysThatFfmpegIsMissing) {
   const fs::path empty = folder_->path / "empty";
   fs::create_directories(empty);
-  const Answer a = command("render " + runs() + "/sphere-drop__xpbd__default.h5 --frames 0:1 --size 160x120 -o " + out(), "PATH=" + empty.string());
+  const Answer a =
+      command("render " + runs() + "/sphere-drop__xpbd__default.h5 --frames 0:1 --size 160x120 -o " + out(),
+              "PATH=" + empty.string());
   EXPECT_EQ(a.code, 0) << a.text;
   EXPECT_NE(a.text.find("no movie: ffmpeg"), std::string::npos) << a.text;
 }
@@ -89,13 +100,17 @@ TEST_F(RenderCommand, RefusesWhatItCannotDo) {
   std::ofstream(text) << "no result file";
   const fs::path empty = folder_->path / "nothing";
   fs::create_directories(empty);
-  const std::vector<std::pair<std::string, std::string>> wrong = {
-      {file + " --frames 99", "there are frames 0 to"}, {file + " --frames x", "is no number"},
-      {file + " --view side", "front, top or corner"},   {file + " --colour red", "checker, strain or depth"},
-      {file + " --size 10", "WIDTHxHEIGHT"},             {file + " --size 20x20", "too small"},
-      {text.string(), "text.h5"},                        {runs() + "/none.h5", "none.h5"},
-      {"no/such-scene", "no/such-scene"},                {empty.string(), "no result files"},
-      {file + " --device 99", "device"}};
+  const std::vector<std::pair<std::string, std::string>> wrong = {{file + " --frames 99", "there are frames 0 to"},
+                                                                  {file + " --frames x", "is no number"},
+                                                                  {file + " --view side", "front, top or corner"},
+                                                                  {file + " --colour red", "checker, strain or depth"},
+                                                                  {file + " --size 10", "WIDTHxHEIGHT"},
+                                                                  {file + " --size 20x20", "too small"},
+                                                                  {text.string(), "text.h5"},
+                                                                  {runs() + "/none.h5", "none.h5"},
+                                                                  {"no/such-scene", "no/such-scene"},
+                                                                  {empty.string(), "no result files"},
+                                                                  {file + " --device 99", "device"}};
   for (const auto& [arguments, told] : wrong) {
     const Answer a = command("render " + arguments + " -o " + out());
     EXPECT_TRUE(a.code == 2 || a.code == 3) << arguments << ": " << a.code << " " << a.text;
@@ -105,7 +120,8 @@ TEST_F(RenderCommand, RefusesWhatItCannotDo) {
 
 TEST_F(RenderCommand, TimesFramesWithTheirPictures) {
   const std::string runs_with = (folder_->path / "with").string();
-  const Answer a = command("study table3 --quick --solver xpbd --trials 1 --with-rendering --eye 32x32 --out " + runs_with);
+  const Answer a =
+      command("study table3 --quick --solver xpbd --trials 1 --with-rendering --eye 32x32 --out " + runs_with);
   ASSERT_EQ(a.code, 0) << a.text;
   EXPECT_NE(a.text.find("Frame time with rendering"), std::string::npos);
   EXPECT_EQ(command("study table3 --quick --eye 32x32").code, 2) << "an eye without rendering";

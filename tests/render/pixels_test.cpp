@@ -231,7 +231,8 @@ TEST_F(Pixels, DrawsIntoAnImageOfAnyone) {
   // As a headset's loop would: its image, its matrices, its command buffer; a layer of an array is one eye.
   const Cloth cloth = upright(9, 9);
   const Picture expected = draw(cloth, positions_of(cloth));
-  const Image image(device_, Offscreen::kFormat, {kSize, kSize}, VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+  const Image image(device_, Offscreen::kFormat, {kSize, kSize}, VK_SAMPLE_COUNT_1_BIT,
+                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
   VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, device_->command_pool(),
                                        VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
   VkCommandBuffer commands = VK_NULL_HANDLE;

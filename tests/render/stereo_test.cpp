@@ -60,7 +60,8 @@ TEST(Stereo, FilesHaveTheColumnOnlyWhereAsked) {
   const Scene scene = load_scene("paper/gravity", {"cloth.grid=[8,8]"});
   const SolverEntry& entry = find_solver("ballistic");
   for (const bool rendered : {true, false}) {
-    CellSpec spec{&scene, &entry, complete_settings(entry.info, nlohmann::json::object()), rendered ? "with" : "without"};
+    CellSpec spec{&scene, &entry, complete_settings(entry.info, nlohmann::json::object()),
+                  rendered ? "with" : "without"};
     Cell cell(spec, {}, "test");
     CellRecord record;
     record.header = cell.header();

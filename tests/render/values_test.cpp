@@ -46,7 +46,8 @@ TEST_P(Through, DepthIsTheMetrics) {
     const SceneContact m = metric.probe(frame, x);
     const double most = static_cast<double>(*std::max_element(d.begin(), d.end()));
     EXPECT_GE(*std::min_element(d.begin(), d.end()), 0);
-    const double expected = std::isfinite(m.tunnelled_depth_m) && !std::isfinite(m.depth_vertex_m) ? m.tunnelled_depth_m : m.depth_vertex_m;
+    const double expected =
+        std::isfinite(m.tunnelled_depth_m) && !std::isfinite(m.depth_vertex_m) ? m.tunnelled_depth_m : m.depth_vertex_m;
     EXPECT_NEAR(most, expected, 1e-6) << "frame " << frame;
     deepest = std::max(deepest, most);
   }

@@ -55,6 +55,6 @@ void main() {
   const vec3 light = normalize(0.55 * towards - 0.45 * left + vec3(0, 0.7, 0));
   const float direct = max(dot(n, light), 0), sky = 0.5 + 0.5 * n.y;
   // Values are read off their colours, so those are shaded less.
-  const float shade = kCloth && d.eye.w > 0 ? 0.62 + 0.32 * direct + 0.06 * sky : 0.22 + 0.66 * direct + 0.14 * sky;
+  const float shade = kCloth && d.eye.w > 0 ? 0.76 + 0.20 * direct + 0.04 * sky : 0.22 + 0.66 * direct + 0.14 * sky;
   out_colour = vec4(surface_colour() * shade, 1);
 }

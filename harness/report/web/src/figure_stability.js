@@ -1,5 +1,6 @@
 // Stability maps: every probe by its outcome class, in colour and in symbol, where it turns, and what theory says.
 import {select} from './dom.js';
+import {decades} from './figure_parts.js';
 import {plot_figure} from './plot.js';
 
 /// A polygon through `radii` in turn, evenly round, within -1..1.
@@ -29,28 +30,28 @@ const kDashes = [[6, 4], [2, 3], [8, 3, 2, 3]];
 
 const name_of = s => s.setting === 'default' ? s.solver : `${s.solver} ${s.setting}`;
 const label_of = axis => axis.label + (axis.unit ? ` [${axis.unit}]` : '');
-const class_of = p => p.grade === 0 ? kClasses[0] : kClasses.find(c => c.id === p.class && c.id !== 'ok') ?? kClasses.at(-1);
+const class_of = p =>
+    p.grade === 0 ? kClasses[0] : kClasses.find(c => c.id === p.class && c.id !== 'ok') ?? kClasses.at(-1);
 const drawn = map => map.solvers.filter(s => s.probes.length > 0);
 
 function probes_of(solver) {
-  return solver.probes.filter(p => p.seed === 0)
-      .map(p => ({
-             kind: 'probe',
-             solver: name_of(solver),
-             x: p.x,
-             y: p.y,
-             outcome: class_of(p).words,
-             status: p.status,
-             frame: p.frame >= 0 ? p.frame : null,
-             message: p.message ?? ''
-           }));
+  return solver.probes.filter(p => p.seed === 0).map(p => ({
+                                                       kind: 'probe',
+                                                       solver: name_of(solver),
+                                                       x: p.x,
+                                                       y: p.y,
+                                                       outcome: class_of(p).words,
+                                                       status: p.status,
+                                                       frame: p.frame >= 0 ? p.frame : null,
+                                                       message: p.message ?? ''
+                                                     }));
 }
 
 /// Of every row that turns: the middle of its turn, and the range of that over the seeds.
 function boundary_of(solver) {
   return solver.rows.flatMap(row => {
-    const turns = row.seeds.filter(s => s.first_bad !== null && s.last_good > 0)
-                      .map(s => Math.sqrt(s.last_good * s.first_bad));
+    const turns =
+        row.seeds.filter(s => s.first_bad !== null && s.last_good > 0).map(s => Math.sqrt(s.last_good * s.first_bad));
     if (!turns.length) return [];
     const x = Math.min(...turns), x2 = Math.max(...turns);
     return [{kind: 'boundary', solver: name_of(solver), x: Math.sqrt(x * x2), least: x, most: x2, y: row.y}];
@@ -62,9 +63,7 @@ function theory_of(map, solver) {
       line => line.points.map(([x, y]) => ({kind: 'theory', solver: name_of(solver), line: line.label, x, y})));
 }
 
-function rows_of(map) {
-  return drawn(map).flatMap(s => [...theory_of(map, s), ...boundary_of(s), ...probes_of(s)]);
-}
+function rows_of(map) { return drawn(map).flatMap(s => [...theory_of(map, s), ...boundary_of(s), ...probes_of(s)]); }
 
 /// Ends of an axis: those of the probes and a little more; a theory far outside is cut off.
 function ends(probes, key) {
@@ -73,14 +72,15 @@ function ends(probes, key) {
 }
 
 function panels(map, rows, theme, width) {
-  const probes = rows.filter(r => r.kind === 'probe'), present = kClasses.filter(c => probes.some(p => p.outcome === c.words));
+  const probes = rows.filter(r => r.kind === 'probe'),
+        present = kClasses.filter(c => probes.some(p => p.outcome === c.words));
   const lines = [...new Set(rows.filter(r => r.kind === 'theory').map(r => r.line))];
   const axis = key => ({
     field: key,
     type: 'quantitative',
     title: label_of(map[key]),
     scale: {type: 'log', domain: ends(probes, key), nice: false},
-    axis: {format: '~g', labelOverlap: true, tickCount: 5}
+    axis: {format: '~g', labelOverlap: true, values: decades(ends(probes, key))}
   });
   const x = axis('x'), y = axis('y'), ink = theme === 'dark' ? '#e3e8ee' : '#1b1f24';
   const of = kind => [{filter: `datum.kind === '${kind}'`}];
@@ -99,13 +99,14 @@ function panels(map, rows, theme, width) {
           transform: of('theory'),
           mark: {type: 'line', clip: true, strokeWidth: 1.8, color: theme === 'dark' ? '#56B4E9' : '#0072B2'},
           encoding: {
-            x, y,
+            x,
+            y,
             strokeDash: {
               field: 'line',
               type: 'nominal',
               title: lines.length ? 'theory' : null,
               scale: {domain: lines, range: lines.map((_, k) => kDashes[k % kDashes.length])},
-              legend: lines.length ? {symbolType: 'stroke', symbolSize: 500} : null
+              legend: lines.length ? {symbolType: 'stroke', symbolSize: 500, orient: 'bottom', labelLimit: 800} : null
             },
             order: {field: 'y', type: 'quantitative'}
           }
@@ -121,6 +122,12 @@ function panels(map, rows, theme, width) {
           transform: of('boundary'),
           mark: {type: 'line', strokeWidth: 1.6, color: ink, clip: true},
           encoding: {x, y, order: {field: 'y', type: 'quantitative'}}
+        },
+        {
+          name: 'turns',  // also where only one row turns
+          transform: of('boundary'),
+          mark: {type: 'tick', orient: 'vertical', size: 14, thickness: 1.6, color: ink, clip: true},
+          encoding: {x, y}
         },
         {
           name: 'points',
@@ -154,7 +161,7 @@ export function stability_figure(maps) {
   let figure = null;
   const largest = s => s.unsupported ? 'unsupported' :
       !s.largest                     ? 'none' :
-                                       `${s.open ? '≥ ' : ''}${Number(s.largest.toPrecision(3))} ${at.x.unit}`.trim();
+                                       `${s.open ? '≥ ' : ''                    }${Number(s.largest.toPrecision(3))} ${at.x.unit}`.trim();
   figure = plot_figure({
     id: 'stability-map',
     title: 'Stability maps: outcome by setting',
@@ -167,7 +174,8 @@ export function stability_figure(maps) {
           figure.redraw();
         })],
     empty: 'No solver here can run this map.',
-    caption: 'Every probe of the first seed by its outcome class, in colour and symbol; the line is where a row turns, wide where ' +
+    caption:
+        'Every probe of the first seed by its outcome class, in colour and symbol; the line is where a row turns, wide where ' +
         'its seeds differ; broken lines: theory. Hover for the numbers.',
     rows: () => {
       const probes = rows_of(at).filter(r => r.kind === 'probe');
