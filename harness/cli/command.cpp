@@ -52,6 +52,15 @@ void write_between_marks(const std::string& file, const std::string& name, const
   write_file_atomically(file, all);
 }
 
+std::pair<int, int> pixels_of(const std::string& option, const std::string& text) {
+  constexpr int kMost = 16384;
+  int width = 0, height = 0, used = 0;
+  if (std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &used) != 2 || used != static_cast<int>(text.size()) || width < 1 ||
+      height < 1 || width > kMost || height > kMost)
+    throw Error(option + " " + text + ": expected WIDTHxHEIGHT in pixels, such as 1200x900");
+  return {width, height};
+}
+
 void DeviceFlags::add_to(CLI::App& app) {
   app.add_option("--device", options.index, "Vulkan device number (see `list devices`); default: the best present");
   app.add_option("--device-profile", options.profile,

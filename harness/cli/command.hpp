@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clothbench/error.hpp"
@@ -28,6 +29,7 @@ void add_report(CLI::App&, Console&);
 void add_import(CLI::App&, Console&);
 void add_check(CLI::App&, Console&);
 void add_bench(CLI::App&, Console&);
+void add_render(CLI::App&, Console&);
 void add_metamorphic(CLI::App&, Console&);
 void add_threshold(CLI::App&, Console&);
 void add_friction(CLI::App&, Console&);
@@ -50,6 +52,9 @@ struct DeviceFlags {
   bool allow_no_device = false;
   void add_to(CLI::App&);
 };
+
+/// "1200x900" as width and height [pixels], 1 to 16384 each. Throws Error naming the option.
+std::pair<int, int> pixels_of(const std::string& option, const std::string& text);
 
 /// --require-assets: stand-ins for rooms and hands are an Error.
 void add_require_assets(CLI::App&, bool& required);

@@ -41,6 +41,9 @@ int run_command_line(const std::vector<std::string>& words) {
 #ifdef CLOTHBENCH_WITH_BENCH
   add_bench(app, console);
 #endif
+#ifdef CLOTHBENCH_WITH_RENDER
+  add_render(app, console);
+#endif
   try {
     // CLI11 takes the words last first.
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));

@@ -5,6 +5,9 @@
 #include "cli/command.hpp"
 #include "cli/run_common.hpp"
 #include "cli/study_plan.hpp"
+#ifdef CLOTHBENCH_WITH_RENDER
+#include "render/stereo.hpp"
+#endif
 
 namespace clothbench {
 namespace {
@@ -14,6 +17,8 @@ struct Arguments {
   std::vector<std::string> set, only;
   int trials = 0, jobs = 0;
   std::optional<std::uint64_t> seed;
+  std::string eye = "2064x2208";
+  bool with_rendering = false;
   bool full = false, short_trials = false, quick = false, require_assets = false, no_cards = false;
   RunFlags run;
 };
@@ -23,6 +28,15 @@ const SolverEntry* built_in(const std::string& name) {
   for (const SolverEntry& e : solvers())
     if (e.info.name == name) return &e;
   return nullptr;
+}
+
+Rendering rendering_of([[maybe_unused]] const std::string& eye) {
+#ifdef CLOTHBENCH_WITH_RENDER
+  const auto [width, height] = pixels_of("--eye", eye);
+  return render::stereo_rendering(width, height);
+#else
+  return {};
+#endif
 }
 
 }  // namespace
@@ -76,6 +90,11 @@ void add_study(CLI::App& app, Console& console) {
   cmd->add_flag("--no-cards", a.no_cards, "No material cards after a work-precision study (then no solver is left unranked for its stiffness)");
   cmd->add_option("--jobs", a.jobs, "Processes at a time, of a study whose cells run in processes of their own (default 1)")
       ->check(CLI::Range(1, 256));
+#ifdef CLOTHBENCH_WITH_RENDER
+  CLI::Option* rendering =
+      cmd->add_flag("--with-rendering", a.with_rendering, "Also time frames with their pictures, one for each eye of a headset (frame_rendered_s)");
+  cmd->add_option("--eye", a.eye, "WIDTHxHEIGHT of each picture in pixels")->capture_default_str()->needs(rendering);
+#endif
   add_require_assets(*cmd, a.require_assets);
   a.run.device.add_to(*cmd);
   cmd->footer("Example: clothbench study table3 --out results/runs/mine");
@@ -87,7 +106,9 @@ void add_study(CLI::App& app, Console& console) {
     Study study = load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only});
     for (Study::Item& item : study.scenes) item.scene = at_seed(std::move(item.scene), a.seed, console);
     if (a.seed) study.definition["seed"] = *a.seed;
+    if (a.with_rendering) study.definition["rendering"] = {{"eyes", 2}, {"pixels", a.eye}};
     if (study.protocol == "stability-map") {
+      if (a.with_rendering) throw Error("--with-rendering: protocol stability-map times nothing");
       if (a.trials > 0) throw Error("--trials: protocol stability-map judges one run of every cell");
       run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, std::max(1, a.jobs), console);
       return;
@@ -96,6 +117,7 @@ void add_study(CLI::App& app, Console& console) {
     CellPlan plan = plan_study(study);
     if (a.trials > 0) plan.rules.trials = a.trials;
     if (a.no_cards) plan.material_cards = false;
+    if (a.with_rendering) plan.rules.rendering = rendering_of(a.eye);
     StudyManifest manifest;
     manifest.study = study.name;
     manifest.definition = study.definition;

@@ -275,6 +275,7 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
   page.rates = rates_json(rates, published);
   page.penetration = contact_series_json(ups);
   page.work = work_json(diagrams);
+  page.maps = maps;
   page.commands = commands_of(runs);
   for (const WorkDiagram& d : diagrams)
     for (const WorkPoint& p : d.points)

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 
@@ -221,6 +222,8 @@ class Writer {
       } else {
         by_frame("frame_wall_s", &TimedTrial::frame_wall_s, {"s", "wall time of a frame"});
         by_frame("frame_device_s", &TimedTrial::frame_device_s, {"s", "device time of a frame, first to last timestamp"});
+        if (std::any_of(r_.trials.begin(), r_.trials.end(), [](const TimedTrial& t) { return !t.frame_rendered_s.empty(); }))
+          by_frame("frame_rendered_s", &TimedTrial::frame_rendered_s, {"s", "wall time of a frame and its picture"});
         std::vector<double> pipelined;
         for (const TimedTrial& t : r_.trials) pipelined.push_back(t.pipelined_wall_s);
         attach(write_numbers(g, "pipelined_wall_s", {trials}, pipelined, {"s", "mean wall time of a frame, two in flight"}), {trial});

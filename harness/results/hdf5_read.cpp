@@ -44,9 +44,11 @@ void read_trials(hid_t file, CellRecord& r) {
   const auto index = numbers<std::int64_t>(timing, "trial", H5T_NATIVE_INT64);
   const auto pipelined = exists(timing, "pipelined_wall_s") ? numbers<double>(timing, "pipelined_wall_s", H5T_NATIVE_DOUBLE)
                                                             : std::vector<double>(index.size(), kMissing);
+  const auto rendered = exists(timing, "frame_rendered_s") ? numbers<double>(timing, "frame_rendered_s", H5T_NATIVE_DOUBLE)
+                                                           : std::vector<double>(wall.size(), kMissing);
   const std::size_t stages = r.header.stages.size();
   if (pipelined.size() != index.size()) throw Error("/timing/pipelined_wall_s does not fit /timing/trial");
-  if (shape.size() != 2 || index.size() != shape[0] || device.size() != wall.size() || stage.size() != wall.size() * stages ||
+  if (shape.size() != 2 || index.size() != shape[0] || device.size() != wall.size() || rendered.size() != wall.size() || stage.size() != wall.size() * stages ||
       read.size() != stage.size() || write.size() != stage.size())
     throw Error("/timing and /bandwidth do not fit one another");
   for (std::size_t t = 0; t < shape[0]; ++t) {
@@ -57,6 +59,7 @@ void read_trials(hid_t file, CellRecord& r) {
       if (std::isnan(wall[k])) break;  // padding of a shorter trial
       trial.frame_wall_s.push_back(wall[k]);
       trial.frame_device_s.push_back(device[k]);
+      if (!std::isnan(rendered[k])) trial.frame_rendered_s.push_back(rendered[k]);
       const auto append = [&](std::vector<double>& to, const std::vector<double>& from) {
         to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(k * stages), from.begin() + static_cast<std::ptrdiff_t>((k + 1) * stages));
       };

@@ -165,7 +165,9 @@ void write_trial_file(const std::filesystem::path& path, const TimedTrial& t, st
     for (const auto* series : {&t.stage_device_s, &t.stage_read_B, &t.stage_write_B}) append(b, series->data() + f * stages, stages);
     frames.push_back(std::move(b));
   }
-  write_raw(path, {{"kind", "trial"}, {"index", t.index}, {"stages", stages}, {"frames", frames.size()}, {"pipelined_wall_s", t.pipelined_wall_s}}, frames);
+  nlohmann::json header = {{"kind", "trial"}, {"index", t.index}, {"stages", stages}, {"frames", frames.size()}, {"pipelined_wall_s", t.pipelined_wall_s}};
+  if (!t.frame_rendered_s.empty()) header["frame_rendered_s"] = t.frame_rendered_s;
+  write_raw(path, std::move(header), frames);
 }
 
 TimedTrial read_trial_file(const std::filesystem::path& path) {
@@ -176,6 +178,7 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
     TimedTrial t;
     t.index = file.header.at("index").get<int>();
     if (const auto s = file.header.value("pipelined_wall_s", nlohmann::json()); s.is_number()) t.pipelined_wall_s = s.get<double>();
+    if (file.header.contains("frame_rendered_s")) t.frame_rendered_s = file.header["frame_rendered_s"].get<std::vector<double>>();
     for (const Bytes& b : file.frames) {
       Taker taker(b);
       taker.take(t.frame_wall_s, 1);

@@ -230,6 +230,7 @@ TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
     trial.stage_write_B.insert(trial.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
   }
   if (outcome_.status == "ok" && rules.pipelined && solver_->frames_in_flight() > 1) run_pipelined(trial, rules);
+  if (outcome_.status == "ok" && rules.rendering.make) run_rendered(trial, rules);
   if (outcome_.status == "ok" && rules.profiled_frames > 0) profile_stages(trial, rules.profiled_frames);
   return trial;
 }
@@ -249,6 +250,32 @@ void Cell::run_pipelined(TimedTrial& trial, const TrialRules& rules) {
     if (status != StepStatus::Ok) return fail(status, first);
   }
   trial.pipelined_wall_s = elapsed / frames;
+}
+
+void Cell::describe(const Rendering& rendering) {
+  if (rendering.describe && solver_) header_.environment["rendering"] = rendering.describe(spec_.entry->info);
+}
+
+/// The frames of the trial again, each drawn before the next begins; fewer where pictures take longer than the trial may. What
+/// draws is made for the trial: images of every cell of a group at once would fill a device.
+void Cell::run_rendered(TimedTrial& trial, const TrialRules& rules) {
+  solver_->reset();
+  const std::unique_ptr<FrameDrawer> drawer = rules.rendering.make(*spec_.scene, *solver_, device_);
+  drawer->draw(0);  // a driver's first picture takes longer
+  double elapsed = 0;
+  for (int frame = 0; frame < trial.frames(); ++frame) {
+    if (rules.max_wall_s > 0 && elapsed >= rules.max_wall_s && frame >= rules.min_frames) return;
+    stop_if_interrupted();
+    const int in_drop = rules.drop_frames > 0 ? frame % rules.drop_frames : frame;
+    if (in_drop == 0) solver_->reset();
+    const FrameInput input = frame_input(*spec_.scene, in_drop);
+    const auto start = Clock::now();
+    const StepStatus status = solver_->step(input);
+    if (status != StepStatus::Ok) return fail(status, frame);
+    drawer->draw(in_drop + 1);
+    trial.frame_rendered_s.push_back(seconds_since(start));
+    elapsed += trial.frame_rendered_s.back();
+  }
 }
 
 /// Per-stage device times come from a twin with timestamps around every stage, run right after the timed frames: the

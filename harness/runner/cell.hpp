@@ -6,6 +6,7 @@
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
+#include "runner/frame_drawer.hpp"
 
 namespace clothbench {
 
@@ -35,6 +36,7 @@ struct TrialRules {
   double agree = 0;  ///< trials end once two or more agree to it, half the range of frame rates over the median; 0 = never
   bool pipelined = false;  ///< also time the frames of a trial without waiting for each, where the solver can
   int profiled_frames = 12;          ///< of each trial, run again with a timestamp round every stage; 0 = none
+  Rendering rendering = {};          ///< also time frames with their pictures
 };
 
 /// Thrown between frames once the user pressed Ctrl-C (`request_interrupt`).
@@ -58,6 +60,8 @@ class Cell {
 
   const CellSpec& spec() const { return spec_; }
   const CellHeader& header() const { return header_; }
+  /// Says in the header how frames are drawn; before it is written.
+  void describe(const Rendering&);
   const Outcome& outcome() const { return outcome_; }
   bool alive() const { return solver_ != nullptr && outcome_.status == "ok"; }
   const Plan& plan() const { return plan_; }
@@ -77,6 +81,7 @@ class Cell {
   void fail(StepStatus status, int frame);
   void warm_up(const TrialRules& rules);
   void run_pipelined(TimedTrial& trial, const TrialRules& rules);
+  void run_rendered(TimedTrial& trial, const TrialRules& rules);
   void profile_stages(TimedTrial& trial, int frames);
 
   CellSpec spec_;

@@ -139,11 +139,13 @@ class GroupRun {
     note(name + ": load");
     Running r;
     r.cell = std::make_unique<Cell>(spec, options_.device, plan_.protocol);
+    r.cell->describe(plan_.rules.rendering);
     r.record.header = r.cell->header();
     r.writer = std::make_unique<CellWriter>(options_.out, r.cell->header());
     if (options_.resume) {
       const CellRecord before = r.writer->recovered();
-      r.record.trials = before.trials;
+      for (const TimedTrial& t : before.trials)  // one without the pictures now asked for is run again
+        if (!plan_.rules.rendering.make || !t.frame_rendered_s.empty()) r.record.trials.push_back(t);
       r.record.accuracy = before.accuracy;
     }
     if (r.cell->alive()) r.writer->write_replay(replay_of(*spec.scene));

@@ -132,7 +132,7 @@ double bytes_per_frame(const std::vector<TimedTrial>& trials, std::vector<double
 
 std::map<std::string, double> summarise(const CellSpec& spec, const Plan& plan, const CellRecord& record) {
   std::map<std::string, double> s;
-  std::vector<double> fps, capped, wall, pipelined, device, read_peak, read_mean, write_peak, write_mean, window;
+  std::vector<double> fps, capped, wall, pipelined, rendered, device, read_peak, read_mean, write_peak, write_mean, window;
   for (const TimedTrial& t : record.trials) {
     if (t.frames() == 0) continue;
     fps.push_back(t.frames() / std::accumulate(t.frame_wall_s.begin(), t.frame_wall_s.end(), 0.0));
@@ -141,6 +141,7 @@ std::map<std::string, double> summarise(const CellSpec& spec, const Plan& plan, 
     capped.push_back(cap / t.frames());
     wall.insert(wall.end(), t.frame_wall_s.begin(), t.frame_wall_s.end());
     pipelined.push_back(t.pipelined_wall_s);
+    rendered.insert(rendered.end(), t.frame_rendered_s.begin(), t.frame_rendered_s.end());
     device.insert(device.end(), t.frame_device_s.begin(), t.frame_device_s.end());
     const Bandwidth r = bandwidth(t, t.stage_read_B), w = bandwidth(t, t.stage_write_B);
     read_peak.push_back(r.peak);
@@ -159,6 +160,10 @@ std::map<std::string, double> summarise(const CellSpec& spec, const Plan& plan, 
   s["frame_wall_median_s"] = median(wall);
   s["frame_wall_iqr_s"] = quantile(wall, 0.75) - quantile(wall, 0.25);
   s["frame_pipelined_median_s"] = median(pipelined);
+  if (!rendered.empty()) {
+    s["frame_rendered_median_s"] = median(rendered);
+    s["fps_rendered_median"] = 1 / median(rendered);
+  }
   s["frame_device_median_s"] = median(device);
   summarise_pass(record.accuracy, spec.scene->time, s);
   s.merge(summarise_contact(*spec.scene, record.accuracy));

@@ -94,6 +94,21 @@ async function check_figures() {
     equal(
         await marks('work', 'front_points'), good.filter(p => p.on_front).length, `points on the fronts of ${d.scene}`);
   }
+  const maps = await page.evaluate(() => window.clothbench.document.maps);
+  for (const m of maps) {
+    await page.select('figure:has(#stability-map) select', m.name);
+    const probes = m.solvers.flatMap(s => s.probes).filter(p => p.seed === 0);
+    equal(await marks('stability-map', 'points'), probes.length, `probes of the map ${m.name}`);
+    if (!probes.length) continue;
+    const looks = await page.$$eval(
+        '#stability-map .points_marks > path',
+        list => list.map(p => [p.getAttribute('fill'), p.getAttribute('d').replace(/[0-9.e-]+/g, '')].join(' ')));
+    const classes = new Set(probes.map(p => p.class));
+    equal(new Set(looks).size, classes.size, `colours and symbols of the map ${m.name}, one a class`);
+    equal(
+        await page.$$eval('#stability-map .theory_marks path, #stability-map .boundary_marks path', l => l.length),
+        2 * m.solvers.filter(s => s.probes.length).length, `lines of theory and boundaries of the map ${m.name}`);
+  }
   const ups = await page.evaluate(() => window.clothbench.document.penetration);
   for (const scene of ups.flatMap(u => u.scenes)) {
     await page.select('figure:has(#penetration-series) select', scene.name);

@@ -49,6 +49,8 @@ struct TimedTrial {
   /// Mean wall time of a frame when the same frames are run again without waiting for each; NaN where the solver keeps
   /// no more than one in flight, or that was not measured.
   double pipelined_wall_s = kMissing;
+  /// Wall times of its first frames run again, each with its picture drawn; empty unless asked for.
+  std::vector<double> frame_rendered_s = {};
   int frames() const { return static_cast<int>(frame_wall_s.size()); }
 };
 

@@ -41,6 +41,7 @@ json page_document(const std::vector<CellRecord>& cells, const Page& page, const
           {"cells", cells.size()},           {"headline", page.headline},
           {"sections", std::move(sections)}, {"rates", page.rates},
           {"penetration", page.penetration}, {"work", page.work},
+          {"maps", page.maps},
           {"commands", page.commands},       {"motions", motions.document}};
 }
 

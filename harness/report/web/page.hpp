@@ -24,6 +24,7 @@ struct Page {
   std::string headline;
   std::vector<PageSection> sections;
   nlohmann::json rates, penetration, work;  ///< points of the figures: rates_json, contact_series_json, work_json
+  nlohmann::json maps = nlohmann::json::array();  ///< as stability_maps gives them
   std::vector<std::string> commands;        ///< that made the results
   std::set<std::string> fronts;             ///< files of cells on a front: shown before other settings
 };

@@ -6,7 +6,7 @@ import {start_theme} from './theme.js';
 import {start_viewer} from './viewer.js';
 
 const kOrder = [
-  'summary', 'rates', 'work-precision', 'penetration', 'material', 'feature-cost', 'features', 'failed', 'expect',
+  'summary', 'rates', 'work-precision', 'penetration', 'stability', 'material', 'feature-cost', 'features', 'failed', 'expect',
   'environment'
 ];
 const kAfterViewer = ['material', 'feature-cost', 'features', 'failed', 'expect', 'environment'];

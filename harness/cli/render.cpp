@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "cli/command.hpp"
+#include "render/album.hpp"
+#include "results/store.hpp"
+#include "runner/cell.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<std::string> files, views, set;
+  std::string out, frames, colour, size, cell, solver;
+  bool plain = false, no_movie = false;
+  DeviceFlags device;
+};
+
+bool is_cell(const fs::path& p) { return p.extension() == ".h5" || p.extension() == ".part"; }
+
+/// Result files of a folder whose names have `wanted` in them. Throws Error where that leaves it open which are meant.
+std::vector<fs::path> cells_in(const fs::path& folder, const std::string& wanted) {
+  std::vector<fs::path> all, found;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (is_cell(entry.path())) all.push_back(entry.path());
+  std::sort(all.begin(), all.end());
+  for (const fs::path& p : all)
+    if (p.stem().string().find(wanted) != std::string::npos) found.push_back(p);
+  if (!found.empty() && (!wanted.empty() || found.size() == 1)) return found;
+  std::string names;
+  for (const fs::path& p : all) names += "\n  " + p.stem().string();
+  if (all.empty()) throw Error(folder.string() + ": no result files (.h5, .part) in it");
+  if (found.empty()) throw Error(folder.string() + ": no cell has \"" + wanted + "\" in its name; there are" + names);
+  throw Error(folder.string() + ": " + std::to_string(all.size()) + " cells; say which with --cell TEXT:" + names);
+}
+
+/// Runs a scene for its positions alone.
+render::Motion run(const std::string& file, const Arguments& a, const Console& console) {
+  const Overrides overrides = split_overrides(a.set);
+  const Scene scene = load_scene(file, overrides.scene);
+  const SolverEntry& entry = find_solver(a.solver);
+  if (!console.json)
+    fmt::print("{}: a scenario, not a result file: nothing is stored, so {} runs it now ({:g} s of it)\n", file,
+               a.solver, scene.time.duration_s);
+  Cell cell({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()}, a.device.options,
+            "render");
+  if (!cell.alive()) throw Error(file + ": " + a.solver + ": " + cell.outcome().status + ": " + cell.outcome().message);
+  TrialRules rules;
+  rules.accuracy_duration_s = scene.time.duration_s;
+  AccuracyPass pass = cell.run_accuracy(rules);
+  return render::motion_of(scene, cell.header(), cell.outcome(), std::move(pass));
+}
+
+std::vector<render::Motion> motions_of(const std::string& file, const Arguments& a, const Console& console) {
+  std::vector<render::Motion> out;
+  const fs::path path = file;
+  if (fs::is_directory(path) && !is_cell(path)) {
+    for (const fs::path& p : cells_in(path, a.cell)) out.push_back(render::stored_motion(p));
+  } else if (is_cell(path)) {
+    out.push_back(render::stored_motion(path));
+  } else {
+    out.push_back(run(file, a, console));
+  }
+  for (const render::Motion& m : out)
+    if (m.frames() == 0)
+      throw Error(file + ": " + m.name + " has no trajectory" + (m.ended.empty() ? "" : " (" + m.ended + ")") +
+                  "; a scenario can be run directly: clothbench render SCENE");
+  return out;
+}
+
+void tell(const render::Taken& t) {
+  if (t.pictures.size() == 1)
+    fmt::print("{}\n", t.pictures[0].string());
+  else if (!t.pictures.empty())
+    fmt::print("{} pictures: {} … {}\n", t.pictures.size(), t.pictures.front().string(),
+               t.pictures.back().filename().string());
+  for (const fs::path& m : t.movies) fmt::print("{}\n", m.string());
+  if (!t.no_movie.empty()) fmt::print("{}\n", t.no_movie);
+}
+
+void render_all(const Arguments& a, const Console& console) {
+  render::Shots shots;
+  if (!a.views.empty()) shots.views.clear();
+  for (const std::string& v : a.views) shots.views.push_back(render::view_from(v));
+  shots.colour = render::colour_from(a.colour);
+  std::tie(shots.width, shots.height) = pixels_of("--size", a.size);
+  shots.plain = a.plain;
+  shots.movie = !a.no_movie;
+  shots.out = a.out;
+  nlohmann::json told = {{"pictures", nlohmann::json::array()}, {"movies", nlohmann::json::array()}};
+  for (const std::string& file : a.files)
+    for (const render::Motion& m : motions_of(file, a, console)) {
+      shots.frames = render::frames_from(a.frames, m.frames());
+      render::Taken taken;
+      {
+        StatusLine line(!console.json);
+        taken =
+            render::take(m, shots, a.device.options, [&](const std::string& what, std::size_t done, std::size_t of) {
+              if (interrupt_requested()) throw Error("interrupted; pictures so far are kept", ExitCode::Interrupted);
+              line.show(what, done, of);
+            });
+      }
+      for (const fs::path& p : taken.pictures) told["pictures"].push_back(p.string());
+      for (const fs::path& p : taken.movies) told["movies"].push_back(p.string());
+      if (!taken.no_movie.empty()) told["no_movie"] = taken.no_movie;
+      if (!console.json) tell(taken);
+    }
+  if (console.json) fmt::print("{}\n", told.dump(2));
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Console& console) {
+  static Arguments a;
+  a = {};
+  a.out = "pictures";
+  a.frames = ":";
+  a.colour = "checker";
+  a.size = "1200x900";
+  a.solver = "xpbd";
+  CLI::App* cmd =
+      app.add_subcommand("render", "Pictures (PNG) and a movie (MP4, where ffmpeg is present) of stored motions");
+  cmd->add_option("file", a.files, "Result files (.h5), study folders, or scenarios, which are run first")->required();
+  cmd->add_option("-o,--out", a.out, "Folder to write to")->capture_default_str();
+  cmd->add_option("--frames", a.frames,
+                  "FRAME, FIRST:LAST or FIRST:LAST:STEP, both included; -1 is the last. Default: all");
+  cmd->add_option("--view", a.views, "front, top or corner (default); more than one may be given");
+  cmd->add_option("--colour,--color", a.colour,
+                  "Of the cloth: checker, strain (stretch of the edges), depth (how far it is inside a collider, or "
+                  "through a room)")
+      ->capture_default_str();
+  cmd->add_option("--size", a.size, "WIDTHxHEIGHT in pixels, legend and caption included")->capture_default_str();
+  cmd->add_option("--cell", a.cell, "Of a folder: cells with this in their names");
+  cmd->add_flag("--plain", a.plain, "No legend and no caption");
+  cmd->add_flag("--no-movie", a.no_movie, "Pictures alone");
+  cmd->add_option("--solver", a.solver, "Of a scenario: who runs it")->capture_default_str();
+  cmd->add_option("--set", a.set, "Of a scenario: override, as with `clothbench run`");
+  a.device.add_to(*cmd);
+  cmd->footer(
+      "Examples: clothbench render results/runs/mine --cell desk-flat-low__xpbd --view top --colour depth --frames -1\n"
+      "          clothbench render paper/hand-push --frames 0:-1:4 -o push");
+  cmd->callback([&console] { render_all(a, console); });
+}
+
+}  // namespace clothbench

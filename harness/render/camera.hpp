@@ -1,0 +1,44 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "clothbench/collider.hpp"
+
+namespace clothbench::render {
+
+/// 4 x 4, column after column, as shaders take it.
+using Mat4 = std::array<double, 16>;
+Mat4 operator*(const Mat4& a, const Mat4& b);
+
+enum class View { Front, Top, Corner };
+/// "front", "top", "corner". Throws Error naming them.
+View view_from(const std::string& name);
+const char* name_of(View);
+
+/// A pinhole camera. World: right-handed, +y up.
+struct Camera {
+  Vec3 eye_m{}, right{}, up{}, back{};  ///< orthonormal; `back` from what is looked at towards the eye
+  double tan_half_width = 0, tan_half_height = 0;
+  double near_m = 0, far_m = 0;
+
+  /// World, relative to `origin_m`, to the camera's own axes.
+  Mat4 view(const Vec3& origin_m) const;
+  /// To Vulkan's clip space: y down, depth 0 at `near_m` to 1 at `far_m`. The same as an OpenXR field of view gives.
+  Mat4 projection() const;
+};
+
+/// Where a point is seen: 0..1 from the picture's left and top; empty behind the camera.
+std::optional<std::array<double, 2>> seen_at(const Camera&, const Vec3& point_m);
+
+/// The nearest camera of a view that sees all of `points` (xyz interleaved [m], finite), with `margin` of the picture's
+/// width and height free all round. Front looks along -z, top down with -z upwards in the picture, corner from the
+/// front, 30 degrees to the right and 24 up. `aspect`: width over height. Throws Error without points.
+Camera frame(View, std::span<const double> points, double aspect, double margin = 0.04);
+
+/// Left and right eye of somebody who looks along -z at the middle of a box from `distance_m` away. 110 x 96 degrees is
+/// the field of view of a Quest 3 (Meta's technical specifications), 63 mm apart the mean of adults.
+std::array<Camera, 2> eyes(const Vec3& middle_m, double distance_m, double near_m, double far_m);
+
+}  // namespace clothbench::render

@@ -1,0 +1,77 @@
+#include "render/framing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clothbench::render {
+namespace {
+
+constexpr double kSeenBeside = 0.12;  // of the sheet's size: so near the cloth colliders are in the picture,
+constexpr double kDrawnBeside = 0.5;  // and so far are drawn
+
+Vec3 vertex(std::span<const double> x, std::size_t v) { return {x[3 * v], x[3 * v + 1], x[3 * v + 2]}; }
+
+Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+double largest(const Vec3& v) { return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}); }
+
+void append(std::vector<double>& points, const Vec3& p) { points.insert(points.end(), p.begin(), p.end()); }
+
+Bounds bounds_of(std::span<const double> x) {
+  Bounds b = Bounds::none();
+  for (std::size_t v = 0; v < x.size() / 3; ++v)
+    if (const Vec3 p = vertex(x, v); std::isfinite(p[0] + p[1] + p[2])) b.add(p);
+  return b;
+}
+
+/// All corners of a box, so that a flat one counts as it lies.
+void append(std::vector<double>& points, const Bounds& b) {
+  for (unsigned k = 0; k < 8; ++k)
+    append(points, Vec3{k & 1u ? b.high[0] : b.low[0], k & 2u ? b.high[1] : b.low[1], k & 4u ? b.high[2] : b.low[2]});
+}
+
+}  // namespace
+
+Framing framing_of(const Motion& m, std::span<const std::size_t> frames) {
+  Framing f;
+  const Cloth& cloth = m.scene.cloth;
+  const double size = std::max({cloth.width_m, cloth.height_m, 1e-9});
+  const std::vector<double> start = m.at(0);
+  Bounds place = bounds_of(start);
+  if (place.empty()) place.add({0, 0, 0});
+  Bounds zone = place;
+  zone.grow(size);
+  const auto middle = static_cast<std::uint32_t>((cloth.rows / 2) * cloth.columns + cloth.columns / 2);
+  if (!m.held)
+    for (const std::size_t k : frames)
+      if (largest(minus(vertex(m.at(k), middle), vertex(start, middle))) > size) f.followed = middle;
+
+  Bounds seen = Bounds::none();
+  for (const std::size_t k : frames) {
+    const std::vector<double> x = m.at(k);
+    const Vec3 moved = f.followed ? minus(vertex(x, middle), vertex(start, middle)) : Vec3{};
+    for (std::size_t v = 0; v < cloth.vertex_count(); ++v) {
+      const Vec3 p = minus(vertex(x, v), moved);
+      if (!zone.holds(p)) continue;
+      append(f.points, p);
+      seen.add(p);
+    }
+  }
+  if (seen.empty()) {
+    seen = place;
+    append(f.points, place);
+  }
+  f.near = seen;
+  f.near.grow(kDrawnBeside * size);
+  for (std::size_t k = 0; k < 3; ++k) f.origin_m[k] = (seen.low[k] + seen.high[k]) / 2;
+  Bounds beside = seen;
+  beside.grow(kSeenBeside * size);
+  // Something that stands still is the same in every frame.
+  const bool moves = !m.scene.motion.empty();
+  for (std::size_t i = 0; i < (moves ? frames.size() : std::min<std::size_t>(1, frames.size())); ++i)
+    for (const Vec3& p : surfaces(m.scene, static_cast<int>(frames[i]), f.near).position_m)
+      if (beside.holds(p)) append(f.points, p);
+  return f;
+}
+
+}  // namespace clothbench::render

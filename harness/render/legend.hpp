@@ -1,0 +1,26 @@
+#pragma once
+#include <string>
+
+#include "render/colours.hpp"
+#include "render/picture.hpp"
+#include "render/text.hpp"
+
+namespace clothbench::render {
+
+/// Where in a picture the scene, the colour bar and the caption are: the scene takes what the others leave.
+struct Layout {
+  int width = 0, height = 0;  ///< of the scene
+  int legend_width = 0, caption_height = 0;
+  int text_px = 0;  ///< height of letters
+};
+
+/// Letters are a 32nd of the picture's height, and at least 9 pixels: readable in a figure half a page wide. Throws
+/// Error where no room is left for the scene.
+Layout layout_of(int width, int height, bool plain, bool legend);
+
+/// A bar with three or five numbers, right of the scene.
+void draw_legend(Picture&, const Layout&, const Scale&, const Pen&);
+/// Below the scene.
+void draw_caption(Picture&, const Layout&, const std::string& text, const Pen&);
+
+}  // namespace clothbench::render

@@ -1,0 +1,117 @@
+#include "render/offscreen.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace clothbench::render {
+namespace {
+
+using vulkan::check;
+
+constexpr std::uint64_t kPatience_ns = 60'000'000'000;  // a software device takes seconds for a large picture
+
+}  // namespace
+
+Offscreen::Offscreen(std::shared_ptr<vulkan::Device> device, VkExtent2D extent, std::size_t count)
+    : device_(std::move(device)), extent_(extent) {
+  const std::uint32_t most = std::min({device_->limits().maxImageDimension2D, device_->limits().maxFramebufferWidth,
+                                       device_->limits().maxFramebufferHeight});
+  if (extent.width < 1 || extent.height < 1 || extent.width > most || extent.height > most)
+    throw Error(
+        fmt::format("a picture of {} x {}: this device draws up to {} x {}", extent.width, extent.height, most, most));
+  for (std::size_t k = 0; k < count; ++k)
+    images_.push_back(std::make_unique<Image>(device_, kFormat, extent, VK_SAMPLE_COUNT_1_BIT,
+                                              VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
+  VkCommandBufferAllocateInfo allocate{};
+  allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  allocate.commandPool = device_->command_pool();
+  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  allocate.commandBufferCount = 1;
+  check(vkAllocateCommandBuffers(device_->handle(), &allocate, &commands_), "vkAllocateCommandBuffers");
+  VkFenceCreateInfo fence{};
+  fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+  if (const VkResult made = vkCreateFence(device_->handle(), &fence, nullptr, &fence_); made != VK_SUCCESS) {
+    vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands_);
+    check(made, "vkCreateFence");
+  }
+}
+
+Offscreen::~Offscreen() {
+  if (drawn_by_ != nullptr)
+    for (const auto& image : images_) drawn_by_->forget(image->handle());
+  vkDestroyFence(device_->handle(), fence_, nullptr);
+  vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands_);
+}
+
+template <class Record>
+void Offscreen::submit(Record&& record) {
+  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");
+  VkCommandBufferBeginInfo begin{};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  record();
+  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+  VkSubmitInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  info.commandBufferCount = 1;
+  info.pCommandBuffers = &commands_;
+  check(vkQueueSubmit(device_->queue(), 1, &info, fence_), "vkQueueSubmit");
+  check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, kPatience_ns), "vkWaitForFences");
+  check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
+}
+
+void Offscreen::draw(SceneRenderer& renderer, std::span<const Camera> cameras) {
+  if (cameras.size() != images_.size())
+    throw Error(fmt::format("{} cameras for {} images", cameras.size(), images_.size()));
+  drawn_by_ = &renderer;
+  std::vector<Drawing> drawings;
+  for (std::size_t k = 0; k < cameras.size(); ++k)
+    drawings.push_back({images_[k]->handle(), 0, extent_, cameras[k].view(renderer.origin()), cameras[k].projection()});
+  submit([&] { renderer.record(commands_, drawings); });
+}
+
+Picture Offscreen::read(std::size_t k) {
+  const std::size_t pixels = static_cast<std::size_t>(extent_.width) * extent_.height;
+  if (!pixels_) pixels_ = std::make_unique<vulkan::Buffer>(device_, "picture", 4 * pixels, vulkan::Buffer::Place::Host);
+  submit([&] {
+    // What was drawn, before it is copied; afterwards the image is again as it was left by the drawing.
+    VkImageMemoryBarrier drawn{};
+    drawn.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
+    drawn.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+    drawn.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
+    drawn.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    drawn.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    drawn.srcQueueFamilyIndex = drawn.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    drawn.image = images_.at(k)->handle();
+    drawn.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0,
+                         nullptr, 0, nullptr, 1, &drawn);
+    VkBufferImageCopy copy{};
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    copy.imageExtent = {extent_.width, extent_.height, 1};
+    vkCmdCopyImageToBuffer(commands_, images_[k]->handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, pixels_->handle(), 1,
+                           &copy);
+    VkMemoryBarrier copied{};
+    copied.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    copied.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+    copied.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
+    VkImageMemoryBarrier back = drawn;
+    back.srcAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
+    back.dstAccessMask = 0;
+    std::swap(back.oldLayout, back.newLayout);
+    vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                         VK_PIPELINE_STAGE_HOST_BIT | VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, 0, 1, &copied, 0,
+                         nullptr, 1, &back);
+  });
+  Picture out(static_cast<int>(extent_.width), static_cast<int>(extent_.height), 0);
+  const auto* rgba = static_cast<const std::uint8_t*>(pixels_->mapped());
+  for (std::size_t p = 0; p < pixels; ++p)
+    for (std::size_t c = 0; c < 3; ++c) out.rgb[3 * p + c] = rgba[4 * p + c];
+  return out;
+}
+
+}  // namespace clothbench::render

@@ -1,0 +1,41 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "render/picture.hpp"
+#include "render/scene_renderer.hpp"
+
+namespace clothbench::render {
+
+/// Images to draw into where nothing is shown: one for each view (an eye), all of one size.
+class Offscreen {
+ public:
+  static constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_SRGB;  ///< every device draws in it (Vulkan 1.1, table 62)
+
+  /// Throws Error where the device has no images that large.
+  Offscreen(std::shared_ptr<vulkan::Device> device, VkExtent2D extent, std::size_t count);
+  ~Offscreen();
+  Offscreen(const Offscreen&) = delete;
+  Offscreen& operator=(const Offscreen&) = delete;
+
+  /// Draws an image for each camera, as many as there are; complete on return. The renderer outlives this. Throws
+  /// vulkan::Failure.
+  void draw(SceneRenderer&, std::span<const Camera> cameras);
+  /// Reads one back.
+  Picture read(std::size_t k);
+
+ private:
+  template <class Record>
+  void submit(Record&&);
+
+  std::shared_ptr<vulkan::Device> device_;
+  VkExtent2D extent_;
+  std::vector<std::unique_ptr<Image>> images_;
+  std::unique_ptr<vulkan::Buffer> pixels_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  VkFence fence_ = VK_NULL_HANDLE;
+  SceneRenderer* drawn_by_ = nullptr;
+};
+
+}  // namespace clothbench::render

@@ -1,0 +1,273 @@
+#include "render/pipelines.hpp"
+
+#include <vector>
+
+#include "render/render_shared.h"
+
+namespace clothbench::render {
+namespace {
+
+using vulkan::check;
+
+const std::uint32_t kClothVert[] = {
+#include "cloth.vert.inc"
+};
+const std::uint32_t kColliderVert[] = {
+#include "collider.vert.inc"
+};
+const std::uint32_t kSurfaceFrag[] = {
+#include "surface.frag.inc"
+};
+
+/// Destroyed once the pipeline is made.
+struct Module {
+  VkDevice device;
+  VkShaderModule handle = VK_NULL_HANDLE;
+  Module(VkDevice d, const std::uint32_t* words, std::size_t bytes) : device(d) {
+    VkShaderModuleCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+    info.codeSize = bytes;
+    info.pCode = words;
+    check(vkCreateShaderModule(device, &info, nullptr, &handle), "vkCreateShaderModule");
+  }
+  ~Module() { vkDestroyShaderModule(device, handle, nullptr); }
+  Module(const Module&) = delete;
+  Module& operator=(const Module&) = delete;
+};
+
+constexpr VkShaderStageFlags kBoth = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+
+}  // namespace
+
+Pipelines::Pipelines(std::shared_ptr<vulkan::Device> device, VkFormat colour, VkSampleCountFlagBits samples)
+    : device_(std::move(device)) {
+  try {
+    create_pass(colour, samples);
+    create_set();
+    create_layout();
+    cloth_ = create(true, samples);
+    collider_ = create(false, samples);
+  } catch (...) {  // no destructor runs then
+    release();
+    throw;
+  }
+}
+
+Pipelines::~Pipelines() { release(); }
+
+void Pipelines::release() {
+  const VkDevice d = device_->handle();
+  vkDestroyPipeline(d, cloth_, nullptr);
+  vkDestroyPipeline(d, collider_, nullptr);
+  vkDestroyPipelineLayout(d, layout_, nullptr);
+  vkDestroyDescriptorPool(d, pool_, nullptr);
+  vkDestroyDescriptorSetLayout(d, set_layout_, nullptr);
+  vkDestroyRenderPass(d, pass_, nullptr);
+}
+
+/// Samples and depth never leave the pass, so a tiled GPU keeps them on the chip.
+void Pipelines::create_pass(VkFormat colour, VkSampleCountFlagBits samples) {
+  std::array<VkAttachmentDescription, 3> a{};
+  for (VkAttachmentDescription& one : a) {
+    one.samples = samples;
+    one.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    one.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    one.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    one.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    one.format = colour;
+    one.finalLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  }
+  a[1].format = kDepthFormat;
+  a[1].finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+  a[2].samples = VK_SAMPLE_COUNT_1_BIT;
+  a[2].loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+  a[2].storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  const VkAttachmentReference drawn{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+  const VkAttachmentReference depth{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+  const VkAttachmentReference resolved{2, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+  VkSubpassDescription subpass{};
+  subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+  subpass.colorAttachmentCount = 1;
+  subpass.pColorAttachments = &drawn;
+  subpass.pResolveAttachments = &resolved;
+  subpass.pDepthStencilAttachment = &depth;
+  // Orders an earlier picture's use of the same samples, depth and image before this one's, and this one's result
+  // before whatever comes next.
+  constexpr VkPipelineStageFlags kDrawing = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT |
+                                            VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
+                                            VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+  constexpr VkAccessFlags kWritten =
+      VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+  std::array<VkSubpassDependency, 2> orders{};
+  orders[0] = {VK_SUBPASS_EXTERNAL,
+               0,
+               kDrawing | VK_PIPELINE_STAGE_TRANSFER_BIT,
+               kDrawing,
+               kWritten,
+               kWritten | VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
+               0};
+  orders[1] = {0,
+               VK_SUBPASS_EXTERNAL,
+               VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+               VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+               VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
+               VK_ACCESS_MEMORY_READ_BIT,
+               0};
+  VkRenderPassCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
+  info.attachmentCount = static_cast<std::uint32_t>(a.size());
+  info.pAttachments = a.data();
+  info.subpassCount = 1;
+  info.pSubpasses = &subpass;
+  info.dependencyCount = static_cast<std::uint32_t>(orders.size());
+  info.pDependencies = orders.data();
+  check(vkCreateRenderPass(device_->handle(), &info, nullptr, &pass_), "vkCreateRenderPass");
+}
+
+void Pipelines::create_set() {
+  std::array<VkDescriptorSetLayoutBinding, kBindings> slots{};
+  for (std::uint32_t k = 0; k < kBindings; ++k) {
+    const VkShaderStageFlags stage = k == kBindings - 1 ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT;
+    slots[k] = {k, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, stage, nullptr};
+  }
+  VkDescriptorSetLayoutCreateInfo layout{};
+  layout.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  layout.bindingCount = kBindings;
+  layout.pBindings = slots.data();
+  check(vkCreateDescriptorSetLayout(device_->handle(), &layout, nullptr, &set_layout_), "vkCreateDescriptorSetLayout");
+  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kBindings};
+  VkDescriptorPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  pool.maxSets = 1;
+  pool.poolSizeCount = 1;
+  pool.pPoolSizes = &size;
+  check(vkCreateDescriptorPool(device_->handle(), &pool, nullptr, &pool_), "vkCreateDescriptorPool");
+  VkDescriptorSetAllocateInfo allocate{};
+  allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  allocate.descriptorPool = pool_;
+  allocate.descriptorSetCount = 1;
+  allocate.pSetLayouts = &set_layout_;
+  check(vkAllocateDescriptorSets(device_->handle(), &allocate, &set_), "vkAllocateDescriptorSets");
+}
+
+void Pipelines::create_layout() {
+  const VkPushConstantRange range{kBoth, 0, sizeof(Drawn)};
+  VkPipelineLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  info.setLayoutCount = 1;
+  info.pSetLayouts = &set_layout_;
+  info.pushConstantRangeCount = 1;
+  info.pPushConstantRanges = &range;
+  check(vkCreatePipelineLayout(device_->handle(), &info, nullptr, &layout_), "vkCreatePipelineLayout");
+}
+
+namespace {
+
+/// Everything of a pipeline but its shaders: triangles, both sides, nearest first, opaque; the picture's size is set as
+/// it is recorded.
+struct States {
+  VkPipelineVertexInputStateCreateInfo input{};
+  VkPipelineInputAssemblyStateCreateInfo assembly{};
+  VkPipelineViewportStateCreateInfo viewport{};
+  VkPipelineRasterizationStateCreateInfo raster{};
+  VkPipelineMultisampleStateCreateInfo multisample{};
+  VkPipelineDepthStencilStateCreateInfo depth{};
+  VkPipelineColorBlendAttachmentState opaque{};
+  VkPipelineColorBlendStateCreateInfo blend{};
+  const std::array<VkDynamicState, 2> dynamic_states = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  VkPipelineDynamicStateCreateInfo dynamic{};
+
+  explicit States(VkSampleCountFlagBits samples) {
+    input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
+    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
+    viewport.viewportCount = viewport.scissorCount = 1;
+    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+    raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+    raster.lineWidth = 1;
+    multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
+    multisample.rasterizationSamples = samples;
+    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+    depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
+    depth.depthCompareOp = VK_COMPARE_OP_LESS;
+    opaque.colorWriteMask = 0xf;
+    blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
+    blend.attachmentCount = 1;
+    blend.pAttachments = &opaque;
+    dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
+    dynamic.dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size());
+    dynamic.pDynamicStates = dynamic_states.data();
+  }
+  States(const States&) = delete;
+  States& operator=(const States&) = delete;
+
+  void fill(VkGraphicsPipelineCreateInfo& info) const {
+    info.pVertexInputState = &input;
+    info.pInputAssemblyState = &assembly;
+    info.pViewportState = &viewport;
+    info.pRasterizationState = &raster;
+    info.pMultisampleState = &multisample;
+    info.pDepthStencilState = &depth;
+    info.pColorBlendState = &blend;
+    info.pDynamicState = &dynamic;
+  }
+};
+
+}  // namespace
+
+VkPipeline Pipelines::create(bool cloth, VkSampleCountFlagBits samples) const {
+  const Module vertex = cloth ? Module(device_->handle(), kClothVert, sizeof kClothVert)
+                              : Module(device_->handle(), kColliderVert, sizeof kColliderVert);
+  const Module fragment(device_->handle(), kSurfaceFrag, sizeof kSurfaceFrag);
+  const VkBool32 is_cloth = cloth ? VK_TRUE : VK_FALSE;
+  const VkSpecializationMapEntry entry{0, 0, sizeof is_cloth};
+  const VkSpecializationInfo constants{1, &entry, sizeof is_cloth, &is_cloth};
+  std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
+  stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
+  stages[0].module = vertex.handle;
+  stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
+  stages[1].module = fragment.handle;
+  stages[1].pSpecializationInfo = &constants;
+  for (auto& s : stages) {
+    s.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    s.pName = "main";
+  }
+  const States states(samples);
+  VkGraphicsPipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+  info.stageCount = static_cast<std::uint32_t>(stages.size());
+  info.pStages = stages.data();
+  states.fill(info);
+  info.layout = layout_;
+  info.renderPass = pass_;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  check(vkCreateGraphicsPipelines(device_->handle(), device_->pipeline_cache(), 1, &info, nullptr, &pipeline),
+        "vkCreateGraphicsPipelines");
+  return pipeline;
+}
+
+void Pipelines::bind(const std::array<const vulkan::Buffer*, kBindings>& buffers) {
+  std::array<VkDescriptorBufferInfo, kBindings> infos{};
+  std::array<VkWriteDescriptorSet, kBindings> writes{};
+  for (std::uint32_t k = 0; k < kBindings; ++k) {
+    if (buffers[k]->bytes() > device_->limits().maxStorageBufferRange)
+      throw Error(buffers[k]->name() + ": of more bytes than this device binds");
+    infos[k] = {buffers[k]->handle(), 0, VK_WHOLE_SIZE};
+    writes[k].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    writes[k].dstSet = set_;
+    writes[k].dstBinding = k;
+    writes[k].descriptorCount = 1;
+    writes[k].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    writes[k].pBufferInfo = &infos[k];
+  }
+  vkUpdateDescriptorSets(device_->handle(), kBindings, writes.data(), 0, nullptr);
+}
+
+void Pipelines::use(VkCommandBuffer commands, bool cloth, const void* constants, std::uint32_t bytes) const {
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, cloth ? cloth_ : collider_);
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set_, 0, nullptr);
+  vkCmdPushConstants(commands, layout_, kBoth, 0, bytes, constants);
+}
+
+}  // namespace clothbench::render

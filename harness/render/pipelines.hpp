@@ -1,0 +1,44 @@
+#pragma once
+#include <vulkan/vulkan.h>
+
+#include <array>
+#include <memory>
+
+#include "vulkan/buffer.hpp"
+
+namespace clothbench::render {
+
+/// The pass (colour and depth with several samples, resolved into one) and the two pipelines that draw in it: cloth and
+/// colliders, with one set of buffers for both.
+class Pipelines {
+ public:
+  static constexpr std::uint32_t kBindings = 5;  ///< as in the shaders
+  static constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+
+  Pipelines(std::shared_ptr<vulkan::Device> device, VkFormat colour, VkSampleCountFlagBits samples);
+  ~Pipelines();
+  Pipelines(const Pipelines&) = delete;
+  Pipelines& operator=(const Pipelines&) = delete;
+
+  VkRenderPass pass() const { return pass_; }
+  /// Binding k is buffers[k]. Nothing recorded before may be in flight.
+  void bind(const std::array<const vulkan::Buffer*, kBindings>& buffers);
+  void use(VkCommandBuffer, bool cloth, const void* constants, std::uint32_t bytes) const;
+
+ private:
+  void create_pass(VkFormat colour, VkSampleCountFlagBits samples);
+  void create_set();
+  void create_layout();
+  VkPipeline create(bool cloth, VkSampleCountFlagBits samples) const;
+  void release();
+
+  std::shared_ptr<vulkan::Device> device_;
+  VkRenderPass pass_ = VK_NULL_HANDLE;
+  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  VkDescriptorPool pool_ = VK_NULL_HANDLE;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  VkPipeline cloth_ = VK_NULL_HANDLE, collider_ = VK_NULL_HANDLE;
+};
+
+}  // namespace clothbench::render

@@ -1,0 +1,210 @@
+#include "render/scene_renderer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+namespace clothbench::render {
+namespace {
+
+constexpr auto kSampleBit = VK_SAMPLE_COUNT_4_BIT;
+static_assert(static_cast<int>(kSampleBit) == SceneRenderer::kSamples);
+
+/// The device takes the first queue family that computes; on every GPU we know of it draws too.
+std::shared_ptr<vulkan::Device> drawing(std::shared_ptr<vulkan::Device> device) {
+  const DeviceInfo info = device->info();
+  const nlohmann::json families = nlohmann::json::parse(info.properties_json).at("queue_families");
+  for (const auto& f : families) {
+    const auto flags = f.at("flags").get<std::uint32_t>();
+    if ((flags & VK_QUEUE_COMPUTE_BIT) == 0) continue;
+    if ((flags & VK_QUEUE_GRAPHICS_BIT) != 0) return device;
+    break;
+  }
+  throw Error(info.name + ": its first queue that computes does not draw", ExitCode::NoDevice);
+}
+
+vec4 as_vec4(const Vec3& v, double w) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(w)};
+}
+
+Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+/// Where the viewer is, of a rigid view matrix.
+Vec3 eye_of(const Mat4& view) {
+  Vec3 eye{};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t r = 0; r < 3; ++r) eye[k] -= view[4 * k + r] * view[12 + r];
+  return eye;
+}
+
+}  // namespace
+
+SceneRenderer::SceneRenderer(std::shared_ptr<vulkan::Device> device, VkFormat colour)
+    : device_(drawing(std::move(device))), format_(colour), pipelines_(device_, colour, kSampleBit) {
+  device_->keep_pipelines();
+  set_surfaces({});
+}
+
+SceneRenderer::~SceneRenderer() = default;
+
+std::unique_ptr<vulkan::Buffer> SceneRenderer::filled(const char* name, const void* data, std::size_t bytes) const {
+  // A buffer has at least a byte; shaders read none of one that is there for its binding's sake.
+  auto buffer =
+      std::make_unique<vulkan::Buffer>(device_, name, std::max<std::size_t>(bytes, 16), vulkan::Buffer::Place::Host);
+  if (data != nullptr && bytes > 0) std::memcpy(buffer->mapped(), data, bytes);
+  return buffer;
+}
+
+void SceneRenderer::set_cloth(const Cloth& cloth, const Vec3& origin_m) {
+  if (cloth.columns < 2 || cloth.rows < 2)
+    throw Error(
+        fmt::format("the cloth's grid is {} x {}: expected at least 2 x 2 vertices", cloth.columns, cloth.rows));
+  columns_ = cloth.columns;
+  rows_ = cloth.rows;
+  origin_m_ = origin_m;
+  constexpr double kSquares = 8, kMostSquares = 64;  // along the shorter side, along the longer
+  const double shorter = std::min(cloth.width_m, cloth.height_m);
+  const auto squares = [&](double side) {
+    return static_cast<float>(shorter > 0 ? std::clamp(std::round(kSquares * side / shorter), 1.0, kMostSquares)
+                                          : kSquares);
+  };
+  squares_u_ = squares(cloth.width_m);
+  squares_v_ = squares(cloth.height_m);
+  own_positions_.reset();
+  values_.reset();
+  colours_.reset();
+  positions_ = nullptr;
+  follow_vertex_ = -1;
+  by_value_ = bound_ = false;
+}
+
+void SceneRenderer::use_positions(const vulkan::Buffer& buffer, const Vec3& buffer_origin_m) {
+  const std::size_t bytes = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) * sizeof(vec4);
+  if (buffer.bytes() < bytes)
+    throw Error(
+        fmt::format("buffer \"{}\" of {} B: expected a vec4 a vertex, {} B", buffer.name(), buffer.bytes(), bytes));
+  positions_ = &buffer;
+  buffer_origin_m_ = buffer_origin_m;
+  bound_ = false;
+}
+
+void SceneRenderer::write_positions(std::span<const double> x) {
+  const std::size_t vertices = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+  if (x.size() != 3 * vertices)
+    throw Error(fmt::format("{} coordinates: expected {}, xyz of each vertex", x.size(), 3 * vertices));
+  if (!own_positions_) own_positions_ = filled("positions to draw", nullptr, vertices * sizeof(vec4));
+  auto* to = static_cast<float*>(own_positions_->mapped());
+  for (std::size_t v = 0; v < vertices; ++v) {
+    for (std::size_t k = 0; k < 3; ++k) to[4 * v + k] = static_cast<float>(x[3 * v + k] - origin_m_[k]);
+    to[4 * v + 3] = 0;
+  }
+  if (positions_ != own_positions_.get()) bound_ = false;
+  positions_ = own_positions_.get();
+  buffer_origin_m_ = origin_m_;
+}
+
+void SceneRenderer::follow(std::uint32_t vertex, const Vec3& start_m) {
+  follow_vertex_ = static_cast<int>(vertex);
+  follow_start_m_ = start_m;
+}
+
+void SceneRenderer::write_values(std::span<const float> values, std::span<const vec4> colours) {
+  by_value_ = !values.empty();
+  bound_ = false;
+  if (!by_value_) return;
+  if (values.size() != static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) || colours.size() < 2)
+    throw Error(
+        fmt::format("{} values and {} colours: expected one a vertex, and two colours", values.size(), colours.size()));
+  values_ = filled("values to draw", values.data(), values.size_bytes());
+  colours_ = filled("colours of values", colours.data(), colours.size_bytes());
+}
+
+void SceneRenderer::set_surfaces(const Surfaces& s) {
+  std::vector<vec4> vertices;
+  vertices.reserve(2 * s.position_m.size());
+  for (std::size_t v = 0; v < s.position_m.size(); ++v) {
+    vertices.push_back(as_vec4(minus(s.position_m[v], origin_m_), s.look[v]));
+    vertices.push_back(as_vec4(s.normal[v], 0));
+  }
+  const std::size_t bytes = vertices.size() * sizeof(vec4),
+                    corner_bytes = s.triangles.size() * 3 * sizeof(std::uint32_t);
+  if (vertices_ && bytes > 0 && vertices_->bytes() == bytes && corners_->bytes() == corner_bytes) {  // only moved
+    std::memcpy(vertices_->mapped(), vertices.data(), bytes);
+    std::memcpy(corners_->mapped(), s.triangles.data(), corner_bytes);
+    return;
+  }
+  vertices_ = filled("colliders to draw", vertices.data(), bytes);
+  corners_ = filled("corners of colliders to draw", s.triangles.data(), corner_bytes);
+  corner_count_ = static_cast<std::uint32_t>(3 * s.triangles.size());
+  bound_ = false;
+}
+
+void SceneRenderer::bind_buffers() {
+  if (positions_ == nullptr) throw Error("SceneRenderer::record: there are no positions to draw");
+  if (bound_) return;
+  const auto or_any = [&](const std::unique_ptr<vulkan::Buffer>& b) { return b ? b.get() : positions_; };
+  pipelines_.bind({positions_, or_any(values_), vertices_.get(), corners_.get(), or_any(colours_)});
+  bound_ = true;
+}
+
+Drawn SceneRenderer::constants(const Drawing& drawing) const {
+  Drawn d{};
+  const Mat4 to_clip = drawing.projection * drawing.view;
+  for (std::size_t c = 0; c < 4; ++c)
+    for (std::size_t r = 0; r < 4; ++r) d.to_clip[c][r] = static_cast<float>(to_clip[4 * c + r]);
+  d.eye = as_vec4(eye_of(drawing.view), by_value_ ? 1 : 0);
+  d.sheet = {static_cast<float>(columns_), static_cast<float>(rows_), squares_u_, squares_v_};
+  d.origin = as_vec4(minus(buffer_origin_m_, origin_m_), 0);
+  d.follow = as_vec4(minus(follow_start_m_, buffer_origin_m_), follow_vertex_);
+  return d;
+}
+
+void SceneRenderer::record(VkCommandBuffer commands, std::span<const Drawing> drawings) {
+  bind_buffers();
+  // The positions a solver's kernels or copies wrote, before a vertex shader reads them.
+  VkMemoryBarrier memory{};
+  memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+  memory.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+  memory.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
+                       VK_PIPELINE_STAGE_VERTEX_SHADER_BIT, 0, 1, &memory, 0, nullptr, 0, nullptr);
+  for (const Drawing& d : drawings) record_one(commands, d);
+}
+
+void SceneRenderer::record_one(VkCommandBuffer commands, const Drawing& drawing) {
+  if (!targets_ || targets_->extent().width != drawing.extent.width ||
+      targets_->extent().height != drawing.extent.height)
+    targets_ = std::make_unique<Targets>(device_, pipelines_.pass(), format_, kSampleBit, drawing.extent);
+  std::array<VkClearValue, 3> clear{};
+  clear[0].color = {{1, 1, 1, 1}};
+  clear[1].depthStencil = {1, 0};
+  VkRenderPassBeginInfo begin{};
+  begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+  begin.renderPass = pipelines_.pass();
+  begin.framebuffer = targets_->framebuffer(drawing.image, drawing.layer);
+  begin.renderArea = {{0, 0}, drawing.extent};
+  begin.clearValueCount = static_cast<std::uint32_t>(clear.size());
+  begin.pClearValues = clear.data();
+  vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+  const VkViewport viewport{0, 0, static_cast<float>(drawing.extent.width), static_cast<float>(drawing.extent.height),
+                            0, 1};
+  vkCmdSetViewport(commands, 0, 1, &viewport);
+  vkCmdSetScissor(commands, 0, 1, &begin.renderArea);
+  const Drawn d = constants(drawing);
+  pipelines_.use(commands, true, &d, sizeof d);
+  vkCmdDraw(commands, static_cast<std::uint32_t>(6 * (columns_ - 1) * (rows_ - 1)), 1, 0, 0);
+  if (corner_count_ > 0) {
+    pipelines_.use(commands, false, &d, sizeof d);
+    vkCmdDraw(commands, corner_count_, 1, 0, 0);
+  }
+  vkCmdEndRenderPass(commands);
+}
+
+void SceneRenderer::forget(VkImage image) {
+  if (targets_) targets_->forget(image);
+}
+
+}  // namespace clothbench::render

@@ -1,0 +1,52 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "../render_shared.h"
+// Draws 6 vertices a cell of the grid, which pull their positions from the solver's own buffer (or one like it). There are no
+// indices, so that every vertex knows its triangle and one with a corner that is not finite can be left out whole.
+layout(push_constant) uniform Constants { Drawn d; };
+layout(std430, set = 0, binding = 0) readonly buffer Positions { vec4 position[]; };
+layout(std430, set = 0, binding = 1) readonly buffer Values { float value[]; };
+layout(location = 0) out vec3 out_position;
+layout(location = 1) out vec3 out_normal;
+layout(location = 2) out vec2 out_square;
+layout(location = 3) out float out_value;
+layout(location = 4) flat out int out_look;
+
+// The two triangles of a cell, as clothbench::triangles(const Cloth&) has them.
+const ivec2 kCorner[6] = ivec2[](ivec2(0, 0), ivec2(1, 0), ivec2(1, 1), ivec2(0, 0), ivec2(1, 1), ivec2(0, 1));
+const float kFar = 1e18;  // further away counts as not finite; its square still is in float32
+
+ivec2 grid() { return ivec2(d.sheet.xy); }
+
+int vertex_of(ivec2 g) { return g.y * grid().x + g.x; }
+
+vec3 at(ivec2 g) { return position[vertex_of(clamp(g, ivec2(0), grid() - 1))].xyz; }
+
+bool finite(vec3 x) { return all(lessThan(abs(x), vec3(kFar))); }  // NaN fails
+
+void main() {
+  const ivec2 cells = grid() - 1;
+  const int cell = gl_VertexIndex / 6, corner = gl_VertexIndex % 6;
+  const ivec2 base = ivec2(cell % cells.x, cell / cells.x), g = base + kCorner[corner];
+  out_position = out_normal = vec3(0);
+  out_square = vec2(0);
+  out_value = 0;
+  out_look = LOOK_SMOOTH;
+  for (int k = corner / 3 * 3; k < corner / 3 * 3 + 3; ++k)
+    if (!finite(at(base + kCorner[k]))) {
+      gl_Position = vec4(0, 0, 2, 1);  // behind the far plane, as the other two
+      return;
+    }
+  const vec3 du = at(g + ivec2(1, 0)) - at(g - ivec2(1, 0)), dv = at(g + ivec2(0, 1)) - at(g - ivec2(0, 1));
+  const vec3 normal = cross(du, dv);
+  if (finite(normal)) out_normal = normal / max(length(normal), 1e-30);
+  vec3 moved = vec3(0);
+  if (d.follow.w >= 0) {
+    const vec3 now = position[int(d.follow.w)].xyz;
+    if (finite(now)) moved = now - d.follow.xyz;
+  }
+  out_position = at(g) - moved + d.origin.xyz;
+  out_square = vec2(g) / vec2(cells) * d.sheet.zw;
+  if (d.eye.w > 0) out_value = value[vertex_of(g)];
+  gl_Position = mat4(d.to_clip[0], d.to_clip[1], d.to_clip[2], d.to_clip[3]) * vec4(out_position, 1);
+}

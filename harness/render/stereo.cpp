@@ -1,0 +1,95 @@
+#include "render/stereo.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/offscreen.hpp"
+
+namespace clothbench::render {
+namespace {
+
+class StereoDrawer : public FrameDrawer {
+ public:
+  StereoDrawer(const Scene& scene, const ClothSolver& solver, const DeviceOptions& options, VkExtent2D eye)
+      : scene_(scene),
+        solver_(solver),
+        renderer_(vulkan::Device::get(options), Offscreen::kFormat),
+        images_(vulkan::Device::get(options), eye, 2) {
+    near_ = Bounds::none();
+    const std::vector<double> start = initial_positions(scene);
+    for (std::size_t v = 0; v < scene.cloth.vertex_count(); ++v)
+      near_.add({start[3 * v], start[3 * v + 1], start[3 * v + 2]});
+    Vec3 middle{};
+    for (std::size_t k = 0; k < 3; ++k) middle[k] = (near_.low[k] + near_.high[k]) / 2;
+    const double size = std::max({scene.cloth.width_m, scene.cloth.height_m, near_.diagonal()});
+    near_.grow(size);
+    cameras_ = eyes(middle, size, 0.05 * size, 100 * size);
+    renderer_.set_cloth(scene.cloth, middle);
+    if (solver.info().on_gpu) {
+      const auto* gpu = dynamic_cast<const pbd_gpu::GpuSolver*>(&solver);
+      if (gpu == nullptr) throw Error("solver " + solver.info().name + ": rendering knows no way to its positions");
+      const SolverPositions positions = positions_of(*gpu);
+      renderer_.use_positions(*positions.buffer, positions.origin_m);
+    } else {
+      upload_ = true;
+    }
+    // What nothing holds falls out of sight; the eyes fall with it, on the device.
+    if (scene.pins.vertices.empty() && scene.grips.vertices.empty() && scene.colliders.empty()) {
+      const auto v = static_cast<std::uint32_t>((scene.cloth.rows / 2) * scene.cloth.columns + scene.cloth.columns / 2);
+      renderer_.follow(v, {start[3 * v], start[3 * v + 1], start[3 * v + 2]});
+    }
+    renderer_.set_surfaces(surfaces(scene, 0, near_));
+  }
+
+  void draw(int frame) override {
+    if (upload_) {
+      solver_.read_state(state_);
+      renderer_.write_positions(state_.position);
+    }
+    if (!scene_.motion.empty()) renderer_.set_surfaces(surfaces(scene_, frame, near_));
+    images_.draw(renderer_, cameras_);
+  }
+
+ private:
+  const Scene& scene_;
+  const ClothSolver& solver_;
+  ClothState state_;
+  Bounds near_;
+  std::array<Camera, 2> cameras_;
+  bool upload_ = false;
+  SceneRenderer renderer_;
+  Offscreen images_;
+};
+
+}  // namespace
+
+SolverPositions positions_of(const pbd_gpu::GpuSolver& solver) {
+  ClothState state;
+  solver.read_state(state);
+  for (const vulkan::Program::Recorded& step : solver.download_program().recorded()) {
+    if (step.is_barrier || step.from == nullptr) continue;
+    const auto* x = static_cast<const float*>(step.to->mapped());
+    Vec3 origin{};
+    for (std::size_t k = 0; k < 3; ++k) origin[k] = state.position.at(k) - static_cast<double>(x[k]);
+    if (!std::isfinite(origin[0] + origin[1] + origin[2])) break;
+    return {step.from, origin};
+  }
+  throw Error("solver " + solver.info().name + ": the buffer of its positions was not found");
+}
+
+Rendering stereo_rendering(int width, int height) {
+  Rendering r;
+  r.describe = [=](const SolverInfo& info) {
+    return fmt::format("2 eyes of {} x {} pixels, {} samples each; positions: {}", width, height,
+                       SceneRenderer::kSamples, info.on_gpu ? "the solver's own buffer" : "read_state, uploaded");
+  };
+  r.make = [=](const Scene& scene, const ClothSolver& solver, const DeviceOptions& options) {
+    return std::make_unique<StereoDrawer>(
+        scene, solver, options, VkExtent2D{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)});
+  };
+  return r;
+}
+
+}  // namespace clothbench::render

@@ -1,0 +1,182 @@
+#include "render/surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/render_shared.h"
+
+namespace clothbench::render {
+namespace {
+
+constexpr double kGrip_m = 0.012;  // radius of the ball that marks a held vertex, of a cloth of a metre
+
+Vec3 sum(const Vec3& a, double s, const Vec3& b) { return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]}; }
+
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Vec3 unit_or_zero(const Vec3& v) {
+  const double length = std::sqrt(dot(v, v));
+  return length > 0 ? Vec3{v[0] / length, v[1] / length, v[2] / length} : Vec3{};
+}
+
+bool finite(const Vec3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+
+/// Two directions across one.
+std::array<Vec3, 2> across(const Vec3& axis) {
+  const Vec3 first = unit_or_zero(cross(axis, std::abs(axis[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+  return {first, cross(axis, first)};
+}
+
+std::uint32_t add_vertex(Surfaces& s, const Vec3& p, const Vec3& n, int look) {
+  s.position_m.push_back(p);
+  s.normal.push_back(n);
+  s.look.push_back(static_cast<std::uint8_t>(look));
+  return static_cast<std::uint32_t>(s.position_m.size() - 1);
+}
+
+/// Rings from one pole to the other; a ball where a = b.
+void add_capsule(Surfaces& s, const Capsule& c, int look) {
+  constexpr int kSides = 32, kRings = 10;  // rings of each half ball
+  if (!finite(c.a_m) || !finite(c.b_m) || !(c.radius_m > 0)) return;
+  Vec3 axis = unit_or_zero(sum(c.b_m, -1, c.a_m));
+  if (dot(axis, axis) == 0) axis = {0, 1, 0};
+  const auto [x, y] = across(axis);
+  const auto first = static_cast<std::uint32_t>(s.position_m.size());
+  for (int ring = 0; ring < 2 * kRings; ++ring) {
+    const bool far_end = ring >= kRings;
+    const double latitude =
+        (static_cast<double>(far_end ? ring - kRings : ring - kRings + 1) / (kRings - 1)) * std::numbers::pi / 2;
+    for (int side = 0; side < kSides; ++side) {
+      const double turn = 2 * std::numbers::pi * side / kSides;
+      Vec3 n = sum({0, 0, 0}, std::sin(latitude), axis);
+      n = sum(sum(n, std::cos(latitude) * std::cos(turn), x), std::cos(latitude) * std::sin(turn), y);
+      add_vertex(s, sum(far_end ? c.b_m : c.a_m, c.radius_m, n), n, look);
+    }
+  }
+  for (std::uint32_t ring = 0; ring + 1 < 2 * kRings; ++ring)
+    for (std::uint32_t side = 0; side < kSides; ++side) {
+      const std::uint32_t a = first + ring * kSides + side, b = first + ring * kSides + (side + 1) % kSides;
+      s.triangles.push_back({a, b, b + kSides});
+      s.triangles.push_back({a, b + kSides, a + kSides});
+    }
+}
+
+void add_box(Surfaces& s, const Collider& c) {
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const double side : {-1.0, 1.0}) {
+      const Vec3 n = sum({0, 0, 0}, side, c.axes[k]);
+      const std::size_t u = (k + 1) % 3, v = (k + 2) % 3;
+      std::array<std::uint32_t, 4> corner{};
+      for (std::size_t i = 0; i < 4; ++i) {
+        Vec3 p = sum(c.center_m, c.half_extent_m[k], n);
+        p = sum(p, (i == 1 || i == 2 ? 1 : -1) * c.half_extent_m[u], c.axes[u]);
+        corner[i] = add_vertex(s, sum(p, (i >= 2 ? 1 : -1) * c.half_extent_m[v], c.axes[v]), n, LOOK_FLAT);
+      }
+      s.triangles.push_back({corner[0], corner[1], corner[2]});
+      s.triangles.push_back({corner[0], corner[2], corner[3]});
+    }
+}
+
+/// A square of it below (beside) what is looked at.
+void add_plane(Surfaces& s, const Collider& c, const Bounds& near) {
+  Vec3 middle = sum(near.low, 1, near.high);
+  for (double& x : middle) x /= 2;
+  middle = sum(middle, -dot(sum(middle, -1, c.center_m), c.normal), c.normal);
+  const auto [x, y] = across(c.normal);
+  const double reach = near.diagonal() / 2;
+  std::array<std::uint32_t, 4> corner{};
+  for (std::size_t i = 0; i < 4; ++i)
+    corner[i] = add_vertex(s, sum(sum(middle, (i == 1 || i == 2 ? 1 : -1) * reach, x), (i >= 2 ? 1 : -1) * reach, y),
+                           c.normal, LOOK_FLAT);
+  s.triangles.push_back({corner[0], corner[1], corner[2]});
+  s.triangles.push_back({corner[0], corner[2], corner[3]});
+}
+
+bool meets(const Bounds& b, const std::array<Vec3, 3>& t) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [low, high] = std::minmax({t[0][k], t[1][k], t[2][k]});
+    if (!(high >= b.low[k] && low <= b.high[k])) return false;
+  }
+  return true;
+}
+
+/// Hands are round, rooms are not.
+void add_mesh(Surfaces& s, const ColliderMesh& mesh, const ColliderPose& pose, const Bounds& near) {
+  const std::vector<double> x = posed_positions(mesh, pose);
+  const auto first = static_cast<std::uint32_t>(s.position_m.size());
+  const int look = mesh.skinned() ? LOOK_SMOOTH : LOOK_FLAT;
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) add_vertex(s, {x[3 * v], x[3 * v + 1], x[3 * v + 2]}, {}, look);
+  for (const auto& t : mesh.triangles) {
+    const std::array<Vec3, 3> p = {s.position_m[first + t[0]], s.position_m[first + t[1]], s.position_m[first + t[2]]};
+    if (!finite(p[0]) || !finite(p[1]) || !finite(p[2])) continue;
+    if (!mesh.skinned() && !meets(near, p)) continue;
+    const Vec3 normal = cross(sum(p[1], -1, p[0]), sum(p[2], -1, p[0]));
+    for (const std::uint32_t v : t) s.normal[first + v] = sum(s.normal[first + v], 1, normal);
+    s.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  for (std::size_t v = first; v < s.normal.size(); ++v) s.normal[v] = unit_or_zero(s.normal[v]);
+}
+
+}  // namespace
+
+Bounds Bounds::none() { return {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}; }
+
+void Bounds::add(const Vec3& p) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    low[k] = std::min(low[k], p[k]);
+    high[k] = std::max(high[k], p[k]);
+  }
+}
+
+void Bounds::grow(double by_m) {
+  for (double& x : low) x -= by_m;
+  for (double& x : high) x += by_m;
+}
+
+bool Bounds::holds(const Vec3& p) const {
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!(p[k] >= low[k] && p[k] <= high[k])) return false;
+  return true;
+}
+
+double Bounds::diagonal() const { return std::sqrt(dot(sum(high, -1, low), sum(high, -1, low))); }
+
+Surfaces surfaces(const Scene& scene, int frame, const Bounds& near) {
+  Surfaces s;
+  const FrameMotion* motion = scene.motion_after(frame - 1);
+  static const ColliderPose kStill;
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    const Collider& c = scene.colliders[k];
+    const ColliderPose& pose = motion != nullptr && k < motion->colliders.size() ? motion->colliders[k] : kStill;
+    switch (c.shape) {
+      case Collider::Shape::Plane:
+        add_plane(s, c, near);
+        break;
+      case Collider::Shape::Sphere:
+        add_capsule(s, {c.center_m, c.center_m, c.radius_m}, LOOK_SMOOTH);
+        break;
+      case Collider::Shape::Box:
+        add_box(s, c);
+        break;
+      case Collider::Shape::Capsules:
+        for (const Capsule& one : pose.capsules.empty() ? c.capsules : pose.capsules) add_capsule(s, one, LOOK_SMOOTH);
+        break;
+      case Collider::Shape::Mesh:
+        add_mesh(s, *c.mesh, pose, near);
+        break;
+    }
+  }
+  if (motion == nullptr) return s;
+  const double radius = kGrip_m * std::max(scene.cloth.width_m, scene.cloth.height_m);
+  for (std::size_t k = 0; k < motion->grip_position_m.size(); ++k)
+    if (motion->grip_held[k] != 0)
+      add_capsule(s, {motion->grip_position_m[k], motion->grip_position_m[k], radius}, LOOK_MARK);
+  return s;
+}
+
+}  // namespace clothbench::render

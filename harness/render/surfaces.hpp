@@ -1,0 +1,32 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "clothbench/scene.hpp"
+
+namespace clothbench::render {
+
+struct Bounds {
+  Vec3 low{}, high{};
+  void add(const Vec3&);
+  void grow(double by_m);
+  bool holds(const Vec3&) const;
+  double diagonal() const;
+  static Bounds none();
+  bool empty() const { return !(low[0] <= high[0]); }
+};
+
+/// Triangles to draw of what cloth touches, in the world.
+struct Surfaces {
+  std::vector<Vec3> position_m, normal;  ///< one a vertex; normals unit, or zero where there is none
+  std::vector<std::uint8_t> look;        ///< LOOK_… of render_shared.h
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Colliders and what hands hold, of a scene at the end of frame `frame` (0 = the start). Meshes that stand still lose
+/// the triangles that do not meet `near` (a room has more walls than its desk); planes, which have no end, are drawn as
+/// large as it. What moves is whole. Things that are not finite are left out.
+Surfaces surfaces(const Scene&, int frame, const Bounds& near);
+
+}  // namespace clothbench::render

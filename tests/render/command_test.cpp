@@ -1,0 +1,132 @@
+// `clothbench render` as a user meets it.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "render/picture.hpp"
+#include "sheets.hpp"
+
+namespace clothbench::render {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Answer {
+  int code = -1;
+  std::string text;
+};
+
+Answer command(const std::string& arguments, const std::string& environment = "") {
+  const std::string line = environment + " " + CLOTHBENCH_COMMAND + " " + arguments + " 2>&1";
+  Answer a;
+  FILE* pipe = popen(line.c_str(), "r");
+  if (pipe == nullptr) return a;
+  std::array<char, 4096> chunk{};
+  while (const std::size_t n = fread(chunk.data(), 1, chunk.size(), pipe)) a.text.append(chunk.data(), n);
+  const int status = pclose(pipe);
+  a.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return a;
+}
+
+/// Two cells with positions, run once for all tests.
+class RenderCommand : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<Folder>("render-command");
+    const Answer a = command(
+        "run contact/sphere validation/pendulum --solver ballistic --solver xpbd --trials 0 --set time.duration_s=0.1 "
+        "--out " +
+        runs());
+    ASSERT_EQ(a.code, 0) << a.text;
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+  static std::string runs() { return (folder_->path / "runs").string(); }
+  static std::string out() { return (folder_->path / "out").string(); }
+  static std::unique_ptr<Folder> folder_;
+};
+std::unique_ptr<Folder> RenderCommand::folder_;
+
+TEST_F(RenderCommand, WritesPicturesOfAFile) {
+  const Answer a = command("--json render " + runs() +
+                           "/sphere-drop__xpbd__default.h5 --frames 0:-1:2 --no-movie --size 200x150 --view front "
+                           "--view top --colour depth -o " +
+                           out());
+  ASSERT_EQ(a.code, 0) << a.text;
+  const auto told = nlohmann::json::parse(a.text);
+  ASSERT_EQ(told["pictures"].size(), 8u) << "frames 0, 2, 4, 6 of two views";
+  for (const auto& p : told["pictures"]) EXPECT_EQ(read_png(p.get<std::string>()).width, 200);
+  EXPECT_TRUE(told["movies"].empty());
+}
+
+TEST_F(RenderCommand, PicksCellsOfAFolder) {
+  EXPECT_EQ(command("render " + runs() + " --cell sphere-drop__xpbd --frames 1 --size 160x120 -o " + out()).code, 0);
+  EXPECT_TRUE(fs::exists(out() + "/sphere-drop__xpbd__default__corner__checker__000001.png"));
+  const Answer which = command("render " + runs());
+  EXPECT_EQ(which.code, 2);
+  EXPECT_NE(which.text.find("--cell"), std::string::npos);
+  EXPECT_NE(which.text.find("sphere-drop__ballistic__default"), std::string::npos);
+  const Answer none = command("render " + runs() + " --cell nothing");
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.text.find("\"nothing\""), std::string::npos);
+}
+
+TEST_F(RenderCommand, RunsAScenarioAndSaysSo) {
+  const Answer a = command(
+      "render contact/plane --solver ballistic --set cloth.grid=[5,5] --set time.duration_s=0.05 --frames -1 --size "
+      "160x120 -o " +
+      out());
+  ASSERT_EQ(a.code, 0) << a.text;
+  EXPECT_NE(a.text.find("nothing is stored, so ballistic runs it now"), std::string::npos);
+  EXPECT_NE(a.text.find("plane-drop__ballistic__default__corner__checker__000004.png"), std::string::npos) << a.text;
+}
+
+TEST_F(RenderCommand, SaysThatFfmpegIsMissing) {
+  const fs::path empty = folder_->path / "empty";
+  fs::create_directories(empty);
+  const Answer a =
+      command("render " + runs() + "/sphere-drop__xpbd__default.h5 --frames 0:1 --size 160x120 -o " + out(),
+              "PATH=" + empty.string());
+  EXPECT_EQ(a.code, 0) << a.text;
+  EXPECT_NE(a.text.find("no movie: ffmpeg"), std::string::npos) << a.text;
+}
+
+TEST_F(RenderCommand, RefusesWhatItCannotDo) {
+  const std::string file = runs() + "/sphere-drop__xpbd__default.h5";
+  const fs::path text = folder_->path / "text.h5";
+  std::ofstream(text) << "no result file";
+  const fs::path empty = folder_->path / "nothing";
+  fs::create_directories(empty);
+  const std::vector<std::pair<std::string, std::string>> wrong = {{file + " --frames 99", "there are frames 0 to"},
+                                                                  {file + " --frames x", "is no number"},
+                                                                  {file + " --view side", "front, top or corner"},
+                                                                  {file + " --colour red", "checker, strain or depth"},
+                                                                  {file + " --size 10", "WIDTHxHEIGHT"},
+                                                                  {file + " --size 20x20", "too small"},
+                                                                  {text.string(), "text.h5"},
+                                                                  {runs() + "/none.h5", "none.h5"},
+                                                                  {"no/such-scene", "no/such-scene"},
+                                                                  {empty.string(), "no result files"},
+                                                                  {file + " --device 99", "device"}};
+  for (const auto& [arguments, told] : wrong) {
+    const Answer a = command("render " + arguments + " -o " + out());
+    EXPECT_TRUE(a.code == 2 || a.code == 3) << arguments << ": " << a.code << " " << a.text;
+    EXPECT_NE(a.text.find(told), std::string::npos) << arguments << ": " << a.text;
+  }
+}
+
+TEST_F(RenderCommand, TimesFramesWithTheirPictures) {
+  const std::string runs_with = (folder_->path / "with").string();
+  const Answer a =
+      command("study table3 --quick --solver xpbd --trials 1 --with-rendering --eye 32x32 --out " + runs_with);
+  ASSERT_EQ(a.code, 0) << a.text;
+  EXPECT_NE(a.text.find("Frame time with rendering"), std::string::npos);
+  EXPECT_EQ(command("study table3 --quick --eye 32x32").code, 2) << "an eye without rendering";
+  EXPECT_EQ(command("study table3 --quick --with-rendering --eye big --out " + runs_with + "2").code, 2);
+}
+
+}  // namespace
+}  // namespace clothbench::render

@@ -1,0 +1,258 @@
+// What is drawn, pixel by pixel, under core and synchronization validation.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gpu_solver.hpp"
+#include "render/offscreen.hpp"
+#include "scenario/load.hpp"
+#include "sheets.hpp"
+
+namespace clothbench::render {
+namespace {
+
+constexpr int kSize = 128;
+
+class Pixels : public ::testing::Test {
+ protected:
+  void TearDown() override { EXPECT_EQ(device_->validation_messages(), 0); }
+
+  /// Seen from `from` times z, so from behind with -1 (the sheet is turned instead of the camera).
+  Picture draw(const Cloth& cloth, const std::vector<double>& x, const Surfaces& s = {}) {
+    renderer_.set_cloth(cloth, {0, 0, 0});
+    renderer_.write_positions(x);
+    renderer_.set_surfaces(s);
+    return shoot();
+  }
+  Picture shoot() {
+    images_.draw(renderer_, std::span(&camera_, 1));
+    return images_.read(0);
+  }
+  std::array<int, 3> pixel(const Picture& p, const Vec3& point) const {
+    const auto at = seen_at(camera_, point);
+    const std::uint8_t* c = p.at(static_cast<int>((*at)[0] * kSize), static_cast<int>((*at)[1] * kSize));
+    return {c[0], c[1], c[2]};
+  }
+  static bool orange(const std::array<int, 3>& c) { return c[0] > c[2] + 40; }
+  static bool blue(const std::array<int, 3>& c) { return c[2] > c[0] + 40; }
+  static bool white(const std::array<int, 3>& c) { return c[0] == 255 && c[1] == 255 && c[2] == 255; }
+  static bool grey(const std::array<int, 3>& c) { return !white(c) && std::abs(c[0] - c[2]) < 25; }
+
+  std::shared_ptr<vulkan::Device> device_ = vulkan::Device::get({-1, true});
+  SceneRenderer renderer_{device_, Offscreen::kFormat};
+  Offscreen images_{device_, {kSize, kSize}, 1};
+  Camera camera_ = frame(View::Front, std::vector<double>{-1, -1, 0, 1, 1, 0, 0, 0, 0.5}, 1);
+};
+
+Collider ball(const Vec3& center, double radius) {
+  Collider c;
+  c.shape = Collider::Shape::Sphere;
+  c.center_m = center;
+  c.radius_m = radius;
+  return c;
+}
+
+Surfaces of(const Collider& c) {
+  Scene s;
+  s.colliders = {c};
+  return surfaces(s, 0, {{-2, -2, -2}, {2, 2, 2}});
+}
+
+TEST_F(Pixels, SquaresAreLightAndDarkInTurn) {
+  const Cloth cloth = upright(9, 9);  // 8 squares: one a cell
+  const Picture p = draw(cloth, positions_of(cloth));
+  for (int j = 0; j < 8; ++j)
+    for (int i = 0; i < 8; ++i) {
+      const auto here = pixel(p, {(i + 0.5) / 8 - 0.5, (j + 0.5) / 8 - 0.5, 0});
+      EXPECT_TRUE(orange(here)) << i << " " << j;
+      if (i == 7) continue;
+      const auto next = pixel(p, {(i + 1.5) / 8 - 0.5, (j + 0.5) / 8 - 0.5, 0});
+      EXPECT_GT(std::abs(here[2] - next[2]), 40) << "neighbours differ at " << i << " " << j;
+    }
+  EXPECT_TRUE(white(pixel(p, {0.8, 0.8, 0})));
+}
+
+TEST_F(Pixels, BothSidesAreShadedAndToldApart) {
+  const Cloth cloth = upright(5, 5);
+  std::vector<double> x = positions_of(cloth);
+  const auto front = pixel(draw(cloth, x), {0.06, 0.06, 0});
+  for (std::size_t k = 0; k < x.size(); k += 3) x[k] = -x[k];  // turned round
+  const auto back = pixel(draw(cloth, x), {0.06, 0.06, 0});
+  EXPECT_TRUE(orange(front));
+  EXPECT_TRUE(blue(back));
+  for (const auto& c : {front, back}) EXPECT_GT(std::max(c[0], c[2]), 120) << "lit, not in its own shadow";
+}
+
+TEST_F(Pixels, FacesTurnedFromTheLightAreDarker) {
+  const Cloth cloth = upright(3, 3);
+  const auto brightness = [&](double lean) {
+    std::vector<double> x = positions_of(cloth);
+    for (std::size_t k = 0; k < x.size(); k += 3) x[k + 2] = lean * x[k + 1];
+    const Picture p = draw(cloth, x);
+    const auto c = pixel(p, {0.06, 0.06, lean * 0.06});
+    return c[0] + c[1] + c[2];
+  };
+  EXPECT_GT(brightness(-0.8), brightness(0.8) + 30) << "upper edge away from the viewer: lit from above";
+}
+
+TEST_F(Pixels, ACollidersHidesWhatIsBehindIt) {
+  const Cloth cloth = upright(9, 9);
+  const std::vector<double> x = positions_of(cloth);
+  EXPECT_TRUE(grey(pixel(draw(cloth, x, of(ball({0, 0, 0.4}, 0.1))), {0, 0, 0.4})));
+  EXPECT_TRUE(orange(pixel(draw(cloth, x, of(ball({0, 0, 0.4}, 0.1))), {0.4, 0.4, 0})));
+  EXPECT_TRUE(orange(pixel(draw(cloth, x, of(ball({0, 0, -0.4}, 0.1))), {0.06, 0.06, 0})));
+  EXPECT_TRUE(grey(pixel(draw(cloth, x, of(ball({0.3, 0, 0}, 0.1))), {0.3, 0, 0.1}))) << "half way through";
+}
+
+TEST_F(Pixels, EveryShapeIsThere) {
+  const Cloth cloth = upright(2, 2, 0.01, 0.01);
+  const std::vector<double> x = positions_of(cloth);
+  Collider box, plane, capsules, mesh;
+  box.shape = Collider::Shape::Box;
+  box.center_m = {0.5, 0.5, 0};
+  box.half_extent_m = {0.2, 0.1, 0.1};
+  plane.shape = Collider::Shape::Plane;
+  plane.center_m = {0, -0.5, 0};
+  plane.normal = {0, 0.6, 0.8};
+  capsules.shape = Collider::Shape::Capsules;
+  capsules.capsules = {{{-0.5, 0.2, 0}, {-0.5, 0.7, 0}, 0.1}};
+  mesh.shape = Collider::Shape::Mesh;
+  auto triangle = std::make_shared<ColliderMesh>();
+  triangle->positions = {0.3, -0.2, 0, 0.7, -0.2, 0, 0.5, 0.2, 0};
+  triangle->triangles = {{0, 1, 2}};
+  mesh.mesh = triangle;
+  EXPECT_TRUE(grey(pixel(draw(cloth, x, of(box)), {0.65, 0.45, 0.1})));
+  EXPECT_TRUE(white(pixel(draw(cloth, x, of(box)), {0.78, 0.5, 0.0})));
+  EXPECT_TRUE(grey(pixel(draw(cloth, x, of(plane)), {0.3, -0.5, 0})));
+  const Picture stick = draw(cloth, x, of(capsules));
+  for (const double y : {0.12, 0.45, 0.78}) EXPECT_TRUE(grey(pixel(stick, {-0.5, y, 0}))) << y;
+  EXPECT_TRUE(white(pixel(stick, {-0.5, 0.83, 0})));
+  EXPECT_TRUE(grey(pixel(draw(cloth, x, of(mesh)), {0.5, -0.1, 0})));
+}
+
+TEST_F(Pixels, KnownVerticesAreWhereTheCameraSaysTheyAre) {
+  const Cloth cloth = upright(2, 2, 0.6, 0.3);
+  std::vector<double> x = positions_of(cloth);
+  for (std::size_t k = 0; k < x.size(); k += 3) {
+    x[k] += 0.4;
+    x[k + 1] -= 0.35;
+    x[k + 2] += 0.2;
+  }
+  const Picture p = draw(cloth, x);
+  double low[2] = {kSize, kSize}, high[2] = {0, 0};
+  for (int row = 0; row < kSize; ++row)
+    for (int column = 0; column < kSize; ++column)
+      if (p.at(column, row)[0] + p.at(column, row)[2] < 500) {
+        low[0] = std::min<double>(low[0], column);
+        low[1] = std::min<double>(low[1], row);
+        high[0] = std::max<double>(high[0], column + 1);
+        high[1] = std::max<double>(high[1], row + 1);
+      }
+  const auto first = seen_at(camera_, {x[0], x[1], x[2]}), last = seen_at(camera_, {x[9], x[10], x[11]});
+  EXPECT_NEAR(low[0], (*first)[0] * kSize, 1.5);
+  EXPECT_NEAR(high[1], (*first)[1] * kSize, 1.5);
+  EXPECT_NEAR(high[0], (*last)[0] * kSize, 1.5);
+  EXPECT_NEAR(low[1], (*last)[1] * kSize, 1.5);
+}
+
+TEST_F(Pixels, EdgesAreAntialiased) {
+  const Cloth cloth = upright(2, 2);
+  std::vector<double> x = positions_of(cloth);
+  for (std::size_t k = 0; k < x.size(); k += 3) x[k + 1] += 0.2 * x[k];  // edges neither level nor upright
+  const Picture p = draw(cloth, x);
+  int between = 0;
+  const auto at = seen_at(camera_, {0, 0.5, 0});
+  for (int row = static_cast<int>((*at)[1] * kSize) - 8; row < (*at)[1] * kSize + 8; ++row)
+    for (int column = kSize / 4; column < 3 * kSize / 4; ++column) {
+      const int c = p.at(column, row)[2];  // blue of orange squares is below 160
+      between += c > 175 && c < 250 ? 1 : 0;
+    }
+  EXPECT_GT(between, 10);
+}
+
+TEST_F(Pixels, WhatIsNotFiniteIsLeftOut) {
+  const Cloth cloth = upright(5, 5);
+  std::vector<double> x = positions_of(cloth);
+  x[3 * 12] = NAN;  // the middle
+  x[3 * 4] = INFINITY;
+  x[3 * 20 + 1] = 1e30;
+  const Picture p = draw(cloth, x);
+  EXPECT_TRUE(white(pixel(p, {0.05, 0.03, 0}))) << "all triangles of the middle vertex are gone";
+  EXPECT_TRUE(orange(pixel(p, {0.3, 0.05, 0}))) << "and no other";
+  for (double& v : x) v = NAN;
+  const Picture none = draw(cloth, x);
+  for (int k = 0; k < kSize; ++k) EXPECT_TRUE(white({none.at(k, k)[0], none.at(k, k)[1], none.at(k, k)[2]}));
+  Collider lost = ball({NAN, 0, 0}, 0.1);
+  EXPECT_TRUE(of(lost).triangles.empty());
+}
+
+TEST_F(Pixels, ValuesHaveTheirColours) {
+  const Cloth cloth = upright(3, 2, 1, 1);
+  renderer_.set_cloth(cloth, {0, 0, 0});
+  renderer_.write_positions(positions_of(cloth));
+  const std::vector<vec4> red_to_blue = {{1, 0, 0, 1}, {0, 0, 1, 1}};
+  const std::vector<float> values = {0, 0, 1, 0, 0, 1};
+  renderer_.write_values(values, red_to_blue);
+  Picture p = shoot();
+  const auto left = pixel(p, {-0.3, 0, 0}), right = pixel(p, {0.48, 0, 0});
+  EXPECT_TRUE(left[0] > 120 && left[1] < 10 && left[2] < 10);
+  EXPECT_TRUE(right[2] > 120 && right[1] < 10 && right[0] < 120);
+  const std::vector<float> none(6, NAN);
+  renderer_.write_values(none, red_to_blue);
+  p = shoot();
+  EXPECT_TRUE(grey(pixel(p, {-0.3, 0, 0})));
+  renderer_.write_values({}, {});
+  p = shoot();
+  EXPECT_TRUE(orange(pixel(p, {-0.3, 0, 0})));
+}
+
+TEST_F(Pixels, FollowsAVertex) {
+  const Cloth cloth = upright(3, 3);
+  std::vector<double> x = positions_of(cloth);
+  const Picture still = draw(cloth, x);
+  for (std::size_t k = 0; k < x.size(); k += 3) x[k + 1] -= 50;
+  renderer_.write_positions(x);
+  EXPECT_TRUE(white(pixel(shoot(), {0.06, 0.06, 0})));
+  renderer_.follow(4, {0, 0, 0});
+  EXPECT_EQ(shoot().rgb, still.rgb);
+}
+
+TEST_F(Pixels, SaysWhatDoesNotFit) {
+  EXPECT_THROW(shoot(), Error) << "nothing to draw yet";
+  renderer_.set_cloth(upright(3, 3), {0, 0, 0});
+  EXPECT_THROW(renderer_.write_positions(std::vector<double>(26)), Error);
+  EXPECT_THROW(renderer_.write_values(std::vector<float>(8), std::vector<vec4>(2)), Error);
+  EXPECT_THROW(renderer_.set_cloth(upright(1, 3), {0, 0, 0}), Error);
+  EXPECT_THROW(Offscreen(device_, {0, 10}, 1), Error);
+  EXPECT_THROW(Offscreen(device_, {1u << 20, 10}, 1), Error);
+}
+
+TEST_F(Pixels, DrawsIntoAnImageOfAnyone) {
+  // As a headset's loop would: its image, its matrices, its command buffer; a layer of an array is one eye.
+  const Cloth cloth = upright(9, 9);
+  const Picture expected = draw(cloth, positions_of(cloth));
+  const Image image(device_, Offscreen::kFormat, {kSize, kSize}, VK_SAMPLE_COUNT_1_BIT,
+                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, device_->command_pool(),
+                                       VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+  ASSERT_EQ(vkAllocateCommandBuffers(device_->handle(), &allocate, &commands), VK_SUCCESS);
+  VkCommandBufferBeginInfo begin{};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  ASSERT_EQ(vkBeginCommandBuffer(commands, &begin), VK_SUCCESS);
+  const Drawing d{image.handle(), 0, {kSize, kSize}, camera_.view({0, 0, 0}), camera_.projection()};
+  renderer_.record(commands, std::span(&d, 1));
+  ASSERT_EQ(vkEndCommandBuffer(commands), VK_SUCCESS);
+  VkSubmitInfo submit{};
+  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  submit.commandBufferCount = 1;
+  submit.pCommandBuffers = &commands;
+  ASSERT_EQ(vkQueueSubmit(device_->queue(), 1, &submit, VK_NULL_HANDLE), VK_SUCCESS);
+  ASSERT_EQ(vkQueueWaitIdle(device_->queue()), VK_SUCCESS);
+  renderer_.forget(image.handle());
+  vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands);
+  EXPECT_EQ(shoot().rgb, expected.rgb) << "and its own pictures are as before";
+}
+
+}  // namespace
+}  // namespace clothbench::render
