@@ -1,19 +1,27 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "cli/command.hpp"
+#include "results/device_samples.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
 
 void add_import(CLI::App& app, Console& console) {
   static std::vector<std::string> folders;
+  static std::string samples_file;
   folders = {};
+  samples_file = {};
   CLI::App* cmd = app.add_subcommand("import", "Turn raw run files (a device without HDF5, an interrupted run) into HDF5 files");
   cmd->add_option("folder", folders, "Study folders or part folders")->required();
+  cmd->add_option("--samples", samples_file, "What the device told during the run: samples.json of scripts/quest_run.py");
   cmd->callback([&console] {
+    std::optional<DeviceSamples> samples;
+    if (!samples_file.empty()) samples.emplace(samples_file);
     nlohmann::json rows = nlohmann::json::array();
     for (const std::string& folder : folders)
-      for (const auto& file : import_raw(folder)) {
+      for (const auto& file : import_raw(folder, samples ? &*samples : nullptr)) {
         rows.push_back(file.string());
         if (!console.json) fmt::print("{}\n", file.string());
       }

@@ -69,7 +69,7 @@ std::string window_note(const std::vector<CellRecord>& cells) {
 }
 
 std::string headline(const std::vector<CellRecord>& cells, Format format) {
-  std::vector<std::string> software, lines, hosts;
+  std::vector<std::string> software, invalid, lines, hosts;
   std::map<std::string, Span> created;
   std::map<std::string, bool> on_gpu;  // has the host a line with a GPU?
   const auto add = [](std::vector<std::string>& v, const std::string& s) {
@@ -78,6 +78,8 @@ std::string headline(const std::vector<CellRecord>& cells, Format format) {
   for (const CellRecord& c : cells) {
     const nlohmann::json& e = c.header.environment;
     if (!e.is_object() || e.empty()) continue;
+    if (const nlohmann::json s = e.value("device_samples", nlohmann::json()); s.is_object() && !s.value("valid", true))
+      for (const nlohmann::json& reason : s.value("reasons", nlohmann::json::array())) add(invalid, reason.get<std::string>());
     const std::string host = host_line(e);
     created[host].add(text(e, "created"));
     add(hosts, host);
@@ -91,6 +93,7 @@ std::string headline(const std::vector<CellRecord>& cells, Format format) {
   std::string out;
   for (const std::string& device : software)
     out += fmt::format("**Software Vulkan device ({}): for correctness, not for speed claims.**\n\n", device);
+  for (const std::string& reason : invalid) out += fmt::format("**Not a valid measurement: {}.**\n\n", reason);
   for (const std::string& line : lines) {
     std::string host = line;
     for (const auto& [key, span] : created)

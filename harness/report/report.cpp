@@ -197,6 +197,8 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
   write("cells.json", cells_json(cells).dump(1) + "\n");
   write("bandwidth.csv", summary_csv(cells, kBandwidthNames));
   write("memory.csv", summary_csv(cells, kMemoryNames));
+  const Table sampled = sampled_table(cells);
+  if (sampled.rows.size() > 1) write("device-samples.csv", summary_csv(cells, sampled_names()));
 
   const std::vector<FeatureCost> costs = feature_costs(cells);
   const std::vector<SolverMaterial> materials = solver_materials(cells);
@@ -225,6 +227,7 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     write("table3.json", table3_json(family, published).dump(1) + "\n");
     wrote_table3 = true;
   }
+  if (sampled.rows.size() > 1) tables += told("sampled", "The device's own counters", {sampled});
   if (!ups.empty()) {
     const std::vector<RoomPair> pairs = room_pairs(contact);
     const std::string text = told("penetration", "Penetration", penetration_tables(ups, pairs, true));
@@ -306,6 +309,7 @@ void print_console_report(const std::vector<fs::path>& runs) {
   const auto [stability, contact, truth, rest] = parts_of(cells, costs);
   for (const Family& family : families(rest))
     for (const Table& t : fps_tables(family, published)) fmt::print("{}", t.console());
+  if (const Table sampled = sampled_table(cells); sampled.rows.size() > 1) fmt::print("{}", sampled.console());
   for (const Table& t : penetration_tables(set_ups(contact), room_pairs(contact), false)) fmt::print("{}", t.console());
   if (const auto diagrams = work_diagrams(truth, materials); !diagrams.empty())
     fmt::print("{}{}{}{}", work_table(diagrams).console(), truth_table(diagrams).console(), winners_table(diagrams).console(), ranks_table(diagrams).console());

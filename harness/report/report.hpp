@@ -41,6 +41,12 @@ std::string headline(const std::vector<CellRecord>& cells, Format);
 /// The ballistic solver's slowest cell as a share of a 72 Hz frame, against the 1 % allowed; empty without such cells.
 std::string overhead_line(const std::vector<CellRecord>& cells);
 
+/// What the device's own counters told during the cells' trials, one row a cell; no rows but the header if no cell has any.
+Table sampled_table(const std::vector<CellRecord>& cells);
+
+/// Names in `summary` of what the device's own counters told.
+const std::vector<std::string>& sampled_names();
+
 /// "5 s windows, or the whole trial where it is shorter (here 0.3 s to 2 s)"; empty if no cell has counted bytes.
 std::string window_note(const std::vector<CellRecord>& cells);
 
@@ -57,7 +63,7 @@ nlohmann::json table3_json(const Family&, const nlohmann::json& published);
 /// Everything but frames: outcome, summary (missing = null), environment.
 nlohmann::json cells_json(const std::vector<CellRecord>& cells);
 
-/// Writes report.md, cells.csv, cells.json, bandwidth.csv, memory.csv, features.json; for the paper's Table 3 also
+/// Writes report.md, cells.csv, cells.json, bandwidth.csv, memory.csv, features.json; for cells with samples of the device's own counters device-samples.csv; for the paper's Table 3 also
 /// table3.md, .csv and .json; for scenes with contact penetration.md, .csv and .json and penetration-series.csv; and
 /// for scenes with a truth work-precision.md, .csv, .json and a page of summary.md; for material cards material.md and
 /// .json; for costs of features feature-cost.md, .csv and .json; the page index.html (left out, with a line saying so,

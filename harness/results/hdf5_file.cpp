@@ -151,6 +151,7 @@ class Writer {
     scalars();
     if (!r_.trials.empty()) timing();
     for (const StoredGroup& g : r_.replay) stored(g);
+    for (const StoredGroup& g : r_.samples) stored(g);
     if (!r_.accuracy.time_s.empty()) {
       metrics();
       vtkhdf();
@@ -224,9 +225,14 @@ class Writer {
         by_frame("frame_device_s", &TimedTrial::frame_device_s, {"s", "device time of a frame, first to last timestamp"});
         if (std::any_of(r_.trials.begin(), r_.trials.end(), [](const TimedTrial& t) { return !t.frame_rendered_s.empty(); }))
           by_frame("frame_rendered_s", &TimedTrial::frame_rendered_s, {"s", "wall time of a frame and its picture"});
-        std::vector<double> pipelined;
-        for (const TimedTrial& t : r_.trials) pipelined.push_back(t.pipelined_wall_s);
-        attach(write_numbers(g, "pipelined_wall_s", {trials}, pipelined, {"s", "mean wall time of a frame, two in flight"}), {trial});
+        const auto by_trial = [&](const char* name, double TimedTrial::*value, const Label& label) {
+          std::vector<double> values;
+          for (const TimedTrial& t : r_.trials) values.push_back(t.*value);
+          attach(write_numbers(g, name, {trials}, values, label), {trial});
+        };
+        by_trial("pipelined_wall_s", &TimedTrial::pipelined_wall_s, {"s", "mean wall time of a frame, two in flight"});
+        by_trial("trial_start_unix_s", &TimedTrial::start_unix_s, {"s", "when the trial's first timed frame began, since 1970 UTC"});
+        by_trial("trial_end_unix_s", &TimedTrial::end_unix_s, {"s", "when the trial's last timed frame ended, since 1970 UTC"});
         by_stage("stage_device_s", &TimedTrial::stage_device_s, {"s", "device time of a stage, from the profiled twin"});
         number_attribute(g, "load_s", r_.header.load_s);
         for (const StageRecord& s : r_.header.stages) integer_attribute(g, "dispatches." + s.name, s.dispatches);

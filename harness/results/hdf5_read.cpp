@@ -42,12 +42,15 @@ void read_trials(hid_t file, CellRecord& r) {
   const auto stage = numbers<double>(timing, "stage_device_s", H5T_NATIVE_DOUBLE);
   const auto read = numbers<double>(bandwidth, "read_B", H5T_NATIVE_DOUBLE), write = numbers<double>(bandwidth, "write_B", H5T_NATIVE_DOUBLE);
   const auto index = numbers<std::int64_t>(timing, "trial", H5T_NATIVE_INT64);
-  const auto pipelined = exists(timing, "pipelined_wall_s") ? numbers<double>(timing, "pipelined_wall_s", H5T_NATIVE_DOUBLE)
-                                                            : std::vector<double>(index.size(), kMissing);
+  const auto by_trial = [&](const char* name) {  // older files lack some
+    auto v = exists(timing, name) ? numbers<double>(timing, name, H5T_NATIVE_DOUBLE) : std::vector<double>(index.size(), kMissing);
+    if (v.size() != index.size()) throw Error(std::string("/timing/") + name + " does not fit /timing/trial");
+    return v;
+  };
+  const auto pipelined = by_trial("pipelined_wall_s"), start = by_trial("trial_start_unix_s"), end = by_trial("trial_end_unix_s");
   const auto rendered = exists(timing, "frame_rendered_s") ? numbers<double>(timing, "frame_rendered_s", H5T_NATIVE_DOUBLE)
                                                            : std::vector<double>(wall.size(), kMissing);
   const std::size_t stages = r.header.stages.size();
-  if (pipelined.size() != index.size()) throw Error("/timing/pipelined_wall_s does not fit /timing/trial");
   if (shape.size() != 2 || index.size() != shape[0] || device.size() != wall.size() || rendered.size() != wall.size() || stage.size() != wall.size() * stages ||
       read.size() != stage.size() || write.size() != stage.size())
     throw Error("/timing and /bandwidth do not fit one another");
@@ -55,6 +58,8 @@ void read_trials(hid_t file, CellRecord& r) {
     TimedTrial trial;
     trial.index = static_cast<int>(index[t]);
     trial.pipelined_wall_s = pipelined[t];
+    trial.start_unix_s = start[t];
+    trial.end_unix_s = end[t];
     for (std::size_t k = t * shape[1]; k < (t + 1) * shape[1]; ++k) {
       if (std::isnan(wall[k])) break;  // padding of a shorter trial
       trial.frame_wall_s.push_back(wall[k]);

@@ -165,7 +165,8 @@ void write_trial_file(const std::filesystem::path& path, const TimedTrial& t, st
     for (const auto* series : {&t.stage_device_s, &t.stage_read_B, &t.stage_write_B}) append(b, series->data() + f * stages, stages);
     frames.push_back(std::move(b));
   }
-  nlohmann::json header = {{"kind", "trial"}, {"index", t.index}, {"stages", stages}, {"frames", frames.size()}, {"pipelined_wall_s", t.pipelined_wall_s}};
+  nlohmann::json header = {{"kind", "trial"}, {"index", t.index}, {"stages", stages}, {"frames", frames.size()}, {"pipelined_wall_s", t.pipelined_wall_s},
+                           {"start_unix_s", t.start_unix_s}, {"end_unix_s", t.end_unix_s}};
   if (!t.frame_rendered_s.empty()) header["frame_rendered_s"] = t.frame_rendered_s;
   write_raw(path, std::move(header), frames);
 }
@@ -177,7 +178,13 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
     if (!file.complete || file.frames.size() != file.header.at("frames").get<std::size_t>()) throw Error("damaged: not all frames are there");
     TimedTrial t;
     t.index = file.header.at("index").get<int>();
-    if (const auto s = file.header.value("pipelined_wall_s", nlohmann::json()); s.is_number()) t.pipelined_wall_s = s.get<double>();
+    const auto number = [&](const char* key) {  // missing values are null, older files lack some
+      const nlohmann::json v = file.header.value(key, nlohmann::json());
+      return v.is_number() ? v.get<double>() : kMissing;
+    };
+    t.pipelined_wall_s = number("pipelined_wall_s");
+    t.start_unix_s = number("start_unix_s");
+    t.end_unix_s = number("end_unix_s");
     if (file.header.contains("frame_rendered_s")) t.frame_rendered_s = file.header["frame_rendered_s"].get<std::vector<double>>();
     for (const Bytes& b : file.frames) {
       Taker taker(b);

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "clothbench/error.hpp"
+#include "results/device_samples.hpp"
 #include "results/files.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/raw_file.hpp"
@@ -155,7 +156,7 @@ Replay read_replay(const fs::path& path, std::size_t stride) {
   return r;
 }
 
-std::vector<fs::path> import_raw(const fs::path& dir_or_part) {
+std::vector<fs::path> import_raw(const fs::path& dir_or_part, const DeviceSamples* samples) {
   if (!kWithHdf5) throw Error("import: this build has no HDF5; run it on another machine");
   if (!fs::is_directory(dir_or_part)) throw Error(dir_or_part.string() + ": expected a study folder or a .part folder");
   std::vector<fs::path> parts, files;
@@ -166,7 +167,9 @@ std::vector<fs::path> import_raw(const fs::path& dir_or_part) {
   std::sort(parts.begin(), parts.end());
   for (const fs::path& part : parts) {
     if (!fs::exists(part / "outcome.raw")) continue;  // not finished: `study --resume` goes on with it
-    files.push_back(write_finished(part.parent_path(), read_part(part)));
+    CellRecord record = read_part(part);
+    if (samples != nullptr) samples->attach_to(record);
+    files.push_back(write_finished(part.parent_path(), record));
   }
   return files;
 }

@@ -66,8 +66,11 @@ std::vector<std::size_t> every(std::size_t count, std::size_t stride);
 /// Throws Error naming the file and what is wrong with it.
 Replay read_replay(const std::filesystem::path&, std::size_t stride);
 
-/// Part folders of a run made without HDF5 -> the same .h5 a direct run gives. Returns the new files.
-std::vector<std::filesystem::path> import_raw(const std::filesystem::path& dir_or_part);
+class DeviceSamples;
+
+/// Part folders of a run made without HDF5 -> the same .h5 a direct run gives, with `samples` what the device told during
+/// the run beside it. Returns the new files.
+std::vector<std::filesystem::path> import_raw(const std::filesystem::path& dir_or_part, const DeviceSamples* samples = nullptr);
 
 /// `<dir>/study.json`: what the folder is. Written tmp + fsync + rename.
 struct StudyManifest {

@@ -20,6 +20,8 @@ using Clock = std::chrono::steady_clock;
 std::atomic<bool> interrupted{false}, held{false};
 std::atomic<int> holds{0};
 
+double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 void stop_if_interrupted() {
@@ -207,6 +209,7 @@ TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
   const std::size_t stages = plan_.stages.size();
   const int asked = rules.frames > 0 ? rules.frames : spec_.scene->time.frames();
   double elapsed = 0;
+  trial.start_unix_s = trial.end_unix_s = unix_now();
   for (int frame = 0; frame < (frames > 0 ? frames : asked); ++frame) {
     const bool out_of_time = frames == 0 && rules.max_wall_s > 0 && elapsed >= rules.max_wall_s && frame >= rules.min_frames;
     if (out_of_time) break;
@@ -229,6 +232,7 @@ TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
     trial.stage_read_B.insert(trial.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
     trial.stage_write_B.insert(trial.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
   }
+  trial.end_unix_s = unix_now();
   if (outcome_.status == "ok" && rules.pipelined && solver_->frames_in_flight() > 1) run_pipelined(trial, rules);
   if (outcome_.status == "ok" && rules.rendering.make) run_rendered(trial, rules);
   if (outcome_.status == "ok" && rules.profiled_frames > 0) profile_stages(trial, rules.profiled_frames);

@@ -24,6 +24,8 @@ inline CellRecord sample_cell(int trials = 3, int frames = 4, std::uint32_t vert
     TimedTrial trial;
     trial.index = t;
     if (t != 1) trial.pipelined_wall_s = 8e-4 * (1 + t);
+    if (t != 2) trial.start_unix_s = 1.7e9 + 10 * t;
+    if (t != 2) trial.end_unix_s = trial.start_unix_s + 4.125;
     for (int f = 0; f < frames; ++f) {
       trial.frame_wall_s.push_back(1e-3 * (1 + t) + 1e-5 * f);
       trial.frame_device_s.push_back(t == 1 ? kMissing : 9e-4 + 1e-6 * f);
@@ -63,7 +65,7 @@ bool same(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 inline bool same(const TimedTrial& a, const TimedTrial& b) {
-  return a.index == b.index && same(std::vector{a.pipelined_wall_s}, std::vector{b.pipelined_wall_s}) &&
+  return a.index == b.index && same(std::vector{a.pipelined_wall_s, a.start_unix_s, a.end_unix_s}, std::vector{b.pipelined_wall_s, b.start_unix_s, b.end_unix_s}) &&
          same(a.frame_wall_s, b.frame_wall_s) && same(a.frame_device_s, b.frame_device_s) &&
          same(a.stage_device_s, b.stage_device_s) && same(a.stage_read_B, b.stage_read_B) && same(a.stage_write_B, b.stage_write_B);
 }

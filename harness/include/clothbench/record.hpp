@@ -51,6 +51,9 @@ struct TimedTrial {
   double pipelined_wall_s = kMissing;
   /// Wall times of its first frames run again, each with its picture drawn; empty unless asked for.
   std::vector<double> frame_rendered_s = {};
+  /// When its first timed frame began and its last ended, by the machine's clock [s since 1970 UTC]: what samples that
+  /// others took meanwhile are matched by.
+  double start_unix_s = kMissing, end_unix_s = kMissing;
   int frames() const { return static_cast<int>(frame_wall_s.size()); }
 };
 
@@ -91,6 +94,7 @@ struct CellRecord {
   Outcome outcome;
   std::map<std::string, double> summary;  ///< every scalar a table prints; NaN = missing
   std::string file = {};                  ///< where a report read it; empty: nowhere
+  std::vector<StoredGroup> samples = {};  ///< what the device told meanwhile (results/device_samples.hpp); not read back
 };
 
 }  // namespace clothbench

@@ -1,0 +1,1 @@
+"""Parts of scripts/quest_run.py; see README.md beside this file."""
