@@ -40,7 +40,7 @@ void add_card(CLI::App& app, Console& console) {
   CLI::App* cmd = app.add_subcommand("card",
                                      "Measure what solvers make of a scene's stiffness: moduli at 0, 45 and 90 "
                                      "degrees, bending, and whether they hold over settings");
-  cmd->add_option("solver", a.solvers, "Solvers; default: all");
+  add_solvers(*cmd, "solver", a.solvers, "Solvers; default: all");
   cmd->add_option("--set", a.set, "Setting of the solver: solver.substeps=20");
   cmd->add_flag("--no-sweep", a.no_sweep,
                 "Only at the settings given, not with four times the substeps and iterations too");

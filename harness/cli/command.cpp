@@ -70,6 +70,11 @@ void DeviceFlags::add_to(CLI::App& app) {
   app.add_flag("--allow-no-device", allow_no_device, "Leave GPU solvers out where there is no Vulkan device");
 }
 
+CLI::Option* add_solvers(CLI::App& app, const std::string& option, std::vector<std::string>& names, const std::string& help) {
+  const auto name_of_plugin = [](std::string name) { return name.starts_with(kPluginPrefix) ? find_solver(name).info.name : name; };
+  return app.add_option(option, names, help + "; plugin:PATH takes the one in a shared library")->transform(name_of_plugin);
+}
+
 void add_require_assets(CLI::App& app, bool& required) {
   app.add_flag("--require-assets", required, "Fail where a scene's rooms or hands would be procedural stand-ins (scripts/fetch-assets.sh gets the scans)");
 }

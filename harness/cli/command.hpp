@@ -15,6 +15,7 @@ namespace clothbench {
 struct Console {
   bool json = false;  ///< print a machine-readable summary instead of tables
   std::string command_line;
+  std::vector<std::string> words;  ///< the same, after the program's name
   ExitCode exit_code = ExitCode::Ok;
 };
 
@@ -28,6 +29,8 @@ void add_study(CLI::App&, Console&);
 void add_report(CLI::App&, Console&);
 void add_import(CLI::App&, Console&);
 void add_check(CLI::App&, Console&);
+void add_compare(CLI::App&, Console&);
+void add_history(CLI::App&, Console&);
 void add_bench(CLI::App&, Console&);
 void add_render(CLI::App&, Console&);
 void add_metamorphic(CLI::App&, Console&);
@@ -55,6 +58,9 @@ struct DeviceFlags {
 
 /// "1200x900" as width and height [pixels], 1 to 16384 each. Throws Error naming the option.
 std::pair<int, int> pixels_of(const std::string& option, const std::string& text);
+
+/// An option or positional that names solvers; "plugin:PATH" becomes the name of the solver in that library.
+CLI::Option* add_solvers(CLI::App&, const std::string& option, std::vector<std::string>& names, const std::string& help);
 
 /// --require-assets: stand-ins for rooms and hands are an Error.
 void add_require_assets(CLI::App&, bool& required);

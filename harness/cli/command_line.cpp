@@ -22,6 +22,7 @@ int run_command_line(const std::vector<std::string>& words) {
   app.footer("Exit codes: 0 ok, 1 a check failed, 2 bad input, 3 no device, 130 interrupted.");
   Console console;
   console.command_line = joined(words);
+  console.words = words;
   app.add_flag("--json", console.json, "Print a machine-readable summary");
   app.fallthrough();
 
@@ -35,6 +36,8 @@ int run_command_line(const std::vector<std::string>& words) {
   add_report(app, console);
   add_import(app, console);
   add_check(app, console);
+  add_compare(app, console);
+  add_history(app, console);
   add_metamorphic(app, console);
   add_threshold(app, console);
   add_friction(app, console);
@@ -48,6 +51,12 @@ int run_command_line(const std::vector<std::string>& words) {
     // CLI11 takes the words last first.
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& e) {
+    if (!words.empty() && app.get_subcommands().empty()) {
+      std::vector<std::string> commands;
+      for (const CLI::App* c : app.get_subcommands({})) commands.push_back(c->get_name());
+      const std::string near = nearest(words.front(), commands);
+      if (!near.empty() && near != words.front()) fmt::print(stderr, "no command \"{}\"; nearest known: {}\n", words.front(), near);
+    }
     return app.exit(e) == 0 ? 0 : static_cast<int>(ExitCode::BadInput);
   } catch (const Error& e) {
     fmt::print(stderr, "clothbench: {}\n", e.what());

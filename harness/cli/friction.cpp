@@ -64,7 +64,7 @@ void add_friction(CLI::App& app, Console& console) {
   static Arguments a;
   a = {};
   CLI::App* cmd = app.add_subcommand("friction", "Solvers by the closed forms of friction: slopes, stopping, capstan, Atwood's strip");
-  cmd->add_option("solver", a.solvers, "Solvers; default: all that touch anything");
+  add_solvers(*cmd, "solver", a.solvers, "Solvers; default: all that touch anything");
   cmd->add_option("--substeps", a.substeps, "Also at these numbers of substeps a frame, where a solver has that setting");
   cmd->add_option("--set", a.set, "Override in every run: solver.contact_samples=0");
   cmd->add_option("--readme", a.readme, "Also write the table between the marks <!-- friction begin/end --> of this file");

@@ -58,7 +58,7 @@ void add_metamorphic(CLI::App& app, Console& console) {
   static Arguments a;
   a = {};
   CLI::App* cmd = app.add_subcommand("metamorphic", "Properties of a solver that need no truth: similarity, mirror, rotation, renumbering, repeat, no-op, restart");
-  cmd->add_option("solver", a.solvers, "Solvers; default: all");
+  add_solvers(*cmd, "solver", a.solvers, "Solvers; default: all");
   cmd->add_option("--set", a.set, "Setting of the solver: solver.substeps=20");
   cmd->add_option("--readme", a.readme, "Also write the tables between the marks <!-- metamorphic begin/end --> of this file");
   a.device.add_to(*cmd);
@@ -90,7 +90,7 @@ void add_threshold(CLI::App& app, Console& console) {
   a = {};
   CLI::App* cmd = app.add_subcommand("threshold", "From which friction on a scene holds, found by bisection, against the closed form");
   cmd->add_option("scene", a.scenes, "Scenes at rest on a slope or over a cylinder")->capture_default_str();
-  cmd->add_option("--solver", a.solvers, "Solvers (default xpbd)");
+  add_solvers(*cmd, "--solver", a.solvers, "Solvers (default xpbd)");
   cmd->add_option("--set", a.set, "Override: cloth.grid=[17,17], solver.substeps=20");
   a.device.add_to(*cmd);
   cmd->callback([&console] {

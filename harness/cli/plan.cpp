@@ -65,7 +65,7 @@ void add_plan(CLI::App& app, Console& console) {
   a = {};
   CLI::App* cmd = app.add_subcommand("plan", "What a solver would run for a scene: kernels, dispatches, buffers, bytes, and what it leaves out");
   cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
-  cmd->add_option("--solver", a.solvers, "Solvers; default: all");
+  add_solvers(*cmd, "--solver", a.solvers, "Solvers; default: all");
   cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
   a.device.add_to(*cmd);
   cmd->callback([&console] {

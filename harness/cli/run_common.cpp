@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <set>
 
+#include "cli/cell_choice.hpp"
 #include "cli/material_cards.hpp"
+#include "cli/supervise.hpp"
 #include "report/report.hpp"
 #include "runner/environment.hpp"
 #include "truth/draw.hpp"
@@ -93,25 +95,26 @@ Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, const Conso
 
 void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, Console& console) {
   settle_device(plan, flags.device);
-  const std::filesystem::path out = flags.out.empty() ? default_folder(manifest.study) : std::filesystem::path(flags.out);
+  const std::optional<Supervised> parent = supervised();
+  const std::filesystem::path out = parent              ? parent->out
+                                    : flags.out.empty() ? default_folder(manifest.study)
+                                                        : std::filesystem::path(flags.out);
   std::filesystem::create_directories(out);
+  if (needs_supervision(plan)) return supervise(plan, out, flags.resume, console);
   manifest.created = utc_now();
   manifest.command_line = console.command_line;
-  for (const auto& group : plan.groups)
-    for (const CellSpec& c : group) {
-      CellHeader h;
-      h.scene = c.scene->name;
-      h.solver = c.entry->info.name;
-      h.setting = c.setting;
-      manifest.cells.push_back(cell_name(h));
-    }
+  if (manifest.cells.empty()) manifest.cells = cell_names(plan);
   write_manifest(out, manifest);
 
   RunResult result;
   {
     StatusLine line(!console.json);
-    RunOptions options{out, flags.resume, flags.device.options,
-                       [&](const std::string& what, std::size_t done, std::size_t total) { line.show(what, done, total); }};
+    const RunningNote note(parent);
+    RunOptions options{out, parent ? parent->resume : flags.resume, flags.device.options,
+                       [&](const std::string& what, std::size_t done, std::size_t total) {
+                         line.show(what, done, total);
+                         note.write(what);
+                       }};
     result = run_cells(plan, options);
     if (plan.material_cards) add_material_cards(plan, options, manifest, result);
   }
@@ -125,7 +128,7 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
     fmt::print("{}\n", j.dump(2));
     return;
   }
-  print_console_report({out});
+  if (!flags.part) print_console_report({out});
   fmt::print("\n{} cells ok, {} unsupported, {} failed; results in {}\n", result.cells_ok, result.cells_unsupported,
              result.cells_failed, out.string());
   print_spent(result);

@@ -12,6 +12,7 @@ struct RunFlags {
   std::string out;  ///< empty: results/runs/<study>-<UTC>
   bool resume = false;
   DeviceFlags device;
+  bool part = false;  ///< only some of the cells that the manifest names: no report of the folder at the end
 };
 
 /// results/runs/<study>-<UTC>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cli/cell_choice.hpp"
 #include "cli/command.hpp"
 #include "cli/run_common.hpp"
 #include "cli/study_plan.hpp"
@@ -17,17 +18,32 @@ struct Arguments {
   std::vector<std::string> set, only;
   int trials = 0, jobs = 0;
   std::optional<std::uint64_t> seed;
-  std::string eye = "2064x2208";
-  bool with_rendering = false;
+  std::string eye = "2064x2208", cells;
+  bool with_rendering = false, list_cells = false;
   bool full = false, short_trials = false, quick = false, require_assets = false, no_cards = false;
   RunFlags run;
 };
 
 /// Null if this build does not have it.
-const SolverEntry* built_in(const std::string& name) {
+const SolverEntry* known(const std::string& name) {
   for (const SolverEntry& e : solvers())
     if (e.info.name == name) return &e;
-  return nullptr;
+  return external_solver(name);
+}
+
+/// A plugin climbs a study's ladder by the knobs that it has in common with the solvers here.
+std::map<std::string, std::vector<std::string>> knobs_of_plugins(const std::vector<std::string>& names) {
+  std::map<std::string, std::vector<std::string>> out;
+  for (const std::string& name : names)
+    if (const SolverEntry* e = known(name); e != nullptr && is_external(e->info))
+      for (const SettingSpec& s : e->info.settings)
+        if (s.name == "substeps" || s.name == "iterations") out[name].push_back(s.name);
+  return out;
+}
+
+void print_cells(const std::vector<std::string>& names, const Console& console) {
+  if (console.json) return fmt::print("{}\n", nlohmann::json(names).dump(2));
+  for (std::size_t k = 0; k < names.size(); ++k) fmt::print("{}\t{}\n", k, names[k]);
 }
 
 Rendering rendering_of([[maybe_unused]] const std::string& eye) {
@@ -50,7 +66,7 @@ CellPlan plan_study(const Study& study) {
   if (!study.stage_times) plan.rules.profiled_frames = 0;
   plan.references = plan.material_cards = study.protocol == "work-precision";
   std::vector<const SolverEntry*> entries;
-  for (const StudySolver& s : study.solvers) entries.push_back(s.joined ? &find_solver(s.solver) : built_in(s.solver));
+  for (const StudySolver& s : study.solvers) entries.push_back(s.joined ? &find_solver(s.solver) : known(s.solver));
   for (const Study::Item& item : study.scenes) {
     if (plan.groups.size() <= static_cast<std::size_t>(item.group))
       plan.groups.resize(static_cast<std::size_t>(item.group) + 1);
@@ -81,12 +97,14 @@ void add_study(CLI::App& app, Console& console) {
       cmd->add_flag("--short", a.short_trials, "Every cell with short trials (the default)")->excludes(quick);
   cmd->add_flag("--full", a.full, "Every cell with long trials")->excludes(quick)->excludes(brief);
   cmd->add_option("--trials", a.trials, "Trials a cell, instead of the study's")->check(CLI::Range(1, 1000));
-  cmd->add_option("--solver", a.only,
-                  "Only these solvers; one that the study does not name joins with its default settings");
+  add_solvers(*cmd, "--solver", a.only, "Only these solvers; one that the study does not name joins with its default settings");
   cmd->add_option("--set", a.set, "Override a scene key in every cell: cloth.size_m=[0.5,0.5]");
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
   cmd->add_flag("--resume", a.run.resume, "Go on with the folder of an interrupted study");
   add_seed(*cmd, a.seed);
+  cmd->add_flag("--list-cells", a.list_cells, "Print the cells' numbers and names and run none");
+  cmd->add_option("--cell", a.cells, "Only these cells, by number: 7, or 0,3-5. They join what is in --out (scripts/slurm_study.sh spreads a study "
+                                     "over a cluster so)");
   cmd->add_flag("--no-cards", a.no_cards, "No material cards after a work-precision study (then no solver is left unranked for its stiffness)");
   cmd->add_option("--jobs", a.jobs, "Processes at a time, of a study whose cells run in processes of their own (default 1)")
       ->check(CLI::Range(1, 256));
@@ -103,13 +121,14 @@ void add_study(CLI::App& app, Console& console) {
     if (!overrides.solver.empty()) throw Error("--set solver.…: a study's solver settings stand in its file");
     if (a.run.resume && a.run.out.empty()) throw Error("--resume: say which folder with --out");
     const StudyLength length = a.full ? StudyLength::Full : a.quick ? StudyLength::Quick : StudyLength::Short;
-    Study study = load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only});
+    Study study = load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only, knobs_of_plugins(a.only)});
     for (Study::Item& item : study.scenes) item.scene = at_seed(std::move(item.scene), a.seed, console);
     if (a.seed) study.definition["seed"] = *a.seed;
     if (a.with_rendering) study.definition["rendering"] = {{"eyes", 2}, {"pixels", a.eye}};
     if (study.protocol == "stability-map") {
       if (a.with_rendering) throw Error("--with-rendering: protocol stability-map times nothing");
       if (a.trials > 0) throw Error("--trials: protocol stability-map judges one run of every cell");
+      if (a.list_cells || !a.cells.empty()) throw Error("--list-cells, --cell: protocol stability-map probes where its last probe points; --jobs uses all cores of a machine");
       run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, std::max(1, a.jobs), console);
       return;
     }
@@ -118,9 +137,18 @@ void add_study(CLI::App& app, Console& console) {
     if (a.trials > 0) plan.rules.trials = a.trials;
     if (a.no_cards) plan.material_cards = false;
     if (a.with_rendering) plan.rules.rendering = rendering_of(a.eye);
+    const std::vector<std::string> names = cell_names(plan);
+    if (a.list_cells) return print_cells(names, console);
     StudyManifest manifest;
     manifest.study = study.name;
     manifest.definition = study.definition;
+    if (!a.cells.empty()) {
+      if (a.run.out.empty()) throw Error("--cell: say which folder with --out; all cells of a study lie in one");
+      plan = only_cells(std::move(plan), parse_cells(a.cells, names.size()));
+      manifest.cells = names;
+      plan.material_cards = false;  // of fronts, which need all cells
+      a.run.resume = a.run.part = true;
+    }
     run_and_tell(std::move(plan), std::move(manifest), a.run, console);
   });
 }

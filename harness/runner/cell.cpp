@@ -107,10 +107,19 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
     header_.environment["solver_features"] = describe_features(info);
     return;
   }
-  solver_ = spec_.entry->make(spec_.settings, device_);
-  const auto start = Clock::now();
-  solver_->load(scene);
-  header_.load_s = seconds_since(start);
+  try {
+    solver_ = spec_.entry->make(spec_.settings, device_);
+    const auto start = Clock::now();
+    solver_->load(scene);
+    header_.load_s = seconds_since(start);
+  } catch (const SolverError& e) {
+    solver_.reset();
+    outcome_ = {"error", "F8", -1, e.what()};
+    header_.environment = describe_environment({}, protocol);
+    describe_scene(scene, header_.environment);
+    header_.environment["solver_features"] = describe_features(info);
+    return;
+  }
   header_.environment = describe_environment(solver_->device(), protocol);
   describe_scene(scene, header_.environment);
   header_.environment["solver_features"] = describe_features(info);

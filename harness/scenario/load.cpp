@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <set>
 
+#include "clothbench/solver.hpp"
 #include "scenario/colliders.hpp"
 #include "scenario/irregular.hpp"
 #include "scenario/json_text.hpp"
@@ -116,6 +118,20 @@ void check_assumed(const json& scenario, const std::string& source) {
   }
 }
 
+/// As `find_scenario` takes them: "paper/gravity", and studies without their folder.
+std::vector<std::string> scenario_names() {
+  std::vector<std::string> names;
+  std::error_code ec;
+  for (std::filesystem::recursive_directory_iterator at(scenario_root(), ec), end; !ec && at != end; at.increment(ec)) {
+    std::filesystem::path name = at->path().lexically_relative(scenario_root()).replace_extension();
+    if (at->path().extension() != ".json") continue;
+    const std::string folder = name.begin()->string();
+    if (folder == "studies") name = name.lexically_relative("studies");
+    if (folder != "schema" && folder != "assets") names.push_back(name.string());
+  }
+  return names;
+}
+
 }  // namespace
 
 std::filesystem::path scenario_root() {
@@ -131,7 +147,9 @@ std::filesystem::path find_scenario(const std::string& name_or_path) {
     if (std::filesystem::is_regular_file(named, ec)) return named;
   }
   if (std::filesystem::exists(name_or_path, ec)) return name_or_path;
-  throw Error(fmt::format("{}: no such file, nor a scene or study of that name in {}", name_or_path, scenario_root().string()));
+  const std::string near = nearest(name_or_path, scenario_names());
+  throw Error(fmt::format("{}: no such file, nor a scene or study of that name in {}{}", name_or_path, scenario_root().string(),
+                          near.empty() ? "" : "; nearest known: " + near));
 }
 
 FeatureSet derive_needs(const Scene& scene) {

@@ -131,15 +131,20 @@ class Builder {
       solver_names_.push_back(solver.name());
       named.push_back(solver.solver);
       const bool stay = stays(solver);
-      for (StudySolver& rung : climb(solver, k)) {
+      const std::string at = fmt::format("{}: /solvers/{}/ladder", source_, k);
+      for (StudySolver& rung : climb(solver, s.contains("ladder") ? s["ladder"].get<Words>() : Words{}, at)) {
         stays_.push_back(stay);
         study_.solvers.push_back(std::move(rung));
       }
     }
     for (const std::string& name : options_.solvers) {
       if (contains(named, name)) continue;
-      study_.solvers.push_back({name, "default", json::object(), {}, {}, true});
-      stays_.push_back(true);
+      const auto knobs = options_.knobs.find(name);
+      const bool climbs = knobs != options_.knobs.end() && ladder().is_object();
+      for (StudySolver& rung : climb({name, "default", json::object(), {}, {}, true}, climbs ? knobs->second : Words{}, source_)) {
+        study_.solvers.push_back(std::move(rung));
+        stays_.push_back(true);
+      }
       named.push_back(name);
     }
   }
@@ -165,16 +170,15 @@ class Builder {
 
   /// The solver with every setting of the ladder that it has knobs for, from the least work up; itself alone if it
   /// climbs none.
-  std::vector<StudySolver> climb(const StudySolver& solver, std::size_t k) const {
-    const json& entry = j_["solvers"][k];
-    if (!entry.contains("ladder")) return {solver};
+  std::vector<StudySolver> climb(const StudySolver& solver, const Words& knobs, const std::string& at) const {
+    if (knobs.empty()) return {solver};
     const json ladder = this->ladder();
-    if (!ladder.is_object()) throw Error(fmt::format("{}: /solvers/{}/ladder: the study has no \"ladder\"", source_, k));
+    if (!ladder.is_object()) throw Error(at + ": the study has no \"ladder\"");
     const int most = ladder["product_at_most"].get<int>(), ratio = ladder["ratio"].get<int>();
     std::vector<StudySolver> rungs = {solver};
     rungs[0].label.clear();
     rungs[0].work = 1;
-    for (const auto& knob : entry["ladder"].get<Words>()) {
+    for (const std::string& knob : knobs) {
       const int end = std::min(most, ladder["at_most"].value(knob, most));
       std::vector<StudySolver> next;
       for (const StudySolver& rung : rungs)

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -37,6 +38,8 @@ struct StudyOptions {
   Assets assets = Assets::MayBeProcedural;
   /// Only these, if any. One that the study does not name joins it, with its default settings and every scene as it is.
   std::vector<std::string> solvers = {};
+  /// Knobs by which such a solver climbs the study's ladder, where it has one; it does not without an entry here.
+  std::map<std::string, std::vector<std::string>> knobs = {};
 };
 
 /// A study with its axes expanded. Cells of one `group` are run interleaved: with the protocol fps those of one grid,

@@ -35,7 +35,12 @@ bool chosen(const std::string& scene, std::size_t sides, std::size_t grid) {
 std::vector<Case> cases() {
   const char *const sides[] = {"single", "double-duplicated", "double"}, *const grids[] = {"[2,2]", "[9,7]", "[17,33]"};  // not multiples of any workgroup
   std::vector<Case> all;
-  for (const SolverEntry& e : solvers())
+#ifdef CLOTHBENCH_PLUGIN_UNDER_TEST
+  const std::vector<SolverEntry> under_test = {find_solver("plugin:" CLOTHBENCH_PLUGIN_UNDER_TEST)};
+#else
+  const std::vector<SolverEntry>& under_test = solvers();
+#endif
+  for (const SolverEntry& e : under_test)
     for (const auto& file : fs::recursive_directory_iterator(CLOTHBENCH_SOURCE_DIR "/scenarios")) {
       fs::path relative = fs::relative(file.path(), CLOTHBENCH_SOURCE_DIR "/scenarios");
       const std::string folder = relative.begin()->string();

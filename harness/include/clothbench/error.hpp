@@ -20,4 +20,10 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
+/// A solver that cannot be made or cannot load a scene: a row of the results, where any other Error ends the run.
+class SolverError : public Error {
+ public:
+  explicit SolverError(const std::string& message) : Error(message, ExitCode::CheckFailed) {}
+};
+
 }  // namespace clothbench

@@ -147,7 +147,13 @@ struct SolverEntry {
 
 /// All registered solvers, in registration order (solvers/CMakeLists.txt).
 const std::vector<SolverEntry>& solvers();
-/// Throws Error naming the nearest known solver.
+/// Before the path of a shared library, on the command line; with the path a plugin's `folder`.
+inline constexpr char kPluginPrefix[] = "plugin:";
+/// A solver that was built elsewhere (clothbench_plugin.h): "plugin:PATH", or the name of one that was loaded so before,
+/// here or in the process that started this one. Null if it is neither; throws Error if the library is no solver.
+const SolverEntry* external_solver(const std::string& name);
+inline bool is_external(const SolverInfo& info) { return info.folder.starts_with(kPluginPrefix); }
+/// By name or as "plugin:PATH". Throws Error naming the nearest known solver.
 const SolverEntry& find_solver(const std::string& name);
 /// Fills in defaults; throws Error on an unknown key (with the nearest known one) or a wrong type.
 nlohmann::json complete_settings(const SolverInfo&, const nlohmann::json& given);

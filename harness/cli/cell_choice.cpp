@@ -1,0 +1,58 @@
+#include "cli/cell_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+#include <sstream>
+
+#include "clothbench/error.hpp"
+
+namespace clothbench {
+
+std::vector<std::string> cell_names(const CellPlan& plan) {
+  std::vector<std::string> names;
+  for (const auto& group : plan.groups)
+    for (const CellSpec& c : group) {
+      CellHeader h;
+      h.scene = c.scene->name;
+      h.solver = c.entry->info.name;
+      h.setting = c.setting;
+      names.push_back(cell_name(h));
+    }
+  return names;
+}
+
+std::vector<std::size_t> parse_cells(const std::string& text, std::size_t count) {
+  const auto fail = [&] {
+    throw Error(fmt::format("--cell {}: expected numbers from 0 to {}, such as 7 or 0,3-5", text, count - 1));
+  };
+  const auto number = [&](const std::string& word) {
+    std::size_t n = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), n);
+    if (error != std::errc() || end != word.data() + word.size() || n >= count) fail();
+    return n;
+  };
+  std::set<std::size_t> chosen;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    const std::size_t dash = part.find('-');
+    const std::size_t first = number(part.substr(0, dash)),
+                      last = dash == std::string::npos ? first : number(part.substr(dash + 1));
+    if (last < first) fail();
+    for (std::size_t k = first; k <= last; ++k) chosen.insert(k);
+  }
+  if (chosen.empty()) fail();
+  return {chosen.begin(), chosen.end()};
+}
+
+CellPlan only_cells(CellPlan plan, const std::vector<std::size_t>& cells) {
+  std::size_t at = 0;
+  for (auto& group : plan.groups)
+    std::erase_if(group, [&](const CellSpec&) { return !std::binary_search(cells.begin(), cells.end(), at++); });
+  std::erase_if(plan.groups, [](const auto& group) { return group.empty(); });
+  return plan;
+}
+
+}  // namespace clothbench

@@ -1,0 +1,50 @@
+#include <fmt/format.h>
+
+#include "cli/command.hpp"
+#include "report/compare_runs.hpp"
+#include "report/report.hpp"
+#include "results/store.hpp"
+
+namespace clothbench {
+
+void add_compare(CLI::App& app, Console& console) {
+  static std::string a, b, markdown;
+  a = b = markdown = "";
+  CLI::App* cmd = app.add_subcommand(
+      "compare",
+      "Two runs of the same cells: what is faster or slower beyond noise, and which results are not the same");
+  cmd->add_option("a", a, "Study folder or result file: before")->required();
+  cmd->add_option("b", b, "Study folder or result file: after")->required();
+  cmd->add_option("--markdown", markdown, "Also write the tables to this file, for a pull request");
+  cmd->footer("Example: clothbench compare results/runs/before results/runs/after --markdown comparison.md");
+  cmd->callback([&console] {
+    const std::vector<CellRecord> before = collect({a}), after = collect({b});
+    const std::vector<ComparedCell> cells = compare_runs(before, after);
+    const std::vector<Table> tables = comparison_tables(cells);
+    if (!markdown.empty()) {
+      std::string text = fmt::format("A: `{}`, B: `{}`\n\n", a, b);
+      for (const Table& t : tables)
+        text += t.rows.size() > 1 ? t.markdown() + "\n" : t.title + ": none. " + t.note + "\n\n";
+      write_file_atomically(markdown, text);
+    }
+    if (console.json) return fmt::print("{}\n", comparison_json(cells).dump(2));
+    for (const Table& t : tables)
+      if (t.rows.size() > 1)
+        fmt::print("{}", t.console());
+      else
+        fmt::print("\n{}: none\n  {}\n", t.title, t.note);
+  });
+}
+
+void add_history(CLI::App& app, Console&) {
+  static std::vector<std::string> runs;
+  runs = {};
+  CLI::App* cmd = app.add_subcommand(
+      "history",
+      "Times and errors as the JSON that chart-per-commit tools read (github-action-benchmark: customSmallerIsBetter)");
+  cmd->add_option("runs", runs, "Study folders or result files")->required();
+  cmd->footer("Example: clothbench history results/runs/mine > benchmark.json");
+  cmd->callback([] { fmt::print("{}\n", history_json(collect({runs.begin(), runs.end()})).dump(2)); });
+}
+
+}  // namespace clothbench

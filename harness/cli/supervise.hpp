@@ -1,0 +1,41 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "cli/command.hpp"
+#include "runner/study_runner.hpp"
+
+namespace clothbench {
+
+/// Plans with plugins run in a process of their own, where everything is timed as usual; this one only watches. If that
+/// process crashes, or a plugin's cell makes no headway for 15 minutes ($CLOTHBENCH_PLUGIN_LIMIT_S), the cell it was at becomes a
+/// row `crashed` or `timed_out` and a new process goes on with the rest.
+
+/// True if some cell's solver is a plugin and this process is not already such a child.
+bool needs_supervision(const CellPlan&);
+
+/// Runs this command in children until one comes to its end. Its output is the command's.
+void supervise(const CellPlan&, const std::filesystem::path& out, bool resume, Console&);
+
+/// The child's side. Where it must write, and whether it goes on with what is there; empty in any other process.
+struct Supervised {
+  std::filesystem::path out;
+  bool resume = false;
+};
+std::optional<Supervised> supervised();
+
+/// What is being done, for whoever has to tell if this process does not come back. Gone with the object.
+class RunningNote {
+ public:
+  explicit RunningNote(const std::optional<Supervised>&);
+  ~RunningNote();
+  RunningNote(const RunningNote&) = delete;
+  RunningNote& operator=(const RunningNote&) = delete;
+  void write(const std::string& what) const;
+
+ private:
+  std::filesystem::path file_;  ///< empty: nobody watches
+};
+
+}  // namespace clothbench

@@ -1,0 +1,179 @@
+/* A cloth solver as a shared library, for `clothbench … --solver plugin:path.so`. C99, no other header of clothbench needed.
+ *
+ * The library exports one function, `clothbench_plugin`, which returns a description that stays valid. Units are SI, vectors
+ * are x y z with +y up, positions and velocities of vertices lie one after another in the scene's order, column after column
+ * and row after row: vertex (i, j) is j * columns + i. Pointers in a scene are valid until `destroy`, those in a frame until
+ * `step` returns. All calls come from one thread at a time. Nothing may throw or longjmp across them.
+ *
+ * Version 1. The structs that are passed one by one (plugin, scene, frame) may grow at their end within a version; those
+ * that stand in arrays never change. Both sides tell the sizes they were compiled with, and what does not fit is refused.
+ * solvers/plugin/README.md says more; solvers/plugin/example is a complete solver. */
+#ifndef CLOTHBENCH_PLUGIN_H
+#define CLOTHBENCH_PLUGIN_H
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define CLOTHBENCH_PLUGIN_VERSION 1u
+
+#if defined(__GNUC__)
+#define CLOTHBENCH_PLUGIN_EXPORT __attribute__((visibility("default")))
+#else
+#define CLOTHBENCH_PLUGIN_EXPORT
+#endif
+
+/* Features: what a scene needs, a solver supports, a stage serves. */
+enum {
+  CLOTHBENCH_STRETCH = 1 << 0,
+  CLOTHBENCH_SHEAR = 1 << 1,
+  CLOTHBENCH_BEND = 1 << 2,
+  CLOTHBENCH_DAMPING = 1 << 3,
+  CLOTHBENCH_PINS = 1 << 4,
+  CLOTHBENCH_MOVING_PINS = 1 << 5,
+  CLOTHBENCH_SPHERE = 1 << 6,
+  CLOTHBENCH_BOX = 1 << 7,
+  CLOTHBENCH_PLANE = 1 << 8,
+  CLOTHBENCH_CAPSULES = 1 << 9,
+  CLOTHBENCH_STATIC_MESH = 1 << 10,
+  CLOTHBENCH_MOVING_MESH = 1 << 11,
+  CLOTHBENCH_FRICTION = 1 << 12,
+  CLOTHBENCH_DOUBLE_SIDED = 1 << 13,     /* contact from both sides without a second layer */
+  CLOTHBENCH_DUPLICATED_LAYER = 1 << 14, /* a second, oppositely wound layer tied to the first */
+  CLOTHBENCH_SELF_COLLISION = 1 << 15,
+  CLOTHBENCH_RENDER = 1 << 16,
+  CLOTHBENCH_UNEVEN_GRID = 1 << 17, /* cells of different widths */
+  CLOTHBENCH_REGIONS = 1 << 18,     /* a stiffness that changes from column to column */
+  CLOTHBENCH_SPIN = 1 << 19         /* a start with another velocity at every vertex */
+};
+
+/* How a step ended. What is not OK ends the cell, as a row of the results. */
+enum { CLOTHBENCH_OK = 0, CLOTHBENCH_NOT_FINITE = 1, CLOTHBENCH_DIVERGED = 2, CLOTHBENCH_DEVICE_LOST = 3, CLOTHBENCH_TIMED_OUT = 4 };
+
+/* An edge of the grid. `membrane_stiffness_N_per_m` is the sheet's Y = E h there, infinity where it does not stretch; what
+ * spring or constraint that makes is the solver's own. The edge stands for a piece of cloth `along_m` x `across_m`; on the
+ * border `across_m` is half a cell. A skip edge joins vertices with one between them, (a + b) / 2: `along_m` is then the
+ * distance to that one, and the stiffness 0. */
+typedef struct ClothbenchEdge {
+  uint32_t a, b;
+  double rest_m, membrane_stiffness_N_per_m, along_m, across_m;
+} ClothbenchEdge;
+
+enum { CLOTHBENCH_SHAPE_PLANE = 0, CLOTHBENCH_SHAPE_SPHERE = 1, CLOTHBENCH_SHAPE_BOX = 2, CLOTHBENCH_SHAPE_CAPSULES = 3, CLOTHBENCH_SHAPE_MESH = 4 };
+
+/* Something cloth must not pass. Capsules and vertices are in ClothbenchPose, their numbers and triangles never change. */
+typedef struct ClothbenchCollider {
+  int32_t shape;
+  int32_t moves;         /* 1: its pose changes from frame to frame */
+  double margin_m;       /* distance from the surface at which contact holds the cloth */
+  double friction;       /* Coulomb's coefficient of the pair */
+  double center_m[3];    /* plane: a point on it; sphere, box: centre */
+  double normal[3];      /* plane: unit, into free space */
+  double radius_m;       /* sphere */
+  double half_extent_m[3], axes[9]; /* box: along its three axes, which are orthonormal */
+  uint32_t capsule_count, vertex_count, triangle_count;
+  int32_t closed;        /* mesh: has an inside, on the far side of its normals */
+  const uint32_t* triangles; /* 3 each, counter-clockwise seen from free space */
+} ClothbenchCollider;
+
+typedef struct ClothbenchPose {
+  const double* capsules; /* 7 each: ends a and b [m], radius [m] */
+  const double* vertices_m;
+} ClothbenchPose;
+
+typedef struct ClothbenchScene {
+  uint32_t struct_size;
+  uint32_t needs; /* features; the solver is only asked to load scenes whose needs it supports or ignores */
+  uint32_t columns, rows, vertex_count;
+  double width_m, height_m, areal_density_kg_per_m2;
+  double bending_rigidity_N_m, damping_per_s; /* damping: dv/dt = -c v */
+  double gravity_m_per_s2[3];
+  double frame_rate_hz;
+  uint32_t frames;
+  const double *position_m, *velocity_m_per_s, *mass_kg; /* at the start; mass one a vertex */
+  uint32_t triangle_count;
+  const uint32_t* triangles;
+  uint32_t structural_count, shear_count, skip_count;
+  const ClothbenchEdge *structural_edges, *shear_edges, *skip_edges;
+  uint32_t pin_count;
+  const uint32_t* pins; /* vertices that stay where they start */
+  uint32_t grip_count;
+  const uint32_t* grips; /* vertices that hands hold and move: see ClothbenchFrame */
+  uint32_t collider_count;
+  const ClothbenchCollider* colliders;
+  const ClothbenchPose* poses; /* one a collider, at the start */
+} ClothbenchScene;
+
+/* One displayed frame; everything in it is at the frame's end. Between frames things move in straight lines. */
+typedef struct ClothbenchFrame {
+  uint32_t struct_size;
+  int32_t index;
+  double time_s, dt_s;
+  const ClothbenchPose* poses;     /* one a collider */
+  const double* grip_position_m;   /* one a grip */
+  const uint8_t* grip_held;        /* one a grip: 0 once let go, for good */
+} ClothbenchFrame;
+
+/* A knob, `--set solver.<name>=`. */
+typedef struct ClothbenchSetting {
+  const char *name, *doc;
+  double default_value;
+  int32_t integer; /* 1: only whole numbers */
+} ClothbenchSetting;
+
+/* A stage of a frame after `load`. All stages together must serve exactly what the scene needs (what the solver ignores left
+ * out): a solver pays for nothing that a scene does not ask for. */
+typedef struct ClothbenchStage {
+  const char* name;
+  uint32_t serves; /* features; 0: what every frame does */
+  int32_t dispatches;
+  double read_B, write_B; /* counted bytes a frame, NAN if not counted */
+} ClothbenchStage;
+
+typedef struct ClothbenchPlugin {
+  /* CLOTHBENCH_PLUGIN_HEADER fills these. */
+  uint32_t version, plugin_size, scene_size, frame_size, edge_size, collider_size, pose_size, setting_size, stage_size;
+  const char* name;           /* letters, digits, . _ -; in tables and file names; not that of a solver of clothbench */
+  const char* summary;        /* one line */
+  const char* solver_version; /* raise it when results change */
+  const char* precision;      /* "float32" or "float64" */
+  uint32_t supports, ignores; /* features; a scene that needs another becomes a row `unsupported` */
+  int32_t time_order;         /* order of accuracy in the step */
+  uint32_t setting_count;
+  const ClothbenchSetting* settings;
+
+  /* A solver with these settings, in the order of `settings`; NULL if that cannot be (say why on stderr). */
+  void* (*create)(const double* settings);
+  void (*destroy)(void*);
+  /* Takes the scene and stands at its start; 0 or, with `message`, why not. Timed as set-up. */
+  int32_t (*load)(void*, const ClothbenchScene*);
+  /* Back to the start, bit for bit. */
+  void (*reset)(void*);
+  /* One frame, complete on return: what is timed. */
+  int32_t (*step)(void*, const ClothbenchFrame*);
+  void (*read_state)(void*, double* position_m, double* velocity_m_per_s);
+  const ClothbenchStage* (*stages)(void*, uint32_t* count);
+
+  /* The rest may be NULL. */
+  const char* (*message)(void*); /* why `load` failed */
+  /* Goes on from what `read_state` gave; 0 if that does not tell everything (nothing has changed then). */
+  int32_t (*restart)(void*, const double* position_m, const double* velocity_m_per_s);
+  /* Way [m] of a body that only falls, by the solver's own integrator; NULL: the exact one. */
+  double (*free_fall_m)(const double* settings, double dt_s, double gravity_m_per_s2, double velocity_m_per_s, double damping_per_s,
+                        int32_t frames);
+  const char* (*device)(void*); /* NULL: the CPU */
+  double (*device_s)(void*);    /* device time of the last frame; not NULL says that the solver runs on a GPU */
+} ClothbenchPlugin;
+
+#define CLOTHBENCH_PLUGIN_HEADER                                                                             \
+  CLOTHBENCH_PLUGIN_VERSION, (uint32_t)sizeof(ClothbenchPlugin), (uint32_t)sizeof(ClothbenchScene),          \
+      (uint32_t)sizeof(ClothbenchFrame), (uint32_t)sizeof(ClothbenchEdge), (uint32_t)sizeof(ClothbenchCollider), \
+      (uint32_t)sizeof(ClothbenchPose), (uint32_t)sizeof(ClothbenchSetting), (uint32_t)sizeof(ClothbenchStage)
+
+CLOTHBENCH_PLUGIN_EXPORT const ClothbenchPlugin* clothbench_plugin(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

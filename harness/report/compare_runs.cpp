@@ -1,0 +1,230 @@
+#include "report/compare_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "clothbench/error.hpp"
+#include "report/grid.hpp"
+#include "results/store.hpp"
+
+namespace clothbench {
+namespace {
+
+constexpr double kLevel = 0.95;
+
+/// Probability of each value of U = #{(i, j): a_i < b_j} where A and B are alike, for m and n trials: all orders are as
+/// likely. Counted by whose trial is the greatest.
+std::vector<double> u_distribution(std::size_t m, std::size_t n) {
+  std::vector<std::vector<std::vector<double>>> count(m + 1, std::vector<std::vector<double>>(n + 1));
+  for (std::size_t i = 0; i <= m; ++i)
+    for (std::size_t j = 0; j <= n; ++j) {
+      std::vector<double>& now = count[i][j];
+      now.assign(i * j + 1, 0);
+      if (i == 0 || j == 0) {
+        now[0] = 1;
+        continue;
+      }
+      const double a = static_cast<double>(i) / static_cast<double>(i + j);  // the greatest is one of A's
+      for (std::size_t u = 0; u < count[i - 1][j].size(); ++u) now[u] += a * count[i - 1][j][u];
+      for (std::size_t u = 0; u < count[i][j - 1].size(); ++u) now[u + i] += (1 - a) * count[i][j - 1][u];
+    }
+  return count[m][n];
+}
+
+double middle(const std::vector<double>& sorted) {
+  const std::size_t n = sorted.size();
+  return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
+}
+
+/// Mean time of a frame in each trial.
+std::vector<double> trial_times(const CellRecord& c) {
+  std::vector<double> out;
+  for (const TimedTrial& t : c.trials) {
+    double sum = 0;
+    for (const double w : t.frame_wall_s) sum += w;
+    if (t.frames() > 0 && sum > 0) out.push_back(sum / t.frames());
+  }
+  return out;
+}
+
+/// Times, clocks and what hangs on them are the machine's; the rest is the solver's.
+bool of_the_machine(const std::string& name) {
+  for (const char* part : {"fps", "wall", "device_median", "pipelined", "bandwidth", "clock", "temperature", "sampled",
+                           "load_s", "untimed", "trial"})
+    if (name.find(part) != std::string::npos) return true;
+  return false;
+}
+
+bool differ(double a, double b) {
+  if (std::isnan(a) || std::isnan(b)) return std::isnan(a) != std::isnan(b);
+  return !(std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)));
+}
+
+std::string status(const CellRecord& c) {
+  return c.outcome.status + (c.outcome.klass.empty() || c.outcome.klass == "ok" ? "" : " (" + c.outcome.klass + ")");
+}
+
+void compare_cell(ComparedCell& c) {
+  c.time = compare_times(trial_times(*c.a), trial_times(*c.b));
+  if (status(*c.a) != status(*c.b)) c.outcome = status(*c.a) + " → " + status(*c.b);
+  std::set<std::string> names;
+  for (const CellRecord* r : {c.a, c.b})
+    for (const auto& [name, unused] : r->summary)
+      if (!of_the_machine(name)) names.insert(name);
+  for (const std::string& name : names) {
+    const double a = summary_value(*c.a, name), b = summary_value(*c.b, name);
+    if (differ(a, b)) c.metrics.push_back({name, a, b});
+  }
+}
+
+nlohmann::json or_null(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(); }
+
+std::string percent(double ratio) { return std::isfinite(ratio) ? fmt::format("{:+.1f} %", 100 * (ratio - 1)) : "–"; }
+
+std::string verdict(const TimeRatio& t) {
+  return !std::isfinite(t.ratio) ? "not timed" : t.noise() ? "noise" : t.ratio < 1 ? "faster" : "slower";
+}
+
+double mean_ms(const CellRecord& c) {
+  std::vector<double> t = trial_times(c);
+  std::sort(t.begin(), t.end());
+  return t.empty() ? kMissing : 1e3 * middle(t);
+}
+
+}  // namespace
+
+TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>& b) {
+  constexpr std::size_t kMost = 40;
+  TimeRatio out;
+  if (a.empty() || b.empty()) return out;
+  if (a.size() > kMost || b.size() > kMost)
+    throw Error(fmt::format("comparing times: at most {} trials a cell", kMost));
+  std::vector<double> logs;
+  double u = 0;
+  for (const double x : a)
+    for (const double y : b) {
+      logs.push_back(std::log(y / x));
+      u += x < y ? 1 : x == y ? 0.5 : 0;
+    }
+  std::sort(logs.begin(), logs.end());
+  out.ratio = std::exp(middle(logs));
+  const std::vector<double> at = u_distribution(a.size(), b.size());
+  const double pairs = static_cast<double>(logs.size()), far = std::max(u, pairs - u);
+  double tail = 0;
+  for (std::size_t k = at.size(); k-- > 0 && static_cast<double>(k) >= far;) tail += at[k];
+  out.p = std::min(1.0, 2 * tail);
+  // From the kth ratio to the kth last has the level 1 - 2 P(U < k): the greatest k that keeps it.
+  std::size_t k = 1;
+  double outside = at[0];
+  for (; 2 * (k + 1) <= logs.size() && 1 - 2 * (outside + at[k]) >= kLevel; ++k) outside += at[k];
+  out.level = 1 - 2 * outside;
+  out.low = std::exp(logs[k - 1]);
+  out.high = std::exp(logs[logs.size() - k]);
+  return out;
+}
+
+std::vector<ComparedCell> compare_runs(const std::vector<CellRecord>& a, const std::vector<CellRecord>& b) {
+  std::vector<ComparedCell> out;
+  const auto find = [&](const std::string& name) {
+    return std::find_if(out.begin(), out.end(), [&](const ComparedCell& c) { return c.name == name; });
+  };
+  for (const CellRecord& c : a) {
+    const std::string name = cell_name(c.header);
+    if (find(name) != out.end()) throw Error("compare: " + name + " stands twice in the first run");
+    out.push_back({name, &c, nullptr, {}, {}, {}});
+  }
+  for (const CellRecord& c : b) {
+    const std::string name = cell_name(c.header);
+    auto at = find(name);
+    if (at == out.end()) at = out.insert(out.end(), ComparedCell{name, nullptr, nullptr, {}, {}, {}});
+    if (at->b != nullptr) throw Error("compare: " + name + " stands twice in the second run");
+    at->b = &c;
+  }
+  for (ComparedCell& c : out)
+    if (c.a != nullptr && c.b != nullptr) compare_cell(c);
+  return out;
+}
+
+std::vector<Table> comparison_tables(const std::vector<ComparedCell>& cells) {
+  Table times{
+      "Time of a frame, A against B", "", {{"cell", "A [ms]", "B [ms]", "change", "95 % interval", "p", "verdict"}}};
+  Table results{"Results that are not the same", "", {{"cell", "what", "A", "B"}}};
+  std::size_t timed = 0, same = 0;
+  for (const ComparedCell& c : cells) {
+    if (c.a == nullptr || c.b == nullptr) {
+      results.rows.push_back(
+          {c.name, "cell", c.a != nullptr ? status(*c.a) : "–", c.b != nullptr ? status(*c.b) : "–"});
+      continue;
+    }
+    if (std::isfinite(c.time.ratio)) {
+      ++timed;
+      const bool enough = c.time.level >= kLevel;
+      times.rows.push_back({c.name, significant(mean_ms(*c.a), 4), significant(mean_ms(*c.b), 4), percent(c.time.ratio),
+                            enough ? percent(c.time.low) + " … " + percent(c.time.high) : "too few trials",
+                            significant(c.time.p, 2), verdict(c.time)});
+    }
+    if (!c.outcome.empty()) results.rows.push_back({c.name, "outcome", status(*c.a), status(*c.b)});
+    for (const ComparedCell::Change& m : c.metrics)
+      results.rows.push_back({c.name, m.name, significant(m.a, 6), significant(m.b, 6)});
+    same += c.outcome.empty() && c.metrics.empty();
+  }
+  times.note = fmt::format(
+      "Median of the trials' means; change: median of all pairwise ratios; p: Mann and Whitney's U test, exact. "
+      "*noise*: p above 5 %, an interval that holds 0, or too few "
+      "trials. Of {} cells without any difference about {:.0f} would be called faster or slower by chance.",
+      timed, 0.05 * static_cast<double>(timed));
+  results.note = fmt::format(
+      "{} cells have the same outcome and the same results (to 1e-9); what depends on the machine is not compared "
+      "here.",
+      same);
+  return {times, results};
+}
+
+nlohmann::json comparison_json(const std::vector<ComparedCell>& cells) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const ComparedCell& c : cells) {
+    nlohmann::json row = {{"cell", c.name},
+                          {"in_a", c.a != nullptr},
+                          {"in_b", c.b != nullptr},
+                          {"outcome", c.outcome},
+                          {"verdict", verdict(c.time)},
+                          {"ratio", or_null(c.time.ratio)},
+                          {"low", or_null(c.time.low)},
+                          {"high", or_null(c.time.high)},
+                          {"level", or_null(c.time.level)},
+                          {"p", or_null(c.time.p)},
+                          {"metrics", nlohmann::json::object()}};
+    for (const ComparedCell::Change& m : c.metrics) row["metrics"][m.name] = {or_null(m.a), or_null(m.b)};
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
+nlohmann::json history_json(const std::vector<CellRecord>& cells) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const CellRecord& c : cells) {
+    const std::string name = cell_name(c.header);
+    const auto& e = c.header.environment;
+    const std::string extra =
+        "status " + c.outcome.status +
+        (e.is_object() && e.contains("gpu") && e["gpu"].is_string() ? ", " + e["gpu"].get<std::string>() : "");
+    std::vector<double> t = trial_times(c);
+    if (!t.empty()) {
+      std::sort(t.begin(), t.end());
+      out.push_back({{"name", name + " frame"},
+                     {"unit", "ms"},
+                     {"value", 1e3 * middle(t)},
+                     {"range", fmt::format("± {:.3g}", 1e3 * (t.back() - t.front()) / 2)},
+                     {"extra", extra}});
+    }
+    for (const char* error : {"free_fall_error", "truth_error", "tunnelled_fraction_max"})
+      if (const double v = summary_value(c, error); std::isfinite(v))
+        out.push_back({{"name", name + " " + error}, {"unit", "1"}, {"value", v}, {"extra", extra}});
+  }
+  return out;
+}
+
+}  // namespace clothbench

@@ -1,0 +1,207 @@
+"""usage: check_plugin.py CLOTHBENCH EXAMPLE FAULTY_FOLDER SOURCE CMAKE: solvers from elsewhere through the command."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import h5py
+
+CLOTHBENCH, EXAMPLE, FAULTY, SOURCE, CMAKE = sys.argv[1:6]
+SMALL = ["--set", "cloth.grid=[8,8]", "--set", "cloth.sides=single"]
+
+
+class Plugin(unittest.TestCase):
+    def setUp(self):
+        self.home = tempfile.mkdtemp(prefix="clothbench-plugin-")
+        self.addCleanup(shutil.rmtree, self.home, ignore_errors=True)
+        self.out = os.path.join(self.home, "out")
+
+    def start(self, *words, **environment):
+        env = dict(os.environ, CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios"), **environment)
+        env.pop("CLOTHBENCH_PLUGINS", None)
+        return subprocess.Popen(
+            [CLOTHBENCH, *words], env=env, cwd=self.home, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
+
+    def command(self, *words, **environment):
+        process = self.start(*words, **environment)
+        self.text, _ = process.communicate(timeout=120)
+        return process.returncode
+
+    def cell(self, name):
+        with h5py.File(os.path.join(self.out, name + ".h5")) as f:
+            outcome = dict(f["outcome"].attrs)
+            return outcome, dict(f["summary"].attrs), json.loads(f["header_json"][0])
+
+    def faulty(self, fault="NONE"):
+        return "plugin:" + os.path.join(FAULTY, f"faulty_{fault}.so")
+
+    # --- one that is right
+
+    def test_a_run(self):
+        code = self.command(
+            "run", "paper/gravity", "--solver", "plugin:" + EXAMPLE, *SMALL, "--trials", "2", "--out", self.out
+        )
+        self.assertEqual(code, 0, self.text)
+        outcome, summary, header = self.cell("gravity__example-xpbd__default")
+        self.assertEqual(outcome["status"], "ok")
+        self.assertLess(summary["free_fall_error"], 1e-9)
+        self.assertGreater(summary["fps_median"], 0)
+        self.assertEqual([s["name"] for s in header["stages"]], ["integrate", "edges", "bending"])
+        self.assertEqual(header["settings"], {"substeps": 20})
+
+    def test_an_exact_answer(self):
+        words = ["run", "validation/hang-elastic", "--solver", "plugin:" + EXAMPLE, "--trials", "0", "--out", self.out]
+        self.assertEqual(self.command(*words, "--set", "solver.substeps=64"), 0, self.text)
+        outcome, summary, _ = self.cell("hang-elastic__example-xpbd__substeps=64")
+        self.assertEqual(outcome["status"], "ok")
+        self.assertLess(summary["stretch_mean_last_second"], 0.01)
+
+    def test_settings_plan_and_what_it_cannot_do(self):
+        self.assertEqual(self.command("plan", "paper/gravity", "--solver", "plugin:" + EXAMPLE), 0)
+        self.assertIn("bending", self.text)
+        code = self.command(
+            "run", "paper/gravity", "--solver", "plugin:" + EXAMPLE, "--set", "solver.substep=5", "--out", self.out
+        )
+        self.assertEqual(code, 2)
+        self.assertIn("substeps", self.text)
+        self.command("run", "paper/capsule-sweep", "--solver", "plugin:" + EXAMPLE, *SMALL, "--out", self.out)
+        self.assertEqual(self.cell("capsule-sweep__example-xpbd__default")[0]["status"], "unsupported")
+
+    def test_it_joins_studies(self):
+        words = [
+            "study",
+            "table3",
+            "--quick",
+            "--trials",
+            "1",
+            "--solver",
+            "plugin:" + EXAMPLE,
+            "--solver",
+            "ballistic",
+        ]
+        self.assertEqual(self.command(*words, "--out", self.out), 0, self.text)
+        with open(os.path.join(self.out, "study.json"), encoding="utf-8") as text:
+            cells = json.load(text)["cells"]
+        self.assertTrue(any("example-xpbd" in c for c in cells) and any("ballistic" in c for c in cells))
+        self.assertIn("example-xpbd", self.text)
+
+    def test_the_example_builds_elsewhere(self):
+        shutil.copytree(os.path.join(SOURCE, "solvers", "plugin", "example"), os.path.join(self.home, "mine"))
+        os.mkdir(os.path.join(self.home, "include"))
+        shutil.copy(
+            os.path.join(SOURCE, "harness", "include", "clothbench_plugin.h"), os.path.join(self.home, "include")
+        )
+        for words in (
+            ["-S", "mine", "-B", "build", "-DCLOTHBENCH_INCLUDE=" + os.path.join(self.home, "include")],
+            ["--build", "build"],
+        ):
+            subprocess.run([CMAKE, *words], cwd=self.home, check=True, stdout=subprocess.DEVNULL)
+        code = self.command(
+            "run", "paper/gravity", "--solver", "plugin:build/example_plugin.so", *SMALL, "--out", self.out
+        )
+        self.assertEqual(code, 0, self.text)
+
+    # --- those that are wrong
+
+    def test_what_is_refused(self):
+        text = os.path.join(self.home, "text.so")
+        with open(text, "w", encoding="utf-8") as out:
+            out.write("no library")
+        for solver, word in (
+            (self.faulty("VERSION"), "version 99"),
+            (self.faulty("SCENE_SIZE"), "its ClothbenchScene has"),
+            (self.faulty("EDGE_SIZE"), "its ClothbenchEdge has"),
+            (self.faulty("NO_SYMBOL"), "has no function clothbench_plugin"),
+            (self.faulty("NO_STEP"), "step: missing"),
+            (self.faulty("NAME"), '"ballistic" is a solver of clothbench'),
+            (self.faulty("BITS"), "bits that stand for no feature"),
+            (self.faulty("CRASHES_ON_LOAD"), "crashes when it is loaded: signal 11"),
+            (self.faulty("ENDS_ON_LOAD"), "ends the program when it is loaded"),
+            ("plugin:" + text, "cannot be loaded"),
+            ("plugin:nothing.so", "No such file"),
+        ):
+            self.assertEqual(self.command("run", "paper/gravity", "--solver", solver, "--out", self.out), 2, self.text)
+            self.assertIn(word, self.text)
+
+    def both(self, *more, **environment):
+        return self.command(
+            "run",
+            "paper/gravity",
+            "--solver",
+            self.faulty(),
+            "--solver",
+            "ballistic",
+            *SMALL,
+            "--out",
+            self.out,
+            *more,
+            **environment,
+        )
+
+    def test_a_crash_is_a_row(self):
+        for where, fault in (("accuracy", "crash:5"), ("trial 1 of 1", "crash:365")):
+            self.assertEqual(self.both(FAULT=fault), 0, self.text)
+            outcome = self.cell("gravity__faulty__default")[0]
+            self.assertEqual((outcome["status"], outcome["class"]), ("crashed", "F8"))
+            self.assertIn("signal 11", outcome["message"])
+            self.assertIn(where, outcome["message"])
+            self.assertEqual(self.cell("gravity__ballistic__default")[0]["status"], "ok")
+            self.assertIn("crashed", self.text)
+            self.assertEqual([f for f in os.listdir(self.out) if not f.endswith((".h5", ".xdmf", ".json"))], [])
+            shutil.rmtree(self.out)
+
+    def test_a_plugin_that_ends_the_program_or_hangs_is_a_row(self):
+        self.assertEqual(self.both(FAULT="exit:3"), 0, self.text)
+        self.assertIn("exit status 0", self.cell("gravity__faulty__default")[0]["message"])
+        shutil.rmtree(self.out)
+        self.assertEqual(self.both(FAULT="hang:3", CLOTHBENCH_PLUGIN_LIMIT_S="2"), 0, self.text)
+        self.assertEqual(self.cell("gravity__faulty__default")[0]["status"], "timed_out")
+        self.assertEqual(self.cell("gravity__ballistic__default")[0]["status"], "ok")
+
+    def test_one_that_blows_up_or_cannot_load(self):
+        self.assertEqual(self.both(FAULT="nan:3"), 0, self.text)
+        outcome = self.cell("gravity__faulty__default")[0]
+        self.assertEqual((outcome["status"], outcome["failed_frame"]), ("not_finite", 3))
+        shutil.rmtree(self.out)
+        self.assertEqual(self.both(FAULT="load"), 1, self.text)
+        outcome = self.cell("gravity__faulty__default")[0]
+        self.assertEqual(outcome["status"], "error")
+        self.assertIn("it was asked to fail", outcome["message"])
+        self.assertEqual(self.cell("gravity__ballistic__default")[0]["status"], "ok")
+
+    def test_interrupted_and_resumed(self):
+        process = self.start(
+            "run",
+            "paper/gravity",
+            "--solver",
+            self.faulty(),
+            "--solver",
+            "ballistic",
+            *SMALL,
+            "--out",
+            self.out,
+            FAULT="hang:20",
+        )
+        note = os.path.join(self.out, "running.txt")
+        for _ in range(400):
+            if os.path.exists(note) and "accuracy" in pathlib.Path(note).read_text(encoding="utf-8"):
+                break
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)  # the plugin hangs: the second one means it
+        self.text, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, self.text)
+        self.assertEqual(self.both("--resume"), 0, self.text)
+        self.assertEqual(self.cell("gravity__faulty__default")[0]["status"], "ok")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[6:])

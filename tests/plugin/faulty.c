@@ -1,0 +1,93 @@
+/* A plugin that is wrong in the way it was compiled for (FAULT_…) or that $FAULT names while it runs: crash:N, hang:N, exit:N,
+ * nan:N (at the Nth step of a solver), load. Otherwise its cloth stands still. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "clothbench_plugin.h"
+
+typedef struct {
+  const ClothbenchScene* scene;
+  int steps;
+  ClothbenchStage stage;
+} Solver;
+
+static void* create(const double* settings) {
+  (void)settings;
+  return calloc(1, sizeof(Solver));
+}
+
+static int32_t load(void* self, const ClothbenchScene* scene) {
+  Solver* s = self;
+  s->scene = scene;
+  s->stage = (ClothbenchStage){"stand still", 0, 0, NAN, NAN};
+  const char* fault = getenv("FAULT");
+  return fault && strcmp(fault, "load") == 0;
+}
+
+static void reset(void* self) { (void)self; }
+
+static int32_t step(void* self, const ClothbenchFrame* frame) {
+  (void)frame;
+  const char* fault = getenv("FAULT");
+  const char* at = fault ? strchr(fault, ':') : NULL;
+  if (!at || ++((Solver*)self)->steps != atoi(at + 1)) return CLOTHBENCH_OK;
+  if (strncmp(fault, "crash", 5) == 0) *(volatile int*)8 = 1;
+  if (strncmp(fault, "exit", 4) == 0) exit(0);
+  while (strncmp(fault, "hang", 4) == 0) {
+  }
+  return CLOTHBENCH_NOT_FINITE;
+}
+
+static void read_state(void* self, double* position, double* velocity) {
+  const ClothbenchScene* c = ((Solver*)self)->scene;
+  memcpy(position, c->position_m, 3 * c->vertex_count * sizeof(double));
+  memset(velocity, 0, 3 * c->vertex_count * sizeof(double));
+}
+
+static const ClothbenchStage* stages(void* self, uint32_t* count) {
+  *count = 1;
+  return &((Solver*)self)->stage;
+}
+
+static const char* message(void* self) {
+  (void)self;
+  return "it was asked to fail";
+}
+
+#ifdef FAULT_CRASHES_ON_LOAD
+__attribute__((constructor)) static void at_load(void) { *(volatile int*)8 = 1; }
+#endif
+#ifdef FAULT_ENDS_ON_LOAD
+__attribute__((constructor)) static void at_load(void) { _Exit(7); }
+#endif
+
+#ifdef FAULT_NO_SYMBOL
+const ClothbenchPlugin* another_name(void) {
+#else
+const ClothbenchPlugin* clothbench_plugin(void) {
+#endif
+  static ClothbenchPlugin plugin = {
+      CLOTHBENCH_PLUGIN_HEADER, "faulty", "wrong on purpose", "1", "float64", 0, (1u << 20) - 1, 1, 0, NULL,
+      create, free, load, reset, step, read_state, stages, message, NULL, NULL, NULL, NULL};
+#ifdef FAULT_VERSION
+  plugin.version = 99;
+#endif
+#ifdef FAULT_SCENE_SIZE
+  plugin.scene_size += 8;
+#endif
+#ifdef FAULT_EDGE_SIZE
+  plugin.edge_size -= 8;
+#endif
+#ifdef FAULT_NO_STEP
+  plugin.step = NULL;
+#endif
+#ifdef FAULT_NAME
+  plugin.name = "ballistic";
+#endif
+#ifdef FAULT_BITS
+  plugin.supports = 1u << 25;
+#endif
+  return &plugin;
+}
