@@ -1,9 +1,9 @@
 /* A cloth solver as a shared library, for `clothbench … --solver plugin:path.so`. C99, no other header of clothbench needed.
  *
  * The library exports one function, `clothbench_plugin`, which returns a description that stays valid. Units are SI, vectors
- * are x y z with +y up, positions and velocities of vertices lie one after another in the scene's order, column after column
- * and row after row: vertex (i, j) is j * columns + i. Pointers in a scene are valid until `destroy`, those in a frame until
- * `step` returns. All calls come from one thread at a time. Nothing may throw or longjmp across them.
+ * are x y z with +y up, positions and velocities of vertices lie one after another, row after row of the grid: vertex (i, j),
+ * the ith of row j, is number j * columns + i. Pointers in a scene are valid until the next `load` or `destroy`,
+ * those in a frame until `step` returns. All calls come from one thread at a time. Nothing may throw or longjmp across them.
  *
  * Version 1. The structs that are passed one by one (plugin, scene, frame) may grow at their end within a version; those
  * that stand in arrays never change. Both sides tell the sizes they were compiled with, and what does not fit is refused.

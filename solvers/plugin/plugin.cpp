@@ -42,30 +42,6 @@ std::list<Loaded>& loaded() {  // entries stay where they are
 
 Entrance entrance(void* library) { return reinterpret_cast<Entrance>(dlsym(library, kSymbol)); }
 
-/// What its constructors and its description do is found out in a child, where it may crash or hang.
-void probe(const std::string& path) {
-  constexpr unsigned kPatience_s = 30;
-  const pid_t child = fork();
-  if (child < 0)
-    throw Error(path + ": cannot be tried in a child process: " + std::strerror(errno), ExitCode::CheckFailed);
-  if (child == 0) {
-    for (const int s : {SIGINT, SIGTERM, SIGALRM, SIGABRT}) std::signal(s, SIG_DFL);
-    alarm(kPatience_s);
-    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-    const Entrance enter = library != nullptr ? entrance(library) : nullptr;
-    if (enter != nullptr) enter();
-    _exit(0);
-  }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (WIFSIGNALED(status))
-    throw Error(fmt::format("{}: it {} when it is loaded: signal {} ({})", path,
-                            WTERMSIG(status) == SIGALRM ? "hangs" : "crashes", WTERMSIG(status),
-                            strsignal(WTERMSIG(status))));
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw Error(path + ": it ends the program when it is loaded");
-}
-
 [[noreturn]] void refuse(const std::string& path, const std::string& what) { throw Error(path + ": " + what); }
 
 void check_sizes(const std::string& path, const ClothbenchPlugin& c) {
@@ -126,6 +102,39 @@ void check_description(const std::string& path, const ClothbenchPlugin& c) {
       refuse(path,
              fmt::format("settings: {}: its default is not {}", s.name, s.integer != 0 ? "a whole number" : "finite"));
   }
+}
+
+void check(const std::string& path, const ClothbenchPlugin& c) {
+  check_sizes(path, c);
+  check_description(path, c);
+}
+
+/// What its constructors and its description do is found out in a child, where it may crash or hang.
+void probe(const std::string& path) {
+  constexpr unsigned kPatience_s = 30;
+  const pid_t child = fork();
+  if (child < 0)
+    throw Error(path + ": cannot be tried in a child process: " + std::strerror(errno), ExitCode::CheckFailed);
+  if (child == 0) {
+    for (const int s : {SIGINT, SIGTERM, SIGALRM, SIGABRT}) std::signal(s, SIG_DFL);
+    alarm(kPatience_s);
+    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    const Entrance enter = library != nullptr ? entrance(library) : nullptr;
+    const ClothbenchPlugin* c = enter != nullptr ? enter() : nullptr;
+    try {
+      if (c != nullptr) check(path, *c);
+    } catch (const Error&) {  // said by the parent, which goes the same way
+    }
+    _exit(0);
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFSIGNALED(status))
+    throw Error(fmt::format("{}: it {} when it is loaded: signal {} ({})", path,
+                            WTERMSIG(status) == SIGALRM ? "hangs" : "crashes", WTERMSIG(status),
+                            strsignal(WTERMSIG(status))));
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw Error(path + ": it ends the program when it is loaded");
 }
 
 SolverInfo describe(const std::string& path, const ClothbenchPlugin& c) {
@@ -195,8 +204,7 @@ const SolverEntry& load(const std::string& given) {
   if (enter == nullptr) refuse(path, fmt::format("has no function {}: it is no plugin of clothbench", kSymbol));
   const ClothbenchPlugin* c = enter();
   if (c == nullptr) refuse(path, fmt::format("{} returns nothing", kSymbol));
-  check_sizes(path, *c);
-  check_description(path, *c);
+  check(path, *c);
   for (const Loaded& l : loaded())
     if (l.entry.info.name == c->name) refuse(path, fmt::format("name: \"{}\" is already that of {}", c->name, l.path));
   loaded().push_back({path, entry_of(path, *c)});
