@@ -31,6 +31,7 @@ void add_import(CLI::App&, Console&);
 void add_check(CLI::App&, Console&);
 void add_compare(CLI::App&, Console&);
 void add_history(CLI::App&, Console&);
+void add_completion(CLI::App&, Console&);
 void add_bench(CLI::App&, Console&);
 void add_render(CLI::App&, Console&);
 void add_metamorphic(CLI::App&, Console&);

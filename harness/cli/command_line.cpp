@@ -47,6 +47,7 @@ int run_command_line(const std::vector<std::string>& words) {
 #ifdef CLOTHBENCH_WITH_RENDER
   add_render(app, console);
 #endif
+  add_completion(app, console);
   try {
     // CLI11 takes the words last first.
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));

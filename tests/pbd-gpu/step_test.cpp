@@ -184,8 +184,11 @@ class LineModel {
       if (w(k) + w(k + 1) == 0) continue;
       const V e = m_.x[line[k + 1]] - m_.x[line[k]];
       g[k] = (1 / length(e)) * e;
-      a[k][k] = w(k) + w(k + 1) + std::max(alpha, taut ? 1e-3 * std::max(w(k), w(k + 1)) : 0.0);
-      b[k][0] = rest - length(e) - alpha * multipliers_[{f, line[k]}][0];
+      const bool elastic = s_.material.membrane_stiffness_N_per_m.has_value(), strip = elastic && !s_.needs.has(Feature::Shear);
+      const double torn = length(e) / rest, firm = strip ? torn - 1 : elastic ? 0 : 4 * (torn - 5);
+      const double soft = std::max(alpha, taut ? std::max(1e-3, firm) * std::max(w(k), w(k + 1)) : 0.0);
+      a[k][k] = w(k) + w(k + 1) + soft;
+      b[k][0] = rest - length(e) - (strip ? soft : alpha) * multipliers_[{f, line[k]}][0];
     }
     for (std::size_t k = 0; k + 1 < n; ++k) a[k][k + 1] = a[k + 1][k] = -w(k + 1) * dot(g[k], g[k + 1]);
     const std::vector<V> lambda = solved(a, b);

@@ -230,7 +230,7 @@ void stretch(float least) {
     link_right[k] = is ? rest - l : 0.0;
 #ifdef KEEP_MULTIPLIERS
     if (kElastic && is && iteration > 0u)
-      link_right[k] -= soft * LOAD4(link_multipliers, family * COLUMNS * ROWS + index_of(vertex(lane * K + k)));
+      link_right[k] -= (kShears ? alpha : soft) * LOAD4(link_multipliers, family * COLUMNS * ROWS + index_of(vertex(lane * K + k)));
 #endif
   }
   exchange(vec4(g[K - 1u], 0.0), 1u, below, none);

@@ -1,0 +1,125 @@
+// Completion of the command line. What a shell's script asks for is answered from the very commands, options, solvers and files there
+// are, so it cannot grow old.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/command.hpp"
+
+namespace clothbench {
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr const char* kBash = R"(_clothbench() {
+  local IFS=$'\n' line=${COMP_LINE:0:COMP_POINT} words
+  IFS=' ' read -ra words <<<"$line"
+  [[ $line == *' ' ]] && words+=('')
+  COMPREPLY=($("${words[0]}" completion words -- "${words[@]:1}" 2>/dev/null))
+  [[ ${COMPREPLY[0]} == *[=/] ]] && compopt -o nospace
+  # Bash puts the answer in place of what stands after its own last break.
+  local cut=${words[${#words[@]}-1]%"${COMP_WORDS[COMP_CWORD]}"}
+  COMPREPLY=("${COMPREPLY[@]#"$cut"}")
+}
+complete -o default -F _clothbench clothbench
+)";
+constexpr const char* kZsh = R"(#compdef clothbench
+_clothbench() {
+  local -a found
+  found=("${(@f)$("${words[1]}" completion words -- "${(@)words[2,CURRENT]}" 2>/dev/null)}")
+  [[ -n "$found[1]" ]] && compadd -Q -- "${found[@]}" || _files
+}
+compdef _clothbench clothbench
+)";
+constexpr const char* kFish = R"(function __clothbench_words
+  set -l words (commandline -opc)
+  clothbench completion words -- $words[2..-1] (commandline -ct) 2>/dev/null
+end
+complete -c clothbench -a '(__clothbench_words)'
+)";
+
+Words scenario_names(const std::vector<const char*>& folders) {
+  Words names;
+  const std::filesystem::path root = scenario_root();
+  for (const char* folder : folders) {
+    if (!std::filesystem::exists(root / folder)) continue;
+    for (const auto& file : std::filesystem::recursive_directory_iterator(root / folder))
+      if (file.path().extension() == ".json")
+        names.push_back(folder == std::string("studies") ? file.path().stem().string()
+                                                         : std::filesystem::relative(file.path(), root).replace_extension().string());
+  }
+  return names;
+}
+
+Words solver_names() {
+  Words names;
+  for (const SolverEntry& e : solvers()) names.push_back(e.info.name);
+  return names;
+}
+
+/// `--set solver.<name>=` of the solvers named so far, or of all.
+Words setting_names(const Words& before) {
+  Words names;
+  for (const SolverEntry& e : solvers()) {
+    const bool named = std::find(before.begin(), before.end(), "--solver") == before.end() ||
+                       std::find(before.begin(), before.end(), e.info.name) != before.end();
+    if (named)
+      for (const SettingSpec& s : e.info.settings) names.push_back("solver." + s.name + "=");
+  }
+  return names;
+}
+
+Words candidates(const CLI::App& app, const Words& before, const std::string& prefix) {
+  Words names;
+  const CLI::App* command = nullptr;
+  for (const CLI::App* c : app.get_subcommands({})) {
+    if (before.empty() && !c->get_group().empty()) names.push_back(c->get_name());
+    if (!before.empty() && before.front() == c->get_name()) command = c;
+  }
+  if (command == nullptr) return names;
+  const std::string& last = before.back();
+  if (last == "--solver") return solver_names();
+  if (last == "--set") return setting_names(before);
+  if (last == "--device-profile") return {"adreno-like"};
+  if (prefix.starts_with("-")) {
+    for (const CLI::App* a : {command, &app})
+      for (const CLI::Option* o : a->get_options())
+        for (const std::string& name : o->get_lnames()) names.push_back("--" + name);
+    return names;
+  }
+  const std::string& name = command->get_name();
+  if (name == "study" || name == "bench") return scenario_names({"studies"});
+  if (name == "card" || name == "metamorphic" || name == "friction") return solver_names();
+  if (name == "list") return {"solvers", "features", "scenarios", "studies", "devices", "metrics", "assets"};
+  if (name == "run" || name == "plan" || name == "validate" || name == "render" || name == "threshold")
+    return scenario_names({"paper", "contact", "validation", "stability", "metamorphic"});
+  return names;
+}
+
+}  // namespace
+
+void add_completion(CLI::App& app, Console&) {
+  static std::string shell;
+  static Words words;
+  shell = "";
+  words = {};
+  CLI::App* cmd = app.add_subcommand("completion", "A script that completes this command in bash, zsh or fish");
+  cmd->add_option("shell", shell, "bash, zsh or fish; words: what could stand in place of the last of the words")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish", "words"}));
+  cmd->add_option("words", words, "The command line after the program's name");
+  cmd->footer("Example: source <(clothbench completion bash)");
+  cmd->callback([&app] {
+    if (shell != "words") return fmt::print("{}", shell == "bash" ? kBash : shell == "zsh" ? kZsh : kFish);
+    const std::string prefix = words.empty() ? "" : words.back();
+    if (!words.empty()) words.pop_back();
+    Words found = candidates(app, words, prefix);
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    for (const std::string& word : found)
+      if (word.starts_with(prefix)) fmt::print("{}\n", word);
+  });
+}
+
+}  // namespace clothbench
