@@ -56,13 +56,14 @@ class LineScenes : public Gpu {
 
 class SlowLineScenes : public LineScenes {};
 
-/// Mean over the edges and frames of the last second, and the greatest; the emulation's values are about half of these.
+/// Mean over the edges and frames of the last second, and the greatest; the emulation's values are about half of these. The
+/// greatest is of a few links and depends on how a device rounds: with 2 substeps 3.8 % on an H200, 7.3 % on lavapipe.
 TEST_F(SlowLineScenes, HangStretchesLittle) {
   struct Row {
     int n, substeps;
     double mean, most;
   };
-  for (const Row& row : {Row{32, 2, 1.2e-4, 0.05}, Row{32, 3, 5e-5, 0.03}, Row{32, 5, 1.2e-5, 0.01}, Row{32, 10, 4e-6, 0.005},
+  for (const Row& row : {Row{32, 2, 1.2e-4, 0.08}, Row{32, 3, 5e-5, 0.03}, Row{32, 5, 1.2e-5, 0.01}, Row{32, 10, 4e-6, 0.005},
                          Row{64, 3, 8e-5, 0.1}, Row{64, 5, 3e-5, 0.04}, Row{64, 6, 2e-5, 0.02}}) {
     const Scene s = load_scene("validation/hang", {"cloth.grid=[" + std::to_string(row.n) + "," + std::to_string(row.n) + "]"});
     const Result r = run(s, {{"substeps", row.substeps}});
@@ -84,10 +85,10 @@ TEST_F(LineScenes, TruthCardsAreMetAtLowCost) {
     int substeps;
     double error;
   };
-  // Of 60 Hz frames; 960 Hz in the last.
+  // Of 60 Hz frames; 960 Hz in the last, whose waves are slowed where tension is held back (0.063 if it were not).
   for (const Row& row : {Row{"swing-strip", 3, 4.5e-3}, {"swing-strip", 5, 2.7e-3}, {"swing-strip", 10, 1.5e-3},
                          {"catenary", 5, 4e-5}, {"cantilever-10", 5, 3.8e-3}, {"cantilever-10", 10, 1.4e-3},
-                         {"heavy-strip", 3, 5e-4}, {"two-hand-pull", 1, 0.065}}) {
+                         {"heavy-strip", 3, 5e-4}, {"two-hand-pull", 1, 0.08}}) {
     const Scene s = load_scene(std::string("validation/") + row.scene);
     const auto summary = summarise_truth(s, run(s, {{"substeps", row.substeps}}).pass);
     EXPECT_LE(summary.at("truth_error"), row.error) << row.scene << " substeps " << row.substeps;
