@@ -85,7 +85,7 @@ TEST_F(LineScenes, TruthCardsAreMetAtLowCost) {
     int substeps;
     double error;
   };
-  // Of 60 Hz frames; 960 Hz in the last, whose waves are slowed where tension is held back (0.063 if it were not).
+  // Of 60 Hz frames; 960 Hz in the last, whose waves are slowed where tension is held back (0.061 if it were not).
   for (const Row& row : {Row{"swing-strip", 3, 4.5e-3}, {"swing-strip", 5, 2.7e-3}, {"swing-strip", 10, 1.5e-3},
                          {"catenary", 5, 4e-5}, {"cantilever-10", 5, 3.8e-3}, {"cantilever-10", 10, 1.4e-3},
                          {"heavy-strip", 3, 5e-4}, {"two-hand-pull", 1, 0.08}}) {
