@@ -6,7 +6,9 @@ cd "$(dirname "$0")/.."
 seconds=${1:-10}
 readers=(scene room hand track raw hdf5)
 [ $# -gt 1 ] && readers=("${@:2}")
-cmake --preset fuzz >build/configure-fuzz.log 2>&1 || { tail -30 build/configure-fuzz.log; exit 1; }
+unity=OFF
+[ "${CLOTHBENCH_UNITY:-}" != 1 ] || unity=ON
+cmake --preset fuzz -DCMAKE_UNITY_BUILD=$unity -DCMAKE_UNITY_BUILD_BATCH_SIZE=8 >build/configure-fuzz.log 2>&1 || { tail -30 build/configure-fuzz.log; exit 1; }
 cmake --build --preset fuzz -j "${JOBS:-2}" --target "${readers[@]/#/fuzz_}" >build/fuzz.log 2>&1 || { tail -30 build/fuzz.log; exit 1; }
 for reader in "${readers[@]}"; do
   found=build/fuzz/found/$reader log=build/fuzz/$reader.log
