@@ -239,7 +239,7 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     write("penetration-series.csv", series_csv(ups));
   }
   if (!diagrams.empty()) {
-    const std::string text = told("work-precision", "Error against run time", {work_table(diagrams), truth_table(diagrams)});
+    const std::string text = told("work-precision", "Error against run time", {work_table(diagrams), budget_table(diagrams), energy_table(diagrams), truth_table(diagrams)});
     tables += text;
     write("work-precision.md", "# Error against run time\n\n" + head + "\n" + text);
     write("work-precision.csv", work_csv(diagrams));
@@ -312,7 +312,7 @@ void print_console_report(const std::vector<fs::path>& runs) {
   if (const Table sampled = sampled_table(cells); sampled.rows.size() > 1) fmt::print("{}", sampled.console());
   for (const Table& t : penetration_tables(set_ups(contact), room_pairs(contact), false)) fmt::print("{}", t.console());
   if (const auto diagrams = work_diagrams(truth, materials); !diagrams.empty())
-    fmt::print("{}{}{}{}", work_table(diagrams).console(), truth_table(diagrams).console(), winners_table(diagrams).console(), ranks_table(diagrams).console());
+    fmt::print("{}{}{}{}{}{}", work_table(diagrams).console(), budget_table(diagrams).console(), energy_table(diagrams).console(), truth_table(diagrams).console(), winners_table(diagrams).console(), ranks_table(diagrams).console());
   if (!materials.empty()) fmt::print("{}{}", material_table(materials).console(), material_verdicts(materials).console());
   if (!costs.empty()) fmt::print("{}{}", feature_cost_table(costs).console(), no_op_table(costs).console());
   if (const auto solvers = solver_features(cells); !contact.empty() && any_known(solvers))

@@ -42,7 +42,9 @@ WorkPoint point_of(const CellRecord& c, const json& scenario) {
   p.wall_ms_per_s = std::isfinite(pipelined) ? pipelined : p.fenced_ms_per_s;
   p.device_ms_per_s = 1e3 * frames_per_s * summary_value(c, "frame_device_median_s");
   p.on_gpu = std::isfinite(p.device_ms_per_s);
+  p.frame_ms = p.wall_ms_per_s / frames_per_s;
   p.error = summary_value(c, "truth_error");
+  p.energy_gain = summary_value(c, "energy_gain");
   return p;
 }
 

@@ -18,7 +18,9 @@ struct WorkPoint {
   double wall_ms_per_s = kMissing;    ///< median wall time, ms per simulated second, frames pipelined where the solver can
   double fenced_ms_per_s = kMissing;  ///< the same from submission to fence, each frame waited for
   double device_ms_per_s = kMissing;  ///< the same of the device's own clock; NaN on a CPU
+  double frame_ms = kMissing;         ///< what wall_ms_per_s is of one frame of the scene
   double error = kMissing;            ///< what ranks (the card's), as measured
+  double energy_gain = kMissing;      ///< over M g L; NaN where the scene does not keep energy
   bool on_front = false;              ///< no other point of its solver is as fast and more accurate
 };
 
@@ -56,6 +58,13 @@ Table winners_table(const std::vector<WorkDiagram>&);
 /// Rows: solvers; geometric means over the scenes that rank them of their ranks, never of errors; equal errors at the floor
 /// share a rank, and so do all who do not get there.
 Table ranks_table(const std::vector<WorkDiagram>&);
+
+/// Rows: scenes and solvers; the smallest error of all settings whose frame takes at most 0.05 ... 13.9 ms, and which other
+/// solver has a smaller one anywhere between.
+Table budget_table(const std::vector<WorkDiagram>&);
+
+/// Rows: scenes that keep energy and solvers; the most energy that a setting gains.
+Table energy_table(const std::vector<WorkDiagram>&);
 
 /// One row a scene: what the error is, floors, the reference's orders, its distance from the truth, and whether it ranks.
 Table truth_table(const std::vector<WorkDiagram>&);

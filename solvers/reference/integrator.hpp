@@ -50,6 +50,8 @@ class Integrator {
 /// BDF2 (the first step backward Euler), positions, velocities and tensions all at the step's end: stiffly accurate,
 /// order 2, damps what it can't resolve. Hairer & Wanner, Solving Ordinary Differential Equations II, V and VII.
 std::unique_ptr<Integrator> make_bdf2(Model&, Tolerance);
+/// Backward Euler, solved to the end: order 1; what small-step methods lose of energy is measured against it.
+std::unique_ptr<Integrator> make_euler(Model&, Tolerance);
 /// Implicit midpoint with tensions at the midpoint: order 2, conserves momentum, no damping of its own. Compliance > 0.
 std::unique_ptr<Integrator> make_midpoint(Model&, Tolerance);
 /// RATTLE (Andersen 1983): order 2, symplectic, for compliance 0; bending and gravity explicit.

@@ -70,6 +70,30 @@ TEST(WorkTable, TimesArePipelinedWhereASolverCan) {
   EXPECT_NE(winners_table(diagrams).rows[1][2].find("a ("), std::string::npos) << "ranked by the pipelined time";
 }
 
+TEST(BudgetTable, NamesWhoHasTheSmallerErrorAtAnyBudget) {
+  // 0.02 and 0.04 at 0.3 ms: between the budgets that have a column.
+  const std::vector<CellRecord> cells = {cell("a", "x", 1e-4, 0.3),   cell("a", "y", 1e-3, 0.04), cell("b", "x", 3e-4, 0.02),
+                                         cell("b", "late", 2e-2, 1e-9), cell("a", "nan", 1e-4, NAN)};
+  const Table t = budget_table(work_diagrams(cells));
+  EXPECT_EQ(row_of(t, "a").at(3), "0.3") << "0.1 ms";
+  EXPECT_EQ(row_of(t, "a").at(2), "–") << "0.05 ms";
+  EXPECT_EQ(row_of(t, "a").at(6), "0.04") << "1 ms";
+  EXPECT_EQ(row_of(t, "a").back(), "b: 15 times at 0.3 ms");
+  EXPECT_EQ(row_of(t, "b").back(), "a: 0.3 at 0.1 ms, where it has no result");
+  const std::vector<CellRecord> small = {cell("a", "x", 1e-4, 1e-6), cell("b", "x", 1e-4, 1e-9)};
+  EXPECT_EQ(row_of(budget_table(work_diagrams(small)), "a").back(), "never") << "below the mesh's own error nobody is better";
+  EXPECT_EQ(row_of(budget_table(work_diagrams(small)), "a").at(3), "≤ 0.002");
+}
+
+TEST(EnergyTable, CountsSettingsThatGainNaNIncluded) {
+  std::vector<CellRecord> cells = {cell("a", "x", 1e-4, 0.3), cell("a", "y", 1e-4, 0.3), cell("b", "x", 1e-4, 0.3)};
+  cells[0].summary["energy_gain"] = 1e-4;
+  cells[1].summary["energy_gain"] = 2e-3;
+  const Table t = energy_table(work_diagrams(cells));
+  ASSERT_EQ(t.rows.size(), 2u) << "b's energy is not known";
+  EXPECT_EQ(row_of(t, "a"), (std::vector<std::string>{"swing", "a", "2.0e-03", "y", "1 of 2"}));
+}
+
 TEST(WorkTable, WhatIsOverBudgetIsNoFailure) {
   const std::vector<CellRecord> cells = {cell("a", "x", 4e-3, 5e-3), cell("a", "y", NAN, NAN, "over_budget"),
                                          cell("a", "z", 1e-3, NAN, "diverged")};

@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "report/work_precision.hpp"
+
+namespace clothbench {
+namespace {
+
+// From what one dispatch costs, submission included, to the time a headset shows a frame.
+constexpr double kLeastBudget_ms = 0.05, kMostBudget_ms = 13.9;
+constexpr std::array kBudgets_ms = {kLeastBudget_ms, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, kMostBudget_ms};
+// Errors below it are all small enough for anybody who asks for real time.
+constexpr double kSmallEnough = 1e-3;
+
+bool counts(const WorkPoint& p) { return p.ok && std::isfinite(p.error) && std::isfinite(p.frame_ms); }
+
+struct Best {
+  double error = INFINITY;
+  const WorkPoint* point = nullptr;
+};
+
+Best best_within(const WorkDiagram& d, const std::string& solver, double budget_ms) {
+  const double floor = std::max(kSmallEnough, d.rank_floor());
+  Best out;
+  for (const WorkPoint& p : d.points)
+    if (p.solver == solver && counts(p) && p.frame_ms <= budget_ms && p.error < out.error) out = {p.error, &p};
+  if (out.point != nullptr) out.error = std::max(out.error, floor);
+  return out;
+}
+
+/// By what factor `other` has a smaller error than `solver` somewhere within the budgets, and where.
+std::string beaten_by(const WorkDiagram& d, const std::string& solver) {
+  double worst = 1;
+  std::string out = "never";
+  for (const WorkPoint& p : d.points) {
+    if (p.solver == solver || !counts(p) || p.frame_ms > kMostBudget_ms) continue;
+    const double budget = std::max(p.frame_ms, kLeastBudget_ms);
+    const double theirs = best_within(d, p.solver, budget).error, ours = best_within(d, solver, budget).error;
+    // Two clocks of one machine do not agree to more than this.
+    const double factor = ours / theirs;
+    if (!(factor > std::max(worst, 1.001))) continue;
+    worst = factor;
+    out = std::isinf(factor) ? fmt::format("{}: {:.2g} at {:.3g} ms, where it has no result", p.solver, theirs, budget)
+                             : fmt::format("{}: {:.3g} times at {:.3g} ms", p.solver, factor, budget);
+    if (d.flagged.contains(p.solver)) out += " (not ranked)";
+  }
+  return out;
+}
+
+std::vector<std::string> solvers_in(const WorkDiagram& d) {
+  std::vector<std::string> out;
+  for (const WorkPoint& p : d.points)
+    if (std::find(out.begin(), out.end(), p.solver) == out.end()) out.push_back(p.solver);
+  return out;
+}
+
+}  // namespace
+
+Table budget_table(const std::vector<WorkDiagram>& diagrams) {
+  Table t{"Smallest error within a budget of time a frame",
+          "Of all settings of a solver whose frame takes at most so long, wall time, pipelined where the solver can; ≤: at 0.001 or at the floor of "
+          "the scene, below which nobody is told apart. –: no setting is as fast. Beaten by: who else, ranked or not, has the smaller error at any "
+          "budget from 0.05 to 13.9 ms, by the greatest factor.",
+          {{"scene", "solver"}}};
+  for (const double b : kBudgets_ms) t.rows[0].push_back(fmt::format("{:g} ms", b));
+  t.rows[0].emplace_back("beaten by");
+  for (const WorkDiagram& d : diagrams) {
+    const double floor = std::max(kSmallEnough, d.rank_floor());
+    for (const std::string& solver : solvers_in(d)) {
+      std::vector<std::string> row = {d.scene, solver};
+      for (const double b : kBudgets_ms) {
+        const Best best = best_within(d, solver, b);
+        row.push_back(best.point == nullptr ? "–" : fmt::format("{}{:.2g}", best.error <= floor ? "≤ " : "", best.error));
+      }
+      row.push_back(beaten_by(d, solver));
+      t.rows.push_back(std::move(row));
+    }
+  }
+  return t;
+}
+
+Table energy_table(const std::vector<WorkDiagram>& diagrams) {
+  Table t{"Energy that comes from nowhere",
+          "Greatest gain over the start in any frame, over M g L, of the settings that ended well, in scenes that keep energy; and the setting. "
+          "More than 0.001 is counted.",
+          {{"scene", "solver", "greatest gain", "setting", "settings above 0.001"}}};
+  for (const WorkDiagram& d : diagrams)
+    for (const std::string& solver : solvers_in(d)) {
+      double most = -1;
+      int above = 0, all = 0;
+      std::string setting;
+      for (const WorkPoint& p : d.points) {
+        if (p.solver != solver || !counts(p) || !std::isfinite(p.energy_gain)) continue;
+        ++all;
+        above += !(p.energy_gain <= 1e-3);
+        if (p.energy_gain > most) {
+          most = p.energy_gain;
+          setting = p.setting;
+        }
+      }
+      if (all > 0) t.rows.push_back({d.scene, solver, fmt::format("{:.1e}", most), setting, fmt::format("{} of {}", above, all)});
+    }
+  return t;
+}
+
+}  // namespace clothbench
