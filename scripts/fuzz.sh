@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-10}
-readers=(scene room hand track raw hdf5)
+readers=(scene obj room hand track raw hdf5)
 [ $# -gt 1 ] && readers=("${@:2}")
 unity=OFF
 [ "${CLOTHBENCH_UNITY:-}" != 1 ] || unity=ON

@@ -45,7 +45,8 @@ enum {
   CLOTHBENCH_RENDER = 1 << 16,
   CLOTHBENCH_UNEVEN_GRID = 1 << 17, /* cells of different widths */
   CLOTHBENCH_REGIONS = 1 << 18,     /* a stiffness that changes from column to column */
-  CLOTHBENCH_SPIN = 1 << 19         /* a start with another velocity at every vertex */
+  CLOTHBENCH_SPIN = 1 << 19,        /* a start with another velocity at every vertex */
+  CLOTHBENCH_CLOTH_MESH = 1 << 20   /* a triangle mesh instead of a grid: columns is the number of vertices, rows is 1 */
 };
 
 /* How a step ended. What is not OK ends the cell, as a row of the results. */

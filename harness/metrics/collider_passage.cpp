@@ -139,6 +139,7 @@ struct ColliderPassage::Watch {
       cell_area.push_back(area);
       for (const std::uint32_t v : cell) vertex_area[v] += area / 4;
     }
+    if (c.mesh) vertex_area = vertex_masses(s);  // of even density: in proportion, which is all that is asked for
     for (std::size_t k = 0; k < s.colliders.size(); ++k) {
       lines.emplace_back(s.colliders[k]);
       sides.emplace_back();

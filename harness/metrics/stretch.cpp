@@ -5,24 +5,30 @@
 namespace clothbench {
 namespace {
 
-/// Calls fn(strain) for every structural edge of the grid.
+/// Calls fn(strain) for every structural edge that has a length, and says how many they are.
 template <class Fn>
-void for_each_strain(const Cloth& c, const ClothState& state, Fn fn) {
+double for_each_strain(const Cloth& c, const ClothState& state, Fn fn) {
+  double count = 0;
   const auto strain = [&](std::size_t a, std::size_t b, double rest) {
+    if (!(rest > 0)) return;
+    ++count;
     const double* p = &state.position[3 * a];
     const double* q = &state.position[3 * b];
-    return norm(q[0] - p[0], q[1] - p[1], q[2] - p[2]) / rest - 1;
+    fn(norm(q[0] - p[0], q[1] - p[1], q[2] - p[2]) / rest - 1);
   };
+  if (c.mesh) {
+    for (const Edge& e : c.mesh->edges) strain(e.a, e.b, e.rest_m);
+    return count;
+  }
   const auto columns = static_cast<std::size_t>(c.columns), rows = static_cast<std::size_t>(c.rows);
   for (std::size_t j = 0; j < rows; ++j)
     for (std::size_t i = 0; i < columns; ++i) {
       const std::size_t v = j * columns + i;
-      if (i + 1 < columns) fn(strain(v, v + 1, c.column_factors.empty() ? c.du() : c.line_u_m(static_cast<int>(i) + 1) - c.line_u_m(static_cast<int>(i))));
-      if (j + 1 < rows) fn(strain(v, v + columns, c.dv()));
+      if (i + 1 < columns) strain(v, v + 1, c.column_factors.empty() ? c.du() : c.line_u_m(static_cast<int>(i) + 1) - c.line_u_m(static_cast<int>(i)));
+      if (j + 1 < rows) strain(v, v + columns, c.dv());
     }
+  return count;
 }
-
-double edge_count(const Cloth& c) { return (c.columns - 1.0) * c.rows + (c.rows - 1.0) * c.columns; }
 
 }  // namespace
 
@@ -34,20 +40,20 @@ double stretch_max(const MetricFrame& f) {
 
 double stretch_rms(const MetricFrame& f) {
   double sum = 0;
-  for_each_strain(f.context.scene.cloth, f.state, [&](double e) { sum += e * e; });
-  return std::sqrt(sum / edge_count(f.context.scene.cloth));
+  const double count = for_each_strain(f.context.scene.cloth, f.state, [&](double e) { sum += e * e; });
+  return std::sqrt(sum / count);
 }
 
 double stretch_mean(const MetricFrame& f) {
   double sum = 0;
-  for_each_strain(f.context.scene.cloth, f.state, [&](double e) { sum += e; });
-  return sum / edge_count(f.context.scene.cloth);
+  const double count = for_each_strain(f.context.scene.cloth, f.state, [&](double e) { sum += e; });
+  return sum / count;
 }
 
 double stretch_mean_positive(const MetricFrame& f) {
   double sum = 0;
-  for_each_strain(f.context.scene.cloth, f.state, [&](double e) { sum += e <= 0 ? 0 : e; });
-  return sum / edge_count(f.context.scene.cloth);
+  const double count = for_each_strain(f.context.scene.cloth, f.state, [&](double e) { sum += e <= 0 ? 0 : e; });
+  return sum / count;
 }
 
 }  // namespace clothbench

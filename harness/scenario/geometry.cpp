@@ -34,6 +34,22 @@ Vec3 normal_of(const Cloth& c) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+std::vector<double> mesh_masses(const Cloth& c) {
+  std::vector<double> mass(c.vertex_count(), 0);
+  const std::vector<Vec3>& x = c.mesh->vertices;
+  for (const auto& t : c.mesh->triangles) {
+    Vec3 p{}, q{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = x[t[1]][k] - x[t[0]][k];
+      q[k] = x[t[2]][k] - x[t[0]][k];
+    }
+    const double area = 0.5 * std::hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]);
+    for (const std::uint32_t v : t) mass[v] += c.areal_density_kg_per_m2 * area / 3;
+  }
+  for (std::size_t v = 0; v < c.mass_factors.size(); ++v) mass[v] *= c.mass_factors[v];
+  return mass;
+}
+
 /// The grid line `inwards` lines from an edge.
 std::vector<std::uint32_t> grid_line(const Cloth& c, const std::string& edge, int inwards) {
   const bool along_v = edge[0] == 'u';
@@ -57,6 +73,13 @@ double Cloth::line_u_m(int i) const {
 }
 
 Vec3 Scene::rest_position(int i, int j) const {
+  if (cloth.mesh) {
+    const Vec3 &at = cloth.mesh->vertices[static_cast<std::size_t>(i)], normal = normal_of(cloth);
+    Vec3 p{};
+    for (std::size_t k = 0; k < 3; ++k)
+      p[k] = cloth.center_m[k] + at[0] * cloth.axis_u[k] + at[1] * cloth.axis_v[k] + at[2] * normal[k];
+    return p;
+  }
   std::array<double, 2> at = {cloth.line_u_m(i) - cloth.width_m / 2, 0};
   if (cloth.span_m > 0) at = on_arc(cloth, i);
   const double v = j * cloth.dv() - cloth.height_m / 2;
@@ -103,6 +126,7 @@ std::vector<std::uint32_t> clamp_vertices(const Cloth& c, const std::string& edg
 
 std::vector<double> vertex_masses(const Scene& scene) {
   const Cloth& c = scene.cloth;
+  if (c.mesh) return mesh_masses(c);
   const double cell = c.areal_density_kg_per_m2 * c.du() * c.dv();
   std::vector<double> mass;
   mass.reserve(c.vertex_count());
@@ -120,6 +144,7 @@ std::vector<double> vertex_masses(const Scene& scene) {
 }
 
 std::vector<std::array<std::uint32_t, 3>> triangles(const Cloth& c) {
+  if (c.mesh) return c.mesh->triangles;
   std::vector<std::array<std::uint32_t, 3>> out;
   out.reserve(2u * (c.columns - 1) * (c.rows - 1));
   for (int j = 0; j + 1 < c.rows; ++j)
@@ -132,6 +157,7 @@ std::vector<std::array<std::uint32_t, 3>> triangles(const Cloth& c) {
 }
 
 std::vector<Edge> edges(const Cloth& c, EdgeKind kind) {
+  if (c.mesh) return kind == EdgeKind::Structural ? c.mesh->edges : std::vector<Edge>{};
   struct Step {
     int di, dj;
   };

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "clothbench/solver.hpp"
+#include "scenario/cloth_mesh.hpp"
 #include "scenario/colliders.hpp"
 #include "scenario/irregular.hpp"
 #include "scenario/json_text.hpp"
@@ -40,6 +41,12 @@ Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
   std::set<std::uint32_t> pinned;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const json& pin = list[k];
+    if (c.mesh)
+      for (const char* of_grids : {"corners", "edge", "clamp"})
+        if (pin.contains(of_grids)) refuse(source, fmt::format("/pins/{}/{}", k, of_grids), "a mesh has none; expected \"vertices\" or \"nearest_m\"");
+    if (!c.mesh && pin.contains("nearest_m")) refuse(source, fmt::format("/pins/{}/nearest_m", k), "only for a cloth that is a mesh");
+    if (pin.contains("nearest_m"))
+      for (const json& point : pin["nearest_m"]) pinned.insert(nearest_vertex(*c.mesh, vec3(point)));
     if (pin.contains("corners"))
       for (const auto& name : pin["corners"]) pinned.insert(corner(c, name.get<std::string>()));
     if (pin.contains("edge"))
@@ -57,20 +64,43 @@ Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
   return {{pinned.begin(), pinned.end()}};
 }
 
-Cloth read_cloth(const json& j, const std::string& source) {
-  Cloth c;
+/// A grid and its size, or a mesh: one or the other.
+void read_shape(json& j, Cloth& c, const std::string& source) {
+  if (j.contains("mesh")) {
+    for (const char* of_grids : {"grid", "size_m", "column_factors", "start"})
+      if (j.contains(of_grids)) refuse(source, std::string("/cloth/") + of_grids, "not for a cloth that is a mesh");
+    c.mesh = read_cloth_mesh(j["mesh"], source);
+    if (c.mesh->vertices.size() > kMostVertices)
+      refuse(source, "/cloth/mesh", fmt::format("at most {} vertices; found {}", kMostVertices, c.mesh->vertices.size()));
+    c.columns = static_cast<int>(c.mesh->vertices.size());
+    c.rows = 1;
+    const auto [longest, second] = longest_sides(*c.mesh);
+    c.width_m = longest;
+    c.height_m = second;
+    return;
+  }
+  for (const char* needed : {"grid", "size_m"})
+    if (!j.contains(needed)) refuse(source, "/cloth", std::string("\"") + needed + "\" is missing; expected \"grid\" and \"size_m\", or \"mesh\"");
   c.columns = j["grid"][0].get<int>();
   c.rows = j["grid"][1].get<int>();
   if (c.vertex_count() > kMostVertices)
     refuse(source, "/cloth/grid", fmt::format("at most {} vertices; found {}", kMostVertices, c.vertex_count()));
   c.width_m = j["size_m"][0].get<double>();
   c.height_m = j["size_m"][1].get<double>();
+}
+
+Cloth read_cloth(json& j, const std::string& source) {
+  Cloth c;
+  read_shape(j, c, source);
   c.areal_density_kg_per_m2 = j["areal_density_kg_per_m2"].get<double>();
   const auto sides = j["sides"].get<std::string>();
   c.sides = sides == "single" ? Sides::Single : sides == "double" ? Sides::Double : Sides::DoubleDuplicated;
   c.center_m = vec3(j["pose"]["center_m"]);
   c.axis_u = vec3(j["pose"]["axis_u"]);
   c.axis_v = vec3(j["pose"]["axis_v"]);
+  if (c.mesh)
+    for (const char* of_grids : {"span_m", "drape", "over_table"})
+      if (j["pose"].contains(of_grids)) refuse(source, std::string("/cloth/pose/") + of_grids, "not for a cloth that is a mesh");
   c.span_m = j["pose"].value("span_m", 0.0);
   if (!(c.span_m < c.width_m)) refuse(source, "/cloth/pose/span_m", fmt::format("expected less than the width, {} m", c.width_m));
   if (c.span_m > 0 && c.columns < 3) refuse(source, "/cloth/grid/0", "expected at least 3 columns, for a sheet that starts bent");
@@ -154,7 +184,7 @@ std::filesystem::path find_scenario(const std::string& name_or_path) {
 
 FeatureSet derive_needs(const Scene& scene) {
   FeatureSet needs = {Feature::Stretch};
-  if (scene.material.shear) needs.add(Feature::Shear);
+  if (scene.material.shear && !scene.cloth.mesh) needs.add(Feature::Shear);
   if (scene.material.bending_rigidity_N_m > 0) needs.add(Feature::Bend);
   if (scene.material.damping_per_s > 0) needs.add(Feature::Damping);
   if (!scene.pins.vertices.empty()) needs.add(Feature::Pins);
@@ -166,6 +196,7 @@ FeatureSet derive_needs(const Scene& scene) {
   if (!scene.cloth.column_factors.empty()) needs.add(Feature::UnevenGrid);
   if (!scene.material.regions.empty()) needs.add(Feature::Regions);
   if (scene.cloth.spin_rad_per_s != Vec3{}) needs.add(Feature::Spin);
+  if (scene.cloth.mesh) needs.add(Feature::ClothMesh);
   if (scene.cloth.sides == Sides::DoubleDuplicated) needs.add(Feature::DuplicatedLayer);
   // Two-sided contact is a matter of contact: with nothing to touch there is nothing to do for it.
   if (scene.cloth.sides == Sides::Double && !(needs & kColliderFeatures).empty()) needs.add(Feature::DoubleSided);
@@ -225,6 +256,11 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   s.material.bending_rigidity_N_m = material["bending_rigidity_N_m"].get<double>();
   s.material.damping_per_s = material["damping_per_s"].get<double>();
   s.material.shear = material["shear"].get<bool>();
+  if (s.cloth.mesh && s.material.bending_rigidity_N_m > 0)
+    refuse(source, "/material/bending_rigidity_N_m", "bending is of grids alone; expected 0 for a cloth that is a mesh");
+  if (s.cloth.mesh && scenario["material"].contains("regions"))
+    refuse(source, "/material/regions", "columns are of grids alone; a mesh has one stiffness");
+  if (s.cloth.mesh && scenario.contains("truth")) refuse(source, "/truth", "the cards are of grids alone");
   read_irregular(scenario, s, source);
   s.pins = read_pins(scenario["pins"], s.cloth, source);
   if (scenario.contains("expect")) read_expect(scenario["expect"], s, source);

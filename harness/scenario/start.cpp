@@ -127,6 +127,11 @@ std::vector<double> initial_velocities(const Scene& scene) {
 }
 
 EdgeCell edge_cell(const Cloth& c, const Edge& e) {
+  if (c.mesh) {
+    const auto before = [](const Edge& p, const Edge& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; };
+    const auto at = std::lower_bound(c.mesh->edges.begin(), c.mesh->edges.end(), e, before);
+    return {e.rest_m, c.mesh->areas_m2[static_cast<std::size_t>(at - c.mesh->edges.begin())] / e.rest_m};
+  }
   const int a = static_cast<int>(e.a) % c.columns, b = static_cast<int>(e.b) % c.columns;
   const bool down = e.a / static_cast<std::uint32_t>(c.columns) != e.b / static_cast<std::uint32_t>(c.columns);
   const auto width = [&](int column) { return c.column_factors.empty() ? c.du() : c.line_u_m(column + 1) - c.line_u_m(column); };
@@ -137,6 +142,7 @@ EdgeCell edge_cell(const Cloth& c, const Edge& e) {
 
 std::optional<double> membrane_stiffness(const Scene& scene, const Edge& e) {
   const Material& m = scene.material;
+  if (scene.cloth.mesh) return m.membrane_stiffness_N_per_m;
   const auto of_cell = [&](int column) {
     std::optional<double> Y = m.membrane_stiffness_N_per_m;
     for (const StiffnessRegion& r : m.regions)

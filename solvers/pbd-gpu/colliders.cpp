@@ -13,13 +13,6 @@ using vulkan::Access;
 using vulkan::Buffer;
 
 template <class T>
-std::vector<std::uint8_t> bytes_of(const std::vector<T>& items) {
-  std::vector<std::uint8_t> bytes(items.size() * sizeof(T));
-  std::memcpy(bytes.data(), items.data(), bytes.size());
-  return bytes;
-}
-
-template <class T>
 void write_to(const Buffer& host, const std::vector<T>& items) {
   std::memcpy(host.mapped(), items.data(), items.size() * sizeof(T));
 }

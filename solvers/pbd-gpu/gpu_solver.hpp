@@ -1,4 +1,5 @@
 #pragma once
+#include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -15,11 +16,20 @@ inline constexpr std::uint32_t kGroupSize = 64;
 
 class XpbdContact;
 class Lines;
+class Chains;
 
 /// Bytes of one dispatch, counted from the scene (no contention retries of atomics).
 struct Traffic {
   double read_B = 0, write_B = 0;
 };
+
+/// What a buffer starts with.
+template <class T>
+std::vector<std::uint8_t> bytes_of(const std::vector<T>& items) {
+  std::vector<std::uint8_t> bytes(items.size() * sizeof(T));
+  std::memcpy(bytes.data(), items.data(), bytes.size());
+  return bytes;
+}
 
 /// What both methods share: device, buffers, one recorded frame submitted again and again, costs. A method fills in
 /// its buffers and its frame.
@@ -110,6 +120,7 @@ class GpuSolver : public ClothSolver {
   friend ColliderBuffers;
   friend XpbdContact;
   friend Lines;
+  friend Chains;
   friend GripBuffer;
   friend class PaperContact;
   struct Initial {

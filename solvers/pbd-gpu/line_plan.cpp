@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "chain_plan.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench::pbd_gpu {
@@ -63,6 +64,14 @@ bool start_within(const Scene& s, const Tethers& t) {
 
 }  // namespace
 
+double tether_stretch(const Scene& scene) {
+  const Cloth& c = scene.cloth;
+  const auto Y = scene.material.membrane_stiffness_N_per_m;
+  if (!Y) return 1;
+  const double rho = c.areal_density_kg_per_m2, length = std::hypot(c.width_m, c.height_m);
+  return 1 + 5 * rho * norm(scene.gravity_m_per_s2) * length / *Y + 2 * norm(c.initial_velocity_m_per_s) * std::sqrt(rho / *Y);
+}
+
 Tethers tethers_of(const Scene& scene) {
   Tethers t;
   const Cloth& c = scene.cloth;
@@ -76,11 +85,7 @@ Tethers tethers_of(const Scene& scene) {
   }
   t.to = rectangles(c, scene.pins.vertices);
   if (t.to.size() > Tethers::kMost) t.to.resize(Tethers::kMost);
-  if (const auto Y = scene.material.membrane_stiffness_N_per_m) {
-    const double rho = c.areal_density_kg_per_m2, length = std::hypot(c.width_m, c.height_m);
-    t.stretch += 5 * rho * norm(scene.gravity_m_per_s2) * length / *Y +
-                 2 * norm(scene.cloth.initial_velocity_m_per_s) * std::sqrt(rho / *Y);
-  }
+  t.stretch = tether_stretch(scene);
   if (!start_within(scene, t)) {
     t.to.clear();
     t.why_not = "the cloth starts stretched";
@@ -126,13 +131,15 @@ std::vector<std::uint8_t> taut_chains(const Scene& scene) {
 int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   if (const int given = settings.value("substeps", 0); given > 0) return given;
   const std::string quality = settings.value("quality", "default");
-  const double links = std::max(scene.cloth.columns, scene.cloth.rows) - 1;
+  const Cloth& c = scene.cloth;
+  const double links = c.mesh ? std::max(1.0, c.width_m / c.mesh->edge_m) : std::max(c.columns, c.rows) - 1;
   struct Rule {
     double least, links_a_substep;
   };
   const int k = quality == "fast" ? 0 : quality == "default" ? 1 : 2;
   const bool touched = !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins})).empty();
-  const Tethers tethers = settings.value("tethers", true) ? tethers_of(scene) : Tethers{};
+  const bool tethered = settings.value("tethers", true) &&
+                        (wants_chains(scene) ? tether_table(scene).a_vertex > 0 : !tethers_of(scene).to.empty());
   const auto Y = scene.material.membrane_stiffness_N_per_m;
   const bool stiff = !Y || *Y >= 1e4;
   // Of a frame, however long it is: a number of seconds in here would be one that similar scenes do not share. A link must not
@@ -144,13 +151,14 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   const Rule rule = !touched                           ? kUntouched[k]
                     : driven                           ? kSheet[k]
-                    : !tethers.to.empty()              ? (stiff ? kStiff[k] : kTethered[k])
+                    : tethered                         ? (stiff ? kStiff[k] : kTethered[k])
                     : !scene.needs.has(Feature::Shear) ? kStrips[k]
                     : scene.grips.vertices.empty()     ? kSheet[k]
                                                        : kPulled[k];
   // Few substeps leave the links at the pins most, which carry more the finer the cloth is.
   const double fine = k == 0 && rule.links_a_substep == kStiff[0].links_a_substep && links > 300 ? 1.2 : 1;
-  const double per_frame = std::max(rule.least, fine * links / rule.links_a_substep);
+  const double short_links = wants_chains(scene) ? substeps_for_short_links(scene) : 1;
+  const double per_frame = short_links * std::max(rule.least, fine * links / rule.links_a_substep);
   return static_cast<int>(std::clamp(std::lround(per_frame), 1L, 4096L));
 }
 

@@ -30,6 +30,9 @@ struct Tethers {
 /// whose springs give by far less than the slack of 5 rho g L / Y under its own weight (and 2 v0 / c by its speed).
 Tethers tethers_of(const Scene&);
 
+/// 1 and the slack.
+double tether_stretch(const Scene&);
+
 /// Of each chain of the four families (rows, columns, both diagonals; max(columns, rows) each): 1 if two held vertices
 /// may pull it taut, so that its inextensible links are one more than there are ways to move, else 0.
 std::vector<std::uint8_t> taut_chains(const Scene&);

@@ -70,6 +70,34 @@ struct LineConstants {
   float per_h;                   // 1/h
 };
 
+/// A vertex of a chain and the link to the next entry; `rest` below 0: there is none.
+struct ChainEntry {
+  uint vertex;       // CHAIN_NOBODY: filling
+  float rest;        // [m]
+  float compliance;  // [m/N]
+  float firmness;    // least compliance over h^2, as a share of the inverse mass
+};
+#define CHAIN_NOBODY 0xffffffffu
+
+/// A vertex that holds another within `reach` [m]; none: reach below 0.
+struct TetherEnd {
+  uint to;
+  float reach;
+};
+
+/// Push constants of the chain kernel of `xpbd`.
+struct ChainConstants {
+  vec4 gravity_h;     // g h [m/s]
+  float h;            // substep [s]
+  float loss;         // 1 - exp(-c h)
+  float speed_limit;  // [m/s]
+  float per_h;        // 1/h
+  uint first_entry;   // of the family
+  uint turn;          // LINES_FIRST
+  uint rounds;        // of cyclic reduction: 2^rounds links or more are in its longest chain
+  uint unused0;
+};
+
 // Colliders. Lengths in metres, positions relative to the method's origin.
 
 struct PlaneShape {
@@ -169,5 +197,8 @@ static_assert(sizeof(GripVertex) == 48);
 static_assert(sizeof(DistanceConstraint) == 16);
 static_assert(sizeof(PaperConstants) == 48);
 static_assert(sizeof(LineConstants) == 120);
+static_assert(sizeof(ChainEntry) == 16);
+static_assert(sizeof(TetherEnd) == 8);
+static_assert(sizeof(ChainConstants) == 48);
 }  // namespace clothbench::pbd_gpu
 #endif

@@ -268,6 +268,23 @@ CODE(line_pass_resident_keep_counted)
 }
 ;
 
+CODE(weld)
+#include "weld.inc"
+}
+;
+CODE(weld_counted)
+#include "weld_counted.inc"
+}
+;
+CODE(chain_pass)
+#include "chain_pass.inc"
+}
+;
+CODE(chain_pass_counted)
+#include "chain_pass_counted.inc"
+}
+;
+
 }  // namespace
 
 namespace shaders {
@@ -288,6 +305,8 @@ SHADER(kSatisfyCubeCollisions, satisfy_cube_collisions);
 SHADER(kSatisfyCapsuleCollisions, satisfy_capsule_collisions);
 SHADER(kSatisfyMeshCollisions, satisfy_mesh_collisions);
 SHADER(kContactBoxes, contact_boxes);
+SHADER(kChainPass, chain_pass);
+SHADER(kWeld, weld);
 // Bytes are counted without shuffles: what lanes load together counts once.
 #define SHUFFLED(id) {#id "_shuffle", {id##_shuffle, sizeof id##_shuffle}, {id##_counted, sizeof id##_counted}}
 const Shader kContactCandidates[2] = {CODES(contact_candidates), SHUFFLED(contact_candidates)};

@@ -19,13 +19,6 @@ using vulkan::Buffer;
 /// keeps the side of a vertex apart from the rounding of its position. More holds the cloth off visibly.
 constexpr double kLeastMargin = 0.01;
 
-template <class T>
-std::vector<std::uint8_t> bytes_of(const std::vector<T>& items) {
-  std::vector<std::uint8_t> bytes(items.size() * sizeof(T));
-  std::memcpy(bytes.data(), items.data(), bytes.size());
-  return bytes;
-}
-
 /// Share of the greatest distance between two points of an edge that take part in contact: round an open border half of
 /// it keeps a straight edge off, 1/sqrt(2) an edge that hangs round it at a right angle, and also the corner of a sheet
 /// off the middle of a cell, where there is no point that could feel it.

@@ -1,6 +1,7 @@
 // XPBD in small steps (Macklin, Müller & Chentanez 2016; Macklin et al. 2019), every grid line solved at once.
 #include <cmath>
 
+#include "chains.hpp"
 #include "crumpled.hpp"
 #include "gpu_solver.hpp"
 #include "line_plan.hpp"
@@ -21,9 +22,12 @@ class Xpbd final : public GpuSolver {
     // The slack of tethers is what an even sheet's own weight stretches.
     if (!scene().cloth.mass_factors.empty() && scene().material.membrane_stiffness_N_per_m)
       override_setting("tethers", false, "masses are scaled");
+    if (wants_chains(scene())) restrict_to_chains();
     crumpled_ = starts_crumpled(scene());
     std::vector<double> start = initial_positions(scene());
-    const std::vector<float>& w = inverse_mass_now();
+    const bool chained = wants_chains(scene());
+    const ChainCloth cloth = chained ? chain_cloth(scene()) : ChainCloth{};
+    const std::vector<float> w = welded(inverse_mass_now(), cloth);
     if (crumpled_) break_symmetry(scene(), w, start);
     const std::vector<double> start_velocity = initial_velocities(scene());
     const Vec3 origin = scene().cloth.center_m;
@@ -50,13 +54,34 @@ class Xpbd final : public GpuSolver {
     set_state(*x_, *v_, origin);
     add_colliders(origin, true);
     add_grips(origin, 1);
-    lines_ = std::make_unique<Lines>(*this, scene(), *x_, *v_, *rx_, *rv_);
-    if (grips() != nullptr && !lines_->moves_grips()) move_grips_ = &grips()->add_kernel(*x_, *v_);
+    if (chained)
+      chains_ = std::make_unique<Chains>(*this, scene(), cloth, *x_, *v_, *rx_, *rv_);
+    else
+      lines_ = std::make_unique<Lines>(*this, scene(), *x_, *v_, *rx_, *rv_);
+    if (grips() != nullptr && !(lines_ && lines_->moves_grips())) move_grips_ = &grips()->add_kernel(*x_, *v_);
     if ((scene().needs & kColliderFeatures).empty())
       leave_out("contact", "the scene has no collider");
     else
       contact_ = std::make_unique<XpbdContact>(*this, scene(), origin, *colliders(), *x_, *v_,
                                                settings()["contact_samples"].get<std::uint32_t>());
+  }
+
+  /// What chains do not do: more iterations with multipliers kept, copies, bending, contact between the vertices of a mesh.
+  void restrict_to_chains() {
+    if (scene().needs.has(Feature::Bend)) throw Error("solver xpbd: bending is of even grids alone, and this cloth is none; expected bending_rigidity_N_m 0");
+    if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: takes even grids alone");
+    override_setting("iterations", 1, "its links are not all alike: chains take one iteration");
+    if (scene().cloth.mesh && !scene().colliders.empty()) override_setting("contact_samples", 0, "the cloth is a triangle mesh: its vertices alone take part in contact");
+  }
+
+  /// Inverse masses of particles: what is welded together has one, and is held if any of it is.
+  static std::vector<float> welded(std::vector<float> w, const ChainCloth& cloth) {
+    for (const std::uint32_t v : cloth.welded) {
+      float& of = w[cloth.particle[v]];
+      of = of > 0 && w[v] > 0 ? 1 / (1 / of + 1 / w[v]) : 0;
+    }
+    for (const std::uint32_t v : cloth.welded) w[v] = w[cloth.particle[v]];
+    return w;
   }
 
   void record_frame(double dt_s) override {
@@ -65,14 +90,17 @@ class Xpbd final : public GpuSolver {
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
     if (contact_) contact_->record_frame(dt_s, substeps);
-    if (lines_->whole_frame() && !contact_) {
+    if (lines_ && lines_->whole_frame() && !contact_) {
       lines_->record(0, substeps, substeps, dt_s);
       return;
     }
     for (int s = 0; s < substeps; ++s) {
       // First, so that a vertex let go is free in all of its frame.
       if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
-      lines_->record(s, 1, substeps, dt_s);
+      if (lines_)
+        lines_->record(s, 1, substeps, dt_s);
+      else
+        chains_->record(substeps, dt_s);
       if (contact_) contact_->record_substep(s, substeps, dt_s);
     }
   }
@@ -86,10 +114,11 @@ class Xpbd final : public GpuSolver {
     return static_cast<int>(std::ceil(std::min(dt_s, std::max(kMost_s, frame)) / frame - 1e-9));
   }
 
-  static constexpr int kCrumpledSubsteps = 2;  ///< times: with fewer a tangle takes longer than a second
+  static constexpr int kCrumpledSubsteps = 4;  ///< times: with fewer a tangle takes longer than a second
 
   bool crumpled_ = false;
-  std::unique_ptr<Lines> lines_;
+  std::unique_ptr<Lines> lines_;    ///< or
+  std::unique_ptr<Chains> chains_;  ///< if links are not all alike
   std::unique_ptr<XpbdContact> contact_;
   vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *rx_ = nullptr, *rv_ = nullptr;
   const vulkan::Kernel* move_grips_ = nullptr;
@@ -107,7 +136,8 @@ SolverInfo xpbd_info() {
   info.on_gpu = true;
   info.supports = {Feature::Stretch,    Feature::Shear,      Feature::Bend,     Feature::Damping,    Feature::Pins,
                    Feature::MovingPins, Feature::Sphere,     Feature::Box,      Feature::Plane,      Feature::Capsules,
-                   Feature::StaticMesh, Feature::MovingMesh, Feature::Friction, Feature::DoubleSided, Feature::Spin};
+                   Feature::StaticMesh, Feature::MovingMesh, Feature::Friction, Feature::DoubleSided, Feature::Spin,
+                   Feature::UnevenGrid, Feature::Regions,    Feature::ClothMesh};
   info.settings = {
       {"quality", "\"default\"", "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
       {"substeps", "0", "substeps a frame; 0: by quality"},

@@ -12,6 +12,7 @@ static_assert(static_cast<int>(Collider::Shape::Plane) == CLOTHBENCH_SHAPE_PLANE
               static_cast<int>(Collider::Shape::Mesh) == CLOTHBENCH_SHAPE_MESH);
 
 bool on_border(const Cloth& c, const Edge& e) {
+  if (c.mesh) return false;
   const auto columns = static_cast<std::uint32_t>(c.columns), rows = static_cast<std::uint32_t>(c.rows);
   const bool along_u = e.a / columns == e.b / columns;
   const std::uint32_t line = along_u ? e.a / columns : e.a % columns;

@@ -21,6 +21,7 @@ double stiffness(const Scene& s, const Edge& e) {
 }
 
 bool on_border(const Cloth& c, const Edge& e) {
+  if (c.mesh) return false;
   const auto columns = static_cast<std::uint32_t>(c.columns), rows = static_cast<std::uint32_t>(c.rows);
   const std::uint32_t ia = e.a % columns, ja = e.a / columns, ib = e.b % columns, jb = e.b / columns;
   if (ja == jb) return ja == 0 || ja == rows - 1;

@@ -50,6 +50,11 @@ def scenes():
     (HERE / "scene.dict").write_text("".join(f'"\\"{w}\\""\n' for w in sorted(words)))
 
 
+def meshes():
+    put("obj", "tetrahedron.obj", "".join(["v %d %d %d\n" % p for p in CORNERS] + ["f %d %d %d\n" % tuple(i + 1 for i in t) for t in TRIANGLES]).encode())
+    put("obj", "quads.obj", b"# two\no sheet\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf -5/1/1 -2//1 -1 -4\n")
+
+
 def rooms():
     def packed(kind, values):
         return base64.b64encode(struct.pack(f"<{len(values)}{kind}", *values)).decode()
@@ -113,5 +118,5 @@ def hdf5():
     put("hdf5", "header", bytes([7, 0, 0, 0, 0]) + b'{"scene":"s","solver":"x","setting":"d","settings":{},"stages":[]}')
 
 
-for write in (scenes, rooms, hands, tracks, raw, hdf5):
+for write in (scenes, meshes, rooms, hands, tracks, raw, hdf5):
     write()

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "contact_scenes.hpp"
+#include "mesh_scene.hpp"
 #include "recorded_access.hpp"
 
 namespace clothbench::pbd_gpu {
@@ -27,6 +28,8 @@ std::vector<Cell> cells() {
           {"xpbd", {{"substeps", 2}, {"iterations", 2}}, full},
           {"xpbd", {{"substeps", 2}}, everything(full)},
           {"xpbd", {{"substeps", 2}, {"contact_samples", 0}}, everything(full)},
+          {"xpbd", {{"substeps", 2}}, everything(mesh_sheet(7))},
+          {"xpbd", {{"substeps", 2}}, with_pins(with_damping(uneven(sheet(17, 5), 3, 1e-3)))},
           {"xpbd", {{"substeps", 2}}, moving(with_collider(full, sphere({0, 0, 0}, 0.1)), {3, 20}, 2)}};
 }
 

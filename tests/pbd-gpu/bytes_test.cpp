@@ -1,5 +1,6 @@
 // The counted bytes of every stage are what an instrumented build of the same kernels counts, access by access.
 #include "contact_scenes.hpp"
+#include "mesh_scene.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -52,6 +53,13 @@ TEST_F(Bytes, OfEveryStageAtManySizes) {
     }
     expect_equal("paper", doubled(full), {{"iterations", 1}, {"readback", "blocking"}});
   }
+}
+
+TEST_F(Bytes, OfChains) {
+  expect_equal("xpbd", mesh_sheet(20), {{"substeps", 2}});
+  expect_equal("xpbd", with_damping(mesh_tube(12, 9)), {{"substeps", 3}});
+  expect_equal("xpbd", with_pins(uneven(sheet(17, 9), 3, 0.2)), {{"substeps", 2}});
+  expect_equal("xpbd", with_pins(uneven(sheet(17, 9), 3, 1e-3)), {{"substeps", 2}});
 }
 
 TEST_F(Bytes, OfContactWithAndWithoutFriction) {

@@ -30,6 +30,7 @@ enum class Feature : std::uint8_t {
   UnevenGrid,       ///< cells of different widths (cloth.column_factors)
   Regions,          ///< a membrane stiffness that changes from column to column (material.regions)
   Spin,             ///< a start that turns: another velocity at every vertex
+  ClothMesh,        ///< a triangle mesh instead of a grid (cloth.mesh)
   Count
 };
 
@@ -38,7 +39,7 @@ inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::C
 inline constexpr std::array<std::string_view, kFeatureCount> kFeatureNames = {
     "stretch",     "shear",       "bend",     "damping",      "pins",             "moving_pins",    "sphere", "box", "plane",
     "capsules",    "static_mesh", "moving_mesh", "friction",  "double_sided",     "duplicated_layer",
-    "self_collision", "render",   "uneven_grid", "regions", "spin"};
+    "self_collision", "render",   "uneven_grid", "regions", "spin", "cloth_mesh"};
 
 constexpr std::string_view name_of(Feature f) { return kFeatureNames[static_cast<std::size_t>(f)]; }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -35,11 +36,28 @@ struct Start {
   bool at_rest() const { return shape == Shape::Rest && noise_m == 0 && merged.empty() && moved.empty(); }
 };
 
-/// Rectangular sheet. Vertex (i, j) has index j*columns + i, material coordinates (i*du, j*dv), and lies in the plane
+enum class EdgeKind : std::uint8_t { Structural, Shear, SkipOne };
+struct Edge {
+  std::uint32_t a, b;
+  double rest_m;
+  EdgeKind kind;
+};
+
+/// A cloth of any shape and topology, at rest, in the frame of axis_u, axis_v and axis_u x axis_v round center_m.
+struct ClothMesh {
+  std::vector<Vec3> vertices;                           ///< [m]
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of positive area
+  std::vector<Edge> edges;      ///< each once, all structural, a < b, ascending
+  std::vector<double> areas_m2; ///< of each edge, the sum of its triangles' areas
+  double edge_m = 0;            ///< mean length of an edge
+};
+
+/// Rectangular sheet, or a triangle mesh. Vertex (i, j) has index j*columns + i, material coordinates (i*du, j*dv), and lies in the plane
 /// spanned by `axis_u` and `axis_v` (orthonormal) around `center_m`.
 struct Cloth {
-  int columns = 0, rows = 0;      ///< vertices along u and v, each >= 2
-  double width_m = 0, height_m = 0;  ///< rest length along u and v
+  int columns = 0, rows = 0;      ///< vertices along u and v, each >= 2; of a mesh: all its vertices, and 1
+  double width_m = 0, height_m = 0;  ///< rest length along u and v; of a mesh: the two longest sides of its box
+  std::shared_ptr<const ClothMesh> mesh = nullptr;  ///< null: the grid
   double areal_density_kg_per_m2 = 0;
   Sides sides = Sides::Single;
   Vec3 center_m{}, axis_u{}, axis_v{};
@@ -55,8 +73,8 @@ struct Cloth {
   Start start;
 
   std::size_t vertex_count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
-  double du() const { return width_m / (columns - 1); }
-  double dv() const { return height_m / (rows - 1); }
+  double du() const { return mesh ? mesh->edge_m : width_m / (columns - 1); }
+  double dv() const { return mesh ? mesh->edge_m : height_m / (rows - 1); }
   /// Rest coordinate of grid line `i` along u, 0 to width_m, whatever the cells' widths; du() is their mean.
   double line_u_m(int i) const;
 };
@@ -152,7 +170,7 @@ struct Scene {
 };
 
 /// Lumped vertex masses [kg], size vertex_count: quarter of each adjacent cell ("quad-lumped": interior rho*du*dv,
-/// edge half, corner quarter), times the vertex's factor.
+/// edge half, corner quarter), times the vertex's factor. Of a mesh a third of each adjacent triangle.
 std::vector<double> vertex_masses(const Scene&);
 
 /// Initial positions [m], size 3*vertex_count, xyz interleaved.
@@ -166,7 +184,10 @@ std::vector<double> initial_velocities(const Scene&);
 std::optional<double> membrane_stiffness(const Scene&, const struct Edge&);
 
 /// The cell a structural or shear edge belongs to [m]: its side along the edge (along u for a diagonal) and the side across,
-/// which for an edge along v is the mean of its two columns'. An edge on the border carries half of it.
+/// which for an edge along v is the mean of its two columns'. An edge on the border carries half of it. Of a mesh (border included):
+/// the edge, and the areas of its triangles over its length, so that Y across/along is the spring of Van Gelder 1998 ("Approximate
+/// simulation of elastic membranes by triangulated spring meshes"), which on equilateral triangles makes a sheet of exactly Y
+/// with Poisson ratio 1/3.
 struct EdgeCell {
   double along_m = 0, across_m = 0;
 };
@@ -185,14 +206,7 @@ std::vector<std::uint32_t> clamp_vertices(const Cloth&, const std::string& edge)
 /// Triangles of the render and metric mesh, 3 indices each, 2 per cell, all wound alike (normal = axis_u x axis_v).
 std::vector<std::array<std::uint32_t, 3>> triangles(const Cloth&);
 
-enum class EdgeKind : std::uint8_t { Structural, Shear, SkipOne };
-struct Edge {
-  std::uint32_t a, b;
-  double rest_m;
-  EdgeKind kind;
-};
-
-/// Grid edges of one kind with their rest lengths, in a fixed order.
+/// Grid edges of one kind with their rest lengths, in a fixed order. All edges of a mesh are structural.
 std::vector<Edge> edges(const Cloth&, EdgeKind);
 
 }  // namespace clothbench

@@ -87,6 +87,7 @@ std::pair<double, double> start_of(const Scene& s) {
 }  // namespace
 
 double rest_distance(const Cloth& c, std::uint32_t a, std::uint32_t b) {
+  if (c.mesh) return distance(c.mesh->vertices[a], c.mesh->vertices[b]);
   const int ia = static_cast<int>(a) % c.columns, ib = static_cast<int>(b) % c.columns;
   const int ja = static_cast<int>(a) / c.columns, jb = static_cast<int>(b) / c.columns;
   return std::hypot(c.line_u_m(ia) - c.line_u_m(ib), (ja - jb) * c.dv());

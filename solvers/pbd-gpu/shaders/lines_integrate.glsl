@@ -5,14 +5,7 @@
 // which is pinned, is, for the thread's vertex k.
 vec3 rest_pos[K], rest_vel[K];  // what the last sums could not hold
 
-/// a + b = sum + rest exactly.
-void two_sum(vec3 a, vec3 b, out vec3 sum, out vec3 rest) {
-  precise vec3 s = a + b;
-  precise vec3 part = s - a;
-  precise vec3 left = (a - (s - part)) + (b - part);
-  sum = s;
-  rest = left;
-}
+#include "sums.glsl"
 
 /// The nearest vertex of a rectangle of pinned ones.
 uvec2 nearest(uvec2 at, uint first, uint last) {

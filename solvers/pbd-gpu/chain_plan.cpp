@@ -1,0 +1,318 @@
+#include "chain_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "line_plan.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// Of chains with two held vertices or more: see lines.cpp.
+constexpr float kFirmness = 1e-3f;
+
+/// Edges below this share of the mean are welded.
+constexpr double kSliver = 0.02;
+
+double mean_length(const std::vector<Edge>& all) {
+  double sum = 0;
+  for (const Edge& e : all) sum += e.rest_m;
+  return sum / static_cast<double>(all.size());
+}
+
+Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+std::vector<Strand> grid_strands(const Scene& s) {
+  const int columns = s.cloth.columns, rows = s.cloth.rows;
+  std::vector<Strand> out;
+  const auto line = [&](int i, int j, int di, int dj, int family) {
+    Strand strand{{}, family};
+    for (; i >= 0 && i < columns && j < rows; i += di, j += dj) strand.vertices.push_back(static_cast<std::uint32_t>(j * columns + i));
+    if (strand.vertices.size() > 1) out.push_back(std::move(strand));
+  };
+  // Families in the order in which they are solved: diagonals, columns, rows (README, "Lines").
+  int family = 0;
+  if (s.needs.has(Feature::Shear)) {
+    for (int i = 0; i < columns; ++i) line(i, 0, -1, 1, family);
+    for (int j = 1; j < rows; ++j) line(columns - 1, j, -1, 1, family);
+    ++family;
+    for (int i = 0; i < columns; ++i) line(i, 0, 1, 1, family);
+    for (int j = 1; j < rows; ++j) line(0, j, 1, 1, family);
+    ++family;
+  }
+  for (int i = 0; i < columns; ++i) line(i, 0, 0, 1, family);
+  ++family;
+  for (int j = 0; j < rows; ++j) line(0, j, 1, 0, family);
+  return out;
+}
+
+/// At every vertex edges are paired with those that go on straightest; what is paired all along makes a strand.
+std::vector<Strand> mesh_strands(const ClothMesh& m) {
+  constexpr double kStraight = -0.5;  // a turn of less than 60 degrees
+  const std::size_t n = m.vertices.size(), count = m.edges.size();
+  std::vector<std::vector<std::uint32_t>> at(n);
+  for (std::uint32_t e = 0; e < count; ++e) {
+    at[m.edges[e].a].push_back(e);
+    at[m.edges[e].b].push_back(e);
+  }
+  constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::array<std::uint32_t, 2>> next(count, {kNone, kNone});  // at end a, at end b
+  for (std::uint32_t v = 0; v < n; ++v) {
+    struct Pair {
+      double cosine;
+      std::uint32_t p, q;
+    };
+    std::vector<Pair> pairs;
+    const auto away = [&](std::uint32_t e) { return minus(m.vertices[m.edges[e].a == v ? m.edges[e].b : m.edges[e].a], m.vertices[v]); };
+    for (std::size_t i = 0; i < at[v].size(); ++i)
+      for (std::size_t k = i + 1; k < at[v].size(); ++k) {
+        const std::uint32_t p = at[v][i], q = at[v][k];
+        const double cosine = dot(away(p), away(q)) / (m.edges[p].rest_m * m.edges[q].rest_m);
+        if (cosine < kStraight) pairs.push_back({cosine, p, q});
+      }
+    std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
+      return a.cosine != b.cosine ? a.cosine < b.cosine : a.p != b.p ? a.p < b.p : a.q < b.q;
+    });
+    for (const Pair& pair : pairs) {
+      std::uint32_t& p = next[pair.p][m.edges[pair.p].a == v ? 0 : 1];
+      std::uint32_t& q = next[pair.q][m.edges[pair.q].a == v ? 0 : 1];
+      if (p != kNone || q != kNone) continue;
+      p = pair.q;
+      q = pair.p;
+    }
+  }
+  std::vector<std::uint8_t> done(count, 0);
+  std::vector<Strand> out;
+  const auto follow = [&](std::uint32_t e, std::uint32_t from) {
+    Strand strand{{from}, -1};
+    while (e != kNone && done[e] == 0) {
+      done[e] = 1;
+      const Edge& edge = m.edges[e];
+      from = edge.a == from ? edge.b : edge.a;
+      strand.vertices.push_back(from);
+      e = next[e][edge.a == from ? 0 : 1];
+    }
+    out.push_back(std::move(strand));
+  };
+  for (const std::size_t end : {0u, 1u})
+    for (std::uint32_t e = 0; e < count; ++e)
+      if (done[e] == 0 && next[e][end] == kNone) follow(e, end == 0 ? m.edges[e].a : m.edges[e].b);
+  for (std::uint32_t e = 0; e < count; ++e)
+    if (done[e] == 0) follow(e, m.edges[e].a);
+  return out;
+}
+
+bool on_border(const Cloth& c, const Edge& e) {
+  if (c.mesh) return false;
+  const auto columns = static_cast<std::uint32_t>(c.columns), rows = static_cast<std::uint32_t>(c.rows);
+  const std::uint32_t ia = e.a % columns, ja = e.a / columns, ib = e.b % columns, jb = e.b / columns;
+  if (ja == jb) return ja == 0 || ja == rows - 1;
+  return ia == ib && (ia == 0 || ia == columns - 1);
+}
+
+/// 1/k of a link [m/N]: the springs of lines.cpp, cell by cell.
+double compliance_of(const Scene& s, const Edge& e) {
+  const auto Y = membrane_stiffness(s, e);
+  if (!Y) return 0;
+  const auto [a, b] = edge_cell(s.cloth, e);
+  double k = *Y * b / a;
+  if (e.kind == EdgeKind::Shear)
+    k = 3.0 / 16 * *Y * (a * a + b * b) / (a * b);
+  else if (s.needs.has(Feature::Shear))
+    k = *Y * std::max(9.0 / 8 * b / a - 3.0 / 8 * a / b, 0.1 * b / a);
+  return 1 / (on_border(s.cloth, e) ? k / 2 : k);
+}
+
+}  // namespace
+
+bool wants_chains(const Scene& s) {
+  return !(s.needs & FeatureSet{Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions}).empty();
+}
+
+double substeps_for_short_links(const Scene& s) {
+  const std::vector<Edge> all = edges(s.cloth, EdgeKind::Structural);
+  const double mean = mean_length(all);
+  double shortest = mean;
+  for (const Edge& e : all)
+    if (e.rest_m >= kSliver * mean) shortest = std::min(shortest, e.rest_m);
+  return std::max(1.0, std::sqrt(mean / (2 * shortest)));
+}
+
+ChainCloth chain_cloth(const Scene& s) {
+  ChainCloth c;
+  c.particle.resize(s.cloth.vertex_count());
+  std::iota(c.particle.begin(), c.particle.end(), 0u);
+  std::vector<Edge> all = edges(s.cloth, EdgeKind::Structural);
+  const double mean = mean_length(all);
+  const auto root = [&](std::uint32_t v) {
+    while (c.particle[v] != v) v = c.particle[v];
+    return v;
+  };
+  if (s.grips.vertices.empty())
+    for (const Edge& e : all)
+      if (e.rest_m < kSliver * mean) {
+        const std::uint32_t a = root(e.a), b = root(e.b);
+        c.particle[std::max(a, b)] = std::min(a, b);
+      }
+  for (std::uint32_t v = 0; v < c.particle.size(); ++v) {
+    c.particle[v] = root(v);
+    if (c.particle[v] != v) c.welded.push_back(v);
+  }
+  if (s.needs.has(Feature::Shear)) {
+    const std::vector<Edge> diagonals = edges(s.cloth, EdgeKind::Shear);
+    all.insert(all.end(), diagonals.begin(), diagonals.end());
+  }
+  // Of links that welding made parallel the stiffnesses add up.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<double, double>> links;  // rest, stiffness
+  for (const Edge& e : all) {
+    const auto ends = std::minmax(c.particle[e.a], c.particle[e.b]);
+    if (ends.first == ends.second) continue;
+    const double compliance = compliance_of(s, e), stiffness = compliance > 0 ? 1 / compliance : INFINITY;
+    const auto [at, fresh] = links.emplace(ends, std::pair(e.rest_m, stiffness));
+    if (!fresh) at->second.second += stiffness;
+  }
+  for (const auto& [ends, link] : links)
+    c.links.push_back({ends.first, ends.second, static_cast<float>(link.first), static_cast<float>(1 / link.second)});
+  return c;
+}
+
+const ChainCloth::Link& ChainCloth::link(std::uint32_t a, std::uint32_t b) const {
+  const Link wanted{std::min(a, b), std::max(a, b), 0, 0};
+  return *std::lower_bound(links.begin(), links.end(), wanted,
+                           [](const Link& p, const Link& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
+}
+
+std::vector<Strand> strands(const Scene& s, const ChainCloth& cloth) {
+  std::vector<Strand> all = s.cloth.mesh ? mesh_strands(*s.cloth.mesh) : grid_strands(s);
+  if (cloth.welded.empty()) return all;
+  std::vector<std::uint8_t> seen(cloth.links.size(), 0);
+  std::vector<Strand> out;
+  for (const Strand& strand : all) {
+    Strand part{{cloth.particle[strand.vertices[0]]}, strand.family};
+    const auto end = [&](std::uint32_t next) {
+      if (part.vertices.size() > 1) out.push_back(part);
+      part.vertices = {next};
+    };
+    for (std::size_t k = 1; k < strand.vertices.size(); ++k) {
+      const std::uint32_t before = part.vertices.back(), now = cloth.particle[strand.vertices[k]];
+      if (before == now) continue;
+      std::uint8_t& is_seen = seen[static_cast<std::size_t>(&cloth.link(before, now) - cloth.links.data())];
+      if (is_seen != 0)
+        end(now);
+      else
+        part.vertices.push_back(now);
+      is_seen = 1;
+    }
+    end(0);
+  }
+  return out;
+}
+
+std::uint32_t ChainFamily::longest() const {
+  std::size_t most = 1;
+  for (const auto& c : chains) most = std::max(most, c.size());
+  return static_cast<std::uint32_t>(most - 1);
+}
+
+std::vector<ChainFamily> families_of(std::vector<Strand> all, std::size_t vertices, std::uint32_t block) {
+  // Another family is another pass; a chain that is cut short stretches where it is cut.
+  constexpr std::size_t kEnough = 6;
+  constexpr std::size_t kShort = 4;
+  int wanted = 0;
+  for (const Strand& s : all) wanted = std::max(wanted, s.family + 1);
+  std::stable_sort(all.begin(), all.end(), [](const Strand& a, const Strand& b) { return a.vertices.size() > b.vertices.size(); });
+  std::vector<ChainFamily> families(static_cast<std::size_t>(wanted));
+  std::vector<std::vector<std::uint8_t>> used(families.size(), std::vector<std::uint8_t>(vertices, 0));
+  std::vector<std::uint32_t> stamp(vertices, 0);
+  std::uint32_t now = 0;
+  /// Links that go into family `f` from vertex number `from` of the strand on.
+  const auto fits = [&](std::size_t f, const Strand& s, std::size_t from) {
+    ++now;
+    std::size_t k = from;
+    while (k < s.vertices.size() && k - from < block && used[f][s.vertices[k]] == 0 && stamp[s.vertices[k]] != now) stamp[s.vertices[k++]] = now;
+    return k - from > 1 ? k - from - 1 : 0;
+  };
+  for (const Strand& s : all)
+    for (std::size_t from = 0; from + 1 < s.vertices.size();) {
+      std::size_t best = 0, most = 0;
+      for (std::size_t f = 0; f < families.size(); ++f)
+        if (const std::size_t links = fits(f, s, from); links > most) {
+          best = f;
+          most = links;
+        }
+      if (s.family >= 0)
+        if (const std::size_t links = fits(static_cast<std::size_t>(s.family), s, from); links > 0) {
+          best = static_cast<std::size_t>(s.family);
+          most = links;
+        }
+      const std::size_t left = s.vertices.size() - 1 - from;
+      if (most == 0 || (most < std::min(kShort, left) && families.size() < kEnough)) {
+        families.emplace_back();
+        used.emplace_back(vertices, 0);
+        best = families.size() - 1;
+        most = fits(best, s, from);
+      }
+      const auto first = s.vertices.begin() + static_cast<std::ptrdiff_t>(from);
+      families[best].chains.emplace_back(first, first + static_cast<std::ptrdiff_t>(most + 1));
+      for (std::size_t k = from; k <= from + most; ++k) used[best][s.vertices[k]] = 1;
+      from += most;
+    }
+  // What was opened later has shorter chains: it goes first, and the long ones have the last word.
+  if (wanted == 0)
+    std::reverse(families.begin(), families.end());
+  else
+    std::rotate(families.begin(), families.begin() + wanted, families.end());
+  return families;
+}
+
+std::vector<ChainEntry> entries_of(const ChainFamily& family, const Scene& scene, const ChainCloth& cloth, std::uint32_t block,
+                                   bool everybody) {
+  const std::size_t n = scene.cloth.vertex_count();
+  std::vector<std::uint8_t> held(n, 0), seen(n, 0);
+  for (const std::uint32_t v : scene.pins.vertices) held[cloth.particle[v]] = 1;
+  for (const std::uint32_t v : scene.grips.vertices) held[v] = 1;
+  std::vector<const std::vector<std::uint32_t>*> longest_first;
+  for (const auto& chain : family.chains) longest_first.push_back(&chain);
+  std::stable_sort(longest_first.begin(), longest_first.end(), [](const auto* a, const auto* b) { return a->size() > b->size(); });
+  std::vector<std::vector<ChainEntry>> blocks;
+  std::vector<std::size_t> with_room;  // blocks, by what is left of them
+  const auto put = [&](const std::vector<ChainEntry>& entries) {
+    for (std::size_t k = with_room.size(); k-- > 0;) {
+      std::vector<ChainEntry>& b = blocks[with_room[k]];
+      if (b.size() + entries.size() > block) continue;
+      b.insert(b.end(), entries.begin(), entries.end());
+      if (b.size() == block) with_room.erase(with_room.begin() + static_cast<std::ptrdiff_t>(k));
+      return;
+    }
+    blocks.push_back(entries);
+    if (entries.size() < block) with_room.push_back(blocks.size() - 1);
+    if (with_room.size() > 16) with_room.erase(with_room.begin());  // nearly full ones: not worth looking at again
+  };
+  for (const auto* chain : longest_first) {
+    const auto held_ones = std::count_if(chain->begin(), chain->end(), [&](std::uint32_t v) { return held[v] != 0; });
+    std::vector<ChainEntry> entries;
+    for (std::size_t k = 0; k < chain->size(); ++k) {
+      const bool goes_on = k + 1 < chain->size();
+      const ChainCloth::Link l = goes_on ? cloth.link((*chain)[k], (*chain)[k + 1]) : ChainCloth::Link{0, 0, -1, 0};
+      entries.push_back({(*chain)[k], l.rest_m, l.compliance_m_per_N, held_ones > 1 ? kFirmness : 0.0f});
+      seen[(*chain)[k]] = 1;
+    }
+    put(entries);
+  }
+  if (everybody)
+    for (std::uint32_t v = 0; v < n; ++v)
+      if (seen[v] == 0 && cloth.particle[v] == v) put({{v, -1, 0, 0}});
+  std::vector<ChainEntry> out;
+  for (std::vector<ChainEntry>& b : blocks) {
+    b.resize(block, {CHAIN_NOBODY, -1, 0, 0});
+    out.insert(out.end(), b.begin(), b.end());
+  }
+  return out;
+}
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,37 @@
+#pragma once
+#include <vector>
+
+#include "chain_plan.hpp"
+#include "gpu_solver.hpp"
+
+namespace clothbench::pbd_gpu {
+
+/// The constraints of `xpbd` where links are not all alike (triangle meshes, uneven grids, regions): what Lines is to even grids, a
+/// dispatch a family and substep. One iteration a substep, no bending.
+class Chains {
+ public:
+  /// Adds its stages, buffers and kernels; buffers as Lines has them.
+  Chains(GpuSolver& solver, const Scene& scene, const ChainCloth& cloth, const vulkan::Buffer& x, const vulkan::Buffer& v,
+         const vulkan::Buffer& rx, const vulkan::Buffer& rv);
+
+  void record(int substeps, double dt_s);
+
+ private:
+  struct Family {
+    std::uint32_t first_entry, entries, rounds;
+    double vertices, free;  ///< on its chains, or all of the first family's
+  };
+  void count();
+
+  GpuSolver& solver_;
+  const Scene& scene_;
+  const std::uint32_t block_;
+  std::uint32_t tethers_ = 0;
+  std::vector<Family> families_;
+  std::vector<ChainEntry> entries_;
+  int stage_ = -1;
+  const vulkan::Kernel *kernel_ = nullptr, *weld_ = nullptr;
+  std::uint32_t welds_ = 0;
+};
+
+}  // namespace clothbench::pbd_gpu

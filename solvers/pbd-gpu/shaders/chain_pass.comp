@@ -1,0 +1,118 @@
+#version 450
+// One family of chains of a cloth whose links are not all alike: a triangle mesh, a grid of uneven cells or stiffnesses. A chain is
+// a path of links of which each vertex of the cloth is on at most one in a family; a thread holds a vertex and the link to the next
+// entry, a workgroup a block of whole chains. The links of a chain are a tridiagonal system in their multipliers (Macklin, Mueller &
+// Chentanez 2016, eq. 18, for all at once), solved by parallel cyclic reduction. The first family of a substep has every vertex
+// and integrates what it loads.
+#define COUNTER_BINDING 6
+#extension GL_GOOGLE_include_directive : require
+#include "common.glsl"
+layout(constant_id = 1) const uint THREADS = 64u;  // of a workgroup: local_size_x
+layout(constant_id = 2) const uint FEATURES = 0u;  // LINES_..., pbd_shared.h
+layout(constant_id = 3) const uint TETHERS = 0u;   // a vertex
+layout(std430, binding = 0) buffer Positions { vec4 x[]; };  // w: inverse mass
+layout(std430, binding = 1) buffer Velocities { vec4 v[]; };
+layout(std430, binding = 2) buffer PositionRests { vec4 rx[]; };
+layout(std430, binding = 3) buffer VelocityRests { vec4 rv[]; };
+layout(std430, binding = 4) readonly buffer Entries { ChainEntry entries[]; };
+layout(std430, binding = 5) readonly buffer TetherEnds { TetherEnd tether_ends[]; };  // TETHERS a vertex
+layout(push_constant) uniform Push { ChainConstants p; };
+#include "sums.glsl"
+
+vec3 pos, vel, rest_pos, rest_vel;
+float w;
+
+void move(vec3 step) {
+  pos += step;
+  vel += step * p.per_h;
+}
+
+// What the neighbours n entries away hold; beyond the block: zeros. Two pages in turn: while some threads still read one,
+// others write the other.
+shared vec4 letters[2u * THREADS];
+uint page = 0u;
+void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
+  uint here = page, thread = gl_LocalInvocationIndex;
+  page = THREADS - page;
+  letters[here + thread] = mine;
+  barrier();
+  below = thread >= n ? letters[here + thread - n] : vec4(0.0);
+  above = thread + n < THREADS ? letters[here + thread + n] : vec4(0.0);
+}
+
+/// As in lines_integrate.glsl; pinned vertices are never written, so reading them here races with nothing.
+void integrate(uint i) {
+  vec3 sum, gain = p.gravity_h.xyz;
+  if ((FEATURES & LINES_LIMIT_SPEED) != 0u) {
+    float square = dot(vel, vel);
+    if (square > p.speed_limit * p.speed_limit) vel *= p.speed_limit * inversesqrt(square);
+  }
+  if ((FEATURES & LINES_DAMPING) != 0u) gain -= p.loss * vel;
+  two_sum(vel, gain + rest_vel, sum, rest_vel);
+  vel = sum;
+  two_sum(pos, p.h * sum + rest_pos, sum, rest_pos);
+  pos = sum;
+  for (uint t = 0u; t < TETHERS; ++t) {
+    COUNT_READ(24u)
+    TetherEnd end = tether_ends[TETHERS * i + t];
+    vec3 e = pos - x[end.to].xyz;
+    float square = dot(e, e);
+    if (end.reach >= 0.0 && square > end.reach * end.reach) move(e * (end.reach * inversesqrt(square) - 1.0));
+  }
+}
+
+void stretch(ChainEntry entry) {
+  vec4 none, next, below, above;
+  exchange(vec4(pos, w), 1u, none, next);
+  vec3 e = next.xyz - pos;
+  float square = dot(e, e), sum = w + next.w;
+  bool is = entry.rest >= 0.0 && sum > 0.0 && square > 0.0;
+  float per_l = inversesqrt(square), l = square * per_l;
+  vec3 g = is ? e * per_l : vec3(0.0);
+  // As in lines.glsl: what is pulled taut between held vertices gives way, by what keeps it regular and its tension from
+  // turning links farther than a substep resolves.
+  float firm = entry.firmness;
+  if (firm != 0.0 && entry.rest > 0.0) {
+    if (entry.compliance == 0.0) firm = max(firm, 4.0 * (l / entry.rest - 5.0));
+    else if ((FEATURES & LINES_SHEAR) == 0u) firm = max(firm, l / entry.rest - 1.0);
+  }
+  float soft = max(entry.compliance * p.per_h * p.per_h, firm * max(w, next.w));
+  exchange(vec4(g, 0.0), 1u, below, above);
+  float per_diagonal = is ? 1.0 / (sum + soft) : 1.0;
+  // x: of the link before, y: of the link after, z: right side; the diagonal is 1.
+  vec3 row = is ? vec3(-w * dot(below.xyz, g), -next.w * dot(g, above.xyz), entry.rest - l) * per_diagonal : vec3(0.0);
+  vec3 g_below = below.xyz;
+  for (uint r = 0u; r < p.rounds; ++r) {
+    exchange(vec4(row, 0.0), 1u << r, below, above);
+    float per = 1.0 / (1.0 - row.x * below.y - row.y * above.x);
+    row = vec3(-row.x * below.x, -row.y * above.y, row.z - row.x * below.z - row.y * above.z) * per;
+  }
+  exchange(vec4(row, 0.0), 1u, below, above);
+  move(w * (below.z * g_below - row.z * g));
+}
+
+void main() {
+  ChainEntry entry = LOAD(16u, entries, p.first_entry + item());
+  bool is = entry.vertex != CHAIN_NOBODY, first = (p.turn & LINES_FIRST) != 0u;
+  uint i = is ? entry.vertex : 0u;
+  pos = vel = rest_pos = rest_vel = vec3(0.0);
+  w = 0.0;
+  if (is) {
+    vec4 here = LOAD16(x, i);
+    pos = here.xyz;
+    w = here.w;
+    vel = LOAD16(v, i).xyz;
+    if (first) {
+      rest_pos = LOAD16(rx, i).xyz;
+      rest_vel = LOAD16(rv, i).xyz;
+      if (w > 0.0) integrate(i);
+    }
+  }
+  stretch(entry);
+  if (w == 0.0) return;
+  STORE16(x, i, vec4(pos, w));
+  STORE16(v, i, vec4(vel, 0.0));
+  if (!first) return;
+  STORE16(rx, i, vec4(rest_pos, 0.0));
+  STORE16(rv, i, vec4(rest_vel, 0.0));
+}

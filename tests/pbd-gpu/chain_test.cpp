@@ -1,0 +1,181 @@
+// Cloths whose links are not all alike: the plan of chains, and what they do against a reference in double precision.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "chain_plan.hpp"
+#include "gpu_fixture.hpp"
+#include "mesh_scene.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+using Ends = std::pair<std::uint32_t, std::uint32_t>;
+
+std::vector<ChainFamily> plan_of(const Scene& s, const ChainCloth& cloth, std::uint32_t block) {
+  return families_of(strands(s, cloth), s.cloth.vertex_count(), block);
+}
+
+/// Links of every chain, and whether no vertex of a family is on two.
+std::multiset<Ends> links_of(const std::vector<ChainFamily>& families, std::size_t vertices, std::uint32_t block) {
+  std::multiset<Ends> out;
+  for (const ChainFamily& f : families) {
+    std::vector<int> seen(vertices, 0);
+    for (const auto& chain : f.chains) {
+      EXPECT_GE(chain.size(), 2u);
+      EXPECT_LE(chain.size(), block);
+      for (const std::uint32_t v : chain) EXPECT_EQ(++seen[v], 1) << v;
+      for (std::size_t k = 1; k < chain.size(); ++k) out.insert(std::minmax(chain[k - 1], chain[k]));
+    }
+  }
+  return out;
+}
+
+TEST(ChainPlan, HasEveryLinkOnceAndNoVertexTwiceInAFamily) {
+  for (const Scene& s : {mesh_sheet(9), mesh_sheet(20), mesh_tube(12, 7), uneven(sheet(17, 9), 4, 0.3), uneven(sheet(40, 3), 4, 0.3)})
+    for (const std::uint32_t block : {4u, 16u, 256u}) {
+      const ChainCloth cloth = chain_cloth(s);
+      std::multiset<Ends> wanted;
+      for (const ChainCloth::Link& l : cloth.links) wanted.insert({l.a, l.b});
+      EXPECT_EQ(links_of(plan_of(s, cloth, block), s.cloth.vertex_count(), block), wanted) << s.cloth.columns << " " << block;
+    }
+}
+
+TEST(ChainPlan, TakesTheFourFamiliesOfAGridWhole) {
+  const Scene s = uneven(sheet(17, 9), 4, 0.3);
+  const std::vector<ChainFamily> families = plan_of(s, chain_cloth(s), 256);
+  ASSERT_EQ(families.size(), 4u);
+  EXPECT_EQ(families[3].chains.size(), 9u) << "rows have the last word";
+  EXPECT_EQ(families[3].longest(), 16u);
+  EXPECT_EQ(families[2].chains.size(), 17u);
+}
+
+TEST(ChainPlan, WeldsSliversAndAddsUpWhatBecomesParallel) {
+  const Scene wide = uneven(sheet(17, 9), 4, 0.3), thin = uneven(sheet(17, 9), 4, 1e-3);
+  EXPECT_TRUE(chain_cloth(wide).welded.empty());
+  const ChainCloth cloth = chain_cloth(thin);
+  EXPECT_EQ(cloth.welded.size(), 9u) << "one vertex a row";
+  EXPECT_EQ(cloth.particle[5], 4u);
+  const auto whole = [](const Scene& s) {
+    std::map<std::uint32_t, double> stiffness;  // of the links that leave row 0, by column
+    for (const ChainCloth::Link& l : chain_cloth(s).links)
+      if (l.a < 17 && l.b >= 17) stiffness[0] += 1 / static_cast<double>(l.compliance_m_per_N);
+    return stiffness[0];
+  };
+  EXPECT_GT(whole(thin), whole(uneven(sheet(17, 9), 4, 1))) << "diagonals of a sliver are stiff, and so is what they become";
+  for (const ChainFamily& f : plan_of(thin, cloth, 256))
+    for (const auto& chain : f.chains)
+      for (const std::uint32_t v : chain) EXPECT_EQ(cloth.particle[v], v);
+}
+
+TEST(ChainPlan, PacksChainsIntoBlocksAndFillsThemUp) {
+  const Scene s = mesh_sheet(20);
+  const ChainCloth cloth = chain_cloth(s);
+  const std::vector<ChainFamily> families = plan_of(s, cloth, 64);
+  for (const bool everybody : {false, true}) {
+    const std::vector<ChainEntry> entries = entries_of(families[0], s, cloth, 64, everybody);
+    ASSERT_EQ(entries.size() % 64, 0u);
+    std::set<std::uint32_t> seen;
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      EXPECT_TRUE(k % 64 != 63 || entries[k].rest < 0) << "a chain goes on into the next block";
+      EXPECT_TRUE(entries[k].vertex == CHAIN_NOBODY || seen.insert(entries[k].vertex).second);
+    }
+    EXPECT_EQ(seen.size() == s.cloth.vertex_count(), everybody);
+  }
+}
+
+TEST(TetherTable, ReachesAsFarAsTheClothIsWide) {
+  Scene s = mesh_sheet(9);
+  s.material.membrane_stiffness_N_per_m.reset();
+  const TetherTable t = tether_table(s);
+  ASSERT_EQ(t.a_vertex, 2u) << "two corners: " << t.why_not;
+  for (std::uint32_t v = 0; v < s.cloth.vertex_count(); ++v)
+    for (std::uint32_t k = 0; k < 2; ++k) {
+      const TetherEnd& e = t.ends[2 * v + k];
+      const Vec3 &a = s.cloth.mesh->vertices[v], &b = s.cloth.mesh->vertices[e.to];
+      EXPECT_NEAR(e.reach, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]), 1e-6) << "a convex sheet: straight";
+    }
+  Scene tube = mesh_tube(16, 8);
+  tube.material.membrane_stiffness_N_per_m.reset();
+  tube.pins.vertices = {0};
+  tube.needs.add(Feature::Pins);
+  const TetherTable round = tether_table(tube);
+  ASSERT_EQ(round.a_vertex, 1u);
+  const double half_way = std::numbers::pi * 0.2;  // the radius is 0.2 m
+  EXPECT_GT(round.ends[8].reach, 0.98 * half_way) << "round the tube, not through it";
+  EXPECT_LT(round.ends[8].reach, 1.01 * half_way);
+}
+
+class Chained : public Gpu {
+ protected:
+  static ClothState end_of(const Scene& s, const std::string& solver, const nlohmann::json& settings) {
+    const SolverEntry& e = find_solver(solver);
+    const auto made = e.make(complete_settings(e.info, settings), {});
+    made->load(s);
+    return after(*made, s, s.time.frames());
+  }
+  static double distance(const ClothState& a, const ClothState& b) {
+    double most = 0;
+    for (std::size_t k = 0; k < a.position.size(); ++k) {
+      const double d = std::abs(a.position[k] - b.position[k]);
+      most = d <= most ? most : d;
+    }
+    return most;
+  }
+};
+
+TEST_F(Chained, MeshesAndUnevenGridsEndWhereTheReferenceDoes) {
+  Scene mesh = with_damping(mesh_sheet(8)), grid = with_damping(with_pins(uneven(sheet(9, 7), 3, 0.3)));
+  for (Scene* s : {&mesh, &grid}) {
+    s->time = {60, 0.5};
+    s->material.membrane_stiffness_N_per_m = 300;
+    const ClothState right = end_of(*s, "reference", {{"substeps", 16}});
+    const double coarse = distance(end_of(*s, "xpbd", {{"substeps", 40}, {"tethers", false}}), right),
+                 fine = distance(end_of(*s, "xpbd", {{"substeps", 160}, {"tethers", false}}), right);
+    EXPECT_LT(fine, 4e-3) << s->cloth.rows;
+    EXPECT_LT(fine, 0.4 * coarse) << "of order one in the substep";
+  }
+}
+
+TEST_F(Chained, RepeatBitForBitAndFallFreely) {
+  Scene s = mesh_sheet(20);
+  const ClothState once = end_of(s, "xpbd", {});
+  EXPECT_EQ(once.position, end_of(s, "xpbd", {}).position);
+  s.pins.vertices.clear();
+  s.needs = s.needs - FeatureSet{Feature::Pins};
+  const std::vector<double> start = initial_positions(s);
+  const ClothState fallen = end_of(s, "xpbd", {});
+  const double fall = xpbd_free_fall_m(s, complete_settings(xpbd_info(), {}), s.time.frames());
+  for (std::size_t k = 0; k < start.size(); ++k)
+    EXPECT_NEAR(fallen.position[k], start[k] + (k % 3 == 1 ? fall : 0), 2e-6 * std::abs(fall)) << k;
+}
+
+TEST_F(Chained, SliversDoNotThrowWhatHangsOnThem) {
+  for (const double factor : {0.1, 0.03, 1e-3, 1e-6, 0.0}) {
+    Scene s = with_pins(uneven(sheet(17, 17), 8, factor));
+    s.pins.vertices.clear();
+    for (std::uint32_t j = 0; j < 17; ++j) {
+      s.pins.vertices.push_back(17 * j);
+      s.pins.vertices.push_back(17 * j + 16);
+    }
+    const ClothState end = end_of(s, "xpbd", {});
+    for (std::uint32_t j = 0; j < 17; ++j) {
+      const auto at = [&](std::uint32_t i, std::size_t k) { return end.position[3 * (17 * j + i) + k]; };
+      const double gap = std::hypot(at(9, 0) - at(8, 0), at(9, 1) - at(8, 1), at(9, 2) - at(8, 2)), rest = s.cloth.line_u_m(9) - s.cloth.line_u_m(8);
+      EXPECT_LE(gap, 1.1 * rest + 1e-9) << factor << ", row " << j;
+    }
+  }
+}
+
+TEST_F(Chained, RefuseWhatTheyDoNotDo) {
+  const auto solver = make("xpbd");
+  EXPECT_THROW(solver->load(with_bending(uneven(sheet(9, 7), 3, 0.3))), Error);
+  const Scene s = mesh_sheet(8);
+  const auto copies = make("xpbd", {{"batch", 2}});
+  EXPECT_THROW(copies->load(s), Error);
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu
