@@ -6,6 +6,7 @@
 
 #include "crumpled.hpp"
 #include "line_plan.hpp"
+#include "resident.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -48,14 +49,12 @@ Chains::Chains(GpuSolver& solver, const Scene& scene, const ChainCloth& cloth, c
   if (needs.has(Feature::Shear) || needs.has(Feature::ClothMesh)) features |= LINES_SHEAR;
   const bool driven = needs.has(Feature::MovingMesh) || needs.has(Feature::Capsules);
   if ((tethers_ > 0 || starts_crumpled(scene)) && !driven) features |= LINES_LIMIT_SPEED;
-  kernel_ = &solver.add_kernel(stage_, shaders::kChainPass,
-                               {{&x, Access::ReadWrite},
-                                {&v, Access::ReadWrite},
-                                {&rx, Access::ReadWrite},
-                                {&rv, Access::ReadWrite},
-                                {&entries, Access::Read},
-                                {ends, Access::Read}},
-                               sizeof(ChainConstants), {block_, features, tethers_}, block_);
+  const std::vector<vulkan::Binding> bindings = {{&x, Access::ReadWrite},  {&v, Access::ReadWrite},   {&rx, Access::ReadWrite},
+                                                 {&rv, Access::ReadWrite}, {&entries, Access::Read}, {ends, Access::Read}};
+  const std::vector<std::uint32_t> specialization = {block_, features, tethers_};
+  if (cloth.welded.empty()) add_resident(bindings, specialization);
+  if (resident_ == nullptr)
+    kernel_ = &solver.add_kernel(stage_, shaders::kChainPass, bindings, sizeof(ChainConstants), specialization, block_);
   if (cloth.welded.empty()) return;
   std::vector<std::uint32_t> welds;
   for (const std::uint32_t vertex : cloth.welded) {
@@ -67,8 +66,42 @@ Chains::Chains(GpuSolver& solver, const Scene& scene, const ChainCloth& cloth, c
   weld_ = &solver.add_kernel(stage_, shaders::kWeld, {{&x, Access::ReadWrite}, {&v, Access::ReadWrite}, {&pairs, Access::Read}}, 4);
 }
 
+/// As Lines::add_resident.
+void Chains::add_resident(const std::vector<vulkan::Binding>& bindings, const std::vector<std::uint32_t>& specialization) {
+  const std::string wanted = solver_.settings()["device_barrier"];
+  if (!(wanted == "always" || (wanted == "auto" && solver_.vulkan_device().is_discrete()))) return;
+  std::vector<ChainRange> ranges;
+  for (const Family& f : families_) ranges.push_back({f.first_entry, f.entries / block_, f.rounds, 0});
+  // What the trial reads of it is nothing.
+  const auto with_barrier = [&](const vulkan::Buffer& table, const vulkan::Buffer& meeting, const vulkan::Buffer& missed) {
+    std::vector<vulkan::Binding> b = bindings;
+    b.push_back({&table, Access::Read});
+    b.push_back({&meeting, Access::ReadWrite});
+    b.push_back({&missed, Access::Write});
+    return b;
+  };
+  const vulkan::Buffer& entries = *bindings[4].buffer;
+  const auto trial = [&](const vulkan::Buffer& meeting, const vulkan::Buffer& missed) { return with_barrier(entries, meeting, missed); };
+  if (!runs_at_once(solver_.device_, shaders::kChainsResident, specialization, block_, trial, all_groups(), ChainConstants{}, wanted == "always"))
+    return;
+  const vulkan::Buffer& table = solver_.add_buffer("chain families", ranges.size() * sizeof(ChainRange), bytes_of(ranges));
+  const vulkan::Buffer& meeting = solver_.add_buffer("meeting", 8);
+  vulkan::Buffer& missed = solver_.add_host_buffer("missed", 4);
+  std::memset(missed.mapped(), 0, 4);
+  solver_.set_missed(missed);
+  resident_ = &solver_.add_kernel(stage_, shaders::kChainsResident, with_barrier(table, meeting, missed), sizeof(ChainConstants), specialization,
+                                  block_);
+}
+
+/// As many workgroups as the family of most blocks has.
+vulkan::Groups Chains::all_groups() const {
+  std::uint32_t most = 0;
+  for (const Family& f : families_) most = std::max(most, f.entries);
+  return vulkan::groups_for(most, block_);
+}
+
 /// Vertices on each family's chains, and how many of them are free in this frame.
-void Chains::count() {
+void Chains::count_vertices() {
   const std::vector<float>& w = solver_.inverse_mass_now();
   for (Family& f : families_) {
     f.vertices = f.free = 0;
@@ -80,8 +113,14 @@ void Chains::count() {
   }
 }
 
-void Chains::record(int substeps, double dt_s) {
-  count();
+Traffic Chains::traffic(std::size_t family) const {
+  const Family& f = families_[family];
+  const double rests = family == 0 ? 1 : 0;
+  return {16.0 * f.entries + (32 + 32 * rests) * f.vertices + 24 * rests * tethers_ * f.free, (32 + 32 * rests) * f.free};
+}
+
+void Chains::record(int count, int substeps, double dt_s) {
+  count_vertices();
   const Cloth& cloth = scene_.cloth;
   const double h = dt_s / substeps, across = std::hypot(cloth.width_m, cloth.height_m);
   const Vec3 g = scene_.gravity_m_per_s2;
@@ -93,17 +132,29 @@ void Chains::record(int substeps, double dt_s) {
   c.speed_limit =
       f(2 * std::sqrt(2 * norm(g) * across) + 2 * norm(cloth.initial_velocity_m_per_s) + norm(cloth.spin_rad_per_s) * across);
   c.per_h = f(1 / h);
-  for (std::size_t k = 0; k < families_.size(); ++k) {
-    const Family& family = families_[k];
-    c.first_entry = family.first_entry;
-    c.turn = k == 0 ? LINES_FIRST : 0;
-    c.rounds = family.rounds;
-    const double rests = k == 0 ? 1 : 0;
-    const Traffic t{16.0 * family.entries + (32 + 32 * rests) * family.vertices + 24 * rests * tethers_ * family.free,
-                    (32 + 32 * rests) * family.free};
-    solver_.dispatch_groups(stage_, *kernel_, vulkan::groups_for(family.entries, block_), c, t);
+  c.patience = patience(solver_.vulkan_device()).in_a_frame;
+  c.families = static_cast<std::uint32_t>(families_.size());
+  c.substeps = static_cast<std::uint32_t>(count);
+  if (resident_ != nullptr) {
+    const vulkan::Groups groups = all_groups();
+    Traffic all;
+    for (std::size_t k = 0; k < families_.size(); ++k) {
+      all.read_B += count * (traffic(k).read_B + 16.0 * groups.x * groups.y * block_);
+      all.write_B += count * traffic(k).write_B;
+    }
+    solver_.dispatch_groups(stage_, *resident_, groups, c, all);
+    return;
   }
-  if (weld_ != nullptr) solver_.dispatch(stage_, *weld_, welds_, welds_, {40.0 * welds_, 32.0 * welds_});
+  for (int s = 0; s < count; ++s) {
+    for (std::size_t k = 0; k < families_.size(); ++k) {
+      const Family& family = families_[k];
+      c.first_entry = family.first_entry;
+      c.turn = k == 0 ? LINES_FIRST : 0;
+      c.rounds = family.rounds;
+      solver_.dispatch_groups(stage_, *kernel_, vulkan::groups_for(family.entries, block_), c, traffic(k));
+    }
+    if (weld_ != nullptr) solver_.dispatch(stage_, *weld_, welds_, welds_, {40.0 * welds_, 32.0 * welds_});
+  }
 }
 
 }  // namespace clothbench::pbd_gpu

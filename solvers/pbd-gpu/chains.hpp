@@ -7,21 +7,26 @@
 namespace clothbench::pbd_gpu {
 
 /// The constraints of `xpbd` where links are not all alike (triangle meshes, uneven grids, regions): what Lines is to even grids, a
-/// dispatch a family and substep. One iteration a substep, no bending.
+/// dispatch a family and substep, or all in one where the device runs all workgroups at once. One iteration a substep, no bending.
 class Chains {
  public:
   /// Adds its stages, buffers and kernels; buffers as Lines has them.
   Chains(GpuSolver& solver, const Scene& scene, const ChainCloth& cloth, const vulkan::Buffer& x, const vulkan::Buffer& v,
          const vulkan::Buffer& rx, const vulkan::Buffer& rv);
 
-  void record(int substeps, double dt_s);
+  /// `count` of `substeps` of a frame of dt_s.
+  void record(int count, int substeps, double dt_s);
+  bool whole_frame() const { return resident_ != nullptr && scene_.grips.vertices.empty(); }
 
  private:
   struct Family {
     std::uint32_t first_entry, entries, rounds;
     double vertices, free;  ///< on its chains, or all of the first family's
   };
-  void count();
+  void count_vertices();
+  void add_resident(const std::vector<vulkan::Binding>& bindings, const std::vector<std::uint32_t>& specialization);
+  Traffic traffic(std::size_t family) const;
+  vulkan::Groups all_groups() const;
 
   GpuSolver& solver_;
   const Scene& scene_;
@@ -30,7 +35,7 @@ class Chains {
   std::vector<Family> families_;
   std::vector<ChainEntry> entries_;
   int stage_ = -1;
-  const vulkan::Kernel *kernel_ = nullptr, *weld_ = nullptr;
+  const vulkan::Kernel *kernel_ = nullptr, *weld_ = nullptr, *resident_ = nullptr;
   std::uint32_t welds_ = 0;
 };
 

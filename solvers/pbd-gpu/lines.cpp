@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "crumpled.hpp"
+#include "resident.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -13,18 +14,6 @@ using vulkan::Access;
 /// Least alpha over inverse mass of chains that are pulled taut between held vertices: singular in single precision
 /// without. Ten times as much shows in the length of the cloth, a tenth lets links of some cloths blow up.
 constexpr double kFirmness = 1e-3;
-
-/// A trial that takes longer has no device to itself, or none that is well: an error either way.
-constexpr double kTrialPatience_s = 60;
-
-/// Looks at who has come to a barrier of the whole dispatch, at loading and in a frame: some 10 ms and 1 s. A look takes
-/// some 0.5 us on a GPU and 3 ns on a CPU.
-struct Patience {
-  std::uint32_t at_loading, in_a_frame;
-};
-Patience patience(const vulkan::Device& d) {
-  return d.is_software() ? Patience{1u << 24, 1u << 30} : Patience{1u << 14, 1u << 21};
-}
 
 /// Springs whose homogenised sheet is isotropic with uniaxial stiffness Y and Poisson ratio 1/3, the only ratio central
 /// springs allow (C12 = C66): for square cells 3/4 Y along the grid and 3/8 Y on each diagonal. On du x dv cells the
@@ -191,39 +180,16 @@ bool Lines::add_resident() {
   const LineShape shape = pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), wish(), device());
   const auto chains = static_cast<std::uint32_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
   const vulkan::Groups groups = vulkan::groups_for(chains, shape.chains_a_group());
-  vulkan::Buffer meeting(solver_.device_, "meeting", 8, vulkan::Buffer::Place::Device),
-      zeros(solver_.device_, "meeting (initial)", 8, vulkan::Buffer::Place::Host),
-      missed(solver_.device_, "missed", 4, vulkan::Buffer::Place::Host);
-  std::memset(zeros.mapped(), 0, 8);
-  std::memset(missed.mapped(), 0, 4);
   const auto with_barrier = [&](const vulkan::Buffer& m, const vulkan::Buffer& none) {
     std::vector<vulkan::Binding> b = bindings(firmness_);
     b.push_back({&m, Access::ReadWrite});
     b.push_back({&none, Access::Write});
     return b;
   };
-  std::vector<std::uint32_t> s = specialization(shape);
-  {
-    std::vector<std::uint32_t> trial = s;
-    trial.insert(trial.begin(), shape.threads);
-    const vulkan::Kernel kernel(solver_.device_, "line_pass_resident", shaders::kLinesResident[keep_ ? 1 : 0].code, trial,
-                                with_barrier(meeting, missed), sizeof(LineConstants));
-    vulkan::Program program(solver_.device_);
-    program.copy(0, zeros, meeting);
-    LineConstants c{};
-    c.patience = patience(*solver_.device_).at_loading;
-    program.dispatch(0, kernel, groups, c);
-    program.record(false);
-    program.run(kTrialPatience_s);
-    std::uint32_t failed = 0;
-    std::memcpy(&failed, missed.mapped(), 4);
-    if (failed != 0) {
-      if (wanted == "always")
-        throw Error("solver xpbd: setting device_barrier=always: this device does not run " +
-                    std::to_string(groups.x * groups.y) + " workgroups of " + std::to_string(shape.threads) + " at once");
-      return false;
-    }
-  }
+  const std::vector<std::uint32_t> s = specialization(shape);
+  if (!runs_at_once(solver_.device_, shaders::kLinesResident[keep_ ? 1 : 0], s, shape.threads, with_barrier, groups, LineConstants{},
+                    wanted == "always"))
+    return false;
   add_firmness();
   shape_[0] = shape_[1] = shape_[2] = shape;
   const FeatureSet serves{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins};

@@ -85,6 +85,12 @@ struct TetherEnd {
   float reach;
 };
 
+/// Where a family's entries are, in blocks of a workgroup each.
+struct ChainRange {
+  uint first_entry, blocks, rounds;
+  uint unused0;
+};
+
 /// Push constants of the chain kernel of `xpbd`.
 struct ChainConstants {
   vec4 gravity_h;     // g h [m/s]
@@ -95,7 +101,10 @@ struct ChainConstants {
   uint first_entry;   // of the family
   uint turn;          // LINES_FIRST
   uint rounds;        // of cyclic reduction: 2^rounds links or more are in its longest chain
-  uint unused0;
+  uint patience;      // looks at who has come to a barrier of the whole dispatch
+  uint families;      // of a dispatch that takes all of them, `substeps` times
+  uint substeps;
+  uint unused0, unused1;
 };
 
 // Colliders. Lengths in metres, positions relative to the method's origin.
@@ -199,6 +208,7 @@ static_assert(sizeof(PaperConstants) == 48);
 static_assert(sizeof(LineConstants) == 120);
 static_assert(sizeof(ChainEntry) == 16);
 static_assert(sizeof(TetherEnd) == 8);
-static_assert(sizeof(ChainConstants) == 48);
+static_assert(sizeof(ChainRange) == 16);
+static_assert(sizeof(ChainConstants) == 64);
 }  // namespace clothbench::pbd_gpu
 #endif

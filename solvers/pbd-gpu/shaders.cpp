@@ -268,6 +268,14 @@ CODE(line_pass_resident_keep_counted)
 }
 ;
 
+CODE(chain_pass_resident)
+#include "chain_pass_resident.inc"
+}
+;
+CODE(chain_pass_resident_counted)
+#include "chain_pass_resident_counted.inc"
+}
+;
 CODE(weld)
 #include "weld.inc"
 }
@@ -306,6 +314,7 @@ SHADER(kSatisfyCapsuleCollisions, satisfy_capsule_collisions);
 SHADER(kSatisfyMeshCollisions, satisfy_mesh_collisions);
 SHADER(kContactBoxes, contact_boxes);
 SHADER(kChainPass, chain_pass);
+SHADER(kChainsResident, chain_pass_resident);
 SHADER(kWeld, weld);
 // Bytes are counted without shuffles: what lanes load together counts once.
 #define SHUFFLED(id) {#id "_shuffle", {id##_shuffle, sizeof id##_shuffle}, {id##_counted, sizeof id##_counted}}

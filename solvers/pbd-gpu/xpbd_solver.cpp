@@ -94,13 +94,17 @@ class Xpbd final : public GpuSolver {
       lines_->record(0, substeps, substeps, dt_s);
       return;
     }
+    if (chains_ && chains_->whole_frame() && !contact_) {
+      chains_->record(substeps, substeps, dt_s);
+      return;
+    }
     for (int s = 0; s < substeps; ++s) {
       // First, so that a vertex let go is free in all of its frame.
       if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
       if (lines_)
         lines_->record(s, 1, substeps, dt_s);
       else
-        chains_->record(substeps, dt_s);
+        chains_->record(1, substeps, dt_s);
       if (contact_) contact_->record_substep(s, substeps, dt_s);
     }
   }

@@ -169,6 +169,34 @@ TEST_F(Chained, SliversDoNotThrowWhatHangsOnThem) {
   }
 }
 
+/// As of lines: the same bits as a dispatch a family, or a refusal, or a frame that says it was lost. One workgroup waits for nobody.
+TEST_F(Chained, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
+  int agreed = 0;
+  for (const Scene& s : {with_damping(mesh_sheet(12)), with_damping(mesh_sheet(20))}) {
+    const auto passes = make("xpbd", {{"device_barrier", "never"}}), resident = make("xpbd", {{"device_barrier", "always"}});
+    passes->load(s);
+    const ClothState expected = after(*passes, s, 5);
+    try {
+      resident->load(s);
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("device_barrier=always"), std::string::npos) << e.what();
+      continue;
+    }
+    EXPECT_EQ(resident->plan().stages.at(0).dispatches, 1);
+    StepStatus status = StepStatus::Ok;
+    for (int f = 0; f < 5 && status == StepStatus::Ok; ++f)
+      status = resident->step({f, (f + 1) * s.time.dt(), s.time.dt(), s.motion_after(f)});
+    if (status == StepStatus::TimedOut) continue;
+    ASSERT_EQ(status, StepStatus::Ok);
+    ClothState state;
+    resident->read_state(state);
+    EXPECT_EQ(state.position, expected.position);
+    EXPECT_EQ(state.velocity, expected.velocity);
+    ++agreed;
+  }
+  EXPECT_GE(agreed, 1);
+}
+
 TEST_F(Chained, RefuseWhatTheyDoNotDo) {
   const auto solver = make("xpbd");
   EXPECT_THROW(solver->load(with_bending(uneven(sheet(9, 7), 3, 0.3))), Error);

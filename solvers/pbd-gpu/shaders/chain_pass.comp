@@ -3,21 +3,35 @@
 // a path of links of which each vertex of the cloth is on at most one in a family; a thread holds a vertex and the link to the next
 // entry, a workgroup a block of whole chains. The links of a chain are a tridiagonal system in their multipliers (Macklin, Mueller &
 // Chentanez 2016, eq. 18, for all at once), solved by parallel cyclic reduction. The first family of a substep has every vertex
-// and integrates what it loads.
+// and integrates what it loads. A dispatch is one family, or with RESIDENT any number of substeps: then all its workgroups run at
+// once, and wait for one another after each family.
+#ifdef RESIDENT
+#define COUNTER_BINDING 9
+#define BARRIER_BINDING 7
+#define STATE coherent buffer
+#else
 #define COUNTER_BINDING 6
+#define STATE buffer
+#endif
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(constant_id = 1) const uint THREADS = 64u;  // of a workgroup: local_size_x
 layout(constant_id = 2) const uint FEATURES = 0u;  // LINES_..., pbd_shared.h
 layout(constant_id = 3) const uint TETHERS = 0u;   // a vertex
-layout(std430, binding = 0) buffer Positions { vec4 x[]; };  // w: inverse mass
-layout(std430, binding = 1) buffer Velocities { vec4 v[]; };
+layout(std430, binding = 0) STATE Positions { vec4 x[]; };  // w: inverse mass
+layout(std430, binding = 1) STATE Velocities { vec4 v[]; };
 layout(std430, binding = 2) buffer PositionRests { vec4 rx[]; };
 layout(std430, binding = 3) buffer VelocityRests { vec4 rv[]; };
 layout(std430, binding = 4) readonly buffer Entries { ChainEntry entries[]; };
 layout(std430, binding = 5) readonly buffer TetherEnds { TetherEnd tether_ends[]; };  // TETHERS a vertex
+#ifdef RESIDENT
+layout(std430, binding = 6) readonly buffer Ranges { ChainRange ranges[]; };
+#endif
 layout(push_constant) uniform Push { ChainConstants p; };
 #include "sums.glsl"
+#ifdef RESIDENT
+#include "device_barrier.glsl"
+#endif
 
 vec3 pos, vel, rest_pos, rest_vel;
 float w;
@@ -61,7 +75,7 @@ void integrate(uint i) {
   }
 }
 
-void stretch(ChainEntry entry) {
+void stretch(ChainEntry entry, uint rounds) {
   vec4 none, next, below, above;
   exchange(vec4(pos, w), 1u, none, next);
   vec3 e = next.xyz - pos;
@@ -82,7 +96,7 @@ void stretch(ChainEntry entry) {
   // x: of the link before, y: of the link after, z: right side; the diagonal is 1.
   vec3 row = is ? vec3(-w * dot(below.xyz, g), -next.w * dot(g, above.xyz), entry.rest - l) * per_diagonal : vec3(0.0);
   vec3 g_below = below.xyz;
-  for (uint r = 0u; r < p.rounds; ++r) {
+  for (uint r = 0u; r < rounds; ++r) {
     exchange(vec4(row, 0.0), 1u << r, below, above);
     float per = 1.0 / (1.0 - row.x * below.y - row.y * above.x);
     row = vec3(-row.x * below.x, -row.y * above.y, row.z - row.x * below.z - row.y * above.z) * per;
@@ -91,9 +105,9 @@ void stretch(ChainEntry entry) {
   move(w * (below.z * g_below - row.z * g));
 }
 
-void main() {
-  ChainEntry entry = LOAD(16u, entries, p.first_entry + item());
-  bool is = entry.vertex != CHAIN_NOBODY, first = (p.turn & LINES_FIRST) != 0u;
+void pass(uint number, bool first, uint rounds) {
+  ChainEntry entry = LOAD(16u, entries, number);
+  bool is = entry.vertex != CHAIN_NOBODY;
   uint i = is ? entry.vertex : 0u;
   pos = vel = rest_pos = rest_vel = vec3(0.0);
   w = 0.0;
@@ -108,11 +122,27 @@ void main() {
       if (w > 0.0) integrate(i);
     }
   }
-  stretch(entry);
+  stretch(entry, rounds);
   if (w == 0.0) return;
   STORE16(x, i, vec4(pos, w));
   STORE16(v, i, vec4(vel, 0.0));
   if (!first) return;
   STORE16(rx, i, vec4(rest_pos, 0.0));
   STORE16(rv, i, vec4(rest_vel, 0.0));
+}
+
+void main() {
+#ifdef RESIDENT
+  if (p.substeps == 0u && !meet()) return;  // asked only whether all can
+  uint block = item() / THREADS;
+  for (uint s = 0u; s < p.substeps; ++s)
+    for (uint f = 0u; f < p.families; ++f) {
+      if (s + f > 0u && !meet()) return;
+      ChainRange range = LOAD(16u, ranges, f);
+      if (block < range.blocks) pass(range.first_entry + item(), f == 0u, range.rounds);
+    }
+  leave();
+#else
+  pass(p.first_entry + item(), (p.turn & LINES_FIRST) != 0u, p.rounds);
+#endif
 }
