@@ -42,6 +42,19 @@ void check_triangle(const std::vector<Vec3>& x, const std::array<std::uint32_t, 
     throw Error(fmt::format("{}: triangle {} (vertices {}, {}, {}) has no area", source, k, t[0], t[1], t[2]));
 }
 
+/// The lines that shapes are made of. What else a file may say (materials, skin weights, curves) is neither looked at nor trusted.
+std::string shape_lines(const std::string& text) {
+  std::istringstream in(text);
+  std::string out, line;
+  while (std::getline(in, line)) {
+    std::istringstream words(line);
+    std::string first;
+    words >> first;
+    if (first == "v" || first == "vt" || first == "vn" || first == "f") out += line + "\n";
+  }
+  return out;
+}
+
 fs::path file_of(const std::string& name, const std::string& source) {
   std::error_code ec;
   for (const fs::path& folder : {fs::path(source).parent_path(), scenario_root()})
@@ -95,7 +108,7 @@ ClothMesh parse_obj(const std::string& text, const std::string& source) {
   std::vector<tinyobj::shape_t> shapes;
   std::vector<tinyobj::material_t> materials;
   std::string warning, error;
-  std::istringstream in(text);
+  std::istringstream in(shape_lines(text));
   if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &in))
     throw Error(fmt::format("{}: no OBJ file: {}", source, error.empty() ? "it cannot be read" : error));
   std::vector<Vec3> vertices;
