@@ -9,6 +9,7 @@
 #include "cli/material_cards.hpp"
 #include "cli/supervise.hpp"
 #include "report/report.hpp"
+#include "report/tint.hpp"
 #include "runner/environment.hpp"
 #include "truth/draw.hpp"
 
@@ -129,8 +130,9 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
     return;
   }
   if (!flags.part) print_console_report({out});
-  fmt::print("\n{} cells ok, {} unsupported, {} failed; results in {}\n", result.cells_ok, result.cells_unsupported,
-             result.cells_failed, out.string());
+  const auto counted = [](int n, const char* what, Tone tone) { return tinted(n > 0 ? tone : Tone::Plain, fmt::format("{} {}", n, what)); };
+  fmt::print("\n{}, {}, {}; results in {}\n", counted(result.cells_ok, "cells ok", Tone::Good),
+             counted(result.cells_unsupported, "unsupported", Tone::Doubtful), counted(result.cells_failed, "failed", Tone::Bad), out.string());
   print_spent(result);
 }
 
