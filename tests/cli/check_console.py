@@ -144,6 +144,20 @@ class Console(unittest.TestCase):
         self.assertEqual(len(names), len(set(names)), "a name is what a chart is of")
         self.assertTrue(any("range" in bench and bench["unit"] == "ms" for bench in benches))
 
+    def test_bench_is_compared_by_google_benchmarks_own_tool(self):
+        tool = "/usr/share/benchmark/compare.py"
+        if not os.path.exists(tool):
+            self.skipTest("no libbenchmark-tools")
+        words = ["bench", "--benchmark_filter=gravity-8-single/ballistic", "--benchmark_repetitions=9"]
+        files = [os.path.join(self.home, name) for name in ("before.json", "after.json")]
+        for file in files:
+            self.piped(*words, "--benchmark_out=" + file)
+        done = subprocess.run(
+            ["/usr/bin/python3", tool, "--no-color", "benchmarks", *files], capture_output=True, text=True, check=False
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"gravity-8-single/ballistic/default\S*_pvalue .*U Test, Repetitions: 9 vs 9")
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1] + sys.argv[3:])
