@@ -126,14 +126,18 @@ Guard::Answer Guard::ask_child(bool quiet) {
   std::error_code ignored;
   fs::remove(file, ignored);
   const auto began = std::chrono::steady_clock::now();
-  const auto too_long = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() > plugin_limit_s(); };
-  const ChildEnd end = wait_for_end(start_again(console_, kGuarded, fmt::format("{}:{}", calls_ - 1, file.string()), quiet), too_long);
+  const auto too_long = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() > plugin_limit_s();
+  };
+  const ChildEnd end =
+      wait_for_end(start_again(console_, kGuarded, fmt::format("{}:{}", calls_ - 1, file.string()), quiet), too_long);
   const bool answered = end.how == ChildEnd::How::Exited && fs::exists(file);
   const nlohmann::json answer = answered ? nlohmann::json::parse(read_text(file.string())) : nlohmann::json();
   fs::remove_all(folder, ignored);
   if (interrupt_requested()) throw Error("interrupted", ExitCode::Interrupted);
   if (!answered) return {nullptr, end.text()};
-  if (answer.contains("error")) throw Error(answer["error"].get<std::string>(), static_cast<ExitCode>(answer["code"].get<int>()));
+  if (answer.contains("error"))
+    throw Error(answer["error"].get<std::string>(), static_cast<ExitCode>(answer["code"].get<int>()));
   return {answer["value"], ""};
 }
 

@@ -31,7 +31,8 @@ struct Sample {
 std::vector<Sample> samples(const Motion& m, std::span<const std::size_t> frames, const Bounds& near) {
   constexpr std::size_t kFrames = 12, kAcross = 9;
   std::vector<Sample> out;
-  const std::size_t columns = m.scene.cloth.columns, rows = m.scene.cloth.rows, step = std::max(columns, rows) / kAcross + 1;
+  const std::size_t columns = m.scene.cloth.columns, rows = m.scene.cloth.rows,
+                    step = std::max(columns, rows) / kAcross + 1;
   for (std::size_t k = 0; k < std::min(kFrames, frames.size()); ++k) {
     const std::vector<double> x = m.at(frames[k * frames.size() / std::min(kFrames, frames.size())]);
     const auto vertex = [&](std::size_t i, std::size_t j) {
@@ -40,7 +41,8 @@ std::vector<Sample> samples(const Motion& m, std::span<const std::size_t> frames
     };
     for (std::size_t j = 0; j + step < rows; j += step)
       for (std::size_t i = 0; i + step < columns; i += step) {
-        const Sample s = {vertex(i + step / 2, j + step / 2), cross(minus(vertex(i + step, j), vertex(i, j)), minus(vertex(i, j + step), vertex(i, j)))};
+        const Sample s = {vertex(i + step / 2, j + step / 2),
+                          cross(minus(vertex(i + step, j), vertex(i, j)), minus(vertex(i, j + step), vertex(i, j)))};
         if (near.holds(s.at) && std::isfinite(dot(s.area, s.area))) out.push_back(s);
       }
   }
@@ -50,12 +52,14 @@ std::vector<Sample> samples(const Motion& m, std::span<const std::size_t> frames
 }  // namespace
 
 double best_turn(const Motion& m, std::span<const std::size_t> frames, const Bounds& near) {
-  constexpr double kQuarter_deg = 90, kWorthIt = 1.2, kClear = 0.02;  // kClear: of the sheet, what a cloth lies on does not hide it
+  constexpr double kQuarter_deg = 90, kWorthIt = 1.2,
+                   kClear = 0.02;  // kClear: of the sheet, what a cloth lies on does not hide it
   if (frames.empty() || !m.scene.motion.empty()) return 0;
   const Surfaces drawn = surfaces(m.scene, static_cast<int>(frames[0]), near);
   if (drawn.triangles.empty()) return 0;
   std::vector<Triangle> hiding;
-  for (const auto& t : drawn.triangles) hiding.push_back({drawn.position_m[t[0]], drawn.position_m[t[1]], drawn.position_m[t[2]]});
+  for (const auto& t : drawn.triangles)
+    hiding.push_back({drawn.position_m[t[0]], drawn.position_m[t[1]], drawn.position_m[t[2]]});
   const std::vector<Sample> cloth = samples(m, frames, near);
   const double clear = kClear * std::max(m.scene.cloth.width_m, m.scene.cloth.height_m);
   double best = 0, most = 0;
@@ -64,7 +68,8 @@ double best_turn(const Motion& m, std::span<const std::size_t> frames, const Bou
     double seen = 0;
     for (const Sample& s : cloth) {
       const Vec3 from = {s.at[0] + clear * eye[0], s.at[1] + clear * eye[1], s.at[2] + clear * eye[2]};
-      if (std::none_of(hiding.begin(), hiding.end(), [&](const Triangle& t) { return meets(from, eye, t); })) seen += std::abs(dot(s.area, eye));
+      if (std::none_of(hiding.begin(), hiding.end(), [&](const Triangle& t) { return meets(from, eye, t); }))
+        seen += std::abs(dot(s.area, eye));
     }
     if (seen > (turn == 0 ? 0 : best == 0 ? kWorthIt * most : most)) best = turn, most = seen;
   }

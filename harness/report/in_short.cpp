@@ -38,10 +38,13 @@ Table in_short_table(const std::vector<CellRecord>& cells) {
   std::map<std::string, std::vector<Row>> scenes;
   for (const CellRecord& c : cells) scenes[c.header.scene].push_back(row_of(c));
   Table t{"In short",
-          "Wall time of a frame: median of the trials' means ± half their range. Ended: ok, or whether the scene's expectations were kept.",
+          "Wall time of a frame: median of the trials' means ± half their range. Ended: ok, or whether the scene's "
+          "expectations were kept.",
           {{"scene", "solver", "setting", "ended", "frame [ms]", "against the fastest"}}};
   for (auto& [scene, rows] : scenes) {
-    std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.frame_s < b.frame_s || (std::isnan(b.frame_s) && !std::isnan(a.frame_s)); });
+    std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
+      return a.frame_s < b.frame_s || (std::isnan(b.frame_s) && !std::isnan(a.frame_s));
+    });
     const double fastest = rows.front().frame_s;
     for (const Row& r : rows) {
       std::string time = significant(1e3 * r.frame_s, 3);

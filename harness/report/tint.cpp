@@ -45,15 +45,38 @@ std::string tinted(Tone tone, const std::string& text) {
 }
 
 Tone tone_of(const std::string& cell) {
-  static const std::map<std::string, Tone> kVerdicts = {
-      {"kept", Tone::Good}, {"ok", Tone::Good}, {"yes", Tone::Good}, {"stable", Tone::Good}, {"faster", Tone::Good}, {"improved", Tone::Good},
-      {"broken", Tone::Bad}, {"failed", Tone::Bad}, {"FAILED", Tone::Bad}, {"NO", Tone::Bad}, {"crashed", Tone::Bad}, {"error", Tone::Bad},
-      {"not_finite", Tone::Bad}, {"diverged", Tone::Bad}, {"device_lost", Tone::Bad}, {"slower", Tone::Bad}, {"worse", Tone::Bad},
-      {"unsupported", Tone::Doubtful}, {"refused", Tone::Doubtful}, {"over_budget", Tone::Doubtful}, {"timed_out", Tone::Doubtful},
-      {"degraded", Tone::Doubtful}, {"declared", Tone::Doubtful}, {"changed", Tone::Doubtful}, {"new", Tone::Doubtful},
-      {"noise", Tone::Faint}, {"ignored", Tone::Faint}, {"no", Tone::Faint}, {"–", Tone::Faint}};
+  static const std::map<std::string, Tone> kVerdicts = {{"kept", Tone::Good},
+                                                        {"ok", Tone::Good},
+                                                        {"yes", Tone::Good},
+                                                        {"stable", Tone::Good},
+                                                        {"faster", Tone::Good},
+                                                        {"improved", Tone::Good},
+                                                        {"broken", Tone::Bad},
+                                                        {"failed", Tone::Bad},
+                                                        {"FAILED", Tone::Bad},
+                                                        {"NO", Tone::Bad},
+                                                        {"crashed", Tone::Bad},
+                                                        {"error", Tone::Bad},
+                                                        {"not_finite", Tone::Bad},
+                                                        {"diverged", Tone::Bad},
+                                                        {"device_lost", Tone::Bad},
+                                                        {"slower", Tone::Bad},
+                                                        {"worse", Tone::Bad},
+                                                        {"unsupported", Tone::Doubtful},
+                                                        {"refused", Tone::Doubtful},
+                                                        {"over_budget", Tone::Doubtful},
+                                                        {"timed_out", Tone::Doubtful},
+                                                        {"degraded", Tone::Doubtful},
+                                                        {"declared", Tone::Doubtful},
+                                                        {"changed", Tone::Doubtful},
+                                                        {"new", Tone::Doubtful},
+                                                        {"noise", Tone::Faint},
+                                                        {"ignored", Tone::Faint},
+                                                        {"no", Tone::Faint},
+                                                        {"–", Tone::Faint}};
   const std::size_t from = cell.find_first_not_of("*");
-  const std::string word = from == std::string::npos ? "" : cell.substr(from, cell.find_first_of(" *(,:;", from) - from);
+  const std::string word =
+      from == std::string::npos ? "" : cell.substr(from, cell.find_first_of(" *(,:;", from) - from);
   const auto at = kVerdicts.find(word);
   if (at != kVerdicts.end()) return at->second;
   return cell.ends_with("✓") ? Tone::Good : Tone::Plain;

@@ -52,10 +52,12 @@ void write_xdmf(const std::filesystem::path& path, const std::string& h5_name, c
     const std::string positions = fmt::format("/frames/{:06}", k);
     // Every reader of ParaView finds the desk only if each frame has it.
     if (still.empty())
-      out += mesh(fmt::format("frame {}", k), h5_name, "/triangles", triangles, positions, record.header.vertices, 4, time);
+      out += mesh(fmt::format("frame {}", k), h5_name, "/triangles", triangles, positions, record.header.vertices, 4,
+                  time);
     else
       out += fmt::format("   <Grid Name=\"frame {}\" GridType=\"Collection\" CollectionType=\"Spatial\">\n", k) + time +
-             mesh("cloth", h5_name, "/triangles", triangles, positions, record.header.vertices, 4, "") + still + "   </Grid>\n";
+             mesh("cloth", h5_name, "/triangles", triangles, positions, record.header.vertices, 4, "") + still +
+             "   </Grid>\n";
   }
   out += "  </Grid>\n </Domain>\n</Xdmf>\n";
   write_file_atomically(path, out);

@@ -1,5 +1,5 @@
 /* Extended position-based dynamics on one CPU core, complete: small steps, one pass over the constraints each
- * (Macklin et al., Small Steps in Physics Simulation, 2019), bending by the isometric Laplacian (Bergou et al. 2006). */
+ * (Macklin et al., Small Steps in Physics Simulation, 2019), bending by an isometric Laplacian (Bergou et al. 2006). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,14 +51,15 @@ static void* create(const double* settings, const ClothbenchScene* scene, const 
   return s;
 }
 
-/* Draws d = a - b of an edge to its length, or d = a - 2 middle + b across a fold to nothing. A sheet of stiffness Y and
- * Poisson's ratio 1/3 is a lattice of springs, `share` 3/4 along the grid and 3/8 along the diagonals of square cells; a strip
- * of width w with vertices l apart has the bending energy B w / (2 l^3) |d|^2. */
+/* Draws d = a - b of an edge to its length, or d = a - 2 middle + b across a fold to nothing. A sheet of stiffness Y
+ * and Poisson's ratio 1/3 is a lattice of springs, `share` 3/4 along the grid and 3/8 along the diagonals of square
+ * cells; a strip of width w with vertices l apart has the bending energy B w / (2 l^3) |d|^2. */
 static void hold(Solver* s, const ClothbenchEdge* e, int fold, double share, double h) {
-  const double modulus = fold ? s->scene->bending_rigidity_N_m / (e->along_m * e->along_m) : e->membrane_stiffness_N_per_m;
+  const double bending = s->scene->bending_rigidity_N_m / (e->along_m * e->along_m);
+  const double modulus = fold ? bending : share * e->membrane_stiffness_N_per_m;
   const uint32_t vertex[3] = {e->a, e->b, (e->a + e->b) / 2};
   const double sign[3] = {1, fold ? 1 : -1, fold ? -2 : 0};
-  double d[3] = {0, 0, 0}, give = e->along_m / (share * modulus * e->across_m * h * h);
+  double d[3] = {0, 0, 0}, give = e->along_m / (modulus * e->across_m * h * h);
   for (int k = 0; k < 3; ++k) {
     give += sign[k] * sign[k] * s->weight[vertex[k]];
     for (int i = 0; i < 3; ++i) d[i] += sign[k] * s->x[3 * vertex[k] + i];
