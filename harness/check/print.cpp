@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "report/table.hpp"
+#include "report/tint.hpp"
 
 namespace clothbench {
 namespace {
@@ -52,7 +53,7 @@ std::string cells_word(std::size_t n) { return fmt::format("{} cell{}", n, n == 
 std::string check_text(const Checked& checked, const std::string& file) {
   std::string out = findings_text("Not as in " + file, checked.cells, word_for(Verdict::Failed));
   out +=
-      fmt::format("check {}: {}: {} failed, {} improved, {} new, {} as in {}", checked.passed() ? "passed" : "FAILED",
+      fmt::format("check {}: {}: {} failed, {} improved, {} new, {} as in {}", checked.passed() ? tinted(Tone::Good, "passed") : tinted(Tone::Bad, "FAILED"),
                   cells_word(checked.cells.size()), checked.count(Verdict::Failed), checked.count(Verdict::Improved),
                   checked.count(Verdict::New), checked.count(Verdict::Same), file);
   if (checked.other_assets > 0)

@@ -75,6 +75,7 @@ void add_bench(CLI::App& app, Console& console) {
   cmd->footer("Example: clothbench bench --benchmark_filter='gravity-32-.*xpbd' --benchmark_repetitions=5");
   cmd->callback([cmd, &console] {
     std::vector<std::string> words = cmd->remaining();
+    console.json = std::erase(words, "--json") > 0 || console.json;
     words.insert(words.begin(), "clothbench");
     if (console.json) words.push_back("--benchmark_format=json");
     std::vector<char*> argv;

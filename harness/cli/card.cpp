@@ -2,8 +2,11 @@
 
 #include <algorithm>
 
+#include "cli/again.hpp"
 #include "cli/command.hpp"
 #include "report/material.hpp"
+#include "results/raw_file.hpp"
+#include "runner/cell_process.hpp"
 #include "runner/material_card.hpp"
 
 namespace clothbench {
@@ -15,21 +18,36 @@ struct Arguments {
   DeviceFlags device;
 };
 
+nlohmann::json card_json(const CellRecord& c) {
+  return {{"header", header_to_json(c.header)}, {"answer", to_json(CellAnswer{c.outcome, c.summary, kMissing})}};
+}
+
+CellRecord card_from(const nlohmann::json& j) {
+  CellRecord c;
+  c.header = header_from_json(j["header"]);
+  CellAnswer answer = answer_from_json(j["answer"]);
+  c.outcome = std::move(answer.outcome);
+  c.summary = std::move(answer.summary);
+  return c;
+}
+
 /// The card at the settings given, and short ones where it is looked whether it holds.
-void measure(const SolverEntry& entry, const Overrides& overrides, const Arguments& a, StatusLine& line,
+void measure(const SolverEntry& entry, const Overrides& overrides, const Arguments& a, Guard& guard, StatusLine& line,
              std::vector<CellRecord>& out) {
   const nlohmann::json settings = complete_settings(entry.info, overrides.solver);
   const auto one = [&](const nlohmann::json& s, const std::string& label, bool full) {
     line.show(entry.info.name + " " + label, out.size(), 0);
     try {
-      out.push_back(measure_material(entry, s, label, full, a.device.options, "card"));
+      const Guard::Answer answer = guard.run(entry, [&] { return card_json(measure_material(entry, s, label, full, a.device.options, "card")); });
+      out.push_back(answer.crash.empty() ? card_from(answer.value)
+                                         : failed_material(entry, label, {"crashed", "F8", -1, "its process: " + answer.crash}, "card"));
     } catch (const Error& e) {
       if (e.code() != ExitCode::NoDevice || !a.device.allow_no_device) throw;
       fmt::print(stderr, "no Vulkan device: {} is left out\n", entry.info.name);
     }
   };
   one(settings, overrides.label(), true);
-  if (a.no_sweep || out.empty() || out.back().outcome.status == "unsupported") return;
+  if (a.no_sweep || out.empty() || out.back().outcome.status == "unsupported" || out.back().outcome.status == "crashed") return;
   for (const auto& [label, s] : swept_settings(entry.info, settings)) one(s, label, false);
 }
 
@@ -54,10 +72,12 @@ void add_card(CLI::App& app, Console& console) {
       for (const SolverEntry& e : solvers())
         if (!e.info.ignores.has(Feature::Stretch)) a.solvers.push_back(e.info.name);
     std::vector<CellRecord> cards;
+    Guard guard(console);
     {
       StatusLine line(!console.json);
-      for (const std::string& name : a.solvers) measure(find_solver(name), overrides, a, line, cards);
+      for (const std::string& name : a.solvers) measure(find_solver(name), overrides, a, guard, line, cards);
     }
+    if (guard.crashed()) console.exit_code = ExitCode::CheckFailed;
     const auto materials = solver_materials(cards);
     if (console.json) {
       fmt::print("{}\n", material_json(materials).dump(2));

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include "cli/command.hpp"
 #include "cli/command_line.hpp"
+#include "report/tint.hpp"
 #include "runner/build_info.hpp"
 
 namespace clothbench {
@@ -13,14 +16,29 @@ std::string joined(const std::vector<std::string>& words) {
   return line;
 }
 
+/// Says why the command failed, to people and, with --json, to machines.
+int told(const Console& console, const std::string& why, ExitCode code) {
+  const bool colour = takes_colour(STDERR_FILENO);
+  fmt::print(stderr, "{}clothbench:{} {}\n", colour ? "\x1b[31m" : "", colour ? "\x1b[0m" : "", why);
+  if (console.json)
+    fmt::print("{}\n", nlohmann::json{{"error", why}, {"exit_code", static_cast<int>(code)}}.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  return static_cast<int>(code);
+}
+
 }  // namespace
 
 int run_command_line(const std::vector<std::string>& words) {
   CLI::App app{"clothbench: interchangeable cloth solvers, the same scenes, comparable numbers", "clothbench"};
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("clothbench ") + build_info::kVersion + " (" + build_info::kGitCommit + ")");
-  app.footer("Exit codes: 0 ok, 1 a check failed, 2 bad input, 3 no device, 130 interrupted.");
+  app.footer(
+      "Examples: clothbench run paper/desk-flat-low --solver xpbd --solver bullet-soft\n"
+      "          clothbench study table3 --quick --out results/runs/mine\n"
+      "          clothbench report results/runs/mine -o report\n"
+      "More with each command: clothbench COMMAND --help\n"
+      "Exit codes: 0 ok, 1 a check failed, 2 bad input, 3 no device, 130 interrupted.");
   Console console;
+  colour_output(takes_colour(STDOUT_FILENO));
   console.command_line = joined(words);
   console.words = words;
   app.add_flag("--json", console.json, "Print a machine-readable summary");
@@ -60,11 +78,9 @@ int run_command_line(const std::vector<std::string>& words) {
     }
     return app.exit(e) == 0 ? 0 : static_cast<int>(ExitCode::BadInput);
   } catch (const Error& e) {
-    fmt::print(stderr, "clothbench: {}\n", e.what());
-    return static_cast<int>(e.code());
+    return told(console, e.what(), e.code());
   } catch (const std::exception& e) {
-    fmt::print(stderr, "clothbench: internal error: {}\n", e.what());
-    return static_cast<int>(ExitCode::CheckFailed);
+    return told(console, std::string("internal error: ") + e.what(), ExitCode::CheckFailed);
   }
   return static_cast<int>(console.exit_code);
 }

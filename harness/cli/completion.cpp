@@ -99,7 +99,7 @@ Words candidates(const CLI::App& app, const Words& before, const std::string& pr
 
 }  // namespace
 
-void add_completion(CLI::App& app, Console&) {
+void add_completion(CLI::App& app, Console& console) {
   static std::string shell;
   static Words words;
   shell = "";
@@ -109,14 +109,23 @@ void add_completion(CLI::App& app, Console&) {
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish", "words"}));
   cmd->add_option("words", words, "The command line after the program's name");
-  cmd->footer("Example: source <(clothbench completion bash)");
-  cmd->callback([&app] {
-    if (shell != "words") return fmt::print("{}", shell == "bash" ? kBash : shell == "zsh" ? kZsh : kFish);
+  cmd->footer(
+      "Examples: source <(clothbench completion bash)\n"
+      "          clothbench completion zsh > ~/.zfunc/_clothbench\n"
+      "          clothbench completion fish > ~/.config/fish/completions/clothbench.fish");
+  cmd->callback([&app, &console] {
+    const std::string script = shell == "bash" ? kBash : shell == "zsh" ? kZsh : shell == "fish" ? kFish : "";
+    if (!script.empty() && console.json) return fmt::print("{}\n", nlohmann::json{{"shell", shell}, {"script", script}}.dump(2));
+    if (!script.empty()) return fmt::print("{}", script);
     const std::string prefix = words.empty() ? "" : words.back();
     if (!words.empty()) words.pop_back();
     Words found = candidates(app, words, prefix);
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
+    if (console.json) {
+      std::erase_if(found, [&](const std::string& word) { return !word.starts_with(prefix); });
+      return fmt::print("{}\n", nlohmann::json(found).dump(2));
+    }
     for (const std::string& word : found)
       if (word.starts_with(prefix)) fmt::print("{}\n", word);
   });

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
+#include <set>
 
+#include "cli/again.hpp"
 #include "cli/command.hpp"
 #include "report/table.hpp"
 #include "runner/threshold.hpp"
@@ -37,6 +40,7 @@ constexpr Form kForms[] = {{"incline-stick", "critical angle [°], ≤ 0.1", tru
 struct Answer {
   double error = std::nan("");  ///< in the form's unit, signed for thresholds
   std::string text;
+  std::string crash = {};  ///< of a plugin
 };
 
 Answer ask(const Form& form, const SolverEntry& entry, const nlohmann::json& settings, const std::vector<std::string>& set,
@@ -58,6 +62,16 @@ Answer ask(const Form& form, const SolverEntry& entry, const nlohmann::json& set
   return out;
 }
 
+Answer guarded(Guard& guard, const Form& form, const SolverEntry& entry, const nlohmann::json& settings, const std::vector<std::string>& set,
+               const DeviceOptions& device) {
+  const Guard::Answer given = guard.run(entry, [&] {
+    const Answer a = ask(form, entry, settings, set, device);
+    return nlohmann::json{{"error", std::isfinite(a.error) ? nlohmann::json(a.error) : nlohmann::json()}, {"text", a.text}};
+  });
+  if (!given.crash.empty()) return {std::nan(""), "crashed", given.crash};
+  return {given.value["error"].is_null() ? std::nan("") : given.value["error"].get<double>(), given.value["text"].get<std::string>()};
+}
+
 }  // namespace
 
 void add_friction(CLI::App& app, Console& console) {
@@ -69,6 +83,7 @@ void add_friction(CLI::App& app, Console& console) {
   cmd->add_option("--set", a.set, "Override in every run: solver.contact_samples=0");
   cmd->add_option("--readme", a.readme, "Also write the table between the marks <!-- friction begin/end --> of this file");
   a.device.add_to(*cmd);
+  cmd->footer("Example: clothbench friction xpbd bullet-soft --substeps 8 32");
   cmd->callback([&console] {
     const Overrides overrides = split_overrides(a.set);
     if (a.solvers.empty())
@@ -81,7 +96,9 @@ void add_friction(CLI::App& app, Console& console) {
             {{"solver", "setting"}}};
     for (const Form& f : kForms) t.rows[0].emplace_back(f.head);
     nlohmann::json all = nlohmann::json::array();
-    StatusLine line(!console.json);
+    Guard guard(console);
+    std::set<std::string> crashes;
+    std::optional<StatusLine> line(!console.json);
     for (const std::string& name : a.solvers) {
       const SolverEntry& entry = find_solver(name);
       std::vector<nlohmann::json> rows = {overrides.solver};
@@ -96,8 +113,9 @@ void add_friction(CLI::App& app, Console& console) {
         std::vector<std::string> row = {name, label};
         nlohmann::json j = {{"solver", name}, {"setting", label}};
         for (const Form& f : kForms) {
-          line.show(fmt::format("{} {}: {}", name, label, f.scene), 0, 0);
-          const Answer answer = ask(f, entry, settings, overrides.scene, a.device.options);
+          line->show(fmt::format("{} {}: {}", name, label, f.scene), 0, 0);
+          const Answer answer = guarded(guard, f, entry, settings, overrides.scene, a.device.options);
+          if (!answer.crash.empty()) crashes.insert(fmt::format("{} {}: {}: its process: {}", name, label, f.scene, answer.crash));
           row.push_back(answer.text);
           j["answers"].push_back({{"scene", f.scene}, {"what", f.head}, {"error", std::isfinite(answer.error) ? nlohmann::json(answer.error) : nlohmann::json()},
                                   {"at_most", f.at_most}, {"text", answer.text}});
@@ -106,8 +124,11 @@ void add_friction(CLI::App& app, Console& console) {
         all.push_back(std::move(j));
       }
     }
+    line.reset();
+    if (guard.crashed()) console.exit_code = ExitCode::CheckFailed;
     if (console.json) fmt::print("{}\n", all.dump(2));
     else fmt::print("{}\n", t.console());
+    for (const std::string& crash : crashes) fmt::print(stderr, "{}\n", crash);
     if (!a.readme.empty()) write_between_marks(a.readme, "friction", t.markdown());
   });
 }

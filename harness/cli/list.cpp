@@ -7,6 +7,7 @@
 #include "cli/command.hpp"
 #include "metrics/metric.hpp"
 #include "report/features.hpp"
+#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
 
@@ -45,6 +46,16 @@ nlohmann::json list_scenarios() {
       row["why"] = load_scene(row["name"].get<std::string>()).why;
       rows.push_back(row);
     }
+  return rows;
+}
+
+nlohmann::json list_studies() {
+  nlohmann::json rows = list_files("studies");
+  for (auto& row : rows) {
+    const std::string name = row["name"], file = (scenario_root() / (name + ".json")).string();
+    row["name"] = name.substr(name.find('/') + 1);  // as `study` takes it
+    row["why"] = parse_json(read_text(file), file).value("why", "");
+  }
   return rows;
 }
 
@@ -97,10 +108,13 @@ void add_list(CLI::App& app, Console& console) {
   CLI::App* cmd = app.add_subcommand("list", "What there is: solvers, features, scenarios, studies, devices, metrics or assets");
   cmd->add_option("what", what, "solvers | features | scenarios | studies | devices | metrics | assets")
       ->check(CLI::IsMember({"solvers", "features", "scenarios", "studies", "devices", "metrics", "assets"}));
+  cmd->footer(
+      "Examples: clothbench list solvers\n"
+      "          clothbench list scenarios --json");
   cmd->callback([&console] {
     const nlohmann::json rows = what == "solvers"     ? list_solvers()
                                 : what == "scenarios" ? list_scenarios()
-                                : what == "studies"   ? list_files("studies")
+                                : what == "studies"   ? list_studies()
                                 : what == "devices"   ? list_devices()
                                 : what == "features"  ? feature_json(features(), false)
                                 : what == "assets"    ? list_assets()

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "cli/again.hpp"
 #include "cli/command.hpp"
 #include "report/table.hpp"
 #include "runner/metamorphic.hpp"
@@ -52,6 +53,43 @@ nlohmann::json json_of(const std::string& solver, const MetamorphicResult& r) {
           {"bitwise", r.bitwise}, {"at_most", r.at_most}};
 }
 
+MetamorphicResult result_from(const nlohmann::json& j) {
+  return {j["property"], j["scene"], j["status"], j["distance"].is_null() ? std::nan("") : j["distance"].get<double>(), j["bitwise"], j["at_most"]};
+}
+
+/// Every property on one scene; "crashed" for all of them where a plugin brings its process down at one.
+std::vector<MetamorphicResult> on_scene(const SolverEntry& entry, const nlohmann::json& settings, const DeviceOptions& device, const Scene& scene,
+                                        Guard& guard, const std::function<void(const std::string&)>& note) {
+  const Guard::Answer answer = guard.run(entry, [&] {
+    nlohmann::json rows = nlohmann::json::array();
+    for (const MetamorphicResult& r : run_metamorphic(entry, settings, device, {scene}, note))
+      rows.push_back(json_of(entry.info.name, r));
+    return rows;
+  });
+  std::vector<MetamorphicResult> out;
+  if (answer.crash.empty())
+    for (const nlohmann::json& row : answer.value) out.push_back(result_from(row));
+  else
+    for (const MetamorphicProperty& p : metamorphic_properties())
+      out.push_back({p.name, scene.name, "crashed: " + answer.crash, std::nan(""), false, 0});
+  return out;
+}
+
+nlohmann::json threshold_json(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings, const DeviceOptions& device) {
+  const FoundThreshold found = find_threshold(scene, entry, settings, device);
+  const auto card = truth::card_of(scene);
+  const char* bound = found.holds_at_least ? "<= " : found.slips_at_most ? ">= " : "";
+  return {{"scene", scene.name}, {"solver", entry.info.name}, {"exact", found.exact}, {"found", found.found}, {"error", found.error},
+          {"error_name", card->threshold->error_name}, {"error_units", card->threshold->error_units}, {"bound", bound}, {"runs", found.runs}};
+}
+
+void print_threshold(const nlohmann::json& t) {
+  const auto text = [&](const char* key) { return t[key].get<std::string>(); };
+  if (t.contains("crashed")) return fmt::print("{} {}: its process: {}\n", text("scene"), text("solver"), text("crashed"));
+  fmt::print("{} {}: holds from friction {}{:.5f} on, exact {:.5f}; {} off by {:+.4f} {} ({} runs)\n", text("scene"), text("solver"), text("bound"),
+             t["found"].get<double>(), t["exact"].get<double>(), text("error_name"), t["error"].get<double>(), text("error_units"), t["runs"].get<int>());
+}
+
 }  // namespace
 
 void add_metamorphic(CLI::App& app, Console& console) {
@@ -62,6 +100,7 @@ void add_metamorphic(CLI::App& app, Console& console) {
   cmd->add_option("--set", a.set, "Setting of the solver: solver.substeps=20");
   cmd->add_option("--readme", a.readme, "Also write the tables between the marks <!-- metamorphic begin/end --> of this file");
   a.device.add_to(*cmd);
+  cmd->footer("Example: clothbench metamorphic xpbd --set solver.substeps=8");
   cmd->callback([&console] {
     const Overrides overrides = split_overrides(a.set);
     if (!overrides.scene.empty()) throw Error("--set " + overrides.scene[0] + ": the scenes are fixed; expected solver.<name>=<value>");
@@ -70,17 +109,24 @@ void add_metamorphic(CLI::App& app, Console& console) {
     const std::vector<Scene> scenes = metamorphic_scenes();
     nlohmann::json all = nlohmann::json::array();
     std::string markdown;
+    Guard guard(console);
     for (const std::string& name : a.solvers) {
       const SolverEntry& entry = find_solver(name);
-      StatusLine line(!console.json);
-      const auto results = run_metamorphic(entry, complete_settings(entry.info, overrides.solver), a.device.options, scenes,
-                                           [&](const std::string& what) { line.show(what, 0, 0); });
+      std::vector<MetamorphicResult> results;
+      {
+        StatusLine line(!console.json);
+        for (const Scene& scene : scenes) {
+          const auto some = on_scene(entry, complete_settings(entry.info, overrides.solver), a.device.options, scene, guard, [&](const std::string& what) { line.show(what, 0, 0); });
+          results.insert(results.end(), some.begin(), some.end());
+        }
+      }
       const Table t = table_of(name, results);
       for (const MetamorphicResult& r : results) all.push_back(json_of(name, r));
       if (!console.json) fmt::print("{}\n", t.console());
       markdown += t.markdown() + "\n";
     }
     if (console.json) fmt::print("{}\n", all.dump(2));
+    if (guard.crashed()) console.exit_code = ExitCode::CheckFailed;
     if (!a.readme.empty()) write_between_marks(a.readme, "metamorphic", markdown);
   });
 }
@@ -93,23 +139,22 @@ void add_threshold(CLI::App& app, Console& console) {
   add_solvers(*cmd, "--solver", a.solvers, "Solvers (default xpbd)");
   cmd->add_option("--set", a.set, "Override: cloth.grid=[17,17], solver.substeps=20");
   a.device.add_to(*cmd);
+  cmd->footer("Example: clothbench threshold validation/incline-stick --solver xpbd --solver bullet-soft");
   cmd->callback([&console] {
     const Overrides overrides = split_overrides(a.set);
     if (a.solvers.empty()) a.solvers = {"xpbd"};
     nlohmann::json all = nlohmann::json::array();
+    Guard guard(console);
     for (const std::string& file : a.scenes)
       for (const std::string& name : a.solvers) {
         const Scene scene = load_scene(file, overrides.scene);
         const SolverEntry& entry = find_solver(name);
-        const FoundThreshold found = find_threshold(scene, entry, complete_settings(entry.info, overrides.solver), a.device.options);
-        const auto card = truth::card_of(scene);
-        const char* bound = found.holds_at_least ? "<= " : found.slips_at_most ? ">= " : "";
-        all.push_back({{"scene", scene.name}, {"solver", name}, {"exact", found.exact}, {"found", found.found}, {"error", found.error},
-                       {"error_name", card->threshold->error_name}, {"error_units", card->threshold->error_units}, {"bound", bound}, {"runs", found.runs}});
-        if (!console.json)
-          fmt::print("{} {}: holds from friction {}{:.5f} on, exact {:.5f}; {} off by {:+.4f} {} ({} runs)\n", scene.name, name, bound, found.found,
-                     found.exact, card->threshold->error_name, found.error, card->threshold->error_units, found.runs);
+        const Guard::Answer answer =
+            guard.run(entry, [&] { return threshold_json(scene, entry, complete_settings(entry.info, overrides.solver), a.device.options); });
+        all.push_back(answer.crash.empty() ? answer.value : nlohmann::json{{"scene", scene.name}, {"solver", name}, {"crashed", answer.crash}});
+        if (!console.json) print_threshold(all.back());
       }
+    if (guard.crashed()) console.exit_code = ExitCode::CheckFailed;
     if (console.json) fmt::print("{}\n", all.dump(2));
   });
 }

@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "cli/again.hpp"
 #include "cli/command.hpp"
+#include "report/tint.hpp"
 #include "runner/cell.hpp"
 #include "scenario/load.hpp"
 
@@ -33,6 +35,14 @@ nlohmann::json plan_of(const Cell& cell, const Scene& scene) {
   return j;
 }
 
+nlohmann::json crashed_plan(const Scene& scene, const SolverEntry& entry, const std::string& how) {
+  nlohmann::json needs = nlohmann::json::array();
+  scene.needs.for_each([&](Feature f) { needs.push_back(name_of(f)); });
+  nlohmann::json j = {{"scene", scene.name}, {"solver", entry.info.name}, {"needs", needs}, {"status", "crashed"}, {"message", "its process: " + how}};
+  for (const char* none : {"stages", "buffers", "left_out"}) j[none] = nlohmann::json::array();
+  return j;
+}
+
 std::string bytes(const nlohmann::json& b) { return b.is_null() ? "–" : fmt::format("{:.0f}", b.get<double>()); }
 
 std::string joined(const nlohmann::json& words) {
@@ -43,7 +53,7 @@ std::string joined(const nlohmann::json& words) {
 
 void print(const nlohmann::json& p) {
   fmt::print("{} on {}\n  needs: {}\n", p["solver"].get<std::string>(), p["scene"].get<std::string>(), joined(p["needs"]));
-  if (p["status"] != "ok") fmt::print("  {}: {}\n", p["status"].get<std::string>(), p["message"].get<std::string>());
+  if (p["status"] != "ok") fmt::print("  {}: {}\n", tinted(tone_of(p["status"].get<std::string>()), p["status"].get<std::string>()), p["message"].get<std::string>());
   if (!p["stages"].empty())
     fmt::print("\n  {:<28} {:>10} {:>14} {:>14}  {}\n", "stage, each frame", "dispatches", "read B", "written B", "serves");
   for (const auto& s : p["stages"])
@@ -68,20 +78,25 @@ void add_plan(CLI::App& app, Console& console) {
   add_solvers(*cmd, "--solver", a.solvers, "Solvers; default: all");
   cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
   a.device.add_to(*cmd);
+  cmd->footer(
+      "Examples: clothbench plan paper/gravity --solver paper\n"
+      "          clothbench plan paper/desk-flat-low --solver xpbd --set cloth.grid=[64,64] --json");
   cmd->callback([&console] {
     const Overrides overrides = split_overrides(a.set);
     if (a.solvers.empty())
       for (const SolverEntry& e : solvers()) a.solvers.push_back(e.info.name);
     nlohmann::json all = nlohmann::json::array();
+    Guard guard(console);
     for (const std::string& file : a.scenes) {
       const Scene scene = load_scene(file, overrides.scene);
       for (const std::string& name : a.solvers) {
         const SolverEntry& entry = find_solver(name);
-        const Cell cell({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()},
-                        a.device.options, "plan");
-        all.push_back(plan_of(cell, scene));
+        const Guard::Answer answer = guard.run(entry, [&] {
+          return plan_of(Cell({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()}, a.device.options, "plan"), scene);
+        });
+        all.push_back(answer.crash.empty() ? answer.value : crashed_plan(scene, entry, answer.crash));
         if (!console.json) print(all.back());
-        if (cell.outcome().status == "error") console.exit_code = ExitCode::CheckFailed;
+        if (all.back()["status"] == "error" || guard.crashed()) console.exit_code = ExitCode::CheckFailed;
       }
     }
     if (console.json) fmt::print("{}\n", all.dump(2));

@@ -8,7 +8,9 @@
 #include "cli/cell_choice.hpp"
 #include "cli/material_cards.hpp"
 #include "cli/supervise.hpp"
+#include "report/in_short.hpp"
 #include "report/report.hpp"
+#include "report/tint.hpp"
 #include "runner/environment.hpp"
 #include "truth/draw.hpp"
 
@@ -54,6 +56,16 @@ nlohmann::json seconds_json(const RunResult& r) {
   for (const auto& [name, s] : r.seconds) j[name] = {{"cells", s}};
   for (const auto& [name, s] : r.card_seconds) j[name]["cards"] = s;
   return j;
+}
+
+/// A few cells at a glance, under the tables; many are what the tables are for.
+void print_in_short(const CellPlan& plan, const std::filesystem::path& out) {
+  constexpr std::size_t kFew = 24;
+  if (plan.size() == 0 || plan.size() > kFew) return;
+  const std::vector<std::string> names = cell_names(plan);
+  std::vector<CellRecord> cells = collect({out});
+  std::erase_if(cells, [&](const CellRecord& c) { return std::find(names.begin(), names.end(), cell_name(c.header)) == names.end(); });
+  fmt::print("{}", in_short_table(cells).console());
 }
 
 /// Where the time went, and what was not measured for its sake.
@@ -129,8 +141,10 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
     return;
   }
   if (!flags.part) print_console_report({out});
-  fmt::print("\n{} cells ok, {} unsupported, {} failed; results in {}\n", result.cells_ok, result.cells_unsupported,
-             result.cells_failed, out.string());
+  print_in_short(plan, out);
+  const auto counted = [](int n, const char* what, Tone tone) { return tinted(n > 0 ? tone : Tone::Plain, fmt::format("{} {}", n, what)); };
+  fmt::print("\n{}, {}, {}; results in {}\n", counted(result.cells_ok, "cells ok", Tone::Good),
+             counted(result.cells_unsupported, "unsupported", Tone::Doubtful), counted(result.cells_failed, "failed", Tone::Bad), out.string());
   print_spent(result);
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.hpp"
+#include "report/tint.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
 
@@ -11,6 +12,9 @@ void add_validate(CLI::App& app, Console& console) {
   files = {};
   CLI::App* cmd = app.add_subcommand("validate", "Check scenario and study files");
   cmd->add_option("file", files, "Files or names")->required();
+  cmd->footer(
+      "Examples: clothbench validate my-scene.json\n"
+      "          clothbench validate paper/gravity table3");
   cmd->callback([&console] {
     nlohmann::json rows = nlohmann::json::array();
     for (const std::string& file : files) {
@@ -23,7 +27,7 @@ void add_validate(CLI::App& app, Console& console) {
         console.exit_code = ExitCode::BadInput;
       }
       rows.push_back({{"file", file}, {"ok", fault.empty()}, {"message", fault}});
-      if (!console.json) fmt::print("{}\n", fault.empty() ? file + ": ok" : fault);
+      if (!console.json) fmt::print("{}\n", fault.empty() ? file + ": " + tinted(Tone::Good, "ok") : tinted(Tone::Bad, fault));
     }
     if (console.json) fmt::print("{}\n", rows.dump(2));
   });

@@ -2,8 +2,8 @@
  *
  * The library exports one function, `clothbench_plugin`, which returns a description that stays valid. Units are SI, vectors
  * are x y z with +y up, positions and velocities of vertices lie one after another, row after row of the grid: vertex (i, j),
- * the ith of row j, is number j * columns + i. Pointers in a scene are valid until the next `load` or `destroy`,
- * those in a frame until `step` returns. All calls come from one thread at a time. Nothing may throw or longjmp across them.
+ * the ith of row j, is number j * columns + i. Pointers in a scene are valid until `destroy`, those in a frame until `step`
+ * returns. All calls come from one thread at a time. Nothing may throw or longjmp across them.
  *
  * Version 1. The structs that are passed one by one (plugin, scene, frame) may grow at their end within a version; those
  * that stand in arrays never change. Both sides tell the sizes they were compiled with, and what does not fit is refused.
@@ -123,7 +123,7 @@ typedef struct ClothbenchSetting {
   int32_t integer; /* 1: only whole numbers */
 } ClothbenchSetting;
 
-/* A stage of a frame after `load`. All stages together must serve exactly what the scene needs (what the solver ignores left
+/* A stage of a frame. All stages together must serve exactly what the scene needs (what the solver ignores left
  * out): a solver pays for nothing that a scene does not ask for. */
 typedef struct ClothbenchStage {
   const char* name;
@@ -144,22 +144,20 @@ typedef struct ClothbenchPlugin {
   uint32_t setting_count;
   const ClothbenchSetting* settings;
 
-  /* A solver with these settings, in the order of `settings`; NULL if that cannot be (say why on stderr). */
-  void* (*create)(const double* settings);
+  /* A solver that stands at the start of the scene, with these settings, in the order of `settings`. Timed as set-up. NULL if
+   * that cannot be, with the reason in `why`. */
+  void* (*create)(const double* settings, const ClothbenchScene*, const char** why);
   void (*destroy)(void*);
-  /* Takes the scene and stands at its start; 0 or, with `message`, why not. Timed as set-up. */
-  int32_t (*load)(void*, const ClothbenchScene*);
-  /* Back to the start, bit for bit. */
-  void (*reset)(void*);
+  /* Goes on from these positions and velocities, the scene's at the start or what `read_state` gave; 0 if they do not tell
+   * everything (nothing has changed then). May be NULL if there is a `reset`. */
+  int32_t (*restart)(void*, const double* position_m, const double* velocity_m_per_s);
   /* One frame, complete on return: what is timed. */
   int32_t (*step)(void*, const ClothbenchFrame*);
   void (*read_state)(void*, double* position_m, double* velocity_m_per_s);
   const ClothbenchStage* (*stages)(void*, uint32_t* count);
 
   /* The rest may be NULL. */
-  const char* (*message)(void*); /* why `load` failed */
-  /* Goes on from what `read_state` gave; 0 if that does not tell everything (nothing has changed then). */
-  int32_t (*restart)(void*, const double* position_m, const double* velocity_m_per_s);
+  void (*reset)(void*); /* back to the start, bit for bit; NULL: `restart` does that */
   /* Way [m] of a body that only falls, by the solver's own integrator; NULL: the exact one. */
   double (*free_fall_m)(const double* settings, double dt_s, double gravity_m_per_s2, double velocity_m_per_s, double damping_per_s,
                         int32_t frames);

@@ -35,9 +35,20 @@ std::vector<float> values_of(const Motion& m, const Shots& shots) {
   return out;
 }
 
-std::string caption(const Motion& m, std::size_t frame, bool followed) {
+constexpr double kMargin = 0.04;
+
+/// Nothing of the cloth is in the picture.
+bool has_left(const Camera& camera, std::span<const double> x) {
+  for (std::size_t v = 0; v + 2 < x.size(); v += 3)
+    if (const auto at = seen_at(camera, {x[v], x[v + 1], x[v + 2]}))
+      if ((*at)[0] >= 0 && (*at)[0] <= 1 && (*at)[1] >= 0 && (*at)[1] <= 1) return false;
+  return true;
+}
+
+std::string caption(const Motion& m, std::size_t frame, bool followed, bool left) {
   std::string text = fmt::format("{} · {:.3f} s", m.title, m.time_s[frame]);
   if (followed) text += " · camera falls with it";
+  if (left) text += " · the cloth has left the picture";
   if (!m.ended.empty() && frame + 1 == m.frames()) text += " · " + m.ended;
   return text;
 }
@@ -49,7 +60,7 @@ class Shoot {
       : m_(motion),
         shots_(shots),
         layout_(layout_of(shots.width, shots.height, shots.plain, shots.colour != Colour::Checker)),
-        framing_(framing_of(motion, shots.frames)),
+        framing_(framing_of(motion, framed_by(motion, shots.frames))),
         values_(values_of(motion, shots)),
         scale_(scale_for(shots.colour, values_)),
         colours_(table_of(scale_)),
@@ -66,7 +77,7 @@ class Shoot {
   }
 
   void take(View view, Taken& taken, const Progress& progress) {
-    const Camera camera = frame(view, framing_.points, static_cast<double>(layout_.width) / layout_.height);
+    const Camera camera = frame(view, framing_.points, static_cast<double>(layout_.width) / layout_.height, kMargin, framing_.turn_deg);
     const std::string stem = fmt::format("{}__{}__{}", m_.name, name_of(view), name_of(shots_.colour));
     std::unique_ptr<Movie> movie;
     if (shots_.movie && shots_.frames.size() > 1) {
@@ -88,7 +99,8 @@ class Shoot {
  private:
   Picture draw(std::size_t k, const Camera& camera) {
     const std::size_t f = shots_.frames[k], count = m_.scene.cloth.vertex_count();
-    renderer_.write_positions(m_.at(f));
+    const std::vector<double> x = m_.at(f);
+    renderer_.write_positions(x);
     if (!values_.empty())
       renderer_.write_values(positions_on(scale_, std::span(values_).subspan(k * count, count)), colours_);
     if (!surfaces_set_ || !m_.scene.motion.empty())
@@ -99,7 +111,7 @@ class Shoot {
     out.put(images_.read(0), 0, 0);
     if (!pen_) return out;
     if (!values_.empty()) draw_legend(out, layout_, scale_, *pen_);
-    draw_caption(out, layout_, caption(m_, f, framing_.followed.has_value()), *pen_);
+    draw_caption(out, layout_, caption(m_, f, framing_.followed.has_value(), !framing_.followed && has_left(camera, x)), *pen_);
     return out;
   }
 

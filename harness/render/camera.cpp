@@ -19,12 +19,12 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-void look(Camera& c, View view) {
+void look(Camera& c, View view, double turn_deg) {
   if (view == View::Top) {
     c.back = {0, 1, 0};
     c.right = {1, 0, 0};
   } else {
-    const double azimuth = radians(view == View::Front ? 0 : 30), elevation = radians(view == View::Front ? 0 : 24);
+    const double azimuth = radians(turn_deg + (view == View::Front ? 0 : 30)), elevation = radians(view == View::Front ? 0 : 24);
     c.back = {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)};
     c.right = {std::cos(azimuth), 0, -std::sin(azimuth)};
   }
@@ -96,10 +96,16 @@ std::optional<std::array<double, 2>> seen_at(const Camera& c, const Vec3& p) {
                                0.5 - 0.5 * dot(d, c.up) / depth / c.tan_half_height};
 }
 
-Camera frame(View view, std::span<const double> points, double aspect, double margin) {
+Vec3 towards_eye(View view, double turn_deg) {
+  Camera c;
+  look(c, view, turn_deg);
+  return c.back;
+}
+
+Camera frame(View view, std::span<const double> points, double aspect, double margin, double turn_deg) {
   if (points.size() < 3) throw Error("frame: there is nothing to look at");
   Camera c;
-  look(c, view);
+  look(c, view, turn_deg);
   c.tan_half_height = std::tan(radians(kFieldOfView / 2));
   c.tan_half_width = c.tan_half_height * aspect;
   const double within = 1 - 2 * margin;
@@ -125,7 +131,7 @@ std::array<Camera, 2> eyes(const Vec3& middle_m, double distance_m, double near_
   std::array<Camera, 2> both;
   for (std::size_t k = 0; k < 2; ++k) {
     Camera& c = both[k];
-    look(c, View::Front);
+    look(c, View::Front, 0);
     c.eye_m = {middle_m[0] + (k == 0 ? -0.5 : 0.5) * kApart_m, middle_m[1], middle_m[2] + distance_m};
     c.tan_half_width = std::tan(radians(kWidth / 2));
     c.tan_half_height = std::tan(radians(kHeight / 2));

@@ -71,7 +71,18 @@ Framing framing_of(const Motion& m, std::span<const std::size_t> frames) {
   for (std::size_t i = 0; i < (moves ? frames.size() : std::min<std::size_t>(1, frames.size())); ++i)
     for (const Vec3& p : surfaces(m.scene, static_cast<int>(frames[i]), f.near).position_m)
       if (beside.holds(p)) append(f.points, p);
+  f.turn_deg = best_turn(m, frames, f.near);
   return f;
+}
+
+std::vector<std::size_t> framed_by(const Motion& m, std::span<const std::size_t> wanted) {
+  constexpr std::size_t kSome = 48;
+  std::vector<std::size_t> out(wanted.begin(), wanted.end());
+  if (!m.held) return out;
+  for (std::size_t k = 0; k < kSome; ++k) out.push_back(k * (m.frames() - 1) / (kSome - 1));
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
 }
 
 }  // namespace clothbench::render

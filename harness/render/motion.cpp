@@ -154,6 +154,7 @@ void read_stage(const std::vector<StoredGroup>& groups, Scene& scene) {
 /// Of the completed scenario: what rest lengths need.
 void read_cloth(const json& scenario, Scene& scene) {
   const json& c = scenario.at("cloth");
+  if (!c.contains("grid")) throw Error("/cloth: only grids are drawn; ParaView opens the .xdmf beside it");
   scene.cloth.columns = c.at("grid").at(0).get<int>();
   scene.cloth.rows = c.at("grid").at(1).get<int>();
   scene.cloth.width_m = c.at("size_m").at(0).get<double>();

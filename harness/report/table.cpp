@@ -6,6 +6,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "report/tint.hpp"
+
 namespace clothbench {
 namespace {
 
@@ -77,18 +79,19 @@ std::string Table::console() const {
     widths.resize(std::max(widths.size(), row.size()));
     for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], display_width(row[k]));
   }
-  std::string out = "\n" + title + "\n";
+  std::string out = "\n" + tinted(Tone::Heading, title) + "\n";
   for (std::size_t first = kLabelColumns; first == kLabelColumns || first < widths.size();) {
     std::size_t total = 1, last = first;
     for (std::size_t k = 0; k < std::min(kLabelColumns, widths.size()); ++k) total += widths[k] + kGap;
     while (last < widths.size() && (last == first || total + widths[last] + kGap <= kConsoleColumns))
       total += widths[last++] + kGap;
     for (const auto& row : rows) {
+      const bool head = &row == &rows.front();
       out += " ";
       for (std::size_t k = 0; k < row.size(); ++k) {
         if (k >= kLabelColumns && (k < first || k >= last)) continue;
         const std::string pad(widths[k] - display_width(row[k]), ' ');
-        out += k == 0 ? " " + row[k] + pad : "  " + pad + row[k];
+        out += k == 0 ? " " + row[k] + pad : "  " + pad + tinted(head ? Tone::Plain : tone_of(row[k]), row[k]);
       }
       out += "\n";
     }

@@ -109,6 +109,20 @@ CellRecord measure_material(const SolverEntry& entry, const json& settings, cons
   return c;
 }
 
+CellRecord failed_material(const SolverEntry& entry, const std::string& setting, const Outcome& outcome, const std::string& protocol) {
+  CellRecord c;
+  c.header.scene = kMaterialCardScene;
+  c.header.solver = entry.info.name;
+  c.header.setting = setting;
+  c.header.settings = json::object();
+  c.header.scenario_json = json{{"name", kMaterialCardScene}, {"material_card", setting == "default" ? "full" : "short"}, {"patches", json::array()}}.dump();
+  c.header.scenario_sha256 = sha256(c.header.scenario_json);
+  c.header.environment = describe_environment({}, protocol);
+  c.header.environment["solver_features"] = describe_features(entry.info);
+  c.outcome = outcome;
+  return c;
+}
+
 std::map<std::string, json> swept_settings(const SolverInfo& info, const json& complete) {
   constexpr int kFactor = 4, kInstead = 1024;
   std::map<std::string, json> out;

@@ -22,6 +22,9 @@ CellRecord measure_material(const SolverEntry&, const nlohmann::json& settings, 
                             const DeviceOptions&, const std::string& protocol, double limit_s = 20,
                             bool bending = true);
 
+/// A card that could not be measured, for instance since the process that was at it crashed.
+CellRecord failed_material(const SolverEntry&, const std::string& setting, const Outcome&, const std::string& protocol);
+
 /// Settings at which `clothbench card` looks for a dependence: four times as many substeps, four times as many
 /// iterations, of integer settings of those names (1024 where the default is 0, "the solver chooses"). By short name.
 std::map<std::string, nlohmann::json> swept_settings(const SolverInfo&, const nlohmann::json& complete);

@@ -1,8 +1,12 @@
-"""Result files of the paths on the command line."""
+"""The cells (result files) of the paths on the command line: name and open file, one after another."""
 import pathlib
 import sys
 
+import h5py
 
-def files():
-    paths = [pathlib.Path(p) for p in sys.argv[1:]]
-    return [f for p in paths for f in (sorted(p.glob("*.h5")) if p.is_dir() else [p])]
+
+def cells():
+    for path in map(pathlib.Path, sys.argv[1:]):
+        for file in sorted(path.glob("*.h5")) if path.is_dir() else [path]:
+            with h5py.File(file) as f:
+                yield file.stem, f

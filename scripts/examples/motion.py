@@ -1,10 +1,8 @@
 """Where is the cloth at the end? Its box."""
-import h5py
-from _cells import files
+from _cells import cells
 
-for path in files():
-    with h5py.File(path) as f:
-        if "trajectory" not in f:
-            continue
+for name, f in cells():
+    if "trajectory" in f:
         x = f["trajectory/position"][-1]  # (vertex, xyz), y up
-        print(f"{path.name}: t = {f['trajectory/time_s'][-1]:.2f} s, from {x.min(axis=0).round(3)} to {x.max(axis=0).round(3)} m")
+        t = f["trajectory/time_s"][-1]
+        print(f"{name}: t = {t:.2f} s, from {x.min(axis=0).round(3)} to {x.max(axis=0).round(3)} m")

@@ -87,8 +87,7 @@ void check_description(const std::string& path, const ClothbenchPlugin& c) {
   if (c.time_order < 1) refuse(path, "time_order: expected 1 or more");
   for (const auto& [what, there] : {std::pair{"create", c.create != nullptr},
                                     {"destroy", c.destroy != nullptr},
-                                    {"load", c.load != nullptr},
-                                    {"reset", c.reset != nullptr},
+                                    {"restart or reset", c.restart != nullptr || c.reset != nullptr},
                                     {"step", c.step != nullptr},
                                     {"read_state", c.read_state != nullptr},
                                     {"stages", c.stages != nullptr},

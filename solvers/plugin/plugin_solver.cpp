@@ -27,29 +27,32 @@ StepStatus status_of(std::int32_t code) {
 class PluginSolver final : public ClothSolver {
  public:
   PluginSolver(const ClothbenchPlugin& c, SolverInfo info, const nlohmann::json& settings)
-      : c_(c), info_(std::move(info)), self_(c.create(setting_values(c, settings).data())) {
-    if (self_ == nullptr)
-      throw SolverError(info_.folder + ": create: the plugin makes no solver with the settings " + settings.dump());
-  }
-  ~PluginSolver() override { c_.destroy(self_); }
+      : c_(c), info_(std::move(info)), settings_(setting_values(c, settings)) {}
+  ~PluginSolver() override { drop(); }
   PluginSolver(const PluginSolver&) = delete;
   PluginSolver& operator=(const PluginSolver&) = delete;
 
   const SolverInfo& info() const override { return info_; }
 
   DeviceInfo device() const override {
-    const char* name = c_.device != nullptr ? c_.device(self_) : nullptr;
+    const char* name = c_.device != nullptr && self_ != nullptr ? c_.device(self_) : nullptr;
     return {name != nullptr ? name : "CPU", "", "plugin", false, "{}"};
   }
 
   void load(const Scene& scene) override {
+    drop();
     view_.emplace(scene);
-    if (c_.load(self_, view_->scene()) == 0) return;
-    const char* why = c_.message != nullptr ? c_.message(self_) : nullptr;
-    throw SolverError(info_.folder + ": load: " + (why != nullptr ? why : "the plugin does not say why"));
+    const char* why = nullptr;
+    self_ = c_.create(settings_.data(), view_->scene(), &why);
+    if (self_ == nullptr)
+      throw SolverError(info_.folder + ": create: " + (why != nullptr ? why : "the plugin does not say why it makes no solver"));
   }
 
-  void reset() override { c_.reset(self_); }
+  void reset() override {
+    if (c_.reset != nullptr) return c_.reset(self_);
+    if (c_.restart(self_, view_->scene()->position_m, view_->scene()->velocity_m_per_s) == 0)
+      throw SolverError(info_.folder + ": restart: refuses the scene's own start, and there is no reset");
+  }
   StepStatus step(const FrameInput& in) override { return status_of(c_.step(self_, view_->frame(in))); }
 
   void read_state(ClothState& out) const override {
@@ -86,10 +89,16 @@ class PluginSolver final : public ClothSolver {
   }
 
  private:
+  void drop() {
+    if (self_ != nullptr) c_.destroy(self_);
+    self_ = nullptr;
+  }
+
   const ClothbenchPlugin& c_;
   const SolverInfo info_;
-  void* const self_;
+  const std::vector<double> settings_;
   std::optional<SceneView> view_;
+  void* self_ = nullptr;  ///< there once a scene is loaded
 };
 
 }  // namespace

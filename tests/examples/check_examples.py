@@ -10,7 +10,9 @@ EXPECTED = {
     "fastest.py": ["gravity", "ballistic", " ms  ["],
     "accuracy.py": ["gravity", "free_fall_error"],
     "stages.py": ["sample__none", "'First': '100.0 us'", "'Second': '200.0 us'"],
-    "motion.py": ["gravity__ballistic__default.h5: t = 1.00 s"],
+    "motion.py": ["gravity__ballistic__default: t = 1.00 s"],
+    "over_time.py": [],
+    "where.py": ["gravity__ballistic__default: ", "Release"],
     "failures.py": ["sample__none__readback=blocking: diverged (F1) a message"],
 }
 
@@ -24,10 +26,13 @@ with tempfile.TemporaryDirectory() as home:
     assert scripts == sorted(EXPECTED), scripts
     readme = (FOLDER / "README.md").read_text(encoding="utf-8")
     for name in scripts:
-        done = subprocess.run([sys.executable, FOLDER / name, run, sample], capture_output=True, text=True, check=False)
+        done = subprocess.run([sys.executable, FOLDER / name, run, sample], capture_output=True, text=True, check=False, cwd=home)
         assert done.returncode == 0, (name, done.stderr)
         for word in EXPECTED[name]:
             assert word in done.stdout, (name, word, done.stdout)
         assert f"`{name}`" in readme, name
-        assert len((FOLDER / name).read_text(encoding="utf-8").splitlines()) <= 20, name
+        text = (FOLDER / name).read_text(encoding="utf-8")
+        lines = [line for line in text.splitlines()[1:] if line.strip()]
+        assert text.startswith('"""') and len(lines) <= 10, (name, len(lines), "ten lines below the question")
+    assert pathlib.Path(home, "over_time.png").read_bytes()[1:4] == b"PNG"
 print("all examples answer")

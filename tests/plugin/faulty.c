@@ -1,5 +1,5 @@
 /* A plugin that is wrong in the way it was compiled for (FAULT_…) or that $FAULT names while it runs: crash:N, hang:N, exit:N,
- * nan:N (at the Nth step of a solver), load. Otherwise its cloth stands still. */
+ * nan:N (at the Nth step of a solver), load, create (a crash there). Otherwise its cloth stands still. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,17 +13,15 @@ typedef struct {
   ClothbenchStage stage;
 } Solver;
 
-static void* create(const double* settings) {
+static void* create(const double* settings, const ClothbenchScene* scene, const char** why) {
   (void)settings;
-  return calloc(1, sizeof(Solver));
-}
-
-static int32_t load(void* self, const ClothbenchScene* scene) {
-  Solver* s = self;
+  const char* fault = getenv("FAULT");
+  if (fault && strcmp(fault, "load") == 0) return *why = "it was asked to fail", NULL;
+  if (fault && strcmp(fault, "create") == 0) *(volatile int*)8 = 1;
+  Solver* s = calloc(1, sizeof *s);
   s->scene = scene;
   s->stage = (ClothbenchStage){"stand still", 0, 0, NAN, NAN};
-  const char* fault = getenv("FAULT");
-  return fault && strcmp(fault, "load") == 0;
+  return s;
 }
 
 static void reset(void* self) { (void)self; }
@@ -51,9 +49,10 @@ static const ClothbenchStage* stages(void* self, uint32_t* count) {
   return &((Solver*)self)->stage;
 }
 
-static const char* message(void* self) {
-  (void)self;
-  return "it was asked to fail";
+/* Of a body that stands still. */
+static double free_fall(const double* settings, double dt, double gravity, double velocity, double damping, int32_t frames) {
+  (void)settings, (void)dt, (void)gravity, (void)velocity, (void)damping, (void)frames;
+  return 0;
 }
 
 #ifdef FAULT_CRASHES_ON_LOAD
@@ -70,7 +69,7 @@ const ClothbenchPlugin* clothbench_plugin(void) {
 #endif
   static ClothbenchPlugin plugin = {
       CLOTHBENCH_PLUGIN_HEADER, "faulty", "wrong on purpose", "1", "float64", 0, (1u << 20) - 1, 1, 0, NULL,
-      create, free, load, reset, step, read_state, stages, message, NULL, NULL, NULL, NULL};
+      create, free, NULL, step, read_state, stages, reset, free_fall, NULL, NULL};
 #ifdef FAULT_VERSION
   plugin.version = 99;
 #endif
@@ -82,6 +81,9 @@ const ClothbenchPlugin* clothbench_plugin(void) {
 #endif
 #ifdef FAULT_NO_STEP
   plugin.step = NULL;
+#endif
+#ifdef FAULT_STRETCHES
+  plugin.name = "stretches", plugin.supports = plugin.ignores, plugin.ignores = 0;
 #endif
 #ifdef FAULT_NAME
   plugin.name = "ballistic";

@@ -174,6 +174,41 @@ TEST(Album, FallsWithAClothThatNothingHolds) {
   EXPECT_FALSE(framing_of(s.read, std::vector<std::size_t>{0, 1}).followed.has_value());
 }
 
+/// A sheet that stands upright, one metre to each side of the origin of its lower edge, with the scene's box where it is wanted.
+Motion upright(const Vec3& box_m) {
+  Motion m;
+  m.scene = load_scene("contact/box", {"cloth.grid=[17,17]"});
+  m.scene.colliders[0].center_m = box_m;
+  m.held = true;
+  m.time_s = {0, 1};
+  for (int frame = 0; frame < 2; ++frame)
+    for (int j = 0; j < 17; ++j)
+      for (int i = 0; i < 17; ++i)
+        for (const double x : {i / 8.0 - 1, j / 8.0, 0.0}) m.position.push_back(static_cast<float>(x));
+  return m;
+}
+
+TEST(Album, GoesRoundWhatHidesTheCloth) {
+  const std::vector<std::size_t> frames = {0, 1};
+  const Bounds near{{-9, -9, -9}, {9, 9, 9}};
+  EXPECT_EQ(best_turn(upright({0, -2, 0}), frames, near), 0) << "nothing is in the way";
+  const Vec3 eye = towards_eye(View::Corner, 0);
+  Motion hidden = upright({2 * eye[0], 1 + 2 * eye[1], 2 * eye[2]});
+  for (double& half : hidden.scene.colliders[0].half_extent_m) half = 1.3;
+  const double turn = best_turn(hidden, frames, near);
+  EXPECT_NE(turn, 0) << "the box stands where the camera would";
+  EXPECT_LT(towards_eye(View::Corner, turn)[0] * eye[0] + towards_eye(View::Corner, turn)[2] * eye[2], 0.5);
+  hidden.scene.motion.resize(1);
+  EXPECT_EQ(best_turn(hidden, frames, near), 0) << "what moves is looked at from the front";
+}
+
+TEST(Album, FramesOneFrameAsItsWholeMotion) {
+  Motion m = upright({0, -2, 0});
+  EXPECT_EQ(framed_by(m, std::vector<std::size_t>{0}), (std::vector<std::size_t>{0, 1}));
+  m.held = false;
+  EXPECT_EQ(framed_by(m, std::vector<std::size_t>{0}), (std::vector<std::size_t>{0}));
+}
+
 TEST(Album, ReadsRangesOfFrames) {
   const auto list = [](const std::string& text) { return frames_from(text, 10); };
   EXPECT_EQ(list(":").size(), 10u);

@@ -233,7 +233,7 @@ TEST(Environment, OneColumnForEachPlace) {
                                    fake_cell("bullet-soft", 8, "single", 1, false)};
   cells.push_back({});
   const Table t = environment_table(cells);
-  EXPECT_EQ(t.rows.at(0), (std::vector<std::string>{"what", "2 cells", "1 cell"}));
+  EXPECT_EQ(t.rows.at(0), (std::vector<std::string>{"what", "xpbd (2 cells)", "bullet-soft (1 cell)"}));
   EXPECT_EQ(t.rows.at(1), (std::vector<std::string>{"GPU", "Fake GPU", "CPU"}));
   for (const auto& row : t.rows) EXPECT_NE(row[0], "clocks") << "a row without any value is left out";
 }

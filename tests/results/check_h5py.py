@@ -19,7 +19,7 @@ with h5py.File(path) as f:
     assert f["VTKHDF/Steps"].attrs["NSteps"] == 5
     assert f["VTKHDF/Polygons/NumberOfCells"][0] == 4 and f["VTKHDF/Lines/Offsets"][:].tolist() == [0]
     assert f["outcome"].attrs["expect"] == "broken: stretch_max 2 > 1"
-    assert f["colliders"].attrs["count"] == 1 and f["colliders/0"].attrs["shape"] == "capsules"
+    assert f["colliders"].attrs["count"] == 2 and f["colliders/0"].attrs["shape"] == "capsules"
     assert f["colliders/0"].attrs["normal"].tolist() == [0, 1, 0.1]
     capsules = f["colliders/0/capsules"]
     assert capsules.shape == (2, 3, 7) and capsules.dtype == np.float64 and capsules[1, 2, 6] == 0.1 * 41

@@ -50,7 +50,7 @@ TEST_F(Raw, TrialsAndAccuracyRoundTripBitForBit) {
   EXPECT_TRUE(same(a.metrics[0].values, r.accuracy.metrics[0].values));
   write_replay_file(dir_ / "r.raw", r.replay);
   const std::vector<StoredGroup> replay = read_replay_file(dir_ / "r.raw");
-  ASSERT_EQ(replay.size(), 2u);
+  ASSERT_EQ(replay.size(), 3u);
   EXPECT_EQ(replay[1].attributes, r.replay[1].attributes);
   ASSERT_EQ(replay[1].arrays.size(), 2u);
   for (std::size_t k = 0; k < 2; ++k) {

@@ -44,12 +44,15 @@ inline CellRecord sample_cell(int trials = 3, int frames = 4, std::uint32_t vert
     r.accuracy.metrics[0].values.push_back(f == 0 ? kMissing : 0.1 * f);
     r.accuracy.metrics[1].values.push_back(9.81 * f / 72);
   }
-  r.replay = {{"colliders", {{"count", 1}, {"frame_rate_hz", 72.0}}, {}},
-              {"colliders/0", {{"shape", "capsules"}, {"normal", {0.0, 1.0, 0.1}}}, {}}};
+  r.replay = {{"colliders", {{"count", 2}, {"frame_rate_hz", 72.0}}, {}},
+              {"colliders/0", {{"shape", "capsules"}, {"normal", {0.0, 1.0, 0.1}}}, {}},
+              {"colliders/1", {{"shape", "mesh"}}, {}}};
   StoredArray capsules{"capsules", "m", "ends and radius", {"frame", "capsule", "value"}, {2, 3, 7}, false, {}};
   StoredArray triangles{"triangles", "1", "vertices of each triangle", {"triangle", "corner"}, {2, 3}, true, {0, 1, 2, 0, 2, 3}};
   for (int k = 0; k < 42; ++k) capsules.values.push_back(0.1 * k);
+  StoredArray corners{"position_m", "m", "vertices", {"vertex", "xyz"}, {4, 3}, false, {0, -1, 0, 1, -1, 0, 1, -1, 1, 0, -1, 1}};
   r.replay[1].arrays = {capsules, triangles};
+  r.replay[2].arrays = {corners, triangles};
   r.outcome = {"diverged", "F1", 3, "a message with \"quotes\" and µ", "broken: stretch_max 2 > 1"};
   r.summary = {{"fps_median", 123.4567890123}, {"read_B_per_frame", kMissing}};
   return r;

@@ -1,7 +1,9 @@
 // Points of the page's figures.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 #include <cmath>
 
 #include "report/report.hpp"
@@ -114,27 +116,32 @@ Table environment_table(const std::vector<CellRecord>& cells) {
                                                                   {"assets", "assets"}};
   const auto text = [](const json& e, const char* key) -> std::string {
     const json v = e.is_object() ? e.value(key, json()) : json();
-    if (v.is_boolean()) return v.get<bool>() ? "yes" : "no";
+    if (v.is_boolean()) return v.get<bool>() ? "Yes" : "No";  // facts, not verdicts: the page colours yes and no
     return v.is_string() && !v.get<std::string>().empty() ? v.get<std::string>()
            : v.is_null() || v.is_string()                 ? "–"
                                                           : v.dump();
   };
-  std::vector<std::pair<std::vector<std::string>, std::size_t>> places;
+  struct Place {
+    std::vector<std::string> what;
+    std::size_t cells;
+    std::set<std::string> solvers;
+  };
+  std::vector<Place> places;
   for (const CellRecord& c : cells) {
     if (!c.header.environment.is_object() || c.header.environment.empty()) continue;
     std::vector<std::string> place;
     for (const auto& [key, label] : kKeys) place.push_back(text(c.header.environment, key));
-    const auto same = std::find_if(places.begin(), places.end(), [&](const auto& p) { return p.first == place; });
-    if (same == places.end())
-      places.push_back({place, 1});
-    else
-      ++same->second;
+    const auto same = std::find_if(places.begin(), places.end(), [&](const Place& p) { return p.what == place; });
+    Place& here = same == places.end() ? places.emplace_back(Place{place, 0, {}}) : *same;
+    ++here.cells;
+    here.solvers.insert(c.header.solver);
   }
   Table t{"Where the cells ran", "As each result file says.", {{"what"}}};
-  for (const auto& p : places) t.rows[0].push_back(fmt::format("{} cell{}", p.second, p.second == 1 ? "" : "s"));
+  for (const Place& p : places)
+    t.rows[0].push_back(fmt::format("{} ({} cell{})", fmt::join(p.solvers, ", "), p.cells, p.cells == 1 ? "" : "s"));
   for (std::size_t k = 0; k < std::size(kKeys); ++k) {
     std::vector<std::string> row = {kKeys[k].second};
-    for (const auto& p : places) row.push_back(p.first[k]);
+    for (const Place& p : places) row.push_back(p.what[k]);
     if (std::any_of(row.begin() + 1, row.end(), [](const std::string& s) { return s != "–"; }))
       t.rows.push_back(std::move(row));
   }

@@ -1,0 +1,59 @@
+#include "report/in_short.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace clothbench {
+namespace {
+
+struct Row {
+  const CellRecord* cell;
+  double frame_s = kMissing, spread_s = kMissing;  ///< median and half the range of the trials' means
+};
+
+Row row_of(const CellRecord& c) {
+  std::vector<double> means;
+  for (const TimedTrial& t : c.trials) {
+    double sum = 0;
+    for (const double w : t.frame_wall_s) sum += w;
+    if (t.frames() > 0 && sum > 0) means.push_back(sum / t.frames());
+  }
+  if (means.empty()) return {&c};
+  std::sort(means.begin(), means.end());
+  const std::size_t n = means.size();
+  return {&c, (means[(n - 1) / 2] + means[n / 2]) / 2, n > 1 ? (means.back() - means.front()) / 2 : kMissing};
+}
+
+std::string ended(const Outcome& o) {
+  if (o.status != "ok") return o.failed_frame >= 0 ? fmt::format("{} in frame {}", o.status, o.failed_frame) : o.status;
+  return o.expect.empty() ? "ok" : o.expect.substr(0, o.expect.find(':'));
+}
+
+}  // namespace
+
+Table in_short_table(const std::vector<CellRecord>& cells) {
+  std::map<std::string, std::vector<Row>> scenes;
+  for (const CellRecord& c : cells) scenes[c.header.scene].push_back(row_of(c));
+  Table t{"In short",
+          "Wall time of a frame: median of the trials' means ± half their range. Ended: ok, or whether the scene's "
+          "expectations were kept.",
+          {{"scene", "solver", "setting", "ended", "frame [ms]", "against the fastest"}}};
+  for (auto& [scene, rows] : scenes) {
+    std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
+      return a.frame_s < b.frame_s || (std::isnan(b.frame_s) && !std::isnan(a.frame_s));
+    });
+    const double fastest = rows.front().frame_s;
+    for (const Row& r : rows) {
+      std::string time = significant(1e3 * r.frame_s, 3);
+      if (std::isfinite(r.spread_s)) time += " ± " + significant(1e3 * r.spread_s, 2);
+      t.rows.push_back({scene, r.cell->header.solver, r.cell->header.setting, ended(r.cell->outcome), time,
+                        std::isfinite(r.frame_s) ? significant(r.frame_s / fastest, 3) + "×" : "–"});
+    }
+  }
+  return t;
+}
+
+}  // namespace clothbench

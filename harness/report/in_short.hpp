@@ -1,0 +1,13 @@
+#pragma once
+#include <vector>
+
+#include "clothbench/record.hpp"
+#include "report/table.hpp"
+
+namespace clothbench {
+
+/// One row a cell, by scene and the fastest first: how it ended, the time of a frame and how many times that of the
+/// fastest. Cells without trials come last.
+Table in_short_table(const std::vector<CellRecord>& cells);
+
+}  // namespace clothbench

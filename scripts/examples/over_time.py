@@ -1,0 +1,13 @@
+"""How does a quantity go, frame by frame? QUANTITY=kinetic_energy_J for another (`clothbench list metrics`). Draws over_time.png."""
+import os
+
+import matplotlib.pyplot as plt
+from _cells import cells
+
+for name, f in cells():
+    y = f.get("metrics/" + os.environ.get("QUANTITY", "stretch_max"))
+    if y is not None:
+        plt.plot(f["metrics/time_s"][:], y[:], label=name)
+        plt.ylabel(f"{y.attrs['long_name']} [{y.attrs['units']}]")
+plt.gca().set_xlabel("time [s]")
+plt.savefig("over_time.png", bbox_extra_artists=[plt.legend(fontsize=6)])

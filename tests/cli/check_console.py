@@ -1,0 +1,163 @@
+"""usage: check_console.py CLOTHBENCH SOURCE: what people and machines see: colour and a live line on a terminal alone, JSON and
+examples for every command, the history's format."""
+import fcntl
+import json
+import os
+import pty
+import re
+import select
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import termios
+import unittest
+
+CLOTHBENCH, SOURCE = sys.argv[1:3]
+RUN = ["run", "paper/gravity", "--solver", "ballistic", "--set", "cloth.grid=[8,8]", "--set", "time.duration_s=1"]
+COLUMNS = 60
+
+
+class Console(unittest.TestCase):
+    def setUp(self):
+        self.home = tempfile.mkdtemp(prefix="clothbench-console-")
+        self.addCleanup(shutil.rmtree, self.home, ignore_errors=True)
+        self.out = os.path.join(self.home, "out")
+        self.environment = dict(os.environ, CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios"), TERM="xterm")
+        self.environment.pop("NO_COLOR", None)
+
+    def piped(self, *words, code=0):
+        done = subprocess.run(
+            [CLOTHBENCH, *words], env=self.environment, capture_output=True, text=True, check=False, cwd=self.home
+        )
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done.stdout, done.stderr
+
+    def on_terminal(self, *words, **environment):
+        """stdout, stderr and exit code of a command that has a terminal for each."""
+        ends = [pty.openpty() for _ in range(2)]
+        for ours, _ in ends:
+            fcntl.ioctl(ours, termios.TIOCSWINSZ, struct.pack("HHHH", 24, COLUMNS, 0, 0))
+        process = subprocess.Popen(
+            [CLOTHBENCH, *words], env=dict(self.environment, **environment), stdout=ends[0][1], stderr=ends[1][1], cwd=self.home
+        )
+        for _, theirs in ends:
+            os.close(theirs)
+        text = {ours: b"" for ours, _ in ends}
+        open_ends = set(text)
+        while open_ends:
+            for ours in select.select(list(open_ends), [], [], 60)[0]:
+                try:
+                    chunk = os.read(ours, 65536)
+                except OSError:  # the other end is closed
+                    chunk = b""
+                text[ours] += chunk
+                if not chunk:
+                    open_ends.discard(ours)
+                    os.close(ours)
+        return [text[ours].decode() for ours, _ in ends] + [process.wait()]
+
+    def test_colour_on_a_terminal_alone(self):
+        out, _, code = self.on_terminal(*RUN, "--out", self.out)
+        self.assertEqual(code, 0, out)
+        self.assertIn("\x1b[32m1 cells ok\x1b[0m", out)
+        self.assertIn("\x1b[1m", out)
+        for text in (*self.piped(*RUN, "--out", self.out + "-2"), *self.on_terminal(*RUN, "--out", self.out + "-3", NO_COLOR="1")[:2]):
+            self.assertNotIn("\x1b", text)
+        _, errors, code = self.on_terminal("run", "nothing")
+        self.assertEqual(code, 2)
+        self.assertIn("\x1b[31mclothbench:\x1b[0m", errors)
+        self.assertNotIn("\x1b", self.on_terminal("run", "nothing", TERM="dumb")[1])
+        out, _, _ = self.on_terminal("validate", "paper/gravity", "nothing.json")
+        self.assertTrue("\x1b[32mok\x1b[0m" in out and "\x1b[31m" in out, out)
+        self.assertIn("\x1b[2mnoise\x1b[0m", self.on_terminal("compare", self.out, self.out)[0])
+
+    def test_a_live_line_that_fits_and_goes_away(self):
+        study = ["study", "table3", "--quick", "--trials", "1", "--solver", "ballistic", "--solver", "bullet-soft"]
+        _, errors, code = self.on_terminal(*study, "--out", self.out)
+        self.assertEqual(code, 0, errors)
+        lines = [line.rstrip() for line in errors.split("\r")]
+        self.assertTrue(any(re.match(r"\[\d+/\d+\] \S+", line) for line in lines), lines)
+        self.assertTrue(any(re.search(r"about \d+ (s|min) left$", line) for line in lines), lines)
+        self.assertLess(max(map(len, lines)), COLUMNS)
+        self.assertEqual(lines[-1], "", "nothing of it is left")
+        self.assertEqual(self.piped(*study, "--out", self.out + "-2")[1], "")
+
+    def commands(self):
+        help_text, _ = self.piped("--help")
+        self.assertIn("Example", help_text)
+        return re.findall(r"^  ([a-z]+)  ", help_text[help_text.index("Subcommands:") :], re.MULTILINE)
+
+    def test_every_command_has_an_example_and_speaks_json(self):
+        self.piped(*RUN, "--solver", "bullet-soft", "--trials", "3", "--out", self.out)
+        baseline = os.path.join(self.home, "baseline.json")
+        self.piped("check", self.out, "--baseline", baseline, "--update")
+        with open(os.path.join(self.home, "tiny.json"), "w", encoding="utf-8") as text:
+            with open(os.path.join(SOURCE, "scenarios", "paper", "gravity.json"), encoding="utf-8") as given:
+                json.dump(dict(json.load(given), name="tiny"), text)
+        asked = {
+            "list": ["features"],
+            "validate": ["tiny.json"],
+            "plan": ["paper/gravity", "--solver", "ballistic"],
+            "card": ["ballistic"],
+            "run": RUN[1:] + ["--out", self.out + "-2"],
+            "study": ["table3", "--quick", "--list-cells"],
+            "report": [self.out, "-o", self.out + "-report"],
+            "import": [self.out],
+            "check": [self.out, "--baseline", baseline],
+            "compare": [self.out, self.out],
+            "history": [self.out],
+            "metamorphic": ["ballistic"],
+            "threshold": ["validation/incline-stick", "--solver", "ballistic"],
+            "friction": ["ballistic"],
+            "bench": ["--benchmark_filter=gravity-8-single/ballistic"],
+            "render": [self.out, "--cell", "ballistic", "--frames", "0", "--size", "200x200", "-o", self.out + "-pictures"],
+            "completion": ["bash"],
+        }
+        for command in self.commands():
+            with self.subTest(command=command):
+                self.assertRegex(self.piped(command, "--help")[0], "Examples?:")
+                self.assertIsNotNone(json.loads(self.piped(command, "--json", *asked[command])[0]))
+
+    def test_errors_are_json_too(self):
+        out, errors = self.piped("run", "paper/gravty", "--json", code=2)
+        self.assertEqual(json.loads(out)["exit_code"], 2)
+        self.assertIn("paper/gravity", json.loads(out)["error"])
+        self.assertIn("paper/gravity", errors)
+
+    def test_history_is_what_chart_tools_read(self):
+        """github-action-benchmark: customSmallerIsBetter is a list of {name, unit, value, range?, extra?}; a chart for each name."""
+        self.piped(*RUN, "--solver", "bullet-soft", "--trials", "3", "--out", self.out)
+        benches = json.loads(self.piped("history", self.out)[0])
+        self.assertGreaterEqual(len(benches), 4)
+        for bench in benches:
+            self.assertLessEqual({"name", "unit", "value"}, set(bench))
+            self.assertLessEqual(set(bench), {"name", "unit", "value", "range", "extra"})
+            for key in set(bench) - {"value"}:
+                self.assertIsInstance(bench[key], str)
+            self.assertIs(type(bench["value"]), float, bench)
+            self.assertTrue(0 <= bench["value"] < float("inf") and bench["name"] and bench["unit"], bench)
+            if "range" in bench:
+                self.assertRegex(bench["range"], r"^± \d+(\.\d+)?(e[+-]\d+)?$")
+        names = [bench["name"] for bench in benches]
+        self.assertEqual(len(names), len(set(names)), "a name is what a chart is of")
+        self.assertTrue(any("range" in bench and bench["unit"] == "ms" for bench in benches))
+
+    def test_bench_is_compared_by_google_benchmarks_own_tool(self):
+        tool = "/usr/share/benchmark/compare.py"
+        if not os.path.exists(tool):
+            self.skipTest("no libbenchmark-tools")
+        words = ["bench", "--benchmark_filter=gravity-8-single/ballistic", "--benchmark_repetitions=9"]
+        files = [os.path.join(self.home, name) for name in ("before.json", "after.json")]
+        for file in files:
+            self.piped(*words, "--benchmark_out=" + file)
+        done = subprocess.run(
+            ["/usr/bin/python3", tool, "--no-color", "benchmarks", *files], capture_output=True, text=True, check=False
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"gravity-8-single/ballistic/default\S*_pvalue .*U Test, Repetitions: 9 vs 9")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])

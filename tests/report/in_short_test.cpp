@@ -1,0 +1,57 @@
+#include "report/in_short.hpp"
+
+#include <gtest/gtest.h>
+
+#include "report/tint.hpp"
+
+namespace clothbench {
+namespace {
+
+CellRecord cell(const std::string& solver, const std::vector<double>& means_s, const Outcome& outcome) {
+  CellRecord c;
+  c.header.scene = "drop";
+  c.header.solver = solver;
+  c.header.setting = "default";
+  c.outcome = outcome;
+  for (const double mean : means_s) {
+    TimedTrial t;
+    t.frame_wall_s = {0.5 * mean, 1.5 * mean};
+    c.trials.push_back(t);
+  }
+  return c;
+}
+
+TEST(InShort, TheFastestFirstAndWhatDidNotRunLast) {
+  Outcome broken, crashed{"crashed", "F8", 7, "its process"};
+  broken.expect = "broken: depth_max_m 1 > 0";
+  const Table t = in_short_table(
+      {cell("none", {}, crashed), cell("slow", {4e-3, 4e-3}, broken), cell("quick", {2e-3, 1e-3, 3e-3}, {})});
+  ASSERT_EQ(t.rows.size(), 4u);
+  EXPECT_EQ(t.rows[1], (std::vector<std::string>{"drop", "quick", "default", "ok", "2.00 ± 1.0", "1.00×"}));
+  EXPECT_EQ(t.rows[2], (std::vector<std::string>{"drop", "slow", "default", "broken", "4.00 ± 0.0", "2.00×"}));
+  EXPECT_EQ(t.rows[3], (std::vector<std::string>{"drop", "none", "default", "crashed in frame 7", "–", "–"}));
+}
+
+TEST(Tint, IsPlainUntilSwitchedOn) {
+  Table t{"Title",
+          "",
+          {{"cell", "kept", "how"},
+           {"a", "b", "kept"},
+           {"a", "b", "*noise*"},
+           {"a", "b", "1.5 ✓"},
+           {"a", "b", "NO: why"},
+           {"a", "b", "node"}}};
+  const std::string plain = t.console();
+  EXPECT_EQ(plain.find('\x1b'), std::string::npos);
+  colour_output(true);
+  const std::string coloured = t.console();
+  colour_output(false);
+  for (const char* part : {"\x1b[1mTitle\x1b[0m", "\x1b[32mkept\x1b[0m", "\x1b[2m*noise*\x1b[0m",
+                           "\x1b[32m1.5 ✓\x1b[0m", "\x1b[31mNO: why\x1b[0m", "  node\n"})
+    EXPECT_NE(coloured.find(part), std::string::npos) << part << " in " << coloured;
+  EXPECT_NE(coloured.find("  cell  kept      how"), std::string::npos) << "no verdict in a header: " << coloured;
+  EXPECT_EQ(t.console(), plain);
+}
+
+}  // namespace
+}  // namespace clothbench
