@@ -12,6 +12,7 @@ TEST_F(Sessions, StepsAndShowsEveryFrame) {
   o.device.validation = true;
   const LoopResult r = run(o, "clock=virtual,look=25");
   ASSERT_EQ(r.log.rows().size(), 30u);
+  EXPECT_EQ(told_["android"], false);
   EXPECT_EQ(told_["rate_hz"], 72.0) << "asked for, where the display began with 90";
   EXPECT_EQ(told_["levels"], nlohmann::json({"CPU 50", "GPU 50"})) << "XR_PERF_SETTINGS_LEVEL_SUSTAINED_HIGH_EXT";
   EXPECT_GE(told_["frames"].get<int>(), 30);

@@ -29,7 +29,8 @@ constexpr Offer kOffers[] = {{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, "vulkan"},
                              {cb::kSpatialEntity, "room"},
                              {cb::kSpatialEntityQuery, "room"},
                              {cb::kSpatialEntityMesh, "room"},
-                             {cb::kPerformanceMetrics, "metrics"}};
+                             {cb::kPerformanceMetrics, "metrics"},
+                             {"XR_KHR_android_create_instance", "android"}};
 
 XrResult XRAPI_CALL enumerate_extensions(const char* layer, std::uint32_t capacity, std::uint32_t* count, XrExtensionProperties* out) {
   if (layer != nullptr) return XR_ERROR_API_LAYER_NOT_PRESENT;
@@ -55,6 +56,11 @@ XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info, XrInstance
     for (const Offer& o : kOffers) known = known || (std::strcmp(o.extension, info->enabledExtensionNames[k]) == 0 && made->offers(o.key));
     if (!known) return XR_ERROR_EXTENSION_NOT_PRESENT;
   }
+  // Of an activity, what XR_KHR_android_create_instance demands.
+  const auto* android = static_cast<const cb::AndroidInfo*>(info->next);
+  if (android != nullptr && (android->type != cb::kTypeInstanceCreateAndroid || android->vm == nullptr || android->activity == nullptr))
+    return XR_ERROR_VALIDATION_FAILURE;
+  made->android = android != nullptr;
   set_runtime(std::move(made));
   *out = handle<XrInstance>(1);
   return XR_SUCCESS;
@@ -70,7 +76,7 @@ XrResult XRAPI_CALL destroy_instance(XrInstance) {
   if (log != r.options.end()) {
     const nlohmann::json j = {{"frames", r.ended},           {"rate_hz", r.rate_hz},
                               {"levels", r.levels},          {"passthrough_frames", r.passthrough_frames},
-                              {"projection_frames", r.projection_frames}, {"drawn", r.drawn},
+                              {"projection_frames", r.projection_frames}, {"drawn", r.drawn}, {"android", r.android},
                               {"faults", r.faults}};
     std::ofstream(log->second) << j.dump(1) << "\n";
   }

@@ -73,7 +73,7 @@ struct Runtime {
   std::set<std::string> levels;
   int passthrough_frames = 0, projection_frames = 0;
   std::array<double, 2> drawn{-1, -1};
-  bool passthrough = false, metrics = false;
+  bool passthrough = false, metrics = false, android = false;
 
   std::map<std::uint64_t, std::unique_ptr<Space>> spaces;
   std::map<std::uint64_t, std::unique_ptr<Swapchain>> swapchains;
