@@ -4,6 +4,7 @@
 
 #include "cli/command.hpp"
 #include "cli/run_common.hpp"
+#include "runner/cell.hpp"
 
 namespace clothbench {
 namespace {
@@ -78,6 +79,7 @@ void add_xr(CLI::App& app, Console& console) {
     const xr::LoopResult r = xr::run_loop(o);
     print(r, console);
     if (r.outcome.status != "ok" || r.validation_messages > 0) console.exit_code = ExitCode::CheckFailed;
+    if (interrupt_requested()) console.exit_code = ExitCode::Interrupted;
     if (r.validation_messages > 0) fmt::print(stderr, "FAULT {} validation messages\n", r.validation_messages);
   });
 }

@@ -43,7 +43,8 @@ class Loop {
   LoopResult run() {
     const auto start = Clock::now();
     while (session_.pump()) {
-      if ((interrupt_requested() || done_) && !asked_to_exit_) {
+      done_ = done_ || interrupt_requested();
+      if (done_ && !asked_to_exit_) {
         session_.request_exit();
         asked_to_exit_ = true;
         leaving_ = Clock::now();
@@ -140,6 +141,7 @@ class Loop {
     for (const Side side : {Side::Left, Side::Right})
       if (live_.wants(side) && !b.hands[static_cast<std::size_t>(side)]) return;
     if (picking_ && !picking_->ready(state.predictedDisplayTime)) return;
+    if (!rate_settled()) return;
     b.frame_rate_hz = rate_of(state);
     b.frames = o_.frames > 0 ? o_.frames : static_cast<int>(std::lround(live_.written().time.duration_s * b.frame_rate_hz));
     frames_ = b.frames;
@@ -168,6 +170,14 @@ class Loop {
     cell_ = std::move(cell);
     show_live();
     tell(fmt::format("{} frames at {:g} Hz", frames_, b.frame_rate_hz));
+  }
+
+  /// A display changes its rate some frames after it was asked to, if it has that rate.
+  bool rate_settled() {
+    constexpr double kPatience_s = 1, kSame_hz = 0.5;
+    if (first_frame_ == Clock::time_point{}) first_frame_ = Clock::now();
+    const double told = session_.refresh_rate_hz();
+    return told == 0 || std::abs(told - o_.rate_hz) <= kSame_hz || seconds(first_frame_, Clock::now()) > kPatience_s;
   }
 
   /// As the display says, else by the runtime's prediction, which is in whole ns.
@@ -294,7 +304,7 @@ class Loop {
   std::unique_ptr<Cell> cell_;
   const pbd_gpu::GpuSolver* gpu_ = nullptr;
   bool warm_ = false, done_ = false, asked_to_exit_ = false, stale_ = true;
-  Clock::time_point leaving_;
+  Clock::time_point leaving_, first_frame_;
   int frames_ = 0;
   XrTime first_time_ = 0;
   FrameLog log_;

@@ -77,6 +77,7 @@ XrResult XRAPI_CALL wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* 
   Runtime& r = *runtime();
   if (!r.running) return r.fault("xrWaitFrame: it does not run", XR_ERROR_SESSION_NOT_RUNNING);
   if (r.waited) return r.fault("xrWaitFrame: the frame before was not begun", XR_ERROR_CALL_ORDER_INVALID);
+  if (r.frames == 4) r.rate_hz = r.next_rate_hz;  // not at once
   const XrDuration period = r.period_ns();
   XrDuration took = std::max<XrDuration>(r.end_ns - r.wake_ns, 1) + static_cast<XrDuration>(stall_s(r, r.ended) * 1e9);
   if (const XrDuration late = r.now_ns() - r.wake_ns; late > took) took = late;
@@ -168,7 +169,7 @@ XrResult XRAPI_CALL get_rate(XrSession, float* rate) {
 XrResult XRAPI_CALL request_rate(XrSession, float rate) {
   for (const float there : {72.f, 80.f, 90.f, 120.f})
     if (rate == there) {
-      runtime()->rate_hz = static_cast<double>(rate);
+      runtime()->next_rate_hz = static_cast<double>(rate);
       return XR_SUCCESS;
     }
   return XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB;

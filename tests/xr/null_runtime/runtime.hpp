@@ -61,7 +61,7 @@ struct Runtime {
   std::uint32_t family = 0;
 
   // Clock.
-  double rate_hz = 90;
+  double rate_hz = 90, next_rate_hz = 90;
   XrDuration period_ns() const { return static_cast<XrDuration>(1e9 / rate_hz + 0.5); }
   XrTime now_ns() const;
   XrTime begin_ns = 0, wake_ns = 0, end_ns = 0;
