@@ -36,6 +36,7 @@ LiveScene::LiveScene(const std::string& scenario, const std::vector<std::string>
     : folder_(std::move(folder)) {
   const fs::path source = find_scenario(scenario);
   written_ = load_scene(scenario, overrides);
+  if (written_.cloth.mesh) throw Error(source.string() + ": /cloth/mesh: pictures are of grids alone; expected a \"grid\"");
   document_ = parse_json(read_text(source), source.string());
   for (const std::string& o : overrides) apply_override(document_, o, source.string());
   // These say what comes of the script's motion, not of the user's.

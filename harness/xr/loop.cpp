@@ -222,7 +222,9 @@ class Loop {
     row.input_s = seconds(t0, t1);
     row.settle_s = seconds(t1, t2);
     row.step_s = seconds(t2, t3);
-    row.step_device_s = cell_->solver()->last_cost().device_s;
+    const FrameCost cost = cell_->solver()->last_cost();
+    row.step_device_s = cost.device_s;
+    note(cost, row);
     if (status != StepStatus::Ok) {
       outcome_ = status == StepStatus::DeviceLost ? Outcome{"device_lost", "F8", index, "the device was lost"}
                                                   : Outcome{"diverged", "F1", index, "the solver's step failed"};
@@ -231,6 +233,18 @@ class Loop {
     shown_.motion.clear();
     if (motion != nullptr) shown_.motion.push_back(*motion);
     stale_ = stale_ || motion != nullptr;
+  }
+
+  /// The steps are a timed trial as of any run, so that what a headset's tools sampled meanwhile finds its time.
+  void note(const FrameCost& cost, const FrameRow& row) {
+    const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    if (trial_.frames() == 0) trial_.start_unix_s = now - row.step_s;
+    trial_.end_unix_s = now;
+    trial_.frame_wall_s.push_back(row.step_s);
+    trial_.frame_device_s.push_back(cost.device_s);
+    trial_.stage_device_s.insert(trial_.stage_device_s.end(), cost.stage_read_B.size(), kMissing);
+    trial_.stage_read_B.insert(trial_.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
+    trial_.stage_write_B.insert(trial_.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
   }
 
   void paint(const std::vector<XrView>& views) {
@@ -282,9 +296,11 @@ class Loop {
     CellRecord record;
     record.header = cell_->header();
     record.outcome = outcome_;
+    record.trials = {trial_};
     r.summary = summarise(cell_->spec(), cell_->plan(), record);
     r.summary.merge(log_.summary());
     CellWriter writer(o_.out, cell_->header());
+    writer.write_trial(trial_);
     writer.write_replay(groups);
     r.file = writer.finish(outcome_, r.summary);
     r.log = log_;
@@ -308,6 +324,7 @@ class Loop {
   int frames_ = 0;
   XrTime first_time_ = 0;
   FrameLog log_;
+  TimedTrial trial_;
   Outcome outcome_;
   ClothState state_;
   Scene shown_;  ///< what is drawn beside the cloth

@@ -140,6 +140,10 @@ TEST_F(Sessions, WhatIsMissingIsSaid) {
   o.patience_s = 0.5;
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::CheckFailed).find("no hand was seen"), std::string::npos);
   setenv("CLOTHBENCH_NULL_XR", "clock=virtual", 1);
+  o.scenario = "validation/hang-mesh";
+  o.overrides = {};
+  EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::BadInput).find("/cloth/mesh"), std::string::npos);
+  o = options("paper/capsule-sweep", 10);
   o.frames = 9000;
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::BadInput).find("1 to 8640"), std::string::npos);
 }
