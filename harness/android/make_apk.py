@@ -116,7 +116,8 @@ def main():
     a.out.parent.mkdir(parents=True, exist_ok=True)
     unaligned, aligned = a.out.with_suffix(".unaligned"), a.out.with_suffix(".aligned")
     major, minor, patch = (int(n) for n in a.version.split("."))
-    run(aapt2, "link", "-o", str(unaligned), "--manifest", str(HERE / "AndroidManifest.xml"), "-I", framework,
+    # Debian's aapt2 does not know <queries>, which came with API 30, but writes it all the same.
+    run(aapt2, "link", "--warn-manifest-validation", "-o", str(unaligned), "--manifest", str(HERE / "AndroidManifest.xml"), "-I", framework,
         "--min-sdk-version", str(MIN_SDK), "--target-sdk-version", str(TARGET_SDK),
         "--version-code", str(major * 10000 + minor * 100 + patch + 1), "--version-name", a.version)
     add_files(unaligned, [a.library, *a.also], a.assets)

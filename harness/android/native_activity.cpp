@@ -1,4 +1,4 @@
-// The activity as Android calls it: own ANativeActivity callbacks around a Session; nothing is drawn. Everything that can
+// The activity as Android calls it: own ANativeActivity callbacks around a Session. Everything that can
 // be tested without Android lies in session, packed_assets and stdout_tap.
 #include <android/asset_manager.h>
 #include <android/input.h>
@@ -17,6 +17,9 @@
 #include "android/session.hpp"
 #include "android/stdout_tap.hpp"
 #include "cli/command_line.hpp"
+#ifdef CLOTHBENCH_WITH_XR
+#include "xr/android_context.hpp"
+#endif
 
 namespace clothbench::android {
 namespace {
@@ -108,6 +111,19 @@ int drain_input(int, int, void* queue) {
   return 1;
 }
 
+/// The command line; of a live session the runtime asks for the activity, which the session's thread outlives for a moment.
+Command command_of([[maybe_unused]] ANativeActivity* a) {
+#ifdef CLOTHBENCH_WITH_XR
+  const xr::AndroidContext context{a->vm, a->env->NewGlobalRef(a->clazz)};
+  return [context](const std::vector<std::string>& words) {
+    xr::set_android_context(context);
+    return run_command_line(words);
+  };
+#else
+  return run_command_line;
+#endif
+}
+
 void set_callbacks(ANativeActivityCallbacks& c) {
   c.onPause = [](ANativeActivity* a) { instance_of(a)->session->pause(); };
   c.onResume = [](ANativeActivity* a) { instance_of(a)->session->resume(); };
@@ -136,7 +152,7 @@ extern "C" __attribute__((visibility("default"))) void ANativeActivity_onCreate(
   auto* instance = new Instance;
   instance->system = std::make_shared<ActivitySystem>(activity);
   activity->instance = instance;
-  Command command = run_command_line;
+  Command command = command_of(activity);
   try {
     tap();
     prepare(activity, files);

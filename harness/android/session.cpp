@@ -70,7 +70,7 @@ std::string option_value(const std::vector<std::string>& words, const std::strin
 }
 
 bool writes_results(const std::vector<std::string>& words) {
-  return !words.empty() && (words[0] == "study" || words[0] == "run");
+  return !words.empty() && (words[0] == "study" || words[0] == "run" || words[0] == "xr");
 }
 
 /// "runs/<study or command>-<UTC>", the first of its kind that is not there yet.
@@ -188,7 +188,8 @@ struct Session::Shared {
     if (!words.empty() && words[0] == "clothbench") words.erase(words.begin());
     fs::path out;
     if (writes_results(words)) {
-      const bool again = !ledger[k].value("out", "").empty();
+      // A live session cannot be gone on with: the user was elsewhere.
+      const bool again = words[0] != "xr" && !ledger[k].value("out", "").empty();
       if (!again) {
         const std::string given = option_value(words, "--out");
         ledger[k]["out"] = given.empty() ? fresh_folder(launch.files, words).string() : given;

@@ -37,7 +37,7 @@ std::vector<std::string> command_lines(const std::string& text);
 
 /// The life of an activity, without the system it lives in. The commands of the intent extra, else of
 /// `<files>/args.txt`, else `study table3`, run one after another in a thread of their own:
-///   - `study` and `run` without --out write to `<files>/runs/<name>-<UTC>`;
+///   - `study`, `run` and `xr` without --out write to `<files>/runs/<name>-<UTC>`;
 ///   - `<files>/session.json` says what runs where. A start with the same commands goes on where a killed or destroyed
 ///     one stopped (finished commands are not repeated, finished trials neither); after an ended one it begins anew;
 ///   - paused, the run holds between frames; destroyed, it stops after its frame and all finished trials are kept;

@@ -14,6 +14,19 @@ int value_of(char c) {
 
 }  // namespace
 
+std::string encode_base64(const std::uint8_t* bytes, std::size_t count) {
+  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((count + 2) / 3 * 4);
+  for (std::size_t i = 0; i < count; i += 3) {
+    const std::size_t there = count - i < 3 ? count - i : 3;
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (k < there ? bytes[i + k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= there ? kDigits[bits >> (18 - 6 * k) & 63u] : '=';
+  }
+  return text;
+}
+
 bool decode_base64(std::string_view text, std::vector<std::uint8_t>& bytes, std::string& problem) {
   bytes.clear();
   if (text.size() % 4 != 0) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -47,6 +48,17 @@ struct Room {
 Room load_room(const std::filesystem::path&);
 /// The same from text; `source` is for messages, `name` for the room.
 Room parse_room(const std::string& text, const std::string& source, const std::string& name);
+
+/// A capture that `load_room` reads: a mesh in an entity's own frame (vertices xyz [m], indices in threes) and where that is,
+/// as a runtime tells them (XR_META_spatial_entity_mesh). Without tables.
+struct RoomScan {
+  std::string uuid;
+  std::array<float, 3> position_m{};
+  std::array<float, 4> orientation{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
+  std::vector<float> vertices_m;
+  std::vector<std::uint32_t> indices;
+};
+std::string room_capture(const RoomScan&);
 
 /// The table whose uuid (or `stands_for`) starts with `prefix`. Throws Error listing the room's tables if none or more
 /// than one does.

@@ -63,6 +63,16 @@ Box box_of(const std::array<Vector, 6>& points) {
   return box;
 }
 
+Table table_in(const Box& world) {
+  Table table;
+  table.frame = Frame::Identity();
+  // A table's own z is up.
+  table.frame.linear() = (Eigen::Matrix3d() << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished();
+  const Vector low = world.min(), high = world.max();
+  table.box = Box(Vector(low.x(), -high.z(), low.y()), Vector(high.x(), -low.z(), high.y()));
+  return table;
+}
+
 std::array<Vector, 6> six_points(const Table& table, double below_m, double above_m) {
   const auto corners = table.top_corners();
   Vector middle = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;

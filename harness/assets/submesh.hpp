@@ -31,6 +31,9 @@ Box box_of(const std::array<Vector, 6>& points);
 /// The six points for a table: corners of its top, and its middle `below_m` lower and `above_m` higher.
 std::array<Vector, 6> six_points(const Table&, double below_m = 0.10, double above_m = 0.05);
 
+/// A table that fills an upright box, its top the box's upper face: what stands between picked points.
+Table table_in(const Box& world);
+
 /// Whether a triangle and a box have a point in common: separating axes, 3 + 1 + 9 of them (Akenine-Moller 2001), in
 /// double precision with nothing added for safety.
 bool overlaps(const Box&, const Vector& a, const Vector& b, const Vector& c);

@@ -34,6 +34,7 @@ void add_history(CLI::App&, Console&);
 void add_completion(CLI::App&, Console&);
 void add_bench(CLI::App&, Console&);
 void add_render(CLI::App&, Console&);
+void add_xr(CLI::App&, Console&);
 void add_metamorphic(CLI::App&, Console&);
 void add_threshold(CLI::App&, Console&);
 void add_friction(CLI::App&, Console&);

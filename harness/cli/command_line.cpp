@@ -65,6 +65,9 @@ int run_command_line(const std::vector<std::string>& words) {
 #ifdef CLOTHBENCH_WITH_RENDER
   add_render(app, console);
 #endif
+#ifdef CLOTHBENCH_WITH_XR
+  add_xr(app, console);
+#endif
   add_completion(app, console);
   try {
     // CLI11 takes the words last first.

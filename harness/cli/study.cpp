@@ -6,7 +6,7 @@
 #include "cli/command.hpp"
 #include "cli/run_common.hpp"
 #include "cli/study_plan.hpp"
-#ifdef CLOTHBENCH_WITH_RENDER
+#ifdef CLOTHBENCH_WITH_DRAW
 #include "render/stereo.hpp"
 #endif
 
@@ -47,7 +47,7 @@ void print_cells(const std::vector<std::string>& names, const Console& console) 
 }
 
 Rendering rendering_of([[maybe_unused]] const std::string& eye) {
-#ifdef CLOTHBENCH_WITH_RENDER
+#ifdef CLOTHBENCH_WITH_DRAW
   const auto [width, height] = pixels_of("--eye", eye);
   return render::stereo_rendering(width, height);
 #else
@@ -108,7 +108,7 @@ void add_study(CLI::App& app, Console& console) {
   cmd->add_flag("--no-cards", a.no_cards, "No material cards after a work-precision study (then no solver is left unranked for its stiffness)");
   cmd->add_option("--jobs", a.jobs, "Processes at a time, of a study whose cells run in processes of their own (default 1)")
       ->check(CLI::Range(1, 256));
-#ifdef CLOTHBENCH_WITH_RENDER
+#ifdef CLOTHBENCH_WITH_DRAW
   CLI::Option* rendering =
       cmd->add_flag("--with-rendering", a.with_rendering, "Also time frames with their pictures, one for each eye of a headset (frame_rendered_s)");
   cmd->add_option("--eye", a.eye, "WIDTHxHEIGHT of each picture in pixels")->capture_default_str()->needs(rendering);

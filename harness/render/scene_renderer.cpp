@@ -179,7 +179,7 @@ void SceneRenderer::record_one(VkCommandBuffer commands, const Drawing& drawing)
       targets_->extent().height != drawing.extent.height)
     targets_ = std::make_unique<Targets>(device_, pipelines_.pass(), format_, kSampleBit, drawing.extent);
   std::array<VkClearValue, 3> clear{};
-  clear[0].color = {{1, 1, 1, 1}};
+  clear[0].color = {{background_[0], background_[1], background_[2], background_[3]}};
   clear[1].depthStencil = {1, 0};
   VkRenderPassBeginInfo begin{};
   begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;

@@ -59,6 +59,8 @@ class SceneRenderer {
   /// checkers.
   void write_values(std::span<const float> values, std::span<const vec4> colours);
   void set_surfaces(const Surfaces&);
+  /// What is seen where nothing is, linear RGBA; white if never called. Alpha 0 lets a headset's cameras through.
+  void set_background(const vec4& rgba) { background_ = rgba; }
 
   /// Records the pictures one after another: what each reads of earlier commands on the queue is waited for.
   void record(VkCommandBuffer, std::span<const Drawing>);
@@ -79,6 +81,7 @@ class SceneRenderer {
   float squares_u_ = 0, squares_v_ = 0;
   Vec3 origin_m_{}, buffer_origin_m_{}, follow_start_m_{};
   int follow_vertex_ = -1;
+  vec4 background_{1, 1, 1, 1};
   bool by_value_ = false, bound_ = false;
   std::unique_ptr<vulkan::Buffer> own_positions_, values_, colours_, vertices_, corners_;
   const vulkan::Buffer* positions_ = nullptr;

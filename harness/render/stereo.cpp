@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gpu_solver.hpp"
 #include "render/offscreen.hpp"
 
 namespace clothbench::render {
@@ -30,8 +31,7 @@ class StereoDrawer : public FrameDrawer {
     if (solver.info().on_gpu) {
       const auto* gpu = dynamic_cast<const pbd_gpu::GpuSolver*>(&solver);
       if (gpu == nullptr) throw Error("solver " + solver.info().name + ": rendering knows no way to its positions");
-      const SolverPositions positions = positions_of(*gpu);
-      renderer_.use_positions(*positions.buffer, positions.origin_m);
+      renderer_.use_positions(gpu->position_buffer(), gpu->origin_m());
     } else {
       upload_ = true;
     }
@@ -64,20 +64,6 @@ class StereoDrawer : public FrameDrawer {
 };
 
 }  // namespace
-
-SolverPositions positions_of(const pbd_gpu::GpuSolver& solver) {
-  ClothState state;
-  solver.read_state(state);
-  for (const vulkan::Program::Recorded& step : solver.download_program().recorded()) {
-    if (step.is_barrier || step.from == nullptr) continue;
-    const auto* x = static_cast<const float*>(step.to->mapped());
-    Vec3 origin{};
-    for (std::size_t k = 0; k < 3; ++k) origin[k] = state.position.at(k) - static_cast<double>(x[k]);
-    if (!std::isfinite(origin[0] + origin[1] + origin[2])) break;
-    return {step.from, origin};
-  }
-  throw Error("solver " + solver.info().name + ": the buffer of its positions was not found");
-}
 
 Rendering stereo_rendering(int width, int height) {
   Rendering r;

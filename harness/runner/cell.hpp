@@ -65,6 +65,8 @@ class Cell {
   const Outcome& outcome() const { return outcome_; }
   bool alive() const { return solver_ != nullptr && outcome_.status == "ok"; }
   const Plan& plan() const { return plan_; }
+  /// For a loop that paces itself; null unless alive.
+  ClothSolver* solver() { return solver_.get(); }
 
   /// True if a pass recovered from an interrupted run is whole and ended well; if not it is run again, so that a
   /// failure is met again instead of forgotten.

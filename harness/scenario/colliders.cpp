@@ -16,6 +16,7 @@
 #include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 #include "scenario/path.hpp"
+#include "scenario/recorded_hand.hpp"
 #include "scenario/table_pose.hpp"
 
 namespace clothbench {
@@ -32,8 +33,9 @@ Vec3 vec3(const assets::Vector& v) { return {v.x(), v.y(), v.z()}; }
 
 /// A hand on its way; keeps what is needed to sample it.
 struct Moving {
-  assets::Hand hand;
+  std::optional<assets::Hand> hand;  ///< none where a recording needs none
   assets::HandTrack track;
+  std::optional<assets::HandRecording> recording;  ///< instead of the track
   assets::Vector offset = assets::Vector::Zero();  ///< of the whole track
 };
 
@@ -135,17 +137,8 @@ class Reader {
     const Vec3 axis = vec3(j["axis"]);
     const double squared = axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2];
     if (!(std::abs(squared - 1) <= kUnit)) refuse("/axis", "expected a vector of length 1");
-    c.mesh = mesh_of(assets::prism(assets::Vector(axis[0], axis[1], axis[2]), assets::Vector::Map(vec3(j["center_m"]).data()),
+    c.mesh = collider_mesh(assets::prism(assets::Vector(axis[0], axis[1], axis[2]), assets::Vector::Map(vec3(j["center_m"]).data()),
                                    j["radius_m"].get<double>(), j["length_m"].get<double>(), j["sides"].get<std::uint32_t>()));
-  }
-
-  static std::shared_ptr<ColliderMesh> mesh_of(const assets::TriangleMesh& from) {
-    auto mesh = std::make_shared<ColliderMesh>();
-    mesh->positions = from.positions;
-    mesh->triangles = from.triangles;
-    // A room is closed too, but what is solid lies outside it: no point has a depth in it.
-    mesh->closed = assets::topology(from).closed_manifold() && assets::signed_volume(from) > 0;
-    return mesh;
   }
 
   void mesh(const json& j, Collider& c) const {
@@ -159,40 +152,62 @@ class Reader {
           refuse(fmt::format("/triangles/{}/{}", t, k), fmt::format("vertex {} of {} (the first is 0)", corners[k].get<std::size_t>(), m.vertex_count()));
       m.triangles.push_back({corners[0].get<std::uint32_t>(), corners[1].get<std::uint32_t>(), corners[2].get<std::uint32_t>()});
     }
-    c.mesh = mesh_of(m);
+    c.mesh = collider_mesh(m);
   }
 
   void room(const json& j, Collider& c) {
     c.shape = Collider::Shape::Mesh;
     c.name = j["room"].get<std::string>();
-    const assets::Room room = assets::open_room(assets(), c.name);
+    const assets::Room room = room_of(c.name);
     const auto cut = j["cut"].get<std::string>();
     std::optional<assets::Table> table;
     assets::TriangleMesh round_table;
-    if (j.contains("table")) {
-      table = assets::find_table(room, j["table"].get<std::string>());
-      c.name += "/" + j["table"].get<std::string>();
-      const auto points = assets::six_points(*table, j["below_m"].get<double>(), j["above_m"].get<double>());
+    if (j.contains("table") && j.contains("points_m")) refuse("/points_m", "expected either a table or six points");
+    if (j.contains("table") || j.contains("points_m")) {
+      assets::Box box;
+      if (j.contains("table")) {
+        table = assets::find_table(room, j["table"].get<std::string>());
+        c.name += "/" + j["table"].get<std::string>();
+        box = assets::box_of(assets::six_points(*table, j["below_m"].get<double>(), j["above_m"].get<double>()));
+      } else {
+        std::array<assets::Vector, 6> points;
+        for (std::size_t k = 0; k < 6; ++k) points[k] = assets::Vector::Map(vec3(j["points_m"][k]).data());
+        const assets::Box picked = assets::box_of(points);
+        table = assets::table_in(picked);
+        const assets::Vector grow = assets::Vector::Constant(j.value("grow_m", 0.0));
+        box = assets::Box(picked.min() - grow, picked.max() + grow);
+      }
       const auto mode = cut == "crossing" ? assets::CutMode::Crossing : assets::CutMode::AnyVertexInside;
-      round_table = assets::cut(room.mesh, assets::box_of(points), mode).mesh;
+      round_table = assets::cut(room.mesh, box, mode).mesh;
       if (round_table.triangles.empty()) refuse("", "no triangle of the room is in the box");
     } else if (cut != "none") {
-      refuse("", fmt::format("\"table\" is missing; cut \"{}\" goes round one", cut));
+      refuse("", fmt::format("\"table\" or \"points_m\" is missing; cut \"{}\" goes round one", cut));
     }
-    c.mesh = mesh_of(cut == "none" ? room.mesh : round_table);
+    c.mesh = collider_mesh(cut == "none" ? room.mesh : round_table);
     // The cloth is placed by what is round the table, the same with the whole room, whose ceiling is above it too.
-    if (table) tables_[scene_.colliders.size()] = {*table, *mesh_of(round_table)};
+    if (table) tables_[scene_.colliders.size()] = {*table, *collider_mesh(round_table)};
+  }
+
+  /// A capture of the user's own is no asset that a stand-in could take the place of.
+  assets::Room room_of(const std::string& name) {
+    if (!name.ends_with(".json")) return assets::open_room(assets(), name);
+    return assets::load_room(file_of_scene(name, source_).value_or(name));
   }
 
   fs::path track_file(const std::string& name) const {
-    std::error_code ec;
-    for (const fs::path& folder : {fs::path(source_).parent_path(), scenario_root()})
-      if (fs::is_regular_file(folder / name, ec)) return folder / name;
+    if (const auto found = file_of_scene(name, source_)) return *found;
     refuse("/track", fmt::format("\"{}\": no such file beside the scene or in {}", name, scenario_root().string()));
   }
 
-  Moving moving(const json& j) {
-    assets::HandTrack track = assets::read_hand_track(track_file(j["track"].get<std::string>()));
+  Moving moving(const json& j, bool as_mesh) {
+    const fs::path file = track_file(j["track"].get<std::string>());
+    if (const std::string text = read_text(file); assets::is_hand_recording(parse_json(text, file.string()))) {
+      if (j.contains("speed_m_per_s")) refuse("/speed_m_per_s", "a recording goes at the speed it was made at");
+      Moving m{{}, {}, assets::parse_hand_recording(text, file.string())};
+      if (as_mesh && !m.recording->mesh) m.hand = assets::open_hand(assets(), m.recording->side);
+      return m;
+    }
+    assets::HandTrack track = assets::read_hand_track(file);
     if (j.contains("speed_m_per_s")) {
       try {
         track = assets::retimed(std::move(track), j["speed_m_per_s"].get<double>());
@@ -200,41 +215,35 @@ class Reader {
         refuse("/speed_m_per_s", e.what());
       }
     }
-    return {assets::open_hand(assets(), track.side), track};
+    return {assets::open_hand(assets(), track.side), track, {}};
   }
 
   void hand(const json& j, Collider& c, bool as_mesh) {
-    Moving m = moving(j);
+    Moving m = moving(j, as_mesh);
     if (j.contains("offset_m")) m.offset = assets::Vector::Map(vec3(j["offset_m"]).data());
     c.name = fs::path(j["track"].get<std::string>()).stem().string();
     c.shape = as_mesh ? Collider::Shape::Mesh : Collider::Shape::Capsules;
-    if (as_mesh) {
-      auto mesh = mesh_of(m.hand.mesh.rest);
-      mesh->joints = m.hand.mesh.joints;
-      for (const auto& w : m.hand.mesh.weights)
-        mesh->weights.push_back({static_cast<float>(w[0]), static_cast<float>(w[1]), static_cast<float>(w[2]), static_cast<float>(w[3])});
-      mesh->joint_count = assets::kJointCount;
-      c.mesh = std::move(mesh);
-    } else {
+    if (as_mesh)
+      c.mesh = m.recording && m.recording->mesh ? collider_mesh(*m.recording->mesh) : collider_mesh(m.hand->mesh);
+    else
       c.capsules = pose_at(m, false, 0).capsules;
-    }
     hands_.resize(scene_.colliders.size() + 1);
     hands_.back() = std::move(m);
   }
 
   static ColliderPose pose_at(const Moving& m, bool as_mesh, double time_s) {
-    const assets::HandSample now = assets::sample(m.track, m.hand, time_s);
+    if (m.recording) {
+      const assets::RecordedHand now = m.recording->at(time_s);
+      return as_mesh ? mesh_pose(*m.recording, now, m.hand ? &*m.hand : nullptr, m.offset) : capsules_pose(*m.recording, now, m.offset);
+    }
+    const assets::HandSample now = assets::sample(m.track, *m.hand, time_s);
     ColliderPose pose;
     if (!as_mesh) {
       for (const assets::Capsule& c : assets::capsules(now.pose)) pose.capsules.push_back({vec3(assets::Vector(c.a + m.offset)), vec3(assets::Vector(c.b + m.offset)), c.radius_m});
       return pose;
     }
-    for (std::size_t k = 0; k < assets::kJointCount; ++k) {
-      const Eigen::Affine3d skin = Eigen::Translation3d(m.offset) * (now.pose.joints[k] * m.hand.mesh.inverse_bind[k]);
-      Affine& a = pose.joints.emplace_back();
-      for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column) a[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = skin.matrix()(row, column);
-    }
+    for (std::size_t k = 0; k < assets::kJointCount; ++k)
+      pose.joints.push_back(affine(Eigen::Translation3d(m.offset) * (now.pose.joints[k] * m.hand->mesh.inverse_bind[k])));
     return pose;
   }
 
@@ -292,8 +301,9 @@ class Reader {
 
   Grip hand_grip(const json& j) {
     Grip g;
-    g.by = moving(j);
-    const assets::HandSample start = assets::sample(g.by->track, g.by->hand, 0);
+    g.by = moving(j, false);
+    if (g.by->recording) refuse("/track", "a recorded hand holds nothing; expected a hand track");
+    const assets::HandSample start = assets::sample(g.by->track, *g.by->hand, 0);
     if (!start.grip) refuse("/track", "this hand does not hold anything at time 0 (\"grip\": true in its first key)");
     const double radius = j["radius_m"].get<double>();
     const assets::Vector pinch = assets::pinch_point(start.pose);
@@ -332,7 +342,7 @@ class Reader {
   }
 
   void move_by_hand(const Grip& g, double t, const std::vector<double>& x, FrameMotion& m) const {
-    const assets::HandSample start = assets::sample(g.by->track, g.by->hand, 0), now = assets::sample(g.by->track, g.by->hand, t);
+    const assets::HandSample start = assets::sample(g.by->track, *g.by->hand, 0), now = assets::sample(g.by->track, *g.by->hand, t);
     const assets::Frame move = pinch_frame(now.pose) * pinch_frame(start.pose).inverse();
     for (std::uint32_t v : g.vertices) {
       const bool before = scene_.motion.size() == 1 || scene_.motion[scene_.motion.size() - 2].grip_held[m.grip_held.size()] != 0;

@@ -54,6 +54,10 @@ class GpuSolver : public ClothSolver {
   std::vector<Traffic> counted();
   /// Positions as the device holds them, of every copy or layer of the cloth, relative to the method's origin; for tests.
   std::vector<float> device_positions() const;
+  /// What read_state reads positions from, for drawing without reading back: the scene's vertices first, a vec4 each,
+  /// relative to `origin_m()`. Of a loaded solver.
+  const vulkan::Buffer& position_buffer() const { return *position_; }
+  const Vec3& origin_m() const { return origin_m_; }
   /// What is submitted for set-up, a frame and reading back, for the test of the barriers.
   const vulkan::Program& upload_program() const { return *upload_; }
   const vulkan::Program& frame_program() const { return *frame_; }

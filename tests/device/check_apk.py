@@ -21,6 +21,7 @@ import make_apk
 aapt2, zipalign, apksigner = make_apk.find_tool("aapt2"), make_apk.find_tool("zipalign"), make_apk.find_tool("apksigner")
 badging = must([aapt2, "dump", "badging", apk])
 for wanted in ["package: name='org.clothbench.quest'", "sdkVersion:'29'", "targetSdkVersion:'32'",
+               "uses-permission: name='com.oculus.permission.HAND_TRACKING'", "uses-permission: name='com.oculus.permission.USE_SCENE'",
                "launchable-activity: name='android.app.NativeActivity'", "uses-permission: name='android.permission.INTERNET'"]:
     assert wanted in badging, (wanted, badging)
 # aapt2 takes any "lib/" in an asset's path for an ABI's folder too.
@@ -29,7 +30,7 @@ assert "'arm64-v8a'" in native and not any(f"'{abi}'" in native for abi in ("arm
 assert "application-debuggable" not in badging, badging
 manifest = must([aapt2, "dump", "xmltree", apk, "--file", "AndroidManifest.xml"])
 for wanted in ["com.oculus.supportedDevices", "quest3", "android.intent.category.LAUNCHER", "com.oculus.intent.category.VR",
-               "org.khronos.openxr.intent.category.IMMERSIVE_HMD", "android.app.lib_name", "clothbench_quest"]:
+               "org.khronos.openxr.intent.category.IMMERSIVE_HMD", "org.khronos.openxr.runtime_broker", "com.oculus.vr.focusaware", "android.app.lib_name", "clothbench_quest"]:
     assert wanted in manifest, (wanted, manifest)
 assert re.search(r"hasCode\(0x0101000c\)=false", manifest), manifest
 assert re.search(r"extractNativeLibs\(0x010104ea\)=true", manifest), manifest

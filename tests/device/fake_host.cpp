@@ -49,6 +49,7 @@ JNINativeInterface functions() {
     refuse(name);
   };
   f.CallObjectMethodV = call;
+  f.NewGlobalRef = [](JNIEnv*, jobject it) { return it; };
   f.NewStringUTF = [](JNIEnv*, const char* s) { return reinterpret_cast<jstring>(const_cast<char*>(s)); };
   f.GetStringUTFChars = [](JNIEnv*, jstring, jboolean*) { return intent_args.c_str(); };
   f.ReleaseStringUTFChars = [](JNIEnv*, jstring, const char*) {};
@@ -72,6 +73,8 @@ int main(int argc, char** argv) {
   activity.callbacks = &callbacks;
   activity.env = &env;
   activity.clazz = as<jobject>(object);
+  int machine = 0;
+  activity.vm = as<JavaVM*>(machine);
   activity.externalDataPath = argv[2];
   activity.internalDataPath = argv[3];
   activity.sdkVersion = 34;

@@ -89,9 +89,20 @@ def hands():
     put("hand", "tetrahedron.glb", b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks)
 
 
+def recording():
+    """Two frames, capsules, a tetrahedron for a mesh."""
+    block = lambda kind, *numbers: base64.b64encode(struct.pack(f"<{len(numbers)}{kind}", *numbers)).decode()
+    joint = (0.1, 1, -0.5, 0, 0, 0, 1, 0.01)
+    mesh = {"positions_m": block("f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1), "triangles": block("I", 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3),
+            "joints": block("B", *[1, 2, 0, 0] * 4), "weights": block("f", *[0.25, 0.75, 0, 0] * 4), "bind": block("f", *joint * 26)}
+    return json.dumps({"hand": "left", "recording": {"frame_rate_hz": 72, "frames": 2, "joints": block("f", *joint * 52),
+                                                     "capsules": block("f", *(0, 0, 0, 0, 0.1, 0, 0.01) * 38), "mesh": mesh}}).encode()
+
+
 def tracks():
     for name in ["right-hand-sweep", "left-hand-stretch-2mps"]:
         put("track", name + ".json", (ROOT / "scenarios/assets" / (name + ".json")).read_bytes())
+    put("track", "recording.json", recording())
     put("track", "blend.json", b'{"hand":"left","anchor":"palm","keys":[{"time_s":0,"pose":"relaxed","blend":{"to":"pinch","amount":0.5},'
         b'"position_m":[0,1,0.1],"orientation":[0,0,0,1],"grip":true,"sweep":true},{"time_s":1,"position_m":[1,1,0]}]}')
 

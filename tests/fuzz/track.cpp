@@ -1,11 +1,17 @@
-// Hand tracks: text to keys, and those at another speed.
+// Hand tracks: text to keys, and those at another speed; recordings, and the hand between two frames.
+#include "assets/hand_recording.hpp"
 #include "assets/hand_track.hpp"
 #include "fuzz.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace clothbench;
+  const std::string text(reinterpret_cast<const char*>(data), size);
   reads_or_refuses([&] {
-    const assets::HandTrack track = assets::parse_hand_track(std::string(reinterpret_cast<const char*>(data), size), "track.json");
+    const assets::HandRecording recording = assets::parse_hand_recording(text, "track.json");
+    assets::capsules(recording, recording.at(0.01));
+  });
+  reads_or_refuses([&] {
+    const assets::HandTrack track = assets::parse_hand_track(text, "track.json");
     assets::retimed(track, 2);
   });
   return 0;

@@ -103,8 +103,7 @@ TEST(Stereo, TheSolversBufferLooksAsItsState) {
     renderer.write_positions(state.position);
     images.draw(renderer, std::span(&camera, 1));
     const Picture uploaded = images.read(0);
-    const SolverPositions positions = positions_of(*gpu);
-    renderer.use_positions(*positions.buffer, positions.origin_m);
+    renderer.use_positions(gpu->position_buffer(), gpu->origin_m());
     images.draw(renderer, std::span(&camera, 1));
     const Picture in_place = images.read(0);
     int different = 0, drawn = 0;

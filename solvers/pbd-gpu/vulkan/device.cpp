@@ -81,14 +81,34 @@ void check(VkResult result, const char* call) {
   if (result != VK_SUCCESS) throw Failure(call, result);
 }
 
+namespace {
+
+/// What a process has made. Kept to its end, and not destroyed then: drivers fail to load again after some hundred times (NVIDIA
+/// 580: VK_ERROR_INCOMPATIBLE_DRIVER), and their own clean-up at exit may come first.
+struct Made {
+  std::mutex mutex;
+  std::map<std::tuple<int, bool, std::string>, std::shared_ptr<Device>> devices;
+  std::shared_ptr<Device>& of(const DeviceOptions& o) { return devices[{o.index, o.validation, profile_name(o)}]; }
+};
+
+Made& made() {
+  static Made& all = *new Made;
+  return all;
+}
+
+}  // namespace
+
 std::shared_ptr<Device> Device::get(const DeviceOptions& options) {
-  static std::mutex mutex;
-  // Kept to the end of the process, and not destroyed then: drivers fail to load again after some hundred times (NVIDIA 580:
-  // VK_ERROR_INCOMPATIBLE_DRIVER), and their own clean-up at exit may come first.
-  static auto& cache = *new std::map<std::tuple<int, bool, std::string>, std::shared_ptr<Device>>;
-  const std::lock_guard lock(mutex);
-  auto& device = cache[{options.index, options.validation, profile_name(options)}];
-  if (!device || device->lost()) device.reset(new Device(options));
+  const std::lock_guard lock(made().mutex);
+  auto& device = made().of(options);
+  if (!device || device->lost()) device.reset(new Device(options, nullptr));
+  return device;
+}
+
+std::shared_ptr<Device> Device::make(const DeviceOptions& options, Maker& maker) {
+  const std::lock_guard lock(made().mutex);
+  auto& device = made().of(options);
+  device.reset(new Device(options, &maker));
   return device;
 }
 
@@ -110,19 +130,19 @@ std::vector<DeviceInfo> Device::list() {
   return all;
 }
 
-Device::Device(const DeviceOptions& options) {
+Device::Device(const DeviceOptions& options, Maker* maker) {
   try {
-    create_instance(options.validation);
-    choose_physical(options.index);
+    create_instance(options.validation, maker);
+    choose_physical(options.index, maker);
     apply_profile(profile_name(options));
-    create_device();
+    create_device(maker);
   } catch (...) {
     release();
     throw;
   }
 }
 
-void Device::create_instance(bool validation) {
+void Device::create_instance(bool validation, Maker* maker) {
   if (validation && !layer_present(kValidationLayer))
     throw Error(std::string("validation was asked for, but ") + kValidationLayer +
                 " is not installed (Debian: vulkan-validationlayers)");
@@ -152,7 +172,8 @@ void Device::create_instance(bool validation) {
     info.enabledExtensionCount = static_cast<std::uint32_t>(names.size());
     info.ppEnabledExtensionNames = names.data();
   }
-  const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+  const VkResult result =
+      maker != nullptr ? maker->create_instance(info, &instance_) : vkCreateInstance(&info, nullptr, &instance_);
   if (result != VK_SUCCESS)
     throw Error(
         fmt::format(
@@ -165,8 +186,10 @@ void Device::create_instance(bool validation) {
   check(create(instance_, &messenger, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
 }
 
-void Device::choose_physical(int index) {
-  const std::vector<VkPhysicalDevice> all = physical_devices(instance_);
+void Device::choose_physical(int index, Maker* maker) {
+  const std::vector<VkPhysicalDevice> all =
+      maker != nullptr ? std::vector{maker->physical_device(instance_)} : physical_devices(instance_);
+  if (maker != nullptr) index = 0;
   if (all.empty()) throw Error("no Vulkan device; install a driver (Debian: mesa-vulkan-drivers)", ExitCode::NoDevice);
   if (index >= static_cast<int>(all.size()))
     throw Error(fmt::format("device {}: there are {} Vulkan devices (the first is 0)", index, all.size()),
@@ -203,7 +226,7 @@ void Device::apply_profile(const std::string& name) {
   l.maxComputeWorkGroupSize[1] = l.maxComputeWorkGroupSize[2] = 1;
 }
 
-void Device::create_device() {
+void Device::create_device(Maker* maker) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
@@ -242,7 +265,9 @@ void Device::create_device() {
     info.enabledExtensionCount = 1;
     info.ppEnabledExtensionNames = &atomic_extension;
   }
-  check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
+  check(maker != nullptr ? maker->create_device(physical_, info, &device_)
+                         : vkCreateDevice(physical_, &info, nullptr, &device_),
+        "vkCreateDevice");
   vkGetDeviceQueue(device_, family_, 0, &queue_);
 
   VkCommandPoolCreateInfo pool{};

@@ -26,6 +26,16 @@ class Failure : public Error {
 /// Throws Failure naming the call unless `result` is VK_SUCCESS.
 void check(VkResult result, const char* call);
 
+/// Who makes the Vulkan objects of a Device where that is not Vulkan itself: an OpenXR runtime adds extensions that it needs and
+/// says which GPU shows its pictures (XR_KHR_vulkan_enable2).
+class Maker {
+ public:
+  virtual ~Maker() = default;
+  virtual VkResult create_instance(const VkInstanceCreateInfo&, VkInstance*) = 0;
+  virtual VkPhysicalDevice physical_device(VkInstance) = 0;
+  virtual VkResult create_device(VkPhysicalDevice, const VkDeviceCreateInfo&, VkDevice*) = 0;
+};
+
 /// Instance, device and its one compute queue (Vulkan 1.1 core, no required extension). One a process for each
 /// (index, validation, profile), shared by all solvers and kept until the process ends.
 class Device {
@@ -33,14 +43,19 @@ class Device {
   /// The device `options.index`, or the best present: discrete, integrated, virtual, then CPU. Throws Error with
   /// ExitCode::NoDevice where there is none, and Error where validation is asked for but the layer is missing.
   static std::shared_ptr<Device> get(const DeviceOptions& options);
+  /// A new device by `maker`, which `get` gives for these options from now on. `options.index` does not count. Throws as `get`.
+  static std::shared_ptr<Device> make(const DeviceOptions& options, Maker& maker);
   static std::vector<DeviceInfo> list();
 
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
+  VkInstance instance() const { return instance_; }
+  VkPhysicalDevice physical() const { return physical_; }
   VkDevice handle() const { return device_; }
   VkQueue queue() const { return queue_; }
+  std::uint32_t queue_family() const { return family_; }
   VkCommandPool command_pool() const { return pool_; }
   VkPipelineCache pipeline_cache() const { return cache_; }
   /// Writes the pipelines made since the last time to this user's cache, if there are any and it can.
@@ -75,11 +90,11 @@ class Device {
   bool lost() const { return lost_; }
 
  private:
-  explicit Device(const DeviceOptions& options);
+  Device(const DeviceOptions& options, Maker* maker);
   void apply_profile(const std::string& name);
-  void create_instance(bool validation);
-  void choose_physical(int index);
-  void create_device();
+  void create_instance(bool validation, Maker* maker);
+  void choose_physical(int index, Maker* maker);
+  void create_device(Maker* maker);
   void release();
 
   const Profile* profile_ = nullptr;

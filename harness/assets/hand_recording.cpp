@@ -1,0 +1,276 @@
+#include "assets/hand_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <type_traits>
+
+#include "assets/base64.hpp"
+#include "assets/json_at.hpp"
+#include "clothbench/error.hpp"
+#include "scenario/json_text.hpp"
+
+namespace clothbench::assets {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "recordings are little-endian");
+static_assert(sizeof(RecordedJoint) == 32 && sizeof(RecordedCapsule) == 28, "stored as they lie in memory");
+
+constexpr double kMostRate_hz = 1000;
+constexpr float kMostMetres = 1e4f;
+constexpr double kUnit = 1e-3;  // how far from 1 a norm of float32 or a sum of weights may be
+
+template <class Item>
+std::string block(const Item* items, std::size_t count) {
+  static_assert(std::is_trivially_copyable_v<Item>);
+  return encode_base64(reinterpret_cast<const std::uint8_t*>(items), count * sizeof(Item));
+}
+
+template <class Item>
+std::vector<Item> block_at(const JsonAt& at) {
+  static_assert(std::is_trivially_copyable_v<Item>);
+  std::vector<std::uint8_t> bytes;
+  std::string problem;
+  if (!decode_base64(at.text(), bytes, problem)) at.fail(problem);
+  if (bytes.size() % sizeof(Item) != 0)
+    at.fail(fmt::format("{} bytes; expected a multiple of {}", bytes.size(), sizeof(Item)));
+  std::vector<Item> items(bytes.size() / sizeof(Item));
+  if (!items.empty()) std::memcpy(items.data(), bytes.data(), bytes.size());
+  return items;
+}
+
+bool good(const RecordedJoint& j) {
+  double norm = 0;
+  for (const float q : j.orientation) norm += static_cast<double>(q) * static_cast<double>(q);
+  for (const float x : j.position_m)
+    if (!(std::abs(x) <= kMostMetres)) return false;
+  return std::abs(std::sqrt(norm) - 1) <= kUnit && j.radius_m >= 0 && j.radius_m <= kMostMetres;
+}
+
+bool good(const RecordedCapsule& c) {
+  for (const auto& end : {c.a_m, c.b_m})
+    for (const float x : end)
+      if (!(std::abs(x) <= kMostMetres)) return false;
+  return c.radius_m >= 0 && c.radius_m <= kMostMetres;
+}
+
+template <class Items>
+void check_all(const Items& items, const JsonAt& at, const char* expected) {
+  for (std::size_t k = 0; k < items.size(); ++k)
+    if (!good(items[k])) at.fail(fmt::format("number {}: expected {}", k, expected));
+}
+
+constexpr const char* kGoodJoint = "a finite place, a unit quaternion and a radius of at least 0";
+
+std::vector<RecordedJoint> joints_at(const JsonAt& at) {
+  auto joints = block_at<RecordedJoint>(at);
+  check_all(joints, at, kGoodJoint);
+  return joints;
+}
+
+RecordedMesh mesh_at(const JsonAt& at, const std::string& source) {
+  at.only({"positions_m", "triangles", "joints", "weights", "bind"});
+  RecordedMesh mesh;
+  mesh.positions_m = block_at<float>(at.key("positions_m"));
+  mesh.triangles = block_at<std::array<std::uint32_t, 3>>(at.key("triangles"));
+  mesh.joints = block_at<std::array<std::uint8_t, 4>>(at.key("joints"));
+  mesh.weights = block_at<std::array<float, 4>>(at.key("weights"));
+  const JsonAt bind_at = at.key("bind");
+  const auto bind = joints_at(bind_at);
+  if (bind.size() != mesh.bind.size())
+    bind_at.fail(fmt::format("{} joints; expected {}", bind.size(), mesh.bind.size()));
+  std::copy(bind.begin(), bind.end(), mesh.bind.begin());
+  return welded(std::move(mesh), source + ": " + at.pointer());
+}
+
+float mixed(float a, float b, double t) {
+  return static_cast<float>((1 - t) * static_cast<double>(a) + t * static_cast<double>(b));
+}
+
+std::array<float, 3> mixed(const std::array<float, 3>& a, const std::array<float, 3>& b, double t) {
+  return {mixed(a[0], b[0], t), mixed(a[1], b[1], t), mixed(a[2], b[2], t)};
+}
+
+Eigen::Quaterniond quaternion(const RecordedJoint& j) {
+  const auto& q = j.orientation;
+  return Eigen::Quaterniond(static_cast<double>(q[3]), static_cast<double>(q[0]), static_cast<double>(q[1]),
+                            static_cast<double>(q[2]))
+      .normalized();
+}
+
+Vector vector(const std::array<float, 3>& p) {
+  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+}
+
+RecordedJoint mixed(const RecordedJoint& a, const RecordedJoint& b, double t) {
+  const Eigen::Quaterniond q = quaternion(a).slerp(t, quaternion(b));
+  return {mixed(a.position_m, b.position_m, t),
+          {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()), static_cast<float>(q.w())},
+          mixed(a.radius_m, b.radius_m, t)};
+}
+
+RecordedCapsule mixed(const RecordedCapsule& a, const RecordedCapsule& b, double t) {
+  return {mixed(a.a_m, b.a_m, t), mixed(a.b_m, b.b_m, t), mixed(a.radius_m, b.radius_m, t)};
+}
+
+}  // namespace
+
+bool usable(const RecordedHand& hand) {
+  return std::all_of(hand.joints.begin(), hand.joints.end(), [](const RecordedJoint& j) { return good(j); }) &&
+         std::all_of(hand.capsules.begin(), hand.capsules.end(), [](const RecordedCapsule& c) { return good(c); });
+}
+
+RecordedHand HandRecording::at(double time_s) const {
+  if (!std::isfinite(time_s)) throw Error("hand recording: asked for a time that is not finite");
+  constexpr double kSame = 1e-6;  // of a frame: times are whole frames up to rounding
+  const double frame = std::clamp(time_s * frame_rate_hz, 0.0, static_cast<double>(frames.size() - 1));
+  const auto nearest = static_cast<std::size_t>(std::lround(frame));
+  if (std::abs(frame - static_cast<double>(nearest)) <= kSame) return frames[nearest];
+  const auto before = static_cast<std::size_t>(frame);
+  const RecordedHand &a = frames[before], &b = frames[before + 1];
+  const double t = frame - static_cast<double>(before);
+  RecordedHand out;
+  for (std::size_t k = 0; k < out.joints.size(); ++k) out.joints[k] = mixed(a.joints[k], b.joints[k], t);
+  for (std::size_t k = 0; k < out.capsules.size(); ++k) out.capsules[k] = mixed(a.capsules[k], b.capsules[k], t);
+  return out;
+}
+
+bool is_hand_recording(const nlohmann::json& track) { return track.is_object() && track.contains("recording"); }
+
+HandRecording parse_hand_recording(const std::string& text, const std::string& source) {
+  const nlohmann::json document = parse_json(text, source);
+  const JsonAt root(document, source);
+  root.only({"hand", "why", "recording"});
+  HandRecording r;
+  r.side = root.key("hand").word({"left", "right"}) == "left" ? Side::Left : Side::Right;
+  if (const auto why = root.maybe("why")) why->text();
+  const JsonAt at = root.key("recording");
+  at.only({"frame_rate_hz", "frames", "joints", "capsules", "mesh"});
+  const JsonAt rate = at.key("frame_rate_hz"), count_at = at.key("frames");
+  r.frame_rate_hz = rate.number();
+  if (!(r.frame_rate_hz > 0 && r.frame_rate_hz <= kMostRate_hz))
+    rate.fail(fmt::format("expected above 0 and at most {} Hz", kMostRate_hz));
+  const JsonAt joints_where = at.key("joints");
+  const auto joints = joints_at(joints_where);
+  const double count = count_at.number();
+  if (!(count >= 1 && count == std::floor(count) && count * kRecordedJointCount == static_cast<double>(joints.size())))
+    joints_where.fail(fmt::format("{} joints; expected {} for each of {} frames, at least one", joints.size(),
+                                  kRecordedJointCount, count));
+  r.frames.resize(static_cast<std::size_t>(count));
+  for (std::size_t k = 0; k < joints.size(); ++k)
+    r.frames[k / kRecordedJointCount].joints[k % kRecordedJointCount] = joints[k];
+  if (const auto capsules_where = at.maybe("capsules")) {
+    r.has_capsules = true;
+    const auto all = block_at<RecordedCapsule>(*capsules_where);
+    check_all(all, *capsules_where, "finite ends and a radius of at least 0");
+    if (all.size() != r.frames.size() * kCapsuleCount)
+      capsules_where->fail(fmt::format("{} capsules; expected {} a frame", all.size(), kCapsuleCount));
+    for (std::size_t k = 0; k < all.size(); ++k) r.frames[k / kCapsuleCount].capsules[k % kCapsuleCount] = all[k];
+  }
+  if (const auto mesh = at.maybe("mesh")) r.mesh = mesh_at(*mesh, source);
+  return r;
+}
+
+HandRecording read_hand_recording(const std::filesystem::path& path) {
+  return parse_hand_recording(read_text(path), path.string());
+}
+
+std::string to_json(const HandRecording& r, const std::string& why) {
+  std::vector<RecordedJoint> joints;
+  std::vector<RecordedCapsule> capsules;
+  for (const RecordedHand& f : r.frames) {
+    joints.insert(joints.end(), f.joints.begin(), f.joints.end());
+    capsules.insert(capsules.end(), f.capsules.begin(), f.capsules.end());
+  }
+  nlohmann::json recording = {{"frame_rate_hz", r.frame_rate_hz},
+                              {"frames", r.frames.size()},
+                              {"joints", block(joints.data(), joints.size())}};
+  if (r.has_capsules) recording["capsules"] = block(capsules.data(), capsules.size());
+  if (r.mesh)
+    recording["mesh"] = {{"positions_m", block(r.mesh->positions_m.data(), r.mesh->positions_m.size())},
+                         {"triangles", block(r.mesh->triangles.data(), r.mesh->triangles.size())},
+                         {"joints", block(r.mesh->joints.data(), r.mesh->joints.size())},
+                         {"weights", block(r.mesh->weights.data(), r.mesh->weights.size())},
+                         {"bind", block(r.mesh->bind.data(), r.mesh->bind.size())}};
+  return nlohmann::json({{"hand", name_of(r.side)}, {"why", why}, {"recording", recording}}).dump(1) + "\n";
+}
+
+RecordedMesh welded(RecordedMesh given, const std::string& source) {
+  const std::size_t count = given.positions_m.size() / 3;
+  if (count == 0 || given.positions_m.size() % 3 != 0 || given.joints.size() != count || given.weights.size() != count)
+    throw Error(fmt::format("{}: hand mesh: {} coordinates, joints of {} vertices, weights of {}: they do not fit", source,
+                            given.positions_m.size(), given.joints.size(), given.weights.size()));
+  RecordedMesh out;
+  out.bind = given.bind;
+  for (std::size_t k = 0; k < out.bind.size(); ++k)
+    if (!good(out.bind[k])) throw Error(fmt::format("{}: hand mesh: joint {} at rest: expected {}", source, k, kGoodJoint));
+  std::map<std::array<float, 3>, std::uint32_t> places;
+  std::vector<std::uint32_t> number(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const std::array<float, 3> p = {given.positions_m[3 * v], given.positions_m[3 * v + 1], given.positions_m[3 * v + 2]};
+    std::array<float, 4> w = given.weights[v];
+    const float sum = w[0] + w[1] + w[2] + w[3];
+    for (std::size_t k = 0; k < 4; ++k)
+      if (!(w[k] >= 0) || given.joints[v][k] >= kRecordedJointCount)
+        throw Error(fmt::format("{}: hand mesh: vertex {}: expected joints below {} and weights of at least 0", source, v,
+                                kRecordedJointCount));
+    for (const float x : p)
+      if (!(std::abs(x) <= kMostMetres)) throw Error(fmt::format("{}: hand mesh: vertex {} is not finite", source, v));
+    if (!(std::abs(static_cast<double>(sum) - 1) <= kUnit))
+      throw Error(fmt::format("{}: hand mesh: vertex {} has weights of sum {}; expected 1", source, v, sum));
+    const auto [place, is_new] = places.try_emplace(p, static_cast<std::uint32_t>(places.size()));
+    number[v] = place->second;
+    if (!is_new) continue;
+    // Once scaled they stay as they are, so that a recording read again is the same.
+    if (std::abs(static_cast<double>(sum) - 1) > 1e-6)
+      for (float& x : w) x /= sum;
+    out.positions_m.insert(out.positions_m.end(), p.begin(), p.end());
+    out.joints.push_back(given.joints[v]);
+    out.weights.push_back(w);
+  }
+  for (std::size_t t = 0; t < given.triangles.size(); ++t) {
+    std::array<std::uint32_t, 3> corners = given.triangles[t];
+    for (std::uint32_t& c : corners) {
+      if (c >= count)
+        throw Error(fmt::format("{}: hand mesh: triangle {} names vertex {}, but there are {}", source, t, c, count));
+      c = number[c];
+    }
+    // What had no area before stays out: it would tear the surface where its corners became one.
+    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]) out.triangles.push_back(corners);
+  }
+  if (out.triangles.empty()) throw Error(source + ": hand mesh: it has no triangles");
+  return out;
+}
+
+Frame frame_of(const RecordedJoint& j) {
+  Frame f = Frame::Identity();
+  f.linear() = quaternion(j).toRotationMatrix();
+  f.translation() = vector(j.position_m);
+  return f;
+}
+
+HandPose pose_of(const RecordedHand& hand) {
+  HandPose pose;
+  for (std::size_t k = 0; k < kJointCount; ++k) {
+    pose.joints[k] = frame_of(hand.joints[k + 1]);
+    pose.radius_m[k] = static_cast<double>(hand.joints[k + 1].radius_m);
+  }
+  return pose;
+}
+
+std::array<Capsule, kCapsuleCount> capsules(const HandRecording& recording, const RecordedHand& hand) {
+  if (!recording.has_capsules) return capsules(pose_of(hand));
+  std::array<Capsule, kCapsuleCount> out;
+  for (std::size_t k = 0; k < kCapsuleCount; ++k) {
+    const RecordedCapsule& c = hand.capsules[k];
+    out[k] = {vector(c.a_m), vector(c.b_m), static_cast<double>(c.radius_m), -1};
+  }
+  return out;
+}
+
+}  // namespace clothbench::assets

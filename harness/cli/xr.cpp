@@ -1,0 +1,87 @@
+#include "xr/loop.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/command.hpp"
+#include "cli/run_common.hpp"
+#include "runner/cell.hpp"
+
+namespace clothbench {
+namespace {
+
+struct Arguments {
+  std::string scene, solver, out, runtime;
+  std::vector<std::string> set;
+  std::vector<double> place;
+  int frames = 0;
+  double rate = 72, patience = 120;
+  bool opaque = false;
+  DeviceFlags device;
+};
+
+void print(const xr::LoopResult& r, const Console& console) {
+  const auto& s = r.summary;
+  if (console.json) {
+    fmt::print("{}\n", nlohmann::json({{"file", r.file.string()}, {"scenario", r.scenario.string()}, {"status", r.outcome.status}, {"summary", s}}).dump(2));
+    return;
+  }
+  const auto of = [&](const char* name) { return s.contains(name) ? s.at(name) : kMissing; };
+  fmt::print("{:.0f} frames: {}\n", of("xr_frames"), r.outcome.status);
+  fmt::print("frames a second    median {:.1f}   mean {:.1f}   worst {:.1f}\n", of("xr_fps_median"), of("xr_fps_mean"), of("xr_fps_worst"));
+  fmt::print("shown after        1 period {:.1f} %   2 {:.1f} %   3 {:.1f} %   more {:.1f} %\n", 100 * of("xr_share_1_period"),
+             100 * of("xr_share_2_periods"), 100 * of("xr_share_3_periods"), 100 * of("xr_share_more_periods"));
+  fmt::print("step               median {:.3f} ms   99 % {:.3f} ms   on the device {:.3f} ms\n", 1e3 * of("xr_step_median_s"),
+             1e3 * of("xr_step_p99_s"), 1e3 * of("xr_step_device_median_s"));
+  fmt::print("both pictures      median {:.3f} ms on the device\n", 1e3 * of("xr_paint_device_median_s"));
+  fmt::print("results in {}; the session replays with: clothbench run {}\n", r.file.string(), r.scenario.string());
+}
+
+}  // namespace
+
+void add_xr(CLI::App& app, Console& console) {
+  static Arguments a;
+  a = {};
+  a.solver = "xpbd";
+  CLI::App* cmd = app.add_subcommand("xr", "A live session in a headset (OpenXR): the cloth is drawn, the user's hands and room touch it");
+  cmd->add_option("scene", a.scene, "Scenario file or name: its hands become the user's, its room the user's")->required();
+  cmd->add_option("--solver", a.solver, "Solver")->capture_default_str();
+  cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
+  cmd->add_option("--frames", a.frames, fmt::format("Frames; default: as long as the scenario lasts, at most {}", xr::kMostFrames))
+      ->check(CLI::Range(1, xr::kMostFrames));
+  cmd->add_option("--rate", a.rate, "Refresh rate asked of the display [Hz]")->check(CLI::Range(1.0, 1000.0))->capture_default_str();
+  cmd->add_option("--place", a.place, "Where the scene's origin is, x y z [m] from the head at the start, or from the floor with a room; "
+                                      "default 0 -0.1 -0.6, with a room 0 0 0")
+      ->expected(3);
+  cmd->add_flag("--no-passthrough", a.opaque, "White all round instead of the cameras' picture");
+  cmd->add_option("--patience", a.patience, "Give up where nothing is seen or picked for so long [s]")->check(CLI::PositiveNumber)->capture_default_str();
+  cmd->add_option("--runtime", a.runtime, "A runtime's library or manifest, entered without the system's OpenXR loader");
+  cmd->add_option("--out", a.out, "Folder for the result file and the recorded scenario; default results/runs/xr-<UTC>");
+  a.device.add_to(*cmd);
+  cmd->footer("Example: clothbench xr paper/capsule-sweep --frames 720\n"
+              "With a room: press A to see the scan, pick six points of a desk by the trigger, and the cloth falls on it.");
+  cmd->callback([&console] {
+    const Overrides overrides = split_overrides(a.set);
+    xr::LoopOptions o;
+    o.scenario = a.scene;
+    o.overrides = overrides.scene;
+    o.entry = &find_solver(a.solver);
+    o.settings = complete_settings(o.entry->info, overrides.solver);
+    o.setting = overrides.label();
+    o.device = a.device.options;
+    o.runtime = a.runtime;
+    o.rate_hz = a.rate;
+    o.frames = a.frames;
+    if (!a.place.empty()) o.place_m = Vec3{a.place[0], a.place[1], a.place[2]};
+    o.passthrough = !a.opaque;
+    o.patience_s = a.patience;
+    o.out = a.out.empty() ? default_folder("xr") : std::filesystem::path(a.out);
+    if (!console.json) o.tell = [](const std::string& text) { fmt::print("{}\n", text); };
+    const xr::LoopResult r = xr::run_loop(o);
+    print(r, console);
+    if (r.outcome.status != "ok" || r.validation_messages > 0) console.exit_code = ExitCode::CheckFailed;
+    if (interrupt_requested()) console.exit_code = ExitCode::Interrupted;
+    if (r.validation_messages > 0) fmt::print(stderr, "FAULT {} validation messages\n", r.validation_messages);
+  });
+}
+
+}  // namespace clothbench

@@ -1,0 +1,236 @@
+#include "xr/instance.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+#include <filesystem>
+
+#include "scenario/json_text.hpp"
+#include "xr/android_context.hpp"
+
+namespace clothbench::xr {
+namespace {
+
+AndroidContext& context() {
+  static AndroidContext c;
+  return c;
+}
+
+constexpr const char* kAndroidCreate = "XR_KHR_android_create_instance";
+/// Beside XR_KHR_vulkan_enable2, which there must be.
+constexpr std::array kWelcome = {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME,
+                                 XR_EXT_PERFORMANCE_SETTINGS_EXTENSION_NAME,
+                                 XR_FB_PASSTHROUGH_EXTENSION_NAME,
+                                 XR_EXT_HAND_TRACKING_EXTENSION_NAME,
+                                 XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME,
+                                 XR_FB_HAND_TRACKING_MESH_EXTENSION_NAME,
+                                 kSpatialEntity,
+                                 kSpatialEntityQuery,
+                                 kSpatialEntityMesh,
+                                 kPerformanceMetrics};
+
+/// Never closed: Vulkan objects that a runtime helped to make outlive its instance.
+void* open_library(const std::string& path) { return dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL); }
+
+/// The library a runtime's manifest names, relative to the manifest where it is no mere file name.
+std::string library_of(const std::string& runtime) {
+  if (!runtime.ends_with(".json")) return runtime;
+  const nlohmann::json manifest = parse_json(read_text(runtime), runtime);
+  const nlohmann::json library =
+      manifest.value("runtime", nlohmann::json::object()).value("library_path", nlohmann::json());
+  if (!library.is_string()) throw Error(runtime + ": /runtime/library_path: expected a runtime's library");
+  const std::filesystem::path path = library.get<std::string>();
+  if (path.is_absolute() || !path.has_parent_path()) return path;
+  return std::filesystem::path(runtime).parent_path() / path;
+}
+
+/// XR_KHR_vulkan_enable2: the runtime calls Vulkan with our wishes and its own.
+class RuntimeMaker : public vulkan::Maker {
+ public:
+  explicit RuntimeMaker(const Instance& xr) : xr_(xr) {}
+
+  VkResult create_instance(const VkInstanceCreateInfo& wanted, VkInstance* made) override {
+    XrVulkanInstanceCreateInfoKHR info{};
+    info.type = XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR;
+    info.systemId = xr_.system();
+    info.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
+    info.vulkanCreateInfo = &wanted;
+    VkResult result = VK_SUCCESS;
+    xr_.check(xr_.xr().xrCreateVulkanInstanceKHR(xr_.handle(), &info, made, &result), "xrCreateVulkanInstanceKHR");
+    return result;
+  }
+
+  VkPhysicalDevice physical_device(VkInstance instance) override {
+    XrVulkanGraphicsDeviceGetInfoKHR info{};
+    info.type = XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR;
+    info.systemId = xr_.system();
+    info.vulkanInstance = instance;
+    VkPhysicalDevice found = VK_NULL_HANDLE;
+    xr_.check(xr_.xr().xrGetVulkanGraphicsDevice2KHR(xr_.handle(), &info, &found), "xrGetVulkanGraphicsDevice2KHR");
+    return found;
+  }
+
+  VkResult create_device(VkPhysicalDevice physical, const VkDeviceCreateInfo& wanted, VkDevice* made) override {
+    XrVulkanDeviceCreateInfoKHR info{};
+    info.type = XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR;
+    info.systemId = xr_.system();
+    info.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
+    info.vulkanPhysicalDevice = physical;
+    info.vulkanCreateInfo = &wanted;
+    VkResult result = VK_SUCCESS;
+    xr_.check(xr_.xr().xrCreateVulkanDeviceKHR(xr_.handle(), &info, made, &result), "xrCreateVulkanDeviceKHR");
+    return result;
+  }
+
+ private:
+  const Instance& xr_;
+};
+
+}  // namespace
+
+void set_android_context(const AndroidContext& c) { context() = c; }
+const AndroidContext& android_context() { return context(); }
+
+Instance::Instance(const std::string& runtime) {
+  load(runtime);
+  create();
+  try {
+    find_system();
+  } catch (...) {
+    functions_.xrDestroyInstance(instance_);
+    throw;
+  }
+}
+
+Instance::~Instance() { functions_.xrDestroyInstance(instance_); }
+
+PFN_xrVoidFunction Instance::address(const char* name) const {
+  PFN_xrVoidFunction found = nullptr;
+  if (XR_FAILED(get_(instance_, name, &found))) return nullptr;
+  return found;
+}
+
+void Instance::load(const std::string& runtime) {
+  if (!runtime.empty()) {
+    const std::string path = library_of(runtime);
+    void* library = open_library(path);
+    if (library == nullptr) throw Error(fmt::format("OpenXR runtime {}: {}", path, dlerror()), ExitCode::NoDevice);
+    const auto negotiate = reinterpret_cast<NegotiateRuntime>(dlsym(library, "xrNegotiateLoaderRuntimeInterface"));
+    if (negotiate == nullptr)
+      throw Error(path + ": no OpenXR runtime: it has no xrNegotiateLoaderRuntimeInterface", ExitCode::NoDevice);
+    const NegotiateLoaderInfo ours;
+    NegotiateRuntimeRequest theirs;
+    if (XR_FAILED(negotiate(&ours, &theirs)) || theirs.get_instance_proc_addr == nullptr)
+      throw Error(path + ": this OpenXR runtime does not speak loader interface 1", ExitCode::NoDevice);
+    get_ = theirs.get_instance_proc_addr;
+    return;
+  }
+  void* loader = nullptr;
+  for (const char* name : {"libopenxr_loader.so.1", "libopenxr_loader.so"})
+    if (loader == nullptr) loader = open_library(name);
+  if (loader == nullptr)
+    throw Error("no OpenXR loader, libopenxr_loader.so.1 (Debian: libopenxr-loader1); or name a runtime with --runtime",
+                ExitCode::NoDevice);
+  get_ = reinterpret_cast<PFN_xrGetInstanceProcAddr>(dlsym(loader, "xrGetInstanceProcAddr"));
+  if (get_ == nullptr) throw Error("the OpenXR loader has no xrGetInstanceProcAddr", ExitCode::NoDevice);
+  if (context().vm == nullptr) return;
+  const AndroidInfo info{kTypeLoaderInitAndroid, nullptr, context().vm, context().activity};
+  using InitializeLoader = XrResult(XRAPI_PTR*)(const void*);
+  const auto initialize = function<InitializeLoader>("xrInitializeLoaderKHR");
+  if (initialize == nullptr || XR_FAILED(initialize(&info)))
+    throw Error("the OpenXR loader does not take an Android activity (xrInitializeLoaderKHR)", ExitCode::NoDevice);
+}
+
+void Instance::create() {
+  const auto enumerate =
+      function<PFN_xrEnumerateInstanceExtensionProperties>("xrEnumerateInstanceExtensionProperties");
+  const auto create = function<PFN_xrCreateInstance>("xrCreateInstance");
+  std::uint32_t count = 0;
+  if (enumerate == nullptr || create == nullptr || XR_FAILED(enumerate(nullptr, 0, &count, nullptr)))
+    throw Error("no OpenXR runtime is active; start one, set XR_RUNTIME_JSON, or name one with --runtime",
+                ExitCode::NoDevice);
+  XrExtensionProperties blank{};
+  blank.type = XR_TYPE_EXTENSION_PROPERTIES;
+  std::vector<XrExtensionProperties> properties(count, blank);
+  if (XR_FAILED(enumerate(nullptr, count, &count, properties.data())))
+    throw Error("xrEnumerateInstanceExtensionProperties failed", ExitCode::NoDevice);
+  std::set<std::string> there;
+  for (const auto& p : properties) there.insert(p.extensionName);
+  if (!there.contains(XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME))
+    throw Error("the OpenXR runtime does not take Vulkan (XR_KHR_vulkan_enable2)", ExitCode::NoDevice);
+  enabled_ = {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
+  for (const char* name : kWelcome)
+    if (there.contains(name)) enabled_.insert(name);
+  if (context().vm != nullptr) enabled_.insert(kAndroidCreate);
+  std::vector<const char*> names;
+  for (const std::string& name : enabled_) names.push_back(name.c_str());
+  const AndroidInfo android{kTypeInstanceCreateAndroid, nullptr, context().vm, context().activity};
+  XrInstanceCreateInfo info{};
+  info.type = XR_TYPE_INSTANCE_CREATE_INFO;
+  info.next = context().vm != nullptr ? &android : nullptr;
+  std::strcpy(info.applicationInfo.applicationName, "clothbench");
+  info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 0);
+  info.enabledExtensionCount = static_cast<std::uint32_t>(names.size());
+  info.enabledExtensionNames = names.data();
+  const XrResult result = create(&info, &instance_);
+  if (XR_FAILED(result))
+    throw Error(fmt::format("no OpenXR instance: xrCreateInstance gave {}; is the runtime running?", static_cast<int>(result)),
+                ExitCode::NoDevice);
+#define CLOTHBENCH_XR_LOAD(name)                                   \
+  functions_.name = function<PFN_##name>(#name);                   \
+  if (functions_.name == nullptr) throw Error("the OpenXR runtime has no " #name, ExitCode::NoDevice);
+  CLOTHBENCH_XR_FUNCTIONS(CLOTHBENCH_XR_LOAD)
+#undef CLOTHBENCH_XR_LOAD
+}
+
+void Instance::find_system() {
+  XrInstanceProperties runtime{};
+  runtime.type = XR_TYPE_INSTANCE_PROPERTIES;
+  check(functions_.xrGetInstanceProperties(instance_, &runtime), "xrGetInstanceProperties");
+  const XrVersion v = runtime.runtimeVersion;
+  runtime_name_ =
+      fmt::format("{} {}.{}.{}", runtime.runtimeName, XR_VERSION_MAJOR(v), XR_VERSION_MINOR(v), XR_VERSION_PATCH(v));
+  XrSystemGetInfo get{};
+  get.type = XR_TYPE_SYSTEM_GET_INFO;
+  get.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
+  if (XR_FAILED(functions_.xrGetSystem(instance_, &get, &system_)))
+    throw Error(runtime_name_ + ": no headset is connected (xrGetSystem)", ExitCode::NoDevice);
+  XrSystemHandTrackingPropertiesEXT hands{};
+  hands.type = XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT;
+  XrSystemProperties properties{};
+  properties.type = XR_TYPE_SYSTEM_PROPERTIES;
+  if (has(XR_EXT_HAND_TRACKING_EXTENSION_NAME)) properties.next = &hands;
+  check(functions_.xrGetSystemProperties(instance_, system_, &properties), "xrGetSystemProperties");
+  system_name_ = properties.systemName;
+  tracks_hands_ = hands.supportsHandTracking == XR_TRUE;
+  XrGraphicsRequirementsVulkan2KHR needs{};
+  needs.type = XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR;
+  check(functions_.xrGetVulkanGraphicsRequirements2KHR(instance_, system_, &needs), "xrGetVulkanGraphicsRequirements2KHR");
+  if (needs.minApiVersionSupported > XR_MAKE_VERSION(1, 1, 0xffff))
+    throw Error(fmt::format("{} wants Vulkan {}.{} at least; this program uses 1.1", runtime_name_,
+                            XR_VERSION_MAJOR(needs.minApiVersionSupported), XR_VERSION_MINOR(needs.minApiVersionSupported)),
+                ExitCode::NoDevice);
+}
+
+void Instance::check(XrResult result, const char* call) const {
+  if (XR_SUCCEEDED(result)) return;
+  char text[XR_MAX_RESULT_STRING_SIZE] = "";
+  if (functions_.xrResultToString == nullptr || XR_FAILED(functions_.xrResultToString(instance_, result, text)))
+    std::snprintf(text, sizeof text, "XrResult %d", static_cast<int>(result));
+  throw Error(fmt::format("{} failed: {}", call, text), ExitCode::CheckFailed);
+}
+
+XrPath Instance::path(const std::string& text) const {
+  XrPath p = XR_NULL_PATH;
+  check(functions_.xrStringToPath(instance_, text.c_str(), &p), "xrStringToPath");
+  return p;
+}
+
+std::shared_ptr<vulkan::Device> Instance::make_device(const DeviceOptions& options) const {
+  RuntimeMaker maker(*this);
+  return vulkan::Device::make(options, maker);
+}
+
+}  // namespace clothbench::xr

@@ -1,0 +1,79 @@
+#pragma once
+#include <set>
+#include <string>
+#include <vector>
+
+#include "vulkan/device.hpp"
+#include "xr/openxr.hpp"
+
+namespace clothbench::xr {
+
+// clang-format off
+#define CLOTHBENCH_XR_FUNCTIONS(X)                                                                                     \
+  X(xrDestroyInstance) X(xrGetInstanceProperties) X(xrPollEvent) X(xrResultToString) X(xrGetSystem)                    \
+  X(xrGetSystemProperties) X(xrEnumerateEnvironmentBlendModes) X(xrCreateSession) X(xrDestroySession)                  \
+  X(xrEnumerateReferenceSpaces) X(xrCreateReferenceSpace) X(xrCreateActionSpace) X(xrLocateSpace) X(xrDestroySpace)    \
+  X(xrEnumerateViewConfigurationViews) X(xrEnumerateSwapchainFormats) X(xrCreateSwapchain) X(xrDestroySwapchain)       \
+  X(xrEnumerateSwapchainImages) X(xrAcquireSwapchainImage) X(xrWaitSwapchainImage) X(xrReleaseSwapchainImage)          \
+  X(xrBeginSession) X(xrEndSession) X(xrRequestExitSession) X(xrWaitFrame) X(xrBeginFrame) X(xrEndFrame)               \
+  X(xrLocateViews) X(xrStringToPath) X(xrPathToString) X(xrCreateActionSet) X(xrDestroyActionSet) X(xrCreateAction)    \
+  X(xrSuggestInteractionProfileBindings) X(xrAttachSessionActionSets) X(xrGetActionStateBoolean)                       \
+  X(xrGetActionStateFloat) X(xrSyncActions)                                                                            \
+  X(xrGetVulkanGraphicsRequirements2KHR) X(xrCreateVulkanInstanceKHR) X(xrGetVulkanGraphicsDevice2KHR)                 \
+  X(xrCreateVulkanDeviceKHR)
+// clang-format on
+
+struct Functions {
+#define CLOTHBENCH_XR_MEMBER(name) PFN_##name name = nullptr;
+  CLOTHBENCH_XR_FUNCTIONS(CLOTHBENCH_XR_MEMBER)
+#undef CLOTHBENCH_XR_MEMBER
+};
+
+/// A runtime that was found, its head-mounted system, and the extensions of ours that it has.
+class Instance {
+ public:
+  /// `runtime`: the library or the manifest (.json) of a runtime, entered without a loader; empty: whatever the system's loader
+  /// finds ($XR_RUNTIME_JSON and the rest). Throws Error with ExitCode::NoDevice where there is no loader, no runtime, no
+  /// headset, or no XR_KHR_vulkan_enable2.
+  explicit Instance(const std::string& runtime);
+  ~Instance();
+  Instance(const Instance&) = delete;
+  Instance& operator=(const Instance&) = delete;
+
+  const Functions& xr() const { return functions_; }
+  XrInstance handle() const { return instance_; }
+  XrSystemId system() const { return system_; }
+  const std::string& runtime_name() const { return runtime_name_; }  ///< with its version
+  const std::string& system_name() const { return system_name_; }
+  bool has(const std::string& extension) const { return enabled_.contains(extension); }
+  bool tracks_hands() const { return tracks_hands_; }
+
+  /// A function of an extension; null where the runtime lacks it.
+  template <class Function>
+  Function function(const char* name) const {
+    return reinterpret_cast<Function>(address(name));
+  }
+  /// Throws Error naming the call and the runtime's name for the result, unless it is a success.
+  void check(XrResult result, const char* call) const;
+
+  XrPath path(const std::string& text) const;
+
+  /// The Vulkan device this system shows pictures of. `get` of these options then gives the same one.
+  std::shared_ptr<vulkan::Device> make_device(const DeviceOptions&) const;
+
+ private:
+  PFN_xrVoidFunction address(const char* name) const;
+  void load(const std::string& runtime);
+  void create();
+  void find_system();
+
+  PFN_xrGetInstanceProcAddr get_ = nullptr;
+  Functions functions_;
+  XrInstance instance_ = XR_NULL_HANDLE;
+  XrSystemId system_ = XR_NULL_SYSTEM_ID;
+  std::set<std::string> enabled_;
+  std::string runtime_name_, system_name_;
+  bool tracks_hands_ = false;
+};
+
+}  // namespace clothbench::xr

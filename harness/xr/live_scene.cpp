@@ -1,0 +1,153 @@
+#include "xr/live_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "assets/assets.hpp"
+#include "assets/hand_track.hpp"
+#include "clothbench/error.hpp"
+#include "results/store.hpp"
+#include "scenario/json_text.hpp"
+#include "scenario/load.hpp"
+#include "scenario/recorded_hand.hpp"
+
+namespace clothbench::xr {
+namespace {
+
+namespace fs = std::filesystem;
+using assets::Side;
+using nlohmann::json;
+
+constexpr const char* kRoomFile = "room.json";
+/// How far the box round picked points reaches beyond them: a flat desk has no height of its own.
+constexpr double kGrow_m = 0.05;
+
+const std::vector<std::string> kScriptedAlone = {"expect", "truth", "stability", "seed"};
+
+Side side_of_track(const fs::path& file) {
+  const json track = parse_json(read_text(file), file.string());
+  return assets::is_hand_recording(track) ? assets::read_hand_recording(file).side : assets::read_hand_track(file).side;
+}
+
+}  // namespace
+
+LiveScene::LiveScene(const std::string& scenario, const std::vector<std::string>& overrides, fs::path folder, Live live)
+    : folder_(std::move(folder)) {
+  const fs::path source = find_scenario(scenario);
+  written_ = load_scene(scenario, overrides);
+  if (written_.cloth.mesh) throw Error(source.string() + ": /cloth/mesh: pictures are of grids alone; expected a \"grid\"");
+  document_ = parse_json(read_text(source), source.string());
+  for (const std::string& o : overrides) apply_override(document_, o, source.string());
+  // These say what comes of the script's motion, not of the user's.
+  for (const std::string& key : kScriptedAlone) document_.erase(key);
+  document_["name"] = document_["name"].get<std::string>() + "-live";
+  document_["why"] = "Recorded from a headset. " + document_["why"].get<std::string>();
+  fs::create_directories(folder_);
+  find_live(source.string(), live);
+  keep_tracks(source.string());
+}
+
+void LiveScene::find_live(const std::string& source, Live live) {
+  if (!document_.contains("colliders")) return;
+  json& list = document_["colliders"];
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const auto type = list[k]["type"].get<std::string>();
+    if (type == "room" && live.room) {
+      if (room_) throw Error(fmt::format("{}: /colliders/{}: a second room; a live session has one", source, k));
+      room_ = k;
+    }
+    if ((type != "hand_capsules" && type != "hand_mesh") || !live.hands) continue;
+    LiveHand hand;
+    hand.collider = k;
+    hand.side = side_of_track(file_of_scene(list[k]["track"].get<std::string>(), source).value());
+    hand.as_mesh = type == "hand_mesh";
+    hand.file = std::string(assets::name_of(hand.side)) + "-hand.json";
+    if (wants(hand.side))
+      throw Error(fmt::format("{}: /colliders/{}: a second {} hand; a user has one", source, k, assets::name_of(hand.side)));
+    hands_.push_back(std::move(hand));
+    for (const char* key : {"speed_m_per_s", "offset_m"}) list[k].erase(key);
+  }
+}
+
+/// Tracks that stay scripted travel with the scenario.
+void LiveScene::keep_tracks(const std::string& source) {
+  for (const char* kind : {"colliders", "grips"}) {
+    if (!document_.contains(kind)) continue;
+    for (json& item : document_[kind]) {
+      if (!item.contains("track")) continue;
+      const fs::path from = file_of_scene(item["track"].get<std::string>(), source).value();
+      if (std::any_of(hands_.begin(), hands_.end(), [&](const LiveHand& h) { return &document_[kind][h.collider] == &item; }))
+        continue;
+      write_file_atomically(folder_ / from.filename(), read_text(from));
+      item["track"] = from.filename().string();
+    }
+  }
+}
+
+bool LiveScene::wants(Side side) const {
+  return std::any_of(hands_.begin(), hands_.end(), [&](const LiveHand& h) { return h.side == side; });
+}
+
+const Scene& LiveScene::begin(const Begin& b) {
+  if (!(b.frames >= 1 && b.frames <= kMostFrames))
+    throw Error(fmt::format("a live session of {} frames: expected 1 to {}", b.frames, kMostFrames));
+  document_["time"] = {{"frame_rate_hz", b.frame_rate_hz}, {"duration_s", b.frames / b.frame_rate_hz}};
+  for (LiveHand& h : hands_) {
+    const auto side = static_cast<std::size_t>(h.side);
+    if (!b.hands[side]) throw Error(fmt::format("the {} hand is not seen", assets::name_of(h.side)));
+    h.recording = {h.side, b.frame_rate_hz, b.has_capsules, {*b.hands[side]}, {}};
+    if (h.as_mesh) h.recording.mesh = b.meshes[side];
+    if (h.as_mesh && !h.recording.mesh) h.stand_in = assets::open_hand(assets::locate_assets(false), h.side);
+    write_hand(h);
+    document_["colliders"][h.collider]["track"] = h.file;
+  }
+  if (room_) {
+    if (!b.room || b.picked_m.size() != 6) throw Error("a live room needs its mesh and six points");
+    write_file_atomically(folder_ / kRoomFile, assets::room_capture(*b.room));
+    json& collider = document_["colliders"][*room_];
+    for (const char* key : {"table", "below_m", "above_m"}) collider.erase(key);
+    collider["room"] = kRoomFile;
+    collider["points_m"] = b.picked_m;
+    collider["grow_m"] = kGrow_m;
+  }
+  scene_ = scene_from_json(document_, file());
+  frames_ = 0;
+  motion_.clear();
+  if (!scene_.motion.empty()) motion_.push_back(scene_.motion.front());
+  return scene_;
+}
+
+ColliderPose LiveScene::pose(const LiveHand& h, const assets::RecordedHand& now) const {
+  const assets::Vector none = assets::Vector::Zero();
+  return h.as_mesh ? mesh_pose(h.recording, now, h.stand_in ? &*h.stand_in : nullptr, none)
+                   : capsules_pose(h.recording, now, none);
+}
+
+const FrameMotion* LiveScene::next(int index, const HandsNow& now) {
+  ++frames_;
+  const FrameMotion* scripted = scene_.motion_after(index);
+  if (scripted == nullptr) return nullptr;
+  FrameMotion m = *scripted;
+  for (LiveHand& h : hands_) {
+    const auto& seen = now[static_cast<std::size_t>(h.side)];
+    h.recording.frames.push_back(seen ? *seen : h.recording.frames.back());
+    m.colliders.at(h.collider) = pose(h, h.recording.frames.back());
+  }
+  motion_.push_back(std::move(m));
+  return &motion_.back();
+}
+
+void LiveScene::write_hand(const LiveHand& h) const {
+  write_file_atomically(folder_ / h.file,
+                        assets::to_json(h.recording, fmt::format("The {} hand of a live session.", assets::name_of(h.side))));
+}
+
+fs::path LiveScene::save() {
+  for (const LiveHand& h : hands_) write_hand(h);
+  document_["time"]["duration_s"] = std::max(frames_, 1) / scene_.time.frame_rate_hz;
+  write_file_atomically(file(), document_.dump(1) + "\n");
+  return file();
+}
+
+}  // namespace clothbench::xr

@@ -1,0 +1,349 @@
+#include "xr/loop.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "gpu_solver.hpp"
+#include "results/store.hpp"
+#include "runner/cell.hpp"
+#include "runner/environment.hpp"
+#include "runner/replay.hpp"
+#include "xr/counters.hpp"
+#include "xr/hands.hpp"
+#include "xr/live_scene.hpp"
+#include "xr/painter.hpp"
+#include "xr/picking.hpp"
+
+namespace clothbench::xr {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using assets::Side;
+
+constexpr Vec3 kBeforeTheEyes_m = {0, -0.1, -0.6};
+
+double seconds(Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); }
+
+class Loop {
+ public:
+  Loop(const LoopOptions& options, const Instance& xr, LiveScene& live, Session& session, std::shared_ptr<vulkan::Device> device)
+      : o_(options), live_(live), session_(session), device_(device), painter_(device, session), counters_(session) {
+    if (live.wants(Side::Left) || live.wants(Side::Right)) hands_.emplace(session);
+    if (live.wants_room()) picking_.emplace(session);
+    const bool through = session.passthrough() != std::string_view("none");
+    painter_.renderer().set_background(through ? render::vec4{0, 0, 0, 0} : render::vec4{1, 1, 1, 1});
+    show_at_rest();
+    tell(fmt::format("{} on {}; {} x {} pixels an eye; passthrough: {}", xr.system_name(), xr.runtime_name(),
+                     session.extent().width, session.extent().height, session.passthrough()));
+  }
+
+  LoopResult run() {
+    const auto start = Clock::now();
+    while (session_.pump()) {
+      done_ = done_ || interrupt_requested();
+      if (done_ && !asked_to_exit_) {
+        session_.request_exit();
+        asked_to_exit_ = true;
+        leaving_ = Clock::now();
+      }
+      if (asked_to_exit_ && (!session_.running() || seconds(leaving_, Clock::now()) > kLeave_s)) break;
+      if (!session_.running()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      } else {
+        frame();
+      }
+      if (cell_ == nullptr && !asked_to_exit_ && seconds(start, Clock::now()) > o_.patience_s)
+        throw Error(fmt::format("the session did not begin within {:g} s: {}", o_.patience_s, waiting_for()),
+                    ExitCode::CheckFailed);
+    }
+    painter_.wait();
+    if (log_.rows().empty())
+      throw Error(interrupt_requested() ? "interrupted before the session began" : "the headset ended the session before it began",
+                  interrupt_requested() ? ExitCode::Interrupted : ExitCode::CheckFailed);
+    return finish();
+  }
+
+ private:
+  static constexpr double kLeave_s = 2;  // a runtime that does not let go
+
+  void tell(const std::string& text) const {
+    if (o_.tell) o_.tell(text);
+  }
+
+  std::string waiting_for() const {
+    if (!session_.running()) return "the headset does not run it (is it worn?)";
+    if (picking_) return picking_->waiting_for();
+    return "no hand was seen";
+  }
+
+  /// The cloth before anything is live, so that the user sees where it is; not where a room is to come.
+  void show_at_rest() {
+    const Scene& s = live_.written();
+    painter_.renderer().set_cloth(s.cloth, {0, 0, 0});
+    std::vector<double> x = initial_positions(s);
+    if (live_.wants_room()) x.assign(x.size(), kMissing);
+    painter_.renderer().write_positions(x);
+    shown_.cloth = s.cloth;
+  }
+
+  void frame() {
+    const auto t0 = Clock::now();
+    const XrFrameState state = session_.wait_frame();
+    const auto t1 = Clock::now();
+    session_.begin_frame();
+    const auto t2 = Clock::now();
+    const bool live = cell_ != nullptr && !done_;
+    FrameRow row;
+    row.predicted_display_s = static_cast<double>(state.predictedDisplayTime - first_time(state, live)) * 1e-9;
+    row.predicted_period_s = static_cast<double>(state.predictedDisplayPeriod) * 1e-9;
+    row.wait_s = seconds(t0, t1);
+    row.begin_s = seconds(t1, t2);
+    row.shown = state.shouldRender == XR_TRUE ? 1 : 0;
+    live ? step(state.predictedDisplayTime, row) : prepare(state);
+    std::vector<XrView> views;
+    const auto t3 = Clock::now();
+    if (state.shouldRender == XR_TRUE) views = session_.views(state.predictedDisplayTime);
+    if (!views.empty()) paint(views);
+    const auto t4 = Clock::now();
+    session_.end_frame(state, views);
+    const auto t5 = Clock::now();
+    row.paint_s = seconds(t3, t4);
+    row.end_s = seconds(t4, t5);
+    row.frame_s = seconds(t1, t5);
+    if (!live) return;
+    log_.add(row);
+    // Those of the frame before: counters are of what has been shown.
+    counters_.read([&](const std::string& name, const std::string& units, double v) { log_.add_counter(name, units, v); });
+    done_ = done_ || static_cast<int>(log_.rows().size()) == frames_;
+  }
+
+  XrTime first_time(const XrFrameState& state, bool live) {
+    if (live && log_.rows().empty()) first_time_ = state.predictedDisplayTime;
+    return first_time_;
+  }
+
+  HandsNow hands_at(XrTime time) const {
+    HandsNow now;
+    for (const Side side : {Side::Left, Side::Right})
+      if (hands_ && live_.wants(side)) now[static_cast<std::size_t>(side)] = hands_->at(side, time);
+    return now;
+  }
+
+  /// Frames before the first of the session: until there is something to begin with. It is begun twice: solvers make their kernels
+  /// the first time, which takes so long that the hands are elsewhere afterwards.
+  void prepare(const XrFrameState& state) {
+    if (done_) return;
+    LiveScene::Begin b;
+    b.hands = hands_at(state.predictedDisplayTime);
+    for (const Side side : {Side::Left, Side::Right})
+      if (live_.wants(side) && !b.hands[static_cast<std::size_t>(side)]) return;
+    if (picking_ && !picking_->ready(state.predictedDisplayTime)) return;
+    if (!rate_settled()) return;
+    b.frame_rate_hz = rate_of(state);
+    b.frames = o_.frames > 0 ? o_.frames : static_cast<int>(std::lround(live_.written().time.duration_s * b.frame_rate_hz));
+    frames_ = b.frames;
+    b.has_capsules = hands_ && hands_->has_capsules();
+    for (const Side side : {Side::Left, Side::Right})
+      if (hands_ && live_.wants(side)) b.meshes[static_cast<std::size_t>(side)] = hands_->mesh(side);
+    if (picking_) {
+      b.room = picking_->scan();
+      b.picked_m = picking_->picked();
+    }
+    painter_.wait();
+    cell_.reset();
+    live_.begin(b);
+    auto cell = std::make_unique<Cell>(
+        CellSpec{&live_.scene(), o_.entry, o_.settings, o_.setting, 0, {}, true, {}}, o_.device, "xr");
+    if (!cell->alive()) {
+      const Outcome out = cell->outcome();
+      throw Error(fmt::format("{}: {}: {}", o_.entry->info.name, out.status, out.message), ExitCode::CheckFailed);
+    }
+    if (!warm_) {
+      FrameInput input{0, live_.scene().time.at(1), live_.scene().time.dt(), live_.scene().motion_after(0)};
+      cell->solver()->step(input);
+      warm_ = true;
+      return;
+    }
+    cell_ = std::move(cell);
+    show_live();
+    tell(fmt::format("{} frames at {:g} Hz", frames_, b.frame_rate_hz));
+  }
+
+  /// A display changes its rate some frames after it was asked to, if it has that rate.
+  bool rate_settled() {
+    constexpr double kPatience_s = 1, kSame_hz = 0.5;
+    if (first_frame_ == Clock::time_point{}) first_frame_ = Clock::now();
+    const double told = session_.refresh_rate_hz();
+    return told == 0 || std::abs(told - o_.rate_hz) <= kSame_hz || seconds(first_frame_, Clock::now()) > kPatience_s;
+  }
+
+  /// As the display says, else by the runtime's prediction, which is in whole ns.
+  double rate_of(const XrFrameState& state) const {
+    const double told = session_.refresh_rate_hz();
+    return told > 0 ? told : std::round(1e9 / static_cast<double>(state.predictedDisplayPeriod));
+  }
+
+  /// The vertex shader reads a GPU solver's positions where they lie.
+  void show_live() {
+    const Scene& s = live_.scene();
+    painter_.renderer().set_cloth(s.cloth, {0, 0, 0});
+    gpu_ = dynamic_cast<const pbd_gpu::GpuSolver*>(cell_->solver());
+    if (gpu_ != nullptr) painter_.renderer().use_positions(gpu_->position_buffer(), gpu_->origin_m());
+    shown_ = {};
+    shown_.cloth = s.cloth;
+    shown_.colliders = s.colliders;
+    if (!live_.motion().empty()) shown_.motion.push_back(live_.motion().front());
+    // A room of the user's own is seen by itself.
+    if (picking_ && session_.passthrough() != std::string_view("none")) shown_.colliders.clear();
+    near_ = render::Bounds::none();
+    const std::vector<double> x = initial_positions(s);
+    for (std::size_t v = 0; v < s.cloth.vertex_count(); ++v) near_.add({x[3 * v], x[3 * v + 1], x[3 * v + 2]});
+    near_.grow(std::max({s.cloth.width_m, s.cloth.height_m}));
+    stale_ = true;
+  }
+
+  void step(XrTime time, FrameRow& row) {
+    const auto index = static_cast<int>(log_.rows().size());
+    const auto t0 = Clock::now();
+    const HandsNow now = hands_at(time);
+    if (live_.wants(Side::Left)) row.left_seen = now[0] ? 1 : 0;
+    if (live_.wants(Side::Right)) row.right_seen = now[1] ? 1 : 0;
+    const FrameMotion* motion = live_.next(index, now);
+    const auto t1 = Clock::now();
+    painter_.wait();  // it read the positions that the step writes
+    row.paint_device_s = painter_.device_s();
+    const auto t2 = Clock::now();
+    const TimeSpan& time_span = live_.scene().time;
+    const StepStatus status = cell_->solver()->step({index, (index + 1) * time_span.dt(), time_span.dt(), motion});
+    const auto t3 = Clock::now();
+    row.input_s = seconds(t0, t1);
+    row.settle_s = seconds(t1, t2);
+    row.step_s = seconds(t2, t3);
+    const FrameCost cost = cell_->solver()->last_cost();
+    row.step_device_s = cost.device_s;
+    note(cost, row);
+    if (status != StepStatus::Ok) {
+      outcome_ = status == StepStatus::DeviceLost ? Outcome{"device_lost", "F8", index, "the device was lost"}
+                                                  : Outcome{"diverged", "F1", index, "the solver's step failed"};
+      done_ = true;
+    }
+    shown_.motion.clear();
+    if (motion != nullptr) shown_.motion.push_back(*motion);
+    stale_ = stale_ || motion != nullptr;
+  }
+
+  /// The steps are a timed trial as of any run, so that what a headset's tools sampled meanwhile finds its time.
+  void note(const FrameCost& cost, const FrameRow& row) {
+    const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    if (trial_.frames() == 0) trial_.start_unix_s = now - row.step_s;
+    trial_.end_unix_s = now;
+    trial_.frame_wall_s.push_back(row.step_s);
+    trial_.frame_device_s.push_back(cost.device_s);
+    trial_.stage_device_s.insert(trial_.stage_device_s.end(), cost.stage_read_B.size(), kMissing);
+    trial_.stage_read_B.insert(trial_.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
+    trial_.stage_write_B.insert(trial_.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
+  }
+
+  void paint(const std::vector<XrView>& views) {
+    painter_.wait();
+    if (cell_ != nullptr) {
+      if (gpu_ == nullptr) {
+        cell_->solver()->read_state(state_);
+        painter_.renderer().write_positions(state_.position);
+      }
+      if (stale_) painter_.renderer().set_surfaces(render::surfaces(shown_, 0, near_));
+      stale_ = false;
+    } else if (picking_ && picking_->changed()) {
+      painter_.renderer().set_surfaces(picking_->surfaces());
+    }
+    painter_.paint(views);
+  }
+
+  StoredGroup group(const ClothState& end) const {
+    StoredGroup g = log_.group();
+    g.attributes = {{"runtime", session_.instance().runtime_name()},
+                    {"system", session_.instance().system_name()},
+                    {"space", session_.space_name()},
+                    {"rate_requested_hz", o_.rate_hz},
+                    {"rate_hz", live_.scene().time.frame_rate_hz},
+                    {"eye_width", session_.extent().width},
+                    {"eye_height", session_.extent().height},
+                    {"passthrough", session_.passthrough()},
+                    {"performance_level", session_.performance_level()},
+                    {"hands", !hands_ ? "scripted" : hands_->has_capsules() ? "live, capsules of the runtime" : "live, joints and radii"},
+                    {"room", picking_ ? "live" : "of the scenario"}};
+    const std::uint64_t n = live_.scene().cloth.vertex_count();
+    g.arrays.push_back({"final_position_m", "m", "where the cloth was after the last frame", {"vertex", "xyz"}, {n, 3}, false, end.position});
+    return g;
+  }
+
+  LoopResult finish() {
+    LoopResult r;
+    ClothState end;
+    cell_->solver()->read_state(end);
+    r.final_position_m = end.position;
+    for (const double x : end.position)
+      if (outcome_.status == "ok" && !std::isfinite(x))
+        outcome_ = {"not_finite", "F0", static_cast<int>(log_.rows().size()), "a position is not finite"};
+    r.scenario = live_.save();
+    Scene moved = live_.scene();
+    moved.motion = live_.motion();
+    std::vector<StoredGroup> groups = replay_of(moved);
+    groups.push_back(group(end));
+    CellRecord record;
+    record.header = cell_->header();
+    record.outcome = outcome_;
+    record.trials = {trial_};
+    r.summary = summarise(cell_->spec(), cell_->plan(), record);
+    r.summary.merge(log_.summary());
+    CellWriter writer(o_.out, cell_->header());
+    writer.write_trial(trial_);
+    writer.write_replay(groups);
+    r.file = writer.finish(outcome_, r.summary);
+    r.log = log_;
+    r.outcome = outcome_;
+    r.validation_messages = cell_->validation_messages();
+    return r;
+  }
+
+  const LoopOptions& o_;
+  LiveScene& live_;
+  Session& session_;
+  std::shared_ptr<vulkan::Device> device_;
+  Painter painter_;
+  Counters counters_;
+  std::optional<Hands> hands_;
+  std::optional<Picking> picking_;
+  std::unique_ptr<Cell> cell_;
+  const pbd_gpu::GpuSolver* gpu_ = nullptr;
+  bool warm_ = false, done_ = false, asked_to_exit_ = false, stale_ = true;
+  Clock::time_point leaving_, first_frame_;
+  int frames_ = 0;
+  XrTime first_time_ = 0;
+  FrameLog log_;
+  TimedTrial trial_;
+  Outcome outcome_;
+  ClothState state_;
+  Scene shown_;  ///< what is drawn beside the cloth
+  render::Bounds near_ = render::Bounds::none();
+};
+
+}  // namespace
+
+LoopResult run_loop(const LoopOptions& options) {
+  const Instance xr(options.runtime);
+  LiveScene live(options.scenario, options.overrides, options.out / "scenario", {xr.tracks_hands(), RoomScanner::offered(xr)});
+  const std::shared_ptr<vulkan::Device> device = xr.make_device(options.device);
+  SessionOptions s;
+  s.rate_hz = options.rate_hz;
+  s.on_floor = live.wants_room();
+  s.origin_m = options.place_m.value_or(live.wants_room() ? Vec3{} : kBeforeTheEyes_m);
+  s.passthrough = options.passthrough;
+  Session session(xr, device, s);
+  return Loop(options, xr, live, session, device).run();
+}
+
+}  // namespace clothbench::xr

@@ -1,0 +1,148 @@
+#include "xr/painter.hpp"
+
+#include <cmath>
+
+#include "clothbench/record.hpp"
+
+namespace clothbench::xr {
+namespace {
+
+using vulkan::check;
+
+constexpr double kNear_m = 0.05, kFar_m = 100;  // a hand before the face; the far end of a hall
+constexpr std::uint64_t kPatience_ns = 10'000'000'000;
+
+}  // namespace
+
+render::Mat4 view_of(const XrPosef& pose, const Vec3& origin_m) {
+  const double x = static_cast<double>(pose.orientation.x), y = static_cast<double>(pose.orientation.y),
+               z = static_cast<double>(pose.orientation.z), w = static_cast<double>(pose.orientation.w);
+  // Columns are the eye's own axes in the scene.
+  const std::array<Vec3, 3> axis = {{{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
+                                     {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
+                                     {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}}};
+  const Vec3 eye = {static_cast<double>(pose.position.x) - origin_m[0], static_cast<double>(pose.position.y) - origin_m[1],
+                    static_cast<double>(pose.position.z) - origin_m[2]};
+  render::Mat4 m{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) {
+      m[4 * column + row] = axis[row][column];
+      m[12 + row] -= axis[row][column] * eye[column];
+    }
+  }
+  m[15] = 1;
+  return m;
+}
+
+render::Mat4 projection_of(const XrFovf& fov, double near_m, double far_m) {
+  const double left = std::tan(static_cast<double>(fov.angleLeft)), right = std::tan(static_cast<double>(fov.angleRight));
+  const double up = std::tan(static_cast<double>(fov.angleUp)), down = std::tan(static_cast<double>(fov.angleDown));
+  render::Mat4 m{};
+  m[0] = 2 / (right - left);
+  m[8] = (right + left) / (right - left);
+  m[5] = -2 / (up - down);
+  m[9] = -(up + down) / (up - down);
+  m[10] = -far_m / (far_m - near_m);
+  m[14] = -far_m * near_m / (far_m - near_m);
+  m[11] = -1;
+  return m;
+}
+
+Painter::Painter(std::shared_ptr<vulkan::Device> device, Session& session)
+    : device_(std::move(device)), session_(session), renderer_(device_, session.format()), device_s_(kMissing) {
+  try {
+    VkCommandBufferAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    allocate.commandPool = device_->command_pool();
+    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    allocate.commandBufferCount = 1;
+    check(vkAllocateCommandBuffers(device_->handle(), &allocate, &commands_), "vkAllocateCommandBuffers");
+    VkFenceCreateInfo fence{};
+    fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+    check(vkCreateFence(device_->handle(), &fence, nullptr, &fence_), "vkCreateFence");
+    if (!device_->has_timestamps()) return;
+    VkQueryPoolCreateInfo queries{};
+    queries.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+    queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    queries.queryCount = 2;
+    check(vkCreateQueryPool(device_->handle(), &queries, nullptr, &queries_), "vkCreateQueryPool");
+  } catch (...) {
+    release();
+    throw;
+  }
+}
+
+Painter::~Painter() { release(); }
+
+void Painter::release() {
+  vkDeviceWaitIdle(device_->handle());
+  for (const Eye& eye : session_.eyes())
+    for (const VkImage image : eye.images) renderer_.forget(image);
+  vkDestroyQueryPool(device_->handle(), queries_, nullptr);
+  vkDestroyFence(device_->handle(), fence_, nullptr);
+  if (commands_ != VK_NULL_HANDLE)
+    vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands_);
+}
+
+void Painter::wait() {
+  if (!in_flight_) return;
+  check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, kPatience_ns), "vkWaitForFences");
+  in_flight_ = false;
+  check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
+  if (queries_ == VK_NULL_HANDLE) return;
+  std::array<std::uint64_t, 2> ticks{};
+  check(vkGetQueryPoolResults(device_->handle(), queries_, 0, 2, sizeof ticks, ticks.data(), 8, VK_QUERY_RESULT_64_BIT),
+        "vkGetQueryPoolResults");
+  device_s_ = device_->seconds(ticks[0], ticks[1]);
+}
+
+void Painter::paint(const std::vector<XrView>& views) {
+  wait();
+  const Instance& xr = session_.instance();
+  std::array<std::uint32_t, 2> index{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const XrSwapchain images = session_.eyes()[k].swapchain;
+    XrSwapchainImageAcquireInfo acquire{};
+    acquire.type = XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO;
+    xr.check(xr.xr().xrAcquireSwapchainImage(images, &acquire, &index[k]), "xrAcquireSwapchainImage");
+    XrSwapchainImageWaitInfo patience{};
+    patience.type = XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO;
+    patience.timeout = XR_INFINITE_DURATION;
+    xr.check(xr.xr().xrWaitSwapchainImage(images, &patience), "xrWaitSwapchainImage");
+  }
+  record(index[0], index[1], views);
+  VkSubmitInfo submit{};
+  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  submit.commandBufferCount = 1;
+  submit.pCommandBuffers = &commands_;
+  check(vkQueueSubmit(device_->queue(), 1, &submit, fence_), "vkQueueSubmit");
+  in_flight_ = true;
+  for (const Eye& eye : session_.eyes()) {
+    XrSwapchainImageReleaseInfo release{};
+    release.type = XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO;
+    xr.check(xr.xr().xrReleaseSwapchainImage(eye.swapchain, &release), "xrReleaseSwapchainImage");
+  }
+}
+
+void Painter::record(std::uint32_t left, std::uint32_t right, const std::vector<XrView>& views) {
+  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");
+  VkCommandBufferBeginInfo begin{};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  if (queries_ != VK_NULL_HANDLE) {
+    vkCmdResetQueryPool(commands_, queries_, 0, 2);
+    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, queries_, 0);
+  }
+  const std::array<std::uint32_t, 2> index = {left, right};
+  std::vector<render::Drawing> drawings;
+  for (std::size_t k = 0; k < 2; ++k)
+    drawings.push_back({session_.eyes()[k].images.at(index[k]), 0, session_.extent(),
+                        view_of(views[k].pose, renderer_.origin()), projection_of(views[k].fov, kNear_m, kFar_m)});
+  renderer_.record(commands_, drawings);
+  if (queries_ != VK_NULL_HANDLE)
+    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, 1);
+  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+}
+
+}  // namespace clothbench::xr

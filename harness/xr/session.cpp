@@ -1,0 +1,272 @@
+#include "xr/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace clothbench::xr {
+namespace {
+
+constexpr auto kViews = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+constexpr XrPosef kHere{{0, 0, 0, 1}, {0, 0, 0}};
+/// Those the renderer's colours are right in: what it writes is linear.
+constexpr std::array kFormats = {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB};
+
+template <class T>
+T blank(XrStructureType type) {
+  T t{};
+  t.type = type;
+  return t;
+}
+
+}  // namespace
+
+Session::Session(const Instance& xr, std::shared_ptr<vulkan::Device> device, const SessionOptions& options)
+    : xr_(xr), device_(std::move(device)), rate_hz_(options.rate_hz) {
+  try {
+    create_session();
+    create_space(options);
+    create_eyes();
+    choose_blend_mode(options.passthrough);
+  } catch (...) {  // no destructor runs then
+    release();
+    throw;
+  }
+}
+
+Session::~Session() { release(); }
+
+void Session::release() {
+  vkDeviceWaitIdle(device_->handle());
+  if (layer_ != XR_NULL_HANDLE)
+    xr_.function<PFN_xrDestroyPassthroughLayerFB>("xrDestroyPassthroughLayerFB")(layer_);
+  if (passthrough_ != XR_NULL_HANDLE) xr_.function<PFN_xrDestroyPassthroughFB>("xrDestroyPassthroughFB")(passthrough_);
+  for (Eye& eye : eyes_)
+    if (eye.swapchain != XR_NULL_HANDLE) xr_.xr().xrDestroySwapchain(eye.swapchain);
+  if (space_ != XR_NULL_HANDLE) xr_.xr().xrDestroySpace(space_);
+  if (session_ != XR_NULL_HANDLE) xr_.xr().xrDestroySession(session_);
+}
+
+void Session::create_session() {
+  auto vulkan = blank<XrGraphicsBindingVulkan2KHR>(XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR);
+  vulkan.instance = device_->instance();
+  vulkan.physicalDevice = device_->physical();
+  vulkan.device = device_->handle();
+  vulkan.queueFamilyIndex = device_->queue_family();
+  vulkan.queueIndex = 0;
+  auto info = blank<XrSessionCreateInfo>(XR_TYPE_SESSION_CREATE_INFO);
+  info.next = &vulkan;
+  info.systemId = xr_.system();
+  xr_.check(xr_.xr().xrCreateSession(xr_.handle(), &info, &session_), "xrCreateSession");
+}
+
+void Session::create_space(const SessionOptions& options) {
+  std::uint32_t count = 0;
+  xr_.check(xr_.xr().xrEnumerateReferenceSpaces(session_, 0, &count, nullptr), "xrEnumerateReferenceSpaces");
+  std::vector<XrReferenceSpaceType> types(count);
+  xr_.check(xr_.xr().xrEnumerateReferenceSpaces(session_, count, &count, types.data()), "xrEnumerateReferenceSpaces");
+  const bool stage =
+      options.on_floor && std::find(types.begin(), types.end(), XR_REFERENCE_SPACE_TYPE_STAGE) != types.end();
+  space_name_ = stage ? "STAGE" : "LOCAL";
+  auto info = blank<XrReferenceSpaceCreateInfo>(XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
+  info.referenceSpaceType = stage ? XR_REFERENCE_SPACE_TYPE_STAGE : XR_REFERENCE_SPACE_TYPE_LOCAL;
+  info.poseInReferenceSpace = kHere;
+  info.poseInReferenceSpace.position = {static_cast<float>(options.origin_m[0]), static_cast<float>(options.origin_m[1]),
+                                        static_cast<float>(options.origin_m[2])};
+  xr_.check(xr_.xr().xrCreateReferenceSpace(session_, &info, &space_), "xrCreateReferenceSpace");
+}
+
+void Session::create_eyes() {
+  std::uint32_t count = 0;
+  xr_.check(xr_.xr().xrEnumerateViewConfigurationViews(xr_.handle(), xr_.system(), kViews, 0, &count, nullptr),
+            "xrEnumerateViewConfigurationViews");
+  std::vector<XrViewConfigurationView> views(
+      count, blank<XrViewConfigurationView>(XR_TYPE_VIEW_CONFIGURATION_VIEW));
+  xr_.check(xr_.xr().xrEnumerateViewConfigurationViews(xr_.handle(), xr_.system(), kViews, count, &count, views.data()),
+            "xrEnumerateViewConfigurationViews");
+  if (count != eyes_.size()) throw Error(fmt::format("OpenXR: {} views; expected 2", count), ExitCode::NoDevice);
+  // One size for both, so that the renderer keeps one set of targets.
+  for (const auto& v : views) {
+    extent_.width = std::max(extent_.width, v.recommendedImageRectWidth);
+    extent_.height = std::max(extent_.height, v.recommendedImageRectHeight);
+  }
+  xr_.check(xr_.xr().xrEnumerateSwapchainFormats(session_, 0, &count, nullptr), "xrEnumerateSwapchainFormats");
+  std::vector<std::int64_t> formats(count);
+  xr_.check(xr_.xr().xrEnumerateSwapchainFormats(session_, count, &count, formats.data()), "xrEnumerateSwapchainFormats");
+  for (const VkFormat f : kFormats)
+    if (format_ == VK_FORMAT_UNDEFINED && std::find(formats.begin(), formats.end(), f) != formats.end()) format_ = f;
+  if (format_ == VK_FORMAT_UNDEFINED)
+    throw Error("OpenXR: the runtime has no swapchain of 8-bit sRGB (RGBA or BGRA)", ExitCode::NoDevice);
+  for (Eye& eye : eyes_) {
+    auto info = blank<XrSwapchainCreateInfo>(XR_TYPE_SWAPCHAIN_CREATE_INFO);
+    info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
+    info.format = format_;
+    info.sampleCount = 1;
+    info.width = extent_.width;
+    info.height = extent_.height;
+    info.faceCount = info.arraySize = info.mipCount = 1;
+    xr_.check(xr_.xr().xrCreateSwapchain(session_, &info, &eye.swapchain), "xrCreateSwapchain");
+    xr_.check(xr_.xr().xrEnumerateSwapchainImages(eye.swapchain, 0, &count, nullptr), "xrEnumerateSwapchainImages");
+    std::vector<XrSwapchainImageVulkan2KHR> images(
+        count, blank<XrSwapchainImageVulkan2KHR>(XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR));
+    xr_.check(xr_.xr().xrEnumerateSwapchainImages(eye.swapchain, count, &count,
+                                                  reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())),
+              "xrEnumerateSwapchainImages");
+    for (const auto& image : images) eye.images.push_back(image.image);
+  }
+}
+
+void Session::choose_blend_mode(bool passthrough) {
+  std::uint32_t count = 0;
+  xr_.check(xr_.xr().xrEnumerateEnvironmentBlendModes(xr_.handle(), xr_.system(), kViews, 0, &count, nullptr),
+            "xrEnumerateEnvironmentBlendModes");
+  std::vector<XrEnvironmentBlendMode> modes(count);
+  xr_.check(xr_.xr().xrEnumerateEnvironmentBlendModes(xr_.handle(), xr_.system(), kViews, count, &count, modes.data()),
+            "xrEnumerateEnvironmentBlendModes");
+  const auto offers = [&](XrEnvironmentBlendMode m) { return std::find(modes.begin(), modes.end(), m) != modes.end(); };
+  if (modes.empty()) throw Error("OpenXR: the runtime has no environment blend mode", ExitCode::NoDevice);
+  blend_ = offers(XR_ENVIRONMENT_BLEND_MODE_OPAQUE) ? XR_ENVIRONMENT_BLEND_MODE_OPAQUE : modes.front();
+  if (!passthrough) return;
+  if (xr_.has(XR_FB_PASSTHROUGH_EXTENSION_NAME)) {
+    start_passthrough();
+  } else if (offers(XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND)) {
+    blend_ = XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND;
+    passthrough_name_ = "alpha blend";
+  }
+}
+
+void Session::start_passthrough() {
+  auto info = blank<XrPassthroughCreateInfoFB>(XR_TYPE_PASSTHROUGH_CREATE_INFO_FB);
+  info.flags = XR_PASSTHROUGH_IS_RUNNING_AT_CREATION_BIT_FB;
+  // A headset without cameras has the extension all the same, and says so here.
+  if (XR_FAILED(xr_.function<PFN_xrCreatePassthroughFB>("xrCreatePassthroughFB")(session_, &info, &passthrough_))) {
+    passthrough_ = XR_NULL_HANDLE;
+    return;
+  }
+  auto layer = blank<XrPassthroughLayerCreateInfoFB>(XR_TYPE_PASSTHROUGH_LAYER_CREATE_INFO_FB);
+  layer.passthrough = passthrough_;
+  layer.flags = XR_PASSTHROUGH_IS_RUNNING_AT_CREATION_BIT_FB;
+  layer.purpose = XR_PASSTHROUGH_LAYER_PURPOSE_RECONSTRUCTION_FB;
+  xr_.check(xr_.function<PFN_xrCreatePassthroughLayerFB>("xrCreatePassthroughLayerFB")(session_, &layer, &layer_),
+            "xrCreatePassthroughLayerFB");
+  passthrough_name_ = "XR_FB_passthrough";
+}
+
+void Session::request_rate(double rate_hz) const {
+  if (!xr_.has(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)) return;
+  // A rate that the display does not have is no error: the log tells what it runs at.
+  xr_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB")(session_, static_cast<float>(rate_hz));
+}
+
+double Session::refresh_rate_hz() const {
+  float rate = 0;
+  if (!xr_.has(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME) ||
+      XR_FAILED(xr_.function<PFN_xrGetDisplayRefreshRateFB>("xrGetDisplayRefreshRateFB")(session_, &rate)))
+    return 0;
+  return static_cast<double>(rate);
+}
+
+void Session::request_performance() {
+  if (!xr_.has(XR_EXT_PERFORMANCE_SETTINGS_EXTENSION_NAME)) return;
+  const auto set = xr_.function<PFN_xrPerfSettingsSetPerformanceLevelEXT>("xrPerfSettingsSetPerformanceLevelEXT");
+  bool all = true;
+  for (const auto domain : {XR_PERF_SETTINGS_DOMAIN_CPU_EXT, XR_PERF_SETTINGS_DOMAIN_GPU_EXT})
+    all = XR_SUCCEEDED(set(session_, domain, XR_PERF_SETTINGS_LEVEL_SUSTAINED_HIGH_EXT)) && all;
+  if (all) performance_ = "sustained high";
+}
+
+bool Session::pump() {
+  for (;;) {
+    auto event = blank<XrEventDataBuffer>(XR_TYPE_EVENT_DATA_BUFFER);
+    const XrResult result = xr_.xr().xrPollEvent(xr_.handle(), &event);
+    xr_.check(result, "xrPollEvent");
+    if (result == XR_EVENT_UNAVAILABLE) return !over_;
+    if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING) over_ = true;
+    else if (event.type == XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED)
+      change(reinterpret_cast<const XrEventDataSessionStateChanged&>(event).state);
+    else if (on_event)
+      on_event(event);
+  }
+}
+
+void Session::change(XrSessionState state) {
+  if (state == XR_SESSION_STATE_READY) {
+    auto info = blank<XrSessionBeginInfo>(XR_TYPE_SESSION_BEGIN_INFO);
+    info.primaryViewConfigurationType = kViews;
+    xr_.check(xr_.xr().xrBeginSession(session_, &info), "xrBeginSession");
+    running_ = true;
+    request_rate(rate_hz_);
+    request_performance();
+  } else if (state == XR_SESSION_STATE_STOPPING) {
+    running_ = false;
+    xr_.check(xr_.xr().xrEndSession(session_), "xrEndSession");
+  } else if (state == XR_SESSION_STATE_EXITING || state == XR_SESSION_STATE_LOSS_PENDING) {
+    running_ = false;
+    over_ = true;
+  }
+}
+
+void Session::request_exit() {
+  if (running_) xr_.check(xr_.xr().xrRequestExitSession(session_), "xrRequestExitSession");
+}
+
+XrFrameState Session::wait_frame() {
+  auto state = blank<XrFrameState>(XR_TYPE_FRAME_STATE);
+  const auto info = blank<XrFrameWaitInfo>(XR_TYPE_FRAME_WAIT_INFO);
+  xr_.check(xr_.xr().xrWaitFrame(session_, &info, &state), "xrWaitFrame");
+  return state;
+}
+
+void Session::begin_frame() {
+  const auto info = blank<XrFrameBeginInfo>(XR_TYPE_FRAME_BEGIN_INFO);
+  xr_.check(xr_.xr().xrBeginFrame(session_, &info), "xrBeginFrame");
+}
+
+std::vector<XrView> Session::views(XrTime time) const {
+  auto info = blank<XrViewLocateInfo>(XR_TYPE_VIEW_LOCATE_INFO);
+  info.viewConfigurationType = kViews;
+  info.displayTime = time;
+  info.space = space_;
+  auto state = blank<XrViewState>(XR_TYPE_VIEW_STATE);
+  std::vector<XrView> views(eyes_.size(), blank<XrView>(XR_TYPE_VIEW));
+  std::uint32_t count = 0;
+  xr_.check(xr_.xr().xrLocateViews(session_, &info, &state, static_cast<std::uint32_t>(views.size()), &count, views.data()),
+            "xrLocateViews");
+  constexpr XrViewStateFlags kKnown = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT;
+  if ((state.viewStateFlags & kKnown) != kKnown || count != views.size()) views.clear();
+  return views;
+}
+
+void Session::end_frame(const XrFrameState& frame, const std::vector<XrView>& views) {
+  auto camera = blank<XrCompositionLayerPassthroughFB>(XR_TYPE_COMPOSITION_LAYER_PASSTHROUGH_FB);
+  camera.flags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
+  camera.layerHandle = layer_;
+  std::array<XrCompositionLayerProjectionView, 2> shown{};
+  auto projection = blank<XrCompositionLayerProjection>(XR_TYPE_COMPOSITION_LAYER_PROJECTION);
+  std::vector<const XrCompositionLayerBaseHeader*> layers;
+  if (layer_ != XR_NULL_HANDLE) layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&camera));
+  if (!views.empty()) {
+    for (std::size_t k = 0; k < shown.size(); ++k) {
+      shown[k] = blank<XrCompositionLayerProjectionView>(XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW);
+      shown[k].pose = views[k].pose;
+      shown[k].fov = views[k].fov;
+      shown[k].subImage.swapchain = eyes_[k].swapchain;
+      shown[k].subImage.imageRect.extent = {static_cast<std::int32_t>(extent_.width),
+                                            static_cast<std::int32_t>(extent_.height)};
+    }
+    if (passthrough_name_ != std::string_view("none"))
+      projection.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
+    projection.space = space_;
+    projection.viewCount = static_cast<std::uint32_t>(shown.size());
+    projection.views = shown.data();
+    layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection));
+  }
+  auto info = blank<XrFrameEndInfo>(XR_TYPE_FRAME_END_INFO);
+  info.displayTime = frame.predictedDisplayTime;
+  info.environmentBlendMode = blend_;
+  info.layerCount = static_cast<std::uint32_t>(layers.size());
+  info.layers = layers.data();
+  xr_.check(xr_.xr().xrEndFrame(session_, &info), "xrEndFrame");
+}
+
+}  // namespace clothbench::xr

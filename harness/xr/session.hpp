@@ -1,0 +1,88 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clothbench/collider.hpp"
+#include "xr/instance.hpp"
+
+namespace clothbench::xr {
+
+struct SessionOptions {
+  double rate_hz = 72;  ///< asked of the display where it can be
+  bool on_floor = false;  ///< the scene's space is the room's (STAGE), else where the head was at first (LOCAL)
+  Vec3 origin_m{};        ///< the scene's origin in that space
+  bool passthrough = true;
+};
+
+/// Images of one eye.
+struct Eye {
+  XrSwapchain swapchain = XR_NULL_HANDLE;
+  std::vector<VkImage> images;
+};
+
+/// A session: its states, its clock and its pictures. Everything is located in the scene's own space.
+///
+/// Frames are `wait_frame`, `begin_frame`, `end_frame`, while `running()`; `pump` goes between them.
+class Session {
+ public:
+  Session(const Instance&, std::shared_ptr<vulkan::Device>, const SessionOptions&);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Takes the runtime's events, and begins and ends the session as they ask. Others go to `on_event`. False once it is over.
+  bool pump();
+  std::function<void(const XrEventDataBuffer&)> on_event;
+  bool running() const { return running_; }
+  void request_exit();
+  XrFrameState wait_frame();
+  void begin_frame();
+  /// Shows the pictures drawn, or nothing where `views` is empty.
+  void end_frame(const XrFrameState&, const std::vector<XrView>& views);
+  /// Both eyes in the scene's space; empty where they are not known.
+  std::vector<XrView> views(XrTime) const;
+
+  const Instance& instance() const { return xr_; }
+  XrSession handle() const { return session_; }
+  XrSpace space() const { return space_; }
+  const char* space_name() const { return space_name_; }
+  VkFormat format() const { return format_; }
+  VkExtent2D extent() const { return extent_; }
+  const std::array<Eye, 2>& eyes() const { return eyes_; }
+  double refresh_rate_hz() const;  ///< the display's now; 0 where the runtime does not tell
+  /// "XR_FB_passthrough", "alpha blend" or "none".
+  const char* passthrough() const { return passthrough_name_; }
+  const char* performance_level() const { return performance_; }  ///< "sustained high" or "none"
+
+ private:
+  void create_session();
+  void create_space(const SessionOptions&);
+  void create_eyes();
+  void choose_blend_mode(bool passthrough);
+  void start_passthrough();
+  void request_rate(double rate_hz) const;
+  void request_performance();
+  void change(XrSessionState);
+  void release();
+
+  const Instance& xr_;
+  std::shared_ptr<vulkan::Device> device_;
+  const double rate_hz_;
+  XrSession session_ = XR_NULL_HANDLE;
+  XrSpace space_ = XR_NULL_HANDLE;
+  const char* space_name_ = "";
+  bool running_ = false, over_ = false;
+  VkFormat format_ = VK_FORMAT_UNDEFINED;
+  VkExtent2D extent_{};
+  std::array<Eye, 2> eyes_;
+  XrEnvironmentBlendMode blend_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+  XrPassthroughFB passthrough_ = XR_NULL_HANDLE;
+  XrPassthroughLayerFB layer_ = XR_NULL_HANDLE;
+  const char *passthrough_name_ = "none", *performance_ = "none";
+};
+
+}  // namespace clothbench::xr

@@ -1,0 +1,64 @@
+"""Live sessions on arm64 on the null runtime: by the command, and by the activity; what they recorded replays here."""
+import json
+
+from device import *
+
+try:
+    import h5py
+    import numpy as np
+except ImportError as e:
+    skip(str(e))
+if not HOST_COMMAND.exists():
+    skip(f"{HOST_COMMAND} is not built (set CLOTHBENCH_HOST_COMMAND)")
+RUNTIME = sys.argv[4]
+WORDS = ["xr", "paper/capsule-sweep", "--frames", "24", "--set", "cloth.grid=[9,7]", "--runtime", RUNTIME]
+TOLERANCE = 1e-6  # of the cloth's width, as for positions (check_positions.py)
+
+
+def environment(folder):
+    # Pictures are not asked for: Debian's lavapipe for arm64 crashes under qemu as soon as it draws, whatever it is.
+    return {**os.environ, "CLOTHBENCH_ASSETS": "procedural", "FAKE_ASSETS": str(BUILD / "packed-assets"),
+            "CLOTHBENCH_NULL_XR": f"clock=virtual,blind=1,log={folder}/runtime.json"}
+
+
+def told(folder, **expected):
+    log = json.loads((folder / "runtime.json").read_text())
+    assert log["faults"] == [], log
+    assert all(log[k] == v for k, v in expected.items()), (log, expected)
+    return log
+
+
+def replays(live, folder):
+    """The session's raw file becomes HDF5 here, and its scenario runs here to the same positions."""
+    must([HOST_COMMAND, "import", live])
+    with h5py.File(next(live.glob("*.h5"))) as f:
+        end, periods = f["xr/final_position_m"][:], f["xr/periods"][1:]
+    assert set(periods) == {1}, periods
+    must([HOST_COMMAND, "run", live / "scenario/scenario.json", "--trials", "0", "--out", folder / "replay"])
+    with h5py.File(next((folder / "replay").glob("*.h5"))) as f:
+        here = f["trajectory/position"][:]
+    difference = float(np.max(np.abs(here[-1] - end)))
+    assert np.max(np.abs(here[-1] - here[0])) > 1e-3, "nothing moved"
+    assert difference <= TOLERANCE, difference
+    return difference
+
+
+with Folder() as top:
+    folder = top / "command"
+    folder.mkdir()
+    text = must(qemu(BUILD / "clothbench", *WORDS, "--out", folder / "live"), env=environment(folder))
+    assert "24 frames: ok" in text, text
+    told(folder, rate_hz=72, android=False)
+    print(f"ok: the command; replayed here to {replays(folder / 'live', folder):.1e} of the width")
+
+    folder = top / "activity"
+    (folder / "files").mkdir(parents=True)
+    (folder / "internal").mkdir()
+    text = must(qemu(BUILD / "fake_host", BUILD / "libclothbench_quest.so", folder / "files", folder / "internal", " ".join(WORDS),
+                     "create", "resume", "finish", "pause", "destroy"), env=environment(folder), timeout=240)
+    result = [l for l in text.splitlines() if ": RESULT " in l][-1].split()
+    assert result[3] == "PASS", text
+    told(folder, android=True)
+    out = pathlib.Path(result[4])
+    assert out.parent == folder / "files/runs" and out.name.startswith("xr-"), out
+    print(f"ok: the activity; replayed here to {replays(out, folder):.1e} of the width")

@@ -1,0 +1,72 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "xr/frame_log.hpp"
+#include "xr/painter.hpp"
+
+namespace clothbench::xr {
+namespace {
+
+FrameLog log_of(const std::vector<double>& intervals_ms) {
+  FrameLog log;
+  double t = 0;
+  FrameRow row;
+  row.predicted_period_s = 0.010;
+  for (std::size_t k = 0; k <= intervals_ms.size(); ++k) {
+    row.predicted_display_s = t;
+    log.add(row);
+    if (k < intervals_ms.size()) t += 1e-3 * intervals_ms[k];
+  }
+  return log;
+}
+
+TEST(FrameLog, RatesAreTheirOwnKindEach) {
+  const auto s = log_of({10, 10, 10, 20, 30, 10, 10, 10, 10, 50}).summary();
+  EXPECT_EQ(s.at("xr_frames"), 11);
+  EXPECT_NEAR(s.at("xr_fps_mean"), 10 / 0.17, 1e-9);
+  EXPECT_NEAR(s.at("xr_fps_median"), 100, 1e-9);
+  EXPECT_NEAR(s.at("xr_fps_worst"), 20, 1e-9);
+  EXPECT_NEAR(s.at("xr_share_1_period"), 0.7, 1e-12);
+  EXPECT_NEAR(s.at("xr_share_2_periods"), 0.1, 1e-12);
+  EXPECT_NEAR(s.at("xr_share_3_periods"), 0.1, 1e-12);
+  EXPECT_NEAR(s.at("xr_share_more_periods"), 0.1, 1e-12);
+}
+
+TEST(FrameLog, ACounterThatComesLateIsMissingBefore) {
+  FrameLog log = log_of({10, 10});
+  log.add_counter("/a/b", "ms", 3);  // of the third frame
+  const StoredGroup g = log.group();
+  const auto& a = g.arrays.back();
+  EXPECT_EQ(a.name, "counter.a.b");
+  ASSERT_EQ(a.values.size(), 3u);
+  EXPECT_TRUE(std::isnan(a.values[1]));
+}
+
+/// A point seen by an eye lies where the field of view's tangents say.
+TEST(Views, AnEyesClipSpace) {
+  using render::operator*;
+  const XrFovf fov{-0.9f, 0.6f, 0.8f, -0.7f};
+  const float h = std::sqrt(0.5f);
+  const XrPosef pose{{0, h, 0, h}, {1, 2, 3}};  // turned left: it looks along -x
+  const Vec3 origin = {0.5, 0, 0};
+  const render::Mat4 m = projection_of(fov, 0.1, 50) * view_of(pose, origin);
+  const auto clip = [&](Vec3 p) {
+    std::array<double, 4> c{};
+    for (std::size_t row = 0; row < 4; ++row)
+      c[row] = m[row] * (p[0] - origin[0]) + m[4 + row] * (p[1] - origin[1]) + m[8 + row] * (p[2] - origin[2]) + m[12 + row];
+    return std::array<double, 3>{c[0] / c[3], c[1] / c[3], c[2] / c[3]};
+  };
+  const double d = 2;
+  const auto at = [&](double right, double up) { return Vec3{1 - d, 2 + d * up, 3 - d * right}; };  // its right is -z
+  const auto low_left = clip(at(std::tan(-0.9), std::tan(-0.7))), high_right = clip(at(std::tan(0.6), std::tan(0.8)));
+  EXPECT_NEAR(low_left[0], -1, 1e-6);
+  EXPECT_NEAR(low_left[1], 1, 1e-6) << "y is down";
+  EXPECT_NEAR(high_right[0], 1, 1e-6);
+  EXPECT_NEAR(high_right[1], -1, 1e-6);
+  EXPECT_NEAR(clip({1 - 0.1, 2, 3})[2], 0, 1e-5);
+  EXPECT_NEAR(clip({1 - 50, 2, 3})[2], 1, 1e-5);
+}
+
+}  // namespace
+}  // namespace clothbench::xr

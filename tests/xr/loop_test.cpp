@@ -1,0 +1,152 @@
+#include <chrono>
+#include <cmath>
+
+#include "sessions.hpp"
+#include "xr/instance.hpp"
+
+namespace clothbench::xr {
+namespace {
+
+TEST_F(Sessions, StepsAndShowsEveryFrame) {
+  LoopOptions o = options("paper/capsule-sweep", 30);
+  o.device.validation = true;
+  const LoopResult r = run(o, "clock=virtual,look=25");
+  ASSERT_EQ(r.log.rows().size(), 30u);
+  EXPECT_EQ(told_["android"], false);
+  EXPECT_EQ(told_["rate_hz"], 72.0) << "asked for, where the display began with 90";
+  EXPECT_EQ(told_["levels"], nlohmann::json({"CPU 50", "GPU 50"})) << "XR_PERF_SETTINGS_LEVEL_SUSTAINED_HIGH_EXT";
+  EXPECT_GE(told_["frames"].get<int>(), 30);
+  EXPECT_GE(told_["projection_frames"].get<int>(), 30);
+  EXPECT_EQ(told_["passthrough_frames"], told_["frames"]);
+  for (const auto& share : told_["drawn"]) {
+    EXPECT_GT(share.get<double>(), 0.05) << "the cloth is seen";
+    EXPECT_LT(share.get<double>(), 0.9) << "and the room beside it";
+  }
+  const std::vector<double> periods = r.log.periods();
+  EXPECT_TRUE(std::isnan(periods[0]));
+  for (std::size_t k = 0; k < r.log.rows().size(); ++k) {
+    const FrameRow& row = r.log.rows()[k];
+    if (k > 0) {
+      EXPECT_EQ(periods[k], 1) << k;
+      EXPECT_GT(row.paint_device_s, 0) << k;
+    }
+    EXPECT_NEAR(row.predicted_period_s, 1 / 72.0, 1e-9);
+    EXPECT_NEAR(row.predicted_display_s, static_cast<double>(k) * row.predicted_period_s, 1e-9);
+    for (const double s : {row.wait_s, row.begin_s, row.input_s, row.settle_s, row.step_s, row.step_device_s, row.paint_s, row.end_s})
+      EXPECT_GE(s, 0) << k;
+    EXPECT_GE(row.frame_s, row.step_s + row.paint_s);
+    EXPECT_EQ(row.shown, 1);
+    EXPECT_EQ(row.right_seen, 1);
+    EXPECT_TRUE(std::isnan(row.left_seen)) << "the scene has no left hand";
+  }
+  EXPECT_NEAR(r.summary.at("xr_fps_mean"), 72, 1e-4);
+  EXPECT_EQ(r.summary.at("xr_share_1_period"), 1);
+  const StoredGroup g = r.log.group();
+  int counters = 0;
+  for (const StoredArray& a : g.arrays) {
+    EXPECT_EQ(a.values.size(), 30u) << a.name;
+    if (a.name == "counter.perfmetrics_meta.app.gpu_frametime") {
+      ++counters;
+      EXPECT_EQ(a.units, "ms");
+      EXPECT_EQ(a.values.back(), 4.5);
+    }
+  }
+  EXPECT_EQ(counters, 1);
+}
+
+TEST_F(Sessions, TheDisplayPacesInRealTime) {
+  const auto start = std::chrono::steady_clock::now();
+  const LoopResult r = run(options("paper/capsule-sweep", 24), "clock=real,blind=1");
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_GE(wall, 23 / 72.0);
+  double waited = 0;
+  for (std::size_t k = 1; k < r.log.rows().size(); ++k) {
+    const double interval = r.log.rows()[k].predicted_display_s - r.log.rows()[k - 1].predicted_display_s;
+    EXPECT_NEAR(interval * 72, r.log.periods()[k], 1e-6) << "whole periods alone, however late a frame is";
+    EXPECT_GE(r.log.periods()[k], 1);
+    waited += r.log.rows()[k].wait_s;
+  }
+  EXPECT_GT(waited, 0);
+}
+
+/// A strict display shows a frame that took 20 ms after two periods, one that took 40 ms after three: 36 and 24 a second.
+TEST_F(Sessions, LateFramesAreDividedRates) {
+  const LoopResult r = run(options("paper/capsule-sweep", 40), "clock=virtual,blind=1,stalls=15:0.02;16:0.02;17:0.02;25:0.04");
+  int twice = 0, thrice = 0;
+  for (const double p : r.log.periods()) {
+    twice += p == 2 ? 1 : 0;
+    thrice += p == 3 ? 1 : 0;
+  }
+  EXPECT_EQ(twice, 3);
+  EXPECT_EQ(thrice, 1);
+  EXPECT_NEAR(r.summary.at("xr_share_2_periods"), 3 / 39.0, 1e-12);
+  EXPECT_NEAR(r.summary.at("xr_fps_median"), 72, 1e-4);
+  EXPECT_NEAR(r.summary.at("xr_fps_worst"), 24, 1e-4);
+  EXPECT_NEAR(r.summary.at("xr_fps_mean"), 72 * 39 / 44.0, 1e-4) << "the mean hides what the rest tells";
+}
+
+TEST_F(Sessions, WithoutAnyExtensionButVulkanTheScriptIsShown) {
+  LoopOptions o = options("paper/capsule-sweep", 12);
+  o.passthrough = false;
+  const LoopResult r = run(o, "clock=virtual,hands=0,capsules=0,mesh=0,room=0,passthrough=0,rate=0,levels=0,metrics=0,look=10");
+  EXPECT_EQ(r.log.rows().size(), 12u);
+  EXPECT_EQ(told_["rate_hz"], 90.0);
+  EXPECT_EQ(told_["passthrough_frames"], 0);
+  EXPECT_GT(told_["drawn"][0].get<double>(), 0.05);
+  const Scene saved = load_scene(r.scenario.string());
+  EXPECT_EQ(saved.time.frame_rate_hz, 90) << "by the frames' predicted period";
+  EXPECT_EQ(replayed(r, o), r.final_position_m);
+}
+
+TEST_F(Sessions, TheUserMayEndIt) {
+  const LoopOptions o = options("paper/capsule-sweep", 500);
+  const LoopResult r = run(o, "clock=virtual,blind=1,quit=40");
+  EXPECT_LT(r.log.rows().size(), 41u);
+  EXPECT_GT(r.log.rows().size(), 10u);
+  EXPECT_EQ(replayed(r, o), r.final_position_m);
+}
+
+TEST_F(Sessions, ACpuSolverIsUploaded) {
+  LoopOptions o = options("paper/gravity", 10);
+  o.entry = &find_solver("ballistic");
+  o.settings = complete_settings(o.entry->info, nlohmann::json::object());
+  const LoopResult r = run(o, "clock=virtual,look=10");
+  EXPECT_GT(told_["drawn"][1].get<double>(), 0.02);
+  EXPECT_EQ(replayed(r, o), r.final_position_m);
+}
+
+template <class Fn>
+std::string message_of(Fn fn, ExitCode code) {
+  try {
+    fn();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), code) << e.what();
+    return e.what();
+  }
+  ADD_FAILURE() << "no error";
+  return "";
+}
+
+TEST_F(Sessions, WhatIsMissingIsSaid) {
+  LoopOptions o = options("paper/capsule-sweep", 10);
+  o.runtime = "/no/such/runtime.so";
+  EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::NoDevice).find("/no/such/runtime.so"), std::string::npos);
+  o.runtime = "libm.so.6";
+  EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::NoDevice).find("no OpenXR runtime"), std::string::npos);
+  o = options("paper/capsule-sweep", 10);
+  setenv("CLOTHBENCH_NULL_XR", "clock=virtual,vulkan=0", 1);
+  EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::NoDevice).find("XR_KHR_vulkan_enable2"), std::string::npos);
+  setenv("CLOTHBENCH_NULL_XR", "clock=virtual,unseen=0:100000000", 1);
+  o.patience_s = 0.5;
+  EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::CheckFailed).find("no hand was seen"), std::string::npos);
+  setenv("CLOTHBENCH_NULL_XR", "clock=virtual", 1);
+  o.scenario = "validation/hang-mesh";
+  o.overrides = {};
+  EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::BadInput).find("/cloth/mesh"), std::string::npos);
+  o = options("paper/capsule-sweep", 10);
+  o.frames = 9000;
+  EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::BadInput).find("1 to 8640"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace clothbench::xr

@@ -1,0 +1,245 @@
+// Session, clock and composition.
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+#include <thread>
+
+#include "runtime.hpp"
+
+namespace null_xr {
+namespace {
+
+template <class T>
+XrResult list(const std::vector<T>& items, std::uint32_t capacity, std::uint32_t* count, T* out) {
+  *count = static_cast<std::uint32_t>(items.size());
+  if (capacity == 0) return XR_SUCCESS;
+  if (capacity < *count) return XR_ERROR_SIZE_INSUFFICIENT;
+  std::copy(items.begin(), items.end(), out);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL blend_modes(XrInstance, XrSystemId, XrViewConfigurationType, std::uint32_t capacity, std::uint32_t* count, XrEnvironmentBlendMode* out) {
+  return list<XrEnvironmentBlendMode>({XR_ENVIRONMENT_BLEND_MODE_OPAQUE}, capacity, count, out);
+}
+
+XrResult XRAPI_CALL reference_spaces(XrSession, std::uint32_t capacity, std::uint32_t* count, XrReferenceSpaceType* out) {
+  return list<XrReferenceSpaceType>({XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE}, capacity, count, out);
+}
+
+XrResult XRAPI_CALL configuration_views(XrInstance, XrSystemId, XrViewConfigurationType type, std::uint32_t capacity, std::uint32_t* count, XrViewConfigurationView* out) {
+  if (type != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO) return XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED;
+  const XrViewConfigurationView eye{XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, 64, 128, 72, 128, 1, 4};
+  return list<XrViewConfigurationView>({eye, eye}, capacity, count, out);
+}
+
+XrResult XRAPI_CALL begin_session(XrSession, const XrSessionBeginInfo*) {
+  Runtime& r = *runtime();
+  if (r.running) return r.fault("xrBeginSession: it runs", XR_ERROR_SESSION_RUNNING);
+  if (r.state != XR_SESSION_STATE_READY) return r.fault("xrBeginSession: not ready", XR_ERROR_SESSION_NOT_READY);
+  r.running = true;
+  for (const auto s : {XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED}) r.go(s);
+  return XR_SUCCESS;
+}
+
+void stop(Runtime& r) {
+  for (const auto s : {XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING}) r.go(s);
+}
+
+XrResult XRAPI_CALL request_exit(XrSession) {
+  Runtime& r = *runtime();
+  if (!r.running) return r.fault("xrRequestExitSession: it does not run", XR_ERROR_SESSION_NOT_RUNNING);
+  if (r.state != XR_SESSION_STATE_STOPPING) stop(r);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL end_session(XrSession) {
+  Runtime& r = *runtime();
+  if (r.state != XR_SESSION_STATE_STOPPING) return r.fault("xrEndSession: not stopping", XR_ERROR_SESSION_NOT_STOPPING);
+  r.running = false;
+  r.go(XR_SESSION_STATE_IDLE);
+  r.go(XR_SESSION_STATE_EXITING);
+  return XR_SUCCESS;
+}
+
+/// Seconds by which the application counts as late after this many frames.
+double stall_s(const Runtime& r, int frames) {
+  const auto found = r.options.find("stalls");
+  std::istringstream in(found == r.options.end() ? "" : found->second);
+  for (std::string item; std::getline(in, item, ';');) {
+    const auto colon = item.find(':');
+    if (colon != std::string::npos && std::stoi(item) == frames) return std::stod(item.substr(colon + 1));
+  }
+  return 0;
+}
+
+/// A strict display: a frame that took longer than a period is shown after as many whole ones as it took.
+XrResult XRAPI_CALL wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* out) {
+  Runtime& r = *runtime();
+  if (!r.running) return r.fault("xrWaitFrame: it does not run", XR_ERROR_SESSION_NOT_RUNNING);
+  if (r.waited) return r.fault("xrWaitFrame: the frame before was not begun", XR_ERROR_CALL_ORDER_INVALID);
+  if (r.frames == 4) r.rate_hz = r.next_rate_hz;  // not at once
+  const XrDuration period = r.period_ns();
+  XrDuration took = std::max<XrDuration>(r.end_ns - r.wake_ns, 1) + static_cast<XrDuration>(stall_s(r, r.ended) * 1e9);
+  if (const XrDuration late = r.now_ns() - r.wake_ns; late > took) took = late;
+  r.wake_ns += (took + period - 1) / period * period;
+  if (r.now_ns() < r.wake_ns)
+    std::this_thread::sleep_until(std::chrono::steady_clock::time_point(std::chrono::nanoseconds(r.wake_ns)));
+  r.waited = true;
+  ++r.frames;
+  out->predictedDisplayTime = r.wake_ns + 2 * period;
+  out->predictedDisplayPeriod = period;
+  const bool seen = r.state == XR_SESSION_STATE_VISIBLE || r.state == XR_SESSION_STATE_FOCUSED;
+  out->shouldRender = seen && r.number("blind", 0) == 0 ? XR_TRUE : XR_FALSE;
+  if (r.frames == static_cast<int>(r.number("quit", -1))) stop(r);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL begin_frame(XrSession, const XrFrameBeginInfo*) {
+  Runtime& r = *runtime();
+  if (!r.waited) return r.fault("xrBeginFrame: not waited for", XR_ERROR_CALL_ORDER_INVALID);
+  if (r.begun) r.faults.push_back("xrBeginFrame: the frame before was not ended");
+  r.waited = false;
+  r.begun = true;
+  return XR_SUCCESS;
+}
+
+XrResult judge_projection(Runtime& r, const XrCompositionLayerProjection& layer) {
+  ++r.projection_frames;
+  if (layer.viewCount != 2) return r.fault("xrEndFrame: a projection layer of other than 2 views", XR_ERROR_VALIDATION_FAILURE);
+  if (!r.spaces.contains(number_of(layer.space))) return r.fault("xrEndFrame: no such space", XR_ERROR_HANDLE_INVALID);
+  for (std::uint32_t k = 0; k < 2; ++k) {
+    const XrCompositionLayerProjectionView& v = layer.views[k];
+    const auto found = r.swapchains.find(number_of(v.subImage.swapchain));
+    if (found == r.swapchains.end()) return r.fault("xrEndFrame: no such swapchain", XR_ERROR_HANDLE_INVALID);
+    const Swapchain& images = *found->second;
+    if (images.acquired != ~0u || images.released == ~0u) return r.fault("xrEndFrame: an image was not released", XR_ERROR_LAYER_INVALID);
+    const auto& rect = v.subImage.imageRect;
+    if (rect.offset.x < 0 || rect.offset.y < 0 || rect.extent.width <= 0 || rect.extent.height <= 0 ||
+        rect.offset.x + rect.extent.width > static_cast<int>(images.extent.width) ||
+        rect.offset.y + rect.extent.height > static_cast<int>(images.extent.height))
+      return r.fault("xrEndFrame: a rectangle outside its image", XR_ERROR_SWAPCHAIN_RECT_INVALID);
+    if (r.frames == static_cast<int>(r.number("look", -1))) r.drawn[k] = drawn_share(r, images);
+  }
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
+  Runtime& r = *runtime();
+  if (!r.begun) return r.fault("xrEndFrame: not begun", XR_ERROR_CALL_ORDER_INVALID);
+  r.begun = false;
+  ++r.ended;
+  if (info->displayTime != r.wake_ns + 2 * r.period_ns()) return r.fault("xrEndFrame: another display time", XR_ERROR_TIME_INVALID);
+  for (std::uint32_t k = 0; k < info->layerCount; ++k) {
+    const XrCompositionLayerBaseHeader* layer = info->layers[k];
+    if (layer->type == XR_TYPE_COMPOSITION_LAYER_PASSTHROUGH_FB) {
+      if (k != 0 || !r.passthrough) return r.fault("xrEndFrame: a passthrough layer out of place", XR_ERROR_LAYER_INVALID);
+      ++r.passthrough_frames;
+    } else if (layer->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION) {
+      const XrResult result = judge_projection(r, *reinterpret_cast<const XrCompositionLayerProjection*>(layer));
+      if (XR_FAILED(result)) return result;
+    } else {
+      return r.fault("xrEndFrame: a layer of another kind", XR_ERROR_LAYER_INVALID);
+    }
+  }
+  r.end_ns = r.now_ns();
+  return XR_SUCCESS;
+}
+
+/// Two eyes 63 mm apart that look along -z from where the head was at first.
+XrResult XRAPI_CALL locate_views(XrSession, const XrViewLocateInfo* info, XrViewState* state, std::uint32_t capacity, std::uint32_t* count, XrView* out) {
+  Runtime& r = *runtime();
+  *count = 2;
+  if (capacity == 0) return XR_SUCCESS;
+  const auto base = r.spaces.find(number_of(info->space));
+  if (base == r.spaces.end()) return r.fault("xrLocateViews: no such space", XR_ERROR_HANDLE_INVALID);
+  state->viewStateFlags = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT;
+  for (int k = 0; k < 2; ++k) {
+    out[k].pose = as_xr(inverse(r.where(*base->second)) * Pose{{}, {k == 0 ? -0.0315 : 0.0315, 0, 0}});
+    const float outward = 0.94f, inward = 0.7f;  // rad
+    out[k].fov = {k == 0 ? -outward : -inward, k == 0 ? inward : outward, 0.83f, -0.84f};
+  }
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL get_rate(XrSession, float* rate) {
+  *rate = static_cast<float>(runtime()->rate_hz);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL request_rate(XrSession, float rate) {
+  for (const float there : {72.f, 80.f, 90.f, 120.f})
+    if (rate == there) {
+      runtime()->next_rate_hz = static_cast<double>(rate);
+      return XR_SUCCESS;
+    }
+  return XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB;
+}
+
+XrResult XRAPI_CALL set_level(XrSession, XrPerfSettingsDomainEXT domain, XrPerfSettingsLevelEXT level) {
+  runtime()->levels.insert((domain == XR_PERF_SETTINGS_DOMAIN_CPU_EXT ? "CPU " : "GPU ") + std::to_string(static_cast<int>(level)));
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL create_passthrough(XrSession, const XrPassthroughCreateInfoFB*, XrPassthroughFB* out) {
+  *out = handle<XrPassthroughFB>(3);
+  return XR_SUCCESS;
+}
+XrResult XRAPI_CALL create_passthrough_layer(XrSession, const XrPassthroughLayerCreateInfoFB*, XrPassthroughLayerFB* out) {
+  runtime()->passthrough = true;
+  *out = handle<XrPassthroughLayerFB>(4);
+  return XR_SUCCESS;
+}
+XrResult XRAPI_CALL destroy_passthrough(XrPassthroughFB) { return XR_SUCCESS; }
+XrResult XRAPI_CALL destroy_passthrough_layer(XrPassthroughLayerFB) {
+  runtime()->passthrough = false;
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL counter_paths(XrInstance, std::uint32_t capacity, std::uint32_t* count, XrPath* out) {
+  Runtime& r = *runtime();
+  return list<XrPath>({r.path("/perfmetrics_meta/app/gpu_frametime"), r.path("/perfmetrics_meta/compositor/dropped_frame_count")}, capacity, count, out);
+}
+XrResult XRAPI_CALL set_metrics(XrSession, const clothbench::xr::MetricsState* s) {
+  runtime()->metrics = s->enabled == XR_TRUE;
+  return XR_SUCCESS;
+}
+XrResult XRAPI_CALL query_counter(XrSession, XrPath path, clothbench::xr::MetricsCounter* c) {
+  Runtime& r = *runtime();
+  if (!r.metrics) return r.fault("a counter was asked for while they are off", XR_ERROR_VALIDATION_FAILURE);
+  const bool time = r.paths.at(path).ends_with("gpu_frametime");
+  c->flags = time ? clothbench::xr::kCounterFloatValid : clothbench::xr::kCounterUintValid;
+  c->unit = time ? 2 : 0;
+  c->float_value = 4.5f;
+  c->uint_value = static_cast<std::uint32_t>(r.ended);
+  return XR_SUCCESS;
+}
+
+}  // namespace
+
+PFN_xrVoidFunction frame_function(const std::string& name) {
+#define NULL_XR(text, function) \
+  if (name == text) return reinterpret_cast<PFN_xrVoidFunction>(function);
+  NULL_XR("xrEnumerateEnvironmentBlendModes", blend_modes)
+  NULL_XR("xrEnumerateReferenceSpaces", reference_spaces)
+  NULL_XR("xrEnumerateViewConfigurationViews", configuration_views)
+  NULL_XR("xrBeginSession", begin_session)
+  NULL_XR("xrRequestExitSession", request_exit)
+  NULL_XR("xrEndSession", end_session)
+  NULL_XR("xrWaitFrame", wait_frame)
+  NULL_XR("xrBeginFrame", begin_frame)
+  NULL_XR("xrEndFrame", end_frame)
+  NULL_XR("xrLocateViews", locate_views)
+  NULL_XR("xrGetDisplayRefreshRateFB", get_rate)
+  NULL_XR("xrRequestDisplayRefreshRateFB", request_rate)
+  NULL_XR("xrPerfSettingsSetPerformanceLevelEXT", set_level)
+  NULL_XR("xrCreatePassthroughFB", create_passthrough)
+  NULL_XR("xrDestroyPassthroughFB", destroy_passthrough)
+  NULL_XR("xrCreatePassthroughLayerFB", create_passthrough_layer)
+  NULL_XR("xrDestroyPassthroughLayerFB", destroy_passthrough_layer)
+  NULL_XR("xrEnumeratePerformanceMetricsCounterPathsMETA", counter_paths)
+  NULL_XR("xrSetPerformanceMetricsStateMETA", set_metrics)
+  NULL_XR("xrQueryPerformanceMetricsCounterMETA", query_counter)
+  return nullptr;
+}
+
+}  // namespace null_xr

@@ -1,0 +1,260 @@
+// Vulkan: instance, device, swapchains, and a look at what was drawn.
+#include <cstring>
+
+#include "runtime.hpp"
+
+namespace null_xr {
+namespace {
+
+XrResult XRAPI_CALL requirements(XrInstance, XrSystemId, XrGraphicsRequirementsVulkan2KHR* out) {
+  out->minApiVersionSupported = XR_MAKE_VERSION(1, 0, 0);
+  out->maxApiVersionSupported = XR_MAKE_VERSION(1, 3, 0);
+  return XR_SUCCESS;
+}
+
+template <class Function>
+Function vulkan(PFN_vkGetInstanceProcAddr get, VkInstance instance, const char* name) {
+  return reinterpret_cast<Function>(get(instance, name));
+}
+
+XrResult XRAPI_CALL create_vulkan_instance(XrInstance, const XrVulkanInstanceCreateInfoKHR* info, VkInstance* out, VkResult* result) {
+  const auto create = vulkan<PFN_vkCreateInstance>(info->pfnGetInstanceProcAddr, nullptr, "vkCreateInstance");
+  *result = create(info->vulkanCreateInfo, info->vulkanAllocator, out);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL graphics_device(XrInstance, const XrVulkanGraphicsDeviceGetInfoKHR* info, VkPhysicalDevice* out) {
+  std::uint32_t count = 1;
+  const VkResult result = vkEnumeratePhysicalDevices(info->vulkanInstance, &count, out);
+  return (result == VK_SUCCESS || result == VK_INCOMPLETE) && count == 1 ? XR_SUCCESS : XR_ERROR_GRAPHICS_DEVICE_INVALID;
+}
+
+XrResult XRAPI_CALL create_vulkan_device(XrInstance, const XrVulkanDeviceCreateInfoKHR* info, VkDevice* out, VkResult* result) {
+  *result = vkCreateDevice(info->vulkanPhysicalDevice, info->vulkanCreateInfo, info->vulkanAllocator, out);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL create_session(XrInstance, const XrSessionCreateInfo* info, XrSession* out) {
+  Runtime& r = *runtime();
+  const auto* binding = static_cast<const XrGraphicsBindingVulkan2KHR*>(info->next);
+  if (binding == nullptr || binding->type != XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR || binding->device == VK_NULL_HANDLE)
+    return r.fault("xrCreateSession: no Vulkan", XR_ERROR_GRAPHICS_DEVICE_INVALID);
+  r.physical = binding->physicalDevice;
+  r.device = binding->device;
+  r.family = binding->queueFamilyIndex;
+  vkGetDeviceQueue(r.device, binding->queueFamilyIndex, binding->queueIndex, &r.queue);
+  r.session = true;
+  r.go(XR_SESSION_STATE_IDLE);
+  r.go(XR_SESSION_STATE_READY);
+  *out = handle<XrSession>(2);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL destroy_session(XrSession) {
+  runtime()->session = false;
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL formats(XrSession, std::uint32_t capacity, std::uint32_t* count, std::int64_t* out) {
+  *count = 2;
+  if (capacity == 0) return XR_SUCCESS;
+  out[0] = VK_FORMAT_R16G16B16A16_SFLOAT;
+  out[1] = VK_FORMAT_R8G8B8A8_SRGB;
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL create_swapchain(XrSession, const XrSwapchainCreateInfo* info, XrSwapchain* out) {
+  Runtime& r = *runtime();
+  auto made = std::make_unique<Swapchain>();
+  made->extent = {info->width, info->height};
+  VkPhysicalDeviceMemoryProperties types{};
+  vkGetPhysicalDeviceMemoryProperties(r.physical, &types);
+  for (int k = 0; k < 3; ++k) {
+    VkImageCreateInfo image{};
+    image.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    image.imageType = VK_IMAGE_TYPE_2D;
+    image.format = static_cast<VkFormat>(info->format);
+    image.extent = {info->width, info->height, 1};
+    image.mipLevels = image.arrayLayers = 1;
+    image.samples = VK_SAMPLE_COUNT_1_BIT;
+    image.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    VkImage handle_of_image = VK_NULL_HANDLE;
+    if (vkCreateImage(r.device, &image, nullptr, &handle_of_image) != VK_SUCCESS) return XR_ERROR_OUT_OF_MEMORY;
+    VkMemoryRequirements needs{};
+    vkGetImageMemoryRequirements(r.device, handle_of_image, &needs);
+    VkMemoryAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocate.allocationSize = needs.size;
+    while ((needs.memoryTypeBits >> allocate.memoryTypeIndex & 1u) == 0) ++allocate.memoryTypeIndex;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    if (vkAllocateMemory(r.device, &allocate, nullptr, &memory) != VK_SUCCESS) return XR_ERROR_OUT_OF_MEMORY;
+    vkBindImageMemory(r.device, handle_of_image, memory, 0);
+    made->images.push_back(handle_of_image);
+    made->memory.push_back(memory);
+  }
+  *out = handle<XrSwapchain>(++r.handles);
+  r.swapchains[r.handles] = std::move(made);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL destroy_swapchain(XrSwapchain s) {
+  Runtime& r = *runtime();
+  const auto found = r.swapchains.find(number_of(s));
+  if (found == r.swapchains.end()) return r.fault("xrDestroySwapchain: no such swapchain", XR_ERROR_HANDLE_INVALID);
+  destroy(r, *found->second);
+  r.swapchains.erase(found);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL swapchain_images(XrSwapchain s, std::uint32_t capacity, std::uint32_t* count, XrSwapchainImageBaseHeader* out) {
+  const Swapchain& c = *runtime()->swapchains.at(number_of(s));
+  *count = static_cast<std::uint32_t>(c.images.size());
+  if (capacity == 0) return XR_SUCCESS;
+  for (std::size_t k = 0; k < c.images.size(); ++k) reinterpret_cast<XrSwapchainImageVulkan2KHR*>(out)[k].image = c.images[k];
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL acquire(XrSwapchain s, const XrSwapchainImageAcquireInfo*, std::uint32_t* index) {
+  Runtime& r = *runtime();
+  Swapchain& c = *r.swapchains.at(number_of(s));
+  if (c.acquired != ~0u) return r.fault("xrAcquireSwapchainImage: one is out already", XR_ERROR_CALL_ORDER_INVALID);
+  *index = c.acquired = c.next;
+  c.next = (c.next + 1) % static_cast<std::uint32_t>(c.images.size());
+  c.waited = false;
+  return XR_SUCCESS;
+}
+XrResult XRAPI_CALL wait_image(XrSwapchain s, const XrSwapchainImageWaitInfo*) {
+  Runtime& r = *runtime();
+  Swapchain& c = *r.swapchains.at(number_of(s));
+  if (c.acquired == ~0u) return r.fault("xrWaitSwapchainImage: none is out", XR_ERROR_CALL_ORDER_INVALID);
+  c.waited = true;
+  return XR_SUCCESS;
+}
+XrResult XRAPI_CALL release_image(XrSwapchain s, const XrSwapchainImageReleaseInfo*) {
+  Runtime& r = *runtime();
+  Swapchain& c = *r.swapchains.at(number_of(s));
+  if (c.acquired == ~0u || !c.waited) return r.fault("xrReleaseSwapchainImage: none was waited for", XR_ERROR_CALL_ORDER_INVALID);
+  c.released = c.acquired;
+  c.acquired = ~0u;
+  return XR_SUCCESS;
+}
+
+/// A buffer that the host reads, and a way to fill it.
+struct Reader {
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  VkCommandPool pool = VK_NULL_HANDLE;
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+};
+
+Reader reader(const Runtime& r, VkDeviceSize bytes) {
+  Reader out;
+  VkBufferCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  info.size = bytes;
+  info.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  vkCreateBuffer(r.device, &info, nullptr, &out.buffer);
+  VkMemoryRequirements needs{};
+  vkGetBufferMemoryRequirements(r.device, out.buffer, &needs);
+  VkPhysicalDeviceMemoryProperties types{};
+  vkGetPhysicalDeviceMemoryProperties(r.physical, &types);
+  VkMemoryAllocateInfo allocate{};
+  allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  allocate.allocationSize = needs.size;
+  constexpr VkMemoryPropertyFlags kMapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  while ((needs.memoryTypeBits >> allocate.memoryTypeIndex & 1u) == 0 ||
+         (types.memoryTypes[allocate.memoryTypeIndex].propertyFlags & kMapped) != kMapped)
+    ++allocate.memoryTypeIndex;
+  vkAllocateMemory(r.device, &allocate, nullptr, &out.memory);
+  vkBindBufferMemory(r.device, out.buffer, out.memory, 0);
+  VkCommandPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  pool.queueFamilyIndex = r.family;
+  vkCreateCommandPool(r.device, &pool, nullptr, &out.pool);
+  VkCommandBufferAllocateInfo commands{};
+  commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  commands.commandPool = out.pool;
+  commands.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  commands.commandBufferCount = 1;
+  vkAllocateCommandBuffers(r.device, &commands, &out.commands);
+  return out;
+}
+
+void copy(const Runtime& r, const Reader& to, VkImage image, VkExtent2D extent) {
+  VkCommandBufferBeginInfo begin{};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  vkBeginCommandBuffer(to.commands, &begin);
+  VkImageMemoryBarrier b{};
+  b.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
+  b.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+  b.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
+  b.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;  // as the application has to leave it
+  b.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+  b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  b.image = image;
+  b.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  vkCmdPipelineBarrier(to.commands, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1, &b);
+  VkBufferImageCopy region{};
+  region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.imageExtent = {extent.width, extent.height, 1};
+  vkCmdCopyImageToBuffer(to.commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.buffer, 1, &region);
+  VkMemoryBarrier host{};
+  host.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+  host.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+  host.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
+  vkCmdPipelineBarrier(to.commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &host, 0, nullptr, 0, nullptr);
+  vkEndCommandBuffer(to.commands);
+  VkSubmitInfo submit{};
+  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  submit.commandBufferCount = 1;
+  submit.pCommandBuffers = &to.commands;
+  vkQueueSubmit(r.queue, 1, &submit, VK_NULL_HANDLE);
+  vkQueueWaitIdle(r.queue);
+}
+
+}  // namespace
+
+double drawn_share(Runtime& r, const Swapchain& c) {
+  const std::size_t pixels = static_cast<std::size_t>(c.extent.width) * c.extent.height;
+  const Reader to = reader(r, 4 * pixels);
+  copy(r, to, c.images.at(c.released), c.extent);
+  void* mapped = nullptr;
+  vkMapMemory(r.device, to.memory, 0, VK_WHOLE_SIZE, 0, &mapped);
+  const auto* rgba = static_cast<const std::uint8_t*>(mapped);
+  std::size_t drawn = 0;
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const std::uint8_t* c4 = rgba + 4 * p;
+    const bool white = c4[0] == 255 && c4[1] == 255 && c4[2] == 255;
+    drawn += !white && c4[3] != 0 ? 1 : 0;
+  }
+  vkDestroyBuffer(r.device, to.buffer, nullptr);
+  vkFreeMemory(r.device, to.memory, nullptr);
+  vkDestroyCommandPool(r.device, to.pool, nullptr);
+  return static_cast<double>(drawn) / static_cast<double>(pixels);
+}
+
+void destroy(Runtime& r, Swapchain& c) {
+  for (const VkImage image : c.images) vkDestroyImage(r.device, image, nullptr);
+  for (const VkDeviceMemory memory : c.memory) vkFreeMemory(r.device, memory, nullptr);
+}
+
+PFN_xrVoidFunction graphics_function(const std::string& name) {
+#define NULL_XR(text, function) \
+  if (name == text) return reinterpret_cast<PFN_xrVoidFunction>(function);
+  NULL_XR("xrGetVulkanGraphicsRequirements2KHR", requirements)
+  NULL_XR("xrCreateVulkanInstanceKHR", create_vulkan_instance)
+  NULL_XR("xrGetVulkanGraphicsDevice2KHR", graphics_device)
+  NULL_XR("xrCreateVulkanDeviceKHR", create_vulkan_device)
+  NULL_XR("xrCreateSession", create_session)
+  NULL_XR("xrDestroySession", destroy_session)
+  NULL_XR("xrEnumerateSwapchainFormats", formats)
+  NULL_XR("xrCreateSwapchain", create_swapchain)
+  NULL_XR("xrDestroySwapchain", destroy_swapchain)
+  NULL_XR("xrEnumerateSwapchainImages", swapchain_images)
+  NULL_XR("xrAcquireSwapchainImage", acquire)
+  NULL_XR("xrWaitSwapchainImage", wait_image)
+  NULL_XR("xrReleaseSwapchainImage", release_image)
+  return nullptr;
+}
+
+}  // namespace null_xr

@@ -1,0 +1,220 @@
+#include "runtime.hpp"
+
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace null_xr {
+namespace {
+
+namespace cb = clothbench::xr;
+
+std::unique_ptr<Runtime>& held() {
+  static std::unique_ptr<Runtime> r;
+  return r;
+}
+
+struct Offer {
+  const char *extension, *key;
+};
+constexpr Offer kOffers[] = {{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, "vulkan"},
+                             {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, "rate"},
+                             {XR_EXT_PERFORMANCE_SETTINGS_EXTENSION_NAME, "levels"},
+                             {XR_FB_PASSTHROUGH_EXTENSION_NAME, "passthrough"},
+                             {XR_EXT_HAND_TRACKING_EXTENSION_NAME, "hands"},
+                             {XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME, "capsules"},
+                             {XR_FB_HAND_TRACKING_MESH_EXTENSION_NAME, "mesh"},
+                             {cb::kSpatialEntity, "room"},
+                             {cb::kSpatialEntityQuery, "room"},
+                             {cb::kSpatialEntityMesh, "room"},
+                             {cb::kPerformanceMetrics, "metrics"},
+                             {"XR_KHR_android_create_instance", "android"}};
+
+XrResult XRAPI_CALL enumerate_extensions(const char* layer, std::uint32_t capacity, std::uint32_t* count, XrExtensionProperties* out) {
+  if (layer != nullptr) return XR_ERROR_API_LAYER_NOT_PRESENT;
+  const Runtime options;  // an instance need not be there
+  std::vector<const char*> names;
+  for (const Offer& o : kOffers)
+    if (options.offers(o.key)) names.push_back(o.extension);
+  *count = static_cast<std::uint32_t>(names.size());
+  if (capacity == 0) return XR_SUCCESS;
+  if (capacity < *count) return XR_ERROR_SIZE_INSUFFICIENT;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    std::strcpy(out[k].extensionName, names[k]);
+    out[k].extensionVersion = 1;
+  }
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info, XrInstance* out) {
+  if (runtime() != nullptr) return XR_ERROR_LIMIT_REACHED;
+  auto made = std::make_unique<Runtime>();
+  for (std::uint32_t k = 0; k < info->enabledExtensionCount; ++k) {
+    bool known = false;
+    for (const Offer& o : kOffers) known = known || (std::strcmp(o.extension, info->enabledExtensionNames[k]) == 0 && made->offers(o.key));
+    if (!known) return XR_ERROR_EXTENSION_NOT_PRESENT;
+  }
+  // Of an activity, what XR_KHR_android_create_instance demands.
+  const auto* android = static_cast<const cb::AndroidInfo*>(info->next);
+  if (android != nullptr && (android->type != cb::kTypeInstanceCreateAndroid || android->vm == nullptr || android->activity == nullptr))
+    return XR_ERROR_VALIDATION_FAILURE;
+  made->android = android != nullptr;
+  set_runtime(std::move(made));
+  *out = handle<XrInstance>(1);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL destroy_instance(XrInstance) {
+  Runtime& r = *runtime();
+  if (r.session) r.faults.push_back("the instance is destroyed before the session");
+  if (!r.spaces.empty()) r.faults.push_back("spaces are left");
+  if (!r.swapchains.empty()) r.faults.push_back("swapchains are left");
+  if (r.trackers != 0) r.faults.push_back("hand trackers are left");
+  const auto log = r.options.find("log");
+  if (log != r.options.end()) {
+    const nlohmann::json j = {{"frames", r.ended},           {"rate_hz", r.rate_hz},
+                              {"levels", r.levels},          {"passthrough_frames", r.passthrough_frames},
+                              {"projection_frames", r.projection_frames}, {"drawn", r.drawn}, {"android", r.android},
+                              {"faults", r.faults}};
+    std::ofstream(log->second) << j.dump(1) << "\n";
+  }
+  set_runtime(nullptr);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL instance_properties(XrInstance, XrInstanceProperties* p) {
+  std::strcpy(p->runtimeName, "clothbench null runtime");
+  p->runtimeVersion = XR_MAKE_VERSION(1, 0, 0);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL poll_event(XrInstance, XrEventDataBuffer* out) {
+  Runtime& r = *runtime();
+  if (r.events.empty()) return XR_EVENT_UNAVAILABLE;
+  *out = r.events.front();
+  r.events.pop_front();
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL result_to_string(XrInstance, XrResult result, char* text) {
+  std::snprintf(text, XR_MAX_RESULT_STRING_SIZE, "XrResult %d", static_cast<int>(result));
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL get_system(XrInstance, const XrSystemGetInfo* info, XrSystemId* id) {
+  if (info->formFactor != XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY) return XR_ERROR_FORM_FACTOR_UNSUPPORTED;
+  *id = 7;
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL system_properties(XrInstance, XrSystemId, XrSystemProperties* p) {
+  std::strcpy(p->systemName, "null headset");
+  for (auto* next = static_cast<XrBaseOutStructure*>(p->next); next != nullptr; next = next->next)
+    if (next->type == XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT)
+      reinterpret_cast<XrSystemHandTrackingPropertiesEXT*>(next)->supportsHandTracking = XR_TRUE;
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL string_to_path(XrInstance, const char* text, XrPath* path) {
+  *path = runtime()->path(text);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL path_to_string(XrInstance, XrPath path, std::uint32_t capacity, std::uint32_t* count, char* text) {
+  const auto found = runtime()->paths.find(path);
+  if (found == runtime()->paths.end()) return XR_ERROR_PATH_INVALID;
+  *count = static_cast<std::uint32_t>(found->second.size()) + 1;
+  if (capacity >= *count) std::strcpy(text, found->second.c_str());
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL get_instance_proc_addr(XrInstance, const char* name, PFN_xrVoidFunction* out) {
+  const std::map<std::string, PFN_xrVoidFunction> own = {
+#define NULL_XR(name, function) {name, reinterpret_cast<PFN_xrVoidFunction>(function)}
+      NULL_XR("xrGetInstanceProcAddr", get_instance_proc_addr), NULL_XR("xrEnumerateInstanceExtensionProperties", enumerate_extensions),
+      NULL_XR("xrCreateInstance", create_instance), NULL_XR("xrDestroyInstance", destroy_instance),
+      NULL_XR("xrGetInstanceProperties", instance_properties), NULL_XR("xrPollEvent", poll_event),
+      NULL_XR("xrResultToString", result_to_string), NULL_XR("xrGetSystem", get_system),
+      NULL_XR("xrGetSystemProperties", system_properties), NULL_XR("xrStringToPath", string_to_path),
+      NULL_XR("xrPathToString", path_to_string)};
+  const auto found = own.find(name);
+  *out = found != own.end() ? found->second : nullptr;
+  for (const auto find : {frame_function, input_function, graphics_function})
+    if (*out == nullptr) *out = find(name);
+  return *out != nullptr ? XR_SUCCESS : XR_ERROR_FUNCTION_UNSUPPORTED;
+}
+
+}  // namespace
+
+Runtime* runtime() { return held().get(); }
+void set_runtime(std::unique_ptr<Runtime> r) { held() = std::move(r); }
+
+Runtime::Runtime() {
+  const char* text = std::getenv("CLOTHBENCH_NULL_XR");
+  std::istringstream in(text != nullptr ? text : "");
+  for (std::string item; std::getline(in, item, ',');) {
+    const auto eq = item.find('=');
+    if (eq != std::string::npos) options[item.substr(0, eq)] = item.substr(eq + 1);
+  }
+  begin_ns = wake_ns = end_ns = now_ns();
+}
+
+Runtime::~Runtime() = default;
+
+double Runtime::number(const std::string& key, double otherwise) const {
+  const auto found = options.find(key);
+  return found == options.end() ? otherwise : std::strtod(found->second.c_str(), nullptr);
+}
+
+XrTime Runtime::now_ns() const {
+  const auto clock = options.find("clock");
+  if (clock != options.end() && clock->second == "virtual") return wake_ns != 0 ? wake_ns : 1'000'000'000;
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void Runtime::go(XrSessionState to) {
+  state = to;
+  XrEventDataBuffer event{};
+  auto& changed = reinterpret_cast<XrEventDataSessionStateChanged&>(event);
+  changed.type = XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED;
+  changed.session = handle<XrSession>(2);
+  changed.state = to;
+  events.push_back(event);
+}
+
+XrPath Runtime::path(const std::string& text) {
+  for (const auto& [number, known] : paths)
+    if (known == text) return number;
+  const XrPath next = paths.size() + 1;
+  paths[next] = text;
+  return next;
+}
+
+Pose Runtime::where(const Space& s) const {
+  const Pose stage{{}, {0, -kEyeHeight_m, 0}};
+  if (s.kind == Space::Kind::Aim) return stage * aim_at(frames);
+  if (s.kind == Space::Kind::Room) return stage * room_pose();
+  return s.pose;
+}
+
+XrPosef as_xr(const Pose& p) {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  return {{f(p.q.x), f(p.q.y), f(p.q.z), f(p.q.w)}, {f(p.p.x), f(p.p.y), f(p.p.z)}};
+}
+
+Pose from_xr(const XrPosef& p) {
+  return {{p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w}, {p.position.x, p.position.y, p.position.z}};
+}
+
+}  // namespace null_xr
+
+extern "C" __attribute__((visibility("default"))) XrResult xrNegotiateLoaderRuntimeInterface(
+    const clothbench::xr::NegotiateLoaderInfo* loader, clothbench::xr::NegotiateRuntimeRequest* request) {
+  if (loader->min_interface > 1 || loader->max_interface < 1) return XR_ERROR_INITIALIZATION_FAILED;
+  request->interface_version = 1;
+  request->api_version = XR_MAKE_VERSION(1, 0, 20);
+  request->get_instance_proc_addr = null_xr::get_instance_proc_addr;
+  return XR_SUCCESS;
+}

@@ -1,0 +1,110 @@
+#pragma once
+#include <array>
+#include <chrono>
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "script.hpp"
+#include "xr/openxr.hpp"
+
+/// An OpenXR runtime without a headset: a clock, a script instead of a user, real Vulkan images, and a strict eye on what it is asked.
+/// $CLOTHBENCH_NULL_XR is a list of `key=value`, parted by commas:
+///   clock=virtual  time is that of the frames alone; else the machine's
+///   stalls=20:0.02;40:0.03   after so many frames the application counts as so many seconds late
+///   hands|capsules|mesh|room|passthrough|rate|metrics=0   leaves an extension out
+///   unseen=10:20   hands are not seen from the 10th frame up to the 20th
+///   blind=1        asks for no pictures, which take lavapipe most of the time
+///   quit=30        the user takes the headset off at that frame
+///   look=25        the pictures of that frame are read and judged
+///   log=FILE       what happened, as JSON, when the instance ends
+namespace null_xr {
+
+struct Space {
+  enum class Kind { Reference, Aim, Room } kind = Kind::Reference;
+  Pose pose;           ///< in the world (LOCAL), of a Reference
+  bool right = false;  ///< of an Aim
+};
+
+struct Swapchain {
+  VkExtent2D extent{};
+  std::vector<VkImage> images;
+  std::vector<VkDeviceMemory> memory;
+  std::uint32_t next = 0, acquired = ~0u, released = ~0u;
+  bool waited = false;
+};
+
+struct Runtime {
+  Runtime();
+  ~Runtime();
+  std::map<std::string, std::string> options;
+  double number(const std::string& key, double otherwise) const;
+  bool offers(const std::string& key) const { return number(key, 1) != 0; }
+
+  std::vector<std::string> faults;
+  XrResult fault(const std::string& what, XrResult result) {
+    faults.push_back(what);
+    return result;
+  }
+
+  // Session.
+  std::deque<XrEventDataBuffer> events;
+  XrSessionState state = XR_SESSION_STATE_UNKNOWN;
+  bool session = false, running = false;
+  void go(XrSessionState);
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;
+  std::uint32_t family = 0;
+
+  // Clock.
+  double rate_hz = 90, next_rate_hz = 90;
+  XrDuration period_ns() const { return static_cast<XrDuration>(1e9 / rate_hz + 0.5); }
+  XrTime now_ns() const;
+  XrTime begin_ns = 0, wake_ns = 0, end_ns = 0;
+  bool waited = false, begun = false;
+  int frames = 0, ended = 0;
+  double seconds(XrTime t) const { return static_cast<double>(t - begin_ns) * 1e-9; }
+
+  // What was asked for.
+  std::set<std::string> levels;
+  int passthrough_frames = 0, projection_frames = 0;
+  std::array<double, 2> drawn{-1, -1};
+  bool passthrough = false, metrics = false, android = false;
+
+  std::map<std::uint64_t, std::unique_ptr<Space>> spaces;
+  std::map<std::uint64_t, std::unique_ptr<Swapchain>> swapchains;
+  std::uint64_t handles = 1000;
+  std::map<XrPath, std::string> paths;
+  std::map<std::uint64_t, std::vector<std::string>> bindings;  ///< of the touch controller, by action
+  int synced_frame = 0;
+  int trackers = 0;
+
+  XrPath path(const std::string&);
+  Pose where(const Space&) const;  ///< in the world, now
+};
+
+Runtime* runtime();
+void set_runtime(std::unique_ptr<Runtime>);
+
+template <class Handle>
+Handle handle(std::uint64_t n) { return reinterpret_cast<Handle>(n); }
+template <class Handle>
+std::uint64_t number_of(Handle h) { return reinterpret_cast<std::uint64_t>(h); }
+
+XrPosef as_xr(const Pose&);
+Pose from_xr(const XrPosef&);
+
+/// A function of the file that has it; null if it has none of that name.
+PFN_xrVoidFunction frame_function(const std::string& name);
+PFN_xrVoidFunction input_function(const std::string& name);
+PFN_xrVoidFunction graphics_function(const std::string& name);
+
+/// Of the last released image: share of pixels that are neither white nor transparent.
+double drawn_share(Runtime&, const Swapchain&);
+void destroy(Runtime&, Swapchain&);
+
+}  // namespace null_xr

@@ -1,0 +1,131 @@
+#pragma once
+// What the null runtime's user does, as functions of time; tests compare what reached the solver with these.
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace null_xr {
+
+struct V {
+  double x = 0, y = 0, z = 0;
+};
+inline V operator+(V a, V b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline V operator-(V a, V b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline V operator*(double s, V a) { return {s * a.x, s * a.y, s * a.z}; }
+inline V cross(V a, V b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+inline double dot(V a, V b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/// x, y, z, w.
+struct Q {
+  double x = 0, y = 0, z = 0, w = 1;
+};
+inline Q operator*(Q a, Q b) {
+  return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+inline Q conjugate(Q q) { return {-q.x, -q.y, -q.z, q.w}; }
+inline V turned(Q q, V v) {
+  const V u{q.x, q.y, q.z};
+  return v + 2 * q.w * cross(u, v) + 2 * cross(u, cross(u, v));
+}
+
+struct Pose {
+  Q q;
+  V p;
+};
+inline Pose operator*(const Pose& a, const Pose& b) { return {a.q * b.q, a.p + turned(a.q, b.p)}; }
+inline Pose inverse(const Pose& a) { return {conjugate(a.q), turned(conjugate(a.q), -1 * a.p)}; }
+
+inline constexpr double kEyeHeight_m = 1.6;  ///< of LOCAL's origin over the floor
+
+/// Palm, in LOCAL: from the right (left hand: from the left) at 0.6 m/s, and 15 cm forward within half a second, through a plane 60 cm
+/// before the eyes.
+inline V palm_at(bool right, double t) {
+  const double x = 0.3 - 0.6 * t, forward = t < 0 ? 0 : t < 0.5 ? t / 0.5 : 1;
+  return {right ? x : -x, -0.15, -0.5 - 0.15 * forward};
+}
+
+inline constexpr double kJointRadius_m = 0.009, kCapsuleRadius_m = 0.011;
+
+/// Joints of OpenXR relative to the palm: fingers to +y, palm to -z.
+inline std::array<V, 26> joints(bool right) {
+  std::array<V, 26> j{};
+  j[1] = {0, -0.08, 0};
+  const V thumb[4] = {{-0.03, -0.05, 0}, {-0.05, -0.01, 0}, {-0.06, 0.02, 0}, {-0.065, 0.04, 0}};
+  for (int k = 0; k < 4; ++k) j[static_cast<std::size_t>(2 + k)] = thumb[k];
+  const double y[5] = {-0.05, 0.03, 0.06, 0.085, 0.1};
+  for (int finger = 0; finger < 4; ++finger)
+    for (int k = 0; k < 5; ++k) j[static_cast<std::size_t>(6 + 5 * finger + k)] = {-0.03 + 0.02 * finger, y[k], 0};
+  if (!right)
+    for (V& v : j) v.x = -v.x;
+  return j;
+}
+
+/// Of every joint: -z along the fingers, +y out of the hand's back.
+inline Q joint_turn() { return {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}; }
+
+/// Ends of the 19 capsules, as joints' numbers.
+inline std::array<std::array<int, 2>, 19> capsule_joints() {
+  std::array<std::array<int, 2>, 19> c{};
+  std::size_t n = 0;
+  for (int finger = 0; finger < 4; ++finger) c[n++] = {6 + 5 * finger, 7 + 5 * finger};
+  for (int k = 0; k < 3; ++k) c[n++] = {2 + k, 3 + k};
+  for (int finger = 0; finger < 4; ++finger)
+    for (int k = 0; k < 3; ++k) c[n++] = {7 + 5 * finger + k, 8 + 5 * finger + k};
+  return c;
+}
+
+/// A table of 1.2 x 0.75 x 0.7 m and a floor, above the floor's origin (STAGE).
+inline constexpr V kTableLow{-0.6, 0, -1.15}, kTableHigh{0.6, 0.75, -0.45};
+struct Mesh {
+  std::vector<V> vertices;
+  std::vector<unsigned> indices;
+};
+inline void add_face(Mesh& m, V corner, V along, V up, int n, int rows) {
+  const auto first = static_cast<unsigned>(m.vertices.size());
+  for (int j = 0; j <= rows; ++j)
+    for (int i = 0; i <= n; ++i) m.vertices.push_back(corner + (i / double(n)) * along + (j / double(rows)) * up);
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < n; ++i) {
+      const unsigned a = first + static_cast<unsigned>(j * (n + 1) + i), b = a + 1, c = a + static_cast<unsigned>(n) + 1;
+      for (const unsigned v : {a, b, c + 1, a, c + 1, c}) m.indices.push_back(v);
+    }
+}
+inline Mesh room() {
+  Mesh m;
+  const V l = kTableLow, h = kTableHigh, s = h - l;
+  add_face(m, {l.x, h.y, h.z}, {s.x, 0, 0}, {0, 0, -s.z}, 16, 10);    // top, seen from above
+  add_face(m, {l.x, l.y, h.z}, {s.x, 0, 0}, {0, s.y, 0}, 8, 6);       // towards the user
+  add_face(m, {h.x, l.y, h.z}, {0, 0, -s.z}, {0, s.y, 0}, 5, 6);
+  add_face(m, {h.x, l.y, l.z}, {-s.x, 0, 0}, {0, s.y, 0}, 8, 6);
+  add_face(m, {l.x, l.y, l.z}, {0, 0, s.z}, {0, s.y, 0}, 5, 6);
+  add_face(m, {-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, 12, 12);             // floor
+  return m;
+}
+/// Where the mesh's own frame is, in STAGE.
+inline Pose room_pose() { return {{0, std::sqrt(0.5), 0, std::sqrt(0.5)}, {0.4, 0.1, -0.2}}; }
+
+/// Frames at which A is down, and at which the trigger is.
+inline bool shows_room(int frame) { return frame >= 10 && frame < 13; }
+inline bool pulls(int frame) { return frame >= 20 && frame < 44 && frame % 4 < 2; }
+/// What the right controller points at, in STAGE: corners of the table's top, its middle, and the face towards the user.
+inline V target(int frame) {
+  const V l = kTableLow, h = kTableHigh;
+  const V points[6] = {{l.x + 0.05, h.y, h.z - 0.05}, {h.x - 0.05, h.y, h.z - 0.05}, {h.x - 0.05, h.y, l.z + 0.05},
+                       {l.x + 0.05, h.y, l.z + 0.05}, {0, h.y, (l.z + h.z) / 2},     {0.1, h.y - 0.1, h.z}};
+  const int k = frame < 20 ? 0 : (frame - 20) / 4;
+  return points[k > 5 ? 5 : k];
+}
+/// The right controller's aim, in STAGE: 1.4 m above the floor.
+inline Pose aim_at(int frame) {
+  const V from{0.2, 1.4, 0.1};
+  V d = target(frame) - from;
+  d = (1 / std::sqrt(dot(d, d))) * d;
+  // The turn that takes -z to d.
+  const V z{0, 0, -1}, axis = cross(z, d);
+  Q q{axis.x, axis.y, axis.z, 1 + dot(z, d)};
+  const double n = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  return {{q.x / n, q.y / n, q.z / n, q.w / n}, from};
+}
+
+}  // namespace null_xr

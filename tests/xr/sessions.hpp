@@ -1,0 +1,70 @@
+#pragma once
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "scenario/json_text.hpp"
+#include "scenario/load.hpp"
+#include "xr/loop.hpp"
+
+namespace clothbench::xr {
+
+/// Sessions on the null runtime, entered directly, in a folder that goes with the test.
+class Sessions : public ::testing::Test {
+ protected:
+  Sessions() : folder_(std::filesystem::temp_directory_path() / ("clothbench-xr-" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+    setenv("CLOTHBENCH_ASSETS", "procedural", 1);  // the same everywhere
+  }
+  ~Sessions() override {
+    std::error_code ec;
+    std::filesystem::remove_all(folder_, ec);
+  }
+
+  LoopOptions options(const std::string& scenario, int frames) const {
+    LoopOptions o;
+    o.scenario = scenario;
+    o.overrides = {"cloth.grid=[12,12]"};
+    o.entry = &find_solver("xpbd");
+    o.settings = complete_settings(o.entry->info, nlohmann::json::object());
+    o.runtime = CLOTHBENCH_NULL_RUNTIME;
+    o.frames = frames;
+    o.patience_s = 20;
+    o.out = folder_ / "out";
+    return o;
+  }
+
+  /// `script` as in tests/xr/null_runtime/runtime.hpp.
+  LoopResult run(const LoopOptions& o, const std::string& script) {
+    const std::string log = (folder_ / "runtime.json").string();
+    setenv("CLOTHBENCH_NULL_XR", (script + ",log=" + log).c_str(), 1);
+    LoopResult r = run_loop(o);
+    told_ = parse_json(read_text(log), log);
+    EXPECT_EQ(told_["faults"], nlohmann::json::array()) << "what a strict runtime complains of";
+    EXPECT_EQ(r.validation_messages, 0);
+    EXPECT_EQ(r.outcome.status, "ok") << r.outcome.message;
+    return r;
+  }
+
+  /// Positions after the whole of a scenario, run as on a desktop.
+  static std::vector<double> replayed(const LoopResult& live, const LoopOptions& o) {
+    const Scene scene = load_scene(live.scenario.string());
+    const auto solver = o.entry->make(o.settings, {});
+    solver->load(scene);
+    for (int k = 0; k < scene.time.frames(); ++k)
+      EXPECT_EQ(solver->step({k, scene.time.at(k + 1), scene.time.dt_after(k), scene.motion_after(k)}), StepStatus::Ok);
+    EXPECT_EQ(scene.time.frames(), static_cast<int>(live.log.rows().size()));
+    ClothState state;
+    solver->read_state(state);
+    return state.position;
+  }
+
+  std::filesystem::path folder_;
+  nlohmann::json told_;  ///< by the runtime, when its instance ended
+};
+
+}  // namespace clothbench::xr
