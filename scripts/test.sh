@@ -5,9 +5,12 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/budget.sh
 
-# Argument: whether files are compiled eight at a time, half the work of a first build and more than it for every later one.
+# Argument: whether files are compiled eight at a time, half the work of a first build and more than it for every later one; who asks for that
+# (CI) builds no slow test that it does not run.
 compile() {
-  cmake --preset ci -DCMAKE_UNITY_BUILD="$1" -DCMAKE_UNITY_BUILD_BATCH_SIZE=8 >build/configure.log 2>&1 || { tail -30 build/configure.log; return 1; }
+  local slow=ON
+  [ "$1" = OFF ] || [ ${#selection[@]} -eq 0 ] || slow=OFF
+  cmake --preset ci -DCLOTHBENCH_SLOW_TESTS=$slow -DCMAKE_UNITY_BUILD="$1" -DCMAKE_UNITY_BUILD_BATCH_SIZE=8 >build/configure.log 2>&1 || { tail -30 build/configure.log; return 1; }
   cmake --build --preset ci -j "${JOBS:-2}"
 }
 build() {
