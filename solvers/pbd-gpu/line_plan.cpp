@@ -172,8 +172,7 @@ LineShape frame_shape(int columns, int rows, const LineWish& wish, const LineDev
     LineShape s{std::bit_ceil((longest + k - 1) / k), k, 0, false};
     s.shuffles = s.lanes <= device.subgroup;
     if (s.shuffles) s.beside = wish.beside != 0 ? wish.beside : 1;
-  s.threads = std::max(s.threads, s.lanes * s.beside);
-  // Whole subgroups, so that threads number as their lanes do; and one for each row of bits of held vertices.
+    // Whole subgroups, so that threads number as their lanes do; and one for each row of bits of held vertices.
     const std::uint32_t whole = std::max(device.subgroup, 32u);
     s.threads = (s.lanes * longest + whole - 1) / whole * whole;
     const std::uint32_t state_B = 6 * 4 * 34 * static_cast<std::uint32_t>(rows) + 128;
