@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "clothbench/motion.hpp"
 #include "metrics/metric.hpp"
 
 namespace clothbench {
@@ -42,50 +43,6 @@ double moved(const AccuracyPass& pass, std::size_t vertices, std::size_t v, std:
               static_cast<double>(b[2]) - static_cast<double>(a[2]));
 }
 
-/// Greatest distance that a collider's points cover in a second, from frame to frame; a skinned mesh by some of its vertices.
-double collider_speed(const Scene& scene) {
-  constexpr std::size_t kLooked = 64;
-  double most = 0;
-  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
-    const Collider& c = scene.colliders[k];
-    if (!c.moves()) continue;
-    ColliderMesh some;
-    if (c.mesh)
-      for (std::size_t v = 0; v < c.mesh->vertex_count(); v += std::max<std::size_t>(1, c.mesh->vertex_count() / kLooked)) {
-        some.positions.insert(some.positions.end(), &c.mesh->positions[3 * v], &c.mesh->positions[3 * v] + 3);
-        some.joints.push_back(c.mesh->joints[v]);
-        some.weights.push_back(c.mesh->weights[v]);
-        some.joint_count = c.mesh->joint_count;
-      }
-    const auto points = [&](const ColliderPose& pose) {
-      if (c.mesh) return posed_positions(some, pose);
-      std::vector<double> x;
-      for (const Capsule& s : pose.capsules)
-        for (const Vec3& p : {s.a_m, s.b_m}) x.insert(x.end(), p.begin(), p.end());
-      return x;
-    };
-    for (std::size_t f = 1; f < scene.motion.size(); ++f) {
-      const std::vector<double> was = points(scene.motion[f - 1].colliders[k]), is = points(scene.motion[f].colliders[k]);
-      const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
-      for (std::size_t x = 0; x < is.size(); x += 3)
-        most = std::max(most, norm(is[x] - was[x], is[x + 1] - was[x + 1], is[x + 2] - was[x + 2]) / dt);
-    }
-  }
-  return most;
-}
-
-double grip_speed(const Scene& scene) {
-  double most = 0;
-  for (std::size_t f = 1; f < scene.motion.size(); ++f) {
-    const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
-    for (std::size_t g = 0; g < scene.motion[f].grip_position_m.size(); ++g) {
-      const Vec3 &a = scene.motion[f - 1].grip_position_m[g], &b = scene.motion[f].grip_position_m[g];
-      if (scene.motion[f].grip_held[g] != 0) most = std::max(most, norm(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / dt);
-    }
-  }
-  return most;
-}
-
 /// Popping: how far and how fast the cloth goes once a moving collider has left it (the paper's Fig. 8).
 void summarise_popping(const Scene& scene, const AccuracyPass& pass, std::map<std::string, double>& s) {
   const std::vector<double> *touching = find(pass, "touching_fraction"), *speed = find(pass, "speed_max");
@@ -106,7 +63,7 @@ void summarise_popping(const Scene& scene, const AccuracyPass& pass, std::map<st
   // cloth is long.
   const Vec3& g = scene.gravity_m_per_s2;
   const double fall = std::sqrt(2 * norm(g[0], g[1], g[2]) * std::max(scene.cloth.width_m, scene.cloth.height_m));
-  const double limit = std::max(2 * collider_speed(scene), fall);
+  const double limit = std::max(2 * collider_speed_m_per_s(scene), fall);
   s["pop_speed_ratio"] = limit > 0 ? s["pop_speed_m_per_s"] / limit : kMissing;
 }
 
@@ -229,7 +186,7 @@ double imposed_speed(const Scene& scene) {
       for (const auto& item : j[list])
         if (item.is_object()) told = std::max(told, item.value("speed_m_per_s", 0.0));
   if (told > 0) return told;
-  const double seen = std::max(collider_speed(scene), grip_speed(scene));
+  const double seen = std::max(collider_speed_m_per_s(scene), grip_speed_m_per_s(scene));
   const Vec3& v = scene.cloth.initial_velocity_m_per_s;
   return seen > 0 ? seen : norm(v[0], v[1], v[2]);
 }

@@ -24,6 +24,12 @@ constexpr double kLeastMargin = 0.01;
 /// off the middle of a cell, where there is no point that could feel it.
 constexpr double kBorder = 0.72;
 
+/// Cosine of the turn between two triangles from which on their edge is sharp: 37 degrees.
+constexpr double kFlat = 0.8;
+
+/// Half the thickness of a fingertip.
+constexpr double kFinger_m = 0.008;
+
 /// A bit for each word of clusters, in words.
 constexpr std::uint32_t blocks_of(std::size_t words) { return static_cast<std::uint32_t>((words + 31) / 32); }
 
@@ -58,8 +64,8 @@ void split(const std::vector<Vec3>& centroids, std::vector<std::uint32_t>::itera
 
 }  // namespace
 
-std::vector<std::uint32_t> border_edges(const std::vector<double>& positions,
-                                        const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+std::vector<std::uint32_t> edge_marks(const std::vector<double>& positions,
+                                      const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   // Scans and hands repeat vertices along seams of their textures: one place is one vertex.
   std::map<Vec3, std::uint32_t> places;
   std::vector<std::uint32_t> place;
@@ -71,24 +77,59 @@ std::vector<std::uint32_t> border_edges(const std::vector<double>& positions,
   const auto opposite = [&](const std::array<std::uint32_t, 3>& t, std::size_t k) {
     return std::minmax(place[t[(k + 1) % 3]], place[t[(k + 2) % 3]]);
   };
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> triangles_at;
+  const auto normal = [&](const std::array<std::uint32_t, 3>& t) {
+    const auto side = [&](std::size_t to, std::size_t k) { return positions[3 * t[to] + k] - positions[3 * t[0] + k]; };
+    const Vec3 n = {side(1, 1) * side(2, 2) - side(1, 2) * side(2, 1), side(1, 2) * side(2, 0) - side(1, 0) * side(2, 2),
+                    side(1, 0) * side(2, 1) - side(1, 1) * side(2, 0)};
+    const double l = std::hypot(n[0], n[1], n[2]);
+    return Vec3{n[0] / l, n[1] / l, n[2] / l};
+  };
+  struct Meeting {
+    int triangles = 0;
+    Vec3 normal{};
+    bool sharp = false;
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Meeting> meetings;
   for (const auto& t : triangles)
-    for (std::size_t k = 0; k < 3; ++k) ++triangles_at[opposite(t, k)];
+    for (std::size_t k = 0; k < 3; ++k) {
+      Meeting& m = meetings[opposite(t, k)];
+      const Vec3 n = normal(t);
+      // A triangle without area has no normal: sharp, to be safe.
+      if (m.triangles++ == 0)
+        m.normal = n;
+      else if (!(n[0] * m.normal[0] + n[1] * m.normal[1] + n[2] * m.normal[2] >= kFlat))
+        m.sharp = true;
+    }
   std::vector<std::uint32_t> bits(triangles.size(), 0);
   for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      if (triangles_at[opposite(triangles[t], k)] == 1) bits[t] |= 1u << k;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Meeting& m = meetings[opposite(triangles[t], k)];
+      if (m.triangles == 1) bits[t] |= 1u << k;
+      if (m.sharp) bits[t] |= 8u << k;
+    }
   return bits;
 }
 
-std::uint32_t samples_needed(const Scene& scene, std::uint32_t wanted) {
+std::uint32_t samples_needed(const Scene& scene, int wanted) {
   const double du = scene.cloth.du(), dv = scene.cloth.dv(), squared = du * du + dv * dv;
   const auto needed = [&](const Collider& c) {
     if (c.shape == Collider::Shape::Plane) return false;
     // Height over a chord of length l of a circle of radius r: l^2 / 8r, for l well below r; stretched by half, twice.
     return c.shape != Collider::Shape::Sphere || !(2 * squared / (8 * c.radius_m) <= c.margin_m);
   };
-  return std::any_of(scene.colliders.begin(), scene.colliders.end(), needed) ? wanted : 0;
+  if (std::none_of(scene.colliders.begin(), scene.colliders.end(), needed)) return 0;
+  if (wanted >= 0) return static_cast<std::uint32_t>(wanted);
+  double finger = std::numeric_limits<double>::infinity();
+  for (const Collider& c : scene.colliders) {
+    if (!c.moves()) continue;
+    if (c.mesh) finger = std::min(finger, kFinger_m + c.margin_m);
+    for (const Capsule& s : c.capsules) finger = std::min(finger, s.radius_m + c.margin_m);
+  }
+  // Of points a distance p apart, half a diagonal is the way to the nearest, and as much again where cloth is stretched.
+  const double hole = std::sqrt(2.0) * std::max(du, dv);
+  std::uint32_t samples = 1;
+  while (samples < 7 && hole / (samples + 1) > finger) samples = 2 * samples + 1;
+  return samples;
 }
 
 Clusters cluster(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
@@ -106,7 +147,7 @@ Clusters cluster(const std::vector<double>& positions, const std::vector<std::ar
 }
 
 XpbdContact::XpbdContact(GpuSolver& solver, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
-                         const Buffer& positions, const Buffer& velocities, std::uint32_t samples)
+                         const Buffer& positions, const Buffer& velocities, int samples)
     : solver_(solver),
       scene_(scene),
       colliders_(colliders),
@@ -114,7 +155,7 @@ XpbdContact::XpbdContact(GpuSolver& solver, const Scene& scene, Vec3 origin_m, c
       v_(velocities),
       samples_(samples_needed(scene, samples)) {
   if (samples == 0) solver_.leave_out("contact samples", "setting contact_samples=0");
-  if (samples_ < samples) solver_.leave_out("contact samples", "no edge of the cloth reaches between two vertices");
+  if (samples != 0 && samples_ == 0) solver_.leave_out("contact samples", "no edge of the cloth reaches between two vertices");
   const FeatureSet meshes = scene.needs & FeatureSet{Feature::StaticMesh, Feature::MovingMesh};
   if (meshes.empty())
     solver_.leave_out("BroadPhase", "the scene has no mesh to collide with");
@@ -161,7 +202,7 @@ void XpbdContact::add_meshes() {
       const std::vector<double> at =
           moving ? posed_positions(mesh, scene_.motion.at(0).colliders.at(range.collider)) : mesh.positions;
       const Clusters c = cluster(at, mesh.triangles);
-      const std::vector<std::uint32_t> borders = border_edges(at, mesh.triangles);
+      const std::vector<std::uint32_t> marks = edge_marks(at, mesh.triangles);
       std::size_t next = 0;
       for (const std::uint32_t size : c.sizes) {
         clusters.push_back({static_cast<uint>(triangles.size()), size, range.margin_m, range.friction});
@@ -170,7 +211,7 @@ void XpbdContact::add_meshes() {
         for (const std::size_t end = next + size; next < end; ++next) {
           const auto& t = mesh.triangles[c.triangles[next]];
           triangles.push_back({range.first_vertex + t[0], range.first_vertex + t[1], range.first_vertex + t[2],
-                               borders[c.triangles[next]]});
+                               marks[c.triangles[next]]});
           for (const std::uint32_t v : t)
             for (std::size_t k = 0; k < 3; ++k) {
               const auto x = static_cast<float>(at[3 * v + k] - colliders_.origin_m()[k]);
@@ -189,7 +230,7 @@ void XpbdContact::add_meshes() {
   boxes_ = &solver_.add_buffer("collider cluster boxes", boxes.size() * sizeof(ClusterBox), bytes_of(boxes));
   triangles_ = &solver_.add_buffer("collider triangles", triangles.size() * sizeof(uvec4), bytes_of(triangles));
   candidates_ = &solver_.add_buffer("contact candidates", n * (words + blocks_of(words)) * 4);
-  reaches_ = &solver_.add_buffer("contact reaches", n * sizeof(vec4));
+  reaches_ = &solver_.add_buffer("contact reaches", (n + 1) * sizeof(vec4));
 }
 
 void XpbdContact::add_kernels() {
@@ -284,7 +325,7 @@ void XpbdContact::record_frame(double dt_s, int substeps) {
                      {16 * moving + 112 * t, 32 * moving});
   const ContactConstants k = constants(dt_s, substeps);
   solver_.dispatch(stage_broad_, *find_candidates_, lanes_ * scene_.cloth.vertex_count(), k,
-                   {n * (32 + 16 * moving + 48 * all), n * (16 + 4.0 * (k.words + blocks_of(k.words)))});
+                   {n * (32 + 16 * moving + 48 * all), 16 + n * (16 + 4.0 * (k.words + blocks_of(k.words)))});
 }
 
 void XpbdContact::record_substep(int s, int substeps, double dt_s) {
@@ -295,7 +336,11 @@ void XpbdContact::record_substep(int s, int substeps, double dt_s) {
   // What is read and written whatever the cloth does; colliders that come near cost more.
   const double shapes = 32.0 * colliders_.planes.count + 32.0 * colliders_.spheres.count +
                         80.0 * colliders_.boxes.count + 64.0 * colliders_.capsules.count;
-  const double around = shapes + (clusters_ != nullptr ? 16 + 4.0 * blocks_of(k.words) : 0.0);
+  // Later in a frame only who came near something looks round again, or whoever does not know how far colliders go.
+  const bool meshes = clusters_ != nullptr, moving = !scene_.motion.empty();
+  const bool knows = !moving || (meshes && colliders_.capsules.count == 0);
+  const double look = s == 0 || !knows ? shapes + (meshes ? 4.0 * blocks_of(k.words) : 0.0) : 0.0;
+  const double around = look + (meshes ? 16 : 0.0) + (knows && moving ? 16 : 0.0);
   if (samples_ > 0) {
     Traffic t;
     for (std::size_t family = 0; family < 3; ++family)

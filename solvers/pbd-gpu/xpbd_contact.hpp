@@ -14,13 +14,15 @@ struct Clusters {
 };
 Clusters cluster(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
-/// A word a triangle: bit k is set if the edge opposite its corner k belongs to no other triangle.
-std::vector<std::uint32_t> border_edges(const std::vector<double>& positions,
-                                        const std::vector<std::array<std::uint32_t, 3>>& triangles);
+/// A word a triangle, of the edges opposite its corners k: bit k is set if the edge belongs to no other triangle, bit 3 + k if
+/// triangles meet there at an angle.
+std::vector<std::uint32_t> edge_marks(const std::vector<double>& positions,
+                                      const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
-/// `wanted` if the edges of the scene's cloth can pass into something between two vertices that are a margin away, else
-/// 0: nothing does into planes, and into a ball only an edge long enough for its height over the chord.
-std::uint32_t samples_needed(const Scene& scene, std::uint32_t wanted);
+/// Points on each edge: none if no edge of the scene's cloth can pass into something between two vertices that are a margin away
+/// (nothing does into planes, and into a ball only an edge long enough for its height over the chord), else `wanted`, or if that
+/// is negative 1, and 3 or 7 where fingers could come through between them.
+std::uint32_t samples_needed(const Scene& scene, int wanted);
 
 /// Contact of `xpbd` with what is in the scene. It works on positions, velocities and where the vertices were at the
 /// substep's start, and knows nothing of how constraints are solved: it comes last in a substep and has the last word.
@@ -30,7 +32,7 @@ class XpbdContact {
   /// Adds buffers, the stages BroadPhase (meshes only) and Contact, and their kernels. `positions` (.w = inverse mass)
   /// and `velocities` hold one vec4 a vertex, relative to `origin_m`.
   XpbdContact(GpuSolver& solver, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
-              const vulkan::Buffer& positions, const vulkan::Buffer& velocities, std::uint32_t samples);
+              const vulkan::Buffer& positions, const vulkan::Buffer& velocities, int samples);
 
   /// Start of a frame, after the colliders' own record().
   void record_frame(double dt_s, int substeps);

@@ -63,7 +63,7 @@ class Xpbd final : public GpuSolver {
       leave_out("contact", "the scene has no collider");
     else
       contact_ = std::make_unique<XpbdContact>(*this, scene(), origin, *colliders(), *x_, *v_,
-                                               settings()["contact_samples"].get<std::uint32_t>());
+                                               settings()["contact_samples"].get<int>());
   }
 
   /// What chains do not do: more iterations with multipliers kept, copies, bending, contact between the vertices of a mesh.
@@ -147,7 +147,7 @@ SolverInfo xpbd_info() {
       {"substeps", "0", "substeps a frame; 0: by quality"},
       {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
       {"batch", "1", "as many copies of the cloth in one dispatch (metrics are of the first): throughput"},
-      {"contact_samples", "1", "points on each edge that take part in contact beside its two vertices, 0 to 16"},
+      {"contact_samples", "-1", "points on each edge that take part in contact beside its two vertices, 0 to 16; -1: as colliders ask"},
       {"contact_lanes", "0", "threads that look round for one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
       {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
       {"one_dispatch", "true", "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
@@ -181,8 +181,8 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
     throw Error("solver xpbd: setting device_barrier: expected auto, always or never; found " + barrier.dump());
   if (!(settings["iterations"].get<double>() >= 1 && settings["iterations"].get<double>() <= 4096))
     throw Error("solver xpbd: setting iterations: expected 1 to 4096; found " + settings["iterations"].dump());
-  if (!(settings["contact_samples"].get<double>() >= 0 && settings["contact_samples"].get<double>() <= 16))
-    throw Error("solver xpbd: setting contact_samples: expected 0 to 16; found " + settings["contact_samples"].dump());
+  if (!(settings["contact_samples"].get<double>() >= -1 && settings["contact_samples"].get<double>() <= 16))
+    throw Error("solver xpbd: setting contact_samples: expected 0 to 16, or -1; found " + settings["contact_samples"].dump());
   const double lanes = settings["contact_lanes"].get<double>();
   if (lanes != 0 && lanes != 1 && lanes != 2 && lanes != 4 && lanes != 8 && lanes != 16)
     throw Error("solver xpbd: setting contact_lanes: expected 0, 1, 2, 4, 8 or 16; found " + settings["contact_lanes"].dump());

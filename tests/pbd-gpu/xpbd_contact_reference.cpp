@@ -55,7 +55,7 @@ ContactReference::ContactReference(const Scene& scene, int substeps, int samples
       sample_side_.push_back(mix(x[i], x[j], (k % samples + 1.0) / (samples + 1)));
     }
   for (const Collider& k : scene.colliders)
-    borders_.push_back(k.mesh ? border_edges(k.mesh->positions, k.mesh->triangles) : std::vector<std::uint32_t>());
+    marks_.push_back(k.mesh ? edge_marks(k.mesh->positions, k.mesh->triangles) : std::vector<std::uint32_t>());
   least_margin_ = 0.01 * std::min(c.du(), c.dv());
   border_margin_ = 0.72 * std::hypot(c.du(), c.dv()) / (samples + 1);
 }
@@ -106,9 +106,13 @@ void ContactReference::add_mesh(std::size_t index, const V& at, double now, std:
     }
     const V w = nearest_on_triangle(at, corner[0], corner[1], corner[2]);
     const V d = at - w[0] * corner[0] - w[1] * corner[1] - w[2] * corner[2];
-    double margin = c.margin_m;
-    for (int i = 0; i < 3; ++i)
-      if (w[i] == 0 && (borders_[index][k] >> i & 1) != 0) margin = std::max(margin, border_margin_);
+    bool border = false, sharp = false;
+    for (int i = 0; i < 3; ++i) {
+      border = border || (w[i] == 0 && (marks_[index][k] >> i & 1) != 0);
+      sharp = sharp || (w[i] == 0 && (marks_[index][k] >> (3 + i) & 1) != 0);
+    }
+    const double share = sampling_ && !c.moves() && !border && !sharp ? 0.5 : 1;
+    const double margin = border ? std::max(c.margin_m, border_margin_) : share * c.margin_m;
     all.push_back({d.norm(), d.normalized(), w[0] * way[0] + w[1] * way[1] + w[2] * way[2], margin, c.friction});
   }
 }
@@ -220,7 +224,9 @@ void ContactReference::substep(int s) {
     V from = sample_side_[k], velocity = mix(v[i], v[j], t);
     if (!((from - mix(side_[i], side_[j], t)).norm() < 0.5 * (side_[j] - side_[i]).norm())) from = side_[i];
     bool touched = false;
+    sampling_ = true;
     sample_side_[k] = advance(from, mix(x[i], x[j], t), begin, velocity, touched);
+    sampling_ = false;
     if (!touched) continue;
     const V way = sample_side_[k] - mix(x[i], x[j], t), gain = velocity - mix(v[i], v[j], t);
     const double share = w_[i] == 0 ? 1 / t : w_[j] == 0 ? 1 / (1 - t) : 1;

@@ -48,7 +48,8 @@ class ContactReference {
   std::vector<double> w_;
   std::vector<V> side_, sample_side_;
   std::vector<std::vector<double>> mesh_start_, mesh_end_;  // by collider
-  std::vector<std::vector<std::uint32_t>> borders_;
+  std::vector<std::vector<std::uint32_t>> marks_;
+  bool sampling_ = false;  // the point asked about is a sample
   double least_margin_, border_margin_;
 };
 

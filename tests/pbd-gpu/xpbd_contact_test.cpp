@@ -251,12 +251,14 @@ TEST(Clusters, HoldEveryTriangleOnceAndFewAtATime) {
   EXPECT_TRUE(cluster({}, {}).sizes.empty());
 }
 
-TEST(Borders, AreEdgesOfOneTriangleAlsoAcrossRepeatedVertices) {
+TEST(EdgeMarks, TellBordersAlsoAcrossRepeatedVerticesAndSharpEdges) {
   // Two triangles of a square; the second repeats the shared corners as vertices of its own.
   const std::vector<double> positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0};
-  EXPECT_EQ(border_edges(positions, {{0, 1, 2}, {3, 4, 5}}), (std::vector<std::uint32_t>{0b101, 0b011}));
+  EXPECT_EQ(edge_marks(positions, {{0, 1, 2}, {3, 4, 5}}), (std::vector<std::uint32_t>{0b101, 0b011}));
   const Collider closed = octahedron({0, 0, 0}, 1, false);
-  EXPECT_EQ(border_edges(closed.mesh->positions, closed.mesh->triangles), std::vector<std::uint32_t>(8, 0));
+  EXPECT_EQ(edge_marks(closed.mesh->positions, closed.mesh->triangles), std::vector<std::uint32_t>(8, 0b111000)) << "71 degrees";
+  const std::vector<double> roof = {0, 0, 0, 1, 0, 0, 0, 1, 0.3, 0, -1, 0.3};
+  EXPECT_EQ(edge_marks(roof, {{0, 1, 2}, {1, 0, 3}}), (std::vector<std::uint32_t>{0b011, 0b011})) << "33 degrees: flat";
 }
 
 }  // namespace

@@ -27,8 +27,10 @@ void heed(Touch t, inout vec3 vel) {
   touched = true;
 }
 
-/// Where the point is at the substep's end; `vel` is its velocity. Points that are not `wanted` stay at `to`.
-vec3 advance(vec3 from, vec3 to, uint owner, bool wanted, inout vec3 vel) {
+/// Where the point is at the substep's end; `vel` is its velocity. Points that are not `wanted` stay at `to`. `first_bound`: what it
+/// has found about where it was.
+vec3 search(vec3 from, vec3 to, uint owner, bool wanted, inout vec3 vel, out float first_bound) {
+  first_bound = 0.0;
   at = from;
   left = to - from;
   now = p.begin;
@@ -41,6 +43,7 @@ vec3 advance(vec3 from, vec3 to, uint owner, bool wanted, inout vec3 vel) {
     if (!ANY(!done)) return end;
     look_round(owner, !done);
     if (done) continue;
+    if (k == 0u) first_bound = bound;
     bool first = heeded == vec3(0.0);
     // At first any need counts: what many small substeps fall is below the tolerance, and a cloth would creep down a slope
     // that holds it.
@@ -71,5 +74,16 @@ vec3 advance(vec3 from, vec3 to, uint owner, bool wanted, inout vec3 vel) {
     end = free_part == 1.0 ? at : at + part * nearest.delta;
     done = free_part == 1.0;
   }
+  return end;
+}
+
+/// The same. `spare`: contact with anything is at least this far from `from`. Who goes less needs not look round.
+vec3 advance(vec3 from, vec3 to, uint owner, bool wanted, inout vec3 vel, inout float spare) {
+  float others = p.part * carried();
+  bool looks = wanted && !(distance(from, to) + others < spare);
+  float first_bound;
+  vec3 end = search(from, to, owner, looks, vel, first_bound);
+  if (looks) spare = first_bound;
+  spare -= distance(from, end) + others;
   return end;
 }

@@ -28,6 +28,7 @@ void main() {
   for (uint k = lane(); k < MOVING_CLUSTERS; k += LANES)
     carried = max(carried, LOAD16(cluster_boxes, STANDING_CLUSTERS + k).low.w);
   carried = most_of_lanes(carried);
+  if (i == 0u && lane() == 0u) STORE16(reaches, n, vec4(carried, 0.0, 0.0, 0.0));
   float reach = p.reach_m + 2.0 * length(LOAD16(v, i).xyz) / p.frames_per_s + carried;
   float nearest = 1e30;
   for (uint block = 0u; block < blocks; ++block) {

@@ -54,6 +54,7 @@ float now, part;
 // The answer: the nearest piece, the nearest of those to heed, and which share of the way left passes through nothing.
 Touch nearest, other;
 float free_part;
+float bound;   // contact with anything is at least this far away
 bool crowded;  // two pieces are in contact that are not neighbours in a nearly flat mesh
 
 /// A convex piece at distance d lies wholly behind the plane through its nearest point across n. So the way is free
@@ -71,16 +72,22 @@ void consider(float d, vec3 n, vec3 delta, float margin, float friction) {
 
 vec3 direction(vec3 d, float l, vec3 otherwise) { return l > 0.0 ? d / l : otherwise; }
 
+/// The same of a piece whose margin is one all round.
+void consider_even(float d, vec3 n, vec3 delta, float margin, float friction) {
+  bound = min(bound, d - (1.0 + kSlack) * max(margin, p.least_margin_m));
+  consider(d, n, delta, margin, friction);
+}
+
 void consider_shapes() {
   for (uint k = lane(); k < PLANES; k += LANES) {
     PlaneShape s = LOAD(32u, planes, k);
-    consider(dot(at, s.normal.xyz) - s.normal.w, s.normal.xyz, vec3(0.0), s.margin, s.friction);
+    consider_even(dot(at, s.normal.xyz) - s.normal.w, s.normal.xyz, vec3(0.0), s.margin, s.friction);
   }
   for (uint k = lane(); k < SPHERES; k += LANES) {
     SphereShape s = LOAD(32u, spheres, k);
     vec3 d = at - s.center.xyz;
     float l = length(d);
-    consider(l - s.radius, direction(d, l, vec3(0.0, 1.0, 0.0)), vec3(0.0), s.margin, s.friction);
+    consider_even(l - s.radius, direction(d, l, vec3(0.0, 1.0, 0.0)), vec3(0.0), s.margin, s.friction);
   }
   for (uint k = lane(); k < BOXES; k += LANES) {
     BoxShape s = LOAD(80u, boxes, k);
@@ -91,7 +98,7 @@ void consider_shapes() {
     // Inside, the nearest face; a corner of the box is as far as its nearest point, outside.
     vec3 face = beyond.x == deepest ? vec3(1, 0, 0) : beyond.y == deepest ? vec3(0, 1, 0) : vec3(0, 0, 1);
     vec3 n = l > 0.0 ? max(beyond, 0.0) * way / l : face * mix(vec3(-1.0), vec3(1.0), greaterThanEqual(local, vec3(0.0)));
-    consider(l > 0.0 ? l : deepest, axes * n, vec3(0.0), s.margin, s.friction);
+    consider_even(l > 0.0 ? l : deepest, axes * n, vec3(0.0), s.margin, s.friction);
   }
   for (uint k = lane(); k < CAPSULES; k += LANES) {
     CapsuleShape s = LOAD(64u, capsules, k);
@@ -100,7 +107,7 @@ void consider_shapes() {
     vec3 d = at - a - t * ab;
     float l = length(d);
     vec3 delta = mix(s.a1.xyz - s.a0.xyz, s.b1.xyz - s.b0.xyz, t);
-    consider(l - s.a0.w, direction(d, l, vec3(0.0, 1.0, 0.0)), delta, s.b0.w, s.b1.w);
+    consider_even(l - s.a0.w, direction(d, l, vec3(0.0, 1.0, 0.0)), delta, s.b0.w, s.b1.w);
   }
 }
 
@@ -127,6 +134,9 @@ vec3 nearest_weights(vec3 q, vec3 a, vec3 b, vec3 c) {
   return third < best ? on_ca.yzx : w;
 }
 
+/// Contact with something of this margin begins no farther from it.
+float held_at(float margin) { return (1.0 + kSlack) * max(margin, max(p.least_margin_m, p.border_margin_m)); }
+
 void consider_triangle(uvec4 corners, bool moving, float reach, float margin, float friction) {
   vec3 a, b, c, da = vec3(0.0), db = vec3(0.0), dc = vec3(0.0);
   if (moving) {
@@ -145,22 +155,33 @@ void consider_triangle(uvec4 corners, bool moving, float reach, float margin, fl
     c = LOAD16(standing, corners.z).xyz;
   }
   vec3 apart = max(max(min(a, min(b, c)) - at, at - max(a, max(b, c))), 0.0);
-  if (dot(apart, apart) > reach * reach) return;
+  if (dot(apart, apart) > reach * reach) {
+    bound = min(bound, length(apart) - held_at(margin));
+    return;
+  }
   vec3 w = nearest_weights(at, a, b, c);
+  // Where else on the triangle the margin is more, contact begins sooner.
+  float most = (corners.w & 7u) != 0u ? held_at(margin) : (1.0 + kSlack) * max(margin, p.least_margin_m);
   // An open border is a knife: what passes it between two points of the cloth must be nearer to one of them than half
   // their distance.
-  bool border = (w.x == 0.0 && (corners.w & 1u) != 0u) || (w.y == 0.0 && (corners.w & 2u) != 0u) ||
-                (w.z == 0.0 && (corners.w & 4u) != 0u);
+  uint sides = (w.x == 0.0 ? 1u : 0u) | (w.y == 0.0 ? 2u : 0u) | (w.z == 0.0 ? 4u : 0u);
+  bool border = (corners.w & sides) != 0u;
+#ifdef SAMPLE
+  // Where what stands is flat or round a sample keeps half the margin: cloth whose vertices lie on it would be lifted off by the
+  // middles of its edges, and the two would hold it in turn.
+  if (!moving && !border && (corners.w >> 3u & sides) == 0u) margin *= 0.5;
+#endif
   if (border) margin = max(margin, p.border_margin_m);
   vec3 d = at - (w.x * a + w.y * b + w.z * c), flat_normal = cross(b - a, c - a);
   float l = length(d);
+  bound = min(bound, l - most);
   consider(l, direction(d, l, direction(flat_normal, length(flat_normal), vec3(0.0, 1.0, 0.0))),
            w.x * da + w.y * db + w.z * dc, margin, friction);
 }
 
 /// How far from the point a triangle of a cluster may be that can concern it.
 float reach_of(float margin, float cluster_way, float way) {
-  return way + (1.0 + kSlack) * max(margin, max(p.least_margin_m, p.border_margin_m)) + part * cluster_way;
+  return way + held_at(margin) + part * cluster_way;
 }
 
 /// `owner`: the vertex whose list of clusters holds all that the point can meet in this frame.
@@ -181,8 +202,9 @@ void consider_meshes(uint owner, bool wanted) {
         uint k = first + uint(findLSB(bits));
         ClusterBox box = LOAD(32u, cluster_boxes, k);
         vec3 apart = max(max(box.low.xyz - at, at - box.high.xyz), 0.0);
-        float reach = reach_of(LOAD16(clusters, k).margin, box.low.w, way);
+        float margin = LOAD16(clusters, k).margin, reach = reach_of(margin, box.low.w, way);
         if (!(dot(apart, apart) > reach * reach)) near |= bits & (~bits + 1u);
+        else bound = min(bound, length(apart) - held_at(margin));
       }
       for (near = or_of_lanes(near); near != 0u; near &= near - 1u) {
         uint k = first + uint(findLSB(near));
@@ -197,6 +219,15 @@ void consider_meshes(uint owner, bool wanted) {
 }
 #endif
 
+/// How far any collider goes in the frame; kFar where nobody has found out.
+float carried() {
+  if (MOVING == 0u) return 0.0;
+#ifdef MESHES
+  if (CAPSULES == 0u) return LOAD16(reaches, p.columns * p.rows).x;
+#endif
+  return kFar;
+}
+
 #ifdef SHUFFLES
 Touch touch_of(uint from, Touch t) {
   return Touch(subgroupShuffle(t.gap, from), subgroupShuffle(t.need, from), subgroupShuffle(t.margin, from),
@@ -207,6 +238,7 @@ Touch touch_of(uint from, Touch t) {
 void agree() {
   if (LANES == 1u) return;
   free_part = least_of_lanes(free_part);
+  bound = least_of_lanes(bound);
   Touch own = nearest;
   nearest = touch_of(lane_with(least_of_lanes(own.gap), own.gap), own);
   crowded = crowded || (own.gap < kSlack * own.margin && dot(own.n, nearest.n) < kOther);
@@ -219,6 +251,7 @@ void look_round(uint owner, bool wanted) {
   nearest = Touch(kFar, 0.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
   other = nearest;
   free_part = 1.0;
+  bound = kFar;
   crowded = false;
   if (wanted) consider_shapes();
 #ifdef MESHES

@@ -11,6 +11,7 @@
 #define SIDE_BINDING 8
 #endif
 #define FIRST_COLLIDER_BINDING 4
+#define SAMPLE
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = 0) readonly buffer Positions { vec4 x[]; };
@@ -42,19 +43,22 @@ void main() {
   if (a.w + b.w == 0.0) return;
   vec3 va = LOAD16(v, i).xyz, vb = LOAD16(v, j).xyz, side_a = LOAD16(side, i).xyz, side_b = LOAD16(side, j).xyz;
   vec3 place = mix(a.xyz, b.xyz, t), vel_before = mix(va, vb, t), vel = vel_before, to = place;
-  vec3 from = LOAD16(sample_side, s).xyz;
+  vec4 was = LOAD16(sample_side, s);
+  vec3 from = was.xyz;
   if (!(distance(from, mix(side_a, side_b, t)) < kLost * distance(side_a, side_b))) from = side_a;
 #ifdef MESHES
   vec4 reach = LOAD16(reaches, i);
   from = distance(from, side_a) < p.sample_reach_m ? from : side_a;
   to = within(to, reach.xyz, reach.w + p.sample_reach_m);
 #endif
-  vec3 end = advance(from, to, i, dot(to, to) < kFar, vel);
+  // Lists of clusters are a frame's, and so is what they say of how far away things are.
+  float spare = p.begin > 0.0 && from == was.xyz ? was.w : 0.0;
+  vec3 end = advance(from, to, i, dot(to, to) < kFar, vel, spare);
   if (lane() != 0u) return;
   // Both ends move as the point shall, or the free one by as much more as it is far: a sheet that comes down flat is not
   // deformed, as it would be if shares followed masses, which are halved on the border.
   float share = a.w == 0.0 ? 1.0 / t : b.w == 0.0 ? 1.0 / (1.0 - t) : 1.0;
   STORE16(corrections, 2u * s, vec4(end - place, touched ? share : 0.0));
   STORE16(corrections, 2u * s + 1u, vec4(vel - vel_before, 0.0));
-  STORE16(sample_side, s, vec4(end, 0.0));
+  STORE16(sample_side, s, vec4(end, spare));
 }

@@ -11,7 +11,7 @@
 #include "common.glsl"
 layout(std430, binding = 0) buffer Positions { vec4 x[]; };
 layout(std430, binding = 1) buffer Velocities { vec4 v[]; };
-layout(std430, binding = 2) buffer Sides { vec4 side[]; };  // where the vertex was at the substep's start
+layout(std430, binding = 2) buffer Sides { vec4 side[]; };  // where the vertex was at the substep's start; w: `spare`, contact_advance
 layout(std430, binding = 3) readonly buffer Corrections { vec4 corrections[]; };  // two a sample: way, velocity
 layout(push_constant) uniform Push { ContactConstants p; };
 #include "contact_colliders.glsl"
@@ -56,7 +56,8 @@ void main() {
     if (lane() == 0u) STORE16(side, i, to);
     return;
   }
-  vec3 vel = LOAD16(v, i).xyz, from = LOAD16(side, i).xyz;
+  vec4 was = LOAD16(side, i);
+  vec3 vel = LOAD16(v, i).xyz, from = was.xyz;
   sum_x = sum_v = vec3(0.0);
   weight_x = weight_v = 0.0;
   if (SAMPLES > 0u) gather_samples(i);
@@ -69,9 +70,10 @@ void main() {
   if (length(way) > reach.w) to.xyz = reach.xyz + way * (reach.w / length(way));
 #endif
   // A vertex that is no number stays none, for the runner to find.
-  to.xyz = advance(from, to.xyz, i, dot(to.xyz, to.xyz) < kFar, vel);
+  float spare = p.begin > 0.0 ? was.w : 0.0;
+  to.xyz = advance(from, to.xyz, i, dot(to.xyz, to.xyz) < kFar, vel, spare);
   if (lane() != 0u) return;
   STORE16(x, i, to);
   STORE16(v, i, vec4(vel, 0.0));
-  STORE16(side, i, to);
+  STORE16(side, i, vec4(to.xyz, spare));
 }

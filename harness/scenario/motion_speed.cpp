@@ -1,0 +1,59 @@
+#include "clothbench/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clothbench {
+namespace {
+
+bool jumps_at(const Scene& scene, std::size_t frame) {
+  return std::any_of(scene.jumps.begin(), scene.jumps.end(), [&](const Jump& j) { return static_cast<std::size_t>(j.frame) == frame; });
+}
+
+}  // namespace
+
+double collider_speed_m_per_s(const Scene& scene) {
+  constexpr std::size_t kLooked = 64;
+  double most = 0;
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    const Collider& c = scene.colliders[k];
+    if (!c.moves()) continue;
+    ColliderMesh some;
+    if (c.mesh)
+      for (std::size_t v = 0; v < c.mesh->vertex_count(); v += std::max<std::size_t>(1, c.mesh->vertex_count() / kLooked)) {
+        some.positions.insert(some.positions.end(), &c.mesh->positions[3 * v], &c.mesh->positions[3 * v] + 3);
+        some.joints.push_back(c.mesh->joints[v]);
+        some.weights.push_back(c.mesh->weights[v]);
+        some.joint_count = c.mesh->joint_count;
+      }
+    const auto points = [&](const ColliderPose& pose) {
+      if (c.mesh) return posed_positions(some, pose);
+      std::vector<double> x;
+      for (const Capsule& s : pose.capsules)
+        for (const Vec3& p : {s.a_m, s.b_m}) x.insert(x.end(), p.begin(), p.end());
+      return x;
+    };
+    for (std::size_t f = 1; f < scene.motion.size(); ++f) {
+      if (jumps_at(scene, f)) continue;
+      const std::vector<double> was = points(scene.motion[f - 1].colliders[k]), is = points(scene.motion[f].colliders[k]);
+      const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
+      for (std::size_t x = 0; x < is.size(); x += 3)
+        most = std::max(most, std::hypot(is[x] - was[x], is[x + 1] - was[x + 1], is[x + 2] - was[x + 2]) / dt);
+    }
+  }
+  return most;
+}
+
+double grip_speed_m_per_s(const Scene& scene) {
+  double most = 0;
+  for (std::size_t f = 1; f < scene.motion.size(); ++f) {
+    const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
+    for (std::size_t g = 0; g < scene.motion[f].grip_position_m.size(); ++g) {
+      const Vec3 &a = scene.motion[f - 1].grip_position_m[g], &b = scene.motion[f].grip_position_m[g];
+      if (scene.motion[f].grip_held[g] != 0) most = std::max(most, std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / dt);
+    }
+  }
+  return most;
+}
+
+}  // namespace clothbench
