@@ -164,11 +164,12 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   // turn by more than about half a radian a substep.
   constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
+                 kDriven[] = {{8, 4}, {16, 2}, {32, 1}},
                  kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}}, kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
   // A hand pushes a cloth in ways that no tether knows of.
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   const Rule rule = !touched                           ? kUntouched[k]
-                    : driven                           ? kSheet[k]
+                    : driven                           ? kDriven[k]
                     : tethered                         ? (stiff ? kStiff[k] : kTethered[k])
                     : !scene.needs.has(Feature::Shear) ? kStrips[k]
                     : scene.grips.vertices.empty()     ? kSheet[k]

@@ -2,6 +2,7 @@
 #include "line_plan.hpp"
 
 #include "gpu_fixture.hpp"
+#include "scenario/load.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -71,6 +72,32 @@ TEST(Substeps, FollowTheRule) {
     EXPECT_EQ(of(s, "fast"), fast);
   }
   EXPECT_EQ(of(sheet(128, 128), "default"), 5) << "nothing touches it";
+}
+
+TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
+  Scene s = load_scene("paper/capsule-sweep");
+  const auto of = [&](double speed, const char* quality) {
+    Scene changed = s;
+    for (std::size_t f = 0; f < changed.motion.size(); ++f)
+      for (std::size_t k = 0; k < changed.colliders[0].capsules.size(); ++k) {
+        Capsule& c = changed.motion[f].colliders[0].capsules[k];
+        c = changed.colliders[0].capsules[k];
+        c.a_m[0] += speed * static_cast<double>(f) * s.time.dt();
+        c.b_m[0] += speed * static_cast<double>(f) * s.time.dt();
+      }
+    return xpbd_substeps(changed, {{"quality", quality}});
+  };
+  EXPECT_EQ(of(0.8, "default"), 16) << "31 links over 2: it goes 11 mm, by less than half a margin of 4 mm in each";
+  EXPECT_EQ(of(5, "default"), 35);
+  EXPECT_EQ(of(10, "default"), 70);
+  EXPECT_EQ(of(10, "fast"), 35);
+  EXPECT_EQ(of(100, "default"), 160) << "the most";
+  s.jumps = {{2, 1.0}};
+  for (std::size_t f = 0; f < s.motion.size(); ++f) {
+    s.motion[f].colliders[0].capsules = s.colliders[0].capsules;
+    if (f >= 2) s.motion[f].colliders[0].capsules[0].a_m[0] += 1;
+  }
+  EXPECT_EQ(xpbd_substeps(s, {{"quality", "default"}}), 16) << "a jump is no motion";
 }
 
 TEST(Shapes, FitDevices) {

@@ -154,14 +154,21 @@ void consider_triangle(uvec4 corners, bool moving, float reach, float margin, fl
     b = LOAD16(standing, corners.y).xyz;
     c = LOAD16(standing, corners.z).xyz;
   }
+  // Contact with any place on the triangle begins no farther from it.
+  float most = held_at(margin);
+  if ((corners.w & 7u) == 0u) {
+    float share = 1.0;
+#ifdef SAMPLE
+    if (!moving && corners.w == 0u) share = 0.5;
+#endif
+    most = (1.0 + kSlack) * max(share * margin, p.least_margin_m);
+  }
   vec3 apart = max(max(min(a, min(b, c)) - at, at - max(a, max(b, c))), 0.0);
   if (dot(apart, apart) > reach * reach) {
-    bound = min(bound, length(apart) - held_at(margin));
+    bound = min(bound, length(apart) - most);
     return;
   }
   vec3 w = nearest_weights(at, a, b, c);
-  // Where else on the triangle the margin is more, contact begins sooner.
-  float most = (corners.w & 7u) != 0u ? held_at(margin) : (1.0 + kSlack) * max(margin, p.least_margin_m);
   // An open border is a knife: what passes it between two points of the cloth must be nearer to one of them than half
   // their distance.
   uint sides = (w.x == 0.0 ? 1u : 0u) | (w.y == 0.0 ? 2u : 0u) | (w.z == 0.0 ? 4u : 0u);
