@@ -336,11 +336,11 @@ void XpbdContact::record_substep(int s, int substeps, double dt_s) {
   // What is read and written whatever the cloth does; colliders that come near cost more.
   const double shapes = 32.0 * colliders_.planes.count + 32.0 * colliders_.spheres.count +
                         80.0 * colliders_.boxes.count + 64.0 * colliders_.capsules.count;
-  // Later in a frame only who came near something looks round again, or whoever does not know how far colliders go.
-  const bool meshes = clusters_ != nullptr, moving = !scene_.motion.empty();
-  const bool knows = !moving || (meshes && colliders_.capsules.count == 0);
-  const double look = s == 0 || !knows ? shapes + (meshes ? 4.0 * blocks_of(k.words) : 0.0) : 0.0;
-  const double around = look + (meshes ? 16 : 0.0) + (knows && moving ? 16 : 0.0);
+  // Later in a frame only who came near something looks round again.
+  const bool meshes = clusters_ != nullptr;
+  const double look = s == 0 ? shapes + (meshes ? 4.0 * blocks_of(k.words) : 0.0) : 0.0;
+  const double ways = (colliders_.capsules.count > 0 ? 16 : 0) + (meshes && !scene_.motion.empty() ? 16 : 0);
+  const double around = look + ways + (meshes ? 16 : 0);
   if (samples_ > 0) {
     Traffic t;
     for (std::size_t family = 0; family < 3; ++family)

@@ -87,9 +87,9 @@ TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
       }
     return xpbd_substeps(changed, {{"quality", quality}});
   };
-  EXPECT_EQ(of(0.8, "default"), 16) << "31 links over 2: it goes 11 mm, by less than half a margin of 4 mm in each";
+  EXPECT_EQ(of(0.8, "default"), 16) << "31 links over 2: it goes 11 mm, by less than 2 mm in each";
   EXPECT_EQ(of(5, "default"), 35);
-  EXPECT_EQ(of(10, "default"), 70);
+  EXPECT_EQ(of(10, "default"), 69) << "or half an eighth of a cell, which is more";
   EXPECT_EQ(of(10, "fast"), 35);
   EXPECT_EQ(of(100, "default"), 160) << "the most";
   s.jumps = {{2, 1.0}};

@@ -226,13 +226,14 @@ void consider_meshes(uint owner, bool wanted) {
 }
 #endif
 
-/// How far any collider goes in the frame; kFar where nobody has found out.
+/// How far any collider goes in the frame.
 float carried() {
-  if (MOVING == 0u) return 0.0;
+  float most = 0.0;
+  if (CAPSULES > 0u) most = LOAD16_OF(capsules[CAPSULES].a0).x;
 #ifdef MESHES
-  if (CAPSULES == 0u) return LOAD16(reaches, p.columns * p.rows).x;
+  if (MOVING == 1u) most = max(most, LOAD16(reaches, p.columns * p.rows).x);
 #endif
-  return kFar;
+  return most;
 }
 
 #ifdef SHUFFLES
