@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fuzz every reader of other people's files for some seconds each, under address and undefined-behaviour sanitizers.
+# Fuzz every reader of other people's files for some seconds each, JOBS (2) at a time, under address and undefined-behaviour sanitizers.
 #   scripts/fuzz.sh [seconds] [reader...]     default: 10 s, all readers; new inputs go to build/fuzz/found
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,16 +10,33 @@ unity=OFF
 [ "${CLOTHBENCH_UNITY:-}" != 1 ] || unity=ON
 cmake --preset fuzz -DCMAKE_UNITY_BUILD=$unity -DCMAKE_UNITY_BUILD_BATCH_SIZE=8 >build/configure-fuzz.log 2>&1 || { tail -30 build/configure-fuzz.log; exit 1; }
 cmake --build --preset fuzz -j "${JOBS:-2}" --target "${readers[@]/#/fuzz_}" >build/fuzz.log 2>&1 || { tail -30 build/fuzz.log; exit 1; }
-for reader in "${readers[@]}"; do
-  found=build/fuzz/found/$reader log=build/fuzz/$reader.log
+
+fuzz() {
+  local reader=$1 found=build/fuzz/found/$1 log=build/fuzz/$1.log dictionary=()
   mkdir -p "$found"
-  dictionary=()
   [ -f "tests/fuzz/$reader.dict" ] && dictionary=(-dict="tests/fuzz/$reader.dict")
   if ! build/fuzz/fuzz_"$reader" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
     -artifact_prefix="build/fuzz/$reader-" "${dictionary[@]}" "$found" "tests/fuzz/corpus/$reader" >"$log" 2>&1; then
     grep -E "ERROR|SUMMARY|runtime error|terminate|what\(\)" "$log" | head -5
     echo "fuzz: $reader: a finding (build/fuzz/$reader-*; $log)" >&2
-    exit 1
+    return 1
   fi
   echo "fuzz: $reader: $(grep -o 'stat::number_of_executed_units: *[0-9]*' "$log" | grep -o '[0-9]*$') inputs in $seconds s, $(grep -oE 'cov: [0-9]+' "$log" | tail -1 | cut -d' ' -f2) edges, none crashed"
+}
+
+# A finding ends the script once those that run beside it are over.
+status=0 running=0
+for reader in "${readers[@]}"; do
+  if [ "$running" -ge "${JOBS:-2}" ]; then
+    wait -n || status=1
+    running=$((running - 1))
+    [ "$status" -eq 0 ] || break
+  fi
+  fuzz "$reader" &
+  running=$((running + 1))
 done
+while [ "$running" -gt 0 ]; do
+  wait -n || status=1
+  running=$((running - 1))
+done
+exit $status

@@ -25,7 +25,8 @@ QUANTITIES = {"contact_length_m": ("contour [mm]", 1e3), "tunnelled_fraction": (
               "stretch_max": ("strain [%]", 100)}
 # What tells solvers apart, by set-up; a column that no cell has is left out.
 SHOWN = {"rooms": ["contact_length_m", "tunnelled_fraction", "tunnelled_depth_m"], "hand": ["contact_length_m", "tunnelled_fraction", "depth_m"],
-         "capsules": ["contact_length_m", "depth_m"], "shapes": ["contact_length_m", "depth_m"], "grip": ["stretch_max"]}
+         "capsules": ["contact_length_m", "depth_m"], "shapes": ["contact_length_m", "depth_m"], "grip": ["stretch_max"],
+         "wave": ["stretch_max"]}
 DEEP, DEEP_MM = {"tunnelled_depth_m", "depth_m"}, 50  # from here on their axis is logarithmic above 1 mm
 DASHES = ["-", (0, (5, 1.5)), (0, (2, 1.2)), (0, (5, 1.5, 1, 1.5)), (0, (1, 1))]
 MORE_COLOURS = {"bullet-deformable": "#E69F00", "paper whole-room": "#CC79A7"}

@@ -95,7 +95,7 @@ void print_threshold(const nlohmann::json& t) {
 void add_metamorphic(CLI::App& app, Console& console) {
   static Arguments a;
   a = {};
-  CLI::App* cmd = app.add_subcommand("metamorphic", "Properties of a solver that need no truth: similarity, mirror, rotation, renumbering, repeat, no-op, restart");
+  CLI::App* cmd = app.add_subcommand("metamorphic", "Properties of a solver that need no truth: similarity, mirror, rotation, renumbering, flip, repeat, no-op, restart");
   add_solvers(*cmd, "solver", a.solvers, "Solvers; default: all");
   cmd->add_option("--set", a.set, "Setting of the solver: solver.substeps=20");
   cmd->add_option("--readme", a.readme, "Also write the tables between the marks <!-- metamorphic begin/end --> of this file");

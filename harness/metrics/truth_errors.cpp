@@ -170,6 +170,7 @@ std::map<std::string, double> summarise_truth(const Scene& scene, const Accuracy
   out["truth_speed_error"] = over_time("truth_speed_error");
   out["truth_quantity"] = last("truth_quantity");
   out["truth_quantity_error"] = over_time("truth_quantity_error");
+  out["truth_quantity_error_max"] = worst("truth_quantity_error");
   out["truth_stretch_rms"] = worst("truth_stretch_rms");
   out["truth_stretch_p99"] = worst("truth_stretch_p99");
   out["truth_stretch_max"] = worst("truth_stretch_max");

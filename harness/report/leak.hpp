@@ -10,7 +10,8 @@ namespace clothbench {
 
 /// What of a cell is a leak, or nothing: how it ended if not well; cloth through a mesh; cloth on the wrong side of a hand or
 /// a vertex over 1 mm inside it; an edge beyond 1.25 times what hands impose while they pull, 1.10 times once they hold, or
-/// a mean strain of 1 % and more a second after they let go. A value that is not known where it should be is a leak too.
+/// a mean strain of over 1 % a second after they let go; of a strip pulled by bars, a greatest strain that is in any frame more than
+/// a tenth of v0/c (what one wave brings) off the exact one. A value that is not known where it should be is a leak too.
 std::string leak_of(const std::string& kind, const CellRecord&);
 
 /// The same scene at several imposed speeds, run by one solver.

@@ -13,6 +13,9 @@ namespace clothbench {
 /// of those of frames per second.
 bool has_contact(const CellRecord&);
 
+/// True if the cell's scene is the strip pulled at both ends (truth card two-hand-pull).
+bool pulls_strip(const CellRecord&);
+
 /// A cell in these tables. Points into the vector it was made from.
 struct ContactRow {
   const CellRecord* cell = nullptr;
@@ -27,7 +30,7 @@ struct ContactScene {
 
 /// Scenes that show the same kind of contact.
 struct ContactSetUp {
-  std::string kind;   ///< "rooms", "capsules", "hand", "grip" or "shapes": of file names and figures
+  std::string kind;   ///< "rooms", "capsules", "hand", "grip", "wave" or "shapes": of file names and figures
   std::string title;  ///< with the paper's section and table where the scenes name them
   std::vector<ContactScene> scenes;
 };

@@ -17,18 +17,26 @@ double greater(double a, double b) { return b <= a || std::isnan(a) ? a : b; }
 
 }  // namespace
 
-Apart trajectories_apart(const CellRecord& one, const CellRecord& other) {
+Apart trajectories_apart(const CellRecord& one, const CellRecord& other, std::size_t transposed_columns) {
   const std::vector<float> a = positions(one), b = positions(other);
-  const std::size_t frame = 3 * static_cast<std::size_t>(one.header.vertices);
-  if (a.empty() || a.size() != b.size() || frame == 0 || a.size() % frame != 0) return {};
+  const std::size_t vertices = one.header.vertices, columns = transposed_columns;
+  if (a.empty() || a.size() != b.size() || vertices == 0 || a.size() % (3 * vertices) != 0 || (columns > 0 && vertices % columns != 0)) return {};
   Apart out{0, 0};
-  for (std::size_t k = 0; k < a.size(); k += 3) {
-    if (k % frame == 0) out.end_m = 0;
-    double squared = 0;
-    for (std::size_t x = k; x < k + 3; ++x) squared += (double{a[x]} - b[x]) * (double{a[x]} - b[x]);
-    const double d = std::sqrt(squared);
-    out.end_m = greater(out.end_m, d);
-    out.max_m = greater(out.max_m, d);
+  for (std::size_t first = 0; first < a.size(); first += 3 * vertices) {
+    double sum = 0;
+    out.end_m = 0;
+    for (std::size_t v = 0; v < vertices; ++v) {
+      const std::size_t there = columns == 0 ? v : (v % columns) * (vertices / columns) + v / columns;
+      double squared = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double off = double{a[first + 3 * v + k]} - b[first + 3 * there + k];
+        squared += off * off;
+      }
+      sum += squared;
+      out.end_m = greater(out.end_m, std::sqrt(squared));
+    }
+    out.rms_m.push_back(std::sqrt(sum / static_cast<double>(vertices)));
+    out.max_m = greater(out.max_m, out.end_m);
   }
   return out;
 }

@@ -21,10 +21,11 @@ struct MetamorphicResult {
 struct MetamorphicProperty {
   std::string name, doc;
 };
-/// In the order of tables: similarity-2, similarity, mirror, rotation, renumbering, repeat, no-op, restart.
+/// In the order of tables: similarity-2, similarity, mirror, rotation, renumbering, flip, repeat, no-op, restart.
 const std::vector<MetamorphicProperty>& metamorphic_properties();
 
-/// Scenes of the tests: a pinned sheet, the swinging strip, a cloth that is thrown over a level face.
+/// Scenes of the tests: a pinned sheet, the swinging strip, a cloth that is thrown over a level face, a two-sided one that comes down
+/// on an open mesh.
 std::vector<Scene> metamorphic_scenes();
 
 /// Runs every property on every scene with default settings but for `settings` (complete). Deterministic: its rotations and
@@ -35,6 +36,9 @@ std::vector<Scene> metamorphic_scenes();
 ///   rotation      the scene with gravity, by two rotations: 1e-4
 ///   renumbering   flipped along u and v, and transposed: 1e-4, or what twice the substeps change, whichever is more: an order of
 ///                 solving is the solver's own affair within its own error
+///   flip          transposed, the cloth two-sided ("double", or "double-duplicated" where the solver knows that alone): vertices, edges
+///                 and triangles in the same places, normals the other way; bound as for renumbering, which also changes the
+///                 triangles' diagonals and leaves a scene's sides as they are, and so says nothing of contact from behind
 ///   repeat        another solver object, and reset: bit for bit
 ///   no-op         a ball, a box and a mesh with friction 100 m away: 1e-6
 ///   restart       another solver object goes on from the positions and velocities half way (ClothSolver::restart): 1e-4, or what

@@ -260,11 +260,13 @@ class Reader {
     const TablePose at = over["at"] == "center" ? flat_over(box, mesh, scene_.cloth, drop)
                                                 : corner_first_over(box, scene_.cloth, drop, over["tilt_deg"].get<double>() * kRadians);
     scene_.cloth.center_m = at.center_m;
-    scene_.cloth.axis_u = at.axis_u;
-    scene_.cloth.axis_v = at.axis_v;
+    const bool turned = over.value("turned", false);
+    if (turned && (scene_.cloth.width_m != scene_.cloth.height_m)) refuse("/turned", "expected a square cloth");
+    scene_.cloth.axis_u = turned ? at.axis_v : at.axis_u;
+    scene_.cloth.axis_v = turned ? at.axis_u : at.axis_v;
     pose["center_m"] = at.center_m;
-    pose["axis_u"] = at.axis_u;
-    pose["axis_v"] = at.axis_v;
+    pose["axis_u"] = scene_.cloth.axis_u;
+    pose["axis_v"] = scene_.cloth.axis_v;
   }
 
   struct Grip {

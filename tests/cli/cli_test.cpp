@@ -269,7 +269,7 @@ TEST_F(Cli, SeedDrawsAndIsStored) {
 
 TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
   const nlohmann::json properties = json_of("metamorphic ballistic");
-  ASSERT_EQ(properties.size(), 24u);
+  ASSERT_EQ(properties.size(), 36u);
   for (const auto& p : properties) EXPECT_TRUE(p["status"] == "kept") << p.dump();
   const nlohmann::json found = json_of("threshold validation/incline-stick --solver ballistic");
   EXPECT_EQ(found[0]["bound"], ">= ") << "it falls through at any friction";

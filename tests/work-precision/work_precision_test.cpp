@@ -1,4 +1,4 @@
-// The quick study from the command line to its report; and what the report makes of points that are known.
+// The quick study from the command line to its report.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,111 +9,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "report/work_precision.hpp"
-
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-CellRecord cell(const std::string& solver, const std::string& setting, double frame_s, double error, const std::string& status = "ok") {
-  CellRecord c;
-  c.header.scene = "swing";
-  c.header.solver = solver;
-  c.header.setting = setting;
-  c.header.settings = json::object();
-  c.header.scenario_json = R"({"name":"swing","truth":{"card":"swing-strip"},"time":{"frame_rate_hz":60}})";
-  c.header.environment = {{"gpu", "CPU"}};
-  c.outcome.status = status;
-  c.summary = {{"frame_wall_median_s", frame_s}, {"truth_error", error}, {"reference_uncertainty", 1e-5}, {"truth_space_error", 2e-3}};
-  return c;
-}
-
-const std::vector<std::string>& row_of(const Table& t, const std::string& solver) {
-  for (const auto& row : t.rows)
-    if (row.at(1) == solver) return row;
-  throw std::runtime_error("no row of " + solver);
-}
-
-TEST(WorkTable, FindsTheFrontAndTimesToAccuracy) {
-  const std::vector<CellRecord> cells = {cell("a", "fast", 1e-3, 0.5),   cell("a", "good", 4e-3, 8e-3), cell("a", "worse", 5e-3, 9e-3),
-                                         cell("a", "best", 0.1, 5e-4),   cell("a", "lost", 1e-3, 1e-9, "not_finite"),
-                                         cell("b", "tiny", 2e-3, 1e-6), cell("b", "nan", 2e-3, NAN)};
-  const auto diagrams = work_diagrams(cells);
-  ASSERT_EQ(diagrams.size(), 1u);
-  std::vector<std::string> front;
-  for (const WorkPoint& p : diagrams[0].points)
-    if (p.on_front) front.push_back(p.setting);
-  EXPECT_EQ(front, (std::vector<std::string>{"fast", "good", "best", "tiny"}));
-  EXPECT_NEAR(diagrams[0].points[0].wall_ms_per_s, 60, 1e-9) << "1 ms a frame at 60 Hz";
-  const Table t = work_table(diagrams);
-  EXPECT_EQ(row_of(t, "a")[2], "240 (good)");
-  EXPECT_EQ(row_of(t, "a")[3], "6e+03 (best)");
-  EXPECT_EQ(row_of(t, "a")[4], "0.008 (good)") << "6 s a second is not real time";
-  EXPECT_EQ(row_of(t, "a")[6], "1 of 5");
-  EXPECT_EQ(row_of(t, "b")[5], "≤ 0.002 (tiny)") << "nobody is better than the mesh itself";
-  EXPECT_EQ(row_of(t, "b")[6], "1 of 2");
-  EXPECT_EQ(diagrams[0].refused(), "") << "the best error is below 3 U_ref, and so below the mesh's own: nobody is ranked there";
-}
-
-TEST(WorkTable, TimesArePipelinedWhereASolverCan) {
-  std::vector<CellRecord> cells = {cell("a", "x", 4e-3, 5e-3), cell("b", "x", 2e-3, 5e-3)};
-  cells[0].summary["frame_pipelined_median_s"] = 1e-3;
-  cells[1].summary["frame_pipelined_median_s"] = NAN;
-  const auto diagrams = work_diagrams(cells);
-  const Table t = work_table(diagrams);
-  EXPECT_EQ(row_of(t, "a")[2], "60 (x)");
-  EXPECT_EQ(row_of(t, "a")[7], "240 (x)") << "from submission to fence";
-  EXPECT_EQ(row_of(t, "b")[2], "120 (x)") << "it waits for each frame";
-  EXPECT_EQ(row_of(t, "b")[7], "120 (x)");
-  EXPECT_NE(winners_table(diagrams).rows[1][2].find("a ("), std::string::npos) << "ranked by the pipelined time";
-}
-
-TEST(BudgetTable, NamesWhoHasTheSmallerErrorAtAnyBudget) {
-  // 0.02 and 0.04 at 0.3 ms: between the budgets that have a column.
-  const std::vector<CellRecord> cells = {cell("a", "x", 1e-4, 0.3),   cell("a", "y", 1e-3, 0.04), cell("b", "x", 3e-4, 0.02),
-                                         cell("b", "late", 2e-2, 1e-9), cell("a", "nan", 1e-4, NAN)};
-  const Table t = budget_table(work_diagrams(cells));
-  EXPECT_EQ(row_of(t, "a").at(3), "0.3") << "0.1 ms";
-  EXPECT_EQ(row_of(t, "a").at(2), "–") << "0.05 ms";
-  EXPECT_EQ(row_of(t, "a").at(6), "0.04") << "1 ms";
-  EXPECT_EQ(row_of(t, "a").back(), "b: 15 times at 0.3 ms");
-  EXPECT_EQ(row_of(t, "b").back(), "a: 0.3 at 0.1 ms, where it has no result");
-  const std::vector<CellRecord> small = {cell("a", "x", 1e-4, 1e-6), cell("b", "x", 1e-4, 1e-9)};
-  EXPECT_EQ(row_of(budget_table(work_diagrams(small)), "a").back(), "never") << "below the mesh's own error nobody is better";
-  EXPECT_EQ(row_of(budget_table(work_diagrams(small)), "a").at(3), "≤ 0.002");
-}
-
-TEST(EnergyTable, CountsSettingsThatGainNaNIncluded) {
-  std::vector<CellRecord> cells = {cell("a", "x", 1e-4, 0.3), cell("a", "y", 1e-4, 0.3), cell("b", "x", 1e-4, 0.3)};
-  cells[0].summary["energy_gain"] = 1e-4;
-  cells[1].summary["energy_gain"] = 2e-3;
-  const Table t = energy_table(work_diagrams(cells));
-  ASSERT_EQ(t.rows.size(), 2u) << "b's energy is not known";
-  EXPECT_EQ(row_of(t, "a"), (std::vector<std::string>{"swing", "a", "2.0e-03", "y", "1 of 2"}));
-}
-
-TEST(WorkTable, WhatIsOverBudgetIsNoFailure) {
-  const std::vector<CellRecord> cells = {cell("a", "x", 4e-3, 5e-3), cell("a", "y", NAN, NAN, "over_budget"),
-                                         cell("a", "z", 1e-3, NAN, "diverged")};
-  EXPECT_EQ(row_of(work_table(work_diagrams(cells)), "a")[6], "1 of 3, 1 not run");
-}
-
-TEST(WorkTable, RefusesWithoutACertainReference) {
-  std::vector<CellRecord> cells = {cell("a", "x", 1e-3, 1e-4)};
-  EXPECT_EQ(work_diagrams(cells)[0].refused(), "");
-  cells[0].summary["truth_space_error"] = 1e-3;
-  cells[0].summary["reference_uncertainty"] = 1e-4 / 2;
-  EXPECT_EQ(work_diagrams(cells)[0].refused(), "") << "the mesh's own error is above 3 U_ref";
-  cells[0].summary["truth_space_error"] = 0;
-  EXPECT_NE(work_diagrams(cells)[0].refused(), "");
-  EXPECT_NE(truth_table(work_diagrams(cells)).markdown().find("REFUSED"), std::string::npos);
-  cells[0].summary["reference_uncertainty"] = NAN;
-  EXPECT_EQ(work_diagrams(cells)[0].refused(), "no reference solution");
-  cells[0].header.scenario_json = "{}";
-  EXPECT_TRUE(work_diagrams(cells).empty());
-}
 
 int run(const std::string& arguments) {
   const int status = std::system((std::string(CLOTHBENCH_COMMAND) + " " + arguments).c_str());
