@@ -43,13 +43,21 @@ double moved(const AccuracyPass& pass, std::size_t vertices, std::size_t v, std:
               static_cast<double>(b[2]) - static_cast<double>(a[2]));
 }
 
-/// Popping: how far and how fast the cloth goes once a moving collider has left it (the paper's Fig. 8).
+/// Popping: how far and how fast the cloth goes once a moving collider has left it (the paper's Fig. 8). A cloth that swings back onto
+/// a hand at rest is no longer swept by it: the contact that counts is the last that began before the hand stood still.
 void summarise_popping(const Scene& scene, const AccuracyPass& pass, std::map<std::string, double>& s) {
   const std::vector<double> *touching = find(pass, "touching_fraction"), *speed = find(pass, "speed_max");
   const bool moves = std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.moves(); });
   if (!moves || touching == nullptr || speed == nullptr || !std::isfinite(greatest(touching))) return;
-  std::size_t last = touching->size();
-  while (last > 0 && (*touching)[last - 1] == 0) --last;
+  const std::vector<double> speeds = collider_speeds_m_per_s(scene);
+  const double fastest = speeds.empty() ? 0 : *std::max_element(speeds.begin(), speeds.end());
+  const auto rests = [&](std::size_t frame) {  // but for rounding; up to the frame and from it on
+    return speeds[frame] <= 1e-6 * fastest && (frame + 1 == speeds.size() || speeds[frame + 1] <= 1e-6 * fastest);
+  };
+  std::size_t last = std::min(touching->size(), speeds.size());
+  while (last > 0 && ((*touching)[last - 1] == 0 || rests(last - 1))) --last;
+  if (last > 0)
+    while (last < touching->size() && (*touching)[last] != 0) ++last;
   // Never touched, or touched to the end: nothing was let go.
   if (last == 0 || last == touching->size()) return;
   --last;
@@ -63,7 +71,7 @@ void summarise_popping(const Scene& scene, const AccuracyPass& pass, std::map<st
   // cloth is long.
   const Vec3& g = scene.gravity_m_per_s2;
   const double fall = std::sqrt(2 * norm(g[0], g[1], g[2]) * std::max(scene.cloth.width_m, scene.cloth.height_m));
-  const double limit = std::max(2 * collider_speed_m_per_s(scene), fall);
+  const double limit = std::max(2 * fastest, fall);
   s["pop_speed_ratio"] = limit > 0 ? s["pop_speed_m_per_s"] / limit : kMissing;
 }
 

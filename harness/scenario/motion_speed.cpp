@@ -12,9 +12,9 @@ bool jumps_at(const Scene& scene, std::size_t frame) {
 
 }  // namespace
 
-double collider_speed_m_per_s(const Scene& scene) {
+std::vector<double> collider_speeds_m_per_s(const Scene& scene) {
   constexpr std::size_t kLooked = 64;
-  double most = 0;
+  std::vector<double> most(scene.motion.size(), 0);
   for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
     const Collider& c = scene.colliders[k];
     if (!c.moves()) continue;
@@ -38,10 +38,15 @@ double collider_speed_m_per_s(const Scene& scene) {
       const std::vector<double> was = points(scene.motion[f - 1].colliders[k]), is = points(scene.motion[f].colliders[k]);
       const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
       for (std::size_t x = 0; x < is.size(); x += 3)
-        most = std::max(most, std::hypot(is[x] - was[x], is[x + 1] - was[x + 1], is[x + 2] - was[x + 2]) / dt);
+        most[f] = std::max(most[f], std::hypot(is[x] - was[x], is[x + 1] - was[x + 1], is[x + 2] - was[x + 2]) / dt);
     }
   }
   return most;
+}
+
+double collider_speed_m_per_s(const Scene& scene) {
+  const std::vector<double> speeds = collider_speeds_m_per_s(scene);
+  return speeds.empty() ? 0 : *std::max_element(speeds.begin(), speeds.end());
 }
 
 double grip_speed_m_per_s(const Scene& scene) {

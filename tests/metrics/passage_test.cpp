@@ -130,6 +130,20 @@ TEST(Passage, PoppingIsWhatComesAfterTheLastContact) {
   EXPECT_NEAR(s.at("pop_speed_ratio"), 1.5 / 6, 1e-9) << "twice the collider's 3 m/s is more than a fall of the cloth's length";
 }
 
+TEST(Passage, WhatSwingsBackOntoAHandAtRestIsNoPopping) {
+  const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=0.5", "time.frame_rate_hz=60",
+    R"(colliders=[{"type":"capsule","center_m":[0,0,0],"radius_m":0.1,"length_m":0.4,"axis":[0,0,1],"velocity_m_per_s":[0,-3,0],"stop_s":0.1}])"});
+  const double down = scene.cloth.center_m[1] - 0.1 - scene.colliders[0].margin_m;
+  // Touches at the start, and from frame 20 on, where the capsule has stood since frame 6.
+  const auto s = [&](int leaves) {
+    return summarise_contact(scene, passed(scene, [&](int frame, std::vector<double>& x) {
+      for (std::size_t k = 1; k < x.size(); k += 3) x[k] -= frame < 3 || (frame >= 20 && frame < leaves) ? down + 3.0 / 60 * std::min(frame, 6) : 0;
+    }, 1.5));
+  };
+  EXPECT_NEAR(s(25).at("pop_displacement_m"), s(1000).at("pop_displacement_m"), 1e-12);
+  EXPECT_GT(s(1000).at("pop_displacement_m"), 0) << "it touches to the end, but nothing sweeps it";
+}
+
 Path waved(double wavelength_cells, double height, int columns) {
   return [=](int, std::vector<double>& x) {
     for (std::size_t v = 0; v < x.size() / 3; ++v)
