@@ -210,10 +210,6 @@ class Builder {
 
   void read_scene(std::size_t k) {
     const json& item = j_["scenes"][k];
-    if (item["only_full"].get<bool>() && study_.length != StudyLength::Full) {
-      for (const auto& label : item["labels"].get<Words>()) labels_.insert(label);  // words of the study all the same
-      return;
-    }
     const std::string pointer = fmt::format("/scenes/{}", k), scene_file = item["file"].get<std::string>();
     std::filesystem::path path = scene_file;
     if (path.is_relative() && std::filesystem::exists(file_.parent_path() / path)) path = file_.parent_path() / path;
@@ -227,7 +223,8 @@ class Builder {
       v.labels.insert(v.labels.end(), labels.begin(), labels.end());
       v.labels.push_back(name + v.suffix);
       v.timed = item["timed"].get<bool>();
-      labels_.insert(v.labels.begin(), v.labels.end());
+      labels_.insert(v.labels.begin(), v.labels.end());  // words of the study also where it is left out
+      if (item["only_full"].get<bool>() && study_.length != StudyLength::Full) continue;
       if (!quick_.is_null() && !chosen(quick_["scenes"].get<Words>(), v.labels)) continue;
       add_forms(scenario, path.string(), v, pointer);
     }
