@@ -168,6 +168,7 @@ std::map<std::string, double> summarise(const CellSpec& spec, const Plan& plan, 
   summarise_pass(record.accuracy, spec.scene->time, s);
   s.merge(summarise_contact(*spec.scene, record.accuracy));
   s.merge(summarise_truth(*spec.scene, record.accuracy));
+  s.emplace("truth_quantity_error_max", kMissing);  // scenes may expect it
   s.merge(summarise_stability(*spec.scene, record.accuracy, record.outcome));
   for (const auto& [name, value] : spec.scene_values) s[name] = value;
   s["read_B_per_frame"] = bytes_per_frame(record.trials, &TimedTrial::stage_read_B);
