@@ -24,8 +24,8 @@ constexpr double kLeastMargin = 0.01;
 /// off the middle of a cell, where there is no point that could feel it.
 constexpr double kBorder = 0.72;
 
-/// Cosine of the turn between two triangles from which on their edge is sharp: 37 degrees.
-constexpr double kFlat = 0.8;
+/// Cosine of the turn between two triangles from which on their edge is sharp: 15 degrees.
+constexpr double kFlat = 0.966;
 
 /// Half the thickness of a fingertip.
 constexpr double kFinger_m = 0.008;

@@ -111,7 +111,7 @@ void ContactReference::add_mesh(std::size_t index, const V& at, double now, std:
       border = border || (w[i] == 0 && (marks_[index][k] >> i & 1) != 0);
       sharp = sharp || (w[i] == 0 && (marks_[index][k] >> (3 + i) & 1) != 0);
     }
-    const double share = sampling_ && !c.moves() && !border && !sharp ? 0.5 : 1;
+    const double share = sampling_ && !c.moves() && !border && !sharp ? 0.6 : 1;
     const double margin = border ? std::max(c.margin_m, border_margin_) : share * c.margin_m;
     all.push_back({d.norm(), d.normalized(), w[0] * way[0] + w[1] * way[1] + w[2] * way[2], margin, c.friction});
   }

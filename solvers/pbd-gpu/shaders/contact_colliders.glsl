@@ -32,6 +32,7 @@ const float kKeep = 0.02;
 // creep in the one between.
 const float kSlack = 0.05;
 const float kTolerance = 1e-4;  // a push by less is none
+const float kFlatShare = 0.6;  // what samples keep of the margin of what stands and is flat or round
 const float kTaken = 0.9;       // of the free way, the rest is left for rounding
 const float kOther = 0.8;       // cosine above which two normals are one contact's: neighbours in a nearly flat mesh
 const float kFar = 1e30;
@@ -159,7 +160,7 @@ void consider_triangle(uvec4 corners, bool moving, float reach, float margin, fl
   if ((corners.w & 7u) == 0u) {
     float share = 1.0;
 #ifdef SAMPLE
-    if (!moving && corners.w == 0u) share = 0.5;
+    if (!moving && corners.w == 0u) share = kFlatShare;
 #endif
     most = (1.0 + kSlack) * max(share * margin, p.least_margin_m);
   }
@@ -174,9 +175,9 @@ void consider_triangle(uvec4 corners, bool moving, float reach, float margin, fl
   uint sides = (w.x == 0.0 ? 1u : 0u) | (w.y == 0.0 ? 2u : 0u) | (w.z == 0.0 ? 4u : 0u);
   bool border = (corners.w & sides) != 0u;
 #ifdef SAMPLE
-  // Where what stands is flat or round a sample keeps half the margin: cloth whose vertices lie on it would be lifted off by the
+  // Where what stands is flat or round a sample keeps less than a vertex: cloth whose vertices lie on it would be lifted off by the
   // middles of its edges, and the two would hold it in turn.
-  if (!moving && !border && (corners.w >> 3u & sides) == 0u) margin *= 0.5;
+  if (!moving && !border && (corners.w >> 3u & sides) == 0u) margin *= kFlatShare;
 #endif
   if (border) margin = max(margin, p.border_margin_m);
   vec3 d = at - (w.x * a + w.y * b + w.z * c), flat_normal = cross(b - a, c - a);
