@@ -193,6 +193,10 @@ struct EdgeCell {
 };
 EdgeCell edge_cell(const Cloth&, const struct Edge&);
 
+/// Whether an edge lies along the border of a grid, where a spring stands for half as much cloth: never a diagonal, and never one of a
+/// mesh, whose areas say it already (see EdgeCell).
+bool on_border(const Cloth&, const struct Edge&);
+
 /// Turn [rad] from one row on the cylinder to the next, of a sheet that starts draped. Needs drape_radius_m > du/2.
 double drape_turn_rad(const Cloth&);
 /// Where row `i` of a draped sheet lies [m] that has run `offset_m` towards u1, middle line of the sheet.
