@@ -155,7 +155,7 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
     double least, links_a_substep;
   };
   const int k = quality == "fast" ? 0 : quality == "default" ? 1 : 2;
-  const bool touched = !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins})).empty();
+  const bool touched = !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins, Feature::SelfCollision})).empty();
   const bool tethered = settings.value("tethers", true) &&
                         (wants_chains(scene) ? tether_table(scene).a_vertex > 0 : !tethers_of(scene).to.empty());
   const auto Y = scene.material.membrane_stiffness_N_per_m;

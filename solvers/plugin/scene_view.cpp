@@ -61,6 +61,8 @@ SceneView::SceneView(const Scene& s)
   show(s.grips.vertices, v.grips, v.grip_count);
   show(colliders_, v.colliders, v.collider_count);
   v.poses = start_poses_.data();
+  v.self_thickness_m = s.cloth.self_collision.thickness_m;
+  v.self_friction = s.cloth.self_collision.friction;
 }
 
 void SceneView::add_edges(EdgeKind kind, std::vector<ClothbenchEdge>& out) {
