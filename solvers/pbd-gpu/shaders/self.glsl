@@ -5,8 +5,11 @@
 const float kSlack = 0.05;
 // Of the distance that layers lack, what one substep gives back.
 const float kPush = 0.5;
-// A certified way leaves this share of the distance at the substep's start.
-const float kLeft = 0.1;
+// A certified way leaves this share of the distance at the substep's start, and more of it where it is below a share of the
+// thickness: each substep leaves wishes time to push them apart again.
+const float kLeft = 0.1, kLeftNear = 0.5, kNear = 0.1;
+// Nothing comes nearer than this share of the thickness by its own way: before that, everything stops.
+const float kLast = 1e-3;
 // Nearer than this share of the thickness there is no direction left that float32 could tell.
 const float kTouching = 1e-4;
 
@@ -37,8 +40,10 @@ vec3 on_triangle(vec3 q, vec3 a, vec3 b, vec3 c) {
 vec2 on_edges(vec3 a, vec3 b, vec3 c, vec3 d) {
   vec3 u = b - a, v = d - c, r = a - c;
   float uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), ur = dot(u, r), vr = dot(v, r);
-  float area = uu * vv - uv * uv;
-  float s = area > 1e-6 * uu * vv ? clamp((uv * vr - ur * vv) / area, 0.0, 1.0) : 0.5;
+  // By cross products: uu vv - uv uv would lose its digits where edges are nearly parallel, as those of layers are.
+  vec3 across = cross(u, v);
+  float area = dot(across, across);
+  float s = area > 1e-12 * uu * vv ? clamp(-dot(across, cross(r, v)) / area, 0.0, 1.0) : 0.5;
   float t = vv > 0.0 ? (uv * s + vr) / vv : 0.0;
   if (t < 0.0 || t > 1.0) {
     t = clamp(t, 0.0, 1.0);

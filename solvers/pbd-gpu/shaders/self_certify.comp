@@ -14,13 +14,26 @@ layout(push_constant) uniform Push { SelfConstants p; };
 #include "self.glsl"
 #include "self_pieces.glsl"
 
+float free_share(float before) {
+  float left = before < kNear * p.thickness_m ? kLeftNear : kLeft;
+  return clamp(1.0 - kLast * p.thickness_m / before, 0.0, 1.0 - left);
+}
+
 /// The part of the way over which a plane across n is certain to stand between the two.
-float certain(bool edges, vec3 n) {
+float by_plane(bool edges, vec3 n) {
   float l = length(n);
   if (!(l > 0.0)) return 0.0;
-  float before = gap_along(edges, n / l, from), after = gap_along(edges, n / l, to);
-  if (!(before > kTouching * p.thickness_m)) return 0.0;
-  return after >= kLeft * before ? 1.0 : (1.0 - kLeft) * before / (before - after);
+  float before = gap_along(edges, n / l, from), after = gap_along(edges, n / l, to), share = free_share(before);
+  if (!(before > 0.0)) return 0.0;
+  return after >= (1.0 - share) * before ? 1.0 : share * before / (before - after);
+}
+
+/// The part of the way over which no point of one comes as near to a point of the other as they are, whatever the direction.
+float by_distance(bool edges, float d) {
+  float most = 0.0;
+  for (uint a = 0u; a < (edges ? 2u : 1u); ++a)
+    for (uint b = edges ? 2u : 1u; b < 4u; ++b) most = max(most, distance(to[a] - from[a], to[b] - from[b]));
+  return free_share(d) * d / max(most, 1e-30);
 }
 
 void meet(bool edges) {
@@ -29,12 +42,13 @@ void meet(bool edges) {
     if (inverse_mass[k] == 0.0 && to[k] != from[k]) return;
   bool inside;
   vec3 n = weighted(weights_of(edges, from, inside), from);
+  float d = length(n);
   // What touches already is nobody's to keep apart.
-  if (!(length(n) > 2.0 * kTouching * p.thickness_m)) return;
-  float most = certain(edges, n);
+  if (!(d > kTouching * p.thickness_m)) return;
+  float most = by_plane(edges, n);
   if (most == 1.0) return;
-  most = max(most, certain(edges, weighted(weights_of(edges, to, inside), to)));
-  if (most == 1.0 || most == 0.0) return;
+  most = max(most, max(by_plane(edges, weighted(weights_of(edges, to, inside), to)), by_distance(edges, d)));
+  if (most >= 1.0) return;
   COUNT_ATOMIC
   atomicMin(part[0], floatBitsToUint(most));
 }

@@ -14,6 +14,11 @@ void take(uint k, uint i) {
   from[k] = LOAD16(starts, i).xyz;
 }
 
+void put(uint k, uint i, vec3 at) {
+  who[k] = i;
+  from[k] = at;
+}
+
 /// The rest, once the pair is near.
 void take_ends() {
   for (uint k = 0u; k < 4u; ++k) {
@@ -23,12 +28,7 @@ void take_ends() {
   }
 }
 
-bool apart(vec3 low, vec3 high, uint first, uint count, float reach) {
-  vec3 other_low = from[first], other_high = other_low;
-  for (uint k = first + 1u; k < first + count; ++k) {
-    other_low = min(other_low, from[k]);
-    other_high = max(other_high, from[k]);
-  }
+bool apart(vec3 low, vec3 high, vec3 other_low, vec3 other_high, float reach) {
   vec3 d = max(max(low - other_high, other_low - high), 0.0);
   return dot(d, d) > reach * reach;
 }
@@ -37,36 +37,46 @@ bool apart(vec3 low, vec3 high, uint first, uint count, float reach) {
 #define KIND_TRIANGLE 1u  // against vertices
 #define KIND_EDGE 2u      // against edges; `later`: those with a higher number only
 
+/// All pieces of the kind's other kind that begin with vertex j.
 void meet_at(uint kind, uint own_number, uint j, vec3 low, vec3 high, float reach, bool later) {
+  vec3 at = LOAD16(starts, j).xyz;
   if (kind == KIND_TRIANGLE) {
-    if (j == who[1] || j == who[2] || j == who[3]) return;
-    take(0u, j);
-    if (apart(low, high, 0u, 1u, reach)) return;
+    if (j == who[1] || j == who[2] || j == who[3] || apart(low, high, at, at, reach)) return;
+    put(0u, j, at);
     take_ends();
     meet(false);
     return;
   }
+  bool right = j % p.columns + 1u < p.columns, down = j / p.columns + 1u < p.rows;
+  if (kind == KIND_VERTEX && !(right && down)) return;
+  uint b = j + (right ? 1u : 0u), d = j + (down ? p.columns : 0u), e = b + d - j;
+  vec3 at_b = LOAD16(starts, b).xyz, at_d = LOAD16(starts, d).xyz, at_e = LOAD16(starts, e).xyz;
+  if (apart(low, high, min(min(at, at_b), min(at_d, at_e)), max(max(at, at_b), max(at_d, at_e)), reach)) return;
   if (kind == KIND_VERTEX) {
-    if (!first_of(2u, j)) return;
-    for (uint half_cell = 0u; half_cell < 2u; ++half_cell) {
-      uvec3 c = corners_of(half_cell, j);
-      if (who[0] == c.x || who[0] == c.y || who[0] == c.z) continue;
-      take(1u, c.x);
-      take(2u, c.y);
-      take(3u, c.z);
-      if (apart(low, high, 1u, 3u, reach)) continue;
+    if (who[0] == j || who[0] == e) return;
+    put(1u, j, at);
+    if (who[0] != b && !apart(low, high, min(at, min(at_b, at_e)), max(at, max(at_b, at_e)), reach)) {
+      put(2u, b, at_b);
+      put(3u, e, at_e);
+      take_ends();
+      meet(false);
+    }
+    if (who[0] != d && !apart(low, high, min(at, min(at_d, at_e)), max(at, max(at_d, at_e)), reach)) {
+      put(2u, e, at_e);
+      put(3u, d, at_d);
       take_ends();
       meet(false);
     }
     return;
   }
+  if (j == who[0] || j == who[1]) return;
+  put(2u, j, at);
   for (uint family = 0u; family < 3u; ++family) {
-    if (!first_of(family, j) || (later && 3u * j + family <= own_number)) continue;
-    uint b = end_of(family, j);
-    if (j == who[0] || j == who[1] || b == who[0] || b == who[1]) continue;
-    take(2u, j);
-    take(3u, b);
-    if (apart(low, high, 2u, 2u, reach)) continue;
+    if ((family != 1u && !right) || (family != 0u && !down) || (later && 3u * j + family <= own_number)) continue;
+    uint end = family == 0u ? b : family == 1u ? d : e;
+    vec3 at_end = family == 0u ? at_b : family == 1u ? at_d : at_e;
+    if (end == who[0] || end == who[1] || apart(low, high, min(at, at_end), max(at, at_end), reach)) continue;
+    put(3u, end, at_end);
     take_ends();
     meet(true);
   }
