@@ -39,6 +39,8 @@ const std::vector<Gate>& gates() {
       {"tunnelled_depth_max_m", Rule::AtMost, 1e-3, Length, 0.1, true, "a millimetre on a cloth of 1 m"},
       {"wrong_side_fraction_*", Rule::AtMost, 2e-3, One, 0.1, true, "two vertices of a 32 × 32 cloth"},
       {"wrong_side_samples_max", Rule::AtMost, 4, One, 0.1, true, "two vertices and two cells"},
+      {"self_contact_pairs_*", Rule::AtMost, 4, One, 0.1, true, "four pairs of thousands"},
+      {"self_contact_length_*_m", Rule::AtMost, 1e-2, Length, 0.1, true, "a third of an edge of a 32 × 32 cloth"},
       {"contact_violated_longest_s", Rule::AtMost, 0.05, One, 0.25, false, "four frames at 72 Hz"},
       {"pop_speed_ratio", Rule::AtMost, 0.1, One, 0.25, false, "the fastest vertex of a moment"},
       {"slip_m", Rule::AtMost, 1e-2, Length, 0.5, false, "a fold that slides elsewhere"},

@@ -104,6 +104,7 @@ typedef struct ClothbenchScene {
   uint32_t collider_count;
   const ClothbenchCollider* colliders;
   const ClothbenchPose* poses; /* one a collider, at the start */
+  double self_thickness_m, self_friction; /* distance that two layers of the cloth keep, 0: it passes through itself; Coulomb's coefficient */
 } ClothbenchScene;
 
 /* One displayed frame; everything in it is at the frame's end. Between frames things move in straight lines. */

@@ -6,6 +6,7 @@
 
 #include "clothbench/error.hpp"
 #include "metrics/contact/contact_probe.hpp"
+#include "metrics/contact/contour.hpp"
 #include "metrics/contact/half_space.hpp"
 
 namespace clothbench {
@@ -138,6 +139,12 @@ SceneContact ColliderContact::probe(int frame, const std::vector<double>& positi
   // Nothing inside: no area to take a mean over, and a mean depth of 0 as the other depths. NaN stays NaN.
   all.depth_mean_m = all.area_m2 == 0 ? 0 : moment / all.area_m2;
   return all;
+}
+
+SelfContact self_contact(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  if (!contact::all_finite(positions)) return {kNaN, kNaN};
+  const contact::Contour c = contact::self_contour({positions, triangles});
+  return {c.length_m, static_cast<double>(c.pairs)};
 }
 
 }  // namespace clothbench

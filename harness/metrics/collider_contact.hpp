@@ -41,4 +41,7 @@ class ColliderContact {
   std::unique_ptr<Probes> probes_;
 };
 
+/// How a cloth of these triangles crosses itself; exact (contact::self_contour).
+SelfContact self_contact(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles);
+
 }  // namespace clothbench

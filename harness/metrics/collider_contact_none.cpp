@@ -11,6 +11,10 @@ ColliderContact::ColliderContact(const Scene&) { throw Error("this build has no 
 ColliderContact::~ColliderContact() = default;
 SceneContact ColliderContact::probe(int, const std::vector<double>&) { throw Error("this build has no contact metrics"); }
 
+SelfContact self_contact(const std::vector<double>&, const std::vector<std::array<std::uint32_t, 3>>&) {
+  throw Error("this build has no contact metrics");
+}
+
 struct ColliderPassage::Watch {};
 
 ColliderPassage::ColliderPassage(const Scene&, double) { throw Error("this build has no contact metrics"); }

@@ -34,6 +34,12 @@ struct ScenePassage {
   double slip_m;               ///< mean way that vertices which touch, now and a frame before, slid on the surface
 };
 
+/// How the cloth crosses itself in one frame; NaN if it is not finite.
+struct SelfContact {
+  double length_m;  ///< of the curves in which it does
+  double pairs;     ///< of triangles that meet and share no vertex
+};
+
 struct TruthErrors;
 struct StabilityFrame;
 
@@ -46,6 +52,7 @@ struct MetricFrame {
   const ScenePassage* passage = nullptr;  ///< the same
   const TruthErrors* truth = nullptr;  ///< null where the scene states no truth
   const StabilityFrame* stability = nullptr;  ///< null where the scene is not judged
+  const SelfContact* self_contact = nullptr;  ///< null where the scene's cloth does not touch itself
 };
 
 /// One number a frame. A scene pays for a metric only if `applies` says so. A state that is not finite gives NaN.

@@ -17,6 +17,7 @@ MetricPass::MetricPass(const MetricContext& context) : context_(context) {
     contact_ = std::make_unique<ColliderContact>(context.scene);
     passage_ = std::make_unique<ColliderPassage>(context.scene, context.settings.value("collision_margin_m", 0.0));
   }
+  if (kWithContactMetrics && context.scene.needs.has(Feature::SelfCollision)) triangles_ = triangles(context.scene.cloth);
   if (!context.scene.truth_card.empty()) judge_ = std::make_unique<TruthJudge>(context.scene);
   if (!context.scene.stability.name.empty()) stability_ = std::make_unique<StabilityJudge>(context_);
 }
@@ -28,13 +29,16 @@ void MetricPass::add(const ClothState& state) {
   if (contact_) contact = contact_->probe(frame_, state.position);
   ScenePassage passage{};
   if (passage_) passage = passage_->probe(frame_, state.position);
+  SelfContact self{};
+  if (!triangles_.empty()) self = self_contact(state.position, triangles_);
   TruthErrors truth;
   if (judge_) truth = judge_->judge(frame_, state);
   StabilityFrame stability;
   if (stability_) stability = stability_->judge(frame_, state, contact_ ? &contact : nullptr, judge_ ? &truth : nullptr);
   lost_ = lost_ || (stability.classes & 7u) != 0;
   const MetricFrame frame{context_, frame_, state, contact_ ? &contact : nullptr, passage_ ? &passage : nullptr,
-                          judge_ ? &truth : nullptr, stability_ ? &stability : nullptr};
+                          judge_ ? &truth : nullptr, stability_ ? &stability : nullptr,
+                          triangles_.empty() ? nullptr : &self};
   for (std::size_t m = 0; m < wanted_.size(); ++m) series_[m].values.push_back(wanted_[m]->value(frame));
   ++frame_;
 }

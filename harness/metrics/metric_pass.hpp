@@ -38,6 +38,7 @@ class MetricPass {
   std::unique_ptr<ColliderPassage> passage_;  ///< the same
   std::unique_ptr<TruthJudge> judge_;         ///< null where the scene states no truth
   std::unique_ptr<StabilityJudge> stability_;  ///< null where the scene is not judged
+  std::vector<std::array<std::uint32_t, 3>> triangles_;  ///< empty where the cloth does not touch itself
   bool lost_ = false;
   int frame_ = 0;
 };

@@ -52,6 +52,12 @@ auto passage(double ScenePassage::*field) {
   return [field](const MetricFrame& f) { return f.passage->*field; };
 }
 
+bool touches_itself(const Scene& s) { return kWithContactMetrics && s.needs.has(Feature::SelfCollision); }
+
+auto of_itself(double SelfContact::*field) {
+  return [field](const MetricFrame& f) { return f.self_contact->*field; };
+}
+
 bool folds(const Scene& s) { return touches(s) && std::min(s.cloth.columns, s.cloth.rows) >= kFoldCells + 1; }
 
 bool has_truth(const Scene& s) { return !s.truth_card.empty(); }
@@ -102,6 +108,8 @@ const std::vector<Metric>& metrics() {
       {"wrong_side_samples", "1", "vertices and cell centres on the wrong side", can_be_passed, passage(&ScenePassage::wrong_side_samples)},
       {"touching_fraction", "1", "share of the cloth within the margin of a collider", touches, passage(&ScenePassage::touching_fraction)},
       {"slip_m", "m", "mean way that touching vertices slid on the surface in the frame", has_friction, passage(&ScenePassage::slip_m)},
+      {"self_contact_length_m", "m", "length of the curves in which the cloth crosses itself", touches_itself, of_itself(&SelfContact::length_m)},
+      {"self_contact_pairs", "1", "pairs of triangles of the cloth that meet and share no vertex", touches_itself, of_itself(&SelfContact::pairs)},
       {"grip_error_m", "m", "greatest distance of a held vertex from where it is held", [](const Scene& s) { return !s.grips.vertices.empty(); }, grip_error},
       {"fold_angle_rms_rad", "rad", "root mean square angle between the normals of neighbouring cells", folds, fold_angle_rms},
       {"fold_roughness", "1", "share of that angle at wavelengths of up to two cells", folds, fold_roughness},

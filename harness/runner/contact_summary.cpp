@@ -101,6 +101,20 @@ void summarise_violation(const AccuracyPass& pass, std::map<std::string, double>
   s["untangle_s"] = bad.back() ? std::numeric_limits<double>::infinity() : end - first;
 }
 
+/// What the cloth crosses of itself beyond what it did at the start.
+void summarise_self_contact(const Scene& scene, const AccuracyPass& pass, std::map<std::string, double>& s) {
+  const std::vector<double>*length = find(pass, "self_contact_length_m"), *pairs = find(pass, "self_contact_pairs");
+  if (length == nullptr || pairs == nullptr) return;
+  const auto beyond = [](const std::vector<double>& v, double value) { return max_or_nan(0, value - v.front()); };
+  s["self_contact_pairs_max"] = beyond(*pairs, greatest(pairs));
+  s["self_contact_pairs_end"] = beyond(*pairs, pairs->back());
+  s["self_contact_length_max_m"] = beyond(*length, greatest(length));
+  if (pass.time_s.size() != static_cast<std::size_t>(scene.time.frames()) + 1) return;
+  std::size_t from = pass.time_s.size() - 1;
+  while (from > 0 && pass.time_s[from - 1] >= pass.time_s.back() - kSettled_s - 0.5 * scene.time.dt()) --from;
+  s["self_contact_length_settled_m"] = beyond(*length, greatest(length, from));
+}
+
 /// Over the last half second: how the cloth trembles (second differences, which a steady drift leaves 0), how it creeps.
 void summarise_rest(const Scene& scene, const AccuracyPass& pass, std::map<std::string, double>& s) {
   const std::size_t vertices = scene.cloth.vertex_count(), frames = pass.time_s.size();
@@ -204,8 +218,10 @@ std::map<std::string, double> summarise_contact(const Scene& scene, const Accura
   for (const char* name : {"imposed_speed_m_per_s", "wrong_side_samples_max", "wrong_side_fraction_max", "wrong_side_fraction_end", "fold_roughness_end",
                            "fold_angle_rms_end_rad", "contact_length_mean_m", "depth_time_mean_m", "contact_violated_longest_s", "untangle_s",
                            "pop_displacement_m", "pop_speed_m_per_s", "pop_speed_ratio", "rest_jitter_m", "rest_drift_m_per_s", "slip_m",
-                           "slip_settled_m", "grip_error_max_m", "grip_edge_ratio_max", "grip_edge_ratio_held", "strain_mean_released"})
+                           "slip_settled_m", "grip_error_max_m", "grip_edge_ratio_max", "grip_edge_ratio_held", "strain_mean_released",
+                           "self_contact_pairs_max", "self_contact_pairs_end", "self_contact_length_max_m", "self_contact_length_settled_m"})
     s[name] = kMissing;
+  summarise_self_contact(scene, pass, s);
   if (scene.colliders.empty() && scene.grips.vertices.empty()) return s;
   s["imposed_speed_m_per_s"] = imposed_speed(scene);
   if (!scene.grips.vertices.empty()) summarise_grips(scene, pass, s);

@@ -86,6 +86,7 @@ class Changer {
     scale(j, "areal_density_kg_per_m2", c_.mass / (c_.length * c_.length));
     pose["center_m"] = place(pose["center_m"]);
     for (const char* axis : {"axis_u", "axis_v"}) pose[axis] = c_.turned(vec3(pose[axis]));
+    if (j.contains("self_collision")) scale(j["self_collision"], "thickness_m", c_.length);
     scale(pose, "span_m", c_.length);
     if (pose.contains("drape"))
       for (const char* key : {"radius_m", "offset_m"}) scale(pose["drape"], key, c_.length);

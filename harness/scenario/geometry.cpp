@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "clothbench/scene.hpp"
@@ -141,6 +142,25 @@ std::vector<double> vertex_masses(const Scene& scene) {
     for (int i = 0; i < c.columns; ++i) mass.push_back(cell * widths[static_cast<std::size_t>(i)] * share(j, c.rows));
   for (std::size_t v = 0; v < c.mass_factors.size(); ++v) mass[v] *= c.mass_factors[v];
   return mass;
+}
+
+double Cloth::least_height_m() const {
+  double least = std::numeric_limits<double>::infinity();
+  if (mesh)
+    for (const auto& t : mesh->triangles) {
+      const Vec3 &a = mesh->vertices[t[0]], &b = mesh->vertices[t[1]], &p = mesh->vertices[t[2]];
+      const Vec3 u = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+      const double twice_area = std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
+      const double longest = std::max({std::hypot(u[0], u[1], u[2]), std::hypot(v[0], v[1], v[2]),
+                                       std::hypot(v[0] - u[0], v[1] - u[1], v[2] - u[2])});
+      least = std::min(least, twice_area / longest);
+    }
+  else
+    for (int i = 0; i + 1 < columns; ++i) {
+      const double du = line_u_m(i + 1) - line_u_m(i);
+      least = std::min(least, du * dv() / std::hypot(du, dv()));
+    }
+  return least;
 }
 
 std::vector<std::array<std::uint32_t, 3>> triangles(const Cloth& c) {

@@ -120,6 +120,17 @@ Cloth read_cloth(json& j, const std::string& source) {
   return c;
 }
 
+/// Of a cloth whose cells are known. A thicker one would touch itself where it lies flat.
+void read_self_collision(const json& cloth, Cloth& c, const std::string& source) {
+  if (!cloth.contains("self_collision")) return;
+  c.self_collision = {cloth["self_collision"]["thickness_m"].get<double>(), cloth["self_collision"]["friction"].get<double>()};
+  const double most = c.least_height_m();
+  if (!(c.self_collision.thickness_m <= most))
+    refuse(source, "/cloth/self_collision/thickness_m",
+           fmt::format("expected at most the least height of a triangle, {:.6g} m, or the cloth would touch itself where it lies flat; found {:.6g}",
+                       most, c.self_collision.thickness_m));
+}
+
 /// The schema knows the names; here the bounds must leave something between them.
 void read_expect(const json& j, Scene& s, const std::string& source) {
   for (const auto& [name, bounds] : j.items()) {
@@ -193,6 +204,8 @@ FeatureSet derive_needs(const Scene& scene) {
     needs.add(c.feature());
     if (c.friction > 0) needs.add(Feature::Friction);
   }
+  if (scene.cloth.self_collision.thickness_m > 0) needs.add(Feature::SelfCollision);
+  if (scene.cloth.self_collision.friction > 0) needs.add(Feature::Friction);
   if (!scene.cloth.column_factors.empty()) needs.add(Feature::UnevenGrid);
   if (!scene.material.regions.empty()) needs.add(Feature::Regions);
   if (scene.cloth.spin_rad_per_s != Vec3{}) needs.add(Feature::Spin);
@@ -262,6 +275,7 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
     refuse(source, "/material/regions", "columns are of grids alone; a mesh has one stiffness");
   if (s.cloth.mesh && scenario.contains("truth")) refuse(source, "/truth", "the cards are of grids alone");
   read_irregular(scenario, s, source);
+  read_self_collision(scenario["cloth"], s.cloth, source);
   s.pins = read_pins(scenario["pins"], s.cloth, source);
   if (scenario.contains("expect")) read_expect(scenario["expect"], s, source);
   s.gravity_m_per_s2 = vec3(scenario["gravity_m_per_s2"]);

@@ -140,6 +140,14 @@ EdgeCell edge_cell(const Cloth& c, const Edge& e) {
   return {e.rest_m, (width(std::max(a - 1, 0)) + width(std::min(a, c.columns - 2))) / 2};
 }
 
+bool on_border(const Cloth& c, const Edge& e) {
+  if (c.mesh) return false;
+  const auto columns = static_cast<std::uint32_t>(c.columns), rows = static_cast<std::uint32_t>(c.rows);
+  const std::uint32_t ia = e.a % columns, ja = e.a / columns, ib = e.b % columns, jb = e.b / columns;
+  if (ja == jb) return ja == 0 || ja == rows - 1;
+  return ia == ib && (ia == 0 || ia == columns - 1);
+}
+
 std::optional<double> membrane_stiffness(const Scene& scene, const Edge& e) {
   const Material& m = scene.material;
   if (scene.cloth.mesh) return m.membrane_stiffness_N_per_m;

@@ -53,16 +53,13 @@ class LinkStiffness {
     const auto [own, other] = edge_cell(c, e);
     const double y = membrane_stiffness(s_, e).value_or(kStiff_N_per_m);
     if (e.kind == EdgeKind::Shear) return 3.0 / 16 * y * (own * own + other * other) / (own * other);
-    const auto columns = static_cast<std::uint32_t>(c.columns), last_row = static_cast<std::uint32_t>(c.rows) - 1;
-    const bool along_u = e.a / columns == e.b / columns;
-    const std::uint32_t line = along_u ? e.a / columns : e.a % columns;
-    const bool border = line == 0 || line == (along_u ? last_row : columns - 1);
+    const double share = on_border(c, e) ? 0.5 : 1;
     if (e.kind == EdgeKind::SkipOne) {
       const double cell = own / 2;
-      return s_.material.bending_rigidity_N_m * other / (cell * cell * cell) * (border ? 0.5 : 1);
+      return s_.material.bending_rigidity_N_m * other / (cell * cell * cell) * share;
     }
-    if (!s_.needs.has(Feature::Shear)) return y * other / own * (border ? 0.5 : 1);
-    return std::max(y * (9.0 / 8 * other / own - 3.0 / 8 * own / other), 0.1 * y * other / own) * (border ? 0.5 : 1);
+    if (!s_.needs.has(Feature::Shear)) return y * other / own * share;
+    return std::max(y * (9.0 / 8 * other / own - 3.0 / 8 * own / other), 0.1 * y * other / own) * share;
   }
 
  private:

@@ -107,14 +107,6 @@ std::vector<Strand> mesh_strands(const ClothMesh& m) {
   return out;
 }
 
-bool on_border(const Cloth& c, const Edge& e) {
-  if (c.mesh) return false;
-  const auto columns = static_cast<std::uint32_t>(c.columns), rows = static_cast<std::uint32_t>(c.rows);
-  const std::uint32_t ia = e.a % columns, ja = e.a / columns, ib = e.b % columns, jb = e.b / columns;
-  if (ja == jb) return ja == 0 || ja == rows - 1;
-  return ia == ib && (ia == 0 || ia == columns - 1);
-}
-
 /// 1/k of a link [m/N]: the springs of lines.cpp, cell by cell.
 double compliance_of(const Scene& s, const Edge& e) {
   const auto Y = membrane_stiffness(s, e);

@@ -15,6 +15,7 @@ namespace clothbench::pbd_gpu {
 inline constexpr std::uint32_t kGroupSize = 64;
 
 class XpbdContact;
+class XpbdSelfContact;
 class Lines;
 class Chains;
 
@@ -123,6 +124,7 @@ class GpuSolver : public ClothSolver {
  private:
   friend ColliderBuffers;
   friend XpbdContact;
+  friend XpbdSelfContact;
   friend Lines;
   friend Chains;
   friend GripBuffer;

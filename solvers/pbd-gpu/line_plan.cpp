@@ -144,6 +144,20 @@ long substeps_for_speed(const Scene& scene, int quality) {
   return std::lround(std::min(kMost, std::ceil(collider_speed_m_per_s(scene) * scene.time.dt() / (kMargins[quality] * margin))));
 }
 
+double length(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }
+
+/// Layers that come closer by more than this share of their thickness in a substep leave wishes too much to do, and the cloth is slowed
+/// down (README, "Self-collision in xpbd"). How fast they may be: what the scene gives them, a fall of the cloth's length, and what moves.
+double substeps_for_layers(const Scene& scene) {
+  constexpr double kMostWay = 2.0 / 3;
+  const Cloth& c = scene.cloth;
+  const double longer = std::max(c.width_m, c.height_m);
+  const double speed = length(c.initial_velocity_m_per_s) + length(c.spin_rad_per_s) * longer +
+                       std::sqrt(2 * length(scene.gravity_m_per_s2) * longer) +
+                       std::max(grip_speed_m_per_s(scene), collider_speed_m_per_s(scene));
+  return std::ceil(speed * scene.time.dt() / (kMostWay * c.self_collision.thickness_m) - 1e-9);
+}
+
 }  // namespace
 
 int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
@@ -155,7 +169,7 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
     double least, links_a_substep;
   };
   const int k = quality == "fast" ? 0 : quality == "default" ? 1 : 2;
-  const bool touched = !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins})).empty();
+  const bool touched = !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins, Feature::SelfCollision})).empty();
   const bool tethered = settings.value("tethers", true) &&
                         (wants_chains(scene) ? tether_table(scene).a_vertex > 0 : !tethers_of(scene).to.empty());
   const auto Y = scene.material.membrane_stiffness_N_per_m;
@@ -177,7 +191,8 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   // Few substeps leave the links at the pins most, which carry more the finer the cloth is.
   const double fine = k == 0 && rule.links_a_substep == kStiff[0].links_a_substep && links > 300 ? 1.2 : 1;
   const double short_links = wants_chains(scene) ? substeps_for_short_links(scene) : 1;
-  const double per_frame = short_links * std::max(rule.least, fine * links / rule.links_a_substep);
+  double per_frame = short_links * std::max(rule.least, fine * links / rule.links_a_substep);
+  if (scene.needs.has(Feature::SelfCollision)) per_frame = std::max(per_frame, substeps_for_layers(scene));
   return static_cast<int>(std::clamp(std::max(std::lround(per_frame), substeps_for_speed(scene, k)), 1L, 4096L));
 }
 

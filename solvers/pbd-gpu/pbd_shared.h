@@ -191,7 +191,21 @@ struct ContactConstants {
   float sample_reach_m;  // farthest a sample lies from its first vertex
 };
 
+/// Push constants of the self-contact kernels of `xpbd`.
+struct SelfConstants {
+  uint columns, rows;
+  uint side;           // of a block, in vertices
+  uint block_columns, blocks;
+  uint words;          // 32-bit words of blocks that a block may touch
+  float thickness_m, friction;
+  float h;             // substep [s]
+  float reach_m;       // farther apart than this, and what they close in on each other, no two pieces concern each other
+  float most_m;        // that a vertex is moved by one round of wishes
+  uint unused0;
+};
+
 #ifdef __cplusplus
+static_assert(sizeof(SelfConstants) == 48);
 static_assert(sizeof(MeshCluster) == 16);
 static_assert(sizeof(ClusterBox) == 32);
 static_assert(sizeof(BoxConstants) == 8);

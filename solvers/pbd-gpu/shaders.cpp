@@ -186,6 +186,55 @@ CODE(contact_vertices_mesh_counted)
 }
 ;
 
+CODE(self_blocks)
+#include "self_blocks.inc"
+}
+;
+CODE(self_blocks_counted)
+#include "self_blocks_counted.inc"
+}
+;
+CODE(self_near)
+#include "self_near.inc"
+}
+;
+CODE(self_near_counted)
+#include "self_near_counted.inc"
+}
+;
+CODE(self_wishes)
+#include "self_wishes.inc"
+}
+;
+CODE(self_wishes_counted)
+#include "self_wishes_counted.inc"
+}
+;
+CODE(self_apply)
+#include "self_apply.inc"
+}
+;
+CODE(self_apply_counted)
+#include "self_apply_counted.inc"
+}
+;
+CODE(self_certify)
+#include "self_certify.inc"
+}
+;
+CODE(self_certify_counted)
+#include "self_certify_counted.inc"
+}
+;
+CODE(self_move)
+#include "self_move.inc"
+}
+;
+CODE(self_move_counted)
+#include "self_move_counted.inc"
+}
+;
+
 CODE(line_frame)
 #include "line_frame.inc"
 }
@@ -316,6 +365,12 @@ SHADER(kContactBoxes, contact_boxes);
 SHADER(kChainPass, chain_pass);
 SHADER(kChainsResident, chain_pass_resident);
 SHADER(kWeld, weld);
+SHADER(kSelfBlocks, self_blocks);
+SHADER(kSelfNear, self_near);
+SHADER(kSelfWishes, self_wishes);
+SHADER(kSelfApply, self_apply);
+SHADER(kSelfCertify, self_certify);
+SHADER(kSelfMove, self_move);
 // Bytes are counted without shuffles: what lanes load together counts once.
 #define SHUFFLED(id) {#id "_shuffle", {id##_shuffle, sizeof id##_shuffle}, {id##_counted, sizeof id##_counted}}
 const Shader kContactCandidates[2] = {CODES(contact_candidates), SHUFFLED(contact_candidates)};

@@ -12,7 +12,8 @@ struct Shader {
 namespace shaders {
 extern const Shader kApplyExternalForces, kDampVelocities, kApplyExplicitEuler, kProjectConstraintDeltas,
     kProjectConstraintDeltasNative, kAverageConstraintDeltas, kUpdatePositions, kSkinMesh, kSkinMeshKeepStart, kMoveGrips,
-    kSatisfySphereCollisions, kSatisfyCubeCollisions, kSatisfyCapsuleCollisions, kSatisfyMeshCollisions, kContactBoxes, kChainPass, kChainsResident, kWeld;
+    kSatisfySphereCollisions, kSatisfyCubeCollisions, kSatisfyCapsuleCollisions, kSatisfyMeshCollisions, kContactBoxes, kChainPass, kChainsResident, kWeld,
+    kSelfBlocks, kSelfNear, kSelfWishes, kSelfApply, kSelfCertify, kSelfMove;
 
 /// By whether there are meshes [0] and whether lanes share a point by shuffles [1].
 extern const Shader kContactCandidates[2], kContactSamples[2][2], kContactVertices[2][2];

@@ -7,6 +7,7 @@
 #include "line_plan.hpp"
 #include "lines.hpp"
 #include "xpbd_contact.hpp"
+#include "xpbd_self_contact.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -64,6 +65,10 @@ class Xpbd final : public GpuSolver {
     else
       contact_ = std::make_unique<XpbdContact>(*this, scene(), origin, *colliders(), *x_, *v_,
                                                settings()["contact_samples"].get<int>());
+    if (scene().needs.has(Feature::SelfCollision))
+      self_contact_ = std::make_unique<XpbdSelfContact>(*this, scene(), *x_, *v_);
+    else
+      leave_out("self-contact", "the cloth of the scene does not touch itself");
   }
 
   /// What chains do not do: more iterations with multipliers kept, copies, bending, contact between the vertices of a mesh.
@@ -90,11 +95,13 @@ class Xpbd final : public GpuSolver {
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
     if (contact_) contact_->record_frame(dt_s, substeps);
-    if (lines_ && lines_->whole_frame() && !contact_) {
+    if (self_contact_) self_contact_->record_frame();
+    const bool touches = contact_ || self_contact_;
+    if (lines_ && lines_->whole_frame() && !touches) {
       lines_->record(0, substeps, substeps, dt_s);
       return;
     }
-    if (chains_ && chains_->whole_frame() && !contact_) {
+    if (chains_ && chains_->whole_frame() && !touches) {
       chains_->record(substeps, substeps, dt_s);
       return;
     }
@@ -106,6 +113,7 @@ class Xpbd final : public GpuSolver {
       else
         chains_->record(1, substeps, dt_s);
       if (contact_) contact_->record_substep(s, substeps, dt_s);
+      if (self_contact_) self_contact_->record_substep(dt_s / substeps);
     }
   }
 
@@ -124,6 +132,7 @@ class Xpbd final : public GpuSolver {
   std::unique_ptr<Lines> lines_;    ///< or
   std::unique_ptr<Chains> chains_;  ///< if links are not all alike
   std::unique_ptr<XpbdContact> contact_;
+  std::unique_ptr<XpbdSelfContact> self_contact_;
   vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *rx_ = nullptr, *rv_ = nullptr;
   const vulkan::Kernel* move_grips_ = nullptr;
 };
@@ -141,7 +150,7 @@ SolverInfo xpbd_info() {
   info.supports = {Feature::Stretch,    Feature::Shear,      Feature::Bend,     Feature::Damping,    Feature::Pins,
                    Feature::MovingPins, Feature::Sphere,     Feature::Box,      Feature::Plane,      Feature::Capsules,
                    Feature::StaticMesh, Feature::MovingMesh, Feature::Friction, Feature::DoubleSided, Feature::Spin,
-                   Feature::UnevenGrid, Feature::Regions,    Feature::ClothMesh};
+                   Feature::UnevenGrid, Feature::Regions,    Feature::ClothMesh, Feature::SelfCollision};
   info.settings = {
       {"quality", "\"default\"", "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
       {"substeps", "0", "substeps a frame; 0: by quality"},

@@ -11,14 +11,6 @@ static_assert(sizeof(Capsule) == 7 * sizeof(double) && sizeof(Vec3) == 3 * sizeo
 static_assert(static_cast<int>(Collider::Shape::Plane) == CLOTHBENCH_SHAPE_PLANE &&
               static_cast<int>(Collider::Shape::Mesh) == CLOTHBENCH_SHAPE_MESH);
 
-bool on_border(const Cloth& c, const Edge& e) {
-  if (c.mesh) return false;
-  const auto columns = static_cast<std::uint32_t>(c.columns), rows = static_cast<std::uint32_t>(c.rows);
-  const bool along_u = e.a / columns == e.b / columns;
-  const std::uint32_t line = along_u ? e.a / columns : e.a % columns;
-  return line == 0 || line == (along_u ? rows : columns) - 1;
-}
-
 /// The piece of cloth that a skip edge stands for, on a grid of even cells.
 EdgeCell skip_cell(const Cloth& c, const Edge& e) {
   const bool along_u = e.b - e.a == 2;
@@ -69,6 +61,8 @@ SceneView::SceneView(const Scene& s)
   show(s.grips.vertices, v.grips, v.grip_count);
   show(colliders_, v.colliders, v.collider_count);
   v.poses = start_poses_.data();
+  v.self_thickness_m = s.cloth.self_collision.thickness_m;
+  v.self_friction = s.cloth.self_collision.friction;
 }
 
 void SceneView::add_edges(EdgeKind kind, std::vector<ClothbenchEdge>& out) {

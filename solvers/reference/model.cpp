@@ -20,14 +20,6 @@ double stiffness(const Scene& s, const Edge& e) {
   return Y * std::max(9.0 / 8 * b / a - 3.0 / 8 * a / b, 0.1 * b / a);
 }
 
-bool on_border(const Cloth& c, const Edge& e) {
-  if (c.mesh) return false;
-  const auto columns = static_cast<std::uint32_t>(c.columns), rows = static_cast<std::uint32_t>(c.rows);
-  const std::uint32_t ia = e.a % columns, ja = e.a / columns, ib = e.b % columns, jb = e.b / columns;
-  if (ja == jb) return ja == 0 || ja == rows - 1;
-  return ia == ib && (ia == 0 || ia == columns - 1);
-}
-
 bool pinned(std::uint32_t v, const Scene& s) {
   return std::binary_search(s.pins.vertices.begin(), s.pins.vertices.end(), v);
 }

@@ -38,8 +38,8 @@ Scene with_all(const std::string& scene, const SolverInfo& info) {
 TEST(Irrelevant, AddsWhatTheSceneLacksFarAway) {
   const SolverInfo& info = find_solver("xpbd").info;
   const Scene plain = load_scene("validation/swing-strip"), all = with_all("validation/swing-strip", info);
-  // Shear, moving pins, a start that turns, cells, stiffness and triangles of their own are the cloth itself.
-  EXPECT_EQ(info.supports - all.needs, (FeatureSet{Feature::Shear, Feature::MovingPins, Feature::Spin, Feature::UnevenGrid, Feature::Regions, Feature::ClothMesh}));
+  // Shear, moving pins, a start that turns, cells, stiffness and triangles of their own, and layers that meet are the cloth itself.
+  EXPECT_EQ(info.supports - all.needs, (FeatureSet{Feature::Shear, Feature::MovingPins, Feature::Spin, Feature::UnevenGrid, Feature::Regions, Feature::ClothMesh, Feature::SelfCollision}));
   EXPECT_TRUE((plain.needs - all.needs).empty());
   EXPECT_EQ(all.truth_card, "");
   for (const FrameMotion& m : all.motion)

@@ -74,6 +74,7 @@ TEST(ContactScene, ASheetLoweredIntoASphereGivesTheClosedForms) {
   EXPECT_NEAR(at("depth_p99_m"), 0.1 - std::sqrt(0.0081 + 0.01 * 0.0019), 1e-4);
   EXPECT_TRUE(std::isnan(at("tunnelled_fraction_max"))) << "not defined for a sphere";
   EXPECT_FALSE(has_series(r, "tunnelled_fraction"));
+  EXPECT_FALSE(has_series(r, "self_contact_pairs")) << "who does not ask does not pay";
   EXPECT_NEAR(at("stretch_max"), 0, 1e-12);
   EXPECT_EQ(r.outcome.expect, "kept");
   EXPECT_EQ(at("expect.outcome"), 1);
@@ -115,6 +116,67 @@ TEST(ContactScene, ANaNIsInTheSummaryAndBreaksTheExpectation) {
             "broken: outcome not_finite, expected ok; contact_length_settled_m has no value; depth_max_m has no value");
   EXPECT_EQ(r.summary.at("expect.outcome"), 0);
   EXPECT_EQ(r.summary.at("expect.depth_max_m"), 0);
+}
+
+const char* const kSelfScene = R"({"name":"over","why":"A sheet laid over itself.",
+  "cloth":{"grid":[17,9],"size_m":[1,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","self_collision":{"thickness_m":0.002}},
+  "material":{"membrane_stiffness_N_per_m":1000},"time":{"frame_rate_hz":20,"duration_s":1},
+  "expect":{"outcome":"ok","self_contact_pairs_max":{"at_most":0}}})";
+
+/// Its right half is laid over its left half, 5 cm above; in frames 5 to 9 its far end dips through, if `through`.
+Path laid_over(bool through) {
+  return [through](int frame, std::vector<double>& x) {
+    for (std::size_t v = 0; v < x.size(); v += 3) {
+      const double u = x[v] + 0.5;
+      if (u <= 0.5) continue;
+      x[v] = 0.5 - u;
+      x[v + 1] += 0.05 - (through && frame >= 5 && frame < 10 ? 0.26 * (u - 0.5) : 0);
+    }
+  };
+}
+
+// Level below, tilted above: they cross along one line as long as the sheet is wide.
+TEST(ContactScene, ASheetThatCrossesItselfSaysHowFar) {
+  const ScratchFolder folder;
+  const CellRecord r = run(load_scene(folder.file("scene.json", kSelfScene)), prescribed(laid_over(true)), folder);
+  EXPECT_EQ(series(r, "self_contact_pairs")[4], 0);
+  EXPECT_NEAR(series(r, "self_contact_length_m")[7], 0.5, 1e-9);
+  EXPECT_EQ(series(r, "self_contact_length_m")[10], 0);
+  EXPECT_NEAR(r.summary.at("self_contact_length_max_m"), 0.5, 1e-9);
+  EXPECT_GE(r.summary.at("self_contact_pairs_max"), 16);
+  EXPECT_EQ(r.summary.at("self_contact_pairs_end"), 0);
+  EXPECT_EQ(r.summary.at("self_contact_length_settled_m"), 0);
+  EXPECT_EQ(r.summary.at("expect.self_contact_pairs_max"), 0);
+  EXPECT_FALSE(has_series(r, "contact_length_m")) << "it touches nothing but itself";
+}
+
+TEST(ContactScene, ASheetLaidOverItselfCrossesNowhere) {
+  const ScratchFolder folder;
+  const CellRecord r = run(load_scene(folder.file("scene.json", kSelfScene)), prescribed(laid_over(false)), folder);
+  EXPECT_EQ(r.summary.at("self_contact_length_max_m"), 0);
+  EXPECT_EQ(r.outcome.expect, "kept");
+}
+
+TEST(ContactScene, WhatACrossedStartHasIsNotNew) {
+  const ScratchFolder folder;
+  const Path through = laid_over(true);
+  const auto always = [through](int, std::vector<double>& x) { through(5, x); };
+  const CellRecord r = run(load_scene(folder.file("scene.json", kSelfScene)), prescribed(always), folder);
+  EXPECT_GE(series(r, "self_contact_pairs")[0], 16);
+  EXPECT_EQ(r.summary.at("self_contact_pairs_max"), 0);
+  EXPECT_EQ(r.outcome.expect, "kept");
+}
+
+TEST(ContactScene, NoNumberIsNoSelfContactKept) {
+  const ScratchFolder folder;
+  const CellRecord r = run(load_scene(folder.file("scene.json", kSelfScene)),
+                           prescribed([](int frame, std::vector<double>& x) {
+                             if (frame >= 3) x[4] = kMissing;
+                           }),
+                           folder);
+  EXPECT_TRUE(std::isnan(r.summary.at("self_contact_pairs_max")));
+  EXPECT_TRUE(std::isnan(r.summary.at("self_contact_length_max_m")));
+  EXPECT_EQ(r.summary.at("expect.self_contact_pairs_max"), 0);
 }
 
 // A curtain of 1 m through the middle of an open patch, half-way and back.

@@ -29,6 +29,8 @@ std::vector<Cell> cells() {
           {"xpbd", {{"substeps", 2}}, everything(full)},
           {"xpbd", {{"substeps", 2}, {"contact_samples", 0}}, everything(full)},
           {"xpbd", {{"substeps", 2}}, everything(mesh_sheet(7))},
+          {"xpbd", {{"substeps", 2}}, folded(with_pins(sheet(9, 7)), 0.1, 0.3)},
+          {"xpbd", {{"substeps", 2}}, everything(folded(with_pins(sheet(9, 7))))},
           {"xpbd", {{"substeps", 2}}, with_pins(with_damping(uneven(sheet(17, 5), 3, 1e-3)))},
           {"xpbd", {{"substeps", 2}}, moving(with_collider(full, sphere({0, 0, 0}, 0.1)), {3, 20}, 2)}};
 }

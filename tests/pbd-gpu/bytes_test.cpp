@@ -27,7 +27,7 @@ class Bytes : public Gpu {
       const StagePlan& s = plan.stages[k];
       if (s.dispatches == 0) continue;  // a copy, not a kernel
       // How many triangles of a mesh are near is the cloth's affair: what is declared there is what every frame reads.
-      if (solver_name == "xpbd" && s.name == "Contact") {
+      if (solver_name == "xpbd" && (s.name == "Contact" || s.name == "SelfContact")) {
         EXPECT_GE(counted[k].read_B, costs[k].read_B);
         EXPECT_GT(costs[k].read_B, 0);
       } else {
@@ -75,6 +75,11 @@ TEST_F(Bytes, OfContactInXpbdAreCertainOrMore) {
       for (const Scene& s : {everything(with_pins(sheet(columns, rows))),
                              moving(with_collider(with_pins(sheet(columns, rows)), sphere({0, 0.3, 0}, 0.1)), {2}, 1)})
         expect_equal("xpbd", s, {{"substeps", 2}, {"contact_samples", samples}}, 2);
+}
+
+TEST_F(Bytes, OfSelfContactAreCertainOrMore) {
+  for (const auto& [columns, rows] : {std::pair{3, 2}, {9, 7}, {12, 17}})
+    expect_equal("xpbd", folded(with_pins(sheet(columns, rows))), {{"substeps", 1}}, 2);
 }
 
 TEST_F(Bytes, OfHeldVerticesBeforeAndAfterTheyAreLetGo) {

@@ -114,6 +114,18 @@ inline ColliderPose pose_at(const Collider& c, int k) {
   return pose;
 }
 
+/// Folded over a line along v, its layers `apart` m apart across `normal`, and in contact with itself.
+inline Scene folded(Scene s, double apart = 0.1, double friction = 0) {
+  Cloth& c = s.cloth;
+  c.axis_u = {0, 1, 0};
+  c.axis_v = {0, 0, 1};
+  c.drape_radius_m = std::max(apart / 2, 0.51 * c.du());
+  c.self_collision = {0.5 * c.least_height_m(), friction};
+  s.needs.add(Feature::SelfCollision);
+  if (friction > 0) s.needs.add(Feature::Friction);
+  return s;
+}
+
 /// Motion of everything that moves, and of `grips`, which go along (0.02, 0.03, -0.01) m a frame and are let go at
 /// instant `release`.
 inline Scene moving(Scene s, std::vector<std::uint32_t> grips = {}, int release = 1000) {

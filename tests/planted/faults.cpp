@@ -53,6 +53,7 @@ void add_kernels(std::vector<Fault>& f) {
   kernel("capsules stand still within the frame", "pushed", "contact_colliders.glsl", "mix(s.a0.xyz, s.a1.xyz, now)", "s.a0.xyz");
   kernel("clusters of triangles not found", "tiles", "contact_candidates.comp", "<= range * range", "<= 1e-6 * range");
   kernel("weights of a triangle's corners swapped", "tiles", "contact_colliders.glsl", "return vec3(wa, wb, wc) / all;", "return vec3(wb, wc, wa) / all;");
+  kernel("layers of the cloth not found", "layers", "self_near.comp", "bits |= 1u << (other - first);", "bits |= 0u << (other - first);");
   kernel("one family of lines skipped", "pulled", "line_frame.comp", "family = families - 1u - turn;", "family = max(families - 1u - turn, 1u);");
   kernel("last link of every chain missing", "swing", "lines.glsl", "if (!on_chain(i + 1u)) return false;", "if (!on_chain(i + 2u)) return false;");
   kernel("velocity not corrected with the position", "swing", "lines.glsl", "vel[k] += step * p.per_h;", "vel[k] += 0.9 * step * p.per_h;");
@@ -151,6 +152,7 @@ void add_metrics(std::vector<Fault>& f) {
   };
   metric("a stale metric: contour of the frame before", "pressed", series("contact_length_m", [](std::vector<double>& v) { std::rotate(v.rbegin(), v.rbegin() + 1, v.rend()); v[0] = 0; }));
   metric("depth at vertices given as depth at all points", "rising", series("depth_m", [](std::vector<double>& v) { std::fill(v.begin(), v.end(), 0.0); }));
+  metric("self-contact of the frame before", "crossed", series("self_contact_length_m", [](std::vector<double>& v) { std::rotate(v.rbegin(), v.rbegin() + 1, v.rend()); v[0] = 0; }));
   metric("area halved", "pressed", series("penetrating_area_m2", [](std::vector<double>& v) { for (double& x : v) x /= 2; }));
   metric("tunnelling without memory", "curtain", series("tunnelled_fraction", [](std::vector<double>& v) { std::adjacent_difference(v.begin(), v.end(), v.begin()); }));
   metric("wrong side counted from the last frame alone", "through", series("wrong_side_fraction", [](std::vector<double>& v) { std::adjacent_difference(v.begin(), v.end(), v.begin()); }));

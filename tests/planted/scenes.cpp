@@ -88,6 +88,33 @@ const char* const kThrough = R"({"name":"through","why":"A finger goes through a
   "time":{"frame_rate_hz":20,"duration_s":0.5},
   "expect":{"outcome":"ok","wrong_side_fraction_max":{"at_least":0.055,"at_most":0.065}}})";
 
+/// The half of a folded cloth that is free comes at 1 m/s at the half that is held.
+Scene layers() {
+  std::string held;
+  for (int v = 0; v < 17 * 9; ++v)
+    if (v % 17 >= 8) held += fmt::format("{}{}", held.empty() ? "" : ",", v);
+  return scene(fmt::format(R"({{"name":"layers","why":"One half of a folded cloth comes at the other.",
+    "cloth":{{"grid":[17,9],"size_m":[0.5,0.25],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0,1,0],
+             "pose":{{"axis_u":[0,1,0],"axis_v":[0,0,1],"drape":{{"radius_m":0.03}}}},"self_collision":{{"thickness_m":0.01}}}},
+    "material":{{"membrane_stiffness_N_per_m":1000}},"gravity_m_per_s2":[0,0,0],"pins":[{{"vertices":[{}]}}],
+    "time":{{"frame_rate_hz":72,"duration_s":0.2}},"expect":{{"outcome":"ok","self_contact_pairs_max":{{"at_most":0}}}}}})", held));
+}
+
+// The right half laid over the left, in the last frame through it along one line as long as the sheet is wide.
+const char* const kCrossed = R"({"name":"crossed","why":"A sheet laid over itself and through.",
+  "cloth":{"grid":[17,9],"size_m":[1,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{},"self_collision":{"thickness_m":0.002}},
+  "material":{"membrane_stiffness_N_per_m":1000},"time":{"frame_rate_hz":20,"duration_s":1},
+  "expect":{"outcome":"ok","self_contact_length_max_m":{"at_least":0.4999,"at_most":0.5001}}})";
+
+void lay_over(int frame, std::vector<double>& x) {
+  for (std::size_t v = 0; v < x.size(); v += 3) {
+    const double u = x[v] + 0.5;
+    if (u <= 0.5) continue;
+    x[v] = 0.5 - u;
+    x[v + 1] += 0.05 - (frame == 20 ? 0.26 * (u - 0.5) : 0);
+  }
+}
+
 double down(int frame, double from, double to, int frames) { return -(from + (to - from) * frame / frames); }
 
 }  // namespace
@@ -103,6 +130,8 @@ std::vector<Stage> stages() {
   out.push_back(solved("tiles", over_tiles()));
   out.push_back(solved("pushed", scene(kPushed)));
   out.push_back(solved("pulled", scene(kPulled)));
+  out.push_back(solved("layers", layers()));
+  out.push_back(told("crossed", kCrossed, lay_over));
   out.push_back(told("pressed", kPressed, lifted([](int f) { return down(f, 0, 0.11, 20); })));
   out.push_back(told("rolled", kRolled, lifted([](int f) { return down(f, 0, 0.11, 20); })));
   out.push_back(told("curtain", kCurtain, lifted([](int f) { return down(f, 0, 0.15, 20); })));

@@ -67,6 +67,27 @@ TEST(Load, OverridesAreChecked) {
     EXPECT_THROW(load(bad), Error) << bad;
 }
 
+TEST(Load, SelfCollisionIsAsThickAsItsTrianglesAreHighAtMost) {
+  const auto load = [](const std::string& set) { return scene_from_json(parse_json(kGood, "t"), "t", {"cloth.grid=[11,21]", "cloth.size_m=[0.4,0.6]", set}); };
+  const Scene s = load("cloth.self_collision={\"thickness_m\":0.02}");
+  EXPECT_EQ(s.cloth.self_collision.thickness_m, 0.02);
+  EXPECT_EQ(s.cloth.self_collision.friction, 0);
+  EXPECT_TRUE(s.needs.has(Feature::SelfCollision));
+  EXPECT_FALSE(s.needs.has(Feature::Friction));
+  EXPECT_TRUE(load("cloth.self_collision={\"thickness_m\":0.02,\"friction\":0.1}").needs.has(Feature::Friction));
+  EXPECT_FALSE(load("cloth.sides=double").needs.has(Feature::SelfCollision));
+  // Cells of 40 mm x 30 mm: half of one is 24 mm high.
+  EXPECT_NEAR(s.cloth.least_height_m(), 0.024, 1e-15);
+  try {
+    load("cloth.self_collision={\"thickness_m\":0.0241}");
+    FAIL() << "it would touch itself where it lies flat";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("/cloth/self_collision/thickness_m: expected at most"), std::string::npos) << e.what();
+  }
+  for (const char* bad : {"{\"thickness_m\":0}", "{\"thickness_m\":-1}", "{}", "true", "{\"thickness_m\":0.01,\"width\":1}"})
+    EXPECT_THROW(load(std::string("cloth.self_collision=") + bad), Error) << bad;
+}
+
 struct Bad {
   const char *what, *from, *to, *place, *hint;
 };

@@ -225,9 +225,11 @@ TEST(Study, PenetrationHasEveryCombinationItNames) {
       if (s.solvers[k].solver == "paper") {
         // It knows no two-sided contact without a second layer.
         EXPECT_EQ(item.scene.cloth.sides == Sides::Double, item.scene.colliders.empty()) << item.scene.name;
+        EXPECT_FALSE(item.scene.needs.has(Feature::SelfCollision)) << item.scene.name << ": it passes through itself";
       }
   }
-  EXPECT_EQ(scenes.size(), 13u);
+  EXPECT_TRUE(scenes.contains("self-fold") && scenes.contains("self-crumple"));
+  EXPECT_EQ(scenes.size(), 15u);
   const auto all = cells(s);
   EXPECT_EQ(std::count(all.begin(), all.end(), "desk-flat-low paper whole-room duplicated"), 1);
   const Study quick = load_study("penetration", {{}, StudyLength::Quick});

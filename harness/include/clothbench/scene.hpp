@@ -52,6 +52,12 @@ struct ClothMesh {
   double edge_m = 0;            ///< mean length of an edge
 };
 
+/// How a cloth touches itself.
+struct SelfCollision {
+  double thickness_m = 0;  ///< distance that two layers keep; 0: it does not touch itself
+  double friction = 0;     ///< Coulomb's, of cloth on cloth
+};
+
 /// Rectangular sheet, or a triangle mesh. Vertex (i, j) has index j*columns + i, material coordinates (i*du, j*dv), and lies in the plane
 /// spanned by `axis_u` and `axis_v` (orthonormal) around `center_m`.
 struct Cloth {
@@ -71,12 +77,15 @@ struct Cloth {
   std::vector<double> column_factors;  ///< relative width of every cell along u; empty = all alike. They fill width_m
   std::vector<double> mass_factors;    ///< one per vertex; empty = all 1
   Start start;
+  SelfCollision self_collision;
 
   std::size_t vertex_count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   double du() const { return mesh ? mesh->edge_m : width_m / (columns - 1); }
   double dv() const { return mesh ? mesh->edge_m : height_m / (rows - 1); }
   /// Rest coordinate of grid line `i` along u, 0 to width_m, whatever the cells' widths; du() is their mean.
   double line_u_m(int i) const;
+  /// Least height of a triangle at rest. Parts of a flat sheet that share no vertex are at least so far apart.
+  double least_height_m() const;
 };
 
 /// A membrane stiffness of the cells of columns `first` to `last` (the first cell is 0), instead of the sheet's.
@@ -192,6 +201,10 @@ struct EdgeCell {
   double along_m = 0, across_m = 0;
 };
 EdgeCell edge_cell(const Cloth&, const struct Edge&);
+
+/// Whether an edge lies along the border of a grid, where a spring stands for half as much cloth: never a diagonal, and never one of a
+/// mesh, whose areas say it already (see EdgeCell).
+bool on_border(const Cloth&, const struct Edge&);
 
 /// Turn [rad] from one row on the cylinder to the next, of a sheet that starts draped. Needs drape_radius_m > du/2.
 double drape_turn_rad(const Cloth&);

@@ -61,4 +61,37 @@ Contour contour(const TriangleMeshView& cloth, const TriangleTree& object) {
   return result;
 }
 
+Contour self_contour(const TriangleMeshView& cloth) {
+  std::vector<Box> boxes;
+  std::vector<std::uint32_t> numbers;
+  for (std::size_t t = 0; t < cloth.triangles.size(); ++t) {
+    const Simplex<3> v = cloth.triangle(t);
+    if (is_degenerate(v)) continue;
+    boxes.push_back(Box(v[0]).extend(v[1]).extend(v[2]));
+    numbers.push_back(static_cast<std::uint32_t>(t));
+  }
+  const BoxTree tree(std::move(boxes));
+  std::vector<std::uint8_t> meets(numbers.size(), 0);
+  Contour result;
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    const auto& corners = cloth.triangles[numbers[k]];
+    const Simplex<3> triangle = cloth.triangle(numbers[k]);
+    const Kernel::Triangle_3 exact = to_cgal(triangle);
+    tree.for_each_overlapping(tree.item_boxes()[k], [&](int other) {
+      const auto o = static_cast<std::size_t>(other);
+      const auto& others = cloth.triangles[numbers[o]];
+      const bool adjacent = std::find_first_of(corners.begin(), corners.end(), others.begin(), others.end()) != corners.end();
+      // Each pair once.
+      if (o <= k || adjacent) return;
+      const Simplex<3> facet = cloth.triangle(numbers[o]);
+      if (!CGAL::do_intersect(exact, to_cgal(facet))) return;
+      ++result.pairs;
+      meets[k] = meets[o] = 1;
+      result.length_m += length_of_intersection(triangle, facet);
+    });
+  }
+  result.cloth_triangles = std::count(meets.begin(), meets.end(), 1);
+  return result;
+}
+
 }  // namespace clothbench::contact

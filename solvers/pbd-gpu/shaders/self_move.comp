@@ -1,0 +1,21 @@
+#version 450
+// End of self-contact in a substep: every free vertex goes the certified part of its way.
+#define COUNTER_BINDING 3
+#extension GL_GOOGLE_include_directive : require
+#include "common.glsl"
+layout(std430, binding = 0) buffer Starts { vec4 starts[]; };
+layout(std430, binding = 1) buffer Positions { vec4 x[]; };
+layout(std430, binding = 2) readonly buffer Part { uint part[]; };
+layout(push_constant) uniform Push { SelfConstants p; };
+
+void main() {
+  uint i = item();
+  if (i >= p.columns * p.rows) return;
+  float most = uintBitsToFloat(LOAD4(part, 0));
+  vec4 to = LOAD16(x, i);
+  vec3 from = LOAD16(starts, i).xyz;
+  // Not by the sum where all of it is free: from + (to - from) is not `to` in its last digit.
+  if (most < 1.0 && to.w != 0.0) to.xyz = from + most * (to.xyz - from);
+  STORE16(x, i, to);
+  STORE16(starts, i, to);
+}

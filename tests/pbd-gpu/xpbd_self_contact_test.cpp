@@ -1,0 +1,150 @@
+// Self-contact of `xpbd`: layers meet and stay apart however fast they come, what does not touch does not move, and who does not
+// ask does not pay.
+#include "xpbd_self_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "contact_scenes.hpp"
+#include "metrics/contact/contour.hpp"
+#include "runner/stage_check.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+long crossings(const Scene& s, const ClothState& state) {
+  const auto all = triangles(s.cloth);
+  return contact::self_contour({state.position, all}).pairs;
+}
+
+/// The leg of a folded sheet that ends with its last column, and half of the bow, is held; the other comes at `speed`.
+Scene closing(double speed, double friction = 0) {
+  Scene s = folded(sheet(17, 9, 0.5, 0.25), 0.06, friction);
+  const int columns = s.cloth.columns;
+  for (std::uint32_t v = 0; v < s.cloth.vertex_count(); ++v)
+    if (static_cast<int>(v) % columns >= columns / 2) s.pins.vertices.push_back(v);
+  s.needs.add(Feature::Pins);
+  s.gravity_m_per_s2 = {};
+  const std::vector<double> x = initial_positions(s);
+  const double held = x[3 * static_cast<std::size_t>(columns - 1) + 1], free = x[1];
+  s.cloth.initial_velocity_m_per_s = {0, held > free ? speed : -speed, 0};
+  return s;
+}
+
+/// Least distance of the outer vertices of the free leg from the held one, which lie along y.
+double layers_apart(const Scene& s, const ClothState& state) {
+  const std::size_t columns = static_cast<std::size_t>(s.cloth.columns);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < s.cloth.vertex_count(); v += columns)
+    least = std::min(least, std::abs(state.position[3 * (v + columns - 1) + 1] - state.position[3 * v + 1]));
+  return least;
+}
+
+class SelfContacts : public Gpu, public ::testing::WithParamInterface<double> {};
+INSTANTIATE_TEST_SUITE_P(Speeds, SelfContacts, ::testing::Values(0.2, 1.0, 5.0, 20.0),
+                         [](const auto& i) { return "mm_per_s_" + std::to_string(std::lround(1000 * i.param)); });
+
+TEST_P(SelfContacts, LayersMeetAndNothingCrosses) {
+  const Scene s = closing(GetParam());
+  const auto solver = make("xpbd");
+  solver->load(s);
+  EXPECT_EQ(check_stages(s, xpbd_info(), solver->plan()), "");
+  double least = std::numeric_limits<double>::infinity(), fastest = 0;
+  const int frames = std::max(24, static_cast<int>(std::lround(0.1 / GetParam() * 72)));
+  for (int f = 0; f < frames; ++f) {
+    const ClothState state = after_frame(*solver, s, f);
+    ASSERT_EQ(crossings(s, state), 0) << "frame " << f;
+    least = std::min(least, layers_apart(s, state));
+    if (f > frames / 2)
+      for (std::size_t v = 0; v < s.cloth.vertex_count(); ++v)
+        fastest = std::max(fastest, std::hypot(state.velocity[3 * v], state.velocity[3 * v + 1], state.velocity[3 * v + 2]));
+  }
+  // Of a fast one, what is seen at a frame's end is how it comes back from the stretched bow.
+  if (GetParam() <= 5) {
+    EXPECT_LT(least, 1.5 * s.cloth.self_collision.thickness_m) << "they must have met for this to say anything";
+  }
+  EXPECT_LT(fastest, GetParam()) << "what met does not bounce";
+}
+
+TEST_F(SelfContacts, WithoutItTheLayersPass) {
+  Scene s = closing(1);
+  s.cloth.self_collision = {};
+  s.needs = s.needs - FeatureSet{Feature::SelfCollision};
+  const auto solver = make("xpbd");
+  solver->load(s);
+  long most = 0;
+  for (int f = 0; f < 12; ++f) most = std::max(most, crossings(s, after_frame(*solver, s, f)));
+  EXPECT_GT(most, 0);
+  for (const StagePlan& stage : solver->plan().stages) EXPECT_NE(stage.name, "SelfContact");
+}
+
+TEST_F(SelfContacts, FrictionHoldsALayerThatSlidesOnAnother) {
+  // Pressed on by gravity, it slides on the layer below at 0.5 m/s, which v^2 / (2 mu g) stops after 26 mm.
+  double way[2];
+  for (const int k : {0, 1}) {
+    Scene s = closing(0, k == 0 ? 0 : 0.5);
+    s.material.shear = false;  // of strips, so that a layer may slide sideways
+    s.needs = s.needs - FeatureSet{Feature::Shear};
+    const std::vector<double> x = initial_positions(s);
+    const std::size_t free_end = 0, held_end = static_cast<std::size_t>(s.cloth.columns - 1);
+    s.gravity_m_per_s2 = {0, x[3 * held_end + 1] > x[3 * free_end + 1] ? 9.81 : -9.81, 0};
+    const auto solver = make("xpbd");
+    solver->load(s);
+    // Down first; then a push along z.
+    ClothState state;
+    for (int f = 0; f < 36; ++f) state = after_frame(*solver, s, f);
+    for (std::size_t v = 0; v < s.cloth.vertex_count(); ++v)
+      if (static_cast<int>(v) % s.cloth.columns < s.cloth.columns / 4) state.velocity[3 * v + 2] += 0.5;
+    const std::vector<double> before = state.position;
+    ASSERT_TRUE(solver->restart(state));
+    for (int f = 36; f < 54; ++f) state = after_frame(*solver, s, f);
+    EXPECT_EQ(crossings(s, state), 0);
+    way[k] = state.position[2] - before[2];
+  }
+  EXPECT_GT(way[0], 0.06);
+  EXPECT_LT(way[1], 0.04);
+}
+
+TEST_F(SelfContacts, FoldsFarApartMoveNothing) {
+  Scene with = folded(with_pins(sheet(17, 9)), 0.5), without = with;
+  without.cloth.self_collision = {};
+  without.needs = without.needs - FeatureSet{Feature::SelfCollision};
+  const auto a = make("xpbd", {{"substeps", 10}}), b = make("xpbd", {{"substeps", 10}});
+  a->load(with);
+  b->load(without);
+  for (int f = 0; f < 6; ++f) {
+    const ClothState p = after_frame(*a, with, f), q = after_frame(*b, without, f);
+    ASSERT_EQ(p.position, q.position) << "frame " << f;
+    ASSERT_EQ(p.velocity, q.velocity) << "frame " << f;
+  }
+}
+
+TEST_F(SelfContacts, AHeapIsTheSameBitsAgain) {
+  const Scene s = load_scene("contact/self-crumple", {"cloth.grid=[16,16]", "cloth.pose.center_m=[0,0.31,0]"});
+  const auto one = make("xpbd"), other = make("xpbd");
+  one->load(s);
+  other->load(s);
+  ClothState first;
+  for (int f = 0; f < 30; ++f) {
+    first = after_frame(*one, s, f);
+    ASSERT_EQ(first.position, after_frame(*other, s, f).position) << "frame " << f;
+  }
+  other->reset();
+  for (int f = 0; f < 30; ++f) {
+    const ClothState again = after_frame(*other, s, f);
+    if (f == 29) {
+      EXPECT_EQ(again.position, first.position);
+    }
+  }
+}
+
+TEST_F(SelfContacts, RefusesWhatItDoesNotDo) {
+  Scene s = folded(sheet(9, 9));
+  EXPECT_THROW(make("xpbd", {{"batch", 2}})->load(s), Error);
+  EXPECT_TRUE(unsupported(xpbd_info(), s.needs).empty());
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu
