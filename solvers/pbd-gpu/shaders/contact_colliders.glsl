@@ -113,27 +113,7 @@ void consider_shapes() {
 }
 
 #ifdef MESHES
-vec3 weights_on_edge(vec3 q, vec3 a, vec3 ab, out float squared) {
-  float l = dot(ab, ab), t = l > 0.0 ? clamp(dot(q - a, ab) / l, 0.0, 1.0) : 0.0;
-  vec3 d = q - a - t * ab;
-  squared = dot(d, d);
-  return vec3(1.0 - t, t, 0.0);
-}
-
-/// Barycentric weights of the point of triangle abc nearest to q. Triangles without area are their edges.
-vec3 nearest_weights(vec3 q, vec3 a, vec3 b, vec3 c) {
-  vec3 ab = b - a, ac = c - a, aq = q - a, n = cross(ab, ac);
-  float all = dot(n, n), wc = dot(cross(ab, aq), n), wb = dot(cross(aq, ac), n), wa = all - wb - wc;
-  if (all > 0.0 && wa >= 0.0 && wb >= 0.0 && wc >= 0.0) return vec3(wa, wb, wc) / all;
-  float best, second, third;
-  vec3 w = weights_on_edge(q, a, ab, best);
-  vec3 on_bc = weights_on_edge(q, b, c - b, second), on_ca = weights_on_edge(q, c, a - c, third);
-  if (second < best) {
-    w = on_bc.zxy;
-    best = second;
-  }
-  return third < best ? on_ca.yzx : w;
-}
+#include "triangle.glsl"
 
 /// Contact with something of this margin begins no farther from it.
 float held_at(float margin) { return (1.0 + kSlack) * max(margin, max(p.least_margin_m, p.border_margin_m)); }
@@ -169,7 +149,7 @@ void consider_triangle(uvec4 corners, bool moving, float reach, float margin, fl
     bound = min(bound, length(apart) - most);
     return;
   }
-  vec3 w = nearest_weights(at, a, b, c);
+  vec3 w = on_triangle(at, a, b, c);
   // An open border is a knife: what passes it between two points of the cloth must be nearer to one of them than half
   // their distance.
   uint sides = (w.x == 0.0 ? 1u : 0u) | (w.y == 0.0 ? 2u : 0u) | (w.z == 0.0 ? 4u : 0u);
