@@ -96,6 +96,7 @@ const std::vector<Column> kContactColumns = {
     {"contour, most / settled [mm]", {"contact_length_max_m", "contact_length_settled_m"}, mm},
     {"depth, vertex / any [mm]", {"depth_vertex_max_m", "depth_max_m"}, mm},
     {"wrong side [samples]", {"wrong_side_samples_max"}, count},
+    {"through itself, most / settled [mm]", {"self_contact_length_max_m", "self_contact_length_settled_m"}, mm},
     {"crossed, longest [s]", {"contact_violated_longest_s"}, number},
     {"popping [mm]", {"pop_displacement_m"}, mm},
     {"popping speed [of limit]", {"pop_speed_ratio"}, number},
