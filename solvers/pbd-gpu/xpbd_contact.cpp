@@ -25,7 +25,7 @@ constexpr double kLeastMargin = 0.01;
 constexpr double kBorder = 0.72;
 
 /// Cosine of the turn between two triangles from which on their edge is sharp: 15 degrees.
-constexpr double kFlat = 0.966;
+constexpr double kFlatTurn = 0.966;
 
 /// Half the thickness of a fingertip.
 constexpr double kFinger_m = 0.008;
@@ -97,7 +97,7 @@ std::vector<std::uint32_t> edge_marks(const std::vector<double>& positions,
       // A triangle without area has no normal: sharp, to be safe.
       if (m.triangles++ == 0)
         m.normal = n;
-      else if (!(n[0] * m.normal[0] + n[1] * m.normal[1] + n[2] * m.normal[2] >= kFlat))
+      else if (!(n[0] * m.normal[0] + n[1] * m.normal[1] + n[2] * m.normal[2] >= kFlatTurn))
         m.sharp = true;
     }
   std::vector<std::uint32_t> bits(triangles.size(), 0);
