@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Fuzz every reader of other people's files for some seconds each, JOBS (2) at a time, under address and undefined-behaviour sanitizers.
 #   scripts/fuzz.sh [seconds] [reader...]     default: 10 s, all readers; new inputs go to build/fuzz/found
+# SEED=N tries the same inputs again, as far as the time goes; default: others every time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-10}
@@ -15,7 +16,7 @@ fuzz() {
   local reader=$1 found=build/fuzz/found/$1 log=build/fuzz/$1.log dictionary=()
   mkdir -p "$found"
   [ -f "tests/fuzz/$reader.dict" ] && dictionary=(-dict="tests/fuzz/$reader.dict")
-  if ! build/fuzz/fuzz_"$reader" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
+  if ! build/fuzz/fuzz_"$reader" -seed="${SEED:-0}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
     -artifact_prefix="build/fuzz/$reader-" "${dictionary[@]}" "$found" "tests/fuzz/corpus/$reader" >"$log" 2>&1; then
     grep -E "ERROR|SUMMARY|runtime error|terminate|what\(\)" "$log" | head -5
     echo "fuzz: $reader: a finding (build/fuzz/$reader-*; $log)" >&2

@@ -42,10 +42,11 @@ void check_triangle(const std::vector<Vec3>& x, const std::array<std::uint32_t, 
     throw Error(fmt::format("{}: triangle {} (vertices {}, {}, {}) has no area", source, k, t[0], t[1], t[2]));
 }
 
-/// The lines that shapes are made of. What else a file may say (materials, skin weights, curves) is neither looked at nor trusted.
+/// The lines that shapes are made of; a lone carriage return ends one too, as it does for the OBJ library. What else a file may say (materials, skin weights, curves) is neither looked at nor trusted.
 std::string shape_lines(const std::string& text) {
-  std::istringstream in(text);
-  std::string out, line;
+  std::string lines = text, out, line;
+  std::replace(lines.begin(), lines.end(), '\r', '\n');
+  std::istringstream in(lines);
   while (std::getline(in, line)) {
     std::istringstream words(line);
     std::string first;
