@@ -44,6 +44,11 @@ TEST(ClothMesh, IsReadFromAnObjFile) {
   EXPECT_EQ(longest_sides(m), (std::pair{1.0, 1.0}));
 }
 
+TEST(ClothMesh, HasNoUseForSkinWeightsWhateverEndsALine) {
+  for (const char* weights : {"vw 0 -1 0.5\n", "vt 0 0\rvw 0 -1 0.5\n", "vt 0 0\r\nvw 0 1e17 1\r\n"})
+    EXPECT_EQ(parse_obj(kSquare + std::string(weights), "square.obj").vertices.size(), 4u) << "the OBJ library would refuse, or worse";
+}
+
 TEST(ClothMesh, MakesAScene) {
   const ScratchFolder folder;
   folder.file("square.obj", kSquare);
