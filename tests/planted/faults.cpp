@@ -52,7 +52,7 @@ void add_kernels(std::vector<Fault>& f) {
   kernel("approach kept in the velocity", "ball", "contact_advance.glsl", "relative += approach * t.n;", "relative -= 0.5 * approach * t.n;");
   kernel("capsules stand still within the frame", "pushed", "contact_colliders.glsl", "mix(s.a0.xyz, s.a1.xyz, now)", "s.a0.xyz");
   kernel("clusters of triangles not found", "tiles", "contact_candidates.comp", "<= range * range", "<= 1e-6 * range");
-  kernel("weights of a triangle's corners swapped", "tiles", "contact_colliders.glsl", "return vec3(wa, wb, wc) / all;", "return vec3(wb, wc, wa) / all;");
+  kernel("weights of a triangle's corners swapped", "tiles", "triangle.glsl", "return vec3(wa, wb, wc) / all;", "return vec3(wb, wc, wa) / all;");
   kernel("layers of the cloth not found", "layers", "self_near.comp", "bits |= 1u << (other - first);", "bits |= 0u << (other - first);");
   kernel("one family of lines skipped", "pulled", "line_frame.comp", "family = families - 1u - turn;", "family = max(families - 1u - turn, 1u);");
   kernel("last link of every chain missing", "swing", "lines.glsl", "if (!on_chain(i + 1u)) return false;", "if (!on_chain(i + 2u)) return false;");
