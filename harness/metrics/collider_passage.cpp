@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "metrics/collider_contact.hpp"
@@ -164,7 +165,27 @@ struct ColliderPassage::Watch {
     for (std::size_t v = 0; v < start.size(); v += 3) sheet += Point<3>(Point<3>::Map(&start[v])) * (3.0 / static_cast<double>(start.size()));
     const Point<3> normal = point(scene.cloth.axis_u).cross(point(scene.cloth.axis_v)).normalized();
     const double reach = 4 * (scene.cloth.width_m + scene.cloth.height_m + (middle - sheet).norm());
-    sides[k].emplace(bones, normal.dot(middle - sheet) < 0 ? Point<3>(-normal) : normal, reach, vertex_area.size() + cells.size());
+    sides[k].emplace(bones, normal.dot(middle - sheet) < 0 ? Point<3>(-normal) : normal, reach, vertex_area.size() + cells.size(), weave());
+  }
+
+  /// Sides of cells and of triangles, and the ways from a cell's corners to its centre.
+  contact::Weave weave() const {
+    std::map<contact::Link, int> edges;
+    const auto add = [&](std::uint32_t a, std::uint32_t b) { ++edges[{std::min(a, b), std::max(a, b)}]; };
+    for (const auto& [a, b, c, d] : cells) add(a, b), add(c, d), add(a, c), add(b, d);
+    if (scene.cloth.mesh)
+      for (const auto& [a, b, c] : scene.cloth.mesh->triangles) add(a, b), add(b, c), add(c, a);
+    contact::Weave out{{}, std::vector<bool>(vertex_area.size() + cells.size(), false)};
+    for (const auto& [edge, faces] : edges) {
+      out.links.push_back(edge);
+      if (faces == 1) out.border[edge[0]] = out.border[edge[1]] = true;
+    }
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      for (const std::uint32_t v : cells[k]) {
+        out.links.push_back({v, static_cast<std::uint32_t>(vertex_area.size() + k)});
+        if (out.border[v]) out.border[vertex_area.size() + k] = true;
+      }
+    return out;
   }
 
   std::vector<double> samples_of(const std::vector<double>& x) const {

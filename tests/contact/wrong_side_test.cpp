@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 
+#include "clothbench/error.hpp"
 #include "metrics/contact/surface.hpp"
 
 namespace clothbench::contact {
@@ -36,7 +37,19 @@ std::vector<Bone> finger(double x, double z, double shift = 0) {
   return out;
 }
 
-WrongSide watch(const std::vector<Bone>& start) { return WrongSide(start, P(0, 0, 1), 10, kSide * kSide); }
+Weave weave() {
+  Weave out{{}, std::vector<bool>(kSide * kSide, false)};
+  for (std::uint32_t j = 0; j < kSide; ++j)
+    for (std::uint32_t i = 0; i < kSide; ++i) {
+      const std::uint32_t k = j * kSide + i;
+      if (i + 1 < kSide) out.links.push_back({k, k + 1});
+      if (j + 1 < kSide) out.links.push_back({k, k + kSide});
+      out.border[k] = i == 0 || j == 0 || i + 1 == kSide || j + 1 == kSide;
+    }
+  return out;
+}
+
+WrongSide watch(const std::vector<Bone>& start, Weave w = weave()) { return WrongSide(start, P(0, 0, 1), 10, kSide * kSide, std::move(w)); }
 
 TEST(WrongSide, ASheetPushedAsideHasNone) {
   // Down 0.05 m at x = 0.3, then along to x = -0.3; the sheet hangs in a tent round the finger wherever it is and closes behind.
@@ -88,6 +101,44 @@ std::size_t carried(bool round) {
 TEST(WrongSide, ASheetRoundTheFingertipHasNone) {
   EXPECT_EQ(carried(true), 0u);
   EXPECT_GT(carried(false), 50u) << "the same without the way round";
+}
+
+TEST(WrongSide, ABorderLaidOverAFingerHasNone) {
+  // The strip beyond x = 0.36 turns up and over a finger that stands at (0.3, 0.05), by 130 degrees.
+  const auto turned = [](double degrees) {
+    return [=](double u, double v) {
+      const double r = u - 0.36, angle = degrees * 0.0174532925;
+      return r < 0 ? P(u, v, 0) : P(0.36 + r * std::cos(angle), v, r * std::sin(angle));
+    };
+  };
+  const auto laid = [&](Weave with) {
+    WrongSide w = watch(finger(0.3, 0.05), std::move(with));
+    for (int degrees = 0; degrees <= 130; degrees += 10) w.advance(sampled(turned(degrees)), finger(0.3, 0.05));
+    return w.count();
+  };
+  EXPECT_EQ(laid(weave()), 0u);
+  EXPECT_EQ(laid({}), 2u * 12u) << "samples that do not know of one another";
+  Weave inside = weave();
+  inside.border.assign(kSide * kSide, false);
+  EXPECT_EQ(laid(inside), 2u * 12u) << "without a border it can only have been torn";
+}
+
+TEST(WrongSide, WhatIsPushedAsideWithinAFrameHasNotBeenPassed) {
+  // The finger goes from x = 0.2 to -0.2 at z = -0.05; the first sample from z = 0 to -0.09, early or evenly; the second stays.
+  const std::vector<double> before{0, 0, 0, 0.021, 0, 0}, after{0, 0, -0.09, 0.021, 0, 0};
+  const auto wrong = [&](Weave with) {
+    WrongSide w(finger(0.2, -0.05), P(0, 0, 1), 10, 2, std::move(with));
+    w.advance(before, finger(0.2, -0.05));
+    w.advance(after, finger(-0.2, -0.05));
+    return std::vector<bool>{w.wrong(0), w.wrong(1)};
+  };
+  EXPECT_EQ(wrong({}), (std::vector<bool>{false, true}));
+  EXPECT_EQ(wrong({{{0, 1}}, {false, false}}), (std::vector<bool>{true, true})) << "its neighbour was passed, and nothing is between them";
+}
+
+TEST(WrongSide, RefusesLinksOfNoSample) {
+  EXPECT_THROW(WrongSide(finger(0.2, 0.1), P(0, 0, 1), 10, 2, {{{0, 2}}, {false, false}}), Error);
+  EXPECT_THROW(WrongSide(finger(0.2, 0.1), P(0, 0, 1), 10, 2, {{{0, 1}}, {false}}), Error);
 }
 
 TEST(WrongSide, OneWayThroughASharedJointCountsOnce) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <optional>
+#include <string>
 
 #include "clothbench/error.hpp"
 
@@ -18,14 +20,48 @@ void add_quad(Triangles& t, std::size_t first) {
   t.push_back({v, v + 2, v + 3});
 }
 
+Point<3> at(std::span<const double> x, std::size_t i) { return Point<3>::Map(x.data() + 3 * i); }
+
 void append(std::vector<double>& x, const Point<3>& p) { x.insert(x.end(), {p[0], p[1], p[2]}); }
 
 }  // namespace
 
-WrongSide::WrongSide(std::span<const Bone> bones, const Point<3>& side, double reach_m, std::size_t samples)
-    : side_(side), reach_m_(reach_m) {
+/// A surface during one frame.
+class WrongSide::Passage {
+ public:
+  Passage(const TriangleMeshView& was, const TriangleMeshView& is)
+      // Welded as they stand: neighbouring quads share walls only where bones meet exactly, and then in the same order.
+      : swept_(was, is, welded_vertices(was)), first_(was, was, welded_vertices(was)), last_(is, is, welded_vertices(is)) {}
+
+  /// Whether the way p -> q passes it an odd number of times; nothing if that depends on when in the frame it was gone: evenly,
+  /// at once, or at the end.
+  std::optional<bool> passed(const Point<3>& p, const Point<3>& q) const {
+    const auto odd = [](int crossings) { return crossings % 2 != 0; };
+    const bool evenly = odd(swept_.signed_crossings(p, q));
+    const bool at_once = odd(first_.signed_crossings(p, q) + swept_.signed_crossings(q, q));
+    const bool at_the_end = odd(swept_.signed_crossings(p, p) + last_.signed_crossings(p, q));
+    if (evenly == at_once && evenly == at_the_end) return evenly;
+    return std::nullopt;
+  }
+
+  /// Whether it is between two points where the frame ends.
+  bool between(const Point<3>& p, const Point<3>& q) const { return last_.signed_crossings(p, q) % 2 != 0; }
+
+ private:
+  SweptMesh swept_, first_, last_;
+};
+
+WrongSide::WrongSide(std::span<const Bone> bones, const Point<3>& side, double reach_m, std::size_t samples, Weave weave)
+    : side_(side), reach_m_(reach_m), weave_(std::move(weave)) {
   if (!(std::abs(side.norm() - 1) <= 1e-9) || !(reach_m > 0))
     throw Error("wrong side: expected a side of length 1 and a reach above 0");
+  if (!weave_.links.empty() && weave_.border.size() != samples)
+    throw Error("wrong side: " + std::to_string(weave_.border.size()) + " samples on the border or not, expected " + std::to_string(samples));
+  for (const Link& l : weave_.links)
+    if (!(std::max(l[0], l[1]) < samples)) throw Error("wrong side: a link of sample " + std::to_string(std::max(l[0], l[1])) + ", expected below " + std::to_string(samples));
+  links_of_.resize(samples);
+  for (std::size_t l = 0; l < weave_.links.size(); ++l)
+    for (const std::uint32_t i : weave_.links[l]) links_of_[i].push_back(l);
   std::vector<double> ends;
   for (const Bone& b : bones)
     for (const Point<3>& p : b) append(ends, p);
@@ -48,23 +84,29 @@ WrongSide::WrongSide(std::span<const Bone> bones, const Point<3>& side, double r
     if (bones[i][0] == bones[i][1]) continue;
     ++degree[node[2 * i]];
     ++degree[node[2 * i + 1]];
-    chains.try_emplace(label[i], Chain{{}, {}, {}, {}, {}, {}, TunnelHistory(samples), TunnelHistory(samples)}).first->second.bones.push_back(i);
+    chains.try_emplace(label[i]).first->second.bones.push_back(i);
   }
   for (auto& [unused, chain] : chains) {
     for (const std::size_t b : chain.bones) {
-      add_quad(chain.wake_triangles, 4 * (chain.wake_triangles.size() / 2));
+      add_quad(chain.wake.triangles, 4 * (chain.wake.triangles.size() / 2));
       for (std::size_t end : {0u, 1u})
         if (degree[node[2 * b + end]] == 1) {
-          add_quad(chain.beyond_triangles, 4 * chain.free_ends.size());
+          add_quad(chain.beyond.triangles, 4 * chain.free_ends.size());
           chain.free_ends.push_back({b, end});
         }
     }
-    place(chain, bones, chain.wake, chain.beyond);
+    chain.endless.triangles = chain.wake.triangles;
+    for (std::size_t k = 0; k < chain.free_ends.size(); ++k) add_quad(chain.endless.triangles, 4 * (chain.bones.size() + k));
+    for (Surface* s : {&chain.wake, &chain.endless}) s->odd.resize(samples);
+    chain.rounded.emplace(samples);
+    chain.lapped.resize(samples);
+    place(chain, bones);
     chains_.push_back(std::move(chain));
   }
 }
 
-void WrongSide::place(const Chain& chain, std::span<const Bone> bones, std::vector<double>& wake, std::vector<double>& beyond) const {
+void WrongSide::place(Chain& chain, std::span<const Bone> bones) const {
+  std::vector<double>&wake = chain.wake.at, &endless = chain.endless.at, &beyond = chain.beyond.at;
   wake.clear();
   beyond.clear();
   const Point<3> far = reach_m_ * side_;
@@ -72,6 +114,7 @@ void WrongSide::place(const Chain& chain, std::span<const Bone> bones, std::vect
     const auto& [a, e] = bones[b];
     for (const Point<3>& p : {a, e, Point<3>(e + far), Point<3>(a + far)}) append(wake, p);
   }
+  endless = wake;
   for (const auto& [b, end] : chain.free_ends) {
     const Point<3> tip = bones[b][end], along = (tip - bones[b][1 - end]).normalized();
     Point<3> across = side_.cross(along);
@@ -80,6 +123,9 @@ void WrongSide::place(const Chain& chain, std::span<const Bone> bones, std::vect
     const Point<3> out = reach_m_ * along;
     for (const Point<3>& p : {Point<3>(tip - across), Point<3>(tip + across), Point<3>(tip + across + out), Point<3>(tip - across + out)})
       append(beyond, p);
+    // The same way round as the bone's own quad, so that crossings of both have one sign.
+    const std::array<Point<3>, 2> ends = end == 1 ? std::array<Point<3>, 2>{tip, tip + out} : std::array<Point<3>, 2>{tip + out, tip};
+    for (const Point<3>& p : {ends[0], ends[1], Point<3>(ends[1] + far), Point<3>(ends[0] + far)}) append(endless, p);
   }
 }
 
@@ -87,24 +133,59 @@ void WrongSide::advance(std::span<const double> samples, std::span<const Bone> b
   lost_ = lost_ || !all_finite(samples);
   if (lost_) return;
   for (Chain& chain : chains_) {
-    std::vector<double> wake, beyond;
-    place(chain, bones, wake, beyond);
-    if (!before_.empty()) {
-      // Welded as they stand: neighbouring quads share walls only where bones meet exactly, and then in the same order.
-      const TriangleMeshView was{chain.wake, chain.wake_triangles}, is{wake, chain.wake_triangles};
-      chain.crossed.advance(before_, samples, SweptMesh(was, is, welded_vertices(was)));
-      const TriangleMeshView out_was{chain.beyond, chain.beyond_triangles}, out_is{beyond, chain.beyond_triangles};
-      chain.rounded.advance(before_, samples, SweptMesh(out_was, out_is, welded_vertices(out_was)));
-    }
-    chain.wake = std::move(wake);
-    chain.beyond = std::move(beyond);
+    const std::vector<double> wake = chain.wake.at, endless = chain.endless.at, beyond = chain.beyond.at;
+    place(chain, bones);
+    if (before_.empty()) continue;
+    const TriangleMeshView out{beyond, chain.beyond.triangles};
+    chain.rounded->advance(before_, samples, SweptMesh(out, {chain.beyond.at, chain.beyond.triangles}, welded_vertices(out)));
+    const Passage passage({wake, chain.wake.triangles}, {chain.wake.at, chain.wake.triangles});
+    follow(chain.wake, passage, samples);
+    if (weave_.links.empty()) continue;
+    const Passage endless_passage({endless, chain.endless.triangles}, {chain.endless.at, chain.endless.triangles});
+    follow(chain.endless, endless_passage, samples);
+    find_laps(chain, passage, endless_passage, samples);
   }
   before_.assign(samples.begin(), samples.end());
 }
 
+void WrongSide::follow(Surface& surface, const Passage& passage, std::span<const double> samples) const {
+  std::vector<std::size_t> unclear;
+  for (std::size_t i = 0; i < surface.odd.size(); ++i) {
+    const std::optional<bool> passed = passage.passed(at(before_, i), at(samples, i));
+    if (!passed) unclear.push_back(i);
+    else if (*passed) surface.odd[i] = !surface.odd[i];
+  }
+  for (const std::size_t i : unclear) {
+    int votes = 0;
+    for (const std::size_t l : links_of_[i]) votes += parted(surface, passage, weave_.links[l], samples) ? 1 : -1;
+    if (votes > 0) surface.odd[i] = !surface.odd[i];
+  }
+}
+
+bool WrongSide::parted(const Surface& surface, const Passage& passage, const Link& link, std::span<const double> samples) const {
+  return passage.between(at(samples, link[0]), at(samples, link[1])) != (surface.odd[link[0]] != surface.odd[link[1]]);
+}
+
+void WrongSide::find_laps(Chain& chain, const Passage& wake, const Passage& endless, std::span<const double> samples) const {
+  const std::vector<bool>& odd = chain.wake.odd;
+  std::vector<bool> torn(odd.size(), false), bordered(odd.size(), false);
+  for (const Link& l : weave_.links)
+    if ((odd[l[0]] || odd[l[1]]) && parted(chain.wake, wake, l, samples) && parted(chain.endless, endless, l, samples))
+      for (const std::uint32_t i : l) torn[i] = odd[i];
+  for (std::size_t i = 0; i < odd.size(); ++i) bordered[i] = odd[i] && weave_.border[i];
+  // What is true of one sample of a piece is true of all.
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [a, b] : weave_.links)
+      for (std::vector<bool>* of : {&torn, &bordered})
+        if (odd[a] && odd[b] && (*of)[a] != (*of)[b]) (*of)[a] = (*of)[b] = changed = true;
+  }
+  for (std::size_t i = 0; i < odd.size(); ++i) chain.lapped[i] = odd[i] && (chain.lapped[i] || (bordered[i] && !torn[i]));
+}
+
 bool WrongSide::wrong(std::size_t sample) const {
   return std::any_of(chains_.begin(), chains_.end(), [&](const Chain& c) {
-    return c.crossed.counts()[sample] % 2 != 0 && c.rounded.counts()[sample] == 0;
+    return c.wake.odd[sample] && !c.lapped[sample] && c.rounded->counts()[sample] == 0;
   });
 }
 
