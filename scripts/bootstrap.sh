@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what clothbench needs from Debian 12, and only what is missing. Sourced or run by run.sh and test.sh.
+# Installs what clothbench needs from Debian 12 or 13, and only what is missing. Sourced or run by run.sh and test.sh.
 #   scripts/bootstrap.sh [--tests] [--arm64]     --tests: also what only the tests use
 #                                                --arm64: also the cross build and the packaging of the APK
 set -euo pipefail
@@ -14,7 +14,7 @@ command -v npm >/dev/null || packages+=(nodejs npm)
 for argument in "$@"; do
   case $argument in
     --tests) packages+=(libgtest-dev vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf
-                        python3-paraview libbenchmark-tools chromium clang libclang-rt-14-dev slurm-wlm munge) ;;
+                        python3-paraview libbenchmark-tools chromium clang libclang-rt-dev slurm-wlm munge) ;;
     --arm64) packages+=(g++-aarch64-linux-gnu qemu-user-static aapt zipalign apksigner android-framework-res
                         default-jre-headless android-platform-frameworks-native-headers android-liblog-dev
                         android-libnativehelper-dev) ;;
