@@ -1,16 +1,15 @@
 #!/usr/bin/env bash
-# Fuzz every reader of other people's files for some seconds each, JOBS (2) at a time, under address and undefined-behaviour sanitizers.
+# Fuzz every reader of other people's files for some seconds each, JOBS at a time, under address and undefined-behaviour sanitizers.
 #   scripts/fuzz.sh [seconds] [reader...]     default: 10 s, all readers; new inputs go to build/fuzz/found
 # SEED=N tries the same inputs again, as far as the time goes; default: others every time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+source scripts/common.sh
 seconds=${1:-10}
 readers=(scene obj room hand track raw hdf5)
 [ $# -gt 1 ] && readers=("${@:2}")
-unity=OFF
-[ "${CLOTHBENCH_UNITY:-}" != 1 ] || unity=ON
-cmake --preset fuzz -DCMAKE_UNITY_BUILD=$unity -DCMAKE_UNITY_BUILD_BATCH_SIZE=8 >build/configure-fuzz.log 2>&1 || { tail -30 build/configure-fuzz.log; exit 1; }
-cmake --build --preset fuzz -j "${JOBS:-2}" --target "${readers[@]/#/fuzz_}" >build/fuzz.log 2>&1 || { tail -30 build/fuzz.log; exit 1; }
+cmake --preset fuzz -DCMAKE_UNITY_BUILD=ON >build/configure-fuzz.log 2>&1 || { tail -30 build/configure-fuzz.log; exit 1; }
+cmake --build --preset fuzz -j "$JOBS" --target "${readers[@]/#/fuzz_}" >build/fuzz.log 2>&1 || { tail -30 build/fuzz.log; exit 1; }
 
 fuzz() {
   local reader=$1 found=build/fuzz/found/$1 log=build/fuzz/$1.log dictionary=()
@@ -28,7 +27,7 @@ fuzz() {
 # A finding ends the script once those that run beside it are over.
 status=0 running=0
 for reader in "${readers[@]}"; do
-  if [ "$running" -ge "${JOBS:-2}" ]; then
+  if [ "$running" -ge "$JOBS" ]; then
     wait -n || status=1
     running=$((running - 1))
     [ "$status" -eq 0 ] || break

@@ -1,14 +1,19 @@
 #!/usr/bin/env bash
 # The main job: set up, build, run a study on the best Vulkan device present, print its tables.
 #   scripts/run.sh [STUDY] [--full | --quick] [options of `clothbench study`]     STUDY: table3 (the default), penetration, stability
+# JOBS and CLOTHBENCH_CMAKE: see scripts/common.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-source scripts/budget.sh
+source scripts/common.sh
 
+# A first build compiles files together, which takes less than half the time; a folder that was configured before stays as it is.
 build() {
-  cmake --preset release -DBUILD_TESTING=OFF >build/configure.log 2>&1 || { tail -30 build/configure.log; return 1; }
-  cmake --build --preset release -j "${JOBS:-2}" --target clothbench
+  local together=()
+  [ -f build/release/CMakeCache.txt ] || together=(-DCMAKE_UNITY_BUILD=ON)
+  configure release -DBUILD_TESTING=OFF "${together[@]}"
+  cmake --build --preset release -j "$JOBS" --target clothbench
 }
+assets() { wait "$fetching"; }
 
 study=table3
 if [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; then
@@ -16,19 +21,22 @@ if [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; then
   shift
 fi
 require=()
-study_limit=5
+study_limit=3
 for argument in "$@"; do
   [ "$argument" = --full ] && study_limit=60
   [ "$argument" = --require-assets ] && require=(--require-assets)
 done
 
-mkdir -p build
-stage set-up 4 scripts/bootstrap.sh
-stage assets 8 scripts/fetch-assets.sh "${require[@]}"
-stage build 5 build
+stage set-up 2 scripts/bootstrap.sh
+# The network is slow where the processor is not: while the assets come, the build goes on.
+scripts/fetch-assets.sh "${require[@]}" >"$stage_logs/fetch-assets.log" 2>&1 &
+fetching=$!
+stage build 4 build
+stage assets 1 assets
+tail -1 "$stage_logs/fetch-assets.log"
 out="results/runs/$(basename "$study" .json)-$(date -u +%Y%m%dT%H%M%SZ)"
 stage study $study_limit build/release/clothbench study "$study" --out "$out" "$@"
-stage report 1 build/release/clothbench report "$out" -o "$out/report"
+stage --show report 1 build/release/clothbench report "$out" -o "$out/report"
 echo
 echo "results: $out/*.h5 (HDF5; .xdmf beside each opens in ParaView)"
 echo "report:  $out/report/index.html (open it in a browser), report.md beside it"

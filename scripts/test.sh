@@ -1,23 +1,27 @@
 #!/usr/bin/env bash
 # Set up, build and pass the tests.
-#   scripts/test.sh [--full]     --full: the slow tier too
+#   scripts/test.sh [--full | --short]     --full: the slow tier too; --short: a named few programs, in a few minutes
+# JOBS and CLOTHBENCH_CMAKE: see scripts/common.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-source scripts/budget.sh
+source scripts/common.sh
 
-# Argument: whether files are compiled eight at a time, half the work of a first build and more than it for every later one; who asks for that
-# (CI) builds no slow test that it does not run.
-compile() {
-  local slow=ON
-  [ "$1" = OFF ] || [ ${#selection[@]} -eq 0 ] || slow=OFF
-  cmake --preset ci -DCLOTHBENCH_SLOW_TESTS=$slow -DCMAKE_UNITY_BUILD="$1" -DCMAKE_UNITY_BUILD_BATCH_SIZE=8 >build/configure.log 2>&1 || { tail -30 build/configure.log; return 1; }
-  cmake --build --preset ci -j "${JOBS:-2}"
-}
+# --short: what differs first on another system: readers of JSON, HDF5 and meshes, exact arithmetic, Bullet, Vulkan, the command.
+short=(assets_test bullet_test check_test cli_test contact_test pbd_gpu_line_test results_test scenario_test truth_test)
+
+# A first build compiles files together, which takes less than half the time, and leaves out slow tests that are not run; a folder
+# that was configured before keeps its choice of both.
 build() {
-  [ "${CLOTHBENCH_UNITY:-}" != 1 ] || ! compile ON || return 0
-  compile OFF
+  local first=()
+  [ -f build/release/CMakeCache.txt ] || first=(-DCMAKE_UNITY_BUILD=ON)
+  case $tier in
+    full) first+=(-DCLOTHBENCH_SLOW_TESTS=ON) ;;
+    *) [ ${#first[@]} -eq 0 ] || first+=(-DCLOTHBENCH_SLOW_TESTS=OFF) ;;
+  esac
+  configure ci "${first[@]}"
+  cmake --build --preset ci -j "$JOBS" --target "${targets[@]}"
 }
-tests() { ctest --test-dir build/release --output-on-failure -j "${JOBS:-2}" "${selection[@]}"; }
+tests() { ctest --test-dir build/release --output-on-failure -j "$JOBS" "${selection[@]}"; }
 
 # What penetrates what, against the committed baseline; gates nothing that depends on the machine's speed.
 penetration() {
@@ -36,7 +40,7 @@ penetration() {
 stability() {
   local out=build/stability-quick
   rm -rf "$out" "$out-report"
-  build/release/clothbench study stability --quick --jobs "${JOBS:-2}" --out "$out" >"$out.txt" || { tail -20 "$out.txt"; return 1; }
+  build/release/clothbench study stability --quick --jobs "$JOBS" --out "$out" >"$out.txt" || { tail -20 "$out.txt"; return 1; }
   tail -1 "$out.txt"
   grep -q '(0 of them crashed or hung)' "$out.txt"
   # Ours stays finite and bounded whatever the case, and repeats itself.
@@ -48,13 +52,23 @@ stability() {
   fi
 }
 
-selection=(-LE slow)
-[ "${1:-}" = --full ] && selection=()
-mkdir -p build
-stage set-up 4 scripts/bootstrap.sh --tests
-stage assets 8 scripts/fetch-assets.sh
-stage build 8 build
-stage tests 8 tests
-stage contact 3 penetration
-stage stability 4 stability
+tier=quick selection=(-LE slow) targets=(all)
+case ${1:-} in
+  '') ;;
+  --full) tier=full selection=() ;;
+  --short)
+    tier=short
+    targets=(clothbench "${short[@]}")
+    selection=(-LE slow -R "^($(IFS='|'; echo "${short[*]}"))\\.")
+    ;;
+  *) echo "usage: scripts/test.sh [--full | --short]" >&2; exit 2 ;;
+esac
+stage set-up 3 scripts/bootstrap.sh --tests
+stage assets 1 scripts/fetch-assets.sh
+stage build 9 build
+stage --show tests 6 tests
+if [ "$tier" != short ]; then
+  stage contact 3 penetration
+  stage stability 3 stability
+fi
 print_budget

@@ -1,0 +1,87 @@
+# Sourced by the other scripts: how many jobs run side by side, and stages with a time budget each.
+#   JOBS                  default: one a core, but no more than one for each 1.5 GiB of available memory
+#   CLOTHBENCH_CMAKE      further arguments of `cmake` when a build is configured, such as -DCMAKE_CXX_COMPILER=clang++
+# shellcheck shell=bash
+
+default_jobs() {
+  local cores by_memory
+  cores=$(nproc)
+  by_memory=$(awk '/^MemAvailable:/ { print int($2 / 1572864) }' /proc/meminfo 2>/dev/null || true)
+  [ -n "$by_memory" ] && [ "$by_memory" -lt "$cores" ] && cores=$by_memory
+  echo $((cores > 1 ? cores : 1))
+}
+export JOBS=${JOBS:-$(default_jobs)}
+
+# configure PRESET [arguments of cmake…]
+configure() {
+  local extra=()
+  [ -z "${CLOTHBENCH_CMAKE:-}" ] || read -ra extra <<<"$CLOTHBENCH_CMAKE"
+  cmake --preset "$@" "${extra[@]}"
+}
+
+budget_rows=()
+over_budget=0
+stage_logs=${CLOTHBENCH_LOGS:-build/log}
+mkdir -p "$stage_logs"
+
+# stage NAME LIMIT_MINUTES COMMAND…: runs it with its output in a file, and prints one line: the time it has taken so far while
+#   it runs, the whole time afterwards. Where it fails, the end of its output and the file's name.
+# stage --show NAME …: its output is printed too.
+stage() {
+  local show=
+  if [ "$1" = --show ]; then show=1; shift; fi
+  local name=$1 limit=$(($2 * 60)) start=$SECONDS log status=0 ticker=
+  log=$stage_logs/${name//[^A-Za-z0-9]/-}.log
+  shift 2
+  if [ -n "$show" ]; then
+    echo "== $name (log: $log)"
+    { "$@" 2>&1 && echo 0 >"$log.status" || echo $? >"$log.status"; } | tee "$log"
+    status=$(cat "$log.status")
+    rm -f "$log.status"
+  else
+    stage_ticker "$name" "$start" "$log" &
+    ticker=$!
+    "$@" >"$log" 2>&1 || status=$?
+    kill "$ticker" 2>/dev/null && wait "$ticker" 2>/dev/null
+  fi
+  local took=$((SECONDS - start)) note=
+  if [ "$took" -gt "$limit" ]; then note=', over its budget'; fi
+  if [ $((took * 2)) -gt $((limit * 3)) ]; then over_budget=1; fi
+  stage_line "$name" "$took" "$([ "$status" -eq 0 ] && echo done || echo "failed, status $status")$note"
+  [ -t 1 ] && echo
+  budget_rows+=("$(printf '%-12s %5d s of %5d s%s' "$name" "$took" "$limit" "$note")")
+  if [ "$status" -ne 0 ]; then
+    [ -n "$show" ] || tail -30 "$log"
+    echo "$name failed; its whole output: $log" >&2
+  fi
+  return "$status"
+}
+
+# On a terminal the line is written over itself; in a file a line a minute says that the stage is alive.
+stage_line() {
+  if [ -t 1 ]; then printf '\r%-12s %5d s  %s\e[K' "$1" "$2" "$3"; else printf '%-12s %5d s  %s\n' "$1" "$2" "$3"; fi
+}
+stage_ticker() {
+  local pause=60 from=$SECONDS
+  [ -t 1 ] && pause=1
+  trap 'kill "${sleeping:-}" 2>/dev/null; exit' TERM
+  while :; do
+    sleep "$pause" &
+    local sleeping=$!
+    wait "$sleeping" || return
+    stage_line "$1" $((SECONDS - from)) "$(stage_progress "$3")"
+  done
+}
+# The last count that ninja printed; nothing for other programs.
+stage_progress() { tail -c 4000 "$1" 2>/dev/null | grep -oE '\[[0-9]+/[0-9]+\]' | tail -1 || true; }
+
+# Prints the time of every stage. In CI, a stage that took half as long again as its budget is a failure.
+print_budget() {
+  echo
+  echo "time used, of the budget on 2 cores (this run: $JOBS jobs; logs: $stage_logs):"
+  printf '  %s\n' "${budget_rows[@]}"
+  if [ "$over_budget" -ne 0 ] && [ "${CI:-}" = true ]; then
+    echo "a stage took more than one and a half times its budget" >&2
+    return 1
+  fi
+}

@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# Both README commands on a bare Debian 13, as a newcomer would type them: a chroot made by debootstrap, a clone of the committed HEAD,
+# one build by clang with warnings as errors, the quick study, a short set of tests, a live session on Monado's OpenXR runtime, the
+# Debian package, and that package installed in a second bare Debian 13.
+#   scripts/debian13.sh [FOLDER]     default: build/debian13; everything in it is made anew but the bare system and downloads
+# Needs root (chroot). Without it the stage is skipped and says so, unless CLOTHBENCH_REQUIRE_DEBIAN13=1.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+# Inside the other stages' names: logs of their own.
+CLOTHBENCH_LOGS=${CLOTHBENCH_LOGS:-build/log}/debian13
+source scripts/common.sh
+here=$PWD
+folder=$(realpath -m "${1:-build/debian13}")
+
+skip() {
+  if [ "${CLOTHBENCH_REQUIRE_DEBIAN13:-}" = 1 ]; then
+    echo "debian13: $1, and CLOTHBENCH_REQUIRE_DEBIAN13=1" >&2
+    exit 1
+  fi
+  echo "debian13: SKIPPED: $1"
+  echo "0 passed, 0 failed, 1 skipped"
+  exit 0
+}
+[ "$(id -u)" -eq 0 ] || skip "not root"
+unshare --mount true 2>/dev/null || skip "no mount namespaces here"
+
+bare() {
+  command -v debootstrap >/dev/null ||
+    { apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends debootstrap; } || return 1
+  if [ ! -f "$folder/base/.complete" ]; then
+    rm -rf "$folder/base"
+    mkdir -p "$folder/base"
+    # The mirror this machine itself uses for Debian; security updates have another.
+    local mirror
+    mirror=$(apt-get indextargets --format '$(REPO_URI) $(RELEASE)' 'Created-By: Packages' 'Origin: Debian' 'Label: Debian' |
+      grep -v -- '-security$' | cut -d' ' -f1 | sort -u | head -1)
+    [ -n "$mirror" ] || { echo "apt knows no Debian mirror (run apt-get update once)"; return 1; }
+    debootstrap --variant=minbase trixie "$folder/base" "$mirror" || return 1
+    rm -f "$folder/base"/var/cache/apt/archives/*.deb
+    # Nothing in here outlives the test: no need to wait for the disk.
+    echo force-unsafe-io >"$folder/base/etc/dpkg/dpkg.cfg.d/unsafe-io"
+    touch "$folder/base/.complete"
+  fi
+  cp /etc/resolv.conf "$folder/base/etc/resolv.conf"
+  local certificates=${NODE_EXTRA_CA_CERTS:-${SSL_CERT_FILE:-}}
+  [ -z "$certificates" ] || install -D -m 644 "$certificates" "$folder/base/etc/ssl/machine.crt"
+  # Copies of earlier runs hold no mounts: those live in a namespace of their own.
+  rm -rf "$folder/build" "$folder/installed"
+  cp -a "$folder/base" "$folder/build"
+  cp -a "$folder/base" "$folder/installed"
+  mkdir -p "$folder/archives" "$folder/ccache" "$folder/build/root/.cache/ccache"
+  git clone -q "file://$here" "$folder/build/root/clothbench"
+  git -C "$folder/build/root/clothbench" checkout -q --detach "$(git rev-parse HEAD)"
+}
+
+# in_chroot ROOT COMMAND: as root of a fresh login would run it, with this machine's way to the network.
+in_chroot() {
+  local root=$1 variables=(HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8
+    DEBIAN_FRONTEND=noninteractive "JOBS=$JOBS" CCACHE_DIR=/root/.cache/ccache "CI=${CI:-}")
+  local name
+  for name in http_proxy https_proxy no_proxy; do [ -z "${!name:-}" ] || variables+=("$name=${!name}"); done
+  [ ! -f "$root/etc/ssl/machine.crt" ] || variables+=(NODE_EXTRA_CA_CERTS=/etc/ssl/machine.crt npm_config_cafile=/etc/ssl/machine.crt)
+  unshare --mount bash -euc '
+    root=$1 folder=$2
+    mount -t proc proc "$root/proc"
+    mount --rbind /dev "$root/dev"
+    mount --bind "$folder/archives" "$root/var/cache/apt/archives"
+    [ ! -d "$root/root/.cache/ccache" ] || mount --bind "$folder/ccache" "$root/root/.cache/ccache"
+    shift 2
+    exec chroot "$root" env -i "$@"' bash "$root" "$folder" "${variables[@]}" bash -euc "cd /root; [ ! -d clothbench ] || cd clothbench; $2"
+}
+newcomer() { in_chroot "$folder/build" "$1"; }
+
+set_up() {
+  newcomer 'rm -f /etc/apt/apt.conf.d/docker-clean; apt-get update; apt-get install -y --no-install-recommends git ca-certificates clang
+            git config --global --add safe.directory "*"'
+}
+# Words are split on purpose: arguments of cmake.
+clang='export CLOTHBENCH_CMAKE="-DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCLOTHBENCH_WERROR=ON"'
+monado() {
+  newcomer 'apt-get install -y --no-install-recommends monado-service libopenxr1-monado openxr-layer-corevalidation
+            /usr/bin/python3 tests/xr/check_monado.py build/release/clothbench'
+}
+package() {
+  newcomer 'cd build/release && cpack -G DEB && cpack -G TGZ'
+  mkdir -p "$folder/packages"
+  rm -f "$folder"/packages/*
+  cp "$folder"/build/root/clothbench/build/release/*.deb "$folder"/build/root/clothbench/build/release/*.tar.gz "$folder/packages/"
+}
+installed() {
+  cp "$folder"/packages/*.deb scripts/package_test.sh "$folder/installed/root/"
+  in_chroot "$folder/installed" 'bash package_test.sh /root/*.deb'
+}
+
+stage bare 3 bare
+stage set-up 2 set_up
+stage --show run.sh 12 newcomer "$clang; scripts/run.sh --quick"
+stage --show test.sh 8 newcomer "$clang; scripts/test.sh --short"
+stage --show monado 2 monado
+stage package 2 package
+stage --show installed 3 installed
+print_budget
