@@ -22,7 +22,7 @@ static_assert(std::endian::native == std::endian::little, "recordings are little
 static_assert(sizeof(RecordedJoint) == 32 && sizeof(RecordedCapsule) == 28, "stored as they lie in memory");
 
 constexpr double kMostRate_hz = 1000;
-constexpr float kMostMetres = 1e4f;
+constexpr float kMostCoordinate_m = 1e4f;
 constexpr double kUnit = 1e-3;  // how far from 1 a norm of float32 or a sum of weights may be
 
 template <class Item>
@@ -48,15 +48,15 @@ bool good(const RecordedJoint& j) {
   double norm = 0;
   for (const float q : j.orientation) norm += static_cast<double>(q) * static_cast<double>(q);
   for (const float x : j.position_m)
-    if (!(std::abs(x) <= kMostMetres)) return false;
-  return std::abs(std::sqrt(norm) - 1) <= kUnit && j.radius_m >= 0 && j.radius_m <= kMostMetres;
+    if (!(std::abs(x) <= kMostCoordinate_m)) return false;
+  return std::abs(std::sqrt(norm) - 1) <= kUnit && j.radius_m >= 0 && j.radius_m <= kMostCoordinate_m;
 }
 
 bool good(const RecordedCapsule& c) {
   for (const auto& end : {c.a_m, c.b_m})
     for (const float x : end)
-      if (!(std::abs(x) <= kMostMetres)) return false;
-  return c.radius_m >= 0 && c.radius_m <= kMostMetres;
+      if (!(std::abs(x) <= kMostCoordinate_m)) return false;
+  return c.radius_m >= 0 && c.radius_m <= kMostCoordinate_m;
 }
 
 template <class Items>
@@ -220,7 +220,7 @@ RecordedMesh welded(RecordedMesh given, const std::string& source) {
         throw Error(fmt::format("{}: hand mesh: vertex {}: expected joints below {} and weights of at least 0", source, v,
                                 kRecordedJointCount));
     for (const float x : p)
-      if (!(std::abs(x) <= kMostMetres)) throw Error(fmt::format("{}: hand mesh: vertex {} is not finite", source, v));
+      if (!(std::abs(x) <= kMostCoordinate_m)) throw Error(fmt::format("{}: hand mesh: vertex {} is not finite", source, v));
     if (!(std::abs(static_cast<double>(sum) - 1) <= kUnit))
       throw Error(fmt::format("{}: hand mesh: vertex {} has weights of sum {}; expected 1", source, v, sum));
     const auto [place, is_new] = places.try_emplace(p, static_cast<std::uint32_t>(places.size()));

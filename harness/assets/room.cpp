@@ -21,7 +21,7 @@ Vector vector_at(const std::optional<JsonAt>& at) {
   return {at->number_or("x", 0), at->number_or("y", 0), at->number_or("z", 0)};
 }
 
-Frame frame_at(const JsonAt& entity) {
+Frame pose_of(const JsonAt& entity) {
   const JsonAt located = entity.key("locatable_META");
   const JsonAt turned = located.key("orientation");
   const Eigen::Quaterniond q(turned.number_or("w", 0), turned.number_or("x", 0), turned.number_or("y", 0),
@@ -44,7 +44,7 @@ double extent_at(const JsonAt& extent, const char* name) {
 Table table_at(const JsonAt& entity, const JsonAt& bounded) {
   Table table;
   table.uuid = entity.key("uuid").text();
-  table.frame = frame_at(entity);
+  table.frame = pose_of(entity);
   const JsonAt extent = bounded.key("extent");
   const Vector low = vector_at(bounded.maybe("offset"));
   table.box =
@@ -55,7 +55,7 @@ Table table_at(const JsonAt& entity, const JsonAt& bounded) {
 Rectangle rectangle_at(const JsonAt& entity, const JsonAt& bounded) {
   const JsonAt extent = bounded.key("extent");
   return {entity.key("uuid").text(),
-          frame_at(entity),
+          pose_of(entity),
           vector_at(bounded.maybe("offset")).head<2>(),
           {extent_at(extent, "width"), extent_at(extent, "height")}};
 }
@@ -75,7 +75,7 @@ std::vector<Item> triples_at(const JsonAt& at) {
 }
 
 TriangleMesh mesh_at(const JsonAt& entity, const JsonAt& stored) {
-  const Frame frame = frame_at(entity);
+  const Frame frame = pose_of(entity);
   const JsonAt vertices_at = stored.key("vertices"), indices_at = stored.key("indices");
   const auto vertices = triples_at<float>(vertices_at);
   const auto indices = triples_at<std::uint32_t>(indices_at);

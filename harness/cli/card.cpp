@@ -12,7 +12,7 @@
 namespace clothbench {
 namespace {
 
-struct Arguments {
+struct CardArguments {
   std::vector<std::string> solvers, set;
   bool no_sweep = false;
   DeviceFlags device;
@@ -32,7 +32,7 @@ CellRecord card_from(const nlohmann::json& j) {
 }
 
 /// The card at the settings given, and short ones where it is looked whether it holds.
-void measure(const SolverEntry& entry, const Overrides& overrides, const Arguments& a, Guard& guard, StatusLine& line,
+void measure(const SolverEntry& entry, const Overrides& overrides, const CardArguments& a, Guard& guard, StatusLine& line,
              std::vector<CellRecord>& out) {
   const nlohmann::json settings = complete_settings(entry.info, overrides.solver);
   const auto one = [&](const nlohmann::json& s, const std::string& label, bool full) {
@@ -54,7 +54,7 @@ void measure(const SolverEntry& entry, const Overrides& overrides, const Argumen
 }  // namespace
 
 void add_card(CLI::App& app, Console& console) {
-  static Arguments a;
+  static CardArguments a;
   CLI::App* cmd = app.add_subcommand("card",
                                      "Measure what solvers make of a scene's stiffness: moduli at 0, 45 and 90 "
                                      "degrees, bending, and whether they hold over settings");

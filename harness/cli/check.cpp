@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct CheckArguments {
   std::vector<std::string> runs;
   std::string baseline, junit;
   bool github = false, update = false;
@@ -50,7 +50,7 @@ void print_json(const nlohmann::json& j) {
   fmt::print("{}\n", j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-void update(const Arguments& a, const std::vector<fs::path>& runs, const std::vector<CellRecord>& cells,
+void update(const CheckArguments& a, const std::vector<fs::path>& runs, const std::vector<CellRecord>& cells,
             const Console& console) {
   const Baseline old = fs::exists(a.baseline) ? read_baseline(a.baseline) : Baseline{};
   const Updated updated = update_baseline(old, cells, origin_of(runs, cells, console.command_line));
@@ -61,7 +61,7 @@ void update(const Arguments& a, const std::vector<fs::path>& runs, const std::ve
     fmt::print("{}", update_text(updated, a.baseline));
 }
 
-void check(const Arguments& a, const std::vector<CellRecord>& cells, Console& console) {
+void check(const CheckArguments& a, const std::vector<CellRecord>& cells, Console& console) {
   const Checked checked = check_cells(read_baseline(a.baseline), cells);
   if (!a.junit.empty()) write_file_atomically(a.junit, junit_xml(checked));
   if (console.json)
@@ -77,7 +77,7 @@ void check(const Arguments& a, const std::vector<CellRecord>& cells, Console& co
 }  // namespace
 
 void add_check(CLI::App& app, Console& console) {
-  static Arguments a;
+  static CheckArguments a;
   a = {};
   CLI::App* cmd = app.add_subcommand(
       "check", "Hold results to a baseline: outcome, stages, dispatches, error, penetration; never times");

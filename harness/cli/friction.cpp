@@ -12,7 +12,7 @@
 namespace clothbench {
 namespace {
 
-struct Arguments {
+struct FrictionArguments {
   std::vector<std::string> solvers, set;
   std::vector<int> substeps;
   std::string readme;
@@ -75,7 +75,7 @@ Answer guarded(Guard& guard, const Form& form, const SolverEntry& entry, const n
 }  // namespace
 
 void add_friction(CLI::App& app, Console& console) {
-  static Arguments a;
+  static FrictionArguments a;
   a = {};
   CLI::App* cmd = app.add_subcommand("friction", "Solvers by the closed forms of friction: slopes, stopping, capstan, Atwood's strip");
   add_solvers(*cmd, "solver", a.solvers, "Solvers; default: all that touch anything");

@@ -13,7 +13,7 @@
 namespace clothbench {
 namespace {
 
-struct Arguments {
+struct MetamorphicArguments {
   std::vector<std::string> solvers, set;
   std::string readme;
   DeviceFlags device;
@@ -93,7 +93,7 @@ void print_threshold(const nlohmann::json& t) {
 }  // namespace
 
 void add_metamorphic(CLI::App& app, Console& console) {
-  static Arguments a;
+  static MetamorphicArguments a;
   a = {};
   CLI::App* cmd = app.add_subcommand("metamorphic", "Properties of a solver that need no truth: similarity, mirror, rotation, renumbering, flip, repeat, no-op, restart");
   add_solvers(*cmd, "solver", a.solvers, "Solvers; default: all");

@@ -11,7 +11,7 @@
 namespace clothbench {
 namespace {
 
-struct Arguments {
+struct PlanArguments {
   std::vector<std::string> scenes, solvers, set;
   DeviceFlags device;
 };
@@ -71,7 +71,7 @@ void print(const nlohmann::json& p) {
 }  // namespace
 
 void add_plan(CLI::App& app, Console& console) {
-  static Arguments a;
+  static PlanArguments a;
   a = {};
   CLI::App* cmd = app.add_subcommand("plan", "What a solver would run for a scene: kernels, dispatches, buffers, bytes, and what it leaves out");
   cmd->add_option("scene", a.scenes, "Scenario files or names")->required();

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct RenderArguments {
   std::vector<std::string> files, views, set;
   std::string out, frames, colour, size, cell, solver;
   bool plain = false, no_movie = false;
@@ -41,7 +41,7 @@ std::vector<fs::path> cells_in(const fs::path& folder, const std::string& wanted
 }
 
 /// Runs a scene for its positions alone.
-render::Motion run(const std::string& file, const Arguments& a, const Console& console) {
+render::Motion run(const std::string& file, const RenderArguments& a, const Console& console) {
   const Overrides overrides = split_overrides(a.set);
   const Scene scene = load_scene(file, overrides.scene);
   const SolverEntry& entry = find_solver(a.solver);
@@ -57,7 +57,7 @@ render::Motion run(const std::string& file, const Arguments& a, const Console& c
   return render::motion_of(scene, cell.header(), cell.outcome(), std::move(pass));
 }
 
-std::vector<render::Motion> motions_of(const std::string& file, const Arguments& a, const Console& console) {
+std::vector<render::Motion> motions_of(const std::string& file, const RenderArguments& a, const Console& console) {
   std::vector<render::Motion> out;
   const fs::path path = file;
   if (fs::is_directory(path) && !is_cell(path)) {
@@ -84,7 +84,7 @@ void tell(const render::Taken& t) {
   if (!t.no_movie.empty()) fmt::print("{}\n", t.no_movie);
 }
 
-void render_all(const Arguments& a, const Console& console) {
+void render_all(const RenderArguments& a, const Console& console) {
   render::Shots shots;
   if (!a.views.empty()) shots.views.clear();
   for (const std::string& v : a.views) shots.views.push_back(render::view_from(v));
@@ -117,7 +117,7 @@ void render_all(const Arguments& a, const Console& console) {
 }  // namespace
 
 void add_render(CLI::App& app, Console& console) {
-  static Arguments a;
+  static RenderArguments a;
   a = {};
   a.out = "pictures";
   a.frames = ":";

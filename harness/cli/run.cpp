@@ -9,7 +9,7 @@
 namespace clothbench {
 namespace {
 
-struct Arguments {
+struct RunArguments {
   std::vector<std::string> scenes, solvers, set;
   std::string out;
   int trials = 1;
@@ -21,7 +21,7 @@ struct Arguments {
 }  // namespace
 
 void add_run(CLI::App& app, Console& console) {
-  static Arguments a;
+  static RunArguments a;
   a = {};
   CLI::App* cmd = app.add_subcommand("run", "Run scenes with solvers: one accuracy pass over the whole scene, then timed trials");
   cmd->add_option("scene", a.scenes, "Scenario files or names")->required();

@@ -13,7 +13,7 @@
 namespace clothbench {
 namespace {
 
-struct Arguments {
+struct StudyArguments {
   std::string study;
   std::vector<std::string> set, only;
   int trials = 0, jobs = 0;
@@ -87,7 +87,7 @@ CellPlan plan_study(const Study& study) {
 }
 
 void add_study(CLI::App& app, Console& console) {
-  static Arguments a;
+  static StudyArguments a;
   a = {};
   CLI::App* cmd = app.add_subcommand("study", "Run every cell of a study");
   cmd->add_option("study", a.study, "Study file or name, such as table3")->required();

@@ -9,7 +9,7 @@
 namespace clothbench {
 namespace {
 
-struct Arguments {
+struct XrArguments {
   std::string scene, solver, out, runtime;
   std::vector<std::string> set;
   std::vector<double> place;
@@ -39,7 +39,7 @@ void print(const xr::LoopResult& r, const Console& console) {
 }  // namespace
 
 void add_xr(CLI::App& app, Console& console) {
-  static Arguments a;
+  static XrArguments a;
   a = {};
   a.solver = "xpbd";
   CLI::App* cmd = app.add_subcommand("xr", "A live session in a headset (OpenXR): the cloth is drawn, the user's hands and room touch it");

@@ -1,10 +1,10 @@
 #include "metrics/collider_contact.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 
 #include "clothbench/error.hpp"
+#include "clothbench/record.hpp"
 #include "metrics/contact/contact_probe.hpp"
 #include "metrics/contact/contour.hpp"
 #include "metrics/contact/half_space.hpp"
@@ -12,17 +12,13 @@
 namespace clothbench {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 using contact::ContactProbe;
 using contact::ContactSample;
 using contact::TriangleMeshView;
 
-contact::Point<3> point(const Vec3& v) { return {v[0], v[1], v[2]}; }
-
 std::vector<contact::Capsule> shapes_of(const std::vector<Capsule>& capsules) {
   std::vector<contact::Capsule> out;
-  for (const Capsule& c : capsules) out.push_back({point(c.a_m), point(c.b_m), c.radius_m});
+  for (const Capsule& c : capsules) out.push_back({contact::point(c.a_m), contact::point(c.b_m), c.radius_m});
   return out;
 }
 
@@ -93,7 +89,7 @@ struct ColliderContact::Probes {
     Watched w{&c, {}};
     try {
       if (c.shape == Collider::Shape::Sphere) {
-        const contact::Capsule ball = contact::sphere(point(c.center_m), c.radius_m);
+        const contact::Capsule ball = contact::sphere(contact::point(c.center_m), c.radius_m);
         w.probe.emplace(cloth, std::span(&ball, 1));
       } else if (c.shape == Collider::Shape::Capsules) {
         w.probe.emplace(cloth, shapes_of(pose(k, 0).capsules));
@@ -113,7 +109,7 @@ struct ColliderContact::Probes {
   ContactSample sample(std::size_t k, int frame, const std::vector<double>& positions) {
     const Collider& c = *watched[k].collider;
     if (c.shape == Collider::Shape::Plane)
-      return contact::half_space_contact({positions, triangles}, point(c.center_m), point(c.normal));
+      return contact::half_space_contact({positions, triangles}, contact::point(c.center_m), contact::point(c.normal));
     ContactProbe& probe = *watched[k].probe;
     if (frame > 0 && c.shape == Collider::Shape::Capsules) probe.move_shapes(shapes_of(pose(k, frame).capsules));
     if (frame > 0 && c.shape == Collider::Shape::Mesh && c.moves()) probe.move_object(posed_positions(*c.mesh, pose(k, frame)));
@@ -132,7 +128,7 @@ ColliderContact::~ColliderContact() = default;
 
 SceneContact ColliderContact::probe(int frame, const std::vector<double>& positions) {
   Probes& p = *probes_;
-  const double tunnelled = p.any_crossings ? 0 : kNaN, depth = p.any_inside ? 0 : kNaN;
+  const double tunnelled = p.any_crossings ? 0 : kMissing, depth = p.any_inside ? 0 : kMissing;
   SceneContact all{0, 0, 0, tunnelled, tunnelled, depth, depth, depth, depth, depth};
   double moment = 0;
   for (std::size_t k = 0; k < p.watched.size(); ++k) add(all, moment, *p.watched[k].collider, p.sample(k, frame, positions));
@@ -142,7 +138,7 @@ SceneContact ColliderContact::probe(int frame, const std::vector<double>& positi
 }
 
 SelfContact self_contact(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-  if (!contact::all_finite(positions)) return {kNaN, kNaN};
+  if (!contact::all_finite(positions)) return {kMissing, kMissing};
   const contact::Contour c = contact::self_contour({positions, triangles});
   return {c.length_m, static_cast<double>(c.pairs)};
 }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 
+#include "clothbench/record.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/contact/surface.hpp"
 #include "metrics/contact/wrong_side.hpp"
@@ -13,7 +13,6 @@
 namespace clothbench {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTouchShare = 1e-3;   // of the cloth's shorter side, beyond the margin
 constexpr double kTouchMargin = 0.1;   // of the margin
 
@@ -21,8 +20,6 @@ using contact::Bone;
 using contact::Nearest;
 using contact::Point;
 using contact::WrongSide;
-
-Point<3> point(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 /// A point of a hand's centre line that moves with one joint.
 struct MedialPoint {
@@ -77,7 +74,7 @@ class CentreLine {
 
   std::vector<Bone> at(const ColliderPose& pose) const {
     std::vector<Bone> out;
-    for (const Capsule& c : pose.capsules) out.push_back({point(c.a_m), point(c.b_m)});
+    for (const Capsule& c : pose.capsules) out.push_back({contact::point(c.a_m), contact::point(c.b_m)});
     for (const auto& [a, b] : bones_) out.push_back({posed(a, pose), posed(b, pose)});
     return out;
   }
@@ -95,20 +92,20 @@ class CentreLine {
 };
 
 std::vector<contact::Capsule> shapes_of(const Collider& c, const ColliderPose& pose) {
-  if (c.shape == Collider::Shape::Sphere) return {contact::sphere(point(c.center_m), c.radius_m)};
+  if (c.shape == Collider::Shape::Sphere) return {contact::sphere(contact::point(c.center_m), c.radius_m)};
   std::vector<contact::Capsule> out;
-  for (const Capsule& k : pose.capsules) out.push_back({point(k.a_m), point(k.b_m), k.radius_m});
+  for (const Capsule& k : pose.capsules) out.push_back({contact::point(k.a_m), contact::point(k.b_m), k.radius_m});
   return out;
 }
 
 /// Nearest place of a box's surface, inside it too.
 Nearest nearest_on_box(const Point<3>& p, const Collider& box) {
-  const Point<3> from = p - point(box.center_m);
+  const Point<3> from = p - contact::point(box.center_m);
   Point<3> at = Point<3>::Zero();
   double inside = std::numeric_limits<double>::infinity();
   Point<3> out = Point<3>::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
-    const Point<3> axis = point(box.axes[k]);
+    const Point<3> axis = contact::point(box.axes[k]);
     const double x = axis.dot(from), h = box.half_extent_m[k];
     at += std::clamp(x, -h, h) * axis;
     if (h - std::abs(x) < inside) {
@@ -163,7 +160,7 @@ struct ColliderPassage::Watch {
     Point<3> middle = Point<3>::Zero(), sheet = Point<3>::Zero();
     for (const Bone& b : bones) middle += (b[0] + b[1]) / (2.0 * static_cast<double>(bones.size()));
     for (std::size_t v = 0; v < start.size(); v += 3) sheet += Point<3>(Point<3>::Map(&start[v])) * (3.0 / static_cast<double>(start.size()));
-    const Point<3> normal = point(scene.cloth.axis_u).cross(point(scene.cloth.axis_v)).normalized();
+    const Point<3> normal = contact::point(scene.cloth.axis_u).cross(contact::point(scene.cloth.axis_v)).normalized();
     const double reach = 4 * (scene.cloth.width_m + scene.cloth.height_m + (middle - sheet).norm());
     sides[k].emplace(bones, normal.dot(middle - sheet) < 0 ? Point<3>(-normal) : normal, reach, vertex_area.size() + cells.size(), weave());
   }
@@ -206,7 +203,7 @@ struct ColliderPassage::Watch {
       if (!sides[k]) continue;
       sides[k]->advance(samples, lines[k].at(pose(k, frame)));
       if (!sides[k]->known()) {
-        out.wrong_side_fraction = out.wrong_side_samples = kNaN;
+        out.wrong_side_fraction = out.wrong_side_samples = kMissing;
         return;
       }
       for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] = wrong[i] || sides[k]->wrong(i);
@@ -231,7 +228,7 @@ struct ColliderPassage::Watch {
     };
     const ColliderPose &now = pose(k, frame), &was = pose(k, std::max(frame - 1, 0));
     if (c.shape == Collider::Shape::Plane) {
-      const Point<3> at = point(c.center_m), normal = point(c.normal);
+      const Point<3> at = contact::point(c.center_m), normal = contact::point(c.normal);
       each([&](const Point<3>& p) { return Nearest{normal.dot(p - at), normal, Point<3>::Zero()}; });
     } else if (c.shape == Collider::Shape::Box) {
       each([&](const Point<3>& p) { return nearest_on_box(p, c); });
@@ -291,7 +288,7 @@ ColliderPassage::ColliderPassage(const Scene& scene, double held_at_m) : watch_(
 ColliderPassage::~ColliderPassage() = default;
 
 ScenePassage ColliderPassage::probe(int frame, const std::vector<double>& positions) {
-  ScenePassage out{kNaN, kNaN, kNaN, kNaN};
+  ScenePassage out{kMissing, kMissing, kMissing, kMissing};
   watch_->probe_sides(frame, positions, out);
   if (!contact::all_finite(positions)) {
     watch_->before.clear();

@@ -3,12 +3,11 @@
 #include <cmath>
 
 #include "clothbench/record.hpp"
+#include "clothbench/vector.hpp"
 #include "truth/elastica.hpp"
 
 namespace clothbench {
 namespace {
-
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// A patch with its long side along s and its short one along t, whichever of u and v they are.
 struct Sheet {

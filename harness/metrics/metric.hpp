@@ -68,6 +68,12 @@ const std::vector<Metric>& metrics();
 /// Greater of two numbers, and NaN if either is: std::max would lose it.
 inline double max_or_nan(double a, double b) { return b <= a || a != a ? a : b; }
 
+inline bool finite(const std::vector<double>& values) {
+  for (double v : values)
+    if (!std::isfinite(v)) return false;
+  return true;
+}
+
 /// Length of a vector. Not std::hypot(x, y, z): libstdc++'s gives 0 for (0, NaN, 0).
 inline double norm(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
 

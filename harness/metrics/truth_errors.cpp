@@ -40,12 +40,6 @@ std::vector<double> strains(const Cloth& c, const std::vector<double>& x) {
   return out;
 }
 
-bool finite(const std::vector<double>& values) {
-  for (double v : values)
-    if (!std::isfinite(v)) return false;
-  return true;
-}
-
 }  // namespace
 
 TruthJudge::TruthJudge(const Scene& scene)

@@ -3,18 +3,12 @@
 
 #include "render/framing.hpp"
 
+#include "clothbench/vector.hpp"
+
 namespace clothbench::render {
 namespace {
 
 using Triangle = std::array<Vec3, 3>;
-
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// Whether a half-line meets a triangle (Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection, 1997).
 bool meets(const Vec3& from, const Vec3& along, const Triangle& t) {

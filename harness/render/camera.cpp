@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "clothbench/error.hpp"
+#include "clothbench/vector.hpp"
 
 namespace clothbench::render {
 namespace {
@@ -12,12 +13,6 @@ namespace {
 constexpr double kFieldOfView = 28;  // degrees of the picture's height: little perspective, as a photograph from afar
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
-
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 void look(Camera& c, View view, double turn_deg) {
   if (view == View::Top) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clothbench/vector.hpp"
+
 namespace clothbench::render {
 namespace {
 
@@ -10,8 +12,6 @@ constexpr double kSeenBeside = 0.12;  // of the sheet's size: so near the cloth 
 constexpr double kDrawnBeside = 0.5;  // and so far are drawn
 
 Vec3 vertex(std::span<const double> x, std::size_t v) { return {x[3 * v], x[3 * v + 1], x[3 * v + 2]}; }
-
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 double largest(const Vec3& v) { return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}); }
 

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "clothbench/vector.hpp"
+
 namespace clothbench::render {
 namespace {
 
@@ -29,8 +31,6 @@ std::shared_ptr<vulkan::Device> drawing(std::shared_ptr<vulkan::Device> device) 
 vec4 as_vec4(const Vec3& v, double w) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(w)};
 }
-
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 /// Where the viewer is, of a rigid view matrix.
 Vec3 eye_of(const Mat4& view) {

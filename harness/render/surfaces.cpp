@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "clothbench/vector.hpp"
 #include "render/render_shared.h"
 
 namespace clothbench::render {
@@ -12,12 +13,6 @@ namespace {
 constexpr double kGrip_m = 0.012;  // radius of the ball that marks a held vertex, of a cloth of a metre
 
 Vec3 sum(const Vec3& a, double s, const Vec3& b) { return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]}; }
-
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 Vec3 unit_or_zero(const Vec3& v) {
   const double length = std::sqrt(dot(v, v));

@@ -27,7 +27,7 @@ const char* protocol_name(StudyLength length) {
   return length == StudyLength::Full ? "full" : length == StudyLength::Quick ? "quick" : "short";
 }
 
-void stop_if_interrupted() {
+void stop_if_asked() {
   if (interrupt_requested())
     throw Error("interrupted; finished cells are kept (continue with --resume)", ExitCode::Interrupted);
 }
@@ -207,7 +207,7 @@ class Map {
                                         solver["solver"].get<std::string>(), label, x, y, seed);
     const CellAnswer* found = probes_.find(key);
     if (found == nullptr) {
-      stop_if_interrupted();
+      stop_if_asked();
       CellRequest r;
       r.scenario = scenario_;
       r.source = file_.string();
@@ -354,7 +354,7 @@ StabilityCounts run_stability_cells(const Study& study, const StabilityOptions& 
   std::vector<std::function<void(CellWorker&)>> tasks;
   for (const Todo& t : todo)
     tasks.push_back([&, t](CellWorker& worker) {
-      stop_if_interrupted();
+      stop_if_asked();
       const CellAnswer a = worker.run(request_of(study, *t.item, *t.solver, o));
       const std::lock_guard lock(mutex);
       counts.add(a);

@@ -30,7 +30,7 @@ std::optional<ClothState> last_state(const Scene& scene, const SolverEntry& entr
   return state;
 }
 
-bool held(const Scene& scene, const truth::Card& card, double limit_m, const SolverEntry& entry, const nlohmann::json& settings,
+bool stays(const Scene& scene, const truth::Card& card, double limit_m, const SolverEntry& entry, const nlohmann::json& settings,
           const DeviceOptions& device) {
   const auto state = last_state(scene, entry, settings, device);
   return state && std::abs(card.quantity(truth::column_means(scene.cloth, state->position))) <= limit_m;
@@ -48,7 +48,7 @@ FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, cons
   const auto holds = [&](double friction) {
     ++out.runs;
     const Scene tried = scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", t.key, friction)});
-    return held(tried, *card, t.held_below_m, entry, settings, device);
+    return stays(tried, *card, t.held_below_m, entry, settings, device);
   };
   double low = kLow * t.exact, high = kHigh * t.exact;
   if (!holds(high)) {

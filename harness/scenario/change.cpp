@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "clothbench/error.hpp"
+#include "scenario/vec3.hpp"
 
 namespace clothbench {
 namespace {
@@ -15,7 +16,6 @@ using Matrix = Eigen::Matrix3d;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-Vec3 vec3(const json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
 Vec3 scaled(double k, const Vec3& v) { return {k * v[0], k * v[1], k * v[2]}; }
 
 void scale(json& object, const char* key, double by) {

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "clothbench/error.hpp"
+#include "clothbench/vector.hpp"
 #include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 #include "scenario/sha256.hpp"
@@ -26,8 +27,7 @@ namespace fs = std::filesystem;
 // Of the square of its longest side: a triangle with less area has no direction, and rounding decides its normal.
 constexpr double kLeastArea = 1e-9;
 
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double length(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
+double edge_length(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 
 double area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 p = minus(b, a), q = minus(c, a);
@@ -37,7 +37,7 @@ double area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
 void check_triangle(const std::vector<Vec3>& x, const std::array<std::uint32_t, 3>& t, std::size_t k, const std::string& source) {
   for (const std::uint32_t v : t)
     if (v >= x.size()) throw Error(fmt::format("{}: triangle {}: vertex {} of {} (the first is 0)", source, k, v, x.size()));
-  const double longest = std::max({length(minus(x[t[1]], x[t[0]])), length(minus(x[t[2]], x[t[1]])), length(minus(x[t[0]], x[t[2]]))});
+  const double longest = std::max({edge_length(minus(x[t[1]], x[t[0]])), edge_length(minus(x[t[2]], x[t[1]])), edge_length(minus(x[t[0]], x[t[2]]))});
   if (!(area_of(x[t[0]], x[t[1]], x[t[2]]) > kLeastArea * longest * longest))
     throw Error(fmt::format("{}: triangle {} (vertices {}, {}, {}) has no area", source, k, t[0], t[1], t[2]));
 }
@@ -69,7 +69,7 @@ ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uin
   ClothMesh m{std::move(vertices), std::move(triangles), {}, {}, 0};
   if (m.triangles.empty()) throw Error(source + ": no triangle");
   for (std::size_t v = 0; v < m.vertices.size(); ++v)
-    if (!std::isfinite(length(m.vertices[v]))) throw Error(fmt::format("{}: vertex {} is not finite", source, v));
+    if (!std::isfinite(edge_length(m.vertices[v]))) throw Error(fmt::format("{}: vertex {} is not finite", source, v));
   struct Seen {
     double areas = 0;
     int triangles = 0;
@@ -96,7 +96,7 @@ ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uin
   for (std::size_t v = 0; v < used.size(); ++v)
     if (used[v] == 0) throw Error(fmt::format("{}: vertex {} is in no triangle and would have no mass", source, v));
   for (const auto& [ends, edge] : seen) {
-    const double rest = length(minus(m.vertices[ends.second], m.vertices[ends.first]));
+    const double rest = edge_length(minus(m.vertices[ends.second], m.vertices[ends.first]));
     m.edges.push_back({ends.first, ends.second, rest, EdgeKind::Structural});
     m.areas_m2.push_back(edge.areas);
     m.edge_m += rest / static_cast<double>(seen.size());
@@ -149,7 +149,7 @@ std::pair<double, double> longest_sides(const ClothMesh& m) {
 std::uint32_t nearest_vertex(const ClothMesh& m, const Vec3& point) {
   std::size_t best = 0;
   for (std::size_t v = 1; v < m.vertices.size(); ++v)
-    if (length(minus(m.vertices[v], point)) < length(minus(m.vertices[best], point))) best = v;
+    if (edge_length(minus(m.vertices[v], point)) < edge_length(minus(m.vertices[best], point))) best = v;
   return static_cast<std::uint32_t>(best);
 }
 

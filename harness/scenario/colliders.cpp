@@ -18,6 +18,7 @@
 #include "scenario/path.hpp"
 #include "scenario/recorded_hand.hpp"
 #include "scenario/table_pose.hpp"
+#include "scenario/vec3.hpp"
 
 namespace clothbench {
 namespace {
@@ -28,9 +29,6 @@ namespace fs = std::filesystem;
 constexpr double kUnit = 1e-9;  // how far from length 1 a unit vector may be
 constexpr double kRadians = std::numbers::pi / 180;
 
-Vec3 vec3(const json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
-Vec3 vec3(const assets::Vector& v) { return {v.x(), v.y(), v.z()}; }
-
 /// A hand on its way; keeps what is needed to sample it.
 struct Moving {
   std::optional<assets::Hand> hand;  ///< none where a recording needs none
@@ -39,9 +37,9 @@ struct Moving {
   assets::Vector offset = assets::Vector::Zero();  ///< of the whole track
 };
 
-class Reader {
+class ColliderReader {
  public:
-  Reader(json& scenario, Scene& scene, const std::string& source, Assets wanted)
+  ColliderReader(json& scenario, Scene& scene, const std::string& source, Assets wanted)
       : scenario_(scenario), scene_(scene), source_(source), wanted_(wanted) {}
 
   void read() {
@@ -117,7 +115,7 @@ class Reader {
     using Turn = Eigen::AngleAxisd;
     const Eigen::Matrix3d r = (Turn(turn[2] * kRadians, Eigen::Vector3d::UnitZ()) * Turn(turn[1] * kRadians, Eigen::Vector3d::UnitY()) *
                                Turn(turn[0] * kRadians, Eigen::Vector3d::UnitX())).toRotationMatrix();
-    for (int k = 0; k < 3; ++k) c.axes[static_cast<std::size_t>(k)] = vec3(assets::Vector(r.col(k)));
+    for (int k = 0; k < 3; ++k) c.axes[static_cast<std::size_t>(k)] = to_vec3(assets::Vector(r.col(k)));
   }
 
   void capsule(const json& j, Collider& c) {
@@ -239,7 +237,7 @@ class Reader {
     const assets::HandSample now = assets::sample(m.track, *m.hand, time_s);
     ColliderPose pose;
     if (!as_mesh) {
-      for (const assets::Capsule& c : assets::capsules(now.pose)) pose.capsules.push_back({vec3(assets::Vector(c.a + m.offset)), vec3(assets::Vector(c.b + m.offset)), c.radius_m});
+      for (const assets::Capsule& c : assets::capsules(now.pose)) pose.capsules.push_back({to_vec3(assets::Vector(c.a + m.offset)), to_vec3(assets::Vector(c.b + m.offset)), c.radius_m});
       return pose;
     }
     for (std::size_t k = 0; k < assets::kJointCount; ++k)
@@ -348,7 +346,7 @@ class Reader {
     const assets::Frame move = pinch_frame(now.pose) * pinch_frame(start.pose).inverse();
     for (std::uint32_t v : g.vertices) {
       const bool before = scene_.motion.size() == 1 || scene_.motion[scene_.motion.size() - 2].grip_held[m.grip_held.size()] != 0;
-      m.grip_position_m.push_back(vec3(assets::Vector(move * assets::Vector::Map(x.data() + 3 * v))));
+      m.grip_position_m.push_back(to_vec3(assets::Vector(move * assets::Vector::Map(x.data() + 3 * v))));
       m.grip_held.push_back(before && now.grip ? 1 : 0);
     }
   }
@@ -377,7 +375,7 @@ class Reader {
 }  // namespace
 
 void read_colliders(json& scenario, Scene& scene, const std::string& source, Assets assets) {
-  Reader(scenario, scene, source, assets).read();
+  ColliderReader(scenario, scene, source, assets).read();
 }
 
 }  // namespace clothbench

@@ -6,21 +6,16 @@
 #include <nlohmann/json.hpp>
 
 #include "clothbench/error.hpp"
+#include "scenario/vec3.hpp"
 
 namespace clothbench {
 namespace {
 
 using nlohmann::json;
 
-[[noreturn]] void refuse(const std::string& source, const std::string& pointer, const std::string& expected) {
-  throw Error(source + ": " + pointer + ": " + expected);
-}
-
-Vec3 vec3(const json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
-
-class Reader {
+class IrregularReader {
  public:
-  Reader(const json& scenario, Scene& scene, const std::string& source) : j_(scenario), s_(scene), source_(source) {}
+  IrregularReader(const json& scenario, Scene& scene, const std::string& source) : j_(scenario), s_(scene), source_(source) {}
 
   void read() {
     const json& cloth = j_["cloth"];
@@ -121,7 +116,7 @@ double scattered(std::uint64_t n) {
 }  // namespace
 
 void read_irregular(const json& scenario, Scene& scene, const std::string& source) {
-  Reader(scenario, scene, source).read();
+  IrregularReader(scenario, scene, source).read();
 }
 
 void read_frame_times(const json& time, Scene& scene, const std::string& source) {

@@ -17,11 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-const json& resolve(const json& schema, const json& root) {
-  if (!schema.contains("$ref")) return schema;
-  return root.at(json::json_pointer(schema["$ref"].get<std::string>().substr(1)));
-}
-
 std::string pointer_of(const std::vector<std::string>& context) {
   std::string pointer;
   for (std::size_t i = 1; i < context.size(); ++i) {
@@ -39,13 +34,13 @@ json schema_at(const json& root, const std::string& pointer) {
   while (i < pointer.size()) {
     const std::size_t end = std::min(pointer.find('/', i), pointer.size());
     const std::string part = pointer.substr(i, end - i);
-    s = json(resolve(s, root));
+    s = json(sub_schema(s, root));
     if (s.contains("properties") && s["properties"].contains(part)) s = json(s["properties"][part]);
     else if (s.contains("items")) s = json(s["items"]);
     else return json();
     i = end + 1;
   }
-  return json(resolve(s, root));
+  return json(sub_schema(s, root));
 }
 
 std::string expectation(const json& s) {
@@ -69,7 +64,7 @@ std::string expectation(const json& s) {
 /// First key of an object that its schema does not know, with the nearest known one; searched depth first, because
 /// valijson names only the object.
 std::string unknown_key(const json& value, const json& schema, const json& root, const std::string& pointer) {
-  const json s = json(resolve(schema, root));
+  const json s = json(sub_schema(schema, root));
   if (value.is_object() && s.contains("properties")) {
     const json& known = s["properties"];
     for (const auto& [key, sub] : value.items()) {

@@ -67,22 +67,16 @@ class Strict : public nlohmann::json_sax<json> {
   std::vector<std::string> path_;
 };
 
-/// The sub-schema that `$ref` means.
-const json& resolve(const json& schema, const json& root) {
-  if (!schema.contains("$ref")) return schema;
-  return root.at(json::json_pointer(schema["$ref"].get<std::string>().substr(1)));
-}
-
 /// An object that is right without any key, so that its defaults may stand for it.
 bool may_be_empty(const json& s) {
   return s.contains("properties") && !s.contains("required") && !s.contains("minProperties") && s.value("type", json()) == "object";
 }
 
 void fill(json& value, const json& schema, const json& root) {
-  const json& s = resolve(schema, root);
+  const json& s = sub_schema(schema, root);
   if (value.is_object() && s.contains("properties"))
     for (const auto& [key, sub] : s["properties"].items()) {
-      const json& target = resolve(sub, root);
+      const json& target = sub_schema(sub, root);
       if (!value.contains(key)) {
         if (sub.contains("default")) value[key] = sub["default"];
         else if (may_be_empty(target)) value[key] = json::object();
@@ -95,6 +89,15 @@ void fill(json& value, const json& schema, const json& root) {
 }
 
 }  // namespace
+
+const json& sub_schema(const json& schema, const json& root) {
+  if (!schema.contains("$ref")) return schema;
+  return root.at(json::json_pointer(schema["$ref"].get<std::string>().substr(1)));
+}
+
+void refuse(const std::string& source, const std::string& pointer, const std::string& expected) {
+  throw Error(source + ": " + pointer + ": " + expected);
+}
 
 std::string read_text(const std::filesystem::path& path) {
   std::error_code ec;

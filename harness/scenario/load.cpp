@@ -8,12 +8,14 @@
 #include <set>
 
 #include "clothbench/solver.hpp"
+#include "clothbench/vector.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/colliders.hpp"
 #include "scenario/irregular.hpp"
 #include "scenario/json_text.hpp"
 #include "scenario/paths.hpp"
 #include "scenario/sha256.hpp"
+#include "scenario/vec3.hpp"
 
 namespace clothbench {
 namespace {
@@ -22,15 +24,6 @@ using nlohmann::json;
 
 constexpr std::size_t kMostVertices = std::size_t{1} << 22;
 constexpr double kMostFrames = 1e7;
-
-Vec3 vec3(const json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
-
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/// Message of every check below: where, and what was expected.
-[[noreturn]] void refuse(const std::string& source, const std::string& pointer, const std::string& expected) {
-  throw Error(source + ": " + pointer + ": " + expected);
-}
 
 std::uint32_t corner(const Cloth& c, const std::string& name) {
   const int i = name[1] == '1' ? c.columns - 1 : 0, j = name[3] == '1' ? c.rows - 1 : 0;

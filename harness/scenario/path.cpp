@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "scenario/vec3.hpp"
+
 namespace clothbench {
 namespace {
-
-Vec3 vec3(const nlohmann::json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
 
 /// Seconds at full speed that come to the same way.
 double ramped(double t, double ramp_s) {

@@ -2,14 +2,9 @@
 
 #include "clothbench/error.hpp"
 #include "scenario/load.hpp"
+#include "scenario/vec3.hpp"
 
 namespace clothbench {
-namespace {
-
-Vec3 vec3(const assets::Vector& v) { return {v.x(), v.y(), v.z()}; }
-
-}  // namespace
-
 std::optional<std::filesystem::path> file_of_scene(const std::string& name, const std::string& source) {
   std::error_code ec;
   for (const std::filesystem::path& folder : {std::filesystem::path(source).parent_path(), scenario_root()})
@@ -58,7 +53,7 @@ ColliderPose capsules_pose(const assets::HandRecording& recording, const assets:
                            const assets::Vector& offset_m) {
   ColliderPose pose;
   for (const assets::Capsule& c : assets::capsules(recording, hand))
-    pose.capsules.push_back({vec3(c.a + offset_m), vec3(c.b + offset_m), c.radius_m});
+    pose.capsules.push_back({to_vec3(c.a + offset_m), to_vec3(c.b + offset_m), c.radius_m});
   return pose;
 }
 

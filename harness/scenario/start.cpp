@@ -4,13 +4,10 @@
 #include <numbers>
 
 #include "clothbench/scene.hpp"
+#include "clothbench/vector.hpp"
 
 namespace clothbench {
 namespace {
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// SplitMix64 (Steele, Lea & Flood 2014), one stream a vertex: its numbers do not depend on what is pinned elsewhere.
 class Random {

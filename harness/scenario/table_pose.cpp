@@ -5,13 +5,12 @@
 #include <vector>
 
 #include "clothbench/error.hpp"
+#include "scenario/vec3.hpp"
 
 namespace clothbench {
 namespace {
 
 using assets::Vector;
-
-Vec3 vec3(const Vector& v) { return {v.x(), v.y(), v.z()}; }
 
 /// The part of a polygon with f >= 0, f linear.
 template <class F>
@@ -64,7 +63,7 @@ TablePose flat_over(const assets::Table& table, const ColliderMesh& mesh, const 
   if (!std::isfinite(highest)) throw Error("/cloth/pose/over_table: nothing of the table's mesh is below the cloth");
   // axis_u x axis_v points down, as for the sheet of the other scenes: u, v = x, z.
   Vector v = e.along.cross(Vector::UnitY());
-  return {{e.center.x(), highest + drop_m, e.center.z()}, vec3(e.along), vec3(v)};
+  return {{e.center.x(), highest + drop_m, e.center.z()}, to_vec3(e.along), to_vec3(v)};
 }
 
 TablePose corner_first_over(const assets::Table& table, const Cloth& cloth, double drop_m, double tilt) {
@@ -73,7 +72,7 @@ TablePose corner_first_over(const assets::Table& table, const Cloth& cloth, doub
   // The lowest corner is u0v0: the sheet's diagonal from there rises, u and v lie at 45 degrees to it.
   const Vector u = (rising + e.across) / std::sqrt(2.0), v = (rising - e.across) / std::sqrt(2.0);
   const Vector lowest = e.middle_of_long + drop_m * Vector::UnitY();
-  return {vec3(Vector(lowest + cloth.width_m / 2 * u + cloth.height_m / 2 * v)), vec3(u), vec3(v)};
+  return {to_vec3(Vector(lowest + cloth.width_m / 2 * u + cloth.height_m / 2 * v)), to_vec3(u), to_vec3(v)};
 }
 
 }  // namespace clothbench

@@ -11,7 +11,7 @@
 namespace clothbench::truth {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 double check(const HeavyCapstan& c) {
   non_negative(c.friction, "friction");
@@ -22,7 +22,7 @@ double check(const HeavyCapstan& c) {
 
 double half_turn(double friction, double wrap, int turns) {
   const double half = non_negative(wrap, "wrap_rad") / (2 * at_least(turns, 1, "turns"));
-  between(half, -1, kPi / 2, "wrap_rad (per turn, half)");
+  between(half, -1, pi / 2, "wrap_rad (per turn, half)");
   within(non_negative(friction, "friction") * std::tan(half), 0, std::nextafter(1.0, 0.0),
          "friction (times tan of half a turn)");
   return half;
@@ -42,13 +42,13 @@ double polygonal_capstan_ratio(double friction, double wrap, int turns) {
 double slip_tension_N_per_m(const HeavyCapstan& c, double light, double phi) {
   const double weight = check(c) * c.radius_m, mu = c.friction;
   non_negative(light, "light_tension_N_per_m");
-  within(phi, 0, kPi, "phi_rad");
+  within(phi, 0, pi, "phi_rad");
   // Particular solution A sin + B cos of the linear equation.
   const double a = weight * (1 - mu * mu) / (1 + mu * mu), b = -2 * mu * weight / (1 + mu * mu);
   return std::exp(mu * phi) * (light - b) + a * std::sin(phi) + b * std::cos(phi);
 }
 
-double greatest_tension_N_per_m(const HeavyCapstan& c, double light) { return slip_tension_N_per_m(c, light, kPi); }
+double greatest_tension_N_per_m(const HeavyCapstan& c, double light) { return slip_tension_N_per_m(c, light, pi); }
 
 double greatest_overhang_m(const HeavyCapstan& c, double light_overhang) {
   const double weight = check(c);
@@ -61,7 +61,7 @@ bool holds(const HeavyCapstan& c, double overhang_1, double overhang_2) {
 
 double polygonal_greatest_overhang_m(const HeavyCapstan& c, double light_overhang, int turns) {
   check(c);
-  const double half = half_turn(c.friction, kPi, turns), mu = c.friction;
+  const double half = half_turn(c.friction, pi, turns), mu = c.friction;
   const double edge = 2 * c.radius_m * std::sin(half), in = std::cos(half) + mu * std::sin(half),
                out = std::cos(half) - mu * std::sin(half);
   double tension = non_negative(light_overhang, "light_overhang_m");  // over rho g
@@ -79,8 +79,8 @@ std::vector<SlidState> slide(const HeavyCapstan& c, double overhang_1, double ov
   const auto greatest = [&](double light) {
     return turns > 0 ? polygonal_greatest_overhang_m(c, light, turns) : greatest_overhang_m(c, light);
   };
-  const double mu = c.friction, constant = greatest(0), ratio = (greatest(1) - constant), smooth = capstan_ratio(mu, kPi);
-  const double on_cylinder = mu > 0 ? c.radius_m * (smooth - 1) / mu : kPi * c.radius_m;
+  const double mu = c.friction, constant = greatest(0), ratio = (greatest(1) - constant), smooth = capstan_ratio(mu, pi);
+  const double on_cylinder = mu > 0 ? c.radius_m * (smooth - 1) / mu : pi * c.radius_m;
   const auto rate = [&](const State& x, State& d, double) {
     const double light = overhang_1 - x[0], heavy = overhang_2 + x[0];
     d[0] = x[1];

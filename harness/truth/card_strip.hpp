@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "clothbench/error.hpp"
+#include "clothbench/vector.hpp"
 #include "truth/card.hpp"
 
 // Of the cards alone: what they ask of a scene.
@@ -12,11 +13,9 @@ namespace clothbench::truth {
 
 using Columns = std::vector<Vec3>;
 
-inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline Vec3 operator*(double k, const Vec3& a) { return {k * a[0], k * a[1], k * a[2]}; }
-inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 
 /// std::max would lose a NaN.
 inline double greater(double a, double b) { return b <= a || a != a ? a : b; }

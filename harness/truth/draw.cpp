@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int kFewestFrames = 8;
 constexpr double kMostFrameRate_hz = 9999;
 
@@ -37,7 +37,7 @@ class Dice {
 
   /// Uniform in SO(3). Source: Shoemake, Graphics Gems III, 1992.
   std::array<Vec3, 3> rotation() {
-    const double u = unit(), a = 2 * kPi * unit(), b = 2 * kPi * unit();
+    const double u = unit(), a = 2 * pi * unit(), b = 2 * pi * unit();
     const double x = std::sqrt(1 - u) * std::sin(a), y = std::sqrt(1 - u) * std::cos(a), z = std::sqrt(u) * std::sin(b), w = std::sqrt(u) * std::cos(b);
     return {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
              {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
@@ -136,14 +136,14 @@ class Drawing {
     if (card->threshold) old = &*card->threshold;
     const double friction = dice_.between(0.1, 0.8), critical = std::atan(friction);
     const bool stops = old == nullptr, sticks = !stops && scene_.colliders[0].friction >= old->exact;
-    double angle = critical + dice_.between(0.3, 3) * kPi / 180 * (sticks ? -1 : 1), speed = 0;
+    double angle = critical + dice_.between(0.3, 3) * pi / 180 * (sticks ? -1 : 1), speed = 0;
     if (stops) {
       angle = dice_.between(0, critical / 2);
       speed = dice_.between(0.5, 2) * std::sqrt(g_ * length_);
       note("speed_m_per_s", speed);
     }
     note("friction", friction);
-    note("angle_deg", angle * 180 / kPi);
+    note("angle_deg", angle * 180 / pi);
     const Vec3 d = slope_direction();
     const Vec3 &u = scene_.cloth.axis_u, &v = scene_.cloth.axis_v;
     const Vec3 n = {v[1] * u[2] - v[2] * u[1], v[2] * u[0] - v[0] * u[2], v[0] * u[1] - v[1] * u[0]};
@@ -171,7 +171,7 @@ class Drawing {
   /// Rows on the cylinder and below it, of a strip as long as was drawn.
   void drape(int turns, int light, int heavy) {
     const int links = light + heavy + turns - 1;
-    const double cell = length_ / links, radius = cell / (2 * std::sin(kPi / (2 * turns)));
+    const double cell = length_ / links, radius = cell / (2 * std::sin(pi / (2 * turns)));
     json &cloth = j_["cloth"], &cylinder = j_["colliders"][0];
     cloth["grid"][0] = links + 1;
     cloth["size_m"] = {length_, 4 * cell};
@@ -188,7 +188,7 @@ class Drawing {
     const auto before = card_of(scene_);
     const bool holds = before->quantity(before->columns(scene_.time.frames())) == 0;
     const int turns = dice_.whole(9, 15), light = dice_.whole(5, 9);
-    const double friction = dice_.between(0.1, 0.4), cell = 1, radius = cell / (2 * std::sin(kPi / (2 * turns)));
+    const double friction = dice_.between(0.1, 0.4), cell = 1, radius = cell / (2 * std::sin(pi / (2 * turns)));
     const HeavyCapstan cylinder{friction, radius, 1, 1};
     const double most = polygonal_greatest_overhang_m(cylinder, light - 0.5, turns), factor = dice_.between(0.1, 0.3);
     const int heavy = holds ? std::max(light, static_cast<int>(std::floor((1 - factor) * most + 0.5)))
@@ -209,7 +209,7 @@ class Drawing {
     const int turns = dice_.whole(9, 15), light = dice_.whole(16, 26), heavy = light + dice_.whole(4, 8);
     drape(turns, light, heavy);
     const double cell = length_ / (light + heavy + turns - 1);
-    const Atwood a{length_, cell / (2 * std::sin(kPi / (2 * turns))), 0.5 * (heavy - light) * cell, g_};
+    const Atwood a{length_, cell / (2 * std::sin(pi / (2 * turns))), 0.5 * (heavy - light) * cell, g_};
     j_["time"]["duration_s"] = 0.8 * atwood_end_s(a);
   }
 

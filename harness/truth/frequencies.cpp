@@ -12,7 +12,7 @@
 namespace clothbench::truth {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 double wave_speed(double tension, double areal_density) {
   return std::sqrt(positive(tension, "tension_N_per_m") / positive(areal_density, "areal_density_kg_per_m2"));
@@ -51,18 +51,18 @@ double hanging_chain_frequency(int mode, int links, double length, double gravit
 }
 
 double taut_string_frequency(int mode, double length, double tension, double areal_density) {
-  return at_least(mode, 1, "mode") * kPi / positive(length, "length_m") * wave_speed(tension, areal_density);
+  return at_least(mode, 1, "mode") * pi / positive(length, "length_m") * wave_speed(tension, areal_density);
 }
 
 double taut_chain_frequency(int mode, int cells, double length, double tension, double areal_density) {
   at_least(cells, 2, "cells");
   check_mode(mode, cells - 1, "this number of cells");
   return 2 * cells / positive(length, "length_m") * wave_speed(tension, areal_density) *
-         std::sin(mode * kPi / (2 * cells));
+         std::sin(mode * pi / (2 * cells));
 }
 
 double membrane_frequency(int mode_a, int mode_b, double side_a, double side_b, double tension, double areal_density) {
-  return kPi * wave_speed(tension, areal_density) *
+  return pi * wave_speed(tension, areal_density) *
          std::hypot(at_least(mode_a, 1, "mode_a") / positive(side_a, "side_a_m"),
                     at_least(mode_b, 1, "mode_b") / positive(side_b, "side_b_m"));
 }
@@ -73,10 +73,10 @@ double membrane_sag_m(double side_a, double side_b, double tension, double areal
   // (4 k a^2/pi^3) sum over odd n of (-1)^((n-1)/2) (1 - sech(n pi b/2a))/n^3, k = rho g/T. The part without sech sums
   // to pi^3/32, so that what is left falls exponentially; a is the shorter side to make it fall fast.
   const double a = std::min(side_a, side_b), b = std::max(side_a, side_b);
-  double sum = kPi * kPi * kPi / 32;
-  for (int n = 1, sign = 1; n < 60; n += 2, sign = -sign) sum -= sign / (n * n * n * std::cosh(n * kPi * b / (2 * a)));
+  double sum = pi * pi * pi / 32;
+  for (int n = 1, sign = 1; n < 60; n += 2, sign = -sign) sum -= sign / (n * n * n * std::cosh(n * pi * b / (2 * a)));
   return positive(areal_density, "areal_density_kg_per_m2") * positive(gravity, "gravity_m_per_s2") /
-         positive(tension, "tension_N_per_m") * 4 * a * a / (kPi * kPi * kPi) * sum;
+         positive(tension, "tension_N_per_m") * 4 * a * a / (pi * pi * pi) * sum;
 }
 
 double cantilever_root(int mode) {
@@ -84,7 +84,7 @@ double cantilever_root(int mode) {
   // cos(b) + 1/cosh(b) changes sign once between neighbouring multiples of pi, and nothing overflows.
   std::uintmax_t iterations = 200;
   const auto bracket = boost::math::tools::toms748_solve([](double b) { return std::cos(b) + 1 / std::cosh(b); },
-                                                         (mode - 1) * kPi + (mode == 1 ? 0.1 : 0.0), mode * kPi,
+                                                         (mode - 1) * pi + (mode == 1 ? 0.1 : 0.0), mode * pi,
                                                          boost::math::tools::eps_tolerance<double>(52), iterations);
   return 0.5 * (bracket.first + bracket.second);
 }
@@ -99,7 +99,7 @@ double cantilever_frequency(int mode, double length, double bending_rigidity, do
 EulerDamping implicit_euler_damping(double frequency, double step) {
   const double z = positive(frequency, "frequency_rad_per_s") * positive(step, "step_s");
   const double turn = std::atan(z);
-  return {1 / std::hypot(1.0, z), turn / z, std::exp(-kPi / turn * std::log1p(z * z))};
+  return {1 / std::hypot(1.0, z), turn / z, std::exp(-pi / turn * std::log1p(z * z))};
 }
 
 }  // namespace clothbench::truth

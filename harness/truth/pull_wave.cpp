@@ -10,7 +10,7 @@
 namespace clothbench::truth {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 void check(const TwoHandPull& p, double t) {
   positive(p.length_m, "length_m");
@@ -25,14 +25,14 @@ void check(const TwoHandPull& p, double t) {
 double speed_at(const TwoHandPull& p, double t) {
   if (t < 0) return 0;
   if (t >= p.ramp_s) return p.hand_speed_m_per_s;
-  const double rise = std::sin(0.5 * kPi * t / p.ramp_s);
+  const double rise = std::sin(0.5 * pi * t / p.ramp_s);
   return p.hand_speed_m_per_s * rise * rise;
 }
 
 double way_at(const TwoHandPull& p, double t) {
   if (t <= 0) return 0;
   if (t >= p.ramp_s) return p.hand_speed_m_per_s * (t - 0.5 * p.ramp_s);
-  return 0.5 * p.hand_speed_m_per_s * (t - p.ramp_s / kPi * std::sin(kPi * t / p.ramp_s));
+  return 0.5 * p.hand_speed_m_per_s * (t - p.ramp_s / pi * std::sin(pi * t / p.ramp_s));
 }
 
 /// Sum over images of value(right hand's wave) + sign * value(left hand's).

@@ -15,7 +15,7 @@
 namespace clothbench::bullet_baseline {
 namespace {
 
-SolverInfo describe() {
+SolverInfo deformable_info() {
   SolverInfo info = common_info();
   info.name = "bullet-deformable";
   info.supports.add(Feature::Regions);
@@ -119,7 +119,7 @@ int substeps_of(const Scene& scene, const nlohmann::json& settings) {
 class BulletDeformable final : public BulletSolver {
  public:
   explicit BulletDeformable(const nlohmann::json& s)
-      : BulletSolver(describe(), s), settings_(s), implicit_(s["implicit"].get<bool>()) {
+      : BulletSolver(deformable_info(), s), settings_(s), implicit_(s["implicit"].get<bool>()) {
     integer_setting(info(), s, "substeps", 0, 4096);
   }
   ~BulletDeformable() override { drop(); }
@@ -182,7 +182,7 @@ class BulletDeformable final : public BulletSolver {
 };
 
 /// v <- e^(-c h) v + g h, x <- x + h v every substep.
-double free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
+double deformable_free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
   const int substeps = substeps_of(scene, settings);
   const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1], keep = kept_share(scene, h);
   double v = scene.cloth.initial_velocity_m_per_s[1], x = 0;
@@ -196,9 +196,9 @@ double free_fall_m(const Scene& scene, const nlohmann::json& settings, int frame
 }  // namespace
 
 SolverEntry deformable_entry() {
-  return {describe(),
+  return {deformable_info(),
           [](const nlohmann::json& s, const DeviceOptions&) { return std::make_unique<BulletDeformable>(s); },
-          free_fall_m};
+          deformable_free_fall_m};
 }
 
 }  // namespace clothbench::bullet_baseline

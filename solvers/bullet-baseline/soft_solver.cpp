@@ -7,7 +7,7 @@
 namespace clothbench::bullet_baseline {
 namespace {
 
-SolverInfo describe() {
+SolverInfo soft_info() {
   SolverInfo info = common_info();
   info.name = "bullet-soft";
   info.summary = "Bullet's position-based soft body (btSoftBody) on one CPU core";
@@ -33,7 +33,7 @@ struct SoftWorld {
 class BulletSoft final : public BulletSolver {
  public:
   explicit BulletSoft(const nlohmann::json& s)
-      : BulletSolver(describe(), s),
+      : BulletSolver(soft_info(), s),
         iterations_(integer_setting(info(), s, "iterations", 1, 100000)),
         substeps_(integer_setting(info(), s, "substeps", 1, 4096)),
         relaxation_(number_setting(info(), s, "relaxation", 0, 1)) {}
@@ -93,7 +93,7 @@ class BulletSoft final : public BulletSolver {
 };
 
 /// v <- v + g h, x <- x + h v, and v <- (x - x_old)/h (1 - kDP) after the constraints, every substep.
-double free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
+double soft_free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
   const int substeps = settings["substeps"].get<int>();
   const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1], keep = kept_share(scene, h);
   double v = scene.cloth.initial_velocity_m_per_s[1], x = 0;
@@ -108,8 +108,8 @@ double free_fall_m(const Scene& scene, const nlohmann::json& settings, int frame
 }  // namespace
 
 SolverEntry soft_entry() {
-  return {describe(), [](const nlohmann::json& s, const DeviceOptions&) { return std::make_unique<BulletSoft>(s); },
-          free_fall_m};
+  return {soft_info(), [](const nlohmann::json& s, const DeviceOptions&) { return std::make_unique<BulletSoft>(s); },
+          soft_free_fall_m};
 }
 
 }  // namespace clothbench::bullet_baseline

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "clothbench/vector.hpp"
 #include "line_plan.hpp"
 
 namespace clothbench::pbd_gpu {
@@ -23,9 +24,6 @@ double mean_length(const std::vector<Edge>& all) {
   for (const Edge& e : all) sum += e.rest_m;
   return sum / static_cast<double>(all.size());
 }
-
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 std::vector<Strand> grid_strands(const Scene& s) {
   const int columns = s.cloth.columns, rows = s.cloth.rows;

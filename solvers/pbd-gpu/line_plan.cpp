@@ -42,7 +42,6 @@ std::vector<PinnedRectangle> rectangles(const Cloth& c, const std::vector<std::u
   return found;
 }
 
-
 /// Does the cloth start within its tethers? If not, its pins are farther apart than it is long, or it starts stretched.
 bool start_within(const Scene& s, const Tethers& t) {
   const Cloth& c = s.cloth;

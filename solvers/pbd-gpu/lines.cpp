@@ -39,7 +39,6 @@ Tethers tethers_if(bool wanted, const Scene& scene) {
   return none;
 }
 
-
 }  // namespace
 
 Lines::Lines(GpuSolver& solver, const Scene& scene, const vulkan::Buffer& x, const vulkan::Buffer& v,

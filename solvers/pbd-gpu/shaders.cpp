@@ -59,7 +59,6 @@ CODE(update_positions_counted)
 }
 ;
 
-
 CODE(skin_mesh)
 #include "skin_mesh.inc"
 }

@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 
 #include "clothbench/error.hpp"
+#include "clothbench/record.hpp"
 #include "metrics/contact/contour.hpp"
 #include "metrics/contact/tunnel.hpp"
 
 namespace clothbench::contact {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr ContactSample kUnknown{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
+constexpr ContactSample kUnknown{kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing};
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 

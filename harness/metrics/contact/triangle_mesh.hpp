@@ -8,7 +8,11 @@
 
 #include "metrics/contact/predicates.hpp"
 
+#include "clothbench/collider.hpp"
+
 namespace clothbench::contact {
+
+inline Point<3> point(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 /// Plain arrays: positions [m], xyz interleaved; triangles, 3 vertex indices each, seen counter-clockwise from the
 /// side the normal points to. Triangles may be degenerate, and vertices may be repeated instead of shared.

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "clothbench/vector.hpp"
+
 namespace clothbench::stability {
 namespace {
 
 Vec3 mix(const Vec3& a, const Vec3& b, double t) {
   return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
 }
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 double volume(const Vec3& a, const Vec3& b, const Vec3& c) {
   return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
@@ -33,8 +34,6 @@ bool inside(const Instant& i) {
   const Vec3 n = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
   return volume(n, a, b) >= 0 && volume(n, b, c) >= 0 && volume(n, c, a) >= 0;
 }
-
-double length(const Vec3& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
 
 /// Whether a corner goes by more than the radius in one frame, in the world and past the middle alike: between the two frames
 /// it may have gone round, and the straight way says nothing. Cloth that is passed by something fast does not go so far itself.

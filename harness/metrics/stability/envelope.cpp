@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "clothbench/vector.hpp"
 #include "metrics/metric.hpp"
 
 namespace clothbench::stability {
 namespace {
 
-double length(const Vec3& a) { return norm(a[0], a[1], a[2]); }
 double distance(const Vec3& a, const Vec3& b) { return norm(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 /// Held vertices, frame by frame.

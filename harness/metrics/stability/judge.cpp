@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "clothbench/vector.hpp"
 #include "metrics/truth_errors.hpp"
 
 namespace clothbench {
@@ -14,14 +15,7 @@ namespace {
 
 using namespace stability;
 
-bool finite(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-}
-
 Vec3 at(const std::vector<double>& x, std::uint32_t v) { return {x[3 * v], x[3 * v + 1], x[3 * v + 2]}; }
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 
 /// Twice the triangle's area, as a vector along its normal.
 Vec3 area_vector(const std::vector<double>& x, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
