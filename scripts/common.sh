@@ -24,7 +24,7 @@ over_budget=0
 stage_logs=${CLOTHBENCH_LOGS:-build/log}
 mkdir -p "$stage_logs"
 
-# stage NAME LIMIT_MINUTES COMMAND…: runs it with its output in a file, and prints one line: the time it has taken so far while
+# stage NAME LIMIT_MINUTES COMMAND…: runs it, in a subshell, with its output in a file, and prints one line: the time it has taken so far while
 #   it runs, the whole time afterwards. Where it fails, the end of its output and the file's name.
 # stage --show NAME …: its output is printed too.
 stage() {
@@ -33,17 +33,21 @@ stage() {
   local name=$1 limit=$(($2 * 60)) start=$SECONDS log status=0 ticker=
   log=$stage_logs/${name//[^A-Za-z0-9]/-}.log
   shift 2
+  # In a shell of its own and not after `if` or `||`, where a command that fails inside a function would be passed over.
+  set +e
   if [ -n "$show" ]; then
     echo "== $name (log: $log)"
-    { "$@" 2>&1 && echo 0 >"$log.status" || echo $? >"$log.status"; } | tee "$log"
-    status=$(cat "$log.status")
-    rm -f "$log.status"
+    (set -euo pipefail; "$@") 2>&1 | tee "$log"
+    status=${PIPESTATUS[0]}
   else
     stage_ticker "$name" "$start" "$log" &
     ticker=$!
-    "$@" >"$log" 2>&1 || status=$?
-    kill "$ticker" 2>/dev/null && wait "$ticker" 2>/dev/null
+    (set -euo pipefail; "$@") >"$log" 2>&1
+    status=$?
+    kill "$ticker" 2>/dev/null
+    wait "$ticker" 2>/dev/null
   fi
+  set -e
   local took=$((SECONDS - start)) note=
   if [ "$took" -gt "$limit" ]; then note=', over its budget'; fi
   if [ $((took * 2)) -gt $((limit * 3)) ]; then over_budget=1; fi

@@ -13,7 +13,13 @@ build() {
   configure release -DBUILD_TESTING=OFF "${together[@]}"
   cmake --build --preset release -j "$JOBS" --target clothbench
 }
-assets() { wait "$fetching"; }
+# The network is slow where the processor is not: while the assets come, the build goes on.
+fetched=$stage_logs/fetch-assets
+assets() {
+  while [ ! -f "$fetched.status" ]; do sleep 0.2; done
+  cat "$fetched.log"
+  return "$(cat "$fetched.status")"
+}
 
 study=table3
 if [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; then
@@ -28,12 +34,11 @@ for argument in "$@"; do
 done
 
 stage set-up 2 scripts/bootstrap.sh
-# The network is slow where the processor is not: while the assets come, the build goes on.
-scripts/fetch-assets.sh "${require[@]}" >"$stage_logs/fetch-assets.log" 2>&1 &
-fetching=$!
+rm -f "$fetched.status"
+{ scripts/fetch-assets.sh "${require[@]}" >"$fetched.log" 2>&1 && echo 0 >"$fetched.status" || echo $? >"$fetched.status"; } &
 stage build 4 build
 stage assets 1 assets
-tail -1 "$stage_logs/fetch-assets.log"
+tail -1 "$fetched.log"
 out="results/runs/$(basename "$study" .json)-$(date -u +%Y%m%dT%H%M%SZ)"
 stage study $study_limit build/release/clothbench study "$study" --out "$out" "$@"
 stage --show report 1 build/release/clothbench report "$out" -o "$out/report"
