@@ -46,7 +46,7 @@ if ! { apt-get "${options[@]}" update && apt-get "${options[@]}" -y --download-o
 fi
 for package in "$state"/cache/archives/*.deb; do dpkg -x "$package" "$root"; done
 # The driver file names an absolute path of an installed system.
-sed -i "s|\"library_path\": *\"[^\"]*/|\"library_path\": \"$root/usr/lib/aarch64-linux-gnu/|" "$root"/usr/share/vulkan/icd.d/lvp_icd.*.json
+sed -i -E "s|\"library_path\": *\"([^\"]*/)?|\"library_path\": \"$root/usr/lib/aarch64-linux-gnu/|" "$root"/usr/share/vulkan/icd.d/lvp_icd*.json
 # Links that name absolute paths would leave the folder.
 find "$root" -type l -lname '/*' -print0 | while IFS= read -r -d '' link; do
   ln -sfn "$root$(readlink "$link")" "$link"

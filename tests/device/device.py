@@ -23,7 +23,7 @@ def skip(why):
 
 def qemu(*command):
     """The command line that runs an arm64 program with the arm64 libraries and lavapipe."""
-    driver = next((ROOT / "usr/share/vulkan/icd.d").glob("lvp_icd.*.json"))
+    driver = next((ROOT / "usr/share/vulkan/icd.d").glob("lvp_icd*.json"))
     path = f"{LIBRARIES}:{ROOT}/lib/aarch64-linux-gnu:{BUILD}/stubs"
     return ["qemu-aarch64-static", "-L", str(ROOT), "-E", f"LD_LIBRARY_PATH={path}", "-E", f"VK_ICD_FILENAMES={driver}",
             *map(str, command)]
