@@ -77,8 +77,10 @@ vulkan::Kernel& GpuSolver::add_kernel(int stage, const Shader& shader, std::vect
                                       std::uint32_t group_size) {
   if (count_bytes_) bindings.push_back({counters_[static_cast<std::size_t>(stage)], vulkan::Access::ReadWrite});
   specialization.insert(specialization.begin(), group_size);
-  kernels_.push_back(std::make_unique<vulkan::Kernel>(device_, shader.name, count_bytes_ ? shader.counted : shader.code,
-                                                      std::move(specialization), std::move(bindings), push_bytes));
+  const vulkan::SpirV code = count_bytes_ ? shader.counted : shader.code;
+  if (code.words == nullptr) throw SolverError("bytes cannot be counted: built without CLOTHBENCH_COUNTED_KERNELS");
+  kernels_.push_back(std::make_unique<vulkan::Kernel>(device_, shader.name, code, std::move(specialization), std::move(bindings),
+                                                      push_bytes));
   return *kernels_.back();
 }
 

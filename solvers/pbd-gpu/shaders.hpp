@@ -3,7 +3,7 @@
 
 namespace clothbench::pbd_gpu {
 
-/// A kernel's code, as it runs and with byte counters.
+/// A kernel's code, as it runs and with byte counters; the latter is null where the build left them out (CLOTHBENCH_COUNTED_KERNELS).
 struct Shader {
   const char* name;
   vulkan::SpirV code, counted;
