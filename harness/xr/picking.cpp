@@ -34,7 +34,7 @@ std::optional<Vec3> hit(const assets::TriangleMesh& mesh, const Ray& ray) {
   return Vec3{at.x(), at.y(), at.z()};
 }
 
-Picking::Picking(Session& session) : session_(session), scanner_(session), controllers_(session) {}
+Picking::Picking(Session& session) : scanner_(session), controllers_(session) {}
 
 bool Picking::ready(XrTime time) {
   if (!scan_ && (scan_ = scanner_.at(time)))

@@ -28,7 +28,6 @@ class Picking {
   render::Surfaces surfaces();
 
  private:
-  Session& session_;
   RoomScanner scanner_;
   Controllers controllers_;
   std::optional<assets::RoomScan> scan_;
