@@ -109,8 +109,7 @@ class Map {
     scenario_ = parse_json(read_text(file_), file_.string());
     std::sort(x_.begin(), x_.end());
     for (const json& solver : j_["solvers"])
-      if (o_.solvers.empty() || std::find(o_.solvers.begin(), o_.solvers.end(), solver["solver"]) != o_.solvers.end())
-        solvers_.push_back(&solver);
+      if (asked_for(solver["solver"].get<std::string>())) solvers_.push_back(&solver);
     rows_.resize(solvers_.size(), std::vector<Row>(y_.size()));
     if (!solvers_.empty()) theory_ = lines(*solvers_.front());
   }
@@ -141,6 +140,10 @@ class Map {
   }
 
  private:
+  bool asked_for(const std::string& solver) const {
+    return o_.solvers.empty() || std::find(o_.solvers.begin(), o_.solvers.end(), solver) != o_.solvers.end();
+  }
+
   json told(std::size_t k) const {
     const json& solver = *solvers_[k];
     json out = {{"solver", solver["solver"]}, {"setting", solver["label"]}, {"on_gpu", on_gpu(solver["solver"])},

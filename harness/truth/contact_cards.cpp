@@ -44,8 +44,9 @@ Face face_of(const Strip& s, const Collider& c, const Vec3& way) {
   return best;
 }
 
-const Collider& only_collider(const Strip& s, const std::string& what) {
-  s.need(s.scene.colliders.size() == 1, "one collider: " + what);
+/// `what` is no std::string: GCC 14 would take the collider for a part of the temporary (-Wdangling-reference).
+const Collider& only_collider(const Strip& s, const char* what) {
+  s.need(s.scene.colliders.size() == 1, std::string("one collider: ") + what);
   return s.scene.colliders[0];
 }
 
