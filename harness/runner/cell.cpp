@@ -49,11 +49,14 @@ std::string join(FeatureSet set) {
   return text;
 }
 
-nlohmann::json plan_json(const Plan& plan) {
+nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
   nlohmann::json j;
   for (const BufferPlan& b : plan.buffers)
     j["buffers"].push_back({{"name", b.name}, {"bytes", b.bytes}, {"device_local", b.device_local}});
   for (const LeftOut& l : plan.left_out) j["left_out"].push_back({{"what", l.what}, {"why", l.why}});
+  for (std::size_t k = 0; k < std::min(plan.contact_margins_m.size(), scene.colliders.size()); ++k)
+    if (std::isfinite(plan.contact_margins_m[k]))
+      j["contact_margins"].push_back({{"collider", scene.colliders[k].name}, {"margin_m", plan.contact_margins_m[k]}});
   return j;
 }
 
@@ -124,7 +127,7 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
   describe_scene(scene, header_.environment);
   header_.environment["solver_features"] = describe_features(info);
   plan_ = solver_->plan();
-  header_.plan = plan_json(plan_);
+  header_.plan = plan_json(plan_, scene);
   for (const StagePlan& s : plan_.stages) {
     StageRecord record{s.name, {}, s.dispatches};
     s.serves.for_each([&](Feature f) { record.serves.emplace_back(name_of(f)); });
@@ -161,7 +164,7 @@ AccuracyPass Cell::run_accuracy(const TrialRules& rules) {
   const int frames = accuracy_frames(rules.accuracy_duration_s);
   const auto start = Clock::now();
   const int held_before = times_held();
-  const MetricContext context{scene, *spec_.entry, spec_.settings};
+  const MetricContext context{scene, *spec_.entry, spec_.settings, plan_.contact_margins_m};
   AccuracyPass pass;
   MetricPass metrics(context);
   solver_->reset();

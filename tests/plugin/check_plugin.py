@@ -80,6 +80,21 @@ class Plugin(unittest.TestCase):
         self.command("run", "paper/capsule-sweep", "--solver", "plugin:" + EXAMPLE, *SMALL, "--out", self.out)
         self.assertEqual(self.cell("capsule-sweep__example-xpbd__default")[0]["status"], "unsupported")
 
+    def test_it_says_how_far_off_it_holds_the_cloth(self):
+        two = 'colliders=[{"type":"sphere","center_m":[0,0,0],"radius_m":0.1},{"type":"box","center_m":[0,-1,0],"size_m":[1,1,1]}]'
+        words = ["plan", "contact/sphere", "--set", two]
+        (plan,) = self.rows(*words, "--solver", self.faulty(), code=0)
+        self.assertEqual([m["margin_m"] for m in plan["contact_margins"]], [0.03])
+        self.assertEqual(self.command(*words, "--solver", self.faulty()), 0, self.text)
+        self.assertIn("0.03", self.text)
+        run = ["run", "contact/sphere", "--solver", self.faulty(), "--trials", "0", "--set", two, "--out", self.out]
+        self.assertEqual(self.command(*run), 0, self.text)
+        self.assertEqual(self.cell("sphere-drop__faulty__default")[2]["plan"]["contact_margins"], plan["contact_margins"])
+
+    def test_a_library_built_with_the_first_header_of_the_version(self):
+        (plan,) = self.rows("plan", "contact/sphere", "--solver", self.faulty("OLD_HEADER"), code=0)
+        self.assertEqual((plan["status"], plan["contact_margins"]), ("ok", []))
+
     def test_it_joins_studies(self):
         words = [
             "study",
