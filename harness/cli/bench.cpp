@@ -9,6 +9,7 @@
 #include "cli/command.hpp"
 #include "cli/study_plan.hpp"
 #include "runner/environment.hpp"
+#include "runner/frame_input.hpp"
 
 namespace clothbench {
 namespace {
@@ -19,13 +20,13 @@ constexpr int kFrames = 72;
 void run_cell(benchmark::State& state, const CellSpec& spec, const DeviceOptions& device) {
   const auto solver = spec.entry->make(spec.settings, device);
   solver->load(*spec.scene);
-  const double dt = spec.scene->time.dt();
   int frame = 0;
   double device_s = 0;
   for (auto unused : state) {
     (void)unused;
+    const FrameInput input = frame_input(*spec.scene, frame);
     const auto start = std::chrono::steady_clock::now();
-    const StepStatus status = solver->step({frame, (frame + 1) * dt, dt, spec.scene->motion_after(frame)});
+    const StepStatus status = solver->step(input);
     state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     if (status != StepStatus::Ok) {
       state.SkipWithError("the solver failed");

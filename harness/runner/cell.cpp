@@ -10,6 +10,7 @@
 #include "metrics/metric_pass.hpp"
 #include "metrics/stability/judge.hpp"
 #include "runner/environment.hpp"
+#include "runner/frame_input.hpp"
 #include "runner/stage_check.hpp"
 
 namespace clothbench {
@@ -27,14 +28,6 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 void stop_if_interrupted() {
   while (held && !interrupted) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   if (interrupted) throw Error("interrupted; every finished trial is kept (continue with --resume)", ExitCode::Interrupted);
-}
-
-FrameInput frame_input(const Scene& scene, int index) {
-  // Trials run on past the scene's end; frames there are even.
-  const bool within = index < scene.time.frames();
-  const double dt = within ? scene.time.dt_after(index) : scene.time.dt();
-  const double end = within ? scene.time.at(index + 1) : scene.time.at(scene.time.frames()) + (index + 1 - scene.time.frames()) * dt;
-  return {index, scene.time.ends_s.empty() ? (index + 1) * dt : end, dt, scene.motion_after(index)};
 }
 
 bool all_finite(const std::vector<double>& values) {

@@ -8,6 +8,7 @@
 #include "metrics/material_patch.hpp"
 #include "runner/cell.hpp"
 #include "runner/environment.hpp"
+#include "runner/frame_input.hpp"
 #include "scenario/sha256.hpp"
 
 namespace clothbench {
@@ -40,14 +41,13 @@ double change(const Moduli& a, const Moduli& b) {
 Result settle(ClothSolver& solver, Patch patch, const Scene& scene, double limit_s) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
-  const double dt = scene.time.dt();
   std::vector<Moduli> past;
   ClothState state;
   Result r;
   for (int f = 0; f < scene.time.frames(); ++f) {
     if (interrupt_requested())
       throw Error("interrupted; finished cells are kept (continue with --resume)", ExitCode::Interrupted);
-    if (solver.step({f, (f + 1) * dt, dt, nullptr}) != StepStatus::Ok)
+    if (solver.step(frame_input(scene, f)) != StepStatus::Ok)
       return {{}, kMissing, fmt::format("failed in frame {}", f + 1)};
     solver.read_state(state);
     past.push_back(patch_moduli(patch, scene, state.position));

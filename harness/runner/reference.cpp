@@ -18,6 +18,7 @@
 #include "clothbench/solver.hpp"
 #include "metrics/truth_errors.hpp"
 #include "results/store.hpp"
+#include "runner/frame_input.hpp"
 #include "scenario/load.hpp"
 #include "truth/card.hpp"
 
@@ -50,7 +51,6 @@ Run run_quantity(const Scene& scene, const truth::Card& card, const char* integr
   const json settings = complete_settings(entry.info, {{"integrator", integrator}, {"substeps", substeps}, {"tolerance", tolerance}});
   const auto solver = entry.make(settings, {});
   solver->load(scene);
-  const double dt = scene.time.dt();
   const int frames = scene.time.frames();
   ClothState state;
   const auto quantity = [&] {
@@ -60,7 +60,7 @@ Run run_quantity(const Scene& scene, const truth::Card& card, const char* integr
   double before = kMissing;
   for (int f = 0; f < frames; ++f) {
     if (f == frames - (frames + 9) / 10) before = quantity();
-    if (solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}) != StepStatus::Ok)
+    if (solver->step(frame_input(scene, f)) != StepStatus::Ok)
       throw Error(fmt::format("{}: the reference ({}, {} substeps) failed in frame {}", scene.source, integrator, substeps, f));
   }
   const double value = quantity();

@@ -9,6 +9,7 @@
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 #include "metrics/truth_errors.hpp"
+#include "runner/frame_input.hpp"
 #include "scenario/load.hpp"
 #include "truth/card.hpp"
 
@@ -22,9 +23,8 @@ std::optional<ClothState> last_state(const Scene& scene, const SolverEntry& entr
                                      const DeviceOptions& device) {
   const auto solver = entry.make(settings, device);
   solver->load(scene);
-  const double dt = scene.time.dt();
   for (int f = 0; f < scene.time.frames(); ++f)
-    if (solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}) != StepStatus::Ok) return std::nullopt;
+    if (solver->step(frame_input(scene, f)) != StepStatus::Ok) return std::nullopt;
   ClothState state;
   solver->read_state(state);
   return state;

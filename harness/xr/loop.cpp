@@ -10,6 +10,7 @@
 #include "results/store.hpp"
 #include "runner/cell.hpp"
 #include "runner/environment.hpp"
+#include "runner/frame_input.hpp"
 #include "runner/replay.hpp"
 #include "xr/counters.hpp"
 #include "xr/hands.hpp"
@@ -162,8 +163,7 @@ class Loop {
       throw Error(fmt::format("{}: {}: {}", o_.entry->info.name, out.status, out.message), ExitCode::CheckFailed);
     }
     if (!warm_) {
-      FrameInput input{0, live_.scene().time.at(1), live_.scene().time.dt(), live_.scene().motion_after(0)};
-      cell->solver()->step(input);
+      cell->solver()->step(frame_input(live_.scene(), 0));
       warm_ = true;
       return;
     }
@@ -216,8 +216,9 @@ class Loop {
     painter_.wait();  // it read the positions that the step writes
     row.paint_device_s = painter_.device_s();
     const auto t2 = Clock::now();
-    const TimeSpan& time_span = live_.scene().time;
-    const StepStatus status = cell_->solver()->step({index, (index + 1) * time_span.dt(), time_span.dt(), motion});
+    FrameInput input = frame_input(live_.scene(), index);
+    input.motion = motion;
+    const StepStatus status = cell_->solver()->step(input);
     const auto t3 = Clock::now();
     row.input_s = seconds(t0, t1);
     row.settle_s = seconds(t1, t2);

@@ -275,6 +275,30 @@ class Plugin(unittest.TestCase):
         self.assertIn("material-card__stretches__default.h5", names, self.text)
         self.assertEqual(self.cell("material-card__stretches__default")[0]["status"], "crashed")
 
+    def bench(self, *more, time=None, **environment):
+        """Of the faulty plugin on a small scene."""
+        self.command("--help")
+        if "  bench " not in self.text:
+            self.skipTest("this build has no Google Benchmark")
+        with open(os.path.join(SOURCE, "scenarios", "paper", "gravity.json"), encoding="utf-8") as text:
+            scene = json.load(text)
+        scene["cloth"].update(grid=[8, 8], sides="single")
+        scene["time"].update(time or {})
+        rules = {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0}
+        study = {"name": "uneven", "why": "A hitch.", "protocol": "fps", "trials": 1, "scenes": [{"file": "scene.json"}],
+                 "solvers": [{"solver": self.faulty()}], "short": rules, "full": rules}
+        for name, document in (("scene.json", scene), ("uneven.json", study)):
+            with open(os.path.join(self.home, name), "w", encoding="utf-8") as out:
+                json.dump(document, out)
+        return self.command("bench", "--study", os.path.join(self.home, "uneven.json"), *more, **environment)
+
+    def test_uneven_frames_reach_the_solver_in_bench(self):
+        log = os.path.join(self.home, "frames.txt")
+        self.assertEqual(self.bench(time={"hitch": {"frame": 3, "dt_s": 0.25}}, FRAME_LOG=log), 0, self.text)
+        frames = [line.split() for line in pathlib.Path(log).read_text(encoding="utf-8").splitlines()]
+        self.assertEqual(float(frames[3][2]), 0.25, frames[:5])
+        self.assertAlmostEqual(float(frames[4][1]), 4 / 72 + 0.25, places=12)
+
     def test_interrupted_and_resumed(self):
         process = self.start(
             "run",

@@ -28,7 +28,9 @@ static void* create(const double* settings, const ClothbenchScene* scene, const 
 static void reset(void* self) { (void)self; }
 
 static int32_t step(void* self, const ClothbenchFrame* frame) {
-  (void)frame;
+  const char* log = getenv("FRAME_LOG");
+  FILE* lines = log ? fopen(log, "a") : NULL;
+  if (lines) fprintf(lines, "%d %.17g %.17g\n", (int)frame->index, frame->time_s, frame->dt_s), fclose(lines);
   const char* fault = getenv("FAULT");
   const char* at = fault ? strchr(fault, ':') : NULL;
   if (!at || ++((Solver*)self)->steps != atoi(at + 1)) return CLOTHBENCH_OK;
