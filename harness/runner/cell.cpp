@@ -130,14 +130,19 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
     outcome_ = {"error", "ok", -1, "stages: " + fault};
 }
 
-void Cell::fail(StepStatus status, int frame) {
+Outcome outcome_of(StepStatus status, int frame) {
   switch (status) {
-    case StepStatus::Ok: return;
-    case StepStatus::NotFinite: outcome_ = {"not_finite", "F0", frame, "a position or velocity is not finite"}; return;
-    case StepStatus::Diverged: outcome_ = {"diverged", "F1", frame, "the solver gave up"}; return;
-    case StepStatus::DeviceLost: outcome_ = {"device_lost", "F8", frame, "the device was lost"}; return;
-    case StepStatus::TimedOut: outcome_ = {"timed_out", "F8", frame, "the device did not finish in time"}; return;
+    case StepStatus::Ok: break;
+    case StepStatus::NotFinite: return {"not_finite", "F0", frame, "a position or velocity is not finite"};
+    case StepStatus::Diverged: return {"diverged", "F1", frame, "the solver gave up"};
+    case StepStatus::DeviceLost: return {"device_lost", "F8", frame, "the device was lost"};
+    case StepStatus::TimedOut: return {"timed_out", "F8", frame, "the device did not finish in time"};
   }
+  return {};
+}
+
+void Cell::fail(StepStatus status, int frame) {
+  if (status != StepStatus::Ok) outcome_ = outcome_of(status, frame);
 }
 
 int Cell::accuracy_frames(double duration_s) const {
