@@ -299,6 +299,12 @@ class Plugin(unittest.TestCase):
         self.assertEqual(float(frames[3][2]), 0.25, frames[:5])
         self.assertAlmostEqual(float(frames[4][1]), 4 / 72 + 0.25, places=12)
 
+    def test_bench_fails_with_its_solver_and_where_it_runs_nothing(self):
+        self.assertEqual(self.bench(), 0, self.text)
+        self.assertEqual(self.bench(FAULT="nan:3"), 1, self.text)
+        self.assertIn("the solver failed", self.text)
+        self.assertEqual(self.bench("--benchmark_filter=nothing"), 2, self.text)
+
     def test_interrupted_and_resumed(self):
         process = self.start(
             "run",
