@@ -9,6 +9,7 @@
 #include "cli/command.hpp"
 #include "cli/study_plan.hpp"
 #include "runner/environment.hpp"
+#include "runner/frame_input.hpp"
 
 namespace clothbench {
 namespace {
@@ -16,19 +17,22 @@ namespace {
 /// Fixed, so that a slow clock cannot make the library run a cell for minutes.
 constexpr int kFrames = 72;
 
-void run_cell(benchmark::State& state, const CellSpec& spec, const DeviceOptions& device) {
+/// False where the solver failed.
+bool run_cell(benchmark::State& state, const CellSpec& spec, const DeviceOptions& device) {
   const auto solver = spec.entry->make(spec.settings, device);
   solver->load(*spec.scene);
-  const double dt = spec.scene->time.dt();
   int frame = 0;
   double device_s = 0;
+  bool good = true;
   for (auto unused : state) {
     (void)unused;
+    const FrameInput input = frame_input(*spec.scene, frame);
     const auto start = std::chrono::steady_clock::now();
-    const StepStatus status = solver->step({frame, (frame + 1) * dt, dt, spec.scene->motion_after(frame)});
+    const StepStatus status = solver->step(input);
     state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     if (status != StepStatus::Ok) {
       state.SkipWithError("the solver failed");
+      good = false;
       break;
     }
     device_s += solver->last_cost().device_s;
@@ -45,6 +49,7 @@ void run_cell(benchmark::State& state, const CellSpec& spec, const DeviceOptions
   if (std::isfinite(device_s)) state.counters["device_us"] = device_s / frame * 1e6;
   if (std::isfinite(read_B)) state.counters["read_B"] = read_B;
   if (std::isfinite(write_B)) state.counters["write_B"] = write_B;
+  return good;
 }
 
 void add_context(const CellPlan& plan, const DeviceFlags& flags) {
@@ -86,17 +91,21 @@ void add_bench(CLI::App& app, Console& console) {
     const Study study = load_study(study_name);
     const CellPlan plan = plan_study(study);
     add_context(plan, flags);
+    benchmark::ClearRegisteredBenchmarks();
     for (const auto& group : plan.groups)
       for (const CellSpec& c : group) {
         if (!unsupported(c.entry->info, c.scene->needs).empty()) continue;
         benchmark::RegisterBenchmark(fmt::format("{}/{}/{}", c.scene->name, c.entry->info.name, c.setting).c_str(),
-                                     [&c](benchmark::State& state) { run_cell(state, c, flags.options); })
+                                     [&c, &console](benchmark::State& state) {
+                                       if (!run_cell(state, c, flags.options)) console.exit_code = ExitCode::CheckFailed;
+                                     })
             ->UseManualTime()
             ->Iterations(kFrames)
             ->Unit(benchmark::kMicrosecond);
       }
-    benchmark::RunSpecifiedBenchmarks();
+    const std::size_t matched = benchmark::RunSpecifiedBenchmarks();
     benchmark::Shutdown();
+    if (matched == 0) throw Error("bench: no cell of study " + study.name + " that a solver of this build can run matches --benchmark_filter");
   });
 }
 

@@ -79,13 +79,16 @@ nlohmann::json threshold_json(const Scene& scene, const SolverEntry& entry, cons
   const FoundThreshold found = find_threshold(scene, entry, settings, device);
   const auto card = truth::card_of(scene);
   const char* bound = found.holds_at_least ? "<= " : found.slips_at_most ? ">= " : "";
-  return {{"scene", scene.name}, {"solver", entry.info.name}, {"exact", found.exact}, {"found", found.found}, {"error", found.error},
-          {"error_name", card->threshold->error_name}, {"error_units", card->threshold->error_units}, {"bound", bound}, {"runs", found.runs}};
+  const auto number = [&](double x) { return found.failed ? nlohmann::json() : nlohmann::json(x); };
+  return {{"scene", scene.name}, {"solver", entry.info.name}, {"exact", found.exact}, {"found", number(found.found)},
+          {"error", number(found.error)}, {"error_name", card->threshold->error_name}, {"error_units", card->threshold->error_units},
+          {"bound", bound}, {"failed", found.failed}, {"runs", found.runs}};
 }
 
 void print_threshold(const nlohmann::json& t) {
   const auto text = [&](const char* key) { return t[key].get<std::string>(); };
   if (t.contains("crashed")) return fmt::print("{} {}: its process: {}\n", text("scene"), text("solver"), text("crashed"));
+  if (t["failed"].get<bool>()) return fmt::print("{} {}: its run failed ({} runs)\n", text("scene"), text("solver"), t["runs"].get<int>());
   fmt::print("{} {}: holds from friction {}{:.5f} on, exact {:.5f}; {} off by {:+.4f} {} ({} runs)\n", text("scene"), text("solver"), text("bound"),
              t["found"].get<double>(), t["exact"].get<double>(), text("error_name"), t["error"].get<double>(), text("error_units"), t["runs"].get<int>());
 }
@@ -152,6 +155,7 @@ void add_threshold(CLI::App& app, Console& console) {
         const Guard::Answer answer =
             guard.run(entry, [&] { return threshold_json(scene, entry, complete_settings(entry.info, overrides.solver), a.device.options); });
         all.push_back(answer.crash.empty() ? answer.value : nlohmann::json{{"scene", scene.name}, {"solver", name}, {"crashed", answer.crash}});
+        if (all.back().value("failed", false)) console.exit_code = ExitCode::CheckFailed;
         if (!console.json) print_threshold(all.back());
       }
     if (guard.crashed()) console.exit_code = ExitCode::CheckFailed;

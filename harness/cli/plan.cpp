@@ -29,8 +29,8 @@ nlohmann::json plan_of(const Cell& cell, const Scene& scene) {
   }
   nlohmann::json j = {{"scene", scene.name}, {"solver", cell.header().solver}, {"needs", needs},
                       {"status", cell.outcome().status}, {"message", cell.outcome().message}, {"stages", stages},
-                      {"buffers", nlohmann::json::array()}, {"left_out", nlohmann::json::array()}};
-  for (const char* key : {"buffers", "left_out"})
+                      {"buffers", nlohmann::json::array()}, {"left_out", nlohmann::json::array()}, {"contact_margins", nlohmann::json::array()}};
+  for (const char* key : {"buffers", "left_out", "contact_margins"})
     if (cell.header().plan.contains(key)) j[key] = cell.header().plan[key];
   return j;
 }
@@ -39,7 +39,7 @@ nlohmann::json crashed_plan(const Scene& scene, const SolverEntry& entry, const 
   nlohmann::json needs = nlohmann::json::array();
   scene.needs.for_each([&](Feature f) { needs.push_back(name_of(f)); });
   nlohmann::json j = {{"scene", scene.name}, {"solver", entry.info.name}, {"needs", needs}, {"status", "crashed"}, {"message", "its process: " + how}};
-  for (const char* none : {"stages", "buffers", "left_out"}) j[none] = nlohmann::json::array();
+  for (const char* none : {"stages", "buffers", "left_out", "contact_margins"}) j[none] = nlohmann::json::array();
   return j;
 }
 
@@ -63,6 +63,8 @@ void print(const nlohmann::json& p) {
   for (const auto& b : p["buffers"])
     fmt::print("  {:<28} {:>14}  {}\n", b["name"].get<std::string>(), b["bytes"].get<std::uint64_t>(),
                b["device_local"].get<bool>() ? "device" : "host");
+  if (!p["contact_margins"].empty()) fmt::print("\n  {:<28} {:>14}\n", "cloth is held off", "by [m]");
+  for (const auto& m : p["contact_margins"]) fmt::print("  {:<28} {:>14g}\n", m["collider"].get<std::string>(), m["margin_m"].get<double>());
   if (!p["left_out"].empty()) fmt::print("\n  left out\n");
   for (const auto& l : p["left_out"]) fmt::print("  {:<28} {}\n", l["what"].get<std::string>(), l["why"].get<std::string>());
   fmt::print("\n");

@@ -22,7 +22,7 @@ struct XrArguments {
 void print(const xr::LoopResult& r, const Console& console) {
   const auto& s = r.summary;
   if (console.json) {
-    fmt::print("{}\n", nlohmann::json({{"file", r.file.string()}, {"scenario", r.scenario.string()}, {"status", r.outcome.status}, {"summary", s}}).dump(2));
+    fmt::print("{}\n", nlohmann::json({{"file", r.file.string()}, {"scenario", r.scenario.string()}, {"status", r.outcome.status}, {"message", r.outcome.message}, {"summary", s}}).dump(2));
     return;
   }
   const auto of = [&](const char* name) { return s.contains(name) ? s.at(name) : kMissing; };
@@ -80,6 +80,8 @@ void add_xr(CLI::App& app, Console& console) {
     print(r, console);
     if (r.outcome.status != "ok" || r.validation_messages > 0) console.exit_code = ExitCode::CheckFailed;
     if (interrupt_requested()) console.exit_code = ExitCode::Interrupted;
+    if (r.outcome.status != "ok")
+      fmt::print(stderr, "FAULT {} in frame {}: {}\n", r.outcome.status, r.outcome.failed_frame, r.outcome.message);
     if (r.validation_messages > 0) fmt::print(stderr, "FAULT {} validation messages\n", r.validation_messages);
   });
 }

@@ -164,6 +164,11 @@ typedef struct ClothbenchPlugin {
                         int32_t frames);
   const char* (*device)(void*); /* NULL: the CPU */
   double (*device_s)(void*);    /* device time of the last frame; not NULL says that the solver runs on a GPU */
+
+  /* Libraries built before this line was here go on working: `plugin_size` tells that they end above it. */
+  /* Distance [m] at which the solver holds the cloth off the scene's collider of this number, for metrics that ask what touches.
+   * NAN, or NULL here: the collider's margin_m. */
+  double (*contact_margin_m)(void*, uint32_t collider);
 } ClothbenchPlugin;
 
 #define CLOTHBENCH_PLUGIN_HEADER                                                                             \

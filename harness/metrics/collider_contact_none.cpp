@@ -17,7 +17,7 @@ SelfContact self_contact(const std::vector<double>&, const std::vector<std::arra
 
 struct ColliderPassage::Watch {};
 
-ColliderPassage::ColliderPassage(const Scene&, double) { throw Error("this build has no contact metrics"); }
+ColliderPassage::ColliderPassage(const Scene&, const std::vector<double>&) { throw Error("this build has no contact metrics"); }
 ColliderPassage::~ColliderPassage() = default;
 ScenePassage ColliderPassage::probe(int, const std::vector<double>&) { throw Error("this build has no contact metrics"); }
 

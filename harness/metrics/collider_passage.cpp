@@ -121,7 +121,11 @@ Nearest nearest_on_box(const Point<3>& p, const Collider& box) {
 }  // namespace
 
 struct ColliderPassage::Watch {
-  Watch(const Scene& s, double held_at_m) : scene(s), held_at(held_at_m) {
+  Watch(const Scene& s, const std::vector<double>& held_at_m) : scene(s) {
+    for (std::size_t k = 0; k < s.colliders.size(); ++k) {
+      const bool told = k < held_at_m.size() && std::isfinite(held_at_m[k]);
+      margins.push_back(told ? held_at_m[k] : s.colliders[k].margin_m);
+    }
     tolerance = kTouchShare * std::min(s.cloth.width_m, s.cloth.height_m);
     const Cloth& c = s.cloth;
     for (int j = 0; j + 1 < c.rows; ++j)
@@ -251,7 +255,7 @@ struct ColliderPassage::Watch {
     std::vector<bool> touching(x.size() / 3, false);
     double slid = 0, kept = 0;
     for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
-      const double margin = std::max(scene.colliders[k].margin_m, held_at);
+      const double margin = margins[k];
       const double reach = margin + std::max(tolerance, kTouchMargin * margin);
       const std::vector<std::optional<Nearest>> found = near(k, frame, x, reach);
       for (std::size_t v = 0; v < found.size(); ++v) {
@@ -277,14 +281,16 @@ struct ColliderPassage::Watch {
   const Scene& scene;
   std::vector<std::array<std::uint32_t, 4>> cells;
   std::vector<double> vertex_area, cell_area, before;
-  double tolerance = 0, held_at = 0;
+  double tolerance = 0;
+  std::vector<double> margins;  ///< one a collider: how far off it the solver holds cloth
   std::vector<CentreLine> lines;
   std::vector<std::optional<WrongSide>> sides;  ///< one a collider; empty where it has no centre line
   std::vector<std::vector<char>> touched;       ///< (collider, vertex), at the last frame
   std::vector<std::optional<contact::NearSurface>> still;  ///< of meshes that stand still
 };
 
-ColliderPassage::ColliderPassage(const Scene& scene, double held_at_m) : watch_(std::make_unique<Watch>(scene, held_at_m)) {}
+ColliderPassage::ColliderPassage(const Scene& scene, const std::vector<double>& held_at_m)
+    : watch_(std::make_unique<Watch>(scene, held_at_m)) {}
 ColliderPassage::~ColliderPassage() = default;
 
 ScenePassage ColliderPassage::probe(int frame, const std::vector<double>& positions) {

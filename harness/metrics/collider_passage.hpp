@@ -17,8 +17,8 @@ bool has_centre_line(const Collider&);
 /// collider up to a tenth beyond the distance at which the solver holds it, or a thousandth of the cloth's shorter side.
 class ColliderPassage {
  public:
-  /// `scene` outlives this. `held_at_m`: where the solver says it holds cloth, if not at the colliders' margins.
-  explicit ColliderPassage(const Scene& scene, double held_at_m = 0);
+  /// `scene` outlives this. `held_at_m`: how far off each collider the solver holds cloth, as in Plan::contact_margins_m.
+  explicit ColliderPassage(const Scene& scene, const std::vector<double>& held_at_m = {});
   ~ColliderPassage();
   ColliderPassage(const ColliderPassage&) = delete;
   ColliderPassage& operator=(const ColliderPassage&) = delete;

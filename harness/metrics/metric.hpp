@@ -10,11 +10,12 @@
 
 namespace clothbench {
 
-/// What a metric may look at besides the state: the scene and the solver's declaration, never the solver.
+/// What a metric may look at besides the state: the scene and the solver's declarations, never the solver.
 struct MetricContext {
   const Scene& scene;
   const SolverEntry& entry;
-  const nlohmann::json& settings;  ///< complete
+  const nlohmann::json& settings;  ///< complete; only for the solver's own free_fall_m, for no metric knows a setting by its name
+  std::vector<double> contact_margins_m = {};  ///< as in the solver's Plan
 };
 
 /// How the cloth touches all colliders of the scene in one frame; collider_contact.hpp says how they are put together.

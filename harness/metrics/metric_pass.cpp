@@ -15,7 +15,7 @@ MetricPass::MetricPass(const MetricContext& context) : context_(context) {
   }
   if (kWithContactMetrics && !context.scene.colliders.empty()) {
     contact_ = std::make_unique<ColliderContact>(context.scene);
-    passage_ = std::make_unique<ColliderPassage>(context.scene, context.settings.value("collision_margin_m", 0.0));
+    passage_ = std::make_unique<ColliderPassage>(context.scene, context.contact_margins_m);
   }
   if (kWithContactMetrics && context.scene.needs.has(Feature::SelfCollision)) triangles_ = triangles(context.scene.cloth);
   if (!context.scene.truth_card.empty()) judge_ = std::make_unique<TruthJudge>(context.scene);

@@ -96,7 +96,7 @@ double TruthJudge::space_error() const {
   if (card_.settles) return space_error(last);
   std::vector<double> times, errors;
   for (int f = 0; f <= last; ++f) {
-    times.push_back(f * scene_.time.dt());
+    times.push_back(scene_.time.at(f));
     errors.push_back(space_error(f));
   }
   return truth::time_rms(times, errors);

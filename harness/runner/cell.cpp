@@ -10,6 +10,7 @@
 #include "metrics/metric_pass.hpp"
 #include "metrics/stability/judge.hpp"
 #include "runner/environment.hpp"
+#include "runner/frame_input.hpp"
 #include "runner/stage_check.hpp"
 
 namespace clothbench {
@@ -29,14 +30,6 @@ void stop_if_interrupted() {
   if (interrupted) throw Error("interrupted; every finished trial is kept (continue with --resume)", ExitCode::Interrupted);
 }
 
-FrameInput frame_input(const Scene& scene, int index) {
-  // Trials run on past the scene's end; frames there are even.
-  const bool within = index < scene.time.frames();
-  const double dt = within ? scene.time.dt_after(index) : scene.time.dt();
-  const double end = within ? scene.time.at(index + 1) : scene.time.at(scene.time.frames()) + (index + 1 - scene.time.frames()) * dt;
-  return {index, scene.time.ends_s.empty() ? (index + 1) * dt : end, dt, scene.motion_after(index)};
-}
-
 bool all_finite(const std::vector<double>& values) {
   for (double v : values)
     if (!std::isfinite(v)) return false;
@@ -49,11 +42,14 @@ std::string join(FeatureSet set) {
   return text;
 }
 
-nlohmann::json plan_json(const Plan& plan) {
+nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
   nlohmann::json j;
   for (const BufferPlan& b : plan.buffers)
     j["buffers"].push_back({{"name", b.name}, {"bytes", b.bytes}, {"device_local", b.device_local}});
   for (const LeftOut& l : plan.left_out) j["left_out"].push_back({{"what", l.what}, {"why", l.why}});
+  for (std::size_t k = 0; k < std::min(plan.contact_margins_m.size(), scene.colliders.size()); ++k)
+    if (std::isfinite(plan.contact_margins_m[k]))
+      j["contact_margins"].push_back({{"collider", scene.colliders[k].name}, {"margin_m", plan.contact_margins_m[k]}});
   return j;
 }
 
@@ -124,7 +120,7 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
   describe_scene(scene, header_.environment);
   header_.environment["solver_features"] = describe_features(info);
   plan_ = solver_->plan();
-  header_.plan = plan_json(plan_);
+  header_.plan = plan_json(plan_, scene);
   for (const StagePlan& s : plan_.stages) {
     StageRecord record{s.name, {}, s.dispatches};
     s.serves.for_each([&](Feature f) { record.serves.emplace_back(name_of(f)); });
@@ -134,14 +130,19 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
     outcome_ = {"error", "ok", -1, "stages: " + fault};
 }
 
-void Cell::fail(StepStatus status, int frame) {
+Outcome outcome_of(StepStatus status, int frame) {
   switch (status) {
-    case StepStatus::Ok: return;
-    case StepStatus::NotFinite: outcome_ = {"not_finite", "F0", frame, "a position or velocity is not finite"}; return;
-    case StepStatus::Diverged: outcome_ = {"diverged", "F1", frame, "the solver gave up"}; return;
-    case StepStatus::DeviceLost: outcome_ = {"device_lost", "F8", frame, "the device was lost"}; return;
-    case StepStatus::TimedOut: outcome_ = {"timed_out", "F8", frame, "the device did not finish in time"}; return;
+    case StepStatus::Ok: break;
+    case StepStatus::NotFinite: return {"not_finite", "F0", frame, "a position or velocity is not finite"};
+    case StepStatus::Diverged: return {"diverged", "F1", frame, "the solver gave up"};
+    case StepStatus::DeviceLost: return {"device_lost", "F8", frame, "the device was lost"};
+    case StepStatus::TimedOut: return {"timed_out", "F8", frame, "the device did not finish in time"};
   }
+  return {};
+}
+
+void Cell::fail(StepStatus status, int frame) {
+  if (status != StepStatus::Ok) outcome_ = outcome_of(status, frame);
 }
 
 int Cell::accuracy_frames(double duration_s) const {
@@ -161,7 +162,7 @@ AccuracyPass Cell::run_accuracy(const TrialRules& rules) {
   const int frames = accuracy_frames(rules.accuracy_duration_s);
   const auto start = Clock::now();
   const int held_before = times_held();
-  const MetricContext context{scene, *spec_.entry, spec_.settings};
+  const MetricContext context{scene, *spec_.entry, spec_.settings, plan_.contact_margins_m};
   AccuracyPass pass;
   MetricPass metrics(context);
   solver_->reset();

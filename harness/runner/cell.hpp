@@ -51,6 +51,9 @@ void hold_runs(bool held);
 /// How often runs have been held so far.
 int times_held();
 
+/// Of a cell whose step ended so in frame `frame`.
+Outcome outcome_of(StepStatus, int frame);
+
 /// A loaded solver and what has been measured of it.
 class Cell {
  public:

@@ -4,10 +4,13 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "metrics/material_patch.hpp"
+#include "metrics/metric.hpp"
 #include "runner/cell.hpp"
 #include "runner/environment.hpp"
+#include "runner/frame_input.hpp"
 #include "scenario/sha256.hpp"
 
 namespace clothbench {
@@ -30,8 +33,7 @@ double change(const Moduli& a, const Moduli& b) {
   double most = 0;
   for (const auto& [name, value] : a) {
     if (name == "skew" || name == "strip_border") continue;  // ratios that may be 0
-    const double d = value == b.at(name) ? 0 : std::abs(value / b.at(name) - 1);
-    if (!(d <= most)) most = d;
+    most = max_or_nan(most, value == b.at(name) ? 0 : std::abs(value / b.at(name) - 1));
   }
   return most;
 }
@@ -40,14 +42,13 @@ double change(const Moduli& a, const Moduli& b) {
 Result settle(ClothSolver& solver, Patch patch, const Scene& scene, double limit_s) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
-  const double dt = scene.time.dt();
   std::vector<Moduli> past;
   ClothState state;
   Result r;
   for (int f = 0; f < scene.time.frames(); ++f) {
     if (interrupt_requested())
       throw Error("interrupted; finished cells are kept (continue with --resume)", ExitCode::Interrupted);
-    if (solver.step({f, (f + 1) * dt, dt, nullptr}) != StepStatus::Ok)
+    if (solver.step(frame_input(scene, f)) != StepStatus::Ok)
       return {{}, kMissing, fmt::format("failed in frame {}", f + 1)};
     solver.read_state(state);
     past.push_back(patch_moduli(patch, scene, state.position));
@@ -87,7 +88,7 @@ CellRecord measure_material(const SolverEntry& entry, const json& settings, cons
     return c;
   }
   Moduli all;
-  double unrest = 0;
+  std::optional<double> unrest;  // of what was measured
   for (const auto& [patch, scene] : scenes) {
     if (!unsupported(entry.info, scene.needs).empty()) {
       c.outcome.message += fmt::format("{}{}: unsupported", c.outcome.message.empty() ? "" : "; ", patch_name(patch));
@@ -101,11 +102,11 @@ CellRecord measure_material(const SolverEntry& entry, const json& settings, cons
     if (!r.fault.empty())
       c.outcome.message += fmt::format("{}{}: {}", c.outcome.message.empty() ? "" : "; ", patch_name(patch), r.fault);
     all.merge(r.moduli);
-    if (!(r.unrest <= unrest) && r.fault.empty()) unrest = r.unrest;
+    if (r.fault.empty()) unrest = max_or_nan(unrest.value_or(0), r.unrest);
   }
   if (full) all["E_45"] = modulus_at_45(all);
   for (const auto& [name, value] : all) c.summary["material_" + name] = value;
-  c.summary["material_unrest"] = unrest;
+  c.summary["material_unrest"] = unrest.value_or(kMissing);
   return c;
 }
 

@@ -6,7 +6,6 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <fstream>
 #include <future>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -17,7 +16,8 @@
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
 #include "metrics/truth_errors.hpp"
-#include "results/store.hpp"
+#include "runner/frame_input.hpp"
+#include "runner/reference_cache.hpp"
 #include "scenario/load.hpp"
 #include "truth/card.hpp"
 
@@ -27,9 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr int kMovingSteps = 512;  // of a whole scene, coarsest level
-constexpr int kSettlingSubsteps = 8;  // enough for the midpoint rule to damp what the start set going
-constexpr double kTolerance = 1e-8;
 constexpr double kOrder = 2;  // of both integrators
 constexpr double kRounding = 1e-10;  // of the scale: differences below it have no order
 
@@ -50,7 +47,6 @@ Run run_quantity(const Scene& scene, const truth::Card& card, const char* integr
   const json settings = complete_settings(entry.info, {{"integrator", integrator}, {"substeps", substeps}, {"tolerance", tolerance}});
   const auto solver = entry.make(settings, {});
   solver->load(scene);
-  const double dt = scene.time.dt();
   const int frames = scene.time.frames();
   ClothState state;
   const auto quantity = [&] {
@@ -60,7 +56,7 @@ Run run_quantity(const Scene& scene, const truth::Card& card, const char* integr
   double before = kMissing;
   for (int f = 0; f < frames; ++f) {
     if (f == frames - (frames + 9) / 10) before = quantity();
-    if (solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}) != StepStatus::Ok)
+    if (solver->step(frame_input(scene, f)) != StepStatus::Ok)
       throw Error(fmt::format("{}: the reference ({}, {} substeps) failed in frame {}", scene.source, integrator, substeps, f));
   }
   const double value = quantity();
@@ -81,47 +77,8 @@ Extrapolated extrapolate(double f1, double f2, double f3, double scale) {
   return {f1 + rest, (as_declared ? 1.25 : 3) * std::abs(rest), order};
 }
 
-json to_json(const ReferenceResult& r) {
-  json j = {{"scale", r.scale}, {"least_substeps", r.least_substeps}};
-  for (const auto& [name, value] : r.scalars()) j[name] = value;  // NaN becomes null
-  return j;
-}
-
-double number(const json& j, const char* key) { return j.at(key).is_null() ? kMissing : j.at(key).get<double>(); }
-
-ReferenceResult from_json(const json& j) {
-  ReferenceResult r;
-  r.scale = number(j, "scale");
-  r.least_substeps = j.at("least_substeps");
-  r.truth = number(j, "truth_value");
-  r.value = number(j, "reference_value");
-  r.uncertainty = number(j, "reference_uncertainty");
-  r.order_bdf2 = number(j, "reference_order_bdf2");
-  r.order_conservative = number(j, "reference_order_conservative");
-  r.truth_distance = number(j, "reference_truth_distance");
-  r.space_error = number(j, "truth_space_error");
-  return r;
-}
-
 bool has_reference_solver() {
   return std::any_of(solvers().begin(), solvers().end(), [](const SolverEntry& e) { return e.info.name == "reference"; });
-}
-
-/// Everything the result depends on is in its name: the scene, and what computes it.
-fs::path cache_file(const fs::path& cache, const Scene& s) {
-  return cache / fmt::format("{}-{}-{}.json", s.sha256, find_solver("reference").info.version, kMovingSteps);
-}
-
-bool read_cached(const fs::path& file, ReferenceResult& out) {
-  std::ifstream in(file);
-  const json j = in ? json::parse(in, nullptr, false) : json();
-  if (!j.is_object()) return false;
-  try {
-    out = from_json(j);
-  } catch (const json::exception&) {
-    return false;
-  }
-  return true;
 }
 
 }  // namespace
@@ -148,14 +105,14 @@ ReferenceResult closed_form(const Scene& scene) {
   return r;
 }
 
-ReferenceResult compute_reference(const Scene& whole) {
+ReferenceResult compute_reference(const Scene& whole, const ReferenceRules& rules) {
   const Scene scene = two_rows(whole);
   const TruthJudge judge(scene);
   const truth::Card& card = judge.card();
   const int frames = scene.time.frames();
-  const auto per_frame = static_cast<unsigned>(std::max(1, (kMovingSteps + frames - 1) / frames));
+  const auto per_frame = static_cast<unsigned>(std::max(1, (rules.moving_steps + frames - 1) / frames));
   ReferenceResult r;
-  r.least_substeps = card.settles ? kSettlingSubsteps : static_cast<int>(std::bit_ceil(per_frame));
+  r.least_substeps = card.settles ? rules.settling_substeps : static_cast<int>(std::bit_ceil(per_frame));
   r.scale = card.quantity_scale;
   r.truth = card.quantity(card.columns(frames));
   Extrapolated found[2];
@@ -163,12 +120,12 @@ ReferenceResult compute_reference(const Scene& whole) {
   for (int i = 0; i < 2; ++i) {
     Run f[3];
     for (int level = 0; level < 3; ++level)
-      f[level] = run_quantity(scene, card, i == 0 ? "bdf2" : "conservative", r.least_substeps << level, kTolerance);
+      f[level] = run_quantity(scene, card, i == 0 ? "bdf2" : "conservative", r.least_substeps << level, rules.tolerance);
     if (i == 0) coarsest = f[0].value;
     found[i] = card.settles ? Extrapolated{f[2].value, std::max(std::abs(f[2].value - f[1].value), f[2].unrest), kMissing}
                             : extrapolate(f[2].value, f[1].value, f[0].value, r.scale);
   }
-  const double strict = run_quantity(scene, card, "bdf2", r.least_substeps, kTolerance / 10).value;
+  const double strict = run_quantity(scene, card, "bdf2", r.least_substeps, rules.tolerance / 10).value;
   r.order_bdf2 = found[0].order;
   r.order_conservative = found[1].order;
   r.value = (found[0].value + found[1].value) / 2;
@@ -180,20 +137,20 @@ ReferenceResult compute_reference(const Scene& whole) {
 }
 
 std::map<std::string, ReferenceResult> references(const std::vector<const Scene*>& scenes, const fs::path& cache,
-                                                  const std::function<void(const std::string&)>& note) {
+                                                  const std::function<void(const std::string&)>& note,
+                                                  const ReferenceRules& rules) {
   std::map<std::string, ReferenceResult> out;
   if (!has_reference_solver()) return out;
   std::vector<const Scene*> lacking;
   std::set<std::string> seen;
   for (const Scene* s : scenes) {
     if (s->truth_card.empty() || !seen.insert(s->sha256).second) continue;
-    ReferenceResult r;
     if (!unsupported(find_solver("reference").info, s->needs).empty()) {
       out[s->sha256] = closed_form(*s);
       continue;
     }
-    if (read_cached(cache_file(cache, *s), r))
-      out[s->sha256] = r;
+    if (const auto known = read_reference(cache, reference_key(*s, rules)))
+      out[s->sha256] = *known;
     else
       lacking.push_back(s);
   }
@@ -205,8 +162,8 @@ std::map<std::string, ReferenceResult> references(const std::vector<const Scene*
   const auto work = [&] {
     for (std::size_t k = next++; k < lacking.size(); k = next++) {
       try {
-        const ReferenceResult r = compute_reference(*lacking[k]);
-        write_file_atomically(cache_file(cache, *lacking[k]), to_json(r).dump(2) + "\n");
+        const ReferenceResult r = compute_reference(*lacking[k], rules);
+        write_reference(cache, reference_key(*lacking[k], rules), r);
         const std::scoped_lock lock(guard);
         out[lacking[k]->sha256] = r;
       } catch (const std::exception& e) {

@@ -1,5 +1,9 @@
 #include "runner/stage_check.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 namespace clothbench {
 
 /// What is in a stage's data and needs no stage of its own.
@@ -16,6 +20,10 @@ std::string check_stages(const Scene& scene, const SolverInfo& info, const Plan&
     });
   }
   (implied - served).for_each([&](Feature f) { fault += "no stage serves " + std::string(name_of(f)) + "; "; });
+  if (!plan.contact_margins_m.empty() && plan.contact_margins_m.size() != scene.colliders.size())
+    fault += fmt::format("{} contact margins of {} colliders; ", plan.contact_margins_m.size(), scene.colliders.size());
+  for (const double m : plan.contact_margins_m)
+    if (!(m >= 0 || std::isnan(m)) || std::isinf(m)) fault += fmt::format("a contact margin of {} m; ", m);
   if (plan.stages.empty()) fault += "no stage at all; ";
   return fault.empty() ? fault : fault.substr(0, fault.size() - 2);
 }

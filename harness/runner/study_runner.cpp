@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 
 #include "metrics/truth_dependence.hpp"
 #include "runner/expect.hpp"
@@ -210,6 +211,15 @@ class GroupRun {
   std::vector<Running> running_;
 };
 
+/// Two cells of one name would write one file.
+void refuse_doubles(const CellPlan& plan) {
+  std::set<std::string> names;
+  for (const auto& group : plan.groups)
+    for (const CellSpec& c : group)
+      if (const std::string name = cell_name(header_of(c)); !names.insert(name).second)
+        throw Error("two cells would be stored as " + name + ": expected each scene, solver and setting once");
+}
+
 }  // namespace
 
 std::size_t CellPlan::size() const {
@@ -219,6 +229,7 @@ std::size_t CellPlan::size() const {
 }
 
 RunResult run_cells(const CellPlan& given, const RunOptions& options) {
+  refuse_doubles(given);
   RunResult result;
   std::size_t done = 0;
   CellPlan plan = given;

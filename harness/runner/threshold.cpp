@@ -9,6 +9,7 @@
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 #include "metrics/truth_errors.hpp"
+#include "runner/frame_input.hpp"
 #include "scenario/load.hpp"
 #include "truth/card.hpp"
 
@@ -22,18 +23,20 @@ std::optional<ClothState> last_state(const Scene& scene, const SolverEntry& entr
                                      const DeviceOptions& device) {
   const auto solver = entry.make(settings, device);
   solver->load(scene);
-  const double dt = scene.time.dt();
   for (int f = 0; f < scene.time.frames(); ++f)
-    if (solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}) != StepStatus::Ok) return std::nullopt;
+    if (solver->step(frame_input(scene, f)) != StepStatus::Ok) return std::nullopt;
   ClothState state;
   solver->read_state(state);
   return state;
 }
 
-bool stays(const Scene& scene, const truth::Card& card, double limit_m, const SolverEntry& entry, const nlohmann::json& settings,
-          const DeviceOptions& device) {
+/// None where the run fails, or ends where no cloth can be.
+std::optional<bool> stays(const Scene& scene, const truth::Card& card, double limit_m, const SolverEntry& entry, const nlohmann::json& settings,
+                          const DeviceOptions& device) {
   const auto state = last_state(scene, entry, settings, device);
-  return state && std::abs(card.quantity(truth::column_means(scene.cloth, state->position))) <= limit_m;
+  const double way = state ? std::abs(card.quantity(truth::column_means(scene.cloth, state->position))) : kMissing;
+  if (!std::isfinite(way)) return std::nullopt;
+  return way <= limit_m;
 }
 
 }  // namespace
@@ -46,9 +49,12 @@ FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, cons
   FoundThreshold out;
   out.exact = t.exact;
   const auto holds = [&](double friction) {
+    if (out.failed) return false;
     ++out.runs;
     const Scene tried = scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", t.key, friction)});
-    return stays(tried, *card, t.held_below_m, entry, settings, device);
+    const std::optional<bool> held_there = stays(tried, *card, t.held_below_m, entry, settings, device);
+    out.failed = !held_there;
+    return held_there.value_or(false);
   };
   double low = kLow * t.exact, high = kHigh * t.exact;
   if (!holds(high)) {
@@ -58,8 +64,13 @@ FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, cons
     out.holds_at_least = true;
     out.found = low;
   } else {
-    while (high - low > kFinest * t.exact) (holds((low + high) / 2) ? high : low) = (low + high) / 2;
+    while (!out.failed && high - low > kFinest * t.exact) (holds((low + high) / 2) ? high : low) = (low + high) / 2;
     out.found = (low + high) / 2;
+  }
+  if (out.failed) {
+    out.found = out.error = kMissing;
+    out.holds_at_least = out.slips_at_most = false;
+    return out;
   }
   out.error = t.error(out.found);
   return out;

@@ -10,6 +10,7 @@
 #include "results/store.hpp"
 #include "runner/cell.hpp"
 #include "runner/environment.hpp"
+#include "runner/frame_input.hpp"
 #include "runner/replay.hpp"
 #include "xr/counters.hpp"
 #include "xr/hands.hpp"
@@ -41,6 +42,23 @@ class Loop {
   }
 
   LoopResult run() {
+    try {
+      show_frames();
+    } catch (const std::exception& e) {
+      // What was recorded until here is a result, and replays: a headset's device may go at any time.
+      if (log_.rows().empty()) throw;
+      end_by(e);
+    }
+    if (log_.rows().empty())
+      throw Error(interrupt_requested() ? "interrupted before the session began" : "the headset ended the session before it began",
+                  interrupt_requested() ? ExitCode::Interrupted : ExitCode::CheckFailed);
+    return finish();
+  }
+
+ private:
+  static constexpr double kLeave_s = 2;  // a runtime that does not let go
+
+  void show_frames() {
     const auto start = Clock::now();
     while (session_.pump()) {
       done_ = done_ || interrupt_requested();
@@ -60,14 +78,17 @@ class Loop {
                     ExitCode::CheckFailed);
     }
     painter_.wait();
-    if (log_.rows().empty())
-      throw Error(interrupt_requested() ? "interrupted before the session began" : "the headset ended the session before it began",
-                  interrupt_requested() ? ExitCode::Interrupted : ExitCode::CheckFailed);
-    return finish();
   }
 
- private:
-  static constexpr double kLeave_s = 2;  // a runtime that does not let go
+  /// The session ends here, by this error; an outcome that came before it stays. A frame that had begun is the one that failed.
+  void end_by(const std::exception& e) {
+    done_ = true;
+    if (outcome_.status != "ok") return;
+    const auto* failure = dynamic_cast<const vulkan::Failure*>(&e);
+    const VkResult result = failure != nullptr ? failure->result() : VK_SUCCESS;
+    const char* status = result == VK_ERROR_DEVICE_LOST ? "device_lost" : result == VK_TIMEOUT ? "timed_out" : "error";
+    outcome_ = {status, "F8", static_cast<int>(log_.rows().size()), e.what()};
+  }
 
   void tell(const std::string& text) const {
     if (o_.tell) o_.tell(text);
@@ -103,21 +124,30 @@ class Loop {
     row.begin_s = seconds(t1, t2);
     row.shown = state.shouldRender == XR_TRUE ? 1 : 0;
     live ? step(state.predictedDisplayTime, row) : prepare(state);
-    std::vector<XrView> views;
-    const auto t3 = Clock::now();
-    if (state.shouldRender == XR_TRUE) views = session_.views(state.predictedDisplayTime);
-    if (!views.empty()) paint(views);
-    const auto t4 = Clock::now();
-    session_.end_frame(state, views);
-    const auto t5 = Clock::now();
-    row.paint_s = seconds(t3, t4);
-    row.end_s = seconds(t4, t5);
-    row.frame_s = seconds(t1, t5);
+    try {
+      show(state, row);
+    } catch (...) {
+      if (live) log_.add(row);  // it was stepped, and is in the recording
+      throw;
+    }
+    row.frame_s = seconds(t1, Clock::now());
     if (!live) return;
     log_.add(row);
     // Those of the frame before: counters are of what has been shown.
     counters_.read([&](const std::string& name, const std::string& units, double v) { log_.add_counter(name, units, v); });
     done_ = done_ || static_cast<int>(log_.rows().size()) == frames_;
+  }
+
+  /// A device that was lost draws nothing any more.
+  void show(const XrFrameState& state, FrameRow& row) {
+    std::vector<XrView> views;
+    const auto t0 = Clock::now();
+    if (state.shouldRender == XR_TRUE && outcome_.status != "device_lost") views = session_.views(state.predictedDisplayTime);
+    if (!views.empty()) paint(views);
+    const auto t1 = Clock::now();
+    session_.end_frame(state, views);
+    row.paint_s = seconds(t0, t1);
+    row.end_s = seconds(t1, Clock::now());
   }
 
   XrTime first_time(const XrFrameState& state, bool live) {
@@ -162,8 +192,7 @@ class Loop {
       throw Error(fmt::format("{}: {}: {}", o_.entry->info.name, out.status, out.message), ExitCode::CheckFailed);
     }
     if (!warm_) {
-      FrameInput input{0, live_.scene().time.at(1), live_.scene().time.dt(), live_.scene().motion_after(0)};
-      cell->solver()->step(input);
+      cell->solver()->step(frame_input(live_.scene(), 0));
       warm_ = true;
       return;
     }
@@ -211,25 +240,32 @@ class Loop {
     const HandsNow now = hands_at(time);
     if (live_.wants(Side::Left)) row.left_seen = now[0] ? 1 : 0;
     if (live_.wants(Side::Right)) row.right_seen = now[1] ? 1 : 0;
-    const FrameMotion* motion = live_.next(index, now);
     const auto t1 = Clock::now();
     painter_.wait();  // it read the positions that the step writes
     row.paint_device_s = painter_.device_s();
     const auto t2 = Clock::now();
-    const TimeSpan& time_span = live_.scene().time;
-    const StepStatus status = cell_->solver()->step({index, (index + 1) * time_span.dt(), time_span.dt(), motion});
+    // From here on the frame is in the recording, so that nothing below may leave it out of the log.
+    FrameInput input = frame_input(live_.scene(), index);
+    input.motion = live_.next(index, now);
     const auto t3 = Clock::now();
-    row.input_s = seconds(t0, t1);
+    StepStatus status = StepStatus::Ok;
+    try {
+      status = cell_->solver()->step(input);
+    } catch (const std::exception& e) {
+      end_by(e);
+    }
+    const auto t4 = Clock::now();
+    row.input_s = seconds(t0, t1) + seconds(t2, t3);
     row.settle_s = seconds(t1, t2);
-    row.step_s = seconds(t2, t3);
+    row.step_s = seconds(t3, t4);
     const FrameCost cost = cell_->solver()->last_cost();
     row.step_device_s = cost.device_s;
     note(cost, row);
     if (status != StepStatus::Ok) {
-      outcome_ = status == StepStatus::DeviceLost ? Outcome{"device_lost", "F8", index, "the device was lost"}
-                                                  : Outcome{"diverged", "F1", index, "the solver's step failed"};
+      outcome_ = outcome_of(status, index);
       done_ = true;
     }
+    const FrameMotion* motion = input.motion;
     shown_.motion.clear();
     if (motion != nullptr) shown_.motion.push_back(*motion);
     stale_ = stale_ || motion != nullptr;
@@ -280,10 +316,21 @@ class Loop {
     return g;
   }
 
+  /// Not finite where a lost device has none.
+  ClothState last_state() {
+    ClothState end;
+    try {
+      cell_->solver()->read_state(end);
+    } catch (const Error& e) {
+      if (outcome_.status == "ok") outcome_ = {"device_lost", "F8", static_cast<int>(log_.rows().size()), e.what()};
+      end.position.assign(3 * live_.scene().cloth.vertex_count(), kMissing);
+    }
+    return end;
+  }
+
   LoopResult finish() {
     LoopResult r;
-    ClothState end;
-    cell_->solver()->read_state(end);
+    const ClothState end = last_state();
     r.final_position_m = end.position;
     for (const double x : end.position)
       if (outcome_.status == "ok" && !std::isfinite(x))

@@ -44,8 +44,9 @@ struct LoopResult {
 
 /// A live session: a cloth before the user's eyes, who touches it. Waits until hands are seen or points are picked, then steps the
 /// solver once a displayed frame, by the display's refresh period, as the application of the paper does: where frames are shown
-/// late the cloth moves slower, and the log says so. Ends after `frames`, when the runtime ends the session, or when it is
-/// interrupted; all of these store what there is. Throws Error with ExitCode::NoDevice where there is no headset.
+/// late the cloth moves slower, and the log says so. Ends after `frames`, when the runtime ends the session, when it is
+/// interrupted, or where the device is lost or a call fails once the first frame was stepped (`outcome` says which); all of these store
+/// what there is. Throws Error with ExitCode::NoDevice where there is no headset.
 LoopResult run_loop(const LoopOptions&);
 
 }  // namespace clothbench::xr

@@ -236,6 +236,7 @@ Plan BulletSolver::plan() const {
     return p;
   }
   p.stages.push_back({"Contact", scene_->needs & kContact, 0, kMissing, kMissing});
+  p.contact_margins_m.assign(scene_->colliders.size(), contact_margin_m());
   for (const Collider& c : scene_->colliders)
     if (c.margin_m != contact_margin_m())
       p.left_out.push_back({fmt::format("the margin of {} m that the scene asks for at {}", c.margin_m, c.name),

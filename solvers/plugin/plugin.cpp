@@ -5,12 +5,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <list>
+#include <memory>
 #include <sstream>
 
 #include "clothbench/error.hpp"
@@ -30,8 +33,12 @@ static_assert(CLOTHBENCH_SPIN == 1 << static_cast<int>(Feature::Spin) && CLOTHBE
               CLOTHBENCH_FRICTION == 1 << static_cast<int>(Feature::Friction) &&
               CLOTHBENCH_DUPLICATED_LAYER == 1 << static_cast<int>(Feature::DuplicatedLayer));
 
+/// What the first header of version 1 had of ClothbenchPlugin. Libraries built with it have nothing beyond.
+constexpr std::size_t kFirstSize = offsetof(ClothbenchPlugin, contact_margin_m);
+
 struct Loaded {
   std::string path;
+  std::unique_ptr<const ClothbenchPlugin> plugin;  ///< a copy in this program's size, which the entry refers to
   SolverEntry entry;
 };
 
@@ -64,9 +71,8 @@ void check_sizes(const std::string& path, const ClothbenchPlugin& c) {
     if (s.exact ? s.theirs != s.ours : s.theirs > s.ours || s.theirs == 0)
       refuse(path, fmt::format("its {} has {} bytes, here it has {}: it was built with another clothbench_plugin.h",
                                s.what, s.theirs, s.ours));
-  if (c.plugin_size < sizeof(ClothbenchPlugin))
-    refuse(path, fmt::format("its ClothbenchPlugin has {} bytes, at least {} are expected", c.plugin_size,
-                             sizeof(ClothbenchPlugin)));
+  if (c.plugin_size < kFirstSize)
+    refuse(path, fmt::format("its ClothbenchPlugin has {} bytes, at least {} are expected", c.plugin_size, kFirstSize));
 }
 
 void check_description(const std::string& path, const ClothbenchPlugin& c) {
@@ -103,9 +109,14 @@ void check_description(const std::string& path, const ClothbenchPlugin& c) {
   }
 }
 
-void check(const std::string& path, const ClothbenchPlugin& c) {
-  check_sizes(path, c);
+/// As this program's header has it: what an older library does not have is NULL.
+ClothbenchPlugin checked(const std::string& path, const ClothbenchPlugin* given) {
+  if (given == nullptr) refuse(path, fmt::format("{} returns nothing", kSymbol));
+  check_sizes(path, *given);
+  ClothbenchPlugin c{};
+  std::memcpy(&c, given, std::min<std::size_t>(given->plugin_size, sizeof c));
   check_description(path, c);
+  return c;
 }
 
 /// What its constructors and its description do is found out in a child, where it may crash or hang.
@@ -121,7 +132,7 @@ void probe(const std::string& path) {
     const Entrance enter = library != nullptr ? entrance(library) : nullptr;
     const ClothbenchPlugin* c = enter != nullptr ? enter() : nullptr;
     try {
-      if (c != nullptr) check(path, *c);
+      checked(path, c);
     } catch (const Error&) {  // said by the parent, which goes the same way
     }
     _exit(0);
@@ -202,11 +213,12 @@ const SolverEntry& load(const std::string& given) {
   const Entrance enter = entrance(library);
   if (enter == nullptr) refuse(path, fmt::format("has no function {}: it is no plugin of clothbench", kSymbol));
   const ClothbenchPlugin* c = enter();
-  if (c == nullptr) refuse(path, fmt::format("{} returns nothing", kSymbol));
-  check(path, *c);
+  auto plugin = std::make_unique<const ClothbenchPlugin>(checked(path, c));
   for (const Loaded& l : loaded())
-    if (l.entry.info.name == c->name) refuse(path, fmt::format("name: \"{}\" is already that of {}", c->name, l.path));
-  loaded().push_back({path, entry_of(path, *c)});
+    if (l.entry.info.name == plugin->name)
+      refuse(path, fmt::format("name: \"{}\" is already that of {}", plugin->name, l.path));
+  SolverEntry entry = entry_of(path, *plugin);
+  loaded().push_back({path, std::move(plugin), std::move(entry)});
   remember(path);
   return loaded().back().entry;
 }

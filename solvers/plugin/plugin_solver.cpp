@@ -85,6 +85,8 @@ class PluginSolver final : public ClothSolver {
       out.stages.push_back(
           {s.name != nullptr ? s.name : "unnamed", features_of(s.serves), s.dispatches, s.read_B, s.write_B});
     }
+    for (std::uint32_t k = 0; c_.contact_margin_m != nullptr && k < view_->scene()->collider_count; ++k)
+      out.contact_margins_m.push_back(c_.contact_margin_m(self_, k));
     return out;
   }
 

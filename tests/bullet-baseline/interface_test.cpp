@@ -54,6 +54,20 @@ TEST_P(Bullet, SaysWhatMarginItKeepsInsteadOfTheScenes) {
   EXPECT_TRUE(margin_lines({{"collision_margin_m", 0.0}}).empty()) << "0 takes the scene's";
 }
 
+TEST_P(Bullet, TellsTheMarginThatMetricsGoBy) {
+  Scene s = with_collider(sheet(5, 4), floor_below(-0.5));
+  s.colliders.push_back(s.colliders[0]);
+  s.colliders[1].margin_m = 0.01;
+  const auto margins = [&](const nlohmann::json& settings) {
+    const auto solver = make_solver(GetParam(), settings);
+    solver->load(s);
+    return solver->plan().contact_margins_m;
+  };
+  EXPECT_EQ(margins(nlohmann::json::object()), (std::vector<double>{0.02, 0.02}));
+  EXPECT_EQ(margins({{"collision_margin_m", 0.003}}), (std::vector<double>{0.003, 0.003}));
+  EXPECT_EQ(margins({{"collision_margin_m", 0.0}}), (std::vector<double>{0.01, 0.01})) << "one for all: the widest";
+}
+
 TEST_P(Bullet, RefusesSettingsByName) {
   const auto message = [&](const char* key, const nlohmann::json& value) {
     try {

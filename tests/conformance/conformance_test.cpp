@@ -10,6 +10,7 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
+#include "runner/frame_input.hpp"
 #include "runner/stage_check.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
@@ -97,10 +98,7 @@ class Conformance : public ::testing::TestWithParam<Case> {
     }
   }
   void run(int frames) {
-    for (int f = 0; f < frames; ++f) {
-      const double dt = scene_.time.dt();
-      ASSERT_EQ(solver_->step({f, (f + 1) * dt, dt, scene_.motion_after(f)}), StepStatus::Ok) << "frame " << f;
-    }
+    for (int f = 0; f < frames; ++f) ASSERT_EQ(solver_->step(frame_input(scene_, f)), StepStatus::Ok) << "frame " << f;
   }
 
   Scene scene_;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "../scenario/scratch_folder.hpp"
@@ -57,6 +58,50 @@ const char* const kSphereScene = R"({"name":"sphere-test","why":"A sheet pushed 
   "expect":{"outcome":"ok","depth_max_m":{"at_most":0.0100001},"contact_length_settled_m":{"at_least":0.27,"at_most":0.28}}})";
 
 // R = 0.1 m, d = 0.01 m: contour 2 pi sqrt(2Rd - d^2), area pi (2Rd - d^2), mean depth R - 2/3 (R^3 - (R-d)^3)/(2Rd - d^2).
+TEST(ContactScene, WhatASolverSaysOfItsMarginIsStoredAndHeeded) {
+  const ScratchFolder folder;
+  const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=0.1"});
+  const Path path = lifted([&](int) { return 0.02 - scene.cloth.center_m[1]; });
+  const CellRecord told = run(scene, prescribed(path, {0.02}), folder);
+  EXPECT_NEAR(series(told, "touching_fraction").back(), 1, 1e-12);
+  ASSERT_EQ(told.header.plan["contact_margins"].size(), 1u);
+  EXPECT_EQ(told.header.plan["contact_margins"][0]["margin_m"], 0.02);
+  EXPECT_EQ(told.header.plan["contact_margins"][0]["collider"], scene.colliders[0].name);
+}
+
+TEST(ContactScene, XpbdTellsThatItKeepsAHundredthOfACell) {
+  const auto margins = [](double margin_m) {
+    const Scene scene = load_scene("contact/plane", {"cloth.grid=[7,7]", "colliders.0.margin_m=" + std::to_string(margin_m)});
+    const SolverEntry& entry = find_solver("xpbd");
+    const auto solver = entry.make(complete_settings(entry.info, nlohmann::json::object()), {});
+    solver->load(scene);
+    return solver->plan().contact_margins_m;
+  };
+  for (const SolverEntry& e : solvers())
+    if (e.info.name == "xpbd" && e.make) {
+      EXPECT_EQ(margins(0.004), std::vector<double>{0.004});
+      ASSERT_EQ(margins(0.0001).size(), 1u);
+      EXPECT_NEAR(margins(0.0001)[0], 0.001, 1e-12) << "cells of 0.1 m";
+      return;
+    }
+  GTEST_SKIP() << "no xpbd in this build";
+}
+
+TEST(ContactScene, MarginsThatCannotBeAreFaults) {
+  const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]"});
+  const auto fault = [&](const std::vector<double>& margins) {
+    const SolverEntry entry = prescribed([](int, std::vector<double>&) {}, margins);
+    const Cell cell({&scene, &entry, nlohmann::json::object()}, {}, "test");
+    return cell.outcome().status == "ok" ? std::string() : cell.outcome().message;
+  };
+  EXPECT_EQ(fault({}), "");
+  EXPECT_EQ(fault({0.01}), "");
+  EXPECT_EQ(fault({kMissing}), "");
+  EXPECT_NE(fault({0.01, 0.02}).find("2 contact margins of 1 colliders"), std::string::npos);
+  EXPECT_NE(fault({-0.01}).find("a contact margin of -0.01 m"), std::string::npos);
+  EXPECT_NE(fault({std::numeric_limits<double>::infinity()}).find("a contact margin of inf m"), std::string::npos);
+}
+
 TEST(ContactScene, ASheetLoweredIntoASphereGivesTheClosedForms) {
   const ScratchFolder folder;
   const Scene scene = load_scene(folder.file("scene.json", kSphereScene));

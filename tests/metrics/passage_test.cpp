@@ -21,10 +21,10 @@ const std::vector<double>& series(const AccuracyPass& p, const std::string& name
 }
 
 /// The accuracy pass of a cloth that goes where it is told.
-AccuracyPass passed(const Scene& scene, const Path& path, double still_speed = 0) {
+AccuracyPass passed(const Scene& scene, const Path& path, double still_speed = 0, const std::vector<double>& margins = {},
+                    const nlohmann::json& settings = nlohmann::json::object()) {
   const SolverEntry entry = prescribed(path);
-  const nlohmann::json settings = nlohmann::json::object();
-  MetricPass metrics(MetricContext{scene, entry, settings});
+  MetricPass metrics(MetricContext{scene, entry, settings, margins});
   AccuracyPass pass;
   const std::vector<double> start = initial_positions(scene);
   for (int f = 0; f <= scene.time.frames(); ++f) {
@@ -95,6 +95,24 @@ TEST(Passage, SlidingOnAPlaneIsTheWaySlid) {
   EXPECT_NEAR(s.at("slip_m"), 1e-3 * (scene.time.frames() - 20), 1e-9);
   EXPECT_NEAR(s.at("rest_drift_m_per_s"), 1e-3 * scene.time.frame_rate_hz, 1e-6);
   EXPECT_NEAR(s.at("rest_jitter_m"), 0, 1e-6) << "a steady way does not tremble";
+}
+
+/// The distance that contact holds the cloth at is the solver's to tell, in whatever words its settings have for it.
+TEST(Passage, TouchIsWhereTheSolverSaysThatItHoldsTheCloth) {
+  const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=0.1"});
+  const auto touching = [&](double height, const std::vector<double>& margins, const nlohmann::json& settings = nlohmann::json::object()) {
+    const double down = scene.cloth.center_m[1] - height;
+    const Path path = [=](int, std::vector<double>& x) {
+      for (std::size_t k = 1; k < x.size(); k += 3) x[k] -= down;
+    };
+    return series(passed(scene, path, 0, margins, settings), "touching_fraction")[0];
+  };
+  EXPECT_EQ(touching(0.02, {}), 0) << "the scene's margin is 4 mm";
+  EXPECT_EQ(touching(0.02, {kMissing}), 0) << "none told is the scene's";
+  EXPECT_NEAR(touching(0.02, {0.02}), 1, 1e-12);
+  EXPECT_NEAR(touching(0.004, {}), 1, 1e-12);
+  EXPECT_EQ(touching(0.004, {0.001}), 0) << "a solver that holds it nearer does not touch it there";
+  EXPECT_EQ(touching(0.02, {}, {{"collision_margin_m", 0.02}}), 0) << "no metric reads a solver's setting";
 }
 
 TEST(Passage, ACapsuleThatCarriesTheClothDoesNotSlip) {

@@ -14,7 +14,8 @@ using Path = std::function<void(int frame, std::vector<double>& position)>;
 /// A solver whose cloth goes where it is told, whatever is in the way: what the metrics say of it is known.
 class PrescribedSolver final : public ClothSolver {
  public:
-  PrescribedSolver(SolverInfo info, Path path) : info_(std::move(info)), path_(std::move(path)) {}
+  PrescribedSolver(SolverInfo info, Path path, std::vector<double> contact_margins_m = {})
+      : info_(std::move(info)), path_(std::move(path)), margins_(std::move(contact_margins_m)) {}
 
   const SolverInfo& info() const override { return info_; }
   DeviceInfo device() const override { return {"CPU", "", "C++20", false, "{}"}; }
@@ -33,24 +34,28 @@ class PrescribedSolver final : public ClothSolver {
   Plan plan() const override {
     Plan p;
     p.stages = {{"follow", {}, 0, kMissing, kMissing}};
+    p.contact_margins_m = margins_;
     return p;
   }
 
  private:
   SolverInfo info_;
   Path path_;
+  std::vector<double> margins_;
   std::vector<double> start_;
   int frame_ = 0;
 };
 
-inline SolverEntry prescribed(const Path& path) {
+inline SolverEntry prescribed(const Path& path, const std::vector<double>& contact_margins_m = {}) {
   SolverInfo info;
   info.name = "prescribed";
   info.folder = "tests";
   info.precision = "float64";
   for (std::size_t i = 0; i < kFeatureCount; ++i) info.ignores.add(static_cast<Feature>(i));
   return {info,
-          [info, path](const nlohmann::json&, const DeviceOptions&) { return std::make_unique<PrescribedSolver>(info, path); },
+          [info, path, contact_margins_m](const nlohmann::json&, const DeviceOptions&) {
+            return std::make_unique<PrescribedSolver>(info, path, contact_margins_m);
+          },
           [](const Scene&, const nlohmann::json&, int) { return 0.0; }};
 }
 

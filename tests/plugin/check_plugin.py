@@ -80,6 +80,21 @@ class Plugin(unittest.TestCase):
         self.command("run", "paper/capsule-sweep", "--solver", "plugin:" + EXAMPLE, *SMALL, "--out", self.out)
         self.assertEqual(self.cell("capsule-sweep__example-xpbd__default")[0]["status"], "unsupported")
 
+    def test_it_says_how_far_off_it_holds_the_cloth(self):
+        two = 'colliders=[{"type":"sphere","center_m":[0,0,0],"radius_m":0.1},{"type":"box","center_m":[0,-1,0],"size_m":[1,1,1]}]'
+        words = ["plan", "contact/sphere", "--set", two]
+        (plan,) = self.rows(*words, "--solver", self.faulty(), code=0)
+        self.assertEqual([m["margin_m"] for m in plan["contact_margins"]], [0.03])
+        self.assertEqual(self.command(*words, "--solver", self.faulty()), 0, self.text)
+        self.assertIn("0.03", self.text)
+        run = ["run", "contact/sphere", "--solver", self.faulty(), "--trials", "0", "--set", two, "--out", self.out]
+        self.assertEqual(self.command(*run), 0, self.text)
+        self.assertEqual(self.cell("sphere-drop__faulty__default")[2]["plan"]["contact_margins"], plan["contact_margins"])
+
+    def test_a_library_built_with_the_first_header_of_the_version(self):
+        (plan,) = self.rows("plan", "contact/sphere", "--solver", self.faulty("OLD_HEADER"), code=0)
+        self.assertEqual((plan["status"], plan["contact_margins"]), ("ok", []))
+
     def test_it_joins_studies(self):
         words = [
             "study",
@@ -259,6 +274,36 @@ class Plugin(unittest.TestCase):
         names = sorted(f for f in os.listdir(self.out) if f.endswith(".h5"))
         self.assertIn("material-card__stretches__default.h5", names, self.text)
         self.assertEqual(self.cell("material-card__stretches__default")[0]["status"], "crashed")
+
+    def bench(self, *more, time=None, **environment):
+        """Of the faulty plugin on a small scene."""
+        self.command("--help")
+        if "  bench " not in self.text:
+            self.skipTest("this build has no Google Benchmark")
+        with open(os.path.join(SOURCE, "scenarios", "paper", "gravity.json"), encoding="utf-8") as text:
+            scene = json.load(text)
+        scene["cloth"].update(grid=[8, 8], sides="single")
+        scene["time"].update(time or {})
+        rules = {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0}
+        study = {"name": "uneven", "why": "A hitch.", "protocol": "fps", "trials": 1, "scenes": [{"file": "scene.json"}],
+                 "solvers": [{"solver": self.faulty()}], "short": rules, "full": rules}
+        for name, document in (("scene.json", scene), ("uneven.json", study)):
+            with open(os.path.join(self.home, name), "w", encoding="utf-8") as out:
+                json.dump(document, out)
+        return self.command("bench", "--study", os.path.join(self.home, "uneven.json"), *more, **environment)
+
+    def test_uneven_frames_reach_the_solver_in_bench(self):
+        log = os.path.join(self.home, "frames.txt")
+        self.assertEqual(self.bench(time={"hitch": {"frame": 3, "dt_s": 0.25}}, FRAME_LOG=log), 0, self.text)
+        frames = [line.split() for line in pathlib.Path(log).read_text(encoding="utf-8").splitlines()]
+        self.assertEqual(float(frames[3][2]), 0.25, frames[:5])
+        self.assertAlmostEqual(float(frames[4][1]), 4 / 72 + 0.25, places=12)
+
+    def test_bench_fails_with_its_solver_and_where_it_runs_nothing(self):
+        self.assertEqual(self.bench(), 0, self.text)
+        self.assertEqual(self.bench(FAULT="nan:3"), 1, self.text)
+        self.assertIn("the solver failed", self.text)
+        self.assertEqual(self.bench("--benchmark_filter=nothing"), 2, self.text)
 
     def test_interrupted_and_resumed(self):
         process = self.start(

@@ -1,6 +1,7 @@
 /* A plugin that is wrong in the way it was compiled for (FAULT_…) or that $FAULT names while it runs: crash:N, hang:N, exit:N,
  * nan:N (at the Nth step of a solver), load, create (a crash there). Otherwise its cloth stands still. */
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +28,9 @@ static void* create(const double* settings, const ClothbenchScene* scene, const 
 static void reset(void* self) { (void)self; }
 
 static int32_t step(void* self, const ClothbenchFrame* frame) {
-  (void)frame;
+  const char* log = getenv("FRAME_LOG");
+  FILE* lines = log ? fopen(log, "a") : NULL;
+  if (lines) fprintf(lines, "%d %.17g %.17g\n", (int)frame->index, frame->time_s, frame->dt_s), fclose(lines);
   const char* fault = getenv("FAULT");
   const char* at = fault ? strchr(fault, ':') : NULL;
   if (!at || ++((Solver*)self)->steps != atoi(at + 1)) return CLOTHBENCH_OK;
@@ -55,6 +58,12 @@ static double free_fall(const double* settings, double dt, double gravity, doubl
   return 0;
 }
 
+/* 3 cm off the first collider; the others as the scene says. */
+static double contact_margin(void* self, uint32_t collider) {
+  (void)self;
+  return collider == 0 ? 0.03 : NAN;
+}
+
 #ifdef FAULT_CRASHES_ON_LOAD
 __attribute__((constructor)) static void at_load(void) { *(volatile int*)8 = 1; }
 #endif
@@ -69,9 +78,13 @@ const ClothbenchPlugin* clothbench_plugin(void) {
 #endif
   static ClothbenchPlugin plugin = {
       CLOTHBENCH_PLUGIN_HEADER, "faulty", "wrong on purpose", "1", "float64", 0, (1u << 20) - 1, 1, 0, NULL,
-      create, free, NULL, step, read_state, stages, reset, free_fall, NULL, NULL};
+      create, free, NULL, step, read_state, stages, reset, free_fall, NULL, NULL, contact_margin};
 #ifdef FAULT_VERSION
   plugin.version = 99;
+#endif
+#ifdef FAULT_OLD_HEADER /* built before contact_margin_m was there: what lies beyond its end is not to be read */
+  plugin.plugin_size = offsetof(ClothbenchPlugin, contact_margin_m);
+  *(uintptr_t*)&plugin.contact_margin_m = 8;
 #endif
 #ifdef FAULT_SCENE_SIZE
   plugin.scene_size += 8;

@@ -69,6 +69,9 @@ struct Plan {
   std::vector<StagePlan> stages;
   std::vector<BufferPlan> buffers;
   std::vector<LeftOut> left_out;
+  /// Distance [m] at which the solver holds the cloth off each collider of the scene, where that is not the collider's own margin_m
+  /// (which NaN stands for); empty = it is for all of them. Metrics judge touch and slip by it.
+  std::vector<double> contact_margins_m = {};
 };
 
 /// Cost of the last step. Device times are NaN where the device has no timestamps or the solver runs on the CPU.

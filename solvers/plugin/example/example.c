@@ -95,6 +95,6 @@ const ClothbenchPlugin* clothbench_plugin(void) {
   static const ClothbenchPlugin plugin = {
       CLOTHBENCH_PLUGIN_HEADER, "example-xpbd", "XPBD with small steps on one core: an example", "2", "float64",
       CLOTHBENCH_STRETCH | CLOTHBENCH_SHEAR | CLOTHBENCH_BEND | CLOTHBENCH_DAMPING | CLOTHBENCH_PINS, 0, 1, 1, settings,
-      create, free, restart, step, read_state, stages, NULL, NULL, NULL, NULL};
+      create, free, restart, step, read_state, stages, NULL, NULL, NULL, NULL, NULL};
   return &plugin;
 }

@@ -1,0 +1,109 @@
+// Uneven frames, a hitch or a jitter of the scene's clock, reach the solver wherever a scene is run.
+#include "runner/frame_input.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "clothbench/record.hpp"
+#include "runner/metamorphic.hpp"
+#include "runner/reference.hpp"
+#include "runner/threshold.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+const std::string kHitch = R"(time.hitch={"frame":3,"dt_s":0.1})", kJitter = R"(time.jitter={"share":0.5})";
+
+/// A cloth that stands still, and what frames it was asked for.
+class Spy final : public ClothSolver {
+ public:
+  Spy(SolverInfo info, std::vector<FrameInput>& seen) : info_(std::move(info)), seen_(seen) {}
+  const SolverInfo& info() const override { return info_; }
+  DeviceInfo device() const override { return {}; }
+  void load(const Scene& s) override { state_ = {initial_positions(s), std::vector<double>(3 * s.cloth.vertex_count(), 0)}; }
+  void reset() override {}
+  bool restart(const ClothState&) override { return true; }
+  StepStatus step(const FrameInput& in) override {
+    seen_.push_back(in);
+    return StepStatus::Ok;
+  }
+  void read_state(ClothState& out) const override { out = state_; }
+  FrameCost last_cost() const override { return {}; }
+  Plan plan() const override { return {}; }
+
+ private:
+  SolverInfo info_;
+  std::vector<FrameInput>& seen_;
+  ClothState state_;
+};
+
+SolverEntry spy(std::vector<FrameInput>& seen) {
+  SolverEntry e;
+  e.info.name = "spy";
+  for (std::size_t i = 0; i < kFeatureCount; ++i) e.info.supports.add(static_cast<Feature>(i));
+  e.make = [info = e.info, &seen](const nlohmann::json&, const DeviceOptions&) { return std::make_unique<Spy>(info, seen); };
+  return e;
+}
+
+void expect_frames_of(const Scene& s, const std::vector<FrameInput>& seen) {
+  ASSERT_FALSE(s.time.ends_s.empty());
+  ASSERT_FALSE(seen.empty());
+  for (const FrameInput& f : seen) {
+    EXPECT_EQ(f.time_s, s.time.at(f.index + 1)) << "frame " << f.index;
+    EXPECT_EQ(f.dt_s, s.time.dt_after(f.index)) << "frame " << f.index;
+  }
+}
+
+TEST(FrameInput, IsTheScenesAndEvenBeyondItsEnd) {
+  const Scene even = load_scene("metamorphic/sheet"), uneven = load_scene("metamorphic/sheet", {kHitch});
+  const int last = even.time.frames() - 1;
+  for (const int f : {0, 3, last, last + 5}) {
+    EXPECT_EQ(frame_input(even, f).time_s, (f + 1) * even.time.dt());
+    EXPECT_EQ(frame_input(even, f).dt_s, even.time.dt());
+  }
+  EXPECT_EQ(frame_input(uneven, 3).dt_s, 0.1);
+  EXPECT_NEAR(frame_input(uneven, 3).time_s, 3 * even.time.dt() + 0.1, 1e-15);
+  EXPECT_EQ(frame_input(uneven, last).time_s, uneven.time.ends_s.back());
+  EXPECT_EQ(frame_input(uneven, last + 2).dt_s, even.time.dt());
+  EXPECT_EQ(frame_input(uneven, last + 2).time_s, uneven.time.ends_s.back() + 2 * even.time.dt());
+}
+
+TEST(UnevenFrames, ReachTheSolverInThresholds) {
+  const Scene s = load_scene("validation/incline-stick", {kHitch, "time.duration_s=0.25"});
+  std::vector<FrameInput> seen;
+  EXPECT_EQ(find_threshold(s, spy(seen), nlohmann::json::object(), {}).runs, 2);
+  EXPECT_EQ(seen.size(), 2 * static_cast<std::size_t>(s.time.frames()));
+  expect_frames_of(s, seen);
+  seen.clear();
+  end_error(s, spy(seen), nlohmann::json::object(), {});
+  expect_frames_of(s, seen);
+}
+
+TEST(UnevenFrames, ReachTheSolverInMetamorphicProperties) {
+  for (const std::string& how : {kHitch, kJitter}) {
+    const Scene s = load_scene("metamorphic/sheet", {how});
+    std::vector<FrameInput> seen;
+    const auto results = run_metamorphic(spy(seen), nlohmann::json::object(), {}, {s}, nullptr);
+    expect_frames_of(s, seen);
+    for (const MetamorphicResult& r : results) {
+      const bool same_scene = r.property == "repeat" || r.property == "no-op" || r.property == "restart";
+      EXPECT_EQ(r.status, same_scene ? "kept" : "unsupported") << r.property;
+    }
+  }
+}
+
+TEST(UnevenFrames, ReachTheReference) {
+  for (const SolverEntry& e : solvers())
+    if (e.info.name == "reference") {
+      const ReferenceResult r = compute_reference(load_scene("validation/pendulum", {kHitch, "time.duration_s=0.25"}));
+      EXPECT_LE(r.truth_distance, 1e-3) << r.value << " against " << r.truth;
+      return;
+    }
+  GTEST_SKIP() << "no solver reference in this build";
+}
+
+}  // namespace
+}  // namespace clothbench
