@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Gets the room captures, hand meshes and hand poses into build/assets/node_modules, pinned by assets-package-lock.json.
+# Gets the room captures, hand meshes and hand poses, pinned by assets-package-lock.json: in a source tree into build/assets/node_modules,
+# else, as installed with the program, into the user's ~/.local/share/clothbench/assets/node_modules (below $XDG_DATA_HOME if that is set).
 #   scripts/fetch-assets.sh [--require-assets]
 # Without them clothbench uses procedural stand-ins, so a failure here is one line and exit 0, unless --require-assets.
 # Nothing from the packages is executed.
@@ -12,7 +13,12 @@ case "${1:-}" in
   *) echo "usage: scripts/fetch-assets.sh [--require-assets]" >&2; exit 2 ;;
 esac
 here=$(cd "$(dirname "$0")" && pwd)
-target=$(dirname "$here")/build/assets
+tree=$(dirname "$here")
+if [ -f "$tree/CMakeLists.txt" ]; then
+  installed=0 target=$tree/build/assets
+else
+  installed=1 target=${XDG_DATA_HOME:-${HOME:?}/.local/share}/clothbench/assets
+fi
 
 give_up() {
   echo "assets: $1; clothbench will use its procedural room and hand"
@@ -21,12 +27,13 @@ give_up() {
 
 # Written last, so an interrupted fetch is started again.
 if cmp -s "$here/assets-package-lock.json" "$target/fetched-lock.json" && [ -d "$target/node_modules/@iwer/sem" ]; then
-  echo "assets: already in build/assets"
+  echo "assets: already in $target"
   exit 0
 fi
 
 # Debian's npm and one from elsewhere conflict: any npm that is there is used, and Debian's only where there is none.
 if ! command -v npm >/dev/null; then
+  [ "$installed" = 0 ] || give_up "no npm (Debian: apt-get install npm)"
   as_root=()
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || give_up "no npm, and neither root nor sudo to install it"
@@ -42,6 +49,6 @@ cp "$here/assets-package.json" "$target/package.json"
 cp "$here/assets-package-lock.json" "$target/package-lock.json"
 log=$target/npm.log
 (cd "$target" && timeout 420 npm ci --ignore-scripts --no-audit --no-fund --fetch-retries=1 --fetch-timeout=60000) >"$log" 2>&1 ||
-  give_up "npm ci failed (see build/assets/npm.log)"
+  give_up "npm ci failed (see $log)"
 cp "$here/assets-package-lock.json" "$target/fetched-lock.json"
-echo "assets: fetched into build/assets"
+echo "assets: fetched into $target"

@@ -10,6 +10,7 @@
 #include "assets/procedural.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
+#include "scenario/data_folder.hpp"
 #include "scenario/json_text.hpp"
 
 namespace clothbench::assets {
@@ -50,19 +51,48 @@ std::string versions(const fs::path& root) {
   return out;
 }
 
+/// Where a user's own data lie (XDG base directories); empty if there is no home.
+fs::path user_data() {
+  if (const char* data = std::getenv("XDG_DATA_HOME"); data != nullptr && *data == '/')
+    return fs::path(data) / "clothbench";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
+    return fs::path(home) / ".local/share/clothbench";
+  return {};
+}
+
+/// As a user of this build can call it.
+std::string fetching_script() {
+  const char* const name = "fetch-assets.sh";
+  std::error_code ec;
+  for (const fs::path& folder : usual_places(kScriptFolder))
+    if (fs::is_regular_file(folder / name, ec)) return (folder / name).string();
+  return std::string("scripts/") + name;
+}
+
+/// The user's folder last: an installed tree's or a source tree's own come first.
+std::vector<fs::path> asset_places() {
+  std::vector<fs::path> places = usual_places(kAssetFolder);
+  if (const fs::path own = user_data(); !own.empty()) places.push_back(own / kAssetFolder.installed);
+  return places;
+}
+
 }  // namespace
 
 AssetSource locate_assets(bool require) {
-  const char* variable = std::getenv("CLOTHBENCH_ASSETS");
-  const std::string wish = variable ? variable : "";
+  const std::string wish = named_data(kAssetFolder);
   AssetSource source;
   if (wish == "procedural") {
     source.reason = "CLOTHBENCH_ASSETS=procedural";
   } else {
-    const fs::path root = wish.empty() ? fs::path(CLOTHBENCH_DEFAULT_ASSETS) : fs::path(wish);
-    const fs::path missing = first_missing(root);
-    if (missing.empty()) return {true, root, versions(root)};
-    source.reason = missing.string() + " is missing; scripts/fetch-assets.sh gets it";
+    std::vector<std::string> missing;
+    for (const fs::path& root : wish.empty() ? asset_places() : std::vector<fs::path>{wish}) {
+      const fs::path file = first_missing(root);
+      if (file.empty()) return {true, root, versions(root)};
+      missing.push_back(file.string());
+    }
+    source.reason =
+        fmt::format("{} {} missing; {} gets {}", fmt::join(missing, ", "), missing.size() == 1 ? "is" : "are",
+                    fetching_script(), missing.size() == 1 ? "it" : "them");
     if (!wish.empty()) throw Error("CLOTHBENCH_ASSETS: " + source.reason);
   }
   if (require) throw Error("assets required: " + source.reason);

@@ -20,9 +20,10 @@ struct AssetSource {
 inline constexpr std::array<std::string_view, 5> kRoomNames = {"living_room", "meeting_room", "music_room",
                                                                "office_large", "office_small"};
 
-/// Looks in $CLOTHBENCH_ASSETS (a node_modules folder; the word "procedural" asks for the stand-ins), then in
-/// build/assets/node_modules of the source tree, where scripts/fetch-assets.sh puts them. Throws Error if `require` and
-/// there are none, and whenever $CLOTHBENCH_ASSETS names a folder without them.
+/// Looks in $CLOTHBENCH_ASSETS (a node_modules folder; the word "procedural" asks for the stand-ins); where that isn't
+/// set in share/clothbench/assets/node_modules of an installed tree, in build/assets/node_modules of the source tree
+/// and in clothbench/assets/node_modules below $XDG_DATA_HOME (~/.local/share), where scripts/fetch-assets.sh puts
+/// them. Throws Error if `require` and there are none, and whenever $CLOTHBENCH_ASSETS names a folder without them.
 AssetSource locate_assets(bool require);
 
 /// One of kRoomNames, or the path of a capture (ends in .json). Procedural: the one procedural room for every name.

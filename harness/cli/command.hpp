@@ -32,6 +32,7 @@ void add_check(CLI::App&, Console&);
 void add_compare(CLI::App&, Console&);
 void add_history(CLI::App&, Console&);
 void add_completion(CLI::App&, Console&);
+void add_manual(CLI::App&, Console&);
 void add_bench(CLI::App&, Console&);
 void add_render(CLI::App&, Console&);
 void add_xr(CLI::App&, Console&);

@@ -69,6 +69,7 @@ int run_command_line(const std::vector<std::string>& words) {
   add_xr(app, console);
 #endif
   add_completion(app, console);
+  add_manual(app, console);
   try {
     // CLI11 takes the words last first.
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));

@@ -3,6 +3,8 @@
 #include <ft2build.h>
 #include FT_FREETYPE_H
 
+#include <cstdlib>
+
 #include "clothbench/error.hpp"
 
 namespace clothbench::render {
@@ -25,6 +27,12 @@ std::u32string code_points(const std::string& utf8) {
   return out;
 }
 
+/// $CLOTHBENCH_FONT, else where this system had the font when the program was built.
+std::string font_file() {
+  const char* named = std::getenv("CLOTHBENCH_FONT");
+  return named != nullptr && *named != '\0' ? named : CLOTHBENCH_FONT;
+}
+
 }  // namespace
 
 struct Pen::Font {
@@ -38,8 +46,11 @@ struct Pen::Font {
 
 Pen::Pen(int height_px) : font_(std::make_unique<Font>()), height_px_(height_px) {
   if (FT_Init_FreeType(&font_->library) != 0) throw Error("FreeType cannot be used");
-  if (FT_New_Face(font_->library, CLOTHBENCH_FONT, 0, &font_->face) != 0)
-    throw Error(CLOTHBENCH_FONT ": no such font (Debian: fonts-dejavu-core); --plain draws without text");
+  const std::string file = font_file();
+  if (FT_New_Face(font_->library, file.c_str(), 0, &font_->face) != 0)
+    throw Error(
+        file +
+        ": no such font (Debian: fonts-dejavu-core; $CLOTHBENCH_FONT names another file); --plain draws without text");
   FT_Set_Pixel_Sizes(font_->face, 0, static_cast<FT_UInt>(height_px));
 }
 

@@ -22,6 +22,7 @@
 #include "report/web/page.hpp"
 #include "report/work_precision.hpp"
 #include "results/store.hpp"
+#include "scenario/data_folder.hpp"
 
 namespace clothbench {
 namespace {
@@ -64,13 +65,17 @@ std::string draw_figures(const fs::path& out, bool rates, bool penetration, bool
   if (!has_python) return "Figures were left out: no Python with matplotlib (Debian: python3-matplotlib).";
   std::vector<std::string> commands;
   const auto add = [&](const char* script, const fs::path& a, const fs::path& b) {
-    commands.push_back(fmt::format("{} {} {} {}", python, quoted(fs::path(kScriptsRoot) / script), quoted(a),
+    commands.push_back(fmt::format("{} {} {} {}", python, quoted(find_data(kScriptFolder) / script), quoted(a),
                                    b.empty() ? "" : quoted(b)));
   };
-  if (rates) add("plot_report.py", out / "cells.csv", fs::path(kResultsRoot) / "paper-table3.json");
-  if (penetration) add("plot_penetration.py", out / "penetration-series.csv", {});
-  if (work) add("plot_work_precision.py", out / "work-precision.csv", {});
-  if (stability) add("plot_stability.py", out / "stability.json", out / "stability.csv");
+  try {
+    if (rates) add("plot_report.py", out / "cells.csv", find_data(kResultFolder) / "paper-table3.json");
+    if (penetration) add("plot_penetration.py", out / "penetration-series.csv", {});
+    if (work) add("plot_work_precision.py", out / "work-precision.csv", {});
+    if (stability) add("plot_stability.py", out / "stability.json", out / "stability.csv");
+  } catch (const Error& e) {  // the tables do not depend on it
+    return std::string("Figures were left out: ") + e.what();
+  }
   for (const std::string& command : commands)
     if (std::system(command.c_str()) != 0) return "Figures were left out: this command failed: " + command;
   return "";

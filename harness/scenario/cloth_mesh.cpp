@@ -13,6 +13,7 @@
 #include "clothbench/vector.hpp"
 #include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
+#include "scenario/recorded_hand.hpp"
 #include "scenario/sha256.hpp"
 
 #define TINYOBJLOADER_IMPLEMENTATION
@@ -57,9 +58,7 @@ std::string shape_lines(const std::string& text) {
 }
 
 fs::path file_of(const std::string& name, const std::string& source) {
-  std::error_code ec;
-  for (const fs::path& folder : {fs::path(source).parent_path(), scenario_root()})
-    if (fs::is_regular_file(folder / name, ec)) return folder / name;
+  if (const auto found = file_of_scene(name, source)) return *found;
   throw Error(fmt::format("{}: /cloth/mesh/file: \"{}\": no such file beside the scene or in {}", source, name, scenario_root().string()));
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 
@@ -11,9 +10,9 @@
 #include "clothbench/vector.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/colliders.hpp"
+#include "scenario/data_folder.hpp"
 #include "scenario/irregular.hpp"
 #include "scenario/json_text.hpp"
-#include "scenario/paths.hpp"
 #include "scenario/sha256.hpp"
 #include "scenario/vec3.hpp"
 
@@ -168,10 +167,7 @@ std::vector<std::string> scenario_names() {
 
 }  // namespace
 
-std::filesystem::path scenario_root() {
-  if (const char* folder = std::getenv("CLOTHBENCH_SCENARIOS"); folder != nullptr && *folder != '\0') return folder;
-  return kScenarioRoot;
-}
+std::filesystem::path scenario_root() { return find_data(kScenarioFolder); }
 
 std::filesystem::path find_scenario(const std::string& name_or_path) {
   std::error_code ec;

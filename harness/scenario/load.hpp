@@ -9,7 +9,7 @@
 
 namespace clothbench {
 
-/// Folder with the scenario files: $CLOTHBENCH_SCENARIOS, else the source tree this was built from.
+/// Folder with the scenario files (kScenarioFolder). Throws Error if there is none.
 std::filesystem::path scenario_root();
 
 /// `name_or_path` as given, or `<scenario_root>/<name>.json`. Throws Error if there is neither.

@@ -7,8 +7,10 @@
 namespace clothbench {
 std::optional<std::filesystem::path> file_of_scene(const std::string& name, const std::string& source) {
   std::error_code ec;
-  for (const std::filesystem::path& folder : {std::filesystem::path(source).parent_path(), scenario_root()})
-    if (std::filesystem::is_regular_file(folder / name, ec)) return folder / name;
+  const std::filesystem::path beside = std::filesystem::path(source).parent_path() / name;
+  if (std::filesystem::is_regular_file(beside, ec)) return beside;
+  const std::filesystem::path named = scenario_root() / name;
+  if (std::filesystem::is_regular_file(named, ec)) return named;
   return std::nullopt;
 }
 

@@ -1,0 +1,118 @@
+// The manual page, made from the commands and options that there are.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "cli/command.hpp"
+#include "runner/build_info.hpp"
+
+namespace clothbench {
+namespace {
+
+struct Entry {
+  const char *name, *text;
+};
+
+constexpr std::array kEnvironment = {
+    Entry{"CLOTHBENCH_SCENARIOS",
+          "Folder with scenes and studies. Without it they are looked for in share/clothbench beside the program's "
+          "folder, then in the "
+          "source tree that the program was built from. The same holds for the next three."},
+    Entry{"CLOTHBENCH_SCRIPTS", "Folder with the scripts that draw a report's figures."},
+    Entry{"CLOTHBENCH_RESULTS", "Folder with the published results that a report's figures compare with."},
+    Entry{
+        "CLOTHBENCH_ASSETS",
+        "Folder node_modules with scanned rooms and hands, or the word \"procedural\" for the stand-ins. Looked for in "
+        "~/.local/share/clothbench/assets too (below $XDG_DATA_HOME where that is set), where fetch-assets.sh puts "
+        "them."},
+    Entry{"CLOTHBENCH_PLUGINS",
+          "Shared libraries with solvers, separated by colons; a study file can then name these solvers."},
+    Entry{"CLOTHBENCH_PLUGIN_LIMIT_S",
+          "Seconds without headway after which a plugin's process is ended; 900 where it is not set."},
+    Entry{"CLOTHBENCH_DEVICE_PROFILE", "As --device-profile."},
+    Entry{"CLOTHBENCH_CACHE", "Folder for compiled pipelines; else clothbench below $XDG_CACHE_HOME or ~/.cache."},
+    Entry{"CLOTHBENCH_FONT", "The TrueType file that writes the words in pictures."},
+    Entry{"NO_COLOR", "Where it is set, output has no colour. On a terminal alone there is any."},
+};
+
+constexpr std::array kExitStatus = {
+    Entry{"0", "All went well."}, Entry{"1", "A check failed."}, Entry{"2", "An argument or a file is wrong."},
+    Entry{"3", "There is no Vulkan device."}, Entry{"130", "Interrupted; finished trials are kept."}};
+
+/// Text as roff takes it: its marks told apart from ours.
+std::string roff(const std::string& text) {
+  std::string out;
+  bool line_begins = true;
+  for (const char c : text) {
+    if (line_begins && (c == '.' || c == '\'')) out += "\\&";
+    if (c == '\\')
+      out += "\\e";
+    else if (c == '-')
+      out += "\\-";
+    else
+      out += c;
+    line_begins = c == '\n';
+  }
+  return out;
+}
+
+std::string entry(const std::string& name, const std::string& text) {
+  return fmt::format(".TP\n\\fB{}\\fP\n{}\n", roff(name), roff(text));
+}
+
+template <typename Entries>
+std::string section(const char* title, const Entries& entries) {
+  std::string out = fmt::format(".SH {}\n", title);
+  for (const Entry& e : entries) out += entry(e.name, e.text);
+  return out;
+}
+
+/// As it stands, line by line.
+std::string verbatim(const std::string& text) {
+  return text.empty() ? "" : fmt::format(".PP\n.nf\n{}\n.fi\n", roff(text));
+}
+
+std::string options_of(const CLI::App& app) {
+  const CLI::Formatter words;
+  std::string out;
+  for (const bool positional : {true, false})
+    for (const CLI::Option* o : app.get_options())
+      if (o->get_positional() == positional && (positional || o->nonpositional()) && !o->get_group().empty())
+        out += entry(words.make_option_name(o, positional) + words.make_option_opts(o), o->get_description());
+  return out;
+}
+
+std::string manual_page(const CLI::App& app) {
+  std::string out = fmt::format(
+      ".\\\" Made by clothbench manual.\n.TH CLOTHBENCH 1 \"\" \"clothbench {}\" \"User Commands\"\n.SH "
+      "NAME\nclothbench \\- benchmark of real-time cloth "
+      "solvers\n.SH SYNOPSIS\n.B clothbench\n.I command\n.RI [ options ]\n.SH DESCRIPTION\n",
+      build_info::kVersion);
+  out +=
+      "Runs interchangeable cloth solvers through the same scenes and writes down error, run time, stability, "
+      "penetration, frames per second and "
+      "bandwidth, in one HDF5 file a run. Every option of every command is told by\n.BR \"clothbench \" "
+      "\\fIcommand\\fP \" \\-\\-help\" .\n";
+  out += ".SH OPTIONS\nOf every command:\n" + options_of(app) + ".SH COMMANDS\n";
+  for (const CLI::App* c : app.get_subcommands({})) {
+    if (c->get_group().empty()) continue;
+    out += fmt::format(".SS {}\n{}\n", roff(c->get_name()), roff(c->get_description()));
+    out += options_of(*c) + verbatim(c->get_footer());
+  }
+  out += section("EXIT STATUS", kExitStatus) + section("ENVIRONMENT", kEnvironment);
+  return out + ".SH EXAMPLES\n" + verbatim(app.get_footer());
+}
+
+}  // namespace
+
+void add_manual(CLI::App& app, Console& console) {
+  CLI::App* cmd = app.add_subcommand("manual", "The manual page, for man(1)");
+  cmd->group("");  // for packages
+  cmd->callback([&app, &console] {
+    const std::string page = manual_page(app);
+    if (console.json) return fmt::print("{}\n", nlohmann::json{{"page", page}}.dump(2));
+    fmt::print("{}", page);
+  });
+}
+
+}  // namespace clothbench

@@ -1,0 +1,56 @@
+#include "scenario/data_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "clothbench/error.hpp"
+#include "scenario/paths.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string listed(const std::vector<fs::path>& places) {
+  std::string out;
+  for (const fs::path& place : places) out += (out.empty() ? "" : ", then ") + place.string();
+  return out;
+}
+
+}  // namespace
+
+DataRoots data_roots() {
+  DataRoots roots{{}, kSourceRoot};
+  std::error_code unknown;
+  const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
+  if (!unknown) roots.installed = (program.parent_path() / kDataFromProgram).lexically_normal();
+  return roots;
+}
+
+std::string named_data(const DataFolder& folder) {
+  const char* named = std::getenv(folder.variable);
+  return named == nullptr ? "" : named;
+}
+
+std::vector<fs::path> usual_places(const DataFolder& folder, const DataRoots& roots) {
+  std::vector<fs::path> out;
+  if (!roots.installed.empty()) out.push_back(roots.installed / folder.installed);
+  out.push_back(roots.source / folder.in_source);
+  return out;
+}
+
+fs::path find_data(const DataFolder& folder, const DataRoots& roots) {
+  const std::vector<fs::path> places = usual_places(folder, roots);
+  std::error_code ec;
+  if (const std::string named = named_data(folder); !named.empty()) {
+    if (fs::is_directory(named, ec)) return named;
+    throw Error(fmt::format("no {}: {}={} is no folder; without {} they are looked for in {}", folder.what,
+                            folder.variable, named, folder.variable, listed(places)));
+  }
+  for (const fs::path& place : places)
+    if (fs::is_directory(place, ec)) return place;
+  throw Error(fmt::format("no {}: looked in ${} (not set), then {}", folder.what, folder.variable, listed(places)));
+}
+
+}  // namespace clothbench

@@ -1,0 +1,120 @@
+#!/usr/bin/env bash
+# Is the Debian package whole? Installs it into a bare system and does there what a new user would.
+#   scripts/package_test.sh [--with-recommended] CLOTHBENCH.deb CHROOT
+# CHROOT: a bare Debian of the release that the package was made for (debootstrap --variant=minbase), with no build packages in it; it is
+# changed. Needs root, and the chroot's own apt sources. --with-recommended: also that figures are drawn once what is recommended is there.
+set -euo pipefail
+
+recommended=0
+if [ "${1:-}" = --with-recommended ]; then
+  recommended=1
+  shift
+fi
+[ $# -eq 2 ] || { sed -n '3,5s/^# *//p' "$0" >&2; exit 2; }
+deb=$(realpath "$1") root=$(realpath "$2")
+[ -f "$deb" ] || { echo "package: $deb: expected a .deb" >&2; exit 2; }
+[ -x "$root/usr/bin/apt-get" ] || { echo "package: $root: expected a folder made by debootstrap" >&2; exit 2; }
+if [ -z "${PACKAGE_TEST_OWN_MOUNTS:-}" ]; then
+  # Mounts of a name space of its own end with it, however this ends.
+  flags=()
+  [ $recommended = 0 ] || flags=(--with-recommended)
+  PACKAGE_TEST_OWN_MOUNTS=1 exec unshare --mount "$0" "${flags[@]}" "$deb" "$root"
+fi
+mount -t proc proc "$root/proc"
+mount --rbind /dev "$root/dev"
+
+home=/home/clothbench-test
+as_root() { chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
+# Nobody can write into /usr, or rely on being root.
+as_user() { chroot --userspec=65534:65534 "$root" /usr/bin/env -i -C $home PATH=/usr/bin:/bin HOME=$home LC_ALL=C.UTF-8 "$@"; }
+fail() { echo "package: $*" >&2; exit 1; }
+ok() { echo "package: $*"; }
+quietly() { "$@" >"$root/tmp/log" 2>&1 || { tail -20 "$root/tmp/log" >&2; fail "failed: $*"; }; }
+get() { quietly as_root apt-get install -y --no-install-recommends "$@"; }
+
+install_it() {
+  cp "$deb" "$root/tmp/clothbench.deb"
+  quietly as_root apt-get update
+  get /tmp/clothbench.deb
+  rm "$root/tmp/clothbench.deb"
+  as_root dpkg -s clothbench | grep -q '^Recommends:.*\bnodejs\b' || fail "it does not recommend nodejs"
+  for name in nodejs python3-matplotlib python3-h5py; do
+    ! as_root dpkg -s $name >/dev/null 2>&1 || fail "$name is there: it is recommended, and must not be needed"
+  done
+  as_root dpkg --verify clothbench | grep . && fail "its files are not as they were packed"
+  mkdir -p "$root$home"
+  chown 65534:65534 "$root$home"
+  ok "$(as_root clothbench --version) installed, with what it depends on"
+}
+
+# Every place is named, and the one of the source tree is not there.
+refuses_without_data() {
+  local share=/usr/share/clothbench status=0 text source
+  mv "$root$share" "$root$share.away"
+  text=$(as_user clothbench list scenarios 2>&1) || status=$?
+  mv "$root$share.away" "$root$share"
+  [ $status = 2 ] || fail "without $share: expected exit code 2, not $status: $text"
+  source=${text##*then }
+  case $text in *CLOTHBENCH_SCENARIOS*"$share/scenarios"*", then /"*) ;; *) fail "not every place is named: $text" ;; esac
+  [ ! -e "$root$source" ] || fail "$source is there: the source tree must not be"
+  ok "no source tree at $source"
+}
+
+study_and_report() {
+  quietly as_user clothbench study table3 --quick --out study
+  quietly as_user clothbench report study -o report
+  local report=$root$home/report cells
+  cells=$(find "$root$home/study" -name '*.h5' | wc -l)
+  [ "$cells" -gt 10 ] || fail "the study has $cells cells"
+  [ "$(($(wc -l <"$report/cells.csv") - 1))" = "$cells" ] || fail "report/cells.csv has not the study's $cells cells"
+  for solver in ballistic bullet-soft paper xpbd; do
+    grep -qE "^\| $solver \| single \|.* [0-9.]+ \|" "$report/table3.md" || fail "report/table3.md: no values of $solver"
+  done
+  [ -s "$report/index.html" ] || fail "no report/index.html"
+  [ "$(grep -c 'Figures were left out: ' "$report/report.md")" = 1 ] || fail "report/report.md: expected one sentence on what is missing"
+  ! ls "$report"/*.svg >/dev/null 2>&1 || fail "figures, without what draws them"
+  ok "study of $cells cells, complete tables; $(grep -o 'Figures were left out: .*' "$report/report.md")"
+}
+
+example_plugin() {
+  get cmake make gcc libc6-dev
+  as_user cp -r /usr/share/doc/clothbench/examples/plugin mine
+  quietly as_user cmake -S mine -B mine/build
+  quietly as_user cmake --build mine/build
+  quietly as_user clothbench run paper/gravity --solver plugin:mine/build/example_plugin.so --set 'cloth.grid=[8,8]' --trials 1 --out mine/run
+  as_user clothbench report mine/run -o mine/report 2>/dev/null | grep -q example-xpbd || fail "the example plugin has no row"
+  ok "the example plugin builds against the package and runs"
+}
+
+is_tidy() {
+  ! as_root readelf -S /usr/bin/clothbench | grep -q '\.symtab' || fail "the program is not stripped"
+  for file in man/man1/clothbench.1.gz bash-completion/completions/clothbench zsh/vendor-completions/_clothbench \
+    fish/vendor_completions.d/clothbench.fish doc/clothbench/copyright doc/clothbench/changelog.gz; do
+    [ -s "$root/usr/share/$file" ] || fail "no /usr/share/$file"
+  done
+  as_root dpkg --verify clothbench | grep . && fail "running it changed its files"
+  return 0
+}
+
+figures() {
+  get nodejs python3-matplotlib python3-h5py
+  quietly as_user clothbench report study -o report
+  [ -s "$root$home/report/fig4.svg" ] || fail "no figures although what is recommended is there"
+  ok "figures are drawn"
+}
+
+goes_without_trace() {
+  quietly as_root apt-get purge -y clothbench
+  local left
+  left=$(find "$root/usr" -name '*clothbench*')
+  [ -z "$left" ] || fail "left behind: $left"
+  ok "removed without a trace"
+}
+
+install_it
+refuses_without_data
+study_and_report
+example_plugin
+is_tidy
+[ $recommended = 0 ] || figures
+goes_without_trace

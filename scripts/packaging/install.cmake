@@ -1,0 +1,42 @@
+# What `cmake --install` copies, and where Debian expects each thing. The tree can be moved: the program finds share/clothbench from where
+# it lies itself (harness/scenario/data_folder), the CMake package its header.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(CMAKE_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(data ${CMAKE_INSTALL_DATADIR}/clothbench)
+set(doc ${CMAKE_INSTALL_DATADIR}/doc/clothbench)
+set(generated ${CMAKE_BINARY_DIR}/packaging)  # by generate.cmake, when the program is built
+
+install(TARGETS clothbench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY scenarios DESTINATION ${data})
+install(DIRECTORY results/baselines DESTINATION ${data}/results)
+install(FILES results/paper-table3.json DESTINATION ${data}/results)
+install(PROGRAMS scripts/fetch-assets.sh scripts/make_cloth_mesh.py scripts/plot_hang.py scripts/plot_penetration.py scripts/plot_report.py
+  scripts/plot_stability.py scripts/plot_work_precision.py scripts/render_frames.py scripts/slurm_study.sh DESTINATION ${data}/scripts)
+# The program holds the page too; where there was no Node to bundle it, there is none.
+install(FILES ${CMAKE_BINARY_DIR}/web/template.html DESTINATION ${data}/page OPTIONAL)
+install(FILES scripts/assets-package.json scripts/assets-package-lock.json DESTINATION ${data}/scripts)
+
+# For authors of plugins: find_package(clothbench), target_link_libraries(mine PRIVATE clothbench::plugin).
+add_library(clothbench_plugin INTERFACE)
+set_target_properties(clothbench_plugin PROPERTIES EXPORT_NAME plugin)
+target_include_directories(clothbench_plugin INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+install(FILES harness/include/clothbench_plugin.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(TARGETS clothbench_plugin EXPORT clothbench)
+set(package ${CMAKE_INSTALL_DATADIR}/cmake/clothbench)
+install(EXPORT clothbench NAMESPACE clothbench:: FILE clothbenchConfig.cmake DESTINATION ${package})
+write_basic_package_version_file(${generated}/clothbenchConfigVersion.cmake COMPATIBILITY SameMajorVersion ARCH_INDEPENDENT)
+install(FILES ${generated}/clothbenchConfigVersion.cmake DESTINATION ${package})
+
+install(FILES ${generated}/clothbench.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${generated}/clothbench.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME clothbench)
+install(FILES ${generated}/clothbench.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _clothbench)
+install(FILES ${generated}/clothbench.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+
+install(FILES scripts/packaging/copyright ${generated}/changelog.gz DESTINATION ${doc})
+install(FILES results/README.md DESTINATION ${doc} RENAME result-files.md)
+install(FILES solvers/plugin/README.md DESTINATION ${doc} RENAME plugins.md)
+install(DIRECTORY solvers/plugin/example/ DESTINATION ${doc}/examples/plugin)
+install(DIRECTORY scripts/examples/ DESTINATION ${doc}/examples/results PATTERN __pycache__ EXCLUDE)
+install(FILES scripts/ci/clothbench-check.yml DESTINATION ${doc}/examples/ci)

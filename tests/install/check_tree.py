@@ -1,0 +1,169 @@
+"""usage: check_tree.py CMAKE BUILD SOURCE: the tree that `cmake --install` makes, moved elsewhere."""
+import gzip
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+CMAKE, BUILD, SOURCE = sys.argv[1:4]
+SMALL = ["--set", "cloth.grid=[8,8]", "--set", "cloth.sides=single", "--set", "time.duration_s=0.25", "--trials", "1"]
+
+# Stands in for npm: what the packages have, without a network.
+FAKE_NPM = """#!/bin/sh
+set -e
+[ "$1" = ci ]
+for package in @iwer/sem iwer @webxr-input-profiles/assets; do
+  mkdir -p node_modules/$package
+  echo '{"version": "1.2.3"}' > node_modules/$package/package.json
+done
+cd node_modules
+mkdir -p @iwer/sem/captures @webxr-input-profiles/assets/dist/profiles/generic-hand iwer/lib/device/configs/hand
+for room in living_room meeting_room music_room office_large office_small; do : > @iwer/sem/captures/$room.json; done
+for side in left right; do : > @webxr-input-profiles/assets/dist/profiles/generic-hand/$side.glb; done
+for pose in relaxed pinch point; do : > iwer/lib/device/configs/hand/$pose.js; done
+"""
+
+
+class Tree(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.home = pathlib.Path(tempfile.mkdtemp(prefix="clothbench-install-"))
+        cls.addClassCleanup(shutil.rmtree, cls.home, ignore_errors=True)
+        subprocess.run([CMAKE, "--install", BUILD, "--strip", "--prefix", cls.home / "first"], check=True, stdout=subprocess.DEVNULL)
+        cls.tree = cls.home / "moved here"
+        (cls.home / "first").rename(cls.tree)
+        cls.share = cls.tree / "share" / "clothbench"
+
+    def command(self, *words, code=0, **environment):
+        env = {k: v for k, v in os.environ.items() if not k.startswith("CLOTHBENCH_")}
+        done = subprocess.run(
+            [self.tree / "bin" / "clothbench", *words], env=env | environment, cwd=self.home, capture_output=True, text=True, check=False
+        )
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def out(self):
+        folder = tempfile.mkdtemp(dir=self.home)
+        return os.path.join(folder, "out")
+
+    def why(self, **environment):
+        return {s["name"]: s["why"] for s in json.loads(self.command("list", "scenarios", "--json", **environment))}["paper/gravity"]
+
+    def test_its_own_scenes_are_read(self):
+        file = self.share / "scenarios" / "paper" / "gravity.json"
+        given = file.read_text(encoding="utf-8")
+        self.addCleanup(file.write_text, given, encoding="utf-8")
+        file.write_text(json.dumps(json.loads(given) | {"why": "Changed where it was moved to."}), encoding="utf-8")
+        self.assertEqual(self.why(), "Changed where it was moved to.")
+        # The variable comes first.
+        self.assertEqual(self.why(CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios")), json.loads(given)["why"])
+        # And the source tree last.
+        (self.share / "scenarios").rename(self.share / "away")
+        self.addCleanup((self.share / "away").rename, self.share / "scenarios")
+        self.assertEqual(self.why(), json.loads(given)["why"])
+
+    def test_all_scenes_and_studies_are_there(self):
+        for kind in ("scenarios", "studies"):
+            here = json.loads(self.command("list", kind, "--json"))
+            there = json.loads(self.command("list", kind, "--json", CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios")))
+            self.assertEqual(here, there)
+            self.assertGreater(len(here), 3)
+        self.command("validate", "validation/hang-mesh")  # has a file beside it
+        self.assertTrue((self.share / "scenarios" / "schema" / "scene.schema.json").is_file())
+
+    def test_a_wrong_variable_names_every_place(self):
+        text = self.command("list", "scenarios", code=2, CLOTHBENCH_SCENARIOS="/nowhere/at/all")
+        for place in ("/nowhere/at/all", str(self.share / "scenarios"), os.path.join(SOURCE, "scenarios")):
+            self.assertIn(place, text)
+
+    def test_figures_are_drawn_by_its_own_scripts(self):
+        out = self.out()
+        self.command("run", "paper/gravity", "--solver", "ballistic", *SMALL, "--out", out)
+        self.command("report", out, "-o", out + "-report")
+        script = self.share / "scripts" / "plot_report.py"
+        given = script.read_text(encoding="utf-8")
+        self.addCleanup(script.write_text, given, encoding="utf-8")
+        script.write_text("import sys; open(sys.argv[1] + '.mark', 'w').write(sys.argv[2])", encoding="utf-8")
+        self.command("report", out, "-o", out + "-report")
+        published = pathlib.Path(out + "-report", "cells.csv.mark").read_text(encoding="utf-8")
+        self.assertEqual(published, str(self.share / "results" / "paper-table3.json"))
+        self.assertTrue(os.path.isfile(published))
+
+    def test_without_its_scripts_the_tables_are_whole(self):
+        out = self.out()
+        self.command("run", "paper/gravity", "--solver", "ballistic", *SMALL, "--out", out)
+        text = self.command("report", out, "-o", out + "-report", code=1, CLOTHBENCH_SCRIPTS="/nowhere")
+        self.assertIn("/nowhere", text)
+        report = pathlib.Path(out + "-report", "report.md").read_text(encoding="utf-8")
+        self.assertIn("Figures were left out: no scripts", report)
+        self.assertIn("ballistic", report)
+
+    def test_the_example_plugin_builds_against_it(self):
+        example = self.tree / "share" / "doc" / "clothbench" / "examples" / "plugin"
+        build = self.home / "plugin"
+        for words in (["-S", example, "-B", build, f"-DCMAKE_PREFIX_PATH={self.tree}"], ["--build", build]):
+            subprocess.run([CMAKE, *words], check=True, stdout=subprocess.DEVNULL)
+        cache = (build / "CMakeCache.txt").read_text(encoding="utf-8")
+        self.assertRegex(cache, r"clothbench_DIR:PATH=" + re.escape(str(self.tree)))
+        out = self.out()
+        self.command("run", "paper/gravity", "--solver", f"plugin:{build}/example_plugin.so", *SMALL, "--out", out)
+
+    def test_only_a_fitting_version_is_found(self):
+        version = re.search(r"clothbench (\d+)\.(\d+)", self.command("--version"))
+        major, minor = version.group(1), version.group(2)
+        for wanted, found in ((f"{major}.{minor}", True), (str(int(major) + 1), False)):
+            folder = pathlib.Path(tempfile.mkdtemp(dir=self.home))
+            (folder / "CMakeLists.txt").write_text(
+                f"cmake_minimum_required(VERSION 3.16)\nproject(p LANGUAGES NONE)\nfind_package(clothbench {wanted} REQUIRED)\n"
+            )
+            done = subprocess.run(
+                [CMAKE, "-S", folder, "-B", folder / "b", f"-DCMAKE_PREFIX_PATH={self.tree}"], capture_output=True, check=False
+            )
+            self.assertEqual(done.returncode == 0, found, done.stderr)
+
+    def test_fetched_assets_lie_with_the_user(self):
+        bin_folder = self.home / "bin"
+        bin_folder.mkdir()
+        (bin_folder / "npm").write_text(FAKE_NPM)
+        (bin_folder / "npm").chmod(0o755)
+        data = self.home / "data"
+        if os.path.isdir(os.path.join(SOURCE, "build", "assets", "node_modules", "iwer")):
+            self.skipTest("the source tree has assets, which come first")
+        self.assertIn(str(self.share / "scripts" / "fetch-assets.sh"), self.command("list", "assets", XDG_DATA_HOME=str(data)))
+        env = os.environ | {"XDG_DATA_HOME": str(data), "PATH": f"{bin_folder}:{os.environ['PATH']}"}
+        subprocess.run([self.share / "scripts" / "fetch-assets.sh", "--require-assets"], env=env, check=True, stdout=subprocess.DEVNULL)
+        (assets,) = json.loads(self.command("list", "assets", "--json", XDG_DATA_HOME=str(data)))
+        self.assertEqual((assets["name"], assets["folder"]), ("npm", str(data / "clothbench" / "assets" / "node_modules")))
+
+    def test_no_file_but_the_program_names_the_source_tree(self):
+        for file in self.tree.rglob("*"):
+            if not file.is_file() or file.name == "clothbench" and file.parent.name == "bin":
+                continue
+            raw = file.read_bytes()
+            content = gzip.decompress(raw) if file.suffix == ".gz" else raw
+            self.assertNotIn(SOURCE.encode(), content, file)
+
+    def test_manual_and_completions_lie_where_debian_expects_them(self):
+        share = self.tree / "share"
+        with gzip.open(share / "man" / "man1" / "clothbench.1.gz", "rt", encoding="utf-8") as page:
+            self.assertIn(".TH CLOTHBENCH 1", page.read())
+        for file, word in (
+            ("bash-completion/completions/clothbench", "complete -o default -F _clothbench clothbench"),
+            ("zsh/vendor-completions/_clothbench", "#compdef clothbench"),
+            ("fish/vendor_completions.d/clothbench.fish", "complete -c clothbench"),
+        ):
+            self.assertIn(word, (share / file).read_text(encoding="utf-8"))
+        script = f"PATH='{self.tree}/bin':$PATH; source '{share}/bash-completion/completions/clothbench'\n" + (
+            "COMP_LINE='clothbench val' COMP_POINT=14 COMP_WORDS=(clothbench val) COMP_CWORD=1; _clothbench; echo ${COMPREPLY[@]}"
+        )
+        done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
+        self.assertEqual(done.stdout, "validate\n", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[4:])
