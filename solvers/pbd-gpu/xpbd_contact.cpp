@@ -162,7 +162,7 @@ XpbdContact::XpbdContact(GpuSolver& solver, const Scene& scene, Vec3 origin_m, c
   else
     stage_broad_ = solver_.add_stage("BroadPhase", meshes);
   stage_contact_ = solver_.add_stage(
-      "Contact", scene.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided}));
+      "Contact", scene.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided}), true);
   add_sides(origin_m);
   if (!meshes.empty()) add_meshes();
   add_kernels();
