@@ -187,7 +187,7 @@ def bandwidth_figure(rows, path):
     palette = colours(sorted({name for name, _ in all_series}))
     counted = [r for r in rows if r["status"] == "ok" and math.isfinite(number(r.get("bandwidth_read_peak_B_per_s")))]
     if not counted:
-        nothing(path, "No GPU solver among the cells:\nno bytes are counted.")
+        nothing(path, "No GPU solver among the cells:\nno bytes are known.")
         return
     # One panel each for read and write: together the lines would hide each other.
     fig, panels = plt.subplots(2, 1, figsize=(3.5, 4.6), sharex=True, sharey=True, gridspec_kw={"hspace": 0.1})
@@ -209,10 +209,10 @@ def bandwidth_figure(rows, path):
         ax.set_ylabel(f"{what} [GB/s]")
     panels[1].set_xlabel("cloth resolution [vertices]")
     windows = sorted(w for w in (number(r.get("bandwidth_window_s")) for r in counted) if math.isfinite(w))
-    text = "Counted bytes over wall time, peak"
+    text = "Shaders' loads and stores, computed, over wall time, peak"
     text += f" over windows of {windows[0]:.2g} to {windows[-1]:.2g} s. " if windows else ". "
     if absent:
-        text += "Not counted: " + ", ".join(sorted(absent)) + ". "
+        text += "Not known: " + ", ".join(sorted(absent)) + ". "
     extra = [room_for_failed(panels[0])] if any_failed else []
     legend(fig, panels[1], drawn, palette, extra, text + where(rows))
     save(fig, path)

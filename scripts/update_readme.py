@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Puts tables of a committed reference report into README.md, between the markers of each part the report has. Of sweeps over speeds
-the README shows where each solver leaks first; their rows are in the report.
+the README shows where each solver leaks first; their rows are in the report. No other row is left out: what must not be printed
+is "–" there as in the report, with the reason. With --check nothing is written, and it fails if the README is not so already.
 
-usage: update_readme.py results/reference/<folder>
+usage: update_readme.py [--check] results/reference/<folder>
 """
 import pathlib
 import re
@@ -19,28 +20,25 @@ PARTS = {
 
 
 SWEPT = re.compile(r"^\| (?:[\w-]+-at-[\dp]+|[\w-]+-turned|(?:desk|open|capsule|self)[\w-]*mps) \|.*\n", re.M)
-# Leaks of hands are in a report of their own, with a later rule of what is on the wrong side.
-HAND_LEAKS = re.compile(r"^\| capsule-sweep \((?:capsules|hand)\) \|.*\n", re.M)
 
 
 def main():
-    if len(sys.argv) != 2:
+    check = sys.argv[1:2] == ["--check"]
+    if len(sys.argv) != 2 + check:
         sys.exit(__doc__)
-    folder = pathlib.Path(sys.argv[1])
+    folder = pathlib.Path(sys.argv[-1])
     report = (folder / "report.md").read_text(encoding="utf-8")
     head, *tables = re.split(r"^### ", report, flags=re.M)
     device = next((line for line in head.splitlines() if line.startswith("GPU ")), "no GPU")
     readme = pathlib.Path(__file__).resolve().parent.parent / "README.md"
-    text = readme.read_text(encoding="utf-8")
+    before = text = readme.read_text(encoding="utf-8")
     done = []
     for part, (wanted, figure, needed, other) in PARTS.items():
         if not any(t.startswith(needed) for t in tables) or other and any(t.startswith(other) for t in tables):
             continue
-        left_out = [SWEPT] + ([HAND_LEAKS] if part == "penetration" else [])
         lines = [f"Measured: {device} ([whole report]({folder.as_posix()}/report.md))."]
         for table in (t for t in tables if t.startswith(wanted)):
-            for rows in left_out:
-                table = rows.sub("", table)
+            table = SWEPT.sub("", table)
             # The sweeps' one table stands under a sentence of the README, not under a second heading of the same name.
             lines.append(table.split("\n", 1)[1].strip() if part == "sweeps" else "### " + table.strip())
         if figure and (folder / figure[0]).exists():
@@ -52,7 +50,10 @@ def main():
         done.append(part)
     if not done:
         sys.exit(f"{folder}/report.md: none of the tables that the README shows")
-    readme.write_text(text, encoding="utf-8")
+    if check and text != before:
+        sys.exit(f"README.md: {', '.join(done)}: not as scripts/update_readme.py {folder} makes it")
+    if not check:
+        readme.write_text(text, encoding="utf-8")
     print("README.md: " + ", ".join(done))
 
 

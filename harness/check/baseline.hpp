@@ -31,6 +31,7 @@ struct BaselineCell {
   int failed_frame = -1;
   std::vector<std::string> stages;        ///< "<name> (<feature>, <feature>)" in order
   std::map<std::string, double> scalars;  ///< gated ones alone; NaN or absent = not measured
+  std::map<std::string, int> versions;    ///< of the metrics that these are computed from; absent = 1
 };
 
 /// How a baseline was made, for the reader of the file; nothing is computed from it.

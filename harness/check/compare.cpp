@@ -60,6 +60,14 @@ Finding missing(const Found& found) {
 
 std::string kind(const std::string& assets) { return assets.empty() ? "unnamed" : assets; }
 
+/// No verdict is made of two rules.
+void refuse_other_versions(const BaselineCell& was, const BaselineCell& is) {
+  for (const VersionDifference& v : version_differences(was, is))
+    throw Error(fmt::format("{}: metric {}: the baseline has version {} of its rule, the result version {}; the two cannot be compared. Accept the "
+                            "result with `clothbench check RUNS --baseline FILE --update`, or run the cell again with the program the baseline was made with",
+                            is.key.text(), v.metric, v.baseline, v.found));
+}
+
 class Check {
  public:
   Checked run(const Baseline& baseline, const std::vector<CellRecord>& cells) {
@@ -81,6 +89,7 @@ class Check {
     std::size_t compared = 0;
     for (const CellRecord* r : found.records)
       if (const BaselineCell* e = entry_for(entries, gated_part(*r).key); e != nullptr) {
+        refuse_other_versions(*e, gated_part(*r));
         add(e->key, compare_cell(*e, *r));
         ++compared;
       }

@@ -6,6 +6,7 @@
 #include "check/compare.hpp"
 #include "check/gates.hpp"
 #include "clothbench/error.hpp"
+#include "metrics/metric.hpp"
 
 namespace clothbench {
 namespace {
@@ -94,6 +95,16 @@ Verdict judge(const Gate& g, double was, double is, double slack) {
   return is < was - slack ? Verdict::Improved : Verdict::Same;
 }
 
+int version_in(const BaselineCell& c, const std::string& metric) {
+  const auto at = c.versions.find(metric);
+  return at == c.versions.end() ? 1 : at->second;
+}
+
+bool hangs_on(const std::string& scalar, const std::vector<VersionDifference>& versions) {
+  const std::vector<std::string> behind = metrics_behind(scalar);
+  return std::any_of(versions.begin(), versions.end(), [&](const auto& v) { return std::find(behind.begin(), behind.end(), v.metric) != behind.end(); });
+}
+
 std::vector<Finding> compare_scalars(const BaselineCell& was, const BaselineCell& is, double length_m) {
   std::map<std::string, double> names = was.scalars;
   names.insert(is.scalars.begin(), is.scalars.end());
@@ -102,7 +113,12 @@ std::vector<Finding> compare_scalars(const BaselineCell& was, const BaselineCell
     return at == c.scalars.end() ? kMissing : at->second;
   };
   std::vector<Finding> out;
+  const std::vector<VersionDifference> versions = version_differences(was, is);
+  for (const VersionDifference& v : versions)
+    out.push_back({Verdict::Failed, "metric " + v.metric, fmt::format("version {}", v.baseline), fmt::format("version {}", v.found), "",
+                   "scalars computed from it are not compared"});
   for (const auto& [name, unused] : names) {
+    if (hangs_on(name, versions)) continue;
     const Gate& gate = *find_gate(name);
     const double before = value(was, name), now = value(is, name), tolerance = slack(gate, before, length_m);
     const Verdict verdict = judge(gate, before, now, tolerance);
@@ -115,6 +131,18 @@ std::vector<Finding> compare_scalars(const BaselineCell& was, const BaselineCell
 }
 
 }  // namespace
+
+std::vector<VersionDifference> version_differences(const BaselineCell& was, const BaselineCell& is) {
+  std::map<std::string, VersionDifference> out;
+  for (const auto& [name, unused] : was.scalars) {
+    if (!is.scalars.contains(name)) continue;
+    for (const std::string& metric : metrics_behind(name))
+      if (const int a = version_in(was, metric), b = version_in(is, metric); a != b) out[metric] = {metric, a, b};
+  }
+  std::vector<VersionDifference> list;
+  for (auto& [unused, v] : out) list.push_back(std::move(v));
+  return list;
+}
 
 std::vector<Finding> compare_cell(const BaselineCell& was, const CellRecord& record) {
   const BaselineCell is = gated_part(record);

@@ -3,6 +3,7 @@
 #include "cli/command.hpp"
 #include "report/compare_runs.hpp"
 #include "report/report.hpp"
+#include "report/withheld.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -18,7 +19,9 @@ void add_compare(CLI::App& app, Console& console) {
   cmd->add_option("--markdown", markdown, "Also write the tables to this file, for a pull request");
   cmd->footer("Example: clothbench compare results/runs/before results/runs/after --markdown comparison.md");
   cmd->callback([&console] {
-    const std::vector<CellRecord> before = collect({a}), after = collect({b});
+    std::vector<CellRecord> before = collect({a}), after = collect({b});
+    withhold_times(before);
+    withhold_times(after);
     const std::vector<ComparedCell> cells = compare_runs(before, after);
     const std::vector<Table> tables = comparison_tables(cells);
     if (!markdown.empty()) {
@@ -44,7 +47,11 @@ void add_history(CLI::App& app, Console&) {
       "Times and errors as the JSON that chart-per-commit tools read (github-action-benchmark: customSmallerIsBetter)");
   cmd->add_option("runs", runs, "Study folders or result files")->required();
   cmd->footer("Example: clothbench history results/runs/mine > benchmark.json");
-  cmd->callback([] { fmt::print("{}\n", history_json(collect({runs.begin(), runs.end()})).dump(2)); });
+  cmd->callback([] {
+    std::vector<CellRecord> cells = collect({runs.begin(), runs.end()});
+    withhold(cells);
+    fmt::print("{}\n", history_json(cells).dump(2));
+  });
 }
 
 }  // namespace clothbench

@@ -72,7 +72,7 @@ nlohmann::json list_devices() {
 
 nlohmann::json list_metrics() {
   nlohmann::json rows = nlohmann::json::array();
-  for (const Metric& m : metrics()) rows.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}});
+  for (const Metric& m : metrics()) rows.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}, {"version", m.version}});
   return rows;
 }
 

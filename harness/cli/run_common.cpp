@@ -9,6 +9,7 @@
 #include "cli/material_cards.hpp"
 #include "cli/supervise.hpp"
 #include "report/in_short.hpp"
+#include "report/withheld.hpp"
 #include "report/report.hpp"
 #include "report/tint.hpp"
 #include "runner/environment.hpp"
@@ -65,6 +66,7 @@ void print_in_short(const CellPlan& plan, const std::filesystem::path& out) {
   const std::vector<std::string> names = cell_names(plan);
   std::vector<CellRecord> cells = collect({out});
   std::erase_if(cells, [&](const CellRecord& c) { return std::find(names.begin(), names.end(), cell_name(c.header)) == names.end(); });
+  withhold_times(cells);
   fmt::print("{}", in_short_table(cells).console());
 }
 

@@ -130,7 +130,7 @@ typedef struct ClothbenchStage {
   const char* name;
   uint32_t serves; /* features; 0: what every frame does */
   int32_t dispatches;
-  double read_B, write_B; /* counted bytes a frame, NAN if not counted */
+  double read_B, write_B; /* bytes a frame that its shaders load and store, NAN if not known */
 } ClothbenchStage;
 
 typedef struct ClothbenchPlugin {

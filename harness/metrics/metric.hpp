@@ -61,10 +61,18 @@ struct Metric {
   std::string name, units, long_name;
   std::function<bool(const Scene&)> applies;
   std::function<double(const MetricFrame&)> value;
+  int version = 1;  ///< of its rule: to be raised by whoever changes what it counts, so that no table mixes the two
 };
 
 /// All metrics: one file and one row each (metrics.cpp).
 const std::vector<Metric>& metrics();
+
+/// Version of the rule of a metric of this program; 0 if it has none of that name.
+int metric_version(const std::string& name);
+
+/// The metrics that a value of a result's summary is computed from, "expect.<value>" as the value itself; none for what is
+/// measured otherwise (times, bytes, counts).
+std::vector<std::string> metrics_behind(const std::string& summary_name);
 
 /// Greater of two numbers, and NaN if either is: std::max would lose it.
 inline double max_or_nan(double a, double b) { return b <= a || a != a ? a : b; }

@@ -12,6 +12,10 @@ namespace {
 
 constexpr int kFoldCells = 6;  // the filter looks at five neighbouring angles
 
+/// 1: every odd number of crossings with the wake, but for free ends. 2: nor what a finger pushes aside within a frame, nor
+/// borders laid over it.
+constexpr int kWrongSide = 2;
+
 bool always(const Scene&) { return true; }
 
 bool has_gravity(const Scene& s) { return s.gravity_m_per_s2 != Vec3{}; }
@@ -104,8 +108,8 @@ const std::vector<Metric>& metrics() {
       {"depth_mean_m", "m", "mean depth of the penetrating area", has_depth, contact(&C::depth_mean_m)},
       {"penetrating_area_m2", "m2", "area of the cloth inside colliders", has_depth, contact(&C::area_m2)},
       {"wrong_side_fraction", "1", "share of the cloth on the wrong side of a moving collider's centre line", can_be_passed,
-       passage(&ScenePassage::wrong_side_fraction)},
-      {"wrong_side_samples", "1", "vertices and cell centres on the wrong side", can_be_passed, passage(&ScenePassage::wrong_side_samples)},
+       passage(&ScenePassage::wrong_side_fraction), kWrongSide},
+      {"wrong_side_samples", "1", "vertices and cell centres on the wrong side", can_be_passed, passage(&ScenePassage::wrong_side_samples), kWrongSide},
       {"touching_fraction", "1", "share of the cloth within the margin of a collider", touches, passage(&ScenePassage::touching_fraction)},
       {"slip_m", "m", "mean way that touching vertices slid on the surface in the frame", has_friction, passage(&ScenePassage::slip_m)},
       {"self_contact_length_m", "m", "length of the curves in which the cloth crosses itself", touches_itself, of_itself(&SelfContact::length_m)},

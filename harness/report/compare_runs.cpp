@@ -7,7 +7,9 @@
 #include <set>
 
 #include "clothbench/error.hpp"
+#include "metrics/metric.hpp"
 #include "report/grid.hpp"
+#include "report/withheld.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -53,7 +55,7 @@ std::vector<double> trial_times(const CellRecord& c) {
 /// Times, clocks and what hangs on them are the machine's; the rest is the solver's.
 bool of_the_machine(const std::string& name) {
   for (const char* part : {"fps", "wall", "device_median", "pipelined", "bandwidth", "clock", "temperature", "sampled",
-                           "load_s", "untimed", "trial"})
+                           "load_s", "untimed", "trial", "jobs"})
     if (name.find(part) != std::string::npos) return true;
   return false;
 }
@@ -67,13 +69,28 @@ std::string status(const CellRecord& c) {
   return c.outcome.status + (c.outcome.klass.empty() || c.outcome.klass == "ok" ? "" : " (" + c.outcome.klass + ")");
 }
 
+/// Metrics that both have, by different versions of their rule.
+std::vector<ComparedCell::Versions> differing_versions(const CellRecord& a, const CellRecord& b) {
+  std::vector<ComparedCell::Versions> out;
+  for (const MetricSeries& m : a.accuracy.metrics)
+    for (const MetricSeries& n : b.accuracy.metrics)
+      if (m.name == n.name && m.version != n.version) out.push_back({m.name, m.version, n.version});
+  return out;
+}
+
+bool hangs_on(const std::string& name, const std::vector<ComparedCell::Versions>& versions) {
+  const std::vector<std::string> behind = metrics_behind(name);
+  return std::any_of(versions.begin(), versions.end(), [&](const auto& v) { return std::find(behind.begin(), behind.end(), v.metric) != behind.end(); });
+}
+
 void compare_cell(ComparedCell& c) {
+  c.versions = differing_versions(*c.a, *c.b);
   c.time = compare_times(trial_times(*c.a), trial_times(*c.b));
   if (status(*c.a) != status(*c.b)) c.outcome = status(*c.a) + " → " + status(*c.b);
   std::set<std::string> names;
   for (const CellRecord* r : {c.a, c.b})
     for (const auto& [name, unused] : r->summary)
-      if (!of_the_machine(name)) names.insert(name);
+      if (!of_the_machine(name) && !hangs_on(name, c.versions)) names.insert(name);
   for (const std::string& name : names) {
     const double a = summary_value(*c.a, name), b = summary_value(*c.b, name);
     if (differ(a, b)) c.metrics.push_back({name, a, b});
@@ -134,12 +151,12 @@ std::vector<ComparedCell> compare_runs(const std::vector<CellRecord>& a, const s
   for (const CellRecord& c : a) {
     const std::string name = cell_name(c.header);
     if (find(name) != out.end()) throw Error("compare: " + name + " stands twice in the first run");
-    out.push_back({name, &c, nullptr, {}, {}, {}});
+    out.push_back({name, &c, nullptr, {}, {}, {}, {}});
   }
   for (const CellRecord& c : b) {
     const std::string name = cell_name(c.header);
     auto at = find(name);
-    if (at == out.end()) at = out.insert(out.end(), ComparedCell{name, nullptr, nullptr, {}, {}, {}});
+    if (at == out.end()) at = out.insert(out.end(), ComparedCell{name, nullptr, nullptr, {}, {}, {}, {}});
     if (at->b != nullptr) throw Error("compare: " + name + " stands twice in the second run");
     at->b = &c;
   }
@@ -153,7 +170,10 @@ std::vector<Table> comparison_tables(const std::vector<ComparedCell>& cells) {
       "Time of a frame, A against B", "", {{"cell", "A [ms]", "B [ms]", "change", "95 % interval", "p", "verdict"}}};
   Table results{"Results that are not the same", "", {{"cell", "what", "A", "B"}}};
   std::size_t timed = 0, same = 0;
+  std::vector<const CellRecord*> both;
   for (const ComparedCell& c : cells) {
+    for (const CellRecord* r : {c.a, c.b})
+      if (r != nullptr) both.push_back(r);
     if (c.a == nullptr || c.b == nullptr) {
       results.rows.push_back(
           {c.name, "cell", c.a != nullptr ? status(*c.a) : "–", c.b != nullptr ? status(*c.b) : "–"});
@@ -169,7 +189,9 @@ std::vector<Table> comparison_tables(const std::vector<ComparedCell>& cells) {
     if (!c.outcome.empty()) results.rows.push_back({c.name, "outcome", status(*c.a), status(*c.b)});
     for (const ComparedCell::Change& m : c.metrics)
       results.rows.push_back({c.name, m.name, significant(m.a, 6), significant(m.b, 6)});
-    same += c.outcome.empty() && c.metrics.empty();
+    for (const ComparedCell::Versions& v : c.versions)
+      results.rows.push_back({c.name, v.metric, fmt::format("by version {}", v.a), fmt::format("by version {}: not compared", v.b)});
+    same += c.outcome.empty() && c.metrics.empty() && c.versions.empty();
   }
   times.note = fmt::format(
       "Median of the trials' means; change: median of all pairwise ratios; p: Mann and Whitney's U test, exact. "
@@ -180,6 +202,7 @@ std::vector<Table> comparison_tables(const std::vector<ComparedCell>& cells) {
       "{} cells have the same outcome and the same results (to 1e-9); what depends on the machine is not compared "
       "here.",
       same);
+  times.note = with_withheld(times.note, both, {"frame_wall_median_s"});
   return {times, results};
 }
 
@@ -197,6 +220,7 @@ nlohmann::json comparison_json(const std::vector<ComparedCell>& cells) {
                           {"level", or_null(c.time.level)},
                           {"p", or_null(c.time.p)},
                           {"metrics", nlohmann::json::object()}};
+    for (const ComparedCell::Versions& v : c.versions) row["versions"][v.metric] = {v.a, v.b};
     for (const ComparedCell::Change& m : c.metrics) row["metrics"][m.name] = {or_null(m.a), or_null(m.b)};
     out.push_back(std::move(row));
   }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "report/report.hpp"
+#include "report/withheld.hpp"
 
 namespace clothbench {
 namespace {
@@ -17,6 +18,12 @@ std::string environment_text(const CellRecord& c, const char* key) {
   const nlohmann::json& e = c.header.environment;
   if (!e.is_object() || !e.contains(key) || e[key].is_null()) return "";
   return e[key].is_string() ? e[key].get<std::string>() : e[key].dump();
+}
+
+nlohmann::json versions_of(const CellRecord& c) {
+  nlohmann::json out = nlohmann::json::object();
+  for (const MetricSeries& m : c.accuracy.metrics) out[m.name] = m.version;
+  return out;
 }
 
 std::string grid_text(int n) { return n > 0 ? std::to_string(n) : ""; }
@@ -36,6 +43,7 @@ std::string summary_csv(const std::vector<CellRecord>& cells, const std::vector<
                                    "status", "class",       "failed_frame", "message", "expect"};
   head.insert(head.end(), environment.begin(), environment.end());
   head.insert(head.end(), names.begin(), names.end());
+  head.emplace_back("withheld");
   std::string out = csv_row(head);
   for (const Family& f : families(cells))
     for (const PlacedCell& p : f.cells) {
@@ -57,6 +65,7 @@ std::string summary_csv(const std::vector<CellRecord>& cells, const std::vector<
                                       c.outcome.expect};
       for (const char* key : environment) row.push_back(environment_text(c, key));
       for (const std::string& name : names) row.push_back(exact(summary_value(c, name)));
+      row.push_back(withheld_of(c, names));
       out += csv_row(row);
     }
   return out;
@@ -73,6 +82,7 @@ std::string table3_csv(const Family& family, const nlohmann::json& published) {
   std::vector<std::string> head = {"source", "solver", "setting", "sides",
                                    "grid_x", "grid_y", "status",  "failed_frame"};
   head.insert(head.end(), kTable3Names.begin(), kTable3Names.end());
+  head.emplace_back("withheld");
   std::string out = csv_row(head);
   const nlohmann::json& resolutions = published.at("resolution");
   for (const nlohmann::json& column : published.at("columns"))
@@ -94,6 +104,7 @@ std::string table3_csv(const Family& family, const nlohmann::json& published) {
           grid_text(r.grid[0]), grid_text(r.grid[1]),
           c->outcome.status,    c->outcome.failed_frame < 0 ? "" : std::to_string(c->outcome.failed_frame)};
       for (const std::string& name : kTable3Names) row.push_back(exact(summary_value(*c, name)));
+      row.push_back(withheld_of(*c, kTable3Names));
       out += csv_row(row);
     }
   return out;
@@ -109,6 +120,7 @@ nlohmann::json table3_json(const Family& family, const nlohmann::json& published
                           {"status", p.cell->outcome.status}};
     if (p.cell->outcome.failed_frame >= 0) row["failed_frame"] = p.cell->outcome.failed_frame;
     for (const std::string& name : kTable3Names) row[name] = or_null(summary_value(*p.cell, name));
+    if (const std::string why = withheld_of(*p.cell, kTable3Names); !why.empty()) row["withheld"] = why;
     measured.push_back(std::move(row));
   }
   return {{"published", published}, {"measured", measured}};
@@ -131,6 +143,8 @@ nlohmann::json cells_json(const std::vector<CellRecord>& cells) {
                      {"message", c.outcome.message},
                      {"expect", c.outcome.expect}}},
                    {"summary", summary},
+                   {"withheld", c.withheld},
+                   {"metric_versions", versions_of(c)},
                    {"environment", c.header.environment}});
   }
   return all;

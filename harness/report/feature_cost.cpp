@@ -6,8 +6,10 @@
 #include <cmath>
 #include <filesystem>
 
+#include "report/bytes.hpp"
 #include "report/grid.hpp"
 #include "report/trajectories.hpp"
+#include "report/withheld.hpp"
 
 namespace clothbench {
 namespace {
@@ -51,6 +53,7 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::string both(const FeatureCost& f, const Quantity& q) {
   const double a = summary_value(*f.needed, q.name), b = summary_value(*f.all, q.name);
+  if (std::string(q.name) == "read_B_per_frame" && std::isfinite(a) && std::isfinite(b)) return bytes_read(*f.needed, q.scale * a, 3) + " → " + bytes_read(*f.all, q.scale * b, 3);
   return paired(q.scale * a, q.scale * b, " → ", 3);
 }
 
@@ -112,7 +115,9 @@ Table feature_cost_table(const std::vector<FeatureCost>& costs) {
     if (q.scale == 1e3) t.rows[0].emplace_back("×");
   }
   for (const char* head : {"stages", "moved", "added"}) t.rows[0].emplace_back(head);
+  std::vector<const CellRecord*> cells;
   for (const FeatureCost& f : costs) {
+    cells.insert(cells.end(), {f.needed, f.all});
     std::vector<std::string> row = {f.needed->header.scene,
                                     Series{f.needed->header.solver, f.needed->header.setting, ""}.label()};
     for (const Quantity& q : kQuantities) {
@@ -124,6 +129,7 @@ Table feature_cost_table(const std::vector<FeatureCost>& costs) {
     row.push_back(joined(f.added));
     t.rows.push_back(std::move(row));
   }
+  t.note = with_withheld(t.note + fmt::format(" Bytes: {}", kWhatBytesAre), cells, {"frame_wall_median_s"});
   return t;
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "report/report.hpp"
+#include "report/withheld.hpp"
 
 namespace clothbench {
 namespace {
@@ -94,6 +95,7 @@ std::string headline(const std::vector<CellRecord>& cells, Format format) {
   for (const std::string& device : software)
     out += fmt::format("**Software Vulkan device ({}): for correctness, not for speed claims.**\n\n", device);
   for (const std::string& reason : invalid) out += fmt::format("**Not a valid measurement: {}.**\n\n", reason);
+  for (const std::string& line : withheld_lines(cells)) out += fmt::format("**{}**\n\n", line);
   for (const std::string& line : lines) {
     std::string host = line;
     for (const auto& [key, span] : created)

@@ -8,10 +8,11 @@
 
 namespace clothbench {
 
-/// What of a cell is a leak, or nothing: how it ended if not well; cloth through a mesh; cloth on the wrong side of a hand or
-/// a vertex over 1 mm inside it; an edge beyond 1.25 times what hands impose while they pull, 1.10 times once they hold, or
-/// a mean strain of over 1 % a second after they let go; of a strip pulled by bars, a greatest strain that is in any frame more than
-/// a tenth of v0/c (what one wave brings) off the exact one. A value that is not known where it should be is a leak too.
+/// How a cell fails, or nothing: how it ended if not well, else the first bound of its scene's `expect` that is broken or not
+/// known, the same bounds that `verdict` is told from. Where a scene expects nothing: cloth through a mesh, on the wrong
+/// side of a hand or a vertex over 1 mm inside it, an edge of more than twice the length that hands impose, or a strip pulled by bars whose
+/// greatest strain is in any frame more than a tenth of v0/c (what one wave brings) off the exact one. "–" where that hangs on what must not
+/// be printed.
 std::string leak_of(const std::string& kind, const CellRecord&);
 
 /// The same scene at several imposed speeds, run by one solver.
@@ -24,8 +25,9 @@ struct SpeedSweep {
   };
   std::vector<At> speeds;  ///< ascending
 
-  /// The first speed with a leak.
+  /// The first speed with a leak; one of "–" where it is not known whether that speed has one.
   std::optional<At> first_leak() const;
+  std::vector<const CellRecord*> cells = {};
 };
 
 /// Scenes at three or more speeds (`imposed_speed_m_per_s`), by the name in their file and what touches the cloth; cells that are

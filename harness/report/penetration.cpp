@@ -9,6 +9,8 @@
 #include <tuple>
 
 #include "clothbench/feature.hpp"
+#include "report/bytes.hpp"
+#include "report/withheld.hpp"
 
 namespace clothbench {
 namespace {
@@ -104,6 +106,13 @@ const std::vector<Column> kContactColumns = {
     {"greatest strain's error, most / RMS [of v0/c]", {"truth_quantity_error_max", "truth_quantity_error"}, number},
 };
 
+std::vector<const CellRecord*> cells_of(const ContactSetUp& s) {
+  std::vector<const CellRecord*> out;
+  for (const ContactScene& scene : s.scenes)
+    for (const ContactRow& r : scene.rows) out.push_back(r.cell);
+  return out;
+}
+
 Table by_scene(const ContactSetUp& s, const std::string& title, const std::string& note,
                const std::vector<Column>& columns,
                const std::function<void(const ContactRow&, std::vector<std::string>&)>& more) {
@@ -196,17 +205,25 @@ std::vector<ContactSetUp> set_ups(const std::vector<CellRecord>& cells) {
   return all;
 }
 
+std::vector<BoundResult> bound_results(const CellRecord& c) {
+  std::vector<BoundResult> out;
+  for (const auto& [name, v] : c.summary)
+    if (name.starts_with(kExpect)) out.push_back({name.substr(kExpect.size()), v});
+  return out;
+}
+
 std::string verdict(const CellRecord& c) {
   if (c.outcome.status != "ok") return ending(c);
-  bool any = false, measured = true;
-  for (const auto& [name, v] : c.summary) {
-    if (!name.starts_with(kExpect)) continue;
-    any = true;
-    if (v == 0) return "broken";
-    measured = measured && v == 1;
+  bool withheld = false, measured = true;
+  const std::vector<BoundResult> bounds = bound_results(c);
+  for (const BoundResult& b : bounds) {
+    if (b.kept == 0) return "broken";
+    withheld = withheld || c.withheld.contains(kExpect + b.name);
+    measured = measured && b.kept == 1;
   }
-  if (any && measured && touches_nothing(c)) return "ignored";
-  return !any ? "–" : measured ? "kept" : "not measured";
+  if (bounds.empty() || withheld) return "–";
+  if (!measured) return "not measured";
+  return touches_nothing(c) ? "ignored" : "kept";
 }
 
 Table verdict_table(const std::vector<ContactSetUp>& ups) {
@@ -229,6 +246,7 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
           "the greater of twice the hand's and a fall of the cloth's length. Strain: of the structural edges. Time: median over the timed frames.",
           {{"scene"}}};
   t.rows[0].insert(t.rows[0].end(), solvers.begin(), solvers.end());
+  std::set<std::string> bounds;
   for (const ContactSetUp& u : ups)
     for (const ContactScene& s : u.scenes) {
       std::vector<std::string> row = {s.name};
@@ -238,7 +256,13 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
         row.push_back(at == s.rows.end() ? "–" : verdict(*at->cell));
       }
       t.rows.push_back(std::move(row));
+      for (const ContactRow& r : s.rows)
+        for (const BoundResult& b : bound_results(*r.cell)) bounds.insert(kExpect + b.name);
     }
+  std::vector<const CellRecord*> cells;
+  for (const ContactSetUp& u : ups)
+    for (const CellRecord* c : cells_of(u)) cells.push_back(c);
+  t.note = with_withheld(t.note, cells, {bounds.begin(), bounds.end()});
   return t;
 }
 
@@ -248,20 +272,24 @@ Table contact_table(const ContactSetUp& s) {
     row.push_back(verdict(*r.cell));
   });
   t.rows[0].insert(t.rows[0].end(), {"wall / GPU [ms]", "expected"});
+  std::vector<std::string> shown = {"frame_wall_median_s"};
+  for (const Column& c : kContactColumns) shown.insert(shown.end(), c.names.begin(), c.names.end());
+  t.note = with_withheld(t.note, cells_of(s), shown);
   return t;
 }
 
 Table cost_table(const ContactSetUp& s) {
   Table t = by_scene(
       s, "Cost: " + s.title,
-      "Bytes: counted loads and stores of the shaders, a frame. Memory: device-local buffers. – on a CPU.", {},
+      fmt::format("Bytes a frame: {} Memory: device-local buffers. – on a CPU.", kWhatBytesAre), {},
       [](const ContactRow& r, std::vector<std::string>& row) {
-        row.push_back(paired(1e-3 * value(r, "read_B_per_frame"), 1e-3 * value(r, "write_B_per_frame"), " / ", 3));
+        row.push_back(bytes_pair(*r.cell, "read_B_per_frame", "write_B_per_frame", 1e-3));
         row.push_back(significant(1e-3 * value(r, "device_memory_B"), 4));
         row.push_back(significant(value(r, "dispatches"), 1));
         row.push_back(significant(1e3 * value(r, "load_s"), 3));
       });
   t.rows[0].insert(t.rows[0].end(), {"kB read / written", "memory [kB]", "dispatches", "load [ms]"});
+  t.note = with_withheld(t.note, cells_of(s), {"load_s"});
   return t;
 }
 
@@ -270,9 +298,8 @@ Table broken_table(const std::vector<ContactSetUp>& ups) {
   for (const ContactSetUp& u : ups)
     for (const ContactScene& s : u.scenes)
       for (const ContactRow& r : s.rows)
-        for (const auto& [name, kept] : r.cell->summary) {
-          if (!name.starts_with(kExpect) || kept != 0) continue;
-          const std::string what = name.substr(kExpect.size());
+        for (const auto& [what, kept] : bound_results(*r.cell)) {
+          if (kept != 0) continue;
           const double found = summary_value(*r.cell, what);
           t.rows.push_back({s.name, r.series.label(), what, bound(scenario_of(*r.cell), what),
                             what == "outcome"      ? ending(*r.cell)

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "report/penetration.hpp"
+#include "report/withheld.hpp"
 
 namespace clothbench {
 namespace {
@@ -81,6 +82,7 @@ json penetration_json(const std::vector<ContactSetUp>& ups) {
                     {"expect", verdict(*r.cell)}};
         if (r.cell->outcome.failed_frame >= 0) row["failed_frame"] = r.cell->outcome.failed_frame;
         for (const std::string& name : contact_names()) row[name] = or_null(summary_value(*r.cell, name));
+        if (const std::string why = withheld_of(*r.cell, contact_names()); !why.empty()) row["withheld"] = why;
         out.push_back(std::move(row));
       }
   return out;

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "report/withheld.hpp"
+
 namespace clothbench {
 namespace {
 
@@ -56,6 +58,9 @@ Table popping_table(const std::vector<Popping>& all) {
           "collider's or that of a fall of the cloth's length), to be 1 at most. Not known: the collider never touched, or "
           "touched to the end, in one of the two; that is not kept.",
           {{"scene", "solver", "way [mm]", "way at x16 [mm]", "ratio", "speed [of limit]", "at x16", "popping"}}};
+  std::vector<const CellRecord*> cells;
+  for (const Popping& p : all) cells.insert(cells.end(), {p.cell, p.finer});
+  t.note = with_withheld(t.note, cells, {"pop_displacement_m", "pop_speed_ratio"});
   for (const Popping& p : all)
     t.rows.push_back({p.scene, p.series.label(), millimetres(*p.cell), millimetres(*p.finer), significant(p.ratio(), 3),
                       significant(summary_value(*p.cell, "pop_speed_ratio"), 2), significant(summary_value(*p.finer, "pop_speed_ratio"), 2), why_not(p)});

@@ -75,7 +75,8 @@ Table pulled_strip_table(const std::vector<ContactSetUp>& ups) {
   for (const PulledRow& r : rows) {
     const Cell* fault = r.first_fault();
     std::vector<std::string> row = {r.scene, r.series.label(),
-                                    fault == nullptr ? fmt::format("none up to {:g} m/s", r.cells.back().speed_m_per_s) : fmt::format("{:g} m/s", fault->speed_m_per_s)};
+                                    fault != nullptr && leak_of("wave", *fault->cell) == "–" ? "–"
+                                    : fault == nullptr ? fmt::format("none up to {:g} m/s", r.cells.back().speed_m_per_s) : fmt::format("{:g} m/s", fault->speed_m_per_s)};
     for (const double v : speeds) {
       std::string text = "–";
       for (const Cell& c : r.cells) {

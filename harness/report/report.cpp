@@ -20,6 +20,7 @@
 #include "report/stability.hpp"
 #include "report/turned.hpp"
 #include "report/web/page.hpp"
+#include "report/withheld.hpp"
 #include "report/work_precision.hpp"
 #include "results/store.hpp"
 #include "scenario/data_folder.hpp"
@@ -91,8 +92,8 @@ model, lies above the axis.
 
 ![Bandwidth by resolution](fig5.svg)
 
-Fig. 5: counted bytes per second of wall time, peak{}. CPU solvers are absent: their bytes are not counted, and never
-modelled. The paper's values are published as a graph alone.
+Fig. 5: bytes that shaders load and store (computed from the scene and the kernels) per second of wall time, peak{}. CPU
+solvers are absent: nothing is known of their bytes. The paper's values are published as a graph alone.
 
 )",
                      windows.empty() ? "" : " over " + windows);
@@ -124,6 +125,13 @@ std::string stability_figures_markdown(const nlohmann::json& maps, bool cases) {
                        m.at("headline").get<std::string>());
   }
   return out;
+}
+
+/// All cells, without what must not be printed.
+std::vector<CellRecord> printable(const std::vector<fs::path>& runs) {
+  std::vector<CellRecord> cells = collect(runs);
+  withhold(cells);
+  return cells;
 }
 
 /// Cells by what is told of them; copies.
@@ -204,7 +212,7 @@ bool any_known(const std::vector<SolverFeatures>& solvers) {
 nlohmann::json published_table3() { return nlohmann::json::parse(kPublishedTable3); }
 
 void write_report(const std::vector<fs::path>& runs, const ReportOptions& options) {
-  const std::vector<CellRecord> cells = collect(runs);
+  const std::vector<CellRecord> cells = printable(runs);
   const nlohmann::json published = published_table3();
   const auto write = [&](const char* name, const std::string& text) {
     write_file_atomically(options.out / name, text);
@@ -322,7 +330,7 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
 }
 
 void print_console_report(const std::vector<fs::path>& runs) {
-  const std::vector<CellRecord> cells = collect(runs);
+  const std::vector<CellRecord> cells = printable(runs);
   const nlohmann::json published = published_table3();
   fmt::print("{}", headline(cells, Format::Console));
   const std::vector<FeatureCost> costs = feature_costs(cells);

@@ -47,7 +47,7 @@ Table sampled_table(const std::vector<CellRecord>& cells);
 /// Names in `summary` of what the device's own counters told.
 const std::vector<std::string>& sampled_names();
 
-/// "5 s windows, or the whole trial where it is shorter (here 0.3 s to 2 s)"; empty if no cell has counted bytes.
+/// "5 s windows, or the whole trial where it is shorter (here 0.3 s to 2 s)"; empty if no cell has bytes.
 std::string window_note(const std::vector<CellRecord>& cells);
 
 /// One row a cell, every summary value, shortest text that reads back exactly; missing = empty.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/bytes.hpp"
 #include "report/report.hpp"
+#include "report/withheld.hpp"
 
 namespace clothbench {
 namespace {
@@ -48,6 +50,18 @@ std::string capped_note(const Family& f, bool paper) {
   if (std::any_of(f.cells.begin(), f.cells.end(), [](const PlacedCell& p) { return p.series.repeat > 1; }))
     note += " (2), (3): the same cell from another file.";
   return note;
+}
+
+/// Under tables of times and rates, why some are not printed; the others show what no clock tells.
+void note_withheld(const Family& family, std::vector<Table>& tables) {
+  std::vector<const CellRecord*> cells;
+  for (const PlacedCell& p : family.cells) cells.push_back(p.cell);
+  for (Table& t : tables)
+    for (const char* timed : {"per second", "time a frame", "Frame time", "bandwidth"})
+      if (t.title.find(timed) != std::string::npos) {
+        t.note = with_withheld(t.note, cells, {"fps_median", "frame_wall_median_s"});
+        break;
+      }
 }
 
 /// A table is for families where a cell has such a value.
@@ -101,18 +115,13 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
                                              100 * v(c, "stretch_max_last_second"), " / ", 2);
                              }));
   t.push_back(family.table("kB a frame, read / written" + scene,
-                           "Counted loads and stores of the shaders; missing for CPU solvers, never modelled.",
-                           [&](const CellRecord& c) {
-                             return paired(1e-3 * v(c, "read_B_per_frame"), 1e-3 * v(c, "write_B_per_frame"), " / ", 3);
-                           }));
+                           fmt::format("Bytes: {} – for CPU solvers, of which nothing is known.", kWhatBytesAre),
+                           [](const CellRecord& c) { return bytes_pair(c, "read_B_per_frame", "write_B_per_frame", 1e-3); }));
   const std::string windows = window_note(cells);
   t.push_back(
       family.table("Peak bandwidth, read / written [GB/s]" + scene,
-                   "The same counted bytes over wall time; " + (windows.empty() ? "no cell has any." : windows + "."),
-                   [&](const CellRecord& c) {
-                     return paired(1e-9 * v(c, "bandwidth_read_peak_B_per_s"),
-                                   1e-9 * v(c, "bandwidth_write_peak_B_per_s"), " / ", 3);
-                   }));
+                   "The same bytes over wall time; " + (windows.empty() ? "no cell has any." : windows + "."),
+                   [](const CellRecord& c) { return bytes_pair(c, "bandwidth_read_peak_B_per_s", "bandwidth_write_peak_B_per_s", 1e-9); }));
   t.push_back(family.table("Device memory [kB] · dispatches a frame" + scene,
                            "Buffers in device-local memory. – on a CPU.", [&](const CellRecord& c) {
                              const double m = v(c, "device_memory_B"), d = v(c, "dispatches");
@@ -120,6 +129,7 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
                                         ? significant(1e-3 * m, 4) + " · " + significant(d, 1)
                                         : std::string("–");
                            }));
+  note_withheld(family, t);
   return t;
 }
 

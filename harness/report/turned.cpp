@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "report/trajectories.hpp"
+#include "report/withheld.hpp"
 
 namespace clothbench {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 using nlohmann::json;
 
 const std::string kSuffix = "-turned";
+constexpr const char* kUnknown = "–";  // hangs on what must not be printed
 constexpr double kSamePlace = 0.05, kAtContact_s = 0.1;
 
 json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
@@ -38,7 +40,13 @@ bool ran(const CellRecord& c) { return c.outcome.status != "unsupported" && c.ou
 /// Verdict, and what leaks.
 std::string told(const std::string& kind, const CellRecord& c) {
   const std::string leak = c.outcome.status == "ok" ? leak_of(kind, c) : "";
-  return verdict(c) + (leak.empty() ? "" : " (" + leak + ")");
+  return verdict(c) + (leak.empty() || leak == kUnknown ? "" : " (" + leak + ")");
+}
+
+std::string result(const TurnedPair& p) {
+  for (const CellRecord* c : {p.cell, p.turned})
+    if (leak_of(p.kind, *c) == kUnknown) return kUnknown;
+  return p.same() ? "same" : "differs";
 }
 
 TurnedPair pair_of(const std::string& kind, const std::string& scene, const ContactRow& flat, const ContactRow& turned) {
@@ -84,7 +92,10 @@ Table turned_table(const std::vector<TurnedPair>& pairs) {
           {{"scene", "solver", "sides", "as it is", "turned over", "apart, contact / end [of L]", "result"}}};
   for (const TurnedPair& p : pairs)
     t.rows.push_back({p.scene, p.series.label(), p.series.sides.empty() ? "–" : p.series.sides, told(p.kind, *p.cell), told(p.kind, *p.turned),
-                      share(p.apart_at_contact) + " / " + share(p.apart_end), p.same() ? "same" : "differs"});
+                      share(p.apart_at_contact) + " / " + share(p.apart_end), result(p)});
+  std::vector<const CellRecord*> cells;
+  for (const TurnedPair& p : pairs) cells.insert(cells.end(), {p.cell, p.turned});
+  t.note = with_withheld(t.note, cells, {"tunnelled_fraction_max", "wrong_side_samples_max", "depth_vertex_max_m"});
   return t;
 }
 

@@ -218,8 +218,9 @@ class Writer {
                {trial, frame, stage});
       };
       if (bandwidth) {
-        by_stage("read_B", &TimedTrial::stage_read_B, {"B", "bytes loaded by shaders, counted"});
-        by_stage("write_B", &TimedTrial::stage_write_B, {"B", "bytes stored by shaders, counted"});
+        by_stage("read_B", &TimedTrial::stage_read_B, {"B", "bytes loaded by shaders, computed from the scene and the kernels"});
+        by_stage("write_B", &TimedTrial::stage_write_B, {"B", "bytes stored by shaders, computed from the scene and the kernels"});
+        for (const StageRecord& s : r_.header.stages) text_attribute(g, "bytes." + s.name, s.bytes);
       } else {
         by_frame("frame_wall_s", &TimedTrial::frame_wall_s, {"s", "wall time of a frame"});
         by_frame("frame_device_s", &TimedTrial::frame_device_s, {"s", "device time of a frame, first to last timestamp"});
@@ -233,6 +234,7 @@ class Writer {
         by_trial("pipelined_wall_s", &TimedTrial::pipelined_wall_s, {"s", "mean wall time of a frame, two in flight"});
         by_trial("trial_start_unix_s", &TimedTrial::start_unix_s, {"s", "when the trial's first timed frame began, since 1970 UTC"});
         by_trial("trial_end_unix_s", &TimedTrial::end_unix_s, {"s", "when the trial's last timed frame ended, since 1970 UTC"});
+        by_trial("jobs", &TimedTrial::jobs, {"1", "clothbench jobs on the machine meanwhile, this one included"});
         by_stage("stage_device_s", &TimedTrial::stage_device_s, {"s", "device time of a stage, from the profiled twin"});
         number_attribute(g, "load_s", r_.header.load_s);
         for (const StageRecord& s : r_.header.stages) integer_attribute(g, "dispatches." + s.name, s.dispatches);
@@ -262,7 +264,11 @@ class Writer {
     const std::size_t count = r_.accuracy.time_s.size();
     const Id frame = index_scale(g, "frame", count, "frame; 0 is the initial state");
     attach(write_numbers(g, "time_s", {count}, r_.accuracy.time_s, {"s", "time"}), {frame});
-    for (const MetricSeries& m : r_.accuracy.metrics) attach(write_numbers(g, m.name, {count}, m.values, {m.units, m.long_name}), {frame});
+    for (const MetricSeries& m : r_.accuracy.metrics) {
+      const Id d = write_numbers(g, m.name, {count}, m.values, {m.units, m.long_name});
+      integer_attribute(d, "version", m.version);
+      attach(d, {frame});
+    }
   }
 
   /// One kind of cell of the PolyData; an empty kind has no cells and Offsets = {0}.

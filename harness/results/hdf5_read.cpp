@@ -47,7 +47,7 @@ void read_trials(hid_t file, CellRecord& r) {
     if (v.size() != index.size()) throw Error(std::string("/timing/") + name + " does not fit /timing/trial");
     return v;
   };
-  const auto pipelined = by_trial("pipelined_wall_s"), start = by_trial("trial_start_unix_s"), end = by_trial("trial_end_unix_s");
+  const auto pipelined = by_trial("pipelined_wall_s"), start = by_trial("trial_start_unix_s"), end = by_trial("trial_end_unix_s"), jobs = by_trial("jobs");
   const auto rendered = exists(timing, "frame_rendered_s") ? numbers<double>(timing, "frame_rendered_s", H5T_NATIVE_DOUBLE)
                                                            : std::vector<double>(wall.size(), kMissing);
   const std::size_t stages = r.header.stages.size();
@@ -60,6 +60,7 @@ void read_trials(hid_t file, CellRecord& r) {
     trial.pipelined_wall_s = pipelined[t];
     trial.start_unix_s = start[t];
     trial.end_unix_s = end[t];
+    trial.jobs = jobs[t];
     for (std::size_t k = t * shape[1]; k < (t + 1) * shape[1]; ++k) {
       if (std::isnan(wall[k])) break;  // padding of a shorter trial
       trial.frame_wall_s.push_back(wall[k]);
@@ -85,7 +86,8 @@ void read_accuracy(hid_t file, CellRecord& r, bool with_trajectory) {
   for (const std::string& n : h5::link_names(metrics)) {
     if (n == "time_s" || n == "frame") continue;
     const Id d(H5Dopen2(metrics, n.c_str(), H5P_DEFAULT), H5Dclose, "opening " + n);
-    r.accuracy.metrics.push_back({n, text_attribute(d, "units"), text_attribute(d, "long_name"), numbers<double>(metrics, n.c_str(), H5T_NATIVE_DOUBLE)});
+    r.accuracy.metrics.push_back({n, text_attribute(d, "units"), text_attribute(d, "long_name"), numbers<double>(metrics, n.c_str(), H5T_NATIVE_DOUBLE),
+                                  H5Aexists(d, "version") > 0 ? whole_attribute(d, "version") : 1});
   }
 }
 

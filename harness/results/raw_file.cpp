@@ -132,7 +132,7 @@ RawFile read_raw(const std::filesystem::path& path) {
 
 nlohmann::json header_to_json(const CellHeader& h) {
   nlohmann::json stages = nlohmann::json::array();
-  for (const StageRecord& s : h.stages) stages.push_back({{"name", s.name}, {"serves", s.serves}, {"dispatches", s.dispatches}});
+  for (const StageRecord& s : h.stages) stages.push_back({{"name", s.name}, {"serves", s.serves}, {"dispatches", s.dispatches}, {"bytes", s.bytes}});
   return {{"scene", h.scene}, {"solver", h.solver}, {"setting", h.setting}, {"settings", h.settings},
           {"scenario_json", h.scenario_json}, {"scenario_sha256", h.scenario_sha256}, {"stages", stages}, {"plan", h.plan},
           {"environment", h.environment}, {"vertices", h.vertices}, {"triangles", h.triangles}, {"load_s", h.load_s}};
@@ -147,7 +147,8 @@ CellHeader header_from_json(const nlohmann::json& j) {
   h.scenario_json = j.at("scenario_json").get<std::string>();
   h.scenario_sha256 = j.at("scenario_sha256").get<std::string>();
   for (const auto& s : j.at("stages"))
-    h.stages.push_back({s.at("name").get<std::string>(), s.at("serves").get<std::vector<std::string>>(), s.at("dispatches").get<int>()});
+    h.stages.push_back({s.at("name").get<std::string>(), s.at("serves").get<std::vector<std::string>>(), s.at("dispatches").get<int>(),
+                        s.value("bytes", "")});
   h.plan = j.at("plan");
   h.environment = j.at("environment");
   h.vertices = j.at("vertices").get<std::uint32_t>();
@@ -166,7 +167,7 @@ void write_trial_file(const std::filesystem::path& path, const TimedTrial& t, st
     frames.push_back(std::move(b));
   }
   nlohmann::json header = {{"kind", "trial"}, {"index", t.index}, {"stages", stages}, {"frames", frames.size()}, {"pipelined_wall_s", t.pipelined_wall_s},
-                           {"start_unix_s", t.start_unix_s}, {"end_unix_s", t.end_unix_s}};
+                           {"start_unix_s", t.start_unix_s}, {"end_unix_s", t.end_unix_s}, {"jobs", t.jobs}};
   if (!t.frame_rendered_s.empty()) header["frame_rendered_s"] = t.frame_rendered_s;
   write_raw(path, std::move(header), frames);
 }
@@ -185,6 +186,7 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
     t.pipelined_wall_s = number("pipelined_wall_s");
     t.start_unix_s = number("start_unix_s");
     t.end_unix_s = number("end_unix_s");
+    t.jobs = number("jobs");
     if (file.header.contains("frame_rendered_s")) t.frame_rendered_s = file.header["frame_rendered_s"].get<std::vector<double>>();
     for (const Bytes& b : file.frames) {
       Taker taker(b);
@@ -200,7 +202,7 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
 
 void write_accuracy_file(const std::filesystem::path& path, const AccuracyPass& a, std::uint32_t vertices) {
   nlohmann::json names = nlohmann::json::array();
-  for (const MetricSeries& m : a.metrics) names.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}});
+  for (const MetricSeries& m : a.metrics) names.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}, {"version", m.version}});
   std::vector<Bytes> frames;
   for (std::size_t f = 0; f < a.time_s.size(); ++f) {
     Bytes b;
@@ -219,7 +221,7 @@ AccuracyPass read_accuracy_file(const std::filesystem::path& path) {
     const auto vertices = file.header.at("vertices").get<std::size_t>();
     AccuracyPass a;
     for (const auto& m : file.header.at("metrics"))
-      a.metrics.push_back({m.at("name").get<std::string>(), m.at("units").get<std::string>(), m.at("long_name").get<std::string>(), {}});
+      a.metrics.push_back({m.at("name").get<std::string>(), m.at("units").get<std::string>(), m.at("long_name").get<std::string>(), {}, m.value("version", 1)});
     for (const Bytes& b : file.frames) {
       Taker taker(b);
       taker.take(a.time_s, 1);

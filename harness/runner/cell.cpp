@@ -11,6 +11,7 @@
 #include "metrics/stability/judge.hpp"
 #include "runner/environment.hpp"
 #include "runner/frame_input.hpp"
+#include "runner/jobs.hpp"
 #include "runner/stage_check.hpp"
 
 namespace clothbench {
@@ -40,6 +41,12 @@ std::string join(FeatureSet set) {
   std::string text;
   set.for_each([&](Feature f) { text += (text.empty() ? "" : ", ") + std::string(name_of(f)); });
   return text;
+}
+
+/// What the declared bytes of a stage are.
+std::string bytes_word(const StagePlan& s) {
+  if (!std::isfinite(s.read_B) && !std::isfinite(s.write_B)) return "";
+  return s.at_least ? "at least" : "computed";
 }
 
 nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
@@ -122,7 +129,7 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
   plan_ = solver_->plan();
   header_.plan = plan_json(plan_, scene);
   for (const StagePlan& s : plan_.stages) {
-    StageRecord record{s.name, {}, s.dispatches};
+    StageRecord record{s.name, {}, s.dispatches, bytes_word(s)};
     s.serves.for_each([&](Feature f) { record.serves.emplace_back(name_of(f)); });
     header_.stages.push_back(std::move(record));
   }
@@ -215,6 +222,7 @@ void Cell::warm_up(const TrialRules& rules) {
 TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
   TimedTrial trial;
   trial.index = index;
+  const int jobs_before = jobs_now();
   warm_up(rules);
   const std::size_t stages = plan_.stages.size();
   const int asked = rules.frames > 0 ? rules.frames : spec_.scene->time.frames();
@@ -243,6 +251,7 @@ TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
     trial.stage_write_B.insert(trial.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
   }
   trial.end_unix_s = unix_now();
+  trial.jobs = std::max(jobs_before, jobs_now());
   if (outcome_.status == "ok" && rules.pipelined && solver_->frames_in_flight() > 1) run_pipelined(trial, rules);
   if (outcome_.status == "ok" && rules.rendering.make) run_rendered(trial, rules);
   if (outcome_.status == "ok" && rules.profiled_frames > 0) profile_stages(trial, rules.profiled_frames);

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "runner/build_info.hpp"
+#include "runner/jobs.hpp"
 #include "runner/sensors.hpp"
 
 namespace clothbench {
@@ -68,6 +69,7 @@ nlohmann::json describe_environment(const DeviceInfo& device, const std::string&
   e["sensors"] = read_sensors();
   e["clock_policy"] = clock_policy(e["sensors"]);
   e["protocol"] = protocol;
+  e["jobs"] = jobs_now();
   return e;
 }
 

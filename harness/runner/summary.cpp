@@ -119,6 +119,13 @@ void summarise_pass(const AccuracyPass& pass, const TimeSpan& time, std::map<std
   s["stretch_mean_last_second"] = whole ? mean_from(pass, "stretch_mean_positive", from_s) : kMissing;
 }
 
+/// The most clothbench jobs that ran side by side while the cell was loaded and timed; missing if any of it doesn't say.
+double jobs_beside(const CellRecord& record) {
+  double most = record.header.environment.is_object() ? record.header.environment.value("jobs", kMissing) : kMissing;
+  for (const TimedTrial& t : record.trials) most = max_or_nan(most, t.jobs);
+  return most;
+}
+
 double bytes_per_frame(const std::vector<TimedTrial>& trials, std::vector<double> TimedTrial::*bytes) {
   if (trials.empty() || trials.front().frames() == 0) return kMissing;
   const TimedTrial& t = trials.front();
@@ -150,6 +157,7 @@ std::map<std::string, double> summarise(const CellSpec& spec, const Plan& plan, 
     write_mean.push_back(w.mean);
     window.push_back(r.window_s);
   }
+  s["jobs"] = jobs_beside(record);
   s["trials"] = static_cast<double>(record.trials.size());
   s["frames_per_trial"] = record.trials.empty() ? kMissing : record.trials.front().frames();
   s["fps_median"] = median(fps);

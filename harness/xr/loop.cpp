@@ -11,6 +11,7 @@
 #include "runner/cell.hpp"
 #include "runner/environment.hpp"
 #include "runner/frame_input.hpp"
+#include "runner/jobs.hpp"
 #include "runner/replay.hpp"
 #include "xr/counters.hpp"
 #include "xr/hands.hpp"
@@ -274,6 +275,7 @@ class Loop {
   /// The steps are a timed trial as of any run, so that what a headset's tools sampled meanwhile finds its time.
   void note(const FrameCost& cost, const FrameRow& row) {
     const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    if (trial_.frames() == 0) trial_.jobs = jobs_now();
     if (trial_.frames() == 0) trial_.start_unix_s = now - row.step_s;
     trial_.end_unix_s = now;
     trial_.frame_wall_s.push_back(row.step_s);

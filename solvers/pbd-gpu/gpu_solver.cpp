@@ -66,8 +66,8 @@ void GpuSolver::set_state(const vulkan::Buffer& position, const vulkan::Buffer& 
   download_->copy(0, velocity, *read_velocity_);
 }
 
-int GpuSolver::add_stage(const std::string& name, FeatureSet serves) {
-  plan_.stages.push_back({name, serves, 0, 0, 0});
+int GpuSolver::add_stage(const std::string& name, FeatureSet serves, bool at_least) {
+  plan_.stages.push_back({name, serves, 0, 0, 0, at_least});
   counters_.push_back(count_bytes_ ? &add_buffer("bytes counted in " + name, 8) : nullptr);
   return static_cast<int>(plan_.stages.size()) - 1;
 }

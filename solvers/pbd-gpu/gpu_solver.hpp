@@ -19,7 +19,7 @@ class XpbdSelfContact;
 class Lines;
 class Chains;
 
-/// Bytes of one dispatch, counted from the scene (no contention retries of atomics).
+/// Bytes of one dispatch, computed from the scene and the kernel's loops (no contention retries of atomics).
 struct Traffic {
   double read_B = 0, write_B = 0;
 };
@@ -92,7 +92,8 @@ class GpuSolver : public ClothSolver {
   /// A word in host memory that a kernel sets where workgroups waited for one another in vain: such a frame is TimedOut.
   void set_missed(const vulkan::Buffer& word) { missed_ = &word; }
 
-  int add_stage(const std::string& name, FeatureSet serves);
+  /// `at_least`: how much its kernels read depends on how the cloth lies; what is declared is what every frame reads.
+  int add_stage(const std::string& name, FeatureSet serves, bool at_least = false);
   vulkan::Kernel& add_kernel(int stage, const Shader& shader, std::vector<vulkan::Binding> bindings,
                              std::uint32_t push_bytes, std::vector<std::uint32_t> specialization = {},
                              std::uint32_t group_size = kGroupSize);

@@ -162,7 +162,7 @@ XpbdContact::XpbdContact(GpuSolver& solver, const Scene& scene, Vec3 origin_m, c
   else
     stage_broad_ = solver_.add_stage("BroadPhase", meshes);
   stage_contact_ = solver_.add_stage(
-      "Contact", scene.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided}));
+      "Contact", scene.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided}), true);
   // Contact of a margin much thinner than the cells has no float left to work in. (Open borders are held farther off still.)
   const double least = kLeastMargin * std::min(scene.cloth.du(), scene.cloth.dv());
   for (const Collider& c : scene.colliders) solver_.plan_.contact_margins_m.push_back(std::max(c.margin_m, least));

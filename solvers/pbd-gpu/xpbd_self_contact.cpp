@@ -38,7 +38,7 @@ XpbdSelfContact::XpbdSelfContact(GpuSolver& solver, const Scene& scene, const Bu
   FeatureSet serves = {Feature::SelfCollision};
   if (c.self_collision.friction > 0) serves.add(Feature::Friction);
   stage_start_ = solver_.add_stage("KeepStart", {Feature::SelfCollision});
-  stage_ = solver_.add_stage("SelfContact", serves);
+  stage_ = solver_.add_stage("SelfContact", serves, true);
   const std::size_t n = c.vertex_count();
   starts_ = &solver_.add_buffer("self-contact starts", n * sizeof(vec4));
   block_boxes_ = &solver_.add_buffer("self-contact blocks", 3 * blocks_ * sizeof(vec4));

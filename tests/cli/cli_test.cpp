@@ -151,7 +151,7 @@ TEST_F(Cli, StudyThenReport) {
     // ballistic integrates as its closed form says, in double.
     EXPECT_LE(r.summary.at("free_fall_error"), 1e-12);
     EXPECT_GT(r.summary.at("fps_median"), 0);
-    EXPECT_TRUE(std::isnan(r.summary.at("read_B_per_frame"))) << "bytes of a CPU solver are missing, never modelled";
+    EXPECT_TRUE(std::isnan(r.summary.at("read_B_per_frame"))) << "bytes of a CPU solver are missing";
   }
   const Answer again = clothbench_command("study " + small_study() + " --out " + out.string());
   EXPECT_EQ(again.code, 2) << "finished cells are not overwritten: " << again.text;

@@ -42,7 +42,8 @@ inline CellRecord fake_cell(const std::string& solver, int n, const std::string&
                {"bandwidth_window_s", 0.5},
                {"device_memory_B", on_gpu ? 8992.0 : kMissing},
                {"dispatches", on_gpu ? 14.0 : kMissing},
-               {"load_s", 0.01}};
+               {"load_s", 0.01},
+               {"jobs", 1}};
   return c;
 }
 

@@ -49,14 +49,36 @@ TEST(Leak, EachKindHasItsOwn) {
   EXPECT_EQ(leak_of("rooms", c), "");
   c.summary["tunnelled_fraction_max"] = 0.001;
   EXPECT_NE(leak_of("rooms", c), "");
-  c.summary["grip_edge_ratio_max"] = 1.24;
-  c.summary["grip_edge_ratio_held"] = 1.09;
-  c.summary["strain_mean_released"] = 0.009;
+  c.summary["grip_edge_ratio_max"] = 1.9;
   EXPECT_EQ(leak_of("grip", c), "");
-  c.summary["strain_mean_released"] = kMissing;
-  EXPECT_EQ(leak_of("grip", c), "strain left not known");
-  c.summary["grip_edge_ratio_held"] = 1.11;
-  EXPECT_EQ(leak_of("grip", c), "edge held 1.11");
+  c.summary["grip_edge_ratio_max"] = 2.1;
+  EXPECT_EQ(leak_of("grip", c), "edge pulled 2.1");
+  c.summary.erase("grip_edge_ratio_max");
+  EXPECT_EQ(leak_of("grip", c), "edge pulled not known");
+}
+
+/// As the runner leaves a cell of the two-hand scene.
+CellRecord pulled_cell(double ratio, double bound) {
+  CellRecord c = fake_cell("a", 32, "double", 0.004);
+  c.header.scenario_json = R"({"name":"pull","cloth":{"grid":[32,32],"sides":"double"},"grips":[{"track":"x"}]})";
+  c.summary["grip_edge_ratio_max"] = ratio;
+  c.summary["strain_mean_released"] = 0.5;
+  c.summary["expect.grip_edge_ratio_max"] = ratio <= bound;
+  c.summary["expect.outcome"] = 1;
+  return c;
+}
+
+TEST(Leak, VerdictAndFirstSpeedHangOnTheSameBounds) {
+  for (const double ratio : {1.4, 1.99, 2.4, 12.0})
+    for (const double bound : {1.25, 2.0, 3.0}) {
+      const CellRecord c = pulled_cell(ratio, bound);
+      EXPECT_EQ(verdict(c) == "kept", leak_of("grip", c).empty()) << ratio << " " << bound;
+    }
+  EXPECT_EQ(leak_of("grip", pulled_cell(12, 2)), "edge pulled 12");
+  CellRecord other = pulled_cell(1, 2);
+  other.summary["some_bound_m"] = 0.25;
+  other.summary["expect.some_bound_m"] = 0;
+  EXPECT_EQ(leak_of("grip", other), "some_bound_m 0.25") << "a bound without a word of its own";
 }
 
 }  // namespace

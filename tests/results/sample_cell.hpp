@@ -14,7 +14,7 @@ inline CellRecord sample_cell(int trials = 3, int frames = 4, std::uint32_t vert
   r.header.settings = {{"iterations", 5}, {"mode", "a"}};
   r.header.scenario_json = R"({"name":"sample","cloth":{"grid":[3,2],"sides":"single"}})";
   r.header.scenario_sha256 = "00ff";
-  r.header.stages = {{"First", {"stretch", "shear"}, 3}, {"Second", {}, 1}};
+  r.header.stages = {{"First", {"stretch", "shear"}, 3, "computed"}, {"Second", {}, 1, "at least"}};
   r.header.plan = {{"buffers", nlohmann::json::array()}};
   r.header.environment = {{"gpu", "none"}, {"driver", "µ"}, {"gpu_is_software", true}, {"created", "2026-01-01T00:00:00Z"}};
   r.header.vertices = vertices;
@@ -24,6 +24,7 @@ inline CellRecord sample_cell(int trials = 3, int frames = 4, std::uint32_t vert
     TimedTrial trial;
     trial.index = t;
     if (t != 1) trial.pipelined_wall_s = 8e-4 * (1 + t);
+    if (t != 0) trial.jobs = 1 + 10 * t;
     if (t != 2) trial.start_unix_s = 1.7e9 + 10 * t;
     if (t != 2) trial.end_unix_s = trial.start_unix_s + 4.125;
     for (int f = 0; f < frames; ++f) {
@@ -37,7 +38,7 @@ inline CellRecord sample_cell(int trials = 3, int frames = 4, std::uint32_t vert
     }
     r.trials.push_back(trial);
   }
-  r.accuracy.metrics = {{"stretch_max", "1", "greatest strain", {}}, {"speed_max", "m s-1", "greatest speed", {}}};
+  r.accuracy.metrics = {{"stretch_max", "1", "greatest strain", {}}, {"speed_max", "m s-1", "greatest speed", {}, 3}};
   for (int f = 0; f <= frames; ++f) {
     r.accuracy.time_s.push_back(f / 72.0);
     for (std::uint32_t k = 0; k < 3 * vertices; ++k) r.accuracy.position.push_back(static_cast<float>(f) + 0.01f * static_cast<float>(k));
@@ -68,7 +69,7 @@ bool same(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 inline bool same(const TimedTrial& a, const TimedTrial& b) {
-  return a.index == b.index && same(std::vector{a.pipelined_wall_s, a.start_unix_s, a.end_unix_s}, std::vector{b.pipelined_wall_s, b.start_unix_s, b.end_unix_s}) &&
+  return a.index == b.index && same(std::vector{a.pipelined_wall_s, a.start_unix_s, a.end_unix_s, a.jobs}, std::vector{b.pipelined_wall_s, b.start_unix_s, b.end_unix_s, b.jobs}) &&
          same(a.frame_wall_s, b.frame_wall_s) && same(a.frame_device_s, b.frame_device_s) &&
          same(a.stage_device_s, b.stage_device_s) && same(a.stage_read_B, b.stage_read_B) && same(a.stage_write_B, b.stage_write_B);
 }

@@ -289,5 +289,22 @@ TEST(Solvers, NearestNameIsNamed) {
   }
 }
 
+TEST(PenetrationStudy, HandsThatPullAreBoundWhileTheyPullAndAtTheEnd) {
+  constexpr double kDrawnOut = 12;  // as `paper` draws the edges beside the hands
+  const Study study = load_study("penetration", {{}, StudyLength::Full});
+  int scenes = 0;
+  for (const Study::Item& item : study.scenes) {
+    if (!item.scene.name.starts_with("two-hand-stretch")) continue;
+    ++scenes;
+    bool while_pulled = false, at_end = false;
+    for (const Expectation& e : item.scene.expect) {
+      while_pulled = while_pulled || (e.name == "grip_edge_ratio_max" && e.at_most && *e.at_most < kDrawnOut / 2);
+      at_end = at_end || (e.name == "stretch_max_end" && e.at_most && *e.at_most <= 1);
+    }
+    EXPECT_TRUE(while_pulled && at_end) << item.scene.name;
+  }
+  EXPECT_GE(scenes, 10) << "three speeds, and seven of the sweep";
+}
+
 }  // namespace
 }  // namespace clothbench

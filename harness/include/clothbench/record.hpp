@@ -25,6 +25,9 @@ struct StageRecord {
   std::string name;
   std::vector<std::string> serves;
   int dispatches = 0;
+  /// What its bytes are: "computed", "at least" (what it reads is a lower bound), or "" where it has none or the file is of
+  /// before they were told apart.
+  std::string bytes = {};
 };
 
 /// What is known of a cell before its first frame. Serialised as JSON (`to_json`) in raw files and as attributes in
@@ -54,12 +57,14 @@ struct TimedTrial {
   /// When its first timed frame began and its last ended, by the machine's clock [s since 1970 UTC]: what samples that
   /// others took meanwhile are matched by.
   double start_unix_s = kMissing, end_unix_s = kMissing;
+  double jobs = kMissing;  ///< clothbench jobs on the machine meanwhile, this one included; NaN in older files
   int frames() const { return static_cast<int>(frame_wall_s.size()); }
 };
 
 struct MetricSeries {
   std::string name, units, long_name;
   std::vector<double> values;  ///< one per stored frame, frame 0 = initial state
+  int version = 1;             ///< of the metric's rule
 };
 
 /// The untimed pass that positions and metrics come from.
@@ -95,6 +100,7 @@ struct CellRecord {
   std::map<std::string, double> summary;  ///< every scalar a table prints; NaN = missing
   std::string file = {};                  ///< where a report read it; empty: nowhere
   std::vector<StoredGroup> samples = {};  ///< what the device told meanwhile (results/device_samples.hpp); not read back
+  std::map<std::string, std::string> withheld = {};  ///< summary values that a report must not print, and why (report/withheld.hpp)
 };
 
 }  // namespace clothbench

@@ -51,7 +51,10 @@ struct StagePlan {
   std::string name;
   FeatureSet serves;
   int dispatches = 0;        ///< per frame; 0 on a CPU
-  double read_B = 0, write_B = 0;  ///< shader-logical bytes per frame, counted, not modelled; NaN on a CPU
+  /// Bytes that shaders load and store in a frame, computed by the host from the scene and the kernels' loops and checked
+  /// against an instrumented build of the kernels in tests; not the traffic on the memory bus. NaN on a CPU.
+  double read_B = 0, write_B = 0;
+  bool at_least = false;  ///< read_B is a lower bound: how much more is read depends on how the cloth lies
 };
 
 struct BufferPlan {

@@ -178,10 +178,10 @@ export function bandwidth_figure(family, index) {
     id: `bandwidth-${index}`,
     title: `${family.paper_table === 3 ? 'Fig. 5: ' : ''}Peak bandwidth by resolution (${family.name})`,
     spec,
-    empty: 'No cell has counted bytes.',
+    empty: 'No cell has bytes.',
     caption:
-        'Counted bytes per second of wall time. CPU solvers are absent: their bytes are not counted, and never ' +
-        'modelled. The paper’s values are published as a graph alone.',
+        'Bytes that shaders load and store, computed from the scene and the kernels, per second of wall time. CPU solvers are ' +
+        'absent: nothing is known of their bytes. The paper’s values are published as a graph alone.',
     rows: () => [
         ['solver', 'sides', 'width', 'way', 'GB_per_s'],
         ...rows.map(r => [r.label, r.sides, r.width, r.way, r.GB_per_s])]
