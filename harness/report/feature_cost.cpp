@@ -67,7 +67,6 @@ std::string moved_text(const FeatureCost& f) {
 
 bool measured(const FeatureCost& f) { return f.needed->outcome.status == "ok" && f.all->outcome.status == "ok"; }
 
-std::string exact(double v) { return std::isfinite(v) ? fmt::format("{}", v) : ""; }
 json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
 
 }  // namespace
@@ -187,12 +186,12 @@ std::string feature_cost_csv(const std::vector<FeatureCost>& costs) {
                                     f.needed->header.setting,
                                     f.needed->outcome.status,
                                     f.all->outcome.status,
-                                    exact(f.moved),
+                                    csv_number(f.moved),
                                     std::to_string(f.needed->header.stages.size()),
                                     std::to_string(f.all->header.stages.size()),
                                     joined(f.added)};
     for (const Quantity& q : kQuantities)
-      for (const CellRecord* c : {f.needed, f.all}) row.push_back(exact(summary_value(*c, q.name)));
+      for (const CellRecord* c : {f.needed, f.all}) row.push_back(csv_number(summary_value(*c, q.name)));
     out += csv_row(row);
   }
   return out;

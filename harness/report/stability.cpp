@@ -77,8 +77,6 @@ struct Tally {
   }
 };
 
-std::string exact(double v) { return std::isfinite(v) ? fmt::format("{}", v) : v > 0 ? "inf" : ""; }
-
 /// 3 digits, with an exponent where that is shorter.
 std::string short_number(double v) { return fmt::format("{:.3g}", v); }
 
@@ -219,7 +217,7 @@ std::string stability_csv(const std::vector<CellRecord>& cells) {
                                     c.outcome.message};
     for (const char* name : kExtremes) {
       const auto at = c.summary.find(name);
-      row.push_back(at == c.summary.end() ? "" : exact(at->second));
+      row.push_back(at == c.summary.end() ? "" : csv_number(at->second));
     }
     out += csv_row(row);
   }

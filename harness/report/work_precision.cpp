@@ -108,7 +108,6 @@ std::string failed_text(std::size_t failed, std::size_t all, std::size_t over_bu
 }
 
 json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
-std::string exact(double v) { return std::isfinite(v) ? fmt::format("{}", v) : ""; }
 
 }  // namespace
 
@@ -233,9 +232,9 @@ std::string work_csv(const std::vector<WorkDiagram>& diagrams) {
     for (const WorkPoint& p : d.points) {
       const json& e = p.cell->header.environment;
       const std::string software = e.is_object() && e.value("gpu_is_software", json()) == json(true) ? "true" : "false";
-      out += csv_row({d.scene, d.card, d.ranking, exact(d.space_error), exact(d.floor()), d.refused(), p.solver, p.setting,
+      out += csv_row({d.scene, d.card, d.ranking, csv_number(d.space_error), csv_number(d.floor()), d.refused(), p.solver, p.setting,
                       p.cell->outcome.status, e.is_object() ? e.value("gpu", "") : "", software, p.on_gpu ? "true" : "false",
-                      exact(p.wall_ms_per_s), exact(p.fenced_ms_per_s), exact(p.device_ms_per_s), exact(p.error), p.on_front ? "true" : "false",
+                      csv_number(p.wall_ms_per_s), csv_number(p.fenced_ms_per_s), csv_number(p.device_ms_per_s), csv_number(p.error), p.on_front ? "true" : "false",
                       d.flagged.contains(p.solver) ? d.flagged.at(p.solver) : ""});
     }
   return out;
