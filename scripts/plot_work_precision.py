@@ -34,9 +34,10 @@ NOT_RUN = "over_budget"  # of more work than the solver's time on the scene allo
 
 def number(text):
     try:
-        return float(text)
+        value = float(text)
     except (TypeError, ValueError):
         return math.nan
+    return value if math.isfinite(value) else math.nan  # "inf" has no place on an axis
 
 
 def colours(names):

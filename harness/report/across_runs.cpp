@@ -162,7 +162,7 @@ Table across_table(const std::vector<AcrossRuns>& all) {
           {{"case", "solver", "setting", "figure", "value", "verdict", ""}}};
   for (const AcrossRuns& a : all)
     t.rows.push_back({a.case_name, a.solver, a.setting, a.figure,
-                      std::isfinite(a.value) ? fmt::format("{:.3g}", a.value) : "–",
+                      std::isnan(a.value) ? "–" : fmt::format("{:.3g}", a.value),
                       !a.judged() ? ""
                       : a.kept()  ? "kept"
                                   : "broken",
@@ -174,8 +174,7 @@ std::string across_csv(const std::vector<AcrossRuns>& all) {
   std::string out = csv_row({"case", "solver", "setting", "figure", "value", "bound", "verdict"});
   for (const AcrossRuns& a : all)
     out +=
-        csv_row({a.case_name, a.solver, a.setting, a.figure, std::isfinite(a.value) ? fmt::format("{}", a.value) : "",
-                 a.judged() ? fmt::format("{}", a.bound) : "",
+        csv_row({a.case_name, a.solver, a.setting, a.figure, csv_number(a.value), csv_number(a.bound),
                  !a.judged() ? ""
                  : a.kept()  ? "kept"
                              : "broken"});

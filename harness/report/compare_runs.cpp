@@ -10,6 +10,7 @@
 #include "metrics/metric.hpp"
 #include "report/grid.hpp"
 #include "report/withheld.hpp"
+#include "results/json_number.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -96,8 +97,6 @@ void compare_cell(ComparedCell& c) {
     if (differ(a, b)) c.metrics.push_back({name, a, b});
   }
 }
-
-nlohmann::json or_null(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(); }
 
 std::string percent(double ratio) { return std::isfinite(ratio) ? fmt::format("{:+.1f} %", 100 * (ratio - 1)) : "–"; }
 
@@ -214,14 +213,14 @@ nlohmann::json comparison_json(const std::vector<ComparedCell>& cells) {
                           {"in_b", c.b != nullptr},
                           {"outcome", c.outcome},
                           {"verdict", verdict(c.time)},
-                          {"ratio", or_null(c.time.ratio)},
-                          {"low", or_null(c.time.low)},
-                          {"high", or_null(c.time.high)},
-                          {"level", or_null(c.time.level)},
-                          {"p", or_null(c.time.p)},
+                          {"ratio", finite_or_null(c.time.ratio)},
+                          {"low", finite_or_null(c.time.low)},
+                          {"high", finite_or_null(c.time.high)},
+                          {"level", finite_or_null(c.time.level)},
+                          {"p", finite_or_null(c.time.p)},
                           {"metrics", nlohmann::json::object()}};
     for (const ComparedCell::Versions& v : c.versions) row["versions"][v.metric] = {v.a, v.b};
-    for (const ComparedCell::Change& m : c.metrics) row["metrics"][m.name] = {or_null(m.a), or_null(m.b)};
+    for (const ComparedCell::Change& m : c.metrics) row["metrics"][m.name] = {finite_or_null(m.a), finite_or_null(m.b)};
     out.push_back(std::move(row));
   }
   return out;

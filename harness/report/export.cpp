@@ -1,18 +1,14 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
 #include <set>
 
 #include "report/report.hpp"
 #include "report/withheld.hpp"
+#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {
-
-std::string exact(double v) { return std::isfinite(v) ? fmt::format("{}", v) : ""; }
-
-nlohmann::json or_null(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(); }
 
 std::string environment_text(const CellRecord& c, const char* key) {
   const nlohmann::json& e = c.header.environment;
@@ -64,7 +60,7 @@ std::string summary_csv(const std::vector<CellRecord>& cells, const std::vector<
                                       c.outcome.message,
                                       c.outcome.expect};
       for (const char* key : environment) row.push_back(environment_text(c, key));
-      for (const std::string& name : names) row.push_back(exact(summary_value(c, name)));
+      for (const std::string& name : names) row.push_back(csv_number(summary_value(c, name)));
       row.push_back(withheld_of(c, names));
       out += csv_row(row);
     }
@@ -90,7 +86,7 @@ std::string table3_csv(const Family& family, const nlohmann::json& published) {
       const std::string n = std::to_string(resolutions[k].get<int>());
       std::vector<std::string> row = {
           "published", column.at("name").get<std::string>(),       "", column.value("sides", ""), n, n, "ok",
-          "",          exact(column.at("fps").at(k).get<double>())};
+          "",          csv_number(column.at("fps").at(k).get<double>())};
       row.resize(head.size());
       out += csv_row(row);
     }
@@ -103,7 +99,7 @@ std::string table3_csv(const Family& family, const nlohmann::json& published) {
           c->header.setting,    s.sides,
           grid_text(r.grid[0]), grid_text(r.grid[1]),
           c->outcome.status,    c->outcome.failed_frame < 0 ? "" : std::to_string(c->outcome.failed_frame)};
-      for (const std::string& name : kTable3Names) row.push_back(exact(summary_value(*c, name)));
+      for (const std::string& name : kTable3Names) row.push_back(csv_number(summary_value(*c, name)));
       row.push_back(withheld_of(*c, kTable3Names));
       out += csv_row(row);
     }
@@ -119,7 +115,7 @@ nlohmann::json table3_json(const Family& family, const nlohmann::json& published
                           {"grid", {p.resolution.grid[0], p.resolution.grid[1]}},
                           {"status", p.cell->outcome.status}};
     if (p.cell->outcome.failed_frame >= 0) row["failed_frame"] = p.cell->outcome.failed_frame;
-    for (const std::string& name : kTable3Names) row[name] = or_null(summary_value(*p.cell, name));
+    for (const std::string& name : kTable3Names) row[name] = number_to_json(summary_value(*p.cell, name));
     if (const std::string why = withheld_of(*p.cell, kTable3Names); !why.empty()) row["withheld"] = why;
     measured.push_back(std::move(row));
   }
@@ -129,8 +125,6 @@ nlohmann::json table3_json(const Family& family, const nlohmann::json& published
 nlohmann::json cells_json(const std::vector<CellRecord>& cells) {
   nlohmann::json all = nlohmann::json::array();
   for (const CellRecord& c : cells) {
-    nlohmann::json summary = nlohmann::json::object();
-    for (const auto& [name, v] : c.summary) summary[name] = or_null(v);
     all.push_back({{"scene", c.header.scene},
                    {"solver", c.header.solver},
                    {"setting", c.header.setting},
@@ -142,7 +136,7 @@ nlohmann::json cells_json(const std::vector<CellRecord>& cells) {
                      {"failed_frame", c.outcome.failed_frame},
                      {"message", c.outcome.message},
                      {"expect", c.outcome.expect}}},
-                   {"summary", summary},
+                   {"summary", numbers_to_json(c.summary)},
                    {"withheld", c.withheld},
                    {"metric_versions", versions_of(c)},
                    {"environment", c.header.environment}});

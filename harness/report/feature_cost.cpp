@@ -10,6 +10,7 @@
 #include "report/grid.hpp"
 #include "report/trajectories.hpp"
 #include "report/withheld.hpp"
+#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {
@@ -69,9 +70,6 @@ std::string moved_text(const FeatureCost& f) {
 }
 
 bool measured(const FeatureCost& f) { return f.needed->outcome.status == "ok" && f.all->outcome.status == "ok"; }
-
-std::string exact(double v) { return std::isfinite(v) ? fmt::format("{}", v) : ""; }
-json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
 
 }  // namespace
 
@@ -167,14 +165,14 @@ json feature_cost_json(const std::vector<FeatureCost>& costs) {
                 {"solver", f.needed->header.solver},
                 {"setting", f.needed->header.setting},
                 {"added", f.added},
-                {"moved_over_longer_side", or_null(f.moved)},
+                {"moved_over_longer_side", finite_or_null(f.moved)},
                 {"no_op", f.no_op()},
-                {"wall_ratio", or_null(ratio(f, "frame_wall_median_s"))},
-                {"device_ratio", or_null(ratio(f, "frame_device_median_s"))}};
+                {"wall_ratio", finite_or_null(ratio(f, "frame_wall_median_s"))},
+                {"device_ratio", finite_or_null(ratio(f, "frame_device_median_s"))}};
     for (const auto& [name, cell] : {std::pair{"needed", f.needed}, std::pair{"all", f.all}}) {
       json& part = row[name] = {
           {"status", cell->outcome.status}, {"message", cell->outcome.message}, {"stages", cell->header.stages.size()}};
-      for (const Quantity& q : kQuantities) part[q.name] = or_null(summary_value(*cell, q.name));
+      for (const Quantity& q : kQuantities) part[q.name] = finite_or_null(summary_value(*cell, q.name));
     }
     out.push_back(std::move(row));
   }
@@ -193,12 +191,12 @@ std::string feature_cost_csv(const std::vector<FeatureCost>& costs) {
                                     f.needed->header.setting,
                                     f.needed->outcome.status,
                                     f.all->outcome.status,
-                                    exact(f.moved),
+                                    csv_number(f.moved),
                                     std::to_string(f.needed->header.stages.size()),
                                     std::to_string(f.all->header.stages.size()),
                                     joined(f.added)};
     for (const Quantity& q : kQuantities)
-      for (const CellRecord* c : {f.needed, f.all}) row.push_back(exact(summary_value(*c, q.name)));
+      for (const CellRecord* c : {f.needed, f.all}) row.push_back(csv_number(summary_value(*c, q.name)));
     out += csv_row(row);
   }
   return out;

@@ -12,6 +12,9 @@ namespace clothbench {
 /// A summary value of a cell; NaN where it has none.
 double summary_value(const CellRecord&, const std::string& name);
 
+/// The scenario that a cell ran; discarded where what is stored is no JSON.
+nlohmann::json scenario_of(const CellRecord&);
+
 /// Column of a table: cloth resolution. `grid` is {0, 0} for a cloth that is no grid.
 struct Resolution {
   int grid[2] = {0, 0};

@@ -16,8 +16,6 @@ constexpr const char* kNotMeasured = "not measured";
 constexpr const char* kModuli[] = {"E_0",          "E_45",      "E_90", "nu",   "G",    "E_strip",
                                    "strip_border", "E_stiffer", "B_0",  "B_45", "B_90", "B_stiffer"};
 
-json scenario_of(const CellRecord& c) { return json::parse(c.header.scenario_json, nullptr, false); }
-
 bool is_full(const CellRecord& c) {
   const json s = scenario_of(c);
   return s.is_object() && s.value("material_card", "") == "full";

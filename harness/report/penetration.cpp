@@ -19,8 +19,6 @@ using nlohmann::json;
 
 const std::string kExpect = "expect.";  // of summary values: 1 kept, 0 broken, NaN not measured
 
-json scenario_of(const CellRecord& c) { return json::parse(c.header.scenario_json, nullptr, false); }
-
 bool filled(const json& j, const char* key) {
   return j.is_object() && j.contains(key) && j[key].is_array() && !j[key].empty();
 }
@@ -76,7 +74,7 @@ std::string mm(double v) {
   return v == 0 ? "0" : x < 0.01 ? "<0.01" : significant(x, x < 1 ? 2 : 3);
 }
 
-std::string percent(double v) {
+std::string share_text(double v) {
   if (!std::isfinite(v)) return "–";
   const double x = 100 * v;
   return v == 0 ? "0" : std::abs(x) < 0.1 ? "<0.1" : significant(x, x < 10 ? 2 : 3);

@@ -6,13 +6,12 @@
 
 #include "report/penetration.hpp"
 #include "report/withheld.hpp"
+#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {
 
 using nlohmann::json;
-
-json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
 
 const std::vector<std::string> kSeries = {"contact_length_m", "tunnelled_fraction", "tunnelled_depth_m",
                                           "depth_m",          "depth_vertex_m",     "stretch_max"};
@@ -81,7 +80,7 @@ json penetration_json(const std::vector<ContactSetUp>& ups) {
                     {"sides", r.series.sides},   {"status", r.cell->outcome.status},
                     {"expect", verdict(*r.cell)}};
         if (r.cell->outcome.failed_frame >= 0) row["failed_frame"] = r.cell->outcome.failed_frame;
-        for (const std::string& name : contact_names()) row[name] = or_null(summary_value(*r.cell, name));
+        for (const std::string& name : contact_names()) row[name] = finite_or_null(summary_value(*r.cell, name));
         if (const std::string why = withheld_of(*r.cell, contact_names()); !why.empty()) row["withheld"] = why;
         out.push_back(std::move(row));
       }

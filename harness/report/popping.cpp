@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "report/withheld.hpp"
+#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {
@@ -12,8 +13,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double kMostRatio = 1.2, kMostSpeed = 1;
-
-json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
 
 std::string millimetres(const CellRecord& c) {
   if (c.outcome.status != "ok") return c.outcome.status;
@@ -70,9 +69,9 @@ Table popping_table(const std::vector<Popping>& all) {
 json popping_json(const std::vector<Popping>& all) {
   json out = json::array();
   for (const Popping& p : all)
-    out.push_back({{"scene", p.scene}, {"solver", p.series.solver}, {"sides", p.series.sides}, {"pop_displacement_m", or_null(summary_value(*p.cell, "pop_displacement_m"))},
-                   {"pop_displacement_x16_m", or_null(summary_value(*p.finer, "pop_displacement_m"))}, {"ratio", or_null(p.ratio())},
-                   {"pop_speed_ratio", or_null(summary_value(*p.cell, "pop_speed_ratio"))}, {"verdict", why_not(p)}});
+    out.push_back({{"scene", p.scene}, {"solver", p.series.solver}, {"sides", p.series.sides}, {"pop_displacement_m", finite_or_null(summary_value(*p.cell, "pop_displacement_m"))},
+                   {"pop_displacement_x16_m", finite_or_null(summary_value(*p.finer, "pop_displacement_m"))}, {"ratio", finite_or_null(p.ratio())},
+                   {"pop_speed_ratio", finite_or_null(summary_value(*p.cell, "pop_speed_ratio"))}, {"verdict", why_not(p)}});
   return out;
 }
 

@@ -1,4 +1,5 @@
 #include "report/pulled_strip.hpp"
+#include "results/json_number.hpp"
 
 #include <fmt/format.h>
 
@@ -53,9 +54,7 @@ std::vector<PulledRow> rows_of(const std::vector<ContactSetUp>& ups) {
 /// Equal but for the rounding of positions.
 bool same_speed(double a, double b) { return std::abs(a - b) <= 1e-6 * b; }
 
-std::string number(double v, const char* form) { return std::isfinite(v) ? fmt::format(fmt::runtime(form), v) : "–"; }
-
-json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
+std::string formatted(double v, const char* form) { return std::isfinite(v) ? fmt::format(fmt::runtime(form), v) : "–"; }
 
 }  // namespace
 
@@ -82,8 +81,8 @@ Table pulled_strip_table(const std::vector<ContactSetUp>& ups) {
       for (const Cell& c : r.cells) {
         if (!same_speed(v, c.speed_m_per_s)) continue;
         text = c.cell->outcome.status != "ok" ? c.cell->outcome.status
-                                              : number(summary_value(*c.cell, "truth_quantity_error_max"), "{:.2g}") + " / " +
-                                                    number(summary_value(*c.cell, "truth_e2"), "{:.1e}");
+                                              : formatted(summary_value(*c.cell, "truth_quantity_error_max"), "{:.2g}") + " / " +
+                                                    formatted(summary_value(*c.cell, "truth_e2"), "{:.1e}");
       }
       row.push_back(text);
     }
@@ -97,8 +96,8 @@ json pulled_strip_json(const std::vector<ContactSetUp>& ups) {
   for (const PulledRow& r : rows_of(ups)) {
     json row = {{"strip", r.scene}, {"solver", r.series.solver}, {"setting", r.series.setting}, {"speeds", json::array()}};
     for (const Cell& c : r.cells)
-      row["speeds"].push_back({{"speed_m_per_s", c.speed_m_per_s}, {"status", c.cell->outcome.status}, {"strain_error_max", or_null(summary_value(*c.cell, "truth_quantity_error_max"))},
-                               {"strain_error_rms", or_null(summary_value(*c.cell, "truth_quantity_error"))}, {"e2", or_null(summary_value(*c.cell, "truth_e2"))},
+      row["speeds"].push_back({{"speed_m_per_s", c.speed_m_per_s}, {"status", c.cell->outcome.status}, {"strain_error_max", finite_or_null(summary_value(*c.cell, "truth_quantity_error_max"))},
+                               {"strain_error_rms", finite_or_null(summary_value(*c.cell, "truth_quantity_error"))}, {"e2", finite_or_null(summary_value(*c.cell, "truth_e2"))},
                                {"fault", leak_of("wave", *c.cell)}});
     const Cell* fault = r.first_fault();
     row["first_fault_m_per_s"] = fault == nullptr ? json() : json(fault->speed_m_per_s);

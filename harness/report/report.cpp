@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <set>
 
 #include "clothbench/error.hpp"
@@ -14,6 +13,7 @@
 #include "report/material.hpp"
 #include "report/paths.hpp"
 #include "report/penetration.hpp"
+#include "report/pictures.hpp"
 #include "report/popping.hpp"
 #include "report/pulled_strip.hpp"
 #include "report/room_pair.hpp"
@@ -38,49 +38,6 @@ const std::vector<std::string> kBandwidthNames = {"read_B_per_frame",
                                                   "bandwidth_write_mean_B_per_s",
                                                   "bandwidth_window_s"};
 const std::vector<std::string> kMemoryNames = {"device_memory_B", "dispatches", "load_s"};
-
-/// A word that the shell takes as it stands.
-std::string quoted(const fs::path& path) {
-  std::string out = "'";
-  for (const char c : path.string()) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
-/// A Python with matplotlib; empty if there is none.
-std::string find_python() {
-  for (const char* python : {"/usr/bin/python3", "python3"})
-    if (std::system((std::string(python) + " -c 'import matplotlib' >/dev/null 2>&1").c_str()) == 0) return python;
-  return "";
-}
-
-/// Figures of what the cells show. Returns what went wrong, or nothing; a missing matplotlib is told apart by
-/// `has_python`.
-std::string draw_figures(const fs::path& out, bool rates, bool penetration, bool work, bool stability, bool& has_python) {
-  for (const auto& file : fs::directory_iterator(out))  // an older run's figures are not this report's
-    if (file.path().extension() == ".svg" || file.path().extension() == ".png") {
-      const std::string stem = file.path().stem().string();
-      if (stem == "fig4" || stem == "fig5" || stem.starts_with("penetration-") || stem.starts_with("work-precision-") || stem.starts_with("stability-")) fs::remove(file.path());
-    }
-  const std::string python = find_python();
-  has_python = !python.empty();
-  if (!has_python) return "Figures were left out: no Python with matplotlib (Debian: python3-matplotlib).";
-  std::vector<std::string> commands;
-  const auto add = [&](const char* script, const fs::path& a, const fs::path& b) {
-    commands.push_back(fmt::format("{} {} {} {}", python, quoted(find_data(kScriptFolder) / script), quoted(a),
-                                   b.empty() ? "" : quoted(b)));
-  };
-  try {
-    if (rates) add("plot_report.py", out / "cells.csv", find_data(kResultFolder) / "paper-table3.json");
-    if (penetration) add("plot_penetration.py", out / "penetration-series.csv", {});
-    if (work) add("plot_work_precision.py", out / "work-precision.csv", {});
-    if (stability) add("plot_stability.py", out / "stability.json", out / "stability.csv");
-  } catch (const Error& e) {  // the tables do not depend on it
-    return std::string("Figures were left out: ") + e.what();
-  }
-  for (const std::string& command : commands)
-    if (std::system(command.c_str()) != 0) return "Figures were left out: this command failed: " + command;
-  return "";
-}
 
 std::string figures_markdown(const std::vector<CellRecord>& cells) {
   const std::string windows = window_note(cells);
@@ -317,8 +274,12 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
   const std::string no_page = write_page(options.out, cells, page, page_template());
   if (!no_page.empty()) fmt::print(stderr, "{}\n", no_page);
 
-  bool has_python = false;
-  const std::string no_figures = draw_figures(options.out, !rest.empty(), !ups.empty(), !diagrams.empty(), !stability.empty() || !maps.empty(), has_python);
+  std::vector<Drawing> drawings;
+  if (!rest.empty()) drawings.push_back({"plot_report.py", options.out / "cells.csv", {}, true});
+  if (!ups.empty()) drawings.push_back({"plot_penetration.py", options.out / "penetration-series.csv"});
+  if (!diagrams.empty()) drawings.push_back({"plot_work_precision.py", options.out / "work-precision.csv"});
+  if (!stability.empty() || !maps.empty()) drawings.push_back({"plot_stability.py", options.out / "stability.json", options.out / "stability.csv"});
+  const auto [no_figures, has_python] = draw_pictures(options.out, drawings);
   const std::string figures = "### Figures\n\n" + (rest.empty() ? "" : figures_markdown(rest)) + penetration_figures_markdown(ups) +
                               work_figures_markdown(diagrams) + stability_figures_markdown(maps, !stability.empty());
   write("report.md", "# clothbench report\n\n" + head + "\n" + tables + (no_figures.empty() ? figures : no_figures + "\n\n") +

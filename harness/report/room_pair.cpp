@@ -9,20 +9,21 @@
 #include "report/grid.hpp"
 #include "report/trajectories.hpp"
 #include "report/withheld.hpp"
+#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {
 
 using nlohmann::json;
 
-struct Parts {
+struct RoomParts {
   std::string rest;  ///< the scenario without the cuts
   bool whole = false, room = false;
 };
 
-Parts parts_of(const CellRecord& c) {
+RoomParts parts_of(const CellRecord& c) {
   json s = json::parse(c.header.scenario_json, nullptr, false);
-  Parts p;
+  RoomParts p;
   if (!s.is_object() || !s.contains("colliders") || !s["colliders"].is_array()) return p;
   for (json& collider : s["colliders"]) {
     if (!collider.is_object() || collider.value("type", "") != "room") continue;
@@ -51,13 +52,13 @@ double mesh_stages_s(const CellRecord& c) {
   return sum;
 }
 
-struct Quantity {
+struct PairQuantity {
   const char* head;
   double scale;
   double (*value)(const CellRecord&);
 };
 
-const Quantity kQuantities[] = {
+const PairQuantity kPairQuantities[] = {
     {"wall [ms]", 1e3, [](const CellRecord& c) { return summary_value(c, "frame_wall_median_s"); }},
     {"GPU [ms]", 1e3, [](const CellRecord& c) { return summary_value(c, "frame_device_median_s"); }},
     {"mesh stages [ms]", 1e3, mesh_stages_s},
@@ -72,7 +73,7 @@ std::string distance(double m) { return std::isfinite(m) ? fmt::format("{:.3g} m
 }  // namespace
 
 std::vector<RoomPair> room_pairs(const std::vector<CellRecord>& cells) {
-  std::vector<Parts> parts;
+  std::vector<RoomParts> parts;
   for (const CellRecord& c : cells) parts.push_back(parts_of(c));
   std::vector<RoomPair> out;
   for (std::size_t w = 0; w < cells.size(); ++w) {
@@ -92,17 +93,17 @@ std::vector<RoomPair> room_pairs(const std::vector<CellRecord>& cells) {
 
 Table room_table(const std::vector<RoomPair>& pairs) {
   Table t{"SubMesh against the whole room (section 3.2.4)", "", {{"scene", "solver", "mesh"}}};
-  for (const Quantity& q : kQuantities) t.rows[0].emplace_back(q.head);
+  for (const PairQuantity& q : kPairQuantities) t.rows[0].emplace_back(q.head);
   std::vector<const CellRecord*> cells;
   for (const RoomPair& p : pairs) {
     cells.insert(cells.end(), {p.cut, p.whole});
     const auto row = [&](const char* mesh, const auto& text) {
       std::vector<std::string> r = {p.cut->header.scene, p.cut->header.solver, mesh};
-      for (const Quantity& q : kQuantities) r.push_back(text(q));
+      for (const PairQuantity& q : kPairQuantities) r.push_back(text(q));
       t.rows.push_back(std::move(r));
     };
     const auto of = [](const CellRecord& c) {
-      return [&c](const Quantity& q) {
+      return [&c](const PairQuantity& q) {
         if (c.outcome.status != "ok") return c.outcome.status;
         const bool reads = std::string(q.head) == "read [kB]";
         return reads ? bytes_read(c, q.scale * q.value(c), 3) : significant(q.scale * q.value(c), 3);
@@ -110,7 +111,7 @@ Table room_table(const std::vector<RoomPair>& pairs) {
     };
     row("SubMesh", of(*p.cut));
     row("whole room", of(*p.whole));
-    row("ratio", [&](const Quantity& q) { return significant(q.value(*p.whole) / q.value(*p.cut), 3); });
+    row("ratio", [&](const PairQuantity& q) { return significant(q.value(*p.whole) / q.value(*p.cut), 3); });
     t.note +=
         fmt::format("{}{}, {}: greatest distance between the positions of the two, at the end {}, over all frames {}.",
                     t.note.empty() ? "" : " ", p.cut->header.scene, p.cut->header.solver, distance(p.distance_end_m),
@@ -126,15 +127,15 @@ json room_json(const std::vector<RoomPair>& pairs) {
   for (const RoomPair& p : pairs) {
     json row = {{"scene", p.cut->header.scene},
                 {"solver", p.cut->header.solver},
-                {"distance_end_m", or_null(p.distance_end_m)},
-                {"distance_max_m", or_null(p.distance_max_m)}};
+                {"distance_end_m", finite_or_null(p.distance_end_m)},
+                {"distance_max_m", finite_or_null(p.distance_max_m)}};
     for (const auto& [name, cell] : {std::pair{"sub_mesh", p.cut}, std::pair{"whole_room", p.whole}}) {
       json& part = row[name] = {{"setting", cell->header.setting},
                                 {"status", cell->outcome.status},
-                                {"mesh_stages_s", or_null(mesh_stages_s(*cell))}};
+                                {"mesh_stages_s", finite_or_null(mesh_stages_s(*cell))}};
       for (const char* key : {"frame_wall_median_s", "frame_device_median_s", "read_B_per_frame", "write_B_per_frame",
                               "device_memory_B", "load_s"})
-        part[key] = or_null(summary_value(*cell, key));
+        part[key] = finite_or_null(summary_value(*cell, key));
     }
     out.push_back(std::move(row));
   }

@@ -21,8 +21,6 @@ constexpr const char* kExtremes[] = {"stability_speed_max",         "stability_e
                                      "stability_unrest_max",        "stability_fall_error_max"};
 constexpr const char* kGrades[] = {"stable", "degraded", "failed"};
 
-json scenario_of(const CellRecord& c) { return json::parse(c.header.scenario_json, nullptr, false); }
-
 /// "S01 s01-stiffness"
 std::string case_of(const json& scenario) {
   const auto name = scenario.value("name", "");
@@ -76,8 +74,6 @@ struct Tally {
     return out;
   }
 };
-
-std::string exact(double v) { return std::isfinite(v) ? fmt::format("{}", v) : v > 0 ? "inf" : ""; }
 
 /// 3 digits, with an exponent where that is shorter.
 std::string short_number(double v) { return fmt::format("{:.3g}", v); }
@@ -219,7 +215,7 @@ std::string stability_csv(const std::vector<CellRecord>& cells) {
                                     c.outcome.message};
     for (const char* name : kExtremes) {
       const auto at = c.summary.find(name);
-      row.push_back(at == c.summary.end() ? "" : exact(at->second));
+      row.push_back(at == c.summary.end() ? "" : csv_number(at->second));
     }
     out += csv_row(row);
   }

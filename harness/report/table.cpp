@@ -100,6 +100,8 @@ std::string Table::console() const {
   return out + (note.empty() ? "" : wrapped(note, 2, kConsoleColumns));
 }
 
+std::string csv_number(double v) { return std::isnan(v) ? "" : fmt::format("{}", v); }
+
 std::string csv_row(const std::vector<std::string>& fields) {
   std::string out;
   for (std::size_t k = 0; k < fields.size(); ++k) {

@@ -31,6 +31,9 @@ std::size_t display_width(const std::string&);
 /// Breaks text at spaces so that lines with their indent fit `columns`; a longer word stands alone. Ends in a newline.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns);
 
+/// In full precision, for CSV: "inf" and "-inf" where it is infinite, nothing where it is missing.
+std::string csv_number(double v);
+
 /// Fields with comma, quote or line break quoted as RFC 4180 says.
 std::string csv_row(const std::vector<std::string>& fields);
 

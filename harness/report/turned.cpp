@@ -7,6 +7,7 @@
 
 #include "report/trajectories.hpp"
 #include "report/withheld.hpp"
+#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {
@@ -16,8 +17,6 @@ using nlohmann::json;
 const std::string kSuffix = "-turned";
 constexpr const char* kUnknown = "–";  // hangs on what must not be printed
 constexpr double kSamePlace = 0.05, kAtContact_s = 0.1;
-
-json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
 
 std::string share(double v) { return std::isfinite(v) ? fmt::format("{:.1e}", v) : "–"; }
 
@@ -103,7 +102,7 @@ json turned_json(const std::vector<TurnedPair>& pairs) {
   json out = json::array();
   for (const TurnedPair& p : pairs)
     out.push_back({{"scene", p.scene}, {"solver", p.series.solver}, {"setting", p.series.setting}, {"sides", p.series.sides},
-                   {"apart_at_contact", or_null(p.apart_at_contact)}, {"apart_end", or_null(p.apart_end)}, {"same", p.same()}});
+                   {"apart_at_contact", finite_or_null(p.apart_at_contact)}, {"apart_end", finite_or_null(p.apart_end)}, {"same", p.same()}});
   return out;
 }
 

@@ -9,6 +9,7 @@
 
 #include "report/grid.hpp"
 #include "report/withheld.hpp"
+#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {
@@ -16,8 +17,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double kRealTime_ms_per_s = 1000;  // a 72 Hz frame simulates 1/72 s in 1/72 s
-
-json scenario_of(const CellRecord& c) { return json::parse(c.header.scenario_json, nullptr, false); }
 
 std::string card_of(const json& scenario) { return scenario.is_object() ? scenario.value(json::json_pointer("/truth/card"), std::string()) : ""; }
 
@@ -85,10 +84,9 @@ std::string time_text(const WorkPoint* p, double WorkPoint::*clock = &WorkPoint:
 auto within(double most) {
   return [most](const WorkPoint& p) { return p.error <= most; };
 }
-bool in_real_time(const WorkPoint& p) { return p.wall_ms_per_s <= kRealTime_ms_per_s; }
 bool timed_on_gpu(const WorkPoint& p) { return std::isfinite(p.device_ms_per_s); }
 
-std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.1e}", v) : "–"; }
+std::string error_number(double v) { return std::isfinite(v) ? fmt::format("{:.1e}", v) : "–"; }
 
 /// No solver is told apart below the floor.
 std::string error_text(const WorkDiagram& d, const WorkPoint* p) {
@@ -115,10 +113,9 @@ std::vector<const CellRecord*> cells_of(const std::vector<WorkDiagram>& diagrams
   return out;
 }
 
-json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
-std::string exact(double v) { return std::isfinite(v) ? fmt::format("{}", v) : ""; }
-
 }  // namespace
+
+bool in_real_time(const WorkPoint& p) { return p.wall_ms_per_s <= kRealTime_ms_per_s; }
 
 double WorkDiagram::best_error() const {
   double least = kMissing;
@@ -229,7 +226,7 @@ Table truth_table(const std::vector<WorkDiagram>& diagrams) {
   const auto order = [](double v) { return std::isfinite(v) ? fmt::format("{:.2f}", v) : std::string("–"); };
   for (const WorkDiagram& d : diagrams) {
     const std::string refused = d.refused();
-    t.rows.push_back({d.scene, d.ranking, number(d.space_error), number(d.uncertainty), number(d.truth_distance), order(d.order_bdf2),
+    t.rows.push_back({d.scene, d.ranking, error_number(d.space_error), error_number(d.uncertainty), error_number(d.truth_distance), order(d.order_bdf2),
                       order(d.order_conservative), refused.empty() ? "yes" : "REFUSED: " + refused});
   }
   return t;
@@ -242,9 +239,9 @@ std::string work_csv(const std::vector<WorkDiagram>& diagrams) {
     for (const WorkPoint& p : d.points) {
       const json& e = p.cell->header.environment;
       const std::string software = e.is_object() && e.value("gpu_is_software", json()) == json(true) ? "true" : "false";
-      out += csv_row({d.scene, d.card, d.ranking, exact(d.space_error), exact(d.floor()), d.refused(), p.solver, p.setting,
+      out += csv_row({d.scene, d.card, d.ranking, csv_number(d.space_error), csv_number(d.floor()), d.refused(), p.solver, p.setting,
                       p.cell->outcome.status, e.is_object() ? e.value("gpu", "") : "", software, p.on_gpu ? "true" : "false",
-                      exact(p.wall_ms_per_s), exact(p.fenced_ms_per_s), exact(p.device_ms_per_s), exact(p.error), p.on_front ? "true" : "false",
+                      csv_number(p.wall_ms_per_s), csv_number(p.fenced_ms_per_s), csv_number(p.device_ms_per_s), csv_number(p.error), p.on_front ? "true" : "false",
                       d.flagged.contains(p.solver) ? d.flagged.at(p.solver) : ""});
     }
   return out;
@@ -256,11 +253,11 @@ json work_json(const std::vector<WorkDiagram>& diagrams) {
     json points = json::array();
     for (const WorkPoint& p : d.points)
       points.push_back({{"solver", p.solver}, {"setting", p.setting}, {"settings", p.cell->header.settings},
-                        {"status", p.cell->outcome.status}, {"wall_ms_per_s", or_null(p.wall_ms_per_s)}, {"fenced_ms_per_s", or_null(p.fenced_ms_per_s)},
-                        {"device_ms_per_s", or_null(p.device_ms_per_s)}, {"error", or_null(p.error)}, {"on_front", p.on_front}});
-    out.push_back({{"scene", d.scene}, {"card", d.card}, {"ranking", d.ranking}, {"space_error", or_null(d.space_error)},
-                   {"reference_uncertainty", or_null(d.uncertainty)}, {"reference_truth_distance", or_null(d.truth_distance)},
-                   {"reference_order_bdf2", or_null(d.order_bdf2)}, {"reference_order_conservative", or_null(d.order_conservative)},
+                        {"status", p.cell->outcome.status}, {"wall_ms_per_s", finite_or_null(p.wall_ms_per_s)}, {"fenced_ms_per_s", finite_or_null(p.fenced_ms_per_s)},
+                        {"device_ms_per_s", finite_or_null(p.device_ms_per_s)}, {"error", finite_or_null(p.error)}, {"on_front", p.on_front}});
+    out.push_back({{"scene", d.scene}, {"card", d.card}, {"ranking", d.ranking}, {"space_error", finite_or_null(d.space_error)},
+                   {"reference_uncertainty", finite_or_null(d.uncertainty)}, {"reference_truth_distance", finite_or_null(d.truth_distance)},
+                   {"reference_order_bdf2", finite_or_null(d.order_bdf2)}, {"reference_order_conservative", finite_or_null(d.order_conservative)},
                    {"refused", d.refused()}, {"rank_floor", d.rank_floor()}, {"not_ranked", d.flagged}, {"points", std::move(points)}});
   }
   return out;

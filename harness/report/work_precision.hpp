@@ -44,6 +44,9 @@ struct WorkDiagram {
 /// True for a cell whose scene states its truth.
 bool has_truth(const CellRecord&);
 
+/// Whether it takes no longer than what it simulates.
+bool in_real_time(const WorkPoint&);
+
 /// One diagram a scene, in the order of first appearance. `cells` must outlive the answer.
 std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells, const std::vector<SolverMaterial>& = {});
 

@@ -11,8 +11,6 @@
 namespace clothbench {
 namespace {
 
-constexpr double kRealTime_ms_per_s = 1000;
-
 bool ended_well(const WorkPoint& p) { return p.ok && std::isfinite(p.error) && std::isfinite(p.wall_ms_per_s); }
 
 std::set<std::string> ranked(const WorkDiagram& d) {
@@ -42,7 +40,7 @@ const std::vector<Criterion>& criteria() {
       time_to("time to 1 %", 1e-2),
       time_to("time to 0.1 %", 1e-3),
       {"error in real time", [](const WorkDiagram& d, const WorkPoint& p) {
-         return p.wall_ms_per_s <= kRealTime_ms_per_s ? std::max(p.error, d.rank_floor()) : INFINITY;
+         return in_real_time(p) ? std::max(p.error, d.rank_floor()) : INFINITY;
        }}};
   return all;
 }

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "clothbench/error.hpp"
+#include "results/json_number.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -135,7 +136,7 @@ nlohmann::json header_to_json(const CellHeader& h) {
   for (const StageRecord& s : h.stages) stages.push_back({{"name", s.name}, {"serves", s.serves}, {"dispatches", s.dispatches}, {"bytes", s.bytes}});
   return {{"scene", h.scene}, {"solver", h.solver}, {"setting", h.setting}, {"settings", h.settings},
           {"scenario_json", h.scenario_json}, {"scenario_sha256", h.scenario_sha256}, {"stages", stages}, {"plan", h.plan},
-          {"environment", h.environment}, {"vertices", h.vertices}, {"triangles", h.triangles}, {"load_s", h.load_s}};
+          {"environment", h.environment}, {"vertices", h.vertices}, {"triangles", h.triangles}, {"load_s", number_to_json(h.load_s)}};
 }
 
 CellHeader header_from_json(const nlohmann::json& j) {
@@ -153,7 +154,7 @@ CellHeader header_from_json(const nlohmann::json& j) {
   h.environment = j.at("environment");
   h.vertices = j.at("vertices").get<std::uint32_t>();
   h.triangles = j.at("triangles").get<std::vector<std::uint32_t>>();
-  h.load_s = j.at("load_s").is_null() ? kMissing : j.at("load_s").get<double>();
+  h.load_s = number_from_json(j.at("load_s"), "load_s");
   return h;
 }
 
@@ -166,8 +167,8 @@ void write_trial_file(const std::filesystem::path& path, const TimedTrial& t, st
     for (const auto* series : {&t.stage_device_s, &t.stage_read_B, &t.stage_write_B}) append(b, series->data() + f * stages, stages);
     frames.push_back(std::move(b));
   }
-  nlohmann::json header = {{"kind", "trial"}, {"index", t.index}, {"stages", stages}, {"frames", frames.size()}, {"pipelined_wall_s", t.pipelined_wall_s},
-                           {"start_unix_s", t.start_unix_s}, {"end_unix_s", t.end_unix_s}, {"jobs", t.jobs}};
+  nlohmann::json header = {{"kind", "trial"}, {"index", t.index}, {"stages", stages}, {"frames", frames.size()}, {"pipelined_wall_s", number_to_json(t.pipelined_wall_s)},
+                           {"start_unix_s", number_to_json(t.start_unix_s)}, {"end_unix_s", number_to_json(t.end_unix_s)}, {"jobs", t.jobs}};
   if (!t.frame_rendered_s.empty()) header["frame_rendered_s"] = t.frame_rendered_s;
   write_raw(path, std::move(header), frames);
 }
@@ -179,9 +180,8 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
     if (!file.complete || file.frames.size() != file.header.at("frames").get<std::size_t>()) throw Error("damaged: not all frames are there");
     TimedTrial t;
     t.index = file.header.at("index").get<int>();
-    const auto number = [&](const char* key) {  // missing values are null, older files lack some
-      const nlohmann::json v = file.header.value(key, nlohmann::json());
-      return v.is_number() ? v.get<double>() : kMissing;
+    const auto number = [&](const char* key) {  // older files lack some
+      return number_from_json(file.header.value(key, nlohmann::json()), key);
     };
     t.pipelined_wall_s = number("pipelined_wall_s");
     t.start_unix_s = number("start_unix_s");

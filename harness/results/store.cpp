@@ -10,6 +10,7 @@
 #include "results/device_samples.hpp"
 #include "results/files.hpp"
 #include "results/hdf5_file.hpp"
+#include "results/json_number.hpp"
 #include "results/raw_file.hpp"
 #include "results/xdmf.hpp"
 
@@ -23,7 +24,7 @@ fs::path trial_file(const fs::path& part, int k) { return part / fmt::format("tr
 
 nlohmann::json outcome_json(const Outcome& o, const std::map<std::string, double>& summary) {
   return {{"kind", "outcome"}, {"status", o.status}, {"class", o.klass}, {"failed_frame", o.failed_frame}, {"message", o.message},
-          {"expect", o.expect}, {"summary", summary}};  // NaN becomes null
+          {"expect", o.expect}, {"summary", numbers_to_json(summary)}};
 }
 
 /// Everything in a part folder. Damaged or foreign trial files count as not there.
@@ -46,7 +47,7 @@ CellRecord read_part(const fs::path& part) {
   if (fs::exists(part / "outcome.raw")) {
     const nlohmann::json o = read_raw(part / "outcome.raw").header;
     record.outcome = {o.at("status"), o.at("class"), o.at("failed_frame"), o.at("message"), o.value("expect", "")};
-    for (const auto& [key, value] : o.at("summary").items()) record.summary[key] = value.is_null() ? kMissing : value.get<double>();
+    record.summary = numbers_from_json(o.at("summary"));
   }
   return record;
 }
@@ -160,10 +161,16 @@ std::vector<fs::path> import_raw(const fs::path& dir_or_part, const DeviceSample
   if (!kWithHdf5) throw Error("import: this build has no HDF5; run it on another machine");
   if (!fs::is_directory(dir_or_part)) throw Error(dir_or_part.string() + ": expected a study folder or a .part folder");
   std::vector<fs::path> parts, files;
-  if (dir_or_part.extension() == ".part") parts.push_back(dir_or_part);
-  else
-    for (const auto& entry : fs::directory_iterator(dir_or_part))
+  // A path with a trailing slash has an empty last part.
+  const fs::path normal = dir_or_part.lexically_normal(), given = normal.has_filename() ? normal : normal.parent_path();
+  if (given.extension() == ".part") {
+    if (!fs::exists(given / "outcome.raw"))
+      throw Error(given.string() + ": not finished (it has no outcome.raw); `study --resume` or `run --resume` goes on with it");
+    parts.push_back(given);
+  } else {
+    for (const auto& entry : fs::directory_iterator(given))
       if (entry.is_directory() && entry.path().extension() == ".part") parts.push_back(entry.path());
+  }
   std::sort(parts.begin(), parts.end());
   for (const fs::path& part : parts) {
     if (!fs::exists(part / "outcome.raw")) continue;  // not finished: `study --resume` goes on with it

@@ -69,7 +69,8 @@ Replay read_replay(const std::filesystem::path&, std::size_t stride);
 class DeviceSamples;
 
 /// Part folders of a run made without HDF5 -> the same .h5 a direct run gives, with `samples` what the device told during
-/// the run beside it. Returns the new files.
+/// the run beside it. Returns the new files; a study folder's unfinished cells are passed over, but a part folder that is
+/// named itself and is not finished is an Error.
 std::vector<std::filesystem::path> import_raw(const std::filesystem::path& dir_or_part, const DeviceSamples* samples = nullptr);
 
 /// `<dir>/study.json`: what the folder is. Written tmp + fsync + rename.

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "metrics/stability/judge.hpp"
+#include "results/json_number.hpp"
 #include "results/store.hpp"
 #include "runner/cell.hpp"
 #include "runner/environment.hpp"
@@ -135,16 +136,15 @@ json to_json(const CellAnswer& a) {
           {"failed_frame", a.outcome.failed_frame},
           {"message", a.outcome.message},
           {"expect", a.outcome.expect},
-          {"summary", a.summary},
-          {"wall_s", a.wall_s}};
+          {"summary", numbers_to_json(a.summary)},
+          {"wall_s", number_to_json(a.wall_s)}};
 }
 
 CellAnswer answer_from_json(const json& j) {
   CellAnswer a;
   a.outcome = {j.at("status"), j.at("class"), j.at("failed_frame"), j.at("message"), j.value("expect", "")};
-  for (const auto& [key, value] : j.at("summary").items())
-    a.summary[key] = value.is_null() ? kMissing : value.get<double>();
-  a.wall_s = j.at("wall_s").is_null() ? kMissing : j.at("wall_s").get<double>();
+  a.summary = numbers_from_json(j.at("summary"));
+  a.wall_s = number_from_json(j.at("wall_s"), "wall_s");
   return a;
 }
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 
+#include "results/json_number.hpp"
 #include "results/store.hpp"
 #include "runner/boundary.hpp"
 #include "runner/cell.hpp"
@@ -46,8 +47,6 @@ json at_values(const json& j, double x, double y) {
     for (auto& item : out) item = at_values(item, x, y);
   return out;
 }
-
-json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
 
 /// Answers so far, on disk line by line. A torn last line, from a kill, is passed over.
 class Probes {
@@ -227,7 +226,7 @@ class Map {
                           {"seed", seed},
                           {"status", found->outcome.status},
                           {"class", found->outcome.klass},
-                          {"grade", or_null(grade_of(*found))},
+                          {"grade", finite_or_null(grade_of(*found))},
                           {"frame", found->outcome.failed_frame},
                           {"message", found->outcome.message}});
     return *found;
@@ -251,7 +250,7 @@ class Map {
       const int beyond = seed > 0 || quick ? 0 : static_cast<int>(x_.size());
       const Boundary b = find_boundary(values, quick ? 0.25 : kDecades, beyond, good);
       if (row.unsupported) return;
-      row.seeds.push_back({{"last_good", b.last_good}, {"first_bad", or_null(b.first_bad)}});
+      row.seeds.push_back({{"last_good", b.last_good}, {"first_bad", finite_or_null(b.first_bad)}});
       if (seed == 0) values = around(b);
     }
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fake_cells.hpp"
+#include "report/across_runs.hpp"
 
 namespace clothbench {
 namespace {
@@ -37,6 +38,29 @@ TEST(Export, CellsCsvReadsBackExactly) {
   EXPECT_EQ(field(csv, 3, "failed_frame"), "17");
   EXPECT_EQ(field(csv, 3, "message"), "said \"no\", twice\nand stopped");
   EXPECT_EQ(field(csv, 3, "fps_median"), "");
+}
+
+TEST(Export, InfinityIsSaid) {
+  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1)};
+  cells[0].summary["up"] = INFINITY;
+  cells[0].summary["down"] = -INFINITY;
+  cells[0].summary["missing"] = kMissing;
+  const auto csv = parse_csv(cells_csv(cells));
+  EXPECT_EQ(field(csv, 1, "up"), "inf");
+  EXPECT_EQ(field(csv, 1, "down"), "-inf");
+  EXPECT_EQ(field(csv, 1, "missing"), "");
+  const nlohmann::json summary = nlohmann::json::parse(cells_json(cells).dump()).at(0).at("summary");
+  EXPECT_EQ(summary.at("up"), "inf");
+  EXPECT_EQ(summary.at("down"), "-inf");
+  EXPECT_TRUE(summary.at("missing").is_null());
+  AcrossRuns a;
+  a.case_name = "S22";
+  a.value = INFINITY;
+  a.bound = 3;
+  const auto across = parse_csv(across_csv({a}));
+  EXPECT_EQ(field(across, 1, "value"), "inf");
+  EXPECT_EQ(field(across, 1, "verdict"), "broken");
+  EXPECT_EQ(across_table({a}).rows.at(1).at(4), "inf");
 }
 
 TEST(Export, Table3HasPublishedAndMeasured) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <fstream>
 
 #include "clothbench/error.hpp"
@@ -58,8 +59,6 @@ TEST_F(ReportFiles, PlannedCellsWithoutAFileAreMissing) {
 
 TEST_F(ReportFiles, WritesEveryFile) {
   const fs::path out = dir_ / "it's a report";
-  fs::create_directories(out);
-  std::ofstream(out / "fig4.svg") << "an older figure";
   write_report({run_}, {out});
   for (const char* file : {"report.md", "table3.md", "table3.csv", "table3.json", "cells.csv", "cells.json",
                            "bandwidth.csv", "memory.csv"})
@@ -73,8 +72,69 @@ TEST_F(ReportFiles, WritesEveryFile) {
     EXPECT_NE(text(out / "fig4.svg").find("<svg"), std::string::npos);
     EXPECT_NE(text(out / "fig5.png").find("PNG"), std::string::npos);
   } else {
-    EXPECT_FALSE(fs::exists(out / "fig4.svg")) << "an older figure stands beside new tables";
+    EXPECT_FALSE(fs::exists(out / "fig4.svg"));
   }
+}
+
+/// What stands for Python's matplotlib: this folder's, which has nothing in it.
+class BrokenMatplotlib {
+ public:
+  explicit BrokenMatplotlib(const fs::path& dir) {
+    fs::create_directories(dir / "matplotlib");
+    std::ofstream(dir / "matplotlib" / "__init__.py") << "";
+    setenv("PYTHONPATH", dir.c_str(), 1);
+  }
+  ~BrokenMatplotlib() { unsetenv("PYTHONPATH"); }
+};
+
+bool has_matplotlib() { return std::system("/usr/bin/python3 -c 'import matplotlib' >/dev/null 2>&1") == 0; }
+
+TEST_F(ReportFiles, ThePicturesOfAnOlderReportGoAndTheUsersStay) {
+  if (!has_matplotlib()) GTEST_SKIP() << "no Python with matplotlib";
+  const fs::path out = dir_ / "out";
+  fs::create_directories(out);
+  // As a version wrote it that kept no list.
+  std::ofstream(out / "report.md") << "# clothbench report\n\n![Frames](fig4.svg)\n\n![Old](stability-old-map.svg)\n";
+  for (const char* name : {"fig4.svg", "stability-old-map.svg", "stability-old-map.png"}) std::ofstream(out / name) << "an older figure";
+  for (const char* name : {"penetration-notes.png", "stability-mine.svg", "work-precision-mine.png"}) std::ofstream(out / name) << "the user's";
+  write_report({run_}, {out});
+  for (const char* name : {"penetration-notes.png", "stability-mine.svg", "work-precision-mine.png"})
+    EXPECT_EQ(text(out / name), "the user's") << name;
+  EXPECT_NE(text(out / "fig4.svg").find("<svg"), std::string::npos);
+  EXPECT_FALSE(fs::exists(out / "stability-old-map.svg")) << "an older figure stands beside new tables";
+  EXPECT_FALSE(fs::exists(out / "stability-old-map.png"));
+  const nlohmann::json list = nlohmann::json::parse(text(out / "report-pictures.json"));
+  EXPECT_EQ(list.at("pictures"), (nlohmann::json{"fig4.png", "fig4.svg", "fig5.png", "fig5.svg"}));
+}
+
+TEST_F(ReportFiles, AUsersPictureIsNotWrittenOver) {
+  if (!has_matplotlib()) GTEST_SKIP() << "no Python with matplotlib";
+  const fs::path out = dir_ / "out";
+  fs::create_directories(out);
+  std::ofstream(out / "fig5.svg") << "the user's";
+  try {
+    write_report({run_}, {out});
+    ADD_FAILURE() << "written over";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find((out / "fig5.svg").string()), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(text(out / "fig5.svg"), "the user's");
+  EXPECT_FALSE(fs::exists(out / "fig4.svg")) << "half of the pictures were put in place";
+}
+
+TEST_F(ReportFiles, WhatCannotBeDrawnLeavesTheOlderPictures) {
+  if (!has_matplotlib()) GTEST_SKIP() << "no Python with matplotlib";
+  const fs::path out = dir_ / "out";
+  write_report({run_}, {out});
+  const std::string picture = text(out / "fig4.svg"), list = text(out / "report-pictures.json");
+  {
+    const BrokenMatplotlib broken(dir_ / "python");
+    EXPECT_THROW(write_report({run_}, {out}), Error);
+  }
+  EXPECT_EQ(text(out / "fig4.svg"), picture);
+  EXPECT_EQ(text(out / "report-pictures.json"), list);
+  EXPECT_NE(text(out / "report.md").find("those of an earlier report"), std::string::npos);
+  for (const auto& entry : fs::directory_iterator(out)) EXPECT_FALSE(entry.is_directory()) << entry.path();
 }
 
 TEST_F(ReportFiles, IsAFunctionOfTheFiles) {

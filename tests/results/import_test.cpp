@@ -102,6 +102,31 @@ std::vector<Case> cases() {
   return all;
 }
 
+TEST(ImportArguments, ATrailingSlashIsTheSameFolder) {
+  const fs::path dir = fs::temp_directory_path() / ("clothbench-import-slash-" + std::to_string(getpid()));
+  fs::create_directories(dir);
+  CellHeader h;
+  h.scene = "s";
+  h.solver = "none";
+  h.setting = "default";
+  h.settings = h.plan = h.environment = nlohmann::json::object();
+  CellWriter writer(dir, h, Finish::Raw);
+  const std::string part = (dir / "s__none__default.part").string();
+  try {
+    import_raw(part);
+    ADD_FAILURE() << "a part folder that is not finished, named by itself, is passed over in silence";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+  }
+  writer.finish({}, {});
+  for (const char* end : {"", "/", "//", "/."}) {
+    fs::remove(dir / "s__none__default.h5");
+    EXPECT_EQ(import_raw(part + end), std::vector<fs::path>{dir / "s__none__default.h5"}) << "x.part" << end;
+    EXPECT_TRUE(fs::exists(dir / "s__none__default.h5")) << "x.part" << end;
+  }
+  fs::remove_all(dir);
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, Import, ::testing::ValuesIn(cases()), [](const auto& one) { return name_of(one.param); });
 
 }  // namespace

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <random>
 
 #include "clothbench/error.hpp"
+#include "results/json_number.hpp"
 #include "results/store.hpp"
 #include "sample_cell.hpp"
 
@@ -114,6 +117,33 @@ TEST_F(Raw, NoiseNeverCrashesAReader) {
       read_accuracy_file(dir_ / "x.raw");
     } catch (const Error&) {
     }
+  }
+}
+
+TEST_F(Raw, InfinityIsNotMissing) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  CellRecord r = sample_cell();
+  r.summary = {{"a", kInfinity}, {"b", -kInfinity}, {"c", kMissing}, {"d", 0.1}};
+  for (const Finish how : {Finish::Raw, best_finish()}) {
+    CellWriter writer(dir_, r.header, how);
+    const std::map<std::string, double> read = read_cell(writer.finish(r.outcome, r.summary)).summary;
+    EXPECT_EQ(read.at("a"), kInfinity);
+    EXPECT_EQ(read.at("b"), -kInfinity);
+    EXPECT_TRUE(std::isnan(read.at("c")));
+    EXPECT_EQ(read.at("d"), 0.1);
+  }
+}
+
+TEST_F(Raw, NumbersInJsonReadBackAndOldNullsAreMissing) {
+  for (const double v : {1.0 / 3, -0.0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()})
+    EXPECT_EQ(number_from_json(nlohmann::json::parse(number_to_json(v).dump()), "v"), v);
+  EXPECT_TRUE(number_to_json(kMissing).is_null());
+  EXPECT_TRUE(std::isnan(number_from_json(nlohmann::json(), "v"))) << "as older versions wrote what is missing";
+  try {
+    number_from_json("infinite", "stability_depth_max");
+    ADD_FAILURE() << "any text passes for a number";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("stability_depth_max"), std::string::npos) << e.what();
   }
 }
 

@@ -145,6 +145,15 @@ TEST_F(Process, LastWordsAreOfTheCellThatFailed) {
   EXPECT_EQ(a.outcome.message.find("something else"), std::string::npos) << a.outcome.message;
 }
 
+TEST(Answer, KeepsInfinityOnItsWayThroughJson) {
+  CellAnswer a;
+  a.summary = {{"stability_depth_max", INFINITY}, {"stability_unrest_max", kMissing}};
+  const CellAnswer b = answer_from_json(nlohmann::json::parse(to_json(a).dump()));
+  EXPECT_EQ(b.summary.at("stability_depth_max"), INFINITY);
+  EXPECT_TRUE(std::isnan(b.summary.at("stability_unrest_max")));
+  EXPECT_TRUE(std::isnan(b.wall_s));
+}
+
 TEST(Child, AProgramThatIsNotThereIsAnError) {
   EXPECT_THROW(Child({"/no/such/program"}, fs::temp_directory_path() / "clothbench-no-program.txt"), Error);
 }

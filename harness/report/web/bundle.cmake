@@ -13,7 +13,6 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
     DEPENDS ${sources} ${web}/bundle.cmake ${web}/bundle.mjs ${web}/package-lock.json ${PROJECT_SOURCE_DIR}/README.md
     COMMENT "Bundling the report's page" VERBATIM)
   target_sources(clothbench_report PRIVATE ${template})
-  set_source_files_properties(${template} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   return()
 endif()
 

@@ -8,6 +8,7 @@
 
 #include "report/report.hpp"
 #include "report/web/page.hpp"
+#include "results/json_number.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -16,7 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-json or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
 json six_digits(double v) { return std::isfinite(v) ? json(std::stod(fmt::format("{:.6g}", v))) : json(); }
 
 /// Vertices along one side; of a grid that is no square, the side of the square with as many.
@@ -39,14 +39,14 @@ json rate_point(const CellRecord& c, const Resolution& r) {
   return {{"width", width_of(r)},
           {"resolution", r.label()},
           {"status", c.outcome.status},
-          {"fps", or_null(summary_value(c, "fps_median"))},
-          {"spread", or_null(summary_value(c, "fps_spread"))},
-          {"device_s", or_null(summary_value(c, "frame_device_median_s"))},
-          {"read_B_per_s", or_null(summary_value(c, "bandwidth_read_peak_B_per_s"))},
-          {"write_B_per_s", or_null(summary_value(c, "bandwidth_write_peak_B_per_s"))}};
+          {"fps", finite_or_null(summary_value(c, "fps_median"))},
+          {"spread", finite_or_null(summary_value(c, "fps_spread"))},
+          {"device_s", finite_or_null(summary_value(c, "frame_device_median_s"))},
+          {"read_B_per_s", finite_or_null(summary_value(c, "bandwidth_read_peak_B_per_s"))},
+          {"write_B_per_s", finite_or_null(summary_value(c, "bandwidth_write_peak_B_per_s"))}};
 }
 
-const char* const kSeries[] = {"tunnelled_fraction", "tunnelled_depth_m", "contact_length_m", "depth_m",
+const char* const kDrawnSeries[] = {"tunnelled_fraction", "tunnelled_depth_m", "contact_length_m", "depth_m",
                                "depth_vertex_m",     "stretch_max"};
 
 json contact_row(const ContactRow& r) {
@@ -54,7 +54,7 @@ json contact_row(const ContactRow& r) {
   json time_s = json::array(), metrics = json::object();
   for (const double t : c.accuracy.time_s) time_s.push_back(six_digits(t));
   for (const MetricSeries& m : c.accuracy.metrics) {
-    if (std::find(std::begin(kSeries), std::end(kSeries), m.name) == std::end(kSeries)) continue;
+    if (std::find(std::begin(kDrawnSeries), std::end(kDrawnSeries), m.name) == std::end(kDrawnSeries)) continue;
     if (std::none_of(m.values.begin(), m.values.end(), [](double v) { return std::isfinite(v); })) continue;
     json values = json::array();
     for (const double v : m.values) values.push_back(six_digits(v));
