@@ -33,6 +33,7 @@ quietly() { "$@" >"$root/tmp/log" 2>&1 || { tail -20 "$root/tmp/log" >&2; fail "
 get() { quietly as_root apt-get install -y --no-install-recommends "$@"; }
 
 install_it() {
+  ! as_root dpkg -s clothbench >/dev/null 2>&1 || fail "$root: clothbench is installed there already: expected a bare system"
   cp "$deb" "$root/tmp/clothbench.deb"
   quietly as_root apt-get update
   get /tmp/clothbench.deb
@@ -44,7 +45,9 @@ install_it() {
   as_root dpkg --verify clothbench | grep . && fail "its files are not as they were packed"
   mkdir -p "$root$home"
   chown 65534:65534 "$root$home"
-  ok "$(as_root clothbench --version) installed, with what it depends on"
+  local version
+  version=$(as_user clothbench --version) || fail "it cannot be started: a dependency that is not declared?"
+  ok "$version installed, with what it depends on"
 }
 
 # Every place is named, and the one of the source tree is not there.

@@ -39,8 +39,10 @@ constexpr std::array kExitStatus = {
     Entry{"0", "All went well."}, Entry{"1", "A check failed."}, Entry{"2", "An argument or a file is wrong."},
     Entry{"3", "There is no Vulkan device."}, Entry{"130", "Interrupted; finished trials are kept."}};
 
-/// Text as roff takes it: its marks told apart from ours.
-std::string roff(const std::string& text) {
+/// Text as roff takes it: its marks told apart from ours, in ASCII, which every output of man(1) has.
+std::string roff(std::string text) {
+  const std::string dots = "…";
+  for (std::size_t at; (at = text.find(dots)) != std::string::npos;) text.replace(at, dots.size(), "...");
   std::string out;
   bool line_begins = true;
   for (const char c : text) {

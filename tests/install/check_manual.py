@@ -52,6 +52,9 @@ class Manual(unittest.TestCase):
         told = set(re.findall(r"^\\fB(\w+)\\fP$", self.page[self.page.index(".SH ENVIRONMENT") :], re.MULTILINE))
         self.assertEqual(told, known - OTHERS)
 
+    def test_every_locale_can_show_it(self):
+        self.assertTrue(self.roff.isascii(), [line for line in self.roff.splitlines() if not line.isascii()])
+
     def test_groff_has_no_complaint(self):
         if shutil.which("groff") is None:
             self.skipTest("no groff")
