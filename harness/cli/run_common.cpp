@@ -111,6 +111,7 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
   const std::filesystem::path out = parent              ? parent->out
                                     : flags.out.empty() ? default_folder(manifest.study)
                                                         : std::filesystem::path(flags.out);
+  require_same_cells(out, plan, parent ? parent->resume : flags.resume);
   std::filesystem::create_directories(out);
   if (needs_supervision(plan)) return supervise(plan, out, flags.resume, console);
   manifest.created = utc_now();

@@ -144,7 +144,9 @@ void add_study(CLI::App& app, Console& console) {
     manifest.definition = study.definition;
     if (!a.cells.empty()) {
       if (a.run.out.empty()) throw Error("--cell: say which folder with --out; all cells of a study lie in one");
-      plan = only_cells(std::move(plan), parse_cells(a.cells, names.size()));
+      const std::vector<std::size_t> chosen = parse_cells(a.cells, names.size());
+      require_same_cells(a.run.out, plan, true);  // also what other processes have made of it
+      plan = only_cells(std::move(plan), chosen);
       manifest.cells = names;
       plan.material_cards = false;  // of fronts, which need all cells
       a.run.resume = a.run.part = true;
