@@ -67,9 +67,8 @@ void add_context(const CellPlan& plan, const DeviceFlags& flags) {
 }  // namespace
 
 void add_bench(CLI::App& app, Console& console) {
-  static DeviceFlags flags;
-  static std::string study_name;
-  flags = {};
+  auto& flags = console.arguments<DeviceFlags>();
+  auto& study_name = console.arguments<std::string>();
   study_name = "table3";
   CLI::App* cmd = app.add_subcommand("bench", "The cells of a study under Google Benchmark; takes its --benchmark_… flags");
   cmd->add_option("--study", study_name, "Study")->capture_default_str();
@@ -78,7 +77,7 @@ void add_bench(CLI::App& app, Console& console) {
   cmd->fallthrough(false);
   cmd->allow_extras();
   cmd->footer("Example: clothbench bench --benchmark_filter='gravity-32-.*xpbd' --benchmark_repetitions=5");
-  cmd->callback([cmd, &console] {
+  cmd->callback([cmd, &console, &flags, &study_name] {
     std::vector<std::string> words = cmd->remaining();
     console.json = std::erase(words, "--json") > 0 || console.json;
     words.insert(words.begin(), "clothbench");
@@ -91,12 +90,12 @@ void add_bench(CLI::App& app, Console& console) {
     const Study study = load_study(study_name);
     const CellPlan plan = plan_study(study);
     add_context(plan, flags);
-    benchmark::ClearRegisteredBenchmarks();
+    benchmark::ClearRegisteredBenchmarks();  // those of an earlier command of this process
     for (const auto& group : plan.groups)
       for (const CellSpec& c : group) {
         if (!unsupported(c.entry->info, c.scene->needs).empty()) continue;
         benchmark::RegisterBenchmark(fmt::format("{}/{}/{}", c.scene->name, c.entry->info.name, c.setting).c_str(),
-                                     [&c, &console](benchmark::State& state) {
+                                     [&c, &console, &flags](benchmark::State& state) {
                                        if (!run_cell(state, c, flags.options)) console.exit_code = ExitCode::CheckFailed;
                                      })
             ->UseManualTime()

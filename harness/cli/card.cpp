@@ -54,7 +54,7 @@ void measure(const SolverEntry& entry, const Overrides& overrides, const CardArg
 }  // namespace
 
 void add_card(CLI::App& app, Console& console) {
-  static CardArguments a;
+  CardArguments& a = console.arguments<CardArguments>();
   CLI::App* cmd = app.add_subcommand("card",
                                      "Measure what solvers make of a scene's stiffness: moduli at 0, 45 and 90 "
                                      "degrees, bending, and whether they hold over settings");
@@ -64,7 +64,7 @@ void add_card(CLI::App& app, Console& console) {
                 "Only at the settings given, not with four times the substeps and iterations too");
   a.device.add_to(*cmd);
   cmd->footer("Example: clothbench card xpbd --set solver.substeps=64");
-  cmd->callback([&console] {
+  cmd->callback([&console, &a] {
     const Overrides overrides = split_overrides(a.set);
     if (!overrides.scene.empty())
       throw Error("--set " + overrides.scene[0] + ": expected solver.<name>=<value>; the patches are fixed");

@@ -77,8 +77,7 @@ void check(const CheckArguments& a, const std::vector<CellRecord>& cells, Consol
 }  // namespace
 
 void add_check(CLI::App& app, Console& console) {
-  static CheckArguments a;
-  a = {};
+  CheckArguments& a = console.arguments<CheckArguments>();
   CLI::App* cmd = app.add_subcommand(
       "check", "Hold results to a baseline: outcome, stages, dispatches, error, penetration; never times");
   cmd->add_option("runs", a.runs, "Study folders or result files")->required();
@@ -90,7 +89,7 @@ void add_check(CLI::App& app, Console& console) {
   cmd->footer(
       "Exit codes: 0 as in the baseline or better, 1 something is worse or missing, 2 bad input.\n"
       "Example: clothbench check results/runs/mine --baseline results/baselines/penetration.json --junit check.xml");
-  cmd->callback([&console] {
+  cmd->callback([&console, &a] {
     const std::vector<fs::path> runs(a.runs.begin(), a.runs.end());
     if (!a.junit.empty() && fs::is_regular_file(a.junit))
       fs::remove(a.junit);  // an older verdict must not outlive a failed check

@@ -1,6 +1,8 @@
 #pragma once
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +19,20 @@ struct Console {
   std::string command_line;
   std::vector<std::string> words;  ///< the same, after the program's name
   ExitCode exit_code = ExitCode::Ok;
+  std::set<std::string> told_scenes = {};  ///< whose drawn parameters (--seed) the user has been told
+
+  /// Where a command keeps its arguments: new ones for every command line, since one process may run several (an app's
+  /// session does). They live as long as the console does.
+  template <class Arguments>
+  Arguments& arguments() {
+    auto made = std::make_shared<Arguments>();
+    Arguments& out = *made;
+    kept_.push_back(std::move(made));
+    return out;
+  }
+
+ private:
+  std::vector<std::shared_ptr<void>> kept_;
 };
 
 void add_list(CLI::App&, Console&);

@@ -9,8 +9,7 @@
 namespace clothbench {
 
 void add_compare(CLI::App& app, Console& console) {
-  static std::string a, b, markdown;
-  a = b = markdown = "";
+  auto &a = console.arguments<std::string>(), &b = console.arguments<std::string>(), &markdown = console.arguments<std::string>();
   CLI::App* cmd = app.add_subcommand(
       "compare",
       "Two runs of the same cells: what is faster or slower beyond noise, and which results are not the same");
@@ -18,7 +17,7 @@ void add_compare(CLI::App& app, Console& console) {
   cmd->add_option("b", b, "Study folder or result file: after")->required();
   cmd->add_option("--markdown", markdown, "Also write the tables to this file, for a pull request");
   cmd->footer("Example: clothbench compare results/runs/before results/runs/after --markdown comparison.md");
-  cmd->callback([&console] {
+  cmd->callback([&console, &a, &b, &markdown] {
     std::vector<CellRecord> before = collect({a}), after = collect({b});
     withhold_times(before);
     withhold_times(after);
@@ -39,15 +38,14 @@ void add_compare(CLI::App& app, Console& console) {
   });
 }
 
-void add_history(CLI::App& app, Console&) {
-  static std::vector<std::string> runs;
-  runs = {};
+void add_history(CLI::App& app, Console& console) {
+  auto& runs = console.arguments<std::vector<std::string>>();
   CLI::App* cmd = app.add_subcommand(
       "history",
       "Times and errors as the JSON that chart-per-commit tools read (github-action-benchmark: customSmallerIsBetter)");
   cmd->add_option("runs", runs, "Study folders or result files")->required();
   cmd->footer("Example: clothbench history results/runs/mine > benchmark.json");
-  cmd->callback([] {
+  cmd->callback([&runs] {
     std::vector<CellRecord> cells = collect({runs.begin(), runs.end()});
     withhold(cells);
     fmt::print("{}\n", history_json(cells).dump(2));

@@ -101,10 +101,8 @@ Words candidates(const CLI::App& app, const Words& before, const std::string& pr
 }  // namespace
 
 void add_completion(CLI::App& app, Console& console) {
-  static std::string shell;
-  static Words words;
-  shell = "";
-  words = {};
+  auto& shell = console.arguments<std::string>();
+  auto& words = console.arguments<Words>();
   CLI::App* cmd = app.add_subcommand("completion", "A script that completes this command in bash, zsh or fish");
   cmd->add_option("shell", shell, "bash, zsh or fish; words: what could stand in place of the last of the words")
       ->required()
@@ -114,7 +112,7 @@ void add_completion(CLI::App& app, Console& console) {
       "Examples: source <(clothbench completion bash)\n"
       "          clothbench completion zsh > ~/.zfunc/_clothbench\n"
       "          clothbench completion fish > ~/.config/fish/completions/clothbench.fish");
-  cmd->callback([&app, &console] {
+  cmd->callback([&app, &console, &shell, &words] {
     const std::string script = shell == "bash" ? kBash : shell == "zsh" ? kZsh : shell == "fish" ? kFish : "";
     if (!script.empty() && console.json) return fmt::print("{}\n", nlohmann::json{{"shell", shell}, {"script", script}}.dump(2));
     if (!script.empty()) return fmt::print("{}", script);

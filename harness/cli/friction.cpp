@@ -75,8 +75,7 @@ Answer guarded(Guard& guard, const Form& form, const SolverEntry& entry, const n
 }  // namespace
 
 void add_friction(CLI::App& app, Console& console) {
-  static FrictionArguments a;
-  a = {};
+  FrictionArguments& a = console.arguments<FrictionArguments>();
   CLI::App* cmd = app.add_subcommand("friction", "Solvers by the closed forms of friction: slopes, stopping, capstan, Atwood's strip");
   add_solvers(*cmd, "solver", a.solvers, "Solvers; default: all that touch anything");
   cmd->add_option("--substeps", a.substeps, "Also at these numbers of substeps a frame, where a solver has that setting");
@@ -84,7 +83,7 @@ void add_friction(CLI::App& app, Console& console) {
   cmd->add_option("--readme", a.readme, "Also write the table between the marks <!-- friction begin/end --> of this file");
   a.device.add_to(*cmd);
   cmd->footer("Example: clothbench friction xpbd bullet-soft --substeps 8 32");
-  cmd->callback([&console] {
+  cmd->callback([&console, &a] {
     const Overrides overrides = split_overrides(a.set);
     if (a.solvers.empty())
       for (const SolverEntry& e : solvers())

@@ -9,17 +9,15 @@
 namespace clothbench {
 
 void add_import(CLI::App& app, Console& console) {
-  static std::vector<std::string> folders;
-  static std::string samples_file;
-  folders = {};
-  samples_file = {};
+  auto& folders = console.arguments<std::vector<std::string>>();
+  auto& samples_file = console.arguments<std::string>();
   CLI::App* cmd = app.add_subcommand("import", "Turn raw run files (a device without HDF5, an interrupted run) into HDF5 files");
   cmd->add_option("folder", folders, "Study folders or part folders")->required();
   cmd->add_option("--samples", samples_file, "What the device told during the run: samples.json of scripts/quest_run.py");
   cmd->footer(
       "Examples: clothbench import results/runs/phone\n"
       "          clothbench import results/runs/quest --samples results/runs/quest/samples.json");
-  cmd->callback([&console] {
+  cmd->callback([&console, &folders, &samples_file] {
     std::optional<DeviceSamples> samples;
     if (!samples_file.empty()) samples.emplace(samples_file);
     nlohmann::json rows = nlohmann::json::array();
@@ -29,6 +27,7 @@ void add_import(CLI::App& app, Console& console) {
         if (!console.json) fmt::print("{}\n", file.string());
       }
     if (console.json) fmt::print("{}\n", rows.dump(2));
+    if (rows.empty()) fmt::print(stderr, "nothing to import: no finished part folders there\n");
   });
 }
 

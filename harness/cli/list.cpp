@@ -103,7 +103,7 @@ void print_rows(const nlohmann::json& rows) {
 }  // namespace
 
 void add_list(CLI::App& app, Console& console) {
-  static std::string what;
+  std::string& what = console.arguments<std::string>();
   what = "solvers";
   CLI::App* cmd = app.add_subcommand("list", "What there is: solvers, features, scenarios, studies, devices, metrics or assets");
   cmd->add_option("what", what, "solvers | features | scenarios | studies | devices | metrics | assets")
@@ -111,7 +111,7 @@ void add_list(CLI::App& app, Console& console) {
   cmd->footer(
       "Examples: clothbench list solvers\n"
       "          clothbench list scenarios --json");
-  cmd->callback([&console] {
+  cmd->callback([&console, &what] {
     const nlohmann::json rows = what == "solvers"     ? list_solvers()
                                 : what == "scenarios" ? list_scenarios()
                                 : what == "studies"   ? list_studies()

@@ -96,15 +96,14 @@ void print_threshold(const nlohmann::json& t) {
 }  // namespace
 
 void add_metamorphic(CLI::App& app, Console& console) {
-  static MetamorphicArguments a;
-  a = {};
+  MetamorphicArguments& a = console.arguments<MetamorphicArguments>();
   CLI::App* cmd = app.add_subcommand("metamorphic", "Properties of a solver that need no truth: similarity, mirror, rotation, renumbering, flip, repeat, no-op, restart");
   add_solvers(*cmd, "solver", a.solvers, "Solvers; default: all");
   cmd->add_option("--set", a.set, "Setting of the solver: solver.substeps=20");
   cmd->add_option("--readme", a.readme, "Also write the tables between the marks <!-- metamorphic begin/end --> of this file");
   a.device.add_to(*cmd);
   cmd->footer("Example: clothbench metamorphic xpbd --set solver.substeps=8");
-  cmd->callback([&console] {
+  cmd->callback([&console, &a] {
     const Overrides overrides = split_overrides(a.set);
     if (!overrides.scene.empty()) throw Error("--set " + overrides.scene[0] + ": the scenes are fixed; expected solver.<name>=<value>");
     if (a.solvers.empty())
@@ -135,15 +134,14 @@ void add_metamorphic(CLI::App& app, Console& console) {
 }
 
 void add_threshold(CLI::App& app, Console& console) {
-  static ThresholdArguments a;
-  a = {};
+  ThresholdArguments& a = console.arguments<ThresholdArguments>();
   CLI::App* cmd = app.add_subcommand("threshold", "From which friction on a scene holds, found by bisection, against the closed form");
   cmd->add_option("scene", a.scenes, "Scenes at rest on a slope or over a cylinder")->capture_default_str();
   add_solvers(*cmd, "--solver", a.solvers, "Solvers (default xpbd)");
   cmd->add_option("--set", a.set, "Override: cloth.grid=[17,17], solver.substeps=20");
   a.device.add_to(*cmd);
   cmd->footer("Example: clothbench threshold validation/incline-stick --solver xpbd --solver bullet-soft");
-  cmd->callback([&console] {
+  cmd->callback([&console, &a] {
     const Overrides overrides = split_overrides(a.set);
     if (a.solvers.empty()) a.solvers = {"xpbd"};
     nlohmann::json all = nlohmann::json::array();

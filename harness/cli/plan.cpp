@@ -73,8 +73,7 @@ void print(const nlohmann::json& p) {
 }  // namespace
 
 void add_plan(CLI::App& app, Console& console) {
-  static PlanArguments a;
-  a = {};
+  PlanArguments& a = console.arguments<PlanArguments>();
   CLI::App* cmd = app.add_subcommand("plan", "What a solver would run for a scene: kernels, dispatches, buffers, bytes, and what it leaves out");
   cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
   add_solvers(*cmd, "--solver", a.solvers, "Solvers; default: all");
@@ -83,7 +82,7 @@ void add_plan(CLI::App& app, Console& console) {
   cmd->footer(
       "Examples: clothbench plan paper/gravity --solver paper\n"
       "          clothbench plan paper/desk-flat-low --solver xpbd --set cloth.grid=[64,64] --json");
-  cmd->callback([&console] {
+  cmd->callback([&console, &a] {
     const Overrides overrides = split_overrides(a.set);
     if (a.solvers.empty())
       for (const SolverEntry& e : solvers()) a.solvers.push_back(e.info.name);

@@ -117,8 +117,7 @@ void render_all(const RenderArguments& a, const Console& console) {
 }  // namespace
 
 void add_render(CLI::App& app, Console& console) {
-  static RenderArguments a;
-  a = {};
+  RenderArguments& a = console.arguments<RenderArguments>();
   a.out = "pictures";
   a.frames = ":";
   a.colour = "checker";
@@ -145,7 +144,7 @@ void add_render(CLI::App& app, Console& console) {
   cmd->footer(
       "Examples: clothbench render results/runs/mine --cell desk-flat-low__xpbd --view top --colour depth --frames -1\n"
       "          clothbench render paper/hand-push --frames 0:-1:4 -o push");
-  cmd->callback([&console] {
+  cmd->callback([&console, &a] {
     const bool runs = std::any_of(a.files.begin(), a.files.end(), [](const fs::path& f) { return !fs::is_directory(f) && !is_cell(f); });
     const SolverEntry* solver = runs ? &find_solver(a.solver) : nullptr;
     if (solver == nullptr || !is_external(solver->info)) return render_all(a, console);

@@ -6,15 +6,14 @@
 namespace clothbench {
 
 void add_report(CLI::App& app, Console& console) {
-  static std::vector<std::string> runs;
-  static std::string out;
-  runs = {};
+  auto& runs = console.arguments<std::vector<std::string>>();
+  auto& out = console.arguments<std::string>();
   out = "report";
   CLI::App* cmd = app.add_subcommand("report", "An interactive page, tables (Markdown, CSV, JSON) and figures (SVG, PNG) from result files");
   cmd->add_option("runs", runs, "Study folders or result files")->required();
   cmd->add_option("-o,--out", out, "Folder to write to")->capture_default_str();
   cmd->footer("Example: clothbench report results/runs/table3-20260101T000000Z -o report");
-  cmd->callback([&console] {
+  cmd->callback([&console, &runs, &out] {
     std::vector<std::filesystem::path> paths(runs.begin(), runs.end());
     ReportOptions options;
     options.out = out;

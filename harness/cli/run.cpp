@@ -21,8 +21,7 @@ struct RunArguments {
 }  // namespace
 
 void add_run(CLI::App& app, Console& console) {
-  static RunArguments a;
-  a = {};
+  RunArguments& a = console.arguments<RunArguments>();
   CLI::App* cmd = app.add_subcommand("run", "Run scenes with solvers: one accuracy pass over the whole scene, then timed trials");
   cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
   add_solvers(*cmd, "--solver", a.solvers, "Solvers (default xpbd)");
@@ -34,7 +33,7 @@ void add_run(CLI::App& app, Console& console) {
   cmd->add_flag("--resume", a.resume, "Go on with the folder of an interrupted run");
   a.device.add_to(*cmd);
   cmd->footer("Example: clothbench run paper/gravity --solver paper --set cloth.grid=[64,64] --set solver.iterations=20");
-  cmd->callback([&console] {
+  cmd->callback([&console, &a] {
     if (a.resume && a.out.empty()) throw Error("--resume: say which folder with --out");
     const Overrides overrides = split_overrides(a.set);
     if (a.solvers.empty()) a.solvers = {"xpbd"};

@@ -4,12 +4,12 @@
 namespace clothbench {
 
 void add_run_cell(CLI::App& app, Console& console) {
-  static std::string folder;
+  std::string& folder = console.arguments<std::string>();
   CLI::App* cmd =
       app.add_subcommand("run-cell", "Cells in this process, for a study that runs them in processes of their own");
   cmd->group("");  // not for people
   cmd->add_option("folder", folder)->required();
-  cmd->callback([&console] { console.exit_code = static_cast<ExitCode>(run_cell_main(folder, find_solver)); });
+  cmd->callback([&console, &folder] { console.exit_code = static_cast<ExitCode>(run_cell_main(folder, find_solver)); });
 }
 
 }  // namespace clothbench

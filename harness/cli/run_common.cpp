@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "cli/cell_choice.hpp"
 #include "cli/material_cards.hpp"
@@ -94,11 +93,10 @@ void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
   app.add_option("--seed", seed, "Draw the parameters of scenes with a truth by this number, and evaluate the truth there");
 }
 
-Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, const Console& console) {
+Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, Console& console) {
   if (!seed) return scene;
-  static std::set<std::string> told;
   truth::DrawnScene drawn = truth::draw(scene, *seed);
-  if (!console.json && told.insert(scene.name).second) {
+  if (!console.json && console.told_scenes.insert(scene.name).second) {
     std::string text;
     for (const auto& [name, value] : drawn.values) text += fmt::format(" {}={:.6g}", name, value);
     fmt::print("{} --seed {}:{} frame_rate_hz={:.6g} duration_s={:.6g}\n", scene.name, *seed, text, drawn.scene.time.frame_rate_hz,
@@ -113,6 +111,7 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
   const std::filesystem::path out = parent              ? parent->out
                                     : flags.out.empty() ? default_folder(manifest.study)
                                                         : std::filesystem::path(flags.out);
+  require_same_cells(out, plan, parent ? parent->resume : flags.resume);
   std::filesystem::create_directories(out);
   if (needs_supervision(plan)) return supervise(plan, out, flags.resume, console);
   manifest.created = utc_now();

@@ -31,7 +31,7 @@ void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags&
 void add_seed(CLI::App&, std::optional<std::uint64_t>& seed);
 
 /// The scene at the parameters drawn by `seed`, told to the user once for each name; the scene itself without one.
-Scene at_seed(Scene, const std::optional<std::uint64_t>& seed, const Console&);
+Scene at_seed(Scene, const std::optional<std::uint64_t>& seed, Console&);
 
 /// Writes the manifest, runs the cells with a status line and prints what came of it. Sets the console's exit code to
 /// CheckFailed if a cell broke a rule of the harness.

@@ -57,18 +57,19 @@ void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags&
       h.setting = study.solvers[k].label;
       manifest.cells.push_back(cell_name(h));
     }
+  StabilityOptions options;
+  options.out = out;
+  options.program = own_program();
+  options.device = flags.device.options;
+  options.resume = flags.resume;
+  options.jobs = jobs;
+  options.solvers = only;
+  options.environment = environment;
+  require_same_study(study, options);
   write_manifest(out, manifest);
   StabilityCounts counts;
   {
     StatusLine line(!console.json);
-    StabilityOptions options;
-    options.out = out;
-    options.program = own_program();
-    options.device = flags.device.options;
-    options.resume = flags.resume;
-    options.jobs = jobs;
-    options.solvers = only;
-    options.environment = environment;
     options.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
       line.show(what, done, total);
     };

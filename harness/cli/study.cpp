@@ -87,8 +87,7 @@ CellPlan plan_study(const Study& study) {
 }
 
 void add_study(CLI::App& app, Console& console) {
-  static StudyArguments a;
-  a = {};
+  StudyArguments& a = console.arguments<StudyArguments>();
   CLI::App* cmd = app.add_subcommand("study", "Run every cell of a study");
   cmd->add_option("study", a.study, "Study file or name, such as table3")->required();
   CLI::Option* quick = cmd->add_flag("--quick", a.quick,
@@ -116,7 +115,7 @@ void add_study(CLI::App& app, Console& console) {
   add_require_assets(*cmd, a.require_assets);
   a.run.device.add_to(*cmd);
   cmd->footer("Example: clothbench study table3 --out results/runs/mine");
-  cmd->callback([&console] {
+  cmd->callback([&console, &a] {
     const Overrides overrides = split_overrides(a.set);
     if (!overrides.solver.empty()) throw Error("--set solver.…: a study's solver settings stand in its file");
     if (a.run.resume && a.run.out.empty()) throw Error("--resume: say which folder with --out");
@@ -144,7 +143,9 @@ void add_study(CLI::App& app, Console& console) {
     manifest.definition = study.definition;
     if (!a.cells.empty()) {
       if (a.run.out.empty()) throw Error("--cell: say which folder with --out; all cells of a study lie in one");
-      plan = only_cells(std::move(plan), parse_cells(a.cells, names.size()));
+      const std::vector<std::size_t> chosen = parse_cells(a.cells, names.size());
+      require_same_cells(a.run.out, plan, true);  // also what other processes have made of it
+      plan = only_cells(std::move(plan), chosen);
       manifest.cells = names;
       plan.material_cards = false;  // of fronts, which need all cells
       a.run.resume = a.run.part = true;

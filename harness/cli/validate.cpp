@@ -8,14 +8,13 @@
 namespace clothbench {
 
 void add_validate(CLI::App& app, Console& console) {
-  static std::vector<std::string> files;
-  files = {};
+  auto& files = console.arguments<std::vector<std::string>>();
   CLI::App* cmd = app.add_subcommand("validate", "Check scenario and study files");
   cmd->add_option("file", files, "Files or names")->required();
   cmd->footer(
       "Examples: clothbench validate my-scene.json\n"
       "          clothbench validate paper/gravity table3");
-  cmd->callback([&console] {
+  cmd->callback([&console, &files] {
     nlohmann::json rows = nlohmann::json::array();
     for (const std::string& file : files) {
       std::string fault;

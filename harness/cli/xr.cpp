@@ -39,8 +39,7 @@ void print(const xr::LoopResult& r, const Console& console) {
 }  // namespace
 
 void add_xr(CLI::App& app, Console& console) {
-  static XrArguments a;
-  a = {};
+  XrArguments& a = console.arguments<XrArguments>();
   a.solver = "xpbd";
   CLI::App* cmd = app.add_subcommand("xr", "A live session in a headset (OpenXR): the cloth is drawn, the user's hands and room touch it");
   cmd->add_option("scene", a.scene, "Scenario file or name: its hands become the user's, its room the user's")->required();
@@ -59,7 +58,7 @@ void add_xr(CLI::App& app, Console& console) {
   a.device.add_to(*cmd);
   cmd->footer("Example: clothbench xr paper/capsule-sweep --frames 720\n"
               "With a room: press A to see the scan, pick six points of a desk by the trigger, and the cloth falls on it.");
-  cmd->callback([&console] {
+  cmd->callback([&console, &a] {
     const Overrides overrides = split_overrides(a.set);
     xr::LoopOptions o;
     o.scenario = a.scene;

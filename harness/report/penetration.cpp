@@ -91,7 +91,7 @@ struct Column {
 };
 
 const std::vector<Column> kContactColumns = {
-    {"tunnelled, most / end [%]", {"tunnelled_fraction_max", "tunnelled_fraction_end"}, percent},
+    {"tunnelled, most / end [%]", {"tunnelled_fraction_max", "tunnelled_fraction_end"}, share_text},
     {"tunnelled depth [mm]", {"tunnelled_depth_max_m"}, mm},
     {"contour, most / settled [mm]", {"contact_length_max_m", "contact_length_settled_m"}, mm},
     {"depth, vertex / any [mm]", {"depth_vertex_max_m", "depth_max_m"}, mm},
@@ -100,7 +100,7 @@ const std::vector<Column> kContactColumns = {
     {"crossed, longest [s]", {"contact_violated_longest_s"}, number},
     {"popping [mm]", {"pop_displacement_m"}, mm},
     {"popping speed [of limit]", {"pop_speed_ratio"}, number},
-    {"strain, most / end [%]", {"stretch_max", "stretch_max_end"}, percent},
+    {"strain, most / end [%]", {"stretch_max", "stretch_max_end"}, share_text},
     {"greatest strain's error, most / RMS [of v0/c]", {"truth_quantity_error_max", "truth_quantity_error"}, number},
 };
 

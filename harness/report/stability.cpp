@@ -8,6 +8,7 @@
 #include <map>
 
 #include "clothbench/error.hpp"
+#include "report/grid.hpp"
 
 namespace clothbench {
 namespace {

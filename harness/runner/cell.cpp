@@ -67,6 +67,11 @@ std::optional<nlohmann::json> with_stage_times(const SolverEntry& entry, nlohman
   return settings;
 }
 
+void describe_solver(const SolverInfo& info, nlohmann::json& environment) {
+  environment["solver_features"] = describe_features(info);
+  environment["solver_version"] = info.version;
+}
+
 void describe_scene(const Scene& scene, nlohmann::json& environment) {
   if (!scene.assets.empty()) environment["assets"] = scene.assets;
   if (scene.seed) environment["seed"] = std::to_string(*scene.seed);
@@ -100,14 +105,14 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
     outcome_ = {"unsupported", "ok", -1, spec_.entry->make ? info.name + " has no " + join(missing) : "not in this build"};
     header_.environment = describe_environment({}, protocol);
     describe_scene(scene, header_.environment);
-    if (spec_.entry->make) header_.environment["solver_features"] = describe_features(info);
+    if (spec_.entry->make) describe_solver(info, header_.environment);
     return;
   }
   if (!spec_.over_budget.empty()) {
     outcome_ = {"over_budget", "ok", -1, spec_.over_budget};
     header_.environment = describe_environment({}, protocol);
     describe_scene(scene, header_.environment);
-    header_.environment["solver_features"] = describe_features(info);
+    describe_solver(info, header_.environment);
     return;
   }
   try {
@@ -120,12 +125,12 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
     outcome_ = {"error", "F8", -1, e.what()};
     header_.environment = describe_environment({}, protocol);
     describe_scene(scene, header_.environment);
-    header_.environment["solver_features"] = describe_features(info);
+    describe_solver(info, header_.environment);
     return;
   }
   header_.environment = describe_environment(solver_->device(), protocol);
   describe_scene(scene, header_.environment);
-  header_.environment["solver_features"] = describe_features(info);
+  describe_solver(info, header_.environment);
   plan_ = solver_->plan();
   header_.plan = plan_json(plan_, scene);
   for (const StagePlan& s : plan_.stages) {

@@ -78,8 +78,10 @@ class Cell {
   AccuracyPass run_accuracy(const TrialRules& rules);
   /// One timed trial. `frames` > 0 asks for exactly that many (so that all trials of a cell agree).
   TimedTrial run_trial(int index, const TrialRules& rules, int frames);
-  /// Validation messages so far; a run with any is not ok.
-  int validation_messages() const { return solver_ ? solver_->validation_messages() : 0; }
+  /// Validation messages so far, of its solver and of the twin that stages are timed with; a run with any is not ok.
+  int validation_messages() const {
+    return (solver_ ? solver_->validation_messages() : 0) + (profiled_ ? profiled_->validation_messages() : 0);
+  }
 
  private:
   int accuracy_frames(double duration_s) const;

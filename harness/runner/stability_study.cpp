@@ -13,10 +13,13 @@
 #include "results/store.hpp"
 #include "runner/boundary.hpp"
 #include "runner/cell.hpp"
+#include "runner/probes.hpp"
+#include "runner/resume.hpp"
 #include "runner/stability_theory.hpp"
 #include "runner/worker_pool.hpp"
 #include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
+#include "scenario/sha256.hpp"
 
 namespace clothbench {
 namespace {
@@ -33,10 +36,17 @@ void stop_if_asked() {
     throw Error("interrupted; finished cells are kept (continue with --resume)", ExitCode::Interrupted);
 }
 
-bool on_gpu(const std::string& solver) {
+/// Null if this process does not know it.
+const SolverInfo* known(const std::string& solver) {
   for (const SolverEntry& e : solvers())
-    if (e.info.name == solver) return e.info.on_gpu;
-  return false;
+    if (e.info.name == solver) return &e.info;
+  const SolverEntry* e = external_solver(solver);
+  return e == nullptr ? nullptr : &e->info;
+}
+
+bool on_gpu(const std::string& solver) {
+  const SolverInfo* info = known(solver);
+  return info != nullptr && info->on_gpu;
 }
 
 /// Strings within are expressions of x and y.
@@ -48,37 +58,6 @@ json at_values(const json& j, double x, double y) {
   return out;
 }
 
-/// Answers so far, on disk line by line. A torn last line, from a kill, is passed over.
-class Probes {
- public:
-  Probes(fs::path file, bool resume) : file_(std::move(file)) {
-    std::ifstream in(file_);
-    for (std::string line; resume && std::getline(in, line);) {
-      const json j = json::parse(line, nullptr, false);
-      if (j.is_object() && j.contains("key") && j.contains("answer")) known_[j["key"]] = answer_from_json(j["answer"]);
-    }
-    if (!resume) write_file_atomically(file_, "");
-  }
-  /// References stay: a map's nodes do not move.
-  const CellAnswer* find(const std::string& key) const {
-    const std::lock_guard lock(mutex_);
-    const auto at = known_.find(key);
-    return at == known_.end() ? nullptr : &at->second;
-  }
-  const CellAnswer& add(const std::string& key, const CellAnswer& a) {
-    const std::lock_guard lock(mutex_);
-    std::ofstream out(file_, std::ios::app);
-    out << json{{"key", key}, {"answer", to_json(a)}}.dump() << '\n';
-    out.flush();
-    if (!out) throw Error(file_.string() + ": cannot be written", ExitCode::CheckFailed);
-    return known_[key] = a;
-  }
-
- private:
-  const fs::path file_;
-  mutable std::mutex mutex_;
-  std::map<std::string, CellAnswer> known_;
-};
 
 double grade_of(const CellAnswer& a) {
   const auto at = a.summary.find("stability_grade");
@@ -111,6 +90,15 @@ class Map {
       if (asked_for(solver["solver"].get<std::string>())) solvers_.push_back(&solver);
     rows_.resize(solvers_.size(), std::vector<Row>(y_.size()));
     if (!solvers_.empty()) theory_ = lines(*solvers_.front());
+  }
+
+  /// Before the first probe. Throws Error where stored answers are not of this map as it is now.
+  void begin() {
+    const std::string scenario_sha256 = scene_from_json(scenario_, file_.string()).sha256;
+    for (const json* solver : solvers_) {
+      probed_by_[solver] = probed_by(*solver, scenario_sha256);
+      probes_.require_same(probed_by_[solver]);
+    }
   }
 
   std::size_t solvers() const { return solvers_.size(); }
@@ -200,10 +188,21 @@ class Map {
     return out;
   }
 
+  ProbedBy probed_by(const json& solver, const std::string& scenario_sha256) const {
+    const json definition = {{"x", j_["x"]["set"]}, {"y", j_["y"]["set"]}, {"settings", solver["settings"]}, {"settings_from", solver["settings_from"]}};
+    ProbedBy by;
+    by.map = j_["name"].get<std::string>();
+    by.solver = solver["solver"].get<std::string>();
+    by.setting = solver["label"].get<std::string>();
+    by.scenario_sha256 = scenario_sha256;
+    by.definition_sha256 = sha256(definition.dump());
+    if (const SolverInfo* info = known(by.solver)) by.solver_version = info->version;
+    return by;
+  }
+
   const CellAnswer& probe(const json& solver, double x, double y, int seed, CellWorker& worker, Row& row) const {
-    const auto label = solver["label"].get<std::string>();
-    const std::string key = fmt::format("{}|{}|{}|{:.17g}|{:.17g}|{}", j_["name"].get<std::string>(),
-                                        solver["solver"].get<std::string>(), label, x, y, seed);
+    const ProbedBy& by = probed_by_.at(&solver);
+    const std::string key = by.key(x, y, seed);
     const CellAnswer* found = probes_.find(key);
     if (found == nullptr) {
       stop_if_asked();
@@ -213,12 +212,12 @@ class Map {
       r.set = set_at(x, y, seed);
       r.name = j_["name"].get<std::string>();
       r.solver = solver["solver"];
-      r.setting = label;
+      r.setting = by.setting;
       r.settings = settings_at(solver, x, y);
       r.device = o_.device;
       r.protocol = protocol_name(study_.length);
       r.limit_s = study_.cell_limit_s;
-      found = &probes_.add(key, worker.run(r));
+      found = &probes_.add(by, key, worker.run(r));
     }
     row.counts.add(*found);
     row.probes.push_back({{"x", x},
@@ -273,6 +272,7 @@ class Map {
   std::vector<double> x_, y_;
   int seeds_ = 1;
   fs::path file_;
+  std::map<const json*, ProbedBy> probed_by_;
   json scenario_, theory_ = json::array();
   std::vector<const json*> solvers_;
   std::vector<std::vector<Row>> rows_;  ///< a solver, a value of y
@@ -294,7 +294,38 @@ CellRequest request_of(const Study& study, const Study::Item& item, const StudyS
   return r;
 }
 
+PlannedCell planned(const Study::Item& item, const StudySolver& s) {
+  CellHeader h;
+  h.scene = item.scene.name;
+  h.solver = s.solver;
+  h.setting = s.label;
+  return {cell_name(h), item.scene.sha256, s.settings, known(s.solver)};
+}
+
+std::vector<std::unique_ptr<Map>> maps_of(const Study& study, const StabilityOptions& o, Probes& probes) {
+  std::vector<std::unique_ptr<Map>> maps;
+  if (!study.definition.contains("maps")) return maps;
+  for (const json& map : study.definition["maps"])
+    if (study.length != StudyLength::Quick || map.contains("quick")) {
+      maps.push_back(std::make_unique<Map>(map, study, o, probes));
+      maps.back()->begin();
+    }
+  return maps;
+}
+
+fs::path probes_file(const StabilityOptions& o) { return o.out / "stability-probes.jsonl"; }
+
 }  // namespace
+
+void require_same_study(const Study& study, const StabilityOptions& o) {
+  std::vector<PlannedCell> cells;
+  for (const Study::Item& item : study.scenes)
+    for (const std::size_t k : item.solvers) cells.push_back(planned(item, study.solvers[k]));
+  require_same_cells(o.out, cells, o.resume);
+  if (!o.resume) return;
+  Probes probes(probes_file(o), true);
+  maps_of(study, o, probes);
+}
 
 void StabilityCounts::add(const CellAnswer& a) {
   const double grade = grade_of(a);
@@ -330,20 +361,14 @@ StabilityCounts run_stability_cells(const Study& study, const StabilityOptions& 
     for (const std::size_t k : item.solvers) {
       const StudySolver& s = study.solvers[k];
       ++all;
-      CellHeader h;
-      h.scene = item.scene.name;
-      h.solver = s.solver;
-      h.setting = s.label;
-      const std::string cell = cell_name(h);
-      if (!cell_finished(o.out, cell)) {
+      const PlannedCell cell = planned(item, s);
+      if (!cell_finished(o.out, cell.name)) {
         todo.push_back({&item, &s, static_cast<double>(item.scene.time.frames()) * static_cast<double>(item.scene.cloth.vertex_count())});
         continue;
       }
-      if (!o.resume)
-        throw Error(fmt::format("{}: {} is already there; give another --out, or --resume to go on with this folder",
-                                o.out.string(), cell));
-      const CellRecord before =
-          read_cell_summary(fs::exists(o.out / (cell + ".h5")) ? o.out / (cell + ".h5") : o.out / (cell + ".part"));
+      if (!o.resume) refuse_finished_cell(o.out, cell.name);
+      require_same_cell(o.out, cell);
+      const CellRecord before = read_cell_summary(stored_cell(o.out, cell.name));
       counts.add(CellAnswer{before.outcome, before.summary, kMissing});
     }
   // The longest first, or the last of them is waited for alone.
@@ -370,11 +395,8 @@ StabilityCounts run_stability_maps(const Study& study, const StabilityOptions& o
   StabilityCounts counts;
   if (!study.definition.contains("maps")) return counts;
   fs::create_directories(o.out);
-  Probes probes(o.out / "stability-probes.jsonl", o.resume);
-  std::vector<std::unique_ptr<Map>> maps;
-  for (const json& map : study.definition["maps"])
-    if (study.length != StudyLength::Quick || map.contains("quick"))
-      maps.push_back(std::make_unique<Map>(map, study, o, probes));
+  Probes probes(probes_file(o), o.resume);
+  const std::vector<std::unique_ptr<Map>> maps = maps_of(study, o, probes);
   std::mutex mutex;
   std::size_t done = 0;
   std::vector<std::function<void(CellWorker&)>> tasks;

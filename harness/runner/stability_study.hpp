@@ -30,6 +30,10 @@ struct StabilityCounts {
   void add(const StabilityCounts&);
 };
 
+/// Before anything is written: throws Error naming the file if what the folder holds, cells or probes, is of other scenes,
+/// settings or versions of solvers, or is finished and not to be gone on with.
+void require_same_study(const Study&, const StabilityOptions&);
+
 /// Every cell of the study's scenes, in processes that are replaced after a fault, with a result file each; cells that are there already are passed
 /// over with `resume`.
 StabilityCounts run_stability_cells(const Study&, const StabilityOptions&);

@@ -11,6 +11,7 @@
 #include "runner/ladder.hpp"
 #include "runner/reference.hpp"
 #include "runner/replay.hpp"
+#include "runner/resume.hpp"
 #include "runner/sensors.hpp"
 
 namespace clothbench {
@@ -51,6 +52,10 @@ CellHeader header_of(const CellSpec& spec) {
   h.solver = spec.entry->info.name;
   h.setting = spec.setting;
   return h;
+}
+
+PlannedCell planned(const CellSpec& spec) {
+  return {cell_name(header_of(spec)), spec.scene->sha256, spec.settings, spec.entry->make ? &spec.entry->info : nullptr};
 }
 
 /// Adds the time from its construction to its end.
@@ -112,9 +117,8 @@ class GroupRun {
     const std::string name = cell_name(header_of(spec));
     if (options_.resume) remove_leftovers(options_.out, name);
     if (cell_finished(options_.out, name)) {
-      if (!options_.resume)
-        throw Error(fmt::format("{}: {} is already there; give another --out, or --resume to go on with this folder",
-                                options_.out.string(), name));
+      if (!options_.resume) refuse_finished_cell(options_.out, name);
+      require_same_cell(options_.out, planned(spec));
       if (spec.work > 0) recall(spec, name);
       ++done_;
       return;
@@ -129,8 +133,7 @@ class GroupRun {
 
   /// What a cell of an earlier run took of its ladder's budget.
   void recall(const CellSpec& spec, const std::string& name) {
-    const std::filesystem::path file = options_.out / (name + ".h5");
-    const CellRecord before = read_cell_summary(std::filesystem::exists(file) ? file : options_.out / (name + ".part"));
+    const CellRecord before = read_cell_summary(stored_cell(options_.out, name));
     const auto took = before.summary.find("untimed_s");
     if (before.outcome.status != "over_budget" && took != before.summary.end())
       budget_.spent(spec, took->second, before.outcome.status);
@@ -226,6 +229,13 @@ std::size_t CellPlan::size() const {
   std::size_t n = 0;
   for (const auto& g : groups) n += g.size();
   return n;
+}
+
+void require_same_cells(const std::filesystem::path& folder, const CellPlan& plan, bool resume) {
+  std::vector<PlannedCell> cells;
+  for (const auto& group : plan.groups)
+    for (const CellSpec& c : group) cells.push_back(planned(c));
+  require_same_cells(folder, cells, resume);
 }
 
 RunResult run_cells(const CellPlan& given, const RunOptions& options) {

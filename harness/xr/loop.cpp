@@ -354,7 +354,7 @@ class Loop {
     r.file = writer.finish(outcome_, r.summary);
     r.log = log_;
     r.outcome = outcome_;
-    r.validation_messages = cell_->validation_messages();
+    r.validation_messages = device_->validation_messages();  // the session's own device: pictures count too
     return r;
   }
 

@@ -25,7 +25,9 @@ std::vector<float> inverse_masses(const Scene& scene) {
 }
 
 GpuSolver::GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)
-    : info_(std::move(info)), given_settings_(settings), settings_(settings), count_bytes_(count_bytes), device_(vulkan::Device::get(device)) {}
+    : info_(std::move(info)), given_settings_(settings), settings_(settings), count_bytes_(count_bytes), device_(vulkan::Device::get(device)) {
+  take_messages();
+}
 
 vulkan::Buffer& GpuSolver::add_buffer(const std::string& name, std::uint64_t bytes, std::vector<std::uint8_t> initial) {
   using vulkan::Buffer;
@@ -100,6 +102,7 @@ void GpuSolver::copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer
 }
 
 void GpuSolver::load(const Scene& scene) {
+  take_messages();
   scene_ = &scene;
   settings_ = given_settings_;
   frame_ = std::make_unique<vulkan::Program>(device_);
@@ -164,6 +167,7 @@ StepStatus GpuSolver::run(vulkan::Program& program) const {
 }
 
 void GpuSolver::reset() {
+  take_messages();
   if (colliders_) colliders_->reset();
   if (grips_) {
     grips_->reset();
@@ -174,6 +178,7 @@ void GpuSolver::reset() {
 }
 
 StepStatus GpuSolver::step(const FrameInput& frame) {
+  take_messages();
   if (ready_ != StepStatus::Ok) return last_ = ready_;
   if (frame.dt_s != dt_s_) record(frame.dt_s);
   if (colliders_) colliders_->write(frame.motion);
@@ -196,6 +201,7 @@ int GpuSolver::frames_in_flight() const {
 }
 
 StepStatus GpuSolver::run_frames(const std::vector<FrameInput>& frames) {
+  take_messages();
   const bool alike = std::all_of(frames.begin(), frames.end(), [&](const FrameInput& f) { return f.dt_s == dt_s_; });
   if (!alike || frames_in_flight() == 1) return ClothSolver::run_frames(frames);
   if (ready_ != StepStatus::Ok) return ready_;
@@ -212,6 +218,7 @@ StepStatus GpuSolver::run_frames(const std::vector<FrameInput>& frames) {
 }
 
 void GpuSolver::read_state(ClothState& state) const {
+  take_messages();
   const std::size_t n = scene_->cloth.vertex_count();
   state.position.assign(3 * n, kMissing);
   state.velocity.assign(3 * n, kMissing);
@@ -231,6 +238,7 @@ void GpuSolver::read_state(ClothState& state) const {
 
 /// What sums could not hold begins at 0 again, and contact remembers the sides of the start.
 bool GpuSolver::restart(const ClothState& state) {
+  take_messages();
   const bool more_layers = position_->bytes() > read_position_->bytes();
   if (!scene_->motion.empty() || more_layers) return false;
   reset();

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -49,7 +50,7 @@ class GpuSolver : public ClothSolver {
   bool restart(const ClothState&) override;
   FrameCost last_cost() const override;
   Plan plan() const override;
-  int validation_messages() const override { return device_->validation_messages(); }
+  int validation_messages() const override { return *messages_; }
 
   /// Bytes each stage's instrumented kernels counted since the last call; needs `count_bytes`.
   std::vector<Traffic> counted();
@@ -139,6 +140,8 @@ class GpuSolver : public ClothSolver {
   void update_inverse_masses();
   StepStatus run(vulkan::Program& program) const;
   StepStatus unless_missed(StepStatus status) const;
+  /// Messages of the layer are this solver's until another uses the device.
+  void take_messages() const { device_->count_messages_in(messages_); }
   template <class Fn>
   StepStatus guarded(Fn submit_or_wait) const;
   double patience_s() const;
@@ -148,6 +151,7 @@ class GpuSolver : public ClothSolver {
   nlohmann::json settings_;  ///< the same, but for what the scene does not allow
   const bool count_bytes_;
   std::shared_ptr<vulkan::Device> device_;
+  const std::shared_ptr<std::atomic<int>> messages_ = std::make_shared<std::atomic<int>>(0);
   const Scene* scene_ = nullptr;
   double dt_s_ = 0;
   StepStatus ready_ = StepStatus::Ok;  ///< of the last reset

@@ -229,6 +229,40 @@ TEST_F(Cli, CtrlCKeepsFinishedTrialsAndResumeCompletes) {
   for (const std::string& cell : read_manifest(out).cells) EXPECT_EQ(read_cell(out / (cell + ".h5")).trials.size(), 3u);
 }
 
+std::string bytes(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(Cli, AnEditedSceneIsNotResumed) {
+  const fs::path scene = dir_ / "gravity.json", study = dir_ / "edited.json", out = dir_ / "study", one = dir_ / "run";
+  nlohmann::json j;
+  std::ifstream(CLOTHBENCH_SOURCE_DIR "/scenarios/paper/gravity.json") >> j;
+  std::ofstream(scene) << j.dump();
+  std::ofstream(study) << R"({"name":"edited","why":"A test.","protocol":"fps","scenes":[{"file":"gravity.json",
+      "axes":[{"key":"cloth.grid","values":[[4,4],[5,5]],"labels":["4","5"]}]}],"solvers":[{"solver":"ballistic"}],"trials":1,
+      "short":{"frames":4,"max_wall_s":1,"min_frames":2,"warmup_s":0},"full":{"frames":4,"max_wall_s":0,"min_frames":4,"warmup_s":0},
+      "drop_frames":0,"accuracy_duration_s":0.1})";
+  const std::string run = "run " + scene.string() + " --solver ballistic --trials 0 --set time.duration_s=0.1 --out " + one.string(),
+                    some = "study " + study.string() + " --out " + out.string();
+  ASSERT_EQ(clothbench_command(some + " --cell 0").code, 0);
+  ASSERT_EQ(clothbench_command(run).code, 0);
+  j["gravity_m_per_s2"] = {0, -1, 0};
+  std::ofstream(scene) << j.dump();
+  const std::string manifest = bytes(out / "study.json"), manifest_of_run = bytes(one / "study.json");
+  // Cell 1 has not been run: it would join one of another scene.
+  for (const std::string& words : {some + " --resume", some + " --cell 0", some + " --cell 1", run + " --resume"}) {
+    const Answer a = clothbench_command(words);
+    EXPECT_EQ(a.code, 2) << words << ": " << a.text;
+    EXPECT_NE(a.text.find("is of another scene"), std::string::npos) << a.text;
+    EXPECT_NE(a.text.find("__ballistic__default"), std::string::npos) << a.text;
+  }
+  EXPECT_EQ(clothbench_command(run).code, 2) << "finished, and not to be gone on with";
+  EXPECT_EQ(bytes(out / "study.json"), manifest);
+  EXPECT_EQ(bytes(one / "study.json"), manifest_of_run);
+  EXPECT_EQ(std::distance(fs::directory_iterator(out), fs::directory_iterator()), 3) << "study.json, one cell's .h5 and .xdmf";
+}
+
 TEST_F(Cli, KilledAnywhereResumeCompletes) {
   const fs::path out = dir_ / "study";
   const std::string study = small_study();

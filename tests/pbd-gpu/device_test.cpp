@@ -60,6 +60,34 @@ TEST_F(Gpu, ValidationIsOnAndCounts) {
       << device->messages().front();
 }
 
+TEST_F(Gpu, MessagesAreOfTheSolverThatCausedThem) {
+  // A device of its own, so that the messages are not held against another test.
+  const DeviceOptions own{0, true};
+  const auto device = vulkan::Device::get(own);
+  ASSERT_NE(device, device_);
+  const Scene s = sheet(5, 4);
+  const nlohmann::json settings = complete_settings(xpbd_info(), nlohmann::json::object());
+  const auto first = make_xpbd(settings, own), second = make_xpbd(settings, own);
+  first->load(s);
+  second->load(s);
+  const FrameInput frame{0, s.time.dt(), s.time.dt(), nullptr};
+  ASSERT_EQ(first->step(frame), StepStatus::Ok);
+  device->note_message("of the first solver's frame");
+  device->note_message("of the first solver's picture");
+  ASSERT_EQ(second->step(frame), StepStatus::Ok);
+  EXPECT_EQ(first->validation_messages(), 2);
+  EXPECT_EQ(second->validation_messages(), 0);
+  ClothState state;
+  first->read_state(state);
+  device->note_message("of the first solver's state");
+  const auto third = make_xpbd(settings, own);
+  third->load(s);
+  EXPECT_EQ(first->validation_messages(), 3);
+  EXPECT_EQ(second->validation_messages(), 0);
+  EXPECT_EQ(third->validation_messages(), 0) << "made after all of them";
+  EXPECT_EQ(device->validation_messages(), 3);
+}
+
 TEST_F(Gpu, NothingIsLeftBehind) {
   device_.reset();
   const int before = vulkan::Device::validation_messages_ever();

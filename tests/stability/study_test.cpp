@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <set>
 
 #include "clothbench/error.hpp"
@@ -12,6 +13,7 @@
 #include "results/store.hpp"
 #include "runner/stability_study.hpp"
 #include "scenario/json_text.hpp"
+#include "scenario/load.hpp"
 
 namespace clothbench {
 namespace {
@@ -187,6 +189,73 @@ TEST_F(StabilityStudy, MapsEndInOneNumberASolver) {
   EXPECT_EQ(boundary_table(maps()).rows.size(), 5u);
 }
 
+std::vector<json> lines_of(const fs::path& file) {
+  std::vector<json> out;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) out.push_back(json::parse(line, nullptr, false));
+  return out;
+}
+
+TEST_F(StabilityStudy, AnAnswerAfterATornLineIsKept) {
+  const Study study = load_study((dir_ / "maps.json").string());
+  run_stability_maps(study, options(false));
+  const json whole = maps();
+  const fs::path probes = dir_ / "out" / "stability-probes.jsonl";
+  const std::size_t count = lines_of(probes).size();
+  fs::resize_file(probes, fs::file_size(probes) - 20);
+  run_stability_maps(study, options(true));
+  EXPECT_EQ(maps(), whole);
+  const std::vector<json> lines = lines_of(probes);
+  EXPECT_EQ(lines.size(), count);
+  for (const json& line : lines) EXPECT_TRUE(line.is_object() && line.contains("answer")) << "the torn line swallowed the next one";
+  const auto size = fs::file_size(probes);
+  run_stability_maps(study, options(true));
+  EXPECT_EQ(fs::file_size(probes), size) << "nothing is left to run";
+}
+
+std::string refusal(const std::function<void()>& what) {
+  try {
+    what();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::BadInput);
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST_F(StabilityStudy, AnotherSceneOrMapIsNotResumed) {
+  const Study study = load_study((dir_ / "maps.json").string());
+  run_stability_cells(study, options(false));
+  run_stability_maps(study, options(false));
+  require_same_study(study, options(true));
+  const json first_maps = maps();
+
+  json scene;
+  std::ifstream(dir_ / "thrown.json") >> scene;
+  scene["gravity_m_per_s2"] = {0, -2, 0};
+  write("thrown.json", scene);
+  const Study edited = load_study((dir_ / "maps.json").string());
+  const std::string before = study.scenes.at(0).scene.sha256.substr(0, 12), now = edited.scenes.at(0).scene.sha256.substr(0, 12);
+  ASSERT_NE(before, now);
+  const std::string cells = refusal([&] { run_stability_cells(edited, options(true)); });
+  const std::string probes = refusal([&] { run_stability_maps(edited, options(true)); });
+  for (const std::string& text : {cells, probes, refusal([&] { require_same_study(edited, options(true)); })}) {
+    EXPECT_NE(text.find(before), std::string::npos) << text;
+    EXPECT_NE(text.find(now), std::string::npos) << text;
+    EXPECT_NE(text.find("--out"), std::string::npos) << text;
+  }
+  EXPECT_NE(cells.find("thrown__"), std::string::npos) << cells;
+  EXPECT_NE(probes.find("stability-probes.jsonl"), std::string::npos) << probes;
+  EXPECT_EQ(maps(), first_maps);
+
+  scene["gravity_m_per_s2"] = {0, -1, 0};
+  write("thrown.json", scene);
+  require_same_study(load_study((dir_ / "maps.json").string()), options(true));
+  study_json_["maps"][0]["y"]["set"] = {{"cloth.areal_density_kg_per_m2", "0.2*y"}};
+  write("maps.json", study_json_);
+  EXPECT_NE(refusal([&] { run_stability_maps(load_study((dir_ / "maps.json").string()), options(true)); }).find("definition of the map"), std::string::npos);
+}
+
 TEST_F(StabilityStudy, ResumesFromItsProbesEvenAfterATornLine) {
   const Study study = load_study((dir_ / "maps.json").string());
   run_stability_maps(study, options(false));
@@ -196,7 +265,7 @@ TEST_F(StabilityStudy, ResumesFromItsProbesEvenAfterATornLine) {
   const auto size = fs::file_size(probes);
   run_stability_maps(study, options(true));
   EXPECT_EQ(maps(), whole);
-  EXPECT_EQ(fs::file_size(probes), size);  // nothing was run again
+  EXPECT_EQ(fs::file_size(probes), size) << "something was run again";
 }
 
 TEST(StabilityCases, AreAllThereAndLoad) {
@@ -211,6 +280,10 @@ TEST(StabilityCases, AreAllThereAndLoad) {
       cases.insert(item.scene.stability.name);
       const std::string number = item.scene.name.substr(1, 2);
       EXPECT_EQ(item.scene.stability.name, "S" + number) << item.scene.name;
+      // What a process of its own is handed is the scene that --resume looks for.
+      if (length == StudyLength::Quick) {
+        EXPECT_EQ(scene_from_json(json::parse(item.scene.json), item.scene.source).sha256, item.scene.sha256) << item.scene.name;
+      }
     }
   }
   EXPECT_EQ(cases.size(), 26u);

@@ -134,7 +134,7 @@ class ClothSolver {
   virtual bool restart(const ClothState&) { return false; }
   virtual FrameCost last_cost() const = 0;
   virtual Plan plan() const = 0;
-  /// Messages of the validation layer so far; 0 where there is none.
+  /// Messages of the validation layer that this solver has caused so far; 0 where there is none.
   virtual int validation_messages() const { return 0; }
 };
 

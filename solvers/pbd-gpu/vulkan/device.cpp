@@ -12,6 +12,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <tuple>
+#include <utility>
 
 #include "vulkan/device_info.hpp"
 #include "vulkan/pipeline_cache.hpp"
@@ -136,6 +137,7 @@ Device::Device(const DeviceOptions& options, Maker* maker) {
     choose_physical(options.index, maker);
     apply_profile(profile_name(options));
     create_device(maker);
+    of_making_ = validation_messages();
   } catch (...) {
     release();
     throw;
@@ -344,11 +346,18 @@ std::vector<std::string> Device::messages() const {
   return messages_;
 }
 
+void Device::count_messages_in(const std::shared_ptr<std::atomic<int>>& count) {
+  const std::lock_guard lock(messages_mutex_);
+  *count += std::exchange(of_making_, 0);
+  blamed_ = count;
+}
+
 int Device::validation_messages_ever() { return messages_ever; }
 
 void Device::note_message(const char* text) {
   const std::lock_guard lock(messages_mutex_);
   messages_.emplace_back(text);
+  if (blamed_) ++*blamed_;
   ++messages_ever;
   fmt::print(stderr, "[vulkan] {}\n", text);
 }

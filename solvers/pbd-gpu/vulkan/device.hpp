@@ -84,6 +84,9 @@ class Device {
   /// Of all devices this process has had, those of their destruction (leaked objects) included.
   static int validation_messages_ever();
   void note_message(const char* text);
+  /// From now on every message adds to this count too. Solvers share a device: each names its own count before it uses it, so
+  /// that no other is blamed. Those of making the device are the first one's.
+  void count_messages_in(const std::shared_ptr<std::atomic<int>>& count);
 
   /// After VK_ERROR_DEVICE_LOST: `get` makes a new device instead of sharing this one.
   void mark_lost() { lost_ = true; }
@@ -114,6 +117,8 @@ class Device {
   std::atomic<bool> lost_{false};
   mutable std::mutex messages_mutex_;
   std::vector<std::string> messages_;
+  std::shared_ptr<std::atomic<int>> blamed_;
+  int of_making_ = 0;
 };
 
 }  // namespace clothbench::vulkan

@@ -1,0 +1,84 @@
+// Several commands one after another in one process, as an app's session runs them: none inherits another's arguments.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/command_line.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+struct Answer {
+  int code = -1;
+  std::string text;  ///< of stdout
+};
+
+Answer in_this_process(const Words& words) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const int code = run_command_line(words);
+  testing::internal::GetCapturedStderr();
+  return {code, testing::internal::GetCapturedStdout()};
+}
+
+Answer in_a_new_process(const Words& words) {
+  std::string command = CLOTHBENCH_COMMAND;
+  for (const std::string& word : words) command += " '" + word + "'";
+  FILE* pipe = popen((command + " 2>/dev/null").c_str(), "r");
+  if (pipe == nullptr) return {};
+  Answer a;
+  std::array<char, 4096> chunk{};
+  while (const std::size_t n = fread(chunk.data(), 1, chunk.size(), pipe)) a.text.append(chunk.data(), n);
+  const int status = pclose(pipe);
+  a.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return a;
+}
+
+struct Pair {
+  Words first, second;
+};
+
+void PrintTo(const Pair& p, std::ostream* out) { *out << p.second.at(1); }
+
+class Commands : public ::testing::TestWithParam<Pair> {};
+
+TEST_P(Commands, TheSecondIsAsIfItWereTheFirst) {
+  in_this_process(GetParam().first);
+  const Answer here = in_this_process(GetParam().second), alone = in_a_new_process(GetParam().second);
+  EXPECT_EQ(alone.code, 0) << alone.text;
+  EXPECT_EQ(here.code, alone.code);
+  EXPECT_EQ(here.text, alone.text);
+}
+
+const std::vector<Pair> kPairs = {
+    {{"card", "ballistic", "--no-sweep", "--set", "cloth.grid=[3,3]"}, {"--json", "card", "ballistic"}},
+    {{"list", "features"}, {"--json", "list"}},
+    {{"validate", "no-such-scene"}, {"--json", "validate", "paper/gravity"}},
+    {{"plan", "paper/gravity", "--solver", "ballistic", "--set", "cloth.grid=[5,5]", "--json"}, {"--json", "plan", "paper/gravity", "--solver", "ballistic"}},
+    {{"metamorphic", "ballistic", "--set", "cloth.grid=[3,3]"}, {"--json", "metamorphic", "ballistic"}},
+    {{"threshold", "--solver", "ballistic", "validation/atwood"}, {"--json", "threshold", "validation/incline-stick", "--solver", "ballistic"}},
+    {{"friction", "ballistic", "--substeps", "64", "--readme", CLOTHBENCH_SOURCE_DIR "/LICENSE"}, {"--json", "friction", "ballistic"}},
+    {{"completion", "words", "--", "study", "--"}, {"--json", "completion", "zsh"}},
+    {{"study", "table3", "--quick", "--only", "nothing", "--cell", "0"}, {"--json", "study", "table3", "--list-cells"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Every, Commands, ::testing::ValuesIn(kPairs), [](const auto& one) { return one.param.second.at(1); });
+
+TEST(CommandsOfOneProcess, EachTellsWhatItsSeedDraws) {
+  const fs::path out = fs::temp_directory_path() / ("clothbench-commands-" + std::to_string(getpid()));
+  for (const char* folder : {"one", "two"}) {
+    const Answer a = in_this_process({"run", "validation/swing-strip", "--solver", "ballistic", "--trials", "0", "--seed", "7", "--out", (out / folder).string()});
+    EXPECT_EQ(a.code, 0) << a.text;
+    EXPECT_NE(a.text.find("swing-strip --seed 7:"), std::string::npos) << folder << ": " << a.text;
+  }
+  fs::remove_all(out);
+}
+
+}  // namespace
+}  // namespace clothbench

@@ -1,0 +1,121 @@
+"""usage: check_gate.py SOURCE CLOTHBENCH: the gates of scripts/test.sh pass what is right and nothing else."""
+import contextlib
+import csv
+import importlib.util
+import io
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+import unittest.mock
+
+SOURCE, CLOTHBENCH = pathlib.Path(sys.argv[1]), sys.argv[2]
+SPEC = importlib.util.spec_from_file_location("check_stability", SOURCE / "scripts" / "check_stability.py")
+GATE = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(GATE)
+CELLS = [{"case": case, "scene": f"{case.lower()}-x", "solver": solver, "setting": "default", "status": "ok", "grade": "stable", "class": "", "frame": "", "message": "a, b"}
+         for case in ("S01", "S24", "S26") for solver in ("xpbd", "paper")]
+ACROSS = [{"case": case, "solver": solver, "setting": "default", "figure": "greatest difference, over L", "value": "0", "bound": "0",
+           "verdict": "kept" if solver == "xpbd" else "broken"} for case in ("S24", "S26") for solver in ("xpbd", "paper")]
+
+
+def write(path, rows, columns=None):
+    with path.open("w", newline="", encoding="utf-8") as f:
+        out = csv.DictWriter(f, columns or list(rows[0]), extrasaction="ignore")
+        out.writeheader()
+        out.writerows(rows)
+
+
+class Gate(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.home = pathlib.Path(self.temporary.name)
+        self.cells, self.across = self.home / "stability.csv", self.home / "stability-across.csv"
+        self.summary = self.home / "summary.json"
+        write(self.cells, CELLS)
+        write(self.across, ACROSS)
+        self.summary.write_text(json.dumps({"stable": 6, "crashed": 0}))
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def gate(self):
+        told = io.StringIO()
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(told), unittest.mock.patch.object(sys, "argv", ["", self.summary, self.home]):
+            try:
+                GATE.main()
+            except SystemExit as end:
+                return end.code, told.getvalue()
+        return 0, told.getvalue()
+
+    def fails_for(self, reason):
+        code, text = self.gate()
+        self.assertNotEqual(code, 0, reason)
+        self.assertIn(reason, text)
+
+    def test_what_is_right_passes(self):
+        self.assertEqual(self.gate(), (0, ""))
+        # Another solver may be as bad as it likes, and columns may move.
+        cells = [dict(r, grade="failed", **{"class": "F0"}) if r["solver"] == "paper" else r for r in CELLS]
+        write(self.cells, cells, ["message", "class", "grade", "status", "setting", "solver", "scene", "case"])
+        self.assertEqual(self.gate(), (0, ""))
+
+    def test_a_run_out_of_bounds_fails_wherever_its_column_stands(self):
+        for klass in ("F0", "F1", "F2"):
+            cells = [dict(r, grade="failed", **{"class": klass}) if r == CELLS[0] else r for r in CELLS]
+            for columns in (None, ["class", "grade", "status", "setting", "solver", "scene", "case"]):
+                write(self.cells, cells, columns)
+                self.fails_for(klass)
+
+    def test_bits_that_differ_fail(self):
+        for verdict in ("broken", ""):
+            write(self.across, [dict(r, verdict=verdict) if r == ACROSS[0] else r for r in ACROSS])
+            self.fails_for("S24")
+
+    def test_what_is_not_there_fails(self):
+        write(self.cells, [r for r in CELLS if r["solver"] != "xpbd"])
+        self.fails_for("no run of xpbd")
+        write(self.cells, [dict(r, status="unsupported", grade="") if r["solver"] == "xpbd" else r for r in CELLS])
+        self.fails_for("no run of xpbd")
+        write(self.cells, [dict(r, status="missing", grade="failed") if r == CELLS[1] else r for r in CELLS])
+        self.fails_for("planned, not run")
+        write(self.cells, [], list(CELLS[0]))
+        self.fails_for("no rows")
+        write(self.cells, CELLS, [c for c in CELLS[0] if c != "class"])
+        self.fails_for("no column class")
+        self.cells.unlink()
+        self.fails_for("stability.csv: no such file")
+
+    def test_comparisons_that_are_not_there_fail(self):
+        write(self.across, [r for r in ACROSS if r["case"] != "S26"])
+        self.fails_for("no row of S26 by xpbd")
+        write(self.across, ACROSS, [c for c in ACROSS[0] if c != "verdict"])
+        self.fails_for("no column verdict")
+        self.across.unlink()
+        self.fails_for("stability-across.csv: no such file")
+
+    def test_a_process_that_died_fails(self):
+        for text in ('{"crashed": 1}', "{}", "", "[]", '{"crashed": "0"}', '{"crashed": null}'):
+            self.summary.write_text(text)
+            self.fails_for("summary.json")
+        self.summary.unlink()
+        self.fails_for("summary.json")
+
+    def test_no_baseline_is_a_failure_of_the_penetration_gate(self):
+        """The function of scripts/test.sh in a folder without the baseline; the study, which takes minutes, is left out, the check is run."""
+        release = self.home / "build" / "release"
+        release.mkdir(parents=True)
+        program = release / "clothbench"
+        program.write_text(f'#!/bin/sh\n[ "$1" = study ] || exec "{CLOTHBENCH}" "$@"\n')
+        program.chmod(0o755)
+        function = 'eval "$(sed -n "/^penetration()/,/^}/p" "$0")"; declare -F penetration >/dev/null || exit 9; penetration'
+        done = subprocess.run(["bash", "-c", function, SOURCE / "scripts" / "test.sh"], cwd=self.home, env=dict(os.environ), capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertIn("results/baselines/penetration.json", done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
