@@ -122,7 +122,6 @@ Table room_table(const std::vector<RoomPair>& pairs) {
 }
 
 json room_json(const std::vector<RoomPair>& pairs) {
-  const auto or_null = [](double v) { return std::isfinite(v) ? json(v) : json(); };
   json out = json::array();
   for (const RoomPair& p : pairs) {
     json row = {{"scene", p.cut->header.scene},
