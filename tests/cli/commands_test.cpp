@@ -1,5 +1,6 @@
 // Several commands one after another in one process, as an app's session runs them: none inherits another's arguments.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
