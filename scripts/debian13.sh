@@ -92,8 +92,8 @@ installed() { scripts/package_test.sh "$folder"/packages/*.deb "$folder/installe
 stage bare 3 bare
 stage set-up 2 set_up
 stage --show run.sh 12 newcomer "$clang; scripts/run.sh --quick"
+stage package 2 package
 stage --show test.sh 8 newcomer "$clang; scripts/test.sh --short"
 stage --show monado 2 monado
-stage package 2 package
 stage --show installed 3 installed
 print_budget
