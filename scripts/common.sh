@@ -79,12 +79,12 @@ stage_ticker() {
 # The last count that ninja printed; nothing for other programs.
 stage_progress() { tail -c 4000 "$1" 2>/dev/null | grep -oE '\[[0-9]+/[0-9]+\]' | tail -1 || true; }
 
-# Prints the time of every stage. In CI, a stage that took half as long again as its budget is a failure.
+# Prints the time of every stage. With `enforce`, in CI, a stage that took half as long again as its budget is a failure.
 print_budget() {
   echo
   echo "time used, of the budget on 2 cores (this run: $JOBS jobs; logs: $stage_logs):"
   printf '  %s\n' "${budget_rows[@]}"
-  if [ "$over_budget" -ne 0 ] && [ "${CI:-}" = true ]; then
+  if [ "${1:-}" = enforce ] && [ "$over_budget" -ne 0 ] && [ "${CI:-}" = true ]; then
     echo "a stage took more than one and a half times its budget" >&2
     return 1
   fi
