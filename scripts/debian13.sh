@@ -2,7 +2,8 @@
 # Both README commands on a bare Debian 13, as a newcomer would type them: a chroot made by debootstrap, a clone of the committed HEAD,
 # one build by clang with warnings as errors, the quick study, a short set of tests, a live session on Monado's OpenXR runtime, the
 # Debian package, and that package installed in a second bare Debian 13.
-#   scripts/debian13.sh [FOLDER]     default: build/debian13; everything in it is made anew but the bare system and downloads
+#   scripts/debian13.sh [--keep] [FOLDER]     default: build/debian13; everything in it is made anew but the bare system and downloads
+# --keep: go on with the system of the last call, at today's HEAD; to find a fault sooner.
 # Needs root (chroot). Without it the stage is skipped and says so, unless CLOTHBENCH_REQUIRE_DEBIAN13=1.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,6 +11,8 @@ cd "$(dirname "$0")/.."
 CLOTHBENCH_LOGS=${CLOTHBENCH_LOGS:-build/log}/debian13
 source scripts/common.sh
 here=$PWD
+keep=
+if [ "${1:-}" = --keep ]; then keep=1; shift; fi
 folder=$(realpath -m "${1:-build/debian13}")
 
 skip() {
@@ -44,6 +47,11 @@ bare() {
   cp /etc/resolv.conf "$folder/base/etc/resolv.conf"
   local certificates=${NODE_EXTRA_CA_CERTS:-${SSL_CERT_FILE:-}}
   [ -z "$certificates" ] || install -D -m 644 "$certificates" "$folder/base/etc/ssl/machine.crt"
+  if [ -n "$keep" ] && [ -d "$folder/build/root/clothbench" ]; then
+    git -C "$folder/build/root/clothbench" fetch -q origin
+    git -C "$folder/build/root/clothbench" checkout -q --detach "$(git rev-parse HEAD)"
+    return
+  fi
   # Copies of earlier runs hold no mounts: those live in a namespace of their own.
   rm -rf "$folder/build" "$folder/installed"
   cp -a "$folder/base" "$folder/build"
@@ -87,7 +95,10 @@ package() {
   rm -rf "$folder/packages"
   cp -r "$folder/build/root/clothbench/build/packages" "$folder/packages"
 }
-installed() { scripts/package_test.sh "$folder"/packages/*.deb "$folder/installed"; }
+installed() {
+  [ -d "$folder/installed" ] || cp -a "$folder/base" "$folder/installed"
+  scripts/package_test.sh "$folder"/packages/*.deb "$folder/installed"
+}
 
 stage bare 3 bare
 stage set-up 2 set_up
