@@ -30,6 +30,7 @@ constexpr std::array kEnvironment = {
     Entry{"CLOTHBENCH_PLUGIN_LIMIT_S",
           "Seconds without headway after which a plugin's process is ended; 900 where it is not set."},
     Entry{"CLOTHBENCH_DEVICE_PROFILE", "As --device-profile."},
+    Entry{"CLOTHBENCH_JOBS", "How many jobs run on this machine while times are taken; else the clothbench processes that /proc shows."},
     Entry{"CLOTHBENCH_CACHE", "Folder for compiled pipelines; else clothbench below $XDG_CACHE_HOME or ~/.cache."},
     Entry{"CLOTHBENCH_FONT", "The TrueType file that writes the words in pictures."},
     Entry{"NO_COLOR", "Where it is set, output has no colour. On a terminal alone there is any."},

@@ -88,9 +88,9 @@ class Tree(unittest.TestCase):
         script = self.share / "scripts" / "plot_report.py"
         given = script.read_text(encoding="utf-8")
         self.addCleanup(script.write_text, given, encoding="utf-8")
-        script.write_text("import sys; open(sys.argv[1] + '.mark', 'w').write(sys.argv[2])", encoding="utf-8")
+        script.write_text("import os, sys; open(os.path.join(os.path.dirname(sys.argv[1]), 'fig4.svg'), 'w').write(sys.argv[2])", encoding="utf-8")
         self.command("report", out, "-o", out + "-report")
-        published = pathlib.Path(out + "-report", "cells.csv.mark").read_text(encoding="utf-8")
+        published = pathlib.Path(out + "-report", "fig4.svg").read_text(encoding="utf-8")
         self.assertEqual(published, str(self.share / "results" / "paper-table3.json"))
         self.assertTrue(os.path.isfile(published))
 
