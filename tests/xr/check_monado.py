@@ -48,8 +48,9 @@ with tempfile.TemporaryDirectory(prefix="clothbench-monado-") as top:
         service.kill()
         service.wait()
     assert "Monado" in session.stdout, "the session does not name Monado as its runtime"
-    text = findings.read_text(encoding="utf-8") if findings.exists() else ""
-    assert "VUID" not in text + session.stdout and "VALID_USAGE" not in text, text
+    messages = [line for line in findings.read_text(encoding="utf-8").splitlines() if "VALID_" in line]
+    assert any("Core Validation Layer is initialized" in m for m in messages), "the validation layer was not loaded"
+    assert all("VALID_DEBUG" in m or "VALID_INFO" in m for m in messages), "\n".join(messages)
     with h5py.File(next((top / "live").glob("*.h5"))) as f:
         live = f["xr/final_position_m"][:]
         assert f["xr/step_s"].shape == (FRAMES,), f["xr/step_s"].shape
