@@ -64,7 +64,7 @@ bare() {
 # in_chroot ROOT COMMAND: as root of a fresh login would run it, with this machine's way to the network.
 in_chroot() {
   local root=$1 variables=(HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8
-    DEBIAN_FRONTEND=noninteractive "JOBS=$JOBS" CCACHE_DIR=/root/.cache/ccache)
+    DEBIAN_FRONTEND=noninteractive "JOBS=$JOBS")
   local name
   for name in http_proxy https_proxy no_proxy; do [ -z "${!name:-}" ] || variables+=("$name=${!name}"); done
   [ ! -f "$root/etc/ssl/machine.crt" ] || variables+=(NODE_EXTRA_CA_CERTS=/etc/ssl/machine.crt npm_config_cafile=/etc/ssl/machine.crt)

@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/common.sh
 
-# A first build compiles files together, which takes less than half the time; a folder that was configured before stays as it is.
+# A first build compiles files together, in about half the time; a folder that was configured before stays as it is.
 build() {
   local together=()
   [ -f build/release/CMakeCache.txt ] || together=(-DCMAKE_UNITY_BUILD=ON)
