@@ -13,7 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kUnknown = "–";
 constexpr std::size_t kLeastSpeeds = 3;
 
 /// What a failed bound is called, the first in this order first; other names as they are.
@@ -43,7 +42,7 @@ std::string broken_bound(const CellRecord& c, std::vector<BoundResult> bounds) {
   for (const BoundResult& b : bounds)
     if (b.kept == 0) return failure_text(c, b.name);
   for (const BoundResult& b : bounds)
-    if (!(b.kept == 1)) return c.withheld.contains("expect." + b.name) ? kUnknown : failure_text(c, b.name);
+    if (!(b.kept == 1)) return c.withheld.contains("expect." + b.name) ? kNotPrinted : failure_text(c, b.name);
   return "";
 }
 
@@ -57,7 +56,7 @@ std::string without_bounds(const std::string& kind, const CellRecord& c) {
   else most = {{"depth_vertex_max_m", 1e-3}};
   if (hand) most.insert(most.begin(), std::pair("wrong_side_samples_max", 0.0));
   for (const auto& [name, at_most] : most) {
-    if (c.withheld.contains(name)) return kUnknown;
+    if (c.withheld.contains(name)) return kNotPrinted;
     if (!(summary_value(c, name) <= at_most)) return failure_text(c, name);
   }
   return "";
@@ -125,7 +124,7 @@ Table leak_table(const std::vector<SpeedSweep>& sweeps) {
         if (s.kind != kind || s.scene != scene || s.series.label() != solver) continue;
         row[1] = fmt::format("{:g}…{:g}", s.speeds.front().speed_m_per_s, s.speeds.back().speed_m_per_s);
         const auto leak = s.first_leak();
-        text = leak && leak->leak == kUnknown ? kUnknown
+        text = leak && leak->leak == kNotPrinted ? kNotPrinted
                : leak ? metres_per_second(leak->speed_m_per_s) + ": " + leak->leak : "none up to " + metres_per_second(s.speeds.back().speed_m_per_s);
       }
       row.push_back(text);
@@ -146,8 +145,8 @@ json leak_json(const std::vector<SpeedSweep>& sweeps) {
     json row = {{"set_up", s.kind}, {"scene", s.scene}, {"solver", s.series.solver}, {"setting", s.series.setting}, {"sides", s.series.sides}, {"speeds", json::array()}};
     for (const auto& at : s.speeds) row["speeds"].push_back({{"speed_m_per_s", at.speed_m_per_s}, {"leak", at.leak}});
     const auto leak = s.first_leak();
-    row["first_leak_m_per_s"] = leak && leak->leak != kUnknown ? json(leak->speed_m_per_s) : json();
-    row["known"] = !leak || leak->leak != kUnknown;
+    row["first_leak_m_per_s"] = leak && leak->leak != kNotPrinted ? json(leak->speed_m_per_s) : json();
+    row["known"] = !leak || leak->leak != kNotPrinted;
     out.push_back(std::move(row));
   }
   return out;

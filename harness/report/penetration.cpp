@@ -17,7 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kExpect = "expect.";  // of summary values: 1 kept, 0 broken, NaN not measured
 
 bool filled(const json& j, const char* key) {
   return j.is_object() && j.contains(key) && j[key].is_array() && !j[key].empty();

@@ -15,7 +15,6 @@ namespace {
 using nlohmann::json;
 
 const std::string kSuffix = "-turned";
-constexpr const char* kUnknown = "–";  // hangs on what must not be printed
 constexpr double kSamePlace = 0.05, kAtContact_s = 0.1;
 
 std::string share(double v) { return std::isfinite(v) ? fmt::format("{:.1e}", v) : "–"; }
@@ -39,12 +38,12 @@ bool ran(const CellRecord& c) { return c.outcome.status != "unsupported" && c.ou
 /// Verdict, and what leaks.
 std::string told(const std::string& kind, const CellRecord& c) {
   const std::string leak = c.outcome.status == "ok" ? leak_of(kind, c) : "";
-  return verdict(c) + (leak.empty() || leak == kUnknown ? "" : " (" + leak + ")");
+  return verdict(c) + (leak.empty() || leak == kNotPrinted ? "" : " (" + leak + ")");
 }
 
 std::string result(const TurnedPair& p) {
   for (const CellRecord* c : {p.cell, p.turned})
-    if (leak_of(p.kind, *c) == kUnknown) return kUnknown;
+    if (leak_of(p.kind, *c) == kNotPrinted) return kNotPrinted;
   return p.same() ? "same" : "differs";
 }
 

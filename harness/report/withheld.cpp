@@ -13,8 +13,6 @@
 namespace clothbench {
 namespace {
 
-const std::string kExpect = "expect.";
-
 void take_out(CellRecord& c, const std::string& name, const std::string& why) {
   c.summary[name] = kMissing;
   c.withheld[name] = why;
