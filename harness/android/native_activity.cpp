@@ -63,7 +63,8 @@ Instance* instance_of(ANativeActivity* a) { return static_cast<Instance*>(a->ins
 /// getIntent().getStringExtra(name); empty if there is none.
 std::string intent_extra(ANativeActivity* a, const char* name) {
   JNIEnv* env = a->env;
-  const jmethodID get_intent = env->GetMethodID(env->GetObjectClass(a->clazz), "getIntent", "()Landroid/content/Intent;");
+  const jmethodID get_intent =
+      env->GetMethodID(env->GetObjectClass(a->clazz), "getIntent", "()Landroid/content/Intent;");
   jobject intent = env->CallObjectMethod(a->clazz, get_intent);
   if (intent == nullptr) return "";
   const jmethodID get_extra =
@@ -111,7 +112,8 @@ int drain_input(int, int, void* queue) {
   return 1;
 }
 
-/// The command line; of a live session the runtime asks for the activity, which the session's thread outlives for a moment.
+/// The command line; of a live session the runtime asks for the activity, which the session's thread outlives for a
+/// moment.
 Command command_of([[maybe_unused]] ANativeActivity* a) {
 #ifdef CLOTHBENCH_WITH_XR
   const xr::AndroidContext context{a->vm, a->env->NewGlobalRef(a->clazz)};
@@ -144,7 +146,8 @@ void set_callbacks(ANativeActivityCallbacks& c) {
 }  // namespace
 }  // namespace clothbench::android
 
-extern "C" __attribute__((visibility("default"))) void ANativeActivity_onCreate(ANativeActivity* activity, void*, size_t) {
+extern "C" __attribute__((visibility("default"))) void ANativeActivity_onCreate(ANativeActivity* activity, void*,
+                                                                                size_t) {
   using namespace clothbench;
   using namespace clothbench::android;
   const char* external = activity->externalDataPath;
@@ -161,6 +164,7 @@ extern "C" __attribute__((visibility("default"))) void ANativeActivity_onCreate(
     command = [](const std::vector<std::string>&) { return 1; };
   }
   ANativeActivity_setWindowFlags(activity, AWINDOW_FLAG_KEEP_SCREEN_ON, 0);
-  instance->session = std::make_unique<Session>(Launch{files, intent_extra(activity, "args")}, instance->system, command);
+  instance->session =
+      std::make_unique<Session>(Launch{files, intent_extra(activity, "args")}, instance->system, command);
   set_callbacks(*activity->callbacks);
 }

@@ -40,7 +40,8 @@ std::vector<Entry> parse_index(const std::string& text) {
     words >> e.bytes >> e.sha256 >> std::ws;
     std::getline(words, e.path);
     if (!words || e.sha256.size() != 64 || !stays_inside(e.path))
-      throw Error(fmt::format("assets: {}: line {}: expected bytes, SHA-256 and a path inside; found \"{}\"", kIndex, number, line));
+      throw Error(fmt::format("assets: {}: line {}: expected bytes, SHA-256 and a path inside; found \"{}\"", kIndex,
+                              number, line));
     entries.push_back(std::move(e));
   }
   if (entries.empty()) throw Error(fmt::format("assets: {}: it is empty", kIndex));
@@ -64,7 +65,8 @@ void unpack_assets(const AssetReader& read, const fs::path& to) {
     const auto content = read(e.path);
     if (!content) throw Error(fmt::format("assets: {}: missing", e.path));
     if (content->size() != e.bytes || sha256(*content) != e.sha256)
-      throw Error(fmt::format("assets: {}: {} bytes that are not those of the index ({} bytes)", e.path, content->size(), e.bytes));
+      throw Error(fmt::format("assets: {}: {} bytes that are not those of the index ({} bytes)", e.path,
+                              content->size(), e.bytes));
     fs::create_directories((to / e.path).parent_path());
     write_file_atomically(to / e.path, *content);
   }

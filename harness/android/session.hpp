@@ -28,8 +28,8 @@ struct Launch {
 /// Runs one command, such as {"study", "table3"}; the exit code of `clothbench`.
 using Command = std::function<int(const std::vector<std::string>& words)>;
 
-/// Words of a command line: blanks part them; "…", '…' and \ keep them together as a shell does. Throws Error on a quote
-/// that is not closed.
+/// Words of a command line: blanks part them; "…", '…' and \ keep them together as a shell does. Throws Error on a
+/// quote that is not closed.
 std::vector<std::string> split_words(const std::string& line);
 
 /// One command a line; blank lines and lines that begin with # are left out.

@@ -187,9 +187,8 @@ std::string to_json(const HandRecording& r, const std::string& why) {
     joints.insert(joints.end(), f.joints.begin(), f.joints.end());
     capsules.insert(capsules.end(), f.capsules.begin(), f.capsules.end());
   }
-  nlohmann::json recording = {{"frame_rate_hz", r.frame_rate_hz},
-                              {"frames", r.frames.size()},
-                              {"joints", block(joints.data(), joints.size())}};
+  nlohmann::json recording = {
+      {"frame_rate_hz", r.frame_rate_hz}, {"frames", r.frames.size()}, {"joints", block(joints.data(), joints.size())}};
   if (r.has_capsules) recording["capsules"] = block(capsules.data(), capsules.size());
   if (r.mesh)
     recording["mesh"] = {{"positions_m", block(r.mesh->positions_m.data(), r.mesh->positions_m.size())},
@@ -203,24 +202,27 @@ std::string to_json(const HandRecording& r, const std::string& why) {
 RecordedMesh welded(RecordedMesh given, const std::string& source) {
   const std::size_t count = given.positions_m.size() / 3;
   if (count == 0 || given.positions_m.size() % 3 != 0 || given.joints.size() != count || given.weights.size() != count)
-    throw Error(fmt::format("{}: hand mesh: {} coordinates, joints of {} vertices, weights of {}: they do not fit", source,
-                            given.positions_m.size(), given.joints.size(), given.weights.size()));
+    throw Error(fmt::format("{}: hand mesh: {} coordinates, joints of {} vertices, weights of {}: they do not fit",
+                            source, given.positions_m.size(), given.joints.size(), given.weights.size()));
   RecordedMesh out;
   out.bind = given.bind;
   for (std::size_t k = 0; k < out.bind.size(); ++k)
-    if (!good(out.bind[k])) throw Error(fmt::format("{}: hand mesh: joint {} at rest: expected {}", source, k, kGoodJoint));
+    if (!good(out.bind[k]))
+      throw Error(fmt::format("{}: hand mesh: joint {} at rest: expected {}", source, k, kGoodJoint));
   std::map<std::array<float, 3>, std::uint32_t> places;
   std::vector<std::uint32_t> number(count);
   for (std::size_t v = 0; v < count; ++v) {
-    const std::array<float, 3> p = {given.positions_m[3 * v], given.positions_m[3 * v + 1], given.positions_m[3 * v + 2]};
+    const std::array<float, 3> p = {given.positions_m[3 * v], given.positions_m[3 * v + 1],
+                                    given.positions_m[3 * v + 2]};
     std::array<float, 4> w = given.weights[v];
     const float sum = w[0] + w[1] + w[2] + w[3];
     for (std::size_t k = 0; k < 4; ++k)
       if (!(w[k] >= 0) || given.joints[v][k] >= kRecordedJointCount)
-        throw Error(fmt::format("{}: hand mesh: vertex {}: expected joints below {} and weights of at least 0", source, v,
-                                kRecordedJointCount));
+        throw Error(fmt::format("{}: hand mesh: vertex {}: expected joints below {} and weights of at least 0", source,
+                                v, kRecordedJointCount));
     for (const float x : p)
-      if (!(std::abs(x) <= kMostCoordinate_m)) throw Error(fmt::format("{}: hand mesh: vertex {} is not finite", source, v));
+      if (!(std::abs(x) <= kMostCoordinate_m))
+        throw Error(fmt::format("{}: hand mesh: vertex {} is not finite", source, v));
     if (!(std::abs(static_cast<double>(sum) - 1) <= kUnit))
       throw Error(fmt::format("{}: hand mesh: vertex {} has weights of sum {}; expected 1", source, v, sum));
     const auto [place, is_new] = places.try_emplace(p, static_cast<std::uint32_t>(places.size()));
@@ -241,7 +243,8 @@ RecordedMesh welded(RecordedMesh given, const std::string& source) {
       c = number[c];
     }
     // What had no area before stays out: it would tear the surface where its corners became one.
-    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]) out.triangles.push_back(corners);
+    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
+      out.triangles.push_back(corners);
   }
   if (out.triangles.empty()) throw Error(source + ": hand mesh: it has no triangles");
   return out;

@@ -58,18 +58,19 @@ struct HandRecording {
 };
 
 /// A recording is a JSON object with "recording" where a hand track has "keys":
-/// {"hand": "right", "why": "...", "recording": {"frame_rate_hz": 72, "frames": 2, "joints": "<base64>", "capsules": "<base64>",
+/// {"hand": "right", "why": "...", "recording": {"frame_rate_hz": 72, "frames": 2, "joints": "<base64>", "capsules":
+/// "<base64>",
 ///   "mesh": {"positions_m": ..., "triangles": ..., "joints": ..., "weights": ..., "bind": ...}}}
-/// Blocks are little-endian: 8 float32 a joint (position, orientation, radius), 7 a capsule (a, b, radius), uint32 corners,
-/// uint8 joints, float32 weights. "capsules" and "mesh" may be left out.
+/// Blocks are little-endian: 8 float32 a joint (position, orientation, radius), 7 a capsule (a, b, radius), uint32
+/// corners, uint8 joints, float32 weights. "capsules" and "mesh" may be left out.
 bool is_hand_recording(const nlohmann::json& track);
 /// Throw Error with the file and JSON pointer.
 HandRecording read_hand_recording(const std::filesystem::path&);
 HandRecording parse_hand_recording(const std::string& text, const std::string& source);
 std::string to_json(const HandRecording&, const std::string& why);
 
-/// Throws Error naming `source` unless corners, joints and weights fit the vertices and frames are rigid; weights of a sum off 1
-/// by less than 1e-3 are scaled to it, and vertices in the same place become one.
+/// Throws Error naming `source` unless corners, joints and weights fit the vertices and frames are rigid; weights of a
+/// sum off 1 by less than 1e-3 are scaled to it, and vertices in the same place become one.
 RecordedMesh welded(RecordedMesh, const std::string& source);
 
 /// The 25 joints of WebXR.

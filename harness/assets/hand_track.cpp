@@ -105,15 +105,19 @@ HandTrack retimed(HandTrack track, double speed_m_per_s) {
   bool any = false;
   for (std::size_t i = 0; i + 1 < track.keys.size(); ++i) {
     const HandKey& key = track.keys[i];
-    const double before_s = track.keys[i + 1].time_s - (key.time_s - shift_s), way = (track.keys[i + 1].position_m - key.position_m).norm();
-    if (key.sweep && !(way > 0)) throw Error(fmt::format("hand track: key {} is a sweep, but the next key is in the same place", i));
+    const double before_s = track.keys[i + 1].time_s - (key.time_s - shift_s),
+                 way = (track.keys[i + 1].position_m - key.position_m).norm();
+    if (key.sweep && !(way > 0))
+      throw Error(fmt::format("hand track: key {} is a sweep, but the next key is in the same place", i));
     const double takes_s = key.sweep ? way / speed_m_per_s : before_s;
     any = any || key.sweep;
     shift_s += takes_s - before_s;
     track.keys[i + 1].time_s += shift_s;
   }
   if (!any) throw Error("hand track: none of its keys is a \"sweep\", so there is nothing to go at another speed");
-  if (!(track.duration_s() <= kMostSeconds)) throw Error(fmt::format("hand track: at {} m/s it takes {} s, more than {}", speed_m_per_s, track.duration_s(), kMostSeconds));
+  if (!(track.duration_s() <= kMostSeconds))
+    throw Error(fmt::format("hand track: at {} m/s it takes {} s, more than {}", speed_m_per_s, track.duration_s(),
+                            kMostSeconds));
   return track;
 }
 

@@ -17,7 +17,7 @@ struct HandKey {
   double amount = 0;
   Vector position_m = Vector::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  bool grip = false;  ///< holds what the pinch point touches, from this key to the next
+  bool grip = false;   ///< holds what the pinch point touches, from this key to the next
   bool sweep = false;  ///< the way to the next key may be gone at another speed, see `retimed`
 };
 
@@ -39,8 +39,8 @@ struct HandTrack {
 HandTrack read_hand_track(const std::filesystem::path&);
 HandTrack parse_hand_track(const std::string& text, const std::string& source);
 
-/// The track with its sweeps gone at this speed [m/s], and what comes after them earlier or later by as much. Throws Error
-/// if it has no sweep, one without a way, or would take too long.
+/// The track with its sweeps gone at this speed [m/s], and what comes after them earlier or later by as much. Throws
+/// Error if it has no sweep, one without a way, or would take too long.
 HandTrack retimed(HandTrack, double speed_m_per_s);
 
 struct HandSample {

@@ -42,7 +42,8 @@ double signed_volume(const TriangleMesh&);
 double area(const TriangleMesh&, std::size_t triangle);
 Box bounding_box(const TriangleMesh&);
 
-/// Closed regular prism of `sides` sides round `axis` (unit), corners `radius` from it, normals outwards; its ends are fans.
+/// Closed regular prism of `sides` sides round `axis` (unit), corners `radius` from it, normals outwards; its ends are
+/// fans.
 TriangleMesh prism(const Vector& axis, const Vector& center, double radius, double length, std::uint32_t sides);
 
 }  // namespace clothbench::assets

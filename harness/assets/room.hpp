@@ -49,8 +49,8 @@ Room load_room(const std::filesystem::path&);
 /// The same from text; `source` is for messages, `name` for the room.
 Room parse_room(const std::string& text, const std::string& source, const std::string& name);
 
-/// A capture that `load_room` reads: a mesh in an entity's own frame (vertices xyz [m], indices in threes) and where that is,
-/// as a runtime tells them (XR_META_spatial_entity_mesh). Without tables.
+/// A capture that `load_room` reads: a mesh in an entity's own frame (vertices xyz [m], indices in threes) and where
+/// that is, as a runtime tells them (XR_META_spatial_entity_mesh). Without tables.
 struct RoomScan {
   std::string uuid;
   std::array<float, 3> position_m{};

@@ -63,9 +63,12 @@ std::string kind(const std::string& assets) { return assets.empty() ? "unnamed" 
 /// No verdict is made of two rules.
 void refuse_other_versions(const BaselineCell& was, const BaselineCell& is) {
   for (const VersionDifference& v : version_differences(was, is))
-    throw Error(fmt::format("{}: metric {}: the baseline has version {} of its rule, the result version {}; the two cannot be compared. Accept the "
-                            "result with `clothbench check RUNS --baseline FILE --update`, or run the cell again with the program the baseline was made with",
-                            is.key.text(), v.metric, v.baseline, v.found));
+    throw Error(
+        fmt::format("{}: metric {}: the baseline has version {} of its rule, the result version {}; the two cannot be "
+                    "compared. Accept the "
+                    "result with `clothbench check RUNS --baseline FILE --update`, or run the cell again with the "
+                    "program the baseline was made with",
+                    is.key.text(), v.metric, v.baseline, v.found));
 }
 
 class Check {

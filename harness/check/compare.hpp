@@ -46,16 +46,15 @@ struct VersionDifference {
 /// Of the metrics behind scalars that both have.
 std::vector<VersionDifference> version_differences(const BaselineCell& was, const BaselineCell& is);
 
-/// What of `record` differs from its baseline: the scene, the outcome, the stages, the gated scalars; and whether one of its
-/// trials repeats another. Where the scene
-/// or the outcome differ, the rest is not comparable and left out, and so are scalars of a metric whose version differs. Throws Error if the record's scene has no cloth
-/// size.
+/// What of `record` differs from its baseline: the scene, the outcome, the stages, the gated scalars; and whether one
+/// of its trials repeats another. Where the scene or the outcome differ, the rest is not comparable and left out, and
+/// so are scalars of a metric whose version differs. Throws Error if the record's scene has no cloth size.
 std::vector<Finding> compare_cell(const BaselineCell&, const CellRecord& record);
 
 /// Holds results to a baseline. A cell of the baseline without a result fails, unless the results have the cell with
 /// another kind of assets that the baseline also knows; so does a planned cell without a result. A cell that the
-/// baseline does not have is new. Throws Error if a cell stands twice among the results, or was measured by another version of a metric's rule
-/// than the baseline's: no verdict is made of two rules.
+/// baseline does not have is new. Throws Error if a cell stands twice among the results, or was measured by another
+/// version of a metric's rule than the baseline's: no verdict is made of two rules.
 Checked check_cells(const Baseline&, const std::vector<CellRecord>&);
 
 struct Updated {

@@ -73,7 +73,7 @@ std::vector<Finding> compare_stages(const BaselineCell& was, const BaselineCell&
 std::vector<Finding> compare_trials(const CellRecord& r) {
   for (std::size_t i = 0; i < r.trials.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const std::vector<double> &a = r.trials[i].frame_wall_s, &b = r.trials[j].frame_wall_s;
+      const std::vector<double>&a = r.trials[i].frame_wall_s, &b = r.trials[j].frame_wall_s;
       const bool varies = std::any_of(a.begin(), a.end(), [&](double t) { return t != a.front(); });
       if (varies && a == b)
         return {{Verdict::Failed, "trials", "each timed anew", fmt::format("trial {} repeats trial {}", i, j), "", ""}};
@@ -102,7 +102,8 @@ int version_in(const BaselineCell& c, const std::string& metric) {
 
 bool hangs_on(const std::string& scalar, const std::vector<VersionDifference>& versions) {
   const std::vector<std::string> behind = metrics_behind(scalar);
-  return std::any_of(versions.begin(), versions.end(), [&](const auto& v) { return std::find(behind.begin(), behind.end(), v.metric) != behind.end(); });
+  return std::any_of(versions.begin(), versions.end(),
+                     [&](const auto& v) { return std::find(behind.begin(), behind.end(), v.metric) != behind.end(); });
 }
 
 std::vector<Finding> compare_scalars(const BaselineCell& was, const BaselineCell& is, double length_m) {
@@ -115,8 +116,8 @@ std::vector<Finding> compare_scalars(const BaselineCell& was, const BaselineCell
   std::vector<Finding> out;
   const std::vector<VersionDifference> versions = version_differences(was, is);
   for (const VersionDifference& v : versions)
-    out.push_back({Verdict::Failed, "metric " + v.metric, fmt::format("version {}", v.baseline), fmt::format("version {}", v.found), "",
-                   "scalars computed from it are not compared"});
+    out.push_back({Verdict::Failed, "metric " + v.metric, fmt::format("version {}", v.baseline),
+                   fmt::format("version {}", v.found), "", "scalars computed from it are not compared"});
   for (const auto& [name, unused] : names) {
     if (hangs_on(name, versions)) continue;
     const Gate& gate = *find_gate(name);
@@ -152,7 +153,8 @@ std::vector<Finding> compare_cell(const BaselineCell& was, const CellRecord& rec
              "--update"}};
   std::vector<Finding> out = compare_outcome(was, is, record.outcome.message);
   if (was.status != is.status) return out;
-  for (const auto& part : {compare_stages(was, is), compare_trials(record), compare_scalars(was, is, length_of(record))})
+  for (const auto& part :
+       {compare_stages(was, is), compare_trials(record), compare_scalars(was, is, length_of(record))})
     out.insert(out.end(), part.begin(), part.end());
   return out;
 }

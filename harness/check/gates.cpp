@@ -44,14 +44,16 @@ const std::vector<Gate>& gates() {
       {"contact_violated_longest_s", Rule::AtMost, 0.05, One, 0.25, false, "four frames at 72 Hz"},
       {"pop_speed_ratio", Rule::AtMost, 0.1, One, 0.25, false, "the fastest vertex of a moment"},
       {"slip_m", Rule::AtMost, 1e-2, Length, 0.5, false, "a fold that slides elsewhere"},
-      {"fold_roughness_end", Rule::AtMost, 0.1, One, 0.25, false, "which folds there are is chaotic, how rough they are is not"},
+      {"fold_roughness_end", Rule::AtMost, 0.1, One, 0.25, false,
+       "which folds there are is chaotic, how rough they are is not"},
       {"grip_edge_ratio_*", Rule::AtMost, 0.05, One, 0, false, "a twentieth of an edge"},
       {"strain_mean_released", Rule::AtMost, 1e-3, One, 0.1, false, "a tenth of what is allowed"},
       {"contact_length_settled_m", Rule::AtMost, 1e-2, Length, 0.1, true, "a third of an edge of a 32 × 32 cloth"},
       {"contact_length_max_m", Rule::AtMost, 0.1, Length, 0.5, false, "one moment of an impact, three edges"},
       {"depth_*_m", Rule::AtMost, 5e-4, Length, 0.1, false, "half a millimetre on a cloth of 1 m"},
       {"penetrating_area_*_m2", Rule::AtMost, 1e-3, Area, 0.15, false, "one cell of a 32 × 32 grid"},
-      {"stretch_max*", Rule::AtMost, 0.25, One, 1, false, "the worst edge of thousands: 0.047 and 0.117 on two devices"},
+      {"stretch_max*", Rule::AtMost, 0.25, One, 1, false,
+       "the worst edge of thousands: 0.047 and 0.117 on two devices"},
       {"*error*", Rule::AtMost, 1e-6, One, 0.1, false, "three times the greatest difference seen between devices"},
   };
   return table;

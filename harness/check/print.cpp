@@ -52,10 +52,10 @@ std::string cells_word(std::size_t n) { return fmt::format("{} cell{}", n, n == 
 
 std::string check_text(const Checked& checked, const std::string& file) {
   std::string out = findings_text("Not as in " + file, checked.cells, word_for(Verdict::Failed));
-  out +=
-      fmt::format("check {}: {}: {} failed, {} improved, {} new, {} as in {}", checked.passed() ? tinted(Tone::Good, "passed") : tinted(Tone::Bad, "FAILED"),
-                  cells_word(checked.cells.size()), checked.count(Verdict::Failed), checked.count(Verdict::Improved),
-                  checked.count(Verdict::New), checked.count(Verdict::Same), file);
+  out += fmt::format("check {}: {}: {} failed, {} improved, {} new, {} as in {}",
+                     checked.passed() ? tinted(Tone::Good, "passed") : tinted(Tone::Bad, "FAILED"),
+                     cells_word(checked.cells.size()), checked.count(Verdict::Failed), checked.count(Verdict::Improved),
+                     checked.count(Verdict::New), checked.count(Verdict::Same), file);
   if (checked.other_assets > 0)
     out += fmt::format("; {} more of the baseline stand for other assets", cells_word(checked.other_assets));
   if (checked.passed() && checked.count(Verdict::Improved) > 0) out += "; accept what improved with --update";

@@ -1,4 +1,5 @@
-// The Table 3 cells under Google Benchmark: one benchmark a cell, one iteration a frame, the clock is the frame's wall time.
+// The Table 3 cells under Google Benchmark: one benchmark a cell, one iteration a frame, the clock is the frame's wall
+// time.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -58,8 +59,10 @@ void add_context(const CellPlan& plan, const DeviceFlags& flags) {
     for (const CellSpec& c : group)
       if (c.entry->info.on_gpu && device.name.empty()) device = c.entry->make(c.settings, flags.options)->device();
   const nlohmann::json e = describe_environment(device, "bench");
-  for (const char* key : {"gpu", "driver", "gpu_is_software", "cpu", "compiler", "shader_compiler", "git_commit", "version"})
-    benchmark::AddCustomContext(std::string("clothbench_") + key, e[key].is_string() ? e[key].get<std::string>() : e[key].dump());
+  for (const char* key :
+       {"gpu", "driver", "gpu_is_software", "cpu", "compiler", "shader_compiler", "git_commit", "version"})
+    benchmark::AddCustomContext(std::string("clothbench_") + key,
+                                e[key].is_string() ? e[key].get<std::string>() : e[key].dump());
   // The library's own field tells how the library was built, not this program.
   benchmark::AddCustomContext("clothbench_build_type", e["build_type"].get<std::string>());
 }
@@ -70,7 +73,8 @@ void add_bench(CLI::App& app, Console& console) {
   auto& flags = console.arguments<DeviceFlags>();
   auto& study_name = console.arguments<std::string>();
   study_name = "table3";
-  CLI::App* cmd = app.add_subcommand("bench", "The cells of a study under Google Benchmark; takes its --benchmark_… flags");
+  CLI::App* cmd =
+      app.add_subcommand("bench", "The cells of a study under Google Benchmark; takes its --benchmark_… flags");
   cmd->add_option("--study", study_name, "Study")->capture_default_str();
   flags.add_to(*cmd);
   // Google Benchmark reads what this command does not know; without this the words would go to the parent command.
@@ -96,7 +100,8 @@ void add_bench(CLI::App& app, Console& console) {
         if (!unsupported(c.entry->info, c.scene->needs).empty()) continue;
         benchmark::RegisterBenchmark(fmt::format("{}/{}/{}", c.scene->name, c.entry->info.name, c.setting).c_str(),
                                      [&c, &console, &flags](benchmark::State& state) {
-                                       if (!run_cell(state, c, flags.options)) console.exit_code = ExitCode::CheckFailed;
+                                       if (!run_cell(state, c, flags.options))
+                                         console.exit_code = ExitCode::CheckFailed;
                                      })
             ->UseManualTime()
             ->Iterations(kFrames)
@@ -104,7 +109,9 @@ void add_bench(CLI::App& app, Console& console) {
       }
     const std::size_t matched = benchmark::RunSpecifiedBenchmarks();
     benchmark::Shutdown();
-    if (matched == 0) throw Error("bench: no cell of study " + study.name + " that a solver of this build can run matches --benchmark_filter");
+    if (matched == 0)
+      throw Error("bench: no cell of study " + study.name +
+                  " that a solver of this build can run matches --benchmark_filter");
   });
 }
 

@@ -32,22 +32,25 @@ CellRecord card_from(const nlohmann::json& j) {
 }
 
 /// The card at the settings given, and short ones where it is looked whether it holds.
-void measure(const SolverEntry& entry, const Overrides& overrides, const CardArguments& a, Guard& guard, StatusLine& line,
-             std::vector<CellRecord>& out) {
+void measure(const SolverEntry& entry, const Overrides& overrides, const CardArguments& a, Guard& guard,
+             StatusLine& line, std::vector<CellRecord>& out) {
   const nlohmann::json settings = complete_settings(entry.info, overrides.solver);
   const auto one = [&](const nlohmann::json& s, const std::string& label, bool full) {
     line.show(entry.info.name + " " + label, out.size(), 0);
     try {
-      const Guard::Answer answer = guard.run(entry, [&] { return card_json(measure_material(entry, s, label, full, a.device.options, "card")); });
-      out.push_back(answer.crash.empty() ? card_from(answer.value)
-                                         : failed_material(entry, label, {"crashed", "F8", -1, "its process: " + answer.crash}, "card"));
+      const Guard::Answer answer = guard.run(
+          entry, [&] { return card_json(measure_material(entry, s, label, full, a.device.options, "card")); });
+      out.push_back(answer.crash.empty()
+                        ? card_from(answer.value)
+                        : failed_material(entry, label, {"crashed", "F8", -1, "its process: " + answer.crash}, "card"));
     } catch (const Error& e) {
       if (e.code() != ExitCode::NoDevice || !a.device.allow_no_device) throw;
       fmt::print(stderr, "no Vulkan device: {} is left out\n", entry.info.name);
     }
   };
   one(settings, overrides.label(), true);
-  if (a.no_sweep || out.empty() || out.back().outcome.status == "unsupported" || out.back().outcome.status == "crashed") return;
+  if (a.no_sweep || out.empty() || out.back().outcome.status == "unsupported" || out.back().outcome.status == "crashed")
+    return;
   for (const auto& [label, s] : swept_settings(entry.info, settings)) one(s, label, false);
 }
 

@@ -14,9 +14,7 @@
 namespace clothbench {
 namespace {
 
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::string left_for(double s) {
   constexpr double kFewSeconds = 100;
@@ -68,8 +66,8 @@ void write_between_marks(const std::string& file, const std::string& name, const
 std::pair<int, int> pixels_of(const std::string& option, const std::string& text) {
   constexpr int kMost = 16384;
   int width = 0, height = 0, used = 0;
-  if (std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &used) != 2 || used != static_cast<int>(text.size()) || width < 1 ||
-      height < 1 || width > kMost || height > kMost)
+  if (std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &used) != 2 || used != static_cast<int>(text.size()) ||
+      width < 1 || height < 1 || width > kMost || height > kMost)
     throw Error(option + " " + text + ": expected WIDTHxHEIGHT in pixels, such as 1200x900");
   return {width, height};
 }
@@ -79,17 +77,24 @@ void DeviceFlags::add_to(CLI::App& app) {
   app.add_option("--device-profile", options.profile,
                  "Stand in for a class of devices: adreno-like (32 KiB shared memory, groups of 256, no float atomics, "
                  "64 dispatches a submission)");
-  app.add_flag("--validate", options.validation, "Vulkan core and synchronization validation; any message fails the run");
+  app.add_flag("--validate", options.validation,
+               "Vulkan core and synchronization validation; any message fails the run");
   app.add_flag("--allow-no-device", allow_no_device, "Leave GPU solvers out where there is no Vulkan device");
 }
 
-CLI::Option* add_solvers(CLI::App& app, const std::string& option, std::vector<std::string>& names, const std::string& help) {
-  const auto name_of_plugin = [](std::string name) { return name.starts_with(kPluginPrefix) ? find_solver(name).info.name : name; };
-  return app.add_option(option, names, help + "; plugin:PATH takes the one in a shared library")->transform(name_of_plugin);
+CLI::Option* add_solvers(CLI::App& app, const std::string& option, std::vector<std::string>& names,
+                         const std::string& help) {
+  const auto name_of_plugin = [](std::string name) {
+    return name.starts_with(kPluginPrefix) ? find_solver(name).info.name : name;
+  };
+  return app.add_option(option, names, help + "; plugin:PATH takes the one in a shared library")
+      ->transform(name_of_plugin);
 }
 
 void add_require_assets(CLI::App& app, bool& required) {
-  app.add_flag("--require-assets", required, "Fail where a scene's rooms or hands would be procedural stand-ins (scripts/fetch-assets.sh gets the scans)");
+  app.add_flag(
+      "--require-assets", required,
+      "Fail where a scene's rooms or hands would be procedural stand-ins (scripts/fetch-assets.sh gets the scans)");
 }
 
 StatusLine::StatusLine(bool enabled)
@@ -103,7 +108,8 @@ void StatusLine::show(const std::string& what, std::size_t done, std::size_t tot
   if (!enabled_) return;
   const double elapsed_s = now_s() - start_s_;
   std::string line = total > 0 ? fmt::format("[{}/{}] {}", done, total, what) : what, eta;
-  if (done > 0 && done < total) eta = "  " + left_for(elapsed_s / static_cast<double>(done) * static_cast<double>(total - done));
+  if (done > 0 && done < total)
+    eta = "  " + left_for(elapsed_s / static_cast<double>(done) * static_cast<double>(total - done));
   // A line that breaks could not be rewritten.
   const std::size_t room = columns() - 1;
   if (line.size() + eta.size() > room) line.resize(room > eta.size() ? room - eta.size() : 0);

@@ -56,8 +56,8 @@ void add_metamorphic(CLI::App&, Console&);
 void add_threshold(CLI::App&, Console&);
 void add_friction(CLI::App&, Console&);
 
-/// Replaces what stands between the lines "<!-- NAME begin -->" and "<!-- NAME end -->" of a README. Throws Error naming the
-/// file and the lines if they are not there.
+/// Replaces what stands between the lines "<!-- NAME begin -->" and "<!-- NAME end -->" of a README. Throws Error
+/// naming the file and the lines if they are not there.
 void write_between_marks(const std::string& file, const std::string& name, const std::string& text);
 
 /// `--set` arguments: `solver.<name>=<JSON>` go to the solver, everything else to the scene.
@@ -79,7 +79,8 @@ struct DeviceFlags {
 std::pair<int, int> pixels_of(const std::string& option, const std::string& text);
 
 /// An option or positional that names solvers; "plugin:PATH" becomes the name of the solver in that library.
-CLI::Option* add_solvers(CLI::App&, const std::string& option, std::vector<std::string>& names, const std::string& help);
+CLI::Option* add_solvers(CLI::App&, const std::string& option, std::vector<std::string>& names,
+                         const std::string& help);
 
 /// --require-assets: stand-ins for rooms and hands are an Error.
 void add_require_assets(CLI::App&, bool& required);

@@ -1,9 +1,9 @@
-#include <fmt/format.h>
+#include "cli/command_line.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "cli/command.hpp"
-#include "cli/command_line.hpp"
 #include "report/tint.hpp"
 #include "runner/build_info.hpp"
 
@@ -21,7 +21,8 @@ int told(const Console& console, const std::string& why, ExitCode code) {
   const bool colour = takes_colour(STDERR_FILENO);
   fmt::print(stderr, "{}clothbench:{} {}\n", colour ? "\x1b[31m" : "", colour ? "\x1b[0m" : "", why);
   if (console.json)
-    fmt::print("{}\n", nlohmann::json{{"error", why}, {"exit_code", static_cast<int>(code)}}.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", nlohmann::json{{"error", why}, {"exit_code", static_cast<int>(code)}}.dump(
+                           2, ' ', false, nlohmann::json::error_handler_t::replace));
   return static_cast<int>(code);
 }
 
@@ -30,7 +31,8 @@ int told(const Console& console, const std::string& why, ExitCode code) {
 int run_command_line(const std::vector<std::string>& words) {
   CLI::App app{"clothbench: interchangeable cloth solvers, the same scenes, comparable numbers", "clothbench"};
   app.require_subcommand(1);
-  app.set_version_flag("--version", std::string("clothbench ") + build_info::kVersion + " (" + build_info::kGitCommit + ")");
+  app.set_version_flag("--version",
+                       std::string("clothbench ") + build_info::kVersion + " (" + build_info::kGitCommit + ")");
   app.footer(
       "Examples: clothbench run paper/desk-flat-low --solver xpbd --solver bullet-soft\n"
       "          clothbench study table3 --quick --out results/runs/mine\n"
@@ -78,7 +80,8 @@ int run_command_line(const std::vector<std::string>& words) {
       std::vector<std::string> commands;
       for (const CLI::App* c : app.get_subcommands({})) commands.push_back(c->get_name());
       const std::string near = nearest(words.front(), commands);
-      if (!near.empty() && near != words.front()) fmt::print(stderr, "no command \"{}\"; nearest known: {}\n", words.front(), near);
+      if (!near.empty() && near != words.front())
+        fmt::print(stderr, "no command \"{}\"; nearest known: {}\n", words.front(), near);
     }
     return app.exit(e) == 0 ? 0 : static_cast<int>(ExitCode::BadInput);
   } catch (const Error& e) {

@@ -9,7 +9,8 @@
 namespace clothbench {
 
 void add_compare(CLI::App& app, Console& console) {
-  auto &a = console.arguments<std::string>(), &b = console.arguments<std::string>(), &markdown = console.arguments<std::string>();
+  auto &a = console.arguments<std::string>(), &b = console.arguments<std::string>(),
+       &markdown = console.arguments<std::string>();
   CLI::App* cmd = app.add_subcommand(
       "compare",
       "Two runs of the same cells: what is faster or slower beyond noise, and which results are not the same");

@@ -1,5 +1,5 @@
-// Completion of the command line. What a shell's script asks for is answered from the very commands, options, solvers and files there
-// are, so it cannot grow old.
+// Completion of the command line. What a shell's script asks for is answered from the very commands, options, solvers
+// and files there are, so it cannot grow old.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,8 +47,9 @@ Words scenario_names(const std::vector<const char*>& folders) {
     if (!std::filesystem::exists(root / folder)) continue;
     for (const auto& file : std::filesystem::recursive_directory_iterator(root / folder))
       if (file.path().extension() == ".json")
-        names.push_back(folder == std::string("studies") ? file.path().stem().string()
-                                                         : std::filesystem::relative(file.path(), root).replace_extension().string());
+        names.push_back(folder == std::string("studies")
+                            ? file.path().stem().string()
+                            : std::filesystem::relative(file.path(), root).replace_extension().string());
   }
   return names;
 }
@@ -114,7 +115,8 @@ void add_completion(CLI::App& app, Console& console) {
       "          clothbench completion fish > ~/.config/fish/completions/clothbench.fish");
   cmd->callback([&app, &console, &shell, &words] {
     const std::string script = shell == "bash" ? kBash : shell == "zsh" ? kZsh : shell == "fish" ? kFish : "";
-    if (!script.empty() && console.json) return fmt::print("{}\n", nlohmann::json{{"shell", shell}, {"script", script}}.dump(2));
+    if (!script.empty() && console.json)
+      return fmt::print("{}\n", nlohmann::json{{"shell", shell}, {"script", script}}.dump(2));
     if (!script.empty()) return fmt::print("{}", script);
     const std::string prefix = words.empty() ? "" : words.back();
     if (!words.empty()) words.pop_back();

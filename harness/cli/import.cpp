@@ -11,9 +11,11 @@ namespace clothbench {
 void add_import(CLI::App& app, Console& console) {
   auto& folders = console.arguments<std::vector<std::string>>();
   auto& samples_file = console.arguments<std::string>();
-  CLI::App* cmd = app.add_subcommand("import", "Turn raw run files (a device without HDF5, an interrupted run) into HDF5 files");
+  CLI::App* cmd =
+      app.add_subcommand("import", "Turn raw run files (a device without HDF5, an interrupted run) into HDF5 files");
   cmd->add_option("folder", folders, "Study folders or part folders")->required();
-  cmd->add_option("--samples", samples_file, "What the device told during the run: samples.json of scripts/quest_run.py");
+  cmd->add_option("--samples", samples_file,
+                  "What the device told during the run: samples.json of scripts/quest_run.py");
   cmd->footer(
       "Examples: clothbench import results/runs/phone\n"
       "          clothbench import results/runs/quest --samples results/runs/quest/samples.json");

@@ -21,9 +21,14 @@ nlohmann::json list_solvers() {
     for (const SettingSpec& s : e.info.settings)
       settings.push_back({{"name", s.name}, {"default", nlohmann::json::parse(s.default_json)}, {"doc", s.doc}});
     e.info.supports.for_each([&](Feature f) { features.push_back(name_of(f)); });
-    rows.push_back({{"name", e.info.name}, {"folder", e.info.folder}, {"summary", e.info.summary},
-                    {"version", e.info.version}, {"precision", e.info.precision}, {"gpu", e.info.on_gpu},
-                    {"supports", features}, {"settings", settings}});
+    rows.push_back({{"name", e.info.name},
+                    {"folder", e.info.folder},
+                    {"summary", e.info.summary},
+                    {"version", e.info.version},
+                    {"precision", e.info.precision},
+                    {"gpu", e.info.on_gpu},
+                    {"supports", features},
+                    {"settings", settings}});
   }
   return rows;
 }
@@ -72,7 +77,8 @@ nlohmann::json list_devices() {
 
 nlohmann::json list_metrics() {
   nlohmann::json rows = nlohmann::json::array();
-  for (const Metric& m : metrics()) rows.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}, {"version", m.version}});
+  for (const Metric& m : metrics())
+    rows.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}, {"version", m.version}});
   return rows;
 }
 
@@ -96,7 +102,8 @@ void print_rows(const nlohmann::json& rows) {
     fmt::print("{:<24} {}\n", r["name"].get<std::string>(), text);
     if (r.contains("settings"))
       for (const auto& s : r["settings"])
-        fmt::print("    solver.{}={}  {}\n", s["name"].get<std::string>(), s["default"].dump(), s["doc"].get<std::string>());
+        fmt::print("    solver.{}={}  {}\n", s["name"].get<std::string>(), s["default"].dump(),
+                   s["doc"].get<std::string>());
   }
 }
 
@@ -105,7 +112,8 @@ void print_rows(const nlohmann::json& rows) {
 void add_list(CLI::App& app, Console& console) {
   std::string& what = console.arguments<std::string>();
   what = "solvers";
-  CLI::App* cmd = app.add_subcommand("list", "What there is: solvers, features, scenarios, studies, devices, metrics or assets");
+  CLI::App* cmd =
+      app.add_subcommand("list", "What there is: solvers, features, scenarios, studies, devices, metrics or assets");
   cmd->add_option("what", what, "solvers | features | scenarios | studies | devices | metrics | assets")
       ->check(CLI::IsMember({"solvers", "features", "scenarios", "studies", "devices", "metrics", "assets"}));
   cmd->footer(
@@ -119,10 +127,14 @@ void add_list(CLI::App& app, Console& console) {
                                 : what == "features"  ? feature_json(features(), false)
                                 : what == "assets"    ? list_assets()
                                                       : list_metrics();
-    if (console.json) fmt::print("{}\n", rows.dump(2));
-    else if (what == "features") fmt::print("{}", feature_table(features(), false).console());
-    else if (rows.empty()) fmt::print("no {}\n", what);
-    else print_rows(rows);
+    if (console.json)
+      fmt::print("{}\n", rows.dump(2));
+    else if (what == "features")
+      fmt::print("{}", feature_table(features(), false).console());
+    else if (rows.empty())
+      fmt::print("no {}\n", what);
+    else
+      print_rows(rows);
   });
 }
 

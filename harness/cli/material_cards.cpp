@@ -13,7 +13,8 @@ namespace clothbench {
 namespace {
 
 constexpr const char* kYardstick = "reference";
-constexpr double kFullLimit_s = 20, kShortLimit_s = 5;  // wall time of a patch in a full study; the default card's otherwise:
+constexpr double kFullLimit_s = 20,
+                 kShortLimit_s = 5;  // wall time of a patch in a full study; the default card's otherwise:
 constexpr double kDefaultLimit_s = 8;
 
 struct Wanted {
@@ -50,10 +51,11 @@ std::vector<Wanted> default_cards(const CellPlan& plan, bool whole) {
   return all;
 }
 
-/// Settings on the fronts: in a full study all of them; else those on scenes whose answer depends on a stiffness that the
-/// solver's default setting has as a parameter, since no other card can change a verdict that matters; and of these no
-/// bending where the default has none.
-std::vector<Wanted> front_cards(const CellPlan& plan, const std::filesystem::path& out, bool whole, std::size_t& left_out) {
+/// Settings on the fronts: in a full study all of them; else those on scenes whose answer depends on a stiffness that
+/// the solver's default setting has as a parameter, since no other card can change a verdict that matters; and of these
+/// no bending where the default has none.
+std::vector<Wanted> front_cards(const CellPlan& plan, const std::filesystem::path& out, bool whole,
+                                std::size_t& left_out) {
   const std::vector<CellRecord> cells = collect({out});
   std::vector<CellRecord> defaults;  // a resumed study must want what it wanted before: cards of fronts decide nothing
   std::copy_if(cells.begin(), cells.end(), std::back_inserter(defaults),
@@ -92,9 +94,13 @@ void add_material_cards(const CellPlan& plan, const RunOptions& options, StudyMa
       if (options.progress) options.progress(w.name(), k, wanted.size());
       const auto start = std::chrono::steady_clock::now();
       const CellRecord card = measure_material(*w.entry, w.settings, w.setting, w.full, options.device, plan.protocol,
-                                               !w.full ? kShortLimit_s : whole ? kFullLimit_s : kDefaultLimit_s, w.bending);
+                                               !w.full ? kShortLimit_s
+                                               : whole ? kFullLimit_s
+                                                       : kDefaultLimit_s,
+                                               w.bending);
       CellWriter(options.out, card.header).finish(card.outcome, card.summary);
-      result.card_seconds[w.entry->info.name] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      result.card_seconds[w.entry->info.name] +=
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       ++result.cards;
     }
   };

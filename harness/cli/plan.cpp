@@ -24,12 +24,21 @@ nlohmann::json plan_of(const Cell& cell, const Scene& scene) {
   for (const StagePlan& s : cell.plan().stages) {
     nlohmann::json serves = nlohmann::json::array();
     s.serves.for_each([&](Feature f) { serves.push_back(name_of(f)); });
-    stages.push_back({{"name", s.name}, {"serves", serves}, {"dispatches", s.dispatches},
-                      {"read_B", number(s.read_B)}, {"write_B", number(s.write_B)}});
+    stages.push_back({{"name", s.name},
+                      {"serves", serves},
+                      {"dispatches", s.dispatches},
+                      {"read_B", number(s.read_B)},
+                      {"write_B", number(s.write_B)}});
   }
-  nlohmann::json j = {{"scene", scene.name}, {"solver", cell.header().solver}, {"needs", needs},
-                      {"status", cell.outcome().status}, {"message", cell.outcome().message}, {"stages", stages},
-                      {"buffers", nlohmann::json::array()}, {"left_out", nlohmann::json::array()}, {"contact_margins", nlohmann::json::array()}};
+  nlohmann::json j = {{"scene", scene.name},
+                      {"solver", cell.header().solver},
+                      {"needs", needs},
+                      {"status", cell.outcome().status},
+                      {"message", cell.outcome().message},
+                      {"stages", stages},
+                      {"buffers", nlohmann::json::array()},
+                      {"left_out", nlohmann::json::array()},
+                      {"contact_margins", nlohmann::json::array()}};
   for (const char* key : {"buffers", "left_out", "contact_margins"})
     if (cell.header().plan.contains(key)) j[key] = cell.header().plan[key];
   return j;
@@ -38,7 +47,11 @@ nlohmann::json plan_of(const Cell& cell, const Scene& scene) {
 nlohmann::json crashed_plan(const Scene& scene, const SolverEntry& entry, const std::string& how) {
   nlohmann::json needs = nlohmann::json::array();
   scene.needs.for_each([&](Feature f) { needs.push_back(name_of(f)); });
-  nlohmann::json j = {{"scene", scene.name}, {"solver", entry.info.name}, {"needs", needs}, {"status", "crashed"}, {"message", "its process: " + how}};
+  nlohmann::json j = {{"scene", scene.name},
+                      {"solver", entry.info.name},
+                      {"needs", needs},
+                      {"status", "crashed"},
+                      {"message", "its process: " + how}};
   for (const char* none : {"stages", "buffers", "left_out", "contact_margins"}) j[none] = nlohmann::json::array();
   return j;
 }
@@ -52,10 +65,14 @@ std::string joined(const nlohmann::json& words) {
 }
 
 void print(const nlohmann::json& p) {
-  fmt::print("{} on {}\n  needs: {}\n", p["solver"].get<std::string>(), p["scene"].get<std::string>(), joined(p["needs"]));
-  if (p["status"] != "ok") fmt::print("  {}: {}\n", tinted(tone_of(p["status"].get<std::string>()), p["status"].get<std::string>()), p["message"].get<std::string>());
+  fmt::print("{} on {}\n  needs: {}\n", p["solver"].get<std::string>(), p["scene"].get<std::string>(),
+             joined(p["needs"]));
+  if (p["status"] != "ok")
+    fmt::print("  {}: {}\n", tinted(tone_of(p["status"].get<std::string>()), p["status"].get<std::string>()),
+               p["message"].get<std::string>());
   if (!p["stages"].empty())
-    fmt::print("\n  {:<28} {:>10} {:>14} {:>14}  {}\n", "stage, each frame", "dispatches", "read B", "written B", "serves");
+    fmt::print("\n  {:<28} {:>10} {:>14} {:>14}  {}\n", "stage, each frame", "dispatches", "read B", "written B",
+               "serves");
   for (const auto& s : p["stages"])
     fmt::print("  {:<28} {:>10} {:>14} {:>14}  {}\n", s["name"].get<std::string>(), s["dispatches"].get<int>(),
                bytes(s["read_B"]), bytes(s["write_B"]), joined(s["serves"]));
@@ -64,9 +81,11 @@ void print(const nlohmann::json& p) {
     fmt::print("  {:<28} {:>14}  {}\n", b["name"].get<std::string>(), b["bytes"].get<std::uint64_t>(),
                b["device_local"].get<bool>() ? "device" : "host");
   if (!p["contact_margins"].empty()) fmt::print("\n  {:<28} {:>14}\n", "cloth is held off", "by [m]");
-  for (const auto& m : p["contact_margins"]) fmt::print("  {:<28} {:>14g}\n", m["collider"].get<std::string>(), m["margin_m"].get<double>());
+  for (const auto& m : p["contact_margins"])
+    fmt::print("  {:<28} {:>14g}\n", m["collider"].get<std::string>(), m["margin_m"].get<double>());
   if (!p["left_out"].empty()) fmt::print("\n  left out\n");
-  for (const auto& l : p["left_out"]) fmt::print("  {:<28} {}\n", l["what"].get<std::string>(), l["why"].get<std::string>());
+  for (const auto& l : p["left_out"])
+    fmt::print("  {:<28} {}\n", l["what"].get<std::string>(), l["why"].get<std::string>());
   fmt::print("\n");
 }
 
@@ -74,7 +93,8 @@ void print(const nlohmann::json& p) {
 
 void add_plan(CLI::App& app, Console& console) {
   PlanArguments& a = console.arguments<PlanArguments>();
-  CLI::App* cmd = app.add_subcommand("plan", "What a solver would run for a scene: kernels, dispatches, buffers, bytes, and what it leaves out");
+  CLI::App* cmd = app.add_subcommand(
+      "plan", "What a solver would run for a scene: kernels, dispatches, buffers, bytes, and what it leaves out");
   cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
   add_solvers(*cmd, "--solver", a.solvers, "Solvers; default: all");
   cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
@@ -93,7 +113,9 @@ void add_plan(CLI::App& app, Console& console) {
       for (const std::string& name : a.solvers) {
         const SolverEntry& entry = find_solver(name);
         const Guard::Answer answer = guard.run(entry, [&] {
-          return plan_of(Cell({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()}, a.device.options, "plan"), scene);
+          return plan_of(Cell({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()},
+                              a.device.options, "plan"),
+                         scene);
         });
         all.push_back(answer.crash.empty() ? answer.value : crashed_plan(scene, entry, answer.crash));
         if (!console.json) print(all.back());

@@ -145,10 +145,14 @@ void add_render(CLI::App& app, Console& console) {
       "Examples: clothbench render results/runs/mine --cell desk-flat-low__xpbd --view top --colour depth --frames -1\n"
       "          clothbench render paper/hand-push --frames 0:-1:4 -o push");
   cmd->callback([&console, &a] {
-    const bool runs = std::any_of(a.files.begin(), a.files.end(), [](const fs::path& f) { return !fs::is_directory(f) && !is_cell(f); });
+    const bool runs = std::any_of(a.files.begin(), a.files.end(),
+                                  [](const fs::path& f) { return !fs::is_directory(f) && !is_cell(f); });
     const SolverEntry* solver = runs ? &find_solver(a.solver) : nullptr;
     if (solver == nullptr || !is_external(solver->info)) return render_all(a, console);
-    const std::string crash = Guard(console).run(*solver, [&] { return render_all(a, console), nlohmann::json(); }, false).crash;
+    const std::string crash = Guard(console)
+                                  .run(
+                                      *solver, [&] { return render_all(a, console), nlohmann::json(); }, false)
+                                  .crash;
     if (!crash.empty()) throw Error(solver->info.folder + ": its process: " + crash, ExitCode::CheckFailed);
   });
 }

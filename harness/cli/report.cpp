@@ -1,7 +1,8 @@
+#include "report/report.hpp"
+
 #include <fmt/format.h>
 
 #include "cli/command.hpp"
-#include "report/report.hpp"
 
 namespace clothbench {
 
@@ -9,7 +10,8 @@ void add_report(CLI::App& app, Console& console) {
   auto& runs = console.arguments<std::vector<std::string>>();
   auto& out = console.arguments<std::string>();
   out = "report";
-  CLI::App* cmd = app.add_subcommand("report", "An interactive page, tables (Markdown, CSV, JSON) and figures (SVG, PNG) from result files");
+  CLI::App* cmd = app.add_subcommand(
+      "report", "An interactive page, tables (Markdown, CSV, JSON) and figures (SVG, PNG) from result files");
   cmd->add_option("runs", runs, "Study folders or result files")->required();
   cmd->add_option("-o,--out", out, "Folder to write to")->capture_default_str();
   cmd->footer("Example: clothbench report results/runs/table3-20260101T000000Z -o report");
@@ -18,7 +20,8 @@ void add_report(CLI::App& app, Console& console) {
     ReportOptions options;
     options.out = out;
     write_report(paths, options);
-    if (console.json) fmt::print("{}\n", nlohmann::json{{"out", out}}.dump(2));
+    if (console.json)
+      fmt::print("{}\n", nlohmann::json{{"out", out}}.dump(2));
     else {
       print_console_report(paths);
       const bool page = std::filesystem::exists(options.out / "index.html");

@@ -22,7 +22,8 @@ struct RunArguments {
 
 void add_run(CLI::App& app, Console& console) {
   RunArguments& a = console.arguments<RunArguments>();
-  CLI::App* cmd = app.add_subcommand("run", "Run scenes with solvers: one accuracy pass over the whole scene, then timed trials");
+  CLI::App* cmd =
+      app.add_subcommand("run", "Run scenes with solvers: one accuracy pass over the whole scene, then timed trials");
   cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
   add_solvers(*cmd, "--solver", a.solvers, "Solvers (default xpbd)");
   cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
@@ -32,13 +33,15 @@ void add_run(CLI::App& app, Console& console) {
   add_require_assets(*cmd, a.require_assets);
   cmd->add_flag("--resume", a.resume, "Go on with the folder of an interrupted run");
   a.device.add_to(*cmd);
-  cmd->footer("Example: clothbench run paper/gravity --solver paper --set cloth.grid=[64,64] --set solver.iterations=20");
+  cmd->footer(
+      "Example: clothbench run paper/gravity --solver paper --set cloth.grid=[64,64] --set solver.iterations=20");
   cmd->callback([&console, &a] {
     if (a.resume && a.out.empty()) throw Error("--resume: say which folder with --out");
     const Overrides overrides = split_overrides(a.set);
     if (a.solvers.empty()) a.solvers = {"xpbd"};
     std::vector<Scene> scenes;
-    for (const std::string& file : a.scenes) scenes.push_back(at_seed(load_scene(file, overrides.scene, asset_policy(a.require_assets)), a.seed, console));
+    for (const std::string& file : a.scenes)
+      scenes.push_back(at_seed(load_scene(file, overrides.scene, asset_policy(a.require_assets)), a.seed, console));
     CellPlan plan;
     plan.protocol = "run";
     plan.rules.trials = a.trials;

@@ -8,9 +8,9 @@
 #include "cli/material_cards.hpp"
 #include "cli/supervise.hpp"
 #include "report/in_short.hpp"
-#include "report/withheld.hpp"
 #include "report/report.hpp"
 #include "report/tint.hpp"
+#include "report/withheld.hpp"
 #include "runner/environment.hpp"
 #include "truth/draw.hpp"
 
@@ -25,14 +25,16 @@ bool check_device(const SolverEntry& gpu, const DeviceFlags& flags) {
   const std::vector<DeviceInfo> devices = gpu.devices();
   if (devices.empty()) {
     if (!flags.allow_no_device)
-      throw Error("no Vulkan device is present; install a driver (Debian: mesa-vulkan-drivers) or give --allow-no-device",
-                  ExitCode::NoDevice);
+      throw Error(
+          "no Vulkan device is present; install a driver (Debian: mesa-vulkan-drivers) or give --allow-no-device",
+          ExitCode::NoDevice);
     fmt::print(stderr, "no Vulkan device: GPU solvers are left out\n");
     return false;
   }
   if (flags.options.index >= static_cast<int>(devices.size()))
     throw Error(fmt::format("--device {}: there are {} devices (see `clothbench list devices`)", flags.options.index,
-                            devices.size()), ExitCode::NoDevice);
+                            devices.size()),
+                ExitCode::NoDevice);
   return true;
 }
 
@@ -48,7 +50,8 @@ void settle_device(CellPlan& plan, const DeviceFlags& flags) {
   if (gpu == nullptr) return;
   if (check_device(*gpu, flags)) return;
   for (auto& group : plan.groups)
-    group.erase(std::remove_if(group.begin(), group.end(), [](const CellSpec& c) { return c.entry->info.on_gpu; }), group.end());
+    group.erase(std::remove_if(group.begin(), group.end(), [](const CellSpec& c) { return c.entry->info.on_gpu; }),
+                group.end());
 }
 
 nlohmann::json seconds_json(const RunResult& r) {
@@ -64,7 +67,9 @@ void print_in_short(const CellPlan& plan, const std::filesystem::path& out) {
   if (plan.size() == 0 || plan.size() > kFew) return;
   const std::vector<std::string> names = cell_names(plan);
   std::vector<CellRecord> cells = collect({out});
-  std::erase_if(cells, [&](const CellRecord& c) { return std::find(names.begin(), names.end(), cell_name(c.header)) == names.end(); });
+  std::erase_if(cells, [&](const CellRecord& c) {
+    return std::find(names.begin(), names.end(), cell_name(c.header)) == names.end();
+  });
   withhold_times(cells);
   fmt::print("{}", in_short_table(cells).console());
 }
@@ -81,16 +86,19 @@ void print_spent(const RunResult& r) {
   }
   fmt::print("seconds: {}; together {:.0f}\n", text, all);
   if (r.cells_over_budget > 0)
-    fmt::print("not run: {} settings whose solvers had used up their time on the scene (over_budget)\n", r.cells_over_budget);
+    fmt::print("not run: {} settings whose solvers had used up their time on the scene (over_budget)\n",
+               r.cells_over_budget);
   if (r.cards_left_out > 0)
-    fmt::print("not run: material cards of {} settings on fronts, which could change no verdict; a full study measures all\n",
-               r.cards_left_out);
+    fmt::print(
+        "not run: material cards of {} settings on fronts, which could change no verdict; a full study measures all\n",
+        r.cards_left_out);
 }
 
 }  // namespace
 
 void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
-  app.add_option("--seed", seed, "Draw the parameters of scenes with a truth by this number, and evaluate the truth there");
+  app.add_option("--seed", seed,
+                 "Draw the parameters of scenes with a truth by this number, and evaluate the truth there");
 }
 
 Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, Console& console) {
@@ -99,8 +107,8 @@ Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, Console& co
   if (!console.json && console.told_scenes.insert(scene.name).second) {
     std::string text;
     for (const auto& [name, value] : drawn.values) text += fmt::format(" {}={:.6g}", name, value);
-    fmt::print("{} --seed {}:{} frame_rate_hz={:.6g} duration_s={:.6g}\n", scene.name, *seed, text, drawn.scene.time.frame_rate_hz,
-               drawn.scene.time.duration_s);
+    fmt::print("{} --seed {}:{} frame_rate_hz={:.6g} duration_s={:.6g}\n", scene.name, *seed, text,
+               drawn.scene.time.frame_rate_hz, drawn.scene.time.duration_s);
   }
   return std::move(drawn.scene);
 }
@@ -134,18 +142,28 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
   for (const std::string& fault : result.faults) fmt::print(stderr, "FAULT {}\n", fault);
   if (!result.faults.empty()) console.exit_code = ExitCode::CheckFailed;
   if (console.json) {
-    nlohmann::json j = {{"out", out.string()}, {"ok", result.cells_ok}, {"unsupported", result.cells_unsupported},
-                        {"over_budget", result.cells_over_budget}, {"failed", result.cells_failed},
-                        {"seconds", seconds_json(result)}, {"cards", result.cards}, {"cards_left_out", result.cards_left_out}, {"faults", result.faults}, {"expect_kept", result.expect_kept},
+    nlohmann::json j = {{"out", out.string()},
+                        {"ok", result.cells_ok},
+                        {"unsupported", result.cells_unsupported},
+                        {"over_budget", result.cells_over_budget},
+                        {"failed", result.cells_failed},
+                        {"seconds", seconds_json(result)},
+                        {"cards", result.cards},
+                        {"cards_left_out", result.cards_left_out},
+                        {"faults", result.faults},
+                        {"expect_kept", result.expect_kept},
                         {"expect_broken", result.expect_broken}};
     fmt::print("{}\n", j.dump(2));
     return;
   }
   if (!flags.part) print_console_report({out});
   print_in_short(plan, out);
-  const auto counted = [](int n, const char* what, Tone tone) { return tinted(n > 0 ? tone : Tone::Plain, fmt::format("{} {}", n, what)); };
+  const auto counted = [](int n, const char* what, Tone tone) {
+    return tinted(n > 0 ? tone : Tone::Plain, fmt::format("{} {}", n, what));
+  };
   fmt::print("\n{}, {}, {}; results in {}\n", counted(result.cells_ok, "cells ok", Tone::Good),
-             counted(result.cells_unsupported, "unsupported", Tone::Doubtful), counted(result.cells_failed, "failed", Tone::Bad), out.string());
+             counted(result.cells_unsupported, "unsupported", Tone::Doubtful),
+             counted(result.cells_failed, "failed", Tone::Bad), out.string());
   print_spent(result);
 }
 

@@ -18,14 +18,14 @@ struct RunFlags {
 /// results/runs/<study>-<UTC>
 std::filesystem::path default_folder(const std::string& study);
 
-/// True if GPU solvers have a device; false if there is none and that is allowed. Throws Error otherwise, and for a --device
-/// that there is not.
+/// True if GPU solvers have a device; false if there is none and that is allowed. Throws Error otherwise, and for a
+/// --device that there is not.
 bool check_device(const SolverEntry& gpu, const DeviceFlags&);
 
-/// run_and_tell for a study whose cells run in other processes (protocol stability-map), `jobs` at a time. `only`: solvers of
-/// its maps.
-void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only, int jobs,
-                            Console& console);
+/// run_and_tell for a study whose cells run in other processes (protocol stability-map), `jobs` at a time. `only`:
+/// solvers of its maps.
+void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only,
+                            int jobs, Console& console);
 
 /// The option --seed of commands whose scenes have a truth.
 void add_seed(CLI::App&, std::optional<std::uint64_t>& seed);

@@ -61,8 +61,17 @@ CellPlan plan_study(const Study& study) {
   const StudyRules& rules = study.rules;
   CellPlan plan;
   plan.protocol = study.length == StudyLength::Full ? "full" : study.length == StudyLength::Quick ? "quick" : "short";
-  plan.rules = {study.trials, rules.frames, rules.max_wall_s, rules.min_frames, rules.warmup_s, study.drop_frames, study.accuracy_duration_s,
-                study.cell_limit_s, rules.ladder_limit_s, rules.agree, study.pipelined};
+  plan.rules = {study.trials,
+                rules.frames,
+                rules.max_wall_s,
+                rules.min_frames,
+                rules.warmup_s,
+                study.drop_frames,
+                study.accuracy_duration_s,
+                study.cell_limit_s,
+                rules.ladder_limit_s,
+                rules.agree,
+                study.pipelined};
   if (!study.stage_times) plan.rules.profiled_frames = 0;
   plan.references = plan.material_cards = study.protocol == "work-precision";
   std::vector<const SolverEntry*> entries;
@@ -96,20 +105,26 @@ void add_study(CLI::App& app, Console& console) {
       cmd->add_flag("--short", a.short_trials, "Every cell with short trials (the default)")->excludes(quick);
   cmd->add_flag("--full", a.full, "Every cell with long trials")->excludes(quick)->excludes(brief);
   cmd->add_option("--trials", a.trials, "Trials a cell, instead of the study's")->check(CLI::Range(1, 1000));
-  add_solvers(*cmd, "--solver", a.only, "Only these solvers; one that the study does not name joins with its default settings");
+  add_solvers(*cmd, "--solver", a.only,
+              "Only these solvers; one that the study does not name joins with its default settings");
   cmd->add_option("--set", a.set, "Override a scene key in every cell: cloth.size_m=[0.5,0.5]");
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
   cmd->add_flag("--resume", a.run.resume, "Go on with the folder of an interrupted study");
   add_seed(*cmd, a.seed);
   cmd->add_flag("--list-cells", a.list_cells, "Print the cells' numbers and names and run none");
-  cmd->add_option("--cell", a.cells, "Only these cells, by number: 7, or 0,3-5. They join what is in --out (scripts/slurm_study.sh spreads a study "
-                                     "over a cluster so)");
-  cmd->add_flag("--no-cards", a.no_cards, "No material cards after a work-precision study (then no solver is left unranked for its stiffness)");
-  cmd->add_option("--jobs", a.jobs, "Processes at a time, of a study whose cells run in processes of their own (default 1)")
+  cmd->add_option(
+      "--cell", a.cells,
+      "Only these cells, by number: 7, or 0,3-5. They join what is in --out (scripts/slurm_study.sh spreads a study "
+      "over a cluster so)");
+  cmd->add_flag("--no-cards", a.no_cards,
+                "No material cards after a work-precision study (then no solver is left unranked for its stiffness)");
+  cmd->add_option("--jobs", a.jobs,
+                  "Processes at a time, of a study whose cells run in processes of their own (default 1)")
       ->check(CLI::Range(1, 256));
 #ifdef CLOTHBENCH_WITH_DRAW
   CLI::Option* rendering =
-      cmd->add_flag("--with-rendering", a.with_rendering, "Also time frames with their pictures, one for each eye of a headset (frame_rendered_s)");
+      cmd->add_flag("--with-rendering", a.with_rendering,
+                    "Also time frames with their pictures, one for each eye of a headset (frame_rendered_s)");
   cmd->add_option("--eye", a.eye, "WIDTHxHEIGHT of each picture in pixels")->capture_default_str()->needs(rendering);
 #endif
   add_require_assets(*cmd, a.require_assets);
@@ -120,15 +135,20 @@ void add_study(CLI::App& app, Console& console) {
     if (!overrides.solver.empty()) throw Error("--set solver.…: a study's solver settings stand in its file");
     if (a.run.resume && a.run.out.empty()) throw Error("--resume: say which folder with --out");
     const StudyLength length = a.full ? StudyLength::Full : a.quick ? StudyLength::Quick : StudyLength::Short;
-    Study study = load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only, knobs_of_plugins(a.only)});
+    Study study = load_study(
+        a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only, knobs_of_plugins(a.only)});
     for (Study::Item& item : study.scenes) item.scene = at_seed(std::move(item.scene), a.seed, console);
     if (a.seed) study.definition["seed"] = *a.seed;
     if (a.with_rendering) study.definition["rendering"] = {{"eyes", 2}, {"pixels", a.eye}};
     if (study.protocol == "stability-map") {
       if (a.with_rendering) throw Error("--with-rendering: protocol stability-map times nothing");
       if (a.trials > 0) throw Error("--trials: protocol stability-map judges one run of every cell");
-      if (a.list_cells || !a.cells.empty()) throw Error("--list-cells, --cell: protocol stability-map probes where its last probe points; --jobs uses all cores of a machine");
-      run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, std::max(1, a.jobs), console);
+      if (a.list_cells || !a.cells.empty())
+        throw Error(
+            "--list-cells, --cell: protocol stability-map probes where its last probe points; --jobs uses all cores of "
+            "a machine");
+      run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, std::max(1, a.jobs),
+                             console);
       return;
     }
     if (a.jobs > 0) throw Error("--jobs: only studies of protocol stability-map, where nothing is timed");

@@ -61,7 +61,8 @@ ChildEnd wait_for(pid_t pid, const CellPlan& plan, const fs::path& note) {
       since = Clock::now();
     }
     const std::optional<Doing> at = doing_of(plan, doing);
-    return at && is_external(at->entry->info) && std::chrono::duration<double>(Clock::now() - since).count() > plugin_limit_s();
+    return at && is_external(at->entry->info) &&
+           std::chrono::duration<double>(Clock::now() - since).count() > plugin_limit_s();
   });
 }
 
@@ -106,7 +107,8 @@ void supervise(const CellPlan& plan, const fs::path& out, bool resume, Console& 
   // A row a child at least, of a cell or of a card at its setting.
   for (std::size_t children = 0; children <= 2 * plan.size(); ++children) {
     const bool again = resume || children > 0;
-    const ChildEnd end = wait_for(start_again(console, kVariable, (again ? "again:" : "new:") + out.string(), false), plan, note);
+    const ChildEnd end =
+        wait_for(start_again(console, kVariable, (again ? "again:" : "new:") + out.string(), false), plan, note);
     if (!fs::exists(note, ignored)) {  // it came to its end, good or bad
       console.exit_code = static_cast<ExitCode>(end.how == ChildEnd::How::Exited ? end.code : 1);
       return;

@@ -9,8 +9,8 @@
 namespace clothbench {
 
 /// Plans with plugins run in a process of their own, where everything is timed as usual; this one only watches. If that
-/// process crashes, or a plugin's cell makes no headway for 15 minutes ($CLOTHBENCH_PLUGIN_LIMIT_S), the cell it was at becomes a
-/// row `crashed` or `timed_out` and a new process goes on with the rest.
+/// process crashes, or a plugin's cell makes no headway for 15 minutes ($CLOTHBENCH_PLUGIN_LIMIT_S), the cell it was at
+/// becomes a row `crashed` or `timed_out` and a new process goes on with the rest.
 
 /// True if some cell's solver is a plugin and this process is not already such a child.
 bool needs_supervision(const CellPlan&);

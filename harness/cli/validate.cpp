@@ -19,14 +19,17 @@ void add_validate(CLI::App& app, Console& console) {
     for (const std::string& file : files) {
       std::string fault;
       try {
-        if (is_study(file)) load_study(file);
-        else load_scene(file);
+        if (is_study(file))
+          load_study(file);
+        else
+          load_scene(file);
       } catch (const Error& e) {
         fault = e.what();
         console.exit_code = ExitCode::BadInput;
       }
       rows.push_back({{"file", file}, {"ok", fault.empty()}, {"message", fault}});
-      if (!console.json) fmt::print("{}\n", fault.empty() ? file + ": " + tinted(Tone::Good, "ok") : tinted(Tone::Bad, fault));
+      if (!console.json)
+        fmt::print("{}\n", fault.empty() ? file + ": " + tinted(Tone::Good, "ok") : tinted(Tone::Bad, fault));
     }
     if (console.json) fmt::print("{}\n", rows.dump(2));
   });

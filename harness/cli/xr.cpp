@@ -1,10 +1,9 @@
-#include "xr/loop.hpp"
-
 #include <fmt/format.h>
 
 #include "cli/command.hpp"
 #include "cli/run_common.hpp"
 #include "runner/cell.hpp"
+#include "xr/loop.hpp"
 
 namespace clothbench {
 namespace {
@@ -22,16 +21,23 @@ struct XrArguments {
 void print(const xr::LoopResult& r, const Console& console) {
   const auto& s = r.summary;
   if (console.json) {
-    fmt::print("{}\n", nlohmann::json({{"file", r.file.string()}, {"scenario", r.scenario.string()}, {"status", r.outcome.status}, {"message", r.outcome.message}, {"summary", s}}).dump(2));
+    fmt::print("{}\n", nlohmann::json({{"file", r.file.string()},
+                                       {"scenario", r.scenario.string()},
+                                       {"status", r.outcome.status},
+                                       {"message", r.outcome.message},
+                                       {"summary", s}})
+                           .dump(2));
     return;
   }
   const auto of = [&](const char* name) { return s.contains(name) ? s.at(name) : kMissing; };
   fmt::print("{:.0f} frames: {}\n", of("xr_frames"), r.outcome.status);
-  fmt::print("frames a second    median {:.1f}   mean {:.1f}   worst {:.1f}\n", of("xr_fps_median"), of("xr_fps_mean"), of("xr_fps_worst"));
-  fmt::print("shown after        1 period {:.1f} %   2 {:.1f} %   3 {:.1f} %   more {:.1f} %\n", 100 * of("xr_share_1_period"),
-             100 * of("xr_share_2_periods"), 100 * of("xr_share_3_periods"), 100 * of("xr_share_more_periods"));
-  fmt::print("step               median {:.3f} ms   99 % {:.3f} ms   on the device {:.3f} ms\n", 1e3 * of("xr_step_median_s"),
-             1e3 * of("xr_step_p99_s"), 1e3 * of("xr_step_device_median_s"));
+  fmt::print("frames a second    median {:.1f}   mean {:.1f}   worst {:.1f}\n", of("xr_fps_median"), of("xr_fps_mean"),
+             of("xr_fps_worst"));
+  fmt::print("shown after        1 period {:.1f} %   2 {:.1f} %   3 {:.1f} %   more {:.1f} %\n",
+             100 * of("xr_share_1_period"), 100 * of("xr_share_2_periods"), 100 * of("xr_share_3_periods"),
+             100 * of("xr_share_more_periods"));
+  fmt::print("step               median {:.3f} ms   99 % {:.3f} ms   on the device {:.3f} ms\n",
+             1e3 * of("xr_step_median_s"), 1e3 * of("xr_step_p99_s"), 1e3 * of("xr_step_device_median_s"));
   fmt::print("both pictures      median {:.3f} ms on the device\n", 1e3 * of("xr_paint_device_median_s"));
   fmt::print("results in {}; the session replays with: clothbench run {}\n", r.file.string(), r.scenario.string());
 }
@@ -41,23 +47,34 @@ void print(const xr::LoopResult& r, const Console& console) {
 void add_xr(CLI::App& app, Console& console) {
   XrArguments& a = console.arguments<XrArguments>();
   a.solver = "xpbd";
-  CLI::App* cmd = app.add_subcommand("xr", "A live session in a headset (OpenXR): the cloth is drawn, the user's hands and room touch it");
-  cmd->add_option("scene", a.scene, "Scenario file or name: its hands become the user's, its room the user's")->required();
+  CLI::App* cmd = app.add_subcommand(
+      "xr", "A live session in a headset (OpenXR): the cloth is drawn, the user's hands and room touch it");
+  cmd->add_option("scene", a.scene, "Scenario file or name: its hands become the user's, its room the user's")
+      ->required();
   cmd->add_option("--solver", a.solver, "Solver")->capture_default_str();
   cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
-  cmd->add_option("--frames", a.frames, fmt::format("Frames; default: as long as the scenario lasts, at most {}", xr::kMostFrames))
+  cmd->add_option("--frames", a.frames,
+                  fmt::format("Frames; default: as long as the scenario lasts, at most {}", xr::kMostFrames))
       ->check(CLI::Range(1, xr::kMostFrames));
-  cmd->add_option("--rate", a.rate, "Refresh rate asked of the display [Hz]")->check(CLI::Range(1.0, 1000.0))->capture_default_str();
-  cmd->add_option("--place", a.place, "Where the scene's origin is, x y z [m] from the head at the start, or from the floor with a room; "
-                                      "default 0 -0.1 -0.6, with a room 0 0 0")
+  cmd->add_option("--rate", a.rate, "Refresh rate asked of the display [Hz]")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  cmd->add_option("--place", a.place,
+                  "Where the scene's origin is, x y z [m] from the head at the start, or from the floor with a room; "
+                  "default 0 -0.1 -0.6, with a room 0 0 0")
       ->expected(3);
   cmd->add_flag("--no-passthrough", a.opaque, "White all round instead of the cameras' picture");
-  cmd->add_option("--patience", a.patience, "Give up where nothing is seen or picked for so long [s]")->check(CLI::PositiveNumber)->capture_default_str();
-  cmd->add_option("--runtime", a.runtime, "A runtime's library or manifest, entered without the system's OpenXR loader");
-  cmd->add_option("--out", a.out, "Folder for the result file and the recorded scenario; default results/runs/xr-<UTC>");
+  cmd->add_option("--patience", a.patience, "Give up where nothing is seen or picked for so long [s]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  cmd->add_option("--runtime", a.runtime,
+                  "A runtime's library or manifest, entered without the system's OpenXR loader");
+  cmd->add_option("--out", a.out,
+                  "Folder for the result file and the recorded scenario; default results/runs/xr-<UTC>");
   a.device.add_to(*cmd);
-  cmd->footer("Example: clothbench xr paper/capsule-sweep --frames 720\n"
-              "With a room: press A to see the scan, pick six points of a desk by the trigger, and the cloth falls on it.");
+  cmd->footer(
+      "Example: clothbench xr paper/capsule-sweep --frames 720\n"
+      "With a room: press A to see the scan, pick six points of a desk by the trigger, and the cloth falls on it.");
   cmd->callback([&console, &a] {
     const Overrides overrides = split_overrides(a.set);
     xr::LoopOptions o;

@@ -1,13 +1,14 @@
-/* A cloth solver as a shared library, for `clothbench … --solver plugin:path.so`. C99, no other header of clothbench needed.
+/* A cloth solver as a shared library, for `clothbench … --solver plugin:path.so`. C99, no other header of clothbench
+ * needed.
  *
- * The library exports one function, `clothbench_plugin`, which returns a description that stays valid. Units are SI, vectors
- * are x y z with +y up, positions and velocities of vertices lie one after another, row after row of the grid: vertex (i, j),
- * the ith of row j, is number j * columns + i. Pointers in a scene are valid until `destroy`, those in a frame until `step`
- * returns. All calls come from one thread at a time. Nothing may throw or longjmp across them.
+ * The library exports one function, `clothbench_plugin`, which returns a description that stays valid. Units are SI,
+ * vectors are x y z with +y up, positions and velocities of vertices lie one after another, row after row of the grid:
+ * vertex (i, j), the ith of row j, is number j * columns + i. Pointers in a scene are valid until `destroy`, those in a
+ * frame until `step` returns. All calls come from one thread at a time. Nothing may throw or longjmp across them.
  *
- * Version 1. The structs that are passed one by one (plugin, scene, frame) may grow at their end within a version; those
- * that stand in arrays never change. Both sides tell the sizes they were compiled with, and what does not fit is refused.
- * solvers/plugin/README.md says more; solvers/plugin/example is a complete solver. */
+ * Version 1. The structs that are passed one by one (plugin, scene, frame) may grow at their end within a version;
+ * those that stand in arrays never change. Both sides tell the sizes they were compiled with, and what does not fit is
+ * refused. solvers/plugin/README.md says more; solvers/plugin/example is a complete solver. */
 #ifndef CLOTHBENCH_PLUGIN_H
 #define CLOTHBENCH_PLUGIN_H
 #include <stdint.h>
@@ -46,35 +47,48 @@ enum {
   CLOTHBENCH_UNEVEN_GRID = 1 << 17, /* cells of different widths */
   CLOTHBENCH_REGIONS = 1 << 18,     /* a stiffness that changes from column to column */
   CLOTHBENCH_SPIN = 1 << 19,        /* a start with another velocity at every vertex */
-  CLOTHBENCH_CLOTH_MESH = 1 << 20   /* a triangle mesh instead of a grid: columns is the number of vertices, rows is 1 */
+  CLOTHBENCH_CLOTH_MESH = 1 << 20 /* a triangle mesh instead of a grid: columns is the number of vertices, rows is 1 */
 };
 
 /* How a step ended. What is not OK ends the cell, as a row of the results. */
-enum { CLOTHBENCH_OK = 0, CLOTHBENCH_NOT_FINITE = 1, CLOTHBENCH_DIVERGED = 2, CLOTHBENCH_DEVICE_LOST = 3, CLOTHBENCH_TIMED_OUT = 4 };
+enum {
+  CLOTHBENCH_OK = 0,
+  CLOTHBENCH_NOT_FINITE = 1,
+  CLOTHBENCH_DIVERGED = 2,
+  CLOTHBENCH_DEVICE_LOST = 3,
+  CLOTHBENCH_TIMED_OUT = 4
+};
 
-/* An edge of the grid. `membrane_stiffness_N_per_m` is the sheet's Y = E h there, infinity where it does not stretch; what
- * spring or constraint that makes is the solver's own. The edge stands for a piece of cloth `along_m` x `across_m`; on the
- * border `across_m` is half a cell. A skip edge joins vertices with one between them, (a + b) / 2: `along_m` is then the
- * distance to that one, and the stiffness 0. */
+/* An edge of the grid. `membrane_stiffness_N_per_m` is the sheet's Y = E h there, infinity where it does not stretch;
+ * what spring or constraint that makes is the solver's own. The edge stands for a piece of cloth `along_m` x
+ * `across_m`; on the border `across_m` is half a cell. A skip edge joins vertices with one between them, (a + b) / 2:
+ * `along_m` is then the distance to that one, and the stiffness 0. */
 typedef struct ClothbenchEdge {
   uint32_t a, b;
   double rest_m, membrane_stiffness_N_per_m, along_m, across_m;
 } ClothbenchEdge;
 
-enum { CLOTHBENCH_SHAPE_PLANE = 0, CLOTHBENCH_SHAPE_SPHERE = 1, CLOTHBENCH_SHAPE_BOX = 2, CLOTHBENCH_SHAPE_CAPSULES = 3, CLOTHBENCH_SHAPE_MESH = 4 };
+enum {
+  CLOTHBENCH_SHAPE_PLANE = 0,
+  CLOTHBENCH_SHAPE_SPHERE = 1,
+  CLOTHBENCH_SHAPE_BOX = 2,
+  CLOTHBENCH_SHAPE_CAPSULES = 3,
+  CLOTHBENCH_SHAPE_MESH = 4
+};
 
-/* Something cloth must not pass. Capsules and vertices are in ClothbenchPose, their numbers and triangles never change. */
+/* Something cloth must not pass. Capsules and vertices are in ClothbenchPose, their numbers and triangles never change.
+ */
 typedef struct ClothbenchCollider {
   int32_t shape;
-  int32_t moves;         /* 1: its pose changes from frame to frame */
-  double margin_m;       /* distance from the surface at which contact holds the cloth */
-  double friction;       /* Coulomb's coefficient of the pair */
-  double center_m[3];    /* plane: a point on it; sphere, box: centre */
-  double normal[3];      /* plane: unit, into free space */
-  double radius_m;       /* sphere */
+  int32_t moves;                    /* 1: its pose changes from frame to frame */
+  double margin_m;                  /* distance from the surface at which contact holds the cloth */
+  double friction;                  /* Coulomb's coefficient of the pair */
+  double center_m[3];               /* plane: a point on it; sphere, box: centre */
+  double normal[3];                 /* plane: unit, into free space */
+  double radius_m;                  /* sphere */
   double half_extent_m[3], axes[9]; /* box: along its three axes, which are orthonormal */
   uint32_t capsule_count, vertex_count, triangle_count;
-  int32_t closed;        /* mesh: has an inside, on the far side of its normals */
+  int32_t closed;            /* mesh: has an inside, on the far side of its normals */
   const uint32_t* triangles; /* 3 each, counter-clockwise seen from free space */
 } ClothbenchCollider;
 
@@ -103,8 +117,9 @@ typedef struct ClothbenchScene {
   const uint32_t* grips; /* vertices that hands hold and move: see ClothbenchFrame */
   uint32_t collider_count;
   const ClothbenchCollider* colliders;
-  const ClothbenchPose* poses; /* one a collider, at the start */
-  double self_thickness_m, self_friction; /* distance that two layers of the cloth keep, 0: it passes through itself; Coulomb's coefficient */
+  const ClothbenchPose* poses;            /* one a collider, at the start */
+  double self_thickness_m, self_friction; /* distance that two layers of the cloth keep, 0: it passes through itself;
+                                             Coulomb's coefficient */
 } ClothbenchScene;
 
 /* One displayed frame; everything in it is at the frame's end. Between frames things move in straight lines. */
@@ -112,9 +127,9 @@ typedef struct ClothbenchFrame {
   uint32_t struct_size;
   int32_t index;
   double time_s, dt_s;
-  const ClothbenchPose* poses;     /* one a collider */
-  const double* grip_position_m;   /* one a grip */
-  const uint8_t* grip_held;        /* one a grip: 0 once let go, for good */
+  const ClothbenchPose* poses;   /* one a collider */
+  const double* grip_position_m; /* one a grip */
+  const uint8_t* grip_held;      /* one a grip: 0 once let go, for good */
 } ClothbenchFrame;
 
 /* A knob, `--set solver.<name>=`. */
@@ -145,12 +160,12 @@ typedef struct ClothbenchPlugin {
   uint32_t setting_count;
   const ClothbenchSetting* settings;
 
-  /* A solver that stands at the start of the scene, with these settings, in the order of `settings`. Timed as set-up. NULL if
-   * that cannot be, with the reason in `why`. */
+  /* A solver that stands at the start of the scene, with these settings, in the order of `settings`. Timed as set-up.
+   * NULL if that cannot be, with the reason in `why`. */
   void* (*create)(const double* settings, const ClothbenchScene*, const char** why);
   void (*destroy)(void*);
-  /* Goes on from these positions and velocities, the scene's at the start or what `read_state` gave; 0 if they do not tell
-   * everything (nothing has changed then). May be NULL if there is a `reset`. */
+  /* Goes on from these positions and velocities, the scene's at the start or what `read_state` gave; 0 if they do not
+   * tell everything (nothing has changed then). May be NULL if there is a `reset`. */
   int32_t (*restart)(void*, const double* position_m, const double* velocity_m_per_s);
   /* One frame, complete on return: what is timed. */
   int32_t (*step)(void*, const ClothbenchFrame*);
@@ -160,19 +175,19 @@ typedef struct ClothbenchPlugin {
   /* The rest may be NULL. */
   void (*reset)(void*); /* back to the start, bit for bit; NULL: `restart` does that */
   /* Way [m] of a body that only falls, by the solver's own integrator; NULL: the exact one. */
-  double (*free_fall_m)(const double* settings, double dt_s, double gravity_m_per_s2, double velocity_m_per_s, double damping_per_s,
-                        int32_t frames);
+  double (*free_fall_m)(const double* settings, double dt_s, double gravity_m_per_s2, double velocity_m_per_s,
+                        double damping_per_s, int32_t frames);
   const char* (*device)(void*); /* NULL: the CPU */
   double (*device_s)(void*);    /* device time of the last frame; not NULL says that the solver runs on a GPU */
 
   /* Libraries built before this line was here go on working: `plugin_size` tells that they end above it. */
-  /* Distance [m] at which the solver holds the cloth off the scene's collider of this number, for metrics that ask what touches.
-   * NAN, or NULL here: the collider's margin_m. */
+  /* Distance [m] at which the solver holds the cloth off the scene's collider of this number, for metrics that ask what
+   * touches. NAN, or NULL here: the collider's margin_m. */
   double (*contact_margin_m)(void*, uint32_t collider);
 } ClothbenchPlugin;
 
-#define CLOTHBENCH_PLUGIN_HEADER                                                                             \
-  CLOTHBENCH_PLUGIN_VERSION, (uint32_t)sizeof(ClothbenchPlugin), (uint32_t)sizeof(ClothbenchScene),          \
+#define CLOTHBENCH_PLUGIN_HEADER                                                                                 \
+  CLOTHBENCH_PLUGIN_VERSION, (uint32_t)sizeof(ClothbenchPlugin), (uint32_t)sizeof(ClothbenchScene),              \
       (uint32_t)sizeof(ClothbenchFrame), (uint32_t)sizeof(ClothbenchEdge), (uint32_t)sizeof(ClothbenchCollider), \
       (uint32_t)sizeof(ClothbenchPose), (uint32_t)sizeof(ClothbenchSetting), (uint32_t)sizeof(ClothbenchStage)
 

@@ -112,7 +112,8 @@ struct ColliderContact::Probes {
       return contact::half_space_contact({positions, triangles}, contact::point(c.center_m), contact::point(c.normal));
     ContactProbe& probe = *watched[k].probe;
     if (frame > 0 && c.shape == Collider::Shape::Capsules) probe.move_shapes(shapes_of(pose(k, frame).capsules));
-    if (frame > 0 && c.shape == Collider::Shape::Mesh && c.moves()) probe.move_object(posed_positions(*c.mesh, pose(k, frame)));
+    if (frame > 0 && c.shape == Collider::Shape::Mesh && c.moves())
+      probe.move_object(posed_positions(*c.mesh, pose(k, frame)));
     return probe.probe(positions);
   }
 
@@ -131,13 +132,15 @@ SceneContact ColliderContact::probe(int frame, const std::vector<double>& positi
   const double tunnelled = p.any_crossings ? 0 : kMissing, depth = p.any_inside ? 0 : kMissing;
   SceneContact all{0, 0, 0, tunnelled, tunnelled, depth, depth, depth, depth, depth};
   double moment = 0;
-  for (std::size_t k = 0; k < p.watched.size(); ++k) add(all, moment, *p.watched[k].collider, p.sample(k, frame, positions));
+  for (std::size_t k = 0; k < p.watched.size(); ++k)
+    add(all, moment, *p.watched[k].collider, p.sample(k, frame, positions));
   // Nothing inside: no area to take a mean over, and a mean depth of 0 as the other depths. NaN stays NaN.
   all.depth_mean_m = all.area_m2 == 0 ? 0 : moment / all.area_m2;
   return all;
 }
 
-SelfContact self_contact(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+SelfContact self_contact(const std::vector<double>& positions,
+                         const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   if (!contact::all_finite(positions)) return {kMissing, kMissing};
   const contact::Contour c = contact::self_contour({positions, triangles});
   return {c.length_m, static_cast<double>(c.pairs)};

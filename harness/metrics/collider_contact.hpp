@@ -20,8 +20,8 @@ bool has_inside(const Collider&);
 bool counts_crossings(const Collider&);
 
 /// The contact of one cloth with all colliders of its scene, frame after frame: a contact::ContactProbe for each, moved
-/// as Scene::motion says. Boxes are probed as closed meshes, which is exact; planes as half-spaces, exactly; spheres and
-/// capsules by their signed distance.
+/// as Scene::motion says. Boxes are probed as closed meshes, which is exact; planes as half-spaces, exactly; spheres
+/// and capsules by their signed distance.
 ///
 /// Put together over the colliders: lengths, pairs and areas are sums (where colliders overlap, both count); fractions
 /// and depths are the greatest; the mean depth is over the sum of penetrating areas.
@@ -42,6 +42,7 @@ class ColliderContact {
 };
 
 /// How a cloth of these triangles crosses itself; exact (contact::self_contour).
-SelfContact self_contact(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles);
+SelfContact self_contact(const std::vector<double>& positions,
+                         const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
 }  // namespace clothbench

@@ -9,7 +9,9 @@ struct ColliderContact::Probes {};
 
 ColliderContact::ColliderContact(const Scene&) { throw Error("this build has no contact metrics"); }
 ColliderContact::~ColliderContact() = default;
-SceneContact ColliderContact::probe(int, const std::vector<double>&) { throw Error("this build has no contact metrics"); }
+SceneContact ColliderContact::probe(int, const std::vector<double>&) {
+  throw Error("this build has no contact metrics");
+}
 
 SelfContact self_contact(const std::vector<double>&, const std::vector<std::array<std::uint32_t, 3>>&) {
   throw Error("this build has no contact metrics");
@@ -17,8 +19,12 @@ SelfContact self_contact(const std::vector<double>&, const std::vector<std::arra
 
 struct ColliderPassage::Watch {};
 
-ColliderPassage::ColliderPassage(const Scene&, const std::vector<double>&) { throw Error("this build has no contact metrics"); }
+ColliderPassage::ColliderPassage(const Scene&, const std::vector<double>&) {
+  throw Error("this build has no contact metrics");
+}
 ColliderPassage::~ColliderPassage() = default;
-ScenePassage ColliderPassage::probe(int, const std::vector<double>&) { throw Error("this build has no contact metrics"); }
+ScenePassage ColliderPassage::probe(int, const std::vector<double>&) {
+  throw Error("this build has no contact metrics");
+}
 
 }  // namespace clothbench

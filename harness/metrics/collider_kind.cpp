@@ -9,8 +9,10 @@ bool has_inside(const Collider& c) {
     case Collider::Shape::Plane:
     case Collider::Shape::Sphere:
     case Collider::Shape::Box:
-    case Collider::Shape::Capsules: return true;
-    case Collider::Shape::Mesh: return c.mesh->closed || c.mesh->skinned();
+    case Collider::Shape::Capsules:
+      return true;
+    case Collider::Shape::Mesh:
+      return c.mesh->closed || c.mesh->skinned();
   }
   throw Error("collider " + c.name + ": no such shape");
 }

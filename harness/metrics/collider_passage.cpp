@@ -13,8 +13,8 @@
 namespace clothbench {
 namespace {
 
-constexpr double kTouchShare = 1e-3;   // of the cloth's shorter side, beyond the margin
-constexpr double kTouchMargin = 0.1;   // of the margin
+constexpr double kTouchShare = 1e-3;  // of the cloth's shorter side, beyond the margin
+constexpr double kTouchMargin = 0.1;  // of the margin
 
 using contact::Bone;
 using contact::Nearest;
@@ -37,8 +37,8 @@ double weight_of(const ColliderMesh& m, std::size_t vertex, std::size_t joint) {
   return sum;
 }
 
-/// The middle of the flesh round each joint's bone, its vertices weighted as skinning weights them; half-way on to the tip
-/// at the end, where there is flesh to the fingertip but no next bone.
+/// The middle of the flesh round each joint's bone, its vertices weighted as skinning weights them; half-way on to the
+/// tip at the end, where there is flesh to the fingertip but no next bone.
 std::vector<MedialPoint> medial_points(const ColliderMesh& m, std::size_t first, std::size_t last) {
   std::vector<MedialPoint> out;
   for (std::size_t j = first; j <= last; ++j) {
@@ -56,7 +56,8 @@ std::vector<MedialPoint> medial_points(const ColliderMesh& m, std::size_t first,
   const Point<3> middle = out.back().at_rest, along = (middle - out[out.size() - 2].at_rest).normalized();
   double ahead = 0;
   for (std::size_t v = 0; v < m.vertex_count(); ++v)
-    if (weight_of(m, v, end) >= 0.5) ahead = std::max(ahead, along.dot(Point<3>(Point<3>::Map(m.positions.data() + 3 * v)) - middle));
+    if (weight_of(m, v, end) >= 0.5)
+      ahead = std::max(ahead, along.dot(Point<3>(Point<3>::Map(m.positions.data() + 3 * v)) - middle));
   if (ahead > 0) out.push_back({end, middle + 0.5 * ahead * along});
   return out;
 }
@@ -137,7 +138,8 @@ struct ColliderPassage::Watch {
     vertex_area.assign(c.vertex_count(), 0);
     for (const auto& cell : cells) {
       const double area = (c.line_u_m(static_cast<int>(cell[1] % static_cast<std::uint32_t>(c.columns))) -
-                           c.line_u_m(static_cast<int>(cell[0] % static_cast<std::uint32_t>(c.columns)))) * c.dv();
+                           c.line_u_m(static_cast<int>(cell[0] % static_cast<std::uint32_t>(c.columns)))) *
+                          c.dv();
       cell_area.push_back(area);
       for (const std::uint32_t v : cell) vertex_area[v] += area / 4;
     }
@@ -146,7 +148,8 @@ struct ColliderPassage::Watch {
       lines.emplace_back(s.colliders[k]);
       sides.emplace_back();
       still.emplace_back();
-      if (s.colliders[k].mesh && !s.colliders[k].moves()) still[k].emplace(contact::TriangleMeshView{s.colliders[k].mesh->positions, s.colliders[k].mesh->triangles});
+      if (s.colliders[k].mesh && !s.colliders[k].moves())
+        still[k].emplace(contact::TriangleMeshView{s.colliders[k].mesh->positions, s.colliders[k].mesh->triangles});
       touched.emplace_back(c.vertex_count(), 0);
       if (has_centre_line(s.colliders[k])) watch_side(k, start);
     }
@@ -163,10 +166,12 @@ struct ColliderPassage::Watch {
     if (bones.empty()) return;
     Point<3> middle = Point<3>::Zero(), sheet = Point<3>::Zero();
     for (const Bone& b : bones) middle += (b[0] + b[1]) / (2.0 * static_cast<double>(bones.size()));
-    for (std::size_t v = 0; v < start.size(); v += 3) sheet += Point<3>(Point<3>::Map(&start[v])) * (3.0 / static_cast<double>(start.size()));
+    for (std::size_t v = 0; v < start.size(); v += 3)
+      sheet += Point<3>(Point<3>::Map(&start[v])) * (3.0 / static_cast<double>(start.size()));
     const Point<3> normal = contact::point(scene.cloth.axis_u).cross(contact::point(scene.cloth.axis_v)).normalized();
     const double reach = 4 * (scene.cloth.width_m + scene.cloth.height_m + (middle - sheet).norm());
-    sides[k].emplace(bones, normal.dot(middle - sheet) < 0 ? Point<3>(-normal) : normal, reach, vertex_area.size() + cells.size(), weave());
+    sides[k].emplace(bones, normal.dot(middle - sheet) < 0 ? Point<3>(-normal) : normal, reach,
+                     vertex_area.size() + cells.size(), weave());
   }
 
   /// Sides of cells and of triangles, and the ways from a cell's corners to its centre.
@@ -261,7 +266,8 @@ struct ColliderPassage::Watch {
       for (std::size_t v = 0; v < found.size(); ++v) {
         const bool touch = found[v] && found[v]->distance_m <= reach;
         if (touch && touched[k][v] != 0 && !before.empty()) {
-          const Point<3> way = Point<3>(Point<3>::Map(&x[3 * v])) - Point<3>(Point<3>::Map(&before[3 * v])) - found[v]->carried_m;
+          const Point<3> way =
+              Point<3>(Point<3>::Map(&x[3 * v])) - Point<3>(Point<3>::Map(&before[3 * v])) - found[v]->carried_m;
           slid += (way - found[v]->normal.dot(way) * found[v]->normal).norm();
           kept += 1;
         }
@@ -284,8 +290,8 @@ struct ColliderPassage::Watch {
   double tolerance = 0;
   std::vector<double> margins;  ///< one a collider: how far off it the solver holds cloth
   std::vector<CentreLine> lines;
-  std::vector<std::optional<WrongSide>> sides;  ///< one a collider; empty where it has no centre line
-  std::vector<std::vector<char>> touched;       ///< (collider, vertex), at the last frame
+  std::vector<std::optional<WrongSide>> sides;             ///< one a collider; empty where it has no centre line
+  std::vector<std::vector<char>> touched;                  ///< (collider, vertex), at the last frame
   std::vector<std::optional<contact::NearSurface>> still;  ///< of meshes that stand still
 };
 

@@ -11,8 +11,8 @@ namespace {
 /// Below this RMS angle [rad] a sheet is flat, and what is left of its angles rounding.
 constexpr double kFlat_rad = 1e-4;
 
-/// Sums of squares: of the angle between neighbouring cells, everywhere and where the filter has all it looks at, and of what
-/// it lets through.
+/// Sums of squares: of the angle between neighbouring cells, everywhere and where the filter has all it looks at, and
+/// of what it lets through.
 struct Angles {
   double everywhere = 0, all = 0, rough = 0;
   long steps = 0, count = 0;
@@ -32,18 +32,20 @@ std::array<double, 3> cell_normal(const Cloth& c, const std::vector<double>& x, 
   return n;
 }
 
-/// Along one grid line of cells: steps of the normal from cell to cell, whose length is the angle for small ones, and what of
-/// them a filter lets through that takes out all up to third-order changes: weights (1, -4, 6, -4, 1)/16 pass a
+/// Along one grid line of cells: steps of the normal from cell to cell, whose length is the angle for small ones, and
+/// what of them a filter lets through that takes out all up to third-order changes: weights (1, -4, 6, -4, 1)/16 pass a
 /// zigzag of two cells whole, 1/4 of a wavelength of 4 and 2 % of one of 8.
 void add_line(const std::vector<std::array<double, 3>>& normals, Angles& sum) {
   std::vector<std::array<double, 3>> steps;
   for (std::size_t k = 1; k < normals.size(); ++k)
-    steps.push_back({normals[k][0] - normals[k - 1][0], normals[k][1] - normals[k - 1][1], normals[k][2] - normals[k - 1][2]});
+    steps.push_back(
+        {normals[k][0] - normals[k - 1][0], normals[k][1] - normals[k - 1][1], normals[k][2] - normals[k - 1][2]});
   for (const auto& s : steps) sum.everywhere += s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
   sum.steps += static_cast<long>(steps.size());
   for (std::size_t k = 2; k + 2 < steps.size(); ++k) {
     for (std::size_t a = 0; a < 3; ++a) {
-      const double rough = (steps[k - 2][a] - 4 * steps[k - 1][a] + 6 * steps[k][a] - 4 * steps[k + 1][a] + steps[k + 2][a]) / 16;
+      const double rough =
+          (steps[k - 2][a] - 4 * steps[k - 1][a] + 6 * steps[k][a] - 4 * steps[k + 1][a] + steps[k + 2][a]) / 16;
       sum.rough += rough * rough;
       sum.all += steps[k][a] * steps[k][a];
     }

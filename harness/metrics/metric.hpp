@@ -14,7 +14,8 @@ namespace clothbench {
 struct MetricContext {
   const Scene& scene;
   const SolverEntry& entry;
-  const nlohmann::json& settings;  ///< complete; only for the solver's own free_fall_m, for no metric knows a setting by its name
+  const nlohmann::json&
+      settings;  ///< complete; only for the solver's own free_fall_m, for no metric knows a setting by its name
   std::vector<double> contact_margins_m = {};  ///< as in the solver's Plan
 };
 
@@ -26,8 +27,8 @@ struct SceneContact {
   double depth_m, depth_vertex_m, depth_p99_m, depth_mean_m, area_m2;
 };
 
-/// Where the cloth went past the colliders and how it slides on them, in one frame; collider_passage.hpp. All are NaN if the
-/// cloth is not finite, the first two also if it ever was not, and where no collider has a centre line.
+/// Where the cloth went past the colliders and how it slides on them, in one frame; collider_passage.hpp. All are NaN
+/// if the cloth is not finite, the first two also if it ever was not, and where no collider has a centre line.
 struct ScenePassage {
   double wrong_side_fraction;  ///< of the samples' area
   double wrong_side_samples;   ///< how many vertices and cell centres
@@ -49,9 +50,9 @@ struct MetricFrame {
   const MetricContext& context;
   int index;  ///< 0 = initial state
   const ClothState& state;
-  const SceneContact* contact;  ///< null where the scene has no collider
-  const ScenePassage* passage = nullptr;  ///< the same
-  const TruthErrors* truth = nullptr;  ///< null where the scene states no truth
+  const SceneContact* contact;                ///< null where the scene has no collider
+  const ScenePassage* passage = nullptr;      ///< the same
+  const TruthErrors* truth = nullptr;         ///< null where the scene states no truth
   const StabilityFrame* stability = nullptr;  ///< null where the scene is not judged
   const SelfContact* self_contact = nullptr;  ///< null where the scene's cloth does not touch itself
 };
@@ -70,8 +71,8 @@ const std::vector<Metric>& metrics();
 /// Version of the rule of a metric of this program; 0 if it has none of that name.
 int metric_version(const std::string& name);
 
-/// The metrics that a value of a result's summary is computed from, "expect.<value>" as the value itself; none for what is
-/// measured otherwise (times, bytes, counts).
+/// The metrics that a value of a result's summary is computed from, "expect.<value>" as the value itself; none for what
+/// is measured otherwise (times, bytes, counts).
 std::vector<std::string> metrics_behind(const std::string& summary_name);
 
 /// Greater of two numbers, and NaN if either is: std::max would lose it.
@@ -115,7 +116,8 @@ double grip_error(const MetricFrame&);
 /// Root mean square angle [rad] between the normals of neighbouring cells.
 double fold_angle_rms(const MetricFrame&);
 
-/// Of that angle the share at wavelengths of up to two cells, which no smooth fold has: 0 smooth, 1 creased at every line.
+/// Of that angle the share at wavelengths of up to two cells, which no smooth fold has: 0 smooth, 1 creased at every
+/// line.
 double fold_roughness(const MetricFrame&);
 
 /// Energy less that at the start, over M g L, of scenes that keep it: see energy_rise in truth_errors.hpp.

@@ -17,7 +17,8 @@ MetricPass::MetricPass(const MetricContext& context) : context_(context) {
     contact_ = std::make_unique<ColliderContact>(context.scene);
     passage_ = std::make_unique<ColliderPassage>(context.scene, context.contact_margins_m);
   }
-  if (kWithContactMetrics && context.scene.needs.has(Feature::SelfCollision)) triangles_ = triangles(context.scene.cloth);
+  if (kWithContactMetrics && context.scene.needs.has(Feature::SelfCollision))
+    triangles_ = triangles(context.scene.cloth);
   if (!context.scene.truth_card.empty()) judge_ = std::make_unique<TruthJudge>(context.scene);
   if (!context.scene.stability.name.empty()) stability_ = std::make_unique<StabilityJudge>(context_);
 }
@@ -34,10 +35,16 @@ void MetricPass::add(const ClothState& state) {
   TruthErrors truth;
   if (judge_) truth = judge_->judge(frame_, state);
   StabilityFrame stability;
-  if (stability_) stability = stability_->judge(frame_, state, contact_ ? &contact : nullptr, judge_ ? &truth : nullptr);
+  if (stability_)
+    stability = stability_->judge(frame_, state, contact_ ? &contact : nullptr, judge_ ? &truth : nullptr);
   lost_ = lost_ || (stability.classes & 7u) != 0;
-  const MetricFrame frame{context_, frame_, state, contact_ ? &contact : nullptr, passage_ ? &passage : nullptr,
-                          judge_ ? &truth : nullptr, stability_ ? &stability : nullptr,
+  const MetricFrame frame{context_,
+                          frame_,
+                          state,
+                          contact_ ? &contact : nullptr,
+                          passage_ ? &passage : nullptr,
+                          judge_ ? &truth : nullptr,
+                          stability_ ? &stability : nullptr,
                           triangles_.empty() ? nullptr : &self};
   for (std::size_t m = 0; m < wanted_.size(); ++m) series_[m].values.push_back(wanted_[m]->value(frame));
   ++frame_;

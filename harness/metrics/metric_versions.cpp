@@ -15,8 +15,8 @@ bool fits(const std::string& pattern, const std::string& name) {
   return name.starts_with(pattern.substr(0, pattern.size() - 1));
 }
 
-/// What runner/summary.cpp, runner/contact_summary.cpp and truth_errors.cpp compute from more than the metric of the same
-/// stem. The first row that fits counts.
+/// What runner/summary.cpp, runner/contact_summary.cpp and truth_errors.cpp compute from more than the metric of the
+/// same stem. The first row that fits counts.
 const std::vector<Origin>& origins() {
   static const std::vector<Origin> rows = {
       {"contact_violated_longest_s", {"contact_length_m", "tunnelled_fraction", "wrong_side_samples"}},

@@ -24,7 +24,10 @@ double for_each_strain(const Cloth& c, const ClothState& state, Fn fn) {
   for (std::size_t j = 0; j < rows; ++j)
     for (std::size_t i = 0; i < columns; ++i) {
       const std::size_t v = j * columns + i;
-      if (i + 1 < columns) strain(v, v + 1, c.column_factors.empty() ? c.du() : c.line_u_m(static_cast<int>(i) + 1) - c.line_u_m(static_cast<int>(i)));
+      if (i + 1 < columns)
+        strain(
+            v, v + 1,
+            c.column_factors.empty() ? c.du() : c.line_u_m(static_cast<int>(i) + 1) - c.line_u_m(static_cast<int>(i)));
       if (j + 1 < rows) strain(v, v + columns, c.dv());
     }
   return count;

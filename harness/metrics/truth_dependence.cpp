@@ -17,7 +17,8 @@ constexpr double kMore = 1.1;
 constexpr int kFrames = 4;
 
 double change(const TruthJudge& judge, const Scene& scene, const std::string& key, double value) {
-  const Scene other = scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", key, kMore * value)});
+  const Scene other =
+      scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", key, kMore * value)});
   const auto card = truth::card_of(other);
   const int last = scene.time.frames();
   double most = 0;

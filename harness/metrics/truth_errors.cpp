@@ -79,7 +79,8 @@ double TruthJudge::space_error(int frame) const {
   const std::vector<Vec3> columns = card_.columns(frame);
   if (card_.by_quantity) {
     std::vector<Vec3> smooth;
-    for (int i = 0; i < c.columns; ++i) smooth.push_back(card_.continuum(static_cast<double>(i) / (c.columns - 1), frame));
+    for (int i = 0; i < c.columns; ++i)
+      smooth.push_back(card_.continuum(static_cast<double>(i) / (c.columns - 1), frame));
     return truth::quantity_error(card_.quantity(columns), card_.quantity(smooth), card_.quantity_scale);
   }
   std::vector<double> smooth;
@@ -103,8 +104,10 @@ double TruthJudge::space_error() const {
 }
 
 bool keeps_energy(const Scene& s) {
-  const FeatureSet loses = FeatureSet{Feature::Damping, Feature::Shear, Feature::Bend, Feature::MovingPins} | kColliderFeatures;
-  return (s.needs & loses).empty() && s.gravity_m_per_s2 != Vec3{} && s.cloth.span_m == 0 && s.cloth.drape_radius_m == 0;
+  const FeatureSet loses =
+      FeatureSet{Feature::Damping, Feature::Shear, Feature::Bend, Feature::MovingPins} | kColliderFeatures;
+  return (s.needs & loses).empty() && s.gravity_m_per_s2 != Vec3{} && s.cloth.span_m == 0 &&
+         s.cloth.drape_radius_m == 0;
 }
 
 double energy_rise(const MetricFrame& f) {
@@ -119,7 +122,8 @@ double energy_rise(const MetricFrame& f) {
     total += mass[v];
     for (std::size_t k = 0; k < 3; ++k) {
       const double v0 = held[v] != 0 ? 0 : s.cloth.initial_velocity_m_per_s[k], v1 = state.velocity[3 * v + k];
-      energy += mass[v] * (0.5 * (v1 * v1 - v0 * v0) - s.gravity_m_per_s2[k] * (state.position[3 * v + k] - start[3 * v + k]));
+      energy += mass[v] *
+                (0.5 * (v1 * v1 - v0 * v0) - s.gravity_m_per_s2[k] * (state.position[3 * v + k] - start[3 * v + k]));
     }
   }
   if (const auto Y = s.material.membrane_stiffness_N_per_m) {
@@ -127,7 +131,8 @@ double energy_rise(const MetricFrame& f) {
     for (const Edge& e : edges(c, EdgeKind::Structural)) {
       const bool along_u = e.b == e.a + 1;
       const int line = static_cast<int>(e.a) / c.columns, column = static_cast<int>(e.a) % c.columns;
-      const double k = *Y * (along_u ? c.dv() / c.du() * border(line, c.rows) : c.du() / c.dv() * border(column, c.columns));
+      const double k =
+          *Y * (along_u ? c.dv() / c.du() * border(line, c.rows) : c.du() / c.dv() * border(column, c.columns));
       const double* a = &state.position[3 * e.a];
       const double* b = &state.position[3 * e.b];
       const double longer = norm(b[0] - a[0], b[1] - a[1], b[2] - a[2]) - e.rest_m;

@@ -18,7 +18,8 @@ struct TruthErrors {
   double speed = kMissing;                    ///< speeds: RMS, over the card's speed scale
   double quantity = kMissing;                 ///< the card's quantity of this state
   double quantity_error = kMissing;           ///< |quantity - true| over the card's scale
-  double stretch_rms = kMissing, stretch_p99 = kMissing, stretch_max = kMissing;  ///< strain less true strain, edges along u
+  double stretch_rms = kMissing, stretch_p99 = kMissing,
+         stretch_max = kMissing;  ///< strain less true strain, edges along u
 };
 
 /// Judges the frames of one scene by its card.
@@ -42,13 +43,13 @@ class TruthJudge {
 };
 
 /// Scalars of a whole accuracy pass by its truth series: `truth_error` (what ranks), `truth_e2`, `truth_max`,
-/// `truth_speed_error`, `truth_quantity`, `truth_quantity_error`, `truth_quantity_error_max`, `truth_stretch_rms/_p99/_max`,
-/// `energy_gain`, `energy_drift`. Moving truths: RMS over time, of _max, stretch and energy the greatest; truths of rest: the last frame. NaN if
-/// the pass is not whole. Empty for a scene without a card.
+/// `truth_speed_error`, `truth_quantity`, `truth_quantity_error`, `truth_quantity_error_max`,
+/// `truth_stretch_rms/_p99/_max`, `energy_gain`, `energy_drift`. Moving truths: RMS over time, of _max, stretch and
+/// energy the greatest; truths of rest: the last frame. NaN if the pass is not whole. Empty for a scene without a card.
 std::map<std::string, double> summarise_truth(const Scene&, const AccuracyPass&);
 
-/// Scenes whose strips keep kinetic, gravity's and spring energy (metric energy_rise): no damping, shear, bending, hands or
-/// colliders.
+/// Scenes whose strips keep kinetic, gravity's and spring energy (metric energy_rise): no damping, shear, bending,
+/// hands or colliders.
 bool keeps_energy(const Scene&);
 
 }  // namespace clothbench

@@ -77,7 +77,8 @@ class Shoot {
   }
 
   void take(View view, Taken& taken, const Progress& progress) {
-    const Camera camera = frame(view, framing_.points, static_cast<double>(layout_.width) / layout_.height, kMargin, framing_.turn_deg);
+    const Camera camera =
+        frame(view, framing_.points, static_cast<double>(layout_.width) / layout_.height, kMargin, framing_.turn_deg);
     const std::string stem = fmt::format("{}__{}__{}", m_.name, name_of(view), name_of(shots_.colour));
     std::unique_ptr<Movie> movie;
     if (shots_.movie && shots_.frames.size() > 1) {
@@ -111,7 +112,8 @@ class Shoot {
     out.put(images_.read(0), 0, 0);
     if (!pen_) return out;
     if (!values_.empty()) draw_legend(out, layout_, scale_, *pen_);
-    draw_caption(out, layout_, caption(m_, f, framing_.followed.has_value(), !framing_.followed && has_left(camera, x)), *pen_);
+    draw_caption(out, layout_, caption(m_, f, framing_.followed.has_value(), !framing_.followed && has_left(camera, x)),
+                 *pen_);
     return out;
   }
 

@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/framing.hpp"
-
 #include "clothbench/vector.hpp"
+#include "render/framing.hpp"
 
 namespace clothbench::render {
 namespace {

@@ -19,7 +19,8 @@ void look(Camera& c, View view, double turn_deg) {
     c.back = {0, 1, 0};
     c.right = {1, 0, 0};
   } else {
-    const double azimuth = radians(turn_deg + (view == View::Front ? 0 : 30)), elevation = radians(view == View::Front ? 0 : 24);
+    const double azimuth = radians(turn_deg + (view == View::Front ? 0 : 30)),
+                 elevation = radians(view == View::Front ? 0 : 24);
     c.back = {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)};
     c.right = {std::cos(azimuth), 0, -std::sin(azimuth)};
   }

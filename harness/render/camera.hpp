@@ -34,8 +34,8 @@ std::optional<std::array<double, 2>> seen_at(const Camera&, const Vec3& point_m)
 
 /// The nearest camera of a view that sees all of `points` (xyz interleaved [m], finite), with `margin` of the picture's
 /// width and height free all round. Front looks along -z, top down with -z upwards in the picture, corner from the
-/// front, 30 degrees to the right and 24 up; both after going `turn_deg` degrees round to the right. `aspect`: width over
-/// height. Throws Error without points.
+/// front, 30 degrees to the right and 24 up; both after going `turn_deg` degrees round to the right. `aspect`: width
+/// over height. Throws Error without points.
 Camera frame(View, std::span<const double> points, double aspect, double margin = 0.04, double turn_deg = 0);
 
 /// From the scene towards the eye of a view, unit.

@@ -22,13 +22,14 @@ struct Framing {
 /// it would make all the rest a dot. Not finite vertices do not either. With none left, the start's place.
 Framing framing_of(const Motion&, std::span<const std::size_t> frames);
 
-/// The quarter turn from whose corner the most cloth is seen, in m^2 of the picture plane over `frames`, where what stands still
-/// hides some of it: a cloth over the far edge of a desk is looked at from there. 0 unless another shows a fifth more, and where
-/// colliders move or there are none.
+/// The quarter turn from whose corner the most cloth is seen, in m^2 of the picture plane over `frames`, where what
+/// stands still hides some of it: a cloth over the far edge of a desk is looked at from there. 0 unless another shows a
+/// fifth more, and where colliders move or there are none.
 double best_turn(const Motion&, std::span<const std::size_t> frames, const Bounds& near);
 
-/// Frames that the pictures of `wanted` are framed by: some of all there are, so that every picture of a motion has the same camera
-/// and shows what the cloth comes to; `wanted` alone where nothing holds the cloth and the camera goes with it.
+/// Frames that the pictures of `wanted` are framed by: some of all there are, so that every picture of a motion has the
+/// same camera and shows what the cloth comes to; `wanted` alone where nothing holds the cloth and the camera goes with
+/// it.
 std::vector<std::size_t> framed_by(const Motion&, std::span<const std::size_t> wanted);
 
 }  // namespace clothbench::render

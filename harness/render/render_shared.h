@@ -17,8 +17,8 @@ struct Drawn {
 
 // Of a collider's vertex: how it looks.
 #define LOOK_SMOOTH 0
-#define LOOK_FLAT 1   // lit by its triangles' own normals
-#define LOOK_MARK 2   // a small dark thing: where a hand holds the cloth
+#define LOOK_FLAT 1  // lit by its triangles' own normals
+#define LOOK_MARK 2  // a small dark thing: where a hand holds the cloth
 
 #ifdef __cplusplus
 static_assert(sizeof(Drawn) == 128);

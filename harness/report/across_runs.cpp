@@ -173,11 +173,10 @@ Table across_table(const std::vector<AcrossRuns>& all) {
 std::string across_csv(const std::vector<AcrossRuns>& all) {
   std::string out = csv_row({"case", "solver", "setting", "figure", "value", "bound", "verdict"});
   for (const AcrossRuns& a : all)
-    out +=
-        csv_row({a.case_name, a.solver, a.setting, a.figure, csv_number(a.value), csv_number(a.bound),
-                 !a.judged() ? ""
-                 : a.kept()  ? "kept"
-                             : "broken"});
+    out += csv_row({a.case_name, a.solver, a.setting, a.figure, csv_number(a.value), csv_number(a.bound),
+                    !a.judged() ? ""
+                    : a.kept()  ? "kept"
+                                : "broken"});
   return out;
 }
 

@@ -62,8 +62,10 @@ std::vector<std::string> solvers_in(const WorkDiagram& d) {
 
 Table budget_table(const std::vector<WorkDiagram>& diagrams) {
   Table t{"Smallest error within a budget of time a frame",
-          "Of all settings of a solver whose frame takes at most so long, wall time, pipelined where the solver can; ≤: at 0.001 or at the floor of "
-          "the scene, below which nobody is told apart. –: no setting is as fast. Beaten by: who else, ranked or not, has the smaller error at any "
+          "Of all settings of a solver whose frame takes at most so long, wall time, pipelined where the solver can; "
+          "≤: at 0.001 or at the floor of "
+          "the scene, below which nobody is told apart. –: no setting is as fast. Beaten by: who else, ranked or not, "
+          "has the smaller error at any "
           "budget from 0.05 to 13.9 ms, by the greatest factor.",
           {{"scene", "solver"}}};
   for (const double b : kBudgets_ms) t.rows[0].push_back(fmt::format("{:g} ms", b));
@@ -74,7 +76,8 @@ Table budget_table(const std::vector<WorkDiagram>& diagrams) {
       std::vector<std::string> row = {d.scene, solver};
       for (const double b : kBudgets_ms) {
         const Best best = best_within(d, solver, b);
-        row.push_back(best.point == nullptr ? "–" : fmt::format("{}{:.2g}", best.error <= floor ? "≤ " : "", best.error));
+        row.push_back(best.point == nullptr ? "–"
+                                            : fmt::format("{}{:.2g}", best.error <= floor ? "≤ " : "", best.error));
       }
       row.push_back(beaten_by(d, solver));
       t.rows.push_back(std::move(row));
@@ -85,7 +88,8 @@ Table budget_table(const std::vector<WorkDiagram>& diagrams) {
 
 Table energy_table(const std::vector<WorkDiagram>& diagrams) {
   Table t{"Energy that comes from nowhere",
-          "Greatest gain over the start in any frame, over M g L, of the settings that ended well, in scenes that keep energy; and the setting. "
+          "Greatest gain over the start in any frame, over M g L, of the settings that ended well, in scenes that keep "
+          "energy; and the setting. "
           "More than 0.001 is counted.",
           {{"scene", "solver", "greatest gain", "setting", "settings above 0.001"}}};
   for (const WorkDiagram& d : diagrams)
@@ -102,7 +106,8 @@ Table energy_table(const std::vector<WorkDiagram>& diagrams) {
           setting = p.setting;
         }
       }
-      if (all > 0) t.rows.push_back({d.scene, solver, fmt::format("{:.1e}", most), setting, fmt::format("{} of {}", above, all)});
+      if (all > 0)
+        t.rows.push_back({d.scene, solver, fmt::format("{:.1e}", most), setting, fmt::format("{} of {}", above, all)});
     }
   return t;
 }

@@ -9,7 +9,8 @@
 namespace clothbench {
 
 bool reads_at_least(const CellRecord& c) {
-  return std::any_of(c.header.stages.begin(), c.header.stages.end(), [](const StageRecord& s) { return s.bytes == "at least"; });
+  return std::any_of(c.header.stages.begin(), c.header.stages.end(),
+                     [](const StageRecord& s) { return s.bytes == "at least"; });
 }
 
 std::string bytes_read(const CellRecord& c, double value, int digits) {

@@ -7,8 +7,10 @@ namespace clothbench {
 
 /// What bytes are, for notes.
 inline constexpr const char* kWhatBytesAre =
-    "loads and stores of the shaders, computed from the scene and the kernels' loops and checked against instrumented kernels in tests; "
-    "≥: a lower bound, where what is read depends on how the cloth lies (contact of xpbd); retries of atomics are left out.";
+    "loads and stores of the shaders, computed from the scene and the kernels' loops and checked against instrumented "
+    "kernels in tests; "
+    "≥: a lower bound, where what is read depends on how the cloth lies (contact of xpbd); retries of atomics are left "
+    "out.";
 
 /// True if what the cell's stages read is a lower bound.
 bool reads_at_least(const CellRecord&);

@@ -81,7 +81,8 @@ std::vector<ComparedCell::Versions> differing_versions(const CellRecord& a, cons
 
 bool hangs_on(const std::string& name, const std::vector<ComparedCell::Versions>& versions) {
   const std::vector<std::string> behind = metrics_behind(name);
-  return std::any_of(versions.begin(), versions.end(), [&](const auto& v) { return std::find(behind.begin(), behind.end(), v.metric) != behind.end(); });
+  return std::any_of(versions.begin(), versions.end(),
+                     [&](const auto& v) { return std::find(behind.begin(), behind.end(), v.metric) != behind.end(); });
 }
 
 void compare_cell(ComparedCell& c) {
@@ -189,7 +190,8 @@ std::vector<Table> comparison_tables(const std::vector<ComparedCell>& cells) {
     for (const ComparedCell::Change& m : c.metrics)
       results.rows.push_back({c.name, m.name, significant(m.a, 6), significant(m.b, 6)});
     for (const ComparedCell::Versions& v : c.versions)
-      results.rows.push_back({c.name, v.metric, fmt::format("by version {}", v.a), fmt::format("by version {}: not compared", v.b)});
+      results.rows.push_back(
+          {c.name, v.metric, fmt::format("by version {}", v.a), fmt::format("by version {}: not compared", v.b)});
     same += c.outcome.empty() && c.metrics.empty() && c.versions.empty();
   }
   times.note = fmt::format(

@@ -32,13 +32,14 @@ struct ComparedCell {
     double a = kMissing, b = kMissing;
   };
   std::vector<Change>
-      metrics;          ///< summary values that do not depend on the machine and differ by more than 1e-9 of their size
+      metrics;  ///< summary values that do not depend on the machine and differ by more than 1e-9 of their size
   struct Versions {
     std::string metric;
     int a = 1, b = 1;
   };
-  std::vector<Versions> versions;  ///< metrics that the two were measured by under different rules: nothing of them is compared
-  std::string outcome;             ///< "ok → diverged (F1)", empty if it is the same
+  std::vector<Versions>
+      versions;         ///< metrics that the two were measured by under different rules: nothing of them is compared
+  std::string outcome;  ///< "ok → diverged (F1)", empty if it is the same
 };
 
 /// Cells by name, in the order of A and then what only B has. The records must outlive it.

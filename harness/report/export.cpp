@@ -34,8 +34,8 @@ std::string summary_csv(const std::vector<CellRecord>& cells, const std::vector<
   const std::vector<const char*> environment = {"gpu",          "driver",     "gpu_is_software", "cpu",
                                                 "protocol",     "git_commit", "git_dirty",       "build_type",
                                                 "clock_policy", "created"};
-  std::vector<std::string> head = {"family", "paper_table", "scene",        "solver", "setting",
-                                   "sides",  "repeat",      "resolution",   "grid_x", "grid_y",
+  std::vector<std::string> head = {"family", "paper_table", "scene",        "solver",  "setting",
+                                   "sides",  "repeat",      "resolution",   "grid_x",  "grid_y",
                                    "status", "class",       "failed_frame", "message", "expect"};
   head.insert(head.end(), environment.begin(), environment.end());
   head.insert(head.end(), names.begin(), names.end());
@@ -84,9 +84,15 @@ std::string table3_csv(const Family& family, const nlohmann::json& published) {
   for (const nlohmann::json& column : published.at("columns"))
     for (std::size_t k = 0; k < resolutions.size(); ++k) {
       const std::string n = std::to_string(resolutions[k].get<int>());
-      std::vector<std::string> row = {
-          "published", column.at("name").get<std::string>(),       "", column.value("sides", ""), n, n, "ok",
-          "",          csv_number(column.at("fps").at(k).get<double>())};
+      std::vector<std::string> row = {"published",
+                                      column.at("name").get<std::string>(),
+                                      "",
+                                      column.value("sides", ""),
+                                      n,
+                                      n,
+                                      "ok",
+                                      "",
+                                      csv_number(column.at("fps").at(k).get<double>())};
       row.resize(head.size());
       out += csv_row(row);
     }

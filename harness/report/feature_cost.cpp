@@ -54,7 +54,8 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::string both(const FeatureCost& f, const Quantity& q) {
   const double a = summary_value(*f.needed, q.name), b = summary_value(*f.all, q.name);
-  if (std::string(q.name) == "read_B_per_frame" && std::isfinite(a) && std::isfinite(b)) return bytes_read(*f.needed, q.scale * a, 3) + " → " + bytes_read(*f.all, q.scale * b, 3);
+  if (std::string(q.name) == "read_B_per_frame" && std::isfinite(a) && std::isfinite(b))
+    return bytes_read(*f.needed, q.scale * a, 3) + " → " + bytes_read(*f.all, q.scale * b, 3);
   return paired(q.scale * a, q.scale * b, " → ", 3);
 }
 

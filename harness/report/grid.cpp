@@ -52,7 +52,9 @@ double summary_value(const CellRecord& c, const std::string& name) {
   return at == c.summary.end() ? kMissing : at->second;
 }
 
-nlohmann::json scenario_of(const CellRecord& c) { return nlohmann::json::parse(c.header.scenario_json, nullptr, false); }
+nlohmann::json scenario_of(const CellRecord& c) {
+  return nlohmann::json::parse(c.header.scenario_json, nullptr, false);
+}
 
 std::string Resolution::label() const {
   if (grid[0] > 0) return grid[0] == grid[1] ? fmt::format("{}²", grid[0]) : fmt::format("{}×{}", grid[0], grid[1]);

@@ -80,7 +80,8 @@ std::string headline(const std::vector<CellRecord>& cells, Format format) {
     const nlohmann::json& e = c.header.environment;
     if (!e.is_object() || e.empty()) continue;
     if (const nlohmann::json s = e.value("device_samples", nlohmann::json()); s.is_object() && !s.value("valid", true))
-      for (const nlohmann::json& reason : s.value("reasons", nlohmann::json::array())) add(invalid, reason.get<std::string>());
+      for (const nlohmann::json& reason : s.value("reasons", nlohmann::json::array()))
+        add(invalid, reason.get<std::string>());
     const std::string host = host_line(e);
     created[host].add(text(e, "created"));
     add(hosts, host);

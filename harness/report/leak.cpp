@@ -16,14 +16,11 @@ using nlohmann::json;
 constexpr std::size_t kLeastSpeeds = 3;
 
 /// What a failed bound is called, the first in this order first; other names as they are.
-constexpr std::pair<const char*, const char*> kWords[] = {{"tunnelled_fraction_max", "tunnelled"},
-                                                          {"wrong_side_samples_max", "wrong side"},
-                                                          {"depth_vertex_max_m", "inside [m]"},
-                                                          {"grip_edge_ratio_max", "edge pulled"},
-                                                          {"strain_mean_released", "strain left"},
-                                                          {"truth_quantity_error_max", "strain off [v0/c]"},
-                                                          {"pop_speed_ratio", "popping [of limit]"},
-                                                          {"contact_length_settled_m", "contour left [m]"}};
+constexpr std::pair<const char*, const char*> kWords[] = {
+    {"tunnelled_fraction_max", "tunnelled"},   {"wrong_side_samples_max", "wrong side"},
+    {"depth_vertex_max_m", "inside [m]"},      {"grip_edge_ratio_max", "edge pulled"},
+    {"strain_mean_released", "strain left"},   {"truth_quantity_error_max", "strain off [v0/c]"},
+    {"pop_speed_ratio", "popping [of limit]"}, {"contact_length_settled_m", "contour left [m]"}};
 
 std::size_t place(const std::string& name) {
   const auto at = std::find_if(std::begin(kWords), std::end(kWords), [&](const auto& w) { return name == w.first; });
@@ -38,7 +35,8 @@ std::string failure_text(const CellRecord& c, const std::string& name) {
 
 /// By the scene's bounds.
 std::string broken_bound(const CellRecord& c, std::vector<BoundResult> bounds) {
-  std::stable_sort(bounds.begin(), bounds.end(), [](const auto& a, const auto& b) { return place(a.name) < place(b.name); });
+  std::stable_sort(bounds.begin(), bounds.end(),
+                   [](const auto& a, const auto& b) { return place(a.name) < place(b.name); });
   for (const BoundResult& b : bounds)
     if (b.kept == 0) return failure_text(c, b.name);
   for (const BoundResult& b : bounds)
@@ -50,10 +48,14 @@ std::string broken_bound(const CellRecord& c, std::vector<BoundResult> bounds) {
 std::string without_bounds(const std::string& kind, const CellRecord& c) {
   const bool hand = kind == "capsules" || kind == "hand";
   std::vector<std::pair<const char*, double>> most;
-  if (kind == "rooms") most = {{"tunnelled_fraction_max", 0}};
-  else if (kind == "grip") most = {{"grip_edge_ratio_max", 2}};
-  else if (kind == "wave") most = {{"truth_quantity_error_max", 0.1}};
-  else most = {{"depth_vertex_max_m", 1e-3}};
+  if (kind == "rooms")
+    most = {{"tunnelled_fraction_max", 0}};
+  else if (kind == "grip")
+    most = {{"grip_edge_ratio_max", 2}};
+  else if (kind == "wave")
+    most = {{"truth_quantity_error_max", 0.1}};
+  else
+    most = {{"depth_vertex_max_m", 1e-3}};
   if (hand) most.insert(most.begin(), std::pair("wrong_side_samples_max", 0.0));
   for (const auto& [name, at_most] : most) {
     if (c.withheld.contains(name)) return kNotPrinted;
@@ -89,33 +91,46 @@ std::vector<SpeedSweep> speed_sweeps(const std::vector<ContactSetUp>& ups) {
       for (const ContactRow& r : s.rows) {
         const double speed = summary_value(*r.cell, "imposed_speed_m_per_s");
         const std::string &status = r.cell->outcome.status, seen = verdict(*r.cell);
-        if (!(speed > 0) || status == "unsupported" || status == "over_budget" || seen == "ignored" || r.cell->header.solver == "ballistic") continue;
+        if (!(speed > 0) || status == "unsupported" || status == "over_budget" || seen == "ignored" ||
+            r.cell->header.solver == "ballistic")
+          continue;
         const std::string base = base_name(*r.cell);
-        auto at = std::find_if(all.begin(), all.end(), [&](const SpeedSweep& x) { return x.kind == u.kind && x.scene == base && x.series == r.series; });
+        auto at = std::find_if(all.begin(), all.end(), [&](const SpeedSweep& x) {
+          return x.kind == u.kind && x.scene == base && x.series == r.series;
+        });
         if (at == all.end()) at = all.insert(all.end(), {u.kind, base, r.series, {}});
         at->speeds.push_back({speed, leak_of(u.kind, *r.cell)});
         at->cells.push_back(r.cell);
       }
-  for (SpeedSweep& s : all) std::stable_sort(s.speeds.begin(), s.speeds.end(), [](const auto& a, const auto& b) { return a.speed_m_per_s < b.speed_m_per_s; });
-  std::erase_if(all, [](const SpeedSweep& s) { return s.speeds.size() < kLeastSpeeds || !(s.speeds.front().speed_m_per_s < s.speeds.back().speed_m_per_s); });
+  for (SpeedSweep& s : all)
+    std::stable_sort(s.speeds.begin(), s.speeds.end(),
+                     [](const auto& a, const auto& b) { return a.speed_m_per_s < b.speed_m_per_s; });
+  std::erase_if(all, [](const SpeedSweep& s) {
+    return s.speeds.size() < kLeastSpeeds || !(s.speeds.front().speed_m_per_s < s.speeds.back().speed_m_per_s);
+  });
   return all;
 }
 
 Table leak_table(const std::vector<SpeedSweep>& sweeps) {
   Table t{"Speed of the first leak",
-          "The lowest speed at which a solver breaks what the scene expects, and the first bound that it breaks: cloth through a mesh, on the wrong side "
-          "of a hand or over 1 mm inside it, edges longer than so many times what the hands impose, a mean strain of over 1 % a second after they let go, "
-          "cloth that pops faster than its limit, a greatest strain of a strip pulled by bars that is off its exact wave by over a tenth of v0/c. The verdicts above are by the same bounds. "
+          "The lowest speed at which a solver breaks what the scene expects, and the first bound that it breaks: cloth "
+          "through a mesh, on the wrong side "
+          "of a hand or over 1 mm inside it, edges longer than so many times what the hands impose, a mean strain of "
+          "over 1 % a second after they let go, "
+          "cloth that pops faster than its limit, a greatest strain of a strip pulled by bars that is off its exact "
+          "wave by over a tenth of v0/c. The verdicts above are by the same bounds. "
           "none: up to the greatest speed that was run.",
           {{"scene", "speeds [m/s]"}}};
   std::vector<std::string> solvers;
   for (const SpeedSweep& s : sweeps)
-    if (std::find(solvers.begin(), solvers.end(), s.series.label()) == solvers.end()) solvers.push_back(s.series.label());
+    if (std::find(solvers.begin(), solvers.end(), s.series.label()) == solvers.end())
+      solvers.push_back(s.series.label());
   std::sort(solvers.begin(), solvers.end());
   t.rows[0].insert(t.rows[0].end(), solvers.begin(), solvers.end());
   std::vector<std::pair<std::string, std::string>> rows;
   for (const SpeedSweep& s : sweeps)
-    if (std::find(rows.begin(), rows.end(), std::pair(s.kind, s.scene)) == rows.end()) rows.emplace_back(s.kind, s.scene);
+    if (std::find(rows.begin(), rows.end(), std::pair(s.kind, s.scene)) == rows.end())
+      rows.emplace_back(s.kind, s.scene);
   for (const auto& [kind, scene] : rows) {
     std::vector<std::string> row = {fmt::format("{} ({})", scene, kind), "–"};
     for (const std::string& solver : solvers) {
@@ -125,7 +140,8 @@ Table leak_table(const std::vector<SpeedSweep>& sweeps) {
         row[1] = fmt::format("{:g}…{:g}", s.speeds.front().speed_m_per_s, s.speeds.back().speed_m_per_s);
         const auto leak = s.first_leak();
         text = leak && leak->leak == kNotPrinted ? kNotPrinted
-               : leak ? metres_per_second(leak->speed_m_per_s) + ": " + leak->leak : "none up to " + metres_per_second(s.speeds.back().speed_m_per_s);
+               : leak                            ? metres_per_second(leak->speed_m_per_s) + ": " + leak->leak
+                                                 : "none up to " + metres_per_second(s.speeds.back().speed_m_per_s);
       }
       row.push_back(text);
     }
@@ -142,7 +158,9 @@ Table leak_table(const std::vector<SpeedSweep>& sweeps) {
 json leak_json(const std::vector<SpeedSweep>& sweeps) {
   json out = json::array();
   for (const SpeedSweep& s : sweeps) {
-    json row = {{"set_up", s.kind}, {"scene", s.scene}, {"solver", s.series.solver}, {"setting", s.series.setting}, {"sides", s.series.sides}, {"speeds", json::array()}};
+    json row = {{"set_up", s.kind},          {"scene", s.scene},
+                {"solver", s.series.solver}, {"setting", s.series.setting},
+                {"sides", s.series.sides},   {"speeds", json::array()}};
     for (const auto& at : s.speeds) row["speeds"].push_back({{"speed_m_per_s", at.speed_m_per_s}, {"leak", at.leak}});
     const auto leak = s.first_leak();
     row["first_leak_m_per_s"] = leak && leak->leak != kNotPrinted ? json(leak->speed_m_per_s) : json();

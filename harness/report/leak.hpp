@@ -8,11 +8,11 @@
 
 namespace clothbench {
 
-/// How a cell fails, or nothing: how it ended if not well, else the first bound of its scene's `expect` that is broken or not
-/// known, the same bounds that `verdict` is told from. Where a scene expects nothing: cloth through a mesh, on the wrong
-/// side of a hand or a vertex over 1 mm inside it, an edge of more than twice the length that hands impose, or a strip pulled by bars whose
-/// greatest strain is in any frame more than a tenth of v0/c (what one wave brings) off the exact one. "–" where that hangs on what must not
-/// be printed.
+/// How a cell fails, or nothing: how it ended if not well, else the first bound of its scene's `expect` that is broken
+/// or not known, the same bounds that `verdict` is told from. Where a scene expects nothing: cloth through a mesh, on
+/// the wrong side of a hand or a vertex over 1 mm inside it, an edge of more than twice the length that hands impose,
+/// or a strip pulled by bars whose greatest strain is in any frame more than a tenth of v0/c (what one wave brings) off
+/// the exact one. "–" where that hangs on what must not be printed.
 std::string leak_of(const std::string& kind, const CellRecord&);
 
 /// The same scene at several imposed speeds, run by one solver.
@@ -30,8 +30,8 @@ struct SpeedSweep {
   std::vector<const CellRecord*> cells = {};
 };
 
-/// Scenes at three or more speeds (`imposed_speed_m_per_s`), by the name in their file and what touches the cloth; cells that are
-/// not supported and solvers that touch nothing are left out. In the order of the set-ups.
+/// Scenes at three or more speeds (`imposed_speed_m_per_s`), by the name in their file and what touches the cloth;
+/// cells that are not supported and solvers that touch nothing are left out. In the order of the set-ups.
 std::vector<SpeedSweep> speed_sweeps(const std::vector<ContactSetUp>&);
 
 /// Rows: swept scenes; columns: solvers; entries: speed of the first leak, or up to which there was none.

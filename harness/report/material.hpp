@@ -44,7 +44,8 @@ struct StiffnessNeed {
 /// hundredth moves what ranks the runs by 1e-4 or more. None where nothing is stored.
 StiffnessNeed stiffness_need(const CellRecord&);
 
-/// Why this solver's stiffness cannot be judged on a scene with these needs: "" if it can be, or no card says otherwise.
+/// Why this solver's stiffness cannot be judged on a scene with these needs: "" if it can be, or no card says
+/// otherwise.
 std::string stiffness_flag(const std::vector<SolverMaterial>&, const std::string& solver, const StiffnessNeed&);
 
 /// Rows: solvers at their settings; moduli over what the scenes state.

@@ -17,7 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-
 bool filled(const json& j, const char* key) {
   return j.is_object() && j.contains(key) && j[key].is_array() && !j[key].empty();
 }
@@ -231,17 +230,20 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
         if (std::find(solvers.begin(), solvers.end(), r.series.label()) == solvers.end())
           solvers.push_back(r.series.label());
   std::sort(solvers.begin(), solvers.end());
-  Table t{"Penetration: does each solver keep what the scene expects?",
-          "Kept: every bound of the scene's `expect`, measured over the whole scene. Ignored: kept by a solver that "
-          "touches nothing. – : not run, or nothing to expect. In "
-          "the tables below, tunnelled: share of the cloth on the other side of a mesh than it began. Contour: length "
-          "of the "
-          "curves in which cloth and colliders cross; settled: the most in the last 0.5 s. Depth: how far the cloth is "
-          "inside "
-          "a collider, margin not counted. Wrong side: vertices and cell centres that a moving hand went through. Crossed: "
-          "longest time with a contour. Popping: greatest way of a vertex within 3 frames after the last contact, and speed over "
-          "the greater of twice the hand's and a fall of the cloth's length. Strain: of the structural edges. Time: median over the timed frames.",
-          {{"scene"}}};
+  Table t{
+      "Penetration: does each solver keep what the scene expects?",
+      "Kept: every bound of the scene's `expect`, measured over the whole scene. Ignored: kept by a solver that "
+      "touches nothing. – : not run, or nothing to expect. In "
+      "the tables below, tunnelled: share of the cloth on the other side of a mesh than it began. Contour: length "
+      "of the "
+      "curves in which cloth and colliders cross; settled: the most in the last 0.5 s. Depth: how far the cloth is "
+      "inside "
+      "a collider, margin not counted. Wrong side: vertices and cell centres that a moving hand went through. Crossed: "
+      "longest time with a contour. Popping: greatest way of a vertex within 3 frames after the last contact, and "
+      "speed over "
+      "the greater of twice the hand's and a fall of the cloth's length. Strain: of the structural edges. Time: median "
+      "over the timed frames.",
+      {{"scene"}}};
   t.rows[0].insert(t.rows[0].end(), solvers.begin(), solvers.end());
   std::set<std::string> bounds;
   for (const ContactSetUp& u : ups)
@@ -276,15 +278,14 @@ Table contact_table(const ContactSetUp& s) {
 }
 
 Table cost_table(const ContactSetUp& s) {
-  Table t = by_scene(
-      s, "Cost: " + s.title,
-      fmt::format("Bytes a frame: {} Memory: device-local buffers. – on a CPU.", kWhatBytesAre), {},
-      [](const ContactRow& r, std::vector<std::string>& row) {
-        row.push_back(bytes_pair(*r.cell, "read_B_per_frame", "write_B_per_frame", 1e-3));
-        row.push_back(significant(1e-3 * value(r, "device_memory_B"), 4));
-        row.push_back(significant(value(r, "dispatches"), 1));
-        row.push_back(significant(1e3 * value(r, "load_s"), 3));
-      });
+  Table t = by_scene(s, "Cost: " + s.title,
+                     fmt::format("Bytes a frame: {} Memory: device-local buffers. – on a CPU.", kWhatBytesAre), {},
+                     [](const ContactRow& r, std::vector<std::string>& row) {
+                       row.push_back(bytes_pair(*r.cell, "read_B_per_frame", "write_B_per_frame", 1e-3));
+                       row.push_back(significant(1e-3 * value(r, "device_memory_B"), 4));
+                       row.push_back(significant(value(r, "dispatches"), 1));
+                       row.push_back(significant(1e3 * value(r, "load_s"), 3));
+                     });
   t.rows[0].insert(t.rows[0].end(), {"kB read / written", "memory [kB]", "dispatches", "load [ms]"});
   t.note = with_withheld(t.note, cells_of(s), {"load_s"});
   return t;

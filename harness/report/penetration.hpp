@@ -47,9 +47,9 @@ struct BoundResult {
 /// Of every bound of the cell's scene. The one place that tables of verdicts and of speeds that fail are told from.
 std::vector<BoundResult> bound_results(const CellRecord&);
 
-/// What came of the scene's `expect`: "kept", "broken", "not measured", "–" if it expects nothing or what it expects must not
-/// be printed (withheld.hpp), "ignored" if it was kept by a solver that ignores all contact; how the cell ended if it did
-/// not end well.
+/// What came of the scene's `expect`: "kept", "broken", "not measured", "–" if it expects nothing or what it expects
+/// must not be printed (withheld.hpp), "ignored" if it was kept by a solver that ignores all contact; how the cell
+/// ended if it did not end well.
 std::string verdict(const CellRecord&);
 
 /// Rows: scenes; columns: solvers; entries: `verdict`.

@@ -57,9 +57,12 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-bool is_file_name(const std::string& name) { return !name.empty() && fs::path(name).filename() == name && name != "." && name != ".."; }
+bool is_file_name(const std::string& name) {
+  return !name.empty() && fs::path(name).filename() == name && name != "." && name != "..";
+}
 
-/// What an earlier report wrote. One of a version without the list is known by its report.md, which shows every picture.
+/// What an earlier report wrote. One of a version without the list is known by its report.md, which shows every
+/// picture.
 std::set<std::string> listed_pictures(const fs::path& out) {
   std::set<std::string> names;
   const auto add = [&](const std::string& name) {
@@ -67,8 +70,10 @@ std::set<std::string> listed_pictures(const fs::path& out) {
   };
   if (fs::exists(out / kPicturesList)) {
     const json j = json::parse(text_of(out / kPicturesList), nullptr, false);
-    if (!j.is_object() || j.value("format", "") != "clothbench-report-pictures" || !j.contains("pictures") || !j["pictures"].is_array())
-      throw Error((out / kPicturesList).string() + ": expected the list of a report's pictures; move it away, or give another -o");
+    if (!j.is_object() || j.value("format", "") != "clothbench-report-pictures" || !j.contains("pictures") ||
+        !j["pictures"].is_array())
+      throw Error((out / kPicturesList).string() +
+                  ": expected the list of a report's pictures; move it away, or give another -o");
     for (const json& name : j["pictures"])
       if (name.is_string()) add(name.get<std::string>());
     return names;
@@ -90,10 +95,13 @@ void put_in_place(const fs::path& out, const fs::path& from) {
   const std::set<std::string> old = listed_pictures(out);
   std::set<std::string> drawn;
   for (const auto& entry : fs::directory_iterator(from))
-    if (entry.path().extension() == ".svg" || entry.path().extension() == ".png") drawn.insert(entry.path().filename().string());
+    if (entry.path().extension() == ".svg" || entry.path().extension() == ".png")
+      drawn.insert(entry.path().filename().string());
   for (const std::string& name : drawn)
     if (!old.contains(name) && fs::exists(out / name))
-      throw Error((out / name).string() + ": is in the way of a picture of that name, and no report wrote it; move it away, or give another -o");
+      throw Error(
+          (out / name).string() +
+          ": is in the way of a picture of that name, and no report wrote it; move it away, or give another -o");
   // First both, so that whatever a kill leaves here is known to be a report's.
   std::set<std::string> both = old;
   both.insert(drawn.begin(), drawn.end());
@@ -108,8 +116,10 @@ void put_in_place(const fs::path& out, const fs::path& from) {
 
 Drawn draw_pictures(const fs::path& out, const std::vector<Drawing>& drawings) {
   const std::string python = find_python();
-  const std::string older = listed_pictures(out).empty() ? "" : " The pictures in this folder are those of an earlier report.";
-  if (python.empty()) return {"Figures were left out: no Python with matplotlib (Debian: python3-matplotlib)." + older, false};
+  const std::string older =
+      listed_pictures(out).empty() ? "" : " The pictures in this folder are those of an earlier report.";
+  if (python.empty())
+    return {"Figures were left out: no Python with matplotlib (Debian: python3-matplotlib)." + older, false};
   fs::path scripts, published;
   try {
     scripts = find_data(kScriptFolder);
@@ -123,9 +133,12 @@ Drawn draw_pictures(const fs::path& out, const std::vector<Drawing>& drawings) {
     fs::copy_file(d.from, from);
     const auto command = [&](const fs::path& data) {
       return fmt::format("{} {} {} {}", python, quoted(scripts / d.script), quoted(data),
-                         d.published ? quoted(published) : d.also.empty() ? "" : quoted(d.also));
+                         d.published      ? quoted(published)
+                         : d.also.empty() ? ""
+                                          : quoted(d.also));
     };
-    if (std::system(command(from).c_str()) != 0) return {"Figures were left out: this command failed: " + command(d.from) + "." + older, true};
+    if (std::system(command(from).c_str()) != 0)
+      return {"Figures were left out: this command failed: " + command(d.from) + "." + older, true};
   }
   put_in_place(out, scratch.path());
   return {};

@@ -7,14 +7,16 @@
 
 namespace clothbench {
 
-/// A cell of a scene in which a moving collider lets go of the cloth, beside that of the same solver at sixteen times its substeps:
-/// a study's entry of that solver with the label "x16". Points into the vector the set-ups were made from.
+/// A cell of a scene in which a moving collider lets go of the cloth, beside that of the same solver at sixteen times
+/// its substeps: a study's entry of that solver with the label "x16". Points into the vector the set-ups were made
+/// from.
 struct Popping {
   std::string scene;
   Series series;
   const CellRecord *cell = nullptr, *finer = nullptr;
 
-  double ratio() const;  ///< of the way of the fastest vertex within three frames after the last contact; NaN if either is not known
+  double ratio() const;  ///< of the way of the fastest vertex within three frames after the last contact; NaN if either
+                         ///< is not known
   bool kept() const;     ///< both ran, ratio at most 1.2, no speed above its limit (pop_speed_ratio at most 1)
 };
 

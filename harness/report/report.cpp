@@ -69,17 +69,25 @@ std::string penetration_figures_markdown(const std::vector<ContactSetUp>& ups) {
 std::string work_figures_markdown(const std::vector<WorkDiagram>& diagrams) {
   std::string out;
   for (const WorkDiagram& d : diagrams)
-    out += fmt::format("![{}: error against run time](work-precision-{}.svg)\n\n{}: every point thin, each solver's front thick, dashed the same by the GPU's own clock; crosses in the margin: cells that failed.\n\n", d.scene, d.scene, d.scene);
+    out += fmt::format(
+        "![{}: error against run time](work-precision-{}.svg)\n\n{}: every point thin, each solver's front thick, "
+        "dashed the same by the GPU's own clock; crosses in the margin: cells that failed.\n\n",
+        d.scene, d.scene, d.scene);
   return out;
 }
 
 std::string stability_figures_markdown(const nlohmann::json& maps, bool cases) {
   std::string out;
-  if (cases) out += "![Robustness by case](stability-cases.svg)\n\nShare of every case's runs that were stable, degraded and failed.\n\n";
+  if (cases)
+    out +=
+        "![Robustness by case](stability-cases.svg)\n\nShare of every case's runs that were stable, degraded and "
+        "failed.\n\n";
   for (const nlohmann::json& m : maps) {
     const auto name = m.at("name").get<std::string>(), title = m.at("title").get<std::string>();
-    out += fmt::format("![{}](stability-{}.svg)\n\n{}: every probe by its outcome class; the line is where it turns, wide where seeds differ. Above each panel: {}.\n\n", title, name, title,
-                       m.at("headline").get<std::string>());
+    out += fmt::format(
+        "![{}](stability-{}.svg)\n\n{}: every probe by its outcome class; the line is where it turns, wide where seeds "
+        "differ. Above each panel: {}.\n\n",
+        title, name, title, m.at("headline").get<std::string>());
   }
   return out;
 }
@@ -152,7 +160,8 @@ std::vector<CellRecord> without_stability(std::vector<CellRecord> cells) {
 }
 
 /// One page: ranks, firsts, what stiffness means to whom, what is not a no-op. Empty without diagrams.
-std::string summary_page(const std::vector<WorkDiagram>& diagrams, const std::vector<SolverMaterial>& materials, const std::vector<FeatureCost>& costs) {
+std::string summary_page(const std::vector<WorkDiagram>& diagrams, const std::vector<SolverMaterial>& materials,
+                         const std::vector<FeatureCost>& costs) {
   if (diagrams.empty()) return "";
   std::string out = ranks_table(diagrams).markdown() + "\n" + winners_table(diagrams).markdown() + "\n";
   if (!materials.empty()) out += material_verdicts(materials).markdown() + "\n";
@@ -203,7 +212,8 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
   const std::vector<Family> rates = families(rest);
   bool wrote_table3 = false;
   for (const Family& family : rates) {
-    const std::string text = told("rates", family.paper_table == 3 ? "Table 3" : "Rates: " + family.name, fps_tables(family, published));
+    const std::string text =
+        told("rates", family.paper_table == 3 ? "Table 3" : "Rates: " + family.name, fps_tables(family, published));
     tables += text;
     if (family.paper_table != 3 || wrote_table3) continue;
     write("table3.md", "# Table 3\n\n" + head + "\n" + text);
@@ -219,13 +229,20 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     tables += text;
     write("penetration.md", "# Penetration\n\n" + head + "\n" + text);
     write("penetration.csv", summary_csv(contact, contact_names()));
-    write("penetration.json",
-          nlohmann::json{{"cells", penetration_json(ups)}, {"rooms", room_json(pairs)}, {"first_leaks", leak_json(speed_sweeps(ups))},
-                         {"pulled_strip", pulled_strip_json(ups)}, {"popping", popping_json(poppings(ups))}, {"turned", turned_json(turned)}}.dump(1) + "\n");
+    write("penetration.json", nlohmann::json{{"cells", penetration_json(ups)},
+                                             {"rooms", room_json(pairs)},
+                                             {"first_leaks", leak_json(speed_sweeps(ups))},
+                                             {"pulled_strip", pulled_strip_json(ups)},
+                                             {"popping", popping_json(poppings(ups))},
+                                             {"turned", turned_json(turned)}}
+                                      .dump(1) +
+                                  "\n");
     write("penetration-series.csv", series_csv(ups));
   }
   if (!diagrams.empty()) {
-    const std::string text = told("work-precision", "Error against run time", {work_table(diagrams), budget_table(diagrams), energy_table(diagrams), truth_table(diagrams)});
+    const std::string text =
+        told("work-precision", "Error against run time",
+             {work_table(diagrams), budget_table(diagrams), energy_table(diagrams), truth_table(diagrams)});
     tables += text;
     write("work-precision.md", "# Error against run time\n\n" + head + "\n" + text);
     write("work-precision.csv", work_csv(diagrams));
@@ -237,10 +254,12 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     write("stability.md", "# Stability\n\n" + head + "\n" + text);
     write("stability.csv", stability_csv(stability));
     write("stability-across.csv", across_csv(across_runs(stability)));
-    write("stability.json", nlohmann::json{{"format", "clothbench-stability"}, {"format_version", 1}, {"maps", maps}}.dump(1) + "\n");
+    write("stability.json",
+          nlohmann::json{{"format", "clothbench-stability"}, {"format_version", 1}, {"maps", maps}}.dump(1) + "\n");
   }
   if (!materials.empty()) {
-    const std::string text = told("material", "Material card", {material_table(materials), material_verdicts(materials)});
+    const std::string text =
+        told("material", "Material card", {material_table(materials), material_verdicts(materials)});
     tables += text;
     write("material.md", "# Material card\n\n" + head + "\n" + text);
     write("material.json", material_json(materials).dump(1) + "\n");
@@ -252,13 +271,16 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     write("feature-cost.csv", feature_cost_csv(costs));
     write("feature-cost.json", feature_cost_json(costs).dump(1) + "\n");
   }
-  if (const std::string text = summary_page(diagrams, materials, costs); !text.empty()) write("summary.md", "# Summary\n\n" + head + "\n" + text);
+  if (const std::string text = summary_page(diagrams, materials, costs); !text.empty())
+    write("summary.md", "# Summary\n\n" + head + "\n" + text);
   if (const auto solvers = solver_features(cells); any_known(solvers)) {
     tables += told("features", "Features", {feature_table(solvers, true)});
     write("features.json", feature_json(solvers, true).dump(1) + "\n");
   }
-  if (const Table failed = failed_table(without_stability(cells)); failed.rows.size() > 1) tables += told("failed", "Cells without a result", {failed});
-  if (const Table broken = expect_table(without_stability(cells)); broken.rows.size() > 1) tables += told("expect", "Expectations", {broken});
+  if (const Table failed = failed_table(without_stability(cells)); failed.rows.size() > 1)
+    tables += told("failed", "Cells without a result", {failed});
+  if (const Table broken = expect_table(without_stability(cells)); broken.rows.size() > 1)
+    tables += told("expect", "Expectations", {broken});
 
   page.headline = head;
   page.rates = rates_json(rates, published);
@@ -278,13 +300,16 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
   if (!rest.empty()) drawings.push_back({"plot_report.py", options.out / "cells.csv", {}, true});
   if (!ups.empty()) drawings.push_back({"plot_penetration.py", options.out / "penetration-series.csv"});
   if (!diagrams.empty()) drawings.push_back({"plot_work_precision.py", options.out / "work-precision.csv"});
-  if (!stability.empty() || !maps.empty()) drawings.push_back({"plot_stability.py", options.out / "stability.json", options.out / "stability.csv"});
+  if (!stability.empty() || !maps.empty())
+    drawings.push_back({"plot_stability.py", options.out / "stability.json", options.out / "stability.csv"});
   const auto [no_figures, has_python] = draw_pictures(options.out, drawings);
-  const std::string figures = "### Figures\n\n" + (rest.empty() ? "" : figures_markdown(rest)) + penetration_figures_markdown(ups) +
-                              work_figures_markdown(diagrams) + stability_figures_markdown(maps, !stability.empty());
-  write("report.md", "# clothbench report\n\n" + head + "\n" + tables + (no_figures.empty() ? figures : no_figures + "\n\n") +
-                         (no_page.empty() ? "`index.html` shows all of this interactively, with the motions. " : no_page + "\n\n") +
-                         "`cells.csv` and `cells.json` hold every summary value of every cell in full precision.\n");
+  const std::string figures = "### Figures\n\n" + (rest.empty() ? "" : figures_markdown(rest)) +
+                              penetration_figures_markdown(ups) + work_figures_markdown(diagrams) +
+                              stability_figures_markdown(maps, !stability.empty());
+  write("report.md",
+        "# clothbench report\n\n" + head + "\n" + tables + (no_figures.empty() ? figures : no_figures + "\n\n") +
+            (no_page.empty() ? "`index.html` shows all of this interactively, with the motions. " : no_page + "\n\n") +
+            "`cells.csv` and `cells.json` hold every summary value of every cell in full precision.\n");
   if (no_figures.empty()) return;
   if (has_python) throw Error(no_figures, ExitCode::CheckFailed);
   fmt::print(stderr, "{}\n", no_figures);
@@ -301,10 +326,14 @@ void print_console_report(const std::vector<fs::path>& runs) {
     for (const Table& t : fps_tables(family, published)) fmt::print("{}", t.console());
   if (const Table sampled = sampled_table(cells); sampled.rows.size() > 1) fmt::print("{}", sampled.console());
   const std::vector<ContactSetUp> ups = set_ups(contact);
-  for (const Table& t : penetration_tables(ups, room_pairs(contact), turned_pairs(ups), false)) fmt::print("{}", t.console());
+  for (const Table& t : penetration_tables(ups, room_pairs(contact), turned_pairs(ups), false))
+    fmt::print("{}", t.console());
   if (const auto diagrams = work_diagrams(truth, materials); !diagrams.empty())
-    fmt::print("{}{}{}{}{}{}", work_table(diagrams).console(), budget_table(diagrams).console(), energy_table(diagrams).console(), truth_table(diagrams).console(), winners_table(diagrams).console(), ranks_table(diagrams).console());
-  if (!materials.empty()) fmt::print("{}{}", material_table(materials).console(), material_verdicts(materials).console());
+    fmt::print("{}{}{}{}{}{}", work_table(diagrams).console(), budget_table(diagrams).console(),
+               energy_table(diagrams).console(), truth_table(diagrams).console(), winners_table(diagrams).console(),
+               ranks_table(diagrams).console());
+  if (!materials.empty())
+    fmt::print("{}{}", material_table(materials).console(), material_verdicts(materials).console());
   if (!costs.empty()) fmt::print("{}{}", feature_cost_table(costs).console(), no_op_table(costs).console());
   if (const auto solvers = solver_features(cells); !contact.empty() && any_known(solvers))
     fmt::print("{}", feature_table(solvers, true).console());
@@ -318,7 +347,8 @@ void print_console_report(const std::vector<fs::path>& runs) {
   const Table broken = expect_table(without_stability(cells));
   if (broken.rows.size() > 1) fmt::print("\n{} ({})\n", broken.title, broken.note.substr(0, broken.note.size() - 1));
   for (std::size_t r = 1; r < broken.rows.size(); ++r)
-    fmt::print("{}", wrapped(broken.rows[r][0] + ": " + broken.rows[r][1] + ": " + broken.rows[r][2], 2, kConsoleColumns));
+    fmt::print("{}",
+               wrapped(broken.rows[r][0] + ": " + broken.rows[r][1] + ": " + broken.rows[r][2], 2, kConsoleColumns));
 }
 
 }  // namespace clothbench

@@ -28,8 +28,8 @@ std::vector<Table> fps_tables(const Family&, const nlohmann::json& published);
 /// Cells that did not end well, by solver, status and message; no rows but the header if there is none.
 Table failed_table(const std::vector<CellRecord>& cells);
 
-/// Cells that broke what their scene expects, by scene and solver; the note counts the others. No rows but the header if
-/// there is none.
+/// Cells that broke what their scene expects, by scene and solver; the note counts the others. No rows but the header
+/// if there is none.
 Table expect_table(const std::vector<CellRecord>& cells);
 
 enum class Format { Markdown, Console };
@@ -41,7 +41,8 @@ std::string headline(const std::vector<CellRecord>& cells, Format);
 /// The ballistic solver's slowest cell as a share of a 72 Hz frame, against the 1 % allowed; empty without such cells.
 std::string overhead_line(const std::vector<CellRecord>& cells);
 
-/// What the device's own counters told during the cells' trials, one row a cell; no rows but the header if no cell has any.
+/// What the device's own counters told during the cells' trials, one row a cell; no rows but the header if no cell has
+/// any.
 Table sampled_table(const std::vector<CellRecord>& cells);
 
 /// Names in `summary` of what the device's own counters told.
@@ -63,13 +64,14 @@ nlohmann::json table3_json(const Family&, const nlohmann::json& published);
 /// Everything but frames: outcome, summary (missing = null), environment.
 nlohmann::json cells_json(const std::vector<CellRecord>& cells);
 
-/// Writes report.md, cells.csv, cells.json, bandwidth.csv, memory.csv, features.json; for cells with samples of the device's own counters device-samples.csv; for the paper's Table 3 also
-/// table3.md, .csv and .json; for scenes with contact penetration.md, .csv and .json and penetration-series.csv; and
-/// for scenes with a truth work-precision.md, .csv, .json and a page of summary.md; for material cards material.md and
-/// .json; for costs of features feature-cost.md, .csv and .json; the page index.html (left out, with a line saying so,
-/// where this was built without Node); the figures fig4 and fig5, penetration-<set-up> (SVG, PNG; left out, with a line saying so, where there is no Python
-/// with matplotlib). Throws Error if a file cannot be read or written, or the figures cannot be drawn (the tables are
-/// written by then).
+/// Writes report.md, cells.csv, cells.json, bandwidth.csv, memory.csv, features.json; for cells with samples of the
+/// device's own counters device-samples.csv; for the paper's Table 3 also table3.md, .csv and .json; for scenes with
+/// contact penetration.md, .csv and .json and penetration-series.csv; and for scenes with a truth work-precision.md,
+/// .csv, .json and a page of summary.md; for material cards material.md and .json; for costs of features
+/// feature-cost.md, .csv and .json; the page index.html (left out, with a line saying so, where this was built without
+/// Node); the figures fig4 and fig5, penetration-<set-up> (SVG, PNG; left out, with a line saying so, where there is no
+/// Python with matplotlib). Throws Error if a file cannot be read or written, or the figures cannot be drawn (the
+/// tables are written by then).
 void write_report(const std::vector<std::filesystem::path>& runs, const ReportOptions&);
 
 /// The same tables on the terminal.

@@ -14,8 +14,8 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 
   std::string markdown() const;
-  /// Columns that do not fit kConsoleColumns follow below, with the first two repeated; the note is wrapped. Verdicts are
-  /// coloured where colour is on (report/tint.hpp).
+  /// Columns that do not fit kConsoleColumns follow below, with the first two repeated; the note is wrapped. Verdicts
+  /// are coloured where colour is on (report/tint.hpp).
   std::string console() const;
 };
 

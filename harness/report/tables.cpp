@@ -90,13 +90,17 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
   t.push_back(family.table("Wall time a frame [ms]" + scene, "Median over all timed frames.",
                            [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_wall_median_s"), 3); }));
   if (any_value(family, "frame_rendered_median_s"))
-    t.push_back(family.table("Frame time with rendering, stereo [ms]" + scene,
-                             "Median wall time of a frame and its two pictures, nothing overlapping; the file says their size. A GPU solver's buffer is drawn as it lies, a CPU solver's positions are uploaded. The paper's FPS include rendering.",
-                             [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_rendered_median_s"), 3); }));
+    t.push_back(
+        family.table("Frame time with rendering, stereo [ms]" + scene,
+                     "Median wall time of a frame and its two pictures, nothing overlapping; the file says their size. "
+                     "A GPU solver's buffer is drawn as it lies, a CPU solver's positions are uploaded. The paper's "
+                     "FPS include rendering.",
+                     [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_rendered_median_s"), 3); }));
   if (any_value(family, "frame_pipelined_median_s"))
-    t.push_back(family.table("Wall time a frame, pipelined [ms]" + scene,
-                             "Frames not waited for, two in flight; median of the trials' means. – where a solver waits for each.",
-                             [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_pipelined_median_s"), 3); }));
+    t.push_back(family.table(
+        "Wall time a frame, pipelined [ms]" + scene,
+        "Frames not waited for, two in flight; median of the trials' means. – where a solver waits for each.",
+        [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_pipelined_median_s"), 3); }));
   t.push_back(family.table("GPU time a frame [ms]" + scene,
                            "Median; first to last timestamp of the frame's one submission. – on a CPU.",
                            [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_device_median_s"), 3); }));
@@ -108,20 +112,21 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
                                return std::isfinite(e) ? fmt::format("{:.1e}", e) : std::string("–");
                              }));
   if (any_value(family, "stretch_max_last_second"))
-    t.push_back(family.table("Stretch of structural edges in the last second, mean / greatest [%]" + scene,
-                             "Over edges and frames; edges shorter than at rest count as 0 in the mean.",
-                             [&](const CellRecord& c) {
-                               return paired(100 * v(c, "stretch_mean_last_second"),
-                                             100 * v(c, "stretch_max_last_second"), " / ", 2);
-                             }));
-  t.push_back(family.table("kB a frame, read / written" + scene,
-                           fmt::format("Bytes: {} – for CPU solvers, of which nothing is known.", kWhatBytesAre),
-                           [](const CellRecord& c) { return bytes_pair(c, "read_B_per_frame", "write_B_per_frame", 1e-3); }));
-  const std::string windows = window_note(cells);
+    t.push_back(family.table(
+        "Stretch of structural edges in the last second, mean / greatest [%]" + scene,
+        "Over edges and frames; edges shorter than at rest count as 0 in the mean.", [&](const CellRecord& c) {
+          return paired(100 * v(c, "stretch_mean_last_second"), 100 * v(c, "stretch_max_last_second"), " / ", 2);
+        }));
   t.push_back(
-      family.table("Peak bandwidth, read / written [GB/s]" + scene,
-                   "The same bytes over wall time; " + (windows.empty() ? "no cell has any." : windows + "."),
-                   [](const CellRecord& c) { return bytes_pair(c, "bandwidth_read_peak_B_per_s", "bandwidth_write_peak_B_per_s", 1e-9); }));
+      family.table("kB a frame, read / written" + scene,
+                   fmt::format("Bytes: {} – for CPU solvers, of which nothing is known.", kWhatBytesAre),
+                   [](const CellRecord& c) { return bytes_pair(c, "read_B_per_frame", "write_B_per_frame", 1e-3); }));
+  const std::string windows = window_note(cells);
+  t.push_back(family.table("Peak bandwidth, read / written [GB/s]" + scene,
+                           "The same bytes over wall time; " + (windows.empty() ? "no cell has any." : windows + "."),
+                           [](const CellRecord& c) {
+                             return bytes_pair(c, "bandwidth_read_peak_B_per_s", "bandwidth_write_peak_B_per_s", 1e-9);
+                           }));
   t.push_back(family.table("Device memory [kB] · dispatches a frame" + scene,
                            "Buffers in device-local memory. – on a CPU.", [&](const CellRecord& c) {
                              const double m = v(c, "device_memory_B"), d = v(c, "dispatches");

@@ -20,7 +20,9 @@ double greater(double a, double b) { return b <= a || std::isnan(a) ? a : b; }
 Apart trajectories_apart(const CellRecord& one, const CellRecord& other, std::size_t transposed_columns) {
   const std::vector<float> a = positions(one), b = positions(other);
   const std::size_t vertices = one.header.vertices, columns = transposed_columns;
-  if (a.empty() || a.size() != b.size() || vertices == 0 || a.size() % (3 * vertices) != 0 || (columns > 0 && vertices % columns != 0)) return {};
+  if (a.empty() || a.size() != b.size() || vertices == 0 || a.size() % (3 * vertices) != 0 ||
+      (columns > 0 && vertices % columns != 0))
+    return {};
   Apart out{0, 0};
   for (std::size_t first = 0; first < a.size(); first += 3 * vertices) {
     double sum = 0;

@@ -5,8 +5,8 @@
 
 namespace clothbench {
 
-/// Greatest distance of a vertex in one cell from the same vertex in another [m], and the root mean square over the vertices. NaN
-/// and nothing where the two have no trajectories of the same length.
+/// Greatest distance of a vertex in one cell from the same vertex in another [m], and the root mean square over the
+/// vertices. NaN and nothing where the two have no trajectories of the same length.
 struct Apart {
   double end_m = kMissing, max_m = kMissing;
   std::vector<double> rms_m = {};  ///< by frame

@@ -22,12 +22,14 @@ std::string share(double v) { return std::isfinite(v) ? fmt::format("{:.1e}", v)
 /// Greatest of `rms_m` up to some time after a collider is first touched; NaN where it never is, or that is not known.
 double until_contact(const CellRecord& c, const std::vector<double>& rms_m) {
   for (const MetricSeries& m : c.accuracy.metrics) {
-    if (m.name != "touching_fraction" || m.values.size() != rms_m.size() || c.accuracy.time_s.size() != rms_m.size()) continue;
+    if (m.name != "touching_fraction" || m.values.size() != rms_m.size() || c.accuracy.time_s.size() != rms_m.size())
+      continue;
     const auto first = std::find_if(m.values.begin(), m.values.end(), [](double v) { return !(v <= 0); });
     if (first == m.values.end()) return kMissing;
     const double end_s = c.accuracy.time_s[static_cast<std::size_t>(first - m.values.begin())] + kAtContact_s;
     double most = 0;
-    for (std::size_t f = 0; f < rms_m.size() && c.accuracy.time_s[f] <= end_s; ++f) most = rms_m[f] <= most ? most : rms_m[f];
+    for (std::size_t f = 0; f < rms_m.size() && c.accuracy.time_s[f] <= end_s; ++f)
+      most = rms_m[f] <= most ? most : rms_m[f];
     return most;
   }
   return kMissing;
@@ -47,10 +49,12 @@ std::string result(const TurnedPair& p) {
   return p.same() ? "same" : "differs";
 }
 
-TurnedPair pair_of(const std::string& kind, const std::string& scene, const ContactRow& flat, const ContactRow& turned) {
+TurnedPair pair_of(const std::string& kind, const std::string& scene, const ContactRow& flat,
+                   const ContactRow& turned) {
   TurnedPair p{kind, scene, flat.series, flat.cell, turned.cell};
   const json s = json::parse(flat.cell->header.scenario_json, nullptr, false);
-  const json grid = s.value(json::json_pointer("/cloth/grid"), json()), size = s.value(json::json_pointer("/cloth/size_m"), json());
+  const json grid = s.value(json::json_pointer("/cloth/grid"), json()),
+             size = s.value(json::json_pointer("/cloth/size_m"), json());
   if (!grid.is_array() || grid.size() != 2 || !size.is_array() || size.size() != 2) return p;
   const double side_m = std::max(size[0].get<double>(), size[1].get<double>());
   const std::vector<double> rms_m = trajectories_apart(*flat.cell, *turned.cell, grid[0].get<std::size_t>()).rms_m;
@@ -63,8 +67,8 @@ TurnedPair pair_of(const std::string& kind, const std::string& scene, const Cont
 }  // namespace
 
 bool TurnedPair::same() const {
-  return cell->outcome.status == "ok" && turned->outcome.status == "ok" && leak_of(kind, *cell).empty() == leak_of(kind, *turned).empty() &&
-         apart_at_contact <= kSamePlace;
+  return cell->outcome.status == "ok" && turned->outcome.status == "ok" &&
+         leak_of(kind, *cell).empty() == leak_of(kind, *turned).empty() && apart_at_contact <= kSamePlace;
 }
 
 std::vector<TurnedPair> turned_pairs(const std::vector<ContactSetUp>& ups) {
@@ -75,22 +79,27 @@ std::vector<TurnedPair> turned_pairs(const std::vector<ContactSetUp>& ups) {
         if (t.name != s.name + kSuffix) continue;
         for (const ContactRow& a : s.rows)
           for (const ContactRow& b : t.rows)
-            if (a.series == b.series && a.series.solver != "ballistic" && ran(*a.cell) && ran(*b.cell)) out.push_back(pair_of(u.kind, s.name, a, b));
+            if (a.series == b.series && a.series.solver != "ballistic" && ran(*a.cell) && ran(*b.cell))
+              out.push_back(pair_of(u.kind, s.name, a, b));
       }
   return out;
 }
 
 Table turned_table(const std::vector<TurnedPair>& pairs) {
   Table t{"The cloth turned over",
-          "The same scene with axis_u and axis_v changed for one another: the cloth's normals point the other way, its vertices and triangles "
-          "begin where they did. What each of the two keeps of what the scene expects, and its leak; distance of the vertices that began in "
-          "the same places, RMS over the cloth, over its longer side: the most up to 0.1 s after the first contact / at the end. Same: both "
-          "leak or neither, and at most 0.05 apart at contact; later a fold tips whichever way rounding sends it. What turning alone does to "
+          "The same scene with axis_u and axis_v changed for one another: the cloth's normals point the other way, its "
+          "vertices and triangles "
+          "begin where they did. What each of the two keeps of what the scene expects, and its leak; distance of the "
+          "vertices that began in "
+          "the same places, RMS over the cloth, over its longer side: the most up to 0.1 s after the first contact / "
+          "at the end. Same: both "
+          "leak or neither, and at most 0.05 apart at contact; later a fold tips whichever way rounding sends it. What "
+          "turning alone does to "
           "a solver, `clothbench metamorphic` (flip) bounds.",
           {{"scene", "solver", "sides", "as it is", "turned over", "apart, contact / end [of L]", "result"}}};
   for (const TurnedPair& p : pairs)
-    t.rows.push_back({p.scene, p.series.label(), p.series.sides.empty() ? "–" : p.series.sides, told(p.kind, *p.cell), told(p.kind, *p.turned),
-                      share(p.apart_at_contact) + " / " + share(p.apart_end), result(p)});
+    t.rows.push_back({p.scene, p.series.label(), p.series.sides.empty() ? "–" : p.series.sides, told(p.kind, *p.cell),
+                      told(p.kind, *p.turned), share(p.apart_at_contact) + " / " + share(p.apart_end), result(p)});
   std::vector<const CellRecord*> cells;
   for (const TurnedPair& p : pairs) cells.insert(cells.end(), {p.cell, p.turned});
   t.note = with_withheld(t.note, cells, {"tunnelled_fraction_max", "wrong_side_samples_max", "depth_vertex_max_m"});
@@ -100,8 +109,13 @@ Table turned_table(const std::vector<TurnedPair>& pairs) {
 json turned_json(const std::vector<TurnedPair>& pairs) {
   json out = json::array();
   for (const TurnedPair& p : pairs)
-    out.push_back({{"scene", p.scene}, {"solver", p.series.solver}, {"setting", p.series.setting}, {"sides", p.series.sides},
-                   {"apart_at_contact", finite_or_null(p.apart_at_contact)}, {"apart_end", finite_or_null(p.apart_end)}, {"same", p.same()}});
+    out.push_back({{"scene", p.scene},
+                   {"solver", p.series.solver},
+                   {"setting", p.series.setting},
+                   {"sides", p.series.sides},
+                   {"apart_at_contact", finite_or_null(p.apart_at_contact)},
+                   {"apart_end", finite_or_null(p.apart_end)},
+                   {"same", p.same()}});
   return out;
 }
 

@@ -24,7 +24,8 @@ bool was_timed(const CellRecord& c) { return std::isfinite(summary_value(c, "fra
 std::map<std::string, int> newest_versions(const std::vector<CellRecord>& cells) {
   std::map<std::string, int> out;
   for (const CellRecord& c : cells)
-    for (const MetricSeries& m : c.accuracy.metrics) out[m.name] = std::max({out[m.name], m.version, metric_version(m.name)});
+    for (const MetricSeries& m : c.accuracy.metrics)
+      out[m.name] = std::max({out[m.name], m.version, metric_version(m.name)});
   return out;
 }
 
@@ -44,7 +45,9 @@ std::string verdict_without(const std::string& text, const std::set<std::string>
 void withhold_versions(CellRecord& c, const std::map<std::string, int>& newest) {
   std::map<std::string, std::string> why;  // by metric
   for (const MetricSeries& m : c.accuracy.metrics)
-    if (m.version < newest.at(m.name)) why[m.name] = fmt::format("{} was measured by version {} of its rule, now {}", m.name, m.version, newest.at(m.name));
+    if (m.version < newest.at(m.name))
+      why[m.name] =
+          fmt::format("{} was measured by version {} of its rule, now {}", m.name, m.version, newest.at(m.name));
   if (why.empty()) return;
   std::erase_if(c.accuracy.metrics, [&](const MetricSeries& m) { return why.contains(m.name); });
   std::set<std::string> bounds;
@@ -109,7 +112,8 @@ std::string withheld_note(const std::vector<const CellRecord*>& cells, const std
   return out.empty() ? "" : out + ".";
 }
 
-std::string with_withheld(const std::string& note, const std::vector<const CellRecord*>& cells, const std::vector<std::string>& names) {
+std::string with_withheld(const std::string& note, const std::vector<const CellRecord*>& cells,
+                          const std::vector<std::string>& names) {
   const std::string more = withheld_note(cells, names);
   return note + (note.empty() || more.empty() ? "" : " ") + more;
 }
@@ -133,8 +137,11 @@ std::vector<std::string> withheld_lines(const std::vector<CellRecord>& cells) {
     silent += was_timed(c) && !std::isfinite(jobs_of(c));
   }
   std::vector<std::string> out;
-  for (const auto& [why, count] : reasons) out.push_back(fmt::format("Not printed (–), {} cell{}: {}.", count, count == 1 ? "" : "s", why));
-  if (silent > 0) out.push_back(fmt::format("{} of the timed cells {} of files that don't say whether anything ran beside {}.", silent, silent == 1 ? "is" : "are", silent == 1 ? "it" : "them"));
+  for (const auto& [why, count] : reasons)
+    out.push_back(fmt::format("Not printed (–), {} cell{}: {}.", count, count == 1 ? "" : "s", why));
+  if (silent > 0)
+    out.push_back(fmt::format("{} of the timed cells {} of files that don't say whether anything ran beside {}.",
+                              silent, silent == 1 ? "is" : "are", silent == 1 ? "it" : "them"));
   return out;
 }
 

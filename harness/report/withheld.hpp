@@ -21,24 +21,27 @@ double jobs_of(const CellRecord&);
 /// Takes the times out of cells that were not timed alone, trials and summary, and says why in `withheld`.
 void withhold_times(std::vector<CellRecord>&);
 
-/// Takes out of the cells what was measured by an older version of a metric's rule than this program's, or than the newest
-/// among them: series, summary values computed from them, what came of bounds on these; and says why in `withheld`.
+/// Takes out of the cells what was measured by an older version of a metric's rule than this program's, or than the
+/// newest among them: series, summary values computed from them, what came of bounds on these; and says why in
+/// `withheld`.
 void withhold_old_versions(std::vector<CellRecord>&);
 
 /// Both: what every report is made of.
 void withhold(std::vector<CellRecord>&);
 
-/// Why some of the cells show "–" for these summary values, a sentence for a table's note; empty where nothing is withheld.
+/// Why some of the cells show "–" for these summary values, a sentence for a table's note; empty where nothing is
+/// withheld.
 std::string withheld_note(const std::vector<const CellRecord*>&, const std::vector<std::string>& summary_names);
 
 /// `note` and that sentence.
-std::string with_withheld(const std::string& note, const std::vector<const CellRecord*>&, const std::vector<std::string>& summary_names);
+std::string with_withheld(const std::string& note, const std::vector<const CellRecord*>&,
+                          const std::vector<std::string>& summary_names);
 
 /// Reasons of one cell, for these summary values; "; " between them.
 std::string withheld_of(const CellRecord&, const std::vector<std::string>& summary_names);
 
-/// Lines for a report's head: how many cells' times, and which metrics, are not printed and why; how many cells don't say
-/// whether they were timed alone. Of cells that `withhold` has seen.
+/// Lines for a report's head: how many cells' times, and which metrics, are not printed and why; how many cells don't
+/// say whether they were timed alone. Of cells that `withhold` has seen.
 std::vector<std::string> withheld_lines(const std::vector<CellRecord>&);
 
 }  // namespace clothbench

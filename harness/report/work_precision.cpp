@@ -18,15 +18,19 @@ using nlohmann::json;
 
 constexpr double kRealTime_ms_per_s = 1000;  // a 72 Hz frame simulates 1/72 s in 1/72 s
 
-std::string card_of(const json& scenario) { return scenario.is_object() ? scenario.value(json::json_pointer("/truth/card"), std::string()) : ""; }
+std::string card_of(const json& scenario) {
+  return scenario.is_object() ? scenario.value(json::json_pointer("/truth/card"), std::string()) : "";
+}
 
 /// What ranks a card's runs; the cards themselves are in harness/truth/card.hpp, a report reads only files.
 std::string ranking_of(const std::string& card) {
   if (card == "heavy-strip") return "stretch of the strip at rest / its truth";
   if (card == "two-hand-pull") return "greatest strain, RMS over time / (v0/c)";
   if (card == "incline") return "way along the slope, RMS over time / way at the end (at rest: L)";
-  if (card == "capstan" || card == "atwood") return "way over the cylinder, RMS over time / way at the end (at rest: L)";
-  return card == "catenary" || card == "cantilever" ? "RMS distance at rest / L" : "RMS distance over space and time / L";
+  if (card == "capstan" || card == "atwood")
+    return "way over the cylinder, RMS over time / way at the end (at rest: L)";
+  return card == "catenary" || card == "cantilever" ? "RMS distance at rest / L"
+                                                    : "RMS distance over space and time / L";
 }
 
 WorkPoint point_of(const CellRecord& c, const json& scenario) {
@@ -60,8 +64,8 @@ void mark_front(std::vector<WorkPoint>& points) {
   }
 }
 
-const WorkPoint* best(const WorkDiagram& d, const std::string& solver, const std::function<bool(const WorkPoint&)>& counts,
-                      double WorkPoint::*by) {
+const WorkPoint* best(const WorkDiagram& d, const std::string& solver,
+                      const std::function<bool(const WorkPoint&)>& counts, double WorkPoint::*by) {
   const WorkPoint* out = nullptr;
   for (const WorkPoint& p : d.points)
     if (p.solver == solver && drawn(p) && counts(p) && (out == nullptr || p.*by < out->*by)) out = &p;
@@ -144,7 +148,8 @@ std::string WorkDiagram::refused() const {
 
 bool has_truth(const CellRecord& c) { return !card_of(scenario_of(c)).empty(); }
 
-std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells, const std::vector<SolverMaterial>& materials) {
+std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells,
+                                       const std::vector<SolverMaterial>& materials) {
   std::vector<WorkDiagram> out;
   for (const CellRecord& c : cells) {
     const json scenario = scenario_of(c);
@@ -155,7 +160,8 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells, con
       out.push_back({c.header.scene, card, ranking_of(card), {}});
       at = out.end() - 1;
     }
-    if (std::string why = stiffness_flag(materials, c.header.solver, stiffness_need(c)); !why.empty()) at->flagged[c.header.solver] = std::move(why);
+    if (std::string why = stiffness_flag(materials, c.header.solver, stiffness_need(c)); !why.empty())
+      at->flagged[c.header.solver] = std::move(why);
     at->points.push_back(point_of(c, scenario));
     if (!at->need.any()) at->need = stiffness_need(c);
     const auto take = [&](double& to, const char* name) {
@@ -179,12 +185,19 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells, con
 
 Table work_table(const std::vector<WorkDiagram>& diagrams) {
   Table t{"Error against run time",
-          "Times in ms of wall time per simulated second, frames pipelined (two in flight) where a solver can; in brackets substeps × "
-          "iterations. Fenced: each frame from submission to fence, waited for before the next. GPU: by the device's own clock. Errors are against the exact answer of the same mesh. In real time: a frame of 1/72 s takes at most 1/72 s. "
-          "≤: below what tells solvers apart, three times the reference's uncertainty or the mesh's own error. Failed: cells without "
-          "a finite error; not run: settings of more work than their solver's time on the scene allowed, each with its reason in its file. A scene that is refused ranks nobody; see the next table. Not ranked: the scene depends on a stiffness that "
+          "Times in ms of wall time per simulated second, frames pipelined (two in flight) where a solver can; in "
+          "brackets substeps × "
+          "iterations. Fenced: each frame from submission to fence, waited for before the next. GPU: by the device's "
+          "own clock. Errors are against the exact answer of the same mesh. In real time: a frame of 1/72 s takes at "
+          "most 1/72 s. "
+          "≤: below what tells solvers apart, three times the reference's uncertainty or the mesh's own error. Failed: "
+          "cells without "
+          "a finite error; not run: settings of more work than their solver's time on the scene allowed, each with its "
+          "reason in its file. A scene that is refused ranks nobody; see the next table. Not ranked: the scene depends "
+          "on a stiffness that "
           "is no parameter of the solver; see the material card.",
-          {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed", "to 1 %, fenced", "to 0.1 %, fenced", "to 1 %, GPU", "to 0.1 %, GPU", "ranked"}}};
+          {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed",
+            "to 1 %, fenced", "to 0.1 %, fenced", "to 1 %, GPU", "to 0.1 %, GPU", "ranked"}}};
   const auto always = [](const WorkPoint&) { return true; };
   t.note = with_withheld(t.note, cells_of(diagrams), {"frame_wall_median_s", "truth_error"});
   for (const WorkDiagram& d : diagrams) {
@@ -194,8 +207,10 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
       for (const WorkPoint& p : d.points)
         if (p.solver == solver) {
           ++all;
-          if (p.cell->outcome.status == "over_budget") ++over_budget;
-          else if (!drawn(p) && !p.cell->withheld.contains("frame_wall_median_s")) ++failed;
+          if (p.cell->outcome.status == "over_budget")
+            ++over_budget;
+          else if (!drawn(p) && !p.cell->withheld.contains("frame_wall_median_s"))
+            ++failed;
           if (p.cell->outcome.status != "unsupported" && p.cell->outcome.status != "missing") ++able;
         }
       const auto by_gpu = [&](double most) {
@@ -207,41 +222,52 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
       };
       const auto flag = d.flagged.find(solver);
       const bool yardstick = solver == "reference";
-      t.rows.push_back({d.scene + (refused.empty() ? "" : " (refused)"), solver, time_text(best(d, solver, within(1e-2), &WorkPoint::wall_ms_per_s)),
+      t.rows.push_back({d.scene + (refused.empty() ? "" : " (refused)"), solver,
+                        time_text(best(d, solver, within(1e-2), &WorkPoint::wall_ms_per_s)),
                         time_text(best(d, solver, within(1e-3), &WorkPoint::wall_ms_per_s)),
-                        error_text(d, best(d, solver, in_real_time, &WorkPoint::error)), error_text(d, best(d, solver, always, &WorkPoint::error)),
-                        able == 0 ? "unsupported" : failed_text(failed, all, over_budget), fenced(1e-2), fenced(1e-3), by_gpu(1e-2), by_gpu(1e-3),
-                        flag != d.flagged.end() ? "NO: stiffness not a parameter" : able == 0 || !refused.empty() ? "no" : yardstick ? "yardstick" : "yes"});
+                        error_text(d, best(d, solver, in_real_time, &WorkPoint::error)),
+                        error_text(d, best(d, solver, always, &WorkPoint::error)),
+                        able == 0 ? "unsupported" : failed_text(failed, all, over_budget), fenced(1e-2), fenced(1e-3),
+                        by_gpu(1e-2), by_gpu(1e-3),
+                        flag != d.flagged.end()         ? "NO: stiffness not a parameter"
+                        : able == 0 || !refused.empty() ? "no"
+                        : yardstick                     ? "yardstick"
+                                                        : "yes"});
     }
   }
   return t;
 }
 
 Table truth_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{"Truths and their reference solutions",
-          "Space: the same mesh's exact solution against the continuum. U_ref: uncertainty of the reference solution (two "
-          "integrators, three time steps) of the card's quantity, over its scale; its distance from the truth must be below it. "
-          "Order: observed, 2 declared; – where all time steps agree.",
-          {{"scene", "error", "space", "U_ref", "reference − truth", "order BDF2", "order conservative", "ranks"}}};
+  Table t{
+      "Truths and their reference solutions",
+      "Space: the same mesh's exact solution against the continuum. U_ref: uncertainty of the reference solution (two "
+      "integrators, three time steps) of the card's quantity, over its scale; its distance from the truth must be "
+      "below it. "
+      "Order: observed, 2 declared; – where all time steps agree.",
+      {{"scene", "error", "space", "U_ref", "reference − truth", "order BDF2", "order conservative", "ranks"}}};
   const auto order = [](double v) { return std::isfinite(v) ? fmt::format("{:.2f}", v) : std::string("–"); };
   for (const WorkDiagram& d : diagrams) {
     const std::string refused = d.refused();
-    t.rows.push_back({d.scene, d.ranking, error_number(d.space_error), error_number(d.uncertainty), error_number(d.truth_distance), order(d.order_bdf2),
-                      order(d.order_conservative), refused.empty() ? "yes" : "REFUSED: " + refused});
+    t.rows.push_back({d.scene, d.ranking, error_number(d.space_error), error_number(d.uncertainty),
+                      error_number(d.truth_distance), order(d.order_bdf2), order(d.order_conservative),
+                      refused.empty() ? "yes" : "REFUSED: " + refused});
   }
   return t;
 }
 
 std::string work_csv(const std::vector<WorkDiagram>& diagrams) {
-  std::string out = csv_row({"scene", "card", "ranking", "space_error", "floor", "refused", "solver", "setting", "status", "gpu",
-                             "gpu_is_software", "on_gpu", "wall_ms_per_s", "fenced_ms_per_s", "device_ms_per_s", "error", "on_front", "not_ranked"});
+  std::string out = csv_row({"scene", "card", "ranking", "space_error", "floor", "refused", "solver", "setting",
+                             "status", "gpu", "gpu_is_software", "on_gpu", "wall_ms_per_s", "fenced_ms_per_s",
+                             "device_ms_per_s", "error", "on_front", "not_ranked"});
   for (const WorkDiagram& d : diagrams)
     for (const WorkPoint& p : d.points) {
       const json& e = p.cell->header.environment;
       const std::string software = e.is_object() && e.value("gpu_is_software", json()) == json(true) ? "true" : "false";
-      out += csv_row({d.scene, d.card, d.ranking, csv_number(d.space_error), csv_number(d.floor()), d.refused(), p.solver, p.setting,
-                      p.cell->outcome.status, e.is_object() ? e.value("gpu", "") : "", software, p.on_gpu ? "true" : "false",
-                      csv_number(p.wall_ms_per_s), csv_number(p.fenced_ms_per_s), csv_number(p.device_ms_per_s), csv_number(p.error), p.on_front ? "true" : "false",
+      out += csv_row({d.scene, d.card, d.ranking, csv_number(d.space_error), csv_number(d.floor()), d.refused(),
+                      p.solver, p.setting, p.cell->outcome.status, e.is_object() ? e.value("gpu", "") : "", software,
+                      p.on_gpu ? "true" : "false", csv_number(p.wall_ms_per_s), csv_number(p.fenced_ms_per_s),
+                      csv_number(p.device_ms_per_s), csv_number(p.error), p.on_front ? "true" : "false",
                       d.flagged.contains(p.solver) ? d.flagged.at(p.solver) : ""});
     }
   return out;
@@ -252,13 +278,27 @@ json work_json(const std::vector<WorkDiagram>& diagrams) {
   for (const WorkDiagram& d : diagrams) {
     json points = json::array();
     for (const WorkPoint& p : d.points)
-      points.push_back({{"solver", p.solver}, {"setting", p.setting}, {"settings", p.cell->header.settings},
-                        {"status", p.cell->outcome.status}, {"wall_ms_per_s", finite_or_null(p.wall_ms_per_s)}, {"fenced_ms_per_s", finite_or_null(p.fenced_ms_per_s)},
-                        {"device_ms_per_s", finite_or_null(p.device_ms_per_s)}, {"error", finite_or_null(p.error)}, {"on_front", p.on_front}});
-    out.push_back({{"scene", d.scene}, {"card", d.card}, {"ranking", d.ranking}, {"space_error", finite_or_null(d.space_error)},
-                   {"reference_uncertainty", finite_or_null(d.uncertainty)}, {"reference_truth_distance", finite_or_null(d.truth_distance)},
-                   {"reference_order_bdf2", finite_or_null(d.order_bdf2)}, {"reference_order_conservative", finite_or_null(d.order_conservative)},
-                   {"refused", d.refused()}, {"rank_floor", d.rank_floor()}, {"not_ranked", d.flagged}, {"points", std::move(points)}});
+      points.push_back({{"solver", p.solver},
+                        {"setting", p.setting},
+                        {"settings", p.cell->header.settings},
+                        {"status", p.cell->outcome.status},
+                        {"wall_ms_per_s", finite_or_null(p.wall_ms_per_s)},
+                        {"fenced_ms_per_s", finite_or_null(p.fenced_ms_per_s)},
+                        {"device_ms_per_s", finite_or_null(p.device_ms_per_s)},
+                        {"error", finite_or_null(p.error)},
+                        {"on_front", p.on_front}});
+    out.push_back({{"scene", d.scene},
+                   {"card", d.card},
+                   {"ranking", d.ranking},
+                   {"space_error", finite_or_null(d.space_error)},
+                   {"reference_uncertainty", finite_or_null(d.uncertainty)},
+                   {"reference_truth_distance", finite_or_null(d.truth_distance)},
+                   {"reference_order_bdf2", finite_or_null(d.order_bdf2)},
+                   {"reference_order_conservative", finite_or_null(d.order_conservative)},
+                   {"refused", d.refused()},
+                   {"rank_floor", d.rank_floor()},
+                   {"not_ranked", d.flagged},
+                   {"points", std::move(points)}});
   }
   return out;
 }

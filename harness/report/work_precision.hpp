@@ -15,7 +15,8 @@ struct WorkPoint {
   const CellRecord* cell = nullptr;
   std::string solver, setting;
   bool on_gpu = false, ok = false;
-  double wall_ms_per_s = kMissing;    ///< median wall time, ms per simulated second, frames pipelined where the solver can
+  double wall_ms_per_s =
+      kMissing;  ///< median wall time, ms per simulated second, frames pipelined where the solver can
   double fenced_ms_per_s = kMissing;  ///< the same from submission to fence, each frame waited for
   double device_ms_per_s = kMissing;  ///< the same of the device's own clock; NaN on a CPU
   double frame_ms = kMissing;         ///< what wall_ms_per_s is of one frame of the scene
@@ -31,10 +32,11 @@ struct WorkDiagram {
   double space_error = kMissing;     ///< this mesh's truth against the continuum
   double uncertainty = kMissing;     ///< U_ref over the quantity's scale
   double truth_distance = kMissing, order_bdf2 = kMissing, order_conservative = kMissing;  ///< of the reference
-  StiffnessNeed need = {};  ///< what its answer depends on
+  StiffnessNeed need = {};                          ///< what its answer depends on
   std::map<std::string, std::string> flagged = {};  ///< solvers shown but not ranked, and why (stiffness_flag)
   double floor() const { return 3 * uncertainty; }  ///< of certainty; NaN if unknown
-  /// Errors below it are not told apart: the greater of floor() and space_error, as far as they are known; 0 if neither is.
+  /// Errors below it are not told apart: the greater of floor() and space_error, as far as they are known; 0 if neither
+  /// is.
   double rank_floor() const;
   double best_error() const;  ///< of all ranked solvers' points that ended well; NaN if there is none
   /// Why no solver is ranked on it: the reference is missing, or not below a third of the best error. "" if it is.
@@ -50,26 +52,27 @@ bool in_real_time(const WorkPoint&);
 /// One diagram a scene, in the order of first appearance. `cells` must outlive the answer.
 std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells, const std::vector<SolverMaterial>& = {});
 
-/// Rows: scenes and solvers; time to 1 % and 0.1 %, best error in real time (a displayed frame of 1/72 s takes at most as
-/// long), best error at all, each with its setting; how many cells failed; the first two by the GPU's own clock; whether the
-/// solver is ranked.
+/// Rows: scenes and solvers; time to 1 % and 0.1 %, best error in real time (a displayed frame of 1/72 s takes at most
+/// as long), best error at all, each with its setting; how many cells failed; the first two by the GPU's own clock;
+/// whether the solver is ranked.
 Table work_table(const std::vector<WorkDiagram>&);
 
 /// The best of the ranked solvers (but the reference) of each scene.
 Table winners_table(const std::vector<WorkDiagram>&);
 
-/// Rows: solvers; geometric means over the scenes that rank them of their ranks, never of errors; equal errors at the floor
-/// share a rank, and so do all who do not get there.
+/// Rows: solvers; geometric means over the scenes that rank them of their ranks, never of errors; equal errors at the
+/// floor share a rank, and so do all who do not get there.
 Table ranks_table(const std::vector<WorkDiagram>&);
 
-/// Rows: scenes and solvers; the smallest error of all settings whose frame takes at most 0.05 ... 13.9 ms, and which other
-/// solver has a smaller one anywhere between.
+/// Rows: scenes and solvers; the smallest error of all settings whose frame takes at most 0.05 ... 13.9 ms, and which
+/// other solver has a smaller one anywhere between.
 Table budget_table(const std::vector<WorkDiagram>&);
 
 /// Rows: scenes that keep energy and solvers; the most energy that a setting gains.
 Table energy_table(const std::vector<WorkDiagram>&);
 
-/// One row a scene: what the error is, floors, the reference's orders, its distance from the truth, and whether it ranks.
+/// One row a scene: what the error is, floors, the reference's orders, its distance from the truth, and whether it
+/// ranks.
 Table truth_table(const std::vector<WorkDiagram>&);
 
 /// One row a point, full precision; what the figures are drawn from.

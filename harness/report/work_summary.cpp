@@ -36,12 +36,11 @@ Criterion time_to(const char* name, double error) {
 }
 
 const std::vector<Criterion>& criteria() {
-  static const std::vector<Criterion> all = {
-      time_to("time to 1 %", 1e-2),
-      time_to("time to 0.1 %", 1e-3),
-      {"error in real time", [](const WorkDiagram& d, const WorkPoint& p) {
-         return in_real_time(p) ? std::max(p.error, d.rank_floor()) : INFINITY;
-       }}};
+  static const std::vector<Criterion> all = {time_to("time to 1 %", 1e-2),
+                                             time_to("time to 0.1 %", 1e-3),
+                                             {"error in real time", [](const WorkDiagram& d, const WorkPoint& p) {
+                                                return in_real_time(p) ? std::max(p.error, d.rank_floor()) : INFINITY;
+                                              }}};
   return all;
 }
 

@@ -1,3 +1,5 @@
+#include "results/files.hpp"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -6,7 +8,6 @@
 #include <cstring>
 
 #include "clothbench/error.hpp"
-#include "results/files.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -33,7 +34,9 @@ class Descriptor {
 
 }  // namespace
 
-std::filesystem::path temporary_name(const std::filesystem::path& path) { return path.string() + fmt::format("{}{}", kTemporaryMark, getpid()); }
+std::filesystem::path temporary_name(const std::filesystem::path& path) {
+  return path.string() + fmt::format("{}{}", kTemporaryMark, getpid());
+}
 
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& path) {
   {

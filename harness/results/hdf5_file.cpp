@@ -37,7 +37,8 @@ void text_attribute(hid_t at, const std::string& name, const std::string& value)
 }
 
 template <class T>
-void number_attribute(hid_t at, const std::string& name, hid_t file_type, hid_t memory_type, const std::vector<T>& values, bool scalar) {
+void number_attribute(hid_t at, const std::string& name, hid_t file_type, hid_t memory_type,
+                      const std::vector<T>& values, bool scalar) {
   const Id space = h5::space(scalar ? Dims{} : Dims{values.size()});
   const Id a(H5Acreate2(at, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "attribute " + name);
   h5::check(H5Awrite(a, memory_type, values.data()), "attribute " + name);
@@ -98,7 +99,8 @@ Id write_numbers(hid_t at, const std::string& name, const Dims& dims, const std:
     h5::check(H5Pset_deflate(properties, 4), "H5Pset_deflate");
   }
   Id d = dataset(at, name, Types<T>::file(), dims, label, properties);
-  if (!values.empty()) h5::check(H5Dwrite(d, Types<T>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "writing " + name);
+  if (!values.empty())
+    h5::check(H5Dwrite(d, Types<T>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "writing " + name);
   return d;
 }
 
@@ -117,7 +119,8 @@ Id scale(Id d, const std::string& name) {
   return d;
 }
 
-Id index_scale(hid_t at, const std::string& name, std::size_t count, const std::string& long_name, std::int64_t first = 0) {
+Id index_scale(hid_t at, const std::string& name, std::size_t count, const std::string& long_name,
+               std::int64_t first = 0) {
   std::vector<std::int64_t> values(count);
   std::iota(values.begin(), values.end(), first);
   return scale(write_numbers(at, name, {count}, values, {"1", long_name}), name);
@@ -129,7 +132,8 @@ void attach(hid_t d, std::initializer_list<hid_t> scales) {
 }
 
 /// Trials x frames (x stages) from series that may be shorter; missing = NaN.
-std::vector<double> padded(const CellRecord& r, std::size_t frames, std::size_t stages, std::vector<double> TimedTrial::*series) {
+std::vector<double> padded(const CellRecord& r, std::size_t frames, std::size_t stages,
+                           std::vector<double> TimedTrial::*series) {
   std::vector<double> out(r.trials.size() * frames * stages, kMissing);
   for (std::size_t t = 0; t < r.trials.size(); ++t) {
     const std::vector<double>& v = r.trials[t].*series;
@@ -182,13 +186,14 @@ class Writer {
     text_attribute(file_, "settings_json", h.settings.dump());
     text_attribute(file_, "scenario_json", h.scenario_json);
     text_attribute(file_, "scenario_sha256", h.scenario_sha256);
-    for (const char* key : {"created", "git_commit", "git_dirty", "build_type", "gpu", "driver", "gpu_is_software", "cpu", "shader_compiler",
-                            "clock_policy", "protocol", "assets", "seed"})
+    for (const char* key : {"created", "git_commit", "git_dirty", "build_type", "gpu", "driver", "gpu_is_software",
+                            "cpu", "shader_compiler", "clock_policy", "protocol", "assets", "seed"})
       text_attribute(file_, key, from_environment(key));
   }
 
   void scalars() {
-    const Id summary = make_group(file_, "summary"), outcome = make_group(file_, "outcome"), environment = make_group(file_, "environment");
+    const Id summary = make_group(file_, "summary"), outcome = make_group(file_, "outcome"),
+             environment = make_group(file_, "environment");
     for (const auto& [key, value] : r_.summary) number_attribute(summary, key, value);
     text_attribute(outcome, "status", r_.outcome.status);
     text_attribute(outcome, "class", r_.outcome.klass);
@@ -196,7 +201,8 @@ class Writer {
     text_attribute(outcome, "message", r_.outcome.message);
     text_attribute(outcome, "expect", r_.outcome.expect);
     for (const auto& [key, value] : r_.header.environment.items())
-      if (!value.is_structured()) text_attribute(environment, key, value.is_string() ? value.get<std::string>() : value.dump());
+      if (!value.is_structured())
+        text_attribute(environment, key, value.is_string() ? value.get<std::string>() : value.dump());
   }
 
   void timing() {
@@ -214,17 +220,22 @@ class Writer {
         attach(write_numbers(g, name, {trials, frames_}, padded(r_, frames_, 1, series), label), {trial, frame});
       };
       const auto by_stage = [&](const char* name, std::vector<double> TimedTrial::*series, const Label& label) {
-        attach(write_numbers(g, name, {trials, frames_, stages}, padded(r_, frames_, stages, series), label, {1, frames_, stages}),
+        attach(write_numbers(g, name, {trials, frames_, stages}, padded(r_, frames_, stages, series), label,
+                             {1, frames_, stages}),
                {trial, frame, stage});
       };
       if (bandwidth) {
-        by_stage("read_B", &TimedTrial::stage_read_B, {"B", "bytes loaded by shaders, computed from the scene and the kernels"});
-        by_stage("write_B", &TimedTrial::stage_write_B, {"B", "bytes stored by shaders, computed from the scene and the kernels"});
+        by_stage("read_B", &TimedTrial::stage_read_B,
+                 {"B", "bytes loaded by shaders, computed from the scene and the kernels"});
+        by_stage("write_B", &TimedTrial::stage_write_B,
+                 {"B", "bytes stored by shaders, computed from the scene and the kernels"});
         for (const StageRecord& s : r_.header.stages) text_attribute(g, "bytes." + s.name, s.bytes);
       } else {
         by_frame("frame_wall_s", &TimedTrial::frame_wall_s, {"s", "wall time of a frame"});
-        by_frame("frame_device_s", &TimedTrial::frame_device_s, {"s", "device time of a frame, first to last timestamp"});
-        if (std::any_of(r_.trials.begin(), r_.trials.end(), [](const TimedTrial& t) { return !t.frame_rendered_s.empty(); }))
+        by_frame("frame_device_s", &TimedTrial::frame_device_s,
+                 {"s", "device time of a frame, first to last timestamp"});
+        if (std::any_of(r_.trials.begin(), r_.trials.end(),
+                        [](const TimedTrial& t) { return !t.frame_rendered_s.empty(); }))
           by_frame("frame_rendered_s", &TimedTrial::frame_rendered_s, {"s", "wall time of a frame and its picture"});
         const auto by_trial = [&](const char* name, double TimedTrial::*value, const Label& label) {
           std::vector<double> values;
@@ -232,10 +243,13 @@ class Writer {
           attach(write_numbers(g, name, {trials}, values, label), {trial});
         };
         by_trial("pipelined_wall_s", &TimedTrial::pipelined_wall_s, {"s", "mean wall time of a frame, two in flight"});
-        by_trial("trial_start_unix_s", &TimedTrial::start_unix_s, {"s", "when the trial's first timed frame began, since 1970 UTC"});
-        by_trial("trial_end_unix_s", &TimedTrial::end_unix_s, {"s", "when the trial's last timed frame ended, since 1970 UTC"});
+        by_trial("trial_start_unix_s", &TimedTrial::start_unix_s,
+                 {"s", "when the trial's first timed frame began, since 1970 UTC"});
+        by_trial("trial_end_unix_s", &TimedTrial::end_unix_s,
+                 {"s", "when the trial's last timed frame ended, since 1970 UTC"});
         by_trial("jobs", &TimedTrial::jobs, {"1", "clothbench jobs on the machine meanwhile, this one included"});
-        by_stage("stage_device_s", &TimedTrial::stage_device_s, {"s", "device time of a stage, from the profiled twin"});
+        by_stage("stage_device_s", &TimedTrial::stage_device_s,
+                 {"s", "device time of a stage, from the profiled twin"});
         number_attribute(g, "load_s", r_.header.load_s);
         for (const StageRecord& s : r_.header.stages) integer_attribute(g, "dispatches." + s.name, s.dispatches);
       }
@@ -252,7 +266,8 @@ class Writer {
         if (!scales.contains(a.dims[k])) scales.emplace(a.dims[k], index_scale(g, a.dims[k], a.shape[k], a.dims[k]));
       const Label label{a.units, a.long_name};
       const Dims dims(a.shape.begin(), a.shape.end());
-      const Id d = a.integer ? write_numbers(g, a.name, dims, std::vector<std::int64_t>(a.values.begin(), a.values.end()), label, dims)
+      const Id d = a.integer ? write_numbers(g, a.name, dims,
+                                             std::vector<std::int64_t>(a.values.begin(), a.values.end()), label, dims)
                              : write_numbers(g, a.name, dims, a.values, label, dims);
       for (std::size_t k = 0; k < a.dims.size(); ++k)
         h5::check(H5DSattach_scale(d, scales.at(a.dims[k]), static_cast<unsigned>(k)), "attaching a dimension");
@@ -272,14 +287,16 @@ class Writer {
   }
 
   /// One kind of cell of the PolyData; an empty kind has no cells and Offsets = {0}.
-  void cells(hid_t g, const char* name, std::size_t steps, const std::vector<std::int64_t>& connectivity, std::int64_t corners) {
+  void cells(hid_t g, const char* name, std::size_t steps, const std::vector<std::int64_t>& connectivity,
+             std::int64_t corners) {
     const Id c = make_group(g, name);
     const std::int64_t count = connectivity.empty() ? 0 : static_cast<std::int64_t>(connectivity.size()) / corners;
     std::vector<std::int64_t> offsets;
     for (std::int64_t k = 0; k <= count; ++k) offsets.push_back(k * corners);
     const auto ids = static_cast<std::int64_t>(connectivity.size());
     write_numbers(c, "NumberOfCells", {steps}, std::vector<std::int64_t>(steps, count), {"1", "cells of each frame"});
-    write_numbers(c, "NumberOfConnectivityIds", {steps}, std::vector<std::int64_t>(steps, ids), {"1", "corners of all cells of each frame"});
+    write_numbers(c, "NumberOfConnectivityIds", {steps}, std::vector<std::int64_t>(steps, ids),
+                  {"1", "corners of all cells of each frame"});
     write_numbers(c, "Offsets", {offsets.size()}, offsets, {"1", "where each cell begins in Connectivity"});
     write_numbers(c, "Connectivity", {connectivity.size()}, connectivity, {"1", "points of each cell"});
   }
@@ -296,8 +313,10 @@ class Writer {
       const Id a(H5Acreate2(g, "Type", type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "attribute Type");
       h5::check(H5Awrite(a, type, "PolyData"), "attribute Type");
     }
-    write_numbers(g, "NumberOfPoints", {steps}, std::vector<std::int64_t>(steps, static_cast<std::int64_t>(points)), {"1", "points of each frame"});
-    write_numbers(g, "Points", {steps * points, 3}, r_.accuracy.position, {"m", "vertex positions, frame after frame"}, {points, 3});
+    write_numbers(g, "NumberOfPoints", {steps}, std::vector<std::int64_t>(steps, static_cast<std::int64_t>(points)),
+                  {"1", "points of each frame"});
+    write_numbers(g, "Points", {steps * points, 3}, r_.accuracy.position, {"m", "vertex positions, frame after frame"},
+                  {points, 3});
     for (const char* kind : {"Vertices", "Lines", "Strips"}) cells(g, kind, steps, {}, 1);
     cells(g, "Polygons", steps, {r_.header.triangles.begin(), r_.header.triangles.end()}, 3);
     const Id s = make_group(g, "Steps");
@@ -318,7 +337,8 @@ class Writer {
   }
 
   /// A dataset that is a view of `count` rows of /VTKHDF/Points from `first` on.
-  Id view(hid_t at, const std::string& name, const Dims& dims, std::uint64_t first, std::uint64_t count, const Label& label) {
+  Id view(hid_t at, const std::string& name, const Dims& dims, std::uint64_t first, std::uint64_t count,
+          const Label& label) {
     const std::uint64_t rows = r_.accuracy.position.size() / 3;
     const Id properties = creation(H5P_DATASET_CREATE), target = h5::space(dims), source = h5::space({rows, 3});
     const hsize_t start[2] = {first, 0}, size[2] = {count, 3};

@@ -53,8 +53,9 @@ class Quiet {
 using Dims = std::vector<hsize_t>;
 
 inline Id space(const Dims& dims) {
-  return dims.empty() ? Id(H5Screate(H5S_SCALAR), H5Sclose, "H5Screate")
-                      : Id(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose, "H5Screate_simple");
+  return dims.empty()
+             ? Id(H5Screate(H5S_SCALAR), H5Sclose, "H5Screate")
+             : Id(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose, "H5Screate_simple");
 }
 
 /// Variable-length UTF-8 string.

@@ -4,11 +4,16 @@
 namespace clothbench {
 
 void write_hdf5(const std::filesystem::path& path, const CellRecord&) {
-  throw Error(path.string() + ": this build writes no HDF5; convert raw run files with `clothbench import` on another machine");
+  throw Error(path.string() +
+              ": this build writes no HDF5; convert raw run files with `clothbench import` on another machine");
 }
 
-CellRecord read_hdf5(const std::filesystem::path& path, bool) { throw Error(path.string() + ": this build reads no HDF5"); }
+CellRecord read_hdf5(const std::filesystem::path& path, bool) {
+  throw Error(path.string() + ": this build reads no HDF5");
+}
 
-Replay read_hdf5_replay(const std::filesystem::path& path, std::size_t) { throw Error(path.string() + ": this build reads no HDF5"); }
+Replay read_hdf5_replay(const std::filesystem::path& path, std::size_t) {
+  throw Error(path.string() + ": this build reads no HDF5");
+}
 
 }  // namespace clothbench

@@ -17,7 +17,9 @@ using h5::numbers;
 using h5::text_attribute;
 using h5::text_dataset;
 
-Id open_group(hid_t file, const char* name) { return Id(H5Gopen2(file, name, H5P_DEFAULT), H5Gclose, std::string("group ") + name); }
+Id open_group(hid_t file, const char* name) {
+  return Id(H5Gopen2(file, name, H5P_DEFAULT), H5Gclose, std::string("group ") + name);
+}
 
 /// An attribute that counts something. Throws Error if no int can hold it.
 int whole_attribute(hid_t object, const char* name) {
@@ -29,8 +31,8 @@ int whole_attribute(hid_t object, const char* name) {
 void read_scalars(hid_t file, CellRecord& r) {
   const Id summary = open_group(file, "summary"), outcome = open_group(file, "outcome");
   for (const std::string& n : h5::attribute_names(summary)) r.summary[n] = number_attribute(summary, n.c_str());
-  r.outcome = {text_attribute(outcome, "status"), text_attribute(outcome, "class"), whole_attribute(outcome, "failed_frame"),
-               text_attribute(outcome, "message"),
+  r.outcome = {text_attribute(outcome, "status"), text_attribute(outcome, "class"),
+               whole_attribute(outcome, "failed_frame"), text_attribute(outcome, "message"),
                H5Aexists(outcome, "expect") > 0 ? text_attribute(outcome, "expect") : ""};
 }
 
@@ -40,19 +42,23 @@ void read_trials(hid_t file, CellRecord& r) {
   const auto wall = numbers<double>(timing, "frame_wall_s", H5T_NATIVE_DOUBLE, &shape);
   const auto device = numbers<double>(timing, "frame_device_s", H5T_NATIVE_DOUBLE);
   const auto stage = numbers<double>(timing, "stage_device_s", H5T_NATIVE_DOUBLE);
-  const auto read = numbers<double>(bandwidth, "read_B", H5T_NATIVE_DOUBLE), write = numbers<double>(bandwidth, "write_B", H5T_NATIVE_DOUBLE);
+  const auto read = numbers<double>(bandwidth, "read_B", H5T_NATIVE_DOUBLE),
+             write = numbers<double>(bandwidth, "write_B", H5T_NATIVE_DOUBLE);
   const auto index = numbers<std::int64_t>(timing, "trial", H5T_NATIVE_INT64);
   const auto by_trial = [&](const char* name) {  // older files lack some
-    auto v = exists(timing, name) ? numbers<double>(timing, name, H5T_NATIVE_DOUBLE) : std::vector<double>(index.size(), kMissing);
+    auto v = exists(timing, name) ? numbers<double>(timing, name, H5T_NATIVE_DOUBLE)
+                                  : std::vector<double>(index.size(), kMissing);
     if (v.size() != index.size()) throw Error(std::string("/timing/") + name + " does not fit /timing/trial");
     return v;
   };
-  const auto pipelined = by_trial("pipelined_wall_s"), start = by_trial("trial_start_unix_s"), end = by_trial("trial_end_unix_s"), jobs = by_trial("jobs");
-  const auto rendered = exists(timing, "frame_rendered_s") ? numbers<double>(timing, "frame_rendered_s", H5T_NATIVE_DOUBLE)
-                                                           : std::vector<double>(wall.size(), kMissing);
+  const auto pipelined = by_trial("pipelined_wall_s"), start = by_trial("trial_start_unix_s"),
+             end = by_trial("trial_end_unix_s"), jobs = by_trial("jobs");
+  const auto rendered = exists(timing, "frame_rendered_s")
+                            ? numbers<double>(timing, "frame_rendered_s", H5T_NATIVE_DOUBLE)
+                            : std::vector<double>(wall.size(), kMissing);
   const std::size_t stages = r.header.stages.size();
-  if (shape.size() != 2 || index.size() != shape[0] || device.size() != wall.size() || rendered.size() != wall.size() || stage.size() != wall.size() * stages ||
-      read.size() != stage.size() || write.size() != stage.size())
+  if (shape.size() != 2 || index.size() != shape[0] || device.size() != wall.size() || rendered.size() != wall.size() ||
+      stage.size() != wall.size() * stages || read.size() != stage.size() || write.size() != stage.size())
     throw Error("/timing and /bandwidth do not fit one another");
   for (std::size_t t = 0; t < shape[0]; ++t) {
     TimedTrial trial;
@@ -67,7 +73,8 @@ void read_trials(hid_t file, CellRecord& r) {
       trial.frame_device_s.push_back(device[k]);
       if (!std::isnan(rendered[k])) trial.frame_rendered_s.push_back(rendered[k]);
       const auto append = [&](std::vector<double>& to, const std::vector<double>& from) {
-        to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(k * stages), from.begin() + static_cast<std::ptrdiff_t>((k + 1) * stages));
+        to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(k * stages),
+                  from.begin() + static_cast<std::ptrdiff_t>((k + 1) * stages));
       };
       append(trial.stage_device_s, stage);
       append(trial.stage_read_B, read);
@@ -82,11 +89,13 @@ void read_accuracy(hid_t file, CellRecord& r, bool with_trajectory) {
   r.accuracy.time_s = numbers<double>(metrics, "time_s", H5T_NATIVE_DOUBLE);
   if (with_trajectory) r.accuracy.position = numbers<float>(file, "VTKHDF/Points", H5T_NATIVE_FLOAT);
   if (with_trajectory)
-    for (std::int64_t v : numbers<std::int64_t>(file, "triangles", H5T_NATIVE_INT64)) r.header.triangles.push_back(static_cast<std::uint32_t>(v));
+    for (std::int64_t v : numbers<std::int64_t>(file, "triangles", H5T_NATIVE_INT64))
+      r.header.triangles.push_back(static_cast<std::uint32_t>(v));
   for (const std::string& n : h5::link_names(metrics)) {
     if (n == "time_s" || n == "frame") continue;
     const Id d(H5Dopen2(metrics, n.c_str(), H5P_DEFAULT), H5Dclose, "opening " + n);
-    r.accuracy.metrics.push_back({n, text_attribute(d, "units"), text_attribute(d, "long_name"), numbers<double>(metrics, n.c_str(), H5T_NATIVE_DOUBLE),
+    r.accuracy.metrics.push_back({n, text_attribute(d, "units"), text_attribute(d, "long_name"),
+                                  numbers<double>(metrics, n.c_str(), H5T_NATIVE_DOUBLE),
                                   H5Aexists(d, "version") > 0 ? whole_attribute(d, "version") : 1});
   }
 }

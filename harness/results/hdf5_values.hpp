@@ -50,7 +50,8 @@ inline void require_text(hid_t type) {
 
 inline std::string text_attribute(hid_t at, const char* name) {
   const Id a(H5Aopen(at, name, H5P_DEFAULT), H5Aclose, std::string("attribute ") + name),
-      stored(H5Aget_type(a), H5Tclose, "H5Aget_type"), type = string_type(), space(H5Aget_space(a), H5Sclose, "H5Aget_space");
+      stored(H5Aget_type(a), H5Tclose, "H5Aget_type"), type = string_type(),
+                                                       space(H5Aget_space(a), H5Sclose, "H5Aget_space");
   require_text(stored);
   if (H5Sget_simple_extent_npoints(space) != 1) throw Error(std::string("attribute ") + name + ": expected one text");
   char* text = nullptr;

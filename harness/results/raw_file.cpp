@@ -109,7 +109,8 @@ RawFile read_raw(const std::filesystem::path& path) {
     std::memcpy(&v, data + at, 4);
     return v;
   };
-  if (all.size() < 16 || std::memcmp(data, kMagic, 8) != 0) throw Error(path.string() + ": not a raw run file (it does not begin with CBRAW001)");
+  if (all.size() < 16 || std::memcmp(data, kMagic, 8) != 0)
+    throw Error(path.string() + ": not a raw run file (it does not begin with CBRAW001)");
   const std::size_t length = u32(8);
   if (length > kMostHeader || all.size() < 16 + length) throw Error(path.string() + ": cut short within its header");
   if (crc32c(data + 12, length) != u32(12 + length)) throw Error(path.string() + ": its header is damaged (CRC32C)");
@@ -121,7 +122,8 @@ RawFile read_raw(const std::filesystem::path& path) {
   if (frame_B < 8) throw Error(path.string() + ": frame_B is under 8");
   std::size_t at = 16 + length;
   for (std::uint32_t k = 0; at < all.size(); ++k, at += frame_B) {
-    const bool whole = frame_B <= all.size() - at && u32(at) == k && crc32c(data + at, frame_B - 4) == u32(at + frame_B - 4);
+    const bool whole =
+        frame_B <= all.size() - at && u32(at) == k && crc32c(data + at, frame_B - 4) == u32(at + frame_B - 4);
     if (!whole) {
       file.complete = false;
       break;
@@ -133,10 +135,20 @@ RawFile read_raw(const std::filesystem::path& path) {
 
 nlohmann::json header_to_json(const CellHeader& h) {
   nlohmann::json stages = nlohmann::json::array();
-  for (const StageRecord& s : h.stages) stages.push_back({{"name", s.name}, {"serves", s.serves}, {"dispatches", s.dispatches}, {"bytes", s.bytes}});
-  return {{"scene", h.scene}, {"solver", h.solver}, {"setting", h.setting}, {"settings", h.settings},
-          {"scenario_json", h.scenario_json}, {"scenario_sha256", h.scenario_sha256}, {"stages", stages}, {"plan", h.plan},
-          {"environment", h.environment}, {"vertices", h.vertices}, {"triangles", h.triangles}, {"load_s", number_to_json(h.load_s)}};
+  for (const StageRecord& s : h.stages)
+    stages.push_back({{"name", s.name}, {"serves", s.serves}, {"dispatches", s.dispatches}, {"bytes", s.bytes}});
+  return {{"scene", h.scene},
+          {"solver", h.solver},
+          {"setting", h.setting},
+          {"settings", h.settings},
+          {"scenario_json", h.scenario_json},
+          {"scenario_sha256", h.scenario_sha256},
+          {"stages", stages},
+          {"plan", h.plan},
+          {"environment", h.environment},
+          {"vertices", h.vertices},
+          {"triangles", h.triangles},
+          {"load_s", number_to_json(h.load_s)}};
 }
 
 CellHeader header_from_json(const nlohmann::json& j) {
@@ -148,8 +160,8 @@ CellHeader header_from_json(const nlohmann::json& j) {
   h.scenario_json = j.at("scenario_json").get<std::string>();
   h.scenario_sha256 = j.at("scenario_sha256").get<std::string>();
   for (const auto& s : j.at("stages"))
-    h.stages.push_back({s.at("name").get<std::string>(), s.at("serves").get<std::vector<std::string>>(), s.at("dispatches").get<int>(),
-                        s.value("bytes", "")});
+    h.stages.push_back({s.at("name").get<std::string>(), s.at("serves").get<std::vector<std::string>>(),
+                        s.at("dispatches").get<int>(), s.value("bytes", "")});
   h.plan = j.at("plan");
   h.environment = j.at("environment");
   h.vertices = j.at("vertices").get<std::uint32_t>();
@@ -164,11 +176,18 @@ void write_trial_file(const std::filesystem::path& path, const TimedTrial& t, st
     Bytes b;
     append(b, &t.frame_wall_s[f], 1);
     append(b, &t.frame_device_s[f], 1);
-    for (const auto* series : {&t.stage_device_s, &t.stage_read_B, &t.stage_write_B}) append(b, series->data() + f * stages, stages);
+    for (const auto* series : {&t.stage_device_s, &t.stage_read_B, &t.stage_write_B})
+      append(b, series->data() + f * stages, stages);
     frames.push_back(std::move(b));
   }
-  nlohmann::json header = {{"kind", "trial"}, {"index", t.index}, {"stages", stages}, {"frames", frames.size()}, {"pipelined_wall_s", number_to_json(t.pipelined_wall_s)},
-                           {"start_unix_s", number_to_json(t.start_unix_s)}, {"end_unix_s", number_to_json(t.end_unix_s)}, {"jobs", t.jobs}};
+  nlohmann::json header = {{"kind", "trial"},
+                           {"index", t.index},
+                           {"stages", stages},
+                           {"frames", frames.size()},
+                           {"pipelined_wall_s", number_to_json(t.pipelined_wall_s)},
+                           {"start_unix_s", number_to_json(t.start_unix_s)},
+                           {"end_unix_s", number_to_json(t.end_unix_s)},
+                           {"jobs", t.jobs}};
   if (!t.frame_rendered_s.empty()) header["frame_rendered_s"] = t.frame_rendered_s;
   write_raw(path, std::move(header), frames);
 }
@@ -177,7 +196,8 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
   return naming(path, [&] {
     const RawFile file = read_raw(path);
     const auto stages = file.header.at("stages").get<std::size_t>();
-    if (!file.complete || file.frames.size() != file.header.at("frames").get<std::size_t>()) throw Error("damaged: not all frames are there");
+    if (!file.complete || file.frames.size() != file.header.at("frames").get<std::size_t>())
+      throw Error("damaged: not all frames are there");
     TimedTrial t;
     t.index = file.header.at("index").get<int>();
     const auto number = [&](const char* key) {  // older files lack some
@@ -187,7 +207,8 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
     t.start_unix_s = number("start_unix_s");
     t.end_unix_s = number("end_unix_s");
     t.jobs = number("jobs");
-    if (file.header.contains("frame_rendered_s")) t.frame_rendered_s = file.header["frame_rendered_s"].get<std::vector<double>>();
+    if (file.header.contains("frame_rendered_s"))
+      t.frame_rendered_s = file.header["frame_rendered_s"].get<std::vector<double>>();
     for (const Bytes& b : file.frames) {
       Taker taker(b);
       taker.take(t.frame_wall_s, 1);
@@ -202,7 +223,8 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
 
 void write_accuracy_file(const std::filesystem::path& path, const AccuracyPass& a, std::uint32_t vertices) {
   nlohmann::json names = nlohmann::json::array();
-  for (const MetricSeries& m : a.metrics) names.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}, {"version", m.version}});
+  for (const MetricSeries& m : a.metrics)
+    names.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}, {"version", m.version}});
   std::vector<Bytes> frames;
   for (std::size_t f = 0; f < a.time_s.size(); ++f) {
     Bytes b;
@@ -211,17 +233,23 @@ void write_accuracy_file(const std::filesystem::path& path, const AccuracyPass& 
     append(b, a.position.data() + f * 3 * vertices, 3 * std::size_t{vertices});
     frames.push_back(std::move(b));
   }
-  write_raw(path, {{"kind", "accuracy"}, {"metrics", names}, {"vertices", vertices}, {"frames", frames.size()}}, frames);
+  write_raw(path, {{"kind", "accuracy"}, {"metrics", names}, {"vertices", vertices}, {"frames", frames.size()}},
+            frames);
 }
 
 AccuracyPass read_accuracy_file(const std::filesystem::path& path) {
   return naming(path, [&] {
     const RawFile file = read_raw(path);
-    if (!file.complete || file.frames.size() != file.header.at("frames").get<std::size_t>()) throw Error("damaged: not all frames are there");
+    if (!file.complete || file.frames.size() != file.header.at("frames").get<std::size_t>())
+      throw Error("damaged: not all frames are there");
     const auto vertices = file.header.at("vertices").get<std::size_t>();
     AccuracyPass a;
     for (const auto& m : file.header.at("metrics"))
-      a.metrics.push_back({m.at("name").get<std::string>(), m.at("units").get<std::string>(), m.at("long_name").get<std::string>(), {}, m.value("version", 1)});
+      a.metrics.push_back({m.at("name").get<std::string>(),
+                           m.at("units").get<std::string>(),
+                           m.at("long_name").get<std::string>(),
+                           {},
+                           m.value("version", 1)});
     for (const Bytes& b : file.frames) {
       Taker taker(b);
       taker.take(a.time_s, 1);
@@ -239,7 +267,12 @@ void write_replay_file(const std::filesystem::path& path, const std::vector<Stor
   for (const StoredGroup& g : groups) {
     nlohmann::json arrays = nlohmann::json::array();
     for (const StoredArray& a : g.arrays) {
-      arrays.push_back({{"name", a.name}, {"units", a.units}, {"long_name", a.long_name}, {"dims", a.dims}, {"shape", a.shape}, {"integer", a.integer},
+      arrays.push_back({{"name", a.name},
+                        {"units", a.units},
+                        {"long_name", a.long_name},
+                        {"dims", a.dims},
+                        {"shape", a.shape},
+                        {"integer", a.integer},
                         {"count", a.values.size()}});
       append(all, a.values.data(), a.values.size());
     }

@@ -23,7 +23,8 @@ struct RawFile {
 std::uint32_t crc32c(const std::uint8_t* data, std::size_t size, std::uint32_t seed = 0);
 
 /// tmp + fsync + rename + fsync of the folder. All payloads have the same size.
-void write_raw(const std::filesystem::path&, nlohmann::json header, const std::vector<std::vector<std::uint8_t>>& payloads);
+void write_raw(const std::filesystem::path&, nlohmann::json header,
+               const std::vector<std::vector<std::uint8_t>>& payloads);
 
 /// Throws Error naming the file if its header is not readable.
 RawFile read_raw(const std::filesystem::path&);

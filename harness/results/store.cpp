@@ -23,8 +23,13 @@ fs::path part_folder(const fs::path& dir, const std::string& cell) { return dir 
 fs::path trial_file(const fs::path& part, int k) { return part / fmt::format("trial-{}.raw", k); }
 
 nlohmann::json outcome_json(const Outcome& o, const std::map<std::string, double>& summary) {
-  return {{"kind", "outcome"}, {"status", o.status}, {"class", o.klass}, {"failed_frame", o.failed_frame}, {"message", o.message},
-          {"expect", o.expect}, {"summary", numbers_to_json(summary)}};
+  return {{"kind", "outcome"},
+          {"status", o.status},
+          {"class", o.klass},
+          {"failed_frame", o.failed_frame},
+          {"message", o.message},
+          {"expect", o.expect},
+          {"summary", numbers_to_json(summary)}};
 }
 
 /// Everything in a part folder. Damaged or foreign trial files count as not there.
@@ -80,9 +85,10 @@ CellWriter::CellWriter(fs::path dir, CellHeader header, Finish finish)
   if (fs::exists(file)) {
     const CellHeader before = header_from_json(read_raw(file).header.at("cell"));
     if (before.scenario_sha256 != header_.scenario_sha256 || before.settings != header_.settings)
-      throw Error(fmt::format("{}: holds trials of another run (scene {} settings {}; now scene {} settings {}); give another --out", part.string(),
-                              before.scenario_sha256.substr(0, 12), before.settings.dump(), header_.scenario_sha256.substr(0, 12),
-                              header_.settings.dump()));
+      throw Error(fmt::format(
+          "{}: holds trials of another run (scene {} settings {}; now scene {} settings {}); give another --out",
+          part.string(), before.scenario_sha256.substr(0, 12), before.settings.dump(),
+          header_.scenario_sha256.substr(0, 12), header_.settings.dump()));
     return;
   }
   write_raw(file, {{"kind", "header"}, {"cell", header_to_json(header_)}}, {});
@@ -132,7 +138,9 @@ void remove_leftovers(const fs::path& dir, const std::string& cell) {
 }
 
 CellRecord read_cell(const fs::path& path) { return fs::is_directory(path) ? read_part(path) : read_hdf5(path, true); }
-CellRecord read_cell_summary(const fs::path& path) { return fs::is_directory(path) ? read_part(path) : read_hdf5(path, false); }
+CellRecord read_cell_summary(const fs::path& path) {
+  return fs::is_directory(path) ? read_part(path) : read_hdf5(path, false);
+}
 
 std::vector<std::size_t> every(std::size_t count, std::size_t stride) {
   std::vector<std::size_t> out;
@@ -146,7 +154,8 @@ Replay read_replay(const fs::path& path, std::size_t stride) {
   CellRecord c = read_part(path);
   Replay r;
   const std::size_t row = 3 * static_cast<std::size_t>(c.header.vertices);
-  if (c.accuracy.position.size() < row * c.accuracy.time_s.size()) throw Error(path.string() + ": accuracy.raw: positions do not fit the times");
+  if (c.accuracy.position.size() < row * c.accuracy.time_s.size())
+    throw Error(path.string() + ": accuracy.raw: positions do not fit the times");
   r.frames = every(c.accuracy.time_s.size(), stride);
   for (const std::size_t f : r.frames) {
     r.time_s.push_back(c.accuracy.time_s[f]);
@@ -165,7 +174,8 @@ std::vector<fs::path> import_raw(const fs::path& dir_or_part, const DeviceSample
   const fs::path normal = dir_or_part.lexically_normal(), given = normal.has_filename() ? normal : normal.parent_path();
   if (given.extension() == ".part") {
     if (!fs::exists(given / "outcome.raw"))
-      throw Error(given.string() + ": not finished (it has no outcome.raw); `study --resume` or `run --resume` goes on with it");
+      throw Error(given.string() +
+                  ": not finished (it has no outcome.raw); `study --resume` or `run --resume` goes on with it");
     parts.push_back(given);
   } else {
     for (const auto& entry : fs::directory_iterator(given))
@@ -182,8 +192,9 @@ std::vector<fs::path> import_raw(const fs::path& dir_or_part, const DeviceSample
 }
 
 void write_manifest(const fs::path& dir, const StudyManifest& m) {
-  const nlohmann::json j = {{"format", "clothbench-study"}, {"format_version", 1}, {"study", m.study}, {"created", m.created},
-                            {"command_line", m.command_line}, {"definition", m.definition}, {"cells", m.cells}};
+  const nlohmann::json j = {
+      {"format", "clothbench-study"},   {"format_version", 1},        {"study", m.study}, {"created", m.created},
+      {"command_line", m.command_line}, {"definition", m.definition}, {"cells", m.cells}};
   write_file_atomically(dir / "study.json", j.dump(2) + "\n");
 }
 

@@ -17,8 +17,9 @@ Finish best_finish();
 
 /// Writes one cell, crash-safe. Every finished trial is one raw file `<dir>/<cell>.part/trial-<k>.raw` (written under
 /// another name, fsync, rename), the accuracy pass one `accuracy.raw`. `finish` turns them into
-/// `<dir>/<cell>.h5` + `<cell>.xdmf` (tmp + fsync + rename) and removes the part folder; with Finish::Raw the part folder
-/// stays, with `outcome.raw` beside the trials. SIGKILL at any moment loses at most what has not been handed over.
+/// `<dir>/<cell>.h5` + `<cell>.xdmf` (tmp + fsync + rename) and removes the part folder; with Finish::Raw the part
+/// folder stays, with `outcome.raw` beside the trials. SIGKILL at any moment loses at most what has not been handed
+/// over.
 class CellWriter {
  public:
   CellWriter(std::filesystem::path dir, CellHeader header, Finish finish = best_finish());
@@ -56,28 +57,30 @@ struct Replay {
   std::vector<std::size_t> frames;  ///< ascending; 0 is the initial state
   std::vector<double> time_s;       ///< of each
   std::vector<float> position;      ///< (frame, vertex, xyz) [m]
-  std::vector<StoredGroup> groups;  ///< "colliders", "colliders/0", ..., "colliders/grips"; empty without colliders and grips
+  std::vector<StoredGroup>
+      groups;  ///< "colliders", "colliders/0", ..., "colliders/grips"; empty without colliders and grips
 };
 
 /// 0, stride, 2 stride, ... below `count`, and the last one. `stride` at least 1.
 std::vector<std::size_t> every(std::size_t count, std::size_t stride);
 
-/// Every `stride`-th frame and the last of a finished file (.h5) or a part folder; no frames where it has no trajectory.
-/// Throws Error naming the file and what is wrong with it.
+/// Every `stride`-th frame and the last of a finished file (.h5) or a part folder; no frames where it has no
+/// trajectory. Throws Error naming the file and what is wrong with it.
 Replay read_replay(const std::filesystem::path&, std::size_t stride);
 
 class DeviceSamples;
 
-/// Part folders of a run made without HDF5 -> the same .h5 a direct run gives, with `samples` what the device told during
-/// the run beside it. Returns the new files; a study folder's unfinished cells are passed over, but a part folder that is
-/// named itself and is not finished is an Error.
-std::vector<std::filesystem::path> import_raw(const std::filesystem::path& dir_or_part, const DeviceSamples* samples = nullptr);
+/// Part folders of a run made without HDF5 -> the same .h5 a direct run gives, with `samples` what the device told
+/// during the run beside it. Returns the new files; a study folder's unfinished cells are passed over, but a part
+/// folder that is named itself and is not finished is an Error.
+std::vector<std::filesystem::path> import_raw(const std::filesystem::path& dir_or_part,
+                                              const DeviceSamples* samples = nullptr);
 
 /// `<dir>/study.json`: what the folder is. Written tmp + fsync + rename.
 struct StudyManifest {
   std::string study, created, command_line;
-  nlohmann::json definition;        ///< completed study file
-  std::vector<std::string> cells;   ///< names of all planned cells, in order
+  nlohmann::json definition;       ///< completed study file
+  std::vector<std::string> cells;  ///< names of all planned cells, in order
 };
 void write_manifest(const std::filesystem::path& dir, const StudyManifest&);
 StudyManifest read_manifest(const std::filesystem::path& dir);

@@ -28,7 +28,8 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 void stop_if_interrupted() {
   while (held && !interrupted) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  if (interrupted) throw Error("interrupted; every finished trial is kept (continue with --resume)", ExitCode::Interrupted);
+  if (interrupted)
+    throw Error("interrupted; every finished trial is kept (continue with --resume)", ExitCode::Interrupted);
 }
 
 bool all_finite(const std::vector<double>& values) {
@@ -88,7 +89,8 @@ void hold_runs(bool on) {
 }
 int times_held() { return holds; }
 
-Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protocol) : spec_(std::move(spec)), device_(device) {
+Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protocol)
+    : spec_(std::move(spec)), device_(device) {
   const Scene& scene = *spec_.scene;
   const SolverInfo& info = spec_.entry->info;
   header_.scene = scene.name;
@@ -102,7 +104,8 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
 
   const FeatureSet missing = unsupported(info, scene.needs);
   if (!spec_.entry->make || !missing.empty()) {
-    outcome_ = {"unsupported", "ok", -1, spec_.entry->make ? info.name + " has no " + join(missing) : "not in this build"};
+    outcome_ = {"unsupported", "ok", -1,
+                spec_.entry->make ? info.name + " has no " + join(missing) : "not in this build"};
     header_.environment = describe_environment({}, protocol);
     describe_scene(scene, header_.environment);
     if (spec_.entry->make) describe_solver(info, header_.environment);
@@ -144,11 +147,16 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
 
 Outcome outcome_of(StepStatus status, int frame) {
   switch (status) {
-    case StepStatus::Ok: break;
-    case StepStatus::NotFinite: return {"not_finite", "F0", frame, "a position or velocity is not finite"};
-    case StepStatus::Diverged: return {"diverged", "F1", frame, "the solver gave up"};
-    case StepStatus::DeviceLost: return {"device_lost", "F8", frame, "the device was lost"};
-    case StepStatus::TimedOut: return {"timed_out", "F8", frame, "the device did not finish in time"};
+    case StepStatus::Ok:
+      break;
+    case StepStatus::NotFinite:
+      return {"not_finite", "F0", frame, "a position or velocity is not finite"};
+    case StepStatus::Diverged:
+      return {"diverged", "F1", frame, "the solver gave up"};
+    case StepStatus::DeviceLost:
+      return {"device_lost", "F8", frame, "the device was lost"};
+    case StepStatus::TimedOut:
+      return {"timed_out", "F8", frame, "the device did not finish in time"};
   }
   return {};
 }
@@ -193,11 +201,13 @@ AccuracyPass Cell::run_accuracy(const TrialRules& rules) {
     pass.time_s.push_back(scene.time.at(frame));
     for (double x : state.position) pass.position.push_back(static_cast<float>(x));
     metrics.add(state);
-    if (outcome_.status == "ok" && metrics.lost()) outcome_ = {"diverged", "F1", frame, "speed or energy out of all bounds"};
+    if (outcome_.status == "ok" && metrics.lost())
+      outcome_ = {"diverged", "F1", frame, "speed or energy out of all bounds"};
     // A pass that was held may take any time.
     if (outcome_.status == "ok" && rules.cell_limit_s > 0 && times_held() == held_before &&
         seconds_since(start) > rules.cell_limit_s && frame < frames)
-      outcome_ = {"timed_out", "F8", frame, fmt::format("the accuracy pass was not through after {:g} s", rules.cell_limit_s)};
+      outcome_ = {"timed_out", "F8", frame,
+                  fmt::format("the accuracy pass was not through after {:g} s", rules.cell_limit_s)};
     if (outcome_.status != "ok") break;
   }
   pass.metrics = metrics.take();
@@ -234,7 +244,8 @@ TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
   double elapsed = 0;
   trial.start_unix_s = trial.end_unix_s = unix_now();
   for (int frame = 0; frame < (frames > 0 ? frames : asked); ++frame) {
-    const bool out_of_time = frames == 0 && rules.max_wall_s > 0 && elapsed >= rules.max_wall_s && frame >= rules.min_frames;
+    const bool out_of_time =
+        frames == 0 && rules.max_wall_s > 0 && elapsed >= rules.max_wall_s && frame >= rules.min_frames;
     if (out_of_time) break;
     stop_if_interrupted();
     const int in_drop = rules.drop_frames > 0 ? frame % rules.drop_frames : frame;
@@ -263,7 +274,8 @@ TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
   return trial;
 }
 
-/// The frames of the trial again, drop by drop; what a drop's first frame waits for and its last one drains is in the clock.
+/// The frames of the trial again, drop by drop; what a drop's first frame waits for and its last one drains is in the
+/// clock.
 void Cell::run_pipelined(TimedTrial& trial, const TrialRules& rules) {
   double elapsed = 0;
   const int frames = trial.frames(), drop = rules.drop_frames > 0 ? rules.drop_frames : frames;
@@ -284,8 +296,8 @@ void Cell::describe(const Rendering& rendering) {
   if (rendering.describe && solver_) header_.environment["rendering"] = rendering.describe(spec_.entry->info);
 }
 
-/// The frames of the trial again, each drawn before the next begins; fewer where pictures take longer than the trial may. What
-/// draws is made for the trial: images of every cell of a group at once would fill a device.
+/// The frames of the trial again, each drawn before the next begins; fewer where pictures take longer than the trial
+/// may. What draws is made for the trial: images of every cell of a group at once would fill a device.
 void Cell::run_rendered(TimedTrial& trial, const TrialRules& rules) {
   solver_->reset();
   const std::unique_ptr<FrameDrawer> drawer = rules.rendering.make(*spec_.scene, *solver_, device_);

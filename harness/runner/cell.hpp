@@ -16,27 +16,28 @@ struct CellSpec {
   const SolverEntry* entry = nullptr;
   nlohmann::json settings;
   std::string setting = "default";
-  int work = 0;  ///< on a ladder of settings: how many times the work of its first rung
+  int work = 0;                  ///< on a ladder of settings: how many times the work of its first rung
   std::string over_budget = {};  ///< why it is not run, if so; stored as it is
-  bool timed = true;  ///< false: the accuracy pass alone
+  bool timed = true;             ///< false: the accuracy pass alone
   std::map<std::string, double> scene_values = {};  ///< into every cell's summary: what is known of the scene itself
 };
 
 /// How long and how often; see results/README.md, "protocols".
 struct TrialRules {
   int trials = 5;
-  int frames = 72;         ///< wanted per trial; 0 = as many as the scene has
-  double max_wall_s = 0;   ///< a trial stops after this much wall time; 0 = no limit
-  int min_frames = 12;     ///< ... but never before this many frames
-  double warmup_s = 0.1;   ///< before each trial, outside the clock
-  int drop_frames = 72;    ///< the scene restarts, outside the clock, after this many frames; 0 = never
+  int frames = 72;                   ///< wanted per trial; 0 = as many as the scene has
+  double max_wall_s = 0;             ///< a trial stops after this much wall time; 0 = no limit
+  int min_frames = 12;               ///< ... but never before this many frames
+  double warmup_s = 0.1;             ///< before each trial, outside the clock
+  int drop_frames = 72;              ///< the scene restarts, outside the clock, after this many frames; 0 = never
   double accuracy_duration_s = 0.5;  ///< simulated time of the untimed pass
-  double cell_limit_s = 0;           ///< wall time of the untimed pass after which the cell is `timed_out`; 0 = no limit
+  double cell_limit_s = 0;    ///< wall time of the untimed pass after which the cell is `timed_out`; 0 = no limit
   double ladder_limit_s = 0;  ///< wall time of loads and untimed passes of one solver's ladder on a scene; 0 = no limit
-  double agree = 0;  ///< trials end once two or more agree to it, half the range of frame rates over the median; 0 = never
-  bool pipelined = false;  ///< also time the frames of a trial without waiting for each, where the solver can
-  int profiled_frames = 12;          ///< of each trial, run again with a timestamp round every stage; 0 = none
-  Rendering rendering = {};          ///< also time frames with their pictures
+  double agree =
+      0;  ///< trials end once two or more agree to it, half the range of frame rates over the median; 0 = never
+  bool pipelined = false;    ///< also time the frames of a trial without waiting for each, where the solver can
+  int profiled_frames = 12;  ///< of each trial, run again with a timestamp round every stage; 0 = none
+  Rendering rendering = {};  ///< also time frames with their pictures
 };
 
 /// Thrown between frames once the user pressed Ctrl-C (`request_interrupt`).
@@ -57,8 +58,9 @@ Outcome outcome_of(StepStatus, int frame);
 /// A loaded solver and what has been measured of it.
 class Cell {
  public:
-  /// Loads the solver. A feature the backend does not have, or an entry without `make`, makes the outcome `unsupported`;
-  /// a failed load of a scene it claims to support is an Error. Nothing is loaded of a spec that is over its budget.
+  /// Loads the solver. A feature the backend does not have, or an entry without `make`, makes the outcome
+  /// `unsupported`; a failed load of a scene it claims to support is an Error. Nothing is loaded of a spec that is over
+  /// its budget.
   Cell(CellSpec spec, const DeviceOptions& device, const std::string& protocol);
 
   const CellSpec& spec() const { return spec_; }

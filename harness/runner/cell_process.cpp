@@ -131,12 +131,8 @@ CellRequest request_from_json(const json& j) {
 }
 
 json to_json(const CellAnswer& a) {
-  return {{"status", a.outcome.status},
-          {"class", a.outcome.klass},
-          {"failed_frame", a.outcome.failed_frame},
-          {"message", a.outcome.message},
-          {"expect", a.outcome.expect},
-          {"summary", numbers_to_json(a.summary)},
+  return {{"status", a.outcome.status},        {"class", a.outcome.klass},   {"failed_frame", a.outcome.failed_frame},
+          {"message", a.outcome.message},      {"expect", a.outcome.expect}, {"summary", numbers_to_json(a.summary)},
           {"wall_s", number_to_json(a.wall_s)}};
 }
 
@@ -169,7 +165,8 @@ int run_cell_main(const fs::path& folder, const SolverLookup& lookup) {
   return 0;
 }
 
-CellWorker::CellWorker(fs::path program, fs::path scratch) : program_(std::move(program)), scratch_(std::move(scratch)) {
+CellWorker::CellWorker(fs::path program, fs::path scratch)
+    : program_(std::move(program)), scratch_(std::move(scratch)) {
   fs::create_directories(scratch_);
 }
 

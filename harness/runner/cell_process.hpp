@@ -44,15 +44,15 @@ using SolverLookup = std::function<const SolverEntry&(const std::string&)>;
 /// Runs the cell here: the other side of `run_in_process`.
 CellAnswer run_request(const CellRequest&, const SolverLookup&);
 
-/// What a program does that is run as `PROGRAM run-cell FOLDER`: for every line n of its standard input, until it ends, runs
-/// FOLDER/request-n.json and writes FOLDER/answer-n.json.
+/// What a program does that is run as `PROGRAM run-cell FOLDER`: for every line n of its standard input, until it ends,
+/// runs FOLDER/request-n.json and writes FOLDER/answer-n.json.
 int run_cell_main(const std::filesystem::path& folder, const SolverLookup&);
 
-/// Runs cells in a child process, `program run-cell …`. One child takes cell after cell, since making a Vulkan device costs
-/// as much as a small cell; after anything but a result it is replaced. A child is killed 5 s (and a fifth) after the
-/// cell's own limit. One that crashes, hangs or ends without an answer makes the outcome `crashed` or `timed_out` with class F8
-/// and its last words; where results are kept such a cell gets a result file too. A crash in a child that had run other
-/// cells is only believed if it comes again in a fresh one. Not to be shared between threads.
+/// Runs cells in a child process, `program run-cell …`. One child takes cell after cell, since making a Vulkan device
+/// costs as much as a small cell; after anything but a result it is replaced. A child is killed 5 s (and a fifth) after
+/// the cell's own limit. One that crashes, hangs or ends without an answer makes the outcome `crashed` or `timed_out`
+/// with class F8 and its last words; where results are kept such a cell gets a result file too. A crash in a child that
+/// had run other cells is only believed if it comes again in a fresh one. Not to be shared between threads.
 class CellWorker {
  public:
   /// `scratch`: a folder for what passes between the two, of this worker alone.

@@ -39,15 +39,18 @@ double time_mean(const std::vector<double>& v, const std::vector<double>& t) {
 /// Distance [m] of vertex v between two stored frames.
 double moved(const AccuracyPass& pass, std::size_t vertices, std::size_t v, std::size_t from, std::size_t to) {
   const float *a = &pass.position[3 * (from * vertices + v)], *b = &pass.position[3 * (to * vertices + v)];
-  return norm(static_cast<double>(b[0]) - static_cast<double>(a[0]), static_cast<double>(b[1]) - static_cast<double>(a[1]),
+  return norm(static_cast<double>(b[0]) - static_cast<double>(a[0]),
+              static_cast<double>(b[1]) - static_cast<double>(a[1]),
               static_cast<double>(b[2]) - static_cast<double>(a[2]));
 }
 
-/// Popping: how far and how fast the cloth goes once a moving collider has left it (the paper's Fig. 8). A cloth that swings back onto
-/// a hand at rest is no longer swept by it: the contact that counts is the last that began before the hand stood still.
+/// Popping: how far and how fast the cloth goes once a moving collider has left it (the paper's Fig. 8). A cloth that
+/// swings back onto a hand at rest is no longer swept by it: the contact that counts is the last that began before the
+/// hand stood still.
 void summarise_popping(const Scene& scene, const AccuracyPass& pass, std::map<std::string, double>& s) {
-  const std::vector<double> *touching = find(pass, "touching_fraction"), *speed = find(pass, "speed_max");
-  const bool moves = std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.moves(); });
+  const std::vector<double>*touching = find(pass, "touching_fraction"), *speed = find(pass, "speed_max");
+  const bool moves =
+      std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.moves(); });
   if (!moves || touching == nullptr || speed == nullptr || !std::isfinite(greatest(touching))) return;
   const std::vector<double> speeds = collider_speeds_m_per_s(scene);
   const double fastest = speeds.empty() ? 0 : *std::max_element(speeds.begin(), speeds.end());
@@ -67,8 +70,8 @@ void summarise_popping(const Scene& scene, const AccuracyPass& pass, std::map<st
     for (std::size_t v = 0; v < vertices; ++v) far = max_or_nan(far, moved(pass, vertices, v, last, f));
   s["pop_displacement_m"] = far;
   s["pop_speed_m_per_s"] = greatest(speed, last + 1);
-  // What may move so fast: what the collider pushed at up to twice its own speed (as off a bat), and what fell as far as the
-  // cloth is long.
+  // What may move so fast: what the collider pushed at up to twice its own speed (as off a bat), and what fell as far
+  // as the cloth is long.
   const Vec3& g = scene.gravity_m_per_s2;
   const double fall = std::sqrt(2 * norm(g[0], g[1], g[2]) * std::max(scene.cloth.width_m, scene.cloth.height_m));
   const double limit = std::max(2 * fastest, fall);
@@ -115,7 +118,8 @@ void summarise_self_contact(const Scene& scene, const AccuracyPass& pass, std::m
   s["self_contact_length_settled_m"] = beyond(*length, greatest(length, from));
 }
 
-/// Over the last half second: how the cloth trembles (second differences, which a steady drift leaves 0), how it creeps.
+/// Over the last half second: how the cloth trembles (second differences, which a steady drift leaves 0), how it
+/// creeps.
 void summarise_rest(const Scene& scene, const AccuracyPass& pass, std::map<std::string, double>& s) {
   const std::size_t vertices = scene.cloth.vertex_count(), frames = pass.time_s.size();
   if (frames != static_cast<std::size_t>(scene.time.frames()) + 1) return;
@@ -126,7 +130,9 @@ void summarise_rest(const Scene& scene, const AccuracyPass& pass, std::map<std::
   for (std::size_t v = 0; v < vertices; ++v) {
     for (std::size_t f = from + 1; f + 1 < frames; ++f)
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto at = [&](std::size_t frame) { return static_cast<double>(pass.position[3 * (frame * vertices + v) + k]); };
+        const auto at = [&](std::size_t frame) {
+          return static_cast<double>(pass.position[3 * (frame * vertices + v) + k]);
+        };
         const double bend = (at(f + 1) - 2 * at(f) + at(f - 1)) / 2;
         jitter += bend * bend;
       }
@@ -186,8 +192,10 @@ void summarise_grips(const Scene& scene, const AccuracyPass& pass, std::map<std:
     const double ratio = (1 + (*most)[f]) / pulled(scene, start, f);
     all = max_or_nan(all, ratio);
     // Hands that stand still before they pull are no pull that has ended.
-    if (moved_at == f) held = -1;
-    else if (moved_at > 0 && f >= moved_at + kSettling) held = max_or_nan(held, ratio);
+    if (moved_at == f)
+      held = -1;
+    else if (moved_at > 0 && f >= moved_at + kSettling)
+      held = max_or_nan(held, ratio);
   }
   s["grip_edge_ratio_max"] = all == -1 ? kMissing : all;
   s["grip_edge_ratio_held"] = held == -1 ? kMissing : held;
@@ -215,11 +223,31 @@ double imposed_speed(const Scene& scene) {
 
 std::map<std::string, double> summarise_contact(const Scene& scene, const AccuracyPass& pass) {
   std::map<std::string, double> s;
-  for (const char* name : {"imposed_speed_m_per_s", "wrong_side_samples_max", "wrong_side_fraction_max", "wrong_side_fraction_end", "fold_roughness_end",
-                           "fold_angle_rms_end_rad", "contact_length_mean_m", "depth_time_mean_m", "contact_violated_longest_s", "untangle_s",
-                           "pop_displacement_m", "pop_speed_m_per_s", "pop_speed_ratio", "rest_jitter_m", "rest_drift_m_per_s", "slip_m",
-                           "slip_settled_m", "grip_error_max_m", "grip_edge_ratio_max", "grip_edge_ratio_held", "strain_mean_released",
-                           "self_contact_pairs_max", "self_contact_pairs_end", "self_contact_length_max_m", "self_contact_length_settled_m"})
+  for (const char* name : {"imposed_speed_m_per_s",
+                           "wrong_side_samples_max",
+                           "wrong_side_fraction_max",
+                           "wrong_side_fraction_end",
+                           "fold_roughness_end",
+                           "fold_angle_rms_end_rad",
+                           "contact_length_mean_m",
+                           "depth_time_mean_m",
+                           "contact_violated_longest_s",
+                           "untangle_s",
+                           "pop_displacement_m",
+                           "pop_speed_m_per_s",
+                           "pop_speed_ratio",
+                           "rest_jitter_m",
+                           "rest_drift_m_per_s",
+                           "slip_m",
+                           "slip_settled_m",
+                           "grip_error_max_m",
+                           "grip_edge_ratio_max",
+                           "grip_edge_ratio_held",
+                           "strain_mean_released",
+                           "self_contact_pairs_max",
+                           "self_contact_pairs_end",
+                           "self_contact_length_max_m",
+                           "self_contact_length_settled_m"})
     s[name] = kMissing;
   summarise_self_contact(scene, pass, s);
   if (scene.colliders.empty() && scene.grips.vertices.empty()) return s;
@@ -232,11 +260,13 @@ std::map<std::string, double> summarise_contact(const Scene& scene, const Accura
   s["wrong_side_fraction_end"] = end(find(pass, "wrong_side_fraction"));
   s["fold_roughness_end"] = end(find(pass, "fold_roughness"));
   s["fold_angle_rms_end_rad"] = end(find(pass, "fold_angle_rms_rad"));
-  const std::vector<double>*length = find(pass, "contact_length_m"), *depth = find(pass, "depth_mean_m"), *area = find(pass, "penetrating_area_m2");
+  const std::vector<double>*length = find(pass, "contact_length_m"), *depth = find(pass, "depth_mean_m"),
+        *area = find(pass, "penetrating_area_m2");
   s["contact_length_mean_m"] = length == nullptr ? kMissing : time_mean(*length, pass.time_s);
   if (depth != nullptr && area != nullptr) {
     std::vector<double> spread;
-    for (std::size_t f = 0; f < depth->size(); ++f) spread.push_back((*depth)[f] * (*area)[f] / (scene.cloth.width_m * scene.cloth.height_m));
+    for (std::size_t f = 0; f < depth->size(); ++f)
+      spread.push_back((*depth)[f] * (*area)[f] / (scene.cloth.width_m * scene.cloth.height_m));
     s["depth_time_mean_m"] = time_mean(spread, pass.time_s);
   }
   if (const std::vector<double>* slip = find(pass, "slip_m")) {

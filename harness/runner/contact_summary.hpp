@@ -11,8 +11,8 @@ namespace clothbench {
 /// name is there; NaN where a value is not defined or the pass does not tell.
 std::map<std::string, double> summarise_contact(const Scene&, const AccuracyPass&);
 
-/// Speed [m/s] that the scene imposes: of the sweep or pull that a hand was told ("speed_m_per_s"), else the greatest of
-/// any collider or grip from frame to frame, else that at which the cloth starts.
+/// Speed [m/s] that the scene imposes: of the sweep or pull that a hand was told ("speed_m_per_s"), else the greatest
+/// of any collider or grip from frame to frame, else that at which the cloth starts.
 double imposed_speed(const Scene&);
 
 }  // namespace clothbench

@@ -41,7 +41,9 @@ std::string utc_now() {
 }
 
 nlohmann::json describe_features(const SolverInfo& info) {
-  nlohmann::json j = {{"supports", nlohmann::json::array()}, {"ignores", nlohmann::json::array()}, {"only_with", nlohmann::json::array()}};
+  nlohmann::json j = {{"supports", nlohmann::json::array()},
+                      {"ignores", nlohmann::json::array()},
+                      {"only_with", nlohmann::json::array()}};
   info.supports.for_each([&](Feature f) { j["supports"].push_back(name_of(f)); });
   info.ignores.for_each([&](Feature f) { j["ignores"].push_back(name_of(f)); });
   for (const auto& [feature, beside] : info.only_with) j["only_with"].push_back({name_of(feature), name_of(beside)});

@@ -35,13 +35,17 @@ Verdict judge(const Scene& scene, const Outcome& outcome, const AccuracyPass& pa
     if (!wrong.empty()) v.text += (v.text.empty() ? "broken: " : "; ") + wrong;
   };
   if (!scene.expected_outcome.empty())
-    note("outcome", outcome.status == scene.expected_outcome ? "" : "outcome " + outcome.status + ", expected " + scene.expected_outcome);
+    note("outcome", outcome.status == scene.expected_outcome
+                        ? ""
+                        : "outcome " + outcome.status + ", expected " + scene.expected_outcome);
   for (const Expectation& e : scene.expect) {
     const auto at = summary.find(e.name);
     note(e.name, fault(e, at == summary.end() ? kMissing : at->second));
   }
-  if (!known) v.text = "not measured";
-  else if (v.text.empty()) v.text = "kept";
+  if (!known)
+    v.text = "not measured";
+  else if (v.text.empty())
+    v.text = "kept";
   return v;
 }
 

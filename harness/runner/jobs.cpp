@@ -19,7 +19,8 @@ struct Process {
   bool is_job = false;
 };
 
-/// Of /proc/<pid>/stat: "pid (name) state parent …"; the name may hold anything, so what follows is found from its last ')'.
+/// Of /proc/<pid>/stat: "pid (name) state parent …"; the name may hold anything, so what follows is found from its last
+/// ')'.
 Process process_of(const fs::path& stat) {
   std::ifstream in(stat);
   std::string text;
@@ -49,7 +50,8 @@ int jobs_in(const fs::path& proc, int self) {
   std::error_code ec;
   for (fs::directory_iterator at(proc, ec), end; !ec && at != end; at.increment(ec)) {
     const std::string name = at->path().filename().string();
-    if (name.find_first_not_of("0123456789") == std::string::npos) all[std::atoi(name.c_str())] = process_of(at->path() / "stat");
+    if (name.find_first_not_of("0123456789") == std::string::npos)
+      all[std::atoi(name.c_str())] = process_of(at->path() / "stat");
   }
   int jobs = 1;
   for (const auto& [pid, p] : all) jobs += p.is_job && !descends(all, pid, self) && !descends(all, self, pid);

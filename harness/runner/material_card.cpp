@@ -64,8 +64,7 @@ Result settle(ClothSolver& solver, Patch patch, const Scene& scene, double limit
 }  // namespace
 
 CellRecord measure_material(const SolverEntry& entry, const json& settings, const std::string& setting, bool full,
-                            const DeviceOptions& device, const std::string& protocol, double limit_s,
-                            bool bending) {
+                            const DeviceOptions& device, const std::string& protocol, double limit_s, bool bending) {
   CellRecord c;
   c.header.scene = kMaterialCardScene;
   c.header.solver = entry.info.name;
@@ -110,13 +109,18 @@ CellRecord measure_material(const SolverEntry& entry, const json& settings, cons
   return c;
 }
 
-CellRecord failed_material(const SolverEntry& entry, const std::string& setting, const Outcome& outcome, const std::string& protocol) {
+CellRecord failed_material(const SolverEntry& entry, const std::string& setting, const Outcome& outcome,
+                           const std::string& protocol) {
   CellRecord c;
   c.header.scene = kMaterialCardScene;
   c.header.solver = entry.info.name;
   c.header.setting = setting;
   c.header.settings = json::object();
-  c.header.scenario_json = json{{"name", kMaterialCardScene}, {"material_card", setting == "default" ? "full" : "short"}, {"patches", json::array()}}.dump();
+  c.header.scenario_json = json{
+      {"name", kMaterialCardScene},
+      {"material_card", setting == "default" ? "full" : "short"},
+      {"patches",
+       json::array()}}.dump();
   c.header.scenario_sha256 = sha256(c.header.scenario_json);
   c.header.environment = describe_environment({}, protocol);
   c.header.environment["solver_features"] = describe_features(entry.info);

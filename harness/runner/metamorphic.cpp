@@ -70,7 +70,11 @@ void compare(const Trace& base, const Trace& run, const Expected& by, double lon
 class Tester {
  public:
   Tester(const SolverEntry& entry, const json& settings, const DeviceOptions& device, const Scene& scene)
-      : entry_(entry), settings_(settings), device_(device), scene_(scene), json_(json::parse(scene.json)),
+      : entry_(entry),
+        settings_(settings),
+        device_(device),
+        scene_(scene),
+        json_(json::parse(scene.json)),
         side_(std::max(scene.cloth.width_m, scene.cloth.height_m)) {}
 
   MetamorphicResult test(const std::string& property) {
@@ -94,7 +98,8 @@ class Tester {
       out.bitwise = false;
       out.distance = std::nan("");
     }
-    if (out.status.empty()) out.status = (out.at_most == 0 ? out.bitwise : out.distance <= out.at_most) ? "kept" : "broken";
+    if (out.status.empty())
+      out.status = (out.at_most == 0 ? out.bitwise : out.distance <= out.at_most) ? "kept" : "broken";
     return out;
   }
 
@@ -145,12 +150,14 @@ class Tester {
 
   void rotate(MetamorphicResult& out) const {
     // Rows of the rotations by 1 rad about (1, 2, 2)/3 and by 2.5 rad about (2, -1, 2)/3: Rodrigues' formula.
-    for (const auto& [axis, angle] : {std::pair{Vec3{1.0 / 3, 2.0 / 3, 2.0 / 3}, 1.0}, std::pair{Vec3{2.0 / 3, -1.0 / 3, 2.0 / 3}, 2.5}}) {
+    for (const auto& [axis, angle] :
+         {std::pair{Vec3{1.0 / 3, 2.0 / 3, 2.0 / 3}, 1.0}, std::pair{Vec3{2.0 / 3, -1.0 / 3, 2.0 / 3}, 2.5}}) {
       SceneChange c;
       const double s = std::sin(angle), k = 1 - std::cos(angle);
       const Vec3 cross[3] = {{0, -axis[2], axis[1]}, {axis[2], 0, -axis[0]}, {-axis[1], axis[0], 0}};
       for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) c.turn[i][j] = (i == j ? 1 - k : 0) + s * cross[i][j] + k * axis[i] * axis[j];
+        for (std::size_t j = 0; j < 3; ++j)
+          c.turn[i][j] = (i == j ? 1 - k : 0) + s * cross[i][j] + k * axis[i] * axis[j];
       changed(out, c);
     }
   }
@@ -164,8 +171,9 @@ class Tester {
     allow_own_error(out, json_, base_);
   }
 
-  /// A cloth with two sides, in the form of them that the solver knows, numbered along its other side first: vertices, edges and
-  /// triangles stay where they were, normals turn. (From another corner, triangles would have the other diagonals.)
+  /// A cloth with two sides, in the form of them that the solver knows, numbered along its other side first: vertices,
+  /// edges and triangles stay where they were, normals turn. (From another corner, triangles would have the other
+  /// diagonals.)
   void flip(MetamorphicResult& out) const {
     json two_sided = json_;
     for (const char* sides : {"double", "double-duplicated"}) {
@@ -182,8 +190,8 @@ class Tester {
     out = unsupported_row(out);
   }
 
-  /// Twice as many frames of half the length: what a property changes must be less than what the step does. Uneven frames have no
-  /// halves that a scenario can name, so that for them the strict bound stands.
+  /// Twice as many frames of half the length: what a property changes must be less than what the step does. Uneven
+  /// frames have no halves that a scenario can name, so that for them the strict bound stands.
   void allow_own_error(MetamorphicResult& out, json scenario, const Trace& base) const {
     if (!(out.distance > kSame) || !scene_.time.ends_s.empty()) return;
     scenario["time"]["frame_rate_hz"] = 2 * scene_.time.frame_rate_hz;
@@ -226,9 +234,10 @@ class Tester {
   void far_colliders(MetamorphicResult& out) const {
     out.at_most = kNothing;
     const json at = {0, kFar_m, 0};
-    const json far[] = {{{"type", "sphere"}, {"center_m", at}, {"radius_m", 0.5}, {"friction", 0.5}},
-                        {{"type", "box"}, {"center_m", at}, {"size_m", {1, 1, 1}}, {"friction", 0.5}},
-                        {{"type", "cylinder"}, {"center_m", at}, {"radius_m", 0.5}, {"length_m", 1}, {"sides", 12}, {"friction", 0.5}}};
+    const json far[] = {
+        {{"type", "sphere"}, {"center_m", at}, {"radius_m", 0.5}, {"friction", 0.5}},
+        {{"type", "box"}, {"center_m", at}, {"size_m", {1, 1, 1}}, {"friction", 0.5}},
+        {{"type", "cylinder"}, {"center_m", at}, {"radius_m", 0.5}, {"length_m", 1}, {"sides", 12}, {"friction", 0.5}}};
     bool any = false;
     for (const json& collider : far) {
       json with = json_;
@@ -258,8 +267,12 @@ const std::vector<MetamorphicProperty>& metamorphic_properties() {
       {"similarity", "lengths ×1.7, time ×0.6, mass ×3.1"},
       {"mirror", "x → −x"},
       {"rotation", "the whole scene and gravity turned"},
-      {"renumbering", "vertices numbered from another corner, or along the other side; bound: 1e-4, or what frames half as long change"},
-      {"flip", "a two-sided cloth turned over: vertices and triangles where they were, all normals the other way; bound: as for renumbering"},
+      {"renumbering",
+       "vertices numbered from another corner, or along the other side; bound: 1e-4, or what frames half as long "
+       "change"},
+      {"flip",
+       "a two-sided cloth turned over: vertices and triangles where they were, all normals the other way; bound: as "
+       "for renumbering"},
       {"repeat", "run again, and after reset: the same bits"},
       {"no-op", "a ball, a box or a mesh 100 m away"},
       {"restart", "a new solver goes on from positions and velocities half way; bound: as for renumbering"}};
@@ -268,12 +281,15 @@ const std::vector<MetamorphicProperty>& metamorphic_properties() {
 
 std::vector<Scene> metamorphic_scenes() {
   std::vector<Scene> out;
-  for (const char* name : {"metamorphic/sheet", "validation/swing-strip", "validation/incline-stop", "metamorphic/drop"}) out.push_back(load_scene(name));
+  for (const char* name :
+       {"metamorphic/sheet", "validation/swing-strip", "validation/incline-stop", "metamorphic/drop"})
+    out.push_back(load_scene(name));
   return out;
 }
 
-std::vector<MetamorphicResult> run_metamorphic(const SolverEntry& entry, const json& settings, const DeviceOptions& device,
-                                               const std::vector<Scene>& scenes, const std::function<void(const std::string&)>& note) {
+std::vector<MetamorphicResult> run_metamorphic(const SolverEntry& entry, const json& settings,
+                                               const DeviceOptions& device, const std::vector<Scene>& scenes,
+                                               const std::function<void(const std::string&)>& note) {
   std::vector<MetamorphicResult> out;
   for (const Scene& s : scenes) {
     Tester tester(entry, settings, device, s);

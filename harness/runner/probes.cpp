@@ -48,9 +48,10 @@ void Probes::require_same(const ProbedBy& by) const {
   const std::lock_guard lock(mutex_);
   const std::string prefix = prefix_of(by);
   const auto refuse = [&](const char* what, const std::string& stored, const std::string& now) {
-    throw Error(fmt::format("{}: answers of map \"{}\" by {} {} are of another {} ({}, now {}); results of both would be mixed; "
-                            "give another --out, or undo the change",
-                            file_.string(), by.map, by.solver, by.setting, what, stored, now));
+    throw Error(fmt::format(
+        "{}: answers of map \"{}\" by {} {} are of another {} ({}, now {}); results of both would be mixed; "
+        "give another --out, or undo the change",
+        file_.string(), by.map, by.solver, by.setting, what, stored, now));
   };
   for (auto at = known_.lower_bound(prefix); at != known_.end() && at->first.starts_with(prefix); ++at) {
     const json& line = at->second.line;

@@ -25,8 +25,8 @@ class Probes {
   /// With `resume` reads what is there and leaves it; without, the file begins anew.
   Probes(std::filesystem::path file, bool resume);
 
-  /// Throws Error naming the file and what differs if stored answers of this map, solver and setting are of another scene,
-  /// definition or version.
+  /// Throws Error naming the file and what differs if stored answers of this map, solver and setting are of another
+  /// scene, definition or version.
   void require_same(const ProbedBy&) const;
 
   /// Null if it has not been asked yet. References stay: a map's nodes do not move.

@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kOrder = 2;  // of both integrators
+constexpr double kOrder = 2;         // of both integrators
 constexpr double kRounding = 1e-10;  // of the scale: differences below it have no order
 
 /// The scene with two rows: all move alike.
@@ -44,7 +44,8 @@ struct Run {
 
 Run run_quantity(const Scene& scene, const truth::Card& card, const char* integrator, int substeps, double tolerance) {
   const SolverEntry& entry = find_solver("reference");
-  const json settings = complete_settings(entry.info, {{"integrator", integrator}, {"substeps", substeps}, {"tolerance", tolerance}});
+  const json settings =
+      complete_settings(entry.info, {{"integrator", integrator}, {"substeps", substeps}, {"tolerance", tolerance}});
   const auto solver = entry.make(settings, {});
   solver->load(scene);
   const int frames = scene.time.frames();
@@ -57,7 +58,8 @@ Run run_quantity(const Scene& scene, const truth::Card& card, const char* integr
   for (int f = 0; f < frames; ++f) {
     if (f == frames - (frames + 9) / 10) before = quantity();
     if (solver->step(frame_input(scene, f)) != StepStatus::Ok)
-      throw Error(fmt::format("{}: the reference ({}, {} substeps) failed in frame {}", scene.source, integrator, substeps, f));
+      throw Error(
+          fmt::format("{}: the reference ({}, {} substeps) failed in frame {}", scene.source, integrator, substeps, f));
   }
   const double value = quantity();
   return {value, std::abs(value - before)};
@@ -78,7 +80,8 @@ Extrapolated extrapolate(double f1, double f2, double f3, double scale) {
 }
 
 bool has_reference_solver() {
-  return std::any_of(solvers().begin(), solvers().end(), [](const SolverEntry& e) { return e.info.name == "reference"; });
+  return std::any_of(solvers().begin(), solvers().end(),
+                     [](const SolverEntry& e) { return e.info.name == "reference"; });
 }
 
 }  // namespace
@@ -120,10 +123,12 @@ ReferenceResult compute_reference(const Scene& whole, const ReferenceRules& rule
   for (int i = 0; i < 2; ++i) {
     Run f[3];
     for (int level = 0; level < 3; ++level)
-      f[level] = run_quantity(scene, card, i == 0 ? "bdf2" : "conservative", r.least_substeps << level, rules.tolerance);
+      f[level] =
+          run_quantity(scene, card, i == 0 ? "bdf2" : "conservative", r.least_substeps << level, rules.tolerance);
     if (i == 0) coarsest = f[0].value;
-    found[i] = card.settles ? Extrapolated{f[2].value, std::max(std::abs(f[2].value - f[1].value), f[2].unrest), kMissing}
-                            : extrapolate(f[2].value, f[1].value, f[0].value, r.scale);
+    found[i] = card.settles
+                   ? Extrapolated{f[2].value, std::max(std::abs(f[2].value - f[1].value), f[2].unrest), kMissing}
+                   : extrapolate(f[2].value, f[1].value, f[0].value, r.scale);
   }
   const double strict = run_quantity(scene, card, "bdf2", r.least_substeps, rules.tolerance / 10).value;
   r.order_bdf2 = found[0].order;
@@ -175,7 +180,8 @@ std::map<std::string, ReferenceResult> references(const std::vector<const Scene*
   if (note) note(fmt::format("reference solutions of {} scenes", lacking.size()));
   std::vector<std::future<void>> workers;  // joined when destroyed; the libc++ of NDK r25 has no jthread
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-  for (std::size_t k = 0; k < std::min(cores, lacking.size()); ++k) workers.push_back(std::async(std::launch::async, work));
+  for (std::size_t k = 0; k < std::min(cores, lacking.size()); ++k)
+    workers.push_back(std::async(std::launch::async, work));
   workers.clear();
   if (!failed.empty()) throw Error(failed, ExitCode::CheckFailed);
   return out;

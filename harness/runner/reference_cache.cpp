@@ -37,9 +37,11 @@ ReferenceResult from_json(const json& j) {
   return r;
 }
 
-/// The scene first, so that a person finds its file; then what else the key says, shortened. The file has the whole key.
+/// The scene first, so that a person finds its file; then what else the key says, shortened. The file has the whole
+/// key.
 fs::path cache_file(const fs::path& folder, const json& key) {
-  return folder / fmt::format("{}-{}.json", key.at("scenario_sha256").get<std::string>(), sha256(key.dump()).substr(0, 16));
+  return folder /
+         fmt::format("{}-{}.json", key.at("scenario_sha256").get<std::string>(), sha256(key.dump()).substr(0, 16));
 }
 
 }  // namespace
@@ -51,9 +53,12 @@ json reference_key(const Scene& scene, const ReferenceRules& rules) {
     settings.push_back(complete_settings(info, {{"integrator", integrator}, {"tolerance", rules.tolerance}}));
   // The substeps of the runs follow from the rules and the scene.
   for (json& s : settings) s.erase("substeps");
-  return {{"scenario_sha256", scene.sha256}, {"solver_version", info.version},
-          {"solver_settings", settings},     {"moving_steps", rules.moving_steps},
-          {"settling_substeps", rules.settling_substeps}, {"code_sha256", kReferenceCode}};
+  return {{"scenario_sha256", scene.sha256},
+          {"solver_version", info.version},
+          {"solver_settings", settings},
+          {"moving_steps", rules.moving_steps},
+          {"settling_substeps", rules.settling_substeps},
+          {"code_sha256", kReferenceCode}};
 }
 
 std::optional<ReferenceResult> read_reference(const fs::path& folder, const json& key) {

@@ -14,14 +14,15 @@ struct PlannedCell {
   std::string name;             ///< as of its files
   std::string scenario_sha256;  ///< of the completed scenario
   nlohmann::json settings;
-  const SolverInfo* solver = nullptr;  ///< null: not known here, so settings cannot be completed and the version not compared
+  const SolverInfo* solver =
+      nullptr;  ///< null: not known here, so settings cannot be completed and the version not compared
 };
 
 /// The file of a cell that is finished, else the folder of one that was begun, else an empty path.
 std::filesystem::path stored_cell(const std::filesystem::path& folder, const std::string& cell);
 
-/// Whether what `folder` holds of this cell, finished or begun, is of the same scene, settings and version of the solver.
-/// Throws Error naming the file, what differs and what to do if it is not: going on would mix results.
+/// Whether what `folder` holds of this cell, finished or begun, is of the same scene, settings and version of the
+/// solver. Throws Error naming the file, what differs and what to do if it is not: going on would mix results.
 void require_same_cell(const std::filesystem::path& folder, const PlannedCell&);
 
 /// For all cells of a run, before anything is written. Without `resume` a cell that is finished is an Error too.

@@ -48,7 +48,8 @@ std::vector<std::pair<int, fs::path>> numbered(const fs::path& folder, const std
     const std::string name = entry.path().filename().string();
     if (name.size() <= prefix.size() || name.compare(0, prefix.size(), prefix) != 0) continue;
     const std::string digits = name.substr(prefix.size());
-    if (digits.size() < 6 && std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
+    if (digits.size() < 6 &&
+        std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
       found.emplace_back(std::stoi(digits), entry.path());
   }
   std::sort(found.begin(), found.end());

@@ -58,7 +58,6 @@ json at_values(const json& j, double x, double y) {
   return out;
 }
 
-
 double grade_of(const CellAnswer& a) {
   const auto at = a.summary.find("stability_grade");
   return at != a.summary.end() && std::isfinite(at->second) ? at->second
@@ -77,7 +76,8 @@ struct Row {
 /// One map of one study. Its rows, one a solver and value of y, are independent of one another.
 class Map {
  public:
-  Map(const json& j, const Study& study, const StabilityOptions& o, Probes& probes) : j_(j), study_(study), o_(o), probes_(probes) {
+  Map(const json& j, const Study& study, const StabilityOptions& o, Probes& probes)
+      : j_(j), study_(study), o_(o), probes_(probes) {
     const bool quick = study.length == StudyLength::Quick;
     const json& axes = quick ? j["quick"] : j;
     x_ = (quick ? axes["x"] : axes["x"]["values"]).get<std::vector<double>>();
@@ -119,8 +119,8 @@ class Map {
 
   /// The map as far as its rows are done.
   json told() const {
-    json out = {{"name", j_["name"]}, {"title", j_["title"]},       {"scene", j_["scene"]}, {"good", j_["good"]},
-                {"headline", j_["headline"]}, {"theory", theory_}, {"solvers", json::array()}};
+    json out = {{"name", j_["name"]},         {"title", j_["title"]}, {"scene", j_["scene"]},    {"good", j_["good"]},
+                {"headline", j_["headline"]}, {"theory", theory_},    {"solvers", json::array()}};
     for (const char* axis : {"x", "y"}) out[axis] = {{"label", j_[axis]["label"]}, {"unit", j_[axis]["unit"]}};
     for (std::size_t k = 0; k < solvers_.size(); ++k) out["solvers"].push_back(told(k));
     return out;
@@ -133,9 +133,15 @@ class Map {
 
   json told(std::size_t k) const {
     const json& solver = *solvers_[k];
-    json out = {{"solver", solver["solver"]}, {"setting", solver["label"]}, {"on_gpu", on_gpu(solver["solver"])},
-                {"unsupported", false},       {"message", ""},              {"probes", json::array()},
-                {"rows", json::array()},      {"largest", json()},          {"open", true}};
+    json out = {{"solver", solver["solver"]},
+                {"setting", solver["label"]},
+                {"on_gpu", on_gpu(solver["solver"])},
+                {"unsupported", false},
+                {"message", ""},
+                {"probes", json::array()},
+                {"rows", json::array()},
+                {"largest", json()},
+                {"open", true}};
     for (std::size_t y = 0; y < y_.size(); ++y) {
       const Row& row = rows_[k][y];
       if (!row.done) continue;
@@ -189,7 +195,10 @@ class Map {
   }
 
   ProbedBy probed_by(const json& solver, const std::string& scenario_sha256) const {
-    const json definition = {{"x", j_["x"]["set"]}, {"y", j_["y"]["set"]}, {"settings", solver["settings"]}, {"settings_from", solver["settings_from"]}};
+    const json definition = {{"x", j_["x"]["set"]},
+                             {"y", j_["y"]["set"]},
+                             {"settings", solver["settings"]},
+                             {"settings_from", solver["settings_from"]}};
     ProbedBy by;
     by.map = j_["name"].get<std::string>();
     by.solver = solver["solver"].get<std::string>();
@@ -363,7 +372,9 @@ StabilityCounts run_stability_cells(const Study& study, const StabilityOptions& 
       ++all;
       const PlannedCell cell = planned(item, s);
       if (!cell_finished(o.out, cell.name)) {
-        todo.push_back({&item, &s, static_cast<double>(item.scene.time.frames()) * static_cast<double>(item.scene.cloth.vertex_count())});
+        todo.push_back(
+            {&item, &s,
+             static_cast<double>(item.scene.time.frames()) * static_cast<double>(item.scene.cloth.vertex_count())});
         continue;
       }
       if (!o.resume) refuse_finished_cell(o.out, cell.name);
@@ -404,12 +415,11 @@ StabilityCounts run_stability_maps(const Study& study, const StabilityOptions& o
     json all = json::array();
     for (const auto& map : maps)
       if (map->solvers() > 0) all.push_back(map->told());
-    write_file_atomically(o.out / "stability.json", json{{"format", "clothbench-stability"},
-                                                         {"format_version", 1},
-                                                         {"environment", o.environment},
-                                                         {"maps", all}}
-                                                            .dump(1) +
-                                                        "\n");
+    write_file_atomically(
+        o.out / "stability.json",
+        json{{"format", "clothbench-stability"}, {"format_version", 1}, {"environment", o.environment}, {"maps", all}}
+                .dump(1) +
+            "\n");
   };
   for (const auto& map : maps)
     for (std::size_t solver = 0; solver < map->solvers(); ++solver)

@@ -16,7 +16,7 @@ struct StabilityOptions {
   std::filesystem::path program;  ///< what is run as a child
   DeviceOptions device;
   bool resume = false;
-  int jobs = 1;                   ///< processes at a time; nothing here is timed
+  int jobs = 1;                           ///< processes at a time; nothing here is timed
   nlohmann::json environment = {};        ///< stored with the maps
   std::vector<std::string> solvers = {};  ///< of the maps, if any are named
   std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress = nullptr;
@@ -30,12 +30,12 @@ struct StabilityCounts {
   void add(const StabilityCounts&);
 };
 
-/// Before anything is written: throws Error naming the file if what the folder holds, cells or probes, is of other scenes,
-/// settings or versions of solvers, or is finished and not to be gone on with.
+/// Before anything is written: throws Error naming the file if what the folder holds, cells or probes, is of other
+/// scenes, settings or versions of solvers, or is finished and not to be gone on with.
 void require_same_study(const Study&, const StabilityOptions&);
 
-/// Every cell of the study's scenes, in processes that are replaced after a fault, with a result file each; cells that are there already are passed
-/// over with `resume`.
+/// Every cell of the study's scenes, in processes that are replaced after a fault, with a result file each; cells that
+/// are there already are passed over with `resume`.
 StabilityCounts run_stability_cells(const Study&, const StabilityOptions&);
 
 /// The study's maps: for every row (y) and solver the values of x in order, then the boundary by bisection, for every

@@ -55,7 +55,8 @@ CellHeader header_of(const CellSpec& spec) {
 }
 
 PlannedCell planned(const CellSpec& spec) {
-  return {cell_name(header_of(spec)), spec.scene->sha256, spec.settings, spec.entry->make ? &spec.entry->info : nullptr};
+  return {cell_name(header_of(spec)), spec.scene->sha256, spec.settings,
+          spec.entry->make ? &spec.entry->info : nullptr};
 }
 
 /// Adds the time from its construction to its end.
@@ -188,10 +189,14 @@ class GroupRun {
       result_.faults.push_back(fmt::format("{}: {} validation messages", r.name(), messages));
     }
     if (outcome.status == "error") result_.faults.push_back(r.name() + ": " + outcome.message);
-    if (outcome.status == "ok") ++result_.cells_ok;
-    else if (outcome.status == "unsupported") ++result_.cells_unsupported;
-    else if (outcome.status == "over_budget") ++result_.cells_over_budget;
-    else ++result_.cells_failed;
+    if (outcome.status == "ok")
+      ++result_.cells_ok;
+    else if (outcome.status == "unsupported")
+      ++result_.cells_unsupported;
+    else if (outcome.status == "over_budget")
+      ++result_.cells_over_budget;
+    else
+      ++result_.cells_failed;
     r.record.outcome = outcome;
     std::map<std::string, double> summary = summarise(r.cell->spec(), r.cell->plan(), r.record);
     summarise_sensors(r.record.header.environment.value("sensors", nlohmann::json::object()), "start", summary);

@@ -16,7 +16,7 @@ struct CellPlan {
   std::string protocol;  ///< "short", "full" or "quick", stored with every cell
   /// Solvers that a study names and this build lacks: entries without `make`, whose cells become `unsupported`.
   std::vector<std::shared_ptr<const SolverEntry>> not_built;
-  bool references = false;  ///< store the reference solution of each scene's truth with its cells
+  bool references = false;      ///< store the reference solution of each scene's truth with its cells
   bool material_cards = false;  ///< measure every solver's material card at its default setting and those of its fronts
 
   std::size_t size() const;
@@ -43,12 +43,14 @@ struct RunResult {
   std::vector<std::string> faults;  ///< cells that broke a rule of the harness (stages, validation): the run fails
 };
 
-/// Before anything is written into the folder of a run: throws Error naming the file if a cell of the plan that it holds, finished or
-/// begun, is of another scene, other settings or another version of its solver, or is finished and not to be gone on with.
+/// Before anything is written into the folder of a run: throws Error naming the file if a cell of the plan that it
+/// holds, finished or begun, is of another scene, other settings or another version of its solver, or is finished and
+/// not to be gone on with.
 void require_same_cells(const std::filesystem::path& folder, const CellPlan&, bool resume);
 
 /// Runs every cell and writes one file each. Finished cells are skipped and finished trials reused with `resume`;
-/// without it a cell that is already there is an Error, and with it one of another scene, other settings or another version. Throws Error with ExitCode::Interrupted on Ctrl-C.
+/// without it a cell that is already there is an Error, and with it one of another scene, other settings or another
+/// version. Throws Error with ExitCode::Interrupted on Ctrl-C.
 RunResult run_cells(const CellPlan&, const RunOptions&);
 
 }  // namespace clothbench

@@ -119,7 +119,8 @@ void summarise_pass(const AccuracyPass& pass, const TimeSpan& time, std::map<std
   s["stretch_mean_last_second"] = whole ? mean_from(pass, "stretch_mean_positive", from_s) : kMissing;
 }
 
-/// The most clothbench jobs that ran side by side while the cell was loaded and timed; missing if any of it doesn't say.
+/// The most clothbench jobs that ran side by side while the cell was loaded and timed; missing if any of it doesn't
+/// say.
 double jobs_beside(const CellRecord& record) {
   double most = record.header.environment.is_object() ? record.header.environment.value("jobs", kMissing) : kMissing;
   for (const TimedTrial& t : record.trials) most = max_or_nan(most, t.jobs);
@@ -139,7 +140,8 @@ double bytes_per_frame(const std::vector<TimedTrial>& trials, std::vector<double
 
 std::map<std::string, double> summarise(const CellSpec& spec, const Plan& plan, const CellRecord& record) {
   std::map<std::string, double> s;
-  std::vector<double> fps, capped, wall, pipelined, rendered, device, read_peak, read_mean, write_peak, write_mean, window;
+  std::vector<double> fps, capped, wall, pipelined, rendered, device, read_peak, read_mean, write_peak, write_mean,
+      window;
   for (const TimedTrial& t : record.trials) {
     if (t.frames() == 0) continue;
     fps.push_back(t.frames() / std::accumulate(t.frame_wall_s.begin(), t.frame_wall_s.end(), 0.0));
@@ -162,8 +164,10 @@ std::map<std::string, double> summarise(const CellSpec& spec, const Plan& plan, 
   s["frames_per_trial"] = record.trials.empty() ? kMissing : record.trials.front().frames();
   s["fps_median"] = median(fps);
   s["fps_mean"] = mean(fps);
-  s["fps_spread"] = fps.empty() ? kMissing
-      : (*std::max_element(fps.begin(), fps.end()) - *std::min_element(fps.begin(), fps.end())) / 2 / median(fps);
+  s["fps_spread"] =
+      fps.empty()
+          ? kMissing
+          : (*std::max_element(fps.begin(), fps.end()) - *std::min_element(fps.begin(), fps.end())) / 2 / median(fps);
   s["fps_at_72"] = median(capped);
   s["frame_wall_median_s"] = median(wall);
   s["frame_wall_iqr_s"] = quantile(wall, 0.75) - quantile(wall, 0.25);

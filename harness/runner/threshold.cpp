@@ -31,8 +31,8 @@ std::optional<ClothState> last_state(const Scene& scene, const SolverEntry& entr
 }
 
 /// None where the run fails, or ends where no cloth can be.
-std::optional<bool> stays(const Scene& scene, const truth::Card& card, double limit_m, const SolverEntry& entry, const nlohmann::json& settings,
-                          const DeviceOptions& device) {
+std::optional<bool> stays(const Scene& scene, const truth::Card& card, double limit_m, const SolverEntry& entry,
+                          const nlohmann::json& settings, const DeviceOptions& device) {
   const auto state = last_state(scene, entry, settings, device);
   const double way = state ? std::abs(card.quantity(truth::column_means(scene.cloth, state->position))) : kMissing;
   if (!std::isfinite(way)) return std::nullopt;
@@ -41,9 +41,12 @@ std::optional<bool> stays(const Scene& scene, const truth::Card& card, double li
 
 }  // namespace
 
-FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings, const DeviceOptions& device) {
+FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings,
+                              const DeviceOptions& device) {
   const auto card = truth::card_of(scene);
-  if (!card || !card->threshold) throw Error(scene.source + ": this scene has no threshold: expected one at rest on a slope or over a cylinder, with friction");
+  if (!card || !card->threshold)
+    throw Error(scene.source +
+                ": this scene has no threshold: expected one at rest on a slope or over a cylinder, with friction");
   if (!unsupported(entry.info, scene.needs).empty()) throw Error(entry.info.name + " cannot run " + scene.name);
   const truth::Threshold& t = *card->threshold;
   FoundThreshold out;
@@ -51,7 +54,8 @@ FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, cons
   const auto holds = [&](double friction) {
     if (out.failed) return false;
     ++out.runs;
-    const Scene tried = scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", t.key, friction)});
+    const Scene tried =
+        scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", t.key, friction)});
     const std::optional<bool> held_there = stays(tried, *card, t.held_below_m, entry, settings, device);
     out.failed = !held_there;
     return held_there.value_or(false);
@@ -76,7 +80,8 @@ FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, cons
   return out;
 }
 
-double end_error(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings, const DeviceOptions& device) {
+double end_error(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings,
+                 const DeviceOptions& device) {
   const TruthJudge judge(scene);
   const auto state = last_state(scene, entry, settings, device);
   return state ? judge.judge(scene.time.frames(), *state).quantity_error : kMissing;

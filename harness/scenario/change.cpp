@@ -40,8 +40,10 @@ void turn_box(json& box, const SceneChange& c) {
   if (is_identity(c)) return;
   const Vec3 old = vec3(box["rotation_deg"]);
   using Turn = Eigen::AngleAxisd;
-  Matrix r = matrix_of(c) * (Turn(old[2] / kDegrees, Eigen::Vector3d::UnitZ()) * Turn(old[1] / kDegrees, Eigen::Vector3d::UnitY()) *
-                             Turn(old[0] / kDegrees, Eigen::Vector3d::UnitX())).toRotationMatrix();
+  Matrix r = matrix_of(c) *
+             (Turn(old[2] / kDegrees, Eigen::Vector3d::UnitZ()) * Turn(old[1] / kDegrees, Eigen::Vector3d::UnitY()) *
+              Turn(old[0] / kDegrees, Eigen::Vector3d::UnitX()))
+                 .toRotationMatrix();
   if (c.mirrors()) r.col(2) = -r.col(2);
   box["rotation_deg"] = {kDegrees * std::atan2(r(2, 1), r(2, 2)), -kDegrees * std::asin(std::clamp(r(2, 0), -1.0, 1.0)),
                          kDegrees * std::atan2(r(1, 0), r(0, 0))};
@@ -81,7 +83,8 @@ class Changer {
   void cloth(json& j) const {
     json& pose = j["pose"];
     if (pose.contains("over_table")) refuse("a sheet over a table");
-    if (c_.mirrors() && (pose.contains("drape") || pose.contains("span_m"))) refuse("a sheet that does not start flat, by a reflection,");
+    if (c_.mirrors() && (pose.contains("drape") || pose.contains("span_m")))
+      refuse("a sheet that does not start flat, by a reflection,");
     scale_list(j["size_m"], c_.length);
     scale(j, "areal_density_kg_per_m2", c_.mass / (c_.length * c_.length));
     pose["center_m"] = place(pose["center_m"]);
@@ -95,7 +98,8 @@ class Changer {
 
   void material(json& j) const {
     const double energy = c_.mass * c_.length * c_.length / (c_.time * c_.time);
-    if (j["membrane_stiffness_N_per_m"].is_number()) scale(j, "membrane_stiffness_N_per_m", c_.mass / (c_.time * c_.time));
+    if (j["membrane_stiffness_N_per_m"].is_number())
+      scale(j, "membrane_stiffness_N_per_m", c_.mass / (c_.time * c_.time));
     scale(j, "bending_rigidity_N_m", energy);
     scale(j, "damping_per_s", 1 / c_.time);
   }
@@ -124,14 +128,16 @@ class Changer {
 void refuse_irregular(const json& s, const std::string& source) {
   const auto check = [&](const json& object, std::initializer_list<const char*> keys) {
     for (const char* key : keys)
-      if (object.contains(key)) throw Error(source + ": a scene with \"" + key + "\" cannot be moved, scaled or renumbered");
+      if (object.contains(key))
+        throw Error(source + ": a scene with \"" + key + "\" cannot be moved, scaled or renumbered");
   };
   check(s["cloth"], {"spin_rad_per_s", "column_factors", "mass_factors", "start"});
   check(s["material"], {"regions"});
   check(s["time"], {"hitch", "jitter"});
   for (const json& grip : s["grips"]) check(grip, {"stop_s", "release_s", "jumps"});
   for (const json& collider : s["colliders"])
-    if (collider["type"] == "capsule") throw Error(source + ": a scene with a collider of type capsule cannot be moved, scaled or renumbered");
+    if (collider["type"] == "capsule")
+      throw Error(source + ": a scene with a collider of type capsule cannot be moved, scaled or renumbered");
 }
 
 /// What an edge or corner of the old numbering is called in the new one.

@@ -35,15 +35,19 @@ double area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   return 0.5 * std::hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]);
 }
 
-void check_triangle(const std::vector<Vec3>& x, const std::array<std::uint32_t, 3>& t, std::size_t k, const std::string& source) {
+void check_triangle(const std::vector<Vec3>& x, const std::array<std::uint32_t, 3>& t, std::size_t k,
+                    const std::string& source) {
   for (const std::uint32_t v : t)
-    if (v >= x.size()) throw Error(fmt::format("{}: triangle {}: vertex {} of {} (the first is 0)", source, k, v, x.size()));
-  const double longest = std::max({edge_length(minus(x[t[1]], x[t[0]])), edge_length(minus(x[t[2]], x[t[1]])), edge_length(minus(x[t[0]], x[t[2]]))});
+    if (v >= x.size())
+      throw Error(fmt::format("{}: triangle {}: vertex {} of {} (the first is 0)", source, k, v, x.size()));
+  const double longest = std::max({edge_length(minus(x[t[1]], x[t[0]])), edge_length(minus(x[t[2]], x[t[1]])),
+                                   edge_length(minus(x[t[0]], x[t[2]]))});
   if (!(area_of(x[t[0]], x[t[1]], x[t[2]]) > kLeastArea * longest * longest))
     throw Error(fmt::format("{}: triangle {} (vertices {}, {}, {}) has no area", source, k, t[0], t[1], t[2]));
 }
 
-/// The lines that shapes are made of; a lone carriage return ends one too, as it does for the OBJ library. What else a file may say (materials, skin weights, curves) is neither looked at nor trusted.
+/// The lines that shapes are made of; a lone carriage return ends one too, as it does for the OBJ library. What else a
+/// file may say (materials, skin weights, curves) is neither looked at nor trusted.
 std::string shape_lines(const std::string& text) {
   std::string lines = text, out, line;
   std::replace(lines.begin(), lines.end(), '\r', '\n');
@@ -59,12 +63,14 @@ std::string shape_lines(const std::string& text) {
 
 fs::path file_of(const std::string& name, const std::string& source) {
   if (const auto found = file_of_scene(name, source)) return *found;
-  throw Error(fmt::format("{}: /cloth/mesh/file: \"{}\": no such file beside the scene or in {}", source, name, scenario_root().string()));
+  throw Error(fmt::format("{}: /cloth/mesh/file: \"{}\": no such file beside the scene or in {}", source, name,
+                          scenario_root().string()));
 }
 
 }  // namespace
 
-ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles, const std::string& source) {
+ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles,
+                     const std::string& source) {
   ClothMesh m{std::move(vertices), std::move(triangles), {}, {}, 0};
   if (m.triangles.empty()) throw Error(source + ": no triangle");
   for (std::size_t v = 0; v < m.vertices.size(); ++v)
@@ -88,7 +94,8 @@ ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uin
       const auto [a, b] = std::minmax(t[c], t[(c + 1) % 3]);
       Seen& edge = seen[{a, b}];
       edge.areas += area;
-      if (++edge.triangles > 2) throw Error(fmt::format("{}: the edge of vertices {} and {} has more than two triangles", source, a, b));
+      if (++edge.triangles > 2)
+        throw Error(fmt::format("{}: the edge of vertices {} and {} has more than two triangles", source, a, b));
       used[t[c]] = 1;
     }
   }
@@ -128,7 +135,8 @@ std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::s
   const fs::path file = file_of(j["file"].get<std::string>(), source);
   const std::string text = read_text(file), hash = sha256(text);
   if (j.contains("sha256") && j["sha256"] != hash)
-    throw Error(fmt::format("{}: /cloth/mesh/sha256: {} is another file than the scene was made with ({})", source, file.string(), hash));
+    throw Error(fmt::format("{}: /cloth/mesh/sha256: {} is another file than the scene was made with ({})", source,
+                            file.string(), hash));
   j["sha256"] = hash;
   return std::make_shared<const ClothMesh>(parse_obj(text, file.string()));
 }

@@ -8,11 +8,16 @@ namespace clothbench {
 
 Feature Collider::feature() const {
   switch (shape) {
-    case Shape::Plane: return Feature::Plane;
-    case Shape::Sphere: return Feature::Sphere;
-    case Shape::Box: return Feature::Box;
-    case Shape::Capsules: return Feature::Capsules;
-    case Shape::Mesh: return moves() ? Feature::MovingMesh : Feature::StaticMesh;
+    case Shape::Plane:
+      return Feature::Plane;
+    case Shape::Sphere:
+      return Feature::Sphere;
+    case Shape::Box:
+      return Feature::Box;
+    case Shape::Capsules:
+      return Feature::Capsules;
+    case Shape::Mesh:
+      return moves() ? Feature::MovingMesh : Feature::StaticMesh;
   }
   throw Error("collider " + name + ": no such shape");
 }
@@ -20,7 +25,8 @@ Feature Collider::feature() const {
 std::vector<double> posed_positions(const ColliderMesh& mesh, const ColliderPose& pose) {
   if (!mesh.skinned()) return mesh.positions;
   if (pose.joints.size() != mesh.joint_count)
-    throw Error("posed_positions: expected " + std::to_string(mesh.joint_count) + " joints; found " + std::to_string(pose.joints.size()));
+    throw Error("posed_positions: expected " + std::to_string(mesh.joint_count) + " joints; found " +
+                std::to_string(pose.joints.size()));
   std::vector<double> out(mesh.positions.size(), 0);
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
     for (std::size_t k = 0; k < 4; ++k) {

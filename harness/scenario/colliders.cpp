@@ -113,8 +113,10 @@ class ColliderReader {
       c.half_extent_m[k] = size[k] / 2;
     }
     using Turn = Eigen::AngleAxisd;
-    const Eigen::Matrix3d r = (Turn(turn[2] * kRadians, Eigen::Vector3d::UnitZ()) * Turn(turn[1] * kRadians, Eigen::Vector3d::UnitY()) *
-                               Turn(turn[0] * kRadians, Eigen::Vector3d::UnitX())).toRotationMatrix();
+    const Eigen::Matrix3d r =
+        (Turn(turn[2] * kRadians, Eigen::Vector3d::UnitZ()) * Turn(turn[1] * kRadians, Eigen::Vector3d::UnitY()) *
+         Turn(turn[0] * kRadians, Eigen::Vector3d::UnitX()))
+            .toRotationMatrix();
     for (int k = 0; k < 3; ++k) c.axes[static_cast<std::size_t>(k)] = to_vec3(assets::Vector(r.col(k)));
   }
 
@@ -123,7 +125,8 @@ class ColliderReader {
     const Path path = Path::read(j);
     const Vec3 center = vec3(j["center_m"]), axis = vec3(j["axis"]), spin = vec3(j["spin_rad_per_s"]);
     const double length = j["length_m"].get<double>(), radius = j["radius_m"].get<double>();
-    if (!(std::abs(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2] - 1) <= kUnit)) refuse("/axis", "expected a vector of length 1");
+    if (!(std::abs(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2] - 1) <= kUnit))
+      refuse("/axis", "expected a vector of length 1");
     const auto at = [=](double t) { return moved_capsule(path, center, axis, length, radius, spin, t); };
     c.capsules = {at(0)};
     note_jumps(path, scene_);
@@ -135,8 +138,9 @@ class ColliderReader {
     const Vec3 axis = vec3(j["axis"]);
     const double squared = axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2];
     if (!(std::abs(squared - 1) <= kUnit)) refuse("/axis", "expected a vector of length 1");
-    c.mesh = collider_mesh(assets::prism(assets::Vector(axis[0], axis[1], axis[2]), assets::Vector::Map(vec3(j["center_m"]).data()),
-                                   j["radius_m"].get<double>(), j["length_m"].get<double>(), j["sides"].get<std::uint32_t>()));
+    c.mesh = collider_mesh(assets::prism(assets::Vector(axis[0], axis[1], axis[2]),
+                                         assets::Vector::Map(vec3(j["center_m"]).data()), j["radius_m"].get<double>(),
+                                         j["length_m"].get<double>(), j["sides"].get<std::uint32_t>()));
   }
 
   void mesh(const json& j, Collider& c) const {
@@ -147,8 +151,10 @@ class ColliderReader {
       const json& corners = j["triangles"][t];
       for (std::size_t k = 0; k < 3; ++k)
         if (corners[k].get<std::size_t>() >= m.vertex_count())
-          refuse(fmt::format("/triangles/{}/{}", t, k), fmt::format("vertex {} of {} (the first is 0)", corners[k].get<std::size_t>(), m.vertex_count()));
-      m.triangles.push_back({corners[0].get<std::uint32_t>(), corners[1].get<std::uint32_t>(), corners[2].get<std::uint32_t>()});
+          refuse(fmt::format("/triangles/{}/{}", t, k),
+                 fmt::format("vertex {} of {} (the first is 0)", corners[k].get<std::size_t>(), m.vertex_count()));
+      m.triangles.push_back(
+          {corners[0].get<std::uint32_t>(), corners[1].get<std::uint32_t>(), corners[2].get<std::uint32_t>()});
     }
     c.mesh = collider_mesh(m);
   }
@@ -232,16 +238,20 @@ class ColliderReader {
   static ColliderPose pose_at(const Moving& m, bool as_mesh, double time_s) {
     if (m.recording) {
       const assets::RecordedHand now = m.recording->at(time_s);
-      return as_mesh ? mesh_pose(*m.recording, now, m.hand ? &*m.hand : nullptr, m.offset) : capsules_pose(*m.recording, now, m.offset);
+      return as_mesh ? mesh_pose(*m.recording, now, m.hand ? &*m.hand : nullptr, m.offset)
+                     : capsules_pose(*m.recording, now, m.offset);
     }
     const assets::HandSample now = assets::sample(m.track, *m.hand, time_s);
     ColliderPose pose;
     if (!as_mesh) {
-      for (const assets::Capsule& c : assets::capsules(now.pose)) pose.capsules.push_back({to_vec3(assets::Vector(c.a + m.offset)), to_vec3(assets::Vector(c.b + m.offset)), c.radius_m});
+      for (const assets::Capsule& c : assets::capsules(now.pose))
+        pose.capsules.push_back(
+            {to_vec3(assets::Vector(c.a + m.offset)), to_vec3(assets::Vector(c.b + m.offset)), c.radius_m});
       return pose;
     }
     for (std::size_t k = 0; k < assets::kJointCount; ++k)
-      pose.joints.push_back(affine(Eigen::Translation3d(m.offset) * (now.pose.joints[k] * m.hand->mesh.inverse_bind[k])));
+      pose.joints.push_back(
+          affine(Eigen::Translation3d(m.offset) * (now.pose.joints[k] * m.hand->mesh.inverse_bind[k])));
     return pose;
   }
 
@@ -252,11 +262,13 @@ class ColliderReader {
     const json& over = pose["over_table"];
     const auto index = over["collider"].get<std::size_t>();
     const auto table = tables_.find(index);
-    if (table == tables_.end()) refuse("/collider", fmt::format("expected a collider of type room with a table; /colliders/{} is none", index));
+    if (table == tables_.end())
+      refuse("/collider", fmt::format("expected a collider of type room with a table; /colliders/{} is none", index));
     const auto& [box, mesh] = table->second;
     const double drop = over["drop_m"].get<double>();
-    const TablePose at = over["at"] == "center" ? flat_over(box, mesh, scene_.cloth, drop)
-                                                : corner_first_over(box, scene_.cloth, drop, over["tilt_deg"].get<double>() * kRadians);
+    const TablePose at = over["at"] == "center"
+                             ? flat_over(box, mesh, scene_.cloth, drop)
+                             : corner_first_over(box, scene_.cloth, drop, over["tilt_deg"].get<double>() * kRadians);
     scene_.cloth.center_m = at.center_m;
     const bool turned = over.value("turned", false);
     if (turned && (scene_.cloth.width_m != scene_.cloth.height_m)) refuse("/turned", "expected a square cloth");
@@ -309,8 +321,11 @@ class ColliderReader {
     const assets::Vector pinch = assets::pinch_point(start.pose);
     const std::vector<double> x = initial_positions(scene_);
     for (std::size_t v = 0; v < x.size() / 3; ++v)
-      if ((assets::Vector::Map(x.data() + 3 * v) - pinch).norm() <= radius) g.vertices.push_back(static_cast<std::uint32_t>(v));
-    if (g.vertices.empty()) refuse("/radius_m", fmt::format("no vertex within {} m of the pinch point ({:.4f}, {:.4f}, {:.4f})", radius, pinch.x(), pinch.y(), pinch.z()));
+      if ((assets::Vector::Map(x.data() + 3 * v) - pinch).norm() <= radius)
+        g.vertices.push_back(static_cast<std::uint32_t>(v));
+    if (g.vertices.empty())
+      refuse("/radius_m", fmt::format("no vertex within {} m of the pinch point ({:.4f}, {:.4f}, {:.4f})", radius,
+                                      pinch.x(), pinch.y(), pinch.z()));
     return g;
   }
 
@@ -342,10 +357,12 @@ class ColliderReader {
   }
 
   void move_by_hand(const Grip& g, double t, const std::vector<double>& x, FrameMotion& m) const {
-    const assets::HandSample start = assets::sample(g.by->track, *g.by->hand, 0), now = assets::sample(g.by->track, *g.by->hand, t);
+    const assets::HandSample start = assets::sample(g.by->track, *g.by->hand, 0),
+                             now = assets::sample(g.by->track, *g.by->hand, t);
     const assets::Frame move = pinch_frame(now.pose) * pinch_frame(start.pose).inverse();
     for (std::uint32_t v : g.vertices) {
-      const bool before = scene_.motion.size() == 1 || scene_.motion[scene_.motion.size() - 2].grip_held[m.grip_held.size()] != 0;
+      const bool before =
+          scene_.motion.size() == 1 || scene_.motion[scene_.motion.size() - 2].grip_held[m.grip_held.size()] != 0;
       m.grip_position_m.push_back(to_vec3(assets::Vector(move * assets::Vector::Map(x.data() + 3 * v))));
       m.grip_held.push_back(before && now.grip ? 1 : 0);
     }
@@ -367,8 +384,8 @@ class ColliderReader {
   std::string at_;
   std::optional<assets::AssetSource> assets_;
   std::map<std::size_t, std::pair<assets::Table, ColliderMesh>> tables_;  ///< by collider; with the mesh round it
-  std::vector<std::optional<Moving>> hands_;     ///< by collider
-  std::map<std::size_t, std::function<Capsule(double)>> capsules_;  ///< by collider
+  std::vector<std::optional<Moving>> hands_;                              ///< by collider
+  std::map<std::size_t, std::function<Capsule(double)>> capsules_;        ///< by collider
   std::vector<Grip> grips_;
 };
 

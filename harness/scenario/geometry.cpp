@@ -44,7 +44,8 @@ std::vector<double> mesh_masses(const Cloth& c) {
       p[k] = x[t[1]][k] - x[t[0]][k];
       q[k] = x[t[2]][k] - x[t[0]][k];
     }
-    const double area = 0.5 * std::hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]);
+    const double area =
+        0.5 * std::hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]);
     for (const std::uint32_t v : t) mass[v] += c.areal_density_kg_per_m2 * area / 3;
   }
   for (std::size_t v = 0; v < c.mass_factors.size(); ++v) mass[v] *= c.mass_factors[v];
@@ -113,7 +114,8 @@ Vec3 draped_row(const Cloth& c, int i, double offset_m) {
   const Vec3 normal = normal_of(c);
   Vec3 p{};
   for (std::size_t k = 0; k < 3; ++k)
-    p[k] = c.center_m[k] - c.drape_radius_m * std::cos(angle) * c.axis_u[k] + (hang - c.drape_radius_m * std::sin(angle)) * normal[k];
+    p[k] = c.center_m[k] - c.drape_radius_m * std::cos(angle) * c.axis_u[k] +
+           (hang - c.drape_radius_m * std::sin(angle)) * normal[k];
   return p;
 }
 
@@ -150,7 +152,8 @@ double Cloth::least_height_m() const {
     for (const auto& t : mesh->triangles) {
       const Vec3 &a = mesh->vertices[t[0]], &b = mesh->vertices[t[1]], &p = mesh->vertices[t[2]];
       const Vec3 u = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-      const double twice_area = std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
+      const double twice_area =
+          std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
       const double longest = std::max({std::hypot(u[0], u[1], u[2]), std::hypot(v[0], v[1], v[2]),
                                        std::hypot(v[0] - u[0], v[1] - u[1], v[2] - u[2])});
       least = std::min(least, twice_area / longest);
@@ -183,9 +186,15 @@ std::vector<Edge> edges(const Cloth& c, EdgeKind kind) {
   };
   std::vector<Step> steps;
   switch (kind) {
-    case EdgeKind::Structural: steps = {{1, 0}, {0, 1}}; break;
-    case EdgeKind::Shear: steps = {{1, 1}, {-1, 1}}; break;
-    case EdgeKind::SkipOne: steps = {{2, 0}, {0, 2}}; break;
+    case EdgeKind::Structural:
+      steps = {{1, 0}, {0, 1}};
+      break;
+    case EdgeKind::Shear:
+      steps = {{1, 1}, {-1, 1}};
+      break;
+    case EdgeKind::SkipOne:
+      steps = {{2, 0}, {0, 2}};
+      break;
   }
   std::vector<Edge> out;
   for (const Step& s : steps) {

@@ -15,7 +15,8 @@ using nlohmann::json;
 
 class IrregularReader {
  public:
-  IrregularReader(const json& scenario, Scene& scene, const std::string& source) : j_(scenario), s_(scene), source_(source) {}
+  IrregularReader(const json& scenario, Scene& scene, const std::string& source)
+      : j_(scenario), s_(scene), source_(source) {}
 
   void read() {
     const json& cloth = j_["cloth"];

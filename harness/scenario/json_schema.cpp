@@ -35,9 +35,12 @@ json schema_at(const json& root, const std::string& pointer) {
     const std::size_t end = std::min(pointer.find('/', i), pointer.size());
     const std::string part = pointer.substr(i, end - i);
     s = json(sub_schema(s, root));
-    if (s.contains("properties") && s["properties"].contains(part)) s = json(s["properties"][part]);
-    else if (s.contains("items")) s = json(s["items"]);
-    else return json();
+    if (s.contains("properties") && s["properties"].contains(part))
+      s = json(s["properties"][part]);
+    else if (s.contains("items"))
+      s = json(s["items"]);
+    else
+      return json();
     i = end + 1;
   }
   return json(sub_schema(s, root));
@@ -51,9 +54,12 @@ std::string expectation(const json& s) {
   if (s.contains("minimum")) parts.push_back(">= " + s["minimum"].dump());
   if (s.contains("exclusiveMinimum")) parts.push_back("> " + s["exclusiveMinimum"].dump());
   if (s.contains("maximum")) parts.push_back("<= " + s["maximum"].dump());
-  if (s.contains("minItems") && s.contains("maxItems") && s["minItems"] == s["maxItems"]) parts.push_back(s["minItems"].dump() + " items");
-  else if (s.contains("minItems")) parts.push_back("at least " + s["minItems"].dump() + " items");
-  else if (s.contains("maxItems")) parts.push_back("at most " + s["maxItems"].dump() + " items");
+  if (s.contains("minItems") && s.contains("maxItems") && s["minItems"] == s["maxItems"])
+    parts.push_back(s["minItems"].dump() + " items");
+  else if (s.contains("minItems"))
+    parts.push_back("at least " + s["minItems"].dump() + " items");
+  else if (s.contains("maxItems"))
+    parts.push_back("at most " + s["maxItems"].dump() + " items");
   if (s.contains("minLength")) parts.push_back("at least " + s["minLength"].dump() + " characters");
   if (s.contains("pattern")) parts.push_back("matching " + s["pattern"].get<std::string>());
   std::string text;
@@ -80,7 +86,8 @@ std::string unknown_key(const json& value, const json& schema, const json& root,
   }
   if (value.is_array() && s.contains("items"))
     for (std::size_t i = 0; i < value.size(); ++i)
-      if (std::string found = unknown_key(value[i], s["items"], root, fmt::format("{}/{}", pointer, i)); !found.empty()) return found;
+      if (std::string found = unknown_key(value[i], s["items"], root, fmt::format("{}/{}", pointer, i)); !found.empty())
+        return found;
   return "";
 }
 
@@ -96,7 +103,8 @@ std::string missing_key(const json& value, const json& schema) {
 void validate_json(const nlohmann::json& value, const std::string& schema_text, const std::string& source,
                    const std::string& base) {
   const json schema_json = json::parse(schema_text);
-  if (const std::string fault = unknown_key(value, schema_json, schema_json, base); !fault.empty()) throw Error(source + ": " + fault);
+  if (const std::string fault = unknown_key(value, schema_json, schema_json, base); !fault.empty())
+    throw Error(source + ": " + fault);
 
   valijson::Schema schema;
   valijson::SchemaParser parser;
@@ -117,7 +125,8 @@ void validate_json(const nlohmann::json& value, const std::string& schema_text, 
     throw Error(fmt::format("{}: {}: \"{}\" is missing", source, where.empty() ? "/" : where, key));
   std::string shown = found.dump();
   if (shown.size() > 60) shown = shown.substr(0, 60) + "…";
-  throw Error(fmt::format("{}: {}: expected {}; found {}", source, where.empty() ? "/" : where, expectation(sub), shown));
+  throw Error(
+      fmt::format("{}: {}: expected {}; found {}", source, where.empty() ? "/" : where, expectation(sub), shown));
 }
 
 }  // namespace clothbench

@@ -37,8 +37,16 @@ class Strict : public nlohmann::json_sax<json> {
   bool binary(binary_t&) override { return true; }
   bool start_object(std::size_t) override { return push(true); }
   bool start_array(std::size_t) override { return push(false); }
-  bool end_object() override { keys_.pop_back(); path_.pop_back(); return true; }
-  bool end_array() override { keys_.pop_back(); path_.pop_back(); return true; }
+  bool end_object() override {
+    keys_.pop_back();
+    path_.pop_back();
+    return true;
+  }
+  bool end_array() override {
+    keys_.pop_back();
+    path_.pop_back();
+    return true;
+  }
   bool key(string_t& k) override {
     path_.back() = k;
     if (keys_.back().insert(k).second) return true;
@@ -51,7 +59,9 @@ class Strict : public nlohmann::json_sax<json> {
     const auto colon = what.find(": ", what.find("column"));
     const bool range = e.id == 406;
     throw Error(fmt::format("{}: {}: not valid JSON: {}", source_, at(text_, byte),
-                            range ? "a number beyond double range" : colon == std::string::npos ? what : what.substr(colon + 2)));
+                            range                        ? "a number beyond double range"
+                            : colon == std::string::npos ? what
+                                                         : what.substr(colon + 2)));
   }
 
  private:
@@ -69,7 +79,8 @@ class Strict : public nlohmann::json_sax<json> {
 
 /// An object that is right without any key, so that its defaults may stand for it.
 bool may_be_empty(const json& s) {
-  return s.contains("properties") && !s.contains("required") && !s.contains("minProperties") && s.value("type", json()) == "object";
+  return s.contains("properties") && !s.contains("required") && !s.contains("minProperties") &&
+         s.value("type", json()) == "object";
 }
 
 void fill(json& value, const json& schema, const json& root) {
@@ -78,9 +89,12 @@ void fill(json& value, const json& schema, const json& root) {
     for (const auto& [key, sub] : s["properties"].items()) {
       const json& target = sub_schema(sub, root);
       if (!value.contains(key)) {
-        if (sub.contains("default")) value[key] = sub["default"];
-        else if (may_be_empty(target)) value[key] = json::object();
-        else continue;
+        if (sub.contains("default"))
+          value[key] = sub["default"];
+        else if (may_be_empty(target))
+          value[key] = json::object();
+        else
+          continue;
       }
       fill(value[key], sub, root);
     }
@@ -104,7 +118,8 @@ std::string read_text(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path, ec)) throw Error(path.string() + ": no such file");
   if (std::filesystem::is_directory(path, ec)) throw Error(path.string() + ": a folder; expected a JSON file");
   const auto size = std::filesystem::file_size(path, ec);
-  if (!ec && size > kMostBytes) throw Error(fmt::format("{}: {} bytes; at most {} are read", path.string(), size, kMostBytes));
+  if (!ec && size > kMostBytes)
+    throw Error(fmt::format("{}: {} bytes; at most {} are read", path.string(), size, kMostBytes));
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();

@@ -35,8 +35,11 @@ Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
     const json& pin = list[k];
     if (c.mesh)
       for (const char* of_grids : {"corners", "edge", "clamp"})
-        if (pin.contains(of_grids)) refuse(source, fmt::format("/pins/{}/{}", k, of_grids), "a mesh has none; expected \"vertices\" or \"nearest_m\"");
-    if (!c.mesh && pin.contains("nearest_m")) refuse(source, fmt::format("/pins/{}/nearest_m", k), "only for a cloth that is a mesh");
+        if (pin.contains(of_grids))
+          refuse(source, fmt::format("/pins/{}/{}", k, of_grids),
+                 "a mesh has none; expected \"vertices\" or \"nearest_m\"");
+    if (!c.mesh && pin.contains("nearest_m"))
+      refuse(source, fmt::format("/pins/{}/nearest_m", k), "only for a cloth that is a mesh");
     if (pin.contains("nearest_m"))
       for (const json& point : pin["nearest_m"]) pinned.insert(nearest_vertex(*c.mesh, vec3(point)));
     if (pin.contains("corners"))
@@ -49,7 +52,8 @@ Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
       for (std::size_t v = 0; v < pin["vertices"].size(); ++v) {
         const auto index = pin["vertices"][v].get<std::uint64_t>();
         if (index >= c.vertex_count())
-          refuse(source, fmt::format("/pins/{}/vertices/{}", k, v), fmt::format("vertex {} of {} (the first is 0)", index, c.vertex_count()));
+          refuse(source, fmt::format("/pins/{}/vertices/{}", k, v),
+                 fmt::format("vertex {} of {} (the first is 0)", index, c.vertex_count()));
         pinned.insert(static_cast<std::uint32_t>(index));
       }
   }
@@ -63,7 +67,8 @@ void read_shape(json& j, Cloth& c, const std::string& source) {
       if (j.contains(of_grids)) refuse(source, std::string("/cloth/") + of_grids, "not for a cloth that is a mesh");
     c.mesh = read_cloth_mesh(j["mesh"], source);
     if (c.mesh->vertices.size() > kMostVertices)
-      refuse(source, "/cloth/mesh", fmt::format("at most {} vertices; found {}", kMostVertices, c.mesh->vertices.size()));
+      refuse(source, "/cloth/mesh",
+             fmt::format("at most {} vertices; found {}", kMostVertices, c.mesh->vertices.size()));
     c.columns = static_cast<int>(c.mesh->vertices.size());
     c.rows = 1;
     const auto [longest, second] = longest_sides(*c.mesh);
@@ -72,7 +77,9 @@ void read_shape(json& j, Cloth& c, const std::string& source) {
     return;
   }
   for (const char* needed : {"grid", "size_m"})
-    if (!j.contains(needed)) refuse(source, "/cloth", std::string("\"") + needed + "\" is missing; expected \"grid\" and \"size_m\", or \"mesh\"");
+    if (!j.contains(needed))
+      refuse(source, "/cloth",
+             std::string("\"") + needed + "\" is missing; expected \"grid\" and \"size_m\", or \"mesh\"");
   c.columns = j["grid"][0].get<int>();
   c.rows = j["grid"][1].get<int>();
   if (c.vertex_count() > kMostVertices)
@@ -92,34 +99,42 @@ Cloth read_cloth(json& j, const std::string& source) {
   c.axis_v = vec3(j["pose"]["axis_v"]);
   if (c.mesh)
     for (const char* of_grids : {"span_m", "drape", "over_table"})
-      if (j["pose"].contains(of_grids)) refuse(source, std::string("/cloth/pose/") + of_grids, "not for a cloth that is a mesh");
+      if (j["pose"].contains(of_grids))
+        refuse(source, std::string("/cloth/pose/") + of_grids, "not for a cloth that is a mesh");
   c.span_m = j["pose"].value("span_m", 0.0);
-  if (!(c.span_m < c.width_m)) refuse(source, "/cloth/pose/span_m", fmt::format("expected less than the width, {} m", c.width_m));
-  if (c.span_m > 0 && c.columns < 3) refuse(source, "/cloth/grid/0", "expected at least 3 columns, for a sheet that starts bent");
+  if (!(c.span_m < c.width_m))
+    refuse(source, "/cloth/pose/span_m", fmt::format("expected less than the width, {} m", c.width_m));
+  if (c.span_m > 0 && c.columns < 3)
+    refuse(source, "/cloth/grid/0", "expected at least 3 columns, for a sheet that starts bent");
   if (j["pose"].contains("drape")) {
     if (c.span_m > 0) refuse(source, "/cloth/pose/drape", "expected either span_m or drape");
     c.drape_radius_m = j["pose"]["drape"]["radius_m"].get<double>();
     c.drape_offset_m = j["pose"]["drape"].value("offset_m", 0.0);
-    if (!(c.du() < 2 * c.drape_radius_m)) refuse(source, "/cloth/pose/drape/radius_m", fmt::format("expected more than half a cell, {} m", c.du() / 2));
+    if (!(c.du() < 2 * c.drape_radius_m))
+      refuse(source, "/cloth/pose/drape/radius_m", fmt::format("expected more than half a cell, {} m", c.du() / 2));
   }
   c.initial_velocity_m_per_s = vec3(j["initial_velocity_m_per_s"]);
   constexpr double kOrthonormal = 1e-9;
   for (const char* name : {"axis_u", "axis_v"}) {
     const Vec3 a = vec3(j["pose"][name]);
-    if (!(std::abs(dot(a, a) - 1) <= kOrthonormal)) refuse(source, std::string("/cloth/pose/") + name, "expected a vector of length 1");
+    if (!(std::abs(dot(a, a) - 1) <= kOrthonormal))
+      refuse(source, std::string("/cloth/pose/") + name, "expected a vector of length 1");
   }
-  if (!(std::abs(dot(c.axis_u, c.axis_v)) <= kOrthonormal)) refuse(source, "/cloth/pose/axis_v", "expected a vector at right angles to axis_u");
+  if (!(std::abs(dot(c.axis_u, c.axis_v)) <= kOrthonormal))
+    refuse(source, "/cloth/pose/axis_v", "expected a vector at right angles to axis_u");
   return c;
 }
 
 /// Of a cloth whose cells are known. A thicker one would touch itself where it lies flat.
 void read_self_collision(const json& cloth, Cloth& c, const std::string& source) {
   if (!cloth.contains("self_collision")) return;
-  c.self_collision = {cloth["self_collision"]["thickness_m"].get<double>(), cloth["self_collision"]["friction"].get<double>()};
+  c.self_collision = {cloth["self_collision"]["thickness_m"].get<double>(),
+                      cloth["self_collision"]["friction"].get<double>()};
   const double most = c.least_height_m();
   if (!(c.self_collision.thickness_m <= most))
     refuse(source, "/cloth/self_collision/thickness_m",
-           fmt::format("expected at most the least height of a triangle, {:.6g} m, or the cloth would touch itself where it lies flat; found {:.6g}",
+           fmt::format("expected at most the least height of a triangle, {:.6g} m, or the cloth would touch itself "
+                       "where it lies flat; found {:.6g}",
                        most, c.self_collision.thickness_m));
 }
 
@@ -133,7 +148,8 @@ void read_expect(const json& j, Scene& s, const std::string& source) {
     Expectation e{name, {}, {}};
     if (bounds.contains("at_least")) e.at_least = bounds["at_least"].get<double>();
     if (bounds.contains("at_most")) e.at_most = bounds["at_most"].get<double>();
-    if (e.at_least && e.at_most && *e.at_least > *e.at_most) refuse(source, "/expect/" + name, "at_least is above at_most");
+    if (e.at_least && e.at_most && *e.at_least > *e.at_most)
+      refuse(source, "/expect/" + name, "at_least is above at_most");
     s.expect.push_back(std::move(e));
   }
 }
@@ -178,8 +194,8 @@ std::filesystem::path find_scenario(const std::string& name_or_path) {
   }
   if (std::filesystem::exists(name_or_path, ec)) return name_or_path;
   const std::string near = nearest(name_or_path, scenario_names());
-  throw Error(fmt::format("{}: no such file, nor a scene or study of that name in {}{}", name_or_path, scenario_root().string(),
-                          near.empty() ? "" : "; nearest known: " + near));
+  throw Error(fmt::format("{}: no such file, nor a scene or study of that name in {}{}", name_or_path,
+                          scenario_root().string(), near.empty() ? "" : "; nearest known: " + near));
 }
 
 FeatureSet derive_needs(const Scene& scene) {
@@ -221,7 +237,8 @@ json& child(json& of, const std::string& key, const std::string& where) {
 
 void apply_override(json& scenario, const std::string& assignment, const std::string& source) {
   const auto eq = assignment.find('=');
-  if (eq == std::string::npos || eq == 0) throw Error("--set " + assignment + ": expected key=value, such as cloth.grid=[64,64]");
+  if (eq == std::string::npos || eq == 0)
+    throw Error("--set " + assignment + ": expected key=value, such as cloth.grid=[64,64]");
   const std::string text = assignment.substr(eq + 1);
   const bool has_nan = text.find("NaN") != std::string::npos;
   json value = json::parse(text, nullptr, false);
@@ -241,7 +258,8 @@ void apply_override(json& scenario, const std::string& assignment, const std::st
   *at = std::move(value);
 }
 
-Scene scene_from_json(json scenario, const std::string& source, const std::vector<std::string>& overrides, Assets assets) {
+Scene scene_from_json(json scenario, const std::string& source, const std::vector<std::string>& overrides,
+                      Assets assets) {
   for (const std::string& o : overrides) apply_override(scenario, o, source);
   validate_json(scenario, kSceneSchema, source);
   fill_defaults(scenario, kSceneSchema);
@@ -259,7 +277,8 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   s.material.damping_per_s = material["damping_per_s"].get<double>();
   s.material.shear = material["shear"].get<bool>();
   if (s.cloth.mesh && s.material.bending_rigidity_N_m > 0)
-    refuse(source, "/material/bending_rigidity_N_m", "bending is of grids alone; expected 0 for a cloth that is a mesh");
+    refuse(source, "/material/bending_rigidity_N_m",
+           "bending is of grids alone; expected 0 for a cloth that is a mesh");
   if (s.cloth.mesh && scenario["material"].contains("regions"))
     refuse(source, "/material/regions", "columns are of grids alone; a mesh has one stiffness");
   if (s.cloth.mesh && scenario.contains("truth")) refuse(source, "/truth", "the cards are of grids alone");
@@ -270,7 +289,8 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   s.gravity_m_per_s2 = vec3(scenario["gravity_m_per_s2"]);
   s.time.frame_rate_hz = scenario["time"]["frame_rate_hz"].get<double>();
   s.time.duration_s = scenario["time"]["duration_s"].get<double>();
-  if (!(s.time.duration_s * s.time.frame_rate_hz <= kMostFrames)) refuse(source, "/time/duration_s", fmt::format("at most {} frames", kMostFrames));
+  if (!(s.time.duration_s * s.time.frame_rate_hz <= kMostFrames))
+    refuse(source, "/time/duration_s", fmt::format("at most {} frames", kMostFrames));
   if (s.time.frames() < 1) refuse(source, "/time/duration_s", "at least one frame");
   read_frame_times(scenario["time"], s, source);
   read_colliders(scenario, s, source, assets);

@@ -25,8 +25,8 @@ Scene load_scene(const std::string& name_or_path, const std::vector<std::string>
                  Assets assets = Assets::MayBeProcedural);
 
 /// The same from parsed JSON; `source` stands in messages.
-Scene scene_from_json(nlohmann::json scenario, const std::string& source, const std::vector<std::string>& overrides = {},
-                      Assets assets = Assets::MayBeProcedural);
+Scene scene_from_json(nlohmann::json scenario, const std::string& source,
+                      const std::vector<std::string>& overrides = {}, Assets assets = Assets::MayBeProcedural);
 
 /// Sets `dotted.key` to a JSON value (a bare word counts as a string). The key's parent must exist or be an object of
 /// the scene format; a number goes into a list (colliders.0.friction). The result is validated afterwards.

@@ -1,13 +1,14 @@
-#include "clothbench/motion.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "clothbench/motion.hpp"
 
 namespace clothbench {
 namespace {
 
 bool jumps_at(const Scene& scene, std::size_t frame) {
-  return std::any_of(scene.jumps.begin(), scene.jumps.end(), [&](const Jump& j) { return static_cast<std::size_t>(j.frame) == frame; });
+  return std::any_of(scene.jumps.begin(), scene.jumps.end(),
+                     [&](const Jump& j) { return static_cast<std::size_t>(j.frame) == frame; });
 }
 
 }  // namespace
@@ -20,7 +21,8 @@ std::vector<double> collider_speeds_m_per_s(const Scene& scene) {
     if (!c.moves()) continue;
     ColliderMesh some;
     if (c.mesh)
-      for (std::size_t v = 0; v < c.mesh->vertex_count(); v += std::max<std::size_t>(1, c.mesh->vertex_count() / kLooked)) {
+      for (std::size_t v = 0; v < c.mesh->vertex_count();
+           v += std::max<std::size_t>(1, c.mesh->vertex_count() / kLooked)) {
         some.positions.insert(some.positions.end(), &c.mesh->positions[3 * v], &c.mesh->positions[3 * v] + 3);
         some.joints.push_back(c.mesh->joints[v]);
         some.weights.push_back(c.mesh->weights[v]);
@@ -35,7 +37,8 @@ std::vector<double> collider_speeds_m_per_s(const Scene& scene) {
     };
     for (std::size_t f = 1; f < scene.motion.size(); ++f) {
       if (jumps_at(scene, f)) continue;
-      const std::vector<double> was = points(scene.motion[f - 1].colliders[k]), is = points(scene.motion[f].colliders[k]);
+      const std::vector<double> was = points(scene.motion[f - 1].colliders[k]),
+                                is = points(scene.motion[f].colliders[k]);
       const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
       for (std::size_t x = 0; x < is.size(); x += 3)
         most[f] = std::max(most[f], std::hypot(is[x] - was[x], is[x + 1] - was[x + 1], is[x + 2] - was[x + 2]) / dt);
@@ -55,7 +58,8 @@ double grip_speed_m_per_s(const Scene& scene) {
     const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
     for (std::size_t g = 0; g < scene.motion[f].grip_position_m.size(); ++g) {
       const Vec3 &a = scene.motion[f - 1].grip_position_m[g], &b = scene.motion[f].grip_position_m[g];
-      if (scene.motion[f].grip_held[g] != 0) most = std::max(most, std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / dt);
+      if (scene.motion[f].grip_held[g] != 0)
+        most = std::max(most, std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / dt);
     }
   }
   return most;

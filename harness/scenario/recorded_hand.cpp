@@ -27,7 +27,8 @@ std::shared_ptr<ColliderMesh> collider_mesh(const assets::SkinnedMesh& from) {
   auto mesh = collider_mesh(from.rest);
   mesh->joints = from.joints;
   for (const auto& w : from.weights)
-    mesh->weights.push_back({static_cast<float>(w[0]), static_cast<float>(w[1]), static_cast<float>(w[2]), static_cast<float>(w[3])});
+    mesh->weights.push_back(
+        {static_cast<float>(w[0]), static_cast<float>(w[1]), static_cast<float>(w[2]), static_cast<float>(w[3])});
   mesh->joint_count = assets::kJointCount;
   return mesh;
 }
@@ -65,8 +66,8 @@ ColliderPose mesh_pose(const assets::HandRecording& recording, const assets::Rec
   const Eigen::Translation3d offset(offset_m);
   if (recording.mesh) {
     for (std::size_t k = 0; k < assets::kRecordedJointCount; ++k)
-      pose.joints.push_back(affine(
-          offset * Eigen::Affine3d(assets::frame_of(hand.joints[k]) * assets::frame_of(recording.mesh->bind[k]).inverse())));
+      pose.joints.push_back(affine(offset * Eigen::Affine3d(assets::frame_of(hand.joints[k]) *
+                                                            assets::frame_of(recording.mesh->bind[k]).inverse())));
     return pose;
   }
   if (stand_in == nullptr) throw Error("hand recording: it has no mesh, and no hand stands in for it");

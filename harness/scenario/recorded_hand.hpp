@@ -18,8 +18,9 @@ std::shared_ptr<ColliderMesh> collider_mesh(const assets::TriangleMesh&);
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::SkinnedMesh&);
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::RecordedMesh&);
 
-/// The 19 capsules of a recorded hand, or the matrices of its joints. What a scene that replays a recording and a live session
-/// that makes it go through, so that both give the same bits. A recording without a mesh of its own moves `stand_in`.
+/// The 19 capsules of a recorded hand, or the matrices of its joints. What a scene that replays a recording and a live
+/// session that makes it go through, so that both give the same bits. A recording without a mesh of its own moves
+/// `stand_in`.
 ColliderPose capsules_pose(const assets::HandRecording&, const assets::RecordedHand&, const assets::Vector& offset_m);
 ColliderPose mesh_pose(const assets::HandRecording&, const assets::RecordedHand&, const assets::Hand* stand_in,
                        const assets::Vector& offset_m);

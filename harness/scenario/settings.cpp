@@ -28,7 +28,12 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-const char* kind(const json& v) { return v.is_number_integer() ? "an integer" : v.is_number() ? "a number" : v.is_boolean() ? "true or false" : "a string"; }
+const char* kind(const json& v) {
+  return v.is_number_integer() ? "an integer"
+         : v.is_number()       ? "a number"
+         : v.is_boolean()      ? "true or false"
+                               : "a string";
+}
 
 bool fits(const json& given, const json& standard) {
   if (standard.is_number_integer()) return given.is_number_integer();
@@ -63,7 +68,8 @@ json complete_settings(const SolverInfo& info, const json& given) {
                               near.empty() ? names.empty() ? "; it has none" : "" : "; nearest known: " + near));
     }
     if (!fits(value, all[key]))
-      throw Error(fmt::format("solver {}: setting {}: expected {}; found {}", info.name, key, kind(all[key]), value.dump()));
+      throw Error(
+          fmt::format("solver {}: setting {}: expected {}; found {}", info.name, key, kind(all[key]), value.dump()));
     all[key] = value;
   }
   return all;

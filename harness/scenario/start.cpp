@@ -131,7 +131,9 @@ EdgeCell edge_cell(const Cloth& c, const Edge& e) {
   }
   const int a = static_cast<int>(e.a) % c.columns, b = static_cast<int>(e.b) % c.columns;
   const bool down = e.a / static_cast<std::uint32_t>(c.columns) != e.b / static_cast<std::uint32_t>(c.columns);
-  const auto width = [&](int column) { return c.column_factors.empty() ? c.du() : c.line_u_m(column + 1) - c.line_u_m(column); };
+  const auto width = [&](int column) {
+    return c.column_factors.empty() ? c.du() : c.line_u_m(column + 1) - c.line_u_m(column);
+  };
   if (a != b && down) return {width(std::min(a, b)), c.dv()};
   if (a != b) return {e.rest_m, c.dv()};
   return {e.rest_m, (width(std::max(a - 1, 0)) + width(std::min(a, c.columns - 2))) / 2};

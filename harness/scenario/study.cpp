@@ -34,7 +34,7 @@ FeatureSet usable_features(const std::string& solver, FeatureSet needs) {
 }
 
 StudyRules read_rules(const json& j) {
-  return {j["frames"].get<int>(), j["min_frames"].get<int>(), j["max_wall_s"].get<double>(),
+  return {j["frames"].get<int>(),      j["min_frames"].get<int>(),        j["max_wall_s"].get<double>(),
           j["warmup_s"].get<double>(), j["ladder_limit_s"].get<double>(), j["agree"].get<double>()};
 }
 
@@ -71,8 +71,8 @@ std::vector<Variant> expand(const json& axes, const std::string& pointer, const 
                               axis["values"].size(), axis["labels"].size()));
     for (const auto& [key, values] : axis["with"].items())
       if (values.size() != axis["values"].size())
-        throw Error(fmt::format("{}: {}/axes/{}/with/{}: expected one value each of the axis, {}; found {}", source, pointer, a, key,
-                                axis["values"].size(), values.size()));
+        throw Error(fmt::format("{}: {}/axes/{}/with/{}: expected one value each of the axis, {}; found {}", source,
+                                pointer, a, key, axis["values"].size(), values.size()));
     std::vector<Variant> next;
     for (const Variant& v : all)
       for (std::size_t k = 0; k < axis["values"].size(); ++k) {
@@ -141,7 +141,8 @@ class Builder {
       if (contains(named, name)) continue;
       const auto knobs = options_.knobs.find(name);
       const bool climbs = knobs != options_.knobs.end() && ladder().is_object();
-      for (StudySolver& rung : climb({name, "default", json::object(), {}, {}, true}, climbs ? knobs->second : Words{}, source_)) {
+      for (StudySolver& rung :
+           climb({name, "default", json::object(), {}, {}, true}, climbs ? knobs->second : Words{}, source_)) {
         study_.solvers.push_back(std::move(rung));
         stays_.push_back(true);
       }

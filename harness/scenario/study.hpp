@@ -60,8 +60,8 @@ struct Study {
   double accuracy_duration_s = 0;  ///< infinite: the whole scene
   double cell_limit_s = 0;         ///< 0 = none
   bool stage_times = true, pipelined = false;
-  StudyRules rules;                ///< of `length`
-  nlohmann::json definition;       ///< completed study file
+  StudyRules rules;           ///< of `length`
+  nlohmann::json definition;  ///< completed study file
 };
 
 /// Loads a study by path or name ("table3"). Throws Error as `load_scene` does, and if the study has no "quick" where

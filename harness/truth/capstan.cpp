@@ -72,19 +72,22 @@ double polygonal_greatest_overhang_m(const HeavyCapstan& c, double light_overhan
   return tension;
 }
 
-std::vector<SlidState> slide(const HeavyCapstan& c, double overhang_1, double overhang_2, int turns, std::span<const double> times_s) {
+std::vector<SlidState> slide(const HeavyCapstan& c, double overhang_1, double overhang_2, int turns,
+                             std::span<const double> times_s) {
   namespace odeint = boost::numeric::odeint;
   using State = std::array<double, 2>;
   check(c);
   const auto greatest = [&](double light) {
     return turns > 0 ? polygonal_greatest_overhang_m(c, light, turns) : greatest_overhang_m(c, light);
   };
-  const double mu = c.friction, constant = greatest(0), ratio = (greatest(1) - constant), smooth = capstan_ratio(mu, pi);
+  const double mu = c.friction, constant = greatest(0), ratio = (greatest(1) - constant),
+               smooth = capstan_ratio(mu, pi);
   const double on_cylinder = mu > 0 ? c.radius_m * (smooth - 1) / mu : pi * c.radius_m;
   const auto rate = [&](const State& x, State& d, double) {
     const double light = overhang_1 - x[0], heavy = overhang_2 + x[0];
     d[0] = x[1];
-    d[1] = (c.gravity_m_per_s2 * (heavy - ratio * light - constant) + x[1] * x[1] * (ratio - 1)) / (heavy + ratio * light + on_cylinder);
+    d[1] = (c.gravity_m_per_s2 * (heavy - ratio * light - constant) + x[1] * x[1] * (ratio - 1)) /
+           (heavy + ratio * light + on_cylinder);
   };
   if (overhang_1 > greatest(overhang_2)) throw Error("argument overhang_1_m: expected the light side");
   const bool still = overhang_2 <= greatest(overhang_1);
@@ -94,7 +97,8 @@ std::vector<SlidState> slide(const HeavyCapstan& c, double overhang_1, double ov
   for (const double t : times_s) {
     if (!(t >= now)) throw Error("argument times_s: expected ascending times from 0");
     if (!still && t > now)
-      odeint::integrate_adaptive(odeint::make_controlled(1e-12, 1e-12, odeint::runge_kutta_fehlberg78<State>()), rate, x, now, t, (t - now) / 4);
+      odeint::integrate_adaptive(odeint::make_controlled(1e-12, 1e-12, odeint::runge_kutta_fehlberg78<State>()), rate,
+                                 x, now, t, (t - now) / 4);
     if (!(x[0] < overhang_1)) throw Error("argument times_s: the light end has come to the cylinder");
     now = t;
     out.push_back({t, x[0], x[1]});

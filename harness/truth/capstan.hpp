@@ -43,15 +43,17 @@ bool holds(const HeavyCapstan&, double overhang_1_m, double overhang_2_m);
 /// itself carries half an edge of it. Order 2 in 1/m towards the smooth one. Error as above, or if mu tan(d/2) >= 1.
 double polygonal_greatest_overhang_m(const HeavyCapstan&, double light_overhang_m, int turns);
 
-/// The same strip once it slips, its ends hanging, from rest: at speed v the pressure times R is T + rho g R sin phi - rho v^2,
+/// The same strip once it slips, its ends hanging, from rest: at speed v the pressure times R is T + rho g R sin phi -
+/// rho v^2,
 ///   v' [l2 + E l1 + R (E - 1)/mu] = g (l2 - E l1 - C) + v^2 (E - 1),   l1, l2 = overhangs now,
 /// with E = e^{mu pi} and C = 2 mu R (1 + E)/(1 + mu^2). Source: derived from the balance of one moving element. With
 /// `turns` > 0 the bracket on the right is that of the polygon above, l2 - polygonal_greatest_overhang(l1), so that it
-/// starts where the polygon does; inertia stays smooth. Keeps still if it holds. Error as above, also for a time at which the
-/// light end has come to the axis. By Runge-Kutta-Fehlberg 7(8), tolerance 1e-12.
+/// starts where the polygon does; inertia stays smooth. Keeps still if it holds. Error as above, also for a time at
+/// which the light end has come to the axis. By Runge-Kutta-Fehlberg 7(8), tolerance 1e-12.
 struct SlidState {
   double time_s, way_m, speed_m_per_s;
 };
-std::vector<SlidState> slide(const HeavyCapstan&, double overhang_1_m, double overhang_2_m, int turns, std::span<const double> times_s);
+std::vector<SlidState> slide(const HeavyCapstan&, double overhang_1_m, double overhang_2_m, int turns,
+                             std::span<const double> times_s);
 
 }  // namespace clothbench::truth

@@ -52,7 +52,8 @@ Card free_fall(const Strip& s) {
   };
   card.quantity = [s](const Columns& c) {
     double sum = 0;  // ends carry half a cell
-    for (std::size_t i = 0; i < c.size(); ++i) sum += (i == 0 || i + 1 == c.size() ? 0.5 : 1) * dot(c[i] - s.start, s.up);
+    for (std::size_t i = 0; i < c.size(); ++i)
+      sum += (i == 0 || i + 1 == c.size() ? 0.5 : 1) * dot(c[i] - s.start, s.up);
     return -(sum / s.links - s.length_m / 2 * dot(s.along, s.up));
   };
   return card;
@@ -77,7 +78,8 @@ Card pendulum(const Strip& s) {
     return Columns{s.start, s.at(s.length_m * std::sin(a), -s.length_m * std::cos(a))};
   };
   card.column_speeds = [s, p](int frame) {
-    const double a = pendulum_angle_rad(p, s.time_s(frame)), w = s.length_m * pendulum_angular_speed_rad_per_s(p, s.time_s(frame));
+    const double a = pendulum_angle_rad(p, s.time_s(frame)),
+                 w = s.length_m * pendulum_angular_speed_rad_per_s(p, s.time_s(frame));
     return Columns{Vec3{}, w * std::cos(a) * s.along + w * std::sin(a) * s.up};
   };
   card.quantity = [s](const Columns& c) {
@@ -97,7 +99,8 @@ Card swing_strip(const Strip& s) {
   s.need_damping(false);
   s.need_even_masses();
   const double horizon_s = 0.5 * std::sqrt(s.length_m * 9.81 / s.g);
-  s.need(s.time_s(s.scene.time.frames()) <= horizon_s * (1 + 1e-9), "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): then comes chaos");
+  s.need(s.time_s(s.scene.time.frames()) <= horizon_s * (1 + 1e-9),
+         "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): then comes chaos");
   Card card = s.card();
   card.quantity_name = "distance of the free end from the wall";
   card.quantity = tip(s.start, s.along);
@@ -112,7 +115,8 @@ Card swing_strip(const Strip& s) {
   card.column_speeds = [s, states](int frame) {
     const ChainState& now = states->at(static_cast<std::size_t>(frame));
     Columns out;
-    for (std::size_t i = 0; i < now.x_m.size(); ++i) out.push_back(now.x_speed_m_per_s[i] * s.along + now.z_speed_m_per_s[i] * s.up);
+    for (std::size_t i = 0; i < now.x_m.size(); ++i)
+      out.push_back(now.x_speed_m_per_s[i] * s.along + now.z_speed_m_per_s[i] * s.up);
     return out;
   };
   // Four times as many links are nearer to the continuum by 16; made only if asked for.
@@ -132,7 +136,8 @@ Card heavy_strip(const Strip& s) {
   s.need_pins(s.edge("u0"), "edge u0 pinned and nothing else held");
   s.need_no_bending();
   s.need_damping(true);
-  const HeavyStrip strip{s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), s.g, s.end_load_N_per_m(), StretchLaw::EngineeringSpring};
+  const HeavyStrip strip{s.length_m,           s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), s.g,
+                         s.end_load_N_per_m(), StretchLaw::EngineeringSpring};
   Card card = s.card();
   card.settles = card.by_quantity = true;
   card.quantity_name = "stretch of the strip";
@@ -189,7 +194,8 @@ Card cantilever(const Strip& s) {
   s.need_damping(true);
   s.need(s.scene.needs.has(Feature::Bend), "a bending rigidity");
   s.need_even_masses();
-  const double cell = s.scene.cloth.du(), free_m = s.length_m - cell, weight = s.scene.cloth.areal_density_kg_per_m2 * s.g;
+  const double cell = s.scene.cloth.du(), free_m = s.length_m - cell,
+               weight = s.scene.cloth.areal_density_kg_per_m2 * s.g;
   const auto Y = s.scene.material.membrane_stiffness_N_per_m;
   s.need(!Y || weight * free_m / *Y <= kMostStrain, "a membrane that its own weight stretches by 1e-7 at most");
   const double gamma = weight * free_m * free_m * free_m / s.scene.material.bending_rigidity_N_m;
@@ -228,10 +234,12 @@ TwoHandPull bars_of(const Strip& s) {
   const char* kBars = "two grips: edge u0 moved along -axis_u and edge u1 along axis_u, equally fast, with one ramp_s";
   s.need(grips.size() == 2 && grips[0].value("edge", "") == "u0" && grips[1].value("edge", "") == "u1", kBars);
   const double speed = dot(velocity(1), s.along), ramp_s = grips[0].at("ramp_s").get<double>();
-  const bool alike = length(velocity(0) + velocity(1)) <= 1e-9 * speed && length(velocity(1) - speed * s.along) <= 1e-9 * speed &&
+  const bool alike = length(velocity(0) + velocity(1)) <= 1e-9 * speed &&
+                     length(velocity(1) - speed * s.along) <= 1e-9 * speed &&
                      grips[1].at("ramp_s").get<double>() == ramp_s;
   for (const nlohmann::json& grip : grips)
-    for (const char* key : {"stop_s", "release_s", "jumps"}) s.need(!grip.contains(key), std::string("bars without \"") + key + "\"");
+    for (const char* key : {"stop_s", "release_s", "jumps"})
+      s.need(!grip.contains(key), std::string("bars without \"") + key + "\"");
   s.need_even_masses();
   s.need(speed > 0 && alike && s.scene.pins.vertices.empty(), kBars);
   return {s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), speed, ramp_s};
@@ -251,18 +259,22 @@ Card two_hand_pull(const Strip& s) {
     return out;
   };
   const std::size_t rows = static_cast<std::size_t>(s.scene.cloth.rows);
-  const auto first = way(0, s.scene.motion[0].grip_position_m[0]), last = way(rows, s.scene.motion[0].grip_position_m[rows]);
+  const auto first = way(0, s.scene.motion[0].grip_position_m[0]),
+             last = way(rows, s.scene.motion[0].grip_position_m[rows]);
   Card card = s.card();
   card.by_quantity = true;
   card.speed_scale_m_per_s = hands.hand_speed_m_per_s;
   card.quantity_name = "greatest strain";
   card.quantity_scale = hands.hand_speed_m_per_s / wave_speed_m_per_s(hands);
   const auto states = std::make_shared<std::vector<PulledState>>(
-      pull({s.links, s.length_m, hands.areal_density_kg_per_m2, hands.membrane_stiffness_N_per_m}, s.times_s(), first, last));
+      pull({s.links, s.length_m, hands.areal_density_kg_per_m2, hands.membrane_stiffness_N_per_m}, s.times_s(), first,
+           last));
   card.columns = [s, states](int frame) {
     Columns out;
     for (int i = 0; i <= s.links; ++i)
-      out.push_back(s.at(s.length_m * i / s.links + states->at(static_cast<std::size_t>(frame)).displacement_m[static_cast<std::size_t>(i)], 0));
+      out.push_back(s.at(s.length_m * i / s.links +
+                             states->at(static_cast<std::size_t>(frame)).displacement_m[static_cast<std::size_t>(i)],
+                         0));
     return out;
   };
   card.column_speeds = [s, states](int frame) {
@@ -316,11 +328,13 @@ std::vector<Vec3> column_means(const Cloth& c, const std::vector<double>& values
 }
 
 std::vector<double> vertex_values(const Cloth& c, const std::vector<Vec3>& columns, bool offset) {
-  if (columns.size() != static_cast<std::size_t>(c.columns)) throw Error("argument columns: expected one for each column of the grid");
+  if (columns.size() != static_cast<std::size_t>(c.columns))
+    throw Error("argument columns: expected one for each column of the grid");
   std::vector<double> out;
   for (int j = 0; j < c.rows; ++j)
     for (const Vec3& x : columns)
-      for (std::size_t k = 0; k < 3; ++k) out.push_back(x[k] + (offset ? (j * c.dv() - c.height_m / 2) * c.axis_v[k] : 0));
+      for (std::size_t k = 0; k < 3; ++k)
+        out.push_back(x[k] + (offset ? (j * c.dv() - c.height_m / 2) * c.axis_v[k] : 0));
   return out;
 }
 

@@ -10,16 +10,16 @@ namespace clothbench::truth {
 
 /// A scene that holds or slips by its friction: what is found by trying coefficients, against the closed form.
 struct Threshold {
-  std::string key;           ///< of the scene, what is varied
-  double exact = 0;          ///< it holds from here on
-  double held_below_m = 0;   ///< |quantity| at the end of a run that held
+  std::string key;          ///< of the scene, what is varied
+  double exact = 0;         ///< it holds from here on
+  double held_below_m = 0;  ///< |quantity| at the end of a run that held
   std::string error_name, error_units;
   std::function<double(double found)> error;
 };
 
 /// The exact answer of one scene with a `truth` block; every parameter is the scene's own. All cards are strips along u
-/// (or sheets) whose rows move alike, so an answer is one position for each column of the grid, on the middle line of the sheet;
-/// a vertex lies at its column's position plus its share of the height along axis_v.
+/// (or sheets) whose rows move alike, so an answer is one position for each column of the grid, on the middle line of
+/// the sheet; a vertex lies at its column's position plus its share of the height along axis_v.
 ///
 /// `columns` is the answer of the same mesh wherever there is one (a chain of as many links, springs, hinges), so that
 /// a run's distance from it has no spatial part; `continuum` is the answer without a mesh.

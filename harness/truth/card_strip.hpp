@@ -27,14 +27,16 @@ struct Strip {
   double length_m, g;
   Vec3 start{}, along{}, up{};  // middle of edge u0; axis_u; against gravity
 
-  explicit Strip(const Scene& s) : scene(s), links(s.cloth.columns - 1), length_m(s.cloth.width_m), g(length(s.gravity_m_per_s2)) {
+  explicit Strip(const Scene& s)
+      : scene(s), links(s.cloth.columns - 1), length_m(s.cloth.width_m), g(length(s.gravity_m_per_s2)) {
     along = s.cloth.axis_u;
     start = s.cloth.center_m - (s.cloth.span_m > 0 ? s.cloth.span_m : length_m) / 2 * along;
     if (g > 0) up = (-1 / g) * s.gravity_m_per_s2;
   }
 
   void need_rows() const {
-    need((scene.needs & FeatureSet{Feature::UnevenGrid, Feature::Regions, Feature::Spin}).empty(), "even cells and no spin");
+    need((scene.needs & FeatureSet{Feature::UnevenGrid, Feature::Regions, Feature::Spin}).empty(),
+         "even cells and no spin");
     need(!scene.needs.has(Feature::Shear), "\"shear\": false in its material: rows that do not feel one another");
     need(std::abs(dot(scene.cloth.axis_v, up)) <= kLevel, "axis_v at right angles to gravity");
   }
@@ -55,7 +57,8 @@ struct Strip {
     const Cloth& c = scene.cloth;
     const double factor = c.mass_factors.back();
     for (std::size_t v = 0; v < c.mass_factors.size(); ++v)
-      need(c.mass_factors[v] == ((v + 1) % static_cast<std::size_t>(c.columns) == 0 ? factor : 1), "masses scaled on edge u1 at most, all alike");
+      need(c.mass_factors[v] == ((v + 1) % static_cast<std::size_t>(c.columns) == 0 ? factor : 1),
+           "masses scaled on edge u1 at most, all alike");
     return (factor - 1) * c.areal_density_kg_per_m2 * c.du() / 2 * g;
   }
   void need_even_masses() const { need(scene.cloth.mass_factors.empty(), "masses that are not scaled"); }

@@ -13,7 +13,8 @@ namespace clothbench::truth {
 namespace {
 
 constexpr double kPlace = 1e-6;  // of L: how exactly a scene must be placed
-constexpr double kHeldIncline = 1e-3, kHeldCapstan = 5e-3;  // of L: creep of what holds; slipping is a hundred times as far
+constexpr double kHeldIncline = 1e-3,
+                 kHeldCapstan = 5e-3;  // of L: creep of what holds; slipping is a hundred times as far
 
 /// The face a sheet lies on: which way is out, and how far its margin is from the sheet.
 struct Face {
@@ -35,9 +36,11 @@ Face face_of(const Strip& s, const Collider& c, const Vec3& way) {
       bool over = true;
       for (int corner = 0; corner < 8; ++corner) {
         const Vec3 x = cloth.center_m + ((corner & 1) != 0 ? 0.5 : -0.5) * cloth.width_m * cloth.axis_u +
-                       ((corner & 2) != 0 ? 0.5 : -0.5) * cloth.height_m * cloth.axis_v + ((corner & 4) != 0 ? 1.0 : 0.0) * way;
+                       ((corner & 2) != 0 ? 0.5 : -0.5) * cloth.height_m * cloth.axis_v +
+                       ((corner & 4) != 0 ? 1.0 : 0.0) * way;
         for (std::size_t other = 0; other < 3; ++other)
-          if (other != k) over = over && std::abs(dot(x - c.center_m, c.axes[other])) < c.half_extent_m[other] - c.margin_m;
+          if (other != k)
+            over = over && std::abs(dot(x - c.center_m, c.axes[other])) < c.half_extent_m[other] - c.margin_m;
       }
       if (over && std::abs(f.gap_m) < std::abs(best.gap_m)) best = f;
     }
@@ -72,18 +75,23 @@ Draped draped(const Strip& s) {
   const Collider& collider = only_collider(s, "a cylinder");
   const nlohmann::json j = nlohmann::json::parse(s.scene.json).at("colliders").at(0);
   s.need(j.at("type") == "cylinder", "one collider: a cylinder");
-  const auto vec = [&](const char* key) { return Vec3{j.at(key)[0].get<double>(), j.at(key)[1].get<double>(), j.at(key)[2].get<double>()}; };
+  const auto vec = [&](const char* key) {
+    return Vec3{j.at(key)[0].get<double>(), j.at(key)[1].get<double>(), j.at(key)[2].get<double>()};
+  };
   const Vec3 off = c.center_m - vec("center_m"), axis = vec("axis");
   s.need(std::abs(std::abs(dot(axis, b)) - 1) <= Strip::kLevel, "the cylinder's axis along axis_v");
   s.need(length(off - dot(off, axis) * axis) <= kPlace * s.length_m, "the cylinder's axis through center_m");
-  s.need(j.at("length_m").get<double>() >= c.height_m + 2 * std::abs(dot(off, axis)), "a cylinder as long as the strip is wide");
+  s.need(j.at("length_m").get<double>() >= c.height_m + 2 * std::abs(dot(off, axis)),
+         "a cylinder as long as the strip is wide");
   s.need(std::abs(j.at("radius_m").get<double>() + collider.margin_m - c.drape_radius_m) <= kPlace * s.length_m,
          "a drape radius that is the cylinder's and its margin");
-  const double cell = c.du(), turns = std::numbers::pi / drape_turn_rad(c), middle = s.links / 2.0 - c.drape_offset_m / cell;
+  const double cell = c.du(), turns = std::numbers::pi / drape_turn_rad(c),
+               middle = s.links / 2.0 - c.drape_offset_m / cell;
   const int m = static_cast<int>(std::lround(turns));
   const double first = middle - (m - 1) / 2.0, light = std::round(first);
   s.need(std::abs(turns - m) <= 1e-6 && std::abs(first - light) <= 1e-6,
-         "rows that lie evenly on the cylinder: cells of 2 R sin(pi / 2m) for a whole number m, and an offset in half cells to suit");
+         "rows that lie evenly on the cylinder: cells of 2 R sin(pi / 2m) for a whole number m, and an offset in half "
+         "cells to suit");
   const double heavy = s.links - (m - 1) - light;
   s.need(light >= 1 && heavy >= 1, "ends that hang");
   s.need(heavy >= light, "an offset towards u1, or none");
@@ -147,14 +155,17 @@ Card incline(const Strip& s) {
   s.need(std::isfinite(face.gap_m), "a plane, or a box that is all under the sheet");
   const Vec3 d = downhill();
   Incline slope;
-  slope.angle_rad = std::atan2(std::max(0.0, dot(s.scene.gravity_m_per_s2, d)), -dot(s.scene.gravity_m_per_s2, face.normal));
+  slope.angle_rad =
+      std::atan2(std::max(0.0, dot(s.scene.gravity_m_per_s2, d)), -dot(s.scene.gravity_m_per_s2, face.normal));
   slope.friction = collider.friction;
   slope.speed_m_per_s = dot(v0, d);
   slope.gravity_m_per_s2 = s.g;
   s.need(std::abs(face.gap_m) <= kPlace * s.length_m, "a sheet that starts at the collider's margin");
-  s.need(std::abs(dot(c.axis_u, face.normal)) <= Strip::kLevel && std::abs(dot(c.axis_v, face.normal)) <= Strip::kLevel, "a sheet parallel to the face");
+  s.need(std::abs(dot(c.axis_u, face.normal)) <= Strip::kLevel && std::abs(dot(c.axis_v, face.normal)) <= Strip::kLevel,
+         "a sheet parallel to the face");
   s.need(slope.angle_rad < std::numbers::pi / 2, "a face that looks up");
-  s.need(slope.speed_m_per_s >= 0 && length(v0 - slope.speed_m_per_s * d) <= Strip::kLevel * (length(v0) + 1), "an initial velocity straight downhill, or none");
+  s.need(slope.speed_m_per_s >= 0 && length(v0 - slope.speed_m_per_s * d) <= Strip::kLevel * (length(v0) + 1),
+         "an initial velocity straight downhill, or none");
   const double whole = slide_distance_m(slope, most);
   face = face_of(s, collider, whole * d);
   s.need(std::isfinite(face.gap_m), "a box that is under all of the sheet's way");
@@ -174,12 +185,18 @@ Card incline(const Strip& s) {
   card.quantity = [s, d](const Columns& x) {
     double sum = 0;  // ends carry half a cell
     for (std::size_t i = 0; i < x.size(); ++i)
-      sum += (i == 0 || i + 1 == x.size() ? 0.5 : 1) * dot(x[i] - s.start - (s.length_m * static_cast<double>(i) / s.links) * s.along, d);
+      sum += (i == 0 || i + 1 == x.size() ? 0.5 : 1) *
+             dot(x[i] - s.start - (s.length_m * static_cast<double>(i) / s.links) * s.along, d);
     return sum / s.links;
   };
   if (slope.speed_m_per_s == 0 && slope.angle_rad > 0)
-    card.threshold = Threshold{"colliders.0.friction", std::tan(slope.angle_rad), kHeldIncline * s.length_m, "critical angle", "degree",
-                               [angle = slope.angle_rad](double found) { return (angle - std::atan(found)) * 180 / std::numbers::pi; }};
+    card.threshold = Threshold{
+        "colliders.0.friction",
+        std::tan(slope.angle_rad),
+        kHeldIncline * s.length_m,
+        "critical angle",
+        "degree",
+        [angle = slope.angle_rad](double found) { return (angle - std::atan(found)) * 180 / std::numbers::pi; }};
   return card;
 }
 
@@ -191,9 +208,11 @@ Card capstan(const Strip& s) {
   const auto states = std::make_shared<States>(slide(cylinder, strip.light_m, strip.heavy_m, strip.turns, s.times_s()));
   const auto smooth = std::make_shared<States>(slide(cylinder, strip.light_m, strip.heavy_m, 0, s.times_s()));
   const bool moves = states->back().way_m > 0;
-  Card card = over_cylinder(s, [states](int frame) { return states->at(static_cast<std::size_t>(frame)).way_m; }, moves);
+  Card card = over_cylinder(
+      s, [states](int frame) { return states->at(static_cast<std::size_t>(frame)).way_m; }, moves);
   card.continuum = [s, smooth](double share, int frame) {
-    return draped_columns(s, smooth->at(static_cast<std::size_t>(frame)).way_m).at(static_cast<std::size_t>(std::lround(share * s.links)));
+    return draped_columns(s, smooth->at(static_cast<std::size_t>(frame)).way_m)
+        .at(static_cast<std::size_t>(std::lround(share * s.links)));
   };
   const auto greatest = [cylinder, strip](double friction) {
     HeavyCapstan other = cylinder;
@@ -202,10 +221,16 @@ Card capstan(const Strip& s) {
   };
   // Where a turn alone would hold there is no threshold below.
   const double locks = 1 / std::tan(std::numbers::pi / (2 * strip.turns));
-  const auto missing = [&](double friction) { return friction < 0.99 * locks ? greatest(friction) - strip.heavy_m : 1; };
+  const auto missing = [&](double friction) {
+    return friction < 0.99 * locks ? greatest(friction) - strip.heavy_m : 1;
+  };
   if (strip.heavy_m > strip.light_m) {
     const double exact = positive_root(missing, 0.1 * locks, true, "capstan");
-    card.threshold = Threshold{"colliders.0.friction", exact, kHeldCapstan * s.length_m, "overhang held", "1",
+    card.threshold = Threshold{"colliders.0.friction",
+                               exact,
+                               kHeldCapstan * s.length_m,
+                               "overhang held",
+                               "1",
                                [greatest, heavy = strip.heavy_m](double found) { return heavy / greatest(found) - 1; }};
   }
   return card;
@@ -218,7 +243,8 @@ Card atwood(const Strip& s) {
   const Atwood weights{s.length_m, strip.radius_m, s.scene.cloth.drape_offset_m, s.g};
   const double end = atwood_end_s(weights), whole = s.time_s(s.scene.time.frames());
   s.need(whole <= end, "a duration of at most " + std::to_string(end) + " s: then the strip leaves the cylinder");
-  return over_cylinder(s, [s, weights](int frame) { return atwood_offset_m(weights, s.time_s(frame)) - weights.offset_m; }, true);
+  return over_cylinder(
+      s, [s, weights](int frame) { return atwood_offset_m(weights, s.time_s(frame)) - weights.offset_m; }, true);
 }
 
 }  // namespace clothbench::truth

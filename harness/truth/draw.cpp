@@ -38,7 +38,8 @@ class Dice {
   /// Uniform in SO(3). Source: Shoemake, Graphics Gems III, 1992.
   std::array<Vec3, 3> rotation() {
     const double u = unit(), a = 2 * pi * unit(), b = 2 * pi * unit();
-    const double x = std::sqrt(1 - u) * std::sin(a), y = std::sqrt(1 - u) * std::cos(a), z = std::sqrt(u) * std::sin(b), w = std::sqrt(u) * std::cos(b);
+    const double x = std::sqrt(1 - u) * std::sin(a), y = std::sqrt(1 - u) * std::cos(a), z = std::sqrt(u) * std::sin(b),
+                 w = std::sqrt(u) * std::cos(b);
     return {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
              {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
              {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
@@ -67,7 +68,8 @@ class Drawing {
     j_["cloth"]["areal_density_kg_per_m2"] = density_;
     const bool keeps_rate = card != "two-hand-pull";
     if (card == "free-fall") draw_stiffness(100);
-    if (card == "heavy-strip") draw_stiffness(std::max(100.0, 100 * density_ * g_ * length_));  // strains of 1 % at most
+    if (card == "heavy-strip")
+      draw_stiffness(std::max(100.0, 100 * density_ * g_ * length_));  // strains of 1 % at most
     if (card == "catenary") span();
     if (card == "cantilever") bending();
     if (card == "two-hand-pull") pull();
@@ -107,13 +109,16 @@ class Drawing {
     note("weight_over_bending", gamma);
     j_["material"]["bending_rigidity_N_m"] = density_ * g_ * free_m * free_m * free_m / gamma;
     // As stiff against its weight as it was: a strip that the card takes for inextensible.
-    const double weight = density_ * g_ * length_, before = scene_.cloth.areal_density_kg_per_m2 * norm(scene_.gravity_m_per_s2) * scene_.cloth.width_m;
-    if (const auto Y = scene_.material.membrane_stiffness_N_per_m) j_["material"]["membrane_stiffness_N_per_m"] = *Y * weight / before;
+    const double weight = density_ * g_ * length_,
+                 before = scene_.cloth.areal_density_kg_per_m2 * norm(scene_.gravity_m_per_s2) * scene_.cloth.width_m;
+    if (const auto Y = scene_.material.membrane_stiffness_N_per_m)
+      j_["material"]["membrane_stiffness_N_per_m"] = *Y * weight / before;
   }
 
   void pull() {
     const Cloth& c = scene_.cloth;
-    const double before = c.width_m / std::sqrt(*scene_.material.membrane_stiffness_N_per_m / c.areal_density_kg_per_m2);
+    const double before =
+        c.width_m / std::sqrt(*scene_.material.membrane_stiffness_N_per_m / c.areal_density_kg_per_m2);
     // A frame for every so much of the wave's way; the format knows no more than so many a second.
     const double shortest = before * rate_hz_ / kMostFrameRate_hz;
     draw_stiffness(100, std::min(1e6, density_ * std::pow(length_ / shortest, 2)));
@@ -153,7 +158,8 @@ class Drawing {
     j_["cloth"]["initial_velocity_m_per_s"] = scaled(speed, d);
     json& face = j_["colliders"][0];
     face["friction"] = friction;
-    const double slowing = g_ * (friction * std::cos(angle) - std::sin(angle)), T = j_["time"]["duration_s"].get<double>();
+    const double slowing = g_ * (friction * std::cos(angle) - std::sin(angle)),
+                 T = j_["time"]["duration_s"].get<double>();
     if (stops) j_["time"]["duration_s"] = 1.5 * speed / slowing;
     const double way = stops ? speed * speed / (2 * slowing) : sticks ? 0 : -0.5 * slowing * T * T;
     if (face["type"] == "box")
@@ -162,7 +168,8 @@ class Drawing {
 
   Vec3 slope_direction() const {
     const Vec3& u = scene_.cloth.axis_u;
-    if (norm(scene_.cloth.initial_velocity_m_per_s) > 0) return scaled(1 / norm(scene_.cloth.initial_velocity_m_per_s), scene_.cloth.initial_velocity_m_per_s);
+    if (norm(scene_.cloth.initial_velocity_m_per_s) > 0)
+      return scaled(1 / norm(scene_.cloth.initial_velocity_m_per_s), scene_.cloth.initial_velocity_m_per_s);
     const Vec3& g = scene_.gravity_m_per_s2;
     const double along = u[0] * g[0] + u[1] * g[1] + u[2] * g[2];
     return along < 0 ? scaled(-1, u) : u;
@@ -201,7 +208,10 @@ class Drawing {
     const double real = length_ / (light + heavy + turns - 1);
     const HeavyCapstan real_cylinder{friction, radius * real, density_, g_};
     double T = 0.05 * std::sqrt(length_ / g_);
-    while (slide(real_cylinder, (light - 0.5) * real, (heavy - 0.5) * real, turns, std::vector<double>{0, 1.1 * T}).back().way_m < (light - 0.5) * real / 3) T *= 1.1;
+    while (slide(real_cylinder, (light - 0.5) * real, (heavy - 0.5) * real, turns, std::vector<double>{0, 1.1 * T})
+               .back()
+               .way_m < (light - 0.5) * real / 3)
+      T *= 1.1;
     j_["time"]["duration_s"] = T;
   }
 
@@ -242,7 +252,8 @@ class Drawing {
 }  // namespace
 
 DrawnScene draw(const Scene& scene, std::uint64_t seed) {
-  if (scene.truth_card.empty()) throw Error(scene.source + ": --seed: the scene has no truth to evaluate at drawn parameters");
+  if (scene.truth_card.empty())
+    throw Error(scene.source + ": --seed: the scene has no truth to evaluate at drawn parameters");
   card_of(scene);
   return Drawing(scene, seed).draw();
 }

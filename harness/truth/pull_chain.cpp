@@ -50,7 +50,8 @@ std::vector<PulledState> pull(const PulledChain& c, std::span<const double> time
   const double per_second = speed / cell;
   State state(2 * (n - 1), 0);
   std::vector<PulledState> out;
-  const auto stepper = odeint::make_controlled(tolerance * c.length_m, tolerance, odeint::runge_kutta_fehlberg78<State>());
+  const auto stepper =
+      odeint::make_controlled(tolerance * c.length_m, tolerance, odeint::runge_kutta_fehlberg78<State>());
   for (std::size_t k = 0; k < times_s.size(); ++k) {
     PulledState now{times_s[k], State(n + 1, 0), State(n + 1, 0)};
     if (k > 0) {

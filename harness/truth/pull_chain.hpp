@@ -23,8 +23,8 @@ struct PulledState {
 };
 
 /// States at `times_s` (ascending from 0) where the ends have these displacements, between which they move in straight
-/// lines; starts at rest. Errors below 1e-10 L at the default tolerance (absolute, in units of the length). Throws Error
-/// for bad arguments or if the integrator can't make progress.
+/// lines; starts at rest. Errors below 1e-10 L at the default tolerance (absolute, in units of the length). Throws
+/// Error for bad arguments or if the integrator can't make progress.
 std::vector<PulledState> pull(const PulledChain&, std::span<const double> times_s, std::span<const double> first_m,
                               std::span<const double> last_m, double tolerance = 1e-13);
 

@@ -16,7 +16,8 @@ Ray ray_of(const XrPosef& p) {
   Vec3 along = {-2 * (x * z + w * y), -2 * (y * z - w * x), -(1 - 2 * (x * x + y * y))};
   const double length = std::sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
   for (double& c : along) c /= length;
-  return {{static_cast<double>(p.position.x), static_cast<double>(p.position.y), static_cast<double>(p.position.z)}, along};
+  return {{static_cast<double>(p.position.x), static_cast<double>(p.position.y), static_cast<double>(p.position.z)},
+          along};
 }
 
 }  // namespace
@@ -79,20 +80,18 @@ void Controllers::bind() const {
     info.suggestedBindings = all.data();
     xr.check(xr.xr().xrSuggestInteractionProfileBindings(xr.handle(), &info), "xrSuggestInteractionProfileBindings");
   };
-  suggest("/interaction_profiles/oculus/touch_controller",
-          {{show_, "/user/hand/right/input/a/click"},
-           {show_, "/user/hand/left/input/x/click"},
-           {pick_, "/user/hand/left/input/trigger/value"},
-           {pick_, "/user/hand/right/input/trigger/value"},
-           {aim_, "/user/hand/left/input/aim/pose"},
-           {aim_, "/user/hand/right/input/aim/pose"}});
-  suggest("/interaction_profiles/khr/simple_controller",
-          {{show_, "/user/hand/left/input/menu/click"},
-           {show_, "/user/hand/right/input/menu/click"},
-           {pick_, "/user/hand/left/input/select/click"},
-           {pick_, "/user/hand/right/input/select/click"},
-           {aim_, "/user/hand/left/input/aim/pose"},
-           {aim_, "/user/hand/right/input/aim/pose"}});
+  suggest("/interaction_profiles/oculus/touch_controller", {{show_, "/user/hand/right/input/a/click"},
+                                                            {show_, "/user/hand/left/input/x/click"},
+                                                            {pick_, "/user/hand/left/input/trigger/value"},
+                                                            {pick_, "/user/hand/right/input/trigger/value"},
+                                                            {aim_, "/user/hand/left/input/aim/pose"},
+                                                            {aim_, "/user/hand/right/input/aim/pose"}});
+  suggest("/interaction_profiles/khr/simple_controller", {{show_, "/user/hand/left/input/menu/click"},
+                                                          {show_, "/user/hand/right/input/menu/click"},
+                                                          {pick_, "/user/hand/left/input/select/click"},
+                                                          {pick_, "/user/hand/right/input/select/click"},
+                                                          {aim_, "/user/hand/left/input/aim/pose"},
+                                                          {aim_, "/user/hand/right/input/aim/pose"}});
 }
 
 bool Controllers::is_pressed(XrAction which) const {
@@ -121,8 +120,10 @@ bool Controllers::is_pulled(std::size_t hand) const {
 std::optional<Ray> Controllers::aim(std::size_t hand, XrTime time) const {
   XrSpaceLocation where{};
   where.type = XR_TYPE_SPACE_LOCATION;
-  session_.instance().check(session_.instance().xr().xrLocateSpace(aims_[hand], session_.space(), time, &where), "xrLocateSpace");
-  constexpr XrSpaceLocationFlags kKnown = XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
+  session_.instance().check(session_.instance().xr().xrLocateSpace(aims_[hand], session_.space(), time, &where),
+                            "xrLocateSpace");
+  constexpr XrSpaceLocationFlags kKnown =
+      XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
   if ((where.locationFlags & kKnown) != kKnown) return std::nullopt;
   return ray_of(where.pose);
 }

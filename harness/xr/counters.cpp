@@ -29,7 +29,8 @@ Counters::Counters(const Session& session) : session_(session) {
   for (const XrPath path : paths) {
     char name[XR_MAX_PATH_LENGTH] = "";
     std::uint32_t length = 0;
-    if (XR_SUCCEEDED(xr.xr().xrPathToString(xr.handle(), path, sizeof name, &length, name))) counters_.push_back({path, name});
+    if (XR_SUCCEEDED(xr.xr().xrPathToString(xr.handle(), path, sizeof name, &length, name)))
+      counters_.push_back({path, name});
   }
 }
 
@@ -38,7 +39,8 @@ void Counters::read(const std::function<void(const std::string&, const std::stri
     MetricsCounter m{kTypeMetricsCounter, nullptr, 0, 0, 0, 0};
     const bool there = XR_SUCCEEDED(query_(session_.handle(), c.path, &m));
     double value = kMissing;
-    if (there && (m.flags & kCounterFloatValid) != 0) value = static_cast<double>(m.float_value);
+    if (there && (m.flags & kCounterFloatValid) != 0)
+      value = static_cast<double>(m.float_value);
     else if (there && (m.flags & kCounterUintValid) != 0)
       value = m.uint_value;
     take(c.name, units_of(m.unit), value);

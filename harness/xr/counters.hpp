@@ -7,8 +7,8 @@
 
 namespace clothbench::xr {
 
-/// What the runtime counts by itself (XR_META_performance_metrics): frame times of application and compositor, dropped frames,
-/// utilisation. None where it has no such extension.
+/// What the runtime counts by itself (XR_META_performance_metrics): frame times of application and compositor, dropped
+/// frames, utilisation. None where it has no such extension.
 class Counters {
  public:
   explicit Counters(const Session&);

@@ -13,7 +13,8 @@ struct Column {
 };
 
 constexpr Column kColumns[] = {
-    {"predicted_display_s", "s", "when the frame is shown, by the runtime's clock, from the first frame's on", &FrameRow::predicted_display_s},
+    {"predicted_display_s", "s", "when the frame is shown, by the runtime's clock, from the first frame's on",
+     &FrameRow::predicted_display_s},
     {"predicted_period_s", "s", "refresh period of the display, by the runtime", &FrameRow::predicted_period_s},
     {"wait_s", "s", "wall time in xrWaitFrame, which paces", &FrameRow::wait_s},
     {"begin_s", "s", "wall time in xrBeginFrame", &FrameRow::begin_s},
@@ -50,7 +51,8 @@ void FrameLog::add_counter(const std::string& name, const std::string& units, do
 std::vector<double> FrameLog::periods() const {
   std::vector<double> out(rows_.size(), kMissing);
   for (std::size_t k = 1; k < rows_.size(); ++k)
-    out[k] = std::round((rows_[k].predicted_display_s - rows_[k - 1].predicted_display_s) / rows_[k].predicted_period_s);
+    out[k] =
+        std::round((rows_[k].predicted_display_s - rows_[k - 1].predicted_display_s) / rows_[k].predicted_period_s);
   return out;
 }
 
@@ -89,7 +91,8 @@ std::map<std::string, double> FrameLog::summary() const {
 StoredGroup FrameLog::group() const {
   StoredGroup g;
   g.path = "xr";
-  const auto add = [&](const std::string& name, const std::string& units, const std::string& long_name, std::vector<double> values) {
+  const auto add = [&](const std::string& name, const std::string& units, const std::string& long_name,
+                       std::vector<double> values) {
     values.resize(rows_.size(), kMissing);
     g.arrays.push_back({name, units, long_name, {"frame"}, {rows_.size()}, false, std::move(values)});
   };

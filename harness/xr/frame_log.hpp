@@ -22,7 +22,8 @@ struct FrameRow {
   double end_s = kMissing;                ///< in xrEndFrame
   double frame_s = kMissing;              ///< from xrWaitFrame's return to xrEndFrame's
   double shown = kMissing;                ///< 1 if the runtime asked for pictures
-  double left_seen = kMissing, right_seen = kMissing;  ///< 1 if the hand was tracked, 0 if it stood where it was last seen
+  double left_seen = kMissing,
+         right_seen = kMissing;  ///< 1 if the hand was tracked, 0 if it stood where it was last seen
 };
 
 /// What a session logs.
@@ -33,7 +34,8 @@ class FrameLog {
   void add_counter(const std::string& name, const std::string& units, double value);
   const std::vector<FrameRow>& rows() const { return rows_; }
 
-  /// Refresh periods from the frame before to each; NaN for the first. 1 is the display's rate, 2 a half of it, 3 a third.
+  /// Refresh periods from the frame before to each; NaN for the first. 1 is the display's rate, 2 a half of it, 3 a
+  /// third.
   std::vector<double> periods() const;
   /// "xr_..." scalars: frame rate by its median, mean and worst, share of frames after 1, 2, 3 and more periods, times.
   std::map<std::string, double> summary() const;

@@ -86,7 +86,8 @@ std::optional<assets::RecordedHand> Hands::at(Side side, XrTime time) const {
   found.jointLocations = joints.data();
   session_.instance().check(locate_(trackers_[static_cast<std::size_t>(side)], &info, &found), "xrLocateHandJointsEXT");
   if (found.isActive != XR_TRUE) return std::nullopt;
-  constexpr XrSpaceLocationFlags kKnown = XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
+  constexpr XrSpaceLocationFlags kKnown =
+      XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
   assets::RecordedHand hand;
   for (std::size_t k = 0; k < joints.size(); ++k) {
     if ((joints[k].locationFlags & kKnown) != kKnown) return std::nullopt;
@@ -94,7 +95,8 @@ std::optional<assets::RecordedHand> Hands::at(Side side, XrTime time) const {
   }
   if (capsules_)
     for (std::size_t k = 0; k < hand.capsules.size(); ++k)
-      hand.capsules[k] = {three(shapes.capsules[k].points[0]), three(shapes.capsules[k].points[1]), shapes.capsules[k].radius};
+      hand.capsules[k] = {three(shapes.capsules[k].points[0]), three(shapes.capsules[k].points[1]),
+                          shapes.capsules[k].radius};
   if (!assets::usable(hand)) return std::nullopt;
   return hand;
 }
@@ -129,7 +131,9 @@ std::optional<assets::RecordedMesh> Hands::mesh(Side side) const {
       if (mesh.weights.back()[k] == 0) mesh.joints.back()[k] = 0;
   }
   for (std::size_t i = 0; i < arrays.indices.size(); i += 3) {
-    const auto corner = [&](std::size_t k) { return static_cast<std::uint32_t>(static_cast<std::uint16_t>(arrays.indices[i + k])); };
+    const auto corner = [&](std::size_t k) {
+      return static_cast<std::uint32_t>(static_cast<std::uint16_t>(arrays.indices[i + k]));
+    };
     mesh.triangles.push_back({corner(0), corner(1), corner(2)});
   }
   return assets::welded(std::move(mesh), "xrGetHandMeshFB");

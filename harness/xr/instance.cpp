@@ -144,8 +144,7 @@ void Instance::load(const std::string& runtime) {
 }
 
 void Instance::create() {
-  const auto enumerate =
-      function<PFN_xrEnumerateInstanceExtensionProperties>("xrEnumerateInstanceExtensionProperties");
+  const auto enumerate = function<PFN_xrEnumerateInstanceExtensionProperties>("xrEnumerateInstanceExtensionProperties");
   const auto create = function<PFN_xrCreateInstance>("xrCreateInstance");
   std::uint32_t count = 0;
   if (enumerate == nullptr || create == nullptr || XR_FAILED(enumerate(nullptr, 0, &count, nullptr)))
@@ -176,10 +175,11 @@ void Instance::create() {
   info.enabledExtensionNames = names.data();
   const XrResult result = create(&info, &instance_);
   if (XR_FAILED(result))
-    throw Error(fmt::format("no OpenXR instance: xrCreateInstance gave {}; is the runtime running?", static_cast<int>(result)),
-                ExitCode::NoDevice);
-#define CLOTHBENCH_XR_LOAD(name)                                   \
-  functions_.name = function<PFN_##name>(#name);                   \
+    throw Error(
+        fmt::format("no OpenXR instance: xrCreateInstance gave {}; is the runtime running?", static_cast<int>(result)),
+        ExitCode::NoDevice);
+#define CLOTHBENCH_XR_LOAD(name)                 \
+  functions_.name = function<PFN_##name>(#name); \
   if (functions_.name == nullptr) throw Error("the OpenXR runtime has no " #name, ExitCode::NoDevice);
   CLOTHBENCH_XR_FUNCTIONS(CLOTHBENCH_XR_LOAD)
 #undef CLOTHBENCH_XR_LOAD
@@ -207,11 +207,13 @@ void Instance::find_system() {
   tracks_hands_ = hands.supportsHandTracking == XR_TRUE;
   XrGraphicsRequirementsVulkan2KHR needs{};
   needs.type = XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR;
-  check(functions_.xrGetVulkanGraphicsRequirements2KHR(instance_, system_, &needs), "xrGetVulkanGraphicsRequirements2KHR");
+  check(functions_.xrGetVulkanGraphicsRequirements2KHR(instance_, system_, &needs),
+        "xrGetVulkanGraphicsRequirements2KHR");
   if (needs.minApiVersionSupported > XR_MAKE_VERSION(1, 1, 0xffff))
-    throw Error(fmt::format("{} wants Vulkan {}.{} at least; this program uses 1.1", runtime_name_,
-                            XR_VERSION_MAJOR(needs.minApiVersionSupported), XR_VERSION_MINOR(needs.minApiVersionSupported)),
-                ExitCode::NoDevice);
+    throw Error(
+        fmt::format("{} wants Vulkan {}.{} at least; this program uses 1.1", runtime_name_,
+                    XR_VERSION_MAJOR(needs.minApiVersionSupported), XR_VERSION_MINOR(needs.minApiVersionSupported)),
+        ExitCode::NoDevice);
 }
 
 void Instance::check(XrResult result, const char* call) const {

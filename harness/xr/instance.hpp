@@ -32,9 +32,9 @@ struct Functions {
 /// A runtime that was found, its head-mounted system, and the extensions of ours that it has.
 class Instance {
  public:
-  /// `runtime`: the library or the manifest (.json) of a runtime, entered without a loader; empty: whatever the system's loader
-  /// finds ($XR_RUNTIME_JSON and the rest). Throws Error with ExitCode::NoDevice where there is no loader, no runtime, no
-  /// headset, or no XR_KHR_vulkan_enable2.
+  /// `runtime`: the library or the manifest (.json) of a runtime, entered without a loader; empty: whatever the
+  /// system's loader finds ($XR_RUNTIME_JSON and the rest). Throws Error with ExitCode::NoDevice where there is no
+  /// loader, no runtime, no headset, or no XR_KHR_vulkan_enable2.
   explicit Instance(const std::string& runtime);
   ~Instance();
   Instance(const Instance&) = delete;

@@ -36,7 +36,8 @@ LiveScene::LiveScene(const std::string& scenario, const std::vector<std::string>
     : folder_(std::move(folder)) {
   const fs::path source = find_scenario(scenario);
   written_ = load_scene(scenario, overrides);
-  if (written_.cloth.mesh) throw Error(source.string() + ": /cloth/mesh: pictures are of grids alone; expected a \"grid\"");
+  if (written_.cloth.mesh)
+    throw Error(source.string() + ": /cloth/mesh: pictures are of grids alone; expected a \"grid\"");
   document_ = parse_json(read_text(source), source.string());
   for (const std::string& o : overrides) apply_override(document_, o, source.string());
   // These say what comes of the script's motion, not of the user's.
@@ -64,7 +65,8 @@ void LiveScene::find_live(const std::string& source, Live live) {
     hand.as_mesh = type == "hand_mesh";
     hand.file = std::string(assets::name_of(hand.side)) + "-hand.json";
     if (wants(hand.side))
-      throw Error(fmt::format("{}: /colliders/{}: a second {} hand; a user has one", source, k, assets::name_of(hand.side)));
+      throw Error(
+          fmt::format("{}: /colliders/{}: a second {} hand; a user has one", source, k, assets::name_of(hand.side)));
     hands_.push_back(std::move(hand));
     for (const char* key : {"speed_m_per_s", "offset_m"}) list[k].erase(key);
   }
@@ -77,7 +79,8 @@ void LiveScene::keep_tracks(const std::string& source) {
     for (json& item : document_[kind]) {
       if (!item.contains("track")) continue;
       const fs::path from = file_of_scene(item["track"].get<std::string>(), source).value();
-      if (std::any_of(hands_.begin(), hands_.end(), [&](const LiveHand& h) { return &document_[kind][h.collider] == &item; }))
+      if (std::any_of(hands_.begin(), hands_.end(),
+                      [&](const LiveHand& h) { return &document_[kind][h.collider] == &item; }))
         continue;
       write_file_atomically(folder_ / from.filename(), read_text(from));
       item["track"] = from.filename().string();
@@ -139,8 +142,8 @@ const FrameMotion* LiveScene::next(int index, const HandsNow& now) {
 }
 
 void LiveScene::write_hand(const LiveHand& h) const {
-  write_file_atomically(folder_ / h.file,
-                        assets::to_json(h.recording, fmt::format("The {} hand of a live session.", assets::name_of(h.side))));
+  write_file_atomically(folder_ / h.file, assets::to_json(h.recording, fmt::format("The {} hand of a live session.",
+                                                                                   assets::name_of(h.side))));
 }
 
 fs::path LiveScene::save() {

@@ -21,15 +21,17 @@ struct Live {
 /// Left and right, as far as they are seen.
 using HandsNow = std::array<std::optional<assets::RecordedHand>, 2>;
 
-/// A scenario whose hands and room come from a headset. Its scripted hands are replaced by the user's, each by the one of its side,
-/// and the room by the user's with the part between six picked points; whatever else moves goes on by script.
+/// A scenario whose hands and room come from a headset. Its scripted hands are replaced by the user's, each by the one
+/// of its side, and the room by the user's with the part between six picked points; whatever else moves goes on by
+/// script.
 ///
-/// What is used is written first and read back: scenario, recordings and room lie in `folder` as ordinary scenes have them, so that
-/// `clothbench run FOLDER/scenario.json` runs the same frames from the same numbers.
+/// What is used is written first and read back: scenario, recordings and room lie in `folder` as ordinary scenes have
+/// them, so that `clothbench run FOLDER/scenario.json` runs the same frames from the same numbers.
 class LiveScene {
  public:
   /// Throws Error as load_scene, and where the scene has two hands of a side, or two rooms.
-  LiveScene(const std::string& scenario, const std::vector<std::string>& overrides, std::filesystem::path folder, Live live);
+  LiveScene(const std::string& scenario, const std::vector<std::string>& overrides, std::filesystem::path folder,
+            Live live);
 
   /// The scenario as it is written: cloth and time before anything is live.
   const Scene& written() const { return written_; }
@@ -49,8 +51,8 @@ class LiveScene {
   const Scene& begin(const Begin&);
   const Scene& scene() const { return scene_; }
 
-  /// Where everything is at the end of frame `index` (0 = the first); what is not seen stays where it was. Null where nothing moves.
-  /// Valid until the next call.
+  /// Where everything is at the end of frame `index` (0 = the first); what is not seen stays where it was. Null where
+  /// nothing moves. Valid until the next call.
   const FrameMotion* next(int index, const HandsNow&);
   /// Of every frame so far, the start included.
   const std::vector<FrameMotion>& motion() const { return motion_; }

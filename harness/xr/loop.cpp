@@ -27,11 +27,14 @@ using assets::Side;
 
 constexpr Vec3 kBeforeTheEyes_m = {0, -0.1, -0.6};
 
-double seconds(Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); }
+double seconds(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
 
 class Loop {
  public:
-  Loop(const LoopOptions& options, const Instance& xr, LiveScene& live, Session& session, std::shared_ptr<vulkan::Device> device)
+  Loop(const LoopOptions& options, const Instance& xr, LiveScene& live, Session& session,
+       std::shared_ptr<vulkan::Device> device)
       : o_(options), live_(live), session_(session), device_(device), painter_(device, session), counters_(session) {
     if (live.wants(Side::Left) || live.wants(Side::Right)) hands_.emplace(session);
     if (live.wants_room()) picking_.emplace(session);
@@ -51,7 +54,8 @@ class Loop {
       end_by(e);
     }
     if (log_.rows().empty())
-      throw Error(interrupt_requested() ? "interrupted before the session began" : "the headset ended the session before it began",
+      throw Error(interrupt_requested() ? "interrupted before the session began"
+                                        : "the headset ended the session before it began",
                   interrupt_requested() ? ExitCode::Interrupted : ExitCode::CheckFailed);
     return finish();
   }
@@ -81,7 +85,8 @@ class Loop {
     painter_.wait();
   }
 
-  /// The session ends here, by this error; an outcome that came before it stays. A frame that had begun is the one that failed.
+  /// The session ends here, by this error; an outcome that came before it stays. A frame that had begun is the one that
+  /// failed.
   void end_by(const std::exception& e) {
     done_ = true;
     if (outcome_.status != "ok") return;
@@ -135,7 +140,8 @@ class Loop {
     if (!live) return;
     log_.add(row);
     // Those of the frame before: counters are of what has been shown.
-    counters_.read([&](const std::string& name, const std::string& units, double v) { log_.add_counter(name, units, v); });
+    counters_.read(
+        [&](const std::string& name, const std::string& units, double v) { log_.add_counter(name, units, v); });
     done_ = done_ || static_cast<int>(log_.rows().size()) == frames_;
   }
 
@@ -143,7 +149,8 @@ class Loop {
   void show(const XrFrameState& state, FrameRow& row) {
     std::vector<XrView> views;
     const auto t0 = Clock::now();
-    if (state.shouldRender == XR_TRUE && outcome_.status != "device_lost") views = session_.views(state.predictedDisplayTime);
+    if (state.shouldRender == XR_TRUE && outcome_.status != "device_lost")
+      views = session_.views(state.predictedDisplayTime);
     if (!views.empty()) paint(views);
     const auto t1 = Clock::now();
     session_.end_frame(state, views);
@@ -163,8 +170,8 @@ class Loop {
     return now;
   }
 
-  /// Frames before the first of the session: until there is something to begin with. It is begun twice: solvers make their kernels
-  /// the first time, which takes so long that the hands are elsewhere afterwards.
+  /// Frames before the first of the session: until there is something to begin with. It is begun twice: solvers make
+  /// their kernels the first time, which takes so long that the hands are elsewhere afterwards.
   void prepare(const XrFrameState& state) {
     if (done_) return;
     LiveScene::Begin b;
@@ -174,7 +181,8 @@ class Loop {
     if (picking_ && !picking_->ready(state.predictedDisplayTime)) return;
     if (!rate_settled()) return;
     b.frame_rate_hz = rate_of(state);
-    b.frames = o_.frames > 0 ? o_.frames : static_cast<int>(std::lround(live_.written().time.duration_s * b.frame_rate_hz));
+    b.frames =
+        o_.frames > 0 ? o_.frames : static_cast<int>(std::lround(live_.written().time.duration_s * b.frame_rate_hz));
     frames_ = b.frames;
     b.has_capsules = hands_ && hands_->has_capsules();
     for (const Side side : {Side::Left, Side::Right})
@@ -186,8 +194,8 @@ class Loop {
     painter_.wait();
     cell_.reset();
     live_.begin(b);
-    auto cell = std::make_unique<Cell>(
-        CellSpec{&live_.scene(), o_.entry, o_.settings, o_.setting, 0, {}, true, {}}, o_.device, "xr");
+    auto cell = std::make_unique<Cell>(CellSpec{&live_.scene(), o_.entry, o_.settings, o_.setting, 0, {}, true, {}},
+                                       o_.device, "xr");
     if (!cell->alive()) {
       const Outcome out = cell->outcome();
       throw Error(fmt::format("{}: {}: {}", o_.entry->info.name, out.status, out.message), ExitCode::CheckFailed);
@@ -311,10 +319,18 @@ class Loop {
                     {"eye_height", session_.extent().height},
                     {"passthrough", session_.passthrough()},
                     {"performance_level", session_.performance_level()},
-                    {"hands", !hands_ ? "scripted" : hands_->has_capsules() ? "live, capsules of the runtime" : "live, joints and radii"},
+                    {"hands", !hands_                  ? "scripted"
+                              : hands_->has_capsules() ? "live, capsules of the runtime"
+                                                       : "live, joints and radii"},
                     {"room", picking_ ? "live" : "of the scenario"}};
     const std::uint64_t n = live_.scene().cloth.vertex_count();
-    g.arrays.push_back({"final_position_m", "m", "where the cloth was after the last frame", {"vertex", "xyz"}, {n, 3}, false, end.position});
+    g.arrays.push_back({"final_position_m",
+                        "m",
+                        "where the cloth was after the last frame",
+                        {"vertex", "xyz"},
+                        {n, 3},
+                        false,
+                        end.position});
     return g;
   }
 
@@ -384,7 +400,8 @@ class Loop {
 
 LoopResult run_loop(const LoopOptions& options) {
   const Instance xr(options.runtime);
-  LiveScene live(options.scenario, options.overrides, options.out / "scenario", {xr.tracks_hands(), RoomScanner::offered(xr)});
+  LiveScene live(options.scenario, options.overrides, options.out / "scenario",
+                 {xr.tracks_hands(), RoomScanner::offered(xr)});
   const std::shared_ptr<vulkan::Device> device = xr.make_device(options.device);
   SessionOptions s;
   s.rate_hz = options.rate_hz;

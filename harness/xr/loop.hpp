@@ -24,7 +24,8 @@ struct LoopOptions {
   std::string runtime;   ///< as Instance takes it
   double rate_hz = 72;   ///< asked of the display
   int frames = 0;        ///< 0: as many as the scenario lasts
-  /// The scene's origin in the user's space; left out: 60 cm before and 10 cm below the eyes, or where the floor is for a room.
+  /// The scene's origin in the user's space; left out: 60 cm before and 10 cm below the eyes, or where the floor is for
+  /// a room.
   std::optional<Vec3> place_m;
   bool passthrough = true;
   double patience_s = 120;  ///< for hands to be seen and points to be picked
@@ -42,11 +43,12 @@ struct LoopResult {
   int validation_messages = 0;
 };
 
-/// A live session: a cloth before the user's eyes, who touches it. Waits until hands are seen or points are picked, then steps the
-/// solver once a displayed frame, by the display's refresh period, as the application of the paper does: where frames are shown
-/// late the cloth moves slower, and the log says so. Ends after `frames`, when the runtime ends the session, when it is
-/// interrupted, or where the device is lost or a call fails once the first frame was stepped (`outcome` says which); all of these store
-/// what there is. Throws Error with ExitCode::NoDevice where there is no headset.
+/// A live session: a cloth before the user's eyes, who touches it. Waits until hands are seen or points are picked,
+/// then steps the solver once a displayed frame, by the display's refresh period, as the application of the paper does:
+/// where frames are shown late the cloth moves slower, and the log says so. Ends after `frames`, when the runtime ends
+/// the session, when it is interrupted, or where the device is lost or a call fails once the first frame was stepped
+/// (`outcome` says which); all of these store what there is. Throws Error with ExitCode::NoDevice where there is no
+/// headset.
 LoopResult run_loop(const LoopOptions&);
 
 }  // namespace clothbench::xr

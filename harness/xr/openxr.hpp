@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 
-/// What the oldest headers we build with (1.0.20) lack or keep for Android alone, by the OpenXR 1.1 specification: numbers and
-/// layouts are the specification's, names are ours so that newer headers do not clash.
+/// What the oldest headers we build with (1.0.20) lack or keep for Android alone, by the OpenXR 1.1 specification:
+/// numbers and layouts are the specification's, names are ours so that newer headers do not clash.
 namespace clothbench::xr {
 
 /// XR_KHR_loader_init_android and XR_KHR_android_create_instance: the same layout with different types.

@@ -21,7 +21,8 @@ render::Mat4 view_of(const XrPosef& pose, const Vec3& origin_m) {
   const std::array<Vec3, 3> axis = {{{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
                                      {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
                                      {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}}};
-  const Vec3 eye = {static_cast<double>(pose.position.x) - origin_m[0], static_cast<double>(pose.position.y) - origin_m[1],
+  const Vec3 eye = {static_cast<double>(pose.position.x) - origin_m[0],
+                    static_cast<double>(pose.position.y) - origin_m[1],
                     static_cast<double>(pose.position.z) - origin_m[2]};
   render::Mat4 m{};
   for (std::size_t row = 0; row < 3; ++row) {
@@ -35,7 +36,8 @@ render::Mat4 view_of(const XrPosef& pose, const Vec3& origin_m) {
 }
 
 render::Mat4 projection_of(const XrFovf& fov, double near_m, double far_m) {
-  const double left = std::tan(static_cast<double>(fov.angleLeft)), right = std::tan(static_cast<double>(fov.angleRight));
+  const double left = std::tan(static_cast<double>(fov.angleLeft)),
+               right = std::tan(static_cast<double>(fov.angleRight));
   const double up = std::tan(static_cast<double>(fov.angleUp)), down = std::tan(static_cast<double>(fov.angleDown));
   render::Mat4 m{};
   m[0] = 2 / (right - left);
@@ -80,8 +82,7 @@ void Painter::release() {
     for (const VkImage image : eye.images) renderer_.forget(image);
   vkDestroyQueryPool(device_->handle(), queries_, nullptr);
   vkDestroyFence(device_->handle(), fence_, nullptr);
-  if (commands_ != VK_NULL_HANDLE)
-    vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands_);
+  if (commands_ != VK_NULL_HANDLE) vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands_);
 }
 
 void Painter::wait() {
@@ -140,8 +141,7 @@ void Painter::record(std::uint32_t left, std::uint32_t right, const std::vector<
     drawings.push_back({session_.eyes()[k].images.at(index[k]), 0, session_.extent(),
                         view_of(views[k].pose, renderer_.origin()), projection_of(views[k].fov, kNear_m, kFar_m)});
   renderer_.record(commands_, drawings);
-  if (queries_ != VK_NULL_HANDLE)
-    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, 1);
+  if (queries_ != VK_NULL_HANDLE) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, 1);
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
 }
 

@@ -36,7 +36,8 @@ class Painter {
   double device_s_;
 };
 
-/// Of an eye, metres from `origin_m`, and of its field of view to Vulkan's clip space (y down, depth 0 at near_m to 1 at far_m).
+/// Of an eye, metres from `origin_m`, and of its field of view to Vulkan's clip space (y down, depth 0 at near_m to 1
+/// at far_m).
 render::Mat4 view_of(const XrPosef&, const Vec3& origin_m);
 render::Mat4 projection_of(const XrFovf&, double near_m, double far_m);
 

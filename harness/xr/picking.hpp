@@ -10,8 +10,8 @@
 
 namespace clothbench::xr {
 
-/// Set-up 2 of Kim, Ma & Hong (2025), section 3.2.4: the user sees the scanned room at the press of A and picks six points of it by the
-/// trigger; the axis-aligned box round them says which part of it the cloth meets.
+/// Set-up 2 of Kim, Ma & Hong (2025), section 3.2.4: the user sees the scanned room at the press of A and picks six
+/// points of it by the trigger; the axis-aligned box round them says which part of it the cloth meets.
 class Picking {
  public:
   explicit Picking(Session&);

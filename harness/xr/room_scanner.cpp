@@ -83,8 +83,9 @@ bool RoomScanner::locatable(XrSpace space) {
 std::optional<assets::RoomScan> RoomScanner::at(XrTime time) {
   if (room_ == XR_NULL_HANDLE) {
     if (complete_)
-      throw Error("the headset knows no mesh of this room: scan it in its settings (Space Setup), and let this app see it",
-                  ExitCode::CheckFailed);
+      throw Error(
+          "the headset knows no mesh of this room: scan it in its settings (Space Setup), and let this app see it",
+          ExitCode::CheckFailed);
     return std::nullopt;
   }
   assets::RoomScan scan;
@@ -97,8 +98,10 @@ std::optional<assets::RoomScan> RoomScanner::at(XrTime time) {
 bool RoomScanner::locate(XrTime time, assets::RoomScan& scan) const {
   XrSpaceLocation where{};
   where.type = XR_TYPE_SPACE_LOCATION;
-  session_.instance().check(session_.instance().xr().xrLocateSpace(room_, session_.space(), time, &where), "xrLocateSpace");
-  constexpr XrSpaceLocationFlags kKnown = XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
+  session_.instance().check(session_.instance().xr().xrLocateSpace(room_, session_.space(), time, &where),
+                            "xrLocateSpace");
+  constexpr XrSpaceLocationFlags kKnown =
+      XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
   if ((where.locationFlags & kKnown) != kKnown) return false;
   const XrPosef& p = where.pose;
   scan.position_m = {p.position.x, p.position.y, p.position.z};

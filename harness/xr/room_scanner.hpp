@@ -16,8 +16,8 @@ class RoomScanner {
   RoomScanner(const RoomScanner&) = delete;
   RoomScanner& operator=(const RoomScanner&) = delete;
 
-  /// The mesh in its own frame and that frame in the scene's space; empty until it is there and located. Throws Error where the
-  /// runtime knows no room.
+  /// The mesh in its own frame and that frame in the scene's space; empty until it is there and located. Throws Error
+  /// where the runtime knows no room.
   std::optional<assets::RoomScan> at(XrTime);
 
  private:

@@ -38,8 +38,7 @@ Session::~Session() { release(); }
 
 void Session::release() {
   vkDeviceWaitIdle(device_->handle());
-  if (layer_ != XR_NULL_HANDLE)
-    xr_.function<PFN_xrDestroyPassthroughLayerFB>("xrDestroyPassthroughLayerFB")(layer_);
+  if (layer_ != XR_NULL_HANDLE) xr_.function<PFN_xrDestroyPassthroughLayerFB>("xrDestroyPassthroughLayerFB")(layer_);
   if (passthrough_ != XR_NULL_HANDLE) xr_.function<PFN_xrDestroyPassthroughFB>("xrDestroyPassthroughFB")(passthrough_);
   for (Eye& eye : eyes_)
     if (eye.swapchain != XR_NULL_HANDLE) xr_.xr().xrDestroySwapchain(eye.swapchain);
@@ -71,7 +70,8 @@ void Session::create_space(const SessionOptions& options) {
   auto info = blank<XrReferenceSpaceCreateInfo>(XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
   info.referenceSpaceType = stage ? XR_REFERENCE_SPACE_TYPE_STAGE : XR_REFERENCE_SPACE_TYPE_LOCAL;
   info.poseInReferenceSpace = kHere;
-  info.poseInReferenceSpace.position = {static_cast<float>(options.origin_m[0]), static_cast<float>(options.origin_m[1]),
+  info.poseInReferenceSpace.position = {static_cast<float>(options.origin_m[0]),
+                                        static_cast<float>(options.origin_m[1]),
                                         static_cast<float>(options.origin_m[2])};
   xr_.check(xr_.xr().xrCreateReferenceSpace(session_, &info, &space_), "xrCreateReferenceSpace");
 }
@@ -80,8 +80,7 @@ void Session::create_eyes() {
   std::uint32_t count = 0;
   xr_.check(xr_.xr().xrEnumerateViewConfigurationViews(xr_.handle(), xr_.system(), kViews, 0, &count, nullptr),
             "xrEnumerateViewConfigurationViews");
-  std::vector<XrViewConfigurationView> views(
-      count, blank<XrViewConfigurationView>(XR_TYPE_VIEW_CONFIGURATION_VIEW));
+  std::vector<XrViewConfigurationView> views(count, blank<XrViewConfigurationView>(XR_TYPE_VIEW_CONFIGURATION_VIEW));
   xr_.check(xr_.xr().xrEnumerateViewConfigurationViews(xr_.handle(), xr_.system(), kViews, count, &count, views.data()),
             "xrEnumerateViewConfigurationViews");
   if (count != eyes_.size()) throw Error(fmt::format("OpenXR: {} views; expected 2", count), ExitCode::NoDevice);
@@ -92,7 +91,8 @@ void Session::create_eyes() {
   }
   xr_.check(xr_.xr().xrEnumerateSwapchainFormats(session_, 0, &count, nullptr), "xrEnumerateSwapchainFormats");
   std::vector<std::int64_t> formats(count);
-  xr_.check(xr_.xr().xrEnumerateSwapchainFormats(session_, count, &count, formats.data()), "xrEnumerateSwapchainFormats");
+  xr_.check(xr_.xr().xrEnumerateSwapchainFormats(session_, count, &count, formats.data()),
+            "xrEnumerateSwapchainFormats");
   for (const VkFormat f : kFormats)
     if (format_ == VK_FORMAT_UNDEFINED && std::find(formats.begin(), formats.end(), f) != formats.end()) format_ = f;
   if (format_ == VK_FORMAT_UNDEFINED)
@@ -155,7 +155,8 @@ void Session::start_passthrough() {
 void Session::request_rate(double rate_hz) const {
   if (!xr_.has(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)) return;
   // A rate that the display does not have is no error: the log tells what it runs at.
-  xr_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB")(session_, static_cast<float>(rate_hz));
+  xr_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB")(session_,
+                                                                                   static_cast<float>(rate_hz));
 }
 
 double Session::refresh_rate_hz() const {
@@ -181,7 +182,8 @@ bool Session::pump() {
     const XrResult result = xr_.xr().xrPollEvent(xr_.handle(), &event);
     xr_.check(result, "xrPollEvent");
     if (result == XR_EVENT_UNAVAILABLE) return !over_;
-    if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING) over_ = true;
+    if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING)
+      over_ = true;
     else if (event.type == XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED)
       change(reinterpret_cast<const XrEventDataSessionStateChanged&>(event).state);
     else if (on_event)
@@ -230,8 +232,9 @@ std::vector<XrView> Session::views(XrTime time) const {
   auto state = blank<XrViewState>(XR_TYPE_VIEW_STATE);
   std::vector<XrView> views(eyes_.size(), blank<XrView>(XR_TYPE_VIEW));
   std::uint32_t count = 0;
-  xr_.check(xr_.xr().xrLocateViews(session_, &info, &state, static_cast<std::uint32_t>(views.size()), &count, views.data()),
-            "xrLocateViews");
+  xr_.check(
+      xr_.xr().xrLocateViews(session_, &info, &state, static_cast<std::uint32_t>(views.size()), &count, views.data()),
+      "xrLocateViews");
   constexpr XrViewStateFlags kKnown = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT;
   if ((state.viewStateFlags & kKnown) != kKnown || count != views.size()) views.clear();
   return views;

@@ -12,7 +12,7 @@
 namespace clothbench::xr {
 
 struct SessionOptions {
-  double rate_hz = 72;  ///< asked of the display where it can be
+  double rate_hz = 72;    ///< asked of the display where it can be
   bool on_floor = false;  ///< the scene's space is the room's (STAGE), else where the head was at first (LOCAL)
   Vec3 origin_m{};        ///< the scene's origin in that space
   bool passthrough = true;
@@ -34,7 +34,8 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Takes the runtime's events, and begins and ends the session as they ask. Others go to `on_event`. False once it is over.
+  /// Takes the runtime's events, and begins and ends the session as they ask. Others go to `on_event`. False once it is
+  /// over.
   bool pump();
   std::function<void(const XrEventDataBuffer&)> on_event;
   bool running() const { return running_; }

@@ -74,8 +74,7 @@ class Ballistic final : public ClothSolver {
 }  // namespace
 
 void register_ballistic(std::vector<SolverEntry>& out) {
-  out.push_back({describe(),
-                 [](const nlohmann::json&, const DeviceOptions&) { return std::make_unique<Ballistic>(); },
+  out.push_back({describe(), [](const nlohmann::json&, const DeviceOptions&) { return std::make_unique<Ballistic>(); },
                  // Semi-implicit Euler: n v0 h + sum_{k=1..n} k g h^2.
                  [](const Scene& s, const nlohmann::json&, int n) {
                    const double h = s.time.dt();

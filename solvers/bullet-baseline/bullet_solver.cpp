@@ -17,10 +17,10 @@ SolverInfo common_info() {
   info.folder = "solvers/bullet-baseline";
   info.version = version();
   info.precision = sizeof(btScalar) == 4 ? "float32" : "float64";
-  info.supports = {Feature::Stretch,    Feature::Shear,      Feature::Bend,     Feature::Damping,    Feature::Pins,
-                   Feature::MovingPins, Feature::Sphere,     Feature::Box,      Feature::Plane,      Feature::Capsules,
-                   Feature::StaticMesh, Feature::MovingMesh, Feature::Friction, Feature::DoubleSided,
-                   Feature::UnevenGrid, Feature::Spin};
+  info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,       Feature::Damping,
+                   Feature::Pins,     Feature::MovingPins,  Feature::Sphere,     Feature::Box,
+                   Feature::Plane,    Feature::Capsules,    Feature::StaticMesh, Feature::MovingMesh,
+                   Feature::Friction, Feature::DoubleSided, Feature::UnevenGrid, Feature::Spin};
   return info;
 }
 
@@ -209,7 +209,9 @@ void BulletSolver::read_state(ClothState& out) const {
 bool BulletSolver::restart(const ClothState& state) {
   if (!scene_->motion.empty()) return false;
   reset();
-  const auto at = [](const std::vector<double>& of, std::size_t i) { return to_bullet({of.at(3 * i), of.at(3 * i + 1), of.at(3 * i + 2)}); };
+  const auto at = [](const std::vector<double>& of, std::size_t i) {
+    return to_bullet({of.at(3 * i), of.at(3 * i + 1), of.at(3 * i + 2)});
+  };
   for (int i = 0; i < body_->m_nodes.size(); ++i) {
     btSoftBody::Node& n = body_->m_nodes[i];
     n.m_x = n.m_q = at(state.position, static_cast<std::size_t>(i));
@@ -224,8 +226,8 @@ FrameCost BulletSolver::last_cost() const {
 }
 
 Plan BulletSolver::plan() const {
-  constexpr FeatureSet kContact = kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided,
-                   Feature::UnevenGrid, Feature::Spin};
+  constexpr FeatureSet kContact =
+      kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::UnevenGrid, Feature::Spin};
   Plan p;
   // Bullet's step is one piece of work: links of all kinds, damping, pins and grips are served together.
   p.stages = {{"Step", scene_->needs - kContact, 0, kMissing, kMissing}};

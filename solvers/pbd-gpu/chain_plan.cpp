@@ -30,7 +30,8 @@ std::vector<Strand> grid_strands(const Scene& s) {
   std::vector<Strand> out;
   const auto line = [&](int i, int j, int di, int dj, int family) {
     Strand strand{{}, family};
-    for (; i >= 0 && i < columns && j < rows; i += di, j += dj) strand.vertices.push_back(static_cast<std::uint32_t>(j * columns + i));
+    for (; i >= 0 && i < columns && j < rows; i += di, j += dj)
+      strand.vertices.push_back(static_cast<std::uint32_t>(j * columns + i));
     if (strand.vertices.size() > 1) out.push_back(std::move(strand));
   };
   // Families in the order in which they are solved: diagonals, columns, rows (README, "Lines").
@@ -66,7 +67,9 @@ std::vector<Strand> mesh_strands(const ClothMesh& m) {
       std::uint32_t p, q;
     };
     std::vector<Pair> pairs;
-    const auto away = [&](std::uint32_t e) { return minus(m.vertices[m.edges[e].a == v ? m.edges[e].b : m.edges[e].a], m.vertices[v]); };
+    const auto away = [&](std::uint32_t e) {
+      return minus(m.vertices[m.edges[e].a == v ? m.edges[e].b : m.edges[e].a], m.vertices[v]);
+    };
     for (std::size_t i = 0; i < at[v].size(); ++i)
       for (std::size_t k = i + 1; k < at[v].size(); ++k) {
         const std::uint32_t p = at[v][i], q = at[v][k];
@@ -215,7 +218,8 @@ std::vector<ChainFamily> families_of(std::vector<Strand> all, std::size_t vertic
   constexpr std::size_t kShort = 4;
   int wanted = 0;
   for (const Strand& s : all) wanted = std::max(wanted, s.family + 1);
-  std::stable_sort(all.begin(), all.end(), [](const Strand& a, const Strand& b) { return a.vertices.size() > b.vertices.size(); });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Strand& a, const Strand& b) { return a.vertices.size() > b.vertices.size(); });
   std::vector<ChainFamily> families(static_cast<std::size_t>(wanted));
   std::vector<std::vector<std::uint8_t>> used(families.size(), std::vector<std::uint8_t>(vertices, 0));
   std::vector<std::uint32_t> stamp(vertices, 0);
@@ -224,7 +228,8 @@ std::vector<ChainFamily> families_of(std::vector<Strand> all, std::size_t vertic
   const auto fits = [&](std::size_t f, const Strand& s, std::size_t from) {
     ++now;
     std::size_t k = from;
-    while (k < s.vertices.size() && k - from < block && used[f][s.vertices[k]] == 0 && stamp[s.vertices[k]] != now) stamp[s.vertices[k++]] = now;
+    while (k < s.vertices.size() && k - from < block && used[f][s.vertices[k]] == 0 && stamp[s.vertices[k]] != now)
+      stamp[s.vertices[k++]] = now;
     return k - from > 1 ? k - from - 1 : 0;
   };
   for (const Strand& s : all)
@@ -260,15 +265,16 @@ std::vector<ChainFamily> families_of(std::vector<Strand> all, std::size_t vertic
   return families;
 }
 
-std::vector<ChainEntry> entries_of(const ChainFamily& family, const Scene& scene, const ChainCloth& cloth, std::uint32_t block,
-                                   bool everybody) {
+std::vector<ChainEntry> entries_of(const ChainFamily& family, const Scene& scene, const ChainCloth& cloth,
+                                   std::uint32_t block, bool everybody) {
   const std::size_t n = scene.cloth.vertex_count();
   std::vector<std::uint8_t> held(n, 0), seen(n, 0);
   for (const std::uint32_t v : scene.pins.vertices) held[cloth.particle[v]] = 1;
   for (const std::uint32_t v : scene.grips.vertices) held[v] = 1;
   std::vector<const std::vector<std::uint32_t>*> longest_first;
   for (const auto& chain : family.chains) longest_first.push_back(&chain);
-  std::stable_sort(longest_first.begin(), longest_first.end(), [](const auto* a, const auto* b) { return a->size() > b->size(); });
+  std::stable_sort(longest_first.begin(), longest_first.end(),
+                   [](const auto* a, const auto* b) { return a->size() > b->size(); });
   std::vector<std::vector<ChainEntry>> blocks;
   std::vector<std::size_t> with_room;  // blocks, by what is left of them
   const auto put = [&](const std::vector<ChainEntry>& entries) {

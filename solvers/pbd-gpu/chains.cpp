@@ -17,15 +17,15 @@ constexpr std::uint32_t kBlock = 256;
 
 }  // namespace
 
-Chains::Chains(GpuSolver& solver, const Scene& scene, const ChainCloth& cloth, const vulkan::Buffer& x, const vulkan::Buffer& v,
-               const vulkan::Buffer& rx, const vulkan::Buffer& rv)
+Chains::Chains(GpuSolver& solver, const Scene& scene, const ChainCloth& cloth, const vulkan::Buffer& x,
+               const vulkan::Buffer& v, const vulkan::Buffer& rx, const vulkan::Buffer& rv)
     : solver_(solver),
       scene_(scene),
       block_(std::min({kBlock, solver.vulkan_device().limits().maxComputeWorkGroupInvocations,
                        solver.vulkan_device().limits().maxComputeWorkGroupSize[0]})) {
   const FeatureSet needs = scene.needs;
-  const FeatureSet serves{Feature::Stretch, Feature::Shear, Feature::Damping, Feature::Pins, Feature::ClothMesh, Feature::UnevenGrid,
-                          Feature::Regions};
+  const FeatureSet serves{Feature::Stretch,   Feature::Shear,      Feature::Damping, Feature::Pins,
+                          Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions};
   stage_ = solver.add_stage("Chains", needs & serves);
   TetherTable tethers;
   if (solver.settings()["tethers"].get<bool>())
@@ -39,18 +39,23 @@ Chains::Chains(GpuSolver& solver, const Scene& scene, const ChainCloth& cloth, c
   for (std::size_t f = 0; f < families.size(); ++f) {
     const std::vector<ChainEntry> more = entries_of(families[f], scene, cloth, block_, f == 0);
     const auto rounds = static_cast<std::uint32_t>(std::bit_width(families[f].longest() - 1));
-    families_.push_back({static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds, 0, 0});
+    families_.push_back(
+        {static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds, 0, 0});
     entries_.insert(entries_.end(), more.begin(), more.end());
   }
-  const vulkan::Buffer& entries = solver.add_buffer("chain entries", entries_.size() * sizeof(ChainEntry), bytes_of(entries_));
-  const vulkan::Buffer* ends = tethers_ > 0 ? &solver.add_buffer("tether ends", tethers.ends.size() * sizeof(TetherEnd), bytes_of(tethers.ends)) : &x;
+  const vulkan::Buffer& entries =
+      solver.add_buffer("chain entries", entries_.size() * sizeof(ChainEntry), bytes_of(entries_));
+  const vulkan::Buffer* ends =
+      tethers_ > 0 ? &solver.add_buffer("tether ends", tethers.ends.size() * sizeof(TetherEnd), bytes_of(tethers.ends))
+                   : &x;
   std::uint32_t features = 0;
   if (needs.has(Feature::Damping)) features |= LINES_DAMPING;
   if (needs.has(Feature::Shear) || needs.has(Feature::ClothMesh)) features |= LINES_SHEAR;
   const bool driven = needs.has(Feature::MovingMesh) || needs.has(Feature::Capsules);
   if ((tethers_ > 0 || starts_crumpled(scene)) && !driven) features |= LINES_LIMIT_SPEED;
-  const std::vector<vulkan::Binding> bindings = {{&x, Access::ReadWrite},  {&v, Access::ReadWrite},   {&rx, Access::ReadWrite},
-                                                 {&rv, Access::ReadWrite}, {&entries, Access::Read}, {ends, Access::Read}};
+  const std::vector<vulkan::Binding> bindings = {{&x, Access::ReadWrite},  {&v, Access::ReadWrite},
+                                                 {&rx, Access::ReadWrite}, {&rv, Access::ReadWrite},
+                                                 {&entries, Access::Read}, {ends, Access::Read}};
   const std::vector<std::uint32_t> specialization = {block_, features, tethers_};
   if (cloth.welded.empty()) add_resident(bindings, specialization);
   if (resident_ == nullptr)
@@ -63,17 +68,20 @@ Chains::Chains(GpuSolver& solver, const Scene& scene, const ChainCloth& cloth, c
   }
   welds_ = static_cast<std::uint32_t>(cloth.welded.size());
   const vulkan::Buffer& pairs = solver.add_buffer("welds", welds.size() * 4, bytes_of(welds));
-  weld_ = &solver.add_kernel(stage_, shaders::kWeld, {{&x, Access::ReadWrite}, {&v, Access::ReadWrite}, {&pairs, Access::Read}}, 4);
+  weld_ = &solver.add_kernel(stage_, shaders::kWeld,
+                             {{&x, Access::ReadWrite}, {&v, Access::ReadWrite}, {&pairs, Access::Read}}, 4);
 }
 
 /// As Lines::add_resident.
-void Chains::add_resident(const std::vector<vulkan::Binding>& bindings, const std::vector<std::uint32_t>& specialization) {
+void Chains::add_resident(const std::vector<vulkan::Binding>& bindings,
+                          const std::vector<std::uint32_t>& specialization) {
   const std::string wanted = solver_.settings()["device_barrier"];
   if (!(wanted == "always" || (wanted == "auto" && solver_.vulkan_device().is_discrete()))) return;
   std::vector<ChainRange> ranges;
   for (const Family& f : families_) ranges.push_back({f.first_entry, f.entries / block_, f.rounds, 0});
   // What the trial reads of it is nothing.
-  const auto with_barrier = [&](const vulkan::Buffer& table, const vulkan::Buffer& meeting, const vulkan::Buffer& missed) {
+  const auto with_barrier = [&](const vulkan::Buffer& table, const vulkan::Buffer& meeting,
+                                const vulkan::Buffer& missed) {
     std::vector<vulkan::Binding> b = bindings;
     b.push_back({&table, Access::Read});
     b.push_back({&meeting, Access::ReadWrite});
@@ -81,16 +89,20 @@ void Chains::add_resident(const std::vector<vulkan::Binding>& bindings, const st
     return b;
   };
   const vulkan::Buffer& entries = *bindings[4].buffer;
-  const auto trial = [&](const vulkan::Buffer& meeting, const vulkan::Buffer& missed) { return with_barrier(entries, meeting, missed); };
-  if (!runs_at_once(solver_.device_, shaders::kChainsResident, specialization, block_, trial, all_groups(), ChainConstants{}, wanted == "always"))
+  const auto trial = [&](const vulkan::Buffer& meeting, const vulkan::Buffer& missed) {
+    return with_barrier(entries, meeting, missed);
+  };
+  if (!runs_at_once(solver_.device_, shaders::kChainsResident, specialization, block_, trial, all_groups(),
+                    ChainConstants{}, wanted == "always"))
     return;
-  const vulkan::Buffer& table = solver_.add_buffer("chain families", ranges.size() * sizeof(ChainRange), bytes_of(ranges));
+  const vulkan::Buffer& table =
+      solver_.add_buffer("chain families", ranges.size() * sizeof(ChainRange), bytes_of(ranges));
   const vulkan::Buffer& meeting = solver_.add_buffer("meeting", 8);
   vulkan::Buffer& missed = solver_.add_host_buffer("missed", 4);
   std::memset(missed.mapped(), 0, 4);
   solver_.set_missed(missed);
-  resident_ = &solver_.add_kernel(stage_, shaders::kChainsResident, with_barrier(table, meeting, missed), sizeof(ChainConstants), specialization,
-                                  block_);
+  resident_ = &solver_.add_kernel(stage_, shaders::kChainsResident, with_barrier(table, meeting, missed),
+                                  sizeof(ChainConstants), specialization, block_);
 }
 
 /// As many workgroups as the family of most blocks has.
@@ -116,7 +128,8 @@ void Chains::count_vertices() {
 Traffic Chains::traffic(std::size_t family) const {
   const Family& f = families_[family];
   const double rests = family == 0 ? 1 : 0;
-  return {16.0 * f.entries + (32 + 32 * rests) * f.vertices + 24 * rests * tethers_ * f.free, (32 + 32 * rests) * f.free};
+  return {16.0 * f.entries + (32 + 32 * rests) * f.vertices + 24 * rests * tethers_ * f.free,
+          (32 + 32 * rests) * f.free};
 }
 
 void Chains::record(int count, int substeps, double dt_s) {
@@ -129,8 +142,8 @@ void Chains::record(int count, int substeps, double dt_s) {
   c.gravity_h = {f(g[0] * h), f(g[1] * h), f(g[2] * h), 0};
   c.h = f(h);
   c.loss = f(-std::expm1(-scene_.material.damping_per_s * h));
-  c.speed_limit =
-      f(2 * std::sqrt(2 * norm(g) * across) + 2 * norm(cloth.initial_velocity_m_per_s) + norm(cloth.spin_rad_per_s) * across);
+  c.speed_limit = f(2 * std::sqrt(2 * norm(g) * across) + 2 * norm(cloth.initial_velocity_m_per_s) +
+                    norm(cloth.spin_rad_per_s) * across);
   c.per_h = f(1 / h);
   c.patience = patience(solver_.vulkan_device()).in_a_frame;
   c.families = static_cast<std::uint32_t>(families_.size());

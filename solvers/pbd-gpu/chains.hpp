@@ -6,13 +6,14 @@
 
 namespace clothbench::pbd_gpu {
 
-/// The constraints of `xpbd` where links are not all alike (triangle meshes, uneven grids, regions): what Lines is to even grids, a
-/// dispatch a family and substep, or all in one where the device runs all workgroups at once. One iteration a substep, no bending.
+/// The constraints of `xpbd` where links are not all alike (triangle meshes, uneven grids, regions): what Lines is to
+/// even grids, a dispatch a family and substep, or all in one where the device runs all workgroups at once. One
+/// iteration a substep, no bending.
 class Chains {
  public:
   /// Adds its stages, buffers and kernels; buffers as Lines has them.
-  Chains(GpuSolver& solver, const Scene& scene, const ChainCloth& cloth, const vulkan::Buffer& x, const vulkan::Buffer& v,
-         const vulkan::Buffer& rx, const vulkan::Buffer& rv);
+  Chains(GpuSolver& solver, const Scene& scene, const ChainCloth& cloth, const vulkan::Buffer& x,
+         const vulkan::Buffer& v, const vulkan::Buffer& rx, const vulkan::Buffer& rv);
 
   /// `count` of `substeps` of a frame of dt_s.
   void record(int count, int substeps, double dt_s);

@@ -25,7 +25,11 @@ std::vector<float> inverse_masses(const Scene& scene) {
 }
 
 GpuSolver::GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)
-    : info_(std::move(info)), given_settings_(settings), settings_(settings), count_bytes_(count_bytes), device_(vulkan::Device::get(device)) {
+    : info_(std::move(info)),
+      given_settings_(settings),
+      settings_(settings),
+      count_bytes_(count_bytes),
+      device_(vulkan::Device::get(device)) {
   take_messages();
 }
 
@@ -81,8 +85,8 @@ vulkan::Kernel& GpuSolver::add_kernel(int stage, const Shader& shader, std::vect
   specialization.insert(specialization.begin(), group_size);
   const vulkan::SpirV code = count_bytes_ ? shader.counted : shader.code;
   if (code.words == nullptr) throw SolverError("bytes cannot be counted: built without CLOTHBENCH_COUNTED_KERNELS");
-  kernels_.push_back(std::make_unique<vulkan::Kernel>(device_, shader.name, code, std::move(specialization), std::move(bindings),
-                                                      push_bytes));
+  kernels_.push_back(std::make_unique<vulkan::Kernel>(device_, shader.name, code, std::move(specialization),
+                                                      std::move(bindings), push_bytes));
   return *kernels_.back();
 }
 
@@ -206,15 +210,15 @@ StepStatus GpuSolver::run_frames(const std::vector<FrameInput>& frames) {
   if (!alike || frames_in_flight() == 1) return ClothSolver::run_frames(frames);
   if (ready_ != StepStatus::Ok) return ready_;
   return last_ = unless_missed(guarded([&] {
-    frame_->need_copies(kFramesInFlight);
-    for (std::size_t k = 0; k < frames.size(); ++k) {
-      frame_->wait(k % kFramesInFlight, patience_s());
-      frame_->submit(k % kFramesInFlight);
-    }
-    // The oldest first, so that last_cost is the last frame's.
-    for (std::size_t k = frames.size(); k < frames.size() + kFramesInFlight; ++k)
-      frame_->wait(k % kFramesInFlight, patience_s());
-  }));
+           frame_->need_copies(kFramesInFlight);
+           for (std::size_t k = 0; k < frames.size(); ++k) {
+             frame_->wait(k % kFramesInFlight, patience_s());
+             frame_->submit(k % kFramesInFlight);
+           }
+           // The oldest first, so that last_cost is the last frame's.
+           for (std::size_t k = frames.size(); k < frames.size() + kFramesInFlight; ++k)
+             frame_->wait(k % kFramesInFlight, patience_s());
+         }));
 }
 
 void GpuSolver::read_state(ClothState& state) const {
@@ -223,9 +227,11 @@ void GpuSolver::read_state(ClothState& state) const {
   state.position.assign(3 * n, kMissing);
   state.velocity.assign(3 * n, kMissing);
   if (run(*download_) != StepStatus::Ok) {
-    // A lost device has no state. Where nobody has been told yet, numbers that are none would pass for the solver's own.
+    // A lost device has no state. Where nobody has been told yet, numbers that are none would pass for the solver's
+    // own.
     if (last_ != StepStatus::Ok) return;
-    throw Error("solver " + info_.name + ": the device was lost, or did not answer in time, when its state was read", ExitCode::CheckFailed);
+    throw Error("solver " + info_.name + ": the device was lost, or did not answer in time, when its state was read",
+                ExitCode::CheckFailed);
   }
   const auto* x = static_cast<const float*>(read_position_->mapped());
   const auto* v = static_cast<const float*>(read_velocity_->mapped());

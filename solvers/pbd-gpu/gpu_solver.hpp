@@ -54,7 +54,8 @@ class GpuSolver : public ClothSolver {
 
   /// Bytes each stage's instrumented kernels counted since the last call; needs `count_bytes`.
   std::vector<Traffic> counted();
-  /// Positions as the device holds them, of every copy or layer of the cloth, relative to the method's origin; for tests.
+  /// Positions as the device holds them, of every copy or layer of the cloth, relative to the method's origin; for
+  /// tests.
   std::vector<float> device_positions() const;
   /// What read_state reads positions from, for drawing without reading back: the scene's vertices first, a vec4 each,
   /// relative to `origin_m()`. Of a loaded solver.
@@ -90,7 +91,8 @@ class GpuSolver : public ClothSolver {
   /// Read back by read_state: the first `vertex_count` vec4 of each.
   void set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m);
 
-  /// A word in host memory that a kernel sets where workgroups waited for one another in vain: such a frame is TimedOut.
+  /// A word in host memory that a kernel sets where workgroups waited for one another in vain: such a frame is
+  /// TimedOut.
   void set_missed(const vulkan::Buffer& word) { missed_ = &word; }
 
   /// `at_least`: how much its kernels read depends on how the cloth lies; what is declared is what every frame reads.
@@ -165,7 +167,8 @@ class GpuSolver : public ClothSolver {
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
   std::vector<Initial> initials_;
   std::vector<vulkan::Buffer*> counters_;  ///< one a stage
-  const vulkan::Buffer *position_ = nullptr, *velocity_ = nullptr;  ///< what read_position_ and read_velocity_ are copies of
+  const vulkan::Buffer *position_ = nullptr,
+                       *velocity_ = nullptr;  ///< what read_position_ and read_velocity_ are copies of
   std::unique_ptr<vulkan::Buffer> read_position_, read_velocity_;
   std::vector<std::unique_ptr<vulkan::Kernel>> kernels_;
   std::unique_ptr<ColliderBuffers> colliders_;

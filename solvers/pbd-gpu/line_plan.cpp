@@ -70,7 +70,8 @@ double tether_stretch(const Scene& scene) {
   const auto Y = scene.material.membrane_stiffness_N_per_m;
   if (!Y) return 1;
   const double rho = c.areal_density_kg_per_m2, length = std::hypot(c.width_m, c.height_m);
-  return 1 + 5 * rho * norm(scene.gravity_m_per_s2) * length / *Y + 2 * norm(c.initial_velocity_m_per_s) * std::sqrt(rho / *Y);
+  return 1 + 5 * rho * norm(scene.gravity_m_per_s2) * length / *Y +
+         2 * norm(c.initial_velocity_m_per_s) * std::sqrt(rho / *Y);
 }
 
 Tethers tethers_of(const Scene& scene) {
@@ -131,8 +132,9 @@ std::vector<std::uint8_t> taut_chains(const Scene& scene) {
 
 namespace {
 
-/// What moves, and a cloth that is thrown at something, goes by half a margin in a substep (fast: a whole one, accurate: a quarter): what
-/// is struck then pulls its neighbours along before it has gone from them by more than a cell can be stretched.
+/// What moves, and a cloth that is thrown at something, goes by half a margin in a substep (fast: a whole one,
+/// accurate: a quarter): what is struck then pulls its neighbours along before it has gone from them by more than a
+/// cell can be stretched.
 long substeps_for_speed(const Scene& scene, int quality) {
   constexpr double kMargins[] = {1, 0.5, 0.25}, kLeast = 0.125;  // of a cell, where margins are small
   constexpr double kMost = 160;  // 20 m/s at a margin of 4 mm; beyond, it leaks rather than stand still
@@ -147,8 +149,9 @@ long substeps_for_speed(const Scene& scene, int quality) {
 
 double length(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }
 
-/// Layers that come closer by more than this share of their thickness in a substep leave wishes too much to do, and the cloth is slowed
-/// down (README, "Self-collision in xpbd"). How fast they may be: what the scene gives them, a fall of the cloth's length, and what moves.
+/// Layers that come closer by more than this share of their thickness in a substep leave wishes too much to do, and the
+/// cloth is slowed down (README, "Self-collision in xpbd"). How fast they may be: what the scene gives them, a fall of
+/// the cloth's length, and what moves.
 double substeps_for_layers(const Scene& scene) {
   constexpr double kMostWay = 2.0 / 3;
   const Cloth& c = scene.cloth;
@@ -170,17 +173,19 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
     double least, links_a_substep;
   };
   const int k = quality == "fast" ? 0 : quality == "default" ? 1 : 2;
-  const bool touched = !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins, Feature::SelfCollision})).empty();
+  const bool touched =
+      !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins, Feature::SelfCollision}))
+           .empty();
   const bool tethered = settings.value("tethers", true) &&
                         (wants_chains(scene) ? tether_table(scene).a_vertex > 0 : !tethers_of(scene).to.empty());
   const auto Y = scene.material.membrane_stiffness_N_per_m;
   const bool stiff = !Y || *Y >= 1e4;
-  // Of a frame, however long it is: a number of seconds in here would be one that similar scenes do not share. A link must not
-  // turn by more than about half a radian a substep.
+  // Of a frame, however long it is: a number of seconds in here would be one that similar scenes do not share. A link
+  // must not turn by more than about half a radian a substep.
   constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
-                 kDriven[] = {{8, 4}, {16, 2}, {32, 1}},
-                 kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}}, kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
+                 kDriven[] = {{8, 4}, {16, 2}, {32, 1}}, kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}},
+                 kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
   // A hand pushes a cloth in ways that no tether knows of.
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   const Rule rule = !touched                           ? kUntouched[k]
@@ -212,7 +217,8 @@ LineShape frame_shape(int columns, int rows, const LineWish& wish, const LineDev
     s.threads = (s.lanes * longest + whole - 1) / whole * whole;
     const std::uint32_t state_B = 6 * 4 * 34 * static_cast<std::uint32_t>(rows) + 128;
     // Twice the threads are worth it for shuffles, not for barriers.
-    const std::uint32_t most = k < 4 && (s.shuffles || vertices != 0) ? device.most_threads : std::min(256u, device.most_threads);
+    const std::uint32_t most =
+        k < 4 && (s.shuffles || vertices != 0) ? device.most_threads : std::min(256u, device.most_threads);
     if (s.threads <= most && state_B + (s.shuffles ? 0 : 16 * s.threads) <= device.shared_B) return s;
   }
   return {};
@@ -225,7 +231,11 @@ LineShape pass_shape(int length, const LineWish& wish, const LineDevice& device)
   const auto n = static_cast<std::uint32_t>(length);
   const bool choose = device.wide && device.subgroup > 0;
   const std::uint32_t vertices = wish.vertices != 0 ? wish.vertices : choose && n <= 384 ? 2 : 4;
-  const std::uint32_t beside = device.subgroup == 0 ? 1 : wish.beside != 0 ? wish.beside : !choose || n <= 192 ? 1 : n <= 384 ? 2 : 4;
+  const std::uint32_t beside = device.subgroup == 0  ? 1
+                               : wish.beside != 0    ? wish.beside
+                               : !choose || n <= 192 ? 1
+                               : n <= 384            ? 2
+                                                     : 4;
   // A wish for threads is for all of them; else as few as hold whole subgroups and lines.
   const std::uint32_t most = std::min(wish.threads != 0 ? wish.threads : choose ? 1024u : 256u, device.most_threads);
   const std::uint32_t least = wish.threads != 0 ? most : std::min(choose ? device.subgroup : 64u, most);

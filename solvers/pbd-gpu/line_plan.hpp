@@ -44,8 +44,8 @@ int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 struct LineDevice {
   std::uint32_t subgroup = 0;  ///< lanes that exchange by shuffles; 0 = none
   std::uint32_t most_threads = 128, shared_B = 16384;
-  /// Two vertices a thread and workgroups of up to 1024 threads: faster by 8 to 14 % on an H200 up to 32 x 32, by a quarter
-  /// above; elsewhere registers may be few.
+  /// Two vertices a thread and workgroups of up to 1024 threads: faster by 8 to 14 % on an H200 up to 32 x 32, by a
+  /// quarter above; elsewhere registers may be few.
   bool wide = false;
 };
 
@@ -62,8 +62,8 @@ struct LineWish {
 };
 /// Of the kernel that takes a whole cloth through a frame; threads = 0 if the cloth or the device does not fit it.
 LineShape frame_shape(int columns, int rows, const LineWish&, const LineDevice&);
-/// Of the kernel of one family of lines of `length` vertices. On wide devices two vertices a thread are fastest up to some
-/// 384 (of an H200), and reading 2 or 4 neighbouring columns at once from 192 on. Throws Error past 8192.
+/// Of the kernel of one family of lines of `length` vertices. On wide devices two vertices a thread are fastest up to
+/// some 384 (of an H200), and reading 2 or 4 neighbouring columns at once from 192 on. Throws Error past 8192.
 LineShape pass_shape(int length, const LineWish&, const LineDevice&);
 
 /// Rounds of cyclic reduction after which what is left of the bending matrix is below a ten-millionth: with alpha well

@@ -72,11 +72,14 @@ Lines::Lines(GpuSolver& solver, const Scene& scene, const vulkan::Buffer& x, con
   if (frame.threads > 0 && one)
     add_frame(frame);
   else if (batch_ > 1)
-    throw Error("solver xpbd: setting batch: takes cloths that fit one workgroup each (32 x 32 vertices, one_dispatch)");
+    throw Error(
+        "solver xpbd: setting batch: takes cloths that fit one workgroup each (32 x 32 vertices, one_dispatch)");
   else if (!one || !add_resident())
     add_passes();
   if (batch_ > 1 && (keep_ || !scene.grips.vertices.empty() || !scene.colliders.empty()))
-    throw Error("solver xpbd: setting batch: takes no hands, no colliders, and one iteration a substep where anything is compliant");
+    throw Error(
+        "solver xpbd: setting batch: takes no hands, no colliders, and one iteration a substep where anything is "
+        "compliant");
 }
 
 LineWish Lines::wish() const {
@@ -91,7 +94,8 @@ LineDevice Lines::device() const {
   if (solver_.settings()["shuffles"].get<bool>()) line.subgroup = d.shuffled_lanes();
   line.most_threads = std::min(d.limits().maxComputeWorkGroupInvocations, d.limits().maxComputeWorkGroupSize[0]);
   line.wide = d.is_discrete();
-  line.shared_B = line.wide ? d.limits().maxComputeSharedMemorySize : std::min(d.limits().maxComputeSharedMemorySize, 32768u);
+  line.shared_B =
+      line.wide ? d.limits().maxComputeSharedMemorySize : std::min(d.limits().maxComputeSharedMemorySize, 32768u);
   return line;
 }
 
@@ -124,8 +128,10 @@ std::vector<std::uint32_t> Lines::specialization(const LineShape& shape) const {
   }
   s.push_back(std::max(1u, device().subgroup));
   s.push_back(shape.beside);
-  const auto columns = static_cast<std::uint32_t>(scene_.cloth.columns), rows = static_cast<std::uint32_t>(scene_.cloth.rows);
-  const bool square = columns == rows && shape.lanes * shape.vertices == columns && columns % shape.chains_a_group() == 0;
+  const auto columns = static_cast<std::uint32_t>(scene_.cloth.columns),
+             rows = static_cast<std::uint32_t>(scene_.cloth.rows);
+  const bool square =
+      columns == rows && shape.lanes * shape.vertices == columns && columns % shape.chains_a_group() == 0;
   s.push_back(square ? 1 : 0);
   return s;
 }
@@ -186,8 +192,8 @@ bool Lines::add_resident() {
     return b;
   };
   const std::vector<std::uint32_t> s = specialization(shape);
-  if (!runs_at_once(solver_.device_, shaders::kLinesResident[keep_ ? 1 : 0], s, shape.threads, with_barrier, groups, LineConstants{},
-                    wanted == "always"))
+  if (!runs_at_once(solver_.device_, shaders::kLinesResident[keep_ ? 1 : 0], s, shape.threads, with_barrier, groups,
+                    LineConstants{}, wanted == "always"))
     return false;
   add_firmness();
   shape_[0] = shape_[1] = shape_[2] = shape;
@@ -214,9 +220,9 @@ void Lines::add_passes() {
                                {Feature::Shear}};
   for (std::size_t k = 0; k < (needs.has(Feature::Shear) ? 3u : 2u); ++k) {
     stage_[k] = solver_.add_stage(names[k], needs & serves[k]);
-    pass_[k] = &solver_.add_kernel(stage_[k], shaders::kLinePass[shape_[k].shuffles ? 1 : 0][keep_ ? 1 : 0],
-                                   bindings(firmness_), sizeof(LineConstants), specialization(shape_[k]),
-                                   shape_[k].threads);
+    pass_[k] =
+        &solver_.add_kernel(stage_[k], shaders::kLinePass[shape_[k].shuffles ? 1 : 0][keep_ ? 1 : 0],
+                            bindings(firmness_), sizeof(LineConstants), specialization(shape_[k]), shape_[k].threads);
   }
 }
 
@@ -230,7 +236,8 @@ LineConstants Lines::constants(double dt_s, int substeps) const {
   c.h = f(h);
   c.loss = f(-std::expm1(-scene_.material.damping_per_s * h));
   c.speed_limit = f(2 * std::sqrt(2 * norm(g) * std::hypot(cloth.width_m, cloth.height_m)) +
-                    2 * norm(cloth.initial_velocity_m_per_s) + norm(cloth.spin_rad_per_s) * std::hypot(cloth.width_m, cloth.height_m));
+                    2 * norm(cloth.initial_velocity_m_per_s) +
+                    norm(cloth.spin_rad_per_s) * std::hypot(cloth.width_m, cloth.height_m));
   c.tether_stretch = f(tethers_.stretch);
   c.rest_u = f(du);
   c.rest_v = f(dv);
@@ -279,8 +286,8 @@ Lines::Constraints Lines::count(std::uint32_t family) const {
 Traffic Lines::multiplier_traffic(std::uint32_t family, std::uint32_t iteration) const {
   if (!keep_) return {};
   const Constraints n = count(family);
-  const double bytes = (link_multipliers_ != nullptr ? 4 * n.links : 0) +
-                       (hinge_multipliers_ != nullptr ? 16 * n.hinges : 0);
+  const double bytes =
+      (link_multipliers_ != nullptr ? 4 * n.links : 0) + (hinge_multipliers_ != nullptr ? 16 * n.hinges : 0);
   return {iteration > 0 ? 2 * bytes : 0, bytes};
 }
 
@@ -314,7 +321,8 @@ void Lines::record(int first, int count, int substeps, double dt_s) {
   }
   const auto n = static_cast<double>(scene_.cloth.vertex_count());
   Traffic t = resident_ != nullptr ? rests_traffic() : Traffic{64 * n * batch_, 64 * n * batch_};
-  if (frame_ != nullptr) t.read_B += static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count);
+  if (frame_ != nullptr)
+    t.read_B += static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count);
   const std::uint32_t families = scene_.needs.has(Feature::Shear) ? 4 : 2;
   for (std::uint32_t iteration = 0; iteration < iterations_; ++iteration)
     for (std::uint32_t family = 0; family < families; ++family) {
@@ -347,7 +355,8 @@ void Lines::record_passes(LineConstants c) {
         t.read_B += rests_traffic().read_B;
         t.write_B += rests_traffic().write_B;
       }
-      solver_.dispatch_groups(stage_[kind], *pass_[kind], vulkan::groups_for(chains, shape_[kind].chains_a_group()), c, t);
+      solver_.dispatch_groups(stage_[kind], *pass_[kind], vulkan::groups_for(chains, shape_[kind].chains_a_group()), c,
+                              t);
     }
 }
 

@@ -9,8 +9,8 @@
 namespace clothbench::pbd_gpu {
 
 /// The constraints of `xpbd`: a substep integrates, tethers and solves rows, columns and diagonals, each line at once.
-/// Small cloths take any number of substeps in one dispatch of one workgroup; larger ones in one dispatch of many, where
-/// the device runs them all at once; else it is four dispatches a substep (two without shear).
+/// Small cloths take any number of substeps in one dispatch of one workgroup; larger ones in one dispatch of many,
+/// where the device runs them all at once; else it is four dispatches a substep (two without shear).
 class Lines {
  public:
   /// Adds its stages, buffers and kernels. Buffers hold one vec4 a vertex: positions (.w = inverse mass), velocities,

@@ -38,7 +38,9 @@ class Paper final : public GpuSolver {
     for (int layer = 0; layer < layers_; ++layer)
       for (std::size_t i = 0; i < w.size(); ++i) {
         const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k]); };
-        const auto speed = [&](std::size_t k) { return w[i] > 0 ? static_cast<float>(start_velocity[3 * i + k]) : 0.0f; };
+        const auto speed = [&](std::size_t k) {
+          return w[i] > 0 ? static_cast<float>(start_velocity[3 * i + k]) : 0.0f;
+        };
         position.push_back({at(0), at(1), at(2), w[i]});
         velocity.push_back({speed(0), speed(1), speed(2), w[i]});
       }
@@ -215,9 +217,10 @@ SolverInfo paper_info() {
   info.version = "1";
   info.precision = "float32";
   info.on_gpu = true;
-  info.supports = {Feature::Stretch,        Feature::Shear,      Feature::Bend,       Feature::Damping,
-                   Feature::Pins,           Feature::MovingPins, Feature::Sphere,     Feature::Box,
-                   Feature::Capsules,       Feature::StaticMesh, Feature::MovingMesh, Feature::Friction,
+  info.supports = {Feature::Stretch,         Feature::Shear,      Feature::Bend,
+                   Feature::Damping,         Feature::Pins,       Feature::MovingPins,
+                   Feature::Sphere,          Feature::Box,        Feature::Capsules,
+                   Feature::StaticMesh,      Feature::MovingMesh, Feature::Friction,
                    Feature::DuplicatedLayer, Feature::UnevenGrid, Feature::Spin};
   // Table 4 of the article: a single-sided cloth does not touch meshes.
   info.only_with = {{Feature::StaticMesh, Feature::DuplicatedLayer}, {Feature::MovingMesh, Feature::DuplicatedLayer}};

@@ -33,7 +33,7 @@ struct PaperConstants {
 /// Push constants of the collision kernels of `paper`.
 struct PaperContactConstants {
   uint particles;
-  uint first, count;  // of the things every particle is tested against
+  uint first, count;              // of the things every particle is tested against
   float margin, depth, friction;  // of a mesh
 };
 
@@ -41,20 +41,20 @@ struct PaperContactConstants {
 #define LINES_DAMPING 1u
 #define LINES_BEND 2u
 #define LINES_SHEAR 4u
-#define LINES_ELASTIC 8u       // links have a compliance
+#define LINES_ELASTIC 8u  // links have a compliance
 #define LINES_LIMIT_SPEED 16u
-#define LINES_FIRM 32u         // chains pulled taut between two held vertices
+#define LINES_FIRM 32u  // chains pulled taut between two held vertices
 // LineConstants::turn
 #define LINES_FIRST 1u
 #define LINES_LAST 2u
 
 /// Push constants of the line kernels of `xpbd`.
 struct LineConstants {
-  vec4 gravity_h;        // g h [m/s]
-  float h;               // substep [s]
-  float loss;            // 1 - exp(-c h)
-  float speed_limit;     // [m/s]
-  float tether_stretch;  // 1 + slack
+  vec4 gravity_h;                   // g h [m/s]
+  float h;                          // substep [s]
+  float loss;                       // 1 - exp(-c h)
+  float speed_limit;                // [m/s]
+  float tether_stretch;             // 1 + slack
   float rest_u, rest_v, rest_d;     // rest lengths of links [m]
   float alpha_u, alpha_v, alpha_d;  // compliance over h^2 [1/kg] of links, inside
   float bend_u, bend_v;             // the same of bending
@@ -171,7 +171,7 @@ struct MeshCluster {
 };
 
 struct ClusterBox {
-  vec4 low;   // w: how far any of their corners goes in the frame
+  vec4 low;  // w: how far any of their corners goes in the frame
   vec4 high;
 };
 
@@ -182,25 +182,25 @@ struct BoxConstants {
 /// Push constants of the contact kernels of `xpbd`.
 struct ContactConstants {
   uint columns, rows;
-  uint words;            // 32-bit words of clusters a vertex may touch
-  float begin, part;     // where the substep begins and how long it is, as fractions of the frame
+  uint words;         // 32-bit words of clusters a vertex may touch
+  float begin, part;  // where the substep begins and how long it is, as fractions of the frame
   float frames_per_s;
-  float least_margin_m;  // margins below it count as this
-  float border_margin_m; // and those round an open border below this as this
-  float reach_m;         // added to the way a vertex may go in the frame
-  float sample_reach_m;  // farthest a sample lies from its first vertex
+  float least_margin_m;   // margins below it count as this
+  float border_margin_m;  // and those round an open border below this as this
+  float reach_m;          // added to the way a vertex may go in the frame
+  float sample_reach_m;   // farthest a sample lies from its first vertex
 };
 
 /// Push constants of the self-contact kernels of `xpbd`.
 struct SelfConstants {
   uint columns, rows;
-  uint side;           // of a block, in vertices
+  uint side;  // of a block, in vertices
   uint block_columns, blocks;
-  uint words;          // 32-bit words of blocks that a block may touch
+  uint words;  // 32-bit words of blocks that a block may touch
   float thickness_m, friction;
-  float h;             // substep [s]
-  float reach_m;       // farther apart than this, and what they close in on each other, no two pieces concern each other
-  float most_m;        // that a vertex is moved by one round of wishes
+  float h;        // substep [s]
+  float reach_m;  // farther apart than this, and what they close in on each other, no two pieces concern each other
+  float most_m;   // that a vertex is moved by one round of wishes
   uint unused0;
 };
 

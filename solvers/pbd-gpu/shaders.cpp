@@ -9,11 +9,14 @@ namespace {
 
 namespace shaders {
 #if CLOTHBENCH_COUNTED_KERNELS
-#define COUNTED(id) {id##_counted, sizeof id##_counted}
+#define COUNTED(id) \
+  { id##_counted, sizeof id##_counted }
 #else
-#define COUNTED(id) {nullptr, 0}
+#define COUNTED(id) \
+  { nullptr, 0 }
 #endif
-#define CODES(id) {#id, {id, sizeof id}, COUNTED(id)}
+#define CODES(id) \
+  { #id, {id, sizeof id }, COUNTED(id) }
 #define SHADER(constant, id) const Shader constant = CODES(id)
 SHADER(kApplyExternalForces, apply_external_forces);
 SHADER(kDampVelocities, damp_velocities);
@@ -40,7 +43,8 @@ SHADER(kSelfApply, self_apply);
 SHADER(kSelfCertify, self_certify);
 SHADER(kSelfMove, self_move);
 // Bytes are counted without shuffles: what lanes load together counts once.
-#define SHUFFLED(id) {#id "_shuffle", {id##_shuffle, sizeof id##_shuffle}, COUNTED(id)}
+#define SHUFFLED(id) \
+  { #id "_shuffle", {id##_shuffle, sizeof id##_shuffle }, COUNTED(id) }
 const Shader kContactCandidates[2] = {CODES(contact_candidates), SHUFFLED(contact_candidates)};
 const Shader kContactSamples[2][2] = {{CODES(contact_samples), SHUFFLED(contact_samples)},
                                       {CODES(contact_samples_mesh), SHUFFLED(contact_samples_mesh)}};

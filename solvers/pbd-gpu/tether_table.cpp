@@ -15,7 +15,8 @@ constexpr std::size_t kMost = 4;  // groups of pinned vertices
 constexpr double kFlat = 1e-6;    // of the longest side
 
 struct Ways {
-  std::vector<std::vector<std::pair<std::uint32_t, double>>> beside;  ///< of each vertex: neighbours and their distance at rest
+  std::vector<std::vector<std::pair<std::uint32_t, double>>>
+      beside;  ///< of each vertex: neighbours and their distance at rest
 };
 
 Ways ways_of(const Scene& s) {
@@ -46,7 +47,9 @@ std::vector<std::vector<std::uint32_t>> groups_of(const Scene& s, const Ways& wa
   return out;
 }
 
-double cross2(const Vec3& a, const Vec3& b, const Vec3& c) { return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]); }
+double cross2(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
 
 /// Is the mesh flat (all z alike) and is its border convex? Then the straight way is the way through the cloth.
 bool is_convex_sheet(const ClothMesh& m) {
@@ -78,7 +81,8 @@ bool is_convex_sheet(const ClothMesh& m) {
 /// The nearest of a group through the cloth, and how far it is at rest: from every vertex.
 class Reach {
  public:
-  Reach(const Scene& s, const Ways& ways) : scene_(s), ways_(ways), straight_(!s.cloth.mesh || is_convex_sheet(*s.cloth.mesh)) {}
+  Reach(const Scene& s, const Ways& ways)
+      : scene_(s), ways_(ways), straight_(!s.cloth.mesh || is_convex_sheet(*s.cloth.mesh)) {}
 
   std::vector<TetherEnd> to(const std::vector<std::uint32_t>& group) const {
     std::vector<TetherEnd> out(scene_.cloth.vertex_count(), {0, std::numeric_limits<float>::max()});
@@ -136,10 +140,14 @@ class Reach {
 
 TetherTable tether_table(const Scene& scene) {
   TetherTable t;
-  if (!scene.grips.vertices.empty()) t.why_not = "hands move what holds the cloth";
-  else if (scene.pins.vertices.empty()) t.why_not = "nothing is pinned";
-  else if (!scene.material.regions.empty()) t.why_not = "its stiffness is not the same everywhere";
-  else if (!scene.cloth.mass_factors.empty() && scene.material.membrane_stiffness_N_per_m) t.why_not = "masses are scaled";
+  if (!scene.grips.vertices.empty())
+    t.why_not = "hands move what holds the cloth";
+  else if (scene.pins.vertices.empty())
+    t.why_not = "nothing is pinned";
+  else if (!scene.material.regions.empty())
+    t.why_not = "its stiffness is not the same everywhere";
+  else if (!scene.cloth.mass_factors.empty() && scene.material.membrane_stiffness_N_per_m)
+    t.why_not = "masses are scaled";
   if (!t.why_not.empty()) return t;
   const Ways ways = ways_of(scene);
   std::vector<std::vector<std::uint32_t>> groups = groups_of(scene, ways);

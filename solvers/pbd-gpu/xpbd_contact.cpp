@@ -79,7 +79,8 @@ std::vector<std::uint32_t> edge_marks(const std::vector<double>& positions,
   };
   const auto normal = [&](const std::array<std::uint32_t, 3>& t) {
     const auto side = [&](std::size_t to, std::size_t k) { return positions[3 * t[to] + k] - positions[3 * t[0] + k]; };
-    const Vec3 n = {side(1, 1) * side(2, 2) - side(1, 2) * side(2, 1), side(1, 2) * side(2, 0) - side(1, 0) * side(2, 2),
+    const Vec3 n = {side(1, 1) * side(2, 2) - side(1, 2) * side(2, 1),
+                    side(1, 2) * side(2, 0) - side(1, 0) * side(2, 2),
                     side(1, 0) * side(2, 1) - side(1, 1) * side(2, 0)};
     const double l = std::hypot(n[0], n[1], n[2]);
     return Vec3{n[0] / l, n[1] / l, n[2] / l};
@@ -125,7 +126,8 @@ std::uint32_t samples_needed(const Scene& scene, int wanted) {
     if (c.mesh) finger = std::min(finger, kFinger_m + c.margin_m);
     for (const Capsule& s : c.capsules) finger = std::min(finger, s.radius_m + c.margin_m);
   }
-  // Of points a distance p apart, half a diagonal is the way to the nearest, and as much again where cloth is stretched.
+  // Of points a distance p apart, half a diagonal is the way to the nearest, and as much again where cloth is
+  // stretched.
   const double hole = std::sqrt(2.0) * std::max(du, dv);
   std::uint32_t samples = 1;
   while (samples < 7 && hole / (samples + 1) > finger) samples = 2 * samples + 1;
@@ -155,7 +157,8 @@ XpbdContact::XpbdContact(GpuSolver& solver, const Scene& scene, Vec3 origin_m, c
       v_(velocities),
       samples_(samples_needed(scene, samples)) {
   if (samples == 0) solver_.leave_out("contact samples", "setting contact_samples=0");
-  if (samples != 0 && samples_ == 0) solver_.leave_out("contact samples", "no edge of the cloth reaches between two vertices");
+  if (samples != 0 && samples_ == 0)
+    solver_.leave_out("contact samples", "no edge of the cloth reaches between two vertices");
   const FeatureSet meshes = scene.needs & FeatureSet{Feature::StaticMesh, Feature::MovingMesh};
   if (meshes.empty())
     solver_.leave_out("BroadPhase", "the scene has no mesh to collide with");
@@ -163,7 +166,8 @@ XpbdContact::XpbdContact(GpuSolver& solver, const Scene& scene, Vec3 origin_m, c
     stage_broad_ = solver_.add_stage("BroadPhase", meshes);
   stage_contact_ = solver_.add_stage(
       "Contact", scene.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided}), true);
-  // Contact of a margin much thinner than the cells has no float left to work in. (Open borders are held farther off still.)
+  // Contact of a margin much thinner than the cells has no float left to work in. (Open borders are held farther off
+  // still.)
   const double least = kLeastMargin * std::min(scene.cloth.du(), scene.cloth.dv());
   for (const Collider& c : scene.colliders) solver_.plan_.contact_margins_m.push_back(std::max(c.margin_m, least));
   add_sides(origin_m);
@@ -286,8 +290,9 @@ void XpbdContact::add_kernels() {
   vertices_ = &solver_.add_kernel(stage_contact_, shaders::kContactVertices[mesh][shuffles], b, kPush, counts);
 }
 
-/// A point looks round alone where threads are few or work together anyway (a CPU's lanes are points); on a discrete GPU a
-/// small cloth's points do not fill the device, and one thread would read triangle after triangle, each read waiting for the last.
+/// A point looks round alone where threads are few or work together anyway (a CPU's lanes are points); on a discrete
+/// GPU a small cloth's points do not fill the device, and one thread would read triangle after triangle, each read
+/// waiting for the last.
 std::uint32_t XpbdContact::lanes() const {
   const vulkan::Device& d = solver_.vulkan_device();
   const auto wish = solver_.settings()["contact_lanes"].get<std::uint32_t>();

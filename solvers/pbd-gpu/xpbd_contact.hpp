@@ -14,14 +14,14 @@ struct Clusters {
 };
 Clusters cluster(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
-/// A word a triangle, of the edges opposite its corners k: bit k is set if the edge belongs to no other triangle, bit 3 + k if
-/// triangles meet there at an angle.
+/// A word a triangle, of the edges opposite its corners k: bit k is set if the edge belongs to no other triangle, bit 3
+/// + k if triangles meet there at an angle.
 std::vector<std::uint32_t> edge_marks(const std::vector<double>& positions,
                                       const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
-/// Points on each edge: none if no edge of the scene's cloth can pass into something between two vertices that are a margin away
-/// (nothing does into planes, and into a ball only an edge long enough for its height over the chord), else `wanted`, or if that
-/// is negative 1, and 3 or 7 where fingers could come through between them.
+/// Points on each edge: none if no edge of the scene's cloth can pass into something between two vertices that are a
+/// margin away (nothing does into planes, and into a ball only an edge long enough for its height over the chord), else
+/// `wanted`, or if that is negative 1, and 3 or 7 where fingers could come through between them.
 std::uint32_t samples_needed(const Scene& scene, int wanted);
 
 /// Contact of `xpbd` with what is in the scene. It works on positions, velocities and where the vertices were at the

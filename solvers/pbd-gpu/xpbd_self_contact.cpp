@@ -14,17 +14,22 @@ using vulkan::Buffer;
 /// Rounds of wishes a substep: what one leaves in a pile, the next one finds.
 constexpr int kRounds = 2;
 
-/// In thicknesses. Contact begins a twentieth outside; what cannot cross is a matter of ways alone. Both as self.glsl has them.
+/// In thicknesses. Contact begins a twentieth outside; what cannot cross is a matter of ways alone. Both as self.glsl
+/// has them.
 constexpr float kContactReach = 1.05f, kCrossingReach = 2e-4f;
 
-/// Every block looks at every other once a substep, so there are no more than this, and they are no smaller than two by two.
+/// Every block looks at every other once a substep, so there are no more than this, and they are no smaller than two by
+/// two.
 constexpr std::uint32_t kMostBlocks = 4096, kLeastSide = 2;
 
-std::uint32_t blocks_along(int vertices, std::uint32_t side) { return (static_cast<std::uint32_t>(vertices) + side - 1) / side; }
+std::uint32_t blocks_along(int vertices, std::uint32_t side) {
+  return (static_cast<std::uint32_t>(vertices) + side - 1) / side;
+}
 
 }  // namespace
 
-XpbdSelfContact::XpbdSelfContact(GpuSolver& solver, const Scene& scene, const Buffer& positions, const Buffer& velocities)
+XpbdSelfContact::XpbdSelfContact(GpuSolver& solver, const Scene& scene, const Buffer& positions,
+                                 const Buffer& velocities)
     : solver_(solver), scene_(scene), x_(positions), v_(velocities) {
   const Cloth& c = scene.cloth;
   if (c.mesh) throw Error("solver xpbd: self-collision is of grids alone, and this cloth is a triangle mesh");
@@ -48,16 +53,18 @@ XpbdSelfContact::XpbdSelfContact(GpuSolver& solver, const Scene& scene, const Bu
   part_ = &solver_.add_buffer("self-contact part of the way", 4);
   constexpr auto kPush = static_cast<std::uint32_t>(sizeof(SelfConstants));
   const auto read = [](const Buffer* b) { return Binding{b, Access::Read}; };
-  find_blocks_ = &solver_.add_kernel(stage_, shaders::kSelfBlocks,
-                                     {read(starts_), read(&x_), {block_boxes_, Access::Write}, {part_, Access::Write}}, kPush);
+  find_blocks_ =
+      &solver_.add_kernel(stage_, shaders::kSelfBlocks,
+                          {read(starts_), read(&x_), {block_boxes_, Access::Write}, {part_, Access::Write}}, kPush);
   find_near_ = &solver_.add_kernel(stage_, shaders::kSelfNear, {read(block_boxes_), {near_, Access::Write}}, kPush);
   wish_ = &solver_.add_kernel(
       stage_, shaders::kSelfWishes,
       {read(starts_), read(&x_), read(&v_), read(block_boxes_), read(near_), {wishes_, Access::Write}}, kPush);
   apply_ = &solver_.add_kernel(stage_, shaders::kSelfApply,
                                {{&x_, Access::ReadWrite}, {&v_, Access::ReadWrite}, read(wishes_)}, kPush);
-  certify_ = &solver_.add_kernel(stage_, shaders::kSelfCertify,
-                                 {read(starts_), read(&x_), read(block_boxes_), read(near_), {part_, Access::ReadWrite}}, kPush);
+  certify_ = &solver_.add_kernel(
+      stage_, shaders::kSelfCertify,
+      {read(starts_), read(&x_), read(block_boxes_), read(near_), {part_, Access::ReadWrite}}, kPush);
   move_ = &solver_.add_kernel(stage_, shaders::kSelfMove,
                               {{starts_, Access::ReadWrite}, {&x_, Access::ReadWrite}, read(part_)}, kPush);
 }
@@ -91,7 +98,8 @@ void XpbdSelfContact::record_substep(double h) {
   record_search(k);
   const double edges = 3 * n - 2.0 * (k.columns + k.rows) + 1;
   // What every piece reads whatever the cloth does; what is near costs more.
-  solver_.dispatch(stage_, *certify_, 4 * scene_.cloth.vertex_count(), k, {n * (16 + around) + edges * (32 + around), 0});
+  solver_.dispatch(stage_, *certify_, 4 * scene_.cloth.vertex_count(), k,
+                   {n * (16 + around) + edges * (32 + around), 0});
   solver_.dispatch(stage_, *move_, scene_.cloth.vertex_count(), k, {36 * n, 32 * n});
 }
 
@@ -103,21 +111,23 @@ void XpbdSelfContact::record_search(const SelfConstants& k) {
     for (uint column = 0; column < k.columns; column += side_)
       looked += (std::min(row + side_, k.rows - 1) - row + 1) * (std::min(column + side_, k.columns - 1) - column + 1);
   solver_.dispatch(stage_, *find_blocks_, blocks_, k, {32 * looked, 48 * blocks + 4});
-  solver_.dispatch(stage_, *find_near_, std::uint64_t{blocks_} * words_, k, {48 * blocks * (words + blocks), 4 * blocks * words});
+  solver_.dispatch(stage_, *find_near_, std::uint64_t{blocks_} * words_, k,
+                   {48 * blocks * (words + blocks), 4 * blocks * words});
 }
 
 void XpbdSelfContact::record_round(const SelfConstants& k) {
   const double columns = k.columns, rows = k.rows, n = columns * rows, cells = (columns - 1) * (rows - 1);
   const double edges = 3 * n - 2 * (columns + rows) + 1, around = 32 + 4.0 * words_;
-  solver_.dispatch(stage_, *wish_, 6 * scene_.cloth.vertex_count(), k,
-                   {n * (16 + around) + 2 * cells * (48 + around) + edges * (32 + around),
-                    32 * n + 96 * 2 * cells + 64 * edges});
+  solver_.dispatch(
+      stage_, *wish_, 6 * scene_.cloth.vertex_count(), k,
+      {n * (16 + around) + 2 * cells * (48 + around) + edges * (32 + around), 32 * n + 96 * 2 * cells + 64 * edges});
   Traffic t;
   const std::vector<float>& w = solver_.inverse_mass_now();
   for (std::size_t i = 0; i < w.size(); ++i) {
     const bool right = i % k.columns + 1 < k.columns, left = i % k.columns > 0, down = i / k.columns + 1 < k.rows,
                up = i / k.columns > 0;
-    const int slots = 1 + 3 * (right && down) + (left && down) + 3 * (left && up) + (right && up) + right + left + down + up;
+    const int slots =
+        1 + 3 * (right && down) + (left && down) + 3 * (left && up) + (right && up) + right + left + down + up;
     t.read_B += 16 + (w[i] > 0 ? 32.0 * slots + 16 : 0);
     t.write_B += w[i] > 0 ? 32 : 0;
   }

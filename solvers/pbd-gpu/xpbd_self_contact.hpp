@@ -3,14 +3,15 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Contact of the cloth of `xpbd` with itself. It works on positions, velocities and where the vertices were at the substep's
-/// start, and knows nothing of how constraints are solved, nor of colliders: it comes after them and leaves nothing crossed.
-/// README, "Self-collision in xpbd", has the method.
+/// Contact of the cloth of `xpbd` with itself. It works on positions, velocities and where the vertices were at the
+/// substep's start, and knows nothing of how constraints are solved, nor of colliders: it comes after them and leaves
+/// nothing crossed. README, "Self-collision in xpbd", has the method.
 class XpbdSelfContact {
  public:
-  /// Adds the stages KeepStart and SelfContact, their buffers and kernels. `positions` (.w = inverse mass) and `velocities` hold one vec4 a
-  /// vertex. Throws Error for what it does not do: triangle meshes, copies.
-  XpbdSelfContact(GpuSolver& solver, const Scene& scene, const vulkan::Buffer& positions, const vulkan::Buffer& velocities);
+  /// Adds the stages KeepStart and SelfContact, their buffers and kernels. `positions` (.w = inverse mass) and
+  /// `velocities` hold one vec4 a vertex. Throws Error for what it does not do: triangle meshes, copies.
+  XpbdSelfContact(GpuSolver& solver, const Scene& scene, const vulkan::Buffer& positions,
+                  const vulkan::Buffer& velocities);
 
   /// Start of a frame, before anything moves.
   void record_frame();
@@ -27,9 +28,10 @@ class XpbdSelfContact {
   const vulkan::Buffer &x_, &v_;
   std::uint32_t side_ = 0, block_columns_ = 0, blocks_ = 0, words_ = 0;
   int stage_start_ = -1, stage_ = -1;
-  const vulkan::Buffer *starts_ = nullptr, *block_boxes_ = nullptr, *near_ = nullptr, *wishes_ = nullptr, *part_ = nullptr;
-  const vulkan::Kernel *find_blocks_ = nullptr, *find_near_ = nullptr, *wish_ = nullptr, *apply_ = nullptr, *certify_ = nullptr,
-                       *move_ = nullptr;
+  const vulkan::Buffer *starts_ = nullptr, *block_boxes_ = nullptr, *near_ = nullptr, *wishes_ = nullptr,
+                       *part_ = nullptr;
+  const vulkan::Kernel *find_blocks_ = nullptr, *find_near_ = nullptr, *wish_ = nullptr, *apply_ = nullptr,
+                       *certify_ = nullptr, *move_ = nullptr;
 };
 
 }  // namespace clothbench::pbd_gpu

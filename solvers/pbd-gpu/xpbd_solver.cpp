@@ -71,12 +71,16 @@ class Xpbd final : public GpuSolver {
       leave_out("self-contact", "the cloth of the scene does not touch itself");
   }
 
-  /// What chains do not do: more iterations with multipliers kept, copies, bending, contact between the vertices of a mesh.
+  /// What chains do not do: more iterations with multipliers kept, copies, bending, contact between the vertices of a
+  /// mesh.
   void restrict_to_chains() {
-    if (scene().needs.has(Feature::Bend)) throw Error("solver xpbd: bending is of even grids alone, and this cloth is none; expected bending_rigidity_N_m 0");
+    if (scene().needs.has(Feature::Bend))
+      throw Error(
+          "solver xpbd: bending is of even grids alone, and this cloth is none; expected bending_rigidity_N_m 0");
     if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: takes even grids alone");
     override_setting("iterations", 1, "its links are not all alike: chains take one iteration");
-    if (scene().cloth.mesh && !scene().colliders.empty()) override_setting("contact_samples", 0, "the cloth is a triangle mesh: its vertices alone take part in contact");
+    if (scene().cloth.mesh && !scene().colliders.empty())
+      override_setting("contact_samples", 0, "the cloth is a triangle mesh: its vertices alone take part in contact");
   }
 
   /// Inverse masses of particles: what is welded together has one, and is held if any of it is.
@@ -117,8 +121,8 @@ class Xpbd final : public GpuSolver {
     }
   }
 
-  /// A frame that lasts as long as several (a hitch) takes the substeps of several: a link turns no farther in one of them,
-  /// and nothing is thrown. Past a second it is the simulation that has fallen behind.
+  /// A frame that lasts as long as several (a hitch) takes the substeps of several: a link turns no farther in one of
+  /// them, and nothing is thrown. Past a second it is the simulation that has fallen behind.
   int frames_in(double dt_s) const {
     constexpr double kSlack = 1.25, kMost_s = 1;  // jitter is no hitch
     const double frame = scene().time.dt();
@@ -147,24 +151,33 @@ SolverInfo xpbd_info() {
   info.version = "2";
   info.precision = "float32";
   info.on_gpu = true;
-  info.supports = {Feature::Stretch,    Feature::Shear,      Feature::Bend,     Feature::Damping,    Feature::Pins,
-                   Feature::MovingPins, Feature::Sphere,     Feature::Box,      Feature::Plane,      Feature::Capsules,
-                   Feature::StaticMesh, Feature::MovingMesh, Feature::Friction, Feature::DoubleSided, Feature::Spin,
-                   Feature::UnevenGrid, Feature::Regions,    Feature::ClothMesh, Feature::SelfCollision};
+  info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,         Feature::Damping,
+                   Feature::Pins,     Feature::MovingPins,  Feature::Sphere,       Feature::Box,
+                   Feature::Plane,    Feature::Capsules,    Feature::StaticMesh,   Feature::MovingMesh,
+                   Feature::Friction, Feature::DoubleSided, Feature::Spin,         Feature::UnevenGrid,
+                   Feature::Regions,  Feature::ClothMesh,   Feature::SelfCollision};
   info.settings = {
-      {"quality", "\"default\"", "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
+      {"quality", "\"default\"",
+       "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
       {"substeps", "0", "substeps a frame; 0: by quality"},
       {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
       {"batch", "1", "as many copies of the cloth in one dispatch (metrics are of the first): throughput"},
-      {"contact_samples", "-1", "points on each edge that take part in contact beside its two vertices, 0 to 16; -1: as colliders ask"},
-      {"contact_lanes", "0", "threads that look round for one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
+      {"contact_samples", "-1",
+       "points on each edge that take part in contact beside its two vertices, 0 to 16; -1: as colliders ask"},
+      {"contact_lanes", "0",
+       "threads that look round for one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
       {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
-      {"one_dispatch", "true", "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
-      {"device_barrier", "\"auto\"", "one dispatch of many workgroups that wait for one another: auto (discrete GPUs that run them all at once), always, never"},
+      {"one_dispatch", "true",
+       "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
+      {"device_barrier", "\"auto\"",
+       "one dispatch of many workgroups that wait for one another: auto (discrete GPUs that run them all at once), "
+       "always, never"},
       {"shuffles", "true", "threads of a line exchange by subgroup shuffles where lines fit a subgroup"},
       {"vertices_a_thread", "0", "of a line: 2, 4, 8, 16 or 32; 0: by line and device"},
       {"threads_a_group", "0", "of one family's workgroups: 32 to 1024; 0: by line and device"},
-      {"lines_beside", "0", "neighbouring lines whose threads take turns, so that memory is read by whole sectors: 1, 2 or 4; 0: by line and device"},
+      {"lines_beside", "0",
+       "neighbouring lines whose threads take turns, so that memory is read by whole sectors: 1, 2 or 4; 0: by line "
+       "and device"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   return info;
 }
@@ -191,10 +204,12 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   if (!(settings["iterations"].get<double>() >= 1 && settings["iterations"].get<double>() <= 4096))
     throw Error("solver xpbd: setting iterations: expected 1 to 4096; found " + settings["iterations"].dump());
   if (!(settings["contact_samples"].get<double>() >= -1 && settings["contact_samples"].get<double>() <= 16))
-    throw Error("solver xpbd: setting contact_samples: expected 0 to 16, or -1; found " + settings["contact_samples"].dump());
+    throw Error("solver xpbd: setting contact_samples: expected 0 to 16, or -1; found " +
+                settings["contact_samples"].dump());
   const double lanes = settings["contact_lanes"].get<double>();
   if (lanes != 0 && lanes != 1 && lanes != 2 && lanes != 4 && lanes != 8 && lanes != 16)
-    throw Error("solver xpbd: setting contact_lanes: expected 0, 1, 2, 4, 8 or 16; found " + settings["contact_lanes"].dump());
+    throw Error("solver xpbd: setting contact_lanes: expected 0, 1, 2, 4, 8 or 16; found " +
+                settings["contact_lanes"].dump());
   return std::make_unique<Xpbd>(xpbd_info(), settings, device, count_bytes);
 }
 

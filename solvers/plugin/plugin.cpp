@@ -29,7 +29,8 @@ constexpr char kSymbol[] = "clothbench_plugin";
 using Entrance = const ClothbenchPlugin* (*)();
 
 static_assert(kFeatureCount == 21, "a new feature needs its bit in clothbench_plugin.h");
-static_assert(CLOTHBENCH_SPIN == 1 << static_cast<int>(Feature::Spin) && CLOTHBENCH_CLOTH_MESH == 1 << static_cast<int>(Feature::ClothMesh) &&
+static_assert(CLOTHBENCH_SPIN == 1 << static_cast<int>(Feature::Spin) &&
+              CLOTHBENCH_CLOTH_MESH == 1 << static_cast<int>(Feature::ClothMesh) &&
               CLOTHBENCH_FRICTION == 1 << static_cast<int>(Feature::Friction) &&
               CLOTHBENCH_DUPLICATED_LAYER == 1 << static_cast<int>(Feature::DuplicatedLayer));
 

@@ -45,7 +45,8 @@ class PluginSolver final : public ClothSolver {
     const char* why = nullptr;
     self_ = c_.create(settings_.data(), view_->scene(), &why);
     if (self_ == nullptr)
-      throw SolverError(info_.folder + ": create: " + (why != nullptr ? why : "the plugin does not say why it makes no solver"));
+      throw SolverError(info_.folder +
+                        ": create: " + (why != nullptr ? why : "the plugin does not say why it makes no solver"));
   }
 
   void reset() override {

@@ -11,7 +11,8 @@ constexpr int kMostIterations = 60;
 
 Vector masses3(const Model& m) {
   Vector out(static_cast<Eigen::Index>(3 * m.vertices()));
-  for (std::size_t v = 0; v < m.vertices(); ++v) out.segment<3>(static_cast<Eigen::Index>(3 * v)).setConstant(m.mass()[v]);
+  for (std::size_t v = 0; v < m.vertices(); ++v)
+    out.segment<3>(static_cast<Eigen::Index>(3 * v)).setConstant(m.mass()[v]);
   return out;
 }
 
@@ -50,12 +51,13 @@ double largest(const Vector& v) {
 /// One implicit step in the unknowns y (position where forces are taken) and lambda:
 ///   M (mass_scale * (y - base)) = force(y) - G(y)^T lambda,   C(y) = compliance * lambda.
 /// Both implicit integrators are of this form.
-StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolerance, double mass_scale, const Vector& base, Vector& y,
-                          Vector& lambda) {
+StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolerance, double mass_scale,
+                          const Vector& base, Vector& y, Vector& lambda) {
   const int n = m.free_dofs(), all = n + static_cast<int>(m.springs());
   const Vector mass = masses3(m);
   Vector compliance(lambda.size());
-  for (std::size_t s = 0; s < m.springs(); ++s) compliance[static_cast<Eigen::Index>(s)] = m.spring_list()[s].compliance;
+  for (std::size_t s = 0; s < m.springs(); ++s)
+    compliance[static_cast<Eigen::Index>(s)] = m.spring_list()[s].compliance;
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMostIterations; ++i) {
     Vector f = m.force(y);
@@ -81,7 +83,8 @@ StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolera
     lambda += rhs.tail(all - n);
     // Very stiff bending of tiny cells: rounding alone may be above the tolerance. Then it no longer falls.
     const bool at_rounding = i > 0 && residual > 0.5 * before;
-    if ((residual <= tolerance.acceleration || at_rounding) && largest(rhs.head(n)) <= tolerance.length_m) return StepStatus::Ok;
+    if ((residual <= tolerance.acceleration || at_rounding) && largest(rhs.head(n)) <= tolerance.length_m)
+      return StepStatus::Ok;
     before = residual;
   }
   return StepStatus::Diverged;
@@ -158,15 +161,16 @@ class Rattle final : public Integrator {
     if (const StepStatus status = to_manifold(s.x, h, mass, x, lambda); status != StepStatus::Ok) return status;
     Vector v = keep * ((x - s.x) / h + h / 2 * model_.force(x).cwiseQuotient(mass));
     for (std::size_t i = 0; i < model_.vertices(); ++i)
-      if (model_.held(i)) v.segment<3>(static_cast<Eigen::Index>(3 * i)) = ((x - s.x) / h).segment<3>(static_cast<Eigen::Index>(3 * i));
+      if (model_.held(i))
+        v.segment<3>(static_cast<Eigen::Index>(3 * i)) = ((x - s.x) / h).segment<3>(static_cast<Eigen::Index>(3 * i));
     if (const StepStatus status = to_tangent(x, mass, v); status != StepStatus::Ok) return status;
     s = {x, v, lambda};
     return StepStatus::Ok;
   }
 
  private:
-  /// x <- x - h^2/2 M^-1 G(from)^T lambda with C(x) = 0, by Newton on lambda with the exact Jacobian G(x) M^-1 G(from)^T
-  /// replaced by the symmetric one at `from`, whose fixed point is the same.
+  /// x <- x - h^2/2 M^-1 G(from)^T lambda with C(x) = 0, by Newton on lambda with the exact Jacobian G(x) M^-1
+  /// G(from)^T replaced by the symmetric one at `from`, whose fixed point is the same.
   StepStatus to_manifold(const Vector& from, double h, const Vector& mass, Vector& x, Vector& lambda) {
     const double scale = h * h / 2;
     const Vector free = x;
@@ -193,7 +197,8 @@ class Rattle final : public Integrator {
     Vector rate = Vector::Zero(static_cast<Eigen::Index>(model_.springs()));
     for (std::size_t s = 0; s < model_.springs(); ++s) {
       const Spring& k = model_.spring_list()[s];
-      const Eigen::Vector3d d = x.segment<3>(3 * k.b) - x.segment<3>(3 * k.a), dv = v.segment<3>(3 * k.b) - v.segment<3>(3 * k.a);
+      const Eigen::Vector3d d = x.segment<3>(3 * k.b) - x.segment<3>(3 * k.a),
+                            dv = v.segment<3>(3 * k.b) - v.segment<3>(3 * k.a);
       rate[static_cast<Eigen::Index>(s)] = d.normalized().dot(dv);
     }
     Vector zero = Vector::Zero(model_.free_dofs());
@@ -202,7 +207,9 @@ class Rattle final : public Integrator {
     Vector pull = Vector::Zero(x.size());
     model_.add_tension(x, impulse, pull);
     for (std::size_t i = 0; i < model_.vertices(); ++i)
-      if (!model_.held(i)) v.segment<3>(static_cast<Eigen::Index>(3 * i)) += pull.segment<3>(static_cast<Eigen::Index>(3 * i)) / mass[static_cast<Eigen::Index>(3 * i)];
+      if (!model_.held(i))
+        v.segment<3>(static_cast<Eigen::Index>(3 * i)) +=
+            pull.segment<3>(static_cast<Eigen::Index>(3 * i)) / mass[static_cast<Eigen::Index>(3 * i)];
     return v.allFinite() ? StepStatus::Ok : StepStatus::NotFinite;
   }
 
@@ -227,7 +234,8 @@ class Rattle final : public Integrator {
 /// off it (the matrix is then quasi-definite, and every ordering works: Vanderbei 1995), and refinement against the
 /// true matrix takes the difference out again.
 void SaddlePoint::solve(int size, const Triplets& lower, Vector& rhs) {
-  constexpr double kShift = 1e-9;  // of the greatest entry of G A^-1 G^T's diagonal, which is 2 / smallest diagonal of A
+  constexpr double kShift =
+      1e-9;  // of the greatest entry of G A^-1 G^T's diagonal, which is 2 / smallest diagonal of A
   constexpr int kRefinements = 6;
   Eigen::SparseMatrix<double> K(size, size);
   K.setFromTriplets(lower.begin(), lower.end());

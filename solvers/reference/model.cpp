@@ -8,10 +8,11 @@
 namespace clothbench::reference {
 namespace {
 
-/// Stiffness [N/m] of an inner spring of those whose homogenised sheet has uniaxial stiffness Y: isotropic with Poisson ratio 1/3 where
-/// the scene shears (Y (9/8 b/a - 3/8 a/b) along a x b cells, 3/16 Y (a^2 + b^2)/(a b) on the diagonals; the only ratio
-/// central springs allow), plain strips Y b/a without interaction where it does not. Beyond an aspect of about 1.6 the
-/// long spring would fall under a tenth of its strip's stiffness and is held there: the sheet is then stiffer than Y.
+/// Stiffness [N/m] of an inner spring of those whose homogenised sheet has uniaxial stiffness Y: isotropic with Poisson
+/// ratio 1/3 where the scene shears (Y (9/8 b/a - 3/8 a/b) along a x b cells, 3/16 Y (a^2 + b^2)/(a b) on the
+/// diagonals; the only ratio central springs allow), plain strips Y b/a without interaction where it does not. Beyond
+/// an aspect of about 1.6 the long spring would fall under a tenth of its strip's stiffness and is held there: the
+/// sheet is then stiffer than Y.
 double stiffness(const Scene& s, const Edge& e) {
   const auto [a, b] = edge_cell(s.cloth, e);
   const double Y = *membrane_stiffness(s, e);
@@ -86,7 +87,8 @@ Vector Model::constraints(const Vector& x) const {
   Vector C(static_cast<Eigen::Index>(springs_.size()));
   for (std::size_t s = 0; s < springs_.size(); ++s) {
     const bool rigid = held(springs_[s].a) && held(springs_[s].b);  // nothing can change it
-    C[static_cast<Eigen::Index>(s)] = rigid ? 0 : (at(x, springs_[s].b) - at(x, springs_[s].a)).norm() - springs_[s].rest_m;
+    C[static_cast<Eigen::Index>(s)] =
+        rigid ? 0 : (at(x, springs_[s].b) - at(x, springs_[s].a)).norm() - springs_[s].rest_m;
   }
   return C;
 }
@@ -105,7 +107,8 @@ Vector Model::force(const Vector& x) const {
 
 void Model::add_tension(const Vector& x, const Vector& lambda, Vector& out) const {
   for (std::size_t s = 0; s < springs_.size(); ++s) {
-    const Eigen::Vector3d n = (at(x, springs_[s].b) - at(x, springs_[s].a)).normalized() * lambda[static_cast<Eigen::Index>(s)];
+    const Eigen::Vector3d n =
+        (at(x, springs_[s].b) - at(x, springs_[s].a)).normalized() * lambda[static_cast<Eigen::Index>(s)];
     out.segment<3>(3 * springs_[s].a) += n;
     out.segment<3>(3 * springs_[s].b) -= n;
   }
@@ -116,7 +119,8 @@ void Model::add_stiffness(const Vector& x, const Vector& lambda, double scale, T
     const Eigen::Vector3d d = at(x, springs_[s].b) - at(x, springs_[s].a);
     const double length = d.norm();
     const Eigen::Vector3d n = d / length;
-    const Eigen::Matrix3d H = scale * lambda[static_cast<Eigen::Index>(s)] / length * (Eigen::Matrix3d::Identity() - n * n.transpose());
+    const Eigen::Matrix3d H =
+        scale * lambda[static_cast<Eigen::Index>(s)] / length * (Eigen::Matrix3d::Identity() - n * n.transpose());
     const int a = dof_[springs_[s].a], b = dof_[springs_[s].b];
     add_block(H, a, a, out);
     add_block(H, b, b, out);
@@ -127,7 +131,8 @@ void Model::add_stiffness(const Vector& x, const Vector& lambda, double scale, T
     const int dof[3] = {dof_[l.a], dof_[l.b], dof_[l.c]};
     for (int p = 0; p < 3; ++p)
       for (int q = 0; q < 3; ++q)
-        if (dof[p] >= dof[q]) add_block(scale * l.stiffness * kStencil[p] * kStencil[q] * Eigen::Matrix3d::Identity(), dof[p], dof[q], out);
+        if (dof[p] >= dof[q])
+          add_block(scale * l.stiffness * kStencil[p] * kStencil[q] * Eigen::Matrix3d::Identity(), dof[p], dof[q], out);
   }
 }
 
@@ -150,7 +155,8 @@ double Model::energy(const Vector& x, const Vector& v) const {
   }
   const Vector C = constraints(x);
   for (std::size_t s = 0; s < springs_.size(); ++s)
-    if (springs_[s].compliance > 0) e += 0.5 * C[static_cast<Eigen::Index>(s)] * C[static_cast<Eigen::Index>(s)] / springs_[s].compliance;
+    if (springs_[s].compliance > 0)
+      e += 0.5 * C[static_cast<Eigen::Index>(s)] * C[static_cast<Eigen::Index>(s)] / springs_[s].compliance;
   for (const BendLine& l : lines_) e += 0.5 * l.stiffness * (at(x, l.a) - 2 * at(x, l.b) + at(x, l.c)).squaredNorm();
   return e;
 }

@@ -19,12 +19,13 @@ SolverInfo describe() {
   info.version = "1";
   info.precision = "float64";
   info.time_order = 2;
-  info.supports = {Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins, Feature::MovingPins,
-                   Feature::UnevenGrid, Feature::Regions, Feature::Spin, Feature::ClothMesh};
-  info.settings = {
-      {"substeps", "16", "steps a frame"},
-      {"integrator", "\"bdf2\"", "bdf2 | conservative: implicit midpoint, or RATTLE where the cloth is inextensible | euler: backward Euler, order 1"},
-      {"tolerance", "1e-8", "Newton's method stops at this residual acceleration, in units of gravity"}};
+  info.supports = {Feature::Stretch,    Feature::Shear,      Feature::Bend,    Feature::Damping, Feature::Pins,
+                   Feature::MovingPins, Feature::UnevenGrid, Feature::Regions, Feature::Spin,    Feature::ClothMesh};
+  info.settings = {{"substeps", "16", "steps a frame"},
+                   {"integrator", "\"bdf2\"",
+                    "bdf2 | conservative: implicit midpoint, or RATTLE where the cloth is inextensible | euler: "
+                    "backward Euler, order 1"},
+                   {"tolerance", "1e-8", "Newton's method stops at this residual acceleration, in units of gravity"}};
   return info;
 }
 
@@ -53,8 +54,8 @@ class Reference final : public ClothSolver {
     const Tolerance t{tolerance_ * acceleration, 1e-12 * L};
     integrator_ = integrator_name_ == "euler"  ? make_euler(*model_, t)
                   : integrator_name_ == "bdf2" ? make_bdf2(*model_, t)
-                  : model_->inextensible() ? make_rattle(*model_, t)
-                                           : make_midpoint(*model_, t);
+                  : model_->inextensible()     ? make_rattle(*model_, t)
+                                               : make_midpoint(*model_, t);
     const auto n = static_cast<Eigen::Index>(3 * model_->vertices());
     const std::vector<double> start = initial_positions(s);
     state_.x = Vector::Map(start.data(), n);
@@ -80,7 +81,8 @@ class Reference final : public ClothSolver {
       for (std::size_t i = 0; i < to.size(); ++i)
         if (grip_held_[i] != 0)
           for (std::size_t c = 0; c < 3; ++c)
-            held_x[static_cast<Eigen::Index>(3 * scene_->grips.vertices[i] + c)] = (1 - t) * grips_from_[i][c] + t * to[i][c];
+            held_x[static_cast<Eigen::Index>(3 * scene_->grips.vertices[i] + c)] =
+                (1 - t) * grips_from_[i][c] + t * to[i][c];
       if (const StepStatus s = integrator_->step(state_, held_x, h); s != StepStatus::Ok) return s;
     }
     grips_from_ = to;
@@ -169,7 +171,8 @@ std::unique_ptr<ClothSolver> make(const nlohmann::json& s, const DeviceOptions&)
   if (!(s["substeps"].get<double>() >= 1 && s["substeps"].get<double>() <= 1e6))
     throw Error("solver reference: setting substeps: expected 1 to 1000000; found " + s["substeps"].dump());
   if (s["integrator"] != "bdf2" && s["integrator"] != "conservative" && s["integrator"] != "euler")
-    throw Error("solver reference: setting integrator: expected \"bdf2\", \"conservative\" or \"euler\"; found " + s["integrator"].dump());
+    throw Error("solver reference: setting integrator: expected \"bdf2\", \"conservative\" or \"euler\"; found " +
+                s["integrator"].dump());
   if (!(s["tolerance"].get<double>() > 0 && s["tolerance"].get<double>() <= 1))
     throw Error("solver reference: setting tolerance: expected above 0, at most 1; found " + s["tolerance"].dump());
   return std::make_unique<Reference>(s);

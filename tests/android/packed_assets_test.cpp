@@ -120,7 +120,8 @@ TEST_F(PackedAssets, WhatTheScriptPacksIsWhatTheProgramNeeds) {
   setenv("CLOTHBENCH_SCENARIOS", (dir_ / "to/scenarios").c_str(), 1);
   const Study study = load_study("table3");
   EXPECT_EQ(study.scenes.size(), 15u);
-  EXPECT_EQ(study.scenes.front().scene.source.rfind((dir_ / "to").string(), 0), 0u) << study.scenes.front().scene.source;
+  EXPECT_EQ(study.scenes.front().scene.source.rfind((dir_ / "to").string(), 0), 0u)
+      << study.scenes.front().scene.source;
 }
 
 }  // namespace

@@ -89,7 +89,8 @@ struct Commands {
         self->calls.push_back(words);
       }
       // As a run does, so that the next one's folder is another.
-      if (const std::string out = value_after(words, "--out"); out.rfind(fs::temp_directory_path().string(), 0) == 0) fs::create_directories(out);
+      if (const std::string out = value_after(words, "--out"); out.rfind(fs::temp_directory_path().string(), 0) == 0)
+        fs::create_directories(out);
       return self->body(words);
     };
   }
@@ -142,7 +143,8 @@ class SessionTest : public ::testing::Test {
 
 TEST(Words, AreSplitAsAShellDoes) {
   using Words = std::vector<std::string>;
-  EXPECT_EQ(split_words("run  paper/gravity\t--set cloth.grid=[8,8]"), (Words{"run", "paper/gravity", "--set", "cloth.grid=[8,8]"}));
+  EXPECT_EQ(split_words("run  paper/gravity\t--set cloth.grid=[8,8]"),
+            (Words{"run", "paper/gravity", "--set", "cloth.grid=[8,8]"}));
   EXPECT_EQ(split_words(R"(a "b c" 'd "e' f\ g "" "x\"y")"), (Words{"a", "b c", "d \"e", "f g", "", "x\"y"}));
   EXPECT_EQ(split_words("   "), Words{});
   EXPECT_THROW(split_words("a \"b"), Error);
@@ -260,7 +262,8 @@ TEST_F(SessionTest, KilledBetweenTwoCommandsTheFirstIsNotRunAgain) {
 }
 
 TEST_F(SessionTest, ADamagedLedgerBeginsAnew) {
-  for (const char* text : {"", "{", "[]", R"({"commands":3})", R"({"commands":[1]})", R"({"commands":[{"line":"study a"}]})"}) {
+  for (const char* text :
+       {"", "{", "[]", R"({"commands":3})", R"({"commands":[1]})", R"({"commands":[{"line":"study a"}]})"}) {
     std::ofstream(files_ / "session.json") << text;
     renew();
     start("study b");
@@ -317,14 +320,21 @@ TEST_F(SessionTest, AnyOrderOfCallsEndsInOneResult) {
     bool destroyed = false;
     for (int call = 0; call < 8; ++call) {
       switch (random() % 6) {
-        case 0: session->pause(); break;
-        case 1: session->resume(); break;
-        case 2: session->low_memory(); break;
+        case 0:
+          session->pause();
+          break;
+        case 1:
+          session->resume();
+          break;
+        case 2:
+          session->low_memory();
+          break;
         case 3:
           session->destroy();
           destroyed = true;
           break;
-        default: std::this_thread::sleep_for(std::chrono::milliseconds(random() % 4));
+        default:
+          std::this_thread::sleep_for(std::chrono::milliseconds(random() % 4));
       }
     }
     if (!destroyed) session->resume();

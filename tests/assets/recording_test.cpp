@@ -18,7 +18,8 @@ RecordedHand hand_at(float x) {
     h.joints[k].position_m = {x, 0.01f * static_cast<float>(k), 1.0f / 3};
     h.joints[k].radius_m = 0.01f;
   }
-  for (std::size_t k = 0; k < h.capsules.size(); ++k) h.capsules[k] = {{x, 0, 0}, {x, 0.1f * static_cast<float>(k), 0}, 0.02f};
+  for (std::size_t k = 0; k < h.capsules.size(); ++k)
+    h.capsules[k] = {{x, 0, 0}, {x, 0.1f * static_cast<float>(k), 0}, 0.02f};
   return h;
 }
 
@@ -103,11 +104,13 @@ TEST(Recording, DamageIsNamed) {
     j[nlohmann::json::json_pointer(pointer)] = value;
     return refused(j);
   };
-  EXPECT_NE(with("/recording/frames", 4).find("file.json: /recording/joints: 78 joints; expected 26"), std::string::npos);
+  EXPECT_NE(with("/recording/frames", 4).find("file.json: /recording/joints: 78 joints; expected 26"),
+            std::string::npos);
   EXPECT_NE(with("/recording/frames", 0), "");
   EXPECT_NE(with("/recording/frame_rate_hz", 0).find("/recording/frame_rate_hz"), std::string::npos);
   EXPECT_NE(with("/recording/joints", "AAA").find("/recording/joints"), std::string::npos);
-  EXPECT_NE(with("/recording/joints", std::string(78 * 32 / 3 * 4, 'A')).find("unit quaternion"), std::string::npos) << "zeros";
+  EXPECT_NE(with("/recording/joints", std::string(78 * 32 / 3 * 4, 'A')).find("unit quaternion"), std::string::npos)
+      << "zeros";
   EXPECT_NE(with("/recording/capsules", "").find("0 capsules"), std::string::npos);
   EXPECT_NE(with("/recording/speed", 1).find("speed"), std::string::npos) << "unknown keys";
   EXPECT_NE(with("/hand", "rihgt").find("right"), std::string::npos);

@@ -171,7 +171,8 @@ TEST(HandTrack, ASweepIsGoneAtAnotherSpeedAndTheRestComesLater) {
     {"time_s": 1, "position_m": [0, 0, 0], "sweep": true},
     {"time_s": 2, "position_m": [3, 0, 4]},
     {"time_s": 2.5, "position_m": [3, 0, 4]},
-    {"time_s": 3, "position_m": [0, 0, 0]}]})", "t");
+    {"time_s": 3, "position_m": [0, 0, 0]}]})",
+                                           "t");
   const HandTrack slow = retimed(track, 2);
   EXPECT_EQ(slow.keys[1].time_s, 1);
   EXPECT_NEAR(slow.keys[2].time_s, 3.5, 1e-12) << "5 m at 2 m/s";

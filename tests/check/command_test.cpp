@@ -153,11 +153,13 @@ TEST_F(CheckCommand, AnotherVersionOfAMetricIsBadInputUntilUpdated) {
   };
   write(1);
   ASSERT_EQ(check("--update"), 0) << text_;
-  EXPECT_EQ(content(baseline()).find("metric_versions"), std::string::npos) << "version 1 is what a baseline means that names none";
+  EXPECT_EQ(content(baseline()).find("metric_versions"), std::string::npos)
+      << "version 1 is what a baseline means that names none";
   EXPECT_EQ(check(), 0) << text_;
   write(2);
   EXPECT_EQ(check(), 2) << text_;
-  for (const char* part : {"sweep__xpbd__default", "wrong_side_samples", "version 1", "version 2", "--update"}) EXPECT_NE(text_.find(part), std::string::npos) << text_;
+  for (const char* part : {"sweep__xpbd__default", "wrong_side_samples", "version 1", "version 2", "--update"})
+    EXPECT_NE(text_.find(part), std::string::npos) << text_;
   ASSERT_EQ(check("--update"), 0) << text_;
   EXPECT_EQ(json::parse(content(baseline()))["cells"][1]["metric_versions"]["wrong_side_samples"], 2);
   EXPECT_EQ(check(), 0) << text_;

@@ -126,7 +126,8 @@ TEST(Compare, TwoVersionsOfARuleMakeNoVerdict) {
   EXPECT_FALSE(findings(by_version(2, 10), by_version(2, 90)).empty());
   EXPECT_EQ(findings(by_version(2, 10), by_version(2, 90))[0].quantity, "contact_violated_longest_s");
   const std::string said = error_of([&] { check_cells(baseline_of({by_version(1, 10)}), {by_version(2, 10)}); });
-  for (const char* part : {"desk__xpbd__default", "wrong_side_samples", "version 1", "version 2", "--update"}) EXPECT_NE(said.find(part), std::string::npos) << said;
+  for (const char* part : {"desk__xpbd__default", "wrong_side_samples", "version 1", "version 2", "--update"})
+    EXPECT_NE(said.find(part), std::string::npos) << said;
   EXPECT_EQ(error_of([&] { check_cells(baseline_of({by_version(2, 10)}), {by_version(2, 10)}); }), "no error");
   const Updated u = update_baseline(baseline_of({by_version(1, 10)}), {by_version(2, 10)}, {});
   EXPECT_EQ(u.baseline.cells[0].versions.at("wrong_side_samples"), 2);

@@ -26,7 +26,8 @@ struct Answer {
 
 /// Runs `clothbench <arguments>`; stdout and stderr together unless `quiet_stderr`.
 Answer clothbench_command(const std::string& arguments, bool quiet_stderr = false) {
-  const std::string command = std::string(CLOTHBENCH_COMMAND) + " " + arguments + (quiet_stderr ? " 2>/dev/null" : " 2>&1");
+  const std::string command =
+      std::string(CLOTHBENCH_COMMAND) + " " + arguments + (quiet_stderr ? " 2>/dev/null" : " 2>&1");
   Answer a;
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return a;
@@ -56,7 +57,8 @@ class Cli : public ::testing::Test {
   std::string small_study() const {
     const fs::path file = dir_ / "small.json";
     std::ofstream(file) << R"({"name":"small","why":"A test.","protocol":"fps",
-      "scenes":[{"file":")" << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/paper/gravity.json",
+      "scenes":[{"file":")"
+                        << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/paper/gravity.json",
         "axes":[{"key":"cloth.grid","values":[[8,8],[9,7]],"labels":["8","9x7"]}]}],
       "solvers":[{"solver":"ballistic"}],"trials":3,
       "short":{"frames":24,"max_wall_s":1,"min_frames":12,"warmup_s":0.05},
@@ -69,7 +71,9 @@ class Cli : public ::testing::Test {
 };
 
 TEST_F(Cli, CompletesFromWhatThereIs) {
-  const auto words = [](const std::string& line) { return clothbench_command("completion words -- " + line, true).text; };
+  const auto words = [](const std::string& line) {
+    return clothbench_command("completion words -- " + line, true).text;
+  };
   EXPECT_EQ(words("stud"), "study\n");
   EXPECT_EQ(words("study table"), "table3\n");
   EXPECT_EQ(words("run paper/hand"), "paper/hand-push\n");
@@ -80,9 +84,10 @@ TEST_F(Cli, CompletesFromWhatThereIs) {
   EXPECT_EQ(words("run-cell ''").find("run-cell"), std::string::npos);
   // Bash itself: what TAB would put on the line.
   const std::string line = "clothbench run paper/gravity --solver ballis";
-  std::ofstream(dir_ / "complete.sh") << "PATH=$(dirname " CLOTHBENCH_COMMAND "):$PATH\nsource <(clothbench completion bash)\n"
-                                      << "COMP_LINE='" << line << "' COMP_POINT=" << line.size()
-                                      << " COMP_WORDS=(" << line << ") COMP_CWORD=4\n_clothbench 2>/dev/null\necho \"${COMPREPLY[@]}\"\n";
+  std::ofstream(dir_ / "complete.sh") << "PATH=$(dirname " CLOTHBENCH_COMMAND
+                                         "):$PATH\nsource <(clothbench completion bash)\n"
+                                      << "COMP_LINE='" << line << "' COMP_POINT=" << line.size() << " COMP_WORDS=("
+                                      << line << ") COMP_CWORD=4\n_clothbench 2>/dev/null\necho \"${COMPREPLY[@]}\"\n";
   FILE* pipe = popen(("bash " + (dir_ / "complete.sh").string()).c_str(), "r");
   ASSERT_NE(pipe, nullptr);
   std::array<char, 256> answer{};
@@ -109,7 +114,8 @@ TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {
   const Answer unknown = clothbench_command("run paper/gravity --solver balistic --out " + (dir_ / "p").string());
   EXPECT_EQ(unknown.code, 2);
   EXPECT_NE(unknown.text.find("ballistic"), std::string::npos) << "the nearest name: " << unknown.text;
-  const Answer setting = clothbench_command("run paper/gravity --solver ballistic --set solver.x=1 --out " + (dir_ / "q").string());
+  const Answer setting =
+      clothbench_command("run paper/gravity --solver ballistic --set solver.x=1 --out " + (dir_ / "q").string());
   EXPECT_EQ(setting.code, 2) << setting.text;
 }
 
@@ -163,8 +169,10 @@ TEST_F(Cli, StudyThenReport) {
 TEST_F(Cli, SolversThatWereNotBuiltAreRows) {
   const fs::path file = dir_ / "absent.json", out = dir_ / "absent";
   std::ofstream(file) << R"({"name":"absent","why":"A test.","protocol":"penetration",
-    "scenes":[{"file":")" << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/contact/plane.json","labels":["a"]},
-              {"file":")" << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/contact/sphere.json"}],
+    "scenes":[{"file":")"
+                      << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/contact/plane.json","labels":["a"]},
+              {"file":")"
+                      << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/contact/sphere.json"}],
     "solvers":[{"solver":"ballistic","set":{"time.duration_s":0.25}},{"solver":"not-there","settings":{"x":1}}],"trials":1,
     "short":{"frames":0,"max_wall_s":0,"min_frames":1,"warmup_s":0},"full":{"frames":0,"max_wall_s":0,"min_frames":1,"warmup_s":0},
     "quick":{"scenes":["a"],"rules":{"frames":4,"max_wall_s":0,"min_frames":4,"warmup_s":0}}})";
@@ -181,12 +189,14 @@ TEST_F(Cli, SolversThatWereNotBuiltAreRows) {
   EXPECT_TRUE(here.header.environment.at("solver_features").at("ignores").is_array());
   const std::string report = (dir_ / "report").string();
   ASSERT_EQ(clothbench_command("report " + out.string() + " -o " + report).code, 0);
-  for (const char* name : {"penetration.md", "penetration.csv", "penetration.json", "penetration-series.csv", "features.json"})
+  for (const char* name :
+       {"penetration.md", "penetration.csv", "penetration.json", "penetration-series.csv", "features.json"})
     EXPECT_TRUE(fs::exists(fs::path(report) / name)) << name;
 
   EXPECT_EQ(json_of("study " + file.string() + " --quick --out " + (dir_ / "quick").string()).at("ok"), 1);
   EXPECT_EQ(read_cell(dir_ / "quick" / "plane-drop__ballistic__default.h5").header.environment.at("protocol"), "quick");
-  EXPECT_EQ(clothbench_command("study " + small_study() + " --quick --out " + (dir_ / "q").string()).code, 2) << "it has no quick form";
+  EXPECT_EQ(clothbench_command("study " + small_study() + " --quick --out " + (dir_ / "q").string()).code, 2)
+      << "it has no quick form";
   EXPECT_EQ(clothbench_command("study " + file.string() + " --solver balistic --out " + (dir_ / "b").string()).code, 2);
 }
 
@@ -209,7 +219,8 @@ int run_and_signal(const std::string& study, const fs::path& out, int signal_num
   if (child == 0) {
     if (freopen("/dev/null", "w", stderr) == nullptr || freopen("/dev/null", "w", stdout) == nullptr) _exit(99);
     const std::string out_path = out.string();
-    if (resume) execl(CLOTHBENCH_COMMAND, "clothbench", "study", study.c_str(), "--out", out_path.c_str(), "--resume", nullptr);
+    if (resume)
+      execl(CLOTHBENCH_COMMAND, "clothbench", "study", study.c_str(), "--out", out_path.c_str(), "--resume", nullptr);
     execl(CLOTHBENCH_COMMAND, "clothbench", "study", study.c_str(), "--out", out_path.c_str(), nullptr);
     _exit(99);
   }
@@ -243,7 +254,8 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
       "axes":[{"key":"cloth.grid","values":[[4,4],[5,5]],"labels":["4","5"]}]}],"solvers":[{"solver":"ballistic"}],"trials":1,
       "short":{"frames":4,"max_wall_s":1,"min_frames":2,"warmup_s":0},"full":{"frames":4,"max_wall_s":0,"min_frames":4,"warmup_s":0},
       "drop_frames":0,"accuracy_duration_s":0.1})";
-  const std::string run = "run " + scene.string() + " --solver ballistic --trials 0 --set time.duration_s=0.1 --out " + one.string(),
+  const std::string run = "run " + scene.string() + " --solver ballistic --trials 0 --set time.duration_s=0.1 --out " +
+                          one.string(),
                     some = "study " + study.string() + " --out " + out.string();
   ASSERT_EQ(clothbench_command(some + " --cell 0").code, 0);
   ASSERT_EQ(clothbench_command(run).code, 0);
@@ -260,7 +272,8 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
   EXPECT_EQ(clothbench_command(run).code, 2) << "finished, and not to be gone on with";
   EXPECT_EQ(bytes(out / "study.json"), manifest);
   EXPECT_EQ(bytes(one / "study.json"), manifest_of_run);
-  EXPECT_EQ(std::distance(fs::directory_iterator(out), fs::directory_iterator()), 3) << "study.json, one cell's .h5 and .xdmf";
+  EXPECT_EQ(std::distance(fs::directory_iterator(out), fs::directory_iterator()), 3)
+      << "study.json, one cell's .h5 and .xdmf";
 }
 
 TEST_F(Cli, KilledAnywhereResumeCompletes) {
@@ -277,7 +290,9 @@ TEST_F(Cli, OwnOverheadIsUnderOnePercentOfAFrame) {
   GTEST_SKIP() << "a sanitizer's build is not what is timed";
 #endif
   const fs::path out = dir_ / "run";
-  ASSERT_EQ(clothbench_command("run paper/gravity --solver ballistic --set cloth.grid=[128,128] --out " + out.string()).code, 0);
+  ASSERT_EQ(
+      clothbench_command("run paper/gravity --solver ballistic --set cloth.grid=[128,128] --out " + out.string()).code,
+      0);
   for (const auto& file : fs::directory_iterator(out))
     if (file.path().extension() == ".h5") {
       const double frame_s = read_cell_summary(file.path()).summary.at("frame_wall_median_s");
@@ -296,7 +311,8 @@ TEST_F(Cli, SeedDrawsAndIsStored) {
       if (file.path().extension() == ".h5") scenes[k] = read_cell(file.path()).header.scenario_json;
   EXPECT_EQ(scenes[0], scenes[1]);
   EXPECT_NE(scenes[0].find("\"seed\":7"), std::string::npos);
-  const Answer none = clothbench_command("run paper/gravity --solver ballistic --trials 0 --seed 7 --out " + (dir_ / "none").string());
+  const Answer none =
+      clothbench_command("run paper/gravity --solver ballistic --trials 0 --seed 7 --out " + (dir_ / "none").string());
   EXPECT_EQ(none.code, 2);
   EXPECT_NE(none.text.find("no truth"), std::string::npos) << none.text;
 }
@@ -313,9 +329,11 @@ TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
   ASSERT_EQ(friction.size(), 1u) << "it has no substeps";
   ASSERT_EQ(friction[0]["answers"].size(), 7u);
   for (const nlohmann::json& answer : friction[0]["answers"])
-    EXPECT_EQ(answer["text"].get<std::string>().find("✓"), std::string::npos) << answer << ": it falls through everything";
+    EXPECT_EQ(answer["text"].get<std::string>().find("✓"), std::string::npos)
+        << answer << ": it falls through everything";
   EXPECT_EQ(friction[0]["answers"][0]["text"], "slips at 1.5 of it");
-  EXPECT_EQ(clothbench_command("friction ballistic --readme " CLOTHBENCH_SOURCE_DIR "/LICENSE").code, 2) << "no marks there";
+  EXPECT_EQ(clothbench_command("friction ballistic --readme " CLOTHBENCH_SOURCE_DIR "/LICENSE").code, 2)
+      << "no marks there";
 }
 
 }  // namespace

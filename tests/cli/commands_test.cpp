@@ -61,20 +61,25 @@ const std::vector<Pair> kPairs = {
     {{"card", "ballistic", "--no-sweep", "--set", "cloth.grid=[3,3]"}, {"--json", "card", "ballistic"}},
     {{"list", "features"}, {"--json", "list"}},
     {{"validate", "no-such-scene"}, {"--json", "validate", "paper/gravity"}},
-    {{"plan", "paper/gravity", "--solver", "ballistic", "--set", "cloth.grid=[5,5]", "--json"}, {"--json", "plan", "paper/gravity", "--solver", "ballistic"}},
+    {{"plan", "paper/gravity", "--solver", "ballistic", "--set", "cloth.grid=[5,5]", "--json"},
+     {"--json", "plan", "paper/gravity", "--solver", "ballistic"}},
     {{"metamorphic", "ballistic", "--set", "cloth.grid=[3,3]"}, {"--json", "metamorphic", "ballistic"}},
-    {{"threshold", "--solver", "ballistic", "validation/atwood"}, {"--json", "threshold", "validation/incline-stick", "--solver", "ballistic"}},
-    {{"friction", "ballistic", "--substeps", "64", "--readme", CLOTHBENCH_SOURCE_DIR "/LICENSE"}, {"--json", "friction", "ballistic"}},
+    {{"threshold", "--solver", "ballistic", "validation/atwood"},
+     {"--json", "threshold", "validation/incline-stick", "--solver", "ballistic"}},
+    {{"friction", "ballistic", "--substeps", "64", "--readme", CLOTHBENCH_SOURCE_DIR "/LICENSE"},
+     {"--json", "friction", "ballistic"}},
     {{"completion", "words", "--", "study", "--"}, {"--json", "completion", "zsh"}},
     {{"study", "table3", "--quick", "--only", "nothing", "--cell", "0"}, {"--json", "study", "table3", "--list-cells"}},
 };
 
-INSTANTIATE_TEST_SUITE_P(Every, Commands, ::testing::ValuesIn(kPairs), [](const auto& one) { return one.param.second.at(1); });
+INSTANTIATE_TEST_SUITE_P(Every, Commands, ::testing::ValuesIn(kPairs),
+                         [](const auto& one) { return one.param.second.at(1); });
 
 TEST(CommandsOfOneProcess, EachTellsWhatItsSeedDraws) {
   const fs::path out = fs::temp_directory_path() / ("clothbench-commands-" + std::to_string(getpid()));
   for (const char* folder : {"one", "two"}) {
-    const Answer a = in_this_process({"run", "validation/swing-strip", "--solver", "ballistic", "--trials", "0", "--seed", "7", "--out", (out / folder).string()});
+    const Answer a = in_this_process({"run", "validation/swing-strip", "--solver", "ballistic", "--trials", "0",
+                                      "--seed", "7", "--out", (out / folder).string()});
     EXPECT_EQ(a.code, 0) << a.text;
     EXPECT_NE(a.text.find("swing-strip --seed 7:"), std::string::npos) << folder << ": " << a.text;
   }

@@ -31,7 +31,8 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.solver << " on " << c
 /// Every scene with every kind of sides and every grid; all their combinations in the slow tier.
 bool chosen(const std::string& scene, std::size_t sides, std::size_t grid) {
   if (CLOTHBENCH_ALL_CASES) return true;
-  const auto shift = std::accumulate(scene.begin(), scene.end(), std::size_t{0}, [](std::size_t n, char c) { return n + static_cast<unsigned char>(c); });
+  const auto shift = std::accumulate(scene.begin(), scene.end(), std::size_t{0},
+                                     [](std::size_t n, char c) { return n + static_cast<unsigned char>(c); });
   return (sides + grid + shift) % 3 == 0;
 }
 
@@ -45,14 +46,16 @@ const std::vector<SolverEntry>& under_test() {
 }
 
 std::vector<Case> cases() {
-  const char *const sides[] = {"single", "double-duplicated", "double"}, *const grids[] = {"[2,2]", "[9,7]", "[17,33]"};  // not multiples of any workgroup
+  const char *const sides[] = {"single", "double-duplicated", "double"},
+                    *const grids[] = {"[2,2]", "[9,7]", "[17,33]"};  // not multiples of any workgroup
   std::vector<Case> all;
   for (const SolverEntry& e : under_test())
     for (const auto& file : fs::recursive_directory_iterator(CLOTHBENCH_SOURCE_DIR "/scenarios")) {
       fs::path relative = fs::relative(file.path(), CLOTHBENCH_SOURCE_DIR "/scenarios");
       const std::string folder = relative.begin()->string();
       if (folder == "stability") continue;  // they name vertices of their own grids, and are there to fail
-      if (file.path().extension() != ".json" || folder == "schema" || folder == "studies" || folder == "assets") continue;
+      if (file.path().extension() != ".json" || folder == "schema" || folder == "studies" || folder == "assets")
+        continue;
       const std::string scene = relative.replace_extension().string();
       for (std::size_t side = 0; side < 3; ++side)
         for (std::size_t grid = 0; grid < 3; ++grid)
@@ -76,10 +79,12 @@ Scene scene_of(const Case& c) {
   // Four vertices have none near a hand.
   if (c.grid == "[2,2]" && c.scene.find("stretch") != std::string::npos)
     for (const char* hand : {"0", "1"}) overrides.push_back(std::string("grips.") + hand + ".radius_m=0.6");
-  if (c.grid == "[2,2]" && c.scene.find("catenary") != std::string::npos) overrides.back() = "cloth.grid=[3,2]";  // 2 columns cannot bend
+  if (c.grid == "[2,2]" && c.scene.find("catenary") != std::string::npos)
+    overrides.back() = "cloth.grid=[3,2]";  // 2 columns cannot bend
   // A strip that starts over a cylinder needs cells shorter than it is thick.
-  if (c.grid != "[17,33]" && (c.scene.find("capstan") != std::string::npos || c.scene.find("atwood") != std::string::npos ||
-                              c.scene.find("self-fold") != std::string::npos))
+  if (c.grid != "[17,33]" &&
+      (c.scene.find("capstan") != std::string::npos || c.scene.find("atwood") != std::string::npos ||
+       c.scene.find("self-fold") != std::string::npos))
     overrides.back() = c.grid == "[2,2]" ? "cloth.grid=[17,2]" : "cloth.grid=[17,7]";
   if (load_scene(c.scene).cloth.mesh) overrides.pop_back();  // a mesh has one size
   return load_scene(c.scene, overrides);
@@ -93,7 +98,8 @@ std::vector<std::string> names_of(FeatureSet set) {
 
 /// Its constraints are exact: a sheet with inextensible diagonals too has more of them than ways to move.
 bool over_determined(const std::string& solver, const Scene& s) {
-  return solver == "reference" && !s.material.membrane_stiffness_N_per_m && (s.needs.has(Feature::Shear) || s.cloth.mesh);
+  return solver == "reference" && !s.material.membrane_stiffness_N_per_m &&
+         (s.needs.has(Feature::Shear) || s.cloth.mesh);
 }
 
 /// Why a case is no test of the solver; empty if it is.
@@ -136,13 +142,15 @@ TEST_P(Conformance, DoesWhatABackendMust) {
   const SolverInfo& info = solver_->info();
   EXPECT_EQ(info.name, entry_->info.name);
   EXPECT_TRUE((info.supports & info.ignores).empty()) << "a feature is either served or ignored";
-  if (const std::string reason = reason_to_skip(info, scene_); !reason.empty()) GTEST_SKIP() << info.name << " " << reason;
+  if (const std::string reason = reason_to_skip(info, scene_); !reason.empty())
+    GTEST_SKIP() << info.name << " " << reason;
 
   solver_->load(scene_);
   const Plan plan = solver_->plan();
   EXPECT_EQ(check_stages(scene_, info, plan), "");
   if ((scene_.needs & kColliderFeatures).empty()) {
-    for (const BufferPlan& b : plan.buffers) EXPECT_EQ(b.name.find("olli"), std::string::npos) << b.name << ": the scene has nothing to collide with";
+    for (const BufferPlan& b : plan.buffers)
+      EXPECT_EQ(b.name.find("olli"), std::string::npos) << b.name << ": the scene has nothing to collide with";
   }
 
   ClothState start, once, again;
@@ -161,7 +169,8 @@ TEST_P(Conformance, DoesWhatABackendMust) {
 
   run(6);
   solver_->read_state(once);
-  for (std::size_t k = 0; k < once.position.size(); ++k) ASSERT_TRUE(std::isfinite(once.position[k]) && std::isfinite(once.velocity[k]));
+  for (std::size_t k = 0; k < once.position.size(); ++k)
+    ASSERT_TRUE(std::isfinite(once.position[k]) && std::isfinite(once.velocity[k]));
   for (std::uint32_t v : scene_.pins.vertices)
     for (std::size_t k = 0; k < 3 && !info.ignores.has(Feature::Pins); ++k) {
       EXPECT_NEAR(once.position[3 * v + k], rest[3 * v + k], 1e-6 * scene_.cloth.width_m);
@@ -184,9 +193,9 @@ INSTANTIATE_TEST_SUITE_P(Every, Conformance, ::testing::ValuesIn(cases()), case_
 /// What a solver may lack, and so which cases are skipped. Whoever makes a solver do less must say so here.
 struct Lacks {
   std::string solver;
-  FeatureSet features;                                ///< neither served nor ignored
+  FeatureSet features;                                 ///< neither served nor ignored
   std::vector<std::pair<Feature, Feature>> only_with;  ///< SolverInfo::only_with
-  double most_skipped;                                ///< share of its cases
+  double most_skipped;                                 ///< share of its cases
 };
 
 const FeatureSet kNoBodies = kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided};
@@ -194,15 +203,22 @@ const std::vector<Lacks> kLacks = {
     {"ballistic", {}, {}, 0},
     {"xpbd", {Feature::DuplicatedLayer, Feature::Render}, {}, 0.36},
     {"paper",
-     {Feature::Plane, Feature::DoubleSided, Feature::SelfCollision, Feature::Render, Feature::Regions, Feature::ClothMesh},
+     {Feature::Plane, Feature::DoubleSided, Feature::SelfCollision, Feature::Render, Feature::Regions,
+      Feature::ClothMesh},
      {{Feature::StaticMesh, Feature::DuplicatedLayer}, {Feature::MovingMesh, Feature::DuplicatedLayer}},
      0.38},
-    {"bullet-soft", {Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render, Feature::Regions, Feature::ClothMesh}, {}, 0.4},
-    {"bullet-deformable", {Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render, Feature::ClothMesh}, {}, 0.4},
+    {"bullet-soft",
+     {Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render, Feature::Regions, Feature::ClothMesh},
+     {},
+     0.4},
+    {"bullet-deformable",
+     {Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render, Feature::ClothMesh},
+     {},
+     0.4},
     {"reference", kNoBodies | FeatureSet{Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render}, {}, 0.74},
     {"example-xpbd",
-     kNoBodies | FeatureSet{Feature::MovingPins, Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render, Feature::UnevenGrid,
-                            Feature::Regions, Feature::Spin, Feature::ClothMesh},
+     kNoBodies | FeatureSet{Feature::MovingPins, Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render,
+                            Feature::UnevenGrid, Feature::Regions, Feature::Spin, Feature::ClothMesh},
      {},
      0.79},
 };
@@ -218,7 +234,8 @@ TEST(ConformanceSkips, AreThoseOfDeclaredFeaturesAndNoMore) {
   std::map<std::string, Scene> scenes;  // what a scene needs doesn't depend on the grid
   const std::vector<Case> all = cases();
   for (const SolverEntry& e : under_test()) {
-    const auto lacks = std::find_if(kLacks.begin(), kLacks.end(), [&](const Lacks& l) { return l.solver == e.info.name; });
+    const auto lacks =
+        std::find_if(kLacks.begin(), kLacks.end(), [&](const Lacks& l) { return l.solver == e.info.name; });
     ASSERT_NE(lacks, kLacks.end()) << e.info.name << ": say in this table what it lacks";
     FeatureSet every;
     for (std::size_t k = 0; k < kFeatureCount; ++k) every.add(static_cast<Feature>(k));

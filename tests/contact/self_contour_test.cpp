@@ -41,7 +41,8 @@ TEST(SelfContour, FlatRolledAndFoldedClothCrossesNowhere) {
     const double turn = 15 * p[0], r = 0.05 + 0.02 * p[0];
     return Point<3>(r * std::cos(turn), r * std::sin(turn), p[2]);
   });
-  const Mesh folded = flat.mapped([](const Point<3>& p) { return Point<3>(std::abs(p[0] - 0.5), 0.01 * (p[0] - 0.5), p[2]); });
+  const Mesh folded =
+      flat.mapped([](const Point<3>& p) { return Point<3>(std::abs(p[0] - 0.5), 0.01 * (p[0] - 0.5), p[2]); });
   for (const Mesh* m : {&flat, &rolled, &folded}) {
     EXPECT_EQ(self_contour(m->view()).pairs, 0);
     EXPECT_EQ(self_contour(m->view()).length_m, 0);
@@ -55,8 +56,10 @@ TEST(SelfContour, FlatRolledAndFoldedClothCrossesNowhere) {
 TEST(SelfContour, FindsThePairsThatLookingAtAllFinds) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-0.3, 0.3);
-  const Mesh crumpled = sheet(7, 6, Point<3>(0, 0, 0), Point<3>(1, 0, 0), Point<3>(0, 0, 1))
-                            .mapped([&](const Point<3>& p) { return Point<3>(p + Point<3>(any(random), any(random), any(random))); });
+  const Mesh crumpled =
+      sheet(7, 6, Point<3>(0, 0, 0), Point<3>(1, 0, 0), Point<3>(0, 0, 1)).mapped([&](const Point<3>& p) {
+        return Point<3>(p + Point<3>(any(random), any(random), any(random)));
+      });
   Contour all;
   for (std::size_t a = 0; a < crumpled.triangles.size(); ++a)
     for (std::size_t b = a + 1; b < crumpled.triangles.size(); ++b) {

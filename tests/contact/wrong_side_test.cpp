@@ -49,19 +49,24 @@ Weave weave() {
   return out;
 }
 
-WrongSide watch(const std::vector<Bone>& start, Weave w = weave()) { return WrongSide(start, P(0, 0, 1), 10, kSide * kSide, std::move(w)); }
+WrongSide watch(const std::vector<Bone>& start, Weave w = weave()) {
+  return WrongSide(start, P(0, 0, 1), 10, kSide * kSide, std::move(w));
+}
 
 TEST(WrongSide, ASheetPushedAsideHasNone) {
-  // Down 0.05 m at x = 0.3, then along to x = -0.3; the sheet hangs in a tent round the finger wherever it is and closes behind.
+  // Down 0.05 m at x = 0.3, then along to x = -0.3; the sheet hangs in a tent round the finger wherever it is and
+  // closes behind.
   const auto at = [](double t) { return t < 1 ? P(0.3013, 0, 0.05 - 0.1 * t) : P(0.3013 - 0.6 * (t - 1), 0, -0.05); };
   WrongSide w = watch(finger(at(0)[0], at(0)[2]));
   for (int frame = 0; frame <= 40; ++frame) {
     const P place = at(frame / 20.0);
     const double floor = place[2] - 0.01;
     w.advance(sampled([&](double u, double v) {
-      const double beside = std::max(0.0, std::abs(u - place[0]) - 0.03) / 0.1, beyond = std::max(0.0, std::max(v - 0.11, -0.19 - v)) / 0.1;
-      return P(u, v, std::min(0.0, floor + 0.1 * (beside + beyond)));
-    }), finger(place[0], place[2]));
+                const double beside = std::max(0.0, std::abs(u - place[0]) - 0.03) / 0.1,
+                             beyond = std::max(0.0, std::max(v - 0.11, -0.19 - v)) / 0.1;
+                return P(u, v, std::min(0.0, floor + 0.1 * (beside + beyond)));
+              }),
+              finger(place[0], place[2]));
     ASSERT_EQ(w.count(), 0u) << "frame " << frame;
   }
 }
@@ -70,13 +75,15 @@ TEST(WrongSide, AFingerTeleportedThroughLeavesExactlyTheSweptStrip) {
   for (const int frames : {1, 2, 7}) {
     // From (0.2, +0.1) to (-0.2, -0.1): below the sheet from x = 0 on.
     WrongSide w = watch(finger(0.2, 0.1));
-    for (int f = 0; f <= frames; ++f) w.advance(sampled(flat), finger(0.2 - 0.4 * f / frames + 0.0013, 0.1 - 0.2 * f / frames));
+    for (int f = 0; f <= frames; ++f)
+      w.advance(sampled(flat), finger(0.2 - 0.4 * f / frames + 0.0013, 0.1 - 0.2 * f / frames));
     std::size_t strip = 0;
     for (int j = 0; j < kSide; ++j)
       for (int i = 0; i < kSide; ++i) {
         const double u = i * 1.0 / (kSide - 1) - 0.5, v = j * 1.0 / (kSide - 1) - 0.5;
         const bool swept = u > -0.1987 && u < 0.0013 && v > -0.19 && v < 0.11;
-        EXPECT_EQ(w.wrong(static_cast<std::size_t>(j * kSide + i)), swept) << u << " " << v << " in " << frames << " frames";
+        EXPECT_EQ(w.wrong(static_cast<std::size_t>(j * kSide + i)), swept)
+            << u << " " << v << " in " << frames << " frames";
         strip += swept;
       }
     EXPECT_EQ(w.count(), strip);
@@ -91,10 +98,13 @@ TEST(WrongSide, AFingerTeleportedThroughLeavesExactlyTheSweptStrip) {
 std::size_t carried(bool round) {
   WrongSide w = watch(finger(0.2, 0.05));
   w.advance(sampled(flat), finger(0.2, 0.05));
-  const std::vector<P> ways = round ? std::vector<P>{P(0, 1, 0), P(0, 1, 0.1), P(0, 0, 0.1)} : std::vector<P>{P(0, 0, 0.1)};
-  for (const P& way : ways) w.advance(sampled([&](double u, double v) { return P(flat(u, v) + way); }), finger(0.2, 0.05));
+  const std::vector<P> ways =
+      round ? std::vector<P>{P(0, 1, 0), P(0, 1, 0.1), P(0, 0, 0.1)} : std::vector<P>{P(0, 0, 0.1)};
+  for (const P& way : ways)
+    w.advance(sampled([&](double u, double v) { return P(flat(u, v) + way); }), finger(0.2, 0.05));
   EXPECT_EQ(w.count(), 0u);
-  for (const double x : {0.1013, -0.0987, -0.1987}) w.advance(sampled([&](double u, double v) { return P(u, v, 0.1); }), finger(x, 0.05));
+  for (const double x : {0.1013, -0.0987, -0.1987})
+    w.advance(sampled([&](double u, double v) { return P(u, v, 0.1); }), finger(x, 0.05));
   return w.count();
 }
 
@@ -124,7 +134,8 @@ TEST(WrongSide, ABorderLaidOverAFingerHasNone) {
 }
 
 TEST(WrongSide, WhatIsPushedAsideWithinAFrameHasNotBeenPassed) {
-  // The finger goes from x = 0.2 to -0.2 at z = -0.05; the first sample from z = 0 to -0.09, early or evenly; the second stays.
+  // The finger goes from x = 0.2 to -0.2 at z = -0.05; the first sample from z = 0 to -0.09, early or evenly; the
+  // second stays.
   const std::vector<double> before{0, 0, 0, 0.021, 0, 0}, after{0, 0, -0.09, 0.021, 0, 0};
   const auto wrong = [&](Weave with) {
     WrongSide w(finger(0.2, -0.05), P(0, 0, 1), 10, 2, std::move(with));
@@ -133,7 +144,8 @@ TEST(WrongSide, WhatIsPushedAsideWithinAFrameHasNotBeenPassed) {
     return std::vector<bool>{w.wrong(0), w.wrong(1)};
   };
   EXPECT_EQ(wrong({}), (std::vector<bool>{false, true}));
-  EXPECT_EQ(wrong({{{0, 1}}, {false, false}}), (std::vector<bool>{true, true})) << "its neighbour was passed, and nothing is between them";
+  EXPECT_EQ(wrong({{{0, 1}}, {false, false}}), (std::vector<bool>{true, true}))
+      << "its neighbour was passed, and nothing is between them";
 }
 
 TEST(WrongSide, RefusesLinksOfNoSample) {

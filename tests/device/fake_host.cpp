@@ -1,7 +1,8 @@
 // A fake Android around the activity's library: loads it, hands it an ANativeActivity and the few JNI calls it makes,
 // and plays a life given as words.
 //   fake_host LIBRARY FILES INTERNAL ARGS STEP...
-// STEP: create | resume | pause | lowmemory | destroy | finish (wait for the activity to ask for its end) | <number> (ms)
+// STEP: create | resume | pause | lowmemory | destroy | finish (wait for the activity to ask for its end) | <number>
+// (ms)
 #include <android/native_activity.h>
 #include <dlfcn.h>
 #include <jni.h>
@@ -23,7 +24,9 @@ int object, intent, klass, text;
 int get_intent_method, get_extra_method;
 
 template <class T>
-T as(int& thing) { return reinterpret_cast<T>(&thing); }
+T as(int& thing) {
+  return reinterpret_cast<T>(&thing);
+}
 
 [[noreturn]] void refuse(const char* what) {
   std::fprintf(stderr, "fake host: %s\n", what);
@@ -32,7 +35,8 @@ T as(int& thing) { return reinterpret_cast<T>(&thing); }
 
 jobject call(JNIEnv*, jobject who, jmethodID method, va_list words) {
   if (method == as<jmethodID>(get_intent_method) && who == as<jobject>(object)) return as<jobject>(intent);
-  if (method != as<jmethodID>(get_extra_method) || who != as<jobject>(intent)) refuse("a method called on the wrong object");
+  if (method != as<jmethodID>(get_extra_method) || who != as<jobject>(intent))
+    refuse("a method called on the wrong object");
   const auto* name = reinterpret_cast<const char*>(va_arg(words, jobject));
   if (std::strcmp(name, "args") != 0) refuse("asked for another extra than args");
   return intent_args.empty() ? nullptr : as<jobject>(text);
@@ -44,7 +48,8 @@ JNINativeInterface functions() {
   f.GetMethodID = [](JNIEnv*, jclass, const char* name, const char* signature) -> jmethodID {
     if (std::strcmp(name, "getIntent") == 0 && std::strcmp(signature, "()Landroid/content/Intent;") == 0)
       return as<jmethodID>(get_intent_method);
-    if (std::strcmp(name, "getStringExtra") == 0 && std::strcmp(signature, "(Ljava/lang/String;)Ljava/lang/String;") == 0)
+    if (std::strcmp(name, "getStringExtra") == 0 &&
+        std::strcmp(signature, "(Ljava/lang/String;)Ljava/lang/String;") == 0)
       return as<jmethodID>(get_extra_method);
     refuse(name);
   };

@@ -38,8 +38,11 @@ Scene with_all(const std::string& scene, const SolverInfo& info) {
 TEST(Irrelevant, AddsWhatTheSceneLacksFarAway) {
   const SolverInfo& info = find_solver("xpbd").info;
   const Scene plain = load_scene("validation/swing-strip"), all = with_all("validation/swing-strip", info);
-  // Shear, moving pins, a start that turns, cells, stiffness and triangles of their own, and layers that meet are the cloth itself.
-  EXPECT_EQ(info.supports - all.needs, (FeatureSet{Feature::Shear, Feature::MovingPins, Feature::Spin, Feature::UnevenGrid, Feature::Regions, Feature::ClothMesh, Feature::SelfCollision}));
+  // Shear, moving pins, a start that turns, cells, stiffness and triangles of their own, and layers that meet are the
+  // cloth itself.
+  EXPECT_EQ(info.supports - all.needs,
+            (FeatureSet{Feature::Shear, Feature::MovingPins, Feature::Spin, Feature::UnevenGrid, Feature::Regions,
+                        Feature::ClothMesh, Feature::SelfCollision}));
   EXPECT_TRUE((plain.needs - all.needs).empty());
   EXPECT_EQ(all.truth_card, "");
   for (const FrameMotion& m : all.motion)
@@ -106,8 +109,9 @@ std::vector<double> run(const SolverEntry& entry, const Scene& scene, int frames
   return out;
 }
 
-/// xpbd must not move, over a second or the whole scene, in scenes that would make a last digit a hundredth of the cloth
-/// too (hang, two-hand-stretch): it keeps every bit. The others are measured, and what they do is their property: see README.md.
+/// xpbd must not move, over a second or the whole scene, in scenes that would make a last digit a hundredth of the
+/// cloth too (hang, two-hand-stretch): it keeps every bit. The others are measured, and what they do is their property:
+/// see README.md.
 TEST_P(NoOp, MovesNothing) {
   const SolverEntry& entry = find_solver(GetParam().solver);
   const Scene plain = load_scene(GetParam().scene), all = with_all(GetParam().scene, entry.info);

@@ -69,14 +69,16 @@ TEST(Dependence, IsMeasuredOnEveryTruth) {
   };
   EXPECT_EQ(need_of("heavy-strip"), "strip ");
   EXPECT_EQ(need_of("two-hand-pull"), "strip ");
-  for (const char* name : {"cantilever-1", "cantilever-10", "cantilever-100"}) EXPECT_EQ(need_of(name), "bending") << name;
-  for (const char* name : {"free-fall", "pendulum", "swing-strip", "catenary", "incline-stick", "incline-slip", "incline-stop",
-                           "capstan-hold", "capstan-slip", "atwood"})
+  for (const char* name : {"cantilever-1", "cantilever-10", "cantilever-100"})
+    EXPECT_EQ(need_of(name), "bending") << name;
+  for (const char* name : {"free-fall", "pendulum", "swing-strip", "catenary", "incline-stick", "incline-slip",
+                           "incline-stop", "capstan-hold", "capstan-slip", "atwood"})
     EXPECT_EQ(need_of(name), "") << name;
   // The strip's stretch is rho g L^2 / 2 Y: a tenth more stiffness, an eleventh less stretch.
   const auto heavy = truth_dependence(load_scene("validation/heavy-strip"));
   EXPECT_NEAR(heavy.at("truth_dependence_Y"), (1 - 1 / 1.1) / std::log(1.1), 1e-6);
-  EXPECT_EQ(need_of("heavy-strip", {"material.membrane_stiffness_N_per_m=1e5"}), "strip ") << "however little it stretches";
+  EXPECT_EQ(need_of("heavy-strip", {"material.membrane_stiffness_N_per_m=1e5"}), "strip ")
+      << "however little it stretches";
   EXPECT_TRUE(truth_dependence(load_scene("validation/hang")).empty()) << "no truth";
 }
 

@@ -49,20 +49,20 @@ std::map<std::string, long> alive() {
 
 }  // namespace clothbench::faults
 
-#define FALLIBLE(name, parameters, arguments)                             \
-  extern "C" VkResult __real_##name parameters;                           \
-  extern "C" VkResult __wrap_##name parameters {                          \
-    const VkResult injected = clothbench::faults::next(#name);            \
-    return injected != VK_SUCCESS ? injected : __real_##name arguments;   \
+#define FALLIBLE(name, parameters, arguments)                           \
+  extern "C" VkResult __real_##name parameters;                         \
+  extern "C" VkResult __wrap_##name parameters {                        \
+    const VkResult injected = clothbench::faults::next(#name);          \
+    return injected != VK_SUCCESS ? injected : __real_##name arguments; \
   }
-#define MAKES(kind, name, parameters, arguments, made)                    \
-  extern "C" VkResult __real_##name parameters;                           \
-  extern "C" VkResult __wrap_##name parameters {                          \
-    const VkResult injected = clothbench::faults::next(#name);            \
-    if (injected != VK_SUCCESS) return injected;                          \
-    const VkResult result = __real_##name arguments;                      \
+#define MAKES(kind, name, parameters, arguments, made)                                             \
+  extern "C" VkResult __real_##name parameters;                                                    \
+  extern "C" VkResult __wrap_##name parameters {                                                   \
+    const VkResult injected = clothbench::faults::next(#name);                                     \
+    if (injected != VK_SUCCESS) return injected;                                                   \
+    const VkResult result = __real_##name arguments;                                               \
     if (result == VK_SUCCESS) clothbench::faults::state().alive[#kind] += static_cast<long>(made); \
-    return result;                                                        \
+    return result;                                                                                 \
   }
 #define UNMAKES(kind, name, parameters, arguments, given)                 \
   extern "C" void __real_##name parameters;                               \

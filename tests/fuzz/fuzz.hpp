@@ -26,7 +26,8 @@ void reads_or_refuses(Read read) {
 class MemoryFile {
  public:
   MemoryFile(const void* data, std::size_t size)
-      : path_((std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path().string()) + "/clothbench-fuzz-" + std::to_string(getpid())) {
+      : path_((std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path().string()) +
+              "/clothbench-fuzz-" + std::to_string(getpid())) {
     std::ofstream out(path_, std::ios::binary);
     if (!out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size)).flush()) std::abort();
   }

@@ -1,9 +1,10 @@
-// Hands: binary glTF to a skinned mesh. An input that begins with { is the JSON, a zero and the binary part of a file whose
-// container is put round them here.
+// Hands: binary glTF to a skinned mesh. An input that begins with { is the JSON, a zero and the binary part of a file
+// whose container is put round them here.
+#include "assets/hand.hpp"
+
 #include <algorithm>
 #include <vector>
 
-#include "assets/hand.hpp"
 #include "fuzz.hpp"
 
 namespace {
@@ -38,7 +39,8 @@ Bytes container(const std::uint8_t* data, std::size_t size) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace clothbench;
   reads_or_refuses([&] {
-    const assets::SkinnedMesh hand = assets::parse_hand_glb(size > 0 && data[0] == '{' ? container(data, size) : Bytes(data, data + size), "hand.glb");
+    const assets::SkinnedMesh hand = assets::parse_hand_glb(
+        size > 0 && data[0] == '{' ? container(data, size) : Bytes(data, data + size), "hand.glb");
     assets::skinned(hand, hand.bind);
   });
   return 0;

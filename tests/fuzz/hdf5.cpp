@@ -1,5 +1,6 @@
-// Result files. The input is a list of changes to a good file, made through the library: fields gone, of other shapes, types and
-// values. Damage below that, in the library's own structures, is the library's to find; some of it ends in its own code.
+// Result files. The input is a list of changes to a good file, made through the library: fields gone, of other shapes,
+// types and values. Damage below that, in the library's own structures, is the library's to find; some of it ends in
+// its own code.
 #include <hdf5.h>
 
 #include <cstring>
@@ -78,10 +79,14 @@ class Bytes {
 
 hid_t some_type(std::uint8_t k) {
   switch (k % 7) {
-    case 0: return H5Tcopy(H5T_NATIVE_DOUBLE);
-    case 1: return H5Tcopy(H5T_NATIVE_INT64);
-    case 2: return H5Tcopy(H5T_NATIVE_UINT8);
-    case 3: return H5Tcopy(H5T_NATIVE_FLOAT);
+    case 0:
+      return H5Tcopy(H5T_NATIVE_DOUBLE);
+    case 1:
+      return H5Tcopy(H5T_NATIVE_INT64);
+    case 2:
+      return H5Tcopy(H5T_NATIVE_UINT8);
+    case 3:
+      return H5Tcopy(H5T_NATIVE_FLOAT);
     case 6: {
       const hid_t compound = H5Tcreate(H5T_COMPOUND, 8);
       H5Tinsert(compound, "x", 0, H5T_NATIVE_DOUBLE);
@@ -119,7 +124,8 @@ void change(hid_t file, Bytes& b) {
       if (d >= 0) H5Dclose(d);
     } else {
       H5Adelete_by_name(file, holder.c_str(), attribute.c_str(), H5P_DEFAULT);
-      const hid_t a = H5Acreate_by_name(file, holder.c_str(), attribute.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+      const hid_t a = H5Acreate_by_name(file, holder.c_str(), attribute.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT,
+                                        H5P_DEFAULT);
       if (a >= 0) H5Aclose(a);
     }
     H5Sclose(space);
@@ -129,7 +135,8 @@ void change(hid_t file, Bytes& b) {
     const std::string text = b.text(what == 4 ? 8 : b.next());
     const hid_t space = H5Screate(H5S_SCALAR), type = what == 4 ? H5Tcopy(H5T_NATIVE_DOUBLE) : H5Tcopy(H5T_C_S1);
     if (what == 5) H5Tset_size(type, text.size() + 1);
-    const hid_t a = H5Acreate_by_name(file, holder.c_str(), attribute.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t a =
+        H5Acreate_by_name(file, holder.c_str(), attribute.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     double number = 0;
     std::memcpy(&number, text.data(), std::min<std::size_t>(8, text.size()));
     if (a >= 0) H5Awrite(a, type, what == 4 ? static_cast<const void*>(&number) : text.c_str());
@@ -145,7 +152,9 @@ void change(hid_t file, Bytes& b) {
       std::vector<double> values(static_cast<std::size_t>(count));
       const std::string text = b.text(16);
       for (std::size_t k = 0; k < values.size(); ++k)
-        if (!text.empty()) std::memcpy(&values[k], text.data() + 8 * (k % 2) % text.size(), std::min<std::size_t>(8, text.size() - 8 * (k % 2) % text.size()));
+        if (!text.empty())
+          std::memcpy(&values[k], text.data() + 8 * (k % 2) % text.size(),
+                      std::min<std::size_t>(8, text.size() - 8 * (k % 2) % text.size()));
       H5Dwrite(d, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
     }
     H5Sclose(space);

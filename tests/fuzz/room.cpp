@@ -1,9 +1,11 @@
 // Room captures: text to mesh and tables.
 #include "assets/room.hpp"
+
 #include "fuzz.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace clothbench;
-  reads_or_refuses([&] { assets::parse_room(std::string(reinterpret_cast<const char*>(data), size), "room.json", "room"); });
+  reads_or_refuses(
+      [&] { assets::parse_room(std::string(reinterpret_cast<const char*>(data), size), "room.json", "room"); });
   return 0;
 }

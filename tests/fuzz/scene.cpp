@@ -11,12 +11,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace clothbench;
   reads_or_refuses([&] {
     const nlohmann::json j = parse_json(std::string(reinterpret_cast<const char*>(data), size), "scene.json");
-    // What a file may ask for is bounded by the schema, and slow near its bounds; the reader is looked for faults with little.
+    // What a file may ask for is bounded by the schema, and slow near its bounds; the reader is looked for faults with
+    // little.
     const auto number = [&](const char* pointer, double otherwise) {
       const nlohmann::json::json_pointer at(pointer);
       return j.contains(at) && j[at].is_number() ? j[at].get<double>() : otherwise;
     };
-    if (number("/cloth/grid/0", 2) * number("/cloth/grid/1", 2) > 1e4 || number("/time/duration_s", 1) * number("/time/frame_rate_hz", 60) > 1e4) return;
+    if (number("/cloth/grid/0", 2) * number("/cloth/grid/1", 2) > 1e4 ||
+        number("/time/duration_s", 1) * number("/time/frame_rate_hz", 60) > 1e4)
+      return;
     scene_from_json(j, "scene.json");
   });
   return 0;

@@ -21,7 +21,11 @@ using nlohmann::json;
 class Cheat : public ClothSolver {
  public:
   enum class Fault { None, SpeedLimit, LiesAlongX, Numbering, Counts, SeesColliders, Remembers, OneFace };
-  explicit Cheat(Fault fault) : fault_(fault) { info_.supports = kColliderFeatures | FeatureSet{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins, Feature::Friction, Feature::DoubleSided}; }
+  explicit Cheat(Fault fault) : fault_(fault) {
+    info_.supports =
+        kColliderFeatures | FeatureSet{Feature::Stretch, Feature::Shear,    Feature::Bend,       Feature::Damping,
+                                       Feature::Pins,    Feature::Friction, Feature::DoubleSided};
+  }
   static SolverEntry entry(Fault fault) {
     SolverEntry e;
     e.info = Cheat(fault).info_;
@@ -50,7 +54,8 @@ class Cheat : public ClothSolver {
       if (fault_ == Fault::LiesAlongX && i % 3 == 0) v += 0.01 * scene_->gravity_m_per_s2[1] * in.dt_s;
       if (fault_ == Fault::Numbering && i < 3) v *= 0.9;
       if (fault_ == Fault::Counts) v *= 1 + 1e-15 * steps;
-      if (fault_ == Fault::SeesColliders && !scene_->colliders.empty() && scene_->colliders.size() > 0) v *= 1 - 1e-4 * static_cast<double>(scene_->colliders.size());
+      if (fault_ == Fault::SeesColliders && !scene_->colliders.empty() && scene_->colliders.size() > 0)
+        v *= 1 - 1e-4 * static_cast<double>(scene_->colliders.size());
       if (fault_ == Fault::OneFace && scene_->cloth.sides == Sides::Double) v += 0.01 * facing_[i % 3];
       if (fault_ == Fault::Remembers) v += 20 * age_s_ * in.dt_s;
       state_.position[i] += v * in.dt_s;
@@ -86,16 +91,23 @@ std::string status(const std::vector<MetamorphicResult>& all, const std::string&
 }
 
 TEST(Metamorphic, FreeFallKeepsEveryProperty) {
-  for (const MetamorphicResult& r : of(Cheat::Fault::None)) EXPECT_EQ(r.status, "kept") << r.property << " " << r.distance;
+  for (const MetamorphicResult& r : of(Cheat::Fault::None))
+    EXPECT_EQ(r.status, "kept") << r.property << " " << r.distance;
 }
 
 TEST(Metamorphic, EachFaultIsFoundOut) {
   using F = Cheat::Fault;
-  const std::vector<std::pair<F, std::vector<std::string>>> cases = {
-      {F::SpeedLimit, {"similarity", "rotation"}}, {F::LiesAlongX, {"mirror", "rotation"}}, {F::Numbering, {"renumbering"}}, {F::Counts, {"repeat"}}, {F::SeesColliders, {"no-op"}}, {F::Remembers, {"restart"}}, {F::OneFace, {"flip"}}};
+  const std::vector<std::pair<F, std::vector<std::string>>> cases = {{F::SpeedLimit, {"similarity", "rotation"}},
+                                                                     {F::LiesAlongX, {"mirror", "rotation"}},
+                                                                     {F::Numbering, {"renumbering"}},
+                                                                     {F::Counts, {"repeat"}},
+                                                                     {F::SeesColliders, {"no-op"}},
+                                                                     {F::Remembers, {"restart"}},
+                                                                     {F::OneFace, {"flip"}}};
   for (const auto& [fault, broken] : cases) {
     const auto all = of(fault);
-    for (const std::string& property : broken) EXPECT_EQ(status(all, property), "broken") << static_cast<int>(fault) << " " << property;
+    for (const std::string& property : broken)
+      EXPECT_EQ(status(all, property), "broken") << static_cast<int>(fault) << " " << property;
   }
   EXPECT_EQ(status(of(F::Numbering), "mirror"), "kept");
   EXPECT_EQ(status(of(F::OneFace), "renumbering"), "kept") << "that sheet has one side";
@@ -137,15 +149,19 @@ TEST(Renumbering, KeepsPlacesAndPins) {
   EXPECT_THROW(renumber_scene(json::parse(draped.json), Renumbering::FlipU, "x", unused), Error);
 }
 
-/// The gate of ours. What other solvers break is in their READMEs, written by `clothbench metamorphic SOLVER --readme FILE`.
+/// The gate of ours. What other solvers break is in their READMEs, written by `clothbench metamorphic SOLVER --readme
+/// FILE`.
 TEST(Metamorphic, XpbdKeepsAll) {
   const auto& all = solvers();
-  if (std::none_of(all.begin(), all.end(), [](const SolverEntry& e) { return e.info.name == "xpbd"; })) GTEST_SKIP() << "not in this build";
+  if (std::none_of(all.begin(), all.end(), [](const SolverEntry& e) { return e.info.name == "xpbd"; }))
+    GTEST_SKIP() << "not in this build";
   const SolverEntry& entry = find_solver("xpbd");
   try {
     int kept = 0;
-    for (const MetamorphicResult& r : run_metamorphic(entry, complete_settings(entry.info, json::object()), {}, metamorphic_scenes())) {
-      EXPECT_EQ(r.status, "kept") << r.property << " on " << r.scene << ": " << r.distance << " of L, at most " << r.at_most;
+    for (const MetamorphicResult& r :
+         run_metamorphic(entry, complete_settings(entry.info, json::object()), {}, metamorphic_scenes())) {
+      EXPECT_EQ(r.status, "kept") << r.property << " on " << r.scene << ": " << r.distance << " of L, at most "
+                                  << r.at_most;
       if (r.status == "kept") ++kept;
     }
     EXPECT_EQ(kept, 36);

@@ -28,7 +28,8 @@ TEST(ColliderContact, APlaneIsAHalfSpace) {
   EXPECT_EQ(above.depth_m, 0);
   EXPECT_EQ(above.area_m2, 0);
   EXPECT_EQ(above.depth_mean_m, 0);
-  for (double depth : {below.depth_m, below.depth_vertex_m, below.depth_p99_m, below.depth_mean_m}) EXPECT_NEAR(depth, 0.02, 1e-15);
+  for (double depth : {below.depth_m, below.depth_vertex_m, below.depth_p99_m, below.depth_mean_m})
+    EXPECT_NEAR(depth, 0.02, 1e-15);
   EXPECT_NEAR(below.area_m2, 0.36, 1e-14);
   EXPECT_EQ(below.length_m, 0) << "nothing crosses the surface";
   EXPECT_TRUE(std::isnan(below.tunnelled_fraction));
@@ -46,7 +47,8 @@ TEST(ColliderContact, APlaneIsAHalfSpace) {
 
 TEST(ColliderContact, ABoxIsSolidWhicheverWayItIsTurned) {
   // A 0.6 m sheet, level, 1 cm under the top of a box of 0.3 m; then the box turned about the vertical.
-  for (const char* turn : {"colliders.0.rotation_deg=[0,0,0]", "colliders.0.rotation_deg=[0,30,0]", "colliders.0.rotation_deg=[90,0,0]"}) {
+  for (const char* turn :
+       {"colliders.0.rotation_deg=[0,0,0]", "colliders.0.rotation_deg=[0,30,0]", "colliders.0.rotation_deg=[90,0,0]"}) {
     const Scene scene = load_scene("contact/box", {"cloth.grid=[61,61]", turn});
     const SceneContact s = at_height(scene, 0.14);
     EXPECT_NEAR(s.length_m, 1.2, 1e-9) << turn;
@@ -67,7 +69,8 @@ TEST(ColliderContact, CapsulesAreWhereTheirFrameHasThem) {
     double deepest = 0;
     for (std::size_t v = 0; v < x.size(); v += 3)
       for (const Capsule& c : scene.motion[static_cast<std::size_t>(frame)].colliders[0].capsules) {
-        const contact::Capsule shape{contact::Point<3>::Map(c.a_m.data()), contact::Point<3>::Map(c.b_m.data()), c.radius_m};
+        const contact::Capsule shape{contact::Point<3>::Map(c.a_m.data()), contact::Point<3>::Map(c.b_m.data()),
+                                     c.radius_m};
         deepest = std::max(deepest, -contact::signed_distance(contact::Point<3>::Map(&x[v]), shape));
       }
     EXPECT_DOUBLE_EQ(s.depth_vertex_m, deepest) << "frame " << frame;
@@ -83,12 +86,14 @@ TEST(ColliderContact, SeveralCollidersAddUp) {
   const auto single = [](const char* centre, double y) {
     return at_height(load_scene("contact/sphere", {"cloth.grid=[33,33]", "colliders.0.radius_m=0.1", centre}), y);
   };
-  const SceneContact left = single("colliders.0.center_m=[-0.15,0,0]", 0.09), right = single("colliders.0.center_m=[0.15,0.02,0]", 0.09);
+  const SceneContact left = single("colliders.0.center_m=[-0.15,0,0]", 0.09),
+                     right = single("colliders.0.center_m=[0.15,0.02,0]", 0.09);
   const SceneContact both = at_height(two, 0.09);
   EXPECT_NEAR(both.length_m, left.length_m + right.length_m, 1e-12);
   EXPECT_NEAR(both.area_m2, left.area_m2 + right.area_m2, 1e-15);
   EXPECT_EQ(both.depth_m, right.depth_m);
-  EXPECT_NEAR(both.depth_mean_m * both.area_m2, left.depth_mean_m * left.area_m2 + right.depth_mean_m * right.area_m2, 1e-15);
+  EXPECT_NEAR(both.depth_mean_m * both.area_m2, left.depth_mean_m * left.area_m2 + right.depth_mean_m * right.area_m2,
+              1e-15);
   EXPECT_GT(left.area_m2, 0);
 }
 

@@ -57,7 +57,8 @@ const char* const kSphereScene = R"({"name":"sphere-test","why":"A sheet pushed 
   "time":{"frame_rate_hz":20,"duration_s":1},
   "expect":{"outcome":"ok","depth_max_m":{"at_most":0.0100001},"contact_length_settled_m":{"at_least":0.27,"at_most":0.28}}})";
 
-// R = 0.1 m, d = 0.01 m: contour 2 pi sqrt(2Rd - d^2), area pi (2Rd - d^2), mean depth R - 2/3 (R^3 - (R-d)^3)/(2Rd - d^2).
+// R = 0.1 m, d = 0.01 m: contour 2 pi sqrt(2Rd - d^2), area pi (2Rd - d^2), mean depth R - 2/3 (R^3 - (R-d)^3)/(2Rd -
+// d^2).
 TEST(ContactScene, WhatASolverSaysOfItsMarginIsStoredAndHeeded) {
   const ScratchFolder folder;
   const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=0.1"});
@@ -71,7 +72,8 @@ TEST(ContactScene, WhatASolverSaysOfItsMarginIsStoredAndHeeded) {
 
 TEST(ContactScene, XpbdTellsThatItKeepsAHundredthOfACell) {
   const auto margins = [](double margin_m) {
-    const Scene scene = load_scene("contact/plane", {"cloth.grid=[7,7]", "colliders.0.margin_m=" + std::to_string(margin_m)});
+    const Scene scene =
+        load_scene("contact/plane", {"cloth.grid=[7,7]", "colliders.0.margin_m=" + std::to_string(margin_m)});
     const SolverEntry& entry = find_solver("xpbd");
     const auto solver = entry.make(complete_settings(entry.info, nlohmann::json::object()), {});
     solver->load(scene);
@@ -154,8 +156,8 @@ TEST(ContactScene, ANaNIsInTheSummaryAndBreaksTheExpectation) {
   const CellRecord r = run(scene, solver, folder);
   EXPECT_EQ(r.outcome.status, "not_finite");
   EXPECT_EQ(r.outcome.failed_frame, 7) << "the first frame that is not finite";
-  for (const char* name : {"contact_length_max_m", "depth_max_m", "depth_vertex_max_m", "depth_mean_m", "penetrating_area_max_m2",
-                           "stretch_max", "stretch_max_end"})
+  for (const char* name : {"contact_length_max_m", "depth_max_m", "depth_vertex_max_m", "depth_mean_m",
+                           "penetrating_area_max_m2", "stretch_max", "stretch_max_end"})
     EXPECT_TRUE(std::isnan(r.summary.at(name))) << name;
   EXPECT_EQ(r.outcome.expect,
             "broken: outcome not_finite, expected ok; contact_length_settled_m has no value; depth_max_m has no value");
@@ -214,11 +216,11 @@ TEST(ContactScene, WhatACrossedStartHasIsNotNew) {
 
 TEST(ContactScene, NoNumberIsNoSelfContactKept) {
   const ScratchFolder folder;
-  const CellRecord r = run(load_scene(folder.file("scene.json", kSelfScene)),
-                           prescribed([](int frame, std::vector<double>& x) {
-                             if (frame >= 3) x[4] = kMissing;
-                           }),
-                           folder);
+  const CellRecord r =
+      run(load_scene(folder.file("scene.json", kSelfScene)), prescribed([](int frame, std::vector<double>& x) {
+            if (frame >= 3) x[4] = kMissing;
+          }),
+          folder);
   EXPECT_TRUE(std::isnan(r.summary.at("self_contact_pairs_max")));
   EXPECT_TRUE(std::isnan(r.summary.at("self_contact_length_max_m")));
   EXPECT_EQ(r.summary.at("expect.self_contact_pairs_max"), 0);
@@ -227,7 +229,8 @@ TEST(ContactScene, NoNumberIsNoSelfContactKept) {
 // A curtain of 1 m through the middle of an open patch, half-way and back.
 TEST(ContactScene, ACurtainHalfWayThroughAPatchHasTunnelledByHalf) {
   const ScratchFolder folder;
-  const Scene scene = load_scene(folder.file("scene.json", R"({"name":"curtain","why":"A curtain through an open patch.",
+  const Scene scene =
+      load_scene(folder.file("scene.json", R"({"name":"curtain","why":"A curtain through an open patch.",
     "cloth":{"grid":[16,16],"size_m":[1,1],"areal_density_kg_per_m2":0.2,"sides":"double",
              "pose":{"center_m":[0,0.6,0],"axis_u":[1,0,0],"axis_v":[0,-1,0]}},
     "material":{"membrane_stiffness_N_per_m":1000},
@@ -251,8 +254,10 @@ TEST(ContactScene, AHandPushedThroughAStillClothTunnelsAndComesBack) {
   const Scene scene = load_scene("paper/hand-push");
   const auto start = std::chrono::steady_clock::now();
   const CellRecord r = run(scene, prescribed([](int, std::vector<double>&) {}), folder);
-  const double frame_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / scene.time.frames();
-  std::printf("  a frame against a skinned hand of %zu triangles: %.4f s\n", scene.colliders[0].mesh->triangles.size(), frame_s);
+  const double frame_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / scene.time.frames();
+  std::printf("  a frame against a skinned hand of %zu triangles: %.4f s\n", scene.colliders[0].mesh->triangles.size(),
+              frame_s);
   EXPECT_GT(r.summary.at("tunnelled_fraction_max"), 0);
   EXPECT_EQ(r.summary.at("tunnelled_fraction_end"), 0);
   EXPECT_GT(r.summary.at("contact_length_max_m"), 0.1) << "the cloth is round the arm";

@@ -23,7 +23,8 @@ AccuracyPass whole_pass(const Scene& scene) {
   return pass;
 }
 
-Verdict verdict(const std::string& expect, const std::map<std::string, double>& summary, const std::string& status = "ok") {
+Verdict verdict(const std::string& expect, const std::map<std::string, double>& summary,
+                const std::string& status = "ok") {
   const Scene scene = scene_expecting(expect);
   Outcome outcome;
   outcome.status = status;
@@ -39,7 +40,8 @@ TEST(Expect, BoundsIncludeTheirEnds) {
 
 TEST(Expect, NoValueBreaks) {
   const char* bounds = R"({"stretch_max":{"at_most":0.2}})";
-  for (const auto& summary : {std::map<std::string, double>{}, {{"stretch_max", kMissing}}, {{"stretch_max", -INFINITY}}}) {
+  for (const auto& summary :
+       {std::map<std::string, double>{}, {{"stretch_max", kMissing}}, {{"stretch_max", -INFINITY}}}) {
     const Verdict v = verdict(bounds, summary);
     EXPECT_EQ(v.text, "broken: stretch_max has no value");
     EXPECT_EQ(v.scalars.at("expect.stretch_max"), 0);
@@ -48,7 +50,8 @@ TEST(Expect, NoValueBreaks) {
 
 TEST(Expect, OutcomesAreCompared) {
   EXPECT_EQ(verdict(R"({"outcome":"ok"})", {}, "timed_out").text, "broken: outcome timed_out, expected ok");
-  EXPECT_EQ(verdict(R"({"outcome":"not_finite"})", {}, "not_finite").text, "kept") << "a scene may be meant to break solvers";
+  EXPECT_EQ(verdict(R"({"outcome":"not_finite"})", {}, "not_finite").text, "kept")
+      << "a scene may be meant to break solvers";
   EXPECT_EQ(verdict(R"({"outcome":"ok"})", {}, "unsupported").text, "not measured");
   EXPECT_EQ(verdict("{}", {}).text, "");
 }
@@ -72,10 +75,12 @@ TEST(Expect, MistakesAreRefusedWithTheNearestName) {
     }
     return std::string();
   };
-  EXPECT_NE(message(R"({"tunneled_fraction_max":{"at_most":0}})").find("nearest known: tunnelled_fraction_max"), std::string::npos);
+  EXPECT_NE(message(R"({"tunneled_fraction_max":{"at_most":0}})").find("nearest known: tunnelled_fraction_max"),
+            std::string::npos);
   EXPECT_NE(message(R"({"stretch_max":{"atmost":0}})").find("nearest known: at_most"), std::string::npos);
   EXPECT_NE(message(R"({"stretch_max":{}})").find("/expect/stretch_max"), std::string::npos);
-  EXPECT_NE(message(R"({"stretch_max":{"at_most":1,"at_least":2}})").find("at_least is above at_most"), std::string::npos);
+  EXPECT_NE(message(R"({"stretch_max":{"at_most":1,"at_least":2}})").find("at_least is above at_most"),
+            std::string::npos);
   EXPECT_NE(message(R"({"outcome":"fine"})").find("/expect/outcome"), std::string::npos);
   EXPECT_EQ(message(R"({"stretch_max":{"at_most":1}})"), "");
 }

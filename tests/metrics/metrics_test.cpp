@@ -13,7 +13,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 class Metrics : public ::testing::Test {
  protected:
-  Metrics() : scene_(load_scene("paper/gravity", {"cloth.grid=[9,5]", "cloth.size_m=[2,0.5]", "material.damping_per_s=0"})) {
+  Metrics()
+      : scene_(load_scene("paper/gravity", {"cloth.grid=[9,5]", "cloth.size_m=[2,0.5]", "material.damping_per_s=0"})) {
     state_.position = initial_positions(scene_);
     state_.velocity.assign(state_.position.size(), 0);
   }
@@ -32,15 +33,15 @@ TEST_F(Metrics, AScaledSheetHasExactlyThatStretch) {
   for (double factor : {0.9, 1.0, 1.01, 2.0}) {
     ClothState s = state_;
     for (double& x : s.position) x *= factor;
-    for (const auto metric : {stretch_max, stretch_mean})
-      EXPECT_NEAR(value(metric, 1, s), factor - 1, 1e-14);
+    for (const auto metric : {stretch_max, stretch_mean}) EXPECT_NEAR(value(metric, 1, s), factor - 1, 1e-14);
     EXPECT_NEAR(value(stretch_rms, 1, s), std::abs(factor - 1), 1e-14);
   }
 }
 
 TEST_F(Metrics, OneLongEdgeIsTheMaximum) {
   ClothState s = state_;
-  s.position[0] -= 0.25;  // the first vertex, one cell outwards along u: its edge along v is slanted most, 0.25 by 0.125
+  s.position[0] -=
+      0.25;  // the first vertex, one cell outwards along u: its edge along v is slanted most, 0.25 by 0.125
   EXPECT_NEAR(value(stretch_max, 1, s), std::sqrt(5.0) - 1, 1e-14);
 }
 
@@ -69,7 +70,8 @@ TEST_F(Metrics, FreeFallGoesWhereGravityAndTheInitialVelocitySendIt) {
   const char* damping = "material.damping_per_s=2";
   for (const char* gravity : {"gravity_m_per_s2=[9.81,0,0]", "gravity_m_per_s2=[1,-2,3]"})
     for (const SolverEntry& entry : solvers()) {
-      const Scene scene = load_scene("paper/gravity", {"cloth.grid=[3,3]", gravity, damping, "cloth.initial_velocity_m_per_s=[0,1,-4]"});
+      const Scene scene = load_scene("paper/gravity",
+                                     {"cloth.grid=[3,3]", gravity, damping, "cloth.initial_velocity_m_per_s=[0,1,-4]"});
       const nlohmann::json settings = complete_settings(entry.info, nlohmann::json::object());
       const MetricContext c{scene, entry, settings};
       const int frame = 36;
@@ -126,7 +128,8 @@ TEST_F(Metrics, ASceneOnlyGetsWhatAppliesToIt) {
   EXPECT_FALSE(applies(pinned, "free_fall_error")) << "a pinned cloth does not fall freely";
   EXPECT_FALSE(applies(pinned, "momentum_error"));
   EXPECT_TRUE(applies(pinned, "stretch_max"));
-  for (const char* contact : {"contact_length_m", "tunnelled_fraction", "depth_m"}) EXPECT_FALSE(applies(scene_, contact)) << contact;
+  for (const char* contact : {"contact_length_m", "tunnelled_fraction", "depth_m"})
+    EXPECT_FALSE(applies(scene_, contact)) << contact;
   const Scene sheet = load_scene("contact/open-sheet"), ball = load_scene("contact/sphere");
   EXPECT_TRUE(applies(sheet, "contact_length_m") && applies(sheet, "tunnelled_fraction"));
   EXPECT_FALSE(applies(sheet, "depth_m")) << "an open sheet has no inside";
@@ -136,7 +139,9 @@ TEST_F(Metrics, ASceneOnlyGetsWhatAppliesToIt) {
 }
 
 TEST(MetricVersions, AreOneUnlessARuleHasChanged) {
-  for (const Metric& m : metrics()) EXPECT_EQ(m.version, m.name.starts_with("wrong_side") ? 2 : 1) << m.name << ": tell what changed in harness/metrics/README.md";
+  for (const Metric& m : metrics())
+    EXPECT_EQ(m.version, m.name.starts_with("wrong_side") ? 2 : 1)
+        << m.name << ": tell what changed in harness/metrics/README.md";
   EXPECT_EQ(metric_version("wrong_side_samples"), 2);
   EXPECT_EQ(metric_version("no_such_metric"), 0);
 }
@@ -150,12 +155,39 @@ TEST(MetricVersions, EveryScalarKnowsTheMetricsBehindIt) {
   EXPECT_EQ(metrics_behind("depth_vertex_max_m"), Names{"depth_vertex_m"});
   EXPECT_EQ(metrics_behind("penetrating_area_max_m2"), Names{"penetrating_area_m2"});
   EXPECT_EQ(metrics_behind("untangle_s"), (Names{"contact_length_m", "tunnelled_fraction", "wrong_side_samples"}));
-  for (const char* name : {"frame_wall_median_s", "fps_median", "dispatches", "read_B_per_frame", "load_s", "jobs", "expect.outcome"}) EXPECT_TRUE(metrics_behind(name).empty()) << name;
+  for (const char* name :
+       {"frame_wall_median_s", "fps_median", "dispatches", "read_B_per_frame", "load_s", "jobs", "expect.outcome"})
+    EXPECT_TRUE(metrics_behind(name).empty()) << name;
   // Everything that comes of an accuracy pass.
-  for (const char* name : {"free_fall_error", "tunnelled_fraction_max", "tunnelled_depth_max_m", "depth_max_m", "depth_mean_m", "depth_time_mean_m", "stretch_max", "stretch_max_end",
-                           "stretch_max_last_second", "stretch_mean_last_second", "self_contact_pairs_end", "self_contact_length_settled_m", "contact_length_mean_m", "pop_displacement_m",
-                           "pop_speed_ratio", "slip_m", "slip_settled_m", "fold_roughness_end", "fold_angle_rms_end_rad", "grip_error_max_m", "grip_edge_ratio_max", "strain_mean_released",
-                           "truth_e2", "truth_error", "truth_quantity_error_max", "truth_stretch_p99", "truth_speed_error", "energy_gain", "stability_grade"}) {
+  for (const char* name : {"free_fall_error",
+                           "tunnelled_fraction_max",
+                           "tunnelled_depth_max_m",
+                           "depth_max_m",
+                           "depth_mean_m",
+                           "depth_time_mean_m",
+                           "stretch_max",
+                           "stretch_max_end",
+                           "stretch_max_last_second",
+                           "stretch_mean_last_second",
+                           "self_contact_pairs_end",
+                           "self_contact_length_settled_m",
+                           "contact_length_mean_m",
+                           "pop_displacement_m",
+                           "pop_speed_ratio",
+                           "slip_m",
+                           "slip_settled_m",
+                           "fold_roughness_end",
+                           "fold_angle_rms_end_rad",
+                           "grip_error_max_m",
+                           "grip_edge_ratio_max",
+                           "strain_mean_released",
+                           "truth_e2",
+                           "truth_error",
+                           "truth_quantity_error_max",
+                           "truth_stretch_p99",
+                           "truth_speed_error",
+                           "energy_gain",
+                           "stability_grade"}) {
     const Names behind = metrics_behind(name);
     EXPECT_FALSE(behind.empty()) << name;
     for (const std::string& metric : behind) EXPECT_GT(metric_version(metric), 0) << name << ": " << metric;

@@ -1,11 +1,10 @@
 // Wrong side, touch, slip and folds of whole scenes, and what the summary makes of their series.
-#include "metrics/collider_passage.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "metrics/collider_passage.hpp"
 #include "metrics/metric_pass.hpp"
 #include "prescribed_solver.hpp"
 #include "runner/contact_summary.hpp"
@@ -21,7 +20,8 @@ const std::vector<double>& series(const AccuracyPass& p, const std::string& name
 }
 
 /// The accuracy pass of a cloth that goes where it is told.
-AccuracyPass passed(const Scene& scene, const Path& path, double still_speed = 0, const std::vector<double>& margins = {},
+AccuracyPass passed(const Scene& scene, const Path& path, double still_speed = 0,
+                    const std::vector<double>& margins = {},
                     const nlohmann::json& settings = nlohmann::json::object()) {
   const SolverEntry entry = prescribed(path);
   MetricPass metrics(MetricContext{scene, entry, settings, margins});
@@ -46,7 +46,8 @@ TEST(Passage, AHandThroughASheetThatStandsStillIsOnItsWrongSide) {
     const Scene scene = load_scene("paper/capsule-sweep", {"cloth.grid=[32,32]", type});
     const AccuracyPass pass = passed(scene, kStill);
     const std::vector<double>& wrong = series(pass, "wrong_side_samples");
-    // The track: in front until 1 s, 50 mm behind the sheet at 1.25 s, swept from x = 0.3 to -0.3 until 2 s, out at 2.25 s.
+    // The track: in front until 1 s, 50 mm behind the sheet at 1.25 s, swept from x = 0.3 to -0.3 until 2 s, out
+    // at 2.25 s.
     const auto at = [&](double t) { return wrong[static_cast<std::size_t>(std::lround(t * 72))]; };
     EXPECT_EQ(at(0.9), 0) << type;
     EXPECT_EQ(at(1.25), 0) << type << ": straight in, nothing is swept";
@@ -77,7 +78,8 @@ TEST(Passage, AStillColliderHasNoWrongSide) {
 }
 
 TEST(Passage, SlidingOnAPlaneIsTheWaySlid) {
-  const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "colliders.0.friction=0.3", "time.duration_s=1"});
+  const Scene scene =
+      load_scene("contact/plane", {"cloth.grid=[9,9]", "colliders.0.friction=0.3", "time.duration_s=1"});
   const double down = scene.cloth.center_m[1] - scene.colliders[0].margin_m;
   // Laid down at frame 10; from frame 20 on 1 mm a frame along x.
   const AccuracyPass pass = passed(scene, [&](int frame, std::vector<double>& x) {
@@ -100,7 +102,8 @@ TEST(Passage, SlidingOnAPlaneIsTheWaySlid) {
 /// The distance that contact holds the cloth at is the solver's to tell, in whatever words its settings have for it.
 TEST(Passage, TouchIsWhereTheSolverSaysThatItHoldsTheCloth) {
   const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=0.1"});
-  const auto touching = [&](double height, const std::vector<double>& margins, const nlohmann::json& settings = nlohmann::json::object()) {
+  const auto touching = [&](double height, const std::vector<double>& margins,
+                            const nlohmann::json& settings = nlohmann::json::object()) {
     const double down = scene.cloth.center_m[1] - height;
     const Path path = [=](int, std::vector<double>& x) {
       for (std::size_t k = 1; k < x.size(); k += 3) x[k] -= down;
@@ -116,8 +119,10 @@ TEST(Passage, TouchIsWhereTheSolverSaysThatItHoldsTheCloth) {
 }
 
 TEST(Passage, ACapsuleThatCarriesTheClothDoesNotSlip) {
-  const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=0.5", "time.frame_rate_hz=60",
-    R"(colliders=[{"type":"capsule","center_m":[0,0,0],"radius_m":0.1,"length_m":0.4,"axis":[0,0,1],"velocity_m_per_s":[1,0,0],"friction":1}])"});
+  const Scene scene = load_scene(
+      "contact/plane",
+      {"cloth.grid=[9,9]", "time.duration_s=0.5", "time.frame_rate_hz=60",
+       R"(colliders=[{"type":"capsule","center_m":[0,0,0],"radius_m":0.1,"length_m":0.4,"axis":[0,0,1],"velocity_m_per_s":[1,0,0],"friction":1}])"});
   const double down = scene.cloth.center_m[1] - 0.1 - scene.colliders[0].margin_m;
   const AccuracyPass pass = passed(scene, [&](int frame, std::vector<double>& x) {
     for (std::size_t k = 0; k < x.size(); k += 3) {
@@ -134,8 +139,10 @@ TEST(Passage, ACapsuleThatCarriesTheClothDoesNotSlip) {
 
 TEST(Passage, PoppingIsWhatComesAfterTheLastContact) {
   // A capsule that starts at the sheet and flies away from it downwards.
-  const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=0.5", "time.frame_rate_hz=60",
-    R"(colliders=[{"type":"capsule","center_m":[0,0,0],"radius_m":0.1,"length_m":0.4,"axis":[0,0,1],"velocity_m_per_s":[0,-3,0],"start_s":0.1}])"});
+  const Scene scene = load_scene(
+      "contact/plane",
+      {"cloth.grid=[9,9]", "time.duration_s=0.5", "time.frame_rate_hz=60",
+       R"(colliders=[{"type":"capsule","center_m":[0,0,0],"radius_m":0.1,"length_m":0.4,"axis":[0,0,1],"velocity_m_per_s":[0,-3,0],"start_s":0.1}])"});
   const double down = scene.cloth.center_m[1] - 0.1 - scene.colliders[0].margin_m;
   const Path path = [&](int frame, std::vector<double>& x) {
     for (std::size_t k = 1; k < x.size(); k += 3) x[k] -= down;
@@ -145,18 +152,26 @@ TEST(Passage, PoppingIsWhatComesAfterTheLastContact) {
   const auto s = summarise_contact(scene, passed(scene, path, 1.5));
   EXPECT_NEAR(s.at("pop_displacement_m"), 0.03, 1e-6);
   EXPECT_NEAR(s.at("pop_speed_m_per_s"), 1.5, 1e-12);
-  EXPECT_NEAR(s.at("pop_speed_ratio"), 1.5 / 6, 1e-9) << "twice the collider's 3 m/s is more than a fall of the cloth's length";
+  EXPECT_NEAR(s.at("pop_speed_ratio"), 1.5 / 6, 1e-9)
+      << "twice the collider's 3 m/s is more than a fall of the cloth's length";
 }
 
 TEST(Passage, WhatSwingsBackOntoAHandAtRestIsNoPopping) {
-  const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=0.5", "time.frame_rate_hz=60",
-    R"(colliders=[{"type":"capsule","center_m":[0,0,0],"radius_m":0.1,"length_m":0.4,"axis":[0,0,1],"velocity_m_per_s":[0,-3,0],"stop_s":0.1}])"});
+  const Scene scene = load_scene(
+      "contact/plane",
+      {"cloth.grid=[9,9]", "time.duration_s=0.5", "time.frame_rate_hz=60",
+       R"(colliders=[{"type":"capsule","center_m":[0,0,0],"radius_m":0.1,"length_m":0.4,"axis":[0,0,1],"velocity_m_per_s":[0,-3,0],"stop_s":0.1}])"});
   const double down = scene.cloth.center_m[1] - 0.1 - scene.colliders[0].margin_m;
   // Touches at the start, and from frame 20 on, where the capsule has stood since frame 6.
   const auto s = [&](int leaves) {
-    return summarise_contact(scene, passed(scene, [&](int frame, std::vector<double>& x) {
-      for (std::size_t k = 1; k < x.size(); k += 3) x[k] -= frame < 3 || (frame >= 20 && frame < leaves) ? down + 3.0 / 60 * std::min(frame, 6) : 0;
-    }, 1.5));
+    return summarise_contact(
+        scene, passed(
+                   scene,
+                   [&](int frame, std::vector<double>& x) {
+                     for (std::size_t k = 1; k < x.size(); k += 3)
+                       x[k] -= frame < 3 || (frame >= 20 && frame < leaves) ? down + 3.0 / 60 * std::min(frame, 6) : 0;
+                   },
+                   1.5));
   };
   EXPECT_NEAR(s(25).at("pop_displacement_m"), s(1000).at("pop_displacement_m"), 1e-12);
   EXPECT_GT(s(1000).at("pop_displacement_m"), 0) << "it touches to the end, but nothing sweeps it";
@@ -165,7 +180,8 @@ TEST(Passage, WhatSwingsBackOntoAHandAtRestIsNoPopping) {
 Path waved(double wavelength_cells, double height, int columns) {
   return [=](int, std::vector<double>& x) {
     for (std::size_t v = 0; v < x.size() / 3; ++v)
-      x[3 * v + 1] += height * std::cos(2 * std::numbers::pi * static_cast<double>(v % static_cast<std::size_t>(columns)) / wavelength_cells);
+      x[3 * v + 1] += height * std::cos(2 * std::numbers::pi *
+                                        static_cast<double>(v % static_cast<std::size_t>(columns)) / wavelength_cells);
   };
 }
 
@@ -177,12 +193,14 @@ TEST(Folds, ASmoothFoldIsSmoothAndAZigzagIsNot) {
   EXPECT_NEAR(roughness(waved(4, 0.0001, 33)), 0.25, 0.01) << "sin^4(pi/4)";
   EXPECT_NEAR(roughness(waved(16, 0.0005, 33)), std::pow(std::sin(std::numbers::pi / 16), 4), 2e-4);
   // A gable of two halves at 2 x 0.1 rad: one angle in 31 along u, none along v.
-  const double rms = series(passed(scene, [&](int, std::vector<double>& x) {
-    for (std::size_t v = 0; v < x.size() / 3; ++v) {
-      const auto i = static_cast<int>(v % 33);
-      x[3 * v + 1] += std::tan(0.1) * scene.cloth.du() * std::abs(i - 16);
-    }
-  }), "fold_angle_rms_rad")[0];
+  const double rms = series(passed(scene,
+                                   [&](int, std::vector<double>& x) {
+                                     for (std::size_t v = 0; v < x.size() / 3; ++v) {
+                                       const auto i = static_cast<int>(v % 33);
+                                       x[3 * v + 1] += std::tan(0.1) * scene.cloth.du() * std::abs(i - 16);
+                                     }
+                                   }),
+                            "fold_angle_rms_rad")[0];
   EXPECT_NEAR(rms, 2 * std::sin(0.1) / std::sqrt(2 * 31.0), 1e-9);
 }
 
@@ -212,8 +230,9 @@ TEST(Summary, TimesOfViolation) {
 TEST(Summary, RestIsJudgedByItsLastHalfSecond) {
   const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=1"});
   const auto s = summarise_contact(scene, passed(scene, [](int frame, std::vector<double>& x) {
-    for (std::size_t k = 1; k < x.size(); k += 3) x[k] += frame % 2 == 0 ? 1e-3 : -1e-3;
-  }));
+                                     for (std::size_t k = 1; k < x.size(); k += 3)
+                                       x[k] += frame % 2 == 0 ? 1e-3 : -1e-3;
+                                   }));
   EXPECT_NEAR(s.at("rest_jitter_m"), 2e-3, 1e-6) << "(x - 2 x + x)/2 of a zigzag of 1 mm";
 }
 

@@ -61,7 +61,9 @@ TEST_F(Gpu, OnlyTheCellThatCausedMessagesIsAFault) {
   plan.rules.warmup_s = 0;
   plan.rules.accuracy_duration_s = 0.05;
   // Cells of a group are loaded before any of them is timed; those of the next group come after all messages.
-  plan.groups = {{{&scene, &noisy, settings, "noisy"}, {&scene, &clean, settings, "beside"}, {&scene, &noisy_twin, settings, "noisy-twin"}},
+  plan.groups = {{{&scene, &noisy, settings, "noisy"},
+                  {&scene, &clean, settings, "beside"},
+                  {&scene, &noisy_twin, settings, "noisy-twin"}},
                  {{&scene, &clean, settings, "after"}}};
   RunOptions options;
   options.out = fs::temp_directory_path() / ("clothbench-blame-" + std::to_string(getpid()));
@@ -70,7 +72,8 @@ TEST_F(Gpu, OnlyTheCellThatCausedMessagesIsAFault) {
   const RunResult result = run_cells(plan, options);
   fs::remove_all(options.out);
   const std::string cell = scene.name + "__xpbd__";
-  EXPECT_EQ(result.faults, (std::vector<std::string>{cell + "noisy: 1 validation messages", cell + "noisy-twin: 1 validation messages"}));
+  EXPECT_EQ(result.faults, (std::vector<std::string>{cell + "noisy: 1 validation messages",
+                                                     cell + "noisy-twin: 1 validation messages"}));
   EXPECT_EQ(result.validation_messages, 2);
 }
 

@@ -1,5 +1,5 @@
-// The computed bytes of every stage are what an instrumented build of the same kernels counts, access by access; of stages that
-// say so, no more than that.
+// The computed bytes of every stage are what an instrumented build of the same kernels counts, access by access; of
+// stages that say so, no more than that.
 #include "contact_scenes.hpp"
 #include "mesh_scene.hpp"
 

@@ -34,12 +34,14 @@ std::multiset<Ends> links_of(const std::vector<ChainFamily>& families, std::size
 }
 
 TEST(ChainPlan, HasEveryLinkOnceAndNoVertexTwiceInAFamily) {
-  for (const Scene& s : {mesh_sheet(9), mesh_sheet(20), mesh_tube(12, 7), uneven(sheet(17, 9), 4, 0.3), uneven(sheet(40, 3), 4, 0.3)})
+  for (const Scene& s :
+       {mesh_sheet(9), mesh_sheet(20), mesh_tube(12, 7), uneven(sheet(17, 9), 4, 0.3), uneven(sheet(40, 3), 4, 0.3)})
     for (const std::uint32_t block : {4u, 16u, 256u}) {
       const ChainCloth cloth = chain_cloth(s);
       std::multiset<Ends> wanted;
       for (const ChainCloth::Link& l : cloth.links) wanted.insert({l.a, l.b});
-      EXPECT_EQ(links_of(plan_of(s, cloth, block), s.cloth.vertex_count(), block), wanted) << s.cloth.columns << " " << block;
+      EXPECT_EQ(links_of(plan_of(s, cloth, block), s.cloth.vertex_count(), block), wanted)
+          << s.cloth.columns << " " << block;
     }
 }
 
@@ -64,7 +66,8 @@ TEST(ChainPlan, WeldsSliversAndAddsUpWhatBecomesParallel) {
       if (l.a < 17 && l.b >= 17) stiffness[0] += 1 / static_cast<double>(l.compliance_m_per_N);
     return stiffness[0];
   };
-  EXPECT_GT(whole(thin), whole(uneven(sheet(17, 9), 4, 1))) << "diagonals of a sliver are stiff, and so is what they become";
+  EXPECT_GT(whole(thin), whole(uneven(sheet(17, 9), 4, 1)))
+      << "diagonals of a sliver are stiff, and so is what they become";
   for (const ChainFamily& f : plan_of(thin, cloth, 256))
     for (const auto& chain : f.chains)
       for (const std::uint32_t v : chain) EXPECT_EQ(cloth.particle[v], v);
@@ -163,17 +166,20 @@ TEST_F(Chained, SliversDoNotThrowWhatHangsOnThem) {
     const ClothState end = end_of(s, "xpbd", {});
     for (std::uint32_t j = 0; j < 17; ++j) {
       const auto at = [&](std::uint32_t i, std::size_t k) { return end.position[3 * (17 * j + i) + k]; };
-      const double gap = std::hypot(at(9, 0) - at(8, 0), at(9, 1) - at(8, 1), at(9, 2) - at(8, 2)), rest = s.cloth.line_u_m(9) - s.cloth.line_u_m(8);
+      const double gap = std::hypot(at(9, 0) - at(8, 0), at(9, 1) - at(8, 1), at(9, 2) - at(8, 2)),
+                   rest = s.cloth.line_u_m(9) - s.cloth.line_u_m(8);
       EXPECT_LE(gap, 1.1 * rest + 1e-9) << factor << ", row " << j;
     }
   }
 }
 
-/// As of lines: the same bits as a dispatch a family, or a refusal, or a frame that says it was lost. One workgroup waits for nobody.
+/// As of lines: the same bits as a dispatch a family, or a refusal, or a frame that says it was lost. One workgroup
+/// waits for nobody.
 TEST_F(Chained, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
   int agreed = 0;
   for (const Scene& s : {with_damping(mesh_sheet(12)), with_damping(mesh_sheet(20))}) {
-    const auto passes = make("xpbd", {{"device_barrier", "never"}}), resident = make("xpbd", {{"device_barrier", "always"}});
+    const auto passes = make("xpbd", {{"device_barrier", "never"}}),
+               resident = make("xpbd", {{"device_barrier", "always"}});
     passes->load(s);
     const ClothState expected = after(*passes, s, 5);
     try {

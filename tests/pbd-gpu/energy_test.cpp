@@ -7,7 +7,8 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Kinetic and gravity's energy less that at the start, over M g L, after each frame. Of an inextensible cloth that is all.
+/// Kinetic and gravity's energy less that at the start, over M g L, after each frame. Of an inextensible cloth that is
+/// all.
 std::vector<double> energy_rise(ClothSolver& solver, const Scene& s) {
   const std::vector<double> mass = vertex_masses(s), start = initial_positions(s);
   std::vector<double> out;

@@ -1,5 +1,5 @@
-// Rows "x16" of the penetration study: 16 times the substeps that `xpbd` takes by itself, which depend on the collider's speed. (Those of
-// the other solvers: tests/runner/finer_test.cpp.)
+// Rows "x16" of the penetration study: 16 times the substeps that `xpbd` takes by itself, which depend on the
+// collider's speed. (Those of the other solvers: tests/runner/finer_test.cpp.)
 #include <gtest/gtest.h>
 
 #include "clothbench/solver.hpp"
@@ -19,7 +19,9 @@ TEST(FinerRows, TakeSixteenTimesTheSubstepsOfXpbd) {
       if (s.label != "x16" || s.solver != "xpbd") continue;
       ++rows;
       EXPECT_FALSE(item.timed) << item.scene.name;
-      EXPECT_EQ(s.settings.at("substeps").get<int>(), 16 * pbd_gpu::xpbd_substeps(item.scene, complete_settings(xpbd.info, nlohmann::json::object()))) << item.scene.name;
+      EXPECT_EQ(s.settings.at("substeps").get<int>(),
+                16 * pbd_gpu::xpbd_substeps(item.scene, complete_settings(xpbd.info, nlohmann::json::object())))
+          << item.scene.name;
     }
   EXPECT_EQ(rows, 2 * 7);
 }

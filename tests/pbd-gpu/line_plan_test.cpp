@@ -101,7 +101,8 @@ TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
 }
 
 TEST(Shapes, FitDevices) {
-  const LineDevice lavapipe{8, 1024, 32768}, nvidia{32, 1024, 32768, true}, adreno{64, 256, 32768}, least{0, 128, 16384};
+  const LineDevice lavapipe{8, 1024, 32768}, nvidia{32, 1024, 32768, true}, adreno{64, 256, 32768},
+      least{0, 128, 16384};
   for (const LineDevice& d : {lavapipe, nvidia, adreno, least})
     for (const int n : {2, 3, 7, 17, 32, 33, 64, 100, 129, 256, 512, 1000, 1024}) {
       for (const LineShape& s : {frame_shape(n, 2, {}, d), frame_shape(n, n, {}, d), pass_shape(n, {}, d)}) {

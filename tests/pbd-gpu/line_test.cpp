@@ -1,6 +1,6 @@
-// What the line solver is for: little stretch for few substeps, the truth cards, and that it stays whole where lines are
-// singular. Bounds are a little above what it measures, which is what a sequential double-precision emulation of the same
-// method gives.
+// What the line solver is for: little stretch for few substeps, the truth cards, and that it stays whole where lines
+// are singular. Bounds are a little above what it measures, which is what a sequential double-precision emulation of
+// the same method gives.
 #include <cmath>
 
 #include "clothbench/record.hpp"
@@ -56,16 +56,19 @@ class LineScenes : public Gpu {
 
 class SlowLineScenes : public LineScenes {};
 
-/// Mean over the edges and frames of the last second, and the greatest; the emulation's values are about half of these. The
-/// greatest is of a few links and depends on how a device rounds: with 2 substeps 3.8 % on an H200, 7.3 % on lavapipe.
+/// Mean over the edges and frames of the last second, and the greatest; the emulation's values are about half of these.
+/// The greatest is of a few links and depends on how a device rounds: with 2 substeps 3.8 % on an H200, 7.3 % on
+/// lavapipe.
 TEST_F(SlowLineScenes, HangStretchesLittle) {
   struct Row {
     int n, substeps;
     double mean, most;
   };
-  for (const Row& row : {Row{32, 2, 1.2e-4, 0.08}, Row{32, 3, 5e-5, 0.03}, Row{32, 5, 1.2e-5, 0.01}, Row{32, 10, 4e-6, 0.005},
-                         Row{64, 3, 8e-5, 0.1}, Row{64, 5, 3e-5, 0.04}, Row{64, 6, 2e-5, 0.02}}) {
-    const Scene s = load_scene("validation/hang", {"cloth.grid=[" + std::to_string(row.n) + "," + std::to_string(row.n) + "]"});
+  for (const Row& row :
+       {Row{32, 2, 1.2e-4, 0.08}, Row{32, 3, 5e-5, 0.03}, Row{32, 5, 1.2e-5, 0.01}, Row{32, 10, 4e-6, 0.005},
+        Row{64, 3, 8e-5, 0.1}, Row{64, 5, 3e-5, 0.04}, Row{64, 6, 2e-5, 0.02}}) {
+    const Scene s =
+        load_scene("validation/hang", {"cloth.grid=[" + std::to_string(row.n) + "," + std::to_string(row.n) + "]"});
     const Result r = run(s, {{"substeps", row.substeps}});
     EXPECT_LE(r.last_second("stretch_mean_positive", false), row.mean) << row.n << " substeps " << row.substeps;
     EXPECT_LE(r.last_second("stretch_max", true), row.most) << row.n << " substeps " << row.substeps;
@@ -86,9 +89,14 @@ TEST_F(LineScenes, TruthCardsAreMetAtLowCost) {
     double error;
   };
   // Of 60 Hz frames; 960 Hz in the last, whose waves are slowed where tension is held back (0.061 if it were not).
-  for (const Row& row : {Row{"swing-strip", 3, 4.5e-3}, {"swing-strip", 5, 2.7e-3}, {"swing-strip", 10, 1.5e-3},
-                         {"catenary", 5, 4e-5}, {"cantilever-10", 5, 3.8e-3}, {"cantilever-10", 10, 1.4e-3},
-                         {"heavy-strip", 3, 5e-4}, {"two-hand-pull", 1, 0.08}}) {
+  for (const Row& row : {Row{"swing-strip", 3, 4.5e-3},
+                         {"swing-strip", 5, 2.7e-3},
+                         {"swing-strip", 10, 1.5e-3},
+                         {"catenary", 5, 4e-5},
+                         {"cantilever-10", 5, 3.8e-3},
+                         {"cantilever-10", 10, 1.4e-3},
+                         {"heavy-strip", 3, 5e-4},
+                         {"two-hand-pull", 1, 0.08}}) {
     const Scene s = load_scene(std::string("validation/") + row.scene);
     const auto summary = summarise_truth(s, run(s, {{"substeps", row.substeps}}).pass);
     EXPECT_LE(summary.at("truth_error"), row.error) << row.scene << " substeps " << row.substeps;
@@ -161,13 +169,15 @@ TEST_F(LineScenes, CopiesOfAClothMoveAlike) {
   EXPECT_THROW(make("xpbd", {{"batch", 2}})->load(moving(sheet(9, 9), {0}, 5)), Error);
 }
 
-/// One dispatch of many workgroups that wait for one another moves the cloth bit for bit as a dispatch a family does, or is
-/// refused, or says that a frame was lost: never anything else. Which of them on lavapipe is a matter of its threads.
+/// One dispatch of many workgroups that wait for one another moves the cloth bit for bit as a dispatch a family does,
+/// or is refused, or says that a frame was lost: never anything else. Which of them on lavapipe is a matter of its
+/// threads.
 TEST_F(LineScenes, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
   Scene s = with_bending(with_damping(with_pins(sheet(33, 31))));
   int agreed = 0;
   for (const auto& [threads, vertices] : {std::pair{512, 8}, {512, 2}, {256, 4}}) {  // 1, 3 and 3 workgroups
-    nlohmann::json settings = {{"device_barrier", "never"}, {"threads_a_group", threads}, {"vertices_a_thread", vertices}};
+    nlohmann::json settings = {
+        {"device_barrier", "never"}, {"threads_a_group", threads}, {"vertices_a_thread", vertices}};
     const auto passes = make("xpbd", settings);
     passes->load(s);
     const ClothState expected = after(*passes, s, 5);
@@ -206,7 +216,8 @@ TEST_F(LineScenes, OneDispatchAFrameOrFourASubstep) {
   Scene strips = sheet(33, 32);
   strips.needs = strips.needs - FeatureSet{Feature::Shear};
   EXPECT_EQ(dispatches(strips, {{"substeps", 7}}), 14);
-  EXPECT_EQ(dispatches(with_collider(sheet(32, 32), box({0, 0, 0}, {0.1, 0.1, 0.1})), {{"substeps", 7}}), 3 * 7) << "lines, samples, vertices";
+  EXPECT_EQ(dispatches(with_collider(sheet(32, 32), box({0, 0, 0}, {0.1, 0.1, 0.1})), {{"substeps", 7}}), 3 * 7)
+      << "lines, samples, vertices";
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ inline Scene mesh_sheet(int n) {
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       const bool inside = i > 0 && j > 0 && i + 1 < n && j + 1 < n;
-      const double a = inside ? 0.25 * std::sin(12.9898 * i + 78.233 * j) : 0, b = inside ? 0.25 * std::sin(39.346 * i + 11.135 * j) : 0;
+      const double a = inside ? 0.25 * std::sin(12.9898 * i + 78.233 * j) : 0,
+                   b = inside ? 0.25 * std::sin(39.346 * i + 11.135 * j) : 0;
       x.push_back({(i + a) / (n - 1) - 0.5, (j + b) / (n - 1) - 0.5, 0});
     }
   for (int j = 0; j + 1 < n; ++j)

@@ -111,7 +111,8 @@ TEST_F(Profiles, AKernelThatWouldNotRunThereIsRefused) {
 /// More than 64 dispatches a frame, whatever a frame of the solver takes by itself.
 TEST_F(Profiles, LongFramesAreSplitAndComeOutTheSame) {
   const Scene s = with_pins(with_damping(with_bending(sheet(9, 7))));
-  const nlohmann::json settings = complete_settings(xpbd_info(), {{"substeps", 40}, {"one_dispatch", false}, {"stage_times", false}});
+  const nlohmann::json settings =
+      complete_settings(xpbd_info(), {{"substeps", 40}, {"one_dispatch", false}, {"stage_times", false}});
   const auto whole = make_xpbd(settings, options()), split = make_xpbd(settings, {-1, true, "adreno-like"});
   whole->load(s);
   split->load(s);

@@ -153,8 +153,10 @@ class LineModel {
         if (!begins) continue;
         std::vector<std::size_t> line;
         for (int a = i, b = j; a >= 0 && a < c.columns && b < c.rows; a += di, b += dj) line.push_back(at(a, b));
-        const int chain = f == 0 ? j : f == 1 ? i : f == 2 ? ((i - j) % c.columns + c.columns) % c.columns
-                                                           : (i + j) % c.columns;
+        const int chain = f == 0   ? j
+                          : f == 1 ? i
+                          : f == 2 ? ((i - j) % c.columns + c.columns) % c.columns
+                                   : (i + j) % c.columns;
         const bool border = (f == 0 && (j == 0 || j == c.rows - 1)) || (f == 1 && (i == 0 || i == c.columns - 1));
         if (f < 2 && s_.needs.has(Feature::Bend)) bend(f, line, border);
         const auto most = static_cast<std::size_t>(std::max(c.columns, c.rows));
@@ -184,7 +186,8 @@ class LineModel {
       if (w(k) + w(k + 1) == 0) continue;
       const V e = m_.x[line[k + 1]] - m_.x[line[k]];
       g[k] = (1 / length(e)) * e;
-      const bool elastic = s_.material.membrane_stiffness_N_per_m.has_value(), strip = elastic && !s_.needs.has(Feature::Shear);
+      const bool elastic = s_.material.membrane_stiffness_N_per_m.has_value(),
+                 strip = elastic && !s_.needs.has(Feature::Shear);
       const double torn = length(e) / rest, firm = strip ? torn - 1 : elastic ? 0 : 4 * (torn - 5);
       const double soft = std::max(alpha, taut ? std::max(1e-3, firm) * std::max(w(k), w(k + 1)) : 0.0);
       a[k][k] = w(k) + w(k + 1) + soft;
@@ -277,8 +280,8 @@ TEST_F(Gpu, OneFrameAgreesWithDoublePrecision) {
       const auto paper = make("paper");
       paper->load(s);
       expect_close(m, after(*paper, s, 1), 1 / s.time.dt(), "paper " + what);
-      // The sheet, let go from 7 % of stretch, may be back and buckling by the end of the frame. How far a last bit of single
-      // precision at the start then moves it in double is what nobody can be asked to be closer than.
+      // The sheet, let go from 7 % of stretch, may be back and buckling by the end of the frame. How far a last bit of
+      // single precision at the start then moves it in double is what nobody can be asked to be closer than.
       for (const auto& [substeps, iterations] : {std::pair{10, 1}, {4, 2}}) {
         m = start(s);
         Model nudged = m;

@@ -179,7 +179,8 @@ V ContactReference::advance(const V& from, const V& to, double begin, V& velocit
     const bool first = normal.isZero(0);
     const double gap = f.nearest.distance - f.nearest.margin;
     const double need = -gap - (way.left - way.part * f.nearest.delta).dot(f.nearest.normal);
-    const bool by_nearest = first && gap < kSlack * f.nearest.margin && need > (k == 0 ? 0 : kTolerance * f.nearest.margin);
+    const bool by_nearest =
+        first && gap < kSlack * f.nearest.margin && need > (k == 0 ? 0 : kTolerance * f.nearest.margin);
     const bool by_other = !by_nearest && f.has_other && (!first || f.other.normal.dot(f.nearest.normal) < kOther);
     if ((by_nearest || by_other) && k + 1 < kSteps) {
       const Piece& piece = by_nearest ? f.nearest : f.other;

@@ -59,8 +59,10 @@ void expect_close(const Scene& s, int substeps, int samples, int frames, const s
   std::vector<std::unique_ptr<GpuSolver>> solvers;
   for (const int lanes : {1, 8})
     solvers
-        .emplace_back(make_xpbd(complete_settings(xpbd_info(), {{"substeps", substeps}, {"contact_samples", samples}, {"contact_lanes", lanes}}),
-                                {-1, true}))
+        .emplace_back(make_xpbd(
+            complete_settings(xpbd_info(),
+                              {{"substeps", substeps}, {"contact_samples", samples}, {"contact_lanes", lanes}}),
+            {-1, true}))
         ->load(s);
   std::vector<ClothState> states(solvers.size());
   for (int f = 0; f < frames; ++f) {
@@ -256,7 +258,8 @@ TEST(EdgeMarks, TellBordersAlsoAcrossRepeatedVerticesAndSharpEdges) {
   const std::vector<double> positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0};
   EXPECT_EQ(edge_marks(positions, {{0, 1, 2}, {3, 4, 5}}), (std::vector<std::uint32_t>{0b101, 0b011}));
   const Collider closed = octahedron({0, 0, 0}, 1, false);
-  EXPECT_EQ(edge_marks(closed.mesh->positions, closed.mesh->triangles), std::vector<std::uint32_t>(8, 0b111000)) << "71 degrees";
+  EXPECT_EQ(edge_marks(closed.mesh->positions, closed.mesh->triangles), std::vector<std::uint32_t>(8, 0b111000))
+      << "71 degrees";
   const std::vector<double> roof = {0, 0, 0, 1, 0, 0, 0, 1, 0.1, 0, -1, 0.1};
   EXPECT_EQ(edge_marks(roof, {{0, 1, 2}, {1, 0, 3}}), (std::vector<std::uint32_t>{0b011, 0b011})) << "11 degrees: flat";
 }

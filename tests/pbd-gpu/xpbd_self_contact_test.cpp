@@ -1,5 +1,5 @@
-// Self-contact of `xpbd`: layers meet and stay apart however fast they come, what does not touch does not move, and who does not
-// ask does not pay.
+// Self-contact of `xpbd`: layers meet and stay apart however fast they come, what does not touch does not move, and who
+// does not ask does not pay.
 #include "xpbd_self_contact.hpp"
 
 #include <algorithm>
@@ -59,7 +59,8 @@ TEST_P(SelfContacts, LayersMeetAndNothingCrosses) {
     least = std::min(least, layers_apart(s, state));
     if (f > frames / 2)
       for (std::size_t v = 0; v < s.cloth.vertex_count(); ++v)
-        fastest = std::max(fastest, std::hypot(state.velocity[3 * v], state.velocity[3 * v + 1], state.velocity[3 * v + 2]));
+        fastest =
+            std::max(fastest, std::hypot(state.velocity[3 * v], state.velocity[3 * v + 1], state.velocity[3 * v + 2]));
   }
   // Of a fast one, what is seen at a frame's end is how it comes back from the stretched bow.
   if (GetParam() <= 5) {

@@ -46,23 +46,39 @@ void add_kernels(std::vector<Fault>& f) {
     fault.shader = ShaderFault{file, is, is_to_be};
     f.push_back(std::move(fault));
   };
-  kernel("contact normal flipped", "ball", "contact_colliders.glsl", "direction(d, l, vec3(0.0, 1.0, 0.0)), vec3(0.0), s.margin", "-direction(d, l, vec3(0.0, 1.0, 0.0)), vec3(0.0), s.margin");
-  kernel("margin of no collider kept by the kernel", "ball", "contact_colliders.glsl", "float m = max(margin, p.least_margin_m);", "float m = 0.1 * max(margin, p.least_margin_m);");
-  kernel("friction skipped in the kernel", "slope", "contact_advance.glsl", "if (FRICTION == 1u)", "if (FRICTION == 7u)");
-  kernel("approach kept in the velocity", "ball", "contact_advance.glsl", "relative += approach * t.n;", "relative -= 0.5 * approach * t.n;");
-  kernel("capsules stand still within the frame", "pushed", "contact_colliders.glsl", "mix(s.a0.xyz, s.a1.xyz, now)", "s.a0.xyz");
+  kernel("contact normal flipped", "ball", "contact_colliders.glsl",
+         "direction(d, l, vec3(0.0, 1.0, 0.0)), vec3(0.0), s.margin",
+         "-direction(d, l, vec3(0.0, 1.0, 0.0)), vec3(0.0), s.margin");
+  kernel("margin of no collider kept by the kernel", "ball", "contact_colliders.glsl",
+         "float m = max(margin, p.least_margin_m);", "float m = 0.1 * max(margin, p.least_margin_m);");
+  kernel("friction skipped in the kernel", "slope", "contact_advance.glsl", "if (FRICTION == 1u)",
+         "if (FRICTION == 7u)");
+  kernel("approach kept in the velocity", "ball", "contact_advance.glsl", "relative += approach * t.n;",
+         "relative -= 0.5 * approach * t.n;");
+  kernel("capsules stand still within the frame", "pushed", "contact_colliders.glsl", "mix(s.a0.xyz, s.a1.xyz, now)",
+         "s.a0.xyz");
   kernel("clusters of triangles not found", "tiles", "contact_candidates.comp", "<= range * range", "<= 1e-6 * range");
-  kernel("weights of a triangle's corners swapped", "tiles", "triangle.glsl", "return vec3(wa, wb, wc) / all;", "return vec3(wb, wc, wa) / all;");
-  kernel("layers of the cloth not found", "layers", "self_near.comp", "bits |= 1u << (other - first);", "bits |= 0u << (other - first);");
-  kernel("one family of lines skipped", "pulled", "line_frame.comp", "family = families - 1u - turn;", "family = max(families - 1u - turn, 1u);");
-  kernel("last link of every chain missing", "swing", "lines.glsl", "if (!on_chain(i + 1u)) return false;", "if (!on_chain(i + 2u)) return false;");
-  kernel("velocity not corrected with the position", "swing", "lines.glsl", "vel[k] += step * p.per_h;", "vel[k] += 0.9 * step * p.per_h;");
-  kernel("stretch compliance of the border as inside", "heavy", "lines.glsl", "chain + 1u == chain_count()) ? 2.0 : 1.0;", "chain + 1u == chain_count()) ? 1.0 : 1.0;");
-  kernel("bending with the wrong sign", "cantilever", "lines.glsl", "w[k] * (last - 2.0 * lambda[k] + next)", "w[k] * (2.0 * lambda[k] - last - next)");
+  kernel("weights of a triangle's corners swapped", "tiles", "triangle.glsl", "return vec3(wa, wb, wc) / all;",
+         "return vec3(wb, wc, wa) / all;");
+  kernel("layers of the cloth not found", "layers", "self_near.comp", "bits |= 1u << (other - first);",
+         "bits |= 0u << (other - first);");
+  kernel("one family of lines skipped", "pulled", "line_frame.comp", "family = families - 1u - turn;",
+         "family = max(families - 1u - turn, 1u);");
+  kernel("last link of every chain missing", "swing", "lines.glsl", "if (!on_chain(i + 1u)) return false;",
+         "if (!on_chain(i + 2u)) return false;");
+  kernel("velocity not corrected with the position", "swing", "lines.glsl", "vel[k] += step * p.per_h;",
+         "vel[k] += 0.9 * step * p.per_h;");
+  kernel("stretch compliance of the border as inside", "heavy", "lines.glsl",
+         "chain + 1u == chain_count()) ? 2.0 : 1.0;", "chain + 1u == chain_count()) ? 1.0 : 1.0;");
+  kernel("bending with the wrong sign", "cantilever", "lines.glsl", "w[k] * (last - 2.0 * lambda[k] + next)",
+         "w[k] * (2.0 * lambda[k] - last - next)");
   kernel("clamp a cell too soft", "cantilever", "lines.glsl", "? 0.5 * alpha : alpha;", "? 2.0 * alpha : alpha;");
-  kernel("damping halved in the kernel", "fall", "lines_integrate.glsl", "gain -= p.loss * vel[k];", "gain -= 0.5 * p.loss * vel[k];");
-  kernel("gravity 1 % weak in the kernel", "fall", "lines_integrate.glsl", "vec3 gain = p.gravity_h.xyz,", "vec3 gain = 0.99 * p.gravity_h.xyz,");
-  kernel("grips forgotten by the kernel", "pulled", "line_frame.comp", "if (GRIPS > 0u) move_held(s);", "if (GRIPS > 999999u) move_held(s);");
+  kernel("damping halved in the kernel", "fall", "lines_integrate.glsl", "gain -= p.loss * vel[k];",
+         "gain -= 0.5 * p.loss * vel[k];");
+  kernel("gravity 1 % weak in the kernel", "fall", "lines_integrate.glsl", "vec3 gain = p.gravity_h.xyz,",
+         "vec3 gain = 0.99 * p.gravity_h.xyz,");
+  kernel("grips forgotten by the kernel", "pulled", "line_frame.comp", "if (GRIPS > 0u) move_held(s);",
+         "if (GRIPS > 999999u) move_held(s);");
 }
 
 void add_inputs(std::vector<Fault>& f) {
@@ -93,7 +109,8 @@ void add_inputs(std::vector<Fault>& f) {
   scene("one grip never held", "pulled", [](Scene& s) {
     for (FrameMotion& m : s.motion) m.grip_held.back() = 0;
   });
-  input("collider a frame late", "pushed", [](const Scene& s, FrameInput& i) { i.motion = s.motion_after(i.index - 1); });
+  input("collider a frame late", "pushed",
+        [](const Scene& s, FrameInput& i) { i.motion = s.motion_after(i.index - 1); });
   input("collider stands still", "pushed", [](const Scene& s, FrameInput& i) { i.motion = &s.motion.front(); });
   input("frames 1 % too long", "swing", [](const Scene&, FrameInput& i) { i.dt_s *= 1.01; });
 }
@@ -115,11 +132,14 @@ void add_outputs(std::vector<Fault>& f) {
     std::swap(before, s);
     if (s.position.empty()) s = before;
   });
-  state("two vertices swapped on reading", "swing", [](int, ClothState& s) { std::swap_ranges(s.position.begin() + 300, s.position.begin() + 303, s.position.begin() + 360); });
+  state("two vertices swapped on reading", "swing", [](int, ClothState& s) {
+    std::swap_ranges(s.position.begin() + 300, s.position.begin() + 303, s.position.begin() + 360);
+  });
   state("positions in whole millimetres", "fall", [](int, ClothState& s) {
     for (double& x : s.position) x = std::round(x * 1e3) / 1e3;
   });
-  state("velocities not written", "swing", [](int, ClothState& s) { std::fill(s.velocity.begin(), s.velocity.end(), 0.0); });
+  state("velocities not written", "swing",
+        [](int, ClothState& s) { std::fill(s.velocity.begin(), s.velocity.end(), 0.0); });
   Fault gave_up{"gives up at frame 10", "fall"};
   gave_up.status = [](int frame) { return frame == 10 ? StepStatus::Diverged : StepStatus::Ok; };
   f.push_back(std::move(gave_up));
@@ -127,7 +147,9 @@ void add_outputs(std::vector<Fault>& f) {
   extra.plan = [](Plan& p) { p.stages.push_back({"mesh contact", {Feature::StaticMesh}, 1, 0, 0}); };
   f.push_back(std::move(extra));
   Fault twice{"every dispatch recorded twice", "fall"};
-  twice.plan = [](Plan& p) { for (StagePlan& s : p.stages) s.dispatches *= 2; };
+  twice.plan = [](Plan& p) {
+    for (StagePlan& s : p.stages) s.dispatches *= 2;
+  };
   f.push_back(std::move(twice));
   Fault left_out{"a feature of the scene left out", "ball"};
   left_out.plan = [](Plan& p) {
@@ -150,17 +172,33 @@ void add_metrics(std::vector<Fault>& f) {
     fault.metric_scene = std::move(change);
     f.push_back(std::move(fault));
   };
-  metric("a stale metric: contour of the frame before", "pressed", series("contact_length_m", [](std::vector<double>& v) { std::rotate(v.rbegin(), v.rbegin() + 1, v.rend()); v[0] = 0; }));
-  metric("depth at vertices given as depth at all points", "rising", series("depth_m", [](std::vector<double>& v) { std::fill(v.begin(), v.end(), 0.0); }));
-  metric("self-contact of the frame before", "crossed", series("self_contact_length_m", [](std::vector<double>& v) { std::rotate(v.rbegin(), v.rbegin() + 1, v.rend()); v[0] = 0; }));
-  metric("area halved", "pressed", series("penetrating_area_m2", [](std::vector<double>& v) { for (double& x : v) x /= 2; }));
-  metric("tunnelling without memory", "curtain", series("tunnelled_fraction", [](std::vector<double>& v) { std::adjacent_difference(v.begin(), v.end(), v.begin()); }));
-  metric("wrong side counted from the last frame alone", "through", series("wrong_side_fraction", [](std::vector<double>& v) { std::adjacent_difference(v.begin(), v.end(), v.begin()); }));
+  metric("a stale metric: contour of the frame before", "pressed",
+         series("contact_length_m", [](std::vector<double>& v) {
+           std::rotate(v.rbegin(), v.rbegin() + 1, v.rend());
+           v[0] = 0;
+         }));
+  metric("depth at vertices given as depth at all points", "rising",
+         series("depth_m", [](std::vector<double>& v) { std::fill(v.begin(), v.end(), 0.0); }));
+  metric("self-contact of the frame before", "crossed", series("self_contact_length_m", [](std::vector<double>& v) {
+           std::rotate(v.rbegin(), v.rbegin() + 1, v.rend());
+           v[0] = 0;
+         }));
+  metric("area halved", "pressed", series("penetrating_area_m2", [](std::vector<double>& v) {
+           for (double& x : v) x /= 2;
+         }));
+  metric("tunnelling without memory", "curtain", series("tunnelled_fraction", [](std::vector<double>& v) {
+           std::adjacent_difference(v.begin(), v.end(), v.begin());
+         }));
+  metric("wrong side counted from the last frame alone", "through",
+         series("wrong_side_fraction",
+                [](std::vector<double>& v) { std::adjacent_difference(v.begin(), v.end(), v.begin()); }));
   told("metric sees the collider a frame late", "rising", [](Scene& s) {
     s.motion.insert(s.motion.begin(), s.motion.front());
     s.motion.pop_back();
   });
-  told("metric with flipped normals", "rolled", mesh([](ColliderMesh& m) { for (auto& t : m.triangles) std::swap(t[1], t[2]); }));
+  told("metric with flipped normals", "rolled", mesh([](ColliderMesh& m) {
+         for (auto& t : m.triangles) std::swap(t[1], t[2]);
+       }));
   told("metric ignores every 100th triangle", "rolled", mesh(without_every_100th));
   told("metric takes the radius for the diameter", "pressed", colliders([](Collider& c) { c.radius_m /= 2; }));
 }
@@ -174,7 +212,8 @@ void add_records(std::vector<Fault>& f) {
   record("a trial repeated", "fall", [](CellRecord& r) { r.trials[1] = r.trials[0]; });
   record("another scene under the same name", "fall", [](CellRecord& r) { r.header.scenario_sha256[3] ^= 1; });
   record("a value lost on the way to the file", "swing", [](CellRecord& r) { r.summary.erase("stretch_max"); });
-  record("a broken expectation not told", "ball", [](CellRecord& r) { r.summary["expect.depth_vertex_max_m"] = kMissing; });
+  record("a broken expectation not told", "ball",
+         [](CellRecord& r) { r.summary["expect.depth_vertex_max_m"] = kMissing; });
 }
 
 }  // namespace

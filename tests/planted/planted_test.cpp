@@ -1,5 +1,5 @@
-// One fault at a time in solver, metrics and records: each must be caught, by what `clothbench check` does with the cell and the
-// same cell of a healthy run as its baseline.
+// One fault at a time in solver, metrics and records: each must be caught, by what `clothbench check` does with the
+// cell and the same cell of a healthy run as its baseline.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -37,13 +37,16 @@ std::string caught_by(const CellRecord& was, const CellRecord& is) {
 class Planted : public ::testing::Test {
  protected:
   // Kernels with faults go into no pipeline cache but this one.
-  static void SetUpTestSuite() { ::setenv("CLOTHBENCH_CACHE", (std::filesystem::temp_directory_path() / "clothbench-planted-cache").c_str(), 1); }
+  static void SetUpTestSuite() {
+    ::setenv("CLOTHBENCH_CACHE", (std::filesystem::temp_directory_path() / "clothbench-planted-cache").c_str(), 1);
+  }
 };
 
 TEST_F(Planted, AHealthyRunPassesTwice) {
   for (const Stage& s : stages()) {
     EXPECT_EQ(healthy(s.name).outcome.status, "ok") << s.name << ": " << healthy(s.name).outcome.message;
-    EXPECT_FALSE(healthy(s.name).outcome.expect.starts_with("broken")) << s.name << ": " << healthy(s.name).outcome.expect;
+    EXPECT_FALSE(healthy(s.name).outcome.expect.starts_with("broken"))
+        << s.name << ": " << healthy(s.name).outcome.expect;
     EXPECT_EQ(caught_by(healthy(s.name), run_cell(stage(s.name))), "") << s.name;
   }
 }

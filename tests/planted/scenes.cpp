@@ -10,7 +10,9 @@ namespace {
 
 using nlohmann::json;
 
-Stage solved(const std::string& name, Scene scene, int trials = 0) { return {name, std::move(scene), find_solver("xpbd"), trials}; }
+Stage solved(const std::string& name, Scene scene, int trials = 0) {
+  return {name, std::move(scene), find_solver("xpbd"), trials};
+}
 
 Stage told(const std::string& name, const std::string& scene, Path path) {
   return {name, scene_from_json(json::parse(scene), "planted/" + name), prescribed(std::move(path)), 0};
@@ -22,17 +24,20 @@ Scene scene(const std::string& text) { return scene_from_json(json::parse(text),
 Scene over_tiles() {
   std::string positions, corners;
   for (int j = 0; j <= 10; ++j)
-    for (int i = 0; i <= 10; ++i) positions += fmt::format("{}[{},0,{}]", positions.empty() ? "" : ",", 0.06 * i - 0.3, 0.06 * j - 0.3);
+    for (int i = 0; i <= 10; ++i)
+      positions += fmt::format("{}[{},0,{}]", positions.empty() ? "" : ",", 0.06 * i - 0.3, 0.06 * j - 0.3);
   for (int j = 0; j < 10; ++j)
     for (int i = 0; i < 10; ++i) {
       const int v = 11 * j + i;
-      corners += fmt::format("{}[{},{},{}],[{},{},{}]", corners.empty() ? "" : ",", v, v + 11, v + 12, v, v + 12, v + 1);
+      corners +=
+          fmt::format("{}[{},{},{}],[{},{},{}]", corners.empty() ? "" : ",", v, v + 11, v + 12, v, v + 12, v + 1);
     }
   return scene(fmt::format(R"({{"name":"tiles","why":"Falls flat onto an open sheet of 200 triangles.",
     "cloth":{{"grid":[31,31],"size_m":[0.5,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0,-2,0],"pose":{{"center_m":[0.003,0.05,0.002]}}}},
     "material":{{"membrane_stiffness_N_per_m":1000,"bending_rigidity_N_m":1e-5,"damping_per_s":0.1}},
     "colliders":[{{"type":"mesh","positions_m":[{}],"triangles":[{}],"margin_m":0.004,"friction":0.3}}],
-    "time":{{"frame_rate_hz":72,"duration_s":0.4}},"expect":{{"outcome":"ok","tunnelled_fraction_max":{{"at_most":0}}}}}})", positions, corners));
+    "time":{{"frame_rate_hz":72,"duration_s":0.4}},"expect":{{"outcome":"ok","tunnelled_fraction_max":{{"at_most":0}}}}}})",
+                           positions, corners));
 }
 
 const char* const kPushed = R"({"name":"pushed","why":"A capsule pushes a hanging cloth out of its plane and along it.",
@@ -97,7 +102,8 @@ Scene layers() {
     "cloth":{{"grid":[17,9],"size_m":[0.5,0.25],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0,1,0],
              "pose":{{"axis_u":[0,1,0],"axis_v":[0,0,1],"drape":{{"radius_m":0.03}}}},"self_collision":{{"thickness_m":0.01}}}},
     "material":{{"membrane_stiffness_N_per_m":1000}},"gravity_m_per_s2":[0,0,0],"pins":[{{"vertices":[{}]}}],
-    "time":{{"frame_rate_hz":72,"duration_s":0.2}},"expect":{{"outcome":"ok","self_contact_pairs_max":{{"at_most":0}}}}}})", held));
+    "time":{{"frame_rate_hz":72,"duration_s":0.2}},"expect":{{"outcome":"ok","self_contact_pairs_max":{{"at_most":0}}}}}})",
+                           held));
 }
 
 // The right half laid over the left, in the last frame through it along one line as long as the sheet is wide.
@@ -126,7 +132,8 @@ std::vector<Stage> stages() {
   out.push_back(solved("cantilever", load_scene("validation/cantilever-10", {"time.duration_s=2"})));
   out.push_back(solved("heavy", load_scene("validation/heavy-strip", {"time.duration_s=2"})));
   out.push_back(solved("slope", load_scene("validation/incline-slip")));
-  out.push_back(solved("ball", load_scene("contact/sphere", {"cloth.grid=[17,17]", "time.duration_s=1", "cloth.pose.center_m=[0,0.2,0]"})));
+  out.push_back(solved("ball", load_scene("contact/sphere", {"cloth.grid=[17,17]", "time.duration_s=1",
+                                                             "cloth.pose.center_m=[0,0.2,0]"})));
   out.push_back(solved("tiles", over_tiles()));
   out.push_back(solved("pushed", scene(kPushed)));
   out.push_back(solved("pulled", scene(kPulled)));

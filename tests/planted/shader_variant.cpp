@@ -47,7 +47,8 @@ std::string command_of(const std::string& spv) {
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) text.replace(at, from.size(), to);
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
   return text;
 }
 
@@ -67,8 +68,8 @@ const Code* faulty(const VkShaderModuleCreateInfo& info) {
   if (at == built().end()) throw std::runtime_error("a kernel came to the driver that is none of " CLOTHBENCH_KERNELS);
   if (!active->compiled.contains(at->second)) {
     const std::string out = (active->folder / "out.spv").string();
-    const std::string command =
-        replaced(replaced(command_of(at->second), at->second, out), CLOTHBENCH_KERNEL_SOURCES "/", active->folder.string() + "/");
+    const std::string command = replaced(replaced(command_of(at->second), at->second, out),
+                                         CLOTHBENCH_KERNEL_SOURCES "/", active->folder.string() + "/");
     if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
     active->compiled[at->second] = read(out);
   }
@@ -109,9 +110,11 @@ int ShaderVariant::exchanged() { return active ? active->exchanged : last_exchan
 }  // namespace clothbench
 
 extern "C" {
-VkResult __real_vkCreateShaderModule(VkDevice, const VkShaderModuleCreateInfo*, const VkAllocationCallbacks*, VkShaderModule*);
+VkResult __real_vkCreateShaderModule(VkDevice, const VkShaderModuleCreateInfo*, const VkAllocationCallbacks*,
+                                     VkShaderModule*);
 
-VkResult __wrap_vkCreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* info, const VkAllocationCallbacks* a, VkShaderModule* module) {
+VkResult __wrap_vkCreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* info,
+                                     const VkAllocationCallbacks* a, VkShaderModule* module) {
   const std::vector<char>* code = clothbench::faulty(*info);
   if (code == nullptr) return __real_vkCreateShaderModule(device, info, a, module);
   VkShaderModuleCreateInfo changed = *info;

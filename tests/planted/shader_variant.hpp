@@ -6,12 +6,12 @@ namespace clothbench {
 
 /// One place of a kernel's source that is exchanged.
 struct ShaderFault {
-  std::string file;      ///< below solvers/pbd-gpu/shaders
+  std::string file;          ///< below solvers/pbd-gpu/shaders
   std::string is, is_to_be;  ///< text that stands there exactly once
 };
 
-/// While it lives every kernel is compiled from sources with this fault before it goes to the driver, with the very command
-/// that the build compiles it with. Throws std::runtime_error if the text is not there exactly once.
+/// While it lives every kernel is compiled from sources with this fault before it goes to the driver, with the very
+/// command that the build compiles it with. Throws std::runtime_error if the text is not there exactly once.
 class ShaderVariant {
  public:
   explicit ShaderVariant(const ShaderFault&);

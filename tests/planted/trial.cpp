@@ -55,7 +55,8 @@ class Faulty final : public ClothSolver {
 bool in_solver(const Fault& f) { return f.scene || f.input || f.state || f.status || f.plan; }
 
 /// The pass's metrics again, by what metrics make of another scene.
-std::vector<MetricSeries> measured_in(const Scene& scene, const Stage& stage, const nlohmann::json& settings, const AccuracyPass& pass) {
+std::vector<MetricSeries> measured_in(const Scene& scene, const Stage& stage, const nlohmann::json& settings,
+                                      const AccuracyPass& pass) {
   MetricPass again(MetricContext{scene, stage.entry, settings});
   const std::size_t numbers = 3 * scene.cloth.vertex_count();
   for (std::size_t f = 0; f < pass.time_s.size(); ++f) {
@@ -70,7 +71,9 @@ std::vector<MetricSeries> measured_in(const Scene& scene, const Stage& stage, co
 CellRecord run_cell(const Stage& stage, const Fault* fault) {
   SolverEntry entry = stage.entry;
   if (fault != nullptr && in_solver(*fault))
-    entry.make = [make = stage.entry.make, fault](const nlohmann::json& s, const DeviceOptions& d) { return std::make_unique<Faulty>(make(s, d), *fault); };
+    entry.make = [make = stage.entry.make, fault](const nlohmann::json& s, const DeviceOptions& d) {
+      return std::make_unique<Faulty>(make(s, d), *fault);
+    };
   std::optional<ShaderVariant> variant;
   if (fault != nullptr && fault->shader) variant.emplace(*fault->shader);
   CellSpec spec{&stage.scene, &entry, complete_settings(entry.info, nlohmann::json::object())};
@@ -85,7 +88,8 @@ CellRecord run_cell(const Stage& stage, const Fault* fault) {
   record.header = cell.header();
   if (cell.alive()) record.accuracy = cell.run_accuracy(rules);
   for (int k = 0; k < stage.trials && cell.alive(); ++k) record.trials.push_back(cell.run_trial(k, rules, 0));
-  if (variant && ShaderVariant::exchanged() == 0) throw std::runtime_error(fault->name + ": no kernel of the run has the fault");
+  if (variant && ShaderVariant::exchanged() == 0)
+    throw std::runtime_error(fault->name + ": no kernel of the run has the fault");
   if (fault != nullptr && fault->metric_scene) {
     Scene told = stage.scene;
     fault->metric_scene(told);

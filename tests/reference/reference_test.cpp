@@ -13,9 +13,14 @@ namespace {
 using nlohmann::json;
 
 Scene strip(int cells, double duration_s, const json& patch = json::object()) {
-  json s = {{"name", "strip"}, {"why", "a strip for the tests"},
-            {"cloth", {{"grid", {cells + 1, 2}}, {"size_m", {1.0, 1.0 / cells}}, {"areal_density_kg_per_m2", 0.2}, {"sides", "single"},
-                       {"pose", {{"center_m", {0.5, 0, 0}}}}}},
+  json s = {{"name", "strip"},
+            {"why", "a strip for the tests"},
+            {"cloth",
+             {{"grid", {cells + 1, 2}},
+              {"size_m", {1.0, 1.0 / cells}},
+              {"areal_density_kg_per_m2", 0.2},
+              {"sides", "single"},
+              {"pose", {{"center_m", {0.5, 0, 0}}}}}},
             {"material", {{"membrane_stiffness_N_per_m", "inextensible"}, {"shear", false}}},
             {"pins", {{{"edge", "u0"}}}},
             {"time", {{"frame_rate_hz", 60}, {"duration_s", duration_s}}}};
@@ -29,7 +34,8 @@ ClothState run(const Scene& scene, const std::string& integrator, int substeps) 
   solver->load(scene);
   for (int f = 0; f < scene.time.frames(); ++f) {
     const double dt = scene.time.dt();
-    EXPECT_EQ(solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}), StepStatus::Ok) << integrator << ", frame " << f;
+    EXPECT_EQ(solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}), StepStatus::Ok)
+        << integrator << ", frame " << f;
   }
   ClothState state;
   solver->read_state(state);
@@ -47,7 +53,8 @@ INSTANTIATE_TEST_SUITE_P(Both, Integrators, ::testing::Values("bdf2", "conservat
 
 TEST(Euler, ConvergesWithOrderOne) {
   const Scene s = strip(8, 0.3);
-  const double x1 = tip(s, run(s, "euler", 100)).first, x2 = tip(s, run(s, "euler", 200)).first, x3 = tip(s, run(s, "euler", 400)).first;
+  const double x1 = tip(s, run(s, "euler", 100)).first, x2 = tip(s, run(s, "euler", 200)).first,
+               x3 = tip(s, run(s, "euler", 400)).first;
   EXPECT_NEAR(std::log2((x1 - x2) / (x2 - x3)), 1, 0.15);
   EXPECT_NEAR(x3 + (x3 - x2), 0.794901, 2e-4);
 }
@@ -75,8 +82,9 @@ TEST_P(Integrators, OneLinkIsAPendulum) {
 /// Hanging at rest: u = rho g L^2 / (2 Y), exactly for springs with half-mass ends.
 TEST_P(Integrators, HeavyStripStretches) {
   const double Y = 1000;
-  Scene s = strip(8, 4, {{"material", {{"membrane_stiffness_N_per_m", Y}, {"damping_per_s", 20}}},
-                         {"cloth", {{"pose", {{"center_m", {0, -0.5, 0}}, {"axis_u", {0, -1, 0}}, {"axis_v", {1, 0, 0}}}}}}});
+  Scene s = strip(8, 4,
+                  {{"material", {{"membrane_stiffness_N_per_m", Y}, {"damping_per_s", 20}}},
+                   {"cloth", {{"pose", {{"center_m", {0, -0.5, 0}}, {"axis_u", {0, -1, 0}}, {"axis_v", {1, 0, 0}}}}}}});
   const ClothState state = run(s, GetParam(), 8);
   EXPECT_NEAR(-1 - tip(s, state).second, 0.2 * 9.81 / (2 * Y), 1e-8);
 }
@@ -89,7 +97,8 @@ TEST(Reference, ConservativeKeepsEnergyAndBothAgree) {
 }
 
 TEST_P(Integrators, FreeFallIsItsOwnRecurrence) {
-  const Scene s = strip(4, 0.25, {{"pins", json::array()}, {"material", {{"membrane_stiffness_N_per_m", 1000}, {"damping_per_s", 0.7}}}});
+  const Scene s = strip(
+      4, 0.25, {{"pins", json::array()}, {"material", {{"membrane_stiffness_N_per_m", 1000}, {"damping_per_s", 0.7}}}});
   const SolverEntry& e = find_solver("reference");
   const json settings = complete_settings(e.info, {{"substeps", 4}, {"integrator", GetParam()}});
   const auto [x, y] = tip(s, run(s, GetParam(), 4));

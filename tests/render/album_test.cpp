@@ -174,7 +174,8 @@ TEST(Album, FallsWithAClothThatNothingHolds) {
   EXPECT_FALSE(framing_of(s.read, std::vector<std::size_t>{0, 1}).followed.has_value());
 }
 
-/// A sheet that stands upright, one metre to each side of the origin of its lower edge, with the scene's box where it is wanted.
+/// A sheet that stands upright, one metre to each side of the origin of its lower edge, with the scene's box where it
+/// is wanted.
 Motion upright(const Vec3& box_m) {
   Motion m;
   m.scene = load_scene("contact/box", {"cloth.grid=[17,17]"});

@@ -68,8 +68,10 @@ CellRecord cell(const std::string& scene, double frame_s, double error) {
 }
 
 TEST(CompareRuns, TellsTimesResultsAndOutcomesApart) {
-  const std::vector<CellRecord> a = {cell("same", 1e-3, 0.5), cell("slower", 1e-3, 0.5), cell("fails", 1e-3, 0.5), cell("gone", 1e-3, 0.5)};
-  std::vector<CellRecord> b = {cell("same", 1e-3, 0.5), cell("slower", 2e-3, 0.25), cell("fails", 1e-3, 0.5), cell("new", 1e-3, 0.5)};
+  const std::vector<CellRecord> a = {cell("same", 1e-3, 0.5), cell("slower", 1e-3, 0.5), cell("fails", 1e-3, 0.5),
+                                     cell("gone", 1e-3, 0.5)};
+  std::vector<CellRecord> b = {cell("same", 1e-3, 0.5), cell("slower", 2e-3, 0.25), cell("fails", 1e-3, 0.5),
+                               cell("new", 1e-3, 0.5)};
   b[2].outcome.status = "diverged";
   b[2].outcome.klass = "F1";
   const auto cells = compare_runs(a, b);

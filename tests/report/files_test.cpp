@@ -66,7 +66,8 @@ TEST_F(ReportFiles, WritesEveryFile) {
   const std::string md = text(out / "report.md");
   EXPECT_NE(md.find("diverged at 3"), std::string::npos);
   EXPECT_NE(md.find("planned, not run"), std::string::npos);
-  EXPECT_EQ(md.find("gravity-77-single"), md.rfind("gravity-77-single")) << "of a scene that nobody ran there is nothing to tabulate";
+  EXPECT_EQ(md.find("gravity-77-single"), md.rfind("gravity-77-single"))
+      << "of a scene that nobody ran there is nothing to tabulate";
   EXPECT_EQ(parse_csv(text(out / "memory.csv")).size(), 6u);
   if (md.find("Figures were left out") == std::string::npos) {
     EXPECT_NE(text(out / "fig4.svg").find("<svg"), std::string::npos);
@@ -95,8 +96,10 @@ TEST_F(ReportFiles, ThePicturesOfAnOlderReportGoAndTheUsersStay) {
   fs::create_directories(out);
   // As a version wrote it that kept no list.
   std::ofstream(out / "report.md") << "# clothbench report\n\n![Frames](fig4.svg)\n\n![Old](stability-old-map.svg)\n";
-  for (const char* name : {"fig4.svg", "stability-old-map.svg", "stability-old-map.png"}) std::ofstream(out / name) << "an older figure";
-  for (const char* name : {"penetration-notes.png", "stability-mine.svg", "work-precision-mine.png"}) std::ofstream(out / name) << "the user's";
+  for (const char* name : {"fig4.svg", "stability-old-map.svg", "stability-old-map.png"})
+    std::ofstream(out / name) << "an older figure";
+  for (const char* name : {"penetration-notes.png", "stability-mine.svg", "work-precision-mine.png"})
+    std::ofstream(out / name) << "the user's";
   write_report({run_}, {out});
   for (const char* name : {"penetration-notes.png", "stability-mine.svg", "work-precision-mine.png"})
     EXPECT_EQ(text(out / name), "the user's") << name;

@@ -8,10 +8,13 @@
 namespace clothbench {
 namespace {
 
-CellRecord sweep_cell(const std::string& solver, double speed, double wrong, double inside_m, const char* type = "hand_capsules") {
+CellRecord sweep_cell(const std::string& solver, double speed, double wrong, double inside_m,
+                      const char* type = "hand_capsules") {
   CellRecord c = fake_cell(solver, 32, "double", 0.004);
   c.header.scene = "sweep-" + std::to_string(speed);
-  c.header.scenario_json = std::string(R"({"name":"sweep","cloth":{"grid":[32,32],"sides":"double"},"colliders":[{"type":")") + type + R"("}]})";
+  c.header.scenario_json =
+      std::string(R"({"name":"sweep","cloth":{"grid":[32,32],"sides":"double"},"colliders":[{"type":")") + type +
+      R"("}]})";
   c.summary["imposed_speed_m_per_s"] = speed;
   c.summary["wrong_side_samples_max"] = wrong;
   c.summary["depth_vertex_max_m"] = inside_m;
@@ -19,9 +22,18 @@ CellRecord sweep_cell(const std::string& solver, double speed, double wrong, dou
 }
 
 TEST(Leak, TheFirstSpeedThatLeaksIsTold) {
-  std::vector<CellRecord> cells = {sweep_cell("a", 20, 5, 0.002), sweep_cell("a", 0.8, 0, 0), sweep_cell("a", 5, 0, 0.0009), sweep_cell("a", 10, 0, 0.0011),
-                                   sweep_cell("b", 0.8, 0, 0),    sweep_cell("b", 5, 0, 0),   sweep_cell("b", 20, 0, 0),     sweep_cell("c", 0.8, kMissing, 0),
-                                   sweep_cell("c", 5, 0, 0),      sweep_cell("c", 20, 0, 0),  sweep_cell("d", 0.8, 0, 0),    sweep_cell("d", 5, 0, 0),
+  std::vector<CellRecord> cells = {sweep_cell("a", 20, 5, 0.002),
+                                   sweep_cell("a", 0.8, 0, 0),
+                                   sweep_cell("a", 5, 0, 0.0009),
+                                   sweep_cell("a", 10, 0, 0.0011),
+                                   sweep_cell("b", 0.8, 0, 0),
+                                   sweep_cell("b", 5, 0, 0),
+                                   sweep_cell("b", 20, 0, 0),
+                                   sweep_cell("c", 0.8, kMissing, 0),
+                                   sweep_cell("c", 5, 0, 0),
+                                   sweep_cell("c", 20, 0, 0),
+                                   sweep_cell("d", 0.8, 0, 0),
+                                   sweep_cell("d", 5, 0, 0),
                                    sweep_cell("a", 5, 0, 0, "hand_mesh")};
   cells.push_back(sweep_cell("e", 0.8, 0, 0));
   cells.push_back(sweep_cell("e", 5, 0, 0));

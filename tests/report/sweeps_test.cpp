@@ -20,24 +20,31 @@ namespace fs = std::filesystem;
 CellRecord pulled(const std::string& solver, double speed, double error) {
   CellRecord c = fake_cell(solver, 32, "single", 0.004);
   c.header.scene = "two-hand-pull-at-" + std::to_string(speed);
-  c.header.scenario_json = R"({"name":"two-hand-pull","cloth":{"grid":[33,5],"sides":"single"},"grips":[{"edge":"u0","v":)" + std::to_string(speed) +
-                           R"(}],"truth":{"card":"two-hand-pull"},"time":{"frame_rate_hz":960}})";
+  c.header.scenario_json =
+      R"({"name":"two-hand-pull","cloth":{"grid":[33,5],"sides":"single"},"grips":[{"edge":"u0","v":)" +
+      std::to_string(speed) + R"(}],"truth":{"card":"two-hand-pull"},"time":{"frame_rate_hz":960}})";
   // As the motion gives it, not as the file says it.
-  c.summary = {{"imposed_speed_m_per_s", speed * (1 + 1e-12)}, {"truth_quantity_error_max", error}, {"truth_quantity_error", error / 2}, {"truth_e2", 1e-5 * speed}};
+  c.summary = {{"imposed_speed_m_per_s", speed * (1 + 1e-12)},
+               {"truth_quantity_error_max", error},
+               {"truth_quantity_error", error / 2},
+               {"truth_e2", 1e-5 * speed}};
   return c;
 }
 
 TEST(PulledStrip, SaysWhichSpeedFailsFirst) {
-  std::vector<CellRecord> cells = {pulled("a", 30, 0.3), pulled("a", 0.5, 0.05), pulled("a", 10, 0.11), pulled("b", 0.5, kMissing), pulled("b", 10, 0.01),
-                                   pulled("c", 0.5, 0.1), pulled("c", 30, 0.02), pulled("d", 10, 0.01)};
+  std::vector<CellRecord> cells = {pulled("a", 30, 0.3),       pulled("a", 0.5, 0.05), pulled("a", 10, 0.11),
+                                   pulled("b", 0.5, kMissing), pulled("b", 10, 0.01),  pulled("c", 0.5, 0.1),
+                                   pulled("c", 30, 0.02),      pulled("d", 10, 0.01)};
   cells.back().outcome = {"not_finite", "F0", 7, "", {}};
   const auto ups = set_ups(cells);
   ASSERT_EQ(ups.size(), 1u);
   EXPECT_EQ(ups[0].kind, "wave");
   const Table t = pulled_strip_table(ups);
   ASSERT_EQ(t.rows.size(), 5u);
-  EXPECT_EQ(t.rows[0], (std::vector<std::string>{"strip", "solver", "first that fails", "0.5 m/s", "10 m/s", "30 m/s"}));
-  EXPECT_EQ(t.rows[1], (std::vector<std::string>{"two-hand-pull 33×5", "a", "10 m/s", "0.05 / 5.0e-06", "0.11 / 1.0e-04", "0.3 / 3.0e-04"}));
+  EXPECT_EQ(t.rows[0],
+            (std::vector<std::string>{"strip", "solver", "first that fails", "0.5 m/s", "10 m/s", "30 m/s"}));
+  EXPECT_EQ(t.rows[1], (std::vector<std::string>{"two-hand-pull 33×5", "a", "10 m/s", "0.05 / 5.0e-06",
+                                                 "0.11 / 1.0e-04", "0.3 / 3.0e-04"}));
   EXPECT_EQ(t.rows[2][2], "0.5 m/s") << "what is not known fails";
   EXPECT_EQ(t.rows[2][3], "– / 5.0e-06");
   EXPECT_EQ(t.rows[3][2], "none up to 30 m/s") << "0.1 is allowed";
@@ -54,16 +61,25 @@ CellRecord popping_cell(const std::string& solver, const std::string& setting, d
   CellRecord c = fake_cell(solver, 32, "double", 0.004);
   c.header.scene = "sweep-2mps";
   c.header.setting = setting;
-  c.header.scenario_json = R"({"name":"sweep","cloth":{"grid":[32,32],"sides":"double"},"colliders":[{"type":"hand_capsules"}]})";
+  c.header.scenario_json =
+      R"({"name":"sweep","cloth":{"grid":[32,32],"sides":"double"},"colliders":[{"type":"hand_capsules"}]})";
   c.summary = {{"pop_displacement_m", way_m}, {"pop_speed_ratio", speed_ratio}};
   return c;
 }
 
 TEST(Popping, IsComparedWithTheSameSolverInSmallerSteps) {
-  std::vector<CellRecord> cells = {popping_cell("a", "default", 0.0119, 0.9),  popping_cell("a", "x16", 0.01, 0.8),     popping_cell("b", "default", 0.0121, 0.9),
-                                   popping_cell("b", "x16", 0.01, 0.8),        popping_cell("c", "default", 0.01, 1.1), popping_cell("c", "x16", 0.01, 0.8),
-                                   popping_cell("d", "default", kMissing, 0.5), popping_cell("d", "x16", 0.01, 0.8),    popping_cell("e", "default", 0.01, 0.9),
-                                   popping_cell("f", "default", 0.01, 0.9),    popping_cell("f", "x16", 0.01, 0.8),     popping_cell("g", "default", 0, 0.1),
+  std::vector<CellRecord> cells = {popping_cell("a", "default", 0.0119, 0.9),
+                                   popping_cell("a", "x16", 0.01, 0.8),
+                                   popping_cell("b", "default", 0.0121, 0.9),
+                                   popping_cell("b", "x16", 0.01, 0.8),
+                                   popping_cell("c", "default", 0.01, 1.1),
+                                   popping_cell("c", "x16", 0.01, 0.8),
+                                   popping_cell("d", "default", kMissing, 0.5),
+                                   popping_cell("d", "x16", 0.01, 0.8),
+                                   popping_cell("e", "default", 0.01, 0.9),
+                                   popping_cell("f", "default", 0.01, 0.9),
+                                   popping_cell("f", "x16", 0.01, 0.8),
+                                   popping_cell("g", "default", 0, 0.1),
                                    popping_cell("g", "x16", 0, 0.1)};
   cells[10].outcome = {"diverged", "F2", 3, "", {}};
   const auto all = poppings(set_ups(cells));
@@ -84,8 +100,9 @@ CellRecord lying(const std::string& scene, bool transposed, float off_m) {
   CellRecord c = fake_cell("a", 32, "double", 0.004);
   c.header.scene = scene;
   c.header.vertices = 6;
-  c.header.scenario_json = std::string(R"({"name":"lying","cloth":{"grid":)") + (transposed ? "[3,2]" : "[2,3]") +
-                           R"(,"size_m":[1,2],"sides":"double"},"colliders":[{"type":"mesh"}],"expect":{"tunnelled_fraction_max":{"at_most":0}}})";
+  c.header.scenario_json =
+      std::string(R"({"name":"lying","cloth":{"grid":)") + (transposed ? "[3,2]" : "[2,3]") +
+      R"(,"size_m":[1,2],"sides":"double"},"colliders":[{"type":"mesh"}],"expect":{"tunnelled_fraction_max":{"at_most":0}}})";
   c.summary = {{"tunnelled_fraction_max", 0}, {"expect.tunnelled_fraction_max", 1}};
   c.accuracy.time_s = {0, 0.05, 0.1, 0.3};  // touches at 0.05
   c.accuracy.metrics = {{"touching_fraction", "1", "", {0, 0.1, 0.1, 0}}};
@@ -93,13 +110,15 @@ CellRecord lying(const std::string& scene, bool transposed, float off_m) {
     for (int v = 0; v < 6; ++v) {
       const int u = transposed ? v / 3 : v % 2, w = transposed ? v % 3 : v / 2;
       const float off = frame < 2 ? 0 : frame == 2 ? off_m : 3 * off_m;
-      for (const float x : {static_cast<float>(u), static_cast<float>(w), u == 1 && w == 2 ? off : 0.0f}) c.accuracy.position.push_back(x);
+      for (const float x : {static_cast<float>(u), static_cast<float>(w), u == 1 && w == 2 ? off : 0.0f})
+        c.accuracy.position.push_back(x);
     }
   return c;
 }
 
 TEST(Turned, VerticesOfTheSamePlaceAreCompared) {
-  std::vector<CellRecord> cells = {lying("drop", false, 0), lying("drop-turned", true, 0.12f), lying("other", false, 0)};
+  std::vector<CellRecord> cells = {lying("drop", false, 0), lying("drop-turned", true, 0.12f),
+                                   lying("other", false, 0)};
   auto pairs = turned_pairs(set_ups(cells));
   ASSERT_EQ(pairs.size(), 1u) << "the other has not been turned";
   EXPECT_NEAR(pairs[0].apart_at_contact, 0.12 / std::sqrt(6.0) / 2, 1e-7);
@@ -146,7 +165,8 @@ TEST(PulledStrip, UntimedOnesAreNoDiagram) {
     std::ifstream in(dir / "report" / name);
     return std::string(std::istreambuf_iterator<char>(in), {});
   };
-  const auto penetration = nlohmann::json::parse(text("penetration.json")), work = nlohmann::json::parse(text("work-precision.json"));
+  const auto penetration = nlohmann::json::parse(text("penetration.json")),
+             work = nlohmann::json::parse(text("work-precision.json"));
   ASSERT_EQ(penetration["pulled_strip"].size(), 1u);
   EXPECT_EQ(penetration["pulled_strip"][0]["speeds"].size(), 1u);
   ASSERT_EQ(work.size(), 1u);

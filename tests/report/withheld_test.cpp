@@ -1,5 +1,5 @@
-// What must not be printed isn't, in no table and no file, and they say why: times that were not taken alone, values by an older
-// version of a metric's rule.
+// What must not be printed isn't, in no table and no file, and they say why: times that were not taken alone, values by
+// an older version of a metric's rule.
 #include "report/withheld.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,8 @@ CellRecord with_jobs(CellRecord c, double jobs) {
 }
 
 TEST(Withheld, TimesNotTakenAloneAreGoneFromEveryTableOfTimes) {
-  std::vector<CellRecord> cells = {with_jobs(fake_cell("alone", 8, "single", 0.002), 1), with_jobs(fake_cell("crowd", 8, "single", 0.002), 11),
+  std::vector<CellRecord> cells = {with_jobs(fake_cell("alone", 8, "single", 0.002), 1),
+                                   with_jobs(fake_cell("crowd", 8, "single", 0.002), 11),
                                    with_jobs(fake_cell("older", 8, "single", 0.002), kMissing)};
   withhold(cells);
   for (const char* table : {"Table 3", "uncapped", "Wall time", "GPU time", "Peak bandwidth"}) {
@@ -40,7 +41,8 @@ TEST(Withheld, TimesNotTakenAloneAreGoneFromEveryTableOfTimes) {
   EXPECT_NE(entry(table_of(cells, "Free-fall"), "crowd", "single", "8²"), "–");
   EXPECT_EQ(table_of(cells, "Free-fall").note.find("jobs"), std::string::npos);
   const std::string head = headline(cells, Format::Markdown);
-  EXPECT_NE(head.find("Not printed (–), 1 cell: not timed alone: up to 11 jobs ran side by side."), std::string::npos) << head;
+  EXPECT_NE(head.find("Not printed (–), 1 cell: not timed alone: up to 11 jobs ran side by side."), std::string::npos)
+      << head;
   EXPECT_NE(head.find("1 of the timed cells is of files that don't say"), std::string::npos) << head;
 }
 
@@ -51,7 +53,9 @@ TEST(Withheld, FilesForMachinesHaveTheReasonInsteadOfTheTime) {
   const auto at = [&](const std::string& name) {
     return rows.at(1).at(static_cast<std::size_t>(std::find(rows[0].begin(), rows[0].end(), name) - rows[0].begin()));
   };
-  for (const char* time : {"fps_median", "frame_wall_median_s", "frame_device_median_s", "bandwidth_read_peak_B_per_s", "load_s"}) EXPECT_EQ(at(time), "") << time;
+  for (const char* time :
+       {"fps_median", "frame_wall_median_s", "frame_device_median_s", "bandwidth_read_peak_B_per_s", "load_s"})
+    EXPECT_EQ(at(time), "") << time;
   EXPECT_EQ(at("jobs"), "4");
   EXPECT_EQ(at("withheld"), "not timed alone: up to 4 jobs ran side by side");
   EXPECT_NE(at("free_fall_error"), "");
@@ -62,7 +66,8 @@ TEST(Withheld, FilesForMachinesHaveTheReasonInsteadOfTheTime) {
 }
 
 TEST(Withheld, TrialsOfSuchCellsCompareWithNothing) {
-  std::vector<CellRecord> cells = {with_jobs(fake_cell("s", 8, "single", 0.002), 2)}, alone = {with_jobs(fake_cell("s", 8, "single", 0.002), 1)};
+  std::vector<CellRecord> cells = {with_jobs(fake_cell("s", 8, "single", 0.002), 2)},
+                          alone = {with_jobs(fake_cell("s", 8, "single", 0.002), 1)};
   for (auto* run : {&cells, &alone})
     for (int k = 0; k < 5; ++k) {
       TimedTrial t;
@@ -82,10 +87,13 @@ TEST(Withheld, TrialsOfSuchCellsCompareWithNothing) {
 CellRecord swept(const std::string& solver, double speed, int version, double samples, double inside_kept = 1) {
   CellRecord c = fake_cell(solver, 32, "double", 0.004);
   c.header.scene = fmt::format("sweep-{:g}", speed);
-  c.header.scenario_json = R"({"name":"sweep","cloth":{"grid":[32,32],"sides":"double"},"colliders":[{"type":"hand_capsules"}],)"
-                           R"("expect":{"wrong_side_samples_max":{"at_most":0},"depth_vertex_max_m":{"at_most":0.001}}})";
+  c.header.scenario_json =
+      R"({"name":"sweep","cloth":{"grid":[32,32],"sides":"double"},"colliders":[{"type":"hand_capsules"}],)"
+      R"("expect":{"wrong_side_samples_max":{"at_most":0},"depth_vertex_max_m":{"at_most":0.001}}})";
   c.accuracy.time_s = {0, 1};
-  c.accuracy.metrics = {{"wrong_side_samples", "1", "", {0, samples}, version}, {"depth_vertex_m", "m", "", {0, 0}}, {"contact_length_m", "m", "", {0, 0}}};
+  c.accuracy.metrics = {{"wrong_side_samples", "1", "", {0, samples}, version},
+                        {"depth_vertex_m", "m", "", {0, 0}},
+                        {"contact_length_m", "m", "", {0, 0}}};
   c.summary["imposed_speed_m_per_s"] = speed;
   c.summary["wrong_side_samples_max"] = samples;
   c.summary["depth_vertex_max_m"] = inside_kept == 1 ? 0 : 0.002;
@@ -93,12 +101,15 @@ CellRecord swept(const std::string& solver, double speed, int version, double sa
   c.summary["contact_violated_longest_s"] = 1;
   c.summary["expect.wrong_side_samples_max"] = samples == 0;
   c.summary["expect.depth_vertex_max_m"] = inside_kept;
-  c.outcome.expect = samples == 0 ? "kept" : fmt::format("broken: depth_vertex_max_m 0.002 > 0.001; wrong_side_samples_max {:g} > 0", samples);
+  c.outcome.expect =
+      samples == 0 ? "kept"
+                   : fmt::format("broken: depth_vertex_max_m 0.002 > 0.001; wrong_side_samples_max {:g} > 0", samples);
   return c;
 }
 
 TEST(Withheld, TwoVersionsOfARuleAreNotInOneTable) {
-  std::vector<CellRecord> cells = {swept("now", 1, metric_version("wrong_side_samples"), 7), swept("before", 1, 1, 9, 0), swept("before", 2, 1, 0)};
+  std::vector<CellRecord> cells = {swept("now", 1, metric_version("wrong_side_samples"), 7),
+                                   swept("before", 1, 1, 9, 0), swept("before", 2, 1, 0)};
   withhold(cells);
   const auto ups = set_ups(cells);
   const Table t = contact_table(ups.at(0));
@@ -106,14 +117,16 @@ TEST(Withheld, TwoVersionsOfARuleAreNotInOneTable) {
   EXPECT_EQ(entry(t, "sweep-1", "before", "wrong side [samples]"), "–");
   EXPECT_EQ(entry(t, "sweep-1", "before", "crossed, longest [s]"), "–") << "computed from it too";
   EXPECT_EQ(entry(t, "sweep-1", "before", "contour, most / settled [mm]"), "250 / –") << "another metric";
-  EXPECT_NE(t.note.find("wrong_side_samples was measured by version 1 of its rule, now 2"), std::string::npos) << t.note;
+  EXPECT_NE(t.note.find("wrong_side_samples was measured by version 1 of its rule, now 2"), std::string::npos)
+      << t.note;
   const Table v = verdict_table(ups);
   EXPECT_EQ(entry(v, "sweep-1", "broken", "before"), "broken") << "a bound that does not hang on it is broken";
   EXPECT_EQ(verdict(cells[2]), "–");
   EXPECT_NE(v.note.find("version 1"), std::string::npos) << v.note;
   EXPECT_EQ(cells[1].outcome.expect, "broken: depth_vertex_max_m 0.002 > 0.001");
   EXPECT_EQ(cells[2].outcome.expect, "not measured");
-  for (const MetricSeries& m : cells[1].accuracy.metrics) EXPECT_NE(m.name, "wrong_side_samples") << "nor is its series";
+  for (const MetricSeries& m : cells[1].accuracy.metrics)
+    EXPECT_NE(m.name, "wrong_side_samples") << "nor is its series";
   EXPECT_EQ(cells_json(cells)[1]["metric_versions"].contains("wrong_side_samples"), false);
   EXPECT_EQ(cells_json(cells)[0]["metric_versions"]["wrong_side_samples"], 2);
   EXPECT_EQ(penetration_json(ups)[0]["withheld"], "wrong_side_samples was measured by version 1 of its rule, now 2");
@@ -136,7 +149,8 @@ TEST(Withheld, TheFirstSpeedThatFailsIsUnknownWhereALowerOneIs) {
 TEST(Withheld, AVersionNewerThanThisProgramsCountsTheMost) {
   std::vector<CellRecord> cells = {swept("now", 1, 2, 7), swept("later", 1, 3, 7)};
   withhold(cells);
-  EXPECT_EQ(cells[0].withheld.at("wrong_side_samples_max"), "wrong_side_samples was measured by version 2 of its rule, now 3");
+  EXPECT_EQ(cells[0].withheld.at("wrong_side_samples_max"),
+            "wrong_side_samples was measured by version 2 of its rule, now 3");
   EXPECT_TRUE(cells[1].withheld.empty());
 }
 
@@ -146,7 +160,8 @@ TEST(Withheld, RunsByTwoVersionsAreNotCompared) {
   ASSERT_EQ(cells[0].versions.size(), 1u);
   for (const auto& m : cells[0].metrics) EXPECT_EQ(m.name.find("wrong_side"), std::string::npos) << m.name;
   const Table t = comparison_tables(cells)[1];
-  EXPECT_EQ(t.rows.back(), (std::vector<std::string>{"sweep-1__s__default", "wrong_side_samples", "by version 1", "by version 2: not compared"}));
+  EXPECT_EQ(t.rows.back(), (std::vector<std::string>{"sweep-1__s__default", "wrong_side_samples", "by version 1",
+                                                     "by version 2: not compared"}));
   EXPECT_EQ(comparison_json(cells)[0]["versions"]["wrong_side_samples"], (nlohmann::json{1, 2}));
   EXPECT_TRUE(compare_runs(b, b)[0].versions.empty());
 }
@@ -156,7 +171,8 @@ TEST(Withheld, EveryDocumentOfAReportLacksThem) {
   fs::create_directories(dir / "run");
   StudyManifest manifest{"table3", "", "", nlohmann::json::object(), {}};
   for (const int jobs : {1, 6}) {
-    const CellRecord c = with_jobs(fake_cell(jobs == 1 ? "alone" : "crowd", 8, "single", jobs == 1 ? 0.0011111 : 0.0077777), jobs);
+    const CellRecord c =
+        with_jobs(fake_cell(jobs == 1 ? "alone" : "crowd", 8, "single", jobs == 1 ? 0.0011111 : 0.0077777), jobs);
     CellWriter(dir / "run", c.header).finish(c.outcome, c.summary);
     manifest.cells.push_back(cell_name(c.header));
   }

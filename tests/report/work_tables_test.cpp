@@ -1,17 +1,18 @@
 // What the report of error against run time makes of points that are known.
-#include "report/work_precision.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
+
+#include "report/work_precision.hpp"
 
 namespace clothbench {
 namespace {
 
 using nlohmann::json;
 
-CellRecord cell(const std::string& solver, const std::string& setting, double frame_s, double error, const std::string& status = "ok") {
+CellRecord cell(const std::string& solver, const std::string& setting, double frame_s, double error,
+                const std::string& status = "ok") {
   CellRecord c;
   c.header.scene = "swing";
   c.header.solver = solver;
@@ -20,7 +21,10 @@ CellRecord cell(const std::string& solver, const std::string& setting, double fr
   c.header.scenario_json = R"({"name":"swing","truth":{"card":"swing-strip"},"time":{"frame_rate_hz":60}})";
   c.header.environment = {{"gpu", "CPU"}};
   c.outcome.status = status;
-  c.summary = {{"frame_wall_median_s", frame_s}, {"truth_error", error}, {"reference_uncertainty", 1e-5}, {"truth_space_error", 2e-3}};
+  c.summary = {{"frame_wall_median_s", frame_s},
+               {"truth_error", error},
+               {"reference_uncertainty", 1e-5},
+               {"truth_space_error", 2e-3}};
   return c;
 }
 
@@ -31,9 +35,13 @@ const std::vector<std::string>& row_of(const Table& t, const std::string& solver
 }
 
 TEST(WorkTable, FindsTheFrontAndTimesToAccuracy) {
-  const std::vector<CellRecord> cells = {cell("a", "fast", 1e-3, 0.5),   cell("a", "good", 4e-3, 8e-3), cell("a", "worse", 5e-3, 9e-3),
-                                         cell("a", "best", 0.1, 5e-4),   cell("a", "lost", 1e-3, 1e-9, "not_finite"),
-                                         cell("b", "tiny", 2e-3, 1e-6), cell("b", "nan", 2e-3, NAN)};
+  const std::vector<CellRecord> cells = {cell("a", "fast", 1e-3, 0.5),
+                                         cell("a", "good", 4e-3, 8e-3),
+                                         cell("a", "worse", 5e-3, 9e-3),
+                                         cell("a", "best", 0.1, 5e-4),
+                                         cell("a", "lost", 1e-3, 1e-9, "not_finite"),
+                                         cell("b", "tiny", 2e-3, 1e-6),
+                                         cell("b", "nan", 2e-3, NAN)};
   const auto diagrams = work_diagrams(cells);
   ASSERT_EQ(diagrams.size(), 1u);
   std::vector<std::string> front;
@@ -48,7 +56,8 @@ TEST(WorkTable, FindsTheFrontAndTimesToAccuracy) {
   EXPECT_EQ(row_of(t, "a")[6], "1 of 5");
   EXPECT_EQ(row_of(t, "b")[5], "≤ 0.002 (tiny)") << "nobody is better than the mesh itself";
   EXPECT_EQ(row_of(t, "b")[6], "1 of 2");
-  EXPECT_EQ(diagrams[0].refused(), "") << "the best error is below 3 U_ref, and so below the mesh's own: nobody is ranked there";
+  EXPECT_EQ(diagrams[0].refused(), "")
+      << "the best error is below 3 U_ref, and so below the mesh's own: nobody is ranked there";
 }
 
 TEST(WorkTable, TimesArePipelinedWhereASolverCan) {
@@ -66,8 +75,9 @@ TEST(WorkTable, TimesArePipelinedWhereASolverCan) {
 
 TEST(BudgetTable, NamesWhoHasTheSmallerErrorAtAnyBudget) {
   // 0.02 and 0.04 at 0.3 ms: between the budgets that have a column.
-  const std::vector<CellRecord> cells = {cell("a", "x", 1e-4, 0.3),   cell("a", "y", 1e-3, 0.04), cell("b", "x", 3e-4, 0.02),
-                                         cell("b", "late", 2e-2, 1e-9), cell("a", "nan", 1e-4, NAN)};
+  const std::vector<CellRecord> cells = {cell("a", "x", 1e-4, 0.3), cell("a", "y", 1e-3, 0.04),
+                                         cell("b", "x", 3e-4, 0.02), cell("b", "late", 2e-2, 1e-9),
+                                         cell("a", "nan", 1e-4, NAN)};
   const Table t = budget_table(work_diagrams(cells));
   EXPECT_EQ(row_of(t, "a").at(3), "0.3") << "0.1 ms";
   EXPECT_EQ(row_of(t, "a").at(2), "–") << "0.05 ms";
@@ -75,7 +85,8 @@ TEST(BudgetTable, NamesWhoHasTheSmallerErrorAtAnyBudget) {
   EXPECT_EQ(row_of(t, "a").back(), "b: 15 times at 0.3 ms");
   EXPECT_EQ(row_of(t, "b").back(), "a: 0.3 at 0.1 ms, where it has no result");
   const std::vector<CellRecord> small = {cell("a", "x", 1e-4, 1e-6), cell("b", "x", 1e-4, 1e-9)};
-  EXPECT_EQ(row_of(budget_table(work_diagrams(small)), "a").back(), "never") << "below the mesh's own error nobody is better";
+  EXPECT_EQ(row_of(budget_table(work_diagrams(small)), "a").back(), "never")
+      << "below the mesh's own error nobody is better";
   EXPECT_EQ(row_of(budget_table(work_diagrams(small)), "a").at(3), "≤ 0.002");
 }
 

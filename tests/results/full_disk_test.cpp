@@ -50,7 +50,8 @@ int with_little_room(const std::string& file, const auto& work) {
 
 std::size_t temporary_files(const fs::path& dir) {
   std::size_t n = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(dir)) n += entry.path().filename().string().find(".tmp.") != std::string::npos;
+  for (const auto& entry : fs::recursive_directory_iterator(dir))
+    n += entry.path().filename().string().find(".tmp.") != std::string::npos;
   return n;
 }
 

@@ -22,7 +22,8 @@ std::string said(const std::function<void(hid_t file)>& change) {
   change(file);
   H5Fclose(file);
   std::string out;
-  for (const auto& read : {std::function<void()>([&] { read_hdf5(path, true); }), std::function<void()>([&] { read_hdf5_replay(path, 1); })}) {
+  for (const auto& read : {std::function<void()>([&] { read_hdf5(path, true); }),
+                           std::function<void()>([&] { read_hdf5_replay(path, 1); })}) {
     try {
       read();
       out += "read; ";
@@ -39,7 +40,8 @@ TEST(Hdf5Older, FilesWithoutVersionsAndJobsAreReadAsTheyWere) {
   write_hdf5(path, sample_cell());
   EXPECT_EQ(read_hdf5(path, false).trials[2].jobs, 21);
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  for (const char* metric : {"metrics/speed_max", "metrics/stretch_max"}) EXPECT_GE(H5Adelete_by_name(file, metric, "version", H5P_DEFAULT), 0) << metric;
+  for (const char* metric : {"metrics/speed_max", "metrics/stretch_max"})
+    EXPECT_GE(H5Adelete_by_name(file, metric, "version", H5P_DEFAULT), 0) << metric;
   EXPECT_GE(H5Ldelete(file, "timing/jobs", H5P_DEFAULT), 0);
   H5Fclose(file);
   const CellRecord r = read_hdf5(path, false);
@@ -64,8 +66,16 @@ void set_number(hid_t file, const char* holder, const char* name, double value) 
 
 TEST(DamagedHdf5, NumbersThatNoIntHolds) {
   for (const double v : {1.09904e+248, -1e300, static_cast<double>(NAN)}) {
-    EXPECT_NE(said([&](hid_t f) { set_number(f, ".", "format_version", v); }).find("attribute format_version: expected a whole number"), std::string::npos) << v;
-    EXPECT_NE(said([&](hid_t f) { set_number(f, "outcome", "failed_frame", v); }).find("attribute failed_frame: expected a whole number"), std::string::npos) << v;
+    EXPECT_NE(said([&](hid_t f) {
+                set_number(f, ".", "format_version", v);
+              }).find("attribute format_version: expected a whole number"),
+              std::string::npos)
+        << v;
+    EXPECT_NE(said([&](hid_t f) {
+                set_number(f, "outcome", "failed_frame", v);
+              }).find("attribute failed_frame: expected a whole number"),
+              std::string::npos)
+        << v;
   }
 }
 
@@ -75,8 +85,14 @@ TEST(DamagedHdf5, SeveralTextsWhereOneIsExpected) {
   const hsize_t many = 7;
   const hid_t space = H5Screate_simple(1, &many, nullptr);
   const char* const words[7] = {"a", "b", "c", "d", "e", "f", "g"};
-  EXPECT_NE(said([&](hid_t f) { set_attribute(f, ".", "format", text, space, words); }).find("attribute format: expected one text"), std::string::npos);
-  EXPECT_NE(said([&](hid_t f) { set_attribute(f, "outcome", "status", text, space, words); }).find("attribute status: expected one text"), std::string::npos);
+  EXPECT_NE(said([&](hid_t f) {
+              set_attribute(f, ".", "format", text, space, words);
+            }).find("attribute format: expected one text"),
+            std::string::npos);
+  EXPECT_NE(said([&](hid_t f) {
+              set_attribute(f, "outcome", "status", text, space, words);
+            }).find("attribute status: expected one text"),
+            std::string::npos);
   H5Sclose(space);
   H5Tclose(text);
 }

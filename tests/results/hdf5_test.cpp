@@ -1,5 +1,3 @@
-#include "results/hdf5_file.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -7,6 +5,7 @@
 #include <random>
 
 #include "clothbench/error.hpp"
+#include "results/hdf5_file.hpp"
 #include "results/raw_file.hpp"
 #include "results/store.hpp"
 #include "sample_cell.hpp"
@@ -19,7 +18,8 @@ namespace fs = std::filesystem;
 class Hdf5 : public ::testing::Test {
  protected:
   void SetUp() override {
-    dir_ = fs::temp_directory_path() / ("clothbench-h5-" + std::to_string(getpid()) + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    dir_ = fs::temp_directory_path() / ("clothbench-h5-" + std::to_string(getpid()) +
+                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(dir_);
   }
   void TearDown() override { fs::remove_all(dir_); }
@@ -81,8 +81,8 @@ TEST_F(Hdf5, WhatAKilledRunLeftIsRemovedAndNothingElse) {
   CellWriter writer(dir_, r.header);
   writer.write_trial(r.trials[0]);
   const fs::path part = dir_ / (cell + ".part");
-  for (const fs::path& litter : {part / "trial-1.raw.tmp.77", dir_ / (cell + ".h5.tmp.77"), dir_ / (cell + ".xdmf.tmp.77"),
-                                 dir_ / "another__cell.h5.tmp.77"})
+  for (const fs::path& litter : {part / "trial-1.raw.tmp.77", dir_ / (cell + ".h5.tmp.77"),
+                                 dir_ / (cell + ".xdmf.tmp.77"), dir_ / "another__cell.h5.tmp.77"})
     std::ofstream(litter) << "half";
   remove_leftovers(dir_, cell);
   EXPECT_FALSE(fs::exists(part / "trial-1.raw.tmp.77"));
@@ -118,8 +118,13 @@ TEST_F(Hdf5, SameRunSameBytesAlsoThroughRawFiles) {
   }();
   fs::create_directories(copy);
   fs::copy(part, copy, fs::copy_options::recursive);
-  nlohmann::json outcome = {{"kind", "outcome"}, {"status", r.outcome.status}, {"class", r.outcome.klass}, {"failed_frame", r.outcome.failed_frame},
-                            {"message", r.outcome.message}, {"expect", r.outcome.expect}, {"summary", r.summary}};
+  nlohmann::json outcome = {{"kind", "outcome"},
+                            {"status", r.outcome.status},
+                            {"class", r.outcome.klass},
+                            {"failed_frame", r.outcome.failed_frame},
+                            {"message", r.outcome.message},
+                            {"expect", r.outcome.expect},
+                            {"summary", r.summary}};
   write_raw(copy / "outcome.raw", outcome, {});
   const auto imported = import_raw(dir_ / "phone");
   ASSERT_EQ(imported.size(), 1u);
@@ -148,7 +153,8 @@ TEST_F(Hdf5, LargeTrajectoriesAreWrittenQuickly) {
   std::vector<float> frame(3 * 128 * 128);
   for (int f = 0; f < 37; ++f) {
     r.accuracy.time_s.push_back(f / 72.0);
-    for (std::size_t k = 0; k < frame.size(); ++k) frame[k] = static_cast<float>(std::sin(0.001 * static_cast<double>(k) + 0.1 * f));
+    for (std::size_t k = 0; k < frame.size(); ++k)
+      frame[k] = static_cast<float>(std::sin(0.001 * static_cast<double>(k) + 0.1 * f));
     r.accuracy.position.insert(r.accuracy.position.end(), frame.begin(), frame.end());
   }
   write_hdf5(dir_ / "x.h5", r);

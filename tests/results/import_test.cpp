@@ -80,7 +80,8 @@ TEST_P(Import, GivesTheFileOfADirectRun) {
     FAIL() << e.what();
   }
   ASSERT_TRUE(r.outcome.status == "ok" || r.outcome.status == "unsupported") << r.outcome.message;
-  EXPECT_EQ(r.replay.empty(), scene.colliders.empty() || r.outcome.status == "unsupported") << "the moving hand is stored too";
+  EXPECT_EQ(r.replay.empty(), scene.colliders.empty() || r.outcome.status == "unsupported")
+      << "the moving hand is stored too";
   const fs::path direct = store(dir_ / "direct", r, Finish::Hdf5), device = store(dir_ / "device", r, Finish::Raw);
   EXPECT_EQ(direct.extension(), ".h5");
   EXPECT_EQ(device.extension(), ".part");
@@ -89,7 +90,8 @@ TEST_P(Import, GivesTheFileOfADirectRun) {
   ASSERT_EQ(imported.size(), 1u);
   ASSERT_FALSE(bytes(direct).empty());
   EXPECT_EQ(bytes(imported[0]), bytes(direct));
-  EXPECT_EQ(bytes(fs::path(imported[0]).replace_extension(".xdmf")), bytes(fs::path(direct).replace_extension(".xdmf")));
+  EXPECT_EQ(bytes(fs::path(imported[0]).replace_extension(".xdmf")),
+            bytes(fs::path(direct).replace_extension(".xdmf")));
   // Nothing is lost on the way through the raw files either: straight from memory comes the same file.
   write_hdf5(dir_ / "memory" / "x.h5", r);
   EXPECT_EQ(bytes(dir_ / "memory" / "x.h5"), bytes(direct));
@@ -127,7 +129,8 @@ TEST(ImportArguments, ATrailingSlashIsTheSameFolder) {
   fs::remove_all(dir);
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, Import, ::testing::ValuesIn(cases()), [](const auto& one) { return name_of(one.param); });
+INSTANTIATE_TEST_SUITE_P(Every, Import, ::testing::ValuesIn(cases()),
+                         [](const auto& one) { return name_of(one.param); });
 
 }  // namespace
 }  // namespace clothbench

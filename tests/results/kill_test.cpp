@@ -1,5 +1,5 @@
-// A process that writes trials is killed at 200 random moments: what it had finished is there and whole, and the run can be
-// completed to the same file as an undisturbed one.
+// A process that writes trials is killed at 200 random moments: what it had finished is there and whole, and the run
+// can be completed to the same file as an undisturbed one.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>

@@ -1,5 +1,3 @@
-#include "results/raw_file.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -10,6 +8,7 @@
 
 #include "clothbench/error.hpp"
 #include "results/json_number.hpp"
+#include "results/raw_file.hpp"
 #include "results/store.hpp"
 #include "sample_cell.hpp"
 
@@ -21,7 +20,8 @@ namespace fs = std::filesystem;
 class Raw : public ::testing::Test {
  protected:
   void SetUp() override {
-    dir_ = fs::temp_directory_path() / ("clothbench-raw-" + std::to_string(getpid()) + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    dir_ = fs::temp_directory_path() / ("clothbench-raw-" + std::to_string(getpid()) +
+                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(dir_);
   }
   void TearDown() override {
@@ -135,7 +135,8 @@ TEST_F(Raw, InfinityIsNotMissing) {
 }
 
 TEST_F(Raw, NumbersInJsonReadBackAndOldNullsAreMissing) {
-  for (const double v : {1.0 / 3, -0.0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()})
+  for (const double v :
+       {1.0 / 3, -0.0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()})
     EXPECT_EQ(number_from_json(nlohmann::json::parse(number_to_json(v).dump()), "v"), v);
   EXPECT_TRUE(number_to_json(kMissing).is_null());
   EXPECT_TRUE(std::isnan(number_from_json(nlohmann::json(), "v"))) << "as older versions wrote what is missing";

@@ -16,7 +16,8 @@ inline CellRecord sample_cell(int trials = 3, int frames = 4, std::uint32_t vert
   r.header.scenario_sha256 = "00ff";
   r.header.stages = {{"First", {"stretch", "shear"}, 3, "computed"}, {"Second", {}, 1, "at least"}};
   r.header.plan = {{"buffers", nlohmann::json::array()}};
-  r.header.environment = {{"gpu", "none"}, {"driver", "µ"}, {"gpu_is_software", true}, {"created", "2026-01-01T00:00:00Z"}};
+  r.header.environment = {
+      {"gpu", "none"}, {"driver", "µ"}, {"gpu_is_software", true}, {"created", "2026-01-01T00:00:00Z"}};
   r.header.vertices = vertices;
   r.header.triangles = {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4};
   r.header.load_s = 0.25;
@@ -41,7 +42,8 @@ inline CellRecord sample_cell(int trials = 3, int frames = 4, std::uint32_t vert
   r.accuracy.metrics = {{"stretch_max", "1", "greatest strain", {}}, {"speed_max", "m s-1", "greatest speed", {}, 3}};
   for (int f = 0; f <= frames; ++f) {
     r.accuracy.time_s.push_back(f / 72.0);
-    for (std::uint32_t k = 0; k < 3 * vertices; ++k) r.accuracy.position.push_back(static_cast<float>(f) + 0.01f * static_cast<float>(k));
+    for (std::uint32_t k = 0; k < 3 * vertices; ++k)
+      r.accuracy.position.push_back(static_cast<float>(f) + 0.01f * static_cast<float>(k));
     r.accuracy.metrics[0].values.push_back(f == 0 ? kMissing : 0.1 * f);
     r.accuracy.metrics[1].values.push_back(9.81 * f / 72);
   }
@@ -49,9 +51,11 @@ inline CellRecord sample_cell(int trials = 3, int frames = 4, std::uint32_t vert
               {"colliders/0", {{"shape", "capsules"}, {"normal", {0.0, 1.0, 0.1}}}, {}},
               {"colliders/1", {{"shape", "mesh"}}, {}}};
   StoredArray capsules{"capsules", "m", "ends and radius", {"frame", "capsule", "value"}, {2, 3, 7}, false, {}};
-  StoredArray triangles{"triangles", "1", "vertices of each triangle", {"triangle", "corner"}, {2, 3}, true, {0, 1, 2, 0, 2, 3}};
+  StoredArray triangles{"triangles", "1",  "vertices of each triangle", {"triangle", "corner"},
+                        {2, 3},      true, {0, 1, 2, 0, 2, 3}};
   for (int k = 0; k < 42; ++k) capsules.values.push_back(0.1 * k);
-  StoredArray corners{"position_m", "m", "vertices", {"vertex", "xyz"}, {4, 3}, false, {0, -1, 0, 1, -1, 0, 1, -1, 1, 0, -1, 1}};
+  StoredArray corners{
+      "position_m", "m", "vertices", {"vertex", "xyz"}, {4, 3}, false, {0, -1, 0, 1, -1, 0, 1, -1, 1, 0, -1, 1}};
   r.replay[1].arrays = {capsules, triangles};
   r.replay[2].arrays = {corners, triangles};
   r.outcome = {"diverged", "F1", 3, "a message with \"quotes\" and µ", "broken: stretch_max 2 > 1"};
@@ -69,9 +73,12 @@ bool same(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 inline bool same(const TimedTrial& a, const TimedTrial& b) {
-  return a.index == b.index && same(std::vector{a.pipelined_wall_s, a.start_unix_s, a.end_unix_s, a.jobs}, std::vector{b.pipelined_wall_s, b.start_unix_s, b.end_unix_s, b.jobs}) &&
+  return a.index == b.index &&
+         same(std::vector{a.pipelined_wall_s, a.start_unix_s, a.end_unix_s, a.jobs},
+              std::vector{b.pipelined_wall_s, b.start_unix_s, b.end_unix_s, b.jobs}) &&
          same(a.frame_wall_s, b.frame_wall_s) && same(a.frame_device_s, b.frame_device_s) &&
-         same(a.stage_device_s, b.stage_device_s) && same(a.stage_read_B, b.stage_read_B) && same(a.stage_write_B, b.stage_write_B);
+         same(a.stage_device_s, b.stage_device_s) && same(a.stage_read_B, b.stage_read_B) &&
+         same(a.stage_write_B, b.stage_write_B);
 }
 
 }  // namespace clothbench

@@ -1,5 +1,5 @@
-// Rows "x16" of the penetration study take 16 times the substeps that their solvers take by themselves. Those of `xpbd` depend on the
-// scene: tests/pbd-gpu/finer_test.cpp.
+// Rows "x16" of the penetration study take 16 times the substeps that their solvers take by themselves. Those of `xpbd`
+// depend on the scene: tests/pbd-gpu/finer_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,8 @@ std::vector<double> after_some_frames(const SolverEntry& entry, const nlohmann::
   const auto solver = entry.make(complete_settings(entry.info, settings), {});
   solver->load(scene);
   const double dt = scene.time.dt();
-  for (int f = 0; f < kFrames; ++f) EXPECT_EQ(solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}), StepStatus::Ok);
+  for (int f = 0; f < kFrames; ++f)
+    EXPECT_EQ(solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}), StepStatus::Ok);
   ClothState state;
   solver->read_state(state);
   return state.position;
@@ -33,9 +34,11 @@ TEST(FinerRows, TakeSixteenTimesTheSubsteps) {
       EXPECT_FALSE(item.timed) << item.scene.name;
       if (!seen.insert(k).second) continue;
       const auto& all = solvers();
-      const auto entry = std::find_if(all.begin(), all.end(), [&](const SolverEntry& e) { return e.info.name == s.solver && e.make; });
+      const auto entry =
+          std::find_if(all.begin(), all.end(), [&](const SolverEntry& e) { return e.info.name == s.solver && e.make; });
       if (entry == all.end()) continue;
-      const int substeps = s.settings.at("substeps").get<int>(), own = complete_settings(entry->info, nlohmann::json::object()).at("substeps").get<int>();
+      const int substeps = s.settings.at("substeps").get<int>(),
+                own = complete_settings(entry->info, nlohmann::json::object()).at("substeps").get<int>();
       ASSERT_EQ(substeps % kTimes, 0) << s.name();
       if (own > 0) {
         EXPECT_EQ(substeps, kTimes * own) << s.name();
@@ -43,7 +46,8 @@ TEST(FinerRows, TakeSixteenTimesTheSubsteps) {
       }
       // It chooses: what it chooses is told by the bits.
       const auto by_itself = after_some_frames(*entry, nlohmann::json::object(), item.scene);
-      EXPECT_EQ(by_itself, after_some_frames(*entry, {{"substeps", substeps / kTimes}}, item.scene)) << s.name() << ": its own rule gives another number now";
+      EXPECT_EQ(by_itself, after_some_frames(*entry, {{"substeps", substeps / kTimes}}, item.scene))
+          << s.name() << ": its own rule gives another number now";
       EXPECT_NE(by_itself, after_some_frames(*entry, {{"substeps", substeps / kTimes + 1}}, item.scene)) << s.name();
     }
   EXPECT_EQ(seen.size(), 3u);

@@ -1,12 +1,11 @@
 // Uneven frames, a hitch or a jitter of the scene's clock, reach the solver wherever a scene is run.
-#include "runner/frame_input.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "clothbench/record.hpp"
+#include "runner/frame_input.hpp"
 #include "runner/metamorphic.hpp"
 #include "runner/reference.hpp"
 #include "runner/threshold.hpp"
@@ -23,7 +22,9 @@ class Spy final : public ClothSolver {
   Spy(SolverInfo info, std::vector<FrameInput>& seen) : info_(std::move(info)), seen_(seen) {}
   const SolverInfo& info() const override { return info_; }
   DeviceInfo device() const override { return {}; }
-  void load(const Scene& s) override { state_ = {initial_positions(s), std::vector<double>(3 * s.cloth.vertex_count(), 0)}; }
+  void load(const Scene& s) override {
+    state_ = {initial_positions(s), std::vector<double>(3 * s.cloth.vertex_count(), 0)};
+  }
   void reset() override {}
   bool restart(const ClothState&) override { return true; }
   StepStatus step(const FrameInput& in) override {
@@ -44,7 +45,9 @@ SolverEntry spy(std::vector<FrameInput>& seen) {
   SolverEntry e;
   e.info.name = "spy";
   for (std::size_t i = 0; i < kFeatureCount; ++i) e.info.supports.add(static_cast<Feature>(i));
-  e.make = [info = e.info, &seen](const nlohmann::json&, const DeviceOptions&) { return std::make_unique<Spy>(info, seen); };
+  e.make = [info = e.info, &seen](const nlohmann::json&, const DeviceOptions&) {
+    return std::make_unique<Spy>(info, seen);
+  };
   return e;
 }
 

@@ -19,7 +19,8 @@ using namespace std::chrono_literals;
 /// The ballistic solver, which calls a function at every step.
 class Watched final : public ClothSolver {
  public:
-  Watched(std::unique_ptr<ClothSolver> inner, std::function<void()> at_step) : inner_(std::move(inner)), at_step_(std::move(at_step)) {}
+  Watched(std::unique_ptr<ClothSolver> inner, std::function<void()> at_step)
+      : inner_(std::move(inner)), at_step_(std::move(at_step)) {}
   const SolverInfo& info() const override { return inner_->info(); }
   DeviceInfo device() const override { return inner_->device(); }
   void load(const Scene& s) override { inner_->load(s); }

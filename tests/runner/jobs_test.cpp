@@ -25,7 +25,8 @@ class Jobs : public ::testing::Test {
 
   void process(int pid, const std::string& name, int parent, char state = 'S') {
     fs::create_directories(dir_ / std::to_string(pid));
-    std::ofstream(dir_ / std::to_string(pid) / "stat") << pid << " (" << name << ") " << state << " " << parent << " 1 1 0";
+    std::ofstream(dir_ / std::to_string(pid) / "stat")
+        << pid << " (" << name << ") " << state << " " << parent << " 1 1 0";
   }
 
   fs::path dir_;
@@ -98,8 +99,10 @@ TEST_F(Jobs, ARealOneIsSeenAndToldNumbersCount) {
   kill(child, SIGKILL);
   setenv("CLOTHBENCH_JOBS", "7", 1);
   EXPECT_EQ(jobs_now(), 7);
-  if (kept.empty()) unsetenv("CLOTHBENCH_JOBS");
-  else setenv("CLOTHBENCH_JOBS", kept.c_str(), 1);
+  if (kept.empty())
+    unsetenv("CLOTHBENCH_JOBS");
+  else
+    setenv("CLOTHBENCH_JOBS", kept.c_str(), 1);
 }
 
 }  // namespace

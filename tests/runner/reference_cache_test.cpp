@@ -49,7 +49,10 @@ TEST(ReferenceCache, FindsWhatIsOfTheSameKeyAlone) {
   const Scene s = pendulum();
   int computed = 0;
   const auto value = [&](const ReferenceRules& rules) {
-    return references({&s}, fs::path(folder.path()) / "cache", [&](const std::string&) { ++computed; }, rules).at(s.sha256).value;
+    return references(
+               {&s}, fs::path(folder.path()) / "cache", [&](const std::string&) { ++computed; }, rules)
+        .at(s.sha256)
+        .value;
   };
   const double right = value(kCoarse);
   EXPECT_EQ(value(kCoarse), right);

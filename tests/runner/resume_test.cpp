@@ -1,11 +1,12 @@
 // A folder is gone on with only if what it holds is of the same scene, settings and version of the solver.
+#include "runner/resume.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 
 #include "clothbench/error.hpp"
-#include "runner/resume.hpp"
 #include "runner/study_runner.hpp"
 #include "scenario/load.hpp"
 
@@ -17,7 +18,8 @@ namespace fs = std::filesystem;
 class Resume : public ::testing::Test {
  protected:
   void SetUp() override {
-    options_.out = fs::temp_directory_path() / ("clothbench-resume-" + std::to_string(getpid()) + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    options_.out = fs::temp_directory_path() / ("clothbench-resume-" + std::to_string(getpid()) +
+                                                ::testing::UnitTest::GetInstance()->current_test_info()->name());
     options_.resume = true;
     fs::create_directories(options_.out);
     entry_.info.settings = {{"substeps", "4", "of a test"}};
@@ -59,7 +61,8 @@ class Resume : public ::testing::Test {
     e.make = [make](const nlohmann::json&, const DeviceOptions& d) { return make(nlohmann::json::object(), d); };
     return e;
   }();
-  const Scene scene_ = load_scene("paper/gravity", {"cloth.grid=[4,4]"}), edited_ = load_scene("paper/gravity", {"cloth.grid=[4,5]"});
+  const Scene scene_ = load_scene("paper/gravity", {"cloth.grid=[4,4]"}),
+              edited_ = load_scene("paper/gravity", {"cloth.grid=[4,5]"});
 };
 
 TEST_F(Resume, TheSameIsGoneOnWith) {

@@ -30,7 +30,9 @@ class Doomed final : public ClothSolver {
     scene_ = &s;
     reset();
   }
-  void reset() override { state_ = {initial_positions(*scene_), std::vector<double>(3 * scene_->cloth.vertex_count(), 0)}; }
+  void reset() override {
+    state_ = {initial_positions(*scene_), std::vector<double>(3 * scene_->cloth.vertex_count(), 0)};
+  }
   StepStatus step(const FrameInput&) override { return fate_(*scene_, state_); }
   void read_state(ClothState& out) const override { out = state_; }
   FrameCost last_cost() const override { return {kMissing, {kMissing}, {kMissing}, {kMissing}}; }
@@ -48,7 +50,9 @@ SolverEntry doomed(const Fate& fate) {
   e.info.name = "doomed";
   e.info.precision = "float64";
   for (std::size_t i = 0; i < kFeatureCount; ++i) e.info.supports.add(static_cast<Feature>(i));
-  e.make = [info = e.info, fate](const nlohmann::json&, const DeviceOptions&) { return std::make_unique<Doomed>(info, fate); };
+  e.make = [info = e.info, fate](const nlohmann::json&, const DeviceOptions&) {
+    return std::make_unique<Doomed>(info, fate);
+  };
   e.free_fall_m = [](const Scene&, const nlohmann::json&, int) { return 0.0; };
   return e;
 }
@@ -71,17 +75,19 @@ TEST(Metamorphic, ANanAtOneVertexIsNotLostAmongTheOthers) {
 
 TEST(Threshold, ARunThatFailsIsNoSlip) {
   const Scene s = load_scene("validation/incline-stick", {"time.duration_s=0.1"});
-  for (const Fate& fate : {Fate([](const Scene&, ClothState&) { return StepStatus::Diverged; }), Fate([](const Scene&, ClothState& state) {
-                             state.position[0] = kNaN;
-                             return StepStatus::Ok;
-                           })}) {
+  for (const Fate& fate :
+       {Fate([](const Scene&, ClothState&) { return StepStatus::Diverged; }), Fate([](const Scene&, ClothState& state) {
+          state.position[0] = kNaN;
+          return StepStatus::Ok;
+        })}) {
     const FoundThreshold t = find_threshold(s, doomed(fate), kNone, {});
     EXPECT_TRUE(t.failed);
     EXPECT_FALSE(t.slips_at_most || t.holds_at_least);
     EXPECT_TRUE(std::isnan(t.found) && std::isnan(t.error));
     EXPECT_EQ(t.runs, 1) << "one failure is enough";
   }
-  const FoundThreshold stands = find_threshold(s, doomed([](const Scene&, ClothState&) { return StepStatus::Ok; }), kNone, {});
+  const FoundThreshold stands =
+      find_threshold(s, doomed([](const Scene&, ClothState&) { return StepStatus::Ok; }), kNone, {});
   EXPECT_TRUE(stands.holds_at_least && !stands.failed);
 }
 

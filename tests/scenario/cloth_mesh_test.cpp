@@ -1,11 +1,12 @@
 // Cloths of triangles: what is read of an OBJ file, what is refused, and the scene that comes of it.
+#include "scenario/cloth_mesh.hpp"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "clothbench/error.hpp"
-#include "scenario/cloth_mesh.hpp"
 #include "scenario/load.hpp"
 #include "scratch_folder.hpp"
 
@@ -17,8 +18,13 @@ using nlohmann::json;
 constexpr char kSquare[] = "# a comment\no square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1 4/1\n";
 
 json scenario(const std::string& file) {
-  return {{"name", "square"}, {"why", "a mesh for the tests"},
-          {"cloth", {{"mesh", {{"file", file}}}, {"areal_density_kg_per_m2", 0.3}, {"sides", "single"}, {"pose", {{"center_m", {0, 2, 0}}}}}},
+  return {{"name", "square"},
+          {"why", "a mesh for the tests"},
+          {"cloth",
+           {{"mesh", {{"file", file}}},
+            {"areal_density_kg_per_m2", 0.3},
+            {"sides", "single"},
+            {"pose", {{"center_m", {0, 2, 0}}}}}},
           {"material", {{"membrane_stiffness_N_per_m", 1000}}},
           {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}}};
 }
@@ -39,14 +45,16 @@ TEST(ClothMesh, IsReadFromAnObjFile) {
   EXPECT_EQ(m.vertices.size(), 4u);
   ASSERT_EQ(m.triangles.size(), 2u) << "a quadrilateral is cut in two";
   EXPECT_EQ(m.edges.size(), 5u);
-  EXPECT_DOUBLE_EQ(std::accumulate(m.areas_m2.begin(), m.areas_m2.end(), 0.0), 3 * 1.0) << "each triangle at three edges";
+  EXPECT_DOUBLE_EQ(std::accumulate(m.areas_m2.begin(), m.areas_m2.end(), 0.0), 3 * 1.0)
+      << "each triangle at three edges";
   EXPECT_EQ(nearest_vertex(m, {0.9, 0.8, 0}), 2u);
   EXPECT_EQ(longest_sides(m), (std::pair{1.0, 1.0}));
 }
 
 TEST(ClothMesh, HasNoUseForSkinWeightsWhateverEndsALine) {
   for (const char* weights : {"vw 0 -1 0.5\n", "vt 0 0\rvw 0 -1 0.5\n", "vt 0 0\r\nvw 0 1e17 1\r\n"})
-    EXPECT_EQ(parse_obj(kSquare + std::string(weights), "square.obj").vertices.size(), 4u) << "the OBJ library would refuse, or worse";
+    EXPECT_EQ(parse_obj(kSquare + std::string(weights), "square.obj").vertices.size(), 4u)
+        << "the OBJ library would refuse, or worse";
 }
 
 TEST(ClothMesh, MakesAScene) {
@@ -72,7 +80,8 @@ TEST(ClothMesh, MakesAScene) {
   json again = json::parse(s.json);
   EXPECT_EQ(again["cloth"]["mesh"]["sha256"].get<std::string>().size(), 64u);
   again["cloth"]["mesh"]["sha256"] = std::string(64, '0');
-  EXPECT_NE(refusal([&] { load_scene(folder.file("again.json", again.dump())); }).find("/cloth/mesh/sha256"), std::string::npos);
+  EXPECT_NE(refusal([&] { load_scene(folder.file("again.json", again.dump())); }).find("/cloth/mesh/sha256"),
+            std::string::npos);
 }
 
 struct Bad {
@@ -87,7 +96,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\n", "has no area"},
                       Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n", "vertex 3 is in no triangle"},
                       Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n", "triangles 0 and 1 have the same vertices"},
-                      Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n", "more than two triangles"},
+                      Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n",
+                          "more than two triangles"},
                       Bad{"v 1e400 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mesh.obj"}));
 
 TEST_P(BadObj, IsRefusedNamingFileAndWhat) {
@@ -104,19 +114,26 @@ TEST(ClothMesh, RefusesWhatIsOfGridsAlone) {
     j[json::json_pointer(pointer)] = value;
     return refusal([&] { load_scene(folder.file("square.json", j.dump())); });
   };
-  for (const auto& [pointer, value] : std::vector<std::pair<const char*, json>>{
-           {"/cloth/grid", {2, 2}}, {"/cloth/size_m", {1, 1}}, {"/cloth/start", {{"shape", "sphere"}}}, {"/cloth/pose/span_m", 0.5},
-           {"/material/bending_rigidity_N_m", 1e-5}, {"/pins", {{{"edge", "u0"}}}}, {"/pins", {{{"corners", {"u0v0"}}}}},
-           {"/cloth/mesh/file", "none.obj"}})
+  for (const auto& [pointer, value] :
+       std::vector<std::pair<const char*, json>>{{"/cloth/grid", {2, 2}},
+                                                 {"/cloth/size_m", {1, 1}},
+                                                 {"/cloth/start", {{"shape", "sphere"}}},
+                                                 {"/cloth/pose/span_m", 0.5},
+                                                 {"/material/bending_rigidity_N_m", 1e-5},
+                                                 {"/pins", {{{"edge", "u0"}}}},
+                                                 {"/pins", {{{"corners", {"u0v0"}}}}},
+                                                 {"/cloth/mesh/file", "none.obj"}})
     EXPECT_NE(with(pointer, value).find(pointer), std::string::npos) << pointer << ": " << with(pointer, value);
   json neither = scenario("square.obj");
   neither["cloth"].erase("mesh");
-  EXPECT_NE(refusal([&] { load_scene(folder.file("neither.json", neither.dump())); }).find("\"grid\" is missing"), std::string::npos);
+  EXPECT_NE(refusal([&] { load_scene(folder.file("neither.json", neither.dump())); }).find("\"grid\" is missing"),
+            std::string::npos);
   json pinned = neither;
   pinned["cloth"]["grid"] = {3, 3};
   pinned["cloth"]["size_m"] = {1, 1};
   pinned["pins"] = {{{"nearest_m", {{0, 0, 0}}}}};
-  EXPECT_NE(refusal([&] { load_scene(folder.file("pinned.json", pinned.dump())); }).find("/pins/0/nearest_m"), std::string::npos);
+  EXPECT_NE(refusal([&] { load_scene(folder.file("pinned.json", pinned.dump())); }).find("/pins/0/nearest_m"),
+            std::string::npos);
 }
 
 }  // namespace

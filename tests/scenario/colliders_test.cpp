@@ -19,8 +19,10 @@ class Colliders : public ::testing::Test {
     ::setenv("CLOTHBENCH_ASSETS", "procedural", 1);
   }
   void TearDown() override {
-    if (before_.empty()) ::unsetenv("CLOTHBENCH_ASSETS");
-    else ::setenv("CLOTHBENCH_ASSETS", before_.c_str(), 1);
+    if (before_.empty())
+      ::unsetenv("CLOTHBENCH_ASSETS");
+    else
+      ::setenv("CLOTHBENCH_ASSETS", before_.c_str(), 1);
   }
 
  private:
@@ -94,7 +96,9 @@ TEST_F(Colliders, HandsMoveFrameByFrame) {
   ASSERT_EQ(s.motion.size(), static_cast<std::size_t>(s.time.frames()) + 1);
   EXPECT_EQ(s.motion_after(-1), &s.motion.front());
   EXPECT_EQ(s.motion_after(100000), &s.motion.back());
-  const auto x = [&](double t) { return s.motion[static_cast<std::size_t>(std::lround(t * 72))].colliders[0].capsules[0].a_m; };
+  const auto x = [&](double t) {
+    return s.motion[static_cast<std::size_t>(std::lround(t * 72))].colliders[0].capsules[0].a_m;
+  };
   EXPECT_NEAR((x(1.5)[0] - x(1.75)[0]) / 0.25, 0.8, 1e-9);
   EXPECT_NEAR(x(0)[2] - x(1.25)[2], 0.15, 1e-9);
   const Scene push = load_scene("paper/hand-push");
@@ -131,7 +135,6 @@ TEST_F(Colliders, ItemsOfListsCanBeOverridden) {
   for (const char* bad : {"colliders.1.radius_m=0.2", "colliders.x=1", "colliders.0.radius_m=-1", "colliders.-1={}"})
     EXPECT_THROW(load_scene("contact/sphere", {bad}), Error) << bad;
 }
-
 
 }  // namespace
 }  // namespace clothbench

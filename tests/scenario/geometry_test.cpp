@@ -45,7 +45,8 @@ TEST(Geometry, EdgesAreCompleteAndAtRest) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
     for (const Edge& e : all) {
       EXPECT_TRUE(seen.insert(std::minmax(e.a, e.b)).second) << "an edge stands twice";
-      const double l = std::hypot(x[3 * e.a] - x[3 * e.b], x[3 * e.a + 1] - x[3 * e.b + 1], x[3 * e.a + 2] - x[3 * e.b + 2]);
+      const double l =
+          std::hypot(x[3 * e.a] - x[3 * e.b], x[3 * e.a + 1] - x[3 * e.b + 1], x[3 * e.a + 2] - x[3 * e.b + 2]);
       EXPECT_NEAR(l, e.rest_m, 1e-14);
     }
   }

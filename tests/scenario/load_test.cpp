@@ -1,3 +1,5 @@
+#include "scenario/load.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -5,7 +7,6 @@
 #include <fstream>
 
 #include "scenario/json_text.hpp"
-#include "scenario/load.hpp"
 #include "scenario/study.hpp"
 
 namespace clothbench {
@@ -47,15 +48,22 @@ TEST(Load, CompletesDefaults) {
 }
 
 TEST(Load, NeedsFollowTheScene) {
-  EXPECT_TRUE(scene_from_json(parse_json(changed("1000}", "1000,\"bending_rigidity_N_m\":1e-5}"), "t"), "t").needs.has(Feature::Bend));
-  EXPECT_TRUE(scene_from_json(parse_json(changed("1000}", "1000,\"damping_per_s\":0.1}"), "t"), "t").needs.has(Feature::Damping));
-  EXPECT_TRUE(scene_from_json(parse_json(changed("\"single\"", "\"double-duplicated\""), "t"), "t").needs.has(Feature::DuplicatedLayer));
-  EXPECT_FALSE(scene_from_json(parse_json(changed("\"single\"", "\"double\""), "t"), "t").needs.has(Feature::DoubleSided))
+  EXPECT_TRUE(scene_from_json(parse_json(changed("1000}", "1000,\"bending_rigidity_N_m\":1e-5}"), "t"), "t")
+                  .needs.has(Feature::Bend));
+  EXPECT_TRUE(scene_from_json(parse_json(changed("1000}", "1000,\"damping_per_s\":0.1}"), "t"), "t")
+                  .needs.has(Feature::Damping));
+  EXPECT_TRUE(scene_from_json(parse_json(changed("\"single\"", "\"double-duplicated\""), "t"), "t")
+                  .needs.has(Feature::DuplicatedLayer));
+  EXPECT_FALSE(
+      scene_from_json(parse_json(changed("\"single\"", "\"double\""), "t"), "t").needs.has(Feature::DoubleSided))
       << "with nothing to touch, two-sided contact is nothing";
 }
 
 TEST(Load, PinsBecomeVertices) {
-  const Scene s = scene_from_json(parse_json(changed("\"time\"", R"("pins":[{"corners":["u0v0","u1v1"]},{"edge":"v0"},{"vertices":[9]}],"time")"), "t"), "t");
+  const Scene s = scene_from_json(
+      parse_json(changed("\"time\"", R"("pins":[{"corners":["u0v0","u1v1"]},{"edge":"v0"},{"vertices":[9]}],"time")"),
+                 "t"),
+      "t");
   EXPECT_EQ(s.pins.vertices, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7, 9, 47}));
 }
 
@@ -63,12 +71,15 @@ TEST(Load, OverridesAreChecked) {
   const auto load = [](const std::string& set) { return scene_from_json(parse_json(kGood, "t"), "t", {set}); };
   EXPECT_EQ(load("cloth.grid=[64,32]").cloth.columns, 64);
   EXPECT_EQ(load("cloth.sides=double").cloth.sides, Sides::Double);
-  for (const char* bad : {"cloth.grid", "=1", "cloth.gird=[2,2]", "cloth.grid=[1,1]", "name.x=1", "cloth.size_m=[NaN,1]"})
+  for (const char* bad :
+       {"cloth.grid", "=1", "cloth.gird=[2,2]", "cloth.grid=[1,1]", "name.x=1", "cloth.size_m=[NaN,1]"})
     EXPECT_THROW(load(bad), Error) << bad;
 }
 
 TEST(Load, SelfCollisionIsAsThickAsItsTrianglesAreHighAtMost) {
-  const auto load = [](const std::string& set) { return scene_from_json(parse_json(kGood, "t"), "t", {"cloth.grid=[11,21]", "cloth.size_m=[0.4,0.6]", set}); };
+  const auto load = [](const std::string& set) {
+    return scene_from_json(parse_json(kGood, "t"), "t", {"cloth.grid=[11,21]", "cloth.size_m=[0.4,0.6]", set});
+  };
   const Scene s = load("cloth.self_collision={\"thickness_m\":0.02}");
   EXPECT_EQ(s.cloth.self_collision.thickness_m, 0.02);
   EXPECT_EQ(s.cloth.self_collision.friction, 0);
@@ -82,9 +93,11 @@ TEST(Load, SelfCollisionIsAsThickAsItsTrianglesAreHighAtMost) {
     load("cloth.self_collision={\"thickness_m\":0.0241}");
     FAIL() << "it would touch itself where it lies flat";
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("/cloth/self_collision/thickness_m: expected at most"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("/cloth/self_collision/thickness_m: expected at most"), std::string::npos)
+        << e.what();
   }
-  for (const char* bad : {"{\"thickness_m\":0}", "{\"thickness_m\":-1}", "{}", "true", "{\"thickness_m\":0.01,\"width\":1}"})
+  for (const char* bad :
+       {"{\"thickness_m\":0}", "{\"thickness_m\":-1}", "{}", "true", "{\"thickness_m\":0.01,\"width\":1}"})
     EXPECT_THROW(load(std::string("cloth.self_collision=") + bad), Error) << bad;
 }
 
@@ -102,50 +115,68 @@ TEST_P(BadScene, OneMessageWithPlace) {
   EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 0) << message;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BadScene, ::testing::Values(
-    Bad{"unknown key", "\"grid\"", "\"gird\"", "/cloth/gird", "grid"},
-    Bad{"unknown key deep", "\"frame_rate_hz\"", "\"frame_rate\"", "/time/frame_rate", "frame_rate_hz"},
-    Bad{"wrong unit", "\"size_m\"", "\"size_cm\"", "/cloth/size_cm", "size_m"},
-    Bad{"NaN", "1000", "NaN", "line 2", "not valid JSON"},
-    Bad{"Infinity", "1000", "Infinity", "line 2", "not valid JSON"},
-    Bad{"beyond double", "1000", "1e999", "line 2", "range"},
-    Bad{"negative size", "[1,0.5]", "[-1,0.5]", "/cloth/size_m/0", "> 0"},
-    Bad{"zero size", "[1,0.5]", "[1,0]", "/cloth/size_m/1", "> 0"},
-    Bad{"1x1", "[8,6]", "[1,1]", "/cloth/grid/0", ">= 2"},
-    Bad{"a million squared", "[8,6]", "[1000000,1000000]", "/cloth/grid/0", "<= 4096"},
-    Bad{"too many vertices", "[8,6]", "[4096,4096]", "/cloth/grid", "vertices"},
-    Bad{"half a vertex", "[8,6]", "[8.5,6]", "/cloth/grid/0", "integer"},
-    Bad{"three numbers", "[8,6]", "[8,6,4]", "/cloth/grid", "2 items"},
-    Bad{"wrong type", "0.2", "\"0.2\"", "/cloth/areal_density_kg_per_m2", "number"},
-    Bad{"null", "0.2", "null", "/cloth/areal_density_kg_per_m2", "number"},
-    Bad{"negative density", "0.2", "-0.2", "/cloth/areal_density_kg_per_m2", "> 0"},
-    Bad{"unknown word", "\"single\"", "\"both\"", "/cloth/sides", "double-duplicated"},
-    Bad{"missing key", "\"sides\":\"single\"", "\"pose\":{}", "/cloth", "sides"},
-    Bad{"not extensible", "1000", "\"rigid\"", "/material/membrane_stiffness_N_per_m", "inextensible"},
-    Bad{"zero stiffness", "1000", "0", "/material/membrane_stiffness_N_per_m", "> 0"},
-    Bad{"negative bending", "1000}", "1000,\"bending_rigidity_N_m\":-1}", "/material/bending_rigidity_N_m", ">= 0"},
-    Bad{"key twice", "\"why\"", "\"name\":\"y\",\"why\"", "/name", "twice"},
-    Bad{"pin out of range", "\"time\"", "\"pins\":[{\"vertices\":[0,48]}],\"time\"", "/pins/0/vertices/1", "48"},
-    Bad{"pin of two kinds", "\"time\"", "\"pins\":[{\"edge\":\"v0\",\"vertices\":[1]}],\"time\"", "/pins/0", "object"},
-    Bad{"axis not of length 1", "\"sides\":\"single\"", "\"sides\":\"single\",\"pose\":{\"axis_u\":[2,0,0]}", "/cloth/pose/axis_u", "length 1"},
-    Bad{"axes not at right angles", "\"sides\":\"single\"", "\"sides\":\"single\",\"pose\":{\"axis_u\":[0,0,1]}", "/cloth/pose/axis_v", "right angles"},
-    Bad{"collider without type", "\"time\"", "\"colliders\":[{}],\"time\"", "/colliders/0", "\"type\" is missing"},
-    Bad{"collider of unknown type", "\"time\"", "\"colliders\":[{\"type\":\"cone\"}],\"time\"", "/colliders/0/type", "one of"},
-    Bad{"sphere without radius", "\"time\"", "\"colliders\":[{\"type\":\"sphere\",\"center_m\":[0,0,0]}],\"time\"", "/colliders/0", "\"radius_m\" is missing"},
-    Bad{"key of another type", "\"time\"", "\"colliders\":[{\"type\":\"sphere\",\"center_m\":[0,0,0],\"radius_m\":1,\"normal\":[0,1,0]}],\"time\"", "/colliders/0/normal", "unknown key"},
-    Bad{"crooked normal", "\"time\"", "\"colliders\":[{\"type\":\"plane\",\"point_m\":[0,0,0],\"normal\":[0,1,1]}],\"time\"", "/colliders/0/normal", "length 1"},
-    Bad{"no such track", "\"time\"", "\"colliders\":[{\"type\":\"hand_mesh\",\"track\":\"nowhere.json\"}],\"time\"", "/colliders/0/track", "no such file"},
-    Bad{"mesh without that vertex", "\"time\"", "\"colliders\":[{\"type\":\"mesh\",\"positions_m\":[[0,0,0],[1,0,0],[0,0,1]],\"triangles\":[[0,1,3]]}],\"time\"", "/colliders/0/triangles/0/2", "vertex 3 of 3"},
-    Bad{"over no table", "\"cloth\":{", "\"cloth\":{\"pose\":{\"over_table\":{\"at\":\"center\",\"drop_m\":0.3}},", "/cloth/pose/over_table/collider", "with a table"},
-    Bad{"too long", "\"duration_s\":1", "\"duration_s\":1e9", "/time/duration_s", "86400"},
-    Bad{"no frame", "\"duration_s\":1", "\"duration_s\":1e-9", "/time/duration_s", "frame"},
-    Bad{"assumed points nowhere", "\"time\"", "\"assumed\":[\"/cloth/colour\"],\"time\"", "/assumed/0", "/cloth/colour"},
-    Bad{"empty name", "\"x\"", "\"\"", "/name", "string"},
-    Bad{"trailing comma", "\"duration_s\":1", "\"duration_s\":1,", "line 3", "not valid JSON"}));
+INSTANTIATE_TEST_SUITE_P(
+    All, BadScene,
+    ::testing::Values(
+        Bad{"unknown key", "\"grid\"", "\"gird\"", "/cloth/gird", "grid"},
+        Bad{"unknown key deep", "\"frame_rate_hz\"", "\"frame_rate\"", "/time/frame_rate", "frame_rate_hz"},
+        Bad{"wrong unit", "\"size_m\"", "\"size_cm\"", "/cloth/size_cm", "size_m"},
+        Bad{"NaN", "1000", "NaN", "line 2", "not valid JSON"},
+        Bad{"Infinity", "1000", "Infinity", "line 2", "not valid JSON"},
+        Bad{"beyond double", "1000", "1e999", "line 2", "range"},
+        Bad{"negative size", "[1,0.5]", "[-1,0.5]", "/cloth/size_m/0", "> 0"},
+        Bad{"zero size", "[1,0.5]", "[1,0]", "/cloth/size_m/1", "> 0"},
+        Bad{"1x1", "[8,6]", "[1,1]", "/cloth/grid/0", ">= 2"},
+        Bad{"a million squared", "[8,6]", "[1000000,1000000]", "/cloth/grid/0", "<= 4096"},
+        Bad{"too many vertices", "[8,6]", "[4096,4096]", "/cloth/grid", "vertices"},
+        Bad{"half a vertex", "[8,6]", "[8.5,6]", "/cloth/grid/0", "integer"},
+        Bad{"three numbers", "[8,6]", "[8,6,4]", "/cloth/grid", "2 items"},
+        Bad{"wrong type", "0.2", "\"0.2\"", "/cloth/areal_density_kg_per_m2", "number"},
+        Bad{"null", "0.2", "null", "/cloth/areal_density_kg_per_m2", "number"},
+        Bad{"negative density", "0.2", "-0.2", "/cloth/areal_density_kg_per_m2", "> 0"},
+        Bad{"unknown word", "\"single\"", "\"both\"", "/cloth/sides", "double-duplicated"},
+        Bad{"missing key", "\"sides\":\"single\"", "\"pose\":{}", "/cloth", "sides"},
+        Bad{"not extensible", "1000", "\"rigid\"", "/material/membrane_stiffness_N_per_m", "inextensible"},
+        Bad{"zero stiffness", "1000", "0", "/material/membrane_stiffness_N_per_m", "> 0"},
+        Bad{"negative bending", "1000}", "1000,\"bending_rigidity_N_m\":-1}", "/material/bending_rigidity_N_m", ">= 0"},
+        Bad{"key twice", "\"why\"", "\"name\":\"y\",\"why\"", "/name", "twice"},
+        Bad{"pin out of range", "\"time\"", "\"pins\":[{\"vertices\":[0,48]}],\"time\"", "/pins/0/vertices/1", "48"},
+        Bad{"pin of two kinds", "\"time\"", "\"pins\":[{\"edge\":\"v0\",\"vertices\":[1]}],\"time\"", "/pins/0",
+            "object"},
+        Bad{"axis not of length 1", "\"sides\":\"single\"", "\"sides\":\"single\",\"pose\":{\"axis_u\":[2,0,0]}",
+            "/cloth/pose/axis_u", "length 1"},
+        Bad{"axes not at right angles", "\"sides\":\"single\"", "\"sides\":\"single\",\"pose\":{\"axis_u\":[0,0,1]}",
+            "/cloth/pose/axis_v", "right angles"},
+        Bad{"collider without type", "\"time\"", "\"colliders\":[{}],\"time\"", "/colliders/0", "\"type\" is missing"},
+        Bad{"collider of unknown type", "\"time\"", "\"colliders\":[{\"type\":\"cone\"}],\"time\"", "/colliders/0/type",
+            "one of"},
+        Bad{"sphere without radius", "\"time\"", "\"colliders\":[{\"type\":\"sphere\",\"center_m\":[0,0,0]}],\"time\"",
+            "/colliders/0", "\"radius_m\" is missing"},
+        Bad{"key of another type", "\"time\"",
+            "\"colliders\":[{\"type\":\"sphere\",\"center_m\":[0,0,0],\"radius_m\":1,\"normal\":[0,1,0]}],\"time\"",
+            "/colliders/0/normal", "unknown key"},
+        Bad{"crooked normal", "\"time\"",
+            "\"colliders\":[{\"type\":\"plane\",\"point_m\":[0,0,0],\"normal\":[0,1,1]}],\"time\"",
+            "/colliders/0/normal", "length 1"},
+        Bad{"no such track", "\"time\"", "\"colliders\":[{\"type\":\"hand_mesh\",\"track\":\"nowhere.json\"}],\"time\"",
+            "/colliders/0/track", "no such file"},
+        Bad{"mesh without that vertex", "\"time\"",
+            "\"colliders\":[{\"type\":\"mesh\",\"positions_m\":[[0,0,0],[1,0,0],[0,0,1]],\"triangles\":[[0,1,3]]}],"
+            "\"time\"",
+            "/colliders/0/triangles/0/2", "vertex 3 of 3"},
+        Bad{"over no table", "\"cloth\":{", "\"cloth\":{\"pose\":{\"over_table\":{\"at\":\"center\",\"drop_m\":0.3}},",
+            "/cloth/pose/over_table/collider", "with a table"},
+        Bad{"too long", "\"duration_s\":1", "\"duration_s\":1e9", "/time/duration_s", "86400"},
+        Bad{"no frame", "\"duration_s\":1", "\"duration_s\":1e-9", "/time/duration_s", "frame"},
+        Bad{"assumed points nowhere", "\"time\"", "\"assumed\":[\"/cloth/colour\"],\"time\"", "/assumed/0",
+            "/cloth/colour"},
+        Bad{"empty name", "\"x\"", "\"\"", "/name", "string"},
+        Bad{"trailing comma", "\"duration_s\":1", "\"duration_s\":1,", "line 3", "not valid JSON"}));
 
 TEST(Load, TextThatIsNoJson) {
-  for (const std::string& text : {std::string(""), std::string("hello"), std::string("{"), std::string("\x00\xff\xfe", 3), std::string("[1,2"),
-                                  std::string(kGood).substr(0, 100), std::string(100000, '['), std::string("{\"name\":\"\xc3\x28\"}")}) {
+  for (const std::string& text :
+       {std::string(""), std::string("hello"), std::string("{"), std::string("\x00\xff\xfe", 3), std::string("[1,2"),
+        std::string(kGood).substr(0, 100), std::string(100000, '['), std::string("{\"name\":\"\xc3\x28\"}")}) {
     const std::string message = message_of(text);
     EXPECT_NE(message.find("test.json"), std::string::npos) << message;
   }
@@ -170,7 +201,9 @@ TEST(Load, EveryShippedFileLoads) {
   int scenes = 0, studies = 0;
   for (const auto& file : fs::recursive_directory_iterator(CLOTHBENCH_SOURCE_DIR "/scenarios")) {
     const std::string path = file.path().string();
-    if (file.path().extension() != ".json" || path.find("/schema/") != std::string::npos || path.find("/assets/") != std::string::npos) continue;
+    if (file.path().extension() != ".json" || path.find("/schema/") != std::string::npos ||
+        path.find("/assets/") != std::string::npos)
+      continue;
     if (is_study(path)) {
       EXPECT_NO_THROW(load_study(path)) << path;
       ++studies;

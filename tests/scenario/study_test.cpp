@@ -120,7 +120,8 @@ TEST(Study, AnAxisMayChangeOtherKeysAlong) {
   const Study s = study_of(with(R"({"time.duration_s":[0.25,0.5]})"));
   EXPECT_EQ(s.scenes[0].scene.time.duration_s, 0.25);
   EXPECT_EQ(s.scenes[1].scene.time.duration_s, 0.5);
-  EXPECT_NE(message_of(with(R"({"time.duration_s":[0.25]})")).find("/scenes/0/axes/0/with/time.duration_s: expected one value each of the axis, 2; found 1"),
+  EXPECT_NE(message_of(with(R"({"time.duration_s":[0.25]})"))
+                .find("/scenes/0/axes/0/with/time.duration_s: expected one value each of the axis, 2; found 1"),
             std::string::npos);
 }
 
@@ -137,7 +138,8 @@ TEST(Study, SceneFilesMayBeLeftUntimed) {
 TEST(Study, PenetrationSweepsSpeedsInFullAlone) {
   const auto swept = [](StudyLength length) {
     int n = 0;
-    for (const Study::Item& item : load_study("penetration", {{}, length, Assets::MayBeProcedural}).scenes) n += !item.timed && !item.solvers.empty();
+    for (const Study::Item& item : load_study("penetration", {{}, length, Assets::MayBeProcedural}).scenes)
+      n += !item.timed && !item.solvers.empty();
     return n;
   };
   EXPECT_EQ(swept(StudyLength::Quick), 0);

@@ -207,7 +207,8 @@ TEST_F(StabilityStudy, AnAnswerAfterATornLineIsKept) {
   EXPECT_EQ(maps(), whole);
   const std::vector<json> lines = lines_of(probes);
   EXPECT_EQ(lines.size(), count);
-  for (const json& line : lines) EXPECT_TRUE(line.is_object() && line.contains("answer")) << "the torn line swallowed the next one";
+  for (const json& line : lines)
+    EXPECT_TRUE(line.is_object() && line.contains("answer")) << "the torn line swallowed the next one";
   const auto size = fs::file_size(probes);
   run_stability_maps(study, options(true));
   EXPECT_EQ(fs::file_size(probes), size) << "nothing is left to run";
@@ -235,7 +236,8 @@ TEST_F(StabilityStudy, AnotherSceneOrMapIsNotResumed) {
   scene["gravity_m_per_s2"] = {0, -2, 0};
   write("thrown.json", scene);
   const Study edited = load_study((dir_ / "maps.json").string());
-  const std::string before = study.scenes.at(0).scene.sha256.substr(0, 12), now = edited.scenes.at(0).scene.sha256.substr(0, 12);
+  const std::string before = study.scenes.at(0).scene.sha256.substr(0, 12),
+                    now = edited.scenes.at(0).scene.sha256.substr(0, 12);
   ASSERT_NE(before, now);
   const std::string cells = refusal([&] { run_stability_cells(edited, options(true)); });
   const std::string probes = refusal([&] { run_stability_maps(edited, options(true)); });
@@ -253,7 +255,10 @@ TEST_F(StabilityStudy, AnotherSceneOrMapIsNotResumed) {
   require_same_study(load_study((dir_ / "maps.json").string()), options(true));
   study_json_["maps"][0]["y"]["set"] = {{"cloth.areal_density_kg_per_m2", "0.2*y"}};
   write("maps.json", study_json_);
-  EXPECT_NE(refusal([&] { run_stability_maps(load_study((dir_ / "maps.json").string()), options(true)); }).find("definition of the map"), std::string::npos);
+  EXPECT_NE(refusal([&] {
+              run_stability_maps(load_study((dir_ / "maps.json").string()), options(true));
+            }).find("definition of the map"),
+            std::string::npos);
 }
 
 TEST_F(StabilityStudy, ResumesFromItsProbesEvenAfterATornLine) {
@@ -282,7 +287,8 @@ TEST(StabilityCases, AreAllThereAndLoad) {
       EXPECT_EQ(item.scene.stability.name, "S" + number) << item.scene.name;
       // What a process of its own is handed is the scene that --resume looks for.
       if (length == StudyLength::Quick) {
-        EXPECT_EQ(scene_from_json(json::parse(item.scene.json), item.scene.source).sha256, item.scene.sha256) << item.scene.name;
+        EXPECT_EQ(scene_from_json(json::parse(item.scene.json), item.scene.source).sha256, item.scene.sha256)
+            << item.scene.name;
       }
     }
   }

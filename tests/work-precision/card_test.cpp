@@ -1,4 +1,6 @@
 // Cards: from a scene to its exact answer, and a run's distance from it.
+#include "truth/card.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +11,6 @@
 #include "scenario/load.hpp"
 #include "truth/atwood.hpp"
 #include "truth/capstan.hpp"
-#include "truth/card.hpp"
 #include "truth/draw.hpp"
 #include "truth/free_fall.hpp"
 #include "truth/pull_chain.hpp"
@@ -18,15 +19,18 @@
 namespace clothbench {
 namespace {
 
-const char* const kScenes[] = {"free-fall", "pendulum",      "swing-strip",    "heavy-strip",  "catenary",
+const char* const kScenes[] = {"free-fall",    "pendulum",      "swing-strip",    "heavy-strip",   "catenary",
                                "cantilever-1", "cantilever-10", "cantilever-100", "two-hand-pull", "incline-stick",
-                               "incline-slip", "incline-stop", "capstan-hold", "capstan-slip", "atwood"};
+                               "incline-slip", "incline-stop",  "capstan-hold",   "capstan-slip",  "atwood"};
 
-Scene scene(const std::string& name, const std::vector<std::string>& set = {}) { return load_scene("validation/" + name, set); }
+Scene scene(const std::string& name, const std::vector<std::string>& set = {}) {
+  return load_scene("validation/" + name, set);
+}
 
 /// The truth itself as a run's state.
 ClothState truth_state(const Scene& s, const truth::Card& card, int frame) {
-  const std::vector<Vec3> speeds = card.column_speeds ? card.column_speeds(frame) : std::vector<Vec3>(static_cast<std::size_t>(s.cloth.columns));
+  const std::vector<Vec3> speeds =
+      card.column_speeds ? card.column_speeds(frame) : std::vector<Vec3>(static_cast<std::size_t>(s.cloth.columns));
   return {truth::vertex_values(s.cloth, card.columns(frame), true), truth::vertex_values(s.cloth, speeds, false)};
 }
 
@@ -74,7 +78,8 @@ TEST_P(Cards, AgreeWithTheScene) {
   for (std::size_t k = 0; k < start.size(); ++k) EXPECT_NEAR(first[k], start[k], 1e-12);
 }
 
-/// Order 2 in the cell's size. The lattice's points are nodes of 32 cells but not of 16, which adds to the coarse error.
+/// Order 2 in the cell's size. The lattice's points are nodes of 32 cells but not of 16, which adds to the coarse
+/// error.
 TEST(SpaceError, FallsWithTheCell) {
   for (const char* name : {"catenary", "swing-strip"}) {
     const Scene coarse = scene(name, {"cloth.grid=[17,3]"}), fine = scene(name);
@@ -101,7 +106,8 @@ TEST(PulledChain, FollowsTheWaveWithinAHundredth) {
     const auto states = truth::pull({links, 1, 0.2, 1000}, times, first, last);
     for (int i = 0; i <= links; ++i) {
       const double x = static_cast<double>(i) / links - 0.5;
-      const double off = states.back().displacement_m[static_cast<std::size_t>(i)] - truth::pull_displacement_m(hands, x, times.back());
+      const double off = states.back().displacement_m[static_cast<std::size_t>(i)] -
+                         truth::pull_displacement_m(hands, x, times.back());
       worst[level] = std::max(worst[level], std::abs(off) / last.back());
     }
   }
@@ -153,14 +159,17 @@ TEST(Cards, RefuseScenesTheyDoNotAnswer) {
     }
     return "";
   };
-  EXPECT_NE(message("swing-strip", {"material.shear=true"}).find("/truth/card: \"swing-strip\" needs \"shear\": false"), std::string::npos);
+  EXPECT_NE(message("swing-strip", {"material.shear=true"}).find("/truth/card: \"swing-strip\" needs \"shear\": false"),
+            std::string::npos);
   EXPECT_NE(message("swing-strip", {"time.duration_s=2"}).find("chaos"), std::string::npos);
   EXPECT_NE(message("swing-strip", {"material.damping_per_s=1"}).find("no damping"), std::string::npos);
-  EXPECT_NE(message("heavy-strip", {"material.membrane_stiffness_N_per_m=inextensible"}).find("N/m"), std::string::npos);
+  EXPECT_NE(message("heavy-strip", {"material.membrane_stiffness_N_per_m=inextensible"}).find("N/m"),
+            std::string::npos);
   EXPECT_NE(message("cantilever-10", {"material.membrane_stiffness_N_per_m=1000"}).find("1e-7"), std::string::npos);
   EXPECT_NE(message("two-hand-pull", {"grips.0.ramp_s=0.01"}).find("one ramp_s"), std::string::npos);
   EXPECT_NE(message("free-fall", {"pins=[{\"edge\":\"u0\"}]"}).find("nothing that is held"), std::string::npos);
-  EXPECT_EQ(message("swing-strip", {"gravity_m_per_s2=[0,-4.905,0]", "cloth.size_m=[0.5,0.0625]"}), "") << "any parameter will do";
+  EXPECT_EQ(message("swing-strip", {"gravity_m_per_s2=[0,-4.905,0]", "cloth.size_m=[0.5,0.0625]"}), "")
+      << "any parameter will do";
 }
 
 TEST(Cards, ContactIsRefusedWhereTheClosedFormDoesNotHold) {
@@ -183,7 +192,8 @@ TEST(Cards, ContactIsRefusedWhereTheClosedFormDoesNotHold) {
   refused("capstan-hold", {"colliders.0.friction=0"}, "friction");
   refused("atwood", {"colliders.0.friction=0.1"}, "no friction");
   refused("atwood", {"time.duration_s=1"}, "leaves the cylinder");
-  EXPECT_EQ(truth::card_of(scene("incline-stick", {"gravity_m_per_s2=[0,-1.6,0]"}))->quantity_scale, 0.25) << "any parameter will do";
+  EXPECT_EQ(truth::card_of(scene("incline-stick", {"gravity_m_per_s2=[0,-1.6,0]"}))->quantity_scale, 0.25)
+      << "any parameter will do";
 }
 
 TEST(Cards, ThresholdsAreWhereTheClosedFormsTurn) {
@@ -213,7 +223,8 @@ TEST(SlidingCapstan, IsAtwoodsWithoutFrictionAndStartsAtTheThreshold) {
   }
   const truth::HeavyCapstan rough{0.3, 0.05, 0.2, 9.81};
   for (const int turns : {0, 12}) {
-    const double most = turns == 0 ? truth::greatest_overhang_m(rough, 0.2) : truth::polygonal_greatest_overhang_m(rough, 0.2, turns);
+    const double most =
+        turns == 0 ? truth::greatest_overhang_m(rough, 0.2) : truth::polygonal_greatest_overhang_m(rough, 0.2, turns);
     EXPECT_EQ(truth::slide(rough, 0.2, 0.999 * most, turns, times).back().way_m, 0);
     EXPECT_GT(truth::slide(rough, 0.2, 1.001 * most, turns, times).back().way_m, 0);
     EXPECT_LT(truth::slide(rough, 0.2, 1.001 * most, turns, times).back().way_m, 1e-3);
@@ -237,7 +248,9 @@ TEST(Seed, DrawsScenesThatTheirCardsAnswerAndTheSameOnesAgain) {
       const double gravity = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
       EXPECT_TRUE(gravity == 0 || (gravity >= 1 - 1e-9 && gravity <= 25 + 1e-9)) << name;
       const auto before = truth::card_of(s), after = truth::card_of(one.scene);
-      const auto moves = [](const truth::Card& c, const Scene& of) { return std::abs(c.quantity(c.columns(of.time.frames()))) > 1e-9; };
+      const auto moves = [](const truth::Card& c, const Scene& of) {
+        return std::abs(c.quantity(c.columns(of.time.frames()))) > 1e-9;
+      };
       EXPECT_EQ(moves(*before, s), moves(*after, one.scene)) << name << ": what holds still holds, what slips slips";
     }
   }

@@ -1,4 +1,5 @@
-// V14 to V16: friction of `xpbd` by the closed forms. Bounds are what is reached on a software device, not what is hoped for.
+// V14 to V16: friction of `xpbd` by the closed forms. Bounds are what is reached on a software device, not what is
+// hoped for.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,7 +36,8 @@ class Friction : public ::testing::Test {
     const auto solver = entry_->make(settings_, {});
     solver->load(s);
     const double dt = s.time.dt();
-    for (int f = 0; f < s.time.frames(); ++f) EXPECT_EQ(solver->step({f, (f + 1) * dt, dt, s.motion_after(f)}), StepStatus::Ok);
+    for (int f = 0; f < s.time.frames(); ++f)
+      EXPECT_EQ(solver->step({f, (f + 1) * dt, dt, s.motion_after(f)}), StepStatus::Ok);
     ClothState state;
     solver->read_state(state);
     const TruthErrors e = TruthJudge(s).judge(s.time.frames(), state);
@@ -78,7 +80,8 @@ TEST_F(Friction, CapstanHoldsWithinThreePerCent) {
 
 TEST_F(Friction, AtwoodRunsOffAsItShould) {
   settings_["substeps"] = 128;
-  settings_["contact_samples"] = 0;  // edges between rows cut the polygon's corners, and their contact pushes rows outwards
+  settings_["contact_samples"] =
+      0;  // edges between rows cut the polygon's corners, and their contact pushes rows outwards
   EXPECT_LE(end_error("atwood"), 0.02) << "of the way";
 }
 
@@ -86,7 +89,8 @@ TEST(Threshold, IsOnlyOfScenesThatHaveOne) {
   const SolverEntry& ballistic = find_solver("ballistic");
   EXPECT_THROW(find_threshold(load_scene("validation/incline-stop"), ballistic, nlohmann::json::object(), {}), Error);
   // Falls through everything, at any friction, and so is never held.
-  const FoundThreshold t = find_threshold(load_scene("validation/incline-stick"), ballistic, nlohmann::json::object(), {});
+  const FoundThreshold t =
+      find_threshold(load_scene("validation/incline-stick"), ballistic, nlohmann::json::object(), {});
   EXPECT_TRUE(t.slips_at_most);
 }
 

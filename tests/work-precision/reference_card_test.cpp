@@ -13,8 +13,8 @@ namespace {
 
 class ReferenceCards : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Every, ReferenceCards,
-                         ::testing::Values("free-fall", "pendulum", "swing-strip", "heavy-strip", "catenary", "cantilever-1",
-                                           "cantilever-10", "cantilever-100", "two-hand-pull"),
+                         ::testing::Values("free-fall", "pendulum", "swing-strip", "heavy-strip", "catenary",
+                                           "cantilever-1", "cantilever-10", "cantilever-100", "two-hand-pull"),
                          [](const auto& i) {
                            std::string name = i.param;
                            for (char& c : name)
@@ -32,8 +32,8 @@ TEST_P(ReferenceCards, AgreeWithTheTruth) {
       EXPECT_NEAR(order, 2, 0.25);
     }
   RecordProperty("distance", std::to_string(r.truth_distance));
-  std::printf("%s: distance %.2e, U_ref %.2e, orders %.2f %.2f, space %.2e\n", GetParam(), r.truth_distance, r.uncertainty, r.order_bdf2,
-              r.order_conservative, r.space_error);
+  std::printf("%s: distance %.2e, U_ref %.2e, orders %.2f %.2f, space %.2e\n", GetParam(), r.truth_distance,
+              r.uncertainty, r.order_bdf2, r.order_conservative, r.space_error);
 }
 
 TEST(References, AreComputedOnceAndCached) {

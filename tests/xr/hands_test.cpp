@@ -62,7 +62,8 @@ TEST_F(Sessions, CapsulesOfTheRuntimeReachTheSolver) {
   alone.overrides = {"cloth.grid=[12,12]", "pins=[{\"edge\":\"v0\"}]",
                      "cloth.pose={\"center_m\":[0,0,0],\"axis_u\":[1,0,0],\"axis_v\":[0,-1,0]}"};
   alone.out = folder_ / "alone";
-  EXPECT_GT(furthest(run(alone, "clock=virtual,blind=1").final_position_m, r.final_position_m), 0.02) << "the hand has pushed the cloth";
+  EXPECT_GT(furthest(run(alone, "clock=virtual,blind=1").final_position_m, r.final_position_m), 0.02)
+      << "the hand has pushed the cloth";
 }
 
 TEST_F(Sessions, WithoutThemCapsulesAreMadeOfJointsAndRadii) {
@@ -71,7 +72,8 @@ TEST_F(Sessions, WithoutThemCapsulesAreMadeOfJointsAndRadii) {
   const assets::HandRecording hand = assets::read_hand_recording(r.scenario.parent_path() / "right-hand.json");
   EXPECT_FALSE(hand.has_capsules);
   const Scene scene = load_scene(r.scenario.string());
-  for (const Capsule& c : scene.motion.back().colliders.at(0).capsules) EXPECT_NEAR(c.radius_m, null_xr::kJointRadius_m, 1e-9);
+  for (const Capsule& c : scene.motion.back().colliders.at(0).capsules)
+    EXPECT_NEAR(c.radius_m, null_xr::kJointRadius_m, 1e-9);
   EXPECT_EQ(replayed(r, o), r.final_position_m);
 }
 
@@ -123,9 +125,10 @@ TEST_F(Sessions, AHandOutOfSightStaysWhereItWas) {
 
 TEST_F(Sessions, BothHandsAndWhatStaysScripted) {
   LoopOptions o = options("paper/capsule-sweep", 16);
-  o.overrides.push_back("colliders=[{\"type\":\"hand_capsules\",\"track\":\"assets/right-hand-sweep.json\"},"
-                        "{\"type\":\"hand_mesh\",\"track\":\"assets/left-hand-stretch-2mps.json\"},"
-                        "{\"type\":\"capsule\",\"center_m\":[0,-0.4,0.3],\"radius_m\":0.05,\"velocity_m_per_s\":[0,0,-2]}]");
+  o.overrides.push_back(
+      "colliders=[{\"type\":\"hand_capsules\",\"track\":\"assets/right-hand-sweep.json\"},"
+      "{\"type\":\"hand_mesh\",\"track\":\"assets/left-hand-stretch-2mps.json\"},"
+      "{\"type\":\"capsule\",\"center_m\":[0,-0.4,0.3],\"radius_m\":0.05,\"velocity_m_per_s\":[0,0,-2]}]");
   const LoopResult r = run(o, "clock=virtual,blind=1");
   for (const FrameRow& row : r.log.rows()) EXPECT_EQ(row.left_seen + row.right_seen, 2);
   const Scene scene = load_scene(r.scenario.string());

@@ -54,7 +54,8 @@ TEST(Views, AnEyesClipSpace) {
   const auto clip = [&](Vec3 p) {
     std::array<double, 4> c{};
     for (std::size_t row = 0; row < 4; ++row)
-      c[row] = m[row] * (p[0] - origin[0]) + m[4 + row] * (p[1] - origin[1]) + m[8 + row] * (p[2] - origin[2]) + m[12 + row];
+      c[row] =
+          m[row] * (p[0] - origin[0]) + m[4 + row] * (p[1] - origin[1]) + m[8 + row] * (p[2] - origin[2]) + m[12 + row];
     return std::array<double, 3>{c[0] / c[3], c[1] / c[3], c[2] / c[3]};
   };
   const double d = 2;

@@ -32,7 +32,8 @@ TEST_F(Sessions, StepsAndShowsEveryFrame) {
     }
     EXPECT_NEAR(row.predicted_period_s, 1 / 72.0, 1e-9);
     EXPECT_NEAR(row.predicted_display_s, static_cast<double>(k) * row.predicted_period_s, 1e-9);
-    for (const double s : {row.wait_s, row.begin_s, row.input_s, row.settle_s, row.step_s, row.step_device_s, row.paint_s, row.end_s})
+    for (const double s :
+         {row.wait_s, row.begin_s, row.input_s, row.settle_s, row.step_s, row.step_device_s, row.paint_s, row.end_s})
       EXPECT_GE(s, 0) << k;
     EXPECT_GE(row.frame_s, row.step_s + row.paint_s);
     EXPECT_EQ(row.shown, 1);
@@ -69,9 +70,11 @@ TEST_F(Sessions, TheDisplayPacesInRealTime) {
   EXPECT_GT(waited, 0);
 }
 
-/// A strict display shows a frame that took 20 ms after two periods, one that took 40 ms after three: 36 and 24 a second.
+/// A strict display shows a frame that took 20 ms after two periods, one that took 40 ms after three: 36 and 24 a
+/// second.
 TEST_F(Sessions, LateFramesAreDividedRates) {
-  const LoopResult r = run(options("paper/capsule-sweep", 40), "clock=virtual,blind=1,stalls=15:0.02;16:0.02;17:0.02;25:0.04");
+  const LoopResult r =
+      run(options("paper/capsule-sweep", 40), "clock=virtual,blind=1,stalls=15:0.02;16:0.02;17:0.02;25:0.04");
   int twice = 0, thrice = 0;
   for (const double p : r.log.periods()) {
     twice += p == 2 ? 1 : 0;
@@ -88,7 +91,8 @@ TEST_F(Sessions, LateFramesAreDividedRates) {
 TEST_F(Sessions, WithoutAnyExtensionButVulkanTheScriptIsShown) {
   LoopOptions o = options("paper/capsule-sweep", 12);
   o.passthrough = false;
-  const LoopResult r = run(o, "clock=virtual,hands=0,capsules=0,mesh=0,room=0,passthrough=0,rate=0,levels=0,metrics=0,look=10");
+  const LoopResult r =
+      run(o, "clock=virtual,hands=0,capsules=0,mesh=0,room=0,passthrough=0,rate=0,levels=0,metrics=0,look=10");
   EXPECT_EQ(r.log.rows().size(), 12u);
   EXPECT_EQ(told_["rate_hz"], 90.0);
   EXPECT_EQ(told_["passthrough_frames"], 0);

@@ -1,17 +1,17 @@
 // A live session whose device is lost: what was recorded until then is stored and replays, and the error is said.
 #include <gtest/gtest.h>
+#include <vulkan/vulkan.h>
 
 #include <cmath>
 #include <set>
-
-#include <vulkan/vulkan.h>
 
 #include "results/store.hpp"
 #include "sessions.hpp"
 
 namespace {
 
-/// A device that goes after so many calls that submit or wait (-1: never), and stays away. What it was doing is done by then.
+/// A device that goes after so many calls that submit or wait (-1: never), and stays away. What it was doing is done by
+/// then.
 struct {
   int calls_left = -1;
   bool lost = false;
@@ -74,7 +74,8 @@ class Loss : public Sessions {
     ASSERT_EQ(stored.trials.size(), 1u);
     EXPECT_EQ(stored.trials[0].frame_wall_s.size(), r.log.rows().size());
     EXPECT_EQ(stored.summary.at("xr_frames"), static_cast<double>(r.log.rows().size()));
-    for (const double x : replayed(r, o)) ASSERT_TRUE(std::isfinite(x)) << "as many frames as were logged, and each of them runs";
+    for (const double x : replayed(r, o))
+      ASSERT_TRUE(std::isfinite(x)) << "as many frames as were logged, and each of them runs";
   }
 
   std::string failed_;

@@ -1,6 +1,7 @@
+#include "assets/room.hpp"
+
 #include <cmath>
 
-#include "assets/room.hpp"
 #include "null_runtime/script.hpp"
 #include "sessions.hpp"
 #include "xr/picking.hpp"

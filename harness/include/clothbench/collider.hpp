@@ -43,15 +43,15 @@ struct ColliderMesh {
 struct Collider {
   enum class Shape : std::uint8_t { Plane, Sphere, Box, Capsules, Mesh };
   Shape shape = Shape::Plane;
-  std::string name;          ///< for tables and messages: "living_room/444c8313", "right-hand-sweep"
-  double margin_m = 0;       ///< distance from the surface at which contact holds the cloth
-  double friction = 0;       ///< Coulomb coefficient of the pair
-  Vec3 center_m{};           ///< plane: a point on it; sphere, box: centre
-  Vec3 normal{};             ///< plane: unit, into free space
-  double radius_m = 0;       ///< sphere
-  Vec3 half_extent_m{};      ///< box, along `axes`
+  std::string name;      ///< for tables and messages: "living_room/444c8313", "right-hand-sweep"
+  double margin_m = 0;   ///< distance from the surface at which contact holds the cloth
+  double friction = 0;   ///< Coulomb coefficient of the pair
+  Vec3 center_m{};       ///< plane: a point on it; sphere, box: centre
+  Vec3 normal{};         ///< plane: unit, into free space
+  double radius_m = 0;   ///< sphere
+  Vec3 half_extent_m{};  ///< box, along `axes`
   std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< box: orthonormal, in the world
-  std::vector<Capsule> capsules;             ///< their number never changes
+  std::vector<Capsule> capsules;                                ///< their number never changes
   std::shared_ptr<const ColliderMesh> mesh;
 
   /// What a solver needs for it.
@@ -68,9 +68,9 @@ struct ColliderPose {
 /// Where everything that moves is at one instant. Between two of them capsule ends, skinned vertices and gripped
 /// vertices move in straight lines.
 struct FrameMotion {
-  std::vector<ColliderPose> colliders;      ///< one per Scene::colliders
-  std::vector<Vec3> grip_position_m;        ///< one per Scene::grips.vertices, where it is while held
-  std::vector<std::uint8_t> grip_held;      ///< the same: 1 from this instant on while held, 0 once let go
+  std::vector<ColliderPose> colliders;  ///< one per Scene::colliders
+  std::vector<Vec3> grip_position_m;    ///< one per Scene::grips.vertices, where it is while held
+  std::vector<std::uint8_t> grip_held;  ///< the same: 1 from this instant on while held, 0 once let go
 };
 
 /// Positions [m], xyz interleaved, of a mesh's vertices under a pose: skinned, or as stored where it stands still.

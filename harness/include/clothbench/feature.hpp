@@ -10,8 +10,8 @@ namespace clothbench {
 /// What a scene asks of a solver. Derived from the scenario by the loader (`derive_needs`), never by a solver. A run
 /// fails unless the features its stages served are exactly those the scene needs (`check_stages`).
 enum class Feature : std::uint8_t {
-  Stretch,          ///< structural edges
-  Shear,            ///< diagonals
+  Stretch,  ///< structural edges
+  Shear,    ///< diagonals
   Bend,
   Damping,
   Pins,
@@ -27,19 +27,21 @@ enum class Feature : std::uint8_t {
   DuplicatedLayer,  ///< the paper's second, oppositely wound layer of particles tied to the first
   SelfCollision,
   Render,
-  UnevenGrid,       ///< cells of different widths (cloth.column_factors)
-  Regions,          ///< a membrane stiffness that changes from column to column (material.regions)
-  Spin,             ///< a start that turns: another velocity at every vertex
-  ClothMesh,        ///< a triangle mesh instead of a grid (cloth.mesh)
+  UnevenGrid,  ///< cells of different widths (cloth.column_factors)
+  Regions,     ///< a membrane stiffness that changes from column to column (material.regions)
+  Spin,        ///< a start that turns: another velocity at every vertex
+  ClothMesh,   ///< a triangle mesh instead of a grid (cloth.mesh)
   Count
 };
 
 inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::Count);
 
 inline constexpr std::array<std::string_view, kFeatureCount> kFeatureNames = {
-    "stretch",     "shear",       "bend",     "damping",      "pins",             "moving_pins",    "sphere", "box", "plane",
-    "capsules",    "static_mesh", "moving_mesh", "friction",  "double_sided",     "duplicated_layer",
-    "self_collision", "render",   "uneven_grid", "regions", "spin", "cloth_mesh"};
+    "stretch",        "shear",       "bend",        "damping",      "pins",
+    "moving_pins",    "sphere",      "box",         "plane",        "capsules",
+    "static_mesh",    "moving_mesh", "friction",    "double_sided", "duplicated_layer",
+    "self_collision", "render",      "uneven_grid", "regions",      "spin",
+    "cloth_mesh"};
 
 constexpr std::string_view name_of(Feature f) { return kFeatureNames[static_cast<std::size_t>(f)]; }
 
@@ -56,7 +58,10 @@ class FeatureSet {
   constexpr FeatureSet operator|(FeatureSet o) const { return FeatureSet(bits_ | o.bits_); }
   constexpr FeatureSet operator&(FeatureSet o) const { return FeatureSet(bits_ & o.bits_); }
   constexpr FeatureSet operator-(FeatureSet o) const { return FeatureSet(bits_ & ~o.bits_); }
-  constexpr FeatureSet& operator|=(FeatureSet o) { bits_ |= o.bits_; return *this; }
+  constexpr FeatureSet& operator|=(FeatureSet o) {
+    bits_ |= o.bits_;
+    return *this;
+  }
   constexpr bool operator==(const FeatureSet&) const = default;
 
   template <class Fn>

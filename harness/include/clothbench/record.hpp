@@ -10,8 +10,8 @@ namespace clothbench {
 
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// How a cell ended. `status` is one of ok, not_finite, diverged, device_lost, timed_out, crashed, unsupported, over_budget (not
-/// run: settings of less work had used up its solver's time), error.
+/// How a cell ended. `status` is one of ok, not_finite, diverged, device_lost, timed_out, crashed, unsupported,
+/// over_budget (not run: settings of less work had used up its solver's time), error.
 struct Outcome {
   std::string status = "ok";
   std::string klass = "ok";  ///< F0..F8 or ok
@@ -25,8 +25,8 @@ struct StageRecord {
   std::string name;
   std::vector<std::string> serves;
   int dispatches = 0;
-  /// What its bytes are: "computed", "at least" (what it reads is a lower bound), or "" where it has none or the file is of
-  /// before they were told apart.
+  /// What its bytes are: "computed", "at least" (what it reads is a lower bound), or "" where it has none or the file
+  /// is of before they were told apart.
   std::string bytes = {};
 };
 
@@ -69,8 +69,8 @@ struct MetricSeries {
 
 /// The untimed pass that positions and metrics come from.
 struct AccuracyPass {
-  std::vector<double> time_s;          ///< frames+1
-  std::vector<float> position;         ///< (frames+1, vertices, 3)
+  std::vector<double> time_s;   ///< frames+1
+  std::vector<float> position;  ///< (frames+1, vertices, 3)
   std::vector<MetricSeries> metrics;
 };
 
@@ -99,8 +99,10 @@ struct CellRecord {
   Outcome outcome;
   std::map<std::string, double> summary;  ///< every scalar a table prints; NaN = missing
   std::string file = {};                  ///< where a report read it; empty: nowhere
-  std::vector<StoredGroup> samples = {};  ///< what the device told meanwhile (results/device_samples.hpp); not read back
-  std::map<std::string, std::string> withheld = {};  ///< summary values that a report must not print, and why (report/withheld.hpp)
+  std::vector<StoredGroup> samples =
+      {};  ///< what the device told meanwhile (results/device_samples.hpp); not read back
+  std::map<std::string, std::string> withheld =
+      {};  ///< summary values that a report must not print, and why (report/withheld.hpp)
 };
 
 }  // namespace clothbench

@@ -15,23 +15,23 @@ namespace clothbench {
 /// How the paper's "single-sided" and "double-sided" cloths are told apart; see docs of `cloth.sides` in the schema.
 enum class Sides { Single, DoubleDuplicated, Double };
 
-/// Where vertices start that do not start at rest: everything that is not pinned, unless said otherwise. Seeded, so that
-/// one seed is one start, bit for bit.
+/// Where vertices start that do not start at rest: everything that is not pinned, unless said otherwise. Seeded, so
+/// that one seed is one start, bit for bit.
 struct Start {
-  /// Sphere: uniform on a sphere. Plane: uniform on a disc in the sheet's plane. Line: on its middle line along u. Point:
-  /// all at its centre. Folded: folded along u like a map, fold on fold.
+  /// Sphere: uniform on a sphere. Plane: uniform on a disc in the sheet's plane. Line: on its middle line along u.
+  /// Point: all at its centre. Folded: folded along u like a map, fold on fold.
   enum class Shape : std::uint8_t { Rest, Sphere, Plane, Line, Point, Folded };
   Shape shape = Shape::Rest;
-  double radius_m = 0;         ///< of the sphere or the disc
-  int folds = 0;               ///< leaves of a folded sheet
-  double noise_m = 0;          ///< standard deviation of every coordinate
+  double radius_m = 0;  ///< of the sphere or the disc
+  int folds = 0;        ///< leaves of a folded sheet
+  double noise_m = 0;   ///< standard deviation of every coordinate
   std::uint64_t seed = 0;
   std::vector<std::vector<std::uint32_t>> merged;  ///< all vertices of a list start where its first one does
   struct Move {
     std::vector<std::uint32_t> vertices;
     Vec3 by_m{};
   };
-  std::vector<Move> moved;     ///< pinned ones too: they are then held there
+  std::vector<Move> moved;  ///< pinned ones too: they are then held there
 
   bool at_rest() const { return shape == Shape::Rest && noise_m == 0 && merged.empty() && moved.empty(); }
 };
@@ -47,9 +47,9 @@ struct Edge {
 struct ClothMesh {
   std::vector<Vec3> vertices;                           ///< [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of positive area
-  std::vector<Edge> edges;      ///< each once, all structural, a < b, ascending
-  std::vector<double> areas_m2; ///< of each edge, the sum of its triangles' areas
-  double edge_m = 0;            ///< mean length of an edge
+  std::vector<Edge> edges;                              ///< each once, all structural, a < b, ascending
+  std::vector<double> areas_m2;                         ///< of each edge, the sum of its triangles' areas
+  double edge_m = 0;                                    ///< mean length of an edge
 };
 
 /// How a cloth touches itself.
@@ -58,10 +58,10 @@ struct SelfCollision {
   double friction = 0;     ///< Coulomb's, of cloth on cloth
 };
 
-/// Rectangular sheet, or a triangle mesh. Vertex (i, j) has index j*columns + i, material coordinates (i*du, j*dv), and lies in the plane
-/// spanned by `axis_u` and `axis_v` (orthonormal) around `center_m`.
+/// Rectangular sheet, or a triangle mesh. Vertex (i, j) has index j*columns + i, material coordinates (i*du, j*dv), and
+/// lies in the plane spanned by `axis_u` and `axis_v` (orthonormal) around `center_m`.
 struct Cloth {
-  int columns = 0, rows = 0;      ///< vertices along u and v, each >= 2; of a mesh: all its vertices, and 1
+  int columns = 0, rows = 0;         ///< vertices along u and v, each >= 2; of a mesh: all its vertices, and 1
   double width_m = 0, height_m = 0;  ///< rest length along u and v; of a mesh: the two longest sides of its box
   std::shared_ptr<const ClothMesh> mesh = nullptr;  ///< null: the grid
   double areal_density_kg_per_m2 = 0;
@@ -134,11 +134,11 @@ struct Jump {
 
 /// How a run of the scene is judged frame by frame, by the classes F0 to F8 of metrics/stability.
 struct StabilityRules {
-  std::string name;       ///< of the case: "S01"; empty = not judged
-  std::uint32_t judged = 0;  ///< bit k: class Fk counts
+  std::string name;           ///< of the case: "S01"; empty = not judged
+  std::uint32_t judged = 0;   ///< bit k: class Fk counts
   bool when_relaxed = false;  ///< F1 to F3 count from the first frame on whose mean |strain| is below 1 %
-  double relax_s = 0;     ///< it is to come by then; 0 = whenever
-  double settle_s = 0;    ///< F6 counts from here on
+  double relax_s = 0;         ///< it is to come by then; 0 = whenever
+  double settle_s = 0;        ///< F6 counts from here on
 };
 
 /// What a right result looks like: a bound on a scalar of the summary.
@@ -170,7 +170,7 @@ struct Scene {
   std::vector<Jump> jumps;
   StabilityRules stability;
   std::optional<std::uint64_t> seed;  ///< its parameters were drawn by this number
-  std::string truth_card;  ///< of the exact answer, "" = none; see harness/truth/card.hpp
+  std::string truth_card;             ///< of the exact answer, "" = none; see harness/truth/card.hpp
 
   /// Where vertex (i, j) starts [m].
   Vec3 rest_position(int i, int j) const;
@@ -185,25 +185,26 @@ std::vector<double> vertex_masses(const Scene&);
 /// Initial positions [m], size 3*vertex_count, xyz interleaved.
 std::vector<double> initial_positions(const Scene&);
 
-/// Initial velocities [m/s], size 3*vertex_count, xyz interleaved: velocity and spin, about the centre of the sheet. What is
-/// pinned has one too; a solver holds it all the same.
+/// Initial velocities [m/s], size 3*vertex_count, xyz interleaved: velocity and spin, about the centre of the sheet.
+/// What is pinned has one too; a solver holds it all the same.
 std::vector<double> initial_velocities(const Scene&);
 
-/// Y of a structural or shear edge [N/m], of the cell it lies in or (across u) the mean of its two; empty = inextensible.
+/// Y of a structural or shear edge [N/m], of the cell it lies in or (across u) the mean of its two; empty =
+/// inextensible.
 std::optional<double> membrane_stiffness(const Scene&, const struct Edge&);
 
-/// The cell a structural or shear edge belongs to [m]: its side along the edge (along u for a diagonal) and the side across,
-/// which for an edge along v is the mean of its two columns'. An edge on the border carries half of it. Of a mesh (border included):
-/// the edge, and the areas of its triangles over its length, so that Y across/along is the spring of Van Gelder 1998 ("Approximate
-/// simulation of elastic membranes by triangulated spring meshes"), which on equilateral triangles makes a sheet of exactly Y
-/// with Poisson ratio 1/3.
+/// The cell a structural or shear edge belongs to [m]: its side along the edge (along u for a diagonal) and the side
+/// across, which for an edge along v is the mean of its two columns'. An edge on the border carries half of it. Of a
+/// mesh (border included): the edge, and the areas of its triangles over its length, so that Y across/along is the
+/// spring of Van Gelder 1998 ("Approximate simulation of elastic membranes by triangulated spring meshes"), which on
+/// equilateral triangles makes a sheet of exactly Y with Poisson ratio 1/3.
 struct EdgeCell {
   double along_m = 0, across_m = 0;
 };
 EdgeCell edge_cell(const Cloth&, const struct Edge&);
 
-/// Whether an edge lies along the border of a grid, where a spring stands for half as much cloth: never a diagonal, and never one of a
-/// mesh, whose areas say it already (see EdgeCell).
+/// Whether an edge lies along the border of a grid, where a spring stands for half as much cloth: never a diagonal, and
+/// never one of a mesh, whose areas say it already (see EdgeCell).
 bool on_border(const Cloth&, const struct Edge&);
 
 /// Turn [rad] from one row on the cylinder to the next, of a sheet that starts draped. Needs drape_radius_m > du/2.

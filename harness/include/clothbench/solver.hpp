@@ -19,14 +19,14 @@ struct SettingSpec {
 
 /// What a backend is and can do. A scene feature outside `supports | ignores` makes the cell an `unsupported` row.
 struct SolverInfo {
-  std::string name;       ///< as on the command line: "xpbd"
-  std::string folder;     ///< where it lives: "solvers/pbd-gpu"
-  std::string summary;    ///< one line
+  std::string name;     ///< as on the command line: "xpbd"
+  std::string folder;   ///< where it lives: "solvers/pbd-gpu"
+  std::string summary;  ///< one line
   std::string version;
   std::string precision;  ///< "float32" or "float64"
   bool on_gpu = false;
   FeatureSet supports;
-  FeatureSet ignores;     ///< runs without serving these, and every table says so (only `ballistic` does)
+  FeatureSet ignores;  ///< runs without serving these, and every table says so (only `ballistic` does)
   /// Features supported only beside another: {StaticMesh, DuplicatedLayer} = meshes only with a duplicated layer.
   std::vector<std::pair<Feature, Feature>> only_with = {};
   std::vector<SettingSpec> settings;
@@ -50,9 +50,9 @@ enum class StepStatus { Ok, NotFinite, Diverged, DeviceLost, TimedOut };
 struct StagePlan {
   std::string name;
   FeatureSet serves;
-  int dispatches = 0;        ///< per frame; 0 on a CPU
-  /// Bytes that shaders load and store in a frame, computed by the host from the scene and the kernels' loops and checked
-  /// against an instrumented build of the kernels in tests; not the traffic on the memory bus. NaN on a CPU.
+  int dispatches = 0;  ///< per frame; 0 on a CPU
+  /// Bytes that shaders load and store in a frame, computed by the host from the scene and the kernels' loops and
+  /// checked against an instrumented build of the kernels in tests; not the traffic on the memory bus. NaN on a CPU.
   double read_B = 0, write_B = 0;
   bool at_least = false;  ///< read_B is a lower bound: how much more is read depends on how the cloth lies
 };
@@ -72,15 +72,15 @@ struct Plan {
   std::vector<StagePlan> stages;
   std::vector<BufferPlan> buffers;
   std::vector<LeftOut> left_out;
-  /// Distance [m] at which the solver holds the cloth off each collider of the scene, where that is not the collider's own margin_m
-  /// (which NaN stands for); empty = it is for all of them. Metrics judge touch and slip by it.
+  /// Distance [m] at which the solver holds the cloth off each collider of the scene, where that is not the collider's
+  /// own margin_m (which NaN stands for); empty = it is for all of them. Metrics judge touch and slip by it.
   std::vector<double> contact_margins_m = {};
 };
 
 /// Cost of the last step. Device times are NaN where the device has no timestamps or the solver runs on the CPU.
 struct FrameCost {
-  double device_s;                    ///< first to last timestamp
-  std::vector<double> stage_device_s; ///< one per StagePlan, same order
+  double device_s;                     ///< first to last timestamp
+  std::vector<double> stage_device_s;  ///< one per StagePlan, same order
   std::vector<double> stage_read_B, stage_write_B;
 };
 
@@ -89,7 +89,8 @@ struct FrameInput {
   int index = 0;
   double time_s = 0;
   double dt_s = 0;
-  const FrameMotion* motion = nullptr;  ///< at the frame's end; null where nothing moves. At reset it is scene.motion[0]
+  const FrameMotion* motion =
+      nullptr;  ///< at the frame's end; null where nothing moves. At reset it is scene.motion[0]
 };
 
 /// Positions [m] and velocities [m/s], xyz interleaved, scene vertex order.
@@ -129,8 +130,8 @@ class ClothSolver {
     return status;
   }
   virtual void read_state(ClothState&) const = 0;
-  /// Goes on from positions and velocities that `read_state` gave on this scene. False, and nothing changes, where they do
-  /// not tell all: a solver that keeps more, a scene in which something moves.
+  /// Goes on from positions and velocities that `read_state` gave on this scene. False, and nothing changes, where they
+  /// do not tell all: a solver that keeps more, a scene in which something moves.
   virtual bool restart(const ClothState&) { return false; }
   virtual FrameCost last_cost() const = 0;
   virtual Plan plan() const = 0;
@@ -155,8 +156,9 @@ struct SolverEntry {
 const std::vector<SolverEntry>& solvers();
 /// Before the path of a shared library, on the command line; with the path a plugin's `folder`.
 inline constexpr char kPluginPrefix[] = "plugin:";
-/// A solver that was built elsewhere (clothbench_plugin.h): "plugin:PATH", or the name of one that was loaded so before,
-/// here or in the process that started this one. Null if it is neither; throws Error if the library is no solver.
+/// A solver that was built elsewhere (clothbench_plugin.h): "plugin:PATH", or the name of one that was loaded so
+/// before, here or in the process that started this one. Null if it is neither; throws Error if the library is no
+/// solver.
 const SolverEntry* external_solver(const std::string& name);
 inline bool is_external(const SolverInfo& info) { return info.folder.starts_with(kPluginPrefix); }
 /// By name or as "plugin:PATH". Throws Error naming the nearest known solver.

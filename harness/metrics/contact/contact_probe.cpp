@@ -13,7 +13,8 @@
 namespace clothbench::contact {
 namespace {
 
-constexpr ContactSample kUnknown{kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing};
+constexpr ContactSample kUnknown{kMissing, kMissing, kMissing, kMissing, kMissing, kMissing,
+                                 kMissing, kMissing, kMissing, kMissing, kMissing};
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 

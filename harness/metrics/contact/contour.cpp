@@ -80,7 +80,8 @@ Contour self_contour(const TriangleMeshView& cloth) {
     tree.for_each_overlapping(tree.item_boxes()[k], [&](int other) {
       const auto o = static_cast<std::size_t>(other);
       const auto& others = cloth.triangles[numbers[o]];
-      const bool adjacent = std::find_first_of(corners.begin(), corners.end(), others.begin(), others.end()) != corners.end();
+      const bool adjacent =
+          std::find_first_of(corners.begin(), corners.end(), others.begin(), others.end()) != corners.end();
       // Each pair once.
       if (o <= k || adjacent) return;
       const Simplex<3> facet = cloth.triangle(numbers[o]);

@@ -21,9 +21,9 @@ struct Contour {
 /// The cloth must be finite.
 Contour contour(const TriangleMeshView& cloth, const TriangleTree& object);
 
-/// Where a cloth crosses itself: pairs of its triangles that share no vertex, each once. What crosses begins with an edge that
-/// passes through a face it has no vertex of, or with two edges that pass one another, so that a crease turned inside out within the
-/// triangles of one vertex is all that is left out. Otherwise as above.
+/// Where a cloth crosses itself: pairs of its triangles that share no vertex, each once. What crosses begins with an
+/// edge that passes through a face it has no vertex of, or with two edges that pass one another, so that a crease
+/// turned inside out within the triangles of one vertex is all that is left out. Otherwise as above.
 Contour self_contour(const TriangleMeshView& cloth);
 
 }  // namespace clothbench::contact

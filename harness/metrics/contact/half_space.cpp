@@ -28,8 +28,17 @@ ContactSample half_space_contact(const TriangleMeshView& cloth, const Point<3>& 
   depth.vertex_max_m = depth.max_m;
   summarize(pieces, cloth_area, depth);
   const auto pairs = static_cast<double>(contour.pairs);
-  return {contour.length_m, pairs, pairs / static_cast<double>(cloth.triangles.size()), behind / cloth_area, depth.max_m,
-          depth.max_m, depth.vertex_max_m, depth.p99_m, depth.mean_m, depth.area_m2, depth.area_fraction};
+  return {contour.length_m,
+          pairs,
+          pairs / static_cast<double>(cloth.triangles.size()),
+          behind / cloth_area,
+          depth.max_m,
+          depth.max_m,
+          depth.vertex_max_m,
+          depth.p99_m,
+          depth.mean_m,
+          depth.area_m2,
+          depth.area_fraction};
 }
 
 }  // namespace clothbench::contact

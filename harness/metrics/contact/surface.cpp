@@ -68,9 +68,11 @@ NearSurface::NearSurface(const TriangleMeshView& now) : mesh_(now) {
   tree_ = BoxTree(std::move(boxes));
 }
 
-std::optional<Nearest> NearSurface::operator()(const Point<3>& p, double bound_m, std::span<const double> before) const {
+std::optional<Nearest> NearSurface::operator()(const Point<3>& p, double bound_m,
+                                               std::span<const double> before) const {
   double bound = bound_m * bound_m;
-  const int found = tree_.nearest(p, bound, [&](int t) { return squared_distance(p, mesh_.triangle(source_[static_cast<std::size_t>(t)])); });
+  const int found = tree_.nearest(
+      p, bound, [&](int t) { return squared_distance(p, mesh_.triangle(source_[static_cast<std::size_t>(t)])); });
   if (found < 0) return std::nullopt;
   const std::size_t t = source_[static_cast<std::size_t>(found)];
   const Simplex<3> corner = mesh_.triangle(t);

@@ -6,9 +6,8 @@
 #include <unsupported/Eigen/BVH>
 #include <vector>
 
-#include "metrics/contact/predicates.hpp"
-
 #include "clothbench/collider.hpp"
+#include "metrics/contact/predicates.hpp"
 
 namespace clothbench::contact {
 

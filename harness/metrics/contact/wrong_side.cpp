@@ -31,10 +31,12 @@ class WrongSide::Passage {
  public:
   Passage(const TriangleMeshView& was, const TriangleMeshView& is)
       // Welded as they stand: neighbouring quads share walls only where bones meet exactly, and then in the same order.
-      : swept_(was, is, welded_vertices(was)), first_(was, was, welded_vertices(was)), last_(is, is, welded_vertices(is)) {}
+      : swept_(was, is, welded_vertices(was)),
+        first_(was, was, welded_vertices(was)),
+        last_(is, is, welded_vertices(is)) {}
 
-  /// Whether the way p -> q passes it an odd number of times; nothing if that depends on when in the frame it was gone: evenly,
-  /// at once, or at the end.
+  /// Whether the way p -> q passes it an odd number of times; nothing if that depends on when in the frame it was gone:
+  /// evenly, at once, or at the end.
   std::optional<bool> passed(const Point<3>& p, const Point<3>& q) const {
     const auto odd = [](int crossings) { return crossings % 2 != 0; };
     const bool evenly = odd(swept_.signed_crossings(p, q));
@@ -51,14 +53,18 @@ class WrongSide::Passage {
   SweptMesh swept_, first_, last_;
 };
 
-WrongSide::WrongSide(std::span<const Bone> bones, const Point<3>& side, double reach_m, std::size_t samples, Weave weave)
+WrongSide::WrongSide(std::span<const Bone> bones, const Point<3>& side, double reach_m, std::size_t samples,
+                     Weave weave)
     : side_(side), reach_m_(reach_m), weave_(std::move(weave)) {
   if (!(std::abs(side.norm() - 1) <= 1e-9) || !(reach_m > 0))
     throw Error("wrong side: expected a side of length 1 and a reach above 0");
   if (!weave_.links.empty() && weave_.border.size() != samples)
-    throw Error("wrong side: " + std::to_string(weave_.border.size()) + " samples on the border or not, expected " + std::to_string(samples));
+    throw Error("wrong side: " + std::to_string(weave_.border.size()) + " samples on the border or not, expected " +
+                std::to_string(samples));
   for (const Link& l : weave_.links)
-    if (!(std::max(l[0], l[1]) < samples)) throw Error("wrong side: a link of sample " + std::to_string(std::max(l[0], l[1])) + ", expected below " + std::to_string(samples));
+    if (!(std::max(l[0], l[1]) < samples))
+      throw Error("wrong side: a link of sample " + std::to_string(std::max(l[0], l[1])) + ", expected below " +
+                  std::to_string(samples));
   links_of_.resize(samples);
   for (std::size_t l = 0; l < weave_.links.size(); ++l)
     for (const std::uint32_t i : weave_.links[l]) links_of_[i].push_back(l);
@@ -70,7 +76,8 @@ WrongSide::WrongSide(std::span<const Bone> bones, const Point<3>& side, double r
   std::vector<std::size_t> label(bones.size());
   std::iota(label.begin(), label.end(), std::size_t{0});
   const auto joined = [&](std::size_t i, std::size_t j) {
-    return node[2 * i] == node[2 * j] || node[2 * i] == node[2 * j + 1] || node[2 * i + 1] == node[2 * j] || node[2 * i + 1] == node[2 * j + 1];
+    return node[2 * i] == node[2 * j] || node[2 * i] == node[2 * j + 1] || node[2 * i + 1] == node[2 * j] ||
+           node[2 * i + 1] == node[2 * j + 1];
   };
   for (bool changed = true; changed;) {
     changed = false;
@@ -96,7 +103,8 @@ WrongSide::WrongSide(std::span<const Bone> bones, const Point<3>& side, double r
         }
     }
     chain.endless.triangles = chain.wake.triangles;
-    for (std::size_t k = 0; k < chain.free_ends.size(); ++k) add_quad(chain.endless.triangles, 4 * (chain.bones.size() + k));
+    for (std::size_t k = 0; k < chain.free_ends.size(); ++k)
+      add_quad(chain.endless.triangles, 4 * (chain.bones.size() + k));
     for (Surface* s : {&chain.wake, &chain.endless}) s->odd.resize(samples);
     chain.rounded.emplace(samples);
     chain.lapped.resize(samples);
@@ -121,10 +129,12 @@ void WrongSide::place(Chain& chain, std::span<const Bone> bones) const {
     // Parallel to the side: a half-plane without width, which nothing passes.
     across = across.norm() > 1e-6 ? Point<3>(reach_m_ * across.normalized()) : Point<3>(Point<3>::Zero());
     const Point<3> out = reach_m_ * along;
-    for (const Point<3>& p : {Point<3>(tip - across), Point<3>(tip + across), Point<3>(tip + across + out), Point<3>(tip - across + out)})
+    for (const Point<3>& p :
+         {Point<3>(tip - across), Point<3>(tip + across), Point<3>(tip + across + out), Point<3>(tip - across + out)})
       append(beyond, p);
     // The same way round as the bone's own quad, so that crossings of both have one sign.
-    const std::array<Point<3>, 2> ends = end == 1 ? std::array<Point<3>, 2>{tip, tip + out} : std::array<Point<3>, 2>{tip + out, tip};
+    const std::array<Point<3>, 2> ends =
+        end == 1 ? std::array<Point<3>, 2>{tip, tip + out} : std::array<Point<3>, 2>{tip + out, tip};
     for (const Point<3>& p : {ends[0], ends[1], Point<3>(ends[1] + far), Point<3>(ends[0] + far)}) append(endless, p);
   }
 }
@@ -137,7 +147,8 @@ void WrongSide::advance(std::span<const double> samples, std::span<const Bone> b
     place(chain, bones);
     if (before_.empty()) continue;
     const TriangleMeshView out{beyond, chain.beyond.triangles};
-    chain.rounded->advance(before_, samples, SweptMesh(out, {chain.beyond.at, chain.beyond.triangles}, welded_vertices(out)));
+    chain.rounded->advance(before_, samples,
+                           SweptMesh(out, {chain.beyond.at, chain.beyond.triangles}, welded_vertices(out)));
     const Passage passage({wake, chain.wake.triangles}, {chain.wake.at, chain.wake.triangles});
     follow(chain.wake, passage, samples);
     if (weave_.links.empty()) continue;
@@ -152,8 +163,10 @@ void WrongSide::follow(Surface& surface, const Passage& passage, std::span<const
   std::vector<std::size_t> unclear;
   for (std::size_t i = 0; i < surface.odd.size(); ++i) {
     const std::optional<bool> passed = passage.passed(at(before_, i), at(samples, i));
-    if (!passed) unclear.push_back(i);
-    else if (*passed) surface.odd[i] = !surface.odd[i];
+    if (!passed)
+      unclear.push_back(i);
+    else if (*passed)
+      surface.odd[i] = !surface.odd[i];
   }
   for (const std::size_t i : unclear) {
     int votes = 0;
@@ -162,11 +175,13 @@ void WrongSide::follow(Surface& surface, const Passage& passage, std::span<const
   }
 }
 
-bool WrongSide::parted(const Surface& surface, const Passage& passage, const Link& link, std::span<const double> samples) const {
+bool WrongSide::parted(const Surface& surface, const Passage& passage, const Link& link,
+                       std::span<const double> samples) const {
   return passage.between(at(samples, link[0]), at(samples, link[1])) != (surface.odd[link[0]] != surface.odd[link[1]]);
 }
 
-void WrongSide::find_laps(Chain& chain, const Passage& wake, const Passage& endless, std::span<const double> samples) const {
+void WrongSide::find_laps(Chain& chain, const Passage& wake, const Passage& endless,
+                          std::span<const double> samples) const {
   const std::vector<bool>& odd = chain.wake.odd;
   std::vector<bool> torn(odd.size(), false), bordered(odd.size(), false);
   for (const Link& l : weave_.links)
@@ -180,7 +195,8 @@ void WrongSide::find_laps(Chain& chain, const Passage& wake, const Passage& endl
       for (std::vector<bool>* of : {&torn, &bordered})
         if (odd[a] && odd[b] && (*of)[a] != (*of)[b]) (*of)[a] = (*of)[b] = changed = true;
   }
-  for (std::size_t i = 0; i < odd.size(); ++i) chain.lapped[i] = odd[i] && (chain.lapped[i] || (bordered[i] && !torn[i]));
+  for (std::size_t i = 0; i < odd.size(); ++i)
+    chain.lapped[i] = odd[i] && (chain.lapped[i] || (bordered[i] && !torn[i]));
 }
 
 bool WrongSide::wrong(std::size_t sample) const {

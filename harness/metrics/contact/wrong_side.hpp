@@ -20,23 +20,26 @@ struct Weave {
   std::vector<bool> border;
 };
 
-/// Follows samples of a cloth (vertices, centres of cells) in the frame of an object that moves through it, and tells which
-/// are on the wrong side of it.
+/// Follows samples of a cloth (vertices, centres of cells) in the frame of an object that moves through it, and tells
+/// which are on the wrong side of it.
 ///
-/// An object that came at the cloth from the side `side` and pushes it ahead leaves a gap in its wake: between its centre
-/// line and that side there is no cloth. Through that gap runs the surface that the centre line sweeps towards `side`,
-/// carried along. A sample that has passed it an odd number of times, signed crossings counted in space-time (SweptMesh),
-/// is on the wrong side, except where
-/// - it went round a free end: through the half-plane beyond an end that no other bone shares, which the centre line and
+/// An object that came at the cloth from the side `side` and pushes it ahead leaves a gap in its wake: between its
+/// centre line and that side there is no cloth. Through that gap runs the surface that the centre line sweeps towards
+/// `side`, carried along. A sample that has passed it an odd number of times, signed crossings counted in space-time
+/// (SweptMesh), is on the wrong side, except where
+/// - it went round a free end: through the half-plane beyond an end that no other bone shares, which the centre line
+/// and
 ///   side x bone span. One chain of joined bones, a finger, is one wake with its own ends;
 /// - it need not have passed. A frame tells where a sample's way began and ended, not when it was gone; if that decides
-///   whether it passed (evenly, at once or at the end), it is put on the side of the neighbours that the wake doesn't part it from;
-/// - it belongs to a lap. Cloth whose border is laid over a finger passes the wake as one piece, and its links to the rest go
-///   through the wake, or round an end through the continuation of the wake there. What the finger went through has links
-///   that do neither. A piece with part of the border and without such a link is let off, until it goes back.
+///   whether it passed (evenly, at once or at the end), it is put on the side of the neighbours that the wake doesn't
+///   part it from;
+/// - it belongs to a lap. Cloth whose border is laid over a finger passes the wake as one piece, and its links to the
+/// rest go
+///   through the wake, or round an end through the continuation of the wake there. What the finger went through has
+///   links that do neither. A piece with part of the border and without such a link is let off, until it goes back.
 ///
-/// A bone parallel to `side` sweeps nothing and says nothing. A cloth that has come off a fingertip as a whole and is then
-/// passed below is taken for wrong where its samples did not themselves pass the free end.
+/// A bone parallel to `side` sweeps nothing and says nothing. A cloth that has come off a fingertip as a whole and is
+/// then passed below is taken for wrong where its samples did not themselves pass the free end.
 class WrongSide {
  public:
   /// `side`: unit vector. `reach_m`: how far the wake goes, well beyond the cloth. Bones without length are left out.

@@ -35,9 +35,11 @@ bool inside(const Instant& i) {
   return volume(n, a, b) >= 0 && volume(n, b, c) >= 0 && volume(n, c, a) >= 0;
 }
 
-/// Whether a corner goes by more than the radius in one frame, in the world and past the middle alike: between the two frames
-/// it may have gone round, and the straight way says nothing. Cloth that is passed by something fast does not go so far itself.
-bool whips(const Vec3& p0, const Vec3& p1, const std::array<Vec3, 3>& t0, const std::array<Vec3, 3>& t1, double radius) {
+/// Whether a corner goes by more than the radius in one frame, in the world and past the middle alike: between the two
+/// frames it may have gone round, and the straight way says nothing. Cloth that is passed by something fast does not go
+/// so far itself.
+bool whips(const Vec3& p0, const Vec3& p1, const std::array<Vec3, 3>& t0, const std::array<Vec3, 3>& t1,
+           double radius) {
   const Vec3 way = minus(p1, p0);
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 own = minus(t1[k], t0[k]);
@@ -81,7 +83,8 @@ int CapsuleCrossing::add(int frame, const std::vector<double>& x) {
         return mix(c.a_m, c.b_m, 0.5);
       };
       const Vec3 p0 = middle(frame - 1), p1 = middle(frame);
-      const double radius = scene_.motion[static_cast<std::size_t>(frame)].colliders[colliders_[n]].capsules[0].radius_m;
+      const double radius =
+          scene_.motion[static_cast<std::size_t>(frame)].colliders[colliders_[n]].capsules[0].radius_m;
       for (const auto& t : triangles_) {
         const auto corners = [&](const std::vector<double>& at) {
           std::array<Vec3, 3> out;

@@ -127,7 +127,8 @@ void StabilityJudge::judge_motion(int frame, const ClothState& state, const Stra
   const Bounds& base = bounds_[0];
   const auto set_base = [&] {
     const double area = scene_.cloth.width_m * scene_.cloth.height_m;
-    energy_base_J_ = visible_energy(state) + 0.5 * stiffness_ * area * (strain.rms * strain.rms + shear_square(scene_, state.position));
+    energy_base_J_ = visible_energy(state) +
+                     0.5 * stiffness_ * area * (strain.rms * strain.rms + shear_square(scene_, state.position));
     work_base_J_ = b.work_J;
   };
   if (frame == 0) {

@@ -3,8 +3,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <set>
 #include <cmath>
+#include <set>
 
 #include "report/report.hpp"
 #include "report/web/page.hpp"
@@ -47,7 +47,7 @@ json rate_point(const CellRecord& c, const Resolution& r) {
 }
 
 const char* const kDrawnSeries[] = {"tunnelled_fraction", "tunnelled_depth_m", "contact_length_m", "depth_m",
-                               "depth_vertex_m",     "stretch_max"};
+                                    "depth_vertex_m",     "stretch_max"};
 
 json contact_row(const ContactRow& r) {
   const CellRecord& c = *r.cell;

@@ -87,8 +87,7 @@ class Packer {
       const std::size_t least_B = frames / level.frame_stride * (k.columns / step) * (k.rows / step) * 6 / 5;
       if (least_B > share) continue;
       const Replay replay = read_replay(k.cell->file, level.frame_stride);
-      const PackedMotion motion =
-          pack_motion(replay, k.columns, k.rows, step);
+      const PackedMotion motion = pack_motion(replay, k.columns, k.rows, step);
       if (motion.frames.empty()) return false;
       if (const std::size_t size = (motion.bytes.size() + 2) / 3 * 4; size > share) continue;
       store(k, replay, motion);

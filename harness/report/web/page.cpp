@@ -37,12 +37,17 @@ json page_document(const std::vector<CellRecord>& cells, const Page& page, const
     for (const Table& t : s.tables) tables.push_back(table_json(t));
     sections.push_back({{"id", s.id}, {"title", s.title}, {"tables", std::move(tables)}});
   }
-  return {{"format", "clothbench-report"},   {"format_version", 1},
-          {"cells", cells.size()},           {"headline", page.headline},
-          {"sections", std::move(sections)}, {"rates", page.rates},
-          {"penetration", page.penetration}, {"work", page.work},
+  return {{"format", "clothbench-report"},
+          {"format_version", 1},
+          {"cells", cells.size()},
+          {"headline", page.headline},
+          {"sections", std::move(sections)},
+          {"rates", page.rates},
+          {"penetration", page.penetration},
+          {"work", page.work},
           {"maps", page.maps},
-          {"commands", page.commands},       {"motions", motions.document}};
+          {"commands", page.commands},
+          {"motions", motions.document}};
 }
 
 std::string page_html(const std::string& html, const json& document, const std::vector<std::string>& blobs) {

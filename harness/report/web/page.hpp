@@ -23,10 +23,10 @@ struct PageSection {
 struct Page {
   std::string headline;
   std::vector<PageSection> sections;
-  nlohmann::json rates, penetration, work;  ///< points of the figures: rates_json, contact_series_json, work_json
+  nlohmann::json rates, penetration, work;        ///< points of the figures: rates_json, contact_series_json, work_json
   nlohmann::json maps = nlohmann::json::array();  ///< as stability_maps gives them
-  std::vector<std::string> commands;        ///< that made the results
-  std::set<std::string> fronts;             ///< files of cells on a front: shown before other settings
+  std::vector<std::string> commands;              ///< that made the results
+  std::set<std::string> fronts;                   ///< files of cells on a front: shown before other settings
 };
 
 /// Figs. 4 and 5: one family each, with the published values where it is the paper's Table 3. Missing = null.

@@ -26,9 +26,10 @@ void Buffer::create() {
   memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   memory.allocationSize = needs.size;
   memory.memoryTypeIndex =
-      place_ == Place::Device ? device_->memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)
-                             // Cached where there is such a type: the host reads positions back through it.
-                             : device_->memory_type(needs.memoryTypeBits, kMapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+      place_ == Place::Device
+          ? device_->memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)
+          // Cached where there is such a type: the host reads positions back through it.
+          : device_->memory_type(needs.memoryTypeBits, kMapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
   if (memory.memoryTypeIndex == Device::kNoMemory)
     memory.memoryTypeIndex = device_->memory_type(needs.memoryTypeBits, place_ == Place::Device ? 0 : kMapped);
   check(vkAllocateMemory(device_->handle(), &memory, nullptr, &memory_), "vkAllocateMemory");

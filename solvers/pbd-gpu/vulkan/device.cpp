@@ -84,8 +84,8 @@ void check(VkResult result, const char* call) {
 
 namespace {
 
-/// What a process has made. Kept to its end, and not destroyed then: drivers fail to load again after some hundred times (NVIDIA
-/// 580: VK_ERROR_INCOMPATIBLE_DRIVER), and their own clean-up at exit may come first.
+/// What a process has made. Kept to its end, and not destroyed then: drivers fail to load again after some hundred
+/// times (NVIDIA 580: VK_ERROR_INCOMPATIBLE_DRIVER), and their own clean-up at exit may come first.
 struct Made {
   std::mutex mutex;
   std::map<std::tuple<int, bool, std::string>, std::shared_ptr<Device>> devices;

@@ -26,8 +26,8 @@ class Failure : public Error {
 /// Throws Failure naming the call unless `result` is VK_SUCCESS.
 void check(VkResult result, const char* call);
 
-/// Who makes the Vulkan objects of a Device where that is not Vulkan itself: an OpenXR runtime adds extensions that it needs and
-/// says which GPU shows its pictures (XR_KHR_vulkan_enable2).
+/// Who makes the Vulkan objects of a Device where that is not Vulkan itself: an OpenXR runtime adds extensions that it
+/// needs and says which GPU shows its pictures (XR_KHR_vulkan_enable2).
 class Maker {
  public:
   virtual ~Maker() = default;
@@ -43,7 +43,8 @@ class Device {
   /// The device `options.index`, or the best present: discrete, integrated, virtual, then CPU. Throws Error with
   /// ExitCode::NoDevice where there is none, and Error where validation is asked for but the layer is missing.
   static std::shared_ptr<Device> get(const DeviceOptions& options);
-  /// A new device by `maker`, which `get` gives for these options from now on. `options.index` does not count. Throws as `get`.
+  /// A new device by `maker`, which `get` gives for these options from now on. `options.index` does not count. Throws
+  /// as `get`.
   static std::shared_ptr<Device> make(const DeviceOptions& options, Maker& maker);
   static std::vector<DeviceInfo> list();
 
@@ -84,8 +85,8 @@ class Device {
   /// Of all devices this process has had, those of their destruction (leaked objects) included.
   static int validation_messages_ever();
   void note_message(const char* text);
-  /// From now on every message adds to this count too. Solvers share a device: each names its own count before it uses it, so
-  /// that no other is blamed. Those of making the device are the first one's.
+  /// From now on every message adds to this count too. Solvers share a device: each names its own count before it uses
+  /// it, so that no other is blamed. Those of making the device are the first one's.
   void count_messages_in(const std::shared_ptr<std::atomic<int>>& count);
 
   /// After VK_ERROR_DEVICE_LOST: `get` makes a new device instead of sharing this one.

@@ -83,7 +83,8 @@ DeviceInfo describe(VkPhysicalDevice physical) {
   for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
     j["memory_heaps"].push_back({{"bytes", memory.memoryHeaps[i].size}, {"flags", memory.memoryHeaps[i].flags}});
   for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i)
-    j["memory_types"].push_back({{"heap", memory.memoryTypes[i].heapIndex}, {"flags", memory.memoryTypes[i].propertyFlags}});
+    j["memory_types"].push_back(
+        {{"heap", memory.memoryTypes[i].heapIndex}, {"flags", memory.memoryTypes[i].propertyFlags}});
   j["features"] = features_json(physical);
   j["queue_families"] = queue_families_json(physical);
   j["extensions"] = names;

@@ -9,9 +9,9 @@
 
 namespace clothbench::vulkan {
 
-/// Everything the VkPhysicalDevice chain of Vulkan 1.1 tells that compute can meet, as DeviceInfo with a JSON of limits,
-/// features, queue families, memory heaps and types, subgroup, identity and driver properties, extensions with their
-/// versions.
+/// Everything the VkPhysicalDevice chain of Vulkan 1.1 tells that compute can meet, as DeviceInfo with a JSON of
+/// limits, features, queue families, memory heaps and types, subgroup, identity and driver properties, extensions with
+/// their versions.
 DeviceInfo describe(VkPhysicalDevice physical);
 
 /// Every limit of the device.

@@ -27,7 +27,9 @@ class Reader {
 
   void take(std::uint32_t op, std::uint32_t length, const std::uint32_t* w) {
     switch (op) {
-      case kOpCapability: needs_.float_atomics |= kAtomicFloat.count(w[1]) != 0; break;
+      case kOpCapability:
+        needs_.float_atomics |= kAtomicFloat.count(w[1]) != 0;
+        break;
       case kOpExecutionMode:
         if (w[2] == kModeLocalSize)
           for (int k = 0; k < 3; ++k) needs_.group[k] = w[3 + k];
@@ -37,16 +39,28 @@ class Reader {
         if (w[2] == kDecorationBuiltIn && w[3] == kBuiltInWorkgroupSize) group_id_ = w[1];
         break;
       case kOpTypeInt:
-      case kOpTypeFloat: size_[w[1]] = w[2] / 8; break;
+      case kOpTypeFloat:
+        size_[w[1]] = w[2] / 8;
+        break;
       case kOpTypeVector:
-      case kOpTypeMatrix: size_[w[1]] = size_[w[2]] * w[3]; break;
-      case kOpTypeArray: size_[w[1]] = size_[w[2]] * value_[w[3]]; break;
+      case kOpTypeMatrix:
+        size_[w[1]] = size_[w[2]] * w[3];
+        break;
+      case kOpTypeArray:
+        size_[w[1]] = size_[w[2]] * value_[w[3]];
+        break;
       case kOpTypeStruct:
         for (std::uint32_t k = 2; k < length; ++k) size_[w[1]] += size_[w[k]];
         break;
-      case kOpTypePointer: size_[w[1]] = size_[w[3]]; break;
-      case kOpConstant: value_[w[2]] = w[3]; break;
-      case kOpSpecConstant: value_[w[2]] = specialized(w[2], w[3]); break;
+      case kOpTypePointer:
+        size_[w[1]] = size_[w[3]];
+        break;
+      case kOpConstant:
+        value_[w[2]] = w[3];
+        break;
+      case kOpSpecConstant:
+        value_[w[2]] = specialized(w[2], w[3]);
+        break;
       case kOpSpecConstantOp:
         if (w[3] == kIMul) value_[w[2]] = value_[w[4]] * value_[w[5]];
         break;
@@ -59,7 +73,8 @@ class Reader {
       case kOpVariable:
         if (w[3] == kClassWorkgroup) needs_.shared_memory_B += size_[w[1]];
         break;
-      default: break;
+      default:
+        break;
     }
   }
   const ShaderNeeds& needs() const { return needs_; }

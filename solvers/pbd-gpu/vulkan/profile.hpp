@@ -14,8 +14,8 @@ struct SpirV {
 /// run there are refused, and a frame is split into submissions as short as there.
 struct Profile {
   std::string name;
-  std::uint32_t shared_memory_B = 0;        ///< of a workgroup
-  std::uint32_t group_invocations = 0;      ///< workgroups are one-dimensional and at most this wide
+  std::uint32_t shared_memory_B = 0;    ///< of a workgroup
+  std::uint32_t group_invocations = 0;  ///< workgroups are one-dimensional and at most this wide
   std::uint32_t dispatches_per_submit = 0;
   std::uint32_t subgroup_min = 0, subgroup_max = 0;  ///< assumed; no kernel may rely on one size
   bool float_atomics = false;

@@ -33,9 +33,9 @@ class Program {
   /// `patience_s`, VK_ERROR_DEVICE_LOST, ...).
   void run(double patience_s);
 
-  /// Records what was recorded last once more until there are `count` copies, each with commands, a fence and queries of
-  /// its own, so that as many can be in flight at once. Each begins with a barrier against everything before, so they
-  /// run in the order in which they are submitted.
+  /// Records what was recorded last once more until there are `count` copies, each with commands, a fence and queries
+  /// of its own, so that as many can be in flight at once. Each begins with a barrier against everything before, so
+  /// they run in the order in which they are submitted.
   void need_copies(std::size_t count);
   /// Submits a copy that is not in flight. Throws Failure.
   void submit(std::size_t copy);
@@ -97,7 +97,7 @@ class Program {
   std::vector<Step> steps_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;  ///< being recorded
   std::vector<Copy> copies_;
-  std::size_t recorded_copies_ = 0;            ///< the first of them hold what was recorded last
+  std::size_t recorded_copies_ = 0;  ///< the first of them hold what was recorded last
   std::vector<std::uint32_t> submits_;
   std::uint32_t query_count_ = 0;
   bool time_stages_ = false;

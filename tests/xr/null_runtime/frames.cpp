@@ -18,15 +18,20 @@ XrResult list(const std::vector<T>& items, std::uint32_t capacity, std::uint32_t
   return XR_SUCCESS;
 }
 
-XrResult XRAPI_CALL blend_modes(XrInstance, XrSystemId, XrViewConfigurationType, std::uint32_t capacity, std::uint32_t* count, XrEnvironmentBlendMode* out) {
+XrResult XRAPI_CALL blend_modes(XrInstance, XrSystemId, XrViewConfigurationType, std::uint32_t capacity,
+                                std::uint32_t* count, XrEnvironmentBlendMode* out) {
   return list<XrEnvironmentBlendMode>({XR_ENVIRONMENT_BLEND_MODE_OPAQUE}, capacity, count, out);
 }
 
-XrResult XRAPI_CALL reference_spaces(XrSession, std::uint32_t capacity, std::uint32_t* count, XrReferenceSpaceType* out) {
-  return list<XrReferenceSpaceType>({XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE}, capacity, count, out);
+XrResult XRAPI_CALL reference_spaces(XrSession, std::uint32_t capacity, std::uint32_t* count,
+                                     XrReferenceSpaceType* out) {
+  return list<XrReferenceSpaceType>(
+      {XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE}, capacity, count,
+      out);
 }
 
-XrResult XRAPI_CALL configuration_views(XrInstance, XrSystemId, XrViewConfigurationType type, std::uint32_t capacity, std::uint32_t* count, XrViewConfigurationView* out) {
+XrResult XRAPI_CALL configuration_views(XrInstance, XrSystemId, XrViewConfigurationType type, std::uint32_t capacity,
+                                        std::uint32_t* count, XrViewConfigurationView* out) {
   if (type != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO) return XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED;
   const XrViewConfigurationView eye{XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, 64, 128, 72, 128, 1, 4};
   return list<XrViewConfigurationView>({eye, eye}, capacity, count, out);
@@ -105,14 +110,16 @@ XrResult XRAPI_CALL begin_frame(XrSession, const XrFrameBeginInfo*) {
 
 XrResult judge_projection(Runtime& r, const XrCompositionLayerProjection& layer) {
   ++r.projection_frames;
-  if (layer.viewCount != 2) return r.fault("xrEndFrame: a projection layer of other than 2 views", XR_ERROR_VALIDATION_FAILURE);
+  if (layer.viewCount != 2)
+    return r.fault("xrEndFrame: a projection layer of other than 2 views", XR_ERROR_VALIDATION_FAILURE);
   if (!r.spaces.contains(number_of(layer.space))) return r.fault("xrEndFrame: no such space", XR_ERROR_HANDLE_INVALID);
   for (std::uint32_t k = 0; k < 2; ++k) {
     const XrCompositionLayerProjectionView& v = layer.views[k];
     const auto found = r.swapchains.find(number_of(v.subImage.swapchain));
     if (found == r.swapchains.end()) return r.fault("xrEndFrame: no such swapchain", XR_ERROR_HANDLE_INVALID);
     const Swapchain& images = *found->second;
-    if (images.acquired != ~0u || images.released == ~0u) return r.fault("xrEndFrame: an image was not released", XR_ERROR_LAYER_INVALID);
+    if (images.acquired != ~0u || images.released == ~0u)
+      return r.fault("xrEndFrame: an image was not released", XR_ERROR_LAYER_INVALID);
     const auto& rect = v.subImage.imageRect;
     if (rect.offset.x < 0 || rect.offset.y < 0 || rect.extent.width <= 0 || rect.extent.height <= 0 ||
         rect.offset.x + rect.extent.width > static_cast<int>(images.extent.width) ||
@@ -128,11 +135,13 @@ XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
   if (!r.begun) return r.fault("xrEndFrame: not begun", XR_ERROR_CALL_ORDER_INVALID);
   r.begun = false;
   ++r.ended;
-  if (info->displayTime != r.wake_ns + 2 * r.period_ns()) return r.fault("xrEndFrame: another display time", XR_ERROR_TIME_INVALID);
+  if (info->displayTime != r.wake_ns + 2 * r.period_ns())
+    return r.fault("xrEndFrame: another display time", XR_ERROR_TIME_INVALID);
   for (std::uint32_t k = 0; k < info->layerCount; ++k) {
     const XrCompositionLayerBaseHeader* layer = info->layers[k];
     if (layer->type == XR_TYPE_COMPOSITION_LAYER_PASSTHROUGH_FB) {
-      if (k != 0 || !r.passthrough) return r.fault("xrEndFrame: a passthrough layer out of place", XR_ERROR_LAYER_INVALID);
+      if (k != 0 || !r.passthrough)
+        return r.fault("xrEndFrame: a passthrough layer out of place", XR_ERROR_LAYER_INVALID);
       ++r.passthrough_frames;
     } else if (layer->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION) {
       const XrResult result = judge_projection(r, *reinterpret_cast<const XrCompositionLayerProjection*>(layer));
@@ -146,7 +155,8 @@ XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
 }
 
 /// Two eyes 63 mm apart that look along -z from where the head was at first.
-XrResult XRAPI_CALL locate_views(XrSession, const XrViewLocateInfo* info, XrViewState* state, std::uint32_t capacity, std::uint32_t* count, XrView* out) {
+XrResult XRAPI_CALL locate_views(XrSession, const XrViewLocateInfo* info, XrViewState* state, std::uint32_t capacity,
+                                 std::uint32_t* count, XrView* out) {
   Runtime& r = *runtime();
   *count = 2;
   if (capacity == 0) return XR_SUCCESS;
@@ -176,7 +186,8 @@ XrResult XRAPI_CALL request_rate(XrSession, float rate) {
 }
 
 XrResult XRAPI_CALL set_level(XrSession, XrPerfSettingsDomainEXT domain, XrPerfSettingsLevelEXT level) {
-  runtime()->levels.insert((domain == XR_PERF_SETTINGS_DOMAIN_CPU_EXT ? "CPU " : "GPU ") + std::to_string(static_cast<int>(level)));
+  runtime()->levels.insert((domain == XR_PERF_SETTINGS_DOMAIN_CPU_EXT ? "CPU " : "GPU ") +
+                           std::to_string(static_cast<int>(level)));
   return XR_SUCCESS;
 }
 
@@ -184,7 +195,8 @@ XrResult XRAPI_CALL create_passthrough(XrSession, const XrPassthroughCreateInfoF
   *out = handle<XrPassthroughFB>(3);
   return XR_SUCCESS;
 }
-XrResult XRAPI_CALL create_passthrough_layer(XrSession, const XrPassthroughLayerCreateInfoFB*, XrPassthroughLayerFB* out) {
+XrResult XRAPI_CALL create_passthrough_layer(XrSession, const XrPassthroughLayerCreateInfoFB*,
+                                             XrPassthroughLayerFB* out) {
   runtime()->passthrough = true;
   *out = handle<XrPassthroughLayerFB>(4);
   return XR_SUCCESS;
@@ -197,7 +209,9 @@ XrResult XRAPI_CALL destroy_passthrough_layer(XrPassthroughLayerFB) {
 
 XrResult XRAPI_CALL counter_paths(XrInstance, std::uint32_t capacity, std::uint32_t* count, XrPath* out) {
   Runtime& r = *runtime();
-  return list<XrPath>({r.path("/perfmetrics_meta/app/gpu_frametime"), r.path("/perfmetrics_meta/compositor/dropped_frame_count")}, capacity, count, out);
+  return list<XrPath>(
+      {r.path("/perfmetrics_meta/app/gpu_frametime"), r.path("/perfmetrics_meta/compositor/dropped_frame_count")},
+      capacity, count, out);
 }
 XrResult XRAPI_CALL set_metrics(XrSession, const clothbench::xr::MetricsState* s) {
   runtime()->metrics = s->enabled == XR_TRUE;

@@ -17,7 +17,8 @@ Function vulkan(PFN_vkGetInstanceProcAddr get, VkInstance instance, const char* 
   return reinterpret_cast<Function>(get(instance, name));
 }
 
-XrResult XRAPI_CALL create_vulkan_instance(XrInstance, const XrVulkanInstanceCreateInfoKHR* info, VkInstance* out, VkResult* result) {
+XrResult XRAPI_CALL create_vulkan_instance(XrInstance, const XrVulkanInstanceCreateInfoKHR* info, VkInstance* out,
+                                           VkResult* result) {
   const auto create = vulkan<PFN_vkCreateInstance>(info->pfnGetInstanceProcAddr, nullptr, "vkCreateInstance");
   *result = create(info->vulkanCreateInfo, info->vulkanAllocator, out);
   return XR_SUCCESS;
@@ -26,10 +27,12 @@ XrResult XRAPI_CALL create_vulkan_instance(XrInstance, const XrVulkanInstanceCre
 XrResult XRAPI_CALL graphics_device(XrInstance, const XrVulkanGraphicsDeviceGetInfoKHR* info, VkPhysicalDevice* out) {
   std::uint32_t count = 1;
   const VkResult result = vkEnumeratePhysicalDevices(info->vulkanInstance, &count, out);
-  return (result == VK_SUCCESS || result == VK_INCOMPLETE) && count == 1 ? XR_SUCCESS : XR_ERROR_GRAPHICS_DEVICE_INVALID;
+  return (result == VK_SUCCESS || result == VK_INCOMPLETE) && count == 1 ? XR_SUCCESS
+                                                                         : XR_ERROR_GRAPHICS_DEVICE_INVALID;
 }
 
-XrResult XRAPI_CALL create_vulkan_device(XrInstance, const XrVulkanDeviceCreateInfoKHR* info, VkDevice* out, VkResult* result) {
+XrResult XRAPI_CALL create_vulkan_device(XrInstance, const XrVulkanDeviceCreateInfoKHR* info, VkDevice* out,
+                                         VkResult* result) {
   *result = vkCreateDevice(info->vulkanPhysicalDevice, info->vulkanCreateInfo, info->vulkanAllocator, out);
   return XR_SUCCESS;
 }
@@ -106,11 +109,13 @@ XrResult XRAPI_CALL destroy_swapchain(XrSwapchain s) {
   return XR_SUCCESS;
 }
 
-XrResult XRAPI_CALL swapchain_images(XrSwapchain s, std::uint32_t capacity, std::uint32_t* count, XrSwapchainImageBaseHeader* out) {
+XrResult XRAPI_CALL swapchain_images(XrSwapchain s, std::uint32_t capacity, std::uint32_t* count,
+                                     XrSwapchainImageBaseHeader* out) {
   const Swapchain& c = *runtime()->swapchains.at(number_of(s));
   *count = static_cast<std::uint32_t>(c.images.size());
   if (capacity == 0) return XR_SUCCESS;
-  for (std::size_t k = 0; k < c.images.size(); ++k) reinterpret_cast<XrSwapchainImageVulkan2KHR*>(out)[k].image = c.images[k];
+  for (std::size_t k = 0; k < c.images.size(); ++k)
+    reinterpret_cast<XrSwapchainImageVulkan2KHR*>(out)[k].image = c.images[k];
   return XR_SUCCESS;
 }
 
@@ -133,7 +138,8 @@ XrResult XRAPI_CALL wait_image(XrSwapchain s, const XrSwapchainImageWaitInfo*) {
 XrResult XRAPI_CALL release_image(XrSwapchain s, const XrSwapchainImageReleaseInfo*) {
   Runtime& r = *runtime();
   Swapchain& c = *r.swapchains.at(number_of(s));
-  if (c.acquired == ~0u || !c.waited) return r.fault("xrReleaseSwapchainImage: none was waited for", XR_ERROR_CALL_ORDER_INVALID);
+  if (c.acquired == ~0u || !c.waited)
+    return r.fault("xrReleaseSwapchainImage: none was waited for", XR_ERROR_CALL_ORDER_INVALID);
   c.released = c.acquired;
   c.acquired = ~0u;
   return XR_SUCCESS;
@@ -193,7 +199,8 @@ void copy(const Runtime& r, const Reader& to, VkImage image, VkExtent2D extent) 
   b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   b.image = image;
   b.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-  vkCmdPipelineBarrier(to.commands, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1, &b);
+  vkCmdPipelineBarrier(to.commands, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0,
+                       nullptr, 0, nullptr, 1, &b);
   VkBufferImageCopy region{};
   region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
   region.imageExtent = {extent.width, extent.height, 1};
@@ -202,7 +209,8 @@ void copy(const Runtime& r, const Reader& to, VkImage image, VkExtent2D extent) 
   host.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
   host.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
   host.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
-  vkCmdPipelineBarrier(to.commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &host, 0, nullptr, 0, nullptr);
+  vkCmdPipelineBarrier(to.commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &host, 0, nullptr,
+                       0, nullptr);
   vkEndCommandBuffer(to.commands);
   VkSubmitInfo submit{};
   submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;

@@ -26,13 +26,16 @@ XrResult XRAPI_CALL create_action_space(XrSession, const XrActionSpaceCreateInfo
 }
 
 XrResult XRAPI_CALL destroy_space(XrSpace s) {
-  return runtime()->spaces.erase(number_of(s)) == 1 ? XR_SUCCESS : runtime()->fault("xrDestroySpace: no such space", XR_ERROR_HANDLE_INVALID);
+  return runtime()->spaces.erase(number_of(s)) == 1
+             ? XR_SUCCESS
+             : runtime()->fault("xrDestroySpace: no such space", XR_ERROR_HANDLE_INVALID);
 }
 
 XrResult XRAPI_CALL locate_space(XrSpace s, XrSpace base, XrTime, XrSpaceLocation* out) {
   Runtime& r = *runtime();
   const auto what = r.spaces.find(number_of(s)), from = r.spaces.find(number_of(base));
-  if (what == r.spaces.end() || from == r.spaces.end()) return r.fault("xrLocateSpace: no such space", XR_ERROR_HANDLE_INVALID);
+  if (what == r.spaces.end() || from == r.spaces.end())
+    return r.fault("xrLocateSpace: no such space", XR_ERROR_HANDLE_INVALID);
   // The left controller lies in a drawer.
   if (what->second->kind == Space::Kind::Aim && !what->second->right) return XR_SUCCESS;
   out->pose = as_xr(inverse(r.where(*from->second)) * r.where(*what->second));
@@ -53,13 +56,16 @@ XrResult XRAPI_CALL destroy_tracker(XrHandTrackerEXT) {
 bool seen(const Runtime& r) {
   const auto found = r.options.find("unseen");
   if (found == r.options.end()) return true;
-  return !(r.frames >= std::stoi(found->second) && r.frames < std::stoi(found->second.substr(found->second.find(':') + 1)));
+  return !(r.frames >= std::stoi(found->second) &&
+           r.frames < std::stoi(found->second.substr(found->second.find(':') + 1)));
 }
 
-XrResult XRAPI_CALL locate_joints(XrHandTrackerEXT tracker, const XrHandJointsLocateInfoEXT* info, XrHandJointLocationsEXT* out) {
+XrResult XRAPI_CALL locate_joints(XrHandTrackerEXT tracker, const XrHandJointsLocateInfoEXT* info,
+                                  XrHandJointLocationsEXT* out) {
   Runtime& r = *runtime();
   const auto base = r.spaces.find(number_of(info->baseSpace));
-  if (base == r.spaces.end() || out->jointCount != XR_HAND_JOINT_COUNT_EXT) return r.fault("xrLocateHandJointsEXT: asked wrongly", XR_ERROR_VALIDATION_FAILURE);
+  if (base == r.spaces.end() || out->jointCount != XR_HAND_JOINT_COUNT_EXT)
+    return r.fault("xrLocateHandJointsEXT: asked wrongly", XR_ERROR_VALIDATION_FAILURE);
   const bool right = number_of(tracker) == 21;
   const Pose palm = inverse(r.where(*base->second)) * Pose{{}, palm_at(right, r.seconds(info->time))};
   out->isActive = seen(r) ? XR_TRUE : XR_FALSE;
@@ -83,8 +89,8 @@ XrResult XRAPI_CALL locate_joints(XrHandTrackerEXT tracker, const XrHandJointsLo
   return XR_SUCCESS;
 }
 
-/// A closed box of 8 x 18 x 2.4 cm: its lower half follows the wrist, its upper half the middle finger. Every face has vertices of
-/// its own, as where a texture is cut.
+/// A closed box of 8 x 18 x 2.4 cm: its lower half follows the wrist, its upper half the middle finger. Every face has
+/// vertices of its own, as where a texture is cut.
 XrResult XRAPI_CALL hand_mesh(XrHandTrackerEXT tracker, XrHandTrackingMeshFB* m) {
   Mesh box;
   const V l{-0.04, -0.08, -0.012}, h{0.04, 0.1, 0.012}, s = h - l;
@@ -143,14 +149,16 @@ bool bound(const Runtime& r, XrAction action, const char* to) {
 XrResult XRAPI_CALL boolean_state(XrSession, const XrActionStateGetInfo* info, XrActionStateBoolean* out) {
   Runtime& r = *runtime();
   out->isActive = XR_TRUE;
-  out->currentState = bound(r, info->action, "/user/hand/right/input/a/click") && shows_room(r.synced_frame) ? XR_TRUE : XR_FALSE;
+  out->currentState =
+      bound(r, info->action, "/user/hand/right/input/a/click") && shows_room(r.synced_frame) ? XR_TRUE : XR_FALSE;
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL float_state(XrSession, const XrActionStateGetInfo* info, XrActionStateFloat* out) {
   Runtime& r = *runtime();
   const bool right = r.paths.at(info->subactionPath) == "/user/hand/right";
   out->isActive = right ? XR_TRUE : XR_FALSE;
-  out->currentState = right && bound(r, info->action, "/user/hand/right/input/trigger/value") && pulls(r.synced_frame) ? 0.9f : 0.1f;
+  out->currentState =
+      right && bound(r, info->action, "/user/hand/right/input/trigger/value") && pulls(r.synced_frame) ? 0.9f : 0.1f;
   return XR_SUCCESS;
 }
 

@@ -32,7 +32,8 @@ constexpr Offer kOffers[] = {{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, "vulkan"},
                              {cb::kPerformanceMetrics, "metrics"},
                              {"XR_KHR_android_create_instance", "android"}};
 
-XrResult XRAPI_CALL enumerate_extensions(const char* layer, std::uint32_t capacity, std::uint32_t* count, XrExtensionProperties* out) {
+XrResult XRAPI_CALL enumerate_extensions(const char* layer, std::uint32_t capacity, std::uint32_t* count,
+                                         XrExtensionProperties* out) {
   if (layer != nullptr) return XR_ERROR_API_LAYER_NOT_PRESENT;
   const Runtime options;  // an instance need not be there
   std::vector<const char*> names;
@@ -53,12 +54,14 @@ XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info, XrInstance
   auto made = std::make_unique<Runtime>();
   for (std::uint32_t k = 0; k < info->enabledExtensionCount; ++k) {
     bool known = false;
-    for (const Offer& o : kOffers) known = known || (std::strcmp(o.extension, info->enabledExtensionNames[k]) == 0 && made->offers(o.key));
+    for (const Offer& o : kOffers)
+      known = known || (std::strcmp(o.extension, info->enabledExtensionNames[k]) == 0 && made->offers(o.key));
     if (!known) return XR_ERROR_EXTENSION_NOT_PRESENT;
   }
   // Of an activity, what XR_KHR_android_create_instance demands.
   const auto* android = static_cast<const cb::AndroidInfo*>(info->next);
-  if (android != nullptr && (android->type != cb::kTypeInstanceCreateAndroid || android->vm == nullptr || android->activity == nullptr))
+  if (android != nullptr &&
+      (android->type != cb::kTypeInstanceCreateAndroid || android->vm == nullptr || android->activity == nullptr))
     return XR_ERROR_VALIDATION_FAILURE;
   made->android = android != nullptr;
   set_runtime(std::move(made));
@@ -74,9 +77,13 @@ XrResult XRAPI_CALL destroy_instance(XrInstance) {
   if (r.trackers != 0) r.faults.push_back("hand trackers are left");
   const auto log = r.options.find("log");
   if (log != r.options.end()) {
-    const nlohmann::json j = {{"frames", r.ended},           {"rate_hz", r.rate_hz},
-                              {"levels", r.levels},          {"passthrough_frames", r.passthrough_frames},
-                              {"projection_frames", r.projection_frames}, {"drawn", r.drawn}, {"android", r.android},
+    const nlohmann::json j = {{"frames", r.ended},
+                              {"rate_hz", r.rate_hz},
+                              {"levels", r.levels},
+                              {"passthrough_frames", r.passthrough_frames},
+                              {"projection_frames", r.projection_frames},
+                              {"drawn", r.drawn},
+                              {"android", r.android},
                               {"faults", r.faults}};
     std::ofstream(log->second) << j.dump(1) << "\n";
   }
@@ -133,11 +140,16 @@ XrResult XRAPI_CALL path_to_string(XrInstance, XrPath path, std::uint32_t capaci
 XrResult XRAPI_CALL get_instance_proc_addr(XrInstance, const char* name, PFN_xrVoidFunction* out) {
   const std::map<std::string, PFN_xrVoidFunction> own = {
 #define NULL_XR(name, function) {name, reinterpret_cast<PFN_xrVoidFunction>(function)}
-      NULL_XR("xrGetInstanceProcAddr", get_instance_proc_addr), NULL_XR("xrEnumerateInstanceExtensionProperties", enumerate_extensions),
-      NULL_XR("xrCreateInstance", create_instance), NULL_XR("xrDestroyInstance", destroy_instance),
-      NULL_XR("xrGetInstanceProperties", instance_properties), NULL_XR("xrPollEvent", poll_event),
-      NULL_XR("xrResultToString", result_to_string), NULL_XR("xrGetSystem", get_system),
-      NULL_XR("xrGetSystemProperties", system_properties), NULL_XR("xrStringToPath", string_to_path),
+      NULL_XR("xrGetInstanceProcAddr", get_instance_proc_addr),
+      NULL_XR("xrEnumerateInstanceExtensionProperties", enumerate_extensions),
+      NULL_XR("xrCreateInstance", create_instance),
+      NULL_XR("xrDestroyInstance", destroy_instance),
+      NULL_XR("xrGetInstanceProperties", instance_properties),
+      NULL_XR("xrPollEvent", poll_event),
+      NULL_XR("xrResultToString", result_to_string),
+      NULL_XR("xrGetSystem", get_system),
+      NULL_XR("xrGetSystemProperties", system_properties),
+      NULL_XR("xrStringToPath", string_to_path),
       NULL_XR("xrPathToString", path_to_string)};
   const auto found = own.find(name);
   *out = found != own.end() ? found->second : nullptr;
@@ -171,7 +183,8 @@ double Runtime::number(const std::string& key, double otherwise) const {
 XrTime Runtime::now_ns() const {
   const auto clock = options.find("clock");
   if (clock != options.end() && clock->second == "virtual") return wake_ns != 0 ? wake_ns : 1'000'000'000;
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 void Runtime::go(XrSessionState to) {
@@ -205,7 +218,8 @@ XrPosef as_xr(const Pose& p) {
 }
 
 Pose from_xr(const XrPosef& p) {
-  return {{p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w}, {p.position.x, p.position.y, p.position.z}};
+  return {{p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w},
+          {p.position.x, p.position.y, p.position.z}};
 }
 
 }  // namespace null_xr

@@ -11,8 +11,8 @@
 #include "script.hpp"
 #include "xr/openxr.hpp"
 
-/// An OpenXR runtime without a headset: a clock, a script instead of a user, real Vulkan images, and a strict eye on what it is asked.
-/// $CLOTHBENCH_NULL_XR is a list of `key=value`, parted by commas:
+/// An OpenXR runtime without a headset: a clock, a script instead of a user, real Vulkan images, and a strict eye on
+/// what it is asked. $CLOTHBENCH_NULL_XR is a list of `key=value`, parted by commas:
 ///   clock=virtual  time is that of the frames alone; else the machine's
 ///   stalls=20:0.02;40:0.03   after so many frames the application counts as so many seconds late
 ///   hands|capsules|mesh|room|passthrough|rate|metrics=0   leaves an extension out
@@ -91,9 +91,13 @@ Runtime* runtime();
 void set_runtime(std::unique_ptr<Runtime>);
 
 template <class Handle>
-Handle handle(std::uint64_t n) { return reinterpret_cast<Handle>(n); }
+Handle handle(std::uint64_t n) {
+  return reinterpret_cast<Handle>(n);
+}
 template <class Handle>
-std::uint64_t number_of(Handle h) { return reinterpret_cast<std::uint64_t>(h); }
+std::uint64_t number_of(Handle h) {
+  return reinterpret_cast<std::uint64_t>(h);
+}
 
 XrPosef as_xr(const Pose&);
 Pose from_xr(const XrPosef&);

@@ -38,8 +38,8 @@ inline Pose inverse(const Pose& a) { return {conjugate(a.q), turned(conjugate(a.
 
 inline constexpr double kEyeHeight_m = 1.6;  ///< of LOCAL's origin over the floor
 
-/// Palm, in LOCAL: from the right (left hand: from the left) at 0.6 m/s, and 15 cm forward within half a second, through a plane 60 cm
-/// before the eyes.
+/// Palm, in LOCAL: from the right (left hand: from the left) at 0.6 m/s, and 15 cm forward within half a second,
+/// through a plane 60 cm before the eyes.
 inline V palm_at(bool right, double t) {
   const double x = 0.3 - 0.6 * t, forward = t < 0 ? 0 : t < 0.5 ? t / 0.5 : 1;
   return {right ? x : -x, -0.15, -0.5 - 0.15 * forward};
@@ -87,19 +87,20 @@ inline void add_face(Mesh& m, V corner, V along, V up, int n, int rows) {
     for (int i = 0; i <= n; ++i) m.vertices.push_back(corner + (i / double(n)) * along + (j / double(rows)) * up);
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < n; ++i) {
-      const unsigned a = first + static_cast<unsigned>(j * (n + 1) + i), b = a + 1, c = a + static_cast<unsigned>(n) + 1;
+      const unsigned a = first + static_cast<unsigned>(j * (n + 1) + i), b = a + 1,
+                     c = a + static_cast<unsigned>(n) + 1;
       for (const unsigned v : {a, b, c + 1, a, c + 1, c}) m.indices.push_back(v);
     }
 }
 inline Mesh room() {
   Mesh m;
   const V l = kTableLow, h = kTableHigh, s = h - l;
-  add_face(m, {l.x, h.y, h.z}, {s.x, 0, 0}, {0, 0, -s.z}, 16, 10);    // top, seen from above
-  add_face(m, {l.x, l.y, h.z}, {s.x, 0, 0}, {0, s.y, 0}, 8, 6);       // towards the user
+  add_face(m, {l.x, h.y, h.z}, {s.x, 0, 0}, {0, 0, -s.z}, 16, 10);  // top, seen from above
+  add_face(m, {l.x, l.y, h.z}, {s.x, 0, 0}, {0, s.y, 0}, 8, 6);     // towards the user
   add_face(m, {h.x, l.y, h.z}, {0, 0, -s.z}, {0, s.y, 0}, 5, 6);
   add_face(m, {h.x, l.y, l.z}, {-s.x, 0, 0}, {0, s.y, 0}, 8, 6);
   add_face(m, {l.x, l.y, l.z}, {0, 0, s.z}, {0, s.y, 0}, 5, 6);
-  add_face(m, {-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, 12, 12);             // floor
+  add_face(m, {-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, 12, 12);  // floor
   return m;
 }
 /// Where the mesh's own frame is, in STAGE.
@@ -108,7 +109,8 @@ inline Pose room_pose() { return {{0, std::sqrt(0.5), 0, std::sqrt(0.5)}, {0.4, 
 /// Frames at which A is down, and at which the trigger is.
 inline bool shows_room(int frame) { return frame >= 10 && frame < 13; }
 inline bool pulls(int frame) { return frame >= 20 && frame < 44 && frame % 4 < 2; }
-/// What the right controller points at, in STAGE: corners of the table's top, its middle, and the face towards the user.
+/// What the right controller points at, in STAGE: corners of the table's top, its middle, and the face towards the
+/// user.
 inline V target(int frame) {
   const V l = kTableLow, h = kTableHigh;
   const V points[6] = {{l.x + 0.05, h.y, h.z - 0.05}, {h.x - 0.05, h.y, h.z - 0.05}, {h.x - 0.05, h.y, l.z + 0.05},
