@@ -14,7 +14,7 @@ command -v npm >/dev/null || packages+=(nodejs npm)
 for argument in "$@"; do
   case $argument in
     --tests) packages+=(libgtest-dev vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf
-                        python3-paraview libbenchmark-tools chromium clang libclang-rt-dev slurm-wlm munge) ;;
+                        python3-paraview libbenchmark-tools chromium clang clang-format pmccabe libclang-rt-dev slurm-wlm munge) ;;
     --arm64) packages+=(g++-aarch64-linux-gnu qemu-user-static aapt zipalign apksigner android-framework-res
                         default-jre-headless android-platform-frameworks-native-headers android-liblog-dev
                         android-libnativehelper-dev) ;;

@@ -6,9 +6,9 @@
 #include <sstream>
 #include <vector>
 
+#include "base/sha256.hpp"
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
-#include "scenario/sha256.hpp"
 
 namespace clothbench::android {
 namespace {

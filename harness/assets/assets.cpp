@@ -8,10 +8,10 @@
 
 #include "assets/json_at.hpp"
 #include "assets/procedural.hpp"
+#include "base/data_folder.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
-#include "scenario/data_folder.hpp"
-#include "scenario/json_text.hpp"
 
 namespace clothbench::assets {
 namespace {

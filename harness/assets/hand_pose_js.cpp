@@ -5,8 +5,8 @@
 
 #include "assets/hand_pose.hpp"
 #include "assets/json_at.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
-#include "scenario/json_text.hpp"
 
 namespace clothbench::assets {
 namespace {

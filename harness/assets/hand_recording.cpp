@@ -12,8 +12,8 @@
 
 #include "assets/base64.hpp"
 #include "assets/json_at.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
-#include "scenario/json_text.hpp"
 
 namespace clothbench::assets {
 namespace {

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "assets/json_at.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
-#include "scenario/json_text.hpp"
 
 namespace clothbench::assets {
 namespace {

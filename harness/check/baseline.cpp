@@ -6,13 +6,13 @@
 #include <cmath>
 #include <set>
 
+#include "base/json_text.hpp"
 #include "check/gates.hpp"
 #include "check/schema.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 #include "metrics/metric.hpp"
 #include "results/store.hpp"
-#include "scenario/json_text.hpp"
 
 namespace clothbench {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "report/table.hpp"
-#include "report/tint.hpp"
+#include "base/table.hpp"
+#include "base/tint.hpp"
 
 namespace clothbench {
 namespace {

@@ -16,9 +16,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/json_text.hpp"
 #include "results/store.hpp"
 #include "runner/cell.hpp"
-#include "scenario/json_text.hpp"
 
 namespace clothbench {
 namespace {

@@ -7,9 +7,9 @@
 #include <chrono>
 #include <cstdio>
 
+#include "base/json_text.hpp"
 #include "cli/again.hpp"
 #include "results/store.hpp"
-#include "scenario/json_text.hpp"
 
 namespace clothbench {
 namespace {

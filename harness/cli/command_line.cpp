@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "base/tint.hpp"
 #include "cli/command.hpp"
-#include "report/tint.hpp"
 #include "runner/build_info.hpp"
 
 namespace clothbench {

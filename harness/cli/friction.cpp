@@ -4,9 +4,9 @@
 #include <optional>
 #include <set>
 
+#include "base/table.hpp"
 #include "cli/again.hpp"
 #include "cli/command.hpp"
-#include "report/table.hpp"
 #include "runner/threshold.hpp"
 
 namespace clothbench {

@@ -4,10 +4,10 @@
 #include <filesystem>
 
 #include "assets/assets.hpp"
+#include "base/json_text.hpp"
 #include "cli/command.hpp"
 #include "metrics/metric.hpp"
 #include "report/features.hpp"
-#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "base/table.hpp"
 #include "cli/again.hpp"
 #include "cli/command.hpp"
-#include "report/table.hpp"
 #include "runner/threshold.hpp"
 #include "truth/card.hpp"
 

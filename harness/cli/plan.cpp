@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "base/tint.hpp"
 #include "cli/again.hpp"
 #include "cli/command.hpp"
-#include "report/tint.hpp"
 #include "runner/cell.hpp"
 #include "scenario/load.hpp"
 

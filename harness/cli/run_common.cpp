@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
+#include "base/tint.hpp"
 #include "cli/cell_choice.hpp"
 #include "cli/material_cards.hpp"
 #include "cli/supervise.hpp"
 #include "report/in_short.hpp"
 #include "report/report.hpp"
-#include "report/tint.hpp"
 #include "report/withheld.hpp"
 #include "runner/environment.hpp"
 #include "truth/draw.hpp"

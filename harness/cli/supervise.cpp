@@ -11,10 +11,10 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "base/json_text.hpp"
 #include "cli/again.hpp"
 #include "runner/environment.hpp"
 #include "runner/material_card.hpp"
-#include "scenario/json_text.hpp"
 
 namespace clothbench {
 namespace {

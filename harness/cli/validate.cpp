@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include "base/tint.hpp"
 #include "cli/command.hpp"
-#include "report/tint.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
 

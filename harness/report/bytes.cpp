@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/table.hpp"
 #include "report/grid.hpp"
-#include "report/table.hpp"
 
 namespace clothbench {
 

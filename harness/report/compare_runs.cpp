@@ -6,11 +6,11 @@
 #include <cmath>
 #include <set>
 
+#include "base/json_number.hpp"
 #include "clothbench/error.hpp"
 #include "metrics/metric.hpp"
 #include "report/grid.hpp"
 #include "report/withheld.hpp"
-#include "results/json_number.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {

@@ -3,9 +3,9 @@
 #include <map>
 #include <set>
 
+#include "base/json_number.hpp"
 #include "report/report.hpp"
 #include "report/withheld.hpp"
-#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/json_number.hpp"
 #include "report/bytes.hpp"
 #include "report/grid.hpp"
 #include "report/trajectories.hpp"
 #include "report/withheld.hpp"
-#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {

@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/table.hpp"
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
-#include "report/table.hpp"
 
 namespace clothbench {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "base/table.hpp"
 #include "clothbench/record.hpp"
-#include "report/table.hpp"
 
 namespace clothbench {
 

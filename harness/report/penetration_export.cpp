@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/json_number.hpp"
 #include "report/penetration.hpp"
 #include "report/withheld.hpp"
-#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {

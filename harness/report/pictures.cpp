@@ -8,10 +8,10 @@
 #include <regex>
 #include <set>
 
+#include "base/data_folder.hpp"
+#include "base/files.hpp"
 #include "clothbench/error.hpp"
-#include "results/files.hpp"
 #include "results/store.hpp"
-#include "scenario/data_folder.hpp"
 
 namespace clothbench {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "base/json_number.hpp"
 #include "report/withheld.hpp"
-#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "results/json_number.hpp"
+#include "base/json_number.hpp"
 
 namespace clothbench {
 namespace {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/data_folder.hpp"
 #include "clothbench/error.hpp"
 #include "report/across_runs.hpp"
 #include "report/feature_cost.hpp"
@@ -23,7 +24,6 @@
 #include "report/withheld.hpp"
 #include "report/work_precision.hpp"
 #include "results/store.hpp"
-#include "scenario/data_folder.hpp"
 
 namespace clothbench {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "base/table.hpp"
 #include "clothbench/record.hpp"
 #include "report/grid.hpp"
-#include "report/table.hpp"
 
 namespace clothbench {
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/json_number.hpp"
 #include "report/bytes.hpp"
 #include "report/grid.hpp"
 #include "report/trajectories.hpp"
 #include "report/withheld.hpp"
-#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "base/table.hpp"
 #include "clothbench/record.hpp"
-#include "report/table.hpp"
 
 namespace clothbench {
 

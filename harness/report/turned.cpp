@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/json_number.hpp"
 #include "report/trajectories.hpp"
 #include "report/withheld.hpp"
-#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {

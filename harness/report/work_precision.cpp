@@ -7,9 +7,9 @@
 #include <functional>
 #include <set>
 
+#include "base/json_number.hpp"
 #include "report/grid.hpp"
 #include "report/withheld.hpp"
-#include "results/json_number.hpp"
 
 namespace clothbench {
 namespace {

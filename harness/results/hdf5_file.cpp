@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-#include "results/files.hpp"
+#include "base/files.hpp"
 #include "results/hdf5_handle.hpp"
 #include "results/raw_file.hpp"
 

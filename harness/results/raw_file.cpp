@@ -7,8 +7,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "base/json_number.hpp"
 #include "clothbench/error.hpp"
-#include "results/json_number.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {

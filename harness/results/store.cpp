@@ -6,11 +6,11 @@
 #include <cctype>
 #include <fstream>
 
+#include "base/files.hpp"
+#include "base/json_number.hpp"
 #include "clothbench/error.hpp"
 #include "results/device_samples.hpp"
-#include "results/files.hpp"
 #include "results/hdf5_file.hpp"
-#include "results/json_number.hpp"
 #include "results/raw_file.hpp"
 #include "results/xdmf.hpp"
 

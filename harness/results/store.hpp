@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/files.hpp"
 #include "clothbench/record.hpp"
 
 namespace clothbench {
@@ -84,8 +85,5 @@ struct StudyManifest {
 };
 void write_manifest(const std::filesystem::path& dir, const StudyManifest&);
 StudyManifest read_manifest(const std::filesystem::path& dir);
-
-/// tmp + fsync + rename + fsync of the folder.
-void write_file_atomically(const std::filesystem::path&, const std::string& content);
 
 }  // namespace clothbench

@@ -7,14 +7,14 @@
 #include <fstream>
 #include <mutex>
 
+#include "base/json_number.hpp"
+#include "base/json_text.hpp"
 #include "metrics/stability/judge.hpp"
-#include "results/json_number.hpp"
 #include "results/store.hpp"
 #include "runner/cell.hpp"
 #include "runner/environment.hpp"
 #include "runner/expect.hpp"
 #include "runner/replay.hpp"
-#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

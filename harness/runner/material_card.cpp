@@ -6,12 +6,12 @@
 #include <cmath>
 #include <optional>
 
+#include "base/sha256.hpp"
 #include "metrics/material_patch.hpp"
 #include "metrics/metric.hpp"
 #include "runner/cell.hpp"
 #include "runner/environment.hpp"
 #include "runner/frame_input.hpp"
-#include "scenario/sha256.hpp"
 
 namespace clothbench {
 namespace {

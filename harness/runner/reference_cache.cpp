@@ -4,10 +4,10 @@
 
 #include <fstream>
 
+#include "base/sha256.hpp"
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
 #include "results/store.hpp"
-#include "scenario/sha256.hpp"
 
 namespace clothbench {
 namespace {

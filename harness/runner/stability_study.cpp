@@ -9,7 +9,9 @@
 #include <memory>
 #include <mutex>
 
-#include "results/json_number.hpp"
+#include "base/json_number.hpp"
+#include "base/json_text.hpp"
+#include "base/sha256.hpp"
 #include "results/store.hpp"
 #include "runner/boundary.hpp"
 #include "runner/cell.hpp"
@@ -17,9 +19,7 @@
 #include "runner/resume.hpp"
 #include "runner/stability_theory.hpp"
 #include "runner/worker_pool.hpp"
-#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
-#include "scenario/sha256.hpp"
 
 namespace clothbench {
 namespace {

@@ -9,12 +9,12 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/json_text.hpp"
+#include "base/sha256.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
-#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 #include "scenario/recorded_hand.hpp"
-#include "scenario/sha256.hpp"
 
 #define TINYOBJLOADER_IMPLEMENTATION
 #define TINYOBJLOADER_USE_DOUBLE

@@ -12,11 +12,12 @@
 #include "assets/assets.hpp"
 #include "assets/hand_track.hpp"
 #include "assets/submesh.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
-#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 #include "scenario/path.hpp"
 #include "scenario/recorded_hand.hpp"
+#include "scenario/schemas.hpp"
 #include "scenario/table_pose.hpp"
 #include "scenario/vec3.hpp"
 

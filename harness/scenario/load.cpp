@@ -6,14 +6,15 @@
 #include <filesystem>
 #include <set>
 
+#include "base/data_folder.hpp"
+#include "base/json_text.hpp"
+#include "base/sha256.hpp"
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/colliders.hpp"
-#include "scenario/data_folder.hpp"
 #include "scenario/irregular.hpp"
-#include "scenario/json_text.hpp"
-#include "scenario/sha256.hpp"
+#include "scenario/schemas.hpp"
 #include "scenario/vec3.hpp"
 
 namespace clothbench {

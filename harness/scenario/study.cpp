@@ -7,10 +7,11 @@
 #include <map>
 #include <set>
 
+#include "base/json_text.hpp"
 #include "clothbench/solver.hpp"
 #include "scenario/irrelevant.hpp"
-#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
+#include "scenario/schemas.hpp"
 
 namespace clothbench {
 namespace {

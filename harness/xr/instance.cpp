@@ -7,7 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "scenario/json_text.hpp"
+#include "base/json_text.hpp"
 #include "xr/android_context.hpp"
 
 namespace clothbench::xr {

@@ -6,9 +6,9 @@
 
 #include "assets/assets.hpp"
 #include "assets/hand_track.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
-#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 #include "scenario/recorded_hand.hpp"
 

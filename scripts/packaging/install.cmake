@@ -1,5 +1,5 @@
 # What `cmake --install` copies, and where Debian expects each thing. The tree can be moved: the program finds share/clothbench from where
-# it lies itself (harness/scenario/data_folder), the CMake package its header.
+# it lies itself (harness/base/data_folder), the CMake package its header.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS

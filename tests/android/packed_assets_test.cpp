@@ -8,9 +8,9 @@
 #include <map>
 #include <sstream>
 
+#include "base/sha256.hpp"
 #include "clothbench/error.hpp"
 #include "scenario/load.hpp"
-#include "scenario/sha256.hpp"
 #include "scenario/study.hpp"
 
 namespace clothbench::android {

@@ -1,8 +1,8 @@
 // Scenario files: text to completed scene.
 #include <cstdlib>
 
+#include "base/json_text.hpp"
 #include "fuzz.hpp"
-#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) { return setenv("CLOTHBENCH_ASSETS", "procedural", 1); }

@@ -4,11 +4,12 @@
 
 #include <cmath>
 
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 #include "runner/cell.hpp"
-#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
+#include "scenario/schemas.hpp"
 
 namespace clothbench {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "report/tint.hpp"
+#include "base/tint.hpp"
 
 namespace clothbench {
 namespace {

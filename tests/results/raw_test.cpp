@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "base/json_number.hpp"
 #include "clothbench/error.hpp"
-#include "results/json_number.hpp"
 #include "results/raw_file.hpp"
 #include "results/store.hpp"
 #include "sample_cell.hpp"

@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "../scenario/scratch_folder.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/solver.hpp"
-#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

@@ -1,4 +1,4 @@
-#include "scenario/data_folder.hpp"
+#include "base/data_folder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <set>
 
+#include "base/sha256.hpp"
 #include "clothbench/scene.hpp"
-#include "scenario/sha256.hpp"
 
 namespace clothbench {
 namespace {

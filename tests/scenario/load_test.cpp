@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "scenario/json_text.hpp"
+#include "base/json_text.hpp"
 #include "scenario/study.hpp"
 
 namespace clothbench {

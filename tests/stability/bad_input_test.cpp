@@ -8,9 +8,9 @@
 #include <regex>
 #include <sstream>
 
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "runner/cell.hpp"
-#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

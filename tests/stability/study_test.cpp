@@ -7,12 +7,12 @@
 #include <functional>
 #include <set>
 
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "report/across_runs.hpp"
 #include "report/stability.hpp"
 #include "results/store.hpp"
 #include "runner/stability_study.hpp"
-#include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "scenario/json_text.hpp"
+#include "base/json_text.hpp"
 #include "scenario/load.hpp"
 #include "xr/loop.hpp"
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <set>
 
+#include "base/json_number.hpp"
 #include "report/report.hpp"
 #include "report/web/page.hpp"
-#include "results/json_number.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {

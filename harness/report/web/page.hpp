@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "base/table.hpp"
 #include "clothbench/record.hpp"
 #include "report/grid.hpp"
 #include "report/penetration.hpp"
-#include "report/table.hpp"
 #include "report/web/template.hpp"
 
 namespace clothbench {

@@ -27,7 +27,4 @@ const nlohmann::json& sub_schema(const nlohmann::json& schema, const nlohmann::j
 /// Adds every `default` the schema names that is missing.
 void fill_defaults(nlohmann::json&, const std::string& schema_text);
 
-extern const char* const kSceneSchema;
-extern const char* const kStudySchema;
-
 }  // namespace clothbench

@@ -15,7 +15,7 @@ struct Table {
 
   std::string markdown() const;
   /// Columns that do not fit kConsoleColumns follow below, with the first two repeated; the note is wrapped. Verdicts
-  /// are coloured where colour is on (report/tint.hpp).
+  /// are coloured where colour is on (base/tint.hpp).
   std::string console() const;
 };
 

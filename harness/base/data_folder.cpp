@@ -1,11 +1,11 @@
-#include "scenario/data_folder.hpp"
+#include "base/data_folder.hpp"
 
 #include <fmt/format.h>
 
 #include <cstdlib>
 
+#include "base/paths.hpp"
 #include "clothbench/error.hpp"
-#include "scenario/paths.hpp"
 
 namespace clothbench {
 namespace {

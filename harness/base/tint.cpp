@@ -1,4 +1,4 @@
-#include "report/tint.hpp"
+#include "base/tint.hpp"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "results/json_number.hpp"
+#include "base/json_number.hpp"
 
 #include <cmath>
 #include <limits>

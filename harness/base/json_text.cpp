@@ -1,4 +1,4 @@
-#include "scenario/json_text.hpp"
+#include "base/json_text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "report/table.hpp"
+#include "base/table.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "report/tint.hpp"
+#include "base/tint.hpp"
 
 namespace clothbench {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <string>
 
 namespace clothbench {
 
@@ -11,5 +12,8 @@ std::filesystem::path temporary_name(const std::filesystem::path& path);
 
 /// fsync of the temporary file, rename into place, fsync of the folder. Throws Error naming the file.
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& path);
+
+/// tmp + fsync + rename + fsync of the folder.
+void write_file_atomically(const std::filesystem::path&, const std::string& content);
 
 }  // namespace clothbench

@@ -8,9 +8,9 @@
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
 
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
-#include "scenario/json_text.hpp"
 
 namespace clothbench {
 namespace {

@@ -1,4 +1,4 @@
-#include "results/files.hpp"
+#include "base/files.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -8,7 +8,6 @@
 #include <cstring>
 
 #include "clothbench/error.hpp"
-#include "results/store.hpp"
 
 namespace clothbench {
 namespace {

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+"""Checks what a reader relies on to find his way: includes go one way, files and functions stay short, the format is one.
+
+    check_structure.py [--list]     --list: print every include between rooms, with a file that has it
+
+Prints one line a fault and exits with 1; with 77 (skipped) where a needed program is missing and nothing else is wrong.
+"""
+import argparse
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# A room may include those before it, and the public interface (include/clothbench); nothing after it.
+ROOMS = ["base", "assets", "scenario", "truth", "metrics", "results", "runner", "report", "check", "render", "xr", "cli", "android"]
+# A solver may include the public interface and base.
+SOLVERS_MAY_INCLUDE = {"base", "clothbench"}
+
+MOST_LINES_OF_A_FILE = 400
+MOST_LINES_OF_A_FUNCTION = 60
+# A table, row after row, and a macro that pmccabe takes for a function's head.
+LONG_ON_PURPOSE = {"clothbench::metrics", "__attribute__"}
+# Known, and to become fewer: a name leaves this list when its function is short, and none is added.
+TOO_LONG = {
+    "clothbench::run_command_line", "clothbench::fps_tables", "clothbench::summarise", "clothbench::add_friction",
+    "clothbench::add_study", "clothbench::write_report",
+    "harness/runner/stability_study.cpp", "harness/xr/loop.cpp",
+}
+
+
+def files(*patterns):
+    out = subprocess.run(["git", "-C", ROOT, "ls-files", "-z", "--", *patterns], capture_output=True, check=True, text=True).stdout
+    return [f for f in out.split("\0") if f and (ROOT / f).exists()]
+
+
+def includes(path):
+    for line in (ROOT / path).read_text().splitlines():
+        match = re.match(r'#include "([^/"]+)/', line)
+        if match:
+            yield match[1]
+
+
+def wrong_includes(show):
+    faults = []
+    seen = {}
+    for path in files("harness/*.cpp", "harness/*.hpp", "harness/*.in"):
+        room = path.split("/")[1]
+        if room not in ROOMS:
+            continue
+        for other in includes(path):
+            if other != room and other in ROOMS:
+                seen.setdefault((room, other), path)
+                if ROOMS.index(other) > ROOMS.index(room):
+                    faults.append(f"{path}: {room} may not include {other}, which stands above it")
+    for path in files("solvers/*.cpp", "solvers/*.hpp"):
+        for other in includes(path):
+            if other in ROOMS and other not in SOLVERS_MAY_INCLUDE:
+                faults.append(f"{path}: a solver may include the public interface and base, not {other}")
+    if show:
+        for (room, other), path in sorted(seen.items()):
+            print(f"{room} -> {other}   {path}")
+    return faults
+
+
+def long_files():
+    product = files("harness/*", "solvers/*", "scripts/*.py", "scripts/*.sh", "scripts/*.mjs")
+    code = (".cpp", ".hpp", ".h", ".glsl", ".comp", ".js", ".mjs", ".py", ".sh", ".cmake")
+    for path in product:
+        if not path.endswith(code):
+            continue
+        lines = len((ROOT / path).read_text().splitlines())
+        if lines > MOST_LINES_OF_A_FILE and path not in TOO_LONG:
+            yield f"{path}: {lines} lines; at most {MOST_LINES_OF_A_FILE}"
+
+
+def long_functions():
+    sources = files("harness/*.cpp", "harness/*.hpp", "solvers/*.cpp", "solvers/*.hpp")
+    # Columns: complexity twice, statements, first line, lines, file(line): name.
+    out = subprocess.run(["pmccabe", *sources], cwd=ROOT, capture_output=True, text=True).stdout
+    short_now = set(name for name in TOO_LONG if name.startswith("clothbench::"))
+    count = 0
+    for line in out.splitlines():
+        fields = line.split("\t")
+        lines, place, name = int(fields[4]), *fields[5].split(": ", 1)
+        count += 1
+        if lines <= MOST_LINES_OF_A_FUNCTION or name in LONG_ON_PURPOSE:
+            continue
+        short_now.discard(name)
+        if name not in TOO_LONG:
+            yield f"{place}: {name}: {lines} lines; at most {MOST_LINES_OF_A_FUNCTION}"
+    if count < 1000:
+        yield f"pmccabe found {count} functions; there are over a thousand"
+    for name in sorted(short_now):
+        yield f"{name} is short now: take it off TOO_LONG in {Path(__file__).name}"
+
+
+def unformatted():
+    sources = files("*.cpp", "*.hpp", "*.h")
+    out = subprocess.run(["clang-format-14", "--dry-run", *sources], cwd=ROOT, capture_output=True, text=True).stderr
+    names = sorted({line.split(":")[0] for line in out.splitlines() if "[-Wclang-format-violations]" in line})
+    return [f"{name}: not formatted (clang-format-14 -i {name})" for name in names]
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("--list", action="store_true")
+    show = arguments.parse_args().list
+    faults = wrong_includes(show) + list(long_files())
+    missing = [program for program in ("pmccabe", "clang-format-14") if not shutil.which(program)]
+    if "pmccabe" not in missing:
+        faults += long_functions()
+    if "clang-format-14" not in missing:
+        faults += unformatted()
+    for fault in faults:
+        print(fault)
+    if faults:
+        return 1
+    if missing:
+        print(f"skipped: no {', '.join(missing)}")
+        return 77
+    print("includes, lengths and format: as they should be")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
