@@ -21,7 +21,8 @@ build() {
   configure ci "${first[@]}"
   cmake --build --preset ci -j "$JOBS" --target "${targets[@]}"
 }
-tests() { ctest --test-dir build/release --output-on-failure -j "$JOBS" "${selection[@]}"; }
+# One more than the machine has cores: some tests wait for a clock or another program.
+tests() { ctest --test-dir build/release --output-on-failure -j $((JOBS + 1)) "${selection[@]}"; }
 
 # What penetrates what, against the committed baseline; gates nothing that depends on the machine's speed.
 penetration() {

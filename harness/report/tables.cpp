@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "report/bytes.hpp"
 #include "report/report.hpp"
@@ -64,7 +65,82 @@ void note_withheld(const Family& family, std::vector<Table>& tables) {
       }
 }
 
-/// A table is for families where a cell has such a value.
+/// One table of a family: a value of each cell, printed.
+struct ValueTable {
+  std::string title, note;
+  std::function<std::string(const CellRecord&)> text;
+  const char* only_with = nullptr;  ///< a summary value: no table where no cell has it
+};
+
+ValueTable milliseconds(const char* title, const char* note, const char* name, const char* only_with = nullptr) {
+  return {title, note, [name](const CellRecord& c) { return significant(1e3 * summary_value(c, name), 3); }, only_with};
+}
+
+std::vector<ValueTable> time_tables() {
+  return {
+      {"Frames per second, uncapped", "Median of the trials ± half their range.",
+       [](const CellRecord& c) { return with_spread(summary_value(c, "fps_median"), summary_value(c, "fps_spread")); }},
+      milliseconds("Wall time a frame [ms]", "Median over all timed frames.", "frame_wall_median_s"),
+      milliseconds("Frame time with rendering, stereo [ms]",
+                   "Median wall time of a frame and its two pictures, nothing overlapping; the file says their size. "
+                   "A GPU solver's buffer is drawn as it lies, a CPU solver's positions are uploaded. The paper's "
+                   "FPS include rendering.",
+                   "frame_rendered_median_s", "frame_rendered_median_s"),
+      milliseconds(
+          "Wall time a frame, pipelined [ms]",
+          "Frames not waited for, two in flight; median of the trials' means. – where a solver waits for each.",
+          "frame_pipelined_median_s", "frame_pipelined_median_s"),
+      milliseconds("GPU time a frame [ms]",
+                   "Median; first to last timestamp of the frame's one submission. – on a CPU.",
+                   "frame_device_median_s"),
+  };
+}
+
+std::vector<ValueTable> error_tables() {
+  return {
+      {"Free-fall error over gT²/2 at T = 0.5 s",
+       "Greatest distance of a vertex from the closed form of the solver's own integrator.",
+       [](const CellRecord& c) {
+         const double e = summary_value(c, "free_fall_error");
+         return std::isfinite(e) ? fmt::format("{:.1e}", e) : std::string("–");
+       },
+       "free_fall_error"},
+      {"Stretch of structural edges in the last second, mean / greatest [%]",
+       "Over edges and frames; edges shorter than at rest count as 0 in the mean.",
+       [](const CellRecord& c) {
+         return paired(100 * summary_value(c, "stretch_mean_last_second"),
+                       100 * summary_value(c, "stretch_max_last_second"), " / ", 2);
+       },
+       "stretch_max_last_second"},
+  };
+}
+
+std::vector<ValueTable> device_tables(const std::string& windows) {
+  return {
+      {"kB a frame, read / written",
+       fmt::format("Bytes: {} – for CPU solvers, of which nothing is known.", kWhatBytesAre),
+       [](const CellRecord& c) { return bytes_pair(c, "read_B_per_frame", "write_B_per_frame", 1e-3); }},
+      {"Peak bandwidth, read / written [GB/s]",
+       "The same bytes over wall time; " + (windows.empty() ? "no cell has any." : windows + "."),
+       [](const CellRecord& c) {
+         return bytes_pair(c, "bandwidth_read_peak_B_per_s", "bandwidth_write_peak_B_per_s", 1e-9);
+       }},
+      {"Device memory [kB] · dispatches a frame", "Buffers in device-local memory. – on a CPU.",
+       [](const CellRecord& c) {
+         const double m = summary_value(c, "device_memory_B"), d = summary_value(c, "dispatches");
+         return std::isfinite(m) || std::isfinite(d) ? significant(1e-3 * m, 4) + " · " + significant(d, 1)
+                                                     : std::string("–");
+       }},
+  };
+}
+
+/// What notes are made of: summaries are enough.
+std::vector<CellRecord> summaries_of(const Family& family) {
+  std::vector<CellRecord> cells;
+  for (const PlacedCell& p : family.cells) cells.emplace_back().summary = p.cell->summary;
+  return cells;
+}
+
 bool any_value(const Family& family, const char* name) {
   return std::any_of(family.cells.begin(), family.cells.end(),
                      [&](const PlacedCell& p) { return std::isfinite(summary_value(*p.cell, name)); });
@@ -75,67 +151,16 @@ bool any_value(const Family& family, const char* name) {
 std::vector<Table> fps_tables(const Family& family, const nlohmann::json& published) {
   const bool paper = family.paper_table == 3;
   const std::string scene = paper ? "" : " (" + family.name + ")";
-  std::vector<CellRecord> cells;  // summaries are enough for the notes
-  for (const PlacedCell& p : family.cells) {
-    cells.emplace_back();
-    cells.back().summary = p.cell->summary;
-  }
-  const auto v = summary_value;
-  std::vector<Table> t;
-  t.push_back(family.table((paper ? "Table 3: frames" : "Frames") + std::string(" per second, capped at 72") + scene,
-                           capped_note(family, paper), [&](const CellRecord& c) { return fps(v(c, "fps_at_72")); }));
-  if (paper) add_published(t.back(), family.resolutions(), published);
-  t.push_back(family.table("Frames per second, uncapped" + scene, "Median of the trials ± half their range.",
-                           [&](const CellRecord& c) { return with_spread(v(c, "fps_median"), v(c, "fps_spread")); }));
-  t.push_back(family.table("Wall time a frame [ms]" + scene, "Median over all timed frames.",
-                           [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_wall_median_s"), 3); }));
-  if (any_value(family, "frame_rendered_median_s"))
-    t.push_back(
-        family.table("Frame time with rendering, stereo [ms]" + scene,
-                     "Median wall time of a frame and its two pictures, nothing overlapping; the file says their size. "
-                     "A GPU solver's buffer is drawn as it lies, a CPU solver's positions are uploaded. The paper's "
-                     "FPS include rendering.",
-                     [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_rendered_median_s"), 3); }));
-  if (any_value(family, "frame_pipelined_median_s"))
-    t.push_back(family.table(
-        "Wall time a frame, pipelined [ms]" + scene,
-        "Frames not waited for, two in flight; median of the trials' means. – where a solver waits for each.",
-        [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_pipelined_median_s"), 3); }));
-  t.push_back(family.table("GPU time a frame [ms]" + scene,
-                           "Median; first to last timestamp of the frame's one submission. – on a CPU.",
-                           [&](const CellRecord& c) { return significant(1e3 * v(c, "frame_device_median_s"), 3); }));
-  if (any_value(family, "free_fall_error"))
-    t.push_back(family.table("Free-fall error over gT²/2 at T = 0.5 s" + scene,
-                             "Greatest distance of a vertex from the closed form of the solver's own integrator.",
-                             [&](const CellRecord& c) {
-                               const double e = v(c, "free_fall_error");
-                               return std::isfinite(e) ? fmt::format("{:.1e}", e) : std::string("–");
-                             }));
-  if (any_value(family, "stretch_max_last_second"))
-    t.push_back(family.table(
-        "Stretch of structural edges in the last second, mean / greatest [%]" + scene,
-        "Over edges and frames; edges shorter than at rest count as 0 in the mean.", [&](const CellRecord& c) {
-          return paired(100 * v(c, "stretch_mean_last_second"), 100 * v(c, "stretch_max_last_second"), " / ", 2);
-        }));
-  t.push_back(
-      family.table("kB a frame, read / written" + scene,
-                   fmt::format("Bytes: {} – for CPU solvers, of which nothing is known.", kWhatBytesAre),
-                   [](const CellRecord& c) { return bytes_pair(c, "read_B_per_frame", "write_B_per_frame", 1e-3); }));
-  const std::string windows = window_note(cells);
-  t.push_back(family.table("Peak bandwidth, read / written [GB/s]" + scene,
-                           "The same bytes over wall time; " + (windows.empty() ? "no cell has any." : windows + "."),
-                           [](const CellRecord& c) {
-                             return bytes_pair(c, "bandwidth_read_peak_B_per_s", "bandwidth_write_peak_B_per_s", 1e-9);
-                           }));
-  t.push_back(family.table("Device memory [kB] · dispatches a frame" + scene,
-                           "Buffers in device-local memory. – on a CPU.", [&](const CellRecord& c) {
-                             const double m = v(c, "device_memory_B"), d = v(c, "dispatches");
-                             return std::isfinite(m) || std::isfinite(d)
-                                        ? significant(1e-3 * m, 4) + " · " + significant(d, 1)
-                                        : std::string("–");
-                           }));
-  note_withheld(family, t);
-  return t;
+  std::vector<Table> tables = {
+      family.table((paper ? "Table 3: frames" : "Frames") + std::string(" per second, capped at 72") + scene,
+                   capped_note(family, paper), [](const CellRecord& c) { return fps(summary_value(c, "fps_at_72")); })};
+  if (paper) add_published(tables.back(), family.resolutions(), published);
+  for (const auto& group : {time_tables(), error_tables(), device_tables(window_note(summaries_of(family)))})
+    for (const ValueTable& t : group)
+      if (t.only_with == nullptr || any_value(family, t.only_with))
+        tables.push_back(family.table(t.title + scene, t.note, t.text));
+  note_withheld(family, tables);
+  return tables;
 }
 
 Table failed_table(const std::vector<CellRecord>& cells) {

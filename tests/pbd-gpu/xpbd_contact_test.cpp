@@ -89,10 +89,11 @@ TEST_F(Gpu, ContactAgreesWithDoublePrecisionKindByKind) {
         {"mesh", octahedron({0.013, 0.017, 0.021}, 0.12, false, friction)},
         {"hand", octahedron({0.013, 0.017, 0.021}, 0.12, true, friction)},
         {"open sheet", open_sheet({0.03, 0.1, 0.01}, 0.32, friction)}};
-    for (const auto& [name, collider] : kinds)
-      for (int samples : {0, 1, 2})
-        expect_close(moving(with_collider(falling(9, 7), collider)), 4, samples, 3,
-                     name + " friction " + std::to_string(friction) + " samples " + std::to_string(samples));
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+      for (std::size_t samples : {0, 1, 2})
+        if (const auto& [name, collider] = kinds[kind]; in_turn(kind + samples))
+          expect_close(moving(with_collider(falling(9, 7), collider)), 4, static_cast<int>(samples), 3,
+                       name + " friction " + std::to_string(friction) + " samples " + std::to_string(samples));
   }
 }
 
