@@ -39,7 +39,7 @@ install_it() {
   get /tmp/clothbench.deb
   rm "$root/tmp/clothbench.deb"
   as_root dpkg -s clothbench | grep -q '^Recommends:.*\bnodejs\b' || fail "it does not recommend nodejs"
-  for name in nodejs python3-matplotlib python3-h5py; do
+  for name in nodejs librsvg2-bin python3-matplotlib python3-h5py; do
     ! as_root dpkg -s $name >/dev/null 2>&1 || fail "$name is there: it is recommended, and must not be needed"
   done
   as_root dpkg --verify clothbench | grep . && fail "its files are not as they were packed"
@@ -100,9 +100,11 @@ is_tidy() {
 }
 
 figures() {
-  get nodejs python3-matplotlib python3-h5py
+  get nodejs librsvg2-bin
   quietly as_user clothbench report study -o report
-  [ -s "$root$home/report/fig4.svg" ] || fail "no figures although what is recommended is there"
+  for name in fig4.svg fig5.png; do
+    [ -s "$root$home/report/$name" ] || fail "no $name although what is recommended is there"
+  done
   ok "figures are drawn"
 }
 

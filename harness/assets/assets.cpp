@@ -62,11 +62,12 @@ fs::path user_data() {
 
 /// As a user of this build can call it.
 std::string fetching_script() {
-  const char* const name = "fetch-assets.sh";
+  const char* const script = "scripts/fetch-assets.sh";
+  const DataRoots roots = data_roots();
   std::error_code ec;
-  for (const fs::path& folder : usual_places(kScriptFolder))
-    if (fs::is_regular_file(folder / name, ec)) return (folder / name).string();
-  return std::string("scripts/") + name;
+  for (const fs::path& root : {roots.installed, roots.source})
+    if (!root.empty() && fs::is_regular_file(root / script, ec)) return (root / script).string();
+  return script;
 }
 
 /// The user's folder last: an installed tree's or a source tree's own come first.

@@ -14,8 +14,6 @@ struct DataFolder {
 };
 
 inline constexpr DataFolder kScenarioFolder{"scenes and studies", "CLOTHBENCH_SCENARIOS", "scenarios", "scenarios"};
-inline constexpr DataFolder kScriptFolder{"scripts", "CLOTHBENCH_SCRIPTS", "scripts", "scripts"};
-inline constexpr DataFolder kResultFolder{"published results", "CLOTHBENCH_RESULTS", "results", "results"};
 inline constexpr DataFolder kAssetFolder{"rooms and hands", "CLOTHBENCH_ASSETS", "assets/node_modules",
                                          "build/assets/node_modules"};
 

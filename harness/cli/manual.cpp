@@ -17,9 +17,7 @@ constexpr std::array kEnvironment = {
     Entry{"CLOTHBENCH_SCENARIOS",
           "Folder with scenes and studies. Without it they are looked for in share/clothbench beside the program's "
           "folder, then in the "
-          "source tree that the program was built from. The same holds for the next three."},
-    Entry{"CLOTHBENCH_SCRIPTS", "Folder with the scripts that draw a report's figures."},
-    Entry{"CLOTHBENCH_RESULTS", "Folder with the published results that a report's figures compare with."},
+          "source tree that the program was built from. The same holds for the next."},
     Entry{
         "CLOTHBENCH_ASSETS",
         "Folder node_modules with scanned rooms and hands, or the word \"procedural\" for the stand-ins. Looked for in "

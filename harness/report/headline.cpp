@@ -69,6 +69,13 @@ std::string window_note(const std::vector<CellRecord>& cells) {
                      most);
 }
 
+std::string gpu_of(const CellRecord& c) {
+  const nlohmann::json& e = c.header.environment;
+  const std::string gpu = text(e, "gpu");
+  if (gpu == "CPU" || gpu == "–") return "";
+  return flag(e, "gpu_is_software") ? gpu + " (software, not for speed claims)" : gpu;
+}
+
 std::string headline(const std::vector<CellRecord>& cells, Format format) {
   std::vector<std::string> software, invalid, lines, hosts;
   std::map<std::string, Span> created;
@@ -85,7 +92,7 @@ std::string headline(const std::vector<CellRecord>& cells, Format format) {
     const std::string host = host_line(e);
     created[host].add(text(e, "created"));
     add(hosts, host);
-    if (text(e, "gpu") == "CPU" || text(e, "gpu") == "–") continue;
+    if (gpu_of(c).empty()) continue;
     if (flag(e, "gpu_is_software")) add(software, text(e, "gpu"));
     add(lines, fmt::format("GPU {} · driver {} · {}", text(e, "gpu"), text(e, "driver"), host));
     on_gpu[host] = true;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -26,10 +27,12 @@ std::string quoted(const fs::path& path) {
   return out + "'";
 }
 
-/// A Python with matplotlib; empty if there is none.
-std::string find_python() {
-  for (const char* python : {"/usr/bin/python3", "python3"})
-    if (std::system((std::string(python) + " -c 'import matplotlib' >/dev/null 2>&1").c_str()) == 0) return python;
+bool runs(const std::string& command) { return std::system(command.c_str()) == 0; }
+
+/// Debian had it under another name once; empty if there is none.
+std::string find_node() {
+  for (const char* node : {"node", "nodejs"})
+    if (runs(std::string(node) + " --version >/dev/null 2>&1")) return node;
   return "";
 }
 
@@ -91,6 +94,20 @@ void write_list(const fs::path& out, const std::set<std::string>& names) {
   write_file_atomically(out / kPicturesList, j.dump(1) + "\n");
 }
 
+/// A PNG beside every SVG of a folder; false, and none, if one could not be made.
+bool draw_png(const fs::path& folder) {
+  std::vector<fs::path> svg;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".svg") svg.push_back(entry.path());
+  const auto png = [](fs::path file) { return file.replace_extension(".png"); };
+  const bool drawn = std::all_of(svg.begin(), svg.end(), [&](const fs::path& file) {
+    return runs(fmt::format("rsvg-convert --zoom 3 {} -o {} 2>/dev/null", quoted(file), quoted(png(file))));
+  });
+  for (const fs::path& file : svg)
+    if (!drawn) fs::remove(png(file));
+  return drawn;
+}
+
 void put_in_place(const fs::path& out, const fs::path& from) {
   const std::set<std::string> old = listed_pictures(out);
   std::set<std::string> drawn;
@@ -114,34 +131,27 @@ void put_in_place(const fs::path& out, const fs::path& from) {
 
 }  // namespace
 
-Drawn draw_pictures(const fs::path& out, const std::vector<Drawing>& drawings) {
-  const std::string python = find_python();
-  const std::string older =
-      listed_pictures(out).empty() ? "" : " The pictures in this folder are those of an earlier report.";
-  if (python.empty())
-    return {"Figures were left out: no Python with matplotlib (Debian: python3-matplotlib)." + older, false};
-  fs::path scripts, published;
-  try {
-    scripts = find_data(kScriptFolder);
-    published = find_data(kResultFolder) / "paper-table3.json";
-  } catch (const Error& e) {  // the tables do not depend on it
-    return {std::string("Figures were left out: ") + e.what() + older, true};
-  }
-  const Scratch scratch(temporary_name(out / "pictures"));
-  for (const Drawing& d : drawings) {
-    const fs::path from = scratch.path() / d.from.filename();
-    fs::copy_file(d.from, from);
-    const auto command = [&](const fs::path& data) {
-      return fmt::format("{} {} {} {}", python, quoted(scripts / d.script), quoted(data),
-                         d.published      ? quoted(published)
-                         : d.also.empty() ? ""
-                                          : quoted(d.also));
-    };
-    if (std::system(command(from).c_str()) != 0)
-      return {"Figures were left out: this command failed: " + command(d.from) + "." + older, true};
-  }
+Drawn draw_pictures(const fs::path& out, const PageTemplate& page) {
+  const auto without = [&](const std::string& why) {
+    return Drawn{
+        "Figures were left out: " + why + "." +
+            (listed_pictures(out).empty() ? "" : " The pictures in this folder are those of an earlier report."),
+        ""};
+  };
+  if (page.figures.empty())
+    return without(page.missing.empty() ? "this build has none (CLOTHBENCH_WITH_PAGE)" : page.missing);
+  const std::string node = find_node();
+  if (node.empty()) return without("no Node, 18 or later (Debian: nodejs)");
+  const Scratch scratch(temporary_name(fs::absolute(out) / "pictures"));
+  const fs::path script = scratch.path() / "figures.cjs";
+  std::ofstream(script, std::ios::binary) << page.figures;
+  if (!runs(fmt::format("{} {} {} {}", node, quoted(script), quoted(fs::absolute(out) / "index.html"),
+                        quoted(scratch.path()))))
+    return without("Node could not draw them; 18 or later is needed (Debian: nodejs)");
+  Drawn drawn{"", text_of(scratch.path() / "figures.md")};
+  if (!draw_png(scratch.path())) drawn.fault = "PNG pictures were left out: no rsvg-convert (Debian: librsvg2-bin).";
   put_in_place(out, scratch.path());
-  return {};
+  return drawn;
 }
 
 }  // namespace clothbench

@@ -38,6 +38,9 @@ enum class Format { Markdown, Console };
 /// combination among the cells; what the harness itself costs.
 std::string headline(const std::vector<CellRecord>& cells, Format);
 
+/// The GPU that a cell ran on, and whether it is software; empty for a CPU.
+std::string gpu_of(const CellRecord&);
+
 /// The ballistic solver's slowest cell as a share of a 72 Hz frame, against the 1 % allowed; empty without such cells.
 std::string overhead_line(const std::vector<CellRecord>& cells);
 
@@ -69,9 +72,8 @@ nlohmann::json cells_json(const std::vector<CellRecord>& cells);
 /// contact penetration.md, .csv and .json and penetration-series.csv; and for scenes with a truth work-precision.md,
 /// .csv, .json and a page of summary.md; for material cards material.md and .json; for costs of features
 /// feature-cost.md, .csv and .json; the page index.html (left out, with a line saying so, where this was built without
-/// Node); the figures fig4 and fig5, penetration-<set-up> (SVG, PNG; left out, with a line saying so, where there is no
-/// Python with matplotlib). Throws Error if a file cannot be read or written, or the figures cannot be drawn (the
-/// tables are written by then).
+/// Node); its figures as pictures (draw_pictures; left out, with a line saying so, where there is no Node). Throws
+/// Error if a file cannot be read or written.
 void write_report(const std::vector<std::filesystem::path>& runs, const ReportOptions&);
 
 /// The same tables on the terminal.

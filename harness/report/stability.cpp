@@ -143,6 +143,24 @@ Table robustness_table(const std::vector<CellRecord>& cells) {
   return t;
 }
 
+json stability_cases(const std::vector<CellRecord>& cells) {
+  json out = json::array();
+  for (const CellRecord& c : cells) {
+    const int grade = grade_of(c);
+    if (grade < 0) continue;
+    const std::string kase = scenario_of(c)["stability"].value("case", ""), solver = solver_of(c);
+    auto at =
+        std::find_if(out.begin(), out.end(), [&](const json& r) { return r["case"] == kase && r["solver"] == solver; });
+    if (at == out.end()) {
+      out.push_back({{"case", kase}, {"solver", solver}});
+      for (const char* name : kGrades) out.back()[name] = 0;
+      at = out.end() - 1;
+    }
+    (*at)[kGrades[grade]] = (*at)[kGrades[grade]].get<int>() + 1;
+  }
+  return out;
+}
+
 Table headline_table(const json& maps) {
   Table t{"Largest stable values",
           "The least over all rows and seeds of a map. ≥: the whole range is good in every row. none: some row has no "

@@ -19,6 +19,9 @@ nlohmann::json stability_maps(const std::vector<std::filesystem::path>& runs);
 /// Solver x case: how many runs of the case were stable, degraded and failed, with the classes of those that were not.
 Table robustness_table(const std::vector<CellRecord>& cells);
 
+/// How many runs of each case and solver were stable, degraded and failed: [{"case", "solver", "stable", ...}].
+nlohmann::json stability_cases(const std::vector<CellRecord>& cells);
+
 /// One number a map and solver, and the boundary of every row.
 Table headline_table(const nlohmann::json& maps);
 Table boundary_table(const nlohmann::json& maps);

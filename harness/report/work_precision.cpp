@@ -9,6 +9,7 @@
 
 #include "base/json_number.hpp"
 #include "report/grid.hpp"
+#include "report/report.hpp"
 #include "report/withheld.hpp"
 
 namespace clothbench {
@@ -282,6 +283,7 @@ json work_json(const std::vector<WorkDiagram>& diagrams) {
                         {"setting", p.setting},
                         {"settings", p.cell->header.settings},
                         {"status", p.cell->outcome.status},
+                        {"gpu", p.on_gpu ? gpu_of(*p.cell) : ""},
                         {"wall_ms_per_s", finite_or_null(p.wall_ms_per_s)},
                         {"fenced_ms_per_s", finite_or_null(p.fenced_ms_per_s)},
                         {"device_ms_per_s", finite_or_null(p.device_ms_per_s)},

@@ -12,10 +12,9 @@ install(TARGETS clothbench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY scenarios DESTINATION ${data})
 install(DIRECTORY results/baselines DESTINATION ${data}/results)
 install(FILES results/paper-table3.json DESTINATION ${data}/results)
-install(PROGRAMS scripts/fetch-assets.sh scripts/make_cloth_mesh.py scripts/plot_hang.py scripts/plot_penetration.py scripts/plot_report.py
-  scripts/plot_stability.py scripts/plot_work_precision.py scripts/render_frames.py scripts/slurm_study.sh DESTINATION ${data}/scripts)
-# The program holds the page too; where there was no Node to bundle it, there is none.
-install(FILES ${CMAKE_BINARY_DIR}/web/template.html DESTINATION ${data}/page OPTIONAL)
+install(PROGRAMS scripts/fetch-assets.sh scripts/make_cloth_mesh.py scripts/render_frames.py scripts/slurm_study.sh DESTINATION ${data}/scripts)
+# The program holds both too; where there was no Node to bundle them, there are none.
+install(FILES ${CMAKE_BINARY_DIR}/web/template.html ${CMAKE_BINARY_DIR}/web/figures.cjs DESTINATION ${data}/page OPTIONAL)
 install(FILES scripts/assets-package.json scripts/assets-package-lock.json DESTINATION ${data}/scripts)
 
 # For authors of plugins: find_package(clothbench), target_link_libraries(mine PRIVATE clothbench::plugin).

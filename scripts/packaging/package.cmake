@@ -22,7 +22,7 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "mesa-vulkan-drivers | vulkan-icd, fonts-dejavu-core")
 # A report's figures; its scripts and examples.
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "nodejs, python3-matplotlib, python3-h5py")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "nodejs, librsvg2-bin, python3-matplotlib, python3-h5py")
 # Movies; scanned rooms and hands; headsets; plugins; studies on a cluster.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "ffmpeg, npm, libopenxr-loader1, cmake, slurm-client, paraview")
 include(CPack)

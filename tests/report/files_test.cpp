@@ -7,6 +7,7 @@
 
 #include "clothbench/error.hpp"
 #include "fake_cells.hpp"
+#include "report/web/template.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -45,6 +46,31 @@ class ReportFiles : public ::testing::Test {
   fs::path dir_, run_;
 };
 
+/// Programs of the PATH while it lives: none but what is put into its folder.
+class OnlyPrograms {
+ public:
+  explicit OnlyPrograms(const fs::path& dir) : dir_(dir), before_(std::getenv("PATH")) {
+    fs::create_directories(dir);
+    setenv("PATH", dir.c_str(), 1);
+  }
+  ~OnlyPrograms() { setenv("PATH", before_.c_str(), 1); }
+  OnlyPrograms(const OnlyPrograms&) = delete;
+  OnlyPrograms& operator=(const OnlyPrograms&) = delete;
+  void add(const std::string& name, const std::string& script) const {
+    std::ofstream(dir_ / name) << "#!/bin/sh\n" << script << "\n";
+    fs::permissions(dir_ / name, fs::perms::owner_all);
+  }
+
+ private:
+  fs::path dir_;
+  std::string before_;
+};
+
+bool can_draw() {
+  return !page_template().figures.empty() && std::system("node --version >/dev/null 2>&1") == 0 &&
+         std::system("rsvg-convert --version >/dev/null 2>&1") == 0;
+}
+
 TEST_F(ReportFiles, PlannedCellsWithoutAFileAreMissing) {
   const std::vector<CellRecord> cells = collect({run_});
   ASSERT_EQ(cells.size(), 5u);
@@ -69,29 +95,17 @@ TEST_F(ReportFiles, WritesEveryFile) {
   EXPECT_EQ(md.find("gravity-77-single"), md.rfind("gravity-77-single"))
       << "of a scene that nobody ran there is nothing to tabulate";
   EXPECT_EQ(parse_csv(text(out / "memory.csv")).size(), 6u);
-  if (md.find("Figures were left out") == std::string::npos) {
+  if (can_draw()) {
     EXPECT_NE(text(out / "fig4.svg").find("<svg"), std::string::npos);
     EXPECT_NE(text(out / "fig5.png").find("PNG"), std::string::npos);
+    EXPECT_NE(md.find("](fig5.svg)"), std::string::npos);
   } else {
-    EXPECT_FALSE(fs::exists(out / "fig4.svg"));
+    EXPECT_NE(md.find("were left out: "), std::string::npos);
   }
 }
 
-/// What stands for Python's matplotlib: this folder's, which has nothing in it.
-class BrokenMatplotlib {
- public:
-  explicit BrokenMatplotlib(const fs::path& dir) {
-    fs::create_directories(dir / "matplotlib");
-    std::ofstream(dir / "matplotlib" / "__init__.py") << "";
-    setenv("PYTHONPATH", dir.c_str(), 1);
-  }
-  ~BrokenMatplotlib() { unsetenv("PYTHONPATH"); }
-};
-
-bool has_matplotlib() { return std::system("/usr/bin/python3 -c 'import matplotlib' >/dev/null 2>&1") == 0; }
-
 TEST_F(ReportFiles, ThePicturesOfAnOlderReportGoAndTheUsersStay) {
-  if (!has_matplotlib()) GTEST_SKIP() << "no Python with matplotlib";
+  if (!can_draw()) GTEST_SKIP() << "no Node, rsvg-convert or page";
   const fs::path out = dir_ / "out";
   fs::create_directories(out);
   // As a version wrote it that kept no list.
@@ -111,7 +125,7 @@ TEST_F(ReportFiles, ThePicturesOfAnOlderReportGoAndTheUsersStay) {
 }
 
 TEST_F(ReportFiles, AUsersPictureIsNotWrittenOver) {
-  if (!has_matplotlib()) GTEST_SKIP() << "no Python with matplotlib";
+  if (!can_draw()) GTEST_SKIP() << "no Node, rsvg-convert or page";
   const fs::path out = dir_ / "out";
   fs::create_directories(out);
   std::ofstream(out / "fig5.svg") << "the user's";
@@ -126,18 +140,37 @@ TEST_F(ReportFiles, AUsersPictureIsNotWrittenOver) {
 }
 
 TEST_F(ReportFiles, WhatCannotBeDrawnLeavesTheOlderPictures) {
-  if (!has_matplotlib()) GTEST_SKIP() << "no Python with matplotlib";
+  if (!can_draw()) GTEST_SKIP() << "no Node, rsvg-convert or page";
   const fs::path out = dir_ / "out";
   write_report({run_}, {out});
   const std::string picture = text(out / "fig4.svg"), list = text(out / "report-pictures.json");
+  const auto left_out = [&](const std::string& why) {
+    write_report({run_}, {out});
+    EXPECT_EQ(text(out / "fig4.svg"), picture);
+    EXPECT_EQ(text(out / "report-pictures.json"), list);
+    EXPECT_NE(text(out / "report.md").find(why + " The pictures in this folder are those of an earlier report."),
+              std::string::npos);
+  };
   {
-    const BrokenMatplotlib broken(dir_ / "python");
-    EXPECT_THROW(write_report({run_}, {out}), Error);
+    const OnlyPrograms none(dir_ / "bin");
+    left_out("Figures were left out: no Node, 18 or later (Debian: nodejs).");
+    none.add("node", "[ \"$1\" = --version ]");
+    left_out("Figures were left out: Node could not draw them; 18 or later is needed (Debian: nodejs).");
   }
-  EXPECT_EQ(text(out / "fig4.svg"), picture);
-  EXPECT_EQ(text(out / "report-pictures.json"), list);
-  EXPECT_NE(text(out / "report.md").find("those of an earlier report"), std::string::npos);
   for (const auto& entry : fs::directory_iterator(out)) EXPECT_FALSE(entry.is_directory()) << entry.path();
+}
+
+TEST_F(ReportFiles, WithoutRsvgConvertThereIsNoPng) {
+  if (!can_draw()) GTEST_SKIP() << "no Node, rsvg-convert or page";
+  const OnlyPrograms broken(dir_ / "bin");
+  broken.add("node", "[ \"$1\" = --version ] || { : >\"$3/fig4.svg\"; echo '![Drawn](fig4.svg)' >\"$3/figures.md\"; }");
+  broken.add("rsvg-convert", "exit 1");
+  write_report({run_}, {dir_ / "out"});
+  EXPECT_TRUE(fs::exists(dir_ / "out" / "fig4.svg"));
+  EXPECT_FALSE(fs::exists(dir_ / "out" / "fig4.png"));
+  const std::string md = text(dir_ / "out" / "report.md");
+  EXPECT_NE(md.find("### Figures\n\n![Drawn](fig4.svg)"), std::string::npos);
+  EXPECT_NE(md.find("PNG pictures were left out: no rsvg-convert (Debian: librsvg2-bin)."), std::string::npos);
 }
 
 TEST_F(ReportFiles, IsAFunctionOfTheFiles) {

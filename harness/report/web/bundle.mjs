@@ -1,4 +1,5 @@
-// Makes the page without data: template.html, and template.cpp which holds it.
+// Makes the page without data, template.html, what draws its figures by Node, figures.cjs, and template.cpp which holds
+// both.
 //   node bundle.mjs SRC README.md OUT      run beside node_modules
 import {build} from 'esbuild';
 import {marked} from 'marked';
@@ -75,23 +76,29 @@ const html = readFileSync(join(source, 'index.html'), 'utf8').replace(/<!--part:
 });
 writeFileSync(join(out, 'template.html'), html);
 
+const stills = await bundled('stills.js', {format: 'cjs', target: ['node18'], external: ['node:*']});
+writeFileSync(join(out, 'figures.cjs'), stills.text);
+
 // Adjacent literals: short enough for every compiler.
-const end = 'page_end_7d1f';
-if (html.includes(`)${end}"`)) throw new Error('the page holds the mark that ends its literal');
-const bytes = Buffer.from(html, 'utf8');
-const pieces = [];
-for (let at = 0; at < bytes.length;) {
-  let to = Math.min(at + 15000, bytes.length);
-  while (to < bytes.length && (bytes[to] & 0xc0) === 0x80) --to;  // never inside a character
-  pieces.push(`R"${end}(${bytes.subarray(at, to).toString('utf8')})${end}"`);
-  at = to;
+function literal(name, text) {
+  const end = 'page_end_7d1f';
+  if (text.includes(`)${end}"`)) throw new Error('the page holds the mark that ends its literal');
+  const bytes = Buffer.from(text, 'utf8');
+  const pieces = [];
+  for (let at = 0; at < bytes.length;) {
+    let to = Math.min(at + 15000, bytes.length);
+    while (to < bytes.length && (bytes[to] & 0xc0) === 0x80) --to;  // never inside a character
+    pieces.push(`R"${end}(${bytes.subarray(at, to).toString('utf8')})${end}"`);
+    at = to;
+  }
+  return `static const char ${name}[] =\n${pieces.join('\n')};`;
 }
 writeFileSync(join(out, 'template.cpp'), `#include "report/web/template.hpp"
 namespace clothbench {
 PageTemplate page_template() {
-  static const char text[] =
-${pieces.join('\n')};
-  return {{text, sizeof text - 1}, {}};
+  ${literal('html', html)}
+  ${literal('figures', stills.text)}
+  return {{html, sizeof html - 1}, {}, {figures, sizeof figures - 1}};
 }
 }  // namespace clothbench
 `);

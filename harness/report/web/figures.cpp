@@ -39,11 +39,15 @@ json rate_point(const CellRecord& c, const Resolution& r) {
   return {{"width", width_of(r)},
           {"resolution", r.label()},
           {"status", c.outcome.status},
+          {"gpu", gpu_of(c)},
           {"fps", finite_or_null(summary_value(c, "fps_median"))},
           {"spread", finite_or_null(summary_value(c, "fps_spread"))},
           {"device_s", finite_or_null(summary_value(c, "frame_device_median_s"))},
           {"read_B_per_s", finite_or_null(summary_value(c, "bandwidth_read_peak_B_per_s"))},
-          {"write_B_per_s", finite_or_null(summary_value(c, "bandwidth_write_peak_B_per_s"))}};
+          {"write_B_per_s", finite_or_null(summary_value(c, "bandwidth_write_peak_B_per_s"))},
+          {"window_s", finite_or_null(summary_value(c, "bandwidth_window_s"))},
+          {"stretch_max", finite_or_null(summary_value(c, "stretch_max_last_second"))},
+          {"stretch_mean", finite_or_null(summary_value(c, "stretch_mean_last_second"))}};
 }
 
 const char* const kDrawnSeries[] = {"tunnelled_fraction", "tunnelled_depth_m", "contact_length_m", "depth_m",

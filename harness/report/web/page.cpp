@@ -46,6 +46,7 @@ json page_document(const std::vector<CellRecord>& cells, const Page& page, const
           {"penetration", page.penetration},
           {"work", page.work},
           {"maps", page.maps},
+          {"cases", page.cases},
           {"commands", page.commands},
           {"motions", motions.document}};
 }

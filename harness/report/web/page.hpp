@@ -25,8 +25,9 @@ struct Page {
   std::vector<PageSection> sections;
   nlohmann::json rates, penetration, work;        ///< points of the figures: rates_json, contact_series_json, work_json
   nlohmann::json maps = nlohmann::json::array();  ///< as stability_maps gives them
-  std::vector<std::string> commands;              ///< that made the results
-  std::set<std::string> fronts;                   ///< files of cells on a front: shown before other settings
+  nlohmann::json cases = nlohmann::json::array();  ///< as stability_cases gives them
+  std::vector<std::string> commands;               ///< that made the results
+  std::set<std::string> fronts;                    ///< files of cells on a front: shown before other settings
 };
 
 /// Figs. 4 and 5: one family each, with the published values where it is the paper's Table 3. Missing = null.

@@ -1,25 +1,67 @@
-// What several figures share.
+// What several figures share. A figure is a description, which the page draws with controls and hover (plot.js) and the
+// report as pictures (stills.js):
+//   {id, title, caption, hint?, empty?, choices?, spec(theme, width, state), rows(state), remark?(state), stills}
+// `caption` stands under both, `hint` on the page alone. `choices`: [{label, options(state), first?(state)}], the
+// select boxes; `state` has the value of each by its label. `rows`: the data as a table, header first; nothing else
+// means nothing to draw. `stills`: the pictures, [{file, title, make(width), labels?, notes?, empty?}], in theme
+// 'paper': `labels` of the legend, `notes` below, `empty`: words in place of a plot.
 import {palette} from './theme.js';
 
 export const kFailed = ['not_finite', 'diverged', 'device_lost', 'timed_out', 'error'];
+export const kCross = {
+  type: 'point',
+  shape: 'cross',
+  angle: 45,
+  filled: true,
+  size: 60
+};
 export const unique = list => [...new Set(list)];
 export const colour = (labels, theme, title = null) => {
   const colours = palette(labels, theme);
   return {field: 'label', type: 'nominal', title, scale: {domain: labels, range: labels.map(l => colours[l])}};
 };
-export const picked = {
-  params: [{name: 'pick', select: {type: 'point', fields: ['label']}, bind: 'legend'}]
-};
-export const fade = {
-  condition: {param: 'pick', value: 1, empty: true},
-  value: 0.1
-};
+/// The labels apart without colour: by symbols or dashes, in the colours' legend.
+const by_label = range => labels => ({
+  field: 'label',
+  type: 'nominal',
+  title: null,
+  scale: {domain: labels, range: labels.map((_, k) => range[k % range.length])}
+});
+export const symbols = by_label(
+    ['circle', 'square', 'triangle-up', 'diamond', 'triangle-down', 'cross', 'triangle-right', 'triangle-left']);
+export const dashes = by_label([[1, 0], [7, 3], [2, 2], [7, 2, 2, 2], [4, 1]]);
+export const picked = theme =>
+    theme === 'paper' ? {} : {params: [{name: 'pick', select: {type: 'point', fields: ['label']}, bind: 'legend'}]};
+export const fade = theme =>
+    theme === 'paper' ? {value: 1} : {condition: {param: 'pick', value: 1, empty: true}, value: 0.1};
+/// What is left of the width beside a legend; on paper it stands below.
+export const beside = (theme, width, legend) => theme === 'paper' ? width : width - legend;
 
-/// Ticks of a logarithmic axis: powers of ten, and 2 and 5 times them where there would be few.
+/// The harness without a cloth model is decades from every solver: it is shown where it is alone.
+export const is_floor = row => row.solver === 'ballistic';
+export const without_floor = rows => rows.every(is_floor) ? rows : rows.filter(r => !is_floor(r));
+
+/// The devices, for a figure that is seen without its report.
+export const device_note = points => unique(points.map(p => p.gpu).filter(Boolean)).sort().join(', ');
+/// What a file may be called, whatever the scene is.
+export const still_name = name => name.replace(/[^A-Za-z0-9._=-]+/g, '-');
+
+/// Points with nothing of the same label at most as great in both keys and less in one.
+export const on_front = (points, a, b) => points.filter(
+    p => !points.some(q => q.label === p.label && q[a] <= p[a] && q[b] <= p[b] && (q[a] < p[a] || q[b] < p[b])));
+
+/// Panels side by side, of at most `most`: no row is left with a gap if that can be.
+export function across_of(panels, most) {
+  for (let n = Math.min(most, panels); n > 1; --n)
+    if (panels % n === 0) return n;
+  return Math.max(1, Math.min(most, panels));
+}
+
+/// Ticks of a logarithmic axis: powers of ten, 2 and 5 times them where there would be few, every other where many.
 export function decades(values) {
   const first = Math.floor(Math.log10(Math.min(...values))), last = Math.ceil(Math.log10(Math.max(...values))),
         out = [];
-  for (let e = first; e <= last; ++e)
+  for (let e = first; e <= last; e += last - first > 8 ? 2 : 1)
     for (const m of last - first > 2 ? [1] : [1, 2, 5]) out.push(Number(`${m}e${e}`));
   return out;
 }

@@ -1,105 +1,146 @@
 // Penetration over time.
-import {select} from './dom.js';
-import {colour, fade, kFailed, picked, unique} from './figure_parts.js';
-import {plot_figure} from './plot.js';
+import {across_of, beside, colour, dashes, fade, kCross, kFailed, picked, still_name, unique, without_floor} from './figure_parts.js';
 
-const kMetricWords = {
-  tunnelled_fraction: 'tunnelled share of the cloth',
-  contact_length_m: 'contour [m]',
-  tunnelled_depth_m: 'tunnelled depth [m]',
-  depth_m: 'depth [m]',
-  depth_vertex_m: 'depth at vertices [m]',
-  stretch_max: 'greatest strain'
+/// What an axis says, and the factor to its unit.
+const kMetrics = {
+  tunnelled_fraction: ['tunnelled [%]', 100],
+  contact_length_m: ['contour [mm]', 1e3],
+  tunnelled_depth_m: ['tunnelled [mm]', 1e3],
+  depth_m: ['depth [mm]', 1e3],
+  depth_vertex_m: ['depth at vertices [mm]', 1e3],
+  stretch_max: ['greatest strain [%]', 100]
 };
+/// What tells solvers apart, by set-up; a metric that no cell has is left out of its picture.
+const kShown = {
+  rooms: ['contact_length_m', 'tunnelled_fraction', 'tunnelled_depth_m'],
+  hand: ['contact_length_m', 'tunnelled_fraction', 'depth_m'],
+  capsules: ['contact_length_m', 'depth_m'],
+  shapes: ['contact_length_m', 'depth_m'],
+  grip: ['stretch_max'],
+  wave: ['stretch_max']
+};
+const kDeep_mm = 50;  // from here on an axis of depth is logarithmic above 1 mm: what fell through goes on falling
+
+function series_rows(scene, metric) {
+  return without_floor(scene.rows)
+      .flatMap(
+          r => (r.metrics[metric]?.values ?? [])
+                   .map(
+                       (value, k) =>
+                           ({label: r.label, time: r.time_s[k], raw: value, value: kMetrics[metric][1] * value}))
+                   .filter(d => d.raw !== null));
+}
+
+/// Where runs of a scene failed: the time of the last frame.
+const failed_rows = scene => without_floor(scene.rows)
+                                 .filter(r => kFailed.includes(r.status))
+                                 .map(r => ({label: r.label, time: r.time_s.at(-1) ?? 0, status: r.status}));
+
+function panel(scene, metric, labels, theme, width, height) {
+  const rows = series_rows(scene, metric), most = Math.max(0, ...rows.map(r => r.value)), title = kMetrics[metric][0];
+  const x = {
+    field: 'time',
+    type: 'quantitative',
+    title: 'time [s]',
+    axis: {tickCount: theme === 'paper' ? 4 : 10, grid: false}
+  };
+  const log = /depth/.test(metric) && most > kDeep_mm, top = most > 1e-3 ? 1.04 * most : 1;
+  const legend = {symbolType: 'stroke', symbolSize: 500};
+  const color = {...colour(labels, theme), legend};
+  const y = {
+    field: 'value',
+    type: 'quantitative',
+    title,
+    // A line at 0 must be told from the axis.
+    scale: log ? {type: 'symlog', constant: 1, domain: [-0.15, 1.1 * most]} : {domain: [-0.04 * top, top], nice: false},
+    axis: {
+      format: '.6~g',
+      ...(log ? {values: [0, 1, 10, 100, 1e3, 1e4, 1e5].filter(v => v <= 10 * most)} :
+                {tickCount: theme === 'paper' ? 4 : 6})
+    }
+  };
+  return {
+    width,
+    height,
+    data: {values: rows},
+    layer: [
+      {
+        name: 'lines',
+        mark: {type: 'line', strokeWidth: theme === 'paper' ? 1.4 : 1.8},
+        encoding: {x, y, color, strokeDash: {...dashes(labels), legend}, opacity: fade(theme)}
+      },
+      // For hover alone.
+      ...(theme === 'paper' ? [] : [{
+        name: 'points',
+        ...picked(theme),
+        mark: {type: 'point', filled: true, size: 50, aria: false},
+        encoding: {
+          x,
+          y,
+          color,
+          opacity: {value: 0},
+          tooltip: [
+            {field: 'label', title: 'solver'}, {field: 'time', format: '.3f', title: 's'},
+            {field: 'value', format: '.4~g', title}
+          ]
+        }
+      }]),
+      {name: 'failed', data: {values: failed_rows(scene)}, mark: kCross, encoding: {x, y: {value: height}, color}},
+    ]
+  };
+}
+
+const labels_of = scenes => unique(scenes.flatMap(s => without_floor(s.rows)).map(r => r.label)).sort();
+
+/// A row of panels a scene; scenes of one metric share a row.
+function still(up) {
+  const file = still_name(`penetration-${up.kind}`), title = `${up.title}: penetration over time`;
+  const metrics = (kShown[up.kind] ?? Object.keys(kMetrics)).filter(m => up.scenes.some(s => series_rows(s, m).length));
+  const labels = labels_of(up.scenes), failed = up.scenes.some(s => failed_rows(s).length);
+  if (!metrics.length) return {file, title, empty: 'No cell of this set-up was measured.'};
+  const across = metrics.length > 1 ? metrics.length : across_of(up.scenes.length, 3);
+  const panels =
+      up.scenes.flatMap(scene => metrics.map((metric, k) => ({scene, metric, heading: k ? '' : scene.name})));
+  const make = width => ({
+    columns: across,
+    concat: panels.map(({scene, metric, heading}, k) => {
+      const p = panel(scene, metric, labels, 'paper', Math.max(130, width / across - 50), 90);
+      for (const layer of p.layer) {
+        layer.name += `_${k}`;  // names must not meet
+        // The time stands below the lowest row.
+        if (k + across < panels.length) layer.encoding.x = {...layer.encoding.x, title: null};
+      }
+      return {...p, title: heading ? {text: heading, anchor: 'start', fontWeight: 'bold'} : null};
+    })
+  });
+  return {file, title, labels, notes: [failed ? '×: where a run failed' : ''], make};
+}
 
 export function penetration_figure(ups) {
-  const scenes = ups.flatMap(u => u.scenes.map(s => ({...s, kind: u.title})));
-  let at = scenes[0], metric = '', figure = null;
-  const metrics = () => Object.keys(kMetricWords).filter(m => at.rows.some(r => m in r.metrics));
-  const choose = select('Metric', [], '', v => {
-    metric = v;
-    figure.redraw();
-  });
-  const refill = () => {
-    const list = metrics();
-    // The first that shows something: most scenes are meant to be all zero.
-    const shows = m => at.rows.some(r => r.solver !== 'ballistic' && r.metrics[m]?.values.some(v => v > 0));
-    if (!list.includes(metric)) metric = list.find(shows) ?? list[0] ?? '';
-    choose.querySelector('select').replaceChildren(
-        ...list.map(m => new Option(kMetricWords[m], m, m === metric, m === metric)));
-  };
-  const data = () =>
-      at.rows.filter(r => r.solver !== 'ballistic')
-          .flatMap(
-              r => (r.metrics[metric]?.values ?? [])
-                       .map((value, k) => ({
-                              label: r.label,
-                              time: r.time_s[k],
-                              value,
-                              failed: kFailed.includes(r.status) && k === Math.min(r.failed_frame, r.time_s.length - 1)
-                            }))
-                       .filter(d => d.value !== null));
-  const spec = (theme, width) => {
-    const rows = data(), labels = unique(at.rows.map(r => r.label).filter(l => !l.startsWith('ballistic'))),
-          color = colour(labels, theme);
-    const x = {field: 'time', type: 'quantitative', title: 'time [s]', axis: {tickCount: 10, grid: false}}, y = {
-      field: 'value',
-      type: 'quantitative',
-      title: kMetricWords[metric],
-      axis: {format: '~g', tickCount: 6},
-      ...(rows.some(r => r.value > 0) ? {} : {scale: {domain: [0, 1]}})
-    };
-    return {
-      width: width - 220,
-      height: 320,
-      data: {values: rows},
-      layer: [
-        {name: 'lines', mark: {type: 'line', strokeWidth: 1.8}, encoding: {x, y, color, opacity: fade}},
-        {
-          name: 'points',
-          ...picked,
-          mark: {type: 'point', filled: true, size: 50, aria: false},
-          encoding: {
-            x,
-            y,
-            color,
-            opacity: {value: 0},
-            tooltip: [
-              {field: 'label', title: 'solver'}, {field: 'time', format: '.3f', title: 's'},
-              {field: 'value', format: '.4~g', title: kMetricWords[metric]}
-            ]
-          }
-        },
-        {
-          name: 'failed',
-          transform: [{filter: 'datum.failed'}],
-          mark: {type: 'point', shape: 'cross', angle: 45, filled: true, size: 80},
-          encoding: {x, y, color}
-        },
-      ]
-    };
-  };
-  refill();
-  figure = plot_figure({
+  const scenes = ups.flatMap(u => u.scenes), named = Object.fromEntries(scenes.map(s => [s.name, s]));
+  const at = state => named[state.Scene];
+  const metrics = scene => Object.keys(kMetrics).filter(m => scene.rows.some(r => m in r.metrics));
+  // The first that shows something: most scenes are meant to be all zero.
+  const first = scene => metrics(scene).find(m => series_rows(scene, m).some(d => d.value > 0));
+  const rows = state => state.Metric ? series_rows(at(state), state.Metric) : [];
+  return {
     id: 'penetration-series',
     title: 'Penetration over time',
-    spec,
+    spec: (theme, width, state) =>
+        panel(at(state), state.Metric, labels_of([at(state)]), theme, beside(theme, width, 220), 320),
     empty: 'This scene has no such series.',
-    controls: [
-      select(
-          'Scene', scenes.map(s => ({value: s.name, text: s.name})), at.name,
-          v => {
-            at = scenes.find(s => s.name === v);
-            refill();
-            figure.redraw();
-          }),
-      choose
+    choices: [
+      {label: 'Scene', options: () => scenes.map(s => ({value: s.name, text: s.name}))}, {
+        label: 'Metric',
+        options: state => metrics(at(state)).map(m => ({value: m, text: kMetrics[m][0]})),
+        first: state => first(at(state))
+      }
     ],
-    caption:
-        'One line a solver, one value a frame. A cross: where a run failed. Ballistic, which nothing stops, is left out.',
-    rows: () => [
+    caption: 'One line a solver, one value a frame. A cross on the lower edge: where a run failed. Ballistic, which ' +
+        'nothing stops, is left out.',
+    rows: state => [
         ['scene', 'metric', 'solver', 'time_s', 'value'],
-        ...data().map(d => [at.name, metric, d.label, d.time, d.value])]
-  });
-  return figure;
+        ...rows(state).map(d => [state.Scene, state.Metric, d.label, d.time, d.raw])],
+    stills: ups.map(still)
+  };
 }

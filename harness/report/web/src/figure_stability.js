@@ -1,7 +1,5 @@
 // Stability maps: every probe by its outcome class, in colour and in symbol, where it turns, and what theory says.
-import {select} from './dom.js';
-import {decades} from './figure_parts.js';
-import {plot_figure} from './plot.js';
+import {across_of, beside, decades, still_name, unique} from './figure_parts.js';
 
 /// A polygon through `radii` in turn, evenly round, within -1..1.
 function polygon(corners, ...radii) {
@@ -13,7 +11,7 @@ function polygon(corners, ...radii) {
 }
 const slanted = polygon(4, 0.4, 1.2);  // a cross that stands on two feet, once turned
 
-/// Okabe & Ito's palette, as in the static figures; `dark` where a colour would not be seen on black.
+/// Okabe & Ito's palette; `dark` where a colour would not be seen on black.
 const kClasses = [
   {id: 'ok', words: 'stable', light: '#009E73', shape: 'circle'},
   {id: 'F0', words: 'F0 not finite', light: '#000000', dark: '#FFFFFF', shape: slanted},
@@ -33,6 +31,11 @@ const label_of = axis => axis.label + (axis.unit ? ` [${axis.unit}]` : '');
 const class_of = p =>
     p.grade === 0 ? kClasses[0] : kClasses.find(c => c.id === p.class && c.id !== 'ok') ?? kClasses.at(-1);
 const drawn = map => map.solvers.filter(s => s.probes.length > 0);
+function largest(s, unit) {
+  if (s.unsupported || !s.largest) return s.unsupported ? 'unsupported' : 'none';
+  return `${s.open ? '≥ ' : ''}${Number(s.largest.toPrecision(3))} ${unit}`.trim();
+}
+const heading = (s, map) => `${name_of(s)}: ${largest(s, map.x.unit)}`;
 
 function probes_of(solver) {
   return solver.probes.filter(p => p.seed === 0).map(p => ({
@@ -54,16 +57,17 @@ function boundary_of(solver) {
         row.seeds.filter(s => s.first_bad !== null && s.last_good > 0).map(s => Math.sqrt(s.last_good * s.first_bad));
     if (!turns.length) return [];
     const x = Math.min(...turns), x2 = Math.max(...turns);
-    return [{kind: 'boundary', solver: name_of(solver), x: Math.sqrt(x * x2), least: x, most: x2, y: row.y}];
+    return [{kind: 'boundary', x: Math.sqrt(x * x2), least: x, most: x2, y: row.y}];
   });
 }
 
-function theory_of(map, solver) {
-  return map.theory.flatMap(
-      line => line.points.map(([x, y]) => ({kind: 'theory', solver: name_of(solver), line: line.label, x, y})));
-}
+const theory_of = map =>
+    map.theory.flatMap(line => line.points.map(([x, y]) => ({kind: 'theory', line: line.label, x, y})));
 
-function rows_of(map) { return drawn(map).flatMap(s => [...theory_of(map, s), ...boundary_of(s), ...probes_of(s)]); }
+function rows_of(map) {
+  return drawn(map).flatMap(
+      s => [...theory_of(map), ...boundary_of(s), ...probes_of(s)].map(r => ({...r, panel: heading(s, map)})));
+}
 
 /// Ends of an axis: those of the probes and a little more; a theory far outside is cut off.
 function ends(probes, key) {
@@ -82,17 +86,18 @@ function panels(map, rows, theme, width) {
     scale: {type: 'log', domain: ends(probes, key), nice: false},
     axis: {format: '~g', labelOverlap: true, values: decades(ends(probes, key))}
   });
-  const x = axis('x'), y = axis('y'), ink = theme === 'dark' ? '#e3e8ee' : '#1b1f24';
+  const x = axis('x'), y = axis('y'), ink = theme === 'dark' ? '#e3e8ee' : theme === 'light' ? '#1b1f24' : '#000000';
   const of = kind => [{filter: `datum.kind === '${kind}'`}];
   const scale = range => ({domain: present.map(c => c.words), range});
-  const across = Math.max(1, Math.min(3, drawn(map).length, Math.floor((width - 240) / 190)));
+  const room = beside(theme, width, 240),
+        across = across_of(drawn(map).length, Math.max(1, Math.min(3, Math.floor(room / 150))));
   return {
     data: {values: rows},
     columns: across,
-    facet: {field: 'solver', type: 'nominal', title: null, sort: drawn(map).map(name_of)},
+    facet: {field: 'panel', type: 'nominal', title: null, sort: drawn(map).map(s => heading(s, map))},
     spec: {
-      width: Math.max(150, Math.floor((width - 240) / across) - 24),
-      height: 210,
+      width: Math.max(theme === 'paper' ? 110 : 150, Math.floor(room / across) - 24),
+      height: theme === 'paper' ? 160 : 210,
       layer: [
         {
           name: 'theory',
@@ -106,7 +111,9 @@ function panels(map, rows, theme, width) {
               type: 'nominal',
               title: lines.length ? 'theory' : null,
               scale: {domain: lines, range: lines.map((_, k) => kDashes[k % kDashes.length])},
-              legend: lines.length ? {symbolType: 'stroke', symbolSize: 500, orient: 'bottom', labelLimit: 800} : null
+              legend: lines.length ?
+                  {symbolType: 'stroke', symbolSize: 500, orient: 'bottom', labelLimit: 800, columns: 1} :
+                  null
             },
             order: {field: 'y', type: 'quantitative'}
           }
@@ -155,35 +162,91 @@ function panels(map, rows, theme, width) {
   };
 }
 
+const empty = 'No solver here can run this map.';
+
 /// `maps` as in a study folder's stability.json.
 export function stability_figure(maps) {
-  let at = maps.find(m => drawn(m).length) ?? maps[0];
-  let figure = null;
-  const largest = s => s.unsupported ? 'unsupported' :
-      !s.largest                     ? 'none' :
-                                       `${s.open ? '≥ ' : ''                    }${Number(s.largest.toPrecision(3))} ${at.x.unit}`.trim();
-  figure = plot_figure({
+  const named = Object.fromEntries(maps.map(m => [m.name, m])), at = state => named[state.Map];
+  const still = m => ({
+    file: still_name(`stability-${m.name}`),
+    title: `${m.title}: ${m.headline}`,
+    labels: kClasses.map(c => c.words),
+    empty: drawn(m).length ? '' : empty,
+    notes: [`${m.title}. Above each panel: ${m.headline}.`],
+    make: width => panels(m, rows_of(m), 'paper', width)
+  });
+  return {
     id: 'stability-map',
     title: 'Stability maps: outcome by setting',
-    spec: (theme, width) => panels(at, rows_of(at), theme, width),
-    remark: () => `${at.headline}: ` + at.solvers.map(s => `${name_of(s)} ${largest(s)}`).join('; ') + '.',
-    controls: [select(
-        'Map', maps.map(m => ({value: m.name, text: m.title})), at.name,
-        v => {
-          at = maps.find(m => m.name === v);
-          figure.redraw();
-        })],
-    empty: 'No solver here can run this map.',
+    spec: (theme, width, state) => panels(at(state), rows_of(at(state)), theme, width),
+    remark: state => `${at(state).headline}: ` + at(state).solvers.map(s => heading(s, at(state))).join('; ') + '.',
+    choices: [{
+      label: 'Map',
+      options: () => maps.map(m => ({value: m.name, text: m.title})),
+      first: () => maps.find(m => drawn(m).length)?.name
+    }],
+    empty,
     caption:
-        'Every probe of the first seed by its outcome class, in colour and symbol; the line is where a row turns, wide where ' +
-        'its seeds differ; broken lines: theory. Hover for the numbers.',
-    rows: () => {
-      const probes = rows_of(at).filter(r => r.kind === 'probe');
+        'Every probe of the first seed by its outcome class, in colour and symbol; the line is where a row turns, ' +
+        'wide where its seeds differ; broken lines: theory. Above each panel the largest stable value.',
+    hint: 'Hover for the numbers.',
+    rows: state => {
+      const probes = rows_of(at(state)).filter(r => r.kind === 'probe');
       return [
         ['map', 'solver', 'x', 'y', 'outcome', 'status', 'frame', 'message'],
-        ...probes.map(p => [at.name, p.solver, p.x, p.y, p.outcome, p.status, p.frame, p.message])
+        ...probes.map(p => [state.Map, p.solver, p.x, p.y, p.outcome, p.status, p.frame, p.message])
       ];
+    },
+    stills: maps.map(still)
+  };
+}
+
+const kGrades = {
+  stable: '#009E73',
+  degraded: '#E69F00',
+  failed: '#D55E00'
+};
+
+/// `cases`: [{case, solver, stable, degraded, failed}], numbers of runs.
+export function cases_figure(cases) {
+  const grades = Object.keys(kGrades), solvers = unique(cases.map(c => c.solver)),
+        names = unique(cases.map(c => c.case)).sort();
+  const rows =
+      cases.flatMap(c => grades.map((grade, order) => ({...c, grade, order, runs: c[grade]})).filter(r => r.runs > 0));
+  const share = {
+    field: 'runs',
+    type: 'quantitative',
+    stack: 'normalize',
+    title: 'share of runs',
+    axis: {values: [0, 1], labelExpr: 'datum.value ? "all" : "0"', titleFontSize: 11}
+  };
+  const make = (theme, width) => ({
+    data: {values: rows},
+    columns: Math.min(5, solvers.length),
+    facet: {field: 'solver', type: 'nominal', title: null, sort: solvers},
+    spec: {
+      width: Math.max(70, Math.min(160, (beside(theme, width, 120) - 60) / Math.min(5, solvers.length) - 20)),
+      height: {step: 15},
+      layer: [{
+        name: 'points',
+        mark: {type: 'bar', stroke: '#ffffff', strokeWidth: 1},
+        encoding: {
+          x: share,
+          y: {field: 'case', type: 'nominal', title: 'case', scale: {domain: names}, axis: {grid: false}},
+          color: {field: 'grade', type: 'nominal', title: null, scale: {domain: grades, range: Object.values(kGrades)}},
+          order: {field: 'order', type: 'quantitative'},
+          tooltip: [{field: 'solver'}, {field: 'case'}, {field: 'grade'}, {field: 'runs'}]
+        }
+      }]
     }
   });
-  return figure;
+  const title = 'Robustness by case';
+  return {
+    id: 'stability-cases',
+    title,
+    spec: make,
+    caption: 'Share of every case’s runs that were stable, degraded and failed, from left to right.',
+    rows: () => [['case', 'solver', ...grades], ...cases.map(c => [c.case, c.solver, ...grades.map(g => c[g])])],
+    stills: [{file: 'stability-cases', title, make: w => make('paper', w)}]
+  };
 }

@@ -1,134 +1,196 @@
 // Error against run time.
-import {select} from './dom.js';
-import {colour, decades, fade, picked, unique} from './figure_parts.js';
-import {plot_figure} from './plot.js';
+import {beside, colour, decades, device_note, fade, kCross, on_front, picked, still_name, symbols, unique} from './figure_parts.js';
 
-/// Points with nothing of the same solver both faster and more accurate, by the given clock.
-function on_front(points, time) {
-  return points.filter(
-      p => !points.some(
-          q => q.label === p.label && q[time] <= p[time] && q.error <= p.error &&
-              (q[time] < p[time] || q.error < p.error)));
+const kNoResult = ['unsupported', 'missing', 'over_budget'];
+
+function data_of(diagram, clock) {
+  const rows = diagram.points.map(p => ({
+                                    label: p.solver,
+                                    setting: p.setting,
+                                    status: p.status,
+                                    wall: p.wall_ms_per_s,
+                                    device: p.device_ms_per_s,
+                                    error: p.error,
+                                    ranked: !(p.solver in diagram.not_ranked),
+                                    stored_front: p.on_front,
+                                    // A CPU has one clock.
+                                    time: clock === 'wall' ? p.wall_ms_per_s : p.device_ms_per_s ?? p.wall_ms_per_s
+                                  }));
+  const good = rows.filter(r => r.status === 'ok' && r.error > 0 && r.time > 0);
+  const bad = rows.filter(r => !good.includes(r) && !kNoResult.includes(r.status));
+  return {
+    rows,
+    good,
+    front: clock === 'wall' ? good.filter(r => r.stored_front) : on_front(good, 'time', 'error'),
+    device: clock === 'wall' ?
+        on_front(good.filter(r => r.device > 0), 'device', 'error').map(r => ({...r, time: r.device})) :
+        [],
+    failed: bad.filter(r => r.time > 0),
+    untimed: bad.filter(r => !(r.time > 0))
+  };
+}
+
+/// Labelled floors of the error. One far below every point is told in words: it would press the points together.
+function floors_of(diagram, good) {
+  const least = Math.min(...good.map(r => r.error));
+  return [
+    {error: diagram.space_error, what: 'error of the mesh'},
+    {error: 3 * (diagram.reference_uncertainty ?? 0), what: '3 × the reference’s uncertainty'}
+  ].filter(f => f.error > 0)
+      .map(f => ({...f, what: `${f.what} ${f.error.toExponential(1)}`, far: f.error < 1e-3 * least}));
+}
+
+/// A long name of an axis, on lines.
+const lines_of = (text, most) => text.split(' ').reduce(
+    (lines, word) => (lines.at(-1) + word).length < most ? [...lines.slice(0, -1), `${lines.at(-1)} ${word}`.trim()] :
+                                                           [...lines, word],
+    ['']);
+
+function work_spec(diagram, clock, theme, width) {
+  const {rows, good, front, device, failed, untimed} = data_of(diagram, clock);
+  const labels = unique(rows.map(r => r.label)), color = colour(labels, theme), shape = symbols(labels);
+  const opacity = fade(theme), floors = floors_of(diagram, good).filter(f => !f.far);
+  const height = theme === 'paper' ? 300 : 400;
+  const x = {
+    field: 'time',
+    type: 'quantitative',
+    title: clock === 'wall' ? 'wall time, pipelined where a solver can [ms per simulated second]' :
+                              'GPU time, of CPU solvers wall time [ms per simulated second]',
+    scale: {type: 'log', padding: 10},
+    axis: {format: '~g', values: decades(good.map(r => r.time).concat(1000))}
+  };
+  const y = {
+    field: 'error',
+    type: 'quantitative',
+    title: lines_of(`error: ${diagram.ranking}`, theme === 'paper' ? 48 : 70),
+    scale: {type: 'log', padding: 10},
+    axis: {format: '.0e', values: decades(good.map(r => r.error).concat(floors.map(f => f.error)))}
+  };
+  const tip = [
+    {field: 'label', title: 'solver'}, {field: 'setting'}, {field: 'time', format: '.4~r', title: 'ms/s'},
+    {field: 'error', format: '.3~e'}, {field: 'status'}
+  ];
+  const faint = {condition: {test: 'datum.ranked', value: 1}, value: 0.4};
+  return {
+    width: beside(theme, width, 190),
+    height,
+    data: {values: good},
+    layer: [
+      {
+        name: 'not_told_apart',
+        data: {values: floors.length ? [{error: Math.max(...floors.map(f => f.error))}] : []},
+        mark: {type: 'rect', opacity: 0.12, color: '#808080'},
+        encoding: {y, y2: {value: height}, x: {value: 0}, x2: {value: 'width'}}
+      },
+      {name: 'floors', data: {values: floors}, mark: {type: 'rule', strokeDash: [5, 4]}, encoding: {y}},
+      {
+        name: 'floor_text',
+        data: {values: floors},
+        mark: {type: 'text', align: 'right', baseline: 'bottom', dx: -4, dy: -2},
+        encoding: {x: {value: 'width'}, y, text: {field: 'what'}}
+      },
+      {name: 'real_time', data: {values: [{time: 1000}]}, mark: {type: 'rule', strokeDash: [2, 3]}, encoding: {x}},
+      {
+        name: 'real_time_text',
+        data: {values: [{time: 1000}]},
+        mark: {type: 'text', align: 'left', baseline: 'top', dx: 4, dy: 4, text: 'real time'},
+        encoding: {x, y: {value: 0}}
+      },
+      {
+        name: 'fronts',
+        data: {values: front},
+        mark: {type: 'line', strokeWidth: 2.2},
+        encoding: {x, y, color, opacity: theme === 'paper' ? faint : opacity}
+      },
+      {
+        name: 'device_fronts',
+        data: {values: device},
+        mark: {type: 'line', strokeWidth: 1, strokeDash: [5, 3]},
+        encoding: {x, y, color, opacity}
+      },
+      {
+        name: 'points',
+        ...picked(theme),
+        mark: {type: 'point', size: theme === 'paper' ? 24 : 42, strokeWidth: 1},
+        encoding: {x, y, color, shape, opacity, tooltip: tip}
+      },
+      {
+        name: 'front_points',
+        data: {values: front},
+        mark: {type: 'point', filled: true, size: 46, aria: false},
+        encoding: {x, y, color, shape, opacity: theme === 'paper' ? faint : opacity, tooltip: tip}
+      },
+      {
+        name: 'failed',
+        data: {values: failed},
+        mark: {...kCross, size: 50},
+        encoding: {x, y: {value: 0}, color, tooltip: tip}
+      },
+      {
+        name: 'untimed',
+        data: {values: untimed},
+        mark: {...kCross, size: 50},
+        encoding: {x: {value: 'width'}, y: {value: 0}, color, tooltip: tip}
+      },
+    ]
+  };
+}
+
+/// What the picture alone does not say, a sentence each.
+function notes_of(diagram) {
+  const {rows, good, failed, untimed} = data_of(diagram, 'wall'), bad = [...failed, ...untimed];
+  const out = unique(rows.map(r => r.label)).flatMap(label => {
+    const mine = rows.filter(r => r.label === label), count = list => list.filter(r => r.label === label).length;
+    if (mine.every(r => ['unsupported', 'missing'].includes(r.status))) return [`${label}: unsupported.`];
+    const skipped = count(rows.filter(r => r.status === 'over_budget'));
+    const parts = [
+      count(bad) ? `${count(bad)} of ${mine.length} failed` : '', skipped ? `${skipped} of ${mine.length} not run` : ''
+    ].filter(Boolean);
+    return parts.length ? [`${label}: ${parts.join(', ')}.`] : [];
+  });
+  return [
+    diagram.refused ? `Ranks nobody: ${diagram.refused}.` : '', out.join(' '),
+    ...Object.entries(diagram.not_ranked).map(([solver, why]) => `${solver} is shown but not ranked: ${why}.`),
+    ...floors_of(diagram, good).filter(f => f.far).map(f => `Below the axis: ${f.what}.`)
+  ].filter(Boolean);
 }
 
 export function work_figure(diagrams) {
-  let at = diagrams[0], clock = 'wall';
-  let figure = null;
-  const data = () => {
-    const rows = at.points.map(p => ({
-                                 label: p.solver,
-                                 setting: p.setting,
-                                 status: p.status,
-                                 wall: p.wall_ms_per_s,
-                                 error: p.error,
-                                 stored_front: p.on_front,
-                                 // A CPU has one clock.
-                                 time: clock === 'wall' ? p.wall_ms_per_s : p.device_ms_per_s ?? p.wall_ms_per_s
-                               }));
-    const good = rows.filter(r => r.status === 'ok' && r.error > 0 && r.time > 0);
-    return {
-      rows,
-      good,
-      front: clock === 'wall' ? good.filter(r => r.stored_front) : on_front(good, 'time'),
-      failed: rows.filter(r => !good.includes(r) && r.status !== 'unsupported')
-    };
-  };
-  const spec = (theme, width) => {
-    const {rows, good, front, failed} = data(), labels = unique(rows.map(r => r.label)), color = colour(labels, theme);
-    const floors = [
-      {error: at.space_error, what: 'error of the mesh'},
-      {error: at.reference_uncertainty === null ? null : 3 * at.reference_uncertainty, what: '3 U_ref'}
-    ].filter(f => f.error > 0);
-    const x = {
-      field: 'time',
-      type: 'quantitative',
-      title: 'ms of computing per simulated second',
-      scale: {type: 'log', padding: 10},
-      axis: {format: ',~r', values: decades(good.map(r => r.time).concat(1000))}
-    };
-    const y = {
-      field: 'error',
-      type: 'quantitative',
-      title: at.ranking,
-      scale: {type: 'log', padding: 10},
-      axis: {format: '.0e', values: decades(good.map(r => r.error).concat(floors.map(f => f.error)))}
-    };
-    const tip = [
-      {field: 'label', title: 'solver'}, {field: 'setting'}, {field: 'time', format: '.4~r', title: 'ms/s'},
-      {field: 'error', format: '.3~e'}, {field: 'status'}
-    ];
-    return {
-      width: width - 190,
-      height: 400,
-      data: {values: good},
-      layer: [
-        {name: 'floors', data: {values: floors}, mark: {type: 'rule', strokeDash: [5, 4]}, encoding: {y}},
-        {
-          name: 'floor_text',
-          data: {values: floors},
-          mark: {type: 'text', align: 'right', baseline: 'bottom', dx: -4, dy: -2},
-          encoding: {x: {value: 'width'}, y, text: {field: 'what'}}
-        },
-        {name: 'real_time', data: {values: [{time: 1000}]}, mark: {type: 'rule', strokeDash: [2, 3]}, encoding: {x}},
-        {
-          name: 'fronts',
-          data: {values: front},
-          mark: {type: 'line', strokeWidth: 2.6},
-          encoding: {x, y, color, opacity: fade}
-        },
-        {
-          name: 'points',
-          ...picked,
-          mark: {type: 'point', size: 42},
-          encoding: {x, y, color, opacity: fade, tooltip: tip}
-        },
-        {
-          name: 'front_points',
-          data: {values: front},
-          mark: {type: 'point', filled: true, size: 46, aria: false},
-          encoding: {x, y, color, opacity: fade, tooltip: tip}
-        },
-        {
-          name: 'failed',
-          data: {values: failed},
-          mark: {type: 'point', shape: 'cross', angle: 45, filled: true, size: 50},
-          encoding: {x, y: {value: 0}, color, tooltip: tip}
-        },
-      ]
-    };
-  };
-  const remark =
-      () => [at.refused ? `Ranks nobody: ${at.refused}.` : '',
-             ...Object.entries(at.not_ranked).map(([solver, why]) => `${solver} is shown but not ranked: ${why}.`)]
-                .filter(Boolean)
-                .join(' ');
+  const named = Object.fromEntries(diagrams.map(d => [d.scene, d])), at = state => named[state.Scene];
   const words = d => d.refused ? `${d.scene} (refused)` : d.scene;
-  figure = plot_figure({
+  const still = d => ({
+    file: still_name(`work-precision-${d.scene}`),
+    title: `${d.scene}: error against run time`,
+    labels: unique(d.points.map(p => p.solver)),
+    empty: data_of(d, 'wall').good.length ? '' : 'No cell of this scene has an error and a time.',
+    notes: [
+      `${d.scene}. Thick: fronts; dashed: by the GPU’s own clock; shaded: not told apart; ×: failed.`, ...notes_of(d),
+      device_note(d.points)
+    ],
+    make: w => work_spec(d, 'wall', 'paper', w)
+  });
+  return {
     id: 'work',
     title: 'Error against run time: every setting',
-    spec,
-    remark,
-    controls: [
-      select(
-          'Scene', diagrams.map(d => ({value: d.scene, text: words(d)})), at.scene,
-          v => {
-            at = diagrams.find(d => d.scene === v);
-            figure.redraw();
-          }),
-      select(
-          'Clock', [{value: 'wall', text: 'wall, submit to fence'}, {value: 'device', text: 'GPU (CPU solvers: wall)'}],
-          clock,
-          v => {
-            clock = v;
-            figure.redraw();
-          })
+    spec: (theme, width, state) => work_spec(at(state), state.Clock, theme, width),
+    remark: state => notes_of(at(state)).join(' '),
+    choices: [
+      {label: 'Scene', options: () => diagrams.map(d => ({value: d.scene, text: words(d)}))}, {
+        label: 'Clock',
+        options: () =>
+            [{value: 'wall', text: 'wall, pipelined where a solver can'},
+             {value: 'device', text: 'GPU (CPU solvers: wall)'}]
+      }
     ],
     caption:
-        'Every point a setting, thick each solver’s front; crosses on the upper edge: cells that failed, by their ' +
-        'time where they have one. Dotted: real time (1000 ms/s). Hover for the setting.',
-    rows: () => [
+        'Every point a setting, thick each solver’s front, dashed the same by the GPU’s own clock; crosses on the ' +
+        'upper edge: cells that failed, by their time where they have one, else on the right. Dotted: real time ' +
+        '(1000 ms/s). Shaded: below the floors errors are not told apart.',
+    hint: 'Hover for the setting.',
+    rows: state => [
         ['scene', 'solver', 'setting', 'status', 'ms_per_s', 'error', 'on_front'],
-        ...data().rows.map(r => [at.scene, r.label, r.setting, r.status, r.time, r.error, r.stored_front])]
-  });
-  return figure;
+        ...data_of(at(state), state.Clock)
+            .rows.map(r => [state.Scene, r.label, r.setting, r.status, r.time, r.error, r.stored_front])],
+    stills: diagrams.map(still)
+  };
 }

@@ -1,15 +1,24 @@
 // Which figures stand in which section.
 import {penetration_figure} from './figure_penetration.js';
 import {bandwidth_figure, rates_figure} from './figure_rates.js';
-import {stability_figure} from './figure_stability.js';
+import {cases_figure, stability_figure} from './figure_stability.js';
+import {stretch_figure} from './figure_stretch.js';
 import {work_figure} from './figure_work.js';
 
-/// {section id: figures}, for the sections that have data.
+/// {section id: figures}, for the sections that have data; of rates a list for each family. Figs. 4 and 5 are those of
+/// the paper's table, or of the first family.
 export function make_figures(doc) {
+  const main = doc.rates.find(f => f.paper_table === 3) ?? doc.rates[0];
+  const file = (family, name) => family === main ? name : null;
   return {
-    rates: doc.rates.flatMap((family, k) => [rates_figure(family, k), bandwidth_figure(family, k)]),
+    rates: doc.rates.map(
+        (family, k) => [rates_figure(family, k, file(family, 'fig4')),
+                        bandwidth_figure(family, k, file(family, 'fig5')), stretch_figure(family, k)]
+                           .filter(Boolean)),
     'work-precision': doc.work.length ? [work_figure(doc.work)] : [],
-    stability: doc.maps.length ? [stability_figure(doc.maps)] : [],
     penetration: doc.penetration.length ? [penetration_figure(doc.penetration)] : [],
+    stability: [
+      ...(doc.cases.length ? [cases_figure(doc.cases)] : []), ...(doc.maps.length ? [stability_figure(doc.maps)] : [])
+    ],
   };
 }

@@ -1,13 +1,13 @@
 import {element} from './dom.js';
 import {make_figures} from './figures.js';
-import {start_plots} from './plot.js';
+import {plot_figure, start_plots} from './plot.js';
 import {table_block} from './tables.js';
 import {start_theme} from './theme.js';
 import {start_viewer} from './viewer.js';
 
 const kOrder = [
-  'summary', 'rates', 'work-precision', 'penetration', 'stability', 'material', 'feature-cost', 'features', 'failed', 'expect',
-  'environment'
+  'summary', 'rates', 'work-precision', 'penetration', 'stability', 'material', 'feature-cost', 'features', 'failed',
+  'expect', 'environment'
 ];
 const kAfterViewer = ['material', 'feature-cost', 'features', 'failed', 'expect', 'environment'];
 const rank = id => kOrder.includes(id) ? kOrder.indexOf(id) : kOrder.length;
@@ -26,7 +26,7 @@ function section(s, id, figures) {
   const blocks = s.tables.map(table_block), first = s.id === 'work-precision' ? 0 : 1;
   return element(
       'section', {id, 'aria-labelledby': `${id}-title`}, element('h2', {id: `${id}-title`}, s.title),
-      blocks.slice(0, first), figures.map(f => f.block), blocks.slice(first));
+      blocks.slice(0, first), figures.map(plot_figure), blocks.slice(first));
 }
 
 function start() {
@@ -44,8 +44,8 @@ function start() {
   const sorted = doc.sections.map((s, k) => ({s, k})).sort((a, b) => rank(a.s.id) - rank(b.s.id) || a.k - b.k);
   for (const {s} of sorted) {
     const nth = seen[s.id] = (seen[s.id] ?? 0) + 1, id = nth > 1 ? `${s.id}-${nth}` : s.id;
-    // Of rates each section has its own two figures; elsewhere all stand in the first.
-    const own = s.id === 'rates' ? figures.rates.slice(2 * nth - 2, 2 * nth) : nth === 1 ? figures[s.id] ?? [] : [];
+    // Of rates each section has its own figures; elsewhere all stand in the first.
+    const own = s.id === 'rates' ? figures.rates[nth - 1] ?? [] : nth === 1 ? figures[s.id] ?? [] : [];
     document.getElementById(kAfterViewer.includes(s.id) ? 'later' : 'sections').append(section(s, id, own));
     links.push({id, title: s.title, later: kAfterViewer.includes(s.id)});
   }

@@ -25,7 +25,7 @@ export function start_theme() {
   apply(wanted());
 }
 
-// Okabe & Ito's palette, readable with every common colour blindness; the same colours as the static figures.
+// After Okabe & Ito's palette, readable with every common colour blindness; on paper as in the light.
 const kColours = {
   light: {
     xpbd: '#0072B2',
@@ -47,8 +47,8 @@ const kColours = {
   }
 };
 const kSpare = {
-  light: ['#7B4FB5', '#8C564B', '#3A86A8', '#6B8E23', '#B03060'],
-  dark: ['#B79AE8', '#D0A090', '#8CC8E0', '#B5D05A', '#F080A0']
+  light: ['#7B4FB5', '#56B4E9', '#8C564B', '#E69F00', '#6B8E23', '#B03060', '#1B4F72', '#AAAA00'],
+  dark: ['#B79AE8', '#8CC8E0', '#D0A090', '#F5B942', '#B5D05A', '#F080A0', '#9FB8FF', '#E8E86A']
 };
 const kPublished = {
   light: ['#9AA0A6', '#7C838A', '#5C646B'],
@@ -56,11 +56,12 @@ const kPublished = {
 };
 
 /// {label: colour} for every label, stable as long as the labels are.
-export function palette(labels, name = theme()) {
-  const out = {};
+export function palette(labels, theme_name = theme()) {
+  const name = theme_name === 'dark' ? 'dark' : 'light', out = {};
   let spare = 0, published = 0;
   for (const label of labels)
     out[label] = kColours[name][label] ??
-        (label.startsWith('published') ? kPublished[name][published++ % 3] : kSpare[name][spare++ % 5]);
+        (label.startsWith('published') ? kPublished[name][published++ % 3] :
+                                         kSpare[name][spare++ % kSpare[name].length]);
   return out;
 }
