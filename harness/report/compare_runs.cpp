@@ -7,7 +7,7 @@
 #include <set>
 
 #include "clothbench/error.hpp"
-#include "metrics/metric.hpp"
+#include "metrics/registry.hpp"
 #include "report/grid.hpp"
 #include "report/withheld.hpp"
 #include "results/json_number.hpp"

@@ -3,30 +3,24 @@ import {select} from './dom.js';
 import {colour, fade, kFailed, picked, unique} from './figure_parts.js';
 import {plot_figure} from './plot.js';
 
-const kMetricWords = {
-  tunnelled_fraction: 'tunnelled share of the cloth',
-  contact_length_m: 'contour [m]',
-  tunnelled_depth_m: 'tunnelled depth [m]',
-  depth_m: 'depth [m]',
-  depth_vertex_m: 'depth at vertices [m]',
-  stretch_max: 'greatest strain'
-};
-
 export function penetration_figure(ups) {
   const scenes = ups.flatMap(u => u.scenes.map(s => ({...s, kind: u.title})));
   let at = scenes[0], metric = '', figure = null;
-  const metrics = () => Object.keys(kMetricWords).filter(m => at.rows.some(r => m in r.metrics));
+  // What the registry of metrics says of those that the scene has, by name.
+  const known = () => Object.assign({}, ...at.rows.map(r => r.metrics));
+  const words = () => known()[metric]?.words ?? '';
   const choose = select('Metric', [], '', v => {
     metric = v;
     figure.redraw();
   });
   const refill = () => {
-    const list = metrics();
+    const told = known(), list = Object.keys(told).sort((a, b) => told[a].place - told[b].place);
     // The first that shows something: most scenes are meant to be all zero.
     const shows = m => at.rows.some(r => r.solver !== 'ballistic' && r.metrics[m]?.values.some(v => v > 0));
     if (!list.includes(metric)) metric = list.find(shows) ?? list[0] ?? '';
     choose.querySelector('select').replaceChildren(
-        ...list.map(m => new Option(kMetricWords[m], m, m === metric, m === metric)));
+        ...list.map(
+            m => Object.assign(new Option(told[m].words, m, m === metric, m === metric), {title: told[m].long_name})));
   };
   const data = () =>
       at.rows.filter(r => r.solver !== 'ballistic')
@@ -45,7 +39,7 @@ export function penetration_figure(ups) {
     const x = {field: 'time', type: 'quantitative', title: 'time [s]', axis: {tickCount: 10, grid: false}}, y = {
       field: 'value',
       type: 'quantitative',
-      title: kMetricWords[metric],
+      title: words(),
       axis: {format: '~g', tickCount: 6},
       ...(rows.some(r => r.value > 0) ? {} : {scale: {domain: [0, 1]}})
     };
@@ -66,7 +60,7 @@ export function penetration_figure(ups) {
             opacity: {value: 0},
             tooltip: [
               {field: 'label', title: 'solver'}, {field: 'time', format: '.3f', title: 's'},
-              {field: 'value', format: '.4~g', title: kMetricWords[metric]}
+              {field: 'value', format: '.4~g', title: words()}
             ]
           }
         },
