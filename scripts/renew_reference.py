@@ -22,7 +22,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DASH = "–"
-BEHIND = {  # summary values computed from a metric, as harness/metrics/metric_versions.cpp has them
+BEHIND = {  # summary values computed from a metric, as the registry in harness/metrics has them (clothbench list scalars)
     "wrong_side_samples": ["wrong_side_samples_max", "contact_violated_longest_s", "untangle_s"],
     "wrong_side_fraction": ["wrong_side_fraction_max", "wrong_side_fraction_end"],
 }

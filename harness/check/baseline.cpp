@@ -11,7 +11,7 @@
 #include "check/schema.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
-#include "metrics/metric.hpp"
+#include "metrics/registry.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -35,9 +35,7 @@ std::string stage_text(const StageRecord& s) {
 
 double number_at(const json& value, const std::string& name, const std::string& where) {
   if (find_gate(name) == nullptr) {
-    std::vector<std::string> known;
-    for (const Gate& g : gates()) known.emplace_back(g.pattern);
-    const std::string near = nearest(name, known);
+    const std::string near = nearest(name, gated_names());
     throw Error(fmt::format("{}: not a scalar that is checked{} (the table is in results/baselines/README.md)", where,
                             near.empty() ? "" : "; nearest known: " + near));
   }

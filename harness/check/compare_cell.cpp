@@ -6,7 +6,7 @@
 #include "check/compare.hpp"
 #include "check/gates.hpp"
 #include "clothbench/error.hpp"
-#include "metrics/metric.hpp"
+#include "metrics/registry.hpp"
 
 namespace clothbench {
 namespace {
@@ -81,16 +81,16 @@ std::vector<Finding> compare_trials(const CellRecord& r) {
   return {};
 }
 
-std::string shown(const Gate& g, double v) {
+std::string shown(const std::string& name, double v) {
   if (!std::isfinite(v)) return kNotMeasured;
-  if (g.rule == Rule::Kept && (v == 0 || v == 1)) return v == 1 ? "kept" : "broken";
+  if (is_verdict(name) && (v == 0 || v == 1)) return v == 1 ? "kept" : "broken";
   return fmt::format("{:.6g}", v);
 }
 
 /// Written so that NaN fails: a value passes only by a comparison that holds.
-Verdict judge(const Gate& g, double was, double is, double slack) {
+Verdict judge(const std::string& name, double was, double is, double slack) {
   if (!std::isfinite(was)) return std::isfinite(is) ? Verdict::New : Verdict::Same;
-  if (g.rule == Rule::Kept) return is == was ? Verdict::Same : is > was ? Verdict::Improved : Verdict::Failed;
+  if (is_verdict(name)) return is == was ? Verdict::Same : is > was ? Verdict::Improved : Verdict::Failed;
   if (!(is <= was + slack)) return Verdict::Failed;
   return is < was - slack ? Verdict::Improved : Verdict::Same;
 }
@@ -120,13 +120,12 @@ std::vector<Finding> compare_scalars(const BaselineCell& was, const BaselineCell
                    fmt::format("version {}", v.found), "", "scalars computed from it are not compared"});
   for (const auto& [name, unused] : names) {
     if (hangs_on(name, versions)) continue;
-    const Gate& gate = *find_gate(name);
-    const double before = value(was, name), now = value(is, name), tolerance = slack(gate, before, length_m);
-    const Verdict verdict = judge(gate, before, now, tolerance);
+    const double before = value(was, name), now = value(is, name);
+    const double tolerance = slack(*find_gate(name), before, length_m);
+    const Verdict verdict = judge(name, before, now, tolerance);
     if (verdict == Verdict::Same) continue;
-    const std::string limit =
-        gate.rule == Rule::AtMost && std::isfinite(before) ? "≤ " + shown(gate, before + tolerance) : "";
-    out.push_back({verdict, name, shown(gate, before), shown(gate, now), limit, ""});
+    const std::string limit = !is_verdict(name) && std::isfinite(before) ? "≤ " + shown(name, before + tolerance) : "";
+    out.push_back({verdict, name, shown(name, before), shown(name, now), limit, ""});
   }
   return out;
 }

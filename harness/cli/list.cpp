@@ -5,8 +5,9 @@
 
 #include "assets/assets.hpp"
 #include "base/json_text.hpp"
+#include "check/gates.hpp"
 #include "cli/command.hpp"
-#include "metrics/metric.hpp"
+#include "metrics/registry.hpp"
 #include "report/features.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
@@ -75,10 +76,37 @@ nlohmann::json list_devices() {
   return rows;
 }
 
+/// Into rows in the order of the registry: the file that each entry stands in.
+template <class T>
+void source_of(nlohmann::json& rows, std::vector<T> MetricGroup::*list) {
+  std::size_t at = 0;
+  for (const MetricGroup& g : metric_groups())
+    for (std::size_t k = 0; k < (g.*list).size(); ++k) rows[at++]["source"] = g.source;
+}
+
 nlohmann::json list_metrics() {
   nlohmann::json rows = nlohmann::json::array();
   for (const Metric& m : metrics())
-    rows.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}, {"version", m.version}});
+    rows.push_back({{"name", m.name},
+                    {"units", m.units},
+                    {"long_name", m.long_name},
+                    {"version", m.version},
+                    {"needs", m.needs.words}});
+  source_of(rows, &MetricGroup::series);
+  return rows;
+}
+
+nlohmann::json list_scalars() {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Scalar& s : scalars()) {
+    rows.push_back({{"name", s.name},
+                    {"units", s.units},
+                    {"long_name", s.doc},
+                    {"of", s.from.series},
+                    {"expect", s.expect == Expect::Yes}});
+    if (s.gate != nullptr) rows.back()["check"] = {{"slack", slack_text(*s.gate)}, {"why", s.gate->why}};
+  }
+  source_of(rows, &MetricGroup::scalars);
   return rows;
 }
 
@@ -112,10 +140,11 @@ void print_rows(const nlohmann::json& rows) {
 void add_list(CLI::App& app, Console& console) {
   std::string& what = console.arguments<std::string>();
   what = "solvers";
-  CLI::App* cmd =
-      app.add_subcommand("list", "What there is: solvers, features, scenarios, studies, devices, metrics or assets");
-  cmd->add_option("what", what, "solvers | features | scenarios | studies | devices | metrics | assets")
-      ->check(CLI::IsMember({"solvers", "features", "scenarios", "studies", "devices", "metrics", "assets"}));
+  CLI::App* cmd = app.add_subcommand(
+      "list", "What there is: solvers, features, scenarios, studies, devices, metrics, scalars or assets");
+  cmd->add_option("what", what, "solvers | features | scenarios | studies | devices | metrics | scalars | assets")
+      ->check(
+          CLI::IsMember({"solvers", "features", "scenarios", "studies", "devices", "metrics", "scalars", "assets"}));
   cmd->footer(
       "Examples: clothbench list solvers\n"
       "          clothbench list scenarios --json");
@@ -126,6 +155,7 @@ void add_list(CLI::App& app, Console& console) {
                                 : what == "devices"   ? list_devices()
                                 : what == "features"  ? feature_json(features(), false)
                                 : what == "assets"    ? list_assets()
+                                : what == "scalars"   ? list_scalars()
                                                       : list_metrics();
     if (console.json)
       fmt::print("{}\n", rows.dump(2));

@@ -12,6 +12,9 @@ inline constexpr bool kWithContactMetrics = true;
 inline constexpr bool kWithContactMetrics = false;  // built without CGAL: the contact rows apply to no scene
 #endif
 
+inline constexpr Needs kColliders{"colliders",
+                                  [](const Scene& s) { return kWithContactMetrics && !s.colliders.empty(); }};
+
 /// Whether depth in it is defined: planes (the half-space behind them), spheres, boxes, capsules, closed meshes with
 /// their normals outwards, and skinned ones, which are hands open at the wrist at most. Rooms have no inside.
 bool has_inside(const Collider&);

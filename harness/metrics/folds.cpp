@@ -1,12 +1,16 @@
 // How smooth the folds are: what of the angle between neighbouring cells changes from one line to the next.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "metrics/metric.hpp"
+#include "metrics/collider_contact.hpp"
+#include "metrics/reduction.hpp"
 
 namespace clothbench {
 namespace {
+
+constexpr int kFoldCells = 6;  // the filter looks at five neighbouring angles
 
 /// Below this RMS angle [rad] a sheet is flat, and what is left of its angles rounding.
 constexpr double kFlat_rad = 1e-4;
@@ -69,8 +73,6 @@ Angles angles(const MetricFrame& f) {
   return sum;
 }
 
-}  // namespace
-
 double fold_angle_rms(const MetricFrame& f) {
   const Angles a = angles(f);
   return std::sqrt(a.everywhere / static_cast<double>(a.steps));
@@ -80,6 +82,21 @@ double fold_roughness(const MetricFrame& f) {
   const Angles a = angles(f);
   const double all = std::sqrt(a.all / static_cast<double>(a.count));
   return all < kFlat_rad ? 0 * a.rough : std::sqrt(a.rough / a.all);
+}
+
+bool folds(const Scene& s) { return kColliders.met(s) && std::min(s.cloth.columns, s.cloth.rows) >= kFoldCells + 1; }
+
+}  // namespace
+
+MetricGroup folds_metrics() {
+  static constexpr Gate kRough{0.1, SlackUnit::One, 0.25, false,
+                               "which folds there are is chaotic, how rough they are is not"};
+  constexpr Needs kFolds{"colliders, 7 × 7 vertices", folds};
+  return {{{"fold_angle_rms_rad", "rad", "root mean square angle between the normals of neighbouring cells", kFolds,
+            fold_angle_rms},
+           {"fold_roughness", "1", "share of that angle at wavelengths of up to two cells", kFolds, fold_roughness}},
+          {{"fold_roughness_end", last("fold_roughness"), Expect::Yes, &kRough, 290},
+           {"fold_angle_rms_end_rad", last("fold_angle_rms_rad"), Expect::No, nullptr, 300}}};
 }
 
 }  // namespace clothbench

@@ -1,7 +1,6 @@
 #include <cmath>
 
-#include "clothbench/record.hpp"
-#include "metrics/metric.hpp"
+#include "metrics/reduction.hpp"
 
 namespace clothbench {
 namespace {
@@ -25,7 +24,8 @@ Vec3 fall(const MetricContext& c, int frame) {
   return way;
 }
 
-/// Squared distance of every vertex from the integrator's own fall, over (|g| T^2 / 2)^2.
+/// Squared distance of every vertex from the integrator's own fall, over (|g| T^2 / 2)^2; NaN at T = 0. What is left is
+/// rounding and forces that should not be there.
 template <class Fold>
 double fold_errors(const MetricFrame& f, Fold fold) {
   if (f.index == 0) return kMissing;
@@ -46,13 +46,27 @@ double fold_errors(const MetricFrame& f, Fold fold) {
   return result;
 }
 
-}  // namespace
+/// An integrator declares its fall for even frames.
+bool falls_freely(const Scene& s) {
+  return touches_nothing(s) && kGravity.met(s) && s.time.ends_s.empty() && s.cloth.spin_rad_per_s == Vec3{};
+}
 
 double free_fall_error_max(const MetricFrame& f) { return std::sqrt(fold_errors(f, max_or_nan)); }
 
 double free_fall_error_rms(const MetricFrame& f) {
   const auto n = static_cast<double>(f.context.scene.cloth.vertex_count());
   return std::sqrt(fold_errors(f, [](double a, double b) { return a + b; }) / n);
+}
+
+}  // namespace
+
+MetricGroup free_fall_metrics() {
+  constexpr Needs kFree{"free cloth, gravity", falls_freely};
+  return {{{"free_fall_error", "1", "greatest distance from free fall over g T^2 / 2", kFree, free_fall_error_max},
+           {"free_fall_error_rms", "1", "root mean square distance from free fall over g T^2 / 2", kFree,
+            free_fall_error_rms}},
+          {{"free_fall_error", last("free_fall_error"), Expect::Yes, &kErrorGate},
+           {"free_fall_error_rms", last("free_fall_error_rms"), Expect::Yes, &kErrorGate}}};
 }
 
 }  // namespace clothbench

@@ -57,23 +57,39 @@ struct MetricFrame {
   const SelfContact* self_contact = nullptr;  ///< null where the scene's cloth does not touch itself
 };
 
-/// One number a frame. A scene pays for a metric only if `applies` says so. A state that is not finite gives NaN.
-struct Metric {
-  std::string name, units, long_name;
-  std::function<bool(const Scene&)> applies;
-  std::function<double(const MetricFrame&)> value;
-  int version = 1;  ///< of its rule: to be raised by whoever changes what it counts, so that no table mixes the two
+/// Which scenes an entry of the registry is defined for.
+struct Needs {
+  const char* words;  ///< "colliders"
+  bool (*met)(const Scene&);
 };
 
-/// All metrics: one file and one row each (metrics.cpp).
-const std::vector<Metric>& metrics();
+inline constexpr Needs kAlways{"every scene", [](const Scene&) { return true; }};
+/// Held and touched by nothing.
+inline bool touches_nothing(const Scene& s) {
+  return s.pins.vertices.empty() && s.grips.vertices.empty() && s.colliders.empty();
+}
 
-/// Version of the rule of a metric of this program; 0 if it has none of that name.
-int metric_version(const std::string& name);
+inline constexpr Needs kGravity{"gravity", [](const Scene& s) { return s.gravity_m_per_s2 != Vec3{}; }};
 
-/// The metrics that a value of a result's summary is computed from, "expect.<value>" as the value itself; none for what
-/// is measured otherwise (times, bytes, counts).
-std::vector<std::string> metrics_behind(const std::string& summary_name);
+/// How the page and penetration-series.csv show a series; without words they do not.
+struct Plotted {
+  const char* words = "";  ///< on its axis
+  int place = 0;           ///< among the page's choices
+  int column = 0;          ///< among the file's columns
+};
+
+constexpr Plotted plotted(const char* words, int place, int column) { return {words, place, column}; }
+
+/// One number a frame. A scene pays for a metric only if it meets its needs. A state that is not finite gives NaN.
+struct Metric {
+  std::string name, units;
+  std::string long_name;  ///< one plain phrase: help, result files, documents and the page show it
+  Needs needs;
+  std::function<double(const MetricFrame&)> value;
+  int version = 1;  ///< of its rule: to be raised by whoever changes what it counts, so that no table mixes the two
+  Plotted drawn = {};
+  bool applies(const Scene& s) const { return needs.met(s); }
+};
 
 /// Greater of two numbers, and NaN if either is: std::max would lose it.
 inline double max_or_nan(double a, double b) { return b <= a || a != a ? a : b; }
@@ -86,41 +102,5 @@ inline bool finite(const std::vector<double>& values) {
 
 /// Length of a vector. Not std::hypot(x, y, z): libstdc++'s gives 0 for (0, NaN, 0).
 inline double norm(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
-
-/// Greatest (or root mean square) distance of a vertex from the free fall of the solver's own integrator, over
-/// |g| T^2 / 2; NaN at T = 0.
-double free_fall_error_max(const MetricFrame&);
-double free_fall_error_rms(const MetricFrame&);
-
-/// (|x| - l)/l over the structural edges: greatest, root mean square, mean; mean of what is above 0.
-double stretch_max(const MetricFrame&);
-double stretch_rms(const MetricFrame&);
-double stretch_mean(const MetricFrame&);
-double stretch_mean_positive(const MetricFrame&);
-
-/// |P - P0 - M g t| / (M (sqrt(|g| L) + |v0|)), L the longer side, v0 the initial velocity.
-double momentum_error(const MetricFrame&);
-
-/// Greatest vertex speed [m/s].
-double speed_max(const MetricFrame&);
-
-/// Sum over the vertices of m v^2 / 2 [J].
-double kinetic_energy(const MetricFrame&);
-
-/// Work done against gravity since the start, the sum of -m g . (x - x0) [J].
-double gravity_energy(const MetricFrame&);
-
-/// Greatest distance [m] of a held vertex from where the hand that holds it has it.
-double grip_error(const MetricFrame&);
-
-/// Root mean square angle [rad] between the normals of neighbouring cells.
-double fold_angle_rms(const MetricFrame&);
-
-/// Of that angle the share at wavelengths of up to two cells, which no smooth fold has: 0 smooth, 1 creased at every
-/// line.
-double fold_roughness(const MetricFrame&);
-
-/// Energy less that at the start, over M g L, of scenes that keep it: see energy_rise in truth_errors.hpp.
-double energy_rise(const MetricFrame&);
 
 }  // namespace clothbench

@@ -2,6 +2,7 @@
 
 #include "metrics/collider_contact.hpp"
 #include "metrics/collider_passage.hpp"
+#include "metrics/registry.hpp"
 #include "metrics/stability/judge.hpp"
 #include "metrics/truth_errors.hpp"
 

@@ -1,10 +1,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metrics/metric.hpp"
+#include "metrics/registry.hpp"
 
 namespace clothbench {
+namespace {
 
+bool keeps_momentum(const Scene& s) {
+  const bool has_scale = kGravity.met(s) || s.cloth.initial_velocity_m_per_s != Vec3{};
+  return touches_nothing(s) && !s.needs.has(Feature::Damping) && has_scale;
+}
+
+/// |P - P0 - M g t| / (M (sqrt(|g| L) + |v0|)), L the longer side, v0 the initial velocity.
 double momentum_error(const MetricFrame& f) {
   const Scene& s = f.context.scene;
   const std::vector<double> mass = vertex_masses(s);
@@ -46,19 +53,15 @@ double gravity_energy(const MetricFrame& f) {
   return energy;
 }
 
-double grip_error(const MetricFrame& f) {
-  const Scene& scene = f.context.scene;
-  const FrameMotion* motion = scene.motion_after(f.index - 1);
-  double most = 0;
-  // A state that is not finite has no value, held or not.
-  for (const double x : f.state.position) most += 0 * x;
-  for (std::size_t k = 0; motion != nullptr && k < scene.grips.vertices.size(); ++k) {
-    if (motion->grip_held[k] == 0) continue;
-    const double* x = &f.state.position[3 * scene.grips.vertices[k]];
-    const Vec3& at = motion->grip_position_m[k];
-    most = max_or_nan(most, norm(x[0] - at[0], x[1] - at[1], x[2] - at[2]));
-  }
-  return most;
+}  // namespace
+
+MetricGroup motion_metrics() {
+  constexpr Needs kFree{"free cloth without damping", keeps_momentum};
+  return {{{"momentum_error", "1", "momentum beside gravity's share, over M (sqrt(g L) + v0)", kFree, momentum_error},
+           {"speed_max", "m s-1", "greatest vertex speed", kAlways, speed_max},
+           {"kinetic_energy_J", "J", "kinetic energy", kAlways, kinetic_energy},
+           {"gravity_energy_J", "J", "work done against gravity since the start", kGravity, gravity_energy}},
+          {}};
 }
 
 }  // namespace clothbench

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "metrics/metric.hpp"
+#include "metrics/reduction.hpp"
 
 namespace clothbench {
 namespace {
@@ -33,8 +33,6 @@ double for_each_strain(const Cloth& c, const ClothState& state, Fn fn) {
   return count;
 }
 
-}  // namespace
-
 double stretch_max(const MetricFrame& f) {
   double most = -1;
   for_each_strain(f.context.scene.cloth, f.state, [&](double e) { most = max_or_nan(most, e); });
@@ -57,6 +55,23 @@ double stretch_mean_positive(const MetricFrame& f) {
   double sum = 0;
   const double count = for_each_strain(f.context.scene.cloth, f.state, [&](double e) { sum += e <= 0 ? 0 : e; });
   return sum / count;
+}
+
+}  // namespace
+
+MetricGroup stretch_metrics() {
+  static constexpr Gate kWorstEdge{0.25, SlackUnit::One, 1, false,
+                                   "the worst edge of thousands: 0.047 and 0.117 on two devices"};
+  return {{{"stretch_max", "1", "greatest strain of the structural edges", kAlways, stretch_max, 1,
+            plotted("greatest strain", 6, 6)},
+           {"stretch_rms", "1", "root mean square strain of the structural edges", kAlways, stretch_rms},
+           {"stretch_mean", "1", "mean strain of the structural edges", kAlways, stretch_mean},
+           {"stretch_mean_positive", "1", "mean strain of the structural edges, those that are short counted as 0",
+            kAlways, stretch_mean_positive}},
+          {{"stretch_max", greatest("stretch_max"), Expect::Yes, &kWorstEdge, 390},
+           {"stretch_max_end", last("stretch_max"), Expect::Yes, &kWorstEdge, 400},
+           {"stretch_max_last_second", greatest_last_second("stretch_max"), Expect::Yes, &kWorstEdge},
+           {"stretch_mean_last_second", mean_last_second("stretch_mean_positive"), Expect::Yes}}};
 }
 
 }  // namespace clothbench

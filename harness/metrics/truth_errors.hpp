@@ -1,6 +1,4 @@
 #pragma once
-#include <map>
-#include <optional>
 #include <string>
 
 #include "clothbench/record.hpp"
@@ -41,12 +39,6 @@ class TruthJudge {
   truth::MaterialLattice lattice_;
   truth::LatticeSampler sampler_;
 };
-
-/// Scalars of a whole accuracy pass by its truth series: `truth_error` (what ranks), `truth_e2`, `truth_max`,
-/// `truth_speed_error`, `truth_quantity`, `truth_quantity_error`, `truth_quantity_error_max`,
-/// `truth_stretch_rms/_p99/_max`, `energy_gain`, `energy_drift`. Moving truths: RMS over time, of _max, stretch and
-/// energy the greatest; truths of rest: the last frame. NaN if the pass is not whole. Empty for a scene without a card.
-std::map<std::string, double> summarise_truth(const Scene&, const AccuracyPass&);
 
 /// Scenes whose strips keep kinetic, gravity's and spring energy (metric energy_rise): no damping, shear, bending,
 /// hands or colliders.

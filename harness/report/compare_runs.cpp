@@ -8,7 +8,7 @@
 
 #include "base/json_number.hpp"
 #include "clothbench/error.hpp"
-#include "metrics/metric.hpp"
+#include "metrics/registry.hpp"
 #include "report/grid.hpp"
 #include "report/withheld.hpp"
 #include "results/store.hpp"

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "clothbench/feature.hpp"
+#include "metrics/registry.hpp"
 #include "report/bytes.hpp"
 #include "report/withheld.hpp"
 

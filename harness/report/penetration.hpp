@@ -64,9 +64,6 @@ Table cost_table(const ContactSetUp&);
 /// Every broken expectation with its value and bound; no rows but the header if there is none.
 Table broken_table(const std::vector<ContactSetUp>&);
 
-/// The summary values of contact and stretch.
-const std::vector<std::string>& contact_names();
-
 nlohmann::json penetration_json(const std::vector<ContactSetUp>&);
 
 /// Per-frame metrics of contact and stretch, one row a frame, six digits; missing = empty. What the figures are drawn

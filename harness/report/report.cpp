@@ -7,6 +7,7 @@
 
 #include "base/data_folder.hpp"
 #include "clothbench/error.hpp"
+#include "metrics/registry.hpp"
 #include "report/across_runs.hpp"
 #include "report/feature_cost.hpp"
 #include "report/features.hpp"
@@ -175,7 +176,7 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     const std::string text = told("penetration", "Penetration", penetration_tables(ups, pairs, turned, true));
     tables += text;
     write("penetration.md", "# Penetration\n\n" + head + "\n" + text);
-    write("penetration.csv", summary_csv(contact, contact_names()));
+    write("penetration.csv", summary_csv(contact, penetration_columns()));
     write("penetration.json", nlohmann::json{{"cells", penetration_json(ups)},
                                              {"rooms", room_json(pairs)},
                                              {"first_leaks", leak_json(speed_sweeps(ups))},

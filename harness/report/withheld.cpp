@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "metrics/metric.hpp"
+#include "metrics/registry.hpp"
 #include "report/grid.hpp"
 
 namespace clothbench {

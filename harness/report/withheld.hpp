@@ -9,9 +9,6 @@ namespace clothbench {
 /// What a table shows in place of a value that is not printed.
 inline constexpr const char* kNotPrinted = "–";
 
-/// What names of summary values that are a bound's outcome begin with: 1 kept, 0 broken, NaN not measured.
-inline const std::string kExpect = "expect.";
-
 /// Whether a summary value is a time, or a rate by it.
 bool is_time(const std::string& summary_name);
 

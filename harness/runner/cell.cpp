@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "metrics/metric_pass.hpp"
+#include "metrics/registry.hpp"
 #include "metrics/stability/judge.hpp"
 #include "runner/environment.hpp"
 #include "runner/frame_input.hpp"
@@ -336,6 +337,14 @@ void Cell::profile_stages(TimedTrial& trial, int frames) {
     for (std::size_t s = 0; s < std::min(stages, cost.stage_device_s.size()); ++s)
       trial.stage_device_s[frame * stages + s] = cost.stage_device_s[s];
   }
+}
+
+std::map<std::string, double> summarise(const CellSpec& spec, const Plan& plan, const CellRecord& record) {
+  const RunView run(*spec.scene, record, plan, spec.entry->info.on_gpu);
+  std::map<std::string, double> s = scalars_of(run);
+  s.merge(stage_scalars(run));
+  for (const auto& [name, value] : spec.scene_values) s[name] = value;
+  return s;
 }
 
 }  // namespace clothbench

@@ -9,6 +9,7 @@
 
 #include "base/json_number.hpp"
 #include "base/json_text.hpp"
+#include "metrics/registry.hpp"
 #include "metrics/stability/judge.hpp"
 #include "results/store.hpp"
 #include "runner/cell.hpp"
@@ -214,7 +215,7 @@ CellAnswer CellWorker::run(const CellRequest& r) {
   out.wall_s = end->wall_s;
   out.outcome = {end->how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F8", -1,
                  "its process: " + end->text() + (words.empty() ? "" : "; last words: " + words)};
-  out.summary = summarise_stability(scene_of(r), {}, out.outcome);
+  out.summary = scalars_of({scene_of(r), {}, out.outcome}, "stability_");
   if (!r.out.empty()) write_failure(r, out);
   return out;
 }

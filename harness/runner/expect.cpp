@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "metrics/collider_contact.hpp"
+#include "metrics/registry.hpp"
 
 namespace clothbench {
 namespace {
@@ -31,7 +32,7 @@ Verdict judge(const Scene& scene, const Outcome& outcome, const AccuracyPass& pa
   if (scene.expected_outcome.empty() && scene.expect.empty()) return v;
   const bool known = measured(scene, outcome, pass);
   const auto note = [&](const std::string& name, const std::string& wrong) {
-    v.scalars["expect." + name] = !known ? kMissing : wrong.empty() ? 1 : 0;
+    v.scalars[kExpect + name] = !known ? kMissing : wrong.empty() ? 1 : 0;
     if (!wrong.empty()) v.text += (v.text.empty() ? "broken: " : "; ") + wrong;
   };
   if (!scene.expected_outcome.empty())

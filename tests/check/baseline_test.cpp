@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include "check/compare.hpp"
-#include "check/gates.hpp"
 #include "clothbench/error.hpp"
 #include "results.hpp"
 
@@ -104,13 +103,6 @@ TEST_F(BaselineFile, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(fault("").find("empty"), std::string::npos);
   EXPECT_NE(fault(R"({"format":1,"format":2})").find("stands twice"), std::string::npos);
   EXPECT_NE(fault("[]"), "no error");
-}
-
-TEST_F(BaselineFile, TheReadmeHasTheTableOfGates) {
-  std::ifstream in(std::string(CLOTHBENCH_SOURCE_DIR) + "/results/baselines/README.md");
-  const std::string readme{std::istreambuf_iterator<char>(in), {}};
-  EXPECT_NE(readme.find(gates_markdown()), std::string::npos) << "results/baselines/README.md must have:\n"
-                                                              << gates_markdown();
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {
 }
 
 TEST_F(Cli, ListsAreReadableByMachines) {
-  for (const char* what : {"solvers", "features", "scenarios", "studies", "devices", "metrics", "assets"}) {
+  for (const char* what : {"solvers", "features", "scenarios", "studies", "devices", "metrics", "scalars", "assets"}) {
     const nlohmann::json rows = json_of(std::string("list ") + what);
     EXPECT_TRUE(rows.is_array()) << what;
     EXPECT_FALSE(std::string(what) != "devices" && rows.empty()) << what;

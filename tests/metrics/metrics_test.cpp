@@ -2,8 +2,9 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
-#include "metrics/metric.hpp"
+#include "metrics/registry.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -19,9 +20,14 @@ class Metrics : public ::testing::Test {
     state_.velocity.assign(state_.position.size(), 0);
   }
   MetricContext context() const { return {scene_, find_solver("ballistic"), settings_}; }
-  double value(double (*metric)(const MetricFrame&), int frame, const ClothState& state) const {
+  static const Metric& metric(const std::string& name) {
+    for (const Metric& m : metrics())
+      if (m.name == name) return m;
+    throw std::runtime_error("no metric " + name);
+  }
+  double value(const std::string& name, int frame, const ClothState& state) const {
     const MetricContext c = context();
-    return metric({c, frame, state, nullptr});
+    return metric(name).value({c, frame, state, nullptr});
   }
 
   Scene scene_;
@@ -33,8 +39,8 @@ TEST_F(Metrics, AScaledSheetHasExactlyThatStretch) {
   for (double factor : {0.9, 1.0, 1.01, 2.0}) {
     ClothState s = state_;
     for (double& x : s.position) x *= factor;
-    for (const auto metric : {stretch_max, stretch_mean}) EXPECT_NEAR(value(metric, 1, s), factor - 1, 1e-14);
-    EXPECT_NEAR(value(stretch_rms, 1, s), std::abs(factor - 1), 1e-14);
+    for (const char* name : {"stretch_max", "stretch_mean"}) EXPECT_NEAR(value(name, 1, s), factor - 1, 1e-14);
+    EXPECT_NEAR(value("stretch_rms", 1, s), std::abs(factor - 1), 1e-14);
   }
 }
 
@@ -42,7 +48,7 @@ TEST_F(Metrics, OneLongEdgeIsTheMaximum) {
   ClothState s = state_;
   s.position[0] -=
       0.25;  // the first vertex, one cell outwards along u: its edge along v is slanted most, 0.25 by 0.125
-  EXPECT_NEAR(value(stretch_max, 1, s), std::sqrt(5.0) - 1, 1e-14);
+  EXPECT_NEAR(value("stretch_max", 1, s), std::sqrt(5.0) - 1, 1e-14);
 }
 
 TEST_F(Metrics, FreeFallErrorIsZeroOnTheClosedFormAndScaledByHalfGTSquared) {
@@ -50,20 +56,20 @@ TEST_F(Metrics, FreeFallErrorIsZeroOnTheClosedFormAndScaledByHalfGTSquared) {
   const double t = frame * scene_.time.dt(), fall = context().entry.free_fall_m(scene_, settings_, frame);
   ClothState s = state_;
   for (std::size_t k = 1; k < s.position.size(); k += 3) s.position[k] += fall;
-  EXPECT_LE(value(free_fall_error_max, frame, s), 1e-15);
+  EXPECT_LE(value("free_fall_error", frame, s), 1e-15);
   s.position[3] += 0.5 * 9.81 * t * t;
-  EXPECT_NEAR(value(free_fall_error_max, frame, s), 1, 1e-14);
-  EXPECT_NEAR(value(free_fall_error_rms, frame, s), 1 / std::sqrt(45.0), 1e-14);
-  EXPECT_TRUE(std::isnan(value(free_fall_error_max, 0, s))) << "at T = 0 there is nothing to divide by";
+  EXPECT_NEAR(value("free_fall_error", frame, s), 1, 1e-14);
+  EXPECT_NEAR(value("free_fall_error_rms", frame, s), 1 / std::sqrt(45.0), 1e-14);
+  EXPECT_TRUE(std::isnan(value("free_fall_error", 0, s))) << "at T = 0 there is nothing to divide by";
 }
 
 TEST_F(Metrics, MomentumOfAFallingSheetIsGravitys) {
   ClothState s = state_;
   const int frame = 20;
   for (std::size_t k = 1; k < s.velocity.size(); k += 3) s.velocity[k] = -9.81 * frame * scene_.time.dt();
-  EXPECT_LE(value(momentum_error, frame, s), 1e-14);
+  EXPECT_LE(value("momentum_error", frame, s), 1e-14);
   for (std::size_t k = 0; k < s.velocity.size(); k += 3) s.velocity[k] = std::sqrt(9.81 * 2);
-  EXPECT_NEAR(value(momentum_error, frame, s), 1, 1e-13);
+  EXPECT_NEAR(value("momentum_error", frame, s), 1, 1e-13);
 }
 
 TEST_F(Metrics, FreeFallGoesWhereGravityAndTheInitialVelocitySendIt) {
@@ -85,7 +91,7 @@ TEST_F(Metrics, FreeFallGoesWhereGravityAndTheInitialVelocitySendIt) {
         const double g = scene.gravity_m_per_s2[k % 3], v = scene.cloth.initial_velocity_m_per_s[k % 3];
         s.position[k] += damps ? g / 2 * t + (v - g / 2) * (1 - keep) / 2 : v * t + g * t * t / 2;
       }
-      const double error = free_fall_error_max({c, frame, s, nullptr});
+      const double error = metric("free_fall_error").value({c, frame, s, nullptr});
       EXPECT_LE(error, 0.1) << entry.info.name << ": the integrator's own error is of first order in the step";
       EXPECT_GT(error, 0);
     }
@@ -99,8 +105,8 @@ TEST_F(Metrics, EnergyOfAFallStaysTheSame) {
     s.position[k] -= v * v / (2 * 9.81);
   }
   const double mass = 0.2 * 2 * 0.5;
-  EXPECT_NEAR(value(kinetic_energy, 1, s), 0.5 * mass * v * v, 1e-14);
-  EXPECT_NEAR(value(gravity_energy, 1, s), -0.5 * mass * v * v, 1e-14);
+  EXPECT_NEAR(value("kinetic_energy_J", 1, s), 0.5 * mass * v * v, 1e-14);
+  EXPECT_NEAR(value("gravity_energy_J", 1, s), -0.5 * mass * v * v, 1e-14);
 }
 
 TEST_F(Metrics, NaNAnywhereMakesEveryMetricNaN) {
@@ -117,12 +123,7 @@ TEST_F(Metrics, NaNAnywhereMakesEveryMetricNaN) {
 }
 
 TEST_F(Metrics, ASceneOnlyGetsWhatAppliesToIt) {
-  const auto applies = [](const Scene& s, const std::string& name) {
-    for (const Metric& m : metrics())
-      if (m.name == name) return m.applies(s);
-    ADD_FAILURE() << "no metric " << name;
-    return false;
-  };
+  const auto applies = [](const Scene& s, const std::string& name) { return metric(name).applies(s); };
   EXPECT_TRUE(applies(scene_, "free_fall_error"));
   const Scene pinned = load_scene("paper/gravity", {"pins=[{\"edge\":\"v0\"}]"});
   EXPECT_FALSE(applies(pinned, "free_fall_error")) << "a pinned cloth does not fall freely";
@@ -192,6 +193,32 @@ TEST(MetricVersions, EveryScalarKnowsTheMetricsBehindIt) {
     EXPECT_FALSE(behind.empty()) << name;
     for (const std::string& metric : behind) EXPECT_GT(metric_version(metric), 0) << name << ": " << metric;
   }
+}
+
+TEST(Registry, EveryEntryIsWhole) {
+  std::set<std::string> series, names;
+  std::set<int> columns, places;
+  for (const Metric& m : metrics()) {
+    EXPECT_TRUE(series.insert(m.name).second) << m.name << " stands twice";
+    EXPECT_FALSE(m.units.empty() || m.long_name.empty() || std::string(m.needs.words).empty()) << m.name;
+    for (const auto& [taken, place] : {std::pair(&columns, m.drawn.column), {&places, m.drawn.place}})
+      EXPECT_TRUE(place == 0 || taken->insert(place).second) << m.name << ": place " << place << " is taken";
+  }
+  columns.clear();
+  for (const Scalar& s : scalars()) {
+    EXPECT_TRUE(names.insert(s.name).second) << s.name << " stands twice";
+    EXPECT_EQ(find_scalar(s.name), &s) << s.name;
+    EXPECT_FALSE(s.units.empty() || s.doc.empty()) << s.name;
+    EXPECT_TRUE(s.column == 0 || columns.insert(s.column).second) << s.name << ": place " << s.column << " is taken";
+    EXPECT_TRUE(s.expect == Expect::No || s.present == nullptr) << s.name << ": a bound needs a value";
+    for (const std::string& of : s.from.series) EXPECT_TRUE(series.contains(of)) << s.name << " is of " << of;
+  }
+}
+
+TEST(Registry, ASeriesThatARunLacksHasNoScalars) {
+  const Scene scene = load_scene("paper/gravity");
+  const AccuracyPass nothing;
+  for (const auto& [name, value] : scalars_of({scene, nothing})) EXPECT_TRUE(std::isnan(value)) << name;
 }
 
 }  // namespace

@@ -6,12 +6,16 @@
 
 #include "metrics/collider_passage.hpp"
 #include "metrics/metric_pass.hpp"
+#include "metrics/registry.hpp"
 #include "prescribed_solver.hpp"
-#include "runner/contact_summary.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
 namespace {
+
+std::map<std::string, double> summary_of(const Scene& scene, const AccuracyPass& pass) {
+  return scalars_of({scene, pass});
+}
 
 const std::vector<double>& series(const AccuracyPass& p, const std::string& name) {
   for (const MetricSeries& m : p.metrics)
@@ -74,7 +78,7 @@ TEST(Passage, AStillColliderHasNoWrongSide) {
   const Scene scene = load_scene("contact/sphere", {"cloth.grid=[9,9]"});
   const AccuracyPass pass = passed(scene, kStill);
   EXPECT_THROW(series(pass, "wrong_side_samples"), std::runtime_error);
-  EXPECT_TRUE(std::isnan(summarise_contact(scene, pass).at("wrong_side_samples_max")));
+  EXPECT_TRUE(std::isnan(summary_of(scene, pass).at("wrong_side_samples_max")));
 }
 
 TEST(Passage, SlidingOnAPlaneIsTheWaySlid) {
@@ -93,7 +97,7 @@ TEST(Passage, SlidingOnAPlaneIsTheWaySlid) {
   EXPECT_EQ(series(pass, "slip_m")[10], 0) << "it has only just come to lie";
   EXPECT_EQ(series(pass, "slip_m")[20], 0);
   EXPECT_NEAR(series(pass, "slip_m")[21], 1e-3, 1e-12);
-  const auto s = summarise_contact(scene, pass);
+  const auto s = summary_of(scene, pass);
   EXPECT_NEAR(s.at("slip_m"), 1e-3 * (scene.time.frames() - 20), 1e-9);
   EXPECT_NEAR(s.at("rest_drift_m_per_s"), 1e-3 * scene.time.frame_rate_hz, 1e-6);
   EXPECT_NEAR(s.at("rest_jitter_m"), 0, 1e-6) << "a steady way does not tremble";
@@ -132,7 +136,7 @@ TEST(Passage, ACapsuleThatCarriesTheClothDoesNotSlip) {
   });
   EXPECT_GT(series(pass, "touching_fraction")[5], 0);
   for (const double slid : series(pass, "slip_m")) EXPECT_NEAR(slid, 0, 1e-12);
-  const auto s = summarise_contact(scene, pass);
+  const auto s = summary_of(scene, pass);
   EXPECT_NEAR(s.at("imposed_speed_m_per_s"), 1, 1e-9);
   EXPECT_TRUE(std::isnan(s.at("pop_speed_m_per_s"))) << "touched to the end: nothing was let go";
 }
@@ -149,7 +153,7 @@ TEST(Passage, PoppingIsWhatComesAfterTheLastContact) {
     // The frames after the last contact, 6, jump; the fourth jumps further and no longer counts.
     if (frame > 6) x[1] += frame == 7 ? 0.01 : frame == 8 ? 0.03 : frame == 9 ? 0.02 : 0.5;
   };
-  const auto s = summarise_contact(scene, passed(scene, path, 1.5));
+  const auto s = summary_of(scene, passed(scene, path, 1.5));
   EXPECT_NEAR(s.at("pop_displacement_m"), 0.03, 1e-6);
   EXPECT_NEAR(s.at("pop_speed_m_per_s"), 1.5, 1e-12);
   EXPECT_NEAR(s.at("pop_speed_ratio"), 1.5 / 6, 1e-9)
@@ -164,7 +168,7 @@ TEST(Passage, WhatSwingsBackOntoAHandAtRestIsNoPopping) {
   const double down = scene.cloth.center_m[1] - 0.1 - scene.colliders[0].margin_m;
   // Touches at the start, and from frame 20 on, where the capsule has stood since frame 6.
   const auto s = [&](int leaves) {
-    return summarise_contact(
+    return summary_of(
         scene, passed(
                    scene,
                    [&](int frame, std::vector<double>& x) {
@@ -214,25 +218,24 @@ AccuracyPass lengths(const std::vector<double>& values) {
 
 TEST(Summary, TimesOfViolation) {
   const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]"});
-  const auto s = summarise_contact(scene, lengths({0, 0, 1, 1, 0, 2, 2, 2, 0, 0}));
+  const auto s = summary_of(scene, lengths({0, 0, 1, 1, 0, 2, 2, 2, 0, 0}));
   EXPECT_NEAR(s.at("contact_violated_longest_s"), 0.3, 1e-12);
   EXPECT_NEAR(s.at("untangle_s"), 0.6, 1e-12) << "from the end of frame 1 to the end of frame 7";
   EXPECT_NEAR(s.at("contact_length_mean_m"), 8.0 / 9, 1e-12);
-  const auto never = summarise_contact(scene, lengths({0, 0, 1, 1}));
+  const auto never = summary_of(scene, lengths({0, 0, 1, 1}));
   EXPECT_TRUE(std::isinf(never.at("untangle_s")));
-  const auto clean = summarise_contact(scene, lengths({0, 0, 0}));
+  const auto clean = summary_of(scene, lengths({0, 0, 0}));
   EXPECT_EQ(clean.at("contact_violated_longest_s"), 0);
   EXPECT_TRUE(std::isnan(clean.at("untangle_s"))) << "nothing was tangled";
-  const auto unknown = summarise_contact(scene, lengths({0, kMissing, kMissing, 0}));
+  const auto unknown = summary_of(scene, lengths({0, kMissing, kMissing, 0}));
   EXPECT_NEAR(unknown.at("contact_violated_longest_s"), 0.2, 1e-12) << "not known to be clean is not clean";
 }
 
 TEST(Summary, RestIsJudgedByItsLastHalfSecond) {
   const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=1"});
-  const auto s = summarise_contact(scene, passed(scene, [](int frame, std::vector<double>& x) {
-                                     for (std::size_t k = 1; k < x.size(); k += 3)
-                                       x[k] += frame % 2 == 0 ? 1e-3 : -1e-3;
-                                   }));
+  const auto s = summary_of(scene, passed(scene, [](int frame, std::vector<double>& x) {
+                              for (std::size_t k = 1; k < x.size(); k += 3) x[k] += frame % 2 == 0 ? 1e-3 : -1e-3;
+                            }));
   EXPECT_NEAR(s.at("rest_jitter_m"), 2e-3, 1e-6) << "(x - 2 x + x)/2 of a zigzag of 1 mm";
 }
 

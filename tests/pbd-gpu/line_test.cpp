@@ -6,6 +6,7 @@
 #include "clothbench/record.hpp"
 #include "contact_scenes.hpp"
 #include "metrics/metric_pass.hpp"
+#include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
 #include "scenario/load.hpp"
 
@@ -98,7 +99,7 @@ TEST_F(LineScenes, TruthCardsAreMetAtLowCost) {
                          {"heavy-strip", 3, 5e-4},
                          {"two-hand-pull", 1, 0.08}}) {
     const Scene s = load_scene(std::string("validation/") + row.scene);
-    const auto summary = summarise_truth(s, run(s, {{"substeps", row.substeps}}).pass);
+    const auto summary = scalars_of({s, run(s, {{"substeps", row.substeps}}).pass});
     EXPECT_LE(summary.at("truth_error"), row.error) << row.scene << " substeps " << row.substeps;
     if (keeps_energy(s)) {
       EXPECT_LE(summary.at("energy_gain"), 1e-3) << row.scene << ": of M g L";

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "fake_cells.hpp"
-#include "metrics/metric.hpp"
+#include "metrics/registry.hpp"
 #include "report/compare_runs.hpp"
 #include "report/in_short.hpp"
 #include "report/leak.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
 #include "runner/cell.hpp"
 #include "scenario/load.hpp"
@@ -279,14 +280,14 @@ TEST(Verdict, F8ComesFromTheRunner) {
   lost.status = "device_lost";
   lost.klass = "F8";
   lost.failed_frame = 5;
-  const auto s = summarise_stability(judged, pass_of({0, F(3)}), lost);
+  const auto s = scalars_of({judged, pass_of({0, F(3)}), lost});
   EXPECT_EQ(s.at("stability_grade"), 2);
   EXPECT_EQ(s.at("stability_class"), 8);
   EXPECT_EQ(s.at("stability_frame"), 5);
   Outcome absent;
   absent.status = "unsupported";
-  EXPECT_TRUE(std::isnan(summarise_stability(judged, {}, absent).at("stability_grade")));
-  EXPECT_TRUE(summarise_stability(Scene(), {}, {}).empty());
+  EXPECT_TRUE(std::isnan(scalars_of({judged, AccuracyPass(), absent}).at("stability_grade")));
+  EXPECT_TRUE(scalars_of({Scene(), AccuracyPass(), {}}, "stability_").empty());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "clothbench/error.hpp"
 #include "metrics/metric_pass.hpp"
+#include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
 #include "scenario/load.hpp"
 #include "truth/atwood.hpp"
@@ -142,12 +143,12 @@ TEST(TruthMetrics, BallisticIsBehindByItsOwnStep) {
     if (m.name != "truth_error_e2") continue;
     for (std::size_t f = 0; f < expected.size(); ++f) EXPECT_NEAR(m.values[f], expected[f], 1e-12);
   }
-  const auto summary = summarise_truth(s, pass);
+  const auto summary = scalars_of({s, pass});
   EXPECT_NEAR(summary.at("truth_error"), truth::time_rms(pass.time_s, expected), 1e-12);
   EXPECT_NEAR(summary.at("truth_quantity"), 0.5 * 9.81 * (0.25 + 0.5 * dt), 1e-9);
   EXPECT_NEAR(summary.at("energy_drift"), 0, 0.1);
   pass.time_s.pop_back();
-  EXPECT_TRUE(std::isnan(summarise_truth(s, pass).at("truth_error"))) << "a pass that broke off has no error";
+  EXPECT_TRUE(std::isnan(scalars_of({s, pass}).at("truth_error"))) << "a pass that broke off has no error";
 }
 
 TEST(Cards, RefuseScenesTheyDoNotAnswer) {

@@ -6,6 +6,7 @@
 
 #include "clothbench/error.hpp"
 #include "metrics/metric_pass.hpp"
+#include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
 #include "scenario/load.hpp"
 
@@ -57,7 +58,7 @@ double truth_error(const Scene& s, const SolverEntry& entry, int substeps) {
     pass.time_s.push_back(f * dt);
   }
   pass.metrics = metrics.take();
-  return summarise_truth(s, pass).at("truth_error");
+  return scalars_of({s, pass}).at("truth_error");
 }
 
 TEST_P(Order, IsAsDeclared) {

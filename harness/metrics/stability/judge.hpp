@@ -97,10 +97,6 @@ struct StabilityVerdict {
 /// From a pass's series `stability_classes`: failed by any of F0, F1, F2, F4, F5, F7, degraded by F3 or F6.
 StabilityVerdict stability_verdict(const AccuracyPass&);
 
-/// `stability_grade` (0 stable, 1 degraded, 2 failed), `stability_frame`, `stability_class` (the number of F) and the
-/// extremes of the series. Empty for a scene that is not judged.
-std::map<std::string, double> summarise_stability(const Scene&, const AccuracyPass&, const Outcome&);
-
 const char* name_of(StabilityVerdict::Grade);
 
 /// A sentence on a class: "F2 energy gain".

@@ -39,30 +39,6 @@ StabilityVerdict stability_verdict(const AccuracyPass& pass) {
   return out;
 }
 
-std::map<std::string, double> summarise_stability(const Scene& scene, const AccuracyPass& pass,
-                                                  const Outcome& outcome) {
-  std::map<std::string, double> out;
-  if (scene.stability.name.empty()) return out;
-  StabilityVerdict v = stability_verdict(pass);
-  const bool judged = outcome.status != "unsupported";
-  // A run that ended early for another reason than what its frames show has failed all the same: F8.
-  if (judged && outcome.status != "ok" && v.grade != StabilityVerdict::Grade::Failed)
-    v = {StabilityVerdict::Grade::Failed, outcome.klass == "ok" ? "F8" : outcome.klass, outcome.failed_frame};
-  out["stability_grade"] = judged ? static_cast<double>(v.grade) : kMissing;
-  out["stability_class"] = judged && v.klass != "ok" ? v.klass[1] - '0' : kMissing;
-  out["stability_frame"] = judged && v.frame >= 0 ? v.frame : kMissing;
-  for (const char* name :
-       {"stability_speed", "stability_energy_gain", "stability_strain_excess", "stability_strain_p99",
-        "stability_bad_geometry", "stability_depth", "stability_unrest", "stability_fall_error"}) {
-    double most = kMissing;
-    if (const std::vector<double>* values = series(pass, name))
-      for (double value : *values)
-        if (!std::isnan(value) && !(value <= most)) most = value;  // frames that do not count are NaN
-    out[std::string(name) + "_max"] = most;
-  }
-  return out;
-}
-
 const char* name_of(StabilityVerdict::Grade g) {
   switch (g) {
     case StabilityVerdict::Grade::Stable:

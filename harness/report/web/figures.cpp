@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/json_number.hpp"
+#include "metrics/registry.hpp"
 #include "report/report.hpp"
 #include "report/web/page.hpp"
 #include "results/store.hpp"
@@ -50,23 +51,26 @@ json rate_point(const CellRecord& c, const Resolution& r) {
           {"stretch_mean", finite_or_null(summary_value(c, "stretch_mean_last_second"))}};
 }
 
-const char* const kDrawnSeries[] = {"tunnelled_fraction", "tunnelled_depth_m", "contact_length_m", "depth_m",
-                                    "depth_vertex_m",     "stretch_max"};
-
 json contact_row(const ContactRow& r) {
   const CellRecord& c = *r.cell;
-  json time_s = json::array(), metrics = json::object();
+  json time_s = json::array(), series = json::object();
   for (const double t : c.accuracy.time_s) time_s.push_back(six_digits(t));
   for (const MetricSeries& m : c.accuracy.metrics) {
-    if (std::find(std::begin(kDrawnSeries), std::end(kDrawnSeries), m.name) == std::end(kDrawnSeries)) continue;
+    const auto drawn = std::find_if(metrics().begin(), metrics().end(),
+                                    [&](const Metric& d) { return d.drawn.place > 0 && d.name == m.name; });
+    if (drawn == metrics().end()) continue;
     if (std::none_of(m.values.begin(), m.values.end(), [](double v) { return std::isfinite(v); })) continue;
     json values = json::array();
     for (const double v : m.values) values.push_back(six_digits(v));
-    metrics[m.name] = {{"units", m.units}, {"long_name", m.long_name}, {"values", std::move(values)}};
+    series[m.name] = {{"units", m.units},
+                      {"long_name", m.long_name},
+                      {"words", drawn->drawn.words},
+                      {"place", drawn->drawn.place},
+                      {"values", std::move(values)}};
   }
-  return {{"label", r.series.label()},   {"solver", r.series.solver},    {"setting", r.series.setting},
-          {"sides", r.series.sides},     {"status", c.outcome.status},   {"failed_frame", c.outcome.failed_frame},
-          {"time_s", std::move(time_s)}, {"metrics", std::move(metrics)}};
+  return {{"label", r.series.label()},   {"solver", r.series.solver},   {"setting", r.series.setting},
+          {"sides", r.series.sides},     {"status", c.outcome.status},  {"failed_frame", c.outcome.failed_frame},
+          {"time_s", std::move(time_s)}, {"metrics", std::move(series)}};
 }
 
 }  // namespace

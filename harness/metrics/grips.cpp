@@ -1,0 +1,155 @@
+// Hands that hold the cloth and pull it: how well it follows them, how far it is stretched and what is left of it.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "clothbench/motion.hpp"
+#include "metrics/reduction.hpp"
+
+namespace clothbench {
+namespace {
+
+double grip_error(const MetricFrame& f) {
+  const Scene& scene = f.context.scene;
+  const FrameMotion* motion = scene.motion_after(f.index - 1);
+  double most = 0;
+  // A state that is not finite has no value, held or not.
+  for (const double x : f.state.position) most += 0 * x;
+  for (std::size_t k = 0; motion != nullptr && k < scene.grips.vertices.size(); ++k) {
+    if (motion->grip_held[k] == 0) continue;
+    const double* x = &f.state.position[3 * scene.grips.vertices[k]];
+    const Vec3& at = motion->grip_position_m[k];
+    most = max_or_nan(most, norm(x[0] - at[0], x[1] - at[1], x[2] - at[2]));
+  }
+  return most;
+}
+
+/// What the hands that hold the cloth pull apart in a frame, over their distance at the start: the most of all pairs of
+/// vertices that lay at least a quarter of the cloth's shorter side apart; at least 1.
+double pulled(const Scene& scene, const std::vector<double>& start, std::size_t frame) {
+  const FrameMotion& m = scene.motion[frame];
+  const double apart = std::min(scene.cloth.width_m, scene.cloth.height_m) / 4;
+  double most = 1;
+  for (std::size_t i = 0; i < scene.grips.vertices.size(); ++i)
+    for (std::size_t k = i + 1; k < scene.grips.vertices.size(); ++k) {
+      if (m.grip_held[i] == 0 || m.grip_held[k] == 0) continue;
+      const double *a = &start[3 * scene.grips.vertices[i]], *b = &start[3 * scene.grips.vertices[k]];
+      const double rest = norm(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+      const Vec3 &p = m.grip_position_m[i], &q = m.grip_position_m[k];
+      if (rest >= apart) most = std::max(most, norm(q[0] - p[0], q[1] - p[1], q[2] - p[2]) / rest);
+    }
+  return most;
+}
+
+/// Whether any hand that holds moves between a frame and the one before.
+bool pulls(const Scene& scene, std::size_t frame) {
+  if (frame == 0) return false;
+  const FrameMotion &was = scene.motion[frame - 1], &is = scene.motion[frame];
+  for (std::size_t g = 0; g < is.grip_held.size(); ++g)
+    if (is.grip_held[g] != 0 && was.grip_position_m[g] != is.grip_position_m[g]) return true;
+  return false;
+}
+
+/// The longest edge over its rest length, over what the hands impose: while they hold, and from three frames after they
+/// stand still. NaN where it is not known, or they never do.
+struct EdgeRatio {
+  double all = kMissing, held = kMissing;
+};
+
+/// How many frames from the start on any hand holds.
+std::size_t held_frames(const RunView& r) {
+  std::size_t f = 0;
+  for (; f < r.pass.time_s.size(); ++f) {
+    const auto& holds = r.scene.motion[f].grip_held;
+    if (std::find(holds.begin(), holds.end(), 1) == holds.end()) break;
+  }
+  return f;
+}
+
+bool has_grips(const RunView& r) {
+  return !r.scene.grips.vertices.empty() && r.pass.time_s.size() <= r.scene.motion.size();
+}
+
+EdgeRatio edge_ratio(const RunView& r) {
+  constexpr std::size_t kSettling = 3;  // frames
+  const std::vector<double>* most = r.series("stretch_max");
+  if (!has_grips(r) || most == nullptr) return {};
+  const std::vector<double> start = initial_positions(r.scene);
+  double all = -1, held = -1;
+  std::size_t moved_at = 0;
+  const std::size_t let_go = held_frames(r);
+  for (std::size_t f = 0; f < let_go; ++f) {
+    if (pulls(r.scene, f)) moved_at = f;
+    const double ratio = (1 + (*most)[f]) / pulled(r.scene, start, f);
+    all = max_or_nan(all, ratio);
+    // Hands that stand still before they pull are no pull that has ended.
+    if (moved_at == f)
+      held = -1;
+    else if (moved_at > 0 && f >= moved_at + kSettling)
+      held = max_or_nan(held, ratio);
+  }
+  return {all == -1 ? kMissing : all, held == -1 ? kMissing : held};
+}
+
+/// What is left of the strain a second after the hands let go (the failure of the paper's Fig. 13).
+double strain_released(const RunView& r) {
+  const std::vector<double>*mean = r.series("stretch_mean_positive"), &t = r.pass.time_s;
+  if (!has_grips(r) || mean == nullptr) return kMissing;
+  const std::size_t let_go = held_frames(r);
+  for (std::size_t f = let_go; f < t.size(); ++f)
+    if (t[f] >= t[let_go] + 1 - 1e-9) return (*mean)[f];
+  return kMissing;
+}
+
+/// Speed [m/s] that the scene imposes: of the sweep or pull that a hand was told ("speed_m_per_s"), else the greatest
+/// of any collider or grip from frame to frame, else that at which the cloth starts.
+double imposed_speed(const RunView& r) {
+  const Scene& scene = r.scene;
+  if (scene.colliders.empty() && scene.grips.vertices.empty()) return kMissing;
+  const nlohmann::json j = nlohmann::json::parse(scene.json, nullptr, false);
+  double told = 0;
+  for (const char* list : {"colliders", "grips"})
+    if (j.is_object() && j.contains(list))
+      for (const auto& item : j[list])
+        if (item.is_object()) told = std::max(told, item.value("speed_m_per_s", 0.0));
+  if (told > 0) return told;
+  const double seen = std::max(collider_speed_m_per_s(scene), grip_speed_m_per_s(scene));
+  const Vec3& v = scene.cloth.initial_velocity_m_per_s;
+  return seen > 0 ? seen : norm(v[0], v[1], v[2]);
+}
+
+}  // namespace
+
+MetricGroup grips_metrics() {
+  using enum SlackUnit;
+  using enum Expect;
+  static constexpr Gate kEdge{0.05, One, 0, false, "a twentieth of an edge"},
+      kLeft{1e-3, One, 0.1, false, "a tenth of what is allowed"};
+  constexpr Needs kHold{"hands that hold", [](const Scene& s) { return !s.grips.vertices.empty(); }};
+  return {
+      {{"grip_error_m", "m", "greatest distance of a held vertex from where it is held", kHold, grip_error}},
+      {{"grip_error_max_m", greatest("grip_error_m"), Yes, &kErrorGate, 310},
+       {"grip_edge_ratio_max",
+        own(
+            {"stretch_max"},
+            "longest structural edge over its rest length, over what the hands pull apart over their distance at the "
+            "start, while they hold",
+            [](const RunView& r) { return edge_ratio(r).all; }, "1"),
+        Yes, &kEdge, 320},
+       {"grip_edge_ratio_held",
+        own(
+            {"stretch_max"}, "the ratio of grip_edge_ratio_max from three frames after the hands stand still",
+            [](const RunView& r) { return edge_ratio(r).held; }, "1"),
+        Yes, &kEdge, 330},
+       {"strain_mean_released",
+        own({"stretch_mean_positive"},
+            "mean strain of the structural edges, those that are short counted as 0, 1 s after the last hand let go",
+            strain_released, "1"),
+        Yes, &kLeft, 340},
+       {"imposed_speed_m_per_s",
+        own({}, "speed that hands or colliders were told, else the greatest of theirs, else the cloth's at the start",
+            imposed_speed, "m s-1"),
+        No, nullptr, 350}}};
+}
+
+}  // namespace clothbench

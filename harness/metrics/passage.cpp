@@ -1,0 +1,64 @@
+// Where the cloth went past the colliders of its scene and how it slides on them: what ColliderPassage finds.
+#include <algorithm>
+
+#include "metrics/collider_contact.hpp"
+#include "metrics/collider_passage.hpp"
+#include "metrics/reduction.hpp"
+
+namespace clothbench {
+namespace {
+
+/// 1: every odd number of crossings with the wake, but for free ends. 2: nor what a finger pushes aside within a frame,
+/// nor borders laid over it.
+constexpr int kWrongSide = 2;
+
+bool can_be_passed(const Scene& s) {
+  return kWithContactMetrics && std::any_of(s.colliders.begin(), s.colliders.end(), has_centre_line);
+}
+
+bool has_friction(const Scene& s) {
+  return kWithContactMetrics &&
+         std::any_of(s.colliders.begin(), s.colliders.end(), [](const Collider& c) { return c.friction > 0; });
+}
+
+auto passage_field(double ScenePassage::*field) {
+  return [field](const MetricFrame& f) { return f.passage->*field; };
+}
+
+/// Of the last half second.
+double slip_settled(const RunView& r) {
+  const std::vector<double>* slip = r.series("slip_m");
+  if (slip == nullptr || !r.whole()) return kMissing;
+  const std::size_t from = r.settled_from();
+  if (slip->size() - from < 3) return kMissing;
+  double way = 0;
+  for (std::size_t f = from + 1; f < slip->size(); ++f) way += (*slip)[f];
+  return way;
+}
+
+}  // namespace
+
+MetricGroup passage_metrics() {
+  using P = ScenePassage;
+  using enum SlackUnit;
+  static constexpr Gate kShare{2e-3, One, 0.1, true, "two vertices of a 32 × 32 cloth"},
+      kSamples{4, One, 0.1, true, "two vertices and two cells"},
+      kSlip{1e-2, Length, 0.5, false, "a fold that slides elsewhere"};
+  constexpr Needs kPassed{"moving capsules and hands", can_be_passed}, kFriction{"friction", has_friction};
+  return {{{"wrong_side_fraction", "1", "share of the cloth on the wrong side of a moving collider's centre line",
+            kPassed, passage_field(&P::wrong_side_fraction), kWrongSide},
+           {"wrong_side_samples", "1", "vertices and cell centres on the wrong side", kPassed,
+            passage_field(&P::wrong_side_samples), kWrongSide},
+           {"touching_fraction", "1", "share of the cloth within the margin of a collider", kColliders,
+            passage_field(&P::touching_fraction)},
+           {"slip_m", "m", "mean way that touching vertices slid on the surface in the frame", kFriction,
+            passage_field(&P::slip_m)}},
+          {{"wrong_side_samples_max", greatest("wrong_side_samples"), Expect::Yes, &kSamples, 110},
+           {"wrong_side_fraction_max", greatest("wrong_side_fraction"), Expect::Yes, &kShare, 120},
+           {"wrong_side_fraction_end", last("wrong_side_fraction"), Expect::No, &kShare, 130},
+           {"slip_m", sum("slip_m"), Expect::Yes, &kSlip, 250},
+           {"slip_settled_m", own({"slip_m"}, "way that touching vertices slid in the last 0.5 s", slip_settled, "m"),
+            Expect::No, nullptr, 260}}};
+}
+
+}  // namespace clothbench

@@ -1,0 +1,111 @@
+#include "metrics/reduction.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace clothbench {
+namespace {
+
+constexpr double kSettled_s = 0.5, kLast_s = 1;
+
+/// A reduction of a series from a frame on; NaN if the run does not have them.
+Reduction of(const char* name, const char* how, std::size_t (*from)(const RunView&),
+             double (*reduce)(const std::vector<double>& values, std::size_t from)) {
+  return {{name}, how, [=, series = std::string(name)](const RunView& r) {
+            const std::vector<double>* v = r.series(series);
+            const std::size_t first = from(r);
+            return v == nullptr || first >= v->size() ? kMissing : reduce(*v, first);
+          }};
+}
+
+constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
+
+std::size_t from_start(const RunView&) { return 0; }
+std::size_t if_settled(const RunView& r) { return r.whole() ? r.settled_from() : kNever; }
+
+/// Half a frame later than a second before the end, so that rounding takes no frame in.
+std::size_t last_second(const RunView& r) {
+  if (!r.whole()) return kNever;
+  const std::vector<double>& t = r.pass.time_s;
+  const double from_s = t.back() - kLast_s + 0.5 * r.scene.time.dt();
+  return static_cast<std::size_t>(std::find_if(t.begin(), t.end(), [&](double s) { return s >= from_s; }) - t.begin());
+}
+
+double greatest_from(const std::vector<double>& v, std::size_t from) { return greatest_of(&v, from); }
+
+double sum_from(const std::vector<double>& v, std::size_t from) {
+  return std::accumulate(v.begin() + static_cast<std::ptrdiff_t>(from), v.end(), 0.0);
+}
+
+}  // namespace
+
+RunView::RunView(const Scene& s, const AccuracyPass& p, Outcome o) : scene(s), pass(p), outcome(std::move(o)) {}
+
+RunView::RunView(const Scene& s, const CellRecord& c, const Plan& its_plan, bool gpu)
+    : scene(s), pass(c.accuracy), outcome(c.outcome), cell(&c), plan(&its_plan), on_gpu(gpu) {}
+
+const truth::Card& RunView::card() const {
+  if (!card_) card_ = truth::card_of(scene);
+  return card_.value();
+}
+
+bool RunView::whole() const { return pass.time_s.size() == static_cast<std::size_t>(scene.time.frames()) + 1; }
+
+const std::vector<double>* RunView::series(const std::string& name) const {
+  for (const MetricSeries& m : pass.metrics)
+    if (m.name == name && !m.values.empty() && m.values.size() == pass.time_s.size()) return &m.values;
+  return nullptr;
+}
+
+std::size_t RunView::settled_from() const {
+  std::size_t from = pass.time_s.size() - 1;
+  // Half a frame earlier, so that rounding leaves no frame out.
+  while (from > 0 && pass.time_s[from - 1] >= pass.time_s.back() - kSettled_s - 0.5 * scene.time.dt()) --from;
+  return from;
+}
+
+double greatest_of(const std::vector<double>* values, std::size_t from) {
+  if (values == nullptr || from >= values->size()) return kMissing;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t f = from; f < values->size(); ++f) most = max_or_nan(most, (*values)[f]);
+  return most;
+}
+
+Reduction greatest(const char* series) { return of(series, "greatest of all frames", from_start, greatest_from); }
+
+Reduction last(const char* series) {
+  return of(series, "last frame", from_start, [](const std::vector<double>& v, std::size_t) { return v.back(); });
+}
+
+Reduction sum(const char* series) { return of(series, "sum over the frames", from_start, sum_from); }
+
+Reduction time_mean(const char* series) {
+  return {{series}, "mean over time", [name = std::string(series)](const RunView& r) {
+            const std::vector<double>*v = r.series(name), &t = r.pass.time_s;
+            return v == nullptr ? kMissing : mean_over_time(*v, t);
+          }};
+}
+
+double mean_over_time(const std::vector<double>& v, const std::vector<double>& time_s) {
+  if (v.size() < 2) return kMissing;
+  double sum = 0;
+  for (std::size_t f = 1; f < v.size(); ++f) sum += (time_s[f] - time_s[f - 1]) * (v[f] + v[f - 1]) / 2;
+  return sum / (time_s.back() - time_s.front());
+}
+
+Reduction greatest_settled(const char* series) {
+  return of(series, "greatest of the last 0.5 s", if_settled, greatest_from);
+}
+
+Reduction greatest_last_second(const char* series) {
+  return of(series, "greatest of the last second", last_second, greatest_from);
+}
+
+Reduction mean_last_second(const char* series) {
+  return of(series, "mean of the last second", last_second, [](const std::vector<double>& v, std::size_t from) {
+    return sum_from(v, from) / static_cast<double>(v.size() - from);
+  });
+}
+
+}  // namespace clothbench

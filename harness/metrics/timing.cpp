@@ -1,0 +1,217 @@
+// What the clock and the plan tell of a cell: times, rates, bytes, memory.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "metrics/reduction.hpp"
+
+namespace clothbench {
+namespace {
+
+constexpr double kDisplayHz = 72;
+constexpr double kBandwidthWindow_s = 5;  // the paper's Fig. 5
+
+double quantile(std::vector<double> v, double q) {
+  v.erase(std::remove_if(v.begin(), v.end(), [](double x) { return !std::isfinite(x); }), v.end());
+  if (v.empty()) return kMissing;
+  std::sort(v.begin(), v.end());
+  const double at = q * (static_cast<double>(v.size()) - 1);
+  const auto i = static_cast<std::size_t>(at);
+  return i + 1 < v.size() ? v[i] + (at - static_cast<double>(i)) * (v[i + 1] - v[i]) : v.back();
+}
+
+double median(const std::vector<double>& v) { return quantile(v, 0.5); }
+double mean(const std::vector<double>& v) {
+  return v.empty() ? kMissing : std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+}
+
+using Values = std::vector<double>;
+
+/// One number of each trial that has frames.
+template <class Of>
+Values of_trials(const RunView& r, Of of) {
+  Values out;
+  for (const TimedTrial& t : r.cell->trials)
+    if (t.frames() > 0) out.push_back(of(t));
+  return out;
+}
+
+/// The frames of all trials.
+Values of_frames(const RunView& r, Values TimedTrial::*list) {
+  Values out;
+  for (const TimedTrial& t : r.cell->trials)
+    if (t.frames() > 0) out.insert(out.end(), (t.*list).begin(), (t.*list).end());
+  return out;
+}
+
+Values rates(const RunView& r) {
+  return of_trials(r, [](const TimedTrial& t) {
+    return t.frames() / std::accumulate(t.frame_wall_s.begin(), t.frame_wall_s.end(), 0.0);
+  });
+}
+
+double half_range(const RunView& r) {
+  const Values fps = rates(r);
+  if (fps.empty()) return kMissing;
+  return (*std::max_element(fps.begin(), fps.end()) - *std::min_element(fps.begin(), fps.end())) / 2 / median(fps);
+}
+
+double capped_rate(const TimedTrial& t) {
+  double cap = 0;
+  for (double w : t.frame_wall_s) cap += std::min(kDisplayHz, 1 / w);
+  return cap / t.frames();
+}
+
+double wall_iqr(const RunView& r) {
+  const Values wall = of_frames(r, &TimedTrial::frame_wall_s);
+  return quantile(wall, 0.75) - quantile(wall, 0.25);
+}
+
+struct Bandwidth {
+  double peak = kMissing, mean = kMissing, window_s = kMissing;
+};
+
+/// Bytes per second of one trial in windows of 5 s (of the whole trial where that is shorter).
+Bandwidth bandwidth(const TimedTrial& trial, const std::vector<double>& stage_bytes) {
+  const std::size_t frames = trial.frame_wall_s.size();
+  if (frames == 0 || stage_bytes.size() < frames) return {};
+  const std::size_t stages = stage_bytes.size() / frames;
+  const double total_s = std::accumulate(trial.frame_wall_s.begin(), trial.frame_wall_s.end(), 0.0);
+  Bandwidth out;
+  out.window_s = std::min(kBandwidthWindow_s, total_s);
+  double window_B = 0, window_s = 0, total_B = 0, peak = -1;
+  for (std::size_t f = 0; f < frames; ++f) {
+    for (std::size_t s = 0; s < stages; ++s) window_B += stage_bytes[f * stages + s];
+    window_s += trial.frame_wall_s[f];
+    const bool full = window_s >= out.window_s || f + 1 == frames;
+    if (!full) continue;
+    total_B += window_B;
+    // A short rest at the end of the trial is no window of its own.
+    if (window_s >= 0.5 * out.window_s && !(window_B / window_s <= peak)) peak = window_B / window_s;
+    window_B = window_s = 0;
+  }
+  out.peak = peak;
+  out.mean = total_B / total_s;
+  return out;
+}
+
+/// The most clothbench jobs that ran side by side while the cell was loaded and timed; missing if any of it doesn't
+/// say.
+double jobs_beside(const RunView& r) {
+  const CellRecord& record = *r.cell;
+  double most = record.header.environment.is_object() ? record.header.environment.value("jobs", kMissing) : kMissing;
+  for (const TimedTrial& t : record.trials) most = max_or_nan(most, t.jobs);
+  return most;
+}
+
+/// Of the first frame.
+double bytes_per_frame(const CellRecord& cell, std::vector<double> TimedTrial::*bytes) {
+  if (cell.trials.empty() || cell.trials.front().frames() == 0) return kMissing;
+  const TimedTrial& t = cell.trials.front();
+  const std::size_t stages = (t.*bytes).size() / static_cast<std::size_t>(t.frames());
+  double sum = 0;
+  for (std::size_t s = 0; s < stages; ++s) sum += (t.*bytes)[s];
+  return sum;
+}
+
+double device_memory(const RunView& r) {
+  double memory = 0;
+  for (const BufferPlan& b : r.plan->buffers) memory += b.device_local ? static_cast<double>(b.bytes) : 0.0;
+  return r.on_gpu ? memory : kMissing;
+}
+
+double dispatches(const RunView& r) {
+  double sum = 0;
+  for (const StagePlan& p : r.plan->stages) sum += p.dispatches;
+  return r.on_gpu ? sum : kMissing;
+}
+
+constexpr const char* kStage = "stage_device_median_s.";
+
+bool timed(const RunView& r) { return r.cell != nullptr; }
+bool rendered(const RunView& r) { return timed(r) && !of_frames(r, &TimedTrial::frame_rendered_s).empty(); }
+
+Scalar told(const char* name, const char* units, const char* doc, std::function<double(const RunView&)> value,
+            int column = 0) {
+  return {name, own({}, doc, std::move(value), units), Expect::No, nullptr, column, timed};
+}
+
+Scalar median_frame(const char* name, const char* doc, Values TimedTrial::*list, int column) {
+  return told(
+      name, "s", doc, [list](const RunView& r) { return median(of_frames(r, list)); }, column);
+}
+
+Scalar bandwidth_scalar(const char* name, const char* doc, Values TimedTrial::*bytes, double Bandwidth::*value) {
+  return told(name, "B s-1", doc, [=](const RunView& r) {
+    return median(of_trials(r, [&](const TimedTrial& t) { return bandwidth(t, t.*bytes).*value; }));
+  });
+}
+
+}  // namespace
+
+std::map<std::string, double> stage_scalars(const RunView& r) {
+  std::map<std::string, double> out;
+  const std::size_t stages = r.plan->stages.size();
+  for (std::size_t k = 0; k < stages; ++k) {
+    Values t;
+    for (const TimedTrial& trial : r.cell->trials)
+      for (std::size_t f = 0; f < trial.frame_wall_s.size(); ++f) t.push_back(trial.stage_device_s[f * stages + k]);
+    out[kStage + r.plan->stages[k].name] = median(t);
+  }
+  return out;
+}
+
+MetricGroup timing_metrics() {
+  using T = TimedTrial;
+  using B = Bandwidth;
+  static constexpr Gate kCount{0, SlackUnit::One, 0, false, "a count, the same everywhere"};
+  MetricGroup g;
+  g.scalars = {
+      told("jobs", "1", "the most clothbench jobs that ran side by side while the cell was loaded and timed",
+           jobs_beside),
+      told("trials", "1", "timed trials", [](const RunView& r) { return static_cast<double>(r.cell->trials.size()); }),
+      told("frames_per_trial", "1", "frames of a timed trial",
+           [](const RunView& r) { return r.cell->trials.empty() ? kMissing : r.cell->trials.front().frames(); }),
+      told("fps_median", "s-1", "frames per second, median of the trials",
+           [](const RunView& r) { return median(rates(r)); }),
+      told("fps_mean", "s-1", "frames per second, mean of the trials", [](const RunView& r) { return mean(rates(r)); }),
+      told("fps_spread", "1", "half the range of the trials' frames per second, over their median", half_range),
+      told("fps_at_72", "s-1", "mean over frames of min(72, 1/t), median of the trials",
+           [](const RunView& r) { return median(of_trials(r, capped_rate)); }),
+      median_frame("frame_wall_median_s", "wall time of a frame, median of all timed frames", &T::frame_wall_s, 410),
+      told("frame_wall_iqr_s", "s", "wall time of a frame, interquartile range", wall_iqr),
+      told("frame_pipelined_median_s", "s", "wall time of a frame that is not waited for, median of the trials' means",
+           [](const RunView& r) { return median(of_trials(r, [](const T& t) { return t.pipelined_wall_s; })); }),
+      median_frame("frame_rendered_median_s", "wall time of a frame and its pictures, median", &T::frame_rendered_s, 0),
+      told("fps_rendered_median", "s-1", "frames and their pictures per second, by the median",
+           [](const RunView& r) { return 1 / median(of_frames(r, &T::frame_rendered_s)); }),
+      median_frame("frame_device_median_s", "time of a frame on the GPU, median", &T::frame_device_s, 420),
+      told("read_B_per_frame", "B", "bytes that a frame's shaders read",
+           [](const RunView& r) { return bytes_per_frame(*r.cell, &T::stage_read_B); }),
+      told("write_B_per_frame", "B", "bytes that a frame's shaders write",
+           [](const RunView& r) { return bytes_per_frame(*r.cell, &T::stage_write_B); }),
+      bandwidth_scalar("bandwidth_read_peak_B_per_s", "bytes read over wall time, greatest of the windows",
+                       &T::stage_read_B, &B::peak),
+      bandwidth_scalar("bandwidth_read_mean_B_per_s", "bytes read over wall time, mean", &T::stage_read_B, &B::mean),
+      bandwidth_scalar("bandwidth_write_peak_B_per_s", "bytes written over wall time, greatest of the windows",
+                       &T::stage_write_B, &B::peak),
+      bandwidth_scalar("bandwidth_write_mean_B_per_s", "bytes written over wall time, mean", &T::stage_write_B,
+                       &B::mean),
+      told("bandwidth_window_s", "s", "length of those windows",
+           [](const RunView& r) {
+             return median(of_trials(r, [](const T& t) { return bandwidth(t, t.stage_read_B).window_s; }));
+           }),
+      told("device_memory_B", "B", "buffers in device-local memory", device_memory),
+      told("dispatches", "1", "dispatches a frame", dispatches),
+      {kStage + std::string("*"),
+       own({}, "time of a stage on the GPU, median; from the frames run again for it", nullptr, "s")},
+      told("load_s", "s", "wall time of loading", [](const RunView& r) { return r.cell->header.load_s; }),
+  };
+  for (Scalar& s : g.scalars) {
+    if (s.name == "dispatches") s.gate = &kCount;
+    if (s.name.find("rendered") != std::string::npos) s.present = rendered;
+  }
+  return g;
+}
+
+}  // namespace clothbench

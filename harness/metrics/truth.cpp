@@ -1,0 +1,159 @@
+// How far a run is from its scene's truth, frame by frame and as a whole; energy of scenes that keep it.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "metrics/reduction.hpp"
+#include "metrics/truth_errors.hpp"
+
+namespace clothbench {
+namespace {
+
+bool has_truth(const Scene& s) { return !s.truth_card.empty(); }
+
+bool truth_keeps_energy(const Scene& s) { return has_truth(s) && keeps_energy(s); }
+
+auto truth_field(double TruthErrors::*field) {
+  return [field](const MetricFrame& f) { return f.truth->*field; };
+}
+
+/// Energy less that at the start, over M g L.
+double energy_rise(const MetricFrame& f) {
+  const Scene& s = f.context.scene;
+  const ClothState& state = f.state;
+  const Cloth& c = s.cloth;
+  const std::vector<double> mass = vertex_masses(s), start = initial_positions(s);
+  std::vector<std::uint8_t> held(mass.size(), 0);
+  for (std::uint32_t v : s.pins.vertices) held[v] = 1;
+  double energy = 0, total = 0;
+  for (std::size_t v = 0; v < mass.size(); ++v) {
+    total += mass[v];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double v0 = held[v] != 0 ? 0 : s.cloth.initial_velocity_m_per_s[k], v1 = state.velocity[3 * v + k];
+      energy += mass[v] *
+                (0.5 * (v1 * v1 - v0 * v0) - s.gravity_m_per_s2[k] * (state.position[3 * v + k] - start[3 * v + k]));
+    }
+  }
+  if (const auto Y = s.material.membrane_stiffness_N_per_m) {
+    const auto border = [](int i, int n) { return i == 0 || i == n - 1 ? 0.5 : 1.0; };  // half the width
+    for (const Edge& e : edges(c, EdgeKind::Structural)) {
+      const bool along_u = e.b == e.a + 1;
+      const int line = static_cast<int>(e.a) / c.columns, column = static_cast<int>(e.a) % c.columns;
+      const double k =
+          *Y * (along_u ? c.dv() / c.du() * border(line, c.rows) : c.du() / c.dv() * border(column, c.columns));
+      const double* a = &state.position[3 * e.a];
+      const double* b = &state.position[3 * e.b];
+      const double longer = norm(b[0] - a[0], b[1] - a[1], b[2] - a[2]) - e.rest_m;
+      energy += 0.5 * k * longer * longer;
+    }
+  }
+  const Vec3 g = s.gravity_m_per_s2;
+  return energy / (total * norm(g[0], g[1], g[2]) * std::max(c.width_m, c.height_m));
+}
+
+/// Of a run that reaches its end: a pass that broke off has no error.
+const std::vector<double>* whole_series(const RunView& r, const std::string& name) {
+  return r.whole() ? r.series(name) : nullptr;
+}
+
+double greatest_amount(const std::vector<double>* values) {
+  if (values == nullptr) return kMissing;
+  double most = 0;
+  for (const double v : *values) most = max_or_nan(most, std::abs(v));
+  return most;
+}
+
+Reduction at_the_end(const char* series) {
+  return {{series}, "last frame", [name = std::string(series)](const RunView& r) {
+            const std::vector<double>* v = whole_series(r, name);
+            return v == nullptr ? kMissing : v->back();
+          }};
+}
+
+/// RMS over time of truths that move, of truths of rest the last frame.
+Reduction over_time(const char* series) {
+  return {{series}, "RMS over time, at rest the last frame", [name = std::string(series)](const RunView& r) {
+            const std::vector<double>* v = whole_series(r, name);
+            if (v == nullptr) return kMissing;
+            return r.card().settles || v->size() < 2 ? v->back() : truth::time_rms(r.pass.time_s, *v);
+          }};
+}
+
+/// The greatest of truths that move, of truths of rest the last frame.
+Reduction worst(const char* series) {
+  return {{series}, "greatest of all frames, at rest the last", [name = std::string(series)](const RunView& r) {
+            const std::vector<double>* v = whole_series(r, name);
+            if (v == nullptr) return kMissing;
+            return r.card().settles ? v->back() : greatest_amount(v);
+          }};
+}
+
+double truth_error(const RunView& r) {
+  return over_time(r.card().by_quantity ? "truth_quantity_error" : "truth_error_e2").value(r);
+}
+
+/// What the study of a scene adds to the summaries of its cells: runner/reference.cpp, truth_dependence.cpp.
+Scalar of_the_study(const char* name, const char* doc, const Gate* gate = nullptr) {
+  return {name, own({}, doc, nullptr, "1"), Expect::No, gate};
+}
+
+bool with_truth(const RunView& r) { return has_truth(r.scene); }
+bool with_energy(const RunView& r) { return truth_keeps_energy(r.scene); }
+
+std::vector<Metric> truth_series() {
+  using T = TruthErrors;
+  constexpr Needs kTruth{"a truth", has_truth},
+      kEnergy{"a truth without damping, shear, bending, hands and colliders", truth_keeps_energy};
+  return {
+      {"truth_error_e2", "1", "RMS distance from the truth on the material lattice, over the longer side", kTruth,
+       truth_field(&T::e2)},
+      {"truth_error_max", "1", "greatest distance from the truth on the material lattice, over the longer side", kTruth,
+       truth_field(&T::greatest)},
+      {"truth_speed_error", "1", "RMS error of speed on the material lattice, over the card's scale", kTruth,
+       truth_field(&T::speed)},
+      {"truth_quantity", "1", "the card's quantity, in SI units", kTruth, truth_field(&T::quantity)},
+      {"truth_quantity_error", "1", "error of the card's quantity, over its scale", kTruth,
+       truth_field(&T::quantity_error)},
+      {"truth_stretch_rms", "1", "RMS of strain less true strain, edges along u", kTruth, truth_field(&T::stretch_rms)},
+      {"truth_stretch_p99", "1", "99th percentile of strain less true strain", kTruth, truth_field(&T::stretch_p99)},
+      {"truth_stretch_max", "1", "greatest strain less true strain", kTruth, truth_field(&T::stretch_max)},
+      {"energy_rise", "1", "energy less that at the start, over M g L", kEnergy, energy_rise},
+  };
+}
+
+}  // namespace
+
+MetricGroup truth_metrics() {
+  using enum Expect;
+  return {
+      truth_series(),
+      {{"truth_quantity_error_max", worst("truth_quantity_error"), Yes, &kErrorGate, 360},
+       {"truth_quantity_error", over_time("truth_quantity_error"), No, &kErrorGate, 370, with_truth},
+       {"truth_e2", over_time("truth_error_e2"), No, nullptr, 380, with_truth},
+       {"truth_max", worst("truth_error_max"), No, nullptr, 0, with_truth},
+       {"truth_speed_error", over_time("truth_speed_error"), No, &kErrorGate, 0, with_truth},
+       {"truth_quantity", at_the_end("truth_quantity"), No, nullptr, 0, with_truth},
+       {"truth_stretch_rms", worst("truth_stretch_rms"), No, nullptr, 0, with_truth},
+       {"truth_stretch_p99", worst("truth_stretch_p99"), No, nullptr, 0, with_truth},
+       {"truth_stretch_max", worst("truth_stretch_max"), No, nullptr, 0, with_truth},
+       {"truth_error",
+        own({"truth_error_e2", "truth_quantity_error"},
+            "what runs are ranked by: the error of the card's quantity, or of positions", truth_error, "1"),
+        No, &kErrorGate, 0, with_truth},
+       {"energy_gain",
+        own(
+            {"energy_rise"}, "greatest energy above that at the start, over M g L",
+            [](const RunView& r) { return max_or_nan(0, greatest_of(whole_series(r, "energy_rise"))); }, "1"),
+        No, nullptr, 0, with_energy},
+       {"energy_drift",
+        own(
+            {"energy_rise"}, "greatest difference of energy from that at the start, over M g L",
+            [](const RunView& r) { return greatest_amount(whole_series(r, "energy_rise")); }, "1"),
+        No, nullptr, 0, with_energy},
+       of_the_study("truth_value", "the truth card's quantity itself, in SI units"),
+       of_the_study("truth_space_error", "what ranks runs, of the mesh's own truth against the continuum", &kErrorGate),
+       of_the_study("truth_dependence_*", "change of what ranks runs with the logarithm of a modulus"),
+       of_the_study("reference_*", "the reference solver's value of the card's quantity, and how sure it is")}};
+}
+
+}  // namespace clothbench

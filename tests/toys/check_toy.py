@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""A toy in the form of a patch: it applies to this tree and touches few product files (what a documents' script writes is none). With
+--build the patched tree is built, and what the registry, the documents and the schema then say of the toy is looked at.
+
+usage: check_toy.py [--build] <patch> <most product files>
+"""
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PRODUCT = re.compile(r"\.(cpp|hpp|c|h|in|glsl|comp|vert|frag|js|mjs|py|sh|cmake)$|CMakeLists\.txt$")
+LEAN = ["PBD_GPU", "BULLET_BASELINE", "REFERENCE", "PLUGINS", "BENCH", "RENDER", "XR", "PAGE"]
+ASIDE = shutil.ignore_patterns("build", ".git", "node_modules", "runs")
+
+
+def run(*command, **more):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, **more)
+    assert done.returncode == 0, f"{' '.join(map(str, command))}:\n{done.stdout[-3000:]}{done.stderr[-3000:]}"
+    return done.stdout
+
+
+def metric(tree, build):
+    """A scene may bound the toy, and a run measures it."""
+    program = tree / "build/clothbench"
+    build()
+    run(sys.executable, tree / "scripts/update_metrics.py", program)
+    assert '"height_max_m"' in (tree / "scenarios/schema/scene.schema.json").read_text()
+    assert "| `height_max_m` |" in (tree / "harness/metrics/README.md").read_text()
+    build()
+    run(sys.executable, tree / "scripts/update_metrics.py", "--check", program)
+    scene = json.loads((tree / "scenarios/paper/gravity.json").read_text())
+    for bound, verdict in ((100, "kept"), (-100, "broken")):
+        scene["expect"] = {"height_max_m": {"at_most": bound}}
+        (tree / "scene.json").write_text(json.dumps(scene))
+        environment = {**os.environ, "CLOTHBENCH_SCENARIOS": str(tree / "scenarios")}
+        told = run(program, "run", tree / "scene.json", "--solver", "ballistic", "--out", tree / verdict, "--json", env=environment)
+        assert verdict in told, told
+
+
+def main():
+    arguments = [a for a in sys.argv[1:] if a != "--build"]
+    patch, most = pathlib.Path(arguments[0]).resolve(), int(arguments[1])
+    touched = re.findall(r"^\+\+\+ b/(.*)$", patch.read_text(), flags=re.M)
+    product = [f for f in touched if PRODUCT.search(f)]
+    assert touched and len(product) <= most, f"{patch.name} touches {len(product)} product files: {product}"
+    with tempfile.TemporaryDirectory(prefix="clothbench-toy-") as folder:
+        tree = pathlib.Path(folder) / "tree"
+        outside = {**os.environ, "GIT_CEILING_DIRECTORIES": folder}
+        if "--build" not in sys.argv:
+            for name in touched:
+                if (ROOT / name).exists():
+                    (tree / name).parent.mkdir(parents=True, exist_ok=True)
+                    shutil.copy(ROOT / name, tree / name)
+            run("git", "apply", "--check", patch, cwd=tree, env=outside)
+            return
+        shutil.copytree(ROOT, tree, ignore=ASIDE)
+        run("git", "apply", patch, cwd=tree, env=outside)
+        run("cmake", "-S", tree, "-B", tree / "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_UNITY_BUILD=ON", "-DBUILD_TESTING=OFF",
+            *(f"-DCLOTHBENCH_WITH_{w}=OFF" for w in LEAN))
+        globals()[patch.stem](tree, lambda: run("cmake", "--build", tree / "build", "--target", "clothbench"))
+
+
+if __name__ == "__main__":
+    main()
