@@ -10,7 +10,6 @@
 #include "base/json_number.hpp"
 #include "base/json_text.hpp"
 #include "metrics/registry.hpp"
-#include "metrics/stability/judge.hpp"
 #include "results/store.hpp"
 #include "runner/cell.hpp"
 #include "runner/environment.hpp"
