@@ -7,8 +7,8 @@
 #include <chrono>
 #include <cstdio>
 
-#include "cli/again.hpp"
 #include "results/store.hpp"
+#include "runner/again.hpp"
 #include "scenario/json_text.hpp"
 
 namespace clothbench {

@@ -11,7 +11,7 @@
 #include "report/across_runs.hpp"
 #include "report/stability.hpp"
 #include "results/store.hpp"
-#include "runner/stability_study.hpp"
+#include "runner/stability_map.hpp"
 #include "scenario/json_text.hpp"
 #include "scenario/load.hpp"
 
