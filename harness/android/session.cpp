@@ -12,8 +12,8 @@
 
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
-#include "runner/cell.hpp"
 #include "runner/environment.hpp"
+#include "runner/interrupt.hpp"
 
 namespace clothbench::android {
 namespace {

@@ -75,13 +75,7 @@ ordered_json json_of(const BaselineCell& c) {
 
 }  // namespace
 
-std::string CellKey::file_name() const {
-  CellHeader h;
-  h.scene = scene;
-  h.solver = solver;
-  h.setting = setting;
-  return cell_name(h);
-}
+std::string CellKey::file_name() const { return cell_name(scene, solver, setting); }
 
 std::string CellKey::text() const { return file_name() + (assets.empty() ? "" : " [" + assets + "]"); }
 

@@ -3,14 +3,13 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 
 #include "cli/command.hpp"
-#include "cli/study_plan.hpp"
 #include "runner/environment.hpp"
-#include "runner/frame_input.hpp"
+#include "runner/frame_loop.hpp"
+#include "runner/study_plan.hpp"
 
 namespace clothbench {
 namespace {
@@ -20,24 +19,18 @@ constexpr int kFrames = 72;
 
 /// False where the solver failed.
 bool run_cell(benchmark::State& state, const CellSpec& spec, const DeviceOptions& device) {
-  const auto solver = spec.entry->make(spec.settings, device);
-  solver->load(*spec.scene);
-  int frame = 0;
+  const auto solver = load_solver(*spec.entry, spec.settings, device, *spec.scene);
   double device_s = 0;
-  bool good = true;
+  FrameLoop loop(*solver, *spec.scene, {.frames = kAsManyAsItTakes, .interrupted = nullptr});
   for (auto unused : state) {
     (void)unused;
-    const FrameInput input = frame_input(*spec.scene, frame);
-    const auto start = std::chrono::steady_clock::now();
-    const StepStatus status = solver->step(input);
-    state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    if (status != StepStatus::Ok) {
+    const bool good = loop.next();
+    state.SetIterationTime(loop.wall_s());
+    if (!good) {
       state.SkipWithError("the solver failed");
-      good = false;
       break;
     }
     device_s += solver->last_cost().device_s;
-    ++frame;
   }
   const Plan plan = solver->plan();
   double read_B = 0, write_B = 0;
@@ -47,10 +40,10 @@ bool run_cell(benchmark::State& state, const CellSpec& spec, const DeviceOptions
   }
   state.counters["fps"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
   // Not there for CPU solvers rather than zero.
-  if (std::isfinite(device_s)) state.counters["device_us"] = device_s / frame * 1e6;
+  if (std::isfinite(device_s)) state.counters["device_us"] = device_s / (loop.index() + 1) * 1e6;
   if (std::isfinite(read_B)) state.counters["read_B"] = read_B;
   if (std::isfinite(write_B)) state.counters["write_B"] = write_B;
-  return good;
+  return !loop.failed();
 }
 
 void add_context(const CellPlan& plan, const DeviceFlags& flags) {

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 
-#include "cli/again.hpp"
 #include "cli/command.hpp"
 #include "report/material.hpp"
-#include "results/raw_file.hpp"
-#include "runner/cell_process.hpp"
 #include "runner/material_card.hpp"
 
 namespace clothbench {
@@ -18,19 +15,6 @@ struct CardArguments {
   DeviceFlags device;
 };
 
-nlohmann::json card_json(const CellRecord& c) {
-  return {{"header", header_to_json(c.header)}, {"answer", to_json(CellAnswer{c.outcome, c.summary, kMissing})}};
-}
-
-CellRecord card_from(const nlohmann::json& j) {
-  CellRecord c;
-  c.header = header_from_json(j["header"]);
-  CellAnswer answer = answer_from_json(j["answer"]);
-  c.outcome = std::move(answer.outcome);
-  c.summary = std::move(answer.summary);
-  return c;
-}
-
 /// The card at the settings given, and short ones where it is looked whether it holds.
 void measure(const SolverEntry& entry, const Overrides& overrides, const CardArguments& a, Guard& guard,
              StatusLine& line, std::vector<CellRecord>& out) {
@@ -38,11 +22,7 @@ void measure(const SolverEntry& entry, const Overrides& overrides, const CardArg
   const auto one = [&](const nlohmann::json& s, const std::string& label, bool full) {
     line.show(entry.info.name + " " + label, out.size(), 0);
     try {
-      const Guard::Answer answer = guard.run(
-          entry, [&] { return card_json(measure_material(entry, s, label, full, a.device.options, "card")); });
-      out.push_back(answer.crash.empty()
-                        ? card_from(answer.value)
-                        : failed_material(entry, label, {"crashed", "F8", -1, "its process: " + answer.crash}, "card"));
+      out.push_back(ask_material(guard, entry, s, label, full, a.device.options));
     } catch (const Error& e) {
       if (e.code() != ExitCode::NoDevice || !a.device.allow_no_device) throw;
       fmt::print(stderr, "no Vulkan device: {} is left out\n", entry.info.name);
@@ -75,7 +55,7 @@ void add_card(CLI::App& app, Console& console) {
       for (const SolverEntry& e : solvers())
         if (!e.info.ignores.has(Feature::Stretch)) a.solvers.push_back(e.info.name);
     std::vector<CellRecord> cards;
-    Guard guard(console);
+    Guard guard(console.words);
     {
       StatusLine line(!console.json);
       for (const std::string& name : a.solvers) measure(find_solver(name), overrides, a, guard, line, cards);

@@ -8,8 +8,8 @@
 #include <cstdio>
 
 #include "base/json_text.hpp"
-#include "cli/again.hpp"
 #include "results/store.hpp"
+#include "runner/again.hpp"
 
 namespace clothbench {
 namespace {

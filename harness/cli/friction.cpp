@@ -1,11 +1,11 @@
+#include "runner/friction.hpp"
+
 #include <fmt/format.h>
 
-#include <cmath>
 #include <optional>
 #include <set>
 
 #include "base/table.hpp"
-#include "cli/again.hpp"
 #include "cli/command.hpp"
 #include "runner/threshold.hpp"
 
@@ -18,61 +18,6 @@ struct FrictionArguments {
   std::string readme;
   DeviceFlags device;
 };
-
-/// A column: what of which scene, and what is asked of it.
-struct Form {
-  const char *scene, *head;
-  bool threshold;
-  double scale;    ///< to the head's unit
-  double at_most;  ///< in the head's unit
-};
-
-// Coulomb's cone on a slope, uniform deceleration, Euler and Eytelwein's belt on a polygon, Lagrange's strip over a
-// cylinder; harness/truth has them. Bounds: what a solver's author should want.
-constexpr Form kForms[] = {{"incline-stick", "critical angle [°], ≤ 0.1", true, 1, 0.1},
-                           {"incline-stick", "creep in 2 s [% L], ≤ 0.01", false, 100, 0.01},
-                           {"incline-slip", "way down [%], ≤ 2", false, 100, 2},
-                           {"incline-stop", "way to stop [%], ≤ 2", false, 100, 2},
-                           {"capstan-hold", "overhang held [%], ≤ 3", true, 100, 3},
-                           {"capstan-slip", "way round [%], ≤ 3", false, 100, 3},
-                           {"atwood", "way of Atwood's strip [%], ≤ 3", false, 100, 3}};
-
-struct Answer {
-  double error = std::nan("");  ///< in the form's unit, signed for thresholds
-  std::string text;
-  std::string crash = {};  ///< of a plugin
-};
-
-Answer ask(const Form& form, const SolverEntry& entry, const nlohmann::json& settings,
-           const std::vector<std::string>& set, const DeviceOptions& device) {
-  const Scene scene = load_scene(std::string("validation/") + form.scene, set);
-  if (!unsupported(entry.info, scene.needs).empty()) return {std::nan(""), "unsupported"};
-  Answer out;
-  std::string bound;
-  if (form.threshold) {
-    const FoundThreshold t = find_threshold(scene, entry, settings, device);
-    out.error = form.scale * t.error;
-    bound = t.holds_at_least ? "holds at half of it" : t.slips_at_most ? "slips at 1.5 of it" : "";
-  } else {
-    out.error = form.scale * end_error(scene, entry, settings, device);
-  }
-  if (!std::isfinite(out.error)) return {out.error, "failed"};
-  out.text = bound.empty() ? fmt::format("{}{:.2g}", form.threshold && out.error > 0 ? "+" : "", out.error) : bound;
-  if (bound.empty() && std::abs(out.error) <= form.at_most) out.text += " ✓";
-  return out;
-}
-
-Answer guarded(Guard& guard, const Form& form, const SolverEntry& entry, const nlohmann::json& settings,
-               const std::vector<std::string>& set, const DeviceOptions& device) {
-  const Guard::Answer given = guard.run(entry, [&] {
-    const Answer a = ask(form, entry, settings, set, device);
-    return nlohmann::json{{"error", std::isfinite(a.error) ? nlohmann::json(a.error) : nlohmann::json()},
-                          {"text", a.text}};
-  });
-  if (!given.crash.empty()) return {std::nan(""), "crashed", given.crash};
-  return {given.value["error"].is_null() ? std::nan("") : given.value["error"].get<double>(),
-          given.value["text"].get<std::string>()};
-}
 
 }  // namespace
 
@@ -100,9 +45,9 @@ void add_friction(CLI::App& app, Console& console) {
             "the ways over it with and "
             "without friction. ✓: within the bound. Thresholds by bisection, 0.1 % of the coefficient.",
             {{"solver", "setting"}}};
-    for (const Form& f : kForms) t.rows[0].emplace_back(f.head);
+    for (const FrictionForm& f : friction_forms()) t.rows[0].emplace_back(f.head);
     nlohmann::json all = nlohmann::json::array();
-    Guard guard(console);
+    Guard guard(console.words);
     std::set<std::string> crashes;
     std::optional<StatusLine> line(!console.json);
     for (const std::string& name : a.solvers) {
@@ -119,18 +64,12 @@ void add_friction(CLI::App& app, Console& console) {
         const std::string label = Overrides{{}, given}.label();
         std::vector<std::string> row = {name, label};
         nlohmann::json j = {{"solver", name}, {"setting", label}};
-        for (const Form& f : kForms) {
+        for (const FrictionForm& f : friction_forms()) {
           line->show(fmt::format("{} {}: {}", name, label, f.scene), 0, 0);
-          const Answer answer = guarded(guard, f, entry, settings, overrides.scene, a.device.options);
-          if (!answer.crash.empty())
-            crashes.insert(fmt::format("{} {}: {}: its process: {}", name, label, f.scene, answer.crash));
-          row.push_back(answer.text);
-          j["answers"].push_back(
-              {{"scene", f.scene},
-               {"what", f.head},
-               {"error", std::isfinite(answer.error) ? nlohmann::json(answer.error) : nlohmann::json()},
-               {"at_most", f.at_most},
-               {"text", answer.text}});
+          std::string crash;
+          j["answers"].push_back(ask_friction(guard, f, entry, settings, overrides.scene, a.device.options, crash));
+          row.push_back(j["answers"].back()["text"]);
+          if (!crash.empty()) crashes.insert(fmt::format("{} {}: {}: its process: {}", name, label, f.scene, crash));
         }
         t.rows.push_back(std::move(row));
         all.push_back(std::move(j));

@@ -2,7 +2,7 @@
 #include <cstdlib>
 
 #include "cli/command_line.hpp"
-#include "runner/cell.hpp"
+#include "runner/interrupt.hpp"
 
 namespace {
 

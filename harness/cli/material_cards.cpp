@@ -23,13 +23,7 @@ struct Wanted {
   std::string setting;
   bool full, bending = true;
 
-  std::string name() const {
-    CellHeader h;
-    h.scene = kMaterialCardScene;
-    h.solver = entry->info.name;
-    h.setting = setting;
-    return cell_name(h);
-  }
+  std::string name() const { return cell_name(kMaterialCardScene, entry->info.name, setting); }
 };
 
 std::vector<const SolverEntry*> solvers_of(const CellPlan& plan) {

@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "base/table.hpp"
-#include "cli/again.hpp"
 #include "cli/command.hpp"
 #include "runner/threshold.hpp"
-#include "truth/card.hpp"
 
 namespace clothbench {
 namespace {
@@ -49,55 +46,6 @@ Table table_of(const std::string& solver, const std::vector<MetamorphicResult>& 
   return t;
 }
 
-nlohmann::json json_of(const std::string& solver, const MetamorphicResult& r) {
-  const auto number = [](double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(); };
-  return {{"solver", solver},    {"property", r.property},         {"scene", r.scene},
-          {"status", r.status},  {"distance", number(r.distance)}, {"bitwise", r.bitwise},
-          {"at_most", r.at_most}};
-}
-
-MetamorphicResult result_from(const nlohmann::json& j) {
-  return {j["property"], j["scene"],  j["status"], j["distance"].is_null() ? std::nan("") : j["distance"].get<double>(),
-          j["bitwise"],  j["at_most"]};
-}
-
-/// Every property on one scene; "crashed" for all of them where a plugin brings its process down at one.
-std::vector<MetamorphicResult> on_scene(const SolverEntry& entry, const nlohmann::json& settings,
-                                        const DeviceOptions& device, const Scene& scene, Guard& guard,
-                                        const std::function<void(const std::string&)>& note) {
-  const Guard::Answer answer = guard.run(entry, [&] {
-    nlohmann::json rows = nlohmann::json::array();
-    for (const MetamorphicResult& r : run_metamorphic(entry, settings, device, {scene}, note))
-      rows.push_back(json_of(entry.info.name, r));
-    return rows;
-  });
-  std::vector<MetamorphicResult> out;
-  if (answer.crash.empty())
-    for (const nlohmann::json& row : answer.value) out.push_back(result_from(row));
-  else
-    for (const MetamorphicProperty& p : metamorphic_properties())
-      out.push_back({p.name, scene.name, "crashed: " + answer.crash, std::nan(""), false, 0});
-  return out;
-}
-
-nlohmann::json threshold_json(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings,
-                              const DeviceOptions& device) {
-  const FoundThreshold found = find_threshold(scene, entry, settings, device);
-  const auto card = truth::card_of(scene);
-  const char* bound = found.holds_at_least ? "<= " : found.slips_at_most ? ">= " : "";
-  const auto number = [&](double x) { return found.failed ? nlohmann::json() : nlohmann::json(x); };
-  return {{"scene", scene.name},
-          {"solver", entry.info.name},
-          {"exact", found.exact},
-          {"found", number(found.found)},
-          {"error", number(found.error)},
-          {"error_name", card->threshold->error_name},
-          {"error_units", card->threshold->error_units},
-          {"bound", bound},
-          {"failed", found.failed},
-          {"runs", found.runs}};
-}
-
 void print_threshold(const nlohmann::json& t) {
   const auto text = [&](const char* key) { return t[key].get<std::string>(); };
   if (t.contains("crashed"))
@@ -131,20 +79,21 @@ void add_metamorphic(CLI::App& app, Console& console) {
     const std::vector<Scene> scenes = metamorphic_scenes();
     nlohmann::json all = nlohmann::json::array();
     std::string markdown;
-    Guard guard(console);
+    Guard guard(console.words);
     for (const std::string& name : a.solvers) {
       const SolverEntry& entry = find_solver(name);
       std::vector<MetamorphicResult> results;
       {
         StatusLine line(!console.json);
         for (const Scene& scene : scenes) {
-          const auto some = on_scene(entry, complete_settings(entry.info, overrides.solver), a.device.options, scene,
-                                     guard, [&](const std::string& what) { line.show(what, 0, 0); });
+          const auto some =
+              ask_metamorphic(guard, entry, complete_settings(entry.info, overrides.solver), a.device.options, scene,
+                              [&](const std::string& what) { line.show(what, 0, 0); });
           results.insert(results.end(), some.begin(), some.end());
         }
       }
       const Table t = table_of(name, results);
-      for (const MetamorphicResult& r : results) all.push_back(json_of(name, r));
+      for (const MetamorphicResult& r : results) all.push_back(metamorphic_json(name, r));
       if (!console.json) fmt::print("{}\n", t.console());
       markdown += t.markdown() + "\n";
     }
@@ -167,17 +116,13 @@ void add_threshold(CLI::App& app, Console& console) {
     const Overrides overrides = split_overrides(a.set);
     if (a.solvers.empty()) a.solvers = {"xpbd"};
     nlohmann::json all = nlohmann::json::array();
-    Guard guard(console);
+    Guard guard(console.words);
     for (const std::string& file : a.scenes)
       for (const std::string& name : a.solvers) {
         const Scene scene = load_scene(file, overrides.scene);
         const SolverEntry& entry = find_solver(name);
-        const Guard::Answer answer = guard.run(entry, [&] {
-          return threshold_json(scene, entry, complete_settings(entry.info, overrides.solver), a.device.options);
-        });
-        all.push_back(answer.crash.empty()
-                          ? answer.value
-                          : nlohmann::json{{"scene", scene.name}, {"solver", name}, {"crashed", answer.crash}});
+        all.push_back(
+            ask_threshold(guard, scene, entry, complete_settings(entry.info, overrides.solver), a.device.options));
         if (all.back().value("failed", false)) console.exit_code = ExitCode::CheckFailed;
         if (!console.json) print_threshold(all.back());
       }

@@ -2,9 +2,10 @@
 
 #include <cmath>
 
+#include "base/json_number.hpp"
 #include "base/tint.hpp"
-#include "cli/again.hpp"
 #include "cli/command.hpp"
+#include "runner/again.hpp"
 #include "runner/cell.hpp"
 #include "scenario/load.hpp"
 
@@ -16,8 +17,6 @@ struct PlanArguments {
   DeviceFlags device;
 };
 
-nlohmann::json number(double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr); }
-
 nlohmann::json plan_of(const Cell& cell, const Scene& scene) {
   nlohmann::json needs = nlohmann::json::array(), stages = nlohmann::json::array();
   scene.needs.for_each([&](Feature f) { needs.push_back(name_of(f)); });
@@ -27,8 +26,8 @@ nlohmann::json plan_of(const Cell& cell, const Scene& scene) {
     stages.push_back({{"name", s.name},
                       {"serves", serves},
                       {"dispatches", s.dispatches},
-                      {"read_B", number(s.read_B)},
-                      {"write_B", number(s.write_B)}});
+                      {"read_B", finite_or_null(s.read_B)},
+                      {"write_B", finite_or_null(s.write_B)}});
   }
   nlohmann::json j = {{"scene", scene.name},
                       {"solver", cell.header().solver},
@@ -107,7 +106,7 @@ void add_plan(CLI::App& app, Console& console) {
     if (a.solvers.empty())
       for (const SolverEntry& e : solvers()) a.solvers.push_back(e.info.name);
     nlohmann::json all = nlohmann::json::array();
-    Guard guard(console);
+    Guard guard(console.words);
     for (const std::string& file : a.scenes) {
       const Scene scene = load_scene(file, overrides.scene);
       for (const std::string& name : a.solvers) {

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <tuple>
 
-#include "cli/again.hpp"
 #include "cli/command.hpp"
 #include "render/album.hpp"
 #include "results/store.hpp"
+#include "runner/again.hpp"
 #include "runner/cell.hpp"
+#include "runner/interrupt.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -149,7 +150,7 @@ void add_render(CLI::App& app, Console& console) {
                                   [](const fs::path& f) { return !fs::is_directory(f) && !is_cell(f); });
     const SolverEntry* solver = runs ? &find_solver(a.solver) : nullptr;
     if (solver == nullptr || !is_external(solver->info)) return render_all(a, console);
-    const std::string crash = Guard(console)
+    const std::string crash = Guard(console.words)
                                   .run(
                                       *solver, [&] { return render_all(a, console), nlohmann::json(); }, false)
                                   .crash;

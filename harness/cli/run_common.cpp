@@ -5,13 +5,13 @@
 #include <algorithm>
 
 #include "base/tint.hpp"
-#include "cli/cell_choice.hpp"
 #include "cli/material_cards.hpp"
-#include "cli/supervise.hpp"
 #include "report/in_short.hpp"
 #include "report/report.hpp"
 #include "report/withheld.hpp"
+#include "runner/cell_choice.hpp"
 #include "runner/environment.hpp"
+#include "runner/supervise.hpp"
 #include "truth/draw.hpp"
 
 namespace clothbench {
@@ -121,7 +121,10 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
                                                         : std::filesystem::path(flags.out);
   require_same_cells(out, plan, parent ? parent->resume : flags.resume);
   std::filesystem::create_directories(out);
-  if (needs_supervision(plan)) return supervise(plan, out, flags.resume, console);
+  if (needs_supervision(plan)) {
+    console.exit_code = supervise(plan, out, flags.resume, console.words);
+    return;
+  }
   manifest.created = utc_now();
   manifest.command_line = console.command_line;
   if (manifest.cells.empty()) manifest.cells = cell_names(plan);

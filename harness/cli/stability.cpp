@@ -6,7 +6,7 @@
 #include "report/report.hpp"
 #include "runner/child.hpp"
 #include "runner/environment.hpp"
-#include "runner/stability_study.hpp"
+#include "runner/stability_map.hpp"
 
 namespace clothbench {
 namespace {
@@ -50,13 +50,8 @@ void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags&
   manifest.created = utc_now();
   manifest.command_line = console.command_line;
   for (const Study::Item& item : study.scenes)
-    for (const std::size_t k : item.solvers) {
-      CellHeader h;
-      h.scene = item.scene.name;
-      h.solver = study.solvers[k].solver;
-      h.setting = study.solvers[k].label;
-      manifest.cells.push_back(cell_name(h));
-    }
+    for (const std::size_t k : item.solvers)
+      manifest.cells.push_back(cell_name(item.scene.name, study.solvers[k].solver, study.solvers[k].label));
   StabilityOptions options;
   options.out = out;
   options.program = own_program();

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "cli/cell_choice.hpp"
 #include "cli/command.hpp"
 #include "cli/run_common.hpp"
-#include "cli/study_plan.hpp"
+#include "runner/cell_choice.hpp"
+#include "runner/study_plan.hpp"
 #ifdef CLOTHBENCH_WITH_DRAW
 #include "render/stereo.hpp"
 #endif
@@ -24,18 +24,11 @@ struct StudyArguments {
   RunFlags run;
 };
 
-/// Null if this build does not have it.
-const SolverEntry* known(const std::string& name) {
-  for (const SolverEntry& e : solvers())
-    if (e.info.name == name) return &e;
-  return external_solver(name);
-}
-
 /// A plugin climbs a study's ladder by the knobs that it has in common with the solvers here.
 std::map<std::string, std::vector<std::string>> knobs_of_plugins(const std::vector<std::string>& names) {
   std::map<std::string, std::vector<std::string>> out;
   for (const std::string& name : names)
-    if (const SolverEntry* e = known(name); e != nullptr && is_external(e->info))
+    if (const SolverEntry* e = known_solver(name); e != nullptr && is_external(e->info))
       for (const SettingSpec& s : e->info.settings)
         if (s.name == "substeps" || s.name == "iterations") out[name].push_back(s.name);
   return out;
@@ -56,44 +49,6 @@ Rendering rendering_of([[maybe_unused]] const std::string& eye) {
 }
 
 }  // namespace
-
-CellPlan plan_study(const Study& study) {
-  const StudyRules& rules = study.rules;
-  CellPlan plan;
-  plan.protocol = study.length == StudyLength::Full ? "full" : study.length == StudyLength::Quick ? "quick" : "short";
-  plan.rules = {study.trials,
-                rules.frames,
-                rules.max_wall_s,
-                rules.min_frames,
-                rules.warmup_s,
-                study.drop_frames,
-                study.accuracy_duration_s,
-                study.cell_limit_s,
-                rules.ladder_limit_s,
-                rules.agree,
-                study.pipelined};
-  if (!study.stage_times) plan.rules.profiled_frames = 0;
-  plan.references = plan.material_cards = study.protocol == "work-precision";
-  std::vector<const SolverEntry*> entries;
-  for (const StudySolver& s : study.solvers) entries.push_back(s.joined ? &find_solver(s.solver) : known(s.solver));
-  for (const Study::Item& item : study.scenes) {
-    if (plan.groups.size() <= static_cast<std::size_t>(item.group))
-      plan.groups.resize(static_cast<std::size_t>(item.group) + 1);
-    for (const std::size_t k : item.solvers) {
-      const StudySolver& s = study.solvers[k];
-      if (entries[k] == nullptr) {
-        auto absent = std::make_shared<SolverEntry>();
-        absent->info.name = s.solver;
-        entries[k] = absent.get();
-        plan.not_built.push_back(std::move(absent));
-      }
-      const nlohmann::json settings = entries[k]->make ? complete_settings(entries[k]->info, s.settings) : s.settings;
-      plan.groups[static_cast<std::size_t>(item.group)].push_back({&item.scene, entries[k], settings, s.label, s.work});
-      plan.groups[static_cast<std::size_t>(item.group)].back().timed = item.timed;
-    }
-  }
-  return plan;
-}
 
 void add_study(CLI::App& app, Console& console) {
   StudyArguments& a = console.arguments<StudyArguments>();

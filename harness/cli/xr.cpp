@@ -2,7 +2,7 @@
 
 #include "cli/command.hpp"
 #include "cli/run_common.hpp"
-#include "runner/cell.hpp"
+#include "runner/interrupt.hpp"
 #include "xr/loop.hpp"
 
 namespace clothbench {

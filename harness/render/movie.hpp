@@ -1,8 +1,7 @@
 #pragma once
-#include <sys/types.h>
-
 #include <filesystem>
 
+#include "base/child_process.hpp"
 #include "render/picture.hpp"
 
 namespace clothbench::render {
@@ -15,6 +14,7 @@ class Movie {
 
   /// Throws Error if ffmpeg cannot be started.
   Movie(std::filesystem::path file, int width, int height, double frames_per_s);
+  /// Waits for ffmpeg, whose file of the pictures so far is whole then.
   ~Movie();
   Movie(const Movie&) = delete;
   Movie& operator=(const Movie&) = delete;
@@ -25,11 +25,10 @@ class Movie {
   void finish();
 
  private:
-  int reap();
+  ChildEnd end();
 
   std::filesystem::path file_, log_;
-  pid_t pid_ = -1;
-  int to_ffmpeg_ = -1;
+  ChildProcess ffmpeg_;
 };
 
 }  // namespace clothbench::render

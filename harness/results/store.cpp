@@ -67,8 +67,10 @@ fs::path write_finished(const fs::path& dir, const CellRecord& record) {
 
 }  // namespace
 
-std::string cell_name(const CellHeader& h) {
-  std::string name = h.scene + "__" + h.solver + "__" + h.setting;
+std::string cell_name(const CellHeader& h) { return cell_name(h.scene, h.solver, h.setting); }
+
+std::string cell_name(const std::string& scene, const std::string& solver, const std::string& setting) {
+  std::string name = scene + "__" + solver + "__" + setting;
   for (char& c : name)
     if (!(std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '=' || c == '-')) c = '-';
   return name;

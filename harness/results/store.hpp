@@ -10,6 +10,7 @@
 namespace clothbench {
 
 /// "<scene>__<solver>__<setting>", with characters outside [A-Za-z0-9._=-] replaced by '-'.
+std::string cell_name(const std::string& scene, const std::string& solver, const std::string& setting);
 std::string cell_name(const CellHeader&);
 
 /// What a cell ends as: one HDF5 file, or the raw files it was written to (all that a build without HDF5 can).

@@ -2,16 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <thread>
 
 #include "metrics/metric_pass.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/stability/judge.hpp"
+#include "results/store.hpp"
 #include "runner/environment.hpp"
-#include "runner/frame_input.hpp"
+#include "runner/frame_loop.hpp"
+#include "runner/interrupt.hpp"
 #include "runner/jobs.hpp"
 #include "runner/stage_check.hpp"
 
@@ -20,17 +20,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::atomic<bool> interrupted{false}, held{false};
-std::atomic<int> holds{0};
-
 double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-void stop_if_interrupted() {
-  while (held && !interrupted) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  if (interrupted)
-    throw Error("interrupted; every finished trial is kept (continue with --resume)", ExitCode::Interrupted);
+/// Of a trial's frames, which begin the scene anew with every drop.
+FrameRules frame_rules(const TrialRules& rules, int frames, double max_wall_s = 0) {
+  return {0, frames, rules.drop_frames, max_wall_s, rules.min_frames, kTrialsKept};
 }
 
 bool all_finite(const std::vector<double>& values) {
@@ -81,42 +77,41 @@ void describe_scene(const Scene& scene, nlohmann::json& environment) {
 
 }  // namespace
 
-void request_interrupt() { interrupted = true; }
-bool interrupt_requested() { return interrupted; }
-void clear_interrupt() { interrupted = false; }
-void hold_runs(bool on) {
-  if (on && !held.exchange(true)) ++holds;
-  if (!on) held = false;
+std::string cell_name(const CellSpec& c) { return cell_name(c.scene->name, c.entry->info.name, c.setting); }
+
+CellHeader header_of(const Scene& scene, const std::string& solver, const std::string& setting,
+                     const nlohmann::json& settings, const std::string& protocol) {
+  CellHeader h;
+  h.scene = scene.name;
+  h.solver = solver;
+  h.setting = setting;
+  h.settings = settings;
+  h.scenario_json = scene.json;
+  h.scenario_sha256 = scene.sha256;
+  h.environment = describe_environment({}, protocol);
+  h.vertices = static_cast<std::uint32_t>(scene.cloth.vertex_count());
+  for (const auto& t : triangles(scene.cloth)) h.triangles.insert(h.triangles.end(), t.begin(), t.end());
+  return h;
 }
-int times_held() { return holds; }
 
 Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protocol)
     : spec_(std::move(spec)), device_(device) {
   const Scene& scene = *spec_.scene;
   const SolverInfo& info = spec_.entry->info;
-  header_.scene = scene.name;
-  header_.solver = info.name;
-  header_.setting = spec_.setting;
-  header_.settings = spec_.settings;
-  header_.scenario_json = scene.json;
-  header_.scenario_sha256 = scene.sha256;
-  header_.vertices = static_cast<std::uint32_t>(scene.cloth.vertex_count());
-  for (const auto& t : triangles(scene.cloth)) header_.triangles.insert(header_.triangles.end(), t.begin(), t.end());
-
+  header_ = header_of(scene, info.name, spec_.setting, spec_.settings, protocol);
+  const auto describe_run = [&] {
+    describe_scene(scene, header_.environment);
+    if (spec_.entry->make) describe_solver(info, header_.environment);
+  };
+  describe_run();
   const FeatureSet missing = unsupported(info, scene.needs);
   if (!spec_.entry->make || !missing.empty()) {
     outcome_ = {"unsupported", "ok", -1,
                 spec_.entry->make ? info.name + " has no " + join(missing) : "not in this build"};
-    header_.environment = describe_environment({}, protocol);
-    describe_scene(scene, header_.environment);
-    if (spec_.entry->make) describe_solver(info, header_.environment);
     return;
   }
   if (!spec_.over_budget.empty()) {
     outcome_ = {"over_budget", "ok", -1, spec_.over_budget};
-    header_.environment = describe_environment({}, protocol);
-    describe_scene(scene, header_.environment);
-    describe_solver(info, header_.environment);
     return;
   }
   try {
@@ -127,14 +122,10 @@ Cell::Cell(CellSpec spec, const DeviceOptions& device, const std::string& protoc
   } catch (const SolverError& e) {
     solver_.reset();
     outcome_ = {"error", "F8", -1, e.what()};
-    header_.environment = describe_environment({}, protocol);
-    describe_scene(scene, header_.environment);
-    describe_solver(info, header_.environment);
     return;
   }
   header_.environment = describe_environment(solver_->device(), protocol);
-  describe_scene(scene, header_.environment);
-  describe_solver(info, header_.environment);
+  describe_run();
   plan_ = solver_->plan();
   header_.plan = plan_json(plan_, scene);
   for (const StagePlan& s : plan_.stages) {
@@ -188,14 +179,13 @@ AccuracyPass Cell::run_accuracy(const TrialRules& rules) {
   MetricPass metrics(context);
   solver_->reset();
   ClothState state;
-  for (int frame = 0; frame <= frames; ++frame) {
-    stop_if_interrupted();
-    if (frame > 0) fail(solver_->step(frame_input(scene, frame - 1)), frame);
+  const auto observe = [&](int frame, StepStatus status) {
+    fail(status, frame);
     try {
       solver_->read_state(state);
     } catch (const Error& e) {  // there is none: the device is gone
       if (outcome_.status == "ok") outcome_ = {"device_lost", "F8", frame, e.what()};
-      break;
+      return;
     }
     if (outcome_.status == "ok" && !(all_finite(state.position) && all_finite(state.velocity)))
       fail(StepStatus::NotFinite, frame);
@@ -209,8 +199,11 @@ AccuracyPass Cell::run_accuracy(const TrialRules& rules) {
         seconds_since(start) > rules.cell_limit_s && frame < frames)
       outcome_ = {"timed_out", "F8", frame,
                   fmt::format("the accuracy pass was not through after {:g} s", rules.cell_limit_s)};
-    if (outcome_.status != "ok") break;
-  }
+  };
+  stop_if_interrupted(kTrialsKept);
+  observe(0, StepStatus::Ok);
+  FrameLoop loop(*solver_, scene, {.frames = frames, .interrupted = kTrialsKept});
+  while (outcome_.status == "ok" && (loop.next() || loop.failed())) observe(loop.index() + 1, loop.status());
   pass.metrics = metrics.take();
   const StabilityVerdict verdict = stability_verdict(pass);
   if (verdict.klass != "ok" && outcome_.klass != "F8") {
@@ -226,12 +219,12 @@ void Cell::warm_up(const TrialRules& rules) {
   constexpr int kLeastFrames = 3;
   solver_->reset();
   const auto start = Clock::now();
-  for (int frame = 0; frame < kLeastFrames || seconds_since(start) < rules.warmup_s; ++frame) {
-    stop_if_interrupted();
+  FrameLoop loop(*solver_, *spec_.scene, frame_rules(rules, kAsManyAsItTakes));
+  while (loop.next()) {
+    const double since_s = seconds_since(start);
+    if (loop.index() + 1 >= kLeastFrames && since_s >= rules.warmup_s) return;
     // One frame as long as a whole trial should be is warm-up enough.
-    if (frame > 0 && rules.max_wall_s > 0 && seconds_since(start) >= std::max(rules.max_wall_s, rules.warmup_s)) return;
-    if (rules.drop_frames > 0 && frame > 0 && frame % rules.drop_frames == 0) solver_->reset();
-    if (solver_->step(frame_input(*spec_.scene, frame)) != StepStatus::Ok) return;
+    if (rules.max_wall_s > 0 && since_s >= std::max(rules.max_wall_s, rules.warmup_s)) return;
   }
 }
 
@@ -242,31 +235,19 @@ TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
   warm_up(rules);
   const std::size_t stages = plan_.stages.size();
   const int asked = rules.frames > 0 ? rules.frames : spec_.scene->time.frames();
-  double elapsed = 0;
   trial.start_unix_s = trial.end_unix_s = unix_now();
-  for (int frame = 0; frame < (frames > 0 ? frames : asked); ++frame) {
-    const bool out_of_time =
-        frames == 0 && rules.max_wall_s > 0 && elapsed >= rules.max_wall_s && frame >= rules.min_frames;
-    if (out_of_time) break;
-    stop_if_interrupted();
-    const int in_drop = rules.drop_frames > 0 ? frame % rules.drop_frames : frame;
-    if (in_drop == 0) solver_->reset();
-    const FrameInput input = frame_input(*spec_.scene, in_drop);
-    const auto start = Clock::now();
-    const StepStatus status = solver_->step(input);
-    const double wall = seconds_since(start);
-    elapsed += wall;
-    if (status != StepStatus::Ok) {
-      fail(status, frame);
-      break;
-    }
+  solver_->reset();
+  FrameLoop loop(*solver_, *spec_.scene,
+                 frames > 0 ? frame_rules(rules, frames) : frame_rules(rules, asked, rules.max_wall_s));
+  while (loop.next()) {
     const FrameCost cost = solver_->last_cost();
-    trial.frame_wall_s.push_back(wall);
+    trial.frame_wall_s.push_back(loop.wall_s());
     trial.frame_device_s.push_back(cost.device_s);
     trial.stage_device_s.insert(trial.stage_device_s.end(), stages, kMissing);
     trial.stage_read_B.insert(trial.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
     trial.stage_write_B.insert(trial.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
   }
+  fail(loop.status(), loop.index());
   trial.end_unix_s = unix_now();
   trial.jobs = std::max(jobs_before, jobs_now());
   if (outcome_.status == "ok" && rules.pipelined && solver_->frames_in_flight() > 1) run_pipelined(trial, rules);
@@ -278,19 +259,12 @@ TimedTrial Cell::run_trial(int index, const TrialRules& rules, int frames) {
 /// The frames of the trial again, drop by drop; what a drop's first frame waits for and its last one drains is in the
 /// clock.
 void Cell::run_pipelined(TimedTrial& trial, const TrialRules& rules) {
-  double elapsed = 0;
-  const int frames = trial.frames(), drop = rules.drop_frames > 0 ? rules.drop_frames : frames;
-  for (int first = 0; first < frames; first += drop) {
-    stop_if_interrupted();
-    std::vector<FrameInput> inputs;
-    for (int k = 0; k < std::min(drop, frames - first); ++k) inputs.push_back(frame_input(*spec_.scene, k));
-    solver_->reset();
-    const auto start = Clock::now();
-    const StepStatus status = solver_->run_frames(inputs);
-    elapsed += seconds_since(start);
-    if (status != StepStatus::Ok) return fail(status, first);
+  solver_->reset();
+  FrameLoop loop(*solver_, *spec_.scene, frame_rules(rules, trial.frames()));
+  while (loop.next_drop()) {
   }
-  trial.pipelined_wall_s = elapsed / frames;
+  fail(loop.status(), loop.index());
+  if (!loop.failed()) trial.pipelined_wall_s = loop.elapsed_s() / trial.frames();
 }
 
 void Cell::describe(const Rendering& rendering) {
@@ -303,20 +277,15 @@ void Cell::run_rendered(TimedTrial& trial, const TrialRules& rules) {
   solver_->reset();
   const std::unique_ptr<FrameDrawer> drawer = rules.rendering.make(*spec_.scene, *solver_, device_);
   drawer->draw(0);  // a driver's first picture takes longer
-  double elapsed = 0;
-  for (int frame = 0; frame < trial.frames(); ++frame) {
-    if (rules.max_wall_s > 0 && elapsed >= rules.max_wall_s && frame >= rules.min_frames) return;
-    stop_if_interrupted();
-    const int in_drop = rules.drop_frames > 0 ? frame % rules.drop_frames : frame;
-    if (in_drop == 0) solver_->reset();
-    const FrameInput input = frame_input(*spec_.scene, in_drop);
-    const auto start = Clock::now();
+  solver_->reset();
+  FrameLoop loop(*solver_, *spec_.scene, frame_rules(rules, trial.frames(), rules.max_wall_s));
+  const auto step_and_draw = [&](const FrameInput& input) {
     const StepStatus status = solver_->step(input);
-    if (status != StepStatus::Ok) return fail(status, frame);
-    drawer->draw(in_drop + 1);
-    trial.frame_rendered_s.push_back(seconds_since(start));
-    elapsed += trial.frame_rendered_s.back();
-  }
+    if (status == StepStatus::Ok) drawer->draw(input.index + 1);
+    return status;
+  };
+  while (loop.next(step_and_draw)) trial.frame_rendered_s.push_back(loop.wall_s());
+  fail(loop.status(), loop.index());
 }
 
 /// Per-stage device times come from a twin with timestamps around every stage, run right after the timed frames: the
@@ -330,12 +299,11 @@ void Cell::profile_stages(TimedTrial& trial, int frames) {
   }
   profiled_->reset();
   const std::size_t stages = plan_.stages.size();
-  for (int frame = 0; frame < std::min(frames, trial.frames()); ++frame) {
-    stop_if_interrupted();
-    if (profiled_->step(frame_input(*spec_.scene, frame)) != StepStatus::Ok) return;
+  FrameLoop loop(*profiled_, *spec_.scene, {.frames = std::min(frames, trial.frames()), .interrupted = kTrialsKept});
+  while (loop.next()) {
     const FrameCost cost = profiled_->last_cost();
-    for (std::size_t s = 0; s < std::min(stages, cost.stage_device_s.size()); ++s)
-      trial.stage_device_s[frame * stages + s] = cost.stage_device_s[s];
+    for (std::size_t k = 0; k < std::min(stages, cost.stage_device_s.size()); ++k)
+      trial.stage_device_s[static_cast<std::size_t>(loop.index()) * stages + k] = cost.stage_device_s[k];
   }
 }
 

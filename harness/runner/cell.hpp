@@ -40,20 +40,14 @@ struct TrialRules {
   Rendering rendering = {};  ///< also time frames with their pictures
 };
 
-/// Thrown between frames once the user pressed Ctrl-C (`request_interrupt`).
-void request_interrupt();
-bool interrupt_requested();
-/// Before another run in the same process.
-void clear_interrupt();
-
-/// While held, runs wait between frames: for a device whose activity is paused. Waits are never timed, and a trial that
-/// was held is run again, since its device went to sleep.
-void hold_runs(bool held);
-/// How often runs have been held so far.
-int times_held();
-
 /// Of a cell whose step ended so in frame `frame`.
 Outcome outcome_of(StepStatus, int frame);
+
+std::string cell_name(const CellSpec&);  ///< as of its files
+
+/// Of a cell before its solver is loaded, or whose solver never is: what it is of, on this machine.
+CellHeader header_of(const Scene&, const std::string& solver, const std::string& setting,
+                     const nlohmann::json& settings, const std::string& protocol);
 
 /// A loaded solver and what has been measured of it.
 class Cell {

@@ -12,7 +12,6 @@
 #include "metrics/registry.hpp"
 #include "results/store.hpp"
 #include "runner/cell.hpp"
-#include "runner/environment.hpp"
 #include "runner/expect.hpp"
 #include "runner/replay.hpp"
 #include "scenario/load.hpp"
@@ -44,21 +43,8 @@ void write_failure(const CellRequest& r, const CellAnswer& answer) {
   static std::mutex mutex;  // the HDF5 library is not for several threads
   const std::lock_guard lock(mutex);
   const Scene scene = scene_of(r);
-  CellHeader h;
-  h.scene = scene.name;
-  h.solver = r.solver;
-  h.setting = r.setting;
-  h.settings = r.settings;
-  h.scenario_json = scene.json;
-  h.scenario_sha256 = scene.sha256;
-  h.environment = describe_environment({}, r.protocol);
-  h.vertices = static_cast<std::uint32_t>(scene.cloth.vertex_count());
-  for (const auto& t : triangles(scene.cloth)) h.triangles.insert(h.triangles.end(), t.begin(), t.end());
-  if (cell_finished(r.out, cell_name(h))) return;
-  // What it left half-written is not to be mistaken for the beginning of this.
-  std::error_code ignored;
-  fs::remove_all(r.out / (cell_name(h) + ".part"), ignored);
-  CellWriter(r.out, h).finish(answer.outcome, answer.summary);
+  const CellHeader h = header_of(scene, r.solver, r.setting, r.settings, r.protocol);
+  if (!cell_finished(r.out, cell_name(h))) write_failed_cell(r.out, h, answer.outcome, answer.summary);
 }
 
 CellAnswer run_here(const CellRequest& r, const SolverLookup& lookup) {
@@ -142,6 +128,13 @@ CellAnswer answer_from_json(const json& j) {
   a.summary = numbers_from_json(j.at("summary"));
   a.wall_s = number_from_json(j.at("wall_s"), "wall_s");
   return a;
+}
+
+void write_failed_cell(const fs::path& out, const CellHeader& header, const Outcome& outcome,
+                       const std::map<std::string, double>& summary) {
+  std::error_code ignored;
+  fs::remove_all(out / (cell_name(header) + ".part"), ignored);
+  CellWriter(out, header).finish(outcome, summary);
 }
 
 CellAnswer run_request(const CellRequest& r, const SolverLookup& lookup) {

@@ -39,6 +39,11 @@ CellRequest request_from_json(const nlohmann::json&);
 nlohmann::json to_json(const CellAnswer&);
 CellAnswer answer_from_json(const nlohmann::json&);
 
+/// The file of a cell whose process could not write it. What that left half-written goes: it is not the beginning of
+/// this, but of a solver that crashes.
+void write_failed_cell(const std::filesystem::path& out, const CellHeader&, const Outcome&,
+                       const std::map<std::string, double>& summary);
+
 using SolverLookup = std::function<const SolverEntry&(const std::string&)>;
 
 /// Runs the cell here: the other side of `run_in_process`.

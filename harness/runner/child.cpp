@@ -1,109 +1,38 @@
 #include "runner/child.hpp"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <poll.h>
-#include <signal.h>
-#include <spawn.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <cstring>
 
 #include "clothbench/error.hpp"
-#include "runner/cell.hpp"
+#include "runner/interrupt.hpp"
 
 namespace clothbench {
-namespace {
 
-using Clock = std::chrono::steady_clock;
-
-}  // namespace
-
-std::string ChildEnd::text() const {
-  switch (how) {
-    case How::Exited:
-      return fmt::format("exit status {}", code);
-    case How::Signalled:
-      return fmt::format("signal {} ({})", code, strsignal(code));
-    case How::TimedOut:
-      return fmt::format("killed after {:.1f} s", wall_s);
-  }
-  return "";
-}
-
-Child::Child(const std::vector<std::string>& argv, const std::filesystem::path& log) {
-  int ends[2];
-  // Closed in every other child: a hang-up is then this child's end and nobody else's.
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-    throw Error(argv[0] + ": cannot be started: " + std::strerror(errno), ExitCode::CheckFailed);
-  std::vector<char*> words;
-  for (const std::string& word : argv) words.push_back(const_cast<char*>(word.c_str()));
-  words.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_adddup2(&files, ends[1], STDIN_FILENO);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0644);
-  posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
-  const int failed = posix_spawn(&pid_, words[0], &files, nullptr, words.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
-  close(ends[1]);
-  socket_ = ends[0];
-  if (failed == 0) return;
-  close(socket_);
-  throw Error(argv[0] + ": cannot be started: " + std::strerror(failed), ExitCode::CheckFailed);
-}
-
-Child::~Child() {
-  close(socket_);
-  // One that waits for a line sees that there are no more, and cleans up.
-  if (pid_ < 0) return;
-  int status = 0;
-  for (int k = 0; k < 500; ++k) {
-    if (waitpid(pid_, &status, WNOHANG) == pid_) return;
-    usleep(2000);
-  }
-  reap(true);
-}
-
-/// The exit status of a child that has ended or is ended.
-int Child::reap(bool kill_it) {
-  int status = 0;
-  if (kill_it) kill(pid_, SIGKILL);
-  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-  }
-  pid_ = -1;
-  return status;
-}
+Child::Child(const std::vector<std::string>& argv, const std::filesystem::path& log)
+    : process_(argv, {.socket = true, .out = log, .err = log}) {}
 
 std::optional<ChildEnd> Child::ask(const std::string& line, double limit_s) {
-  const auto began = Clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
-  const std::string text = line + "\n";
-  bool gone = send(socket_, text.data(), text.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(text.size());
+  using namespace std::chrono_literals;
+  const auto began = std::chrono::steady_clock::now();
+  const auto asked = [&](ChildEnd end) {
+    end.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    return end;
+  };
+  bool gone = !process_.write(line + "\n");
   while (!gone) {
-    pollfd waiting{socket_, POLLIN, 0};
-    constexpr int kLook_ms = 50;
-    if (poll(&waiting, 1, kLook_ms) > 0) {
-      char c = 0;
-      const ssize_t got = recv(socket_, &c, 1, 0);
-      if (got == 1) return std::nullopt;
-      gone = !(got < 0 && errno == EINTR);
-    }
+    char answer = 0;
+    const ChildProcess::Heard heard = process_.read(answer, 50ms);
+    if (heard == ChildProcess::Heard::Byte) return std::nullopt;
+    gone = heard == ChildProcess::Heard::End;
     if (interrupt_requested()) {
-      reap(true);
-      throw Error("interrupted; finished cells are kept (continue with --resume)", ExitCode::Interrupted);
+      process_.kill();
+      stop_if_interrupted(kCellsKept);
     }
-    if (limit_s > 0 && elapsed() > limit_s) {
-      reap(true);
-      return ChildEnd{ChildEnd::How::TimedOut, 0, elapsed()};
-    }
+    if (limit_s > 0 && asked({}).wall_s > limit_s) return asked(process_.kill());
   }
-  const int status = reap(false);
-  if (WIFSIGNALED(status)) return ChildEnd{ChildEnd::How::Signalled, WTERMSIG(status), elapsed()};
-  return ChildEnd{ChildEnd::How::Exited, WEXITSTATUS(status), elapsed()};
+  return asked(process_.wait());
 }
 
 std::optional<std::string> next_line_from_parent() {

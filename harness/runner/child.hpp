@@ -1,22 +1,12 @@
 #pragma once
-#include <sys/types.h>
-
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace clothbench {
+#include "base/child_process.hpp"
 
-/// How a child process ended.
-struct ChildEnd {
-  enum class How { Exited, Signalled, TimedOut };
-  How how = How::Exited;
-  int code = 0;  ///< exit status, or number of the signal
-  double wall_s = 0;
-  /// "signal 11 (Segmentation fault)", "exit status 3", "killed after 5 s"
-  std::string text() const;
-};
+namespace clothbench {
 
 /// A program that is asked line by line on its standard input, a socket, and answers each with an end of line on the
 /// same socket.
@@ -24,19 +14,13 @@ class Child {
  public:
   /// Starts argv[0] (a path), its output going to `log`. Throws Error if it cannot be started.
   Child(const std::vector<std::string>& argv, const std::filesystem::path& log);
-  ~Child();
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
 
   /// Sends a line and waits for the answer: nothing, or how the child ended instead, killed after `limit_s` (0 = never)
   /// among others. It is gone then. On Ctrl-C the child is killed and the interrupt thrown.
   std::optional<ChildEnd> ask(const std::string& line, double limit_s);
 
  private:
-  int reap(bool kill_it);
-
-  pid_t pid_ = -1;
-  int socket_ = -1;
+  ChildProcess process_;
 };
 
 /// One line from the parent, or nothing once it is gone; and the answer to it.

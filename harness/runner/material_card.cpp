@@ -9,9 +9,12 @@
 #include "base/sha256.hpp"
 #include "metrics/material_patch.hpp"
 #include "metrics/metric.hpp"
+#include "results/raw_file.hpp"
 #include "runner/cell.hpp"
+#include "runner/cell_process.hpp"
 #include "runner/environment.hpp"
-#include "runner/frame_input.hpp"
+#include "runner/frame_loop.hpp"
+#include "runner/interrupt.hpp"
 
 namespace clothbench {
 namespace {
@@ -45,43 +48,51 @@ Result settle(ClothSolver& solver, Patch patch, const Scene& scene, double limit
   std::vector<Moduli> past;
   ClothState state;
   Result r;
-  for (int f = 0; f < scene.time.frames(); ++f) {
-    if (interrupt_requested())
-      throw Error("interrupted; finished cells are kept (continue with --resume)", ExitCode::Interrupted);
-    if (solver.step(frame_input(scene, f)) != StepStatus::Ok)
-      return {{}, kMissing, fmt::format("failed in frame {}", f + 1)};
+  const int held_before = times_held();
+  FrameLoop loop(solver, scene, {.frames = scene.time.frames(), .interrupted = kCellsKept});
+  while (loop.next()) {
+    const int f = loop.index();
     solver.read_state(state);
     past.push_back(patch_moduli(patch, scene, state.position));
     if (f >= kWindow) r.unrest = change(past.back(), past[past.size() - 1 - kWindow]);
     if (f >= kLeastFrames && r.unrest <= kAtRest) break;
-    if (std::chrono::duration<double>(Clock::now() - start).count() > limit_s && f + 1 < scene.time.frames())
+    if (std::chrono::duration<double>(Clock::now() - start).count() > limit_s && times_held() == held_before &&
+        f + 1 < scene.time.frames())
       return {{}, kMissing, fmt::format("not at rest after {:g} s", limit_s)};
   }
+  if (loop.failed()) return {{}, kMissing, fmt::format("failed in frame {}", loop.index() + 1)};
   r.moduli = past.back();
   return r;
+}
+
+CellHeader card_header(const SolverEntry& entry, const std::string& setting, const json& settings, bool full,
+                       const json& measured, const std::string& protocol) {
+  CellHeader h;
+  h.scene = kMaterialCardScene;
+  h.solver = entry.info.name;
+  h.setting = setting;
+  h.settings = settings;
+  h.scenario_json =
+      json{{"name", kMaterialCardScene}, {"material_card", full ? "full" : "short"}, {"patches", measured}}.dump();
+  h.scenario_sha256 = sha256(h.scenario_json);
+  h.environment = describe_environment({}, protocol);
+  h.environment["solver_features"] = describe_features(entry.info);
+  return h;
 }
 
 }  // namespace
 
 CellRecord measure_material(const SolverEntry& entry, const json& settings, const std::string& setting, bool full,
                             const DeviceOptions& device, const std::string& protocol, double limit_s, bool bending) {
-  CellRecord c;
-  c.header.scene = kMaterialCardScene;
-  c.header.solver = entry.info.name;
-  c.header.setting = setting;
-  c.header.settings = settings;
-  json scenario = {
-      {"name", kMaterialCardScene}, {"material_card", full ? "full" : "short"}, {"patches", json::array()}};
+  json measured = json::array();
   std::vector<std::pair<Patch, Scene>> scenes;
   for (const Patch p : patches(full)) {
     if (!bending && patch_scene(p).needs.has(Feature::Bend)) continue;
     scenes.emplace_back(p, patch_scene(p));
-    scenario["patches"].push_back(json::parse(scenes.back().second.json));
+    measured.push_back(json::parse(scenes.back().second.json));
   }
-  c.header.scenario_json = scenario.dump();
-  c.header.scenario_sha256 = sha256(c.header.scenario_json);
-  c.header.environment = describe_environment({}, protocol);
-  c.header.environment["solver_features"] = describe_features(entry.info);
+  CellRecord c;
+  c.header = card_header(entry, setting, settings, full, measured, protocol);
   if (!entry.make || entry.info.ignores.has(Feature::Stretch)) {
     c.outcome = {"unsupported", "ok", -1, entry.make ? entry.info.name + " does not stretch" : "not in this build"};
     return c;
@@ -93,8 +104,7 @@ CellRecord measure_material(const SolverEntry& entry, const json& settings, cons
       c.outcome.message += fmt::format("{}{}: unsupported", c.outcome.message.empty() ? "" : "; ", patch_name(patch));
       continue;
     }
-    const auto solver = entry.make(settings, device);
-    solver->load(scene);
+    const auto solver = load_solver(entry, settings, device, scene);
     c.header.environment = describe_environment(solver->device(), protocol);
     c.header.environment["solver_features"] = describe_features(entry.info);
     Result r = settle(*solver, patch, scene, limit_s);
@@ -112,19 +122,25 @@ CellRecord measure_material(const SolverEntry& entry, const json& settings, cons
 CellRecord failed_material(const SolverEntry& entry, const std::string& setting, const Outcome& outcome,
                            const std::string& protocol) {
   CellRecord c;
-  c.header.scene = kMaterialCardScene;
-  c.header.solver = entry.info.name;
-  c.header.setting = setting;
-  c.header.settings = json::object();
-  c.header.scenario_json = json{
-      {"name", kMaterialCardScene},
-      {"material_card", setting == "default" ? "full" : "short"},
-      {"patches",
-       json::array()}}.dump();
-  c.header.scenario_sha256 = sha256(c.header.scenario_json);
-  c.header.environment = describe_environment({}, protocol);
-  c.header.environment["solver_features"] = describe_features(entry.info);
+  c.header = card_header(entry, setting, json::object(), setting == "default", json::array(), protocol);
   c.outcome = outcome;
+  return c;
+}
+
+CellRecord ask_material(Guard& guard, const SolverEntry& entry, const json& settings, const std::string& setting,
+                        bool full, const DeviceOptions& device) {
+  constexpr char kProtocol[] = "card";
+  const Guard::Answer answer = guard.run(entry, [&]() -> json {
+    const CellRecord c = measure_material(entry, settings, setting, full, device, kProtocol);
+    return {{"header", header_to_json(c.header)}, {"answer", to_json(CellAnswer{c.outcome, c.summary, kMissing})}};
+  });
+  if (!answer.crash.empty())
+    return failed_material(entry, setting, {"crashed", "F8", -1, "its process: " + answer.crash}, kProtocol);
+  CellAnswer given = answer_from_json(answer.value["answer"]);
+  CellRecord c;
+  c.header = header_from_json(answer.value["header"]);
+  c.outcome = std::move(given.outcome);
+  c.summary = std::move(given.summary);
   return c;
 }
 

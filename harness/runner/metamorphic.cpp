@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <optional>
 
+#include "base/json_number.hpp"
 #include "clothbench/error.hpp"
 #include "metrics/metric.hpp"
-#include "runner/frame_input.hpp"
+#include "runner/frame_loop.hpp"
 #include "scenario/change.hpp"
 #include "scenario/load.hpp"
 
@@ -28,13 +28,12 @@ struct Failed {
 /// Every frame's positions and velocities.
 using Trace = std::vector<ClothState>;
 
-Trace trace_of(ClothSolver& solver, const Scene& s) {
-  Trace out(1);
-  solver.read_state(out.back());
-  for (int f = 0; f < s.time.frames(); ++f) {
-    if (solver.step(frame_input(s, f)) != StepStatus::Ok) throw Failed{"failed"};
-    solver.read_state(out.emplace_back());
-  }
+/// Onto `out`: the state as it is, and after every frame that is still lacking.
+Trace trace_of(ClothSolver& solver, const Scene& s, Trace out = {}) {
+  FrameLoop loop(solver, s, {.first = static_cast<int>(out.size()), .frames = s.time.frames()});
+  solver.read_state(out.emplace_back());
+  while (loop.next()) solver.read_state(out.emplace_back());
+  if (loop.failed()) throw Failed{"failed"};
   return out;
 }
 
@@ -118,11 +117,7 @@ class Tester {
     return out;
   }
 
-  Trace run(const Scene& s, const std::optional<json>& settings = {}) const {
-    const auto solver = entry_.make(settings ? *settings : settings_, device_);
-    solver->load(s);
-    return trace_of(*solver, s);
-  }
+  Trace run(const Scene& s) const { return trace_of(*load_solver(entry_, settings_, device_, s), s); }
 
   Scene made(json scenario) const {
     scenario.erase("truth");  // positions alone are compared
@@ -205,27 +200,20 @@ class Tester {
 
   /// Goes on from the state half way, in a solver that was not there before.
   void restart(MetamorphicResult& out) const {
-    const auto solver = entry_.make(settings_, device_);
-    solver->load(scene_);
+    const auto solver = load_solver(entry_, settings_, device_, scene_);
     const std::size_t half = base_.size() / 2;
     if (!solver->restart(base_[half])) {
       out = unsupported_row(out);
       return;
     }
-    Trace from(base_.begin(), base_.begin() + static_cast<std::ptrdiff_t>(half));
-    solver->read_state(from.emplace_back());
-    for (int f = static_cast<int>(half); f < scene_.time.frames(); ++f) {
-      if (solver->step(frame_input(scene_, f)) != StepStatus::Ok) throw Failed{"failed"};
-      solver->read_state(from.emplace_back());
-    }
+    const Trace from = trace_of(*solver, scene_, {base_.begin(), base_.begin() + static_cast<std::ptrdiff_t>(half)});
     compare(base_, from, {}, side_, out);
     allow_own_error(out, json_, base_);
   }
 
   void repeat(MetamorphicResult& out) const {
     out.at_most = 0;
-    const auto solver = entry_.make(settings_, device_);
-    solver->load(scene_);
+    const auto solver = load_solver(entry_, settings_, device_, scene_);
     compare(base_, trace_of(*solver, scene_), {}, side_, out);
     solver->reset();
     compare(base_, trace_of(*solver, scene_), {}, side_, out);
@@ -298,6 +286,36 @@ std::vector<MetamorphicResult> run_metamorphic(const SolverEntry& entry, const j
       out.push_back(tester.test(p.name));
     }
   }
+  return out;
+}
+
+json metamorphic_json(const std::string& solver, const MetamorphicResult& r) {
+  return {{"solver", solver},
+          {"property", r.property},
+          {"scene", r.scene},
+          {"status", r.status},
+          {"distance", finite_or_null(r.distance)},
+          {"bitwise", r.bitwise},
+          {"at_most", r.at_most}};
+}
+
+std::vector<MetamorphicResult> ask_metamorphic(Guard& guard, const SolverEntry& entry, const json& settings,
+                                               const DeviceOptions& device, const Scene& scene,
+                                               const std::function<void(const std::string&)>& note) {
+  const Guard::Answer answer = guard.run(entry, [&] {
+    json rows = json::array();
+    for (const MetamorphicResult& r : run_metamorphic(entry, settings, device, {scene}, note))
+      rows.push_back(metamorphic_json(entry.info.name, r));
+    return rows;
+  });
+  std::vector<MetamorphicResult> out;
+  if (answer.crash.empty())
+    for (const json& j : answer.value)
+      out.push_back({j["property"], j["scene"], j["status"],
+                     j["distance"].is_null() ? std::nan("") : j["distance"].get<double>(), j["bitwise"], j["at_most"]});
+  else
+    for (const MetamorphicProperty& p : metamorphic_properties())
+      out.push_back({p.name, scene.name, "crashed: " + answer.crash, std::nan(""), false, 0});
   return out;
 }
 

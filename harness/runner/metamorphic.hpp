@@ -6,6 +6,7 @@
 
 #include "clothbench/scene.hpp"
 #include "clothbench/solver.hpp"
+#include "runner/again.hpp"
 
 namespace clothbench {
 
@@ -51,5 +52,13 @@ std::vector<Scene> metamorphic_scenes();
 std::vector<MetamorphicResult> run_metamorphic(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                                const std::vector<Scene>& scenes,
                                                const std::function<void(const std::string&)>& note = {});
+
+/// As `clothbench metamorphic --json` tells it.
+nlohmann::json metamorphic_json(const std::string& solver, const MetamorphicResult&);
+
+/// Every property on one scene, a plugin's in a child; "crashed" for all of them where it brings that down at one.
+std::vector<MetamorphicResult> ask_metamorphic(Guard&, const SolverEntry&, const nlohmann::json& settings,
+                                               const DeviceOptions&, const Scene&,
+                                               const std::function<void(const std::string&)>& note);
 
 }  // namespace clothbench

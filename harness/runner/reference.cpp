@@ -16,7 +16,8 @@
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
 #include "metrics/truth_errors.hpp"
-#include "runner/frame_input.hpp"
+#include "runner/frame_loop.hpp"
+#include "runner/interrupt.hpp"
 #include "runner/reference_cache.hpp"
 #include "scenario/load.hpp"
 #include "truth/card.hpp"
@@ -46,21 +47,21 @@ Run run_quantity(const Scene& scene, const truth::Card& card, const char* integr
   const SolverEntry& entry = find_solver("reference");
   const json settings =
       complete_settings(entry.info, {{"integrator", integrator}, {"substeps", substeps}, {"tolerance", tolerance}});
-  const auto solver = entry.make(settings, {});
-  solver->load(scene);
+  const auto solver = load_solver(entry, settings, {}, scene);
   const int frames = scene.time.frames();
   ClothState state;
   const auto quantity = [&] {
     solver->read_state(state);
     return card.quantity(truth::column_means(scene.cloth, state.position));
   };
-  double before = kMissing;
-  for (int f = 0; f < frames; ++f) {
-    if (f == frames - (frames + 9) / 10) before = quantity();
-    if (solver->step(frame_input(scene, f)) != StepStatus::Ok)
-      throw Error(
-          fmt::format("{}: the reference ({}, {} substeps) failed in frame {}", scene.source, integrator, substeps, f));
-  }
+  const int last_tenth = frames - (frames + 9) / 10;
+  double before = last_tenth == 0 ? quantity() : kMissing;
+  FrameLoop loop(*solver, scene, {.frames = frames});
+  while (loop.next())
+    if (loop.index() + 1 == last_tenth) before = quantity();
+  if (loop.failed())
+    throw Error(fmt::format("{}: the reference ({}, {} substeps) failed in frame {}", scene.source, integrator,
+                            substeps, loop.index()));
   const double value = quantity();
   return {value, std::abs(value - before)};
 }
@@ -183,6 +184,7 @@ std::map<std::string, ReferenceResult> references(const std::vector<const Scene*
   for (std::size_t k = 0; k < std::min(cores, lacking.size()); ++k)
     workers.push_back(std::async(std::launch::async, work));
   workers.clear();
+  stop_if_interrupted(kTrialsKept);
   if (!failed.empty()) throw Error(failed, ExitCode::CheckFailed);
   return out;
 }

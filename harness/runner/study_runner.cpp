@@ -8,6 +8,7 @@
 
 #include "metrics/truth_dependence.hpp"
 #include "runner/expect.hpp"
+#include "runner/interrupt.hpp"
 #include "runner/ladder.hpp"
 #include "runner/reference.hpp"
 #include "runner/replay.hpp"
@@ -46,17 +47,8 @@ struct Running {
   std::string name() const { return cell_name(cell->header()); }
 };
 
-CellHeader header_of(const CellSpec& spec) {
-  CellHeader h;
-  h.scene = spec.scene->name;
-  h.solver = spec.entry->info.name;
-  h.setting = spec.setting;
-  return h;
-}
-
 PlannedCell planned(const CellSpec& spec) {
-  return {cell_name(header_of(spec)), spec.scene->sha256, spec.settings,
-          spec.entry->make ? &spec.entry->info : nullptr};
+  return {cell_name(spec), spec.scene->sha256, spec.settings, spec.entry->make ? &spec.entry->info : nullptr};
 }
 
 /// Adds the time from its construction to its end.
@@ -115,7 +107,7 @@ class GroupRun {
   void begin(const CellSpec& given) {
     const Stopwatch watch(seconds_of(given));
     CellSpec spec = given;
-    const std::string name = cell_name(header_of(spec));
+    const std::string name = cell_name(spec);
     if (options_.resume) remove_leftovers(options_.out, name);
     if (cell_finished(options_.out, name)) {
       if (!options_.resume) refuse_finished_cell(options_.out, name);
@@ -224,7 +216,7 @@ void refuse_doubles(const CellPlan& plan) {
   std::set<std::string> names;
   for (const auto& group : plan.groups)
     for (const CellSpec& c : group)
-      if (const std::string name = cell_name(header_of(c)); !names.insert(name).second)
+      if (const std::string name = cell_name(c); !names.insert(name).second)
         throw Error("two cells would be stored as " + name + ": expected each scene, solver and setting once");
 }
 

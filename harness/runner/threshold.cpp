@@ -9,7 +9,7 @@
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 #include "metrics/truth_errors.hpp"
-#include "runner/frame_input.hpp"
+#include "runner/frame_loop.hpp"
 #include "scenario/load.hpp"
 #include "truth/card.hpp"
 
@@ -21,10 +21,11 @@ constexpr double kLow = 0.5, kHigh = 1.5, kFinest = 1e-3;
 /// The last state of a run of the whole scene; none if it fails.
 std::optional<ClothState> last_state(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings,
                                      const DeviceOptions& device) {
-  const auto solver = entry.make(settings, device);
-  solver->load(scene);
-  for (int f = 0; f < scene.time.frames(); ++f)
-    if (solver->step(frame_input(scene, f)) != StepStatus::Ok) return std::nullopt;
+  const auto solver = load_solver(entry, settings, device, scene);
+  FrameLoop loop(*solver, scene, {.frames = scene.time.frames()});
+  while (loop.next()) {
+  }
+  if (loop.failed()) return std::nullopt;
   ClothState state;
   solver->read_state(state);
   return state;
@@ -78,6 +79,29 @@ FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, cons
   }
   out.error = t.error(out.found);
   return out;
+}
+
+nlohmann::json ask_threshold(Guard& guard, const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings,
+                             const DeviceOptions& device) {
+  const Guard::Answer answer = guard.run(entry, [&]() -> nlohmann::json {
+    const FoundThreshold found = find_threshold(scene, entry, settings, device);
+    const auto card = truth::card_of(scene);
+    const auto number = [&](double x) { return found.failed ? nlohmann::json() : nlohmann::json(x); };
+    return {{"scene", scene.name},
+            {"solver", entry.info.name},
+            {"exact", found.exact},
+            {"found", number(found.found)},
+            {"error", number(found.error)},
+            {"error_name", card->threshold->error_name},
+            {"error_units", card->threshold->error_units},
+            {"bound", found.holds_at_least  ? "<= "
+                      : found.slips_at_most ? ">= "
+                                            : ""},
+            {"failed", found.failed},
+            {"runs", found.runs}};
+  });
+  if (answer.crash.empty()) return answer.value;
+  return {{"scene", scene.name}, {"solver", entry.info.name}, {"crashed", answer.crash}};
 }
 
 double end_error(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings,

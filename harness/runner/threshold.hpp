@@ -3,6 +3,7 @@
 
 #include "clothbench/scene.hpp"
 #include "clothbench/solver.hpp"
+#include "runner/again.hpp"
 
 namespace clothbench {
 
@@ -19,6 +20,11 @@ struct FoundThreshold {
 /// whole scene. A run that fails ends it: a cloth that blows up says nothing of friction. Throws Error if the scene's
 /// card has no threshold (see truth/card.hpp) or the solver cannot run it.
 FoundThreshold find_threshold(const Scene&, const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&);
+
+/// find_threshold as `clothbench threshold --json` tells it, a plugin's in a child: {scene, solver, exact, found,
+/// error, error_name, error_units, bound, failed, runs}, or {scene, solver, crashed}.
+nlohmann::json ask_threshold(Guard&, const Scene&, const SolverEntry&, const nlohmann::json& settings,
+                             const DeviceOptions&);
 
 /// |quantity - truth| over its scale (see truth/card.hpp) at the end of a run of the whole scene; NaN if the run fails.
 /// Throws Error if the scene has no card.

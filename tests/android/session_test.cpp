@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "clothbench/error.hpp"
-#include "runner/cell.hpp"
+#include "runner/interrupt.hpp"
 
 namespace clothbench::android {
 namespace {

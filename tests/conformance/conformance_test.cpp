@@ -12,7 +12,7 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
-#include "runner/frame_input.hpp"
+#include "runner/frame_loop.hpp"
 #include "runner/stage_check.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clothbench/record.hpp"
-#include "runner/frame_input.hpp"
+#include "runner/frame_loop.hpp"
 #include "runner/metamorphic.hpp"
 #include "runner/reference.hpp"
 #include "runner/threshold.hpp"
@@ -72,6 +72,39 @@ TEST(FrameInput, IsTheScenesAndEvenBeyondItsEnd) {
   EXPECT_EQ(frame_input(uneven, last).time_s, uneven.time.ends_s.back());
   EXPECT_EQ(frame_input(uneven, last + 2).dt_s, even.time.dt());
   EXPECT_EQ(frame_input(uneven, last + 2).time_s, uneven.time.ends_s.back() + 2 * even.time.dt());
+}
+
+TEST(FrameLoop, BeginsTheSceneAnewWithEveryDropAndStopsWhereItShould) {
+  const Scene s = load_scene("metamorphic/sheet");
+  std::vector<FrameInput> seen;
+  const auto indices = [&] {
+    std::vector<int> out;
+    for (const FrameInput& f : seen) out.push_back(f.index);
+    seen.clear();
+    return out;
+  };
+  const auto solver = load_solver(spy(seen), nlohmann::json::object(), {}, s);
+  FrameLoop drops(*solver, s, {.frames = 5, .drop_frames = 2});
+  while (drops.next()) {
+  }
+  EXPECT_EQ(indices(), (std::vector<int>{0, 1, 0, 1, 0}));
+  EXPECT_EQ(drops.index(), 4);
+  FrameLoop batches(*solver, s, {.frames = 5, .drop_frames = 2});
+  EXPECT_TRUE(batches.next_drop());
+  EXPECT_EQ(indices(), (std::vector<int>{0, 1}));
+  EXPECT_TRUE(batches.next_drop() && batches.next_drop());
+  EXPECT_EQ(batches.index(), 4) << "of a drop its first";
+  EXPECT_FALSE(batches.next_drop());
+  EXPECT_EQ(indices(), (std::vector<int>{0, 1, 0}));
+  FrameLoop timed(*solver, s, {.frames = 5, .max_wall_s = 1e-12, .min_frames = 3});
+  while (timed.next()) {
+  }
+  EXPECT_EQ(indices(), (std::vector<int>{0, 1, 2}));
+  FrameLoop fails(*solver, s, {.first = 2, .frames = 5});
+  EXPECT_FALSE(fails.next([](const FrameInput&) { return StepStatus::Diverged; }));
+  EXPECT_TRUE(fails.failed());
+  EXPECT_FALSE(fails.next()) << "nothing goes on from there";
+  EXPECT_EQ(fails.index(), 2);
 }
 
 TEST(UnevenFrames, ReachTheSolverInThresholds) {

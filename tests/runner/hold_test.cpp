@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "clothbench/record.hpp"
+#include "runner/interrupt.hpp"
 #include "runner/study_runner.hpp"
 #include "scenario/load.hpp"
 

@@ -12,6 +12,7 @@
 #include "report/across_runs.hpp"
 #include "report/stability.hpp"
 #include "results/store.hpp"
+#include "runner/stability_map.hpp"
 #include "runner/stability_study.hpp"
 #include "scenario/load.hpp"
 

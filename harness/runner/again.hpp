@@ -1,31 +1,32 @@
 #pragma once
-#include <sys/types.h>
-
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
-#include "cli/command.hpp"
-#include "runner/child.hpp"
+#include "base/child_process.hpp"
+#include "clothbench/solver.hpp"
 
 namespace clothbench {
 
-/// This command, started again as a child that a plugin may bring down: the same words, with `variable` = `value` in
-/// its environment and without output if `quiet`. Throws Error if it cannot be started.
-pid_t start_again(const Console&, const char* variable, const std::string& value, bool quiet);
+/// This command, run again in a child that a plugin may bring down: the same words after the program's name, with
+/// `variable`, "NAME=value", in its environment and without output if `quiet`. Ctrl-C is passed on to it.
+/// `stands_still`, asked about 50 times a second, says whether to kill it. Throws Error if it cannot be started.
+ChildEnd run_again(const std::vector<std::string>& words, const std::string& variable, bool quiet,
+                   const std::function<bool()>& stands_still);
+
+/// In such a child: whoever ends the parent means this process too, which may hang in a plugin.
+void end_with_parent();
 
 /// For how long a plugin may make no headway: $CLOTHBENCH_PLUGIN_LIMIT_S, or 900.
 double plugin_limit_s();
-
-/// Waits for the child's end and passes Ctrl-C on to it. `stands_still`, asked about 50 times a second, says whether to
-/// kill it.
-ChildEnd wait_for_end(pid_t, const std::function<bool()>& stands_still);
 
 /// What commands other than `run` and `study` ask of a solver. A plugin's part is done in a child, this command itself
 /// started again for that one call, so that a crash is an answer and what others have answered is kept.
 class Guard {
  public:
-  explicit Guard(const Console&);
+  /// `words` of the command, after the program's name; they outlive the guard.
+  explicit Guard(const std::vector<std::string>& words);
 
   struct Answer {
     nlohmann::json value;
@@ -45,7 +46,7 @@ class Guard {
   Answer ask_child(bool quiet);
   [[noreturn]] void answer_parent(const std::function<nlohmann::json()>& work) const;
 
-  const Console& console_;
+  const std::vector<std::string>& words_;
   int calls_ = 0;
   int wanted_ = -1;   ///< in a child: the call that it is there for
   std::string file_;  ///< and where its answer goes

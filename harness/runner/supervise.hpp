@@ -2,8 +2,9 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "cli/command.hpp"
+#include "clothbench/error.hpp"
 #include "runner/study_runner.hpp"
 
 namespace clothbench {
@@ -15,8 +16,10 @@ namespace clothbench {
 /// True if some cell's solver is a plugin and this process is not already such a child.
 bool needs_supervision(const CellPlan&);
 
-/// Runs this command in children until one comes to its end. Its output is the command's.
-void supervise(const CellPlan&, const std::filesystem::path& out, bool resume, Console&);
+/// Runs this command, `words` after the program's name, in children until one comes to its end. Its output and its exit
+/// code are the command's.
+ExitCode supervise(const CellPlan&, const std::filesystem::path& out, bool resume,
+                   const std::vector<std::string>& words);
 
 /// The child's side. Where it must write, and whether it goes on with what is there; empty in any other process.
 struct Supervised {

@@ -1,18 +1,15 @@
-#include "cli/supervise.hpp"
+#include "runner/supervise.hpp"
 
 #include <fmt/format.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <fstream>
 
 #include "base/json_text.hpp"
-#include "cli/again.hpp"
+#include "runner/again.hpp"
+#include "runner/cell_process.hpp"
 #include "runner/environment.hpp"
 #include "runner/material_card.hpp"
 
@@ -37,23 +34,20 @@ std::optional<Doing> doing_of(const CellPlan& plan, const std::string& note) {
   const std::string name = note.substr(0, note.find(": "));
   for (const auto& group : plan.groups)
     for (const CellSpec& c : group) {
-      CellHeader h;
-      h.scene = c.scene->name;
-      h.solver = c.entry->info.name;
-      h.setting = c.setting;
-      if (cell_name(h) == name) return Doing{c.entry, &c, c.setting};
-      const std::string card = fmt::format("{}__{}__", kMaterialCardScene, h.solver);
+      if (cell_name(c) == name) return Doing{c.entry, &c, c.setting};
+      const std::string card = fmt::format("{}__{}__", kMaterialCardScene, c.entry->info.name);
       if (name.starts_with(card)) return Doing{c.entry, nullptr, name.substr(card.size())};
     }
   return std::nullopt;
 }
 
-/// Waits for the child's end; kills it where a plugin's cell stands still.
-ChildEnd wait_for(pid_t pid, const CellPlan& plan, const fs::path& note) {
+/// This command in a child, which is killed where a plugin's cell stands still.
+ChildEnd run_watched(const std::vector<std::string>& words, const std::string& variable, const CellPlan& plan,
+                     const fs::path& note) {
   using Clock = std::chrono::steady_clock;
   std::string doing;
   auto since = Clock::now();
-  return wait_for_end(pid, [&] {
+  return run_again(words, variable, false, [&] {
     std::error_code ignored;
     std::string now = fs::exists(note, ignored) ? read_text(note.string()) : "";
     if (now != doing) {
@@ -74,20 +68,9 @@ void write_row(const Doing& at, const CellPlan& plan, const fs::path& out, const
   }
   const CellSpec& c = *at.cell;
   CellRecord r;
-  CellHeader& h = r.header;
-  h.scene = c.scene->name;
-  h.solver = c.entry->info.name;
-  h.setting = c.setting;
-  h.settings = c.settings;
-  h.scenario_json = c.scene->json;
-  h.scenario_sha256 = c.scene->sha256;
-  h.environment = describe_environment({}, plan.protocol);
-  h.vertices = static_cast<std::uint32_t>(c.scene->cloth.vertex_count());
-  for (const auto& t : triangles(c.scene->cloth)) h.triangles.insert(h.triangles.end(), t.begin(), t.end());
+  r.header = header_of(*c.scene, c.entry->info.name, c.setting, c.settings, plan.protocol);
   r.outcome = outcome;
-  std::error_code ignored;
-  fs::remove_all(out / (cell_name(h) + ".part"), ignored);  // its trials are those of a solver that crashes
-  CellWriter(out, h).finish(outcome, summarise(c, {}, r));
+  write_failed_cell(out, r.header, outcome, summarise(c, {}, r));
 }
 
 }  // namespace
@@ -100,7 +83,7 @@ bool needs_supervision(const CellPlan& plan) {
   return false;
 }
 
-void supervise(const CellPlan& plan, const fs::path& out, bool resume, Console& console) {
+ExitCode supervise(const CellPlan& plan, const fs::path& out, bool resume, const std::vector<std::string>& words) {
   const fs::path note = note_file(out);
   std::error_code ignored;
   fs::remove(note, ignored);
@@ -108,11 +91,9 @@ void supervise(const CellPlan& plan, const fs::path& out, bool resume, Console& 
   for (std::size_t children = 0; children <= 2 * plan.size(); ++children) {
     const bool again = resume || children > 0;
     const ChildEnd end =
-        wait_for(start_again(console, kVariable, (again ? "again:" : "new:") + out.string(), false), plan, note);
-    if (!fs::exists(note, ignored)) {  // it came to its end, good or bad
-      console.exit_code = static_cast<ExitCode>(end.how == ChildEnd::How::Exited ? end.code : 1);
-      return;
-    }
+        run_watched(words, fmt::format("{}={}:{}", kVariable, again ? "again" : "new", out.string()), plan, note);
+    if (!fs::exists(note, ignored))  // it came to its end, good or bad
+      return static_cast<ExitCode>(end.how == ChildEnd::How::Exited ? end.code : 1);
     const std::string doing = read_text(note.string());
     const std::optional<Doing> at = doing_of(plan, doing);
     fs::remove(note, ignored);
@@ -134,10 +115,7 @@ std::optional<Supervised> supervised() {
 }
 
 RunningNote::RunningNote(const std::optional<Supervised>& s) : file_(s ? note_file(s->out) : fs::path()) {
-#ifdef __linux__
-  // Whoever ends the parent means this process too, which may hang in a plugin.
-  if (s) prctl(PR_SET_PDEATHSIG, SIGKILL);
-#endif
+  if (s) end_with_parent();
   write("before the first cell");
 }
 

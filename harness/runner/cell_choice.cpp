@@ -1,4 +1,4 @@
-#include "cli/cell_choice.hpp"
+#include "runner/cell_choice.hpp"
 
 #include <fmt/format.h>
 
@@ -14,13 +14,7 @@ namespace clothbench {
 std::vector<std::string> cell_names(const CellPlan& plan) {
   std::vector<std::string> names;
   for (const auto& group : plan.groups)
-    for (const CellSpec& c : group) {
-      CellHeader h;
-      h.scene = c.scene->name;
-      h.solver = c.entry->info.name;
-      h.setting = c.setting;
-      names.push_back(cell_name(h));
-    }
+    for (const CellSpec& c : group) names.push_back(cell_name(c));
   return names;
 }
 

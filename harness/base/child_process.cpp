@@ -1,0 +1,151 @@
+#include "base/child_process.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <thread>
+
+#include "clothbench/error.hpp"
+
+extern char** environ;
+
+namespace clothbench {
+namespace {
+
+/// To `words`, then what `more` has.
+std::vector<char*> pointers(const std::vector<std::string>& words, char** more) {
+  std::vector<char*> out;
+  for (const std::string& word : words) out.push_back(const_cast<char*>(word.c_str()));
+  for (; more != nullptr && *more != nullptr; ++more) out.push_back(*more);
+  out.push_back(nullptr);
+  return out;
+}
+
+/// 0, or why it could not be started. `input`: descriptor for its standard input, -1 for this process's.
+int spawn(const std::vector<std::string>& argv, const ChildSetup& setup, int input, pid_t& pid) {
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  const auto open = [&](int descriptor, const std::string& file) {
+    posix_spawn_file_actions_addopen(&files, descriptor, file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0644);
+  };
+  if (input >= 0) posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
+  if (!setup.out.empty()) open(STDOUT_FILENO, setup.out);
+  if (!setup.err.empty() && setup.err == setup.out)
+    posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
+  else if (!setup.err.empty())
+    open(STDERR_FILENO, setup.err);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  if (setup.own_group) posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  // Of two of one name in an environment the first counts.
+  const int failed = posix_spawnp(&pid, argv[0].c_str(), &files, &attributes, pointers(argv, nullptr).data(),
+                                  pointers(setup.environment, environ).data());
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&files);
+  return failed;
+}
+
+}  // namespace
+
+std::string ChildEnd::text() const {
+  switch (how) {
+    case How::Exited:
+      return fmt::format("exit status {}", code);
+    case How::Signalled:
+      return fmt::format("signal {} ({})", code, strsignal(code));
+    case How::TimedOut:
+      return fmt::format("killed after {:.1f} s", wall_s);
+  }
+  return "";
+}
+
+ChildProcess::ChildProcess(const std::vector<std::string>& argv, const ChildSetup& setup) {
+  int ends[2] = {-1, -1};
+  // Closed in every other child: a hang-up is then this child's end and nobody else's.
+  int failed = setup.socket && socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0 ? errno : 0;
+  if (failed == 0) failed = spawn(argv, setup, ends[1], pid_);
+  socket_ = ends[0];
+  if (ends[1] >= 0) close(ends[1]);
+  if (failed == 0) return;
+  close_socket();
+  throw Error(argv[0] + ": cannot be started: " + std::strerror(failed), ExitCode::CheckFailed);
+}
+
+ChildProcess::~ChildProcess() {
+  using namespace std::chrono_literals;
+  close_socket();
+  const auto asked = std::chrono::steady_clock::now();
+  wait([&] { return std::chrono::steady_clock::now() - asked > 1s; }, 2ms);
+}
+
+bool ChildProcess::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(sent));
+  }
+  return true;
+}
+
+ChildProcess::Heard ChildProcess::read(char& byte, std::chrono::milliseconds patience) {
+  pollfd waiting{socket_, POLLIN, 0};
+  if (poll(&waiting, 1, static_cast<int>(patience.count())) <= 0) return Heard::Nothing;
+  const ssize_t got = recv(socket_, &byte, 1, 0);
+  if (got == 1) return Heard::Byte;
+  return got < 0 && errno == EINTR ? Heard::Nothing : Heard::End;
+}
+
+void ChildProcess::close_socket() {
+  if (socket_ >= 0) close(socket_);
+  socket_ = -1;
+}
+
+void ChildProcess::signal(int number) {
+  if (!end_) ::kill(pid_, number);
+}
+
+/// Whether it has ended; waits for that without WNOHANG.
+bool ChildProcess::ended(int options) {
+  if (end_) return true;
+  int status = 0;
+  pid_t found = -1;
+  while ((found = waitpid(pid_, &status, options)) < 0 && errno == EINTR) {
+  }
+  if (found == 0) return false;
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+  end_ = WIFSIGNALED(status) ? ChildEnd{ChildEnd::How::Signalled, WTERMSIG(status), wall_s}
+                             : ChildEnd{ChildEnd::How::Exited, WEXITSTATUS(status), wall_s};
+  return true;
+}
+
+ChildEnd ChildProcess::kill() {
+  signal(SIGKILL);
+  ended(0);
+  end_->how = ChildEnd::How::TimedOut;
+  end_->code = 0;
+  return *end_;
+}
+
+ChildEnd ChildProcess::wait() {
+  ended(0);
+  return *end_;
+}
+
+ChildEnd ChildProcess::wait(const std::function<bool()>& give_up, std::chrono::milliseconds look) {
+  while (!ended(WNOHANG)) {
+    if (give_up()) return kill();
+    std::this_thread::sleep_for(look);
+  }
+  return *end_;
+}
+
+}  // namespace clothbench

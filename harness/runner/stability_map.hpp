@@ -1,0 +1,22 @@
+#pragma once
+#include "runner/stability_study.hpp"
+
+namespace clothbench {
+
+/// With `resume`: throws Error naming the file if stored probes are of other scenes, definitions or versions of
+/// solvers.
+void require_same_maps(const Study&, const StabilityOptions&);
+
+/// The study's maps: for every row (y) and solver the values of x in order, then the boundary by bisection, for every
+/// seed. Each probe is a cell in such a process; its answer is appended to stability-probes.jsonl, and read back
+/// from there instead of run again with `resume`. Writes stability.json after every row:
+///   {maps: [{name, title, scene, good, headline, x: {label, unit}, y: {label, unit},
+///            theory: [{name, label, points: [[x, y]]}],
+///            solvers: [{solver, setting, on_gpu, unsupported, probes: [{x, y, seed, status, class, grade, frame,
+///            message}],
+///                       rows: [{y, seeds: [{last_good, first_bad}]}], largest, open}]}]}
+/// `largest` is the least over rows and seeds of `last_good`; `open` that no row turned at all; first_bad null = none
+/// is bad.
+StabilityCounts run_stability_maps(const Study&, const StabilityOptions&);
+
+}  // namespace clothbench

@@ -1,0 +1,56 @@
+#include "runner/study_plan.hpp"
+
+#include <memory>
+
+namespace clothbench {
+
+const char* protocol_name(StudyLength length) {
+  return length == StudyLength::Full ? "full" : length == StudyLength::Quick ? "quick" : "short";
+}
+
+const SolverEntry* known_solver(const std::string& name) {
+  for (const SolverEntry& e : solvers())
+    if (e.info.name == name) return &e;
+  return external_solver(name);
+}
+
+CellPlan plan_study(const Study& study) {
+  const StudyRules& rules = study.rules;
+  CellPlan plan;
+  plan.protocol = protocol_name(study.length);
+  plan.rules = {study.trials,
+                rules.frames,
+                rules.max_wall_s,
+                rules.min_frames,
+                rules.warmup_s,
+                study.drop_frames,
+                study.accuracy_duration_s,
+                study.cell_limit_s,
+                rules.ladder_limit_s,
+                rules.agree,
+                study.pipelined};
+  if (!study.stage_times) plan.rules.profiled_frames = 0;
+  plan.references = plan.material_cards = study.protocol == "work-precision";
+  std::vector<const SolverEntry*> entries;
+  for (const StudySolver& s : study.solvers)
+    entries.push_back(s.joined ? &find_solver(s.solver) : known_solver(s.solver));
+  for (const Study::Item& item : study.scenes) {
+    if (plan.groups.size() <= static_cast<std::size_t>(item.group))
+      plan.groups.resize(static_cast<std::size_t>(item.group) + 1);
+    for (const std::size_t k : item.solvers) {
+      const StudySolver& s = study.solvers[k];
+      if (entries[k] == nullptr) {
+        auto absent = std::make_shared<SolverEntry>();
+        absent->info.name = s.solver;
+        entries[k] = absent.get();
+        plan.not_built.push_back(std::move(absent));
+      }
+      const nlohmann::json settings = entries[k]->make ? complete_settings(entries[k]->info, s.settings) : s.settings;
+      plan.groups[static_cast<std::size_t>(item.group)].push_back({&item.scene, entries[k], settings, s.label, s.work});
+      plan.groups[static_cast<std::size_t>(item.group)].back().timed = item.timed;
+    }
+  }
+  return plan;
+}
+
+}  // namespace clothbench
