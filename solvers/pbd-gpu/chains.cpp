@@ -75,7 +75,7 @@ Chains::Chains(GpuSolver& solver, const Scene& scene, const ChainCloth& cloth, c
 /// As Lines::add_resident.
 void Chains::add_resident(const std::vector<vulkan::Binding>& bindings,
                           const std::vector<std::uint32_t>& specialization) {
-  const std::string wanted = solver_.settings()["device_barrier"];
+  const std::string wanted = solver_.tuning()["device_barrier"];
   if (!(wanted == "always" || (wanted == "auto" && solver_.vulkan_device().is_discrete()))) return;
   std::vector<ChainRange> ranges;
   for (const Family& f : families_) ranges.push_back({f.first_entry, f.entries / block_, f.rounds, 0});

@@ -1,5 +1,7 @@
 #include "gpu_solver.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -22,6 +24,18 @@ std::vector<float> inverse_masses(const Scene& scene) {
   for (std::uint32_t v : scene.pins.vertices) w[v] = 0;
   for (std::uint32_t v : scene.grips.vertices) w[v] = 0;
   return w;
+}
+
+void require_between(const char* solver, const nlohmann::json& settings, const char* key, double low, double high) {
+  if (const auto x = settings[key].get<double>(); !(x >= low && x <= high))
+    throw Error(fmt::format("solver {}: setting {}: expected {} to {}; found {}", solver, key, low, high, x));
+}
+
+void require_one_of(const char* solver, const nlohmann::json& settings, const char* key,
+                    const std::vector<nlohmann::json>& known) {
+  if (std::find(known.begin(), known.end(), settings[key]) == known.end())
+    throw Error(fmt::format("solver {}: setting {}: expected one of {}; found {}", solver, key,
+                            nlohmann::json(known).dump(), settings[key].dump()));
 }
 
 GpuSolver::GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)

@@ -76,6 +76,7 @@ class GpuSolver : public ClothSolver {
 
   const Scene& scene() const { return *scene_; }
   const nlohmann::json& settings() const { return settings_; }
+  const nlohmann::json& tuning() const { return settings_[kTuning]; }
   /// For this scene alone: a setting that it cannot be run with.
   void override_setting(const char* name, const nlohmann::json& value, const std::string& why) {
     if (settings_.at(name) == value) return;
@@ -178,6 +179,11 @@ class GpuSolver : public ClothSolver {
 
 /// Inverse masses [1/kg] of the scene's vertices at the start, 0 where pinned or gripped.
 std::vector<float> inverse_masses(const Scene&);
+
+/// Throw Error naming the setting unless it is from `low` to `high`, or one of `known`.
+void require_between(const char* solver, const nlohmann::json& settings, const char* key, double low, double high);
+void require_one_of(const char* solver, const nlohmann::json& settings, const char* key,
+                    const std::vector<nlohmann::json>& known);
 
 std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions&, bool count_bytes = false);
 std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions&, bool count_bytes = false);

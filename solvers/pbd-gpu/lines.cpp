@@ -83,15 +83,15 @@ Lines::Lines(GpuSolver& solver, const Scene& scene, const vulkan::Buffer& x, con
 }
 
 LineWish Lines::wish() const {
-  return {solver_.settings()["vertices_a_thread"].get<std::uint32_t>(),
-          solver_.settings()["threads_a_group"].get<std::uint32_t>(),
-          solver_.settings()["lines_beside"].get<std::uint32_t>()};
+  return {solver_.tuning()["vertices_a_thread"].get<std::uint32_t>(),
+          solver_.tuning()["threads_a_group"].get<std::uint32_t>(),
+          solver_.tuning()["lines_beside"].get<std::uint32_t>()};
 }
 
 LineDevice Lines::device() const {
   const vulkan::Device& d = solver_.vulkan_device();
   LineDevice line;
-  if (solver_.settings()["shuffles"].get<bool>()) line.subgroup = d.shuffled_lanes();
+  if (solver_.tuning()["shuffles"].get<bool>()) line.subgroup = d.shuffled_lanes();
   line.most_threads = std::min(d.limits().maxComputeWorkGroupInvocations, d.limits().maxComputeWorkGroupSize[0]);
   line.wide = d.is_discrete();
   line.shared_B =
@@ -179,7 +179,7 @@ void Lines::add_firmness() {
 
 /// False where the device does not run all workgroups at once, or nobody can tell.
 bool Lines::add_resident() {
-  const std::string wanted = solver_.settings()["device_barrier"];
+  const std::string wanted = solver_.tuning()["device_barrier"];
   const bool may = wanted == "always" || (wanted == "auto" && device().wide);
   if (!may || device().subgroup == 0) return false;
   const LineShape shape = pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), wish(), device());

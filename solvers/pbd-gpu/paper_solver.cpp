@@ -188,25 +188,6 @@ class Paper final : public GpuSolver {
   std::unique_ptr<PaperContact> contact_;
 };
 
-void check_settings(const nlohmann::json& s) {
-  const auto one_of = [&](const char* key, const char* a, const char* b) {
-    if (s[key] != a && s[key] != b)
-      throw Error(std::string("solver paper: setting ") + key + ": expected \"" + a + "\" or \"" + b + "\"; found " +
-                  s[key].dump());
-  };
-  one_of("readback", "none", "blocking");
-  one_of("atomics", "cas", "native");
-  if (!(s["iterations"].get<double>() >= 1 && s["iterations"].get<double>() <= 100000))
-    throw Error("solver paper: setting iterations: expected 1 to 100000; found " + s["iterations"].dump());
-  if (!(s["substeps"].get<double>() >= 1 && s["substeps"].get<double>() <= 4096))
-    throw Error("solver paper: setting substeps: expected 1 to 4096; found " + s["substeps"].dump());
-  if (!(s["stiffness"].get<double>() >= 0 && s["stiffness"].get<double>() <= 1))
-    throw Error("solver paper: setting stiffness: expected 0 to 1; found " + s["stiffness"].dump());
-  for (const char* key : {"mesh_depth_m", "hand_depth_m"})
-    if (!(s[key].get<double>() >= 0 && s[key].get<double>() <= 1000))
-      throw Error(std::string("solver paper: setting ") + key + ": expected 0 to 1000; found " + s[key].dump());
-}
-
 }  // namespace
 
 SolverInfo paper_info() {
@@ -237,7 +218,12 @@ SolverInfo paper_info() {
 }
 
 std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes) {
-  check_settings(settings);
+  require_one_of("paper", settings, "readback", {"none", "blocking"});
+  require_one_of("paper", settings, "atomics", {"cas", "native"});
+  require_between("paper", settings, "iterations", 1, 100000);
+  require_between("paper", settings, "substeps", 1, 4096);
+  require_between("paper", settings, "stiffness", 0, 1);
+  for (const char* key : {"mesh_depth_m", "hand_depth_m"}) require_between("paper", settings, key, 0, 1000);
   return std::make_unique<Paper>(paper_info(), settings, device, count_bytes);
 }
 

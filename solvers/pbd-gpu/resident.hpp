@@ -45,7 +45,7 @@ bool runs_at_once(const std::shared_ptr<vulkan::Device>& device, const Shader& s
   std::uint32_t failed = 0;
   std::memcpy(&failed, missed.mapped(), 4);
   if (failed != 0 && must)
-    throw Error("solver xpbd: setting device_barrier=always: this device does not run " +
+    throw Error("solver xpbd: setting tuning.device_barrier=always: this device does not run " +
                 std::to_string(groups.x * groups.y) + " workgroups of " + std::to_string(threads) + " at once");
   return failed == 0;
 }

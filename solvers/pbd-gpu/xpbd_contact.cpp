@@ -295,9 +295,9 @@ void XpbdContact::add_kernels() {
 /// waiting for the last.
 std::uint32_t XpbdContact::lanes() const {
   const vulkan::Device& d = solver_.vulkan_device();
-  const auto wish = solver_.settings()["contact_lanes"].get<std::uint32_t>();
+  const auto wish = solver_.tuning()["contact_lanes"].get<std::uint32_t>();
   const std::uint32_t most =
-      solver_.count_bytes_ || !solver_.settings()["shuffles"].get<bool>() ? 1 : std::max(1u, d.shuffled_lanes());
+      solver_.count_bytes_ || !solver_.tuning()["shuffles"].get<bool>() ? 1 : std::max(1u, d.shuffled_lanes());
   if (wish != 0) return std::min(wish, most);
   if (!d.is_discrete()) return 1;
   constexpr std::uint32_t kMeshLanes = 16, kShapeLanes = 8;

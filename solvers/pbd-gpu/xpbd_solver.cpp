@@ -164,11 +164,13 @@ SolverInfo xpbd_info() {
       {"batch", "1", "as many copies of the cloth in one dispatch (metrics are of the first): throughput"},
       {"contact_samples", "-1",
        "points on each edge that take part in contact beside its two vertices, 0 to 16; -1: as colliders ask"},
-      {"contact_lanes", "0",
-       "threads that look round for one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
       {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
       {"one_dispatch", "true",
        "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
+      {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+  info.tuning = {
+      {"contact_lanes", "0",
+       "threads that look round for one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
       {"device_barrier", "\"auto\"",
        "one dispatch of many workgroups that wait for one another: auto (discrete GPUs that run them all at once), "
        "always, never"},
@@ -177,39 +179,21 @@ SolverInfo xpbd_info() {
       {"threads_a_group", "0", "of one family's workgroups: 32 to 1024; 0: by line and device"},
       {"lines_beside", "0",
        "neighbouring lines whose threads take turns, so that memory is read by whole sectors: 1, 2 or 4; 0: by line "
-       "and device"},
-      {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+       "and device"}};
   return info;
 }
 
 std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes) {
-  if (!(settings["substeps"].get<double>() >= 0 && settings["substeps"].get<double>() <= 4096))
-    throw Error("solver xpbd: setting substeps: expected 1 to 4096, or 0; found " + settings["substeps"].dump());
-  const nlohmann::json& quality = settings["quality"];
-  if (quality != "fast" && quality != "default" && quality != "accurate")
-    throw Error("solver xpbd: setting quality: expected fast, default or accurate; found " + quality.dump());
-  const double vertices = settings["vertices_a_thread"].get<double>();
-  if (vertices != 0 && vertices != 2 && vertices != 4 && vertices != 8 && vertices != 16 && vertices != 32)
-    throw Error("solver xpbd: setting vertices_a_thread: expected 0, 2, 4, 8, 16 or 32; found " +
-                settings["vertices_a_thread"].dump());
-  if (!(settings["batch"].get<double>() >= 1 && settings["batch"].get<double>() <= 262144))
-    throw Error("solver xpbd: setting batch: expected 1 to 262144; found " + settings["batch"].dump());
-  const double threads = settings["threads_a_group"].get<double>();
-  if (threads != 0 && !(threads >= 32 && threads <= 1024 && std::exp2(std::round(std::log2(threads))) == threads))
-    throw Error("solver xpbd: setting threads_a_group: expected 0 or a power of two from 32 to 1024; found " +
-                settings["threads_a_group"].dump());
-  const nlohmann::json& barrier = settings["device_barrier"];
-  if (barrier != "auto" && barrier != "always" && barrier != "never")
-    throw Error("solver xpbd: setting device_barrier: expected auto, always or never; found " + barrier.dump());
-  if (!(settings["iterations"].get<double>() >= 1 && settings["iterations"].get<double>() <= 4096))
-    throw Error("solver xpbd: setting iterations: expected 1 to 4096; found " + settings["iterations"].dump());
-  if (!(settings["contact_samples"].get<double>() >= -1 && settings["contact_samples"].get<double>() <= 16))
-    throw Error("solver xpbd: setting contact_samples: expected 0 to 16, or -1; found " +
-                settings["contact_samples"].dump());
-  const double lanes = settings["contact_lanes"].get<double>();
-  if (lanes != 0 && lanes != 1 && lanes != 2 && lanes != 4 && lanes != 8 && lanes != 16)
-    throw Error("solver xpbd: setting contact_lanes: expected 0, 1, 2, 4, 8 or 16; found " +
-                settings["contact_lanes"].dump());
+  require_between("xpbd", settings, "substeps", 0, 4096);
+  require_one_of("xpbd", settings, "quality", {"fast", "default", "accurate"});
+  require_between("xpbd", settings, "batch", 1, 262144);
+  require_between("xpbd", settings, "iterations", 1, 4096);
+  require_between("xpbd", settings, "contact_samples", -1, 16);
+  const nlohmann::json& tuning = settings[kTuning];
+  require_one_of("xpbd", tuning, "vertices_a_thread", {0, 2, 4, 8, 16, 32});
+  require_one_of("xpbd", tuning, "threads_a_group", {0, 32, 64, 128, 256, 512, 1024});
+  require_one_of("xpbd", tuning, "device_barrier", {"auto", "always", "never"});
+  require_one_of("xpbd", tuning, "contact_lanes", {0, 1, 2, 4, 8, 16});
   return std::make_unique<Xpbd>(xpbd_info(), settings, device, count_bytes);
 }
 

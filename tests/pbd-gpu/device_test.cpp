@@ -151,7 +151,8 @@ TEST_F(Gpu, BadSettingsAreRefused) {
     for (int substeps : {-3, 5000}) EXPECT_THROW(make(solver, {{"substeps", substeps}}), Error);
   EXPECT_THROW(make("paper", {{"substeps", 0}}), Error);
   EXPECT_THROW(make("xpbd", {{"quality", "best"}}), Error);
-  for (int vertices : {-1, 1, 3, 64}) EXPECT_THROW(make("xpbd", {{"vertices_a_thread", vertices}}), Error);
+  for (int vertices : {-1, 1, 3, 64})
+    EXPECT_THROW(make("xpbd", {{"tuning", {{"vertices_a_thread", vertices}}}}), Error);
   for (int iterations : {0, 5000}) EXPECT_THROW(make("xpbd", {{"iterations", iterations}}), Error);
 }
 
