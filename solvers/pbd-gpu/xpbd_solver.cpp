@@ -48,25 +48,25 @@ class Xpbd final : public GpuSolver {
       position.push_back(position[i - one]);
       velocity.push_back(velocity[i - one]);
     }
-    x_ = &add_vec4_buffer("positions", position);
-    v_ = &add_vec4_buffer("velocities", velocity);
-    rx_ = &add_buffer("position rests", x_->bytes());
-    rv_ = &add_buffer("velocity rests", v_->bytes());
-    set_state(*x_, *v_, origin);
+    const vulkan::Buffer& x = add_buffer(BIND_POSITIONS, "positions", position);
+    const vulkan::Buffer& v = add_buffer(BIND_VELOCITIES, "velocities", velocity);
+    add_buffer(BIND_POSITION_RESTS, "position rests", x.bytes());
+    add_buffer(BIND_VELOCITY_RESTS, "velocity rests", v.bytes());
+    set_state(x, v, origin);
     add_colliders(origin, true);
     add_grips(origin, 1);
     if (chained)
-      chains_ = std::make_unique<Chains>(*this, scene(), cloth, *x_, *v_, *rx_, *rv_);
+      chains_ = std::make_unique<Chains>(frame(), scene(), cloth);
     else
-      lines_ = std::make_unique<Lines>(*this, scene(), *x_, *v_, *rx_, *rv_);
-    if (grips() != nullptr && !(lines_ && lines_->moves_grips())) move_grips_ = &grips()->add_kernel(*x_, *v_);
+      lines_ = std::make_unique<Lines>(frame(), scene());
+    if (grips() != nullptr && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
     if ((scene().needs & kColliderFeatures).empty())
       leave_out("contact", "the scene has no collider");
     else
-      contact_ = std::make_unique<XpbdContact>(*this, scene(), origin, *colliders(), *x_, *v_,
+      contact_ = std::make_unique<XpbdContact>(frame(), scene(), origin, *colliders(),
                                                settings()["contact_samples"].get<int>());
     if (scene().needs.has(Feature::SelfCollision))
-      self_contact_ = std::make_unique<XpbdSelfContact>(*this, scene(), *x_, *v_);
+      self_contact_ = std::make_unique<XpbdSelfContact>(frame(), scene(), x);
     else
       leave_out("self-contact", "the cloth of the scene does not touch itself");
   }
@@ -137,8 +137,7 @@ class Xpbd final : public GpuSolver {
   std::unique_ptr<Chains> chains_;  ///< if links are not all alike
   std::unique_ptr<XpbdContact> contact_;
   std::unique_ptr<XpbdSelfContact> self_contact_;
-  vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *rx_ = nullptr, *rv_ = nullptr;
-  const vulkan::Kernel* move_grips_ = nullptr;
+  const FrameKernel* move_grips_ = nullptr;
 };
 
 }  // namespace
