@@ -16,7 +16,7 @@ layout(std430, binding = BIND_CHAIN_ENTRIES) readonly buffer Entries { ChainEntr
 layout(std430, binding = BIND_TETHER_ENDS) readonly buffer TetherEnds { TetherEnd tether_ends[]; };  // TETHERS a vertex
 layout(std430, binding = BIND_CHAIN_FAMILIES) readonly buffer Ranges { ChainRange ranges[]; };
 layout(push_constant) uniform Push { ChainConstants p; };
-#include "sums.glsl"
+#include "substep.glsl"
 #include "device_barrier.glsl"
 
 vec3 pos, vel, rest_pos, rest_vel;
@@ -40,24 +40,16 @@ void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
   above = thread + n < THREADS ? letters[here + thread + n] : vec4(0.0);
 }
 
-/// As in lines_integrate.glsl; pinned vertices are never written, so reading them here races with nothing.
+/// Pinned vertices are never written, so reading them here races with nothing.
 void integrate(uint i) {
-  vec3 sum, gain = p.gravity_h.xyz;
-  if ((FEATURES & LINES_LIMIT_SPEED) != 0u) {
-    float square = dot(vel, vel);
-    if (square > p.speed_limit * p.speed_limit) vel *= p.speed_limit * inversesqrt(square);
-  }
-  if ((FEATURES & LINES_DAMPING) != 0u) gain -= p.loss * vel;
-  two_sum(vel, gain + rest_vel, sum, rest_vel);
-  vel = sum;
-  two_sum(pos, p.h * sum + rest_pos, sum, rest_pos);
-  pos = sum;
+  vel = limited(vel);
+  fall(pos, vel, rest_pos, rest_vel);
   for (uint t = 0u; t < TETHERS; ++t) {
     COUNT_READ(24u)
     TetherEnd end = tether_ends[TETHERS * i + t];
-    vec3 e = pos - x[end.to].xyz;
-    float square = dot(e, e);
-    if (end.reach >= 0.0 && square > end.reach * end.reach) move(e * (end.reach * inversesqrt(square) - 1.0));
+    if (end.reach < 0.0) continue;
+    vec3 back = tethered(pos, x[end.to].xyz, end.reach);
+    if (back != vec3(0.0)) move(back);
   }
 }
 
