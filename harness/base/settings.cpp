@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <set>
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
@@ -32,7 +34,18 @@ const char* kind(const json& v) {
   return v.is_number_integer() ? "an integer"
          : v.is_number()       ? "a number"
          : v.is_boolean()      ? "true or false"
+         : v.is_object()       ? "an object"
                                : "a string";
+}
+
+/// Once a process and solver: what is stored is read again and again.
+void tell_moved(const std::string& solver, const std::string& names) {
+  static std::mutex mutex;
+  static std::set<std::string> told;
+  const std::lock_guard lock(mutex);
+  if (told.insert(solver).second)
+    fmt::print(stderr, "notice: solver {}: {}: now in the setting \"{}\", as {}.<name> on the command line\n", solver,
+               names, kTuning, kTuning);
 }
 
 bool fits(const json& given, const json& standard) {
@@ -54,24 +67,50 @@ std::string nearest(const std::string& word, const std::vector<std::string>& kno
   return best;
 }
 
+json flat_settings(json settings) {
+  if (!settings.is_object()) return settings;
+  const json tuning = settings.value(kTuning, json());
+  if (!tuning.is_object()) return settings;
+  settings.erase(kTuning);
+  settings.update(tuning);
+  return settings;
+}
+
 json complete_settings(const SolverInfo& info, const json& given) {
-  json all = json::object();
+  json all = json::object(), tuning = json::object(), seen = json::object();
   std::vector<std::string> names;
   for (const SettingSpec& s : info.settings) {
     all[s.name] = json::parse(s.default_json);
     names.push_back(s.name);
   }
-  for (const auto& [key, value] : given.items()) {
-    if (!all.contains(key)) {
-      const std::string near = nearest(key, names);
-      throw Error(fmt::format("solver {}: no setting \"{}\"{}", info.name, key,
+  for (const SettingSpec& s : info.tuning) {
+    tuning[s.name] = json::parse(s.default_json);
+    names.push_back(fmt::format("{}.{}", kTuning, s.name));
+  }
+  if (!tuning.empty()) all[kTuning] = json::object();
+  const auto put = [&](json& of, const std::string& key, const json& value, const std::string& path) {
+    if (!of.contains(key)) {
+      const std::string near = nearest(path, names);
+      throw Error(fmt::format("solver {}: no setting \"{}\"{}", info.name, path,
                               near.empty() ? names.empty() ? "; it has none" : "" : "; nearest known: " + near));
     }
-    if (!fits(value, all[key]))
+    if (!fits(value, of[key]))
       throw Error(
-          fmt::format("solver {}: setting {}: expected {}; found {}", info.name, key, kind(all[key]), value.dump()));
-    all[key] = value;
+          fmt::format("solver {}: setting {}: expected {}; found {}", info.name, path, kind(of[key]), value.dump()));
+    if (seen.emplace(key, value).first.value() != value)
+      throw Error(fmt::format("solver {}: setting {}: given twice, and not alike", info.name, path));
+    of[key] = value;
+  };
+  std::string moved;
+  for (const auto& [key, value] : given.items()) {
+    const bool was_here = tuning.contains(key);
+    if (was_here) moved += (moved.empty() ? "" : ", ") + key;
+    put(was_here ? tuning : all, key, value, key);
+    if (key != kTuning) continue;
+    for (const auto& [member, own] : value.items()) put(tuning, member, own, fmt::format("{}.{}", key, member));
   }
+  if (!moved.empty()) tell_moved(info.name, moved);
+  if (!tuning.empty()) all[kTuning] = std::move(tuning);
   return all;
 }
 

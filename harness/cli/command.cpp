@@ -41,14 +41,19 @@ Overrides split_overrides(const std::vector<std::string>& set) {
     if (eq == std::string::npos) throw Error("--set " + item + ": expected solver.<name>=<value>");
     const std::string key = item.substr(prefix.size(), eq - prefix.size()), text = item.substr(eq + 1);
     nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
-    out.solver[key] = value.is_discarded() ? nlohmann::json(text) : value;
+    if (value.is_discarded()) value = text;
+    if (const std::string tuning = std::string(kTuning) + "."; key.starts_with(tuning))
+      out.solver[kTuning].update({{key.substr(tuning.size()), value}});
+    else
+      out.solver[key] = value;
   }
   return out;
 }
 
 std::string Overrides::label() const {
   std::string text;
-  for (const auto& [key, value] : solver.items())
+  const nlohmann::json flat = flat_settings(solver);
+  for (const auto& [key, value] : flat.items())
     text += (text.empty() ? "" : ",") + key + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
   return text.empty() ? "default" : text;
 }

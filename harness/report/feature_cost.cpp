@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "base/json_number.hpp"
+#include "clothbench/solver.hpp"
 #include "report/bytes.hpp"
 #include "report/grid.hpp"
 #include "report/trajectories.hpp"
@@ -87,7 +88,7 @@ std::vector<FeatureCost> feature_costs(const std::vector<CellRecord>& cells) {
     for (const CellRecord& n : cells) {
       const bool same = n.header.scene == c.header.scene && n.header.solver == c.header.solver &&
                         folder(n) == folder(c) && n.header.setting == plain_setting(c.header.setting) &&
-                        n.header.settings == c.header.settings && &n != &c;
+                        flat_settings(n.header.settings) == flat_settings(c.header.settings) && &n != &c;
       if (!same || n.outcome.status == "missing" || c.outcome.status == "missing") continue;
       FeatureCost f{&n, &c, scenario["irrelevant"].get<std::vector<std::string>>()};
       if (measured(f)) f.moved = trajectories_apart(n, c).max_m / longer_side(scenario);

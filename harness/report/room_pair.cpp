@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/json_number.hpp"
+#include "clothbench/solver.hpp"
 #include "report/bytes.hpp"
 #include "report/grid.hpp"
 #include "report/trajectories.hpp"
@@ -81,7 +82,7 @@ std::vector<RoomPair> room_pairs(const std::vector<CellRecord>& cells) {
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const bool same = parts[k].room && !parts[k].whole && parts[k].rest == parts[w].rest &&
                         cells[k].outcome.status != "missing" && cells[k].header.solver == cells[w].header.solver &&
-                        cells[k].header.settings == cells[w].header.settings;
+                        flat_settings(cells[k].header.settings) == flat_settings(cells[w].header.settings);
       if (!same) continue;
       out.push_back({&cells[k], &cells[w]});
       measure(out.back());

@@ -9,6 +9,7 @@
 #include "base/files.hpp"
 #include "base/json_number.hpp"
 #include "clothbench/error.hpp"
+#include "clothbench/solver.hpp"
 #include "results/device_samples.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/raw_file.hpp"
@@ -86,7 +87,8 @@ CellWriter::CellWriter(fs::path dir, CellHeader header, Finish finish)
   if (ec) throw Error(part.string() + ": cannot be created: " + ec.message(), ExitCode::CheckFailed);
   if (fs::exists(file)) {
     const CellHeader before = header_from_json(read_raw(file).header.at("cell"));
-    if (before.scenario_sha256 != header_.scenario_sha256 || before.settings != header_.settings)
+    if (before.scenario_sha256 != header_.scenario_sha256 ||
+        flat_settings(before.settings) != flat_settings(header_.settings))
       throw Error(fmt::format(
           "{}: holds trials of another run (scene {} settings {}; now scene {} settings {}); give another --out",
           part.string(), before.scenario_sha256.substr(0, 12), before.settings.dump(),

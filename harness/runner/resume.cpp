@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "clothbench/error.hpp"
@@ -19,9 +20,9 @@ constexpr const char* kWhatToDo = "results of both would be mixed; give another 
 /// Where a solver is known both are completed: a process that crashed has stored settings as they were given.
 bool same_settings(const PlannedCell& cell, const json& stored) {
   if (cell.solver == nullptr) {
-    for (const auto& [key, value] : cell.settings.items())
-      if (!stored.contains(key) || stored[key] != value) return false;
-    return true;
+    const json given = flat_settings(cell.settings), all = flat_settings(stored);
+    return std::all_of(given.items().begin(), given.items().end(),
+                       [&](const auto& s) { return all.contains(s.key()) && all[s.key()] == s.value(); });
   }
   try {
     return complete_settings(*cell.solver, cell.settings) == complete_settings(*cell.solver, stored);

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "chain_plan.hpp"
-#include "gpu_solver.hpp"
+#include "frame_builder.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -11,13 +11,12 @@ namespace clothbench::pbd_gpu {
 /// iteration a substep, no bending.
 class Chains {
  public:
-  /// Adds its stages, buffers and kernels; buffers as Lines has them.
-  Chains(GpuSolver& solver, const Scene& scene, const ChainCloth& cloth, const vulkan::Buffer& x,
-         const vulkan::Buffer& v, const vulkan::Buffer& rx, const vulkan::Buffer& rv);
+  /// Adds its stages, buffers and kernels; those of the state are there.
+  Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth);
 
   /// `count` of `substeps` of a frame of dt_s.
   void record(int count, int substeps, double dt_s);
-  bool whole_frame() const { return resident_ != nullptr && scene_.grips.vertices.empty(); }
+  bool whole_frame() const { return resident_ && scene_.grips.vertices.empty(); }
 
  private:
   struct Family {
@@ -25,18 +24,17 @@ class Chains {
     double vertices, free;  ///< on its chains, or all of the first family's
   };
   void count_vertices();
-  void add_resident(const std::vector<vulkan::Binding>& bindings, const std::vector<std::uint32_t>& specialization);
   Traffic traffic(std::size_t family) const;
   vulkan::Groups all_groups() const;
 
-  GpuSolver& solver_;
+  FrameBuilder& frame_;
   const Scene& scene_;
   const std::uint32_t block_;
   std::uint32_t tethers_ = 0;
   std::vector<Family> families_;
   std::vector<ChainEntry> entries_;
-  int stage_ = -1;
-  const vulkan::Kernel *kernel_ = nullptr, *weld_ = nullptr, *resident_ = nullptr;
+  bool resident_ = false;
+  const FrameKernel *kernel_ = nullptr, *weld_ = nullptr;
   std::uint32_t welds_ = 0;
 };
 

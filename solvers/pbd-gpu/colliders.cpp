@@ -5,12 +5,10 @@
 #include <cstring>
 
 #include "clothbench/error.hpp"
-#include "gpu_solver.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
 
-using vulkan::Access;
 using vulkan::Buffer;
 
 template <class T>
@@ -29,19 +27,19 @@ vec4 direction(const Vec3& d, double w) {
 
 }  // namespace
 
-ColliderBuffers::ColliderBuffers(GpuSolver& solver, const Scene& scene, Vec3 origin_m, bool keep_start)
-    : solver_(solver), scene_(scene), origin_m_(origin_m), keep_start_(keep_start) {
+ColliderBuffers::ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, bool keep_start)
+    : frame_(frame), scene_(scene), origin_m_(origin_m), keep_start_(keep_start) {
   const auto number = [](double v) { return static_cast<float>(v); };
-  planes = add_shapes<PlaneShape>(Collider::Shape::Plane, "collider planes", [&](const Collider& c) {
+  planes = add_shapes<PlaneShape>(Collider::Shape::Plane, BIND_PLANES, "collider planes", [&](const Collider& c) {
     double offset = 0;
     for (std::size_t k = 0; k < 3; ++k) offset += c.normal[k] * (c.center_m[k] - origin_m_[k]);
     return PlaneShape{direction(c.normal, offset), number(c.margin_m), number(c.friction), 0, 0};
   });
-  spheres = add_shapes<SphereShape>(Collider::Shape::Sphere, "collider spheres", [&](const Collider& c) {
+  spheres = add_shapes<SphereShape>(Collider::Shape::Sphere, BIND_SPHERES, "collider spheres", [&](const Collider& c) {
     return SphereShape{relative(c.center_m, origin_m_, 0), number(c.radius_m), number(c.margin_m), number(c.friction),
                        0};
   });
-  boxes = add_shapes<BoxShape>(Collider::Shape::Box, "collider boxes", [&](const Collider& c) {
+  boxes = add_shapes<BoxShape>(Collider::Shape::Box, BIND_BOXES, "collider boxes", [&](const Collider& c) {
     return BoxShape{relative(c.center_m, origin_m_, 0),
                     direction(c.axes[0], c.half_extent_m[0]),
                     direction(c.axes[1], c.half_extent_m[1]),
@@ -55,7 +53,7 @@ ColliderBuffers::ColliderBuffers(GpuSolver& solver, const Scene& scene, Vec3 ori
   const FeatureSet moving_kinds = scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh};
   if (moving_kinds.empty()) return;
   at_ = scene.motion.at(0);
-  stage_upload_ = solver_.add_stage("UploadColliders", moving_kinds);
+  stage_upload_ = frame_.add_stage("UploadColliders", moving_kinds);
   if (moving_kinds.has(Feature::Capsules)) add_capsules();
   if (moving_kinds.has(Feature::MovingMesh)) {
     moving = add_meshes("moving collider mesh", true);
@@ -64,7 +62,7 @@ ColliderBuffers::ColliderBuffers(GpuSolver& solver, const Scene& scene, Vec3 ori
 }
 
 template <class Shape, class Fill>
-ShapeBuffer ColliderBuffers::add_shapes(Collider::Shape kind, const char* name, Fill fill) {
+ShapeBuffer ColliderBuffers::add_shapes(Collider::Shape kind, int binding, const char* name, Fill fill) {
   std::vector<Shape> shapes;
   ShapeBuffer result;
   for (const Collider& c : scene_.colliders)
@@ -74,11 +72,11 @@ ShapeBuffer ColliderBuffers::add_shapes(Collider::Shape kind, const char* name, 
     }
   if (shapes.empty()) return result;
   result.count = static_cast<std::uint32_t>(shapes.size());
-  result.buffer = &solver_.add_buffer(name, shapes.size() * sizeof(Shape), bytes_of(shapes));
+  result.buffer = &frame_.add_buffer(binding, name, shapes);
   return result;
 }
 
-MeshBuffers ColliderBuffers::add_meshes(const char* kind, bool moving_ones) {
+MeshBuffers ColliderBuffers::add_meshes(const std::string& kind, bool moving_ones) {
   MeshBuffers result;
   std::vector<vec4> positions;
   std::vector<uvec4> triangles;
@@ -97,13 +95,10 @@ MeshBuffers ColliderBuffers::add_meshes(const char* kind, bool moving_ones) {
                              static_cast<float>(c.friction)});
   }
   if (result.ranges.empty()) return result;
-  const std::string name = kind;
-  result.positions = &solver_.add_buffer(name + " positions", positions.size() * sizeof(vec4), bytes_of(positions));
+  result.positions = &frame_.add_buffer(moving_ones ? BIND_MOVING_END : BIND_STANDING, kind + " positions", positions);
   if (moving_ones && keep_start_)
-    result.start_positions =
-        &solver_.add_buffer(name + " start positions", positions.size() * sizeof(vec4), bytes_of(positions));
-  if (!keep_start_)
-    result.triangles = &solver_.add_buffer(name + " triangles", triangles.size() * sizeof(uvec4), bytes_of(triangles));
+    result.start_positions = &frame_.add_buffer(BIND_MOVING_START, kind + " start positions", positions);
+  if (!keep_start_) result.triangles = &frame_.add_buffer(FrameBuilder::kUnbound, kind + " triangles", triangles);
   return result;
 }
 
@@ -135,9 +130,8 @@ void ColliderBuffers::add_capsules() {
   capsules.count = static_cast<std::uint32_t>(all.size()) - 1;
   for (const Collider& c : scene_.colliders)
     capsules.friction |= c.shape == Collider::Shape::Capsules && c.friction > 0;
-  const std::uint64_t bytes = all.size() * sizeof(CapsuleShape);
-  capsules.buffer = &solver_.add_buffer("collider capsules", bytes, bytes_of(all));
-  capsules_host_ = &solver_.add_host_buffer("collider capsules (upload)", bytes);
+  capsules.buffer = &frame_.add_buffer(BIND_CAPSULES, "collider capsules", all);
+  capsules_host_ = &frame_.add_host_buffer("collider capsules (upload)", capsules.buffer->bytes());
 }
 
 /// The translations carry the shift of origin, so that skinned positions come out relative to it: weights sum to 1.
@@ -167,25 +161,21 @@ void ColliderBuffers::add_skinning(bool keep_start) {
     first_joint += static_cast<std::uint32_t>(mesh.joint_count);
   }
   skinned_vertices_ = static_cast<std::uint32_t>(vertices.size());
-  const Buffer& rest = solver_.add_buffer("collider skin", vertices.size() * sizeof(SkinVertex), bytes_of(vertices));
+  frame_.add_buffer(BIND_SKIN, "collider skin", vertices);
   const std::uint64_t bytes = first_joint * sizeof(JointMatrix);
-  joints_ = &solver_.add_buffer("collider joints", bytes);
-  joints_host_ = &solver_.add_host_buffer("collider joints (upload)", bytes);
-  stage_skin_ = solver_.add_stage("SkinHand", {Feature::MovingMesh});
-  std::vector<vulkan::Binding> bindings = {{&rest, Access::Read}, {joints_, Access::Read}};
-  bindings.push_back({moving.positions, keep_start ? Access::ReadWrite : Access::Write});
-  if (keep_start) bindings.push_back({moving.start_positions, Access::Write});
-  skin_ = &solver_.add_kernel(stage_skin_, keep_start ? shaders::kSkinMeshKeepStart : shaders::kSkinMesh,
-                              std::move(bindings), sizeof(SkinConstants));
+  joints_ = &frame_.add_buffer(BIND_JOINTS, "collider joints", bytes);
+  joints_host_ = &frame_.add_host_buffer("collider joints (upload)", bytes);
+  stage_skin_ = frame_.add_stage("SkinHand", {Feature::MovingMesh});
+  skin_ = frame_.add_kernel(stage_skin_, keep_start ? "skin_mesh_keep_start" : "skin_mesh", sizeof(SkinConstants));
 }
 
 void ColliderBuffers::record() {
-  if (capsules_host_ != nullptr) solver_.copy(stage_upload_, *capsules_host_, *capsules.buffer);
+  if (capsules_host_ != nullptr) frame_.copy(stage_upload_, *capsules_host_, *capsules.buffer);
   if (joints_host_ == nullptr) return;
-  solver_.copy(stage_upload_, *joints_host_, *joints_);
+  frame_.copy(stage_upload_, *joints_host_, *joints_);
   const double n = skinned_vertices_, start = keep_start_ ? 16 : 0;
-  solver_.dispatch(stage_skin_, *skin_, skinned_vertices_, SkinConstants{skinned_vertices_},
-                   {n * (sizeof(SkinVertex) + 4 * sizeof(JointMatrix) + start), n * (16 + start)});
+  frame_.dispatch(*skin_, skinned_vertices_, SkinConstants{skinned_vertices_},
+                  {n * (sizeof(SkinVertex) + 4 * sizeof(JointMatrix) + start), n * (16 + start)});
 }
 
 void ColliderBuffers::reset() {
@@ -196,32 +186,31 @@ void ColliderBuffers::write(const FrameMotion* end) {
   if (stage_upload_ < 0) return;
   const FrameMotion& to = end != nullptr ? *end : at_;
   if (to.colliders.size() != scene_.colliders.size())
-    throw Error("solver " + solver_.info().name + ": motion of " + std::to_string(to.colliders.size()) +
-                " colliders; expected " + std::to_string(scene_.colliders.size()));
+    throw Error("motion of " + std::to_string(to.colliders.size()) + " colliders; expected " +
+                std::to_string(scene_.colliders.size()));
   if (capsules_host_ != nullptr) write_to(*capsules_host_, capsules_between(at_, to));
   if (joints_host_ != nullptr) write_to(*joints_host_, matrices(to));
   if (end != nullptr) at_ = *end;
 }
 
-GripBuffer::GripBuffer(GpuSolver& solver, const Scene& scene, Vec3 origin_m, std::uint32_t layers)
-    : solver_(solver), scene_(scene), origin_m_(origin_m), layers_(layers) {
+GripBuffer::GripBuffer(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, std::uint32_t layers)
+    : frame_(frame), scene_(scene), origin_m_(origin_m), layers_(layers) {
   const std::vector<double> mass = vertex_masses(scene);
   for (std::uint32_t v : scene.grips.vertices) free_inverse_mass_.push_back(static_cast<float>(1 / mass[v]));
   at_ = scene.motion.at(0);
   held_ = at_.grip_held;
   const std::vector<GripVertex> all = entries(at_, at_);
-  const std::uint64_t bytes = all.size() * sizeof(GripVertex);
-  grips_ = &solver_.add_buffer("grips", bytes, bytes_of(all));
-  host_ = &solver_.add_host_buffer("grips (upload)", bytes);
-  stage_upload_ = solver_.add_stage("UploadGrips", {Feature::MovingPins});
+  grips_ = &frame_.add_buffer(BIND_GRIPS, "grips", all);
+  host_ = &frame_.add_host_buffer("grips (upload)", grips_->bytes());
+  stage_upload_ = frame_.add_stage("UploadGrips", {Feature::MovingPins});
 }
 
 std::vector<GripVertex> GripBuffer::entries(const FrameMotion& start, const FrameMotion& end) const {
   const std::vector<std::uint32_t>& vertices = scene_.grips.vertices;
   if (start.grip_position_m.size() != vertices.size() || end.grip_position_m.size() != vertices.size() ||
       start.grip_held.size() != vertices.size())
-    throw Error("solver " + solver_.info().name + ": motion of " + std::to_string(end.grip_position_m.size()) +
-                " held vertices; expected " + std::to_string(vertices.size()));
+    throw Error("motion of " + std::to_string(end.grip_position_m.size()) + " held vertices; expected " +
+                std::to_string(vertices.size()));
   std::vector<GripVertex> all;
   for (std::uint32_t layer = 0; layer < layers_; ++layer)
     for (std::size_t k = 0; k < vertices.size(); ++k)
@@ -231,20 +220,18 @@ std::vector<GripVertex> GripBuffer::entries(const FrameMotion& start, const Fram
   return all;
 }
 
-const vulkan::Kernel& GripBuffer::add_kernel(const Buffer& positions, const Buffer& velocities) {
-  if (stage_move_ < 0) stage_move_ = solver_.add_stage("MoveGrips", {Feature::MovingPins});
-  return solver_.add_kernel(stage_move_, shaders::kMoveGrips,
-                            {{grips_, Access::Read}, {&positions, Access::ReadWrite}, {&velocities, Access::ReadWrite}},
-                            sizeof(GripConstants));
+const FrameKernel* GripBuffer::add_kernel(const Buffer& positions) {
+  if (stage_move_ < 0) stage_move_ = frame_.add_stage("MoveGrips", {Feature::MovingPins});
+  return frame_.add_kernel(stage_move_, "move_grips", sizeof(GripConstants), {}, kGroupSize,
+                           {{BIND_POSITIONS, &positions}});
 }
 
-void GripBuffer::record_upload() { solver_.copy(stage_upload_, *host_, *grips_); }
+void GripBuffer::record_upload() { frame_.copy(stage_upload_, *host_, *grips_); }
 
-void GripBuffer::record_move(const vulkan::Kernel& kernel, double fraction, double frame_s) {
+void GripBuffer::record_move(const FrameKernel& kernel, double fraction, double frame_s) {
   const auto n = static_cast<std::uint32_t>(layers_ * scene_.grips.vertices.size());
-  solver_.dispatch(stage_move_, kernel, n,
-                   GripConstants{n, static_cast<float>(fraction), static_cast<float>(1 / frame_s), 0},
-                   {n * (sizeof(GripVertex) + 32.0), n * 32.0});
+  frame_.dispatch(kernel, n, GripConstants{n, static_cast<float>(fraction), static_cast<float>(1 / frame_s), 0},
+                  {n * (sizeof(GripVertex) + 32.0), n * 32.0});
 }
 
 void GripBuffer::reset() {

@@ -3,12 +3,9 @@
 #include <vector>
 
 #include "clothbench/scene.hpp"
-#include "pbd_shared.h"
-#include "vulkan/kernel.hpp"
+#include "frame_builder.hpp"
 
 namespace clothbench::pbd_gpu {
-
-class GpuSolver;
 
 /// Where one mesh collider lies in the buffers of its kind, and how the cloth touches it.
 struct MeshRange {
@@ -41,10 +38,10 @@ struct ShapeBuffer {
 /// SkinHand makes vertices of them.
 class ColliderBuffers {
  public:
-  /// Adds buffers, the stages the scene needs and their kernels to `solver`. Positions are relative to `origin_m`,
+  /// Adds buffers, the stages the scene needs and their kernels to `frame`. Positions are relative to `origin_m`,
   /// subtracted in double. With `keep_start`, positions of moving meshes at the frame's start are kept as well
   /// (capsules always carry both), and triangles are left to the method, which has them in an order of its own.
-  ColliderBuffers(GpuSolver& solver, const Scene& scene, Vec3 origin_m, bool keep_start);
+  ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, bool keep_start);
 
   ShapeBuffer planes, spheres, boxes, capsules;
   MeshBuffers standing, moving;
@@ -62,37 +59,36 @@ class ColliderBuffers {
 
  private:
   template <class Shape, class Fill>
-  ShapeBuffer add_shapes(Collider::Shape kind, const char* name, Fill fill);
-  MeshBuffers add_meshes(const char* kind, bool moving_ones);
+  ShapeBuffer add_shapes(Collider::Shape kind, int binding, const char* name, Fill fill);
+  MeshBuffers add_meshes(const std::string& kind, bool moving_ones);
   void add_capsules();
   void add_skinning(bool keep_start);
   std::vector<CapsuleShape> capsules_between(const FrameMotion& start, const FrameMotion& end) const;
   std::vector<JointMatrix> matrices(const FrameMotion&) const;
 
-  GpuSolver& solver_;
+  FrameBuilder& frame_;
   const Scene& scene_;
   const Vec3 origin_m_;
   FrameMotion at_;  ///< end of the last frame
   int stage_upload_ = -1, stage_skin_ = -1;
   std::uint32_t skinned_vertices_ = 0;
   bool keep_start_ = false;
-  vulkan::Buffer *capsules_host_ = nullptr, *joints_host_ = nullptr, *joints_ = nullptr;
-  vulkan::Kernel* skin_ = nullptr;
+  const vulkan::Buffer *capsules_host_ = nullptr, *joints_host_ = nullptr, *joints_ = nullptr;
+  const FrameKernel* skin_ = nullptr;
 };
 
 /// Vertices that hands hold: at substep s of n a held vertex is put at (s + 1) / n of its way through the frame.
 class GripBuffer {
  public:
   /// `layers` copies of the cloth's vertices lie one after another in the solver's buffers.
-  GripBuffer(GpuSolver& solver, const Scene& scene, Vec3 origin_m, std::uint32_t layers);
+  GripBuffer(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, std::uint32_t layers);
 
   /// A kernel that puts held vertices of `positions` in their place with the hand's velocity, .w of both 0; of those
-  /// let go it sets .w to the inverse mass and leaves the rest as it is. May be added for several pairs of buffers.
-  const vulkan::Kernel& add_kernel(const vulkan::Buffer& positions, const vulkan::Buffer& velocities);
+  /// let go it sets .w to the inverse mass and leaves the rest as it is. May be added for several buffers.
+  const FrameKernel* add_kernel(const vulkan::Buffer& positions);
   void record_upload();
-  const vulkan::Buffer& buffer() const { return *grips_; }  ///< GripVertex each, for kernels that move them themselves
   /// `fraction` of the way through the frame, 0 to 1.
-  void record_move(const vulkan::Kernel&, double fraction, double frame_s);
+  void record_move(const FrameKernel&, double fraction, double frame_s);
 
   void reset();
   /// As ColliderBuffers::write; true if other vertices are held than before.
@@ -103,7 +99,7 @@ class GripBuffer {
  private:
   std::vector<GripVertex> entries(const FrameMotion& start, const FrameMotion& end) const;
 
-  GpuSolver& solver_;
+  FrameBuilder& frame_;
   const Scene& scene_;
   const Vec3 origin_m_;
   const std::uint32_t layers_;

@@ -1,5 +1,7 @@
 #include "gpu_solver.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -16,103 +18,46 @@ constexpr int kFramesInFlight = 2;
 
 }  // namespace
 
-std::vector<float> inverse_masses(const Scene& scene) {
-  std::vector<float> w;
-  for (double m : vertex_masses(scene)) w.push_back(static_cast<float>(1 / m));
-  for (std::uint32_t v : scene.pins.vertices) w[v] = 0;
-  for (std::uint32_t v : scene.grips.vertices) w[v] = 0;
-  return w;
+void require_between(const char* solver, const nlohmann::json& settings, const char* key, double low, double high) {
+  if (const auto x = settings[key].get<double>(); !(x >= low && x <= high))
+    throw Error(fmt::format("solver {}: setting {}: expected {} to {}; found {}", solver, key, low, high, x));
+}
+
+void require_one_of(const char* solver, const nlohmann::json& settings, const char* key,
+                    const std::vector<nlohmann::json>& known) {
+  if (std::find(known.begin(), known.end(), settings[key]) == known.end())
+    throw Error(fmt::format("solver {}: setting {}: expected one of {}; found {}", solver, key,
+                            nlohmann::json(known).dump(), settings[key].dump()));
 }
 
 GpuSolver::GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)
-    : info_(std::move(info)),
-      given_settings_(settings),
-      settings_(settings),
-      count_bytes_(count_bytes),
-      device_(vulkan::Device::get(device)) {
+    : FrameBuilder(settings, device, count_bytes), info_(std::move(info)) {
   take_messages();
-}
-
-vulkan::Buffer& GpuSolver::add_buffer(const std::string& name, std::uint64_t bytes, std::vector<std::uint8_t> initial) {
-  using vulkan::Buffer;
-  buffers_.push_back(std::make_unique<Buffer>(device_, name, bytes, Buffer::Place::Device));
-  Buffer& buffer = *buffers_.back();
-  plan_.buffers.push_back({name, bytes, true});
-  auto staging = std::make_unique<Buffer>(device_, name + " (initial)", bytes, Buffer::Place::Host);
-  std::memset(staging->mapped(), 0, bytes);
-  if (!initial.empty()) std::memcpy(staging->mapped(), initial.data(), std::min<std::size_t>(initial.size(), bytes));
-  plan_.buffers.push_back({staging->name(), bytes, false});
-  upload_->copy(0, *staging, buffer);
-  initials_.push_back({&buffer, std::move(staging)});
-  return buffer;
-}
-
-vulkan::Buffer& GpuSolver::add_vec4_buffer(const std::string& name, const vec4s& initial) {
-  std::vector<std::uint8_t> bytes(initial.size() * sizeof(vec4));
-  std::memcpy(bytes.data(), initial.data(), bytes.size());
-  return add_buffer(name, bytes.size(), bytes);
-}
-
-vulkan::Buffer& GpuSolver::add_host_buffer(const std::string& name, std::uint64_t bytes) {
-  buffers_.push_back(std::make_unique<vulkan::Buffer>(device_, name, bytes, vulkan::Buffer::Place::Host));
-  plan_.buffers.push_back({name, bytes, false});
-  return *buffers_.back();
 }
 
 void GpuSolver::set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m) {
   origin_m_ = origin_m;
   position_ = &position;
   velocity_ = &velocity;
-  const std::uint64_t bytes = scene_->cloth.vertex_count() * sizeof(vec4);
-  read_position_ = std::make_unique<vulkan::Buffer>(device_, "read position", bytes, vulkan::Buffer::Place::Host);
-  read_velocity_ = std::make_unique<vulkan::Buffer>(device_, "read velocity", bytes, vulkan::Buffer::Place::Host);
-  plan_.buffers.push_back({"read position", bytes, false});
-  plan_.buffers.push_back({"read velocity", bytes, false});
+  const std::uint64_t bytes = scene().cloth.vertex_count() * sizeof(vec4);
+  read_position_ = &add_host_buffer("read position", bytes);
+  read_velocity_ = &add_host_buffer("read velocity", bytes);
   download_->copy(0, position, *read_position_);
   download_->copy(0, velocity, *read_velocity_);
 }
 
-int GpuSolver::add_stage(const std::string& name, FeatureSet serves, bool at_least) {
-  plan_.stages.push_back({name, serves, 0, 0, 0, at_least});
-  counters_.push_back(count_bytes_ ? &add_buffer("bytes counted in " + name, 8) : nullptr);
-  return static_cast<int>(plan_.stages.size()) - 1;
-}
-
-vulkan::Kernel& GpuSolver::add_kernel(int stage, const Shader& shader, std::vector<vulkan::Binding> bindings,
-                                      std::uint32_t push_bytes, std::vector<std::uint32_t> specialization,
-                                      std::uint32_t group_size) {
-  if (count_bytes_) bindings.push_back({counters_[static_cast<std::size_t>(stage)], vulkan::Access::ReadWrite});
-  specialization.insert(specialization.begin(), group_size);
-  const vulkan::SpirV code = count_bytes_ ? shader.counted : shader.code;
-  if (code.words == nullptr) throw SolverError("bytes cannot be counted: built without CLOTHBENCH_COUNTED_KERNELS");
-  kernels_.push_back(std::make_unique<vulkan::Kernel>(device_, shader.name, code, std::move(specialization),
-                                                      std::move(bindings), push_bytes));
-  return *kernels_.back();
-}
-
 void GpuSolver::add_colliders(Vec3 origin_m, bool keep_start) {
-  if (!scene_->colliders.empty()) colliders_ = std::make_unique<ColliderBuffers>(*this, *scene_, origin_m, keep_start);
+  if (!scene_->colliders.empty())
+    colliders_ = std::make_unique<ColliderBuffers>(frame(), *scene_, origin_m, keep_start);
 }
 
 void GpuSolver::add_grips(Vec3 origin_m, std::uint32_t layers) {
-  if (!scene_->grips.vertices.empty()) grips_ = std::make_unique<GripBuffer>(*this, *scene_, origin_m, layers);
-}
-
-void GpuSolver::copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer& to) {
-  if (!only_counting_) frame_->copy(stage, from, to);
-  const auto bytes = static_cast<double>(std::min(from.bytes(), to.bytes()));
-  plan_.stages[static_cast<std::size_t>(stage)].read_B += bytes;
-  plan_.stages[static_cast<std::size_t>(stage)].write_B += bytes;
+  if (!scene_->grips.vertices.empty()) grips_ = std::make_unique<GripBuffer>(frame(), *scene_, origin_m, layers);
 }
 
 void GpuSolver::load(const Scene& scene) {
   take_messages();
-  scene_ = &scene;
-  settings_ = given_settings_;
-  frame_ = std::make_unique<vulkan::Program>(device_);
-  upload_ = std::make_unique<vulkan::Program>(device_);
-  download_ = std::make_unique<vulkan::Program>(device_);
-  inverse_mass_now_ = inverse_masses(scene);
+  begin(scene);
   build();
   device_->keep_pipelines();
   upload_->record(false);
@@ -123,14 +68,14 @@ void GpuSolver::load(const Scene& scene) {
 
 void GpuSolver::record(double dt_s) {
   frame_->clear();
-  count(dt_s);
+  count_all(dt_s);
   for (std::size_t s = 0; s < plan_.stages.size(); ++s)
     plan_.stages[s].dispatches = frame_->dispatches(static_cast<int>(s));
   frame_->record(settings_.value("stage_times", false));
   dt_s_ = dt_s;
 }
 
-void GpuSolver::count(double dt_s) {
+void GpuSolver::count_all(double dt_s) {
   for (StagePlan& s : plan_.stages) s.read_B = s.write_B = 0;
   record_frame(dt_s);
 }
@@ -144,7 +89,7 @@ void GpuSolver::update_inverse_masses() {
   }
   // The commands stay as they are; free vertices read and write more than held ones.
   only_counting_ = true;
-  count(dt_s_);
+  count_all(dt_s_);
   only_counting_ = false;
 }
 
@@ -275,28 +220,24 @@ FrameCost GpuSolver::last_cost() const {
   return cost;
 }
 
-Plan GpuSolver::plan() const { return plan_; }
-
-std::vector<float> GpuSolver::device_positions() const {
-  vulkan::Buffer host(device_, "all positions", position_->bytes(), vulkan::Buffer::Place::Host);
+template <class T>
+std::vector<T> GpuSolver::fetched(const vulkan::Buffer& buffer) const {
+  vulkan::Buffer host(device_, "fetched", buffer.bytes(), vulkan::Buffer::Place::Host);
   vulkan::Program fetch(device_);
-  fetch.copy(0, *position_, host);
+  fetch.copy(0, buffer, host);
   fetch.record(false);
   run(fetch);
-  std::vector<float> all(host.bytes() / sizeof(float));
+  std::vector<T> all(host.bytes() / sizeof(T));
   std::memcpy(all.data(), host.mapped(), host.bytes());
   return all;
 }
 
+std::vector<float> GpuSolver::device_positions() const { return fetched<float>(*position_); }
+
 std::vector<Traffic> GpuSolver::counted() {
   std::vector<Traffic> all;
-  for (vulkan::Buffer* counter : counters_) {
-    vulkan::Buffer host(device_, "counted", 8, vulkan::Buffer::Place::Host);
-    vulkan::Program fetch(device_);
-    fetch.copy(0, *counter, host);
-    fetch.record(false);
-    run(fetch);
-    const auto* bytes = static_cast<const std::uint32_t*>(host.mapped());
+  for (const vulkan::Buffer* counter : counters_) {
+    const auto bytes = fetched<std::uint32_t>(*counter);
     all.push_back({static_cast<double>(bytes[0]), static_cast<double>(bytes[1])});
   }
   return all;

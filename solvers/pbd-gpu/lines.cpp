@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "crumpled.hpp"
 #include "resident.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
-
-using vulkan::Access;
 
 /// Least alpha over inverse mass of chains that are pulled taut between held vertices: singular in single precision
 /// without. Ten times as much shows in the length of the cloth, a tenth lets links of some cloths blow up.
@@ -41,36 +38,31 @@ Tethers tethers_if(bool wanted, const Scene& scene) {
 
 }  // namespace
 
-Lines::Lines(GpuSolver& solver, const Scene& scene, const vulkan::Buffer& x, const vulkan::Buffer& v,
-             const vulkan::Buffer& rx, const vulkan::Buffer& rv)
-    : solver_(solver),
+Lines::Lines(FrameBuilder& frame, const Scene& scene)
+    : frame_(frame),
       scene_(scene),
-      x_(x),
-      v_(v),
-      rx_(rx),
-      rv_(rv),
-      tethers_(tethers_if(solver.settings()["tethers"].get<bool>(), scene)),
+      tethers_(tethers_if(frame.settings()["tethers"].get<bool>(), scene)),
       taut_(taut_chains(scene)),
-      iterations_(solver.settings()["iterations"].get<std::uint32_t>()),
-      batch_(solver.settings()["batch"].get<std::uint32_t>()),
+      iterations_(frame.settings()["iterations"].get<std::uint32_t>()),
+      batch_(frame.settings()["batch"].get<std::uint32_t>()),
       keep_(iterations_ > 1 && (scene.material.membrane_stiffness_N_per_m || scene.needs.has(Feature::Bend))),
       firm_(std::any_of(taut_.begin(), taut_.end(), [](std::uint8_t t) { return t != 0; })) {
-  if (tethers_.to.empty()) solver_.leave_out("tethers", tethers_.why_not);
-  if (!scene.needs.has(Feature::Damping)) solver_.leave_out("damping", "the scene has none");
-  if (!scene.needs.has(Feature::Shear)) solver_.leave_out("diagonals", "the scene has no shear stiffness");
-  if (!scene.needs.has(Feature::Bend)) solver_.leave_out("bending", "the scene has no bending");
+  if (tethers_.to.empty()) frame_.leave_out("tethers", tethers_.why_not);
+  if (!scene.needs.has(Feature::Damping)) frame_.leave_out("damping", "the scene has none");
+  if (!scene.needs.has(Feature::Shear)) frame_.leave_out("diagonals", "the scene has no shear stiffness");
+  if (!scene.needs.has(Feature::Bend)) frame_.leave_out("bending", "the scene has no bending");
   if (!keep_)
-    solver_.leave_out("multipliers", iterations_ > 1 ? "nothing is compliant"
-                                                     : "setting iterations=1: they would start at 0 and be dropped");
+    frame_.leave_out("multipliers", iterations_ > 1 ? "nothing is compliant"
+                                                    : "setting iterations=1: they would start at 0 and be dropped");
   const std::size_t n = scene.cloth.vertex_count();
-  if (keep_ && scene.material.membrane_stiffness_N_per_m)
-    link_multipliers_ = &solver_.add_buffer("link multipliers", (scene.needs.has(Feature::Shear) ? 4 : 2) * n * 4);
-  if (keep_ && scene.needs.has(Feature::Bend))
-    hinge_multipliers_ = &solver_.add_buffer("hinge multipliers", 2 * n * sizeof(vec4));
-  const bool one = solver.settings()["one_dispatch"].get<bool>();
-  const LineShape frame = frame_shape(scene.cloth.columns, scene.cloth.rows, wish(), device());
-  if (frame.threads > 0 && one)
-    add_frame(frame);
+  keeps_links_ = keep_ && scene.material.membrane_stiffness_N_per_m;
+  keeps_hinges_ = keep_ && scene.needs.has(Feature::Bend);
+  if (keeps_links_) frame_.add_buffer(BIND_LINK_MULTIPLIERS, "link multipliers", families() * n * 4);
+  if (keeps_hinges_) frame_.add_buffer(BIND_HINGE_MULTIPLIERS, "hinge multipliers", 2 * n * sizeof(vec4));
+  const bool one = frame.settings()["one_dispatch"].get<bool>();
+  const LineShape whole = frame_shape(scene.cloth.columns, scene.cloth.rows, wish(), device());
+  if (whole.threads > 0 && one)
+    add_whole(whole);
   else if (batch_ > 1)
     throw Error(
         "solver xpbd: setting batch: takes cloths that fit one workgroup each (32 x 32 vertices, one_dispatch)");
@@ -83,15 +75,15 @@ Lines::Lines(GpuSolver& solver, const Scene& scene, const vulkan::Buffer& x, con
 }
 
 LineWish Lines::wish() const {
-  return {solver_.settings()["vertices_a_thread"].get<std::uint32_t>(),
-          solver_.settings()["threads_a_group"].get<std::uint32_t>(),
-          solver_.settings()["lines_beside"].get<std::uint32_t>()};
+  return {frame_.tuning()["vertices_a_thread"].get<std::uint32_t>(),
+          frame_.tuning()["threads_a_group"].get<std::uint32_t>(),
+          frame_.tuning()["lines_beside"].get<std::uint32_t>()};
 }
 
 LineDevice Lines::device() const {
-  const vulkan::Device& d = solver_.vulkan_device();
+  const vulkan::Device& d = *frame_.device();
   LineDevice line;
-  if (solver_.settings()["shuffles"].get<bool>()) line.subgroup = d.shuffled_lanes();
+  if (frame_.tuning()["shuffles"].get<bool>()) line.subgroup = d.shuffled_lanes();
   line.most_threads = std::min(d.limits().maxComputeWorkGroupInvocations, d.limits().maxComputeWorkGroupSize[0]);
   line.wide = d.is_discrete();
   line.shared_B =
@@ -106,106 +98,82 @@ std::uint32_t Lines::features() const {
   if (needs.has(Feature::Bend)) f |= LINES_BEND;
   if (needs.has(Feature::Shear)) f |= LINES_SHEAR;
   if (scene_.material.membrane_stiffness_N_per_m) f |= LINES_ELASTIC;
-  // What moves may drive the cloth as fast as it likes, and so may springs that start stretched.
-  const bool driven = needs.has(Feature::MovingMesh) || needs.has(Feature::Capsules);
-  if ((!tethers_.to.empty() || starts_crumpled(scene_)) && !driven) f |= LINES_LIMIT_SPEED;
+  if (limits_speed(scene_, !tethers_.to.empty())) f |= LINES_LIMIT_SPEED;
   if (firm_) f |= LINES_FIRM;
   return f;
 }
 
-std::vector<std::uint32_t> Lines::specialization(const LineShape& shape) const {
-  std::vector<std::uint32_t> s = {shape.lanes,
-                                  shape.vertices,
-                                  static_cast<std::uint32_t>(scene_.cloth.columns),
-                                  static_cast<std::uint32_t>(scene_.cloth.rows),
-                                  shape.threads,
-                                  features(),
-                                  static_cast<std::uint32_t>(tethers_.to.size())};
-  for (std::size_t k = 0; k < Tethers::kMost; ++k) {
-    const PinnedRectangle r = k < tethers_.to.size() ? tethers_.to[k] : PinnedRectangle{};
-    s.push_back(r.first_column | r.first_row << 16);
-    s.push_back(r.last_column | r.last_row << 16);
+LineSpecialization Lines::specialization(const LineShape& shape) const {
+  LineSpecialization s;
+  s.LANES = shape.lanes;
+  s.K = shape.vertices;
+  s.COLUMNS = static_cast<std::uint32_t>(scene_.cloth.columns);
+  s.ROWS = static_cast<std::uint32_t>(scene_.cloth.rows);
+  s.THREADS = shape.threads;
+  s.FEATURES = features();
+  s.TETHERS = static_cast<std::uint32_t>(tethers_.to.size());
+  uint* const ends[Tethers::kMost][2] = {{&s.TETHER_0, &s.TETHER_0_LAST},
+                                         {&s.TETHER_1, &s.TETHER_1_LAST},
+                                         {&s.TETHER_2, &s.TETHER_2_LAST},
+                                         {&s.TETHER_3, &s.TETHER_3_LAST}};
+  for (std::size_t k = 0; k < tethers_.to.size(); ++k) {
+    const PinnedRectangle& r = tethers_.to[k];
+    *ends[k][0] = r.first_column | r.first_row << 16;
+    *ends[k][1] = r.last_column | r.last_row << 16;
   }
-  s.push_back(std::max(1u, device().subgroup));
-  s.push_back(shape.beside);
-  const auto columns = static_cast<std::uint32_t>(scene_.cloth.columns),
-             rows = static_cast<std::uint32_t>(scene_.cloth.rows);
+  s.SUBGROUP = std::max(1u, device().subgroup);
+  s.BESIDE = shape.beside;
   const bool square =
-      columns == rows && shape.lanes * shape.vertices == columns && columns % shape.chains_a_group() == 0;
-  s.push_back(square ? 1 : 0);
+      s.COLUMNS == s.ROWS && shape.lanes * shape.vertices == s.COLUMNS && s.COLUMNS % shape.chains_a_group() == 0;
+  s.EXACT = square ? 1 : 0;
   return s;
 }
 
-std::vector<vulkan::Binding> Lines::bindings(const vulkan::Buffer* fifth) {
-  // What the scene lacks is never touched: the positions stand in.
-  std::vector<vulkan::Binding> b = {{&x_, Access::ReadWrite},
-                                    {&v_, Access::ReadWrite},
-                                    {&rx_, Access::ReadWrite},
-                                    {&rv_, Access::ReadWrite},
-                                    {fifth != nullptr ? fifth : &x_, Access::Read}};
-  if (!keep_) return b;
-  b.push_back({link_multipliers_ != nullptr ? link_multipliers_ : &x_, Access::ReadWrite});
-  b.push_back({hinge_multipliers_ != nullptr ? hinge_multipliers_ : &x_, Access::ReadWrite});
-  return b;
+std::string Lines::kernel(const char* name, bool shuffles) const {
+  return std::string(name) + (shuffles ? "_shuffle" : "") + (keep_ ? "_keep" : "");
 }
 
-void Lines::add_frame(const LineShape& shape) {
+void Lines::add_whole(const LineShape& shape) {
   const FeatureSet serves{Feature::Stretch, Feature::Shear,      Feature::Bend,
                           Feature::Damping, Feature::MovingPins, Feature::Pins};
-  stage_frame_ = solver_.add_stage("Lines", scene_.needs & serves);
   shape_[0] = shape_[1] = shape_[2] = shape;
-  std::vector<std::uint32_t> s = specialization(shape);
-  s.push_back(static_cast<std::uint32_t>(scene_.grips.vertices.size()));
+  LineSpecialization s = specialization(shape);
+  s.GRIPS = static_cast<std::uint32_t>(scene_.grips.vertices.size());
   const auto most = static_cast<std::size_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
-  for (std::size_t family = 0; family < 4; ++family) {
-    std::uint32_t bits = 0;
-    for (std::size_t chain = 0; chain < most; ++chain) bits |= std::uint32_t{taut_[family * most + chain]} << chain;
-    s.push_back(bits);
-  }
-  const vulkan::Buffer* grips = solver_.grips() != nullptr ? &solver_.grips()->buffer() : nullptr;
-  frame_ = &solver_.add_kernel(stage_frame_, shaders::kLineFrame[shape.shuffles ? 1 : 0][keep_ ? 1 : 0],
-                               bindings(grips), sizeof(LineConstants), s, shape.threads);
+  uint* const firm[] = {&s.FIRM_0, &s.FIRM_1, &s.FIRM_2, &s.FIRM_3};
+  for (std::size_t family = 0; family < 4; ++family)
+    for (std::size_t chain = 0; chain < most; ++chain)
+      *firm[family] |= std::uint32_t{taut_[family * most + chain]} << chain;
+  whole_ = frame_.add_kernel(frame_.add_stage("Lines", scene_.needs & serves), kernel("line_frame", shape.shuffles),
+                             sizeof(LineConstants), s.by_number(), shape.threads);
 }
 
 void Lines::add_firmness() {
   if (!firm_) return;
-  std::vector<std::uint8_t> bytes(taut_.size() * 4);
-  for (std::size_t k = 0; k < taut_.size(); ++k) {
-    const float least = taut_[k] != 0 ? static_cast<float>(kFirmness) : 0.0f;
-    std::memcpy(&bytes[4 * k], &least, 4);
-  }
-  firmness_ = &solver_.add_buffer("firmness", bytes.size(), bytes);
+  std::vector<float> least;
+  for (const std::uint8_t taut : taut_) least.push_back(taut != 0 ? static_cast<float>(kFirmness) : 0.0f);
+  frame_.add_buffer(BIND_FIRMNESS, "firmness", least);
+}
+
+vulkan::Groups Lines::all_groups() const {
+  const auto chains = static_cast<std::uint32_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
+  return vulkan::groups_for(chains, shape_[0].chains_a_group());
 }
 
 /// False where the device does not run all workgroups at once, or nobody can tell.
 bool Lines::add_resident() {
-  const std::string wanted = solver_.settings()["device_barrier"];
-  const bool may = wanted == "always" || (wanted == "auto" && device().wide);
-  if (!may || device().subgroup == 0) return false;
+  if (device().subgroup == 0) return false;
   const LineShape shape = pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), wish(), device());
-  const auto chains = static_cast<std::uint32_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
-  const vulkan::Groups groups = vulkan::groups_for(chains, shape.chains_a_group());
-  const auto with_barrier = [&](const vulkan::Buffer& m, const vulkan::Buffer& none) {
-    std::vector<vulkan::Binding> b = bindings(firmness_);
-    b.push_back({&m, Access::ReadWrite});
-    b.push_back({&none, Access::Write});
-    return b;
-  };
-  const std::vector<std::uint32_t> s = specialization(shape);
-  if (!runs_at_once(solver_.device_, shaders::kLinesResident[keep_ ? 1 : 0], s, shape.threads, with_barrier, groups,
-                    LineConstants{}, wanted == "always"))
-    return false;
-  add_firmness();
   shape_[0] = shape_[1] = shape_[2] = shape;
+  LineSpecialization s = specialization(shape);
+  s.RESIDENT = 1;
+  const std::string name = kernel("line_pass", true);
+  if (!runs_at_once<LineConstants>(frame_, name, s.by_number(), shape.threads, all_groups())) return false;
+  add_firmness();
   const FeatureSet serves{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins};
-  stage_frame_ = solver_.add_stage("Lines", scene_.needs & serves);
-  meeting_ = &solver_.add_buffer("meeting", 8);
-  vulkan::Buffer& host = solver_.add_host_buffer("missed", 4);
-  std::memset(host.mapped(), 0, 4);
-  solver_.set_missed(host);
-  missed_ = &host;
-  resident_ = &solver_.add_kernel(stage_frame_, shaders::kLinesResident[keep_ ? 1 : 0], with_barrier(*meeting_, host),
-                                  sizeof(LineConstants), s, shape.threads);
+  const int stage = frame_.add_stage("Lines", scene_.needs & serves);
+  add_meeting(frame_);
+  resident_ = frame_.add_kernel(stage, name, sizeof(LineConstants), s.by_number(), shape.threads);
   return true;
 }
 
@@ -218,26 +186,16 @@ void Lines::add_passes() {
   const FeatureSet serves[] = {{Feature::Stretch, Feature::Bend, Feature::Damping, Feature::Pins},
                                {Feature::Stretch, Feature::Bend},
                                {Feature::Shear}};
-  for (std::size_t k = 0; k < (needs.has(Feature::Shear) ? 3u : 2u); ++k) {
-    stage_[k] = solver_.add_stage(names[k], needs & serves[k]);
-    pass_[k] =
-        &solver_.add_kernel(stage_[k], shaders::kLinePass[shape_[k].shuffles ? 1 : 0][keep_ ? 1 : 0],
-                            bindings(firmness_), sizeof(LineConstants), specialization(shape_[k]), shape_[k].threads);
-  }
+  for (std::size_t k = 0; k < (needs.has(Feature::Shear) ? 3u : 2u); ++k)
+    pass_[k] = frame_.add_kernel(frame_.add_stage(names[k], needs & serves[k]), kernel("line_pass", shape_[k].shuffles),
+                                 sizeof(LineConstants), specialization(shape_[k]).by_number(), shape_[k].threads);
 }
 
 LineConstants Lines::constants(double dt_s, int substeps) const {
   const Cloth& cloth = scene_.cloth;
   const double h = dt_s / substeps, du = cloth.du(), dv = cloth.dv();
-  const Vec3 g = scene_.gravity_m_per_s2;
   const auto f = [](double x) { return static_cast<float>(x); };
-  LineConstants c{};
-  c.gravity_h = {f(g[0] * h), f(g[1] * h), f(g[2] * h), 0};
-  c.h = f(h);
-  c.loss = f(-std::expm1(-scene_.material.damping_per_s * h));
-  c.speed_limit = f(2 * std::sqrt(2 * norm(g) * std::hypot(cloth.width_m, cloth.height_m)) +
-                    2 * norm(cloth.initial_velocity_m_per_s) +
-                    norm(cloth.spin_rad_per_s) * std::hypot(cloth.width_m, cloth.height_m));
+  auto c = step_constants<LineConstants>(frame_, dt_s, substeps);
   c.tether_stretch = f(tethers_.stretch);
   c.rest_u = f(du);
   c.rest_v = f(dv);
@@ -261,15 +219,13 @@ LineConstants Lines::constants(double dt_s, int substeps) const {
   c.substep_part = f(1.0 / substeps);
   c.frames_per_s = f(1 / dt_s);
   c.iterations = iterations_;
-  c.per_h = f(1 / h);
-  c.patience = patience(*solver_.device_).in_a_frame;
   return c;
 }
 
 Lines::Constraints Lines::count(std::uint32_t family) const {
   const int columns = scene_.cloth.columns, rows = scene_.cloth.rows;
   const int di = family == 0 || family == 2 ? 1 : family == 3 ? -1 : 0, dj = family == 0 ? 0 : 1;
-  const std::vector<float>& w = solver_.inverse_mass_now();
+  const std::vector<float>& w = frame_.inverse_mass_now();
   const auto at = [&](int i, int j) { return w[static_cast<std::size_t>(j * columns + i)]; };
   Constraints n;
   for (int j = 0; j + dj < rows; ++j)
@@ -286,27 +242,26 @@ Lines::Constraints Lines::count(std::uint32_t family) const {
 Traffic Lines::multiplier_traffic(std::uint32_t family, std::uint32_t iteration) const {
   if (!keep_) return {};
   const Constraints n = count(family);
-  const double bytes =
-      (link_multipliers_ != nullptr ? 4 * n.links : 0) + (hinge_multipliers_ != nullptr ? 16 * n.hinges : 0);
+  const double bytes = (keeps_links_ ? 4 * n.links : 0) + (keeps_hinges_ ? 16 * n.hinges : 0);
   return {iteration > 0 ? 2 * bytes : 0, bytes};
 }
 
-/// Of one family: every vertex is read, free ones are written; the first also reads where tethers end.
-Traffic Lines::pass_traffic(std::uint32_t family, std::uint32_t iteration, bool first) const {
-  const std::vector<float>& w = solver_.inverse_mass_now();
+/// Of one pass of a substep: every vertex is read, free ones are written; the first also reads where tethers end.
+Traffic Lines::pass_traffic(std::uint32_t pass) const {
+  const std::vector<float>& w = frame_.inverse_mass_now();
   const auto n = static_cast<double>(w.size());
   const auto free = static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }));
+  const std::uint32_t family = family_of(pass);
   const auto chains = static_cast<double>(family == 0 ? scene_.cloth.rows : scene_.cloth.columns);
-  Traffic t = multiplier_traffic(family, iteration);
-  t.read_B += 32 * n + (firmness_ != nullptr ? 4.0 * shape_[std::min(family, 2u)].lanes * chains : 0) +
-              (first ? 16 * static_cast<double>(tethers_.to.size()) * free : 0);
-  t.write_B += 32 * free;
-  return t;
+  return multiplier_traffic(family, pass / families()) +
+         Traffic{32 * n + (firm_ ? 4.0 * shape_[std::min(family, 2u)].lanes * chains : 0) +
+                     (pass == 0 ? 16 * static_cast<double>(tethers_.to.size()) * free : 0),
+                 32 * free};
 }
 
 /// Of what sums could not hold, in each dispatch that integrates.
 Traffic Lines::rests_traffic() const {
-  const std::vector<float>& w = solver_.inverse_mass_now();
+  const std::vector<float>& w = frame_.inverse_mass_now();
   return {32.0 * static_cast<double>(w.size()),
           32.0 * static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }))};
 }
@@ -315,49 +270,32 @@ void Lines::record(int first, int count, int substeps, double dt_s) {
   LineConstants c = constants(dt_s, substeps);
   c.first_substep = static_cast<std::uint32_t>(first);
   c.substeps = static_cast<std::uint32_t>(count);
-  if (frame_ == nullptr && resident_ == nullptr) {
-    record_passes(c);
+  const std::uint32_t passes = iterations_ * families();
+  if (whole_ == nullptr && resident_ == nullptr) {
+    c.passes = 1;
+    for (c.first_pass = 0; c.first_pass < passes; ++c.first_pass) record_pass(c);
     return;
   }
+  c.passes = c.substeps * passes;
   const auto n = static_cast<double>(scene_.cloth.vertex_count());
   Traffic t = resident_ != nullptr ? rests_traffic() : Traffic{64 * n * batch_, 64 * n * batch_};
-  if (frame_ != nullptr)
+  if (whole_ != nullptr)
     t.read_B += static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count);
-  const std::uint32_t families = scene_.needs.has(Feature::Shear) ? 4 : 2;
-  for (std::uint32_t iteration = 0; iteration < iterations_; ++iteration)
-    for (std::uint32_t family = 0; family < families; ++family) {
-      const Traffic m = frame_ != nullptr ? multiplier_traffic(family, iteration)
-                                          : pass_traffic(family, iteration, family + 1 == families && iteration == 0);
-      t.read_B += count * m.read_B;
-      t.write_B += count * m.write_B;
-    }
-  if (frame_ != nullptr) {
-    solver_.dispatch_groups(stage_frame_, *frame_, vulkan::groups_for(batch_, 1), c, t);
-    return;
-  }
-  const auto chains = static_cast<std::uint32_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
-  solver_.dispatch_groups(stage_frame_, *resident_, vulkan::groups_for(chains, shape_[0].chains_a_group()), c, t);
+  for (std::uint32_t k = 0; k < passes; ++k)
+    t = t + (whole_ != nullptr ? multiplier_traffic(family_of(k), k / families()) : pass_traffic(k)) * count;
+  if (whole_ != nullptr)
+    frame_.dispatch_groups(*whole_, vulkan::groups_for(batch_, 1), c, t);
+  else
+    frame_.dispatch_groups(*resident_, all_groups(), c, t);
 }
 
-/// Diagonals first: threads have the last word, columns before rows.
-void Lines::record_passes(LineConstants c) {
-  const std::uint32_t families = scene_.needs.has(Feature::Shear) ? 4 : 2;
-  for (c.iteration = 0; c.iteration < iterations_; ++c.iteration)
-    for (std::uint32_t turn = 0; turn < families; ++turn) {
-      c.family = families - 1 - turn;
-      const bool first = turn == 0 && c.iteration == 0;
-      const bool last = turn + 1 == families && c.iteration + 1 == iterations_;
-      c.turn = (first ? LINES_FIRST : 0) | (last ? LINES_LAST : 0);
-      const std::size_t kind = std::min(c.family, 2u);
-      const auto chains = static_cast<std::uint32_t>(c.family == 0 ? scene_.cloth.rows : scene_.cloth.columns);
-      Traffic t = pass_traffic(c.family, c.iteration, first);
-      if (first) {
-        t.read_B += rests_traffic().read_B;
-        t.write_B += rests_traffic().write_B;
-      }
-      solver_.dispatch_groups(stage_[kind], *pass_[kind], vulkan::groups_for(chains, shape_[kind].chains_a_group()), c,
-                              t);
-    }
+void Lines::record_pass(const LineConstants& c) {
+  const std::uint32_t family = family_of(c.first_pass);
+  const std::size_t kind = std::min(family, 2u);
+  const auto chains = static_cast<std::uint32_t>(family == 0 ? scene_.cloth.rows : scene_.cloth.columns);
+  const Traffic t = pass_traffic(c.first_pass);
+  frame_.dispatch_groups(*pass_[kind], vulkan::groups_for(chains, shape_[kind].chains_a_group()), c,
+                         c.first_pass == 0 ? t + rests_traffic() : t);
 }
 
 }  // namespace clothbench::pbd_gpu

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gpu_solver.hpp"
+#include "colliders.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -12,24 +12,21 @@ class PaperContact {
  public:
   /// One stage and kernel for each kind of collider the scene has. `mesh_depth_m` and `hand_depth_m`: how far behind a
   /// triangle a particle is still taken for touching it.
-  PaperContact(GpuSolver& solver, const ColliderBuffers& colliders, const vulkan::Buffer& predicted,
-               const vulkan::Buffer& positions, float mesh_depth_m, float hand_depth_m);
+  PaperContact(FrameBuilder& frame, const ColliderBuffers& colliders, float mesh_depth_m, float hand_depth_m);
   /// For `particles`, of which `free` have an inverse mass.
   void record(std::uint32_t particles, std::int64_t free);
 
  private:
   struct Pass {
-    int stage;
-    const vulkan::Kernel* kernel;
+    const FrameKernel* kernel;
     PaperContactConstants constants;
     std::uint32_t item_bytes;  ///< read by a particle for each thing it is tested against
     bool friction;
   };
-  void add_shapes(const char* stage, const ShapeBuffer&, Feature, const Shader&, std::uint32_t item_bytes);
+  void add_shapes(const char* stage, const ShapeBuffer&, Feature, const char* kernel, std::uint32_t item_bytes);
   void add_meshes(const char* stage, const MeshBuffers&, Feature, float depth_m);
 
-  GpuSolver& solver_;
-  const vulkan::Buffer &predicted_, &positions_;
+  FrameBuilder& frame_;
   std::vector<Pass> passes_;
 };
 

@@ -8,15 +8,13 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-using vulkan::Access;
-
 class Paper final : public GpuSolver {
  public:
   using GpuSolver::GpuSolver;
 
  private:
   void build() override {
-    if (native() && !vulkan_device().has_float_atomics())
+    if (native() && !device_->has_float_atomics())
       throw Error(
           "solver paper: setting atomics=native: this device has no float atomics (VK_EXT_shader_atomic_float)");
     layers_ = scene().needs.has(Feature::DuplicatedLayer) ? 2 : 1;
@@ -44,10 +42,10 @@ class Paper final : public GpuSolver {
         position.push_back({at(0), at(1), at(2), w[i]});
         velocity.push_back({speed(0), speed(1), speed(2), w[i]});
       }
-    x_ = &add_vec4_buffer("positions", position);
-    v_ = &add_vec4_buffer("velocities", velocity);
-    q_ = &add_buffer("predicted positions", position.size() * sizeof(vec4));
-    d_ = &add_buffer("constraint deltas", position.size() * sizeof(vec4));
+    x_ = &add_buffer(BIND_POSITIONS, "positions", position);
+    v_ = &add_buffer(BIND_VELOCITIES, "velocities", velocity);
+    q_ = &add_buffer(BIND_PREDICTED, "predicted positions", position.size() * sizeof(vec4));
+    add_buffer(BIND_DELTAS, "constraint deltas", position.size() * sizeof(vec4));
     set_state(*x_, *v_, {});
   }
 
@@ -72,9 +70,7 @@ class Paper final : public GpuSolver {
       all.push_back({a, b, static_cast<float>(rest), kind});
     });
     constraint_count_ = all.size();
-    std::vector<std::uint8_t> bytes(all.size() * sizeof all[0]);
-    std::memcpy(bytes.data(), all.data(), bytes.size());
-    c_ = &add_buffer("constraints", bytes.size(), bytes);
+    add_buffer(BIND_CONSTRAINTS, "constraints", all);
   }
 
   /// What one ProjectConstraintDeltas reads and writes, and how many particles are free.
@@ -93,37 +89,29 @@ class Paper final : public GpuSolver {
 
   void build_stages() {
     const FeatureSet needs = scene().needs;
-    const auto push = static_cast<std::uint32_t>(sizeof(PaperConstants));
     const FeatureSet pins = needs & FeatureSet{Feature::Pins};
-    stage_forces_ = add_stage("ApplyExternalForces", {});
-    forces_ = &add_kernel(stage_forces_, shaders::kApplyExternalForces, {{v_, Access::ReadWrite}}, push);
-    if (needs.has(Feature::Damping)) {
-      stage_damp_ = add_stage("DampVelocities", {Feature::Damping});
-      damp_ = &add_kernel(stage_damp_, shaders::kDampVelocities, {{v_, Access::ReadWrite}}, push);
-    } else {
+    const auto add = [&](int stage, const char* name) { return add_kernel(stage, name, sizeof(PaperConstants)); };
+    forces_ = add(add_stage("ApplyExternalForces", {}), "apply_external_forces");
+    if (needs.has(Feature::Damping))
+      damp_ = add(add_stage("DampVelocities", {Feature::Damping}), "damp_velocities");
+    else
       leave_out("DampVelocities", "the scene has no damping");
-    }
-    stage_euler_ = add_stage("ApplyExplicitEuler", pins);
-    euler_ = &add_kernel(stage_euler_, shaders::kApplyExplicitEuler,
-                         {{x_, Access::Read}, {v_, Access::Read}, {q_, Access::Write}}, push);
-    stage_project_ = add_stage("ProjectConstraintDeltas", needs & FeatureSet{Feature::Stretch, Feature::Shear,
-                                                                             Feature::Bend, Feature::DuplicatedLayer});
-    project_ = &add_kernel(stage_project_,
-                           native() ? shaders::kProjectConstraintDeltasNative : shaders::kProjectConstraintDeltas,
-                           {{c_, Access::Read}, {q_, Access::Read}, {d_, Access::ReadWrite}}, push);
-    stage_average_ = add_stage("AverageConstraintDeltas", {});
-    average_ = &add_kernel(stage_average_, shaders::kAverageConstraintDeltas,
-                           {{d_, Access::ReadWrite}, {q_, Access::ReadWrite}}, push, {native() ? 1u : 0u});
+    euler_ = add(add_stage("ApplyExplicitEuler", pins), "apply_explicit_euler");
+    const FeatureSet edges{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::DuplicatedLayer};
+    project_ = add(add_stage("ProjectConstraintDeltas", needs & edges),
+                   native() ? "project_constraint_deltas_native" : "project_constraint_deltas");
+    PaperSpecialization atomics;
+    atomics.NATIVE = native() ? 1 : 0;
+    average_ = add_kernel(add_stage("AverageConstraintDeltas", {}), "average_constraint_deltas", sizeof(PaperConstants),
+                          atomics.by_number());
     if (grips() != nullptr) {
-      hold_ = &grips()->add_kernel(*x_, *v_);
-      aim_ = &grips()->add_kernel(*q_, *v_);
+      hold_ = grips()->add_kernel(*x_);
+      aim_ = grips()->add_kernel(*q_);
     }
     if (colliders() != nullptr)
-      contact_ = std::make_unique<PaperContact>(*this, *colliders(), *q_, *x_, settings()["mesh_depth_m"].get<float>(),
+      contact_ = std::make_unique<PaperContact>(frame(), *colliders(), settings()["mesh_depth_m"].get<float>(),
                                                 settings()["hand_depth_m"].get<float>());
-    stage_update_ = add_stage("UpdatePositions", {});
-    update_ = &add_kernel(stage_update_, shaders::kUpdatePositions,
-                          {{x_, Access::ReadWrite}, {v_, Access::Write}, {q_, Access::Read}}, push);
+    update_ = add(add_stage("UpdatePositions", {}), "update_positions");
     if (settings()["readback"] == "blocking") {
       stage_readback_ = add_stage("Readback", {});
       host_x_ = &add_host_buffer("positions on the host", x_->bytes());
@@ -162,50 +150,28 @@ class Paper final : public GpuSolver {
     const auto n = static_cast<double>(particles()), f = static_cast<double>(free_);
     // Held or let go from the step's start on, which the kernels that follow tell from the inverse mass.
     if (hold_ != nullptr) grips()->record_move(*hold_, static_cast<double>(step) / steps, dt_s);
-    dispatch(stage_forces_, *forces_, particles(), c, {16 * n, 16 * f});
-    if (damp_ != nullptr) dispatch(stage_damp_, *damp_, particles(), c, {16 * n, 16 * n});
-    dispatch(stage_euler_, *euler_, particles(), c, {32 * n, 16 * n});
+    dispatch(*forces_, particles(), c, {16 * n, 16 * f});
+    if (damp_ != nullptr) dispatch(*damp_, particles(), c, {16 * n, 16 * n});
+    dispatch(*euler_, particles(), c, {32 * n, 16 * n});
     if (aim_ != nullptr) grips()->record_move(*aim_, static_cast<double>(step + 1) / steps, dt_s);
     for (int i = 0; i < settings()["iterations"].get<int>(); ++i) {
-      dispatch(stage_project_, *project_, constraint_count_, c, traffic_);
-      dispatch(stage_average_, *average_, particles(), c, {16 * n + 16 * f, 32 * f});
+      dispatch(*project_, constraint_count_, c, traffic_);
+      dispatch(*average_, particles(), c, {16 * n + 16 * f, 32 * f});
     }
     if (contact_) contact_->record(static_cast<std::uint32_t>(particles()), free_);
-    dispatch(stage_update_, *update_, particles(), c, {32 * n, 32 * n});
+    dispatch(*update_, particles(), c, {32 * n, 32 * n});
   }
 
   int layers_ = 1;
   std::int64_t free_ = 0;
   std::uint64_t constraint_count_ = 0;
   Traffic traffic_;  ///< of one ProjectConstraintDeltas
-  int stage_forces_ = -1, stage_damp_ = -1, stage_euler_ = -1, stage_project_ = -1, stage_average_ = -1,
-      stage_update_ = -1, stage_readback_ = -1;
-  vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *q_ = nullptr, *d_ = nullptr, *c_ = nullptr, *host_x_ = nullptr,
-                 *host_v_ = nullptr;
-  vulkan::Kernel *forces_ = nullptr, *damp_ = nullptr, *euler_ = nullptr, *project_ = nullptr, *average_ = nullptr,
-                 *update_ = nullptr;
-  const vulkan::Kernel *hold_ = nullptr, *aim_ = nullptr;
+  int stage_readback_ = -1;
+  const vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *q_ = nullptr, *host_x_ = nullptr, *host_v_ = nullptr;
+  const FrameKernel *forces_ = nullptr, *damp_ = nullptr, *euler_ = nullptr, *project_ = nullptr, *average_ = nullptr,
+                    *update_ = nullptr, *hold_ = nullptr, *aim_ = nullptr;
   std::unique_ptr<PaperContact> contact_;
 };
-
-void check_settings(const nlohmann::json& s) {
-  const auto one_of = [&](const char* key, const char* a, const char* b) {
-    if (s[key] != a && s[key] != b)
-      throw Error(std::string("solver paper: setting ") + key + ": expected \"" + a + "\" or \"" + b + "\"; found " +
-                  s[key].dump());
-  };
-  one_of("readback", "none", "blocking");
-  one_of("atomics", "cas", "native");
-  if (!(s["iterations"].get<double>() >= 1 && s["iterations"].get<double>() <= 100000))
-    throw Error("solver paper: setting iterations: expected 1 to 100000; found " + s["iterations"].dump());
-  if (!(s["substeps"].get<double>() >= 1 && s["substeps"].get<double>() <= 4096))
-    throw Error("solver paper: setting substeps: expected 1 to 4096; found " + s["substeps"].dump());
-  if (!(s["stiffness"].get<double>() >= 0 && s["stiffness"].get<double>() <= 1))
-    throw Error("solver paper: setting stiffness: expected 0 to 1; found " + s["stiffness"].dump());
-  for (const char* key : {"mesh_depth_m", "hand_depth_m"})
-    if (!(s[key].get<double>() >= 0 && s[key].get<double>() <= 1000))
-      throw Error(std::string("solver paper: setting ") + key + ": expected 0 to 1000; found " + s[key].dump());
-}
 
 }  // namespace
 
@@ -237,7 +203,12 @@ SolverInfo paper_info() {
 }
 
 std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes) {
-  check_settings(settings);
+  require_one_of("paper", settings, "readback", {"none", "blocking"});
+  require_one_of("paper", settings, "atomics", {"cas", "native"});
+  require_between("paper", settings, "iterations", 1, 100000);
+  require_between("paper", settings, "substeps", 1, 4096);
+  require_between("paper", settings, "stiffness", 0, 1);
+  for (const char* key : {"mesh_depth_m", "hand_depth_m"}) require_between("paper", settings, key, 0, 1000);
   return std::make_unique<Paper>(paper_info(), settings, device, count_bytes);
 }
 

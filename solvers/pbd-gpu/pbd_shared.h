@@ -1,7 +1,9 @@
-// Structs that the host and the shaders share: vec4 and 4-byte scalars only, so that std430 and C++ agree.
+// Structs that the host and the shaders share: vec4 and 4-byte scalars only, so
+// that std430 and C++ agree.
 #ifdef __cplusplus
 #pragma once
 #include <cstdint>
+#include <vector>
 namespace clothbench::pbd_gpu {
 struct vec4 {
   float x, y, z, w;
@@ -10,6 +12,65 @@ using uint = std::uint32_t;
 struct uvec4 {
   uint x, y, z, w;
 };
+#endif
+
+// Numbers of the storage buffers: each is the same in every kernel that has it.
+const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_RESTS = 2, BIND_VELOCITY_RESTS = 3, BIND_FIRMNESS = 4,
+          BIND_LINK_MULTIPLIERS = 5, BIND_HINGE_MULTIPLIERS = 6, BIND_MEETING = 7, BIND_MISSED = 8,
+          BIND_CHAIN_ENTRIES = 9, BIND_CHAIN_FAMILIES = 10, BIND_TETHER_ENDS = 11, BIND_WELDS = 12, BIND_GRIPS = 13,
+          BIND_SKIN = 14, BIND_JOINTS = 15, BIND_PLANES = 16, BIND_SPHERES = 17, BIND_BOXES = 18, BIND_CAPSULES = 19,
+          BIND_STANDING = 20, BIND_MOVING_START = 21, BIND_MOVING_END = 22, BIND_CLUSTERS = 23, BIND_CLUSTER_BOXES = 24,
+          BIND_TRIANGLES = 25, BIND_MESH_VERTICES = 26, BIND_CANDIDATES = 27, BIND_REACHES = 28, BIND_SIDES = 29,
+          BIND_SAMPLE_SIDES = 30, BIND_CORRECTIONS = 31, BIND_STARTS = 32, BIND_BLOCKS = 33, BIND_NEAR = 34,
+          BIND_WISHES = 35, BIND_PART = 36, BIND_PREDICTED = 37, BIND_DELTAS = 38, BIND_CONSTRAINTS = 39,
+          BIND_COUNTER = 40, BIND_COUNT = 41;
+
+// Specialization constants: C(number, type, name, standard); number 0 is local_size_x.
+
+// Of the line kernels of `xpbd`. LANES: threads a chain, a power of two. K: vertices a thread, even where the scene
+// bends. THREADS: of a workgroup. FEATURES: LINES_... TETHERS: rectangles of pinned vertices, column and row << 16 of
+// the first and last. SUBGROUP: threads that exchange by shuffles. BESIDE: neighbouring chains whose threads take
+// turns, so that columns too are read by whole sectors. EXACT: all vertices of all threads are on chains. FIRM: chains
+// of each family that need `least`, a bit each. RESIDENT: all workgroups run at once, and wait for one another.
+// clang-format off
+#define LINE_CONSTANTS(C) \
+  C(1, uint, LANES, 8u) C(2, uint, K, 4u) C(3, uint, COLUMNS, 2u) C(4, uint, ROWS, 2u) C(5, uint, THREADS, 64u) \
+  C(6, uint, FEATURES, 0u) C(7, uint, TETHERS, 0u) C(8, uint, TETHER_0, 0u) C(9, uint, TETHER_0_LAST, 0u) \
+  C(10, uint, TETHER_1, 0u) C(11, uint, TETHER_1_LAST, 0u) C(12, uint, TETHER_2, 0u) C(13, uint, TETHER_2_LAST, 0u) \
+  C(14, uint, TETHER_3, 0u) C(15, uint, TETHER_3_LAST, 0u) C(16, uint, SUBGROUP, 1u) C(17, uint, BESIDE, 1u) \
+  C(18, bool, EXACT, false) C(19, uint, GRIPS, 0u) C(20, uint, FIRM_0, 0u) C(21, uint, FIRM_1, 0u) \
+  C(22, uint, FIRM_2, 0u) C(23, uint, FIRM_3, 0u) C(24, bool, RESIDENT, false)
+// Of its chain kernel. TETHERS: a vertex.
+#define CHAIN_CONSTANTS(C) \
+  C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, RESIDENT, false)
+// Of its contact kernels. SAMPLES: on an edge. MOVING: whether any collider moves. LANES: neighbours in a subgroup that
+// hold the same point, a power of two, at most 16.
+#define CONTACT_CONSTANTS(C) \
+  C(1, uint, PLANES, 0u) C(2, uint, SPHERES, 0u) C(3, uint, BOXES, 0u) C(4, uint, CAPSULES, 0u) \
+  C(5, uint, FRICTION, 0u) C(6, uint, STANDING_CLUSTERS, 0u) C(7, uint, MOVING_CLUSTERS, 0u) C(8, uint, SAMPLES, 0u) \
+  C(9, uint, MOVING, 0u) C(10, uint, LANES, 1u)
+// clang-format on
+// Of the kernels of `paper`. NATIVE: float atomics, with which the count is a float.
+#define PAPER_CONSTANTS(C) C(1, uint, FRICTION, 0u) C(2, uint, NATIVE, 0u)
+#ifdef __cplusplus
+#define CLOTHBENCH_MEMBER(number, type, name, standard) uint name = standard;
+#define CLOTHBENCH_PUT(number, type, name, standard) all.at(number) = name;
+#define CLOTHBENCH_SPECIALIZATION(Name, LIST) \
+  struct Name {                               \
+    LIST(CLOTHBENCH_MEMBER)                   \
+    std::vector<uint> by_number() const {     \
+      std::vector<uint> all(32);              \
+      LIST(CLOTHBENCH_PUT)                    \
+      return all;                             \
+    }                                         \
+  };
+CLOTHBENCH_SPECIALIZATION(LineSpecialization, LINE_CONSTANTS)
+CLOTHBENCH_SPECIALIZATION(ChainSpecialization, CHAIN_CONSTANTS)
+CLOTHBENCH_SPECIALIZATION(ContactSpecialization, CONTACT_CONSTANTS)
+CLOTHBENCH_SPECIALIZATION(PaperSpecialization, PAPER_CONSTANTS)
+#undef CLOTHBENCH_SPECIALIZATION
+#undef CLOTHBENCH_PUT
+#undef CLOTHBENCH_MEMBER
 #endif
 
 /// One distance constraint of `paper`.
@@ -37,40 +98,41 @@ struct PaperContactConstants {
   float margin, depth, friction;  // of a mesh
 };
 
-// What a scene asks of the line kernels of `xpbd`: bits of their constant FEATURES.
+// What a scene asks of the line kernels of `xpbd`: bits of their constant
+// FEATURES.
 #define LINES_DAMPING 1u
 #define LINES_BEND 2u
 #define LINES_SHEAR 4u
 #define LINES_ELASTIC 8u  // links have a compliance
 #define LINES_LIMIT_SPEED 16u
 #define LINES_FIRM 32u  // chains pulled taut between two held vertices
-// LineConstants::turn
-#define LINES_FIRST 1u
-#define LINES_LAST 2u
 
 /// Push constants of the line kernels of `xpbd`.
 struct LineConstants {
-  vec4 gravity_h;                   // g h [m/s]
-  float h;                          // substep [s]
-  float loss;                       // 1 - exp(-c h)
-  float speed_limit;                // [m/s]
-  float tether_stretch;             // 1 + slack
-  float rest_u, rest_v, rest_d;     // rest lengths of links [m]
-  float alpha_u, alpha_v, alpha_d;  // compliance over h^2 [1/kg] of links, inside
-  float bend_u, bend_v;             // the same of bending
-  float inverse_mass;               // of a vertex inside [1/kg]
-  float firmness;                   // of chains that need it: least alpha over inverse mass
+  vec4 gravity_h;                // g h [m/s]
+  float h;                       // substep [s]
+  float loss;                    // 1 - exp(-c h)
+  float speed_limit;             // [m/s]
+  float tether_stretch;          // 1 + slack
+  float rest_u, rest_v, rest_d;  // rest lengths of links [m]
+  float alpha_u, alpha_v,
+      alpha_d;           // compliance over h^2 [1/kg] of links, inside
+  float bend_u, bend_v;  // the same of bending
+  float inverse_mass;    // of a vertex inside [1/kg]
+  float firmness;        // of chains that need it: least alpha over inverse mass
   uint bend_rounds_u, bend_rounds_v;
   uint first_substep, substeps;  // of this dispatch
   float substep_part;            // of a frame
   float frames_per_s;
   uint iterations;
-  uint family, turn, iteration;  // of one pass
-  uint patience;                 // looks at who has come to a barrier of the whole dispatch
-  float per_h;                   // 1/h
+  uint first_pass, passes;  // of this dispatch; each substep has a pass an
+                            // iteration and family
+  uint patience;            // looks at who has come to a barrier of the whole dispatch
+  float per_h;              // 1/h
 };
 
-/// A vertex of a chain and the link to the next entry; `rest` below 0: there is none.
+/// A vertex of a chain and the link to the next entry; `rest` below 0: there is
+/// none.
 struct ChainEntry {
   uint vertex;       // CHAIN_NOBODY: filling
   float rest;        // [m]
@@ -98,13 +160,12 @@ struct ChainConstants {
   float loss;         // 1 - exp(-c h)
   float speed_limit;  // [m/s]
   float per_h;        // 1/h
-  uint first_entry;   // of the family
-  uint turn;          // LINES_FIRST
-  uint rounds;        // of cyclic reduction: 2^rounds links or more are in its longest chain
+  uint first_entry;   // of the family, where a dispatch is one
+  uint rounds;        // of cyclic reduction: 2^rounds links or more are in its longest
+                      // chain
   uint patience;      // looks at who has come to a barrier of the whole dispatch
-  uint families;      // of a dispatch that takes all of them, `substeps` times
-  uint substeps;
-  uint unused0, unused1;
+  uint families;
+  uint first_pass, passes;  // of this dispatch; each substep has a pass a family
 };
 
 // Colliders. Lengths in metres, positions relative to the method's origin.
@@ -164,7 +225,8 @@ struct GripConstants {
   uint unused0;
 };
 
-/// Contact of `xpbd`: at most 16 neighbouring triangles of one mesh, and the box round their way through the frame.
+/// Contact of `xpbd`: at most 16 neighbouring triangles of one mesh, and the
+/// box round their way through the frame.
 struct MeshCluster {
   uint first, count;
   float margin, friction;
@@ -183,7 +245,8 @@ struct BoxConstants {
 struct ContactConstants {
   uint columns, rows;
   uint words;         // 32-bit words of clusters a vertex may touch
-  float begin, part;  // where the substep begins and how long it is, as fractions of the frame
+  float begin, part;  // where the substep begins and how long it is, as
+                      // fractions of the frame
   float frames_per_s;
   float least_margin_m;   // margins below it count as this
   float border_margin_m;  // and those round an open border below this as this
@@ -199,7 +262,8 @@ struct SelfConstants {
   uint words;  // 32-bit words of blocks that a block may touch
   float thickness_m, friction;
   float h;        // substep [s]
-  float reach_m;  // farther apart than this, and what they close in on each other, no two pieces concern each other
+  float reach_m;  // farther apart than this, and what they close in on each
+                  // other, no two pieces concern each other
   float most_m;   // that a vertex is moved by one round of wishes
   uint unused0;
 };
@@ -219,10 +283,10 @@ static_assert(sizeof(JointMatrix) == 48);
 static_assert(sizeof(GripVertex) == 48);
 static_assert(sizeof(DistanceConstraint) == 16);
 static_assert(sizeof(PaperConstants) == 48);
-static_assert(sizeof(LineConstants) == 120);
+static_assert(sizeof(LineConstants) == 116);
 static_assert(sizeof(ChainEntry) == 16);
 static_assert(sizeof(TetherEnd) == 8);
 static_assert(sizeof(ChainRange) == 16);
-static_assert(sizeof(ChainConstants) == 64);
+static_assert(sizeof(ChainConstants) == 56);
 }  // namespace clothbench::pbd_gpu
 #endif

@@ -1,12 +1,14 @@
 #pragma once
+#include <cmath>
 #include <cstring>
-#include <memory>
 #include <string>
-#include <vector>
 
 #include "clothbench/error.hpp"
-#include "shaders.hpp"
-#include "vulkan/program.hpp"
+#include "crumpled.hpp"
+#include "frame_builder.hpp"
+#include "line_plan.hpp"
+
+// What lines and chains share: constants of a substep, and one dispatch of many workgroups that wait for one another.
 
 namespace clothbench::pbd_gpu {
 
@@ -19,13 +21,39 @@ inline Patience patience(const vulkan::Device& d) {
   return d.is_software() ? Patience{1u << 24, 1u << 30} : Patience{1u << 14, 1u << 21};
 }
 
-/// Does the device run all workgroups of this kernel at once (device_barrier.glsl)? Vulkan does not promise it, so they
-/// are asked to meet, without work. `bindings(meeting, missed)` are the kernel's, `constants` have substeps 0. With
-/// `must` an Error if not.
-template <class Constants, class Bindings>
-bool runs_at_once(const std::shared_ptr<vulkan::Device>& device, const Shader& shader,
-                  std::vector<std::uint32_t> specialization, std::uint32_t threads, const Bindings& bindings,
-                  vulkan::Groups groups, Constants constants, bool must) {
+/// Gravity, damping, the greatest speed and the step of LineConstants or ChainConstants.
+template <class Constants>
+Constants step_constants(const FrameBuilder& frame, double dt_s, int substeps) {
+  const Scene& s = frame.scene();
+  const double h = dt_s / substeps, across = std::hypot(s.cloth.width_m, s.cloth.height_m);
+  const Vec3 g = s.gravity_m_per_s2;
+  const auto f = [](double value) { return static_cast<float>(value); };
+  Constants c{};
+  c.gravity_h = {f(g[0] * h), f(g[1] * h), f(g[2] * h), 0};
+  c.h = f(h);
+  c.loss = f(-std::expm1(-s.material.damping_per_s * h));
+  c.speed_limit = f(2 * std::sqrt(2 * norm(g) * across) + 2 * norm(s.cloth.initial_velocity_m_per_s) +
+                    norm(s.cloth.spin_rad_per_s) * across);
+  c.per_h = f(1 / h);
+  c.patience = patience(*frame.device()).in_a_frame;
+  return c;
+}
+
+/// Is speed limited (LINES_LIMIT_SPEED)? What moves may drive the cloth as fast as it likes, and so may springs that
+/// start stretched.
+inline bool limits_speed(const Scene& s, bool tethered) {
+  const bool driven = s.needs.has(Feature::MovingMesh) || s.needs.has(Feature::Capsules);
+  return (tethered || starts_crumpled(s)) && !driven;
+}
+
+/// Does the device run all workgroups of this kernel at once (device_barrier.glsl), as tuning.device_barrier has it?
+/// Vulkan does not promise it, so they are asked to meet, without work: all constants 0. With "always" an Error if not.
+template <class Constants>
+bool runs_at_once(const FrameBuilder& frame, const std::string& kernel_name, std::vector<std::uint32_t> specialization,
+                  std::uint32_t threads, vulkan::Groups groups) {
+  const std::string wanted = frame.tuning()["device_barrier"];
+  const std::shared_ptr<vulkan::Device>& device = frame.device();
+  if (!(wanted == "always" || (wanted == "auto" && device->is_discrete()))) return false;
   constexpr double kPatience_s =
       60;  // a trial that takes longer has no device to itself, or none that is well: an error either way
   const vulkan::Buffer meeting(device, "meeting", 8, vulkan::Buffer::Place::Device);
@@ -33,21 +61,29 @@ bool runs_at_once(const std::shared_ptr<vulkan::Device>& device, const Shader& s
       missed(device, "missed", 4, vulkan::Buffer::Place::Host);
   std::memset(zeros.mapped(), 0, 8);
   std::memset(missed.mapped(), 0, 4);
-  specialization.insert(specialization.begin(), threads);
-  const vulkan::Kernel kernel(device, shader.name, shader.code, specialization, bindings(meeting, missed),
+  specialization[0] = threads;
+  const vulkan::Kernel kernel(device, kernel_name, shader(kernel_name).code, specialization,
+                              frame.buffers_with({{BIND_MEETING, &meeting}, {BIND_MISSED, &missed}}),
                               sizeof(Constants));
   vulkan::Program program(device);
   program.copy(0, zeros, meeting);
+  Constants constants{};
   constants.patience = patience(*device).at_loading;
   program.dispatch(0, kernel, groups, constants);
   program.record(false);
   program.run(kPatience_s);
   std::uint32_t failed = 0;
   std::memcpy(&failed, missed.mapped(), 4);
-  if (failed != 0 && must)
-    throw Error("solver xpbd: setting device_barrier=always: this device does not run " +
+  if (failed != 0 && wanted == "always")
+    throw Error("solver xpbd: setting tuning.device_barrier=always: this device does not run " +
                 std::to_string(groups.x * groups.y) + " workgroups of " + std::to_string(threads) + " at once");
   return failed == 0;
+}
+
+/// Where they meet, and where they say that somebody did not come.
+inline void add_meeting(FrameBuilder& frame) {
+  frame.add_buffer(BIND_MEETING, "meeting", 8);
+  frame.set_missed(frame.add_host_buffer("missed", 4, BIND_MISSED));
 }
 
 }  // namespace clothbench::pbd_gpu

@@ -7,13 +7,8 @@
 #include <map>
 #include <numeric>
 
-#include "gpu_solver.hpp"
-
 namespace clothbench::pbd_gpu {
 namespace {
-
-using vulkan::Access;
-using vulkan::Buffer;
 
 /// A margin below this share of the cells' size counts as this: 0.16 mm for a cloth of half a metre and 32 vertices. It
 /// keeps the side of a vertex apart from the rounding of its position. More holds the cloth off visibly.
@@ -148,28 +143,25 @@ Clusters cluster(const std::vector<double>& positions, const std::vector<std::ar
   return result;
 }
 
-XpbdContact::XpbdContact(GpuSolver& solver, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
-                         const Buffer& positions, const Buffer& velocities, int samples)
-    : solver_(solver),
-      scene_(scene),
-      colliders_(colliders),
-      x_(positions),
-      v_(velocities),
-      samples_(samples_needed(scene, samples)) {
-  if (samples == 0) solver_.leave_out("contact samples", "setting contact_samples=0");
+XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
+                         int samples)
+    : frame_(frame), scene_(scene), colliders_(colliders), samples_(samples_needed(scene, samples)) {
+  if (samples == 0) frame_.leave_out("contact samples", "setting contact_samples=0");
   if (samples != 0 && samples_ == 0)
-    solver_.leave_out("contact samples", "no edge of the cloth reaches between two vertices");
+    frame_.leave_out("contact samples", "no edge of the cloth reaches between two vertices");
   const FeatureSet meshes = scene.needs & FeatureSet{Feature::StaticMesh, Feature::MovingMesh};
   if (meshes.empty())
-    solver_.leave_out("BroadPhase", "the scene has no mesh to collide with");
+    frame_.leave_out("BroadPhase", "the scene has no mesh to collide with");
   else
-    stage_broad_ = solver_.add_stage("BroadPhase", meshes);
-  stage_contact_ = solver_.add_stage(
+    stage_broad_ = frame_.add_stage("BroadPhase", meshes);
+  stage_contact_ = frame_.add_stage(
       "Contact", scene.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided}), true);
   // Contact of a margin much thinner than the cells has no float left to work in. (Open borders are held farther off
   // still.)
   const double least = kLeastMargin * std::min(scene.cloth.du(), scene.cloth.dv());
-  for (const Collider& c : scene.colliders) solver_.plan_.contact_margins_m.push_back(std::max(c.margin_m, least));
+  std::vector<double> margins;
+  for (const Collider& c : scene.colliders) margins.push_back(std::max(c.margin_m, least));
+  frame_.set_contact_margins(std::move(margins));
   add_sides(origin_m);
   if (!meshes.empty()) add_meshes();
   add_kernels();
@@ -183,7 +175,7 @@ void XpbdContact::add_sides(Vec3 origin_m) {
     const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k] - origin_m[k]); };
     side.push_back({at(0), at(1), at(2), 0});
   }
-  side_ = &solver_.add_vec4_buffer("contact sides", side);
+  frame_.add_buffer(BIND_SIDES, "contact sides", side);
   if (samples_ == 0) return;
   const std::size_t steps[] = {1, columns, columns + 1};
   for (std::size_t f = 0; f < 3 * samples_; ++f)
@@ -192,8 +184,8 @@ void XpbdContact::add_sides(Vec3 origin_m) {
       const float t = static_cast<float>(f % samples_ + 1) / static_cast<float>(samples_ + 1);
       sample_side[f * n + i] = {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z), 0};
     }
-  sample_side_ = &solver_.add_vec4_buffer("contact sides of samples", sample_side);
-  corrections_ = &solver_.add_buffer("contact corrections", 2 * sample_side.size() * sizeof(vec4));
+  frame_.add_buffer(BIND_SAMPLE_SIDES, "contact sides of samples", sample_side);
+  frame_.add_buffer(BIND_CORRECTIONS, "contact corrections", 2 * sample_side.size() * sizeof(vec4));
 }
 
 void XpbdContact::add_meshes() {
@@ -233,77 +225,50 @@ void XpbdContact::add_meshes() {
     if (moving) moving_triangles_ = static_cast<std::uint32_t>(triangles.size() - triangles_before);
   }
   const std::size_t n = scene_.cloth.vertex_count(), words = (clusters.size() + 31) / 32;
-  clusters_ = &solver_.add_buffer("collider clusters", clusters.size() * sizeof(MeshCluster), bytes_of(clusters));
-  boxes_ = &solver_.add_buffer("collider cluster boxes", boxes.size() * sizeof(ClusterBox), bytes_of(boxes));
-  triangles_ = &solver_.add_buffer("collider triangles", triangles.size() * sizeof(uvec4), bytes_of(triangles));
-  candidates_ = &solver_.add_buffer("contact candidates", n * (words + blocks_of(words)) * 4);
-  reaches_ = &solver_.add_buffer("contact reaches", (n + 1) * sizeof(vec4));
+  frame_.add_buffer(BIND_CLUSTERS, "collider clusters", clusters);
+  frame_.add_buffer(BIND_CLUSTER_BOXES, "collider cluster boxes", boxes);
+  frame_.add_buffer(BIND_TRIANGLES, "collider triangles", triangles);
+  frame_.add_buffer(BIND_CANDIDATES, "contact candidates", n * (words + blocks_of(words)) * 4);
+  frame_.add_buffer(BIND_REACHES, "contact reaches", (n + 1) * sizeof(vec4));
 }
 
 void XpbdContact::add_kernels() {
   const ColliderBuffers& c = colliders_;
-  // A binding whose kind the scene lacks is never read: the positions stand in.
-  const auto or_none = [&](const Buffer* b) { return vulkan::Binding{b != nullptr ? b : &x_, Access::Read}; };
-  std::vector<vulkan::Binding> colliders = {or_none(c.planes.buffer), or_none(c.spheres.buffer),
-                                            or_none(c.boxes.buffer), or_none(c.capsules.buffer)};
-  const bool meshes = clusters_ != nullptr;
-  const auto read = [](const Buffer* b) { return vulkan::Binding{b, Access::Read}; };
-  if (meshes)
-    for (const vulkan::Binding& b :
-         {read(clusters_), read(boxes_), read(triangles_), or_none(c.standing.positions),
-          or_none(c.moving.start_positions), or_none(c.moving.positions), read(candidates_), read(reaches_)})
-      colliders.push_back(b);
   lanes_ = lanes();
-  const std::vector<std::uint32_t> counts = {c.planes.count,
-                                             c.spheres.count,
-                                             c.boxes.count,
-                                             c.capsules.count,
-                                             scene_.needs.has(Feature::Friction) ? 1u : 0u,
-                                             standing_clusters_,
-                                             samples_,
-                                             scene_.motion.empty() ? 0u : 1u,
-                                             lanes_};
-  const std::size_t shuffles = lanes_ > 1 ? 1 : 0, mesh = meshes ? 1 : 0;
+  ContactSpecialization s;
+  s.PLANES = c.planes.count;
+  s.SPHERES = c.spheres.count;
+  s.BOXES = c.boxes.count;
+  s.CAPSULES = c.capsules.count;
+  s.FRICTION = scene_.needs.has(Feature::Friction) ? 1 : 0;
+  s.STANDING_CLUSTERS = standing_clusters_;
+  s.MOVING_CLUSTERS = moving_clusters_;
+  s.SAMPLES = samples_;
+  s.MOVING = scene_.motion.empty() ? 0 : 1;
+  s.LANES = lanes_;
+  const std::string shuffles = lanes_ > 1 ? "_shuffle" : "", variant = (meshes() ? "_mesh" : "") + shuffles;
   constexpr auto kPush = static_cast<std::uint32_t>(sizeof(ContactConstants));
-  if (moving_clusters_ > 0)
-    find_boxes_ = &solver_.add_kernel(stage_broad_, shaders::kContactBoxes,
-                                      {read(clusters_),
-                                       {boxes_, Access::Write},
-                                       read(triangles_),
-                                       read(c.moving.start_positions),
-                                       read(c.moving.positions)},
-                                      sizeof(BoxConstants));
-  if (meshes)
-    find_candidates_ = &solver_.add_kernel(
-        stage_broad_, shaders::kContactCandidates[shuffles],
-        {read(&x_), read(&v_), read(clusters_), read(boxes_), {candidates_, Access::Write}, {reaches_, Access::Write}},
-        kPush, {standing_clusters_, moving_clusters_, lanes_});
-  if (samples_ > 0) {
-    std::vector<vulkan::Binding> b = {read(&x_), read(&v_), read(side_), {corrections_, Access::Write}};
-    b.insert(b.end(), colliders.begin(), colliders.end());
-    b.push_back({sample_side_, Access::ReadWrite});
-    sample_ = &solver_.add_kernel(stage_contact_, shaders::kContactSamples[mesh][shuffles], b, kPush, counts);
-  }
-  std::vector<vulkan::Binding> b = {
-      {&x_, Access::ReadWrite}, {&v_, Access::ReadWrite}, {side_, Access::ReadWrite}, or_none(corrections_)};
-  b.insert(b.end(), colliders.begin(), colliders.end());
-  vertices_ = &solver_.add_kernel(stage_contact_, shaders::kContactVertices[mesh][shuffles], b, kPush, counts);
+  if (moving_clusters_ > 0) find_boxes_ = frame_.add_kernel(stage_broad_, "contact_boxes", sizeof(BoxConstants));
+  if (meshes())
+    find_candidates_ = frame_.add_kernel(stage_broad_, "contact_candidates" + shuffles, kPush, s.by_number());
+  if (samples_ > 0) sample_ = frame_.add_kernel(stage_contact_, "contact_samples" + variant, kPush, s.by_number());
+  vertices_ = frame_.add_kernel(stage_contact_, "contact_vertices" + variant, kPush, s.by_number());
 }
 
 /// A point looks round alone where threads are few or work together anyway (a CPU's lanes are points); on a discrete
 /// GPU a small cloth's points do not fill the device, and one thread would read triangle after triangle, each read
 /// waiting for the last.
 std::uint32_t XpbdContact::lanes() const {
-  const vulkan::Device& d = solver_.vulkan_device();
-  const auto wish = solver_.settings()["contact_lanes"].get<std::uint32_t>();
+  const vulkan::Device& d = *frame_.device();
+  const auto wish = frame_.tuning()["contact_lanes"].get<std::uint32_t>();
   const std::uint32_t most =
-      solver_.count_bytes_ || !solver_.settings()["shuffles"].get<bool>() ? 1 : std::max(1u, d.shuffled_lanes());
+      frame_.counts_bytes() || !frame_.tuning()["shuffles"].get<bool>() ? 1 : std::max(1u, d.shuffled_lanes());
   if (wish != 0) return std::min(wish, most);
   if (!d.is_discrete()) return 1;
   constexpr std::uint32_t kMeshLanes = 16, kShapeLanes = 8;
   const ColliderBuffers& c = colliders_;
   const std::uint32_t shapes = c.planes.count + c.spheres.count + c.boxes.count + c.capsules.count;
-  return std::min(most, clusters_ != nullptr ? kMeshLanes : shapes >= kShapeLanes ? kShapeLanes : 1);
+  return std::min(most, meshes() ? kMeshLanes : shapes >= kShapeLanes ? kShapeLanes : 1);
 }
 
 ContactConstants XpbdContact::constants(double dt_s, int substeps) const {
@@ -325,30 +290,30 @@ ContactConstants XpbdContact::constants(double dt_s, int substeps) const {
 }
 
 void XpbdContact::record_frame(double dt_s, int substeps) {
-  if (clusters_ == nullptr) return;
+  if (!meshes()) return;
   const double n = static_cast<double>(scene_.cloth.vertex_count()), all = standing_clusters_ + moving_clusters_,
                t = moving_triangles_, moving = moving_clusters_;
   if (find_boxes_ != nullptr)
-    solver_.dispatch(stage_broad_, *find_boxes_, moving_clusters_, BoxConstants{standing_clusters_, moving_clusters_},
-                     {16 * moving + 112 * t, 32 * moving});
+    frame_.dispatch(*find_boxes_, moving_clusters_, BoxConstants{standing_clusters_, moving_clusters_},
+                    {16 * moving + 112 * t, 32 * moving});
   const ContactConstants k = constants(dt_s, substeps);
-  solver_.dispatch(stage_broad_, *find_candidates_, lanes_ * scene_.cloth.vertex_count(), k,
-                   {n * (32 + 16 * moving + 48 * all), 16 + n * (16 + 4.0 * (k.words + blocks_of(k.words)))});
+  frame_.dispatch(*find_candidates_, lanes_ * scene_.cloth.vertex_count(), k,
+                  {n * (32 + 16 * moving + 48 * all), 16 + n * (16 + 4.0 * (k.words + blocks_of(k.words)))});
 }
 
 void XpbdContact::record_substep(int s, int substeps, double dt_s) {
   ContactConstants k = constants(dt_s, substeps);
   k.begin = static_cast<float>(static_cast<double>(s) / substeps);
-  const std::vector<float>& w = solver_.inverse_mass_now();
+  const std::vector<float>& w = frame_.inverse_mass_now();
   const std::size_t n = w.size(), columns = k.columns, rows = k.rows;
   // What is read and written whatever the cloth does; colliders that come near cost more.
   const double shapes = 32.0 * colliders_.planes.count + 32.0 * colliders_.spheres.count +
                         80.0 * colliders_.boxes.count + 64.0 * colliders_.capsules.count;
   // Later in a frame only who came near something looks round again.
-  const bool meshes = clusters_ != nullptr;
-  const double look = s == 0 ? shapes + (meshes ? 4.0 * blocks_of(k.words) : 0.0) : 0.0;
-  const double ways = (colliders_.capsules.count > 0 ? 16 : 0) + (meshes && !scene_.motion.empty() ? 16 : 0);
-  const double around = look + ways + (meshes ? 16 : 0);
+  const bool has_meshes = meshes();
+  const double look = s == 0 ? shapes + (has_meshes ? 4.0 * blocks_of(k.words) : 0.0) : 0.0;
+  const double ways = (colliders_.capsules.count > 0 ? 16 : 0) + (has_meshes && !scene_.motion.empty() ? 16 : 0);
+  const double around = look + ways + (has_meshes ? 16 : 0);
   if (samples_ > 0) {
     Traffic t;
     for (std::size_t family = 0; family < 3; ++family)
@@ -359,7 +324,7 @@ void XpbdContact::record_substep(int s, int substeps, double dt_s) {
         t.read_B += samples_ * (32 + (any_free ? 80 + around : 0.0));
         t.write_B += samples_ * (any_free ? 48.0 : 0.0);
       }
-    solver_.dispatch(stage_contact_, *sample_, lanes_ * 3 * samples_ * n, k, t);
+    frame_.dispatch(*sample_, lanes_ * 3 * samples_ * n, k, t);
   }
   Traffic t;
   for (std::size_t i = 0; i < n; ++i) {
@@ -369,7 +334,7 @@ void XpbdContact::record_substep(int s, int substeps, double dt_s) {
     t.read_B += 16 + (w[i] > 0 ? 32 + 16 * beside + around : 0.0);
     t.write_B += w[i] > 0 ? 48 : 16;
   }
-  solver_.dispatch(stage_contact_, *vertices_, lanes_ * n, k, t);
+  frame_.dispatch(*vertices_, lanes_ * n, k, t);
 }
 
 }  // namespace clothbench::pbd_gpu

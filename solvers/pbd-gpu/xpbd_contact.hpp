@@ -29,10 +29,9 @@ std::uint32_t samples_needed(const Scene& scene, int wanted);
 /// README, "Contact in xpbd", has the method.
 class XpbdContact {
  public:
-  /// Adds buffers, the stages BroadPhase (meshes only) and Contact, and their kernels. `positions` (.w = inverse mass)
-  /// and `velocities` hold one vec4 a vertex, relative to `origin_m`.
-  XpbdContact(GpuSolver& solver, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
-              const vulkan::Buffer& positions, const vulkan::Buffer& velocities, int samples);
+  /// Adds buffers, the stages BroadPhase (meshes only) and Contact, and their kernels. Positions (.w = inverse mass)
+  /// and velocities hold one vec4 a vertex, relative to `origin_m`.
+  XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders, int samples);
 
   /// Start of a frame, after the colliders' own record().
   void record_frame(double dt_s, int substeps);
@@ -44,20 +43,17 @@ class XpbdContact {
   void add_sides(Vec3 origin_m);
   void add_kernels();
   std::uint32_t lanes() const;
+  bool meshes() const { return standing_clusters_ + moving_clusters_ > 0; }
   ContactConstants constants(double dt_s, int substeps) const;
 
-  GpuSolver& solver_;
+  FrameBuilder& frame_;
   const Scene& scene_;
   const ColliderBuffers& colliders_;
-  const vulkan::Buffer &x_, &v_;
   const std::uint32_t samples_;  ///< an edge
   std::uint32_t lanes_ = 1;      ///< threads that look round for one point
   std::uint32_t standing_clusters_ = 0, moving_clusters_ = 0, moving_triangles_ = 0;
   int stage_broad_ = -1, stage_contact_ = -1;
-  const vulkan::Buffer *side_ = nullptr, *sample_side_ = nullptr, *corrections_ = nullptr;
-  const vulkan::Buffer *clusters_ = nullptr, *boxes_ = nullptr, *triangles_ = nullptr, *candidates_ = nullptr,
-                       *reaches_ = nullptr;
-  const vulkan::Kernel *find_boxes_ = nullptr, *find_candidates_ = nullptr, *vertices_ = nullptr, *sample_ = nullptr;
+  const FrameKernel *find_boxes_ = nullptr, *find_candidates_ = nullptr, *vertices_ = nullptr, *sample_ = nullptr;
 };
 
 }  // namespace clothbench::pbd_gpu

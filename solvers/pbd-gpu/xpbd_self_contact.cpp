@@ -2,14 +2,10 @@
 
 #include <algorithm>
 
-#include "gpu_solver.hpp"
+#include "clothbench/error.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
-
-using vulkan::Access;
-using vulkan::Binding;
-using vulkan::Buffer;
 
 /// Rounds of wishes a substep: what one leaves in a pile, the next one finds.
 constexpr int kRounds = 2;
@@ -28,12 +24,11 @@ std::uint32_t blocks_along(int vertices, std::uint32_t side) {
 
 }  // namespace
 
-XpbdSelfContact::XpbdSelfContact(GpuSolver& solver, const Scene& scene, const Buffer& positions,
-                                 const Buffer& velocities)
-    : solver_(solver), scene_(scene), x_(positions), v_(velocities) {
+XpbdSelfContact::XpbdSelfContact(FrameBuilder& frame, const Scene& scene, const vulkan::Buffer& positions)
+    : frame_(frame), scene_(scene), x_(positions) {
   const Cloth& c = scene.cloth;
   if (c.mesh) throw Error("solver xpbd: self-collision is of grids alone, and this cloth is a triangle mesh");
-  if (solver.settings()["batch"] != 1) throw Error("solver xpbd: setting batch: takes no self-collision");
+  if (frame.settings()["batch"] != 1) throw Error("solver xpbd: setting batch: takes no self-collision");
   for (side_ = kLeastSide; blocks_ == 0 || blocks_ > kMostBlocks; side_ *= 2) {
     block_columns_ = blocks_along(c.columns, side_);
     blocks_ = block_columns_ * blocks_along(c.rows, side_);
@@ -42,31 +37,22 @@ XpbdSelfContact::XpbdSelfContact(GpuSolver& solver, const Scene& scene, const Bu
   words_ = (blocks_ + 31) / 32;
   FeatureSet serves = {Feature::SelfCollision};
   if (c.self_collision.friction > 0) serves.add(Feature::Friction);
-  stage_start_ = solver_.add_stage("KeepStart", {Feature::SelfCollision});
-  stage_ = solver_.add_stage("SelfContact", serves, true);
+  stage_start_ = frame_.add_stage("KeepStart", {Feature::SelfCollision});
+  stage_ = frame_.add_stage("SelfContact", serves, true);
   const std::size_t n = c.vertex_count();
-  starts_ = &solver_.add_buffer("self-contact starts", n * sizeof(vec4));
-  block_boxes_ = &solver_.add_buffer("self-contact blocks", 3 * blocks_ * sizeof(vec4));
-  near_ = &solver_.add_buffer("self-contact near blocks", std::uint64_t{4} * blocks_ * words_);
+  starts_ = &frame_.add_buffer(BIND_STARTS, "self-contact starts", n * sizeof(vec4));
+  frame_.add_buffer(BIND_BLOCKS, "self-contact blocks", 3 * blocks_ * sizeof(vec4));
+  frame_.add_buffer(BIND_NEAR, "self-contact near blocks", std::uint64_t{4} * blocks_ * words_);
   // Of each vertex one slot, of its two triangles six, of its three edges six.
-  wishes_ = &solver_.add_buffer("self-contact wishes", 26 * n * sizeof(vec4));
-  part_ = &solver_.add_buffer("self-contact part of the way", 4);
-  constexpr auto kPush = static_cast<std::uint32_t>(sizeof(SelfConstants));
-  const auto read = [](const Buffer* b) { return Binding{b, Access::Read}; };
-  find_blocks_ =
-      &solver_.add_kernel(stage_, shaders::kSelfBlocks,
-                          {read(starts_), read(&x_), {block_boxes_, Access::Write}, {part_, Access::Write}}, kPush);
-  find_near_ = &solver_.add_kernel(stage_, shaders::kSelfNear, {read(block_boxes_), {near_, Access::Write}}, kPush);
-  wish_ = &solver_.add_kernel(
-      stage_, shaders::kSelfWishes,
-      {read(starts_), read(&x_), read(&v_), read(block_boxes_), read(near_), {wishes_, Access::Write}}, kPush);
-  apply_ = &solver_.add_kernel(stage_, shaders::kSelfApply,
-                               {{&x_, Access::ReadWrite}, {&v_, Access::ReadWrite}, read(wishes_)}, kPush);
-  certify_ = &solver_.add_kernel(
-      stage_, shaders::kSelfCertify,
-      {read(starts_), read(&x_), read(block_boxes_), read(near_), {part_, Access::ReadWrite}}, kPush);
-  move_ = &solver_.add_kernel(stage_, shaders::kSelfMove,
-                              {{starts_, Access::ReadWrite}, {&x_, Access::ReadWrite}, read(part_)}, kPush);
+  frame_.add_buffer(BIND_WISHES, "self-contact wishes", 26 * n * sizeof(vec4));
+  frame_.add_buffer(BIND_PART, "self-contact part of the way", 4);
+  const auto add = [&](const char* name) { return frame_.add_kernel(stage_, name, sizeof(SelfConstants)); };
+  find_blocks_ = add("self_blocks");
+  find_near_ = add("self_near");
+  wish_ = add("self_wishes");
+  apply_ = add("self_apply");
+  certify_ = add("self_certify");
+  move_ = add("self_move");
 }
 
 SelfConstants XpbdSelfContact::constants(double h) const {
@@ -85,7 +71,7 @@ SelfConstants XpbdSelfContact::constants(double h) const {
   return k;
 }
 
-void XpbdSelfContact::record_frame() { solver_.copy(stage_start_, x_, *starts_); }
+void XpbdSelfContact::record_frame() { frame_.copy(stage_start_, x_, *starts_); }
 
 void XpbdSelfContact::record_substep(double h) {
   SelfConstants k = constants(h);
@@ -98,9 +84,8 @@ void XpbdSelfContact::record_substep(double h) {
   record_search(k);
   const double edges = 3 * n - 2.0 * (k.columns + k.rows) + 1;
   // What every piece reads whatever the cloth does; what is near costs more.
-  solver_.dispatch(stage_, *certify_, 4 * scene_.cloth.vertex_count(), k,
-                   {n * (16 + around) + edges * (32 + around), 0});
-  solver_.dispatch(stage_, *move_, scene_.cloth.vertex_count(), k, {36 * n, 32 * n});
+  frame_.dispatch(*certify_, 4 * scene_.cloth.vertex_count(), k, {n * (16 + around) + edges * (32 + around), 0});
+  frame_.dispatch(*move_, scene_.cloth.vertex_count(), k, {36 * n, 32 * n});
 }
 
 void XpbdSelfContact::record_search(const SelfConstants& k) {
@@ -110,19 +95,19 @@ void XpbdSelfContact::record_search(const SelfConstants& k) {
   for (uint row = 0; row < k.rows; row += side_)
     for (uint column = 0; column < k.columns; column += side_)
       looked += (std::min(row + side_, k.rows - 1) - row + 1) * (std::min(column + side_, k.columns - 1) - column + 1);
-  solver_.dispatch(stage_, *find_blocks_, blocks_, k, {32 * looked, 48 * blocks + 4});
-  solver_.dispatch(stage_, *find_near_, std::uint64_t{blocks_} * words_, k,
-                   {48 * blocks * (words + blocks), 4 * blocks * words});
+  frame_.dispatch(*find_blocks_, blocks_, k, {32 * looked, 48 * blocks + 4});
+  frame_.dispatch(*find_near_, std::uint64_t{blocks_} * words_, k,
+                  {48 * blocks * (words + blocks), 4 * blocks * words});
 }
 
 void XpbdSelfContact::record_round(const SelfConstants& k) {
   const double columns = k.columns, rows = k.rows, n = columns * rows, cells = (columns - 1) * (rows - 1);
   const double edges = 3 * n - 2 * (columns + rows) + 1, around = 32 + 4.0 * words_;
-  solver_.dispatch(
-      stage_, *wish_, 6 * scene_.cloth.vertex_count(), k,
+  frame_.dispatch(
+      *wish_, 6 * scene_.cloth.vertex_count(), k,
       {n * (16 + around) + 2 * cells * (48 + around) + edges * (32 + around), 32 * n + 96 * 2 * cells + 64 * edges});
   Traffic t;
-  const std::vector<float>& w = solver_.inverse_mass_now();
+  const std::vector<float>& w = frame_.inverse_mass_now();
   for (std::size_t i = 0; i < w.size(); ++i) {
     const bool right = i % k.columns + 1 < k.columns, left = i % k.columns > 0, down = i / k.columns + 1 < k.rows,
                up = i / k.columns > 0;
@@ -131,7 +116,7 @@ void XpbdSelfContact::record_round(const SelfConstants& k) {
     t.read_B += 16 + (w[i] > 0 ? 32.0 * slots + 16 : 0);
     t.write_B += w[i] > 0 ? 32 : 0;
   }
-  solver_.dispatch(stage_, *apply_, w.size(), k, t);
+  frame_.dispatch(*apply_, w.size(), k, t);
 }
 
 }  // namespace clothbench::pbd_gpu

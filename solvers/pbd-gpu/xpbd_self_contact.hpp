@@ -1,5 +1,5 @@
 #pragma once
-#include "colliders.hpp"
+#include "frame_builder.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -9,9 +9,8 @@ namespace clothbench::pbd_gpu {
 class XpbdSelfContact {
  public:
   /// Adds the stages KeepStart and SelfContact, their buffers and kernels. `positions` (.w = inverse mass) and
-  /// `velocities` hold one vec4 a vertex. Throws Error for what it does not do: triangle meshes, copies.
-  XpbdSelfContact(GpuSolver& solver, const Scene& scene, const vulkan::Buffer& positions,
-                  const vulkan::Buffer& velocities);
+  /// velocities hold one vec4 a vertex. Throws Error for what it does not do: triangle meshes, copies.
+  XpbdSelfContact(FrameBuilder& frame, const Scene& scene, const vulkan::Buffer& positions);
 
   /// Start of a frame, before anything moves.
   void record_frame();
@@ -23,15 +22,14 @@ class XpbdSelfContact {
   void record_search(const SelfConstants&);
   void record_round(const SelfConstants&);
 
-  GpuSolver& solver_;
+  FrameBuilder& frame_;
   const Scene& scene_;
-  const vulkan::Buffer &x_, &v_;
+  const vulkan::Buffer& x_;
   std::uint32_t side_ = 0, block_columns_ = 0, blocks_ = 0, words_ = 0;
   int stage_start_ = -1, stage_ = -1;
-  const vulkan::Buffer *starts_ = nullptr, *block_boxes_ = nullptr, *near_ = nullptr, *wishes_ = nullptr,
-                       *part_ = nullptr;
-  const vulkan::Kernel *find_blocks_ = nullptr, *find_near_ = nullptr, *wish_ = nullptr, *apply_ = nullptr,
-                       *certify_ = nullptr, *move_ = nullptr;
+  const vulkan::Buffer* starts_ = nullptr;
+  const FrameKernel *find_blocks_ = nullptr, *find_near_ = nullptr, *wish_ = nullptr, *apply_ = nullptr,
+                    *certify_ = nullptr, *move_ = nullptr;
 };
 
 }  // namespace clothbench::pbd_gpu

@@ -48,25 +48,25 @@ class Xpbd final : public GpuSolver {
       position.push_back(position[i - one]);
       velocity.push_back(velocity[i - one]);
     }
-    x_ = &add_vec4_buffer("positions", position);
-    v_ = &add_vec4_buffer("velocities", velocity);
-    rx_ = &add_buffer("position rests", x_->bytes());
-    rv_ = &add_buffer("velocity rests", v_->bytes());
-    set_state(*x_, *v_, origin);
+    const vulkan::Buffer& x = add_buffer(BIND_POSITIONS, "positions", position);
+    const vulkan::Buffer& v = add_buffer(BIND_VELOCITIES, "velocities", velocity);
+    add_buffer(BIND_POSITION_RESTS, "position rests", x.bytes());
+    add_buffer(BIND_VELOCITY_RESTS, "velocity rests", v.bytes());
+    set_state(x, v, origin);
     add_colliders(origin, true);
     add_grips(origin, 1);
     if (chained)
-      chains_ = std::make_unique<Chains>(*this, scene(), cloth, *x_, *v_, *rx_, *rv_);
+      chains_ = std::make_unique<Chains>(frame(), scene(), cloth);
     else
-      lines_ = std::make_unique<Lines>(*this, scene(), *x_, *v_, *rx_, *rv_);
-    if (grips() != nullptr && !(lines_ && lines_->moves_grips())) move_grips_ = &grips()->add_kernel(*x_, *v_);
+      lines_ = std::make_unique<Lines>(frame(), scene());
+    if (grips() != nullptr && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
     if ((scene().needs & kColliderFeatures).empty())
       leave_out("contact", "the scene has no collider");
     else
-      contact_ = std::make_unique<XpbdContact>(*this, scene(), origin, *colliders(), *x_, *v_,
+      contact_ = std::make_unique<XpbdContact>(frame(), scene(), origin, *colliders(),
                                                settings()["contact_samples"].get<int>());
     if (scene().needs.has(Feature::SelfCollision))
-      self_contact_ = std::make_unique<XpbdSelfContact>(*this, scene(), *x_, *v_);
+      self_contact_ = std::make_unique<XpbdSelfContact>(frame(), scene(), x);
     else
       leave_out("self-contact", "the cloth of the scene does not touch itself");
   }
@@ -137,8 +137,7 @@ class Xpbd final : public GpuSolver {
   std::unique_ptr<Chains> chains_;  ///< if links are not all alike
   std::unique_ptr<XpbdContact> contact_;
   std::unique_ptr<XpbdSelfContact> self_contact_;
-  vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *rx_ = nullptr, *rv_ = nullptr;
-  const vulkan::Kernel* move_grips_ = nullptr;
+  const FrameKernel* move_grips_ = nullptr;
 };
 
 }  // namespace
@@ -164,11 +163,13 @@ SolverInfo xpbd_info() {
       {"batch", "1", "as many copies of the cloth in one dispatch (metrics are of the first): throughput"},
       {"contact_samples", "-1",
        "points on each edge that take part in contact beside its two vertices, 0 to 16; -1: as colliders ask"},
-      {"contact_lanes", "0",
-       "threads that look round for one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
       {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
       {"one_dispatch", "true",
        "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
+      {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+  info.tuning = {
+      {"contact_lanes", "0",
+       "threads that look round for one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
       {"device_barrier", "\"auto\"",
        "one dispatch of many workgroups that wait for one another: auto (discrete GPUs that run them all at once), "
        "always, never"},
@@ -177,39 +178,21 @@ SolverInfo xpbd_info() {
       {"threads_a_group", "0", "of one family's workgroups: 32 to 1024; 0: by line and device"},
       {"lines_beside", "0",
        "neighbouring lines whose threads take turns, so that memory is read by whole sectors: 1, 2 or 4; 0: by line "
-       "and device"},
-      {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+       "and device"}};
   return info;
 }
 
 std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes) {
-  if (!(settings["substeps"].get<double>() >= 0 && settings["substeps"].get<double>() <= 4096))
-    throw Error("solver xpbd: setting substeps: expected 1 to 4096, or 0; found " + settings["substeps"].dump());
-  const nlohmann::json& quality = settings["quality"];
-  if (quality != "fast" && quality != "default" && quality != "accurate")
-    throw Error("solver xpbd: setting quality: expected fast, default or accurate; found " + quality.dump());
-  const double vertices = settings["vertices_a_thread"].get<double>();
-  if (vertices != 0 && vertices != 2 && vertices != 4 && vertices != 8 && vertices != 16 && vertices != 32)
-    throw Error("solver xpbd: setting vertices_a_thread: expected 0, 2, 4, 8, 16 or 32; found " +
-                settings["vertices_a_thread"].dump());
-  if (!(settings["batch"].get<double>() >= 1 && settings["batch"].get<double>() <= 262144))
-    throw Error("solver xpbd: setting batch: expected 1 to 262144; found " + settings["batch"].dump());
-  const double threads = settings["threads_a_group"].get<double>();
-  if (threads != 0 && !(threads >= 32 && threads <= 1024 && std::exp2(std::round(std::log2(threads))) == threads))
-    throw Error("solver xpbd: setting threads_a_group: expected 0 or a power of two from 32 to 1024; found " +
-                settings["threads_a_group"].dump());
-  const nlohmann::json& barrier = settings["device_barrier"];
-  if (barrier != "auto" && barrier != "always" && barrier != "never")
-    throw Error("solver xpbd: setting device_barrier: expected auto, always or never; found " + barrier.dump());
-  if (!(settings["iterations"].get<double>() >= 1 && settings["iterations"].get<double>() <= 4096))
-    throw Error("solver xpbd: setting iterations: expected 1 to 4096; found " + settings["iterations"].dump());
-  if (!(settings["contact_samples"].get<double>() >= -1 && settings["contact_samples"].get<double>() <= 16))
-    throw Error("solver xpbd: setting contact_samples: expected 0 to 16, or -1; found " +
-                settings["contact_samples"].dump());
-  const double lanes = settings["contact_lanes"].get<double>();
-  if (lanes != 0 && lanes != 1 && lanes != 2 && lanes != 4 && lanes != 8 && lanes != 16)
-    throw Error("solver xpbd: setting contact_lanes: expected 0, 1, 2, 4, 8 or 16; found " +
-                settings["contact_lanes"].dump());
+  require_between("xpbd", settings, "substeps", 0, 4096);
+  require_one_of("xpbd", settings, "quality", {"fast", "default", "accurate"});
+  require_between("xpbd", settings, "batch", 1, 262144);
+  require_between("xpbd", settings, "iterations", 1, 4096);
+  require_between("xpbd", settings, "contact_samples", -1, 16);
+  const nlohmann::json& tuning = settings[kTuning];
+  require_one_of("xpbd", tuning, "vertices_a_thread", {0, 2, 4, 8, 16, 32});
+  require_one_of("xpbd", tuning, "threads_a_group", {0, 32, 64, 128, 256, 512, 1024});
+  require_one_of("xpbd", tuning, "device_barrier", {"auto", "always", "never"});
+  require_one_of("xpbd", tuning, "contact_lanes", {0, 1, 2, 4, 8, 16});
   return std::make_unique<Xpbd>(xpbd_info(), settings, device, count_bytes);
 }
 

@@ -46,7 +46,7 @@ TEST_F(Barriers, KernelsDoWithBuffersWhatTheirQualifiersAndBindingsSay) {
       const std::vector<BufferUse> uses = uses_of(r.kernel->code());
       ASSERT_EQ(uses.size(), r.kernel->bindings().size()) << r.kernel->name();
       for (const BufferUse& u : uses) {
-        const vulkan::Access declared = r.kernel->bindings().at(u.binding).access;
+        const vulkan::Access declared = binding_of(*r.kernel, u.binding).access;
         const std::string where = r.kernel->name() + " binding " + std::to_string(u.binding);
         EXPECT_EQ(u.read, declared != vulkan::Access::Write) << where;
         EXPECT_EQ(u.written, declared != vulkan::Access::Read) << where;

@@ -62,7 +62,7 @@ TEST_F(Bytes, OfEveryStageAtManySizes) {
 TEST_F(Bytes, OfChains) {
   expect_equal("xpbd", mesh_sheet(20), {{"substeps", 2}});
   expect_equal("xpbd", with_damping(mesh_tube(12, 9)), {{"substeps", 3}});
-  expect_equal("xpbd", mesh_sheet(12), {{"substeps", 3}, {"device_barrier", "always"}});
+  expect_equal("xpbd", mesh_sheet(12), {{"substeps", 3}, {"tuning", {{"device_barrier", "always"}}}});
   expect_equal("xpbd", with_pins(uneven(sheet(17, 9), 3, 0.2)), {{"substeps", 2}});
   expect_equal("xpbd", with_pins(uneven(sheet(17, 9), 3, 1e-3)), {{"substeps", 2}});
 }

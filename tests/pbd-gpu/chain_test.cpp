@@ -178,8 +178,8 @@ TEST_F(Chained, SliversDoNotThrowWhatHangsOnThem) {
 TEST_F(Chained, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
   int agreed = 0;
   for (const Scene& s : {with_damping(mesh_sheet(12)), with_damping(mesh_sheet(20))}) {
-    const auto passes = make("xpbd", {{"device_barrier", "never"}}),
-               resident = make("xpbd", {{"device_barrier", "always"}});
+    const auto passes = make("xpbd", {{"tuning", {{"device_barrier", "never"}}}}),
+               resident = make("xpbd", {{"tuning", {{"device_barrier", "always"}}}});
     passes->load(s);
     const ClothState expected = after(*passes, s, 5);
     try {

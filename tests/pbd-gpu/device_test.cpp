@@ -21,14 +21,14 @@ TEST(Groups, RoundUpAndTurnIntoRowsPastTheLimit) {
 }
 
 TEST_F(Gpu, RowsOfGroupsReachEveryItemOnce) {
-  using vulkan::Access, vulkan::Buffer;
+  using vulkan::Buffer;
   constexpr std::uint32_t kItems = 15 * 64 - 7, kBeyond = 9;
   const auto buffer =
       std::make_unique<Buffer>(device_, "velocities", (kItems + kBeyond) * sizeof(vec4), Buffer::Place::Host);
   auto* v = static_cast<vec4*>(buffer->mapped());
   for (std::uint32_t i = 0; i < kItems + kBeyond; ++i) v[i] = {static_cast<float>(i), 0, 0, 1};
-  const vulkan::Kernel kernel(device_, "forces", shaders::kApplyExternalForces.code, {64},
-                              {{buffer.get(), Access::ReadWrite}}, sizeof(PaperConstants));
+  const vulkan::Kernel kernel(device_, "forces", shader("apply_external_forces").code, {64},
+                              {{BIND_VELOCITIES, buffer.get()}}, sizeof(PaperConstants));
   vulkan::Program program(device_);
   PaperConstants c{};
   c.gravity = {0, 1, 0, 0};
@@ -151,7 +151,8 @@ TEST_F(Gpu, BadSettingsAreRefused) {
     for (int substeps : {-3, 5000}) EXPECT_THROW(make(solver, {{"substeps", substeps}}), Error);
   EXPECT_THROW(make("paper", {{"substeps", 0}}), Error);
   EXPECT_THROW(make("xpbd", {{"quality", "best"}}), Error);
-  for (int vertices : {-1, 1, 3, 64}) EXPECT_THROW(make("xpbd", {{"vertices_a_thread", vertices}}), Error);
+  for (int vertices : {-1, 1, 3, 64})
+    EXPECT_THROW(make("xpbd", {{"tuning", {{"vertices_a_thread", vertices}}}}), Error);
   for (int iterations : {0, 5000}) EXPECT_THROW(make("xpbd", {{"iterations", iterations}}), Error);
 }
 

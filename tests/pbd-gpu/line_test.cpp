@@ -178,11 +178,11 @@ TEST_F(LineScenes, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
   int agreed = 0;
   for (const auto& [threads, vertices] : {std::pair{512, 8}, {512, 2}, {256, 4}}) {  // 1, 3 and 3 workgroups
     nlohmann::json settings = {
-        {"device_barrier", "never"}, {"threads_a_group", threads}, {"vertices_a_thread", vertices}};
+        {"tuning", {{"device_barrier", "never"}, {"threads_a_group", threads}, {"vertices_a_thread", vertices}}}};
     const auto passes = make("xpbd", settings);
     passes->load(s);
     const ClothState expected = after(*passes, s, 5);
-    settings["device_barrier"] = "always";
+    settings["tuning"]["device_barrier"] = "always";
     const auto resident = make("xpbd", settings);
     try {
       resident->load(s);

@@ -24,7 +24,7 @@ class Mirror final : public GpuSolver {
   void build() override {
     const int stage = add_stage("Mirror", {});
     add_colliders(origin_, keep_start_);
-    const vulkan::Buffer& state = add_vec4_buffer("state", vec4s(scene().cloth.vertex_count()));
+    const vulkan::Buffer& state = add_buffer(BIND_POSITIONS, "state", vec4s(scene().cloth.vertex_count()));
     set_state(state, state, {});
     sources_ = {colliders()->capsules.buffer, colliders()->moving.positions};
     if (keep_start_) sources_.push_back(colliders()->moving.start_positions);
@@ -40,7 +40,7 @@ class Mirror final : public GpuSolver {
   const Vec3 origin_;
   int stage_ = -1;
   std::vector<const vulkan::Buffer*> sources_;
-  std::vector<vulkan::Buffer*> hosts_;
+  std::vector<const vulkan::Buffer*> hosts_;
 };
 
 Scene hands() {

@@ -21,15 +21,19 @@ TEST(Profile, UnknownNamesTheKnown) {
 }
 
 TEST(Profile, NeedsAreReadFromTheCode) {
-  const vulkan::ShaderNeeds plain = vulkan::needs_of(shaders::kUpdatePositions.code, {96});
+  const vulkan::ShaderNeeds plain = vulkan::needs_of(shader("update_positions").code, {96});
   EXPECT_EQ(plain.group[0], 96u) << "the specialized size, not the default";
   EXPECT_EQ(plain.group[1], 1u);
   EXPECT_EQ(plain.shared_memory_B, 0u);
   EXPECT_FALSE(plain.float_atomics);
+  using vulkan::Access;
+  EXPECT_EQ(plain.bindings, (std::map<std::uint32_t, Access>{{BIND_POSITIONS, Access::ReadWrite},
+                                                             {BIND_VELOCITIES, Access::Write},
+                                                             {BIND_PREDICTED, Access::Read}}));
   // Arrays as long as a product of constants: 32 rows of 34 words, six of them, a word a row, and a letter a thread.
-  const vulkan::ShaderNeeds lines = vulkan::needs_of(shaders::kLineFrame[0][0].code, {256, 8, 4, 32, 32, 256});
+  const vulkan::ShaderNeeds lines = vulkan::needs_of(shader("line_frame").code, {256, 8, 4, 32, 32, 256});
   EXPECT_EQ(lines.shared_memory_B, 6u * 32 * 34 * 4 + 32 * 4 + 256 * 16);
-  EXPECT_TRUE(vulkan::needs_of(shaders::kProjectConstraintDeltasNative.code, {64}).float_atomics);
+  EXPECT_TRUE(vulkan::needs_of(shader("project_constraint_deltas_native").code, {64}).float_atomics);
 }
 
 /// A module of nothing but what the reader looks at: workgroup memory of vec4[n] and of a struct {uint; float[2]}.
@@ -95,8 +99,8 @@ TEST_F(Profiles, AKernelThatWouldNotRunThereIsRefused) {
   const auto device = vulkan::Device::get({-1, true, "adreno-like"});
   vulkan::Buffer buffer(device, "velocities", 1024, vulkan::Buffer::Place::Device);
   const auto make = [&](std::uint32_t group) {
-    return vulkan::Kernel(device, "forces", shaders::kApplyExternalForces.code, {group},
-                          {{&buffer, vulkan::Access::ReadWrite}}, sizeof(PaperConstants));
+    return vulkan::Kernel(device, "forces", shader("apply_external_forces").code, {group}, {{BIND_VELOCITIES, &buffer}},
+                          sizeof(PaperConstants));
   };
   make(256);
   try {

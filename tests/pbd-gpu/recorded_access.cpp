@@ -72,7 +72,7 @@ Event work(const vulkan::Program::Recorded& r) {
   e.read_access = VK_ACCESS_SHADER_READ_BIT;
   e.write_access = VK_ACCESS_SHADER_WRITE_BIT;
   for (const BufferUse& u : uses_of(r.kernel->code()))
-    e.touches.push_back({r.kernel->bindings().at(u.binding).buffer, u.read, u.written});
+    e.touches.push_back({binding_of(*r.kernel, u.binding).buffer, u.read, u.written});
   return e;
 }
 
@@ -97,6 +97,11 @@ bool orders(const Event& b, const Event& first, const Event& second, const Event
 }
 
 }  // namespace
+
+const vulkan::Binding& binding_of(const vulkan::Kernel& kernel, std::uint32_t number) {
+  const auto& all = kernel.bindings();
+  return *std::find_if(all.begin(), all.end(), [&](const vulkan::Binding& b) { return b.number == number; });
+}
 
 std::vector<BufferUse> uses_of(vulkan::SpirV code) {
   Module m;

@@ -15,6 +15,8 @@ struct BufferUse {
   bool declared_readonly = false, declared_writeonly = false;
 };
 std::vector<BufferUse> uses_of(vulkan::SpirV code);
+/// The kernel's binding of this number, which it has.
+const vulkan::Binding& binding_of(const vulkan::Kernel&, std::uint32_t number);
 
 /// One thing that happens on the queue's or the host's time line.
 struct Event {

@@ -249,14 +249,15 @@ void expect_close(const Model& m, const ClothState& state, double speed_scale, c
 
 /// One dispatch and many, exchange by shuffles (where lines fit this device's subgroups) and through shared memory.
 std::vector<nlohmann::json> variants() {
-  return {nlohmann::json::object(),
-          {{"shuffles", false}},
-          {{"one_dispatch", false}},
-          {{"one_dispatch", false}, {"shuffles", false}},
-          {{"vertices_a_thread", 2}},
-          {{"one_dispatch", false}, {"vertices_a_thread", 8}},
-          {{"one_dispatch", false}, {"vertices_a_thread", 2}, {"lines_beside", 2}},
-          {{"one_dispatch", false}, {"vertices_a_thread", 2}, {"lines_beside", 4}, {"threads_a_group", 128}}};
+  return {
+      nlohmann::json::object(),
+      {{"tuning", {{"shuffles", false}}}},
+      {{"one_dispatch", false}},
+      {{"one_dispatch", false}, {"tuning", {{"shuffles", false}}}},
+      {{"tuning", {{"vertices_a_thread", 2}}}},
+      {{"one_dispatch", false}, {"tuning", {{"vertices_a_thread", 8}}}},
+      {{"one_dispatch", false}, {"tuning", {{"vertices_a_thread", 2}, {"lines_beside", 2}}}},
+      {{"one_dispatch", false}, {"tuning", {{"vertices_a_thread", 2}, {"lines_beside", 4}, {"threads_a_group", 128}}}}};
 }
 
 TEST_F(Gpu, OneFrameAgreesWithDoublePrecision) {

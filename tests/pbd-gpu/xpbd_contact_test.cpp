@@ -59,10 +59,10 @@ void expect_close(const Scene& s, int substeps, int samples, int frames, const s
   std::vector<std::unique_ptr<GpuSolver>> solvers;
   for (const int lanes : {1, 8})
     solvers
-        .emplace_back(make_xpbd(
-            complete_settings(xpbd_info(),
-                              {{"substeps", substeps}, {"contact_samples", samples}, {"contact_lanes", lanes}}),
-            {-1, true}))
+        .emplace_back(make_xpbd(complete_settings(xpbd_info(), {{"substeps", substeps},
+                                                                {"contact_samples", samples},
+                                                                {"tuning", {{"contact_lanes", lanes}}}}),
+                                {-1, true}))
         ->load(s);
   std::vector<ClothState> states(solvers.size());
   for (int f = 0; f < frames; ++f) {

@@ -99,6 +99,24 @@ TEST_F(Resume, OtherSettingsAreRefusedAndDefaultsAreFilledIn) {
   EXPECT_THROW(require_same_cell(options_.out, {name, scene_.sha256, {{"substeps", 5}}, nullptr}), Error);
 }
 
+/// What an earlier version stored has the knobs of `tuning` beside the other settings.
+TEST_F(Resume, BothPlacesOfAKnobAreTheSameSettings) {
+  entry_.info.tuning = {{"lanes", "0", "of a test"}};
+  const auto with = [&](const nlohmann::json& settings) {
+    CellPlan p = plan(scene_);
+    p.groups[0][0].settings = settings;
+    return p;
+  };
+  const CellPlan once = with({{"substeps", 4}, {"lanes", 2}}),
+                 now = with({{"substeps", 4}, {"tuning", {{"lanes", 2}}}}),
+                 other = with({{"substeps", 4}, {"tuning", {{"lanes", 1}}}});
+  const Cell cell(once.groups[0][0], {}, "test");
+  CellWriter(options_.out, cell.header());
+  EXPECT_THROW(require_same_cells(options_.out, other, true), Error);
+  EXPECT_EQ(refusal(now), "no error") << "begun by the earlier version, finished by this";
+  EXPECT_EQ(refusal(once), "no error") << "of a finished cell";
+}
+
 TEST_F(Resume, AnotherVersionOfTheSolverIsRefused) {
   run_cells(plan(scene_), options_);
   entry_.info.version += "-next";

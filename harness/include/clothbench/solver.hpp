@@ -31,6 +31,9 @@ struct SolverInfo {
   std::vector<std::pair<Feature, Feature>> only_with = {};
   std::vector<SettingSpec> settings;
   int time_order = 1;  ///< order of accuracy in the time step that the integrator declares, everything else solved
+  /// Knobs for tests and measurements alone, members of one setting that is an object: "tuning": {"shuffles": false}.
+  /// No list shows them.
+  std::vector<SettingSpec> tuning = {};
 };
 
 /// What of a scene's needs the solver cannot do, `only_with` taken into account; empty if it can run the scene.
@@ -163,8 +166,13 @@ const SolverEntry* external_solver(const std::string& name);
 inline bool is_external(const SolverInfo& info) { return info.folder.starts_with(kPluginPrefix); }
 /// By name or as "plugin:PATH". Throws Error naming the nearest known solver.
 const SolverEntry& find_solver(const std::string& name);
-/// Fills in defaults; throws Error on an unknown key (with the nearest known one) or a wrong type.
+/// The setting whose members are SolverInfo::tuning.
+inline constexpr char kTuning[] = "tuning";
+/// Fills in defaults; throws Error on an unknown key (with the nearest known one) or a wrong type. Members of `tuning`
+/// are taken beside the others too, where they were once: they are put into their place, and stderr says so once.
 nlohmann::json complete_settings(const SolverInfo&, const nlohmann::json& given);
+/// With the members of `tuning` beside the others: settings that are equal so are the same, however they are written.
+nlohmann::json flat_settings(nlohmann::json settings);
 /// Nearest of `known` by edit distance, for messages; empty if none is near.
 std::string nearest(const std::string& word, const std::vector<std::string>& known);
 

@@ -1,11 +1,10 @@
 #version 450
 // Kim, Ma & Hong 2025, 3.2.3: predicted position. P.w = inverse mass.
-#define COUNTER_BINDING 3
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) readonly buffer Positions { vec4 x[]; };
-layout(std430, binding = 1) readonly buffer Velocities { vec4 v[]; };
-layout(std430, binding = 2) writeonly buffer Predicted { vec4 q[]; };
+layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) readonly buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_PREDICTED) writeonly buffer Predicted { vec4 q[]; };
 layout(push_constant) uniform Push { PaperConstants p; };
 
 void main() {

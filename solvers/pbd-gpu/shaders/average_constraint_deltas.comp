@@ -1,12 +1,11 @@
 #version 450
 // Kim, Ma & Hong 2025, 3.2.3: mean of a particle's corrections onto its predicted position; clears the sums.
-#define COUNTER_BINDING 2
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) buffer Deltas { uvec4 d[]; };
-layout(std430, binding = 1) buffer Predicted { vec4 q[]; };
+layout(std430, binding = BIND_DELTAS) buffer Deltas { uvec4 d[]; };
+layout(std430, binding = BIND_PREDICTED) buffer Predicted { vec4 q[]; };
 layout(push_constant) uniform Push { PaperConstants p; };
-layout(constant_id = 1) const uint NATIVE = 0u;  // the count is a float there
+PAPER_CONSTANTS(SPECIALIZE)
 
 void main() {
   uint i = item();

@@ -3,35 +3,21 @@
 // a path of links of which each vertex of the cloth is on at most one in a family; a thread holds a vertex and the link to the next
 // entry, a workgroup a block of whole chains. The links of a chain are a tridiagonal system in their multipliers (Macklin, Mueller &
 // Chentanez 2016, eq. 18, for all at once), solved by parallel cyclic reduction. The first family of a substep has every vertex
-// and integrates what it loads. A dispatch is one family, or with RESIDENT any number of substeps: then all its workgroups run at
-// once, and wait for one another after each family.
-#ifdef RESIDENT
-#define COUNTER_BINDING 9
-#define BARRIER_BINDING 7
-#define STATE coherent buffer
-#else
-#define COUNTER_BINDING 6
-#define STATE buffer
-#endif
+// and integrates what it loads. A dispatch is one family, or with RESIDENT any number of them: then all its workgroups run at
+// once, and wait for one another after each.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(constant_id = 1) const uint THREADS = 64u;  // of a workgroup: local_size_x
-layout(constant_id = 2) const uint FEATURES = 0u;  // LINES_..., pbd_shared.h
-layout(constant_id = 3) const uint TETHERS = 0u;   // a vertex
-layout(std430, binding = 0) STATE Positions { vec4 x[]; };  // w: inverse mass
-layout(std430, binding = 1) STATE Velocities { vec4 v[]; };
-layout(std430, binding = 2) buffer PositionRests { vec4 rx[]; };
-layout(std430, binding = 3) buffer VelocityRests { vec4 rv[]; };
-layout(std430, binding = 4) readonly buffer Entries { ChainEntry entries[]; };
-layout(std430, binding = 5) readonly buffer TetherEnds { TetherEnd tether_ends[]; };  // TETHERS a vertex
-#ifdef RESIDENT
-layout(std430, binding = 6) readonly buffer Ranges { ChainRange ranges[]; };
-#endif
+CHAIN_CONSTANTS(SPECIALIZE)
+layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };  // w: inverse mass
+layout(std430, binding = BIND_VELOCITIES) coherent buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_POSITION_RESTS) buffer PositionRests { vec4 rx[]; };
+layout(std430, binding = BIND_VELOCITY_RESTS) buffer VelocityRests { vec4 rv[]; };
+layout(std430, binding = BIND_CHAIN_ENTRIES) readonly buffer Entries { ChainEntry entries[]; };
+layout(std430, binding = BIND_TETHER_ENDS) readonly buffer TetherEnds { TetherEnd tether_ends[]; };  // TETHERS a vertex
+layout(std430, binding = BIND_CHAIN_FAMILIES) readonly buffer Ranges { ChainRange ranges[]; };
 layout(push_constant) uniform Push { ChainConstants p; };
-#include "sums.glsl"
-#ifdef RESIDENT
+#include "substep.glsl"
 #include "device_barrier.glsl"
-#endif
 
 vec3 pos, vel, rest_pos, rest_vel;
 float w;
@@ -54,24 +40,16 @@ void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
   above = thread + n < THREADS ? letters[here + thread + n] : vec4(0.0);
 }
 
-/// As in lines_integrate.glsl; pinned vertices are never written, so reading them here races with nothing.
+/// Pinned vertices are never written, so reading them here races with nothing.
 void integrate(uint i) {
-  vec3 sum, gain = p.gravity_h.xyz;
-  if ((FEATURES & LINES_LIMIT_SPEED) != 0u) {
-    float square = dot(vel, vel);
-    if (square > p.speed_limit * p.speed_limit) vel *= p.speed_limit * inversesqrt(square);
-  }
-  if ((FEATURES & LINES_DAMPING) != 0u) gain -= p.loss * vel;
-  two_sum(vel, gain + rest_vel, sum, rest_vel);
-  vel = sum;
-  two_sum(pos, p.h * sum + rest_pos, sum, rest_pos);
-  pos = sum;
+  vel = limited(vel);
+  fall(pos, vel, rest_pos, rest_vel);
   for (uint t = 0u; t < TETHERS; ++t) {
     COUNT_READ(24u)
     TetherEnd end = tether_ends[TETHERS * i + t];
-    vec3 e = pos - x[end.to].xyz;
-    float square = dot(e, e);
-    if (end.reach >= 0.0 && square > end.reach * end.reach) move(e * (end.reach * inversesqrt(square) - 1.0));
+    if (end.reach < 0.0) continue;
+    vec3 back = tethered(pos, x[end.to].xyz, end.reach);
+    if (back != vec3(0.0)) move(back);
   }
 }
 
@@ -132,17 +110,14 @@ void pass(uint number, bool first, uint rounds) {
 }
 
 void main() {
-#ifdef RESIDENT
-  if (p.substeps == 0u && !meet()) return;  // asked only whether all can
+  if (RESIDENT && p.passes == 0u && !meet()) return;  // asked only whether all can
   uint block = item() / THREADS;
-  for (uint s = 0u; s < p.substeps; ++s)
-    for (uint f = 0u; f < p.families; ++f) {
-      if (s + f > 0u && !meet()) return;
-      ChainRange range = LOAD(16u, ranges, f);
-      if (block < range.blocks) pass(range.first_entry + item(), f == 0u, range.rounds);
-    }
-  leave();
-#else
-  pass(p.first_entry + item(), (p.turn & LINES_FIRST) != 0u, p.rounds);
-#endif
+  for (uint n = p.first_pass; n < p.first_pass + p.passes; ++n) {
+    if (RESIDENT && n > p.first_pass && !meet()) return;
+    uint f = n % p.families;
+    ChainRange range = ChainRange(p.first_entry, block + 1u, p.rounds, 0u);
+    if (RESIDENT) range = LOAD(16u, ranges, f);
+    if (block < range.blocks) pass(range.first_entry + item(), f == 0u, range.rounds);
+  }
+  if (RESIDENT) leave();
 }

@@ -1,9 +1,10 @@
-// Included by every kernel after COUNTER_BINDING is set. LOAD/STORE count bytes in the instrumented build, which the
+// Included by every kernel. LOAD/STORE count bytes in the instrumented build, which the
 // test of the byte table runs; in the normal build they are plain accesses.
 #extension GL_GOOGLE_include_directive : require
 #include "../pbd_shared.h"
 
 layout(local_size_x_id = 0) in;
+#define SPECIALIZE(number, type, name, standard) layout(constant_id = number) const type name = standard;
 
 /// Item of this invocation. Groups are one-dimensional; past 65535 of them they lie in rows (`groups_for`).
 uint item() {
@@ -11,7 +12,7 @@ uint item() {
 }
 
 #ifdef CLOTHBENCH_COUNT_BYTES
-layout(std430, binding = COUNTER_BINDING) buffer Counter { uint counted_read, counted_write; };
+layout(std430, binding = BIND_COUNTER) buffer Counter { uint counted_read, counted_write; };
 #define LOAD(bytes, array, i) (atomicAdd(counted_read, bytes), array[i])
 #define LOAD16_OF(member) (atomicAdd(counted_read, 16u), member)
 #define LOAD16(array, i) (atomicAdd(counted_read, 16u), array[i])

@@ -1,9 +1,9 @@
 // What the collision kernels of `paper` share. Bindings: 0 what is touched, 1 predicted positions, 2 positions at the
 // step's start (friction alone reads them), 3 vertices of a mesh.
-layout(std430, binding = 1) buffer Predicted { vec4 q[]; };
-layout(std430, binding = 2) readonly buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_PREDICTED) buffer Predicted { vec4 q[]; };
+layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
 layout(push_constant) uniform Push { PaperContactConstants p; };
-layout(constant_id = 1) const uint FRICTION = 0u;
+PAPER_CONSTANTS(SPECIALIZE)
 
 /// Moves `at` by `push` along `normal` and takes the share `friction` off its tangential way since `from`.
 vec3 touched(vec3 at, vec3 from, vec3 normal, float push, float friction) {

@@ -1,13 +1,12 @@
 #version 450
 // Boxes of the clusters of moving meshes, round their way through the frame: corners move in straight lines.
-#define COUNTER_BINDING 5
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) readonly buffer Clusters { MeshCluster clusters[]; };
-layout(std430, binding = 1) writeonly buffer ClusterBoxes { ClusterBox cluster_boxes[]; };
-layout(std430, binding = 2) readonly buffer Triangles { uvec4 triangles[]; };
-layout(std430, binding = 3) readonly buffer MovingStart { vec4 moving_start[]; };
-layout(std430, binding = 4) readonly buffer MovingEnd { vec4 moving_end[]; };
+layout(std430, binding = BIND_CLUSTERS) readonly buffer Clusters { MeshCluster clusters[]; };
+layout(std430, binding = BIND_CLUSTER_BOXES) writeonly buffer ClusterBoxes { ClusterBox cluster_boxes[]; };
+layout(std430, binding = BIND_TRIANGLES) readonly buffer Triangles { uvec4 triangles[]; };
+layout(std430, binding = BIND_MOVING_START) readonly buffer MovingStart { vec4 moving_start[]; };
+layout(std430, binding = BIND_MOVING_END) readonly buffer MovingEnd { vec4 moving_end[]; };
 layout(push_constant) uniform Push { BoxConstants p; };
 
 void main() {

@@ -3,20 +3,16 @@
 // edge that begins with it, can meet on the way. A bound that is kept (contact_vertices) and not a guess, and a list that
 // cannot overflow. Before the words of a vertex' bits come blocks, a bit for each word that is not 0: of a whole room's hundreds
 // of words few are looked at.
-#define COUNTER_BINDING 6
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) readonly buffer Positions { vec4 x[]; };
-layout(std430, binding = 1) readonly buffer Velocities { vec4 v[]; };
-layout(std430, binding = 2) readonly buffer Clusters { MeshCluster clusters[]; };
-layout(std430, binding = 3) readonly buffer ClusterBoxes { ClusterBox cluster_boxes[]; };
-layout(std430, binding = 4) writeonly buffer Candidates { uint candidates[]; };
-layout(std430, binding = 5) writeonly buffer Reaches { vec4 reaches[]; };
+layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) readonly buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_CLUSTERS) readonly buffer Clusters { MeshCluster clusters[]; };
+layout(std430, binding = BIND_CLUSTER_BOXES) readonly buffer ClusterBoxes { ClusterBox cluster_boxes[]; };
+layout(std430, binding = BIND_CANDIDATES) writeonly buffer Candidates { uint candidates[]; };
+layout(std430, binding = BIND_REACHES) writeonly buffer Reaches { vec4 reaches[]; };
 layout(push_constant) uniform Push { ContactConstants p; };
-layout(constant_id = 1) const uint STANDING_CLUSTERS = 0u;
-layout(constant_id = 2) const uint MOVING_CLUSTERS = 0u;
-
-#define LANES_ID 3
+CONTACT_CONSTANTS(SPECIALIZE)
 #include "lanes.glsl"
 
 void main() {

@@ -1,28 +1,20 @@
-// What the cloth touches, and what of it is near one point. Included after FIRST_COLLIDER_BINDING is set and the push
-// constants `p` are there. Kinds the scene lacks have a count of 0, a constant, so that their code is dropped; the
+// What the cloth touches, and what of it is near one point. Included after the push constants `p`. Kinds the scene lacks have a count of 0, a constant, so that their code is dropped; the
 // variant without MESHES has no buffer for meshes either.
-layout(constant_id = 1) const uint PLANES = 0u;
-layout(constant_id = 2) const uint SPHERES = 0u;
-layout(constant_id = 3) const uint BOXES = 0u;
-layout(constant_id = 4) const uint CAPSULES = 0u;
-layout(constant_id = 5) const uint FRICTION = 0u;
-layout(constant_id = 6) const uint STANDING_CLUSTERS = 0u;
-layout(constant_id = 7) const uint SAMPLES = 0u;  // an edge
-layout(constant_id = 8) const uint MOVING = 0u;   // whether any collider moves
+CONTACT_CONSTANTS(SPECIALIZE)
 
-layout(std430, binding = FIRST_COLLIDER_BINDING) readonly buffer Planes { PlaneShape planes[]; };
-layout(std430, binding = FIRST_COLLIDER_BINDING + 1) readonly buffer Spheres { SphereShape spheres[]; };
-layout(std430, binding = FIRST_COLLIDER_BINDING + 2) readonly buffer Boxes { BoxShape boxes[]; };
-layout(std430, binding = FIRST_COLLIDER_BINDING + 3) readonly buffer Capsules { CapsuleShape capsules[]; };
+layout(std430, binding = BIND_PLANES) readonly buffer Planes { PlaneShape planes[]; };
+layout(std430, binding = BIND_SPHERES) readonly buffer Spheres { SphereShape spheres[]; };
+layout(std430, binding = BIND_BOXES) readonly buffer Boxes { BoxShape boxes[]; };
+layout(std430, binding = BIND_CAPSULES) readonly buffer Capsules { CapsuleShape capsules[]; };
 #ifdef MESHES
-layout(std430, binding = FIRST_COLLIDER_BINDING + 4) readonly buffer Clusters { MeshCluster clusters[]; };
-layout(std430, binding = FIRST_COLLIDER_BINDING + 5) readonly buffer ClusterBoxes { ClusterBox cluster_boxes[]; };
-layout(std430, binding = FIRST_COLLIDER_BINDING + 6) readonly buffer Triangles { uvec4 triangles[]; };
-layout(std430, binding = FIRST_COLLIDER_BINDING + 7) readonly buffer Standing { vec4 standing[]; };
-layout(std430, binding = FIRST_COLLIDER_BINDING + 8) readonly buffer MovingStart { vec4 moving_start[]; };
-layout(std430, binding = FIRST_COLLIDER_BINDING + 9) readonly buffer MovingEnd { vec4 moving_end[]; };
-layout(std430, binding = FIRST_COLLIDER_BINDING + 10) readonly buffer Candidates { uint candidates[]; };
-layout(std430, binding = FIRST_COLLIDER_BINDING + 11) readonly buffer Reaches { vec4 reaches[]; };
+layout(std430, binding = BIND_CLUSTERS) readonly buffer Clusters { MeshCluster clusters[]; };
+layout(std430, binding = BIND_CLUSTER_BOXES) readonly buffer ClusterBoxes { ClusterBox cluster_boxes[]; };
+layout(std430, binding = BIND_TRIANGLES) readonly buffer Triangles { uvec4 triangles[]; };
+layout(std430, binding = BIND_STANDING) readonly buffer Standing { vec4 standing[]; };
+layout(std430, binding = BIND_MOVING_START) readonly buffer MovingStart { vec4 moving_start[]; };
+layout(std430, binding = BIND_MOVING_END) readonly buffer MovingEnd { vec4 moving_end[]; };
+layout(std430, binding = BIND_CANDIDATES) readonly buffer Candidates { uint candidates[]; };
+layout(std430, binding = BIND_REACHES) readonly buffer Reaches { vec4 reaches[]; };
 #endif
 
 // Shares of a margin. A move may end nothing closer than kKeep of it: far above the rounding of float32 positions,
@@ -37,7 +29,6 @@ const float kTaken = 0.9;       // of the free way, the rest is left for roundin
 const float kOther = 0.8;       // cosine above which two normals are one contact's: neighbours in a nearly flat mesh
 const float kFar = 1e30;
 
-#define LANES_ID 9
 #include "lanes.glsl"
 
 /// One convex piece of a collider as one point of the cloth sees it.

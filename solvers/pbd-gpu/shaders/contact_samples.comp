@@ -3,22 +3,14 @@
 // sinks into the corner of a table between two vertices that are outside. A sample is a point of its own that remembers
 // its side as vertices do, follows its edge as far as contact lets it, and asks the two vertices for the
 // rest. Edges are named by their first vertex: towards the next column, the next row, and both.
-#ifdef MESHES
-#define COUNTER_BINDING 17
-#define SIDE_BINDING 16
-#else
-#define COUNTER_BINDING 9
-#define SIDE_BINDING 8
-#endif
-#define FIRST_COLLIDER_BINDING 4
 #define SAMPLE
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) readonly buffer Positions { vec4 x[]; };
-layout(std430, binding = 1) readonly buffer Velocities { vec4 v[]; };
-layout(std430, binding = 2) readonly buffer Sides { vec4 side[]; };
-layout(std430, binding = 3) writeonly buffer Corrections { vec4 corrections[]; };
-layout(std430, binding = SIDE_BINDING) buffer SampleSides { vec4 sample_side[]; };
+layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) readonly buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_SIDES) readonly buffer Sides { vec4 side[]; };
+layout(std430, binding = BIND_CORRECTIONS) writeonly buffer Corrections { vec4 corrections[]; };
+layout(std430, binding = BIND_SAMPLE_SIDES) buffer SampleSides { vec4 sample_side[]; };
 layout(push_constant) uniform Push { ContactConstants p; };
 #include "contact_colliders.glsl"
 #include "contact_advance.glsl"

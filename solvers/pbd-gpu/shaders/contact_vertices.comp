@@ -1,18 +1,12 @@
 #version 450
 // End of a substep: every vertex goes from where it was at the substep's start as far towards where it now is as contact
 // lets it, after taking its share of what the samples on its edges need. X.w = inverse mass, 0 where pinned or held.
-#ifdef MESHES
-#define COUNTER_BINDING 16
-#else
-#define COUNTER_BINDING 8
-#endif
-#define FIRST_COLLIDER_BINDING 4
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) buffer Positions { vec4 x[]; };
-layout(std430, binding = 1) buffer Velocities { vec4 v[]; };
-layout(std430, binding = 2) buffer Sides { vec4 side[]; };  // where the vertex was at the substep's start; w: `spare`, contact_advance
-layout(std430, binding = 3) readonly buffer Corrections { vec4 corrections[]; };  // two a sample: way, velocity
+layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_SIDES) buffer Sides { vec4 side[]; };  // where the vertex was at the substep's start; w: `spare`, contact_advance
+layout(std430, binding = BIND_CORRECTIONS) readonly buffer Corrections { vec4 corrections[]; };  // two a sample: way, velocity
 layout(push_constant) uniform Push { ContactConstants p; };
 #include "contact_colliders.glsl"
 #include "contact_advance.glsl"

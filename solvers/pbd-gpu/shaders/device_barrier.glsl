@@ -1,7 +1,7 @@
 // A barrier over all workgroups of a dispatch. Vulkan does not promise that they run at once; whether they do is tried at
-// loading (`p.substeps` = 0), and waiting is bounded: who waits in vain says so and returns, and the host sees it.
-layout(std430, binding = BARRIER_BINDING) coherent volatile buffer Meeting { uint arrived, left; };
-layout(std430, binding = BARRIER_BINDING + 1) coherent volatile buffer Missed { uint missed; };  // in host memory
+// loading (`p.passes` = 0), and waiting is bounded: who waits in vain says so and returns, and the host sees it.
+layout(std430, binding = BIND_MEETING) coherent volatile buffer Meeting { uint arrived, left; };
+layout(std430, binding = BIND_MISSED) coherent volatile writeonly buffer Missed { uint missed; };  // in host memory
 shared bool all_came;
 
 /// What any thread of the dispatch wrote before, all read after. False where somebody did not come in `p.patience` looks.

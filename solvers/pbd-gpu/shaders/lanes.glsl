@@ -5,7 +5,6 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_vote : require
 #extension GL_KHR_shader_subgroup_shuffle : require
-layout(constant_id = LANES_ID) const uint LANES = 1u;
 #define ANY(condition) subgroupAny(condition)
 uint lane() { return gl_LocalInvocationIndex & (LANES - 1u); }
 uint or_of_lanes(uint bits) {
@@ -27,7 +26,6 @@ uint lane_with(float value, float own) {
   return first == 0xffffffffu ? 0u : first;
 }
 #else
-const uint LANES = 1u;
 #define ANY(condition) (condition)
 uint lane() { return 0u; }
 uint or_of_lanes(uint bits) { return bits; }

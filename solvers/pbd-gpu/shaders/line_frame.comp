@@ -1,10 +1,5 @@
 #version 450
 // Cloths of at most 32 x 32 vertices: one workgroup takes each through `substeps` substeps, its state in shared memory.
-#ifdef KEEP_MULTIPLIERS
-#define COUNTER_BINDING 7
-#else
-#define COUNTER_BINDING 5
-#endif
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #ifdef SHUFFLES
@@ -13,21 +8,16 @@
 #endif
 #include "common.glsl"
 #define ONE_LETTER_EACH  // shared memory is for the state
-layout(std430, binding = 0) buffer Positions { vec4 x[]; };
-layout(std430, binding = 1) buffer Velocities { vec4 v[]; };
-layout(std430, binding = 2) buffer PositionRests { vec4 rx[]; };
-layout(std430, binding = 3) buffer VelocityRests { vec4 rv[]; };
-layout(std430, binding = 4) readonly buffer Grips { GripVertex grips[]; };
+layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_POSITION_RESTS) buffer PositionRests { vec4 rx[]; };
+layout(std430, binding = BIND_VELOCITY_RESTS) buffer VelocityRests { vec4 rv[]; };
+layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
 #ifdef KEEP_MULTIPLIERS
-layout(std430, binding = 5) buffer LinkMultipliers { float link_multipliers[]; };
-layout(std430, binding = 6) buffer HingeMultipliers { vec4 hinge_multipliers[]; };
+layout(std430, binding = BIND_LINK_MULTIPLIERS) buffer LinkMultipliers { float link_multipliers[]; };
+layout(std430, binding = BIND_HINGE_MULTIPLIERS) buffer HingeMultipliers { vec4 hinge_multipliers[]; };
 #endif
 #include "lines.glsl"
-layout(constant_id = 19) const uint GRIPS = 0u;
-layout(constant_id = 20) const uint FIRM_0 = 0u;  // chains of each family that need `least`, a bit each
-layout(constant_id = 21) const uint FIRM_1 = 0u;
-layout(constant_id = 22) const uint FIRM_2 = 0u;
-layout(constant_id = 23) const uint FIRM_3 = 0u;
 
 // 34 words a row: threads of 4 vertices on rows, columns and both diagonals meet in a bank at most two at a time.
 const uint kStride = 34u;

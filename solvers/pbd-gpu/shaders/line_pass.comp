@@ -1,21 +1,8 @@
 #version 450
 // Families of lines of a cloth of any size, its state in memory. The first family of a substep integrates what it loads,
 // the last limits what it stores; every family has every vertex exactly once, so in place is in order.
-// A dispatch is one family, or with RESIDENT any number of substeps: then all its workgroups run at once, and wait for
-// one another after each family.
-#ifdef KEEP_MULTIPLIERS
-#define AFTER_MULTIPLIERS 7
-#else
-#define AFTER_MULTIPLIERS 5
-#endif
-#ifdef RESIDENT
-#define COUNTER_BINDING AFTER_MULTIPLIERS + 2
-#define STATE coherent buffer
-#define BARRIER_BINDING AFTER_MULTIPLIERS
-#else
-#define COUNTER_BINDING AFTER_MULTIPLIERS
-#define STATE buffer
-#endif
+// A dispatch is one family, or with RESIDENT any number of them: then all its workgroups run at once, and wait for one
+// another after each.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #ifdef SHUFFLES
@@ -23,14 +10,14 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 #include "common.glsl"
-layout(std430, binding = 0) STATE Positions { vec4 x[]; };
-layout(std430, binding = 1) STATE Velocities { vec4 v[]; };
-layout(std430, binding = 2) STATE PositionRests { vec4 rx[]; };
-layout(std430, binding = 3) STATE VelocityRests { vec4 rv[]; };
-layout(std430, binding = 4) readonly buffer Firmness { float firmness[]; };  // a number a chain, families in turn
+layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) coherent buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_POSITION_RESTS) coherent buffer PositionRests { vec4 rx[]; };
+layout(std430, binding = BIND_VELOCITY_RESTS) coherent buffer VelocityRests { vec4 rv[]; };
+layout(std430, binding = BIND_FIRMNESS) readonly buffer Firmness { float firmness[]; };  // a number a chain, families in turn
 #ifdef KEEP_MULTIPLIERS
-layout(std430, binding = 5) buffer LinkMultipliers { float link_multipliers[]; };
-layout(std430, binding = 6) buffer HingeMultipliers { vec4 hinge_multipliers[]; };
+layout(std430, binding = BIND_LINK_MULTIPLIERS) buffer LinkMultipliers { float link_multipliers[]; };
+layout(std430, binding = BIND_HINGE_MULTIPLIERS) buffer HingeMultipliers { vec4 hinge_multipliers[]; };
 #endif
 #include "lines.glsl"
 
@@ -40,9 +27,7 @@ vec3 anchor(uvec2 at, uint k) {
   return x[index_of(at)].xyz;
 }
 #include "lines_integrate.glsl"
-#ifdef RESIDENT
 #include "device_barrier.glsl"
-#endif
 
 // Rests are of the first family's chains, so threads that stay with them keep them from substep to substep.
 void pass(uint substep, bool first, bool last) {
@@ -92,21 +77,15 @@ void main() {
   chain = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * (THREADS / LANES) +
           thread / (LANES * BESIDE) * BESIDE + thread % BESIDE;
   [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = vec3(0.0);
-#ifdef RESIDENT
   const uint families = kShears ? 4u : 2u;
-  if (p.substeps == 0u && !meet()) return;  // asked only whether all can
-  for (uint s = 0u; s < p.substeps; ++s)
-    for (iteration = 0u; iteration < p.iterations; ++iteration)
-      for (uint turn = 0u; turn < families; ++turn) {
-        bool first = turn == 0u && iteration == 0u;
-        if (!(first && s == 0u) && !meet()) return;
-        family = families - 1u - turn;
-        pass(s, first, turn + 1u == families && iteration + 1u == p.iterations);
-      }
-  leave();
-#else
-  family = p.family;
-  iteration = p.iteration;
-  pass(0u, (p.turn & LINES_FIRST) != 0u, (p.turn & LINES_LAST) != 0u);
-#endif
+  if (RESIDENT && p.passes == 0u && !meet()) return;  // asked only whether all can
+  for (uint n = p.first_pass; n < p.first_pass + p.passes; ++n) {
+    if (RESIDENT && n > p.first_pass && !meet()) return;
+    uint turn = n % families;
+    family = families - 1u - turn;
+    iteration = n / families % p.iterations;
+    pass(n / families / p.iterations, turn == 0u && iteration == 0u,
+         turn + 1u == families && iteration + 1u == p.iterations);
+  }
+  if (RESIDENT) leave();
 }

@@ -2,24 +2,7 @@
 // wrapped round the cloth's sides so that all have as many vertices, and cut where they wrap. The links of a chain are a
 // tridiagonal system in their multipliers, its bending hinges a pentadiagonal one; both are solved directly.
 // LANES threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
-layout(constant_id = 1) const uint LANES = 8u;  // a power of two
-layout(constant_id = 2) const uint K = 4u;      // even where the scene bends
-layout(constant_id = 3) const uint COLUMNS = 2u;
-layout(constant_id = 4) const uint ROWS = 2u;
-layout(constant_id = 5) const uint THREADS = 64u;  // of a workgroup: local_size_x
-layout(constant_id = 6) const uint FEATURES = 0u;  // LINES_..., pbd_shared.h
-layout(constant_id = 7) const uint TETHERS = 0u;   // rectangles of pinned vertices: column and row of first and last
-layout(constant_id = 8) const uint TETHER_0 = 0u;
-layout(constant_id = 9) const uint TETHER_0_LAST = 0u;
-layout(constant_id = 10) const uint TETHER_1 = 0u;
-layout(constant_id = 11) const uint TETHER_1_LAST = 0u;
-layout(constant_id = 12) const uint TETHER_2 = 0u;
-layout(constant_id = 13) const uint TETHER_2_LAST = 0u;
-layout(constant_id = 14) const uint TETHER_3 = 0u;
-layout(constant_id = 15) const uint TETHER_3_LAST = 0u;
-layout(constant_id = 16) const uint SUBGROUP = 1u;  // threads that exchange by shuffles
-layout(constant_id = 17) const uint BESIDE = 1u;  // neighbouring chains whose threads take turns, so that columns too are read by whole sectors
-layout(constant_id = 18) const bool EXACT = false;  // all vertices of all threads are on chains
+LINE_CONSTANTS(SPECIALIZE)
 layout(push_constant) uniform Push { LineConstants p; };
 
 const bool kBends = (FEATURES & LINES_BEND) != 0u;

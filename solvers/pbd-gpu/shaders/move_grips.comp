@@ -1,12 +1,11 @@
 #version 450
 // Vertices that a hand holds go where it takes them, on a straight line through the frame, and have no inverse mass.
 // Once let go they have theirs, and keep the position and velocity they had.
-#define COUNTER_BINDING 3
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) readonly buffer Grips { GripVertex grips[]; };
-layout(std430, binding = 1) buffer Positions { vec4 x[]; };
-layout(std430, binding = 2) buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
+layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
 layout(push_constant) uniform Push { GripConstants p; };
 
 void main() {

@@ -2,18 +2,17 @@
 // Kim, Ma & Hong 2025, 3.2.3, after Müller et al. 2007, eqs. 10-11: one thread a constraint; corrections of both ends are added
 // up atomically, since neighbours share particles. Compute shaders of their kind have no float atomics: integer
 // compare-and-swap on the bits, until it holds.
-#define COUNTER_BINDING 3
 #extension GL_GOOGLE_include_directive : require
 #ifdef NATIVE_ATOMICS
 #extension GL_EXT_shader_atomic_float : require
 #endif
 #include "common.glsl"
-layout(std430, binding = 0) readonly buffer Constraints { DistanceConstraint c[]; };
-layout(std430, binding = 1) readonly buffer Predicted { vec4 q[]; };
+layout(std430, binding = BIND_CONSTRAINTS) readonly buffer Constraints { DistanceConstraint c[]; };
+layout(std430, binding = BIND_PREDICTED) readonly buffer Predicted { vec4 q[]; };
 #ifdef NATIVE_ATOMICS
-layout(std430, binding = 2) buffer Deltas { float d[]; };  // x y z and a count, 4 a particle
+layout(std430, binding = BIND_DELTAS) buffer Deltas { float d[]; };  // x y z and a count, 4 a particle
 #else
-layout(std430, binding = 2) buffer Deltas { uint d[]; };   // the same as bits
+layout(std430, binding = BIND_DELTAS) buffer Deltas { uint d[]; };   // the same as bits
 #endif
 layout(push_constant) uniform Push { PaperConstants p; };
 

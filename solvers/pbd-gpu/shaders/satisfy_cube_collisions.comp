@@ -1,11 +1,10 @@
 #version 450
 // Kim, Ma & Hong 2025, 3.2.3: every particle against every box; out through the nearest face of the box grown by the
 // margin.
-#define COUNTER_BINDING 3
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "contact.glsl"
-layout(std430, binding = 0) readonly buffer Boxes { BoxShape boxes[]; };
+layout(std430, binding = BIND_BOXES) readonly buffer Boxes { BoxShape boxes[]; };
 
 vec3 out_of_box(vec3 at, vec3 from, BoxShape b) {
   vec3 d = at - b.center.xyz;

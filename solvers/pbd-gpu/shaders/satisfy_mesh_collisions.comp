@@ -2,12 +2,11 @@
 // Kim, Ma & Hong 2025, 3.2.4 (room) and 3.2.6, Algorithm 4 (hand): every particle against every triangle, no broad
 // phase. A particle whose projection is in the triangle, nearer than the margin in front or than the depth behind,
 // is put at the margin along the triangle's normal.
-#define COUNTER_BINDING 4
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "contact.glsl"
-layout(std430, binding = 0) readonly buffer Triangles { uvec4 triangles[]; };
-layout(std430, binding = 3) readonly buffer Vertices { vec4 vertex[]; };
+layout(std430, binding = BIND_TRIANGLES) readonly buffer Triangles { uvec4 triangles[]; };
+layout(std430, binding = BIND_MESH_VERTICES) readonly buffer Vertices { vec4 vertex[]; };
 
 bool projects_into(vec3 d, vec3 ab, vec3 ac, vec3 normal) {
   float u = dot(cross(d, ac), normal), v = dot(cross(ab, d), normal);

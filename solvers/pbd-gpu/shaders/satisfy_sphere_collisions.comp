@@ -1,10 +1,9 @@
 #version 450
 // Kim, Ma & Hong 2025, 3.2.3: every particle against every ball.
-#define COUNTER_BINDING 3
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "contact.glsl"
-layout(std430, binding = 0) readonly buffer Spheres { SphereShape spheres[]; };
+layout(std430, binding = BIND_SPHERES) readonly buffer Spheres { SphereShape spheres[]; };
 
 void main() {
   uint i = item();

@@ -1,11 +1,10 @@
 #version 450
 // Every vertex takes the mean of what it, its triangles and its edges wish, weighted by how much each asks, in a fixed order.
-#define COUNTER_BINDING 3
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) buffer Positions { vec4 x[]; };
-layout(std430, binding = 1) buffer Velocities { vec4 v[]; };
-layout(std430, binding = 2) readonly buffer Wishes { vec4 wishes[]; };
+layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_WISHES) readonly buffer Wishes { vec4 wishes[]; };
 layout(push_constant) uniform Push { SelfConstants p; };
 
 vec4 way, gain;

@@ -1,13 +1,12 @@
 #version 450
 // Before pieces look for each other: of every block of vertices, and of the edges and triangles that begin with them, the
 // box at the substep's start, and the middle and radius of the ways that its vertices would go.
-#define COUNTER_BINDING 4
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) readonly buffer Starts { vec4 starts[]; };
-layout(std430, binding = 1) readonly buffer Positions { vec4 x[]; };
-layout(std430, binding = 2) writeonly buffer Blocks { vec4 blocks[]; };  // three a block
-layout(std430, binding = 3) writeonly buffer Part { uint part[]; };
+layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
+layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_BLOCKS) writeonly buffer Blocks { vec4 blocks[]; };  // three a block
+layout(std430, binding = BIND_PART) writeonly buffer Part { uint part[]; };
 layout(push_constant) uniform Push { SelfConstants p; };
 
 void main() {

@@ -2,14 +2,13 @@
 // Which part of their way all vertices may go at once so that nothing crosses: wherever a vertex and a triangle, or two edges,
 // are apart by a plane at the substep's start and at its end across the same direction, they were apart all along, since vertices go
 // in straight lines. The least part of all pairs, whatever order they come in.
-#define COUNTER_BINDING 5
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) readonly buffer Starts { vec4 starts[]; };
-layout(std430, binding = 1) readonly buffer Positions { vec4 x[]; };
-layout(std430, binding = 2) readonly buffer Blocks { vec4 blocks[]; };
-layout(std430, binding = 3) readonly buffer Near { uint near[]; };
-layout(std430, binding = 4) buffer Part { uint part[]; };
+layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
+layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_BLOCKS) readonly buffer Blocks { vec4 blocks[]; };
+layout(std430, binding = BIND_NEAR) readonly buffer Near { uint near[]; };
+layout(std430, binding = BIND_PART) buffer Part { uint part[]; };
 layout(push_constant) uniform Push { SelfConstants p; };
 #include "self.glsl"
 #include "self_pieces.glsl"

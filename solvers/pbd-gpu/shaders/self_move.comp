@@ -1,11 +1,10 @@
 #version 450
 // End of self-contact in a substep: every free vertex goes the certified part of its way.
-#define COUNTER_BINDING 3
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) buffer Starts { vec4 starts[]; };
-layout(std430, binding = 1) buffer Positions { vec4 x[]; };
-layout(std430, binding = 2) readonly buffer Part { uint part[]; };
+layout(std430, binding = BIND_STARTS) buffer Starts { vec4 starts[]; };
+layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_PART) readonly buffer Part { uint part[]; };
 layout(push_constant) uniform Push { SelfConstants p; };
 
 void main() {

@@ -1,10 +1,9 @@
 #version 450
 // Which blocks may touch which in this substep, a bit each: a list that cannot overflow.
-#define COUNTER_BINDING 2
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) readonly buffer Blocks { vec4 blocks[]; };
-layout(std430, binding = 1) writeonly buffer Near { uint near[]; };  // words a block
+layout(std430, binding = BIND_BLOCKS) readonly buffer Blocks { vec4 blocks[]; };
+layout(std430, binding = BIND_NEAR) writeonly buffer Near { uint near[]; };  // words a block
 layout(push_constant) uniform Push { SelfConstants p; };
 #include "self.glsl"
 

@@ -2,15 +2,14 @@
 // What every vertex, triangle and edge of the cloth wishes of its own vertices, so that no other piece is nearer than the
 // thickness at the substep's end and nothing comes nearer: by gathering, each pair seen from both its sides, with sums in a fixed
 // order. Wishes of ways and of velocities are apart: a push is no velocity, or layers would pop.
-#define COUNTER_BINDING 6
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) readonly buffer Starts { vec4 starts[]; };
-layout(std430, binding = 1) readonly buffer Positions { vec4 x[]; };
-layout(std430, binding = 2) readonly buffer Velocities { vec4 v[]; };
-layout(std430, binding = 3) readonly buffer Blocks { vec4 blocks[]; };
-layout(std430, binding = 4) readonly buffer Near { uint near[]; };
-layout(std430, binding = 5) writeonly buffer Wishes { vec4 wishes[]; };  // two a slot: way, velocity; w: their weight
+layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
+layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) readonly buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_BLOCKS) readonly buffer Blocks { vec4 blocks[]; };
+layout(std430, binding = BIND_NEAR) readonly buffer Near { uint near[]; };
+layout(std430, binding = BIND_WISHES) writeonly buffer Wishes { vec4 wishes[]; };  // two a slot: way, velocity; w: their weight
 layout(push_constant) uniform Push { SelfConstants p; };
 #include "self.glsl"
 #include "self_pieces.glsl"

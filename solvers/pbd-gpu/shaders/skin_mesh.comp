@@ -1,20 +1,15 @@
 #version 450
 // Linear blend skinning: x = sum_k w_k M_k rest. Weights of 0 are not skipped: every vertex reads the same bytes.
 // KEEP_START is the variant that keeps where the vertex was at the frame's start.
-#ifdef KEEP_START
-#define COUNTER_BINDING 4
-#else
-#define COUNTER_BINDING 3
-#endif
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) readonly buffer Skin { SkinVertex skin[]; };
-layout(std430, binding = 1) readonly buffer Joints { JointMatrix joints[]; };
+layout(std430, binding = BIND_SKIN) readonly buffer Skin { SkinVertex skin[]; };
+layout(std430, binding = BIND_JOINTS) readonly buffer Joints { JointMatrix joints[]; };
 #ifdef KEEP_START
-layout(std430, binding = 2) buffer Positions { vec4 x[]; };
-layout(std430, binding = 3) writeonly buffer StartPositions { vec4 x0[]; };
+layout(std430, binding = BIND_MOVING_END) buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_MOVING_START) writeonly buffer StartPositions { vec4 x0[]; };
 #else
-layout(std430, binding = 2) writeonly buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_MOVING_END) writeonly buffer Positions { vec4 x[]; };
 #endif
 layout(push_constant) uniform Push { SkinConstants p; };
 

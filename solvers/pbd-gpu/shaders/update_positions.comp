@@ -1,11 +1,10 @@
 #version 450
 // Kim, Ma & Hong 2025, 3.2.3: v = (q - x) / h, x = q.
-#define COUNTER_BINDING 3
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) buffer Positions { vec4 x[]; };
-layout(std430, binding = 1) writeonly buffer Velocities { vec4 v[]; };
-layout(std430, binding = 2) readonly buffer Predicted { vec4 q[]; };
+layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) writeonly buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_PREDICTED) readonly buffer Predicted { vec4 q[]; };
 layout(push_constant) uniform Push { PaperConstants p; };
 
 void main() {

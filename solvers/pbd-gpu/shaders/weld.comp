@@ -1,11 +1,10 @@
 #version 450
 // Vertices that are welded to another go where it goes.
-#define COUNTER_BINDING 3
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
-layout(std430, binding = 0) buffer Positions { vec4 x[]; };
-layout(std430, binding = 1) buffer Velocities { vec4 v[]; };
-layout(std430, binding = 2) readonly buffer Welds { uvec2 welds[]; };  // a vertex, and the one it follows
+layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_WELDS) readonly buffer Welds { uvec2 welds[]; };  // a vertex, and the one it follows
 layout(push_constant) uniform Push { uint count; };
 
 void main() {

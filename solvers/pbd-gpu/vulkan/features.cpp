@@ -6,66 +6,30 @@
 namespace clothbench::vulkan {
 namespace {
 
-/// Every member of VkPhysicalDeviceFeatures (Vulkan 1.0) under its own name.
+// Every member of VkPhysicalDeviceFeatures (Vulkan 1.0).
+// clang-format off
+#define CLOTHBENCH_FEATURES(X) \
+  X(robustBufferAccess) X(fullDrawIndexUint32) X(imageCubeArray) X(independentBlend) X(geometryShader) \
+  X(tessellationShader) X(sampleRateShading) X(dualSrcBlend) X(logicOp) X(multiDrawIndirect) \
+  X(drawIndirectFirstInstance) X(depthClamp) X(depthBiasClamp) X(fillModeNonSolid) X(depthBounds) X(wideLines) \
+  X(largePoints) X(alphaToOne) X(multiViewport) X(samplerAnisotropy) X(textureCompressionETC2) \
+  X(textureCompressionASTC_LDR) X(textureCompressionBC) X(occlusionQueryPrecise) X(pipelineStatisticsQuery) \
+  X(vertexPipelineStoresAndAtomics) X(fragmentStoresAndAtomics) X(shaderTessellationAndGeometryPointSize) \
+  X(shaderImageGatherExtended) X(shaderStorageImageExtendedFormats) X(shaderStorageImageMultisample) \
+  X(shaderStorageImageReadWithoutFormat) X(shaderStorageImageWriteWithoutFormat) \
+  X(shaderUniformBufferArrayDynamicIndexing) X(shaderSampledImageArrayDynamicIndexing) \
+  X(shaderStorageBufferArrayDynamicIndexing) X(shaderStorageImageArrayDynamicIndexing) X(shaderClipDistance) \
+  X(shaderCullDistance) X(shaderFloat64) X(shaderInt64) X(shaderInt16) X(shaderResourceResidency) \
+  X(shaderResourceMinLod) X(sparseBinding) X(sparseResidencyBuffer) X(sparseResidencyImage2D) \
+  X(sparseResidencyImage3D) X(sparseResidency2Samples) X(sparseResidency4Samples) X(sparseResidency8Samples) \
+  X(sparseResidency16Samples) X(sparseResidencyAliased) X(variableMultisampleRate) X(inheritedQueries)
+// clang-format on
+
 nlohmann::json core_features(const VkPhysicalDeviceFeatures& f) {
   nlohmann::json j;
-#define PUT(member) j[#member] = f.member == VK_TRUE
-  PUT(robustBufferAccess);
-  PUT(fullDrawIndexUint32);
-  PUT(imageCubeArray);
-  PUT(independentBlend);
-  PUT(geometryShader);
-  PUT(tessellationShader);
-  PUT(sampleRateShading);
-  PUT(dualSrcBlend);
-  PUT(logicOp);
-  PUT(multiDrawIndirect);
-  PUT(drawIndirectFirstInstance);
-  PUT(depthClamp);
-  PUT(depthBiasClamp);
-  PUT(fillModeNonSolid);
-  PUT(depthBounds);
-  PUT(wideLines);
-  PUT(largePoints);
-  PUT(alphaToOne);
-  PUT(multiViewport);
-  PUT(samplerAnisotropy);
-  PUT(textureCompressionETC2);
-  PUT(textureCompressionASTC_LDR);
-  PUT(textureCompressionBC);
-  PUT(occlusionQueryPrecise);
-  PUT(pipelineStatisticsQuery);
-  PUT(vertexPipelineStoresAndAtomics);
-  PUT(fragmentStoresAndAtomics);
-  PUT(shaderTessellationAndGeometryPointSize);
-  PUT(shaderImageGatherExtended);
-  PUT(shaderStorageImageExtendedFormats);
-  PUT(shaderStorageImageMultisample);
-  PUT(shaderStorageImageReadWithoutFormat);
-  PUT(shaderStorageImageWriteWithoutFormat);
-  PUT(shaderUniformBufferArrayDynamicIndexing);
-  PUT(shaderSampledImageArrayDynamicIndexing);
-  PUT(shaderStorageBufferArrayDynamicIndexing);
-  PUT(shaderStorageImageArrayDynamicIndexing);
-  PUT(shaderClipDistance);
-  PUT(shaderCullDistance);
-  PUT(shaderFloat64);
-  PUT(shaderInt64);
-  PUT(shaderInt16);
-  PUT(shaderResourceResidency);
-  PUT(shaderResourceMinLod);
-  PUT(sparseBinding);
-  PUT(sparseResidencyBuffer);
-  PUT(sparseResidencyImage2D);
-  PUT(sparseResidencyImage3D);
-  PUT(sparseResidency2Samples);
-  PUT(sparseResidency4Samples);
-  PUT(sparseResidency8Samples);
-  PUT(sparseResidency16Samples);
-  PUT(sparseResidencyAliased);
-  PUT(variableMultisampleRate);
-  PUT(inheritedQueries);
-#undef PUT
+#define CLOTHBENCH_PUT(member) j[#member] = f.member == VK_TRUE;
+  CLOTHBENCH_FEATURES(CLOTHBENCH_PUT)
+#undef CLOTHBENCH_PUT
   return j;
 }
 

@@ -8,14 +8,20 @@
 namespace clothbench::vulkan {
 
 Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,
-               std::vector<Binding> bindings, std::uint32_t push_bytes)
-    : device_(std::move(device)), name_(std::move(name)), code_(code), bindings_(std::move(bindings)) {
-  for (const Binding& b : bindings_)
-    if (b.buffer->bytes() > device_->limits().maxStorageBufferRange)
-      throw Error(fmt::format("{}: buffer \"{}\" of {} B is larger than this device binds ({} B)", name_,
-                              b.buffer->name(), b.buffer->bytes(), device_->limits().maxStorageBufferRange));
+               const Buffers& buffers, std::uint32_t push_bytes)
+    : device_(std::move(device)), name_(std::move(name)), code_(code) {
+  const ShaderNeeds needs = needs_of(code_, specialization);
+  for (const auto& [number, access] : needs.bindings) {
+    const auto found = buffers.find(number);
+    if (found == buffers.end()) throw Error(fmt::format("kernel {}: there is no buffer {}", name_, number));
+    const Buffer& b = *found->second;
+    if (b.bytes() > device_->limits().maxStorageBufferRange)
+      throw Error(fmt::format("{}: buffer \"{}\" of {} B is larger than this device binds ({} B)", name_, b.name(),
+                              b.bytes(), device_->limits().maxStorageBufferRange));
+    bindings_.push_back({number, &b, access});
+  }
   if (const Profile* profile = device_->profile())
-    if (const std::string why = breach(*profile, needs_of(code_, specialization)); !why.empty())
+    if (const std::string why = breach(*profile, needs); !why.empty())
       throw Error(fmt::format("kernel {}: does not run under device profile {}: {}", name_, profile->name, why));
   try {
     create_layout(push_bytes);
@@ -38,8 +44,8 @@ void Kernel::release() {
 
 void Kernel::create_layout(std::uint32_t push_bytes) {
   std::vector<VkDescriptorSetLayoutBinding> slots;
-  for (std::uint32_t k = 0; k < bindings_.size(); ++k)
-    slots.push_back({k, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+  for (const Binding& b : bindings_)
+    slots.push_back({b.number, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
   VkDescriptorSetLayoutCreateInfo set{};
   set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   set.bindingCount = static_cast<std::uint32_t>(slots.size());
@@ -76,7 +82,7 @@ void Kernel::create_set() {
     VkWriteDescriptorSet w{};
     w.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     w.dstSet = set_;
-    w.dstBinding = k;
+    w.dstBinding = bindings_[k].number;
     w.descriptorCount = 1;
     w.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     w.pBufferInfo = &infos[k];

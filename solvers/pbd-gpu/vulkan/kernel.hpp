@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,19 +9,22 @@
 
 namespace clothbench::vulkan {
 
-enum class Access { Read, Write, ReadWrite };
+/// Buffers by the number of their binding, in set 0.
+using Buffers = std::map<std::uint32_t, const Buffer*>;
 
-/// What a kernel does with a buffer; the shader's readonly / writeonly must say the same.
+/// What a kernel does with a buffer, as its code says: readonly, writeonly or neither.
 struct Binding {
+  std::uint32_t number;
   const Buffer* buffer;
   Access access;
 };
 
-/// One compute pipeline with its buffers bound: binding k of set 0 is bindings[k].
+/// One compute pipeline with its buffers bound: of `buffers` those that its code declares. Throws Error where one is
+/// not there.
 class Kernel {
  public:
   Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,
-         std::vector<Binding> bindings, std::uint32_t push_bytes);
+         const Buffers& buffers, std::uint32_t push_bytes);
   ~Kernel();
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;

@@ -4,117 +4,48 @@
 
 namespace clothbench::vulkan {
 
-// Every member of VkPhysicalDeviceLimits (Vulkan 1.1) under its own name.
+// Every member of VkPhysicalDeviceLimits (Vulkan 1.1).
+// clang-format off
+#define CLOTHBENCH_LIMITS(X) \
+  X(maxImageDimension1D) X(maxImageDimension2D) X(maxImageDimension3D) X(maxImageDimensionCube) \
+  X(maxImageArrayLayers) X(maxTexelBufferElements) X(maxUniformBufferRange) X(maxStorageBufferRange) \
+  X(maxPushConstantsSize) X(maxMemoryAllocationCount) X(maxSamplerAllocationCount) X(bufferImageGranularity) \
+  X(sparseAddressSpaceSize) X(maxBoundDescriptorSets) X(maxPerStageDescriptorSamplers) \
+  X(maxPerStageDescriptorUniformBuffers) X(maxPerStageDescriptorStorageBuffers) X(maxPerStageDescriptorSampledImages) \
+  X(maxPerStageDescriptorStorageImages) X(maxPerStageDescriptorInputAttachments) X(maxPerStageResources) \
+  X(maxDescriptorSetSamplers) X(maxDescriptorSetUniformBuffers) X(maxDescriptorSetUniformBuffersDynamic) \
+  X(maxDescriptorSetStorageBuffers) X(maxDescriptorSetStorageBuffersDynamic) X(maxDescriptorSetSampledImages) \
+  X(maxDescriptorSetStorageImages) X(maxDescriptorSetInputAttachments) X(maxVertexInputAttributes) \
+  X(maxVertexInputBindings) X(maxVertexInputAttributeOffset) X(maxVertexInputBindingStride) \
+  X(maxVertexOutputComponents) X(maxTessellationGenerationLevel) X(maxTessellationPatchSize) \
+  X(maxTessellationControlPerVertexInputComponents) X(maxTessellationControlPerVertexOutputComponents) \
+  X(maxTessellationControlPerPatchOutputComponents) X(maxTessellationControlTotalOutputComponents) \
+  X(maxTessellationEvaluationInputComponents) X(maxTessellationEvaluationOutputComponents) \
+  X(maxGeometryShaderInvocations) X(maxGeometryInputComponents) X(maxGeometryOutputComponents) \
+  X(maxGeometryOutputVertices) X(maxGeometryTotalOutputComponents) X(maxFragmentInputComponents) \
+  X(maxFragmentOutputAttachments) X(maxFragmentDualSrcAttachments) X(maxFragmentCombinedOutputResources) \
+  X(maxComputeSharedMemorySize) X(maxComputeWorkGroupInvocations) X(subPixelPrecisionBits) X(subTexelPrecisionBits) \
+  X(mipmapPrecisionBits) X(maxDrawIndexedIndexValue) X(maxDrawIndirectCount) X(maxSamplerLodBias) \
+  X(maxSamplerAnisotropy) X(maxViewports) X(viewportSubPixelBits) X(minMemoryMapAlignment) \
+  X(minTexelBufferOffsetAlignment) X(minUniformBufferOffsetAlignment) X(minStorageBufferOffsetAlignment) \
+  X(minTexelOffset) X(maxTexelOffset) X(minTexelGatherOffset) X(maxTexelGatherOffset) X(minInterpolationOffset) \
+  X(maxInterpolationOffset) X(subPixelInterpolationOffsetBits) X(maxFramebufferWidth) X(maxFramebufferHeight) \
+  X(maxFramebufferLayers) X(framebufferColorSampleCounts) X(framebufferDepthSampleCounts) \
+  X(framebufferStencilSampleCounts) X(framebufferNoAttachmentsSampleCounts) X(maxColorAttachments) \
+  X(sampledImageColorSampleCounts) X(sampledImageIntegerSampleCounts) X(sampledImageDepthSampleCounts) \
+  X(sampledImageStencilSampleCounts) X(storageImageSampleCounts) X(maxSampleMaskWords) X(timestampComputeAndGraphics) \
+  X(timestampPeriod) X(maxClipDistances) X(maxCullDistances) X(maxCombinedClipAndCullDistances) \
+  X(discreteQueuePriorities) X(pointSizeGranularity) X(lineWidthGranularity) X(strictLines) \
+  X(standardSampleLocations) X(optimalBufferCopyOffsetAlignment) X(optimalBufferCopyRowPitchAlignment) \
+  X(nonCoherentAtomSize) X(maxComputeWorkGroupCount) X(maxComputeWorkGroupSize) X(maxViewportDimensions) \
+  X(viewportBoundsRange) X(pointSizeRange) X(lineWidthRange)
+// clang-format on
+
 nlohmann::json limits_json(const VkPhysicalDeviceLimits& limits) {
   nlohmann::json j;
-#define PUT(member) j[#member] = limits.member
-  PUT(maxImageDimension1D);
-  PUT(maxImageDimension2D);
-  PUT(maxImageDimension3D);
-  PUT(maxImageDimensionCube);
-  PUT(maxImageArrayLayers);
-  PUT(maxTexelBufferElements);
-  PUT(maxUniformBufferRange);
-  PUT(maxStorageBufferRange);
-  PUT(maxPushConstantsSize);
-  PUT(maxMemoryAllocationCount);
-  PUT(maxSamplerAllocationCount);
-  PUT(bufferImageGranularity);
-  PUT(sparseAddressSpaceSize);
-  PUT(maxBoundDescriptorSets);
-  PUT(maxPerStageDescriptorSamplers);
-  PUT(maxPerStageDescriptorUniformBuffers);
-  PUT(maxPerStageDescriptorStorageBuffers);
-  PUT(maxPerStageDescriptorSampledImages);
-  PUT(maxPerStageDescriptorStorageImages);
-  PUT(maxPerStageDescriptorInputAttachments);
-  PUT(maxPerStageResources);
-  PUT(maxDescriptorSetSamplers);
-  PUT(maxDescriptorSetUniformBuffers);
-  PUT(maxDescriptorSetUniformBuffersDynamic);
-  PUT(maxDescriptorSetStorageBuffers);
-  PUT(maxDescriptorSetStorageBuffersDynamic);
-  PUT(maxDescriptorSetSampledImages);
-  PUT(maxDescriptorSetStorageImages);
-  PUT(maxDescriptorSetInputAttachments);
-  PUT(maxVertexInputAttributes);
-  PUT(maxVertexInputBindings);
-  PUT(maxVertexInputAttributeOffset);
-  PUT(maxVertexInputBindingStride);
-  PUT(maxVertexOutputComponents);
-  PUT(maxTessellationGenerationLevel);
-  PUT(maxTessellationPatchSize);
-  PUT(maxTessellationControlPerVertexInputComponents);
-  PUT(maxTessellationControlPerVertexOutputComponents);
-  PUT(maxTessellationControlPerPatchOutputComponents);
-  PUT(maxTessellationControlTotalOutputComponents);
-  PUT(maxTessellationEvaluationInputComponents);
-  PUT(maxTessellationEvaluationOutputComponents);
-  PUT(maxGeometryShaderInvocations);
-  PUT(maxGeometryInputComponents);
-  PUT(maxGeometryOutputComponents);
-  PUT(maxGeometryOutputVertices);
-  PUT(maxGeometryTotalOutputComponents);
-  PUT(maxFragmentInputComponents);
-  PUT(maxFragmentOutputAttachments);
-  PUT(maxFragmentDualSrcAttachments);
-  PUT(maxFragmentCombinedOutputResources);
-  PUT(maxComputeSharedMemorySize);
-  PUT(maxComputeWorkGroupInvocations);
-  PUT(subPixelPrecisionBits);
-  PUT(subTexelPrecisionBits);
-  PUT(mipmapPrecisionBits);
-  PUT(maxDrawIndexedIndexValue);
-  PUT(maxDrawIndirectCount);
-  PUT(maxSamplerLodBias);
-  PUT(maxSamplerAnisotropy);
-  PUT(maxViewports);
-  PUT(viewportSubPixelBits);
-  PUT(minMemoryMapAlignment);
-  PUT(minTexelBufferOffsetAlignment);
-  PUT(minUniformBufferOffsetAlignment);
-  PUT(minStorageBufferOffsetAlignment);
-  PUT(minTexelOffset);
-  PUT(maxTexelOffset);
-  PUT(minTexelGatherOffset);
-  PUT(maxTexelGatherOffset);
-  PUT(minInterpolationOffset);
-  PUT(maxInterpolationOffset);
-  PUT(subPixelInterpolationOffsetBits);
-  PUT(maxFramebufferWidth);
-  PUT(maxFramebufferHeight);
-  PUT(maxFramebufferLayers);
-  PUT(framebufferColorSampleCounts);
-  PUT(framebufferDepthSampleCounts);
-  PUT(framebufferStencilSampleCounts);
-  PUT(framebufferNoAttachmentsSampleCounts);
-  PUT(maxColorAttachments);
-  PUT(sampledImageColorSampleCounts);
-  PUT(sampledImageIntegerSampleCounts);
-  PUT(sampledImageDepthSampleCounts);
-  PUT(sampledImageStencilSampleCounts);
-  PUT(storageImageSampleCounts);
-  PUT(maxSampleMaskWords);
-  PUT(timestampComputeAndGraphics);
-  PUT(timestampPeriod);
-  PUT(maxClipDistances);
-  PUT(maxCullDistances);
-  PUT(maxCombinedClipAndCullDistances);
-  PUT(discreteQueuePriorities);
-  PUT(pointSizeGranularity);
-  PUT(lineWidthGranularity);
-  PUT(strictLines);
-  PUT(standardSampleLocations);
-  PUT(optimalBufferCopyOffsetAlignment);
-  PUT(optimalBufferCopyRowPitchAlignment);
-  PUT(nonCoherentAtomSize);
-  PUT(maxComputeWorkGroupCount);
-  PUT(maxComputeWorkGroupSize);
-  PUT(maxViewportDimensions);
-  PUT(viewportBoundsRange);
-  PUT(pointSizeRange);
-  PUT(lineWidthRange);
-#undef PUT
+#define CLOTHBENCH_PUT(member) j[#member] = limits.member;
+  CLOTHBENCH_LIMITS(CLOTHBENCH_PUT)
+#undef CLOTHBENCH_PUT
   return j;
 }
 

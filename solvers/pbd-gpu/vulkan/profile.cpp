@@ -15,9 +15,10 @@ constexpr std::uint32_t kOpExecutionMode = 16, kOpCapability = 17, kOpTypeInt = 
                         kOpTypeVector = 23, kOpTypeMatrix = 24, kOpTypeArray = 28, kOpTypeStruct = 30,
                         kOpTypePointer = 32, kOpConstant = 43, kOpConstantComposite = 44, kOpSpecConstant = 50,
                         kOpSpecConstantComposite = 51, kOpSpecConstantOp = 52, kOpVariable = 59, kOpDecorate = 71,
-                        kIMul = 132;
-constexpr std::uint32_t kModeLocalSize = 17, kDecorationSpecId = 1, kDecorationBuiltIn = 11, kBuiltInWorkgroupSize = 25,
-                        kClassWorkgroup = 4;
+                        kOpMemberDecorate = 72, kIMul = 132;
+constexpr std::uint32_t kModeLocalSize = 17, kDecorationSpecId = 1, kDecorationBuiltIn = 11,
+                        kDecorationNonWritable = 24, kDecorationNonReadable = 25, kDecorationBinding = 33,
+                        kBuiltInWorkgroupSize = 25, kClassWorkgroup = 4;
 const std::set<std::uint32_t> kAtomicFloat = {5612, 5613, 5616, 6033, 6034, 6095};
 
 /// A module's types and constants by id; every instruction is seen once, in order, and ids stand before their uses.
@@ -36,7 +37,12 @@ class Reader {
         break;
       case kOpDecorate:
         if (w[2] == kDecorationSpecId) spec_id_[w[1]] = w[3];
+        if (w[2] == kDecorationBinding) binding_[w[1]] = w[3];
+        restrict(w[1], w[2]);
         if (w[2] == kDecorationBuiltIn && w[3] == kBuiltInWorkgroupSize) group_id_ = w[1];
+        break;
+      case kOpMemberDecorate:
+        restrict(w[1], w[3]);
         break;
       case kOpTypeInt:
       case kOpTypeFloat:
@@ -54,6 +60,7 @@ class Reader {
         break;
       case kOpTypePointer:
         size_[w[1]] = size_[w[3]];
+        pointee_[w[1]] = w[3];
         break;
       case kOpConstant:
         value_[w[2]] = w[3];
@@ -72,6 +79,14 @@ class Reader {
         break;
       case kOpVariable:
         if (w[3] == kClassWorkgroup) needs_.shared_memory_B += size_[w[1]];
+        if (const auto b = binding_.find(w[2]); b != binding_.end()) {
+          const auto is = [&](const std::set<std::uint32_t>& ids) {
+            return ids.count(w[2]) + ids.count(pointee_[w[1]]) > 0;
+          };
+          needs_.bindings[b->second] = is(readonly_)    ? Access::Read
+                                       : is(writeonly_) ? Access::Write
+                                                        : Access::ReadWrite;
+        }
         break;
       default:
         break;
@@ -85,7 +100,15 @@ class Reader {
     return spec != spec_id_.end() && spec->second < specialization_.size() ? specialization_[spec->second] : standard;
   }
 
+  /// A block or a variable.
+  void restrict(std::uint32_t id, std::uint32_t decoration) {
+    if (decoration == kDecorationNonWritable) readonly_.insert(id);
+    if (decoration == kDecorationNonReadable) writeonly_.insert(id);
+  }
+
   const std::vector<std::uint32_t>& specialization_;
+  std::set<std::uint32_t> readonly_, writeonly_;
+  std::map<std::uint32_t, std::uint32_t> binding_, pointee_;
   std::map<std::uint32_t, std::uint64_t> size_, value_;
   std::map<std::uint32_t, std::uint32_t> spec_id_;
   std::uint32_t group_id_ = 0;

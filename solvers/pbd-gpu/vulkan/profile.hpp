@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,11 +30,15 @@ const Profile& find_profile(const std::string& name);
 /// Names `find_profile` knows.
 std::vector<std::string> profile_names();
 
-/// What a compute shader asks of a device, read from its code. `specialization[k]` is the value of constant id k.
+enum class Access { Read, Write, ReadWrite };
+
+/// What a compute shader asks of a device and its caller, read from its code. `specialization[k]` is the value of
+/// constant id k.
 struct ShaderNeeds {
   std::uint32_t group[3] = {1, 1, 1};
-  std::uint64_t shared_memory_B = 0;  ///< of its Workgroup variables, without padding
-  bool float_atomics = false;         ///< declares any AtomicFloat… capability
+  std::uint64_t shared_memory_B = 0;              ///< of its Workgroup variables, without padding
+  bool float_atomics = false;                     ///< declares any AtomicFloat… capability
+  std::map<std::uint32_t, Access> bindings = {};  ///< storage buffers, by number
 };
 ShaderNeeds needs_of(SpirV code, const std::vector<std::uint32_t>& specialization);
 

@@ -1,0 +1,114 @@
+#pragma once
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "clothbench/solver.hpp"
+#include "pbd_shared.h"
+#include "shaders.hpp"
+#include "vulkan/program.hpp"
+
+namespace clothbench::pbd_gpu {
+
+inline constexpr std::uint32_t kGroupSize = 64;
+
+/// Bytes of one dispatch, computed from the scene and the kernel's loops (no contention retries of atomics).
+struct Traffic {
+  double read_B = 0, write_B = 0;
+  Traffic operator+(const Traffic& t) const { return {read_B + t.read_B, write_B + t.write_B}; }
+  Traffic operator*(double times) const { return {times * read_B, times * write_B}; }
+};
+
+/// A kernel, and the stage that its dispatches are of.
+struct FrameKernel {
+  int stage;
+  std::uint32_t group_size;
+  vulkan::Kernel kernel;
+};
+
+/// What a method and its parts build for a scene: buffers, stages, kernels, and the frame that is submitted again and
+/// again, with its plan and its bytes.
+class FrameBuilder {
+ public:
+  FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes);
+  FrameBuilder(const FrameBuilder&) = delete;
+  FrameBuilder& operator=(const FrameBuilder&) = delete;
+
+  const Scene& scene() const { return *scene_; }
+  const nlohmann::json& settings() const { return settings_; }
+  const nlohmann::json& tuning() const { return settings_[kTuning]; }
+  /// For this scene alone: a setting that it cannot be run with.
+  void override_setting(const char* name, const nlohmann::json& value, const std::string& why);
+  const std::shared_ptr<vulkan::Device>& device() const { return device_; }
+  bool counts_bytes() const { return count_bytes_; }
+
+  static constexpr int kUnbound = -1;
+  /// A device buffer that `reset` fills with these bytes (zeros beyond them). Kernels find it by its number (BIND_...,
+  /// pbd_shared.h).
+  const vulkan::Buffer& add_buffer(int binding, const std::string& name, std::uint64_t bytes,
+                                   const void* initial = nullptr, std::size_t initial_bytes = 0);
+  template <class T>
+  const vulkan::Buffer& add_buffer(int binding, const std::string& name, const std::vector<T>& items) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    return add_buffer(binding, name, items.size() * sizeof(T), items.data(), items.size() * sizeof(T));
+  }
+  /// In host memory, filled with zeros.
+  const vulkan::Buffer& add_host_buffer(const std::string& name, std::uint64_t bytes, int binding = kUnbound);
+
+  /// `at_least`: how much its kernels read depends on how the cloth lies; what is declared is what every frame reads.
+  int add_stage(const std::string& name, FeatureSet serves, bool at_least = false);
+  /// Kernel `name` (shaders.hpp) with the buffers that its code declares; `own` come before those of add_buffer. What
+  /// the scene lacks is declared and never touched: the positions stand in. `constants` by number.
+  const FrameKernel* add_kernel(int stage, const std::string& name, std::uint32_t push_bytes,
+                                std::vector<std::uint32_t> constants = {}, std::uint32_t group_size = kGroupSize,
+                                const vulkan::Buffers& own = {});
+  vulkan::Buffers buffers_with(vulkan::Buffers own) const;
+  void leave_out(const std::string& what, const std::string& why) { plan_.left_out.push_back({what, why}); }
+  void set_contact_margins(std::vector<double> margins_m) { plan_.contact_margins_m = std::move(margins_m); }
+  /// A word in host memory that a kernel sets where workgroups waited for one another in vain: such a frame is
+  /// TimedOut.
+  void set_missed(const vulkan::Buffer& word) { missed_ = &word; }
+
+  template <class Constants>
+  void dispatch(const FrameKernel& k, std::uint64_t items, const Constants& constants, Traffic traffic) {
+    dispatch_groups(k, vulkan::groups_for(items, k.group_size), constants, traffic);
+  }
+  template <class Constants>
+  void dispatch_groups(const FrameKernel& k, vulkan::Groups groups, const Constants& constants, Traffic traffic) {
+    if (!only_counting_) frame_->dispatch(k.stage, k.kernel, groups, constants);
+    count(k.stage, traffic);
+  }
+  void copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer& to);
+
+  /// Inverse masses of the scene's vertices in this frame [1/kg], 0 where pinned or held. record_frame is called again,
+  /// for the bytes alone, when they change.
+  const std::vector<float>& inverse_mass_now() const { return inverse_mass_now_; }
+
+ protected:
+  void begin(const Scene&);
+  void count(int stage, Traffic);
+
+  const nlohmann::json given_settings_;
+  nlohmann::json settings_;  ///< the same, but for what the scene does not allow
+  const bool count_bytes_;
+  std::shared_ptr<vulkan::Device> device_;
+  const Scene* scene_ = nullptr;
+  Plan plan_;
+  std::vector<float> inverse_mass_now_;
+  bool only_counting_ = false;
+  const vulkan::Buffer* missed_ = nullptr;
+  // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
+  std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
+  vulkan::Buffers bound_;
+  std::vector<const vulkan::Buffer*> counters_;  ///< one a stage
+  std::vector<std::unique_ptr<FrameKernel>> kernels_;
+  std::unique_ptr<vulkan::Program> frame_, upload_, download_;
+};
+
+/// Inverse masses [1/kg] of the scene's vertices at the start, 0 where pinned or gripped.
+std::vector<float> inverse_masses(const Scene&);
+
+}  // namespace clothbench::pbd_gpu
