@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Writes what documents and the scenes' schema say of metrics and scalars from the program's registry of them: the tables of
-harness/metrics/README.md and results/baselines/README.md between their markers, and the names under `expect` of
+harness/metrics/REGISTRY.md and results/baselines/README.md between their markers, and the names under `expect` of
 scenarios/schema/scene.schema.json. With --check nothing is written, and it fails if any of them is not so already.
 
 usage: update_metrics.py [--check] [path of clothbench, default build/release/clothbench]
@@ -54,8 +54,8 @@ def main():
     program = arguments[0] if arguments else ROOT / "build/release/clothbench"
     metrics, scalars = (json.loads(subprocess.run([program, "list", what, "--json"], check=True, capture_output=True).stdout) for what in ("metrics", "scalars"))
     marked = r"(<!-- {0} begin -->\n).*?(<!-- {0} end -->)"
-    parts = (("harness/metrics/README.md", marked.format("metrics"), metrics_table(metrics)),
-             ("harness/metrics/README.md", marked.format("scalars"), scalars_table(scalars)),
+    parts = (("harness/metrics/REGISTRY.md", marked.format("metrics"), metrics_table(metrics)),
+             ("harness/metrics/REGISTRY.md", marked.format("scalars"), scalars_table(scalars)),
              ("results/baselines/README.md", marked.format("gates"), gates_table(scalars)),
              ("scenarios/schema/scene.schema.json", r'("expect": \{.*?"outcome": [^\n]*\n).*?(      \}\n)', bounds(scalars)))
     stale = []

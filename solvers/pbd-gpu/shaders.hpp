@@ -6,7 +6,7 @@
 namespace clothbench::pbd_gpu {
 
 /// A kernel's code, as it runs and with byte counters; the latter is null where the build left them out
-/// (CLOTHBENCH_COUNTED_KERNELS).
+/// (BUILD_TESTING).
 struct Shader {
   std::string name;
   vulkan::SpirV code, counted;

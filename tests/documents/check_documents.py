@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 MOST_README_LINES, MOST_README_BYTES = 180, 14_000
 MOST_BYTES = 16_000
 # Made by the program, or grown with every release.
-GENERATED = re.compile(r"^(CHANGELOG\.md|results/reference/.*(?<!README)\.md)$")
+GENERATED = re.compile(r"^(CHANGELOG\.md|harness/metrics/REGISTRY\.md|results/reference/.*(?<!README)\.md)$")
 # Known, and to become shorter: a file leaves this list when it fits, and none is added.
 TOO_LONG = set()
 

@@ -25,7 +25,7 @@ def variables():
             for word in re.findall(r"getenv\(([^)]*)\)", text):
                 if word != "folder.variable":
                     out.add(word.strip('"') if word.startswith('"') else names[word])
-    folders = (SOURCE / "harness" / "scenario" / "data_folder.hpp").read_text(encoding="utf-8")
+    folders = (SOURCE / "harness" / "base" / "data_folder.hpp").read_text(encoding="utf-8")
     return out | set(re.findall(r'"(CLOTHBENCH_\w+)"', folders))
 
 

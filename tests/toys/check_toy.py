@@ -31,7 +31,7 @@ def metric(tree, build):
     build()
     run(sys.executable, tree / "scripts/update_metrics.py", program)
     assert '"height_max_m"' in (tree / "scenarios/schema/scene.schema.json").read_text()
-    assert "| `height_max_m` |" in (tree / "harness/metrics/README.md").read_text()
+    assert "| `height_max_m` |" in (tree / "harness/metrics/REGISTRY.md").read_text()
     build()
     run(sys.executable, tree / "scripts/update_metrics.py", "--check", program)
     scene = json.loads((tree / "scenarios/paper/gravity.json").read_text())
