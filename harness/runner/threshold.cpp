@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -31,13 +32,14 @@ std::optional<ClothState> last_state(const Scene& scene, const SolverEntry& entr
   return state;
 }
 
-/// None where the run fails, or ends where no cloth can be.
+/// None where the run fails, or ends with a vertex that is not finite. A strip that is no longer over its cylinder has
+/// no displacement over it, and does not stay.
 std::optional<bool> stays(const Scene& scene, const truth::Card& card, double limit_m, const SolverEntry& entry,
                           const nlohmann::json& settings, const DeviceOptions& device) {
   const auto state = last_state(scene, entry, settings, device);
-  const double way = state ? std::abs(card.quantity(truth::column_means(scene.cloth, state->position))) : kMissing;
-  if (!std::isfinite(way)) return std::nullopt;
-  return way <= limit_m;
+  if (!state || !std::all_of(state->position.begin(), state->position.end(), [](double x) { return std::isfinite(x); }))
+    return std::nullopt;
+  return std::abs(card.quantity(truth::column_means(scene.cloth, state->position))) <= limit_m;
 }
 
 }  // namespace

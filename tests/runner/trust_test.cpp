@@ -91,6 +91,20 @@ TEST(Threshold, ARunThatFailsIsNoSlip) {
   EXPECT_TRUE(stands.holds_at_least && !stands.failed);
 }
 
+TEST(Threshold, AStripThatRanOffItsCylinderSlipped) {
+  const Scene s = load_scene("validation/capstan-hold", {"time.duration_s=0.1"});
+  const FoundThreshold t = find_threshold(s, doomed([](const Scene& scene, ClothState& state) {
+                                            for (std::size_t v = 0; v < scene.cloth.vertex_count(); ++v)
+                                              for (std::size_t k = 0; k < 3; ++k)
+                                                state.position[3 * v + k] +=
+                                                    scene.cloth.axis_u[k] * scene.cloth.width_m;
+                                            return StepStatus::Ok;
+                                          }),
+                                          kNone, {});
+  EXPECT_FALSE(t.failed);
+  EXPECT_TRUE(t.slips_at_most);
+}
+
 TEST(MaterialCard, OfNothingMeasuredIsNotAtRest) {
   const SolverEntry entry = doomed([](const Scene&, ClothState&) { return StepStatus::Diverged; });
   const CellRecord card = measure_material(entry, kNone, "default", false, {}, "test");
