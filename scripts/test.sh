@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 source scripts/common.sh
 
 # --short: what differs first on another system: readers of JSON, HDF5 and meshes, exact arithmetic, Bullet, Vulkan, the command.
-short=(assets_test bullet_test check_test cli_test contact_test pbd_gpu_line_test results_test scenario_test truth_test)
+short=(assets_test bullet_test check_test cli_test contact_test pbd_gpu_self_contact_test results_test scenario_test truth_test)
 
 # A first build compiles files together, in about half the time, and leaves out slow tests that are not run; a folder
 # that was configured before keeps its choice of both.
