@@ -2,6 +2,7 @@
 // cell and the same cell of a healthy run as its baseline.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -37,8 +38,15 @@ std::string caught_by(const CellRecord& was, const CellRecord& is) {
 class Planted : public ::testing::Test {
  protected:
   // Kernels with faults go into no pipeline cache but this one.
-  static void SetUpTestSuite() {
-    ::setenv("CLOTHBENCH_CACHE", (std::filesystem::temp_directory_path() / "clothbench-planted-cache").c_str(), 1);
+  static void SetUpTestSuite() { ::setenv("CLOTHBENCH_CACHE", cache().c_str(), 1); }
+  static void TearDownTestSuite() {
+    std::error_code ignored;
+    std::filesystem::remove_all(cache(), ignored);
+  }
+
+ private:
+  static std::filesystem::path cache() {
+    return std::filesystem::temp_directory_path() / ("clothbench-planted-cache-" + std::to_string(::getpid()));
   }
 };
 

@@ -1,5 +1,6 @@
 #include "shader_variant.hpp"
 
+#include <unistd.h>
 #include <vulkan/vulkan.h>
 
 #include <cstdlib>
@@ -82,7 +83,7 @@ const Code* faulty(const VkShaderModuleCreateInfo& info) {
 
 ShaderVariant::ShaderVariant(const ShaderFault& fault) {
   Active a;
-  a.folder = fs::temp_directory_path() / ("clothbench-planted-" + std::to_string(::rand()));
+  a.folder = fs::temp_directory_path() / ("clothbench-planted-" + std::to_string(::getpid()));
   fs::remove_all(a.folder);
   fs::create_directories(a.folder);
   fs::copy(fs::path(CLOTHBENCH_KERNEL_SOURCES) / "shaders", a.folder / "shaders", fs::copy_options::recursive);

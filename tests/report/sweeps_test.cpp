@@ -1,5 +1,6 @@
 // What the tables of --full's sweeps say: pulled strips, popping at 16 times the substeps, cloths turned over.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -146,7 +147,7 @@ TEST(Turned, VerticesOfTheSamePlaceAreCompared) {
 
 /// A report of files: a pulled strip that nobody was timed on is told by speed, one that was by time.
 TEST(PulledStrip, UntimedOnesAreNoDiagram) {
-  const fs::path dir = fs::temp_directory_path() / "clothbench-pulled-strip";
+  const fs::path dir = fs::temp_directory_path() / ("clothbench-pulled-strip-" + std::to_string(::getpid()));
   fs::remove_all(dir);
   std::vector<fs::path> files;
   for (const bool timed : {false, true}) {

@@ -1,6 +1,7 @@
 #include "scenario/load.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -186,7 +187,7 @@ TEST(Load, TextThatIsNoJson) {
 TEST(Load, FilesThatCannotBeRead) {
   EXPECT_THROW(load_scene("/no/such/scene.json"), Error);
   EXPECT_THROW(load_scene(fs::temp_directory_path().string()), Error);
-  const fs::path big = fs::temp_directory_path() / "clothbench-too-big.json";
+  const fs::path big = fs::temp_directory_path() / ("clothbench-too-big-" + std::to_string(::getpid()) + ".json");
   std::ofstream(big) << std::string((16u << 20) + 1, ' ');
   try {
     load_scene(big.string());

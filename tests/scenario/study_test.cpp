@@ -37,7 +37,8 @@ TEST(Study, FaultsNameFileAndPointer) {
     text.replace(at, from.size(), to);
     const auto gravity = text.find("../paper/gravity.json");
     if (gravity != std::string::npos) text.replace(gravity, 21, CLOTHBENCH_SOURCE_DIR "/scenarios/paper/gravity.json");
-    const auto file = std::filesystem::temp_directory_path() / "clothbench-study-test.json";
+    const auto file =
+        std::filesystem::temp_directory_path() / ("clothbench-study-" + std::to_string(::getpid()) + ".json");
     std::ofstream(file) << text;
     try {
       load_study(file.string());
