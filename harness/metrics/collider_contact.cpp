@@ -5,6 +5,7 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
+#include "metrics/collider_surface.hpp"
 #include "metrics/contact/contact_probe.hpp"
 #include "metrics/contact/contour.hpp"
 #include "metrics/contact/half_space.hpp"
@@ -16,32 +17,9 @@ using contact::ContactProbe;
 using contact::ContactSample;
 using contact::TriangleMeshView;
 
-std::vector<contact::Capsule> shapes_of(const std::vector<Capsule>& capsules) {
-  std::vector<contact::Capsule> out;
-  for (const Capsule& c : capsules) out.push_back({contact::point(c.a_m), contact::point(c.b_m), c.radius_m});
-  return out;
-}
-
-/// The twelve triangles of a box, counter-clockwise seen from outside.
-ColliderMesh box_mesh(const Collider& box) {
-  ColliderMesh mesh;
-  for (unsigned corner = 0; corner < 8; ++corner)
-    for (std::size_t k = 0; k < 3; ++k) {
-      double x = box.center_m[k];
-      for (unsigned a = 0; a < 3; ++a) x += ((corner >> a & 1u) != 0 ? 1 : -1) * box.half_extent_m[a] * box.axes[a][k];
-      mesh.positions.push_back(x);
-    }
-  // Corner bits are x, y, z; each face as two triangles round its diagonal.
-  mesh.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
-                    {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
-  mesh.closed = true;
-  return mesh;
-}
-
 contact::Solid solid_of(const Collider& c) {
   if (!has_inside(c)) return contact::Solid::No;
-  const bool closed = c.shape != Collider::Shape::Mesh || c.mesh->closed;
-  return closed ? contact::Solid::Auto : contact::Solid::Nearly;
+  return !c.mesh || c.mesh->closed ? contact::Solid::Auto : contact::Solid::Nearly;
 }
 
 /// One collider and what watches it; a half-space needs no history and no probe.
@@ -88,17 +66,12 @@ struct ColliderContact::Probes {
     const TriangleMeshView cloth{rest, triangles};
     Watched w{&c, {}};
     try {
-      if (c.shape == Collider::Shape::Sphere) {
-        const contact::Capsule ball = contact::sphere(contact::point(c.center_m), c.radius_m);
-        w.probe.emplace(cloth, std::span(&ball, 1));
-      } else if (c.shape == Collider::Shape::Capsules) {
-        w.probe.emplace(cloth, shapes_of(pose(k, 0).capsules));
-      } else if (c.shape == Collider::Shape::Box) {
-        const ColliderMesh mesh = box_mesh(c);
-        w.probe.emplace(cloth, TriangleMeshView{mesh.positions, mesh.triangles}, solid_of(c));
-      } else if (c.shape == Collider::Shape::Mesh) {
-        const std::vector<double> start = posed_positions(*c.mesh, pose(k, 0));
-        w.probe.emplace(cloth, TriangleMeshView{start, c.mesh->triangles}, solid_of(c));
+      const ColliderKind& kind = kind_of(c);
+      if (kind.capsules != nullptr) {
+        w.probe.emplace(cloth, contact_capsules(kind.capsules(c, pose(k, 0))));
+      } else if (!kind.half_space) {
+        const ColliderSurface surface = kind.surface(c, pose(k, 0), {});
+        w.probe.emplace(cloth, TriangleMeshView{surface.positions, surface.triangles}, solid_of(c));
       }
     } catch (const Error& e) {
       throw Error("collider " + c.name + ": " + e.what());
@@ -108,12 +81,16 @@ struct ColliderContact::Probes {
 
   ContactSample sample(std::size_t k, int frame, const std::vector<double>& positions) {
     const Collider& c = *watched[k].collider;
-    if (c.shape == Collider::Shape::Plane)
+    const ColliderKind& kind = kind_of(c);
+    if (kind.half_space)
       return contact::half_space_contact({positions, triangles}, contact::point(c.center_m), contact::point(c.normal));
     ContactProbe& probe = *watched[k].probe;
-    if (frame > 0 && c.shape == Collider::Shape::Capsules) probe.move_shapes(shapes_of(pose(k, frame).capsules));
-    if (frame > 0 && c.shape == Collider::Shape::Mesh && c.moves())
-      probe.move_object(posed_positions(*c.mesh, pose(k, frame)));
+    if (frame > 0 && c.moves()) {
+      if (kind.capsules != nullptr)
+        probe.move_shapes(contact_capsules(kind.capsules(c, pose(k, frame))));
+      else
+        probe.move_object(kind.surface(c, pose(k, frame), {}).positions);
+    }
     return probe.probe(positions);
   }
 

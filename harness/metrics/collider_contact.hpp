@@ -15,7 +15,7 @@ inline constexpr bool kWithContactMetrics = false;  // built without CGAL: the c
 inline constexpr Needs kColliders{"colliders",
                                   [](const Scene& s) { return kWithContactMetrics && !s.colliders.empty(); }};
 
-/// Whether depth in it is defined: planes (the half-space behind them), spheres, boxes, capsules, closed meshes with
+/// Whether depth in it is defined: all shapes but meshes (of a plane the half-space behind it), closed meshes with
 /// their normals outwards, and skinned ones, which are hands open at the wrist at most. Rooms have no inside.
 bool has_inside(const Collider&);
 
@@ -23,8 +23,8 @@ bool has_inside(const Collider&);
 bool counts_crossings(const Collider&);
 
 /// The contact of one cloth with all colliders of its scene, frame after frame: a contact::ContactProbe for each, moved
-/// as Scene::motion says. Boxes are probed as closed meshes, which is exact; planes as half-spaces, exactly; spheres
-/// and capsules by their signed distance.
+/// as Scene::motion says. What its kind has of geometry decides how (scenario/collider_kinds.hpp): capsules by their
+/// signed distance, half-spaces exactly, the rest as triangles, which for a box is exact.
 ///
 /// Put together over the colliders: lengths, pairs and areas are sums (where colliders overlap, both count); fractions
 /// and depths are the greatest; the mean depth is over the sum of penetrating areas.

@@ -7,7 +7,7 @@
 
 #include "clothbench/record.hpp"
 #include "metrics/collider_contact.hpp"
-#include "metrics/contact/surface.hpp"
+#include "metrics/collider_surface.hpp"
 #include "metrics/contact/wrong_side.hpp"
 
 namespace clothbench {
@@ -66,7 +66,7 @@ std::vector<MedialPoint> medial_points(const ColliderMesh& m, std::size_t first,
 class CentreLine {
  public:
   explicit CentreLine(const Collider& c) {
-    if (c.shape != Collider::Shape::Mesh || !has_centre_line(c)) return;
+    if (!c.mesh || !has_centre_line(c)) return;
     for (const auto& [first, last] : kFingers) {
       const std::vector<MedialPoint> points = medial_points(*c.mesh, first, last);
       for (std::size_t k = 1; k < points.size(); ++k) bones_.push_back({points[k - 1], points[k]});
@@ -92,32 +92,16 @@ class CentreLine {
   std::vector<std::array<MedialPoint, 2>> bones_;
 };
 
-std::vector<contact::Capsule> shapes_of(const Collider& c, const ColliderPose& pose) {
-  if (c.shape == Collider::Shape::Sphere) return {contact::sphere(contact::point(c.center_m), c.radius_m)};
-  std::vector<contact::Capsule> out;
-  for (const Capsule& k : pose.capsules) out.push_back({contact::point(k.a_m), contact::point(k.b_m), k.radius_m});
-  return out;
-}
+/// The triangles of a collider at one instant.
+struct Triangles {
+  Triangles(const Collider& c, const ColliderPose& pose)
+      : surface(kind_of(c).surface(c, pose, {})), near({surface.positions, surface.triangles}) {}
+  Triangles(const Triangles&) = delete;
+  Triangles& operator=(const Triangles&) = delete;
 
-/// Nearest place of a box's surface, inside it too.
-Nearest nearest_on_box(const Point<3>& p, const Collider& box) {
-  const Point<3> from = p - contact::point(box.center_m);
-  Point<3> at = Point<3>::Zero();
-  double inside = std::numeric_limits<double>::infinity();
-  Point<3> out = Point<3>::Zero();
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Point<3> axis = contact::point(box.axes[k]);
-    const double x = axis.dot(from), h = box.half_extent_m[k];
-    at += std::clamp(x, -h, h) * axis;
-    if (h - std::abs(x) < inside) {
-      inside = h - std::abs(x);
-      out = (x < 0 ? -1 : 1) * axis;
-    }
-  }
-  if (inside >= 0) return {-inside, out, Point<3>::Zero()};
-  const double distance = (from - at).norm();
-  return {distance, (from - at) / distance, Point<3>::Zero()};
-}
+  ColliderSurface surface;
+  contact::NearSurface near;
+};
 
 }  // namespace
 
@@ -148,8 +132,8 @@ struct ColliderPassage::Watch {
       lines.emplace_back(s.colliders[k]);
       sides.emplace_back();
       still.emplace_back();
-      if (s.colliders[k].mesh && !s.colliders[k].moves())
-        still[k].emplace(contact::TriangleMeshView{s.colliders[k].mesh->positions, s.colliders[k].mesh->triangles});
+      if (!ClosedForm::has(s.colliders[k]) && !s.colliders[k].moves())
+        still[k] = std::make_unique<Triangles>(s.colliders[k], ColliderPose{});
       touched.emplace_back(c.vertex_count(), 0);
       if (has_centre_line(s.colliders[k])) watch_side(k, start);
     }
@@ -236,22 +220,14 @@ struct ColliderPassage::Watch {
       for (std::size_t v = 0; v < out.size(); ++v) out[v] = find(Point<3>(Point<3>::Map(&x[3 * v])));
     };
     const ColliderPose &now = pose(k, frame), &was = pose(k, std::max(frame - 1, 0));
-    if (c.shape == Collider::Shape::Plane) {
-      const Point<3> at = contact::point(c.center_m), normal = contact::point(c.normal);
-      each([&](const Point<3>& p) { return Nearest{normal.dot(p - at), normal, Point<3>::Zero()}; });
-    } else if (c.shape == Collider::Shape::Box) {
-      each([&](const Point<3>& p) { return nearest_on_box(p, c); });
-    } else if (c.shape == Collider::Shape::Mesh) {
-      if (!c.moves()) {
-        each([&](const Point<3>& p) { return (*still[k])(p, reach); });
-        return out;
-      }
-      const std::vector<double> placed = posed_positions(*c.mesh, now), last = posed_positions(*c.mesh, was);
-      const contact::NearSurface surface({placed, c.mesh->triangles});
-      each([&](const Point<3>& p) { return surface(p, reach, last); });
+    if (ClosedForm::has(c)) {
+      each(ClosedForm(c, now, was));
+    } else if (!c.moves()) {
+      each([&](const Point<3>& p) { return still[k]->near(p, reach); });
     } else {
-      const std::vector<contact::Capsule> shapes = shapes_of(c, now), last = shapes_of(c, was);
-      each([&](const Point<3>& p) { return contact::nearest(p, shapes, last); });
+      const std::vector<double> last = kind_of(c).surface(c, was, {}).positions;
+      const Triangles surface(c, now);
+      each([&](const Point<3>& p) { return surface.near(p, reach, last); });
     }
     return out;
   }
@@ -290,9 +266,9 @@ struct ColliderPassage::Watch {
   double tolerance = 0;
   std::vector<double> margins;  ///< one a collider: how far off it the solver holds cloth
   std::vector<CentreLine> lines;
-  std::vector<std::optional<WrongSide>> sides;             ///< one a collider; empty where it has no centre line
-  std::vector<std::vector<char>> touched;                  ///< (collider, vertex), at the last frame
-  std::vector<std::optional<contact::NearSurface>> still;  ///< of meshes that stand still
+  std::vector<std::optional<WrongSide>> sides;    ///< one a collider; empty where it has no centre line
+  std::vector<std::vector<char>> touched;         ///< (collider, vertex), at the last frame
+  std::vector<std::unique_ptr<Triangles>> still;  ///< of what is triangles and stands still
 };
 
 ColliderPassage::ColliderPassage(const Scene& scene, const std::vector<double>& held_at_m)

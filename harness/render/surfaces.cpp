@@ -6,6 +6,7 @@
 
 #include "clothbench/vector.hpp"
 #include "render/render_shared.h"
+#include "scenario/collider_kinds.hpp"
 
 namespace clothbench::render {
 namespace {
@@ -61,37 +62,6 @@ void add_capsule(Surfaces& s, const Capsule& c, int look) {
     }
 }
 
-void add_box(Surfaces& s, const Collider& c) {
-  for (std::size_t k = 0; k < 3; ++k)
-    for (const double side : {-1.0, 1.0}) {
-      const Vec3 n = sum({0, 0, 0}, side, c.axes[k]);
-      const std::size_t u = (k + 1) % 3, v = (k + 2) % 3;
-      std::array<std::uint32_t, 4> corner{};
-      for (std::size_t i = 0; i < 4; ++i) {
-        Vec3 p = sum(c.center_m, c.half_extent_m[k], n);
-        p = sum(p, (i == 1 || i == 2 ? 1 : -1) * c.half_extent_m[u], c.axes[u]);
-        corner[i] = add_vertex(s, sum(p, (i >= 2 ? 1 : -1) * c.half_extent_m[v], c.axes[v]), n, LOOK_FLAT);
-      }
-      s.triangles.push_back({corner[0], corner[1], corner[2]});
-      s.triangles.push_back({corner[0], corner[2], corner[3]});
-    }
-}
-
-/// A square of it below (beside) what is looked at.
-void add_plane(Surfaces& s, const Collider& c, const Bounds& near) {
-  Vec3 middle = sum(near.low, 1, near.high);
-  for (double& x : middle) x /= 2;
-  middle = sum(middle, -dot(sum(middle, -1, c.center_m), c.normal), c.normal);
-  const auto [x, y] = across(c.normal);
-  const double reach = near.diagonal() / 2;
-  std::array<std::uint32_t, 4> corner{};
-  for (std::size_t i = 0; i < 4; ++i)
-    corner[i] = add_vertex(s, sum(sum(middle, (i == 1 || i == 2 ? 1 : -1) * reach, x), (i >= 2 ? 1 : -1) * reach, y),
-                           c.normal, LOOK_FLAT);
-  s.triangles.push_back({corner[0], corner[1], corner[2]});
-  s.triangles.push_back({corner[0], corner[2], corner[3]});
-}
-
 bool meets(const Bounds& b, const std::array<Vec3, 3>& t) {
   for (std::size_t k = 0; k < 3; ++k) {
     const auto [low, high] = std::minmax({t[0][k], t[1][k], t[2][k]});
@@ -100,16 +70,18 @@ bool meets(const Bounds& b, const std::array<Vec3, 3>& t) {
   return true;
 }
 
-/// Hands are round, rooms are not.
-void add_mesh(Surfaces& s, const ColliderMesh& mesh, const ColliderPose& pose, const Bounds& near) {
-  const std::vector<double> x = posed_positions(mesh, pose);
+/// Hands are round, other things have edges.
+void add_triangles(Surfaces& s, const Collider& c, const ColliderPose& pose, const Bounds& near) {
+  Extent seen{sum(near.low, 1, near.high), near.diagonal() / 2};
+  for (double& x : seen.middle) x /= 2;
+  const auto [x, triangles] = kind_of(c).surface(c, pose, seen);
   const auto first = static_cast<std::uint32_t>(s.position_m.size());
-  const int look = mesh.skinned() ? LOOK_SMOOTH : LOOK_FLAT;
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) add_vertex(s, {x[3 * v], x[3 * v + 1], x[3 * v + 2]}, {}, look);
-  for (const auto& t : mesh.triangles) {
+  for (std::size_t v = 0; v < x.size(); v += 3)
+    add_vertex(s, {x[v], x[v + 1], x[v + 2]}, {}, c.moves() ? LOOK_SMOOTH : LOOK_FLAT);
+  for (const auto& t : triangles) {
     const std::array<Vec3, 3> p = {s.position_m[first + t[0]], s.position_m[first + t[1]], s.position_m[first + t[2]]};
     if (!finite(p[0]) || !finite(p[1]) || !finite(p[2])) continue;
-    if (!mesh.skinned() && !meets(near, p)) continue;
+    if (c.mesh && !c.moves() && !meets(near, p)) continue;
     const Vec3 normal = cross(sum(p[1], -1, p[0]), sum(p[2], -1, p[0]));
     for (const std::uint32_t v : t) s.normal[first + v] = sum(s.normal[first + v], 1, normal);
     s.triangles.push_back({first + t[0], first + t[1], first + t[2]});
@@ -148,23 +120,10 @@ Surfaces surfaces(const Scene& scene, int frame, const Bounds& near) {
   for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
     const Collider& c = scene.colliders[k];
     const ColliderPose& pose = motion != nullptr && k < motion->colliders.size() ? motion->colliders[k] : kStill;
-    switch (c.shape) {
-      case Collider::Shape::Plane:
-        add_plane(s, c, near);
-        break;
-      case Collider::Shape::Sphere:
-        add_capsule(s, {c.center_m, c.center_m, c.radius_m}, LOOK_SMOOTH);
-        break;
-      case Collider::Shape::Box:
-        add_box(s, c);
-        break;
-      case Collider::Shape::Capsules:
-        for (const Capsule& one : pose.capsules.empty() ? c.capsules : pose.capsules) add_capsule(s, one, LOOK_SMOOTH);
-        break;
-      case Collider::Shape::Mesh:
-        add_mesh(s, *c.mesh, pose, near);
-        break;
-    }
+    if (kind_of(c).capsules != nullptr)
+      for (const Capsule& one : kind_of(c).capsules(c, pose)) add_capsule(s, one, LOOK_SMOOTH);
+    else
+      add_triangles(s, c, pose, near);
   }
   if (motion == nullptr) return s;
   const double radius = kGrip_m * std::max(scene.cloth.width_m, scene.cloth.height_m);

@@ -14,10 +14,10 @@ std::vector<float> vertex_strain(const Cloth&, std::span<const double> position_
 /// How deep each vertex is in the colliders of a scene [m], the deepest where it is in several, 0 outside; NaN where it
 /// is not finite.
 ///
-/// Planes, spheres, boxes and capsules: from their distance. Meshes with an inside (closed, or hands): the distance to
-/// the surface of vertices with a winding number above 1/2. Other meshes (rooms): the distance to the surface of
-/// vertices whose way since the start has crossed it, so frames come in order from the start; after one that is not
-/// finite this is NaN.
+/// Planes, spheres, boxes and capsules: from their distance. Triangles with an inside (closed, or hands): the distance
+/// to the surface of vertices with a winding number above 1/2. Others (rooms): the distance to the surface of vertices
+/// whose way since the start has crossed it, so frames come in order from the start; after one that is not finite this
+/// is NaN.
 class VertexDepth {
  public:
   /// Throws Error where a mesh is to be asked and this build has no contact metrics

@@ -10,7 +10,7 @@ using nlohmann::json;
 
 std::optional<Feature> feature(const json& name) {
   for (std::size_t k = 0; k < kFeatureCount; ++k)
-    if (name.is_string() && name.get<std::string>() == kFeatureNames[k]) return static_cast<Feature>(k);
+    if (name.is_string() && name.get<std::string>() == kFeatures[k].name) return static_cast<Feature>(k);
   return std::nullopt;
 }
 
@@ -86,7 +86,7 @@ Table feature_table(const std::vector<SolverFeatures>& solvers, bool with_result
         t.note;
   for (const SolverFeatures& s : solvers) t.rows[0].push_back(s.solver);
   for (std::size_t k = 0; k < kFeatureCount; ++k) {
-    std::vector<std::string> row = {words(kFeatureNames[k])};
+    std::vector<std::string> row = {words(kFeatures[k].name)};
     for (const SolverFeatures& s : solvers) row.push_back(feature_text(s, static_cast<Feature>(k), with_results));
     t.rows.push_back(std::move(row));
   }
@@ -96,7 +96,8 @@ Table feature_table(const std::vector<SolverFeatures>& solvers, bool with_result
 json feature_json(const std::vector<SolverFeatures>& solvers, bool with_results) {
   json rows = json::array();
   for (std::size_t k = 0; k < kFeatureCount; ++k) {
-    json row = {{"name", kFeatureNames[k]}, {"solvers", json::object()}};
+    json row = {{"name", kFeatures[k].name}, {"solvers", json::object()}};
+    if (!with_results) row["doc"] = kFeatures[k].doc;
     for (const SolverFeatures& s : solvers)
       row["solvers"][s.solver] = feature_text(s, static_cast<Feature>(k), with_results);
     rows.push_back(std::move(row));

@@ -10,10 +10,10 @@
 #include "base/json_number.hpp"
 #include "base/json_text.hpp"
 #include "metrics/registry.hpp"
+#include "results/replay.hpp"
 #include "results/store.hpp"
 #include "runner/cell.hpp"
 #include "runner/expect.hpp"
-#include "runner/replay.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

@@ -6,8 +6,7 @@
 
 namespace clothbench {
 
-/// What is in a stage's data and needs no stage of its own.
-constexpr FeatureSet kData = {Feature::UnevenGrid, Feature::Regions, Feature::Spin, Feature::ClothMesh};
+constexpr FeatureSet kData = features_of(FeatureOf::Data);
 
 std::string check_stages(const Scene& scene, const SolverInfo& info, const Plan& plan) {
   std::string fault;

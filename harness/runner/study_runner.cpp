@@ -7,11 +7,11 @@
 #include <set>
 
 #include "metrics/truth_dependence.hpp"
+#include "results/replay.hpp"
 #include "runner/expect.hpp"
 #include "runner/interrupt.hpp"
 #include "runner/ladder.hpp"
 #include "runner/reference.hpp"
-#include "runner/replay.hpp"
 #include "runner/resume.hpp"
 #include "runner/sensors.hpp"
 

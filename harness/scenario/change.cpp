@@ -107,7 +107,8 @@ class Changer {
   void change(json& j) const {
     const auto type = j["type"].get<std::string>();
     if (type == "room" || type.starts_with("hand")) refuse("a collider of type " + type);
-    for (const char* key : {"margin_m", "radius_m", "length_m"}) scale(j, key, c_.length);
+    for (const auto& [key, value] : j.items())
+      if (value.is_number() && key.ends_with("_m")) value = c_.length * value.get<double>();
     for (const char* key : {"center_m", "point_m"})
       if (j.contains(key)) j[key] = place(j[key]);
     for (const char* key : {"normal", "axis"})

@@ -3,24 +3,11 @@
 #include "clothbench/error.hpp"
 #include "clothbench/scene.hpp"
 #include "clothbench/solver.hpp"
+#include "scenario/collider_kinds.hpp"
 
 namespace clothbench {
 
-Feature Collider::feature() const {
-  switch (shape) {
-    case Shape::Plane:
-      return Feature::Plane;
-    case Shape::Sphere:
-      return Feature::Sphere;
-    case Shape::Box:
-      return Feature::Box;
-    case Shape::Capsules:
-      return Feature::Capsules;
-    case Shape::Mesh:
-      return moves() ? Feature::MovingMesh : Feature::StaticMesh;
-  }
-  throw Error("collider " + name + ": no such shape");
-}
+Feature Collider::feature() const { return moves() ? kind_of(*this).moving : kind_of(*this).standing; }
 
 std::vector<double> posed_positions(const ColliderMesh& mesh, const ColliderPose& pose) {
   if (!mesh.skinned()) return mesh.positions;

@@ -1,6 +1,8 @@
 #include "scenario/irrelevant.hpp"
 
-#include <utility>
+#include <map>
+
+#include "scenario/collider_kinds.hpp"
 
 namespace clothbench {
 namespace {
@@ -8,21 +10,13 @@ namespace {
 using nlohmann::json;
 
 constexpr double kNegligible = 1e-30;
-constexpr double kFar = 100;  // m
 constexpr double kFriction = 0.5;
 
 /// Colliders of one kind each, on every side of the cloth. A sheet falls 4.9 m in a second: nothing comes near.
-std::vector<std::pair<Feature, json>> far_colliders() {
-  return {
-      {Feature::Sphere, {{"type", "sphere"}, {"center_m", {kFar, 0, 0}}, {"radius_m", 1}}},
-      {Feature::Box, {{"type", "box"}, {"center_m", {-kFar, 0, 0}}, {"size_m", {1, 1, 1}}}},
-      {Feature::Plane, {{"type", "plane"}, {"point_m", {0, -kFar, 0}}, {"normal", {0, 1, 0}}}},
-      {Feature::Capsules,
-       {{"type", "hand_capsules"}, {"track", "assets/right-hand-sweep.json"}, {"offset_m", {0, 0, kFar}}}},
-      {Feature::StaticMesh,
-       {{"type", "mesh"}, {"positions_m", {{-1, 0, -kFar}, {1, 0, -kFar}, {0, 1, -kFar}}}, {"triangles", {{0, 1, 2}}}}},
-      {Feature::MovingMesh,
-       {{"type", "hand_mesh"}, {"track", "assets/right-hand-sweep.json"}, {"offset_m", {kFar, 0, kFar}}}}};
+std::map<Feature, json> far_colliders() {
+  std::map<Feature, json> out;
+  for (const ColliderKind& kind : collider_kinds()) out.insert(kind.far.begin(), kind.far.end());
+  return out;
 }
 
 }  // namespace

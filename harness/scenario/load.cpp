@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -199,26 +200,26 @@ std::filesystem::path find_scenario(const std::string& name_or_path) {
                           scenario_root().string(), near.empty() ? "" : "; nearest known: " + near));
 }
 
+namespace {
+
+bool touches(const Scene& scene, Feature what) {
+  return std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                     [&](const Collider& c) { return c.feature() == what; });
+}
+
+bool rubs(const Scene& scene) {
+  return scene.cloth.self_collision.friction > 0 ||
+         std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.friction > 0; });
+}
+
+}  // namespace
+
 FeatureSet derive_needs(const Scene& scene) {
-  FeatureSet needs = {Feature::Stretch};
-  if (scene.material.shear && !scene.cloth.mesh) needs.add(Feature::Shear);
-  if (scene.material.bending_rigidity_N_m > 0) needs.add(Feature::Bend);
-  if (scene.material.damping_per_s > 0) needs.add(Feature::Damping);
-  if (!scene.pins.vertices.empty()) needs.add(Feature::Pins);
-  if (!scene.grips.vertices.empty()) needs.add(Feature::MovingPins);
-  for (const Collider& c : scene.colliders) {
-    needs.add(c.feature());
-    if (c.friction > 0) needs.add(Feature::Friction);
-  }
-  if (scene.cloth.self_collision.thickness_m > 0) needs.add(Feature::SelfCollision);
-  if (scene.cloth.self_collision.friction > 0) needs.add(Feature::Friction);
-  if (!scene.cloth.column_factors.empty()) needs.add(Feature::UnevenGrid);
-  if (!scene.material.regions.empty()) needs.add(Feature::Regions);
-  if (scene.cloth.spin_rad_per_s != Vec3{}) needs.add(Feature::Spin);
-  if (scene.cloth.mesh) needs.add(Feature::ClothMesh);
-  if (scene.cloth.sides == Sides::DoubleDuplicated) needs.add(Feature::DuplicatedLayer);
-  // Two-sided contact is a matter of contact: with nothing to touch there is nothing to do for it.
-  if (scene.cloth.sides == Sides::Double && !(needs & kColliderFeatures).empty()) needs.add(Feature::DoubleSided);
+  FeatureSet needs;
+#define FEATURE(id, name, bit, of, doc, needed) \
+  if (needed) needs.add(Feature::id);
+#include "clothbench/feature_table.hpp"
+#undef FEATURE
   return needs;
 }
 

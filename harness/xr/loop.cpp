@@ -7,13 +7,13 @@
 #include <thread>
 
 #include "gpu_solver.hpp"
+#include "results/replay.hpp"
 #include "results/store.hpp"
 #include "runner/cell.hpp"
 #include "runner/environment.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"
 #include "runner/jobs.hpp"
-#include "runner/replay.hpp"
 #include "xr/counters.hpp"
 #include "xr/hands.hpp"
 #include "xr/live_scene.hpp"

@@ -3,9 +3,9 @@
 #include <stdexcept>
 
 #include "metrics/metric_pass.hpp"
+#include "results/replay.hpp"
 #include "runner/cell.hpp"
 #include "runner/expect.hpp"
-#include "runner/replay.hpp"
 
 namespace clothbench {
 namespace {

@@ -8,9 +8,9 @@
 #include "clothbench/error.hpp"
 #include "render/legend.hpp"
 #include "render/movie.hpp"
+#include "results/replay.hpp"
 #include "results/store.hpp"
 #include "runner/cell.hpp"
-#include "runner/replay.hpp"
 #include "scenario/load.hpp"
 #include "sheets.hpp"
 

@@ -110,7 +110,7 @@ TEST(Penetration, VerdictNeverHidesAFailure) {
   CellRecord c = desk_cell("xpbd", "default", "none");
   EXPECT_EQ(verdict(c), "kept");
   CellRecord control = c;
-  for (const std::string_view f : kFeatureNames) control.header.environment["solver_features"]["ignores"].push_back(f);
+  for (const FeatureRow& f : kFeatures) control.header.environment["solver_features"]["ignores"].push_back(f.name);
   EXPECT_EQ(verdict(control), "ignored") << "luck is no merit";
   control.summary["expect.stretch_max"] = 0;
   EXPECT_EQ(verdict(control), "broken");

@@ -9,9 +9,9 @@
 
 #include "clothbench/error.hpp"
 #include "results/hdf5_file.hpp"
+#include "results/replay.hpp"
 #include "results/store.hpp"
 #include "runner/cell.hpp"
-#include "runner/replay.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

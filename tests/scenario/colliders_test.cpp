@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 
 #include "assets/assets.hpp"
 #include "clothbench/error.hpp"
+#include "scenario/collider_kinds.hpp"
 #include "scenario/load.hpp"
+#include "scenario/schemas.hpp"
 
 namespace clothbench {
 namespace {
@@ -134,6 +137,50 @@ TEST_F(Colliders, ItemsOfListsCanBeOverridden) {
   EXPECT_FALSE(load_scene("contact/sphere", {"colliders.0.friction=0"}).needs.has(Feature::Friction));
   for (const char* bad : {"colliders.1.radius_m=0.2", "colliders.x=1", "colliders.0.radius_m=-1", "colliders.-1={}"})
     EXPECT_THROW(load_scene("contact/sphere", {bad}), Error) << bad;
+}
+
+TEST(Kinds, TheirTypesAreThoseOfTheSchema) {
+  const nlohmann::json schema = nlohmann::json::parse(kSceneSchema);
+  std::set<std::string> told, known;
+  for (const auto& type : schema["properties"]["colliders"]["items"]["properties"]["type"]["enum"]) told.insert(type);
+  for (const ColliderKind& kind : collider_kinds())
+    for (const ColliderType& type : kind.types) {
+      EXPECT_TRUE(known.insert(type.name).second) << type.name;
+      EXPECT_TRUE(schema["definitions"].contains(std::string("collider_") + type.name)) << type.name;
+    }
+  EXPECT_EQ(told, known);
+}
+
+TEST(Kinds, EveryShapeAndEveryFeatureHasOne) {
+  std::set<Feature> far;
+  for (std::size_t k = 0; k < collider_kinds().size(); ++k) {
+    const ColliderKind& kind = collider_kinds()[k];
+    EXPECT_EQ(static_cast<std::size_t>(kind.shape), k);
+    EXPECT_NE(kind.capsules == nullptr, kind.surface == nullptr) << kind.name;
+    for (const auto& [feature, example] : kind.far) {
+      EXPECT_TRUE(feature == kind.standing || feature == kind.moving);
+      EXPECT_TRUE(far.insert(feature).second);
+    }
+  }
+  kColliderFeatures.for_each([&](Feature f) { EXPECT_TRUE(far.contains(f)) << name_of(f); });
+}
+
+TEST(Kinds, TrianglesOfABoxAreWhereItsDistanceIsNothing) {
+  Collider box;
+  box.shape = Collider::Shape::Box;
+  box.center_m = {0.1, 0.2, 0.3};
+  box.half_extent_m = {1, 2, 3};
+  box.axes = {{{0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}}};
+  const ColliderKind& kind = kind_of(box);
+  const ColliderSurface faces = kind.surface(box, {}, {});
+  for (const auto& t : faces.triangles) {
+    Vec3 middle{};
+    for (const std::uint32_t v : t)
+      for (std::size_t k = 0; k < 3; ++k) middle[k] += faces.positions[3 * v + k] / 3;
+    EXPECT_NEAR(kind.nearest(box, middle).distance_m, 0, 1e-12);
+  }
+  EXPECT_EQ(faces.triangles.size(), 12u);
+  EXPECT_NEAR(kind.nearest(box, box.center_m).distance_m, -1, 1e-12);
 }
 
 }  // namespace

@@ -43,6 +43,45 @@ def metric(tree, build):
         assert verdict in told, told
 
 
+def needs(tree, scene):
+    told = run(tree / "build/clothbench", "--json", "plan", "--solver", "ballistic", scene, env={**os.environ, "CLOTHBENCH_SCENARIOS": str(tree / "scenarios")})
+    return json.loads(told)[0]["needs"]
+
+
+def torus(tree, build):
+    """A cloth falls on a ring: a solver has to support it, metrics find the cloth in it, and the result file keeps it."""
+    import h5py
+    build()
+    scene = json.loads((tree / "scenarios/contact/sphere.json").read_text())
+    ring = {"type": "torus", "center_m": [0, 0, 0], "radius_m": 0.12, "tube_radius_m": 0.03}
+    scene["colliders"] = [ring]
+    scene["expect"] = {"contact_length_max_m": {"at_least": 0.5}, "depth_max_m": {"at_least": 0.005, "at_most": 0.031}}
+    (tree / "scene.json").write_text(json.dumps(scene))
+    assert "torus" in needs(tree, tree / "scene.json")
+    environment = {**os.environ, "CLOTHBENCH_SCENARIOS": str(tree / "scenarios")}
+    told = run(tree / "build/clothbench", "run", tree / "scene.json", "--solver", "ballistic", "--out", tree / "out", "--json", env=environment)
+    assert '"kept"' in told, told
+    with h5py.File(next((tree / "out").glob("*.h5"))) as f:
+        kept = f["colliders/0"].attrs
+        assert (kept["shape"], kept["tube_radius_m"]) == ("torus", 0.03), dict(kept)
+    scene["colliders"] = [{**ring, "tube_radius_m": 0.5}]
+    (tree / "scene.json").write_text(json.dumps(scene))
+    wrong = subprocess.run([tree / "build/clothbench", "validate", tree / "scene.json"], capture_output=True, text=True, env=environment)
+    assert wrong.returncode == 2 and "/colliders/0/tube_radius_m: expected less than radius_m" in wrong.stdout + wrong.stderr, wrong
+
+
+def thrown(tree, build):
+    """A scene needs the toy or does not, and the table of features has it."""
+    build()
+    scene = json.loads((tree / "scenarios/validation/free-fall.json").read_text())
+    for velocity, needed in (([0, 0, 0], False), ([1, 0, 0], True)):
+        scene["cloth"]["initial_velocity_m_per_s"] = velocity
+        (tree / "scene.json").write_text(json.dumps(scene))
+        assert ("thrown" in needs(tree, tree / "scene.json")) == needed
+    row = json.loads(run(tree / "build/clothbench", "--json", "list", "features"))[-1]
+    assert (row["name"], row["solvers"]["ballistic"]) == ("thrown", "ignored"), row
+
+
 def main():
     arguments = [a for a in sys.argv[1:] if a != "--build"]
     patch, most = pathlib.Path(arguments[0]).resolve(), int(arguments[1])

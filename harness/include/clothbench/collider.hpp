@@ -56,7 +56,7 @@ struct Collider {
 
   /// What a solver needs for it.
   Feature feature() const;
-  bool moves() const { return shape == Shape::Capsules || (mesh && mesh->skinned()); }
+  bool moves() const { return !capsules.empty() || (mesh && mesh->skinned()); }
 };
 
 /// Where one collider is at one instant; empty for what stands still.

@@ -7,43 +7,37 @@
 
 namespace clothbench {
 
-/// What a scene asks of a solver. Derived from the scenario by the loader (`derive_needs`), never by a solver. A run
-/// fails unless the features its stages served are exactly those the scene needs (`check_stages`).
+/// What a scene asks of a solver: the rows of feature_table.hpp. Derived from the scenario by the loader
+/// (`derive_needs`), never by a solver. A run fails unless the features its stages served are exactly those the scene
+/// needs (`check_stages`).
 enum class Feature : std::uint8_t {
-  Stretch,  ///< structural edges
-  Shear,    ///< diagonals
-  Bend,
-  Damping,
-  Pins,
-  MovingPins,
-  Sphere,
-  Box,
-  Plane,
-  Capsules,
-  StaticMesh,
-  MovingMesh,
-  Friction,
-  DoubleSided,      ///< two-sided contact without a second layer; needed only where there is something to touch
-  DuplicatedLayer,  ///< the paper's second, oppositely wound layer of particles tied to the first
-  SelfCollision,
-  Render,
-  UnevenGrid,  ///< cells of different widths (cloth.column_factors)
-  Regions,     ///< a membrane stiffness that changes from column to column (material.regions)
-  Spin,        ///< a start that turns: another velocity at every vertex
-  ClothMesh,   ///< a triangle mesh instead of a grid (cloth.mesh)
+#define FEATURE(id, ...) id,
+#include "clothbench/feature_table.hpp"
+#undef FEATURE
   Count
+};
+
+enum class FeatureOf : std::uint8_t {
+  Cloth,
+  Collider,  ///< touches the cloth
+  Data       ///< is in a stage's data and needs no stage of its own
+};
+
+struct FeatureRow {
+  std::string_view name;
+  FeatureOf of;
+  std::string_view doc;
 };
 
 inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::Count);
 
-inline constexpr std::array<std::string_view, kFeatureCount> kFeatureNames = {
-    "stretch",        "shear",       "bend",        "damping",      "pins",
-    "moving_pins",    "sphere",      "box",         "plane",        "capsules",
-    "static_mesh",    "moving_mesh", "friction",    "double_sided", "duplicated_layer",
-    "self_collision", "render",      "uneven_grid", "regions",      "spin",
-    "cloth_mesh"};
+inline constexpr std::array<FeatureRow, kFeatureCount> kFeatures = {{
+#define FEATURE(id, name, bit, of, doc, needed) {#name, FeatureOf::of, doc},
+#include "clothbench/feature_table.hpp"
+#undef FEATURE
+}};
 
-constexpr std::string_view name_of(Feature f) { return kFeatureNames[static_cast<std::size_t>(f)]; }
+constexpr std::string_view name_of(Feature f) { return kFeatures[static_cast<std::size_t>(f)].name; }
 
 /// A set of features; a value type with the usual set algebra.
 class FeatureSet {
@@ -76,8 +70,13 @@ class FeatureSet {
   std::uint32_t bits_ = 0;
 };
 
-/// Everything that touches cloth.
-inline constexpr FeatureSet kColliderFeatures = {Feature::Sphere,   Feature::Box,        Feature::Plane,
-                                                 Feature::Capsules, Feature::StaticMesh, Feature::MovingMesh};
+constexpr FeatureSet features_of(FeatureOf what) {
+  FeatureSet out;
+  for (std::size_t k = 0; k < kFeatureCount; ++k)
+    if (kFeatures[k].of == what) out.add(static_cast<Feature>(k));
+  return out;
+}
+
+inline constexpr FeatureSet kColliderFeatures = features_of(FeatureOf::Collider);
 
 }  // namespace clothbench

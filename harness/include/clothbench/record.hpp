@@ -95,7 +95,7 @@ struct CellRecord {
   CellHeader header;
   std::vector<TimedTrial> trials;
   AccuracyPass accuracy;
-  std::vector<StoredGroup> replay;  ///< colliders and grips with their motion; see replay_of in harness/runner
+  std::vector<StoredGroup> replay;  ///< colliders and grips with their motion; see results/replay.hpp
   Outcome outcome;
   std::map<std::string, double> summary;  ///< every scalar a table prints; NaN = missing
   std::string file = {};                  ///< where a report read it; empty: nowhere

@@ -6,11 +6,13 @@
 #include <map>
 #include <tuple>
 
+#include "clothbench/error.hpp"
 #include "report/feature_cost.hpp"
 #include "report/penetration.hpp"
 #include "report/web/packed.hpp"
 #include "report/web/page.hpp"
 #include "report/work_precision.hpp"
+#include "results/replay.hpp"
 
 namespace clothbench {
 namespace {
@@ -148,13 +150,18 @@ class Packer {
   }
 
   /// Index of the colliders among those of the page, as text; "" if there are none or they are too large.
-  std::string colliders(const CellRecord& c, const std::vector<StoredGroup>& groups) {
+  std::string colliders(const CellRecord& c, std::vector<StoredGroup> groups) {
     if (groups.empty()) return "";
     json described = json::array();
     std::vector<std::string> packed;
     std::size_t total = 0;
     std::string key;
-    for (const StoredGroup& g : groups) {
+    for (StoredGroup& g : groups) {
+      try {
+        show_shape(g);
+      } catch (const json::exception& e) {
+        throw Error(c.file + ": /" + g.path + ": " + e.what());
+      }
       json arrays = json::object();
       for (const StoredArray& a : g.arrays) {
         packed.push_back(a.integer ? pack_words({a.values.begin(), a.values.end()}) : pack_floats(a.values));

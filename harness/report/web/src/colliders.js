@@ -2,42 +2,12 @@
 import * as THREE from 'three';
 import {MeshBVH} from 'three-mesh-bvh';
 
-const vec = a => new THREE.Vector3(a[0], a[1], a[2]);
-
-function plane(a) {
-  const mesh = new THREE.Mesh(new THREE.PlaneGeometry(4, 4));
-  mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), vec(a.normal).normalize());
-  mesh.position.copy(vec(a.point_m));
-  const n = vec(a.normal).normalize(), p = vec(a.point_m);
-  return {object: mesh, depth: x => -n.dot(x.clone().sub(p))};
-}
-
-function sphere(a) {
-  const mesh = new THREE.Mesh(new THREE.SphereGeometry(a.radius_m, 48, 32)), c = vec(a.center_m);
-  mesh.position.copy(c);
-  return {object: mesh, depth: x => a.radius_m - x.distanceTo(c)};
-}
-
-function box(a) {
-  const half = a.half_extent_m, axes = [vec(a.axis_u), vec(a.axis_v), vec(a.axis_w)], c = vec(a.center_m);
-  const mesh = new THREE.Mesh(new THREE.BoxGeometry(2 * half[0], 2 * half[1], 2 * half[2]));
-  mesh.setRotationFromMatrix(new THREE.Matrix4().makeBasis(...axes));
-  mesh.position.copy(c);
-  return {
-    object: mesh,
-    depth: x => {
-      const d = x.clone().sub(c);
-      return Math.min(...axes.map((u, k) => half[k] - Math.abs(u.dot(d))));
-    }
-  };
-}
-
 /// Ends a and b and radius of each capsule at a time; frames as many a second as the scene has.
 function capsules(array, rate) {
   const [frames, count] = array.shape, group = new THREE.Group(), parts = [];
   for (let k = 0; k < count; ++k) {
-    const shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 20, 1, true)),
-          ends = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1, 20, 14)));
+    const shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 40, 1, true)),
+          ends = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1, 40, 28)));
     group.add(shaft, ...ends);
     parts.push({shaft, ends, a: new THREE.Vector3(), b: new THREE.Vector3(), radius: 0});
   }
@@ -60,6 +30,7 @@ function capsules(array, rate) {
       });
     });
   };
+  move(0);
   return {
     object: group,
     move,
@@ -68,8 +39,18 @@ function capsules(array, rate) {
   };
 }
 
-/// A mesh that stands still, or follows its joints: x(t) = Σ weight · matrix(t) (position, 1).
-function triangle_mesh(arrays, rate) {
+/// Depth of a point in a convex body: how far it is behind the nearest of the planes of its triangles.
+function convex_depth(position, corners) {
+  const planes = [];
+  for (let k = 0; k < corners.length; k += 3) {
+    const [a, b, c] = [0, 1, 2].map(i => new THREE.Vector3().fromArray(position, 3 * corners[k + i]));
+    planes.push(new THREE.Plane().setFromCoplanarPoints(a, b, c));
+  }
+  return x => Math.min(...planes.map(p => -p.distanceToPoint(x)));
+}
+
+/// Triangles that stand still, or follow their joints: x(t) = Σ weight · matrix(t) (position, 1).
+function triangle_mesh(arrays, rate, convex) {
   const rest = arrays.position_m.values, position = new Float32Array(rest);
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.BufferAttribute(position, 3));
@@ -100,6 +81,11 @@ function triangle_mesh(arrays, rate) {
       geometry.computeBoundingSphere();
       tree.refit();
     };
+  }
+  if (convex) {  // its edges are sharp
+    const faces = geometry.toNonIndexed();
+    faces.computeVertexNormals();
+    return {object: new THREE.Mesh(faces), depth: convex_depth(rest, arrays.triangles.values)};
   }
   geometry.computeVertexNormals();
   const ray = new THREE.Ray();
@@ -139,13 +125,9 @@ function grips(arrays, rate) {
 export function make_colliders(groups) {
   const rate = groups.find(g => g.path === 'colliders')?.attributes.frame_rate_hz ?? 72, out = [];
   for (const g of groups) {
-    const shape = g.attributes.shape;
     if (g.path === 'colliders/grips') out.push(grips(g.arrays, rate));
-    else if (shape === 'plane') out.push(plane(g.attributes));
-    else if (shape === 'sphere') out.push(sphere(g.attributes));
-    else if (shape === 'box') out.push(box(g.attributes));
-    else if (shape === 'capsules') out.push(capsules(g.arrays.capsules, rate));
-    else if (shape === 'mesh') out.push(triangle_mesh(g.arrays, rate));
+    else if (g.arrays.capsules) out.push(capsules(g.arrays.capsules, rate));
+    else if (g.arrays.position_m) out.push(triangle_mesh(g.arrays, rate, g.attributes.convex));
   }
   return out;
 }

@@ -1,0 +1,36 @@
+// Every feature is a row here and a bit in clothbench_plugin.h, in one order; a solver says which it supports. FEATURE
+// is what the file that includes this makes of a row:
+//   enumerator, name in files, CLOTHBENCH_<name> of the plugin's bit, what has to do with it (FeatureOf), what it is,
+//   and which scenes need it, in terms of `scene` and of the helpers of harness/scenario/load.cpp.
+
+FEATURE(Stretch, stretch, STRETCH, Cloth, "structural edges", true)
+FEATURE(Shear, shear, SHEAR, Cloth, "diagonals", scene.material.shear && !scene.cloth.mesh)
+FEATURE(Bend, bend, BEND, Cloth, "resistance to bending", scene.material.bending_rigidity_N_m > 0)
+FEATURE(Damping, damping, DAMPING, Cloth, "mass-proportional damping", scene.material.damping_per_s > 0)
+FEATURE(Pins, pins, PINS, Cloth, "vertices that stay", !scene.pins.vertices.empty())
+FEATURE(MovingPins, moving_pins, MOVING_PINS, Cloth, "vertices that hands or bars hold and move",
+        !scene.grips.vertices.empty())
+FEATURE(Sphere, sphere, SPHERE, Collider, "a ball that stands still", touches(scene, Feature::Sphere))
+FEATURE(Box, box, BOX, Collider, "a box that stands still", touches(scene, Feature::Box))
+FEATURE(Plane, plane, PLANE, Collider, "a half-space", touches(scene, Feature::Plane))
+FEATURE(Capsules, capsules, CAPSULES, Collider, "capsules that move", touches(scene, Feature::Capsules))
+FEATURE(StaticMesh, static_mesh, STATIC_MESH, Collider, "a mesh that stands still", touches(scene, Feature::StaticMesh))
+FEATURE(MovingMesh, moving_mesh, MOVING_MESH, Collider, "a skinned mesh", touches(scene, Feature::MovingMesh))
+FEATURE(Friction, friction, FRICTION, Cloth, "Coulomb friction, on colliders or on itself", rubs(scene))
+// Two-sided contact is a matter of contact: with nothing to touch there is nothing to do for it.
+FEATURE(DoubleSided, double_sided, DOUBLE_SIDED, Cloth, "contact from both sides without a second layer",
+        scene.cloth.sides == Sides::Double && !scene.colliders.empty())
+FEATURE(DuplicatedLayer, duplicated_layer, DUPLICATED_LAYER, Cloth,
+        "the paper's second, oppositely wound layer of particles tied to the first",
+        scene.cloth.sides == Sides::DoubleDuplicated)
+FEATURE(SelfCollision, self_collision, SELF_COLLISION, Cloth, "contact of the cloth with itself",
+        scene.cloth.self_collision.thickness_m > 0)
+FEATURE(Render, render, RENDER, Cloth, "pictures within the clock", false)
+FEATURE(UnevenGrid, uneven_grid, UNEVEN_GRID, Data, "cells of different widths (cloth.column_factors)",
+        !scene.cloth.column_factors.empty())
+FEATURE(Regions, regions, REGIONS, Data, "a membrane stiffness that changes from column to column (material.regions)",
+        !scene.material.regions.empty())
+FEATURE(Spin, spin, SPIN, Data, "a start that turns: another velocity at every vertex",
+        scene.cloth.spin_rad_per_s != Vec3{})
+FEATURE(ClothMesh, cloth_mesh, CLOTH_MESH, Data, "a triangle mesh instead of a grid (cloth.mesh)",
+        scene.cloth.mesh != nullptr)

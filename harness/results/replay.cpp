@@ -1,0 +1,263 @@
+#include "results/replay.hpp"
+
+#include <map>
+#include <span>
+
+#include "clothbench/error.hpp"
+#include "scenario/collider_kinds.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+json attributes_of(Collider c) {
+  const ColliderKind& kind = kind_of(c);
+  json a = {{"name", c.name}, {"shape", kind.name}, {"margin_m", c.margin_m}, {"friction", c.friction}};
+  for (const ColliderNumbers& n : kind.numbers) {
+    const std::span<const double> values(n.at(c), n.count);
+    if (n.count == 1)
+      a[n.name] = values[0];
+    else
+      a[n.name] = values;
+  }
+  if (c.mesh) a["closed"] = c.mesh->closed ? 1 : 0;
+  return a;
+}
+
+StoredArray capsules_of(const Scene& scene, std::size_t k) {
+  StoredArray out{"capsules", "m", "ends a and b and radius of each capsule", {"frame", "capsule", "value"}, {},
+                  false,      {}};
+  out.shape = {scene.motion.size(), scene.colliders[k].capsules.size(), 7};
+  for (const FrameMotion& m : scene.motion)
+    for (const Capsule& c : m.colliders[k].capsules)
+      out.values.insert(out.values.end(), {c.a_m[0], c.a_m[1], c.a_m[2], c.b_m[0], c.b_m[1], c.b_m[2], c.radius_m});
+  return out;
+}
+
+void add_triangles(std::vector<double> positions, std::span<const std::array<std::uint32_t, 3>> corners,
+                   std::vector<StoredArray>& out) {
+  const std::uint64_t vertices = positions.size() / 3;
+  out.push_back({"position_m", "m", "vertices", {"vertex", "xyz"}, {vertices, 3}, false, std::move(positions)});
+  StoredArray triangles{"triangles", "1", "vertices of each triangle", {"triangle", "corner"}, {corners.size(), 3},
+                        true,        {}};
+  for (const auto& t : corners) triangles.values.insert(triangles.values.end(), t.begin(), t.end());
+  out.push_back(std::move(triangles));
+}
+
+/// The mesh once; where it is skinned also its weights, and the joints at every frame.
+void add_mesh(const Scene& scene, std::size_t k, std::vector<StoredArray>& out) {
+  const ColliderMesh& mesh = *scene.colliders[k].mesh;
+  const std::uint64_t vertices = mesh.vertex_count();
+  add_triangles(mesh.positions, mesh.triangles, out);
+  if (!mesh.skinned()) return;
+  out[out.size() - 2].long_name = "vertices before skinning";
+  StoredArray joint{"joint_index", "1", "joints that a vertex follows", {"vertex", "slot"}, {vertices, 4}, true, {}};
+  StoredArray weight{"joint_weight", "1", "share of each of them", {"vertex", "slot"}, {vertices, 4}, false, {}};
+  for (std::size_t v = 0; v < vertices; ++v) {
+    joint.values.insert(joint.values.end(), mesh.joints[v].begin(), mesh.joints[v].end());
+    weight.values.insert(weight.values.end(), mesh.weights[v].begin(), mesh.weights[v].end());
+  }
+  StoredArray matrix{"joint_matrix",
+                     "1 and m",
+                     "skinning matrix of each joint: rows of (linear part, translation)",
+                     {"frame", "joint", "row", "column"},
+                     {scene.motion.size(), mesh.joint_count, 3, 4},
+                     false,
+                     {}};
+  for (const FrameMotion& m : scene.motion)
+    for (const Affine& a : m.colliders[k].joints)
+      for (const auto& row : a) matrix.values.insert(matrix.values.end(), row.begin(), row.end());
+  for (StoredArray* a : {&joint, &weight, &matrix}) out.push_back(std::move(*a));
+}
+
+StoredGroup grips_of(const Scene& scene) {
+  const std::uint64_t grips = scene.grips.vertices.size(), frames = scene.motion.size();
+  StoredArray vertex{"held_vertex", "1", "cloth vertex that a hand holds", {"grip"}, {grips}, true, {}};
+  vertex.values.assign(scene.grips.vertices.begin(), scene.grips.vertices.end());
+  StoredArray target{"target_m", "m", "where it is while held", {"frame", "grip", "xyz"}, {frames, grips, 3},
+                     false,      {}};
+  StoredArray held{"held", "1", "1 while held, 0 once let go", {"frame", "grip"}, {frames, grips}, true, {}};
+  for (const FrameMotion& m : scene.motion) {
+    for (const Vec3& p : m.grip_position_m) target.values.insert(target.values.end(), p.begin(), p.end());
+    held.values.insert(held.values.end(), m.grip_held.begin(), m.grip_held.end());
+  }
+  return {"colliders/grips", json::object(), {vertex, target, held}};
+}
+
+const StoredArray* array_of(const StoredGroup& g, const std::string& name) {
+  for (const StoredArray& a : g.arrays)
+    if (a.name == name) return &a;
+  return nullptr;
+}
+
+/// Throws unless its shape is `shape`, 0 standing for any length.
+const StoredArray& expect_shape(const StoredGroup& g, const std::string& name,
+                                const std::vector<std::uint64_t>& shape) {
+  const StoredArray* a = array_of(g, name);
+  bool fits = a != nullptr && a->shape.size() == shape.size();
+  std::uint64_t count = 1;
+  for (std::size_t k = 0; fits && k < shape.size(); ++k) {
+    fits = shape[k] == 0 || shape[k] == a->shape[k];
+    count *= a->shape[k];
+  }
+  if (!fits || a->values.size() != count)
+    throw Error("/" + g.path + "/" + name + " is missing or of another shape than expected");
+  return *a;
+}
+
+FrameMotion& frame_of(Scene& scene, std::size_t frame, std::size_t colliders) {
+  if (scene.motion.size() <= frame) scene.motion.resize(frame + 1);
+  scene.motion[frame].colliders.resize(colliders);
+  return scene.motion[frame];
+}
+
+void read_capsules(const StoredGroup& g, Scene& scene, std::size_t k, std::size_t colliders) {
+  const StoredArray& a = expect_shape(g, "capsules", {0, 0, 7});
+  const double* v = a.values.data();
+  for (std::size_t f = 0; f < a.shape[0]; ++f) {
+    ColliderPose& pose = frame_of(scene, f, colliders).colliders[k];
+    for (std::size_t i = 0; i < a.shape[1]; ++i, v += 7)
+      pose.capsules.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]});
+    if (f == 0) scene.colliders[k].capsules = pose.capsules;
+  }
+}
+
+void read_joints(const StoredGroup& g, ColliderMesh& mesh, Scene& scene, std::size_t k, std::size_t colliders) {
+  const StoredArray& index = expect_shape(g, "joint_index", {mesh.vertex_count(), 4});
+  const StoredArray& weight = expect_shape(g, "joint_weight", {mesh.vertex_count(), 4});
+  const StoredArray& matrix = expect_shape(g, "joint_matrix", {0, 0, 3, 4});
+  mesh.joint_count = matrix.shape[1];
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    auto& joints = mesh.joints.emplace_back();
+    auto& weights = mesh.weights.emplace_back();
+    for (std::size_t s = 0; s < 4; ++s) {
+      if (!(index.values[4 * v + s] >= 0 && index.values[4 * v + s] < static_cast<double>(mesh.joint_count)))
+        throw Error("/" + g.path + "/joint_index: expected numbers of joints");
+      joints[s] = static_cast<std::uint8_t>(index.values[4 * v + s]);
+      weights[s] = static_cast<float>(weight.values[4 * v + s]);
+    }
+  }
+  const double* m = matrix.values.data();
+  for (std::size_t f = 0; f < matrix.shape[0]; ++f)
+    for (std::size_t j = 0; j < mesh.joint_count; ++j) {
+      Affine& to = frame_of(scene, f, colliders).colliders[k].joints.emplace_back();
+      for (auto& row : to)
+        for (double& x : row) x = *m++;
+    }
+}
+
+void read_mesh(const StoredGroup& g, Scene& scene, std::size_t k, std::size_t colliders) {
+  auto mesh = std::make_shared<ColliderMesh>();
+  mesh->positions = expect_shape(g, "position_m", {0, 3}).values;
+  for (const StoredArray& t = expect_shape(g, "triangles", {0, 3}); mesh->triangles.size() < t.shape[0];) {
+    const double* v = &t.values[3 * mesh->triangles.size()];
+    for (std::size_t i = 0; i < 3; ++i)
+      if (!(v[i] >= 0 && v[i] < static_cast<double>(mesh->vertex_count())))
+        throw Error("/" + g.path + "/triangles: expected numbers of vertices");
+    mesh->triangles.push_back(
+        {static_cast<std::uint32_t>(v[0]), static_cast<std::uint32_t>(v[1]), static_cast<std::uint32_t>(v[2])});
+  }
+  mesh->closed = g.attributes.value("closed", 0.0) != 0;
+  if (array_of(g, "joint_matrix") != nullptr) read_joints(g, *mesh, scene, k, colliders);
+  scene.colliders[k].mesh = std::move(mesh);
+}
+
+const ColliderKind* kind_named(const std::string& name) {
+  for (const ColliderKind& kind : collider_kinds())
+    if (name == kind.name) return &kind;
+  return nullptr;
+}
+
+[[noreturn]] void refuse_shape(const std::string& name, const std::string& path) {
+  std::string all;
+  for (const ColliderKind& kind : collider_kinds())
+    all += std::string(all.empty() ? "" : &kind == &collider_kinds().back() ? " or " : ", ") + kind.name;
+  throw Error("/" + path + ": shape " + name + ": expected " + all);
+}
+
+void read_collider(const StoredGroup& g, Scene& scene, std::size_t k, std::size_t colliders) {
+  Collider& c = scene.colliders[k];
+  const json& a = g.attributes;
+  c.name = a.at("name").get<std::string>();
+  const auto shape = a.at("shape").get<std::string>();
+  const ColliderKind* const found = kind_named(shape);
+  if (found == nullptr) refuse_shape(shape, g.path);
+  const ColliderKind& kind = *found;
+  c.shape = kind.shape;
+  for (const ColliderNumbers& n : kind.numbers)
+    for (std::size_t i = 0; i < n.count; ++i)
+      n.at(c)[i] = (n.count == 1 ? a.at(n.name) : a.at(n.name).at(i)).get<double>();
+  if (kind.holds == ColliderKind::Holds::Capsules) read_capsules(g, scene, k, colliders);
+  if (kind.holds == ColliderKind::Holds::Mesh) read_mesh(g, scene, k, colliders);
+}
+
+void read_grips(const StoredGroup& g, Scene& scene) {
+  for (const double v : expect_shape(g, "held_vertex", {0}).values)
+    scene.grips.vertices.push_back(static_cast<std::uint32_t>(v));
+  const std::size_t count = scene.grips.vertices.size();
+  const StoredArray& target = expect_shape(g, "target_m", {0, count, 3});
+  const StoredArray& held = expect_shape(g, "held", {target.shape[0], count});
+  for (std::size_t f = 0; f < target.shape[0]; ++f) {
+    FrameMotion& m = frame_of(scene, f, scene.colliders.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      const double* p = &target.values[3 * (f * count + i)];
+      m.grip_position_m.push_back({p[0], p[1], p[2]});
+      m.grip_held.push_back(held.values[f * count + i] != 0 ? 1 : 0);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<StoredGroup> replay_of(const Scene& scene) {
+  if (scene.colliders.empty() && scene.grips.vertices.empty()) return {};
+  std::vector<StoredGroup> out;
+  out.push_back({"colliders", {{"count", scene.colliders.size()}, {"frame_rate_hz", scene.time.frame_rate_hz}}, {}});
+  if (!scene.assets.empty()) out.back().attributes["assets"] = scene.assets;
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    const Collider& c = scene.colliders[k];
+    StoredGroup& g = out.emplace_back();
+    g.path = "colliders/" + std::to_string(k);
+    g.attributes = attributes_of(c);
+    const ColliderKind::Holds holds = kind_of(c).holds;
+    if (holds == ColliderKind::Holds::Capsules) g.arrays.push_back(capsules_of(scene, k));
+    if (holds == ColliderKind::Holds::Mesh) add_mesh(scene, k, g.arrays);
+  }
+  if (!scene.grips.vertices.empty()) out.push_back(grips_of(scene));
+  return out;
+}
+
+void restore_replay(const std::vector<StoredGroup>& groups, Scene& scene) {
+  std::map<std::string, const StoredGroup*> by_path;
+  for (const StoredGroup& g : groups) by_path[g.path] = &g;
+  if (!by_path.contains("colliders")) return;
+  const auto count = static_cast<std::size_t>(by_path["colliders"]->attributes.at("count").get<double>());
+  scene.colliders.resize(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto found = by_path.find("colliders/" + std::to_string(k));
+    if (found == by_path.end()) throw Error("/colliders/" + std::to_string(k) + " is missing");
+    read_collider(*found->second, scene, k, count);
+  }
+  if (by_path.contains("colliders/grips")) read_grips(*by_path["colliders/grips"], scene);
+}
+
+void show_shape(StoredGroup& g) {
+  const ColliderKind* const kind = kind_named(g.attributes.value("shape", ""));
+  if (kind == nullptr || kind->holds != ColliderKind::Holds::Numbers) return;
+  Scene scene;
+  scene.colliders.resize(1);
+  read_collider(g, scene, 0, 1);
+  const Collider& c = scene.colliders[0];
+  if (kind->capsules != nullptr) {
+    scene.motion = {{{{kind->capsules(c, {}), {}}}, {}, {}}};
+    scene.colliders[0].capsules = scene.motion[0].colliders[0].capsules;
+    g.arrays.push_back(capsules_of(scene, 0));
+    return;
+  }
+  ColliderSurface surface = kind->surface(c, {}, {c.center_m});
+  add_triangles(std::move(surface.positions), surface.triangles, g.arrays);
+  g.attributes["convex"] = kind->convex ? 1 : 0;
+}
+
+}  // namespace clothbench

@@ -1,0 +1,68 @@
+#include "scenario/moving_hand.hpp"
+
+#include <fmt/format.h>
+
+#include "base/json_text.hpp"
+#include "clothbench/error.hpp"
+#include "scenario/vec3.hpp"
+
+namespace clothbench {
+namespace {
+
+ColliderPose pose_at(const MovingHand& m, bool as_mesh, double time_s) {
+  if (m.recording) {
+    const assets::RecordedHand now = m.recording->at(time_s);
+    return as_mesh ? mesh_pose(*m.recording, now, m.hand ? &*m.hand : nullptr, m.offset_m)
+                   : capsules_pose(*m.recording, now, m.offset_m);
+  }
+  const assets::HandSample now = assets::sample(m.track, *m.hand, time_s);
+  ColliderPose pose;
+  if (!as_mesh) {
+    for (const assets::Capsule& c : assets::capsules(now.pose))
+      pose.capsules.push_back(
+          {to_vec3(assets::Vector(c.a + m.offset_m)), to_vec3(assets::Vector(c.b + m.offset_m)), c.radius_m});
+    return pose;
+  }
+  for (std::size_t k = 0; k < assets::kJointCount; ++k)
+    pose.joints.push_back(
+        affine(Eigen::Translation3d(m.offset_m) * (now.pose.joints[k] * m.hand->mesh.inverse_bind[k])));
+  return pose;
+}
+
+}  // namespace
+
+MovingHand moving_hand(const nlohmann::json& j, ColliderReader& reader, bool as_mesh) {
+  const auto name = j["track"].get<std::string>();
+  const auto file = file_of_scene(name, reader.source());
+  if (!file)
+    reader.refuse("/track",
+                  fmt::format("\"{}\": no such file beside the scene or in {}", name, scenario_root().string()));
+  if (const std::string text = read_text(*file); assets::is_hand_recording(parse_json(text, file->string()))) {
+    if (j.contains("speed_m_per_s")) reader.refuse("/speed_m_per_s", "a recording goes at the speed it was made at");
+    MovingHand m{{}, {}, assets::parse_hand_recording(text, file->string())};
+    if (as_mesh && !m.recording->mesh) m.hand = assets::open_hand(reader.assets(), m.recording->side);
+    return m;
+  }
+  assets::HandTrack track = assets::read_hand_track(*file);
+  if (j.contains("speed_m_per_s")) {
+    try {
+      track = assets::retimed(std::move(track), j["speed_m_per_s"].get<double>());
+    } catch (const Error& e) {
+      reader.refuse("/speed_m_per_s", e.what());
+    }
+  }
+  return {assets::open_hand(reader.assets(), track.side), track, {}};
+}
+
+void read_hand(const nlohmann::json& j, ColliderReader& reader, Collider& c, bool as_mesh) {
+  MovingHand m = moving_hand(j, reader, as_mesh);
+  if (j.contains("offset_m")) m.offset_m = assets::Vector::Map(vec3(j["offset_m"]).data());
+  c.name = std::filesystem::path(j["track"].get<std::string>()).stem().string();
+  c.shape = as_mesh ? Collider::Shape::Mesh : Collider::Shape::Capsules;
+  if (as_mesh)
+    c.mesh = m.recording && m.recording->mesh ? collider_mesh(*m.recording->mesh) : collider_mesh(m.hand->mesh);
+  reader.pose = [m = std::move(m), as_mesh](double time_s) { return pose_at(m, as_mesh, time_s); };
+  if (!as_mesh) c.capsules = reader.pose(0).capsules;
+}
+
+}  // namespace clothbench
