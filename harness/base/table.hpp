@@ -12,6 +12,7 @@ inline constexpr std::size_t kConsoleColumns = 120;
 struct Table {
   std::string title, note;
   std::vector<std::vector<std::string>> rows;
+  bool in_full = false;  ///< of detail: for files and the page, not for the terminal
 
   std::string markdown() const;
   /// Columns that do not fit kConsoleColumns follow below, with the first two repeated; the note is wrapped. Verdicts

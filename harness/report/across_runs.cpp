@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/columns.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -131,6 +132,22 @@ void repeats(const Runs& runs, const AcrossRuns& begin, std::vector<AcrossRuns>&
   out.push_back(std::move(a));
 }
 
+const Columns<AcrossRuns>& across_columns() {
+  static const auto plain = [](double v) { return std::isnan(v) ? "–" : fmt::format("{:.3g}", v); };
+  static const Columns<AcrossRuns> all = {
+      {"case", "case", &AcrossRuns::case_name},
+      {"solver", "solver", &AcrossRuns::solver},
+      {"setting", "setting", &AcrossRuns::setting},
+      {"figure", "figure", &AcrossRuns::figure},
+      {"value", "value", &AcrossRuns::value, plain},
+      {"bound", In::Both, &AcrossRuns::bound},
+      {"verdict", "verdict", [](auto& a) { return !a.judged() ? ""
+                                                  : a.kept()  ? "kept"
+                                                              : "broken"; }},
+      {"", "", &AcrossRuns::text}};
+  return all;
+}
+
 }  // namespace
 
 std::vector<AcrossRuns> across_runs(const std::vector<CellRecord>& cells) {
@@ -156,28 +173,14 @@ std::vector<AcrossRuns> across_runs(const std::vector<CellRecord>& cells) {
 }
 
 Table across_table(const std::vector<AcrossRuns>& all) {
-  Table t{"Across runs",
-          "What no run shows alone. S22: at most 3 times the error of even frames. S24, S26: the same bits. S25 is "
-          "told, not judged.",
-          {{"case", "solver", "setting", "figure", "value", "verdict", ""}}};
-  for (const AcrossRuns& a : all)
-    t.rows.push_back({a.case_name, a.solver, a.setting, a.figure,
-                      std::isnan(a.value) ? "–" : fmt::format("{:.3g}", a.value),
-                      !a.judged() ? ""
-                      : a.kept()  ? "kept"
-                                  : "broken",
-                      a.text});
-  return t;
+  return across_columns().table(
+      {"Across runs",
+       "What no run shows alone. S22: at most 3 times the error of even frames. S24, S26: the same "
+       "bits. S25 is told, not judged.",
+       {}},
+      all);
 }
 
-std::string across_csv(const std::vector<AcrossRuns>& all) {
-  std::string out = csv_row({"case", "solver", "setting", "figure", "value", "bound", "verdict"});
-  for (const AcrossRuns& a : all)
-    out += csv_row({a.case_name, a.solver, a.setting, a.figure, csv_number(a.value), csv_number(a.bound),
-                    !a.judged() ? ""
-                    : a.kept()  ? "kept"
-                                : "broken"});
-  return out;
-}
+std::string across_csv(const std::vector<AcrossRuns>& all) { return across_columns().csv(all); }
 
 }  // namespace clothbench

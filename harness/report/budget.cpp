@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "report/grid.hpp"
 #include "report/work_precision.hpp"
 
 namespace clothbench {
@@ -51,13 +52,6 @@ std::string beaten_by(const WorkDiagram& d, const std::string& solver) {
   return out;
 }
 
-std::vector<std::string> solvers_in(const WorkDiagram& d) {
-  std::vector<std::string> out;
-  for (const WorkPoint& p : d.points)
-    if (std::find(out.begin(), out.end(), p.solver) == out.end()) out.push_back(p.solver);
-  return out;
-}
-
 }  // namespace
 
 Table budget_table(const std::vector<WorkDiagram>& diagrams) {
@@ -72,7 +66,7 @@ Table budget_table(const std::vector<WorkDiagram>& diagrams) {
   t.rows[0].emplace_back("beaten by");
   for (const WorkDiagram& d : diagrams) {
     const double floor = std::max(kSmallEnough, d.rank_floor());
-    for (const std::string& solver : solvers_in(d)) {
+    for (const std::string& solver : distinct(d.points, &WorkPoint::solver)) {
       std::vector<std::string> row = {d.scene, solver};
       for (const double b : kBudgets_ms) {
         const Best best = best_within(d, solver, b);
@@ -93,7 +87,7 @@ Table energy_table(const std::vector<WorkDiagram>& diagrams) {
           "More than 0.001 is counted.",
           {{"scene", "solver", "greatest gain", "setting", "settings above 0.001"}}};
   for (const WorkDiagram& d : diagrams)
-    for (const std::string& solver : solvers_in(d)) {
+    for (const std::string& solver : distinct(d.points, &WorkPoint::solver)) {
       double most = -1;
       int above = 0, all = 0;
       std::string setting;

@@ -10,61 +10,78 @@
 namespace clothbench {
 namespace {
 
-std::string environment_text(const CellRecord& c, const char* key) {
-  const nlohmann::json& e = c.header.environment;
-  if (!e.is_object() || !e.contains(key) || e[key].is_null()) return "";
-  return e[key].is_string() ? e[key].get<std::string>() : e[key].dump();
-}
-
 nlohmann::json versions_of(const CellRecord& c) {
   nlohmann::json out = nlohmann::json::object();
   for (const MetricSeries& m : c.accuracy.metrics) out[m.name] = m.version;
   return out;
 }
 
-std::string grid_text(int n) { return n > 0 ? std::to_string(n) : ""; }
+/// A cell of a table for machines, with what it is grouped by.
+struct Exported : PlacedCell {
+  const Family* family = nullptr;
+  const char* source = "measured";
+};
 
-const std::vector<std::string> kTable3Names = {"fps_at_72",      "fps_median",          "fps_mean",
-                                               "fps_spread",     "frame_wall_median_s", "frame_device_median_s",
-                                               "free_fall_error"};
+Value grid_side(int n) { return n > 0 ? Value(n) : Value(); }
+
+Columns<Exported> solver_columns() {
+  return {{"solver", In::Both, [](auto& r) { return r.cell->header.solver; }},
+          {"setting", In::Both, [](auto& r) { return r.cell->header.setting; }},
+          {"sides", In::Both, [](auto& r) { return r.series.sides; }}};
+}
+
+Columns<Exported> grid_columns() {
+  return {{"grid_x", In::Csv, [](auto& r) { return grid_side(r.resolution.grid[0]); }},
+          {"grid_y", In::Csv, [](auto& r) { return grid_side(r.resolution.grid[1]); }},
+          {"grid", In::Json, [](auto& r) -> Value { return r.resolution.grid; }},
+          {"status", In::Both, status_of}};
+}
+
+Columns<Exported> table3_columns() {
+  Columns<Exported> out = {{"source", In::Csv, &Exported::source}};
+  return out.add(solver_columns())
+      .add(grid_columns())
+      .add({{"failed_frame", In::Both, failed_frame_of}})
+      .add(summary_columns<Exported>({"fps_at_72", "fps_median", "fps_mean", "fps_spread", "frame_wall_median_s",
+                                      "frame_device_median_s", "free_fall_error"}));
+}
+
+/// The published values as cells.
+std::vector<CellRecord> published_cells(const nlohmann::json& published) {
+  std::vector<CellRecord> out;
+  for (const nlohmann::json& column : published.at("columns"))
+    for (const nlohmann::json& fps : column.at("fps")) {
+      out.emplace_back().header.solver = column.at("name").get<std::string>();
+      out.back().summary["fps_at_72"] = fps.get<double>();
+    }
+  return out;
+}
 
 }  // namespace
 
 std::string summary_csv(const std::vector<CellRecord>& cells, const std::vector<std::string>& names) {
-  const std::vector<const char*> environment = {"gpu",          "driver",     "gpu_is_software", "cpu",
-                                                "protocol",     "git_commit", "git_dirty",       "build_type",
-                                                "clock_policy", "created"};
-  std::vector<std::string> head = {"family", "paper_table", "scene",        "solver",  "setting",
-                                   "sides",  "repeat",      "resolution",   "grid_x",  "grid_y",
-                                   "status", "class",       "failed_frame", "message", "expect"};
-  head.insert(head.end(), environment.begin(), environment.end());
-  head.insert(head.end(), names.begin(), names.end());
-  head.emplace_back("withheld");
-  std::string out = csv_row(head);
-  for (const Family& f : families(cells))
-    for (const PlacedCell& p : f.cells) {
-      const CellRecord& c = *p.cell;
-      std::vector<std::string> row = {f.name,
-                                      f.paper_table > 0 ? std::to_string(f.paper_table) : "",
-                                      c.header.scene,
-                                      c.header.solver,
-                                      c.header.setting,
-                                      p.series.sides,
-                                      std::to_string(p.series.repeat),
-                                      p.resolution.label(),
-                                      grid_text(p.resolution.grid[0]),
-                                      grid_text(p.resolution.grid[1]),
-                                      c.outcome.status,
-                                      c.outcome.klass,
-                                      c.outcome.failed_frame < 0 ? "" : std::to_string(c.outcome.failed_frame),
-                                      c.outcome.message,
-                                      c.outcome.expect};
-      for (const char* key : environment) row.push_back(environment_text(c, key));
-      for (const std::string& name : names) row.push_back(csv_number(summary_value(c, name)));
-      row.push_back(withheld_of(c, names));
-      out += csv_row(row);
-    }
-  return out;
+  Columns<Exported> columns = {{"family", In::Both, [](auto& r) { return r.family->name; }},
+                               {"paper_table", In::Both, [](auto& r) { return grid_side(r.family->paper_table); }},
+                               {"scene", In::Both, [](auto& r) { return r.cell->header.scene; }}};
+  columns.add(solver_columns())
+      .add({{"repeat", In::Both, [](auto& r) { return r.series.repeat; }},
+            {"resolution", In::Both, [](auto& r) { return r.resolution.label(); }}})
+      .add(grid_columns())
+      .add({{"class", In::Both, [](auto& r) { return r.cell->outcome.klass; }},
+            {"failed_frame", In::Both, failed_frame_of},
+            {"message", In::Both, [](auto& r) { return r.cell->outcome.message; }},
+            {"expect", In::Both, [](auto& r) { return r.cell->outcome.expect; }}});
+  for (const char* key : {"gpu", "driver", "gpu_is_software", "cpu", "protocol", "git_commit", "git_dirty",
+                          "build_type", "clock_policy", "created"})
+    columns.push_back({key, In::Both, [key](auto& r) {
+                         const nlohmann::json& e = r.cell->header.environment;
+                         return e.is_object() ? e.value(key, Value()) : Value();
+                       }});
+  const std::vector<Family> all = families(cells);
+  std::vector<Exported> rows;
+  for (const Family& f : all)
+    for (const PlacedCell& p : f.cells) rows.push_back({p, &f});
+  return columns.add(summary_columns<Exported>(names)).csv(rows);
 }
 
 std::string cells_csv(const std::vector<CellRecord>& cells) {
@@ -75,57 +92,24 @@ std::string cells_csv(const std::vector<CellRecord>& cells) {
 }
 
 std::string table3_csv(const Family& family, const nlohmann::json& published) {
-  std::vector<std::string> head = {"source", "solver", "setting", "sides",
-                                   "grid_x", "grid_y", "status",  "failed_frame"};
-  head.insert(head.end(), kTable3Names.begin(), kTable3Names.end());
-  head.emplace_back("withheld");
-  std::string out = csv_row(head);
-  const nlohmann::json& resolutions = published.at("resolution");
-  for (const nlohmann::json& column : published.at("columns"))
-    for (std::size_t k = 0; k < resolutions.size(); ++k) {
-      const std::string n = std::to_string(resolutions[k].get<int>());
-      std::vector<std::string> row = {"published",
-                                      column.at("name").get<std::string>(),
-                                      "",
-                                      column.value("sides", ""),
-                                      n,
-                                      n,
-                                      "ok",
-                                      "",
-                                      csv_number(column.at("fps").at(k).get<double>())};
-      row.resize(head.size());
-      out += csv_row(row);
-    }
+  const std::vector<CellRecord> theirs = published_cells(published);
+  const nlohmann::json& widths = published.at("resolution");
+  std::vector<Exported> rows;
+  for (const CellRecord& c : theirs) {
+    const int n = widths.at(rows.size() % widths.size());
+    const nlohmann::json& column = published.at("columns").at(rows.size() / widths.size());
+    rows.push_back({{&c, {{n, n}, 0}, {"", "", column.value("sides", "")}}, &family, "published"});
+  }
   for (const Series& s : family.series())
-    for (const Resolution& r : family.resolutions()) {
-      const CellRecord* c = family.find(s, r);
-      if (c == nullptr) continue;
-      std::vector<std::string> row = {
-          "measured",           c->header.solver,
-          c->header.setting,    s.sides,
-          grid_text(r.grid[0]), grid_text(r.grid[1]),
-          c->outcome.status,    c->outcome.failed_frame < 0 ? "" : std::to_string(c->outcome.failed_frame)};
-      for (const std::string& name : kTable3Names) row.push_back(csv_number(summary_value(*c, name)));
-      row.push_back(withheld_of(*c, kTable3Names));
-      out += csv_row(row);
-    }
-  return out;
+    for (const Resolution& r : family.resolutions())
+      if (const CellRecord* c = family.find(s, r)) rows.push_back({{c, r, s}, &family});
+  return table3_columns().csv(rows);
 }
 
 nlohmann::json table3_json(const Family& family, const nlohmann::json& published) {
-  nlohmann::json measured = nlohmann::json::array();
-  for (const PlacedCell& p : family.cells) {
-    nlohmann::json row = {{"solver", p.series.solver},
-                          {"setting", p.series.setting},
-                          {"sides", p.series.sides},
-                          {"grid", {p.resolution.grid[0], p.resolution.grid[1]}},
-                          {"status", p.cell->outcome.status}};
-    if (p.cell->outcome.failed_frame >= 0) row["failed_frame"] = p.cell->outcome.failed_frame;
-    for (const std::string& name : kTable3Names) row[name] = number_to_json(summary_value(*p.cell, name));
-    if (const std::string why = withheld_of(*p.cell, kTable3Names); !why.empty()) row["withheld"] = why;
-    measured.push_back(std::move(row));
-  }
-  return {{"published", published}, {"measured", measured}};
+  std::vector<Exported> rows;
+  for (const PlacedCell& p : family.cells) rows.push_back({p, &family});
+  return {{"published", published}, {"measured", table3_columns().json(rows)}};
 }
 
 nlohmann::json cells_json(const std::vector<CellRecord>& cells) {

@@ -47,12 +47,6 @@ std::string plain_setting(const std::string& setting) {
   return setting.ends_with(tail) ? setting.substr(0, setting.size() - tail.size()) : setting;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& w : words) out += (out.empty() ? "" : ", ") + w;
-  return out;
-}
-
 std::string both(const FeatureCost& f, const Quantity& q) {
   const double a = summary_value(*f.needed, q.name), b = summary_value(*f.all, q.name);
   if (std::string(q.name) == "read_B_per_frame" && std::isfinite(a) && std::isfinite(b))
@@ -71,19 +65,56 @@ std::string moved_text(const FeatureCost& f) {
   return f.moved == 0 ? "0 (bitwise)" : fmt::format("{:.1e}", f.moved);
 }
 
+/// One of the two runs, for JSON.
+json run_of(const CellRecord& c) {
+  json out = {{"status", c.outcome.status}, {"message", c.outcome.message}, {"stages", c.header.stages.size()}};
+  for (const Quantity& q : kQuantities) out[q.name] = finite_or_null(summary_value(c, q.name));
+  return out;
+}
+
+Columns<FeatureCost> cost_columns() {
+  Columns<FeatureCost> out = {{"scene", "scene", [](auto& f) { return f.needed->header.scene; }},
+                              {"solver", In::Both, [](auto& f) { return f.needed->header.solver; }},
+                              {"setting", In::Both, [](auto& f) { return f.needed->header.setting; }},
+                              {"", "solver", [](auto& f) { return label_of(*f.needed); }},
+                              {"status_needed", In::Csv, [](auto& f) { return f.needed->outcome.status; }},
+                              {"status_all", In::Csv, [](auto& f) { return f.all->outcome.status; }},
+                              {"moved", In::Csv, &FeatureCost::moved},
+                              {"moved_over_longer_side", In::Json, &FeatureCost::moved},
+                              {"no_op", In::Json, &FeatureCost::no_op},
+                              {"wall_ratio", In::Json, [](auto& f) { return ratio(f, "frame_wall_median_s"); }},
+                              {"device_ratio", In::Json, [](auto& f) { return ratio(f, "frame_device_median_s"); }},
+                              {"needed", In::Json, [](auto& f) { return run_of(*f.needed); }},
+                              {"all", In::Json, [](auto& f) { return run_of(*f.all); }},
+                              {"stages_needed", In::Csv, [](auto& f) { return f.needed->header.stages.size(); }},
+                              {"stages_all", In::Csv, [](auto& f) { return f.all->header.stages.size(); }},
+                              {"added", In::Both, &FeatureCost::added}};
+  for (const Quantity& q : kQuantities) {
+    out.add({{std::string(q.name) + "_needed", In::Csv, [&](auto& f) { return summary_value(*f.needed, q.name); }},
+             {std::string(q.name) + "_all", In::Csv, [&](auto& f) { return summary_value(*f.all, q.name); }},
+             {"", q.head, [&](auto& f) { return both(f, q); }}});
+    if (q.scale == 1e3) out.push_back({"", "×", [&](auto& f) { return ratio(f, q.name); }, digits(3)});
+  }
+  return out.add(
+      {{"", "stages",
+        [](auto& f) { return fmt::format("{} → {}", f.needed->header.stages.size(), f.all->header.stages.size()); }},
+       {"", "moved", moved_text},
+       {"", "added", &FeatureCost::added}});
+}
+
 bool measured(const FeatureCost& f) { return f.needed->outcome.status == "ok" && f.all->outcome.status == "ok"; }
 
 }  // namespace
 
 bool is_all_on(const CellRecord& c) {
-  const json scenario = json::parse(c.header.scenario_json, nullptr, false);
+  const json scenario = scenario_of(c);
   return scenario.is_object() && scenario.contains("irrelevant");
 }
 
 std::vector<FeatureCost> feature_costs(const std::vector<CellRecord>& cells) {
   std::vector<FeatureCost> out;
   for (const CellRecord& c : cells) {
-    const json scenario = json::parse(c.header.scenario_json, nullptr, false);
+    const json scenario = scenario_of(c);
     if (!scenario.is_object() || !scenario.contains("irrelevant")) continue;
     for (const CellRecord& n : cells) {
       const bool same = n.header.scene == c.header.scene && n.header.solver == c.header.solver &&
@@ -103,34 +134,18 @@ std::vector<FeatureCost> feature_costs(const std::vector<CellRecord>& cells) {
 }
 
 Table feature_cost_table(const std::vector<FeatureCost>& costs) {
-  Table t{"What leaving out what a scene does not need is worth",
-          "Each scene as it is → with every other feature of its solver switched on where it cannot matter: colliders "
-          "100 m off with "
-          "friction, bending and damping of 1e-30 (what was added: last column). Timed in turns, median. Moved: "
-          "greatest distance of a "
-          "vertex in one run from the other, over the longer side.",
-          {{"scene", "solver"}}};
-  for (const Quantity& q : kQuantities) {
-    t.rows[0].emplace_back(q.head);
-    if (q.scale == 1e3) t.rows[0].emplace_back("×");
-  }
-  for (const char* head : {"stages", "moved", "added"}) t.rows[0].emplace_back(head);
-  std::vector<const CellRecord*> cells;
-  for (const FeatureCost& f : costs) {
-    cells.insert(cells.end(), {f.needed, f.all});
-    std::vector<std::string> row = {f.needed->header.scene,
-                                    Series{f.needed->header.solver, f.needed->header.setting, ""}.label()};
-    for (const Quantity& q : kQuantities) {
-      row.push_back(both(f, q));
-      if (q.scale == 1e3) row.push_back(significant(ratio(f, q.name), 3));
-    }
-    row.push_back(fmt::format("{} → {}", f.needed->header.stages.size(), f.all->header.stages.size()));
-    row.push_back(moved_text(f));
-    row.push_back(joined(f.added));
-    t.rows.push_back(std::move(row));
-  }
-  t.note = with_withheld(t.note + fmt::format(" Bytes: {}", kWhatBytesAre), cells, {"frame_wall_median_s"});
-  return t;
+  const std::string note =
+      "Each scene as it is → with every other feature of its solver switched on where it cannot matter: colliders "
+      "100 m off with "
+      "friction, bending and damping of 1e-30 (what was added: last column). Timed in turns, median. Moved: "
+      "greatest distance of a "
+      "vertex in one run from the other, over the longer side.";
+  return cost_columns().table(
+      {"What leaving out what a scene does not need is worth",
+       with_withheld(note + fmt::format(" Bytes: {}", kWhatBytesAre),
+                     cells_of(costs, &FeatureCost::needed, &FeatureCost::all), {"frame_wall_median_s"}),
+       {}},
+      costs);
 }
 
 Table no_op_table(const std::vector<FeatureCost>& costs) {
@@ -138,10 +153,7 @@ Table no_op_table(const std::vector<FeatureCost>& costs) {
           "Scenes in which no vertex moved by more than 1e-6 of the longer side. A property of each solver: where an "
           "irrelevant feature moves the cloth, its measured errors depend on what else is in the scene.",
           {{"solver", "scenes kept", "bitwise", "worst", "in"}}};
-  std::vector<std::string> solvers;
-  for (const FeatureCost& f : costs)
-    if (std::find(solvers.begin(), solvers.end(), f.needed->header.solver) == solvers.end())
-      solvers.push_back(f.needed->header.solver);
+  std::vector<std::string> solvers = distinct(costs, [](const FeatureCost& f) { return f.needed->header.solver; });
   std::sort(solvers.begin(), solvers.end());
   for (const std::string& solver : solvers) {
     int kept = 0, bitwise = 0, all = 0;
@@ -160,48 +172,7 @@ Table no_op_table(const std::vector<FeatureCost>& costs) {
   return t;
 }
 
-json feature_cost_json(const std::vector<FeatureCost>& costs) {
-  json out = json::array();
-  for (const FeatureCost& f : costs) {
-    json row = {{"scene", f.needed->header.scene},
-                {"solver", f.needed->header.solver},
-                {"setting", f.needed->header.setting},
-                {"added", f.added},
-                {"moved_over_longer_side", finite_or_null(f.moved)},
-                {"no_op", f.no_op()},
-                {"wall_ratio", finite_or_null(ratio(f, "frame_wall_median_s"))},
-                {"device_ratio", finite_or_null(ratio(f, "frame_device_median_s"))}};
-    for (const auto& [name, cell] : {std::pair{"needed", f.needed}, std::pair{"all", f.all}}) {
-      json& part = row[name] = {
-          {"status", cell->outcome.status}, {"message", cell->outcome.message}, {"stages", cell->header.stages.size()}};
-      for (const Quantity& q : kQuantities) part[q.name] = finite_or_null(summary_value(*cell, q.name));
-    }
-    out.push_back(std::move(row));
-  }
-  return out;
-}
-
-std::string feature_cost_csv(const std::vector<FeatureCost>& costs) {
-  std::vector<std::string> head = {"scene", "solver",        "setting",    "status_needed", "status_all",
-                                   "moved", "stages_needed", "stages_all", "added"};
-  for (const Quantity& q : kQuantities)
-    for (const char* of : {"_needed", "_all"}) head.push_back(std::string(q.name) + of);
-  std::string out = csv_row(head);
-  for (const FeatureCost& f : costs) {
-    std::vector<std::string> row = {f.needed->header.scene,
-                                    f.needed->header.solver,
-                                    f.needed->header.setting,
-                                    f.needed->outcome.status,
-                                    f.all->outcome.status,
-                                    csv_number(f.moved),
-                                    std::to_string(f.needed->header.stages.size()),
-                                    std::to_string(f.all->header.stages.size()),
-                                    joined(f.added)};
-    for (const Quantity& q : kQuantities)
-      for (const CellRecord* c : {f.needed, f.all}) row.push_back(csv_number(summary_value(*c, q.name)));
-    out += csv_row(row);
-  }
-  return out;
-}
+json feature_cost_json(const std::vector<FeatureCost>& costs) { return cost_columns().json(costs); }
+std::string feature_cost_csv(const std::vector<FeatureCost>& costs) { return cost_columns().csv(costs); }
 
 }  // namespace clothbench

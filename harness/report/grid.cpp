@@ -56,6 +56,14 @@ nlohmann::json scenario_of(const CellRecord& c) {
   return nlohmann::json::parse(c.header.scenario_json, nullptr, false);
 }
 
+std::string ending(const Outcome& o) {
+  return o.failed_frame < 0 ? o.status : fmt::format("{} at {}", o.status, o.failed_frame);
+}
+
+std::string or_dash(const std::string& text) { return text.empty() ? "–" : text; }
+
+std::string label_of(const CellRecord& c) { return Series{c.header.solver, c.header.setting, ""}.label(); }
+
 std::string Resolution::label() const {
   if (grid[0] > 0) return grid[0] == grid[1] ? fmt::format("{}²", grid[0]) : fmt::format("{}×{}", grid[0], grid[1]);
   return vertices > 0 ? fmt::format("{} vertices", vertices) : "–";
@@ -100,17 +108,10 @@ Table Family::table(const std::string& title, const std::string& note,
   Table t{title, note, {{"solver", "sides"}}};
   for (const Resolution& r : columns) t.rows[0].push_back(r.label());
   for (const Series& s : series()) {
-    std::vector<std::string> row = {s.label(), s.sides.empty() ? "–" : s.sides};
+    std::vector<std::string> row = {s.label(), or_dash(s.sides)};
     for (const Resolution& r : columns) {
       const CellRecord* c = find(s, r);
-      if (c == nullptr)
-        row.push_back("–");
-      else if (c->outcome.status == "ok")
-        row.push_back(text(*c));
-      else if (c->outcome.failed_frame < 0)
-        row.push_back(c->outcome.status);
-      else
-        row.push_back(fmt::format("{} at {}", c->outcome.status, c->outcome.failed_frame));
+      row.push_back(c == nullptr ? "–" : c->outcome.status == "ok" ? text(*c) : ending(c->outcome));
     }
     t.rows.push_back(std::move(row));
   }

@@ -1,10 +1,13 @@
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
-#include "base/table.hpp"
+#include "base/columns.hpp"
 #include "clothbench/record.hpp"
 
 namespace clothbench {
@@ -14,6 +17,46 @@ double summary_value(const CellRecord&, const std::string& name);
 
 /// The scenario that a cell ran; discarded where what is stored is no JSON.
 nlohmann::json scenario_of(const CellRecord&);
+
+/// Each value of `of(item)` once, in the order of first appearance.
+template <class Items, class Of>
+auto distinct(const Items& items, Of of) {
+  std::vector<std::decay_t<std::invoke_result_t<Of, decltype(*std::begin(items))>>> out;
+  for (const auto& item : items)
+    if (auto value = std::invoke(of, item); std::find(out.begin(), out.end(), value) == out.end())
+      out.push_back(std::move(value));
+  return out;
+}
+
+/// The cell that a record of a table is about.
+inline const CellRecord& cell_of(const CellRecord& c) { return c; }
+template <class Record>
+const CellRecord& cell_of(const Record& r) {
+  return *r.cell;
+}
+
+/// The cells of some records; `of`: members that point to one.
+template <class Records, class... Of>
+std::vector<const CellRecord*> cells_of(const Records& records, Of... of) {
+  std::vector<const CellRecord*> out;
+  for (const auto& r : records) (out.push_back(std::invoke(of, r)), ...);
+  return out;
+}
+
+/// Values for columns over such records (base/columns.hpp).
+inline auto summary(const std::string& name) {
+  return [name](const auto& r) -> Value { return summary_value(cell_of(r), name); };
+}
+inline constexpr auto status_of = [](const auto& r) -> Value { return cell_of(r).outcome.status; };
+inline constexpr auto failed_frame_of = [](const auto& r) -> Value {
+  return cell_of(r).outcome.failed_frame < 0 ? absent() : Value(cell_of(r).outcome.failed_frame);
+};
+
+/// "diverged at 12", or the status where no frame failed.
+std::string ending(const Outcome&);
+
+/// "–" for an empty text.
+std::string or_dash(const std::string&);
 
 /// Column of a table: cloth resolution. `grid` is {0, 0} for a cloth that is no grid.
 struct Resolution {
@@ -34,6 +77,9 @@ struct Series {
     return std::tie(solver, setting, sides, repeat) < std::tie(o.solver, o.setting, o.sides, o.repeat);
   }
 };
+
+/// "xpbd substeps=4": solver and, where it is not the default, setting.
+std::string label_of(const CellRecord&);
 
 /// A cell and where it stands. Points into the vector it was made from.
 struct PlacedCell {

@@ -59,88 +59,61 @@ std::string sides_of(const json& scenario) {
   return sides.is_string() ? sides.get<std::string>() : "";
 }
 
-std::string ending(const CellRecord& c) {
-  if (c.outcome.failed_frame < 0) return c.outcome.status;
-  return fmt::format("{} at {}", c.outcome.status, c.outcome.failed_frame);
-}
-
-double value(const ContactRow& r, const char* name) { return summary_value(*r.cell, name); }
-
 /// A length in mm: three digits, and what is not nothing never reads as 0.
 std::string mm(double v) {
   if (!std::isfinite(v)) return "–";
-  const double x = 1e3 * v;
-  return v == 0 ? "0" : x < 0.01 ? "<0.01" : significant(x, x < 1 ? 2 : 3);
+  return v == 0 ? "0" : v < 0.01 ? "<0.01" : significant(v, v < 1 ? 2 : 3);
 }
 
 std::string share_text(double v) {
   if (!std::isfinite(v)) return "–";
-  const double x = 100 * v;
-  return v == 0 ? "0" : std::abs(x) < 0.1 ? "<0.1" : significant(x, x < 10 ? 2 : 3);
+  return v == 0 ? "0" : std::abs(v) < 0.1 ? "<0.1" : significant(v, v < 10 ? 2 : 3);
 }
-
-std::string count(double v) { return std::isfinite(v) ? fmt::format("{:.0f}", v) : "–"; }
 
 std::string number(double v) { return std::isinf(v) ? "never" : significant(v, 2); }
 
-struct Column {
+/// Summary values that one column shows, " / " between.
+struct Shown {
   std::string head;
-  std::vector<const char*> names;  ///< summary values it shows
-  std::string (*text)(double) = nullptr;
+  std::vector<const char*> names;
+  NumberFormat format;
+  Unit unit = {};
 };
 
-const std::vector<Column> kContactColumns = {
-    {"tunnelled, most / end [%]", {"tunnelled_fraction_max", "tunnelled_fraction_end"}, share_text},
-    {"tunnelled depth [mm]", {"tunnelled_depth_max_m"}, mm},
-    {"contour, most / settled [mm]", {"contact_length_max_m", "contact_length_settled_m"}, mm},
-    {"depth, vertex / any [mm]", {"depth_vertex_max_m", "depth_max_m"}, mm},
-    {"wrong side [samples]", {"wrong_side_samples_max"}, count},
-    {"through itself, most / settled [mm]", {"self_contact_length_max_m", "self_contact_length_settled_m"}, mm},
+constexpr Unit kPercent{"%", 100};
+
+const std::vector<Shown> kShown = {
+    {"tunnelled, most / end", {"tunnelled_fraction_max", "tunnelled_fraction_end"}, share_text, kPercent},
+    {"tunnelled depth", {"tunnelled_depth_max_m"}, mm, kMillimetres},
+    {"contour, most / settled", {"contact_length_max_m", "contact_length_settled_m"}, mm, kMillimetres},
+    {"depth, vertex / any", {"depth_vertex_max_m", "depth_max_m"}, mm, kMillimetres},
+    {"wrong side [samples]", {"wrong_side_samples_max"}, in_form("{:.0f}")},
+    {"through itself, most / settled",
+     {"self_contact_length_max_m", "self_contact_length_settled_m"},
+     mm,
+     kMillimetres},
     {"crossed, longest [s]", {"contact_violated_longest_s"}, number},
-    {"popping [mm]", {"pop_displacement_m"}, mm},
+    {"popping", {"pop_displacement_m"}, mm, kMillimetres},
     {"popping speed [of limit]", {"pop_speed_ratio"}, number},
-    {"strain, most / end [%]", {"stretch_max", "stretch_max_end"}, share_text},
+    {"strain, most / end", {"stretch_max", "stretch_max_end"}, share_text, kPercent},
     {"greatest strain's error, most / RMS [of v0/c]", {"truth_quantity_error_max", "truth_quantity_error"}, number},
 };
 
-std::vector<const CellRecord*> cells_of(const ContactSetUp& s) {
-  std::vector<const CellRecord*> out;
-  for (const ContactScene& scene : s.scenes)
-    for (const ContactRow& r : scene.rows) out.push_back(r.cell);
-  return out;
+std::string shown_text(const CellRecord& c, const Shown& s) {
+  std::string text;
+  bool any = false;
+  for (const char* name : s.names) {
+    const double v = summary_value(c, name);
+    any = any || std::isfinite(v);
+    text += (text.empty() ? "" : " / ") + s.format(s.unit.per_si * v);
+  }
+  return any ? text : "–";
 }
 
-Table by_scene(const ContactSetUp& s, const std::string& title, const std::string& note,
-               const std::vector<Column>& columns,
-               const std::function<void(const ContactRow&, std::vector<std::string>&)>& more) {
-  Table t{title, note, {{"scene", "solver", "sides"}}};
-  std::vector<Column> shown;
-  for (const Column& c : columns) {
-    const auto known = [&](const ContactRow& r) {
-      return std::any_of(c.names.begin(), c.names.end(), [&](const char* n) { return std::isfinite(value(r, n)); });
-    };
-    if (std::any_of(s.scenes.begin(), s.scenes.end(), [&](const ContactScene& scene) {
-          return std::any_of(scene.rows.begin(), scene.rows.end(), known);
-        }))
-      shown.push_back(c);
-  }
-  for (const Column& c : shown) t.rows[0].push_back(c.head);
-  for (const ContactScene& scene : s.scenes)
-    for (const ContactRow& r : scene.rows) {
-      std::vector<std::string> row = {scene.name, r.series.label(), r.series.sides.empty() ? "–" : r.series.sides};
-      for (const Column& c : shown) {
-        std::string text;
-        bool any = false;
-        for (const char* name : c.names) {
-          any = any || std::isfinite(value(r, name));
-          text += (text.empty() ? "" : " / ") + c.text(value(r, name));
-        }
-        row.push_back(any ? text : "–");
-      }
-      more(r, row);
-      t.rows.push_back(std::move(row));
-    }
-  return t;
+Columns<ContactRow> place_columns() {
+  return {{"", "scene", &ContactRow::scene},
+          {"", "solver", [](auto& r) { return r.series.label(); }},
+          {"", "sides", [](auto& r) { return or_dash(r.series.sides); }}};
 }
 
 /// True if the solver declares to ignore all contact and grips: then a kept expectation is luck.
@@ -186,7 +159,7 @@ std::vector<ContactSetUp> set_ups(const std::vector<CellRecord>& cells) {
     auto scene =
         std::find_if(up.scenes.begin(), up.scenes.end(), [&](const auto& s) { return s.name == c.header.scene; });
     if (scene == up.scenes.end()) scene = up.scenes.insert(up.scenes.end(), {c.header.scene, {}});
-    ContactRow row{&c, {c.header.solver, c.header.setting, sides_of(scenario)}};
+    ContactRow row{&c, {c.header.solver, c.header.setting, sides_of(scenario)}, up.kind, c.header.scene};
     while (std::any_of(scene->rows.begin(), scene->rows.end(),
                        [&](const ContactRow& r) { return r.series == row.series; }))
       ++row.series.repeat;
@@ -202,6 +175,13 @@ std::vector<ContactSetUp> set_ups(const std::vector<CellRecord>& cells) {
   return all;
 }
 
+std::vector<ContactRow> contact_rows(const std::vector<ContactSetUp>& ups) {
+  std::vector<ContactRow> out;
+  for (const ContactSetUp& u : ups)
+    for (const ContactScene& s : u.scenes) out.insert(out.end(), s.rows.begin(), s.rows.end());
+  return out;
+}
+
 std::vector<BoundResult> bound_results(const CellRecord& c) {
   std::vector<BoundResult> out;
   for (const auto& [name, v] : c.summary)
@@ -210,7 +190,7 @@ std::vector<BoundResult> bound_results(const CellRecord& c) {
 }
 
 std::string verdict(const CellRecord& c) {
-  if (c.outcome.status != "ok") return ending(c);
+  if (c.outcome.status != "ok") return ending(c.outcome);
   bool withheld = false, measured = true;
   const std::vector<BoundResult> bounds = bound_results(c);
   for (const BoundResult& b : bounds) {
@@ -224,12 +204,8 @@ std::string verdict(const CellRecord& c) {
 }
 
 Table verdict_table(const std::vector<ContactSetUp>& ups) {
-  std::vector<std::string> solvers;
-  for (const ContactSetUp& u : ups)
-    for (const ContactScene& s : u.scenes)
-      for (const ContactRow& r : s.rows)
-        if (std::find(solvers.begin(), solvers.end(), r.series.label()) == solvers.end())
-          solvers.push_back(r.series.label());
+  const std::vector<ContactRow> all = contact_rows(ups);
+  std::vector<std::string> solvers = distinct(all, [](const ContactRow& r) { return r.series.label(); });
   std::sort(solvers.begin(), solvers.end());
   Table t{
       "Penetration: does each solver keep what the scene expects?",
@@ -256,55 +232,51 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
         row.push_back(at == s.rows.end() ? "–" : verdict(*at->cell));
       }
       t.rows.push_back(std::move(row));
-      for (const ContactRow& r : s.rows)
-        for (const BoundResult& b : bound_results(*r.cell)) bounds.insert(kExpect + b.name);
     }
-  std::vector<const CellRecord*> cells;
-  for (const ContactSetUp& u : ups)
-    for (const CellRecord* c : cells_of(u)) cells.push_back(c);
-  t.note = with_withheld(t.note, cells, {bounds.begin(), bounds.end()});
+  for (const ContactRow& r : all)
+    for (const BoundResult& b : bound_results(*r.cell)) bounds.insert(kExpect + b.name);
+  t.note = with_withheld(t.note, cells_of(all, &ContactRow::cell), {bounds.begin(), bounds.end()});
   return t;
 }
 
 Table contact_table(const ContactSetUp& s) {
-  Table t = by_scene(s, s.title, "", kContactColumns, [](const ContactRow& r, std::vector<std::string>& row) {
-    row.push_back(paired(1e3 * value(r, "frame_wall_median_s"), 1e3 * value(r, "frame_device_median_s"), " / ", 3));
-    row.push_back(verdict(*r.cell));
-  });
-  t.rows[0].insert(t.rows[0].end(), {"wall / GPU [ms]", "expected"});
-  std::vector<std::string> shown = {"frame_wall_median_s"};
-  for (const Column& c : kContactColumns) shown.insert(shown.end(), c.names.begin(), c.names.end());
-  t.note = with_withheld(t.note, cells_of(s), shown);
-  return t;
+  const std::vector<ContactRow> rows = contact_rows({s});
+  Columns<ContactRow> columns = place_columns();
+  std::vector<std::string> names = {"frame_wall_median_s"};
+  for (const Shown& shown : kShown) {
+    names.insert(names.end(), shown.names.begin(), shown.names.end());
+    if (std::any_of(rows.begin(), rows.end(), [&](auto& r) { return shown_text(*r.cell, shown) != "–"; }))
+      columns.push_back({"", shown.head, [&](auto& r) { return shown_text(*r.cell, shown); }, {}, shown.unit});
+  }
+  columns.add({{"", "wall / GPU [ms]",
+                [](auto& r) {
+                  return paired(1e3 * summary_value(*r.cell, "frame_wall_median_s"),
+                                1e3 * summary_value(*r.cell, "frame_device_median_s"), " / ", 3);
+                }},
+               {"", "expected", [](auto& r) { return verdict(*r.cell); }}});
+  return columns.table({s.title, with_withheld("", cells_of(rows, &ContactRow::cell), names), {}}, rows);
 }
 
 Table cost_table(const ContactSetUp& s) {
-  Table t = by_scene(s, "Cost: " + s.title,
-                     fmt::format("Bytes a frame: {} Memory: device-local buffers. – on a CPU.", kWhatBytesAre), {},
-                     [](const ContactRow& r, std::vector<std::string>& row) {
-                       row.push_back(bytes_pair(*r.cell, "read_B_per_frame", "write_B_per_frame", 1e-3));
-                       row.push_back(significant(1e-3 * value(r, "device_memory_B"), 4));
-                       row.push_back(significant(value(r, "dispatches"), 1));
-                       row.push_back(significant(1e3 * value(r, "load_s"), 3));
-                     });
-  t.rows[0].insert(t.rows[0].end(), {"kB read / written", "memory [kB]", "dispatches", "load [ms]"});
-  t.note = with_withheld(t.note, cells_of(s), {"load_s"});
-  return t;
+  const std::vector<ContactRow> rows = contact_rows({s});
+  const std::string note = fmt::format("Bytes a frame: {} Memory: device-local buffers. – on a CPU.", kWhatBytesAre);
+  return place_columns()
+      .add({{"", "kB read / written",
+             [](auto& r) { return bytes_pair(*r.cell, "read_B_per_frame", "write_B_per_frame", 1e-3); }},
+            {"", "memory", summary("device_memory_B"), digits(4), kKilobytes},
+            {"", "dispatches", summary("dispatches"), digits(1)},
+            {"", "load", summary("load_s"), digits(3), kMilliseconds}})
+      .table({"Cost: " + s.title, with_withheld(note, cells_of(rows, &ContactRow::cell), {"load_s"}), {}}, rows);
 }
 
 Table broken_table(const std::vector<ContactSetUp>& ups) {
   Table t{"Broken expectations", "", {{"scene", "solver", "what", "expected", "found"}}};
-  for (const ContactSetUp& u : ups)
-    for (const ContactScene& s : u.scenes)
-      for (const ContactRow& r : s.rows)
-        for (const auto& [what, kept] : bound_results(*r.cell)) {
-          if (kept != 0) continue;
-          const double found = summary_value(*r.cell, what);
-          t.rows.push_back({s.name, r.series.label(), what, bound(scenario_of(*r.cell), what),
-                            what == "outcome"      ? ending(*r.cell)
-                            : std::isfinite(found) ? fmt::format("{:.4g}", found)
-                                                   : "–"});
-        }
+  for (const ContactRow& r : contact_rows(ups))
+    for (const auto& [what, kept] : bound_results(*r.cell)) {
+      if (kept != 0) continue;
+      t.rows.push_back({r.scene, r.series.label(), what, bound(scenario_of(*r.cell), what),
+                        what == "outcome" ? ending(r.cell->outcome) : in_form("{:.4g}")(summary_value(*r.cell, what))});
+    }
   return t;
 }
 

@@ -20,6 +20,7 @@ bool pulls_strip(const CellRecord&);
 struct ContactRow {
   const CellRecord* cell = nullptr;
   Series series;
+  std::string kind = {}, scene = {};  ///< of its set-up and scene
 };
 
 /// All cells of the scenes of one name, the same scene in several forms (sides, part of the room) among them.
@@ -37,6 +38,9 @@ struct ContactSetUp {
 
 /// Sorts the cells with contact; the others are left out. `cells` must outlive the answer.
 std::vector<ContactSetUp> set_ups(const std::vector<CellRecord>& cells);
+
+/// All of them, in order.
+std::vector<ContactRow> contact_rows(const std::vector<ContactSetUp>&);
 
 /// What came of one bound of a scene's `expect`.
 struct BoundResult {

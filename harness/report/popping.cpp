@@ -1,10 +1,7 @@
 #include "report/popping.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
-#include "base/json_number.hpp"
 #include "report/withheld.hpp"
 
 namespace clothbench {
@@ -14,15 +11,32 @@ using nlohmann::json;
 
 constexpr double kMostRatio = 1.2, kMostSpeed = 1;
 
-std::string millimetres(const CellRecord& c) {
-  if (c.outcome.status != "ok") return c.outcome.status;
-  return significant(1e3 * summary_value(c, "pop_displacement_m"), 3);
+/// How far it popped, or how it ended.
+Value way_of(const CellRecord& c) {
+  return c.outcome.status == "ok" ? Value(summary_value(c, "pop_displacement_m")) : Value(c.outcome.status);
 }
 
 std::string why_not(const Popping& p) {
   if (p.cell->outcome.status != "ok" || p.finer->outcome.status != "ok") return "did not run";
   if (!std::isfinite(p.ratio()) || !std::isfinite(summary_value(*p.cell, "pop_speed_ratio"))) return "not known";
   return p.kept() ? "kept" : "broken";
+}
+
+const Columns<Popping>& popping_columns() {
+  static const Columns<Popping> all = {
+      {"scene", "scene", &Popping::scene},
+      {"solver", In::Both, [](auto& p) { return p.series.solver; }},
+      {"sides", In::Both, [](auto& p) { return p.series.sides; }},
+      {"", "solver", [](auto& p) { return p.series.label(); }},
+      {"pop_displacement_m", In::Both, summary("pop_displacement_m")},
+      {"pop_displacement_x16_m", In::Both, [](auto& p) { return summary_value(*p.finer, "pop_displacement_m"); }},
+      {"", "way", [](auto& p) { return way_of(*p.cell); }, digits(3), kMillimetres},
+      {"", "way at x16", [](auto& p) { return way_of(*p.finer); }, digits(3), kMillimetres},
+      {"ratio", "ratio", &Popping::ratio, digits(3)},
+      {"pop_speed_ratio", "speed [of limit]", summary("pop_speed_ratio"), digits(2)},
+      {"", "at x16", [](auto& p) { return summary_value(*p.finer, "pop_speed_ratio"); }, digits(2)},
+      {"verdict", "popping", why_not}};
+  return all;
 }
 
 }  // namespace
@@ -39,52 +53,36 @@ bool Popping::kept() const {
 
 std::vector<Popping> poppings(const std::vector<ContactSetUp>& ups) {
   std::vector<Popping> out;
-  for (const ContactSetUp& u : ups)
-    for (const ContactScene& s : u.scenes)
-      for (const ContactRow& r : s.rows) {
-        if (r.series.setting != "default") continue;
-        for (const ContactRow& f : s.rows)
-          if (f.series.setting == kFinerLabel && f.series.solver == r.series.solver &&
-              f.series.sides == r.series.sides && f.series.repeat == r.series.repeat &&
-              r.cell->outcome.status != "unsupported" && r.cell->outcome.status != "missing" &&
-              f.cell->outcome.status != "missing")
-            out.push_back({s.name, r.series, r.cell, f.cell});
-      }
+  const std::vector<ContactRow> rows = contact_rows(ups);
+  for (const ContactRow& r : rows) {
+    if (r.series.setting != "default" || r.cell->outcome.status == "unsupported" || r.cell->outcome.status == "missing")
+      continue;
+    Series finer = r.series;
+    finer.setting = kFinerLabel;
+    for (const ContactRow& f : rows)
+      if (f.kind == r.kind && f.scene == r.scene && f.series == finer && f.cell->outcome.status != "missing")
+        out.push_back({r.scene, r.series, r.cell, f.cell});
+  }
   return out;
 }
 
 Table popping_table(const std::vector<Popping>& all) {
-  Table t{
-      "Popping against the same solver at 16 times its substeps",
-      "Greatest way of a vertex within 3 frames after the last contact with a collider that moves; the same with 16 "
-      "times as many "
-      "substeps a frame; their ratio, which is to be 1.2 at most; greatest speed after that contact over its limit "
-      "(twice the "
-      "collider's or that of a fall of the cloth's length), to be 1 at most. Not known: the collider never touched, or "
-      "touched to the end, in one of the two; that is not kept.",
-      {{"scene", "solver", "way [mm]", "way at x16 [mm]", "ratio", "speed [of limit]", "at x16", "popping"}}};
-  std::vector<const CellRecord*> cells;
-  for (const Popping& p : all) cells.insert(cells.end(), {p.cell, p.finer});
-  t.note = with_withheld(t.note, cells, {"pop_displacement_m", "pop_speed_ratio"});
-  for (const Popping& p : all)
-    t.rows.push_back({p.scene, p.series.label(), millimetres(*p.cell), millimetres(*p.finer), significant(p.ratio(), 3),
-                      significant(summary_value(*p.cell, "pop_speed_ratio"), 2),
-                      significant(summary_value(*p.finer, "pop_speed_ratio"), 2), why_not(p)});
-  return t;
+  return popping_columns().table(
+      {"Popping against the same solver at 16 times its substeps",
+       with_withheld("Greatest way of a vertex within 3 frames after the last contact with a collider that moves; the "
+                     "same with 16 "
+                     "times as many "
+                     "substeps a frame; their ratio, which is to be 1.2 at most; greatest speed after that contact "
+                     "over its limit "
+                     "(twice the "
+                     "collider's or that of a fall of the cloth's length), to be 1 at most. Not known: the collider "
+                     "never touched, or "
+                     "touched to the end, in one of the two; that is not kept.",
+                     cells_of(all, &Popping::cell, &Popping::finer), {"pop_displacement_m", "pop_speed_ratio"}),
+       {}},
+      all);
 }
 
-json popping_json(const std::vector<Popping>& all) {
-  json out = json::array();
-  for (const Popping& p : all)
-    out.push_back({{"scene", p.scene},
-                   {"solver", p.series.solver},
-                   {"sides", p.series.sides},
-                   {"pop_displacement_m", finite_or_null(summary_value(*p.cell, "pop_displacement_m"))},
-                   {"pop_displacement_x16_m", finite_or_null(summary_value(*p.finer, "pop_displacement_m"))},
-                   {"ratio", finite_or_null(p.ratio())},
-                   {"pop_speed_ratio", finite_or_null(summary_value(*p.cell, "pop_speed_ratio"))},
-                   {"verdict", why_not(p)}});
-  return out;
-}
+json popping_json(const std::vector<Popping>& all) { return popping_columns().json(all); }
 
 }  // namespace clothbench

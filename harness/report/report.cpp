@@ -1,9 +1,12 @@
 #include "report/report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
+#include <utility>
 
 #include "base/data_folder.hpp"
 #include "clothbench/error.hpp"
@@ -71,54 +74,191 @@ Parts parts_of(const std::vector<CellRecord>& cells, const std::vector<FeatureCo
   return out;
 }
 
-/// Tables of the cells with contact, in the order they are printed; none if there are none. Memory and bytes of each
-/// set-up only in files.
-std::vector<Table> penetration_tables(const std::vector<ContactSetUp>& ups, const std::vector<RoomPair>& pairs,
-                                      const std::vector<TurnedPair>& turned, bool with_costs) {
-  if (ups.empty()) return {};
-  std::vector<Table> out = {verdict_table(ups)};
-  if (const auto sweeps = speed_sweeps(ups); !sweeps.empty()) out.push_back(leak_table(sweeps));
-  for (Table& t : std::vector<Table>{pulled_strip_table(ups), popping_table(poppings(ups)), turned_table(turned)})
-    if (t.rows.size() > 1) out.push_back(std::move(t));
-  for (const ContactSetUp& u : ups) {
-    out.push_back(contact_table(u));
-    if (with_costs) out.push_back(cost_table(u));
+/// What is known of some runs, told of in sections. Its records point to each other: it stays where it was made.
+struct Facts {
+  const std::vector<fs::path>& runs;
+  std::vector<CellRecord> cells = printable(runs);
+  std::vector<FeatureCost> costs = feature_costs(cells);
+  std::vector<SolverMaterial> materials = solver_materials(cells);
+  Parts parts = parts_of(cells, costs);
+  nlohmann::json maps = stability_maps(runs), published = published_table3();
+  std::vector<Family> rates = families(parts.rest);
+  std::vector<ContactSetUp> ups = set_ups(parts.contact);
+  std::vector<RoomPair> rooms = room_pairs(parts.contact);
+  std::vector<TurnedPair> turned = turned_pairs(ups);
+  std::vector<WorkDiagram> diagrams = work_diagrams(parts.truth, materials);
+};
+
+/// A part of report.md and the page, and the files beside it.
+struct Section : PageSection {
+  std::string markdown = {};  ///< file of its tables alone; none if empty
+  std::vector<std::pair<const char*, std::function<std::string()>>> files = {};
+};
+using Sections = std::vector<Section>;
+
+std::string text_of(const nlohmann::json& j) { return j.dump(1) + "\n"; }
+
+std::string markdown_of(const std::vector<Table>& tables) {
+  std::string out;
+  for (const Table& t : tables) out += t.markdown() + "\n";
+  return out;
+}
+
+/// The tables that have rows.
+std::vector<Table> filled(std::vector<Table> tables) {
+  std::erase_if(tables, [](const Table& t) { return t.rows.size() <= 1; });
+  return tables;
+}
+
+Table in_full(Table t) {
+  t.in_full = true;
+  return t;
+}
+
+Sections rates_sections(const Facts& f) {
+  Sections out;
+  bool wrote = false;
+  for (const Family& family : f.rates) {
+    const bool paper = family.paper_table == 3;
+    out.push_back({{"rates", paper ? "Table 3" : "Rates: " + family.name, fps_tables(family, f.published)}});
+    if (!paper || std::exchange(wrote, true)) continue;
+    out.back().markdown = "table3.md";
+    out.back().files = {{"table3.csv", [&] { return table3_csv(family, f.published); }},
+                        {"table3.json", [&] { return text_of(table3_json(family, f.published)); }}};
   }
-  if (const Table broken = broken_table(ups); broken.rows.size() > 1) out.push_back(broken);
-  if (!pairs.empty()) out.push_back(room_table(pairs));
   return out;
 }
 
-/// Robustness, headline numbers and, `in_full`, every boundary and every run that was not stable.
-std::vector<Table> stability_tables(const std::vector<CellRecord>& cells, const nlohmann::json& maps, bool in_full) {
-  std::vector<Table> out;
-  if (!cells.empty()) out.push_back(robustness_table(cells));
-  if (const auto across = across_runs(cells); !across.empty()) out.push_back(across_table(across));
-  if (!maps.empty()) out.push_back(headline_table(maps));
-  if (!in_full) return out;
-  if (!maps.empty()) out.push_back(boundary_table(maps));
-  if (Table t = first_failure_table(cells); t.rows.size() > 1) out.push_back(std::move(t));
+Sections sampled_section(const Facts& f) {
+  const auto tables = filled({sampled_table(f.cells)});
+  if (tables.empty()) return {};
+  return {{{"sampled", "The device's own counters", tables}, "", {{"device-samples.csv", [&] {
+                                                                     return summary_csv(f.cells, sampled_names());
+                                                                   }}}}};
+}
+
+std::vector<Table> penetration_tables(const Facts& f) {
+  std::vector<Table> out = {verdict_table(f.ups)};
+  for (Table& t : filled({leak_table(speed_sweeps(f.ups)), pulled_strip_table(f.ups), popping_table(poppings(f.ups)),
+                          turned_table(f.turned)}))
+    out.push_back(std::move(t));
+  for (const ContactSetUp& u : f.ups) out.insert(out.end(), {contact_table(u), in_full(cost_table(u))});
+  for (Table& t : filled({broken_table(f.ups), room_table(f.rooms)})) out.push_back(std::move(t));
   return out;
 }
 
-/// Their failures are what the stability tables are about.
-std::vector<CellRecord> without_stability(std::vector<CellRecord> cells) {
-  std::erase_if(cells, is_stability);
-  return cells;
+Sections penetration_section(const Facts& f) {
+  if (f.ups.empty()) return {};
+  const auto all = [&] {
+    return text_of({{"cells", penetration_json(f.ups)},
+                    {"rooms", room_json(f.rooms)},
+                    {"first_leaks", leak_json(speed_sweeps(f.ups))},
+                    {"pulled_strip", pulled_strip_json(f.ups)},
+                    {"popping", popping_json(poppings(f.ups))},
+                    {"turned", turned_json(f.turned)}});
+  };
+  return {{{"penetration", "Penetration", penetration_tables(f)},
+           "penetration.md",
+           {{"penetration.csv", [&] { return summary_csv(f.parts.contact, penetration_columns()); }},
+            {"penetration.json", all},
+            {"penetration-series.csv", [&] { return series_csv(f.ups); }}}}};
 }
 
-/// One page: ranks, firsts, what stiffness means to whom, what is not a no-op. Empty without diagrams.
-std::string summary_page(const std::vector<WorkDiagram>& diagrams, const std::vector<SolverMaterial>& materials,
-                         const std::vector<FeatureCost>& costs) {
-  if (diagrams.empty()) return "";
-  std::string out = ranks_table(diagrams).markdown() + "\n" + winners_table(diagrams).markdown() + "\n";
-  if (!materials.empty()) out += material_verdicts(materials).markdown() + "\n";
-  if (!costs.empty()) out += no_op_table(costs).markdown() + "\n";
+Sections work_section(const Facts& f) {
+  if (f.diagrams.empty()) return {};
+  return {{{"work-precision",
+            "Error against run time",
+            {work_table(f.diagrams), budget_table(f.diagrams), energy_table(f.diagrams), truth_table(f.diagrams)}},
+           "work-precision.md",
+           {{"work-precision.csv", [&] { return work_csv(f.diagrams); }},
+            {"work-precision.json", [&] { return text_of(work_json(f.diagrams)); }}}}};
+}
+
+Sections winners_section(const Facts& f) {
+  if (f.diagrams.empty()) return {};
+  return {{{"", "", {winners_table(f.diagrams), ranks_table(f.diagrams)}}}};
+}
+
+Sections stability_section(const Facts& f) {
+  const std::vector<CellRecord>& cells = f.parts.stability;
+  if (cells.empty() && f.maps.empty()) return {};
+  std::vector<Table> tables;
+  if (!cells.empty()) tables.push_back(robustness_table(cells));
+  for (Table& t : filled({across_table(across_runs(cells))})) tables.push_back(std::move(t));
+  if (!f.maps.empty()) tables.insert(tables.end(), {headline_table(f.maps), in_full(boundary_table(f.maps))});
+  for (Table& t : filled({in_full(first_failure_table(cells))})) tables.push_back(std::move(t));
+  const nlohmann::json maps = {{"format", "clothbench-stability"}, {"format_version", 1}, {"maps", f.maps}};
+  return {{{"stability", "Stability", tables},
+           "stability.md",
+           {{"stability.csv", [&] { return stability_csv(cells); }},
+            {"stability-across.csv", [&] { return across_csv(across_runs(cells)); }},
+            {"stability.json", [maps] { return text_of(maps); }}}}};
+}
+
+Sections material_section(const Facts& f) {
+  if (f.materials.empty()) return {};
+  return {{{"material", "Material card", {material_table(f.materials), material_verdicts(f.materials)}},
+           "material.md",
+           {{"material.json", [&] { return text_of(material_json(f.materials)); }}}}};
+}
+
+Sections cost_section(const Facts& f) {
+  if (f.costs.empty()) return {};
+  return {{{"feature-cost", "Feature cost", {feature_cost_table(f.costs), no_op_table(f.costs)}},
+           "feature-cost.md",
+           {{"feature-cost.csv", [&] { return feature_cost_csv(f.costs); }},
+            {"feature-cost.json", [&] { return text_of(feature_cost_json(f.costs)); }}}}};
+}
+
+Sections features_section(const Facts& f) {
+  const auto solvers = solver_features(f.cells);
+  if (std::none_of(solvers.begin(), solvers.end(), [](const SolverFeatures& s) { return s.known; })) return {};
+  const Table table = feature_table(solvers, true);
+  return {{{"features", "Features", {f.parts.contact.empty() ? in_full(table) : table}},
+           "",
+           {{"features.json", [solvers] { return text_of(feature_json(solvers, true)); }}}}};
+}
+
+Sections failed_section(const Facts& f) {
+  std::vector<CellRecord> cells = f.cells;
+  std::erase_if(cells, is_stability);  // their failures are what the stability tables are about
+  Sections out;
+  for (Section s : {Section{{"failed", "Cells without a result", filled({failed_table(cells)})}},
+                    Section{{"expect", "Expectations", filled({expect_table(cells)})}}})
+    if (!s.tables.empty()) out.push_back(std::move(s));
   return out;
 }
 
-bool any_known(const std::vector<SolverFeatures>& solvers) {
-  return std::any_of(solvers.begin(), solvers.end(), [](const SolverFeatures& s) { return s.known; });
+/// In the order of report.md and the page, and in that of the terminal.
+constexpr Sections (*kInReport[])(const Facts&) = {rates_sections, sampled_section,   penetration_section,
+                                                   work_section,   stability_section, material_section,
+                                                   cost_section,   features_section,  failed_section};
+constexpr Sections (*kOnTerminal[])(const Facts&) = {rates_sections, sampled_section,  penetration_section,
+                                                     work_section,   winners_section,  material_section,
+                                                     cost_section,   features_section, stability_section};
+
+/// One page: ranks, firsts, what stiffness means to whom, what is not a no-op.
+std::string summary_page(const Facts& f) {
+  std::vector<Table> tables = {ranks_table(f.diagrams), winners_table(f.diagrams)};
+  if (!f.materials.empty()) tables.push_back(material_verdicts(f.materials));
+  if (!f.costs.empty()) tables.push_back(no_op_table(f.costs));
+  return markdown_of(tables);
+}
+
+/// What the page has beside the sections.
+Page page_of(const Facts& f, const std::string& head) {
+  Page page;
+  page.headline = head;
+  page.rates = rates_json(f.rates, f.published);
+  page.penetration = contact_series_json(f.ups);
+  page.work = work_json(f.diagrams);
+  page.maps = f.maps;
+  page.cases = stability_cases(f.parts.stability);
+  page.commands = commands_of(f.runs);
+  for (const WorkDiagram& d : f.diagrams)
+    for (const WorkPoint& p : d.points)
+      if (p.on_front) page.fronts.insert(p.cell->file);
+  return page;
 }
 
 }  // namespace
@@ -126,168 +266,58 @@ bool any_known(const std::vector<SolverFeatures>& solvers) {
 nlohmann::json published_table3() { return nlohmann::json::parse(kPublishedTable3); }
 
 void write_report(const std::vector<fs::path>& runs, const ReportOptions& options) {
-  const std::vector<CellRecord> cells = printable(runs);
-  const nlohmann::json published = published_table3();
-  const auto write = [&](const char* name, const std::string& text) {
+  const Facts f{runs};
+  const auto write = [&](const std::string& name, const std::string& text) {
     write_file_atomically(options.out / name, text);
   };
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) throw Error(options.out.string() + ": cannot be made a folder: " + error.message());
-  write("cells.csv", cells_csv(cells));
-  write("cells.json", cells_json(cells).dump(1) + "\n");
-  write("bandwidth.csv", summary_csv(cells, kBandwidthNames));
-  write("memory.csv", summary_csv(cells, kMemoryNames));
-  const Table sampled = sampled_table(cells);
-  if (sampled.rows.size() > 1) write("device-samples.csv", summary_csv(cells, sampled_names()));
-
-  const std::vector<FeatureCost> costs = feature_costs(cells);
-  const std::vector<SolverMaterial> materials = solver_materials(cells);
-  const auto [stability, contact, truth, rest] = parts_of(cells, costs);
-  const nlohmann::json maps = stability_maps(runs);
-  const std::vector<ContactSetUp> ups = set_ups(contact);
-  const std::vector<WorkDiagram> diagrams = work_diagrams(truth, materials);
-  const std::string head = headline(cells, Format::Markdown);
-  std::string tables;
-  Page page;
-  // The page has the same tables as report.md: they are told once.
-  const auto told = [&](const char* id, const std::string& title, std::vector<Table> of) {
-    std::string text;
-    for (const Table& t : of) text += t.markdown() + "\n";
-    page.sections.push_back({id, title, std::move(of)});
-    return text;
-  };
-  const std::vector<Family> rates = families(rest);
-  bool wrote_table3 = false;
-  for (const Family& family : rates) {
-    const std::string text =
-        told("rates", family.paper_table == 3 ? "Table 3" : "Rates: " + family.name, fps_tables(family, published));
-    tables += text;
-    if (family.paper_table != 3 || wrote_table3) continue;
-    write("table3.md", "# Table 3\n\n" + head + "\n" + text);
-    write("table3.csv", table3_csv(family, published));
-    write("table3.json", table3_json(family, published).dump(1) + "\n");
-    wrote_table3 = true;
+  write("cells.csv", cells_csv(f.cells));
+  write("cells.json", text_of(cells_json(f.cells)));
+  write("bandwidth.csv", summary_csv(f.cells, kBandwidthNames));
+  write("memory.csv", summary_csv(f.cells, kMemoryNames));
+  const std::string head = headline(f.cells, Format::Markdown);
+  Page page = page_of(f, head);
+  std::string all;
+  for (const auto sections : kInReport)
+    for (const Section& s : sections(f)) {
+      const std::string text = markdown_of(s.tables);
+      all += text;
+      if (!s.markdown.empty()) write(s.markdown, "# " + s.title + "\n\n" + head + "\n" + text);
+      for (const auto& [name, content] : s.files) write(name, content());
+      page.sections.push_back(s);
+    }
+  if (!f.diagrams.empty()) {
+    write("summary.md", "# Summary\n\n" + head + "\n" + summary_page(f));
+    page.sections.push_back({"summary", "Summary", {ranks_table(f.diagrams), winners_table(f.diagrams)}});
   }
-  if (sampled.rows.size() > 1) tables += told("sampled", "The device's own counters", {sampled});
-  if (!ups.empty()) {
-    const std::vector<RoomPair> pairs = room_pairs(contact);
-    const std::vector<TurnedPair> turned = turned_pairs(ups);
-    const std::string text = told("penetration", "Penetration", penetration_tables(ups, pairs, turned, true));
-    tables += text;
-    write("penetration.md", "# Penetration\n\n" + head + "\n" + text);
-    write("penetration.csv", summary_csv(contact, penetration_columns()));
-    write("penetration.json", nlohmann::json{{"cells", penetration_json(ups)},
-                                             {"rooms", room_json(pairs)},
-                                             {"first_leaks", leak_json(speed_sweeps(ups))},
-                                             {"pulled_strip", pulled_strip_json(ups)},
-                                             {"popping", popping_json(poppings(ups))},
-                                             {"turned", turned_json(turned)}}
-                                      .dump(1) +
-                                  "\n");
-    write("penetration-series.csv", series_csv(ups));
-  }
-  if (!diagrams.empty()) {
-    const std::string text =
-        told("work-precision", "Error against run time",
-             {work_table(diagrams), budget_table(diagrams), energy_table(diagrams), truth_table(diagrams)});
-    tables += text;
-    write("work-precision.md", "# Error against run time\n\n" + head + "\n" + text);
-    write("work-precision.csv", work_csv(diagrams));
-    write("work-precision.json", work_json(diagrams).dump(1) + "\n");
-  }
-  if (!stability.empty() || !maps.empty()) {
-    const std::string text = told("stability", "Stability", stability_tables(stability, maps, true));
-    tables += text;
-    write("stability.md", "# Stability\n\n" + head + "\n" + text);
-    write("stability.csv", stability_csv(stability));
-    write("stability-across.csv", across_csv(across_runs(stability)));
-    write("stability.json",
-          nlohmann::json{{"format", "clothbench-stability"}, {"format_version", 1}, {"maps", maps}}.dump(1) + "\n");
-  }
-  if (!materials.empty()) {
-    const std::string text =
-        told("material", "Material card", {material_table(materials), material_verdicts(materials)});
-    tables += text;
-    write("material.md", "# Material card\n\n" + head + "\n" + text);
-    write("material.json", material_json(materials).dump(1) + "\n");
-  }
-  if (!costs.empty()) {
-    const std::string text = told("feature-cost", "Feature cost", {feature_cost_table(costs), no_op_table(costs)});
-    tables += text;
-    write("feature-cost.md", "# Feature cost\n\n" + head + "\n" + text);
-    write("feature-cost.csv", feature_cost_csv(costs));
-    write("feature-cost.json", feature_cost_json(costs).dump(1) + "\n");
-  }
-  if (const std::string text = summary_page(diagrams, materials, costs); !text.empty())
-    write("summary.md", "# Summary\n\n" + head + "\n" + text);
-  if (const auto solvers = solver_features(cells); any_known(solvers)) {
-    tables += told("features", "Features", {feature_table(solvers, true)});
-    write("features.json", feature_json(solvers, true).dump(1) + "\n");
-  }
-  if (const Table failed = failed_table(without_stability(cells)); failed.rows.size() > 1)
-    tables += told("failed", "Cells without a result", {failed});
-  if (const Table broken = expect_table(without_stability(cells)); broken.rows.size() > 1)
-    tables += told("expect", "Expectations", {broken});
-
-  page.headline = head;
-  page.rates = rates_json(rates, published);
-  page.penetration = contact_series_json(ups);
-  page.work = work_json(diagrams);
-  page.maps = maps;
-  page.cases = stability_cases(stability);
-  page.commands = commands_of(runs);
-  for (const WorkDiagram& d : diagrams)
-    for (const WorkPoint& p : d.points)
-      if (p.on_front) page.fronts.insert(p.cell->file);
-  if (!diagrams.empty()) told("summary", "Summary", {ranks_table(diagrams), winners_table(diagrams)});
-  told("environment", "Environment", {environment_table(cells)});
+  page.sections.push_back({"environment", "Environment", {environment_table(f.cells)}});
   const PageTemplate with = page_template();
-  const std::string no_page = write_page(options.out, cells, page, with);
+  const std::string no_page = write_page(options.out, f.cells, page, with);
   const auto [no_figures, figures] = draw_pictures(options.out, with);
   for (const std::string& why : {no_page, no_figures})
     if (!why.empty()) fmt::print(stderr, "{}\n", why);
   write("report.md",
-        "# clothbench report\n\n" + head + "\n" + tables + (figures.empty() ? "" : "### Figures\n\n" + figures) +
+        "# clothbench report\n\n" + head + "\n" + all + (figures.empty() ? "" : "### Figures\n\n" + figures) +
             (no_figures.empty() ? "" : no_figures + "\n\n") +
             (no_page.empty() ? "`index.html` shows all of this interactively, with the motions. " : no_page + "\n\n") +
             "`cells.csv` and `cells.json` hold every summary value of every cell in full precision.\n");
 }
 
 void print_console_report(const std::vector<fs::path>& runs) {
-  const std::vector<CellRecord> cells = printable(runs);
-  const nlohmann::json published = published_table3();
-  fmt::print("{}", headline(cells, Format::Console));
-  const std::vector<FeatureCost> costs = feature_costs(cells);
-  const std::vector<SolverMaterial> materials = solver_materials(cells);
-  const auto [stability, contact, truth, rest] = parts_of(cells, costs);
-  for (const Family& family : families(rest))
-    for (const Table& t : fps_tables(family, published)) fmt::print("{}", t.console());
-  if (const Table sampled = sampled_table(cells); sampled.rows.size() > 1) fmt::print("{}", sampled.console());
-  const std::vector<ContactSetUp> ups = set_ups(contact);
-  for (const Table& t : penetration_tables(ups, room_pairs(contact), turned_pairs(ups), false))
-    fmt::print("{}", t.console());
-  if (const auto diagrams = work_diagrams(truth, materials); !diagrams.empty())
-    fmt::print("{}{}{}{}{}{}", work_table(diagrams).console(), budget_table(diagrams).console(),
-               energy_table(diagrams).console(), truth_table(diagrams).console(), winners_table(diagrams).console(),
-               ranks_table(diagrams).console());
-  if (!materials.empty())
-    fmt::print("{}{}", material_table(materials).console(), material_verdicts(materials).console());
-  if (!costs.empty()) fmt::print("{}{}", feature_cost_table(costs).console(), no_op_table(costs).console());
-  if (const auto solvers = solver_features(cells); !contact.empty() && any_known(solvers))
-    fmt::print("{}", feature_table(solvers, true).console());
-  for (const Table& t : stability_tables(stability, stability_maps(runs), false)) fmt::print("{}", t.console());
-  const Table failed = failed_table(without_stability(cells));
-  if (failed.rows.size() > 1) fmt::print("\n{}\n", failed.title);
-  for (std::size_t r = 1; r < failed.rows.size(); ++r) {
-    const auto& row = failed.rows[r];  // messages are sentences: lines, not columns
-    fmt::print("{}", wrapped(row[0] + ": " + row[1] + ": " + row[2] + ": " + row[3], 2, kConsoleColumns));
+  const Facts f{runs};
+  fmt::print("{}", headline(f.cells, Format::Console));
+  for (const auto sections : kOnTerminal)
+    for (const Section& s : sections(f))
+      for (const Table& t : s.tables)
+        if (!t.in_full) fmt::print("{}", t.console());
+  for (const Section& s : failed_section(f)) {
+    const Table& t = s.tables[0];
+    fmt::print("\n{}{}\n", t.title, t.note.empty() ? "" : " (" + t.note.substr(0, t.note.size() - 1) + ")");
+    for (std::size_t r = 1; r < t.rows.size(); ++r)  // messages are sentences: lines, not columns
+      fmt::print("{}", wrapped(fmt::format("{}", fmt::join(t.rows[r], ": ")), 2, kConsoleColumns));
   }
-  const Table broken = expect_table(without_stability(cells));
-  if (broken.rows.size() > 1) fmt::print("\n{} ({})\n", broken.title, broken.note.substr(0, broken.note.size() - 1));
-  for (std::size_t r = 1; r < broken.rows.size(); ++r)
-    fmt::print("{}",
-               wrapped(broken.rows[r][0] + ": " + broken.rows[r][1] + ": " + broken.rows[r][2], 2, kConsoleColumns));
 }
 
 }  // namespace clothbench

@@ -28,11 +28,6 @@ std::string case_of(const json& scenario) {
   return scenario["stability"].value("case", "") + " " + (name.size() > 4 && name[3] == '-' ? name.substr(4) : name);
 }
 
-std::string solver_of(const CellRecord& c) {
-  return c.header.setting == "default" || c.header.setting.empty() ? c.header.solver
-                                                                   : c.header.solver + " " + c.header.setting;
-}
-
 /// 0 stable, 1 degraded, 2 failed; -1 where the solver cannot run it or it has not been run.
 int grade_of(const CellRecord& c) {
   if (c.outcome.status == "unsupported" || c.outcome.status == "missing") return -1;
@@ -116,25 +111,22 @@ Table robustness_table(const std::vector<CellRecord>& cells) {
           "Runs of each case that were stable; degraded: strain or unrest out of bounds (F3, F6) and nothing else; "
           "failed: any other class. F0 not finite, F1 speed, F2 energy gain, F3 strain, F4 geometry, F5 contact, F6 "
           "unrest, F7 stagnation, F8 budget, crash or device.",
-          {}};
-  std::vector<std::string> cases, solvers;
+          {{"case"}}};
+  const auto case_name = [](const CellRecord& c) { return case_of(scenario_of(c)); };
+  const std::vector<std::string> solvers = distinct(cells, label_of);
   std::map<std::pair<std::string, std::string>, Tally> tally;
   std::map<std::string, Tally> whole;
   for (const CellRecord& c : cells) {
-    const std::string solver = solver_of(c), kase = case_of(scenario_of(c));
-    if (std::find(cases.begin(), cases.end(), kase) == cases.end()) cases.push_back(kase);
-    if (std::find(solvers.begin(), solvers.end(), solver) == solvers.end()) solvers.push_back(solver);
-    tally[{kase, solver}].add(c);
-    whole[solver].add(c);
+    tally[{case_name(c), label_of(c)}].add(c);
+    whole[label_of(c)].add(c);
   }
-  t.rows.push_back({"case"});
   t.rows.back().insert(t.rows.back().end(), solvers.begin(), solvers.end());
   const auto row = [&](const std::string& title, const auto& of) {
     std::vector<std::string> r = {title};
     for (const std::string& s : solvers) r.push_back(of(s));
     t.rows.push_back(std::move(r));
   };
-  for (const std::string& kase : cases)
+  for (const std::string& kase : distinct(cells, case_name))
     row(kase, [&](const std::string& s) {
       const auto at = tally.find({kase, s});
       return at == tally.end() ? std::string("–") : at->second.text();
@@ -148,7 +140,7 @@ json stability_cases(const std::vector<CellRecord>& cells) {
   for (const CellRecord& c : cells) {
     const int grade = grade_of(c);
     if (grade < 0) continue;
-    const std::string kase = scenario_of(c)["stability"].value("case", ""), solver = solver_of(c);
+    const std::string kase = scenario_of(c)["stability"].value("case", ""), solver = label_of(c);
     auto at =
         std::find_if(out.begin(), out.end(), [&](const json& r) { return r["case"] == kase && r["solver"] == solver; });
     if (at == out.end()) {
@@ -206,7 +198,7 @@ Table first_failure_table(const std::vector<CellRecord>& cells) {
   for (const CellRecord& c : cells) {
     const int grade = grade_of(c);
     if (grade < 1) continue;
-    std::string& text = runs[{solver_of(c), -grade, class_of(c)}];
+    std::string& text = runs[{label_of(c), -grade, class_of(c)}];
     text += (text.empty() ? "" : ", ") + c.header.scene;
     if (c.outcome.failed_frame >= 0) text += fmt::format(" ({})", c.outcome.failed_frame);
     if (c.outcome.status != "ok" && c.outcome.status != "diverged") text += " " + c.outcome.status;
@@ -217,28 +209,18 @@ Table first_failure_table(const std::vector<CellRecord>& cells) {
 }
 
 std::string stability_csv(const std::vector<CellRecord>& cells) {
-  std::vector<std::string> head = {"case",  "scene", "solver", "setting", "status",
-                                   "grade", "class", "frame",  "message"};
-  head.insert(head.end(), std::begin(kExtremes), std::end(kExtremes));
-  std::string out = csv_row(head);
-  for (const CellRecord& c : cells) {
-    const int grade = grade_of(c);
-    std::vector<std::string> row = {scenario_of(c)["stability"].value("case", ""),
-                                    c.header.scene,
-                                    c.header.solver,
-                                    c.header.setting,
-                                    c.outcome.status,
-                                    grade < 0 ? "" : kGrades[grade],
-                                    grade > 0 ? class_of(c) : "",
-                                    c.outcome.failed_frame < 0 ? "" : std::to_string(c.outcome.failed_frame),
-                                    c.outcome.message};
-    for (const char* name : kExtremes) {
-      const auto at = c.summary.find(name);
-      row.push_back(at == c.summary.end() ? "" : csv_number(at->second));
-    }
-    out += csv_row(row);
-  }
-  return out;
+  Columns<CellRecord> columns = {
+      {"case", In::Both, [](auto& c) { return scenario_of(c)["stability"].value("case", ""); }},
+      {"scene", In::Both, [](auto& c) { return c.header.scene; }},
+      {"solver", In::Both, [](auto& c) { return c.header.solver; }},
+      {"setting", In::Both, [](auto& c) { return c.header.setting; }},
+      {"status", In::Both, status_of},
+      {"grade", In::Both, [](auto& c) { return grade_of(c) < 0 ? "" : kGrades[grade_of(c)]; }},
+      {"class", In::Both, [](auto& c) { return grade_of(c) > 0 ? class_of(c) : ""; }},
+      {"frame", In::Both, failed_frame_of},
+      {"message", In::Both, [](auto& c) { return c.outcome.message; }}};
+  for (const char* name : kExtremes) columns.push_back({name, In::Both, summary(name)});
+  return columns.csv(cells);
 }
 
 }  // namespace clothbench

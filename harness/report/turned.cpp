@@ -1,11 +1,8 @@
 #include "report/turned.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "base/json_number.hpp"
 #include "report/trajectories.hpp"
 #include "report/withheld.hpp"
 
@@ -16,8 +13,6 @@ using nlohmann::json;
 
 const std::string kSuffix = "-turned";
 constexpr double kSamePlace = 0.05, kAtContact_s = 0.1;
-
-std::string share(double v) { return std::isfinite(v) ? fmt::format("{:.1e}", v) : "–"; }
 
 /// Greatest of `rms_m` up to some time after a collider is first touched; NaN where it never is, or that is not known.
 double until_contact(const CellRecord& c, const std::vector<double>& rms_m) {
@@ -64,6 +59,26 @@ TurnedPair pair_of(const std::string& kind, const std::string& scene, const Cont
   return p;
 }
 
+const Columns<TurnedPair>& turned_columns() {
+  static const NumberFormat share = in_form("{:.1e}");
+  static const Columns<TurnedPair> all = {
+      {"scene", "scene", &TurnedPair::scene},
+      {"solver", In::Both, [](auto& p) { return p.series.solver; }},
+      {"setting", In::Both, [](auto& p) { return p.series.setting; }},
+      {"sides", In::Both, [](auto& p) { return p.series.sides; }},
+      {"", "solver", [](auto& p) { return p.series.label(); }},
+      {"", "sides", [](auto& p) { return or_dash(p.series.sides); }},
+      {"", "as it is", [](auto& p) { return told(p.kind, *p.cell); }},
+      {"", "turned over", [](auto& p) { return told(p.kind, *p.turned); }},
+      {"apart_at_contact", In::Both, &TurnedPair::apart_at_contact},
+      {"apart_end", In::Both, &TurnedPair::apart_end},
+      {"", "apart, contact / end [of L]",
+       [](auto& p) { return share(p.apart_at_contact) + " / " + share(p.apart_end); }},
+      {"same", In::Both, &TurnedPair::same},
+      {"", "result", result}};
+  return all;
+}
+
 }  // namespace
 
 bool TurnedPair::same() const {
@@ -86,37 +101,26 @@ std::vector<TurnedPair> turned_pairs(const std::vector<ContactSetUp>& ups) {
 }
 
 Table turned_table(const std::vector<TurnedPair>& pairs) {
-  Table t{"The cloth turned over",
-          "The same scene with axis_u and axis_v changed for one another: the cloth's normals point the other way, its "
-          "vertices and triangles "
-          "begin where they did. What each of the two keeps of what the scene expects, and its leak; distance of the "
-          "vertices that began in "
-          "the same places, RMS over the cloth, over its longer side: the most up to 0.1 s after the first contact / "
-          "at the end. Same: both "
-          "leak or neither, and at most 0.05 apart at contact; later a fold tips whichever way rounding sends it. What "
-          "turning alone does to "
-          "a solver, `clothbench metamorphic` (flip) bounds.",
-          {{"scene", "solver", "sides", "as it is", "turned over", "apart, contact / end [of L]", "result"}}};
-  for (const TurnedPair& p : pairs)
-    t.rows.push_back({p.scene, p.series.label(), p.series.sides.empty() ? "–" : p.series.sides, told(p.kind, *p.cell),
-                      told(p.kind, *p.turned), share(p.apart_at_contact) + " / " + share(p.apart_end), result(p)});
-  std::vector<const CellRecord*> cells;
-  for (const TurnedPair& p : pairs) cells.insert(cells.end(), {p.cell, p.turned});
-  t.note = with_withheld(t.note, cells, {"tunnelled_fraction_max", "wrong_side_samples_max", "depth_vertex_max_m"});
-  return t;
+  return turned_columns().table(
+      {"The cloth turned over",
+       with_withheld(
+           "The same scene with axis_u and axis_v changed for one another: the cloth's normals point the other way, "
+           "its "
+           "vertices and triangles "
+           "begin where they did. What each of the two keeps of what the scene expects, and its leak; distance of the "
+           "vertices that began in "
+           "the same places, RMS over the cloth, over its longer side: the most up to 0.1 s after the first contact / "
+           "at the end. Same: both "
+           "leak or neither, and at most 0.05 apart at contact; later a fold tips whichever way rounding sends it. "
+           "What "
+           "turning alone does to "
+           "a solver, `clothbench metamorphic` (flip) bounds.",
+           cells_of(pairs, &TurnedPair::cell, &TurnedPair::turned),
+           {"tunnelled_fraction_max", "wrong_side_samples_max", "depth_vertex_max_m"}),
+       {}},
+      pairs);
 }
 
-json turned_json(const std::vector<TurnedPair>& pairs) {
-  json out = json::array();
-  for (const TurnedPair& p : pairs)
-    out.push_back({{"scene", p.scene},
-                   {"solver", p.series.solver},
-                   {"setting", p.series.setting},
-                   {"sides", p.series.sides},
-                   {"apart_at_contact", finite_or_null(p.apart_at_contact)},
-                   {"apart_end", finite_or_null(p.apart_end)},
-                   {"same", p.same()}});
-  return out;
-}
+json turned_json(const std::vector<TurnedPair>& pairs) { return turned_columns().json(pairs); }
 
 }  // namespace clothbench

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "clothbench/record.hpp"
+#include "report/grid.hpp"
 
 namespace clothbench {
 
@@ -36,6 +37,18 @@ std::string with_withheld(const std::string& note, const std::vector<const CellR
 
 /// Reasons of one cell, for these summary values; "; " between them.
 std::string withheld_of(const CellRecord&, const std::vector<std::string>& summary_names);
+
+/// A column each of these summary values, and one of why some are not there.
+template <class Record>
+Columns<Record> summary_columns(const std::vector<std::string>& names) {
+  Columns<Record> out;
+  for (const std::string& name : names) out.push_back({name, In::Both, summary(name)});
+  out.push_back({"withheld", In::Both, [names](const auto& r) {
+                   const std::string why = withheld_of(cell_of(r), names);
+                   return why.empty() ? absent() : Value(why);
+                 }});
+  return out;
+}
 
 /// Lines for a report's head: how many cells' times, and which metrics, are not printed and why; how many cells don't
 /// say whether they were timed alone. Of cells that `withhold` has seen.

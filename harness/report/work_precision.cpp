@@ -7,7 +7,6 @@
 #include <functional>
 #include <set>
 
-#include "base/json_number.hpp"
 #include "report/grid.hpp"
 #include "report/report.hpp"
 #include "report/withheld.hpp"
@@ -91,8 +90,6 @@ auto within(double most) {
 }
 bool timed_on_gpu(const WorkPoint& p) { return std::isfinite(p.device_ms_per_s); }
 
-std::string error_number(double v) { return std::isfinite(v) ? fmt::format("{:.1e}", v) : "–"; }
-
 /// No solver is told apart below the floor.
 std::string error_text(const WorkDiagram& d, const WorkPoint* p) {
   if (p == nullptr) return "–";
@@ -100,22 +97,50 @@ std::string error_text(const WorkDiagram& d, const WorkPoint* p) {
   return fmt::format("{}{:.2g} ({})", below ? "≤ " : "", below ? d.rank_floor() : p->error, short_setting(*p));
 }
 
-std::vector<std::string> solvers_of(const WorkDiagram& d) {
-  std::vector<std::string> out;
-  for (const WorkPoint& p : d.points)
-    if (std::find(out.begin(), out.end(), p.solver) == out.end()) out.push_back(p.solver);
-  return out;
-}
-
 std::string failed_text(std::size_t failed, std::size_t all, std::size_t over_budget) {
   return fmt::format("{} of {}", failed, all) + (over_budget > 0 ? fmt::format(", {} not run", over_budget) : "");
 }
 
-std::vector<const CellRecord*> cells_of(const std::vector<WorkDiagram>& diagrams) {
-  std::vector<const CellRecord*> out;
+/// A point with its diagram, for CSV.
+struct WorkRow : WorkPoint {
+  const WorkDiagram* diagram = nullptr;
+};
+
+std::vector<WorkRow> work_rows(const std::vector<WorkDiagram>& diagrams) {
+  std::vector<WorkRow> out;
   for (const WorkDiagram& d : diagrams)
-    for (const WorkPoint& p : d.points) out.push_back(p.cell);
+    for (const WorkPoint& p : d.points) out.push_back({p, &d});
   return out;
+}
+
+Value of_environment(const WorkRow& r, const char* key) {
+  const json& e = r.cell->header.environment;
+  return e.is_object() ? e.value(key, json()) : json();
+}
+
+/// What CSV and JSON both say of a diagram and of a point, at least; R: WorkDiagram or WorkRow, WorkPoint or WorkRow.
+template <class R, class Of>
+Columns<R> diagram_columns(Of of) {
+  return {{"scene", In::Both, [of](auto& r) { return of(r).scene; }},
+          {"card", In::Both, [of](auto& r) { return of(r).card; }},
+          {"ranking", In::Both, [of](auto& r) { return of(r).ranking; }},
+          {"space_error", In::Both, [of](auto& r) { return of(r).space_error; }},
+          {"floor", In::Csv, [of](auto& r) { return of(r).floor(); }},
+          {"refused", In::Both, [of](auto& r) { return of(r).refused(); }}};
+}
+
+template <class R>
+Columns<R> run_columns() {
+  return {{"solver", In::Both, &R::solver}, {"setting", In::Both, &R::setting}, {"status", In::Both, status_of}};
+}
+
+template <class R>
+Columns<R> result_columns() {
+  return {{"wall_ms_per_s", In::Both, &R::wall_ms_per_s},
+          {"fenced_ms_per_s", In::Both, &R::fenced_ms_per_s},
+          {"device_ms_per_s", In::Both, &R::device_ms_per_s},
+          {"error", In::Both, &R::error},
+          {"on_front", In::Both, &R::on_front}};
 }
 
 }  // namespace
@@ -200,10 +225,10 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
           {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed",
             "to 1 %, fenced", "to 0.1 %, fenced", "to 1 %, GPU", "to 0.1 %, GPU", "ranked"}}};
   const auto always = [](const WorkPoint&) { return true; };
-  t.note = with_withheld(t.note, cells_of(diagrams), {"frame_wall_median_s", "truth_error"});
+  t.note = with_withheld(t.note, cells_of(work_rows(diagrams), &WorkRow::cell), {"frame_wall_median_s", "truth_error"});
   for (const WorkDiagram& d : diagrams) {
     const std::string refused = d.refused();
-    for (const std::string& solver : solvers_of(d)) {
+    for (const std::string& solver : distinct(d.points, &WorkPoint::solver)) {
       std::size_t failed = 0, all = 0, able = 0, over_budget = 0;
       for (const WorkPoint& p : d.points)
         if (p.solver == solver) {
@@ -240,69 +265,57 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
 }
 
 Table truth_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{
-      "Truths and their reference solutions",
-      "Space: the same mesh's exact solution against the continuum. U_ref: uncertainty of the reference solution (two "
-      "integrators, three time steps) of the card's quantity, over its scale; its distance from the truth must be "
-      "below it. "
-      "Order: observed, 2 declared; – where all time steps agree.",
-      {{"scene", "error", "space", "U_ref", "reference − truth", "order BDF2", "order conservative", "ranks"}}};
-  const auto order = [](double v) { return std::isfinite(v) ? fmt::format("{:.2f}", v) : std::string("–"); };
-  for (const WorkDiagram& d : diagrams) {
-    const std::string refused = d.refused();
-    t.rows.push_back({d.scene, d.ranking, error_number(d.space_error), error_number(d.uncertainty),
-                      error_number(d.truth_distance), order(d.order_bdf2), order(d.order_conservative),
-                      refused.empty() ? "yes" : "REFUSED: " + refused});
-  }
-  return t;
+  const NumberFormat error = in_form("{:.1e}"), order = in_form("{:.2f}");
+  return Columns<WorkDiagram>{
+      {"", "scene", &WorkDiagram::scene},
+      {"", "error", &WorkDiagram::ranking},
+      {"", "space", &WorkDiagram::space_error, error},
+      {"", "U_ref", &WorkDiagram::uncertainty, error},
+      {"", "reference − truth", &WorkDiagram::truth_distance, error},
+      {"", "order BDF2", &WorkDiagram::order_bdf2, order},
+      {"", "order conservative", &WorkDiagram::order_conservative, order},
+      {"", "ranks", [](auto& d) { return d.refused().empty() ? "yes" : "REFUSED: " + d.refused(); }}}
+      .table(
+          {"Truths and their reference solutions",
+           "Space: the same mesh's exact solution against the continuum. U_ref: uncertainty of the reference solution "
+           "(two "
+           "integrators, three time steps) of the card's quantity, over its scale; its distance from the truth must be "
+           "below it. "
+           "Order: observed, 2 declared; – where all time steps agree.",
+           {}},
+          diagrams);
 }
 
 std::string work_csv(const std::vector<WorkDiagram>& diagrams) {
-  std::string out = csv_row({"scene", "card", "ranking", "space_error", "floor", "refused", "solver", "setting",
-                             "status", "gpu", "gpu_is_software", "on_gpu", "wall_ms_per_s", "fenced_ms_per_s",
-                             "device_ms_per_s", "error", "on_front", "not_ranked"});
-  for (const WorkDiagram& d : diagrams)
-    for (const WorkPoint& p : d.points) {
-      const json& e = p.cell->header.environment;
-      const std::string software = e.is_object() && e.value("gpu_is_software", json()) == json(true) ? "true" : "false";
-      out += csv_row({d.scene, d.card, d.ranking, csv_number(d.space_error), csv_number(d.floor()), d.refused(),
-                      p.solver, p.setting, p.cell->outcome.status, e.is_object() ? e.value("gpu", "") : "", software,
-                      p.on_gpu ? "true" : "false", csv_number(p.wall_ms_per_s), csv_number(p.fenced_ms_per_s),
-                      csv_number(p.device_ms_per_s), csv_number(p.error), p.on_front ? "true" : "false",
-                      d.flagged.contains(p.solver) ? d.flagged.at(p.solver) : ""});
-    }
-  return out;
+  return diagram_columns<WorkRow>([](const WorkRow& r) -> auto& { return *r.diagram; })
+      .add(run_columns<WorkRow>())
+      .add({{"gpu", In::Both, [](auto& r) { return of_environment(r, "gpu"); }},
+            {"gpu_is_software", In::Both, [](auto& r) { return of_environment(r, "gpu_is_software") == json(true); }},
+            {"on_gpu", In::Both, &WorkRow::on_gpu}})
+      .add(result_columns<WorkRow>())
+      .add({{"not_ranked", In::Both,
+             [](auto& r) {
+               const auto flag = r.diagram->flagged.find(r.solver);
+               return flag == r.diagram->flagged.end() ? "" : flag->second;
+             }}})
+      .csv(work_rows(diagrams));
 }
 
 json work_json(const std::vector<WorkDiagram>& diagrams) {
-  json out = json::array();
-  for (const WorkDiagram& d : diagrams) {
-    json points = json::array();
-    for (const WorkPoint& p : d.points)
-      points.push_back({{"solver", p.solver},
-                        {"setting", p.setting},
-                        {"settings", p.cell->header.settings},
-                        {"status", p.cell->outcome.status},
-                        {"gpu", p.on_gpu ? gpu_of(*p.cell) : ""},
-                        {"wall_ms_per_s", finite_or_null(p.wall_ms_per_s)},
-                        {"fenced_ms_per_s", finite_or_null(p.fenced_ms_per_s)},
-                        {"device_ms_per_s", finite_or_null(p.device_ms_per_s)},
-                        {"error", finite_or_null(p.error)},
-                        {"on_front", p.on_front}});
-    out.push_back({{"scene", d.scene},
-                   {"card", d.card},
-                   {"ranking", d.ranking},
-                   {"space_error", finite_or_null(d.space_error)},
-                   {"reference_uncertainty", finite_or_null(d.uncertainty)},
-                   {"reference_truth_distance", finite_or_null(d.truth_distance)},
-                   {"reference_order_bdf2", finite_or_null(d.order_bdf2)},
-                   {"reference_order_conservative", finite_or_null(d.order_conservative)},
-                   {"refused", d.refused()},
-                   {"rank_floor", d.rank_floor()},
-                   {"not_ranked", d.flagged},
-                   {"points", std::move(points)}});
-  }
-  return out;
+  const Columns<WorkPoint> points =
+      run_columns<WorkPoint>()
+          .add({{"settings", In::Both, [](auto& p) { return p.cell->header.settings; }},
+                {"gpu", In::Both, [](auto& p) { return p.on_gpu ? gpu_of(*p.cell) : ""; }}})
+          .add(result_columns<WorkPoint>());
+  return diagram_columns<WorkDiagram>([](const WorkDiagram& d) -> auto& { return d; })
+      .add({{"reference_uncertainty", In::Both, &WorkDiagram::uncertainty},
+            {"reference_truth_distance", In::Both, &WorkDiagram::truth_distance},
+            {"reference_order_bdf2", In::Both, &WorkDiagram::order_bdf2},
+            {"reference_order_conservative", In::Both, &WorkDiagram::order_conservative},
+            {"rank_floor", In::Both, &WorkDiagram::rank_floor},
+            {"not_ranked", In::Both, &WorkDiagram::flagged},
+            {"points", In::Both, [&](auto& d) { return points.json(d.points); }}})
+      .json(diagrams);
 }
 
 }  // namespace clothbench

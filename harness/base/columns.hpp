@@ -1,0 +1,123 @@
+#pragma once
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/table.hpp"
+
+namespace clothbench {
+
+/// A value of a table: a text, number, truth value or list of texts; null or not finite where it is missing; absent()
+/// where JSON is to have no such key. JSON can also hold whole objects.
+using Value = nlohmann::json;
+Value absent();
+
+/// What a printed number is given in: the name goes into the heading, and `per_si` of it are one SI unit.
+struct Unit {
+  const char* name = "";
+  double per_si = 1;
+};
+inline constexpr Unit kMilliseconds{"ms", 1e3}, kMillimetres{"mm", 1e3}, kKilobytes{"kB", 1e-3};
+
+/// Text of a number in its column's unit.
+using NumberFormat = std::function<std::string(double)>;
+NumberFormat digits(int significant_digits);
+/// By a format string of {fmt} such as "{:.1e}"; "–" where the number is not finite.
+NumberFormat in_form(const char* form);
+
+/// Which files have a column.
+enum class In { Both, Csv, Json, Neither };
+
+/// A column over records: printed under its head and unit where it has a head, stored under its key where it has one.
+template <class Record>
+struct Column {
+  using Get = std::function<Value(const Record&)>;
+
+  std::string key, head;
+  Get value;
+  NumberFormat format;
+  Unit unit;
+  In in;
+
+  Column(std::string k, std::string h, Get v, NumberFormat f = {}, Unit u = {})
+      : key(std::move(k)),
+        head(std::move(h)),
+        value(std::move(v)),
+        format(std::move(f)),
+        unit(u),
+        in(key.empty() ? In::Neither : In::Both) {}
+  /// Not printed.
+  Column(std::string k, In where, Get v) : key(std::move(k)), value(std::move(v)), in(where) {}
+};
+
+/// The forms of one value. Printed: "–" for what is missing. CSV: in full precision, nothing for what is missing; items
+/// of a list with ", " between. JSON: null for what is not finite.
+std::string printed_value(const Value&, const NumberFormat&, const Unit&);
+std::string csv_value(const Value&);
+Value json_value(Value);
+
+/// A typed table: every form of it comes from its columns and any range of records.
+template <class Record>
+struct Columns : std::vector<Column<Record>> {
+  using std::vector<Column<Record>>::vector;
+
+  Columns& add(const Columns& more) {
+    this->insert(this->end(), more.begin(), more.end());
+    return *this;
+  }
+
+  /// `t` with a row a record: for the console, Markdown and the page.
+  template <class Records>
+  Table table(Table t, const Records& records) const {
+    fill(
+        t.rows, records, [](const auto& c) { return !c.head.empty() || c.in == In::Neither; },
+        [](const auto& c) { return *c.unit.name == 0 ? c.head : c.head + " [" + c.unit.name + "]"; },
+        [](const auto& c, const Value& v) { return printed_value(v, c.format, c.unit); });
+    return t;
+  }
+
+  template <class Records>
+  std::string csv(const Records& records) const {
+    std::vector<std::vector<std::string>> rows;
+    fill(
+        rows, records, [](const auto& c) { return c.in == In::Both || c.in == In::Csv; },
+        [](const auto& c) { return c.key; }, [](const auto&, const Value& v) { return csv_value(v); });
+    std::string out;
+    for (const auto& row : rows) out += csv_row(row);
+    return out;
+  }
+
+  /// An object of one record, and an array of them.
+  Value object(const Record& record) const {
+    Value out = Value::object();
+    for (const Column<Record>& c : *this) {
+      if (c.in == In::Neither || c.in == In::Csv) continue;
+      if (Value v = c.value(record); !v.is_discarded()) out[c.key] = json_value(std::move(v));
+    }
+    return out;
+  }
+
+  template <class Records>
+  Value json(const Records& records) const {
+    Value out = Value::array();
+    for (const Record& r : records) out.push_back(object(r));
+    return out;
+  }
+
+ private:
+  template <class Records, class Has, class Head, class Text>
+  void fill(std::vector<std::vector<std::string>>& rows, const Records& records, Has has, Head head, Text text) const {
+    rows.emplace_back();
+    for (const Column<Record>& c : *this)
+      if (has(c)) rows.back().push_back(head(c));
+    for (const Record& r : records) {
+      rows.emplace_back();
+      for (const Column<Record>& c : *this)
+        if (has(c)) rows.back().push_back(text(c, c.value(r)));
+    }
+  }
+};
+
+}  // namespace clothbench
