@@ -11,6 +11,7 @@
 #include "report/across_runs.hpp"
 #include "report/feature_cost.hpp"
 #include "report/features.hpp"
+#include "report/friction.hpp"
 #include "report/leak.hpp"
 #include "report/material.hpp"
 #include "report/paths.hpp"
@@ -61,7 +62,7 @@ Parts parts_of(const std::vector<CellRecord>& cells, const std::vector<FeatureCo
   for (const CellRecord& c : cells)
     if (summary_value(c, "frame_wall_median_s") > 0) timed.insert(c.header.scenario_json);
   for (const CellRecord& c : cells) {
-    if (told.contains(&c) || is_material_card(c) || is_all_on(c)) continue;
+    if (told.contains(&c) || is_material_card(c) || is_all_on(c) || is_friction(c)) continue;
     // Of a scene that nobody has run yet nothing is known but its name: it stands among the cells without a result.
     if (c.outcome.status == "missing" && c.header.scenario_json.empty()) continue;
     // Of a pulled strip that nobody was timed on, the error is told by speed instead of by time.
@@ -212,6 +213,12 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     write("material.md", "# Material card\n\n" + head + "\n" + text);
     write("material.json", material_json(materials).dump(1) + "\n");
   }
+  if (std::vector<Table> of = friction_tables(cells); !of.empty()) {
+    const std::string text = told("friction", "Friction", std::move(of));
+    tables += text;
+    write("friction.md", "# Friction\n\n" + head + "\n" + text);
+    write("friction.json", friction_json(cells).dump(1) + "\n");
+  }
   if (!costs.empty()) {
     const std::string text = told("feature-cost", "Feature cost", {feature_cost_table(costs), no_op_table(costs)});
     tables += text;
@@ -273,6 +280,7 @@ void print_console_report(const std::vector<fs::path>& runs) {
                ranks_table(diagrams).console());
   if (!materials.empty())
     fmt::print("{}{}", material_table(materials).console(), material_verdicts(materials).console());
+  for (const Table& t : friction_tables(cells)) fmt::print("{}", t.console());
   if (!costs.empty()) fmt::print("{}{}", feature_cost_table(costs).console(), no_op_table(costs).console());
   if (const auto solvers = solver_features(cells); !contact.empty() && any_known(solvers))
     fmt::print("{}", feature_table(solvers, true).console());
