@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "cli/command.hpp"
+#include "cli/run_common.hpp"
 #include "report/material.hpp"
 #include "runner/material_card.hpp"
 
@@ -10,27 +8,26 @@ namespace clothbench {
 namespace {
 
 struct CardArguments {
-  std::vector<std::string> solvers, set;
+  SearchFlags search;
   bool no_sweep = false;
-  DeviceFlags device;
 };
 
 /// The card at the settings given, and short ones where it is looked whether it holds.
 void measure(const SolverEntry& entry, const Overrides& overrides, const CardArguments& a, Guard& guard,
-             StatusLine& line, std::vector<CellRecord>& out) {
+             StudyRuns& runs, StatusLine& line, std::vector<CellRecord>& out) {
   const nlohmann::json settings = complete_settings(entry.info, overrides.solver);
   const auto one = [&](const nlohmann::json& s, const std::string& label, bool full) {
     line.show(entry.info.name + " " + label, out.size(), 0);
     try {
-      out.push_back(ask_material(guard, entry, s, label, full, a.device.options));
+      out.push_back(ask_material(guard, runs, entry, s, label, full));
     } catch (const Error& e) {
-      if (e.code() != ExitCode::NoDevice || !a.device.allow_no_device) throw;
-      fmt::print(stderr, "no Vulkan device: {} is left out\n", entry.info.name);
+      if (e.code() != ExitCode::NoDevice || !a.search.device.allow_no_device) throw;
+      if (full) fmt::print(stderr, "no Vulkan device: {} is left out\n", entry.info.name);
     }
   };
   one(settings, overrides.label(), true);
-  if (a.no_sweep || out.empty() || out.back().outcome.status == "unsupported" || out.back().outcome.status == "crashed")
-    return;
+  // Whatever came of it: a plugin's child asks the same questions without knowing the answers.
+  if (a.no_sweep || entry.info.ignores.has(Feature::Stretch)) return;
   for (const auto& [label, s] : swept_settings(entry.info, settings)) one(s, label, false);
 }
 
@@ -41,24 +38,26 @@ void add_card(CLI::App& app, Console& console) {
   CLI::App* cmd = app.add_subcommand("card",
                                      "Measure what solvers make of a scene's stiffness: moduli at 0, 45 and 90 "
                                      "degrees, bending, and whether they hold over settings");
-  add_solvers(*cmd, "solver", a.solvers, "Solvers; default: all");
-  cmd->add_option("--set", a.set, "Setting of the solver: solver.substeps=20");
+  add_solvers(*cmd, "solver", a.search.solvers, "Solvers; default: all");
+  cmd->add_option("--set", a.search.set, "Setting of the solver: solver.substeps=20");
   cmd->add_flag("--no-sweep", a.no_sweep,
                 "Only at the settings given, not with four times the substeps and iterations too");
-  a.device.add_to(*cmd);
+  a.search.add_to(*cmd);
   cmd->footer("Example: clothbench card xpbd --set solver.substeps=64");
   cmd->callback([&console, &a] {
-    const Overrides overrides = split_overrides(a.set);
+    const Overrides overrides = split_overrides(a.search.set);
     if (!overrides.scene.empty())
       throw Error("--set " + overrides.scene[0] + ": expected solver.<name>=<value>; the patches are fixed");
-    if (a.solvers.empty())
+    if (a.search.solvers.empty())
       for (const SolverEntry& e : solvers())
-        if (!e.info.ignores.has(Feature::Stretch)) a.solvers.push_back(e.info.name);
+        if (!e.info.ignores.has(Feature::Stretch)) a.search.solvers.push_back(e.info.name);
     std::vector<CellRecord> cards;
     Guard guard(console.words);
+    StudyRuns runs = a.search.runs("card", console);
     {
       StatusLine line(!console.json);
-      for (const std::string& name : a.solvers) measure(find_solver(name), overrides, a, guard, line, cards);
+      for (const std::string& name : a.search.solvers)
+        measure(find_solver(name), overrides, a, guard, runs, line, cards);
     }
     if (guard.crashed()) console.exit_code = ExitCode::CheckFailed;
     const auto materials = solver_materials(cards);

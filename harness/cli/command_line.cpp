@@ -26,26 +26,7 @@ int told(const Console& console, const std::string& why, ExitCode code) {
   return static_cast<int>(code);
 }
 
-}  // namespace
-
-int run_command_line(const std::vector<std::string>& words) {
-  CLI::App app{"clothbench: interchangeable cloth solvers, the same scenes, comparable numbers", "clothbench"};
-  app.require_subcommand(1);
-  app.set_version_flag("--version",
-                       std::string("clothbench ") + build_info::kVersion + " (" + build_info::kGitCommit + ")");
-  app.footer(
-      "Examples: clothbench run paper/desk-flat-low --solver xpbd --solver bullet-soft\n"
-      "          clothbench study table3 --quick --out results/runs/mine\n"
-      "          clothbench report results/runs/mine -o report\n"
-      "More with each command: clothbench COMMAND --help\n"
-      "Exit codes: 0 ok, 1 a check failed, 2 bad input, 3 no device, 130 interrupted.");
-  Console console;
-  colour_output(takes_colour(STDOUT_FILENO));
-  console.command_line = joined(words);
-  console.words = words;
-  app.add_flag("--json", console.json, "Print a machine-readable summary");
-  app.fallthrough();
-
+void add_commands(CLI::App& app, Console& console) {
   add_list(app, console);
   add_validate(app, console);
   add_plan(app, console);
@@ -72,17 +53,44 @@ int run_command_line(const std::vector<std::string>& words) {
 #endif
   add_completion(app, console);
   add_manual(app, console);
+}
+
+/// Of a first word that is no command.
+void tell_nearest(const CLI::App& app, const std::vector<std::string>& words) {
+  if (words.empty() || !app.get_subcommands().empty()) return;
+  std::vector<std::string> commands;
+  for (const CLI::App* c : app.get_subcommands({})) commands.push_back(c->get_name());
+  const std::string near = nearest(words.front(), commands);
+  if (!near.empty() && near != words.front())
+    fmt::print(stderr, "no command \"{}\"; nearest known: {}\n", words.front(), near);
+}
+
+}  // namespace
+
+int run_command_line(const std::vector<std::string>& words) {
+  CLI::App app{"clothbench: interchangeable cloth solvers, the same scenes, comparable numbers", "clothbench"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version",
+                       std::string("clothbench ") + build_info::kVersion + " (" + build_info::kGitCommit + ")");
+  app.footer(
+      "Examples: clothbench run paper/desk-flat-low --solver xpbd --solver bullet-soft\n"
+      "          clothbench study table3 --quick --out results/runs/mine\n"
+      "          clothbench report results/runs/mine -o report\n"
+      "More with each command: clothbench COMMAND --help\n"
+      "Exit codes: 0 ok, 1 a check failed, 2 bad input, 3 no device, 130 interrupted.");
+  Console console;
+  colour_output(takes_colour(STDOUT_FILENO));
+  console.command_line = joined(words);
+  console.words = words;
+  app.add_flag("--json", console.json, "Print a machine-readable summary");
+  app.fallthrough();
+
+  add_commands(app, console);
   try {
     // CLI11 takes the words last first.
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& e) {
-    if (!words.empty() && app.get_subcommands().empty()) {
-      std::vector<std::string> commands;
-      for (const CLI::App* c : app.get_subcommands({})) commands.push_back(c->get_name());
-      const std::string near = nearest(words.front(), commands);
-      if (!near.empty() && near != words.front())
-        fmt::print(stderr, "no command \"{}\"; nearest known: {}\n", words.front(), near);
-    }
+    tell_nearest(app, words);
     return app.exit(e) == 0 ? 0 : static_cast<int>(ExitCode::BadInput);
   } catch (const Error& e) {
     return told(console, e.what(), e.code());

@@ -2,22 +2,87 @@
 
 #include <fmt/format.h>
 
-#include <optional>
-#include <set>
-
-#include "base/table.hpp"
-#include "cli/command.hpp"
-#include "runner/threshold.hpp"
+#include "cli/run_common.hpp"
+#include "report/friction.hpp"
 
 namespace clothbench {
 namespace {
 
 struct FrictionArguments {
-  std::vector<std::string> solvers, set;
+  SearchFlags search;
   std::vector<int> substeps;
   std::string readme;
-  DeviceFlags device;
 };
+
+struct ThresholdArguments {
+  std::vector<std::string> scenes = {"validation/incline-stick", "validation/capstan-hold"};
+  SearchFlags search;
+};
+
+/// The settings given, and those with each number of substeps where the solver has that setting.
+std::vector<nlohmann::json> settings_of(const SolverInfo& solver, const nlohmann::json& given,
+                                        const std::vector<int>& substeps) {
+  std::vector<nlohmann::json> out = {given};
+  if (!complete_settings(solver, nlohmann::json::object()).contains("substeps")) return out;
+  for (const int n : substeps) {
+    out.push_back(given);
+    out.back()["substeps"] = n;
+  }
+  return out;
+}
+
+void run_friction(FrictionArguments& a, Console& console) {
+  const Overrides overrides = split_overrides(a.search.set);
+  if (a.search.solvers.empty())
+    for (const SolverEntry& e : solvers())
+      if (!(e.info.supports & kColliderFeatures).empty()) a.search.solvers.push_back(e.info.name);
+  Guard guard(console.words);
+  StudyRuns runs = a.search.runs("friction", console);
+  std::vector<CellRecord> cells;
+  {
+    StatusLine line(!console.json);
+    for (const std::string& name : a.search.solvers) {
+      const SolverEntry& entry = find_solver(name);
+      for (const nlohmann::json& given : settings_of(entry.info, overrides.solver, a.substeps)) {
+        const std::string label = Overrides{{}, given}.label();
+        const auto some = friction_runs(
+            guard, runs, entry, complete_settings(entry.info, given), label, overrides.scene,
+            [&](const std::string& scene) { line.show(fmt::format("{} {}: {}", name, label, scene), 0, 0); });
+        cells.insert(cells.end(), some.begin(), some.end());
+      }
+    }
+  }
+  if (console.json)
+    fmt::print("{}\n", friction_json(cells).dump(2));
+  else
+    fmt::print("{}\n", friction_table(cells).console());
+  for (const std::string& crash : friction_crashes(cells)) {
+    fmt::print(stderr, "{}\n", crash);
+    console.exit_code = ExitCode::CheckFailed;
+  }
+  if (!a.readme.empty()) write_between_marks(a.readme, "friction", friction_table(cells).markdown());
+}
+
+void run_threshold(ThresholdArguments& a, Console& console) {
+  const Overrides overrides = split_overrides(a.search.set);
+  if (a.search.solvers.empty()) a.search.solvers = {"xpbd"};
+  nlohmann::json all = nlohmann::json::array();
+  Guard guard(console.words);
+  StudyRuns runs = a.search.runs("threshold", console);
+  for (const std::string& file : a.scenes)
+    for (const std::string& name : a.search.solvers) {
+      const SolverEntry& entry = find_solver(name);
+      const std::vector<ThresholdRow> rows =
+          threshold_rows(threshold_runs(guard, runs, load_scene(file, overrides.scene), entry,
+                                        complete_settings(entry.info, overrides.solver), overrides.label()));
+      for (const ThresholdRow& row : rows) {
+        if (row.found.failed || !row.crash.empty()) console.exit_code = ExitCode::CheckFailed;
+        all.push_back(threshold_json(row));
+        if (!console.json) fmt::print("{}\n", threshold_sentence(row));
+      }
+    }
+  if (console.json) fmt::print("{}\n", all.dump(2));
+}
 
 }  // namespace
 
@@ -25,65 +90,27 @@ void add_friction(CLI::App& app, Console& console) {
   FrictionArguments& a = console.arguments<FrictionArguments>();
   CLI::App* cmd = app.add_subcommand(
       "friction", "Solvers by the closed forms of friction: slopes, stopping, capstan, Atwood's strip");
-  add_solvers(*cmd, "solver", a.solvers, "Solvers; default: all that touch anything");
+  add_solvers(*cmd, "solver", a.search.solvers, "Solvers; default: all that touch anything");
   cmd->add_option("--substeps", a.substeps,
                   "Also at these numbers of substeps a frame, where a solver has that setting");
-  cmd->add_option("--set", a.set, "Override in every run: solver.contact_samples=0");
+  cmd->add_option("--set", a.search.set, "Override in every run: solver.contact_samples=0");
   cmd->add_option("--readme", a.readme,
                   "Also write the table between the marks <!-- friction begin/end --> of this file");
-  a.device.add_to(*cmd);
+  a.search.add_to(*cmd);
   cmd->footer("Example: clothbench friction xpbd bullet-soft --substeps 8 32");
-  cmd->callback([&console, &a] {
-    const Overrides overrides = split_overrides(a.set);
-    if (a.solvers.empty())
-      for (const SolverEntry& e : solvers())
-        if (!(e.info.supports & kColliderFeatures).empty()) a.solvers.push_back(e.info.name);
-    Table t{"Friction by closed forms",
-            "Error of the critical angle (Coulomb's cone), of how far a sheet creeps that is held, of the ways of one "
-            "that slips and of one "
-            "that stops, of the overhang that a capstan holds (a polygon of as many sides as rows lie on it) and of "
-            "the ways over it with and "
-            "without friction. ✓: within the bound. Thresholds by bisection, 0.1 % of the coefficient.",
-            {{"solver", "setting"}}};
-    for (const FrictionForm& f : friction_forms()) t.rows[0].emplace_back(f.head);
-    nlohmann::json all = nlohmann::json::array();
-    Guard guard(console.words);
-    std::set<std::string> crashes;
-    std::optional<StatusLine> line(!console.json);
-    for (const std::string& name : a.solvers) {
-      const SolverEntry& entry = find_solver(name);
-      std::vector<nlohmann::json> rows = {overrides.solver};
-      for (const int n : a.substeps) {
-        rows.push_back(overrides.solver);
-        rows.back()["substeps"] = n;
-      }
-      for (const nlohmann::json& given : rows) {
-        if (given.contains("substeps") && !complete_settings(entry.info, nlohmann::json::object()).contains("substeps"))
-          continue;
-        const nlohmann::json settings = complete_settings(entry.info, given);
-        const std::string label = Overrides{{}, given}.label();
-        std::vector<std::string> row = {name, label};
-        nlohmann::json j = {{"solver", name}, {"setting", label}};
-        for (const FrictionForm& f : friction_forms()) {
-          line->show(fmt::format("{} {}: {}", name, label, f.scene), 0, 0);
-          std::string crash;
-          j["answers"].push_back(ask_friction(guard, f, entry, settings, overrides.scene, a.device.options, crash));
-          row.push_back(j["answers"].back()["text"]);
-          if (!crash.empty()) crashes.insert(fmt::format("{} {}: {}: its process: {}", name, label, f.scene, crash));
-        }
-        t.rows.push_back(std::move(row));
-        all.push_back(std::move(j));
-      }
-    }
-    line.reset();
-    if (guard.crashed()) console.exit_code = ExitCode::CheckFailed;
-    if (console.json)
-      fmt::print("{}\n", all.dump(2));
-    else
-      fmt::print("{}\n", t.console());
-    for (const std::string& crash : crashes) fmt::print(stderr, "{}\n", crash);
-    if (!a.readme.empty()) write_between_marks(a.readme, "friction", t.markdown());
-  });
+  cmd->callback([&console, &a] { run_friction(a, console); });
+}
+
+void add_threshold(CLI::App& app, Console& console) {
+  ThresholdArguments& a = console.arguments<ThresholdArguments>();
+  CLI::App* cmd = app.add_subcommand(
+      "threshold", "From which friction on a scene holds, found by bisection, against the closed form");
+  cmd->add_option("scene", a.scenes, "Scenes at rest on a slope or over a cylinder")->capture_default_str();
+  add_solvers(*cmd, "--solver", a.search.solvers, "Solvers (default xpbd)");
+  cmd->add_option("--set", a.search.set, "Override: cloth.grid=[17,17], solver.substeps=20");
+  a.search.add_to(*cmd);
+  cmd->footer("Example: clothbench threshold validation/incline-stick --solver xpbd --solver bullet-soft");
+  cmd->callback([&console, &a] { run_threshold(a, console); });
 }
 
 }  // namespace clothbench

@@ -6,7 +6,6 @@
 
 #include "base/table.hpp"
 #include "cli/command.hpp"
-#include "runner/threshold.hpp"
 
 namespace clothbench {
 namespace {
@@ -14,11 +13,6 @@ namespace {
 struct MetamorphicArguments {
   std::vector<std::string> solvers, set;
   std::string readme;
-  DeviceFlags device;
-};
-
-struct ThresholdArguments {
-  std::vector<std::string> scenes = {"validation/incline-stick", "validation/capstan-hold"}, solvers, set;
   DeviceFlags device;
 };
 
@@ -44,17 +38,6 @@ Table table_of(const std::string& solver, const std::vector<MetamorphicResult>& 
     t.rows.push_back(std::move(row));
   }
   return t;
-}
-
-void print_threshold(const nlohmann::json& t) {
-  const auto text = [&](const char* key) { return t[key].get<std::string>(); };
-  if (t.contains("crashed"))
-    return fmt::print("{} {}: its process: {}\n", text("scene"), text("solver"), text("crashed"));
-  if (t["failed"].get<bool>())
-    return fmt::print("{} {}: its run failed ({} runs)\n", text("scene"), text("solver"), t["runs"].get<int>());
-  fmt::print("{} {}: holds from friction {}{:.5f} on, exact {:.5f}; {} off by {:+.4f} {} ({} runs)\n", text("scene"),
-             text("solver"), text("bound"), t["found"].get<double>(), t["exact"].get<double>(), text("error_name"),
-             t["error"].get<double>(), text("error_units"), t["runs"].get<int>());
 }
 
 }  // namespace
@@ -100,34 +83,6 @@ void add_metamorphic(CLI::App& app, Console& console) {
     if (console.json) fmt::print("{}\n", all.dump(2));
     if (guard.crashed()) console.exit_code = ExitCode::CheckFailed;
     if (!a.readme.empty()) write_between_marks(a.readme, "metamorphic", markdown);
-  });
-}
-
-void add_threshold(CLI::App& app, Console& console) {
-  ThresholdArguments& a = console.arguments<ThresholdArguments>();
-  CLI::App* cmd = app.add_subcommand(
-      "threshold", "From which friction on a scene holds, found by bisection, against the closed form");
-  cmd->add_option("scene", a.scenes, "Scenes at rest on a slope or over a cylinder")->capture_default_str();
-  add_solvers(*cmd, "--solver", a.solvers, "Solvers (default xpbd)");
-  cmd->add_option("--set", a.set, "Override: cloth.grid=[17,17], solver.substeps=20");
-  a.device.add_to(*cmd);
-  cmd->footer("Example: clothbench threshold validation/incline-stick --solver xpbd --solver bullet-soft");
-  cmd->callback([&console, &a] {
-    const Overrides overrides = split_overrides(a.set);
-    if (a.solvers.empty()) a.solvers = {"xpbd"};
-    nlohmann::json all = nlohmann::json::array();
-    Guard guard(console.words);
-    for (const std::string& file : a.scenes)
-      for (const std::string& name : a.solvers) {
-        const Scene scene = load_scene(file, overrides.scene);
-        const SolverEntry& entry = find_solver(name);
-        all.push_back(
-            ask_threshold(guard, scene, entry, complete_settings(entry.info, overrides.solver), a.device.options));
-        if (all.back().value("failed", false)) console.exit_code = ExitCode::CheckFailed;
-        if (!console.json) print_threshold(all.back());
-      }
-    if (guard.crashed()) console.exit_code = ExitCode::CheckFailed;
-    if (console.json) fmt::print("{}\n", all.dump(2));
   });
 }
 

@@ -21,6 +21,18 @@ std::filesystem::path default_folder(const std::string& study) {
   return std::filesystem::path("results/runs") / (study + "-" + stamp);
 }
 
+void SearchFlags::add_to(CLI::App& app) {
+  CLI::Option* folder = app.add_option("--out", out, "Also store every run in this folder, for `clothbench report`");
+  app.add_flag("--resume", resume, "Go on with what is stored there")->needs(folder);
+  device.add_to(app);
+}
+
+StudyRuns SearchFlags::runs(const std::string& study, const Console& console) const {
+  if (out.empty()) return StudyRuns(device.options);
+  const nlohmann::json definition = {{"name", study}, {"solvers", solvers}, {"set", set}};
+  return {device.options, out, resume, {study, "", console.command_line, definition, {}}};
+}
+
 bool check_device(const SolverEntry& gpu, const DeviceFlags& flags) {
   const std::vector<DeviceInfo> devices = gpu.devices();
   if (devices.empty()) {

@@ -4,6 +4,7 @@
 
 #include "cli/command.hpp"
 #include "runner/study_runner.hpp"
+#include "runner/study_runs.hpp"
 #include "scenario/study.hpp"
 
 namespace clothbench {
@@ -13,6 +14,16 @@ struct RunFlags {
   bool resume = false;
   DeviceFlags device;
   bool part = false;  ///< only some of the cells that the manifest names: no report of the folder at the end
+};
+
+/// What commands have in common that ask run after run of solvers: friction, threshold, card, metamorphic.
+struct SearchFlags {
+  std::vector<std::string> solvers, set;
+  std::string out;  ///< empty: nothing is stored
+  bool resume = false;
+  DeviceFlags device;
+  void add_to(CLI::App&);  ///< --out, --resume and those of the device
+  StudyRuns runs(const std::string& study, const Console&) const;
 };
 
 /// results/runs/<study>-<UTC>

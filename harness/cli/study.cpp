@@ -48,6 +48,51 @@ Rendering rendering_of([[maybe_unused]] const std::string& eye) {
 #endif
 }
 
+/// Protocol stability-map, which judges one untimed run of every cell.
+void run_maps(Study study, const StudyArguments& a, Console& console) {
+  if (a.with_rendering) throw Error("--with-rendering: protocol stability-map times nothing");
+  if (a.trials > 0) throw Error("--trials: protocol stability-map judges one run of every cell");
+  if (a.list_cells || !a.cells.empty())
+    throw Error(
+        "--list-cells, --cell: protocol stability-map probes where its last probe points; --jobs uses all cores of "
+        "a machine");
+  run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, std::max(1, a.jobs),
+                         console);
+}
+
+void run_study(StudyArguments& a, Console& console) {
+  const Overrides overrides = split_overrides(a.set);
+  if (!overrides.solver.empty()) throw Error("--set solver.…: a study's solver settings stand in its file");
+  if (a.run.resume && a.run.out.empty()) throw Error("--resume: say which folder with --out");
+  const StudyLength length = a.full ? StudyLength::Full : a.quick ? StudyLength::Quick : StudyLength::Short;
+  Study study =
+      load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only, knobs_of_plugins(a.only)});
+  for (Study::Item& item : study.scenes) item.scene = at_seed(std::move(item.scene), a.seed, console);
+  if (a.seed) study.definition["seed"] = *a.seed;
+  if (a.with_rendering) study.definition["rendering"] = {{"eyes", 2}, {"pixels", a.eye}};
+  if (study.protocol == "stability-map") return run_maps(std::move(study), a, console);
+  if (a.jobs > 0) throw Error("--jobs: only studies of protocol stability-map, where nothing is timed");
+  CellPlan plan = plan_study(study);
+  if (a.trials > 0) plan.rules.trials = a.trials;
+  if (a.no_cards) plan.material_cards = false;
+  if (a.with_rendering) plan.rules.rendering = rendering_of(a.eye);
+  const std::vector<std::string> names = cell_names(plan);
+  if (a.list_cells) return print_cells(names, console);
+  StudyManifest manifest;
+  manifest.study = study.name;
+  manifest.definition = study.definition;
+  if (!a.cells.empty()) {
+    if (a.run.out.empty()) throw Error("--cell: say which folder with --out; all cells of a study lie in one");
+    const std::vector<std::size_t> chosen = parse_cells(a.cells, names.size());
+    require_same_cells(a.run.out, plan, true);  // also what other processes have made of it
+    plan = only_cells(std::move(plan), chosen);
+    manifest.cells = names;
+    plan.material_cards = false;  // of fronts, which need all cells
+    a.run.resume = a.run.part = true;
+  }
+  run_and_tell(std::move(plan), std::move(manifest), a.run, console);
+}
+
 }  // namespace
 
 void add_study(CLI::App& app, Console& console) {
@@ -85,48 +130,7 @@ void add_study(CLI::App& app, Console& console) {
   add_require_assets(*cmd, a.require_assets);
   a.run.device.add_to(*cmd);
   cmd->footer("Example: clothbench study table3 --out results/runs/mine");
-  cmd->callback([&console, &a] {
-    const Overrides overrides = split_overrides(a.set);
-    if (!overrides.solver.empty()) throw Error("--set solver.…: a study's solver settings stand in its file");
-    if (a.run.resume && a.run.out.empty()) throw Error("--resume: say which folder with --out");
-    const StudyLength length = a.full ? StudyLength::Full : a.quick ? StudyLength::Quick : StudyLength::Short;
-    Study study = load_study(
-        a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only, knobs_of_plugins(a.only)});
-    for (Study::Item& item : study.scenes) item.scene = at_seed(std::move(item.scene), a.seed, console);
-    if (a.seed) study.definition["seed"] = *a.seed;
-    if (a.with_rendering) study.definition["rendering"] = {{"eyes", 2}, {"pixels", a.eye}};
-    if (study.protocol == "stability-map") {
-      if (a.with_rendering) throw Error("--with-rendering: protocol stability-map times nothing");
-      if (a.trials > 0) throw Error("--trials: protocol stability-map judges one run of every cell");
-      if (a.list_cells || !a.cells.empty())
-        throw Error(
-            "--list-cells, --cell: protocol stability-map probes where its last probe points; --jobs uses all cores of "
-            "a machine");
-      run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, std::max(1, a.jobs),
-                             console);
-      return;
-    }
-    if (a.jobs > 0) throw Error("--jobs: only studies of protocol stability-map, where nothing is timed");
-    CellPlan plan = plan_study(study);
-    if (a.trials > 0) plan.rules.trials = a.trials;
-    if (a.no_cards) plan.material_cards = false;
-    if (a.with_rendering) plan.rules.rendering = rendering_of(a.eye);
-    const std::vector<std::string> names = cell_names(plan);
-    if (a.list_cells) return print_cells(names, console);
-    StudyManifest manifest;
-    manifest.study = study.name;
-    manifest.definition = study.definition;
-    if (!a.cells.empty()) {
-      if (a.run.out.empty()) throw Error("--cell: say which folder with --out; all cells of a study lie in one");
-      const std::vector<std::size_t> chosen = parse_cells(a.cells, names.size());
-      require_same_cells(a.run.out, plan, true);  // also what other processes have made of it
-      plan = only_cells(std::move(plan), chosen);
-      manifest.cells = names;
-      plan.material_cards = false;  // of fronts, which need all cells
-      a.run.resume = a.run.part = true;
-    }
-    run_and_tell(std::move(plan), std::move(manifest), a.run, console);
-  });
+  cmd->callback([&console, &a] { run_study(a, console); });
 }
 
 }  // namespace clothbench

@@ -14,6 +14,7 @@
 #include "report/across_runs.hpp"
 #include "report/feature_cost.hpp"
 #include "report/features.hpp"
+#include "report/friction.hpp"
 #include "report/leak.hpp"
 #include "report/material.hpp"
 #include "report/paths.hpp"
@@ -64,7 +65,7 @@ Parts parts_of(const std::vector<CellRecord>& cells, const std::vector<FeatureCo
   for (const CellRecord& c : cells)
     if (summary_value(c, "frame_wall_median_s") > 0) timed.insert(c.header.scenario_json);
   for (const CellRecord& c : cells) {
-    if (told.contains(&c) || is_material_card(c) || is_all_on(c)) continue;
+    if (told.contains(&c) || is_material_card(c) || is_all_on(c) || is_friction(c)) continue;
     // Of a scene that nobody has run yet nothing is known but its name: it stands among the cells without a result.
     if (c.outcome.status == "missing" && c.header.scenario_json.empty()) continue;
     // Of a pulled strip that nobody was timed on, the error is told by speed instead of by time.
@@ -202,6 +203,14 @@ Sections material_section(const Facts& f) {
            {{"material.json", [&] { return text_of(material_json(f.materials)); }}}}};
 }
 
+Sections friction_section(const Facts& f) {
+  std::vector<Table> tables = friction_tables(f.cells);
+  if (tables.empty()) return {};
+  return {{{"friction", "Friction", std::move(tables)}, "friction.md", {{"friction.json", [&] {
+                                                                           return text_of(friction_json(f.cells));
+                                                                         }}}}};
+}
+
 Sections cost_section(const Facts& f) {
   if (f.costs.empty()) return {};
   return {{{"feature-cost", "Feature cost", {feature_cost_table(f.costs), no_op_table(f.costs)}},
@@ -230,12 +239,12 @@ Sections failed_section(const Facts& f) {
 }
 
 /// In the order of report.md and the page, and in that of the terminal.
-constexpr Sections (*kInReport[])(const Facts&) = {rates_sections, sampled_section,   penetration_section,
-                                                   work_section,   stability_section, material_section,
-                                                   cost_section,   features_section,  failed_section};
-constexpr Sections (*kOnTerminal[])(const Facts&) = {rates_sections, sampled_section,  penetration_section,
-                                                     work_section,   winners_section,  material_section,
-                                                     cost_section,   features_section, stability_section};
+constexpr Sections (*kInReport[])(const Facts&) = {
+    rates_sections,   sampled_section,  penetration_section, work_section,     stability_section,
+    material_section, friction_section, cost_section,        features_section, failed_section};
+constexpr Sections (*kOnTerminal[])(const Facts&) = {
+    rates_sections,   sampled_section,  penetration_section, work_section,     winners_section,
+    material_section, friction_section, cost_section,        features_section, stability_section};
 
 /// One page: ranks, firsts, what stiffness means to whom, what is not a no-op.
 std::string summary_page(const Facts& f) {

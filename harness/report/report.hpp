@@ -70,10 +70,10 @@ nlohmann::json cells_json(const std::vector<CellRecord>& cells);
 /// Writes report.md, cells.csv, cells.json, bandwidth.csv, memory.csv, features.json; for cells with samples of the
 /// device's own counters device-samples.csv; for the paper's Table 3 also table3.md, .csv and .json; for scenes with
 /// contact penetration.md, .csv and .json and penetration-series.csv; and for scenes with a truth work-precision.md,
-/// .csv, .json and a page of summary.md; for material cards material.md and .json; for costs of features
-/// feature-cost.md, .csv and .json; the page index.html (left out, with a line saying so, where this was built without
-/// Node); its figures as pictures (draw_pictures; left out, with a line saying so, where there is no Node). Throws
-/// Error if a file cannot be read or written.
+/// .csv, .json and a page of summary.md; for material cards material.md and .json; for runs of friction friction.md and
+/// .json; for costs of features feature-cost.md, .csv and .json; the page index.html (left out, with a line saying so,
+/// where this was built without Node); its figures as pictures (draw_pictures; left out, with a line saying so, where
+/// there is no Node). Throws Error if a file cannot be read or written.
 void write_report(const std::vector<std::filesystem::path>& runs, const ReportOptions&);
 
 /// The same tables on the terminal.

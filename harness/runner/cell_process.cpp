@@ -13,7 +13,7 @@
 #include "results/replay.hpp"
 #include "results/store.hpp"
 #include "runner/cell.hpp"
-#include "runner/expect.hpp"
+#include "runner/whole_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -52,31 +52,9 @@ CellAnswer run_here(const CellRequest& r, const SolverLookup& lookup) {
   const Scene scene = scene_of(r);
   const SolverEntry& entry = lookup(r.solver);
   const json settings = entry.make ? complete_settings(entry.info, r.settings) : r.settings;
-  Cell cell({&scene, &entry, settings, r.setting}, r.device, r.protocol);
-  CellRecord record;
-  record.header = cell.header();
-  TrialRules rules;
-  rules.trials = 0;
-  rules.accuracy_duration_s = scene.time.duration_s;
-  rules.cell_limit_s = r.limit_s;
-  if (cell.alive()) record.accuracy = cell.run_accuracy(rules);
-  record.outcome = cell.outcome();
-  if (const int messages = cell.validation_messages(); messages > 0)
-    record.outcome = {"error", "ok", -1, fmt::format("{} validation messages", messages)};
-  CellAnswer answer;
-  answer.summary = summarise(cell.spec(), cell.plan(), record);
-  Verdict verdict = judge(scene, record.outcome, record.accuracy, answer.summary);
-  record.outcome.expect = verdict.text;
-  answer.summary.merge(verdict.scalars);
-  answer.outcome = record.outcome;
+  const CellRecord record = whole_run({&scene, &entry, settings, r.setting}, r.device, r.protocol, r.out, r.limit_s);
+  CellAnswer answer{record.outcome, record.summary, kMissing};
   answer.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  if (r.out.empty()) return answer;
-  CellWriter writer(r.out, cell.header());
-  if (!record.accuracy.time_s.empty()) {
-    writer.write_replay(replay_of(scene));
-    writer.write_accuracy(record.accuracy);
-  }
-  writer.finish(answer.outcome, answer.summary);
   return answer;
 }
 

@@ -1,28 +1,15 @@
 #pragma once
-#include <nlohmann/json_fwd.hpp>
-#include <string>
-#include <vector>
+#include <functional>
 
-#include "clothbench/solver.hpp"
-#include "runner/again.hpp"
+#include "runner/threshold.hpp"
 
 namespace clothbench {
 
-/// A closed form of friction: what of which scene, and what is asked of it.
-struct FrictionForm {
-  const char *scene, *head;
-  bool threshold;
-  double scale;    ///< to the head's unit
-  double at_most;  ///< in the head's unit
-};
-/// Coulomb's cone on a slope, uniform deceleration, Euler and Eytelwein's belt on a polygon, Lagrange's strip over a
-/// cylinder; harness/truth has them. Bounds: what a solver's author should want.
-const std::vector<FrictionForm>& friction_forms();
-
-/// Of the form's scene with the overrides `set`, a plugin's in a child: {scene, what, error, at_most, text}, the error
-/// in the form's unit, signed for thresholds, null where it is unsupported, failed or crashed; `crash`, how a plugin's
-/// process ended instead, is empty else.
-nlohmann::json ask_friction(Guard&, const FrictionForm&, const SolverEntry&, const nlohmann::json& settings,
-                            const std::vector<std::string>& set, const DeviceOptions&, std::string& crash);
+/// The runs that the closed forms of friction (metrics/friction_forms.hpp) ask of a solver, with the overrides `set` in
+/// every scene, a plugin's in a child. What it does not support is one run `unsupported`. `note` is told of each form
+/// before it is asked.
+std::vector<CellRecord> friction_runs(Guard&, StudyRuns&, const SolverEntry&, const nlohmann::json& settings,
+                                      const std::string& setting, const std::vector<std::string>& set,
+                                      const std::function<void(const std::string& scene)>& note);
 
 }  // namespace clothbench

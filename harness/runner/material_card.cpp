@@ -9,9 +9,7 @@
 #include "base/sha256.hpp"
 #include "metrics/material_patch.hpp"
 #include "metrics/metric.hpp"
-#include "results/raw_file.hpp"
 #include "runner/cell.hpp"
-#include "runner/cell_process.hpp"
 #include "runner/environment.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"
@@ -65,8 +63,19 @@ Result settle(ClothSolver& solver, Patch patch, const Scene& scene, double limit
   return r;
 }
 
+using PatchScenes = std::vector<std::pair<Patch, Scene>>;
+
+PatchScenes patch_scenes(bool full, bool bending) {
+  PatchScenes out;
+  for (const Patch p : patches(full))
+    if (Scene scene = patch_scene(p); bending || !scene.needs.has(Feature::Bend)) out.emplace_back(p, std::move(scene));
+  return out;
+}
+
 CellHeader card_header(const SolverEntry& entry, const std::string& setting, const json& settings, bool full,
-                       const json& measured, const std::string& protocol) {
+                       const PatchScenes& scenes, const std::string& protocol) {
+  json measured = json::array();
+  for (const auto& [patch, scene] : scenes) measured.push_back(json::parse(scene.json));
   CellHeader h;
   h.scene = kMaterialCardScene;
   h.solver = entry.info.name;
@@ -84,15 +93,9 @@ CellHeader card_header(const SolverEntry& entry, const std::string& setting, con
 
 CellRecord measure_material(const SolverEntry& entry, const json& settings, const std::string& setting, bool full,
                             const DeviceOptions& device, const std::string& protocol, double limit_s, bool bending) {
-  json measured = json::array();
-  std::vector<std::pair<Patch, Scene>> scenes;
-  for (const Patch p : patches(full)) {
-    if (!bending && patch_scene(p).needs.has(Feature::Bend)) continue;
-    scenes.emplace_back(p, patch_scene(p));
-    measured.push_back(json::parse(scenes.back().second.json));
-  }
+  const PatchScenes scenes = patch_scenes(full, bending);
   CellRecord c;
-  c.header = card_header(entry, setting, settings, full, measured, protocol);
+  c.header = card_header(entry, setting, settings, full, scenes, protocol);
   if (!entry.make || entry.info.ignores.has(Feature::Stretch)) {
     c.outcome = {"unsupported", "ok", -1, entry.make ? entry.info.name + " does not stretch" : "not in this build"};
     return c;
@@ -122,26 +125,23 @@ CellRecord measure_material(const SolverEntry& entry, const json& settings, cons
 CellRecord failed_material(const SolverEntry& entry, const std::string& setting, const Outcome& outcome,
                            const std::string& protocol) {
   CellRecord c;
-  c.header = card_header(entry, setting, json::object(), setting == "default", json::array(), protocol);
+  c.header = card_header(entry, setting, json::object(), setting == "default", {}, protocol);
   c.outcome = outcome;
   return c;
 }
 
-CellRecord ask_material(Guard& guard, const SolverEntry& entry, const json& settings, const std::string& setting,
-                        bool full, const DeviceOptions& device) {
+CellRecord ask_material(Guard& guard, StudyRuns& runs, const SolverEntry& entry, const json& settings,
+                        const std::string& setting, bool full) {
   constexpr char kProtocol[] = "card";
-  const Guard::Answer answer = guard.run(entry, [&]() -> json {
-    const CellRecord c = measure_material(entry, settings, setting, full, device, kProtocol);
-    return {{"header", header_to_json(c.header)}, {"answer", to_json(CellAnswer{c.outcome, c.summary, kMissing})}};
-  });
-  if (!answer.crash.empty())
-    return failed_material(entry, setting, {"crashed", "F8", -1, "its process: " + answer.crash}, kProtocol);
-  CellAnswer given = answer_from_json(answer.value["answer"]);
-  CellRecord c;
-  c.header = header_from_json(answer.value["header"]);
-  c.outcome = std::move(given.outcome);
-  c.summary = std::move(given.summary);
-  return c;
+  const CellHeader header = card_header(entry, setting, settings, full, patch_scenes(full, true), kProtocol);
+  const PlannedCell planned{cell_name(header), header.scenario_sha256, settings, entry.make ? &entry.info : nullptr};
+  return runs
+      .ask(guard, header, entry,
+           [&] {
+             return std::vector{runs.made(
+                 planned, [&] { return measure_material(entry, settings, setting, full, runs.device(), kProtocol); })};
+           })
+      .front();
 }
 
 std::map<std::string, json> swept_settings(const SolverInfo& info, const json& complete) {

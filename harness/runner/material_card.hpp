@@ -5,7 +5,7 @@
 
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
-#include "runner/again.hpp"
+#include "runner/study_runs.hpp"
 
 namespace clothbench {
 
@@ -27,8 +27,8 @@ CellRecord measure_material(const SolverEntry&, const nlohmann::json& settings, 
 CellRecord failed_material(const SolverEntry&, const std::string& setting, const Outcome&, const std::string& protocol);
 
 /// The card of `clothbench card`, a plugin's in a child; one whose child crashes is a card that could not be measured.
-CellRecord ask_material(Guard&, const SolverEntry&, const nlohmann::json& settings, const std::string& setting,
-                        bool full, const DeviceOptions&);
+CellRecord ask_material(Guard&, StudyRuns&, const SolverEntry&, const nlohmann::json& settings,
+                        const std::string& setting, bool full);
 
 /// Settings at which `clothbench card` looks for a dependence: four times as many substeps, four times as many
 /// iterations, of integer settings of those names (1024 where the default is 0, "the solver chooses"). By short name.

@@ -56,6 +56,10 @@ std::string short_hash(const std::string& sha256) {
   return sha256.empty() ? "none" : sha256.substr(0, kShown);
 }
 
+PlannedCell planned_cell(const CellSpec& spec) {
+  return {cell_name(spec), spec.scene->sha256, spec.settings, spec.entry->make ? &spec.entry->info : nullptr};
+}
+
 fs::path stored_cell(const fs::path& folder, const std::string& cell) {
   const fs::path file = folder / (cell + ".h5"), part = folder / (cell + ".part");
   if (fs::exists(file)) return file;

@@ -6,6 +6,7 @@
 
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
+#include "runner/cell.hpp"
 
 namespace clothbench {
 
@@ -17,6 +18,9 @@ struct PlannedCell {
   const SolverInfo* solver =
       nullptr;  ///< null: not known here, so settings cannot be completed and the version not compared
 };
+
+/// Of a cell as a plan has it.
+PlannedCell planned_cell(const CellSpec&);
 
 /// The file of a cell that is finished, else the folder of one that was begun, else an empty path.
 std::filesystem::path stored_cell(const std::filesystem::path& folder, const std::string& cell);

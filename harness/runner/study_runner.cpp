@@ -47,10 +47,6 @@ struct Running {
   std::string name() const { return cell_name(cell->header()); }
 };
 
-PlannedCell planned(const CellSpec& spec) {
-  return {cell_name(spec), spec.scene->sha256, spec.settings, spec.entry->make ? &spec.entry->info : nullptr};
-}
-
 /// Adds the time from its construction to its end.
 class Stopwatch {
  public:
@@ -111,7 +107,7 @@ class GroupRun {
     if (options_.resume) remove_leftovers(options_.out, name);
     if (cell_finished(options_.out, name)) {
       if (!options_.resume) refuse_finished_cell(options_.out, name);
-      require_same_cell(options_.out, planned(spec));
+      require_same_cell(options_.out, planned_cell(spec));
       if (spec.work > 0) recall(spec, name);
       ++done_;
       return;
@@ -231,7 +227,7 @@ std::size_t CellPlan::size() const {
 void require_same_cells(const std::filesystem::path& folder, const CellPlan& plan, bool resume) {
   std::vector<PlannedCell> cells;
   for (const auto& group : plan.groups)
-    for (const CellSpec& c : group) cells.push_back(planned(c));
+    for (const CellSpec& c : group) cells.push_back(planned_cell(c));
   require_same_cells(folder, cells, resume);
 }
 

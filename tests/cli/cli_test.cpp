@@ -336,5 +336,30 @@ TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
       << "no marks there";
 }
 
+/// One row, whether its runs are stored or not, found now or read again; and a report has it too.
+TEST_F(Cli, SearchesAndCardsAreStoredGoneOnWithAndReported) {
+  const auto out = [&](const char* name) { return " --out " + (dir_ / name).string(); };
+  const std::string threshold = "threshold validation/capstan-hold --solver ballistic --set time.duration_s=0.5",
+                    card = "card bullet-soft --no-sweep --set solver.substeps=1 --set solver.iterations=1";
+  for (const auto& [words, folder] : {std::pair{threshold, "threshold"}, std::pair{card, "card"}}) {
+    if (clothbench_command("list solvers").text.find("bullet-soft") == std::string::npos && words == card) continue;
+    const nlohmann::json found = json_of(words);
+    EXPECT_EQ(json_of(words + out(folder)), found) << words;
+    const Answer again = clothbench_command(words + out(folder));
+    EXPECT_EQ(again.code, 2) << again.text;
+    EXPECT_NE(again.text.find("--resume"), std::string::npos) << again.text;
+    EXPECT_EQ(json_of(words + out(folder) + " --resume"), found) << words;
+  }
+  const CellRecord high = read_cell(dir_ / "threshold" / (read_manifest(dir_ / "threshold").cells.at(0) + ".h5"));
+  EXPECT_EQ(high.header.environment["protocol"], "threshold");
+  EXPECT_EQ(high.accuracy.time_s.size(), 31u) << "positions are stored as of any run";
+  const Answer report =
+      clothbench_command("report " + (dir_ / "threshold").string() + " -o " + (dir_ / "report").string());
+  EXPECT_EQ(report.code, 0) << report.text;
+  EXPECT_NE(report.text.find("Thresholds of friction"), std::string::npos) << report.text;
+  EXPECT_NE(report.text.find("≤ 0.11378"), std::string::npos) << report.text;
+  EXPECT_TRUE(fs::exists(dir_ / "report" / "friction.json"));
+}
+
 }  // namespace
 }  // namespace clothbench

@@ -9,6 +9,7 @@
 #include "runner/metamorphic.hpp"
 #include "runner/reference.hpp"
 #include "runner/threshold.hpp"
+#include "runner/whole_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -114,7 +115,8 @@ TEST(UnevenFrames, ReachTheSolverInThresholds) {
   EXPECT_EQ(seen.size(), 2 * static_cast<std::size_t>(s.time.frames()));
   expect_frames_of(s, seen);
   seen.clear();
-  end_error(s, spy(seen), nlohmann::json::object(), {});
+  const SolverEntry entry = spy(seen);
+  end_of_run({&s, &entry, nlohmann::json::object()}, {}, "test");
   expect_frames_of(s, seen);
 }
 

@@ -1,0 +1,80 @@
+#include "metrics/friction_forms.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "clothbench/error.hpp"
+#include "truth/norms.hpp"
+
+namespace clothbench {
+namespace {
+
+constexpr double kLow = 0.5, kHigh = 1.5, kFinest = 1e-3;
+
+double quantity_of(const CellRecord& run) {
+  const auto at = run.summary.find("truth_quantity");
+  return at == run.summary.end() ? kMissing : at->second;
+}
+
+}  // namespace
+
+const std::vector<FrictionForm>& friction_forms() {
+  static const std::vector<FrictionForm> all = {{"incline-stick", "critical angle [°], ≤ 0.1", true, 1, 0.1},
+                                                {"incline-stick", "creep in 2 s [% L], ≤ 0.01", false, 100, 0.01},
+                                                {"incline-slip", "way down [%], ≤ 2", false, 100, 2},
+                                                {"incline-stop", "way to stop [%], ≤ 2", false, 100, 2},
+                                                {"capstan-hold", "overhang held [%], ≤ 3", true, 100, 3},
+                                                {"capstan-slip", "way round [%], ≤ 3", false, 100, 3},
+                                                {"atwood", "way of Atwood's strip [%], ≤ 3", false, 100, 3}};
+  return all;
+}
+
+FoundThreshold search_threshold(const truth::Threshold& t, const std::function<std::optional<bool>(double)>& holds) {
+  FoundThreshold out;
+  out.exact = t.exact;
+  const auto ask = [&](double friction) {
+    if (out.failed) return false;
+    ++out.runs;
+    const std::optional<bool> answer = holds(friction);
+    out.failed = !answer;
+    return answer.value_or(false);
+  };
+  double low = kLow * t.exact, high = kHigh * t.exact;
+  if (!ask(high)) {
+    out.slips_at_most = true;
+    out.found = high;
+  } else if (ask(low)) {
+    out.holds_at_least = true;
+    out.found = low;
+  } else {
+    while (!out.failed && high - low > kFinest * t.exact) (ask((low + high) / 2) ? high : low) = (low + high) / 2;
+    out.found = (low + high) / 2;
+  }
+  if (out.failed) {
+    out.found = out.error = kMissing;
+    out.holds_at_least = out.slips_at_most = false;
+    return out;
+  }
+  out.error = t.error(out.found);
+  return out;
+}
+
+std::string tried_scene(const std::string& scene, double friction) {
+  return fmt::format("{}-friction={}", scene, friction);
+}
+
+std::optional<bool> stayed(const truth::Threshold& t, const CellRecord& run) {
+  if (run.outcome.status != "ok" || run.withheld.contains("truth_quantity")) return std::nullopt;
+  return std::abs(quantity_of(run)) <= t.held_below_m;
+}
+
+double end_error(const Scene& scene, const CellRecord& run) {
+  const auto card = truth::card_of(scene);
+  if (!card) throw Error(scene.source + ": /truth: missing");
+  if (run.outcome.status != "ok") return kMissing;
+  return truth::quantity_error(quantity_of(run), card->quantity(card->columns(scene.time.frames())),
+                               card->quantity_scale);
+}
+
+}  // namespace clothbench

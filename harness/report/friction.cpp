@@ -1,0 +1,204 @@
+#include "report/friction.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/json_number.hpp"
+#include "report/grid.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+constexpr const char kItsProcess[] = "its process: ";  // what the message of a crash begins with
+
+using Cells = std::vector<const CellRecord*>;
+
+std::string protocol_of(const CellRecord& c) {
+  return c.header.environment.is_object() ? c.header.environment.value("protocol", "") : "";
+}
+
+bool is_try(const CellRecord& c) { return protocol_of(c) == kThresholdProtocol; }
+
+/// As its file names it: tries have names of their own.
+std::string base_name(const CellRecord& c) { return scenario_of(c).value("name", c.header.scene); }
+
+Scene scene_of(const CellRecord& c) {
+  return scene_from_json(scenario_of(c), c.file.empty() ? c.header.scene : c.file);
+}
+
+/// In the order of first appearance.
+template <class Key>
+std::vector<Cells> grouped(const std::vector<CellRecord>& cells, Key key) {
+  std::vector<Cells> out;
+  for (const CellRecord& c : cells) {
+    if (!is_friction(c)) continue;
+    const auto at =
+        std::find_if(out.begin(), out.end(), [&](const Cells& group) { return key(*group.front()) == key(c); });
+    (at == out.end() ? out.emplace_back() : *at).push_back(&c);
+  }
+  return out;
+}
+
+ThresholdRow row_of(const Cells& tries) {
+  const CellRecord& first = *tries.front();
+  ThresholdRow row{base_name(first), first.header.solver, first.header.setting, {}, {}, {}, false};
+  // The first try is at the most friction, where the scene has its truth; at less there may be none.
+  row.of = truth::card_of(scene_of(first))->threshold.value();
+  row.found = search_threshold(row.of, [&](double friction) -> std::optional<bool> {
+    const std::string name = tried_scene(row.scene, friction);
+    for (const CellRecord* c : tries)
+      if (c->header.scene == name) return stayed(row.of, *c);
+    row.unfinished = true;
+    return std::nullopt;
+  });
+  for (const CellRecord* c : tries)
+    if (c->outcome.status == "crashed") row.crash = c->outcome.message.substr(std::string(kItsProcess).size());
+  return row;
+}
+
+json told(const FrictionForm& form, const json& error, const std::string& text) {
+  return {{"scene", form.scene}, {"what", form.head}, {"error", error}, {"at_most", form.at_most}, {"text", text}};
+}
+
+json told(const FrictionForm& form, double error) {
+  if (!std::isfinite(error)) return told(form, nullptr, "failed");
+  return told(form, error,
+              fmt::format("{}{:.2g}{}", form.threshold && error > 0 ? "+" : "", error,
+                          std::abs(error) <= form.at_most ? " ✓" : ""));
+}
+
+json answer(const FrictionForm& form, const ThresholdRow& row) {
+  const double error = form.scale * row.found.error;
+  if (!row.crash.empty()) return told(form, nullptr, "crashed");
+  if (row.unfinished) return told(form, nullptr, "–");
+  if (row.found.holds_at_least) return told(form, error, "holds at half of it");
+  if (row.found.slips_at_most) return told(form, error, "slips at 1.5 of it");
+  return told(form, error);
+}
+
+/// `cells`: of one solver and setting.
+json answer(const FrictionForm& form, const Cells& cells, const std::vector<ThresholdRow>& rows) {
+  const CellHeader& h = cells.front()->header;
+  if (form.threshold)
+    for (const ThresholdRow& row : rows)
+      if (row.scene == form.scene && row.solver == h.solver && row.setting == h.setting) return answer(form, row);
+  for (const CellRecord* c : cells) {
+    if (is_try(*c) || c->header.scene != form.scene) continue;
+    const std::string& status = c->outcome.status;
+    if (status == "unsupported" || status == "crashed") return told(form, nullptr, status);
+    if (!form.threshold) return told(form, form.scale * end_error(scene_of(*c), *c));
+  }
+  return told(form, nullptr, "–");
+}
+
+Table threshold_table(const std::vector<ThresholdRow>& rows) {
+  Table t{"Thresholds of friction",
+          "From which coefficient of friction on a scene holds, by bisection to 0.1 % between half and 1.5 times the "
+          "exact one.",
+          {{"scene", "solver", "setting", "found", "exact", "off by", "runs"}}};
+  for (const ThresholdRow& r : rows) {
+    const FoundThreshold& f = r.found;
+    const std::string bound = f.holds_at_least ? "≤ " : f.slips_at_most ? "≥ " : "";
+    const bool known = r.crash.empty() && !r.unfinished && !f.failed;
+    const std::string why = !r.crash.empty() ? "crashed" : r.unfinished ? "–" : "failed";
+    t.rows.push_back(
+        {r.scene, r.solver, r.setting, known ? fmt::format("{}{:.5f}", bound, f.found) : why,
+         fmt::format("{:.5f}", f.exact),
+         known ? fmt::format("{:+.4f}{}", f.error, r.of.error_units == "1" ? "" : " " + r.of.error_units) : "–",
+         std::to_string(f.runs)});
+  }
+  return t;
+}
+
+}  // namespace
+
+bool is_friction(const CellRecord& c) { return is_try(c) || protocol_of(c) == kFrictionProtocol; }
+
+std::vector<ThresholdRow> threshold_rows(const std::vector<CellRecord>& cells) {
+  std::vector<ThresholdRow> out;
+  for (const Cells& group : grouped(cells, [](const CellRecord& c) {
+         return std::tuple(is_try(c), base_name(c), c.header.solver, c.header.setting);
+       }))
+    if (is_try(*group.front())) out.push_back(row_of(group));
+  return out;
+}
+
+json threshold_json(const ThresholdRow& r) {
+  if (!r.crash.empty()) return {{"scene", r.scene}, {"solver", r.solver}, {"crashed", r.crash}};
+  const FoundThreshold& f = r.found;
+  return {{"scene", r.scene},
+          {"solver", r.solver},
+          {"exact", f.exact},
+          {"found", finite_or_null(f.found)},
+          {"error", finite_or_null(f.error)},
+          {"error_name", r.of.error_name},
+          {"error_units", r.of.error_units},
+          {"bound", f.holds_at_least  ? "<= "
+                    : f.slips_at_most ? ">= "
+                                      : ""},
+          {"failed", f.failed},
+          {"runs", f.runs}};
+}
+
+std::string threshold_sentence(const ThresholdRow& r) {
+  const FoundThreshold& f = r.found;
+  const std::string of = r.scene + " " + r.solver + ": ";
+  if (!r.crash.empty()) return of + kItsProcess + r.crash;
+  if (f.failed) return of + fmt::format("its run failed ({} runs)", f.runs);
+  return of + fmt::format("holds from friction {}{:.5f} on, exact {:.5f}; {} off by {:+.4f} {} ({} runs)",
+                          f.holds_at_least  ? "<= "
+                          : f.slips_at_most ? ">= "
+                                            : "",
+                          f.found, f.exact, r.of.error_name, f.error, r.of.error_units, f.runs);
+}
+
+json friction_json(const std::vector<CellRecord>& cells) {
+  const std::vector<ThresholdRow> rows = threshold_rows(cells);
+  json all = json::array();
+  for (const Cells& group :
+       grouped(cells, [](const CellRecord& c) { return std::tuple(c.header.solver, c.header.setting); })) {
+    const CellHeader& h = group.front()->header;
+    all.push_back({{"solver", h.solver}, {"setting", h.setting}, {"answers", json::array()}});
+    for (const FrictionForm& form : friction_forms()) all.back()["answers"].push_back(answer(form, group, rows));
+  }
+  return all;
+}
+
+Table friction_table(const std::vector<CellRecord>& cells) {
+  Table t{"Friction by closed forms",
+          "Error of the critical angle (Coulomb's cone), of how far a sheet creeps that is held, of the ways of one "
+          "that slips and of one "
+          "that stops, of the overhang that a capstan holds (a polygon of as many sides as rows lie on it) and of "
+          "the ways over it with and "
+          "without friction. ✓: within the bound. Thresholds by bisection, 0.1 % of the coefficient.",
+          {{"solver", "setting"}}};
+  for (const FrictionForm& f : friction_forms()) t.rows[0].emplace_back(f.head);
+  for (const json& of : friction_json(cells)) {
+    t.rows.push_back({of["solver"], of["setting"]});
+    for (const json& a : of["answers"]) t.rows.back().push_back(a["text"]);
+  }
+  return t;
+}
+
+std::vector<Table> friction_tables(const std::vector<CellRecord>& cells) {
+  std::vector<Table> out;
+  if (std::any_of(cells.begin(), cells.end(), [](const CellRecord& c) { return is_friction(c) && !is_try(c); }))
+    out.push_back(friction_table(cells));
+  if (const auto rows = threshold_rows(cells); !rows.empty()) out.push_back(threshold_table(rows));
+  return out;
+}
+
+std::vector<std::string> friction_crashes(const std::vector<CellRecord>& cells) {
+  std::set<std::string> out;
+  for (const CellRecord& c : cells)
+    if (is_friction(c) && c.outcome.status == "crashed")
+      out.insert(fmt::format("{} {}: {}: {}", c.header.solver, c.header.setting, base_name(c), c.outcome.message));
+  return {out.begin(), out.end()};
+}
+
+}  // namespace clothbench
