@@ -14,6 +14,7 @@ flags=(--full --jobs "$jobs" --out "$out")
 for solver in "$@"; do flags+=(--solver "$solver"); done
 [ ! -d "$out" ] || flags+=(--resume)
 status=0
+mkdir -p "$(dirname "$out")"
 timeout --foreground -s INT "$seconds" build/release/clothbench study stability "${flags[@]}" >"$out.log" 2>&1 || status=$?
 tail -1 "$out.log"
 case $status in

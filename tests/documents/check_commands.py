@@ -11,9 +11,9 @@ import re
 import shlex
 import subprocess
 import sys
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from documents import ROOT, commands_of, text_of, written
+
 PROGRAM = sys.argv[1] if len(sys.argv) == 2 else sys.exit(__doc__)
 # What follows these is another command's business.
 END_OF_COMMAND = {"|", "&&", "||", ";", ">", ">>", "2>&1", ")"}
@@ -36,14 +36,11 @@ def names(what):
     return set(re.findall(r"[\w./-]+", clothbench("list", what).stdout))
 
 
-def commands(text):
-    """Each line of the sh blocks, with continued lines joined, as words."""
-    for block in re.findall(r"^```(?:sh|bash)\n(.*?)^```", text, flags=re.M | re.S):
-        for line in block.replace("\\\n", " ").splitlines():
-            try:
-                yield line, shlex.split(line, comments=True)
-            except ValueError:
-                continue  # a quoted text over several lines, of another program
+def words_of(command):
+    try:
+        return shlex.split(command.text)
+    except ValueError:
+        return []  # words of another program
 
 
 def known_name(command, word, text):
@@ -84,18 +81,15 @@ def faults_of_call(words, text):
 
 
 def main():
-    listed = subprocess.run(["git", "-C", ROOT, "ls-files", "-z", "*.md"], capture_output=True, text=True, check=True).stdout
     faults, count = [], 0
-    for name in filter(None, listed.split("\0")):
-        if name == "CHANGELOG.md" or not (ROOT / name).exists():
-            continue
-        text = (ROOT / name).read_text(encoding="utf-8")
-        for line, words in commands(text):
-            count += bool(words)
-            faults += [f"{name}: {line.strip()[:80]}: {fault}" for fault in faults_of(words, text)]
+    for name in written():
+        text = text_of(name)
+        for command in commands_of(name, text):
+            count += 1
+            faults += [f"{name}:{command.line}: {command.key[:80]}: {fault}" for fault in faults_of(words_of(command), text)]
     if count < 100:
         faults.append(f"{count} commands found; there are more")
-    print("\n".join(faults) if faults else f"{count} lines of commands: what they name exists")
+    print("\n".join(faults) if faults else f"{count} commands: what they name exists")
     return 1 if faults else 0
 
 

@@ -4,16 +4,14 @@
 Prints one line a fault and exits with 1.
 """
 import re
-import subprocess
 import sys
 import urllib.parse
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from documents import GENERATED, ROOT, documents
+
 MOST_README_LINES, MOST_README_BYTES = 180, 14_000
 MOST_BYTES = 16_000
-# Made by the program, or grown with every release.
-GENERATED = re.compile(r"^(CHANGELOG\.md|harness/metrics/REGISTRY\.md|results/reference/.*(?<!README)\.md)$")
 # Known, and to become shorter: a file leaves this list when it fits, and none is added.
 TOO_LONG = set()
 
@@ -44,13 +42,10 @@ def wrong_links(path, text):
 
 
 def main():
-    listed = subprocess.run(["git", "-C", ROOT, "ls-files", "-z", "*.md"], capture_output=True, text=True, check=True).stdout
     faults = []
     checked = 0
-    for name in filter(None, listed.split("\0")):
+    for name in documents():
         path = ROOT / name
-        if not path.exists():
-            continue
         text = path.read_text(encoding="utf-8")
         checked += 1
         # A published report is the text of one, without all of its figures.
