@@ -171,11 +171,10 @@ json friction_json(const std::vector<CellRecord>& cells) {
 
 Table friction_table(const std::vector<CellRecord>& cells) {
   Table t{"Friction by closed forms",
-          "Error of the critical angle (Coulomb's cone), of how far a sheet creeps that is held, of the ways of one "
-          "that slips and of one "
-          "that stops, of the overhang that a capstan holds (a polygon of as many sides as rows lie on it) and of "
-          "the ways over it with and "
-          "without friction. ✓: within the bound. Thresholds by bisection, 0.1 % of the coefficient.",
+          "Errors of the critical angle (Coulomb's cone), of the creep of a sheet that friction holds, and of the "
+          "displacements of one that slips and of one that stops. Capstan: errors of the overhang that it holds (a "
+          "polygon of as many sides as rows lie on it) and of the displacements over it with and without friction. "
+          "✓: within the bound. Thresholds by bisection, 0.1 % of the coefficient.",
           {{"solver", "setting"}}};
   for (const FrictionForm& f : friction_forms()) t.rows[0].emplace_back(f.head);
   for (const json& of : friction_json(cells)) {
