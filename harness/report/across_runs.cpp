@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "base/columns.hpp"
+#include "report/grid.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -20,10 +20,7 @@ struct Run {
   const CellRecord* cell;
   json scenario;
   bool ok() const { return cell->outcome.status == "ok"; }
-  double number(const char* name) const {
-    const auto at = cell->summary.find(name);
-    return at == cell->summary.end() ? kMissing : at->second;
-  }
+  double number(const char* name) const { return summary_value(*cell, name); }
 };
 
 using Runs = std::vector<Run>;
@@ -153,7 +150,7 @@ const Columns<AcrossRuns>& across_columns() {
 std::vector<AcrossRuns> across_runs(const std::vector<CellRecord>& cells) {
   std::map<std::tuple<std::string, std::string, std::string>, Runs> groups;
   for (const CellRecord& c : cells) {
-    json scenario = json::parse(c.header.scenario_json, nullptr, false);
+    json scenario = scenario_of(c);
     if (!scenario.is_object() || !scenario.contains("stability") || c.outcome.status == "unsupported" ||
         c.outcome.status == "missing")
       continue;

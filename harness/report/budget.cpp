@@ -17,8 +17,6 @@ constexpr std::array kBudgets_ms = {kLeastBudget_ms, 0.1, 0.2, 0.5, 1.0, 2.0, 5.
 // Errors below it are all small enough for anybody who asks for real time.
 constexpr double kSmallEnough = 1e-3;
 
-bool counts(const WorkPoint& p) { return p.ok && std::isfinite(p.error) && std::isfinite(p.frame_ms); }
-
 struct Best {
   double error = INFINITY;
   const WorkPoint* point = nullptr;
@@ -28,7 +26,7 @@ Best best_within(const WorkDiagram& d, const std::string& solver, double budget_
   const double floor = std::max(kSmallEnough, d.rank_floor());
   Best out;
   for (const WorkPoint& p : d.points)
-    if (p.solver == solver && counts(p) && p.frame_ms <= budget_ms && p.error < out.error) out = {p.error, &p};
+    if (p.solver == solver && p.counts() && p.frame_ms <= budget_ms && p.error < out.error) out = {p.error, &p};
   if (out.point != nullptr) out.error = std::max(out.error, floor);
   return out;
 }
@@ -38,7 +36,7 @@ std::string beaten_by(const WorkDiagram& d, const std::string& solver) {
   double worst = 1;
   std::string out = "never";
   for (const WorkPoint& p : d.points) {
-    if (p.solver == solver || !counts(p) || p.frame_ms > kMostBudget_ms) continue;
+    if (p.solver == solver || !p.counts() || p.frame_ms > kMostBudget_ms) continue;
     const double budget = std::max(p.frame_ms, kLeastBudget_ms);
     const double theirs = best_within(d, p.solver, budget).error, ours = best_within(d, solver, budget).error;
     // Two clocks of one machine do not agree to more than this.
@@ -92,7 +90,7 @@ Table energy_table(const std::vector<WorkDiagram>& diagrams) {
       int above = 0, all = 0;
       std::string setting;
       for (const WorkPoint& p : d.points) {
-        if (p.solver != solver || !counts(p) || !std::isfinite(p.energy_gain)) continue;
+        if (p.solver != solver || !p.counts() || !std::isfinite(p.energy_gain)) continue;
         ++all;
         above += !(p.energy_gain <= 1e-3);
         if (p.energy_gain > most) {

@@ -37,22 +37,6 @@ std::vector<double> u_distribution(std::size_t m, std::size_t n) {
   return count[m][n];
 }
 
-double middle(const std::vector<double>& sorted) {
-  const std::size_t n = sorted.size();
-  return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
-}
-
-/// Mean time of a frame in each trial.
-std::vector<double> trial_times(const CellRecord& c) {
-  std::vector<double> out;
-  for (const TimedTrial& t : c.trials) {
-    double sum = 0;
-    for (const double w : t.frame_wall_s) sum += w;
-    if (t.frames() > 0 && sum > 0) out.push_back(sum / t.frames());
-  }
-  return out;
-}
-
 /// Times, clocks and what hangs on them are the machine's; the rest is the solver's.
 bool of_the_machine(const std::string& name) {
   for (const char* part : {"fps", "wall", "device_median", "pipelined", "bandwidth", "clock", "temperature", "sampled",
@@ -87,7 +71,7 @@ bool hangs_on(const std::string& name, const std::vector<ComparedCell::Versions>
 
 void compare_cell(ComparedCell& c) {
   c.versions = differing_versions(*c.a, *c.b);
-  c.time = compare_times(trial_times(*c.a), trial_times(*c.b));
+  c.time = compare_times(trial_means(*c.a), trial_means(*c.b));
   if (status(*c.a) != status(*c.b)) c.outcome = status(*c.a) + " → " + status(*c.b);
   std::set<std::string> names;
   for (const CellRecord* r : {c.a, c.b})
@@ -106,8 +90,7 @@ std::string verdict(const TimeRatio& t) {
 }
 
 double mean_ms(const CellRecord& c) {
-  std::vector<double> t = trial_times(c);
-  std::sort(t.begin(), t.end());
+  const std::vector<double> t = trial_means(c);
   return t.empty() ? kMissing : 1e3 * middle(t);
 }
 
@@ -236,15 +219,12 @@ nlohmann::json history_json(const std::vector<CellRecord>& cells) {
     const std::string extra =
         "status " + c.outcome.status +
         (e.is_object() && e.contains("gpu") && e["gpu"].is_string() ? ", " + e["gpu"].get<std::string>() : "");
-    std::vector<double> t = trial_times(c);
-    if (!t.empty()) {
-      std::sort(t.begin(), t.end());
+    if (const std::vector<double> t = trial_means(c); !t.empty())
       out.push_back({{"name", name + " frame"},
                      {"unit", "ms"},
                      {"value", 1e3 * middle(t)},
                      {"range", fmt::format("± {:.3g}", 1e3 * (t.back() - t.front()) / 2)},
                      {"extra", extra}});
-    }
     for (const char* error : {"free_fall_error", "truth_error", "tunnelled_fraction_max"})
       if (const double v = summary_value(c, error); std::isfinite(v))
         out.push_back({{"name", name + " " + error}, {"unit", "1"}, {"value", v}, {"extra", extra}});

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "report/grid.hpp"
+
 namespace clothbench {
 namespace {
 
@@ -51,16 +53,9 @@ void add_cell(SolverFeatures& s, const CellRecord& c) {
 
 std::vector<SolverFeatures> solver_features(const std::vector<CellRecord>& cells) {
   std::vector<SolverFeatures> out;
-  for (const CellRecord& c : cells) {
-    auto at =
-        std::find_if(out.begin(), out.end(), [&](const SolverFeatures& s) { return s.solver == c.header.solver; });
-    if (at == out.end()) {
-      out.emplace_back();
-      out.back().solver = c.header.solver;
-      at = out.end() - 1;
-    }
-    add_cell(*at, c);
-  }
+  for (const CellRecord& c : cells)
+    add_cell(find_or_add(out, [&](const SolverFeatures& s) { return s.solver == c.header.solver; }, {c.header.solver}),
+             c);
   return out;
 }
 

@@ -14,9 +14,9 @@ namespace clothbench {
 struct SolverFeatures {
   std::string solver;
   bool known = false;  ///< it was in the build; if not, nothing is known of it
-  FeatureSet supports, ignores;
-  std::vector<std::pair<Feature, Feature>> only_with;
-  FeatureSet shown;  ///< served by a stage of a cell that ended well
+  FeatureSet supports = {}, ignores = {};
+  std::vector<std::pair<Feature, Feature>> only_with = {};
+  FeatureSet shown = {};  ///< served by a stage of a cell that ended well
 };
 
 /// Of every solver among the cells, from what their files store; in the order of first appearance.

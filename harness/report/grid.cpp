@@ -20,7 +20,7 @@ struct Parsed {
 Parsed parse(const CellRecord& c) {
   Parsed p;
   p.name = c.header.scene;
-  nlohmann::json s = nlohmann::json::parse(c.header.scenario_json, nullptr, false);
+  nlohmann::json s = scenario_of(c);
   if (!s.is_object()) {
     p.family = "\n" + p.name;  // no scene's JSON starts with a line break
     return p;
@@ -54,6 +54,22 @@ double summary_value(const CellRecord& c, const std::string& name) {
 
 nlohmann::json scenario_of(const CellRecord& c) {
   return nlohmann::json::parse(c.header.scenario_json, nullptr, false);
+}
+
+std::vector<double> trial_means(const CellRecord& c) {
+  std::vector<double> out;
+  for (const TimedTrial& t : c.trials) {
+    double sum = 0;
+    for (const double w : t.frame_wall_s) sum += w;
+    if (t.frames() > 0 && sum > 0) out.push_back(sum / t.frames());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+double middle(const std::vector<double>& sorted) {
+  const std::size_t n = sorted.size();
+  return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
 }
 
 std::string ending(const Outcome& o) {

@@ -52,6 +52,19 @@ inline constexpr auto failed_frame_of = [](const auto& r) -> Value {
   return cell_of(r).outcome.failed_frame < 0 ? absent() : Value(cell_of(r).outcome.failed_frame);
 };
 
+/// Mean wall time of a frame in each trial [s], ascending.
+std::vector<double> trial_means(const CellRecord&);
+
+/// The median of what is sorted and not empty.
+double middle(const std::vector<double>& sorted);
+
+/// The item for which `is` holds; where there is none, `fresh` at the end.
+template <class Item, class Is>
+Item& find_or_add(std::vector<Item>& items, Is is, Item fresh) {
+  const auto at = std::find_if(items.begin(), items.end(), is);
+  return at == items.end() ? items.emplace_back(std::move(fresh)) : *at;
+}
+
 /// "diverged at 12", or the status where no frame failed.
 std::string ending(const Outcome&);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "report/grid.hpp"
 #include "report/withheld.hpp"
 
 namespace clothbench {
@@ -17,16 +18,9 @@ struct Row {
 };
 
 Row row_of(const CellRecord& c) {
-  std::vector<double> means;
-  for (const TimedTrial& t : c.trials) {
-    double sum = 0;
-    for (const double w : t.frame_wall_s) sum += w;
-    if (t.frames() > 0 && sum > 0) means.push_back(sum / t.frames());
-  }
+  const std::vector<double> means = trial_means(c);
   if (means.empty()) return {&c};
-  std::sort(means.begin(), means.end());
-  const std::size_t n = means.size();
-  return {&c, (means[(n - 1) / 2] + means[n / 2]) / 2, n > 1 ? (means.back() - means.front()) / 2 : kMissing};
+  return {&c, middle(means), means.size() > 1 ? (means.back() - means.front()) / 2 : kMissing};
 }
 
 std::string ended(const Outcome& o) {
@@ -38,16 +32,12 @@ std::string ended(const Outcome& o) {
 
 Table in_short_table(const std::vector<CellRecord>& cells) {
   std::map<std::string, std::vector<Row>> scenes;
-  std::vector<const CellRecord*> all;
-  for (const CellRecord& c : cells) {
-    scenes[c.header.scene].push_back(row_of(c));
-    all.push_back(&c);
-  }
+  for (const CellRecord& c : cells) scenes[c.header.scene].push_back(row_of(c));
   Table t{"In short",
           "Wall time of a frame: median of the trials' means ± half their range. Ended: ok, or whether the scene's "
           "expectations were kept.",
           {{"scene", "solver", "setting", "ended", "frame [ms]", "against the fastest"}}};
-  t.note = with_withheld(t.note, all, {"frame_wall_median_s"});
+  t.note = with_withheld(t.note, cells_of(cells, [](const CellRecord& c) { return &c; }), {"frame_wall_median_s"});
   for (auto& [scene, rows] : scenes) {
     std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
       return a.frame_s < b.frame_s || (std::isnan(b.frame_s) && !std::isnan(a.frame_s));

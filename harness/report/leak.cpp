@@ -65,7 +65,7 @@ std::string without_bounds(const std::string& kind, const CellRecord& c) {
 }
 
 std::string base_name(const CellRecord& c) {
-  const json j = json::parse(c.header.scenario_json, nullptr, false);
+  const json j = scenario_of(c);
   return j.is_object() && j.contains("name") && j["name"].is_string() ? j["name"].get<std::string>() : c.header.scene;
 }
 
@@ -86,22 +86,19 @@ std::optional<SpeedSweep::At> SpeedSweep::first_leak() const {
 
 std::vector<SpeedSweep> speed_sweeps(const std::vector<ContactSetUp>& ups) {
   std::vector<SpeedSweep> all;
-  for (const ContactSetUp& u : ups)
-    for (const ContactScene& s : u.scenes)
-      for (const ContactRow& r : s.rows) {
-        const double speed = summary_value(*r.cell, "imposed_speed_m_per_s");
-        const std::string &status = r.cell->outcome.status, seen = verdict(*r.cell);
-        if (!(speed > 0) || status == "unsupported" || status == "over_budget" || seen == "ignored" ||
-            r.cell->header.solver == "ballistic")
-          continue;
-        const std::string base = base_name(*r.cell);
-        auto at = std::find_if(all.begin(), all.end(), [&](const SpeedSweep& x) {
-          return x.kind == u.kind && x.scene == base && x.series == r.series;
-        });
-        if (at == all.end()) at = all.insert(all.end(), {u.kind, base, r.series, {}});
-        at->speeds.push_back({speed, leak_of(u.kind, *r.cell)});
-        at->cells.push_back(r.cell);
-      }
+  for (const ContactRow& r : contact_rows(ups)) {
+    const double speed = summary_value(*r.cell, "imposed_speed_m_per_s");
+    const std::string& status = r.cell->outcome.status;
+    if (!(speed > 0) || status == "unsupported" || status == "over_budget" || verdict(*r.cell) == "ignored" ||
+        r.cell->header.solver == "ballistic")
+      continue;
+    const std::string base = base_name(*r.cell);
+    SpeedSweep& at = find_or_add(
+        all, [&](const SpeedSweep& x) { return x.kind == r.kind && x.scene == base && x.series == r.series; },
+        {r.kind, base, r.series, {}});
+    at.speeds.push_back({speed, leak_of(r.kind, *r.cell)});
+    at.cells.push_back(r.cell);
+  }
   for (SpeedSweep& s : all)
     std::stable_sort(s.speeds.begin(), s.speeds.end(),
                      [](const auto& a, const auto& b) { return a.speed_m_per_s < b.speed_m_per_s; });
@@ -121,17 +118,10 @@ Table leak_table(const std::vector<SpeedSweep>& sweeps) {
           "wave by over a tenth of v0/c. The verdicts above are by the same bounds. "
           "none: up to the greatest speed that was run.",
           {{"scene", "speeds [m/s]"}}};
-  std::vector<std::string> solvers;
-  for (const SpeedSweep& s : sweeps)
-    if (std::find(solvers.begin(), solvers.end(), s.series.label()) == solvers.end())
-      solvers.push_back(s.series.label());
+  std::vector<std::string> solvers = distinct(sweeps, [](const SpeedSweep& s) { return s.series.label(); });
   std::sort(solvers.begin(), solvers.end());
   t.rows[0].insert(t.rows[0].end(), solvers.begin(), solvers.end());
-  std::vector<std::pair<std::string, std::string>> rows;
-  for (const SpeedSweep& s : sweeps)
-    if (std::find(rows.begin(), rows.end(), std::pair(s.kind, s.scene)) == rows.end())
-      rows.emplace_back(s.kind, s.scene);
-  for (const auto& [kind, scene] : rows) {
+  for (const auto& [kind, scene] : distinct(sweeps, [](const SpeedSweep& s) { return std::pair(s.kind, s.scene); })) {
     std::vector<std::string> row = {fmt::format("{} ({})", scene, kind), "–"};
     for (const std::string& solver : solvers) {
       std::string text = "–";

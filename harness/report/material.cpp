@@ -63,10 +63,8 @@ std::vector<SolverMaterial> solver_materials(const std::vector<CellRecord>& cell
   std::vector<SolverMaterial> out;
   for (const CellRecord& c : cells) {
     if (!is_material_card(c)) continue;
-    auto at =
-        std::find_if(out.begin(), out.end(), [&](const SolverMaterial& m) { return m.solver == c.header.solver; });
-    if (at == out.end()) at = out.insert(out.end(), {c.header.solver, {}, {}});
-    at->cards.push_back(&c);
+    find_or_add(out, [&](const SolverMaterial& m) { return m.solver == c.header.solver; }, {c.header.solver, {}, {}})
+        .cards.push_back(&c);
   }
   for (SolverMaterial& m : out) {
     std::stable_partition(m.cards.begin(), m.cards.end(), [](const CellRecord* c) { return is_full(*c); });

@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/json_number.hpp"
-
 namespace clothbench {
 namespace {
 
 using nlohmann::json;
 
-struct Cell {
+struct PulledCell {
   double speed_m_per_s;
   const CellRecord* cell;
 };
@@ -20,18 +18,18 @@ struct Cell {
 struct PulledRow {
   std::string scene;
   Series series;
-  std::vector<Cell> cells;  ///< ascending speeds
+  std::vector<PulledCell> cells;  ///< ascending speeds
 
-  const Cell* first_fault() const {
+  const PulledCell* first_fault() const {
     const auto at =
-        std::find_if(cells.begin(), cells.end(), [](const Cell& c) { return !leak_of("wave", *c.cell).empty(); });
+        std::find_if(cells.begin(), cells.end(), [](const PulledCell& c) { return !leak_of("wave", *c.cell).empty(); });
     return at == cells.end() ? nullptr : &*at;
   }
 };
 
 /// Name in the scene's file and grid: one strip at any speed.
 std::string strip_of(const CellRecord& c) {
-  const json s = json::parse(c.header.scenario_json, nullptr, false);
+  const json s = scenario_of(c);
   const json grid = s.value(json::json_pointer("/cloth/grid"), json());
   return s.value("name", c.header.scene) +
          (grid.is_array() && grid.size() == 2 ? fmt::format(" {}×{}", grid[0].dump(), grid[1].dump()) : "");
@@ -39,34 +37,26 @@ std::string strip_of(const CellRecord& c) {
 
 std::vector<PulledRow> rows_of(const std::vector<ContactSetUp>& ups) {
   std::vector<PulledRow> out;
-  for (const ContactSetUp& u : ups)
-    for (const ContactScene& s : u.scenes)
-      for (const ContactRow& r : s.rows) {
-        // A cell that has not run knows no speed, one without hands says nothing.
-        if (u.kind != "wave" || r.cell->header.solver == "ballistic" ||
-            !(summary_value(*r.cell, "imposed_speed_m_per_s") > 0))
-          continue;
-        const std::string strip = strip_of(*r.cell);
-        auto at = std::find_if(out.begin(), out.end(),
-                               [&](const PulledRow& p) { return p.scene == strip && p.series == r.series; });
-        if (at == out.end()) at = out.insert(at, {strip, r.series, {}});
-        at->cells.push_back({summary_value(*r.cell, "imposed_speed_m_per_s"), r.cell});
-      }
+  for (const ContactRow& r : contact_rows(ups)) {
+    const double speed = summary_value(*r.cell, "imposed_speed_m_per_s");
+    // A cell that has not run knows no speed, one without hands says nothing.
+    if (r.kind != "wave" || r.cell->header.solver == "ballistic" || !(speed > 0)) continue;
+    const std::string strip = strip_of(*r.cell);
+    find_or_add(out, [&](const PulledRow& p) { return p.scene == strip && p.series == r.series; },
+                {strip, r.series, {}})
+        .cells.push_back({speed, r.cell});
+  }
   std::stable_sort(out.begin(), out.end(), [](const PulledRow& a, const PulledRow& b) {
     return a.scene != b.scene ? a.scene < b.scene : a.series < b.series;
   });
   for (PulledRow& p : out)
     std::sort(p.cells.begin(), p.cells.end(),
-              [](const Cell& a, const Cell& b) { return a.speed_m_per_s < b.speed_m_per_s; });
+              [](const PulledCell& a, const PulledCell& b) { return a.speed_m_per_s < b.speed_m_per_s; });
   return out;
 }
 
 /// Equal but for the rounding of positions.
 bool same_speed(double a, double b) { return std::abs(a - b) <= 1e-6 * b; }
-
-std::string formatted(double v, const char* form) {
-  return std::isfinite(v) ? fmt::format(fmt::runtime(form), v) : "–";
-}
 
 }  // namespace
 
@@ -81,13 +71,13 @@ Table pulled_strip_table(const std::vector<ContactSetUp>& ups) {
   const std::vector<PulledRow> rows = rows_of(ups);
   std::vector<double> speeds;
   for (const PulledRow& r : rows)
-    for (const Cell& c : r.cells)
+    for (const PulledCell& c : r.cells)
       if (std::none_of(speeds.begin(), speeds.end(), [&](double v) { return same_speed(v, c.speed_m_per_s); }))
         speeds.push_back(c.speed_m_per_s);
   std::sort(speeds.begin(), speeds.end());
   for (const double v : speeds) t.rows[0].push_back(fmt::format("{:g} m/s", v));
   for (const PulledRow& r : rows) {
-    const Cell* fault = r.first_fault();
+    const PulledCell* fault = r.first_fault();
     std::vector<std::string> row = {r.scene, r.series.label(),
                                     fault != nullptr && leak_of("wave", *fault->cell) == "–" ? "–"
                                     : fault == nullptr
@@ -95,12 +85,11 @@ Table pulled_strip_table(const std::vector<ContactSetUp>& ups) {
                                         : fmt::format("{:g} m/s", fault->speed_m_per_s)};
     for (const double v : speeds) {
       std::string text = "–";
-      for (const Cell& c : r.cells) {
+      for (const PulledCell& c : r.cells) {
         if (!same_speed(v, c.speed_m_per_s)) continue;
-        text = c.cell->outcome.status != "ok"
-                   ? c.cell->outcome.status
-                   : formatted(summary_value(*c.cell, "truth_quantity_error_max"), "{:.2g}") + " / " +
-                         formatted(summary_value(*c.cell, "truth_e2"), "{:.1e}");
+        text = c.cell->outcome.status != "ok" ? c.cell->outcome.status
+                                              : in_form("{:.2g}")(summary_value(*c.cell, "truth_quantity_error_max")) +
+                                                    " / " + in_form("{:.1e}")(summary_value(*c.cell, "truth_e2"));
       }
       row.push_back(text);
     }
@@ -110,22 +99,21 @@ Table pulled_strip_table(const std::vector<ContactSetUp>& ups) {
 }
 
 json pulled_strip_json(const std::vector<ContactSetUp>& ups) {
-  json out = json::array();
-  for (const PulledRow& r : rows_of(ups)) {
-    json row = {
-        {"strip", r.scene}, {"solver", r.series.solver}, {"setting", r.series.setting}, {"speeds", json::array()}};
-    for (const Cell& c : r.cells)
-      row["speeds"].push_back({{"speed_m_per_s", c.speed_m_per_s},
-                               {"status", c.cell->outcome.status},
-                               {"strain_error_max", finite_or_null(summary_value(*c.cell, "truth_quantity_error_max"))},
-                               {"strain_error_rms", finite_or_null(summary_value(*c.cell, "truth_quantity_error"))},
-                               {"e2", finite_or_null(summary_value(*c.cell, "truth_e2"))},
-                               {"fault", leak_of("wave", *c.cell)}});
-    const Cell* fault = r.first_fault();
-    row["first_fault_m_per_s"] = fault == nullptr ? json() : json(fault->speed_m_per_s);
-    out.push_back(std::move(row));
-  }
-  return out;
+  const Columns<PulledCell> speeds = {{"speed_m_per_s", In::Json, &PulledCell::speed_m_per_s},
+                                      {"status", In::Json, status_of},
+                                      {"strain_error_max", In::Json, summary("truth_quantity_error_max")},
+                                      {"strain_error_rms", In::Json, summary("truth_quantity_error")},
+                                      {"e2", In::Json, summary("truth_e2")},
+                                      {"fault", In::Json, [](auto& c) { return leak_of("wave", *c.cell); }}};
+  const Columns<PulledRow> strips = {{"strip", In::Json, &PulledRow::scene},
+                                     {"solver", In::Json, [](auto& r) { return r.series.solver; }},
+                                     {"setting", In::Json, [](auto& r) { return r.series.setting; }},
+                                     {"speeds", In::Json, [&](auto& r) { return speeds.json(r.cells); }},
+                                     {"first_fault_m_per_s", In::Json, [](auto& r) {
+                                        const PulledCell* fault = r.first_fault();
+                                        return fault == nullptr ? json() : json(fault->speed_m_per_s);
+                                      }}};
+  return strips.json(rows_of(ups));
 }
 
 }  // namespace clothbench

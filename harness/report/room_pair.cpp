@@ -23,7 +23,7 @@ struct RoomParts {
 };
 
 RoomParts parts_of(const CellRecord& c) {
-  json s = json::parse(c.header.scenario_json, nullptr, false);
+  json s = scenario_of(c);
   RoomParts p;
   if (!s.is_object() || !s.contains("colliders") || !s["colliders"].is_array()) return p;
   for (json& collider : s["colliders"]) {

@@ -31,12 +31,12 @@ Table sampled_table(const std::vector<CellRecord>& cells) {
     const auto v = [&](const char* name) { return summary_value(c, name); };
     const double valid = v("sampled_valid");
     if (!std::isfinite(valid)) continue;
-    t.rows.push_back(
-        {c.header.scene, Series{c.header.solver, c.header.setting, ""}.label(), significant(v("sampled_fps_mean"), 3),
-         paired(1e-9 * v("sampled_read_peak_B_per_s"), 1e-9 * v("sampled_read_mean_B_per_s"), " / ", 3),
-         paired(1e-9 * v("sampled_write_peak_B_per_s"), 1e-9 * v("sampled_write_mean_B_per_s"), " / ", 3),
-         significant(1e-6 * v("sampled_gpu_clock_mean_Hz"), 4), significant(1e-6 * v("sampled_cpu_clock_mean_Hz"), 4),
-         significant(v("sampled_temperature_max_C"), 3), valid == 1 ? "yes" : "no"});
+    t.rows.push_back({c.header.scene, label_of(c), significant(v("sampled_fps_mean"), 3),
+                      paired(1e-9 * v("sampled_read_peak_B_per_s"), 1e-9 * v("sampled_read_mean_B_per_s"), " / ", 3),
+                      paired(1e-9 * v("sampled_write_peak_B_per_s"), 1e-9 * v("sampled_write_mean_B_per_s"), " / ", 3),
+                      significant(1e-6 * v("sampled_gpu_clock_mean_Hz"), 4),
+                      significant(1e-6 * v("sampled_cpu_clock_mean_Hz"), 4),
+                      significant(v("sampled_temperature_max_C"), 3), valid == 1 ? "yes" : "no"});
   }
   return t;
 }

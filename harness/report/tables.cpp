@@ -171,14 +171,11 @@ Table failed_table(const std::vector<CellRecord>& cells) {
     std::string status = c.outcome.status, scene = c.header.scene;
     if (c.outcome.klass != "ok" && !c.outcome.klass.empty()) status += " (" + c.outcome.klass + ")";
     if (c.outcome.failed_frame >= 0) scene += fmt::format(" (frame {})", c.outcome.failed_frame);
-    std::vector<std::string> row = {Series{c.header.solver, c.header.setting, ""}.label(), status,
-                                    c.outcome.message.empty() ? "–" : c.outcome.message, scene};
-    const auto same = std::find_if(rows.begin(), rows.end(),
-                                   [&](const auto& r) { return std::equal(r.begin(), r.begin() + 3, row.begin()); });
-    if (same == rows.end())
-      rows.push_back(std::move(row));
-    else
-      same->back() += ", " + scene;
+    std::vector<std::string> row = {label_of(c), status, or_dash(c.outcome.message), ""};
+    std::string& scenes = find_or_add(
+                              rows, [&](const auto& r) { return std::equal(r.begin(), r.end() - 1, row.begin()); }, row)
+                              .back();
+    scenes += (scenes.empty() ? "" : ", ") + scene;
   }
   Table t{"Cells without a result", "", {{"solver", "status", "message", "scenes"}}};
   t.rows.insert(t.rows.end(), rows.begin(), rows.end());
@@ -191,8 +188,7 @@ Table expect_table(const std::vector<CellRecord>& cells) {
   for (const CellRecord& c : cells) {
     kept += c.outcome.expect == "kept";
     unknown += c.outcome.expect == "not measured";
-    if (c.outcome.expect.starts_with("broken"))
-      t.rows.push_back({c.header.scene, Series{c.header.solver, c.header.setting, ""}.label(), c.outcome.expect});
+    if (c.outcome.expect.starts_with("broken")) t.rows.push_back({c.header.scene, label_of(c), c.outcome.expect});
   }
   t.note = fmt::format("{} kept, {} not measured.", kept, unknown);
   return t;

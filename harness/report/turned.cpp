@@ -47,7 +47,7 @@ std::string result(const TurnedPair& p) {
 TurnedPair pair_of(const std::string& kind, const std::string& scene, const ContactRow& flat,
                    const ContactRow& turned) {
   TurnedPair p{kind, scene, flat.series, flat.cell, turned.cell};
-  const json s = json::parse(flat.cell->header.scenario_json, nullptr, false);
+  const json s = scenario_of(*flat.cell);
   const json grid = s.value(json::json_pointer("/cloth/grid"), json()),
              size = s.value(json::json_pointer("/cloth/size_m"), json());
   if (!grid.is_array() || grid.size() != 2 || !size.is_array() || size.size() != 2) return p;

@@ -52,23 +52,21 @@ WorkPoint point_of(const CellRecord& c, const json& scenario) {
   return p;
 }
 
-bool drawn(const WorkPoint& p) { return p.ok && std::isfinite(p.error) && std::isfinite(p.wall_ms_per_s); }
-
 void mark_front(std::vector<WorkPoint>& points) {
   for (WorkPoint& p : points) {
-    p.on_front = drawn(p);
+    p.on_front = p.counts();
     for (const WorkPoint& q : points)
-      if (q.solver == p.solver && drawn(q) && q.wall_ms_per_s <= p.wall_ms_per_s && q.error <= p.error &&
+      if (q.solver == p.solver && q.counts() && q.wall_ms_per_s <= p.wall_ms_per_s && q.error <= p.error &&
           (q.wall_ms_per_s < p.wall_ms_per_s || q.error < p.error))
         p.on_front = false;
   }
 }
 
 const WorkPoint* best(const WorkDiagram& d, const std::string& solver,
-                      const std::function<bool(const WorkPoint&)>& counts, double WorkPoint::*by) {
+                      const std::function<bool(const WorkPoint&)>& when, double WorkPoint::*by) {
   const WorkPoint* out = nullptr;
   for (const WorkPoint& p : d.points)
-    if (p.solver == solver && drawn(p) && counts(p) && (out == nullptr || p.*by < out->*by)) out = &p;
+    if (p.solver == solver && p.counts() && when(p) && (out == nullptr || p.*by < out->*by)) out = &p;
   return out;
 }
 
@@ -150,7 +148,7 @@ bool in_real_time(const WorkPoint& p) { return p.wall_ms_per_s <= kRealTime_ms_p
 double WorkDiagram::best_error() const {
   double least = kMissing;
   for (const WorkPoint& p : points)
-    if (drawn(p) && p.solver != "reference" && !flagged.contains(p.solver) && !(least <= p.error)) least = p.error;
+    if (p.counts() && p.solver != "reference" && !flagged.contains(p.solver) && !(least <= p.error)) least = p.error;
   return least;
 }
 
@@ -235,7 +233,7 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
           ++all;
           if (p.cell->outcome.status == "over_budget")
             ++over_budget;
-          else if (!drawn(p) && !p.cell->withheld.contains("frame_wall_median_s"))
+          else if (!p.counts() && !p.cell->withheld.contains("frame_wall_median_s"))
             ++failed;
           if (p.cell->outcome.status != "unsupported" && p.cell->outcome.status != "missing") ++able;
         }

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,7 +23,9 @@ struct WorkPoint {
   double frame_ms = kMissing;         ///< what wall_ms_per_s is of one frame of the scene
   double error = kMissing;            ///< what ranks (the card's), as measured
   double energy_gain = kMissing;      ///< over M g L; NaN where the scene does not keep energy
-  bool on_front = false;              ///< no other point of its solver is as fast and more accurate
+  /// It ended well, with an error and a time.
+  bool counts() const { return ok && std::isfinite(error) && std::isfinite(wall_ms_per_s); }
+  bool on_front = false;  ///< no other point of its solver is as fast and more accurate
 };
 
 /// All cells of one scene with a truth, and what is known of its truth.

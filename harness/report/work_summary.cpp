@@ -11,8 +11,6 @@
 namespace clothbench {
 namespace {
 
-bool ended_well(const WorkPoint& p) { return p.ok && std::isfinite(p.error) && std::isfinite(p.wall_ms_per_s); }
-
 std::set<std::string> ranked(const WorkDiagram& d) {
   std::set<std::string> out;
   if (!d.refused().empty()) return out;
@@ -47,7 +45,7 @@ const std::vector<Criterion>& criteria() {
 double least(const WorkDiagram& d, const std::string& solver, const Criterion& c) {
   double out = INFINITY;
   for (const WorkPoint& p : d.points)
-    if (p.solver == solver && ended_well(p)) out = std::min(out, c.value(d, p));
+    if (p.solver == solver && p.counts()) out = std::min(out, c.value(d, p));
   return out;
 }
 

@@ -51,7 +51,7 @@ std::vector<Candidate> candidates(const std::vector<CellRecord>& cells, const st
   std::map<std::tuple<int, std::string, std::string>, std::size_t> turns;
   for (const CellRecord& c : cells) {
     if (c.file.empty() || c.accuracy.time_s.empty()) continue;
-    Candidate k{&c, json::parse(c.header.scenario_json, nullptr, false)};
+    Candidate k{&c, scenario_of(c)};
     const json grid = k.scenario.is_object() ? k.scenario.value(json::json_pointer("/cloth/grid"), json()) : json();
     if (grid.is_array() && grid.size() == 2 && grid[0].is_number_unsigned() && grid[1].is_number_unsigned()) {
       k.columns = grid[0];
@@ -128,7 +128,7 @@ class Packer {
     json e = {{"scene", c.header.scene},
               {"solver", c.header.solver},
               {"setting", c.header.setting},
-              {"label", Series{c.header.solver, c.header.setting, ""}.label()},
+              {"label", label_of(c)},
               {"sides", k.scenario.value(json::json_pointer("/cloth/sides"), "")},
               {"status", c.outcome.status},
               {"failed_frame", c.outcome.failed_frame},
