@@ -35,7 +35,11 @@ function capsules(array, rate) {
     object: group,
     move,
     depth: x =>
-        Math.max(...parts.map(p => p.radius - line.set(p.a, p.b).closestPointToPoint(x, true, nearest).distanceTo(x)))
+        Math.max(...parts.map(p => {
+          // A ball has no axis to be nearest on.
+          const on = p.a.equals(p.b) ? p.a : line.set(p.a, p.b).closestPointToPoint(x, true, nearest);
+          return p.radius - on.distanceTo(x);
+        }))
   };
 }
 
