@@ -103,7 +103,7 @@ std::vector<FeatureCost> feature_costs(const std::vector<CellRecord>& cells) {
 }
 
 Table feature_cost_table(const std::vector<FeatureCost>& costs) {
-  Table t{"What leaving out what a scene does not need is worth",
+  Table t{"Cost of features that a scene does not use",
           "Each scene as it is → with every other feature of its solver switched on where it cannot matter: colliders "
           "100 m off with "
           "friction, bending and damping of 1e-30 (what was added: last column). Timed in turns, median. Moved: "
