@@ -25,7 +25,7 @@ mount --rbind /dev "$root/dev"
 
 home=/home/clothbench-test
 as_root() { chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
-# Nobody can write into /usr, or rely on being root.
+# A user that is not root and cannot write into /usr.
 as_user() { chroot --userspec=65534:65534 "$root" /usr/bin/env -i -C $home PATH=/usr/bin:/bin HOME=$home LC_ALL=C.UTF-8 "$@"; }
 fail() { echo "package: $*" >&2; exit 1; }
 ok() { echo "package: $*"; }

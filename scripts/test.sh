@@ -33,7 +33,7 @@ penetration() {
   build/release/clothbench check "$out" --baseline "$baseline" --junit build/penetration-quick.xml
 }
 
-# Stiff and extreme cases: every run ends in a row, whatever becomes of the solver, and none of its processes dies.
+# Stiff and extreme cases: every run ends in a row, whatever happens to the solver, and none of its processes dies.
 stability() {
   local out=build/stability-quick
   rm -rf "$out" "$out-report"

@@ -102,7 +102,7 @@ void prepare(ANativeActivity* a, const std::string& files) {
   if (chdir(files.c_str()) != 0) to_log("cannot change to " + files);
 }
 
-/// Input that nobody takes would make the system call the activity hung.
+/// The system reports an activity as hung when its input queue is not emptied.
 int drain_input(int, int, void* queue) {
   AInputEvent* event = nullptr;
   while (AInputQueue_getEvent(static_cast<AInputQueue*>(queue), &event) >= 0) {

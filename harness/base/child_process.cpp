@@ -69,7 +69,7 @@ std::string ChildEnd::text() const {
 
 ChildProcess::ChildProcess(const std::vector<std::string>& argv, const ChildSetup& setup) {
   int ends[2] = {-1, -1};
-  // Closed in every other child: a hang-up is then this child's end and nobody else's.
+  // Closed in every other child: a hang-up then means that this child has ended, and no other.
   int failed = setup.socket && socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0 ? errno : 0;
   if (failed == 0) failed = spawn(argv, setup, ends[1], pid_);
   socket_ = ends[0];

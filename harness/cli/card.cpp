@@ -36,7 +36,7 @@ void measure(const SolverEntry& entry, const Overrides& overrides, const CardArg
 void add_card(CLI::App& app, Console& console) {
   CardArguments& a = console.arguments<CardArguments>();
   CLI::App* cmd = app.add_subcommand("card",
-                                     "Measure what solvers make of a scene's stiffness: moduli at 0, 45 and 90 "
+                                     "Measure the effective stiffness of solvers: moduli at 0, 45 and 90 "
                                      "degrees, bending, and whether they hold over settings");
   add_solvers(*cmd, "solver", a.search.solvers, "Solvers; default: all");
   cmd->add_option("--set", a.search.set, "Setting of the solver: solver.substeps=20");

@@ -79,7 +79,7 @@ void check(const CheckArguments& a, const std::vector<CellRecord>& cells, Consol
 void add_check(CLI::App& app, Console& console) {
   CheckArguments& a = console.arguments<CheckArguments>();
   CLI::App* cmd = app.add_subcommand(
-      "check", "Hold results to a baseline: outcome, stages, dispatches, error, penetration; never times");
+      "check", "Compare results with a baseline: outcome, stages, dispatches, error, penetration; never times");
   cmd->add_option("runs", a.runs, "Study folders or result files")->required();
   cmd->add_option("--baseline", a.baseline, "Baseline file, such as results/baselines/penetration.json")->required();
   CLI::Option* rewrite =

@@ -78,13 +78,13 @@ std::pair<int, int> pixels_of(const std::string& option, const std::string& text
 }
 
 void DeviceFlags::add_to(CLI::App& app) {
-  app.add_option("--device", options.index, "Vulkan device number (see `list devices`); default: the best present");
+  app.add_option("--device", options.index, "Vulkan device number (see `list devices`); default: the best one");
   app.add_option("--device-profile", options.profile,
                  "Stand in for a class of devices: adreno-like (32 KiB shared memory, groups of 256, no float atomics, "
                  "64 dispatches a submission)");
   app.add_flag("--validate", options.validation,
                "Vulkan core and synchronization validation; any message fails the run");
-  app.add_flag("--allow-no-device", allow_no_device, "Leave GPU solvers out where there is no Vulkan device");
+  app.add_flag("--allow-no-device", allow_no_device, "Leave out GPU solvers if there is no Vulkan device");
 }
 
 CLI::Option* add_solvers(CLI::App& app, const std::string& option, std::vector<std::string>& names,
@@ -99,7 +99,7 @@ CLI::Option* add_solvers(CLI::App& app, const std::string& option, std::vector<s
 void add_require_assets(CLI::App& app, bool& required) {
   app.add_flag(
       "--require-assets", required,
-      "Fail where a scene's rooms or hands would be procedural stand-ins (scripts/fetch-assets.sh gets the scans)");
+      "Fail if a scene would use procedural stand-ins for rooms or hands (scripts/fetch-assets.sh gets the scans)");
 }
 
 StatusLine::StatusLine(bool enabled)

@@ -12,8 +12,7 @@ void add_compare(CLI::App& app, Console& console) {
   auto &a = console.arguments<std::string>(), &b = console.arguments<std::string>(),
        &markdown = console.arguments<std::string>();
   CLI::App* cmd = app.add_subcommand(
-      "compare",
-      "Two runs of the same cells: what is faster or slower beyond noise, and which results are not the same");
+      "compare", "Compare two runs of the same cells: what is faster or slower beyond noise, and which results differ");
   cmd->add_option("a", a, "Study folder or result file: before")->required();
   cmd->add_option("b", b, "Study folder or result file: after")->required();
   cmd->add_option("--markdown", markdown, "Also write the tables to this file, for a pull request");

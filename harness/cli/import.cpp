@@ -15,7 +15,7 @@ void add_import(CLI::App& app, Console& console) {
       app.add_subcommand("import", "Turn raw run files (a device without HDF5, an interrupted run) into HDF5 files");
   cmd->add_option("folder", folders, "Study folders or part folders")->required();
   cmd->add_option("--samples", samples_file,
-                  "What the device told during the run: samples.json of scripts/quest_run.py");
+                  "Readings of the device during the run: samples.json of scripts/quest_run.py");
   cmd->footer(
       "Examples: clothbench import results/runs/phone\n"
       "          clothbench import results/runs/quest --samples results/runs/quest/samples.json");

@@ -39,7 +39,7 @@ constexpr std::array kExitStatus = {
     Entry{"0", "All went well."}, Entry{"1", "A check failed."}, Entry{"2", "An argument or a file is wrong."},
     Entry{"3", "There is no Vulkan device."}, Entry{"130", "Interrupted; finished trials are kept."}};
 
-/// Text as roff takes it: its marks told apart from ours, in ASCII, which every output of man(1) has.
+/// Text as roff takes it: its own marks are escaped, and all is in ASCII, which every output of man(1) has.
 std::string roff(std::string text) {
   const std::string dots = "…";
   for (std::size_t at; (at = text.find(dots)) != std::string::npos;) text.replace(at, dots.size(), "...");

@@ -139,7 +139,7 @@ void add_render(CLI::App& app, Console& console) {
   cmd->add_option("--cell", a.cell, "Of a folder: cells with this in their names");
   cmd->add_flag("--plain", a.plain, "No legend and no caption");
   cmd->add_flag("--no-movie", a.no_movie, "Pictures alone");
-  cmd->add_option("--solver", a.solver, "Of a scenario: who runs it")->capture_default_str();
+  cmd->add_option("--solver", a.solver, "Solver that runs a scenario")->capture_default_str();
   cmd->add_option("--set", a.set, "Of a scenario: override, as with `clothbench run`");
   a.device.add_to(*cmd);
   cmd->footer(

@@ -50,19 +50,19 @@ Rendering rendering_of([[maybe_unused]] const std::string& eye) {
 
 /// Protocol stability-map, which judges one untimed run of every cell.
 void run_maps(Study study, const StudyArguments& a, Console& console) {
-  if (a.with_rendering) throw Error("--with-rendering: protocol stability-map times nothing");
-  if (a.trials > 0) throw Error("--trials: protocol stability-map judges one run of every cell");
+  if (a.with_rendering) throw Error("--with-rendering: studies of protocol stability-map have no timed trials");
+  if (a.trials > 0) throw Error("--trials: studies of protocol stability-map have no timed trials");
   if (a.list_cells || !a.cells.empty())
     throw Error(
-        "--list-cells, --cell: protocol stability-map probes where its last probe points; --jobs uses all cores of "
-        "a machine");
+        "--list-cells, --cell: not for protocol stability-map, whose next run depends on the last; --jobs uses all "
+        "cores of a machine");
   run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, std::max(1, a.jobs),
                          console);
 }
 
 void run_study(StudyArguments& a, Console& console) {
   const Overrides overrides = split_overrides(a.set);
-  if (!overrides.solver.empty()) throw Error("--set solver.…: a study's solver settings stand in its file");
+  if (!overrides.solver.empty()) throw Error("--set solver.…: the solver settings of a study are set in its file");
   if (a.run.resume && a.run.out.empty()) throw Error("--resume: say which folder with --out");
   const StudyLength length = a.full ? StudyLength::Full : a.quick ? StudyLength::Quick : StudyLength::Short;
   Study study =
@@ -71,7 +71,7 @@ void run_study(StudyArguments& a, Console& console) {
   if (a.seed) study.definition["seed"] = *a.seed;
   if (a.with_rendering) study.definition["rendering"] = {{"eyes", 2}, {"pixels", a.eye}};
   if (study.protocol == "stability-map") return run_maps(std::move(study), a, console);
-  if (a.jobs > 0) throw Error("--jobs: only studies of protocol stability-map, where nothing is timed");
+  if (a.jobs > 0) throw Error("--jobs: only for studies of protocol stability-map, which have no timed trials");
   CellPlan plan = plan_study(study);
   if (a.trials > 0) plan.rules.trials = a.trials;
   if (a.no_cards) plan.material_cards = false;
@@ -82,7 +82,7 @@ void run_study(StudyArguments& a, Console& console) {
   manifest.study = study.name;
   manifest.definition = study.definition;
   if (!a.cells.empty()) {
-    if (a.run.out.empty()) throw Error("--cell: say which folder with --out; all cells of a study lie in one");
+    if (a.run.out.empty()) throw Error("--cell: expected --out with the folder that all cells of the study share");
     const std::vector<std::size_t> chosen = parse_cells(a.cells, names.size());
     require_same_cells(a.run.out, plan, true);  // also what other processes have made of it
     plan = only_cells(std::move(plan), chosen);

@@ -63,8 +63,9 @@ void add_xr(CLI::App& app, Console& console) {
                   "Where the scene's origin is, x y z [m] from the head at the start, or from the floor with a room; "
                   "default 0 -0.1 -0.6, with a room 0 0 0")
       ->expected(3);
-  cmd->add_flag("--no-passthrough", a.opaque, "White all round instead of the cameras' picture");
-  cmd->add_option("--patience", a.patience, "Give up where nothing is seen or picked for so long [s]")
+  cmd->add_flag("--no-passthrough", a.opaque, "White background instead of the picture of the cameras");
+  cmd->add_option("--patience", a.patience,
+                  "Time without tracked hands or picked points after which the session ends [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   cmd->add_option("--runtime", a.runtime,

@@ -129,7 +129,7 @@ typedef struct ClothbenchFrame {
   double time_s, dt_s;
   const ClothbenchPose* poses;   /* one a collider */
   const double* grip_position_m; /* one a grip */
-  const uint8_t* grip_held;      /* one a grip: 0 once let go, for good */
+  const uint8_t* grip_held;      /* one a grip: 0 from its release on */
 } ClothbenchFrame;
 
 /* A knob, `--set solver.<name>=`. */

@@ -80,7 +80,7 @@ std::vector<Metric> contact_series() {
        contact_field(&C::pairs)},
       {"contact_cloth_fraction", "1", "share of the cloth's triangles in such a pair", kColliders,
        contact_field(&C::cloth_fraction)},
-      {"tunnelled_fraction", "1", "share of the cloth on the other side of a mesh than it began", kMeshes,
+      {"tunnelled_fraction", "1", "share of the cloth that has passed to the other side of a mesh", kMeshes,
        contact_field(&C::tunnelled_fraction), 1, plotted("tunnelled share of the cloth", 1, 2)},
       {"tunnelled_depth_m", "m", "greatest distance of a tunnelled vertex from the mesh", kMeshes,
        contact_field(&C::tunnelled_depth_m), 1, plotted("tunnelled depth [m]", 3, 3)},

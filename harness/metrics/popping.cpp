@@ -1,4 +1,4 @@
-// What becomes of the cloth when contact has ended: how it pops off what swept it, how it trembles and creeps at rest.
+// The cloth after contact has ended: popping off the collider that swept it, trembling and creep at rest.
 #include <algorithm>
 #include <cmath>
 

@@ -41,7 +41,7 @@ Camera frame(View, std::span<const double> points, double aspect, double margin 
 /// From the scene towards the eye of a view, unit.
 Vec3 towards_eye(View, double turn_deg);
 
-/// Left and right eye of somebody who looks along -z at the middle of a box from `distance_m` away. 110 x 96 degrees is
+/// Left and right eye of a user looking along -z at the middle of a box from `distance_m` away. 110 x 96 degrees is
 /// the field of view of a Quest 3 (Meta's technical specifications), 63 mm apart the mean of adults.
 std::array<Camera, 2> eyes(const Vec3& middle_m, double distance_m, double near_m, double far_m);
 

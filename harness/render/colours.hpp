@@ -18,7 +18,7 @@ const char* name_of(Colour);
 /// Between `stops`, evenly spaced, in CIELAB, where equal steps look alike; `t` from 0 to 1.
 Rgb between(std::span<const Rgb> stops, double t);
 
-/// How numbers become colours. Both maps can be told apart without red or green, and get darker away from 0.
+/// How numbers become colours. Both maps are readable without red or green, and get darker away from 0.
 struct Scale {
   double low = 0, high = 1;                        ///< values at the ends of the bar
   bool clipped_low = false, clipped_high = false;  ///< there are values beyond

@@ -22,8 +22,8 @@ struct Framing {
 /// it would make all the rest a dot. Not finite vertices do not either. With none left, the start's place.
 Framing framing_of(const Motion&, std::span<const std::size_t> frames);
 
-/// The quarter turn from whose corner the most cloth is seen, in m^2 of the picture plane over `frames`, where what
-/// stands still hides some of it: a cloth over the far edge of a desk is looked at from there. 0 unless another shows a
+/// The quarter turn from whose corner the most cloth is seen, in m^2 of the picture plane over `frames`, where
+/// static colliders hide some of it: a cloth over the far edge of a desk is shown from there. 0 unless another shows a
 /// fifth more, and where colliders move or there are none.
 double best_turn(const Motion&, std::span<const std::size_t> frames, const Bounds& near);
 

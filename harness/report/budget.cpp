@@ -14,7 +14,7 @@ namespace {
 // From what one dispatch costs, submission included, to the time a headset shows a frame.
 constexpr double kLeastBudget_ms = 0.05, kMostBudget_ms = 13.9;
 constexpr std::array kBudgets_ms = {kLeastBudget_ms, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, kMostBudget_ms};
-// Errors below it are all small enough for anybody who asks for real time.
+// Errors below it are all small enough for real-time use.
 constexpr double kSmallEnough = 1e-3;
 
 struct Best {
@@ -56,9 +56,10 @@ Table budget_table(const std::vector<WorkDiagram>& diagrams) {
   Table t{"Smallest error within a budget of time a frame",
           "Of all settings of a solver whose frame takes at most so long, wall time, pipelined where the solver can; "
           "≤: at 0.001 or at the floor of "
-          "the scene, below which nobody is told apart. –: no setting is as fast. Beaten by: who else, ranked or not, "
-          "has the smaller error at any "
-          "budget from 0.05 to 13.9 ms, by the greatest factor.",
+          "the scene, below which solvers are not distinguished. –: no setting is as fast. Beaten by: the other "
+          "solver, ranked "
+          "or not, that has the smaller error at some "
+          "budget from 0.05 to 13.9 ms, and the greatest factor.",
           {{"scene", "solver"}}};
   for (const double b : kBudgets_ms) t.rows[0].push_back(fmt::format("{:g} ms", b));
   t.rows[0].emplace_back("beaten by");

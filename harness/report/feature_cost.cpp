@@ -141,7 +141,7 @@ Table feature_cost_table(const std::vector<FeatureCost>& costs) {
       "greatest distance of a "
       "vertex in one run from the other, over the longer side.";
   return cost_columns().table(
-      {"What leaving out what a scene does not need is worth",
+      {"Cost of features that a scene does not use",
        with_withheld(note + fmt::format(" Bytes: {}", kWhatBytesAre),
                      cells_of(costs, &FeatureCost::needed, &FeatureCost::all), {"frame_wall_median_s"}),
        {}},

@@ -11,8 +11,8 @@ namespace clothbench {
 /// Positions may move by this much of the cloth's longer side when something irrelevant is switched on.
 inline constexpr double kNoOp = 1e-6;
 
-/// A scene as it is, and with what it has no use for switched on (harness/scenario/irrelevant.hpp): what leaving out
-/// what a scene does not need is worth.
+/// A scene as it is, and the same with features switched on that it does not use (harness/scenario/irrelevant.hpp): the
+/// cost of those features.
 struct FeatureCost {
   const CellRecord* needed = nullptr;
   const CellRecord* all = nullptr;

@@ -44,7 +44,7 @@ std::string broken_bound(const CellRecord& c, std::vector<BoundResult> bounds) {
   return "";
 }
 
-/// Of a scene that expects nothing: what nobody would want of its kind.
+/// For a scene without bounds: what counts as a failure in a scene of its kind.
 std::string without_bounds(const std::string& kind, const CellRecord& c) {
   const bool hand = kind == "capsules" || kind == "hand";
   std::vector<std::pair<const char*, double>> most;

@@ -98,7 +98,7 @@ std::string stiffness_flag(const std::vector<SolverMaterial>& all, const std::st
 
 Table material_table(const std::vector<SolverMaterial>& all) {
   Table t{
-      "Material card: what solvers make of the stiffness they are given",
+      "Material card: the effective stiffness of solvers",
       "Measured on hanging, sliding and bending patches at rest. E, G and B over the scene's Y, Y and B at 0, 45 and "
       "90° to the grid; "
       "right values: 1, 1, 1, ν = 1/3 and G = 0.375 for central springs, strip 1 (no shear), border 1. B at 45°: of "

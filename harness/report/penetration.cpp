@@ -211,7 +211,7 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
       "Penetration: does each solver keep what the scene expects?",
       "Kept: every bound of the scene's `expect`, measured over the whole scene. Ignored: kept by a solver that "
       "touches nothing. – : not run, or nothing to expect. In "
-      "the tables below, tunnelled: share of the cloth on the other side of a mesh than it began. Contour: length "
+      "the tables below, tunnelled: share of the cloth that has passed to the other side of a mesh. Contour: length "
       "of the "
       "curves in which cloth and colliders cross; settled: the most in the last 0.5 s. Depth: how far the cloth is "
       "inside "

@@ -66,9 +66,9 @@ Parts parts_of(const std::vector<CellRecord>& cells, const std::vector<FeatureCo
     if (summary_value(c, "frame_wall_median_s") > 0) timed.insert(c.header.scenario_json);
   for (const CellRecord& c : cells) {
     if (told.contains(&c) || is_material_card(c) || is_all_on(c) || is_friction(c)) continue;
-    // Of a scene that nobody has run yet nothing is known but its name: it stands among the cells without a result.
+    // Only the name is known of a scene that has not been run. It is listed among the cells without a result.
     if (c.outcome.status == "missing" && c.header.scenario_json.empty()) continue;
-    // Of a pulled strip that nobody was timed on, the error is told by speed instead of by time.
+    // Where no solver was timed on a pulled strip, its errors are tabulated by speed instead of by time.
     const bool by_time = has_truth(c) && !(pulls_strip(c) && !timed.contains(c.header.scenario_json));
     (is_stability(c) ? out.stability : by_time ? out.truth : has_contact(c) ? out.contact : out.rest).push_back(c);
   }
@@ -246,7 +246,7 @@ constexpr Sections (*kOnTerminal[])(const Facts&) = {
     rates_sections,   sampled_section,  penetration_section, work_section,     winners_section,
     material_section, friction_section, cost_section,        features_section, stability_section};
 
-/// One page: ranks, firsts, what stiffness means to whom, what is not a no-op.
+/// One page: ranks, best solvers, which solvers have stiffness as a parameter, which features are not without effect.
 std::string summary_page(const Facts& f) {
   std::vector<Table> tables = {ranks_table(f.diagrams), winners_table(f.diagrams)};
   if (!f.materials.empty()) tables.push_back(material_verdicts(f.materials));

@@ -88,7 +88,7 @@ auto within(double most) {
 }
 bool timed_on_gpu(const WorkPoint& p) { return std::isfinite(p.device_ms_per_s); }
 
-/// No solver is told apart below the floor.
+/// Errors are not distinguished below the floor.
 std::string error_text(const WorkDiagram& d, const WorkPoint* p) {
   if (p == nullptr) return "–";
   const bool below = p->error < d.rank_floor();
@@ -161,8 +161,8 @@ double WorkDiagram::rank_floor() const {
 
 std::string WorkDiagram::refused() const {
   if (!std::isfinite(uncertainty)) return "no reference solution";
-  // The truth itself is exact where the reference confirms it; the reference's own doubt is what counts here. Nobody is
-  // ranked below the error of the mesh, so an error below that asks no more of the reference.
+  // The truth is exact where the reference confirms it, so only the uncertainty of the reference counts here. No solver
+  // is ranked below the error of the mesh, so the reference need not be more certain than that.
   const double best = best_error();
   if (!std::isfinite(best)) return "no solver that is judged on it has an error";
   const double least = std::max(best, std::isfinite(space_error) ? space_error : 0.0);
@@ -208,20 +208,21 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells,
 }
 
 Table work_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{"Error against run time",
-          "Times in ms of wall time per simulated second, frames pipelined (two in flight) where a solver can; in "
-          "brackets substeps × "
-          "iterations. Fenced: each frame from submission to fence, waited for before the next. GPU: by the device's "
-          "own clock. Errors are against the exact answer of the same mesh. In real time: a frame of 1/72 s takes at "
-          "most 1/72 s. "
-          "≤: below what tells solvers apart, three times the reference's uncertainty or the mesh's own error. Failed: "
-          "cells without "
-          "a finite error; not run: settings of more work than their solver's time on the scene allowed, each with its "
-          "reason in its file. A scene that is refused ranks nobody; see the next table. Not ranked: the scene depends "
-          "on a stiffness that "
-          "is no parameter of the solver; see the material card.",
-          {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed",
-            "to 1 %, fenced", "to 0.1 %, fenced", "to 1 %, GPU", "to 0.1 %, GPU", "ranked"}}};
+  Table t{
+      "Error against run time",
+      "Times in ms of wall time per simulated second, frames pipelined (two in flight) where a solver can; in "
+      "brackets substeps × "
+      "iterations. Fenced: each frame from submission to fence, waited for before the next. GPU: by the device's "
+      "own clock. Errors are against the exact answer of the same mesh. In real time: a frame of 1/72 s takes at "
+      "most 1/72 s. "
+      "≤: below what tells solvers apart, three times the reference's uncertainty or the mesh's own error. Failed: "
+      "cells without "
+      "a finite error; not run: settings of more work than their solver's time on the scene allowed, each with its "
+      "reason in its file. No solver is ranked on a refused scene; see the next table. Not ranked: the scene depends "
+      "on a stiffness that "
+      "is no parameter of the solver; see the material card.",
+      {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed", "to 1 %, fenced",
+        "to 0.1 %, fenced", "to 1 %, GPU", "to 0.1 %, GPU", "ranked"}}};
   const auto always = [](const WorkPoint&) { return true; };
   t.note = with_withheld(t.note, cells_of(work_rows(diagrams), &WorkRow::cell), {"frame_wall_median_s", "truth_error"});
   for (const WorkDiagram& d : diagrams) {

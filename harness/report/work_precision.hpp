@@ -38,8 +38,8 @@ struct WorkDiagram {
   StiffnessNeed need = {};                          ///< what its answer depends on
   std::map<std::string, std::string> flagged = {};  ///< solvers shown but not ranked, and why (stiffness_flag)
   double floor() const { return 3 * uncertainty; }  ///< of certainty; NaN if unknown
-  /// Errors below it are not told apart: the greater of floor() and space_error, as far as they are known; 0 if neither
-  /// is.
+  /// Errors below it are not distinguished: the greater of floor() and space_error, as far as they are known; 0 if
+  /// neither is.
   double rank_floor() const;
   double best_error() const;  ///< of all ranked solvers' points that ended well; NaN if there is none
   /// Why no solver is ranked on it: the reference is missing, or not below a third of the best error. "" if it is.
@@ -64,7 +64,7 @@ Table work_table(const std::vector<WorkDiagram>&);
 Table winners_table(const std::vector<WorkDiagram>&);
 
 /// Rows: solvers; geometric means over the scenes that rank them of their ranks, never of errors; equal errors at the
-/// floor share a rank, and so do all who do not get there.
+/// floor share a rank, and so do all solvers that do not reach it.
 Table ranks_table(const std::vector<WorkDiagram>&);
 
 /// Rows: scenes and solvers; the smallest error of all settings whose frame takes at most 0.05 ... 13.9 ms, and which

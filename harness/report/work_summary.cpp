@@ -59,8 +59,8 @@ int rank(const WorkDiagram& d, const std::string& solver, const Criterion& c) {
 }  // namespace
 
 Table winners_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{"Who is first",
-          "Of the solvers that are ranked; several where none can be told apart. Times in ms of wall time per "
+  Table t{"Best solver by scene",
+          "Of the solvers that are ranked; several where they cannot be distinguished. Times in ms of wall time per "
           "simulated second. ≤: at the floor.",
           {{"scene", "solvers ranked"}}};
   for (const Criterion& c : criteria()) t.rows[0].emplace_back(c.name);

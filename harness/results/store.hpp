@@ -44,7 +44,7 @@ class CellWriter {
 /// True if `<dir>/<cell>.h5` (or, without HDF5, `outcome.raw` in its part folder) exists.
 bool cell_finished(const std::filesystem::path& dir, const std::string& cell);
 
-/// Removes what a killed run of this cell left behind and nobody will read: files under their temporary names, and the
+/// Removes what a killed run of this cell left behind and no reader needs: files under their temporary names, and the
 /// part folder of a cell whose .h5 is there. Only for the one process that works on the cell.
 void remove_leftovers(const std::filesystem::path& dir, const std::string& cell);
 

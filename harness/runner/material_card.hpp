@@ -12,7 +12,7 @@ namespace clothbench {
 /// Name of the scene under which material cards stand in a study's folder.
 inline constexpr const char* kMaterialCardScene = "material-card";
 
-/// What a solver makes of Y and B at one setting, measured on patch scenes (scenario/material_patches.hpp) through
+/// The effective Y and B of a solver at one setting, measured on patch scenes (scenario/material_patches.hpp) through
 /// ClothSolver alone. `record` is a cell like any other, without trials and positions: `summary` has the moduli over
 /// what the scenes state as material_E_0, material_B_45, ... and material_unrest, the greatest change of one of them
 /// over the last quarter of a second; header.scenario_json the patches' scenes. Each patch runs until its modulus rests

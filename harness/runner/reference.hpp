@@ -8,7 +8,7 @@
 
 namespace clothbench {
 
-/// What the solver `reference` makes of the quantity of a scene's card, with its uncertainty, beside the truth.
+/// The quantity of a scene's card as computed by the solver `reference`, with its uncertainty, beside the truth.
 struct ReferenceResult {
   double truth = 0;                               ///< the card's, same mesh
   double scale = 1;                               ///< of the quantity: errors below are over it

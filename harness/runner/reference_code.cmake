@@ -1,5 +1,5 @@
 # cmake -D SOURCE_DIR= -D OUTPUT= -P reference_code.cmake: the SHA-256 of all sources that a reference value depends on, as C++.
-# Cached values of other sources are not found again, and nobody has to remember to raise a number.
+# A value cached from other sources is not found again, so no version number has to be raised by hand.
 set(folders solvers/reference harness/base harness/truth harness/scenario harness/scenario/kinds harness/include/clothbench)
 set(files harness/runner/reference.cpp harness/runner/reference.hpp harness/runner/reference_cache.cpp harness/runner/frame_loop.cpp harness/runner/frame_loop.hpp
   harness/metrics/truth_errors.cpp harness/metrics/truth_errors.hpp)

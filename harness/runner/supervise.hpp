@@ -38,7 +38,7 @@ class RunningNote {
   void write(const std::string& what) const;
 
  private:
-  std::filesystem::path file_;  ///< empty: nobody watches
+  std::filesystem::path file_;  ///< empty: not supervised
 };
 
 }  // namespace clothbench

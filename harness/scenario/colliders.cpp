@@ -68,8 +68,7 @@ class StageReader {
     const auto index = over["collider"].get<std::size_t>();
     const auto table = tables_.find(index);
     if (table == tables_.end())
-      reader_.refuse("/collider",
-                     fmt::format("expected a collider of type room with a table; /colliders/{} is none", index));
+      reader_.refuse("/collider", fmt::format("/colliders/{} is no collider of type room with a table", index));
     const auto& [box, mesh] = table->second;
     const double drop = over["drop_m"].get<double>();
     const TablePose at = over["at"] == "center"

@@ -50,7 +50,7 @@ json with_irrelevant(json scenario, FeatureSet needs, FeatureSet wanted) {
     scenario["cloth"]["sides"] = "double";
     note(Feature::DoubleSided);
   }
-  // Sides matter to nobody while there is nothing to touch; now a solver must have them.
+  // A solver ignores sides while the cloth touches nothing. With colliders in the scene it would have to support them.
   if (doubled && own == 0 && !colliders.empty() && !wanted.has(Feature::DoubleSided))
     scenario["cloth"]["sides"] = "single";
   if (added.empty()) return scenario;

@@ -39,9 +39,9 @@ Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
       for (const char* of_grids : {"corners", "edge", "clamp"})
         if (pin.contains(of_grids))
           refuse(source, fmt::format("/pins/{}/{}", k, of_grids),
-                 "a mesh has none; expected \"vertices\" or \"nearest_m\"");
+                 "not available on a mesh; expected \"vertices\" or \"nearest_m\"");
     if (!c.mesh && pin.contains("nearest_m"))
-      refuse(source, fmt::format("/pins/{}/nearest_m", k), "only for a cloth that is a mesh");
+      refuse(source, fmt::format("/pins/{}/nearest_m", k), "only available on a mesh");
     if (pin.contains("nearest_m"))
       for (const json& point : pin["nearest_m"]) pinned.insert(nearest_vertex(*c.mesh, vec3(point)));
     if (pin.contains("corners"))

@@ -6,10 +6,10 @@
 
 namespace clothbench {
 
-/// Patch tests of a material: scenes whose shape at rest gives one modulus in closed form, so that what a solver makes
-/// of a scene's Y and B can be measured through scenes and positions alone. All hang or bend under gravity with the
-/// damping of `kPatchDamping_per_s` and end at rest; harness/metrics/material_patch.hpp turns the last positions into
-/// moduli.
+/// Patch tests of a material: scenes whose shape at rest gives one modulus in closed form, so that the
+/// effective Y and B of a solver can be measured through scenes and positions alone. All hang or bend under gravity
+/// with the damping of `kPatchDamping_per_s` and end at rest; harness/metrics/material_patch.hpp turns the last
+/// positions into moduli.
 ///
 /// HangU, HangV        a sheet 4 : 1 hangs by its short edge, along the grid's u or v: uniaxial stretch, 1 % at the
 /// top.

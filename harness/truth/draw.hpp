@@ -8,7 +8,7 @@
 
 namespace clothbench::truth {
 
-/// A scene whose truth is evaluated at parameters nobody knew beforehand.
+/// A scene with randomly drawn parameters, whose truth is evaluated at those.
 struct DrawnScene {
   Scene scene;                                         ///< completed; `seed` set
   std::vector<std::pair<std::string, double>> values;  ///< what was drawn, for people; names carry units

@@ -4,8 +4,9 @@ namespace clothbench::truth {
 
 /// A cloth that lies flat on a plane at `angle` from the horizontal and starts at `speed` downhill, with Coulomb
 /// friction of the pair cloth-plane. It sticks at rest iff tan(angle) <= mu; sliding it gains g (sin - mu cos) and,
-/// where that is negative, stops after v^2/(2|a|) at v/|a|, for good. Source: Coulomb 1781. Exact for a flat cloth in
-/// pure sliding. Valid for 0 <= angle < pi/2, mu >= 0, speed >= 0, g > 0; Error otherwise. Errors of rounding only.
+/// where that is negative, stops after v^2/(2|a|) at v/|a| and stays at rest. Source: Coulomb 1781. Exact for a flat
+/// cloth in pure sliding. Valid for 0 <= angle < pi/2, mu >= 0, speed >= 0, g > 0; Error otherwise. Errors of rounding
+/// only.
 struct Incline {
   double angle_rad = 0;
   double friction = 0;

@@ -43,7 +43,7 @@ struct LoopResult {
   int validation_messages = 0;
 };
 
-/// A live session: a cloth before the user's eyes, who touches it. Waits until hands are seen or points are picked,
+/// A live session: the user sees a cloth and touches it. Waits until hands are seen or points are picked,
 /// then steps the solver once a displayed frame, by the display's refresh period, as the application of the paper does:
 /// where frames are shown late the cloth moves slower, and the log says so. Ends after `frames`, when the runtime ends
 /// the session, when it is interrupted, or where the device is lost or a call fails once the first frame was stepped

@@ -1,5 +1,5 @@
 # `cpack -G DEB` and `cpack -G TGZ` in the build folder. The .deb needs dpkg-dev and file, which tell the libraries it depends on.
-set(CLOTHBENCH_MAINTAINER "The clothbench authors <clothbench@clothbench.invalid>" CACHE STRING "Who answers for the packages")
+set(CLOTHBENCH_MAINTAINER "The clothbench authors <clothbench@clothbench.invalid>" CACHE STRING "Maintainer named in the packages")
 set(CPACK_GENERATOR DEB TGZ)
 set(CPACK_PACKAGE_NAME clothbench)
 set(CPACK_PACKAGE_VENDOR "The clothbench authors")

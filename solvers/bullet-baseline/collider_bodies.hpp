@@ -14,7 +14,7 @@ btVector3 to_bullet(const Vec3&);
 /// What a mesh becomes in Bullet.
 enum class MeshAs {
   Triangles,  ///< a thin rigid body for each triangle
-  Bvh  ///< one btBvhTriangleMeshShape for what stands still: soft bodies meet it as slabs that reach 0.1 m from either
+  Bvh  ///< one btBvhTriangleMeshShape for static colliders: soft bodies meet it as slabs that reach 0.1 m from either
        ///< side
 };
 

@@ -257,7 +257,8 @@ std::vector<ChainFamily> families_of(std::vector<Strand> all, std::size_t vertic
       for (std::size_t k = from; k <= from + most; ++k) used[best][s.vertices[k]] = 1;
       from += most;
     }
-  // What was opened later has shorter chains: it goes first, and the long ones have the last word.
+  // Families that were opened later have shorter chains. They are solved first and the long ones last, so that the long
+  // ones are satisfied best.
   if (wanted == 0)
     std::reverse(families.begin(), families.end());
   else
@@ -266,7 +267,7 @@ std::vector<ChainFamily> families_of(std::vector<Strand> all, std::size_t vertic
 }
 
 std::vector<ChainEntry> entries_of(const ChainFamily& family, const Scene& scene, const ChainCloth& cloth,
-                                   std::uint32_t block, bool everybody) {
+                                   std::uint32_t block, bool with_others) {
   const std::size_t n = scene.cloth.vertex_count();
   std::vector<std::uint8_t> held(n, 0), seen(n, 0);
   for (const std::uint32_t v : scene.pins.vertices) held[cloth.particle[v]] = 1;
@@ -300,12 +301,12 @@ std::vector<ChainEntry> entries_of(const ChainFamily& family, const Scene& scene
     }
     put(entries);
   }
-  if (everybody)
+  if (with_others)
     for (std::uint32_t v = 0; v < n; ++v)
       if (seen[v] == 0 && cloth.particle[v] == v) put({{v, -1, 0, 0}});
   std::vector<ChainEntry> out;
   for (std::vector<ChainEntry>& b : blocks) {
-    b.resize(block, {CHAIN_NOBODY, -1, 0, 0});
+    b.resize(block, {CHAIN_NO_VERTEX, -1, 0, 0});
     out.insert(out.end(), b.begin(), b.end());
   }
   return out;

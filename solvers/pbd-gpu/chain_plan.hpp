@@ -27,7 +27,7 @@ struct ChainCloth {
   std::vector<std::uint32_t> welded;  ///< vertices that are not their own particle
   const Link& link(std::uint32_t a, std::uint32_t b) const;
 };
-/// Without welds where hands hold vertices: each goes its own way.
+/// Without welds where hands hold vertices: each moves by itself.
 ChainCloth chain_cloth(const Scene&);
 
 /// A path of links [v0 v1], [v1 v2], ... that is best solved whole: a line of a grid, or edges of a mesh that go on as
@@ -49,10 +49,10 @@ struct ChainFamily {
 /// wanted last: the order in which families are solved.
 std::vector<ChainFamily> families_of(std::vector<Strand> strands, std::size_t vertices, std::uint32_t block);
 
-/// What a kernel reads of a family: whole chains in blocks, filled up with CHAIN_NOBODY. With `everybody` also the
+/// What a kernel reads of a family: whole chains in blocks, filled up with CHAIN_NO_VERTEX. With `with_others` also the
 /// vertices that are on no chain.
 std::vector<ChainEntry> entries_of(const ChainFamily&, const Scene&, const ChainCloth&, std::uint32_t block,
-                                   bool everybody);
+                                   bool with_others);
 
 /// Tethers (Kim, Chentanez & Müller 2012) vertex by vertex: to the nearest pinned vertex of each connected group of
 /// them.

@@ -80,7 +80,7 @@ void Chains::count_vertices() {
   for (Family& f : families_) {
     f.vertices = f.free = 0;
     for (std::uint32_t k = f.first_entry; k < f.first_entry + f.entries; ++k) {
-      if (entries_[k].vertex == CHAIN_NOBODY) continue;
+      if (entries_[k].vertex == CHAIN_NO_VERTEX) continue;
       f.vertices += 1;
       f.free += w[entries_[k].vertex] > 0 ? 1 : 0;
     }

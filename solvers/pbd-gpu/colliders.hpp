@@ -32,9 +32,9 @@ struct ShapeBuffer {
 
 /// What the cloth touches, on the device: of each kind of collider one buffer, only if the scene has that kind.
 ///
-/// What stands still is written once. What moves is written by the host into a mapped buffer each frame and copied to
-/// the device in the frame's stage UploadColliders: read in place it would cross the bus once for every cache miss of
-/// every kernel of the frame instead of once. Of a skinned mesh the joints' matrices travel (48 B each); the stage
+/// Static colliders are written once. Dynamic ones are written by the host into a mapped buffer each frame and copied
+/// to the device in the frame's stage UploadColliders: read in place it would cross the bus once for every cache miss
+/// of every kernel of the frame instead of once. Of a skinned mesh the joints' matrices travel (48 B each); the stage
 /// SkinHand makes vertices of them.
 class ColliderBuffers {
  public:

@@ -172,8 +172,8 @@ void GpuSolver::read_state(ClothState& state) const {
   state.position.assign(3 * n, kMissing);
   state.velocity.assign(3 * n, kMissing);
   if (run(*download_) != StepStatus::Ok) {
-    // A lost device has no state. Where nobody has been told yet, numbers that are none would pass for the solver's
-    // own.
+    // A lost device has no state. If the loss was not reported yet, it has to be now, or undefined numbers would be
+    // taken for the solver's state.
     if (last_ != StepStatus::Ok) return;
     throw Error("solver " + info_.name + ": the device was lost, or did not answer in time, when its state was read",
                 ExitCode::CheckFailed);

@@ -160,7 +160,7 @@ vulkan::Groups Lines::all_groups() const {
   return vulkan::groups_for(chains, shape_[0].chains_a_group());
 }
 
-/// False where the device does not run all workgroups at once, or nobody can tell.
+/// False where the device does not run all workgroups at once, or where that is unknown.
 bool Lines::add_resident() {
   if (device().subgroup == 0) return false;
   const LineShape shape = pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), wish(), device());

@@ -38,7 +38,7 @@ class Lines {
   Traffic pass_traffic(std::uint32_t pass) const;
   Traffic rests_traffic() const;
   std::uint32_t families() const { return scene_.needs.has(Feature::Shear) ? 4 : 2; }
-  /// Diagonals first: threads have the last word, columns before rows.
+  /// Diagonals are solved first, then columns, then rows: the constraints along warp and weft are satisfied best.
   std::uint32_t family_of(std::uint32_t pass) const { return families() - 1 - pass % families(); }
   vulkan::Groups all_groups() const;
   std::string kernel(const char* name, bool shuffles) const;

@@ -127,19 +127,19 @@ struct LineConstants {
   uint iterations;
   uint first_pass, passes;  // of this dispatch; each substep has a pass an
                             // iteration and family
-  uint patience;            // looks at who has come to a barrier of the whole dispatch
+  uint patience;            // polls of a barrier of the whole dispatch before it times out
   float per_h;              // 1/h
 };
 
 /// A vertex of a chain and the link to the next entry; `rest` below 0: there is
 /// none.
 struct ChainEntry {
-  uint vertex;       // CHAIN_NOBODY: filling
+  uint vertex;       // CHAIN_NO_VERTEX: filling
   float rest;        // [m]
   float compliance;  // [m/N]
   float firmness;    // least compliance over h^2, as a share of the inverse mass
 };
-#define CHAIN_NOBODY 0xffffffffu
+#define CHAIN_NO_VERTEX 0xffffffffu
 
 /// A vertex that holds another within `reach` [m]; none: reach below 0.
 struct TetherEnd {
@@ -163,7 +163,7 @@ struct ChainConstants {
   uint first_entry;   // of the family, where a dispatch is one
   uint rounds;        // of cyclic reduction: 2^rounds links or more are in its longest
                       // chain
-  uint patience;      // looks at who has come to a barrier of the whole dispatch
+  uint patience;      // polls of a barrier of the whole dispatch before it times out
   uint families;
   uint first_pass, passes;  // of this dispatch; each substep has a pass a family
 };

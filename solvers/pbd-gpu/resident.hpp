@@ -12,8 +12,8 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Looks at who has come to a barrier of the whole dispatch, at loading and in a frame: some 10 ms and 1 s. A look
-/// takes some 0.5 us on a GPU and 3 ns on a CPU.
+/// Most polls of a barrier of the whole dispatch before it times out, at loading and in a frame: some 10 ms and 1 s. A
+/// poll takes some 0.5 us on a GPU and 3 ns on a CPU.
 struct Patience {
   std::uint32_t at_loading, in_a_frame;
 };
@@ -80,7 +80,7 @@ bool runs_at_once(const FrameBuilder& frame, const std::string& kernel_name, std
   return failed == 0;
 }
 
-/// Where they meet, and where they say that somebody did not come.
+/// Buffers of the barrier: its counter, and the flag that it timed out.
 inline void add_meeting(FrameBuilder& frame) {
   frame.add_buffer(BIND_MEETING, "meeting", 8);
   frame.set_missed(frame.add_host_buffer("missed", 4, BIND_MISSED));

@@ -309,7 +309,7 @@ void XpbdContact::record_substep(int s, int substeps, double dt_s) {
   // What is read and written whatever the cloth does; colliders that come near cost more.
   const double shapes = 32.0 * colliders_.planes.count + 32.0 * colliders_.spheres.count +
                         80.0 * colliders_.boxes.count + 64.0 * colliders_.capsules.count;
-  // Later in a frame only who came near something looks round again.
+  // Later in a frame only vertices that came near a collider search again.
   const bool has_meshes = meshes();
   const double look = s == 0 ? shapes + (has_meshes ? 4.0 * blocks_of(k.words) : 0.0) : 0.0;
   const double ways = (colliders_.capsules.count > 0 ? 16 : 0) + (has_meshes && !scene_.motion.empty() ? 16 : 0);

@@ -25,8 +25,8 @@ std::vector<std::uint32_t> edge_marks(const std::vector<double>& positions,
 std::uint32_t samples_needed(const Scene& scene, int wanted);
 
 /// Contact of `xpbd` with what is in the scene. It works on positions, velocities and where the vertices were at the
-/// substep's start, and knows nothing of how constraints are solved: it comes last in a substep and has the last word.
-/// README, "Contact in xpbd", has the method.
+/// substep's start, and knows nothing of how constraints are solved: it runs last in a substep, so its corrections
+/// stand. README, "Contact in xpbd", has the method.
 class XpbdContact {
  public:
   /// Adds buffers, the stages BroadPhase (meshes only) and Contact, and their kernels. Positions (.w = inverse mass)

@@ -160,7 +160,7 @@ SolverInfo xpbd_info() {
        "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
       {"substeps", "0", "substeps a frame; 0: by quality"},
       {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
-      {"batch", "1", "as many copies of the cloth in one dispatch (metrics are of the first): throughput"},
+      {"batch", "1", "number of copies of the cloth in one dispatch, to measure throughput; metrics are of the first"},
       {"contact_samples", "-1",
        "points on each edge that take part in contact beside its two vertices, 0 to 16; -1: as colliders ask"},
       {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},

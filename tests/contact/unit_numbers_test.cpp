@@ -100,7 +100,7 @@ TEST(UnitNumbers, AnalyticCapsule) {
   EXPECT_NEAR(s.area_fraction, s.area_m2 / 0.35, 1e-12);
 }
 
-// Two spheres far enough apart count as two, and a duplicate changes nothing but who is named.
+// Two spheres far enough apart count as two, and a duplicate changes nothing but the name.
 TEST(UnitNumbers, UnionOfSpheres) {
   const Mesh cloth = sheet(40, 20, {-0.5, 0.09, -0.25}, {0, 0, 0.5}, {1, 0, 0});
   const Capsule left = sphere({-0.22, 0, 0}, kRadius), right = sphere({0.21, 0, 0}, kRadius);

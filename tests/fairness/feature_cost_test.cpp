@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Every, NoOp, ::testing::ValuesIn(cases()), [](const aut
 });
 
 std::vector<double> run(const SolverEntry& entry, const Scene& scene, int frames) {
-  // As in the study: what a solver makes of a scene's step by itself may depend on what the scene has.
+  // As in the study: the substeps that a solver chooses by itself may depend on the features of the scene.
   const json settings = entry.info.name == "xpbd" ? json{{"substeps", 10}} : json::object();
   const auto solver = entry.make(complete_settings(entry.info, settings), {});
   solver->load(scene);
@@ -160,7 +160,7 @@ TEST(QuickStudy, PairsCellsAndReportsTheirCost) {
   }
   EXPECT_TRUE(rows[0]["no_op"].get<bool>()) << "a free fall feels no bending";
   EXPECT_FALSE(rows[1]["no_op"].get<bool>()) << "links that any rigidity adds are as stiff as all others";
-  EXPECT_FALSE(fs::exists(dir / "report/work-precision.md")) << "a comparison of costs ranks nobody by error";
+  EXPECT_FALSE(fs::exists(dir / "report/work-precision.md")) << "a comparison of costs has no ranks by error";
   fs::remove_all(dir);
 }
 

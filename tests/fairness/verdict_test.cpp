@@ -57,7 +57,7 @@ TEST(Verdict, WithoutACardNobodyIsFlagged) {
   EXPECT_EQ(stiffness_flag(solver_materials(cells), "a", strip), "") << "no card at the default setting";
 }
 
-/// Nobody lists scenes: which stiffness a truth depends on is found by changing it.
+/// Scenes are not listed by hand: which stiffness a truth depends on is found by changing it.
 TEST(Dependence, IsMeasuredOnEveryTruth) {
   const auto need_of = [](const std::string& name, const std::vector<std::string>& set = {}) {
     const Scene s = load_scene("validation/" + name, set);

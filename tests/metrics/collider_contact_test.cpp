@@ -107,7 +107,7 @@ TEST(ColliderContact, NotFiniteIsNaNAndStaysSoForCrossings) {
   EXPECT_TRUE(std::isnan(contact.probe(2, x).length_m));
   const SceneContact healed = contact.probe(3, initial_positions(scene));
   EXPECT_EQ(healed.length_m, 0);
-  EXPECT_TRUE(std::isnan(healed.tunnelled_fraction)) << "nobody knows which way it went";
+  EXPECT_TRUE(std::isnan(healed.tunnelled_fraction)) << "the side it went to is unknown";
 
   const Scene plane = load_scene("contact/plane", {"cloth.grid=[9,9]"});
   const SceneContact s = ColliderContact(plane).probe(0, x);

@@ -1,4 +1,4 @@
-// From a scene file to the result file: a cloth that goes where it is told meets colliders, and the file says how far.
+// From a scene file to the result file: a cloth with a prescribed motion meets colliders, and the file says how far.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -121,7 +121,7 @@ TEST(ContactScene, ASheetLoweredIntoASphereGivesTheClosedForms) {
   EXPECT_NEAR(at("depth_p99_m"), 0.1 - std::sqrt(0.0081 + 0.01 * 0.0019), 1e-4);
   EXPECT_TRUE(std::isnan(at("tunnelled_fraction_max"))) << "not defined for a sphere";
   EXPECT_FALSE(has_series(r, "tunnelled_fraction"));
-  EXPECT_FALSE(has_series(r, "self_contact_pairs")) << "who does not ask does not pay";
+  EXPECT_FALSE(has_series(r, "self_contact_pairs")) << "a scene without it does not pay for it";
   EXPECT_NEAR(at("stretch_max"), 0, 1e-12);
   EXPECT_EQ(r.outcome.expect, "kept");
   EXPECT_EQ(at("expect.outcome"), 1);

@@ -23,7 +23,7 @@ const std::vector<double>& series(const AccuracyPass& p, const std::string& name
   throw std::runtime_error("no metric " + name);
 }
 
-/// The accuracy pass of a cloth that goes where it is told.
+/// The accuracy pass of a cloth with a prescribed motion.
 AccuracyPass passed(const Scene& scene, const Path& path, double still_speed = 0,
                     const std::vector<double>& margins = {},
                     const nlohmann::json& settings = nlohmann::json::object()) {

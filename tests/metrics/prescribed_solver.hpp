@@ -11,7 +11,7 @@ namespace clothbench {
 /// Positions of the cloth at the end of frame `frame` (0 = initial state), from those at the start.
 using Path = std::function<void(int frame, std::vector<double>& position)>;
 
-/// A solver whose cloth goes where it is told, whatever is in the way: what the metrics say of it is known.
+/// A solver that gives its cloth a prescribed motion, whatever is in the way, so that the values of metrics are known.
 class PrescribedSolver final : public ClothSolver {
  public:
   PrescribedSolver(SolverInfo info, Path path, std::vector<double> contact_margins_m = {})

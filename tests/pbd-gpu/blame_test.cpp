@@ -1,4 +1,4 @@
-// Cells of one run share a device: whom its validation messages are held against.
+// Cells of one run share a device: a validation message fails the right one.
 #include <unistd.h>
 
 #include <filesystem>

@@ -49,7 +49,7 @@ TEST(ChainPlan, TakesTheFourFamiliesOfAGridWhole) {
   const Scene s = uneven(sheet(17, 9), 4, 0.3);
   const std::vector<ChainFamily> families = plan_of(s, chain_cloth(s), 256);
   ASSERT_EQ(families.size(), 4u);
-  EXPECT_EQ(families[3].chains.size(), 9u) << "rows have the last word";
+  EXPECT_EQ(families[3].chains.size(), 9u) << "rows are solved last";
   EXPECT_EQ(families[3].longest(), 16u);
   EXPECT_EQ(families[2].chains.size(), 17u);
 }
@@ -77,15 +77,15 @@ TEST(ChainPlan, PacksChainsIntoBlocksAndFillsThemUp) {
   const Scene s = mesh_sheet(20);
   const ChainCloth cloth = chain_cloth(s);
   const std::vector<ChainFamily> families = plan_of(s, cloth, 64);
-  for (const bool everybody : {false, true}) {
-    const std::vector<ChainEntry> entries = entries_of(families[0], s, cloth, 64, everybody);
+  for (const bool with_others : {false, true}) {
+    const std::vector<ChainEntry> entries = entries_of(families[0], s, cloth, 64, with_others);
     ASSERT_EQ(entries.size() % 64, 0u);
     std::set<std::uint32_t> seen;
     for (std::size_t k = 0; k < entries.size(); ++k) {
       EXPECT_TRUE(k % 64 != 63 || entries[k].rest < 0) << "a chain goes on into the next block";
-      EXPECT_TRUE(entries[k].vertex == CHAIN_NOBODY || seen.insert(entries[k].vertex).second);
+      EXPECT_TRUE(entries[k].vertex == CHAIN_NO_VERTEX || seen.insert(entries[k].vertex).second);
     }
-    EXPECT_EQ(seen.size() == s.cloth.vertex_count(), everybody);
+    EXPECT_EQ(seen.size() == s.cloth.vertex_count(), with_others);
   }
 }
 
@@ -174,7 +174,7 @@ TEST_F(Chained, SliversDoNotThrowWhatHangsOnThem) {
 }
 
 /// As of lines: the same bits as a dispatch a family, or a refusal, or a frame that says it was lost. One workgroup
-/// waits for nobody.
+/// has none to wait for.
 TEST_F(Chained, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
   int agreed = 0;
   for (const Scene& s : {with_damping(mesh_sheet(12)), with_damping(mesh_sheet(20))}) {

@@ -201,7 +201,7 @@ TEST_F(LineScenes, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
     EXPECT_EQ(state.velocity, expected.velocity) << threads;
     ++agreed;
   }
-  EXPECT_GE(agreed, 1) << "one workgroup waits for nobody";
+  EXPECT_GE(agreed, 1) << "one workgroup has none to wait for";
 }
 
 TEST_F(LineScenes, OneDispatchAFrameOrFourASubstep) {

@@ -1,5 +1,5 @@
-// Self-contact of `xpbd`: layers meet and stay apart however fast they come, what does not touch does not move, and who
-// does not ask does not pay.
+// Self-contact of `xpbd`: layers meet and stay apart however fast they come, what does not touch does not move, and a
+// scene without it does not pay for it.
 #include "xpbd_self_contact.hpp"
 
 #include <algorithm>

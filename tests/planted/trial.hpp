@@ -10,7 +10,7 @@
 
 namespace clothbench {
 
-/// A scene and who runs it.
+/// A scene and the solver that runs it.
 struct Stage {
   std::string name;
   Scene scene;

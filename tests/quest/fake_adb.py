@@ -70,7 +70,7 @@ def clock():
 
 
 def unplugged(world):
-    gap = PLAN.get("unplugged")  # [from, to] seconds after the app's start; to null: for good
+    gap = PLAN.get("unplugged")  # [from, to] seconds after the app's start; to null: for the rest of the run
     if not gap or world["started"] is None:
         return False
     if os.path.exists(os.path.join(HOME, "plugged-in")):

@@ -181,7 +181,7 @@ class Penetration(unittest.TestCase):
         self.assertEqual(marks(svg["penetration-rooms"], "failed"), 0)
         for part in ("paper whole-room", "desk-corner-low", "contour [mm]", "tunnelled [%]", "tunnelled [mm]", "time [s]"):
             self.assertIn(part, words(svg["penetration-rooms"]))
-        self.assertEqual(marks(svg["penetration-capsules"], "failed"), 2, "who failed is marked in every panel")
+        self.assertEqual(marks(svg["penetration-capsules"], "failed"), 2, "a failed solver is marked in every panel")
         self.assertEqual(marks(svg["penetration-grip"], "lines"), 4)
         self.assertIn("No cell of this set-up", words(svg["penetration-hand"]))
         alone = draw(penetration=[{"kind": "hand", "title": "A hand", "scenes": [{"name": "push", "rows": push[0]["rows"][1:]}]}])[0]

@@ -93,7 +93,7 @@ TEST_F(ReportFiles, WritesEveryFile) {
   EXPECT_NE(md.find("diverged at 3"), std::string::npos);
   EXPECT_NE(md.find("planned, not run"), std::string::npos);
   EXPECT_EQ(md.find("gravity-77-single"), md.rfind("gravity-77-single"))
-      << "of a scene that nobody ran there is nothing to tabulate";
+      << "a scene without runs has nothing to tabulate";
   EXPECT_EQ(parse_csv(text(out / "memory.csv")).size(), 6u);
   if (can_draw()) {
     EXPECT_NE(text(out / "fig4.svg").find("<svg"), std::string::npos);

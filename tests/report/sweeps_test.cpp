@@ -145,7 +145,7 @@ TEST(Turned, VerticesOfTheSamePlaceAreCompared) {
   EXPECT_EQ(turned_json(turned_pairs(set_ups(cells)))[0]["apart_end"], nullptr);
 }
 
-/// A report of files: a pulled strip that nobody was timed on is told by speed, one that was by time.
+/// A report of files: errors of a pulled strip without timed runs are given by speed, of one with them by time.
 TEST(PulledStrip, UntimedOnesAreNoDiagram) {
   const fs::path dir = fs::temp_directory_path() / ("clothbench-pulled-strip-" + std::to_string(::getpid()));
   fs::remove_all(dir);

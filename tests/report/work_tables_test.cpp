@@ -54,10 +54,10 @@ TEST(WorkTable, FindsTheFrontAndTimesToAccuracy) {
   EXPECT_EQ(row_of(t, "a")[3], "6e+03 (best)");
   EXPECT_EQ(row_of(t, "a")[4], "0.008 (good)") << "6 s a second is not real time";
   EXPECT_EQ(row_of(t, "a")[6], "1 of 5");
-  EXPECT_EQ(row_of(t, "b")[5], "≤ 0.002 (tiny)") << "nobody is better than the mesh itself";
+  EXPECT_EQ(row_of(t, "b")[5], "≤ 0.002 (tiny)") << "no solver is better than the mesh itself";
   EXPECT_EQ(row_of(t, "b")[6], "1 of 2");
   EXPECT_EQ(diagrams[0].refused(), "")
-      << "the best error is below 3 U_ref, and so below the mesh's own: nobody is ranked there";
+      << "the best error is below 3 U_ref, and so below the mesh's own: no solver is ranked there";
 }
 
 TEST(WorkTable, TimesArePipelinedWhereASolverCan) {
@@ -86,7 +86,7 @@ TEST(BudgetTable, NamesWhoHasTheSmallerErrorAtAnyBudget) {
   EXPECT_EQ(row_of(t, "b").back(), "a: 0.3 at 0.1 ms, where it has no result");
   const std::vector<CellRecord> small = {cell("a", "x", 1e-4, 1e-6), cell("b", "x", 1e-4, 1e-9)};
   EXPECT_EQ(row_of(budget_table(work_diagrams(small)), "a").back(), "never")
-      << "below the mesh's own error nobody is better";
+      << "below the mesh's own error no solver is better";
   EXPECT_EQ(row_of(budget_table(work_diagrams(small)), "a").at(3), "≤ 0.002");
 }
 

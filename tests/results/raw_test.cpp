@@ -164,7 +164,7 @@ TEST_F(Raw, AFolderThatTakesNothingIsAnErrorAndKeepsWhatIsThere) {
   writer.write_trial(r.trials[0]);
   const fs::path part = full / (cell_name(r.header) + ".part");
   if (geteuid() == 0) {
-    // Root may write anywhere; a file in the way of the temporary one cannot be opened for writing by anybody.
+    // Root may write anywhere; but a folder in place of the temporary file cannot be opened for writing.
     fs::create_directories(part / ("trial-1.raw.tmp." + std::to_string(getpid())));
   } else {
     fs::permissions(part, fs::perms::owner_read | fs::perms::owner_exec);

@@ -55,7 +55,8 @@ TEST_F(Jobs, WhatStartedWhatIsOneJob) {
   process(6, "clothbench", 5);
   process(7, "clothbench", 5);
   EXPECT_EQ(jobs_in(dir_, 5), 1) << "its own workers";
-  EXPECT_EQ(jobs_in(dir_, 6), 2) << "a worker shares the machine with another, not with who waits for both";
+  EXPECT_EQ(jobs_in(dir_, 6), 2)
+      << "a worker shares the machine with another, not with the process that waits for both";
   EXPECT_EQ(jobs_in(dir_ / "nothing", 6), 1);
 }
 

@@ -18,7 +18,7 @@
 namespace clothbench {
 namespace {
 
-/// What becomes of a cloth that else stands still, in a scene that was loaded.
+/// The fate of a cloth at rest, in a scene that was loaded.
 using Fate = std::function<StepStatus(const Scene&, ClothState&)>;
 
 class Doomed final : public ClothSolver {

@@ -85,7 +85,7 @@ std::string message_of(const std::string& text, StudyOptions options = {}) {
   return "";
 }
 
-/// Names of who runs what, with the sides of the cloth they get.
+/// Names of solvers and scenes, with the sides of the cloth they get.
 std::vector<std::string> cells(const Study& s) {
   std::vector<std::string> out;
   for (const Study::Item& item : s.scenes)

@@ -1,4 +1,4 @@
-// What becomes of input that no cloth should be made of: every case is refused with an error that says where, or
+// Input that no cloth should be made of: every case is refused with an error that says where, or
 // simulated sanely by every solver that claims what it needs. The same table stands in scenarios/stability/README.md.
 #include <gtest/gtest.h>
 
@@ -137,7 +137,7 @@ TEST_P(BadInput, IsRefusedByNameOrSimulatedSanely) {
     expect_sane(scene, entry);
     ran += entry.make && unsupported(entry.info, scene.needs).empty() && is_ours(entry.info);
   }
-  EXPECT_GE(ran, 1) << "nobody answers for this";
+  EXPECT_GE(ran, 1) << "no solver ran this";
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, BadInput, ::testing::Range<std::size_t>(0, cases().size()), [](const auto& p) {

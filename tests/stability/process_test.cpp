@@ -1,4 +1,4 @@
-// What becomes of a cell whose process does not end well: a row with its reason, and the study goes on.
+// A cell whose process fails becomes a row with its reason, and the study goes on.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

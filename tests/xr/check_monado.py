@@ -1,4 +1,4 @@
-"""`clothbench xr` on Monado, an OpenXR runtime that nobody here wrote: its simulated headset, without hands and without a display.
+"""`clothbench xr` on Monado, an independent OpenXR runtime: its simulated headset, without hands and without a display.
 
 usage: check_monado.py COMMAND
 

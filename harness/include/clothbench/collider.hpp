@@ -59,7 +59,7 @@ struct Collider {
   bool moves() const { return !capsules.empty() || (mesh && mesh->skinned()); }
 };
 
-/// Where one collider is at one instant; empty for what stands still.
+/// Where one collider is at one instant; empty for a static collider.
 struct ColliderPose {
   std::vector<Capsule> capsules;
   std::vector<Affine> joints;  ///< of a skinned mesh, joint_count of them

@@ -26,7 +26,7 @@ struct StageRecord {
   std::vector<std::string> serves;
   int dispatches = 0;
   /// What its bytes are: "computed", "at least" (what it reads is a lower bound), or "" where it has none or the file
-  /// is of before they were told apart.
+  /// is older than this distinction.
   std::string bytes = {};
 };
 

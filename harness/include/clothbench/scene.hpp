@@ -12,7 +12,7 @@
 
 namespace clothbench {
 
-/// How the paper's "single-sided" and "double-sided" cloths are told apart; see docs of `cloth.sides` in the schema.
+/// The paper's "single-sided" and "double-sided" cloths; see docs of `cloth.sides` in the schema.
 enum class Sides { Single, DoubleDuplicated, Double };
 
 /// Where vertices start that do not start at rest: everything that is not pinned, unless said otherwise. Seeded, so
@@ -108,8 +108,8 @@ struct Pins {
   std::vector<std::uint32_t> vertices;
 };
 
-/// Vertices that hands hold and move. They are held from t = 0 (see FrameMotion::grip_held) and free for good once let
-/// go.
+/// Vertices that hands hold and move. They are held from t = 0 (see FrameMotion::grip_held) until they are let go, and
+/// are never held again.
 struct Grips {
   std::vector<std::uint32_t> vertices;
 };

@@ -11,7 +11,7 @@ layout(location = 3) in float in_value;
 layout(location = 4) flat in int in_look;
 layout(location = 0) out vec4 out_colour;
 
-// sRGB, as they are to look; orange and blue can be told apart by everybody.
+// sRGB, as they are to look; orange and blue are distinct for colour-blind readers too.
 const vec3 kFront[2] = vec3[](vec3(0.80, 0.42, 0.13), vec3(0.97, 0.80, 0.58));
 const vec3 kBack[2] = vec3[](vec3(0.16, 0.41, 0.69), vec3(0.64, 0.79, 0.93));
 const vec3 kCollider = vec3(0.72, 0.71, 0.68), kMark = vec3(0.20, 0.20, 0.22), kNoValue = vec3(0.45, 0.45, 0.45);

@@ -85,7 +85,7 @@ void stretch(ChainEntry entry, uint rounds) {
 
 void pass(uint number, bool first, uint rounds) {
   ChainEntry entry = LOAD(16u, entries, number);
-  bool is = entry.vertex != CHAIN_NOBODY;
+  bool is = entry.vertex != CHAIN_NO_VERTEX;
   uint i = is ? entry.vertex : 0u;
   pos = vel = rest_pos = rest_vel = vec3(0.0);
   w = 0.0;

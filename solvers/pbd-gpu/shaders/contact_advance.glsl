@@ -52,7 +52,7 @@ vec3 search(vec3 from, vec3 to, uint owner, bool wanted, inout vec3 vel, out flo
     bool by_other = !by_nearest && other.gap < kFar && (!first || dot(other.n, nearest.n) < kOther);
     if ((by_nearest || by_other) && k + 1u < kSteps) {
       if (by_nearest) heed(nearest, vel); else heed(other, vel);
-      // What stands still is free of a way shorter than the distance to the nearest of it. Else: is it free now?
+      // A static collider cannot be reached by a displacement shorter than its distance. Else: is it free now?
       float spare = nearest.gap + (1.0 - kKeep) * nearest.margin;
       if (MOVING == 0u && !crowded && spare > 0.0 && dot(left, left) < spare * spare) {
         end = at + left;
@@ -77,7 +77,7 @@ vec3 search(vec3 from, vec3 to, uint owner, bool wanted, inout vec3 vel, out flo
   return end;
 }
 
-/// The same. `spare`: contact with anything is at least this far from `from`. Who goes less needs not look round.
+/// The same. `spare`: contact with anything is at least this far from `from`. A vertex that moves less needs no search.
 vec3 advance(vec3 from, vec3 to, uint owner, bool wanted, inout vec3 vel, inout float spare) {
   float others = p.part * carried();
   bool looks = wanted && !(distance(from, to) + others < spare);

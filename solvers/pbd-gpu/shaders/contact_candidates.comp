@@ -47,6 +47,6 @@ void main() {
     if (lane() == 0u) STORE4(candidates, block * n + i, words);
   }
   nearest = least_of_lanes(nearest);
-  // An empty list holds as far as the nearest cluster: what is far away stops nobody.
+  // An empty list holds as far as the nearest cluster: no collider is nearer than that.
   if (lane() == 0u) STORE16(reaches, i, vec4(from, max(reach, nearest)));
 }

@@ -1,10 +1,11 @@
 // A barrier over all workgroups of a dispatch. Vulkan does not promise that they run at once; whether they do is tried at
-// loading (`p.passes` = 0), and waiting is bounded: who waits in vain says so and returns, and the host sees it.
+// loading (`p.passes` = 0), and waiting is bounded: a thread that waits in vain sets a flag for the host and returns.
 layout(std430, binding = BIND_MEETING) coherent volatile buffer Meeting { uint arrived, left; };
 layout(std430, binding = BIND_MISSED) coherent volatile writeonly buffer Missed { uint missed; };  // in host memory
 shared bool all_came;
 
-/// What any thread of the dispatch wrote before, all read after. False where somebody did not come in `p.patience` looks.
+/// Writes of all threads before the barrier are visible to all after it. False if a workgroup did not arrive within
+/// `p.patience` polls.
 /// The writers' memoryBarrierBuffer() makes coherent writes visible to any later coherent read of any invocation (GLSL
 /// 4.60, 8.17); readers need none, and one would cost a tenth of the frame.
 bool meet() {

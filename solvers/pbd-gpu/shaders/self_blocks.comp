@@ -12,7 +12,7 @@ layout(push_constant) uniform Push { SelfConstants p; };
 void main() {
   uint k = item();
   if (k >= p.blocks) return;
-  // All of the way may be gone, until somebody knows better.
+  // The whole step is allowed until a block finds a smaller fraction.
   if (k == 0u) STORE4(part, 0, floatBitsToUint(1.0));
   uint column = k % p.block_columns * p.side, row = k / p.block_columns * p.side;
   vec3 low = vec3(1e30), high = vec3(-1e30), least = vec3(1e30), most = vec3(-1e30);

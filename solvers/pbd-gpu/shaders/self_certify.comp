@@ -42,7 +42,7 @@ void meet(bool edges) {
   bool inside;
   vec3 n = weighted(weights_of(edges, from, inside), from);
   float d = length(n);
-  // What touches already is nobody's to keep apart.
+  // Pieces that touch already are not kept apart.
   if (!(d > kTouching * p.thickness_m)) return;
   float most = by_plane(edges, n);
   if (most == 1.0) return;

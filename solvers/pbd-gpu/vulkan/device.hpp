@@ -26,8 +26,8 @@ class Failure : public Error {
 /// Throws Failure naming the call unless `result` is VK_SUCCESS.
 void check(VkResult result, const char* call);
 
-/// Who makes the Vulkan objects of a Device where that is not Vulkan itself: an OpenXR runtime adds extensions that it
-/// needs and says which GPU shows its pictures (XR_KHR_vulkan_enable2).
+/// Creates the Vulkan objects of a Device in place of Vulkan itself: an OpenXR runtime adds extensions that it needs
+/// and says which GPU shows its pictures (XR_KHR_vulkan_enable2).
 class Maker {
  public:
   virtual ~Maker() = default;

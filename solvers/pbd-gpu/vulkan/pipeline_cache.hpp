@@ -15,7 +15,7 @@ std::filesystem::path pipeline_cache_file(const VkPhysicalDeviceProperties&);
 /// 9.6.5): a cache may be lost, never wrong.
 std::vector<std::uint8_t> read_pipeline_cache(const std::filesystem::path&, const VkPhysicalDeviceProperties&);
 
-/// Writes beside the file and renames, so that nobody reads half of it. False where that cannot be.
+/// Writes beside the file and renames, so that no reader sees half of it. False if that fails.
 bool write_pipeline_cache(const std::filesystem::path&, const std::vector<std::uint8_t>& data);
 
 }  // namespace clothbench::vulkan

@@ -149,7 +149,7 @@ function notes_of(diagram) {
     return parts.length ? [`${label}: ${parts.join(', ')}.`] : [];
   });
   return [
-    diagram.refused ? `Ranks nobody: ${diagram.refused}.` : '', out.join(' '),
+    diagram.refused ? `No solver is ranked: ${diagram.refused}.` : '', out.join(' '),
     ...Object.entries(diagram.not_ranked).map(([solver, why]) => `${solver} is shown but not ranked: ${why}.`),
     ...floors_of(diagram, good).filter(f => f.far).map(f => `Below the axis: ${f.what}.`)
   ].filter(Boolean);
@@ -164,7 +164,7 @@ export function work_figure(diagrams) {
     labels: unique(d.points.map(p => p.solver)),
     empty: data_of(d, 'wall').good.length ? '' : 'No cell of this scene has an error and a time.',
     notes: [
-      `${d.scene}. Thick: fronts; dashed: by the GPU’s own clock; shaded: not told apart; ×: failed.`, ...notes_of(d),
+      `${d.scene}. Thick: fronts; dashed: by the GPU’s own clock; shaded: not distinguished; ×: failed.`, ...notes_of(d),
       device_note(d.points)
     ],
     make: w => work_spec(d, 'wall', 'paper', w)
@@ -185,7 +185,7 @@ export function work_figure(diagrams) {
     caption:
         'Every point a setting, thick each solver’s front, dashed the same by the GPU’s own clock; crosses on the ' +
         'upper edge: cells that failed, by their time where they have one, else on the right. Dotted: real time ' +
-        '(1000 ms/s). Shaded: below the floors errors are not told apart.',
+        '(1000 ms/s). Shaded: below the floors errors are not distinguished.',
     hint: 'Hover for the setting.',
     rows: state => [
         ['scene', 'solver', 'setting', 'status', 'ms_per_s', 'error', 'on_front'],
