@@ -44,7 +44,7 @@ def check_summary(path, faults):
         faults.append(f"{path}: {crashed} processes crashed or hung; expected 0")
 
 
-def check_cells(path, solver, faults):
+def check_runs(path, solver, faults):
     rows = table(path, CELLS, faults)
     mine = [r for r in rows if r["solver"] == solver]
     if rows and not any(r["status"] not in ("unsupported", "missing") for r in mine):
@@ -66,8 +66,8 @@ def check_across(path, solver, faults):
         if not any(r["case"] == case for r in rows):
             faults.append(f"{path}: no row of {case} by {solver}")
     for r in rows:
-        if r["verdict"] != "kept":
-            faults.append(f"{path}: {r['case']} {solver} {r['setting']}: {r['figure']}: {r['verdict'] or 'no verdict'}; expected kept")
+        if r["verdict"] != "pass":
+            faults.append(f"{path}: {r['case']} {solver} {r['setting']}: {r['figure']}: {r['verdict'] or 'no verdict'}; expected pass")
 
 
 def main():
@@ -76,7 +76,7 @@ def main():
     solver = sys.argv[3] if len(sys.argv) == 4 else "xpbd"
     report, faults = pathlib.Path(sys.argv[2]), []
     check_summary(pathlib.Path(sys.argv[1]), faults)
-    check_cells(report / "stability.csv", solver, faults)
+    check_runs(report / "stability.csv", solver, faults)
     check_across(report / "stability-across.csv", solver, faults)
     for fault in faults:
         print(fault, file=sys.stderr)

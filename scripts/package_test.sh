@@ -66,17 +66,17 @@ refuses_without_data() {
 study_and_report() {
   quietly as_user clothbench study table3 --quick --out study
   quietly as_user clothbench report study -o report
-  local report=$root$home/report cells
-  cells=$(find "$root$home/study" -name '*.h5' | wc -l)
-  [ "$cells" -gt 10 ] || fail "the study has $cells cells"
-  [ "$(($(wc -l <"$report/cells.csv") - 1))" = "$cells" ] || fail "report/cells.csv has not the study's $cells cells"
+  local report=$root$home/report runs
+  runs=$(find "$root$home/study" -name '*.h5' | wc -l)
+  [ "$runs" -gt 10 ] || fail "the study has $runs runs"
+  [ "$(($(wc -l <"$report/runs.csv") - 1))" = "$runs" ] || fail "report/runs.csv has not the study's $runs runs"
   for solver in ballistic bullet-soft paper xpbd; do
     grep -qE "^\| $solver \| single \|.* [0-9.]+ \|" "$report/table3.md" || fail "report/table3.md: no values of $solver"
   done
   [ -s "$report/index.html" ] || fail "no report/index.html"
   [ "$(grep -c 'Figures were left out: ' "$report/report.md")" = 1 ] || fail "report/report.md: expected one sentence on what is missing"
   ! ls "$report"/*.svg >/dev/null 2>&1 || fail "figures, without what draws them"
-  ok "study of $cells cells, complete tables; $(grep -o 'Figures were left out: .*' "$report/report.md")"
+  ok "study of $runs runs, complete tables; $(grep -o 'Figures were left out: .*' "$report/report.md")"
 }
 
 example_plugin() {

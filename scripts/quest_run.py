@@ -101,10 +101,10 @@ def clock_offset_s(adb):
     best = None
     for _ in range(3):
         before = time.time()
-        told = formats.number(adb.shell("date +%s.%N").strip())
+        reported = formats.number(adb.shell("date +%s.%N").strip())
         took = time.time() - before
-        if told is not None and (best is None or took < best[0]):
-            best = (took, told - (before + took / 2))
+        if reported is not None and (best is None or took < best[0]):
+            best = (took, reported - (before + took / 2))
     return best[1] if best else 0.0
 
 
@@ -113,17 +113,17 @@ def listing(adb, folder):
 
 
 def follow_app(adb, a, follower):
-    """Starts the app and stays until it told its result. Returns when it was started, by the device's clock."""
+    """Starts the app and stays until it reported its result. Returns when it was started, by the device's clock."""
     adb.shell(f"am force-stop {PACKAGE}")
     follower.start_streams()
     started = time.time() + follower.offset_s
-    told = adb.shell(
+    reported = adb.shell(
         f"am start -W -n {PACKAGE}/android.app.NativeActivity -a android.intent.action.MAIN "
         f"-c android.intent.category.LAUNCHER --es args {shlex.quote(a.command)}",
         timeout=60,
     )
-    if "Error" in told:
-        raise AppFailed("the app did not start: " + next(line for line in told.splitlines() if "Error" in line))
+    if "Error" in reported:
+        raise AppFailed("the app did not start: " + next(line for line in reported.splitlines() if "Error" in line))
     follower.until_result(started)
     return started
 
@@ -166,7 +166,7 @@ def merge(a, seen, asked, follower, started, ended, enabled, texts, notes):
     vrapi = samples.vrapi_group(follower.vrapi)
     groups = [vrapi, samples.profiler_group(follower.profiler_samples()), samples.battery_group(follower.battery)]
     if follower.metrics and not follower.profiler_samples():
-        notes.append("ovrgpuprofiler offered counters and told none")
+        notes.append("ovrgpuprofiler offered counters and reported none")
     # The longest is this run's: the tool may leave a stump of what ran before.
     groups += [samples.ovr_group(max(texts, key=len), enabled, not vrapi["time_unix_s"])] if texts else []
     reasons = judge.judge(groups, asked, started + a.settle_s, ended, follower.gaps)
@@ -194,7 +194,7 @@ def metrics_offered(adb):
     ids = formats.metric_ids(adb.shell("ovrgpuprofiler -m", check=False))
     notes = []
     if not ids:
-        notes.append("ovrgpuprofiler told no metrics: no memory traffic")
+        notes.append("ovrgpuprofiler reported no metrics: no memory traffic")
     else:
         notes += [
             f"ovrgpuprofiler has no {name!r} here"

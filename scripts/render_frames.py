@@ -112,7 +112,7 @@ class Run:
         if len(self.time_s) == 0:
             sys.exit(f"{path}: its trajectory is empty")
         self.label = str(self.file.attrs["solver"]) + ("" if self.file.attrs["setting"] == "default" else f" {self.file.attrs['setting']}")
-        # Columns of the grid, from its first cell's triangles: the row below vertex 0 begins at `columns`.
+        # Columns of the grid, from its first run's triangles: the row below vertex 0 begins at `columns`.
         ids = np.unique(self.triangles[:2])
         columns = int(ids[2]) if len(ids) == 4 else 0
         self.grid = (columns, self.positions.shape[1] // columns) if columns > 1 and self.positions.shape[1] % columns == 0 else None

@@ -1,7 +1,7 @@
 #!/bin/sh
 # usage: scripts/slurm_study.sh STUDY OUT [options of `clothbench study`, such as --full or --solver xpbd]
-# One cell of the study a task of a Slurm array, all into the folder OUT on a file system that the nodes share; then whatever
-# needs all cells, and a report in OUT/report. $CLOTHBENCH: the program (default: clothbench on PATH, else this tree's build).
+# One run of the study a task of a Slurm array, all into the folder OUT on a file system that the nodes share; then whatever
+# needs all runs, and a report in OUT/report. $CLOTHBENCH: the program (default: clothbench on PATH, else this tree's build).
 # $SBATCH_…: Slurm's own defaults, such as SBATCH_PARTITION. Prints the numbers of both jobs.
 set -eu
 [ $# -ge 2 ] || { sed -n '2,5s/^# //p' "$0" >&2; exit 2; }
@@ -10,11 +10,11 @@ shift 2
 here=$(cd "$(dirname "$0")/.." && pwd)
 program=${CLOTHBENCH:-$(command -v clothbench || echo "$here/build/release/clothbench")}
 mkdir -p "$out/log"
-cells=$("$program" study "$study" "$@" --list-cells | wc -l)
+runs=$("$program" study "$study" "$@" --list-runs | wc -l)
 words=$(for word in "$@"; do printf " '%s'" "$(printf %s "$word" | sed "s/'/'\\\\''/g")"; done)
 # Alone on its node: what else ran there would be timed too.
-array=$(sbatch --parsable --exclusive --requeue --array="0-$((cells - 1))" --job-name="clothbench-$study" --output="$out/log/cell-%a.txt" \
-  --wrap="'$program' study '$study'$words --out '$out' --cell \$SLURM_ARRAY_TASK_ID")
+array=$(sbatch --parsable --exclusive --requeue --array="0-$((runs - 1))" --job-name="clothbench-$study" --output="$out/log/run-%a.txt" \
+  --wrap="'$program' study '$study'$words --out '$out' --run \$SLURM_ARRAY_TASK_ID")
 after=$(sbatch --parsable --dependency="afterany:$array" --job-name="clothbench-report" --output="$out/log/report.txt" \
   --wrap="'$program' study '$study'$words --out '$out' --resume; '$program' report '$out' -o '$out/report'")
 echo "$array $after"

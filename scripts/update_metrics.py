@@ -15,7 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def table(*rows):
-    head, *rest = ("| " + " | ".join(cell.replace("|", "\\|") for cell in r) + " |\n" for r in rows)
+    head, *rest = ("| " + " | ".join(run.replace("|", "\\|") for run in r) + " |\n" for r in rows)
     return head + "|---" * len(rows[0]) + "|\n" + "".join(rest)
 
 
@@ -40,7 +40,7 @@ def gates_table(scalars):
         if "check" in s:
             gates.setdefault((s["check"]["slack"], s["check"]["why"]), []).append(s["name"])
     return table(["scalar", "fails if", "slack", "why"],
-                 ["`expect.*`", "broken, and kept in the baseline", "none", "the scene's own verdict has its tolerance in the scene"],
+                 ["`expect.*`", "fail, and pass in the baseline", "none", "the scene's own verdict has its tolerance in the scene"],
                  *([names(of), "above baseline + slack", slack, why] for (slack, why), of in gates.items()))
 
 

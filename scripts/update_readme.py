@@ -16,7 +16,7 @@ PUBLISHED = ["published: Unity Cloth", "published: PBD single-sided", "published
 
 
 def table(report, title):
-    """Rows of the table whose heading begins with `title`: {(solver, sides): {resolution: cell}}."""
+    """Rows of the table whose heading begins with `title`: {(solver, sides): {resolution: run}}."""
     for part in re.split(r"^### ", report.read_text(encoding="utf-8"), flags=re.M)[1:]:
         if part.startswith(title):
             rows = [[c.strip() for c in line.strip("| ").split("|")] for line in part.splitlines() if line.startswith("|")]
@@ -30,13 +30,13 @@ def short_table():
     _, gpu = table(SPEED, "GPU time a frame [ms]")
     _, stretch = table(STRETCH, "Stretch of structural edges in the last second, mean / greatest [%] (hang)")
 
-    def row(name, what, cell):
-        return f"| {name} | {what} | " + " | ".join(cell(r) for r in resolutions) + " |"
+    def row(name, what, run):
+        return f"| {name} | {what} | " + " | ".join(run(r) for r in resolutions) + " |"
 
     lines = [row("solver", "", str), "|---|---|" + "--:|" * len(resolutions)]
     for name in PUBLISHED:
-        cells = next(cells for (solver, _), cells in capped.items() if solver == name)
-        lines.append(row(name, "FPS, capped at 72", cells.get))
+        runs = next(runs for (solver, _), runs in capped.items() if solver == name)
+        lines.append(row(name, "FPS, capped at 72", runs.get))
     for solver, sides in SOLVERS:
         name = f"`{solver}`" + (", doubled layer" if sides == "double-duplicated" else "")
         key = (solver, sides)

@@ -292,12 +292,12 @@ void Session::low_memory() {
 }
 
 void Session::destroy() {
-  constexpr std::chrono::seconds kPatience{3};  // Android declares an activity hung after 5 s
+  constexpr std::chrono::seconds kTimeout{3};  // Android declares an activity hung after 5 s
   std::unique_lock lock(shared_->mutex);
   shared_->destroyed = true;
   if (shared_->running) request_interrupt();
   // A session that waits for its turn stops when that comes.
-  shared_->changed.wait_for(lock, kPatience, [&] { return shared_->ended || !shared_->running; });
+  shared_->changed.wait_for(lock, kTimeout, [&] { return shared_->ended || !shared_->running; });
 }
 
 }  // namespace clothbench::android

@@ -80,13 +80,13 @@ std::vector<fs::path> asset_places() {
 }  // namespace
 
 AssetSource locate_assets(bool require) {
-  const std::string wish = named_data(kAssetFolder);
+  const std::string wanted = named_data(kAssetFolder);
   AssetSource source;
-  if (wish == "procedural") {
+  if (wanted == "procedural") {
     source.reason = "CLOTHBENCH_ASSETS=procedural";
   } else {
     std::vector<std::string> missing;
-    for (const fs::path& root : wish.empty() ? asset_places() : std::vector<fs::path>{wish}) {
+    for (const fs::path& root : wanted.empty() ? asset_places() : std::vector<fs::path>{wanted}) {
       const fs::path file = first_missing(root);
       if (file.empty()) return {true, root, versions(root)};
       missing.push_back(file.string());
@@ -94,7 +94,7 @@ AssetSource locate_assets(bool require) {
     source.reason =
         fmt::format("{} {} missing; {} gets {}", fmt::join(missing, ", "), missing.size() == 1 ? "is" : "are",
                     fetching_script(), missing.size() == 1 ? "it" : "them");
-    if (!wish.empty()) throw Error("CLOTHBENCH_ASSETS: " + source.reason);
+    if (!wanted.empty()) throw Error("CLOTHBENCH_ASSETS: " + source.reason);
   }
   if (require) throw Error("assets required: " + source.reason);
   return source;

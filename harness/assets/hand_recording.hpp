@@ -75,7 +75,7 @@ RecordedMesh welded(RecordedMesh, const std::string& source);
 
 /// The 25 joints of WebXR.
 HandPose pose_of(const RecordedHand&);
-/// The capsules told, or those of `capsules(pose_of(hand))` where the recording has none.
+/// The capsules reported, or those of `capsules(pose_of(hand))` where the recording has none.
 std::array<Capsule, kCapsuleCount> capsules(const HandRecording&, const RecordedHand& hand);
 Frame frame_of(const RecordedJoint&);
 

@@ -96,9 +96,9 @@ bool ChildProcess::write(std::string_view bytes) {
   return true;
 }
 
-ChildProcess::Heard ChildProcess::read(char& byte, std::chrono::milliseconds patience) {
+ChildProcess::Heard ChildProcess::read(char& byte, std::chrono::milliseconds timeout) {
   pollfd waiting{socket_, POLLIN, 0};
-  if (poll(&waiting, 1, static_cast<int>(patience.count())) <= 0) return Heard::Nothing;
+  if (poll(&waiting, 1, static_cast<int>(timeout.count())) <= 0) return Heard::Nothing;
   const ssize_t got = recv(socket_, &byte, 1, 0);
   if (got == 1) return Heard::Byte;
   return got < 0 && errno == EINTR ? Heard::Nothing : Heard::End;

@@ -41,8 +41,8 @@ class ChildProcess {
   /// False once the program takes no more: an error instead of a signal, since it is a socket and not a pipe.
   bool write(std::string_view bytes);
   enum class Heard { Byte, Nothing, End };
-  /// The next byte that the program wrote to the socket, for which it is waited up to `patience`.
-  Heard read(char& byte, std::chrono::milliseconds patience);
+  /// The next byte that the program wrote to the socket, for which it is waited up to `timeout`.
+  Heard read(char& byte, std::chrono::milliseconds timeout);
   void close_socket();
 
   void signal(int number);

@@ -41,9 +41,9 @@ const char* kind(const json& v) {
 /// Once a process and solver: what is stored is read again and again.
 void tell_moved(const std::string& solver, const std::string& names) {
   static std::mutex mutex;
-  static std::set<std::string> told;
+  static std::set<std::string> reported;
   const std::lock_guard lock(mutex);
-  if (told.insert(solver).second)
+  if (reported.insert(solver).second)
     fmt::print(stderr, "notice: solver {}: {}: now in the setting \"{}\", as {}.<name> on the command line\n", solver,
                names, kTuning, kTuning);
 }

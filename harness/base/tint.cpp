@@ -45,13 +45,13 @@ std::string tinted(Tone tone, const std::string& text) {
 }
 
 Tone tone_of(const std::string& cell) {
-  static const std::map<std::string, Tone> kVerdicts = {{"kept", Tone::Good},
+  static const std::map<std::string, Tone> kVerdicts = {{"pass", Tone::Good},
                                                         {"ok", Tone::Good},
                                                         {"yes", Tone::Good},
                                                         {"stable", Tone::Good},
                                                         {"faster", Tone::Good},
                                                         {"improved", Tone::Good},
-                                                        {"broken", Tone::Bad},
+                                                        {"fail", Tone::Bad},
                                                         {"failed", Tone::Bad},
                                                         {"FAILED", Tone::Bad},
                                                         {"NO", Tone::Bad},

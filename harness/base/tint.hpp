@@ -14,7 +14,7 @@ enum class Tone { Plain, Good, Bad, Doubtful, Faint, Heading };
 /// In that tone if colour is on.
 std::string tinted(Tone, const std::string& text);
 
-/// By the verdict that a table's cell begins with (kept, broken, unsupported, noise, …) or the tick at its end; Plain
+/// By the verdict that a table's cell begins with (pass, fail, unsupported, noise, …) or the tick at its end; Plain
 /// for any other.
 Tone tone_of(const std::string& cell);
 

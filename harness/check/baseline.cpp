@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "check/gates.hpp"
 #include "check/schema.hpp"
@@ -20,8 +21,8 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-/// The environment says, or the completed scene does; a cell without assets has neither.
-std::string assets_of(const CellRecord& c) {
+/// The environment says, or the completed scene does; a run without assets has neither.
+std::string assets_of(const RunRecord& c) {
   for (const json& j : {c.header.environment, json::parse(c.header.scenario_json, nullptr, false)})
     if (j.is_object() && j.contains("assets") && j["assets"].is_string()) return j["assets"].get<std::string>();
   return "";
@@ -45,8 +46,8 @@ double number_at(const json& value, const std::string& name, const std::string& 
   return value.get<double>();
 }
 
-BaselineCell cell_from(const json& j, const std::string& where) {
-  BaselineCell c;
+BaselineRun run_from(const json& j, const std::string& where) {
+  BaselineRun c;
   c.key = {j.at("scene"), j.at("solver"), j.at("setting"), j.value("assets", "")};
   c.scenario_sha256 = j.at("scenario_sha256");
   c.status = j.at("status");
@@ -59,7 +60,7 @@ BaselineCell cell_from(const json& j, const std::string& where) {
   return c;
 }
 
-ordered_json json_of(const BaselineCell& c) {
+ordered_json json_of(const BaselineRun& c) {
   ordered_json j = {{"scene", c.key.scene}, {"solver", c.key.solver}, {"setting", c.key.setting}};
   if (!c.key.assets.empty()) j["assets"] = c.key.assets;
   j["scenario_sha256"] = c.scenario_sha256;
@@ -75,12 +76,12 @@ ordered_json json_of(const BaselineCell& c) {
 
 }  // namespace
 
-std::string CellKey::file_name() const { return cell_name(scene, solver, setting); }
+std::string RunKey::file_name() const { return run_name(scene, solver, setting); }
 
-std::string CellKey::text() const { return file_name() + (assets.empty() ? "" : " [" + assets + "]"); }
+std::string RunKey::text() const { return file_name() + (assets.empty() ? "" : " [" + assets + "]"); }
 
-BaselineCell gated_part(const CellRecord& r) {
-  BaselineCell c;
+BaselineRun gated_part(const RunRecord& r) {
+  BaselineRun c;
   c.key = {r.header.scene, r.header.solver, r.header.setting, assets_of(r)};
   c.scenario_sha256 = r.header.scenario_sha256;
   c.status = r.outcome.status;
@@ -98,19 +99,20 @@ BaselineCell gated_part(const CellRecord& r) {
 
 Baseline read_baseline(const std::filesystem::path& file) {
   const std::string source = file.string();
-  const json j = parse_json(read_text(file), source);
+  json j = parse_json(read_text(file), source);
+  rename_key(j, "cells", "runs", source);
   validate_json(j, kBaselineSchema, source);
   Baseline b;
   const json& made = j.at("made_with");
   b.origin = {made.at("command"), made.at("runs"), made.at("commits"), made.at("devices")};
-  std::set<CellKey> seen;
-  for (std::size_t k = 0; k < j.at("cells").size(); ++k) {
-    const std::string where = fmt::format("{}: /cells/{}", source, k);
-    b.cells.push_back(cell_from(j["cells"][k], where));
-    if (!seen.insert(b.cells.back().key).second)
-      throw Error(where + ": this cell stands twice: " + b.cells.back().key.text());
+  std::set<RunKey> seen;
+  for (std::size_t k = 0; k < j.at("runs").size(); ++k) {
+    const std::string where = fmt::format("{}: /runs/{}", source, k);
+    b.runs.push_back(run_from(j["runs"][k], where));
+    if (!seen.insert(b.runs.back().key).second)
+      throw Error(where + ": this run stands twice: " + b.runs.back().key.text());
   }
-  std::sort(b.cells.begin(), b.cells.end(), [](const BaselineCell& x, const BaselineCell& y) { return x.key < y.key; });
+  std::sort(b.runs.begin(), b.runs.end(), [](const BaselineRun& x, const BaselineRun& y) { return x.key < y.key; });
   return b;
 }
 
@@ -120,8 +122,8 @@ std::string baseline_text(const Baseline& b) {
                     {"runs", b.origin.runs},
                     {"commits", b.origin.commits},
                     {"devices", b.origin.devices}};
-  j["cells"] = ordered_json::array();
-  for (const BaselineCell& c : b.cells) j["cells"].push_back(json_of(c));
+  j["runs"] = ordered_json::array();
+  for (const BaselineRun& c : b.runs) j["runs"].push_back(json_of(c));
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

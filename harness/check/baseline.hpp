@@ -10,12 +10,12 @@
 
 namespace clothbench {
 
-/// What a cell is found by. `assets` tells npm from procedural rooms and hands; empty where the result does not say.
-struct CellKey {
+/// What a run is found by. `assets` tells npm from procedural rooms and hands; empty where the result does not say.
+struct RunKey {
   std::string scene, solver, setting, assets;
   // Not <=>: strings have none yet in the libc++ of Android's NDK r25.
-  bool operator==(const CellKey&) const = default;
-  bool operator<(const CellKey& o) const {
+  bool operator==(const RunKey&) const = default;
+  bool operator<(const RunKey& o) const {
     return std::tie(scene, solver, setting, assets) < std::tie(o.scene, o.solver, o.setting, o.assets);
   }
 
@@ -23,9 +23,9 @@ struct CellKey {
   std::string text() const;       ///< the same with the assets in brackets, if known
 };
 
-/// What of a cell does not depend on the machine.
-struct BaselineCell {
-  CellKey key;
+/// What of a run does not depend on the machine.
+struct BaselineRun {
+  RunKey key;
   std::string scenario_sha256;
   std::string status, klass;
   int failed_frame = -1;
@@ -43,14 +43,14 @@ struct BaselineOrigin {
 
 struct Baseline {
   BaselineOrigin origin;
-  std::vector<BaselineCell> cells;  ///< sorted by key, no key twice
+  std::vector<BaselineRun> runs;  ///< sorted by key, no key twice
 };
 
 /// The part of a result that is gated. A scalar that is not finite counts as not measured and is left out.
-BaselineCell gated_part(const CellRecord&);
+BaselineRun gated_part(const RunRecord&);
 
 /// Reads and checks a baseline. Throws Error with file and JSON pointer (line and column where the text is no JSON): a
-/// key that is unknown or missing, a scalar that has no gate, a cell that stands twice.
+/// key that is unknown or missing, a scalar that has no gate, a run that stands twice.
 Baseline read_baseline(const std::filesystem::path&);
 
 /// The file's text: one line a value, sorted; numbers read back exactly.

@@ -10,26 +10,26 @@
 namespace clothbench {
 namespace {
 
-using Entries = std::vector<const BaselineCell*>;
+using Entries = std::vector<const BaselineRun*>;
 
-/// The results of one cell, whatever its assets: those that are there, and what is known of one that is not.
+/// The results of one run, whatever its assets: those that are there, and what is known of one that is not.
 struct Found {
-  std::vector<const CellRecord*> records;
-  const CellRecord* missing = nullptr;
+  std::vector<const RunRecord*> records;
+  const RunRecord* missing = nullptr;
 };
 
-/// By file name, because that is all there is of a planned cell without a result.
-std::map<std::string, Found> by_name(const std::vector<CellRecord>& cells) {
+/// By file name, because that is all there is of a planned run without a result.
+std::map<std::string, Found> by_name(const std::vector<RunRecord>& runs) {
   std::map<std::string, Found> out;
-  std::map<CellKey, int> seen;
-  for (const CellRecord& c : cells) {
-    const CellKey key = gated_part(c).key;
+  std::map<RunKey, int> seen;
+  for (const RunRecord& c : runs) {
+    const RunKey key = gated_part(c).key;
     Found& found = out[key.file_name()];
     if (c.outcome.status == "missing") {
       found.missing = &c;
       continue;
     }
-    if (seen[key]++ > 0) throw Error(key.text() + ": stands twice among the results; give each cell once");
+    if (seen[key]++ > 0) throw Error(key.text() + ": stands twice among the results; give each run once");
     found.records.push_back(&c);
   }
   return out;
@@ -37,44 +37,44 @@ std::map<std::string, Found> by_name(const std::vector<CellRecord>& cells) {
 
 std::map<std::string, Entries> by_name(const Baseline& b) {
   std::map<std::string, Entries> out;
-  for (const BaselineCell& c : b.cells) out[c.key.file_name()].push_back(&c);
+  for (const BaselineRun& c : b.runs) out[c.key.file_name()].push_back(&c);
   return out;
 }
 
-const BaselineCell* entry_for(const Entries& entries, const CellKey& key) {
-  for (const BaselineCell* e : entries)
+const BaselineRun* entry_for(const Entries& entries, const RunKey& key) {
+  for (const BaselineRun* e : entries)
     if (e->key == key) return e;
   return nullptr;
 }
 
-std::string outcome_of(const CellRecord& c) { return c.outcome.status; }
+std::string outcome_of(const RunRecord& c) { return c.outcome.status; }
 
 Finding missing(const Found& found) {
   return {Verdict::Failed,
-          "cell",
+          "run",
           "present",
           "missing",
           "",
-          found.missing != nullptr ? found.missing->outcome.message : "no such cell among the results"};
+          found.missing != nullptr ? found.missing->outcome.message : "no such run among the results"};
 }
 
 std::string kind(const std::string& assets) { return assets.empty() ? "unnamed" : assets; }
 
 /// No verdict is made of two rules.
-void refuse_other_versions(const BaselineCell& was, const BaselineCell& is) {
+void refuse_other_versions(const BaselineRun& was, const BaselineRun& is) {
   for (const VersionDifference& v : version_differences(was, is))
     throw Error(
         fmt::format("{}: metric {}: the baseline has version {} of its rule, the result version {}; the two cannot be "
                     "compared. Accept the "
-                    "result with `clothbench check RUNS --baseline FILE --update`, or run the cell again with the "
+                    "result with `clothbench check RUNS --baseline FILE --update`, or repeat the run with the "
                     "program the baseline was made with",
                     is.key.text(), v.metric, v.baseline, v.found));
 }
 
 class Check {
  public:
-  Checked run(const Baseline& baseline, const std::vector<CellRecord>& cells) {
-    const auto results = by_name(cells);
+  Checked run(const Baseline& baseline, const std::vector<RunRecord>& runs) {
+    const auto results = by_name(runs);
     const auto entries = by_name(baseline);
     for (const auto& [name, group] : entries) {
       const auto at = results.find(name);
@@ -82,7 +82,7 @@ class Check {
     }
     for (const auto& [name, found] : results)
       if (entries.count(name) == 0) unknown(found);
-    std::sort(out_.cells.begin(), out_.cells.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+    std::sort(out_.runs.begin(), out_.runs.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
     return out_;
   }
 
@@ -90,38 +90,38 @@ class Check {
   void known(const Entries& entries, const Found& found) {
     if (found.records.empty()) return add(entries.front()->key, {missing(found)});
     std::size_t compared = 0;
-    for (const CellRecord* r : found.records)
-      if (const BaselineCell* e = entry_for(entries, gated_part(*r).key); e != nullptr) {
+    for (const RunRecord* r : found.records)
+      if (const BaselineRun* e = entry_for(entries, gated_part(*r).key); e != nullptr) {
         refuse_other_versions(*e, gated_part(*r));
-        add(e->key, compare_cell(*e, *r));
+        add(e->key, compare_run(*e, *r));
         ++compared;
       }
     if (compared == 0) return add(entries.front()->key, {other_assets(*entries.front(), *found.records.front())});
     out_.other_assets += entries.size() - compared;
-    for (const CellRecord* r : found.records)
-      if (const CellKey key = gated_part(*r).key; entry_for(entries, key) == nullptr) add_new(key, *r);
+    for (const RunRecord* r : found.records)
+      if (const RunKey key = gated_part(*r).key; entry_for(entries, key) == nullptr) add_new(key, *r);
   }
 
   void unknown(const Found& found) {
-    for (const CellRecord* r : found.records) add_new(gated_part(*r).key, *r);
+    for (const RunRecord* r : found.records) add_new(gated_part(*r).key, *r);
     if (found.records.empty() && found.missing != nullptr) add(gated_part(*found.missing).key, {missing(found)});
   }
 
   /// Procedural rooms and hands are other scenes than real ones: a run without the real ones must not pass for them.
-  static Finding other_assets(const BaselineCell& entry, const CellRecord& r) {
+  static Finding other_assets(const BaselineRun& entry, const RunRecord& r) {
     return {Verdict::Failed,
             "assets",
             kind(entry.key.assets),
             kind(gated_part(r).key.assets),
             "",
-            "the baseline has this cell only with other assets: fetch them (scripts/fetch-assets.sh), or add this kind "
+            "the baseline has this run only with other assets: fetch them (scripts/fetch-assets.sh), or add this kind "
             "with --update"};
   }
 
-  void add_new(const CellKey& key, const CellRecord& r) {
-    add(key, {{Verdict::New, "cell", "–", outcome_of(r), "", "not in the baseline; --update adds it"}});
+  void add_new(const RunKey& key, const RunRecord& r) {
+    add(key, {{Verdict::New, "run", "–", outcome_of(r), "", "not in the baseline; --update adds it"}});
   }
-  void add(const CellKey& key, std::vector<Finding> findings) { out_.cells.push_back({key, std::move(findings)}); }
+  void add(const RunKey& key, std::vector<Finding> findings) { out_.runs.push_back({key, std::move(findings)}); }
 
   Checked out_;
 };
@@ -133,26 +133,26 @@ void merge(std::vector<std::string>& to, const std::vector<std::string>& from) {
   std::sort(to.begin(), to.end());
 }
 
-/// Entries of `old` whose cell has results, but only with other assets, stay with their origin; those without any
+/// Entries of `old` whose run has results, but only with other assets, stay with their origin; those without any
 /// result are removed.
 void keep_other_assets(const Baseline& old, const std::map<std::string, Found>& results, Updated& out) {
-  for (const BaselineCell& e : old.cells) {
+  for (const BaselineRun& e : old.runs) {
     const auto at = results.find(e.key.file_name());
     if (at == results.end()) {
       out.removed.push_back(e.key);
       continue;
     }
     const auto& records = at->second.records;
-    if (std::any_of(records.begin(), records.end(), [&](const CellRecord* r) { return gated_part(*r).key == e.key; }))
+    if (std::any_of(records.begin(), records.end(), [&](const RunRecord* r) { return gated_part(*r).key == e.key; }))
       continue;
-    out.baseline.cells.push_back(e);
+    out.baseline.runs.push_back(e);
     merge(out.baseline.origin.runs, old.origin.runs);
     merge(out.baseline.origin.commits, old.origin.commits);
     merge(out.baseline.origin.devices, old.origin.devices);
   }
 }
 
-bool same_values(const BaselineCell& a, const BaselineCell& b) {
+bool same_values(const BaselineRun& a, const BaselineRun& b) {
   return baseline_text({{}, {a}}) == baseline_text({{}, {b}});
 }
 
@@ -178,7 +178,7 @@ std::string Finding::sentence() const {
   return message.empty() ? text : text + ": " + message;
 }
 
-Verdict CheckedCell::verdict() const {
+Verdict CheckedRun::verdict() const {
   Verdict worst = Verdict::Same;
   for (const Finding& f : findings) worst = std::max(worst, f.verdict);
   return worst;
@@ -186,17 +186,15 @@ Verdict CheckedCell::verdict() const {
 
 std::size_t Checked::count(Verdict v) const {
   return static_cast<std::size_t>(
-      std::count_if(cells.begin(), cells.end(), [&](const CheckedCell& c) { return c.verdict() == v; }));
+      std::count_if(runs.begin(), runs.end(), [&](const CheckedRun& c) { return c.verdict() == v; }));
 }
 
-Checked check_cells(const Baseline& baseline, const std::vector<CellRecord>& cells) {
-  return Check().run(baseline, cells);
-}
+Checked check_runs(const Baseline& baseline, const std::vector<RunRecord>& runs) { return Check().run(baseline, runs); }
 
-Updated update_baseline(const Baseline& old, const std::vector<CellRecord>& cells, BaselineOrigin origin) {
-  const auto results = by_name(cells);
+Updated update_baseline(const Baseline& old, const std::vector<RunRecord>& runs, BaselineOrigin origin) {
+  const auto results = by_name(runs);
   const auto entries = by_name(old);
-  if (cells.empty()) throw Error("--update: no cell among the results");
+  if (runs.empty()) throw Error("--update: no run among the results");
   Updated out;
   out.baseline.origin = std::move(origin);
   for (const auto& [name, found] : results) {
@@ -204,13 +202,12 @@ Updated update_baseline(const Baseline& old, const std::vector<CellRecord>& cell
       throw Error(fmt::format("--update: {}: {}; a baseline is made of whole studies (`clothbench study … --resume`)",
                               name, found.missing->outcome.message));
     const auto group = entries.find(name);
-    for (const CellRecord* r : found.records) {
-      out.baseline.cells.push_back(gated_part(*r));
-      const BaselineCell& now = out.baseline.cells.back();
-      const BaselineCell* e = group == entries.end() ? nullptr : entry_for(group->second, now.key);
+    for (const RunRecord* r : found.records) {
+      out.baseline.runs.push_back(gated_part(*r));
+      const BaselineRun& now = out.baseline.runs.back();
+      const BaselineRun* e = group == entries.end() ? nullptr : entry_for(group->second, now.key);
       const std::vector<Finding> findings =
-          e == nullptr ? std::vector<Finding>{{Verdict::New, "cell", "–", outcome_of(*r), "", ""}}
-                       : compare_cell(*e, *r);
+          e == nullptr ? std::vector<Finding>{{Verdict::New, "run", "–", outcome_of(*r), "", ""}} : compare_run(*e, *r);
       if (!findings.empty())
         out.changes.push_back({now.key, findings});
       else if (!same_values(*e, now))
@@ -219,7 +216,7 @@ Updated update_baseline(const Baseline& old, const std::vector<CellRecord>& cell
   }
   keep_other_assets(old, results, out);
   const auto by_key = [](const auto& a, const auto& b) { return a.key < b.key; };
-  std::sort(out.baseline.cells.begin(), out.baseline.cells.end(), by_key);
+  std::sort(out.baseline.runs.begin(), out.baseline.runs.end(), by_key);
   std::sort(out.changes.begin(), out.changes.end(), by_key);
   return out;
 }

@@ -10,7 +10,7 @@ namespace clothbench {
 /// slack.
 const Gate* find_gate(const std::string& name);
 
-/// Whether it is a bound's outcome, 1 kept or 0 broken: broken after kept fails, kept after broken is an improvement.
+/// Whether it is a bound's outcome, 1 pass or 0 fail: fail after pass fails, pass after fail is an improvement.
 bool is_verdict(const std::string& name);
 
 std::vector<std::string> gated_names();

@@ -30,9 +30,9 @@ std::string command(const char* kind, const std::string& file, const std::string
                      escaped(message, false));
 }
 
-std::string sentences(const CheckedCell& cell, Verdict verdict) {
+std::string sentences(const CheckedRun& run, Verdict verdict) {
   std::string text;
-  for (const Finding& f : cell.findings)
+  for (const Finding& f : run.findings)
     if (f.verdict == verdict) text += (text.empty() ? "" : "\n") + f.sentence();
   return text;
 }
@@ -41,12 +41,12 @@ std::string sentences(const CheckedCell& cell, Verdict verdict) {
 
 std::string github_commands(const Checked& checked, const std::string& file) {
   std::string out, improved, fresh;
-  for (const CheckedCell& cell : checked.cells) {
-    if (cell.verdict() == Verdict::Failed)
-      out += command("error", file, cell.key.text(), sentences(cell, Verdict::Failed));
+  for (const CheckedRun& run : checked.runs) {
+    if (run.verdict() == Verdict::Failed)
+      out += command("error", file, run.key.text(), sentences(run, Verdict::Failed));
     const auto append = [&](std::string& to, Verdict verdict) {
-      if (const std::string text = sentences(cell, verdict); !text.empty())
-        to += (to.empty() ? "" : "\n") + cell.key.text() + ": " + text;
+      if (const std::string text = sentences(run, verdict); !text.empty())
+        to += (to.empty() ? "" : "\n") + run.key.text() + ": " + text;
     };
     append(improved, Verdict::Improved);
     append(fresh, Verdict::New);

@@ -5,7 +5,7 @@
 
 namespace clothbench {
 
-/// Workflow commands of GitHub Actions: one `::error` a failed cell, one `::notice` for all that improved and one for
+/// Workflow commands of GitHub Actions: one `::error` a failed run, one `::notice` for all that improved and one for
 /// all that is new (GitHub shows ten of a kind a step). `file`: what the annotations point to, the baseline.
 std::string github_commands(const Checked&, const std::string& file);
 

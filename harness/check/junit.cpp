@@ -47,26 +47,26 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string sentences(const CheckedCell& cell, bool failures) {
+std::string sentences(const CheckedRun& run, bool failures) {
   std::string text;
-  for (const Finding& f : cell.findings)
+  for (const Finding& f : run.findings)
     if ((f.verdict == Verdict::Failed) == failures) text += (text.empty() ? "" : "\n") + f.sentence();
   return text;
 }
 
-std::string test_case(const CheckedCell& cell) {
-  std::string name = cell.key.solver;
-  if (!cell.key.setting.empty()) name += " " + cell.key.setting;
-  if (!cell.key.assets.empty()) name += " [" + cell.key.assets + "]";
-  std::string out = fmt::format("    <testcase classname=\"{}\" name=\"{}\"", escaped(cell.key.scene), escaped(name));
-  if (cell.verdict() == Verdict::Same) return out + "/>\n";
+std::string test_case(const CheckedRun& run) {
+  std::string name = run.key.solver;
+  if (!run.key.setting.empty()) name += " " + run.key.setting;
+  if (!run.key.assets.empty()) name += " [" + run.key.assets + "]";
+  std::string out = fmt::format("    <testcase classname=\"{}\" name=\"{}\"", escaped(run.key.scene), escaped(name));
+  if (run.verdict() == Verdict::Same) return out + "/>\n";
   out += ">\n";
-  if (const std::string text = sentences(cell, true); !text.empty()) {
+  if (const std::string text = sentences(run, true); !text.empty()) {
     const std::string first = text.substr(0, text.find('\n'));
     out +=
         fmt::format("      <failure type=\"regression\" message=\"{}\">{}</failure>\n", escaped(first), escaped(text));
   }
-  if (const std::string text = sentences(cell, false); !text.empty())
+  if (const std::string text = sentences(run, false); !text.empty())
     out += fmt::format("      <system-out>{}</system-out>\n", escaped(text));
   return out + "    </testcase>\n";
 }
@@ -74,12 +74,12 @@ std::string test_case(const CheckedCell& cell) {
 }  // namespace
 
 std::string junit_xml(const Checked& checked) {
-  const std::string counts = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"0\"",
-                                         checked.cells.size(), checked.count(Verdict::Failed));
+  const std::string counts = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"0\"", checked.runs.size(),
+                                         checked.count(Verdict::Failed));
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   out += fmt::format("<testsuites name=\"clothbench check\" {}>\n  <testsuite name=\"clothbench check\" {}>\n", counts,
                      counts);
-  for (const CheckedCell& cell : checked.cells) out += test_case(cell);
+  for (const CheckedRun& run : checked.runs) out += test_case(run);
   return out + "  </testsuite>\n</testsuites>\n";
 }
 

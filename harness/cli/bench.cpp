@@ -1,4 +1,4 @@
-// The Table 3 cells under Google Benchmark: one benchmark a cell, one iteration a frame, the clock is the frame's wall
+// The runs of Table 3 under Google Benchmark: one benchmark a run, one iteration a frame, the clock is the frame's wall
 // time.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -14,11 +14,11 @@
 namespace clothbench {
 namespace {
 
-/// Fixed, so that a slow clock cannot make the library run a cell for minutes.
+/// Fixed, so that a slow clock cannot make the library repeat a run for minutes.
 constexpr int kFrames = 72;
 
 /// False where the solver failed.
-bool run_cell(benchmark::State& state, const CellSpec& spec, const DeviceOptions& device) {
+bool execute_run(benchmark::State& state, const RunSpec& spec, const DeviceOptions& device) {
   const auto solver = load_solver(*spec.entry, spec.settings, device, *spec.scene);
   double device_s = 0;
   FrameLoop loop(*solver, *spec.scene, {.frames = kAsManyAsItTakes, .interrupted = nullptr});
@@ -46,10 +46,10 @@ bool run_cell(benchmark::State& state, const CellSpec& spec, const DeviceOptions
   return !loop.failed();
 }
 
-void add_context(const CellPlan& plan, const DeviceFlags& flags) {
+void add_context(const RunPlan& plan, const DeviceFlags& flags) {
   DeviceInfo device;
   for (const auto& group : plan.groups)
-    for (const CellSpec& c : group)
+    for (const RunSpec& c : group)
       if (c.entry->info.on_gpu && device.name.empty()) device = c.entry->make(c.settings, flags.options)->device();
   const nlohmann::json e = describe_environment(device, "bench");
   for (const char* key :
@@ -67,7 +67,7 @@ void add_bench(CLI::App& app, Console& console) {
   auto& study_name = console.arguments<std::string>();
   study_name = "table3";
   CLI::App* cmd =
-      app.add_subcommand("bench", "The cells of a study under Google Benchmark; takes its --benchmark_… flags");
+      app.add_subcommand("bench", "The runs of a study under Google Benchmark; takes its --benchmark_… flags");
   cmd->add_option("--study", study_name, "Study")->capture_default_str();
   flags.add_to(*cmd);
   // Google Benchmark reads what this command does not know; without this the words would go to the parent command.
@@ -85,15 +85,15 @@ void add_bench(CLI::App& app, Console& console) {
     benchmark::Initialize(&argc, argv.data());
     if (argc > 1) throw Error(std::string("bench: unknown argument ") + argv[1]);
     const Study study = load_study(study_name);
-    const CellPlan plan = plan_study(study);
+    const RunPlan plan = plan_study(study);
     add_context(plan, flags);
     benchmark::ClearRegisteredBenchmarks();  // those of an earlier command of this process
     for (const auto& group : plan.groups)
-      for (const CellSpec& c : group) {
+      for (const RunSpec& c : group) {
         if (!unsupported(c.entry->info, c.scene->needs).empty()) continue;
         benchmark::RegisterBenchmark(fmt::format("{}/{}/{}", c.scene->name, c.entry->info.name, c.setting).c_str(),
                                      [&c, &console, &flags](benchmark::State& state) {
-                                       if (!run_cell(state, c, flags.options))
+                                       if (!execute_run(state, c, flags.options))
                                          console.exit_code = ExitCode::CheckFailed;
                                      })
             ->UseManualTime()
@@ -103,7 +103,7 @@ void add_bench(CLI::App& app, Console& console) {
     const std::size_t matched = benchmark::RunSpecifiedBenchmarks();
     benchmark::Shutdown();
     if (matched == 0)
-      throw Error("bench: no cell of study " + study.name +
+      throw Error("bench: no run of study " + study.name +
                   " that a solver of this build can run matches --benchmark_filter");
   });
 }

@@ -27,14 +27,14 @@ std::string text_at(const nlohmann::json& environment, const char* key) {
   return environment.contains(key) && environment[key].is_string() ? environment[key].get<std::string>() : "";
 }
 
-BaselineOrigin origin_of(const std::vector<fs::path>& runs, const std::vector<CellRecord>& cells,
+BaselineOrigin origin_of(const std::vector<fs::path>& folders, const std::vector<RunRecord>& runs,
                          const std::string& command) {
   BaselineOrigin origin;
   origin.command = command;
-  for (const fs::path& run : runs)
-    if (fs::is_regular_file(run / "study.json")) origin.runs.push_back(read_manifest(run).command_line);
+  for (const fs::path& folder : folders)
+    if (fs::is_regular_file(folder / "study.json")) origin.runs.push_back(read_manifest(folder).command_line);
   std::set<std::string> commits, devices;
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     const nlohmann::json& e = c.header.environment;
     const std::string commit = text_at(e, "git_commit"), device = text_at(e, "gpu");
     if (!commit.empty()) commits.insert(commit + (e.contains("git_dirty") && e["git_dirty"] == true ? "-dirty" : ""));
@@ -50,10 +50,10 @@ void print_json(const nlohmann::json& j) {
   fmt::print("{}\n", j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-void update(const CheckArguments& a, const std::vector<fs::path>& runs, const std::vector<CellRecord>& cells,
+void update(const CheckArguments& a, const std::vector<fs::path>& folders, const std::vector<RunRecord>& runs,
             const Console& console) {
   const Baseline old = fs::exists(a.baseline) ? read_baseline(a.baseline) : Baseline{};
-  const Updated updated = update_baseline(old, cells, origin_of(runs, cells, console.command_line));
+  const Updated updated = update_baseline(old, runs, origin_of(folders, runs, console.command_line));
   write_file_atomically(a.baseline, baseline_text(updated.baseline));
   if (console.json)
     print_json(update_json(updated, a.baseline));
@@ -61,8 +61,8 @@ void update(const CheckArguments& a, const std::vector<fs::path>& runs, const st
     fmt::print("{}", update_text(updated, a.baseline));
 }
 
-void check(const CheckArguments& a, const std::vector<CellRecord>& cells, Console& console) {
-  const Checked checked = check_cells(read_baseline(a.baseline), cells);
+void check(const CheckArguments& a, const std::vector<RunRecord>& runs, Console& console) {
+  const Checked checked = check_runs(read_baseline(a.baseline), runs);
   if (!a.junit.empty()) write_file_atomically(a.junit, junit_xml(checked));
   if (console.json)
     print_json(check_json(checked, a.baseline));
@@ -84,22 +84,22 @@ void add_check(CLI::App& app, Console& console) {
   cmd->add_option("--baseline", a.baseline, "Baseline file, such as results/baselines/penetration.json")->required();
   CLI::Option* rewrite =
       cmd->add_flag("--update", a.update, "Rewrite the baseline from these results and say what changed");
-  cmd->add_option("--junit", a.junit, "Also write JUnit XML, one test case a cell")->excludes(rewrite);
+  cmd->add_option("--junit", a.junit, "Also write JUnit XML, one test case a run")->excludes(rewrite);
   cmd->add_flag("--github", a.github, "Also print annotations for GitHub Actions")->excludes(rewrite);
   cmd->footer(
       "Exit codes: 0 as in the baseline or better, 1 something is worse or missing, 2 bad input.\n"
       "Example: clothbench check results/runs/mine --baseline results/baselines/penetration.json --junit check.xml");
   cmd->callback([&console, &a] {
-    const std::vector<fs::path> runs(a.runs.begin(), a.runs.end());
+    const std::vector<fs::path> folders(a.runs.begin(), a.runs.end());
     if (!a.junit.empty() && fs::is_regular_file(a.junit))
       fs::remove(a.junit);  // an older verdict must not outlive a failed check
     if (!a.update && !fs::exists(a.baseline))
       throw Error(a.baseline + ": no such file; expected a baseline (--update makes one)");
-    const std::vector<CellRecord> cells = collect(runs);
+    const std::vector<RunRecord> runs = collect(folders);
     if (a.update)
-      update(a, runs, cells, console);
+      update(a, folders, runs, console);
     else
-      check(a, cells, console);
+      check(a, runs, console);
   });
 }
 

@@ -19,7 +19,7 @@ struct Console {
   std::string command_line;
   std::vector<std::string> words;  ///< the same, after the program's name
   ExitCode exit_code = ExitCode::Ok;
-  std::set<std::string> told_scenes = {};  ///< whose drawn parameters (--seed) the user has been told
+  std::set<std::string> reported_scenes = {};  ///< whose drawn parameters (--seed) have been printed
 
   /// Where a command keeps its arguments: new ones for every command line, since one process may run several (an app's
   /// session does). They live as long as the console does.
@@ -38,9 +38,9 @@ struct Console {
 void add_list(CLI::App&, Console&);
 void add_validate(CLI::App&, Console&);
 void add_plan(CLI::App&, Console&);
-void add_card(CLI::App&, Console&);
+void add_moduli(CLI::App&, Console&);
 void add_run(CLI::App&, Console&);
-void add_run_cell(CLI::App&, Console&);
+void add_run_child(CLI::App&, Console&);
 void add_study(CLI::App&, Console&);
 void add_report(CLI::App&, Console&);
 void add_import(CLI::App&, Console&);

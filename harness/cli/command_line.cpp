@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <map>
+
+#include "base/former_names.hpp"
 #include "base/tint.hpp"
 #include "cli/command.hpp"
 #include "runner/build_info.hpp"
@@ -17,7 +21,7 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 /// Says why the command failed, to people and, with --json, to machines.
-int told(const Console& console, const std::string& why, ExitCode code) {
+int report_error(const Console& console, const std::string& why, ExitCode code) {
   const bool colour = takes_colour(STDERR_FILENO);
   fmt::print(stderr, "{}clothbench:{} {}\n", colour ? "\x1b[31m" : "", colour ? "\x1b[0m" : "", why);
   if (console.json)
@@ -26,13 +30,32 @@ int told(const Console& console, const std::string& why, ExitCode code) {
   return static_cast<int>(code);
 }
 
+/// Words that commands had in version 0.1, with the ones of today.
+std::vector<std::string> current_words(std::vector<std::string> words) {
+  static const std::map<std::string, std::string> kOptions = {
+      {"--cell", "--run"}, {"--list-cells", "--list-runs"}, {"--no-cards", "--no-moduli"}, {"--patience", "--timeout"}};
+  const auto command = std::find_if(words.begin(), words.end(), [](const auto& w) { return !w.starts_with("-"); });
+  if (command != words.end() && *command == "card") {
+    notice_renamed("clothbench", "card", "moduli");
+    *command = "moduli";
+  }
+  for (std::string& word : words) {
+    const std::size_t end = std::min(word.find('='), word.size());
+    const auto found = kOptions.find(word.substr(0, end));
+    if (found == kOptions.end()) continue;
+    notice_renamed("clothbench", found->first, found->second);
+    word.replace(0, end, found->second);
+  }
+  return words;
+}
+
 void add_commands(CLI::App& app, Console& console) {
   add_list(app, console);
   add_validate(app, console);
   add_plan(app, console);
-  add_card(app, console);
+  add_moduli(app, console);
   add_run(app, console);
-  add_run_cell(app, console);
+  add_run_child(app, console);
   add_study(app, console);
   add_report(app, console);
   add_import(app, console);
@@ -67,7 +90,8 @@ void tell_nearest(const CLI::App& app, const std::vector<std::string>& words) {
 
 }  // namespace
 
-int run_command_line(const std::vector<std::string>& words) {
+int run_command_line(const std::vector<std::string>& given) {
+  const std::vector<std::string> words = current_words(given);
   CLI::App app{"clothbench: interchangeable cloth solvers, the same scenes, comparable numbers", "clothbench"};
   app.require_subcommand(1);
   app.set_version_flag("--version",
@@ -93,9 +117,9 @@ int run_command_line(const std::vector<std::string>& words) {
     tell_nearest(app, words);
     return app.exit(e) == 0 ? 0 : static_cast<int>(ExitCode::BadInput);
   } catch (const Error& e) {
-    return told(console, e.what(), e.code());
+    return report_error(console, e.what(), e.code());
   } catch (const std::exception& e) {
-    return told(console, std::string("internal error: ") + e.what(), ExitCode::CheckFailed);
+    return report_error(console, std::string("internal error: ") + e.what(), ExitCode::CheckFailed);
   }
   return static_cast<int>(console.exit_code);
 }

@@ -12,24 +12,24 @@ void add_compare(CLI::App& app, Console& console) {
   auto &a = console.arguments<std::string>(), &b = console.arguments<std::string>(),
        &markdown = console.arguments<std::string>();
   CLI::App* cmd = app.add_subcommand(
-      "compare", "Compare two runs of the same cells: what is faster or slower beyond noise, and which results differ");
+      "compare", "Compare two runs of the same runs: what is faster or slower beyond noise, and which results differ");
   cmd->add_option("a", a, "Study folder or result file: before")->required();
   cmd->add_option("b", b, "Study folder or result file: after")->required();
   cmd->add_option("--markdown", markdown, "Also write the tables to this file, for a pull request");
   cmd->footer("Example: clothbench compare results/runs/before results/runs/after --markdown comparison.md");
   cmd->callback([&console, &a, &b, &markdown] {
-    std::vector<CellRecord> before = collect({a}), after = collect({b});
+    std::vector<RunRecord> before = collect({a}), after = collect({b});
     withhold_times(before);
     withhold_times(after);
-    const std::vector<ComparedCell> cells = compare_runs(before, after);
-    const std::vector<Table> tables = comparison_tables(cells);
+    const std::vector<ComparedRun> runs = compare_runs(before, after);
+    const std::vector<Table> tables = comparison_tables(runs);
     if (!markdown.empty()) {
       std::string text = fmt::format("A: `{}`, B: `{}`\n\n", a, b);
       for (const Table& t : tables)
         text += t.rows.size() > 1 ? t.markdown() + "\n" : t.title + ": none. " + t.note + "\n\n";
       write_file_atomically(markdown, text);
     }
-    if (console.json) return fmt::print("{}\n", comparison_json(cells).dump(2));
+    if (console.json) return fmt::print("{}\n", comparison_json(runs).dump(2));
     for (const Table& t : tables)
       if (t.rows.size() > 1)
         fmt::print("{}", t.console());
@@ -39,16 +39,16 @@ void add_compare(CLI::App& app, Console& console) {
 }
 
 void add_history(CLI::App& app, Console& console) {
-  auto& runs = console.arguments<std::vector<std::string>>();
+  auto& folders = console.arguments<std::vector<std::string>>();
   CLI::App* cmd = app.add_subcommand(
       "history",
       "Times and errors as the JSON that chart-per-commit tools read (github-action-benchmark: customSmallerIsBetter)");
-  cmd->add_option("runs", runs, "Study folders or result files")->required();
+  cmd->add_option("runs", folders, "Study folders or result files")->required();
   cmd->footer("Example: clothbench history results/runs/mine > benchmark.json");
-  cmd->callback([&runs] {
-    std::vector<CellRecord> cells = collect({runs.begin(), runs.end()});
-    withhold(cells);
-    fmt::print("{}\n", history_json(cells).dump(2));
+  cmd->callback([&folders] {
+    std::vector<RunRecord> runs = collect({folders.begin(), folders.end()});
+    withhold(runs);
+    fmt::print("{}\n", history_json(runs).dump(2));
   });
 }
 

@@ -92,7 +92,7 @@ Words candidates(const CLI::App& app, const Words& before, const std::string& pr
   }
   const std::string& name = command->get_name();
   if (name == "study" || name == "bench") return scenario_names({"studies"});
-  if (name == "card" || name == "metamorphic" || name == "friction") return solver_names();
+  if (name == "moduli" || name == "metamorphic" || name == "friction") return solver_names();
   if (name == "list") return {"solvers", "features", "scenarios", "studies", "devices", "metrics", "scalars", "assets"};
   if (name == "run" || name == "plan" || name == "validate" || name == "render" || name == "threshold" || name == "xr")
     return scenario_names({"paper", "contact", "validation", "stability", "metamorphic"});

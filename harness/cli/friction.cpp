@@ -37,8 +37,8 @@ void run_friction(FrictionArguments& a, Console& console) {
     for (const SolverEntry& e : solvers())
       if (!(e.info.supports & kColliderFeatures).empty()) a.search.solvers.push_back(e.info.name);
   Guard guard(console.words);
-  StudyRuns runs = a.search.runs("friction", console);
-  std::vector<CellRecord> cells;
+  StudyRuns study = a.search.runs("friction", console);
+  std::vector<RunRecord> runs;
   {
     StatusLine line(!console.json);
     for (const std::string& name : a.search.solvers) {
@@ -46,21 +46,21 @@ void run_friction(FrictionArguments& a, Console& console) {
       for (const nlohmann::json& given : settings_of(entry.info, overrides.solver, a.substeps)) {
         const std::string label = Overrides{{}, given}.label();
         const auto some = friction_runs(
-            guard, runs, entry, complete_settings(entry.info, given), label, overrides.scene,
+            guard, study, entry, complete_settings(entry.info, given), label, overrides.scene,
             [&](const std::string& scene) { line.show(fmt::format("{} {}: {}", name, label, scene), 0, 0); });
-        cells.insert(cells.end(), some.begin(), some.end());
+        runs.insert(runs.end(), some.begin(), some.end());
       }
     }
   }
   if (console.json)
-    fmt::print("{}\n", friction_json(cells).dump(2));
+    fmt::print("{}\n", friction_json(runs).dump(2));
   else
-    fmt::print("{}\n", friction_table(cells).console());
-  for (const std::string& crash : friction_crashes(cells)) {
+    fmt::print("{}\n", friction_table(runs).console());
+  for (const std::string& crash : friction_crashes(runs)) {
     fmt::print(stderr, "{}\n", crash);
     console.exit_code = ExitCode::CheckFailed;
   }
-  if (!a.readme.empty()) write_between_marks(a.readme, "friction", friction_table(cells).markdown());
+  if (!a.readme.empty()) write_between_marks(a.readme, "friction", friction_table(runs).markdown());
 }
 
 void run_threshold(ThresholdArguments& a, Console& console) {

@@ -93,7 +93,7 @@ std::string manual_page(const CLI::App& app) {
   out +=
       "Runs interchangeable cloth solvers through the same scenes and writes down error, run time, stability, "
       "penetration, frames per second and "
-      "bandwidth, in one HDF5 file a run. Every option of every command is told by\n.BR \"clothbench \" "
+      "bandwidth, in one HDF5 file a run. Every option of every command is listed by\n.BR \"clothbench \" "
       "\\fIcommand\\fP \" \\-\\-help\" .\n";
   out += ".SH OPTIONS\nOf every command:\n" + options_of(app) + ".SH COMMANDS\n";
   for (const CLI::App* c : app.get_subcommands({})) {

@@ -16,10 +16,10 @@ struct MetamorphicArguments {
   DeviceFlags device;
 };
 
-std::string cell(const MetamorphicResult& r) {
+std::string run(const MetamorphicResult& r) {
   if (!std::isfinite(r.distance)) return r.status;
   const std::string figure = r.bitwise ? "0 bits" : fmt::format("{:.1e}", r.distance);
-  if (r.status == "kept" && r.at_most > 1e-4) return fmt::format("kept ({}, own error {:.1e})", figure, r.at_most);
+  if (r.status == "pass" && r.at_most > 1e-4) return fmt::format("pass ({}, own error {:.1e})", figure, r.at_most);
   return fmt::format("{} ({})", r.status, figure);
 }
 
@@ -33,7 +33,7 @@ Table table_of(const std::string& solver, const std::vector<MetamorphicResult>& 
     for (const MetamorphicResult& r : results) {
       if (r.property != p.name) continue;
       if (t.rows.size() == 1) t.rows[0].push_back(r.scene);
-      row.push_back(cell(r));
+      row.push_back(run(r));
     }
     t.rows.push_back(std::move(row));
   }

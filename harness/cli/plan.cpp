@@ -6,7 +6,7 @@
 #include "base/tint.hpp"
 #include "cli/command.hpp"
 #include "runner/again.hpp"
-#include "runner/cell.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -17,10 +17,10 @@ struct PlanArguments {
   DeviceFlags device;
 };
 
-nlohmann::json plan_of(const Cell& cell, const Scene& scene) {
+nlohmann::json plan_of(const SolverRun& run, const Scene& scene) {
   nlohmann::json needs = nlohmann::json::array(), stages = nlohmann::json::array();
   scene.needs.for_each([&](Feature f) { needs.push_back(name_of(f)); });
-  for (const StagePlan& s : cell.plan().stages) {
+  for (const StagePlan& s : run.plan().stages) {
     nlohmann::json serves = nlohmann::json::array();
     s.serves.for_each([&](Feature f) { serves.push_back(name_of(f)); });
     stages.push_back({{"name", s.name},
@@ -30,16 +30,16 @@ nlohmann::json plan_of(const Cell& cell, const Scene& scene) {
                       {"write_B", finite_or_null(s.write_B)}});
   }
   nlohmann::json j = {{"scene", scene.name},
-                      {"solver", cell.header().solver},
+                      {"solver", run.header().solver},
                       {"needs", needs},
-                      {"status", cell.outcome().status},
-                      {"message", cell.outcome().message},
+                      {"status", run.outcome().status},
+                      {"message", run.outcome().message},
                       {"stages", stages},
                       {"buffers", nlohmann::json::array()},
                       {"left_out", nlohmann::json::array()},
                       {"contact_margins", nlohmann::json::array()}};
   for (const char* key : {"buffers", "left_out", "contact_margins"})
-    if (cell.header().plan.contains(key)) j[key] = cell.header().plan[key];
+    if (run.header().plan.contains(key)) j[key] = run.header().plan[key];
   return j;
 }
 
@@ -112,8 +112,8 @@ void add_plan(CLI::App& app, Console& console) {
       for (const std::string& name : a.solvers) {
         const SolverEntry& entry = find_solver(name);
         const Guard::Answer answer = guard.run(entry, [&] {
-          return plan_of(Cell({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()},
-                              a.device.options, "plan"),
+          return plan_of(SolverRun({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()},
+                                   a.device.options, "plan"),
                          scene);
         });
         all.push_back(answer.crash.empty() ? answer.value : crashed_plan(scene, entry, answer.crash));

@@ -7,8 +7,8 @@
 #include "render/album.hpp"
 #include "results/store.hpp"
 #include "runner/again.hpp"
-#include "runner/cell.hpp"
 #include "runner/interrupt.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -18,18 +18,18 @@ namespace fs = std::filesystem;
 
 struct RenderArguments {
   std::vector<std::string> files, views, set;
-  std::string out, frames, colour, size, cell, solver;
+  std::string out, frames, colour, size, run, solver;
   bool plain = false, no_movie = false;
   DeviceFlags device;
 };
 
-bool is_cell(const fs::path& p) { return p.extension() == ".h5" || p.extension() == ".part"; }
+bool is_run(const fs::path& p) { return p.extension() == ".h5" || p.extension() == ".part"; }
 
 /// Result files of a folder whose names have `wanted` in them. Throws Error where that leaves it open which are meant.
-std::vector<fs::path> cells_in(const fs::path& folder, const std::string& wanted) {
+std::vector<fs::path> runs_in(const fs::path& folder, const std::string& wanted) {
   std::vector<fs::path> all, found;
   for (const auto& entry : fs::directory_iterator(folder))
-    if (is_cell(entry.path())) all.push_back(entry.path());
+    if (is_run(entry.path())) all.push_back(entry.path());
   std::sort(all.begin(), all.end());
   for (const fs::path& p : all)
     if (p.stem().string().find(wanted) != std::string::npos) found.push_back(p);
@@ -37,8 +37,8 @@ std::vector<fs::path> cells_in(const fs::path& folder, const std::string& wanted
   std::string names;
   for (const fs::path& p : all) names += "\n  " + p.stem().string();
   if (all.empty()) throw Error(folder.string() + ": no result files (.h5, .part) in it");
-  if (found.empty()) throw Error(folder.string() + ": no cell has \"" + wanted + "\" in its name; there are" + names);
-  throw Error(folder.string() + ": " + std::to_string(all.size()) + " cells; say which with --cell TEXT:" + names);
+  if (found.empty()) throw Error(folder.string() + ": no run has \"" + wanted + "\" in its name; there are" + names);
+  throw Error(folder.string() + ": " + std::to_string(all.size()) + " runs; say which with --run TEXT:" + names);
 }
 
 /// Runs a scene for its positions alone.
@@ -49,28 +49,28 @@ render::Motion run(const std::string& file, const RenderArguments& a, const Cons
   if (!console.json)
     fmt::print("{}: a scenario, not a result file: nothing is stored, so {} runs it now ({:g} s of it)\n", file,
                a.solver, scene.time.duration_s);
-  Cell cell({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()}, a.device.options,
-            "render");
-  if (!cell.alive()) throw Error(file + ": " + a.solver + ": " + cell.outcome().status + ": " + cell.outcome().message);
+  SolverRun run({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()}, a.device.options,
+                "render");
+  if (!run.alive()) throw Error(file + ": " + a.solver + ": " + run.outcome().status + ": " + run.outcome().message);
   TrialRules rules;
   rules.accuracy_duration_s = scene.time.duration_s;
-  AccuracyPass pass = cell.run_accuracy(rules);
-  return render::motion_of(scene, cell.header(), cell.outcome(), std::move(pass));
+  AccuracyPass pass = run.run_accuracy(rules);
+  return render::motion_of(scene, run.header(), run.outcome(), std::move(pass));
 }
 
 std::vector<render::Motion> motions_of(const std::string& file, const RenderArguments& a, const Console& console) {
   std::vector<render::Motion> out;
   const fs::path path = file;
-  if (fs::is_directory(path) && !is_cell(path)) {
-    for (const fs::path& p : cells_in(path, a.cell)) out.push_back(render::stored_motion(p));
-  } else if (is_cell(path)) {
+  if (fs::is_directory(path) && !is_run(path)) {
+    for (const fs::path& p : runs_in(path, a.run)) out.push_back(render::stored_motion(p));
+  } else if (is_run(path)) {
     out.push_back(render::stored_motion(path));
   } else {
     out.push_back(run(file, a, console));
   }
   for (const render::Motion& m : out)
     if (m.frames() == 0)
-      throw Error(file + ": " + m.name + " has no trajectory" + (m.ended.empty() ? "" : " (" + m.ended + ")") +
+      throw Error(file + ": " + m.name + " has no trajectory" + (m.outcome.empty() ? "" : " (" + m.outcome + ")") +
                   "; a scenario can be run directly: clothbench render SCENE");
   return out;
 }
@@ -94,7 +94,7 @@ void render_all(const RenderArguments& a, const Console& console) {
   shots.plain = a.plain;
   shots.movie = !a.no_movie;
   shots.out = a.out;
-  nlohmann::json told = {{"pictures", nlohmann::json::array()}, {"movies", nlohmann::json::array()}};
+  nlohmann::json reported = {{"pictures", nlohmann::json::array()}, {"movies", nlohmann::json::array()}};
   for (const std::string& file : a.files)
     for (const render::Motion& m : motions_of(file, a, console)) {
       shots.frames = render::frames_from(a.frames, m.frames());
@@ -107,12 +107,12 @@ void render_all(const RenderArguments& a, const Console& console) {
               line.show(what, done, of);
             });
       }
-      for (const fs::path& p : taken.pictures) told["pictures"].push_back(p.string());
-      for (const fs::path& p : taken.movies) told["movies"].push_back(p.string());
-      if (!taken.no_movie.empty()) told["no_movie"] = taken.no_movie;
+      for (const fs::path& p : taken.pictures) reported["pictures"].push_back(p.string());
+      for (const fs::path& p : taken.movies) reported["movies"].push_back(p.string());
+      if (!taken.no_movie.empty()) reported["no_movie"] = taken.no_movie;
       if (!console.json) tell(taken);
     }
-  if (console.json) fmt::print("{}\n", told.dump(2));
+  if (console.json) fmt::print("{}\n", reported.dump(2));
 }
 
 }  // namespace
@@ -136,18 +136,18 @@ void add_render(CLI::App& app, Console& console) {
                   "through a room)")
       ->capture_default_str();
   cmd->add_option("--size", a.size, "WIDTHxHEIGHT in pixels, legend and caption included")->capture_default_str();
-  cmd->add_option("--cell", a.cell, "Of a folder: cells with this in their names");
+  cmd->add_option("--run", a.run, "Of a folder: runs with this in their names");
   cmd->add_flag("--plain", a.plain, "No legend and no caption");
   cmd->add_flag("--no-movie", a.no_movie, "Pictures alone");
   cmd->add_option("--solver", a.solver, "Solver that runs a scenario")->capture_default_str();
   cmd->add_option("--set", a.set, "Of a scenario: override, as with `clothbench run`");
   a.device.add_to(*cmd);
   cmd->footer(
-      "Examples: clothbench render results/runs/mine --cell desk-flat-low__xpbd --view top --colour depth --frames -1\n"
+      "Examples: clothbench render results/runs/mine --run desk-flat-low__xpbd --view top --colour depth --frames -1\n"
       "          clothbench render paper/hand-push --frames 0:-1:4 -o push");
   cmd->callback([&console, &a] {
     const bool runs = std::any_of(a.files.begin(), a.files.end(),
-                                  [](const fs::path& f) { return !fs::is_directory(f) && !is_cell(f); });
+                                  [](const fs::path& f) { return !fs::is_directory(f) && !is_run(f); });
     const SolverEntry* solver = runs ? &find_solver(a.solver) : nullptr;
     if (solver == nullptr || !is_external(solver->info)) return render_all(a, console);
     const std::string crash = Guard(console.words)

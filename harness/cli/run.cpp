@@ -42,14 +42,14 @@ void add_run(CLI::App& app, Console& console) {
     std::vector<Scene> scenes;
     for (const std::string& file : a.scenes)
       scenes.push_back(at_seed(load_scene(file, overrides.scene, asset_policy(a.require_assets)), a.seed, console));
-    CellPlan plan;
+    RunPlan plan;
     plan.protocol = "run";
     plan.rules.trials = a.trials;
     plan.rules.max_wall_s = 10;
     plan.rules.accuracy_duration_s = 0;
     for (const Scene& scene : scenes) {
       plan.rules.accuracy_duration_s = std::max(plan.rules.accuracy_duration_s, scene.time.duration_s);
-      std::vector<CellSpec> group;
+      std::vector<RunSpec> group;
       for (const std::string& name : a.solvers) {
         const SolverEntry& entry = find_solver(name);
         group.push_back({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()});

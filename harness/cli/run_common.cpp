@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "base/tint.hpp"
-#include "cli/material_cards.hpp"
+#include "cli/study_moduli.hpp"
 #include "report/in_short.hpp"
 #include "report/report.hpp"
 #include "report/withheld.hpp"
-#include "runner/cell_choice.hpp"
 #include "runner/environment.hpp"
+#include "runner/run_choice.hpp"
 #include "runner/supervise.hpp"
 #include "truth/draw.hpp"
 
@@ -54,36 +54,36 @@ namespace {
 
 /// Says what GPU solvers will run on, before anything is measured. Drops them where there is no device and that is
 /// allowed.
-void settle_device(CellPlan& plan, const DeviceFlags& flags) {
+void settle_device(RunPlan& plan, const DeviceFlags& flags) {
   const SolverEntry* gpu = nullptr;
   for (const auto& group : plan.groups)
-    for (const CellSpec& c : group)
+    for (const RunSpec& c : group)
       if (c.entry->info.on_gpu && c.entry->devices) gpu = c.entry;
   if (gpu == nullptr) return;
   if (check_device(*gpu, flags)) return;
   for (auto& group : plan.groups)
-    group.erase(std::remove_if(group.begin(), group.end(), [](const CellSpec& c) { return c.entry->info.on_gpu; }),
+    group.erase(std::remove_if(group.begin(), group.end(), [](const RunSpec& c) { return c.entry->info.on_gpu; }),
                 group.end());
 }
 
 nlohmann::json seconds_json(const RunResult& r) {
   nlohmann::json j = nlohmann::json::object();
-  for (const auto& [name, s] : r.seconds) j[name] = {{"cells", s}};
-  for (const auto& [name, s] : r.card_seconds) j[name]["cards"] = s;
+  for (const auto& [name, s] : r.seconds) j[name] = {{"runs", s}};
+  for (const auto& [name, s] : r.moduli_seconds) j[name]["moduli"] = s;
   return j;
 }
 
-/// A few cells at a glance, under the tables; many are what the tables are for.
-void print_in_short(const CellPlan& plan, const std::filesystem::path& out) {
+/// A few runs at a glance, under the tables; many are what the tables are for.
+void print_in_short(const RunPlan& plan, const std::filesystem::path& out) {
   constexpr std::size_t kFew = 24;
   if (plan.size() == 0 || plan.size() > kFew) return;
-  const std::vector<std::string> names = cell_names(plan);
-  std::vector<CellRecord> cells = collect({out});
-  std::erase_if(cells, [&](const CellRecord& c) {
-    return std::find(names.begin(), names.end(), cell_name(c.header)) == names.end();
+  const std::vector<std::string> names = run_names(plan);
+  std::vector<RunRecord> runs = collect({out});
+  std::erase_if(runs, [&](const RunRecord& c) {
+    return std::find(names.begin(), names.end(), run_name(c.header)) == names.end();
   });
-  withhold_times(cells);
-  fmt::print("{}", in_short_table(cells).console());
+  withhold_times(runs);
+  fmt::print("{}", in_short_table(runs).console());
 }
 
 /// Where the time went, and what was not measured for its sake.
@@ -91,19 +91,20 @@ void print_spent(const RunResult& r) {
   std::string text;
   double all = 0;
   for (const auto& [name, s] : r.seconds) {
-    const auto cards = r.card_seconds.find(name);
+    const auto moduli = r.moduli_seconds.find(name);
     text += fmt::format("{}{} {:.1f}", text.empty() ? "" : ", ", name, s);
-    if (cards != r.card_seconds.end()) text += fmt::format(" + {:.1f} on cards", cards->second);
-    all += s + (cards == r.card_seconds.end() ? 0 : cards->second);
+    if (moduli != r.moduli_seconds.end()) text += fmt::format(" + {:.1f} on moduli", moduli->second);
+    all += s + (moduli == r.moduli_seconds.end() ? 0 : moduli->second);
   }
   fmt::print("seconds: {}; together {:.0f}\n", text, all);
-  if (r.cells_over_budget > 0)
+  if (r.runs_over_budget > 0)
     fmt::print("not run: {} settings whose solvers had used up their time on the scene (over_budget)\n",
-               r.cells_over_budget);
-  if (r.cards_left_out > 0)
+               r.runs_over_budget);
+  if (r.moduli_left_out > 0)
     fmt::print(
-        "not run: material cards of {} settings on fronts, which could change no verdict; a full study measures all\n",
-        r.cards_left_out);
+        "not run: effective moduli of {} settings on fronts, which could change no verdict; a full study measures "
+        "all\n",
+        r.moduli_left_out);
 }
 
 }  // namespace
@@ -116,7 +117,7 @@ void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
 Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, Console& console) {
   if (!seed) return scene;
   truth::DrawnScene drawn = truth::draw(scene, *seed);
-  if (!console.json && console.told_scenes.insert(scene.name).second) {
+  if (!console.json && console.reported_scenes.insert(scene.name).second) {
     std::string text;
     for (const auto& [name, value] : drawn.values) text += fmt::format(" {}={:.6g}", name, value);
     fmt::print("{} --seed {}:{} frame_rate_hz={:.6g} duration_s={:.6g}\n", scene.name, *seed, text,
@@ -125,13 +126,13 @@ Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, Console& co
   return std::move(drawn.scene);
 }
 
-void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, Console& console) {
+void run_and_tell(RunPlan plan, StudyManifest manifest, const RunFlags& flags, Console& console) {
   settle_device(plan, flags.device);
   const std::optional<Supervised> parent = supervised();
   const std::filesystem::path out = parent              ? parent->out
                                     : flags.out.empty() ? default_folder(manifest.study)
                                                         : std::filesystem::path(flags.out);
-  require_same_cells(out, plan, parent ? parent->resume : flags.resume);
+  require_same_runs(out, plan, parent ? parent->resume : flags.resume);
   std::filesystem::create_directories(out);
   if (needs_supervision(plan)) {
     console.exit_code = supervise(plan, out, flags.resume, console.words);
@@ -139,7 +140,7 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
   }
   manifest.created = utc_now();
   manifest.command_line = console.command_line;
-  if (manifest.cells.empty()) manifest.cells = cell_names(plan);
+  if (manifest.runs.empty()) manifest.runs = run_names(plan);
   write_manifest(out, manifest);
 
   RunResult result;
@@ -151,23 +152,23 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
                          line.show(what, done, total);
                          note.write(what);
                        }};
-    result = run_cells(plan, options);
-    if (plan.material_cards) add_material_cards(plan, options, manifest, result);
+    result = execute_runs(plan, options);
+    if (plan.measure_moduli) add_moduli_runs(plan, options, manifest, result);
   }
   for (const std::string& fault : result.faults) fmt::print(stderr, "FAULT {}\n", fault);
   if (!result.faults.empty()) console.exit_code = ExitCode::CheckFailed;
   if (console.json) {
     nlohmann::json j = {{"out", out.string()},
-                        {"ok", result.cells_ok},
-                        {"unsupported", result.cells_unsupported},
-                        {"over_budget", result.cells_over_budget},
-                        {"failed", result.cells_failed},
+                        {"ok", result.runs_ok},
+                        {"unsupported", result.runs_unsupported},
+                        {"over_budget", result.runs_over_budget},
+                        {"failed", result.runs_failed},
                         {"seconds", seconds_json(result)},
-                        {"cards", result.cards},
-                        {"cards_left_out", result.cards_left_out},
+                        {"moduli", result.moduli},
+                        {"moduli_left_out", result.moduli_left_out},
                         {"faults", result.faults},
-                        {"expect_kept", result.expect_kept},
-                        {"expect_broken", result.expect_broken}};
+                        {"expect_passed", result.expect_passed},
+                        {"expect_failed", result.expect_failed}};
     fmt::print("{}\n", j.dump(2));
     return;
   }
@@ -176,9 +177,9 @@ void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, 
   const auto counted = [](int n, const char* what, Tone tone) {
     return tinted(n > 0 ? tone : Tone::Plain, fmt::format("{} {}", n, what));
   };
-  fmt::print("\n{}, {}, {}; results in {}\n", counted(result.cells_ok, "cells ok", Tone::Good),
-             counted(result.cells_unsupported, "unsupported", Tone::Doubtful),
-             counted(result.cells_failed, "failed", Tone::Bad), out.string());
+  fmt::print("\n{}, {}, {}; results in {}\n", counted(result.runs_ok, "runs ok", Tone::Good),
+             counted(result.runs_unsupported, "unsupported", Tone::Doubtful),
+             counted(result.runs_failed, "failed", Tone::Bad), out.string());
   print_spent(result);
 }
 

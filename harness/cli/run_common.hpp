@@ -13,10 +13,10 @@ struct RunFlags {
   std::string out;  ///< empty: results/runs/<study>-<UTC>
   bool resume = false;
   DeviceFlags device;
-  bool part = false;  ///< only some of the cells that the manifest names: no report of the folder at the end
+  bool part = false;  ///< only some of the runs that the manifest names: no report of the folder at the end
 };
 
-/// What commands have in common that ask run after run of solvers: friction, threshold, card, metamorphic.
+/// What commands have in common that ask run after run of solvers: friction, threshold, measured, metamorphic.
 struct SearchFlags {
   std::vector<std::string> solvers, set;
   std::string out;  ///< empty: nothing is stored
@@ -33,7 +33,7 @@ std::filesystem::path default_folder(const std::string& study);
 /// --device that there is not.
 bool check_device(const SolverEntry& gpu, const DeviceFlags&);
 
-/// run_and_tell for a study whose cells run in other processes (protocol stability-map), `jobs` at a time. `only`:
+/// run_and_tell for a study whose runs are in other processes (protocol stability-map), `jobs` at a time. `only`:
 /// solvers of its maps.
 void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only,
                             int jobs, Console& console);
@@ -41,11 +41,11 @@ void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags&
 /// The option --seed of commands whose scenes have a truth.
 void add_seed(CLI::App&, std::optional<std::uint64_t>& seed);
 
-/// The scene at the parameters drawn by `seed`, told to the user once for each name; the scene itself without one.
+/// The scene at the parameters drawn by `seed`, reported to the user once for each name; the scene itself without one.
 Scene at_seed(Scene, const std::optional<std::uint64_t>& seed, Console&);
 
-/// Writes the manifest, runs the cells with a status line and prints what came of it. Sets the console's exit code to
-/// CheckFailed if a cell broke a rule of the harness.
-void run_and_tell(CellPlan plan, StudyManifest manifest, const RunFlags& flags, Console& console);
+/// Writes the manifest, executes the runs with a status line and prints what came of it. Sets the console's exit code
+/// to CheckFailed if a run broke a rule of the harness.
+void run_and_tell(RunPlan plan, StudyManifest manifest, const RunFlags& flags, Console& console);
 
 }  // namespace clothbench

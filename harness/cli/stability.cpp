@@ -51,7 +51,7 @@ void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags&
   manifest.command_line = console.command_line;
   for (const Study::Item& item : study.scenes)
     for (const std::size_t k : item.solvers)
-      manifest.cells.push_back(cell_name(item.scene.name, study.solvers[k].solver, study.solvers[k].label));
+      manifest.runs.push_back(run_name(item.scene.name, study.solvers[k].solver, study.solvers[k].label));
   StabilityOptions options;
   options.out = out;
   options.program = own_program();
@@ -68,7 +68,7 @@ void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags&
     options.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
       line.show(what, done, total);
     };
-    counts = run_stability_cells(study, options);
+    counts = execute_stability_runs(study, options);
     counts.add(run_stability_maps(study, options));
   }
   if (console.json) {

@@ -13,7 +13,7 @@ struct XrArguments {
   std::vector<std::string> set;
   std::vector<double> place;
   int frames = 0;
-  double rate = 72, patience = 120;
+  double rate = 72, timeout = 120;
   bool opaque = false;
   DeviceFlags device;
 };
@@ -64,7 +64,7 @@ void add_xr(CLI::App& app, Console& console) {
                   "default 0 -0.1 -0.6, with a room 0 0 0")
       ->expected(3);
   cmd->add_flag("--no-passthrough", a.opaque, "White background instead of the picture of the cameras");
-  cmd->add_option("--patience", a.patience,
+  cmd->add_option("--timeout", a.timeout,
                   "Time without tracked hands or picked points after which the session ends [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -90,7 +90,7 @@ void add_xr(CLI::App& app, Console& console) {
     o.frames = a.frames;
     if (!a.place.empty()) o.place_m = Vec3{a.place[0], a.place[1], a.place[2]};
     o.passthrough = !a.opaque;
-    o.patience_s = a.patience;
+    o.timeout_s = a.timeout;
     o.out = a.out.empty() ? default_folder("xr") : std::filesystem::path(a.out);
     if (!console.json) o.tell = [](const std::string& text) { fmt::print("{}\n", text); };
     const xr::LoopResult r = xr::run_loop(o);

@@ -50,7 +50,7 @@ enum {
   CLOTHBENCH_CLOTH_MESH = 1 << 20 /* a triangle mesh instead of a grid: columns is the number of vertices, rows is 1 */
 };
 
-/* How a step ended. What is not OK ends the cell, as a row of the results. */
+/* How a step ended. What is not OK ends the run, as a row of the results. */
 enum {
   CLOTHBENCH_OK = 0,
   CLOTHBENCH_NOT_FINITE = 1,

@@ -108,8 +108,8 @@ struct Triangles {
 struct ColliderPassage::Watch {
   Watch(const Scene& s, const std::vector<double>& held_at_m) : scene(s) {
     for (std::size_t k = 0; k < s.colliders.size(); ++k) {
-      const bool told = k < held_at_m.size() && std::isfinite(held_at_m[k]);
-      margins.push_back(told ? held_at_m[k] : s.colliders[k].margin_m);
+      const bool reported = k < held_at_m.size() && std::isfinite(held_at_m[k]);
+      margins.push_back(reported ? held_at_m[k] : s.colliders[k].margin_m);
     }
     tolerance = kTouchShare * std::min(s.cloth.width_m, s.cloth.height_m);
     const Cloth& c = s.cloth;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLow = 0.5, kHigh = 1.5, kFinest = 1e-3;
 
-double quantity_of(const CellRecord& run) {
+double quantity_of(const RunRecord& run) {
   const auto at = run.summary.find("truth_quantity");
   return at == run.summary.end() ? kMissing : at->second;
 }
@@ -64,17 +64,17 @@ std::string tried_scene(const std::string& scene, double friction) {
   return fmt::format("{}-friction={}", scene, friction);
 }
 
-std::optional<bool> stayed(const truth::Threshold& t, const CellRecord& run) {
+std::optional<bool> stayed(const truth::Threshold& t, const RunRecord& run) {
   if (run.outcome.status != "ok" || run.withheld.contains("truth_quantity")) return std::nullopt;
   return std::abs(quantity_of(run)) <= t.held_below_m;
 }
 
-double end_error(const Scene& scene, const CellRecord& run) {
-  const auto card = truth::card_of(scene);
-  if (!card) throw Error(scene.source + ": /truth: missing");
+double end_error(const Scene& scene, const RunRecord& run) {
+  const auto known = truth::reference_case_of(scene);
+  if (!known) throw Error(scene.source + ": /truth: missing");
   if (run.outcome.status != "ok") return kMissing;
-  return truth::quantity_error(quantity_of(run), card->quantity(card->columns(scene.time.frames())),
-                               card->quantity_scale);
+  return truth::quantity_error(quantity_of(run), known->quantity(known->columns(scene.time.frames())),
+                               known->quantity_scale);
 }
 
 }  // namespace clothbench

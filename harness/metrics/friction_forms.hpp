@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "clothbench/record.hpp"
-#include "truth/card.hpp"
+#include "truth/reference_case.hpp"
 
 namespace clothbench {
 
@@ -27,7 +27,7 @@ inline constexpr const char* kFrictionProtocol = "friction";
 /// Where a scene begins to hold for one solver, against the closed form.
 struct FoundThreshold {
   double exact = 0, found = 0;  ///< coefficients of friction
-  double error = 0;             ///< in the card's own words: degrees of the critical angle, share of the overhang
+  double error = 0;  ///< in the reference case's own words: degrees of the critical angle, share of the overhang
   bool holds_at_least = false, slips_at_most = false;  ///< at 0.5 and 1.5 times the exact one: found is then that end
   bool failed = false;                                 ///< a run did: nothing was found, `found` and `error` are NaN
   int runs = 0;
@@ -44,10 +44,10 @@ std::string tried_scene(const std::string& scene, double friction);
 
 /// Whether the cloth of a whole run stayed where it was; none where the run failed. A strip that is no longer over its
 /// cylinder has no displacement over it, and did not stay.
-std::optional<bool> stayed(const truth::Threshold&, const CellRecord& run);
+std::optional<bool> stayed(const truth::Threshold&, const RunRecord& run);
 
-/// |quantity - truth| over its scale (see truth/card.hpp) at the end of a whole run of the scene; NaN if the run
-/// failed. Throws Error if the scene has no card.
-double end_error(const Scene&, const CellRecord& run);
+/// |quantity - truth| over its scale (see truth/reference_case.hpp) at the end of a whole run of the scene; NaN if the
+/// run failed. Throws Error if the scene has no reference case.
+double end_error(const Scene&, const RunRecord& run);
 
 }  // namespace clothbench

@@ -101,18 +101,18 @@ double strain_released(const RunView& r) {
   return kMissing;
 }
 
-/// Speed [m/s] that the scene imposes: of the sweep or pull that a hand was told ("speed_m_per_s"), else the greatest
-/// of any collider or grip from frame to frame, else that at which the cloth starts.
+/// Speed [m/s] that the scene imposes: of the sweep or pull that the scene gives to a hand ("speed_m_per_s"), else the
+/// greatest of any collider or grip from frame to frame, else that at which the cloth starts.
 double imposed_speed(const RunView& r) {
   const Scene& scene = r.scene;
   if (scene.colliders.empty() && scene.grips.vertices.empty()) return kMissing;
   const nlohmann::json j = nlohmann::json::parse(scene.json, nullptr, false);
-  double told = 0;
+  double reported = 0;
   for (const char* list : {"colliders", "grips"})
     if (j.is_object() && j.contains(list))
       for (const auto& item : j[list])
-        if (item.is_object()) told = std::max(told, item.value("speed_m_per_s", 0.0));
-  if (told > 0) return told;
+        if (item.is_object()) reported = std::max(reported, item.value("speed_m_per_s", 0.0));
+  if (reported > 0) return reported;
   const double seen = std::max(collider_speed_m_per_s(scene), grip_speed_m_per_s(scene));
   const Vec3& v = scene.cloth.initial_velocity_m_per_s;
   return seen > 0 ? seen : norm(v[0], v[1], v[2]);
@@ -147,7 +147,9 @@ MetricGroup grips_metrics() {
             strain_released, "1"),
         Yes, &kLeft, 340},
        {"imposed_speed_m_per_s",
-        own({}, "speed that hands or colliders were told, else the greatest of theirs, else the cloth's at the start",
+        own({},
+            "speed that the scene gives to hands or colliders, else the greatest of theirs, else the cloth's at the "
+            "start",
             imposed_speed, "m s-1"),
         No, nullptr, 350}}};
 }

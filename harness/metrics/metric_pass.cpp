@@ -20,7 +20,7 @@ MetricPass::MetricPass(const MetricContext& context) : context_(context) {
   }
   if (kWithContactMetrics && context.scene.needs.has(Feature::SelfCollision))
     triangles_ = triangles(context.scene.cloth);
-  if (!context.scene.truth_card.empty()) judge_ = std::make_unique<TruthJudge>(context.scene);
+  if (!context.scene.reference_case.empty()) judge_ = std::make_unique<TruthJudge>(context.scene);
   if (!context.scene.stability.name.empty()) stability_ = std::make_unique<StabilityJudge>(context_);
 }
 

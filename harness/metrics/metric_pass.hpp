@@ -12,7 +12,7 @@ class ColliderPassage;
 class StabilityJudge;
 class TruthJudge;
 
-/// The metrics of one accuracy pass over one cell: those that apply to its scene, each evaluated once a frame. Keeps
+/// The metrics of one accuracy pass over one run: those that apply to its scene, each evaluated once a frame. Keeps
 /// what has to be remembered from frame to frame (where the cloth was when a collider passed it), so frames come in
 /// order.
 class MetricPass {

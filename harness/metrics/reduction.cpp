@@ -42,12 +42,12 @@ double sum_from(const std::vector<double>& v, std::size_t from) {
 
 RunView::RunView(const Scene& s, const AccuracyPass& p, Outcome o) : scene(s), pass(p), outcome(std::move(o)) {}
 
-RunView::RunView(const Scene& s, const CellRecord& c, const Plan& its_plan, bool gpu)
-    : scene(s), pass(c.accuracy), outcome(c.outcome), cell(&c), plan(&its_plan), on_gpu(gpu) {}
+RunView::RunView(const Scene& s, const RunRecord& c, const Plan& its_plan, bool gpu)
+    : scene(s), pass(c.accuracy), outcome(c.outcome), run(&c), plan(&its_plan), on_gpu(gpu) {}
 
-const truth::Card& RunView::card() const {
-  if (!card_) card_ = truth::card_of(scene);
-  return card_.value();
+const truth::ReferenceCase& RunView::reference_case() const {
+  if (!case_) case_ = truth::reference_case_of(scene);
+  return case_.value();
 }
 
 bool RunView::whole() const { return pass.time_s.size() == static_cast<std::size_t>(scene.time.frames()) + 1; }

@@ -6,21 +6,21 @@
 
 #include "clothbench/record.hpp"
 #include "metrics/metric.hpp"
-#include "truth/card.hpp"
+#include "truth/reference_case.hpp"
 
 namespace clothbench {
 
 /// What the scalars of a summary are computed from: one run of one scene, as far as it came.
 struct RunView {
   RunView(const Scene&, const AccuracyPass&, Outcome = {});
-  /// Of a cell with its trials; `plan` outlives this.
-  RunView(const Scene&, const CellRecord&, const Plan& plan, bool on_gpu);
+  /// Of a run with its trials; `plan` outlives this.
+  RunView(const Scene&, const RunRecord&, const Plan& plan, bool on_gpu);
 
   const Scene& scene;
   const AccuracyPass& pass;
   const Outcome outcome;
-  const CellRecord* cell = nullptr;  ///< null: nothing is known of times
-  const Plan* plan = nullptr;        ///< the same
+  const RunRecord* run = nullptr;  ///< null: nothing is known of times
+  const Plan* plan = nullptr;      ///< the same
   bool on_gpu = false;
 
   /// Whether the pass reaches the scene's end.
@@ -30,18 +30,19 @@ struct RunView {
   /// First frame of the last half second, the one at its beginning included.
   std::size_t settled_from() const;
   /// Of a scene that states a truth.
-  const truth::Card& card() const;
+  const truth::ReferenceCase& reference_case() const;
 
  private:
-  mutable std::optional<truth::Card> card_;
+  mutable std::optional<truth::ReferenceCase> case_;
 };
 
 /// How a number comes of a run.
 struct Reduction {
-  std::vector<std::string> series;              ///< metrics that it hangs on; none: it is measured otherwise
-  std::string how;                              ///< "greatest of all frames"; of a rule of its own what it is, whole
-  std::function<double(const RunView&)> value;  ///< NaN: not defined or not known. Null: whoever ran the cell adds it
-  std::string units = "";                       ///< empty: that of its one series, and it is that series' `how`
+  std::vector<std::string> series;  ///< metrics that it hangs on; none: it is measured otherwise
+  std::string how;                  ///< "greatest of all frames"; of a rule of its own what it is, whole
+  std::function<double(const RunView&)>
+      value;               ///< NaN: not defined or not known. Null: the code that executed the run adds it
+  std::string units = "";  ///< empty: that of its one series, and it is that series' `how`
 };
 
 /// What an absolute slack is a multiple of: 1, the shorter side L of the cloth [m], or its square.
@@ -71,14 +72,14 @@ struct Scalar {
   const Gate* gate = nullptr;                 ///< null: not checked
   int column = 0;                             ///< place among the columns of penetration.csv; 0: none
   bool (*present)(const RunView&) = nullptr;  ///< null: in every summary, NaN where it has no value
-  std::string units = "", doc = "";           ///< a plain phrase; both told by the registry
+  std::string units = "", doc = "";           ///< a plain phrase; both set by the registry
 };
 
 /// What one file of this folder has to tell; the file is a line in CMakeLists.txt.
 struct MetricGroup {
   std::vector<Metric> series;
   std::vector<Scalar> scalars;
-  std::string source = "";  ///< the file; told by the registry
+  std::string source = "";  ///< the file; set by the registry
 };
 
 const std::vector<MetricGroup>& metric_groups();
@@ -94,7 +95,7 @@ const Scalar* find_scalar(const std::string& name);
 std::vector<std::string> series_columns();
 const std::vector<std::string>& penetration_columns();
 
-/// One scalar a stage of a cell's plan, named after it.
+/// One scalar a stage of a run's plan, named after it.
 std::map<std::string, double> stage_scalars(const RunView&);
 
 /// Every scalar that is present in the run's summary, of those whose names begin so.
@@ -107,7 +108,7 @@ int metric_version(const std::string& name);
 /// is measured otherwise (times, bytes, counts).
 std::vector<std::string> metrics_behind(const std::string& summary_name);
 
-/// What names of summary values that are a bound's outcome begin with: 1 kept, 0 broken, NaN not measured.
+/// What names of summary values that are a bound's outcome begin with: 1 pass, 0 fail, NaN not measured.
 inline const std::string kExpect = "expect.";
 
 }  // namespace clothbench

@@ -1,4 +1,4 @@
-// What the clock and the plan tell of a cell: times, rates, bytes, memory.
+// What the clock and the plan tell of a run: times, rates, bytes, memory.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -31,7 +31,7 @@ using Values = std::vector<double>;
 template <class Of>
 Values of_trials(const RunView& r, Of of) {
   Values out;
-  for (const TimedTrial& t : r.cell->trials)
+  for (const TimedTrial& t : r.run->trials)
     if (t.frames() > 0) out.push_back(of(t));
   return out;
 }
@@ -39,7 +39,7 @@ Values of_trials(const RunView& r, Of of) {
 /// The frames of all trials.
 Values of_frames(const RunView& r, Values TimedTrial::*list) {
   Values out;
-  for (const TimedTrial& t : r.cell->trials)
+  for (const TimedTrial& t : r.run->trials)
     if (t.frames() > 0) out.insert(out.end(), (t.*list).begin(), (t.*list).end());
   return out;
 }
@@ -95,19 +95,19 @@ Bandwidth bandwidth(const TimedTrial& trial, const std::vector<double>& stage_by
   return out;
 }
 
-/// The most clothbench jobs that ran side by side while the cell was loaded and timed; missing if any of it doesn't
+/// The most clothbench jobs that ran side by side while the run was loaded and timed; missing if any of it doesn't
 /// say.
 double jobs_beside(const RunView& r) {
-  const CellRecord& record = *r.cell;
+  const RunRecord& record = *r.run;
   double most = record.header.environment.is_object() ? record.header.environment.value("jobs", kMissing) : kMissing;
   for (const TimedTrial& t : record.trials) most = max_or_nan(most, t.jobs);
   return most;
 }
 
 /// Of the first frame.
-double bytes_per_frame(const CellRecord& cell, std::vector<double> TimedTrial::*bytes) {
-  if (cell.trials.empty() || cell.trials.front().frames() == 0) return kMissing;
-  const TimedTrial& t = cell.trials.front();
+double bytes_per_frame(const RunRecord& run, std::vector<double> TimedTrial::*bytes) {
+  if (run.trials.empty() || run.trials.front().frames() == 0) return kMissing;
+  const TimedTrial& t = run.trials.front();
   const std::size_t stages = (t.*bytes).size() / static_cast<std::size_t>(t.frames());
   double sum = 0;
   for (std::size_t s = 0; s < stages; ++s) sum += (t.*bytes)[s];
@@ -128,21 +128,21 @@ double dispatches(const RunView& r) {
 
 constexpr const char* kStage = "stage_device_median_s.";
 
-bool timed(const RunView& r) { return r.cell != nullptr; }
+bool timed(const RunView& r) { return r.run != nullptr; }
 bool rendered(const RunView& r) { return timed(r) && !of_frames(r, &TimedTrial::frame_rendered_s).empty(); }
 
-Scalar told(const char* name, const char* units, const char* doc, std::function<double(const RunView&)> value,
-            int column = 0) {
+Scalar reported(const char* name, const char* units, const char* doc, std::function<double(const RunView&)> value,
+                int column = 0) {
   return {name, own({}, doc, std::move(value), units), Expect::No, nullptr, column, timed};
 }
 
 Scalar median_frame(const char* name, const char* doc, Values TimedTrial::*list, int column) {
-  return told(
+  return reported(
       name, "s", doc, [list](const RunView& r) { return median(of_frames(r, list)); }, column);
 }
 
 Scalar bandwidth_scalar(const char* name, const char* doc, Values TimedTrial::*bytes, double Bandwidth::*value) {
-  return told(name, "B s-1", doc, [=](const RunView& r) {
+  return reported(name, "B s-1", doc, [=](const RunView& r) {
     return median(of_trials(r, [&](const TimedTrial& t) { return bandwidth(t, t.*bytes).*value; }));
   });
 }
@@ -154,7 +154,7 @@ std::map<std::string, double> stage_scalars(const RunView& r) {
   const std::size_t stages = r.plan->stages.size();
   for (std::size_t k = 0; k < stages; ++k) {
     Values t;
-    for (const TimedTrial& trial : r.cell->trials)
+    for (const TimedTrial& trial : r.run->trials)
       for (std::size_t f = 0; f < trial.frame_wall_s.size(); ++f) t.push_back(trial.stage_device_s[f * stages + k]);
     out[kStage + r.plan->stages[k].name] = median(t);
   }
@@ -167,29 +167,32 @@ MetricGroup timing_metrics() {
   static constexpr Gate kCount{0, SlackUnit::One, 0, false, "a count, the same everywhere"};
   MetricGroup g;
   g.scalars = {
-      told("jobs", "1", "the most clothbench jobs that ran side by side while the cell was loaded and timed",
-           jobs_beside),
-      told("trials", "1", "timed trials", [](const RunView& r) { return static_cast<double>(r.cell->trials.size()); }),
-      told("frames_per_trial", "1", "frames of a timed trial",
-           [](const RunView& r) { return r.cell->trials.empty() ? kMissing : r.cell->trials.front().frames(); }),
-      told("fps_median", "s-1", "frames per second, median of the trials",
-           [](const RunView& r) { return median(rates(r)); }),
-      told("fps_mean", "s-1", "frames per second, mean of the trials", [](const RunView& r) { return mean(rates(r)); }),
-      told("fps_spread", "1", "half the range of the trials' frames per second, over their median", half_range),
-      told("fps_at_72", "s-1", "mean over frames of min(72, 1/t), median of the trials",
-           [](const RunView& r) { return median(of_trials(r, capped_rate)); }),
+      reported("jobs", "1", "the most clothbench jobs that ran side by side while the run was loaded and timed",
+               jobs_beside),
+      reported("trials", "1", "timed trials",
+               [](const RunView& r) { return static_cast<double>(r.run->trials.size()); }),
+      reported("frames_per_trial", "1", "frames of a timed trial",
+               [](const RunView& r) { return r.run->trials.empty() ? kMissing : r.run->trials.front().frames(); }),
+      reported("fps_median", "s-1", "frames per second, median of the trials",
+               [](const RunView& r) { return median(rates(r)); }),
+      reported("fps_mean", "s-1", "frames per second, mean of the trials",
+               [](const RunView& r) { return mean(rates(r)); }),
+      reported("fps_spread", "1", "half the range of the trials' frames per second, over their median", half_range),
+      reported("fps_at_72", "s-1", "mean over frames of min(72, 1/t), median of the trials",
+               [](const RunView& r) { return median(of_trials(r, capped_rate)); }),
       median_frame("frame_wall_median_s", "wall time of a frame, median of all timed frames", &T::frame_wall_s, 410),
-      told("frame_wall_iqr_s", "s", "wall time of a frame, interquartile range", wall_iqr),
-      told("frame_pipelined_median_s", "s", "wall time of a frame that is not waited for, median of the trials' means",
-           [](const RunView& r) { return median(of_trials(r, [](const T& t) { return t.pipelined_wall_s; })); }),
+      reported("frame_wall_iqr_s", "s", "wall time of a frame, interquartile range", wall_iqr),
+      reported("frame_pipelined_median_s", "s",
+               "wall time of a frame that is not waited for, median of the trials' means",
+               [](const RunView& r) { return median(of_trials(r, [](const T& t) { return t.pipelined_wall_s; })); }),
       median_frame("frame_rendered_median_s", "wall time of a frame and its pictures, median", &T::frame_rendered_s, 0),
-      told("fps_rendered_median", "s-1", "frames and their pictures per second, by the median",
-           [](const RunView& r) { return 1 / median(of_frames(r, &T::frame_rendered_s)); }),
+      reported("fps_rendered_median", "s-1", "frames and their pictures per second, by the median",
+               [](const RunView& r) { return 1 / median(of_frames(r, &T::frame_rendered_s)); }),
       median_frame("frame_device_median_s", "time of a frame on the GPU, median", &T::frame_device_s, 420),
-      told("read_B_per_frame", "B", "bytes that a frame's shaders read",
-           [](const RunView& r) { return bytes_per_frame(*r.cell, &T::stage_read_B); }),
-      told("write_B_per_frame", "B", "bytes that a frame's shaders write",
-           [](const RunView& r) { return bytes_per_frame(*r.cell, &T::stage_write_B); }),
+      reported("read_B_per_frame", "B", "bytes that a frame's shaders read",
+               [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_read_B); }),
+      reported("write_B_per_frame", "B", "bytes that a frame's shaders write",
+               [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_write_B); }),
       bandwidth_scalar("bandwidth_read_peak_B_per_s", "bytes read over wall time, greatest of the windows",
                        &T::stage_read_B, &B::peak),
       bandwidth_scalar("bandwidth_read_mean_B_per_s", "bytes read over wall time, mean", &T::stage_read_B, &B::mean),
@@ -197,15 +200,15 @@ MetricGroup timing_metrics() {
                        &T::stage_write_B, &B::peak),
       bandwidth_scalar("bandwidth_write_mean_B_per_s", "bytes written over wall time, mean", &T::stage_write_B,
                        &B::mean),
-      told("bandwidth_window_s", "s", "length of those windows",
-           [](const RunView& r) {
-             return median(of_trials(r, [](const T& t) { return bandwidth(t, t.stage_read_B).window_s; }));
-           }),
-      told("device_memory_B", "B", "buffers in device-local memory", device_memory),
-      told("dispatches", "1", "dispatches a frame", dispatches),
+      reported("bandwidth_window_s", "s", "length of those windows",
+               [](const RunView& r) {
+                 return median(of_trials(r, [](const T& t) { return bandwidth(t, t.stage_read_B).window_s; }));
+               }),
+      reported("device_memory_B", "B", "buffers in device-local memory", device_memory),
+      reported("dispatches", "1", "dispatches a frame", dispatches),
       {kStage + std::string("*"),
        own({}, "time of a stage on the GPU, median; from the frames run again for it", nullptr, "s")},
-      told("load_s", "s", "wall time of loading", [](const RunView& r) { return r.cell->header.load_s; }),
+      reported("load_s", "s", "wall time of loading", [](const RunView& r) { return r.run->header.load_s; }),
   };
   for (Scalar& s : g.scalars) {
     if (s.name == "dispatches") s.gate = &kCount;

@@ -9,7 +9,7 @@
 namespace clothbench {
 namespace {
 
-bool has_truth(const Scene& s) { return !s.truth_card.empty(); }
+bool has_truth(const Scene& s) { return !s.reference_case.empty(); }
 
 bool truth_keeps_energy(const Scene& s) { return has_truth(s) && keeps_energy(s); }
 
@@ -75,7 +75,7 @@ Reduction over_time(const char* series) {
   return {{series}, "RMS over time, at rest the last frame", [name = std::string(series)](const RunView& r) {
             const std::vector<double>* v = whole_series(r, name);
             if (v == nullptr) return kMissing;
-            return r.card().settles || v->size() < 2 ? v->back() : truth::time_rms(r.pass.time_s, *v);
+            return r.reference_case().settles || v->size() < 2 ? v->back() : truth::time_rms(r.pass.time_s, *v);
           }};
 }
 
@@ -84,15 +84,15 @@ Reduction worst(const char* series) {
   return {{series}, "greatest of all frames, at rest the last", [name = std::string(series)](const RunView& r) {
             const std::vector<double>* v = whole_series(r, name);
             if (v == nullptr) return kMissing;
-            return r.card().settles ? v->back() : greatest_amount(v);
+            return r.reference_case().settles ? v->back() : greatest_amount(v);
           }};
 }
 
 double truth_error(const RunView& r) {
-  return over_time(r.card().by_quantity ? "truth_quantity_error" : "truth_error_e2").value(r);
+  return over_time(r.reference_case().by_quantity ? "truth_quantity_error" : "truth_error_e2").value(r);
 }
 
-/// What the study of a scene adds to the summaries of its cells: runner/reference.cpp, truth_dependence.cpp.
+/// What the study of a scene adds to the summaries of its runs: runner/reference.cpp, truth_dependence.cpp.
 Scalar of_the_study(const char* name, const char* doc, const Gate* gate = nullptr) {
   return {name, own({}, doc, nullptr, "1"), Expect::No, gate};
 }
@@ -109,10 +109,10 @@ std::vector<Metric> truth_series() {
        truth_field(&T::e2)},
       {"truth_error_max", "1", "greatest distance from the truth on the material lattice, over the longer side", kTruth,
        truth_field(&T::greatest)},
-      {"truth_speed_error", "1", "RMS error of speed on the material lattice, over the card's scale", kTruth,
+      {"truth_speed_error", "1", "RMS error of speed on the material lattice, over the reference case's scale", kTruth,
        truth_field(&T::speed)},
-      {"truth_quantity", "1", "the card's quantity, in SI units", kTruth, truth_field(&T::quantity)},
-      {"truth_quantity_error", "1", "error of the card's quantity, over its scale", kTruth,
+      {"truth_quantity", "1", "the reference case's quantity, in SI units", kTruth, truth_field(&T::quantity)},
+      {"truth_quantity_error", "1", "error of the reference case's quantity, over its scale", kTruth,
        truth_field(&T::quantity_error)},
       {"truth_stretch_rms", "1", "RMS of strain less true strain, edges along u", kTruth, truth_field(&T::stretch_rms)},
       {"truth_stretch_p99", "1", "99th percentile of strain less true strain", kTruth, truth_field(&T::stretch_p99)},
@@ -138,7 +138,7 @@ MetricGroup truth_metrics() {
        {"truth_stretch_max", worst("truth_stretch_max"), No, nullptr, 0, with_truth},
        {"truth_error",
         own({"truth_error_e2", "truth_quantity_error"},
-            "what runs are ranked by: the error of the card's quantity, or of positions", truth_error, "1"),
+            "what runs are ranked by: the error of the reference case's quantity, or of positions", truth_error, "1"),
         No, &kErrorGate, 0, with_truth},
        {"energy_gain",
         own(
@@ -150,10 +150,11 @@ MetricGroup truth_metrics() {
             {"energy_rise"}, "greatest difference of energy from that at the start, over M g L",
             [](const RunView& r) { return greatest_amount(whole_series(r, "energy_rise")); }, "1"),
         No, nullptr, 0, with_energy},
-       of_the_study("truth_value", "the truth card's quantity itself, in SI units"),
+       of_the_study("truth_value", "the reference case's quantity itself, in SI units"),
        of_the_study("truth_space_error", "what ranks runs, of the mesh's own truth against the continuum", &kErrorGate),
        of_the_study("truth_dependence_*", "change of what ranks runs with the logarithm of a modulus"),
-       of_the_study("reference_*", "the reference solver's value of the card's quantity, and how sure it is")}};
+       of_the_study("reference_*",
+                    "the reference solver's value of the reference case's quantity, and how sure it is")}};
 }
 
 }  // namespace clothbench

@@ -19,16 +19,16 @@ constexpr int kFrames = 4;
 double change(const TruthJudge& judge, const Scene& scene, const std::string& key, double value) {
   const Scene other =
       scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", key, kMore * value)});
-  const auto card = truth::card_of(other);
+  const auto known = truth::reference_case_of(other);
   const int last = scene.time.frames();
   double most = 0;
-  for (int k = card->settles ? kFrames : 1; k <= kFrames; ++k) {
+  for (int k = known->settles ? kFrames : 1; k <= kFrames; ++k) {
     const int frame = last * k / kFrames;
     ClothState state;
-    state.position = truth::vertex_values(other.cloth, card->columns(frame), true);
+    state.position = truth::vertex_values(other.cloth, known->columns(frame), true);
     state.velocity.assign(state.position.size(), 0);
     const TruthErrors e = judge.judge(frame, state);
-    most = max_or_nan(most, judge.card().by_quantity ? e.quantity_error : e.e2);
+    most = max_or_nan(most, judge.reference_case().by_quantity ? e.quantity_error : e.e2);
   }
   return most / std::log(kMore);
 }
@@ -36,7 +36,7 @@ double change(const TruthJudge& judge, const Scene& scene, const std::string& ke
 }  // namespace
 
 std::map<std::string, double> truth_dependence(const Scene& scene) {
-  if (scene.truth_card.empty()) return {};
+  if (scene.reference_case.empty()) return {};
   const TruthJudge judge(scene);
   std::map<std::string, double> out = {{"truth_dependence_Y", 0}, {"truth_dependence_B", 0}};
   if (const auto Y = scene.material.membrane_stiffness_N_per_m)

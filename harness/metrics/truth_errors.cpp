@@ -9,10 +9,10 @@
 namespace clothbench {
 namespace {
 
-truth::Card required_card(const Scene& scene) {
-  auto card = truth::card_of(scene);
-  if (!card) throw Error(scene.source + ": /truth: missing");
-  return *card;
+truth::ReferenceCase required_case(const Scene& scene) {
+  auto known = truth::reference_case_of(scene);
+  if (!known) throw Error(scene.source + ": /truth: missing");
+  return *known;
 }
 
 truth::LatticeSampler sampler_of(const Scene& scene, const truth::MaterialLattice& lattice) {
@@ -44,7 +44,7 @@ std::vector<double> strains(const Cloth& c, const std::vector<double>& x) {
 
 TruthJudge::TruthJudge(const Scene& scene)
     : scene_(scene),
-      card_(required_card(scene)),
+      case_(required_case(scene)),
       lattice_(scene.cloth.width_m, scene.cloth.height_m),
       sampler_(sampler_of(scene, lattice_)) {}
 
@@ -56,17 +56,17 @@ TruthErrors TruthJudge::judge(int frame, const ClothState& state) const {
   const Cloth& c = scene_.cloth;
   TruthErrors out;
   if (!finite(state.position) || !finite(state.velocity)) return out;
-  const std::vector<Vec3> columns = card_.columns(frame);
+  const std::vector<Vec3> columns = case_.columns(frame);
   const std::vector<double> vertices = truth::vertex_values(c, columns, true);
   const auto here = sampler_.sample(state.position), there = sampler_.sample(vertices);
   out.e2 = lattice_e2(here, there);
   out.greatest = truth::lattice_greatest_error(lattice_, here, there, lattice_.longer_side_m());
-  if (card_.column_speeds && card_.speed_scale_m_per_s > 0)
+  if (case_.column_speeds && case_.speed_scale_m_per_s > 0)
     out.speed = truth::lattice_rms_error(lattice_, sampler_.sample(state.velocity),
-                                         sampler_.sample(truth::vertex_values(c, card_.column_speeds(frame), false)),
-                                         card_.speed_scale_m_per_s);
-  out.quantity = card_.quantity(truth::column_means(c, state.position));
-  out.quantity_error = truth::quantity_error(out.quantity, card_.quantity(columns), card_.quantity_scale);
+                                         sampler_.sample(truth::vertex_values(c, case_.column_speeds(frame), false)),
+                                         case_.speed_scale_m_per_s);
+  out.quantity = case_.quantity(truth::column_means(c, state.position));
+  out.quantity_error = truth::quantity_error(out.quantity, case_.quantity(columns), case_.quantity_scale);
   const truth::StretchError stretch = truth::stretch_error(strains(c, state.position), strains(c, vertices));
   out.stretch_rms = stretch.rms;
   out.stretch_p99 = stretch.p99;
@@ -76,25 +76,25 @@ TruthErrors TruthJudge::judge(int frame, const ClothState& state) const {
 
 double TruthJudge::space_error(int frame) const {
   const Cloth& c = scene_.cloth;
-  const std::vector<Vec3> columns = card_.columns(frame);
-  if (card_.by_quantity) {
+  const std::vector<Vec3> columns = case_.columns(frame);
+  if (case_.by_quantity) {
     std::vector<Vec3> smooth;
     for (int i = 0; i < c.columns; ++i)
-      smooth.push_back(card_.continuum(static_cast<double>(i) / (c.columns - 1), frame));
-    return truth::quantity_error(card_.quantity(columns), card_.quantity(smooth), card_.quantity_scale);
+      smooth.push_back(case_.continuum(static_cast<double>(i) / (c.columns - 1), frame));
+    return truth::quantity_error(case_.quantity(columns), case_.quantity(smooth), case_.quantity_scale);
   }
   std::vector<double> smooth;
   for (const auto& [u, v] : lattice_.points_m()) {
-    const Vec3 x = card_.continuum(u / c.width_m, frame);
+    const Vec3 x = case_.continuum(u / c.width_m, frame);
     for (std::size_t k = 0; k < 3; ++k) smooth.push_back(x[k] + (v - c.height_m / 2) * c.axis_v[k]);
   }
   return lattice_e2(sampler_.sample(truth::vertex_values(c, columns, true)), smooth);
 }
 
 double TruthJudge::space_error() const {
-  if (!card_.continuum) return 0;
+  if (!case_.continuum) return 0;
   const int last = scene_.time.frames();
-  if (card_.settles) return space_error(last);
+  if (case_.settles) return space_error(last);
   std::vector<double> times, errors;
   for (int f = 0; f <= last; ++f) {
     times.push_back(scene_.time.at(f));

@@ -49,7 +49,7 @@ std::string caption(const Motion& m, std::size_t frame, bool followed, bool left
   std::string text = fmt::format("{} · {:.3f} s", m.title, m.time_s[frame]);
   if (followed) text += " · camera falls with it";
   if (left) text += " · the cloth has left the picture";
-  if (!m.ended.empty() && frame + 1 == m.frames()) text += " · " + m.ended;
+  if (!m.outcome.empty() && frame + 1 == m.frames()) text += " · " + m.outcome;
   return text;
 }
 

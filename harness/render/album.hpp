@@ -26,7 +26,7 @@ struct Taken {
 };
 
 /// Pictures of the motion at the frames asked for, <name>__<view>__<colour>__<frame>.png, all of a view from one camera
-/// and with one scale. `progress` (may be empty) is told what is done of how much. Throws Error on a frame it does not
+/// and with one scale. `progress` (may be empty) gets how much is done. Throws Error on a frame it does not
 /// have, a picture too small for its legend, a file that cannot be written, or a missing device.
 Taken take(const Motion&, const Shots&, const DeviceOptions&,
            const std::function<void(const std::string&, std::size_t, std::size_t)>& progress = {});

@@ -25,11 +25,11 @@ void read_cloth(const json& scenario, Scene& scene) {
     scene.cloth.column_factors.at(f.at("column").get<std::size_t>()) = f.at("factor").get<double>();
 }
 
-void tell(Motion& m, const CellHeader& header, const Outcome& outcome) {
-  m.name = cell_name(header);
+void tell(Motion& m, const RunHeader& header, const Outcome& outcome) {
+  m.name = run_name(header);
   m.title = header.scene + " · " + header.solver;
   if (header.setting != "default") m.title += " " + header.setting;
-  if (outcome.status != "ok") m.ended = outcome.status;
+  if (outcome.status != "ok") m.outcome = outcome.status;
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ std::vector<double> Motion::at(std::size_t frame) const {
 }
 
 Motion stored_motion(const std::filesystem::path& path) {
-  const CellRecord record = read_cell_summary(path);
+  const RunRecord record = read_run_summary(path);
   Replay replay = read_replay(path, 1);
   Motion m;
   tell(m, record.header, record.outcome);
@@ -68,7 +68,7 @@ Motion stored_motion(const std::filesystem::path& path) {
   return m;
 }
 
-Motion motion_of(const Scene& scene, const CellHeader& header, const Outcome& outcome, AccuracyPass pass) {
+Motion motion_of(const Scene& scene, const RunHeader& header, const Outcome& outcome, AccuracyPass pass) {
   Motion m;
   m.scene = scene;
   m.held = !scene.colliders.empty() || !scene.grips.vertices.empty() || !scene.pins.vertices.empty();

@@ -13,9 +13,9 @@ struct Motion {
   Scene scene;        ///< of one read from a file: grid and sizes of the cloth, colliders and grips with their motion,
                       ///< nothing else
   bool held = false;  ///< pinned or gripped somewhere, or there are colliders: it stays where it is looked for
-  std::string name;   ///< of the cell, for files
+  std::string name;   ///< of the run, for files
   std::string title;  ///< for people: "hang · xpbd"
-  std::string ended;  ///< how the run ended, "" if well
+  std::string outcome;  ///< how the run ended, "" if well
   std::vector<double> time_s;
   std::vector<float> position;  ///< (frame, vertex, xyz) [m]
 
@@ -28,7 +28,7 @@ struct Motion {
 /// Error naming the file and what is wrong with it.
 Motion stored_motion(const std::filesystem::path&);
 
-/// Of a cell that has just run.
-Motion motion_of(const Scene&, const CellHeader&, const Outcome&, AccuracyPass);
+/// Of a run that has just finished.
+Motion motion_of(const Scene&, const RunHeader&, const Outcome&, AccuracyPass);
 
 }  // namespace clothbench::render

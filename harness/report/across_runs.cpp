@@ -17,17 +17,17 @@ using nlohmann::json;
 constexpr double kHitchFactor = 3;
 
 struct Run {
-  const CellRecord* cell;
+  const RunRecord* run;
   json scenario;
-  bool ok() const { return cell->outcome.status == "ok"; }
-  double number(const char* name) const { return summary_value(*cell, name); }
+  bool ok() const { return run->outcome.status == "ok"; }
+  double number(const char* name) const { return summary_value(*run, name); }
 };
 
 using Runs = std::vector<Run>;
 
 /// Positions of all frames in units of the cloth's width, relative to its centre.
 std::vector<double> shape_of(const Run& r) {
-  const CellRecord whole = read_cell(r.cell->file);
+  const RunRecord whole = read_run(r.run->file);
   const json& cloth = r.scenario["cloth"];
   const double width = cloth["size_m"][0].get<double>();
   std::vector<double> out;
@@ -66,7 +66,7 @@ void hitches(const Runs& runs, const AcrossRuns& begin, std::vector<AcrossRuns>&
       if (is_even(e) && (even == nullptr || apart(e) < apart(*even))) even = &e;
     if (even == nullptr || !even->ok()) continue;
     AcrossRuns a = begin;
-    a.figure = "error over that of even frames, " + r.cell->header.scene;
+    a.figure = "error over that of even frames, " + r.run->header.scene;
     a.value = r.ok() ? r.number("truth_e2") / even->number("truth_e2") : INFINITY;
     a.bound = kHitchFactor;
     a.text = fmt::format("{:.2g} against {:.2g} L", r.number("truth_e2"), even->number("truth_e2"));
@@ -138,18 +138,18 @@ const Columns<AcrossRuns>& across_columns() {
       {"figure", "figure", &AcrossRuns::figure},
       {"value", "value", &AcrossRuns::value, plain},
       {"bound", In::Both, &AcrossRuns::bound},
-      {"verdict", "verdict", [](auto& a) { return !a.judged() ? ""
-                                                  : a.kept()  ? "kept"
-                                                              : "broken"; }},
+      {"verdict", "verdict", [](auto& a) { return !a.judged()  ? ""
+                                                  : a.passed() ? "pass"
+                                                               : "fail"; }},
       {"", "", &AcrossRuns::text}};
   return all;
 }
 
 }  // namespace
 
-std::vector<AcrossRuns> across_runs(const std::vector<CellRecord>& cells) {
+std::vector<AcrossRuns> across_runs(const std::vector<RunRecord>& runs) {
   std::map<std::tuple<std::string, std::string, std::string>, Runs> groups;
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     json scenario = scenario_of(c);
     if (!scenario.is_object() || !scenario.contains("stability") || c.outcome.status == "unsupported" ||
         c.outcome.status == "missing")
@@ -173,7 +173,7 @@ Table across_table(const std::vector<AcrossRuns>& all) {
   return across_columns().table(
       {"Across runs",
        "What no run shows alone. S22: at most 3 times the error of even frames. S24, S26: the same "
-       "bits. S25 is told, not judged.",
+       "bits. S25 is reported, not judged.",
        {}},
       all);
 }

@@ -14,14 +14,14 @@ namespace clothbench {
 ///   S26  the same run again, in another process: the same bits; with another seed: the spread
 struct AcrossRuns {
   std::string case_name, solver, setting, figure, text;  ///< figure: what `value` is
-  double value = kMissing, bound = kMissing;             ///< bound missing: told, not judged
+  double value = kMissing, bound = kMissing;             ///< bound missing: reported, not judged
   bool judged() const { return bound == bound; }
-  bool kept() const { return value <= bound; }
+  bool passed() const { return value <= bound; }
 };
 
-/// Of the cells of a stability study. Positions are read from their files. A comparison that lacks a run, or one of
+/// Of the runs of a stability study. Positions are read from their files. A comparison that lacks a run, or one of
 /// whose runs did not end well, is left out, or not kept where its bound is of bits.
-std::vector<AcrossRuns> across_runs(const std::vector<CellRecord>& cells);
+std::vector<AcrossRuns> across_runs(const std::vector<RunRecord>& runs);
 
 Table across_table(const std::vector<AcrossRuns>&);
 std::string across_csv(const std::vector<AcrossRuns>&);

@@ -7,9 +7,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A planned cell that has no result: what its name "<scene>__<solver>__<setting>" tells.
-CellRecord missing_cell(const std::string& name, bool started) {
-  CellRecord c;
+/// A planned run that has no result: what its name "<scene>__<solver>__<setting>" tells.
+RunRecord missing_run(const std::string& name, bool started) {
+  RunRecord c;
   const std::size_t first = name.find("__"), last = name.rfind("__");
   c.header.scene = name.substr(0, first);
   if (first != std::string::npos && last > first) {
@@ -20,46 +20,46 @@ CellRecord missing_cell(const std::string& name, bool started) {
   return c;
 }
 
-CellRecord read(const fs::path& path) {
-  CellRecord c = read_cell_summary(path);
+RunRecord read(const fs::path& path) {
+  RunRecord c = read_run_summary(path);
   c.file = path.string();
   return c;
 }
 
-void collect_folder(const fs::path& dir, std::vector<CellRecord>& cells) {
-  const std::size_t first = cells.size();
-  for (const std::string& name : read_manifest(dir).cells) {
+void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
+  const std::size_t first = runs.size();
+  for (const std::string& name : read_manifest(dir).runs) {
     const fs::path file = dir / (name + ".h5"), part = dir / (name + ".part");
     if (fs::exists(file))
-      cells.push_back(read(file));
+      runs.push_back(read(file));
     else if (fs::exists(part / "outcome.raw"))
-      cells.push_back(read(part));
+      runs.push_back(read(part));
     else
-      cells.push_back(missing_cell(name, fs::exists(part)));
+      runs.push_back(missing_run(name, fs::exists(part)));
   }
-  // A missing cell stands in the row and column of its scene if another solver finished that scene.
-  for (std::size_t k = first; k < cells.size(); ++k) {
-    if (cells[k].outcome.status != "missing") continue;
-    for (std::size_t j = first; j < cells.size() && cells[k].header.scenario_json.empty(); ++j)
-      if (cell_name(cells[j].header).starts_with(cells[k].header.scene + "__"))
-        cells[k].header.scenario_json = cells[j].header.scenario_json;
+  // A missing run stands in the row and column of its scene if another solver finished that scene.
+  for (std::size_t k = first; k < runs.size(); ++k) {
+    if (runs[k].outcome.status != "missing") continue;
+    for (std::size_t j = first; j < runs.size() && runs[k].header.scenario_json.empty(); ++j)
+      if (run_name(runs[j].header).starts_with(runs[k].header.scene + "__"))
+        runs[k].header.scenario_json = runs[j].header.scenario_json;
   }
 }
 
 }  // namespace
 
-std::vector<CellRecord> collect(const std::vector<fs::path>& runs) {
-  std::vector<CellRecord> cells;
-  for (const fs::path& run : runs) {
-    if (!fs::exists(run)) throw Error(run.string() + ": no such file or folder");
+std::vector<RunRecord> collect(const std::vector<fs::path>& results) {
+  std::vector<RunRecord> runs;
+  for (const fs::path& result : results) {
+    if (!fs::exists(result)) throw Error(result.string() + ": no such file or folder");
     // A path with a trailing slash has an empty last part.
-    const fs::path last = run.has_filename() ? run.filename() : run.parent_path().filename();
-    if (fs::is_directory(run) && last.extension() != ".part")
-      collect_folder(run, cells);
+    const fs::path last = result.has_filename() ? result.filename() : result.parent_path().filename();
+    if (fs::is_directory(result) && last.extension() != ".part")
+      collect_folder(result, runs);
     else
-      cells.push_back(read(run));
+      runs.push_back(read(result));
   }
-  return cells;
+  return runs;
 }
 
 }  // namespace clothbench

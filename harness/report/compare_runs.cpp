@@ -50,31 +50,31 @@ bool differ(double a, double b) {
   return !(std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)));
 }
 
-std::string status(const CellRecord& c) {
+std::string status(const RunRecord& c) {
   return c.outcome.status + (c.outcome.klass.empty() || c.outcome.klass == "ok" ? "" : " (" + c.outcome.klass + ")");
 }
 
 /// Metrics that both have, by different versions of their rule.
-std::vector<ComparedCell::Versions> differing_versions(const CellRecord& a, const CellRecord& b) {
-  std::vector<ComparedCell::Versions> out;
+std::vector<ComparedRun::Versions> differing_versions(const RunRecord& a, const RunRecord& b) {
+  std::vector<ComparedRun::Versions> out;
   for (const MetricSeries& m : a.accuracy.metrics)
     for (const MetricSeries& n : b.accuracy.metrics)
       if (m.name == n.name && m.version != n.version) out.push_back({m.name, m.version, n.version});
   return out;
 }
 
-bool hangs_on(const std::string& name, const std::vector<ComparedCell::Versions>& versions) {
+bool hangs_on(const std::string& name, const std::vector<ComparedRun::Versions>& versions) {
   const std::vector<std::string> behind = metrics_behind(name);
   return std::any_of(versions.begin(), versions.end(),
                      [&](const auto& v) { return std::find(behind.begin(), behind.end(), v.metric) != behind.end(); });
 }
 
-void compare_cell(ComparedCell& c) {
+void compare_run(ComparedRun& c) {
   c.versions = differing_versions(*c.a, *c.b);
   c.time = compare_times(trial_means(*c.a), trial_means(*c.b));
   if (status(*c.a) != status(*c.b)) c.outcome = status(*c.a) + " → " + status(*c.b);
   std::set<std::string> names;
-  for (const CellRecord* r : {c.a, c.b})
+  for (const RunRecord* r : {c.a, c.b})
     for (const auto& [name, unused] : r->summary)
       if (!of_the_machine(name) && !hangs_on(name, c.versions)) names.insert(name);
   for (const std::string& name : names) {
@@ -89,7 +89,7 @@ std::string verdict(const TimeRatio& t) {
   return !std::isfinite(t.ratio) ? "not timed" : t.noise() ? "noise" : t.ratio < 1 ? "faster" : "slower";
 }
 
-double mean_ms(const CellRecord& c) {
+double mean_ms(const RunRecord& c) {
   const std::vector<double> t = trial_means(c);
   return t.empty() ? kMissing : 1e3 * middle(t);
 }
@@ -100,8 +100,7 @@ TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>&
   constexpr std::size_t kMost = 40;
   TimeRatio out;
   if (a.empty() || b.empty()) return out;
-  if (a.size() > kMost || b.size() > kMost)
-    throw Error(fmt::format("comparing times: at most {} trials a cell", kMost));
+  if (a.size() > kMost || b.size() > kMost) throw Error(fmt::format("comparing times: at most {} trials a run", kMost));
   std::vector<double> logs;
   double u = 0;
   for (const double x : a)
@@ -126,40 +125,39 @@ TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>&
   return out;
 }
 
-std::vector<ComparedCell> compare_runs(const std::vector<CellRecord>& a, const std::vector<CellRecord>& b) {
-  std::vector<ComparedCell> out;
+std::vector<ComparedRun> compare_runs(const std::vector<RunRecord>& a, const std::vector<RunRecord>& b) {
+  std::vector<ComparedRun> out;
   const auto find = [&](const std::string& name) {
-    return std::find_if(out.begin(), out.end(), [&](const ComparedCell& c) { return c.name == name; });
+    return std::find_if(out.begin(), out.end(), [&](const ComparedRun& c) { return c.name == name; });
   };
-  for (const CellRecord& c : a) {
-    const std::string name = cell_name(c.header);
+  for (const RunRecord& c : a) {
+    const std::string name = run_name(c.header);
     if (find(name) != out.end()) throw Error("compare: " + name + " stands twice in the first run");
     out.push_back({name, &c, nullptr, {}, {}, {}, {}});
   }
-  for (const CellRecord& c : b) {
-    const std::string name = cell_name(c.header);
+  for (const RunRecord& c : b) {
+    const std::string name = run_name(c.header);
     auto at = find(name);
-    if (at == out.end()) at = out.insert(out.end(), ComparedCell{name, nullptr, nullptr, {}, {}, {}, {}});
+    if (at == out.end()) at = out.insert(out.end(), ComparedRun{name, nullptr, nullptr, {}, {}, {}, {}});
     if (at->b != nullptr) throw Error("compare: " + name + " stands twice in the second run");
     at->b = &c;
   }
-  for (ComparedCell& c : out)
-    if (c.a != nullptr && c.b != nullptr) compare_cell(c);
+  for (ComparedRun& c : out)
+    if (c.a != nullptr && c.b != nullptr) compare_run(c);
   return out;
 }
 
-std::vector<Table> comparison_tables(const std::vector<ComparedCell>& cells) {
+std::vector<Table> comparison_tables(const std::vector<ComparedRun>& runs) {
   Table times{
-      "Time of a frame, A against B", "", {{"cell", "A [ms]", "B [ms]", "change", "95 % interval", "p", "verdict"}}};
-  Table results{"Results that are not the same", "", {{"cell", "what", "A", "B"}}};
+      "Time of a frame, A against B", "", {{"run", "A [ms]", "B [ms]", "change", "95 % interval", "p", "verdict"}}};
+  Table results{"Results that are not the same", "", {{"run", "what", "A", "B"}}};
   std::size_t timed = 0, same = 0;
-  std::vector<const CellRecord*> both;
-  for (const ComparedCell& c : cells) {
-    for (const CellRecord* r : {c.a, c.b})
+  std::vector<const RunRecord*> both;
+  for (const ComparedRun& c : runs) {
+    for (const RunRecord* r : {c.a, c.b})
       if (r != nullptr) both.push_back(r);
     if (c.a == nullptr || c.b == nullptr) {
-      results.rows.push_back(
-          {c.name, "cell", c.a != nullptr ? status(*c.a) : "–", c.b != nullptr ? status(*c.b) : "–"});
+      results.rows.push_back({c.name, "run", c.a != nullptr ? status(*c.a) : "–", c.b != nullptr ? status(*c.b) : "–"});
       continue;
     }
     if (std::isfinite(c.time.ratio)) {
@@ -170,9 +168,9 @@ std::vector<Table> comparison_tables(const std::vector<ComparedCell>& cells) {
                             significant(c.time.p, 2), verdict(c.time)});
     }
     if (!c.outcome.empty()) results.rows.push_back({c.name, "outcome", status(*c.a), status(*c.b)});
-    for (const ComparedCell::Change& m : c.metrics)
+    for (const ComparedRun::Change& m : c.metrics)
       results.rows.push_back({c.name, m.name, significant(m.a, 6), significant(m.b, 6)});
-    for (const ComparedCell::Versions& v : c.versions)
+    for (const ComparedRun::Versions& v : c.versions)
       results.rows.push_back(
           {c.name, v.metric, fmt::format("by version {}", v.a), fmt::format("by version {}: not compared", v.b)});
     same += c.outcome.empty() && c.metrics.empty() && c.versions.empty();
@@ -180,20 +178,20 @@ std::vector<Table> comparison_tables(const std::vector<ComparedCell>& cells) {
   times.note = fmt::format(
       "Median of the trials' means; change: median of all pairwise ratios; p: Mann and Whitney's U test, exact. "
       "*noise*: p above 5 %, an interval that holds 0, or too few "
-      "trials. Of {} cells without any difference about {:.0f} would be called faster or slower by chance.",
+      "trials. Of {} runs without any difference about {:.0f} would be called faster or slower by chance.",
       timed, 0.05 * static_cast<double>(timed));
   results.note = fmt::format(
-      "{} cells have the same outcome and the same results (to 1e-9); what depends on the machine is not compared "
+      "{} runs have the same outcome and the same results (to 1e-9); what depends on the machine is not compared "
       "here.",
       same);
   times.note = with_withheld(times.note, both, {"frame_wall_median_s"});
   return {times, results};
 }
 
-nlohmann::json comparison_json(const std::vector<ComparedCell>& cells) {
+nlohmann::json comparison_json(const std::vector<ComparedRun>& runs) {
   nlohmann::json out = nlohmann::json::array();
-  for (const ComparedCell& c : cells) {
-    nlohmann::json row = {{"cell", c.name},
+  for (const ComparedRun& c : runs) {
+    nlohmann::json row = {{"run", c.name},
                           {"in_a", c.a != nullptr},
                           {"in_b", c.b != nullptr},
                           {"outcome", c.outcome},
@@ -204,17 +202,17 @@ nlohmann::json comparison_json(const std::vector<ComparedCell>& cells) {
                           {"level", finite_or_null(c.time.level)},
                           {"p", finite_or_null(c.time.p)},
                           {"metrics", nlohmann::json::object()}};
-    for (const ComparedCell::Versions& v : c.versions) row["versions"][v.metric] = {v.a, v.b};
-    for (const ComparedCell::Change& m : c.metrics) row["metrics"][m.name] = {finite_or_null(m.a), finite_or_null(m.b)};
+    for (const ComparedRun::Versions& v : c.versions) row["versions"][v.metric] = {v.a, v.b};
+    for (const ComparedRun::Change& m : c.metrics) row["metrics"][m.name] = {finite_or_null(m.a), finite_or_null(m.b)};
     out.push_back(std::move(row));
   }
   return out;
 }
 
-nlohmann::json history_json(const std::vector<CellRecord>& cells) {
+nlohmann::json history_json(const std::vector<RunRecord>& runs) {
   nlohmann::json out = nlohmann::json::array();
-  for (const CellRecord& c : cells) {
-    const std::string name = cell_name(c.header);
+  for (const RunRecord& c : runs) {
+    const std::string name = run_name(c.header);
     const auto& e = c.header.environment;
     const std::string extra =
         "status " + c.outcome.status +

@@ -22,10 +22,10 @@ struct TimeRatio {
 /// Each value one trial's mean time of a frame; positive, at most 40 on either side.
 TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>& b);
 
-/// A cell of both runs, or of one (then the other is null).
-struct ComparedCell {
+/// A run of both results, or of one (then the other is null).
+struct ComparedRun {
   std::string name;
-  const CellRecord *a = nullptr, *b = nullptr;
+  const RunRecord *a = nullptr, *b = nullptr;
   TimeRatio time;
   struct Change {
     std::string name;
@@ -42,14 +42,14 @@ struct ComparedCell {
   std::string outcome;  ///< "ok → diverged (F1)", empty if it is the same
 };
 
-/// Cells by name, in the order of A and then what only B has. The records must outlive it.
-std::vector<ComparedCell> compare_runs(const std::vector<CellRecord>& a, const std::vector<CellRecord>& b);
+/// Runs by name, in the order of A and then what only B has. The records must outlive it.
+std::vector<ComparedRun> compare_runs(const std::vector<RunRecord>& a, const std::vector<RunRecord>& b);
 
-std::vector<Table> comparison_tables(const std::vector<ComparedCell>&);
-nlohmann::json comparison_json(const std::vector<ComparedCell>&);
+std::vector<Table> comparison_tables(const std::vector<ComparedRun>&);
+nlohmann::json comparison_json(const std::vector<ComparedRun>&);
 
 /// What chart-per-commit tools read, smaller is better: name, unit, value, range and extra of every time and error.
 /// github-action-benchmark, customSmallerIsBetter.
-nlohmann::json history_json(const std::vector<CellRecord>&);
+nlohmann::json history_json(const std::vector<RunRecord>&);
 
 }  // namespace clothbench

@@ -10,14 +10,14 @@
 namespace clothbench {
 namespace {
 
-nlohmann::json versions_of(const CellRecord& c) {
+nlohmann::json versions_of(const RunRecord& c) {
   nlohmann::json out = nlohmann::json::object();
   for (const MetricSeries& m : c.accuracy.metrics) out[m.name] = m.version;
   return out;
 }
 
-/// A cell of a table for machines, with what it is grouped by.
-struct Exported : PlacedCell {
+/// A run of a table for machines, with what it is grouped by.
+struct Exported : PlacedRun {
   const Family* family = nullptr;
   const char* source = "measured";
 };
@@ -25,8 +25,8 @@ struct Exported : PlacedCell {
 Value grid_side(int n) { return n > 0 ? Value(n) : Value(); }
 
 Columns<Exported> solver_columns() {
-  return {{"solver", In::Both, [](auto& r) { return r.cell->header.solver; }},
-          {"setting", In::Both, [](auto& r) { return r.cell->header.setting; }},
+  return {{"solver", In::Both, [](auto& r) { return r.run->header.solver; }},
+          {"setting", In::Both, [](auto& r) { return r.run->header.setting; }},
           {"sides", In::Both, [](auto& r) { return r.series.sides; }}};
 }
 
@@ -46,9 +46,9 @@ Columns<Exported> table3_columns() {
                                       "frame_device_median_s", "free_fall_error"}));
 }
 
-/// The published values as cells.
-std::vector<CellRecord> published_cells(const nlohmann::json& published) {
-  std::vector<CellRecord> out;
+/// The published values as runs.
+std::vector<RunRecord> published_runs(const nlohmann::json& published) {
+  std::vector<RunRecord> out;
   for (const nlohmann::json& column : published.at("columns"))
     for (const nlohmann::json& fps : column.at("fps")) {
       out.emplace_back().header.solver = column.at("name").get<std::string>();
@@ -59,62 +59,62 @@ std::vector<CellRecord> published_cells(const nlohmann::json& published) {
 
 }  // namespace
 
-std::string summary_csv(const std::vector<CellRecord>& cells, const std::vector<std::string>& names) {
+std::string summary_csv(const std::vector<RunRecord>& runs, const std::vector<std::string>& names) {
   Columns<Exported> columns = {{"family", In::Both, [](auto& r) { return r.family->name; }},
                                {"paper_table", In::Both, [](auto& r) { return grid_side(r.family->paper_table); }},
-                               {"scene", In::Both, [](auto& r) { return r.cell->header.scene; }}};
+                               {"scene", In::Both, [](auto& r) { return r.run->header.scene; }}};
   columns.add(solver_columns())
       .add({{"repeat", In::Both, [](auto& r) { return r.series.repeat; }},
             {"resolution", In::Both, [](auto& r) { return r.resolution.label(); }}})
       .add(grid_columns())
-      .add({{"class", In::Both, [](auto& r) { return r.cell->outcome.klass; }},
+      .add({{"class", In::Both, [](auto& r) { return r.run->outcome.klass; }},
             {"failed_frame", In::Both, failed_frame_of},
-            {"message", In::Both, [](auto& r) { return r.cell->outcome.message; }},
-            {"expect", In::Both, [](auto& r) { return r.cell->outcome.expect; }}});
+            {"message", In::Both, [](auto& r) { return r.run->outcome.message; }},
+            {"expect", In::Both, [](auto& r) { return r.run->outcome.expect; }}});
   for (const char* key : {"gpu", "driver", "gpu_is_software", "cpu", "protocol", "git_commit", "git_dirty",
                           "build_type", "clock_policy", "created"})
     columns.push_back({key, In::Both, [key](auto& r) {
-                         const nlohmann::json& e = r.cell->header.environment;
+                         const nlohmann::json& e = r.run->header.environment;
                          return e.is_object() ? e.value(key, Value()) : Value();
                        }});
-  const std::vector<Family> all = families(cells);
+  const std::vector<Family> all = families(runs);
   std::vector<Exported> rows;
   for (const Family& f : all)
-    for (const PlacedCell& p : f.cells) rows.push_back({p, &f});
+    for (const PlacedRun& p : f.runs) rows.push_back({p, &f});
   return columns.add(summary_columns<Exported>(names)).csv(rows);
 }
 
-std::string cells_csv(const std::vector<CellRecord>& cells) {
+std::string runs_csv(const std::vector<RunRecord>& runs) {
   std::set<std::string> names;
-  for (const CellRecord& c : cells)
+  for (const RunRecord& c : runs)
     for (const auto& [name, unused] : c.summary) names.insert(name);
-  return summary_csv(cells, {names.begin(), names.end()});
+  return summary_csv(runs, {names.begin(), names.end()});
 }
 
 std::string table3_csv(const Family& family, const nlohmann::json& published) {
-  const std::vector<CellRecord> theirs = published_cells(published);
+  const std::vector<RunRecord> theirs = published_runs(published);
   const nlohmann::json& widths = published.at("resolution");
   std::vector<Exported> rows;
-  for (const CellRecord& c : theirs) {
+  for (const RunRecord& c : theirs) {
     const int n = widths.at(rows.size() % widths.size());
     const nlohmann::json& column = published.at("columns").at(rows.size() / widths.size());
     rows.push_back({{&c, {{n, n}, 0}, {"", "", column.value("sides", "")}}, &family, "published"});
   }
   for (const Series& s : family.series())
     for (const Resolution& r : family.resolutions())
-      if (const CellRecord* c = family.find(s, r)) rows.push_back({{c, r, s}, &family});
+      if (const RunRecord* c = family.find(s, r)) rows.push_back({{c, r, s}, &family});
   return table3_columns().csv(rows);
 }
 
 nlohmann::json table3_json(const Family& family, const nlohmann::json& published) {
   std::vector<Exported> rows;
-  for (const PlacedCell& p : family.cells) rows.push_back({p, &family});
+  for (const PlacedRun& p : family.runs) rows.push_back({p, &family});
   return {{"published", published}, {"measured", table3_columns().json(rows)}};
 }
 
-nlohmann::json cells_json(const std::vector<CellRecord>& cells) {
+nlohmann::json runs_json(const std::vector<RunRecord>& runs) {
   nlohmann::json all = nlohmann::json::array();
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     all.push_back({{"scene", c.header.scene},
                    {"solver", c.header.solver},
                    {"setting", c.header.setting},

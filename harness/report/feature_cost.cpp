@@ -32,7 +32,7 @@ const Quantity kQuantities[] = {{"frame_wall_median_s", "wall [ms]", 1e3},
                                 {"write_B_per_frame", "written [kB]", 1e-3},
                                 {"device_memory_B", "memory [kB]", 1e-3}};
 
-std::filesystem::path folder(const CellRecord& c) { return std::filesystem::path(c.file).parent_path(); }
+std::filesystem::path folder(const RunRecord& c) { return std::filesystem::path(c.file).parent_path(); }
 
 double longer_side(const json& scenario) {
   const json size = scenario.value(json::json_pointer("/cloth/size_m"), json());
@@ -59,14 +59,14 @@ double ratio(const FeatureCost& f, const char* name) {
 }
 
 std::string moved_text(const FeatureCost& f) {
-  for (const CellRecord* c : {f.needed, f.all})
+  for (const RunRecord* c : {f.needed, f.all})
     if (c->outcome.status != "ok") return c->outcome.status;
   if (std::isnan(f.moved)) return "not measured";
   return f.moved == 0 ? "0 (bitwise)" : fmt::format("{:.1e}", f.moved);
 }
 
 /// One of the two runs, for JSON.
-json run_of(const CellRecord& c) {
+json json_of(const RunRecord& c) {
   json out = {{"status", c.outcome.status}, {"message", c.outcome.message}, {"stages", c.header.stages.size()}};
   for (const Quantity& q : kQuantities) out[q.name] = finite_or_null(summary_value(c, q.name));
   return out;
@@ -84,8 +84,8 @@ Columns<FeatureCost> cost_columns() {
                               {"no_op", In::Json, &FeatureCost::no_op},
                               {"wall_ratio", In::Json, [](auto& f) { return ratio(f, "frame_wall_median_s"); }},
                               {"device_ratio", In::Json, [](auto& f) { return ratio(f, "frame_device_median_s"); }},
-                              {"needed", In::Json, [](auto& f) { return run_of(*f.needed); }},
-                              {"all", In::Json, [](auto& f) { return run_of(*f.all); }},
+                              {"needed", In::Json, [](auto& f) { return json_of(*f.needed); }},
+                              {"all", In::Json, [](auto& f) { return json_of(*f.all); }},
                               {"stages_needed", In::Csv, [](auto& f) { return f.needed->header.stages.size(); }},
                               {"stages_all", In::Csv, [](auto& f) { return f.all->header.stages.size(); }},
                               {"added", In::Both, &FeatureCost::added}};
@@ -106,17 +106,17 @@ bool measured(const FeatureCost& f) { return f.needed->outcome.status == "ok" &&
 
 }  // namespace
 
-bool is_all_on(const CellRecord& c) {
+bool is_all_on(const RunRecord& c) {
   const json scenario = scenario_of(c);
   return scenario.is_object() && scenario.contains("irrelevant");
 }
 
-std::vector<FeatureCost> feature_costs(const std::vector<CellRecord>& cells) {
+std::vector<FeatureCost> feature_costs(const std::vector<RunRecord>& runs) {
   std::vector<FeatureCost> out;
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     const json scenario = scenario_of(c);
     if (!scenario.is_object() || !scenario.contains("irrelevant")) continue;
-    for (const CellRecord& n : cells) {
+    for (const RunRecord& n : runs) {
       const bool same = n.header.scene == c.header.scene && n.header.solver == c.header.solver &&
                         folder(n) == folder(c) && n.header.setting == plain_setting(c.header.setting) &&
                         flat_settings(n.header.settings) == flat_settings(c.header.settings) && &n != &c;
@@ -143,7 +143,7 @@ Table feature_cost_table(const std::vector<FeatureCost>& costs) {
   return cost_columns().table(
       {"Cost of features that a scene does not use",
        with_withheld(note + fmt::format(" Bytes: {}", kWhatBytesAre),
-                     cells_of(costs, &FeatureCost::needed, &FeatureCost::all), {"frame_wall_median_s"}),
+                     runs_of(costs, &FeatureCost::needed, &FeatureCost::all), {"frame_wall_median_s"}),
        {}},
       costs);
 }
@@ -152,7 +152,7 @@ Table no_op_table(const std::vector<FeatureCost>& costs) {
   Table t{"Does what is irrelevant change anything?",
           "Scenes in which no vertex moved by more than 1e-6 of the longer side. A property of each solver: where an "
           "irrelevant feature moves the cloth, its measured errors depend on what else is in the scene.",
-          {{"solver", "scenes kept", "bitwise", "worst", "in"}}};
+          {{"solver", "scenes passed", "bitwise", "worst", "in"}}};
   std::vector<std::string> solvers = distinct(costs, [](const FeatureCost& f) { return f.needed->header.solver; });
   std::sort(solvers.begin(), solvers.end());
   for (const std::string& solver : solvers) {

@@ -14,19 +14,19 @@ inline constexpr double kNoOp = 1e-6;
 /// A scene as it is, and the same with features switched on that it does not use (harness/scenario/irrelevant.hpp): the
 /// cost of those features.
 struct FeatureCost {
-  const CellRecord* needed = nullptr;
-  const CellRecord* all = nullptr;
+  const RunRecord* needed = nullptr;
+  const RunRecord* all = nullptr;
   std::vector<std::string> added;  ///< features
   double moved = kMissing;  ///< greatest distance of a vertex in one from the other, over the cloth's longer side
   bool no_op() const { return moved <= kNoOp; }  ///< false where not measured
 };
 
-/// True for a cell with something irrelevant in its scene.
-bool is_all_on(const CellRecord&);
+/// True for a run with something irrelevant in its scene.
+bool is_all_on(const RunRecord&);
 
-/// Every cell with something irrelevant, with its partner in the same folder: same scene, solver and setting. Those
-/// without a partner are left out. Reads trajectories. `cells` must outlive the answer.
-std::vector<FeatureCost> feature_costs(const std::vector<CellRecord>& cells);
+/// Every run with something irrelevant, with its partner in the same folder: same scene, solver and setting. Those
+/// without a partner are left out. Reads trajectories. `runs` must outlive the answer.
+std::vector<FeatureCost> feature_costs(const std::vector<RunRecord>& runs);
 
 /// Rows: scene x solver: times of both, their ratio, dispatches, bytes, memory, how far the cloth moved.
 Table feature_cost_table(const std::vector<FeatureCost>&);

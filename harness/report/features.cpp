@@ -31,7 +31,7 @@ std::string words(std::string_view name) {
   return out;
 }
 
-void add_cell(SolverFeatures& s, const CellRecord& c) {
+void add_run(SolverFeatures& s, const RunRecord& c) {
   const json declared =
       c.header.environment.is_object() ? c.header.environment.value("solver_features", json()) : json();
   if (declared.is_object()) {
@@ -51,11 +51,11 @@ void add_cell(SolverFeatures& s, const CellRecord& c) {
 
 }  // namespace
 
-std::vector<SolverFeatures> solver_features(const std::vector<CellRecord>& cells) {
+std::vector<SolverFeatures> solver_features(const std::vector<RunRecord>& runs) {
   std::vector<SolverFeatures> out;
-  for (const CellRecord& c : cells)
-    add_cell(find_or_add(out, [&](const SolverFeatures& s) { return s.solver == c.header.solver; }, {c.header.solver}),
-             c);
+  for (const RunRecord& c : runs)
+    add_run(find_or_add(out, [&](const SolverFeatures& s) { return s.solver == c.header.solver; }, {c.header.solver}),
+            c);
   return out;
 }
 
@@ -77,7 +77,7 @@ Table feature_table(const std::vector<SolverFeatures>& solvers, bool with_result
   Table t{"Table 4: features", "Ignored: runs without serving it.", {{"feature"}}};
   if (with_results)
     t.note =
-        "Yes: a stage served it in a cell that ended well; declared: the solver says so and no cell here needed it. " +
+        "Yes: a stage served it in a run that ended well; declared: the solver says so and no run here needed it. " +
         t.note;
   for (const SolverFeatures& s : solvers) t.rows[0].push_back(s.solver);
   for (std::size_t k = 0; k < kFeatureCount; ++k) {

@@ -16,16 +16,16 @@ struct SolverFeatures {
   bool known = false;  ///< it was in the build; if not, nothing is known of it
   FeatureSet supports = {}, ignores = {};
   std::vector<std::pair<Feature, Feature>> only_with = {};
-  FeatureSet shown = {};  ///< served by a stage of a cell that ended well
+  FeatureSet shown = {};  ///< served by a stage of a run that ended well
 };
 
-/// Of every solver among the cells, from what their files store; in the order of first appearance.
-std::vector<SolverFeatures> solver_features(const std::vector<CellRecord>& cells);
+/// Of every solver among the runs, from what their files store; in the order of first appearance.
+std::vector<SolverFeatures> solver_features(const std::vector<RunRecord>& runs);
 
 /// As declared by a solver of this build; nothing is shown.
 SolverFeatures declared_features(const SolverInfo&);
 
-/// "yes", "no", "only with duplicated layer", "ignored", "not built"; "declared" for a yes that no cell shows, where
+/// "yes", "no", "only with duplicated layer", "ignored", "not built"; "declared" for a yes that no run shows, where
 /// `with_results`.
 std::string feature_text(const SolverFeatures&, Feature, bool with_results);
 

@@ -16,84 +16,82 @@ namespace {
 using nlohmann::json;
 constexpr const char kItsProcess[] = "its process: ";  // what the message of a crash begins with
 
-using Cells = std::vector<const CellRecord*>;
+using RunPointers = std::vector<const RunRecord*>;
 
-std::string protocol_of(const CellRecord& c) {
+std::string protocol_of(const RunRecord& c) {
   return c.header.environment.is_object() ? c.header.environment.value("protocol", "") : "";
 }
 
-bool is_try(const CellRecord& c) { return protocol_of(c) == kThresholdProtocol; }
+bool is_try(const RunRecord& c) { return protocol_of(c) == kThresholdProtocol; }
 
 /// As its file names it: tries have names of their own.
-std::string base_name(const CellRecord& c) { return scenario_of(c).value("name", c.header.scene); }
+std::string base_name(const RunRecord& c) { return scenario_of(c).value("name", c.header.scene); }
 
-Scene scene_of(const CellRecord& c) {
-  return scene_from_json(scenario_of(c), c.file.empty() ? c.header.scene : c.file);
-}
+Scene scene_of(const RunRecord& c) { return scene_from_json(scenario_of(c), c.file.empty() ? c.header.scene : c.file); }
 
 /// In the order of first appearance.
 template <class Key>
-std::vector<Cells> grouped(const std::vector<CellRecord>& cells, Key key) {
-  std::vector<Cells> out;
-  for (const CellRecord& c : cells) {
+std::vector<RunPointers> grouped(const std::vector<RunRecord>& runs, Key key) {
+  std::vector<RunPointers> out;
+  for (const RunRecord& c : runs) {
     if (!is_friction(c)) continue;
     const auto at =
-        std::find_if(out.begin(), out.end(), [&](const Cells& group) { return key(*group.front()) == key(c); });
+        std::find_if(out.begin(), out.end(), [&](const RunPointers& group) { return key(*group.front()) == key(c); });
     (at == out.end() ? out.emplace_back() : *at).push_back(&c);
   }
   return out;
 }
 
-ThresholdRow row_of(const Cells& tries) {
-  const CellRecord& first = *tries.front();
+ThresholdRow row_of(const RunPointers& tries) {
+  const RunRecord& first = *tries.front();
   ThresholdRow row{base_name(first), first.header.solver, first.header.setting, {}, {}, {}, false};
   // The first try is at the most friction, where the scene has its truth; at less there may be none.
-  row.of = truth::card_of(scene_of(first))->threshold.value();
+  row.of = truth::reference_case_of(scene_of(first))->threshold.value();
   row.found = search_threshold(row.of, [&](double friction) -> std::optional<bool> {
     const std::string name = tried_scene(row.scene, friction);
-    for (const CellRecord* c : tries)
+    for (const RunRecord* c : tries)
       if (c->header.scene == name) return stayed(row.of, *c);
     row.unfinished = true;
     return std::nullopt;
   });
-  for (const CellRecord* c : tries)
+  for (const RunRecord* c : tries)
     if (c->outcome.status == "crashed") row.crash = c->outcome.message.substr(std::string(kItsProcess).size());
   return row;
 }
 
-json told(const FrictionForm& form, const json& error, const std::string& text) {
+json reported(const FrictionForm& form, const json& error, const std::string& text) {
   return {{"scene", form.scene}, {"what", form.head}, {"error", error}, {"at_most", form.at_most}, {"text", text}};
 }
 
-json told(const FrictionForm& form, double error) {
-  if (!std::isfinite(error)) return told(form, nullptr, "failed");
-  return told(form, error,
-              fmt::format("{}{:.2g}{}", form.threshold && error > 0 ? "+" : "", error,
-                          std::abs(error) <= form.at_most ? " ✓" : ""));
+json reported(const FrictionForm& form, double error) {
+  if (!std::isfinite(error)) return reported(form, nullptr, "failed");
+  return reported(form, error,
+                  fmt::format("{}{:.2g}{}", form.threshold && error > 0 ? "+" : "", error,
+                              std::abs(error) <= form.at_most ? " ✓" : ""));
 }
 
 json answer(const FrictionForm& form, const ThresholdRow& row) {
   const double error = form.scale * row.found.error;
-  if (!row.crash.empty()) return told(form, nullptr, "crashed");
-  if (row.unfinished) return told(form, nullptr, "–");
-  if (row.found.holds_at_least) return told(form, error, "holds at half of it");
-  if (row.found.slips_at_most) return told(form, error, "slips at 1.5 of it");
-  return told(form, error);
+  if (!row.crash.empty()) return reported(form, nullptr, "crashed");
+  if (row.unfinished) return reported(form, nullptr, "–");
+  if (row.found.holds_at_least) return reported(form, error, "holds at half of it");
+  if (row.found.slips_at_most) return reported(form, error, "slips at 1.5 of it");
+  return reported(form, error);
 }
 
-/// `cells`: of one solver and setting.
-json answer(const FrictionForm& form, const Cells& cells, const std::vector<ThresholdRow>& rows) {
-  const CellHeader& h = cells.front()->header;
+/// `runs`: of one solver and setting.
+json answer(const FrictionForm& form, const RunPointers& runs, const std::vector<ThresholdRow>& rows) {
+  const RunHeader& h = runs.front()->header;
   if (form.threshold)
     for (const ThresholdRow& row : rows)
       if (row.scene == form.scene && row.solver == h.solver && row.setting == h.setting) return answer(form, row);
-  for (const CellRecord* c : cells) {
+  for (const RunRecord* c : runs) {
     if (is_try(*c) || c->header.scene != form.scene) continue;
     const std::string& status = c->outcome.status;
-    if (status == "unsupported" || status == "crashed") return told(form, nullptr, status);
-    if (!form.threshold) return told(form, form.scale * end_error(scene_of(*c), *c));
+    if (status == "unsupported" || status == "crashed") return reported(form, nullptr, status);
+    if (!form.threshold) return reported(form, form.scale * end_error(scene_of(*c), *c));
   }
-  return told(form, nullptr, "–");
+  return reported(form, nullptr, "–");
 }
 
 Table threshold_table(const std::vector<ThresholdRow>& rows) {
@@ -117,11 +115,11 @@ Table threshold_table(const std::vector<ThresholdRow>& rows) {
 
 }  // namespace
 
-bool is_friction(const CellRecord& c) { return is_try(c) || protocol_of(c) == kFrictionProtocol; }
+bool is_friction(const RunRecord& c) { return is_try(c) || protocol_of(c) == kFrictionProtocol; }
 
-std::vector<ThresholdRow> threshold_rows(const std::vector<CellRecord>& cells) {
+std::vector<ThresholdRow> threshold_rows(const std::vector<RunRecord>& runs) {
   std::vector<ThresholdRow> out;
-  for (const Cells& group : grouped(cells, [](const CellRecord& c) {
+  for (const RunPointers& group : grouped(runs, [](const RunRecord& c) {
          return std::tuple(is_try(c), base_name(c), c.header.solver, c.header.setting);
        }))
     if (is_try(*group.front())) out.push_back(row_of(group));
@@ -157,19 +155,19 @@ std::string threshold_sentence(const ThresholdRow& r) {
                           f.found, f.exact, r.of.error_name, f.error, r.of.error_units, f.runs);
 }
 
-json friction_json(const std::vector<CellRecord>& cells) {
-  const std::vector<ThresholdRow> rows = threshold_rows(cells);
+json friction_json(const std::vector<RunRecord>& runs) {
+  const std::vector<ThresholdRow> rows = threshold_rows(runs);
   json all = json::array();
-  for (const Cells& group :
-       grouped(cells, [](const CellRecord& c) { return std::tuple(c.header.solver, c.header.setting); })) {
-    const CellHeader& h = group.front()->header;
+  for (const RunPointers& group :
+       grouped(runs, [](const RunRecord& c) { return std::tuple(c.header.solver, c.header.setting); })) {
+    const RunHeader& h = group.front()->header;
     all.push_back({{"solver", h.solver}, {"setting", h.setting}, {"answers", json::array()}});
     for (const FrictionForm& form : friction_forms()) all.back()["answers"].push_back(answer(form, group, rows));
   }
   return all;
 }
 
-Table friction_table(const std::vector<CellRecord>& cells) {
+Table friction_table(const std::vector<RunRecord>& runs) {
   Table t{"Friction by closed forms",
           "Errors of the critical angle (Coulomb's cone), of the creep of a sheet that friction holds, and of the "
           "displacements of one that slips and of one that stops. Capstan: errors of the overhang that it holds (a "
@@ -177,24 +175,24 @@ Table friction_table(const std::vector<CellRecord>& cells) {
           "✓: within the bound. Thresholds by bisection, 0.1 % of the coefficient.",
           {{"solver", "setting"}}};
   for (const FrictionForm& f : friction_forms()) t.rows[0].emplace_back(f.head);
-  for (const json& of : friction_json(cells)) {
+  for (const json& of : friction_json(runs)) {
     t.rows.push_back({of["solver"], of["setting"]});
     for (const json& a : of["answers"]) t.rows.back().push_back(a["text"]);
   }
   return t;
 }
 
-std::vector<Table> friction_tables(const std::vector<CellRecord>& cells) {
+std::vector<Table> friction_tables(const std::vector<RunRecord>& runs) {
   std::vector<Table> out;
-  if (std::any_of(cells.begin(), cells.end(), [](const CellRecord& c) { return is_friction(c) && !is_try(c); }))
-    out.push_back(friction_table(cells));
-  if (const auto rows = threshold_rows(cells); !rows.empty()) out.push_back(threshold_table(rows));
+  if (std::any_of(runs.begin(), runs.end(), [](const RunRecord& c) { return is_friction(c) && !is_try(c); }))
+    out.push_back(friction_table(runs));
+  if (const auto rows = threshold_rows(runs); !rows.empty()) out.push_back(threshold_table(rows));
   return out;
 }
 
-std::vector<std::string> friction_crashes(const std::vector<CellRecord>& cells) {
+std::vector<std::string> friction_crashes(const std::vector<RunRecord>& runs) {
   std::set<std::string> out;
-  for (const CellRecord& c : cells)
+  for (const RunRecord& c : runs)
     if (is_friction(c) && c.outcome.status == "crashed")
       out.insert(fmt::format("{} {}: {}: {}", c.header.solver, c.header.setting, base_name(c), c.outcome.message));
   return {out.begin(), out.end()};

@@ -10,14 +10,14 @@
 namespace clothbench {
 namespace {
 
-/// Where one cell stands, and the scene without what tables vary.
+/// Where one run stands, and the scene without what tables vary.
 struct Parsed {
   Resolution resolution;
   std::string sides, name, family;
   int paper_table = 0;
 };
 
-Parsed parse(const CellRecord& c) {
+Parsed parse(const RunRecord& c) {
   Parsed p;
   p.name = c.header.scene;
   nlohmann::json s = scenario_of(c);
@@ -47,16 +47,14 @@ int rank(const std::string& sides) { return sides == "single" ? 0 : sides == "do
 
 }  // namespace
 
-double summary_value(const CellRecord& c, const std::string& name) {
+double summary_value(const RunRecord& c, const std::string& name) {
   const auto at = c.summary.find(name);
   return at == c.summary.end() ? kMissing : at->second;
 }
 
-nlohmann::json scenario_of(const CellRecord& c) {
-  return nlohmann::json::parse(c.header.scenario_json, nullptr, false);
-}
+nlohmann::json scenario_of(const RunRecord& c) { return nlohmann::json::parse(c.header.scenario_json, nullptr, false); }
 
-std::vector<double> trial_means(const CellRecord& c) {
+std::vector<double> trial_means(const RunRecord& c) {
   std::vector<double> out;
   for (const TimedTrial& t : c.trials) {
     double sum = 0;
@@ -78,7 +76,7 @@ std::string ending(const Outcome& o) {
 
 std::string or_dash(const std::string& text) { return text.empty() ? "–" : text; }
 
-std::string label_of(const CellRecord& c) { return Series{c.header.solver, c.header.setting, ""}.label(); }
+std::string label_of(const RunRecord& c) { return Series{c.header.solver, c.header.setting, ""}.label(); }
 
 std::string Resolution::label() const {
   if (grid[0] > 0) return grid[0] == grid[1] ? fmt::format("{}²", grid[0]) : fmt::format("{}×{}", grid[0], grid[1]);
@@ -92,7 +90,7 @@ std::string Series::label() const {
 
 std::vector<Resolution> Family::resolutions() const {
   std::set<Resolution> all;
-  for (const PlacedCell& p : cells) all.insert(p.resolution);
+  for (const PlacedRun& p : runs) all.insert(p.resolution);
   std::vector<Resolution> out(all.begin(), all.end());
   std::stable_sort(out.begin(), out.end(), [](const Resolution& a, const Resolution& b) {
     const auto size = [](const Resolution& r) { return static_cast<double>(r.grid[0]) * r.grid[1] + r.vertices; };
@@ -103,7 +101,7 @@ std::vector<Resolution> Family::resolutions() const {
 
 std::vector<Series> Family::series() const {
   std::set<Series> all;
-  for (const PlacedCell& p : cells) all.insert(p.series);
+  for (const PlacedRun& p : runs) all.insert(p.series);
   std::vector<Series> out(all.begin(), all.end());
   std::stable_sort(out.begin(), out.end(), [](const Series& a, const Series& b) {
     const auto order = [](const Series& s) { return std::tuple(s.solver, s.setting, s.repeat, rank(s.sides)); };
@@ -112,21 +110,21 @@ std::vector<Series> Family::series() const {
   return out;
 }
 
-const CellRecord* Family::find(const Series& s, const Resolution& r) const {
-  for (const PlacedCell& p : cells)
-    if (p.series == s && p.resolution == r) return p.cell;
+const RunRecord* Family::find(const Series& s, const Resolution& r) const {
+  for (const PlacedRun& p : runs)
+    if (p.series == s && p.resolution == r) return p.run;
   return nullptr;
 }
 
 Table Family::table(const std::string& title, const std::string& note,
-                    const std::function<std::string(const CellRecord&)>& text) const {
+                    const std::function<std::string(const RunRecord&)>& text) const {
   const std::vector<Resolution> columns = resolutions();
   Table t{title, note, {{"solver", "sides"}}};
   for (const Resolution& r : columns) t.rows[0].push_back(r.label());
   for (const Series& s : series()) {
     std::vector<std::string> row = {s.label(), or_dash(s.sides)};
     for (const Resolution& r : columns) {
-      const CellRecord* c = find(s, r);
+      const RunRecord* c = find(s, r);
       row.push_back(c == nullptr ? "–" : c->outcome.status == "ok" ? text(*c) : ending(c->outcome));
     }
     t.rows.push_back(std::move(row));
@@ -134,11 +132,11 @@ Table Family::table(const std::string& title, const std::string& note,
   return t;
 }
 
-std::vector<Family> families(const std::vector<CellRecord>& cells) {
+std::vector<Family> families(const std::vector<RunRecord>& runs) {
   std::vector<Family> out;
   std::map<std::string, std::size_t> index;
   std::map<std::string, int> names;
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     const Parsed p = parse(c);
     const auto [at, is_new] = index.emplace(p.family, out.size());
     if (is_new) {
@@ -149,9 +147,9 @@ std::vector<Family> families(const std::vector<CellRecord>& cells) {
       out.push_back(std::move(f));
     }
     Family& f = out[at->second];
-    PlacedCell placed{&c, p.resolution, {c.header.solver, c.header.setting, p.sides}};
+    PlacedRun placed{&c, p.resolution, {c.header.solver, c.header.setting, p.sides}};
     while (f.find(placed.series, placed.resolution) != nullptr) ++placed.series.repeat;
-    f.cells.push_back(std::move(placed));
+    f.runs.push_back(std::move(placed));
   }
   return out;
 }

@@ -12,11 +12,11 @@
 
 namespace clothbench {
 
-/// A summary value of a cell; NaN where it has none.
-double summary_value(const CellRecord&, const std::string& name);
+/// A summary value of a run; NaN where it has none.
+double summary_value(const RunRecord&, const std::string& name);
 
-/// The scenario that a cell ran; discarded where what is stored is no JSON.
-nlohmann::json scenario_of(const CellRecord&);
+/// The scenario that a run ran; discarded where what is stored is no JSON.
+nlohmann::json scenario_of(const RunRecord&);
 
 /// Each value of `of(item)` once, in the order of first appearance.
 template <class Items, class Of>
@@ -28,32 +28,32 @@ auto distinct(const Items& items, Of of) {
   return out;
 }
 
-/// The cell that a record of a table is about.
-inline const CellRecord& cell_of(const CellRecord& c) { return c; }
+/// The run that a record of a table is about.
+inline const RunRecord& run_of(const RunRecord& c) { return c; }
 template <class Record>
-const CellRecord& cell_of(const Record& r) {
-  return *r.cell;
+const RunRecord& run_of(const Record& r) {
+  return *r.run;
 }
 
-/// The cells of some records; `of`: members that point to one.
+/// The runs of some records; `of`: members that point to one.
 template <class Records, class... Of>
-std::vector<const CellRecord*> cells_of(const Records& records, Of... of) {
-  std::vector<const CellRecord*> out;
+std::vector<const RunRecord*> runs_of(const Records& records, Of... of) {
+  std::vector<const RunRecord*> out;
   for (const auto& r : records) (out.push_back(std::invoke(of, r)), ...);
   return out;
 }
 
 /// Values for columns over such records (base/columns.hpp).
 inline auto summary(const std::string& name) {
-  return [name](const auto& r) -> Value { return summary_value(cell_of(r), name); };
+  return [name](const auto& r) -> Value { return summary_value(run_of(r), name); };
 }
-inline constexpr auto status_of = [](const auto& r) -> Value { return cell_of(r).outcome.status; };
+inline constexpr auto status_of = [](const auto& r) -> Value { return run_of(r).outcome.status; };
 inline constexpr auto failed_frame_of = [](const auto& r) -> Value {
-  return cell_of(r).outcome.failed_frame < 0 ? absent() : Value(cell_of(r).outcome.failed_frame);
+  return run_of(r).outcome.failed_frame < 0 ? absent() : Value(run_of(r).outcome.failed_frame);
 };
 
 /// Mean wall time of a frame in each trial [s], ascending.
-std::vector<double> trial_means(const CellRecord&);
+std::vector<double> trial_means(const RunRecord&);
 
 /// The median of what is sorted and not empty.
 double middle(const std::vector<double>& sorted);
@@ -82,7 +82,7 @@ struct Resolution {
 /// Row of a table.
 struct Series {
   std::string solver, setting, sides;
-  int repeat = 1;  ///< 2, 3, ... where several files hold the same cell
+  int repeat = 1;  ///< 2, 3, ... where several files hold the same run
   std::string label() const;
   bool operator==(const Series&) const = default;
   // Not <=>: strings have none yet in the libc++ of Android's NDK r25.
@@ -92,33 +92,33 @@ struct Series {
 };
 
 /// "xpbd substeps=4": solver and, where it is not the default, setting.
-std::string label_of(const CellRecord&);
+std::string label_of(const RunRecord&);
 
-/// A cell and where it stands. Points into the vector it was made from.
-struct PlacedCell {
-  const CellRecord* cell = nullptr;
+/// A run and where it stands. Points into the vector it was made from.
+struct PlacedRun {
+  const RunRecord* run = nullptr;
   Resolution resolution;
   Series series;
 };
 
-/// Cells whose scenes differ in resolution and sides alone; what one set of tables shows.
+/// Runs whose scenes differ in resolution and sides alone; what one set of tables shows.
 class Family {
  public:
-  std::string name;               ///< of the scene; " (2)" is added where another family has the same name
-  int paper_table = 0;            ///< the paper's table the scene says it belongs to; 0: none
-  std::vector<PlacedCell> cells;  ///< in the order given
+  std::string name;             ///< of the scene; " (2)" is added where another family has the same name
+  int paper_table = 0;          ///< the paper's table the scene says it belongs to; 0: none
+  std::vector<PlacedRun> runs;  ///< in the order given
 
   std::vector<Resolution> resolutions() const;  ///< ascending
   std::vector<Series> series() const;           ///< by solver and setting; single, double-duplicated, double
-  const CellRecord* find(const Series&, const Resolution&) const;
+  const RunRecord* find(const Series&, const Resolution&) const;
 
-  /// Rows: series; columns: resolutions. A cell that did not end well says how instead of `text`.
+  /// Rows: series; columns: resolutions. A run that did not end well says how instead of `text`.
   Table table(const std::string& title, const std::string& note,
-              const std::function<std::string(const CellRecord&)>& text) const;
+              const std::function<std::string(const RunRecord&)>& text) const;
 };
 
-/// Sorts cells into families by their scenes, in the order of first appearance. A cell without a readable scene is a
-/// family of its own scene name, without resolution. `cells` must outlive the answer.
-std::vector<Family> families(const std::vector<CellRecord>& cells);
+/// Sorts runs into families by their scenes, in the order of first appearance. A run without a readable scene is a
+/// family of its own scene name, without resolution. `runs` must outlive the answer.
+std::vector<Family> families(const std::vector<RunRecord>& runs);
 
 }  // namespace clothbench

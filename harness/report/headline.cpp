@@ -22,7 +22,7 @@ bool flag(const nlohmann::json& e, const char* key) {
   return e.is_object() && e.contains(key) && e[key].is_boolean() && e[key].get<bool>();
 }
 
-/// What cells of one run share whatever the solver.
+/// What runs of one study share whatever the solver.
 std::string host_line(const nlohmann::json& e) {
   return fmt::format("CPU {} · protocol {} · commit {}{} · {}", text(e, "cpu"), text(e, "protocol"),
                      text(e, "git_commit").substr(0, 12), flag(e, "git_dirty") ? " (with local changes)" : "",
@@ -41,9 +41,9 @@ struct Span {
 
 }  // namespace
 
-std::string overhead_line(const std::vector<CellRecord>& cells) {
-  const CellRecord* most = nullptr;
-  for (const CellRecord& c : cells) {
+std::string overhead_line(const std::vector<RunRecord>& runs) {
+  const RunRecord* most = nullptr;
+  for (const RunRecord& c : runs) {
     if (c.header.solver != "ballistic" || c.outcome.status != "ok") continue;
     const double t = summary_value(c, "frame_wall_median_s");
     if (std::isfinite(t) && (most == nullptr || t > summary_value(*most, "frame_wall_median_s"))) most = &c;
@@ -56,9 +56,9 @@ std::string overhead_line(const std::vector<CellRecord>& cells) {
       100 * share, share < kAllowedOverhead ? "below" : "**above**", 1e6 * t, most->header.scene);
 }
 
-std::string window_note(const std::vector<CellRecord>& cells) {
+std::string window_note(const std::vector<RunRecord>& runs) {
   double least = kMissing, most = kMissing;
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     const double w = summary_value(c, "bandwidth_window_s");
     if (!std::isfinite(summary_value(c, "bandwidth_read_peak_B_per_s")) || !std::isfinite(w)) continue;
     if (!(least <= w)) least = w;
@@ -69,21 +69,21 @@ std::string window_note(const std::vector<CellRecord>& cells) {
                      most);
 }
 
-std::string gpu_of(const CellRecord& c) {
+std::string gpu_of(const RunRecord& c) {
   const nlohmann::json& e = c.header.environment;
   const std::string gpu = text(e, "gpu");
   if (gpu == "CPU" || gpu == "–") return "";
   return flag(e, "gpu_is_software") ? gpu + " (software, not for speed claims)" : gpu;
 }
 
-std::string headline(const std::vector<CellRecord>& cells, Format format) {
+std::string headline(const std::vector<RunRecord>& runs, Format format) {
   std::vector<std::string> software, invalid, lines, hosts;
   std::map<std::string, Span> created;
   std::map<std::string, bool> on_gpu;  // has the host a line with a GPU?
   const auto add = [](std::vector<std::string>& v, const std::string& s) {
     if (std::find(v.begin(), v.end(), s) == v.end()) v.push_back(s);
   };
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     const nlohmann::json& e = c.header.environment;
     if (!e.is_object() || e.empty()) continue;
     if (const nlohmann::json s = e.value("device_samples", nlohmann::json()); s.is_object() && !s.value("valid", true))
@@ -103,15 +103,15 @@ std::string headline(const std::vector<CellRecord>& cells, Format format) {
   for (const std::string& device : software)
     out += fmt::format("**Software Vulkan device ({}): for correctness, not for speed claims.**\n\n", device);
   for (const std::string& reason : invalid) out += fmt::format("**Not a valid measurement: {}.**\n\n", reason);
-  for (const std::string& line : withheld_lines(cells)) out += fmt::format("**{}**\n\n", line);
+  for (const std::string& line : withheld_lines(runs)) out += fmt::format("**{}**\n\n", line);
   for (const std::string& line : lines) {
     std::string host = line;
     for (const auto& [key, span] : created)
       if (line.ends_with(key)) host = line + " · " + span.text();
     out += host + "\n\n";
   }
-  if (lines.empty()) out += "No cell says where it ran.\n\n";
-  out += overhead_line(cells);
+  if (lines.empty()) out += "No run says where it ran.\n\n";
+  out += overhead_line(runs);
   if (format == Format::Markdown) return out;
   for (std::size_t at; (at = out.find("**")) != std::string::npos;) out.erase(at, 2);
   std::string console;

@@ -27,25 +27,25 @@ std::size_t place(const std::string& name) {
   return static_cast<std::size_t>(at - std::begin(kWords));
 }
 
-std::string failure_text(const CellRecord& c, const std::string& name) {
+std::string failure_text(const RunRecord& c, const std::string& name) {
   const std::string what = place(name) < std::size(kWords) ? kWords[place(name)].second : name;
   const double v = summary_value(c, name);
   return what + (std::isfinite(v) ? fmt::format(" {:.3g}", v) : " not known");
 }
 
 /// By the scene's bounds.
-std::string broken_bound(const CellRecord& c, std::vector<BoundResult> bounds) {
+std::string broken_bound(const RunRecord& c, std::vector<BoundResult> bounds) {
   std::stable_sort(bounds.begin(), bounds.end(),
                    [](const auto& a, const auto& b) { return place(a.name) < place(b.name); });
   for (const BoundResult& b : bounds)
-    if (b.kept == 0) return failure_text(c, b.name);
+    if (b.passed == 0) return failure_text(c, b.name);
   for (const BoundResult& b : bounds)
-    if (!(b.kept == 1)) return c.withheld.contains("expect." + b.name) ? kNotPrinted : failure_text(c, b.name);
+    if (!(b.passed == 1)) return c.withheld.contains("expect." + b.name) ? kNotPrinted : failure_text(c, b.name);
   return "";
 }
 
 /// For a scene without bounds: what counts as a failure in a scene of its kind.
-std::string without_bounds(const std::string& kind, const CellRecord& c) {
+std::string without_bounds(const std::string& kind, const RunRecord& c) {
   const bool hand = kind == "capsules" || kind == "hand";
   std::vector<std::pair<const char*, double>> most;
   if (kind == "rooms")
@@ -64,7 +64,7 @@ std::string without_bounds(const std::string& kind, const CellRecord& c) {
   return "";
 }
 
-std::string base_name(const CellRecord& c) {
+std::string base_name(const RunRecord& c) {
   const json j = scenario_of(c);
   return j.is_object() && j.contains("name") && j["name"].is_string() ? j["name"].get<std::string>() : c.header.scene;
 }
@@ -73,13 +73,13 @@ std::string metres_per_second(double v) { return fmt::format("{:g} m/s", v); }
 
 }  // namespace
 
-std::string leak_of(const std::string& kind, const CellRecord& c) {
+std::string leak_of(const std::string& kind, const RunRecord& c) {
   if (c.outcome.status != "ok") return c.outcome.status;
   const std::vector<BoundResult> bounds = bound_results(c);
   return bounds.empty() ? without_bounds(kind, c) : broken_bound(c, bounds);
 }
 
-std::optional<SpeedSweep::At> SpeedSweep::first_leak() const {
+std::optional<SpeedSweep::At> SpeedSweep::failure_speed() const {
   const auto at = std::find_if(speeds.begin(), speeds.end(), [](const At& a) { return !a.leak.empty(); });
   return at == speeds.end() ? std::nullopt : std::optional<At>(*at);
 }
@@ -87,17 +87,17 @@ std::optional<SpeedSweep::At> SpeedSweep::first_leak() const {
 std::vector<SpeedSweep> speed_sweeps(const std::vector<ContactSetUp>& ups) {
   std::vector<SpeedSweep> all;
   for (const ContactRow& r : contact_rows(ups)) {
-    const double speed = summary_value(*r.cell, "imposed_speed_m_per_s");
-    const std::string& status = r.cell->outcome.status;
-    if (!(speed > 0) || status == "unsupported" || status == "over_budget" || verdict(*r.cell) == "ignored" ||
-        r.cell->header.solver == "ballistic")
+    const double speed = summary_value(*r.run, "imposed_speed_m_per_s");
+    const std::string& status = r.run->outcome.status;
+    if (!(speed > 0) || status == "unsupported" || status == "over_budget" || verdict(*r.run) == "ignored" ||
+        r.run->header.solver == "ballistic")
       continue;
-    const std::string base = base_name(*r.cell);
+    const std::string base = base_name(*r.run);
     SpeedSweep& at = find_or_add(
         all, [&](const SpeedSweep& x) { return x.kind == r.kind && x.scene == base && x.series == r.series; },
         {r.kind, base, r.series, {}});
-    at.speeds.push_back({speed, leak_of(r.kind, *r.cell)});
-    at.cells.push_back(r.cell);
+    at.speeds.push_back({speed, leak_of(r.kind, *r.run)});
+    at.runs.push_back(r.run);
   }
   for (SpeedSweep& s : all)
     std::stable_sort(s.speeds.begin(), s.speeds.end(),
@@ -109,7 +109,7 @@ std::vector<SpeedSweep> speed_sweeps(const std::vector<ContactSetUp>& ups) {
 }
 
 Table leak_table(const std::vector<SpeedSweep>& sweeps) {
-  Table t{"Speed of the first leak",
+  Table t{"Speed of the failure speed",
           "The lowest speed at which a solver breaks what the scene expects, and the first bound that it breaks: cloth "
           "through a mesh, on the wrong side "
           "of a hand or over 1 mm inside it, edges longer than so many times what the hands impose, a mean strain of "
@@ -128,7 +128,7 @@ Table leak_table(const std::vector<SpeedSweep>& sweeps) {
       for (const SpeedSweep& s : sweeps) {
         if (s.kind != kind || s.scene != scene || s.series.label() != solver) continue;
         row[1] = fmt::format("{:g}…{:g}", s.speeds.front().speed_m_per_s, s.speeds.back().speed_m_per_s);
-        const auto leak = s.first_leak();
+        const auto leak = s.failure_speed();
         text = leak && leak->leak == kNotPrinted ? kNotPrinted
                : leak                            ? metres_per_second(leak->speed_m_per_s) + ": " + leak->leak
                                                  : "none up to " + metres_per_second(s.speeds.back().speed_m_per_s);
@@ -137,11 +137,11 @@ Table leak_table(const std::vector<SpeedSweep>& sweeps) {
     }
     t.rows.push_back(std::move(row));
   }
-  std::vector<const CellRecord*> cells;
-  for (const SpeedSweep& s : sweeps) cells.insert(cells.end(), s.cells.begin(), s.cells.end());
+  std::vector<const RunRecord*> runs;
+  for (const SpeedSweep& s : sweeps) runs.insert(runs.end(), s.runs.begin(), s.runs.end());
   std::vector<std::string> names;
   for (const auto& [name, unused] : kWords) names.emplace_back(name);
-  t.note = with_withheld(t.note, cells, names);
+  t.note = with_withheld(t.note, runs, names);
   return t;
 }
 
@@ -152,8 +152,8 @@ json leak_json(const std::vector<SpeedSweep>& sweeps) {
                 {"solver", s.series.solver}, {"setting", s.series.setting},
                 {"sides", s.series.sides},   {"speeds", json::array()}};
     for (const auto& at : s.speeds) row["speeds"].push_back({{"speed_m_per_s", at.speed_m_per_s}, {"leak", at.leak}});
-    const auto leak = s.first_leak();
-    row["first_leak_m_per_s"] = leak && leak->leak != kNotPrinted ? json(leak->speed_m_per_s) : json();
+    const auto leak = s.failure_speed();
+    row["failure_speed_m_per_s"] = leak && leak->leak != kNotPrinted ? json(leak->speed_m_per_s) : json();
     row["known"] = !leak || leak->leak != kNotPrinted;
     out.push_back(std::move(row));
   }

@@ -16,17 +16,17 @@ constexpr const char* kNotMeasured = "not measured";
 constexpr const char* kModuli[] = {"E_0",          "E_45",      "E_90", "nu",   "G",    "E_strip",
                                    "strip_border", "E_stiffer", "B_0",  "B_45", "B_90", "B_stiffer"};
 
-bool is_full(const CellRecord& c) {
+bool is_full(const RunRecord& c) {
   const json s = scenario_of(c);
-  return s.is_object() && s.value("material_card", "") == "full";
+  return s.is_object() && s.value("effective_moduli", "") == "full";
 }
 
-double modulus(const CellRecord& c, const char* name) { return summary_value(c, std::string("material_") + name); }
+double modulus(const RunRecord& c, const char* name) { return summary_value(c, std::string("material_") + name); }
 
 /// `stiffer`: the modulus of a sheet with twice the stiffness, over its own.
 std::string verdict(const SolverMaterial& m, const char* name, const char* like, const char* stiffer) {
-  const CellRecord* standard = nullptr;
-  for (const CellRecord* c : m.cards)
+  const RunRecord* standard = nullptr;
+  for (const RunRecord* c : m.moduli)
     if (standard == nullptr && is_full(*c)) standard = c;
   if (standard == nullptr || standard->outcome.status == "unsupported") return kNotMeasured;
   const double value = modulus(*standard, name);
@@ -35,7 +35,7 @@ std::string verdict(const SolverMaterial& m, const char* name, const char* like,
   const double answer = 2 * modulus(*standard, stiffer) / modulus(*standard, like);
   if (!(std::abs(answer / 2 - 1) <= kHeldModulus))
     return fmt::format("does not follow: twice of it gives {:.3g} times as much", answer);
-  for (const CellRecord* c : m.cards) {
+  for (const RunRecord* c : m.moduli) {
     const double here = modulus(*c, name);
     if (!(std::abs(here / value - 1) <= kHeldModulus))
       return std::isfinite(here) ? fmt::format("depends on settings: {:.3g} at {}, {:.3g} at {}", value,
@@ -54,27 +54,27 @@ std::string yes_or(const std::string& why) { return why.empty() ? "yes" : why ==
 
 }  // namespace
 
-bool is_material_card(const CellRecord& c) {
+bool is_moduli_run(const RunRecord& c) {
   const json s = scenario_of(c);
-  return s.is_object() && s.contains("material_card");
+  return s.is_object() && s.contains("effective_moduli");
 }
 
-std::vector<SolverMaterial> solver_materials(const std::vector<CellRecord>& cells) {
+std::vector<SolverMaterial> solver_materials(const std::vector<RunRecord>& runs) {
   std::vector<SolverMaterial> out;
-  for (const CellRecord& c : cells) {
-    if (!is_material_card(c)) continue;
+  for (const RunRecord& c : runs) {
+    if (!is_moduli_run(c)) continue;
     find_or_add(out, [&](const SolverMaterial& m) { return m.solver == c.header.solver; }, {c.header.solver, {}, {}})
-        .cards.push_back(&c);
+        .moduli.push_back(&c);
   }
   for (SolverMaterial& m : out) {
-    std::stable_partition(m.cards.begin(), m.cards.end(), [](const CellRecord* c) { return is_full(*c); });
+    std::stable_partition(m.moduli.begin(), m.moduli.end(), [](const RunRecord* c) { return is_full(*c); });
     m.verdict = {verdict(m, "E_strip", "E_0", "E_stiffer"), verdict(m, "E_0", "E_0", "E_stiffer"),
                  verdict(m, "B_0", "B_0", "B_stiffer")};
   }
   return out;
 }
 
-StiffnessNeed stiffness_need(const CellRecord& c) {
+StiffnessNeed stiffness_need(const RunRecord& c) {
   constexpr double kDepends = 0.01;
   StiffnessNeed need;
   const json scenario = scenario_of(c);
@@ -98,7 +98,7 @@ std::string stiffness_flag(const std::vector<SolverMaterial>& all, const std::st
 
 Table material_table(const std::vector<SolverMaterial>& all) {
   Table t{
-      "Material card: the effective stiffness of solvers",
+      "Effective moduli: the effective stiffness of solvers",
       "Measured on hanging, sliding and bending patches at rest. E, G and B over the scene's Y, Y and B at 0, 45 and "
       "90° to the grid; "
       "right values: 1, 1, 1, ν = 1/3 and G = 0.375 for central springs, strip 1 (no shear), border 1. B at 45°: of "
@@ -107,7 +107,7 @@ Table material_table(const std::vector<SolverMaterial>& all) {
       {{"solver", "setting", "E 0", "E 45", "E 90", "ν", "G", "strip", "border", "E ×2", "B 0", "B 45", "B 90",
         "B ×2"}}};
   for (const SolverMaterial& m : all)
-    for (const CellRecord* c : m.cards) {
+    for (const RunRecord* c : m.moduli) {
       std::vector<std::string> row = {m.solver, c->header.setting};
       for (const char* name : kModuli) {
         double v = modulus(*c, name);
@@ -126,7 +126,7 @@ Table material_verdicts(const std::vector<SolverMaterial>& all) {
           "Measured: within 5 % when doubled and over settings. NO: not ranked where the scene depends on it.",
           {{"solver", "settings", "Y of strips", "Y of sheets", "B"}}};
   for (const SolverMaterial& m : all)
-    t.rows.push_back({m.solver, std::to_string(m.cards.size()), yes_or(m.verdict.strip), yes_or(m.verdict.sheet),
+    t.rows.push_back({m.solver, std::to_string(m.moduli.size()), yes_or(m.verdict.strip), yes_or(m.verdict.sheet),
                       yes_or(m.verdict.bending)});
   return t;
 }
@@ -134,22 +134,22 @@ Table material_verdicts(const std::vector<SolverMaterial>& all) {
 json material_json(const std::vector<SolverMaterial>& all) {
   json out = json::array();
   for (const SolverMaterial& m : all) {
-    json cards = json::array();
-    for (const CellRecord* c : m.cards) {
-      json card = {{"setting", c->header.setting},
-                   {"settings", c->header.settings},
-                   {"full", is_full(*c)},
-                   {"status", c->outcome.status},
-                   {"message", c->outcome.message}};
+    json moduli = json::array();
+    for (const RunRecord* c : m.moduli) {
+      json measured = {{"setting", c->header.setting},
+                       {"settings", c->header.settings},
+                       {"full", is_full(*c)},
+                       {"status", c->outcome.status},
+                       {"message", c->outcome.message}};
       for (const auto& [name, value] : c->summary)
-        if (name.starts_with("material_")) card[name.substr(9)] = std::isfinite(value) ? json(value) : json();
-      cards.push_back(std::move(card));
+        if (name.starts_with("material_")) measured[name.substr(9)] = std::isfinite(value) ? json(value) : json();
+      moduli.push_back(std::move(measured));
     }
     out.push_back({{"solver", m.solver},
                    {"strip_Y", m.verdict.strip},
                    {"sheet_Y", m.verdict.sheet},
                    {"B", m.verdict.bending},
-                   {"cards", std::move(cards)}});
+                   {"moduli", std::move(moduli)}});
   }
   return out;
 }

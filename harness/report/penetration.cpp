@@ -23,7 +23,7 @@ bool filled(const json& j, const char* key) {
 }
 
 bool is_pulled_strip(const json& scenario) {
-  return scenario.is_object() && scenario.value(json::json_pointer("/truth/card"), json()) == "two-hand-pull";
+  return scenario.is_object() && scenario.value(json::json_pointer("/truth/case"), json()) == "two-hand-pull";
 }
 
 /// By what touches the cloth; the rarest first.
@@ -99,7 +99,7 @@ const std::vector<Shown> kShown = {
     {"greatest strain's error, most / RMS [of v0/c]", {"truth_quantity_error_max", "truth_quantity_error"}, number},
 };
 
-std::string shown_text(const CellRecord& c, const Shown& s) {
+std::string shown_text(const RunRecord& c, const Shown& s) {
   std::string text;
   bool any = false;
   for (const char* name : s.names) {
@@ -117,7 +117,7 @@ Columns<ContactRow> place_columns() {
 }
 
 /// True if the solver declares to ignore all contact and grips: then a kept expectation is luck.
-bool touches_nothing(const CellRecord& c) {
+bool touches_nothing(const RunRecord& c) {
   const json features =
       c.header.environment.is_object() ? c.header.environment.value("solver_features", json()) : json();
   if (!features.is_object() || !filled(features, "ignores")) return false;
@@ -140,17 +140,17 @@ std::string bound(const json& scenario, const std::string& name) {
 
 }  // namespace
 
-bool has_contact(const CellRecord& c) {
+bool has_contact(const RunRecord& c) {
   const json s = scenario_of(c);
   return filled(s, "colliders") || filled(s, "grips");
 }
 
-bool pulls_strip(const CellRecord& c) { return is_pulled_strip(scenario_of(c)); }
+bool pulls_strip(const RunRecord& c) { return is_pulled_strip(scenario_of(c)); }
 
-std::vector<ContactSetUp> set_ups(const std::vector<CellRecord>& cells) {
+std::vector<ContactSetUp> set_ups(const std::vector<RunRecord>& runs) {
   std::vector<ContactSetUp> all;
   for (const auto& [kind, title] : kKinds) all.push_back({kind, title, {}});
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     if (!has_contact(c)) continue;
     const json scenario = scenario_of(c);
     ContactSetUp& up = *std::find_if(all.begin(), all.end(),
@@ -182,25 +182,25 @@ std::vector<ContactRow> contact_rows(const std::vector<ContactSetUp>& ups) {
   return out;
 }
 
-std::vector<BoundResult> bound_results(const CellRecord& c) {
+std::vector<BoundResult> bound_results(const RunRecord& c) {
   std::vector<BoundResult> out;
   for (const auto& [name, v] : c.summary)
     if (name.starts_with(kExpect)) out.push_back({name.substr(kExpect.size()), v});
   return out;
 }
 
-std::string verdict(const CellRecord& c) {
+std::string verdict(const RunRecord& c) {
   if (c.outcome.status != "ok") return ending(c.outcome);
   bool withheld = false, measured = true;
   const std::vector<BoundResult> bounds = bound_results(c);
   for (const BoundResult& b : bounds) {
-    if (b.kept == 0) return "broken";
+    if (b.passed == 0) return "fail";
     withheld = withheld || c.withheld.contains(kExpect + b.name);
-    measured = measured && b.kept == 1;
+    measured = measured && b.passed == 1;
   }
   if (bounds.empty() || withheld) return "–";
   if (!measured) return "not measured";
-  return touches_nothing(c) ? "ignored" : "kept";
+  return touches_nothing(c) ? "ignored" : "pass";
 }
 
 Table verdict_table(const std::vector<ContactSetUp>& ups) {
@@ -209,7 +209,7 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
   std::sort(solvers.begin(), solvers.end());
   Table t{
       "Penetration: does each solver keep what the scene expects?",
-      "Kept: every bound of the scene's `expect`, measured over the whole scene. Ignored: kept by a solver that "
+      "Pass: every bound of the scene's `expect`, measured over the whole scene. Ignored: passed by a solver that "
       "touches nothing. – : not run, or nothing to expect. In "
       "the tables below, tunnelled: share of the cloth that has passed to the other side of a mesh. Contour: length "
       "of the "
@@ -229,13 +229,13 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
       for (const std::string& solver : solvers) {
         const auto at =
             std::find_if(s.rows.begin(), s.rows.end(), [&](const ContactRow& r) { return r.series.label() == solver; });
-        row.push_back(at == s.rows.end() ? "–" : verdict(*at->cell));
+        row.push_back(at == s.rows.end() ? "–" : verdict(*at->run));
       }
       t.rows.push_back(std::move(row));
     }
   for (const ContactRow& r : all)
-    for (const BoundResult& b : bound_results(*r.cell)) bounds.insert(kExpect + b.name);
-  t.note = with_withheld(t.note, cells_of(all, &ContactRow::cell), {bounds.begin(), bounds.end()});
+    for (const BoundResult& b : bound_results(*r.run)) bounds.insert(kExpect + b.name);
+  t.note = with_withheld(t.note, runs_of(all, &ContactRow::run), {bounds.begin(), bounds.end()});
   return t;
 }
 
@@ -245,16 +245,16 @@ Table contact_table(const ContactSetUp& s) {
   std::vector<std::string> names = {"frame_wall_median_s"};
   for (const Shown& shown : kShown) {
     names.insert(names.end(), shown.names.begin(), shown.names.end());
-    if (std::any_of(rows.begin(), rows.end(), [&](auto& r) { return shown_text(*r.cell, shown) != "–"; }))
-      columns.push_back({"", shown.head, [&](auto& r) { return shown_text(*r.cell, shown); }, {}, shown.unit});
+    if (std::any_of(rows.begin(), rows.end(), [&](auto& r) { return shown_text(*r.run, shown) != "–"; }))
+      columns.push_back({"", shown.head, [&](auto& r) { return shown_text(*r.run, shown); }, {}, shown.unit});
   }
   columns.add({{"", "wall / GPU [ms]",
                 [](auto& r) {
-                  return paired(1e3 * summary_value(*r.cell, "frame_wall_median_s"),
-                                1e3 * summary_value(*r.cell, "frame_device_median_s"), " / ", 3);
+                  return paired(1e3 * summary_value(*r.run, "frame_wall_median_s"),
+                                1e3 * summary_value(*r.run, "frame_device_median_s"), " / ", 3);
                 }},
-               {"", "expected", [](auto& r) { return verdict(*r.cell); }}});
-  return columns.table({s.title, with_withheld("", cells_of(rows, &ContactRow::cell), names), {}}, rows);
+               {"", "expected", [](auto& r) { return verdict(*r.run); }}});
+  return columns.table({s.title, with_withheld("", runs_of(rows, &ContactRow::run), names), {}}, rows);
 }
 
 Table cost_table(const ContactSetUp& s) {
@@ -262,20 +262,20 @@ Table cost_table(const ContactSetUp& s) {
   const std::string note = fmt::format("Bytes a frame: {} Memory: device-local buffers. – on a CPU.", kWhatBytesAre);
   return place_columns()
       .add({{"", "kB read / written",
-             [](auto& r) { return bytes_pair(*r.cell, "read_B_per_frame", "write_B_per_frame", 1e-3); }},
+             [](auto& r) { return bytes_pair(*r.run, "read_B_per_frame", "write_B_per_frame", 1e-3); }},
             {"", "memory", summary("device_memory_B"), digits(4), kKilobytes},
             {"", "dispatches", summary("dispatches"), digits(1)},
             {"", "load", summary("load_s"), digits(3), kMilliseconds}})
-      .table({"Cost: " + s.title, with_withheld(note, cells_of(rows, &ContactRow::cell), {"load_s"}), {}}, rows);
+      .table({"Cost: " + s.title, with_withheld(note, runs_of(rows, &ContactRow::run), {"load_s"}), {}}, rows);
 }
 
-Table broken_table(const std::vector<ContactSetUp>& ups) {
+Table failed_expectations_table(const std::vector<ContactSetUp>& ups) {
   Table t{"Broken expectations", "", {{"scene", "solver", "what", "expected", "found"}}};
   for (const ContactRow& r : contact_rows(ups))
-    for (const auto& [what, kept] : bound_results(*r.cell)) {
+    for (const auto& [what, kept] : bound_results(*r.run)) {
       if (kept != 0) continue;
-      t.rows.push_back({r.scene, r.series.label(), what, bound(scenario_of(*r.cell), what),
-                        what == "outcome" ? ending(r.cell->outcome) : in_form("{:.4g}")(summary_value(*r.cell, what))});
+      t.rows.push_back({r.scene, r.series.label(), what, bound(scenario_of(*r.run), what),
+                        what == "outcome" ? ending(r.run->outcome) : in_form("{:.4g}")(summary_value(*r.run, what))});
     }
   return t;
 }

@@ -9,21 +9,21 @@
 
 namespace clothbench {
 
-/// True if the cell's scene has something to touch or hands that hold: its result is told by the tables below instead
+/// True if the run's scene has something to touch or hands that hold: the tables below report its result instead
 /// of those of frames per second.
-bool has_contact(const CellRecord&);
+bool has_contact(const RunRecord&);
 
-/// True if the cell's scene is the strip pulled at both ends (truth card two-hand-pull).
-bool pulls_strip(const CellRecord&);
+/// True if the run's scene is the strip pulled at both ends (reference case two-hand-pull).
+bool pulls_strip(const RunRecord&);
 
-/// A cell in these tables. Points into the vector it was made from.
+/// A run in these tables. Points into the vector it was made from.
 struct ContactRow {
-  const CellRecord* cell = nullptr;
+  const RunRecord* run = nullptr;
   Series series;
   std::string kind = {}, scene = {};  ///< of its set-up and scene
 };
 
-/// All cells of the scenes of one name, the same scene in several forms (sides, part of the room) among them.
+/// All runs of the scenes of one name, the same scene in several forms (sides, part of the room) among them.
 struct ContactScene {
   std::string name;
   std::vector<ContactRow> rows;  ///< by solver and setting
@@ -36,8 +36,8 @@ struct ContactSetUp {
   std::vector<ContactScene> scenes;
 };
 
-/// Sorts the cells with contact; the others are left out. `cells` must outlive the answer.
-std::vector<ContactSetUp> set_ups(const std::vector<CellRecord>& cells);
+/// Sorts the runs with contact; the others are left out. `runs` must outlive the answer.
+std::vector<ContactSetUp> set_ups(const std::vector<RunRecord>& runs);
 
 /// All of them, in order.
 std::vector<ContactRow> contact_rows(const std::vector<ContactSetUp>&);
@@ -45,16 +45,16 @@ std::vector<ContactRow> contact_rows(const std::vector<ContactSetUp>&);
 /// What came of one bound of a scene's `expect`.
 struct BoundResult {
   std::string name;  ///< of the summary value, or "outcome"
-  double kept;       ///< 1 kept, 0 broken, NaN not known
+  double passed;     ///< 1 pass, 0 fail, NaN not known
 };
 
-/// Of every bound of the cell's scene. The one place that tables of verdicts and of speeds that fail are told from.
-std::vector<BoundResult> bound_results(const CellRecord&);
+/// Of every bound of the run's scene. The one place that tables of verdicts and of speeds that fail are made from.
+std::vector<BoundResult> bound_results(const RunRecord&);
 
-/// What came of the scene's `expect`: "kept", "broken", "not measured", "–" if it expects nothing or what it expects
-/// must not be printed (withheld.hpp), "ignored" if it was kept by a solver that ignores all contact; how the cell
+/// What came of the scene's `expect`: "pass", "fail", "not measured", "–" if it expects nothing or what it expects
+/// must not be printed (withheld.hpp), "ignored" if it was kept by a solver that ignores all contact; how the run
 /// ended if it did not end well.
-std::string verdict(const CellRecord&);
+std::string verdict(const RunRecord&);
 
 /// Rows: scenes; columns: solvers; entries: `verdict`.
 Table verdict_table(const std::vector<ContactSetUp>&);
@@ -66,7 +66,7 @@ Table contact_table(const ContactSetUp&);
 Table cost_table(const ContactSetUp&);
 
 /// Every broken expectation with its value and bound; no rows but the header if there is none.
-Table broken_table(const std::vector<ContactSetUp>&);
+Table failed_expectations_table(const std::vector<ContactSetUp>&);
 
 nlohmann::json penetration_json(const std::vector<ContactSetUp>&);
 

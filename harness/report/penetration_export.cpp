@@ -15,7 +15,7 @@ using nlohmann::json;
 
 std::string six_digits(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : ""; }
 
-/// Keys of where a cell stands, of ContactRow and what has its members.
+/// Keys of where a run stands, of ContactRow and what has its members.
 template <class Row>
 Columns<Row> contact_keys() {
   return {{"set_up", In::Both, &Row::kind},
@@ -33,7 +33,7 @@ struct Frame : ContactRow {
 };
 
 Value value_at(const Frame& f, const std::string& name) {
-  for (const MetricSeries& m : f.cell->accuracy.metrics)
+  for (const MetricSeries& m : f.run->accuracy.metrics)
     if (m.name == name) return six_digits(f.frame < m.values.size() ? m.values[f.frame] : kMissing);
   return "";
 }
@@ -42,7 +42,7 @@ Value value_at(const Frame& f, const std::string& name) {
 
 json penetration_json(const std::vector<ContactSetUp>& ups) {
   return contact_keys<ContactRow>()
-      .add({{"expect", In::Both, [](auto& r) { return verdict(*r.cell); }}})
+      .add({{"expect", In::Both, [](auto& r) { return verdict(*r.run); }}})
       .add(summary_columns<ContactRow>(penetration_columns()))
       .json(contact_rows(ups));
 }
@@ -50,12 +50,12 @@ json penetration_json(const std::vector<ContactSetUp>& ups) {
 std::string series_csv(const std::vector<ContactSetUp>& ups) {
   Columns<Frame> columns = contact_keys<Frame>();
   columns.push_back(
-      {"time_s", In::Both, [](auto& f) { return fmt::format("{:.6g}", f.cell->accuracy.time_s[f.frame]); }});
+      {"time_s", In::Both, [](auto& f) { return fmt::format("{:.6g}", f.run->accuracy.time_s[f.frame]); }});
   for (const std::string& name : series_columns())
     columns.push_back({name, In::Both, [name](auto& f) { return value_at(f, name); }});
   std::vector<Frame> frames;
   for (const ContactRow& r : contact_rows(ups))
-    for (std::size_t k = 0; k < r.cell->accuracy.time_s.size(); ++k) frames.push_back({r, k});
+    for (std::size_t k = 0; k < r.run->accuracy.time_s.size(); ++k) frames.push_back({r, k});
   return columns.csv(frames);
 }
 

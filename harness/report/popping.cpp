@@ -12,14 +12,14 @@ using nlohmann::json;
 constexpr double kMostRatio = 1.2, kMostSpeed = 1;
 
 /// How far it popped, or how it ended.
-Value way_of(const CellRecord& c) {
+Value way_of(const RunRecord& c) {
   return c.outcome.status == "ok" ? Value(summary_value(c, "pop_displacement_m")) : Value(c.outcome.status);
 }
 
 std::string why_not(const Popping& p) {
-  if (p.cell->outcome.status != "ok" || p.finer->outcome.status != "ok") return "did not run";
-  if (!std::isfinite(p.ratio()) || !std::isfinite(summary_value(*p.cell, "pop_speed_ratio"))) return "not known";
-  return p.kept() ? "kept" : "broken";
+  if (p.run->outcome.status != "ok" || p.finer->outcome.status != "ok") return "did not run";
+  if (!std::isfinite(p.ratio()) || !std::isfinite(summary_value(*p.run, "pop_speed_ratio"))) return "not known";
+  return p.passed() ? "pass" : "fail";
 }
 
 const Columns<Popping>& popping_columns() {
@@ -30,7 +30,7 @@ const Columns<Popping>& popping_columns() {
       {"", "solver", [](auto& p) { return p.series.label(); }},
       {"pop_displacement_m", In::Both, summary("pop_displacement_m")},
       {"pop_displacement_x16_m", In::Both, [](auto& p) { return summary_value(*p.finer, "pop_displacement_m"); }},
-      {"", "way", [](auto& p) { return way_of(*p.cell); }, digits(3), kMillimetres},
+      {"", "way", [](auto& p) { return way_of(*p.run); }, digits(3), kMillimetres},
       {"", "way at x16", [](auto& p) { return way_of(*p.finer); }, digits(3), kMillimetres},
       {"ratio", "ratio", &Popping::ratio, digits(3)},
       {"pop_speed_ratio", "speed [of limit]", summary("pop_speed_ratio"), digits(2)},
@@ -42,26 +42,26 @@ const Columns<Popping>& popping_columns() {
 }  // namespace
 
 double Popping::ratio() const {
-  const double coarse = summary_value(*cell, "pop_displacement_m"), fine = summary_value(*finer, "pop_displacement_m");
+  const double coarse = summary_value(*run, "pop_displacement_m"), fine = summary_value(*finer, "pop_displacement_m");
   return fine > 0 ? coarse / fine : kMissing;
 }
 
-bool Popping::kept() const {
-  return cell->outcome.status == "ok" && finer->outcome.status == "ok" && ratio() <= kMostRatio &&
-         summary_value(*cell, "pop_speed_ratio") <= kMostSpeed;
+bool Popping::passed() const {
+  return run->outcome.status == "ok" && finer->outcome.status == "ok" && ratio() <= kMostRatio &&
+         summary_value(*run, "pop_speed_ratio") <= kMostSpeed;
 }
 
 std::vector<Popping> poppings(const std::vector<ContactSetUp>& ups) {
   std::vector<Popping> out;
   const std::vector<ContactRow> rows = contact_rows(ups);
   for (const ContactRow& r : rows) {
-    if (r.series.setting != "default" || r.cell->outcome.status == "unsupported" || r.cell->outcome.status == "missing")
+    if (r.series.setting != "default" || r.run->outcome.status == "unsupported" || r.run->outcome.status == "missing")
       continue;
     Series finer = r.series;
     finer.setting = kFinerLabel;
     for (const ContactRow& f : rows)
-      if (f.kind == r.kind && f.scene == r.scene && f.series == finer && f.cell->outcome.status != "missing")
-        out.push_back({r.scene, r.series, r.cell, f.cell});
+      if (f.kind == r.kind && f.scene == r.scene && f.series == finer && f.run->outcome.status != "missing")
+        out.push_back({r.scene, r.series, r.run, f.run});
   }
   return out;
 }
@@ -77,8 +77,8 @@ Table popping_table(const std::vector<Popping>& all) {
                      "(twice the "
                      "collider's or that of a fall of the cloth's length), to be 1 at most. Not known: the collider "
                      "never touched, or "
-                     "touched to the end, in one of the two; that is not kept.",
-                     cells_of(all, &Popping::cell, &Popping::finer), {"pop_displacement_m", "pop_speed_ratio"}),
+                     "touched to the end, in one of the two; that is no pass.",
+                     runs_of(all, &Popping::run, &Popping::finer), {"pop_displacement_m", "pop_speed_ratio"}),
        {}},
       all);
 }

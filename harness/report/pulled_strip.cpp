@@ -10,25 +10,25 @@ namespace {
 
 using nlohmann::json;
 
-struct PulledCell {
+struct PulledRun {
   double speed_m_per_s;
-  const CellRecord* cell;
+  const RunRecord* run;
 };
 
 struct PulledRow {
   std::string scene;
   Series series;
-  std::vector<PulledCell> cells;  ///< ascending speeds
+  std::vector<PulledRun> runs;  ///< ascending speeds
 
-  const PulledCell* first_fault() const {
+  const PulledRun* first_fault() const {
     const auto at =
-        std::find_if(cells.begin(), cells.end(), [](const PulledCell& c) { return !leak_of("wave", *c.cell).empty(); });
-    return at == cells.end() ? nullptr : &*at;
+        std::find_if(runs.begin(), runs.end(), [](const PulledRun& c) { return !leak_of("wave", *c.run).empty(); });
+    return at == runs.end() ? nullptr : &*at;
   }
 };
 
 /// Name in the scene's file and grid: one strip at any speed.
-std::string strip_of(const CellRecord& c) {
+std::string strip_of(const RunRecord& c) {
   const json s = scenario_of(c);
   const json grid = s.value(json::json_pointer("/cloth/grid"), json());
   return s.value("name", c.header.scene) +
@@ -38,20 +38,20 @@ std::string strip_of(const CellRecord& c) {
 std::vector<PulledRow> rows_of(const std::vector<ContactSetUp>& ups) {
   std::vector<PulledRow> out;
   for (const ContactRow& r : contact_rows(ups)) {
-    const double speed = summary_value(*r.cell, "imposed_speed_m_per_s");
-    // A cell that has not run knows no speed, one without hands says nothing.
-    if (r.kind != "wave" || r.cell->header.solver == "ballistic" || !(speed > 0)) continue;
-    const std::string strip = strip_of(*r.cell);
+    const double speed = summary_value(*r.run, "imposed_speed_m_per_s");
+    // A run without frames knows no speed, one without hands says nothing.
+    if (r.kind != "wave" || r.run->header.solver == "ballistic" || !(speed > 0)) continue;
+    const std::string strip = strip_of(*r.run);
     find_or_add(out, [&](const PulledRow& p) { return p.scene == strip && p.series == r.series; },
                 {strip, r.series, {}})
-        .cells.push_back({speed, r.cell});
+        .runs.push_back({speed, r.run});
   }
   std::stable_sort(out.begin(), out.end(), [](const PulledRow& a, const PulledRow& b) {
     return a.scene != b.scene ? a.scene < b.scene : a.series < b.series;
   });
   for (PulledRow& p : out)
-    std::sort(p.cells.begin(), p.cells.end(),
-              [](const PulledCell& a, const PulledCell& b) { return a.speed_m_per_s < b.speed_m_per_s; });
+    std::sort(p.runs.begin(), p.runs.end(),
+              [](const PulledRun& a, const PulledRun& b) { return a.speed_m_per_s < b.speed_m_per_s; });
   return out;
 }
 
@@ -61,35 +61,35 @@ bool same_speed(double a, double b) { return std::abs(a - b) <= 1e-6 * b; }
 }  // namespace
 
 Table pulled_strip_table(const std::vector<ContactSetUp>& ups) {
-  Table t{"A strip pulled at both ends against its exact wave",
-          "Greatest strain along the strip less the exact one (truth card two-hand-pull, same mesh), the most of all "
-          "frames, over the "
-          "strain v0/c that one wave brings / RMS distance over space and time over L. Fails: the first exceeds 0.1, "
-          "or is not "
-          "known. The answer is proportional to v0: a solver whose first figure depends on the speed is not linear.",
-          {{"strip", "solver", "first that fails"}}};
+  Table t{
+      "A strip pulled at both ends against its exact wave",
+      "Greatest strain along the strip less the exact one (reference case two-hand-pull, same mesh), the most of all "
+      "frames, over the "
+      "strain v0/c that one wave brings / RMS distance over space and time over L. Fails: the first exceeds 0.1, "
+      "or is not "
+      "known. The answer is proportional to v0: a solver whose first figure depends on the speed is not linear.",
+      {{"strip", "solver", "first that fails"}}};
   const std::vector<PulledRow> rows = rows_of(ups);
   std::vector<double> speeds;
   for (const PulledRow& r : rows)
-    for (const PulledCell& c : r.cells)
+    for (const PulledRun& c : r.runs)
       if (std::none_of(speeds.begin(), speeds.end(), [&](double v) { return same_speed(v, c.speed_m_per_s); }))
         speeds.push_back(c.speed_m_per_s);
   std::sort(speeds.begin(), speeds.end());
   for (const double v : speeds) t.rows[0].push_back(fmt::format("{:g} m/s", v));
   for (const PulledRow& r : rows) {
-    const PulledCell* fault = r.first_fault();
+    const PulledRun* fault = r.first_fault();
     std::vector<std::string> row = {r.scene, r.series.label(),
-                                    fault != nullptr && leak_of("wave", *fault->cell) == "–" ? "–"
-                                    : fault == nullptr
-                                        ? fmt::format("none up to {:g} m/s", r.cells.back().speed_m_per_s)
-                                        : fmt::format("{:g} m/s", fault->speed_m_per_s)};
+                                    fault != nullptr && leak_of("wave", *fault->run) == "–" ? "–"
+                                    : fault == nullptr ? fmt::format("none up to {:g} m/s", r.runs.back().speed_m_per_s)
+                                                       : fmt::format("{:g} m/s", fault->speed_m_per_s)};
     for (const double v : speeds) {
       std::string text = "–";
-      for (const PulledCell& c : r.cells) {
+      for (const PulledRun& c : r.runs) {
         if (!same_speed(v, c.speed_m_per_s)) continue;
-        text = c.cell->outcome.status != "ok" ? c.cell->outcome.status
-                                              : in_form("{:.2g}")(summary_value(*c.cell, "truth_quantity_error_max")) +
-                                                    " / " + in_form("{:.1e}")(summary_value(*c.cell, "truth_e2"));
+        text = c.run->outcome.status != "ok" ? c.run->outcome.status
+                                             : in_form("{:.2g}")(summary_value(*c.run, "truth_quantity_error_max")) +
+                                                   " / " + in_form("{:.1e}")(summary_value(*c.run, "truth_e2"));
       }
       row.push_back(text);
     }
@@ -99,18 +99,18 @@ Table pulled_strip_table(const std::vector<ContactSetUp>& ups) {
 }
 
 json pulled_strip_json(const std::vector<ContactSetUp>& ups) {
-  const Columns<PulledCell> speeds = {{"speed_m_per_s", In::Json, &PulledCell::speed_m_per_s},
-                                      {"status", In::Json, status_of},
-                                      {"strain_error_max", In::Json, summary("truth_quantity_error_max")},
-                                      {"strain_error_rms", In::Json, summary("truth_quantity_error")},
-                                      {"e2", In::Json, summary("truth_e2")},
-                                      {"fault", In::Json, [](auto& c) { return leak_of("wave", *c.cell); }}};
+  const Columns<PulledRun> speeds = {{"speed_m_per_s", In::Json, &PulledRun::speed_m_per_s},
+                                     {"status", In::Json, status_of},
+                                     {"strain_error_max", In::Json, summary("truth_quantity_error_max")},
+                                     {"strain_error_rms", In::Json, summary("truth_quantity_error")},
+                                     {"e2", In::Json, summary("truth_e2")},
+                                     {"fault", In::Json, [](auto& c) { return leak_of("wave", *c.run); }}};
   const Columns<PulledRow> strips = {{"strip", In::Json, &PulledRow::scene},
                                      {"solver", In::Json, [](auto& r) { return r.series.solver; }},
                                      {"setting", In::Json, [](auto& r) { return r.series.setting; }},
-                                     {"speeds", In::Json, [&](auto& r) { return speeds.json(r.cells); }},
+                                     {"speeds", In::Json, [&](auto& r) { return speeds.json(r.runs); }},
                                      {"first_fault_m_per_s", In::Json, [](auto& r) {
-                                        const PulledCell* fault = r.first_fault();
+                                        const PulledRun* fault = r.first_fault();
                                         return fault == nullptr ? json() : json(fault->speed_m_per_s);
                                       }}};
   return strips.json(rows_of(ups));

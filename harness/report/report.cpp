@@ -44,29 +44,29 @@ const std::vector<std::string> kBandwidthNames = {"read_B_per_frame",
                                                   "bandwidth_window_s"};
 const std::vector<std::string> kMemoryNames = {"device_memory_B", "dispatches", "load_s"};
 
-/// All cells, without what must not be printed.
-std::vector<CellRecord> printable(const std::vector<fs::path>& runs) {
-  std::vector<CellRecord> cells = collect(runs);
-  withhold(cells);
-  return cells;
+/// All runs, without what must not be printed.
+std::vector<RunRecord> printable(const std::vector<fs::path>& results) {
+  std::vector<RunRecord> runs = collect(results);
+  withhold(runs);
+  return runs;
 }
 
-/// Cells by what is told of them; copies.
+/// Runs by what is reported of them; copies.
 struct Parts {
-  std::vector<CellRecord> stability, contact, truth, rest;
+  std::vector<RunRecord> stability, contact, truth, rest;
 };
 
-/// Cells of a comparison of costs, by address, and material cards have tables of their own.
-Parts parts_of(const std::vector<CellRecord>& cells, const std::vector<FeatureCost>& costs) {
+/// Runs of a comparison of costs, by address, and effective moduli have tables of their own.
+Parts parts_of(const std::vector<RunRecord>& runs, const std::vector<FeatureCost>& costs) {
   Parts out;
-  std::set<const CellRecord*> told;
-  for (const FeatureCost& f : costs) told.insert({f.needed, f.all});
+  std::set<const RunRecord*> reported;
+  for (const FeatureCost& f : costs) reported.insert({f.needed, f.all});
   std::set<std::string> timed;
-  for (const CellRecord& c : cells)
+  for (const RunRecord& c : runs)
     if (summary_value(c, "frame_wall_median_s") > 0) timed.insert(c.header.scenario_json);
-  for (const CellRecord& c : cells) {
-    if (told.contains(&c) || is_material_card(c) || is_all_on(c) || is_friction(c)) continue;
-    // Only the name is known of a scene that has not been run. It is listed among the cells without a result.
+  for (const RunRecord& c : runs) {
+    if (reported.contains(&c) || is_moduli_run(c) || is_all_on(c) || is_friction(c)) continue;
+    // Only the name is known of a scene that has not been run. It is listed among the runs without a result.
     if (c.outcome.status == "missing" && c.header.scenario_json.empty()) continue;
     // Where no solver was timed on a pulled strip, its errors are tabulated by speed instead of by time.
     const bool by_time = has_truth(c) && !(pulls_strip(c) && !timed.contains(c.header.scenario_json));
@@ -75,14 +75,15 @@ Parts parts_of(const std::vector<CellRecord>& cells, const std::vector<FeatureCo
   return out;
 }
 
-/// What is known of some runs, told of in sections. Its records point to each other: it stays where it was made.
+/// What is known of some runs, for the sections of a report. Its records point to each other: it stays where it was
+/// made.
 struct Facts {
-  const std::vector<fs::path>& runs;
-  std::vector<CellRecord> cells = printable(runs);
-  std::vector<FeatureCost> costs = feature_costs(cells);
-  std::vector<SolverMaterial> materials = solver_materials(cells);
-  Parts parts = parts_of(cells, costs);
-  nlohmann::json maps = stability_maps(runs), published = published_table3();
+  const std::vector<fs::path>& results;
+  std::vector<RunRecord> runs = printable(results);
+  std::vector<FeatureCost> costs = feature_costs(runs);
+  std::vector<SolverMaterial> materials = solver_materials(runs);
+  Parts parts = parts_of(runs, costs);
+  nlohmann::json maps = stability_maps(results), published = published_table3();
   std::vector<Family> rates = families(parts.rest);
   std::vector<ContactSetUp> ups = set_ups(parts.contact);
   std::vector<RoomPair> rooms = room_pairs(parts.contact);
@@ -131,10 +132,10 @@ Sections rates_sections(const Facts& f) {
 }
 
 Sections sampled_section(const Facts& f) {
-  const auto tables = filled({sampled_table(f.cells)});
+  const auto tables = filled({sampled_table(f.runs)});
   if (tables.empty()) return {};
   return {{{"sampled", "The device's own counters", tables}, "", {{"device-samples.csv", [&] {
-                                                                     return summary_csv(f.cells, sampled_names());
+                                                                     return summary_csv(f.runs, sampled_names());
                                                                    }}}}};
 }
 
@@ -144,16 +145,16 @@ std::vector<Table> penetration_tables(const Facts& f) {
                           turned_table(f.turned)}))
     out.push_back(std::move(t));
   for (const ContactSetUp& u : f.ups) out.insert(out.end(), {contact_table(u), in_full(cost_table(u))});
-  for (Table& t : filled({broken_table(f.ups), room_table(f.rooms)})) out.push_back(std::move(t));
+  for (Table& t : filled({failed_expectations_table(f.ups), room_table(f.rooms)})) out.push_back(std::move(t));
   return out;
 }
 
 Sections penetration_section(const Facts& f) {
   if (f.ups.empty()) return {};
   const auto all = [&] {
-    return text_of({{"cells", penetration_json(f.ups)},
+    return text_of({{"runs", penetration_json(f.ups)},
                     {"rooms", room_json(f.rooms)},
-                    {"first_leaks", leak_json(speed_sweeps(f.ups))},
+                    {"failure_speeds", leak_json(speed_sweeps(f.ups))},
                     {"pulled_strip", pulled_strip_json(f.ups)},
                     {"popping", popping_json(poppings(f.ups))},
                     {"turned", turned_json(f.turned)}});
@@ -181,33 +182,33 @@ Sections winners_section(const Facts& f) {
 }
 
 Sections stability_section(const Facts& f) {
-  const std::vector<CellRecord>& cells = f.parts.stability;
-  if (cells.empty() && f.maps.empty()) return {};
+  const std::vector<RunRecord>& runs = f.parts.stability;
+  if (runs.empty() && f.maps.empty()) return {};
   std::vector<Table> tables;
-  if (!cells.empty()) tables.push_back(robustness_table(cells));
-  for (Table& t : filled({across_table(across_runs(cells))})) tables.push_back(std::move(t));
+  if (!runs.empty()) tables.push_back(robustness_table(runs));
+  for (Table& t : filled({across_table(across_runs(runs))})) tables.push_back(std::move(t));
   if (!f.maps.empty()) tables.insert(tables.end(), {headline_table(f.maps), in_full(boundary_table(f.maps))});
-  for (Table& t : filled({in_full(first_failure_table(cells))})) tables.push_back(std::move(t));
+  for (Table& t : filled({in_full(first_failure_table(runs))})) tables.push_back(std::move(t));
   const nlohmann::json maps = {{"format", "clothbench-stability"}, {"format_version", 1}, {"maps", f.maps}};
   return {{{"stability", "Stability", tables},
            "stability.md",
-           {{"stability.csv", [&] { return stability_csv(cells); }},
-            {"stability-across.csv", [&] { return across_csv(across_runs(cells)); }},
+           {{"stability.csv", [&] { return stability_csv(runs); }},
+            {"stability-across.csv", [&] { return across_csv(across_runs(runs)); }},
             {"stability.json", [maps] { return text_of(maps); }}}}};
 }
 
 Sections material_section(const Facts& f) {
   if (f.materials.empty()) return {};
-  return {{{"material", "Material card", {material_table(f.materials), material_verdicts(f.materials)}},
+  return {{{"material", "Effective moduli", {material_table(f.materials), material_verdicts(f.materials)}},
            "material.md",
            {{"material.json", [&] { return text_of(material_json(f.materials)); }}}}};
 }
 
 Sections friction_section(const Facts& f) {
-  std::vector<Table> tables = friction_tables(f.cells);
+  std::vector<Table> tables = friction_tables(f.runs);
   if (tables.empty()) return {};
   return {{{"friction", "Friction", std::move(tables)}, "friction.md", {{"friction.json", [&] {
-                                                                           return text_of(friction_json(f.cells));
+                                                                           return text_of(friction_json(f.runs));
                                                                          }}}}};
 }
 
@@ -220,7 +221,7 @@ Sections cost_section(const Facts& f) {
 }
 
 Sections features_section(const Facts& f) {
-  const auto solvers = solver_features(f.cells);
+  const auto solvers = solver_features(f.runs);
   if (std::none_of(solvers.begin(), solvers.end(), [](const SolverFeatures& s) { return s.known; })) return {};
   const Table table = feature_table(solvers, true);
   return {{{"features", "Features", {f.parts.contact.empty() ? in_full(table) : table}},
@@ -229,11 +230,11 @@ Sections features_section(const Facts& f) {
 }
 
 Sections failed_section(const Facts& f) {
-  std::vector<CellRecord> cells = f.cells;
-  std::erase_if(cells, is_stability);  // their failures are what the stability tables are about
+  std::vector<RunRecord> runs = f.runs;
+  std::erase_if(runs, is_stability);  // their failures are what the stability tables are about
   Sections out;
-  for (Section s : {Section{{"failed", "Cells without a result", filled({failed_table(cells)})}},
-                    Section{{"expect", "Expectations", filled({expect_table(cells)})}}})
+  for (Section s : {Section{{"failed", "Runs without a result", filled({failed_table(runs)})}},
+                    Section{{"expect", "Expectations", filled({expect_table(runs)})}}})
     if (!s.tables.empty()) out.push_back(std::move(s));
   return out;
 }
@@ -263,10 +264,10 @@ Page page_of(const Facts& f, const std::string& head) {
   page.work = work_json(f.diagrams);
   page.maps = f.maps;
   page.cases = stability_cases(f.parts.stability);
-  page.commands = commands_of(f.runs);
+  page.commands = commands_of(f.results);
   for (const WorkDiagram& d : f.diagrams)
     for (const WorkPoint& p : d.points)
-      if (p.on_front) page.fronts.insert(p.cell->file);
+      if (p.on_front) page.fronts.insert(p.run->file);
   return page;
 }
 
@@ -274,19 +275,19 @@ Page page_of(const Facts& f, const std::string& head) {
 
 nlohmann::json published_table3() { return nlohmann::json::parse(kPublishedTable3); }
 
-void write_report(const std::vector<fs::path>& runs, const ReportOptions& options) {
-  const Facts f{runs};
+void write_report(const std::vector<fs::path>& results, const ReportOptions& options) {
+  const Facts f{results};
   const auto write = [&](const std::string& name, const std::string& text) {
     write_file_atomically(options.out / name, text);
   };
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) throw Error(options.out.string() + ": cannot be made a folder: " + error.message());
-  write("cells.csv", cells_csv(f.cells));
-  write("cells.json", text_of(cells_json(f.cells)));
-  write("bandwidth.csv", summary_csv(f.cells, kBandwidthNames));
-  write("memory.csv", summary_csv(f.cells, kMemoryNames));
-  const std::string head = headline(f.cells, Format::Markdown);
+  write("runs.csv", runs_csv(f.runs));
+  write("runs.json", text_of(runs_json(f.runs)));
+  write("bandwidth.csv", summary_csv(f.runs, kBandwidthNames));
+  write("memory.csv", summary_csv(f.runs, kMemoryNames));
+  const std::string head = headline(f.runs, Format::Markdown);
   Page page = page_of(f, head);
   std::string all;
   for (const auto sections : kInReport)
@@ -301,9 +302,9 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
     write("summary.md", "# Summary\n\n" + head + "\n" + summary_page(f));
     page.sections.push_back({"summary", "Summary", {ranks_table(f.diagrams), winners_table(f.diagrams)}});
   }
-  page.sections.push_back({"environment", "Environment", {environment_table(f.cells)}});
+  page.sections.push_back({"environment", "Environment", {environment_table(f.runs)}});
   const PageTemplate with = page_template();
-  const std::string no_page = write_page(options.out, f.cells, page, with);
+  const std::string no_page = write_page(options.out, f.runs, page, with);
   const auto [no_figures, figures] = draw_pictures(options.out, with);
   for (const std::string& why : {no_page, no_figures})
     if (!why.empty()) fmt::print(stderr, "{}\n", why);
@@ -311,12 +312,12 @@ void write_report(const std::vector<fs::path>& runs, const ReportOptions& option
         "# clothbench report\n\n" + head + "\n" + all + (figures.empty() ? "" : "### Figures\n\n" + figures) +
             (no_figures.empty() ? "" : no_figures + "\n\n") +
             (no_page.empty() ? "`index.html` shows all of this interactively, with the motions. " : no_page + "\n\n") +
-            "`cells.csv` and `cells.json` hold every summary value of every cell in full precision.\n");
+            "`runs.csv` and `runs.json` hold every summary value of every run in full precision.\n");
 }
 
-void print_console_report(const std::vector<fs::path>& runs) {
-  const Facts f{runs};
-  fmt::print("{}", headline(f.cells, Format::Console));
+void print_console_report(const std::vector<fs::path>& results) {
+  const Facts f{results};
+  fmt::print("{}", headline(f.runs, Format::Console));
   for (const auto sections : kOnTerminal)
     for (const Section& s : sections(f))
       for (const Table& t : s.tables)

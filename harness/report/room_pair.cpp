@@ -22,7 +22,7 @@ struct RoomParts {
   bool whole = false, room = false;
 };
 
-RoomParts parts_of(const CellRecord& c) {
+RoomParts parts_of(const RunRecord& c) {
   json s = scenario_of(c);
   RoomParts p;
   if (!s.is_object() || !s.contains("colliders") || !s["colliders"].is_array()) return p;
@@ -43,7 +43,7 @@ void measure(RoomPair& pair) {
 }
 
 /// Device time of the stages that serve meshes that stand still; NaN if there is none.
-double mesh_stages_s(const CellRecord& c) {
+double mesh_stages_s(const RunRecord& c) {
   double sum = kMissing;
   for (const StageRecord& s : c.header.stages)
     if (std::find(s.serves.begin(), s.serves.end(), "static_mesh") != s.serves.end()) {
@@ -56,35 +56,35 @@ double mesh_stages_s(const CellRecord& c) {
 struct PairQuantity {
   const char* head;
   double scale;
-  double (*value)(const CellRecord&);
+  double (*value)(const RunRecord&);
 };
 
 const PairQuantity kPairQuantities[] = {
-    {"wall [ms]", 1e3, [](const CellRecord& c) { return summary_value(c, "frame_wall_median_s"); }},
-    {"GPU [ms]", 1e3, [](const CellRecord& c) { return summary_value(c, "frame_device_median_s"); }},
+    {"wall [ms]", 1e3, [](const RunRecord& c) { return summary_value(c, "frame_wall_median_s"); }},
+    {"GPU [ms]", 1e3, [](const RunRecord& c) { return summary_value(c, "frame_device_median_s"); }},
     {"mesh stages [ms]", 1e3, mesh_stages_s},
-    {"read [kB]", 1e-3, [](const CellRecord& c) { return summary_value(c, "read_B_per_frame"); }},
-    {"written [kB]", 1e-3, [](const CellRecord& c) { return summary_value(c, "write_B_per_frame"); }},
-    {"memory [kB]", 1e-3, [](const CellRecord& c) { return summary_value(c, "device_memory_B"); }},
-    {"load [ms]", 1e3, [](const CellRecord& c) { return summary_value(c, "load_s"); }},
+    {"read [kB]", 1e-3, [](const RunRecord& c) { return summary_value(c, "read_B_per_frame"); }},
+    {"written [kB]", 1e-3, [](const RunRecord& c) { return summary_value(c, "write_B_per_frame"); }},
+    {"memory [kB]", 1e-3, [](const RunRecord& c) { return summary_value(c, "device_memory_B"); }},
+    {"load [ms]", 1e3, [](const RunRecord& c) { return summary_value(c, "load_s"); }},
 };
 
 std::string distance(double m) { return std::isfinite(m) ? fmt::format("{:.3g} m", m) : "not measured"; }
 
 }  // namespace
 
-std::vector<RoomPair> room_pairs(const std::vector<CellRecord>& cells) {
+std::vector<RoomPair> room_pairs(const std::vector<RunRecord>& runs) {
   std::vector<RoomParts> parts;
-  for (const CellRecord& c : cells) parts.push_back(parts_of(c));
+  for (const RunRecord& c : runs) parts.push_back(parts_of(c));
   std::vector<RoomPair> out;
-  for (std::size_t w = 0; w < cells.size(); ++w) {
-    if (!parts[w].room || !parts[w].whole || cells[w].outcome.status == "missing") continue;
-    for (std::size_t k = 0; k < cells.size(); ++k) {
+  for (std::size_t w = 0; w < runs.size(); ++w) {
+    if (!parts[w].room || !parts[w].whole || runs[w].outcome.status == "missing") continue;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
       const bool same = parts[k].room && !parts[k].whole && parts[k].rest == parts[w].rest &&
-                        cells[k].outcome.status != "missing" && cells[k].header.solver == cells[w].header.solver &&
-                        flat_settings(cells[k].header.settings) == flat_settings(cells[w].header.settings);
+                        runs[k].outcome.status != "missing" && runs[k].header.solver == runs[w].header.solver &&
+                        flat_settings(runs[k].header.settings) == flat_settings(runs[w].header.settings);
       if (!same) continue;
-      out.push_back({&cells[k], &cells[w]});
+      out.push_back({&runs[k], &runs[w]});
       measure(out.back());
       break;
     }
@@ -95,15 +95,15 @@ std::vector<RoomPair> room_pairs(const std::vector<CellRecord>& cells) {
 Table room_table(const std::vector<RoomPair>& pairs) {
   Table t{"SubMesh against the whole room (section 3.2.4)", "", {{"scene", "solver", "mesh"}}};
   for (const PairQuantity& q : kPairQuantities) t.rows[0].emplace_back(q.head);
-  std::vector<const CellRecord*> cells;
+  std::vector<const RunRecord*> runs;
   for (const RoomPair& p : pairs) {
-    cells.insert(cells.end(), {p.cut, p.whole});
+    runs.insert(runs.end(), {p.cut, p.whole});
     const auto row = [&](const char* mesh, const auto& text) {
       std::vector<std::string> r = {p.cut->header.scene, p.cut->header.solver, mesh};
       for (const PairQuantity& q : kPairQuantities) r.push_back(text(q));
       t.rows.push_back(std::move(r));
     };
-    const auto of = [](const CellRecord& c) {
+    const auto of = [](const RunRecord& c) {
       return [&c](const PairQuantity& q) {
         if (c.outcome.status != "ok") return c.outcome.status;
         const bool reads = std::string(q.head) == "read [kB]";
@@ -118,7 +118,7 @@ Table room_table(const std::vector<RoomPair>& pairs) {
                     t.note.empty() ? "" : " ", p.cut->header.scene, p.cut->header.solver, distance(p.distance_end_m),
                     distance(p.distance_max_m));
   }
-  t.note = with_withheld(t.note, cells, {"frame_wall_median_s", "load_s"});
+  t.note = with_withheld(t.note, runs, {"frame_wall_median_s", "load_s"});
   return t;
 }
 
@@ -129,13 +129,13 @@ json room_json(const std::vector<RoomPair>& pairs) {
                 {"solver", p.cut->header.solver},
                 {"distance_end_m", finite_or_null(p.distance_end_m)},
                 {"distance_max_m", finite_or_null(p.distance_max_m)}};
-    for (const auto& [name, cell] : {std::pair{"sub_mesh", p.cut}, std::pair{"whole_room", p.whole}}) {
-      json& part = row[name] = {{"setting", cell->header.setting},
-                                {"status", cell->outcome.status},
-                                {"mesh_stages_s", finite_or_null(mesh_stages_s(*cell))}};
+    for (const auto& [name, run] : {std::pair{"sub_mesh", p.cut}, std::pair{"whole_room", p.whole}}) {
+      json& part = row[name] = {{"setting", run->header.setting},
+                                {"status", run->outcome.status},
+                                {"mesh_stages_s", finite_or_null(mesh_stages_s(*run))}};
       for (const char* key : {"frame_wall_median_s", "frame_device_median_s", "read_B_per_frame", "write_B_per_frame",
                               "device_memory_B", "load_s"})
-        part[key] = finite_or_null(summary_value(*cell, key));
+        part[key] = finite_or_null(summary_value(*run, key));
     }
     out.push_back(std::move(row));
   }

@@ -7,19 +7,19 @@
 
 namespace clothbench {
 
-/// Two cells that differ in one thing: whether the cloth met the part of a room round a table or the whole room. Tests
+/// Two runs that differ in one thing: whether the cloth met the part of a room round a table or the whole room. Tests
 /// section 3.2.4 of Kim, Ma & Hong 2025, which cuts a SubMesh out of the room to save time.
 struct RoomPair {
-  const CellRecord* cut = nullptr;
-  const CellRecord* whole = nullptr;
+  const RunRecord* cut = nullptr;
+  const RunRecord* whole = nullptr;
   /// Greatest distance of a vertex in one from the same vertex in the other [m], at the end and over all frames. NaN
   /// where the two have no trajectories of the same length.
   double distance_end_m = kMissing, distance_max_m = kMissing;
 };
 
 /// Every such pair: the same scene, solver, settings and sides; `whole` has `cut` "none" for its rooms. Reads the
-/// trajectories of those cells from their files. `cells` must outlive the answer.
-std::vector<RoomPair> room_pairs(const std::vector<CellRecord>& cells);
+/// trajectories of those runs from their files. `runs` must outlive the answer.
+std::vector<RoomPair> room_pairs(const std::vector<RunRecord>& runs);
 
 /// Two rows a pair and their ratio: time, bytes, memory; the distances in the note.
 Table room_table(const std::vector<RoomPair>&);

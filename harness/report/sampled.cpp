@@ -19,7 +19,7 @@ const std::vector<std::string>& sampled_names() {
   return names;
 }
 
-Table sampled_table(const std::vector<CellRecord>& cells) {
+Table sampled_table(const std::vector<RunRecord>& runs) {
   Table t{
       "The device's own counters during the trials",
       "Frames the display was shown, the whole device's memory traffic (not the app's alone, not the computed bytes "
@@ -27,7 +27,7 @@ Table sampled_table(const std::vector<CellRecord>& cells) {
       "greatest 1 s sample in windows of 5 s, and mean. – where no sample lies within a trial.",
       {{"scene", "solver", "FPS", "read peak / mean [GB/s]", "written peak / mean [GB/s]", "GPU [MHz]", "CPU [MHz]",
         "hottest [°C]", "valid"}}};
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     const auto v = [&](const char* name) { return summary_value(c, name); };
     const double valid = v("sampled_valid");
     if (!std::isfinite(valid)) continue;

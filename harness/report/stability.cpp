@@ -29,13 +29,13 @@ std::string case_of(const json& scenario) {
 }
 
 /// 0 stable, 1 degraded, 2 failed; -1 where the solver cannot run it or it has not been run.
-int grade_of(const CellRecord& c) {
+int grade_of(const RunRecord& c) {
   if (c.outcome.status == "unsupported" || c.outcome.status == "missing") return -1;
   const auto at = c.summary.find("stability_grade");
   return at != c.summary.end() && std::isfinite(at->second) ? static_cast<int>(at->second) : 2;
 }
 
-std::string class_of(const CellRecord& c) {
+std::string class_of(const RunRecord& c) {
   return c.outcome.klass == "ok" || c.outcome.klass.empty() ? "F8" : c.outcome.klass;
 }
 
@@ -43,7 +43,7 @@ struct Tally {
   int count[3] = {0, 0, 0}, unsupported = 0, missing = 0;
   std::map<std::string, int> classes[3];
 
-  void add(const CellRecord& c) {
+  void add(const RunRecord& c) {
     const int grade = grade_of(c);
     if (grade < 0) {
       ++(c.outcome.status == "missing" ? missing : unsupported);
@@ -86,15 +86,15 @@ std::string with_unit(const std::string& value, const json& axis) {
 
 }  // namespace
 
-bool is_stability(const CellRecord& c) {
+bool is_stability(const RunRecord& c) {
   const json scenario = scenario_of(c);
   return scenario.is_object() && scenario.contains("stability");
 }
 
-json stability_maps(const std::vector<fs::path>& runs) {
+json stability_maps(const std::vector<fs::path>& results) {
   json all = json::array();
-  for (const fs::path& run : runs) {
-    const fs::path file = run / "stability.json";
+  for (const fs::path& result : results) {
+    const fs::path file = result / "stability.json";
     std::error_code ec;
     if (!fs::is_regular_file(file, ec)) continue;
     std::ifstream in(file);
@@ -106,17 +106,17 @@ json stability_maps(const std::vector<fs::path>& runs) {
   return all;
 }
 
-Table robustness_table(const std::vector<CellRecord>& cells) {
+Table robustness_table(const std::vector<RunRecord>& runs) {
   Table t{"Robustness",
           "Runs of each case that were stable; degraded: strain or unrest out of bounds (F3, F6) and nothing else; "
           "failed: any other class. F0 not finite, F1 speed, F2 energy gain, F3 strain, F4 geometry, F5 contact, F6 "
           "unrest, F7 stagnation, F8 budget, crash or device.",
           {{"case"}}};
-  const auto case_name = [](const CellRecord& c) { return case_of(scenario_of(c)); };
-  const std::vector<std::string> solvers = distinct(cells, label_of);
+  const auto case_name = [](const RunRecord& c) { return case_of(scenario_of(c)); };
+  const std::vector<std::string> solvers = distinct(runs, label_of);
   std::map<std::pair<std::string, std::string>, Tally> tally;
   std::map<std::string, Tally> whole;
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     tally[{case_name(c), label_of(c)}].add(c);
     whole[label_of(c)].add(c);
   }
@@ -126,7 +126,7 @@ Table robustness_table(const std::vector<CellRecord>& cells) {
     for (const std::string& s : solvers) r.push_back(of(s));
     t.rows.push_back(std::move(r));
   };
-  for (const std::string& kase : distinct(cells, case_name))
+  for (const std::string& kase : distinct(runs, case_name))
     row(kase, [&](const std::string& s) {
       const auto at = tally.find({kase, s});
       return at == tally.end() ? std::string("–") : at->second.text();
@@ -135,9 +135,9 @@ Table robustness_table(const std::vector<CellRecord>& cells) {
   return t;
 }
 
-json stability_cases(const std::vector<CellRecord>& cells) {
+json stability_cases(const std::vector<RunRecord>& runs) {
   json out = json::array();
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     const int grade = grade_of(c);
     if (grade < 0) continue;
     const std::string kase = scenario_of(c)["stability"].value("case", ""), solver = label_of(c);
@@ -192,24 +192,24 @@ Table boundary_table(const json& maps) {
   return t;
 }
 
-Table first_failure_table(const std::vector<CellRecord>& cells) {
+Table first_failure_table(const std::vector<RunRecord>& runs) {
   Table t{"What was not stable", "In brackets the first such frame.", {{"solver", "grade", "class", "runs"}}};
-  std::map<std::tuple<std::string, int, std::string>, std::string> runs;
-  for (const CellRecord& c : cells) {
+  std::map<std::tuple<std::string, int, std::string>, std::string> texts;
+  for (const RunRecord& c : runs) {
     const int grade = grade_of(c);
     if (grade < 1) continue;
-    std::string& text = runs[{label_of(c), -grade, class_of(c)}];
+    std::string& text = texts[{label_of(c), -grade, class_of(c)}];
     text += (text.empty() ? "" : ", ") + c.header.scene;
     if (c.outcome.failed_frame >= 0) text += fmt::format(" ({})", c.outcome.failed_frame);
     if (c.outcome.status != "ok" && c.outcome.status != "diverged") text += " " + c.outcome.status;
   }
-  for (const auto& [key, text] : runs)
+  for (const auto& [key, text] : texts)
     t.rows.push_back({std::get<0>(key), kGrades[-std::get<1>(key)], std::get<2>(key), text});
   return t;
 }
 
-std::string stability_csv(const std::vector<CellRecord>& cells) {
-  Columns<CellRecord> columns = {
+std::string stability_csv(const std::vector<RunRecord>& runs) {
+  Columns<RunRecord> columns = {
       {"case", In::Both, [](auto& c) { return scenario_of(c)["stability"].value("case", ""); }},
       {"scene", In::Both, [](auto& c) { return c.header.scene; }},
       {"solver", In::Both, [](auto& c) { return c.header.solver; }},
@@ -220,7 +220,7 @@ std::string stability_csv(const std::vector<CellRecord>& cells) {
       {"frame", In::Both, failed_frame_of},
       {"message", In::Both, [](auto& c) { return c.outcome.message; }}};
   for (const char* name : kExtremes) columns.push_back({name, In::Both, summary(name)});
-  return columns.csv(cells);
+  return columns.csv(runs);
 }
 
 }  // namespace clothbench

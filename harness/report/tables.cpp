@@ -31,11 +31,11 @@ void add_published(Table& t, const std::vector<Resolution>& columns, const nlohm
   for (const nlohmann::json& column : published.at("columns")) {
     std::vector<std::string> row = {"published: " + column.at("name").get<std::string>(), column.value("sides", "–")};
     for (const Resolution& r : columns) {
-      std::string cell = "–";
+      std::string run = "–";
       for (std::size_t k = 0; k < resolutions.size(); ++k)
         if (r.grid[0] == resolutions[k].get<int>() && r.grid[1] == r.grid[0])
-          cell = fmt::format("{:g}", column.at("fps").at(k).get<double>());
-      row.push_back(cell);
+          run = fmt::format("{:g}", column.at("fps").at(k).get<double>());
+      row.push_back(run);
     }
     t.rows.insert(t.rows.begin() + static_cast<std::ptrdiff_t>(at++), std::move(row));
   }
@@ -48,38 +48,38 @@ std::string capped_note(const Family& f, bool paper) {
         "Published: Quest 3, rendering included, values to the unit; 11 of the 15 read the display's 72, so this "
         "table cannot tell solvers apart: the next one can. " +
         note;
-  if (std::any_of(f.cells.begin(), f.cells.end(), [](const PlacedCell& p) { return p.series.repeat > 1; }))
-    note += " (2), (3): the same cell from another file.";
+  if (std::any_of(f.runs.begin(), f.runs.end(), [](const PlacedRun& p) { return p.series.repeat > 1; }))
+    note += " (2), (3): the same run from another file.";
   return note;
 }
 
 /// Under tables of times and rates, why some are not printed; the others show what no clock tells.
 void note_withheld(const Family& family, std::vector<Table>& tables) {
-  std::vector<const CellRecord*> cells;
-  for (const PlacedCell& p : family.cells) cells.push_back(p.cell);
+  std::vector<const RunRecord*> runs;
+  for (const PlacedRun& p : family.runs) runs.push_back(p.run);
   for (Table& t : tables)
     for (const char* timed : {"per second", "time a frame", "Frame time", "bandwidth"})
       if (t.title.find(timed) != std::string::npos) {
-        t.note = with_withheld(t.note, cells, {"fps_median", "frame_wall_median_s"});
+        t.note = with_withheld(t.note, runs, {"fps_median", "frame_wall_median_s"});
         break;
       }
 }
 
-/// One table of a family: a value of each cell, printed.
+/// One table of a family: a value of each run, printed.
 struct ValueTable {
   std::string title, note;
-  std::function<std::string(const CellRecord&)> text;
-  const char* only_with = nullptr;  ///< a summary value: no table where no cell has it
+  std::function<std::string(const RunRecord&)> text;
+  const char* only_with = nullptr;  ///< a summary value: no table where no run has it
 };
 
 ValueTable milliseconds(const char* title, const char* note, const char* name, const char* only_with = nullptr) {
-  return {title, note, [name](const CellRecord& c) { return significant(1e3 * summary_value(c, name), 3); }, only_with};
+  return {title, note, [name](const RunRecord& c) { return significant(1e3 * summary_value(c, name), 3); }, only_with};
 }
 
 std::vector<ValueTable> time_tables() {
   return {
       {"Frames per second, uncapped", "Median of the trials ± half their range.",
-       [](const CellRecord& c) { return with_spread(summary_value(c, "fps_median"), summary_value(c, "fps_spread")); }},
+       [](const RunRecord& c) { return with_spread(summary_value(c, "fps_median"), summary_value(c, "fps_spread")); }},
       milliseconds("Wall time a frame [ms]", "Median over all timed frames.", "frame_wall_median_s"),
       milliseconds("Frame time with rendering, stereo [ms]",
                    "Median wall time of a frame and its two pictures, nothing overlapping; the file says their size. "
@@ -100,14 +100,14 @@ std::vector<ValueTable> error_tables() {
   return {
       {"Free-fall error over gT²/2 at T = 0.5 s",
        "Greatest distance of a vertex from the closed form of the solver's own integrator.",
-       [](const CellRecord& c) {
+       [](const RunRecord& c) {
          const double e = summary_value(c, "free_fall_error");
          return std::isfinite(e) ? fmt::format("{:.1e}", e) : std::string("–");
        },
        "free_fall_error"},
       {"Stretch of structural edges in the last second, mean / greatest [%]",
        "Over edges and frames; edges shorter than at rest count as 0 in the mean.",
-       [](const CellRecord& c) {
+       [](const RunRecord& c) {
          return paired(100 * summary_value(c, "stretch_mean_last_second"),
                        100 * summary_value(c, "stretch_max_last_second"), " / ", 2);
        },
@@ -119,14 +119,14 @@ std::vector<ValueTable> device_tables(const std::string& windows) {
   return {
       {"kB a frame, read / written",
        fmt::format("Bytes: {} – for CPU solvers, of which nothing is known.", kWhatBytesAre),
-       [](const CellRecord& c) { return bytes_pair(c, "read_B_per_frame", "write_B_per_frame", 1e-3); }},
+       [](const RunRecord& c) { return bytes_pair(c, "read_B_per_frame", "write_B_per_frame", 1e-3); }},
       {"Peak bandwidth, read / written [GB/s]",
-       "The same bytes over wall time; " + (windows.empty() ? "no cell has any." : windows + "."),
-       [](const CellRecord& c) {
+       "The same bytes over wall time; " + (windows.empty() ? "no run has any." : windows + "."),
+       [](const RunRecord& c) {
          return bytes_pair(c, "bandwidth_read_peak_B_per_s", "bandwidth_write_peak_B_per_s", 1e-9);
        }},
       {"Device memory [kB] · dispatches a frame", "Buffers in device-local memory. – on a CPU.",
-       [](const CellRecord& c) {
+       [](const RunRecord& c) {
          const double m = summary_value(c, "device_memory_B"), d = summary_value(c, "dispatches");
          return std::isfinite(m) || std::isfinite(d) ? significant(1e-3 * m, 4) + " · " + significant(d, 1)
                                                      : std::string("–");
@@ -135,15 +135,15 @@ std::vector<ValueTable> device_tables(const std::string& windows) {
 }
 
 /// What notes are made of: summaries are enough.
-std::vector<CellRecord> summaries_of(const Family& family) {
-  std::vector<CellRecord> cells;
-  for (const PlacedCell& p : family.cells) cells.emplace_back().summary = p.cell->summary;
-  return cells;
+std::vector<RunRecord> summaries_of(const Family& family) {
+  std::vector<RunRecord> runs;
+  for (const PlacedRun& p : family.runs) runs.emplace_back().summary = p.run->summary;
+  return runs;
 }
 
 bool any_value(const Family& family, const char* name) {
-  return std::any_of(family.cells.begin(), family.cells.end(),
-                     [&](const PlacedCell& p) { return std::isfinite(summary_value(*p.cell, name)); });
+  return std::any_of(family.runs.begin(), family.runs.end(),
+                     [&](const PlacedRun& p) { return std::isfinite(summary_value(*p.run, name)); });
 }
 
 }  // namespace
@@ -153,7 +153,7 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
   const std::string scene = paper ? "" : " (" + family.name + ")";
   std::vector<Table> tables = {
       family.table((paper ? "Table 3: frames" : "Frames") + std::string(" per second, capped at 72") + scene,
-                   capped_note(family, paper), [](const CellRecord& c) { return fps(summary_value(c, "fps_at_72")); })};
+                   capped_note(family, paper), [](const RunRecord& c) { return fps(summary_value(c, "fps_at_72")); })};
   if (paper) add_published(tables.back(), family.resolutions(), published);
   for (const auto& group : {time_tables(), error_tables(), device_tables(window_note(summaries_of(family)))})
     for (const ValueTable& t : group)
@@ -163,10 +163,10 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
   return tables;
 }
 
-Table failed_table(const std::vector<CellRecord>& cells) {
-  // One row for all cells with the same end: a feature a solver lacks is one line, not one a resolution.
+Table failed_table(const std::vector<RunRecord>& runs) {
+  // One row for all runs with the same end: a feature a solver lacks is one line, not one a resolution.
   std::vector<std::vector<std::string>> rows;
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     if (c.outcome.status == "ok") continue;
     std::string status = c.outcome.status, scene = c.header.scene;
     if (c.outcome.klass != "ok" && !c.outcome.klass.empty()) status += " (" + c.outcome.klass + ")";
@@ -177,20 +177,20 @@ Table failed_table(const std::vector<CellRecord>& cells) {
                               .back();
     scenes += (scenes.empty() ? "" : ", ") + scene;
   }
-  Table t{"Cells without a result", "", {{"solver", "status", "message", "scenes"}}};
+  Table t{"Runs without a result", "", {{"solver", "status", "message", "scenes"}}};
   t.rows.insert(t.rows.end(), rows.begin(), rows.end());
   return t;
 }
 
-Table expect_table(const std::vector<CellRecord>& cells) {
-  Table t{"Expectations that were broken", "", {{"scene", "solver", "verdict"}}};
+Table expect_table(const std::vector<RunRecord>& runs) {
+  Table t{"Expectations that failed", "", {{"scene", "solver", "verdict"}}};
   std::size_t kept = 0, unknown = 0;
-  for (const CellRecord& c : cells) {
-    kept += c.outcome.expect == "kept";
+  for (const RunRecord& c : runs) {
+    kept += c.outcome.expect == "pass";
     unknown += c.outcome.expect == "not measured";
-    if (c.outcome.expect.starts_with("broken")) t.rows.push_back({c.header.scene, label_of(c), c.outcome.expect});
+    if (c.outcome.expect.starts_with("fail")) t.rows.push_back({c.header.scene, label_of(c), c.outcome.expect});
   }
-  t.note = fmt::format("{} kept, {} not measured.", kept, unknown);
+  t.note = fmt::format("{} passed, {} not measured.", kept, unknown);
   return t;
 }
 

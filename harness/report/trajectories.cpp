@@ -7,9 +7,9 @@
 namespace clothbench {
 namespace {
 
-std::vector<float> positions(const CellRecord& c) {
+std::vector<float> positions(const RunRecord& c) {
   if (!c.accuracy.position.empty() || c.file.empty()) return c.accuracy.position;
-  return read_cell(c.file).accuracy.position;
+  return read_run(c.file).accuracy.position;
 }
 
 /// NaN if either is.
@@ -17,7 +17,7 @@ double greater(double a, double b) { return b <= a || std::isnan(a) ? a : b; }
 
 }  // namespace
 
-Apart trajectories_apart(const CellRecord& one, const CellRecord& other, std::size_t transposed_columns) {
+Apart trajectories_apart(const RunRecord& one, const RunRecord& other, std::size_t transposed_columns) {
   const std::vector<float> a = positions(one), b = positions(other);
   const std::size_t vertices = one.header.vertices, columns = transposed_columns;
   if (a.empty() || a.size() != b.size() || vertices == 0 || a.size() % (3 * vertices) != 0 ||

@@ -15,7 +15,7 @@ const std::string kSuffix = "-turned";
 constexpr double kSamePlace = 0.05, kAtContact_s = 0.1;
 
 /// Greatest of `rms_m` up to some time after a collider is first touched; NaN where it never is, or that is not known.
-double until_contact(const CellRecord& c, const std::vector<double>& rms_m) {
+double until_contact(const RunRecord& c, const std::vector<double>& rms_m) {
   for (const MetricSeries& m : c.accuracy.metrics) {
     if (m.name != "touching_fraction" || m.values.size() != rms_m.size() || c.accuracy.time_s.size() != rms_m.size())
       continue;
@@ -30,31 +30,31 @@ double until_contact(const CellRecord& c, const std::vector<double>& rms_m) {
   return kMissing;
 }
 
-bool ran(const CellRecord& c) { return c.outcome.status != "unsupported" && c.outcome.status != "missing"; }
+bool ran(const RunRecord& c) { return c.outcome.status != "unsupported" && c.outcome.status != "missing"; }
 
 /// Verdict, and what leaks.
-std::string told(const std::string& kind, const CellRecord& c) {
+std::string reported(const std::string& kind, const RunRecord& c) {
   const std::string leak = c.outcome.status == "ok" ? leak_of(kind, c) : "";
   return verdict(c) + (leak.empty() || leak == kNotPrinted ? "" : " (" + leak + ")");
 }
 
 std::string result(const TurnedPair& p) {
-  for (const CellRecord* c : {p.cell, p.turned})
+  for (const RunRecord* c : {p.run, p.turned})
     if (leak_of(p.kind, *c) == kNotPrinted) return kNotPrinted;
   return p.same() ? "same" : "differs";
 }
 
 TurnedPair pair_of(const std::string& kind, const std::string& scene, const ContactRow& flat,
                    const ContactRow& turned) {
-  TurnedPair p{kind, scene, flat.series, flat.cell, turned.cell};
-  const json s = scenario_of(*flat.cell);
+  TurnedPair p{kind, scene, flat.series, flat.run, turned.run};
+  const json s = scenario_of(*flat.run);
   const json grid = s.value(json::json_pointer("/cloth/grid"), json()),
              size = s.value(json::json_pointer("/cloth/size_m"), json());
   if (!grid.is_array() || grid.size() != 2 || !size.is_array() || size.size() != 2) return p;
   const double side_m = std::max(size[0].get<double>(), size[1].get<double>());
-  const std::vector<double> rms_m = trajectories_apart(*flat.cell, *turned.cell, grid[0].get<std::size_t>()).rms_m;
+  const std::vector<double> rms_m = trajectories_apart(*flat.run, *turned.run, grid[0].get<std::size_t>()).rms_m;
   if (rms_m.empty()) return p;
-  p.apart_at_contact = until_contact(*flat.cell, rms_m) / side_m;
+  p.apart_at_contact = until_contact(*flat.run, rms_m) / side_m;
   p.apart_end = rms_m.back() / side_m;
   return p;
 }
@@ -68,8 +68,8 @@ const Columns<TurnedPair>& turned_columns() {
       {"sides", In::Both, [](auto& p) { return p.series.sides; }},
       {"", "solver", [](auto& p) { return p.series.label(); }},
       {"", "sides", [](auto& p) { return or_dash(p.series.sides); }},
-      {"", "as it is", [](auto& p) { return told(p.kind, *p.cell); }},
-      {"", "turned over", [](auto& p) { return told(p.kind, *p.turned); }},
+      {"", "as it is", [](auto& p) { return reported(p.kind, *p.run); }},
+      {"", "turned over", [](auto& p) { return reported(p.kind, *p.turned); }},
       {"apart_at_contact", In::Both, &TurnedPair::apart_at_contact},
       {"apart_end", In::Both, &TurnedPair::apart_end},
       {"", "apart, contact / end [of L]",
@@ -82,8 +82,8 @@ const Columns<TurnedPair>& turned_columns() {
 }  // namespace
 
 bool TurnedPair::same() const {
-  return cell->outcome.status == "ok" && turned->outcome.status == "ok" &&
-         leak_of(kind, *cell).empty() == leak_of(kind, *turned).empty() && apart_at_contact <= kSamePlace;
+  return run->outcome.status == "ok" && turned->outcome.status == "ok" &&
+         leak_of(kind, *run).empty() == leak_of(kind, *turned).empty() && apart_at_contact <= kSamePlace;
 }
 
 std::vector<TurnedPair> turned_pairs(const std::vector<ContactSetUp>& ups) {
@@ -94,7 +94,7 @@ std::vector<TurnedPair> turned_pairs(const std::vector<ContactSetUp>& ups) {
         if (t.name != s.name + kSuffix) continue;
         for (const ContactRow& a : s.rows)
           for (const ContactRow& b : t.rows)
-            if (a.series == b.series && a.series.solver != "ballistic" && ran(*a.cell) && ran(*b.cell))
+            if (a.series == b.series && a.series.solver != "ballistic" && ran(*a.run) && ran(*b.run))
               out.push_back(pair_of(u.kind, s.name, a, b));
       }
   return out;
@@ -115,7 +115,7 @@ Table turned_table(const std::vector<TurnedPair>& pairs) {
            "What "
            "turning alone does to "
            "a solver, `clothbench metamorphic` (flip) bounds.",
-           cells_of(pairs, &TurnedPair::cell, &TurnedPair::turned),
+           runs_of(pairs, &TurnedPair::run, &TurnedPair::turned),
            {"tunnelled_fraction_max", "wrong_side_samples_max", "depth_vertex_max_m"}),
        {}},
       pairs);

@@ -13,7 +13,7 @@ namespace clothbench {
 struct TurnedPair {
   std::string kind, scene;
   Series series;
-  const CellRecord *cell = nullptr, *turned = nullptr;
+  const RunRecord *run = nullptr, *turned = nullptr;
   /// Distance of the vertices that were in the same places at the start, RMS over the cloth, over its longer side:
   /// greatest up to 0.1 s after the first contact, and at the end.
   double apart_at_contact = kMissing, apart_end = kMissing;
@@ -23,7 +23,7 @@ struct TurnedPair {
   bool same() const;
 };
 
-/// Reads trajectories from the cells' files.
+/// Reads trajectories from the runs' files.
 std::vector<TurnedPair> turned_pairs(const std::vector<ContactSetUp>&);
 
 Table turned_table(const std::vector<TurnedPair>&);

@@ -13,26 +13,26 @@
 namespace clothbench {
 namespace {
 
-void take_out(CellRecord& c, const std::string& name, const std::string& why) {
+void take_out(RunRecord& c, const std::string& name, const std::string& why) {
   c.summary[name] = kMissing;
   c.withheld[name] = why;
 }
 
-bool was_timed(const CellRecord& c) { return std::isfinite(summary_value(c, "frame_wall_median_s")); }
+bool was_timed(const RunRecord& c) { return std::isfinite(summary_value(c, "frame_wall_median_s")); }
 
-/// The newest version of each metric among the cells, and at least this program's.
-std::map<std::string, int> newest_versions(const std::vector<CellRecord>& cells) {
+/// The newest version of each metric among the runs, and at least this program's.
+std::map<std::string, int> newest_versions(const std::vector<RunRecord>& runs) {
   std::map<std::string, int> out;
-  for (const CellRecord& c : cells)
+  for (const RunRecord& c : runs)
     for (const MetricSeries& m : c.accuracy.metrics)
       out[m.name] = std::max({out[m.name], m.version, metric_version(m.name)});
   return out;
 }
 
-/// "broken: a 2 > 1; b 3 > 2" without what starts with these names; "not measured" if nothing else is broken.
+/// "fail: a 2 > 1; b 3 > 2" without what starts with these names; "not measured" if nothing else is broken.
 std::string verdict_without(const std::string& text, const std::set<std::string>& names) {
-  const std::string broken = "broken: ", between = "; ";
-  if (!text.starts_with(broken)) return text == "kept" ? "not measured" : text;
+  const std::string broken = "fail: ", between = "; ";
+  if (!text.starts_with(broken)) return text == "pass" ? "not measured" : text;
   std::string out;
   for (std::size_t at = broken.size(), end = 0; at <= text.size(); at = end + between.size()) {
     end = std::min(text.find(between, at), text.size());
@@ -42,7 +42,7 @@ std::string verdict_without(const std::string& text, const std::set<std::string>
   return out.empty() ? "not measured" : broken + out;
 }
 
-void withhold_versions(CellRecord& c, const std::map<std::string, int>& newest) {
+void withhold_versions(RunRecord& c, const std::map<std::string, int>& newest) {
   std::map<std::string, std::string> why;  // by metric
   for (const MetricSeries& m : c.accuracy.metrics)
     if (m.version < newest.at(m.name))
@@ -72,18 +72,18 @@ bool is_time(const std::string& name) {
   return false;
 }
 
-double jobs_of(const CellRecord& c) {
-  if (const double told = summary_value(c, "jobs"); std::isfinite(told)) return told;
+double jobs_of(const RunRecord& c) {
+  if (const double reported = summary_value(c, "jobs"); std::isfinite(reported)) return reported;
   const nlohmann::json& e = c.header.environment;
   return e.is_object() && e.contains("jobs") && e["jobs"].is_number() ? e["jobs"].get<double>() : kMissing;
 }
 
-void withhold_times(std::vector<CellRecord>& cells) {
+void withhold_times(std::vector<RunRecord>& runs) {
   double most = 1;
-  for (const CellRecord& c : cells)
+  for (const RunRecord& c : runs)
     if (const double jobs = jobs_of(c); jobs > most) most = jobs;
   const std::string why = fmt::format("not timed alone: up to {:.0f} jobs ran side by side", most);
-  for (CellRecord& c : cells) {
+  for (RunRecord& c : runs) {
     if (!(jobs_of(c) > 1)) continue;
     for (const auto& [name, value] : std::map(c.summary))
       if (is_time(name) && std::isfinite(value)) take_out(c, name, why);
@@ -92,19 +92,19 @@ void withhold_times(std::vector<CellRecord>& cells) {
   }
 }
 
-void withhold_old_versions(std::vector<CellRecord>& cells) {
-  const std::map<std::string, int> newest = newest_versions(cells);
-  for (CellRecord& c : cells) withhold_versions(c, newest);
+void withhold_old_versions(std::vector<RunRecord>& runs) {
+  const std::map<std::string, int> newest = newest_versions(runs);
+  for (RunRecord& c : runs) withhold_versions(c, newest);
 }
 
-void withhold(std::vector<CellRecord>& cells) {
-  withhold_times(cells);
-  withhold_old_versions(cells);
+void withhold(std::vector<RunRecord>& runs) {
+  withhold_times(runs);
+  withhold_old_versions(runs);
 }
 
-std::string withheld_note(const std::vector<const CellRecord*>& cells, const std::vector<std::string>& names) {
+std::string withheld_note(const std::vector<const RunRecord*>& runs, const std::vector<std::string>& names) {
   std::set<std::string> reasons;
-  for (const CellRecord* c : cells)
+  for (const RunRecord* c : runs)
     for (const std::string& name : names)
       if (const auto at = c->withheld.find(name); at != c->withheld.end()) reasons.insert(at->second);
   std::string out;
@@ -112,13 +112,13 @@ std::string withheld_note(const std::vector<const CellRecord*>& cells, const std
   return out.empty() ? "" : out + ".";
 }
 
-std::string with_withheld(const std::string& note, const std::vector<const CellRecord*>& cells,
+std::string with_withheld(const std::string& note, const std::vector<const RunRecord*>& runs,
                           const std::vector<std::string>& names) {
-  const std::string more = withheld_note(cells, names);
+  const std::string more = withheld_note(runs, names);
   return note + (note.empty() || more.empty() ? "" : " ") + more;
 }
 
-std::string withheld_of(const CellRecord& c, const std::vector<std::string>& names) {
+std::string withheld_of(const RunRecord& c, const std::vector<std::string>& names) {
   std::set<std::string> reasons;
   for (const std::string& name : names)
     if (const auto at = c.withheld.find(name); at != c.withheld.end()) reasons.insert(at->second);
@@ -127,10 +127,10 @@ std::string withheld_of(const CellRecord& c, const std::vector<std::string>& nam
   return out;
 }
 
-std::vector<std::string> withheld_lines(const std::vector<CellRecord>& cells) {
+std::vector<std::string> withheld_lines(const std::vector<RunRecord>& runs) {
   std::map<std::string, std::size_t> reasons;
   std::size_t silent = 0;
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     std::set<std::string> of;
     for (const auto& [unused, why] : c.withheld) of.insert(why);
     for (const std::string& why : of) ++reasons[why];
@@ -138,10 +138,10 @@ std::vector<std::string> withheld_lines(const std::vector<CellRecord>& cells) {
   }
   std::vector<std::string> out;
   for (const auto& [why, count] : reasons)
-    out.push_back(fmt::format("Not printed (–), {} cell{}: {}.", count, count == 1 ? "" : "s", why));
+    out.push_back(fmt::format("Not printed (–), {} run{}: {}.", count, count == 1 ? "" : "s", why));
   if (silent > 0)
-    out.push_back(fmt::format("{} of the timed cells {} of files that don't say whether anything ran beside {}.",
-                              silent, silent == 1 ? "is" : "are", silent == 1 ? "it" : "them"));
+    out.push_back(fmt::format("{} of the timed runs {} of files that don't say whether anything ran beside {}.", silent,
+                              silent == 1 ? "is" : "are", silent == 1 ? "it" : "them"));
   return out;
 }
 

@@ -18,24 +18,25 @@ using nlohmann::json;
 
 constexpr double kRealTime_ms_per_s = 1000;  // a 72 Hz frame simulates 1/72 s in 1/72 s
 
-std::string card_of(const json& scenario) {
-  return scenario.is_object() ? scenario.value(json::json_pointer("/truth/card"), std::string()) : "";
+std::string reference_case_of(const json& scenario) {
+  return scenario.is_object() ? scenario.value(json::json_pointer("/truth/case"), std::string()) : "";
 }
 
-/// What ranks a card's runs; the cards themselves are in harness/truth/card.hpp, a report reads only files.
-std::string ranking_of(const std::string& card) {
-  if (card == "heavy-strip") return "stretch of the strip at rest / its truth";
-  if (card == "two-hand-pull") return "greatest strain, RMS over time / (v0/c)";
-  if (card == "incline") return "way along the slope, RMS over time / way at the end (at rest: L)";
-  if (card == "capstan" || card == "atwood")
+/// What ranks a reference case's runs; the reference cases themselves are in harness/truth/reference_case.hpp, a report
+/// reads only files.
+std::string ranking_of(const std::string& known) {
+  if (known == "heavy-strip") return "stretch of the strip at rest / its truth";
+  if (known == "two-hand-pull") return "greatest strain, RMS over time / (v0/c)";
+  if (known == "incline") return "way along the slope, RMS over time / way at the end (at rest: L)";
+  if (known == "capstan" || known == "atwood")
     return "way over the cylinder, RMS over time / way at the end (at rest: L)";
-  return card == "catenary" || card == "cantilever" ? "RMS distance at rest / L"
-                                                    : "RMS distance over space and time / L";
+  return known == "catenary" || known == "cantilever" ? "RMS distance at rest / L"
+                                                      : "RMS distance over space and time / L";
 }
 
-WorkPoint point_of(const CellRecord& c, const json& scenario) {
+WorkPoint point_of(const RunRecord& c, const json& scenario) {
   WorkPoint p;
-  p.cell = &c;
+  p.run = &c;
   p.solver = c.header.solver;
   p.setting = c.header.setting;
   p.ok = c.outcome.status == "ok";
@@ -112,7 +113,7 @@ std::vector<WorkRow> work_rows(const std::vector<WorkDiagram>& diagrams) {
 }
 
 Value of_environment(const WorkRow& r, const char* key) {
-  const json& e = r.cell->header.environment;
+  const json& e = r.run->header.environment;
   return e.is_object() ? e.value(key, json()) : json();
 }
 
@@ -120,7 +121,7 @@ Value of_environment(const WorkRow& r, const char* key) {
 template <class R, class Of>
 Columns<R> diagram_columns(Of of) {
   return {{"scene", In::Both, [of](auto& r) { return of(r).scene; }},
-          {"card", In::Both, [of](auto& r) { return of(r).card; }},
+          {"case", In::Both, [of](auto& r) { return of(r).reference_case; }},
           {"ranking", In::Both, [of](auto& r) { return of(r).ranking; }},
           {"space_error", In::Both, [of](auto& r) { return of(r).space_error; }},
           {"floor", In::Csv, [of](auto& r) { return of(r).floor(); }},
@@ -170,18 +171,18 @@ std::string WorkDiagram::refused() const {
   return "";
 }
 
-bool has_truth(const CellRecord& c) { return !card_of(scenario_of(c)).empty(); }
+bool has_truth(const RunRecord& c) { return !reference_case_of(scenario_of(c)).empty(); }
 
-std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells,
+std::vector<WorkDiagram> work_diagrams(const std::vector<RunRecord>& runs,
                                        const std::vector<SolverMaterial>& materials) {
   std::vector<WorkDiagram> out;
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     const json scenario = scenario_of(c);
-    const std::string card = card_of(scenario);
-    if (card.empty()) continue;
+    const std::string known = reference_case_of(scenario);
+    if (known.empty()) continue;
     auto at = std::find_if(out.begin(), out.end(), [&](const WorkDiagram& d) { return d.scene == c.header.scene; });
     if (at == out.end()) {
-      out.push_back({c.header.scene, card, ranking_of(card), {}});
+      out.push_back({c.header.scene, known, ranking_of(known), {}});
       at = out.end() - 1;
     }
     if (std::string why = stiffness_flag(materials, c.header.solver, stiffness_need(c)); !why.empty())
@@ -216,15 +217,15 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
       "own clock. Errors are against the exact answer of the same mesh. In real time: a frame of 1/72 s takes at "
       "most 1/72 s. "
       "≤: below what tells solvers apart, three times the reference's uncertainty or the mesh's own error. Failed: "
-      "cells without "
+      "runs without "
       "a finite error; not run: settings of more work than their solver's time on the scene allowed, each with its "
       "reason in its file. No solver is ranked on a refused scene; see the next table. Not ranked: the scene depends "
       "on a stiffness that "
-      "is no parameter of the solver; see the material card.",
+      "is no parameter of the solver; see the effective moduli.",
       {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed", "to 1 %, fenced",
         "to 0.1 %, fenced", "to 1 %, GPU", "to 0.1 %, GPU", "ranked"}}};
   const auto always = [](const WorkPoint&) { return true; };
-  t.note = with_withheld(t.note, cells_of(work_rows(diagrams), &WorkRow::cell), {"frame_wall_median_s", "truth_error"});
+  t.note = with_withheld(t.note, runs_of(work_rows(diagrams), &WorkRow::run), {"frame_wall_median_s", "truth_error"});
   for (const WorkDiagram& d : diagrams) {
     const std::string refused = d.refused();
     for (const std::string& solver : distinct(d.points, &WorkPoint::solver)) {
@@ -232,11 +233,11 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
       for (const WorkPoint& p : d.points)
         if (p.solver == solver) {
           ++all;
-          if (p.cell->outcome.status == "over_budget")
+          if (p.run->outcome.status == "over_budget")
             ++over_budget;
-          else if (!p.counts() && !p.cell->withheld.contains("frame_wall_median_s"))
+          else if (!p.counts() && !p.run->withheld.contains("frame_wall_median_s"))
             ++failed;
-          if (p.cell->outcome.status != "unsupported" && p.cell->outcome.status != "missing") ++able;
+          if (p.run->outcome.status != "unsupported" && p.run->outcome.status != "missing") ++able;
         }
       const auto by_gpu = [&](double most) {
         const auto counts = [&](const WorkPoint& p) { return timed_on_gpu(p) && p.error <= most; };
@@ -246,7 +247,7 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
         return time_text(best(d, solver, within(most), &WorkPoint::fenced_ms_per_s), &WorkPoint::fenced_ms_per_s);
       };
       const auto flag = d.flagged.find(solver);
-      const bool yardstick = solver == "reference";
+      const bool baseline = solver == "reference";
       t.rows.push_back({d.scene + (refused.empty() ? "" : " (refused)"), solver,
                         time_text(best(d, solver, within(1e-2), &WorkPoint::wall_ms_per_s)),
                         time_text(best(d, solver, within(1e-3), &WorkPoint::wall_ms_per_s)),
@@ -256,7 +257,7 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
                         by_gpu(1e-2), by_gpu(1e-3),
                         flag != d.flagged.end()         ? "NO: stiffness not a parameter"
                         : able == 0 || !refused.empty() ? "no"
-                        : yardstick                     ? "yardstick"
+                        : baseline                      ? "baseline"
                                                         : "yes"});
     }
   }
@@ -278,7 +279,8 @@ Table truth_table(const std::vector<WorkDiagram>& diagrams) {
           {"Truths and their reference solutions",
            "Space: the same mesh's exact solution against the continuum. U_ref: uncertainty of the reference solution "
            "(two "
-           "integrators, three time steps) of the card's quantity, over its scale; its distance from the truth must be "
+           "integrators, three time steps) of the reference case's quantity, over its scale; its distance from the "
+           "truth must be "
            "below it. "
            "Order: observed, 2 declared; – where all time steps agree.",
            {}},
@@ -303,8 +305,8 @@ std::string work_csv(const std::vector<WorkDiagram>& diagrams) {
 json work_json(const std::vector<WorkDiagram>& diagrams) {
   const Columns<WorkPoint> points =
       run_columns<WorkPoint>()
-          .add({{"settings", In::Both, [](auto& p) { return p.cell->header.settings; }},
-                {"gpu", In::Both, [](auto& p) { return p.on_gpu ? gpu_of(*p.cell) : ""; }}})
+          .add({{"settings", In::Both, [](auto& p) { return p.run->header.settings; }},
+                {"gpu", In::Both, [](auto& p) { return p.on_gpu ? gpu_of(*p.run) : ""; }}})
           .add(result_columns<WorkPoint>());
   return diagram_columns<WorkDiagram>([](const WorkDiagram& d) -> auto& { return d; })
       .add({{"reference_uncertainty", In::Both, &WorkDiagram::uncertainty},

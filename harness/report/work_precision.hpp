@@ -11,9 +11,9 @@
 
 namespace clothbench {
 
-/// One cell in a work-precision diagram.
+/// One run in a work-precision diagram.
 struct WorkPoint {
-  const CellRecord* cell = nullptr;
+  const RunRecord* run = nullptr;
   std::string solver, setting;
   bool on_gpu = false, ok = false;
   double wall_ms_per_s =
@@ -21,19 +21,19 @@ struct WorkPoint {
   double fenced_ms_per_s = kMissing;  ///< the same from submission to fence, each frame waited for
   double device_ms_per_s = kMissing;  ///< the same of the device's own clock; NaN on a CPU
   double frame_ms = kMissing;         ///< what wall_ms_per_s is of one frame of the scene
-  double error = kMissing;            ///< what ranks (the card's), as measured
+  double error = kMissing;            ///< what ranks (the reference case's), as measured
   double energy_gain = kMissing;      ///< over M g L; NaN where the scene does not keep energy
   /// It ended well, with an error and a time.
   bool counts() const { return ok && std::isfinite(error) && std::isfinite(wall_ms_per_s); }
   bool on_front = false;  ///< no other point of its solver is as fast and more accurate
 };
 
-/// All cells of one scene with a truth, and what is known of its truth.
+/// All runs of one scene with a truth, and what is known of its truth.
 struct WorkDiagram {
-  std::string scene, card, ranking;  ///< ranking: what the error is, in words
-  std::vector<WorkPoint> points;     ///< by solver, then time
-  double space_error = kMissing;     ///< this mesh's truth against the continuum
-  double uncertainty = kMissing;     ///< U_ref over the quantity's scale
+  std::string scene, reference_case, ranking;  ///< ranking: what the error is, in words
+  std::vector<WorkPoint> points;               ///< by solver, then time
+  double space_error = kMissing;               ///< this mesh's truth against the continuum
+  double uncertainty = kMissing;               ///< U_ref over the quantity's scale
   double truth_distance = kMissing, order_bdf2 = kMissing, order_conservative = kMissing;  ///< of the reference
   StiffnessNeed need = {};                          ///< what its answer depends on
   std::map<std::string, std::string> flagged = {};  ///< solvers shown but not ranked, and why (stiffness_flag)
@@ -46,17 +46,17 @@ struct WorkDiagram {
   std::string refused() const;
 };
 
-/// True for a cell whose scene states its truth.
-bool has_truth(const CellRecord&);
+/// True for a run whose scene states its truth.
+bool has_truth(const RunRecord&);
 
 /// Whether it takes no longer than what it simulates.
 bool in_real_time(const WorkPoint&);
 
-/// One diagram a scene, in the order of first appearance. `cells` must outlive the answer.
-std::vector<WorkDiagram> work_diagrams(const std::vector<CellRecord>& cells, const std::vector<SolverMaterial>& = {});
+/// One diagram a scene, in the order of first appearance. `runs` must outlive the answer.
+std::vector<WorkDiagram> work_diagrams(const std::vector<RunRecord>& runs, const std::vector<SolverMaterial>& = {});
 
 /// Rows: scenes and solvers; time to 1 % and 0.1 %, best error in real time (a displayed frame of 1/72 s takes at most
-/// as long), best error at all, each with its setting; how many cells failed; the first two by the GPU's own clock;
+/// as long), best error at all, each with its setting; how many runs failed; the first two by the GPU's own clock;
 /// whether the solver is ranked.
 Table work_table(const std::vector<WorkDiagram>&);
 

@@ -15,7 +15,7 @@ std::set<std::string> ranked(const WorkDiagram& d) {
   std::set<std::string> out;
   if (!d.refused().empty()) return out;
   for (const WorkPoint& p : d.points) {
-    const std::string& status = p.cell->outcome.status;
+    const std::string& status = p.run->outcome.status;
     if (p.solver != "reference" && !d.flagged.contains(p.solver) && status != "unsupported" && status != "missing")
       out.insert(p.solver);
   }

@@ -53,14 +53,14 @@ void check_group(const std::string& file, const std::string& at, const json& g) 
   }
 }
 
-/// The samples of one source that belong to a cell, and the trial each lies in as a whole; -1: in none.
+/// The samples of one source that belong to a run, and the trial each lies in as a whole; -1: in none.
 struct Taken {
   std::vector<std::size_t> index;
   std::vector<double> time_unix_s;
   std::vector<const TimedTrial*> trial;
 };
 
-Taken take(const json& group, const CellRecord& r) {
+Taken take(const json& group, const RunRecord& r) {
   double first = kMissing, last = kMissing;
   for (const TimedTrial& t : r.trials) {
     if (!std::isfinite(t.start_unix_s)) continue;
@@ -120,7 +120,7 @@ void summarise(const std::string& role, double scale, const Taken& taken, const 
   summary["sampled_" + role + "_samples"] = count;
 }
 
-StoredGroup store_group(const json& group, const CellRecord& r, std::map<std::string, double>& summary) {
+StoredGroup store_group(const json& group, const RunRecord& r, std::map<std::string, double>& summary) {
   const Taken taken = take(group, r);
   StoredGroup out;
   out.path = "device_samples/" + group.at("name").get<std::string>();
@@ -191,7 +191,7 @@ DeviceSamples::DeviceSamples(const std::filesystem::path& path) {
     check_group(file, fmt::format("/groups/{}", k), all_["groups"][k]);
 }
 
-void DeviceSamples::attach_to(CellRecord& r) const {
+void DeviceSamples::attach_to(RunRecord& r) const {
   StoredGroup top;
   top.path = "device_samples";
   top.attributes = {{"valid", all_.at("valid").get<bool>() ? 1 : 0},

@@ -132,7 +132,7 @@ void attach(hid_t d, std::initializer_list<hid_t> scales) {
 }
 
 /// Trials x frames (x stages) from series that may be shorter; missing = NaN.
-std::vector<double> padded(const CellRecord& r, std::size_t frames, std::size_t stages,
+std::vector<double> padded(const RunRecord& r, std::size_t frames, std::size_t stages,
                            std::vector<double> TimedTrial::*series) {
   std::vector<double> out(r.trials.size() * frames * stages, kMissing);
   for (std::size_t t = 0; t < r.trials.size(); ++t) {
@@ -145,7 +145,7 @@ std::vector<double> padded(const CellRecord& r, std::size_t frames, std::size_t 
 
 class Writer {
  public:
-  Writer(hid_t file, const CellRecord& record) : file_(file), r_(record) {
+  Writer(hid_t file, const RunRecord& record) : file_(file), r_(record) {
     for (const TimedTrial& t : r_.trials) frames_ = std::max(frames_, t.frame_wall_s.size());
   }
 
@@ -172,7 +172,7 @@ class Writer {
   }
 
   void root_attributes() {
-    const CellHeader& h = r_.header;
+    const RunHeader& h = r_.header;
     const nlohmann::json& e = h.environment;
     const auto from_environment = [&](const char* key) {
       const nlohmann::json v = e.value(key, nlohmann::json(""));
@@ -286,9 +286,9 @@ class Writer {
     }
   }
 
-  /// One kind of cell of the PolyData; an empty kind has no cells and Offsets = {0}.
-  void cells(hid_t g, const char* name, std::size_t steps, const std::vector<std::int64_t>& connectivity,
-             std::int64_t corners) {
+  /// One kind of cell of the PolyData; an empty kind has no runs and Offsets = {0}.
+  void runs(hid_t g, const char* name, std::size_t steps, const std::vector<std::int64_t>& connectivity,
+            std::int64_t corners) {
     const Id c = make_group(g, name);
     const std::int64_t count = connectivity.empty() ? 0 : static_cast<std::int64_t>(connectivity.size()) / corners;
     std::vector<std::int64_t> offsets;
@@ -317,8 +317,8 @@ class Writer {
                   {"1", "points of each frame"});
     write_numbers(g, "Points", {steps * points, 3}, r_.accuracy.position, {"m", "vertex positions, frame after frame"},
                   {points, 3});
-    for (const char* kind : {"Vertices", "Lines", "Strips"}) cells(g, kind, steps, {}, 1);
-    cells(g, "Polygons", steps, {r_.header.triangles.begin(), r_.header.triangles.end()}, 3);
+    for (const char* kind : {"Vertices", "Lines", "Strips"}) runs(g, kind, steps, {}, 1);
+    runs(g, "Polygons", steps, {r_.header.triangles.begin(), r_.header.triangles.end()}, 3);
     const Id s = make_group(g, "Steps");
     integer_attribute(s, "NSteps", static_cast<std::int64_t>(steps));
     std::vector<std::int64_t> part(steps), offset(steps);
@@ -330,7 +330,7 @@ class Writer {
     write_numbers(s, "PartOffsets", {steps}, part, {"1", "first part of each frame"});
     write_numbers(s, "NumberOfParts", {steps}, std::vector<std::int64_t>(steps, 1), {"1", "parts of each frame"});
     write_numbers(s, "PointOffsets", {steps}, offset, {"1", "first point of each frame"});
-    // The topology is stored once: every step starts at cell 0.
+    // The topology is stored once: every step starts at run 0.
     for (const char* name : {"CellOffsets", "ConnectivityIdOffsets"})
       write_numbers(s, name, {steps, 4}, std::vector<std::int64_t>(4 * steps, 0), {"1", "first of each kind of cell"});
     make_group(s, "PointDataOffsets");
@@ -367,13 +367,13 @@ class Writer {
   }
 
   hid_t file_;
-  const CellRecord& r_;
+  const RunRecord& r_;
   std::size_t frames_ = 0;
 };
 
 }  // namespace
 
-void write_hdf5(const std::filesystem::path& path, const CellRecord& record) {
+void write_hdf5(const std::filesystem::path& path, const RunRecord& record) {
   const std::filesystem::path temporary = temporary_name(path);
   const h5::Quiet quiet;
   try {

@@ -3,12 +3,12 @@
 
 namespace clothbench {
 
-void write_hdf5(const std::filesystem::path& path, const CellRecord&) {
+void write_hdf5(const std::filesystem::path& path, const RunRecord&) {
   throw Error(path.string() +
               ": this build writes no HDF5; convert raw run files with `clothbench import` on another machine");
 }
 
-CellRecord read_hdf5(const std::filesystem::path& path, bool) {
+RunRecord read_hdf5(const std::filesystem::path& path, bool) {
   throw Error(path.string() + ": this build reads no HDF5");
 }
 

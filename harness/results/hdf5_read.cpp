@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/former_names.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/hdf5_handle.hpp"
 #include "results/hdf5_values.hpp"
@@ -28,15 +29,15 @@ int whole_attribute(hid_t object, const char* name) {
   return static_cast<int>(v);
 }
 
-void read_scalars(hid_t file, CellRecord& r) {
+void read_scalars(hid_t file, RunRecord& r) {
   const Id summary = open_group(file, "summary"), outcome = open_group(file, "outcome");
   for (const std::string& n : h5::attribute_names(summary)) r.summary[n] = number_attribute(summary, n.c_str());
   r.outcome = {text_attribute(outcome, "status"), text_attribute(outcome, "class"),
                whole_attribute(outcome, "failed_frame"), text_attribute(outcome, "message"),
-               H5Aexists(outcome, "expect") > 0 ? text_attribute(outcome, "expect") : ""};
+               H5Aexists(outcome, "expect") > 0 ? current_verdict(text_attribute(outcome, "expect")) : ""};
 }
 
-void read_trials(hid_t file, CellRecord& r) {
+void read_trials(hid_t file, RunRecord& r) {
   const Id timing = open_group(file, "timing"), bandwidth = open_group(file, "bandwidth");
   Dims shape;
   const auto wall = numbers<double>(timing, "frame_wall_s", H5T_NATIVE_DOUBLE, &shape);
@@ -84,7 +85,7 @@ void read_trials(hid_t file, CellRecord& r) {
   }
 }
 
-void read_accuracy(hid_t file, CellRecord& r, bool with_trajectory) {
+void read_accuracy(hid_t file, RunRecord& r, bool with_trajectory) {
   const Id metrics = open_group(file, "metrics");
   r.accuracy.time_s = numbers<double>(metrics, "time_s", H5T_NATIVE_DOUBLE);
   if (with_trajectory) r.accuracy.position = numbers<float>(file, "VTKHDF/Points", H5T_NATIVE_FLOAT);
@@ -102,14 +103,14 @@ void read_accuracy(hid_t file, CellRecord& r, bool with_trajectory) {
 
 }  // namespace
 
-CellRecord read_hdf5(const std::filesystem::path& path, bool with_trajectory) {
+RunRecord read_hdf5(const std::filesystem::path& path, bool with_trajectory) {
   const h5::Quiet quiet;
   try {
     const Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "opening the file");
     if (text_attribute(file, "format") != "clothbench-run") throw Error("not a clothbench run (attribute format)");
     if (const int version = whole_attribute(file, "format_version"); version != 1)
       throw Error("format_version " + std::to_string(version) + "; this build reads 1");
-    CellRecord r;
+    RunRecord r;
     nlohmann::json header = nlohmann::json::parse(text_dataset(file, "header_json"));
     header["triangles"] = nlohmann::json::array();
     r.header = header_from_json(header);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "base/former_names.hpp"
 #include "base/json_number.hpp"
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
@@ -133,7 +134,7 @@ RawFile read_raw(const std::filesystem::path& path) {
   return file;
 }
 
-nlohmann::json header_to_json(const CellHeader& h) {
+nlohmann::json header_to_json(const RunHeader& h) {
   nlohmann::json stages = nlohmann::json::array();
   for (const StageRecord& s : h.stages)
     stages.push_back({{"name", s.name}, {"serves", s.serves}, {"dispatches", s.dispatches}, {"bytes", s.bytes}});
@@ -151,13 +152,13 @@ nlohmann::json header_to_json(const CellHeader& h) {
           {"load_s", number_to_json(h.load_s)}};
 }
 
-CellHeader header_from_json(const nlohmann::json& j) {
-  CellHeader h;
+RunHeader header_from_json(const nlohmann::json& j) {
+  RunHeader h;
   h.scene = j.at("scene").get<std::string>();
   h.solver = j.at("solver").get<std::string>();
   h.setting = j.at("setting").get<std::string>();
   h.settings = j.at("settings");
-  h.scenario_json = j.at("scenario_json").get<std::string>();
+  h.scenario_json = current_scenario(j.at("scenario_json").get<std::string>());
   h.scenario_sha256 = j.at("scenario_sha256").get<std::string>();
   for (const auto& s : j.at("stages"))
     h.stages.push_back({s.at("name").get<std::string>(), s.at("serves").get<std::vector<std::string>>(),
@@ -168,6 +169,12 @@ CellHeader header_from_json(const nlohmann::json& j) {
   h.triangles = j.at("triangles").get<std::vector<std::uint32_t>>();
   h.load_s = number_from_json(j.at("load_s"), "load_s");
   return h;
+}
+
+RunHeader read_header(const std::filesystem::path& raw) {
+  nlohmann::json j = read_raw(raw).header;
+  rename_key(j, "cell", "run", raw.string());
+  return header_from_json(j.at("run"));
 }
 
 void write_trial_file(const std::filesystem::path& path, const TimedTrial& t, std::size_t stages) {

@@ -29,8 +29,10 @@ void write_raw(const std::filesystem::path&, nlohmann::json header,
 /// Throws Error naming the file if its header is not readable.
 RawFile read_raw(const std::filesystem::path&);
 
-nlohmann::json header_to_json(const CellHeader&);
-CellHeader header_from_json(const nlohmann::json&);
+nlohmann::json header_to_json(const RunHeader&);
+RunHeader header_from_json(const nlohmann::json&);
+/// Of a part folder's header.raw. Throws Error naming the file.
+RunHeader read_header(const std::filesystem::path&);
 
 void write_trial_file(const std::filesystem::path&, const TimedTrial&, std::size_t stages);
 TimedTrial read_trial_file(const std::filesystem::path&);

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/files.hpp"
+#include "base/former_names.hpp"
 #include "base/json_number.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path part_folder(const fs::path& dir, const std::string& cell) { return dir / (cell + ".part"); }
+fs::path part_folder(const fs::path& dir, const std::string& run) { return dir / (run + ".part"); }
 fs::path trial_file(const fs::path& part, int k) { return part / fmt::format("trial-{}.raw", k); }
 
 nlohmann::json outcome_json(const Outcome& o, const std::map<std::string, double>& summary) {
@@ -34,10 +35,10 @@ nlohmann::json outcome_json(const Outcome& o, const std::map<std::string, double
 }
 
 /// Everything in a part folder. Damaged or foreign trial files count as not there.
-CellRecord read_part(const fs::path& part) {
-  CellRecord record;
+RunRecord read_part(const fs::path& part) {
+  RunRecord record;
   const fs::path header = part / "header.raw";
-  record.header = header_from_json(read_raw(header).header.at("cell"));
+  record.header = read_header(header);
   for (const auto& entry : fs::directory_iterator(part)) {
     const std::string name = entry.path().filename().string();
     if (name.rfind("trial-", 0) != 0 || entry.path().extension() != ".raw") continue;
@@ -52,25 +53,26 @@ CellRecord read_part(const fs::path& part) {
   if (fs::exists(part / "replay.raw")) record.replay = read_replay_file(part / "replay.raw");
   if (fs::exists(part / "outcome.raw")) {
     const nlohmann::json o = read_raw(part / "outcome.raw").header;
-    record.outcome = {o.at("status"), o.at("class"), o.at("failed_frame"), o.at("message"), o.value("expect", "")};
+    record.outcome = {o.at("status"), o.at("class"), o.at("failed_frame"), o.at("message"),
+                      current_verdict(o.value("expect", ""))};
     record.summary = numbers_from_json(o.at("summary"));
   }
   return record;
 }
 
-fs::path write_finished(const fs::path& dir, const CellRecord& record) {
-  const std::string cell = cell_name(record.header);
-  const fs::path file = dir / (cell + ".h5");
+fs::path write_finished(const fs::path& dir, const RunRecord& record) {
+  const std::string run = run_name(record.header);
+  const fs::path file = dir / (run + ".h5");
   write_hdf5(file, record);
-  write_xdmf(dir / (cell + ".xdmf"), file.filename().string(), record);
+  write_xdmf(dir / (run + ".xdmf"), file.filename().string(), record);
   return file;
 }
 
 }  // namespace
 
-std::string cell_name(const CellHeader& h) { return cell_name(h.scene, h.solver, h.setting); }
+std::string run_name(const RunHeader& h) { return run_name(h.scene, h.solver, h.setting); }
 
-std::string cell_name(const std::string& scene, const std::string& solver, const std::string& setting) {
+std::string run_name(const std::string& scene, const std::string& solver, const std::string& setting) {
   std::string name = scene + "__" + solver + "__" + setting;
   for (char& c : name)
     if (!(std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '=' || c == '-')) c = '-';
@@ -79,14 +81,14 @@ std::string cell_name(const std::string& scene, const std::string& solver, const
 
 Finish best_finish() { return kWithHdf5 ? Finish::Hdf5 : Finish::Raw; }
 
-CellWriter::CellWriter(fs::path dir, CellHeader header, Finish finish)
+RunWriter::RunWriter(fs::path dir, RunHeader header, Finish finish)
     : dir_(std::move(dir)), header_(std::move(header)), finish_(finish) {
-  const fs::path part = part_folder(dir_, cell_name(header_)), file = part / "header.raw";
+  const fs::path part = part_folder(dir_, run_name(header_)), file = part / "header.raw";
   std::error_code ec;
   fs::create_directories(part, ec);
   if (ec) throw Error(part.string() + ": cannot be created: " + ec.message(), ExitCode::CheckFailed);
   if (fs::exists(file)) {
-    const CellHeader before = header_from_json(read_raw(file).header.at("cell"));
+    const RunHeader before = read_header(file);
     if (before.scenario_sha256 != header_.scenario_sha256 ||
         flat_settings(before.settings) != flat_settings(header_.settings))
       throw Error(fmt::format(
@@ -95,24 +97,24 @@ CellWriter::CellWriter(fs::path dir, CellHeader header, Finish finish)
           header_.scenario_sha256.substr(0, 12), header_.settings.dump()));
     return;
   }
-  write_raw(file, {{"kind", "header"}, {"cell", header_to_json(header_)}}, {});
+  write_raw(file, {{"kind", "header"}, {"run", header_to_json(header_)}}, {});
 }
 
-void CellWriter::write_trial(const TimedTrial& trial) {
-  write_trial_file(trial_file(part_folder(dir_, cell_name(header_)), trial.index), trial, header_.stages.size());
+void RunWriter::write_trial(const TimedTrial& trial) {
+  write_trial_file(trial_file(part_folder(dir_, run_name(header_)), trial.index), trial, header_.stages.size());
 }
 
-void CellWriter::write_accuracy(const AccuracyPass& pass) {
-  write_accuracy_file(part_folder(dir_, cell_name(header_)) / "accuracy.raw", pass, header_.vertices);
+void RunWriter::write_accuracy(const AccuracyPass& pass) {
+  write_accuracy_file(part_folder(dir_, run_name(header_)) / "accuracy.raw", pass, header_.vertices);
 }
 
-void CellWriter::write_replay(const std::vector<StoredGroup>& groups) {
-  const fs::path file = part_folder(dir_, cell_name(header_)) / "replay.raw";
+void RunWriter::write_replay(const std::vector<StoredGroup>& groups) {
+  const fs::path file = part_folder(dir_, run_name(header_)) / "replay.raw";
   if (!groups.empty() && !fs::exists(file)) write_replay_file(file, groups);
 }
 
-fs::path CellWriter::finish(const Outcome& outcome, const std::map<std::string, double>& summary) {
-  const fs::path part = part_folder(dir_, cell_name(header_));
+fs::path RunWriter::finish(const Outcome& outcome, const std::map<std::string, double>& summary) {
+  const fs::path part = part_folder(dir_, run_name(header_));
   write_raw(part / "outcome.raw", outcome_json(outcome, summary), {});
   if (finish_ == Finish::Raw) return part;
   const fs::path file = write_finished(dir_, read_part(part));
@@ -120,29 +122,29 @@ fs::path CellWriter::finish(const Outcome& outcome, const std::map<std::string, 
   return file;
 }
 
-CellRecord CellWriter::recovered() const { return read_part(part_folder(dir_, cell_name(header_))); }
+RunRecord RunWriter::recovered() const { return read_part(part_folder(dir_, run_name(header_))); }
 
-bool cell_finished(const fs::path& dir, const std::string& cell) {
-  return fs::exists(dir / (cell + ".h5")) || (!kWithHdf5 && fs::exists(part_folder(dir, cell) / "outcome.raw"));
+bool run_finished(const fs::path& dir, const std::string& run) {
+  return fs::exists(dir / (run + ".h5")) || (!kWithHdf5 && fs::exists(part_folder(dir, run) / "outcome.raw"));
 }
 
-void remove_leftovers(const fs::path& dir, const std::string& cell) {
+void remove_leftovers(const fs::path& dir, const std::string& run) {
   std::error_code ec;
-  const fs::path part = part_folder(dir, cell);
-  if (kWithHdf5 && fs::exists(dir / (cell + ".h5"), ec)) fs::remove_all(part, ec);
+  const fs::path part = part_folder(dir, run);
+  if (kWithHdf5 && fs::exists(dir / (run + ".h5"), ec)) fs::remove_all(part, ec);
   std::vector<fs::path> stale;
   for (const auto& entry : fs::directory_iterator(part, ec))
     if (entry.path().filename().string().find(kTemporaryMark) != std::string::npos) stale.push_back(entry.path());
   for (const auto& entry : fs::directory_iterator(dir, ec)) {
     const std::string name = entry.path().filename().string();
     for (const char* kind : {".h5", ".xdmf"})
-      if (name.starts_with(cell + kind + kTemporaryMark)) stale.push_back(entry.path());
+      if (name.starts_with(run + kind + kTemporaryMark)) stale.push_back(entry.path());
   }
   for (const fs::path& file : stale) fs::remove(file, ec);
 }
 
-CellRecord read_cell(const fs::path& path) { return fs::is_directory(path) ? read_part(path) : read_hdf5(path, true); }
-CellRecord read_cell_summary(const fs::path& path) {
+RunRecord read_run(const fs::path& path) { return fs::is_directory(path) ? read_part(path) : read_hdf5(path, true); }
+RunRecord read_run_summary(const fs::path& path) {
   return fs::is_directory(path) ? read_part(path) : read_hdf5(path, false);
 }
 
@@ -155,7 +157,7 @@ std::vector<std::size_t> every(std::size_t count, std::size_t stride) {
 
 Replay read_replay(const fs::path& path, std::size_t stride) {
   if (!fs::is_directory(path)) return read_hdf5_replay(path, stride);
-  CellRecord c = read_part(path);
+  RunRecord c = read_part(path);
   Replay r;
   const std::size_t row = 3 * static_cast<std::size_t>(c.header.vertices);
   if (c.accuracy.position.size() < row * c.accuracy.time_s.size())
@@ -188,7 +190,7 @@ std::vector<fs::path> import_raw(const fs::path& dir_or_part, const DeviceSample
   std::sort(parts.begin(), parts.end());
   for (const fs::path& part : parts) {
     if (!fs::exists(part / "outcome.raw")) continue;  // not finished: `study --resume` goes on with it
-    CellRecord record = read_part(part);
+    RunRecord record = read_part(part);
     if (samples != nullptr) samples->attach_to(record);
     files.push_back(write_finished(part.parent_path(), record));
   }
@@ -198,7 +200,7 @@ std::vector<fs::path> import_raw(const fs::path& dir_or_part, const DeviceSample
 void write_manifest(const fs::path& dir, const StudyManifest& m) {
   const nlohmann::json j = {
       {"format", "clothbench-study"},   {"format_version", 1},        {"study", m.study}, {"created", m.created},
-      {"command_line", m.command_line}, {"definition", m.definition}, {"cells", m.cells}};
+      {"command_line", m.command_line}, {"definition", m.definition}, {"runs", m.runs}};
   write_file_atomically(dir / "study.json", j.dump(2) + "\n");
 }
 
@@ -208,8 +210,9 @@ StudyManifest read_manifest(const fs::path& dir) {
   if (!fs::is_regular_file(file, ec)) throw Error(file.string() + ": no such file; expected a study folder");
   try {
     std::ifstream in(file);
-    const nlohmann::json j = nlohmann::json::parse(in);
-    return {j.at("study"), j.at("created"), j.at("command_line"), j.at("definition"), j.at("cells")};
+    nlohmann::json j = nlohmann::json::parse(in);
+    rename_key(j, "cells", "runs", file.string());
+    return {j.at("study"), j.at("created"), j.at("command_line"), j.at("definition"), j.at("runs")};
   } catch (const nlohmann::json::exception& e) {
     throw Error(file.string() + ": not a study manifest: " + e.what());
   }

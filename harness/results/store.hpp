@@ -10,51 +10,51 @@
 namespace clothbench {
 
 /// "<scene>__<solver>__<setting>", with characters outside [A-Za-z0-9._=-] replaced by '-'.
-std::string cell_name(const std::string& scene, const std::string& solver, const std::string& setting);
-std::string cell_name(const CellHeader&);
+std::string run_name(const std::string& scene, const std::string& solver, const std::string& setting);
+std::string run_name(const RunHeader&);
 
-/// What a cell ends as: one HDF5 file, or the raw files it was written to (all that a build without HDF5 can).
+/// What a run ends as: one HDF5 file, or the raw files it was written to (all that a build without HDF5 can).
 enum class Finish { Hdf5, Raw };
 Finish best_finish();
 
-/// Writes one cell, crash-safe. Every finished trial is one raw file `<dir>/<cell>.part/trial-<k>.raw` (written under
+/// Writes one run, crash-safe. Every finished trial is one raw file `<dir>/<run>.part/trial-<k>.raw` (written under
 /// another name, fsync, rename), the accuracy pass one `accuracy.raw`. `finish` turns them into
-/// `<dir>/<cell>.h5` + `<cell>.xdmf` (tmp + fsync + rename) and removes the part folder; with Finish::Raw the part
+/// `<dir>/<run>.h5` + `<run>.xdmf` (tmp + fsync + rename) and removes the part folder; with Finish::Raw the part
 /// folder stays, with `outcome.raw` beside the trials. SIGKILL at any moment loses at most what has not been handed
 /// over.
-class CellWriter {
+class RunWriter {
  public:
-  CellWriter(std::filesystem::path dir, CellHeader header, Finish finish = best_finish());
+  RunWriter(std::filesystem::path dir, RunHeader header, Finish finish = best_finish());
   void write_trial(const TimedTrial&);
   void write_accuracy(const AccuracyPass&);
   /// What moved, one file `replay.raw`; known before the first frame, so a resumed run leaves it as it is.
   void write_replay(const std::vector<StoredGroup>&);
   /// Returns the path of the finished file (the .h5, or the part folder with Finish::Raw).
   std::filesystem::path finish(const Outcome&, const std::map<std::string, double>& summary);
-  /// What an interrupted run of the same cell left here (same scenario_sha256 and settings; anything else is an
+  /// What an interrupted attempt at the same run left here (same scenario_sha256 and settings; anything else is an
   /// Error naming both): trials and accuracy pass, already valid.
-  CellRecord recovered() const;
+  RunRecord recovered() const;
 
  private:
   std::filesystem::path dir_;
-  CellHeader header_;
+  RunHeader header_;
   Finish finish_;
 };
 
-/// True if `<dir>/<cell>.h5` (or, without HDF5, `outcome.raw` in its part folder) exists.
-bool cell_finished(const std::filesystem::path& dir, const std::string& cell);
+/// True if `<dir>/<run>.h5` (or, without HDF5, `outcome.raw` in its part folder) exists.
+bool run_finished(const std::filesystem::path& dir, const std::string& run);
 
-/// Removes what a killed run of this cell left behind and no reader needs: files under their temporary names, and the
-/// part folder of a cell whose .h5 is there. Only for the one process that works on the cell.
-void remove_leftovers(const std::filesystem::path& dir, const std::string& cell);
+/// Removes what a killed attempt at this run left behind and no reader needs: files under their temporary names, and
+/// the part folder of a run whose .h5 is there. Only for the one process that works on the run.
+void remove_leftovers(const std::filesystem::path& dir, const std::string& run);
 
 /// Reads a finished file (.h5) or a part folder. Throws Error naming the file and what is wrong with it.
-CellRecord read_cell(const std::filesystem::path&);
+RunRecord read_run(const std::filesystem::path&);
 
-/// Without positions and triangles: what tables and figures need. Cheap also for large cells.
-CellRecord read_cell_summary(const std::filesystem::path&);
+/// Without positions and triangles: what tables and figures need. Cheap also for large runs.
+RunRecord read_run_summary(const std::filesystem::path&);
 
-/// What a viewer needs of a cell: some of its frames, and what moved, at every frame of the scene.
+/// What a viewer needs of a run: some of its frames, and what moved, at every frame of the scene.
 struct Replay {
   std::vector<std::size_t> frames;  ///< ascending; 0 is the initial state
   std::vector<double> time_s;       ///< of each
@@ -72,8 +72,8 @@ Replay read_replay(const std::filesystem::path&, std::size_t stride);
 
 class DeviceSamples;
 
-/// Part folders of a run made without HDF5 -> the same .h5 a direct run gives, with `samples` what the device told
-/// during the run beside it. Returns the new files; a study folder's unfinished cells are passed over, but a part
+/// Part folders of a run made without HDF5 -> the same .h5 a direct run gives, with `samples` what the device reported
+/// during the run beside it. Returns the new files; a study folder's unfinished runs are passed over, but a part
 /// folder that is named itself and is not finished is an Error.
 std::vector<std::filesystem::path> import_raw(const std::filesystem::path& dir_or_part,
                                               const DeviceSamples* samples = nullptr);
@@ -81,8 +81,8 @@ std::vector<std::filesystem::path> import_raw(const std::filesystem::path& dir_o
 /// `<dir>/study.json`: what the folder is. Written tmp + fsync + rename.
 struct StudyManifest {
   std::string study, created, command_line;
-  nlohmann::json definition;       ///< completed study file
-  std::vector<std::string> cells;  ///< names of all planned cells, in order
+  nlohmann::json definition;      ///< completed study file
+  std::vector<std::string> runs;  ///< names of all planned runs, in order
 };
 void write_manifest(const std::filesystem::path& dir, const StudyManifest&);
 StudyManifest read_manifest(const std::filesystem::path& dir);

@@ -23,7 +23,7 @@ std::string mesh(const std::string& name, const std::string& h5, const std::stri
 }
 
 /// Meshes that stand still, such as the desk under the cloth. What moves is stored as its motion, not as meshes.
-std::string still_meshes(const CellRecord& record, const std::string& h5) {
+std::string still_meshes(const RunRecord& record, const std::string& h5) {
   std::string out;
   for (const StoredGroup& g : record.replay) {
     std::size_t vertices = 0, triangles = 0;
@@ -41,7 +41,7 @@ std::string still_meshes(const CellRecord& record, const std::string& h5) {
 
 }  // namespace
 
-void write_xdmf(const std::filesystem::path& path, const std::string& h5_name, const CellRecord& record) {
+void write_xdmf(const std::filesystem::path& path, const std::string& h5_name, const RunRecord& record) {
   const std::size_t triangles = record.header.triangles.size() / 3;
   const std::string still = still_meshes(record, h5_name);
   std::string out =

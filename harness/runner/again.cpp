@@ -14,9 +14,9 @@
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
-#include "runner/cell.hpp"
 #include "runner/child.hpp"
 #include "runner/interrupt.hpp"
+#include "runner/solver_run.hpp"
 
 namespace clothbench {
 namespace {
@@ -33,10 +33,10 @@ ChildEnd run_again(const std::vector<std::string>& words, const std::string& var
   argv.insert(argv.end(), words.begin(), words.end());
   // A group of its own: Ctrl-C comes to it once, from here, since a second one would cut it off.
   ChildProcess child(argv, {.out = quiet ? "/dev/null" : "", .own_group = true, .environment = {variable}});
-  bool told = false;
+  bool reported = false;
   return child.wait([&] {
-    if (interrupt_requested() && !told) child.signal(SIGINT);
-    told = told || interrupt_requested();
+    if (interrupt_requested() && !reported) child.signal(SIGINT);
+    reported = reported || interrupt_requested();
     return stands_still();
   });
 }
@@ -86,7 +86,7 @@ void Guard::answer_parent(const std::function<nlohmann::json()>& work) const {
   }
   std::fflush(stdout);
   write_file_atomically(file_, answer.dump());
-  std::_Exit(0);  // neither a plugin's last wishes nor the rest of the command
+  std::_Exit(0);  // neither exit handlers of a plugin nor the rest of the command
 }
 
 Guard::Answer Guard::ask_child(bool quiet) {

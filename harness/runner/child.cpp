@@ -28,7 +28,7 @@ std::optional<ChildEnd> Child::ask(const std::string& line, double limit_s) {
     gone = heard == ChildProcess::Heard::End;
     if (interrupt_requested()) {
       process_.kill();
-      stop_if_interrupted(kCellsKept);
+      stop_if_interrupted(kRunsKept);
     }
     if (limit_s > 0 && asked({}).wall_s > limit_s) return asked(process_.kill());
   }
@@ -47,7 +47,7 @@ void answer_parent() { static_cast<void>(send(STDIN_FILENO, "\n", 1, MSG_NOSIGNA
 std::filesystem::path own_program() {
 #ifdef __ANDROID__
   // An app's process is the system's program, not this one.
-  throw Error("an app cannot run its cells in processes of their own; use the plain executable");
+  throw Error("an app cannot execute its runs in processes of their own; use the plain executable");
 #else
   return std::filesystem::read_symlink("/proc/self/exe");
 #endif

@@ -6,7 +6,7 @@
 
 namespace clothbench {
 
-/// What a reader needs to judge a number: machine, compiler, commit, date, device. Stored with every cell.
+/// What a reader needs to judge a number: machine, compiler, commit, date, device. Stored with every run.
 nlohmann::json describe_environment(const DeviceInfo& device, const std::string& protocol);
 
 /// What a solver says it can do, for the feature table: names of features by "supports" and "ignores", and "only_with",

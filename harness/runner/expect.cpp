@@ -33,7 +33,7 @@ Verdict judge(const Scene& scene, const Outcome& outcome, const AccuracyPass& pa
   const bool known = measured(scene, outcome, pass);
   const auto note = [&](const std::string& name, const std::string& wrong) {
     v.scalars[kExpect + name] = !known ? kMissing : wrong.empty() ? 1 : 0;
-    if (!wrong.empty()) v.text += (v.text.empty() ? "broken: " : "; ") + wrong;
+    if (!wrong.empty()) v.text += (v.text.empty() ? "fail: " : "; ") + wrong;
   };
   if (!scene.expected_outcome.empty())
     note("outcome", outcome.status == scene.expected_outcome
@@ -46,7 +46,7 @@ Verdict judge(const Scene& scene, const Outcome& outcome, const AccuracyPass& pa
   if (!known)
     v.text = "not measured";
   else if (v.text.empty())
-    v.text = "kept";
+    v.text = "pass";
   return v;
 }
 

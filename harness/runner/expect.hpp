@@ -9,11 +9,11 @@ namespace clothbench {
 
 /// What became of a scene's `expect`.
 struct Verdict {
-  /// "kept"; "broken: " and every broken expectation with its value and bound; "not measured" if the accuracy pass is
+  /// "pass"; "fail: " and every broken expectation with its value and bound; "not measured" if the accuracy pass is
   /// shorter than the scene and not because it failed, or this build cannot measure the contact the scene has; "" if
   /// the scene expects nothing.
   std::string text;
-  /// "expect.<name>" -> 1 kept, 0 broken, NaN not measured; for the summary.
+  /// "expect.<name>" -> 1 pass, 0 fail, NaN not measured; for the summary.
   std::map<std::string, double> scalars;
 };
 

@@ -16,7 +16,7 @@ int times_held();
 
 /// What Ctrl-C says to a command that keeps what it has finished.
 inline constexpr char kTrialsKept[] = "interrupted; every finished trial is kept (continue with --resume)";
-inline constexpr char kCellsKept[] = "interrupted; finished cells are kept (continue with --resume)";
+inline constexpr char kRunsKept[] = "interrupted; finished runs are kept (continue with --resume)";
 
 /// Waits while runs are held. Throws Error(`message`, Interrupted) once the user pressed Ctrl-C.
 void stop_if_interrupted(const char* message);

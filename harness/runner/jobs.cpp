@@ -59,8 +59,8 @@ int jobs_in(const fs::path& proc, int self) {
 }
 
 int jobs_now() {
-  const char* told = std::getenv("CLOTHBENCH_JOBS");
-  const int jobs = told == nullptr ? 0 : std::atoi(told);
+  const char* reported = std::getenv("CLOTHBENCH_JOBS");
+  const int jobs = reported == nullptr ? 0 : std::atoi(reported);
   return jobs > 0 ? jobs : jobs_in("/proc", getpid());
 }
 

@@ -6,7 +6,7 @@
 
 namespace clothbench {
 
-std::string LadderBudget::refused(const CellSpec& spec) const {
+std::string LadderBudget::refused(const RunSpec& spec) const {
   const auto at = by_solver_.find(spec.entry->info.name);
   if (spec.work == 0 || at == by_solver_.end()) return "";
   const Climbed& c = at->second;
@@ -19,7 +19,7 @@ std::string LadderBudget::refused(const CellSpec& spec) const {
   return "";
 }
 
-void LadderBudget::spent(const CellSpec& spec, double seconds, const std::string& status) {
+void LadderBudget::spent(const RunSpec& spec, double seconds, const std::string& status) {
   if (spec.work == 0) return;
   Climbed& c = by_solver_[spec.entry->info.name];
   c.seconds += seconds;
@@ -28,12 +28,12 @@ void LadderBudget::spent(const CellSpec& spec, double seconds, const std::string
   if (status == "timed_out" && (c.timed_out_work == 0 || spec.work < c.timed_out_work)) c.timed_out_work = spec.work;
 }
 
-double LadderBudget::cell_limit_s(const CellSpec& spec, double cell_limit_s) const {
-  if (spec.work == 0 || limit_s_ == 0) return cell_limit_s;
+double LadderBudget::run_limit_s(const RunSpec& spec, double run_limit_s) const {
+  if (spec.work == 0 || limit_s_ == 0) return run_limit_s;
   const auto at = by_solver_.find(spec.entry->info.name);
   const double left_s = limit_s_ - (at == by_solver_.end() ? 0 : at->second.seconds);
   const double own_s = std::max(left_s, limit_s_ / 2);
-  return cell_limit_s > 0 ? std::min(cell_limit_s, own_s) : own_s;
+  return run_limit_s > 0 ? std::min(run_limit_s, own_s) : own_s;
 }
 
 }  // namespace clothbench

@@ -98,7 +98,7 @@ class Tester {
       out.distance = std::nan("");
     }
     if (out.status.empty())
-      out.status = (out.at_most == 0 ? out.bitwise : out.distance <= out.at_most) ? "kept" : "broken";
+      out.status = (out.at_most == 0 ? out.bitwise : out.distance <= out.at_most) ? "pass" : "fail";
     return out;
   }
 

@@ -13,7 +13,7 @@ namespace clothbench {
 /// A solver's behaviour under a change of scene whose effect is known without any truth.
 struct MetamorphicResult {
   std::string property, scene;
-  std::string status;    ///< "kept", "broken", "unsupported", or how a run failed
+  std::string status;    ///< "pass", "fail", "unsupported", or how a run failed
   double distance = 0;   ///< greatest of all vertices and frames, over the cloth's longer side
   bool bitwise = false;  ///< every bit of every position and velocity is as expected
   double at_most = 0;    ///< bound on the distance; 0 = bitwise wanted
@@ -48,7 +48,7 @@ std::vector<Scene> metamorphic_scenes();
 ///   restart       another solver object goes on from the positions and velocities half way (ClothSolver::restart):
 ///   1e-4, or what
 ///                 twice the substeps change; "unsupported" where the solver says that they do not tell all
-/// `note` is told of each before it runs.
+/// `note` is called for each before it runs.
 std::vector<MetamorphicResult> run_metamorphic(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                                const std::vector<Scene>& scenes,
                                                const std::function<void(const std::string&)>& note = {});

@@ -38,7 +38,7 @@ Probes::Probes(fs::path file, bool resume) : file_(std::move(file)) {
     json line = json::parse(text, nullptr, false);
     if (!line.is_object() || !line.contains("key") || !line.contains("answer")) continue;
     const std::string key = line["key"];
-    CellAnswer answer = answer_from_json(line["answer"]);
+    RunAnswer answer = answer_from_json(line["answer"]);
     line.erase("answer");
     known_[key] = {std::move(line), std::move(answer)};
   }
@@ -65,13 +65,13 @@ void Probes::require_same(const ProbedBy& by) const {
   }
 }
 
-const CellAnswer* Probes::find(const std::string& key) const {
+const RunAnswer* Probes::find(const std::string& key) const {
   const std::lock_guard lock(mutex_);
   const auto at = known_.find(key);
   return at == known_.end() ? nullptr : &at->second.answer;
 }
 
-const CellAnswer& Probes::add(const ProbedBy& by, const std::string& key, const CellAnswer& a) {
+const RunAnswer& Probes::add(const ProbedBy& by, const std::string& key, const RunAnswer& a) {
   const std::lock_guard lock(mutex_);
   const json line = {{"key", key},
                      {"scenario_sha256", by.scenario_sha256},

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <string>
 
-#include "runner/cell_process.hpp"
+#include "runner/run_process.hpp"
 
 namespace clothbench {
 
@@ -30,13 +30,13 @@ class Probes {
   void require_same(const ProbedBy&) const;
 
   /// Null if it has not been asked yet. References stay: a map's nodes do not move.
-  const CellAnswer* find(const std::string& key) const;
-  const CellAnswer& add(const ProbedBy&, const std::string& key, const CellAnswer&);
+  const RunAnswer* find(const std::string& key) const;
+  const RunAnswer& add(const ProbedBy&, const std::string& key, const RunAnswer&);
 
  private:
   struct Known {
     nlohmann::json line;
-    CellAnswer answer;
+    RunAnswer answer;
   };
 
   const std::filesystem::path file_;

@@ -20,7 +20,7 @@
 #include "runner/interrupt.hpp"
 #include "runner/reference_cache.hpp"
 #include "scenario/load.hpp"
-#include "truth/card.hpp"
+#include "truth/reference_case.hpp"
 
 namespace clothbench {
 namespace {
@@ -43,7 +43,8 @@ struct Run {
   double unrest = kMissing;  ///< change over the last tenth
 };
 
-Run run_quantity(const Scene& scene, const truth::Card& card, const char* integrator, int substeps, double tolerance) {
+Run run_quantity(const Scene& scene, const truth::ReferenceCase& known, const char* integrator, int substeps,
+                 double tolerance) {
   const SolverEntry& entry = find_solver("reference");
   const json settings =
       complete_settings(entry.info, {{"integrator", integrator}, {"substeps", substeps}, {"tolerance", tolerance}});
@@ -52,7 +53,7 @@ Run run_quantity(const Scene& scene, const truth::Card& card, const char* integr
   ClothState state;
   const auto quantity = [&] {
     solver->read_state(state);
-    return card.quantity(truth::column_means(scene.cloth, state.position));
+    return known.quantity(truth::column_means(scene.cloth, state.position));
   };
   const int last_tenth = frames - (frames + 9) / 10;
   double before = last_tenth == 0 ? quantity() : kMissing;
@@ -100,10 +101,10 @@ std::map<std::string, double> ReferenceResult::scalars() const {
 /// Of a scene that is out of the reference solver's scope: its truth is a closed form and needs none.
 ReferenceResult closed_form(const Scene& scene) {
   const TruthJudge judge(scene);
-  const truth::Card& card = judge.card();
+  const truth::ReferenceCase& known = judge.reference_case();
   ReferenceResult r;
-  r.scale = card.quantity_scale;
-  r.truth = card.quantity(card.columns(scene.time.frames()));
+  r.scale = known.quantity_scale;
+  r.truth = known.quantity(known.columns(scene.time.frames()));
   r.value = r.order_bdf2 = r.order_conservative = r.truth_distance = kMissing;
   r.space_error = judge.space_error();
   return r;
@@ -112,26 +113,26 @@ ReferenceResult closed_form(const Scene& scene) {
 ReferenceResult compute_reference(const Scene& whole, const ReferenceRules& rules) {
   const Scene scene = two_rows(whole);
   const TruthJudge judge(scene);
-  const truth::Card& card = judge.card();
+  const truth::ReferenceCase& known = judge.reference_case();
   const int frames = scene.time.frames();
   const auto per_frame = static_cast<unsigned>(std::max(1, (rules.moving_steps + frames - 1) / frames));
   ReferenceResult r;
-  r.least_substeps = card.settles ? rules.settling_substeps : static_cast<int>(std::bit_ceil(per_frame));
-  r.scale = card.quantity_scale;
-  r.truth = card.quantity(card.columns(frames));
+  r.least_substeps = known.settles ? rules.settling_substeps : static_cast<int>(std::bit_ceil(per_frame));
+  r.scale = known.quantity_scale;
+  r.truth = known.quantity(known.columns(frames));
   Extrapolated found[2];
   double coarsest = 0;
   for (int i = 0; i < 2; ++i) {
     Run f[3];
     for (int level = 0; level < 3; ++level)
       f[level] =
-          run_quantity(scene, card, i == 0 ? "bdf2" : "conservative", r.least_substeps << level, rules.tolerance);
+          run_quantity(scene, known, i == 0 ? "bdf2" : "conservative", r.least_substeps << level, rules.tolerance);
     if (i == 0) coarsest = f[0].value;
-    found[i] = card.settles
+    found[i] = known.settles
                    ? Extrapolated{f[2].value, std::max(std::abs(f[2].value - f[1].value), f[2].unrest), kMissing}
                    : extrapolate(f[2].value, f[1].value, f[0].value, r.scale);
   }
-  const double strict = run_quantity(scene, card, "bdf2", r.least_substeps, rules.tolerance / 10).value;
+  const double strict = run_quantity(scene, known, "bdf2", r.least_substeps, rules.tolerance / 10).value;
   r.order_bdf2 = found[0].order;
   r.order_conservative = found[1].order;
   r.value = (found[0].value + found[1].value) / 2;
@@ -150,7 +151,7 @@ std::map<std::string, ReferenceResult> references(const std::vector<const Scene*
   std::vector<const Scene*> lacking;
   std::set<std::string> seen;
   for (const Scene* s : scenes) {
-    if (s->truth_card.empty() || !seen.insert(s->sha256).second) continue;
+    if (s->reference_case.empty() || !seen.insert(s->sha256).second) continue;
     if (!unsupported(find_solver("reference").info, s->needs).empty()) {
       out[s->sha256] = closed_form(*s);
       continue;

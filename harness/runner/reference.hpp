@@ -8,9 +8,9 @@
 
 namespace clothbench {
 
-/// The quantity of a scene's card as computed by the solver `reference`, with its uncertainty, beside the truth.
+/// The quantity of a scene's known as computed by the solver `reference`, with its uncertainty, beside the truth.
 struct ReferenceResult {
-  double truth = 0;                               ///< the card's, same mesh
+  double truth = 0;                               ///< the reference case's, same mesh
   double scale = 1;                               ///< of the quantity: errors below are over it
   double value = 0;                               ///< extrapolated, mean of both integrators
   double uncertainty = 0;                         ///< U_ref / scale
@@ -19,7 +19,7 @@ struct ReferenceResult {
   double space_error = 0;                         ///< of the truth: this mesh against the continuum, in what ranks runs
   int least_substeps = 0;                         ///< of the three levels, each twice the one before
 
-  /// As they stand in a cell's summary: reference_value, reference_uncertainty, ... truth_space_error.
+  /// As they stand in a run's summary: reference_value, reference_uncertainty, ... truth_space_error.
   std::map<std::string, double> scalars() const;
 };
 
@@ -38,14 +38,14 @@ struct ReferenceRules {
 /// f1 the finest, Fs = 1.25, or 3 with p = 2 kept where the observed one is off by more than 0.5. A shape at rest does
 /// not depend on the step: f* = f1, U = max(|f1 - f2|, |f1_A - f1_B|, tolerance, what f1 moved in the last tenth of the
 /// run), and no order is observed. The scene's rows move alike, so two of them are run. Throws Error if the scene has
-/// no card, the build no solver `reference`, or a run of it fails.
+/// no reference case, the build no solver `reference`, or a run of it fails.
 ReferenceResult compute_reference(const Scene&, const ReferenceRules& = {});
 
 /// Results for these scenes by their SHA-256, those that `cache` lacks computed on all cores and added to it (one file
-/// each, found again by reference_key; one that is unreadable or of another key counts as lacking). `note` is told of
-/// each before it is begun. Scenes without a card are passed over; so are all where the build has no solver
-/// `reference`. Contact is out of its scope: those scenes' truth is a closed form, with no value of the reference and
-/// an uncertainty of 0.
+/// each, found again by reference_key; one that is unreadable or of another key counts as lacking). `note` is called
+/// for each before it is begun. Scenes without a reference case are passed over; so are all where the build has no
+/// solver `reference`. Contact is out of its scope: those scenes' truth is a closed form, with no value of the
+/// reference and an uncertainty of 0.
 std::map<std::string, ReferenceResult> references(const std::vector<const Scene*>& scenes,
                                                   const std::filesystem::path& cache,
                                                   const std::function<void(const std::string&)>& note,

@@ -18,31 +18,31 @@ using nlohmann::json;
 constexpr const char* kWhatToDo = "results of both would be mixed; give another --out, or undo the change";
 
 /// Where a solver is known both are completed: a process that crashed has stored settings as they were given.
-bool same_settings(const PlannedCell& cell, const json& stored) {
-  if (cell.solver == nullptr) {
-    const json given = flat_settings(cell.settings), all = flat_settings(stored);
+bool same_settings(const PlannedRun& run, const json& stored) {
+  if (run.solver == nullptr) {
+    const json given = flat_settings(run.settings), all = flat_settings(stored);
     return std::all_of(given.items().begin(), given.items().end(),
                        [&](const auto& s) { return all.contains(s.key()) && all[s.key()] == s.value(); });
   }
   try {
-    return complete_settings(*cell.solver, cell.settings) == complete_settings(*cell.solver, stored);
+    return complete_settings(*run.solver, run.settings) == complete_settings(*run.solver, stored);
   } catch (const Error&) {
     return false;  // a setting that this version of the solver does not have
   }
 }
 
-std::string version_of(const CellHeader& h) {
+std::string version_of(const RunHeader& h) {
   return h.environment.is_object() ? h.environment.value("solver_version", "") : "";
 }
 
-/// Null if there is none. Another process of a sharded study may be finishing the cell: its folder then becomes a file.
-std::optional<CellHeader> stored_header(const fs::path& folder, const std::string& cell, fs::path& file) {
+/// Null if there is none. Another process of a sharded study may be finishing the run: its folder then becomes a file.
+std::optional<RunHeader> stored_header(const fs::path& folder, const std::string& run, fs::path& file) {
   for (int attempt = 0;; ++attempt) {
-    file = stored_cell(folder, cell);
+    file = stored_run(folder, run);
     if (file.empty()) return std::nullopt;
     try {
-      if (!fs::is_directory(file)) return read_cell_summary(file).header;
-      return header_from_json(read_raw(file / "header.raw").header.at("cell"));
+      if (!fs::is_directory(file)) return read_run_summary(file).header;
+      return read_header(file / "header.raw");
     } catch (const Error&) {
       if (fs::exists(file) || attempt > 0) throw;
     }
@@ -56,41 +56,41 @@ std::string short_hash(const std::string& sha256) {
   return sha256.empty() ? "none" : sha256.substr(0, kShown);
 }
 
-PlannedCell planned_cell(const CellSpec& spec) {
-  return {cell_name(spec), spec.scene->sha256, spec.settings, spec.entry->make ? &spec.entry->info : nullptr};
+PlannedRun planned_run(const RunSpec& spec) {
+  return {run_name(spec), spec.scene->sha256, spec.settings, spec.entry->make ? &spec.entry->info : nullptr};
 }
 
-fs::path stored_cell(const fs::path& folder, const std::string& cell) {
-  const fs::path file = folder / (cell + ".h5"), part = folder / (cell + ".part");
+fs::path stored_run(const fs::path& folder, const std::string& run) {
+  const fs::path file = folder / (run + ".h5"), part = folder / (run + ".part");
   if (fs::exists(file)) return file;
   return fs::exists(part / "header.raw") ? part : fs::path();
 }
 
-void require_same_cell(const fs::path& folder, const PlannedCell& cell) {
+void require_same_run(const fs::path& folder, const PlannedRun& run) {
   fs::path file;
-  const std::optional<CellHeader> h = stored_header(folder, cell.name, file);
+  const std::optional<RunHeader> h = stored_header(folder, run.name, file);
   if (!h) return;
-  if (h->scenario_sha256 != cell.scenario_sha256)
+  if (h->scenario_sha256 != run.scenario_sha256)
     throw Error(fmt::format("{}: is of another scene (SHA-256 of the completed scenario {}, now {}); {}", file.string(),
-                            short_hash(h->scenario_sha256), short_hash(cell.scenario_sha256), kWhatToDo));
-  if (!same_settings(cell, h->settings))
+                            short_hash(h->scenario_sha256), short_hash(run.scenario_sha256), kWhatToDo));
+  if (!same_settings(run, h->settings))
     throw Error(fmt::format("{}: was run with other settings ({}, now {}); {}", file.string(), h->settings.dump(),
-                            cell.settings.dump(), kWhatToDo));
+                            run.settings.dump(), kWhatToDo));
   const std::string version = version_of(*h);  // older files lack it
-  if (cell.solver != nullptr && !version.empty() && version != cell.solver->version)
+  if (run.solver != nullptr && !version.empty() && version != run.solver->version)
     throw Error(fmt::format("{}: was run with version {} of {}, this is version {}; {}", file.string(), version,
-                            cell.solver->name, cell.solver->version, kWhatToDo));
+                            run.solver->name, run.solver->version, kWhatToDo));
 }
 
-void refuse_finished_cell(const fs::path& folder, const std::string& cell) {
+void refuse_finished_run(const fs::path& folder, const std::string& run) {
   throw Error(fmt::format("{}: {} is already there; give another --out, or --resume to go on with this folder",
-                          folder.string(), cell));
+                          folder.string(), run));
 }
 
-void require_same_cells(const fs::path& folder, const std::vector<PlannedCell>& cells, bool resume) {
-  for (const PlannedCell& cell : cells) {
-    if (!resume && cell_finished(folder, cell.name)) refuse_finished_cell(folder, cell.name);
-    require_same_cell(folder, cell);
+void require_same_runs(const fs::path& folder, const std::vector<PlannedRun>& runs, bool resume) {
+  for (const PlannedRun& run : runs) {
+    if (!resume && run_finished(folder, run.name)) refuse_finished_run(folder, run.name);
+    require_same_run(folder, run);
   }
 }
 

@@ -6,12 +6,12 @@
 
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
-#include "runner/cell.hpp"
+#include "runner/solver_run.hpp"
 
 namespace clothbench {
 
-/// A cell that is to be run, as far as its name alone does not tell it from another.
-struct PlannedCell {
+/// A planned run, as far as its name alone does not tell it from another.
+struct PlannedRun {
   std::string name;             ///< as of its files
   std::string scenario_sha256;  ///< of the completed scenario
   nlohmann::json settings;
@@ -19,21 +19,21 @@ struct PlannedCell {
       nullptr;  ///< null: not known here, so settings cannot be completed and the version not compared
 };
 
-/// Of a cell as a plan has it.
-PlannedCell planned_cell(const CellSpec&);
+/// Of a run as a plan has it.
+PlannedRun planned_run(const RunSpec&);
 
-/// The file of a cell that is finished, else the folder of one that was begun, else an empty path.
-std::filesystem::path stored_cell(const std::filesystem::path& folder, const std::string& cell);
+/// The file of a run that is finished, else the folder of one that was begun, else an empty path.
+std::filesystem::path stored_run(const std::filesystem::path& folder, const std::string& run);
 
-/// Whether what `folder` holds of this cell, finished or begun, is of the same scene, settings and version of the
+/// Whether what `folder` holds of this run, finished or begun, is of the same scene, settings and version of the
 /// solver. Throws Error naming the file, what differs and what to do if it is not: going on would mix results.
-void require_same_cell(const std::filesystem::path& folder, const PlannedCell&);
+void require_same_run(const std::filesystem::path& folder, const PlannedRun&);
 
-/// For all cells of a run, before anything is written. Without `resume` a cell that is finished is an Error too.
-void require_same_cells(const std::filesystem::path& folder, const std::vector<PlannedCell>&, bool resume);
+/// For all runs of a study, before anything is written. Without `resume` a run that is finished is an Error too.
+void require_same_runs(const std::filesystem::path& folder, const std::vector<PlannedRun>&, bool resume);
 
-/// "<folder>: <cell> is already there; …", for a run that was not asked to go on with it.
-[[noreturn]] void refuse_finished_cell(const std::filesystem::path& folder, const std::string& cell);
+/// "<folder>: <run> is already there; …", for a run that was not asked to go on with it.
+[[noreturn]] void refuse_finished_run(const std::filesystem::path& folder, const std::string& run);
 
 /// A SHA-256 as messages show it.
 std::string short_hash(const std::string& sha256);

@@ -78,7 +78,7 @@ class Map {
   std::size_t solvers() const { return solvers_.size(); }
   std::size_t rows() const { return y_.size(); }
 
-  Row run(std::size_t solver, std::size_t y, CellWorker& worker) const {
+  Row run(std::size_t solver, std::size_t y, RunWorker& worker) const {
     Row row;
     find_turns(*solvers_[solver], y_[y], worker, row);
     row.done = true;
@@ -92,11 +92,11 @@ class Map {
   }
 
   /// The map as far as its rows are done.
-  json told() const {
+  json reported() const {
     json out = {{"name", j_["name"]},         {"title", j_["title"]}, {"scene", j_["scene"]},    {"good", j_["good"]},
                 {"headline", j_["headline"]}, {"theory", theory_},    {"solvers", json::array()}};
     for (const char* axis : {"x", "y"}) out[axis] = {{"label", j_[axis]["label"]}, {"unit", j_[axis]["unit"]}};
-    for (std::size_t k = 0; k < solvers_.size(); ++k) out["solvers"].push_back(told(k));
+    for (std::size_t k = 0; k < solvers_.size(); ++k) out["solvers"].push_back(reported(k));
     return out;
   }
 
@@ -105,7 +105,7 @@ class Map {
     return o_.solvers.empty() || std::find(o_.solvers.begin(), o_.solvers.end(), solver) != o_.solvers.end();
   }
 
-  json told(std::size_t k) const {
+  json reported(std::size_t k) const {
     const json& solver = *solvers_[k];
     json out = {{"solver", solver["solver"]},
                 {"setting", solver["label"]},
@@ -183,13 +183,13 @@ class Map {
     return by;
   }
 
-  const CellAnswer& probe(const json& solver, double x, double y, int seed, CellWorker& worker, Row& row) const {
+  const RunAnswer& probe(const json& solver, double x, double y, int seed, RunWorker& worker, Row& row) const {
     const ProbedBy& by = probed_by_.at(&solver);
     const std::string key = by.key(x, y, seed);
-    const CellAnswer* found = probes_.find(key);
+    const RunAnswer* found = probes_.find(key);
     if (found == nullptr) {
-      stop_if_interrupted(kCellsKept);
-      CellRequest r;
+      stop_if_interrupted(kRunsKept);
+      RunRequest r;
       r.scenario = scenario_;
       r.source = file_.string();
       r.set = set_at(x, y, seed);
@@ -199,7 +199,7 @@ class Map {
       r.settings = settings_at(solver, x, y);
       r.device = o_.device;
       r.protocol = protocol_name(study_.length);
-      r.limit_s = study_.cell_limit_s;
+      r.limit_s = study_.run_limit_s;
       found = &probes_.add(by, key, worker.run(r));
     }
     row.counts.add(*found);
@@ -214,7 +214,7 @@ class Map {
     return *found;
   }
 
-  void find_turns(const json& solver, double y, CellWorker& worker, Row& row) const {
+  void find_turns(const json& solver, double y, RunWorker& worker, Row& row) const {
     constexpr double kDecades = 0.05;
     const double most = j_["good"] == "stable" ? 0 : 1;
     const bool quick = study_.length == StudyLength::Quick;
@@ -222,7 +222,7 @@ class Map {
     for (int seed = 0; seed < seeds_; ++seed) {
       const auto good = [&](double x) {
         if (row.unsupported) return false;
-        const CellAnswer& a = probe(solver, x, y, seed, worker, row);
+        const RunAnswer& a = probe(solver, x, y, seed, worker, row);
         if (a.outcome.status == "unsupported") {
           row.unsupported = true;
           row.message = a.outcome.message;
@@ -290,11 +290,11 @@ StabilityCounts run_stability_maps(const Study& study, const StabilityOptions& o
   const std::vector<std::unique_ptr<Map>> maps = maps_of(study, o, probes);
   std::mutex mutex;
   std::size_t done = 0;
-  std::vector<std::function<void(CellWorker&)>> tasks;
+  std::vector<std::function<void(RunWorker&)>> tasks;
   const auto write = [&] {
     json all = json::array();
     for (const auto& map : maps)
-      if (map->solvers() > 0) all.push_back(map->told());
+      if (map->solvers() > 0) all.push_back(map->reported());
     write_file_atomically(
         o.out / "stability.json",
         json{{"format", "clothbench-stability"}, {"format_version", 1}, {"environment", o.environment}, {"maps", all}}
@@ -304,7 +304,7 @@ StabilityCounts run_stability_maps(const Study& study, const StabilityOptions& o
   for (const auto& map : maps)
     for (std::size_t solver = 0; solver < map->solvers(); ++solver)
       for (std::size_t y = 0; y < map->rows(); ++y)
-        tasks.push_back([&, m = map.get(), solver, y](CellWorker& worker) {
+        tasks.push_back([&, m = map.get(), solver, y](RunWorker& worker) {
           Row row = m->run(solver, y, worker);
           const std::lock_guard lock(mutex);
           m->keep(solver, y, std::move(row));

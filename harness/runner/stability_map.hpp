@@ -8,7 +8,7 @@ namespace clothbench {
 void require_same_maps(const Study&, const StabilityOptions&);
 
 /// The study's maps: for every row (y) and solver the values of x in order, then the boundary by bisection, for every
-/// seed. Each probe is a cell in such a process; its answer is appended to stability-probes.jsonl, and read back
+/// seed. Each probe is a run in such a process; its answer is appended to stability-probes.jsonl, and read back
 /// from there instead of run again with `resume`. Writes stability.json after every row:
 ///   {maps: [{name, title, scene, good, headline, x: {label, unit}, y: {label, unit},
 ///            theory: [{name, label, points: [[x, y]]}],

@@ -21,9 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A cell that is not there yet.
-CellRequest request_of(const Study& study, const Study::Item& item, const StudySolver& s, const StabilityOptions& o) {
-  CellRequest r;
+/// A run that is not there yet.
+RunRequest request_of(const Study& study, const Study::Item& item, const StudySolver& s, const StabilityOptions& o) {
+  RunRequest r;
   r.scenario = json::parse(item.scene.json);
   r.source = item.scene.source;
   r.name = item.scene.name;
@@ -32,35 +32,35 @@ CellRequest request_of(const Study& study, const Study::Item& item, const StudyS
   r.settings = s.settings;
   r.device = o.device;
   r.protocol = protocol_name(study.length);
-  r.limit_s = study.cell_limit_s;
+  r.limit_s = study.run_limit_s;
   r.out = o.out;
   return r;
 }
 
-PlannedCell planned(const Study::Item& item, const StudySolver& s) {
+PlannedRun planned(const Study::Item& item, const StudySolver& s) {
   const SolverEntry* entry = known_solver(s.solver);
-  return {cell_name(item.scene.name, s.solver, s.label), item.scene.sha256, s.settings,
+  return {run_name(item.scene.name, s.solver, s.label), item.scene.sha256, s.settings,
           entry != nullptr ? &entry->info : nullptr};
 }
 
 }  // namespace
 
 void require_same_study(const Study& study, const StabilityOptions& o) {
-  std::vector<PlannedCell> cells;
+  std::vector<PlannedRun> runs;
   for (const Study::Item& item : study.scenes)
-    for (const std::size_t k : item.solvers) cells.push_back(planned(item, study.solvers[k]));
-  require_same_cells(o.out, cells, o.resume);
+    for (const std::size_t k : item.solvers) runs.push_back(planned(item, study.solvers[k]));
+  require_same_runs(o.out, runs, o.resume);
   require_same_maps(study, o);
 }
 
-double grade_of(const CellAnswer& a) {
+double grade_of(const RunAnswer& a) {
   const auto at = a.summary.find("stability_grade");
   return at != a.summary.end() && std::isfinite(at->second) ? at->second
          : a.outcome.status == "unsupported"                ? kMissing
                                                             : 2;
 }
 
-void StabilityCounts::add(const CellAnswer& a) {
+void StabilityCounts::add(const RunAnswer& a) {
   const double grade = grade_of(a);
   if (a.outcome.status == "unsupported")
     ++unsupported;
@@ -81,7 +81,7 @@ void StabilityCounts::add(const StabilityCounts& more) {
   crashed += more.crashed;
 }
 
-StabilityCounts run_stability_cells(const Study& study, const StabilityOptions& o) {
+StabilityCounts execute_stability_runs(const Study& study, const StabilityOptions& o) {
   StabilityCounts counts;
   struct Todo {
     const Study::Item* item;
@@ -94,27 +94,27 @@ StabilityCounts run_stability_cells(const Study& study, const StabilityOptions& 
     for (const std::size_t k : item.solvers) {
       const StudySolver& s = study.solvers[k];
       ++all;
-      const PlannedCell cell = planned(item, s);
-      if (!cell_finished(o.out, cell.name)) {
+      const PlannedRun run = planned(item, s);
+      if (!run_finished(o.out, run.name)) {
         todo.push_back(
             {&item, &s,
              static_cast<double>(item.scene.time.frames()) * static_cast<double>(item.scene.cloth.vertex_count())});
         continue;
       }
-      if (!o.resume) refuse_finished_cell(o.out, cell.name);
-      require_same_cell(o.out, cell);
-      const CellRecord before = read_cell_summary(stored_cell(o.out, cell.name));
-      counts.add(CellAnswer{before.outcome, before.summary, kMissing});
+      if (!o.resume) refuse_finished_run(o.out, run.name);
+      require_same_run(o.out, run);
+      const RunRecord before = read_run_summary(stored_run(o.out, run.name));
+      counts.add(RunAnswer{before.outcome, before.summary, kMissing});
     }
   // The longest first, or the last of them is waited for alone.
   std::stable_sort(todo.begin(), todo.end(), [](const Todo& a, const Todo& b) { return a.work > b.work; });
   std::size_t done = all - todo.size();
   std::mutex mutex;
-  std::vector<std::function<void(CellWorker&)>> tasks;
+  std::vector<std::function<void(RunWorker&)>> tasks;
   for (const Todo& t : todo)
-    tasks.push_back([&, t](CellWorker& worker) {
-      stop_if_interrupted(kCellsKept);
-      const CellAnswer a = worker.run(request_of(study, *t.item, *t.solver, o));
+    tasks.push_back([&, t](RunWorker& worker) {
+      stop_if_interrupted(kRunsKept);
+      const RunAnswer a = worker.run(request_of(study, *t.item, *t.solver, o));
       const std::lock_guard lock(mutex);
       counts.add(a);
       ++done;

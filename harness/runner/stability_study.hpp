@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "clothbench/solver.hpp"
-#include "runner/cell_process.hpp"
+#include "runner/run_process.hpp"
 #include "scenario/study.hpp"
 
 namespace clothbench {
 
 struct StabilityOptions {
-  std::filesystem::path out;      ///< of the cells' files, stability.json and stability-probes.jsonl
+  std::filesystem::path out;      ///< of the runs' files, stability.json and stability-probes.jsonl
   std::filesystem::path program;  ///< what is run as a child
   DeviceOptions device;
   bool resume = false;
@@ -23,22 +23,22 @@ struct StabilityOptions {
 };
 
 /// 0 stable, 1 degraded, 2 failed; NaN: unsupported.
-double grade_of(const CellAnswer&);
+double grade_of(const RunAnswer&);
 
-/// How many cells of each kind there were, probes of the maps among them.
+/// How many runs of each kind there were, probes of the maps among them.
 struct StabilityCounts {
   int stable = 0, degraded = 0, failed = 0, unsupported = 0;
   int crashed = 0;  ///< of the failed: processes that died or hung
-  void add(const CellAnswer&);
+  void add(const RunAnswer&);
   void add(const StabilityCounts&);
 };
 
-/// Before anything is written: throws Error naming the file if what the folder holds, cells or probes, is of other
+/// Before anything is written: throws Error naming the file if what the folder holds, runs or probes, is of other
 /// scenes, settings or versions of solvers, or is finished and not to be gone on with.
 void require_same_study(const Study&, const StabilityOptions&);
 
-/// Every cell of the study's scenes, in processes that are replaced after a fault, with a result file each; cells that
+/// Every run of the study's scenes, in processes that are replaced after a fault, with a result file each; runs that
 /// are there already are passed over with `resume`.
-StabilityCounts run_stability_cells(const Study&, const StabilityOptions&);
+StabilityCounts execute_stability_runs(const Study&, const StabilityOptions&);
 
 }  // namespace clothbench

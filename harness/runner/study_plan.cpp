@@ -14,9 +14,9 @@ const SolverEntry* known_solver(const std::string& name) {
   return external_solver(name);
 }
 
-CellPlan plan_study(const Study& study) {
+RunPlan plan_study(const Study& study) {
   const StudyRules& rules = study.rules;
-  CellPlan plan;
+  RunPlan plan;
   plan.protocol = protocol_name(study.length);
   plan.rules = {study.trials,
                 rules.frames,
@@ -25,12 +25,12 @@ CellPlan plan_study(const Study& study) {
                 rules.warmup_s,
                 study.drop_frames,
                 study.accuracy_duration_s,
-                study.cell_limit_s,
+                study.run_limit_s,
                 rules.ladder_limit_s,
                 rules.agree,
                 study.pipelined};
   if (!study.stage_times) plan.rules.profiled_frames = 0;
-  plan.references = plan.material_cards = study.protocol == "work-precision";
+  plan.references = plan.measure_moduli = study.protocol == "work-precision";
   std::vector<const SolverEntry*> entries;
   for (const StudySolver& s : study.solvers)
     entries.push_back(s.joined ? &find_solver(s.solver) : known_solver(s.solver));

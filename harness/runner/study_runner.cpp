@@ -18,11 +18,11 @@
 namespace clothbench {
 namespace {
 
-/// One cell with its open result file.
+/// One run with its open result file.
 struct Running {
-  std::unique_ptr<Cell> cell;
-  std::unique_ptr<CellWriter> writer;
-  CellRecord record;
+  std::unique_ptr<SolverRun> run;
+  std::unique_ptr<RunWriter> writer;
+  RunRecord record;
   double untimed_s = 0;    ///< wall time of its load and its pass
   nlohmann::json sensors;  ///< after its last trial, before the device cools down
 
@@ -44,7 +44,7 @@ struct Running {
     return (rates.back() - rates.front()) / 2 <= to * (rates[(rates.size() - 1) / 2] + rates[rates.size() / 2]) / 2;
   }
   int frames() const { return record.trials.empty() ? 0 : record.trials.front().frames(); }
-  std::string name() const { return cell_name(cell->header()); }
+  std::string name() const { return run_name(run->header()); }
 };
 
 /// Adds the time from its construction to its end.
@@ -63,26 +63,26 @@ class Stopwatch {
 
 class GroupRun {
  public:
-  GroupRun(const CellPlan& plan, const RunOptions& options, RunResult& result, std::size_t& done)
+  GroupRun(const RunPlan& plan, const RunOptions& options, RunResult& result, std::size_t& done)
       : plan_(plan), options_(options), result_(result), done_(done), budget_(plan.rules.ladder_limit_s) {}
 
-  void run(const std::vector<CellSpec>& group) {
+  void run(const std::vector<RunSpec>& group) {
     running_.reserve(group.size());
-    for (const CellSpec& spec : group) begin(spec);
+    for (const RunSpec& spec : group) begin(spec);
     for (int k = 0; k < plan_.rules.trials; ++k) round(k);
     for (Running& r : running_) finish(r);
   }
 
  private:
-  /// One trial of every cell: those on the GPU together, then those on the CPU, each part starting with another cell
-  /// every time, so that none always follows the same neighbour. While CPU cells run a GPU goes to sleep, and it takes
-  /// longer to wake than a small cell's warm-up lasts: the first GPU cell of a round warms up for all of them.
+  /// One trial of every run: those on the GPU together, then those on the CPU, each part starting with another run
+  /// every time, so that none always follows the same neighbour. During CPU runs a GPU goes to sleep, and it takes
+  /// longer to wake than a small run's warm-up lasts: the first GPU run of a round warms up for all of them.
   void round(int k) {
     constexpr double kWakeUp = 5;  // warm-ups
     for (const bool on_gpu : {true, false}) {
       std::vector<Running*> part;
       for (Running& r : running_)
-        if (r.cell->alive() && r.cell->spec().timed && r.cell->spec().entry->info.on_gpu == on_gpu && !r.has_trial(k) &&
+        if (r.run->alive() && r.run->spec().timed && r.run->spec().entry->info.on_gpu == on_gpu && !r.has_trial(k) &&
             !r.trials_agree(plan_.rules.agree))
           part.push_back(&r);
       for (std::size_t i = 0; i < part.size(); ++i) {
@@ -97,17 +97,17 @@ class GroupRun {
     if (options_.progress) options_.progress(what, done_, plan_.size());
   }
 
-  double& seconds_of(const CellSpec& spec) { return result_.seconds[spec.entry->info.name]; }
+  double& seconds_of(const RunSpec& spec) { return result_.seconds[spec.entry->info.name]; }
 
   /// Load and untimed pass, unless its ladder's budget is used up.
-  void begin(const CellSpec& given) {
+  void begin(const RunSpec& given) {
     const Stopwatch watch(seconds_of(given));
-    CellSpec spec = given;
-    const std::string name = cell_name(spec);
+    RunSpec spec = given;
+    const std::string name = run_name(spec);
     if (options_.resume) remove_leftovers(options_.out, name);
-    if (cell_finished(options_.out, name)) {
-      if (!options_.resume) refuse_finished_cell(options_.out, name);
-      require_same_cell(options_.out, planned_cell(spec));
+    if (run_finished(options_.out, name)) {
+      if (!options_.resume) refuse_finished_run(options_.out, name);
+      require_same_run(options_.out, planned_run(spec));
       if (spec.work > 0) recall(spec, name);
       ++done_;
       return;
@@ -115,53 +115,53 @@ class GroupRun {
     spec.over_budget = budget_.refused(spec);
     open(spec, name);
     Running& r = running_.back();
-    if (r.cell->alive() && !r.cell->usable(r.record.accuracy, plan_.rules.accuracy_duration_s)) accuracy(r);
+    if (r.run->alive() && !r.run->usable(r.record.accuracy, plan_.rules.accuracy_duration_s)) accuracy(r);
     r.untimed_s = watch.seconds();
-    if (spec.over_budget.empty()) budget_.spent(spec, r.untimed_s, r.cell->outcome().status);
+    if (spec.over_budget.empty()) budget_.spent(spec, r.untimed_s, r.run->outcome().status);
   }
 
-  /// What a cell of an earlier run took of its ladder's budget.
-  void recall(const CellSpec& spec, const std::string& name) {
-    const CellRecord before = read_cell_summary(stored_cell(options_.out, name));
+  /// What a run of an earlier session took of its ladder's budget.
+  void recall(const RunSpec& spec, const std::string& name) {
+    const RunRecord before = read_run_summary(stored_run(options_.out, name));
     const auto took = before.summary.find("untimed_s");
     if (before.outcome.status != "over_budget" && took != before.summary.end())
       budget_.spent(spec, took->second, before.outcome.status);
   }
 
-  void open(const CellSpec& spec, const std::string& name) {
+  void open(const RunSpec& spec, const std::string& name) {
     note(name + ": load");
     Running r;
-    r.cell = std::make_unique<Cell>(spec, options_.device, plan_.protocol);
-    r.cell->describe(plan_.rules.rendering);
-    r.record.header = r.cell->header();
-    r.writer = std::make_unique<CellWriter>(options_.out, r.cell->header());
+    r.run = std::make_unique<SolverRun>(spec, options_.device, plan_.protocol);
+    r.run->describe(plan_.rules.rendering);
+    r.record.header = r.run->header();
+    r.writer = std::make_unique<RunWriter>(options_.out, r.run->header());
     if (options_.resume) {
-      const CellRecord before = r.writer->recovered();
+      const RunRecord before = r.writer->recovered();
       for (const TimedTrial& t : before.trials)  // one without the pictures now asked for is run again
         if (!plan_.rules.rendering.make || !t.frame_rendered_s.empty()) r.record.trials.push_back(t);
       r.record.accuracy = before.accuracy;
     }
-    if (r.cell->alive()) r.writer->write_replay(replay_of(*spec.scene));
+    if (r.run->alive()) r.writer->write_replay(replay_of(*spec.scene));
     running_.push_back(std::move(r));
   }
 
   void accuracy(Running& r) {
     note(r.name() + ": accuracy");
     TrialRules rules = plan_.rules;
-    rules.cell_limit_s = budget_.cell_limit_s(r.cell->spec(), rules.cell_limit_s);
-    r.record.accuracy = r.cell->run_accuracy(rules);
+    rules.run_limit_s = budget_.run_limit_s(r.run->spec(), rules.run_limit_s);
+    r.record.accuracy = r.run->run_accuracy(rules);
     r.writer->write_accuracy(r.record.accuracy);
   }
 
   void trial(Running& r, int k, const TrialRules& rules) {
-    const Stopwatch watch(seconds_of(r.cell->spec()));
+    const Stopwatch watch(seconds_of(r.run->spec()));
     note(fmt::format("{}: trial {} of {}", r.name(), k + 1, plan_.rules.trials));
     TimedTrial t;
     int before = 0;
     do {
       before = times_held();
-      t = r.cell->run_trial(k, rules, r.frames());
-    } while (times_held() != before && r.cell->alive());
+      t = r.run->run_trial(k, rules, r.frames());
+    } while (times_held() != before && r.run->alive());
     r.sensors = read_sensors();
     if (t.frames() == 0) return;
     r.writer->write_trial(t);
@@ -169,37 +169,37 @@ class GroupRun {
   }
 
   void finish(Running& r) {
-    const Stopwatch watch(seconds_of(r.cell->spec()));
-    Outcome outcome = r.cell->outcome();
-    const int messages = r.cell->validation_messages();
+    const Stopwatch watch(seconds_of(r.run->spec()));
+    Outcome outcome = r.run->outcome();
+    const int messages = r.run->validation_messages();
     if (messages > 0) {
       result_.validation_messages += messages;
       result_.faults.push_back(fmt::format("{}: {} validation messages", r.name(), messages));
     }
     if (outcome.status == "error") result_.faults.push_back(r.name() + ": " + outcome.message);
     if (outcome.status == "ok")
-      ++result_.cells_ok;
+      ++result_.runs_ok;
     else if (outcome.status == "unsupported")
-      ++result_.cells_unsupported;
+      ++result_.runs_unsupported;
     else if (outcome.status == "over_budget")
-      ++result_.cells_over_budget;
+      ++result_.runs_over_budget;
     else
-      ++result_.cells_failed;
+      ++result_.runs_failed;
     r.record.outcome = outcome;
-    std::map<std::string, double> summary = summarise(r.cell->spec(), r.cell->plan(), r.record);
+    std::map<std::string, double> summary = summarise(r.run->spec(), r.run->plan(), r.record);
     summarise_sensors(r.record.header.environment.value("sensors", nlohmann::json::object()), "start", summary);
     summarise_sensors(r.sensors.is_null() ? nlohmann::json::object() : r.sensors, "end", summary);
     summary["untimed_s"] = r.untimed_s;
-    Verdict verdict = judge(*r.cell->spec().scene, outcome, r.record.accuracy, summary);
-    if (verdict.text == "kept") ++result_.expect_kept;
-    if (verdict.text.starts_with("broken")) result_.expect_broken.push_back(r.name() + ": " + verdict.text);
+    Verdict verdict = judge(*r.run->spec().scene, outcome, r.record.accuracy, summary);
+    if (verdict.text == "pass") ++result_.expect_passed;
+    if (verdict.text.starts_with("fail")) result_.expect_failed.push_back(r.name() + ": " + verdict.text);
     outcome.expect = std::move(verdict.text);
     summary.merge(verdict.scalars);
     result_.files.push_back(r.writer->finish(outcome, summary));
     ++done_;
   }
 
-  const CellPlan& plan_;
+  const RunPlan& plan_;
   const RunOptions& options_;
   RunResult& result_;
   std::size_t& done_;
@@ -207,50 +207,50 @@ class GroupRun {
   std::vector<Running> running_;
 };
 
-/// Two cells of one name would write one file.
-void refuse_doubles(const CellPlan& plan) {
+/// Two runs of one name would write one file.
+void refuse_doubles(const RunPlan& plan) {
   std::set<std::string> names;
   for (const auto& group : plan.groups)
-    for (const CellSpec& c : group)
-      if (const std::string name = cell_name(c); !names.insert(name).second)
-        throw Error("two cells would be stored as " + name + ": expected each scene, solver and setting once");
+    for (const RunSpec& c : group)
+      if (const std::string name = run_name(c); !names.insert(name).second)
+        throw Error("two runs would be stored as " + name + ": expected each scene, solver and setting once");
 }
 
 }  // namespace
 
-std::size_t CellPlan::size() const {
+std::size_t RunPlan::size() const {
   std::size_t n = 0;
   for (const auto& g : groups) n += g.size();
   return n;
 }
 
-void require_same_cells(const std::filesystem::path& folder, const CellPlan& plan, bool resume) {
-  std::vector<PlannedCell> cells;
+void require_same_runs(const std::filesystem::path& folder, const RunPlan& plan, bool resume) {
+  std::vector<PlannedRun> runs;
   for (const auto& group : plan.groups)
-    for (const CellSpec& c : group) cells.push_back(planned_cell(c));
-  require_same_cells(folder, cells, resume);
+    for (const RunSpec& c : group) runs.push_back(planned_run(c));
+  require_same_runs(folder, runs, resume);
 }
 
-RunResult run_cells(const CellPlan& given, const RunOptions& options) {
+RunResult execute_runs(const RunPlan& given, const RunOptions& options) {
   refuse_doubles(given);
   RunResult result;
   std::size_t done = 0;
-  CellPlan plan = given;
+  RunPlan plan = given;
   if (plan.references) {
     std::vector<const Scene*> scenes;
     for (const auto& group : plan.groups)
-      for (const CellSpec& c : group) scenes.push_back(c.scene);
+      for (const RunSpec& c : group) scenes.push_back(c.scene);
     const auto note = [&](const std::string& what) {
       if (options.progress) options.progress(what, 0, plan.size());
     };
     const Stopwatch watch(result.seconds["reference solutions"]);
     const auto found = references(scenes, options.reference_cache, note);
     for (auto& group : plan.groups)
-      for (CellSpec& c : group)
+      for (RunSpec& c : group)
         if (const auto r = found.find(c.scene->sha256); r != found.end()) c.scene_values = r->second.scalars();
     std::map<std::string, std::map<std::string, double>> dependence;
     for (auto& group : plan.groups)
-      for (CellSpec& c : group) {
+      for (RunSpec& c : group) {
         if (!dependence.contains(c.scene->sha256)) dependence[c.scene->sha256] = truth_dependence(*c.scene);
         for (const auto& [name, value] : dependence[c.scene->sha256]) c.scene_values[name] = value;
       }

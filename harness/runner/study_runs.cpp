@@ -4,8 +4,8 @@
 
 #include "clothbench/error.hpp"
 #include "results/raw_file.hpp"
-#include "runner/cell_process.hpp"
 #include "runner/environment.hpp"
+#include "runner/run_process.hpp"
 #include "runner/whole_run.hpp"
 
 namespace clothbench {
@@ -15,13 +15,13 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// As a child tells it to its parent: without series and positions.
-json told(const CellRecord& c) {
-  return {{"header", header_to_json(c.header)}, {"answer", to_json(CellAnswer{c.outcome, c.summary, kMissing})}};
+json reported(const RunRecord& c) {
+  return {{"header", header_to_json(c.header)}, {"answer", to_json(RunAnswer{c.outcome, c.summary, kMissing})}};
 }
 
-CellRecord heard(const json& j) {
-  CellAnswer answer = answer_from_json(j.at("answer"));
-  CellRecord c;
+RunRecord heard(const json& j) {
+  RunAnswer answer = answer_from_json(j.at("answer"));
+  RunRecord c;
   c.header = header_from_json(j.at("header"));
   c.outcome = std::move(answer.outcome);
   c.summary = std::move(answer.summary);
@@ -44,58 +44,58 @@ StudyRuns::StudyRuns(DeviceOptions device, fs::path out, bool resume, StudyManif
   write_manifest(out_, manifest);
 }
 
-void StudyRuns::plan(const std::string& cell) const {
+void StudyRuns::plan(const std::string& run) const {
   StudyManifest m = read_manifest(out_);
-  if (std::find(m.cells.begin(), m.cells.end(), cell) != m.cells.end()) return;
-  m.cells.push_back(cell);
+  if (std::find(m.runs.begin(), m.runs.end(), run) != m.runs.end()) return;
+  m.runs.push_back(run);
   write_manifest(out_, m);
 }
 
-std::optional<CellRecord> StudyRuns::stored(const PlannedCell& cell) const {
-  require_same_cell(out_, cell);
-  remove_leftovers(out_, cell.name);
-  plan(cell.name);
-  if (!cell_finished(out_, cell.name)) return std::nullopt;
-  return read_cell_summary(stored_cell(out_, cell.name));
+std::optional<RunRecord> StudyRuns::stored(const PlannedRun& run) const {
+  require_same_run(out_, run);
+  remove_leftovers(out_, run.name);
+  plan(run.name);
+  if (!run_finished(out_, run.name)) return std::nullopt;
+  return read_run_summary(stored_run(out_, run.name));
 }
 
-CellRecord StudyRuns::run(const CellSpec& spec, const std::string& protocol, const truth::Card* by) {
+RunRecord StudyRuns::run(const RunSpec& spec, const std::string& protocol, const truth::ReferenceCase* by) {
   if (out_.empty()) return end_of_run(spec, device_, protocol, by);
-  if (auto before = stored(planned_cell(spec))) return *std::move(before);
+  if (auto before = stored(planned_run(spec))) return *std::move(before);
   return whole_run(spec, device_, protocol, out_, 0, by);
 }
 
-CellRecord StudyRuns::made(const PlannedCell& cell, const std::function<CellRecord()>& make) {
+RunRecord StudyRuns::made(const PlannedRun& run, const std::function<RunRecord()>& make) {
   if (out_.empty()) return make();
-  if (auto before = stored(cell)) return *std::move(before);
-  CellRecord c = make();
-  CellWriter(out_, c.header).finish(c.outcome, c.summary);
+  if (auto before = stored(run)) return *std::move(before);
+  RunRecord c = make();
+  RunWriter(out_, c.header).finish(c.outcome, c.summary);
   return c;
 }
 
-void StudyRuns::store_crashed(const CellHeader& asked, const Outcome& outcome) const {
+void StudyRuns::store_crashed(const RunHeader& asked, const Outcome& outcome) const {
   if (out_.empty()) return;
-  std::vector<CellHeader> begun;
-  for (const std::string& cell : read_manifest(out_).cells) {
-    const fs::path header = out_ / (cell + ".part") / "header.raw";
-    if (cell_finished(out_, cell)) continue;
+  std::vector<RunHeader> begun;
+  for (const std::string& run : read_manifest(out_).runs) {
+    const fs::path header = out_ / (run + ".part") / "header.raw";
+    if (run_finished(out_, run)) continue;
     if (fs::exists(header))
-      begun.push_back(header_from_json(read_raw(header).header.at("cell")));
-    else if (cell == cell_name(asked))
+      begun.push_back(header_from_json(read_raw(header).header.at("run")));
+    else if (run == run_name(asked))
       begun.push_back(asked);
   }
-  for (const CellHeader& h : begun)
-    if (h.solver == asked.solver) write_failed_cell(out_, h, outcome, {});
+  for (const RunHeader& h : begun)
+    if (h.solver == asked.solver) write_failed_run(out_, h, outcome, {});
 }
 
-std::vector<CellRecord> StudyRuns::ask(Guard& guard, const CellHeader& asked, const SolverEntry& entry,
-                                       const std::function<std::vector<CellRecord>()>& work) {
-  std::vector<CellRecord> out;
+std::vector<RunRecord> StudyRuns::ask(Guard& guard, const RunHeader& asked, const SolverEntry& entry,
+                                      const std::function<std::vector<RunRecord>()>& work) {
+  std::vector<RunRecord> out;
   const Guard::Answer answer = guard.run(entry, [&]() -> json {
     out = work();
     if (!is_external(entry.info)) return nullptr;
     json all = json::array();
-    for (const CellRecord& c : out) all.push_back(told(c));
+    for (const RunRecord& c : out) all.push_back(reported(c));
     return all;
   });
   for (const json& j : answer.value) out.push_back(heard(j));

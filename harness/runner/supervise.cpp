@@ -9,9 +9,9 @@
 
 #include "base/json_text.hpp"
 #include "runner/again.hpp"
-#include "runner/cell_process.hpp"
+#include "runner/effective_moduli.hpp"
 #include "runner/environment.hpp"
-#include "runner/material_card.hpp"
+#include "runner/run_process.hpp"
 
 namespace clothbench {
 namespace {
@@ -22,27 +22,27 @@ constexpr char kVariable[] = "CLOTHBENCH_SUPERVISED";  // "new:<folder>" or "aga
 
 fs::path note_file(const fs::path& out) { return out / "running.txt"; }
 
-/// What a child was at: a cell of the plan, or a material card of one of its solvers.
+/// What a child was at: a run of the plan, or a effective moduli of one of its solvers.
 struct Doing {
   const SolverEntry* entry;
-  const CellSpec* cell;  ///< null: a card
+  const RunSpec* run;  ///< null: a measurement
   std::string setting;
 };
 
-/// "<cell>: trial 2 of 5" or "<card>" -> what that is, if it is the plan's.
-std::optional<Doing> doing_of(const CellPlan& plan, const std::string& note) {
+/// "<run>: trial 2 of 5" or "<measured>" -> what that is, if it is the plan's.
+std::optional<Doing> doing_of(const RunPlan& plan, const std::string& note) {
   const std::string name = note.substr(0, note.find(": "));
   for (const auto& group : plan.groups)
-    for (const CellSpec& c : group) {
-      if (cell_name(c) == name) return Doing{c.entry, &c, c.setting};
-      const std::string card = fmt::format("{}__{}__", kMaterialCardScene, c.entry->info.name);
-      if (name.starts_with(card)) return Doing{c.entry, nullptr, name.substr(card.size())};
+    for (const RunSpec& c : group) {
+      if (run_name(c) == name) return Doing{c.entry, &c, c.setting};
+      const std::string measured = fmt::format("{}__{}__", kModuliScene, c.entry->info.name);
+      if (name.starts_with(measured)) return Doing{c.entry, nullptr, name.substr(measured.size())};
     }
   return std::nullopt;
 }
 
-/// This command in a child, which is killed where a plugin's cell stands still.
-ChildEnd run_watched(const std::vector<std::string>& words, const std::string& variable, const CellPlan& plan,
+/// This command in a child, which is killed where a plugin's run stands still.
+ChildEnd run_watched(const std::vector<std::string>& words, const std::string& variable, const RunPlan& plan,
                      const fs::path& note) {
   using Clock = std::chrono::steady_clock;
   std::string doing;
@@ -60,34 +60,34 @@ ChildEnd run_watched(const std::vector<std::string>& words, const std::string& v
   });
 }
 
-void write_row(const Doing& at, const CellPlan& plan, const fs::path& out, const Outcome& outcome) {
-  if (at.cell == nullptr) {
-    const CellRecord card = failed_material(*at.entry, at.setting, outcome, plan.protocol);
-    CellWriter(out, card.header).finish(card.outcome, card.summary);
+void write_row(const Doing& at, const RunPlan& plan, const fs::path& out, const Outcome& outcome) {
+  if (at.run == nullptr) {
+    const RunRecord measured = failed_material(*at.entry, at.setting, outcome, plan.protocol);
+    RunWriter(out, measured.header).finish(measured.outcome, measured.summary);
     return;
   }
-  const CellSpec& c = *at.cell;
-  CellRecord r;
+  const RunSpec& c = *at.run;
+  RunRecord r;
   r.header = header_of(*c.scene, c.entry->info.name, c.setting, c.settings, plan.protocol);
   r.outcome = outcome;
-  write_failed_cell(out, r.header, outcome, summarise(c, {}, r));
+  write_failed_run(out, r.header, outcome, summarise(c, {}, r));
 }
 
 }  // namespace
 
-bool needs_supervision(const CellPlan& plan) {
+bool needs_supervision(const RunPlan& plan) {
   if (supervised()) return false;
   for (const auto& group : plan.groups)
-    for (const CellSpec& c : group)
+    for (const RunSpec& c : group)
       if (is_external(c.entry->info)) return true;
   return false;
 }
 
-ExitCode supervise(const CellPlan& plan, const fs::path& out, bool resume, const std::vector<std::string>& words) {
+ExitCode supervise(const RunPlan& plan, const fs::path& out, bool resume, const std::vector<std::string>& words) {
   const fs::path note = note_file(out);
   std::error_code ignored;
   fs::remove(note, ignored);
-  // A row a child at least, of a cell or of a card at its setting.
+  // A row a child at least, of a run or of a measurement at its setting.
   for (std::size_t children = 0; children <= 2 * plan.size(); ++children) {
     const bool again = resume || children > 0;
     const ChildEnd end =
@@ -97,13 +97,12 @@ ExitCode supervise(const CellPlan& plan, const fs::path& out, bool resume, const
     const std::string doing = read_text(note.string());
     const std::optional<Doing> at = doing_of(plan, doing);
     fs::remove(note, ignored);
-    if (!at)
-      throw Error(fmt::format("{}: the process that ran the cells: {}", doing, end.text()), ExitCode::CheckFailed);
+    if (!at) throw Error(fmt::format("{}: the study's process: {}", doing, end.text()), ExitCode::CheckFailed);
     const std::string message = fmt::format("its process: {}, at \"{}\"", end.text(), doing);
     fmt::print(stderr, "{}\n", message);
     write_row(*at, plan, out, {end.how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F8", -1, message});
   }
-  throw Error("the process that runs the cells crashed more often than there are cells", ExitCode::CheckFailed);
+  throw Error("the study's process crashed more often than there are runs", ExitCode::CheckFailed);
 }
 
 std::optional<Supervised> supervised() {
@@ -116,7 +115,7 @@ std::optional<Supervised> supervised() {
 
 RunningNote::RunningNote(const std::optional<Supervised>& s) : file_(s ? note_file(s->out) : fs::path()) {
   if (s) end_with_parent();
-  write("before the first cell");
+  write("before the first run");
 }
 
 RunningNote::~RunningNote() {

@@ -7,25 +7,25 @@
 #include "clothbench/error.hpp"
 #include "runner/whole_run.hpp"
 #include "scenario/load.hpp"
-#include "truth/card.hpp"
+#include "truth/reference_case.hpp"
 
 namespace clothbench {
 namespace {
 
-truth::Card card_with_threshold(const Scene& scene, const SolverEntry& entry) {
-  const auto card = truth::card_of(scene);
-  if (!card || !card->threshold)
+truth::ReferenceCase card_with_threshold(const Scene& scene, const SolverEntry& entry) {
+  const auto known = truth::reference_case_of(scene);
+  if (!known || !known->threshold)
     throw Error(scene.source +
                 ": this scene has no threshold: expected one at rest on a slope or over a cylinder, with friction");
   if (!unsupported(entry.info, scene.needs).empty()) throw Error(entry.info.name + " cannot run " + scene.name);
-  return *card;
+  return *known;
 }
 
 /// The scene at one coefficient of friction, without a truth of its own: at too little of it a strip would leave its
 /// cylinder, and there is none.
 Scene tried(const Scene& scene, const truth::Threshold& t, double friction) {
   Scene out = scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", t.key, friction)});
-  out.truth_card.clear();
+  out.reference_case.clear();
   out.name = tried_scene(scene.name, friction);
   return out;
 }
@@ -33,14 +33,14 @@ Scene tried(const Scene& scene, const truth::Threshold& t, double friction) {
 }  // namespace
 
 FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings,
-                              StudyRuns& runs, const std::string& setting, std::vector<CellRecord>* told) {
-  const truth::Card card = card_with_threshold(scene, entry);
-  const truth::Threshold& t = *card.threshold;
+                              StudyRuns& runs, const std::string& setting, std::vector<RunRecord>* reported) {
+  const truth::ReferenceCase known = card_with_threshold(scene, entry);
+  const truth::Threshold& t = *known.threshold;
   return search_threshold(t, [&](double friction) {
     const Scene s = tried(scene, t, friction);
-    CellRecord run = runs.run({&s, &entry, settings, setting}, kThresholdProtocol, &card);
+    RunRecord run = runs.run({&s, &entry, settings, setting}, kThresholdProtocol, &known);
     const std::optional<bool> answer = stayed(t, run);
-    if (told != nullptr) told->push_back(std::move(run));
+    if (reported != nullptr) reported->push_back(std::move(run));
     return answer;
   });
 }
@@ -51,11 +51,11 @@ FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, cons
   return find_threshold(scene, entry, settings, nowhere);
 }
 
-std::vector<CellRecord> threshold_runs(Guard& guard, StudyRuns& runs, const Scene& scene, const SolverEntry& entry,
-                                       const nlohmann::json& settings, const std::string& setting) {
+std::vector<RunRecord> threshold_runs(Guard& guard, StudyRuns& runs, const Scene& scene, const SolverEntry& entry,
+                                      const nlohmann::json& settings, const std::string& setting) {
   card_with_threshold(scene, entry);
   return runs.ask(guard, bare_header({&scene, &entry, settings, setting}, kThresholdProtocol), entry, [&] {
-    std::vector<CellRecord> all;
+    std::vector<RunRecord> all;
     find_threshold(scene, entry, settings, runs, setting, &all);
     return all;
   });

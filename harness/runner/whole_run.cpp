@@ -17,32 +17,32 @@ bool finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
 }
 
-double quantity_now(const truth::Card& card, const Scene& scene, const ClothSolver& solver) {
+double quantity_now(const truth::ReferenceCase& known, const Scene& scene, const ClothSolver& solver) {
   ClothState state;
   solver.read_state(state);
-  return card.quantity(truth::column_means(scene.cloth, state.position));
+  return known.quantity(truth::column_means(scene.cloth, state.position));
 }
 
 }  // namespace
 
-CellRecord whole_run(const CellSpec& spec, const DeviceOptions& device, const std::string& protocol,
-                     const std::filesystem::path& out, double limit_s, const truth::Card* by) {
-  Cell cell(spec, device, protocol);
-  CellRecord record;
-  record.header = cell.header();
-  std::unique_ptr<CellWriter> writer;
-  if (!out.empty()) writer = std::make_unique<CellWriter>(out, cell.header());
+RunRecord whole_run(const RunSpec& spec, const DeviceOptions& device, const std::string& protocol,
+                    const std::filesystem::path& out, double limit_s, const truth::ReferenceCase* by) {
+  SolverRun run(spec, device, protocol);
+  RunRecord record;
+  record.header = run.header();
+  std::unique_ptr<RunWriter> writer;
+  if (!out.empty()) writer = std::make_unique<RunWriter>(out, run.header());
   TrialRules rules;
   rules.trials = 0;
   rules.accuracy_duration_s = spec.scene->time.duration_s;
-  rules.cell_limit_s = limit_s;
-  if (cell.alive()) record.accuracy = cell.run_accuracy(rules);
-  record.outcome = cell.outcome();
-  if (const int messages = cell.validation_messages(); messages > 0)
+  rules.run_limit_s = limit_s;
+  if (run.alive()) record.accuracy = run.run_accuracy(rules);
+  record.outcome = run.outcome();
+  if (const int messages = run.validation_messages(); messages > 0)
     record.outcome = {"error", "ok", -1, fmt::format("{} validation messages", messages)};
-  record.summary = summarise(cell.spec(), cell.plan(), record);
+  record.summary = summarise(run.spec(), run.plan(), record);
   if (by != nullptr && record.outcome.status == "ok")
-    record.summary["truth_quantity"] = quantity_now(*by, *spec.scene, *cell.solver());
+    record.summary["truth_quantity"] = quantity_now(*by, *spec.scene, *run.solver());
   Verdict verdict = judge(*spec.scene, record.outcome, record.accuracy, record.summary);
   record.outcome.expect = std::move(verdict.text);
   record.summary.merge(verdict.scalars);
@@ -55,8 +55,8 @@ CellRecord whole_run(const CellSpec& spec, const DeviceOptions& device, const st
   return record;
 }
 
-CellHeader bare_header(const CellSpec& spec, const std::string& protocol) {
-  CellHeader h;
+RunHeader bare_header(const RunSpec& spec, const std::string& protocol) {
+  RunHeader h;
   h.scene = spec.scene->name;
   h.solver = spec.entry->info.name;
   h.setting = spec.setting;
@@ -67,10 +67,10 @@ CellHeader bare_header(const CellSpec& spec, const std::string& protocol) {
   return h;
 }
 
-CellRecord end_of_run(const CellSpec& spec, const DeviceOptions& device, const std::string& protocol,
-                      const truth::Card* by) {
+RunRecord end_of_run(const RunSpec& spec, const DeviceOptions& device, const std::string& protocol,
+                     const truth::ReferenceCase* by) {
   const Scene& scene = *spec.scene;
-  CellRecord record;
+  RunRecord record;
   record.header = bare_header(spec, protocol);
   if (!unsupported(spec.entry->info, scene.needs).empty()) {
     record.outcome.status = "unsupported";
@@ -86,7 +86,7 @@ CellRecord end_of_run(const CellSpec& spec, const DeviceOptions& device, const s
   solver->read_state(state);
   if (!finite(state.position) || !finite(state.velocity))
     record.outcome = outcome_of(StepStatus::NotFinite, scene.time.frames());
-  else if (const auto own = by == nullptr ? truth::card_of(scene) : std::nullopt; by != nullptr || own)
+  else if (const auto own = by == nullptr ? truth::reference_case_of(scene) : std::nullopt; by != nullptr || own)
     record.summary["truth_quantity"] = quantity_now(by != nullptr ? *by : *own, scene, *solver);
   return record;
 }

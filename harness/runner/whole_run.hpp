@@ -1,24 +1,24 @@
 #pragma once
 #include <filesystem>
 
-#include "runner/cell.hpp"
-#include "truth/card.hpp"
+#include "runner/solver_run.hpp"
+#include "truth/reference_case.hpp"
 
 namespace clothbench {
 
 /// A scene from beginning to end, untimed: positions, metrics, summary and what came of the scene's expectations.
 /// Stored in `out` unless that is empty. A pass that takes more than `limit_s` of wall time is `timed_out`; 0 = no
-/// limit. `by`: a card other than the scene's own for `truth_quantity`, the card's quantity at the end. Throws Error as
-/// Cell does.
-CellRecord whole_run(const CellSpec&, const DeviceOptions&, const std::string& protocol,
-                     const std::filesystem::path& out, double limit_s = 0, const truth::Card* by = nullptr);
+/// limit. `by`: a reference case other than the scene's own for `truth_quantity`, its quantity at the end. Throws Error
+/// as SolverRun does.
+RunRecord whole_run(const RunSpec&, const DeviceOptions&, const std::string& protocol, const std::filesystem::path& out,
+                    double limit_s = 0, const truth::ReferenceCase* by = nullptr);
 
 /// Of the same run no more than how it ended, for a search that stores nothing: no metric is watched, and the summary
 /// has `truth_quantity` alone, of a scene with a truth. Throws Error if the solver cannot be loaded.
-CellRecord end_of_run(const CellSpec&, const DeviceOptions&, const std::string& protocol,
-                      const truth::Card* by = nullptr);
+RunRecord end_of_run(const RunSpec&, const DeviceOptions&, const std::string& protocol,
+                     const truth::ReferenceCase* by = nullptr);
 
 /// What tells one run from another, without the machine.
-CellHeader bare_header(const CellSpec&, const std::string& protocol);
+RunHeader bare_header(const RunSpec&, const std::string& protocol);
 
 }  // namespace clothbench

@@ -8,14 +8,14 @@
 
 namespace clothbench {
 
-void run_tasks(const std::vector<std::function<void(CellWorker&)>>& tasks, int jobs,
+void run_tasks(const std::vector<std::function<void(RunWorker&)>>& tasks, int jobs,
                const std::filesystem::path& program, const std::filesystem::path& scratch) {
   std::atomic<std::size_t> next{0};
   std::exception_ptr first;
   std::mutex mutex;
   const auto work = [&](int k) {
     try {
-      CellWorker worker(program, scratch / std::to_string(k));
+      RunWorker worker(program, scratch / std::to_string(k));
       for (std::size_t task = next++; task < tasks.size(); task = next++) tasks[task](worker);
     } catch (...) {
       next = tasks.size();

@@ -40,7 +40,7 @@ struct Extent {
 /// Triangles of a surface at one instant, counter-clockwise seen from free space.
 struct ColliderSurface {
   std::vector<double> positions;                            ///< [m], xyz interleaved
-  std::span<const std::array<std::uint32_t, 3>> triangles;  ///< the collider's own, or there for good
+  std::span<const std::array<std::uint32_t, 3>> triangles;  ///< the collider's own, or there until the program ends
 };
 
 /// All that the harness knows of one shape of collider: a file in kinds/, found there by CMake. Loading, metrics,

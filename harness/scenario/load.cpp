@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/data_folder.hpp"
+#include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "base/sha256.hpp"
 #include "clothbench/solver.hpp"
@@ -263,6 +264,7 @@ void apply_override(json& scenario, const std::string& assignment, const std::st
 Scene scene_from_json(json scenario, const std::string& source, const std::vector<std::string>& overrides,
                       Assets assets) {
   for (const std::string& o : overrides) apply_override(scenario, o, source);
+  rename_scene_keys(scenario, source);
   validate_json(scenario, kSceneSchema, source);
   fill_defaults(scenario, kSceneSchema);
   check_assumed(scenario, source);
@@ -283,7 +285,7 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
            "bending is of grids alone; expected 0 for a cloth that is a mesh");
   if (s.cloth.mesh && scenario["material"].contains("regions"))
     refuse(source, "/material/regions", "columns are of grids alone; a mesh has one stiffness");
-  if (s.cloth.mesh && scenario.contains("truth")) refuse(source, "/truth", "the cards are of grids alone");
+  if (s.cloth.mesh && scenario.contains("truth")) refuse(source, "/truth", "the reference cases are of grids alone");
   read_irregular(scenario, s, source);
   read_self_collision(scenario["cloth"], s.cloth, source);
   s.pins = read_pins(scenario["pins"], s.cloth, source);
@@ -298,10 +300,10 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   read_colliders(scenario, s, source, assets);
   read_stability(scenario, s);
   if (scenario.contains("seed")) s.seed = scenario["seed"].get<std::uint64_t>();
-  if (scenario.contains("truth")) s.truth_card = scenario["truth"]["card"].get<std::string>();
+  if (scenario.contains("truth")) s.reference_case = scenario["truth"]["case"].get<std::string>();
   s.needs = derive_needs(s);
   s.json = scenario.dump();
-  s.sha256 = sha256(s.json);
+  s.sha256 = sha256(with_former_keys(scenario).dump());
   return s;
 }
 

@@ -27,7 +27,7 @@ json scenario(Patch patch, json cloth, json of_material, json pins, json gravity
   cloth["areal_density_kg_per_m2"] = kDensity_kg_per_m2;
   cloth["sides"] = "single";
   return {{"name", std::string("patch-") + patch_name(patch)},
-          {"why", "A patch test of the material card: its shape at rest gives one modulus."},
+          {"why", "A patch test of the effective moduli: its shape at rest gives one modulus."},
           {"cloth", std::move(cloth)},
           {"material", std::move(of_material)},
           {"pins", std::move(pins)},
@@ -117,7 +117,7 @@ const char* patch_name(Patch patch) {
 }
 
 Scene patch_scene(Patch patch) {
-  return scene_from_json(scenario_of(patch), std::string("material card, patch ") + patch_name(patch));
+  return scene_from_json(scenario_of(patch), std::string("effective moduli, patch ") + patch_name(patch));
 }
 
 std::vector<Patch> patches(bool full) {

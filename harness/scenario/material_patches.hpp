@@ -33,7 +33,7 @@ const char* patch_name(Patch);
 /// Throws nothing: the scenes are the program's own.
 Scene patch_scene(Patch);
 
-/// Of a full card, in the order in which they are run; and of a short one: HangU, HangStrip, BendU.
+/// Of a full measured, in the order in which they are run; and of a short one: HangU, HangStrip, BendU.
 std::vector<Patch> patches(bool full);
 
 }  // namespace clothbench

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/solver.hpp"
 #include "scenario/irrelevant.hpp"
@@ -110,7 +111,7 @@ class Builder {
         read_rules(!quick_.is_null() ? quick_["rules"] : j_[study_.length == StudyLength::Full ? "full" : "short"]);
     const double standard_s = study_.protocol == "fps" ? kFpsAccuracy_s : std::numeric_limits<double>::infinity();
     study_.accuracy_duration_s = j_.value("accuracy_duration_s", standard_s);
-    study_.cell_limit_s = j_["cell_limit_s"].get<double>();
+    study_.run_limit_s = j_["run_limit_s"].get<double>();
     study_.stage_times = j_["stage_times"].get<bool>();
     study_.pipelined = j_["pipelined"].get<bool>();
     read_solvers();
@@ -232,7 +233,7 @@ class Builder {
     }
   }
 
-  /// One item for all solvers that change nothing or the same; their cells must differ in name.
+  /// One item for all solvers that change nothing or the same; their runs must differ in name.
   void add_forms(const json& scenario, const std::string& path, const Variant& v, const std::string& pointer) {
     std::map<Words, std::size_t> forms;
     for (std::size_t s = 0; s < study_.solvers.size(); ++s) {
@@ -263,8 +264,8 @@ class Builder {
       }
       Study::Item& item = study_.scenes[at->second];
       item.solvers.push_back(s);
-      if (!cells_.insert(item.scene.name + " " + solver.name()).second)
-        throw Error(fmt::format("{}: {}: two cells are named \"{}\" with {}; labels must differ", source_, pointer,
+      if (!runs_.insert(item.scene.name + " " + solver.name()).second)
+        throw Error(fmt::format("{}: {}: two runs are named \"{}\" with {}; labels must differ", source_, pointer,
                                 item.scene.name, solver.name()));
     }
   }
@@ -311,7 +312,7 @@ class Builder {
   Study study_;
   Words solver_names_;
   std::vector<bool> stays_;  ///< by solver
-  std::set<std::string> labels_, cells_;
+  std::set<std::string> labels_, runs_;
   std::map<std::string, int> groups_;
 };
 
@@ -329,6 +330,7 @@ Study load_study(const std::string& name_or_path, const StudyOptions& options) {
   const std::filesystem::path file = find_scenario(name_or_path);
   const std::string source = file.string();
   json j = parse_json(read_text(file), source);
+  rename_key(j, "cell_limit_s", "run_limit_s", source);
   validate_json(j, kStudySchema, source);
   fill_defaults(j, kStudySchema);
   return Builder(std::move(j), file, options).build();

@@ -42,14 +42,14 @@ struct StudyOptions {
   std::map<std::string, std::vector<std::string>> knobs = {};
 };
 
-/// A study with its axes expanded. Cells of one `group` are run interleaved: with the protocol fps those of one grid,
+/// A study with its axes expanded. Runs of one `group` are interleaved: with the protocol fps those of one grid,
 /// with penetration those of one scene.
 struct Study {
   /// A scene in one form, and the solvers that run it so. A solver's own changes make another form of the same name.
   struct Item {
     Scene scene;  ///< name = base name and the labels of its axis values
     int group = 0;
-    bool timed = true;                 ///< false: its cells run their accuracy pass alone
+    bool timed = true;                 ///< false: its runs have the accuracy pass alone
     std::vector<std::size_t> solvers;  ///< indices into Study::solvers
   };
   std::string name, why, protocol;
@@ -58,7 +58,7 @@ struct Study {
   std::vector<StudySolver> solvers;
   int trials = 0, drop_frames = 0;
   double accuracy_duration_s = 0;  ///< infinite: the whole scene
-  double cell_limit_s = 0;         ///< 0 = none
+  double run_limit_s = 0;          ///< 0 = none
   bool stage_times = true, pipelined = false;
   StudyRules rules;           ///< of `length`
   nlohmann::json definition;  ///< completed study file

@@ -10,7 +10,7 @@
 #include "scenario/load.hpp"
 #include "truth/atwood.hpp"
 #include "truth/capstan.hpp"
-#include "truth/card.hpp"
+#include "truth/reference_case.hpp"
 
 namespace clothbench::truth {
 namespace {
@@ -24,9 +24,9 @@ constexpr double kMostFrameRate_hz = 9999;
 /// The engine's numbers are the standard's; its distributions are each library's own.
 class Dice {
  public:
-  Dice(std::uint64_t seed, const std::string& card) {
+  Dice(std::uint64_t seed, const std::string& known) {
     std::vector<std::uint32_t> words = {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)};
-    for (const char c : card) words.push_back(static_cast<unsigned char>(c));
+    for (const char c : known) words.push_back(static_cast<unsigned char>(c));
     std::seed_seq sequence(words.begin(), words.end());
     engine_.seed(sequence);
   }
@@ -52,37 +52,41 @@ class Dice {
 class Drawing {
  public:
   Drawing(const Scene& s, std::uint64_t seed)
-      : scene_(s), seed_(seed), dice_(seed, s.truth_card), rate_hz_(s.time.frame_rate_hz), j_(json::parse(s.json)) {}
+      : scene_(s),
+        seed_(seed),
+        dice_(seed, s.reference_case),
+        rate_hz_(s.time.frame_rate_hz),
+        j_(json::parse(s.json)) {}
 
   DrawnScene draw() {
-    const std::string& card = scene_.truth_card;
+    const std::string& known = scene_.reference_case;
     const double old = scene_.cloth.width_m, old_g = norm(scene_.gravity_m_per_s2);
     note("length_m", length_ = dice_.between(0.1, 2));
     note("areal_density_kg_per_m2", density_ = dice_.between(0.05, 1));
     if (old_g > 0) note("gravity_m_per_s2", g_ = dice_.between(1, 25));
     SceneChange sized;
     sized.length = length_ / old;
-    sized.time = old_g > 0 && card != "free-fall" ? std::sqrt(sized.length * old_g / g_) : 1;
+    sized.time = old_g > 0 && known != "free-fall" ? std::sqrt(sized.length * old_g / g_) : 1;
     j_ = change_scene(std::move(j_), sized, scene_.source);
     if (old_g > 0) set_gravity(scaled(g_ / old_g, scene_.gravity_m_per_s2));
     j_["cloth"]["areal_density_kg_per_m2"] = density_;
-    const bool keeps_rate = card != "two-hand-pull";
-    if (card == "free-fall") draw_stiffness(100);
-    if (card == "heavy-strip")
+    const bool keeps_rate = known != "two-hand-pull";
+    if (known == "free-fall") draw_stiffness(100);
+    if (known == "heavy-strip")
       draw_stiffness(std::max(100.0, 100 * density_ * g_ * length_));  // strains of 1 % at most
-    if (card == "catenary") span();
-    if (card == "cantilever") bending();
-    if (card == "two-hand-pull") pull();
-    if (card == "incline") slope();
-    if (card == "capstan") overhangs();
-    if (card == "atwood") weights();
+    if (known == "catenary") span();
+    if (known == "cantilever") bending();
+    if (known == "two-hand-pull") pull();
+    if (known == "incline") slope();
+    if (known == "capstan") overhangs();
+    if (known == "atwood") weights();
     if (keeps_rate) j_["time"]["frame_rate_hz"] = rate_hz_;
     j_ = change_scene(std::move(j_), elsewhere(), scene_.source);
     enough_frames();
     j_["seed"] = seed_;
     DrawnScene out{scene_from_json(std::move(j_), scene_.source), std::move(values_)};
     out.scene.name = scene_.name;
-    card_of(out.scene);  // refuses what it does not answer
+    reference_case_of(out.scene);  // refuses what it does not answer
     return out;
   }
 
@@ -108,7 +112,7 @@ class Drawing {
     const double free_m = length_ * (1 - 1.0 / (scene_.cloth.columns - 1)), gamma = dice_.log_between(1, 1000);
     note("weight_over_bending", gamma);
     j_["material"]["bending_rigidity_N_m"] = density_ * g_ * free_m * free_m * free_m / gamma;
-    // As stiff against its weight as it was: a strip that the card takes for inextensible.
+    // As stiff against its weight as it was: a strip that the reference case takes for inextensible.
     const double weight = density_ * g_ * length_,
                  before = scene_.cloth.areal_density_kg_per_m2 * norm(scene_.gravity_m_per_s2) * scene_.cloth.width_m;
     if (const auto Y = scene_.material.membrane_stiffness_N_per_m)
@@ -137,8 +141,8 @@ class Drawing {
   /// Gravity turns, the face stays; the box is made as long as the way.
   void slope() {
     const Threshold* old = nullptr;
-    const auto card = card_of(scene_);
-    if (card->threshold) old = &*card->threshold;
+    const auto known = reference_case_of(scene_);
+    if (known->threshold) old = &*known->threshold;
     const double friction = dice_.between(0.1, 0.8), critical = std::atan(friction);
     const bool stops = old == nullptr, sticks = !stops && scene_.colliders[0].friction >= old->exact;
     double angle = critical + dice_.between(0.3, 3) * pi / 180 * (sticks ? -1 : 1), speed = 0;
@@ -192,7 +196,7 @@ class Drawing {
   }
 
   void overhangs() {
-    const auto before = card_of(scene_);
+    const auto before = reference_case_of(scene_);
     const bool holds = before->quantity(before->columns(scene_.time.frames())) == 0;
     const int turns = dice_.whole(9, 15), light = dice_.whole(5, 9);
     const double friction = dice_.between(0.1, 0.4), cell = 1, radius = cell / (2 * std::sin(pi / (2 * turns)));
@@ -252,9 +256,9 @@ class Drawing {
 }  // namespace
 
 DrawnScene draw(const Scene& scene, std::uint64_t seed) {
-  if (scene.truth_card.empty())
+  if (scene.reference_case.empty())
     throw Error(scene.source + ": --seed: the scene has no truth to evaluate at drawn parameters");
-  card_of(scene);
+  reference_case_of(scene);
   return Drawing(scene, seed).draw();
 }
 

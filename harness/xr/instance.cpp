@@ -46,7 +46,7 @@ std::string library_of(const std::string& runtime) {
   return std::filesystem::path(runtime).parent_path() / path;
 }
 
-/// XR_KHR_vulkan_enable2: the runtime calls Vulkan with our wishes and its own.
+/// XR_KHR_vulkan_enable2: the runtime calls Vulkan with our requests and its own.
 class RuntimeMaker : public vulkan::Maker {
  public:
   explicit RuntimeMaker(const Instance& xr) : xr_(xr) {}

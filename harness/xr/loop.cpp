@@ -9,11 +9,11 @@
 #include "gpu_solver.hpp"
 #include "results/replay.hpp"
 #include "results/store.hpp"
-#include "runner/cell.hpp"
 #include "runner/environment.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"
 #include "runner/jobs.hpp"
+#include "runner/solver_run.hpp"
 #include "xr/counters.hpp"
 #include "xr/hands.hpp"
 #include "xr/live_scene.hpp"
@@ -79,8 +79,8 @@ class Loop {
       } else {
         frame();
       }
-      if (cell_ == nullptr && !asked_to_exit_ && seconds(start, Clock::now()) > o_.patience_s)
-        throw Error(fmt::format("the session did not begin within {:g} s: {}", o_.patience_s, waiting_for()),
+      if (run_ == nullptr && !asked_to_exit_ && seconds(start, Clock::now()) > o_.timeout_s)
+        throw Error(fmt::format("the session did not begin within {:g} s: {}", o_.timeout_s, waiting_for()),
                     ExitCode::CheckFailed);
     }
     painter_.wait();
@@ -123,7 +123,7 @@ class Loop {
     const auto t1 = Clock::now();
     session_.begin_frame();
     const auto t2 = Clock::now();
-    const bool live = cell_ != nullptr && !done_;
+    const bool live = run_ != nullptr && !done_;
     FrameRow row;
     row.predicted_display_s = static_cast<double>(state.predictedDisplayTime - first_time(state, live)) * 1e-9;
     row.predicted_period_s = static_cast<double>(state.predictedDisplayPeriod) * 1e-9;
@@ -193,43 +193,44 @@ class Loop {
       b.picked_m = picking_->picked();
     }
     painter_.wait();
-    cell_.reset();
+    run_.reset();
     live_.begin(b);
-    auto cell = std::make_unique<Cell>(CellSpec{&live_.scene(), o_.entry, o_.settings, o_.setting, 0, {}, true, {}},
-                                       o_.device, "xr");
-    if (!cell->alive()) {
-      const Outcome out = cell->outcome();
+    auto run = std::make_unique<SolverRun>(RunSpec{&live_.scene(), o_.entry, o_.settings, o_.setting, 0, {}, true, {}},
+                                           o_.device, "xr");
+    if (!run->alive()) {
+      const Outcome out = run->outcome();
       throw Error(fmt::format("{}: {}: {}", o_.entry->info.name, out.status, out.message), ExitCode::CheckFailed);
     }
     if (!warm_) {
-      cell->solver()->step(frame_input(live_.scene(), 0));
+      run->solver()->step(frame_input(live_.scene(), 0));
       warm_ = true;
       return;
     }
-    cell_ = std::move(cell);
+    run_ = std::move(run);
     show_live();
     tell(fmt::format("{} frames at {:g} Hz", frames_, b.frame_rate_hz));
   }
 
   /// A display changes its rate some frames after it was asked to, if it has that rate.
   bool rate_settled() {
-    constexpr double kPatience_s = 1, kSame_hz = 0.5;
+    constexpr double kTimeout_s = 1, kSame_hz = 0.5;
     if (first_frame_ == Clock::time_point{}) first_frame_ = Clock::now();
-    const double told = session_.refresh_rate_hz();
-    return told == 0 || std::abs(told - o_.rate_hz) <= kSame_hz || seconds(first_frame_, Clock::now()) > kPatience_s;
+    const double reported = session_.refresh_rate_hz();
+    return reported == 0 || std::abs(reported - o_.rate_hz) <= kSame_hz ||
+           seconds(first_frame_, Clock::now()) > kTimeout_s;
   }
 
   /// As the display says, else by the runtime's prediction, which is in whole ns.
   double rate_of(const XrFrameState& state) const {
-    const double told = session_.refresh_rate_hz();
-    return told > 0 ? told : std::round(1e9 / static_cast<double>(state.predictedDisplayPeriod));
+    const double reported = session_.refresh_rate_hz();
+    return reported > 0 ? reported : std::round(1e9 / static_cast<double>(state.predictedDisplayPeriod));
   }
 
   /// The vertex shader reads a GPU solver's positions where they lie.
   void show_live() {
     const Scene& s = live_.scene();
     painter_.renderer().set_cloth(s.cloth, {0, 0, 0});
-    gpu_ = dynamic_cast<const pbd_gpu::GpuSolver*>(cell_->solver());
+    gpu_ = dynamic_cast<const pbd_gpu::GpuSolver*>(run_->solver());
     if (gpu_ != nullptr) painter_.renderer().use_positions(gpu_->position_buffer(), gpu_->origin_m());
     shown_ = {};
     shown_.cloth = s.cloth;
@@ -260,7 +261,7 @@ class Loop {
     const auto t3 = Clock::now();
     StepStatus status = StepStatus::Ok;
     try {
-      status = cell_->solver()->step(input);
+      status = run_->solver()->step(input);
     } catch (const std::exception& e) {
       end_by(e);
     }
@@ -268,7 +269,7 @@ class Loop {
     row.input_s = seconds(t0, t1) + seconds(t2, t3);
     row.settle_s = seconds(t1, t2);
     row.step_s = seconds(t3, t4);
-    const FrameCost cost = cell_->solver()->last_cost();
+    const FrameCost cost = run_->solver()->last_cost();
     row.step_device_s = cost.device_s;
     note(cost, row);
     if (status != StepStatus::Ok) {
@@ -296,9 +297,9 @@ class Loop {
 
   void paint(const std::vector<XrView>& views) {
     painter_.wait();
-    if (cell_ != nullptr) {
+    if (run_ != nullptr) {
       if (gpu_ == nullptr) {
-        cell_->solver()->read_state(state_);
+        run_->solver()->read_state(state_);
         painter_.renderer().write_positions(state_.position);
       }
       if (stale_) painter_.renderer().set_surfaces(render::surfaces(shown_, 0, near_));
@@ -339,7 +340,7 @@ class Loop {
   ClothState last_state() {
     ClothState end;
     try {
-      cell_->solver()->read_state(end);
+      run_->solver()->read_state(end);
     } catch (const Error& e) {
       if (outcome_.status == "ok") outcome_ = {"device_lost", "F8", static_cast<int>(log_.rows().size()), e.what()};
       end.position.assign(3 * live_.scene().cloth.vertex_count(), kMissing);
@@ -359,13 +360,13 @@ class Loop {
     moved.motion = live_.motion();
     std::vector<StoredGroup> groups = replay_of(moved);
     groups.push_back(group(end));
-    CellRecord record;
-    record.header = cell_->header();
+    RunRecord record;
+    record.header = run_->header();
     record.outcome = outcome_;
     record.trials = {trial_};
-    r.summary = summarise(cell_->spec(), cell_->plan(), record);
+    r.summary = summarise(run_->spec(), run_->plan(), record);
     r.summary.merge(log_.summary());
-    CellWriter writer(o_.out, cell_->header());
+    RunWriter writer(o_.out, run_->header());
     writer.write_trial(trial_);
     writer.write_replay(groups);
     r.file = writer.finish(outcome_, r.summary);
@@ -383,7 +384,7 @@ class Loop {
   Counters counters_;
   std::optional<Hands> hands_;
   std::optional<Picking> picking_;
-  std::unique_ptr<Cell> cell_;
+  std::unique_ptr<SolverRun> run_;
   const pbd_gpu::GpuSolver* gpu_ = nullptr;
   bool warm_ = false, done_ = false, asked_to_exit_ = false, stale_ = true;
   Clock::time_point leaving_, first_frame_;

@@ -28,7 +28,7 @@ struct LoopOptions {
   /// a room.
   std::optional<Vec3> place_m;
   bool passthrough = true;
-  double patience_s = 120;  ///< for hands to be seen and points to be picked
+  double timeout_s = 120;  ///< for hands to be seen and points to be picked
   std::filesystem::path out;
   std::function<void(const std::string&)> tell;  ///< what the user should know; may be empty
 };

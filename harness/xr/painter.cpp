@@ -10,7 +10,7 @@ namespace {
 using vulkan::check;
 
 constexpr double kNear_m = 0.05, kFar_m = 100;  // a hand before the face; the far end of a hall
-constexpr std::uint64_t kPatience_ns = 10'000'000'000;
+constexpr std::uint64_t kTimeout_ns = 10'000'000'000;
 
 }  // namespace
 
@@ -87,7 +87,7 @@ void Painter::release() {
 
 void Painter::wait() {
   if (!in_flight_) return;
-  check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, kPatience_ns), "vkWaitForFences");
+  check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, kTimeout_ns), "vkWaitForFences");
   in_flight_ = false;
   check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
   if (queries_ == VK_NULL_HANDLE) return;
@@ -106,10 +106,10 @@ void Painter::paint(const std::vector<XrView>& views) {
     XrSwapchainImageAcquireInfo acquire{};
     acquire.type = XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO;
     xr.check(xr.xr().xrAcquireSwapchainImage(images, &acquire, &index[k]), "xrAcquireSwapchainImage");
-    XrSwapchainImageWaitInfo patience{};
-    patience.type = XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO;
-    patience.timeout = XR_INFINITE_DURATION;
-    xr.check(xr.xr().xrWaitSwapchainImage(images, &patience), "xrWaitSwapchainImage");
+    XrSwapchainImageWaitInfo wait{};
+    wait.type = XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO;
+    wait.timeout = XR_INFINITE_DURATION;
+    xr.check(xr.xr().xrWaitSwapchainImage(images, &wait), "xrWaitSwapchainImage");
   }
   record(index[0], index[1], views);
   VkSubmitInfo submit{};

@@ -54,7 +54,7 @@ bool Picking::ready(XrTime time) {
 }
 
 std::string Picking::waiting_for() const {
-  if (!scan_) return "the headset has not told where its room is";
+  if (!scan_) return "the headset has not reported where its room is";
   return fmt::format("{} of {} points were picked (A shows the room, the trigger picks)", picked_.size(), kPoints);
 }
 

@@ -1,7 +1,7 @@
 """How far from the truth, for what time a frame? Nothing to tell where scenes have no exact answer."""
-from _cells import cells
+from _runs import runs
 
-for name, f in cells():
+for name, f in runs():
     s = f["summary"].attrs
     for error in ("truth_error", "free_fall_error"):
         if error in s and s[error] == s[error]:  # not NaN

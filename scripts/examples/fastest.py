@@ -1,9 +1,9 @@
 """Which solver is fastest on each scene? The interval is the range of the trials."""
 import numpy as np
-from _cells import cells
+from _runs import runs
 
 rows = []
-for _, f in cells():
+for _, f in runs():
     if "timing" in f and f["outcome"].attrs["status"] == "ok":
         t = 1e3 * np.nanmean(f["timing/frame_wall_s"][:], axis=1)  # one mean a trial
         rows.append((f.attrs["scene"], np.median(t), t.min(), t.max(), f.attrs["solver"]))

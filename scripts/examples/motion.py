@@ -1,7 +1,7 @@
 """Where is the cloth at the end? Its box."""
-from _cells import cells
+from _runs import runs
 
-for name, f in cells():
+for name, f in runs():
     if "trajectory" in f:
         x = f["trajectory/position"][-1]  # (vertex, xyz), y up
         t = f["trajectory/time_s"][-1]

@@ -2,9 +2,9 @@
 import os
 
 import matplotlib.pyplot as plt
-from _cells import cells
+from _runs import runs
 
-for name, f in cells():
+for name, f in runs():
     y = f.get("metrics/" + os.environ.get("QUANTITY", "stretch_max"))
     if y is not None:
         plt.plot(f["metrics/time_s"][:], y[:], label=name)

@@ -1,10 +1,10 @@
 """Where does the GPU's time go? Median over trials and frames of each stage."""
 import numpy as np
 import xarray as xr
-from _cells import cells
+from _runs import runs
 
-for name, f in cells():
-    if "timing" in f:  # a cell with trials
+for name, f in runs():
+    if "timing" in f:  # a run with trials
         stages = xr.open_dataset(f.filename, engine="h5netcdf", group="timing").stage_device_s
         median = stages.median(["trial", "frame"])
         if np.isfinite(median).any():

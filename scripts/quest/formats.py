@@ -48,7 +48,7 @@ def devices(text):
 
 
 def battery(text):
-    """`dumpsys battery` -> level [%], temperature_C, powered (any of AC, USB, wireless, dock), each None where not told."""
+    """`dumpsys battery` -> level [%], temperature_C, powered (any of AC, USB, wireless, dock), each None where not reported."""
     values = dict(re.findall(r"^\s*([\w ]+):\s*(\S+)\s*$", text, re.M))
     tenths = number(values.get("temperature"))
     powered = [v == "true" for k, v in values.items() if k.endswith(" powered")]
@@ -60,13 +60,13 @@ def battery(text):
 
 
 def thermal_status(text):
-    """`dumpsys thermalservice` -> 0 (none) … 6 (shutdown), None where not told."""
+    """`dumpsys thermalservice` -> 0 (none) … 6 (shutdown), None where not reported."""
     found = re.search(r"Thermal Status:\s*(\d+)", text)
     return int(found.group(1)) if found else None
 
 
 def free_B(text):
-    """`df -k PATH` -> bytes free, None where not told."""
+    """`df -k PATH` -> bytes free, None where not reported."""
     lines = [line.split() for line in text.splitlines() if line.strip()]
     if len(lines) >= 2 and "Available" in lines[0]:
         v = number(lines[1][lines[0].index("Available")])

@@ -16,7 +16,7 @@ def _values(groups, group, series, since, until):
     return []
 
 
-def _told(values):
+def _reported(values):
     return f"{min(values):g}" if min(values) == max(values) else f"{min(values):g} to {max(values):g}"
 
 
@@ -34,10 +34,10 @@ def judge(groups, asked, since, until, events):
         ("refresh rate [Hz]", asked["refresh_hz"], of((vrapi, "refresh_rate"), (ovr, "display_refresh_rate"))),
     ):
         if not seen:
-            reasons.append(f"{what}: not told by the device, so it cannot be known to have stayed at {wanted:g}")
+            reasons.append(f"{what}: not reported by the device, so it cannot be known to have stayed at {wanted:g}")
         for (group, _), values in seen.items():
             if any(v != wanted for v in values):
-                reasons.append(f"{what} was {_told(values)}, {wanted:g} was asked for ({group})")
+                reasons.append(f"{what} was {_reported(values)}, {wanted:g} was asked for ({group})")
     for what, seen in (
         ("GPU clock [MHz]", of((vrapi, "gpu_clock_MHz"), (ovr, "gpu_frequency_MHz"))),
         ("CPU clock [MHz]", of((vrapi, "cpu_clock_MHz"), (ovr, "cpu_frequency_MHz"))),
@@ -45,16 +45,16 @@ def judge(groups, asked, since, until, events):
         for (group, _), values in seen.items():
             middle = sorted(values)[len(values) // 2]
             if not max(values) - min(values) <= CLOCK_TOLERANCE * middle:
-                reasons.append(f"{what} moved: {_told(values)} ({group})")
+                reasons.append(f"{what} moved: {_reported(values)} ({group})")
     for (group, _), values in of((vrapi, "power_level_state"), (ovr, "power_level_state")).items():
         if any(v != 0 for v in values):
-            reasons.append(f"power level state was {_told(values)}: the headset was saving power or too hot ({group})")
+            reasons.append(f"power level state was {_reported(values)}: the headset was saving power or too hot ({group})")
     for values in of(("battery", "thermal_status")).values():
         if any(v != 0 for v in values):
-            reasons.append(f"thermal status was {_told(values)}: too hot")
+            reasons.append(f"thermal status was {_reported(values)}: too hot")
     for values in of(("battery", "temperature_C")).values():
         if not max(values) - min(values) <= WARMING_C:
-            reasons.append(f"the battery's temperature moved: {_told(values)} °C")
+            reasons.append(f"the battery's temperature moved: {_reported(values)} °C")
     for values in of(("battery", "powered")).values():
         if min(values) != max(values):
             reasons.append("the charger was plugged in or out")

@@ -2,7 +2,7 @@
 
 
 class Problem(Exception):
-    """Told to the user as it stands."""
+    """Reported to the user as it stands."""
 
     code = 1
 

@@ -14,7 +14,7 @@ namespace clothbench::pbd_gpu {
 namespace {
 
 /// Of chains with two held vertices or more: see lines.cpp.
-constexpr float kLeastFirmness = 1e-3f;
+constexpr float kLeastRegularisation = 1e-3f;
 
 /// Edges below this share of the mean are welded.
 constexpr double kSliver = 0.02;
@@ -296,7 +296,7 @@ std::vector<ChainEntry> entries_of(const ChainFamily& family, const Scene& scene
     for (std::size_t k = 0; k < chain->size(); ++k) {
       const bool goes_on = k + 1 < chain->size();
       const ChainCloth::Link l = goes_on ? cloth.link((*chain)[k], (*chain)[k + 1]) : ChainCloth::Link{0, 0, -1, 0};
-      entries.push_back({(*chain)[k], l.rest_m, l.compliance_m_per_N, held_ones > 1 ? kLeastFirmness : 0.0f});
+      entries.push_back({(*chain)[k], l.rest_m, l.compliance_m_per_N, held_ones > 1 ? kLeastRegularisation : 0.0f});
       seen[(*chain)[k]] = 1;
     }
     put(entries);

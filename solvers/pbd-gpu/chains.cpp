@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "resident.hpp"
+#include "persistent.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -45,16 +45,16 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth)
   if (needs.has(Feature::Damping)) s.FEATURES |= LINES_DAMPING;
   if (needs.has(Feature::Shear) || needs.has(Feature::ClothMesh)) s.FEATURES |= LINES_SHEAR;
   if (limits_speed(scene, tethers_ > 0)) s.FEATURES |= LINES_LIMIT_SPEED;
-  s.RESIDENT = 1;
-  resident_ =
+  s.PERSISTENT = 1;
+  persistent_ =
       cloth.welded.empty() && runs_at_once<ChainConstants>(frame, "chain_pass", s.by_number(), block_, all_groups());
-  if (resident_) {
+  if (persistent_) {
     std::vector<ChainRange> ranges;
     for (const Family& f : families_) ranges.push_back({f.first_entry, f.entries / block_, f.rounds, 0});
     frame.add_buffer(BIND_CHAIN_FAMILIES, "chain families", ranges);
     add_meeting(frame);
   }
-  s.RESIDENT = resident_ ? 1 : 0;
+  s.PERSISTENT = persistent_ ? 1 : 0;
   kernel_ = frame.add_kernel(stage, "chain_pass", sizeof(ChainConstants), s.by_number(), block_);
   if (cloth.welded.empty()) return;
   std::vector<std::uint32_t> welds;
@@ -89,16 +89,16 @@ void Chains::count_vertices() {
 
 Traffic Chains::traffic(std::size_t family) const {
   const Family& f = families_[family];
-  const double rests = family == 0 ? 1 : 0;
-  return {16.0 * f.entries + (32 + 32 * rests) * f.vertices + 24 * rests * tethers_ * f.free,
-          (32 + 32 * rests) * f.free};
+  const double compensation = family == 0 ? 1 : 0;
+  return {16.0 * f.entries + (32 + 32 * compensation) * f.vertices + 24 * compensation * tethers_ * f.free,
+          (32 + 32 * compensation) * f.free};
 }
 
 void Chains::record(int count, int substeps, double dt_s) {
   count_vertices();
   auto c = step_constants<ChainConstants>(frame_, dt_s, substeps);
   c.families = static_cast<std::uint32_t>(families_.size());
-  if (resident_) {
+  if (persistent_) {
     const vulkan::Groups groups = all_groups();
     Traffic all;
     for (std::size_t k = 0; k < families_.size(); ++k)

@@ -16,7 +16,7 @@ class Chains {
 
   /// `count` of `substeps` of a frame of dt_s.
   void record(int count, int substeps, double dt_s);
-  bool whole_frame() const { return resident_ && scene_.grips.vertices.empty(); }
+  bool whole_frame() const { return persistent_ && scene_.grips.vertices.empty(); }
 
  private:
   struct Family {
@@ -33,7 +33,7 @@ class Chains {
   std::uint32_t tethers_ = 0;
   std::vector<Family> families_;
   std::vector<ChainEntry> entries_;
-  bool resident_ = false;
+  bool persistent_ = false;
   const FrameKernel *kernel_ = nullptr, *weld_ = nullptr;
   std::uint32_t welds_ = 0;
 };

@@ -70,7 +70,7 @@ class FrameBuilder {
   void set_contact_margins(std::vector<double> margins_m) { plan_.contact_margins_m = std::move(margins_m); }
   /// A word in host memory that a kernel sets where workgroups waited for one another in vain: such a frame is
   /// TimedOut.
-  void set_missed(const vulkan::Buffer& word) { missed_ = &word; }
+  void set_timed_out(const vulkan::Buffer& word) { timed_out_ = &word; }
 
   template <class Constants>
   void dispatch(const FrameKernel& k, std::uint64_t items, const Constants& constants, Traffic traffic) {
@@ -99,7 +99,7 @@ class FrameBuilder {
   Plan plan_;
   std::vector<float> inverse_mass_now_;
   bool only_counting_ = false;
-  const vulkan::Buffer* missed_ = nullptr;
+  const vulkan::Buffer* timed_out_ = nullptr;
   // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
   vulkan::Buffers bound_;

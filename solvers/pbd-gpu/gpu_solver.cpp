@@ -11,7 +11,7 @@ namespace clothbench::pbd_gpu {
 namespace {
 
 /// A frame that takes longer is taken for lost. Software devices are slow, real ones reset themselves after some 2 s.
-constexpr double kPatience_s = 2, kSoftwarePatience_s = 300;
+constexpr double kTimeout_s = 2, kSoftwareTimeout_s = 300;
 
 /// As an application that shows one frame while the next is computed.
 constexpr int kFramesInFlight = 2;
@@ -109,10 +109,10 @@ StepStatus GpuSolver::guarded(Fn submit_or_wait) const {
   return StepStatus::Ok;
 }
 
-double GpuSolver::patience_s() const { return device_->is_software() ? kSoftwarePatience_s : kPatience_s; }
+double GpuSolver::timeout_s() const { return device_->is_software() ? kSoftwareTimeout_s : kTimeout_s; }
 
 StepStatus GpuSolver::run(vulkan::Program& program) const {
-  return guarded([&] { program.run(patience_s()); });
+  return guarded([&] { program.run(timeout_s()); });
 }
 
 void GpuSolver::reset() {
@@ -122,7 +122,7 @@ void GpuSolver::reset() {
     grips_->reset();
     update_inverse_masses();
   }
-  if (missed_ != nullptr) std::memset(missed_->mapped(), 0, sizeof(std::uint32_t));
+  if (timed_out_ != nullptr) std::memset(timed_out_->mapped(), 0, sizeof(std::uint32_t));
   last_ = ready_ = run(*upload_);
 }
 
@@ -132,14 +132,14 @@ StepStatus GpuSolver::step(const FrameInput& frame) {
   if (frame.dt_s != dt_s_) record(frame.dt_s);
   if (colliders_) colliders_->write(frame.motion);
   if (grips_ && grips_->write(frame.motion)) update_inverse_masses();
-  return last_ = unless_missed(run(*frame_));
+  return last_ = unless_timed_out(run(*frame_));
 }
 
-StepStatus GpuSolver::unless_missed(StepStatus status) const {
-  if (status != StepStatus::Ok || missed_ == nullptr) return status;
-  std::uint32_t missed = 0;
-  std::memcpy(&missed, missed_->mapped(), sizeof missed);
-  return missed == 0 ? StepStatus::Ok : StepStatus::TimedOut;
+StepStatus GpuSolver::unless_timed_out(StepStatus status) const {
+  if (status != StepStatus::Ok || timed_out_ == nullptr) return status;
+  std::uint32_t timed_out = 0;
+  std::memcpy(&timed_out, timed_out_->mapped(), sizeof timed_out);
+  return timed_out == 0 ? StepStatus::Ok : StepStatus::TimedOut;
 }
 
 /// What the host writes or reads every frame has one buffer, which the frame before must be done with.
@@ -154,15 +154,15 @@ StepStatus GpuSolver::run_frames(const std::vector<FrameInput>& frames) {
   const bool alike = std::all_of(frames.begin(), frames.end(), [&](const FrameInput& f) { return f.dt_s == dt_s_; });
   if (!alike || frames_in_flight() == 1) return ClothSolver::run_frames(frames);
   if (ready_ != StepStatus::Ok) return ready_;
-  return last_ = unless_missed(guarded([&] {
+  return last_ = unless_timed_out(guarded([&] {
            frame_->need_copies(kFramesInFlight);
            for (std::size_t k = 0; k < frames.size(); ++k) {
-             frame_->wait(k % kFramesInFlight, patience_s());
+             frame_->wait(k % kFramesInFlight, timeout_s());
              frame_->submit(k % kFramesInFlight);
            }
            // The oldest first, so that last_cost is the last frame's.
            for (std::size_t k = frames.size(); k < frames.size() + kFramesInFlight; ++k)
-             frame_->wait(k % kFramesInFlight, patience_s());
+             frame_->wait(k % kFramesInFlight, timeout_s());
          }));
 }
 

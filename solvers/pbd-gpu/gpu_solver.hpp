@@ -67,12 +67,12 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   /// What the device holds of a buffer, after everything submitted so far.
   template <class T>
   std::vector<T> fetched(const vulkan::Buffer&) const;
-  StepStatus unless_missed(StepStatus status) const;
+  StepStatus unless_timed_out(StepStatus status) const;
   /// Messages of the layer are this solver's until another uses the device.
   void take_messages() const { device_->count_messages_in(messages_); }
   template <class Fn>
   StepStatus guarded(Fn submit_or_wait) const;
-  double patience_s() const;
+  double timeout_s() const;
 
   const SolverInfo info_;
   const std::shared_ptr<std::atomic<int>> messages_ = std::make_shared<std::atomic<int>>(0);

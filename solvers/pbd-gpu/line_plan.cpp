@@ -149,9 +149,9 @@ long substeps_for_speed(const Scene& scene, int quality) {
 
 double length(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }
 
-/// Layers that come closer by more than this share of their thickness in a substep leave wishes too much to do, and the
-/// cloth is slowed down (README, "Self-collision in xpbd"). How fast they may be: what the scene gives them, a fall of
-/// the cloth's length, and what moves.
+/// Layers that come closer by more than this share of their thickness in a substep leave corrections too much to do,
+/// and the cloth is slowed down (README, "Self-collision in xpbd"). How fast they may be: what the scene gives them, a
+/// fall of the cloth's length, and what moves.
 double substeps_for_layers(const Scene& scene) {
   constexpr double kMostWay = 2.0 / 3;
   const Cloth& c = scene.cloth;
@@ -202,8 +202,8 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   return static_cast<int>(std::clamp(std::max(std::lround(per_frame), substeps_for_speed(scene, k)), 1L, 4096L));
 }
 
-LineShape frame_shape(int columns, int rows, const LineWish& wish, const LineDevice& device) {
-  const std::uint32_t vertices = wish.vertices;
+LineShape frame_shape(int columns, int rows, const LineRequest& request, const LineDevice& device) {
+  const std::uint32_t vertices = request.vertices;
   const auto longest = static_cast<std::uint32_t>(std::max(columns, rows));
   if (longest > 32) return {};
   const std::uint32_t first = vertices != 0 ? vertices : device.wide ? 2 : 4;
@@ -211,7 +211,7 @@ LineShape frame_shape(int columns, int rows, const LineWish& wish, const LineDev
     if (vertices != 0 && k != vertices) continue;
     LineShape s{std::bit_ceil((longest + k - 1) / k), k, 0, false};
     s.shuffles = s.lanes <= device.subgroup;
-    if (s.shuffles) s.beside = wish.beside != 0 ? wish.beside : 1;
+    if (s.shuffles) s.beside = request.beside != 0 ? request.beside : 1;
     // Whole subgroups, so that threads number as their lanes do; and one for each row of bits of held vertices.
     const std::uint32_t whole = std::max(device.subgroup, 32u);
     s.threads = (s.lanes * longest + whole - 1) / whole * whole;
@@ -227,26 +227,29 @@ LineShape frame_shape(int columns, int rows, const LineWish& wish, const LineDev
 /// What a barrier over all workgroups takes of shared memory.
 constexpr std::uint32_t kBarrier_B = 16;
 
-LineShape pass_shape(int length, const LineWish& wish, const LineDevice& device) {
+LineShape pass_shape(int length, const LineRequest& request, const LineDevice& device) {
   const auto n = static_cast<std::uint32_t>(length);
   const bool choose = device.wide && device.subgroup > 0;
-  const std::uint32_t vertices = wish.vertices != 0 ? wish.vertices : choose && n <= 384 ? 2 : 4;
+  const std::uint32_t vertices = request.vertices != 0 ? request.vertices : choose && n <= 384 ? 2 : 4;
   const std::uint32_t beside = device.subgroup == 0  ? 1
-                               : wish.beside != 0    ? wish.beside
+                               : request.beside != 0 ? request.beside
                                : !choose || n <= 192 ? 1
                                : n <= 384            ? 2
                                                      : 4;
-  // A wish for threads is for all of them; else as few as hold whole subgroups and lines.
-  const std::uint32_t most = std::min(wish.threads != 0 ? wish.threads : choose ? 1024u : 256u, device.most_threads);
-  const std::uint32_t least = wish.threads != 0 ? most : std::min(choose ? device.subgroup : 64u, most);
+  // A request for threads is for all of them; else as few as hold whole subgroups and lines.
+  const std::uint32_t most = std::min(request.threads != 0 ? request.threads
+                                      : choose             ? 1024u
+                                                           : 256u,
+                                      device.most_threads);
+  const std::uint32_t least = request.threads != 0 ? most : std::min(choose ? device.subgroup : 64u, most);
   for (const std::uint32_t k : {2u, 4u, 8u, 16u, 32u}) {
     const std::uint32_t lanes = std::bit_ceil((n + k - 1) / k);
     if (k < vertices || lanes * beside > most) continue;
     LineShape s{lanes, k, std::max(lanes * beside, least), device.subgroup > 0, beside};
     // Whole subgroups, so that threads number as their lanes do.
     if (s.shuffles) s.threads = (s.threads + device.subgroup - 1) / device.subgroup * device.subgroup;
-    const bool letters = !s.shuffles || lanes * beside > device.subgroup;
-    if ((letters ? 32 * s.threads : 0) + kBarrier_B <= device.shared_B) return s;
+    const bool exchange = !s.shuffles || lanes * beside > device.subgroup;
+    if ((exchange ? 32 * s.threads : 0) + kBarrier_B <= device.shared_B) return s;
   }
   throw Error("solver xpbd: a cloth of " + std::to_string(length) + " vertices a side; expected at most " +
               std::to_string(32 * most / beside));

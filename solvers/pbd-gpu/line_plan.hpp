@@ -57,14 +57,14 @@ struct LineShape {
   std::uint32_t chains_a_group() const { return threads / lanes; }
 };
 /// What the user asks of shapes; 0 leaves the choice here.
-struct LineWish {
+struct LineRequest {
   std::uint32_t vertices = 0, threads = 0, beside = 0;
 };
 /// Of the kernel that takes a whole cloth through a frame; threads = 0 if the cloth or the device does not fit it.
-LineShape frame_shape(int columns, int rows, const LineWish&, const LineDevice&);
+LineShape frame_shape(int columns, int rows, const LineRequest&, const LineDevice&);
 /// Of the kernel of one family of lines of `length` vertices. On wide devices two vertices a thread are fastest up to
 /// some 384 (of an H200), and reading 2 or 4 neighbouring columns at once from 192 on. Throws Error past 8192.
-LineShape pass_shape(int length, const LineWish&, const LineDevice&);
+LineShape pass_shape(int length, const LineRequest&, const LineDevice&);
 
 /// Rounds of cyclic reduction after which what is left of the bending matrix is below a ten-millionth: with alpha well
 /// above the inverse masses hinges hardly feel one another. At most log2(lanes).

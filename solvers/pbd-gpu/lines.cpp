@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "resident.hpp"
+#include "persistent.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
 
 /// Least alpha over inverse mass of chains that are pulled taut between held vertices: singular in single precision
 /// without. Ten times as much shows in the length of the cloth, a tenth lets links of some cloths blow up.
-constexpr double kFirmness = 1e-3;
+constexpr double kRegularisation = 1e-3;
 
 /// Springs whose homogenised sheet is isotropic with uniaxial stiffness Y and Poisson ratio 1/3, the only ratio central
 /// springs allow (C12 = C66): for square cells 3/4 Y along the grid and 3/8 Y on each diagonal. On du x dv cells the
@@ -60,13 +60,13 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene)
   if (keeps_links_) frame_.add_buffer(BIND_LINK_MULTIPLIERS, "link multipliers", families() * n * 4);
   if (keeps_hinges_) frame_.add_buffer(BIND_HINGE_MULTIPLIERS, "hinge multipliers", 2 * n * sizeof(vec4));
   const bool one = frame.settings()["one_dispatch"].get<bool>();
-  const LineShape whole = frame_shape(scene.cloth.columns, scene.cloth.rows, wish(), device());
+  const LineShape whole = frame_shape(scene.cloth.columns, scene.cloth.rows, request(), device());
   if (whole.threads > 0 && one)
     add_whole(whole);
   else if (batch_ > 1)
     throw Error(
         "solver xpbd: setting batch: takes cloths that fit one workgroup each (32 x 32 vertices, one_dispatch)");
-  else if (!one || !add_resident())
+  else if (!one || !add_persistent())
     add_passes();
   if (batch_ > 1 && (keep_ || !scene.grips.vertices.empty() || !scene.colliders.empty()))
     throw Error(
@@ -74,7 +74,7 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene)
         "compliant");
 }
 
-LineWish Lines::wish() const {
+LineRequest Lines::request() const {
   return {frame_.tuning()["vertices_a_thread"].get<std::uint32_t>(),
           frame_.tuning()["threads_a_group"].get<std::uint32_t>(),
           frame_.tuning()["lines_beside"].get<std::uint32_t>()};
@@ -140,7 +140,7 @@ void Lines::add_whole(const LineShape& shape) {
   LineSpecialization s = specialization(shape);
   s.GRIPS = static_cast<std::uint32_t>(scene_.grips.vertices.size());
   const auto most = static_cast<std::size_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
-  uint* const firm[] = {&s.FIRM_0, &s.FIRM_1, &s.FIRM_2, &s.FIRM_3};
+  uint* const firm[] = {&s.REGULAR_0, &s.REGULAR_1, &s.REGULAR_2, &s.REGULAR_3};
   for (std::size_t family = 0; family < 4; ++family)
     for (std::size_t chain = 0; chain < most; ++chain)
       *firm[family] |= std::uint32_t{taut_[family * most + chain]} << chain;
@@ -148,11 +148,11 @@ void Lines::add_whole(const LineShape& shape) {
                              sizeof(LineConstants), s.by_number(), shape.threads);
 }
 
-void Lines::add_firmness() {
+void Lines::add_regularisation() {
   if (!firm_) return;
   std::vector<float> least;
-  for (const std::uint8_t taut : taut_) least.push_back(taut != 0 ? static_cast<float>(kFirmness) : 0.0f);
-  frame_.add_buffer(BIND_FIRMNESS, "firmness", least);
+  for (const std::uint8_t taut : taut_) least.push_back(taut != 0 ? static_cast<float>(kRegularisation) : 0.0f);
+  frame_.add_buffer(BIND_REGULARISATION, "regularisation", least);
 }
 
 vulkan::Groups Lines::all_groups() const {
@@ -161,27 +161,27 @@ vulkan::Groups Lines::all_groups() const {
 }
 
 /// False where the device does not run all workgroups at once, or where that is unknown.
-bool Lines::add_resident() {
+bool Lines::add_persistent() {
   if (device().subgroup == 0) return false;
-  const LineShape shape = pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), wish(), device());
+  const LineShape shape = pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), request(), device());
   shape_[0] = shape_[1] = shape_[2] = shape;
   LineSpecialization s = specialization(shape);
-  s.RESIDENT = 1;
+  s.PERSISTENT = 1;
   const std::string name = kernel("line_pass", true);
   if (!runs_at_once<LineConstants>(frame_, name, s.by_number(), shape.threads, all_groups())) return false;
-  add_firmness();
+  add_regularisation();
   const FeatureSet serves{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins};
   const int stage = frame_.add_stage("Lines", scene_.needs & serves);
   add_meeting(frame_);
-  resident_ = frame_.add_kernel(stage, name, sizeof(LineConstants), s.by_number(), shape.threads);
+  persistent_ = frame_.add_kernel(stage, name, sizeof(LineConstants), s.by_number(), shape.threads);
   return true;
 }
 
 void Lines::add_passes() {
   const FeatureSet needs = scene_.needs;
-  shape_[0] = pass_shape(scene_.cloth.columns, wish(), device());
-  shape_[1] = shape_[2] = pass_shape(scene_.cloth.rows, wish(), device());
-  add_firmness();
+  shape_[0] = pass_shape(scene_.cloth.columns, request(), device());
+  shape_[1] = shape_[2] = pass_shape(scene_.cloth.rows, request(), device());
+  add_regularisation();
   const char* const names[] = {"Rows", "Columns", "Diagonals"};
   const FeatureSet serves[] = {{Feature::Stretch, Feature::Bend, Feature::Damping, Feature::Pins},
                                {Feature::Stretch, Feature::Bend},
@@ -215,7 +215,7 @@ LineConstants Lines::constants(double dt_s, int substeps) const {
     c.bend_rounds_v = bend_rounds(static_cast<double>(c.bend_v), 4 / mass, shape_[1]);
   }
   c.inverse_mass = f(1 / mass);
-  c.firmness = f(kFirmness);
+  c.regularisation = f(kRegularisation);
   c.substep_part = f(1.0 / substeps);
   c.frames_per_s = f(1 / dt_s);
   c.iterations = iterations_;
@@ -260,7 +260,7 @@ Traffic Lines::pass_traffic(std::uint32_t pass) const {
 }
 
 /// Of what sums could not hold, in each dispatch that integrates.
-Traffic Lines::rests_traffic() const {
+Traffic Lines::compensated_traffic() const {
   const std::vector<float>& w = frame_.inverse_mass_now();
   return {32.0 * static_cast<double>(w.size()),
           32.0 * static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }))};
@@ -271,14 +271,14 @@ void Lines::record(int first, int count, int substeps, double dt_s) {
   c.first_substep = static_cast<std::uint32_t>(first);
   c.substeps = static_cast<std::uint32_t>(count);
   const std::uint32_t passes = iterations_ * families();
-  if (whole_ == nullptr && resident_ == nullptr) {
+  if (whole_ == nullptr && persistent_ == nullptr) {
     c.passes = 1;
     for (c.first_pass = 0; c.first_pass < passes; ++c.first_pass) record_pass(c);
     return;
   }
   c.passes = c.substeps * passes;
   const auto n = static_cast<double>(scene_.cloth.vertex_count());
-  Traffic t = resident_ != nullptr ? rests_traffic() : Traffic{64 * n * batch_, 64 * n * batch_};
+  Traffic t = persistent_ != nullptr ? compensated_traffic() : Traffic{64 * n * batch_, 64 * n * batch_};
   if (whole_ != nullptr)
     t.read_B += static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count);
   for (std::uint32_t k = 0; k < passes; ++k)
@@ -286,7 +286,7 @@ void Lines::record(int first, int count, int substeps, double dt_s) {
   if (whole_ != nullptr)
     frame_.dispatch_groups(*whole_, vulkan::groups_for(batch_, 1), c, t);
   else
-    frame_.dispatch_groups(*resident_, all_groups(), c, t);
+    frame_.dispatch_groups(*persistent_, all_groups(), c, t);
 }
 
 void Lines::record_pass(const LineConstants& c) {
@@ -295,7 +295,7 @@ void Lines::record_pass(const LineConstants& c) {
   const auto chains = static_cast<std::uint32_t>(family == 0 ? scene_.cloth.rows : scene_.cloth.columns);
   const Traffic t = pass_traffic(c.first_pass);
   frame_.dispatch_groups(*pass_[kind], vulkan::groups_for(chains, shape_[kind].chains_a_group()), c,
-                         c.first_pass == 0 ? t + rests_traffic() : t);
+                         c.first_pass == 0 ? t + compensated_traffic() : t);
 }
 
 }  // namespace clothbench::pbd_gpu

@@ -19,7 +19,7 @@ class Lines {
   /// Substeps [first, first + count) of `substeps` of a frame of dt_s. A cloth that does not fit one dispatch takes one
   /// at a time.
   void record(int first, int count, int substeps, double dt_s);
-  bool whole_frame() const { return whole_ != nullptr || (resident_ != nullptr && scene_.grips.vertices.empty()); }
+  bool whole_frame() const { return whole_ != nullptr || (persistent_ != nullptr && scene_.grips.vertices.empty()); }
   /// Do held vertices go with their hands in here?
   bool moves_grips() const { return whole_ != nullptr; }
 
@@ -31,12 +31,12 @@ class Lines {
   std::uint32_t features() const;
   LineSpecialization specialization(const LineShape&) const;
   void add_whole(const LineShape&);
-  bool add_resident();
+  bool add_persistent();
   void add_passes();
-  void add_firmness();
-  LineWish wish() const;
+  void add_regularisation();
+  LineRequest request() const;
   Traffic pass_traffic(std::uint32_t pass) const;
-  Traffic rests_traffic() const;
+  Traffic compensated_traffic() const;
   std::uint32_t families() const { return scene_.needs.has(Feature::Shear) ? 4 : 2; }
   /// Diagonals are solved first, then columns, then rows: the constraints along warp and weft are satisfied best.
   std::uint32_t family_of(std::uint32_t pass) const { return families() - 1 - pass % families(); }
@@ -54,7 +54,7 @@ class Lines {
   const std::uint32_t iterations_, batch_;
   const bool keep_;  ///< multipliers, from one iteration to the next
   bool firm_ = false, keeps_links_ = false, keeps_hinges_ = false;
-  const FrameKernel *whole_ = nullptr, *resident_ = nullptr;
+  const FrameKernel *whole_ = nullptr, *persistent_ = nullptr;
   std::array<const FrameKernel*, 3> pass_{};  ///< rows, columns, diagonals
   std::array<LineShape, 3> shape_{};
 };

@@ -15,34 +15,35 @@ struct uvec4 {
 #endif
 
 // Numbers of the storage buffers: each is the same in every kernel that has it.
-const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_RESTS = 2, BIND_VELOCITY_RESTS = 3, BIND_FIRMNESS = 4,
-          BIND_LINK_MULTIPLIERS = 5, BIND_HINGE_MULTIPLIERS = 6, BIND_MEETING = 7, BIND_MISSED = 8,
-          BIND_CHAIN_ENTRIES = 9, BIND_CHAIN_FAMILIES = 10, BIND_TETHER_ENDS = 11, BIND_WELDS = 12, BIND_GRIPS = 13,
-          BIND_SKIN = 14, BIND_JOINTS = 15, BIND_PLANES = 16, BIND_SPHERES = 17, BIND_BOXES = 18, BIND_CAPSULES = 19,
-          BIND_STANDING = 20, BIND_MOVING_START = 21, BIND_MOVING_END = 22, BIND_CLUSTERS = 23, BIND_CLUSTER_BOXES = 24,
-          BIND_TRIANGLES = 25, BIND_MESH_VERTICES = 26, BIND_CANDIDATES = 27, BIND_REACHES = 28, BIND_SIDES = 29,
-          BIND_SAMPLE_SIDES = 30, BIND_CORRECTIONS = 31, BIND_STARTS = 32, BIND_BLOCKS = 33, BIND_NEAR = 34,
-          BIND_WISHES = 35, BIND_PART = 36, BIND_PREDICTED = 37, BIND_DELTAS = 38, BIND_CONSTRAINTS = 39,
-          BIND_COUNTER = 40, BIND_COUNT = 41;
+const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 2, BIND_VELOCITY_COMPENSATION = 3,
+          BIND_REGULARISATION = 4, BIND_LINK_MULTIPLIERS = 5, BIND_HINGE_MULTIPLIERS = 6, BIND_BARRIER = 7,
+          BIND_TIMED_OUT = 8, BIND_CHAIN_ENTRIES = 9, BIND_CHAIN_FAMILIES = 10, BIND_TETHER_ENDS = 11, BIND_WELDS = 12,
+          BIND_GRIPS = 13, BIND_SKIN = 14, BIND_JOINTS = 15, BIND_PLANES = 16, BIND_SPHERES = 17, BIND_BOXES = 18,
+          BIND_CAPSULES = 19, BIND_STANDING = 20, BIND_MOVING_START = 21, BIND_MOVING_END = 22, BIND_CLUSTERS = 23,
+          BIND_CLUSTER_BOXES = 24, BIND_TRIANGLES = 25, BIND_MESH_VERTICES = 26, BIND_CANDIDATES = 27,
+          BIND_REACHES = 28, BIND_SIDES = 29, BIND_SAMPLE_SIDES = 30, BIND_CORRECTIONS = 31, BIND_STARTS = 32,
+          BIND_BLOCKS = 33, BIND_NEAR = 34, BIND_PROPOSED = 35, BIND_PART = 36, BIND_PREDICTED = 37, BIND_DELTAS = 38,
+          BIND_CONSTRAINTS = 39, BIND_COUNTER = 40, BIND_COUNT = 41;
 
 // Specialization constants: C(number, type, name, standard); number 0 is local_size_x.
 
 // Of the line kernels of `xpbd`. LANES: threads a chain, a power of two. K: vertices a thread, even where the scene
 // bends. THREADS: of a workgroup. FEATURES: LINES_... TETHERS: rectangles of pinned vertices, column and row << 16 of
 // the first and last. SUBGROUP: threads that exchange by shuffles. BESIDE: neighbouring chains whose threads take
-// turns, so that columns too are read by whole sectors. EXACT: all vertices of all threads are on chains. FIRM: chains
-// of each family that need `least`, a bit each. RESIDENT: all workgroups run at once, and wait for one another.
+// turns, so that columns too are read by whole sectors. EXACT: all vertices of all threads are on chains. REGULAR:
+// chains of each family that need `least`, a bit each. PERSISTENT: all workgroups run at once, and wait for one
+// another.
 // clang-format off
 #define LINE_CONSTANTS(C) \
   C(1, uint, LANES, 8u) C(2, uint, K, 4u) C(3, uint, COLUMNS, 2u) C(4, uint, ROWS, 2u) C(5, uint, THREADS, 64u) \
   C(6, uint, FEATURES, 0u) C(7, uint, TETHERS, 0u) C(8, uint, TETHER_0, 0u) C(9, uint, TETHER_0_LAST, 0u) \
   C(10, uint, TETHER_1, 0u) C(11, uint, TETHER_1_LAST, 0u) C(12, uint, TETHER_2, 0u) C(13, uint, TETHER_2_LAST, 0u) \
   C(14, uint, TETHER_3, 0u) C(15, uint, TETHER_3_LAST, 0u) C(16, uint, SUBGROUP, 1u) C(17, uint, BESIDE, 1u) \
-  C(18, bool, EXACT, false) C(19, uint, GRIPS, 0u) C(20, uint, FIRM_0, 0u) C(21, uint, FIRM_1, 0u) \
-  C(22, uint, FIRM_2, 0u) C(23, uint, FIRM_3, 0u) C(24, bool, RESIDENT, false)
+  C(18, bool, EXACT, false) C(19, uint, GRIPS, 0u) C(20, uint, REGULAR_0, 0u) C(21, uint, REGULAR_1, 0u) \
+  C(22, uint, REGULAR_2, 0u) C(23, uint, REGULAR_3, 0u) C(24, bool, PERSISTENT, false)
 // Of its chain kernel. TETHERS: a vertex.
 #define CHAIN_CONSTANTS(C) \
-  C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, RESIDENT, false)
+  C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, PERSISTENT, false)
 // Of its contact kernels. SAMPLES: on an edge. MOVING: whether any collider moves. LANES: neighbours in a subgroup that
 // hold the same point, a power of two, at most 16.
 #define CONTACT_CONSTANTS(C) \
@@ -119,7 +120,7 @@ struct LineConstants {
       alpha_d;           // compliance over h^2 [1/kg] of links, inside
   float bend_u, bend_v;  // the same of bending
   float inverse_mass;    // of a vertex inside [1/kg]
-  float firmness;        // of chains that need it: least alpha over inverse mass
+  float regularisation;  // of chains that need it: least alpha over inverse mass
   uint bend_rounds_u, bend_rounds_v;
   uint first_substep, substeps;  // of this dispatch
   float substep_part;            // of a frame
@@ -127,17 +128,17 @@ struct LineConstants {
   uint iterations;
   uint first_pass, passes;  // of this dispatch; each substep has a pass an
                             // iteration and family
-  uint patience;            // polls of a barrier of the whole dispatch before it times out
+  uint timeout_polls;       // polls of a barrier of the whole dispatch before it times out
   float per_h;              // 1/h
 };
 
 /// A vertex of a chain and the link to the next entry; `rest` below 0: there is
 /// none.
 struct ChainEntry {
-  uint vertex;       // CHAIN_NO_VERTEX: filling
-  float rest;        // [m]
-  float compliance;  // [m/N]
-  float firmness;    // least compliance over h^2, as a share of the inverse mass
+  uint vertex;           // CHAIN_NO_VERTEX: filling
+  float rest;            // [m]
+  float compliance;      // [m/N]
+  float regularisation;  // least compliance over h^2, as a share of the inverse mass
 };
 #define CHAIN_NO_VERTEX 0xffffffffu
 
@@ -155,15 +156,15 @@ struct ChainRange {
 
 /// Push constants of the chain kernel of `xpbd`.
 struct ChainConstants {
-  vec4 gravity_h;     // g h [m/s]
-  float h;            // substep [s]
-  float loss;         // 1 - exp(-c h)
-  float speed_limit;  // [m/s]
-  float per_h;        // 1/h
-  uint first_entry;   // of the family, where a dispatch is one
-  uint rounds;        // of cyclic reduction: 2^rounds links or more are in its longest
-                      // chain
-  uint patience;      // polls of a barrier of the whole dispatch before it times out
+  vec4 gravity_h;      // g h [m/s]
+  float h;             // substep [s]
+  float loss;          // 1 - exp(-c h)
+  float speed_limit;   // [m/s]
+  float per_h;         // 1/h
+  uint first_entry;    // of the family, where a dispatch is one
+  uint rounds;         // of cyclic reduction: 2^rounds links or more are in its longest
+                       // chain
+  uint timeout_polls;  // polls of a barrier of the whole dispatch before it times out
   uint families;
   uint first_pass, passes;  // of this dispatch; each substep has a pass a family
 };
@@ -264,7 +265,7 @@ struct SelfConstants {
   float h;        // substep [s]
   float reach_m;  // farther apart than this, and what they close in on each
                   // other, no two pieces concern each other
-  float most_m;   // that a vertex is moved by one round of wishes
+  float most_m;   // that a vertex is moved by one round of corrections
   uint unused0;
 };
 

@@ -255,15 +255,15 @@ void XpbdContact::add_kernels() {
   vertices_ = frame_.add_kernel(stage_contact_, "contact_vertices" + variant, kPush, s.by_number());
 }
 
-/// A point looks round alone where threads are few or work together anyway (a CPU's lanes are points); on a discrete
-/// GPU a small cloth's points do not fill the device, and one thread would read triangle after triangle, each read
-/// waiting for the last.
+/// A point runs its proximity query alone where threads are few or work together anyway (a CPU's lanes are points); on
+/// a discrete GPU a small cloth's points do not fill the device, and one thread would read triangle after triangle,
+/// each read waiting for the last.
 std::uint32_t XpbdContact::lanes() const {
   const vulkan::Device& d = *frame_.device();
-  const auto wish = frame_.tuning()["contact_lanes"].get<std::uint32_t>();
+  const auto request = frame_.tuning()["contact_lanes"].get<std::uint32_t>();
   const std::uint32_t most =
       frame_.counts_bytes() || !frame_.tuning()["shuffles"].get<bool>() ? 1 : std::max(1u, d.shuffled_lanes());
-  if (wish != 0) return std::min(wish, most);
+  if (request != 0) return std::min(request, most);
   if (!d.is_discrete()) return 1;
   constexpr std::uint32_t kMeshLanes = 16, kShapeLanes = 8;
   const ColliderBuffers& c = colliders_;

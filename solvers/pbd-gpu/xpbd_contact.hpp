@@ -50,7 +50,7 @@ class XpbdContact {
   const Scene& scene_;
   const ColliderBuffers& colliders_;
   const std::uint32_t samples_;  ///< an edge
-  std::uint32_t lanes_ = 1;      ///< threads that look round for one point
+  std::uint32_t lanes_ = 1;      ///< threads of the proximity query of one point
   std::uint32_t standing_clusters_ = 0, moving_clusters_ = 0, moving_triangles_ = 0;
   int stage_broad_ = -1, stage_contact_ = -1;
   const FrameKernel *find_boxes_ = nullptr, *find_candidates_ = nullptr, *vertices_ = nullptr, *sample_ = nullptr;

@@ -7,7 +7,7 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Rounds of wishes a substep: what one leaves in a pile, the next one finds.
+/// Rounds of corrections a substep: what one leaves in a pile, the next one finds.
 constexpr int kRounds = 2;
 
 /// In thicknesses. Contact begins a twentieth outside; what cannot cross is a matter of ways alone. Both as self.glsl
@@ -44,12 +44,12 @@ XpbdSelfContact::XpbdSelfContact(FrameBuilder& frame, const Scene& scene, const 
   frame_.add_buffer(BIND_BLOCKS, "self-contact blocks", 3 * blocks_ * sizeof(vec4));
   frame_.add_buffer(BIND_NEAR, "self-contact near blocks", std::uint64_t{4} * blocks_ * words_);
   // Of each vertex one slot, of its two triangles six, of its three edges six.
-  frame_.add_buffer(BIND_WISHES, "self-contact wishes", 26 * n * sizeof(vec4));
+  frame_.add_buffer(BIND_PROPOSED, "self-contact corrections", 26 * n * sizeof(vec4));
   frame_.add_buffer(BIND_PART, "self-contact part of the way", 4);
   const auto add = [&](const char* name) { return frame_.add_kernel(stage_, name, sizeof(SelfConstants)); };
   find_blocks_ = add("self_blocks");
   find_near_ = add("self_near");
-  wish_ = add("self_wishes");
+  correct_ = add("self_corrections");
   apply_ = add("self_apply");
   certify_ = add("self_certify");
   move_ = add("self_move");
@@ -104,7 +104,7 @@ void XpbdSelfContact::record_round(const SelfConstants& k) {
   const double columns = k.columns, rows = k.rows, n = columns * rows, cells = (columns - 1) * (rows - 1);
   const double edges = 3 * n - 2 * (columns + rows) + 1, around = 32 + 4.0 * words_;
   frame_.dispatch(
-      *wish_, 6 * scene_.cloth.vertex_count(), k,
+      *correct_, 6 * scene_.cloth.vertex_count(), k,
       {n * (16 + around) + 2 * cells * (48 + around) + edges * (32 + around), 32 * n + 96 * 2 * cells + 64 * edges});
   Traffic t;
   const std::vector<float>& w = frame_.inverse_mass_now();

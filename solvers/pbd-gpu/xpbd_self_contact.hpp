@@ -28,7 +28,7 @@ class XpbdSelfContact {
   std::uint32_t side_ = 0, block_columns_ = 0, blocks_ = 0, words_ = 0;
   int stage_start_ = -1, stage_ = -1;
   const vulkan::Buffer* starts_ = nullptr;
-  const FrameKernel *find_blocks_ = nullptr, *find_near_ = nullptr, *wish_ = nullptr, *apply_ = nullptr,
+  const FrameKernel *find_blocks_ = nullptr, *find_near_ = nullptr, *correct_ = nullptr, *apply_ = nullptr,
                     *certify_ = nullptr, *move_ = nullptr;
 };
 

@@ -50,8 +50,8 @@ class Xpbd final : public GpuSolver {
     }
     const vulkan::Buffer& x = add_buffer(BIND_POSITIONS, "positions", position);
     const vulkan::Buffer& v = add_buffer(BIND_VELOCITIES, "velocities", velocity);
-    add_buffer(BIND_POSITION_RESTS, "position rests", x.bytes());
-    add_buffer(BIND_VELOCITY_RESTS, "velocity rests", v.bytes());
+    add_buffer(BIND_POSITION_COMPENSATION, "position compensation", x.bytes());
+    add_buffer(BIND_VELOCITY_COMPENSATION, "velocity compensation", v.bytes());
     set_state(x, v, origin);
     add_colliders(origin, true);
     add_grips(origin, 1);
@@ -169,7 +169,7 @@ SolverInfo xpbd_info() {
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   info.tuning = {
       {"contact_lanes", "0",
-       "threads that look round for one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
+       "threads of the proximity query of one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
       {"device_barrier", "\"auto\"",
        "one dispatch of many workgroups that wait for one another: auto (discrete GPUs that run them all at once), "
        "always, never"},

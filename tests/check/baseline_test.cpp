@@ -21,11 +21,10 @@ class BaselineFile : public ::testing::Test {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
     file_ =
         fs::temp_directory_path() / ("clothbench-baseline-" + std::to_string(getpid()) + "-" + info->name() + ".json");
-    const std::vector<CellRecord> cells = {contact_cell("sweep"),
-                                           ended(contact_cell("desk", "paper"), "diverged", "F2", 7),
-                                           with_assets(contact_cell("desk"), "npm")};
-    made_ = update_baseline({}, cells, {"clothbench check x --update", {"clothbench study y"}, {"abc"}, {"µ GPU"}})
-                .baseline;
+    const std::vector<RunRecord> runs = {contact_run("sweep"), ended(contact_run("desk", "paper"), "diverged", "F2", 7),
+                                         with_assets(contact_run("desk"), "npm")};
+    made_ =
+        update_baseline({}, runs, {"clothbench check x --update", {"clothbench study y"}, {"abc"}, {"µ GPU"}}).baseline;
   }
   void TearDown() override { fs::remove(file_); }
 
@@ -49,19 +48,19 @@ class BaselineFile : public ::testing::Test {
 };
 
 TEST_F(BaselineFile, ReadsBackExactly) {
-  made_.cells[0].scalars["depth_max_m"] = 0.1 + 0.2;
+  made_.runs[0].scalars["depth_max_m"] = 0.1 + 0.2;
   const std::string text = baseline_text(made_);
   const Baseline read = written(text);
   EXPECT_EQ(baseline_text(read), text);
-  EXPECT_EQ(read.cells[0].scalars.at("depth_max_m"), 0.1 + 0.2);
-  EXPECT_EQ(read.cells[0].scalars.count("depth_mean_m"), 0u) << "not measured";
+  EXPECT_EQ(read.runs[0].scalars.at("depth_max_m"), 0.1 + 0.2);
+  EXPECT_EQ(read.runs[0].scalars.count("depth_mean_m"), 0u) << "not measured";
   nlohmann::json by_hand = json::parse(text);
-  by_hand["cells"][0]["scalars"]["depth_mean_m"] = nullptr;
-  EXPECT_TRUE(std::isnan(written(by_hand.dump()).cells[0].scalars.at("depth_mean_m")));
+  by_hand["runs"][0]["scalars"]["depth_mean_m"] = nullptr;
+  EXPECT_TRUE(std::isnan(written(by_hand.dump()).runs[0].scalars.at("depth_mean_m")));
   EXPECT_EQ(read.origin.devices, made_.origin.devices);
-  EXPECT_EQ(read.cells[1].key.assets, "npm");
-  EXPECT_EQ(read.cells[0].status, "diverged");
-  EXPECT_EQ(read.cells[0].failed_frame, 7);
+  EXPECT_EQ(read.runs[1].key.assets, "npm");
+  EXPECT_EQ(read.runs[0].status, "diverged");
+  EXPECT_EQ(read.runs[0].failed_frame, 7);
 }
 
 TEST_F(BaselineFile, IsSortedWithOneValueALineAndGatedScalarsAlone) {
@@ -72,7 +71,7 @@ TEST_F(BaselineFile, IsSortedWithOneValueALineAndGatedScalarsAlone) {
   EXPECT_NE(text.find("\n    \"Solve (stretch, shear)\",\n"), std::string::npos) << text;
   const json j = json::parse(text);
   std::vector<std::string> scenes;
-  for (const json& c : j["cells"])
+  for (const json& c : j["runs"])
     scenes.push_back(c["scene"].get<std::string>() + " " + c["solver"].get<std::string>());
   EXPECT_EQ(scenes, (std::vector<std::string>{"desk paper", "desk xpbd", "sweep xpbd"}));
 }
@@ -85,20 +84,19 @@ TEST_F(BaselineFile, SaysWhatIsWrongAndWhere) {
     return fault(bad.dump());
   };
   EXPECT_EQ(fault(good.dump()), "no error");
-  EXPECT_NE(with_change("/cells/1/scalars/fps_median", 60).find("/cells/1/scalars/fps_median"), std::string::npos);
-  EXPECT_NE(with_change("/cells/1/scalars/depth_max_m", "deep").find("/cells/1/scalars/depth_max_m"),
-            std::string::npos);
-  EXPECT_NE(with_change("/cells/1/solvr", "x").find("nearest known: solver"), std::string::npos);
-  EXPECT_NE(with_change("/cells/2/status", "fine").find("/cells/2/status"), std::string::npos);
-  EXPECT_NE(with_change("/cells/2/failed_frame", -2).find("/cells/2/failed_frame"), std::string::npos);
-  EXPECT_NE(with_change("/cells/2/stages/0", 1).find("/cells/2/stages/0"), std::string::npos);
+  EXPECT_NE(with_change("/runs/1/scalars/fps_median", 60).find("/runs/1/scalars/fps_median"), std::string::npos);
+  EXPECT_NE(with_change("/runs/1/scalars/depth_max_m", "deep").find("/runs/1/scalars/depth_max_m"), std::string::npos);
+  EXPECT_NE(with_change("/runs/1/solvr", "x").find("nearest known: solver"), std::string::npos);
+  EXPECT_NE(with_change("/runs/2/status", "fine").find("/runs/2/status"), std::string::npos);
+  EXPECT_NE(with_change("/runs/2/failed_frame", -2).find("/runs/2/failed_frame"), std::string::npos);
+  EXPECT_NE(with_change("/runs/2/stages/0", 1).find("/runs/2/stages/0"), std::string::npos);
   EXPECT_NE(with_change("/format", "clothbench-run").find("/format"), std::string::npos);
   EXPECT_NE(with_change("/format_version", 2).find("/format_version"), std::string::npos);
-  EXPECT_NE(with_change("/cells", json::array()).find("/cells"), std::string::npos) << "nothing to hold results to";
-  EXPECT_NE(with_change("/cells/1", good["cells"][0]).find("/cells/1: this cell stands twice"), std::string::npos);
+  EXPECT_NE(with_change("/runs", json::array()).find("/runs"), std::string::npos) << "nothing to hold results to";
+  EXPECT_NE(with_change("/runs/1", good["runs"][0]).find("/runs/1: this run stands twice"), std::string::npos);
   json bad = good;
-  bad["cells"][1].erase("scalars");
-  EXPECT_NE(fault(bad.dump()).find("/cells/1: \"scalars\" is missing"), std::string::npos);
+  bad["runs"][1].erase("scalars");
+  EXPECT_NE(fault(bad.dump()).find("/runs/1: \"scalars\" is missing"), std::string::npos);
   EXPECT_NE(fault("{\n \"format\": NaN}").find("line 2"), std::string::npos);
   EXPECT_NE(fault("").find("empty"), std::string::npos);
   EXPECT_NE(fault(R"({"format":1,"format":2})").find("stands twice"), std::string::npos);

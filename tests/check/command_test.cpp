@@ -24,19 +24,19 @@ class CheckCommand : public ::testing::Test {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
     dir_ = fs::temp_directory_path() / ("clothbench-check-" + std::to_string(getpid()) + "-" + info->name());
     fs::create_directories(dir_);
-    write_study({contact_cell("desk"), contact_cell("sweep")});
+    write_study({contact_run("desk"), contact_run("sweep")});
   }
   void TearDown() override { fs::remove_all(dir_); }
 
-  /// A study folder with these cells, as `clothbench study` leaves it.
-  void write_study(const std::vector<CellRecord>& cells) {
+  /// A study folder with these runs, as `clothbench study` leaves it.
+  void write_study(const std::vector<RunRecord>& runs) {
     fs::remove_all(run());
     fs::create_directories(run());
     StudyManifest manifest{
         "penetration", "2026-01-01T00:00:00Z", "clothbench study penetration --quick", json::object(), {}};
-    for (const CellRecord& c : cells) {
-      manifest.cells.push_back(cell_name(c.header));
-      if (c.outcome.status != "missing") CellWriter(run(), c.header).finish(c.outcome, c.summary);
+    for (const RunRecord& c : runs) {
+      manifest.runs.push_back(run_name(c.header));
+      if (c.outcome.status != "missing") RunWriter(run(), c.header).finish(c.outcome, c.summary);
     }
     write_manifest(run(), manifest);
   }
@@ -74,19 +74,19 @@ TEST_F(CheckCommand, UpdateThenCheckThenRegress) {
   const std::string made = content(baseline());
   EXPECT_NE(made.find("clothbench study penetration --quick"), std::string::npos);
   EXPECT_EQ(check(), 0) << text_;
-  EXPECT_NE(text_.find("check passed: 2 cells: 0 failed, 0 improved, 0 new, 2 as in"), std::string::npos) << text_;
+  EXPECT_NE(text_.find("check passed: 2 runs: 0 failed, 0 improved, 0 new, 2 as in"), std::string::npos) << text_;
   EXPECT_EQ(content(baseline()), made) << "a check writes nothing";
   ASSERT_EQ(check("--update"), 0);
   EXPECT_EQ(content(baseline()), made) << "the same results give the same file";
 
-  write_study({contact_cell("desk"), with(contact_cell("sweep"), "tunnelled_fraction_max", 0.25)});
+  write_study({contact_run("desk"), with(contact_run("sweep"), "tunnelled_fraction_max", 0.25)});
   EXPECT_EQ(check(), 1) << text_;
   EXPECT_NE(text_.find("tunnelled_fraction_max"), std::string::npos) << text_;
   ASSERT_EQ(check("--update"), 0);
   EXPECT_NE(text_.find("tunnelled_fraction_max"), std::string::npos) << text_;
   EXPECT_EQ(check(), 0) << text_;
 
-  write_study({contact_cell("desk"), contact_cell("sweep")});
+  write_study({contact_run("desk"), contact_run("sweep")});
   EXPECT_EQ(check(), 0) << "an improvement passes";
   EXPECT_NE(text_.find("1 improved"), std::string::npos) << text_;
   EXPECT_NE(text_.find("--update"), std::string::npos) << text_;
@@ -94,18 +94,18 @@ TEST_F(CheckCommand, UpdateThenCheckThenRegress) {
     EXPECT_EQ(file.path().string().find(".tmp"), std::string::npos) << file.path();
 }
 
-TEST_F(CheckCommand, NotANumberMissingAndNewCells) {
+TEST_F(CheckCommand, NotANumberMissingAndNewRuns) {
   ASSERT_EQ(check("--update"), 0);
-  write_study({contact_cell("desk"), with(contact_cell("sweep"), "depth_max_m", kMissing)});
+  write_study({contact_run("desk"), with(contact_run("sweep"), "depth_max_m", kMissing)});
   EXPECT_EQ(check(), 1);
   EXPECT_NE(text_.find("not measured"), std::string::npos) << text_;
-  write_study({contact_cell("desk"), planned(contact_cell("sweep"))});
+  write_study({contact_run("desk"), planned(contact_run("sweep"))});
   EXPECT_EQ(check(), 1);
   EXPECT_NE(text_.find("planned, not run"), std::string::npos) << text_;
   EXPECT_EQ(check("--update"), 2) << "no baseline of half a study";
-  write_study({contact_cell("desk")});
+  write_study({contact_run("desk")});
   EXPECT_EQ(check(), 1);
-  write_study({contact_cell("desk"), contact_cell("sweep"), contact_cell("push")});
+  write_study({contact_run("desk"), contact_run("sweep"), contact_run("push")});
   EXPECT_EQ(check(), 0);
   EXPECT_NE(text_.find("1 new"), std::string::npos) << text_;
 }
@@ -129,21 +129,21 @@ TEST_F(CheckCommand, BadInputExitsTwo) {
   EXPECT_EQ(command("check " + run().string() + " " + run().string() + " --baseline " + baseline().string()), 2);
   EXPECT_NE(text_.find("twice"), std::string::npos) << text_;
   json bad = json::parse(content(baseline()));
-  bad["cells"][1]["scalars"]["depth_max"] = 1;
+  bad["runs"][1]["scalars"]["depth_max"] = 1;
   std::ofstream(baseline()) << bad.dump();
   EXPECT_EQ(check(), 2);
-  EXPECT_NE(text_.find("baseline.json: /cells/1/scalars/depth_max"), std::string::npos) << text_;
+  EXPECT_NE(text_.find("baseline.json: /runs/1/scalars/depth_max"), std::string::npos) << text_;
   EXPECT_EQ(check("--update"), 2) << "what cannot be read is not written over";
   EXPECT_EQ(json::parse(content(baseline())), bad);
 }
 
 TEST_F(CheckCommand, AnotherVersionOfAMetricIsBadInputUntilUpdated) {
   const auto write = [&](int version) {
-    CellRecord c = with(contact_cell("sweep"), "wrong_side_samples_max", 3);
+    RunRecord c = with(contact_run("sweep"), "wrong_side_samples_max", 3);
     c.header.vertices = 1;
-    const std::string cell = cell_name(c.header);
-    fs::remove(run() / (cell + ".h5"));
-    CellWriter writer(run(), c.header);
+    const std::string name = run_name(c.header);
+    fs::remove(run() / (name + ".h5"));
+    RunWriter writer(run(), c.header);
     AccuracyPass pass;
     pass.time_s = {0};
     pass.position = {0, 0, 0};
@@ -161,13 +161,13 @@ TEST_F(CheckCommand, AnotherVersionOfAMetricIsBadInputUntilUpdated) {
   for (const char* part : {"sweep__xpbd__default", "wrong_side_samples", "version 1", "version 2", "--update"})
     EXPECT_NE(text_.find(part), std::string::npos) << text_;
   ASSERT_EQ(check("--update"), 0) << text_;
-  EXPECT_EQ(json::parse(content(baseline()))["cells"][1]["metric_versions"]["wrong_side_samples"], 2);
+  EXPECT_EQ(json::parse(content(baseline()))["runs"][1]["metric_versions"]["wrong_side_samples"], 2);
   EXPECT_EQ(check(), 0) << text_;
 }
 
 TEST_F(CheckCommand, JunitGithubAndJson) {
   ASSERT_EQ(check("--update"), 0);
-  write_study({contact_cell("desk"), ended(contact_cell("sweep"), "diverged", "F2", 3)});
+  write_study({contact_run("desk"), ended(contact_run("sweep"), "diverged", "F2", 3)});
   const fs::path junit = dir_ / "check.xml";
   EXPECT_EQ(check("--github --junit " + junit.string()), 1);
   EXPECT_NE(text_.find("\n::error file=" + baseline().string() + ",title=sweep__xpbd__default::FAILED: outcome"),
@@ -177,7 +177,7 @@ TEST_F(CheckCommand, JunitGithubAndJson) {
   EXPECT_EQ(command("check --json --github " + run().string() + " --baseline " + baseline().string(), false), 1);
   const json j = json::parse(text_);
   EXPECT_EQ(j.at("passed"), false);
-  EXPECT_EQ(j.at("cells").size(), 2u);
+  EXPECT_EQ(j.at("runs").size(), 2u);
   std::ofstream(baseline()) << "{";
   EXPECT_EQ(check("--junit " + junit.string()), 2);
   EXPECT_FALSE(fs::exists(junit)) << "an older verdict";
@@ -197,13 +197,13 @@ TEST_F(CheckCommand, HoldsARealStudyOfASolverThatTheStudyDoesNotName) {
   ASSERT_EQ(command(arguments + " --update"), 0) << text_;
   EXPECT_EQ(command(arguments), 0) << text_;
   json changed = json::parse(content(baseline()));
-  ASSERT_EQ(changed["cells"].size(), 1u);
-  EXPECT_EQ(changed["cells"][0]["solver"], "ballistic");
-  ASSERT_TRUE(changed["cells"][0]["scalars"].contains("free_fall_error"));
-  changed["cells"][0]["scalars"]["free_fall_error"] = -1;
+  ASSERT_EQ(changed["runs"].size(), 1u);
+  EXPECT_EQ(changed["runs"][0]["solver"], "ballistic");
+  ASSERT_TRUE(changed["runs"][0]["scalars"].contains("free_fall_error"));
+  changed["runs"][0]["scalars"]["free_fall_error"] = -1;
   std::ofstream(baseline()) << changed.dump();
   EXPECT_EQ(command(arguments), 1) << text_;
-  changed["cells"][0]["scenario_sha256"] = "0";
+  changed["runs"][0]["scenario_sha256"] = "0";
   std::ofstream(baseline()) << changed.dump();
   EXPECT_EQ(command(arguments), 1);
   EXPECT_NE(text_.find("the scene changed"), std::string::npos) << text_;

@@ -1,4 +1,4 @@
-// Every rule of the check, on cells as the runner would leave them.
+// Every rule of the check, on runs as the runner would leave them.
 #include "check/compare.hpp"
 
 #include <gtest/gtest.h>
@@ -12,13 +12,13 @@
 namespace clothbench {
 namespace {
 
-Baseline baseline_of(const std::vector<CellRecord>& cells) { return update_baseline({}, cells, {}).baseline; }
+Baseline baseline_of(const std::vector<RunRecord>& runs) { return update_baseline({}, runs, {}).baseline; }
 
-std::vector<Finding> findings(const CellRecord& was, const CellRecord& is) { return compare_cell(gated_part(was), is); }
+std::vector<Finding> findings(const RunRecord& was, const RunRecord& is) { return compare_run(gated_part(was), is); }
 
 /// Verdict of one changed scalar.
 Verdict verdict_of(const std::string& name, double was, double is) {
-  const std::vector<Finding> f = findings(with(contact_cell(), name, was), with(contact_cell(), name, is));
+  const std::vector<Finding> f = findings(with(contact_run(), name, was), with(contact_run(), name, is));
   if (f.empty()) return Verdict::Same;
   EXPECT_EQ(f.size(), 1u);
   EXPECT_EQ(f[0].quantity, name);
@@ -56,14 +56,14 @@ TEST(Gates, SlackScalesWithTheCloth) {
   EXPECT_EQ(slack(*find_gate("tunnelled_fraction_max"), 0, 1), 0);
 }
 
-TEST(Compare, AgreesWithItself) { EXPECT_TRUE(findings(contact_cell(), contact_cell()).empty()); }
+TEST(Compare, AgreesWithItself) { EXPECT_TRUE(findings(contact_run(), contact_run()).empty()); }
 
 TEST(Compare, TimesAreNeverGated) {
-  CellRecord slow = contact_cell();
+  RunRecord slow = contact_run();
   for (const char* name :
        {"fps_median", "frame_wall_median_s", "load_s", "device_memory_B", "bandwidth_read_peak_B_per_s"})
     slow.summary[name] = kMissing;
-  EXPECT_TRUE(findings(contact_cell(), slow).empty());
+  EXPECT_TRUE(findings(contact_run(), slow).empty());
 }
 
 TEST(Compare, MoreThanSlackFailsLessIsBetter) {
@@ -95,11 +95,11 @@ TEST(Compare, NotANumberFailsWhereTheBaselineHasOne) {
     EXPECT_EQ(verdict_of(name, kMissing, kMissing), Verdict::Same) << name;
     EXPECT_EQ(verdict_of(name, kMissing, 1), Verdict::New) << name;
   }
-  CellRecord absent = contact_cell();
+  RunRecord absent = contact_run();
   absent.summary.erase("depth_max_m");
-  ASSERT_EQ(findings(contact_cell(), absent).size(), 1u);
-  EXPECT_EQ(findings(contact_cell(), absent)[0].verdict, Verdict::Failed);
-  EXPECT_EQ(findings(absent, contact_cell())[0].verdict, Verdict::New);
+  ASSERT_EQ(findings(contact_run(), absent).size(), 1u);
+  EXPECT_EQ(findings(contact_run(), absent)[0].verdict, Verdict::Failed);
+  EXPECT_EQ(findings(absent, contact_run())[0].verdict, Verdict::New);
 }
 
 TEST(Compare, TheScenesOwnVerdict) {
@@ -108,9 +108,9 @@ TEST(Compare, TheScenesOwnVerdict) {
   EXPECT_EQ(verdict_of("expect.depth_max_m", 0, 0), Verdict::Same);
 }
 
-/// A cell whose wrong side was measured by some version of the rule.
-CellRecord by_version(int version, double samples) {
-  CellRecord c = with(with(contact_cell(), "wrong_side_samples_max", samples), "contact_violated_longest_s", samples);
+/// A run whose wrong side was measured by some version of the rule.
+RunRecord by_version(int version, double samples) {
+  RunRecord c = with(with(contact_run(), "wrong_side_samples_max", samples), "contact_violated_longest_s", samples);
   c.accuracy.metrics = {{"wrong_side_samples", "1", "", {0, samples}, version}};
   return c;
 }
@@ -123,18 +123,18 @@ TEST(Compare, TwoVersionsOfARuleMakeNoVerdict) {
   EXPECT_EQ(f[0].found, "version 2");
   EXPECT_FALSE(findings(by_version(2, 10), by_version(2, 90)).empty());
   EXPECT_EQ(findings(by_version(2, 10), by_version(2, 90))[0].quantity, "contact_violated_longest_s");
-  const std::string said = error_of([&] { check_cells(baseline_of({by_version(1, 10)}), {by_version(2, 10)}); });
+  const std::string said = error_of([&] { check_runs(baseline_of({by_version(1, 10)}), {by_version(2, 10)}); });
   for (const char* part : {"desk__xpbd__default", "wrong_side_samples", "version 1", "version 2", "--update"})
     EXPECT_NE(said.find(part), std::string::npos) << said;
-  EXPECT_EQ(error_of([&] { check_cells(baseline_of({by_version(2, 10)}), {by_version(2, 10)}); }), "no error");
+  EXPECT_EQ(error_of([&] { check_runs(baseline_of({by_version(2, 10)}), {by_version(2, 10)}); }), "no error");
   const Updated u = update_baseline(baseline_of({by_version(1, 10)}), {by_version(2, 10)}, {});
-  EXPECT_EQ(u.baseline.cells[0].versions.at("wrong_side_samples"), 2);
+  EXPECT_EQ(u.baseline.runs[0].versions.at("wrong_side_samples"), 2);
   ASSERT_EQ(u.changes.size(), 1u);
 }
 
 TEST(Compare, Outcome) {
-  const CellRecord ok = contact_cell(), blown = ended(ok, "diverged", "F2", 40);
-  const auto verdict = [](const CellRecord& was, const CellRecord& is) {
+  const RunRecord ok = contact_run(), blown = ended(ok, "diverged", "F2", 40);
+  const auto verdict = [](const RunRecord& was, const RunRecord& is) {
     const auto f = findings(was, is);
     EXPECT_LE(f.size(), 1u);
     return f.empty() ? Verdict::Same : f[0].verdict;
@@ -159,27 +159,27 @@ TEST(Compare, Outcome) {
 }
 
 TEST(Compare, Stages) {
-  CellRecord extra = contact_cell(), fewer = contact_cell(), serves = contact_cell(), order = contact_cell();
+  RunRecord extra = contact_run(), fewer = contact_run(), serves = contact_run(), order = contact_run();
   extra.header.stages.push_back({"Friction", {"friction"}, 1});
   fewer.header.stages.pop_back();
   serves.header.stages[2].serves = {"moving_mesh"};
   std::swap(order.header.stages[0], order.header.stages[1]);
-  for (const CellRecord& changed : {extra, fewer, serves, order}) {
-    const auto f = findings(contact_cell(), changed);
+  for (const RunRecord& changed : {extra, fewer, serves, order}) {
+    const auto f = findings(contact_run(), changed);
     ASSERT_EQ(f.size(), 1u);
     EXPECT_EQ(f[0].verdict, Verdict::Failed);
     EXPECT_EQ(f[0].quantity, "stages");
   }
-  EXPECT_EQ(findings(contact_cell(), extra)[0].message, "not in the baseline: Friction (friction)");
-  EXPECT_EQ(findings(contact_cell(), serves)[0].message,
+  EXPECT_EQ(findings(contact_run(), extra)[0].message, "not in the baseline: Friction (friction)");
+  EXPECT_EQ(findings(contact_run(), serves)[0].message,
             "not in the baseline: Contact (moving_mesh); missing: Contact (static_mesh)");
-  EXPECT_NE(findings(contact_cell(), order)[0].message.find("order"), std::string::npos);
+  EXPECT_NE(findings(contact_run(), order)[0].message.find("order"), std::string::npos);
 }
 
 TEST(Compare, AChangedSceneIsSaidAndNothingElse) {
-  CellRecord changed = with(contact_cell(), "depth_max_m", 99);
+  RunRecord changed = with(contact_run(), "depth_max_m", 99);
   changed.header.scenario_sha256 = "ffff";
-  const auto f = findings(contact_cell(), changed);
+  const auto f = findings(contact_run(), changed);
   ASSERT_EQ(f.size(), 1u);
   EXPECT_EQ(f[0].verdict, Verdict::Failed);
   EXPECT_NE(f[0].message.find("scene changed"), std::string::npos);
@@ -187,80 +187,80 @@ TEST(Compare, AChangedSceneIsSaidAndNothingElse) {
 }
 
 TEST(Compare, ASceneWithoutSizeIsBadInput) {
-  CellRecord odd = contact_cell();
+  RunRecord odd = contact_run();
   for (const char* json : {"{}", "not JSON", R"({"cloth":{"size_m":["a",1]}})"}) {
     odd.header.scenario_json = json;
-    EXPECT_NE(error_of([&] { findings(contact_cell(), odd); }).find("/cloth/size_m"), std::string::npos) << json;
+    EXPECT_NE(error_of([&] { findings(contact_run(), odd); }).find("/cloth/size_m"), std::string::npos) << json;
   }
 }
 
-TEST(Check, MissingCellsFailNewOnesDoNot) {
-  const CellRecord a = contact_cell("a"), b = contact_cell("b"), c = contact_cell("c");
-  const Checked gone = check_cells(baseline_of({a, b}), {a});
-  ASSERT_EQ(gone.cells.size(), 2u);
+TEST(Check, MissingRunsFailNewOnesDoNot) {
+  const RunRecord a = contact_run("a"), b = contact_run("b"), c = contact_run("c");
+  const Checked gone = check_runs(baseline_of({a, b}), {a});
+  ASSERT_EQ(gone.runs.size(), 2u);
   EXPECT_FALSE(gone.passed());
-  EXPECT_EQ(gone.cells[1].findings.at(0).found, "missing");
+  EXPECT_EQ(gone.runs[1].findings.at(0).found, "missing");
 
-  const Checked interrupted = check_cells(baseline_of({a, b}), {a, planned(b)});
+  const Checked interrupted = check_runs(baseline_of({a, b}), {a, planned(b)});
   EXPECT_EQ(interrupted.count(Verdict::Failed), 1u);
-  EXPECT_EQ(interrupted.cells[1].findings.at(0).message, "planned, not run");
-  EXPECT_FALSE(check_cells(baseline_of({a}), {a, planned(b)}).passed()) << "an unfinished study";
+  EXPECT_EQ(interrupted.runs[1].findings.at(0).message, "planned, not run");
+  EXPECT_FALSE(check_runs(baseline_of({a}), {a, planned(b)}).passed()) << "an unfinished study";
 
-  const Checked more = check_cells(baseline_of({a, b}), {c, b, a});
+  const Checked more = check_runs(baseline_of({a, b}), {c, b, a});
   EXPECT_TRUE(more.passed());
   EXPECT_EQ(more.count(Verdict::New), 1u);
   EXPECT_EQ(more.count(Verdict::Same), 2u);
 
-  EXPECT_FALSE(check_cells(baseline_of({a}), {}).passed());
-  EXPECT_NE(error_of([&] { check_cells(baseline_of({a}), {a, a}); }).find("twice"), std::string::npos);
+  EXPECT_FALSE(check_runs(baseline_of({a}), {}).passed());
+  EXPECT_NE(error_of([&] { check_runs(baseline_of({a}), {a, a}); }).find("twice"), std::string::npos);
 }
 
-TEST(Check, APlannedCellIsFoundByItsFileName) {
-  CellRecord odd = contact_cell();
+TEST(Check, APlannedRunIsFoundByItsFileName) {
+  RunRecord odd = contact_run();
   odd.header.setting = "speed=0.5 m/s";
-  CellRecord as_planned = planned(odd);
+  RunRecord as_planned = planned(odd);
   as_planned.header.setting = "speed=0.5-m-s";
-  const Checked checked = check_cells(baseline_of({odd}), {as_planned});
-  ASSERT_EQ(checked.cells.size(), 1u);
-  EXPECT_EQ(checked.cells[0].key.setting, "speed=0.5 m/s");
+  const Checked checked = check_runs(baseline_of({odd}), {as_planned});
+  ASSERT_EQ(checked.runs.size(), 1u);
+  EXPECT_EQ(checked.runs[0].key.setting, "speed=0.5 m/s");
 }
 
-TEST(Check, AssetKindsAreCellsOfTheirOwn) {
-  const CellRecord real = with_assets(contact_cell(), "npm");
-  const CellRecord made_up = with(with_assets(contact_cell(), "procedural"), "depth_max_m", 0.5);
-  const Checked one = check_cells(baseline_of({real, made_up}), {made_up});
+TEST(Check, AssetKindsAreRunsOfTheirOwn) {
+  const RunRecord real = with_assets(contact_run(), "npm");
+  const RunRecord made_up = with(with_assets(contact_run(), "procedural"), "depth_max_m", 0.5);
+  const Checked one = check_runs(baseline_of({real, made_up}), {made_up});
   EXPECT_TRUE(one.passed());
-  EXPECT_EQ(one.cells.size(), 1u);
+  EXPECT_EQ(one.runs.size(), 1u);
   EXPECT_EQ(one.other_assets, 1u);
-  EXPECT_TRUE(check_cells(baseline_of({real, made_up}), {made_up, real}).passed());
+  EXPECT_TRUE(check_runs(baseline_of({real, made_up}), {made_up, real}).passed());
 
-  const Checked other = check_cells(baseline_of({real}), {made_up});
+  const Checked other = check_runs(baseline_of({real}), {made_up});
   ASSERT_EQ(other.count(Verdict::Failed), 1u) << "made-up rooms must not pass for real ones";
-  EXPECT_EQ(other.cells.at(0).findings.at(0).quantity, "assets");
-  EXPECT_EQ(check_cells(baseline_of({real}), {real, made_up}).count(Verdict::New), 1u);
-  EXPECT_EQ(check_cells(baseline_of({real, made_up}), {}).cells.size(), 1u);
+  EXPECT_EQ(other.runs.at(0).findings.at(0).quantity, "assets");
+  EXPECT_EQ(check_runs(baseline_of({real}), {real, made_up}).count(Verdict::New), 1u);
+  EXPECT_EQ(check_runs(baseline_of({real, made_up}), {}).runs.size(), 1u);
 }
 
 TEST(Check, TheCompletedSceneMaySayTheAssetsToo) {
-  CellRecord c = contact_cell();
+  RunRecord c = contact_run();
   EXPECT_EQ(gated_part(c).key.assets, "");
   c.header.scenario_json = R"({"assets":"procedural","cloth":{"size_m":[1,1]}})";
   EXPECT_EQ(gated_part(c).key.assets, "procedural");
 }
 
-TEST(Check, ACellIsAsBadAsItsWorstFinding) {
-  const CellRecord was = contact_cell();
-  const CellRecord is = with(with(was, "depth_max_m", 0), "tunnelled_fraction_max", 0.5);
-  const Checked checked = check_cells(baseline_of({was}), {is});
-  EXPECT_EQ(checked.cells.at(0).findings.size(), 2u);
-  EXPECT_EQ(checked.cells.at(0).verdict(), Verdict::Failed);
+TEST(Check, ARunIsAsBadAsItsWorstFinding) {
+  const RunRecord was = contact_run();
+  const RunRecord is = with(with(was, "depth_max_m", 0), "tunnelled_fraction_max", 0.5);
+  const Checked checked = check_runs(baseline_of({was}), {is});
+  EXPECT_EQ(checked.runs.at(0).findings.size(), 2u);
+  EXPECT_EQ(checked.runs.at(0).verdict(), Verdict::Failed);
   EXPECT_EQ(checked.count(Verdict::Improved), 0u);
 }
 
 TEST(Update, TakesTheResultsAndSaysWhatChanged) {
-  const CellRecord a = contact_cell("a"), b = contact_cell("b"), c = contact_cell("c"), d = contact_cell("d");
+  const RunRecord a = contact_run("a"), b = contact_run("b"), c = contact_run("c"), d = contact_run("d");
   const Baseline old = baseline_of({a, b, d});
-  const std::vector<CellRecord> results = {with(a, "depth_max_m", 0.5), c, with(d, "depth_max_m", 0.00301)};
+  const std::vector<RunRecord> results = {with(a, "depth_max_m", 0.5), c, with(d, "depth_max_m", 0.00301)};
   const Updated u = update_baseline(old, results, {});
   ASSERT_EQ(u.changes.size(), 2u);
   EXPECT_EQ(u.changes[0].findings.at(0).quantity, "depth_max_m");
@@ -268,25 +268,25 @@ TEST(Update, TakesTheResultsAndSaysWhatChanged) {
   ASSERT_EQ(u.removed.size(), 1u);
   EXPECT_EQ(u.removed[0].scene, "b");
   EXPECT_EQ(u.within_slack, 1u);
-  const Checked again = check_cells(u.baseline, results);
+  const Checked again = check_runs(u.baseline, results);
   EXPECT_EQ(again.count(Verdict::Same), 3u);
 }
 
-TEST(Update, KeepsCellsOfOtherAssetsWithTheirOrigin) {
-  const CellRecord real = with_assets(contact_cell(), "npm"), made_up = with_assets(contact_cell(), "procedural");
+TEST(Update, KeepsRunsOfOtherAssetsWithTheirOrigin) {
+  const RunRecord real = with_assets(contact_run(), "npm"), made_up = with_assets(contact_run(), "procedural");
   Baseline old = baseline_of({real});
   old.origin.devices = {"Real GPU"};
   const Updated u = update_baseline(old, {made_up}, {"x", {}, {}, {"Another"}});
-  EXPECT_EQ(u.baseline.cells.size(), 2u);
+  EXPECT_EQ(u.baseline.runs.size(), 2u);
   EXPECT_EQ(u.changes.size(), 1u);
   EXPECT_TRUE(u.removed.empty());
   EXPECT_EQ(u.baseline.origin.devices, (std::vector<std::string>{"Another", "Real GPU"}));
 }
 
 TEST(Update, RefusesWhatIsNotWhole) {
-  const CellRecord a = contact_cell("a"), b = contact_cell("b");
+  const RunRecord a = contact_run("a"), b = contact_run("b");
   EXPECT_NE(error_of([&] { update_baseline({}, {a, planned(b)}, {}); }).find("b__xpbd__default"), std::string::npos);
-  EXPECT_NE(error_of([&] { update_baseline({}, {}, {}); }).find("no cell"), std::string::npos);
+  EXPECT_NE(error_of([&] { update_baseline({}, {}, {}); }).find("no run"), std::string::npos);
   EXPECT_NE(error_of([&] { update_baseline({}, {a, a}, {}); }).find("twice"), std::string::npos);
 }
 

@@ -16,18 +16,18 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A cell of each verdict, with text that every format must escape.
+/// A run of each verdict, with text that every format must escape.
 Checked sample() {
   const std::string nasty = "a <b> & \"c\", 100 %: d]]>\r\nnext\tline \x01\x1b \xff\xEF\xBF\xBF µ";
   Checked c;
-  c.cells.push_back({{"desk", "good", "default", ""}, {}});
-  c.cells.push_back({{"desk", "bad & <ugly>", "\"k\"=1", "npm"},
-                     {{Verdict::Failed, "outcome", "ok", "diverged F2 at frame 3", "", nasty},
-                      {Verdict::Failed, "depth_max_m", "0.003", "0.02", "≤ 0.0036", ""},
-                      {Verdict::Improved, "stretch_max", "0.5", "0.1", "≤ 0.555", ""}}});
-  c.cells.push_back({{"desk", "better", "default", ""}, {{Verdict::Improved, "depth_max_m", "1", "0.5", "≤ 1.1", ""}}});
-  c.cells.push_back(
-      {{"desk", "newcomer", "default", ""}, {{Verdict::New, "cell", "–", "ok", "", "not in the baseline"}}});
+  c.runs.push_back({{"desk", "good", "default", ""}, {}});
+  c.runs.push_back({{"desk", "bad & <ugly>", "\"k\"=1", "npm"},
+                    {{Verdict::Failed, "outcome", "ok", "diverged F2 at frame 3", "", nasty},
+                     {Verdict::Failed, "depth_max_m", "0.003", "0.02", "≤ 0.0036", ""},
+                     {Verdict::Improved, "stretch_max", "0.5", "0.1", "≤ 0.555", ""}}});
+  c.runs.push_back({{"desk", "better", "default", ""}, {{Verdict::Improved, "depth_max_m", "1", "0.5", "≤ 1.1", ""}}});
+  c.runs.push_back(
+      {{"desk", "newcomer", "default", ""}, {{Verdict::New, "run", "–", "ok", "", "not in the baseline"}}});
   return c;
 }
 
@@ -42,7 +42,7 @@ TEST(Junit, IsReadBackByAnXmlParser) {
   fs::create_directories(dir);
   std::ofstream(dir / "check.xml") << junit_xml(sample());
   json expected = json::array();
-  for (const CheckedCell& c : sample().cells) {
+  for (const CheckedRun& c : sample().runs) {
     std::string name = c.key.solver + " " + c.key.setting + (c.key.assets.empty() ? "" : " [" + c.key.assets + "]");
     json item = {{"classname", c.key.scene}, {"name", name}, {"failures", json::array()}, {"notes", json::array()}};
     for (const Finding& f : c.findings) item[f.verdict == Verdict::Failed ? "failures" : "notes"].push_back(f.quantity);
@@ -72,7 +72,7 @@ TEST(Github, OneLineACommandWithEverythingEscaped) {
 
 TEST(Console, ShowsWhatDiffersAndAVerdict) {
   const std::string text = check_text(sample(), "base.json");
-  EXPECT_NE(text.find("check FAILED: 4 cells: 1 failed, 1 improved, 1 new, 1 as in base.json\n"), std::string::npos)
+  EXPECT_NE(text.find("check FAILED: 4 runs: 1 failed, 1 improved, 1 new, 1 as in base.json\n"), std::string::npos)
       << text;
   EXPECT_EQ(text.find("good"), std::string::npos) << "what is as it was is not listed";
   EXPECT_LT(text.find("bad"), text.find("better"));
@@ -80,16 +80,16 @@ TEST(Console, ShowsWhatDiffersAndAVerdict) {
   EXPECT_NE(text.find("100 %"), std::string::npos) << "the solver's own message";
 
   Checked fine;
-  fine.cells.push_back({{"desk", "good", "default", ""}, {}});
+  fine.runs.push_back({{"desk", "good", "default", ""}, {}});
   fine.other_assets = 2;
   EXPECT_EQ(check_text(fine, "b.json"),
-            "check passed: 1 cell: 0 failed, 0 improved, 0 new, 1 as in b.json; 2 cells more of the baseline stand for "
+            "check passed: 1 run: 0 failed, 0 improved, 0 new, 1 as in b.json; 2 runs more of the baseline stand for "
             "other assets\n");
 }
 
 TEST(Console, AnUpdateChangesAndDoesNotFail) {
   Updated u;
-  u.changes = sample().cells;
+  u.changes = sample().runs;
   u.removed = {{"sweep", "old", "default", ""}};
   const std::string text = update_text(u, "base.json");
   EXPECT_EQ(text.find("FAILED"), std::string::npos) << text;
@@ -97,14 +97,14 @@ TEST(Console, AnUpdateChangesAndDoesNotFail) {
   EXPECT_NE(text.find("removed, no result: sweep__old__default\n"), std::string::npos) << text;
 }
 
-TEST(Json, HasEveryCell) {
+TEST(Json, HasEveryRun) {
   const json j = check_json(sample(), "base.json");
   EXPECT_EQ(j.at("passed"), false);
   EXPECT_EQ(j.at("failed"), 1);
-  ASSERT_EQ(j.at("cells").size(), 4u);
-  EXPECT_EQ(j["cells"][0]["verdict"], "same");
-  EXPECT_EQ(j["cells"][1]["assets"], "npm");
-  EXPECT_EQ(j["cells"][1]["findings"][1]["allowed"], "≤ 0.0036");
+  ASSERT_EQ(j.at("runs").size(), 4u);
+  EXPECT_EQ(j["runs"][0]["verdict"], "same");
+  EXPECT_EQ(j["runs"][1]["assets"], "npm");
+  EXPECT_EQ(j["runs"][1]["findings"][1]["allowed"], "≤ 0.0036");
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #pragma once
-#include "../report/fake_cells.hpp"
+#include "../report/fake_runs.hpp"
 
 namespace clothbench {
 
 /// A desk drop as the runner leaves it: penetration scalars, stages, a scene of 0.5 m x 0.5 m.
-inline CellRecord contact_cell(const std::string& scene = "desk", const std::string& solver = "xpbd") {
-  CellRecord c = fake_cell(solver, 32, "double", 0.01);
+inline RunRecord contact_run(const std::string& scene = "desk", const std::string& solver = "xpbd") {
+  RunRecord c = fake_run(solver, 32, "double", 0.01);
   c.header.scene = scene;
   c.header.scenario_json = R"({"cloth":{"grid":[32,32],"size_m":[0.5,0.75]}})";
   c.header.scenario_sha256 = "a0b1c2d3e4f5";
@@ -28,24 +28,24 @@ inline CellRecord contact_cell(const std::string& scene = "desk", const std::str
   return c;
 }
 
-inline CellRecord with(CellRecord c, const std::string& name, double value) {
+inline RunRecord with(RunRecord c, const std::string& name, double value) {
   c.summary[name] = value;
   return c;
 }
 
-inline CellRecord ended(CellRecord c, const std::string& status, const std::string& klass = "ok", int frame = -1) {
+inline RunRecord ended(RunRecord c, const std::string& status, const std::string& klass = "ok", int frame = -1) {
   c.outcome = {status, klass, frame, status == "ok" ? "" : "what the solver said"};
   return c;
 }
 
-inline CellRecord with_assets(CellRecord c, const std::string& assets) {
+inline RunRecord with_assets(RunRecord c, const std::string& assets) {
   c.header.environment["assets"] = assets;
   return c;
 }
 
-/// As `collect` gives a planned cell without a file: only its file name is known.
-inline CellRecord planned(const CellRecord& of) {
-  CellRecord c;
+/// As `collect` gives a planned run without a file: only its file name is known.
+inline RunRecord planned(const RunRecord& of) {
+  RunRecord c;
   c.header.scene = of.header.scene;
   c.header.solver = of.header.solver;
   c.header.setting = of.header.setting;

@@ -61,7 +61,7 @@ class Console(unittest.TestCase):
     def test_colour_on_a_terminal_alone(self):
         out, _, code = self.on_terminal(*RUN, "--out", self.out)
         self.assertEqual(code, 0, out)
-        self.assertIn("\x1b[32m1 cells ok\x1b[0m", out)
+        self.assertIn("\x1b[32m1 runs ok\x1b[0m", out)
         self.assertIn("\x1b[1m", out)
         for text in (*self.piped(*RUN, "--out", self.out + "-2"), *self.on_terminal(*RUN, "--out", self.out + "-3", NO_COLOR="1")[:2]):
             self.assertNotIn("\x1b", text)
@@ -100,9 +100,9 @@ class Console(unittest.TestCase):
             "list": ["features"],
             "validate": ["tiny.json"],
             "plan": ["paper/gravity", "--solver", "ballistic"],
-            "card": ["ballistic"],
+            "moduli": ["ballistic"],
             "run": RUN[1:] + ["--out", self.out + "-2"],
-            "study": ["table3", "--quick", "--list-cells"],
+            "study": ["table3", "--quick", "--list-runs"],
             "report": [self.out, "-o", self.out + "-report"],
             "import": [self.out],
             "check": [self.out, "--baseline", baseline],
@@ -112,7 +112,7 @@ class Console(unittest.TestCase):
             "threshold": ["validation/incline-stick", "--solver", "ballistic"],
             "friction": ["ballistic"],
             "bench": ["--benchmark_filter=gravity-8-single/ballistic"],
-            "render": [self.out, "--cell", "ballistic", "--frames", "0", "--size", "200x200", "-o", self.out + "-pictures"],
+            "render": [self.out, "--run", "ballistic", "--frames", "0", "--size", "200x200", "-o", self.out + "-pictures"],
             "completion": ["bash"],
         }
         for command in self.commands():

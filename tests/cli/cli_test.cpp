@@ -53,7 +53,7 @@ class Cli : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(dir_); }
 
-  /// A study of ballistic cells, quick enough to interrupt at will.
+  /// A study of ballistic runs, quick enough to interrupt at will.
   std::string small_study() const {
     const fs::path file = dir_ / "small.json";
     std::ofstream(file) << R"({"name":"small","why":"A test.","protocol":"fps",
@@ -81,7 +81,7 @@ TEST_F(Cli, CompletesFromWhatThereIs) {
   EXPECT_EQ(words("run paper/gravity --solver bullet-soft --set solver.iter"), "solver.iterations=\n");
   EXPECT_NE(words("study table3 --").find("--resume\n"), std::string::npos);
   EXPECT_EQ(words("nonsense x"), "");
-  EXPECT_EQ(words("run-cell ''").find("run-cell"), std::string::npos);
+  EXPECT_EQ(words("run-child ''").find("run-child"), std::string::npos);
   // Bash itself: what TAB would put on the line.
   const std::string line = "clothbench run paper/gravity --solver ballis";
   std::ofstream(dir_ / "complete.sh") << "PATH=$(dirname " CLOTHBENCH_COMMAND
@@ -149,9 +149,9 @@ TEST_F(Cli, StudyThenReport) {
   const Answer a = clothbench_command("study " + small_study() + " --out " + out.string());
   ASSERT_EQ(a.code, 0) << a.text;
   const StudyManifest manifest = read_manifest(out);
-  ASSERT_EQ(manifest.cells.size(), 2u);
-  for (const std::string& cell : manifest.cells) {
-    const CellRecord r = read_cell(out / (cell + ".h5"));
+  ASSERT_EQ(manifest.runs.size(), 2u);
+  for (const std::string& run : manifest.runs) {
+    const RunRecord r = read_run(out / (run + ".h5"));
     EXPECT_EQ(r.outcome.status, "ok");
     EXPECT_EQ(r.trials.size(), 3u);
     // ballistic integrates as its closed form says, in double.
@@ -160,7 +160,7 @@ TEST_F(Cli, StudyThenReport) {
     EXPECT_TRUE(std::isnan(r.summary.at("read_B_per_frame"))) << "bytes of a CPU solver are missing";
   }
   const Answer again = clothbench_command("study " + small_study() + " --out " + out.string());
-  EXPECT_EQ(again.code, 2) << "finished cells are not overwritten: " << again.text;
+  EXPECT_EQ(again.code, 2) << "finished runs are not overwritten: " << again.text;
   const Answer report = clothbench_command("report " + out.string() + " -o " + (dir_ / "report").string());
   EXPECT_EQ(report.code, 0) << report.text;
   EXPECT_TRUE(fs::exists(dir_ / "report" / "report.md"));
@@ -178,11 +178,11 @@ TEST_F(Cli, SolversThatWereNotBuiltAreRows) {
     "quick":{"scenes":["a"],"rules":{"frames":4,"max_wall_s":0,"min_frames":4,"warmup_s":0}}})";
   const Answer a = clothbench_command("study " + file.string() + " --out " + out.string());
   ASSERT_EQ(a.code, 0) << a.text;
-  const CellRecord absent = read_cell(out / "plane-drop__not-there__default.h5");
+  const RunRecord absent = read_run(out / "plane-drop__not-there__default.h5");
   EXPECT_EQ(absent.outcome.status, "unsupported");
   EXPECT_EQ(absent.outcome.message, "not in this build");
   EXPECT_FALSE(absent.header.environment.contains("solver_features"));
-  const CellRecord here = read_cell(out / "sphere-drop__ballistic__default.h5");
+  const RunRecord here = read_run(out / "sphere-drop__ballistic__default.h5");
   EXPECT_EQ(here.outcome.status, "ok");
   EXPECT_EQ(here.accuracy.time_s.size(), 19u) << "the whole of the scene as this solver runs it";
   EXPECT_EQ(here.trials.at(0).frames(), 18) << "frames 0: from beginning to end";
@@ -194,7 +194,7 @@ TEST_F(Cli, SolversThatWereNotBuiltAreRows) {
     EXPECT_TRUE(fs::exists(fs::path(report) / name)) << name;
 
   EXPECT_EQ(json_of("study " + file.string() + " --quick --out " + (dir_ / "quick").string()).at("ok"), 1);
-  EXPECT_EQ(read_cell(dir_ / "quick" / "plane-drop__ballistic__default.h5").header.environment.at("protocol"), "quick");
+  EXPECT_EQ(read_run(dir_ / "quick" / "plane-drop__ballistic__default.h5").header.environment.at("protocol"), "quick");
   EXPECT_EQ(clothbench_command("study " + small_study() + " --quick --out " + (dir_ / "q").string()).code, 2)
       << "it has no quick form";
   EXPECT_EQ(clothbench_command("study " + file.string() + " --solver balistic --out " + (dir_ / "b").string()).code, 2);
@@ -237,7 +237,7 @@ TEST_F(Cli, CtrlCKeepsFinishedTrialsAndResumeCompletes) {
   EXPECT_EQ(run_and_signal(study, out, SIGINT, 250, false), 130);
   const Answer a = clothbench_command("study " + study + " --out " + out.string() + " --resume");
   EXPECT_EQ(a.code, 0) << a.text;
-  for (const std::string& cell : read_manifest(out).cells) EXPECT_EQ(read_cell(out / (cell + ".h5")).trials.size(), 3u);
+  for (const std::string& run : read_manifest(out).runs) EXPECT_EQ(read_run(out / (run + ".h5")).trials.size(), 3u);
 }
 
 std::string bytes(const fs::path& file) {
@@ -257,13 +257,13 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
   const std::string run = "run " + scene.string() + " --solver ballistic --trials 0 --set time.duration_s=0.1 --out " +
                           one.string(),
                     some = "study " + study.string() + " --out " + out.string();
-  ASSERT_EQ(clothbench_command(some + " --cell 0").code, 0);
+  ASSERT_EQ(clothbench_command(some + " --run 0").code, 0);
   ASSERT_EQ(clothbench_command(run).code, 0);
   j["gravity_m_per_s2"] = {0, -1, 0};
   std::ofstream(scene) << j.dump();
   const std::string manifest = bytes(out / "study.json"), manifest_of_run = bytes(one / "study.json");
-  // Cell 1 has not been run: it would join one of another scene.
-  for (const std::string& words : {some + " --resume", some + " --cell 0", some + " --cell 1", run + " --resume"}) {
+  // SolverRun 1 has not been run: it would join one of another scene.
+  for (const std::string& words : {some + " --resume", some + " --run 0", some + " --run 1", run + " --resume"}) {
     const Answer a = clothbench_command(words);
     EXPECT_EQ(a.code, 2) << words << ": " << a.text;
     EXPECT_NE(a.text.find("is of another scene"), std::string::npos) << a.text;
@@ -273,7 +273,7 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
   EXPECT_EQ(bytes(out / "study.json"), manifest);
   EXPECT_EQ(bytes(one / "study.json"), manifest_of_run);
   EXPECT_EQ(std::distance(fs::directory_iterator(out), fs::directory_iterator()), 3)
-      << "study.json, one cell's .h5 and .xdmf";
+      << "study.json, one run's .h5 and .xdmf";
 }
 
 TEST_F(Cli, KilledAnywhereResumeCompletes) {
@@ -282,7 +282,7 @@ TEST_F(Cli, KilledAnywhereResumeCompletes) {
   for (int after_ms = 5; after_ms < 700; after_ms += 60) run_and_signal(study, out, SIGKILL, after_ms, after_ms > 5);
   const Answer a = clothbench_command("study " + study + " --out " + out.string() + " --resume");
   EXPECT_EQ(a.code, 0) << a.text;
-  for (const std::string& cell : read_manifest(out).cells) EXPECT_EQ(read_cell(out / (cell + ".h5")).trials.size(), 3u);
+  for (const std::string& run : read_manifest(out).runs) EXPECT_EQ(read_run(out / (run + ".h5")).trials.size(), 3u);
 }
 
 TEST_F(Cli, OwnOverheadIsUnderOnePercentOfAFrame) {
@@ -295,7 +295,7 @@ TEST_F(Cli, OwnOverheadIsUnderOnePercentOfAFrame) {
       0);
   for (const auto& file : fs::directory_iterator(out))
     if (file.path().extension() == ".h5") {
-      const double frame_s = read_cell_summary(file.path()).summary.at("frame_wall_median_s");
+      const double frame_s = read_run_summary(file.path()).summary.at("frame_wall_median_s");
       EXPECT_LT(frame_s, 0.01 / 72);
     }
 }
@@ -308,7 +308,7 @@ TEST_F(Cli, SeedDrawsAndIsStored) {
   std::string scenes[2];
   for (int k = 0; k < 2; ++k)
     for (const auto& file : fs::directory_iterator(dir_ / (k == 0 ? "one" : "two")))
-      if (file.path().extension() == ".h5") scenes[k] = read_cell(file.path()).header.scenario_json;
+      if (file.path().extension() == ".h5") scenes[k] = read_run(file.path()).header.scenario_json;
   EXPECT_EQ(scenes[0], scenes[1]);
   EXPECT_NE(scenes[0].find("\"seed\":7"), std::string::npos);
   const Answer none =
@@ -320,7 +320,7 @@ TEST_F(Cli, SeedDrawsAndIsStored) {
 TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
   const nlohmann::json properties = json_of("metamorphic ballistic");
   ASSERT_EQ(properties.size(), 36u);
-  for (const auto& p : properties) EXPECT_TRUE(p["status"] == "kept") << p.dump();
+  for (const auto& p : properties) EXPECT_TRUE(p["status"] == "pass") << p.dump();
   const nlohmann::json found = json_of("threshold validation/incline-stick --solver ballistic");
   EXPECT_EQ(found[0]["bound"], ">= ") << "it falls through at any friction";
   EXPECT_EQ(clothbench_command("threshold validation/atwood --solver ballistic").code, 2);
@@ -340,9 +340,9 @@ TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
 TEST_F(Cli, SearchesAndCardsAreStoredGoneOnWithAndReported) {
   const auto out = [&](const char* name) { return " --out " + (dir_ / name).string(); };
   const std::string threshold = "threshold validation/capstan-hold --solver ballistic --set time.duration_s=0.5",
-                    card = "card bullet-soft --no-sweep --set solver.substeps=1 --set solver.iterations=1";
-  for (const auto& [words, folder] : {std::pair{threshold, "threshold"}, std::pair{card, "card"}}) {
-    if (clothbench_command("list solvers").text.find("bullet-soft") == std::string::npos && words == card) continue;
+                    measured = "moduli bullet-soft --no-sweep --set solver.substeps=1 --set solver.iterations=1";
+  for (const auto& [words, folder] : {std::pair{threshold, "threshold"}, std::pair{measured, "moduli"}}) {
+    if (clothbench_command("list solvers").text.find("bullet-soft") == std::string::npos && words == measured) continue;
     const nlohmann::json found = json_of(words);
     EXPECT_EQ(json_of(words + out(folder)), found) << words;
     const Answer again = clothbench_command(words + out(folder));
@@ -350,7 +350,7 @@ TEST_F(Cli, SearchesAndCardsAreStoredGoneOnWithAndReported) {
     EXPECT_NE(again.text.find("--resume"), std::string::npos) << again.text;
     EXPECT_EQ(json_of(words + out(folder) + " --resume"), found) << words;
   }
-  const CellRecord high = read_cell(dir_ / "threshold" / (read_manifest(dir_ / "threshold").cells.at(0) + ".h5"));
+  const RunRecord high = read_run(dir_ / "threshold" / (read_manifest(dir_ / "threshold").runs.at(0) + ".h5"));
   EXPECT_EQ(high.header.environment["protocol"], "threshold");
   EXPECT_EQ(high.accuracy.time_s.size(), 31u) << "positions are stored as of any run";
   const Answer report =

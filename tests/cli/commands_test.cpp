@@ -58,7 +58,7 @@ TEST_P(Commands, TheSecondIsAsIfItWereTheFirst) {
 }
 
 const std::vector<Pair> kPairs = {
-    {{"card", "ballistic", "--no-sweep", "--set", "cloth.grid=[3,3]"}, {"--json", "card", "ballistic"}},
+    {{"moduli", "ballistic", "--no-sweep", "--set", "cloth.grid=[3,3]"}, {"--json", "moduli", "ballistic"}},
     {{"list", "features"}, {"--json", "list"}},
     {{"validate", "no-such-scene"}, {"--json", "validate", "paper/gravity"}},
     {{"plan", "paper/gravity", "--solver", "ballistic", "--set", "cloth.grid=[5,5]", "--json"},
@@ -69,7 +69,7 @@ const std::vector<Pair> kPairs = {
     {{"friction", "ballistic", "--substeps", "64", "--readme", CLOTHBENCH_SOURCE_DIR "/LICENSE"},
      {"--json", "friction", "ballistic"}},
     {{"completion", "words", "--", "study", "--"}, {"--json", "completion", "zsh"}},
-    {{"study", "table3", "--quick", "--only", "nothing", "--cell", "0"}, {"--json", "study", "table3", "--list-cells"}},
+    {{"study", "table3", "--quick", "--only", "nothing", "--run", "0"}, {"--json", "study", "table3", "--list-runs"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Every, Commands, ::testing::ValuesIn(kPairs),

@@ -116,14 +116,14 @@ with tempfile.TemporaryDirectory(prefix="clothbench-slurm-") as home:
         assert submitted.returncode == 0, submitted.stderr + cluster.logs()
         cluster.wait("the jobs' end", lambda: said("squeue", "-h") == "", 180)
         with open(os.path.join(out, "study.json"), encoding="utf-8") as text:
-            planned = json.load(text)["cells"]
+            planned = json.load(text)["runs"]
         logs = "".join(
             open(os.path.join(out, "log", f), encoding="utf-8").read() for f in os.listdir(os.path.join(out, "log"))
         )
         assert {f[:-3] for f in os.listdir(out) if f.endswith(".h5")} == set(planned), logs
-        assert len([f for f in os.listdir(os.path.join(out, "log")) if f.startswith("cell-")]) == len(planned)
+        assert len([f for f in os.listdir(os.path.join(out, "log")) if f.startswith("run-")]) == len(planned)
         with open(os.path.join(out, "report", "report.md"), encoding="utf-8") as text:
             assert "planned, not run" not in text.read()
-        print(f"{len(planned)} cells in a Slurm array, one report")
+        print(f"{len(planned)} runs in a Slurm array, one report")
     finally:
         cluster.stop()

@@ -81,7 +81,7 @@ Scene scene_of(const Case& c) {
     for (const char* hand : {"0", "1"}) overrides.push_back(std::string("grips.") + hand + ".radius_m=0.6");
   if (c.grid == "[2,2]" && c.scene.find("catenary") != std::string::npos)
     overrides.back() = "cloth.grid=[3,2]";  // 2 columns cannot bend
-  // A strip that starts over a cylinder needs cells shorter than it is thick.
+  // A strip that starts over a cylinder needs runs shorter than it is thick.
   if (c.grid != "[17,33]" &&
       (c.scene.find("capstan") != std::string::npos || c.scene.find("atwood") != std::string::npos ||
        c.scene.find("self-fold") != std::string::npos))

@@ -47,7 +47,7 @@ with Folder() as top:
     f = fresh(top, "plain")
     verdict, out = result_of(text := call(host(f, ARGS, "create", "resume", "finish", "pause", "destroy")))
     assert verdict == "PASS" and pathlib.Path(out).parent == f / "files/runs", text
-    assert "cells ok" in text, "what the command prints stands in the log:\n" + text
+    assert "runs ok" in text, "what the command prints stands in the log:\n" + text
     assert len(trials(pathlib.Path(out))) == 4 and set(trials(pathlib.Path(out)).values()) == {3}, trials(pathlib.Path(out))
     if HOST_COMMAND.exists():
         assert len(must([HOST_COMMAND, "import", out]).split()) == 4

@@ -1,4 +1,4 @@
-"""The same cells on arm64 (under qemu, arm64 lavapipe) and on this machine: same positions; the device's raw files import."""
+"""The same runs on arm64 (under qemu, arm64 lavapipe) and on this machine: same positions; the device's raw files import."""
 from device import *
 
 try:

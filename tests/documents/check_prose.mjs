@@ -32,13 +32,13 @@ function words_of(token) {
   return token.tokens ? token.tokens.map(words_of).join('') : token.text ?? '';
 }
 
-// Every paragraph, heading, item and table cell of a document.
+// Every paragraph, heading, item and table run of a document.
 function* passages(tokens) {
   for (const token of tokens) {
     if (token.type === 'paragraph' || token.type === 'heading' || token.type === 'text') yield words_of(token);
     else if (token.type === 'table') {
       for (const row of [token.header, ...token.rows])
-        for (const cell of row) yield cell.tokens.map(words_of).join('');
+        for (const run of row) yield run.tokens.map(words_of).join('');
     } else if (token.type === 'list') {
       for (const item of token.items) yield* passages(item.tokens);
     } else if (token.type === 'blockquote') yield* passages(token.tokens);

@@ -38,13 +38,13 @@ Scene with_all(const std::string& scene, const SolverInfo& info) {
 TEST(Irrelevant, AddsWhatTheSceneLacksFarAway) {
   const SolverInfo& info = find_solver("xpbd").info;
   const Scene plain = load_scene("validation/swing-strip"), all = with_all("validation/swing-strip", info);
-  // Shear, moving pins, a start that turns, cells, stiffness and triangles of their own, and layers that meet are the
+  // Shear, moving pins, a start that turns, runs, stiffness and triangles of their own, and layers that meet are the
   // cloth itself.
   EXPECT_EQ(info.supports - all.needs,
             (FeatureSet{Feature::Shear, Feature::MovingPins, Feature::Spin, Feature::UnevenGrid, Feature::Regions,
                         Feature::ClothMesh, Feature::SelfCollision}));
   EXPECT_TRUE((plain.needs - all.needs).empty());
-  EXPECT_EQ(all.truth_card, "");
+  EXPECT_EQ(all.reference_case, "");
   for (const FrameMotion& m : all.motion)
     for (std::size_t k = 0; k < all.colliders.size(); ++k) {
       std::vector<double> x;
@@ -144,7 +144,7 @@ int command(const std::string& arguments) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-TEST(QuickStudy, PairsCellsAndReportsTheirCost) {
+TEST(QuickStudy, PairsRunsAndReportsTheirCost) {
   const fs::path dir = fs::temp_directory_path() / ("clothbench-feature-cost-" + std::to_string(getpid()));
   ASSERT_EQ(command("study feature-cost --quick --solver bullet-soft --out " + (dir / "run").string() + " > /dev/null"),
             0);

@@ -1,4 +1,4 @@
-// The arithmetic of the material card on sheets whose answer is known: the continuum's own displacements.
+// The arithmetic of the effective moduli on sheets whose answer is known: the continuum's own displacements.
 #include <gtest/gtest.h>
 
 #include <cmath>

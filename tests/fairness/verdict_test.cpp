@@ -13,15 +13,15 @@ namespace {
 
 using nlohmann::json;
 
-CellRecord card(const std::string& solver, const std::string& setting, bool full,
-                std::map<std::string, double> moduli) {
-  CellRecord c;
-  c.header.scene = "material-card";
+RunRecord measured(const std::string& solver, const std::string& setting, bool full,
+                   std::map<std::string, double> moduli) {
+  RunRecord c;
+  c.header.scene = "effective-moduli";
   c.header.solver = solver;
   c.header.setting = setting;
   c.header.settings = json::object();
-  c.header.scenario_json = full ? R"({"name":"material-card","material_card":"full"})"
-                                : R"({"name":"material-card","material_card":"short"})";
+  c.header.scenario_json = full ? R"({"name":"effective-moduli","effective_moduli":"full"})"
+                                : R"({"name":"effective-moduli","effective_moduli":"short"})";
   for (const auto& [name, value] : moduli) c.summary["material_" + name] = value;
   return c;
 }
@@ -30,38 +30,38 @@ std::map<std::string, double> right() {
   return {{"E_0", 1}, {"E_strip", 1.01}, {"E_stiffer", 1}, {"B_0", 0.98}, {"B_stiffer", 0.98}};
 }
 
-MaterialVerdict verdict_of(const std::vector<CellRecord>& cells) { return solver_materials(cells).at(0).verdict; }
+MaterialVerdict verdict_of(const std::vector<RunRecord>& runs) { return solver_materials(runs).at(0).verdict; }
 
 TEST(Verdict, AParameterIsHeardAndHeld) {
-  std::vector<CellRecord> cells = {card("a", "default", true, right()),
-                                   card("a", "substeps=40", false, {{"E_0", 1.04}, {"E_strip", 0.97}, {"B_0", 1}})};
-  EXPECT_EQ(verdict_of(cells).strip + verdict_of(cells).sheet + verdict_of(cells).bending, "");
-  cells[1].summary["material_E_0"] = 1.06;
-  EXPECT_EQ(verdict_of(cells).strip, "");
-  EXPECT_EQ(verdict_of(cells).sheet, "depends on settings: 1 at default, 1.06 at substeps=40");
-  cells[1].summary["material_E_0"] = NAN;
-  EXPECT_EQ(verdict_of(cells).sheet, "no value at substeps=40");
-  cells[0].summary["material_E_stiffer"] = 0.5;  // what is measured does not change with Y
-  EXPECT_NE(verdict_of(cells).strip, "");
-  cells[0].summary["material_E_stiffer"] = NAN;
-  EXPECT_NE(verdict_of(cells).strip, "");
-  cells[0].summary["material_B_0"] = 0;
-  EXPECT_EQ(verdict_of(cells).bending, "none: 0 of what is asked for");
+  std::vector<RunRecord> runs = {measured("a", "default", true, right()),
+                                 measured("a", "substeps=40", false, {{"E_0", 1.04}, {"E_strip", 0.97}, {"B_0", 1}})};
+  EXPECT_EQ(verdict_of(runs).strip + verdict_of(runs).sheet + verdict_of(runs).bending, "");
+  runs[1].summary["material_E_0"] = 1.06;
+  EXPECT_EQ(verdict_of(runs).strip, "");
+  EXPECT_EQ(verdict_of(runs).sheet, "depends on settings: 1 at default, 1.06 at substeps=40");
+  runs[1].summary["material_E_0"] = NAN;
+  EXPECT_EQ(verdict_of(runs).sheet, "no value at substeps=40");
+  runs[0].summary["material_E_stiffer"] = 0.5;  // what is measured does not change with Y
+  EXPECT_NE(verdict_of(runs).strip, "");
+  runs[0].summary["material_E_stiffer"] = NAN;
+  EXPECT_NE(verdict_of(runs).strip, "");
+  runs[0].summary["material_B_0"] = 0;
+  EXPECT_EQ(verdict_of(runs).bending, "none: 0 of what is asked for");
 }
 
-TEST(Verdict, WithoutACardNobodyIsFlagged) {
+TEST(Verdict, WithoutModuliNoSolverIsFlagged) {
   const auto full = solver_materials({});
   const StiffnessNeed strip{true, false, false};
   EXPECT_EQ(stiffness_flag(full, "a", strip), "");
-  const std::vector<CellRecord> cells = {card("a", "substeps=2", false, right())};
-  EXPECT_EQ(stiffness_flag(solver_materials(cells), "a", strip), "") << "no card at the default setting";
+  const std::vector<RunRecord> runs = {measured("a", "substeps=2", false, right())};
+  EXPECT_EQ(stiffness_flag(solver_materials(runs), "a", strip), "") << "no measured at the default setting";
 }
 
 /// Scenes are not listed by hand: which stiffness a truth depends on is found by changing it.
 TEST(Dependence, IsMeasuredOnEveryTruth) {
   const auto need_of = [](const std::string& name, const std::vector<std::string>& set = {}) {
     const Scene s = load_scene("validation/" + name, set);
-    CellRecord c;
+    RunRecord c;
     c.header.scenario_json = s.json;
     c.summary = truth_dependence(s);
     const StiffnessNeed n = stiffness_need(c);
@@ -82,15 +82,15 @@ TEST(Dependence, IsMeasuredOnEveryTruth) {
   EXPECT_TRUE(truth_dependence(load_scene("validation/hang")).empty()) << "no truth";
 }
 
-CellRecord cell(const std::string& scene, const std::string& truth, const std::string& solver, double frame_s,
-                double error, double device_s = NAN) {
-  CellRecord c;
+RunRecord run(const std::string& scene, const std::string& truth, const std::string& solver, double frame_s,
+              double error, double device_s = NAN) {
+  RunRecord c;
   c.header.scene = scene;
   c.header.solver = solver;
   c.header.setting = "default";
   c.header.settings = json::object();
   c.header.scenario_json =
-      json{{"name", scene}, {"truth", {{"card", truth}}}, {"time", {{"frame_rate_hz", 60}}}}.dump();
+      json{{"name", scene}, {"truth", {{"case", truth}}}, {"time", {{"frame_rate_hz", 60}}}}.dump();
   c.header.environment = {{"gpu", "CPU"}};
   c.summary = {{"frame_wall_median_s", frame_s},
                {"frame_device_median_s", device_s},
@@ -103,12 +103,13 @@ CellRecord cell(const std::string& scene, const std::string& truth, const std::s
 TEST(Verdict, UnrankedSolversAreShownButNeverFirst) {
   auto deaf = right();
   deaf["E_stiffer"] = 0.5;
-  const std::vector<CellRecord> cards = {card("deaf", "default", true, deaf), card("good", "default", true, right())};
-  const auto materials = solver_materials(cards);
-  const std::vector<CellRecord> cells = {
-      cell("hang", "heavy-strip", "deaf", 1e-3, 1e-5), cell("hang", "heavy-strip", "good", 2e-3, 5e-3, 1e-3),
-      cell("swing", "swing-strip", "deaf", 1e-3, 1e-5), cell("swing", "swing-strip", "good", 2e-3, 5e-3)};
-  const auto diagrams = work_diagrams(cells, materials);
+  const std::vector<RunRecord> moduli = {measured("deaf", "default", true, deaf),
+                                         measured("good", "default", true, right())};
+  const auto materials = solver_materials(moduli);
+  const std::vector<RunRecord> runs = {
+      run("hang", "heavy-strip", "deaf", 1e-3, 1e-5), run("hang", "heavy-strip", "good", 2e-3, 5e-3, 1e-3),
+      run("swing", "swing-strip", "deaf", 1e-3, 1e-5), run("swing", "swing-strip", "good", 2e-3, 5e-3)};
+  const auto diagrams = work_diagrams(runs, materials);
   EXPECT_TRUE(diagrams[0].flagged.contains("deaf"));
   EXPECT_TRUE(diagrams[1].flagged.empty()) << "a swing asks for no stiffness";
   EXPECT_EQ(diagrams[0].best_error(), 5e-3);
@@ -129,10 +130,10 @@ TEST(Verdict, UnrankedSolversAreShownButNeverFirst) {
 }
 
 TEST(Floors, ErrorsBelowTheMeshsOwnShareARank) {
-  std::vector<CellRecord> cells = {cell("s", "swing-strip", "a", 1e-3, 1e-4), cell("s", "swing-strip", "b", 1e-3, 9e-4),
-                                   cell("s", "swing-strip", "c", 1e-3, 3e-3)};
-  for (CellRecord& c : cells) c.summary["truth_space_error"] = 2e-3;
-  const auto d = work_diagrams(cells);
+  std::vector<RunRecord> runs = {run("s", "swing-strip", "a", 1e-3, 1e-4), run("s", "swing-strip", "b", 1e-3, 9e-4),
+                                 run("s", "swing-strip", "c", 1e-3, 3e-3)};
+  for (RunRecord& c : runs) c.summary["truth_space_error"] = 2e-3;
+  const auto d = work_diagrams(runs);
   EXPECT_EQ(d[0].rank_floor(), 2e-3);
   EXPECT_EQ(work_table(d).rows[1][4], "≤ 0.002 (default)");
   EXPECT_EQ(work_table(d).rows[3][4], "0.003 (default)");

@@ -64,10 +64,10 @@ class Faults : public ::testing::TestWithParam<const char*> {
     options.out = root_ / folder;
     options.resume = resume;
     fs::create_directories(options.out);
-    return run_cells(plan_, options);
+    return execute_runs(plan_, options);
   }
 
-  static void expect_same(const CellRecord& a, const CellRecord& b) {
+  static void expect_same(const RunRecord& a, const RunRecord& b) {
     ASSERT_EQ(a.accuracy.position.size(), b.accuracy.position.size());
     // The order of paper's atomic sums is the device's: a few units in the last place of a metre.
     const float off = std::string(GetParam()) == "paper" ? 1e-5F : 0;
@@ -78,7 +78,7 @@ class Faults : public ::testing::TestWithParam<const char*> {
   }
 
   /// What one refused call comes to.
-  void inject(int call, VkResult result, bool sticky, const CellRecord& right) {
+  void inject(int call, VkResult result, bool sticky, const RunRecord& right) {
     const std::string folder = std::to_string(call) + "_" + std::to_string(result) + (sticky ? "s" : "");
     forget_device();
     const auto alive_before = faults::alive();
@@ -97,7 +97,7 @@ class Faults : public ::testing::TestWithParam<const char*> {
     ASSERT_FALSE(failed.empty());
     if (error.empty()) {
       ASSERT_EQ(got.files.size(), 1u);
-      const CellRecord found = read_cell(got.files[0]);
+      const RunRecord found = read_run(got.files[0]);
       const std::set<std::string> rows = {"ok", "device_lost", "timed_out"};
       EXPECT_TRUE(rows.contains(found.outcome.status)) << found.outcome.status << " " << found.outcome.message;
       EXPECT_EQ(found.outcome.message.empty(), found.outcome.status == "ok");
@@ -109,7 +109,7 @@ class Faults : public ::testing::TestWithParam<const char*> {
     // The same process goes on, and to the same end: finished trials are read, not run again.
     const RunResult again = run(error.empty() ? folder + "_again" : folder, !error.empty());
     ASSERT_EQ(again.files.size(), 1u);
-    expect_same(read_cell(again.files[0]), right);
+    expect_same(read_run(again.files[0]), right);
     forget_device();
     vulkan::Device::get({});
     EXPECT_EQ(faults::alive(), alive_before);
@@ -118,16 +118,16 @@ class Faults : public ::testing::TestWithParam<const char*> {
   }
 
   /// Calls of a whole run, and what comes of it.
-  std::pair<int, CellRecord> undisturbed() {
+  std::pair<int, RunRecord> undisturbed() {
     forget_device();
     faults::disarm();
     const RunResult result = run("right");
-    return {faults::calls(), read_cell(result.files.at(0))};
+    return {faults::calls(), read_run(result.files.at(0))};
   }
 
   const Scene scene_ = load_scene(
       "paper/gravity", {"cloth.grid=[5,4]", "time.frame_rate_hz=60", "pins=[{\"edge\":\"u0\"}]", "cloth.sides=single"});
-  CellPlan plan_;
+  RunPlan plan_;
   fs::path root_;
 };
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "../results/sample_cell.hpp"
+#include "../results/sample_run.hpp"
 #include "fuzz.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/store.hpp"
@@ -44,7 +44,7 @@ const Sample& sample() {
   static const Sample s = [] {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     const fs::path path = fs::temp_directory_path() / ("clothbench-fuzz-" + std::to_string(getpid()) + ".h5");
-    clothbench::write_hdf5(path, clothbench::sample_cell());
+    clothbench::write_hdf5(path, clothbench::sample_run());
     Sample out;
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, note_object, &out);

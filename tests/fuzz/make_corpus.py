@@ -116,9 +116,9 @@ def raw():
     accuracy = {"kind": "accuracy", "frame_B": 48, "frames": 2, "vertices": 2, "metrics": [{"name": "speed_max", "units": "m s-1", "long_name": "x"}]}
     replay = {"kind": "replay", "frame_B": 24, "groups": [{"path": "colliders", "attributes": {"count": 1}, "arrays": [
         {"name": "a", "units": "m", "long_name": "x", "dims": ["frame"], "shape": [2], "integer": False, "count": 2}]}]}
-    cell = {"frame_B": 8, "scene": "s", "solver": "x", "setting": "d", "settings": {}, "scenario_json": "{}", "scenario_sha256": "0", "plan": {},
+    run = {"frame_B": 8, "scene": "s", "solver": "x", "setting": "d", "settings": {}, "scenario_json": "{}", "scenario_sha256": "0", "plan": {},
             "stages": [{"name": "a", "serves": ["stretch"], "dispatches": 1}], "environment": {}, "vertices": 1, "triangles": [0, 1, 2], "load_s": None}
-    for kind, name, header, sizes in [(1, "trial", trial, [40, 40]), (2, "accuracy", accuracy, [40, 40]), (3, "replay", replay, [16]), (4, "cell", cell, [])]:
+    for kind, name, header, sizes in [(1, "trial", trial, [40, 40]), (2, "accuracy", accuracy, [40, 40]), (3, "replay", replay, [16]), (4, "run", run, [])]:
         put("raw", name + ".raw", bytes([2 * kind]) + log(header, [struct.pack("<d", 1.5) * (size // 8) for size in sizes]))
 
 

@@ -17,28 +17,28 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Runs one cell without timed trials and reads its file back.
-CellRecord run(const Scene& scene, const SolverEntry& entry, const ScratchFolder& folder, double accuracy_s = 0) {
-  CellPlan plan;
+/// Executes one run without timed trials and reads its file back.
+RunRecord run(const Scene& scene, const SolverEntry& entry, const ScratchFolder& folder, double accuracy_s = 0) {
+  RunPlan plan;
   plan.groups = {{{&scene, &entry, nlohmann::json::object()}}};
   plan.rules.trials = 0;
   plan.rules.accuracy_duration_s = accuracy_s > 0 ? accuracy_s : scene.time.duration_s;
   plan.protocol = "test";
   RunOptions options;
   options.out = folder.path();
-  const RunResult result = run_cells(plan, options);
+  const RunResult result = execute_runs(plan, options);
   EXPECT_EQ(result.files.size(), 1u);
   EXPECT_TRUE(result.faults.empty());
-  return read_cell(result.files.at(0));
+  return read_run(result.files.at(0));
 }
 
-const std::vector<double>& series(const CellRecord& r, const std::string& name) {
+const std::vector<double>& series(const RunRecord& r, const std::string& name) {
   for (const MetricSeries& m : r.accuracy.metrics)
     if (m.name == name) return m.values;
   throw std::runtime_error("no metric " + name);
 }
 
-bool has_series(const CellRecord& r, const std::string& name) {
+bool has_series(const RunRecord& r, const std::string& name) {
   for (const MetricSeries& m : r.accuracy.metrics)
     if (m.name == name) return true;
   return false;
@@ -63,14 +63,14 @@ TEST(ContactScene, WhatASolverSaysOfItsMarginIsStoredAndHeeded) {
   const ScratchFolder folder;
   const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=0.1"});
   const Path path = lifted([&](int) { return 0.02 - scene.cloth.center_m[1]; });
-  const CellRecord told = run(scene, prescribed(path, {0.02}), folder);
-  EXPECT_NEAR(series(told, "touching_fraction").back(), 1, 1e-12);
-  ASSERT_EQ(told.header.plan["contact_margins"].size(), 1u);
-  EXPECT_EQ(told.header.plan["contact_margins"][0]["margin_m"], 0.02);
-  EXPECT_EQ(told.header.plan["contact_margins"][0]["collider"], scene.colliders[0].name);
+  const RunRecord reported = run(scene, prescribed(path, {0.02}), folder);
+  EXPECT_NEAR(series(reported, "touching_fraction").back(), 1, 1e-12);
+  ASSERT_EQ(reported.header.plan["contact_margins"].size(), 1u);
+  EXPECT_EQ(reported.header.plan["contact_margins"][0]["margin_m"], 0.02);
+  EXPECT_EQ(reported.header.plan["contact_margins"][0]["collider"], scene.colliders[0].name);
 }
 
-TEST(ContactScene, XpbdTellsThatItKeepsAHundredthOfACell) {
+TEST(ContactScene, XpbdTellsThatItKeepsAHundredthOfARun) {
   const auto margins = [](double margin_m) {
     const Scene scene =
         load_scene("contact/plane", {"cloth.grid=[7,7]", "colliders.0.margin_m=" + std::to_string(margin_m)});
@@ -83,7 +83,7 @@ TEST(ContactScene, XpbdTellsThatItKeepsAHundredthOfACell) {
     if (e.info.name == "xpbd" && e.make) {
       EXPECT_EQ(margins(0.004), std::vector<double>{0.004});
       ASSERT_EQ(margins(0.0001).size(), 1u);
-      EXPECT_NEAR(margins(0.0001)[0], 0.001, 1e-12) << "cells of 0.1 m";
+      EXPECT_NEAR(margins(0.0001)[0], 0.001, 1e-12) << "runs of 0.1 m";
       return;
     }
   GTEST_SKIP() << "no xpbd in this build";
@@ -93,8 +93,8 @@ TEST(ContactScene, MarginsThatCannotBeAreFaults) {
   const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]"});
   const auto fault = [&](const std::vector<double>& margins) {
     const SolverEntry entry = prescribed([](int, std::vector<double>&) {}, margins);
-    const Cell cell({&scene, &entry, nlohmann::json::object()}, {}, "test");
-    return cell.outcome().status == "ok" ? std::string() : cell.outcome().message;
+    const SolverRun run({&scene, &entry, nlohmann::json::object()}, {}, "test");
+    return run.outcome().status == "ok" ? std::string() : run.outcome().message;
   };
   EXPECT_EQ(fault({}), "");
   EXPECT_EQ(fault({0.01}), "");
@@ -108,7 +108,7 @@ TEST(ContactScene, ASheetLoweredIntoASphereGivesTheClosedForms) {
   const ScratchFolder folder;
   const Scene scene = load_scene(folder.file("scene.json", kSphereScene));
   const SolverEntry solver = prescribed(lifted([](int frame) { return frame < 4 ? 0.0 : -0.11; }));
-  const CellRecord r = run(scene, solver, folder);
+  const RunRecord r = run(scene, solver, folder);
   const auto at = [&](const char* name) { return r.summary.at(name); };
   EXPECT_EQ(series(r, "contact_length_m")[3], 0);
   EXPECT_EQ(series(r, "depth_mean_m")[3], 0);
@@ -123,7 +123,7 @@ TEST(ContactScene, ASheetLoweredIntoASphereGivesTheClosedForms) {
   EXPECT_FALSE(has_series(r, "tunnelled_fraction"));
   EXPECT_FALSE(has_series(r, "self_contact_pairs")) << "a scene without it does not pay for it";
   EXPECT_NEAR(at("stretch_max"), 0, 1e-12);
-  EXPECT_EQ(r.outcome.expect, "kept");
+  EXPECT_EQ(r.outcome.expect, "pass");
   EXPECT_EQ(at("expect.outcome"), 1);
   EXPECT_EQ(at("expect.depth_max_m"), 1);
 }
@@ -131,8 +131,8 @@ TEST(ContactScene, ASheetLoweredIntoASphereGivesTheClosedForms) {
 TEST(ContactScene, ABrokenExpectationSaysWhatAndHowMuch) {
   const ScratchFolder folder;
   const Scene scene = load_scene(folder.file("scene.json", with(kSphereScene, "0.0100001", "0.005")));
-  const CellRecord r = run(scene, prescribed(lifted([](int frame) { return frame < 4 ? 0.0 : -0.11; })), folder);
-  EXPECT_EQ(r.outcome.expect, "broken: depth_max_m 0.01 > 0.005");
+  const RunRecord r = run(scene, prescribed(lifted([](int frame) { return frame < 4 ? 0.0 : -0.11; })), folder);
+  EXPECT_EQ(r.outcome.expect, "fail: depth_max_m 0.01 > 0.005");
   EXPECT_EQ(r.outcome.status, "ok") << "a broken expectation is no failure of the solver";
   EXPECT_EQ(r.summary.at("expect.depth_max_m"), 0);
   EXPECT_EQ(r.summary.at("expect.outcome"), 1);
@@ -141,7 +141,7 @@ TEST(ContactScene, ABrokenExpectationSaysWhatAndHowMuch) {
 TEST(ContactScene, AShortAccuracyPassMeasuresNoExpectation) {
   const ScratchFolder folder;
   const Scene scene = load_scene(folder.file("scene.json", kSphereScene));
-  const CellRecord r = run(scene, prescribed(lifted([](int) { return 0.0; })), folder, 0.5);
+  const RunRecord r = run(scene, prescribed(lifted([](int) { return 0.0; })), folder, 0.5);
   EXPECT_EQ(r.outcome.expect, "not measured");
   EXPECT_TRUE(std::isnan(r.summary.at("expect.depth_max_m")));
   EXPECT_TRUE(std::isnan(r.summary.at("contact_length_settled_m")));
@@ -153,14 +153,14 @@ TEST(ContactScene, ANaNIsInTheSummaryAndBreaksTheExpectation) {
   const SolverEntry solver = prescribed([](int frame, std::vector<double>& x) {
     if (frame >= 7) x[100] = kMissing;
   });
-  const CellRecord r = run(scene, solver, folder);
+  const RunRecord r = run(scene, solver, folder);
   EXPECT_EQ(r.outcome.status, "not_finite");
   EXPECT_EQ(r.outcome.failed_frame, 7) << "the first frame that is not finite";
   for (const char* name : {"contact_length_max_m", "depth_max_m", "depth_vertex_max_m", "depth_mean_m",
                            "penetrating_area_max_m2", "stretch_max", "stretch_max_end"})
     EXPECT_TRUE(std::isnan(r.summary.at(name))) << name;
   EXPECT_EQ(r.outcome.expect,
-            "broken: outcome not_finite, expected ok; contact_length_settled_m has no value; depth_max_m has no value");
+            "fail: outcome not_finite, expected ok; contact_length_settled_m has no value; depth_max_m has no value");
   EXPECT_EQ(r.summary.at("expect.outcome"), 0);
   EXPECT_EQ(r.summary.at("expect.depth_max_m"), 0);
 }
@@ -185,7 +185,7 @@ Path laid_over(bool through) {
 // Level below, tilted above: they cross along one line as long as the sheet is wide.
 TEST(ContactScene, ASheetThatCrossesItselfSaysHowFar) {
   const ScratchFolder folder;
-  const CellRecord r = run(load_scene(folder.file("scene.json", kSelfScene)), prescribed(laid_over(true)), folder);
+  const RunRecord r = run(load_scene(folder.file("scene.json", kSelfScene)), prescribed(laid_over(true)), folder);
   EXPECT_EQ(series(r, "self_contact_pairs")[4], 0);
   EXPECT_NEAR(series(r, "self_contact_length_m")[7], 0.5, 1e-9);
   EXPECT_EQ(series(r, "self_contact_length_m")[10], 0);
@@ -199,24 +199,24 @@ TEST(ContactScene, ASheetThatCrossesItselfSaysHowFar) {
 
 TEST(ContactScene, ASheetLaidOverItselfCrossesNowhere) {
   const ScratchFolder folder;
-  const CellRecord r = run(load_scene(folder.file("scene.json", kSelfScene)), prescribed(laid_over(false)), folder);
+  const RunRecord r = run(load_scene(folder.file("scene.json", kSelfScene)), prescribed(laid_over(false)), folder);
   EXPECT_EQ(r.summary.at("self_contact_length_max_m"), 0);
-  EXPECT_EQ(r.outcome.expect, "kept");
+  EXPECT_EQ(r.outcome.expect, "pass");
 }
 
 TEST(ContactScene, WhatACrossedStartHasIsNotNew) {
   const ScratchFolder folder;
   const Path through = laid_over(true);
   const auto always = [through](int, std::vector<double>& x) { through(5, x); };
-  const CellRecord r = run(load_scene(folder.file("scene.json", kSelfScene)), prescribed(always), folder);
+  const RunRecord r = run(load_scene(folder.file("scene.json", kSelfScene)), prescribed(always), folder);
   EXPECT_GE(series(r, "self_contact_pairs")[0], 16);
   EXPECT_EQ(r.summary.at("self_contact_pairs_max"), 0);
-  EXPECT_EQ(r.outcome.expect, "kept");
+  EXPECT_EQ(r.outcome.expect, "pass");
 }
 
 TEST(ContactScene, NoNumberIsNoSelfContactKept) {
   const ScratchFolder folder;
-  const CellRecord r =
+  const RunRecord r =
       run(load_scene(folder.file("scene.json", kSelfScene)), prescribed([](int frame, std::vector<double>& x) {
             if (frame >= 3) x[4] = kMissing;
           }),
@@ -238,7 +238,7 @@ TEST(ContactScene, ACurtainHalfWayThroughAPatchHasTunnelledByHalf) {
     "time":{"frame_rate_hz":20,"duration_s":1},
     "expect":{"tunnelled_fraction_end":{"at_most":0},"tunnelled_fraction_max":{"at_most":0}}})"));
   const SolverEntry solver = prescribed(lifted([](int frame) { return -0.06 * std::min(frame, 20 - frame); }));
-  const CellRecord r = run(scene, solver, folder);
+  const RunRecord r = run(scene, solver, folder);
   const std::vector<double>&tunnelled = series(r, "tunnelled_fraction"), &length = series(r, "contact_length_m");
   EXPECT_NEAR(tunnelled[10], 0.5, 1e-12);
   EXPECT_NEAR(length[10], 1, 1e-12);
@@ -246,14 +246,14 @@ TEST(ContactScene, ACurtainHalfWayThroughAPatchHasTunnelledByHalf) {
   EXPECT_EQ(r.summary.at("tunnelled_fraction_end"), 0) << "back the way it came";
   EXPECT_NEAR(r.summary.at("tunnelled_depth_max_m"), 0.5, 1e-12);
   EXPECT_TRUE(std::isnan(r.summary.at("depth_max_m"))) << "an open patch has no inside";
-  EXPECT_EQ(r.outcome.expect, "broken: tunnelled_fraction_max 0.5 > 0");
+  EXPECT_EQ(r.outcome.expect, "fail: tunnelled_fraction_max 0.5 > 0");
 }
 
 TEST(ContactScene, AHandPushedThroughAStillClothTunnelsAndComesBack) {
   const ScratchFolder folder;
   const Scene scene = load_scene("paper/hand-push");
   const auto start = std::chrono::steady_clock::now();
-  const CellRecord r = run(scene, prescribed([](int, std::vector<double>&) {}), folder);
+  const RunRecord r = run(scene, prescribed([](int, std::vector<double>&) {}), folder);
   const double frame_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / scene.time.frames();
   std::printf("  a frame against a skinned hand of %zu triangles: %.4f s\n", scene.colliders[0].mesh->triangles.size(),
@@ -273,7 +273,7 @@ TEST(ContactScene, NoSceneExpectsWhatItDoesNotMeasure) {
     if (file.path().extension() != ".json" || (folder_name != "paper" && folder_name != "contact")) continue;
     const ScratchFolder folder;
     const Scene scene = load_scene(file.path().string(), {"cloth.grid=[9,9]"});
-    const CellRecord r = run(scene, prescribed([](int, std::vector<double>&) {}), folder);
+    const RunRecord r = run(scene, prescribed([](int, std::vector<double>&) {}), folder);
     EXPECT_EQ(r.outcome.expect.find("no value"), std::string::npos) << scene.name << ": " << r.outcome.expect;
     EXPECT_NE(r.outcome.expect, "not measured") << scene.name;
   }

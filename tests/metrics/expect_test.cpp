@@ -7,7 +7,7 @@
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
-#include "runner/cell.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 #include "scenario/schemas.hpp"
 
@@ -34,9 +34,9 @@ Verdict verdict(const std::string& expect, const std::map<std::string, double>& 
 
 TEST(Expect, BoundsIncludeTheirEnds) {
   const char* bounds = R"({"stretch_max":{"at_least":0.1,"at_most":0.2}})";
-  for (double v : {0.1, 0.15, 0.2}) EXPECT_EQ(verdict(bounds, {{"stretch_max", v}}).text, "kept") << v;
-  EXPECT_EQ(verdict(bounds, {{"stretch_max", 0.21}}).text, "broken: stretch_max 0.21 > 0.2");
-  EXPECT_EQ(verdict(bounds, {{"stretch_max", 0.09}}).text, "broken: stretch_max 0.09 < 0.1");
+  for (double v : {0.1, 0.15, 0.2}) EXPECT_EQ(verdict(bounds, {{"stretch_max", v}}).text, "pass") << v;
+  EXPECT_EQ(verdict(bounds, {{"stretch_max", 0.21}}).text, "fail: stretch_max 0.21 > 0.2");
+  EXPECT_EQ(verdict(bounds, {{"stretch_max", 0.09}}).text, "fail: stretch_max 0.09 < 0.1");
 }
 
 TEST(Expect, NoValueBreaks) {
@@ -44,14 +44,14 @@ TEST(Expect, NoValueBreaks) {
   for (const auto& summary :
        {std::map<std::string, double>{}, {{"stretch_max", kMissing}}, {{"stretch_max", -INFINITY}}}) {
     const Verdict v = verdict(bounds, summary);
-    EXPECT_EQ(v.text, "broken: stretch_max has no value");
+    EXPECT_EQ(v.text, "fail: stretch_max has no value");
     EXPECT_EQ(v.scalars.at("expect.stretch_max"), 0);
   }
 }
 
 TEST(Expect, OutcomesAreCompared) {
-  EXPECT_EQ(verdict(R"({"outcome":"ok"})", {}, "timed_out").text, "broken: outcome timed_out, expected ok");
-  EXPECT_EQ(verdict(R"({"outcome":"not_finite"})", {}, "not_finite").text, "kept")
+  EXPECT_EQ(verdict(R"({"outcome":"ok"})", {}, "timed_out").text, "fail: outcome timed_out, expected ok");
+  EXPECT_EQ(verdict(R"({"outcome":"not_finite"})", {}, "not_finite").text, "pass")
       << "a scene may be meant to break solvers";
   EXPECT_EQ(verdict(R"({"outcome":"ok"})", {}, "unsupported").text, "not measured");
   EXPECT_EQ(verdict("{}", {}).text, "");
@@ -64,7 +64,7 @@ TEST(Expect, AFailureBeforeTheEndIsMeasuredAShortPassIsNot) {
   Outcome outcome;
   EXPECT_EQ(judge(scene, outcome, pass, {}).text, "not measured");
   outcome.status = "diverged";
-  EXPECT_EQ(judge(scene, outcome, pass, {}).text, "broken: outcome diverged, expected ok");
+  EXPECT_EQ(judge(scene, outcome, pass, {}).text, "fail: outcome diverged, expected ok");
 }
 
 TEST(Expect, MistakesAreRefusedWithTheNearestName) {

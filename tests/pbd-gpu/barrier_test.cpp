@@ -10,13 +10,13 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-struct Cell {
+struct SolverRun {
   std::string solver;
   nlohmann::json settings;
   Scene scene;
 };
 
-std::vector<Cell> cells() {
+std::vector<SolverRun> runs() {
   const Scene plain = sheet(7, 5), full = with_pins(with_damping(with_bending(sheet(7, 5))));
   return {{"paper", {{"iterations", 2}}, plain},
           {"paper", {{"iterations", 2}, {"substeps", 2}}, full},
@@ -38,9 +38,9 @@ std::vector<Cell> cells() {
 using Barriers = Gpu;
 
 TEST_F(Barriers, KernelsDoWithBuffersWhatTheirQualifiersAndBindingsSay) {
-  for (const Cell& cell : cells()) {
-    const auto solver = make(cell.solver, cell.settings);
-    solver->load(cell.scene);
+  for (const SolverRun& run : runs()) {
+    const auto solver = make(run.solver, run.settings);
+    solver->load(run.scene);
     for (const auto& r : solver->frame_program().recorded()) {
       if (r.kernel == nullptr) continue;
       const std::vector<BufferUse> uses = uses_of(r.kernel->code());
@@ -58,13 +58,13 @@ TEST_F(Barriers, KernelsDoWithBuffersWhatTheirQualifiersAndBindingsSay) {
 }
 
 TEST_F(Barriers, NoneIsMissingAndNoneIsThereInVain) {
-  for (const Cell& cell : cells()) {
-    const auto solver = make(cell.solver, cell.settings);
-    solver->load(cell.scene);
+  for (const SolverRun& run : runs()) {
+    const auto solver = make(run.solver, run.settings);
+    solver->load(run.scene);
     const vulkan::Program *up = &solver->upload_program(), *frame = &solver->frame_program(),
                           *down = &solver->download_program();
     const std::vector<Event> events = time_line({up, down, frame, frame, down, frame, up, frame, down});
-    EXPECT_EQ(hazard(events), "") << cell.solver << cell.settings;
+    EXPECT_EQ(hazard(events), "") << run.solver << run.settings;
     int dropped = 0;
     for (const vulkan::Program* p : {up, frame, down}) {
       const auto& recorded = p->recorded();
@@ -72,7 +72,7 @@ TEST_F(Barriers, NoneIsMissingAndNoneIsThereInVain) {
       ASSERT_GT(barriers, 0);
       for (std::size_t k = 0; k < static_cast<std::size_t>(barriers); ++k, ++dropped)
         EXPECT_NE(hazard(events, {p, k}), "")
-            << cell.solver << cell.settings << ": without barrier " << k << " of " << barriers;
+            << run.solver << run.settings << ": without barrier " << k << " of " << barriers;
     }
     EXPECT_GE(dropped, 4) << "before and after what each program does";
   }

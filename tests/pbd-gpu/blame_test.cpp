@@ -1,4 +1,4 @@
-// Cells of one run share a device: a validation message fails the right one.
+// Runs of one process share a device: a validation message fails the right one.
 #include <unistd.h>
 
 #include <filesystem>
@@ -39,7 +39,7 @@ class Noisy final : public ClothSolver {
   bool noisy_ = true;
 };
 
-TEST_F(Gpu, OnlyTheCellThatCausedMessagesIsAFault) {
+TEST_F(Gpu, OnlyTheRunThatCausedMessagesIsAFault) {
   const auto device = vulkan::Device::get(kOwn);
   ASSERT_NE(device, device_);
   const Scene scene = load_scene("paper/gravity", {"cloth.grid=[4,4]"});
@@ -54,13 +54,13 @@ TEST_F(Gpu, OnlyTheCellThatCausedMessagesIsAFault) {
     return std::make_unique<Noisy>(clean.make(s, d));
   };
   const nlohmann::json settings = complete_settings(clean.info, nlohmann::json::object());
-  CellPlan plan;
+  RunPlan plan;
   plan.protocol = "test";
   plan.rules.trials = 1;
   plan.rules.frames = 3;
   plan.rules.warmup_s = 0;
   plan.rules.accuracy_duration_s = 0.05;
-  // Cells of a group are loaded before any of them is timed; those of the next group come after all messages.
+  // Runs of a group are loaded before any of them is timed; those of the next group come after all messages.
   plan.groups = {{{&scene, &noisy, settings, "noisy"},
                   {&scene, &clean, settings, "beside"},
                   {&scene, &noisy_twin, settings, "noisy-twin"}},
@@ -69,11 +69,11 @@ TEST_F(Gpu, OnlyTheCellThatCausedMessagesIsAFault) {
   options.out = fs::temp_directory_path() / ("clothbench-blame-" + std::to_string(getpid()));
   options.device = kOwn;
   fs::create_directories(options.out);
-  const RunResult result = run_cells(plan, options);
+  const RunResult result = execute_runs(plan, options);
   fs::remove_all(options.out);
-  const std::string cell = scene.name + "__xpbd__";
-  EXPECT_EQ(result.faults, (std::vector<std::string>{cell + "noisy: 1 validation messages",
-                                                     cell + "noisy-twin: 1 validation messages"}));
+  const std::string run = scene.name + "__xpbd__";
+  EXPECT_EQ(result.faults, (std::vector<std::string>{run + "noisy: 1 validation messages",
+                                                     run + "noisy-twin: 1 validation messages"}));
   EXPECT_EQ(result.validation_messages, 2);
 }
 

@@ -179,23 +179,23 @@ TEST_F(Chained, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
   int agreed = 0;
   for (const Scene& s : {with_damping(mesh_sheet(12)), with_damping(mesh_sheet(20))}) {
     const auto passes = make("xpbd", {{"tuning", {{"device_barrier", "never"}}}}),
-               resident = make("xpbd", {{"tuning", {{"device_barrier", "always"}}}});
+               persistent = make("xpbd", {{"tuning", {{"device_barrier", "always"}}}});
     passes->load(s);
     const ClothState expected = after(*passes, s, 5);
     try {
-      resident->load(s);
+      persistent->load(s);
     } catch (const Error& e) {
       EXPECT_NE(std::string(e.what()).find("device_barrier=always"), std::string::npos) << e.what();
       continue;
     }
-    EXPECT_EQ(resident->plan().stages.at(0).dispatches, 1);
+    EXPECT_EQ(persistent->plan().stages.at(0).dispatches, 1);
     StepStatus status = StepStatus::Ok;
     for (int f = 0; f < 5 && status == StepStatus::Ok; ++f)
-      status = resident->step({f, (f + 1) * s.time.dt(), s.time.dt(), s.motion_after(f)});
+      status = persistent->step({f, (f + 1) * s.time.dt(), s.time.dt(), s.motion_after(f)});
     if (status == StepStatus::TimedOut) continue;
     ASSERT_EQ(status, StepStatus::Ok);
     ClothState state;
-    resident->read_state(state);
+    persistent->read_state(state);
     EXPECT_EQ(state.position, expected.position);
     EXPECT_EQ(state.velocity, expected.velocity);
     ++agreed;

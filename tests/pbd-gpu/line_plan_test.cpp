@@ -123,7 +123,7 @@ TEST(Shapes, FitDevices) {
   EXPECT_EQ(frame_shape(32, 32, {}, adreno).threads, 256u);
   const LineShape wide = pass_shape(512, {}, nvidia);
   EXPECT_EQ(wide.beside * wide.lanes, 512u);
-  EXPECT_EQ(pass_shape(64, {2, 128, 2}, nvidia).threads, 128u) << "wishes are granted";
+  EXPECT_EQ(pass_shape(64, {2, 128, 2}, nvidia).threads, 128u) << "requests are granted";
   EXPECT_THROW(pass_shape(8193, {}, nvidia), Error);
 }
 

@@ -1,6 +1,6 @@
-// What the line solver is for: little stretch for few substeps, the truth cards, and that it stays whole where lines
-// are singular. Bounds are a little above what it measures, which is what a sequential double-precision emulation of
-// the same method gives.
+// What the line solver is for: little stretch for few substeps, the reference cases, and that it stays whole where
+// lines are singular. Bounds are a little above what it measures, which is what a sequential double-precision emulation
+// of the same method gives.
 #include <cmath>
 
 #include "clothbench/record.hpp"
@@ -83,7 +83,7 @@ TEST_F(SlowLineScenes, ElasticSheetStretchesAsMuchAsInManySubsteps) {
   EXPECT_NEAR(mean, many, 0.25 * many);
 }
 
-TEST_F(LineScenes, TruthCardsAreMetAtLowCost) {
+TEST_F(LineScenes, ReferenceCasesAreMetAtLowCost) {
   struct Row {
     const char* scene;
     int substeps;
@@ -183,20 +183,20 @@ TEST_F(LineScenes, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
     passes->load(s);
     const ClothState expected = after(*passes, s, 5);
     settings["tuning"]["device_barrier"] = "always";
-    const auto resident = make("xpbd", settings);
+    const auto persistent = make("xpbd", settings);
     try {
-      resident->load(s);
+      persistent->load(s);
     } catch (const Error& e) {
       EXPECT_NE(std::string(e.what()).find("device_barrier=always"), std::string::npos) << e.what();
       continue;
     }
     StepStatus status = StepStatus::Ok;
     for (int f = 0; f < 5 && status == StepStatus::Ok; ++f)
-      status = resident->step({f, (f + 1) * s.time.dt(), s.time.dt(), s.motion_after(f)});
+      status = persistent->step({f, (f + 1) * s.time.dt(), s.time.dt(), s.motion_after(f)});
     if (status == StepStatus::TimedOut) continue;
     ASSERT_EQ(status, StepStatus::Ok);
     ClothState state;
-    resident->read_state(state);
+    persistent->read_state(state);
     EXPECT_EQ(state.position, expected.position) << threads;
     EXPECT_EQ(state.velocity, expected.velocity) << threads;
     ++agreed;

@@ -30,7 +30,8 @@ TEST(Profile, NeedsAreReadFromTheCode) {
   EXPECT_EQ(plain.bindings, (std::map<std::uint32_t, Access>{{BIND_POSITIONS, Access::ReadWrite},
                                                              {BIND_VELOCITIES, Access::Write},
                                                              {BIND_PREDICTED, Access::Read}}));
-  // Arrays as long as a product of constants: 32 rows of 34 words, six of them, a word a row, and a letter a thread.
+  // Arrays as long as a product of constants: 32 rows of 34 words, six of them, a word a row, and one exchanged value a
+  // thread.
   const vulkan::ShaderNeeds lines = vulkan::needs_of(shader("line_frame").code, {256, 8, 4, 32, 32, 256});
   EXPECT_EQ(lines.shared_memory_B, 6u * 32 * 34 * 4 + 32 * 4 + 256 * 16);
   EXPECT_TRUE(vulkan::needs_of(shader("project_constraint_deltas_native").code, {64}).float_atomics);

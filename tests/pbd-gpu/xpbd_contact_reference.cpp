@@ -130,7 +130,7 @@ std::vector<ContactReference::Piece> ContactReference::pieces(const V& at, doubl
   return all;
 }
 
-ContactReference::Found ContactReference::look(const Way& way, const V& heeded_normal) const {
+ContactReference::Found ContactReference::look(const Way& way, const V& active_normal) const {
   Found f{};
   f.free_share = 1;
   double nearest_gap = std::numeric_limits<double>::infinity(), other_gap = nearest_gap;
@@ -143,7 +143,7 @@ ContactReference::Found ContactReference::look(const Way& way, const V& heeded_n
       f.nearest = p;
     }
     if (gap < kSlack * p.margin && closing - gap > kTolerance * p.margin && gap < other_gap &&
-        p.normal.dot(heeded_normal) < kOther) {
+        p.normal.dot(active_normal) < kOther) {
       other_gap = gap;
       f.other = p;
       f.has_other = true;
@@ -152,8 +152,8 @@ ContactReference::Found ContactReference::look(const Way& way, const V& heeded_n
   return f;
 }
 
-void ContactReference::heed(const Piece& piece, Way& way, V& velocity) {
-  ++heeded;
+void ContactReference::respond_to(const Piece& piece, Way& way, V& velocity) {
+  ++active_contacts;
   const double rate = scene_.time.frame_rate_hz;
   V relative = velocity - rate * piece.delta;
   const double approach = std::max(0.0, -relative.dot(piece.normal));
@@ -184,7 +184,7 @@ V ContactReference::advance(const V& from, const V& to, double begin, V& velocit
     const bool by_other = !by_nearest && f.has_other && (!first || f.other.normal.dot(f.nearest.normal) < kOther);
     if ((by_nearest || by_other) && k + 1 < kSteps) {
       const Piece& piece = by_nearest ? f.nearest : f.other;
-      heed(piece, way, velocity);
+      respond_to(piece, way, velocity);
       normal = piece.normal;
       touched = true;
       continue;

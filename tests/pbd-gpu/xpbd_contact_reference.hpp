@@ -15,7 +15,7 @@ class ContactReference {
   void frame(int index);
 
   std::vector<Eigen::Vector3d> x, v;
-  long heeded = 0;  ///< contacts, so that a test can tell that there were some
+  long active_contacts = 0;  ///< contacts, so that a test can tell that there were some
 
  private:
   using V = Eigen::Vector3d;
@@ -37,8 +37,8 @@ class ContactReference {
   std::vector<Piece> pieces(const V& at, double now) const;
   void add_shape(const Collider& c, std::size_t index, const V& at, double now, std::vector<Piece>& all) const;
   void add_mesh(std::size_t index, const V& at, double now, std::vector<Piece>& all) const;
-  Found look(const Way& way, const V& heeded_normal) const;
-  void heed(const Piece& piece, Way& way, V& velocity);
+  Found look(const Way& way, const V& active_normal) const;
+  void respond_to(const Piece& piece, Way& way, V& velocity);
   V advance(const V& from, const V& to, double begin, V& velocity, bool& touched);
   void substep(int s);
 

@@ -167,7 +167,7 @@ void add_metrics(std::vector<Fault>& f) {
     fault.metrics = std::move(change);
     f.push_back(std::move(fault));
   };
-  const auto told = [&](const char* name, const char* stage, std::function<void(Scene&)> change) {
+  const auto reported = [&](const char* name, const char* stage, std::function<void(Scene&)> change) {
     Fault fault{name, stage};
     fault.metric_scene = std::move(change);
     f.push_back(std::move(fault));
@@ -192,28 +192,28 @@ void add_metrics(std::vector<Fault>& f) {
   metric("wrong side counted from the last frame alone", "through",
          series("wrong_side_fraction",
                 [](std::vector<double>& v) { std::adjacent_difference(v.begin(), v.end(), v.begin()); }));
-  told("metric sees the collider a frame late", "rising", [](Scene& s) {
+  reported("metric sees the collider a frame late", "rising", [](Scene& s) {
     s.motion.insert(s.motion.begin(), s.motion.front());
     s.motion.pop_back();
   });
-  told("metric with flipped normals", "rolled", mesh([](ColliderMesh& m) {
-         for (auto& t : m.triangles) std::swap(t[1], t[2]);
-       }));
-  told("metric ignores every 100th triangle", "rolled", mesh(without_every_100th));
-  told("metric takes the radius for the diameter", "pressed", colliders([](Collider& c) { c.radius_m /= 2; }));
+  reported("metric with flipped normals", "rolled", mesh([](ColliderMesh& m) {
+             for (auto& t : m.triangles) std::swap(t[1], t[2]);
+           }));
+  reported("metric ignores every 100th triangle", "rolled", mesh(without_every_100th));
+  reported("metric takes the radius for the diameter", "pressed", colliders([](Collider& c) { c.radius_m /= 2; }));
 }
 
 void add_records(std::vector<Fault>& f) {
-  const auto record = [&](const char* name, const char* stage, std::function<void(CellRecord&)> change) {
+  const auto record = [&](const char* name, const char* stage, std::function<void(RunRecord&)> change) {
     Fault fault{name, stage};
     fault.record = std::move(change);
     f.push_back(std::move(fault));
   };
-  record("a trial repeated", "fall", [](CellRecord& r) { r.trials[1] = r.trials[0]; });
-  record("another scene under the same name", "fall", [](CellRecord& r) { r.header.scenario_sha256[3] ^= 1; });
-  record("a value lost on the way to the file", "swing", [](CellRecord& r) { r.summary.erase("stretch_max"); });
-  record("a broken expectation not told", "ball",
-         [](CellRecord& r) { r.summary["expect.depth_vertex_max_m"] = kMissing; });
+  record("a trial repeated", "fall", [](RunRecord& r) { r.trials[1] = r.trials[0]; });
+  record("another scene under the same name", "fall", [](RunRecord& r) { r.header.scenario_sha256[3] ^= 1; });
+  record("a value lost on the way to the file", "swing", [](RunRecord& r) { r.summary.erase("stretch_max"); });
+  record("a failed expectation not reported", "ball",
+         [](RunRecord& r) { r.summary["expect.depth_vertex_max_m"] = kMissing; });
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // One fault at a time in solver, metrics and records: each must be caught, by what `clothbench check` does with the
-// cell and the same cell of a healthy run as its baseline.
+// run and the same run of a healthy run as its baseline.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -21,16 +21,16 @@ const Stage& stage(const std::string& name) {
   throw std::runtime_error("no stage " + name);
 }
 
-const CellRecord& healthy(const std::string& name) {
-  static std::map<std::string, CellRecord> known;
-  if (!known.contains(name)) known.emplace(name, run_cell(stage(name)));
+const RunRecord& healthy(const std::string& name) {
+  static std::map<std::string, RunRecord> known;
+  if (!known.contains(name)) known.emplace(name, execute_run(stage(name)));
   return known.at(name);
 }
 
-/// What `clothbench check` says of a cell, its failures alone; empty if it lets it pass.
-std::string caught_by(const CellRecord& was, const CellRecord& is) {
+/// What `clothbench check` says of a run, its failures alone; empty if it lets it pass.
+std::string caught_by(const RunRecord& was, const RunRecord& is) {
   std::string out;
-  for (const Finding& f : compare_cell(gated_part(was), is))
+  for (const Finding& f : compare_run(gated_part(was), is))
     if (f.verdict == Verdict::Failed) out += (out.empty() ? "" : "; ") + f.sentence();
   return out;
 }
@@ -53,20 +53,20 @@ class Planted : public ::testing::Test {
 TEST_F(Planted, AHealthyRunPassesTwice) {
   for (const Stage& s : stages()) {
     EXPECT_EQ(healthy(s.name).outcome.status, "ok") << s.name << ": " << healthy(s.name).outcome.message;
-    EXPECT_FALSE(healthy(s.name).outcome.expect.starts_with("broken"))
+    EXPECT_FALSE(healthy(s.name).outcome.expect.starts_with("fail"))
         << s.name << ": " << healthy(s.name).outcome.expect;
-    EXPECT_EQ(caught_by(healthy(s.name), run_cell(stage(s.name))), "") << s.name;
+    EXPECT_EQ(caught_by(healthy(s.name), execute_run(stage(s.name))), "") << s.name;
   }
 }
 
 TEST_F(Planted, EveryFaultIsCaught) {
   const std::vector<Fault> all = faults();
   EXPECT_GE(all.size(), 20u);
-  int missed = 0;
+  int timed_out = 0;
   for (const Fault& f : all) {
     std::string caught;
     try {
-      const CellRecord is = run_cell(stage(f.stage), &f);
+      const RunRecord is = execute_run(stage(f.stage), &f);
       caught = caught_by(healthy(f.stage), is);
     } catch (const std::exception& e) {
       ADD_FAILURE() << f.name << ": " << e.what();
@@ -74,18 +74,18 @@ TEST_F(Planted, EveryFaultIsCaught) {
     }
     fmt::print("  {:<52} {:<11} {}\n", f.name, f.stage, caught.empty() ? "MISSED" : caught.substr(0, 150));
     std::fflush(stdout);
-    missed += caught.empty();
+    timed_out += caught.empty();
     EXPECT_NE(caught, "") << f.name;
   }
-  fmt::print("  {} faults, {} caught\n", all.size(), static_cast<int>(all.size()) - missed);
+  fmt::print("  {} faults, {} caught\n", all.size(), static_cast<int>(all.size()) - timed_out);
 }
 
 TEST_F(Planted, AFaultThatIsNowhereIsAnError) {
   Fault gone{"gone", "fall"};
   gone.shader = ShaderFault{"lines.glsl", "no such text", ""};
-  EXPECT_THROW(run_cell(stage("fall"), &gone), std::runtime_error);
+  EXPECT_THROW(execute_run(stage("fall"), &gone), std::runtime_error);
   gone.shader = ShaderFault{"satisfy_mesh_collisions.comp", "void main() {", "void main() { return;"};
-  EXPECT_THROW(run_cell(stage("fall"), &gone), std::runtime_error) << "no kernel of the run has it";
+  EXPECT_THROW(execute_run(stage("fall"), &gone), std::runtime_error) << "no kernel of the run has it";
 }
 
 }  // namespace

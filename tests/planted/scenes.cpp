@@ -14,7 +14,7 @@ Stage solved(const std::string& name, Scene scene, int trials = 0) {
   return {name, std::move(scene), find_solver("xpbd"), trials};
 }
 
-Stage told(const std::string& name, const std::string& scene, Path path) {
+Stage reported(const std::string& name, const std::string& scene, Path path) {
   return {name, scene_from_json(json::parse(scene), "planted/" + name), prescribed(std::move(path)), 0};
 }
 
@@ -138,12 +138,12 @@ std::vector<Stage> stages() {
   out.push_back(solved("pushed", scene(kPushed)));
   out.push_back(solved("pulled", scene(kPulled)));
   out.push_back(solved("layers", layers()));
-  out.push_back(told("crossed", kCrossed, lay_over));
-  out.push_back(told("pressed", kPressed, lifted([](int f) { return down(f, 0, 0.11, 20); })));
-  out.push_back(told("rolled", kRolled, lifted([](int f) { return down(f, 0, 0.11, 20); })));
-  out.push_back(told("curtain", kCurtain, lifted([](int f) { return down(f, 0, 0.15, 20); })));
-  out.push_back(told("rising", kRising, [](int, std::vector<double>&) {}));
-  out.push_back(told("through", kThrough, [](int, std::vector<double>&) {}));
+  out.push_back(reported("crossed", kCrossed, lay_over));
+  out.push_back(reported("pressed", kPressed, lifted([](int f) { return down(f, 0, 0.11, 20); })));
+  out.push_back(reported("rolled", kRolled, lifted([](int f) { return down(f, 0, 0.11, 20); })));
+  out.push_back(reported("curtain", kCurtain, lifted([](int f) { return down(f, 0, 0.15, 20); })));
+  out.push_back(reported("rising", kRising, [](int, std::vector<double>&) {}));
+  out.push_back(reported("through", kThrough, [](int, std::vector<double>&) {}));
   return out;
 }
 

@@ -24,12 +24,22 @@ Code read(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Kernels as built, by their code.
+const std::string& build_commands() {
+  static const std::string ninja = [] {
+    const Code text = read(CLOTHBENCH_BUILD_NINJA);
+    return std::string(text.begin(), text.end());
+  }();
+  return ninja;
+}
+
+/// Kernels as built, by their code; without files that an older build left.
 const std::map<Code, std::string>& built() {
   static const std::map<Code, std::string> all = [] {
     std::map<Code, std::string> out;
     for (const auto& f : fs::directory_iterator(CLOTHBENCH_KERNELS))
-      if (f.path().extension() == ".spv") out.emplace(read(f.path()), f.path().string());
+      if (f.path().extension() == ".spv" &&
+          build_commands().find(" -o " + f.path().string() + " ") != std::string::npos)
+        out.emplace(read(f.path()), f.path().string());
     return out;
   }();
   return all;
@@ -37,10 +47,7 @@ const std::map<Code, std::string>& built() {
 
 /// The part of the build's command that writes `spv`.
 std::string command_of(const std::string& spv) {
-  static const std::string ninja = [] {
-    const Code text = read(CLOTHBENCH_BUILD_NINJA);
-    return std::string(text.begin(), text.end());
-  }();
+  const std::string& ninja = build_commands();
   const std::size_t out = ninja.find(" -o " + spv + " ");
   if (out == std::string::npos) throw std::runtime_error(spv + ": no command in the build writes it");
   const std::size_t begin = ninja.rfind("&& ", out) + 3, end = ninja.find(" &&", out);

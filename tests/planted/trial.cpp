@@ -4,8 +4,8 @@
 
 #include "metrics/metric_pass.hpp"
 #include "results/replay.hpp"
-#include "runner/cell.hpp"
 #include "runner/expect.hpp"
+#include "runner/solver_run.hpp"
 
 namespace clothbench {
 namespace {
@@ -18,9 +18,9 @@ class Faulty final : public ClothSolver {
   const SolverInfo& info() const override { return inner_->info(); }
   DeviceInfo device() const override { return inner_->device(); }
   void load(const Scene& scene) override {
-    told_ = scene;
-    if (fault_.scene) fault_.scene(told_);
-    inner_->load(told_);
+    reported_ = scene;
+    if (fault_.scene) fault_.scene(reported_);
+    inner_->load(reported_);
   }
   void reset() override {
     frame_ = 0;
@@ -28,8 +28,8 @@ class Faulty final : public ClothSolver {
   }
   StepStatus step(const FrameInput& given) override {
     FrameInput input = given;
-    input.motion = told_.motion_after(given.index);
-    if (fault_.input) fault_.input(told_, input);
+    input.motion = reported_.motion_after(given.index);
+    if (fault_.input) fault_.input(reported_, input);
     ++frame_;
     const StepStatus status = inner_->step(input);
     return fault_.status ? fault_.status(frame_) : status;
@@ -48,7 +48,7 @@ class Faulty final : public ClothSolver {
  private:
   std::unique_ptr<ClothSolver> inner_;
   const Fault& fault_;
-  Scene told_;
+  Scene reported_;
   int frame_ = 0;
 };
 
@@ -68,7 +68,7 @@ std::vector<MetricSeries> measured_in(const Scene& scene, const Stage& stage, co
 
 }  // namespace
 
-CellRecord run_cell(const Stage& stage, const Fault* fault) {
+RunRecord execute_run(const Stage& stage, const Fault* fault) {
   SolverEntry entry = stage.entry;
   if (fault != nullptr && in_solver(*fault))
     entry.make = [make = stage.entry.make, fault](const nlohmann::json& s, const DeviceOptions& d) {
@@ -76,28 +76,28 @@ CellRecord run_cell(const Stage& stage, const Fault* fault) {
     };
   std::optional<ShaderVariant> variant;
   if (fault != nullptr && fault->shader) variant.emplace(*fault->shader);
-  CellSpec spec{&stage.scene, &entry, complete_settings(entry.info, nlohmann::json::object())};
+  RunSpec spec{&stage.scene, &entry, complete_settings(entry.info, nlohmann::json::object())};
   if (fault != nullptr && fault->settings) fault->settings(spec.settings);
   TrialRules rules;
   rules.frames = rules.min_frames = 12;
   rules.warmup_s = 0;
   rules.profiled_frames = 0;
   rules.accuracy_duration_s = stage.scene.time.duration_s;
-  Cell cell(spec, {}, "test");
-  CellRecord record;
-  record.header = cell.header();
-  if (cell.alive()) record.accuracy = cell.run_accuracy(rules);
-  for (int k = 0; k < stage.trials && cell.alive(); ++k) record.trials.push_back(cell.run_trial(k, rules, 0));
+  SolverRun run(spec, {}, "test");
+  RunRecord record;
+  record.header = run.header();
+  if (run.alive()) record.accuracy = run.run_accuracy(rules);
+  for (int k = 0; k < stage.trials && run.alive(); ++k) record.trials.push_back(run.run_trial(k, rules, 0));
   if (variant && ShaderVariant::exchanged() == 0)
     throw std::runtime_error(fault->name + ": no kernel of the run has the fault");
   if (fault != nullptr && fault->metric_scene) {
-    Scene told = stage.scene;
-    fault->metric_scene(told);
-    record.accuracy.metrics = measured_in(told, stage, spec.settings, record.accuracy);
+    Scene reported = stage.scene;
+    fault->metric_scene(reported);
+    record.accuracy.metrics = measured_in(reported, stage, spec.settings, record.accuracy);
   }
   if (fault != nullptr && fault->metrics) fault->metrics(record.accuracy);
-  record.outcome = cell.outcome();
-  record.summary = summarise(spec, cell.plan(), record);
+  record.outcome = run.outcome();
+  record.summary = summarise(spec, run.plan(), record);
   const Verdict verdict = judge(stage.scene, record.outcome, record.accuracy, record.summary);
   record.outcome.expect = verdict.text;
   for (const auto& [name, value] : verdict.scalars) record.summary[name] = value;

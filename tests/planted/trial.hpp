@@ -29,18 +29,18 @@ struct Fault {
   std::function<StepStatus(int frame)> status = {};
   std::function<void(Plan&)> plan = {};
   std::function<void(nlohmann::json&)> settings = {};
-  // In the metrics: the scene they are told, or what they make of a pass.
+  // In the metrics: the scene they are reported, or what they make of a pass.
   std::function<void(Scene&)> metric_scene = {};
   std::function<void(AccuracyPass&)> metrics = {};
   // In what is kept of the run.
-  std::function<void(CellRecord&)> record = {};
+  std::function<void(RunRecord&)> record = {};
 };
 
 /// Scenes that are small enough to be run again and again, and need every part of a solver that faults are planted in.
 std::vector<Stage> stages();
 std::vector<Fault> faults();
 
-/// The cell as a run leaves it, with the fault if there is one.
-CellRecord run_cell(const Stage&, const Fault* fault = nullptr);
+/// The run as its execution leaves it, with the fault if there is one.
+RunRecord execute_run(const Stage&, const Fault* fault = nullptr);
 
 }  // namespace clothbench

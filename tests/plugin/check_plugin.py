@@ -34,7 +34,7 @@ class Plugin(unittest.TestCase):
         self.text, _ = process.communicate(timeout=120)
         return process.returncode
 
-    def cell(self, name):
+    def stored(self, name):
         with h5py.File(os.path.join(self.out, name + ".h5")) as f:
             outcome = dict(f["outcome"].attrs)
             return outcome, dict(f["summary"].attrs), json.loads(f["header_json"][0])
@@ -49,7 +49,7 @@ class Plugin(unittest.TestCase):
             "run", "paper/gravity", "--solver", "plugin:" + EXAMPLE, *SMALL, "--trials", "2", "--out", self.out
         )
         self.assertEqual(code, 0, self.text)
-        outcome, summary, header = self.cell("gravity__example-xpbd__default")
+        outcome, summary, header = self.stored("gravity__example-xpbd__default")
         self.assertEqual(outcome["status"], "ok")
         # No free_fall_m: against the exact way, off by half a substep at every moment.
         self.assertLess(summary["free_fall_error"], 0.5 / 72 / 20 / 0.25)
@@ -60,12 +60,12 @@ class Plugin(unittest.TestCase):
 
     def test_it_is_held_to_the_free_fall_that_it_states(self):
         self.assertEqual(self.command("run", "paper/gravity", "--solver", self.faulty(), *SMALL, "--out", self.out), 0, self.text)
-        self.assertEqual(self.cell("gravity__faulty__default")[1]["free_fall_error"], 0)
+        self.assertEqual(self.stored("gravity__faulty__default")[1]["free_fall_error"], 0)
 
     def test_an_exact_answer(self):
         words = ["run", "validation/hang-elastic", "--solver", "plugin:" + EXAMPLE, "--trials", "0", "--out", self.out]
         self.assertEqual(self.command(*words, "--set", "solver.substeps=64"), 0, self.text)
-        outcome, summary, _ = self.cell("hang-elastic__example-xpbd__substeps=64")
+        outcome, summary, _ = self.stored("hang-elastic__example-xpbd__substeps=64")
         self.assertEqual(outcome["status"], "ok")
         self.assertLess(summary["stretch_mean_last_second"], 0.01)
 
@@ -78,7 +78,7 @@ class Plugin(unittest.TestCase):
         self.assertEqual(code, 2)
         self.assertIn("substeps", self.text)
         self.command("run", "paper/capsule-sweep", "--solver", "plugin:" + EXAMPLE, *SMALL, "--out", self.out)
-        self.assertEqual(self.cell("capsule-sweep__example-xpbd__default")[0]["status"], "unsupported")
+        self.assertEqual(self.stored("capsule-sweep__example-xpbd__default")[0]["status"], "unsupported")
 
     def test_it_says_how_far_off_it_holds_the_cloth(self):
         two = 'colliders=[{"type":"sphere","center_m":[0,0,0],"radius_m":0.1},{"type":"box","center_m":[0,-1,0],"size_m":[1,1,1]}]'
@@ -89,7 +89,7 @@ class Plugin(unittest.TestCase):
         self.assertIn("0.03", self.text)
         run = ["run", "contact/sphere", "--solver", self.faulty(), "--trials", "0", "--set", two, "--out", self.out]
         self.assertEqual(self.command(*run), 0, self.text)
-        self.assertEqual(self.cell("sphere-drop__faulty__default")[2]["plan"]["contact_margins"], plan["contact_margins"])
+        self.assertEqual(self.stored("sphere-drop__faulty__default")[2]["plan"]["contact_margins"], plan["contact_margins"])
 
     def test_a_library_built_with_the_first_header_of_the_version(self):
         (plan,) = self.rows("plan", "contact/sphere", "--solver", self.faulty("OLD_HEADER"), code=0)
@@ -109,8 +109,8 @@ class Plugin(unittest.TestCase):
         ]
         self.assertEqual(self.command(*words, "--out", self.out), 0, self.text)
         with open(os.path.join(self.out, "study.json"), encoding="utf-8") as text:
-            cells = json.load(text)["cells"]
-        self.assertTrue(any("example-xpbd" in c for c in cells) and any("ballistic" in c for c in cells))
+            runs = json.load(text)["runs"]
+        self.assertTrue(any("example-xpbd" in c for c in runs) and any("ballistic" in c for c in runs))
         self.assertIn("example-xpbd", self.text)
 
     def test_the_example_builds_elsewhere(self):
@@ -169,33 +169,33 @@ class Plugin(unittest.TestCase):
     def test_a_crash_is_a_row(self):
         for where, fault in (("accuracy", "crash:5"), ("trial 1 of 1", "crash:365")):
             self.assertEqual(self.both(FAULT=fault), 0, self.text)
-            outcome = self.cell("gravity__faulty__default")[0]
+            outcome = self.stored("gravity__faulty__default")[0]
             self.assertEqual((outcome["status"], outcome["class"]), ("crashed", "F8"))
             self.assertIn("signal 11", outcome["message"])
             self.assertIn(where, outcome["message"])
-            self.assertEqual(self.cell("gravity__ballistic__default")[0]["status"], "ok")
+            self.assertEqual(self.stored("gravity__ballistic__default")[0]["status"], "ok")
             self.assertIn("crashed", self.text)
             self.assertEqual([f for f in os.listdir(self.out) if not f.endswith((".h5", ".xdmf", ".json"))], [])
             shutil.rmtree(self.out)
 
     def test_a_plugin_that_ends_the_program_or_hangs_is_a_row(self):
         self.assertEqual(self.both(FAULT="exit:3"), 0, self.text)
-        self.assertIn("exit status 0", self.cell("gravity__faulty__default")[0]["message"])
+        self.assertIn("exit status 0", self.stored("gravity__faulty__default")[0]["message"])
         shutil.rmtree(self.out)
         self.assertEqual(self.both(FAULT="hang:3", CLOTHBENCH_PLUGIN_LIMIT_S="2"), 0, self.text)
-        self.assertEqual(self.cell("gravity__faulty__default")[0]["status"], "timed_out")
-        self.assertEqual(self.cell("gravity__ballistic__default")[0]["status"], "ok")
+        self.assertEqual(self.stored("gravity__faulty__default")[0]["status"], "timed_out")
+        self.assertEqual(self.stored("gravity__ballistic__default")[0]["status"], "ok")
 
     def test_one_that_blows_up_or_cannot_load(self):
         self.assertEqual(self.both(FAULT="nan:3"), 0, self.text)
-        outcome = self.cell("gravity__faulty__default")[0]
+        outcome = self.stored("gravity__faulty__default")[0]
         self.assertEqual((outcome["status"], outcome["failed_frame"]), ("not_finite", 3))
         shutil.rmtree(self.out)
         self.assertEqual(self.both(FAULT="load"), 1, self.text)
-        outcome = self.cell("gravity__faulty__default")[0]
+        outcome = self.stored("gravity__faulty__default")[0]
         self.assertEqual(outcome["status"], "error")
         self.assertIn("it was asked to fail", outcome["message"])
-        self.assertEqual(self.cell("gravity__ballistic__default")[0]["status"], "ok")
+        self.assertEqual(self.stored("gravity__ballistic__default")[0]["status"], "ok")
 
     # --- other commands than run and study: a crash is an answer, and what others answered is kept
 
@@ -217,10 +217,10 @@ class Plugin(unittest.TestCase):
         rows = self.rows("metamorphic", self.faulty(), "ballistic", code=1, FAULT="crash:40")
         mine = [r for r in rows if r["solver"] == "faulty"]
         # The first scene is over before it crashes; what was found there is kept.
-        self.assertTrue(all(r["status"] in ("kept", "unsupported") for r in mine[:9]), mine)
+        self.assertTrue(all(r["status"] in ("pass", "unsupported") for r in mine[:9]), mine)
         self.assertTrue(len(mine) == 36 and all(r["status"].startswith("crashed: signal 11") for r in mine[9:27]), mine)
-        self.assertTrue(all(r["status"] in ("kept", "unsupported") for r in mine[27:]), mine)  # nor does the last last so long
-        self.assertTrue(any(r["solver"] == "ballistic" and r["status"] == "kept" for r in rows))
+        self.assertTrue(all(r["status"] in ("pass", "unsupported") for r in mine[27:]), mine)  # nor does the last last so long
+        self.assertTrue(any(r["solver"] == "ballistic" and r["status"] == "pass" for r in rows))
         self.assertEqual(self.command("metamorphic", self.faulty(), FAULT="crash:40"), 1)
         self.assertIn("crashed", self.text)
 
@@ -234,8 +234,8 @@ class Plugin(unittest.TestCase):
         (row,) = self.rows("threshold", scene, "--solver", self.faulty(), code=0)
         self.assertGreater(row["runs"], 0)
 
-    def test_a_crash_is_an_answer_of_card(self):
-        words = ["card", self.faulty("STRETCHES"), "plugin:" + EXAMPLE, "--no-sweep"]
+    def test_a_crash_is_an_answer_of_moduli(self):
+        words = ["moduli", self.faulty("STRETCHES"), "plugin:" + EXAMPLE, "--no-sweep"]
         self.assertEqual(self.command(*words, FAULT="crash:20"), 1)
         self.assertIn("signal 11", self.text)
         self.assertIn("example-xpbd", self.text)
@@ -254,10 +254,10 @@ class Plugin(unittest.TestCase):
         self.assertEqual(self.command("render", "paper/gravity", "--solver", self.faulty(), FAULT="crash:5"), 1)
         self.assertIn("signal 11", self.text)
 
-    def test_a_crash_at_a_card_of_a_study_is_a_row(self):
+    def test_a_crash_at_moduli_of_a_study_is_a_row(self):
         study = {
             "name": "small",
-            "why": "A card that crashes.",
+            "why": "a measurement that crashes.",
             "protocol": "work-precision",
             "trials": 1,
             "scenes": [{"file": os.path.join(SOURCE, "scenarios", "validation", "free-fall.json")}],
@@ -272,8 +272,8 @@ class Plugin(unittest.TestCase):
         self.command(*words, "--solver", self.faulty("STRETCHES"), FAULT="crash:40")
         self.assertTrue(os.path.isdir(self.out), self.text)
         names = sorted(f for f in os.listdir(self.out) if f.endswith(".h5"))
-        self.assertIn("material-card__stretches__default.h5", names, self.text)
-        self.assertEqual(self.cell("material-card__stretches__default")[0]["status"], "crashed")
+        self.assertIn("effective-moduli__stretches__default.h5", names, self.text)
+        self.assertEqual(self.stored("effective-moduli__stretches__default")[0]["status"], "crashed")
 
     def bench(self, *more, time=None, **environment):
         """Of the faulty plugin on a small scene."""
@@ -329,7 +329,7 @@ class Plugin(unittest.TestCase):
         self.text, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, self.text)
         self.assertEqual(self.both("--resume"), 0, self.text)
-        self.assertEqual(self.cell("gravity__faulty__default")[0]["status"], "ok")
+        self.assertEqual(self.stored("gravity__faulty__default")[0]["status"], "ok")
 
 
 if __name__ == "__main__":

@@ -239,7 +239,7 @@ class Driver(unittest.TestCase):
     def test_no_profiler_and_no_log_of_clocks(self):
         self.assertEqual(self.drive(profiler=False, vrapi=False, metrics_tool=False), 1, self.text)
         self.assert_restored()
-        self.assertIn("GPU level: not told by the device", self.text)
+        self.assertIn("GPU level: not reported by the device", self.text)
 
     # --- what ends a run before it begins
 

@@ -10,7 +10,7 @@
 #include "render/movie.hpp"
 #include "results/replay.hpp"
 #include "results/store.hpp"
-#include "runner/cell.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 #include "sheets.hpp"
 
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A cell of `scene` whose cloth only falls, stored and read again.
+/// A run of `scene` whose cloth only falls, stored and read again.
 struct Stored {
   Scene scene;
   Motion direct, read;
@@ -27,15 +27,15 @@ struct Stored {
   Stored(const std::string& name, const std::vector<std::string>& set, const fs::path& folder)
       : scene(load_scene(name, set)) {
     const SolverEntry& entry = find_solver("ballistic");
-    Cell cell({&scene, &entry, complete_settings(entry.info, nlohmann::json::object())}, {}, "test");
+    SolverRun run({&scene, &entry, complete_settings(entry.info, nlohmann::json::object())}, {}, "test");
     TrialRules rules;
     rules.accuracy_duration_s = scene.time.duration_s;
-    AccuracyPass pass = cell.run_accuracy(rules);
-    CellWriter writer(folder, cell.header());
+    AccuracyPass pass = run.run_accuracy(rules);
+    RunWriter writer(folder, run.header());
     writer.write_replay(replay_of(scene));
     writer.write_accuracy(pass);
-    file = writer.finish(cell.outcome(), {});
-    direct = motion_of(scene, cell.header(), cell.outcome(), std::move(pass));
+    file = writer.finish(run.outcome(), {});
+    direct = motion_of(scene, run.header(), run.outcome(), std::move(pass));
     read = stored_motion(file);
   }
 };

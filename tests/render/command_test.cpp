@@ -32,7 +32,7 @@ Answer command(const std::string& arguments, const std::string& environment = ""
   return a;
 }
 
-/// Two cells with positions, run once for all tests.
+/// Two runs with positions, executed once for all tests.
 class RenderCommand : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -56,20 +56,20 @@ TEST_F(RenderCommand, WritesPicturesOfAFile) {
                            "--view top --colour depth -o " +
                            out());
   ASSERT_EQ(a.code, 0) << a.text;
-  const auto told = nlohmann::json::parse(a.text);
-  ASSERT_EQ(told["pictures"].size(), 8u) << "frames 0, 2, 4, 6 of two views";
-  for (const auto& p : told["pictures"]) EXPECT_EQ(read_png(p.get<std::string>()).width, 200);
-  EXPECT_TRUE(told["movies"].empty());
+  const auto reported = nlohmann::json::parse(a.text);
+  ASSERT_EQ(reported["pictures"].size(), 8u) << "frames 0, 2, 4, 6 of two views";
+  for (const auto& p : reported["pictures"]) EXPECT_EQ(read_png(p.get<std::string>()).width, 200);
+  EXPECT_TRUE(reported["movies"].empty());
 }
 
-TEST_F(RenderCommand, PicksCellsOfAFolder) {
-  EXPECT_EQ(command("render " + runs() + " --cell sphere-drop__xpbd --frames 1 --size 160x120 -o " + out()).code, 0);
+TEST_F(RenderCommand, PicksRunsOfAFolder) {
+  EXPECT_EQ(command("render " + runs() + " --run sphere-drop__xpbd --frames 1 --size 160x120 -o " + out()).code, 0);
   EXPECT_TRUE(fs::exists(out() + "/sphere-drop__xpbd__default__corner__checker__000001.png"));
   const Answer which = command("render " + runs());
   EXPECT_EQ(which.code, 2);
-  EXPECT_NE(which.text.find("--cell"), std::string::npos);
+  EXPECT_NE(which.text.find("--run"), std::string::npos);
   EXPECT_NE(which.text.find("sphere-drop__ballistic__default"), std::string::npos);
-  const Answer none = command("render " + runs() + " --cell nothing");
+  const Answer none = command("render " + runs() + " --run nothing");
   EXPECT_EQ(none.code, 2);
   EXPECT_NE(none.text.find("\"nothing\""), std::string::npos);
 }
@@ -111,10 +111,10 @@ TEST_F(RenderCommand, RefusesWhatItCannotDo) {
                                                                   {"no/such-scene", "no/such-scene"},
                                                                   {empty.string(), "no result files"},
                                                                   {file + " --device 99", "device"}};
-  for (const auto& [arguments, told] : wrong) {
+  for (const auto& [arguments, reported] : wrong) {
     const Answer a = command("render " + arguments + " -o " + out());
     EXPECT_TRUE(a.code == 2 || a.code == 3) << arguments << ": " << a.code << " " << a.text;
-    EXPECT_NE(a.text.find(told), std::string::npos) << arguments << ": " << a.text;
+    EXPECT_NE(a.text.find(reported), std::string::npos) << arguments << ": " << a.text;
   }
 }
 

@@ -59,7 +59,7 @@ Surfaces of(const Collider& c) {
 }
 
 TEST_F(Pixels, SquaresAreLightAndDarkInTurn) {
-  const Cloth cloth = upright(9, 9);  // 8 squares: one a cell
+  const Cloth cloth = upright(9, 9);  // 8 squares: one a run
   const Picture p = draw(cloth, positions_of(cloth));
   for (int j = 0; j < 8; ++j)
     for (int i = 0; i < 8; ++i) {

@@ -5,7 +5,7 @@
 #include "gpu_solver.hpp"
 #include "render/offscreen.hpp"
 #include "results/store.hpp"
-#include "runner/cell.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 #include "sheets.hpp"
 
@@ -28,16 +28,16 @@ class WithRendering : public ::testing::TestWithParam<const char*> {};
 TEST_P(WithRendering, FramesAreTimedWithTheirPictures) {
   const Scene scene = load_scene("paper/gravity", {"cloth.grid=[8,8]"});
   const SolverEntry& entry = find_solver(GetParam());
-  Cell cell({&scene, &entry, complete_settings(entry.info, nlohmann::json::object())}, kValidated, "test");
+  SolverRun run({&scene, &entry, complete_settings(entry.info, nlohmann::json::object())}, kValidated, "test");
   const TrialRules with = some_frames(true);
-  cell.describe(with.rendering);
-  EXPECT_NE(cell.header().environment.value("rendering", "").find("48 x 40"), std::string::npos);
-  const TimedTrial t = cell.run_trial(0, with, 0);
-  ASSERT_EQ(cell.outcome().status, "ok");
+  run.describe(with.rendering);
+  EXPECT_NE(run.header().environment.value("rendering", "").find("48 x 40"), std::string::npos);
+  const TimedTrial t = run.run_trial(0, with, 0);
+  ASSERT_EQ(run.outcome().status, "ok");
   ASSERT_EQ(t.frames(), 6);
   ASSERT_EQ(t.frame_rendered_s.size(), 6u);
   for (const double s : t.frame_rendered_s) EXPECT_GT(s, 0);
-  EXPECT_TRUE(cell.run_trial(1, some_frames(false), 0).frame_rendered_s.empty()) << "off unless asked";
+  EXPECT_TRUE(run.run_trial(1, some_frames(false), 0).frame_rendered_s.empty()) << "off unless asked";
   EXPECT_EQ(vulkan::Device::get(kValidated)->validation_messages(), 0);
 }
 
@@ -46,11 +46,11 @@ INSTANTIATE_TEST_SUITE_P(Stereo, WithRendering, ::testing::Values("xpbd", "paper
 TEST(Stereo, StopsAtTheTrialsLimit) {
   const Scene scene = load_scene("paper/gravity", {"cloth.grid=[8,8]"});
   const SolverEntry& entry = find_solver("ballistic");
-  Cell cell({&scene, &entry, complete_settings(entry.info, nlohmann::json::object())}, {}, "test");
+  SolverRun run({&scene, &entry, complete_settings(entry.info, nlohmann::json::object())}, {}, "test");
   TrialRules rules = some_frames(true);
   rules.max_wall_s = 1e-9;
   rules.min_frames = 2;
-  const TimedTrial t = cell.run_trial(0, rules, 6);
+  const TimedTrial t = run.run_trial(0, rules, 6);
   EXPECT_EQ(t.frames(), 6);
   EXPECT_EQ(t.frame_rendered_s.size(), 2u);
 }
@@ -60,18 +60,18 @@ TEST(Stereo, FilesHaveTheColumnOnlyWhereAsked) {
   const Scene scene = load_scene("paper/gravity", {"cloth.grid=[8,8]"});
   const SolverEntry& entry = find_solver("ballistic");
   for (const bool rendered : {true, false}) {
-    CellSpec spec{&scene, &entry, complete_settings(entry.info, nlohmann::json::object()),
-                  rendered ? "with" : "without"};
-    Cell cell(spec, {}, "test");
-    CellRecord record;
-    record.header = cell.header();
-    record.trials = {cell.run_trial(0, some_frames(rendered), 0), cell.run_trial(1, some_frames(rendered), 0)};
+    RunSpec spec{&scene, &entry, complete_settings(entry.info, nlohmann::json::object()),
+                 rendered ? "with" : "without"};
+    SolverRun run(spec, {}, "test");
+    RunRecord record;
+    record.header = run.header();
+    record.trials = {run.run_trial(0, some_frames(rendered), 0), run.run_trial(1, some_frames(rendered), 0)};
     if (rendered) record.trials[1].frame_rendered_s.resize(4);  // fewer than frames
-    CellWriter writer(folder.path, cell.header());
+    RunWriter writer(folder.path, run.header());
     for (const TimedTrial& t : record.trials) writer.write_trial(t);
-    const auto summary = summarise(spec, cell.plan(), record);
+    const auto summary = summarise(spec, run.plan(), record);
     EXPECT_EQ(summary.contains("frame_rendered_median_s"), rendered);
-    const CellRecord read = read_cell(writer.finish(cell.outcome(), summary));
+    const RunRecord read = read_run(writer.finish(run.outcome(), summary));
     ASSERT_EQ(read.trials.size(), 2u);
     for (std::size_t t = 0; t < 2; ++t) EXPECT_EQ(read.trials[t].frame_rendered_s, record.trials[t].frame_rendered_s);
   }

@@ -101,12 +101,12 @@ class Rates(unittest.TestCase):
         self.series += [series("bullet-soft", (8, 16, 32), gpu=""), series("ballistic", (8, 16, 32), gpu="", fps=1e6)]
         self.series += [series("other", (8,), status="diverged"), series("other", (16,), status="unsupported")]
 
-    def test_every_cell_is_there(self):
+    def test_every_run_is_there(self):
         rates = [family([series("elsewhere", (8,))], "other", False), family(self.series)]
         svg, shown = draw(rates=rates)
         self.assertEqual(sorted(svg), ["fig4", "fig5"])
         self.assertEqual(marks(svg["fig4"], "points"), 5 * 3 + 3 * 2)
-        self.assertEqual(marks(svg["fig4"], "failed"), 1, "failed cells are marked, unsupported ones not")
+        self.assertEqual(marks(svg["fig4"], "failed"), 1, "failed runs are marked, unsupported ones not")
         for part in ("frames per second, uncapped", "vertices along one side", "software, not for speed claims", "published: column 2",
                      "1,000,000", "double"):
             self.assertIn(part, words(svg["fig4"]))
@@ -152,12 +152,12 @@ class Work(unittest.TestCase):
                    "not_ranked": {"paper": "softer than asked"}, "points": points}
         svg = draw(work=[diagram, diagram | {"scene": "none", "points": points[-1:]}])[0]
         one = svg["work-precision-a-scene"]
-        for layer, count in {"points": 5, "front_points": 4, "failed": 1, "untimed": 1, "floors": 1, "not_told_apart": 1, "device_fronts": 2}.items():
+        for layer, count in {"points": 5, "front_points": 4, "failed": 1, "untimed": 1, "floors": 1, "not_distinguished": 1, "device_fronts": 2}.items():
             self.assertEqual(marks(one, layer), count, layer)
         for part in ("error: RMS distance / L", "[ms per simulated second]", "error of the mesh 1.0e-3", "paper: 2 of 4 failed, 1 of 4 not run.",
                      "reference: unsupported.", "paper is shown but not ranked: softer than asked.", "uncertainty 3.0e-9", "Fake GPU"):
             self.assertIn(part, words(one))
-        self.assertIn("No cell of this scene", words(svg["work-precision-none"]))
+        self.assertIn("No run of this scene", words(svg["work-precision-none"]))
 
 
 class Penetration(unittest.TestCase):
@@ -183,7 +183,7 @@ class Penetration(unittest.TestCase):
             self.assertIn(part, words(svg["penetration-rooms"]))
         self.assertEqual(marks(svg["penetration-capsules"], "failed"), 2, "a failed solver is marked in every panel")
         self.assertEqual(marks(svg["penetration-grip"], "lines"), 4)
-        self.assertIn("No cell of this set-up", words(svg["penetration-hand"]))
+        self.assertIn("No run of this set-up", words(svg["penetration-hand"]))
         alone = draw(penetration=[{"kind": "hand", "title": "A hand", "scenes": [{"name": "push", "rows": push[0]["rows"][1:]}]}])[0]
         self.assertEqual(marks(alone["penetration-hand"], "lines"), 1, "alone, it is shown")
 

@@ -37,7 +37,7 @@ assert len(html) < 20e6, len(html)
 markup = re.sub(r"<(script|style)\b([^>]*)>.*?</\1>", r"<\1\2>", html, flags=re.S)
 assert not re.search(r'<(?:script|link|img)[^>]+(?:src|href)="(?!data:)', markup), "the page asks for another file"
 
-# Tables: those of report.md, cell by cell.
+# Tables: those of report.md, run by run.
 markdown = (report / "report.md").read_text(encoding="utf-8")
 tables = [t for s in doc["sections"] for t in s["tables"]]
 static = {}
@@ -97,7 +97,7 @@ def words(index, size):
 
 # Motions: within half a step of the stored positions, in the order of the grid.
 moved = 0
-for c in doc["motions"]["cells"]:
+for c in doc["motions"]["runs"]:
     with h5py.File(files[c["scene"], c["solver"], c["setting"]]) as f:
         stored = f["trajectory/position"][:].astype(float)
         times = f["trajectory/time_s"][:]
@@ -122,7 +122,7 @@ for c in doc["motions"]["cells"]:
     assert error <= 0.5001 * c["step_m"], (c["scene"], error, c["step_m"])
     assert c["step_m"] <= np.ptp(stored[c["frames"]], axis=1).max() / 32000
     moved += np.ptp(x, axis=0).max() > 0
-assert moved == len(doc["motions"]["cells"]) >= 14, moved
+assert moved == len(doc["motions"]["runs"]) >= 14, moved
 
 # Colliders: every shape is there, and an array of each kind reads back.
 shapes = {}
@@ -135,8 +135,8 @@ with h5py.File(files["capsule-sweep", "bullet-soft", "default"]) as f:
     told = words(a["blob"], 4).view("<f4").reshape(a["shape"])
     np.testing.assert_array_equal(told, f["colliders/0/capsules"][:].astype("f4"))
 with h5py.File(files["open-sheet", "bullet-soft", "default"]) as f:
-    cell = next(c for c in doc["motions"]["cells"] if (c["scene"], c["solver"]) == ("open-sheet", "bullet-soft"))
-    sheet = next(g for g in doc["motions"]["colliders"][cell["colliders"]] if g["path"] == "colliders/0")
+    run = next(c for c in doc["motions"]["runs"] if (c["scene"], c["solver"]) == ("open-sheet", "bullet-soft"))
+    sheet = next(g for g in doc["motions"]["colliders"][run["colliders"]] if g["path"] == "colliders/0")
     a = sheet["arrays"]["triangles"]
     np.testing.assert_array_equal(words(a["blob"], 4).reshape(a["shape"]), f["colliders/0/triangles"][:])
     np.testing.assert_array_equal(shapes["sphere"]["attributes"]["radius_m"], 0.15)

@@ -52,8 +52,8 @@ TEST(CompareTimes, IsRightAsOftenAsItSays) {
   EXPECT_NEAR(1 - covered / double{kRuns}, level, four);
 }
 
-CellRecord cell(const std::string& scene, double frame_s, double error) {
-  CellRecord c;
+RunRecord run(const std::string& scene, double frame_s, double error) {
+  RunRecord c;
   c.header.scene = scene;
   c.header.solver = "s";
   c.header.setting = "default";
@@ -68,30 +68,30 @@ CellRecord cell(const std::string& scene, double frame_s, double error) {
 }
 
 TEST(CompareRuns, TellsTimesResultsAndOutcomesApart) {
-  const std::vector<CellRecord> a = {cell("same", 1e-3, 0.5), cell("slower", 1e-3, 0.5), cell("fails", 1e-3, 0.5),
-                                     cell("gone", 1e-3, 0.5)};
-  std::vector<CellRecord> b = {cell("same", 1e-3, 0.5), cell("slower", 2e-3, 0.25), cell("fails", 1e-3, 0.5),
-                               cell("new", 1e-3, 0.5)};
+  const std::vector<RunRecord> a = {run("same", 1e-3, 0.5), run("slower", 1e-3, 0.5), run("fails", 1e-3, 0.5),
+                                    run("gone", 1e-3, 0.5)};
+  std::vector<RunRecord> b = {run("same", 1e-3, 0.5), run("slower", 2e-3, 0.25), run("fails", 1e-3, 0.5),
+                              run("new", 1e-3, 0.5)};
   b[2].outcome.status = "diverged";
   b[2].outcome.klass = "F1";
-  const auto cells = compare_runs(a, b);
-  ASSERT_EQ(cells.size(), 5u);
-  EXPECT_TRUE(cells[0].time.noise() && cells[0].metrics.empty() && cells[0].outcome.empty());
-  EXPECT_FALSE(cells[1].time.noise());
-  EXPECT_NEAR(cells[1].time.ratio, 2, 1e-12);
-  ASSERT_EQ(cells[1].metrics.size(), 1u) << "rates are the machine's";
-  EXPECT_EQ(cells[1].metrics[0].name, "free_fall_error");
-  EXPECT_EQ(cells[2].outcome, "ok → diverged (F1)");
-  EXPECT_EQ(cells[3].b, nullptr);
-  EXPECT_EQ(cells[4].a, nullptr);
-  const std::string text = comparison_tables(cells)[0].markdown() + comparison_tables(cells)[1].markdown();
+  const auto runs = compare_runs(a, b);
+  ASSERT_EQ(runs.size(), 5u);
+  EXPECT_TRUE(runs[0].time.noise() && runs[0].metrics.empty() && runs[0].outcome.empty());
+  EXPECT_FALSE(runs[1].time.noise());
+  EXPECT_NEAR(runs[1].time.ratio, 2, 1e-12);
+  ASSERT_EQ(runs[1].metrics.size(), 1u) << "rates are the machine's";
+  EXPECT_EQ(runs[1].metrics[0].name, "free_fall_error");
+  EXPECT_EQ(runs[2].outcome, "ok → diverged (F1)");
+  EXPECT_EQ(runs[3].b, nullptr);
+  EXPECT_EQ(runs[4].a, nullptr);
+  const std::string text = comparison_tables(runs)[0].markdown() + comparison_tables(runs)[1].markdown();
   for (const char* word : {"noise", "slower", "+100.0 %", "free_fall_error", "diverged (F1)", "gone__s__default"})
     EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
-  EXPECT_EQ(comparison_json(cells)[0]["verdict"], "noise");
+  EXPECT_EQ(comparison_json(runs)[0]["verdict"], "noise");
 }
 
 TEST(History, IsWhatChartToolsRead) {
-  const auto j = history_json({cell("x", 2e-3, 0.5)});
+  const auto j = history_json({run("x", 2e-3, 0.5)});
   ASSERT_EQ(j.size(), 2u);
   EXPECT_EQ(j[0]["name"], "x__s__default frame");
   EXPECT_EQ(j[0]["unit"], "ms");

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "fake_cells.hpp"
+#include "fake_runs.hpp"
 #include "report/across_runs.hpp"
 
 namespace clothbench {
@@ -16,15 +16,15 @@ std::string field(const std::vector<std::vector<std::string>>& csv, std::size_t 
   return "";
 }
 
-TEST(Export, CellsCsvReadsBackExactly) {
-  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1.0 / 3),
-                                   fake_cell("bullet-soft", 8, "double", 1e-300, false)};
-  cells.push_back(with_outcome(fake_cell("paper", 8, "single", 1), "diverged", 17, "said \"no\", twice\nand stopped"));
-  const auto csv = parse_csv(cells_csv(cells));
+TEST(Export, RunsCsvReadsBackExactly) {
+  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1.0 / 3),
+                                 fake_run("bullet-soft", 8, "double", 1e-300, false)};
+  runs.push_back(with_outcome(fake_run("paper", 8, "single", 1), "diverged", 17, "said \"no\", twice\nand stopped"));
+  const auto csv = parse_csv(runs_csv(runs));
   ASSERT_EQ(csv.size(), 4u);
   for (const auto& row : csv) EXPECT_EQ(row.size(), csv[0].size());
   for (std::size_t k = 0; k < 2; ++k)
-    for (const auto& [name, v] : cells[k].summary) {
+    for (const auto& [name, v] : runs[k].summary) {
       const std::string text = field(csv, k + 1, name);
       if (std::isfinite(v))
         EXPECT_EQ(std::stod(text), v) << name;
@@ -41,15 +41,15 @@ TEST(Export, CellsCsvReadsBackExactly) {
 }
 
 TEST(Export, InfinityIsSaid) {
-  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1)};
-  cells[0].summary["up"] = INFINITY;
-  cells[0].summary["down"] = -INFINITY;
-  cells[0].summary["missing"] = kMissing;
-  const auto csv = parse_csv(cells_csv(cells));
+  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1)};
+  runs[0].summary["up"] = INFINITY;
+  runs[0].summary["down"] = -INFINITY;
+  runs[0].summary["missing"] = kMissing;
+  const auto csv = parse_csv(runs_csv(runs));
   EXPECT_EQ(field(csv, 1, "up"), "inf");
   EXPECT_EQ(field(csv, 1, "down"), "-inf");
   EXPECT_EQ(field(csv, 1, "missing"), "");
-  const nlohmann::json summary = nlohmann::json::parse(cells_json(cells).dump()).at(0).at("summary");
+  const nlohmann::json summary = nlohmann::json::parse(runs_json(runs).dump()).at(0).at("summary");
   EXPECT_EQ(summary.at("up"), "inf");
   EXPECT_EQ(summary.at("down"), "-inf");
   EXPECT_TRUE(summary.at("missing").is_null());
@@ -59,14 +59,14 @@ TEST(Export, InfinityIsSaid) {
   a.bound = 3;
   const auto across = parse_csv(across_csv({a}));
   EXPECT_EQ(field(across, 1, "value"), "inf");
-  EXPECT_EQ(field(across, 1, "verdict"), "broken");
+  EXPECT_EQ(field(across, 1, "verdict"), "fail");
   EXPECT_EQ(across_table({a}).rows.at(1).at(4), "inf");
 }
 
 TEST(Export, Table3HasPublishedAndMeasured) {
-  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 0.02),
-                                   with_outcome(fake_cell("xpbd", 16, "single", 1), "unsupported", -1, "")};
-  const auto csv = parse_csv(table3_csv(families(cells)[0], published_table3()));
+  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 0.02),
+                                 with_outcome(fake_run("xpbd", 16, "single", 1), "unsupported", -1, "")};
+  const auto csv = parse_csv(table3_csv(families(runs)[0], published_table3()));
   ASSERT_EQ(csv.size(), 1u + 15u + 2u);
   double sum = 0;
   for (std::size_t k = 1; k <= 15; ++k) {
@@ -78,27 +78,26 @@ TEST(Export, Table3HasPublishedAndMeasured) {
   EXPECT_EQ(std::stod(field(csv, 16, "fps_median")), 50);
   EXPECT_EQ(field(csv, 17, "status"), "unsupported");
 
-  const nlohmann::json j = nlohmann::json::parse(table3_json(families(cells)[0], published_table3()).dump());
+  const nlohmann::json j = nlohmann::json::parse(table3_json(families(runs)[0], published_table3()).dump());
   EXPECT_EQ(j.at("published"), published_table3());
   EXPECT_EQ(j.at("measured").at(0).at("fps_median"), 50);
   EXPECT_TRUE(j.at("measured").at(1).at("fps_median").is_null());
 }
 
-TEST(Export, CellsJsonHasNullForMissing) {
-  const nlohmann::json j =
-      nlohmann::json::parse(cells_json({fake_cell("bullet-soft", 8, "single", 0.25, false)}).dump());
+TEST(Export, RunsJsonHasNullForMissing) {
+  const nlohmann::json j = nlohmann::json::parse(runs_json({fake_run("bullet-soft", 8, "single", 0.25, false)}).dump());
   EXPECT_TRUE(j.at(0).at("summary").at("read_B_per_frame").is_null());
   EXPECT_EQ(j.at(0).at("summary").at("fps_median"), 4);
   EXPECT_EQ(j.at(0).at("environment").at("cpu"), "Fake CPU");
 }
 
-TEST(Export, WindowNoteSpansTheCellsWithBytes) {
-  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1), fake_cell("xpbd", 16, "single", 1),
-                                   fake_cell("bullet-soft", 16, "single", 1, false)};
-  cells[1].summary["bandwidth_window_s"] = 5;
-  cells[2].summary["bandwidth_window_s"] = 0.001;
-  EXPECT_NE(window_note(cells).find("0.5 to 5"), std::string::npos) << window_note(cells);
-  EXPECT_EQ(window_note({cells[2]}), "");
+TEST(Export, WindowNoteSpansTheRunsWithBytes) {
+  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1), fake_run("xpbd", 16, "single", 1),
+                                 fake_run("bullet-soft", 16, "single", 1, false)};
+  runs[1].summary["bandwidth_window_s"] = 5;
+  runs[2].summary["bandwidth_window_s"] = 0.001;
+  EXPECT_NE(window_note(runs).find("0.5 to 5"), std::string::npos) << window_note(runs);
+  EXPECT_EQ(window_note({runs[2]}), "");
 }
 
 TEST(Export, WrappedKeepsEveryWord) {

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "clothbench/error.hpp"
-#include "fake_cells.hpp"
+#include "fake_runs.hpp"
 #include "report/web/template.hpp"
 #include "results/store.hpp"
 
@@ -23,18 +23,18 @@ class ReportFiles : public ::testing::Test {
     run_ = dir_ / "run";
     fs::create_directories(run_);
     StudyManifest manifest{"table3", "2026-01-01T00:00:00Z", "clothbench study table3", nlohmann::json::object(), {}};
-    for (const int n : {8, 9}) write_cell(fake_cell("xpbd", n, "single", 0.002 * n), manifest);
-    write_cell(with_outcome(fake_cell("paper", 8, "single", 1), "diverged", 3, "too long"), manifest);
-    manifest.cells.push_back("gravity-9-single__paper__readback=blocking");
-    manifest.cells.push_back("gravity-77-single__paper__default");
+    for (const int n : {8, 9}) write_run(fake_run("xpbd", n, "single", 0.002 * n), manifest);
+    write_run(with_outcome(fake_run("paper", 8, "single", 1), "diverged", 3, "too long"), manifest);
+    manifest.runs.push_back("gravity-9-single__paper__readback=blocking");
+    manifest.runs.push_back("gravity-77-single__paper__default");
     write_manifest(run_, manifest);
   }
   void TearDown() override { fs::remove_all(dir_); }
 
-  void write_cell(const CellRecord& c, StudyManifest& manifest) {
-    CellWriter writer(run_, c.header);
+  void write_run(const RunRecord& c, StudyManifest& manifest) {
+    RunWriter writer(run_, c.header);
     writer.finish(c.outcome, c.summary);
-    manifest.cells.push_back(cell_name(c.header));
+    manifest.runs.push_back(run_name(c.header));
   }
 
   std::string text(const fs::path& file) const {
@@ -71,14 +71,14 @@ bool can_draw() {
          std::system("rsvg-convert --version >/dev/null 2>&1") == 0;
 }
 
-TEST_F(ReportFiles, PlannedCellsWithoutAFileAreMissing) {
-  const std::vector<CellRecord> cells = collect({run_});
-  ASSERT_EQ(cells.size(), 5u);
-  EXPECT_EQ(cells[3].outcome.status, "missing");
-  EXPECT_EQ(cells[3].header.solver, "paper");
-  EXPECT_EQ(cells[3].header.setting, "readback=blocking");
-  EXPECT_EQ(entry(table_of(cells, "Table 3"), "paper readback=blocking", "single", "9²"), "missing");
-  const Table failed = failed_table(cells);
+TEST_F(ReportFiles, PlannedRunsWithoutAFileAreMissing) {
+  const std::vector<RunRecord> runs = collect({run_});
+  ASSERT_EQ(runs.size(), 5u);
+  EXPECT_EQ(runs[3].outcome.status, "missing");
+  EXPECT_EQ(runs[3].header.solver, "paper");
+  EXPECT_EQ(runs[3].header.setting, "readback=blocking");
+  EXPECT_EQ(entry(table_of(runs, "Table 3"), "paper readback=blocking", "single", "9²"), "missing");
+  const Table failed = failed_table(runs);
   ASSERT_EQ(failed.rows.size(), 4u);
   EXPECT_EQ(failed.rows[3], (std::vector<std::string>{"paper", "missing", "planned, not run", "gravity-77-single"}));
 }
@@ -86,8 +86,8 @@ TEST_F(ReportFiles, PlannedCellsWithoutAFileAreMissing) {
 TEST_F(ReportFiles, WritesEveryFile) {
   const fs::path out = dir_ / "it's a report";
   write_report({run_}, {out});
-  for (const char* file : {"report.md", "table3.md", "table3.csv", "table3.json", "cells.csv", "cells.json",
-                           "bandwidth.csv", "memory.csv"})
+  for (const char* file :
+       {"report.md", "table3.md", "table3.csv", "table3.json", "runs.csv", "runs.json", "bandwidth.csv", "memory.csv"})
     EXPECT_GT(fs::file_size(out / file), 0u) << file;
   const std::string md = text(out / "report.md");
   EXPECT_NE(md.find("diverged at 3"), std::string::npos);

@@ -7,8 +7,8 @@
 namespace clothbench {
 namespace {
 
-CellRecord cell(const std::string& solver, const std::vector<double>& means_s, const Outcome& outcome) {
-  CellRecord c;
+RunRecord run(const std::string& solver, const std::vector<double>& means_s, const Outcome& outcome) {
+  RunRecord c;
   c.header.scene = "drop";
   c.header.solver = solver;
   c.header.setting = "default";
@@ -23,20 +23,20 @@ CellRecord cell(const std::string& solver, const std::vector<double>& means_s, c
 
 TEST(InShort, TheFastestFirstAndWhatDidNotRunLast) {
   Outcome broken, crashed{"crashed", "F8", 7, "its process"};
-  broken.expect = "broken: depth_max_m 1 > 0";
+  broken.expect = "fail: depth_max_m 1 > 0";
   const Table t = in_short_table(
-      {cell("none", {}, crashed), cell("slow", {4e-3, 4e-3}, broken), cell("quick", {2e-3, 1e-3, 3e-3}, {})});
+      {run("none", {}, crashed), run("slow", {4e-3, 4e-3}, broken), run("quick", {2e-3, 1e-3, 3e-3}, {})});
   ASSERT_EQ(t.rows.size(), 4u);
   EXPECT_EQ(t.rows[1], (std::vector<std::string>{"drop", "quick", "default", "ok", "2.00 ± 1.0", "1.00×"}));
-  EXPECT_EQ(t.rows[2], (std::vector<std::string>{"drop", "slow", "default", "broken", "4.00 ± 0.0", "2.00×"}));
+  EXPECT_EQ(t.rows[2], (std::vector<std::string>{"drop", "slow", "default", "fail", "4.00 ± 0.0", "2.00×"}));
   EXPECT_EQ(t.rows[3], (std::vector<std::string>{"drop", "none", "default", "crashed in frame 7", "–", "–"}));
 }
 
 TEST(Tint, IsPlainUntilSwitchedOn) {
   Table t{"Title",
           "",
-          {{"cell", "kept", "how"},
-           {"a", "b", "kept"},
+          {{"run", "pass", "how"},
+           {"a", "b", "pass"},
            {"a", "b", "*noise*"},
            {"a", "b", "1.5 ✓"},
            {"a", "b", "NO: why"},
@@ -46,10 +46,10 @@ TEST(Tint, IsPlainUntilSwitchedOn) {
   colour_output(true);
   const std::string coloured = t.console();
   colour_output(false);
-  for (const char* part : {"\x1b[1mTitle\x1b[0m", "\x1b[32mkept\x1b[0m", "\x1b[2m*noise*\x1b[0m",
+  for (const char* part : {"\x1b[1mTitle\x1b[0m", "\x1b[32mpass\x1b[0m", "\x1b[2m*noise*\x1b[0m",
                            "\x1b[32m1.5 ✓\x1b[0m", "\x1b[31mNO: why\x1b[0m", "  node\n"})
     EXPECT_NE(coloured.find(part), std::string::npos) << part << " in " << coloured;
-  EXPECT_NE(coloured.find("  cell  kept      how"), std::string::npos) << "no verdict in a header: " << coloured;
+  EXPECT_NE(coloured.find("  run  pass      how"), std::string::npos) << "no verdict in a header: " << coloured;
   EXPECT_EQ(t.console(), plain);
 }
 

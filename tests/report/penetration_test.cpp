@@ -5,16 +5,16 @@
 
 #include <cmath>
 
-#include "fake_cells.hpp"
+#include "fake_runs.hpp"
 #include "report/features.hpp"
 #include "report/room_pair.hpp"
 
 namespace clothbench {
 namespace {
 
-/// A cell of a desk drop with the given part of the room.
-CellRecord desk_cell(const std::string& solver, const std::string& setting, const std::string& cut) {
-  CellRecord c = fake_cell(solver, 32, "double-duplicated", 0.004);
+/// A run of a desk drop with the given part of the room.
+RunRecord desk_run(const std::string& solver, const std::string& setting, const std::string& cut) {
+  RunRecord c = fake_run(solver, 32, "double-duplicated", 0.004);
   c.header.scene = "desk-flat-low";
   c.header.setting = setting;
   c.header.scenario_json =
@@ -42,20 +42,20 @@ CellRecord desk_cell(const std::string& solver, const std::string& setting, cons
   return c;
 }
 
-CellRecord of_scene(CellRecord c, const std::string& scene, const std::string& scenario) {
+RunRecord of_scene(RunRecord c, const std::string& scene, const std::string& scenario) {
   c.header.scene = scene;
   c.header.scenario_json = scenario;
   return c;
 }
 
 /// Entry of the row of `scene` and `solver` under a heading.
-std::string cell_of(const Table& t, const std::string& scene, const std::string& solver, const std::string& head) {
+std::string run_of(const Table& t, const std::string& scene, const std::string& solver, const std::string& head) {
   return entry(t, scene, solver, head);
 }
 
 TEST(Penetration, SetUpsAreToldByWhatTouches) {
-  const CellRecord any = desk_cell("xpbd", "default", "any_vertex_inside");
-  const std::vector<CellRecord> cells = {
+  const RunRecord any = desk_run("xpbd", "default", "any_vertex_inside");
+  const std::vector<RunRecord> runs = {
       any,
       of_scene(any, "free", R"({"cloth":{"grid":[8,8]},"colliders":[],"grips":[]})"),
       of_scene(any, "ball", R"({"colliders":[{"type":"sphere"}]})"),
@@ -66,8 +66,8 @@ TEST(Penetration, SetUpsAreToldByWhatTouches) {
       of_scene(any, "odd", "not JSON"),
       of_scene(any, "odder", R"({"colliders":3,"grips":"x"})"),
       of_scene(any, "oddest", R"({"colliders":[7]})")};
-  EXPECT_FALSE(has_contact(cells[1]));
-  const std::vector<ContactSetUp> ups = set_ups(cells);
+  EXPECT_FALSE(has_contact(runs[1]));
+  const std::vector<ContactSetUp> ups = set_ups(runs);
   ASSERT_EQ(ups.size(), 5u);
   std::string text;
   for (const ContactSetUp& u : ups) {
@@ -84,40 +84,40 @@ TEST(Penetration, SetUpsAreToldByWhatTouches) {
 }
 
 TEST(Penetration, TableShowsNumbersInTheirUnits) {
-  std::vector<CellRecord> cells = {desk_cell("xpbd", "default", "any_vertex_inside"),
-                                   desk_cell("paper", "default", "any_vertex_inside")};
-  cells[1].summary["tunnelled_fraction_max"] = 0.3456;
-  cells[1].summary["tunnelled_fraction_end"] = 0.0004;
-  cells[1].summary["expect.tunnelled_fraction_max"] = 0;
-  const Table t = contact_table(set_ups(cells).at(0));
-  EXPECT_EQ(cell_of(t, "desk-flat-low", "xpbd", "tunnelled, most / end [%]"), "0 / 0");
-  EXPECT_EQ(cell_of(t, "desk-flat-low", "paper", "tunnelled, most / end [%]"), "34.6 / <0.1");
-  EXPECT_EQ(cell_of(t, "desk-flat-low", "xpbd", "contour, most / settled [mm]"), "12.3 / 0");
-  EXPECT_EQ(cell_of(t, "desk-flat-low", "xpbd", "tunnelled depth [mm]"), "<0.01")
+  std::vector<RunRecord> runs = {desk_run("xpbd", "default", "any_vertex_inside"),
+                                 desk_run("paper", "default", "any_vertex_inside")};
+  runs[1].summary["tunnelled_fraction_max"] = 0.3456;
+  runs[1].summary["tunnelled_fraction_end"] = 0.0004;
+  runs[1].summary["expect.tunnelled_fraction_max"] = 0;
+  const Table t = contact_table(set_ups(runs).at(0));
+  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "tunnelled, most / end [%]"), "0 / 0");
+  EXPECT_EQ(run_of(t, "desk-flat-low", "paper", "tunnelled, most / end [%]"), "34.6 / <0.1");
+  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "contour, most / settled [mm]"), "12.3 / 0");
+  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "tunnelled depth [mm]"), "<0.01")
       << "what is not nothing never reads as nothing";
-  EXPECT_EQ(cell_of(t, "desk-flat-low", "xpbd", "wall / GPU [ms]"), "4.00 / 3.60");
-  EXPECT_EQ(cell_of(t, "desk-flat-low", "xpbd", "expected"), "kept");
-  EXPECT_EQ(cell_of(t, "desk-flat-low", "paper", "expected"), "broken");
+  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "wall / GPU [ms]"), "4.00 / 3.60");
+  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "expected"), "pass");
+  EXPECT_EQ(run_of(t, "desk-flat-low", "paper", "expected"), "fail");
   EXPECT_EQ(t.markdown().find("depth, vertex"), std::string::npos) << "a column without a value is left out";
   EXPECT_EQ(t.markdown().find("nan"), std::string::npos);
-  const Table broken = broken_table(set_ups(cells));
+  const Table broken = failed_expectations_table(set_ups(runs));
   ASSERT_EQ(broken.rows.size(), 2u);
   EXPECT_EQ(broken.rows[1],
             (std::vector<std::string>{"desk-flat-low", "paper", "tunnelled_fraction_max", "at most 0", "0.3456"}));
 }
 
 TEST(Penetration, VerdictNeverHidesAFailure) {
-  CellRecord c = desk_cell("xpbd", "default", "none");
-  EXPECT_EQ(verdict(c), "kept");
-  CellRecord control = c;
+  RunRecord c = desk_run("xpbd", "default", "none");
+  EXPECT_EQ(verdict(c), "pass");
+  RunRecord control = c;
   for (const FeatureRow& f : kFeatures) control.header.environment["solver_features"]["ignores"].push_back(f.name);
   EXPECT_EQ(verdict(control), "ignored") << "luck is no merit";
   control.summary["expect.stretch_max"] = 0;
-  EXPECT_EQ(verdict(control), "broken");
+  EXPECT_EQ(verdict(control), "fail");
   c.summary["expect.stretch_max"] = kMissing;
   EXPECT_EQ(verdict(c), "not measured");
   c.summary["expect.stretch_max"] = 0;
-  EXPECT_EQ(verdict(c), "broken") << "also beside one that is not measured";
+  EXPECT_EQ(verdict(c), "fail") << "also beside one that is not measured";
   EXPECT_EQ(verdict(with_outcome(c, "diverged", 17, "")), "diverged at 17");
   EXPECT_EQ(verdict(with_outcome(c, "unsupported", -1, "")), "unsupported");
   std::erase_if(c.summary, [](const auto& s) { return s.first.starts_with("expect."); });
@@ -125,21 +125,21 @@ TEST(Penetration, VerdictNeverHidesAFailure) {
 }
 
 TEST(Penetration, OverviewHasAColumnForEverySetting) {
-  std::vector<CellRecord> cells = {
-      desk_cell("xpbd", "default", "any_vertex_inside"), desk_cell("paper", "whole-room", "none"),
-      with_outcome(desk_cell("bullet-deformable", "default", "any_vertex_inside"), "unsupported", -1,
+  std::vector<RunRecord> runs = {
+      desk_run("xpbd", "default", "any_vertex_inside"), desk_run("paper", "whole-room", "none"),
+      with_outcome(desk_run("bullet-deformable", "default", "any_vertex_inside"), "unsupported", -1,
                    "not in this build"),
-      of_scene(desk_cell("xpbd", "default", ""), "ball", R"({"colliders":[{"type":"sphere"}]})")};
-  const auto rows = parse_markdown(verdict_table(set_ups(cells)).markdown());
+      of_scene(desk_run("xpbd", "default", ""), "ball", R"({"colliders":[{"type":"sphere"}]})")};
+  const auto rows = parse_markdown(verdict_table(set_ups(runs)).markdown());
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0], (std::vector<std::string>{"scene", "bullet-deformable", "paper whole-room", "xpbd"}));
-  EXPECT_EQ(rows[1], (std::vector<std::string>{"desk-flat-low", "unsupported", "kept", "kept"}));
-  EXPECT_EQ(rows[2], (std::vector<std::string>{"ball", "–", "–", "kept"}));
+  EXPECT_EQ(rows[1], (std::vector<std::string>{"desk-flat-low", "unsupported", "pass", "pass"}));
+  EXPECT_EQ(rows[2], (std::vector<std::string>{"ball", "–", "–", "pass"}));
 }
 
 TEST(Penetration, SeriesHaveOneRowAFrame) {
-  const std::vector<CellRecord> cells = {desk_cell("xpbd", "default", "none")};
-  const auto csv = parse_csv(series_csv(set_ups(cells)));
+  const std::vector<RunRecord> runs = {desk_run("xpbd", "default", "none")};
+  const auto csv = parse_csv(series_csv(set_ups(runs)));
   ASSERT_EQ(csv.size(), 3u);
   for (const auto& row : csv) ASSERT_EQ(row.size(), csv[0].size());
   EXPECT_EQ(csv[2][8], "0.0138889");
@@ -149,25 +149,25 @@ TEST(Penetration, SeriesHaveOneRowAFrame) {
 }
 
 TEST(Penetration, JsonHasNullForMissing) {
-  const std::vector<CellRecord> cells = {desk_cell("xpbd", "default", "none")};
-  const nlohmann::json j = nlohmann::json::parse(penetration_json(set_ups(cells)).dump());
+  const std::vector<RunRecord> runs = {desk_run("xpbd", "default", "none")};
+  const nlohmann::json j = nlohmann::json::parse(penetration_json(set_ups(runs)).dump());
   EXPECT_EQ(j.at(0).at("contact_length_max_m"), 0.0123);
   EXPECT_TRUE(j.at(0).at("depth_max_m").is_null());
-  EXPECT_EQ(j.at(0).at("expect"), "kept");
+  EXPECT_EQ(j.at(0).at("expect"), "pass");
 }
 
 TEST(RoomPair, DistanceIsMeasuredVertexByVertex) {
-  std::vector<CellRecord> cells = {desk_cell("paper", "default", "any_vertex_inside"),
-                                   desk_cell("paper", "whole-room", "none"),
-                                   desk_cell("xpbd", "default", "any_vertex_inside")};
-  cells[1].accuracy.position[4] = 0.5f;   // first frame, second vertex
-  cells[1].accuracy.position[8] = 0.25f;  // last frame, first vertex
-  cells[1].summary["frame_wall_median_s"] = 0.012;
-  cells[1].summary["stage_device_median_s.Mesh"] = 0.2;
-  const std::vector<RoomPair> pairs = room_pairs(cells);
+  std::vector<RunRecord> runs = {desk_run("paper", "default", "any_vertex_inside"),
+                                 desk_run("paper", "whole-room", "none"),
+                                 desk_run("xpbd", "default", "any_vertex_inside")};
+  runs[1].accuracy.position[4] = 0.5f;   // first frame, second vertex
+  runs[1].accuracy.position[8] = 0.25f;  // last frame, first vertex
+  runs[1].summary["frame_wall_median_s"] = 0.012;
+  runs[1].summary["stage_device_median_s.Mesh"] = 0.2;
+  const std::vector<RoomPair> pairs = room_pairs(runs);
   ASSERT_EQ(pairs.size(), 1u) << "xpbd has no other half";
-  EXPECT_EQ(pairs[0].cut, &cells[0]);
-  EXPECT_EQ(pairs[0].whole, &cells[1]);
+  EXPECT_EQ(pairs[0].cut, &runs[0]);
+  EXPECT_EQ(pairs[0].whole, &runs[1]);
   EXPECT_EQ(pairs[0].distance_end_m, 0.25);
   EXPECT_EQ(pairs[0].distance_max_m, 0.5);
   const auto rows = parse_markdown(room_table(pairs).markdown());
@@ -180,33 +180,33 @@ TEST(RoomPair, DistanceIsMeasuredVertexByVertex) {
 }
 
 TEST(RoomPair, WhatDiffersOtherwiseOrIsNotMeasuredIsNotCompared) {
-  std::vector<CellRecord> cells = {desk_cell("paper", "default", "any_vertex_inside"),
-                                   desk_cell("paper", "whole-room", "none")};
-  cells[1].accuracy.position.pop_back();
-  EXPECT_TRUE(std::isnan(room_pairs(cells).at(0).distance_end_m)) << "trajectories of different lengths";
-  EXPECT_NE(room_table(room_pairs(cells)).note.find("not measured"), std::string::npos);
-  cells[1] = desk_cell("paper", "whole-room", "none");
-  cells[1].accuracy.position[0] = NAN;
-  EXPECT_TRUE(std::isnan(room_pairs(cells).at(0).distance_max_m));
-  cells[1] = desk_cell("paper", "whole-room", "none");
-  cells[1].header.settings["iterations"] = 7;
-  EXPECT_TRUE(room_pairs(cells).empty());
-  cells[1] = desk_cell("paper", "whole-room", "none");
-  const auto at = cells[1].header.scenario_json.find("double-duplicated");
-  cells[1].header.scenario_json.replace(at, 17, "single");
-  EXPECT_TRUE(room_pairs(cells).empty()) << "other sides";
+  std::vector<RunRecord> runs = {desk_run("paper", "default", "any_vertex_inside"),
+                                 desk_run("paper", "whole-room", "none")};
+  runs[1].accuracy.position.pop_back();
+  EXPECT_TRUE(std::isnan(room_pairs(runs).at(0).distance_end_m)) << "trajectories of different lengths";
+  EXPECT_NE(room_table(room_pairs(runs)).note.find("not measured"), std::string::npos);
+  runs[1] = desk_run("paper", "whole-room", "none");
+  runs[1].accuracy.position[0] = NAN;
+  EXPECT_TRUE(std::isnan(room_pairs(runs).at(0).distance_max_m));
+  runs[1] = desk_run("paper", "whole-room", "none");
+  runs[1].header.settings["iterations"] = 7;
+  EXPECT_TRUE(room_pairs(runs).empty());
+  runs[1] = desk_run("paper", "whole-room", "none");
+  const auto at = runs[1].header.scenario_json.find("double-duplicated");
+  runs[1].header.scenario_json.replace(at, 17, "single");
+  EXPECT_TRUE(room_pairs(runs).empty()) << "other sides";
 }
 
 TEST(Features, ComeFromTheResultFilesAlone) {
-  std::vector<CellRecord> cells = {
-      desk_cell("paper", "default", "none"),
-      with_outcome(desk_cell("absent", "default", "none"), "unsupported", -1, "not in this build"),
-      desk_cell("ignorant", "default", "none")};
-  cells[1].header.environment.erase("solver_features");
-  cells[2].header.environment["solver_features"] = {
+  std::vector<RunRecord> runs = {
+      desk_run("paper", "default", "none"),
+      with_outcome(desk_run("absent", "default", "none"), "unsupported", -1, "not in this build"),
+      desk_run("ignorant", "default", "none")};
+  runs[1].header.environment.erase("solver_features");
+  runs[2].header.environment["solver_features"] = {
       {"supports", {"plane", "antigravity"}}, {"ignores", {"sphere"}}, {"only_with", {{"plane"}}}};
-  cells[2].header.stages.clear();
-  const Table t = feature_table(solver_features(cells), true);
+  runs[2].header.stages.clear();
+  const Table t = feature_table(solver_features(runs), true);
   const auto text = [&](const std::string& feature, std::size_t column) {
     for (const auto& row : t.rows)
       if (row[0] == feature) return row.at(column);
@@ -216,15 +216,15 @@ TEST(Features, ComeFromTheResultFilesAlone) {
   EXPECT_EQ(t.rows.size(), kFeatureCount + 1);
   EXPECT_EQ(text("static mesh", 1), "yes (only with duplicated layer)");
   EXPECT_EQ(text("friction", 1), "yes");
-  EXPECT_EQ(text("sphere", 1), "declared") << "no cell shows it";
+  EXPECT_EQ(text("sphere", 1), "declared") << "no run shows it";
   EXPECT_EQ(text("plane", 1), "no");
   EXPECT_EQ(text("plane", 2), "not built");
   EXPECT_EQ(text("sphere", 3), "ignored");
   EXPECT_EQ(text("plane", 3), "declared");
-  cells[0].outcome.status = "diverged";
-  EXPECT_EQ(feature_text(solver_features(cells).at(0), Feature::Friction, true), "declared")
+  runs[0].outcome.status = "diverged";
+  EXPECT_EQ(feature_text(solver_features(runs).at(0), Feature::Friction, true), "declared")
       << "a run that failed shows nothing";
-  EXPECT_EQ(feature_json(solver_features(cells), true)
+  EXPECT_EQ(feature_json(solver_features(runs), true)
                 .at(static_cast<std::size_t>(Feature::Sphere))
                 .at("solvers")
                 .at("ignorant"),

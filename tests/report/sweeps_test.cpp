@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "fake_cells.hpp"
+#include "fake_runs.hpp"
 #include "report/popping.hpp"
 #include "report/pulled_strip.hpp"
 #include "report/report.hpp"
@@ -18,12 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-CellRecord pulled(const std::string& solver, double speed, double error) {
-  CellRecord c = fake_cell(solver, 32, "single", 0.004);
+RunRecord pulled(const std::string& solver, double speed, double error) {
+  RunRecord c = fake_run(solver, 32, "single", 0.004);
   c.header.scene = "two-hand-pull-at-" + std::to_string(speed);
   c.header.scenario_json =
       R"({"name":"two-hand-pull","cloth":{"grid":[33,5],"sides":"single"},"grips":[{"edge":"u0","v":)" +
-      std::to_string(speed) + R"(}],"truth":{"card":"two-hand-pull"},"time":{"frame_rate_hz":960}})";
+      std::to_string(speed) + R"(}],"truth":{"case":"two-hand-pull"},"time":{"frame_rate_hz":960}})";
   // As the motion gives it, not as the file says it.
   c.summary = {{"imposed_speed_m_per_s", speed * (1 + 1e-12)},
                {"truth_quantity_error_max", error},
@@ -33,11 +33,11 @@ CellRecord pulled(const std::string& solver, double speed, double error) {
 }
 
 TEST(PulledStrip, SaysWhichSpeedFailsFirst) {
-  std::vector<CellRecord> cells = {pulled("a", 30, 0.3),       pulled("a", 0.5, 0.05), pulled("a", 10, 0.11),
-                                   pulled("b", 0.5, kMissing), pulled("b", 10, 0.01),  pulled("c", 0.5, 0.1),
-                                   pulled("c", 30, 0.02),      pulled("d", 10, 0.01)};
-  cells.back().outcome = {"not_finite", "F0", 7, "", {}};
-  const auto ups = set_ups(cells);
+  std::vector<RunRecord> runs = {pulled("a", 30, 0.3),       pulled("a", 0.5, 0.05), pulled("a", 10, 0.11),
+                                 pulled("b", 0.5, kMissing), pulled("b", 10, 0.01),  pulled("c", 0.5, 0.1),
+                                 pulled("c", 30, 0.02),      pulled("d", 10, 0.01)};
+  runs.back().outcome = {"not_finite", "F0", 7, "", {}};
+  const auto ups = set_ups(runs);
   ASSERT_EQ(ups.size(), 1u);
   EXPECT_EQ(ups[0].kind, "wave");
   const Table t = pulled_strip_table(ups);
@@ -58,8 +58,8 @@ TEST(PulledStrip, SaysWhichSpeedFailsFirst) {
   EXPECT_EQ(pulled_strip_table({}).rows.size(), 1u);
 }
 
-CellRecord popping_cell(const std::string& solver, const std::string& setting, double way_m, double speed_ratio) {
-  CellRecord c = fake_cell(solver, 32, "double", 0.004);
+RunRecord popping_run(const std::string& solver, const std::string& setting, double way_m, double speed_ratio) {
+  RunRecord c = fake_run(solver, 32, "double", 0.004);
   c.header.scene = "sweep-2mps";
   c.header.setting = setting;
   c.header.scenario_json =
@@ -69,36 +69,36 @@ CellRecord popping_cell(const std::string& solver, const std::string& setting, d
 }
 
 TEST(Popping, IsComparedWithTheSameSolverInSmallerSteps) {
-  std::vector<CellRecord> cells = {popping_cell("a", "default", 0.0119, 0.9),
-                                   popping_cell("a", "x16", 0.01, 0.8),
-                                   popping_cell("b", "default", 0.0121, 0.9),
-                                   popping_cell("b", "x16", 0.01, 0.8),
-                                   popping_cell("c", "default", 0.01, 1.1),
-                                   popping_cell("c", "x16", 0.01, 0.8),
-                                   popping_cell("d", "default", kMissing, 0.5),
-                                   popping_cell("d", "x16", 0.01, 0.8),
-                                   popping_cell("e", "default", 0.01, 0.9),
-                                   popping_cell("f", "default", 0.01, 0.9),
-                                   popping_cell("f", "x16", 0.01, 0.8),
-                                   popping_cell("g", "default", 0, 0.1),
-                                   popping_cell("g", "x16", 0, 0.1)};
-  cells[10].outcome = {"diverged", "F2", 3, "", {}};
-  const auto all = poppings(set_ups(cells));
+  std::vector<RunRecord> runs = {popping_run("a", "default", 0.0119, 0.9),
+                                 popping_run("a", "x16", 0.01, 0.8),
+                                 popping_run("b", "default", 0.0121, 0.9),
+                                 popping_run("b", "x16", 0.01, 0.8),
+                                 popping_run("c", "default", 0.01, 1.1),
+                                 popping_run("c", "x16", 0.01, 0.8),
+                                 popping_run("d", "default", kMissing, 0.5),
+                                 popping_run("d", "x16", 0.01, 0.8),
+                                 popping_run("e", "default", 0.01, 0.9),
+                                 popping_run("f", "default", 0.01, 0.9),
+                                 popping_run("f", "x16", 0.01, 0.8),
+                                 popping_run("g", "default", 0, 0.1),
+                                 popping_run("g", "x16", 0, 0.1)};
+  runs[10].outcome = {"diverged", "F2", 3, "", {}};
+  const auto all = poppings(set_ups(runs));
   ASSERT_EQ(all.size(), 6u) << "e has no finer one";
   const Table t = popping_table(all);
-  const std::vector<std::string> expected = {"kept", "broken", "broken", "not known", "did not run", "not known"};
+  const std::vector<std::string> expected = {"pass", "fail", "fail", "not known", "did not run", "not known"};
   for (std::size_t k = 0; k < all.size(); ++k) {
     EXPECT_EQ(t.rows[k + 1].back(), expected[k]) << all[k].series.solver;
-    EXPECT_EQ(all[k].kept(), expected[k] == "kept");
+    EXPECT_EQ(all[k].passed(), expected[k] == "pass");
   }
-  EXPECT_EQ(t.rows[1], (std::vector<std::string>{"sweep-2mps", "a", "11.9", "10.0", "1.19", "0.90", "0.80", "kept"}));
+  EXPECT_EQ(t.rows[1], (std::vector<std::string>{"sweep-2mps", "a", "11.9", "10.0", "1.19", "0.90", "0.80", "pass"}));
   EXPECT_EQ(t.rows[5][3], "diverged");
   EXPECT_EQ(popping_json(all)[3]["pop_displacement_m"], nullptr);
 }
 
 /// Two columns, three rows; in the turned one the grid is three by two, and its vertices lie where those lay.
-CellRecord lying(const std::string& scene, bool transposed, float off_m) {
-  CellRecord c = fake_cell("a", 32, "double", 0.004);
+RunRecord lying(const std::string& scene, bool transposed, float off_m) {
+  RunRecord c = fake_run("a", 32, "double", 0.004);
   c.header.scene = scene;
   c.header.vertices = 6;
   c.header.scenario_json =
@@ -118,31 +118,30 @@ CellRecord lying(const std::string& scene, bool transposed, float off_m) {
 }
 
 TEST(Turned, VerticesOfTheSamePlaceAreCompared) {
-  std::vector<CellRecord> cells = {lying("drop", false, 0), lying("drop-turned", true, 0.12f),
-                                   lying("other", false, 0)};
-  auto pairs = turned_pairs(set_ups(cells));
+  std::vector<RunRecord> runs = {lying("drop", false, 0), lying("drop-turned", true, 0.12f), lying("other", false, 0)};
+  auto pairs = turned_pairs(set_ups(runs));
   ASSERT_EQ(pairs.size(), 1u) << "the other has not been turned";
   EXPECT_NEAR(pairs[0].apart_at_contact, 0.12 / std::sqrt(6.0) / 2, 1e-7);
   EXPECT_NEAR(pairs[0].apart_end, 0.36 / std::sqrt(6.0) / 2, 1e-7);
   EXPECT_TRUE(pairs[0].same());
   EXPECT_EQ(turned_table(pairs).rows[1].back(), "same");
-  cells[1] = lying("drop-turned", true, 0.3f);
-  EXPECT_FALSE(turned_pairs(set_ups(cells))[0].same()) << "an RMS distance of 0.12 is over a twentieth of 2";
-  cells[1] = lying("drop-turned", true, 0);
-  EXPECT_TRUE(turned_pairs(set_ups(cells))[0].same());
-  cells[1].summary["expect.tunnelled_fraction_max"] = 0;
-  EXPECT_FALSE(turned_pairs(set_ups(cells))[0].same()) << "it leaks from this side alone";
-  cells[0].summary["expect.tunnelled_fraction_max"] = 0;
-  EXPECT_TRUE(turned_pairs(set_ups(cells))[0].same()) << "a leak is a leak from either side";
-  cells[0].accuracy.metrics[0].values = {0, 0, 0, 0};
-  EXPECT_FALSE(turned_pairs(set_ups(cells))[0].same()) << "it never touched";
-  cells[0].accuracy.metrics = {};
-  EXPECT_FALSE(turned_pairs(set_ups(cells))[0].same()) << "whether it did is not known";
-  cells[0] = cells[2];
-  cells[0].header.scene = "drop";
-  cells[1].accuracy.position.pop_back();
-  EXPECT_FALSE(turned_pairs(set_ups(cells))[0].same()) << "not known is not the same";
-  EXPECT_EQ(turned_json(turned_pairs(set_ups(cells)))[0]["apart_end"], nullptr);
+  runs[1] = lying("drop-turned", true, 0.3f);
+  EXPECT_FALSE(turned_pairs(set_ups(runs))[0].same()) << "an RMS distance of 0.12 is over a twentieth of 2";
+  runs[1] = lying("drop-turned", true, 0);
+  EXPECT_TRUE(turned_pairs(set_ups(runs))[0].same());
+  runs[1].summary["expect.tunnelled_fraction_max"] = 0;
+  EXPECT_FALSE(turned_pairs(set_ups(runs))[0].same()) << "it leaks from this side alone";
+  runs[0].summary["expect.tunnelled_fraction_max"] = 0;
+  EXPECT_TRUE(turned_pairs(set_ups(runs))[0].same()) << "a leak is a leak from either side";
+  runs[0].accuracy.metrics[0].values = {0, 0, 0, 0};
+  EXPECT_FALSE(turned_pairs(set_ups(runs))[0].same()) << "it never touched";
+  runs[0].accuracy.metrics = {};
+  EXPECT_FALSE(turned_pairs(set_ups(runs))[0].same()) << "whether it did is not known";
+  runs[0] = runs[2];
+  runs[0].header.scene = "drop";
+  runs[1].accuracy.position.pop_back();
+  EXPECT_FALSE(turned_pairs(set_ups(runs))[0].same()) << "not known is not the same";
+  EXPECT_EQ(turned_json(turned_pairs(set_ups(runs)))[0]["apart_end"], nullptr);
 }
 
 /// A report of files: errors of a pulled strip without timed runs are given by speed, of one with them by time.
@@ -151,13 +150,13 @@ TEST(PulledStrip, UntimedOnesAreNoDiagram) {
   fs::remove_all(dir);
   std::vector<fs::path> files;
   for (const bool timed : {false, true}) {
-    CellRecord c = pulled("a", timed ? 10 : 2, 0.02);
+    RunRecord c = pulled("a", timed ? 10 : 2, 0.02);
     c.header.vertices = 1;
     c.header.settings = nlohmann::json::object();
     if (timed) c.summary["frame_wall_median_s"] = 1e-3;
     c.summary["truth_error"] = 0.01;
     c.summary["reference_uncertainty"] = 1e-6;
-    CellWriter writer(dir / "run", c.header);
+    RunWriter writer(dir / "run", c.header);
     writer.write_accuracy({{0, 1}, {0, 0, 0, 1, 0, 0}, {}});
     files.push_back(writer.finish(c.outcome, c.summary));
   }

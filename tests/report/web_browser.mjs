@@ -235,23 +235,23 @@ async function check_motion() {
 async function check_colours() {
   const results = await page.evaluate(async () => {
     const v = window.clothbench.viewer, out = [];
-    for (const cell of v.motions.cells) {
-      if (!cell.metrics.stretch_max || cell.columns.length !== cell.grid[0]) continue;
-      await v.set([cell]);
-      const contour = cell.metrics.contact_length_m ?? [], touching = contour.indexOf(Math.max(...contour));
-      const [p] = v.panels, f = touching > 0 ? touching : cell.frames.length - 1;
-      const tolerance = 4 * cell.step_m / Math.min(...p.edges.map(e => e[2])) + 1e-5;
-      const strain = p.show(cell.time_s[f], 'strain', 1).greatest,
-            penetration = p.show(cell.time_s[f], 'penetration', 1);
+    for (const run of v.motions.runs) {
+      if (!run.metrics.stretch_max || run.columns.length !== run.grid[0]) continue;
+      await v.set([run]);
+      const contour = run.metrics.contact_length_m ?? [], touching = contour.indexOf(Math.max(...contour));
+      const [p] = v.panels, f = touching > 0 ? touching : run.frames.length - 1;
+      const tolerance = 4 * run.step_m / Math.min(...p.edges.map(e => e[2])) + 1e-5;
+      const strain = p.show(run.time_s[f], 'strain', 1).greatest,
+            penetration = p.show(run.time_s[f], 'penetration', 1);
       out.push({
-        name: `${cell.scene} ${cell.label}`,
+        name: `${run.scene} ${run.label}`,
         strain,
-        stored: cell.metrics.stretch_max[f],
+        stored: run.metrics.stretch_max[f],
         tolerance,
         depth: penetration.greatest,
         crossing: penetration.crossing,
-        stored_depth: cell.metrics.depth_m?.[f],
-        stored_contour: cell.metrics.contact_length_m?.[f]
+        stored_depth: run.metrics.depth_m?.[f],
+        stored_contour: run.metrics.contact_length_m?.[f]
       });
     }
     return out;
@@ -286,7 +286,7 @@ try {
   await check_downloads();
   await check_hover();
   await check_themes();
-  if (await page.evaluate(() => window.clothbench.document.motions.cells.length)) {
+  if (await page.evaluate(() => window.clothbench.document.motions.runs.length)) {
     await check_motion();
     await check_colours();
   } else console.log('no motions in this report');

@@ -1,4 +1,4 @@
-// The page of a report: how motions are packed, thinned and told, and that data cannot break out of the page.
+// The page of a report: how motions are packed, thinned and reported, and that data cannot break out of the page.
 #include <gtest/gtest.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "clothbench/error.hpp"
-#include "fake_cells.hpp"
+#include "fake_runs.hpp"
 #include "report/web/packed.hpp"
 #include "report/web/page.hpp"
 #include "results/store.hpp"
@@ -120,14 +120,14 @@ class WebFiles : public ::testing::Test {
     fs::create_directories(dir_ / "run");
     for (const int n : {9, 17})
       for (const char* solver : {"xpbd", "paper"}) {
-        CellRecord c = fake_cell(solver, n, "single", 0.002 * n);
+        RunRecord c = fake_run(solver, n, "single", 0.002 * n);
         const Replay motion = waving(90, static_cast<std::size_t>(n), static_cast<std::size_t>(n));
         c.header.vertices = static_cast<std::uint32_t>(n * n);
         c.header.triangles = {0, 1, 2};
         c.accuracy.time_s = motion.time_s;
         c.accuracy.position = motion.position;
         c.outcome = {"timed_out", "F8", 80, "too slow </script><!-- ü"};
-        CellWriter writer(dir_ / "run", c.header);
+        RunWriter writer(dir_ / "run", c.header);
         writer.write_accuracy(c.accuracy);
         writer.write_replay({{"colliders", {{"count", 1}, {"frame_rate_hz", 72.0}}, {}},
                              {"colliders/0",
@@ -135,7 +135,7 @@ class WebFiles : public ::testing::Test {
                               {{"position_m", "m", "", {"vertex", "xyz"}, {3, 3}, false, {0, 0, 0, 1, 0, 0, 0, 1, 0.5}},
                                {"triangles", "1", "", {"triangle", "corner"}, {1, 3}, true, {0, 1, 2}}}}});
         writer.finish(c.outcome, c.summary);
-        manifest.cells.push_back(cell_name(c.header));
+        manifest.runs.push_back(run_name(c.header));
       }
     write_manifest(dir_ / "run", manifest);
   }
@@ -145,7 +145,7 @@ class WebFiles : public ::testing::Test {
 
 TEST_F(WebFiles, ReplayHasEveryNthFrameAndTheColliders) {
   const fs::path file = dir_ / "run" / "gravity-9-single__xpbd__default.h5";
-  const CellRecord whole = read_cell(file);
+  const RunRecord whole = read_run(file);
   const Replay r = read_replay(file, 40);
   EXPECT_EQ(r.frames, (std::vector<std::size_t>{0, 40, 80, 89}));
   ASSERT_EQ(r.position.size(), 4u * 243);
@@ -162,34 +162,34 @@ TEST_F(WebFiles, ReplayHasEveryNthFrameAndTheColliders) {
 }
 
 TEST_F(WebFiles, ThinsUntilThePageIsSmallAndSaysSo) {
-  const std::vector<CellRecord> cells = collect({dir_ / "run"});
-  const Motions all = motions_of(cells, {});
-  ASSERT_EQ(all.document["cells"].size(), 4u);
-  EXPECT_EQ(all.document["colliders"].size(), 1u) << "the same in every cell: once";
+  const std::vector<RunRecord> runs = collect({dir_ / "run"});
+  const Motions all = motions_of(runs, {});
+  ASSERT_EQ(all.document["runs"].size(), 4u);
+  EXPECT_EQ(all.document["colliders"].size(), 1u) << "the same in every run: once";
   EXPECT_EQ(all.blobs.size(), 4u + 2);
-  EXPECT_EQ(all.document["cells"][0]["frames"].size(), 90u);
+  EXPECT_EQ(all.document["runs"][0]["frames"].size(), 90u);
   EXPECT_TRUE(all.document["left_out"].empty());
   std::size_t size = 0, packed = 0;
   for (const std::string& b : all.blobs) size += b.size();
   const std::size_t budget = size / 4;
-  const Motions few = motions_of(cells, {}, budget);
+  const Motions few = motions_of(runs, {}, budget);
   for (const std::string& b : few.blobs) packed += b.size();
   EXPECT_LE(packed, budget + 200) << "colliders are small here";
-  for (const auto& c : few.document["cells"]) EXPECT_LT(c["frames"].size(), c["frames_stored"].get<std::size_t>());
-  EXPECT_GT(few.document["cells"].size(), 0u);
-  const Motions none = motions_of(cells, {}, 10);
-  EXPECT_TRUE(none.document["cells"].empty());
+  for (const auto& c : few.document["runs"]) EXPECT_LT(c["frames"].size(), c["frames_stored"].get<std::size_t>());
+  EXPECT_GT(few.document["runs"].size(), 0u);
+  const Motions none = motions_of(runs, {}, 10);
+  EXPECT_TRUE(none.document["runs"].empty());
   EXPECT_EQ(none.document["left_out"].at(0),
             "4 motions: too large at the coarsest thinning, or not finite from the start.");
 }
 
 TEST_F(WebFiles, DataNeverBreaksOutOfItsElement) {
-  const std::vector<CellRecord> cells = collect({dir_ / "run"});
+  const std::vector<RunRecord> runs = collect({dir_ / "run"});
   Page page;
-  page.sections.push_back({"failed", "Failed", {failed_table(cells)}});
+  page.sections.push_back({"failed", "Failed", {failed_table(runs)}});
   page.commands = commands_of({dir_ / "run"});
-  page.rates = rates_json(families(cells), published_table3());
-  const nlohmann::json document = page_document(cells, page, motions_of(cells, {}));
+  page.rates = rates_json(families(runs), published_table3());
+  const nlohmann::json document = page_document(runs, page, motions_of(runs, {}));
   const std::string html = page_html("<html><!--clothbench:data--><script>code</script></html>", document, {"QUJD"});
   std::size_t ends = 0;
   for (std::size_t at = 0; (at = html.find("</script", at)) != std::string::npos; ++at) ++ends;
@@ -200,40 +200,40 @@ TEST_F(WebFiles, DataNeverBreaksOutOfItsElement) {
   const nlohmann::json back = nlohmann::json::parse(html.substr(first, html.find("</script", first) - first));
   EXPECT_EQ(back, nlohmann::json::parse(document.dump()));
   EXPECT_EQ(back["commands"].at(0), "clothbench study </script><b>table3");
-  EXPECT_NE(back["motions"]["cells"][0]["message"].get<std::string>().find("<!-- ü"), std::string::npos);
+  EXPECT_NE(back["motions"]["runs"][0]["message"].get<std::string>().find("<!-- ü"), std::string::npos);
   EXPECT_THROW(page_html("no place", document, {}), Error);
 }
 
 TEST_F(WebFiles, WithoutATemplateNoOlderPageStays) {
-  const std::vector<CellRecord> cells = collect({dir_ / "run"});
-  EXPECT_EQ(write_page(dir_, cells, {}, {"<html><!--clothbench:data--></html>", ""}), "");
+  const std::vector<RunRecord> runs = collect({dir_ / "run"});
+  EXPECT_EQ(write_page(dir_, runs, {}, {"<html><!--clothbench:data--></html>", ""}), "");
   EXPECT_GT(fs::file_size(dir_ / "index.html"), 1000u);
-  EXPECT_EQ(write_page(dir_, cells, {}, {"", "there was no Node when this was built"}),
+  EXPECT_EQ(write_page(dir_, runs, {}, {"", "there was no Node when this was built"}),
             "The interactive page was left out: there was no Node when this was built.");
   EXPECT_FALSE(fs::exists(dir_ / "index.html"));
 }
 
 TEST_F(WebFiles, RatesKeepFullPrecisionAndMissingIsNull) {
-  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1.0 / 3001),
-                                   fake_cell("bullet-soft", 8, "single", 0.01, false)};
-  const nlohmann::json rates = nlohmann::json::parse(rates_json(families(cells), published_table3()).dump());
+  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1.0 / 3001),
+                                 fake_run("bullet-soft", 8, "single", 0.01, false)};
+  const nlohmann::json rates = nlohmann::json::parse(rates_json(families(runs), published_table3()).dump());
   ASSERT_EQ(rates.size(), 1u);
   EXPECT_EQ(rates[0]["published"].size(), 3u);
   for (const auto& s : rates[0]["series"]) {
     const auto& p = s["points"].at(0);
     const bool gpu = s["solver"] == "xpbd";
-    EXPECT_EQ(p["fps"].get<double>(), gpu ? cells[0].summary.at("fps_median") : cells[1].summary.at("fps_median"));
+    EXPECT_EQ(p["fps"].get<double>(), gpu ? runs[0].summary.at("fps_median") : runs[1].summary.at("fps_median"));
     EXPECT_EQ(p["read_B_per_s"].is_null(), !gpu);
     EXPECT_EQ(p["width"], 8.0);
   }
 }
 
 TEST(Environment, OneColumnForEachPlace) {
-  std::vector<CellRecord> cells = {fake_cell("xpbd", 8, "single", 1), fake_cell("xpbd", 9, "single", 1),
-                                   fake_cell("bullet-soft", 8, "single", 1, false)};
-  cells.push_back({});
-  const Table t = environment_table(cells);
-  EXPECT_EQ(t.rows.at(0), (std::vector<std::string>{"what", "xpbd (2 cells)", "bullet-soft (1 cell)"}));
+  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1), fake_run("xpbd", 9, "single", 1),
+                                 fake_run("bullet-soft", 8, "single", 1, false)};
+  runs.push_back({});
+  const Table t = environment_table(runs);
+  EXPECT_EQ(t.rows.at(0), (std::vector<std::string>{"what", "xpbd (2 runs)", "bullet-soft (1 run)"}));
   EXPECT_EQ(t.rows.at(1), (std::vector<std::string>{"GPU", "Fake GPU", "CPU"}));
   for (const auto& row : t.rows) EXPECT_NE(row[0], "clocks") << "a row without any value is left out";
 }

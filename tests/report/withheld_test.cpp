@@ -7,7 +7,7 @@
 
 #include <fstream>
 
-#include "fake_cells.hpp"
+#include "fake_runs.hpp"
 #include "metrics/registry.hpp"
 #include "report/compare_runs.hpp"
 #include "report/in_short.hpp"
@@ -20,36 +20,36 @@ namespace {
 
 namespace fs = std::filesystem;
 
-CellRecord with_jobs(CellRecord c, double jobs) {
+RunRecord with_jobs(RunRecord c, double jobs) {
   c.summary["jobs"] = jobs;
   return c;
 }
 
 TEST(Withheld, TimesNotTakenAloneAreGoneFromEveryTableOfTimes) {
-  std::vector<CellRecord> cells = {with_jobs(fake_cell("alone", 8, "single", 0.002), 1),
-                                   with_jobs(fake_cell("crowd", 8, "single", 0.002), 11),
-                                   with_jobs(fake_cell("older", 8, "single", 0.002), kMissing)};
-  withhold(cells);
+  std::vector<RunRecord> runs = {with_jobs(fake_run("alone", 8, "single", 0.002), 1),
+                                 with_jobs(fake_run("crowd", 8, "single", 0.002), 11),
+                                 with_jobs(fake_run("older", 8, "single", 0.002), kMissing)};
+  withhold(runs);
   for (const char* table : {"Table 3", "uncapped", "Wall time", "GPU time", "Peak bandwidth"}) {
-    const Table t = table_of(cells, table);
+    const Table t = table_of(runs, table);
     EXPECT_NE(entry(t, "alone", "single", "8²"), "–") << table;
     EXPECT_EQ(entry(t, "crowd", "single", "8²"), "–") << table;
     EXPECT_NE(entry(t, "older", "single", "8²"), "–") << table << ": its file does not know";
     EXPECT_NE(t.note.find("up to 11 jobs ran side by side"), std::string::npos) << t.note;
   }
-  EXPECT_NE(entry(table_of(cells, "kB a frame"), "crowd", "single", "8²"), "–") << "bytes are no time";
-  EXPECT_NE(entry(table_of(cells, "Free-fall"), "crowd", "single", "8²"), "–");
-  EXPECT_EQ(table_of(cells, "Free-fall").note.find("jobs"), std::string::npos);
-  const std::string head = headline(cells, Format::Markdown);
-  EXPECT_NE(head.find("Not printed (–), 1 cell: not timed alone: up to 11 jobs ran side by side."), std::string::npos)
+  EXPECT_NE(entry(table_of(runs, "kB a frame"), "crowd", "single", "8²"), "–") << "bytes are no time";
+  EXPECT_NE(entry(table_of(runs, "Free-fall"), "crowd", "single", "8²"), "–");
+  EXPECT_EQ(table_of(runs, "Free-fall").note.find("jobs"), std::string::npos);
+  const std::string head = headline(runs, Format::Markdown);
+  EXPECT_NE(head.find("Not printed (–), 1 run: not timed alone: up to 11 jobs ran side by side."), std::string::npos)
       << head;
-  EXPECT_NE(head.find("1 of the timed cells is of files that don't say"), std::string::npos) << head;
+  EXPECT_NE(head.find("1 of the timed runs is of files that don't say"), std::string::npos) << head;
 }
 
 TEST(Withheld, FilesForMachinesHaveTheReasonInsteadOfTheTime) {
-  std::vector<CellRecord> cells = {with_jobs(fake_cell("crowd", 8, "single", 0.002), 4)};
-  withhold(cells);
-  const auto rows = parse_csv(cells_csv(cells));
+  std::vector<RunRecord> runs = {with_jobs(fake_run("crowd", 8, "single", 0.002), 4)};
+  withhold(runs);
+  const auto rows = parse_csv(runs_csv(runs));
   const auto at = [&](const std::string& name) {
     return rows.at(1).at(static_cast<std::size_t>(std::find(rows[0].begin(), rows[0].end(), name) - rows[0].begin()));
   };
@@ -59,33 +59,33 @@ TEST(Withheld, FilesForMachinesHaveTheReasonInsteadOfTheTime) {
   EXPECT_EQ(at("jobs"), "4");
   EXPECT_EQ(at("withheld"), "not timed alone: up to 4 jobs ran side by side");
   EXPECT_NE(at("free_fall_error"), "");
-  const nlohmann::json j = cells_json(cells)[0];
+  const nlohmann::json j = runs_json(runs)[0];
   EXPECT_TRUE(j["summary"]["frame_wall_median_s"].is_null());
   EXPECT_EQ(j["withheld"]["frame_wall_median_s"], "not timed alone: up to 4 jobs ran side by side");
-  EXPECT_NE(table3_csv(families(cells).at(0), published_table3()).find("not timed alone"), std::string::npos);
+  EXPECT_NE(table3_csv(families(runs).at(0), published_table3()).find("not timed alone"), std::string::npos);
 }
 
-TEST(Withheld, TrialsOfSuchCellsCompareWithNothing) {
-  std::vector<CellRecord> cells = {with_jobs(fake_cell("s", 8, "single", 0.002), 2)},
-                          alone = {with_jobs(fake_cell("s", 8, "single", 0.002), 1)};
-  for (auto* run : {&cells, &alone})
+TEST(Withheld, TrialsOfSuchRunsCompareWithNothing) {
+  std::vector<RunRecord> runs = {with_jobs(fake_run("s", 8, "single", 0.002), 2)},
+                         alone = {with_jobs(fake_run("s", 8, "single", 0.002), 1)};
+  for (auto* run : {&runs, &alone})
     for (int k = 0; k < 5; ++k) {
       TimedTrial t;
       t.frame_wall_s = {1e-3 * (k + 1)};
       run->front().trials.push_back(t);
     }
-  withhold_times(cells);
+  withhold_times(runs);
   withhold_times(alone);
-  EXPECT_EQ(in_short_table(cells).rows[1][4], "–");
-  EXPECT_NE(in_short_table(cells).note.find("2 jobs"), std::string::npos);
+  EXPECT_EQ(in_short_table(runs).rows[1][4], "–");
+  EXPECT_NE(in_short_table(runs).note.find("2 jobs"), std::string::npos);
   EXPECT_NE(in_short_table(alone).rows[1][4], "–");
-  const auto tables = comparison_tables(compare_runs(alone, cells));
+  const auto tables = comparison_tables(compare_runs(alone, runs));
   EXPECT_EQ(tables[0].rows.size(), 1u);
   EXPECT_NE(tables[0].note.find("2 jobs"), std::string::npos) << tables[0].note;
 }
 
-CellRecord swept(const std::string& solver, double speed, int version, double samples, double inside_kept = 1) {
-  CellRecord c = fake_cell(solver, 32, "double", 0.004);
+RunRecord swept(const std::string& solver, double speed, int version, double samples, double inside_kept = 1) {
+  RunRecord c = fake_run(solver, 32, "double", 0.004);
   c.header.scene = fmt::format("sweep-{:g}", speed);
   c.header.scenario_json =
       R"({"name":"sweep","cloth":{"grid":[32,32],"sides":"double"},"colliders":[{"type":"hand_capsules"}],)"
@@ -102,16 +102,16 @@ CellRecord swept(const std::string& solver, double speed, int version, double sa
   c.summary["expect.wrong_side_samples_max"] = samples == 0;
   c.summary["expect.depth_vertex_max_m"] = inside_kept;
   c.outcome.expect =
-      samples == 0 ? "kept"
-                   : fmt::format("broken: depth_vertex_max_m 0.002 > 0.001; wrong_side_samples_max {:g} > 0", samples);
+      samples == 0 ? "pass"
+                   : fmt::format("fail: depth_vertex_max_m 0.002 > 0.001; wrong_side_samples_max {:g} > 0", samples);
   return c;
 }
 
 TEST(Withheld, TwoVersionsOfARuleAreNotInOneTable) {
-  std::vector<CellRecord> cells = {swept("now", 1, metric_version("wrong_side_samples"), 7),
-                                   swept("before", 1, 1, 9, 0), swept("before", 2, 1, 0)};
-  withhold(cells);
-  const auto ups = set_ups(cells);
+  std::vector<RunRecord> runs = {swept("now", 1, metric_version("wrong_side_samples"), 7), swept("before", 1, 1, 9, 0),
+                                 swept("before", 2, 1, 0)};
+  withhold(runs);
+  const auto ups = set_ups(runs);
   const Table t = contact_table(ups.at(0));
   EXPECT_EQ(entry(t, "sweep-1", "now", "wrong side [samples]"), "7");
   EXPECT_EQ(entry(t, "sweep-1", "before", "wrong side [samples]"), "–");
@@ -120,26 +120,25 @@ TEST(Withheld, TwoVersionsOfARuleAreNotInOneTable) {
   EXPECT_NE(t.note.find("wrong_side_samples was measured by version 1 of its rule, now 2"), std::string::npos)
       << t.note;
   const Table v = verdict_table(ups);
-  EXPECT_EQ(entry(v, "sweep-1", "broken", "before"), "broken") << "a bound that does not hang on it is broken";
-  EXPECT_EQ(verdict(cells[2]), "–");
+  EXPECT_EQ(entry(v, "sweep-1", "fail", "before"), "fail") << "a bound that does not hang on it is broken";
+  EXPECT_EQ(verdict(runs[2]), "–");
   EXPECT_NE(v.note.find("version 1"), std::string::npos) << v.note;
-  EXPECT_EQ(cells[1].outcome.expect, "broken: depth_vertex_max_m 0.002 > 0.001");
-  EXPECT_EQ(cells[2].outcome.expect, "not measured");
-  for (const MetricSeries& m : cells[1].accuracy.metrics)
-    EXPECT_NE(m.name, "wrong_side_samples") << "nor is its series";
-  EXPECT_EQ(cells_json(cells)[1]["metric_versions"].contains("wrong_side_samples"), false);
-  EXPECT_EQ(cells_json(cells)[0]["metric_versions"]["wrong_side_samples"], 2);
+  EXPECT_EQ(runs[1].outcome.expect, "fail: depth_vertex_max_m 0.002 > 0.001");
+  EXPECT_EQ(runs[2].outcome.expect, "not measured");
+  for (const MetricSeries& m : runs[1].accuracy.metrics) EXPECT_NE(m.name, "wrong_side_samples") << "nor is its series";
+  EXPECT_EQ(runs_json(runs)[1]["metric_versions"].contains("wrong_side_samples"), false);
+  EXPECT_EQ(runs_json(runs)[0]["metric_versions"]["wrong_side_samples"], 2);
   EXPECT_EQ(penetration_json(ups)[0]["withheld"], "wrong_side_samples was measured by version 1 of its rule, now 2");
 }
 
 TEST(Withheld, TheFirstSpeedThatFailsIsUnknownWhereALowerOneIs) {
-  std::vector<CellRecord> cells;
+  std::vector<RunRecord> runs;
   for (const double speed : {1.0, 2.0, 5.0}) {
-    cells.push_back(swept("before", speed, 1, 0, speed == 2 ? 0 : 1));
-    cells.push_back(swept("sure", speed, speed == 5 ? 1 : 2, speed == 2));
+    runs.push_back(swept("before", speed, 1, 0, speed == 2 ? 0 : 1));
+    runs.push_back(swept("sure", speed, speed == 5 ? 1 : 2, speed == 2));
   }
-  withhold(cells);
-  const Table t = leak_table(speed_sweeps(set_ups(cells)));
+  withhold(runs);
+  const Table t = leak_table(speed_sweeps(set_ups(runs)));
   ASSERT_EQ(t.rows.size(), 2u);
   EXPECT_EQ(t.rows[1][2], "–") << "at 1 m/s nothing is known";
   EXPECT_EQ(t.rows[1][3], "2 m/s: wrong side 1");
@@ -147,22 +146,22 @@ TEST(Withheld, TheFirstSpeedThatFailsIsUnknownWhereALowerOneIs) {
 }
 
 TEST(Withheld, AVersionNewerThanThisProgramsCountsTheMost) {
-  std::vector<CellRecord> cells = {swept("now", 1, 2, 7), swept("later", 1, 3, 7)};
-  withhold(cells);
-  EXPECT_EQ(cells[0].withheld.at("wrong_side_samples_max"),
+  std::vector<RunRecord> runs = {swept("now", 1, 2, 7), swept("later", 1, 3, 7)};
+  withhold(runs);
+  EXPECT_EQ(runs[0].withheld.at("wrong_side_samples_max"),
             "wrong_side_samples was measured by version 2 of its rule, now 3");
-  EXPECT_TRUE(cells[1].withheld.empty());
+  EXPECT_TRUE(runs[1].withheld.empty());
 }
 
 TEST(Withheld, RunsByTwoVersionsAreNotCompared) {
-  const std::vector<CellRecord> a = {swept("s", 1, 1, 9)}, b = {swept("s", 1, 2, 7)};
-  const auto cells = compare_runs(a, b);
-  ASSERT_EQ(cells[0].versions.size(), 1u);
-  for (const auto& m : cells[0].metrics) EXPECT_EQ(m.name.find("wrong_side"), std::string::npos) << m.name;
-  const Table t = comparison_tables(cells)[1];
+  const std::vector<RunRecord> a = {swept("s", 1, 1, 9)}, b = {swept("s", 1, 2, 7)};
+  const auto runs = compare_runs(a, b);
+  ASSERT_EQ(runs[0].versions.size(), 1u);
+  for (const auto& m : runs[0].metrics) EXPECT_EQ(m.name.find("wrong_side"), std::string::npos) << m.name;
+  const Table t = comparison_tables(runs)[1];
   EXPECT_EQ(t.rows.back(), (std::vector<std::string>{"sweep-1__s__default", "wrong_side_samples", "by version 1",
                                                      "by version 2: not compared"}));
-  EXPECT_EQ(comparison_json(cells)[0]["versions"]["wrong_side_samples"], (nlohmann::json{1, 2}));
+  EXPECT_EQ(comparison_json(runs)[0]["versions"]["wrong_side_samples"], (nlohmann::json{1, 2}));
   EXPECT_TRUE(compare_runs(b, b)[0].versions.empty());
 }
 
@@ -171,10 +170,10 @@ TEST(Withheld, EveryDocumentOfAReportLacksThem) {
   fs::create_directories(dir / "run");
   StudyManifest manifest{"table3", "", "", nlohmann::json::object(), {}};
   for (const int jobs : {1, 6}) {
-    const CellRecord c =
-        with_jobs(fake_cell(jobs == 1 ? "alone" : "crowd", 8, "single", jobs == 1 ? 0.0011111 : 0.0077777), jobs);
-    CellWriter(dir / "run", c.header).finish(c.outcome, c.summary);
-    manifest.cells.push_back(cell_name(c.header));
+    const RunRecord c =
+        with_jobs(fake_run(jobs == 1 ? "alone" : "crowd", 8, "single", jobs == 1 ? 0.0011111 : 0.0077777), jobs);
+    RunWriter(dir / "run", c.header).finish(c.outcome, c.summary);
+    manifest.runs.push_back(run_name(c.header));
   }
   write_manifest(dir / "run", manifest);
   write_report({dir / "run"}, {dir / "report"});
@@ -189,7 +188,7 @@ TEST(Withheld, EveryDocumentOfAReportLacksThem) {
     EXPECT_EQ(text.find("128.57"), std::string::npos) << file.path() << ": frames per second";
     files += text.find("0.0011111") != std::string::npos;
   }
-  EXPECT_GE(files, 3) << "cells.csv, cells.json, table3.json";
+  EXPECT_GE(files, 3) << "runs.csv, runs.json, table3.json";
   testing::internal::CaptureStdout();
   print_console_report({dir / "run"});
   const std::string console = testing::internal::GetCapturedStdout();
@@ -199,13 +198,13 @@ TEST(Withheld, EveryDocumentOfAReportLacksThem) {
 }
 
 TEST(Withheld, BytesThatAreALowerBoundSaySo) {
-  std::vector<CellRecord> cells = {fake_cell("a", 8, "single", 0.002), fake_cell("b", 8, "single", 0.002)};
-  cells[0].header.stages = {{"Lines", {}, 1, "computed"}, {"Contact", {}, 1, "at least"}};
-  cells[1].header.stages = {{"Lines", {}, 1, "computed"}};
-  EXPECT_EQ(entry(table_of(cells, "kB a frame"), "a", "single", "8²"), "≥ 16.0 / 8.00");
-  EXPECT_EQ(entry(table_of(cells, "kB a frame"), "b", "single", "8²"), "16.0 / 8.00");
-  EXPECT_EQ(entry(table_of(cells, "Peak bandwidth"), "a", "single", "8²"), "≥ 4.00 / 2.00");
-  EXPECT_NE(table_of(cells, "kB a frame").note.find("computed"), std::string::npos);
+  std::vector<RunRecord> runs = {fake_run("a", 8, "single", 0.002), fake_run("b", 8, "single", 0.002)};
+  runs[0].header.stages = {{"Lines", {}, 1, "computed"}, {"Contact", {}, 1, "at least"}};
+  runs[1].header.stages = {{"Lines", {}, 1, "computed"}};
+  EXPECT_EQ(entry(table_of(runs, "kB a frame"), "a", "single", "8²"), "≥ 16.0 / 8.00");
+  EXPECT_EQ(entry(table_of(runs, "kB a frame"), "b", "single", "8²"), "16.0 / 8.00");
+  EXPECT_EQ(entry(table_of(runs, "Peak bandwidth"), "a", "single", "8²"), "≥ 4.00 / 2.00");
+  EXPECT_NE(table_of(runs, "kB a frame").note.find("computed"), std::string::npos);
 }
 
 }  // namespace

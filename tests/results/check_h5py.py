@@ -18,7 +18,7 @@ with h5py.File(path) as f:
     assert f["VTKHDF"].attrs["Type"] == b"PolyData" and list(f["VTKHDF"].attrs["Version"]) == [2, 0]
     assert f["VTKHDF/Steps"].attrs["NSteps"] == 5
     assert f["VTKHDF/Polygons/NumberOfCells"][0] == 4 and f["VTKHDF/Lines/Offsets"][:].tolist() == [0]
-    assert f["outcome"].attrs["expect"] == "broken: stretch_max 2 > 1"
+    assert f["outcome"].attrs["expect"] == "fail: stretch_max 2 > 1"
     assert f["colliders"].attrs["count"] == 2 and f["colliders/0"].attrs["shape"] == "capsules"
     assert f["colliders/0"].attrs["normal"].tolist() == [0, 1, 0.1]
     capsules = f["colliders/0/capsules"]

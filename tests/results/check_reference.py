@@ -59,7 +59,7 @@ for name in files:
 assert not wrong, wrong
 
 # The baseline says by which versions it was measured.
-cells = json.loads((root / "results/baselines/penetration.json").read_text(encoding="utf-8"))["cells"]
+cells = json.loads((root / "results/baselines/penetration.json").read_text(encoding="utf-8"))["runs"]
 hands = [c for c in cells if c["scene"] == "capsule-sweep"]
 assert hands and all(c["metric_versions"] == {"wrong_side_fraction": 2, "wrong_side_samples": 2} for c in hands)
 print("ok")

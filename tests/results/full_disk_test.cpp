@@ -10,7 +10,7 @@
 #include "clothbench/error.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/store.hpp"
-#include "sample_cell.hpp"
+#include "sample_run.hpp"
 
 namespace clothbench {
 namespace {
@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Positions that do not compress, 1.5 MB of them.
-CellRecord large_cell() {
-  CellRecord r = sample_cell();
+RunRecord large_run() {
+  RunRecord r = sample_run();
   std::uint32_t noise = 1;
   for (TimedTrial& t : r.trials) t.stage_device_s.assign(t.stage_device_s.size(), 1e-4);
   r.header.vertices = 25000;
@@ -58,8 +58,8 @@ std::size_t temporary_files(const fs::path& dir) {
 TEST(FullDisk, AWriteThatFailsIsAnErrorAndWhatWasFinishedStays) {
   const fs::path dir = fs::temp_directory_path() / ("clothbench-full-" + std::to_string(getpid()));
   fs::create_directories(dir);
-  const CellRecord r = large_cell();
-  CellWriter writer(dir, r.header);
+  const RunRecord r = large_run();
+  RunWriter writer(dir, r.header);
   for (const TimedTrial& t : r.trials) writer.write_trial(t);
   EXPECT_EQ(with_little_room("accuracy.raw", [&] { writer.write_accuracy(r.accuracy); }), 0);
   EXPECT_EQ(temporary_files(dir), 0u);
@@ -72,7 +72,7 @@ TEST(FullDisk, AWriteThatFailsIsAnErrorAndWhatWasFinishedStays) {
   EXPECT_EQ(temporary_files(dir), 0u);
   // With room again everything is still there to be finished.
   writer.write_accuracy(r.accuracy);
-  EXPECT_EQ(read_cell(writer.finish(r.outcome, r.summary)).accuracy.position, r.accuracy.position);
+  EXPECT_EQ(read_run(writer.finish(r.outcome, r.summary)).accuracy.position, r.accuracy.position);
   fs::remove_all(dir);
 }
 

@@ -7,7 +7,7 @@
 
 #include "clothbench/error.hpp"
 #include "results/hdf5_file.hpp"
-#include "sample_cell.hpp"
+#include "sample_run.hpp"
 
 namespace clothbench {
 namespace {
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 /// What reading a good file says after `change`.
 std::string said(const std::function<void(hid_t file)>& change) {
   const fs::path path = fs::temp_directory_path() / ("clothbench-damage-" + std::to_string(getpid()) + ".h5");
-  write_hdf5(path, sample_cell());
+  write_hdf5(path, sample_run());
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   change(file);
   H5Fclose(file);
@@ -37,14 +37,14 @@ std::string said(const std::function<void(hid_t file)>& change) {
 
 TEST(Hdf5Older, FilesWithoutVersionsAndJobsAreReadAsTheyWere) {
   const fs::path path = fs::temp_directory_path() / ("clothbench-older-" + std::to_string(getpid()) + ".h5");
-  write_hdf5(path, sample_cell());
+  write_hdf5(path, sample_run());
   EXPECT_EQ(read_hdf5(path, false).trials[2].jobs, 21);
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   for (const char* metric : {"metrics/speed_max", "metrics/stretch_max"})
     EXPECT_GE(H5Adelete_by_name(file, metric, "version", H5P_DEFAULT), 0) << metric;
   EXPECT_GE(H5Ldelete(file, "timing/jobs", H5P_DEFAULT), 0);
   H5Fclose(file);
-  const CellRecord r = read_hdf5(path, false);
+  const RunRecord r = read_hdf5(path, false);
   for (const MetricSeries& m : r.accuracy.metrics) EXPECT_EQ(m.version, 1) << m.name;
   for (const TimedTrial& t : r.trials) EXPECT_TRUE(std::isnan(t.jobs));
   fs::remove(path);

@@ -8,7 +8,7 @@
 #include "results/hdf5_file.hpp"
 #include "results/raw_file.hpp"
 #include "results/store.hpp"
-#include "sample_cell.hpp"
+#include "sample_run.hpp"
 
 namespace clothbench {
 namespace {
@@ -31,12 +31,12 @@ class Hdf5 : public ::testing::Test {
 };
 
 TEST_F(Hdf5, RoundTrip) {
-  CellRecord r = sample_cell();
+  RunRecord r = sample_run();
   r.trials[2].frame_wall_s.resize(3);  // a trial may stop early
   r.trials[2].frame_device_s.resize(3);
   for (auto* s : {&r.trials[2].stage_device_s, &r.trials[2].stage_read_B, &r.trials[2].stage_write_B}) s->resize(6);
   write_hdf5(dir_ / "x.h5", r);
-  const CellRecord b = read_hdf5(dir_ / "x.h5", true);
+  const RunRecord b = read_hdf5(dir_ / "x.h5", true);
   EXPECT_EQ(header_to_json(b.header), header_to_json(r.header));
   ASSERT_EQ(b.trials.size(), 3u);
   for (int t = 0; t < 3; ++t) EXPECT_TRUE(same(b.trials[t], r.trials[t])) << t;
@@ -56,8 +56,8 @@ TEST_F(Hdf5, RoundTrip) {
   EXPECT_TRUE(read_hdf5(dir_ / "x.h5", false).accuracy.position.empty());
 }
 
-TEST_F(Hdf5, ACellWithoutFramesIsAFileToo) {
-  CellRecord r = sample_cell(0);
+TEST_F(Hdf5, ARunWithoutFramesIsAFileToo) {
+  RunRecord r = sample_run(0);
   r.accuracy = {};
   r.header.stages.clear();
   r.outcome = {"unsupported", "ok", -1, "has no duplicated_layer"};
@@ -66,51 +66,51 @@ TEST_F(Hdf5, ACellWithoutFramesIsAFileToo) {
 }
 
 TEST_F(Hdf5, TrialsOfASolverWithoutStagesAreAFileToo) {
-  CellRecord r = sample_cell();
+  RunRecord r = sample_run();
   r.header.stages.clear();
   for (TimedTrial& t : r.trials) t.stage_device_s = t.stage_read_B = t.stage_write_B = {};
   write_hdf5(dir_ / "x.h5", r);
-  const CellRecord b = read_hdf5(dir_ / "x.h5", true);
+  const RunRecord b = read_hdf5(dir_ / "x.h5", true);
   ASSERT_EQ(b.trials.size(), 3u);
   EXPECT_TRUE(same(b.trials[0], r.trials[0]));
 }
 
 TEST_F(Hdf5, WhatAKilledRunLeftIsRemovedAndNothingElse) {
-  const CellRecord r = sample_cell();
-  const std::string cell = cell_name(r.header);
-  CellWriter writer(dir_, r.header);
+  const RunRecord r = sample_run();
+  const std::string run = run_name(r.header);
+  RunWriter writer(dir_, r.header);
   writer.write_trial(r.trials[0]);
-  const fs::path part = dir_ / (cell + ".part");
-  for (const fs::path& litter : {part / "trial-1.raw.tmp.77", dir_ / (cell + ".h5.tmp.77"),
-                                 dir_ / (cell + ".xdmf.tmp.77"), dir_ / "another__cell.h5.tmp.77"})
+  const fs::path part = dir_ / (run + ".part");
+  for (const fs::path& litter : {part / "trial-1.raw.tmp.77", dir_ / (run + ".h5.tmp.77"),
+                                 dir_ / (run + ".xdmf.tmp.77"), dir_ / "another__run.h5.tmp.77"})
     std::ofstream(litter) << "half";
-  remove_leftovers(dir_, cell);
+  remove_leftovers(dir_, run);
   EXPECT_FALSE(fs::exists(part / "trial-1.raw.tmp.77"));
-  EXPECT_FALSE(fs::exists(dir_ / (cell + ".h5.tmp.77")));
-  EXPECT_FALSE(fs::exists(dir_ / (cell + ".xdmf.tmp.77")));
-  EXPECT_TRUE(fs::exists(dir_ / "another__cell.h5.tmp.77")) << "another cell's, maybe of a running process";
+  EXPECT_FALSE(fs::exists(dir_ / (run + ".h5.tmp.77")));
+  EXPECT_FALSE(fs::exists(dir_ / (run + ".xdmf.tmp.77")));
+  EXPECT_TRUE(fs::exists(dir_ / "another__run.h5.tmp.77")) << "another run's, maybe of a running process";
   EXPECT_EQ(writer.recovered().trials.size(), 1u) << "a finished trial is no litter";
   // Killed between the rename of the file and the removal of its part folder.
-  write_hdf5(dir_ / (cell + ".h5"), r);
-  remove_leftovers(dir_, cell);
+  write_hdf5(dir_ / (run + ".h5"), r);
+  remove_leftovers(dir_, run);
   EXPECT_FALSE(fs::exists(part));
-  EXPECT_TRUE(fs::exists(dir_ / (cell + ".h5")));
+  EXPECT_TRUE(fs::exists(dir_ / (run + ".h5")));
 }
 
 TEST_F(Hdf5, SameRunSameBytesAlsoThroughRawFiles) {
-  const CellRecord r = sample_cell();
+  const RunRecord r = sample_run();
   write_hdf5(dir_ / "direct.h5", r);
   write_hdf5(dir_ / "again.h5", r);
   EXPECT_EQ(bytes(dir_ / "direct.h5"), bytes(dir_ / "again.h5"));
   // What a device without HDF5 leaves behind, imported on the host.
-  CellWriter writer(dir_, r.header);
+  RunWriter writer(dir_, r.header);
   for (const TimedTrial& t : r.trials) writer.write_trial(t);
   writer.write_accuracy(r.accuracy);
   writer.write_replay(r.replay);
-  const fs::path part = dir_ / (cell_name(r.header) + ".part"), copy = dir_ / "phone" / (cell_name(r.header) + ".part");
+  const fs::path part = dir_ / (run_name(r.header) + ".part"), copy = dir_ / "phone" / (run_name(r.header) + ".part");
   const fs::path direct = [&] {
     // finish() removes the part folder, so keep a copy with the outcome in it.
-    CellWriter other(dir_ / "other", r.header);
+    RunWriter other(dir_ / "other", r.header);
     for (const TimedTrial& t : r.trials) other.write_trial(t);
     other.write_accuracy(r.accuracy);
     other.write_replay(r.replay);
@@ -136,18 +136,18 @@ TEST_F(Hdf5, FaultsNameTheFile) {
   std::ofstream(dir_ / "not.h5") << "text";
   for (const fs::path& p : {dir_ / "not.h5", dir_ / "missing.h5"}) {
     try {
-      read_cell(p);
+      read_run(p);
       ADD_FAILURE() << p;
     } catch (const Error& e) {
       EXPECT_NE(std::string(e.what()).find(p.filename().string()), std::string::npos) << e.what();
     }
   }
   EXPECT_THROW(read_manifest(dir_), Error);
-  EXPECT_THROW(write_hdf5(dir_ / "no" / "such" / "x.h5", sample_cell()), Error);
+  EXPECT_THROW(write_hdf5(dir_ / "no" / "such" / "x.h5", sample_run()), Error);
 }
 
 TEST_F(Hdf5, LargeTrajectoriesAreWrittenQuickly) {
-  CellRecord r = sample_cell(1, 4, 6);
+  RunRecord r = sample_run(1, 4, 6);
   r.header.vertices = 128 * 128;
   r.accuracy = {};
   std::vector<float> frame(3 * 128 * 128);

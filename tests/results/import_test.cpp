@@ -1,4 +1,4 @@
-// A cell is run for real and stored both ways: as a machine with HDF5 does, and as a device without it does, whose raw
+// A run is executed and stored both ways: as a machine with HDF5 does, and as a device without it does, whose raw
 // files are then imported. The two files are the same, byte for byte.
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 #include "results/hdf5_file.hpp"
 #include "results/replay.hpp"
 #include "results/store.hpp"
-#include "runner/cell.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -49,8 +49,8 @@ class Import : public ::testing::TestWithParam<Case> {
 };
 
 /// Hands everything over as the runner does.
-fs::path store(const fs::path& dir, const CellRecord& r, Finish how) {
-  CellWriter writer(dir, r.header, how);
+fs::path store(const fs::path& dir, const RunRecord& r, Finish how) {
+  RunWriter writer(dir, r.header, how);
   writer.write_replay(r.replay);
   if (!r.accuracy.time_s.empty()) writer.write_accuracy(r.accuracy);
   for (const TimedTrial& t : r.trials) writer.write_trial(t);
@@ -60,20 +60,20 @@ fs::path store(const fs::path& dir, const CellRecord& r, Finish how) {
 TEST_P(Import, GivesTheFileOfADirectRun) {
   const Scene scene = load_scene(GetParam().scene, {"cloth.grid=[9,7]", "cloth.sides=single"});
   const SolverEntry& entry = find_solver(GetParam().solver);
-  CellRecord r;
+  RunRecord r;
   try {
-    Cell cell({&scene, &entry, complete_settings(entry.info, nlohmann::json::object()), "default"}, {}, "test");
+    SolverRun run({&scene, &entry, complete_settings(entry.info, nlohmann::json::object()), "default"}, {}, "test");
     TrialRules rules;
     rules.warmup_s = 0;
     rules.accuracy_duration_s = 0.1;
-    r.header = cell.header();
-    if (cell.alive()) {
+    r.header = run.header();
+    if (run.alive()) {
       r.replay = replay_of(scene);
-      r.accuracy = cell.run_accuracy(rules);
-      for (int k = 0; k < 2; ++k) r.trials.push_back(cell.run_trial(k, rules, 12));
+      r.accuracy = run.run_accuracy(rules);
+      for (int k = 0; k < 2; ++k) r.trials.push_back(run.run_trial(k, rules, 12));
     }
-    r.outcome = cell.outcome();
-    r.summary = summarise(cell.spec(), cell.plan(), r);
+    r.outcome = run.outcome();
+    r.summary = summarise(run.spec(), run.plan(), r);
   } catch (const Error& e) {
     const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
     if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
@@ -107,12 +107,12 @@ std::vector<Case> cases() {
 TEST(ImportArguments, ATrailingSlashIsTheSameFolder) {
   const fs::path dir = fs::temp_directory_path() / ("clothbench-import-slash-" + std::to_string(getpid()));
   fs::create_directories(dir);
-  CellHeader h;
+  RunHeader h;
   h.scene = "s";
   h.solver = "none";
   h.setting = "default";
   h.settings = h.plan = h.environment = nlohmann::json::object();
-  CellWriter writer(dir, h, Finish::Raw);
+  RunWriter writer(dir, h, Finish::Raw);
   const std::string part = (dir / "s__none__default.part").string();
   try {
     import_raw(part);

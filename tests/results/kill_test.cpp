@@ -10,7 +10,7 @@
 
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
-#include "sample_cell.hpp"
+#include "sample_run.hpp"
 
 namespace clothbench {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TimedTrial trial(int k) {
-  TimedTrial t = sample_cell(1, 24).trials[0];
+  TimedTrial t = sample_run(1, 24).trials[0];
   t.index = k;
   for (double& w : t.frame_wall_s) w += 1e-6 * k;
   return t;
@@ -26,11 +26,11 @@ TimedTrial trial(int k) {
 
 constexpr int kTrials = 12;
 
-/// Writes what is missing of kTrials trials, telling each finished one through the pipe, and finishes the cell.
+/// Writes what is missing of kTrials trials, telling each finished one through the pipe, and finishes the run.
 void work(const fs::path& dir, int pipe_out) {
-  const CellRecord r = sample_cell();
-  CellWriter writer(dir, r.header);
-  const CellRecord before = writer.recovered();
+  const RunRecord r = sample_run();
+  RunWriter writer(dir, r.header);
+  const RunRecord before = writer.recovered();
   for (int k = 0; k < kTrials; ++k) {
     bool there = false;
     for (const TimedTrial& t : before.trials) there |= t.index == k;
@@ -50,7 +50,7 @@ std::string bytes(const fs::path& p) {
 
 TEST(Kill, TwoHundredTimesNothingFinishedIsLost) {
   const fs::path root = fs::temp_directory_path() / ("clothbench-kill-" + std::to_string(getpid()));
-  const std::string cell = cell_name(sample_cell().header);
+  const std::string run = run_name(sample_run().header);
   fs::create_directories(root / "whole");
   work(root / "whole", -1);
   std::mt19937 random(7);
@@ -71,11 +71,11 @@ TEST(Kill, TwoHundredTimesNothingFinishedIsLost) {
     kill(child, SIGKILL);
     int status = 0;
     waitpid(child, &status, 0);
-    std::vector<int> told;
-    for (unsigned char k = 0; read(ends[0], &k, 1) == 1;) told.push_back(k);
+    std::vector<int> reported;
+    for (unsigned char k = 0; read(ends[0], &k, 1) == 1;) reported.push_back(k);
     close(ends[0]);
-    if (cell_finished(dir, cell)) {
-      EXPECT_EQ(bytes(dir / (cell + ".h5")), bytes(root / "whole" / (cell + ".h5"))) << "kill " << kill_number;
+    if (run_finished(dir, run)) {
+      EXPECT_EQ(bytes(dir / (run + ".h5")), bytes(root / "whole" / (run + ".h5"))) << "kill " << kill_number;
       ++completed;
       fs::remove_all(dir);
       dir = root / std::to_string(kill_number + 1);
@@ -83,12 +83,12 @@ TEST(Kill, TwoHundredTimesNothingFinishedIsLost) {
       continue;
     }
     ++interrupted;
-    if (!fs::exists(dir / (cell + ".part") / "header.raw")) {
-      EXPECT_TRUE(told.empty());
+    if (!fs::exists(dir / (run + ".part") / "header.raw")) {
+      EXPECT_TRUE(reported.empty());
       continue;
     }
-    const CellRecord kept = read_cell(dir / (cell + ".part"));
-    for (int k : told) {
+    const RunRecord kept = read_run(dir / (run + ".part"));
+    for (int k : reported) {
       bool found = false;
       for (const TimedTrial& t : kept.trials) found |= same(t, trial(k));
       EXPECT_TRUE(found) << "kill " << kill_number << ": trial " << k << " was finished and is not there";
@@ -96,7 +96,7 @@ TEST(Kill, TwoHundredTimesNothingFinishedIsLost) {
     for (const TimedTrial& t : kept.trials) EXPECT_TRUE(same(t, trial(t.index)));
   }
   work(dir, -1);
-  EXPECT_EQ(bytes(dir / (cell + ".h5")), bytes(root / "whole" / (cell + ".h5")));
+  EXPECT_EQ(bytes(dir / (run + ".h5")), bytes(root / "whole" / (run + ".h5")));
   std::printf("killed %d times in mid-run, %d runs completed in between\n", interrupted, completed);
   EXPECT_GT(interrupted, 50) << "the kills must meet runs in progress";
   fs::remove_all(root);

@@ -1,4 +1,4 @@
-// usage: make_sample FOLDER [START_UNIX_S]: one finished cell for the readers' tests; with a time the raw files that a
+// usage: make_sample FOLDER [START_UNIX_S]: one finished run for the readers' tests; with a time the raw files that a
 // device would have left, of three trials of 0.4 s, half a second apart, the first 0.2 s after that time.
 #include <cstdio>
 #include <cstdlib>
@@ -6,20 +6,20 @@
 
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
-#include "sample_cell.hpp"
+#include "sample_run.hpp"
 
 int main(int argc, char** argv) {
   using namespace clothbench;
   if (argc != 2 && argc != 3) return 2;
   std::filesystem::remove_all(argv[1]);
   std::filesystem::create_directories(argv[1]);
-  CellRecord r = sample_cell();
+  RunRecord r = sample_run();
   if (argc == 3)
     for (TimedTrial& t : r.trials) {
       t.start_unix_s = std::atof(argv[2]) + 0.2 + 0.5 * t.index;
       t.end_unix_s = t.start_unix_s + 0.4;
     }
-  CellWriter writer(argv[1], r.header, argc == 3 ? Finish::Raw : best_finish());
+  RunWriter writer(argv[1], r.header, argc == 3 ? Finish::Raw : best_finish());
   for (const TimedTrial& t : r.trials) writer.write_trial(t);
   writer.write_accuracy(r.accuracy);
   writer.write_replay(r.replay);

@@ -10,7 +10,7 @@
 #include "clothbench/error.hpp"
 #include "results/raw_file.hpp"
 #include "results/store.hpp"
-#include "sample_cell.hpp"
+#include "sample_run.hpp"
 
 namespace clothbench {
 namespace {
@@ -42,7 +42,7 @@ TEST_F(Raw, Crc32cAgreesWithThePublishedVector) {
 }
 
 TEST_F(Raw, TrialsAndAccuracyRoundTripBitForBit) {
-  const CellRecord r = sample_cell();
+  const RunRecord r = sample_run();
   write_trial_file(dir_ / "t.raw", r.trials[1], 2);
   EXPECT_TRUE(same(read_trial_file(dir_ / "t.raw"), r.trials[1]));
   write_accuracy_file(dir_ / "a.raw", r.accuracy, r.header.vertices);
@@ -69,7 +69,7 @@ TEST_F(Raw, TrialsAndAccuracyRoundTripBitForBit) {
 
 TEST_F(Raw, EveryFlippedByteIsFound) {
   const fs::path file = dir_ / "t.raw";
-  write_trial_file(file, sample_cell().trials[0], 2);
+  write_trial_file(file, sample_run().trials[0], 2);
   const std::string good = bytes(file);
   for (std::size_t k = 0; k < good.size(); ++k) {
     std::string bad = good;
@@ -81,7 +81,7 @@ TEST_F(Raw, EveryFlippedByteIsFound) {
 
 TEST_F(Raw, EveryTornTailIsCut) {
   const fs::path file = dir_ / "t.raw";
-  write_trial_file(file, sample_cell().trials[0], 2);
+  write_trial_file(file, sample_run().trials[0], 2);
   const std::string good = bytes(file);
   const std::size_t frame_B = read_raw(file).header["frame_B"], header_B = good.size() - 4 * frame_B;
   for (std::size_t k = 0; k < good.size(); ++k) {
@@ -99,7 +99,7 @@ TEST_F(Raw, EveryTornTailIsCut) {
 
 TEST_F(Raw, NoiseNeverCrashesAReader) {
   std::mt19937 random(1);
-  const CellRecord r = sample_cell();
+  const RunRecord r = sample_run();
   write_trial_file(dir_ / "t.raw", r.trials[0], 2);
   write_accuracy_file(dir_ / "a.raw", r.accuracy, r.header.vertices);
   const std::string good[] = {bytes(dir_ / "t.raw"), bytes(dir_ / "a.raw")};
@@ -122,11 +122,11 @@ TEST_F(Raw, NoiseNeverCrashesAReader) {
 
 TEST_F(Raw, InfinityIsNotMissing) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  CellRecord r = sample_cell();
+  RunRecord r = sample_run();
   r.summary = {{"a", kInfinity}, {"b", -kInfinity}, {"c", kMissing}, {"d", 0.1}};
   for (const Finish how : {Finish::Raw, best_finish()}) {
-    CellWriter writer(dir_, r.header, how);
-    const std::map<std::string, double> read = read_cell(writer.finish(r.outcome, r.summary)).summary;
+    RunWriter writer(dir_, r.header, how);
+    const std::map<std::string, double> read = read_run(writer.finish(r.outcome, r.summary)).summary;
     EXPECT_EQ(read.at("a"), kInfinity);
     EXPECT_EQ(read.at("b"), -kInfinity);
     EXPECT_TRUE(std::isnan(read.at("c")));
@@ -149,20 +149,20 @@ TEST_F(Raw, NumbersInJsonReadBackAndOldNullsAreMissing) {
 }
 
 TEST_F(Raw, AnotherRunsTrialsAreNotMixedIn) {
-  CellRecord r = sample_cell();
-  CellWriter first(dir_, r.header);
+  RunRecord r = sample_run();
+  RunWriter first(dir_, r.header);
   first.write_trial(r.trials[0]);
   r.header.scenario_sha256 = "11ff";
-  EXPECT_THROW(CellWriter(dir_, r.header), Error);
+  EXPECT_THROW(RunWriter(dir_, r.header), Error);
 }
 
 TEST_F(Raw, AFolderThatTakesNothingIsAnErrorAndKeepsWhatIsThere) {
   const fs::path full = dir_ / "full";
   fs::create_directories(full);
-  const CellRecord r = sample_cell();
-  CellWriter writer(full, r.header);
+  const RunRecord r = sample_run();
+  RunWriter writer(full, r.header);
   writer.write_trial(r.trials[0]);
-  const fs::path part = full / (cell_name(r.header) + ".part");
+  const fs::path part = full / (run_name(r.header) + ".part");
   if (geteuid() == 0) {
     // Root may write anywhere; but a folder in place of the temporary file cannot be opened for writing.
     fs::create_directories(part / ("trial-1.raw.tmp." + std::to_string(getpid())));
@@ -176,7 +176,7 @@ TEST_F(Raw, AFolderThatTakesNothingIsAnErrorAndKeepsWhatIsThere) {
     EXPECT_NE(std::string(e.what()).find("trial-1.raw"), std::string::npos) << e.what();
   }
   fs::permissions(part, fs::perms::owner_all);
-  const CellRecord kept = writer.recovered();
+  const RunRecord kept = writer.recovered();
   ASSERT_EQ(kept.trials.size(), 1u);
   EXPECT_TRUE(same(kept.trials[0], r.trials[0]));
 }

@@ -16,10 +16,10 @@ function(hash out)
 endfunction()
 
 hash(last)
-file(APPEND ${copy}/harness/runner/cell.cpp "// not a part of it\n")
+file(APPEND ${copy}/harness/runner/run.cpp "// not a part of it\n")
 hash(now)
 if(NOT now STREQUAL last)
-  message(FATAL_ERROR "the hash depends on harness/runner/cell.cpp")
+  message(FATAL_ERROR "the hash depends on harness/runner/run.cpp")
 endif()
 foreach(file solvers/reference/integrator.cpp solvers/reference/model.hpp harness/truth/pendulum.cpp harness/truth/norms.hpp
     harness/runner/reference.cpp harness/runner/frame_loop.cpp harness/scenario/geometry.cpp harness/metrics/truth_errors.cpp)

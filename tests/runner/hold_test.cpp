@@ -45,7 +45,7 @@ TEST(Hold, ATrialThatWasHeldIsRunAgainAndTheWaitIsNotTimed) {
   int steps = 0;
   std::thread release;
   SolverEntry entry = ballistic;
-  CellPlan plan;
+  RunPlan plan;
   plan.protocol = "test";
   plan.rules.trials = 1;
   plan.rules.frames = 20;
@@ -68,13 +68,13 @@ TEST(Hold, ATrialThatWasHeldIsRunAgainAndTheWaitIsNotTimed) {
   const auto start = std::chrono::steady_clock::now();
   RunOptions options;
   options.out = out;
-  const RunResult result = run_cells(plan, options);
+  const RunResult result = execute_runs(plan, options);
   EXPECT_GE(std::chrono::steady_clock::now() - start, 280ms) << "it did wait";
   ASSERT_TRUE(release.joinable());
   release.join();
-  EXPECT_EQ(result.cells_ok, 1);
+  EXPECT_EQ(result.runs_ok, 1);
   EXPECT_EQ(steps, 4 + 2 * (3 + 20)) << "one accuracy pass, two trials with their warm-ups";
-  const CellRecord record = read_cell(result.files.at(0));
+  const RunRecord record = read_run(result.files.at(0));
   ASSERT_EQ(record.trials.size(), 1u);
   EXPECT_EQ(record.trials[0].frames(), 20);
   for (double w : record.trials[0].frame_wall_s) EXPECT_LT(w, 0.2);
@@ -86,13 +86,13 @@ TEST(Hold, AnInterruptEndsAHeldRun) {
   hold_runs(true);
   request_interrupt();
   const Scene scene = load_scene("paper/gravity", {"cloth.grid=[4,4]"});
-  Cell cell({&scene, &find_solver("ballistic"), nlohmann::json::object(), "default"}, {}, "test");
+  SolverRun run({&scene, &find_solver("ballistic"), nlohmann::json::object(), "default"}, {}, "test");
   TrialRules rules;
   rules.accuracy_duration_s = 0.1;
-  EXPECT_THROW(cell.run_accuracy(rules), Error);
+  EXPECT_THROW(run.run_accuracy(rules), Error);
   clear_interrupt();
   hold_runs(false);
-  EXPECT_NO_THROW(cell.run_accuracy(rules));
+  EXPECT_NO_THROW(run.run_accuracy(rules));
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-CellSpec rung(const SolverEntry& e, int work) {
-  CellSpec s;
+RunSpec rung(const SolverEntry& e, int work) {
+  RunSpec s;
   s.entry = &e;
   s.work = work;
   return s;
@@ -36,10 +36,10 @@ TEST(LadderBudget, EndsWhereTheNextRungWouldNotFit) {
       << budget.refused(rung(a, 8));
   EXPECT_EQ(budget.refused(rung(b, 8)), "") << "another solver's time";
   EXPECT_EQ(budget.refused(rung(a, 0)), "") << "not on the ladder";
-  EXPECT_EQ(budget.cell_limit_s(rung(a, 4), 20), 5) << "3 s are left, but half of all is allowed";
-  EXPECT_EQ(budget.cell_limit_s(rung(b, 4), 20), 10);
-  EXPECT_EQ(budget.cell_limit_s(rung(b, 0), 20), 20);
-  EXPECT_EQ(LadderBudget(0).cell_limit_s(rung(b, 4), 0), 0);
+  EXPECT_EQ(budget.run_limit_s(rung(a, 4), 20), 5) << "3 s are left, but half of all is allowed";
+  EXPECT_EQ(budget.run_limit_s(rung(b, 4), 20), 10);
+  EXPECT_EQ(budget.run_limit_s(rung(b, 0), 20), 20);
+  EXPECT_EQ(LadderBudget(0).run_limit_s(rung(b, 4), 0), 0);
 }
 
 TEST(LadderBudget, ATimeOutEndsTheLadderWithoutAnyLimit) {
@@ -81,7 +81,7 @@ TEST(Ladder, WhatWouldTakeTooLongIsStoredWithItsReason) {
   entry.make = [&](const nlohmann::json& s, const DeviceOptions& d) {
     return std::make_unique<Slow>(fast(nlohmann::json::object(), d), 1e-3 * s["substeps"].get<int>());
   };
-  CellPlan plan;
+  RunPlan plan;
   plan.protocol = "test";
   plan.rules.trials = 4;
   plan.rules.frames = 5;
@@ -91,36 +91,36 @@ TEST(Ladder, WhatWouldTakeTooLongIsStoredWithItsReason) {
   plan.rules.agree = 0.5;  // a sleep is never that far off by itself
   plan.groups.emplace_back();
   for (const int substeps : {10, 20, 80, 160}) {
-    CellSpec s{&scene, &entry, {{"substeps", substeps}}, "substeps=" + std::to_string(substeps), substeps};
+    RunSpec s{&scene, &entry, {{"substeps", substeps}}, "substeps=" + std::to_string(substeps), substeps};
     plan.groups[0].push_back(s);
   }
   const fs::path out = fs::temp_directory_path() / ("clothbench-ladder-" + std::to_string(getpid()));
   fs::create_directories(out);
   RunOptions options;
   options.out = out;
-  const RunResult result = run_cells(plan, options);
-  EXPECT_EQ(result.cells_ok, 2);
-  EXPECT_EQ(result.cells_over_budget, 2);
-  EXPECT_EQ(result.cells_failed, 0);
+  const RunResult result = execute_runs(plan, options);
+  EXPECT_EQ(result.runs_ok, 2);
+  EXPECT_EQ(result.runs_over_budget, 2);
+  EXPECT_EQ(result.runs_failed, 0);
   EXPECT_TRUE(result.faults.empty());
   EXPECT_GT(result.seconds.at("ballistic"), 0.2);
-  std::map<std::string, CellRecord> cells;
+  std::map<std::string, RunRecord> runs;
   for (const fs::path& f : result.files) {
-    CellRecord c = read_cell(f);
-    cells[c.header.setting] = std::move(c);
+    RunRecord c = read_run(f);
+    runs[c.header.setting] = std::move(c);
   }
-  EXPECT_EQ(cells.at("substeps=80").outcome.status, "over_budget");
-  EXPECT_NE(cells.at("substeps=80").outcome.message.find("not run"), std::string::npos);
-  EXPECT_TRUE(cells.at("substeps=160").trials.empty());
-  EXPECT_LT(cells.at("substeps=10").trials.size(), 4u) << "trials that agree are enough";
-  EXPECT_GE(cells.at("substeps=10").trials.size(), 2u);
-  EXPECT_GT(cells.at("substeps=20").summary.at("untimed_s"), 0.1);
+  EXPECT_EQ(runs.at("substeps=80").outcome.status, "over_budget");
+  EXPECT_NE(runs.at("substeps=80").outcome.message.find("not run"), std::string::npos);
+  EXPECT_TRUE(runs.at("substeps=160").trials.empty());
+  EXPECT_LT(runs.at("substeps=10").trials.size(), 4u) << "trials that agree are enough";
+  EXPECT_GE(runs.at("substeps=10").trials.size(), 2u);
+  EXPECT_GT(runs.at("substeps=20").summary.at("untimed_s"), 0.1);
   fs::remove_all(out);
 }
 
 TEST(Ladder, AllTrialsRunUnlessAskedOtherwise) {
   const Scene scene = load_scene("paper/gravity", {"cloth.grid=[4,4]"});
-  CellPlan plan;
+  RunPlan plan;
   plan.protocol = "test";
   plan.rules.trials = 3;
   plan.rules.frames = 5;
@@ -132,7 +132,7 @@ TEST(Ladder, AllTrialsRunUnlessAskedOtherwise) {
   fs::create_directories(out);
   RunOptions options;
   options.out = out;
-  const CellRecord c = read_cell(run_cells(plan, options).files.at(0));
+  const RunRecord c = read_run(execute_runs(plan, options).files.at(0));
   EXPECT_EQ(c.trials.size(), 3u);
   EXPECT_TRUE(std::isnan(c.trials[0].pipelined_wall_s)) << "not asked for, and the CPU waits anyway";
   fs::remove_all(out);

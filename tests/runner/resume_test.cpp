@@ -26,8 +26,8 @@ class Resume : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(options_.out); }
 
-  CellPlan plan(const Scene& scene, int substeps = 4) const {
-    CellPlan p;
+  RunPlan plan(const Scene& scene, int substeps = 4) const {
+    RunPlan p;
     p.protocol = "test";
     p.rules.trials = 1;
     p.rules.frames = 2;
@@ -37,16 +37,16 @@ class Resume : public ::testing::Test {
     return p;
   }
   /// What going on is refused with, by a look before anything is written and by the run itself.
-  std::string refusal(const CellPlan& p) const {
+  std::string refusal(const RunPlan& p) const {
     std::string looked = "no error";
     try {
-      require_same_cells(options_.out, p, true);
+      require_same_runs(options_.out, p, true);
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), ExitCode::BadInput);
       looked = e.what();
     }
     try {
-      run_cells(p, options_);
+      execute_runs(p, options_);
       EXPECT_EQ(looked, "no error") << "the run did not refuse";
     } catch (const Error& e) {
       EXPECT_EQ(looked, e.what());
@@ -66,12 +66,12 @@ class Resume : public ::testing::Test {
 };
 
 TEST_F(Resume, TheSameIsGoneOnWith) {
-  run_cells(plan(scene_), options_);
+  execute_runs(plan(scene_), options_);
   EXPECT_EQ(refusal(plan(scene_)), "no error");
 }
 
 TEST_F(Resume, AnotherSceneOfTheSameNameIsRefused) {
-  const fs::path file = run_cells(plan(scene_), options_).files.at(0);
+  const fs::path file = execute_runs(plan(scene_), options_).files.at(0);
   const std::string text = refusal(plan(edited_));
   EXPECT_NE(text.find(file.string()), std::string::npos) << text;
   EXPECT_NE(text.find(scene_.sha256.substr(0, 12)), std::string::npos) << text;
@@ -79,53 +79,52 @@ TEST_F(Resume, AnotherSceneOfTheSameNameIsRefused) {
   EXPECT_NE(text.find("--out"), std::string::npos) << text;
 }
 
-TEST_F(Resume, ACellThatWasOnlyBegunIsLookedAtToo) {
-  const Cell cell(plan(scene_).groups[0][0], {}, "test");
-  const CellWriter begun(options_.out, cell.header());
-  const PlannedCell same{cell_name(cell.header()), scene_.sha256, {{"substeps", 4}}, &entry_.info};
-  PlannedCell other = same;
+TEST_F(Resume, ARunThatWasOnlyBegunIsLookedAtToo) {
+  const SolverRun run(plan(scene_).groups[0][0], {}, "test");
+  const RunWriter begun(options_.out, run.header());
+  const PlannedRun same{run_name(run.header()), scene_.sha256, {{"substeps", 4}}, &entry_.info};
+  PlannedRun other = same;
   other.scenario_sha256 = edited_.sha256;
-  require_same_cells(options_.out, {same}, false);
-  EXPECT_THROW(require_same_cells(options_.out, {other}, false), Error);
-  EXPECT_THROW(require_same_cells(options_.out, {other}, true), Error);
+  require_same_runs(options_.out, {same}, false);
+  EXPECT_THROW(require_same_runs(options_.out, {other}, false), Error);
+  EXPECT_THROW(require_same_runs(options_.out, {other}, true), Error);
 }
 
 TEST_F(Resume, OtherSettingsAreRefusedAndDefaultsAreFilledIn) {
-  run_cells(plan(scene_), options_);
+  execute_runs(plan(scene_), options_);
   EXPECT_NE(refusal(plan(scene_, 5)).find("\"substeps\":5"), std::string::npos);
   const std::string name = scene_.name + "__ballistic__default";
-  require_same_cell(options_.out, {name, scene_.sha256, nlohmann::json::object(), &entry_.info});
-  require_same_cell(options_.out, {name, scene_.sha256, nlohmann::json::object(), nullptr});
-  EXPECT_THROW(require_same_cell(options_.out, {name, scene_.sha256, {{"substeps", 5}}, nullptr}), Error);
+  require_same_run(options_.out, {name, scene_.sha256, nlohmann::json::object(), &entry_.info});
+  require_same_run(options_.out, {name, scene_.sha256, nlohmann::json::object(), nullptr});
+  EXPECT_THROW(require_same_run(options_.out, {name, scene_.sha256, {{"substeps", 5}}, nullptr}), Error);
 }
 
 /// What an earlier version stored has the knobs of `tuning` beside the other settings.
 TEST_F(Resume, BothPlacesOfAKnobAreTheSameSettings) {
   entry_.info.tuning = {{"lanes", "0", "of a test"}};
   const auto with = [&](const nlohmann::json& settings) {
-    CellPlan p = plan(scene_);
+    RunPlan p = plan(scene_);
     p.groups[0][0].settings = settings;
     return p;
   };
-  const CellPlan once = with({{"substeps", 4}, {"lanes", 2}}),
-                 now = with({{"substeps", 4}, {"tuning", {{"lanes", 2}}}}),
-                 other = with({{"substeps", 4}, {"tuning", {{"lanes", 1}}}});
-  const Cell cell(once.groups[0][0], {}, "test");
-  CellWriter(options_.out, cell.header());
-  EXPECT_THROW(require_same_cells(options_.out, other, true), Error);
+  const RunPlan once = with({{"substeps", 4}, {"lanes", 2}}), now = with({{"substeps", 4}, {"tuning", {{"lanes", 2}}}}),
+                other = with({{"substeps", 4}, {"tuning", {{"lanes", 1}}}});
+  const SolverRun run(once.groups[0][0], {}, "test");
+  RunWriter(options_.out, run.header());
+  EXPECT_THROW(require_same_runs(options_.out, other, true), Error);
   EXPECT_EQ(refusal(now), "no error") << "begun by the earlier version, finished by this";
-  EXPECT_EQ(refusal(once), "no error") << "of a finished cell";
+  EXPECT_EQ(refusal(once), "no error") << "of a finished run";
 }
 
 TEST_F(Resume, AnotherVersionOfTheSolverIsRefused) {
-  run_cells(plan(scene_), options_);
+  execute_runs(plan(scene_), options_);
   entry_.info.version += "-next";
   EXPECT_NE(refusal(plan(scene_)).find("-next"), std::string::npos);
 }
 
 TEST_F(Resume, WithoutItWhatIsFinishedIsRefused) {
-  run_cells(plan(scene_), options_);
-  EXPECT_THROW(require_same_cells(options_.out, plan(scene_), false), Error);
+  execute_runs(plan(scene_), options_);
+  EXPECT_THROW(require_same_runs(options_.out, plan(scene_), false), Error);
 }
 
 }  // namespace

@@ -141,14 +141,15 @@ TEST_F(Colliders, ItemsOfListsCanBeOverridden) {
 
 TEST(Kinds, TheirTypesAreThoseOfTheSchema) {
   const nlohmann::json schema = nlohmann::json::parse(kSceneSchema);
-  std::set<std::string> told, known;
-  for (const auto& type : schema["properties"]["colliders"]["items"]["properties"]["type"]["enum"]) told.insert(type);
+  std::set<std::string> reported, known;
+  for (const auto& type : schema["properties"]["colliders"]["items"]["properties"]["type"]["enum"])
+    reported.insert(type);
   for (const ColliderKind& kind : collider_kinds())
     for (const ColliderType& type : kind.types) {
       EXPECT_TRUE(known.insert(type.name).second) << type.name;
       EXPECT_TRUE(schema["definitions"].contains(std::string("collider_") + type.name)) << type.name;
     }
-  EXPECT_EQ(told, known);
+  EXPECT_EQ(reported, known);
 }
 
 TEST(Kinds, EveryShapeAndEveryFeatureHasOne) {

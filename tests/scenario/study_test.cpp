@@ -25,7 +25,7 @@ TEST(Study, Table3IsFiveResolutionsByThreeSides) {
   EXPECT_EQ(s.scenes.front().scene.name, "gravity-8-single");
   EXPECT_EQ(s.scenes.back().scene.name, "gravity-128-double");
   EXPECT_EQ(s.scenes.back().scene.cloth.columns, 128);
-  EXPECT_EQ(s.scenes.back().group, 4) << "cells of one resolution are one interleaved group";
+  EXPECT_EQ(s.scenes.back().group, 4) << "runs of one resolution are one interleaved group";
 }
 
 TEST(Study, FaultsNameFileAndPointer) {
@@ -86,7 +86,7 @@ std::string message_of(const std::string& text, StudyOptions options = {}) {
 }
 
 /// Names of solvers and scenes, with the sides of the cloth they get.
-std::vector<std::string> cells(const Study& s) {
+std::vector<std::string> runs(const Study& s) {
   std::vector<std::string> out;
   for (const Study::Item& item : s.scenes)
     for (const std::size_t k : item.solvers)
@@ -100,8 +100,8 @@ TEST(Study, SolversChangeScenesForThemselvesAlone) {
       R"([{"solver":"a","only":["shape"],"set":{"cloth.sides":"double-duplicated","colliders.0.radius_m":0.2}},
                                           {"solver":"b"},{"solver":"a","label":"x","only":["9x7","shape"]}])",
       "", "penetration"));
-  EXPECT_EQ(cells(s), (std::vector<std::string>{"gravity-8 b", "gravity-9x7 b", "gravity-9x7 a x",
-                                                "sphere-drop a duplicated", "sphere-drop b", "sphere-drop a x"}));
+  EXPECT_EQ(runs(s), (std::vector<std::string>{"gravity-8 b", "gravity-9x7 b", "gravity-9x7 a x",
+                                               "sphere-drop a duplicated", "sphere-drop b", "sphere-drop a x"}));
   const Scene& changed = s.scenes[2].scene;
   EXPECT_EQ(changed.colliders.at(0).radius_m, 0.2);
   EXPECT_TRUE(changed.needs.has(Feature::DuplicatedLayer));
@@ -160,7 +160,7 @@ TEST(Study, QuickLeavesOutAndShortens) {
       study_text(solvers, R"(,"quick":{"scenes":["8","sphere-drop"],"solvers":["a x","b"],"trials":2,
     "rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0},"set":{"time.duration_s":0.25}})");
   const Study quick = study_of(text, {{}, StudyLength::Quick});
-  EXPECT_EQ(cells(quick),
+  EXPECT_EQ(runs(quick),
             (std::vector<std::string>{"gravity-8 a x", "gravity-8 b", "sphere-drop a x", "sphere-drop b"}));
   EXPECT_EQ(quick.trials, 2);
   EXPECT_EQ(quick.rules.frames, 5);
@@ -168,7 +168,7 @@ TEST(Study, QuickLeavesOutAndShortens) {
   EXPECT_EQ(study_of(text, {{"time.duration_s=1"}, StudyLength::Quick}).scenes[0].scene.time.frames(), 72)
       << "--set comes last";
   const Study whole = study_of(text), full = study_of(text, {{}, StudyLength::Full});
-  EXPECT_EQ(cells(whole).size(), 9u);
+  EXPECT_EQ(runs(whole).size(), 9u);
   EXPECT_EQ(whole.trials, 5);
   EXPECT_EQ(whole.rules.frames, 72);
   EXPECT_EQ(full.rules.frames, 360);
@@ -184,7 +184,7 @@ TEST(Study, SolversAskedForAloneOrJoined) {
     EXPECT_EQ(s.solvers.size(), 4u);
     EXPECT_TRUE(s.solvers.back().joined);
     std::vector<std::string> gravity8;
-    for (const std::string& c : cells(s))
+    for (const std::string& c : runs(s))
       if (c.starts_with("gravity-8 ")) gravity8.push_back(c.substr(10));
     return gravity8;
   };
@@ -205,8 +205,7 @@ TEST(Study, WordsThatChooseNothingAreFaults) {
   EXPECT_NE(message_of(quick(R"("solvers":["a x"])")).find("/quick/solvers/0"), std::string::npos);
   EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape","fre"]}])")).find("/solvers/0/only/1"),
             std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a"},{"solver":"a"}])")).find("two cells are named"),
-            std::string::npos);
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a"},{"solver":"a"}])")).find("two runs are named"), std::string::npos);
   EXPECT_NE(message_of(study_text(R"([{"solver":"a","set":{"cloth.side":"double"}}])")).find("nearest known: sides"),
             std::string::npos);
   EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape"],"set":{"colliders.1.friction":0}}])"))
@@ -233,10 +232,10 @@ TEST(Study, PenetrationHasEveryCombinationItNames) {
   }
   EXPECT_TRUE(scenes.contains("self-fold") && scenes.contains("self-crumple"));
   EXPECT_EQ(scenes.size(), 15u);
-  const auto all = cells(s);
+  const auto all = runs(s);
   EXPECT_EQ(std::count(all.begin(), all.end(), "desk-flat-low paper whole-room duplicated"), 1);
   const Study quick = load_study("penetration", {{}, StudyLength::Quick});
-  for (const std::string& cell : cells(quick)) EXPECT_EQ(cell.find("whole-room"), std::string::npos);
+  for (const std::string& run : runs(quick)) EXPECT_EQ(run.find("whole-room"), std::string::npos);
 }
 
 TEST(Study, SubMeshAndWholeRoomBeginAlike) {

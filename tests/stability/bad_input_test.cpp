@@ -10,7 +10,7 @@
 
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
-#include "runner/cell.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -82,7 +82,7 @@ class BadInput : public ::testing::TestWithParam<std::size_t> {
   const Case& input() const { return cases()[GetParam()]; }
 };
 
-/// Those that the project answers for. Others are yardsticks, shown as they are: they may blow up, not break the run.
+/// Those that the project answers for. Others are baselines, shown as they are: they may blow up, not break the run.
 bool is_ours(const SolverInfo& info) { return info.name == "xpbd" || info.name == "reference"; }
 
 void expect_sane(const Scene& scene, const SolverEntry& entry) {

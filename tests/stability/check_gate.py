@@ -19,7 +19,7 @@ SPEC.loader.exec_module(GATE)
 CELLS = [{"case": case, "scene": f"{case.lower()}-x", "solver": solver, "setting": "default", "status": "ok", "grade": "stable", "class": "", "frame": "", "message": "a, b"}
          for case in ("S01", "S24", "S26") for solver in ("xpbd", "paper")]
 ACROSS = [{"case": case, "solver": solver, "setting": "default", "figure": "greatest difference, over L", "value": "0", "bound": "0",
-           "verdict": "kept" if solver == "xpbd" else "broken"} for case in ("S24", "S26") for solver in ("xpbd", "paper")]
+           "verdict": "pass" if solver == "xpbd" else "fail"} for case in ("S24", "S26") for solver in ("xpbd", "paper")]
 
 
 def write(path, rows, columns=None):
@@ -33,9 +33,9 @@ class Gate(unittest.TestCase):
     def setUp(self):
         self.temporary = tempfile.TemporaryDirectory()
         self.home = pathlib.Path(self.temporary.name)
-        self.cells, self.across = self.home / "stability.csv", self.home / "stability-across.csv"
+        self.runs, self.across = self.home / "stability.csv", self.home / "stability-across.csv"
         self.summary = self.home / "summary.json"
-        write(self.cells, CELLS)
+        write(self.runs, CELLS)
         write(self.across, ACROSS)
         self.summary.write_text(json.dumps({"stable": 6, "crashed": 0}))
 
@@ -59,34 +59,34 @@ class Gate(unittest.TestCase):
     def test_what_is_right_passes(self):
         self.assertEqual(self.gate(), (0, ""))
         # Another solver may be as bad as it likes, and columns may move.
-        cells = [dict(r, grade="failed", **{"class": "F0"}) if r["solver"] == "paper" else r for r in CELLS]
-        write(self.cells, cells, ["message", "class", "grade", "status", "setting", "solver", "scene", "case"])
+        runs = [dict(r, grade="failed", **{"class": "F0"}) if r["solver"] == "paper" else r for r in CELLS]
+        write(self.runs, runs, ["message", "class", "grade", "status", "setting", "solver", "scene", "case"])
         self.assertEqual(self.gate(), (0, ""))
 
     def test_a_run_out_of_bounds_fails_wherever_its_column_stands(self):
         for klass in ("F0", "F1", "F2"):
-            cells = [dict(r, grade="failed", **{"class": klass}) if r == CELLS[0] else r for r in CELLS]
+            runs = [dict(r, grade="failed", **{"class": klass}) if r == CELLS[0] else r for r in CELLS]
             for columns in (None, ["class", "grade", "status", "setting", "solver", "scene", "case"]):
-                write(self.cells, cells, columns)
+                write(self.runs, runs, columns)
                 self.fails_for(klass)
 
     def test_bits_that_differ_fail(self):
-        for verdict in ("broken", ""):
+        for verdict in ("fail", ""):
             write(self.across, [dict(r, verdict=verdict) if r == ACROSS[0] else r for r in ACROSS])
             self.fails_for("S24")
 
     def test_what_is_not_there_fails(self):
-        write(self.cells, [r for r in CELLS if r["solver"] != "xpbd"])
+        write(self.runs, [r for r in CELLS if r["solver"] != "xpbd"])
         self.fails_for("no run of xpbd")
-        write(self.cells, [dict(r, status="unsupported", grade="") if r["solver"] == "xpbd" else r for r in CELLS])
+        write(self.runs, [dict(r, status="unsupported", grade="") if r["solver"] == "xpbd" else r for r in CELLS])
         self.fails_for("no run of xpbd")
-        write(self.cells, [dict(r, status="missing", grade="failed") if r == CELLS[1] else r for r in CELLS])
+        write(self.runs, [dict(r, status="missing", grade="failed") if r == CELLS[1] else r for r in CELLS])
         self.fails_for("planned, not run")
-        write(self.cells, [], list(CELLS[0]))
+        write(self.runs, [], list(CELLS[0]))
         self.fails_for("no rows")
-        write(self.cells, CELLS, [c for c in CELLS[0] if c != "class"])
+        write(self.runs, CELLS, [c for c in CELLS[0] if c != "class"])
         self.fails_for("no column class")
-        self.cells.unlink()
+        self.runs.unlink()
         self.fails_for("stability.csv: no such file")
 
     def test_comparisons_that_are_not_there_fail(self):

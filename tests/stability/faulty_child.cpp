@@ -1,4 +1,4 @@
-// Stands in for `clothbench run-cell` with solvers that go wrong as their name says, in frame 3.
+// Stands in for `clothbench run-child` with solvers that go wrong as their name says, in frame 3.
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "clothbench/error.hpp"
-#include "runner/cell_process.hpp"
+#include "runner/run_process.hpp"
 
 namespace clothbench {
 namespace {
@@ -84,5 +84,5 @@ const SolverEntry& look_up(const std::string& name) {
 
 int main(int argc, char** argv) {
   if (argc != 3) return 64;
-  return clothbench::run_cell_main(argv[2], clothbench::look_up);
+  return clothbench::run_child_main(argv[2], clothbench::look_up);
 }

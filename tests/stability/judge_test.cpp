@@ -8,7 +8,7 @@
 
 #include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
-#include "runner/cell.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

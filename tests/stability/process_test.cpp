@@ -1,4 +1,4 @@
-// A cell whose process fails becomes a row with its reason, and the study goes on.
+// A run whose process fails becomes a row with its reason, and the study goes on.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -7,8 +7,8 @@
 
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
-#include "runner/cell_process.hpp"
 #include "runner/child.hpp"
+#include "runner/run_process.hpp"
 
 namespace clothbench {
 namespace {
@@ -27,9 +27,9 @@ class Process : public ::testing::Test {
     fs::remove_all(dir_);
   }
 
-  CellAnswer run(const std::string& solver, double limit_s = 0, bool keep = true) {
-    if (!worker_) worker_ = std::make_unique<CellWorker>(FAULTY_CHILD, dir_ / "scratch");
-    CellRequest r;
+  RunAnswer run(const std::string& solver, double limit_s = 0, bool keep = true) {
+    if (!worker_) worker_ = std::make_unique<RunWorker>(FAULTY_CHILD, dir_ / "scratch");
+    RunRequest r;
     r.scenario =
         nlohmann::json::parse(R"({"name": "fall", "why": "falls in a test", "cloth": {"grid": [3, 3], "size_m": [1, 1],
       "areal_density_kg_per_m2": 0.2, "sides": "single"}, "material": {"membrane_stiffness_N_per_m": 1000},
@@ -43,17 +43,17 @@ class Process : public ::testing::Test {
     if (keep) r.out = dir_;
     return worker_->run(r);
   }
-  CellRecord file(const std::string& solver) const {
-    const std::string cell = "fall-" + solver + "__" + solver + "__default";
-    return read_cell_summary(fs::exists(dir_ / (cell + ".h5")) ? dir_ / (cell + ".h5") : dir_ / (cell + ".part"));
+  RunRecord file(const std::string& solver) const {
+    const std::string run = "fall-" + solver + "__" + solver + "__default";
+    return read_run_summary(fs::exists(dir_ / (run + ".h5")) ? dir_ / (run + ".h5") : dir_ / (run + ".part"));
   }
 
   fs::path dir_;
-  std::unique_ptr<CellWorker> worker_;
+  std::unique_ptr<RunWorker> worker_;
 };
 
 TEST_F(Process, AWellBehavedSolverIsStable) {
-  const CellAnswer a = run("falls");
+  const RunAnswer a = run("falls");
   EXPECT_EQ(a.outcome.status, "ok");
   EXPECT_EQ(a.outcome.klass, "ok");
   EXPECT_EQ(a.summary.at("stability_grade"), 0);
@@ -61,31 +61,31 @@ TEST_F(Process, AWellBehavedSolverIsStable) {
 }
 
 TEST_F(Process, ACrashIsStoredWithItsSignal) {
-  const CellAnswer a = run("crashes");
+  const RunAnswer a = run("crashes");
   EXPECT_EQ(a.outcome.status, "crashed");
   EXPECT_EQ(a.outcome.klass, "F8");
   EXPECT_NE(a.outcome.message.find("signal 11"), std::string::npos) << a.outcome.message;
   EXPECT_EQ(a.summary.at("stability_grade"), 2);
-  const CellRecord stored = file("crashes");
+  const RunRecord stored = file("crashes");
   EXPECT_EQ(stored.outcome.status, "crashed");
   EXPECT_EQ(stored.outcome.message, a.outcome.message);
   EXPECT_EQ(stored.summary.at("stability_grade"), 2);
 }
 
 TEST_F(Process, AnAbortKeepsItsLastWords) {
-  const CellAnswer a = run("aborts");
+  const RunAnswer a = run("aborts");
   EXPECT_EQ(a.outcome.status, "crashed");
   EXPECT_NE(a.outcome.message.find("the assertion failed"), std::string::npos) << a.outcome.message;
 }
 
 TEST_F(Process, AnExitWithoutAnswerIsACrash) {
-  const CellAnswer a = run("exits");
+  const RunAnswer a = run("exits");
   EXPECT_EQ(a.outcome.status, "crashed");
   EXPECT_NE(a.outcome.message.find("exit status 2"), std::string::npos) << a.outcome.message;
 }
 
 TEST_F(Process, AHangIsKilledAndTimedOut) {
-  const CellAnswer a = run("hangs", 0.5);
+  const RunAnswer a = run("hangs", 0.5);
   EXPECT_EQ(a.outcome.status, "timed_out");
   EXPECT_EQ(a.outcome.klass, "F8");
   EXPECT_LT(a.wall_s, 30);
@@ -94,7 +94,7 @@ TEST_F(Process, AHangIsKilledAndTimedOut) {
 
 TEST_F(Process, WhatASolverThrowsIsARow) {
   for (const char* solver : {"throws", "refuses", "no-memory"}) {
-    const CellAnswer a = run(solver);
+    const RunAnswer a = run(solver);
     EXPECT_EQ(a.outcome.status, "error") << solver;
     EXPECT_FALSE(a.outcome.message.empty()) << solver;
     EXPECT_EQ(file(solver).outcome.message, a.outcome.message) << solver;
@@ -102,7 +102,7 @@ TEST_F(Process, WhatASolverThrowsIsARow) {
 }
 
 TEST_F(Process, ALostDeviceIsF8InItsFrame) {
-  const CellAnswer a = run("loses-device");
+  const RunAnswer a = run("loses-device");
   EXPECT_EQ(a.outcome.status, "device_lost");
   EXPECT_EQ(a.outcome.klass, "F8");
   EXPECT_EQ(a.outcome.failed_frame, 3);
@@ -110,7 +110,7 @@ TEST_F(Process, ALostDeviceIsF8InItsFrame) {
 }
 
 TEST_F(Process, NotANumberIsF0InItsFrame) {
-  const CellAnswer a = run("nan");
+  const RunAnswer a = run("nan");
   EXPECT_EQ(a.outcome.status, "not_finite");
   EXPECT_EQ(a.outcome.klass, "F0");
   EXPECT_EQ(a.outcome.failed_frame, 3);
@@ -123,7 +123,7 @@ TEST_F(Process, WithoutAFolderNothingIsKept) {
   for (const auto& entry : fs::directory_iterator(dir_)) EXPECT_EQ(entry.path().filename(), "scratch");
 }
 
-TEST_F(Process, OneChildTakesManyCellsAndIsReplacedAfterAFault) {
+TEST_F(Process, OneChildTakesManyRunsAndIsReplacedAfterAFault) {
   EXPECT_EQ(run("falls", 0, false).outcome.status, "ok");
   EXPECT_EQ(run("nan", 0, false).outcome.status, "not_finite");
   EXPECT_EQ(run("falls", 0, false).outcome.status, "ok");
@@ -138,17 +138,17 @@ TEST_F(Process, OneChildTakesManyCellsAndIsReplacedAfterAFault) {
   EXPECT_EQ(worker_->children(), 4);
 }
 
-TEST_F(Process, LastWordsAreOfTheCellThatFailed) {
+TEST_F(Process, LastWordsAreOfTheRunThatFailed) {
   EXPECT_EQ(run("says", 0, false).outcome.status, "ok");
-  const CellAnswer a = run("hangs", 0.5, false);
+  const RunAnswer a = run("hangs", 0.5, false);
   EXPECT_EQ(a.outcome.status, "timed_out");
   EXPECT_EQ(a.outcome.message.find("something else"), std::string::npos) << a.outcome.message;
 }
 
 TEST(Answer, KeepsInfinityOnItsWayThroughJson) {
-  CellAnswer a;
+  RunAnswer a;
   a.summary = {{"stability_depth_max", INFINITY}, {"stability_unrest_max", kMissing}};
-  const CellAnswer b = answer_from_json(nlohmann::json::parse(to_json(a).dump()));
+  const RunAnswer b = answer_from_json(nlohmann::json::parse(to_json(a).dump()));
   EXPECT_EQ(b.summary.at("stability_depth_max"), INFINITY);
   EXPECT_TRUE(std::isnan(b.summary.at("stability_unrest_max")));
   EXPECT_TRUE(std::isnan(b.wall_s));

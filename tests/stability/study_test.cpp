@@ -47,7 +47,7 @@ class StabilityStudy : public ::testing::Test {
                    {"scenes", {{{"file", "thrown.json"}}}},
                    {"solvers", {{{"solver", "falls"}}, {{"solver", "crashes"}}}},
                    {"trials", 1},
-                   {"cell_limit_s", 20},
+                   {"run_limit_s", 20},
                    {"short", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}},
                    {"full", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}},
                    {"maps",
@@ -89,32 +89,32 @@ class StabilityStudy : public ::testing::Test {
   json study_json_;
 };
 
-TEST_F(StabilityStudy, RunsEveryCellAndOneCrashIsOneRow) {
+TEST_F(StabilityStudy, RunsEveryRunAndOneCrashIsOneRow) {
   const Study study = load_study((dir_ / "maps.json").string());
-  const StabilityCounts counts = run_stability_cells(study, options(false));
+  const StabilityCounts counts = execute_stability_runs(study, options(false));
   EXPECT_EQ(counts.stable, 1);
   EXPECT_EQ(counts.failed, 1);
   EXPECT_EQ(counts.crashed, 1);
-  EXPECT_THROW(run_stability_cells(study, options(false)), Error);
-  const StabilityCounts again = run_stability_cells(study, options(true));
+  EXPECT_THROW(execute_stability_runs(study, options(false)), Error);
+  const StabilityCounts again = execute_stability_runs(study, options(true));
   EXPECT_EQ(again.stable, 1);
   EXPECT_EQ(again.failed, 1);
-  std::vector<CellRecord> cells;
+  std::vector<RunRecord> runs;
   for (const auto& entry : fs::directory_iterator(dir_ / "out"))
     if (entry.path().extension() == ".h5" || entry.path().extension() == ".part")
-      cells.push_back(read_cell_summary(entry.path()));
-  ASSERT_EQ(cells.size(), 2u);
-  for (const CellRecord& c : cells) EXPECT_TRUE(is_stability(c));
-  const Table table = robustness_table(cells);
+      runs.push_back(read_run_summary(entry.path()));
+  ASSERT_EQ(runs.size(), 2u);
+  for (const RunRecord& c : runs) EXPECT_TRUE(is_stability(c));
+  const Table table = robustness_table(runs);
   ASSERT_EQ(table.rows.size(), 3u);  // header, S16, all
   for (std::size_t k = 1; k < 3; ++k) {
     const std::string text = table.rows[1][k];
     EXPECT_EQ(text, table.rows[0][k] == "falls" ? "1/1 stable" : "0/1 stable, 1 failed (F8)");
   }
-  const Table failures = first_failure_table(cells);
+  const Table failures = first_failure_table(runs);
   ASSERT_EQ(failures.rows.size(), 2u);
   EXPECT_NE(failures.rows[1][3].find("crashed"), std::string::npos);
-  EXPECT_NE(stability_csv(cells).find("crashed,failed,F8"), std::string::npos);
+  EXPECT_NE(stability_csv(runs).find("crashed,failed,F8"), std::string::npos);
 }
 
 TEST_F(StabilityStudy, ManyProcessesGiveWhatOneGives) {
@@ -148,25 +148,25 @@ TEST_F(StabilityStudy, RunsAreComparedWithOneAnother) {
   write("maps.json", study_json_);
   StabilityOptions many = options(false);
   many.jobs = 3;
-  run_stability_cells(load_study((dir_ / "maps.json").string()), many);
-  std::vector<CellRecord> cells;
+  execute_stability_runs(load_study((dir_ / "maps.json").string()), many);
+  std::vector<RunRecord> runs;
   for (const auto& entry : fs::directory_iterator(dir_ / "out"))
     if (entry.path().extension() == ".h5" || entry.path().extension() == ".part") {
-      cells.push_back(read_cell_summary(entry.path()));
-      cells.back().file = entry.path().string();
+      runs.push_back(read_run_summary(entry.path()));
+      runs.back().file = entry.path().string();
     }
-  ASSERT_EQ(cells.size(), 10u);
+  ASSERT_EQ(runs.size(), 10u);
   int found = 0;
-  for (const AcrossRuns& a : across_runs(cells)) {
+  for (const AcrossRuns& a : across_runs(runs)) {
     SCOPED_TRACE(a.case_name + " " + a.solver + ": " + a.text);
     EXPECT_TRUE(a.judged());
-    EXPECT_EQ(a.kept(), a.solver == "falls");
+    EXPECT_EQ(a.passed(), a.solver == "falls");
     EXPECT_EQ(a.value == 0, a.solver == "falls");
     EXPECT_EQ(a.text.find("other seeds") != std::string::npos, a.case_name == "S26" && a.solver == "falls");
     ++found;
   }
   EXPECT_EQ(found, 3) << "both of S26, and of S24 the one that has something to compare with";
-  EXPECT_EQ(across_table(across_runs(cells)).rows.size(), 4u);
+  EXPECT_EQ(across_table(across_runs(runs)).rows.size(), 4u);
 }
 
 TEST_F(StabilityStudy, MapsEndInOneNumberASolver) {
@@ -227,7 +227,7 @@ std::string refusal(const std::function<void()>& what) {
 
 TEST_F(StabilityStudy, AnotherSceneOrMapIsNotResumed) {
   const Study study = load_study((dir_ / "maps.json").string());
-  run_stability_cells(study, options(false));
+  execute_stability_runs(study, options(false));
   run_stability_maps(study, options(false));
   require_same_study(study, options(true));
   const json first_maps = maps();
@@ -240,14 +240,14 @@ TEST_F(StabilityStudy, AnotherSceneOrMapIsNotResumed) {
   const std::string before = study.scenes.at(0).scene.sha256.substr(0, 12),
                     now = edited.scenes.at(0).scene.sha256.substr(0, 12);
   ASSERT_NE(before, now);
-  const std::string cells = refusal([&] { run_stability_cells(edited, options(true)); });
+  const std::string runs = refusal([&] { execute_stability_runs(edited, options(true)); });
   const std::string probes = refusal([&] { run_stability_maps(edited, options(true)); });
-  for (const std::string& text : {cells, probes, refusal([&] { require_same_study(edited, options(true)); })}) {
+  for (const std::string& text : {runs, probes, refusal([&] { require_same_study(edited, options(true)); })}) {
     EXPECT_NE(text.find(before), std::string::npos) << text;
     EXPECT_NE(text.find(now), std::string::npos) << text;
     EXPECT_NE(text.find("--out"), std::string::npos) << text;
   }
-  EXPECT_NE(cells.find("thrown__"), std::string::npos) << cells;
+  EXPECT_NE(runs.find("thrown__"), std::string::npos) << runs;
   EXPECT_NE(probes.find("stability-probes.jsonl"), std::string::npos) << probes;
   EXPECT_EQ(maps(), first_maps);
 

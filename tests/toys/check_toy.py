@@ -35,7 +35,7 @@ def metric(tree, build):
     build()
     run(sys.executable, tree / "scripts/update_metrics.py", "--check", program)
     scene = json.loads((tree / "scenarios/paper/gravity.json").read_text())
-    for bound, verdict in ((100, "kept"), (-100, "broken")):
+    for bound, verdict in ((100, "pass"), (-100, "fail")):
         scene["expect"] = {"height_max_m": {"at_most": bound}}
         (tree / "scene.json").write_text(json.dumps(scene))
         environment = {**os.environ, "CLOTHBENCH_SCENARIOS": str(tree / "scenarios")}
@@ -60,7 +60,7 @@ def torus(tree, build):
     assert "torus" in needs(tree, tree / "scene.json")
     environment = {**os.environ, "CLOTHBENCH_SCENARIOS": str(tree / "scenarios")}
     told = run(tree / "build/clothbench", "run", tree / "scene.json", "--solver", "ballistic", "--out", tree / "out", "--json", env=environment)
-    assert '"kept"' in told, told
+    assert '"pass"' in told, told
     with h5py.File(next((tree / "out").glob("*.h5"))) as f:
         kept = f["colliders/0"].attrs
         assert (kept["shape"], kept["tube_radius_m"]) == ("torus", 0.03), dict(kept)

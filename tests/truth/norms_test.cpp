@@ -159,8 +159,8 @@ TEST(Norms, Energy) {
   EXPECT_TRUE(std::isnan(energy_error(bad, {}, 1).gain));
 }
 
-// The whole way of a card: a strip's truth on the lattice, and a coarse chain's error against a fine one's, which is
-// spatial.
+// The whole way of a reference case: a strip's truth on the lattice, and a coarse chain's error against a fine one's,
+// which is spatial.
 TEST(Norms, ChainsOfTwoResolutionsOnTheLattice) {
   const MaterialLattice lattice(0.25, 1);
   const std::vector<double> times{0.3};

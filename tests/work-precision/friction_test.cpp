@@ -30,7 +30,7 @@ class Friction : public ::testing::Test {
     }
   }
 
-  /// Error of the card's quantity in the last frame.
+  /// Error of the reference case's quantity in the last frame.
   double end_error(const std::string& name) {
     const Scene s = load_scene("validation/" + name);
     const auto solver = entry_->make(settings_, {});

@@ -12,13 +12,13 @@ TEST_F(Sessions, StepsAndShowsEveryFrame) {
   o.device.validation = true;
   const LoopResult r = run(o, "clock=virtual,look=25");
   ASSERT_EQ(r.log.rows().size(), 30u);
-  EXPECT_EQ(told_["android"], false);
-  EXPECT_EQ(told_["rate_hz"], 72.0) << "asked for, where the display began with 90";
-  EXPECT_EQ(told_["levels"], nlohmann::json({"CPU 50", "GPU 50"})) << "XR_PERF_SETTINGS_LEVEL_SUSTAINED_HIGH_EXT";
-  EXPECT_GE(told_["frames"].get<int>(), 30);
-  EXPECT_GE(told_["projection_frames"].get<int>(), 30);
-  EXPECT_EQ(told_["passthrough_frames"], told_["frames"]);
-  for (const auto& share : told_["drawn"]) {
+  EXPECT_EQ(reported_["android"], false);
+  EXPECT_EQ(reported_["rate_hz"], 72.0) << "asked for, where the display began with 90";
+  EXPECT_EQ(reported_["levels"], nlohmann::json({"CPU 50", "GPU 50"})) << "XR_PERF_SETTINGS_LEVEL_SUSTAINED_HIGH_EXT";
+  EXPECT_GE(reported_["frames"].get<int>(), 30);
+  EXPECT_GE(reported_["projection_frames"].get<int>(), 30);
+  EXPECT_EQ(reported_["passthrough_frames"], reported_["frames"]);
+  for (const auto& share : reported_["drawn"]) {
     EXPECT_GT(share.get<double>(), 0.05) << "the cloth is seen";
     EXPECT_LT(share.get<double>(), 0.9) << "and the room beside it";
   }
@@ -94,9 +94,9 @@ TEST_F(Sessions, WithoutAnyExtensionButVulkanTheScriptIsShown) {
   const LoopResult r =
       run(o, "clock=virtual,hands=0,capsules=0,mesh=0,room=0,passthrough=0,rate=0,levels=0,metrics=0,look=10");
   EXPECT_EQ(r.log.rows().size(), 12u);
-  EXPECT_EQ(told_["rate_hz"], 90.0);
-  EXPECT_EQ(told_["passthrough_frames"], 0);
-  EXPECT_GT(told_["drawn"][0].get<double>(), 0.05);
+  EXPECT_EQ(reported_["rate_hz"], 90.0);
+  EXPECT_EQ(reported_["passthrough_frames"], 0);
+  EXPECT_GT(reported_["drawn"][0].get<double>(), 0.05);
   const Scene saved = load_scene(r.scenario.string());
   EXPECT_EQ(saved.time.frame_rate_hz, 90) << "by the frames' predicted period";
   EXPECT_EQ(replayed(r, o), r.final_position_m);
@@ -115,7 +115,7 @@ TEST_F(Sessions, ACpuSolverIsUploaded) {
   o.entry = &find_solver("ballistic");
   o.settings = complete_settings(o.entry->info, nlohmann::json::object());
   const LoopResult r = run(o, "clock=virtual,look=10");
-  EXPECT_GT(told_["drawn"][1].get<double>(), 0.02);
+  EXPECT_GT(reported_["drawn"][1].get<double>(), 0.02);
   EXPECT_EQ(replayed(r, o), r.final_position_m);
 }
 
@@ -141,7 +141,7 @@ TEST_F(Sessions, WhatIsMissingIsSaid) {
   setenv("CLOTHBENCH_NULL_XR", "clock=virtual,vulkan=0", 1);
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::NoDevice).find("XR_KHR_vulkan_enable2"), std::string::npos);
   setenv("CLOTHBENCH_NULL_XR", "clock=virtual,unseen=0:100000000", 1);
-  o.patience_s = 0.5;
+  o.timeout_s = 0.5;
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::CheckFailed).find("no hand was seen"), std::string::npos);
   setenv("CLOTHBENCH_NULL_XR", "clock=virtual", 1);
   o.scenario = "validation/hang-mesh";

@@ -68,7 +68,7 @@ class Loss : public Sessions {
     EXPECT_FALSE(r.outcome.message.empty());
     ASSERT_GT(r.log.rows().size(), 5u);
     ASSERT_LT(r.log.rows().size(), 60u);
-    const CellRecord stored = read_cell(r.file);
+    const RunRecord stored = read_run(r.file);
     EXPECT_EQ(stored.outcome.status, "device_lost");
     EXPECT_EQ(stored.outcome.klass, "F8");
     ASSERT_EQ(stored.trials.size(), 1u);

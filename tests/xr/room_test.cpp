@@ -13,7 +13,7 @@ TEST_F(Sessions, TheUsersDeskIsPickedAndMet) {
   LoopOptions o = options("paper/desk-flat-low", 45);
   o.device.validation = true;
   const LoopResult r = run(o, "clock=virtual,look=16");
-  EXPECT_GT(told_["drawn"][0].get<double>(), 0.1) << "the room is shown at the press of A";
+  EXPECT_GT(reported_["drawn"][0].get<double>(), 0.1) << "the room is shown at the press of A";
   const Scene scene = load_scene(r.scenario.string());
   const nlohmann::json scenario = parse_json(scene.json, "saved");
   const auto& points = scenario["colliders"][0]["points_m"];

@@ -33,7 +33,7 @@ class Sessions : public ::testing::Test {
     o.settings = complete_settings(o.entry->info, nlohmann::json::object());
     o.runtime = CLOTHBENCH_NULL_RUNTIME;
     o.frames = frames;
-    o.patience_s = 20;
+    o.timeout_s = 20;
     o.out = folder_ / "out";
     return o;
   }
@@ -43,8 +43,8 @@ class Sessions : public ::testing::Test {
     const std::string log = (folder_ / "runtime.json").string();
     setenv("CLOTHBENCH_NULL_XR", (script + ",log=" + log).c_str(), 1);
     LoopResult r = run_loop(o);
-    told_ = parse_json(read_text(log), log);
-    EXPECT_EQ(told_["faults"], nlohmann::json::array()) << "what a strict runtime complains of";
+    reported_ = parse_json(read_text(log), log);
+    EXPECT_EQ(reported_["faults"], nlohmann::json::array()) << "what a strict runtime complains of";
     EXPECT_EQ(r.validation_messages, 0);
     EXPECT_EQ(r.outcome.status, "ok") << r.outcome.message;
     return r;
@@ -64,7 +64,7 @@ class Sessions : public ::testing::Test {
   }
 
   std::filesystem::path folder_;
-  nlohmann::json told_;  ///< by the runtime, when its instance ended
+  nlohmann::json reported_;  ///< by the runtime, when its instance ended
 };
 
 }  // namespace clothbench::xr

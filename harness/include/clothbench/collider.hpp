@@ -38,7 +38,7 @@ struct ColliderMesh {
   bool skinned() const { return !joints.empty(); }
 };
 
-/// Something cloth must not pass. One struct for all shapes; which fields count is told by `shape`. What moves is as at
+/// Something cloth must not pass. One struct for all shapes; `shape` says which fields count. What moves is as at
 /// t = 0 here, and in FrameMotion afterwards.
 struct Collider {
   enum class Shape : std::uint8_t { Plane, Sphere, Box, Capsules, Mesh };

@@ -10,14 +10,14 @@ namespace clothbench {
 
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// How a cell ended. `status` is one of ok, not_finite, diverged, device_lost, timed_out, crashed, unsupported,
+/// How a run ended. `status` is one of ok, not_finite, diverged, device_lost, timed_out, crashed, unsupported,
 /// over_budget (not run: settings of less work had used up its solver's time), error.
 struct Outcome {
   std::string status = "ok";
   std::string klass = "ok";  ///< F0..F8 or ok
   int failed_frame = -1;
   std::string message;
-  /// Of the scene's `expect`: "kept", "broken: " and what, "not measured", or "" if the scene expects nothing.
+  /// Of the scene's `expect`: "pass", "fail: " and what, "not measured", or "" if the scene expects nothing.
   std::string expect = {};
 };
 
@@ -30,9 +30,9 @@ struct StageRecord {
   std::string bytes = {};
 };
 
-/// What is known of a cell before its first frame. Serialised as JSON (`to_json`) in raw files and as attributes in
+/// What is known of a run before its first frame. Serialised as JSON (`to_json`) in raw files and as attributes in
 /// HDF5.
-struct CellHeader {
+struct RunHeader {
   std::string scene, solver, setting;  ///< setting: short name such as "default" or "readback=blocking"
   nlohmann::json settings;             ///< complete
   std::string scenario_json, scenario_sha256;
@@ -90,9 +90,9 @@ struct StoredGroup {
   std::vector<StoredArray> arrays;
 };
 
-/// One cell: one scene x one solver x one setting. What a result file holds.
-struct CellRecord {
-  CellHeader header;
+/// One run: one scene x one solver x one setting. What a result file holds.
+struct RunRecord {
+  RunHeader header;
   std::vector<TimedTrial> trials;
   AccuracyPass accuracy;
   std::vector<StoredGroup> replay;  ///< colliders and grips with their motion; see results/replay.hpp
@@ -100,7 +100,7 @@ struct CellRecord {
   std::map<std::string, double> summary;  ///< every scalar a table prints; NaN = missing
   std::string file = {};                  ///< where a report read it; empty: nowhere
   std::vector<StoredGroup> samples =
-      {};  ///< what the device told meanwhile (results/device_samples.hpp); not read back
+      {};  ///< what the device reported meanwhile (results/device_samples.hpp); not read back
   std::map<std::string, std::string> withheld =
       {};  ///< summary values that a report must not print, and why (report/withheld.hpp)
 };

@@ -170,7 +170,7 @@ struct Scene {
   std::vector<Jump> jumps;
   StabilityRules stability;
   std::optional<std::uint64_t> seed;  ///< its parameters were drawn by this number
-  std::string truth_card;             ///< of the exact answer, "" = none; see harness/truth/card.hpp
+  std::string reference_case;         ///< of the exact answer, "" = none; see harness/truth/reference_case.hpp
 
   /// Where vertex (i, j) starts [m].
   Vec3 rest_position(int i, int j) const;

@@ -48,7 +48,8 @@ std::vector<Edge> structural(const Cloth& c) {
 
 constexpr unsigned bit(int k) { return 1u << k; }
 
-/// Strain of the diagonals as energy: a shear of g strains them by g/2 and stores G g^2/2, G = 3/8 Y; told over Y/2.
+/// Strain of the diagonals as energy: a shear of g strains them by g/2 and stores G g^2/2, G = 3/8 Y; reported over
+/// Y/2.
 double shear_square(const Scene& scene, const std::vector<double>& x) {
   if (!scene.needs.has(Feature::Shear)) return 0;
   double squares = 0;
@@ -68,7 +69,7 @@ StabilityJudge::StabilityJudge(const MetricContext& context)
       edges_(structural(scene_.cloth)),
       triangles_(triangles(scene_.cloth)),
       folds_(folds_of(triangles_)) {
-  if (auto card = truth::card_of(scene_); card && card->settles) at_rest_ = std::move(card);
+  if (auto known = truth::reference_case_of(scene_); known && known->settles) at_rest_ = std::move(known);
   const bool moving_capsule = std::any_of(scene_.colliders.begin(), scene_.colliders.end(),
                                           [](const Collider& c) { return c.capsules.size() == 1; });
   if (moving_capsule) crossing_ = std::make_unique<CapsuleCrossing>(scene_);
@@ -163,8 +164,8 @@ bool StabilityJudge::settled(int frame) const {
   return frame == scene_.time.frames() || (from > 0 && scene_.time.at(frame) >= from);
 }
 
-/// F3. A card of a motion knows every edge; one of a shape at rest only once it is there; without a card loads and
-/// hands bound the truth from above.
+/// F3. A reference case of a motion knows every edge; one of a shape at rest only once it is there; without a reference
+/// case loads and hands bound the truth from above.
 void StabilityJudge::judge_strain(int frame, const Strain& strain, const TruthErrors* truth, StabilityFrame& out) {
   const StabilityRules& rules = scene_.stability;
   if (!relaxed_) {

@@ -8,7 +8,7 @@
 #include "metrics/metric.hpp"
 #include "metrics/stability/crossing.hpp"
 #include "metrics/stability/envelope.hpp"
-#include "truth/card.hpp"
+#include "truth/reference_case.hpp"
 
 namespace clothbench {
 
@@ -76,7 +76,7 @@ class StabilityJudge {
   const std::vector<Edge> edges_;
   const std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<std::array<std::uint32_t, 4>> folds_;  ///< two triangles' corners: shared edge, then the two others
-  std::optional<truth::Card> at_rest_;               ///< the scene's card if it is about a shape at rest
+  std::optional<truth::ReferenceCase> at_rest_;      ///< the scene's known if it is about a shape at rest
   std::unique_ptr<stability::CapsuleCrossing> crossing_;
   double total_mass_ = 0, longer_m_ = 0, g_ = 0, stiffness_ = 0;
   bool relaxed_ = false, ever_relaxed_ = false;

@@ -36,7 +36,7 @@ json published_series(const json& published) {
   return out;
 }
 
-json rate_point(const CellRecord& c, const Resolution& r) {
+json rate_point(const RunRecord& c, const Resolution& r) {
   return {{"width", width_of(r)},
           {"resolution", r.label()},
           {"status", c.outcome.status},
@@ -52,7 +52,7 @@ json rate_point(const CellRecord& c, const Resolution& r) {
 }
 
 json contact_row(const ContactRow& r) {
-  const CellRecord& c = *r.cell;
+  const RunRecord& c = *r.run;
   json time_s = json::array(), series = json::object();
   for (const double t : c.accuracy.time_s) time_s.push_back(six_digits(t));
   for (const MetricSeries& m : c.accuracy.metrics) {
@@ -82,7 +82,7 @@ json rates_json(const std::vector<Family>& all, const json& published) {
     for (const Series& s : f.series()) {
       json points = json::array();
       for (const Resolution& r : f.resolutions())
-        if (const CellRecord* c = f.find(s, r)) points.push_back(rate_point(*c, r));
+        if (const RunRecord* c = f.find(s, r)) points.push_back(rate_point(*c, r));
       series.push_back({{"label", s.label()},
                         {"solver", s.solver},
                         {"setting", s.setting},
@@ -109,7 +109,7 @@ json contact_series_json(const std::vector<ContactSetUp>& ups) {
   return out;
 }
 
-Table environment_table(const std::vector<CellRecord>& cells) {
+Table environment_table(const std::vector<RunRecord>& runs) {
   static constexpr std::pair<const char*, const char*> kKeys[] = {{"gpu", "GPU"},
                                                                   {"gpu_is_software", "GPU is software"},
                                                                   {"device_profile", "device profile"},
@@ -131,22 +131,22 @@ Table environment_table(const std::vector<CellRecord>& cells) {
   };
   struct Place {
     std::vector<std::string> what;
-    std::size_t cells;
+    std::size_t runs;
     std::set<std::string> solvers;
   };
   std::vector<Place> places;
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     if (!c.header.environment.is_object() || c.header.environment.empty()) continue;
     std::vector<std::string> place;
     for (const auto& [key, label] : kKeys) place.push_back(text(c.header.environment, key));
     const auto same = std::find_if(places.begin(), places.end(), [&](const Place& p) { return p.what == place; });
     Place& here = same == places.end() ? places.emplace_back(Place{place, 0, {}}) : *same;
-    ++here.cells;
+    ++here.runs;
     here.solvers.insert(c.header.solver);
   }
-  Table t{"Where the cells ran", "As each result file says.", {{"what"}}};
+  Table t{"Where the runs ran", "As each result file says.", {{"what"}}};
   for (const Place& p : places)
-    t.rows[0].push_back(fmt::format("{} ({} cell{})", fmt::join(p.solvers, ", "), p.cells, p.cells == 1 ? "" : "s"));
+    t.rows[0].push_back(fmt::format("{} ({} run{})", fmt::join(p.solvers, ", "), p.runs, p.runs == 1 ? "" : "s"));
   for (std::size_t k = 0; k < std::size(kKeys); ++k) {
     std::vector<std::string> row = {kKeys[k].second};
     for (const Place& p : places) row.push_back(p.what[k]);
@@ -156,11 +156,11 @@ Table environment_table(const std::vector<CellRecord>& cells) {
   return t;
 }
 
-std::vector<std::string> commands_of(const std::vector<fs::path>& runs) {
+std::vector<std::string> commands_of(const std::vector<fs::path>& results) {
   std::vector<std::string> out;
-  for (const fs::path& run : runs) {
-    if (!fs::exists(run / "study.json")) continue;
-    std::string line = read_manifest(run).command_line;
+  for (const fs::path& result : results) {
+    if (!fs::exists(result / "study.json")) continue;
+    std::string line = read_manifest(result).command_line;
     if (!line.empty() && std::find(out.begin(), out.end(), line) == out.end()) out.push_back(std::move(line));
   }
   return out;

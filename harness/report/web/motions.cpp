@@ -19,8 +19,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostCells = 120;
-constexpr std::size_t kMostFloats = 40'000'000;     // of one cell in memory: 160 MB
+constexpr std::size_t kMostRuns = 120;
+constexpr std::size_t kMostFloats = 40'000'000;     // of one run in memory: 160 MB
 constexpr std::size_t kMostCollider_B = 3'000'000;  // of one scene's colliders, packed
 
 /// Coarser from line to line: frames first, as between them the viewer interpolates.
@@ -31,7 +31,7 @@ constexpr Level kLevels[] = {{1, 65}, {2, 65}, {3, 65},  {4, 65},  {4, 33},
                              {6, 33}, {8, 33}, {12, 33}, {12, 17}, {24, 17}};
 
 struct Candidate {
-  const CellRecord* cell = nullptr;
+  const RunRecord* run = nullptr;
   json scenario;
   std::size_t columns = 0, rows = 0;
   int rank = 0;
@@ -39,17 +39,17 @@ struct Candidate {
 };
 
 /// What a page shows first where not everything fits.
-int rank_of(const CellRecord& c, const std::set<std::string>& fronts) {
+int rank_of(const RunRecord& c, const std::set<std::string>& fronts) {
   if (is_all_on(c)) return 4;
   if (has_truth(c)) return fronts.contains(c.file) || c.header.setting == "default" ? 1 : 3;
   return has_contact(c) ? 0 : 2;
 }
 
-std::vector<Candidate> candidates(const std::vector<CellRecord>& cells, const std::set<std::string>& fronts,
+std::vector<Candidate> candidates(const std::vector<RunRecord>& runs, const std::set<std::string>& fronts,
                                   std::size_t& without) {
   std::vector<Candidate> out;
   std::map<std::tuple<int, std::string, std::string>, std::size_t> turns;
-  for (const CellRecord& c : cells) {
+  for (const RunRecord& c : runs) {
     if (c.file.empty() || c.accuracy.time_s.empty()) continue;
     Candidate k{&c, scenario_of(c)};
     const json grid = k.scenario.is_object() ? k.scenario.value(json::json_pointer("/cloth/grid"), json()) : json();
@@ -65,7 +65,7 @@ std::vector<Candidate> candidates(const std::vector<CellRecord>& cells, const st
     k.turn = turns[{k.rank, c.header.scene, c.header.solver}]++;
     out.push_back(std::move(k));
   }
-  // Every solver's first cell of each scene comes before any second.
+  // Every solver's first run of each scene comes before any second.
   std::stable_sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
     return std::pair(a.rank, a.turn) < std::pair(b.rank, b.turn);
   });
@@ -75,20 +75,20 @@ std::vector<Candidate> candidates(const std::vector<CellRecord>& cells, const st
 class Packer {
  public:
   explicit Packer(std::size_t budget_B) : left_B_(budget_B) {
-    out_.document = {{"cells", json::array()}, {"colliders", json::array()}, {"left_out", json::array()}};
+    out_.document = {{"runs", json::array()}, {"colliders", json::array()}, {"left_out", json::array()}};
   }
 
-  /// The cell's motion in at most its share of what is left; false if it does not fit even at the coarsest.
-  bool add(const Candidate& k, std::size_t cells_left) {
-    const std::size_t share = left_B_ / std::max<std::size_t>(cells_left, 1);
-    const std::size_t frames = k.cell->accuracy.time_s.size();
+  /// The run's motion in at most its share of what is left; false if it does not fit even at the coarsest.
+  bool add(const Candidate& k, std::size_t runs_left) {
+    const std::size_t share = left_B_ / std::max<std::size_t>(runs_left, 1);
+    const std::size_t frames = k.run->accuracy.time_s.size();
     for (const Level& level : kLevels) {
-      if (frames / level.frame_stride * 3 * k.cell->header.vertices > kMostFloats) continue;
+      if (frames / level.frame_stride * 3 * k.run->header.vertices > kMostFloats) continue;
       const std::size_t width = std::max(k.columns, k.rows), step = (width + level.most_width - 1) / level.most_width;
       // Six bytes a vertex, deflated to a fifth at best: what is sure not to fit is not read.
       const std::size_t least_B = frames / level.frame_stride * (k.columns / step) * (k.rows / step) * 6 / 5;
       if (least_B > share) continue;
-      const Replay replay = read_replay(k.cell->file, level.frame_stride);
+      const Replay replay = read_replay(k.run->file, level.frame_stride);
       const PackedMotion motion = pack_motion(replay, k.columns, k.rows, step);
       if (motion.frames.empty()) return false;
       if (const std::size_t size = (motion.bytes.size() + 2) / 3 * 4; size > share) continue;
@@ -109,7 +109,7 @@ class Packer {
   }
 
   void store(const Candidate& k, const Replay& replay, const PackedMotion& motion) {
-    const CellRecord& c = *k.cell;
+    const RunRecord& c = *k.run;
     const auto size = [&](int axis) {
       return k.scenario.value(json::json_pointer(fmt::format("/cloth/size_m/{}", axis)), 0.0);
     };
@@ -146,11 +146,11 @@ class Packer {
               {"metrics", std::move(metrics)}};
     if (const std::string which = colliders(c, replay.groups); !which.empty()) e["colliders"] = std::stoul(which);
     e["blob"] = blob(motion.bytes);
-    out_.document["cells"].push_back(std::move(e));
+    out_.document["runs"].push_back(std::move(e));
   }
 
   /// Index of the colliders among those of the page, as text; "" if there are none or they are too large.
-  std::string colliders(const CellRecord& c, std::vector<StoredGroup> groups) {
+  std::string colliders(const RunRecord& c, std::vector<StoredGroup> groups) {
     if (groups.empty()) return "";
     json described = json::array();
     std::vector<std::string> packed;
@@ -193,16 +193,16 @@ class Packer {
 
 }  // namespace
 
-Motions motions_of(const std::vector<CellRecord>& cells, const std::set<std::string>& fronts, std::size_t budget_B) {
+Motions motions_of(const std::vector<RunRecord>& runs, const std::set<std::string>& fronts, std::size_t budget_B) {
   std::size_t without_grid = 0, too_large = 0, beyond = 0;
-  std::vector<Candidate> all = candidates(cells, fronts, without_grid);
-  if (all.size() > kMostCells) {
-    beyond = all.size() - kMostCells;
-    all.resize(kMostCells);
+  std::vector<Candidate> all = candidates(runs, fronts, without_grid);
+  if (all.size() > kMostRuns) {
+    beyond = all.size() - kMostRuns;
+    all.resize(kMostRuns);
   }
   // Small ones first: what they leave of their share is for the others.
   std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
-    const auto size = [](const Candidate& k) { return k.columns * k.rows * k.cell->accuracy.time_s.size(); };
+    const auto size = [](const Candidate& k) { return k.columns * k.rows * k.run->accuracy.time_s.size(); };
     return size(a) < size(b);
   });
   Packer packer(budget_B);
@@ -214,7 +214,7 @@ Motions motions_of(const std::vector<CellRecord>& cells, const std::set<std::str
   say(too_large, "too large at the coarsest thinning, or not finite from the start");
   say(without_grid, "the cloth is no grid");
   Motions out = packer.take();
-  auto& shown = out.document["cells"];
+  auto& shown = out.document["runs"];
   std::stable_sort(shown.begin(), shown.end(), [](const json& a, const json& b) {
     const auto key = [](const json& j) {
       return std::tuple(j["scene"].get<std::string>(), j["solver"].get<std::string>(), j["setting"].get<std::string>());

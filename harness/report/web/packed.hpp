@@ -16,7 +16,7 @@ inline constexpr double kPackedSteps = 32766;
 /// before predict: X' = 2 X(f-1) - X(f-2), in frame 1 X' = X(0), in frame 0 the vertex before, and for vertex 0 the
 /// origin.
 struct PackedMotion {
-  std::vector<std::size_t> frames;         ///< of the cell's, kept
+  std::vector<std::size_t> frames;         ///< of the run's, kept
   std::vector<std::size_t> columns, rows;  ///< of the cloth's grid, kept
   double step_m = 0;
   std::vector<std::int64_t> origin;  ///< (frame, axis), in steps

@@ -30,7 +30,7 @@ std::string script_safe(const std::string& json_text) {
 
 }  // namespace
 
-json page_document(const std::vector<CellRecord>& cells, const Page& page, const Motions& motions) {
+json page_document(const std::vector<RunRecord>& runs, const Page& page, const Motions& motions) {
   json sections = json::array();
   for (const PageSection& s : page.sections) {
     json tables = json::array();
@@ -39,7 +39,7 @@ json page_document(const std::vector<CellRecord>& cells, const Page& page, const
   }
   return {{"format", "clothbench-report"},
           {"format_version", 1},
-          {"cells", cells.size()},
+          {"runs", runs.size()},
           {"headline", page.headline},
           {"sections", std::move(sections)},
           {"rates", page.rates},
@@ -62,14 +62,14 @@ std::string page_html(const std::string& html, const json& document, const std::
   return html.substr(0, at) + data + html.substr(at + sizeof kDataMark - 1);
 }
 
-std::string write_page(const fs::path& out, const std::vector<CellRecord>& cells, const Page& page,
+std::string write_page(const fs::path& out, const std::vector<RunRecord>& runs, const Page& page,
                        const PageTemplate& from) {
   if (from.html.empty()) {
     fs::remove(out / "index.html");  // an older run's page is not this report's
     return "The interactive page was left out: " + from.missing + ".";
   }
-  const Motions motions = motions_of(cells, page.fronts);
-  write_file_atomically(out / "index.html", page_html(from.html, page_document(cells, page, motions), motions.blobs));
+  const Motions motions = motions_of(runs, page.fronts);
+  write_file_atomically(out / "index.html", page_html(from.html, page_document(runs, page, motions), motions.blobs));
   return "";
 }
 

@@ -3,15 +3,15 @@
 // a path of links of which each vertex of the cloth is on at most one in a family; a thread holds a vertex and the link to the next
 // entry, a workgroup a block of whole chains. The links of a chain are a tridiagonal system in their multipliers (Macklin, Mueller &
 // Chentanez 2016, eq. 18, for all at once), solved by parallel cyclic reduction. The first family of a substep has every vertex
-// and integrates what it loads. A dispatch is one family, or with RESIDENT any number of them: then all its workgroups run at
+// and integrates what it loads. A dispatch is one family, or with PERSISTENT any number of them: then all its workgroups run at
 // once, and wait for one another after each.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 CHAIN_CONSTANTS(SPECIALIZE)
 layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };  // w: inverse mass
 layout(std430, binding = BIND_VELOCITIES) coherent buffer Velocities { vec4 v[]; };
-layout(std430, binding = BIND_POSITION_RESTS) buffer PositionRests { vec4 rx[]; };
-layout(std430, binding = BIND_VELOCITY_RESTS) buffer VelocityRests { vec4 rv[]; };
+layout(std430, binding = BIND_POSITION_COMPENSATION) buffer PositionCompensation { vec4 rx[]; };
+layout(std430, binding = BIND_VELOCITY_COMPENSATION) buffer VelocityCompensation { vec4 rv[]; };
 layout(std430, binding = BIND_CHAIN_ENTRIES) readonly buffer Entries { ChainEntry entries[]; };
 layout(std430, binding = BIND_TETHER_ENDS) readonly buffer TetherEnds { TetherEnd tether_ends[]; };  // TETHERS a vertex
 layout(std430, binding = BIND_CHAIN_FAMILIES) readonly buffer Ranges { ChainRange ranges[]; };
@@ -29,15 +29,15 @@ void move(vec3 step) {
 
 // What the neighbours n entries away hold; beyond the block: zeros. Two pages in turn: while some threads still read one,
 // others write the other.
-shared vec4 letters[2u * THREADS];
-uint page = 0u;
+shared vec4 exchanged[2u * THREADS];
+uint exchange_half = 0u;
 void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
-  uint here = page, thread = gl_LocalInvocationIndex;
-  page = THREADS - page;
-  letters[here + thread] = mine;
+  uint here = exchange_half, thread = gl_LocalInvocationIndex;
+  exchange_half = THREADS - exchange_half;
+  exchanged[here + thread] = mine;
   barrier();
-  below = thread >= n ? letters[here + thread - n] : vec4(0.0);
-  above = thread + n < THREADS ? letters[here + thread + n] : vec4(0.0);
+  below = thread >= n ? exchanged[here + thread - n] : vec4(0.0);
+  above = thread + n < THREADS ? exchanged[here + thread + n] : vec4(0.0);
 }
 
 /// Pinned vertices are never written, so reading them here races with nothing.
@@ -63,7 +63,7 @@ void stretch(ChainEntry entry, uint rounds) {
   vec3 g = is ? e * per_l : vec3(0.0);
   // As in lines.glsl: what is pulled taut between held vertices gives way, by what keeps it regular and its tension from
   // turning links farther than a substep resolves.
-  float firm = entry.firmness;
+  float firm = entry.regularisation;
   if (firm != 0.0 && entry.rest > 0.0) {
     if (entry.compliance == 0.0) firm = max(firm, 4.0 * (l / entry.rest - 5.0));
     else if ((FEATURES & LINES_SHEAR) == 0u) firm = max(firm, l / entry.rest - 1.0);
@@ -110,14 +110,14 @@ void pass(uint number, bool first, uint rounds) {
 }
 
 void main() {
-  if (RESIDENT && p.passes == 0u && !meet()) return;  // asked only whether all can
+  if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // asked only whether all can
   uint block = item() / THREADS;
   for (uint n = p.first_pass; n < p.first_pass + p.passes; ++n) {
-    if (RESIDENT && n > p.first_pass && !meet()) return;
+    if (PERSISTENT && n > p.first_pass && !grid_barrier()) return;
     uint f = n % p.families;
     ChainRange range = ChainRange(p.first_entry, block + 1u, p.rounds, 0u);
-    if (RESIDENT) range = LOAD(16u, ranges, f);
+    if (PERSISTENT) range = LOAD(16u, ranges, f);
     if (block < range.blocks) pass(range.first_entry + item(), f == 0u, range.rounds);
   }
-  if (RESIDENT) leave();
+  if (PERSISTENT) leave_grid_barrier();
 }

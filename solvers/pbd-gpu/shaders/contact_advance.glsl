@@ -2,11 +2,11 @@
 // integration and constraints have put it, without passing through anything on the way: conservative advancement
 // (Mirtich 1996) in space and time, against planes. Where it is at the end is the side it remembers.
 const uint kSteps = 8u;
-bool touched;  // something was heeded
+bool touched;  // some contact was active
 
 /// The contact's answer: no approach is left in the velocity, Coulomb friction takes of the rest, and the way left goes
 /// no nearer than the margin. A push out of the margin moves the point but is no velocity: it would pop.
-void heed(Touch t, inout vec3 vel) {
+void respond_to(Touch t, inout vec3 vel) {
   vec3 surface = t.delta * p.frames_per_s;
   vec3 relative = vel - surface;
   float approach = max(0.0, -dot(relative, t.n));
@@ -23,7 +23,7 @@ void heed(Touch t, inout vec3 vel) {
   }
   vel = surface + relative;
   left = part * t.delta + slide + max(along, -t.gap) * t.n;
-  heeded = t.n;
+  active_normal = t.n;
   touched = true;
 }
 
@@ -35,26 +35,26 @@ vec3 search(vec3 from, vec3 to, uint owner, bool wanted, inout vec3 vel, out flo
   left = to - from;
   now = p.begin;
   part = p.part;
-  heeded = vec3(0.0);
+  active_normal = vec3(0.0);
   touched = false;
   bool done = !wanted;
   vec3 end = to;
   for (uint k = 0u; k < kSteps; ++k) {
     if (!ANY(!done)) return end;
-    look_round(owner, !done);
+    query_proximity(owner, !done);
     if (done) continue;
     if (k == 0u) first_bound = bound;
-    bool first = heeded == vec3(0.0);
+    bool first = active_normal == vec3(0.0);
     // At first any need counts: what many small substeps fall is below the tolerance, and a cloth would creep down a slope
     // that holds it.
     float least = k == 0u ? 0.0 : kTolerance * nearest.margin;
     bool by_nearest = first && nearest.gap < kSlack * nearest.margin && nearest.need > least;
     bool by_other = !by_nearest && other.gap < kFar && (!first || dot(other.n, nearest.n) < kOther);
     if ((by_nearest || by_other) && k + 1u < kSteps) {
-      if (by_nearest) heed(nearest, vel); else heed(other, vel);
+      if (by_nearest) respond_to(nearest, vel); else respond_to(other, vel);
       // A static collider cannot be reached by a displacement shorter than its distance. Else: is it free now?
       float spare = nearest.gap + (1.0 - kKeep) * nearest.margin;
-      if (MOVING == 0u && !crowded && spare > 0.0 && dot(left, left) < spare * spare) {
+      if (MOVING == 0u && !multiple_contacts && spare > 0.0 && dot(left, left) < spare * spare) {
         end = at + left;
         done = true;
       }
@@ -69,7 +69,7 @@ vec3 search(vec3 from, vec3 to, uint owner, bool wanted, inout vec3 vel, out flo
     now += free_part * part;
     left *= 1.0 - free_part;
     part *= 1.0 - free_part;
-    heeded = vec3(0.0);
+    active_normal = vec3(0.0);
     // An unfinished search counts as a hit: the point goes no further than what is next to it.
     end = free_part == 1.0 ? at : at + part * nearest.delta;
     done = free_part == 1.0;

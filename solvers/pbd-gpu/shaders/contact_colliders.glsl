@@ -40,14 +40,14 @@ struct Touch {
 };
 
 // The point asked about: where it is, the way left to it in this substep, time as fraction of the frame, time left, and
-// the normal of the contact that was just heeded.
-vec3 at, left, heeded;
+// the normal of the contact that was active last.
+vec3 at, left, active_normal;
 float now, part;
-// The answer: the nearest piece, the nearest of those to heed, and which share of the way left passes through nothing.
+// The answer: the nearest piece, the nearest of those to respond to, and which share of the way left passes through nothing.
 Touch nearest, other;
 float free_part;
 float bound;   // contact with anything is at least this far away
-bool crowded;  // two pieces are in contact that are not neighbours in a nearly flat mesh
+bool multiple_contacts;  // two pieces are in contact that are not neighbours in a nearly flat mesh
 
 /// A convex piece at distance d lies wholly behind the plane through its nearest point across n. So the way is free
 /// of it as long as the point stays before that plane, whatever the piece's shape: nothing to solve, no root to miss.
@@ -57,9 +57,9 @@ void consider(float d, vec3 n, vec3 delta, float margin, float friction) {
   float spare = d - kKeep * m;
   if (closing > spare && closing > 0.0) free_part = min(free_part, kTaken * max(spare, 0.0) / closing);
   Touch t = Touch(d - m, closing - d + m, m, friction, n, delta);
-  if (max(t.gap, nearest.gap) < kSlack * m && dot(n, nearest.n) < kOther) crowded = true;
+  if (max(t.gap, nearest.gap) < kSlack * m && dot(n, nearest.n) < kOther) multiple_contacts = true;
   if (t.gap < nearest.gap) nearest = t;
-  if (t.gap < kSlack * m && t.need > kTolerance * m && t.gap < other.gap && dot(n, heeded) < kOther) other = t;
+  if (t.gap < kSlack * m && t.need > kTolerance * m && t.gap < other.gap && dot(n, active_normal) < kOther) other = t;
 }
 
 vec3 direction(vec3 d, float l, vec3 otherwise) { return l > 0.0 ? d / l : otherwise; }
@@ -221,18 +221,18 @@ void agree() {
   bound = least_of_lanes(bound);
   Touch own = nearest;
   nearest = touch_of(lane_with(least_of_lanes(own.gap), own.gap), own);
-  crowded = crowded || (own.gap < kSlack * own.margin && dot(own.n, nearest.n) < kOther);
-  crowded = or_of_lanes(crowded ? 1u : 0u) != 0u;
+  multiple_contacts = multiple_contacts || (own.gap < kSlack * own.margin && dot(own.n, nearest.n) < kOther);
+  multiple_contacts = or_of_lanes(multiple_contacts ? 1u : 0u) != 0u;
   if (ANY(other.gap < kFar)) other = touch_of(lane_with(least_of_lanes(other.gap), other.gap), other);
 }
 #endif
 
-void look_round(uint owner, bool wanted) {
+void query_proximity(uint owner, bool wanted) {
   nearest = Touch(kFar, 0.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
   other = nearest;
   free_part = 1.0;
   bound = kFar;
-  crowded = false;
+  multiple_contacts = false;
   if (wanted) consider_shapes();
 #ifdef MESHES
   consider_meshes(owner, wanted);

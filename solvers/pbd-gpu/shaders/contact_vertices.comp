@@ -30,7 +30,7 @@ void gather(uint family, uint first) {
 }
 
 /// What the samples on the up to six edges of the vertex ask for, in a fixed order: the mean weighted by how much each
-/// asks. Equal wishes give that wish, as on a plane, and one among many that are content is not outvoted, as on a corner.
+/// asks. Equal corrections give that correction, as on a plane, and one among many that are content is not outvoted, as on a corner.
 void gather_samples(uint i) {
   uint column = i % p.columns, row = i / p.columns;
   bool right = column + 1u < p.columns, left_of = column > 0u, down = row + 1u < p.rows, up = row > 0u;

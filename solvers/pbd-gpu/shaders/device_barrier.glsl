@@ -1,30 +1,30 @@
 // A barrier over all workgroups of a dispatch. Vulkan does not promise that they run at once; whether they do is tried at
 // loading (`p.passes` = 0), and waiting is bounded: a thread that waits in vain sets a flag for the host and returns.
-layout(std430, binding = BIND_MEETING) coherent volatile buffer Meeting { uint arrived, left; };
-layout(std430, binding = BIND_MISSED) coherent volatile writeonly buffer Missed { uint missed; };  // in host memory
+layout(std430, binding = BIND_BARRIER) coherent volatile buffer Meeting { uint arrived, left; };
+layout(std430, binding = BIND_TIMED_OUT) coherent volatile writeonly buffer TimedOut { uint timed_out; };  // in host memory
 shared bool all_came;
 
 /// Writes of all threads before the barrier are visible to all after it. False if a workgroup did not arrive within
-/// `p.patience` polls.
+/// `p.timeout_polls` polls.
 /// The writers' memoryBarrierBuffer() makes coherent writes visible to any later coherent read of any invocation (GLSL
 /// 4.60, 8.17); readers need none, and one would cost a tenth of the frame.
-bool meet() {
+bool grid_barrier() {
   memoryBarrierBuffer();
   barrier();  // this workgroup's writes before its arrival
   if (gl_LocalInvocationIndex == 0u) {
     uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y, seen = atomicAdd(arrived, 1u) + 1u;
     uint all = (seen + groups - 1u) / groups * groups;
     // What was seen last counts, not the looks left: lavapipe ends every loop of its own after 65535.
-    for (uint looks = 0u; looks < p.patience && seen < all; ++looks) seen = arrived;
+    for (uint looks = 0u; looks < p.timeout_polls && seen < all; ++looks) seen = arrived;
     all_came = seen >= all;
-    if (!all_came) missed = 1u;
+    if (!all_came) timed_out = 1u;
   }
   barrier();  // the others' arrival before this workgroup's reads
   return all_came;
 }
 
 /// The last one out leaves the count as it was found.
-void leave() {
+void leave_grid_barrier() {
   if (gl_LocalInvocationIndex != 0u) return;
   uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
   if (atomicAdd(left, 1u) + 1u < groups) return;

@@ -7,11 +7,11 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 #include "common.glsl"
-#define ONE_LETTER_EACH  // shared memory is for the state
+#define SINGLE_BUFFERED_EXCHANGE  // shared memory is for the state
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
-layout(std430, binding = BIND_POSITION_RESTS) buffer PositionRests { vec4 rx[]; };
-layout(std430, binding = BIND_VELOCITY_RESTS) buffer VelocityRests { vec4 rv[]; };
+layout(std430, binding = BIND_POSITION_COMPENSATION) buffer PositionCompensation { vec4 rx[]; };
+layout(std430, binding = BIND_VELOCITY_COMPENSATION) buffer VelocityCompensation { vec4 rv[]; };
 layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
 #ifdef KEEP_MULTIPLIERS
 layout(std430, binding = BIND_LINK_MULTIPLIERS) buffer LinkMultipliers { float link_multipliers[]; };
@@ -131,14 +131,14 @@ void main() {
         take();
         if (turn == 0u && iteration == 0u) integrate();
         if (kBends && family < 2u) bend();
-        uint firm = family == 0u ? FIRM_0 : family == 1u ? FIRM_1 : family == 2u ? FIRM_2 : FIRM_3;
-        stretch(chain < 32u && (firm >> chain & 1u) != 0u ? p.firmness : 0.0);
+        uint firm = family == 0u ? REGULAR_0 : family == 1u ? REGULAR_1 : family == 2u ? REGULAR_2 : REGULAR_3;
+        stretch(chain < 32u && (firm >> chain & 1u) != 0u ? p.regularisation : 0.0);
         if (turn + 1u == families && iteration + 1u == p.iterations) limit_speed();
         give();
         barrier();  // this family's writes before the next one's reads
       }
   }
-  family = families - 1u;  // whose chains a thread's rests are of
+  family = families - 1u;  // whose chains a thread's compensation are of
   take();
   store();
 }

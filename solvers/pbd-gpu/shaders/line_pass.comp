@@ -1,7 +1,7 @@
 #version 450
 // Families of lines of a cloth of any size, its state in memory. The first family of a substep integrates what it loads,
 // the last limits what it stores; every family has every vertex exactly once, so in place is in order.
-// A dispatch is one family, or with RESIDENT any number of them: then all its workgroups run at once, and wait for one
+// A dispatch is one family, or with PERSISTENT any number of them: then all its workgroups run at once, and wait for one
 // another after each.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -12,9 +12,9 @@
 #include "common.glsl"
 layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) coherent buffer Velocities { vec4 v[]; };
-layout(std430, binding = BIND_POSITION_RESTS) coherent buffer PositionRests { vec4 rx[]; };
-layout(std430, binding = BIND_VELOCITY_RESTS) coherent buffer VelocityRests { vec4 rv[]; };
-layout(std430, binding = BIND_FIRMNESS) readonly buffer Firmness { float firmness[]; };  // a number a chain, families in turn
+layout(std430, binding = BIND_POSITION_COMPENSATION) coherent buffer PositionCompensation { vec4 rx[]; };
+layout(std430, binding = BIND_VELOCITY_COMPENSATION) coherent buffer VelocityCompensation { vec4 rv[]; };
+layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };  // a number a chain, families in turn
 #ifdef KEEP_MULTIPLIERS
 layout(std430, binding = BIND_LINK_MULTIPLIERS) buffer LinkMultipliers { float link_multipliers[]; };
 layout(std430, binding = BIND_HINGE_MULTIPLIERS) buffer HingeMultipliers { vec4 hinge_multipliers[]; };
@@ -29,7 +29,7 @@ vec3 anchor(uvec2 at, uint k) {
 #include "lines_integrate.glsl"
 #include "device_barrier.glsl"
 
-// Rests are of the first family's chains, so threads that stay with them keep them from substep to substep.
+// Compensation terms are of the first family's chains, so threads that stay with them keep them from substep to substep.
 void pass(uint substep, bool first, bool last) {
   uint at[K];
   bool fetches = first && substep == 0u;
@@ -52,7 +52,7 @@ void pass(uint substep, bool first, bool last) {
   }
   float least = 0.0;
   if ((FEATURES & LINES_FIRM) != 0u && chain < chain_count())
-    least = LOAD4(firmness, family * max(COLUMNS, ROWS) + chain);
+    least = LOAD4(regularisation, family * max(COLUMNS, ROWS) + chain);
   if (first) {
     integrate();
     [[unroll]] for (uint k = 0u; k < K; ++k) {
@@ -78,14 +78,14 @@ void main() {
           thread / (LANES * BESIDE) * BESIDE + thread % BESIDE;
   [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = vec3(0.0);
   const uint families = kShears ? 4u : 2u;
-  if (RESIDENT && p.passes == 0u && !meet()) return;  // asked only whether all can
+  if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // asked only whether all can
   for (uint n = p.first_pass; n < p.first_pass + p.passes; ++n) {
-    if (RESIDENT && n > p.first_pass && !meet()) return;
+    if (PERSISTENT && n > p.first_pass && !grid_barrier()) return;
     uint turn = n % families;
     family = families - 1u - turn;
     iteration = n / families % p.iterations;
     pass(n / families / p.iterations, turn == 0u && iteration == 0u,
          turn + 1u == families && iteration + 1u == p.iterations);
   }
-  if (RESIDENT) leave();
+  if (PERSISTENT) leave_grid_barrier();
 }

@@ -44,30 +44,30 @@ float border() { return family < 2u && (chain == 0u || chain + 1u == chain_count
 void set_thread() { thread = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
 const uint PARTS = LANES * BESIDE > SUBGROUP ? LANES * BESIDE / SUBGROUP : 1u;  // subgroups that a chain lies on
 const uint PART = LANES / PARTS;                                               // its threads in one of them
-const uint LETTERS_HELD = PARTS > 1u ? 2u * THREADS : 1u;
+const uint EXCHANGE_SIZE = PARTS > 1u ? 2u * THREADS : 1u;
 bool apart = false;  // the rows a thread holds concern its own subgroup alone
 #else
 void set_thread() { thread = gl_LocalInvocationIndex; }
 const uint PARTS = 1u, PART = LANES;
-const uint LETTERS_HELD = 2u * THREADS;
+const uint EXCHANGE_SIZE = 2u * THREADS;
 #endif
 
-#if defined(SHUFFLES) || !defined(ONE_LETTER_EACH)
+#if defined(SHUFFLES) || !defined(SINGLE_BUFFERED_EXCHANGE)
 // Two pages in turn: while some threads still read one, others write the other.
-shared vec4 letters[LETTERS_HELD];
-uint page = 0u;
-uint post(vec4 mine) {
-  uint here = page;
-  page = THREADS - page;
-  letters[here + thread] = mine;
+shared vec4 exchanged[EXCHANGE_SIZE];
+uint exchange_half = 0u;
+uint publish(vec4 mine) {
+  uint here = exchange_half;
+  exchange_half = THREADS - exchange_half;
+  exchanged[here + thread] = mine;
   barrier();  // the writes before the neighbours' reads
   return here;
 }
 #else
-shared vec4 letters[THREADS];
-uint post(vec4 mine) {
+shared vec4 exchanged[THREADS];
+uint publish(vec4 mine) {
   barrier();  // all reads of the last exchange before the writes of this one
-  letters[thread] = mine;
+  exchanged[thread] = mine;
   barrier();  // the writes before the neighbours' reads
   return 0u;
 }
@@ -82,23 +82,23 @@ void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
     return;
   }
 #endif
-  uint here = post(mine);
-  below = letters[here + (lane >= n ? thread - n * BESIDE : thread)];
-  above = letters[here + (lane + n < LANES ? thread + n * BESIDE : thread)];
+  uint here = publish(mine);
+  below = exchanged[here + (lane >= n ? thread - n * BESIDE : thread)];
+  above = exchanged[here + (lane + n < LANES ? thread + n * BESIDE : thread)];
 }
 
 /// After log2(PARTS) rounds of cyclic reduction every PARTS-th row makes a system of its own: the thread's row goes to the
 /// subgroup that solves its system, and another comes.
 vec4 to_part(vec4 mine) {
-  uint here = post(mine);
-  return letters[here + thread + (lane % PART * PARTS + lane / PART - lane) * BESIDE];
+  uint here = publish(mine);
+  return exchanged[here + thread + (lane % PART * PARTS + lane / PART - lane) * BESIDE];
 }
 
 /// The thread's own row again, and the one before it (anything finite at a chain's start).
 vec4 from_part(vec4 mine, out vec4 below) {
-  uint start = post(mine) + thread - lane * BESIDE, last = lane > 0u ? lane - 1u : 0u;
-  below = letters[start + (last % PARTS * PART + last / PARTS) * BESIDE];
-  return letters[start + (lane % PARTS * PART + lane / PARTS) * BESIDE];
+  uint start = publish(mine) + thread - lane * BESIDE, last = lane > 0u ? lane - 1u : 0u;
+  below = exchanged[start + (last % PARTS * PART + last / PARTS) * BESIDE];
+  return exchanged[start + (lane % PARTS * PART + lane / PARTS) * BESIDE];
 }
 
 float link_lower[K], link_diagonal[K], link_upper[K], link_right[K];
@@ -119,7 +119,7 @@ void from_part_link(inout float d, out float d_below) {
   d_below = below.x;
 }
 #define SOLVE solve_links
-#define LETTERS exchange_link
+#define EXCHANGE_WITH exchange_link
 #define TO_PART to_part_link
 #define FROM_PART from_part_link
 #define MATRIX float
@@ -166,7 +166,7 @@ void from_part_hinge(inout mat3x2 d, out mat3x2 d_below) {
   d_below = mat3x2(below.xy, below.zw, z_below.xy);
 }
 #define SOLVE solve_hinges
-#define LETTERS exchange_hinge
+#define EXCHANGE_WITH exchange_hinge
 #define TO_PART to_part_hinge
 #define FROM_PART from_part_hinge
 #define MATRIX mat2

@@ -6,7 +6,7 @@ const float kSlack = 0.05;
 // Of the distance that layers lack, what one substep gives back.
 const float kPush = 0.5;
 // A certified way leaves this share of the distance at the substep's start, and more of it where it is below a share of the
-// thickness: each substep leaves wishes time to push them apart again.
+// thickness: each substep leaves corrections time to push them apart again.
 const float kLeft = 0.1, kLeftNear = 0.5, kNear = 0.1;
 // Nothing comes nearer than this share of the thickness by its own way: before that, everything stops.
 const float kLast = 1e-3;

@@ -1,17 +1,17 @@
 #version 450
-// Every vertex takes the mean of what it, its triangles and its edges wish, weighted by how much each asks, in a fixed order.
+// Every vertex takes the mean of what it, its triangles and its edges correction, weighted by how much each asks, in a fixed order.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
-layout(std430, binding = BIND_WISHES) readonly buffer Wishes { vec4 wishes[]; };
+layout(std430, binding = BIND_PROPOSED) readonly buffer Corrections { vec4 corrections[]; };
 layout(push_constant) uniform Push { SelfConstants p; };
 
 vec4 way, gain;
 
 void gather(uint slot) {
-  way += LOAD16(wishes, 2u * slot);
-  gain += LOAD16(wishes, 2u * slot + 1u);
+  way += LOAD16(corrections, 2u * slot);
+  gain += LOAD16(corrections, 2u * slot + 1u);
 }
 
 void main() {

@@ -1,5 +1,5 @@
 // A tridiagonal system along a chain, MATRIX a row: LOWER u[i-1] + DIAGONAL u[i] + UPPER u[i+1] = RIGHT. Every thread
-// holds M consecutive rows of it. Included once for each kind of entry, with the macros set: SOLVE and its LETTERS, TO_PART and FROM_PART,
+// holds M consecutive rows of it. Included once for each kind of entry, with the macros set: SOLVE and its EXCHANGE_WITH, TO_PART and FROM_PART,
 // MATRIX, VECTOR, M, UNIT, INVERSE and the four arrays. Threads of a chain beyond its end hold rows of UNIT.
 //
 // Each thread eliminates its own rows, until one a thread is left that knows its neighbours' (Wang 1981, "A parallel
@@ -31,14 +31,14 @@ void SOLVE(uint rounds, out VECTOR before) {
   VECTOR d, d_below;
   MATRIX a_above = M > 1u ? LOWER[0] : zero, c_above = M > 1u ? UPPER[0] : -UNIT;
   VECTOR d_above = M > 1u ? RIGHT[0] : RIGHT[0] - RIGHT[0];
-  LETTERS(1u, a_above, c_above, d_above, a_below, c_below, d_below, a_above, c_above, d_above);
+  EXCHANGE_WITH(1u, a_above, c_above, d_above, a_below, c_below, d_below, a_above, c_above, d_above);
   f = INVERSE(UNIT - UPPER[last] * a_above);
   a = f * LOWER[last];
   c = -(f * (UPPER[last] * c_above));
   d = f * (RIGHT[last] - UPPER[last] * d_above);
   // Past a chain's ends a and c are 0, so what a missing neighbour would say is not heard.
 #define REDUCE(n) \
-    LETTERS(n, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above); \
+    EXCHANGE_WITH(n, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above); \
     f = INVERSE(UNIT - a * c_below - c * a_above); \
     d = f * (d - a * d_below - c * d_above); \
     a = -(f * (a * a_below)); \
@@ -63,7 +63,7 @@ void SOLVE(uint rounds, out VECTOR before) {
 #endif
   {
     for (uint n = 1u; n < LANES && rounds > 0u; n <<= 1u, --rounds) { REDUCE(n) }
-    LETTERS(1u, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above);
+    EXCHANGE_WITH(1u, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above);
   }
 #undef REDUCE
   before = lane > 0u ? d_below : d - d;
@@ -71,7 +71,7 @@ void SOLVE(uint rounds, out VECTOR before) {
   [[unroll]] for (uint k = 0u; k < last; ++k) RIGHT[k] -= LOWER[k] * before + UPPER[k] * d;
 }
 #undef SOLVE
-#undef LETTERS
+#undef EXCHANGE_WITH
 #undef TO_PART
 #undef FROM_PART
 #undef MATRIX

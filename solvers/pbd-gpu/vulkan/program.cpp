@@ -180,10 +180,10 @@ void Program::record_steps(Copy& copy) {
   end();
 }
 
-void Program::wait(std::size_t k, double patience_s) {
+void Program::wait(std::size_t k, double timeout_s) {
   Copy& copy = copies_.at(k);
   if (!copy.in_flight) return;
-  check(vkWaitForFences(device_->handle(), 1, &copy.fence, VK_TRUE, static_cast<std::uint64_t>(patience_s * 1e9)),
+  check(vkWaitForFences(device_->handle(), 1, &copy.fence, VK_TRUE, static_cast<std::uint64_t>(timeout_s * 1e9)),
         "vkWaitForFences");
   copy.in_flight = false;
   check(vkResetFences(device_->handle(), 1, &copy.fence), "vkResetFences");
@@ -208,10 +208,10 @@ void Program::submit(std::size_t k) {
   copy.in_flight = true;
 }
 
-void Program::run(double patience_s) {
-  for (std::size_t k = 0; k < copies_.size(); ++k) wait(k, patience_s);
+void Program::run(double timeout_s) {
+  for (std::size_t k = 0; k < copies_.size(); ++k) wait(k, timeout_s);
   submit(0);
-  wait(0, patience_s);
+  wait(0, timeout_s);
 }
 
 double Program::device_s() const {

@@ -30,8 +30,8 @@ class Program {
   /// step, else only the first and last are taken.
   void record(bool time_stages);
   /// Submits and waits; after a time-out, first waits for the earlier submissions. Throws Failure (VK_TIMEOUT after
-  /// `patience_s`, VK_ERROR_DEVICE_LOST, ...).
-  void run(double patience_s);
+  /// `timeout_s`, VK_ERROR_DEVICE_LOST, ...).
+  void run(double timeout_s);
 
   /// Records what was recorded last once more until there are `count` copies, each with commands, a fence and queries
   /// of its own, so that as many can be in flight at once. Each begins with a barrier against everything before, so
@@ -40,7 +40,7 @@ class Program {
   /// Submits a copy that is not in flight. Throws Failure.
   void submit(std::size_t copy);
   /// Waits until a copy is no longer in flight. Throws as `run`.
-  void wait(std::size_t copy, double patience_s);
+  void wait(std::size_t copy, double timeout_s);
 
   /// Dispatches in each submission: one, or as many as the device profile's dispatches_per_submit asks for.
   const std::vector<std::uint32_t>& submits() const { return submits_; }

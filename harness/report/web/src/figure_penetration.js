@@ -10,7 +10,7 @@ const kMetrics = {
   depth_vertex_m: ['depth at vertices [mm]', 1e3],
   stretch_max: ['greatest strain [%]', 100]
 };
-/// What tells solvers apart, by set-up; a metric that no cell has is left out of its picture.
+/// What tells solvers apart, by set-up; a metric that no run has is left out of its picture.
 const kShown = {
   rooms: ['contact_length_m', 'tunnelled_fraction', 'tunnelled_depth_m'],
   hand: ['contact_length_m', 'tunnelled_fraction', 'depth_m'],
@@ -51,7 +51,7 @@ function panel(scene, metric, labels, theme, width, height) {
     field: 'value',
     type: 'quantitative',
     title,
-    // A line at 0 must be told from the axis.
+    // A line at 0 must be distinguished from the axis.
     scale: log ? {type: 'symlog', constant: 1, domain: [-0.15, 1.1 * most]} : {domain: [-0.04 * top, top], nice: false},
     axis: {
       format: '.6~g',
@@ -97,7 +97,7 @@ function still(up) {
   const file = still_name(`penetration-${up.kind}`), title = `${up.title}: penetration over time`;
   const metrics = (kShown[up.kind] ?? Object.keys(kMetrics)).filter(m => up.scenes.some(s => series_rows(s, m).length));
   const labels = labels_of(up.scenes), failed = up.scenes.some(s => failed_rows(s).length);
-  if (!metrics.length) return {file, title, empty: 'No cell of this set-up was measured.'};
+  if (!metrics.length) return {file, title, empty: 'No run of this set-up was measured.'};
   const across = metrics.length > 1 ? metrics.length : across_of(up.scenes.length, 3);
   const panels =
       up.scenes.flatMap(scene => metrics.map((metric, k) => ({scene, metric, heading: k ? '' : scene.name})));

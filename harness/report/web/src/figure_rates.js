@@ -149,7 +149,7 @@ export function rates_figure(family, index, file) {
     id: `rates-${index}`,
     title,
     spec,
-    caption: 'Uncapped, median of the trials; bars: half their range; a cross on the lower edge: a cell that failed. ' +
+    caption: 'Uncapped, median of the trials; bars: half their range; a cross on the lower edge: a run that failed. ' +
         (paper ? 'Grey: published (Quest 3, capped at 72 Hz, rendering included). ' : '') +
         'Ballistic, the harness without a cloth model, is left out.',
     hint: 'Click a name to show it alone.',
@@ -229,7 +229,7 @@ export function bandwidth_figure(family, index, file) {
   const absent = unique(
       family.series.filter(s => s.points.some(p => p.status === 'ok') && !labels.includes(s.label)).map(s => s.solver));
   const title = `${family.paper_table === 3 ? 'Fig. 5: ' : ''}Peak bandwidth by resolution (${family.name})`;
-  const empty = 'No GPU solver among the cells: no bytes are known.';
+  const empty = 'No GPU solver among the runs: no bytes are known.';
   return {
     id: `bandwidth-${index}`,
     title,

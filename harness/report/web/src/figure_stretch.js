@@ -9,7 +9,7 @@ const dash_of = {
   legend: {symbolType: 'stroke', symbolSize: 300}
 };
 
-/// Cells with a stretch and a time of the GPU; single-sided ones where there are any.
+/// Runs with a stretch and a time of the GPU; single-sided ones where there are any.
 function points_of(family) {
   const all = without_floor(family.series)
                   .flatMap(s => s.points.map(p => ({

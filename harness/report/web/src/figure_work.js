@@ -30,7 +30,7 @@ function data_of(diagram, clock) {
   };
 }
 
-/// Labelled floors of the error. One far below every point is told in words: it would press the points together.
+/// Labelled floors of the error. One far below every point is stated in words: it would press the points together.
 function floors_of(diagram, good) {
   const least = Math.min(...good.map(r => r.error));
   return [
@@ -77,7 +77,7 @@ function work_spec(diagram, clock, theme, width) {
     data: {values: good},
     layer: [
       {
-        name: 'not_told_apart',
+        name: 'not_distinguished',
         data: {values: floors.length ? [{error: Math.max(...floors.map(f => f.error))}] : []},
         mark: {type: 'rect', opacity: 0.12, color: '#808080'},
         encoding: {y, y2: {value: height}, x: {value: 0}, x2: {value: 'width'}}
@@ -162,7 +162,7 @@ export function work_figure(diagrams) {
     file: still_name(`work-precision-${d.scene}`),
     title: `${d.scene}: error against run time`,
     labels: unique(d.points.map(p => p.solver)),
-    empty: data_of(d, 'wall').good.length ? '' : 'No cell of this scene has an error and a time.',
+    empty: data_of(d, 'wall').good.length ? '' : 'No run of this scene has an error and a time.',
     notes: [
       `${d.scene}. Thick: fronts; dashed: by the GPU’s own clock; shaded: not distinguished; ×: failed.`, ...notes_of(d),
       device_note(d.points)
@@ -184,7 +184,7 @@ export function work_figure(diagrams) {
     ],
     caption:
         'Every point a setting, thick each solver’s front, dashed the same by the GPU’s own clock; crosses on the ' +
-        'upper edge: cells that failed, by their time where they have one, else on the right. Dotted: real time ' +
+        'upper edge: runs that failed, by their time where they have one, else on the right. Dotted: real time ' +
         '(1000 ms/s). Shaded: below the floors errors are not distinguished.',
     hint: 'Hover for the setting.',
     rows: state => [

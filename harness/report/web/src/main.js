@@ -49,7 +49,7 @@ function start() {
     document.getElementById(kAfterViewer.includes(s.id) ? 'later' : 'sections').append(section(s, id, own));
     links.push({id, title: s.title, later: kAfterViewer.includes(s.id)});
   }
-  const has_viewer = doc.motions.cells.length > 0;
+  const has_viewer = doc.motions.runs.length > 0;
   const all = [
     ...links.filter(l => !l.later), ...(has_viewer ? [{id: 'viewer-section', title: 'Motions'}] : []),
     ...links.filter(l => l.later), {id: 'rules', title: 'Rules and limits'}

@@ -13,24 +13,24 @@ async function words(index, size) {
 }
 
 export class Motion {
-  /// `cell`: an entry of the document's motions.
-  static async load(cell) {
+  /// `run`: an entry of the document's motions.
+  static async load(run) {
     const m = new Motion();
-    m.cell = cell;
-    m.columns = cell.columns.length;
-    m.rows = cell.rows.length;
+    m.run = run;
+    m.columns = run.columns.length;
+    m.rows = run.rows.length;
     m.vertices = m.columns * m.rows;
-    m.time_s = cell.time_s;
-    const residual = new Uint16Array(await words(cell.blob, 2)), n = m.vertices;
+    m.time_s = run.time_s;
+    const residual = new Uint16Array(await words(run.blob, 2)), n = m.vertices;
     m.position = new Float32Array(residual.length);  // (frame, vertex, xyz)
     let now = new Int32Array(3 * n), before = new Int32Array(3 * n), earlier = new Int32Array(3 * n);
-    for (let f = 0; f < cell.frames.length; ++f) {
+    for (let f = 0; f < run.frames.length; ++f) {
       for (let a = 0, k = 0; a < 3; ++a) {
-        const origin = cell.origin[3 * f + a];
+        const origin = run.origin[3 * f + a];
         for (let v = 0; v < n; ++v, ++k) {
           const predicted = f > 1 ? 2 * before[k] - earlier[k] : f === 1 ? before[k] : v === 0 ? origin : now[k - 1];
           now[k] = origin + ((predicted - origin + residual[3 * n * f + k]) & 0xffff);
-          m.position[3 * (f * n + v) + a] = now[k] * cell.step_m;
+          m.position[3 * (f * n + v) + a] = now[k] * run.step_m;
         }
       }
       [earlier, before, now] = [before, now, earlier];
@@ -72,12 +72,12 @@ export class Motion {
 
   /// [a, b, rest length in m] of the edges along rows and columns.
   structural() {
-    const {cell} = this, out = [], c = this.columns;
-    const du = cell.size_m[0] / (cell.grid[0] - 1), dv = cell.size_m[1] / (cell.grid[1] - 1);
+    const {run} = this, out = [], c = this.columns;
+    const du = run.size_m[0] / (run.grid[0] - 1), dv = run.size_m[1] / (run.grid[1] - 1);
     for (let j = 0; j < this.rows; ++j)
       for (let i = 0; i < c; ++i) {
-        if (i + 1 < c) out.push([j * c + i, j * c + i + 1, du * (cell.columns[i + 1] - cell.columns[i])]);
-        if (j + 1 < this.rows) out.push([j * c + i, (j + 1) * c + i, dv * (cell.rows[j + 1] - cell.rows[j])]);
+        if (i + 1 < c) out.push([j * c + i, j * c + i + 1, du * (run.columns[i + 1] - run.columns[i])]);
+        if (j + 1 < this.rows) out.push([j * c + i, (j + 1) * c + i, dv * (run.rows[j + 1] - run.rows[j])]);
       }
     return out;
   }
@@ -95,12 +95,12 @@ export class Motion {
 
   /// What was left out of it, in words.
   thinning() {
-    const {cell} = this, kept = cell.frames.length, grid = cell.grid[0] * cell.grid[1];
+    const {run} = this, kept = run.frames.length, grid = run.grid[0] * run.grid[1];
     const step =
-        cell.step_m >= 1e-3 ? `${(1e3 * cell.step_m).toPrecision(2)} mm` : `${(1e6 * cell.step_m).toPrecision(2)} µm`;
-    return `${kept === cell.frames_stored ? 'every frame' : `${kept} of ${cell.frames_stored} frames`}, ` +
+        run.step_m >= 1e-3 ? `${(1e3 * run.step_m).toPrecision(2)} mm` : `${(1e6 * run.step_m).toPrecision(2)} µm`;
+    return `${kept === run.frames_stored ? 'every frame' : `${kept} of ${run.frames_stored} frames`}, ` +
         `${this.vertices === grid ? 'every vertex' : `${this.vertices} of ${grid} vertices`}, positions to ${step}` +
-        (cell.cut_at >= 0 ? `; ends where it flew apart or was not finite, frame ${cell.cut_at}` : '');
+        (run.cut_at >= 0 ? `; ends where it flew apart or was not finite, frame ${run.cut_at}` : '');
   }
 }
 

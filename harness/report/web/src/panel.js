@@ -43,7 +43,7 @@ export class Panel {
         {length: motion.vertices},
         (_, v) => [(v % motion.columns) / (motion.columns - 1), Math.floor(v / motion.columns) / (motion.rows - 1)]);
     g.setAttribute('uv', new THREE.BufferAttribute(new Float32Array(uv.flat()), 2));
-    this.checks = checks(motion.cell.size_m);
+    this.checks = checks(motion.run.size_m);
     this.cloth = new THREE.Mesh(
         g, new THREE.MeshStandardMaterial({vertexColors: true, side: THREE.DoubleSide, roughness: 0.85, metalness: 0}));
     this.wires = new THREE.LineSegments(
@@ -74,9 +74,9 @@ export class Panel {
     this.scene.add(this.cloth, this.wires, this.group, sky, sun);
   }
 
-  static async load(motions, cell) {
-    const groups = cell.colliders === undefined ? [] : motions.colliders[cell.colliders];
-    const [motion, colliders] = await Promise.all([Motion.load(cell), load_colliders(groups)]);
+  static async load(motions, run) {
+    const groups = run.colliders === undefined ? [] : motions.colliders[run.colliders];
+    const [motion, colliders] = await Promise.all([Motion.load(run), load_colliders(groups)]);
     return new Panel(motion, colliders);
   }
 

@@ -3,9 +3,9 @@ import {download, element, file_name} from './dom.js';
 const csv_field = text => /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 export const to_csv = rows => rows.map(row => row.map(csv_field).join(',') + '\n').join('');
 
-const markdown_cell = text => text.replaceAll('|', '\\|').replace(/[\n\r]/g, ' ');
+const markdown_run = text => text.replaceAll('|', '\\|').replace(/[\n\r]/g, ' ');
 export function to_markdown(t) {
-  const line = row => '| ' + row.map(markdown_cell).join(' | ') + ' |\n';
+  const line = row => '| ' + row.map(markdown_run).join(' | ') + ' |\n';
   const rule = '|---|' +
       '--:|'.repeat(t.rows[0].length - 1) + '\n';
   return `### ${t.title}\n\n` + line(t.rows[0]) + rule + t.rows.slice(1).map(line).join('') +
@@ -61,8 +61,8 @@ export function to_latex(t) {
       (t.note ? `\n  \\footnotesize ${tex_text(t.note)}\n` : '') + '\\end{table}\n';
 }
 
-const kBad = /^(broken|unsupported|missing|diverged|not_finite|timed_out|device_lost|error|no$|NO|REFUSED)/;
-const kGood = /^(kept|yes$)/;
+const kBad = /^(fail\b|unsupported|missing|diverged|not_finite|timed_out|device_lost|error|no$|NO|REFUSED)/;
+const kGood = /^(pass\b|yes$)/;
 const is_number = text => /^[≤<>]?\s?[-−]?\d/.test(text) || text === '–';
 
 function body_cell(text, row_header, numeric) {

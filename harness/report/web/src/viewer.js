@@ -1,4 +1,4 @@
-// Motions of any cells, side by side and in step.
+// Motions of any runs, side by side and in step.
 import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 
@@ -72,7 +72,7 @@ class Viewer {
   }
 
   build() {
-    const scenes = [...new Set(this.motions.cells.map(c => c.scene))];
+    const scenes = [...new Set(this.motions.runs.map(c => c.scene))];
     this.canvas = element('canvas', {
       role: 'img',
       tabindex: '0',
@@ -172,9 +172,9 @@ class Viewer {
 
   /// All solvers on a scene, as many as fit; settings other than the default only where there is room.
   async show_scene(scene) {
-    const cells = this.motions.cells.filter(c => c.scene === scene);
-    const first = cells.filter((c, k) => cells.findIndex(d => d.solver === c.solver) === k),
-          others = cells.filter(c => !first.includes(c));
+    const runs = this.motions.runs.filter(c => c.scene === scene);
+    const first = runs.filter((c, k) => runs.findIndex(d => d.solver === c.solver) === k),
+          others = runs.filter(c => !first.includes(c));
     const list = this.scene_list.querySelector('select');
     list.value = scene;
     await this.set([...first, ...others].slice(0, Math.min(kMostPanels, Math.max(first.length, 2))));
@@ -182,9 +182,9 @@ class Viewer {
     say(`${scene}: ${this.panels.length} motions`);
   }
 
-  async set(cells) {
+  async set(runs) {
     const turn = this.turn = (this.turn ?? 0) + 1;
-    const panels = await Promise.all(cells.map(c => Panel.load(this.motions, c)));
+    const panels = await Promise.all(runs.map(c => Panel.load(this.motions, c)));
     if (turn !== this.turn) return panels.forEach(p => p.dispose());  // another choice came in between
     this.panels.forEach(p => p.dispose());
     this.panels = panels;
@@ -193,20 +193,20 @@ class Viewer {
   }
 
   async add() {
-    const used = this.panels.map(p => p.motion.cell);
-    const next = this.motions.cells.find(c => !used.includes(c) && c.scene === used[0]?.scene) ??
-        this.motions.cells.find(c => !used.includes(c));
+    const used = this.panels.map(p => p.motion.run);
+    const next = this.motions.runs.find(c => !used.includes(c) && c.scene === used[0]?.scene) ??
+        this.motions.runs.find(c => !used.includes(c));
     if (next && this.panels.length < kMostPanels) await this.set([...used, next]);
   }
 
-  replace(k, cell) {
-    const cells = this.panels.map(p => p.motion.cell);
-    if (cell) cells[k] = cell;
-    else cells.splice(k, 1);
-    return this.set(cells);
+  replace(k, run) {
+    const runs = this.panels.map(p => p.motion.run);
+    if (run) runs[k] = run;
+    else runs.splice(k, 1);
+    return this.set(runs);
   }
 
-  /// Cells of one scene stand where they are; another scene's middle is moved to the same place.
+  /// Runs of one scene stand where they are; another scene's middle is moved to the same place.
   arrange() {
     this.end = Math.max(0, ...this.panels.map(p => p.motion.time_s.at(-1)));
     this.scrub.max = String(this.end || 1);
@@ -214,7 +214,7 @@ class Viewer {
     this.middles = {};
     for (const p of this.panels) {
       const box = p.view_box();
-      this.middles[p.motion.cell.scene] ??= box.getCenter(new THREE.Vector3()).negate();
+      this.middles[p.motion.run.scene] ??= box.getCenter(new THREE.Vector3()).negate();
       this.radius = Math.max(this.radius, box.getSize(new THREE.Vector3()).length() / 2);
     }
     this.colour(this.colouring);
@@ -225,24 +225,24 @@ class Viewer {
     this.overlay.style.grid = `repeat(${rows}, 1fr) / repeat(${columns}, 1fr)`;
     this.overlay.replaceChildren(...this.panels.map((p, k) => this.label(p, k)));
     this.notes.replaceChildren(
-        ...this.panels.map(p => element('li', {}, `${this.name(p.motion.cell)}: ${p.motion.thinning()}.`)));
-    this.add_button.disabled = this.panels.length >= kMostPanels || this.panels.length >= this.motions.cells.length;
+        ...this.panels.map(p => element('li', {}, `${this.name(p.motion.run)}: ${p.motion.thinning()}.`)));
+    this.add_button.disabled = this.panels.length >= kMostPanels || this.panels.length >= this.motions.runs.length;
     this.resize();
   }
 
-  name(cell) { return `${cell.scene} · ${cell.label}`; }
+  name(run) { return `${run.scene} · ${run.label}`; }
 
   label(panel, k) {
-    const cells = this.motions.cells,
-          groups = [...new Set(cells.map(c => c.scene))].map(
+    const runs = this.motions.runs,
+          groups = [...new Set(runs.map(c => c.scene))].map(
               s => element(
                   'optgroup', {label: s},
-                  cells.map(
+                  runs.map(
                       (c, n) => c.scene === s ?
-                          element('option', {value: String(n), selected: c === panel.motion.cell}, this.name(c)) :
+                          element('option', {value: String(n), selected: c === panel.motion.run}, this.name(c)) :
                           null)));
     const list = element(
-        'select', {'aria-label': `Motion ${k + 1}`, onchange: () => this.replace(k, cells[Number(list.value)])},
+        'select', {'aria-label': `Motion ${k + 1}`, onchange: () => this.replace(k, runs[Number(list.value)])},
         groups);
     const close = element(
         'button', {type: 'button', 'aria-label': `Remove motion ${k + 1}`, onclick: () => this.replace(k, null)}, '×');
@@ -278,7 +278,7 @@ class Viewer {
     this.legend.replaceChildren();
     if (kind === 'strain' && !this.chosen.strain) {
       // The least that holds nine of ten frames' greatest strain to a half.
-      const all = this.panels.flatMap(p => p.motion.cell.metrics.stretch_max ?? [])
+      const all = this.panels.flatMap(p => p.motion.run.metrics.stretch_max ?? [])
                       .filter(v => v !== null)
                       .sort((a, b) => a - b);
       const most = all[Math.floor(0.9 * all.length)] ?? 0.05;
@@ -350,7 +350,7 @@ class Viewer {
     this.panels.forEach((p, k) => {
       const shown = p.show(this.time, this.colouring, this.most[this.colouring]);
       if (this.follow) p.middle(p.scene.position).negate();
-      else p.scene.position.copy(this.middles[p.motion.cell.scene]);
+      else p.scene.position.copy(this.middles[p.motion.run.scene]);
       p.group.visible = this.colliders;
       p.wires.visible = this.wires;
       p.scene.background = new THREE.Color(theme() === 'dark' ? 0x1a2028 : 0xf2f4f6);
@@ -364,22 +364,22 @@ class Viewer {
   }
 
   readout(panel, shown) {
-    const {cell} = panel.motion, [f] = panel.motion.place(this.time), words = [];
-    if (cell.status !== 'ok')
-      words.push(cell.failed_frame >= 0 ? `${cell.status} at frame ${cell.failed_frame}` : cell.status);
+    const {run} = panel.motion, [f] = panel.motion.place(this.time), words = [];
+    if (run.status !== 'ok')
+      words.push(run.failed_frame >= 0 ? `${run.status} at frame ${run.failed_frame}` : run.status);
     for (const [key, [word, text]] of Object.entries(kWords)) {
-      const v = cell.metrics[key]?.[f];
+      const v = run.metrics[key]?.[f];
       if (v !== undefined && v !== null) words.push(`${word} ${text(v)}`);
     }
     if (shown?.crossing) words.push(`${shown.crossing} vertices at a crossing`);
-    return words.join(' · ') || cell.sides;
+    return words.join(' · ') || run.sides;
   }
 
   picture() {
     this.draw();
     const link = element(
         'a',
-        {href: this.canvas.toDataURL('image/png'), download: `${this.panels[0]?.motion.cell.scene ?? 'motion'}.png`});
+        {href: this.canvas.toDataURL('image/png'), download: `${this.panels[0]?.motion.run.scene ?? 'motion'}.png`});
     link.click();
   }
 }
@@ -388,8 +388,8 @@ export function start_viewer(root, motions) {
   const viewer = new Viewer(root, motions);
   if (!viewer.broken) {
     // The first scene with something to touch says most.
-    const cell = motions.cells.find(c => c.colliders !== undefined && c.setting !== 'all-on') ?? motions.cells[0];
-    viewer.ready = viewer.show_scene(cell.scene);
+    const run = motions.runs.find(c => c.colliders !== undefined && c.setting !== 'all-on') ?? motions.runs[0];
+    viewer.ready = viewer.show_scene(run.scene);
   }
   return viewer;
 }

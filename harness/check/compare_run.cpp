@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "check/compare.hpp"
+#include "check/gates.hpp"
+#include "clothbench/error.hpp"
+#include "metrics/registry.hpp"
+
+namespace clothbench {
+namespace {
+
+/// A blow-up grows exponentially out of rounding, so the frame that it is noticed at moves a little between devices.
+constexpr int kFailedFrameSlack = 2;
+constexpr double kFailedFrameRelativeSlack = 0.1;
+
+constexpr const char* kNotMeasured = "not measured";
+
+/// Shorter side of the cloth [m].
+double length_of(const RunRecord& r) {
+  const nlohmann::json scene = nlohmann::json::parse(r.header.scenario_json, nullptr, false);
+  const nlohmann::json::json_pointer width("/cloth/size_m/0"), height("/cloth/size_m/1");
+  const auto is_number = [&](const auto& at) { return scene.contains(at) && scene[at].is_number(); };
+  if (scene.is_discarded() || !is_number(width) || !is_number(height))
+    throw Error(r.header.scene + ": the scene in the result file has no /cloth/size_m; expected two numbers");
+  return std::min(scene[width].get<double>(), scene[height].get<double>());
+}
+
+std::string outcome_text(const BaselineRun& c) {
+  std::string text = c.status;
+  if (c.klass != "ok") text += " " + c.klass;
+  if (c.failed_frame >= 0) text += fmt::format(" at frame {}", c.failed_frame);
+  return text;
+}
+
+/// Empty if the outcomes agree.
+std::vector<Finding> compare_outcome(const BaselineRun& was, const BaselineRun& is, const std::string& message) {
+  Finding f{Verdict::Failed, "outcome", outcome_text(was), outcome_text(is), "", message};
+  if (was.status != is.status || was.klass != is.klass) {
+    const bool worked_before = was.status == "ok", works = is.status == "ok";
+    if (works && (!worked_before || is.klass == "ok")) f.verdict = Verdict::Improved;
+    return {f};
+  }
+  if (was.failed_frame == is.failed_frame) return {};
+  const double frames = kFailedFrameSlack + kFailedFrameRelativeSlack * was.failed_frame;
+  f.allowed = fmt::format("frame {:.0f} or later", std::max(0.0, std::ceil(was.failed_frame - frames)));
+  if (was.failed_frame < 0 || is.failed_frame < 0) return {f};
+  if (is.failed_frame < was.failed_frame - frames) return {f};
+  if (is.failed_frame <= was.failed_frame + frames) return {};
+  f.verdict = Verdict::Improved;
+  return {f};
+}
+
+std::vector<Finding> compare_stages(const BaselineRun& was, const BaselineRun& is) {
+  if (was.stages == is.stages) return {};
+  const auto without = [](const std::vector<std::string>& a, const std::vector<std::string>& b) {
+    std::string text;
+    for (const std::string& s : a)
+      if (std::find(b.begin(), b.end(), s) == b.end()) text += (text.empty() ? "" : ", ") + s;
+    return text;
+  };
+  const std::string added = without(is.stages, was.stages), gone = without(was.stages, is.stages);
+  std::string message;
+  if (!added.empty()) message = "not in the baseline: " + added;
+  if (!gone.empty()) message += (message.empty() ? "" : "; ") + ("missing: " + gone);
+  if (message.empty()) message = "the same stages in another order or number";
+  return {{Verdict::Failed, "stages", fmt::format("{} stages", was.stages.size()),
+           fmt::format("{} stages", is.stages.size()), "", message}};
+}
+
+/// Two trials with the same times frame by frame are one trial twice: a clock of nanoseconds does not repeat itself.
+std::vector<Finding> compare_trials(const RunRecord& r) {
+  for (std::size_t i = 0; i < r.trials.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::vector<double>&a = r.trials[i].frame_wall_s, &b = r.trials[j].frame_wall_s;
+      const bool varies = std::any_of(a.begin(), a.end(), [&](double t) { return t != a.front(); });
+      if (varies && a == b)
+        return {{Verdict::Failed, "trials", "each timed anew", fmt::format("trial {} repeats trial {}", i, j), "", ""}};
+    }
+  return {};
+}
+
+std::string shown(const std::string& name, double v) {
+  if (!std::isfinite(v)) return kNotMeasured;
+  if (is_verdict(name) && (v == 0 || v == 1)) return v == 1 ? "pass" : "fail";
+  return fmt::format("{:.6g}", v);
+}
+
+/// Written so that NaN fails: a value passes only by a comparison that holds.
+Verdict judge(const std::string& name, double was, double is, double slack) {
+  if (!std::isfinite(was)) return std::isfinite(is) ? Verdict::New : Verdict::Same;
+  if (is_verdict(name)) return is == was ? Verdict::Same : is > was ? Verdict::Improved : Verdict::Failed;
+  if (!(is <= was + slack)) return Verdict::Failed;
+  return is < was - slack ? Verdict::Improved : Verdict::Same;
+}
+
+int version_in(const BaselineRun& c, const std::string& metric) {
+  const auto at = c.versions.find(metric);
+  return at == c.versions.end() ? 1 : at->second;
+}
+
+bool hangs_on(const std::string& scalar, const std::vector<VersionDifference>& versions) {
+  const std::vector<std::string> behind = metrics_behind(scalar);
+  return std::any_of(versions.begin(), versions.end(),
+                     [&](const auto& v) { return std::find(behind.begin(), behind.end(), v.metric) != behind.end(); });
+}
+
+std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& is, double length_m) {
+  std::map<std::string, double> names = was.scalars;
+  names.insert(is.scalars.begin(), is.scalars.end());
+  const auto value = [](const BaselineRun& c, const std::string& name) {
+    const auto at = c.scalars.find(name);
+    return at == c.scalars.end() ? kMissing : at->second;
+  };
+  std::vector<Finding> out;
+  const std::vector<VersionDifference> versions = version_differences(was, is);
+  for (const VersionDifference& v : versions)
+    out.push_back({Verdict::Failed, "metric " + v.metric, fmt::format("version {}", v.baseline),
+                   fmt::format("version {}", v.found), "", "scalars computed from it are not compared"});
+  for (const auto& [name, unused] : names) {
+    if (hangs_on(name, versions)) continue;
+    const double before = value(was, name), now = value(is, name);
+    const double tolerance = slack(*find_gate(name), before, length_m);
+    const Verdict verdict = judge(name, before, now, tolerance);
+    if (verdict == Verdict::Same) continue;
+    const std::string limit = !is_verdict(name) && std::isfinite(before) ? "≤ " + shown(name, before + tolerance) : "";
+    out.push_back({verdict, name, shown(name, before), shown(name, now), limit, ""});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<VersionDifference> version_differences(const BaselineRun& was, const BaselineRun& is) {
+  std::map<std::string, VersionDifference> out;
+  for (const auto& [name, unused] : was.scalars) {
+    if (!is.scalars.contains(name)) continue;
+    for (const std::string& metric : metrics_behind(name))
+      if (const int a = version_in(was, metric), b = version_in(is, metric); a != b) out[metric] = {metric, a, b};
+  }
+  std::vector<VersionDifference> list;
+  for (auto& [unused, v] : out) list.push_back(std::move(v));
+  return list;
+}
+
+std::vector<Finding> compare_run(const BaselineRun& was, const RunRecord& record) {
+  const BaselineRun is = gated_part(record);
+  if (was.scenario_sha256 != is.scenario_sha256)
+    return {{Verdict::Failed, "scene", was.scenario_sha256.substr(0, 12), is.scenario_sha256.substr(0, 12), "",
+             "the scene changed (SHA-256 of the completed scenario); if that was meant, rewrite the baseline with "
+             "--update"}};
+  std::vector<Finding> out = compare_outcome(was, is, record.outcome.message);
+  if (was.status != is.status) return out;
+  for (const auto& part :
+       {compare_stages(was, is), compare_trials(record), compare_scalars(was, is, length_of(record))})
+    out.insert(out.end(), part.begin(), part.end());
+  return out;
+}
+
+}  // namespace clothbench

@@ -1,0 +1,318 @@
+#include "runner/solver_run.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "metrics/metric_pass.hpp"
+#include "metrics/registry.hpp"
+#include "metrics/stability/judge.hpp"
+#include "results/store.hpp"
+#include "runner/environment.hpp"
+#include "runner/frame_loop.hpp"
+#include "runner/interrupt.hpp"
+#include "runner/jobs.hpp"
+#include "runner/stage_check.hpp"
+
+namespace clothbench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Of a trial's frames, which begin the scene anew with every drop.
+FrameRules frame_rules(const TrialRules& rules, int frames, double max_wall_s = 0) {
+  return {0, frames, rules.drop_frames, max_wall_s, rules.min_frames, kTrialsKept};
+}
+
+bool all_finite(const std::vector<double>& values) {
+  for (double v : values)
+    if (!std::isfinite(v)) return false;
+  return true;
+}
+
+std::string join(FeatureSet set) {
+  std::string text;
+  set.for_each([&](Feature f) { text += (text.empty() ? "" : ", ") + std::string(name_of(f)); });
+  return text;
+}
+
+/// What the declared bytes of a stage are.
+std::string bytes_word(const StagePlan& s) {
+  if (!std::isfinite(s.read_B) && !std::isfinite(s.write_B)) return "";
+  return s.at_least ? "at least" : "computed";
+}
+
+nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
+  nlohmann::json j;
+  for (const BufferPlan& b : plan.buffers)
+    j["buffers"].push_back({{"name", b.name}, {"bytes", b.bytes}, {"device_local", b.device_local}});
+  for (const LeftOut& l : plan.left_out) j["left_out"].push_back({{"what", l.what}, {"why", l.why}});
+  for (std::size_t k = 0; k < std::min(plan.contact_margins_m.size(), scene.colliders.size()); ++k)
+    if (std::isfinite(plan.contact_margins_m[k]))
+      j["contact_margins"].push_back({{"collider", scene.colliders[k].name}, {"margin_m", plan.contact_margins_m[k]}});
+  return j;
+}
+
+/// Settings with per-stage timestamps on, if the solver offers them.
+std::optional<nlohmann::json> with_stage_times(const SolverEntry& entry, nlohmann::json settings) {
+  if (!settings.contains("stage_times") || !entry.info.on_gpu) return std::nullopt;
+  settings["stage_times"] = true;
+  return settings;
+}
+
+void describe_solver(const SolverInfo& info, nlohmann::json& environment) {
+  environment["solver_features"] = describe_features(info);
+  environment["solver_version"] = info.version;
+}
+
+void describe_scene(const Scene& scene, nlohmann::json& environment) {
+  if (!scene.assets.empty()) environment["assets"] = scene.assets;
+  if (scene.seed) environment["seed"] = std::to_string(*scene.seed);
+}
+
+}  // namespace
+
+std::string run_name(const RunSpec& c) { return run_name(c.scene->name, c.entry->info.name, c.setting); }
+
+RunHeader header_of(const Scene& scene, const std::string& solver, const std::string& setting,
+                    const nlohmann::json& settings, const std::string& protocol) {
+  RunHeader h;
+  h.scene = scene.name;
+  h.solver = solver;
+  h.setting = setting;
+  h.settings = settings;
+  h.scenario_json = scene.json;
+  h.scenario_sha256 = scene.sha256;
+  h.environment = describe_environment({}, protocol);
+  h.vertices = static_cast<std::uint32_t>(scene.cloth.vertex_count());
+  for (const auto& t : triangles(scene.cloth)) h.triangles.insert(h.triangles.end(), t.begin(), t.end());
+  return h;
+}
+
+SolverRun::SolverRun(RunSpec spec, const DeviceOptions& device, const std::string& protocol)
+    : spec_(std::move(spec)), device_(device) {
+  const Scene& scene = *spec_.scene;
+  const SolverInfo& info = spec_.entry->info;
+  header_ = header_of(scene, info.name, spec_.setting, spec_.settings, protocol);
+  const auto describe_run = [&] {
+    describe_scene(scene, header_.environment);
+    if (spec_.entry->make) describe_solver(info, header_.environment);
+  };
+  describe_run();
+  const FeatureSet missing = unsupported(info, scene.needs);
+  if (!spec_.entry->make || !missing.empty()) {
+    outcome_ = {"unsupported", "ok", -1,
+                spec_.entry->make ? info.name + " has no " + join(missing) : "not in this build"};
+    return;
+  }
+  if (!spec_.over_budget.empty()) {
+    outcome_ = {"over_budget", "ok", -1, spec_.over_budget};
+    return;
+  }
+  try {
+    solver_ = spec_.entry->make(spec_.settings, device_);
+    const auto start = Clock::now();
+    solver_->load(scene);
+    header_.load_s = seconds_since(start);
+  } catch (const SolverError& e) {
+    solver_.reset();
+    outcome_ = {"error", "F8", -1, e.what()};
+    return;
+  }
+  header_.environment = describe_environment(solver_->device(), protocol);
+  describe_run();
+  plan_ = solver_->plan();
+  header_.plan = plan_json(plan_, scene);
+  for (const StagePlan& s : plan_.stages) {
+    StageRecord record{s.name, {}, s.dispatches, bytes_word(s)};
+    s.serves.for_each([&](Feature f) { record.serves.emplace_back(name_of(f)); });
+    header_.stages.push_back(std::move(record));
+  }
+  if (const std::string fault = check_stages(scene, info, plan_); !fault.empty())
+    outcome_ = {"error", "ok", -1, "stages: " + fault};
+}
+
+Outcome outcome_of(StepStatus status, int frame) {
+  switch (status) {
+    case StepStatus::Ok:
+      break;
+    case StepStatus::NotFinite:
+      return {"not_finite", "F0", frame, "a position or velocity is not finite"};
+    case StepStatus::Diverged:
+      return {"diverged", "F1", frame, "the solver gave up"};
+    case StepStatus::DeviceLost:
+      return {"device_lost", "F8", frame, "the device was lost"};
+    case StepStatus::TimedOut:
+      return {"timed_out", "F8", frame, "the device did not finish in time"};
+  }
+  return {};
+}
+
+void SolverRun::fail(StepStatus status, int frame) {
+  if (status != StepStatus::Ok) outcome_ = outcome_of(status, frame);
+}
+
+int SolverRun::accuracy_frames(double duration_s) const {
+  const TimeSpan& time = spec_.scene->time;
+  return static_cast<int>(std::lround(std::min(duration_s, time.duration_s) * time.frame_rate_hz));
+}
+
+bool SolverRun::usable(const AccuracyPass& pass, double duration_s) const {
+  if (pass.time_s.size() != static_cast<std::size_t>(accuracy_frames(duration_s)) + 1) return false;
+  for (float x : pass.position)
+    if (!std::isfinite(x)) return false;
+  return true;
+}
+
+AccuracyPass SolverRun::run_accuracy(const TrialRules& rules) {
+  const Scene& scene = *spec_.scene;
+  const int frames = accuracy_frames(rules.accuracy_duration_s);
+  const auto start = Clock::now();
+  const int held_before = times_held();
+  const MetricContext context{scene, *spec_.entry, spec_.settings, plan_.contact_margins_m};
+  AccuracyPass pass;
+  MetricPass metrics(context);
+  solver_->reset();
+  ClothState state;
+  const auto observe = [&](int frame, StepStatus status) {
+    fail(status, frame);
+    try {
+      solver_->read_state(state);
+    } catch (const Error& e) {  // there is none: the device is gone
+      if (outcome_.status == "ok") outcome_ = {"device_lost", "F8", frame, e.what()};
+      return;
+    }
+    if (outcome_.status == "ok" && !(all_finite(state.position) && all_finite(state.velocity)))
+      fail(StepStatus::NotFinite, frame);
+    pass.time_s.push_back(scene.time.at(frame));
+    for (double x : state.position) pass.position.push_back(static_cast<float>(x));
+    metrics.add(state);
+    if (outcome_.status == "ok" && metrics.lost())
+      outcome_ = {"diverged", "F1", frame, "speed or energy out of all bounds"};
+    // A pass that was held may take any time.
+    if (outcome_.status == "ok" && rules.run_limit_s > 0 && times_held() == held_before &&
+        seconds_since(start) > rules.run_limit_s && frame < frames)
+      outcome_ = {"timed_out", "F8", frame,
+                  fmt::format("the accuracy pass was not through after {:g} s", rules.run_limit_s)};
+  };
+  stop_if_interrupted(kTrialsKept);
+  observe(0, StepStatus::Ok);
+  FrameLoop loop(*solver_, scene, {.frames = frames, .interrupted = kTrialsKept});
+  while (outcome_.status == "ok" && (loop.next() || loop.failed())) observe(loop.index() + 1, loop.status());
+  pass.metrics = metrics.take();
+  const StabilityVerdict verdict = stability_verdict(pass);
+  if (verdict.klass != "ok" && outcome_.klass != "F8") {
+    outcome_.klass = verdict.klass;
+    outcome_.failed_frame = verdict.frame;
+    if (outcome_.message.empty() || outcome_.status == "diverged")
+      outcome_.message = fmt::format("{}: {}", name_of(verdict.grade), class_name(verdict.klass[1] - '0'));
+  }
+  return pass;
+}
+
+void SolverRun::warm_up(const TrialRules& rules) {
+  constexpr int kLeastFrames = 3;
+  solver_->reset();
+  const auto start = Clock::now();
+  FrameLoop loop(*solver_, *spec_.scene, frame_rules(rules, kAsManyAsItTakes));
+  while (loop.next()) {
+    const double since_s = seconds_since(start);
+    if (loop.index() + 1 >= kLeastFrames && since_s >= rules.warmup_s) return;
+    // One frame as long as a whole trial should be is warm-up enough.
+    if (rules.max_wall_s > 0 && since_s >= std::max(rules.max_wall_s, rules.warmup_s)) return;
+  }
+}
+
+TimedTrial SolverRun::run_trial(int index, const TrialRules& rules, int frames) {
+  TimedTrial trial;
+  trial.index = index;
+  const int jobs_before = jobs_now();
+  warm_up(rules);
+  const std::size_t stages = plan_.stages.size();
+  const int asked = rules.frames > 0 ? rules.frames : spec_.scene->time.frames();
+  trial.start_unix_s = trial.end_unix_s = unix_now();
+  solver_->reset();
+  FrameLoop loop(*solver_, *spec_.scene,
+                 frames > 0 ? frame_rules(rules, frames) : frame_rules(rules, asked, rules.max_wall_s));
+  while (loop.next()) {
+    const FrameCost cost = solver_->last_cost();
+    trial.frame_wall_s.push_back(loop.wall_s());
+    trial.frame_device_s.push_back(cost.device_s);
+    trial.stage_device_s.insert(trial.stage_device_s.end(), stages, kMissing);
+    trial.stage_read_B.insert(trial.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
+    trial.stage_write_B.insert(trial.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
+  }
+  fail(loop.status(), loop.index());
+  trial.end_unix_s = unix_now();
+  trial.jobs = std::max(jobs_before, jobs_now());
+  if (outcome_.status == "ok" && rules.pipelined && solver_->frames_in_flight() > 1) run_pipelined(trial, rules);
+  if (outcome_.status == "ok" && rules.rendering.make) run_rendered(trial, rules);
+  if (outcome_.status == "ok" && rules.profiled_frames > 0) profile_stages(trial, rules.profiled_frames);
+  return trial;
+}
+
+/// The frames of the trial again, drop by drop; what a drop's first frame waits for and its last one drains is in the
+/// clock.
+void SolverRun::run_pipelined(TimedTrial& trial, const TrialRules& rules) {
+  solver_->reset();
+  FrameLoop loop(*solver_, *spec_.scene, frame_rules(rules, trial.frames()));
+  while (loop.next_drop()) {
+  }
+  fail(loop.status(), loop.index());
+  if (!loop.failed()) trial.pipelined_wall_s = loop.elapsed_s() / trial.frames();
+}
+
+void SolverRun::describe(const Rendering& rendering) {
+  if (rendering.describe && solver_) header_.environment["rendering"] = rendering.describe(spec_.entry->info);
+}
+
+/// The frames of the trial again, each drawn before the next begins; fewer where pictures take longer than the trial
+/// may. What draws is made for the trial: images of every run of a group at once would fill a device.
+void SolverRun::run_rendered(TimedTrial& trial, const TrialRules& rules) {
+  solver_->reset();
+  const std::unique_ptr<FrameDrawer> drawer = rules.rendering.make(*spec_.scene, *solver_, device_);
+  drawer->draw(0);  // a driver's first picture takes longer
+  solver_->reset();
+  FrameLoop loop(*solver_, *spec_.scene, frame_rules(rules, trial.frames(), rules.max_wall_s));
+  const auto step_and_draw = [&](const FrameInput& input) {
+    const StepStatus status = solver_->step(input);
+    if (status == StepStatus::Ok) drawer->draw(input.index + 1);
+    return status;
+  };
+  while (loop.next(step_and_draw)) trial.frame_rendered_s.push_back(loop.wall_s());
+  fail(loop.status(), loop.index());
+}
+
+/// Per-stage device times come from a twin with timestamps around every stage, run right after the timed frames: the
+/// timestamps themselves would slow the frames that are timed. Frames without a profiled twin stay NaN.
+void SolverRun::profile_stages(TimedTrial& trial, int frames) {
+  if (!profiled_) {
+    const auto settings = with_stage_times(*spec_.entry, spec_.settings);
+    if (!settings) return;
+    profiled_ = spec_.entry->make(*settings, device_);
+    profiled_->load(*spec_.scene);
+  }
+  profiled_->reset();
+  const std::size_t stages = plan_.stages.size();
+  FrameLoop loop(*profiled_, *spec_.scene, {.frames = std::min(frames, trial.frames()), .interrupted = kTrialsKept});
+  while (loop.next()) {
+    const FrameCost cost = profiled_->last_cost();
+    for (std::size_t k = 0; k < std::min(stages, cost.stage_device_s.size()); ++k)
+      trial.stage_device_s[static_cast<std::size_t>(loop.index()) * stages + k] = cost.stage_device_s[k];
+  }
+}
+
+std::map<std::string, double> summarise(const RunSpec& spec, const Plan& plan, const RunRecord& record) {
+  const RunView run(*spec.scene, record, plan, spec.entry->info.on_gpu);
+  std::map<std::string, double> s = scalars_of(run);
+  s.merge(stage_scalars(run));
+  for (const auto& [name, value] : spec.scene_values) s[name] = value;
+  return s;
+}
+
+}  // namespace clothbench

@@ -1,0 +1,102 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "clothbench/error.hpp"
+#include "clothbench/record.hpp"
+#include "clothbench/solver.hpp"
+#include "runner/frame_drawer.hpp"
+
+namespace clothbench {
+
+/// One planned run: one scene x one solver x one complete set of settings.
+struct RunSpec {
+  const Scene* scene = nullptr;
+  const SolverEntry* entry = nullptr;
+  nlohmann::json settings;
+  std::string setting = "default";
+  int work = 0;                  ///< on a ladder of settings: how many times the work of its first rung
+  std::string over_budget = {};  ///< why it is not run, if so; stored as it is
+  bool timed = true;             ///< false: the accuracy pass alone
+  std::map<std::string, double> scene_values = {};  ///< into every run's summary: what is known of the scene itself
+};
+
+/// How long and how often; see results/README.md, "protocols".
+struct TrialRules {
+  int trials = 5;
+  int frames = 72;                   ///< wanted per trial; 0 = as many as the scene has
+  double max_wall_s = 0;             ///< a trial stops after this much wall time; 0 = no limit
+  int min_frames = 12;               ///< ... but never before this many frames
+  double warmup_s = 0.1;             ///< before each trial, outside the clock
+  int drop_frames = 72;              ///< the scene restarts, outside the clock, after this many frames; 0 = never
+  double accuracy_duration_s = 0.5;  ///< simulated time of the untimed pass
+  double run_limit_s = 0;            ///< wall time of the untimed pass after which the run is `timed_out`; 0 = no limit
+  double ladder_limit_s = 0;  ///< wall time of loads and untimed passes of one solver's ladder on a scene; 0 = no limit
+  double agree =
+      0;  ///< trials end once two or more agree to it, half the range of frame rates over the median; 0 = never
+  bool pipelined = false;    ///< also time the frames of a trial without waiting for each, where the solver can
+  int profiled_frames = 12;  ///< of each trial, run again with a timestamp round every stage; 0 = none
+  Rendering rendering = {};  ///< also time frames with their pictures
+};
+
+/// Of a run whose step ended so in frame `frame`.
+Outcome outcome_of(StepStatus, int frame);
+
+std::string run_name(const RunSpec&);  ///< as of its files
+
+/// Of a run before its solver is loaded, or whose solver never is: what it is of, on this machine.
+RunHeader header_of(const Scene&, const std::string& solver, const std::string& setting, const nlohmann::json& settings,
+                    const std::string& protocol);
+
+/// A loaded solver and what has been measured of it.
+class SolverRun {
+ public:
+  /// Loads the solver. A feature the backend does not have, or an entry without `make`, makes the outcome
+  /// `unsupported`; a failed load of a scene it claims to support is an Error. Nothing is loaded of a spec that is over
+  /// its budget.
+  SolverRun(RunSpec spec, const DeviceOptions& device, const std::string& protocol);
+
+  const RunSpec& spec() const { return spec_; }
+  const RunHeader& header() const { return header_; }
+  /// Says in the header how frames are drawn; before it is written.
+  void describe(const Rendering&);
+  const Outcome& outcome() const { return outcome_; }
+  bool alive() const { return solver_ != nullptr && outcome_.status == "ok"; }
+  const Plan& plan() const { return plan_; }
+  /// For a loop that paces itself; null unless alive.
+  ClothSolver* solver() { return solver_.get(); }
+
+  /// True if a pass recovered from an interrupted run is whole and ended well; if not it is run again, so that a
+  /// failure is met again instead of forgotten.
+  bool usable(const AccuracyPass& pass, double duration_s) const;
+  /// Untimed pass: positions and metrics at every frame, frame 0 = initial state.
+  AccuracyPass run_accuracy(const TrialRules& rules);
+  /// One timed trial. `frames` > 0 asks for exactly that many (so that all trials of a run agree).
+  TimedTrial run_trial(int index, const TrialRules& rules, int frames);
+  /// Validation messages so far, of its solver and of the twin that stages are timed with; a run with any is not ok.
+  int validation_messages() const {
+    return (solver_ ? solver_->validation_messages() : 0) + (profiled_ ? profiled_->validation_messages() : 0);
+  }
+
+ private:
+  int accuracy_frames(double duration_s) const;
+  void fail(StepStatus status, int frame);
+  void warm_up(const TrialRules& rules);
+  void run_pipelined(TimedTrial& trial, const TrialRules& rules);
+  void run_rendered(TimedTrial& trial, const TrialRules& rules);
+  void profile_stages(TimedTrial& trial, int frames);
+
+  RunSpec spec_;
+  DeviceOptions device_;
+  RunHeader header_;
+  Outcome outcome_;
+  Plan plan_;
+  std::unique_ptr<ClothSolver> solver_;
+  std::unique_ptr<ClothSolver> profiled_;  ///< twin with per-stage timestamps, only on a GPU
+};
+
+/// Every scalar a table prints, from the record of one run. NaN where it does not apply.
+std::map<std::string, double> summarise(const RunSpec&, const Plan&, const RunRecord&);
+
+}  // namespace clothbench

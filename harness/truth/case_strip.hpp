@@ -1,0 +1,102 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "clothbench/error.hpp"
+#include "clothbench/vector.hpp"
+#include "truth/reference_case.hpp"
+
+// Of the reference cases alone: what they ask of a scene.
+namespace clothbench::truth {
+
+using Columns = std::vector<Vec3>;
+
+inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline Vec3 operator*(double k, const Vec3& a) { return {k * a[0], k * a[1], k * a[2]}; }
+
+/// std::max would lose a NaN.
+inline double greater(double a, double b) { return b <= a || a != a ? a : b; }
+
+/// A scene as the reference cases see it, and its complaints.
+struct Strip {
+  const Scene& scene;
+  int links;
+  double length_m, g;
+  Vec3 start{}, along{}, up{};  // middle of edge u0; axis_u; against gravity
+
+  explicit Strip(const Scene& s)
+      : scene(s), links(s.cloth.columns - 1), length_m(s.cloth.width_m), g(length(s.gravity_m_per_s2)) {
+    along = s.cloth.axis_u;
+    start = s.cloth.center_m - (s.cloth.span_m > 0 ? s.cloth.span_m : length_m) / 2 * along;
+    if (g > 0) up = (-1 / g) * s.gravity_m_per_s2;
+  }
+
+  void need_rows() const {
+    need((scene.needs & FeatureSet{Feature::UnevenGrid, Feature::Regions, Feature::Spin}).empty(),
+         "even cells and no spin");
+    need(!scene.needs.has(Feature::Shear), "\"shear\": false in its material: rows that do not feel one another");
+    need(std::abs(dot(scene.cloth.axis_v, up)) <= kLevel, "axis_v at right angles to gravity");
+  }
+
+  void need(bool good, const std::string& what) const {
+    if (!good) throw Error(scene.source + ": /truth/case: \"" + scene.reference_case + "\" needs " + what);
+  }
+  void need_gravity() const { need(g > 0, "gravity"); }
+  void need_level() const {
+    need_gravity();
+    need(std::abs(dot(along, up)) <= kLevel, "a sheet whose axis_u is level");
+  }
+  void need_flat() const { need(scene.cloth.span_m == 0 && scene.cloth.drape_radius_m == 0, "a flat start"); }
+  void need_rest() const { need(length(scene.cloth.initial_velocity_m_per_s) == 0, "a start at rest"); }
+  /// Extra weight per width that hangs on edge u1, if masses are scaled there and nowhere else.
+  double end_load_N_per_m() const {
+    if (scene.cloth.mass_factors.empty()) return 0;
+    const Cloth& c = scene.cloth;
+    const double factor = c.mass_factors.back();
+    for (std::size_t v = 0; v < c.mass_factors.size(); ++v)
+      need(c.mass_factors[v] == ((v + 1) % static_cast<std::size_t>(c.columns) == 0 ? factor : 1),
+           "masses scaled on edge u1 at most, all alike");
+    return (factor - 1) * c.areal_density_kg_per_m2 * c.du() / 2 * g;
+  }
+  void need_even_masses() const { need(scene.cloth.mass_factors.empty(), "masses that are not scaled"); }
+  void need_pins(std::vector<std::uint32_t> expected, const std::string& what) const {
+    std::sort(expected.begin(), expected.end());
+    need(scene.pins.vertices == expected && scene.grips.vertices.empty(), what);
+  }
+  void need_inextensible() const { need(!scene.material.membrane_stiffness_N_per_m, "an inextensible material"); }
+  double need_stiffness() const {
+    need(scene.material.membrane_stiffness_N_per_m.has_value(), "a membrane stiffness in N/m");
+    return *scene.material.membrane_stiffness_N_per_m;
+  }
+  void need_no_bending() const { need(!scene.needs.has(Feature::Bend), "no bending rigidity"); }
+  void need_damping(bool damped) const {
+    need(scene.needs.has(Feature::Damping) == damped, damped ? "damping, to come to rest" : "no damping");
+  }
+  std::vector<std::uint32_t> edge(const char* name) const { return edge_vertices(scene.cloth, name); }
+  Vec3 at(double x, double z) const { return start + x * along + z * up; }
+  double time_s(int frame) const { return scene.time.at(frame); }
+  std::vector<double> times_s() const {
+    std::vector<double> out;
+    for (int f = 0; f <= scene.time.frames(); ++f) out.push_back(time_s(f));
+    return out;
+  }
+  ReferenceCase reference_case() const {
+    ReferenceCase c;
+    c.name = scene.reference_case;
+    c.quantity_scale = length_m;
+    c.speed_scale_m_per_s = std::sqrt(g * length_m);
+    return c;
+  }
+
+  static constexpr double kLevel = 1e-9;
+};
+
+// ReferenceCases of contact, contact_cases.cpp.
+ReferenceCase incline(const Strip&);
+ReferenceCase capstan(const Strip&);
+ReferenceCase atwood(const Strip&);
+
+}  // namespace clothbench::truth

@@ -1,0 +1,250 @@
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "truth/atwood.hpp"
+#include "truth/capstan.hpp"
+#include "truth/case_strip.hpp"
+#include "truth/incline.hpp"
+#include "truth/root.hpp"
+
+namespace clothbench::truth {
+namespace {
+
+constexpr double kPlace = 1e-6;  // of L: how exactly a scene must be placed
+constexpr double kHeldIncline = 1e-3,
+                 kHeldCapstan = 5e-3;  // of L: creep of what holds; slipping is a hundred times as far
+
+/// The face a sheet lies on: which way is out, and how far its margin is from the sheet.
+struct Face {
+  Vec3 normal{};
+  double gap_m = std::numeric_limits<double>::infinity();
+};
+
+/// Of a box the face that has all four corners of the sheet over it, until they have moved by `way`.
+Face face_of(const Strip& s, const Collider& c, const Vec3& way) {
+  const Cloth& cloth = s.scene.cloth;
+  const auto from = [&](const Vec3& normal, const Vec3& point) {
+    return Face{normal, dot(cloth.center_m - point, normal) - c.margin_m};
+  };
+  if (c.shape == Collider::Shape::Plane) return from(c.normal, c.center_m);
+  Face best;
+  for (std::size_t k = 0; c.shape == Collider::Shape::Box && k < 3; ++k)
+    for (const double sign : {-1.0, 1.0}) {
+      const Face f = from(sign * c.axes[k], c.center_m + sign * c.half_extent_m[k] * c.axes[k]);
+      bool over = true;
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 x = cloth.center_m + ((corner & 1) != 0 ? 0.5 : -0.5) * cloth.width_m * cloth.axis_u +
+                       ((corner & 2) != 0 ? 0.5 : -0.5) * cloth.height_m * cloth.axis_v +
+                       ((corner & 4) != 0 ? 1.0 : 0.0) * way;
+        for (std::size_t other = 0; other < 3; ++other)
+          if (other != k)
+            over = over && std::abs(dot(x - c.center_m, c.axes[other])) < c.half_extent_m[other] - c.margin_m;
+      }
+      if (over && std::abs(f.gap_m) < std::abs(best.gap_m)) best = f;
+    }
+  return best;
+}
+
+/// `what` is no std::string: GCC 14 would take the collider for a part of the temporary (-Wdangling-reference).
+const Collider& only_collider(const Strip& s, const char* what) {
+  s.need(s.scene.colliders.size() == 1, std::string("one collider: ") + what);
+  return s.scene.colliders[0];
+}
+
+/// A strip over a cylinder, as the scene says.
+struct Draped {
+  double radius_m, cell_m, light_m, heavy_m, friction;  ///< overhangs below the axis
+  int turns;
+};
+
+Draped draped(const Strip& s) {
+  const Cloth& c = s.scene.cloth;
+  s.need_gravity();
+  s.need(c.drape_radius_m > 0, "\"drape\" in its pose: a strip that starts over a cylinder");
+  const Vec3 &a = c.axis_u, &b = c.axis_v;
+  const Vec3 down = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  s.need(std::abs(dot(down, s.up) + 1) <= Strip::kLevel, "axis_u x axis_v down");
+  s.need_rest();
+  s.need_even_masses();
+  s.need_pins({}, "nothing that is held");
+  s.need_inextensible();
+  s.need_no_bending();
+  s.need_damping(false);
+  const Collider& collider = only_collider(s, "a cylinder");
+  const nlohmann::json j = nlohmann::json::parse(s.scene.json).at("colliders").at(0);
+  s.need(j.at("type") == "cylinder", "one collider: a cylinder");
+  const auto vec = [&](const char* key) {
+    return Vec3{j.at(key)[0].get<double>(), j.at(key)[1].get<double>(), j.at(key)[2].get<double>()};
+  };
+  const Vec3 off = c.center_m - vec("center_m"), axis = vec("axis");
+  s.need(std::abs(std::abs(dot(axis, b)) - 1) <= Strip::kLevel, "the cylinder's axis along axis_v");
+  s.need(length(off - dot(off, axis) * axis) <= kPlace * s.length_m, "the cylinder's axis through center_m");
+  s.need(j.at("length_m").get<double>() >= c.height_m + 2 * std::abs(dot(off, axis)),
+         "a cylinder as long as the strip is wide");
+  s.need(std::abs(j.at("radius_m").get<double>() + collider.margin_m - c.drape_radius_m) <= kPlace * s.length_m,
+         "a drape radius that is the cylinder's and its margin");
+  const double cell = c.du(), turns = std::numbers::pi / drape_turn_rad(c),
+               middle = s.links / 2.0 - c.drape_offset_m / cell;
+  const int m = static_cast<int>(std::lround(turns));
+  const double first = middle - (m - 1) / 2.0, light = std::round(first);
+  s.need(std::abs(turns - m) <= 1e-6 && std::abs(first - light) <= 1e-6,
+         "rows that lie evenly on the cylinder: cells of 2 R sin(pi / 2m) for a whole number m, and an offset in half "
+         "cells to suit");
+  const double heavy = s.links - (m - 1) - light;
+  s.need(light >= 1 && heavy >= 1, "ends that hang");
+  s.need(heavy >= light, "an offset towards u1, or none");
+  return {c.drape_radius_m, cell, (light - 0.5) * cell, (heavy - 0.5) * cell, collider.friction, m};
+}
+
+/// How far the strip has run towards u1: by what of it is on top.
+std::function<double(const Columns&)> way_over(const Strip& s) {
+  const Cloth& c = s.scene.cloth;
+  const double start = s.links / 2.0 - c.drape_offset_m / c.du();
+  return [s, start, center = c.center_m, cell = c.du()](const Columns& x) {
+    double row = std::numeric_limits<double>::quiet_NaN(), top = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+      const double here = dot(x[i] - center, s.along), next = dot(x[i + 1] - center, s.along);
+      if (!(here <= 0 && next > 0)) continue;
+      const double share = -here / (next - here), height = dot(x[i] + share * (x[i + 1] - x[i]) - center, s.up);
+      if (!(height > top)) continue;
+      top = height;
+      row = static_cast<double>(i) + share;
+    }
+    return (start - row) * cell;
+  };
+}
+
+Columns draped_columns(const Strip& s, double way) {
+  Columns out;
+  for (int i = 0; i <= s.links; ++i) out.push_back(draped_row(s.scene.cloth, i, s.scene.cloth.drape_offset_m + way));
+  return out;
+}
+
+/// The common part of both reference cases: all that moves is one way.
+ReferenceCase over_cylinder(const Strip& s, const std::function<double(int)>& way, bool moves) {
+  ReferenceCase known = s.reference_case();
+  known.by_quantity = true;
+  known.quantity_name = "way over the cylinder";
+  known.quantity = way_over(s);
+  if (moves) known.quantity_scale = way(s.scene.time.frames());
+  // At rest exactly where the scene puts it.
+  known.columns = [s, way](int frame) { return draped_columns(s, way(frame)); };
+  return known;
+}
+
+}  // namespace
+
+ReferenceCase incline(const Strip& s) {
+  s.need_gravity();
+  s.need_flat();
+  s.need_even_masses();
+  s.need_pins({}, "nothing that is held");
+  s.need_damping(false);
+  const Cloth& c = s.scene.cloth;
+  const Collider& collider = only_collider(s, "a plane or a box");
+  const double most = s.time_s(s.scene.time.frames());
+  const Vec3 v0 = c.initial_velocity_m_per_s;
+  Face face = face_of(s, collider, {});
+  const auto downhill = [&] {
+    const Vec3 tangential = s.scene.gravity_m_per_s2 - dot(s.scene.gravity_m_per_s2, face.normal) * face.normal;
+    if (length(tangential) > Strip::kLevel * s.g) return (1 / length(tangential)) * tangential;
+    return length(v0) > 0 ? (1 / length(v0)) * v0 : s.along;
+  };
+  s.need(std::isfinite(face.gap_m), "a plane, or a box that is all under the sheet");
+  const Vec3 d = downhill();
+  Incline slope;
+  slope.angle_rad =
+      std::atan2(std::max(0.0, dot(s.scene.gravity_m_per_s2, d)), -dot(s.scene.gravity_m_per_s2, face.normal));
+  slope.friction = collider.friction;
+  slope.speed_m_per_s = dot(v0, d);
+  slope.gravity_m_per_s2 = s.g;
+  s.need(std::abs(face.gap_m) <= kPlace * s.length_m, "a sheet that starts at the collider's margin");
+  s.need(std::abs(dot(c.axis_u, face.normal)) <= Strip::kLevel && std::abs(dot(c.axis_v, face.normal)) <= Strip::kLevel,
+         "a sheet parallel to the face");
+  s.need(slope.angle_rad < std::numbers::pi / 2, "a face that looks up");
+  s.need(slope.speed_m_per_s >= 0 && length(v0 - slope.speed_m_per_s * d) <= Strip::kLevel * (length(v0) + 1),
+         "an initial velocity straight downhill, or none");
+  const double whole = slide_distance_m(slope, most);
+  face = face_of(s, collider, whole * d);
+  s.need(std::isfinite(face.gap_m), "a box that is under all of the sheet's way");
+  ReferenceCase known = s.reference_case();
+  known.by_quantity = true;
+  known.quantity_name = "way along the slope";
+  if (whole > 0) known.quantity_scale = whole;
+  const auto at = [s, d](double way) {
+    Columns out;
+    for (int i = 0; i <= s.links; ++i) out.push_back(s.start + (s.length_m * i / s.links) * s.along + way * d);
+    return out;
+  };
+  known.columns = [s, slope, at](int frame) { return at(slide_distance_m(slope, s.time_s(frame))); };
+  known.column_speeds = [s, slope, d](int frame) {
+    return Columns(static_cast<std::size_t>(s.links) + 1, slide_speed_m_per_s(slope, s.time_s(frame)) * d);
+  };
+  known.quantity = [s, d](const Columns& x) {
+    double sum = 0;  // ends carry half a cell
+    for (std::size_t i = 0; i < x.size(); ++i)
+      sum += (i == 0 || i + 1 == x.size() ? 0.5 : 1) *
+             dot(x[i] - s.start - (s.length_m * static_cast<double>(i) / s.links) * s.along, d);
+    return sum / s.links;
+  };
+  if (slope.speed_m_per_s == 0 && slope.angle_rad > 0)
+    known.threshold = Threshold{
+        "colliders.0.friction",
+        std::tan(slope.angle_rad),
+        kHeldIncline * s.length_m,
+        "critical angle",
+        "degree",
+        [angle = slope.angle_rad](double found) { return (angle - std::atan(found)) * 180 / std::numbers::pi; }};
+  return known;
+}
+
+ReferenceCase capstan(const Strip& s) {
+  const Draped strip = draped(s);
+  s.need(strip.friction > 0, "friction");
+  const HeavyCapstan cylinder{strip.friction, strip.radius_m, s.scene.cloth.areal_density_kg_per_m2, s.g};
+  using States = std::vector<SlidState>;
+  const auto states = std::make_shared<States>(slide(cylinder, strip.light_m, strip.heavy_m, strip.turns, s.times_s()));
+  const auto smooth = std::make_shared<States>(slide(cylinder, strip.light_m, strip.heavy_m, 0, s.times_s()));
+  const bool moves = states->back().way_m > 0;
+  ReferenceCase known = over_cylinder(
+      s, [states](int frame) { return states->at(static_cast<std::size_t>(frame)).way_m; }, moves);
+  known.continuum = [s, smooth](double share, int frame) {
+    return draped_columns(s, smooth->at(static_cast<std::size_t>(frame)).way_m)
+        .at(static_cast<std::size_t>(std::lround(share * s.links)));
+  };
+  const auto greatest = [cylinder, strip](double friction) {
+    HeavyCapstan other = cylinder;
+    other.friction = friction;
+    return polygonal_greatest_overhang_m(other, strip.light_m, strip.turns);
+  };
+  // Where a turn alone would hold there is no threshold below.
+  const double locks = 1 / std::tan(std::numbers::pi / (2 * strip.turns));
+  const auto missing = [&](double friction) {
+    return friction < 0.99 * locks ? greatest(friction) - strip.heavy_m : 1;
+  };
+  if (strip.heavy_m > strip.light_m) {
+    const double exact = positive_root(missing, 0.1 * locks, true, "capstan");
+    known.threshold = Threshold{"colliders.0.friction",
+                                exact,
+                                kHeldCapstan * s.length_m,
+                                "overhang held",
+                                "1",
+                                [greatest, heavy = strip.heavy_m](double found) { return heavy / greatest(found) - 1; }};
+  }
+  return known;
+}
+
+ReferenceCase atwood(const Strip& s) {
+  const Draped strip = draped(s);
+  s.need(strip.friction == 0, "no friction");
+  s.need(strip.heavy_m > strip.light_m, "an offset towards u1");
+  const Atwood weights{s.length_m, strip.radius_m, s.scene.cloth.drape_offset_m, s.g};
+  const double end = atwood_end_s(weights), whole = s.time_s(s.scene.time.frames());
+  s.need(whole <= end, "a duration of at most " + std::to_string(end) + " s: then the strip leaves the cylinder");
+  return over_cylinder(
+      s, [s, weights](int frame) { return atwood_offset_m(weights, s.time_s(frame)) - weights.offset_m; }, true);
+}
+
+}  // namespace clothbench::truth

@@ -1,0 +1,90 @@
+#pragma once
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "clothbench/error.hpp"
+#include "crumpled.hpp"
+#include "frame_builder.hpp"
+#include "line_plan.hpp"
+
+// What lines and chains share: constants of a substep, and one dispatch of many workgroups that wait for one another.
+
+namespace clothbench::pbd_gpu {
+
+/// Most polls of a barrier of the whole dispatch before it times out, at loading and in a frame: some 10 ms and 1 s. A
+/// poll takes some 0.5 us on a GPU and 3 ns on a CPU.
+struct TimeoutPolls {
+  std::uint32_t at_loading, in_a_frame;
+};
+inline TimeoutPolls timeout_polls(const vulkan::Device& d) {
+  return d.is_software() ? TimeoutPolls{1u << 24, 1u << 30} : TimeoutPolls{1u << 14, 1u << 21};
+}
+
+/// Gravity, damping, the greatest speed and the step of LineConstants or ChainConstants.
+template <class Constants>
+Constants step_constants(const FrameBuilder& frame, double dt_s, int substeps) {
+  const Scene& s = frame.scene();
+  const double h = dt_s / substeps, across = std::hypot(s.cloth.width_m, s.cloth.height_m);
+  const Vec3 g = s.gravity_m_per_s2;
+  const auto f = [](double value) { return static_cast<float>(value); };
+  Constants c{};
+  c.gravity_h = {f(g[0] * h), f(g[1] * h), f(g[2] * h), 0};
+  c.h = f(h);
+  c.loss = f(-std::expm1(-s.material.damping_per_s * h));
+  c.speed_limit = f(2 * std::sqrt(2 * norm(g) * across) + 2 * norm(s.cloth.initial_velocity_m_per_s) +
+                    norm(s.cloth.spin_rad_per_s) * across);
+  c.per_h = f(1 / h);
+  c.timeout_polls = timeout_polls(*frame.device()).in_a_frame;
+  return c;
+}
+
+/// Is speed limited (LINES_LIMIT_SPEED)? What moves may drive the cloth as fast as it likes, and so may springs that
+/// start stretched.
+inline bool limits_speed(const Scene& s, bool tethered) {
+  const bool driven = s.needs.has(Feature::MovingMesh) || s.needs.has(Feature::Capsules);
+  return (tethered || starts_crumpled(s)) && !driven;
+}
+
+/// Does the device run all workgroups of this kernel at once (device_barrier.glsl), as tuning.device_barrier has it?
+/// Vulkan does not promise it, so they are asked to pass a grid barrier, without work: all constants 0. With "always"
+/// an Error if not.
+template <class Constants>
+bool runs_at_once(const FrameBuilder& frame, const std::string& kernel_name, std::vector<std::uint32_t> specialization,
+                  std::uint32_t threads, vulkan::Groups groups) {
+  const std::string wanted = frame.tuning()["device_barrier"];
+  const std::shared_ptr<vulkan::Device>& device = frame.device();
+  if (!(wanted == "always" || (wanted == "auto" && device->is_discrete()))) return false;
+  constexpr double kTimeout_s =
+      60;  // a trial that takes longer has no device to itself, or none that is well: an error either way
+  const vulkan::Buffer meeting(device, "meeting", 8, vulkan::Buffer::Place::Device);
+  vulkan::Buffer zeros(device, "meeting (initial)", 8, vulkan::Buffer::Place::Host),
+      timed_out(device, "timed out", 4, vulkan::Buffer::Place::Host);
+  std::memset(zeros.mapped(), 0, 8);
+  std::memset(timed_out.mapped(), 0, 4);
+  specialization[0] = threads;
+  const vulkan::Kernel kernel(device, kernel_name, shader(kernel_name).code, specialization,
+                              frame.buffers_with({{BIND_BARRIER, &meeting}, {BIND_TIMED_OUT, &timed_out}}),
+                              sizeof(Constants));
+  vulkan::Program program(device);
+  program.copy(0, zeros, meeting);
+  Constants constants{};
+  constants.timeout_polls = timeout_polls(*device).at_loading;
+  program.dispatch(0, kernel, groups, constants);
+  program.record(false);
+  program.run(kTimeout_s);
+  std::uint32_t failed = 0;
+  std::memcpy(&failed, timed_out.mapped(), 4);
+  if (failed != 0 && wanted == "always")
+    throw Error("solver xpbd: setting tuning.device_barrier=always: this device does not run " +
+                std::to_string(groups.x * groups.y) + " workgroups of " + std::to_string(threads) + " at once");
+  return failed == 0;
+}
+
+/// Buffers of the barrier: its counter, and the flag that it timed out.
+inline void add_meeting(FrameBuilder& frame) {
+  frame.add_buffer(BIND_BARRIER, "meeting", 8);
+  frame.set_timed_out(frame.add_host_buffer("timed out", 4, BIND_TIMED_OUT));
+}
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,63 @@
+"""usage: check_runs.py CLOTHBENCH: `study --list-runs` and `--run`: parts of a study, computed apart, are the study."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+CLOTHBENCH = sys.argv[1]
+STUDY = ["study", "table3", "--quick", "--trials", "1", "--solver", "ballistic"]
+
+
+def command(*words, code=0):
+    done = subprocess.run([CLOTHBENCH, *words], capture_output=True, text=True, check=False)
+    assert done.returncode == code, (words, done.returncode, done.stdout, done.stderr)
+    return done.stdout + done.stderr
+
+
+with tempfile.TemporaryDirectory() as home:
+    listed = [line.split("\t") for line in command(*STUDY, "--list-runs").splitlines()]
+    names = [name for _, name in listed]
+    assert [int(k) for k, _ in listed] == list(range(len(names))) and len(names) >= 3, listed
+    assert json.loads(command(*STUDY, "--list-runs", "--json")) == names
+    assert not os.listdir(home)
+
+    out = os.path.join(home, "run")
+    command(*STUDY, "--out", out, "--run", "1")
+    done = {f[:-3] for f in os.listdir(out) if f.endswith(".h5")}
+    assert done == {names[1]}, done
+    with open(os.path.join(out, "study.json"), encoding="utf-8") as text:
+        assert json.load(text)["runs"] == names, "the folder says what belongs to it"
+    # The rest at the same time, in two processes; one of them begins with what is there already.
+    parts = [subprocess.Popen([CLOTHBENCH, *STUDY, "--out", out, "--run", c]) for c in ("0-1", f"2-{len(names) - 1}")]
+    assert [p.wait() for p in parts] == [0, 0]
+    assert {f[:-3] for f in os.listdir(out) if f.endswith(".h5")} == set(names)
+    assert not [f for f in os.listdir(out) if f.endswith(".part")]
+    assert "planned, not run" not in command("report", out, "-o", os.path.join(home, "report"))
+
+    for wrong in (str(len(names)), "x", "2-1", "", "1-", "-1"):
+        assert (
+            f"numbers from 0 to {len(names) - 1}" in command(*STUDY, "--out", out, "--run=" + wrong, code=2)
+            or wrong == ""
+        ), wrong
+    assert "--out" in command(*STUDY, "--run", "0", code=2)
+    assert "stability-map" in command("study", "stability", "--quick", "--list-runs", code=2)
+
+    # Unknown names suggest the nearest.
+    assert "nearest known: table3" in command("study", "tabel3", code=2)
+    assert "nearest known: paper/gravity" in command("run", "paper/gravty", code=2)
+    assert "nearest known: ballistic" in command("run", "paper/gravity", "--solver", "balistic", code=2)
+    assert "nearest known: study" in command("studdy", "table3", code=2)
+
+    # A run against itself differs in nothing but noise.
+    compared = json.loads(command("compare", out, out, "--json"))
+    assert len(compared) == len(names) and all(
+        c["verdict"] == "noise" and not c["metrics"] and not c["outcome"] for c in compared
+    )
+    markdown = os.path.join(home, "comparison.md")
+    assert "noise" in command("compare", out, out, "--markdown", markdown)
+    with open(markdown, encoding="utf-8") as text:
+        assert "Results that are not the same: none" in text.read()
+    history = json.loads(command("history", out))
+    assert {"name", "unit", "value", "extra"} <= set(history[0]) and len(history) >= len(names)
+print("runs, suggestions, compare, history: as expected")

@@ -1,0 +1,116 @@
+#pragma once
+#include <fmt/format.h>
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "report/report.hpp"
+
+namespace clothbench {
+
+/// A run as the runner leaves it, of the paper's gravity scene.
+inline RunRecord fake_run(const std::string& solver, int n, const std::string& sides, double frame_s,
+                          bool on_gpu = true) {
+  RunRecord c;
+  c.header.scene = fmt::format("gravity-{}-{}", n, sides);
+  c.header.solver = solver;
+  c.header.setting = "default";
+  c.header.settings = nlohmann::json::object();
+  c.header.scenario_json =
+      fmt::format(R"({{"name":"gravity","paper":{{"table":3}},"cloth":{{"grid":[{},{}],"sides":"{}"}}}})", n, n, sides);
+  c.header.environment = {{"gpu", on_gpu ? "Fake GPU" : "CPU"},
+                          {"driver", "1.2"},
+                          {"gpu_is_software", false},
+                          {"cpu", "Fake CPU"},
+                          {"protocol", "short"},
+                          {"git_commit", "0123456789abcdef"},
+                          {"git_dirty", false},
+                          {"build_type", "Release"},
+                          {"created", "2026-01-01T00:00:00Z"}};
+  c.summary = {{"fps_median", 1 / frame_s},
+               {"fps_mean", 1 / frame_s},
+               {"fps_spread", 0.031},
+               {"fps_at_72", 1 / frame_s < 72 ? 1 / frame_s : 72},
+               {"frame_wall_median_s", frame_s},
+               {"frame_device_median_s", on_gpu ? 0.9 * frame_s : kMissing},
+               {"free_fall_error", 1.24e-6},
+               {"read_B_per_frame", on_gpu ? 2000.0 * n : kMissing},
+               {"write_B_per_frame", on_gpu ? 1000.0 * n : kMissing},
+               {"bandwidth_read_peak_B_per_s", on_gpu ? 4e9 : kMissing},
+               {"bandwidth_write_peak_B_per_s", on_gpu ? 2e9 : kMissing},
+               {"bandwidth_window_s", 0.5},
+               {"device_memory_B", on_gpu ? 8992.0 : kMissing},
+               {"dispatches", on_gpu ? 14.0 : kMissing},
+               {"load_s", 0.01},
+               {"jobs", 1}};
+  return c;
+}
+
+inline RunRecord with_outcome(RunRecord c, const std::string& status, int frame, const std::string& message) {
+  c.outcome = {status, status == "diverged" ? "F2" : "ok", frame, message};
+  c.summary.clear();
+  return c;
+}
+
+/// The runs of each row of the first Markdown table in `text`, header first, rule left out.
+inline std::vector<std::vector<std::string>> parse_markdown(const std::string& text) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line[0] != '|') continue;
+    if (line.starts_with("|--")) continue;
+    rows.emplace_back();
+    std::string run;
+    for (std::size_t k = 1; k < line.size(); ++k) {
+      if (line[k] == '|' && line[k - 1] != '\\') {
+        const std::size_t first = run.find_first_not_of(' '), last = run.find_last_not_of(' ');
+        rows.back().push_back(first == std::string::npos ? "" : run.substr(first, last - first + 1));
+        run.clear();
+      } else {
+        run += line[k];
+      }
+    }
+  }
+  return rows;
+}
+
+/// The entry of the row that starts with `solver`, `sides` under the heading `column`; "" if there is none.
+inline std::string entry(const Table& t, const std::string& solver, const std::string& sides,
+                         const std::string& column) {
+  const auto rows = parse_markdown(t.markdown());
+  for (std::size_t k = 0; k < rows.at(0).size(); ++k)
+    for (const auto& row : rows)
+      if (rows[0][k] == column && row.at(0) == solver && row.at(1) == sides) return row.at(k);
+  return "";
+}
+
+/// Table of the first family whose title contains `word`.
+inline Table table_of(const std::vector<RunRecord>& runs, const std::string& word) {
+  for (const Table& t : fps_tables(families(runs).at(0), published_table3()))
+    if (t.title.find(word) != std::string::npos) return t;
+  throw std::runtime_error("no table about " + word);
+}
+
+/// Records of CSV text as RFC 4180 reads them.
+inline std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
+  std::vector<std::vector<std::string>> rows(1, {""});
+  bool quoted = false;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (quoted && c == '"' && k + 1 < text.size() && text[k + 1] == '"')
+      rows.back().back() += text[++k];
+    else if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      rows.back().emplace_back();
+    else if (c == '\n' && !quoted)
+      rows.push_back({""});
+    else
+      rows.back().back() += c;
+  }
+  rows.pop_back();  // after the last line break
+  return rows;
+}
+
+}  // namespace clothbench

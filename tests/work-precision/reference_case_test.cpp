@@ -1,0 +1,283 @@
+// ReferenceCases: from a scene to its exact answer, and a run's distance from it.
+#include "truth/reference_case.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "clothbench/error.hpp"
+#include "metrics/metric_pass.hpp"
+#include "metrics/registry.hpp"
+#include "metrics/truth_errors.hpp"
+#include "scenario/load.hpp"
+#include "truth/atwood.hpp"
+#include "truth/capstan.hpp"
+#include "truth/draw.hpp"
+#include "truth/free_fall.hpp"
+#include "truth/pull_chain.hpp"
+#include "truth/pull_wave.hpp"
+
+namespace clothbench {
+namespace {
+
+const char* const kScenes[] = {"free-fall",    "pendulum",      "swing-strip",    "heavy-strip",   "catenary",
+                               "cantilever-1", "cantilever-10", "cantilever-100", "two-hand-pull", "incline-stick",
+                               "incline-slip", "incline-stop",  "capstan-hold",   "capstan-slip",  "atwood"};
+
+Scene scene(const std::string& name, const std::vector<std::string>& set = {}) {
+  return load_scene("validation/" + name, set);
+}
+
+/// The truth itself as a run's state.
+ClothState truth_state(const Scene& s, const truth::ReferenceCase& known, int frame) {
+  const std::vector<Vec3> speeds =
+      known.column_speeds ? known.column_speeds(frame) : std::vector<Vec3>(static_cast<std::size_t>(s.cloth.columns));
+  return {truth::vertex_values(s.cloth, known.columns(frame), true), truth::vertex_values(s.cloth, speeds, false)};
+}
+
+class ReferenceCases : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Every, ReferenceCases, ::testing::ValuesIn(kScenes), [](const auto& i) {
+  std::string name = i.param;
+  for (char& c : name)
+    if (c == '-') c = '_';
+  return name;
+});
+
+TEST_P(ReferenceCases, TheTruthIsNoDistanceFromItself) {
+  const Scene s = scene(GetParam());
+  const TruthJudge judge(s);
+  const int last = s.time.frames();
+  ClothState state = truth_state(s, judge.reference_case(), last);
+  const TruthErrors e = judge.judge(last, state);
+  EXPECT_EQ(e.e2, 0);
+  EXPECT_EQ(e.greatest, 0);
+  EXPECT_NEAR(e.quantity_error, 0, 1e-12);
+  EXPECT_NEAR(e.stretch_rms, 0, 1e-12);
+  if (judge.reference_case().column_speeds) {
+    EXPECT_EQ(e.speed, 0);
+  }
+  for (std::size_t k = 1; k < state.position.size(); k += 3) state.position[k] += 0.01;
+  EXPECT_NEAR(judge.judge(last, state).e2, 0.01 / std::max(s.cloth.width_m, s.cloth.height_m), 1e-9);
+  state.position[4] = NAN;
+  EXPECT_TRUE(std::isnan(judge.judge(last, state).e2));
+  EXPECT_TRUE(std::isnan(judge.judge(last, state).quantity_error));
+}
+
+/// Held vertices of the truth are where the scene holds them, and moving truths begin where the scene does.
+TEST_P(ReferenceCases, AgreeWithTheScene) {
+  const Scene s = scene(GetParam());
+  const auto known = truth::reference_case_of(s);
+  ASSERT_TRUE(known);
+  const std::vector<double> start = initial_positions(s), end = truth_state(s, *known, s.time.frames()).position;
+  for (std::uint32_t v : s.pins.vertices)
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(end[3 * v + k], start[3 * v + k], 1e-12) << v;
+  for (std::size_t i = 0; i < s.grips.vertices.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(end[3 * s.grips.vertices[i] + k], s.motion.back().grip_position_m[i][k], 1e-12);
+  if (known->settles) return;
+  const std::vector<double> first = truth_state(s, *known, 0).position;
+  for (std::size_t k = 0; k < start.size(); ++k) EXPECT_NEAR(first[k], start[k], 1e-12);
+}
+
+/// Order 2 in the run's size. The lattice's points are nodes of 32 cells but not of 16, which adds to the coarse
+/// error.
+TEST(SpaceError, FallsWithTheRun) {
+  for (const char* name : {"catenary", "swing-strip"}) {
+    const Scene coarse = scene(name, {"cloth.grid=[17,3]"}), fine = scene(name);
+    const double ratio = TruthJudge(coarse).space_error() / TruthJudge(fine).space_error();
+    EXPECT_GT(ratio, 2.5) << name;
+    EXPECT_LT(ratio, 8) << name;
+  }
+  const Scene heavy = scene("heavy-strip"), fall = scene("free-fall");
+  EXPECT_LT(TruthJudge(heavy).space_error(), 1e-12) << "rows of springs are exact at the rows";
+  EXPECT_EQ(TruthJudge(fall).space_error(), 0);
+}
+
+TEST(PulledChain, FollowsTheWaveWithinAHundredth) {
+  const truth::TwoHandPull hands{1, 0.2, 1000, 10, 1 / std::sqrt(5000.0)};
+  std::vector<double> times, first, last;
+  for (int k = 0; k <= 400; ++k) {
+    times.push_back(k * 0.02 / 400);
+    last.push_back(truth::hand_way_m(hands, times.back()));
+    first.push_back(-last.back());
+  }
+  double worst[2] = {};
+  for (int level = 0; level < 2; ++level) {
+    const int links = 32 << level;
+    const auto states = truth::pull({links, 1, 0.2, 1000}, times, first, last);
+    for (int i = 0; i <= links; ++i) {
+      const double x = static_cast<double>(i) / links - 0.5;
+      const double off = states.back().displacement_m[static_cast<std::size_t>(i)] -
+                         truth::pull_displacement_m(hands, x, times.back());
+      worst[level] = std::max(worst[level], std::abs(off) / last.back());
+    }
+  }
+  EXPECT_LT(worst[0], 0.01);
+  EXPECT_LT(worst[1], 0.5 * worst[0]);
+}
+
+/// Semi-implicit Euler of one step a frame is g t dt/2 behind free fall: what the ballistic solver's error must be.
+TEST(TruthMetrics, BallisticIsBehindByItsOwnStep) {
+  const Scene s = scene("free-fall");
+  const SolverEntry& entry = find_solver("ballistic");
+  const nlohmann::json settings = nlohmann::json::object();
+  const auto solver = entry.make(settings, {});
+  solver->load(s);
+  const MetricContext context{s, entry, settings};
+  MetricPass metrics(context);
+  AccuracyPass pass;
+  ClothState state;
+  const double dt = s.time.dt();
+  for (int f = 0; f <= s.time.frames(); ++f) {
+    if (f > 0) {
+      ASSERT_EQ(solver->step({f - 1, f * dt, dt, nullptr}), StepStatus::Ok);
+    }
+    solver->read_state(state);
+    metrics.add(state);
+    pass.time_s.push_back(f * dt);
+  }
+  pass.metrics = metrics.take();
+  std::vector<double> expected;
+  for (const double t : pass.time_s) expected.push_back(0.5 * 9.81 * t * dt);
+  for (const MetricSeries& m : pass.metrics) {
+    if (m.name != "truth_error_e2") continue;
+    for (std::size_t f = 0; f < expected.size(); ++f) EXPECT_NEAR(m.values[f], expected[f], 1e-12);
+  }
+  const auto summary = scalars_of({s, pass});
+  EXPECT_NEAR(summary.at("truth_error"), truth::time_rms(pass.time_s, expected), 1e-12);
+  EXPECT_NEAR(summary.at("truth_quantity"), 0.5 * 9.81 * (0.25 + 0.5 * dt), 1e-9);
+  EXPECT_NEAR(summary.at("energy_drift"), 0, 0.1);
+  pass.time_s.pop_back();
+  EXPECT_TRUE(std::isnan(scalars_of({s, pass}).at("truth_error"))) << "a pass that broke off has no error";
+}
+
+TEST(ReferenceCases, RefuseScenesTheyDoNotAnswer) {
+  const auto message = [](const std::string& name, const std::vector<std::string>& set) -> std::string {
+    try {
+      truth::reference_case_of(scene(name, set));
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message("swing-strip", {"material.shear=true"}).find("/truth/case: \"swing-strip\" needs \"shear\": false"),
+            std::string::npos);
+  EXPECT_NE(message("swing-strip", {"time.duration_s=2"}).find("chaos"), std::string::npos);
+  EXPECT_NE(message("swing-strip", {"material.damping_per_s=1"}).find("no damping"), std::string::npos);
+  EXPECT_NE(message("heavy-strip", {"material.membrane_stiffness_N_per_m=inextensible"}).find("N/m"),
+            std::string::npos);
+  EXPECT_NE(message("cantilever-10", {"material.membrane_stiffness_N_per_m=1000"}).find("1e-7"), std::string::npos);
+  EXPECT_NE(message("two-hand-pull", {"grips.0.ramp_s=0.01"}).find("one ramp_s"), std::string::npos);
+  EXPECT_NE(message("free-fall", {"pins=[{\"edge\":\"u0\"}]"}).find("nothing that is held"), std::string::npos);
+  EXPECT_EQ(message("swing-strip", {"gravity_m_per_s2=[0,-4.905,0]", "cloth.size_m=[0.5,0.0625]"}), "")
+      << "any parameter will do";
+}
+
+TEST(ReferenceCases, ContactIsRefusedWhereTheClosedFormDoesNotHold) {
+  const auto refused = [](const std::string& name, const std::vector<std::string>& set, const std::string& why) {
+    try {
+      truth::reference_case_of(scene(name, set));
+      ADD_FAILURE() << name << ": expected a refusal for " << why;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(why), std::string::npos) << e.what();
+    }
+  };
+  refused("incline-stick", {"colliders.0.margin_m=0.01"}, "at the collider's margin");
+  refused("incline-stick", {"colliders.0.size_m=[0.2,0.1,1]"}, "all under the sheet");
+  refused("incline-stop", {"colliders.0.size_m=[0.3,0.1,1]"}, "under all of the sheet's way");
+  refused("incline-slip", {"cloth.initial_velocity_m_per_s=[0,0,1]"}, "straight downhill");
+  refused("incline-slip", {"material.damping_per_s=1"}, "no damping");
+  refused("capstan-hold", {"cloth.grid=[43,5]"}, "lie evenly");
+  refused("capstan-hold", {"material.membrane_stiffness_N_per_m=1000"}, "inextensible");
+  refused("capstan-hold", {"colliders.0.radius_m=0.09"}, "drape radius");
+  refused("capstan-hold", {"colliders.0.friction=0"}, "friction");
+  refused("atwood", {"colliders.0.friction=0.1"}, "no friction");
+  refused("atwood", {"time.duration_s=1"}, "leaves the cylinder");
+  EXPECT_EQ(truth::reference_case_of(scene("incline-stick", {"gravity_m_per_s2=[0,-1.6,0]"}))->quantity_scale, 0.25)
+      << "any parameter will do";
+}
+
+TEST(ReferenceCases, ThresholdsAreWhereTheClosedFormsTurn) {
+  const auto stick = *truth::reference_case_of(scene("incline-stick"))->threshold;
+  EXPECT_NEAR(stick.exact, std::tan(16 * 3.14159265358979 / 180), 1e-12);
+  EXPECT_NEAR(stick.error(std::tan(15.9 * 3.14159265358979 / 180)), 0.1, 1e-9);
+  const auto hold = *truth::reference_case_of(scene("capstan-hold"))->threshold;
+  EXPECT_NEAR(hold.error(hold.exact), 0, 1e-12);
+  EXPECT_LT(hold.exact, 0.3);
+  for (const double side : {-1e-6, 1e-6}) {
+    const Scene s = scene("capstan-hold", {"colliders.0.friction=" + std::to_string(hold.exact * (1 + 1e3 * side))});
+    const auto known = truth::reference_case_of(s);
+    EXPECT_EQ(known->quantity(known->columns(s.time.frames())) == 0, side > 0);
+  }
+  EXPECT_FALSE(truth::reference_case_of(scene("incline-stop"))->threshold);
+  EXPECT_FALSE(truth::reference_case_of(scene("atwood"))->threshold);
+}
+
+TEST(SlidingCapstan, IsAtwoodsWithoutFrictionAndStartsAtTheThreshold) {
+  const truth::HeavyCapstan free{0, 0.05, 0.2, 9.81};
+  const truth::Atwood atwood{0.8 + 0.05 * 3.14159265358979, 0.05, 0.1, 9.81};
+  const std::vector<double> times = {0, 0.1, 0.2, 0.3};
+  const auto states = truth::slide(free, 0.3, 0.5, 0, times);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    EXPECT_NEAR(states[k].way_m, truth::atwood_offset_m(atwood, times[k]) - 0.1, 1e-10);
+    EXPECT_NEAR(states[k].speed_m_per_s, truth::atwood_speed_m_per_s(atwood, times[k]), 1e-9);
+  }
+  const truth::HeavyCapstan rough{0.3, 0.05, 0.2, 9.81};
+  for (const int turns : {0, 12}) {
+    const double most =
+        turns == 0 ? truth::greatest_overhang_m(rough, 0.2) : truth::polygonal_greatest_overhang_m(rough, 0.2, turns);
+    EXPECT_EQ(truth::slide(rough, 0.2, 0.999 * most, turns, times).back().way_m, 0);
+    EXPECT_GT(truth::slide(rough, 0.2, 1.001 * most, turns, times).back().way_m, 0);
+    EXPECT_LT(truth::slide(rough, 0.2, 1.001 * most, turns, times).back().way_m, 1e-3);
+  }
+  EXPECT_THROW(truth::slide(rough, 0.2, 5, 0, std::vector<double>{0, 3}), Error) << "the light end is over";
+  EXPECT_THROW(truth::slide(rough, 2, 0.1, 0, times), Error) << "it would slip to the other side";
+}
+
+TEST(Seed, DrawsScenesThatTheirCasesAnswerAndTheSameOnesAgain) {
+  for (const char* name : kScenes) {
+    const Scene s = scene(name);
+    for (const std::uint64_t seed : {0ull, 1ull, 2ull, 3ull, 7ull, 123456789012345ull}) {
+      const auto one = truth::draw(s, seed), two = truth::draw(s, seed);
+      EXPECT_EQ(one.scene.json, two.scene.json);
+      EXPECT_EQ(one.scene.seed, seed);
+      EXPECT_EQ(one.scene.name, s.name);
+      EXPECT_NE(truth::draw(s, seed + 1).scene.sha256, one.scene.sha256);
+      EXPECT_GE(one.scene.time.frames(), 8);
+      const auto [L, g] = std::pair{one.scene.cloth.width_m, one.scene.gravity_m_per_s2};
+      EXPECT_TRUE(L >= 0.1 && L <= 2) << name;
+      const double gravity = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+      EXPECT_TRUE(gravity == 0 || (gravity >= 1 - 1e-9 && gravity <= 25 + 1e-9)) << name;
+      const auto before = truth::reference_case_of(s), after = truth::reference_case_of(one.scene);
+      const auto moves = [](const truth::ReferenceCase& c, const Scene& of) {
+        return std::abs(c.quantity(c.columns(of.time.frames()))) > 1e-9;
+      };
+      EXPECT_EQ(moves(*before, s), moves(*after, one.scene)) << name << ": what holds still holds, what slips slips";
+    }
+  }
+  // Recorded: the same numbers on every machine.
+  const auto values = truth::draw(scene("swing-strip"), 7).values;
+  EXPECT_NEAR(values[0].second, 0.240201, 1e-6);
+  EXPECT_NEAR(values[2].second, 16.5236, 1e-4);
+  EXPECT_THROW(truth::draw(load_scene("paper/gravity"), 1), Error);
+}
+
+TEST(Span, TheArcHangsAndItsRunsKeepTheirLengths) {
+  const Scene s = scene("catenary");
+  const std::vector<double> x = initial_positions(s);
+  const Cloth& c = s.cloth;
+  double lowest = 0;
+  for (int i = 0; i + 1 < c.columns; ++i) {
+    const auto a = static_cast<std::size_t>(3 * i);
+    EXPECT_NEAR(std::hypot(x[a + 3] - x[a], x[a + 4] - x[a + 1]), c.du(), 1e-14);
+    lowest = std::min(lowest, x[a + 1]);
+  }
+  EXPECT_NEAR(x[static_cast<std::size_t>(3 * (c.columns - 1))] - x[0], 0.8, 1e-12);
+  EXPECT_NEAR(x[1], 0, 1e-12);
+  EXPECT_LT(lowest, -0.2);
+  EXPECT_THROW(scene("catenary", {"cloth.pose.span_m=1.0"}), Error);
+  EXPECT_THROW(scene("catenary", {"cloth.grid=[2,2]"}), Error);
+}
+
+}  // namespace
+}  // namespace clothbench
