@@ -57,7 +57,7 @@ esac
 stage set-up 3 scripts/bootstrap.sh --tests
 stage assets 1 scripts/fetch-assets.sh
 stage build 9 build
-stage --show tests 6 tests
+stage --show tests 7 tests
 if [ "$tier" != short ]; then
   stage contact 3 penetration
   stage stability 3 stability
