@@ -12,7 +12,8 @@ void add_compare(CLI::App& app, Console& console) {
   auto &a = console.arguments<std::string>(), &b = console.arguments<std::string>(),
        &markdown = console.arguments<std::string>();
   CLI::App* cmd = app.add_subcommand(
-      "compare", "Compare two runs of the same runs: what is faster or slower beyond noise, and which results differ");
+      "compare",
+      "Compare two results of the same study: what is faster or slower beyond noise, and which results differ");
   cmd->add_option("a", a, "Study folder or result file: before")->required();
   cmd->add_option("b", b, "Study folder or result file: after")->required();
   cmd->add_option("--markdown", markdown, "Also write the tables to this file, for a pull request");
