@@ -9,24 +9,24 @@
 
 namespace clothbench::assets {
 
-/// Where rooms and hands come from. `kind` is what tables and files say as "assets: ...".
+/// Source of rooms and hands. Tables and files show `kind` as "assets: ...".
 struct AssetSource {
   bool npm = false;
   std::filesystem::path root;  ///< a node_modules folder; empty if procedural
-  std::string reason;          ///< package versions, or why there are none
+  std::string reason;          ///< package versions, or why no packages were found
   const char* kind() const { return npm ? "npm" : "procedural"; }
 };
 
 inline constexpr std::array<std::string_view, 5> kRoomNames = {"living_room", "meeting_room", "music_room",
                                                                "office_large", "office_small"};
 
-/// Looks in $CLOTHBENCH_ASSETS (a node_modules folder; the word "procedural" asks for the stand-ins); where that isn't
-/// set in share/clothbench/assets/node_modules of an installed tree, in build/assets/node_modules of the source tree
-/// and in clothbench/assets/node_modules below $XDG_DATA_HOME (~/.local/share), where scripts/fetch-assets.sh puts
-/// them. Throws Error if `require` and there are none, and whenever $CLOTHBENCH_ASSETS names a folder without them.
+/// Finds the assets. $CLOTHBENCH_ASSETS is a node_modules folder, or "procedural" for the stand-ins. If it is not set,
+/// the places are share/clothbench/assets/node_modules of an installed tree, build/assets/node_modules of the source
+/// tree, and clothbench/assets/node_modules below $XDG_DATA_HOME (~/.local/share), where scripts/fetch-assets.sh puts
+/// them. Throws Error if `require` and none are found, or if $CLOTHBENCH_ASSETS names a folder without assets.
 AssetSource locate_assets(bool require);
 
-/// One of kRoomNames, or the path of a capture (ends in .json). Procedural: the one procedural room for every name.
+/// Opens one of kRoomNames, or a capture by its path (ends in .json). A procedural source has one room for every name.
 Room open_room(const AssetSource&, const std::string& name);
 Hand open_hand(const AssetSource&, Side);
 

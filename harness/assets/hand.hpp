@@ -20,15 +20,14 @@ struct SkinnedMesh {
   std::vector<std::array<double, 4>> weights;       ///< per vertex, sum 1
   JointFrames bind;                                 ///< joint frames at rest
   std::array<Eigen::Affine3d, kJointCount> inverse_bind;
-  std::size_t stored_vertices = 0;  ///< in the file, before vertices in the same place became one
+  std::size_t stored_vertices = 0;  ///< count in the file, before coincident vertices were merged
 };
 
 /// Positions [m], xyz interleaved, of the mesh's vertices for these joint frames.
 std::vector<double> skinned(const SkinnedMesh&, const JointFrames&);
 
-/// Reads the WebXR generic hand (binary glTF, one mesh, one primitive, one skin with the 25 WebXR joints). Vertices in
-/// the same place become one: the file repeats them where the texture is cut. Throws Error naming the file and what is
-/// wrong.
+/// Reads the WebXR generic hand (binary glTF, one mesh, one primitive, one skin with the 25 WebXR joints). Merges
+/// coincident vertices, which the file repeats along texture seams. Throws Error naming the file and what is wrong.
 SkinnedMesh read_hand_glb(const std::filesystem::path&);
 SkinnedMesh parse_hand_glb(const std::vector<std::uint8_t>& bytes, const std::string& source);
 
@@ -37,7 +36,7 @@ struct Hand {
   Side side = Side::Right;
   SkinnedMesh mesh;
   std::map<std::string, HandPose, std::less<>> poses;
-  /// Throws Error naming the nearest.
+  /// Throws Error naming the nearest known pose.
   const HandPose& pose(const std::string& name) const;
 };
 

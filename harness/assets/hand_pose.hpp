@@ -49,31 +49,31 @@ int joint_index(std::string_view name);
 
 using JointFrames = std::array<Frame, kJointCount>;
 
-/// A hand standing still: joint frames and the flesh's radius [m] at each.
+/// A static hand: joint frames, and the radius [m] of the flesh at each joint.
 struct HandPose {
   JointFrames joints;
   std::array<double, kJointCount> radius_m{};
 };
 
-/// Poses every hand has.
+/// Poses that every hand has.
 inline constexpr std::array<std::string_view, 3> kPoseNames = {"relaxed", "pinch", "point"};
 
-/// Reads a pose module of `iwer` (lib/device/configs/hand/*.js): left hand, relative to the pointing ray's space. The
-/// object literal is parsed, nothing is executed. Throws Error with file and JSON pointer.
+/// Reads a pose module of `iwer` (lib/device/configs/hand/*.js): left hand, relative to the pointing ray's space. It
+/// parses the object literal and executes no code. Throws Error with file and JSON pointer.
 HandPose read_pose_js(const std::filesystem::path&);
 HandPose parse_pose_js(const std::string& text, const std::string& source);
 
-/// The other hand: reflected in x = 0.
+/// The pose of the other hand: reflected in the plane x = 0.
 HandPose mirrored(const HandPose&);
 
-/// The palm: origin half-way along the middle metacarpal (OpenXR's palm joint), +y towards the fingers, +z out of the
-/// back of the hand, so the palm faces -z. It turns with the middle metacarpal.
+/// Frame of the palm: origin half-way along the middle metacarpal (OpenXR's palm joint), +y towards the fingers, +z out
+/// of the back of the hand, so the palm faces -z. It rotates with the middle metacarpal.
 Frame palm_frame(const HandPose&);
-/// The same hand with its palm frame at the identity.
+/// The same hand, transformed so that its palm frame is the identity.
 HandPose in_palm_frame(const HandPose&);
-/// The whole hand moved by `by`.
+/// The whole hand transformed by `by`.
 HandPose moved(const HandPose&, const Frame& by);
-/// Positions and radii linear, orientations by slerp; t in [0, 1].
+/// Interpolates positions and radii linearly and orientations by slerp; t in [0, 1].
 HandPose blended(const HandPose& from, const HandPose& to, double t);
 
 /// Half-way between the tips of thumb and index finger [m].
@@ -86,9 +86,9 @@ struct Capsule {
 };
 inline constexpr std::size_t kCapsuleCount = 19;  ///< as XR_HAND_TRACKING_CAPSULE_COUNT_FB
 /// The hand as capsules between WebXR joints, with the radius of the near joint: 4 along the metacarpals of index,
-/// middle, ring and little finger (the palm), then 3 for each finger from the thumb. The last of each finger ends 15 mm
-/// beyond its joint, or at the tip joint if that is nearer: tip joints lie at the skin, so the round end would stand
-/// out of the finger.
+/// middle, ring and little finger (the palm), then 3 for each finger from the thumb on. The last capsule of a finger
+/// ends 15 mm beyond its joint, or at the tip joint if that is nearer. Tip joints lie at the skin, so a round end there
+/// would protrude from the finger.
 std::array<Capsule, kCapsuleCount> capsules(const HandPose&);
 
 }  // namespace clothbench::assets

@@ -9,10 +9,10 @@
 
 namespace clothbench::assets {
 
-/// A place in a JSON document that knows its file and pointer, so that every complaint names both.
+/// A value in a JSON document with its file and JSON pointer, so that every error message names both.
 class JsonAt {
  public:
-  /// The root. `root` must outlive this and all made from it.
+  /// The root value. `root` must outlive this object and all objects derived from it.
   JsonAt(const nlohmann::json& root, std::string source);
 
   const nlohmann::json& json() const { return *value_; }
@@ -20,7 +20,7 @@ class JsonAt {
   /// Throws Error "<file>: <pointer>: <message>".
   [[noreturn]] void fail(const std::string& message) const;
 
-  JsonAt key(const std::string& name) const;                   ///< must be there
+  JsonAt key(const std::string& name) const;                   ///< the key must exist
   std::optional<JsonAt> maybe(const std::string& name) const;  ///< this must be an object
   JsonAt item(std::size_t i) const;
   std::size_t size() const;  ///< this must be an array
@@ -30,9 +30,9 @@ class JsonAt {
   std::string text() const;
   bool boolean() const;
   Eigen::VectorXd numbers(std::size_t n) const;  ///< an array of exactly n finite numbers
-  /// Fails on any other key, naming the nearest known one.
+  /// Fails if the object has any other key, naming the nearest known one.
   void only(const std::vector<std::string>& known) const;
-  /// One of `known`; fails naming the nearest.
+  /// The string, which must be one of `known`; else fails naming the nearest.
   std::string word(const std::vector<std::string>& known) const;
 
  private:

@@ -10,18 +10,18 @@
 
 namespace clothbench::assets {
 
-/// A rectangle: corners at offset + {0|extent}, in the x-y plane of its frame.
+/// A rectangle in the x-y plane of its frame, from `offset_m` to `offset_m + extent_m`.
 struct Rectangle {
   std::string uuid;
   Frame frame;
   Eigen::Vector2d offset_m, extent_m;
 };
 
-/// A table as the headset's user marked it. Captures hold each twice, as a box and as the rectangle of its top, with
-/// different uuids and up to 3 mm apart; they are paired here.
+/// A table as the headset's user marked it. Captures hold each table twice, as a box and as the rectangle of its top,
+/// with different uuids and up to 3 mm apart. This struct pairs them.
 struct Table {
   std::string uuid;        ///< of the box
-  std::string stands_for;  ///< procedural rooms: uuid prefix of the real table whose part it takes; else empty
+  std::string stands_for;  ///< procedural rooms: uuid prefix of the real table that it replaces; else empty
   Frame frame;             ///< of the box; +z is up in the world
   Box box;                 ///< in that frame
   std::optional<Rectangle> top;
@@ -32,25 +32,25 @@ struct Table {
   double top_height() const;
 };
 
-/// A room: one mesh in world coordinates (right-handed, +y up, y = 0 about the floor), normals into free space, so the
-/// signed volume is negative.
+/// A room: one mesh in world coordinates (right-handed, +y up, y = 0 near the floor). Normals point into free space, so
+/// the signed volume is negative.
 struct Room {
   std::string name;
   TriangleMesh mesh;
   std::vector<Table> tables;
-  std::size_t entities = 0;             ///< of the capture, of every kind
-  std::size_t zero_area_triangles = 0;  ///< kept, counted: area below 1e-12 of the bounding box's diagonal squared
+  std::size_t entities = 0;             ///< number of entities of every kind in the capture
+  std::size_t zero_area_triangles = 0;  ///< kept in the mesh: area below 1e-12 of the bounding box's diagonal squared
 };
 
 /// Reads a Quest room capture as @iwer/sem stores them (protobuf JSON: zero fields are left out). The mesh is that of
-/// the one entity with `triangleMesh_META`, whatever its label: one of the five captures calls it UNRECOGNIZED.
+/// the one entity with `triangleMesh_META`. Its label is not used, as one of the five captures labels it UNRECOGNIZED.
 /// Throws Error with the file and JSON pointer.
 Room load_room(const std::filesystem::path&);
 /// The same from text; `source` is for messages, `name` for the room.
 Room parse_room(const std::string& text, const std::string& source, const std::string& name);
 
-/// A capture that `load_room` reads: a mesh in an entity's own frame (vertices xyz [m], indices in threes) and where
-/// that is, as a runtime tells them (XR_META_spatial_entity_mesh). Without tables.
+/// A scanned mesh as a runtime reports it (XR_META_spatial_entity_mesh): the entity's pose, and vertices (xyz) and
+/// triangle indices in the entity's frame. It has no tables. `room_capture` gives the text that `load_room` reads.
 struct RoomScan {
   std::string uuid;
   std::array<float, 3> position_m{};

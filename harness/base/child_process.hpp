@@ -20,35 +20,35 @@ struct ChildEnd {
   std::string text() const;
 };
 
-/// What a child process differs in from this one.
+/// How a child process differs from this process.
 struct ChildSetup {
-  bool socket = false;             ///< its standard input is a socket, with this process at the other end
-  std::string out = {}, err = {};  ///< files that its output goes to, begun anew; empty: to where this process's goes
-  bool own_group = false;          ///< Ctrl-C on the terminal does not reach it
-  std::vector<std::string> environment = {};  ///< "NAME=value", instead of or beside what this process has
+  bool socket = false;                        ///< standard input is a socket, connected to this process
+  std::string out = {}, err = {};             ///< files for stdout and stderr, truncated; empty: those of this process
+  bool own_group = false;                     ///< Ctrl-C on the terminal does not reach the child
+  std::vector<std::string> environment = {};  ///< "NAME=value": added to or replacing this process's variables
 };
 
-/// Another program, running. The one place that starts, watches and ends processes. Not to be shared between threads.
+/// A running child process. Only this class starts, watches and ends processes. Not thread-safe.
 class ChildProcess {
  public:
-  /// argv[0]: a path, or a name that is looked for on PATH. Throws Error (CheckFailed) if it cannot be started.
+  /// argv[0]: a path, or a name to look up in PATH. Throws Error (CheckFailed) if it cannot be started.
   explicit ChildProcess(const std::vector<std::string>& argv, const ChildSetup& = {});
-  /// A program that reads the socket sees its end; one that has not ended a second later is killed.
+  /// Closes the socket, so that a program that reads it can end. Kills the program if it still runs after a second.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// False once the program takes no more: an error instead of a signal, since it is a socket and not a pipe.
+  /// Returns false once the program reads no more. A socket gives an error here, where a pipe would raise SIGPIPE.
   bool write(std::string_view bytes);
   enum class Heard { Byte, Nothing, End };
-  /// The next byte that the program wrote to the socket, for which it is waited up to `timeout`.
+  /// Reads the next byte that the program wrote to the socket; waits for it up to `timeout`.
   Heard read(char& byte, std::chrono::milliseconds timeout);
   void close_socket();
 
   void signal(int number);
-  ChildEnd kill();  ///< TimedOut
+  ChildEnd kill();  ///< returns TimedOut
   ChildEnd wait();
-  /// Asked every `look`, `give_up` says whether to kill it.
+  /// Calls `give_up` at intervals of `look`, and kills the program once it returns true.
   ChildEnd wait(const std::function<bool()>& give_up, std::chrono::milliseconds look = std::chrono::milliseconds(20));
 
  private:

@@ -9,28 +9,28 @@
 
 namespace clothbench {
 
-/// A value of a table: a text, number, truth value or list of texts; null or not finite where it is missing; absent()
-/// where JSON is to have no such key. JSON can also hold whole objects.
+/// A value of a table: a string, number, boolean or list of strings. A missing value is null or not finite. absent()
+/// omits the key from JSON. For JSON a value can also be an object.
 using Value = nlohmann::json;
 Value absent();
 
-/// What a printed number is given in: the name goes into the heading, and `per_si` of it are one SI unit.
+/// Unit of printed numbers. The heading shows `name`; one SI unit equals `per_si` of this unit.
 struct Unit {
   const char* name = "";
   double per_si = 1;
 };
 inline constexpr Unit kMilliseconds{"ms", 1e3}, kMillimetres{"mm", 1e3}, kKilobytes{"kB", 1e-3};
 
-/// Text of a number in its column's unit.
+/// Formats a number that is already in its column's unit.
 using NumberFormat = std::function<std::string(double)>;
 NumberFormat digits(int significant_digits);
-/// By a format string of {fmt} such as "{:.1e}"; "–" where the number is not finite.
+/// Formats with a {fmt} format string such as "{:.1e}"; "–" if the number is not finite.
 NumberFormat in_form(const char* form);
 
-/// Which files have a column.
+/// Which files contain a column.
 enum class In { Both, Csv, Json, Neither };
 
-/// A column over records: printed under its head and unit where it has a head, stored under its key where it has one.
+/// A column over records. With a head it is printed, under head and unit; with a key it is stored, under that key.
 template <class Record>
 struct Column {
   using Get = std::function<Value(const Record&)>;
@@ -48,17 +48,17 @@ struct Column {
         format(std::move(f)),
         unit(u),
         in(key.empty() ? In::Neither : In::Both) {}
-  /// Not printed.
+  /// A column that is stored but not printed.
   Column(std::string k, In where, Get v) : key(std::move(k)), value(std::move(v)), in(where) {}
 };
 
-/// The forms of one value. Printed: "–" for what is missing. CSV: in full precision, nothing for what is missing; items
-/// of a list with ", " between. JSON: null for what is not finite.
+/// The forms of one value. Printed: "–" if it is missing. CSV: full precision, empty if it is missing, list items
+/// joined by ", ". JSON: null if it is not finite.
 std::string printed_value(const Value&, const NumberFormat&, const Unit&);
 std::string csv_value(const Value&);
 Value json_value(Value);
 
-/// A typed table: every form of it comes from its columns and any range of records.
+/// A typed table. Its columns turn any range of records into each output format.
 template <class Record>
 struct Columns : std::vector<Column<Record>> {
   using std::vector<Column<Record>>::vector;
@@ -68,7 +68,7 @@ struct Columns : std::vector<Column<Record>> {
     return *this;
   }
 
-  /// `t` with a row a record: for the console, Markdown and the page.
+  /// `t` with a header and one row per record, for the console, Markdown and the page.
   template <class Records>
   Table table(Table t, const Records& records) const {
     fill(
@@ -89,7 +89,7 @@ struct Columns : std::vector<Column<Record>> {
     return out;
   }
 
-  /// An object of one record, and an array of them.
+  /// One record as a JSON object; `json` gives an array of them.
   Value object(const Record& record) const {
     Value out = Value::object();
     for (const Column<Record>& c : *this) {

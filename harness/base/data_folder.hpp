@@ -5,35 +5,35 @@
 
 namespace clothbench {
 
-/// A kind of files that the program reads when it runs.
+/// A kind of data that the program reads at run time, and the places of its folder.
 struct DataFolder {
-  const char* what;       ///< in messages
+  const char* what;       ///< name in messages
   const char* variable;   ///< the environment variable that names the folder
-  const char* installed;  ///< below share/clothbench
-  const char* in_source;  ///< below the source tree
+  const char* installed;  ///< path below share/clothbench
+  const char* in_source;  ///< path below the source tree
 };
 
 inline constexpr DataFolder kScenarioFolder{"scenes and studies", "CLOTHBENCH_SCENARIOS", "scenarios", "scenarios"};
 inline constexpr DataFolder kAssetFolder{"rooms and hands", "CLOTHBENCH_ASSETS", "assets/node_modules",
                                          "build/assets/node_modules"};
 
-/// What the kinds lie below.
+/// Roots that the folders lie below.
 struct DataRoots {
-  std::filesystem::path installed;  ///< share/clothbench of the tree this program lies in; empty if that is unknown
+  std::filesystem::path installed;  ///< share/clothbench of this program's tree; empty if unknown
   std::filesystem::path source;     ///< the source tree this was built from
 };
 
-/// Of this program, wherever it was moved to.
+/// The roots of this program, also after it was moved.
 DataRoots data_roots();
 
-/// What the environment variable says; empty where it says nothing.
+/// Value of the environment variable; empty if it is not set.
 std::string named_data(const DataFolder&);
 
-/// Where to look when the variable says nothing: the installed tree, then the source tree.
+/// Places to search if the variable is not set: the installed tree, then the source tree.
 std::vector<std::filesystem::path> usual_places(const DataFolder&, const DataRoots& = data_roots());
 
-/// The folder that the variable names, and no other; without it the first of the usual places that exists. Throws Error
-/// with every place if there is none.
+/// The folder that the variable names; if it is not set, the first of the usual places that exists. Throws Error that
+/// lists every place if there is none.
 std::filesystem::path find_data(const DataFolder&, const DataRoots& = data_roots());
 
 }  // namespace clothbench

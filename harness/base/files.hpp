@@ -4,16 +4,16 @@
 
 namespace clothbench {
 
-/// Between a file's name and the process that writes it.
+/// Separates a file's name from the id of the writing process in a temporary name.
 inline constexpr char kTemporaryMark[] = ".tmp.";
 
-/// `<path>.tmp.<pid>`: what a file is called until it is whole.
+/// `<path>.tmp.<pid>`: the name of a file until it is complete.
 std::filesystem::path temporary_name(const std::filesystem::path& path);
 
-/// fsync of the temporary file, rename into place, fsync of the folder. Throws Error naming the file.
+/// Calls fsync on the temporary file, renames it to `path`, calls fsync on the folder. Throws Error naming the file.
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& path);
 
-/// tmp + fsync + rename + fsync of the folder.
+/// Writes a temporary file and publishes it, so that readers see the old or the new file, never a part.
 void write_file_atomically(const std::filesystem::path&, const std::string& content);
 
 }  // namespace clothbench

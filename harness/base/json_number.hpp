@@ -5,11 +5,11 @@
 
 namespace clothbench {
 
-/// How stored JSON holds a double. JSON has neither NaN nor infinity: null is missing, the texts "inf" and "-inf" are
-/// the infinities. Every file that is read back goes through these functions.
+/// Encodes a double for stored JSON. JSON has neither NaN nor infinity: null is a missing value, and the strings "inf"
+/// and "-inf" are the infinities. Every JSON file that is read back uses these functions.
 nlohmann::json number_to_json(double);
 
-/// For pages and figures, which draw nothing where there is no number: null for the infinities too.
+/// For pages and figures, which draw finite numbers only: null for NaN and for the infinities.
 nlohmann::json finite_or_null(double);
 
 /// Throws Error naming `name` if the value is none of number, null, "inf" and "-inf".

@@ -5,26 +5,26 @@
 
 namespace clothbench {
 
-/// Whole file as text. Throws Error naming the file: missing, a folder, unreadable, over 16 MiB.
+/// Reads a whole file as text. Throws Error naming the file if it is missing, a folder, unreadable or over 16 MiB.
 std::string read_text(const std::filesystem::path&);
 
 /// Strict JSON: no duplicate keys, no NaN or Infinity, no number beyond double range, nesting <= 64. Throws Error with
 /// `source` and line and column, or the JSON pointer of a repeated key.
 nlohmann::json parse_json(const std::string& text, const std::string& source);
 
-/// Throws the Error of a value that the schema lets through: where it stands, and what was expected.
+/// Throws Error for an invalid value that the schema cannot detect, with its place and what was expected.
 [[noreturn]] void refuse(const std::string& source, const std::string& pointer, const std::string& expected);
 
 /// Checks against one of the schemas in scenarios/schema (compiled in). Throws one Error: the deepest violation, with
-/// `source`, JSON pointer (below `pointer`, where the value stands in its file), what was expected and, for an unknown
+/// `source`, JSON pointer (below `pointer`, the place of the value in its file), what was expected and, for an unknown
 /// key, the nearest known one.
 void validate_json(const nlohmann::json&, const std::string& schema_text, const std::string& source,
                    const std::string& pointer = "");
 
-/// The sub-schema that `$ref` means; the schema itself where it has none.
+/// The sub-schema that `$ref` refers to; `schema` itself if it has no `$ref`.
 const nlohmann::json& sub_schema(const nlohmann::json& schema, const nlohmann::json& root);
 
-/// Adds every `default` the schema names that is missing.
+/// Adds each missing value that has a `default` in the schema.
 void fill_defaults(nlohmann::json&, const std::string& schema_text);
 
 }  // namespace clothbench

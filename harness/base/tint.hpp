@@ -3,19 +3,19 @@
 
 namespace clothbench {
 
-/// Colour for people: off until switched on, so that what goes to pipes and files is plain.
+/// Switches coloured output on or off. It is off by default, so that pipes and files get plain text.
 void colour_output(bool on);
 
-/// Whether a file descriptor is a terminal that takes colour; NO_COLOR (no-color.org) and TERM=dumb say no.
+/// Whether a file descriptor is a terminal that shows colour; false with NO_COLOR (no-color.org) or TERM=dumb.
 bool takes_colour(int file_descriptor);
 
 enum class Tone { Plain, Good, Bad, Doubtful, Faint, Heading };
 
-/// In that tone if colour is on.
+/// `text` in that tone if colour is on, else unchanged.
 std::string tinted(Tone, const std::string& text);
 
-/// By the verdict that a table's cell begins with (pass, fail, unsupported, noise, …) or the tick at its end; Plain
-/// for any other.
+/// Tone of a table's cell, from the verdict it begins with (pass, fail, unsupported, noise, …) or a tick at its end;
+/// Plain for any other cell.
 Tone tone_of(const std::string& cell);
 
 }  // namespace clothbench

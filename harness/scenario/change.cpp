@@ -35,7 +35,7 @@ Matrix matrix_of(const SceneChange& c) {
   return m;
 }
 
-/// Angles about the world's x, then y, then z axis of a turned box; which of its faces is which does not matter.
+/// Sets a rotated box's angles about the world's x, then y, then z axis. An axis may be reversed: the box is the same.
 void turn_box(json& box, const SceneChange& c) {
   if (is_identity(c)) return;
   const Vec3 old = vec3(box["rotation_deg"]);
@@ -125,7 +125,7 @@ class Changer {
   const std::string& source_;
 };
 
-/// Irregular scenes are made for one place, one size and one numbering.
+/// Irregular scenes are valid for one position, one size and one numbering only.
 void refuse_irregular(const json& s, const std::string& source) {
   const auto check = [&](const json& object, std::initializer_list<const char*> keys) {
     for (const char* key : keys)
@@ -141,7 +141,7 @@ void refuse_irregular(const json& s, const std::string& source) {
       throw Error(source + ": a scene with a collider of type capsule cannot be moved, scaled or renumbered");
 }
 
-/// What an edge or corner of the old numbering is called in the new one.
+/// The new name of an edge or corner after renumbering.
 std::string renamed(const std::string& name, Renumbering by) {
   std::string out = name;
   if (by == Renumbering::Transpose) {

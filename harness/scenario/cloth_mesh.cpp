@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of the square of its longest side: a triangle with less area has no direction, and rounding decides its normal.
+// Least area of a triangle over the square of its longest side. Below it rounding errors dominate the normal.
 constexpr double kLeastArea = 1e-9;
 
 double edge_length(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
@@ -46,8 +46,8 @@ void check_triangle(const std::vector<Vec3>& x, const std::array<std::uint32_t, 
     throw Error(fmt::format("{}: triangle {} (vertices {}, {}, {}) has no area", source, k, t[0], t[1], t[2]));
 }
 
-/// The lines that shapes are made of; a lone carriage return ends one too, as it does for the OBJ library. What else a
-/// file may say (materials, skin weights, curves) is neither looked at nor trusted.
+/// The lines that define geometry. A lone carriage return ends a line too, as in the OBJ library. All other content
+/// (materials, skin weights, curves) is untrusted and dropped unread.
 std::string shape_lines(const std::string& text) {
   std::string lines = text, out, line;
   std::replace(lines.begin(), lines.end(), '\r', '\n');

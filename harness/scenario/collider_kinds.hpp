@@ -10,28 +10,28 @@ namespace clothbench {
 
 class ColliderReader;
 
-/// A way to write a collider of some kind in a scene. Its keys are definitions/collider_<name> of the schema.
+/// A `type` of collider in a scene file. Its keys are definitions/collider_<name> of the schema.
 struct ColliderType {
   const char* name;
-  /// Fills in the collider from valid JSON with all its defaults; what else there is to say goes to the reader.
+  /// Fills in the collider from valid JSON with all defaults. Its motion and its table, if any, go to the reader.
   void (*read)(const nlohmann::json&, ColliderReader&, Collider&);
 };
 
-/// Numbers of a collider that result files keep as an attribute: one, or a vector.
+/// A number or vector of a collider that result files store as an attribute.
 struct ColliderNumbers {
   const char* name;
   std::size_t count;
   double* (*at)(Collider&);
 };
 
-/// Where a surface is nearest to a point.
+/// The nearest point of a surface to a query point.
 struct SurfacePlace {
   double distance_m;  ///< negative inside
-  Vec3 normal;        ///< unit, outwards
+  Vec3 normal;        ///< unit vector, outwards
 };
 
-/// What is to be seen: a surface without an end is shown as a square of twice `reach_m` round the point of it that is
-/// nearest to `middle`.
+/// The visible region. An infinite surface is shown as a square with sides of 2 `reach_m`, centred at its nearest point
+/// to `middle`.
 struct Extent {
   Vec3 middle{};
   double reach_m = 2;
@@ -40,37 +40,37 @@ struct Extent {
 /// Triangles of a surface at one instant, counter-clockwise seen from free space.
 struct ColliderSurface {
   std::vector<double> positions;                            ///< [m], xyz interleaved
-  std::span<const std::array<std::uint32_t, 3>> triangles;  ///< the collider's own, or there until the program ends
+  std::span<const std::array<std::uint32_t, 3>> triangles;  ///< owned by the collider, or static data
 };
 
-/// All that the harness knows of one shape of collider: a file in kinds/, found there by CMake. Loading, metrics,
-/// pictures, replays, the page and features ask here; nothing else tells shapes apart. Solvers answer to a shape in
-/// their own way.
+/// Description of one shape of collider: a file in kinds/, found there by CMake. Loading, metrics, pictures, replays,
+/// the page and features all use it; no other code of the harness distinguishes shapes. Solvers handle each shape in
+/// their own code.
 struct ColliderKind {
   Collider::Shape shape = Collider::Shape::Plane;
-  const char* name = "";                                       ///< in result files
-  Feature standing = Feature::Plane, moving = Feature::Plane;  ///< what a solver needs for one
+  const char* name = "";                                       ///< name in result files
+  Feature standing = Feature::Plane, moving = Feature::Plane;  ///< required of a solver for a static and a dynamic one
   std::vector<ColliderType> types = {};
-  /// One of each feature so far away that it cannot matter; see irrelevant.hpp.
+  /// For each feature a collider so far away that it cannot affect the result; see irrelevant.hpp.
   std::vector<std::pair<Feature, nlohmann::json>> far = {};
-  /// What result files keep: numbers, and the capsules or the mesh of every frame.
+  /// What result files store: numbers, and the capsules or the mesh of every frame.
   std::vector<ColliderNumbers> numbers = {};
   enum class Holds { Numbers, Capsules, Mesh } holds = Holds::Numbers;
 
-  // Its geometry is a union of capsules or a surface of triangles.
+  // The geometry is a union of capsules or a triangulated surface.
   std::vector<Capsule> (*capsules)(const Collider&, const ColliderPose&) = nullptr;
   ColliderSurface (*surface)(const Collider&, const ColliderPose&, const Extent&) = nullptr;
-  /// The exact distance of something that stands still, where its triangles are not to be asked.
+  /// The exact distance to a static collider, used instead of the distance to its triangles.
   SurfacePlace (*nearest)(const Collider&, const Vec3&) = nullptr;
-  bool half_space = false;  ///< all behind `center_m`, against `normal`
-  bool convex = false;      ///< every triangle's plane has all of it on one side
+  bool half_space = false;  ///< solid on the side of `center_m` opposite to `normal`
+  bool convex = false;      ///< lies on one side of the plane of every triangle
 };
 
 /// One of each shape, in the order of Collider::Shape.
 const std::vector<ColliderKind>& collider_kinds();
-/// Throws Error if there is none.
+/// The kind of this collider. Throws Error if there is none.
 const ColliderKind& kind_of(const Collider&);
 
-inline constexpr double kFar_m = 100;  ///< how far away a `far` collider is
+inline constexpr double kFar_m = 100;  ///< distance [m] of a `far` collider
 
 }  // namespace clothbench

@@ -29,7 +29,7 @@ void ColliderReader::refuse(const std::string& key, const std::string& expected)
 }
 
 Vec3 ColliderReader::unit(const nlohmann::json& j, const std::string& key) const {
-  constexpr double kUnit = 1e-9;  // how far from length 1, squared
+  constexpr double kUnit = 1e-9;  // tolerance of the squared length
   const Vec3 v = vec3(j[key]);
   if (!(std::abs(dot(v, v) - 1) <= kUnit)) refuse("/" + key, "expected a vector of length 1");
   return v;

@@ -10,30 +10,30 @@
 
 namespace clothbench {
 
-/// What colliders and grips are read with, one after another, and what a collider leaves beside itself.
+/// Context in which colliders and grips are read, one after another. It also takes a collider's motion and table.
 class ColliderReader {
  public:
   ColliderReader(Scene& scene, const std::string& source, Assets wanted)
       : scene_(scene), source_(source), wanted_(wanted) {}
 
-  /// Goes on to what is at this JSON pointer.
+  /// Starts the object at this JSON pointer and clears `pose` and `table`.
   void enter(std::string at);
-  /// Checks it against a definition of the schema and fills in its defaults.
+  /// Checks the object against a definition of the schema and fills in its defaults.
   void complete(nlohmann::json&, const std::string& definition) const;
   [[noreturn]] void refuse(const std::string& key, const std::string& expected) const;
-  /// A vector that must be of length 1.
+  /// Reads a vector, which must have length 1.
   Vec3 unit(const nlohmann::json&, const std::string& key) const;
-  /// A path whose jumps are the scene's.
+  /// Reads a path and adds its jumps to the scene.
   Path path(const nlohmann::json&) const;
   const assets::AssetSource& assets();
   const std::string& source() const { return source_; }
 
-  std::function<ColliderPose(double time_s)> pose;  ///< of what moves
+  std::function<ColliderPose(double time_s)> pose;  ///< of a dynamic collider
   struct RoundTable {
     assets::Table table;
     ColliderMesh mesh;
   };
-  std::optional<RoundTable> table;  ///< that a cloth can be put over, with the mesh round it
+  std::optional<RoundTable> table;  ///< a table that a cloth can be placed over, with the mesh around it
 
  private:
   Scene& scene_;

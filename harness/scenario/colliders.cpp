@@ -85,7 +85,7 @@ class StageReader {
   }
 
   struct Grip {
-    std::optional<MovingHand> by;  ///< a hand; otherwise the bar
+    std::optional<MovingHand> by;  ///< a hand; empty: the bar
     Path bar;
     std::vector<std::uint32_t> vertices;
   };
@@ -130,7 +130,7 @@ class StageReader {
     return g;
   }
 
-  /// Held vertices follow the hand rigidly: the frame of its pinch, turned as its palm.
+  /// Held vertices move rigidly with this frame: its origin is the pinch point, its rotation that of the palm.
   static assets::Frame pinch_frame(const assets::HandPose& pose) {
     assets::Frame f = assets::palm_frame(pose);
     f.translation() = assets::pinch_point(pose);
@@ -175,8 +175,8 @@ class StageReader {
   json& scenario_;
   Scene& scene_;
   ColliderReader reader_;
-  std::map<std::size_t, ColliderReader::RoundTable> tables_;  ///< by collider
-  std::vector<std::function<ColliderPose(double)>> poses_;    ///< by collider
+  std::map<std::size_t, ColliderReader::RoundTable> tables_;  ///< by collider index
+  std::vector<std::function<ColliderPose(double)>> poses_;    ///< by collider index
   std::vector<Grip> grips_;
 };
 

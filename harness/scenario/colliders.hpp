@@ -7,10 +7,10 @@
 
 namespace clothbench {
 
-/// Fills in `scene.colliders`, `grips`, `motion` and `assets` from the scenario, and, where `cloth.pose.over_table`
-/// asks for it, the cloth's pose, which is written back to `scenario` for the record. Everything of the scene that
-/// does not move must be there already. Throws Error with `source` and JSON pointer, or if `assets` are required and
-/// those in use are stand-ins.
+/// Fills in `scene.colliders`, `grips`, `motion` and `assets` from the scenario. With `cloth.pose.over_table` it also
+/// sets the cloth's pose and writes it back to `scenario`, for the record. All other parts of the scene must be
+/// complete before the call. Throws Error with `source` and JSON pointer, or if `assets` are required and the scene
+/// would use stand-ins.
 void read_colliders(nlohmann::json& scenario, Scene& scene, const std::string& source, Assets assets);
 
 }  // namespace clothbench

@@ -8,7 +8,7 @@
 namespace clothbench {
 namespace {
 
-/// Length share of grid line `i` of `n`, in cells: half a cell at the border.
+/// Width [cells] that belongs to grid line `i` of `n`: 1, or half a cell at the border.
 double share(int i, int n) { return i == 0 || i == n - 1 ? 0.5 : 1.0; }
 
 /// Angle between neighbouring chords of an arc of n equal chords whose ends are `span` chords apart:
@@ -23,7 +23,8 @@ double chord_angle(int n, double span) {
   return high;
 }
 
-/// Where grid line `i` of an arc is: along its chord from the middle, and below it. Source: circle through n chords.
+/// Position [m] of grid line `i` of an arc: along the chord of the ends, from its middle, and below that chord. The n
+/// cells are equal chords of a circle.
 std::array<double, 2> on_arc(const Cloth& c, int i) {
   const int n = c.columns - 1;
   const double d = chord_angle(n, c.span_m / c.du()), radius = c.du() / (2 * std::sin(d / 2));
@@ -102,8 +103,8 @@ Vec3 Scene::rest_position(int i, int j) const {
 double drape_turn_rad(const Cloth& c) { return 2 * std::asin(c.du() / (2 * c.drape_radius_m)); }
 
 Vec3 draped_row(const Cloth& c, int i, double offset_m) {
-  // Angle from the horizontal on side u0. A row less than half a turn below the axis hangs as far from it as one that
-  // touches, so both rules meet there.
+  // Angles count from the horizontal on side u0. A row less than turn / 2 below the axis is as far from it if it hangs
+  // as if it touches, so both rules agree there.
   const double turn = drape_turn_rad(c), middle = (c.columns - 1) / 2.0 - offset_m / c.du();
   const auto angle_of = [&](double row) { return std::numbers::pi / 2 + (row - middle) * turn; };
   const double slack = 1e-9 * turn;
@@ -133,7 +134,7 @@ std::vector<double> vertex_masses(const Scene& scene) {
   const double cell = c.areal_density_kg_per_m2 * c.du() * c.dv();
   std::vector<double> mass;
   mass.reserve(c.vertex_count());
-  // Of even cells exactly as ever; of others half of each neighbour.
+  // Uneven cells give half of each neighbour. Even cells keep the first formula, so that their masses stay the same.
   const auto width = [&](int i) {
     if (c.column_factors.empty()) return share(i, c.columns);
     return (c.line_u_m(std::min(i + 1, c.columns - 1)) - c.line_u_m(std::max(i - 1, 0))) / 2 / c.du();

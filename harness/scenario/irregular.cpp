@@ -106,7 +106,7 @@ class IrregularReader {
   const std::string& source_;
 };
 
-/// Van der Corput's sequence in base 2 from a seed's offset: shares in [0, 1) without a generator's state.
+/// Element `n` of the van der Corput sequence in base 2, in [0, 1). A seed is an offset of `n`: no generator state.
 double scattered(std::uint64_t n) {
   double out = 0, half = 0.5;
   for (; n > 0; n >>= 1, half /= 2)

@@ -12,7 +12,7 @@ using nlohmann::json;
 constexpr double kNegligible = 1e-30;
 constexpr double kFriction = 0.5;
 
-/// Colliders of one kind each, on every side of the cloth. A sheet falls 4.9 m in a second: nothing comes near.
+/// One collider per feature, in different directions. A sheet falls 4.9 m in a second, so it does not reach them.
 std::map<Feature, json> far_colliders() {
   std::map<Feature, json> out;
   for (const ColliderKind& kind : collider_kinds()) out.insert(kind.far.begin(), kind.far.end());

@@ -63,7 +63,7 @@ Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
   return {{pinned.begin(), pinned.end()}};
 }
 
-/// A grid and its size, or a mesh: one or the other.
+/// Reads either a grid and its size or a mesh.
 void read_shape(json& j, Cloth& c, const std::string& source) {
   if (j.contains("mesh")) {
     for (const char* of_grids : {"grid", "size_m", "column_factors", "start"})
@@ -128,7 +128,7 @@ Cloth read_cloth(json& j, const std::string& source) {
   return c;
 }
 
-/// Of a cloth whose cells are known. A thicker one would touch itself where it lies flat.
+/// Needs the cells of the cloth: a thickness above the least height of a triangle would make a flat cloth touch itself.
 void read_self_collision(const json& cloth, Cloth& c, const std::string& source) {
   if (!cloth.contains("self_collision")) return;
   c.self_collision = {cloth["self_collision"]["thickness_m"].get<double>(),
@@ -141,7 +141,7 @@ void read_self_collision(const json& cloth, Cloth& c, const std::string& source)
                        most, c.self_collision.thickness_m));
 }
 
-/// The schema knows the names; here the bounds must leave something between them.
+/// The schema checks the names; this checks that the lower bound is not above the upper one.
 void read_expect(const json& j, Scene& s, const std::string& source) {
   for (const auto& [name, bounds] : j.items()) {
     if (name == "outcome") {
@@ -170,7 +170,7 @@ void check_assumed(const json& scenario, const std::string& source) {
   }
 }
 
-/// As `find_scenario` takes them: "paper/gravity", and studies without their folder.
+/// Names that `find_scenario` accepts, such as "paper/gravity"; studies without their folder.
 std::vector<std::string> scenario_names() {
   std::vector<std::string> names;
   std::error_code ec;
@@ -226,7 +226,7 @@ FeatureSet derive_needs(const Scene& scene) {
 
 namespace {
 
-/// Member `key` of an object, made if it is not there, or item number `key` of an array.
+/// Member `key` of an object, created if it is missing, or item number `key` of an array.
 json& child(json& of, const std::string& key, const std::string& where) {
   if (of.is_object() || of.is_null()) return of[key];
   if (!of.is_array()) throw Error(where + ": not an object's key");

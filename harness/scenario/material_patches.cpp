@@ -46,7 +46,7 @@ json hang(Patch patch, double y, bool along_v, bool shear) {
                   {0, -kHangGravity, 0});
 }
 
-/// 0.25 m between the held edges, 2 m along them: the ends are felt by e^-7 in the middle.
+/// 0.25 m between the held edges, 2 m along them: the effect of the ends decays to e^-7 in the middle.
 json shear() {
   json cloth = {{"grid", {9, 65}},
                 {"size_m", {0.25, 2.0}},
@@ -55,7 +55,7 @@ json shear() {
                   json::array({{{"edge", "u0"}}, {{"edge", "u1"}}}), {0, -kShearGravity, 0});
 }
 
-/// Free length 0.2 m of 32 cells behind one cell of clamp, 8 cells wide.
+/// A free length of 0.2 m, 32 cells, after one clamped cell; 8 cells wide.
 json bend(Patch patch, double stiffer, bool along_v) {
   constexpr double kCell = 0.2 / 32, kLength = 0.2, kGamma = 0.5, kStiff = 1e3;
   const double b = stiffer * kDensity_kg_per_m2 * kBendGravity * kLength * kLength * kLength / kGamma;
@@ -69,7 +69,7 @@ json bend(Patch patch, double stiffer, bool along_v) {
                   {0, -kBendGravity, 0});
 }
 
-/// Large and stiff, so that it moves by a thousandth of the band's width: less than would stretch it.
+/// Large and stiff, so that its deflection is a thousandth of the band's width, too little to stretch it.
 json bend_diagonal() {
   constexpr int kSide = 25, kHalfBand = 3;
   constexpr double kSize = 3, kRigidity = 10;

@@ -7,18 +7,18 @@
 
 namespace clothbench {
 
-/// A hand on its way; keeps what is needed to sample it.
+/// A moving hand, with the data to sample its motion.
 struct MovingHand {
-  std::optional<assets::Hand> hand;  ///< none where a recording needs none
+  std::optional<assets::Hand> hand;  ///< empty if a recording needs no hand model
   assets::HandTrack track;
   std::optional<assets::HandRecording> recording;    ///< instead of the track
   assets::Vector offset_m = assets::Vector::Zero();  ///< of the whole track
 };
 
-/// By the keys `track` and `speed_m_per_s` of a collider or a grip.
+/// Reads the keys `track` and `speed_m_per_s` of a collider or a grip.
 MovingHand moving_hand(const nlohmann::json&, ColliderReader&, bool as_mesh);
 
-/// A hand's mesh, or its capsules.
+/// Reads a hand as a collider: its mesh, or its capsules.
 void read_hand(const nlohmann::json&, ColliderReader&, Collider&, bool as_mesh);
 
 }  // namespace clothbench

@@ -10,7 +10,7 @@
 namespace clothbench {
 namespace {
 
-/// Seconds at full speed that come to the same way.
+/// Time [s] at full speed that gives the same displacement.
 double ramped(double t, double ramp_s) {
   if (t >= ramp_s) return t - ramp_s / 2;
   return t / 2 - ramp_s / (2 * std::numbers::pi) * std::sin(std::numbers::pi * t / ramp_s);

@@ -8,8 +8,8 @@
 
 namespace clothbench {
 
-/// How a bar or a capsule moves. Speeds up as sin^2(pi t / 2 ramp_s), then keeps its velocity until it stops; jumps
-/// come on top, within the frame in which they fall.
+/// Motion of a bar or a capsule. The speed rises as sin^2(pi t / 2 ramp_s), then stays constant until `stop_s`. Jumps
+/// are added to this, each within the frame that contains its time.
 struct Path {
   Vec3 velocity_m_per_s{};
   double ramp_s = 0, start_s = 0;
@@ -20,14 +20,14 @@ struct Path {
   };
   std::vector<At> jumps;
 
-  /// Of what the completed JSON has of velocity_m_per_s, ramp_s, start_s, stop_s, release_s, jumps.
+  /// Reads velocity_m_per_s from completed JSON, and ramp_s, start_s, stop_s, release_s, jumps where present.
   static Path read(const nlohmann::json&);
-  /// How far it has come at `time_s` [m].
+  /// Displacement [m] at `time_s`.
   Vec3 way(double time_s) const;
   bool held(double time_s) const { return !release_s || time_s < *release_s; }
 };
 
-/// The scene's jumps of this path, by the frames in which they fall.
+/// Adds this path's jumps to the scene, each with the frame that contains it.
 void note_jumps(const Path&, Scene&);
 
 /// A capsule about `center_m` at a time: `length_m` along `axis` (a unit vector), turned by `spin_rad_per_s` x time.

@@ -18,7 +18,7 @@ std::shared_ptr<ColliderMesh> collider_mesh(const assets::TriangleMesh& from) {
   auto mesh = std::make_shared<ColliderMesh>();
   mesh->positions = from.positions;
   mesh->triangles = from.triangles;
-  // A room is closed too, but what is solid lies outside it: no point has a depth in it.
+  // The mesh of a room can be closed too, but its solid is outside: penetration depth has no meaning in it.
   mesh->closed = assets::topology(from).closed_manifold() && assets::signed_volume(from) > 0;
   return mesh;
 }

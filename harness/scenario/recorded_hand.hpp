@@ -9,23 +9,23 @@
 
 namespace clothbench {
 
-/// A file that a scene names: beside the scene `source`, else in the scenarios folder; empty if it is in neither.
+/// Finds a file that a scene names: beside the scene `source`, else in the scenarios folder; empty if in neither.
 std::optional<std::filesystem::path> file_of_scene(const std::string& name, const std::string& source);
 
-/// A mesh for solvers; `closed` if it has an inside.
+/// A mesh for solvers; `closed` if it is the closed surface of a solid, with outward normals.
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::TriangleMesh&);
-/// The same of a hand, which follows its joints.
+/// The same for a hand's mesh, which follows its joints.
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::SkinnedMesh&);
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::RecordedMesh&);
 
-/// The 19 capsules of a recorded hand, or the matrices of its joints. What a scene that replays a recording and a live
-/// session that makes it go through, so that both give the same bits. A recording without a mesh of its own moves
+/// The 19 capsules of a recorded hand, or the matrices of its joints. A replay and the live session that records it
+/// both use these functions, so they agree bit for bit. If the recording has no mesh, `mesh_pose` is for the mesh of
 /// `stand_in`.
 ColliderPose capsules_pose(const assets::HandRecording&, const assets::RecordedHand&, const assets::Vector& offset_m);
 ColliderPose mesh_pose(const assets::HandRecording&, const assets::RecordedHand&, const assets::Hand* stand_in,
                        const assets::Vector& offset_m);
 
-/// A frame's matrix for a collider's joint.
+/// Converts the transform of a joint to the form in ColliderPose.
 Affine affine(const Eigen::Affine3d&);
 
 }  // namespace clothbench

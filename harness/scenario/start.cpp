@@ -1,4 +1,4 @@
-// Where vertices are, how heavy and how fast, before anything moves: the parts of a scene that are not a sheet at rest.
+// Initial positions and velocities of the vertices, and the starts of a scene other than a sheet at rest.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,13 +9,13 @@
 namespace clothbench {
 namespace {
 
-/// SplitMix64 (Steele, Lea & Flood 2014), one stream a vertex: its numbers do not depend on what is pinned elsewhere.
+/// SplitMix64 (Steele, Lea & Flood 2014), one stream per vertex, so that pins elsewhere do not change its numbers.
 class Random {
  public:
   Random(std::uint64_t seed, std::uint64_t stream)
       : state_(seed * 0x9E3779B97F4A7C15u + (stream + 1) * 0xD1B54A32D192ED03u) {}
 
-  /// In [0, 1), 53 bits.
+  /// Uniform in [0, 1), 53 bits.
   double uniform() {
     state_ += 0x9E3779B97F4A7C15u;
     std::uint64_t z = state_;
@@ -24,7 +24,7 @@ class Random {
     return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
   }
 
-  /// Standard normal, by Box and Muller.
+  /// Standard normal, by the Box-Muller transform.
   double normal() {
     const double r = std::sqrt(-2 * std::log(1 - uniform()));
     return r * std::cos(2 * std::numbers::pi * uniform());
@@ -34,7 +34,7 @@ class Random {
   std::uint64_t state_;
 };
 
-/// Place of vertex (i, j) in the frame (axis_u, axis_v, normal) about the centre.
+/// Position [m] of a vertex in column i, in the frame (axis_u, axis_v, normal) about the centre.
 Vec3 shaped(const Cloth& c, int i, Random& random) {
   const Start& s = c.start;
   const double turn = 2 * std::numbers::pi * random.uniform(), share = random.uniform();
@@ -55,12 +55,12 @@ Vec3 shaped(const Cloth& c, int i, Random& random) {
     case Start::Shape::Point:
       return {0, 0, 0};
     case Start::Shape::Folded:
-      break;  // needs j: see below
+      break;  // depends on j: see put_shape
   }
   return {};
 }
 
-/// A triangular wave: leaf by leaf there and back.
+/// Folded coordinate [m] along u: a triangular wave whose half period is one layer.
 double folded_u(const Cloth& c, int i) {
   const double leaf = c.width_m / c.start.folds, u = c.line_u_m(i);
   const double in_pair = std::fmod(u, 2 * leaf);

@@ -23,7 +23,7 @@ using Words = std::vector<std::string>;
 constexpr double kFpsAccuracy_s = 0.5;
 constexpr const char* kAllOn = "all-on";
 
-/// What of its features a solver could be given in this scene; none if the build does not have it.
+/// All features that a solver could be given in this scene; none if the build does not have the solver.
 FeatureSet usable_features(const std::string& solver, FeatureSet needs) {
   for (const SolverEntry& e : solvers()) {
     if (e.info.name != solver || !e.make) continue;
@@ -40,7 +40,7 @@ StudyRules read_rules(const json& j) {
           j["warmup_s"].get<double>(), j["ladder_limit_s"].get<double>(), j["agree"].get<double>()};
 }
 
-/// {"cloth.sides": "double"} as `--set` writes it.
+/// Converts {"cloth.sides": "double"} to the form of `--set`.
 Words assignments(const json& set) {
   Words out;
   for (const auto& [key, value] : set.items()) out.push_back(key + "=" + value.dump());
@@ -51,7 +51,7 @@ bool contains(const Words& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// An empty choice is no choice.
+/// Whether the choice has one of the labels. An empty choice accepts all.
 bool chosen(const Words& choice, const Words& labels) {
   return choice.empty() ||
          std::any_of(labels.begin(), labels.end(), [&](const auto& l) { return contains(choice, l); });
@@ -63,7 +63,7 @@ struct Variant {
   bool timed = true;
 };
 
-/// Product of the axes, the first varying slowest.
+/// Cartesian product of the axes; the first varies slowest.
 std::vector<Variant> expand(const json& axes, const std::string& pointer, const std::string& source) {
   std::vector<Variant> all(1);
   for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -152,7 +152,7 @@ class Builder {
     }
   }
 
-  /// Every solver once more.
+  /// Adds every solver a second time, with all features on.
   void add_all_on() {
     const std::size_t count = study_.solvers.size();
     for (std::size_t k = 0; k < count; ++k) {
@@ -164,15 +164,15 @@ class Builder {
     }
   }
 
-  /// The study's ladder in its form; null where it has none.
+  /// The ladder for this form of the study; null if it has none.
   json ladder() const {
     if (!quick_.is_null() && quick_.contains("ladder")) return quick_["ladder"];
     if (study_.length == StudyLength::Short && j_.contains("short_ladder")) return j_["short_ladder"];
     return j_.value("ladder", json());
   }
 
-  /// The solver with every setting of the ladder that it has knobs for, from the least work up; itself alone if it
-  /// climbs none.
+  /// The solver with each combination of its ladder settings, in order of increasing work; only the solver itself if
+  /// `knobs` is empty.
   std::vector<StudySolver> climb(const StudySolver& solver, const Words& knobs, const std::string& at) const {
     if (knobs.empty()) return {solver};
     const json ladder = this->ladder();
@@ -200,7 +200,8 @@ class Builder {
     return rungs;
   }
 
-  /// A solver that was asked for stays although the quick form leaves it out, but not each of its settings.
+  /// A requested solver stays even if the quick form leaves it out. If the form has some of its settings, only these
+  /// stay.
   bool stays(const StudySolver& s) const {
     const Words quick = quick_.is_null() ? Words{} : quick_["solvers"].get<Words>();
     const bool in_quick = quick.empty() || contains(quick, s.name());
@@ -226,14 +227,14 @@ class Builder {
       v.labels.insert(v.labels.end(), labels.begin(), labels.end());
       v.labels.push_back(name + v.suffix);
       v.timed = item["timed"].get<bool>();
-      labels_.insert(v.labels.begin(), v.labels.end());  // words of the study also where it is left out
+      labels_.insert(v.labels.begin(), v.labels.end());  // labels of the study, even if this form leaves it out
       if (item["only_full"].get<bool>() && study_.length != StudyLength::Full) continue;
       if (!quick_.is_null() && !chosen(quick_["scenes"].get<Words>(), v.labels)) continue;
       add_forms(scenario, path.string(), v, pointer);
     }
   }
 
-  /// One item for all solvers that change nothing or the same; their runs must differ in name.
+  /// Adds one item for all solvers with the same changes to the scene. The names of their runs must differ.
   void add_forms(const json& scenario, const std::string& path, const Variant& v, const std::string& pointer) {
     std::map<Words, std::size_t> forms;
     for (std::size_t s = 0; s < study_.solvers.size(); ++s) {
@@ -252,7 +253,7 @@ class Builder {
           json form = scenario;
           for (const std::string& o : all) apply_override(form, o, path);
           form = with_irrelevant(std::move(form), scene.needs, usable_features(solver.solver, scene.needs));
-          if (!form.contains("irrelevant")) {  // there is nothing to switch on
+          if (!form.contains("irrelevant")) {  // no feature to switch on
             forms.erase(at);
             continue;
           }
@@ -270,7 +271,7 @@ class Builder {
     }
   }
 
-  /// The quick form may leave some of its scenes to some of its solvers.
+  /// Whether the quick form runs a scene with this solver: it may restrict a solver to some scenes.
   bool quick_runs(const StudySolver& s, const Words& labels) const {
     if (quick_.is_null() || !quick_["only"].contains(s.name())) return true;
     return chosen(quick_["only"][s.name()].get<Words>(), labels);
@@ -282,7 +283,7 @@ class Builder {
     return groups_.emplace(key, static_cast<int>(groups_.size())).first->second;
   }
 
-  /// A word that chooses nothing is a misspelt one.
+  /// A word that selects nothing is treated as a spelling error.
   void check_words() const {
     const auto check = [&](const std::string& pointer, const json& words, const Words& known) {
       for (std::size_t k = 0; k < words.size(); ++k) {
@@ -305,13 +306,13 @@ class Builder {
     }
   }
 
-  json j_, quick_;  ///< quick_: null unless the quick form was asked for
+  json j_, quick_;  ///< quick_: null unless the quick form was requested
   const std::filesystem::path file_;
   const std::string source_;
   const StudyOptions& options_;
   Study study_;
   Words solver_names_;
-  std::vector<bool> stays_;  ///< by solver
+  std::vector<bool> stays_;  ///< by solver index
   std::set<std::string> labels_, runs_;
   std::map<std::string, int> groups_;
 };

@@ -15,41 +15,41 @@ struct StudySolver {
   nlohmann::json settings;        ///< as given; `complete_settings` adds the rest
   std::vector<std::string> set;   ///< changes to the scenes for this solver alone, `dotted.key=JSON`
   std::vector<std::string> only;  ///< labels of the scenes it runs; empty: all
-  bool joined = false;            ///< not of the study but of StudyOptions::solvers
-  int work = 0;                   ///< product of its knobs on the ladder; 0: it climbs none
-  bool all_on = false;            ///< every other feature it has switched on where it cannot matter (irrelevant.hpp)
-  std::string name() const;       ///< as tables name it: "paper", "paper whole-room"
+  bool joined = false;            ///< comes from StudyOptions::solvers, not from the study
+  int work = 0;                   ///< product of its ladder settings; 0: it is not on the ladder
+  bool all_on = false;            ///< with its other features switched on without effect (irrelevant.hpp)
+  std::string name() const;       ///< name in tables: "paper", "paper whole-room"
 };
 
-/// How long a trial is; the same words as in the file.
+/// Length of a trial, and when to end a ladder or the trials early. The names are those in the file.
 struct StudyRules {
   int frames = 0, min_frames = 0;
   double max_wall_s = 0, warmup_s = 0;
   double ladder_limit_s = 0, agree = 0;
 };
 
-/// Which of its protocols a study runs: trials as in its "short", "full" or "quick"; quick also leaves out scenes and
+/// Which form of a study runs: trials as in its "short", "full" or "quick". The quick form also leaves out scenes and
 /// solvers.
 enum class StudyLength { Short, Full, Quick };
 
 struct StudyOptions {
-  std::vector<std::string> overrides;  ///< applied to every scene, after everything the study says
+  std::vector<std::string> overrides;  ///< applied to every scene, after all changes of the study
   StudyLength length = StudyLength::Short;
   Assets assets = Assets::MayBeProcedural;
-  /// Only these, if any. One that the study does not name joins it, with its default settings and every scene as it is.
+  /// If not empty, only these run. One that the study lacks joins it, with default settings and unchanged scenes.
   std::vector<std::string> solvers = {};
-  /// Knobs by which such a solver climbs the study's ladder, where it has one; it does not without an entry here.
+  /// Settings that the study's ladder, if any, varies for such a solver. One without an entry here is not varied.
   std::map<std::string, std::vector<std::string>> knobs = {};
 };
 
 /// A study with its axes expanded. Runs of one `group` are interleaved: with the protocol fps those of one grid,
-/// with penetration those of one scene.
+/// with others those of one scene.
 struct Study {
-  /// A scene in one form, and the solvers that run it so. A solver's own changes make another form of the same name.
+  /// One form of a scene, and the solvers that run it. A solver's own changes give another form of the same name.
   struct Item {
     Scene scene;  ///< name = base name and the labels of its axis values
     int group = 0;
-    bool timed = true;                 ///< false: its runs have the accuracy pass alone
+    bool timed = true;                 ///< false: only the accuracy pass runs
     std::vector<std::size_t> solvers;  ///< indices into Study::solvers
   };
   std::string name, why, protocol;
@@ -64,8 +64,8 @@ struct Study {
   nlohmann::json definition;  ///< completed study file
 };
 
-/// Loads a study by path or name ("table3"). Throws Error as `load_scene` does, and if the study has no "quick" where
-/// that is asked for. Solver names are not looked up.
+/// Loads a study by path or name ("table3"). Throws Error as `load_scene` does, and if the quick form is requested and
+/// the study has none. Solver names are not looked up.
 Study load_study(const std::string& name_or_path, const StudyOptions& = {});
 
 /// True if the file is a study rather than a scene (has "protocol").

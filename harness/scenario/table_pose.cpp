@@ -26,7 +26,7 @@ std::vector<Vector> clip(const std::vector<Vector>& polygon, F f) {
 }
 
 struct Edges {
-  Vector middle_of_long, along, across;  ///< unit vectors, level; `across` points off the table
+  Vector middle_of_long, along, across;  ///< a point [m]; two level unit vectors, `across` points off the table
   Vector center;
 };
 
@@ -69,7 +69,7 @@ TablePose flat_over(const assets::Table& table, const ColliderMesh& mesh, const 
 TablePose corner_first_over(const assets::Table& table, const Cloth& cloth, double drop_m, double tilt) {
   const Edges e = edges_of(table);
   const Vector rising = std::cos(tilt) * e.along + std::sin(tilt) * Vector::UnitY();
-  // The lowest corner is u0v0: the sheet's diagonal from there rises, u and v lie at 45 degrees to it.
+  // The lowest corner is u0v0. The sheet's diagonal from it rises; u and v are at 45 degrees to that diagonal.
   const Vector u = (rising + e.across) / std::sqrt(2.0), v = (rising - e.across) / std::sqrt(2.0);
   const Vector lowest = e.middle_of_long + drop_m * Vector::UnitY();
   return {to_vec3(Vector(lowest + cloth.width_m / 2 * u + cloth.height_m / 2 * v)), to_vec3(u), to_vec3(v)};

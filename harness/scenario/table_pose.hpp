@@ -4,17 +4,17 @@
 
 namespace clothbench {
 
-/// Where a sheet lies before it is let go.
+/// Initial pose of a sheet above a table.
 struct TablePose {
   Vec3 center_m{}, axis_u{}, axis_v{};
 };
 
-/// Level, centred on the table and along its sides, `drop_m` above the highest point of `mesh` below the cloth.
-/// Throws Error if nothing of the mesh is below it.
+/// Level, centred on the table and aligned with its sides, `drop_m` above the highest point of `mesh` below the cloth.
+/// Throws Error if no part of the mesh is below the cloth.
 TablePose flat_over(const assets::Table&, const ColliderMesh& mesh, const Cloth&, double drop_m);
 
-/// Corner first: its lowest corner `drop_m` above the middle of a long edge of the table, one diagonal rising at `tilt`
-/// [rad] along that edge, the other level and across it, so that half the cloth is outside.
+/// Corner first: the lowest corner is `drop_m` above the middle of a long edge of the table. One diagonal rises at
+/// `tilt` [rad] along that edge; the other is level and across the edge, so that half the cloth is beyond it.
 TablePose corner_first_over(const assets::Table&, const Cloth&, double drop_m, double tilt);
 
 }  // namespace clothbench

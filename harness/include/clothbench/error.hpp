@@ -7,8 +7,8 @@ namespace clothbench {
 /// Process exit codes of the `clothbench` command.
 enum class ExitCode : int { Ok = 0, CheckFailed = 1, BadInput = 2, NoDevice = 3, Interrupted = 130 };
 
-/// The one exception type of the project. The message is complete as it stands: it names the file and JSON pointer,
-/// the argument, or the Vulkan call, and what was expected. A solver that blows up is not an error but a result
+/// Base class of all exceptions of the project. The message is complete: it names the file and JSON pointer, the
+/// argument, or the Vulkan call, and what was expected. A solver that diverges is not an error but a result
 /// (StepStatus).
 class Error : public std::runtime_error {
  public:
@@ -20,7 +20,7 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
-/// A solver that cannot be made or cannot load a scene: a row of the results, where any other Error ends the run.
+/// A solver cannot be created or cannot load a scene. This gives a row of the results; any other Error ends the run.
 class SolverError : public Error {
  public:
   explicit SolverError(const std::string& message) : Error(message, ExitCode::CheckFailed) {}

@@ -7,9 +7,9 @@
 
 namespace clothbench {
 
-/// What a scene asks of a solver: the rows of feature_table.hpp. Derived from the scenario by the loader
-/// (`derive_needs`), never by a solver. A run fails unless the features its stages served are exactly those the scene
-/// needs (`check_stages`).
+/// What a scene can require of a solver: one per row of feature_table.hpp. The loader derives the required features
+/// from the scenario (`derive_needs`); a solver never does. A run fails unless its stages serve exactly the features
+/// that the scene needs (`check_stages`).
 enum class Feature : std::uint8_t {
 #define FEATURE(id, ...) id,
 #include "clothbench/feature_table.hpp"
@@ -20,7 +20,7 @@ enum class Feature : std::uint8_t {
 enum class FeatureOf : std::uint8_t {
   Cloth,
   Collider,  ///< touches the cloth
-  Data       ///< is in a stage's data and needs no stage of its own
+  Data       ///< changes the data of a stage and needs no separate stage
 };
 
 struct FeatureRow {

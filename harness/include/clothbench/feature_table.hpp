@@ -1,7 +1,7 @@
-// Every feature is a row here and a bit in clothbench_plugin.h, in one order; a solver says which it supports. FEATURE
-// is what the file that includes this makes of a row:
-//   enumerator, name in files, CLOTHBENCH_<name> of the plugin's bit, what has to do with it (FeatureOf), what it is,
-//   and which scenes need it, in terms of `scene` and of the helpers of harness/scenario/load.cpp.
+// Every feature is a row here and a bit in clothbench_plugin.h, in the same order. A file that includes this one first
+// defines the macro FEATURE, with these arguments:
+//   enumerator, name in files, suffix of the plugin's bit CLOTHBENCH_<suffix>, category (FeatureOf), description,
+//   and which scenes need it: an expression of `scene` and the helpers of harness/scenario/load.cpp.
 
 FEATURE(Stretch, stretch, STRETCH, Cloth, "structural edges", true)
 FEATURE(Shear, shear, SHEAR, Cloth, "diagonals", scene.material.shear && !scene.cloth.mesh)
@@ -17,7 +17,7 @@ FEATURE(Capsules, capsules, CAPSULES, Collider, "capsules that move", touches(sc
 FEATURE(StaticMesh, static_mesh, STATIC_MESH, Collider, "a mesh that stands still", touches(scene, Feature::StaticMesh))
 FEATURE(MovingMesh, moving_mesh, MOVING_MESH, Collider, "a skinned mesh", touches(scene, Feature::MovingMesh))
 FEATURE(Friction, friction, FRICTION, Cloth, "Coulomb friction, on colliders or on itself", rubs(scene))
-// Two-sided contact is a matter of contact: with nothing to touch there is nothing to do for it.
+// A scene without colliders has no contact, so it does not need two-sided contact either.
 FEATURE(DoubleSided, double_sided, DOUBLE_SIDED, Cloth, "contact from both sides without a second layer",
         scene.cloth.sides == Sides::Double && !scene.colliders.empty())
 FEATURE(DuplicatedLayer, duplicated_layer, DUPLICATED_LAYER, Cloth,

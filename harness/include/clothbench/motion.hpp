@@ -5,14 +5,14 @@
 
 namespace clothbench {
 
-/// Greatest speed [m/s] of what touches the cloth, from frame to frame: of ends of capsules, and of a skinned mesh of
-/// some of its vertices. Jumps are no motion. 0 where nothing moves.
+/// Greatest frame-to-frame speed [m/s] of any collider in the scene, measured at the ends of capsules and at a sample
+/// of the vertices of a skinned mesh. Jumps do not count. 0 if all colliders are static.
 double collider_speed_m_per_s(const Scene&);
 
-/// The same of the way to each frame from the one before, as many as `scene.motion`; 0 at the first.
+/// The same for each frame: the speed since the frame before, one value per `scene.motion`. The first is 0.
 std::vector<double> collider_speeds_m_per_s(const Scene&);
 
-/// The same of vertices that hands hold, while they hold them.
+/// Greatest frame-to-frame speed [m/s] of the gripped vertices while they are held.
 double grip_speed_m_per_s(const Scene&);
 
 }  // namespace clothbench

@@ -1,4 +1,4 @@
-// A box that stands still.
+// A static box.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -48,7 +48,7 @@ SurfacePlace nearest_on_box(const Collider& box, const Vec3& p) {
 }
 
 ColliderSurface faces_of_box(const Collider& box, const ColliderPose&, const Extent&) {
-  // Corner bits are x, y, z; each face as two triangles round its diagonal.
+  // The bits of a corner's index are x, y, z. Each face is two triangles that share its diagonal.
   static const std::vector<std::array<std::uint32_t, 3>> kTriangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5},
                                                                        {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
                                                                        {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};

@@ -1,4 +1,4 @@
-// Triangles that stand still, written out, of a prism or of a room, and the skin of a hand.
+// Static triangles (given in the scene, of a prism or of a room) and the skin of a hand.
 #include <fmt/format.h>
 
 #include "assets/submesh.hpp"
@@ -37,7 +37,7 @@ void read_mesh(const json& j, ColliderReader& reader, Collider& c) {
   c.mesh = collider_mesh(m);
 }
 
-/// A capture of the user's own is no asset that a stand-in could take the place of.
+/// A user's capture is read as a file: it is not an asset, and no stand-in may replace it.
 assets::Room room_of(const std::string& name, ColliderReader& reader) {
   if (!name.ends_with(".json")) return assets::open_room(reader.assets(), name);
   return assets::load_room(file_of_scene(name, reader.source()).value_or(name));
@@ -73,7 +73,7 @@ void read_room(const json& j, ColliderReader& reader, Collider& c) {
     reader.refuse("", fmt::format("\"table\" or \"points_m\" is missing; cut \"{}\" goes round one", cut));
   }
   c.mesh = collider_mesh(cut == "none" ? room.mesh : round_table);
-  // The cloth is placed by what is round the table, the same with the whole room, whose ceiling is above it too.
+  // The cloth is placed over the cut mesh even if the collider is the whole room, whose ceiling is above the cloth.
   if (table) reader.table = {*table, *collider_mesh(round_table)};
 }
 

@@ -1,4 +1,4 @@
-// A ball that stands still: a capsule without length.
+// A static sphere: a capsule of zero length.
 #include "scenario/collider_kinds.hpp"
 #include "scenario/vec3.hpp"
 
