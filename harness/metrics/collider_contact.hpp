@@ -16,8 +16,8 @@ inline constexpr Needs kColliders{"colliders",
                                   [](const Scene& s) { return kWithContactMetrics && !s.colliders.empty(); }};
 
 /// Whether penetration depth is defined for a collider. True for all shapes except meshes (the inside of a plane is the
-/// half-space behind it), for closed meshes with outward normals, and for skinned meshes, which are hands with at most
-/// an open wrist. Rooms have no inside.
+/// half-space behind it), for closed meshes with outward normals, and for skinned meshes, which are hands open at most
+/// at the wrist. Rooms have no inside.
 bool has_inside(const Collider&);
 
 /// Whether crossings of a collider are counted (tunnelled fraction). True for meshes, open or closed.

@@ -127,9 +127,7 @@ struct ColliderPassage::Watch {
       cell_area.push_back(area);
       for (const std::uint32_t v : cell) vertex_area[v] += area / 4;
     }
-    if (c.mesh)
-      vertex_area =
-          vertex_masses(s);  // density is uniform, so masses are proportional to areas, and only ratios are used
+    if (c.mesh) vertex_area = vertex_masses(s);  // density is uniform and only ratios are used
     for (std::size_t k = 0; k < s.colliders.size(); ++k) {
       lines.emplace_back(s.colliders[k]);
       sides.emplace_back();

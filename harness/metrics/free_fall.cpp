@@ -24,7 +24,7 @@ Vec3 fall(const MetricContext& c, int frame) {
   return way;
 }
 
-/// Squared distance of every vertex from the integrator's own fall, over (|g| T^2 / 2)^2; NaN at T = 0. The rest is
+/// Squared distance of every vertex from the integrator's own fall, over (|g| T^2 / 2)^2; NaN at T = 0. What remains is
 /// rounding and forces that should not be there.
 template <class Fold>
 double fold_errors(const MetricFrame& f, Fold fold) {

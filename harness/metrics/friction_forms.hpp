@@ -28,9 +28,8 @@ inline constexpr const char* kFrictionProtocol = "friction";
 struct FoundThreshold {
   double exact = 0, found = 0;  ///< coefficients of friction
   double error = 0;  ///< as the reference case defines it: degrees of the critical angle, or share of the overhang
-  bool holds_at_least = false,
-       slips_at_most = false;  ///< at 0.5 and 1.5 times the exact value; `found` is then that end
-  bool failed = false;         ///< a run failed: nothing was found, `found` and `error` are NaN
+  bool holds_at_least = false, slips_at_most = false;  ///< at 0.5 and 1.5 times `exact`: `found` is then that end
+  bool failed = false;                                 ///< a run failed: nothing was found, `found` and `error` are NaN
   int runs = 0;
 };
 

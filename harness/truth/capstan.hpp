@@ -45,8 +45,8 @@ bool holds(const HeavyCapstan&, double overhang_1_m, double overhang_2_m);
 /// mu tan(d/2) >= 1.
 double polygonal_greatest_overhang_m(const HeavyCapstan&, double light_overhang_m, int turns);
 
-/// The same strip sliding from rest, its ends hanging. At speed v the pressure times R is T + rho g R sin phi - rho
-/// v^2:
+/// The same strip sliding from rest, its ends hanging. At speed v, pressure times R is T + rho g R sin phi - rho v^2
+/// and
 ///   v' [l2 + E l1 + R (E - 1)/mu] = g (l2 - E l1 - C) + v^2 (E - 1),   l1, l2 = overhangs now,
 /// with E = e^{mu pi} and C = 2 mu R (1 + E)/(1 + mu^2). Source: derived from the balance of one moving element. With
 /// `turns` > 0 the bracket on the right is that of the polygon above, l2 - polygonal_greatest_overhang(l1), so that

@@ -4,11 +4,11 @@
 
 namespace clothbench::truth {
 
-/// An inextensible strip of rest length L without bending stiffness, held on both short edges at equal height, a span d
-/// < L apart: z = a cosh(x/a), 2 a sinh(d/2a) = L. Over the weight per length, the tension is a (horizontal) and a +
+/// An inextensible strip of rest length L without bending stiffness, held on both short edges at equal height, at a
+/// span d < L: z = a cosh(x/a), 2 a sinh(d/2a) = L. Over the weight per length, the tension is a (horizontal) and a +
 /// sag (at the ends), so the shape does not depend on weight or gravity. Source: Bernoulli, Leibniz, Huygens 1691;
-/// Irvine, Cable Structures, ch. 1. Valid for 1e-3 <= d/L <= 1 - 1e-6, Error otherwise. Relative error below 1e-14 / (1
-/// - d/L) (the equation for a loses digits as the strip becomes taut).
+/// Irvine, Cable Structures, ch. 1. Valid for 1e-3 <= d/L <= 1 - 1e-6, Error otherwise. The relative error is below
+/// 1e-14/(1 - d/L), as the equation for a loses digits when the strip becomes taut.
 class Catenary {
  public:
   Catenary(double length_m, double span_m);

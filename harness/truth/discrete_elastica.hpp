@@ -5,6 +5,7 @@
 namespace clothbench::truth {
 
 /// Bending energy per width of two neighbouring links of length a with turning angle d: hinges B d^2/(2a), lines
+/// (B/2a^3)|x_{i-1} - 2 x_i + x_{i+1}|^2 = (B/a)(1 - cos d) (quadratic isometric bending, Bergou et al. 2006).
 enum class BendingModel { Hinge, Line };
 
 /// Stiffness of the hinge between the clamp and the first free link, relative to an inner hinge. A clamp acts on half a

@@ -11,7 +11,7 @@ namespace clothbench::truth {
 /// A scene with randomly drawn parameters, for which its truth is evaluated.
 struct DrawnScene {
   Scene scene;                                         ///< completed; `seed` set
-  std::vector<std::pair<std::string, double>> values;  ///< drawn values, for display
+  std::vector<std::pair<std::string, double>> values;  ///< drawn values, for display; names carry units
 };
 
 /// Draws the parameters of a scene with a truth:

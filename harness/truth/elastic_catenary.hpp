@@ -8,7 +8,7 @@ namespace clothbench::truth {
 ///   d = H L/Y + (2H/w) asinh(w L/2H),   sag = w L^2/(8Y) + (H/w) (sqrt(1 + (wL/2H)^2) - 1).
 /// Source: Irvine, Cable Structures (1981). Unlike the inextensible catenary it may span more than its rest length.
 /// Valid for 1e-3 <= d/L <= 3. Relative errors are of rounding, but grow to 1e-15 (Y/(wL))^(2/3) near d = L, where the
-/// tension of a stiff strip is ill-conditioned. Throws Error for other arguments.
+/// tension of a stiff strip depends on little else. Throws Error for other arguments.
 class ElasticCatenary {
  public:
   ElasticCatenary(double length_m, double span_m, double areal_density_kg_per_m2, double membrane_stiffness_N_per_m,

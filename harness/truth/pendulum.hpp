@@ -8,8 +8,7 @@ namespace clothbench::truth {
 /// Valid for 0 < amplitude < pi at any t >= 0 (t is reduced by the period, so the period's relative rounding error
 /// enters); Error otherwise.
 struct Pendulum {
-  double length_m =
-      1;  ///< of the equivalent point pendulum: moment of inertia over (mass times distance of the centre of mass)
+  double length_m = 1;  ///< of the equivalent point pendulum: moment of inertia over (mass * centre distance)
   double gravity_m_per_s2 = 9.81;
   double amplitude_rad = 0;
 };

@@ -11,12 +11,11 @@ namespace clothbench::contact {
 /// One frame's figures. All are NaN if the cloth isn't finite. `depth` and `area` are NaN for an open object, which
 /// has no inside.
 struct ContactSample {
-  double contour_length_m;  ///< of the curve in which cloth and object cross
-  double pairs;             ///< intersecting (cloth triangle, object triangle or capsule)
-  double cloth_fraction;    ///< share of cloth triangles that are in a pair
-  double
-      tunnelled_fraction;  ///< share of the rest area whose vertices are on the opposite side from where they started
-  double tunnelled_depth_max_m;  ///< greatest distance of such a vertex from the object; 0 if there is none
+  double contour_length_m;       ///< of the curve in which cloth and object cross
+  double pairs;                  ///< intersecting (cloth triangle, object triangle or capsule)
+  double cloth_fraction;         ///< share of cloth triangles that are in a pair
+  double tunnelled_fraction;     ///< share of the rest area that is on the other side than at the start
+  double tunnelled_depth_max_m;  ///< greatest distance of a tunnelled vertex from the object; 0 if there is none
   double depth_max_m;            ///< over all sample points
   double depth_vertex_max_m;     ///< over the vertices alone
   double depth_p99_m;            ///< 99 % of the penetrating area is no deeper
@@ -40,7 +39,8 @@ enum class Solid {
 /// those inside.
 class ContactProbe {
  public:
-  /// The cloth's rest positions give each vertex its share of area. Copies all the data it needs.
+  /// The cloth's rest positions give each vertex its share of area. Copies all the data it needs. Throws Error for bad
+  /// indices, numbers that are not finite, or a cloth without area.
   ContactProbe(const TriangleMeshView& cloth_at_rest, const TriangleMeshView& object, Solid solid = Solid::Auto);
   /// As above; radii must be positive. `resolution_m` as in shapes_contact, by default default_resolution_m.
   ContactProbe(const TriangleMeshView& cloth_at_rest, std::span<const Capsule> shapes, double resolution_m = 0);

@@ -15,8 +15,9 @@ struct Contour {
 /// The length is summed over pairs of triangles; it is the quantity minimised by Volino & Magnenat-Thalmann (Resolving
 /// surface collisions through intersection contour minimization, 2006). In degenerate configurations it is the length
 /// for the cloth translated by (e, e^2, e^3), e -> 0+ (predicates.hpp): a piece of the curve along an edge shared by
-/// Touching pairs, including coplanar ones, count once as pairs, with no length. Triangles of zero area, on either
-/// side, are ignored: their neighbours contain the same points.
+/// triangles counts once, not once for each of them, and coplanar triangles do not cross. Touching pairs, including
+/// coplanar ones, count once as pairs, with no length. Triangles of zero area, on either side, are ignored: their
+/// neighbours contain the same points.
 /// The cloth must be finite.
 Contour contour(const TriangleMeshView& cloth, const TriangleTree& object);
 

@@ -94,8 +94,8 @@ int crossing(const Point<N>& p, const Point<N>& q, const Simplex<N>& simplex, in
   const int side_p = side<N>(simplex, p, shift);
   const int side_q = side<N>(simplex, q, shift);
   if (side_p * side_q >= 0) return 0;
-  // Seen along the segment, p lies in the simplex if replacing any corner by p keeps the orientation: det(q - p, w1 -
-  // w0, ..., p - w0), where w are the corners with one of them exchanged for the last.
+  // Seen along the segment, p lies in the simplex if replacing any corner by p keeps the orientation:
+  // det(q - p, w1 - w0, ..., p - w0), where w are the corners with one of them exchanged for the last.
   int first = 0;
   for (int i = N - 1; i >= 0; --i) {
     Simplex<N> w = simplex;

@@ -27,8 +27,7 @@ inline constexpr double kDepthMargins = 2, kDepthCells = 0.25, kContactGrace_s =
 inline constexpr double kUnrest = 1e-3, kDriftPerMinute = 1e-3, kDriftFrom_s = 10;             // F6
 inline constexpr double kFall = 0.01, kFallFrom_s = 0.1;                                       // F7
 inline constexpr double kRelaxed = 0.01;  ///< mean |strain| below which F1 to F3 start to count, where delayed
-inline constexpr double kQuantity = 0.02,
-                        kQuantityLength = 1e-3;  ///< F3 at the end: error of the truth's quantity at rest
+inline constexpr double kQuantity = 0.02, kQuantityLength = 1e-3;  ///< F3 at the end: error of the quantity at rest
 }  // namespace stability
 
 /// One frame rated by the outcome classes
@@ -100,7 +99,7 @@ StabilityVerdict stability_verdict(const AccuracyPass&);
 
 const char* name_of(StabilityVerdict::Grade);
 
-/// Label of a class
+/// Label of a class: "F2 energy gain".
 std::string class_name(int k);
 
 }  // namespace clothbench
