@@ -22,7 +22,7 @@ contact::Solid solid_of(const Collider& c) {
   return !c.mesh || c.mesh->closed ? contact::Solid::Auto : contact::Solid::Nearly;
 }
 
-/// One collider and what watches it; a half-space needs no history and no probe.
+/// One collider and its probe; a half-space needs neither history nor probe.
 struct Watched {
   const Collider* collider;
   std::optional<ContactProbe> probe;
@@ -111,7 +111,7 @@ SceneContact ColliderContact::probe(int frame, const std::vector<double>& positi
   double moment = 0;
   for (std::size_t k = 0; k < p.watched.size(); ++k)
     add(all, moment, *p.watched[k].collider, p.sample(k, frame, positions));
-  // Nothing inside: no area to take a mean over, and a mean depth of 0 as the other depths. NaN stays NaN.
+  // Without penetrating area the mean depth is 0, as the other depths are. NaN stays NaN.
   all.depth_mean_m = all.area_m2 == 0 ? 0 : moment / all.area_m2;
   return all;
 }

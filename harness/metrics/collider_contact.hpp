@@ -15,19 +15,21 @@ inline constexpr bool kWithContactMetrics = false;  // built without CGAL: the c
 inline constexpr Needs kColliders{"colliders",
                                   [](const Scene& s) { return kWithContactMetrics && !s.colliders.empty(); }};
 
-/// Whether depth in it is defined: all shapes but meshes (of a plane the half-space behind it), closed meshes with
-/// their normals outwards, and skinned ones, which are hands open at the wrist at most. Rooms have no inside.
+/// Whether penetration depth is defined for a collider. True for all shapes except meshes (the inside of a plane is the
+/// half-space behind it), for closed meshes with outward normals, and for skinned meshes, which are hands open at most
+/// at the wrist. Rooms have no inside.
 bool has_inside(const Collider&);
 
-/// Whether crossing it is counted (tunnelled fraction): meshes, open or closed.
+/// Whether crossings of a collider are counted (tunnelled fraction). True for meshes, open or closed.
 bool counts_crossings(const Collider&);
 
-/// The contact of one cloth with all colliders of its scene, frame after frame: a contact::ContactProbe for each, moved
-/// as Scene::motion says. What its kind has of geometry decides how (scenario/collider_kinds.hpp): capsules by their
-/// signed distance, half-spaces exactly, the rest as triangles, which for a box is exact.
+/// The contact of one cloth with all colliders of its scene, frame after frame: one contact::ContactProbe per collider,
+/// moved as Scene::motion prescribes. The geometry of the collider kind decides the method
+/// (scenario/collider_kinds.hpp): signed distance for capsules, exact clipping for half-spaces, triangles for the rest,
+/// which for a box is exact.
 ///
-/// Put together over the colliders: lengths, pairs and areas are sums (where colliders overlap, both count); fractions
-/// and depths are the greatest; the mean depth is over the sum of penetrating areas.
+/// Results are combined over the colliders. Lengths, pairs and areas are sums (where colliders overlap, both count);
+/// fractions and depths are maxima; the mean depth is taken over the sum of the penetrating areas.
 class ColliderContact {
  public:
   /// `scene` outlives this. Throws Error naming the collider that cannot be probed.
@@ -44,7 +46,7 @@ class ColliderContact {
   std::unique_ptr<Probes> probes_;
 };
 
-/// How a cloth of these triangles crosses itself; exact (contact::self_contour).
+/// Self-intersection of a cloth with these triangles; exact (contact::self_contour).
 SelfContact self_contact(const std::vector<double>& positions,
                          const std::vector<std::array<std::uint32_t, 3>>& triangles);
 

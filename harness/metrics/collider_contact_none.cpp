@@ -1,4 +1,4 @@
-// In place of collider_contact.cpp and collider_passage.cpp where CGAL's kernel is not to be had, as on a device.
+// Replaces collider_contact.cpp and collider_passage.cpp where CGAL's kernel is not available, as on a device.
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/collider_passage.hpp"

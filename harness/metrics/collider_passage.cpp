@@ -37,8 +37,8 @@ double weight_of(const ColliderMesh& m, std::size_t vertex, std::size_t joint) {
   return sum;
 }
 
-/// The middle of the flesh round each joint's bone, its vertices weighted as skinning weights them; half-way on to the
-/// tip at the end, where there is flesh to the fingertip but no next bone.
+/// The middle of the flesh round each joint's bone: the mean of its vertices, weighted by skinning weights. The last
+/// point lies half-way on to the tip, where there is flesh up to the fingertip but no next bone.
 std::vector<MedialPoint> medial_points(const ColliderMesh& m, std::size_t first, std::size_t last) {
   std::vector<MedialPoint> out;
   for (std::size_t j = first; j <= last; ++j) {
@@ -62,7 +62,7 @@ std::vector<MedialPoint> medial_points(const ColliderMesh& m, std::size_t first,
   return out;
 }
 
-/// The centre line of one collider wherever it is.
+/// The centre line of one collider in any pose.
 class CentreLine {
  public:
   explicit CentreLine(const Collider& c) {
@@ -127,7 +127,7 @@ struct ColliderPassage::Watch {
       cell_area.push_back(area);
       for (const std::uint32_t v : cell) vertex_area[v] += area / 4;
     }
-    if (c.mesh) vertex_area = vertex_masses(s);  // of even density: in proportion, which is all that is asked for
+    if (c.mesh) vertex_area = vertex_masses(s);  // density is uniform and only ratios are used
     for (std::size_t k = 0; k < s.colliders.size(); ++k) {
       lines.emplace_back(s.colliders[k]);
       sides.emplace_back();
@@ -158,7 +158,7 @@ struct ColliderPassage::Watch {
                      vertex_area.size() + cells.size(), weave());
   }
 
-  /// Sides of cells and of triangles, and the ways from a cell's corners to its centre.
+  /// Links: sides of cells and of triangles, and from a cell's corners to its centre.
   contact::Weave weave() const {
     std::map<contact::Link, int> edges;
     const auto add = [&](std::uint32_t a, std::uint32_t b) { ++edges[{std::min(a, b), std::max(a, b)}]; };
@@ -212,7 +212,7 @@ struct ColliderPassage::Watch {
     out.wrong_side_fraction = lost / all;
   }
 
-  /// Nearest place of collider k for every vertex within `reach`.
+  /// Nearest point of collider k for every vertex within `reach`.
   std::vector<std::optional<Nearest>> near(std::size_t k, int frame, const std::vector<double>& x, double reach) const {
     const Collider& c = scene.colliders[k];
     std::vector<std::optional<Nearest>> out(x.size() / 3);
@@ -264,11 +264,11 @@ struct ColliderPassage::Watch {
   std::vector<std::array<std::uint32_t, 4>> cells;
   std::vector<double> vertex_area, cell_area, before;
   double tolerance = 0;
-  std::vector<double> margins;  ///< one a collider: how far off it the solver holds cloth
+  std::vector<double> margins;  ///< one per collider: distance at which the solver holds cloth off it
   std::vector<CentreLine> lines;
-  std::vector<std::optional<WrongSide>> sides;    ///< one a collider; empty where it has no centre line
+  std::vector<std::optional<WrongSide>> sides;    ///< one per collider; empty if it has no centre line
   std::vector<std::vector<char>> touched;         ///< (collider, vertex), at the last frame
-  std::vector<std::unique_ptr<Triangles>> still;  ///< of what is triangles and stands still
+  std::vector<std::unique_ptr<Triangles>> still;  ///< only for static colliders made of triangles
 };
 
 ColliderPassage::ColliderPassage(const Scene& scene, const std::vector<double>& held_at_m)

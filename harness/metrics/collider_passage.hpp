@@ -6,17 +6,17 @@
 
 namespace clothbench {
 
-/// Whether cloth can get on its wrong side: colliders that move and have a centre line, capsules and the hands of 25
-/// joints.
+/// Whether cloth can get to the wrong side of a collider: it must move and have a centre line. These are capsules and
+/// hands with 25 joints.
 bool has_centre_line(const Collider&);
 
-/// Where the cloth went past the colliders of its scene and how it slides on them, frame after frame. What is asked of
-/// more than one collider: samples on the wrong side of any, vertices that touch any, the mean way slid of all touches.
+/// Where the cloth passed through the colliders of its scene and how it slides on them, frame after frame. Over several
+/// colliders: samples on the wrong side of any, vertices that touch any, mean sliding distance over all touches.
 ///
-/// Samples are the vertices and the centres of the cells, a vertex with its share of area and a cell with its own. A
-/// collider came from the side of the sheet's starting plane on which the middle of its centre line starts. A vertex
-/// touches a collider up to a tenth beyond the distance at which the solver holds it, or a thousandth of the cloth's
-/// shorter side.
+/// Samples are the vertices and the cell centres. A vertex is weighted by its share of area, a cell centre by the
+/// cell's area. A collider comes from the side of the sheet's initial plane on which the middle of its centre line
+/// starts. A vertex touches a collider up to the distance at which the solver holds cloth plus a tolerance: a tenth of
+/// that distance or a thousandth of the cloth's shorter side, whichever is greater.
 class ColliderPassage {
  public:
   /// `scene` outlives this. `held_at_m`: how far off each collider the solver holds cloth, as in

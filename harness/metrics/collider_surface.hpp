@@ -8,11 +8,11 @@ namespace clothbench {
 
 std::vector<contact::Capsule> contact_capsules(const std::vector<Capsule>&);
 
-/// Signed distance to a collider at one instant, of kinds that have it in closed form. The others are triangles.
+/// Signed distance to a collider at one instant, for kinds that have a closed form. The other kinds use triangles.
 class ClosedForm {
  public:
   static bool has(const Collider& c) { return kind_of(c).nearest != nullptr || kind_of(c).capsules != nullptr; }
-  /// `was`: where it was at the frame before. The collider outlives this.
+  /// `was`: its pose at the previous frame. The collider must outlive this.
   ClosedForm(const Collider&, const ColliderPose& now, const ColliderPose& was);
   contact::Nearest operator()(const contact::Point<3>&) const;
 

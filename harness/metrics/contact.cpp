@@ -1,4 +1,4 @@
-// How the cloth crosses the colliders of its scene: what ColliderContact finds in each frame, and what it comes to.
+// How the cloth intersects the colliders of its scene: results of ColliderContact per frame, and scalars of a run.
 #include <algorithm>
 #include <limits>
 
@@ -30,10 +30,10 @@ double spread_depth(const RunView& r) {
   return mean_over_time(spread, r.pass.time_s);
 }
 
-/// Series of what is through or inside a collider's surface.
+/// Series that measure cloth through or inside a collider's surface.
 std::vector<std::string> violating() { return {"contact_length_m", "tunnelled_fraction", "wrong_side_samples"}; }
 
-/// Frames in which anything is through or inside a collider's surface; none where that is not known.
+/// Frames in which any cloth is through or inside a collider's surface; none if that is not known.
 std::vector<bool> violated(const RunView& r) {
   if (r.series("contact_length_m") == nullptr || r.pass.time_s.size() < 2) return {};
   std::vector<bool> out(r.pass.time_s.size(), false);
@@ -43,7 +43,7 @@ std::vector<bool> violated(const RunView& r) {
   return out;
 }
 
-/// Time [s] that a frame stands for: up to it.
+/// Time [s] that a frame represents: the interval before it.
 double time_of(const RunView& r, std::size_t frame) {
   return frame == 0 ? 0 : r.pass.time_s[frame] - r.pass.time_s[frame - 1];
 }
@@ -97,9 +97,9 @@ std::vector<Metric> contact_series() {
 
 }  // namespace
 
-// Slack. Contact amplifies rounding until a fold lies elsewhere, so that it shows in whole edges and in per cent:
-// lengths of a contour have a third of an edge of a 32 x 32 cloth, depths at most half of the millimetre that the
-// scenes' own verdicts allow. Those verdicts hold without any slack beside these.
+// Slack. Contact amplifies rounding until a fold lies elsewhere, so differences appear as whole edges and percents. The
+// slack of contour lengths is a third of an edge of a 32 x 32 cloth, and that of depths at most half of the millimetre
+// that the scenes' own verdicts allow. Those verdicts hold without any additional slack.
 MetricGroup contact_metrics() {
   using enum SlackUnit;
   static constexpr Gate kShare{2e-3, One, 0.1, true, "two vertices of a 32 × 32 cloth"},

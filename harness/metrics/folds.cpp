@@ -1,4 +1,4 @@
-// How smooth the folds are: what of the angle between neighbouring cells changes from one line to the next.
+// Smoothness of the folds: the part of the angle between neighbouring cells that alternates from line to line.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,11 +12,11 @@ namespace {
 
 constexpr int kFoldCells = 6;  // the filter looks at five neighbouring angles
 
-/// Below this RMS angle [rad] a sheet is flat, and what is left of its angles rounding.
+/// A sheet with an RMS angle [rad] below this is flat, and its remaining angles are rounding.
 constexpr double kFlat_rad = 1e-4;
 
-/// Sums of squares: of the angle between neighbouring cells, everywhere and where the filter has all it looks at, and
-/// of what it lets through.
+/// Sums of squares: of the angle between neighbouring cells, everywhere and where the filter has all its inputs, and of
+/// the filter's output.
 struct Angles {
   double everywhere = 0, all = 0, rough = 0;
   long steps = 0, count = 0;
@@ -36,9 +36,9 @@ std::array<double, 3> cell_normal(const Cloth& c, const std::vector<double>& x, 
   return n;
 }
 
-/// Along one grid line of cells: steps of the normal from cell to cell, whose length is the angle for small ones, and
-/// what of them a filter lets through that takes out all up to third-order changes: weights (1, -4, 6, -4, 1)/16 pass a
-/// zigzag of two cells whole, 1/4 of a wavelength of 4 and 2 % of one of 8.
+/// Adds one grid line of cells: the steps of the normal from cell to cell (for small angles their length is the angle),
+/// and those steps after a high-pass filter that removes all variations up to third order. Its weights (1, -4, 6, -4,
+/// 1)/16 pass a zigzag of two cells fully, 1/4 of a wavelength of 4 cells and 2 % of one of 8.
 void add_line(const std::vector<std::array<double, 3>>& normals, Angles& sum) {
   std::vector<std::array<double, 3>> steps;
   for (std::size_t k = 1; k < normals.size(); ++k)

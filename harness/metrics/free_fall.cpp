@@ -5,8 +5,8 @@
 namespace clothbench {
 namespace {
 
-/// Way of a body that only falls, by the solver's integrator. It is the same in every direction, so the solver declares
-/// it for the vertical one alone, and each component is asked for as if it were that.
+/// Displacement of a freely falling body under the solver's integrator. It is the same in every direction, so the
+/// solver declares it for the vertical only, and each component is evaluated as if it were vertical.
 Vec3 fall(const MetricContext& c, int frame) {
   Scene body;
   body.cloth = c.scene.cloth;
@@ -24,7 +24,7 @@ Vec3 fall(const MetricContext& c, int frame) {
   return way;
 }
 
-/// Squared distance of every vertex from the integrator's own fall, over (|g| T^2 / 2)^2; NaN at T = 0. What is left is
+/// Squared distance of every vertex from the integrator's own fall, over (|g| T^2 / 2)^2; NaN at T = 0. What remains is
 /// rounding and forces that should not be there.
 template <class Fold>
 double fold_errors(const MetricFrame& f, Fold fold) {
@@ -46,7 +46,7 @@ double fold_errors(const MetricFrame& f, Fold fold) {
   return result;
 }
 
-/// An integrator declares its fall for even frames.
+/// Integrators declare their fall only for even frames.
 bool falls_freely(const Scene& s) {
   return touches_nothing(s) && kGravity.met(s) && s.time.ends_s.empty() && s.cloth.spin_rad_per_s == Vec3{};
 }

@@ -9,7 +9,7 @@
 
 namespace clothbench {
 
-/// A closed form of friction: what of which scene, and what is asked of it.
+/// A closed form of friction: the scene, the quantity compared, and its bound.
 struct FrictionForm {
   const char *scene, *head;
   bool threshold;
@@ -17,33 +17,33 @@ struct FrictionForm {
   double at_most;  ///< in the head's unit
 };
 /// Coulomb's cone on a slope, uniform deceleration, Euler and Eytelwein's belt on a polygon, Lagrange's strip over a
-/// cylinder. Bounds: what a solver's author should want.
+/// cylinder. The bounds are targets that a solver should meet.
 const std::vector<FrictionForm>& friction_forms();
 
-/// Protocols that runs are stored by: those of a search, and those whose end alone is judged.
+/// Protocols under which runs are stored: the runs of a search, and the runs judged only by their end state.
 inline constexpr const char* kThresholdProtocol = "threshold";
 inline constexpr const char* kFrictionProtocol = "friction";
 
-/// Where a scene begins to hold for one solver, against the closed form.
+/// The coefficient of friction from which a scene holds with one solver, compared with the closed form.
 struct FoundThreshold {
   double exact = 0, found = 0;  ///< coefficients of friction
-  double error = 0;  ///< in the reference case's own words: degrees of the critical angle, share of the overhang
-  bool holds_at_least = false, slips_at_most = false;  ///< at 0.5 and 1.5 times the exact one: found is then that end
-  bool failed = false;                                 ///< a run did: nothing was found, `found` and `error` are NaN
+  double error = 0;  ///< as the reference case defines it: degrees of the critical angle, or share of the overhang
+  bool holds_at_least = false, slips_at_most = false;  ///< at 0.5 and 1.5 times `exact`: `found` is then that end
+  bool failed = false;                                 ///< a run failed: nothing was found, `found` and `error` are NaN
   int runs = 0;
 };
 
-/// Bisects the coefficient of friction between 0.5 and 1.5 of the exact one, to 1e-3 of it. `holds` answers for a run
-/// at one coefficient; none where there is no answer, which ends the search: a cloth that blows up says nothing of
-/// friction. The same answers lead to the same questions, so stored runs tell again what was found.
+/// Bisects the coefficient of friction between 0.5 and 1.5 times the exact value, to 1e-3 of it. `holds` returns the
+/// result of a run at one coefficient, or none if the run failed. None ends the search: a cloth that blows up gives no
+/// information on friction. The search is deterministic, so stored runs reproduce its result.
 FoundThreshold search_threshold(const truth::Threshold&,
                                 const std::function<std::optional<bool>(double friction)>& holds);
 
-/// Name of the scene in the form that is run at one coefficient.
+/// Name of the scene variant that is run at one coefficient.
 std::string tried_scene(const std::string& scene, double friction);
 
-/// Whether the cloth of a whole run stayed where it was; none where the run failed. A strip that is no longer over its
-/// cylinder has no displacement over it, and did not stay.
+/// Whether the cloth of a whole run stayed in place; none if the run failed. A strip that has left its cylinder has no
+/// displacement over it and counts as slipped.
 std::optional<bool> stayed(const truth::Threshold&, const RunRecord& run);
 
 /// |quantity - truth| over its scale (see truth/reference_case.hpp) at the end of a whole run of the scene; NaN if the

@@ -1,4 +1,4 @@
-// Hands that hold the cloth and pull it: how well it follows them, how far it is stretched and what is left of it.
+// Hands that hold and pull the cloth: how well it follows them, how far it is stretched, and the strain after release.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -13,7 +13,7 @@ double grip_error(const MetricFrame& f) {
   const Scene& scene = f.context.scene;
   const FrameMotion* motion = scene.motion_after(f.index - 1);
   double most = 0;
-  // A state that is not finite has no value, held or not.
+  // A state that is not finite gives NaN, held or not.
   for (const double x : f.state.position) most += 0 * x;
   for (std::size_t k = 0; motion != nullptr && k < scene.grips.vertices.size(); ++k) {
     if (motion->grip_held[k] == 0) continue;
@@ -24,8 +24,8 @@ double grip_error(const MetricFrame& f) {
   return most;
 }
 
-/// What the hands that hold the cloth pull apart in a frame, over their distance at the start: the most of all pairs of
-/// vertices that lay at least a quarter of the cloth's shorter side apart; at least 1.
+/// Stretch that the holding hands impose in a frame: their distance over that at the start. It is the maximum over all
+/// pairs of vertices that lay at least a quarter of the cloth's shorter side apart, and at least 1.
 double pulled(const Scene& scene, const std::vector<double>& start, std::size_t frame) {
   const FrameMotion& m = scene.motion[frame];
   const double apart = std::min(scene.cloth.width_m, scene.cloth.height_m) / 4;
@@ -41,7 +41,7 @@ double pulled(const Scene& scene, const std::vector<double>& start, std::size_t 
   return most;
 }
 
-/// Whether any hand that holds moves between a frame and the one before.
+/// Whether any holding hand moves between the previous frame and this one.
 bool pulls(const Scene& scene, std::size_t frame) {
   if (frame == 0) return false;
   const FrameMotion &was = scene.motion[frame - 1], &is = scene.motion[frame];
@@ -50,13 +50,13 @@ bool pulls(const Scene& scene, std::size_t frame) {
   return false;
 }
 
-/// The longest edge over its rest length, over what the hands impose: while they hold, and from three frames after they
-/// stand still. NaN where it is not known, or they never do.
+/// The greatest ratio of an edge to its rest length, over the stretch that the hands impose: while they hold (`all`),
+/// and from three frames after their motion has ended (`held`). NaN if it is not known, or if the motion never ends.
 struct EdgeRatio {
   double all = kMissing, held = kMissing;
 };
 
-/// How many frames from the start on any hand holds.
+/// Number of frames from the start during which any hand holds.
 std::size_t held_frames(const RunView& r) {
   std::size_t f = 0;
   for (; f < r.pass.time_s.size(); ++f) {
@@ -82,7 +82,7 @@ EdgeRatio edge_ratio(const RunView& r) {
     if (pulls(r.scene, f)) moved_at = f;
     const double ratio = (1 + (*most)[f]) / pulled(r.scene, start, f);
     all = max_or_nan(all, ratio);
-    // Hands that stand still before they pull are no pull that has ended.
+    // Static hands before the first pull are not a pull that has ended.
     if (moved_at == f)
       held = -1;
     else if (moved_at > 0 && f >= moved_at + kSettling)
@@ -91,7 +91,7 @@ EdgeRatio edge_ratio(const RunView& r) {
   return {all == -1 ? kMissing : all, held == -1 ? kMissing : held};
 }
 
-/// What is left of the strain a second after the hands let go (the failure of the paper's Fig. 13).
+/// Residual strain one second after the hands let go (the failure of the paper's Fig. 13).
 double strain_released(const RunView& r) {
   const std::vector<double>*mean = r.series("stretch_mean_positive"), &t = r.pass.time_s;
   if (!has_grips(r) || mean == nullptr) return kMissing;
@@ -101,8 +101,8 @@ double strain_released(const RunView& r) {
   return kMissing;
 }
 
-/// Speed [m/s] that the scene imposes: of the sweep or pull that the scene gives to a hand ("speed_m_per_s"), else the
-/// greatest of any collider or grip from frame to frame, else that at which the cloth starts.
+/// Speed [m/s] that the scene imposes: that of the sweep or pull that the scene gives to a hand ("speed_m_per_s"), else
+/// the greatest of any collider or grip between frames, else the cloth's initial speed.
 double imposed_speed(const RunView& r) {
   const Scene& scene = r.scene;
   if (scene.colliders.empty() && scene.grips.vertices.empty()) return kMissing;

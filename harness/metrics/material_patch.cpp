@@ -9,7 +9,7 @@
 namespace clothbench {
 namespace {
 
-/// A patch with its long side along s and its short one along t, whichever of u and v they are.
+/// A patch with its long side along s and its short side along t, which may be u and v or v and u.
 struct Sheet {
   const Scene& scene;
   const std::vector<double>& x;
@@ -38,7 +38,7 @@ struct Sheet {
   }
 };
 
-/// A modulus is a load over what it moved; nothing moved, or the wrong way, gives none.
+/// A modulus is a load over a displacement; a displacement of zero or of the wrong sign gives none.
 double over(double load, double moved) { return moved > 0 ? load / moved : kMissing; }
 
 /// E of one line between s = L/2 and 7L/8, over the scene's Y.
@@ -63,7 +63,7 @@ std::map<std::string, double> hang(const Sheet& p) {
           {"skew", strain > 0 ? slope / strain : kMissing}};
 }
 
-/// Across the band between its held edges, in the middle of their length: G v'' = -rho g.
+/// Shear across the band between its held edges, at half their length: G v'' = -rho g.
 double shear_modulus(const Sheet& p) {
   const int half = p.n() / 2, m = p.across() / 2, reach = m / 2;
   const double bulge =
@@ -72,7 +72,7 @@ double shear_modulus(const Sheet& p) {
   return over(p.weight() * s * s, bulge) / *p.scene.material.membrane_stiffness_N_per_m;
 }
 
-/// Gamma whose elastica drops by `drop` of its length; beyond `most` infinity.
+/// Gamma whose elastica drops by `drop` of its length; infinity above `most`.
 double own_weight_of(double drop) {
   constexpr double kLeast = 1e-3, kMost = 100;
   const auto drops = [](double gamma) {

@@ -8,8 +8,8 @@
 
 namespace clothbench {
 
-/// What the positions of one patch at rest give, over what its scene states. NaN where the state is not finite or gives
-/// no answer (a sheet that does not stretch at all); a B below that of Gamma = 100 reads as 0.
+/// Moduli measured from the rest positions of one patch, over the values its scene states. NaN if the state is not
+/// finite or yields no value (a sheet that does not stretch at all). A B below that of Gamma = 100 is returned as 0.
 ///   HangU       E_0, nu, skew          E from the middle line's stretch between L/2 and 7L/8, u' = rho g (L - s)/E;
 ///                                      nu from the contraction of the section at L/2; skew: shear strain there over
 ///                                      strain
@@ -21,8 +21,8 @@ namespace clothbench {
 /// `position` [m], xyz interleaved.
 std::map<std::string, double> patch_moduli(Patch, const Scene&, const std::vector<double>& position);
 
-/// E_45 of what HangU, HangV and Shear gave together (see Patch::Shear), all over Y; NaN where one is missing, or where
-/// the grid's lines are no axes of symmetry (|skew| above 5 %).
+/// E_45 from the combined results of HangU, HangV and Shear (see Patch::Shear), all over Y. NaN if one is missing, or
+/// if the grid's lines are not axes of symmetry (|skew| above 5 %).
 double modulus_at_45(const std::map<std::string, double>& moduli);
 
 }  // namespace clothbench

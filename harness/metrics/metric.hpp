@@ -10,35 +10,36 @@
 
 namespace clothbench {
 
-/// What a metric may look at besides the state: the scene and the solver's declarations, never the solver.
+/// What a metric may use besides the state: the scene and the solver's declarations, never the solver itself.
 struct MetricContext {
   const Scene& scene;
   const SolverEntry& entry;
   const nlohmann::json&
-      settings;  ///< complete; only for the solver's own free_fall_m, for no metric knows a setting by its name
+      settings;  ///< complete; only passed to the solver's free_fall_m, as no metric may depend on a setting by name
   std::vector<double> contact_margins_m = {};  ///< as in the solver's Plan
 };
 
-/// How the cloth touches all colliders of the scene in one frame; collider_contact.hpp says how they are put together.
-/// All are NaN if the cloth is not finite, and those that no collider of the scene defines always.
+/// Contact of the cloth with all colliders of the scene in one frame; collider_contact.hpp states how they are
+/// combined. All are NaN if the cloth is not finite. A value that no collider of the scene defines is always NaN.
 struct SceneContact {
   double length_m, pairs, cloth_fraction;
   double tunnelled_fraction, tunnelled_depth_m;
   double depth_m, depth_vertex_m, depth_p99_m, depth_mean_m, area_m2;
 };
 
-/// Where the cloth went past the colliders and how it slides on them, in one frame; collider_passage.hpp. All are NaN
-/// if the cloth is not finite, the first two also if it ever was not, and where no collider has a centre line.
+/// Where the cloth passed through the colliders and how it slides on them, in one frame; collider_passage.hpp. All are
+/// NaN if the cloth is not finite. The first two are also NaN after any state that was not finite, and if no collider
+/// has a centre line.
 struct ScenePassage {
   double wrong_side_fraction;  ///< of the samples' area
-  double wrong_side_samples;   ///< how many vertices and cell centres
+  double wrong_side_samples;   ///< number of vertices and cell centres
   double touching_fraction;    ///< of the vertices' area
-  double slip_m;               ///< mean way that vertices which touch, now and a frame before, slid on the surface
+  double slip_m;  ///< mean distance slid on the surface by vertices that touch in this and the previous frame
 };
 
-/// How the cloth crosses itself in one frame; NaN if it is not finite.
+/// Self-intersection of the cloth in one frame; NaN if it is not finite.
 struct SelfContact {
-  double length_m;  ///< of the curves in which it does
+  double length_m;  ///< of the curves of self-intersection
   double pairs;     ///< of triangles that meet and share no vertex
 };
 
@@ -64,14 +65,14 @@ struct Needs {
 };
 
 inline constexpr Needs kAlways{"every scene", [](const Scene&) { return true; }};
-/// Held and touched by nothing.
+/// Whether the scene has no pins, no grips and no colliders.
 inline bool touches_nothing(const Scene& s) {
   return s.pins.vertices.empty() && s.grips.vertices.empty() && s.colliders.empty();
 }
 
 inline constexpr Needs kGravity{"gravity", [](const Scene& s) { return s.gravity_m_per_s2 != Vec3{}; }};
 
-/// How the page and penetration-series.csv show a series; without words they do not.
+/// How the page and penetration-series.csv show a series; without `words` they do not show it.
 struct Plotted {
   const char* words = "";  ///< on its axis
   int place = 0;           ///< among the page's choices
@@ -80,13 +81,13 @@ struct Plotted {
 
 constexpr Plotted plotted(const char* words, int place, int column) { return {words, place, column}; }
 
-/// One number a frame. A scene pays for a metric only if it meets its needs. A state that is not finite gives NaN.
+/// One number per frame, computed only for scenes that meet its needs. A state that is not finite gives NaN.
 struct Metric {
   std::string name, units;
   std::string long_name;  ///< one plain phrase: help, result files, documents and the page show it
   Needs needs;
   std::function<double(const MetricFrame&)> value;
-  int version = 1;  ///< of its rule: to be raised by whoever changes what it counts, so that no table mixes the two
+  int version = 1;  ///< of its rule; raise it when the rule changes, so that no table mixes the two
   Plotted drawn = {};
   bool applies(const Scene& s) const { return needs.met(s); }
 };

@@ -12,12 +12,11 @@ class ColliderPassage;
 class StabilityJudge;
 class TruthJudge;
 
-/// The metrics of one accuracy pass over one run: those that apply to its scene, each evaluated once a frame. Keeps
-/// what has to be remembered from frame to frame (where the cloth was when a collider passed it), so frames come in
-/// order.
+/// The metrics of one accuracy pass over one run: those that apply to its scene, each evaluated once per frame. Keeps
+/// state between frames (such as the positions before a collider passed), so frames must be added in order.
 class MetricPass {
  public:
-  /// What `context` refers to outlives the pass.
+  /// The objects that `context` refers to must outlive the pass.
   explicit MetricPass(const MetricContext& context);
   ~MetricPass();
   MetricPass(const MetricPass&) = delete;
@@ -25,18 +24,18 @@ class MetricPass {
 
   /// State at the end of the next frame; the first call is frame 0, the initial state.
   void add(const ClothState&);
-  /// Whether a stability class has been met that a run does not come back from: not finite, speed or energy out of
+  /// Whether the run has reached a stability class from which it cannot recover: not finite, speed or energy out of
   /// bounds.
   bool lost() const { return lost_; }
 
-  /// One series a metric, in the order of metrics().
+  /// One series per metric, in the order of metrics().
   std::vector<MetricSeries> take() { return std::move(series_); }
 
  private:
   MetricContext context_;
   std::vector<const Metric*> wanted_;
   std::vector<MetricSeries> series_;
-  std::unique_ptr<ColliderContact> contact_;             ///< null where there is nothing to touch
+  std::unique_ptr<ColliderContact> contact_;             ///< null if the scene has no collider
   std::unique_ptr<ColliderPassage> passage_;             ///< the same
   std::unique_ptr<TruthJudge> judge_;                    ///< null where the scene states no truth
   std::unique_ptr<StabilityJudge> stability_;            ///< null where the scene is not judged

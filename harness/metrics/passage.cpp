@@ -1,4 +1,4 @@
-// Where the cloth went past the colliders of its scene and how it slides on them: what ColliderPassage finds.
+// Where the cloth passed through the colliders of its scene and how it slides on them: results of ColliderPassage.
 #include <algorithm>
 
 #include "metrics/collider_contact.hpp"
@@ -8,8 +8,8 @@
 namespace clothbench {
 namespace {
 
-/// 1: every odd number of crossings with the wake, but for free ends. 2: nor what a finger pushes aside within a frame,
-/// nor borders laid over it.
+/// 1: every odd number of crossings with the wake, except round free ends. 2: additionally except cloth that a finger
+/// pushes aside within a frame, and borders laid over it.
 constexpr int kWrongSide = 2;
 
 bool can_be_passed(const Scene& s) {
@@ -25,7 +25,7 @@ auto passage_field(double ScenePassage::*field) {
   return [field](const MetricFrame& f) { return f.passage->*field; };
 }
 
-/// Of the last half second.
+/// Distance [m] slid in the last half second.
 double slip_settled(const RunView& r) {
   const std::vector<double>* slip = r.series("slip_m");
   if (slip == nullptr || !r.whole()) return kMissing;

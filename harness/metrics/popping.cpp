@@ -1,4 +1,4 @@
-// The cloth after contact has ended: popping off the collider that swept it, trembling and creep at rest.
+// The cloth after contact: popping off the collider that swept it, jitter and creep at rest.
 #include <algorithm>
 #include <cmath>
 
@@ -16,16 +16,16 @@ double moved(const AccuracyPass& pass, std::size_t vertices, std::size_t v, std:
               static_cast<double>(b[2]) - static_cast<double>(a[2]));
 }
 
-/// How far and how fast the cloth goes once a moving collider has left it (the paper's Fig. 8).
+/// Displacement and speed of the cloth after a moving collider has left it (the paper's Fig. 8).
 struct Popping {
   double way_m = kMissing, speed_m_per_s = kMissing;
-  double limit_m_per_s = kMissing;  ///< what may move so fast
+  double limit_m_per_s = kMissing;  ///< greatest plausible speed
 };
 
-/// The first frame after the last contact, or 0 where nothing was let go. A cloth that swings back onto a hand at rest
-/// is no longer swept by it: the contact that counts is the last that began before the hand stood still.
+/// The first frame after the last contact, or 0 if the cloth was not released. A cloth that swings back onto a static
+/// hand is no longer swept by it: the contact that counts is the last one that began before the hand stopped.
 std::size_t let_go(const std::vector<double>& touching, const std::vector<double>& speeds, double fastest) {
-  const auto rests = [&](std::size_t frame) {  // but for rounding; up to the frame and from it on
+  const auto rests = [&](std::size_t frame) {  // static up to rounding, before and after the frame
     return speeds[frame] <= 1e-6 * fastest && (frame + 1 == speeds.size() || speeds[frame + 1] <= 1e-6 * fastest);
   };
   std::size_t end = std::min(touching.size(), speeds.size());
@@ -52,7 +52,8 @@ Popping popping(const RunView& r) {
     for (std::size_t v = 0; v < vertices; ++v)
       out.way_m = max_or_nan(out.way_m, moved(r.pass, vertices, v, from - 1, f));
   out.speed_m_per_s = greatest_of(speed, from);
-  // What the collider pushed at up to twice its own speed (as off a bat), and what fell as far as the cloth is long.
+  // Cloth that is hit moves at up to twice the collider's speed (as off a bat); falling cloth falls at most its own
+  // length.
   const Vec3& g = scene.gravity_m_per_s2;
   const double fall = std::sqrt(2 * norm(g[0], g[1], g[2]) * std::max(scene.cloth.width_m, scene.cloth.height_m));
   out.limit_m_per_s = std::max(2 * fastest, fall);
@@ -64,12 +65,12 @@ double pop_speed_ratio(const RunView& r) {
   return p.limit_m_per_s > 0 ? p.speed_m_per_s / p.limit_m_per_s : kMissing;
 }
 
-/// Whether the last half second has three frames, of a cloth that may lie on something.
+/// Whether the last half second has at least three frames, for a cloth that may rest on a collider.
 bool rests_long_enough(const RunView& r) {
   return !r.scene.colliders.empty() && r.whole() && r.pass.time_s.size() - r.settled_from() >= 3;
 }
 
-/// Second differences, which a steady drift leaves 0.
+/// Second differences of positions: a steady drift does not contribute.
 double rest_jitter(const RunView& r) {
   if (!rests_long_enough(r)) return kMissing;
   const std::size_t vertices = r.scene.cloth.vertex_count(), frames = r.pass.time_s.size(), from = r.settled_from();

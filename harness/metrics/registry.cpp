@@ -17,7 +17,7 @@ bool fits(const std::string& pattern, const std::string& name) {
   return name.starts_with(pattern.substr(0, pattern.size() - 1));
 }
 
-/// Names of the entries that have a column, by it.
+/// Names of the entries that have a column, in column order.
 template <class T, class Column>
 std::vector<std::string> by_column(const std::vector<T>& entries, Column column) {
   std::map<int, std::string> names;

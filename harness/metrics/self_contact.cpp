@@ -1,4 +1,4 @@
-// How the cloth crosses itself.
+// Self-intersection of the cloth.
 #include "metrics/collider_contact.hpp"
 #include "metrics/reduction.hpp"
 
@@ -7,7 +7,7 @@ namespace {
 
 bool touches_itself(const Scene& s) { return kWithContactMetrics && s.needs.has(Feature::SelfCollision); }
 
-/// Beyond the start frame's, so that a start that crosses itself is not held against a solver.
+/// Excess over the start frame's value, so that a start that crosses itself is not counted against a solver.
 Reduction beyond_start(Reduction r) {
   return {r.series, r.how + ", beyond the start's", [series = r.series.front(), value = r.value](const RunView& run) {
             const double v = value(run);

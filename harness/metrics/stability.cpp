@@ -1,4 +1,4 @@
-// Outcome classes of a run and what they are found by; StabilityJudge looks at the frames.
+// Outcome classes of a run and the quantities that decide them; StabilityJudge evaluates the frames.
 #include <cmath>
 
 #include "metrics/reduction.hpp"
@@ -14,7 +14,7 @@ auto judged_field(double StabilityFrame::*field) {
   return [field](const MetricFrame& f) { return f.stability->*field; };
 }
 
-/// Greatest of the frames that count, which those that are NaN do not.
+/// Greatest over the frames that count; NaN frames do not.
 Reduction greatest_known(const char* series) {
   return {{series}, "greatest of the frames that count", [name = std::string(series)](const RunView& r) {
             double most = kMissing;
@@ -25,7 +25,7 @@ Reduction greatest_known(const char* series) {
           }};
 }
 
-/// Of its frames; a run that ended early for another reason than what they show has failed all the same: F8.
+/// Verdict from the frames. A run that ended early for a reason that its frames do not show has failed too: F8.
 StabilityVerdict verdict_of(const RunView& r) {
   const StabilityVerdict v = stability_verdict(r.pass);
   const Outcome& o = r.outcome;
@@ -33,7 +33,7 @@ StabilityVerdict verdict_of(const RunView& r) {
   return {StabilityVerdict::Grade::Failed, o.klass == "ok" ? "F8" : o.klass, o.failed_frame};
 }
 
-/// A value of the verdict; a scene that a solver does not run has none.
+/// A value of the verdict; none for a scene that the solver does not run.
 Reduction of_verdict(const char* doc, double (*value)(const StabilityVerdict&)) {
   return {{"stability_classes"},
           doc,

@@ -5,7 +5,7 @@
 namespace clothbench {
 namespace {
 
-/// Calls fn(strain) for every structural edge that has a length, and says how many they are.
+/// Calls fn(strain) for every structural edge that has a length, and returns their number.
 template <class Fn>
 double for_each_strain(const Cloth& c, const ClothState& state, Fn fn) {
   double count = 0;

@@ -1,4 +1,4 @@
-// What the clock and the plan tell of a run: times, rates, bytes, memory.
+// Figures from the clock and the plan of a run: times, rates, bytes, memory.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -86,7 +86,7 @@ Bandwidth bandwidth(const TimedTrial& trial, const std::vector<double>& stage_by
     const bool full = window_s >= out.window_s || f + 1 == frames;
     if (!full) continue;
     total_B += window_B;
-    // A short rest at the end of the trial is no window of its own.
+    // A short remainder at the end of the trial is not a separate window.
     if (window_s >= 0.5 * out.window_s && !(window_B / window_s <= peak)) peak = window_B / window_s;
     window_B = window_s = 0;
   }
@@ -95,8 +95,8 @@ Bandwidth bandwidth(const TimedTrial& trial, const std::vector<double>& stage_by
   return out;
 }
 
-/// The most clothbench jobs that ran side by side while the run was loaded and timed; missing if any of it doesn't
-/// say.
+/// The greatest number of clothbench jobs that ran at the same time while the run was loaded and timed; missing if any
+/// part of the run does not state it.
 double jobs_beside(const RunView& r) {
   const RunRecord& record = *r.run;
   double most = record.header.environment.is_object() ? record.header.environment.value("jobs", kMissing) : kMissing;
@@ -104,7 +104,7 @@ double jobs_beside(const RunView& r) {
   return most;
 }
 
-/// Of the first frame.
+/// Value of the first frame.
 double bytes_per_frame(const RunRecord& run, std::vector<double> TimedTrial::*bytes) {
   if (run.trials.empty() || run.trials.front().frames() == 0) return kMissing;
   const TimedTrial& t = run.trials.front();

@@ -1,4 +1,4 @@
-// How far a run is from its scene's truth, frame by frame and as a whole; energy of scenes that keep it.
+// Distance of a run from its scene's truth, per frame and as a whole; energy of scenes that conserve it.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,7 +17,7 @@ auto truth_field(double TruthErrors::*field) {
   return [field](const MetricFrame& f) { return f.truth->*field; };
 }
 
-/// Energy less that at the start, over M g L.
+/// Energy minus that at the start, over M g L.
 double energy_rise(const MetricFrame& f) {
   const Scene& s = f.context.scene;
   const ClothState& state = f.state;
@@ -51,7 +51,7 @@ double energy_rise(const MetricFrame& f) {
   return energy / (total * norm(g[0], g[1], g[2]) * std::max(c.width_m, c.height_m));
 }
 
-/// Of a run that reaches its end: a pass that broke off has no error.
+/// Only for a run that reaches its end: a pass that was cut short has no error.
 const std::vector<double>* whole_series(const RunView& r, const std::string& name) {
   return r.whole() ? r.series(name) : nullptr;
 }
@@ -70,7 +70,7 @@ Reduction at_the_end(const char* series) {
           }};
 }
 
-/// RMS over time of truths that move, of truths of rest the last frame.
+/// RMS over time for truths in motion; the last frame for truths at rest.
 Reduction over_time(const char* series) {
   return {{series}, "RMS over time, at rest the last frame", [name = std::string(series)](const RunView& r) {
             const std::vector<double>* v = whole_series(r, name);
@@ -79,7 +79,7 @@ Reduction over_time(const char* series) {
           }};
 }
 
-/// The greatest of truths that move, of truths of rest the last frame.
+/// The greatest value for truths in motion; the last frame for truths at rest.
 Reduction worst(const char* series) {
   return {{series}, "greatest of all frames, at rest the last", [name = std::string(series)](const RunView& r) {
             const std::vector<double>* v = whole_series(r, name);
@@ -92,7 +92,7 @@ double truth_error(const RunView& r) {
   return over_time(r.reference_case().by_quantity ? "truth_quantity_error" : "truth_error_e2").value(r);
 }
 
-/// What the study of a scene adds to the summaries of its runs: runner/reference.cpp, truth_dependence.cpp.
+/// Values that a study adds to the summaries of a scene's runs: runner/reference.cpp, truth_dependence.cpp.
 Scalar of_the_study(const char* name, const char* doc, const Gate* gate = nullptr) {
   return {name, own({}, doc, nullptr, "1"), Expect::No, gate};
 }

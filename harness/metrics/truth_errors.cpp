@@ -20,7 +20,7 @@ truth::LatticeSampler sampler_of(const Scene& scene, const truth::MaterialLattic
   std::vector<double> rest;
   for (int j = 0; j < c.rows; ++j)
     for (int i = 0; i < c.columns; ++i) {
-      // The border exactly on the border, whatever rounding says.
+      // Puts the border exactly on the border, regardless of rounding.
       rest.push_back(i + 1 == c.columns ? c.width_m : i * c.du());
       rest.push_back(j + 1 == c.rows ? c.height_m : j * c.dv());
     }

@@ -9,8 +9,8 @@
 
 namespace clothbench {
 
-/// Distance of one frame from the scene's truth. Positions are compared on the fixed 33 x 33 material lattice, over the
-/// longer side. A state that is not finite gives NaN; so does what the reference case has no answer for.
+/// Distance of one frame from the scene's truth. Positions are compared on the fixed 33 x 33 material lattice, relative
+/// to the longer side. NaN if the state is not finite or the reference case has no answer.
 struct TruthErrors {
   double e2 = kMissing, greatest = kMissing;  ///< positions: RMS, greatest
   double speed = kMissing;                    ///< speeds: RMS, over the reference case's speed scale
@@ -23,12 +23,12 @@ struct TruthErrors {
 /// Judges the frames of one scene by its reference case.
 class TruthJudge {
  public:
-  /// Throws Error if the scene has no reference case, or is not what its reference case answers.
+  /// Throws Error if the scene has no reference case, or does not meet its requirements.
   explicit TruthJudge(const Scene&);
   const truth::ReferenceCase& reference_case() const { return case_; }
   TruthErrors judge(int frame, const ClothState&) const;
-  /// What ranks runs (see ReferenceCase), of the mesh's own truth against the continuum: the floor that no time step
-  /// removes.
+  /// The ranking error (see ReferenceCase) of the mesh's own truth against the continuum: a lower bound that no smaller
+  /// time step removes.
   double space_error() const;
 
  private:
@@ -41,8 +41,8 @@ class TruthJudge {
   truth::LatticeSampler sampler_;
 };
 
-/// Scenes whose strips keep kinetic, gravity's and spring energy (metric energy_rise): no damping, shear, bending,
-/// hands or colliders.
+/// Scenes whose strips conserve the sum of kinetic, gravitational and spring energy (metric energy_rise): no damping,
+/// shear, bending, hands or colliders.
 bool keeps_energy(const Scene&);
 
 }  // namespace clothbench

@@ -9,37 +9,37 @@
 
 namespace clothbench {
 
-/// This command, run again in a child that a plugin may bring down: the same words after the program's name, with
-/// `variable`, "NAME=value", in its environment and without output if `quiet`. Ctrl-C is passed on to it.
-/// `stands_still`, asked about 50 times a second, says whether to kill it. Throws Error if it cannot be started.
+/// Runs this command again in a child process that a plugin may crash. The child gets the same arguments (`words`),
+/// `variable` ("NAME=value") in its environment, and no output if `quiet`. Ctrl-C is passed on to it. `stands_still` is
+/// called about 50 times a second and returns whether to kill it. Throws Error if the child cannot be started.
 ChildEnd run_again(const std::vector<std::string>& words, const std::string& variable, bool quiet,
                    const std::function<bool()>& stands_still);
 
-/// In such a child: whoever ends the parent means this process too, which may hang in a plugin.
+/// In such a child: ends this process with its parent, even if it hangs in a plugin.
 void end_with_parent();
 
-/// For how long a plugin may make no headway: $CLOTHBENCH_PLUGIN_LIMIT_S, or 900.
+/// Longest time [s] a plugin may run without progress: $CLOTHBENCH_PLUGIN_LIMIT_S, or 900.
 double plugin_limit_s();
 
-/// What commands other than `run` and `study` ask of a solver. A plugin's part is done in a child, this command itself
-/// started again for that one call, so that a crash is an answer and what others have answered is kept.
+/// Runs the solver calls of commands other than `run` and `study`. A plugin's call runs in a child, which is this
+/// command started again for that one call. So a crash becomes a result, and the results of other solvers are kept.
 class Guard {
  public:
-  /// `words` of the command, after the program's name; they outlive the guard.
+  /// `words`: the command's arguments after the program's name; they must outlive the guard.
   explicit Guard(const std::vector<std::string>& words);
 
   struct Answer {
     nlohmann::json value;
-    std::string crash;  ///< how the child ended instead of answering; empty if it did answer
+    std::string crash;  ///< how the child ended if it gave no answer; else empty
   };
-  /// `work()`, in a child if the solver is a plugin. Throws what it throws. Every run of a command must make the same
-  /// calls of this function in the same order. In a child all but one are skipped, with a crash as answer.
+  /// Calls `work()`, in a child if the solver is a plugin, and throws what it throws. Every run of a command must call
+  /// this function with the same work in the same order. A child skips all calls but one and returns a crash for them.
   Answer run(const SolverEntry&, const std::function<nlohmann::json()>& work, bool quiet = true);
 
   /// Whether a plugin has crashed so far: exit code 1.
   bool crashed() const { return crashed_; }
 
-  /// Whether this process is such a child, which has nothing to show of its own.
+  /// Whether this process is such a child, which prints no results itself.
   static bool in_child();
 
  private:
@@ -48,8 +48,8 @@ class Guard {
 
   const std::vector<std::string>& words_;
   int calls_ = 0;
-  int wanted_ = -1;   ///< in a child: the call that it is there for
-  std::string file_;  ///< and where its answer goes
+  int wanted_ = -1;   ///< in a child: the index of its call
+  std::string file_;  ///< file for its answer
   bool crashed_ = false;
 };
 

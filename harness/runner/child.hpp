@@ -8,22 +8,23 @@
 
 namespace clothbench {
 
-/// A program that is asked line by line on its standard input, a socket, and answers each with an end of line on the
-/// same socket.
+/// A child process that reads requests line by line from its standard input, a socket, and answers each with an end of
+/// line on the same socket.
 class Child {
  public:
-  /// Starts argv[0] (a path), its output going to `log`. Throws Error if it cannot be started.
+  /// Starts argv[0] (a path) with its output in `log`. Throws Error if it cannot be started.
   Child(const std::vector<std::string>& argv, const std::filesystem::path& log);
 
-  /// Sends a line and waits for the answer: nothing, or how the child ended instead, killed after `limit_s` (0 = never)
-  /// among others. It is gone then. On Ctrl-C the child is killed and the interrupt thrown.
+  /// Sends a line and waits for the answer. Returns nothing if it came, or how the child ended instead, for example
+  /// killed after `limit_s` (0 = never); the child is then gone. On Ctrl-C the child is killed and the interrupt
+  /// thrown.
   std::optional<ChildEnd> ask(const std::string& line, double limit_s);
 
  private:
   ChildProcess process_;
 };
 
-/// One line from the parent, or nothing once it is gone; and the answer to it.
+/// Reads one line from the parent, or nothing after the parent has ended; and answers it.
 std::optional<std::string> next_line_from_parent();
 void answer_parent();
 
@@ -36,7 +37,7 @@ void serve_parent(Answer&& answer) {
   }
 }
 
-/// This program's own file, to be run again. Throws Error in an app.
+/// Path of this program's executable, for running it again. Throws Error in an app.
 std::filesystem::path own_program();
 
 }  // namespace clothbench

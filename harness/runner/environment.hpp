@@ -6,11 +6,11 @@
 
 namespace clothbench {
 
-/// What a reader needs to judge a number: machine, compiler, commit, date, device. Stored with every run.
+/// Facts that a reader needs to judge a number: machine, compiler, commit, date, device. Stored with every run.
 nlohmann::json describe_environment(const DeviceInfo& device, const std::string& protocol);
 
-/// What a solver says it can do, for the feature table: names of features by "supports" and "ignores", and "only_with",
-/// pairs of a feature and the one it needs beside it.
+/// The features that a solver declares, for the feature table: names of features under "supports" and "ignores", and
+/// under "only_with" pairs of a feature and another that it requires.
 nlohmann::json describe_features(const SolverInfo& info);
 
 /// UTC, ISO 8601, seconds.

@@ -7,11 +7,11 @@
 
 namespace clothbench {
 
-/// What became of a scene's `expect`.
+/// Result of checking a scene's `expect`.
 struct Verdict {
   /// "pass"; "fail: " and every broken expectation with its value and bound; "not measured" if the accuracy pass is
-  /// shorter than the scene and not because it failed, or this build cannot measure the contact the scene has; "" if
-  /// the scene expects nothing.
+  /// shorter than the scene without having failed, or if this build cannot measure the scene's contact; "" if the scene
+  /// expects nothing.
   std::string text;
   /// "expect.<name>" -> 1 pass, 0 fail, NaN not measured; for the summary.
   std::map<std::string, double> scalars;

@@ -7,19 +7,19 @@
 
 namespace clothbench {
 
-/// Draws what a frame ends with, as an application would show it: for the frame time with rendering.
+/// Draws the state at the end of a frame as an application would show it; used for the frame time with rendering.
 class FrameDrawer {
  public:
   virtual ~FrameDrawer() = default;
-  /// The cloth as the solver holds it after frame `frame` (0 = the start), with what it touches; all drawn on return.
+  /// Draws the cloth as the solver holds it after frame `frame` (0 = the start), and the colliders; complete on return.
   virtual void draw(int frame) = 0;
 };
 
-/// How frames are drawn where a study asks for it; both empty where it does not.
+/// How frames are drawn in studies that time rendering; both are empty in others.
 struct Rendering {
-  /// What is drawn and where positions come from, for the result file.
+  /// Describes, for the result file, what is drawn and where positions come from.
   std::function<std::string(const SolverInfo&)> describe;
-  /// One for a loaded solver, which it reads and which outlives it.
+  /// Makes a drawer for a loaded solver, which the drawer reads and which must outlive it.
   std::function<std::unique_ptr<FrameDrawer>(const Scene&, const ClothSolver&, const DeviceOptions&)> make;
 };
 

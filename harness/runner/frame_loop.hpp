@@ -8,42 +8,42 @@
 
 namespace clothbench {
 
-/// What changes in frame `index` of the scene (0 = the first), so that a hitch or a jitter of the scene's clock reaches
-/// the solver wherever the scene is run. Past the scene's end, where timed trials may go on, frames are even and
-/// nothing moves.
+/// Input of frame `index` of the scene (0 = the first). It carries a hitch or a jitter of the scene's clock to the
+/// solver wherever the scene is run. After the scene's end, where timed trials may continue, frames are even and all is
+/// static.
 FrameInput frame_input(const Scene& scene, int index);
 
-/// A solver with the scene in it, which outlives it.
+/// A solver with the scene loaded; the scene must outlive it.
 std::unique_ptr<ClothSolver> load_solver(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                          const Scene&);
 
 /// Which frames are stepped.
 struct FrameRules {
-  int first = 0;                            ///< for a solver that is there already
+  int first = 0;                            ///< index of the first frame; > 0 for a solver that has already reached it
   int frames = 0;                           ///< one past the last
-  int drop_frames = 0;                      ///< the scene begins again, outside the clock, after this many; 0 = never
-  double max_wall_s = 0;                    ///< of time on the clock, after which no other frame begins; 0 = no limit
+  int drop_frames = 0;                      ///< the scene restarts, untimed, after this many frames; 0 = never
+  double max_wall_s = 0;                    ///< no frame begins after this much timed wall time; 0 = no limit
   int min_frames = 0;                       ///< ... but never before this many
-  const char* interrupted = "interrupted";  ///< what is thrown between frames on Ctrl-C; null: it goes on
+  const char* interrupted = "interrupted";  ///< message thrown between frames on Ctrl-C; null: not interrupted
 };
 
 inline constexpr int kAsManyAsItTakes = std::numeric_limits<int>::max();
 
-/// The one loop that steps a solver through a scene: accuracy passes, trials, references, thresholds, moduli and
-/// metamorphic relations all read what they want of a frame once it is done:
+/// The one loop that steps a solver through a scene. Accuracy passes, trials, references, thresholds, moduli and
+/// metamorphic relations all read the data they need after each frame:
 ///   for (FrameLoop loop(solver, scene, rules); loop.next();) …
-/// The solver is where it is to begin: loaded, reset or restarted. The clock holds the step and nothing else: a frame's
-/// input is made before it starts, and what is called within is known at compile time.
+/// The solver must already be in the state to start from: loaded, reset or restarted. The clock covers only the step: a
+/// frame's input is made before the clock starts, and the step called is known at compile time.
 class FrameLoop {
  public:
   FrameLoop(ClothSolver& solver, const Scene& scene, const FrameRules& rules)
       : solver_(solver), scene_(scene), rules_(rules), index_(rules.first - 1) {}
 
-  /// Steps the next frame. False where there is none or it did not end well. Throws Error (Interrupted) on Ctrl-C.
+  /// Steps the next frame. False if there is none or the step failed. Throws Error (Interrupted) on Ctrl-C.
   bool next() {
     return next([this](const FrameInput& input) { return solver_.step(input); });
   }
-  /// With `step`, FrameInput -> StepStatus, on the clock instead of the solver's own.
+  /// Steps and times `step`, FrameInput -> StepStatus, instead of the solver's own step.
   template <class Step>
   bool next(Step&& step) {
     if (!begin()) return false;
@@ -52,14 +52,14 @@ class FrameLoop {
     status_ = step(input);
     return stop_clock(start);
   }
-  /// All frames of the next drop, on one clock, without waiting for each (ClothSolver::run_frames).
+  /// Steps all frames of the next drop with one time measurement, without waiting for each (ClothSolver::run_frames).
   bool next_drop();
 
-  int index() const { return index_; }  ///< of the last frame begun; of a drop its first. `first` - 1 before any
+  int index() const { return index_; }  ///< of the last frame begun, or a drop's first frame; `first` - 1 before any
   int in_drop() const { return in_drop(index_); }  ///< ... counted from the scene's beginning
   StepStatus status() const { return status_; }    ///< of the last frame
   bool failed() const { return status_ != StepStatus::Ok; }
-  double wall_s() const { return wall_s_; }        ///< on the clock, of the last frame
+  double wall_s() const { return wall_s_; }        ///< timed wall time of the last frame
   double elapsed_s() const { return elapsed_s_; }  ///< ... of all frames
 
  private:

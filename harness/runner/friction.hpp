@@ -5,9 +5,9 @@
 
 namespace clothbench {
 
-/// The runs that the closed forms of friction (metrics/friction_forms.hpp) ask of a solver, with the overrides `set` in
-/// every scene, a plugin's in a child. What it does not support is one run `unsupported`. `note` is called for each
-/// form before it is asked.
+/// The runs that the closed forms of friction (metrics/friction_forms.hpp) require of a solver, in a child for a
+/// plugin, with the overrides `set` in every scene. An unsupported form is one run `unsupported`. `note` is called
+/// before each form.
 std::vector<RunRecord> friction_runs(Guard&, StudyRuns&, const SolverEntry&, const nlohmann::json& settings,
                                      const std::string& setting, const std::vector<std::string>& set,
                                      const std::function<void(const std::string& scene)>& note);

@@ -2,19 +2,19 @@
 
 namespace clothbench {
 
-/// Once the user pressed Ctrl-C.
+/// Called when the user presses Ctrl-C.
 void request_interrupt();
 bool interrupt_requested();
-/// Before another run in the same process.
+/// Called before another run in the same process.
 void clear_interrupt();
 
-/// While held, runs wait between frames: for a device whose activity is paused. Waits are never timed, and a trial that
-/// was held is run again, since its device went to sleep.
+/// While held, runs wait between frames; used when a device's activity is paused. Waits are never timed. A trial that
+/// was held is run again, since its device was asleep.
 void hold_runs(bool held);
 /// How often runs have been held so far.
 int times_held();
 
-/// What Ctrl-C says to a command that keeps what it has finished.
+/// Messages on Ctrl-C for a command that keeps its finished work.
 inline constexpr char kTrialsKept[] = "interrupted; every finished trial is kept (continue with --resume)";
 inline constexpr char kRunsKept[] = "interrupted; finished runs are kept (continue with --resume)";
 

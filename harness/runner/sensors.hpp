@@ -6,7 +6,7 @@
 
 namespace clothbench {
 
-/// Clocks and temperatures as Linux and Android tell them, in Hz and degrees Celsius; what cannot be read is left out:
+/// Clocks and temperatures from Linux and Android, in Hz and degrees Celsius; values that cannot be read are left out:
 ///   cpus: [{cpu, frequency_Hz, min_Hz, max_Hz, governor}]   /sys/devices/system/cpu/cpuN/cpufreq
 ///   gpu: {model, frequency_Hz, max_Hz, governor, temperature_C}   /sys/class/kgsl/kgsl-3d0 (Adreno)
 ///   temperatures: [{zone, type, temperature_C}]   /sys/class/thermal

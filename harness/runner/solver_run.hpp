@@ -16,16 +16,16 @@ struct RunSpec {
   const SolverEntry* entry = nullptr;
   nlohmann::json settings;
   std::string setting = "default";
-  int work = 0;                  ///< on a ladder of settings: how many times the work of its first rung
-  std::string over_budget = {};  ///< why it is not run, if so; stored as it is
-  bool timed = true;             ///< false: the accuracy pass alone
-  std::map<std::string, double> scene_values = {};  ///< into every run's summary: what is known of the scene itself
+  int work = 0;                                     ///< on a ladder of settings: multiple of the work of its first rung
+  std::string over_budget = {};                     ///< reason why it is not run, if any; stored as it is
+  bool timed = true;                                ///< false: the accuracy pass alone
+  std::map<std::string, double> scene_values = {};  ///< known values of the scene itself, added to every run's summary
 };
 
-/// How long and how often; see results/README.md, "protocols".
+/// Durations and repetitions; see results/README.md, "protocols".
 struct TrialRules {
   int trials = 5;
-  int frames = 72;                   ///< wanted per trial; 0 = as many as the scene has
+  int frames = 72;                   ///< target per trial; 0 = all frames of the scene
   double max_wall_s = 0;             ///< a trial stops after this much wall time; 0 = no limit
   int min_frames = 12;               ///< ... but never before this many frames
   double warmup_s = 0.1;             ///< before each trial, outside the clock
@@ -34,32 +34,32 @@ struct TrialRules {
   double run_limit_s = 0;            ///< wall time of the untimed pass after which the run is `timed_out`; 0 = no limit
   double ladder_limit_s = 0;  ///< wall time of loads and untimed passes of one solver's ladder on a scene; 0 = no limit
   double agree =
-      0;  ///< trials end once two or more agree to it, half the range of frame rates over the median; 0 = never
-  bool pipelined = false;    ///< also time the frames of a trial without waiting for each, where the solver can
-  int profiled_frames = 12;  ///< of each trial, run again with a timestamp round every stage; 0 = none
-  Rendering rendering = {};  ///< also time frames with their pictures
+      0;  ///< trials end once two or more agree to this: half the range of frame rates over the median; 0 = never
+  bool pipelined = false;    ///< also time the frames of a trial without waiting for each, if the solver supports it
+  int profiled_frames = 12;  ///< frames of each trial run again with a timestamp around every stage; 0 = none
+  Rendering rendering = {};  ///< also time frames with rendering
 };
 
-/// Of a run whose step ended so in frame `frame`.
+/// Outcome of a run whose step ended with this status in frame `frame`.
 Outcome outcome_of(StepStatus, int frame);
 
-std::string run_name(const RunSpec&);  ///< as of its files
+std::string run_name(const RunSpec&);  ///< as in its file names
 
-/// Of a run before its solver is loaded, or whose solver never is: what it is of, on this machine.
+/// Header of a run before its solver is loaded, or whose solver is never loaded: the run's identity on this machine.
 RunHeader header_of(const Scene&, const std::string& solver, const std::string& setting, const nlohmann::json& settings,
                     const std::string& protocol);
 
-/// A loaded solver and what has been measured of it.
+/// A loaded solver and its measurements.
 class SolverRun {
  public:
-  /// Loads the solver. A feature the backend does not have, or an entry without `make`, makes the outcome
-  /// `unsupported`; a failed load of a scene it claims to support is an Error. Nothing is loaded of a spec that is over
-  /// its budget.
+  /// Loads the solver. A feature that the backend lacks, or an entry without `make`, makes the outcome `unsupported`; a
+  /// failed load of a scene that it claims to support is an Error. Nothing is loaded for a spec that is over its
+  /// budget.
   SolverRun(RunSpec spec, const DeviceOptions& device, const std::string& protocol);
 
   const RunSpec& spec() const { return spec_; }
   const RunHeader& header() const { return header_; }
-  /// Says in the header how frames are drawn; before it is written.
+  /// Adds to the header how frames are drawn; call before it is written.
   void describe(const Rendering&);
   const Outcome& outcome() const { return outcome_; }
   bool alive() const { return solver_ != nullptr && outcome_.status == "ok"; }
@@ -67,14 +67,14 @@ class SolverRun {
   /// For a loop that paces itself; null unless alive.
   ClothSolver* solver() { return solver_.get(); }
 
-  /// True if a pass recovered from an interrupted run is whole and ended well; if not it is run again, so that a
-  /// failure is met again instead of forgotten.
+  /// True if a pass recovered from an interrupted run is whole and ended well. If not, the pass must be run again, so
+  /// that a failure recurs and is not lost.
   bool usable(const AccuracyPass& pass, double duration_s) const;
-  /// Untimed pass: positions and metrics at every frame, frame 0 = initial state.
+  /// Runs the untimed pass: positions and metrics at every frame, frame 0 = initial state.
   AccuracyPass run_accuracy(const TrialRules& rules);
-  /// One timed trial. `frames` > 0 asks for exactly that many (so that all trials of a run agree).
+  /// Runs one timed trial. `frames` > 0 sets the exact number (so that all trials of a run agree).
   TimedTrial run_trial(int index, const TrialRules& rules, int frames);
-  /// Validation messages so far, of its solver and of the twin that stages are timed with; a run with any is not ok.
+  /// Number of validation messages so far, from its solver and the twin used to time stages; a run with any is not ok.
   int validation_messages() const {
     return (solver_ ? solver_->validation_messages() : 0) + (profiled_ ? profiled_->validation_messages() : 0);
   }
@@ -96,7 +96,7 @@ class SolverRun {
   std::unique_ptr<ClothSolver> profiled_;  ///< twin with per-stage timestamps, only on a GPU
 };
 
-/// Every scalar a table prints, from the record of one run. NaN where it does not apply.
+/// Every scalar of the tables, from the record of one run. NaN where not applicable.
 std::map<std::string, double> summarise(const RunSpec&, const Plan&, const RunRecord&);
 
 }  // namespace clothbench

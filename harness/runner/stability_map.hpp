@@ -7,16 +7,16 @@ namespace clothbench {
 /// solvers.
 void require_same_maps(const Study&, const StabilityOptions&);
 
-/// The study's maps: for every row (y) and solver the values of x in order, then the boundary by bisection, for every
-/// seed. Each probe is a run in such a process; its answer is appended to stability-probes.jsonl, and read back
-/// from there instead of run again with `resume`. Writes stability.json after every row:
+/// Runs the study's maps: for every row (y) and solver the values of x in order, then the boundary by bisection, for
+/// every seed. Each probe is a run in a RunWorker process. Its answer is appended to stability-probes.jsonl; with
+/// `resume` stored answers are read back instead of run again. Writes stability.json after every row:
 ///   {maps: [{name, title, scene, good, headline, x: {label, unit}, y: {label, unit},
 ///            theory: [{name, label, points: [[x, y]]}],
 ///            solvers: [{solver, setting, on_gpu, unsupported, probes: [{x, y, seed, status, class, grade, frame,
-///            message}],
+///                       message}],
 ///                       rows: [{y, seeds: [{last_good, first_bad}]}], largest, open}]}]}
-/// `largest` is the least over rows and seeds of `last_good`; `open` that no row turned at all; first_bad null = none
-/// is bad.
+/// `largest` is the least `last_good` over rows and seeds. `open` means that no row has a boundary. first_bad null
+/// means that no value is bad.
 StabilityCounts run_stability_maps(const Study&, const StabilityOptions&);
 
 }  // namespace clothbench

@@ -6,8 +6,9 @@
 
 namespace clothbench {
 
-/// "Leave out what a scene does not need", checked: the features its stages serve must be exactly those the scene
-/// needs, less those the backend declares to ignore. Returns what is extra or missing, or "" if all is well.
+/// Checks that a plan leaves out stages a scene does not need: the features that its stages serve must be exactly those
+/// the scene needs, less those the backend declares to ignore. Returns the extra or missing ones, or "" if there are
+/// none.
 std::string check_stages(const Scene& scene, const SolverInfo& info, const Plan& plan);
 
 }  // namespace clothbench

@@ -6,14 +6,14 @@
 
 namespace clothbench {
 
-/// "short", "full" or "quick", as runs store it.
+/// "short", "full" or "quick", as stored with runs.
 const char* protocol_name(StudyLength);
 
-/// Null if this process does not know it: not built, and no plugin that was loaded.
+/// Null if this process does not have it: neither built in nor in a loaded plugin.
 const SolverEntry* known_solver(const std::string& name);
 
-/// A study's runs. The study must outlive the plan. Solvers that the study names and this build does not have become
-/// `unsupported` runs; throws Error for one that neither names, and for an unknown setting.
+/// A study's runs. The study must outlive the plan. Solvers named by the study but missing from this build become
+/// `unsupported` runs. Throws Error for a solver that neither names, and for an unknown setting.
 RunPlan plan_study(const Study&);
 
 }  // namespace clothbench

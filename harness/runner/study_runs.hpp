@@ -16,34 +16,34 @@
 
 namespace clothbench {
 
-/// The runs of a study that learns from each which one it needs next: a search, a measurement of moduli, a relation of
-/// two runs. With a folder each is a run like any other's, and one that is there already is read instead of run again:
-/// a study that is gone on with asks the same questions. What a row of its table says is computed from the records,
-/// here and in a report of the folder alike.
+/// The runs of a study in which each result decides the next run: a search, a measurement of moduli, a relation of two
+/// runs. With a folder, each is stored like any other run, and a stored run is read instead of run again: a resumed
+/// study requests the same runs. The rows of its table are computed from the records, both here and in a report of the
+/// folder.
 class StudyRuns {
  public:
   /// Nothing is stored.
   explicit StudyRuns(DeviceOptions);
-  /// Writes `out`/study.json. Throws Error if there is one and the study is not to go on with it (`resume`).
+  /// Writes `out`/study.json. Throws Error if there is one and `resume` is off.
   StudyRuns(DeviceOptions, std::filesystem::path out, bool resume, StudyManifest);
 
   const DeviceOptions& device() const { return device_; }
 
-  /// The whole scene: as it is stored, or run now and stored by that protocol; without a folder only how it ends (see
-  /// whole_run.hpp, also for `by`). Throws Error if what is stored is of another scene, other settings or another
+  /// The whole scene: the stored run, or one run now and stored under that protocol; without a folder only how it ends
+  /// (see whole_run.hpp, also for `by`). Throws Error if the stored run is of another scene, other settings or another
   /// version of the solver.
   RunRecord run(const RunSpec&, const std::string& protocol, const truth::ReferenceCase* by = nullptr);
 
-  /// A run that `make` measures in its own way, without positions: as it is stored, or made now.
+  /// A run that `make` measures, without positions: the stored one, or one made now.
   RunRecord made(const PlannedRun&, const std::function<RunRecord()>& make);
 
-  /// What `work` asks, a plugin's in a child. Where that crashes, or hangs, the runs that it had begun are stored as
-  /// such, or else `asked`, and the answer is one record, of `asked`, that says so.
+  /// Results of `work`, in a child for a plugin. If the child crashes or hangs, the runs that it had begun are stored
+  /// as crashed, or `asked` if there are none, and the result is one record, of `asked`, with that outcome.
   std::vector<RunRecord> ask(Guard&, const RunHeader& asked, const SolverEntry&,
                              const std::function<std::vector<RunRecord>()>& work);
 
  private:
-  /// Null if it is not stored; otherwise named in the manifest.
+  /// None if it is not stored; otherwise it is added to the manifest.
   std::optional<RunRecord> stored(const PlannedRun&) const;
   void plan(const std::string& run) const;
   void store_crashed(const RunHeader& asked, const Outcome&) const;

@@ -5,15 +5,15 @@
 
 namespace clothbench {
 
-/// The search of search_threshold, each try a run of the whole scene (`setting`: short name of `settings`). With
-/// `tried` the runs are added to it. Throws Error if the scene's known has no threshold (see truth/reference_case.hpp)
-/// or the solver cannot run it.
+/// Runs search_threshold with a run of the whole scene for each coefficient (`setting`: short name of `settings`). The
+/// runs are appended to `tried` if it is given. Throws Error if the scene's reference case has no threshold (see
+/// truth/reference_case.hpp) or the solver cannot run the scene.
 FoundThreshold find_threshold(const Scene&, const SolverEntry&, const nlohmann::json& settings, StudyRuns&,
                               const std::string& setting = "default", std::vector<RunRecord>* tried = nullptr);
-/// ... of which nothing is stored.
+/// The same without storing any run.
 FoundThreshold find_threshold(const Scene&, const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&);
 
-/// The runs of find_threshold, a plugin's in a child; a crash of that is one record, of the scene itself.
+/// The runs of find_threshold, in a child for a plugin; if the child crashes, one record of the scene itself.
 std::vector<RunRecord> threshold_runs(Guard&, StudyRuns&, const Scene&, const SolverEntry&,
                                       const nlohmann::json& settings, const std::string& setting);
 

@@ -6,19 +6,19 @@
 
 namespace clothbench {
 
-/// A scene from beginning to end, untimed: positions, metrics, summary and what came of the scene's expectations.
+/// A scene from beginning to end, untimed: positions, metrics, summary and the result of the scene's expectations.
 /// Stored in `out` unless that is empty. A pass that takes more than `limit_s` of wall time is `timed_out`; 0 = no
-/// limit. `by`: a reference case other than the scene's own for `truth_quantity`, its quantity at the end. Throws Error
-/// as SolverRun does.
+/// limit. `by`: a reference case other than the scene's own, whose quantity at the end is `truth_quantity`. Throws
+/// Error as SolverRun does.
 RunRecord whole_run(const RunSpec&, const DeviceOptions&, const std::string& protocol, const std::filesystem::path& out,
                     double limit_s = 0, const truth::ReferenceCase* by = nullptr);
 
-/// Of the same run no more than how it ended, for a search that stores nothing: no metric is watched, and the summary
-/// has `truth_quantity` alone, of a scene with a truth. Throws Error if the solver cannot be loaded.
+/// The same run reduced to its end, for a search that stores nothing: no metric is evaluated, and the summary has only
+/// `truth_quantity`, for a scene with a truth. Throws Error if the solver cannot be loaded.
 RunRecord end_of_run(const RunSpec&, const DeviceOptions&, const std::string& protocol,
                      const truth::ReferenceCase* by = nullptr);
 
-/// What tells one run from another, without the machine.
+/// The header fields that identify a run, without the machine.
 RunHeader bare_header(const RunSpec&, const std::string& protocol);
 
 }  // namespace clothbench

@@ -6,8 +6,8 @@
 
 namespace clothbench {
 
-/// Runs the tasks on `jobs` threads, each with a worker of its own (scratch/<k>), in the order of their numbers as
-/// threads become free. After an exception no task is begun any more, and the first is thrown once all threads are
+/// Runs the tasks on `jobs` threads, each with its own worker (scratch/<k>), in the order of their numbers as threads
+/// become free. After an exception no further task is begun, and the first exception is thrown once all threads are
 /// done.
 void run_tasks(const std::vector<std::function<void(RunWorker&)>>& tasks, int jobs,
                const std::filesystem::path& program, const std::filesystem::path& scratch);

@@ -8,7 +8,7 @@
 #include "clothbench/vector.hpp"
 #include "truth/reference_case.hpp"
 
-// Of the reference cases alone: what they ask of a scene.
+// Only for the reference cases: their requirements on a scene.
 namespace clothbench::truth {
 
 using Columns = std::vector<Vec3>;
@@ -20,7 +20,7 @@ inline Vec3 operator*(double k, const Vec3& a) { return {k * a[0], k * a[1], k *
 /// std::max would lose a NaN.
 inline double greater(double a, double b) { return b <= a || a != a ? a : b; }
 
-/// A scene as the reference cases see it, and its complaints.
+/// A scene as a strip, with checks that throw Error if a reference case's requirement is not met.
 struct Strip {
   const Scene& scene;
   int links;
@@ -51,7 +51,7 @@ struct Strip {
   }
   void need_flat() const { need(scene.cloth.span_m == 0 && scene.cloth.drape_radius_m == 0, "a flat start"); }
   void need_rest() const { need(length(scene.cloth.initial_velocity_m_per_s) == 0, "a start at rest"); }
-  /// Extra weight per width that hangs on edge u1, if masses are scaled there and nowhere else.
+  /// Extra weight per width on edge u1, if masses are scaled there and nowhere else.
   double end_load_N_per_m() const {
     if (scene.cloth.mass_factors.empty()) return 0;
     const Cloth& c = scene.cloth;

@@ -4,11 +4,11 @@
 
 namespace clothbench::truth {
 
-/// An inextensible strip of rest length L without bending stiffness, held on both short edges at one height a span d <
-/// L apart: z = a cosh(x/a), 2 a sinh(d/2a) = L. Per unit weight the tension is a horizontally and a + sag at the ends,
-/// so the shape doesn't depend on weight or gravity. Source: Bernoulli, Leibniz, Huygens 1691; Irvine, Cable
-/// Structures, ch. 1. Valid for 1e-3 <= d/L <= 1 - 1e-6, Error otherwise. Relative error below 1e-14 / (1 - d/L) (the
-/// equation for a loses digits as the strip gets taut).
+/// An inextensible strip of rest length L without bending stiffness, held on both short edges at equal height, at a
+/// span d < L: z = a cosh(x/a), 2 a sinh(d/2a) = L. Over the weight per length, the tension is a (horizontal) and a +
+/// sag (at the ends), so the shape does not depend on weight or gravity. Source: Bernoulli, Leibniz, Huygens 1691;
+/// Irvine, Cable Structures, ch. 1. Valid for 1e-3 <= d/L <= 1 - 1e-6, Error otherwise. The relative error is below
+/// 1e-14/(1 - d/L), as the equation for a loses digits when the strip becomes taut.
 class Catenary {
  public:
   Catenary(double length_m, double span_m);
@@ -27,9 +27,9 @@ class Catenary {
 
 /// The same for n straight links with lumped masses (cell rows): link i makes the angle
 /// tan(phi_i) = (i - (n-1)/2) (W/n) / H, i = 0 .. n-1, with H from sum of cos(phi_i) = n d/L.
-/// Compare a solver of n cells with this one: order 2 in 1/n towards the catenary, but for odd n the lowest link is
-/// horizontal and there is no middle node. Source: equilibrium of the nodes. Same range and accuracy as Catenary; n
-/// >= 2.
+/// Compare a solver with n cells with this one. It converges to the catenary with order 2 in 1/n, but for odd n the
+/// lowest link is horizontal and there is no middle node. Source: equilibrium of the nodes. Same range and accuracy as
+/// Catenary; n >= 2.
 class DiscreteCatenary {
  public:
   DiscreteCatenary(int links, double length_m, double span_m);

@@ -3,9 +3,9 @@
 
 namespace clothbench::truth {
 
-/// Polynomials on [0, 1] by their values at the degree + 1 Chebyshev-Lobatto points, ascending, ends included.
-/// Source: Trefethen, Spectral Methods in MATLAB, ch. 6 and 12; barycentric formula: Berrut & Trefethen, SIAM Review
-/// 2004.
+/// Polynomials on [0, 1], given by their values at the degree + 1 Chebyshev-Lobatto points in ascending order, ends
+/// included. Source: Trefethen, Spectral Methods in MATLAB, ch. 6 and 12; barycentric formula: Berrut & Trefethen, SIAM
+/// Review 2004.
 class Chebyshev {
  public:
   explicit Chebyshev(int degree);  ///< degree >= 2

@@ -2,8 +2,8 @@
 
 namespace clothbench::truth {
 
-/// The value itself if it is what its name says; otherwise (NaN and infinity included) an Error that names the
-/// argument, what was expected, and what came.
+/// Each returns the value if it meets the condition in the function's name. Otherwise (also for NaN and infinity) it
+/// throws an Error that names the argument, the expected range, and the value.
 double positive(double value, const char* argument);
 double non_negative(double value, const char* argument);
 double within(double value, double least, double greatest, const char* argument);  ///< ends included

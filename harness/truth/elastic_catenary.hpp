@@ -3,11 +3,11 @@
 
 namespace clothbench::truth {
 
-/// A strip whose springs obey Hooke's law (engineering strain, membrane stiffness Y) and that has no bending stiffness,
-/// held on both short edges at one height, span d; w = rho g is the weight per rest area, H [N/m] horizontal tension:
+/// A strip of Hookean springs (engineering strain, membrane stiffness Y) without bending stiffness, held on both short
+/// edges at equal height, span d; w = rho g is the weight per rest area, H [N/m] the horizontal tension:
 ///   d = H L/Y + (2H/w) asinh(w L/2H),   sag = w L^2/(8Y) + (H/w) (sqrt(1 + (wL/2H)^2) - 1).
-/// Source: Irvine, Cable Structures (1981). Unlike the inextensible one it may span more than its rest length.
-/// Valid for 1e-3 <= d/L <= 3; relative errors of rounding, which grow to 1e-15 (Y/(wL))^(2/3) near d = L, where the
+/// Source: Irvine, Cable Structures (1981). Unlike the inextensible catenary it may span more than its rest length.
+/// Valid for 1e-3 <= d/L <= 3. Relative errors are of rounding, but grow to 1e-15 (Y/(wL))^(2/3) near d = L, where the
 /// tension of a stiff strip depends on little else. Throws Error for other arguments.
 class ElasticCatenary {
  public:

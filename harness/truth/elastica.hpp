@@ -6,25 +6,24 @@
 
 namespace clothbench::truth {
 
-/// What bends an inextensible strip of length L and bending rigidity B, clamped at one end. Dimensionless, lengths over
+/// Loads on an inextensible strip of length L and bending rigidity B, clamped at one end. Dimensionless, lengths over
 /// L.
 struct ElasticaLoad {
   double own_weight = 0;       ///< Gamma = rho g L^3 / B
-  double tip_load = 0;         ///< alpha = P L^2 / B, P [N/m] the weight of what hangs at the free end per width
+  double tip_load = 0;         ///< alpha = P L^2 / B, P [N/m] the weight per width at the free end
   double clamp_angle_rad = 0;  ///< of the clamp below the horizontal; -pi/2 points up
 };
 
 /// Static shape of the strip, Euler's elastica under its own weight and a dead load at the tip; theta below horizontal:
 ///   theta'' = -(Gamma (1 - s) + alpha) cos(theta),   theta(0) = clamp angle,   theta'(1) = 0.
 /// Limits: y = Gamma/8 + alpha/3 for small loads; tip x = sqrt(2/Gamma), theta'(0) = sqrt(2 Gamma) for great ones.
-/// Source: Euler 1744; own weight: Bickley 1934; tip load: Bisshopp & Drucker 1945. Bending of a strip that may curl
-/// across (narrow) and one that may not (wide) differ for Poisson's ratio other than 0: B is the one that fits.
+/// Source: Euler 1744; own weight: Bickley 1934; tip load: Bisshopp & Drucker 1945. For Poisson's ratio other than 0, a
+/// narrow strip (which may curl across) and a wide one (which may not) bend differently: B must be that of the strip.
 ///
-/// Solved as the integral equation of the problem by Chebyshev collocation and Newton (Eigen, dense), along the branch
-/// that starts straight at load 0 and as long as it is stable. The degree is doubled until the equation's residual
-/// between collocation points is below 1e-10 rad, which `residual_rad` states. Valid for 0 <= Gamma, alpha <= 1e4 and
-/// clamp angles within +-pi/2; Error otherwise, or where the branch ends (a strip that points up exactly, beyond
-/// self-buckling: give it an imperfection of the angle).
+/// Solved as an integral equation by Chebyshev collocation and Newton (Eigen, dense), along the stable branch that
+/// starts straight at load 0. The degree is doubled until the equation's residual between collocation points is below
+/// 1e-10 rad; `residual_rad` returns it. Valid for 0 <= Gamma, alpha <= 1e4 and clamp angles within +-pi/2. Throws
+/// Error otherwise, or where the branch ends (a strip that points exactly up, beyond self-buckling: perturb the angle).
 class Elastica {
  public:
   explicit Elastica(const ElasticaLoad&);
@@ -42,9 +41,9 @@ class Elastica {
   double residual_ = 0;
 };
 
-/// Gamma that Peirce's formula reads from a chord angle, 8 tan(c)/cos(c/2), i.e. B = rho g L^3 cos(c/2)/(8 tan c); an
-/// approximation: at 41.5 degrees its B is 5.75 % above the elastica's. Source: Peirce, J. Textile Inst. 21 (1930)
-/// T377. 0 < chord < pi/2, else Error.
+/// Gamma that Peirce's formula gives for a chord angle c, 8 tan(c)/cos(c/2), i.e. B = rho g L^3 cos(c/2)/(8 tan c). It
+/// is an approximation: at 41.5 degrees its B is 5.75 % above the elastica's. Source: Peirce, J. Textile Inst. 21
+/// (1930) T377. Needs 0 < chord < pi/2, else throws Error.
 double peirce_own_weight(double chord_angle_rad);
 
 }  // namespace clothbench::truth

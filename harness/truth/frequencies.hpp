@@ -2,23 +2,23 @@
 
 namespace clothbench::truth {
 
-// Angular frequencies [rad/s] of small vibrations; modes count from 1. Errors of rounding (1e-13 relative) unless said.
-// Lengths, densities, tensions, gravity must be positive and modes 1 or more, else Error. Amplitudes: at 2 % of the
-// length the error of linearity is of the order 1e-4.
+// Angular frequencies [rad/s] of small vibrations; modes count from 1. Errors are of rounding (1e-13 relative) unless
+// stated. Throws Error unless lengths, densities, tensions and gravity are positive and modes 1 or more. At an
+// amplitude of 2 % of the length the error of linearisation is of the order 1e-4.
 
 /// Hanging inextensible strip: J0(2 w sqrt(L/g)) = 0, w = (j_{0,n}/2) sqrt(g/L).
 /// Source: D. Bernoulli 1733.
 double hanging_strip_frequency(int mode, double length_m, double gravity_m_per_s2);
 
-/// The same for n links with equal inner masses and an end mass `end_mass_ratio` times as great (1/2: lumped cells), as
-/// the eigenvalues of its tridiagonal matrix. For equal masses w^2 = (g n/L) * (zeros of the Laguerre polynomial L_n)
-/// (D. Bernoulli). Order 2 in 1/n for 1/2, order 1 for 1. mode <= links.
+/// The same for n links with equal inner masses and an end mass `end_mass_ratio` times as great (1/2: lumped cells),
+/// from the eigenvalues of its tridiagonal matrix. For equal masses w^2 = (g n/L) * (zeros of the Laguerre polynomial
+/// L_n) (D. Bernoulli). Order 2 in 1/n for 1/2, order 1 for 1. mode <= links.
 double hanging_chain_frequency(int mode, int links, double length_m, double gravity_m_per_s2,
                                double end_mass_ratio = 0.5);
 
-/// Strip under a uniform tension T [N/m] held on both short edges, across its plane: n pi/L sqrt(T/rho), and for n
-/// cells of lumped mass 2 sqrt(T/rho)/a sin(n pi/(2 cells)), mode < cells. Source: Lagrange; Rayleigh, Theory of Sound,
-/// ch. 6.
+/// Transverse vibration of a strip under uniform tension T [N/m], held on both short edges: n pi/L sqrt(T/rho), and for
+/// n cells of lumped mass 2 sqrt(T/rho)/a sin(n pi/(2 cells)), mode < cells. Source: Lagrange; Rayleigh, Theory of
+/// Sound, ch. 6.
 double taut_string_frequency(int mode, double length_m, double tension_N_per_m, double areal_density_kg_per_m2);
 double taut_chain_frequency(int mode, int cells, double length_m, double tension_N_per_m,
                             double areal_density_kg_per_m2);
@@ -28,22 +28,22 @@ double taut_chain_frequency(int mode, int cells, double length_m, double tension
 double membrane_frequency(int mode_a, int mode_b, double side_a_m, double side_b_m, double tension_N_per_m,
                           double areal_density_kg_per_m2);
 
-/// Its static sag [m] in the middle under its weight: solution of T lap u = -rho g as a series (Timoshenko & Goodier,
-/// Theory of Elasticity, ch. 10, Prandtl's analogy). 0.0736714 rho g a^2/T for a square. Small slopes; series summed
-/// to rounding.
+/// Static sag [m] of its middle under its weight: solution of T lap u = -rho g as a series (Timoshenko & Goodier,
+/// Theory of Elasticity, ch. 10, Prandtl's analogy). 0.0736714 rho g a^2/T for a square. Small slopes; the series is
+/// summed to rounding.
 double membrane_sag_m(double side_a_m, double side_b_m, double tension_N_per_m, double areal_density_kg_per_m2,
                       double gravity_m_per_s2);
 
-/// Roots of cos(b) cosh(b) = -1, increasing.
+/// Roots of cos(b) cosh(b) = -1 in ascending order.
 double cantilever_root(int mode);
 
 /// Cantilever strip without gravity: root^2 sqrt(B/(rho L^4)). Source: Euler-Bernoulli; Rayleigh, Theory of Sound,
 /// ch. 8.
 double cantilever_frequency(int mode, double length_m, double bending_rigidity_N_m, double areal_density_kg_per_m2);
 
-/// What implicit Euler does to an undamped mode of frequency w with step dt, z = w dt: amplitude after one step over
-/// that before, 1/sqrt(1 + z^2), its frequency over w, atan(z)/z, and the amplitude factor over one of its own periods.
-/// Fully converged XPBD is the same integrator. Source: eigenvalues 1/(1 -+ iz) of the step.
+/// Numerical damping of an undamped mode of frequency w under implicit Euler with step dt, z = w dt: amplitude ratio
+/// per step 1/sqrt(1 + z^2), frequency over w atan(z)/z, and amplitude ratio per numerical period. Fully converged XPBD
+/// is the same integrator. Source: eigenvalues 1/(1 -+ iz) of the step.
 struct EulerDamping {
   double per_step, frequency_ratio, per_period;
 };

@@ -2,10 +2,10 @@
 
 namespace clothbench::truth {
 
-/// A cloth that falls flat from rest through `height` onto a plane and bounces with restitution e: contact after
-/// sqrt(2h/g) at sqrt(2gh); the k-th rebound rises to e^{2k} h and lasts e^k times as long as the first (e = 1), 2
-/// sqrt(2h/g); it comes to rest at sqrt(2h/g)(1 + e)/(1 - e). At rest the plane carries M g per M of mass. Source:
-/// Newton's law of impact. Valid for h > 0, g > 0, 0 <= e <= 1 (e = 1: never rests); Error otherwise. Rounding only.
+/// A cloth falls flat from rest through `height` h onto a plane and bounces with restitution e. It makes contact after
+/// sqrt(2h/g) at speed sqrt(2gh). The k-th rebound rises to e^{2k} h and lasts e^k times 2 sqrt(2h/g). It comes to rest
+/// at sqrt(2h/g)(1 + e)/(1 - e). At rest the plane carries M g for a mass M. Source: Newton's law of impact. Valid for
+/// h > 0, g > 0, 0 <= e <= 1 (e = 1: never rests); Error otherwise. Errors of rounding only.
 struct Drop {
   double height_m = 0.3;
   double restitution = 0;

@@ -4,7 +4,7 @@
 
 namespace clothbench::truth {
 
-/// A value that says where it comes from.
+/// A value with its source.
 struct SourcedValue {
   double value = 0;
   double uncertainty = 0;     ///< half width; 0 if exact up to rounding
@@ -17,9 +17,9 @@ struct SourcedValue {
 /// Timoshenko & Gere, Theory of Elastic Stability, ch. 6.
 double michell_prandtl_constant();
 
-/// Critical Gamma = rho g L^3/B at which a cantilever sheet with its width w upright twists aside, for w/L -> 0. With
-/// EI = (1 - nu^2) B w and GJ = 2 (1 - nu) B w of an isotropic plate: 6 j (1 - nu) sqrt(2 (1 + nu)). Rounding only.
-/// Valid for -1 < nu <= 1/2, Error otherwise.
+/// Critical Gamma = rho g L^3/B at which a cantilever sheet with vertical width w buckles laterally, for w/L -> 0. With
+/// EI = (1 - nu^2) B w and GJ = 2 (1 - nu) B w of an isotropic plate: 6 j (1 - nu) sqrt(2 (1 + nu)). Errors of rounding
+/// only. Valid for -1 < nu <= 1/2, Error otherwise.
 double narrow_lateral_buckling(double poisson_ratio);
 
 struct LateralBucklingRow {
@@ -27,14 +27,15 @@ struct LateralBucklingRow {
 };
 std::span<const LateralBucklingRow> lateral_buckling_table();
 
-/// The same for a sheet of any width: the formula at w/L = 0, otherwise INTERPOLATED in a table and saying so. The
+/// The same for a sheet of any width: the formula at w/L = 0, otherwise INTERPOLATED in a table and marked so. The
 /// table (lateral_buckling_table.hpp) was computed for this project: Kirchhoff plate under the exact plane-stress
 /// prestress of its weight, bicubic C1 finite elements on two meshes, whose difference is a row's uncertainty; its
-/// limit w/L -> 0 agrees with Michell and Prandtl's. Interpolated is the ratio to the narrow limit: Hermite cubics
-/// (makima) along w/L, polynomials along nu. The uncertainty is the rows' plus twice the difference from linear
-/// interpolation along w/L plus the difference from one degree less along nu: enough for every row that is left out.
-/// Valid for 0 <= nu <= 1/3 with w/L <= 2, and nu <= 1/2 with w/L <= 1; Error otherwise. `rows`: the table to
-/// interpolate, or part of it (a test of the interpolation leaves rows out), at least 3 for each Poisson's ratio.
+/// limit w/L -> 0 agrees with Michell and Prandtl. The ratio to the narrow limit is interpolated by Hermite cubics
+/// (makima) along w/L and polynomials along nu. The uncertainty is the sum of the rows' uncertainty, twice the
+/// difference from linear interpolation along w/L, and the difference from one degree less along nu; this covers every
+/// row when it is left out. Valid for 0 <= nu <= 1/3 with w/L <= 2, and nu <= 1/2 with w/L <= 1; Error otherwise.
+/// `rows`: the table to interpolate, or part of it (a test of the interpolation leaves rows out), at least 3 for each
+/// Poisson's ratio.
 SourcedValue lateral_buckling(double width_over_length, double poisson_ratio,
                               std::span<const LateralBucklingRow> rows = lateral_buckling_table());
 

@@ -6,9 +6,9 @@
 
 namespace clothbench::truth {
 
-/// The 33 x 33 material points on which every mesh is compared with its truth, whatever its resolution: a regular
-/// lattice over the rest rectangle [0, width] x [0, height], row by row (u fastest), with their Voronoi areas (half a
-/// cell on an edge, a quarter in a corner). Throws Error for a side that isn't positive.
+/// The 33 x 33 material points at which every mesh is compared with its truth, at any resolution: a regular lattice
+/// over the rest rectangle [0, width] x [0, height], row by row (u fastest), with Voronoi areas (half a cell on an
+/// edge, a quarter at a corner). Throws Error for a side that is not positive.
 class MaterialLattice {
  public:
   static constexpr int kSide = 33;
@@ -25,8 +25,8 @@ class MaterialLattice {
   std::vector<double> areas_;
 };
 
-/// Values at the lattice's points from those at a mesh's vertices, by barycentric interpolation in the rest rectangle.
-/// Made once per mesh. A point on an edge belongs to whichever triangle was listed first, which makes no difference.
+/// Interpolates values at a mesh's vertices to the lattice's points, barycentrically in the rest rectangle. Made once
+/// per mesh. A point on an edge belongs to the triangle listed first; either gives the same value.
 class LatticeSampler {
  public:
   /// `rest_m`: u, v per vertex; `triangles`: 3 per triangle, of either orientation. Throws Error for an index out of

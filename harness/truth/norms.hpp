@@ -5,15 +5,15 @@
 
 namespace clothbench::truth {
 
-// Distances between a run and its truth: one definition for every scene. Anything that isn't finite gives NaN, never a
-// small error. Throws Error where sizes don't fit or a scale isn't positive.
+// Distances between a run and its truth, with one definition for every scene. A value that is not finite gives NaN,
+// never a small error. Throws Error for sizes that do not match or a scale that is not positive.
 
-/// e2: area-weighted RMS distance of the lattice's points (x, y, z each) over `scale`; of positions over the longer
-/// side, of speeds (ev) over sqrt(g * longer side).
+/// e2: area-weighted RMS distance of the lattice's points (x, y, z each) over `scale`. The scale is the longer side for
+/// positions, and sqrt(g * longer side) for speeds (ev).
 double lattice_rms_error(const MaterialLattice&, std::span<const double> values, std::span<const double> truth,
                          double scale);
 
-/// Greatest distance of a point over `scale`.
+/// Greatest distance of any point over `scale`.
 double lattice_greatest_error(const MaterialLattice&, std::span<const double> values, std::span<const double> truth,
                               double scale);
 
@@ -23,18 +23,19 @@ double time_rms(std::span<const double> times_s, std::span<const double> errors)
 /// Significant correct digits, -log10(error). Source: Hairer & Wanner, Solving Ordinary Differential Equations II.
 double correct_digits(double error);
 
-/// Error of one quantity over the scale its scene states.
+/// Error of one quantity over the scale that its reference case states.
 double quantity_error(double value, double truth, double scale);
 
-/// Of (strain - true strain) over edges: RMS, and, signed, the 99th percentile (nearest rank) and the greatest.
+/// Statistics of (strain - true strain) over edges: RMS and, signed, the 99th percentile (nearest rank) and the
+/// maximum.
 struct StretchError {
   double rms, p99, greatest;
 };
 StretchError stretch_error(std::span<const double> strains, std::span<const double> truth);
 
-/// Of energies over a run, over `scale` = weight * length: greatest distance from the first; the last less the first;
-/// the greatest rise above the first and what was put in by moving pins (`pin_work`, as many values, or none for static
-/// pins).
+/// Statistics of a run's energies over `scale` = weight * length. drift: greatest distance from the first. end: last
+/// minus first. gain: greatest rise above the sum of the first and the work done by moving pins (`pin_work`, as many
+/// values, or none for static pins).
 struct EnergyError {
   double drift, end, gain;
 };

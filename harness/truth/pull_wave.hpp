@@ -2,14 +2,14 @@
 
 namespace clothbench::truth {
 
-/// A flat strip of rest length L = 2l pulled apart at both ends, without gravity, as springs along its length with
-/// engineering strain: u_tt = c^2 u_xx, c = sqrt(Y/rho), x from the middle. Each end moves outwards with v(t) = v0
-/// sin^2(pi t/(2 Tr)) up to t = Tr and v0 after. By images:
+/// A flat strip of rest length L = 2l pulled apart at both ends, without gravity, modelled as springs along its length
+/// with engineering strain: u_tt = c^2 u_xx, c = sqrt(Y/rho), x from the middle. Each end moves outwards with v(t) = v0
+/// sin^2(pi t/(2 Tr)) up to t = Tr and v0 after. By the method of images:
 ///   strain = (1/c) sum_{k>=0} [ v(t - ((2k+1)l - x)/c) + v(t - ((2k+1)l + x)/c) ],  speed = sum of differences.
-/// Source: wave equation (e.g. Graff, Wave Motion in Elastic Solids, ch. 2). Exact in the continuum; each end's wave
-/// brings v0/c. A step (Tr = 0) is allowed, but isn't a truth for a lattice, which overshoots it by about a quarter at
-/// any resolution: use pull_ramp_s(). Valid for any t >= 0 and |x| <= l; errors of rounding. Error for other arguments.
-/// A strip of infinite stiffness has the mean strain everywhere.
+/// Source: wave equation (e.g. Graff, Wave Motion in Elastic Solids, ch. 2). Exact in the continuum; the wave from each
+/// end adds a strain of v0/c. A step (Tr = 0) is allowed, but is not a truth for a lattice, which overshoots it by
+/// about a quarter at any resolution: use pull_ramp_s(). Valid for any t >= 0 and |x| <= l; errors of rounding. Throws
+/// Error for other arguments. A strip of infinite stiffness has the mean strain everywhere.
 struct TwoHandPull {
   double length_m = 1;
   double areal_density_kg_per_m2 = 0.2;
@@ -28,12 +28,12 @@ int reflections(const TwoHandPull&, double time_s);  ///< arrivals at the middle
 double pull_strain(const TwoHandPull&, double rest_x_m, double time_s);
 double pull_displacement_m(const TwoHandPull&, double rest_x_m, double time_s);
 double pull_speed_m_per_s(const TwoHandPull&, double rest_x_m, double time_s);
-double mean_pull_strain(const TwoHandPull&, double time_s);  ///< hand way / l
+double mean_pull_strain(const TwoHandPull&, double time_s);  ///< hand displacement / l
 /// Greatest strain along the strip. With a ramp, by search on a grid of 2048 points and Brent's method: 1e-9 relative.
 double greatest_pull_strain(const TwoHandPull&, double time_s);
 
-/// Speed of the material behind the front if one end of a strip under uniform strain is let go, the greatest that can
-/// occur: strain * c. Source as above.
+/// Speed of the material behind the wave front if one end of a uniformly strained strip is released: strain * c, the
+/// greatest possible. Source as above.
 double release_speed_m_per_s(double strain, double areal_density_kg_per_m2, double membrane_stiffness_N_per_m);
 
 }  // namespace clothbench::truth

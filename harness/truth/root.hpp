@@ -8,8 +8,8 @@
 
 namespace clothbench::truth {
 
-/// The one root x > 0 of a function that grows (`rising`) or falls, from a guess, to the last digits. Throws Error,
-/// naming `what`, if none is found within a factor 2^200 of the guess.
+/// The single root x > 0 of a monotonic function, increasing if `rising`, from a guess, to machine precision. Throws
+/// Error, naming `what`, if none is found within a factor 2^200 of the guess.
 template <class Function>
 double positive_root(const Function& function, double guess, bool rising, const char* what) {
   std::uintmax_t iterations = 400;

@@ -6,9 +6,9 @@ namespace clothbench::truth {
 /// A strip that spins about its middle without gravity, as springs along its length with engineering strain (tension
 /// Y (dr/dX - 1)): Y r'' = -rho w^2 r, r(0) = 0, r'(l) = 1, so
 ///   r(X) = sin(kX) / (k cos(k l)),   k = w sqrt(rho / Y),   tip radius tan(k l)/k.
-/// Start a run from this shape and it turns rigidly. Inextensible: r = X.
-/// Source: balance of tension and centripetal force on a rotating bar. Valid for k l < pi/2 (beyond, no steady shape
-/// exists); throws Error otherwise or for a value not positive. Errors of rounding only.
+/// A run that starts from this shape rotates rigidly. Inextensible: r = X. Source: balance of tension and centripetal
+/// force on a rotating bar. Valid for k l < pi/2 (beyond, no steady shape exists); throws Error otherwise or for a
+/// value that is not positive. Errors of rounding only.
 struct SpinningStrip {
   double half_length_m = 0.5;
   double areal_density_kg_per_m2 = 0.2;
@@ -20,7 +20,7 @@ struct SpinningStrip {
 double spin_radius_m(const SpinningStrip&, double rest_radius_m);
 double spin_strain(const SpinningStrip&, double rest_radius_m);
 
-/// Where a point (x, y) of a rigid body that turns about the origin is after `time_s`.
+/// Position after `time_s` of a point (x, y) of a rigid body that rotates about the origin.
 std::array<double, 2> rotated(std::array<double, 2> start_m, double angular_speed_rad_per_s, double time_s);
 
 }  // namespace clothbench::truth

@@ -5,8 +5,9 @@
 
 namespace clothbench::truth {
 
-/// A straight strip of inextensible links without bending stiffness, held at one end and let go at rest; swings in a
-/// vertical plane under gravity. The same-resolution truth of an inextensible cloth strip with nodal masses.
+/// A straight strip of inextensible links without bending stiffness, held at one end and released at rest; it swings in
+/// a vertical plane under gravity. It is the truth at equal resolution for an inextensible cloth strip with nodal
+/// masses.
 ///
 /// Coordinates are the link angles, so that the links are exactly of constant length. Tensions T_j follow from
 /// |r_j - r_{j-1}| = a differentiated twice, with c_j = cos(theta_{j+1} - theta_j):
@@ -16,9 +17,9 @@ namespace clothbench::truth {
 /// Source: Newton's second law with Lagrange multipliers (e.g. Goldstein, Classical Mechanics, ch. 2). Integrated by
 /// Boost.Odeint (Runge-Kutta-Fehlberg 7(8), adaptive).
 ///
-/// Valid at any time as the truth of the chain. A strip let go from the horizontal contracts perturbations until
-/// 0.5 s * sqrt(L/1 m * 9.81/g) and then is chaotic: compare positions up to there only. Error of the positions before:
-/// below 1e-10 L at the default tolerance; after, it grows with the perturbations.
+/// Valid at any time as the truth of the chain. A strip released from the horizontal contracts perturbations until 0.5
+/// s * sqrt(L/1 m * 9.81/g) and is chaotic afterwards: compare positions only up to then. The error of the positions is
+/// below 1e-10 L at the default tolerance until then, and grows with the perturbations afterwards.
 struct SwingingChain {
   int links = 32;
   double length_m = 1;

@@ -20,7 +20,7 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
 Triangles copy(std::span<const std::array<std::uint32_t, 3>> t) { return {t.begin(), t.end()}; }
 
-/// A third of the area of its triangles for each vertex.
+/// Area of each vertex: a third of the area of its triangles.
 std::vector<double> vertex_areas(const TriangleMeshView& mesh) {
   std::vector<double> areas(mesh.vertex_count(), 0);
   double all = 0;
@@ -40,7 +40,7 @@ void validate(std::span<const Capsule> shapes) {
       throw Error("contact capsule " + std::to_string(k) + ": expected finite ends and a positive radius");
 }
 
-/// An object made of triangles, where it is now and where it was at the last probe.
+/// An object made of triangles, with its current positions and those at the last probe.
 struct MeshObject {
   MeshObject(const TriangleMeshView& mesh, Solid solid)
       : triangles(copy(mesh.triangles)),
@@ -157,7 +157,7 @@ void ContactProbe::move_object(std::span<const double> positions) {
                 std::to_string(positions.size() / 3));
   std::vector<double> moved(positions.begin(), positions.end());
   mesh.tree = TriangleTree(mesh.view(moved));
-  // Moved twice between two probes: the way still begins where the last probe saw it.
+  // If the object moves twice between two probes, its path still begins at the positions of the last probe.
   if (mesh.positions_before.empty()) mesh.positions_before = std::move(mesh.positions);
   mesh.positions = std::move(moved);
 }

@@ -12,35 +12,35 @@ namespace clothbench::contact {
 /// has no inside.
 struct ContactSample {
   double contour_length_m;       ///< of the curve in which cloth and object cross
-  double pairs;                  ///< (cloth triangle, object triangle or capsule) that meet
-  double cloth_fraction;         ///< cloth triangles in a pair, of all
-  double tunnelled_fraction;     ///< rest area of the vertices on the other side than they began, of all
-  double tunnelled_depth_max_m;  ///< greatest distance of such a vertex from the object; 0 if there is none
+  double pairs;                  ///< intersecting (cloth triangle, object triangle or capsule)
+  double cloth_fraction;         ///< share of cloth triangles that are in a pair
+  double tunnelled_fraction;     ///< share of the rest area that is on the other side than at the start
+  double tunnelled_depth_max_m;  ///< greatest distance of a tunnelled vertex from the object; 0 if there is none
   double depth_max_m;            ///< over all sample points
   double depth_vertex_max_m;     ///< over the vertices alone
   double depth_p99_m;            ///< 99 % of the penetrating area is no deeper
   double depth_mean_m;           ///< over the penetrating area
   double area_m2;                ///< penetrating area
-  double area_fraction;          ///< of the cloth's area as it lies
+  double area_fraction;          ///< of the cloth's current (deformed) area
 };
 
 /// Whether a mesh has an inside.
 enum class Solid {
   Auto,    ///< if no edge is open
-  Nearly,  ///< yes, though it has holes (a hand open at the wrist): decided by the generalised winding number
+  Nearly,  ///< yes, despite holes (a hand open at the wrist); decided by the generalised winding number
   No       ///< no: depth and area are NaN
 };
 
-/// Watches one cloth against one object, frame after frame.
+/// Tracks the contact of one cloth with one object, frame after frame.
 ///
-/// Crossings are counted from one probe to the next, so the sequence matters: it starts at the first probe after the
-/// construction or a reset, where nothing has tunnelled. After a cloth that wasn't finite its history is unknown, and
-/// the tunnelled fraction is NaN until a reset. For capsules, which are convex and closed, no history is needed: the
-/// tunnelled vertices are those inside.
+/// Crossings are counted from one probe to the next. The sequence starts at the first probe after construction or a
+/// reset, where nothing has tunnelled. After a state that is not finite the history is unknown, and the tunnelled
+/// fraction is NaN until a reset. Capsules are convex and closed and need no history: their tunnelled vertices are
+/// those inside.
 class ContactProbe {
  public:
-  /// The cloth's rest positions give each vertex its share of area. Copies all it needs.
-  /// Throws Error on bad indices, numbers that are not finite, or a cloth without area.
+  /// The cloth's rest positions give each vertex its share of area. Copies all the data it needs. Throws Error for bad
+  /// indices, numbers that are not finite, or a cloth without area.
   ContactProbe(const TriangleMeshView& cloth_at_rest, const TriangleMeshView& object, Solid solid = Solid::Auto);
   /// As above; radii must be positive. `resolution_m` as in shapes_contact, by default default_resolution_m.
   ContactProbe(const TriangleMeshView& cloth_at_rest, std::span<const Capsule> shapes, double resolution_m = 0);
@@ -48,8 +48,8 @@ class ContactProbe {
   ContactProbe(ContactProbe&&) noexcept;
   ContactProbe& operator=(ContactProbe&&) noexcept;
 
-  /// Where the object is at the next probe: its vertices move in straight lines from where they were at the last one.
-  /// Throws Error on another number of vertices (capsules), or numbers that are not finite.
+  /// Sets the object's pose at the next probe. Its vertices move in straight lines from their positions at the last
+  /// probe. Throws Error for a different number of vertices (capsules), or numbers that are not finite.
   void move_object(std::span<const double> positions);
   void move_shapes(std::span<const Capsule> shapes);
 

@@ -14,17 +14,17 @@ Kernel::Triangle_3 to_cgal(const Simplex<3>& v) {
   return {point(v[0]), point(v[1]), point(v[2])};
 }
 
-/// Where the segment meets the plane of the triangle, known to lie between p and q.
+/// Point where the segment meets the plane of the triangle, known to lie between p and q.
 Point<3> point_of_crossing(const Point<3>& p, const Point<3>& q, const Simplex<3>& v) {
   const Point<3> normal = (v[1] - v[0]).cross(v[2] - v[0]);
   const double height_p = std::abs(normal.dot(p - v[0])), height_q = std::abs(normal.dot(q - v[0]));
-  // Both heights are noise if their sum is: any point between will do then.
+  // If the sum of the heights is rounding noise, so are both heights; then any point between will do.
   const double share = height_p + height_q > 0 ? height_p / (height_p + height_q) : 0.5;
   return p + share * (q - p);
 }
 
-/// Two triangles in general position share nothing, or a segment whose ends are two crossings of an edge of one with
-/// the other.
+/// The intersection of two triangles in general position is empty, or a segment. Each end of the segment is a crossing
+/// of an edge of one triangle with the other.
 double length_of_intersection(const Simplex<3>& cloth, const Simplex<3>& object) {
   std::array<Point<3>, 6> ends;
   int count = 0;
@@ -35,7 +35,7 @@ double length_of_intersection(const Simplex<3>& cloth, const Simplex<3>& object)
     }
   };
   collect(cloth, object, 1);
-  // The cloth moved one way is the object moved the other.
+  // Translating the cloth is equivalent to translating the object in the opposite direction.
   collect(object, cloth, -1);
   return count == 2 ? (ends[1] - ends[0]).norm() : 0;
 }

@@ -8,7 +8,7 @@
 namespace clothbench::contact {
 namespace {
 
-/// Signed depths at the samples: the sign at all of them, the distance only where something uses it.
+/// Signed depths at the samples: the sign at all of them, the distance only where it is needed.
 class SignedDepths {
  public:
   SignedDepths(std::vector<Point<3>> points, const TriangleTree& object, const InsideTest& inside)
@@ -41,7 +41,7 @@ double clip_to_inside(const Simplex<3>& corners, const std::array<double, 3>& f,
     pieces.push_back({area(corners), (f[0] + f[1] + f[2]) / 3});
     return 0;
   }
-  // `lone` is the corner on a side of its own; the line f = 0 cuts it off at `a` and `b`.
+  // `lone` is the corner alone on its side; the line f = 0 cuts its edges at `a` and `b`.
   int lone = 0;
   while ((f[lone] > 0) != (count == 1)) ++lone;
   const int i = (lone + 1) % 3, j = (lone + 2) % 3;
@@ -106,7 +106,7 @@ Depth MeshDepth::operator()(const TriangleMeshView& cloth, const TriangleTree& o
   std::vector<Piece> pieces;
   for (std::size_t t = 0; t < cloth.triangles.size(); ++t) {
     cloth_area += area(cloth.triangle(t));
-    // Corners and midpoints in turn round the triangle, then the centroid.
+    // Corners and midpoints alternate round the triangle; the centroid comes last.
     std::array<std::size_t, 7> sample;
     for (int i = 0; i < 3; ++i) {
       sample[2 * i] = cloth.triangles[t][i];

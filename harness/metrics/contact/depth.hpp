@@ -6,18 +6,18 @@
 
 namespace clothbench::contact {
 
-/// How deep a cloth is in a closed object at one instant. Depth is the distance to the object's surface of a point
-/// inside it, 0 outside; areas are of the cloth as it lies. A cloth that is nowhere inside gives zeros.
+/// How deep a cloth is in a closed object at one instant. The depth of a point is its distance to the object's surface
+/// if it is inside, and 0 outside. Areas are those of the deformed cloth. A cloth that is nowhere inside gives zeros.
 struct Depth {
   double max_m = 0;          ///< over all sample points
   double vertex_max_m = 0;   ///< over the vertices alone
   double p99_m = 0;          ///< 99 % of the penetrating area is no deeper
   double mean_m = 0;         ///< over the penetrating area
   double area_m2 = 0;        ///< penetrating area
-  double area_fraction = 0;  ///< of the cloth's area; times mean_m it is the mean depth of the whole cloth
+  double area_fraction = 0;  ///< of the cloth's area; multiplied by mean_m it is the mean depth of the whole cloth
 };
 
-/// The part of a triangle that lies inside, the depth taken as linear between the corners.
+/// The part of a triangle that lies inside; depth is interpolated linearly between the corners.
 struct Piece {
   double area_m2 = 0;
   double depth_m = 0;  ///< mean
@@ -35,14 +35,14 @@ double area(const Simplex<3>& triangle);
 /// Depth of a cloth in a closed or nearly closed mesh.
 ///
 /// Sampled at the vertices, the edge midpoints and the centroids: vertices alone miss a finger that comes up through
-/// the middle of a triangle. Inside means winding number > 1/2, depth is the distance to the nearest triangle. The
-/// six triangles that the seven points of a cloth triangle span are clipped at depth 0, so that area and mean converge
-/// with the square of the cloth's edge length, where counting points would not.
+/// the middle of a triangle. A point is inside if its winding number is > 1/2; its depth is the distance to the nearest
+/// triangle. The seven points of a cloth triangle span six triangles, which are clipped at depth 0. So area and mean
+/// converge with the square of the cloth's edge length, which counting points would not achieve.
 class MeshDepth {
  public:
   explicit MeshDepth(const TriangleMeshView& cloth_topology);
 
-  /// `cloth` has the triangles this was made with, and finite positions.
+  /// `cloth` must have the triangles given at construction, and finite positions.
   Depth operator()(const TriangleMeshView& cloth, const TriangleTree& object, const InsideTest& inside) const;
 
  private:

@@ -8,7 +8,8 @@
 namespace clothbench::contact {
 namespace {
 
-/// Expansion along the first row. With kPermanent all terms are added: given |entries|, the sum of all magnitudes.
+/// Determinant by expansion along the first row. With kPermanent all terms are added: given |entries|, this is the sum
+/// of all magnitudes.
 template <class T, int N, bool kPermanent = false>
 T expand(const std::array<std::array<T, N>, N>& m) {
   if constexpr (N == 1) {
@@ -35,8 +36,8 @@ int exact_sign(const std::array<Point<N>, N>& head, const std::array<Point<N>, N
   return static_cast<int>(CGAL::sign(expand<CGAL::MP_Float, N>(m)));
 }
 
-/// Sign of the determinant with its last row moved by shift * (e, e^2, e^3, 0): the first cofactor of that row that
-/// isn't zero decides.
+/// Sign of the determinant with its last row translated by shift * (e, e^2, e^3, 0): the first nonzero cofactor of that
+/// row decides.
 template <int N>
 int perturbed_sign(const std::array<Point<N>, N>& head, const std::array<Point<N>, N>& tail, int shift) {
   if (const int sign = sign_of_determinant<N>(head, tail)) return sign;
@@ -76,11 +77,11 @@ int sign_of_determinant(const std::array<Point<N>, N>& head, const std::array<Po
   const double determinant = expand<double, N>(m);
   const double bound = expand<double, N, true>(magnitude);
   // A term is rounded at most 4 (differences) + 3 (products) + 6 (sums) times for N = 4: 13 * 2^-53 < 2^-48. The
-  // absolute bound keeps what underflow can lose out of the decision; an overflow fails the comparison as NaN does.
+  // absolute bound covers errors of underflow; an overflow fails the comparison, as NaN does.
   constexpr double kRelative = 0x1p-48, kLeast = 0x1p-900;
   if (std::abs(determinant) > kRelative * bound && bound > kLeast && std::isfinite(bound))
     return determinant > 0 ? 1 : -1;
-  // No term without a factor that is exactly 0: points that share a coordinate, the common tie.
+  // Every term has a factor that is exactly 0: points that share a coordinate, the common tie.
   for (auto& row : magnitude)
     for (double& x : row) x = x == 0 ? 0 : 1;
   if (expand<double, N, true>(magnitude) == 0) return 0;
@@ -93,8 +94,8 @@ int crossing(const Point<N>& p, const Point<N>& q, const Simplex<N>& simplex, in
   const int side_p = side<N>(simplex, p, shift);
   const int side_q = side<N>(simplex, q, shift);
   if (side_p * side_q >= 0) return 0;
-  // Seen along the segment, p lies in the simplex if putting it in the place of any corner keeps the orientation:
-  // det(q - p, w1 - w0, ..., p - w0) for w = the corners with one of them exchanged for the last.
+  // Seen along the segment, p lies in the simplex if replacing any corner by p keeps the orientation:
+  // det(q - p, w1 - w0, ..., p - w0), where w are the corners with one of them exchanged for the last.
   int first = 0;
   for (int i = N - 1; i >= 0; --i) {
     Simplex<N> w = simplex;

@@ -21,7 +21,7 @@ class Subdivision {
     if (near_.empty()) return;
     double longest = 0;
     for (int i = 0; i < 3; ++i) longest = std::max(longest, (v[(i + 1) % 3] - v[i]).norm());
-    // At least one halving: the edge midpoints are samples whatever the resolution.
+    // At least one halving, so that the edge midpoints are samples at any resolution.
     int halvings = 1;
     while (halvings < kMaxHalvings && longest > std::ldexp(resolution_m_, halvings)) ++halvings;
     cut_by_.assign(shapes_.size(), false);

@@ -12,24 +12,25 @@ namespace clothbench::contact {
 struct Nearest {
   double distance_m;   ///< signed for capsules, unsigned for triangles
   Point<3> normal;     ///< unit, from the surface to the point; zero where the point lies on it or on an axis
-  Point<3> carried_m;  ///< how far that place of the surface moved since the frame before
+  Point<3> carried_m;  ///< displacement of that surface point since the previous frame
 };
 
-/// Nearest place of a union of capsules; `before` as many as `now`, which may turn but do not spin about their axes.
+/// Nearest point of a union of capsules. `before`: the same capsules at the previous frame, as many as `now`; they may
+/// turn but do not spin about their axes.
 Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before);
 
-/// A triangle mesh whose nearest places are asked for within a bound. The views' arrays must outlive it.
+/// A triangle mesh for nearest-point queries within a bound. The views' arrays must outlive it.
 class NearSurface {
  public:
   explicit NearSurface(const TriangleMeshView& now);
 
-  /// The nearest place within `bound_m`, if there is one. `before`: positions at the frame before; empty where the mesh
-  /// stood still.
+  /// The nearest point within `bound_m`, if there is one. `before`: positions at the previous frame; empty if the mesh
+  /// is static.
   std::optional<Nearest> operator()(const Point<3>& p, double bound_m, std::span<const double> before = {}) const;
 
  private:
   TriangleMeshView mesh_;
-  std::vector<std::size_t> source_;  ///< triangles with area, by their place in the mesh
+  std::vector<std::size_t> source_;  ///< indices in the mesh of the triangles with area
   BoxTree tree_;
 };
 

@@ -29,11 +29,11 @@ void validate(const TriangleMeshView&, const char* what);
 
 bool all_finite(std::span<const double>);
 
-/// For every vertex the lowest index of a vertex in exactly the same place.
+/// For every vertex, the lowest index of a vertex at exactly the same position.
 std::vector<std::uint32_t> welded_vertices(const TriangleMeshView&);
 
-/// Has no border: every edge, repeated vertices taken as one, is passed as often one way as the other. Then the
-/// generalised winding number is an integer off the surface. `welded` from welded_vertices.
+/// Whether the mesh has no border: every edge, with repeated vertices merged, is traversed equally often in both
+/// directions. Then the generalised winding number is an integer off the surface. `welded` comes from welded_vertices.
 bool is_closed(const TriangleMeshView&, std::span<const std::uint32_t> welded);
 
 using Box = Eigen::AlignedBox3d;
@@ -48,8 +48,8 @@ class BoxTree {
   template <class Visit>
   void for_each_overlapping(const Box& query, Visit visit) const;
 
-  /// Item that makes squared_distance(item) least among those it gives less than `bound`; -1 if none does. `bound`
-  /// becomes the least. squared_distance must not be less than that from `p` to the item's box.
+  /// The item with the least squared_distance(item) below `bound`; -1 if there is none. `bound` becomes that distance.
+  /// squared_distance must not be less than the squared distance from `p` to the item's box.
   template <class SquaredDistance>
   int nearest(const Point<3>& p, double& bound, SquaredDistance squared_distance) const;
 
@@ -64,10 +64,10 @@ class BoxTree {
   Hierarchy hierarchy_;
 };
 
-/// The triangles of a mesh that have area, ready for queries. Copies what it needs.
+/// The triangles of a mesh that have area, in a tree for queries. Copies the data it needs.
 class TriangleTree {
  public:
-  /// Throws Error on a mesh that `validate` refuses.
+  /// Throws Error for a mesh that `validate` rejects.
   explicit TriangleTree(const TriangleMeshView&);
 
   const std::vector<Simplex<3>>& triangles() const { return triangles_; }
@@ -81,7 +81,7 @@ class TriangleTree {
   BoxTree tree_;
 };
 
-/// Squared distance from a point to a triangle; good for slivers too.
+/// Squared distance from a point to a triangle; accurate for slivers too.
 double squared_distance(const Point<3>& p, const Simplex<3>& triangle);
 
 template <class Visit>
@@ -130,7 +130,7 @@ int BoxTree::nearest(const Point<3>& p, double& bound, SquaredDistance squared_d
       const double squared = hierarchy_.getVolume(*volume).squaredExteriorDistance(p);
       if (squared < bound) stack.push_back({*volume, squared});
     }
-    // The nearer child is looked at first: it is the one on top.
+    // The nearer child goes on top of the stack, so that it is visited first.
     if (stack.size() == first + 2 && stack[first].squared < stack[first + 1].squared)
       std::swap(stack[first], stack[first + 1]);
   }

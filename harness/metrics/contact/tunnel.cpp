@@ -58,7 +58,7 @@ int SweptMesh::signed_crossings(const Point<3>& p, const Point<3>& q) const {
       v[i] = at_time(prism.from[i], 0);
       w[i] = at_time(prism.to[i], 1);
     }
-    // For a triangle at rest det(v1 - v0, v2 - v0, w2 - v0, x - v0) = -n.(x - v0), and + - for the other two.
+    // For a static triangle det(v1 - v0, v2 - v0, w2 - v0, x - v0) = -n.(x - v0), and + - for the other two.
     sum -= prism.orientation * crossing<4>(start, end, {v[0], v[1], v[2], w[2]});
     sum += prism.orientation * crossing<4>(start, end, {v[0], v[1], w[1], w[2]});
     sum -= prism.orientation * crossing<4>(start, end, {v[0], w[0], w[1], w[2]});

@@ -9,7 +9,7 @@ namespace clothbench::contact {
 namespace {
 
 constexpr double kFourPi = 4 * std::numbers::pi;
-/// A cluster is far beyond this many radii. Larger: slower, and nearer to the full sum.
+/// A cluster counts as far beyond this many radii. A larger value is slower and nearer to the full sum.
 constexpr double kFar = 3;
 /// Estimates nearer to 1/2 than this are not trusted.
 constexpr double kDoubt = 0.2;
@@ -85,7 +85,7 @@ double InsideTest::clustered_winding_number(const Point<3>& p) const {
   return sum / kFourPi;
 }
 
-/// Along the axis that leaves the mesh's box soonest: the ray's box is the ray itself.
+/// The ray follows the axis that leaves the mesh's box soonest, so the ray's box is the ray itself.
 int InsideTest::crossings_to_infinity(const Point<3>& p) const {
   const Box& box = mesh_.tree().box();
   if (mesh_.triangles().empty() || !box.contains(p)) return 0;

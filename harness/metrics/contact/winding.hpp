@@ -6,22 +6,22 @@
 namespace clothbench::contact {
 
 /// Generalised winding number (Jacobson, Kavan & Sorkine-Hornung 2013) of a point about a triangle mesh: the sum of
-/// the signed solid angles of all triangles (van Oosterom & Strackee 1983) over 4 pi. Normals outwards: 1 inside a
-/// closed mesh, 0 outside; only the change by 1 across the sheet means anything for an open one. Exact up to rounding,
-/// time proportional to the number of triangles.
+/// the signed solid angles of all triangles (van Oosterom & Strackee 1983) over 4 pi. With outward normals it is 1
+/// inside a closed mesh and 0 outside; for an open mesh only the change by 1 across the sheet is meaningful. Exact up
+/// to rounding; the time is proportional to the number of triangles.
 double winding_number(const Point<3>& p, const TriangleTree& mesh);
 
-/// Is a point inside, winding number > 1/2?
+/// Tests whether a point is inside: winding number > 1/2.
 class InsideTest {
  public:
-  /// `closed`: the mesh has no border (is_closed). Then the winding number is the count of signed crossings on the way
-  /// to infinity, an exact integer. If it has one, clusters of triangles far from the point count as one dipole (first
-  /// term of Barill et al. 2018, clusters beyond 3 of their radii), and whatever comes within 0.2 of 1/2 is summed in
-  /// full. `mesh` must outlive this.
+  /// `closed`: the mesh has no border (is_closed). Then the winding number is the number of signed crossings along a
+  /// ray to infinity, an exact integer. For a mesh with a border, clusters of triangles far from the point count as one
+  /// dipole (first term of Barill et al. 2018, clusters beyond 3 of their radii), and a value within 0.2 of 1/2 is
+  /// summed in full. `mesh` must outlive this.
   InsideTest(const TriangleTree& mesh, bool closed);
 
   bool operator()(const Point<3>& p) const;
-  /// What the test compares with 1/2, before any full sum.
+  /// The value compared with 1/2, before any full sum.
   double estimate(const Point<3>& p) const;
 
  private:
@@ -36,7 +36,7 @@ class InsideTest {
 
   const TriangleTree& mesh_;
   bool closed_;
-  std::vector<Cluster> clusters_;  ///< one a node of the hierarchy
+  std::vector<Cluster> clusters_;  ///< one per node of the hierarchy
 };
 
 }  // namespace clothbench::contact

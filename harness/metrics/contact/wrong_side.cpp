@@ -30,13 +30,13 @@ void append(std::vector<double>& x, const Point<3>& p) { x.insert(x.end(), {p[0]
 class WrongSide::Passage {
  public:
   Passage(const TriangleMeshView& was, const TriangleMeshView& is)
-      // Welded as they stand: neighbouring quads share walls only where bones meet exactly, and then in the same order.
+      // Welded by position: neighbouring quads share walls only where bones meet exactly, and then in the same order.
       : swept_(was, is, welded_vertices(was)),
         first_(was, was, welded_vertices(was)),
         last_(is, is, welded_vertices(is)) {}
 
-  /// Whether the way p -> q passes it an odd number of times; nothing if that depends on when in the frame it was gone:
-  /// evenly, at once, or at the end.
+  /// Whether the path p -> q passes it an odd number of times. None if that depends on when in the frame the sample
+  /// moved: uniformly, at once, or at the end.
   std::optional<bool> passed(const Point<3>& p, const Point<3>& q) const {
     const auto odd = [](int crossings) { return crossings % 2 != 0; };
     const bool evenly = odd(swept_.signed_crossings(p, q));
@@ -46,7 +46,7 @@ class WrongSide::Passage {
     return std::nullopt;
   }
 
-  /// Whether it is between two points where the frame ends.
+  /// Whether the surface lies between two points at the end of the frame.
   bool between(const Point<3>& p, const Point<3>& q) const { return last_.signed_crossings(p, q) % 2 != 0; }
 
  private:
@@ -72,7 +72,7 @@ WrongSide::WrongSide(std::span<const Bone> bones, const Point<3>& side, double r
   for (const Bone& b : bones)
     for (const Point<3>& p : b) append(ends, p);
   const std::vector<std::uint32_t> node = welded_vertices({ends, {}});
-  // Chains are the connected parts: each bone's label sinks to the least of what it is joined to.
+  // Chains are the connected components: each bone's label drops to the least label of the bones it is joined to.
   std::vector<std::size_t> label(bones.size());
   std::iota(label.begin(), label.end(), std::size_t{0});
   const auto joined = [&](std::size_t i, std::size_t j) {
@@ -126,13 +126,13 @@ void WrongSide::place(Chain& chain, std::span<const Bone> bones) const {
   for (const auto& [b, end] : chain.free_ends) {
     const Point<3> tip = bones[b][end], along = (tip - bones[b][1 - end]).normalized();
     Point<3> across = side_.cross(along);
-    // Parallel to the side: a half-plane without width, which nothing passes.
+    // For a bone parallel to the side the half-plane has no width, and nothing passes it.
     across = across.norm() > 1e-6 ? Point<3>(reach_m_ * across.normalized()) : Point<3>(Point<3>::Zero());
     const Point<3> out = reach_m_ * along;
     for (const Point<3>& p :
          {Point<3>(tip - across), Point<3>(tip + across), Point<3>(tip + across + out), Point<3>(tip - across + out)})
       append(beyond, p);
-    // The same way round as the bone's own quad, so that crossings of both have one sign.
+    // Wound as the bone's own quad, so that crossings of both have the same sign.
     const std::array<Point<3>, 2> ends =
         end == 1 ? std::array<Point<3>, 2>{tip, tip + out} : std::array<Point<3>, 2>{tip + out, tip};
     for (const Point<3>& p : {ends[0], ends[1], Point<3>(ends[1] + far), Point<3>(ends[0] + far)}) append(endless, p);
@@ -188,7 +188,7 @@ void WrongSide::find_laps(Chain& chain, const Passage& wake, const Passage& endl
     if ((odd[l[0]] || odd[l[1]]) && parted(chain.wake, wake, l, samples) && parted(chain.endless, endless, l, samples))
       for (const std::uint32_t i : l) torn[i] = odd[i];
   for (std::size_t i = 0; i < odd.size(); ++i) bordered[i] = odd[i] && weave_.border[i];
-  // What is true of one sample of a piece is true of all.
+  // Both flags spread from one sample of a piece to all others.
   for (bool changed = true; changed;) {
     changed = false;
     for (const auto& [a, b] : weave_.links)

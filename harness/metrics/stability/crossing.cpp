@@ -24,7 +24,7 @@ Instant at(const Vec3& p0, const Vec3& p1, const std::array<Vec3, 3>& t0, const 
   return {mix(p0, p1, t), mix(t0[0], t1[0], t), mix(t0[1], t1[1], t), mix(t0[2], t1[2], t)};
 }
 
-/// Above 0 on the side of the normal.
+/// Positive on the side of the normal.
 double side(const Instant& i) { return volume(minus(i.b, i.a), minus(i.c, i.a), minus(i.p, i.a)); }
 
 /// Whether a point in the triangle's plane lies in it.
@@ -35,9 +35,9 @@ bool inside(const Instant& i) {
   return volume(n, a, b) >= 0 && volume(n, b, c) >= 0 && volume(n, c, a) >= 0;
 }
 
-/// Whether a corner goes by more than the radius in one frame, in the world and past the middle alike: between the two
-/// frames it may have gone round, and the straight way says nothing. Cloth that is passed by something fast does not go
-/// so far itself.
+/// Whether a corner moves by more than the radius in one frame, both in the world and relative to the capsule's middle.
+/// It may then have gone round the capsule between the two frames, and its straight path is meaningless. Cloth that is
+/// passed by a fast capsule does not itself move so far.
 bool whips(const Vec3& p0, const Vec3& p1, const std::array<Vec3, 3>& t0, const std::array<Vec3, 3>& t1,
            double radius) {
   const Vec3 way = minus(p1, p0);
@@ -56,7 +56,7 @@ int passes(const Vec3& p0, const Vec3& p1, const std::array<Vec3, 3>& t0, const 
   double before = side(at(p0, p1, t0, t1, 0));
   for (int k = 1; k <= kParts; ++k) {
     const double now = side(at(p0, p1, t0, t1, static_cast<double>(k) / kParts));
-    // Half-open: a point in the plane at the end of a part is on the far side in the next.
+    // Half-open interval: a point in the plane at the end of a part is on the far side in the next part.
     if ((before < 0) != (now < 0)) {
       const double t = (k - 1 + before / (before - now)) / kParts;
       if (inside(at(p0, p1, t0, t1, t))) count += now < 0 ? -1 : 1;
@@ -73,7 +73,7 @@ CapsuleCrossing::CapsuleCrossing(const Scene& s) : scene_(s), triangles_(triangl
 }
 
 int CapsuleCrossing::add(int frame, const std::vector<double>& x) {
-  // A teleport is no path; what lies behind the cloth after it is there by the scene's will.
+  // A teleport is not a path: the scene itself placed the capsule behind the cloth.
   const auto jumps =
       std::any_of(scene_.jumps.begin(), scene_.jumps.end(), [&](const Jump& j) { return j.frame == frame; });
   if (frame > 0 && !jumps)

@@ -7,8 +7,9 @@
 
 namespace clothbench::stability {
 
-/// Counts how often the middle of a moving capsule has passed through the cloth, with sign: there and back is none. A
-/// sheet that is held round it can only let it through by tunnelling; one that it goes round is not crossed.
+/// Counts how often the middle of a moving capsule has passed through the cloth, with sign: forth and back cancel. A
+/// sheet held round the capsule can only let it through by tunnelling; a sheet that the capsule goes round is not
+/// crossed.
 class CapsuleCrossing {
  public:
   /// The scene's capsule colliders, those with one capsule.
@@ -24,8 +25,9 @@ class CapsuleCrossing {
   std::vector<double> before_;
 };
 
-/// Signed passes of a point that moves straight from p0 to p1 through a triangle whose corners move straight from t0 to
-/// t1: +1 along its normal. Within each of 16 parts of the frame the point's side is taken to change linearly.
+/// Signed crossings of a point that moves straight from p0 to p1 through a triangle whose corners move straight from t0
+/// to t1: +1 along its normal. The frame is split into 16 parts, in each of which the point's signed side changes
+/// linearly.
 int passes(const Vec3& p0, const Vec3& p1, const std::array<Vec3, 3>& t0, const std::array<Vec3, 3>& t1);
 
 }  // namespace clothbench::stability

@@ -22,7 +22,7 @@ class Holders {
         between_pins_ = std::max(between_pins_, strain(pins[i], at(pins[i]), pins[j], at(pins[j])));
   }
 
-  /// Greatest strain between two that are held.
+  /// Greatest strain between two held vertices.
   double imposed(const FrameMotion* m) const {
     double most = between_pins_;
     if (m == nullptr) return most;
@@ -50,7 +50,7 @@ class Holders {
   double between_pins_ = 0;
 };
 
-/// Greatest way of a hand or a collider's end in one frame.
+/// Greatest displacement of a hand or of a capsule's end in one frame.
 double step_of(const FrameMotion& a, const FrameMotion& b, bool hands) {
   double most = 0;
   if (hands) {
@@ -66,7 +66,7 @@ double step_of(const FrameMotion& a, const FrameMotion& b, bool hands) {
   return most;
 }
 
-/// How far the start is from the sheet at rest, and its greatest structural strain.
+/// Greatest distance of the start from the sheet at rest, and the start's greatest structural strain.
 std::pair<double, double> start_of(const Scene& s) {
   const std::vector<double> x = initial_positions(s);
   double far = 0, strain = 0;
@@ -126,7 +126,7 @@ std::vector<Bounds> envelope(const Scene& s) {
         b.jumped = true;
         jump_speed = std::max(jump_speed, jump.distance_m / s.time.dt_after(f - 1));
       }
-    // A start that is not at rest is a jump of its own.
+    // A start that is not at rest counts as a jump.
     if (f == 0 && !c.start.at_rest()) {
       b.jumped = c.start.shape != Start::Shape::Rest || !c.start.merged.empty() || !c.start.moved.empty();
       if (b.jumped) jump_speed = far / s.time.dt_after(0);
@@ -146,10 +146,10 @@ std::vector<Bounds> envelope(const Scene& s) {
     const double t = s.time.at(f), H = (held ? 2 : 1) * diagonal + far + (held ? 0 : 0.5 * g * t * t),
                  fall = std::sqrt(2 * g * H);
     b.strain = std::max(0.0, imposed) + loads + (s.stability.when_relaxed ? 0 : std::max(0.0, start_strain));
-    // Cloth that has fallen slack is jerked to a stop: v/c.
+    // Cloth that falls slack is stopped suddenly: v/c.
     if (wave > 0) b.strain += (3 * v_hand + 2 * v_collider + (held || !s.colliders.empty() ? fall : 0)) / wave;
     b.speed_m_per_s = std::max({fall, v_hand, v_collider, v0});
-    // Without compliance what is drawn back goes back within a frame.
+    // Without compliance, stretched cloth returns within one frame.
     b.speed_m_per_s =
         std::max(b.speed_m_per_s, wave > 0 ? b.strain * wave : imposed * std::max(c.width_m, c.height_m) / s.time.dt());
     b.jump_speed_m_per_s = std::max(jump_speed, far > 0 && wave > 0 ? start_strain * wave : 0);

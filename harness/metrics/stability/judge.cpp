@@ -23,7 +23,7 @@ Vec3 area_vector(const std::vector<double>& x, std::uint32_t a, std::uint32_t b,
   return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
 }
 
-/// Inner edges: both corners of the edge as the first triangle winds it, then the two corners beside it.
+/// Inner edges: both corners of the edge in the first triangle's winding order, then the two opposite corners.
 std::vector<std::array<std::uint32_t, 4>> folds_of(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::array<std::uint32_t, 3>> open;
   std::vector<std::array<std::uint32_t, 4>> out;
@@ -48,8 +48,8 @@ std::vector<Edge> structural(const Cloth& c) {
 
 constexpr unsigned bit(int k) { return 1u << k; }
 
-/// Strain of the diagonals as energy: a shear of g strains them by g/2 and stores G g^2/2, G = 3/8 Y; reported over
-/// Y/2.
+/// Converts the strain of the diagonals to energy: a shear of g strains them by g/2 and stores G g^2/2, G = 3/8 Y;
+/// reported over Y/2.
 double shear_square(const Scene& scene, const std::vector<double>& x) {
   if (!scene.needs.has(Feature::Shear)) return 0;
   double squares = 0;
@@ -122,7 +122,7 @@ double StabilityJudge::visible_energy(const ClothState& s) const {
   return energy;
 }
 
-/// F1 and F2, and from when on F1 to F3 count.
+/// F1 and F2, and the frame from which F1 to F3 count.
 void StabilityJudge::judge_motion(int frame, const ClothState& state, const Strain& strain, StabilityFrame& out) {
   const Bounds& b = bounds_[static_cast<std::size_t>(frame)];
   const Bounds& base = bounds_[0];
@@ -152,7 +152,7 @@ void StabilityJudge::judge_motion(int frame, const ClothState& state, const Stra
   out.speed = allowed > 0 ? speed / allowed : speed > 0 ? std::numeric_limits<double>::infinity() : 0;
   if (!(out.speed <= kSpeed)) out.classes |= bit(1);
   if (!relaxed_) return;
-  // Within rounding of the coordinates' own size an energy of nothing is nothing.
+  // An energy within the rounding error of the coordinates counts as zero.
   const double scale = g_ > 0 ? total_mass_ * g_ * longer_m_ : total_mass_ * b.speed_m_per_s * b.speed_m_per_s;
   const double gained = std::max(0.0, visible_energy(state) - energy_base_J_ - (b.work_J - work_base_J_));
   out.energy_gain = scale > 0 ? gained / scale : gained > 0 ? std::numeric_limits<double>::infinity() : 0;
@@ -164,8 +164,8 @@ bool StabilityJudge::settled(int frame) const {
   return frame == scene_.time.frames() || (from > 0 && scene_.time.at(frame) >= from);
 }
 
-/// F3. A reference case of a motion knows every edge; one of a shape at rest only once it is there; without a reference
-/// case loads and hands bound the truth from above.
+/// F3. A reference case of a motion gives the strain of every edge; one of a shape at rest only once the cloth rests
+/// there. Without a reference case, loads and hands give an upper bound of the true strain.
 void StabilityJudge::judge_strain(int frame, const Strain& strain, const TruthErrors* truth, StabilityFrame& out) {
   const StabilityRules& rules = scene_.stability;
   if (!relaxed_) {
@@ -218,7 +218,7 @@ void StabilityJudge::judge_contact(int frame, const ClothState& state, const Sce
   for (const Collider& c : scene_.colliders) margin = std::max(margin, c.margin_m);
   const double cell = std::max(scene_.cloth.du(), scene_.cloth.dv()),
                limit = std::max(kDepthMargins * margin, kDepthCells * cell);
-  // Grace: what starts, or has just been put, inside may be on its way out.
+  // Grace period: cloth that starts inside, or was just placed inside, may be on its way out.
   double since = scene_.time.at(frame);
   for (const Jump& jump : scene_.jumps)
     if (jump.frame <= frame) since = std::min(since, scene_.time.at(frame) - scene_.time.at(jump.frame));
@@ -244,7 +244,7 @@ void StabilityJudge::judge_rest(int frame, const ClothState& state, StabilityFra
   for (std::size_t k = 0; k < settled_at_.size(); ++k)
     moved += (state.position[k] - settled_at_[k]) * (state.position[k] - settled_at_[k]);
   const double drift = std::sqrt(moved / static_cast<double>(mass_.size())) / longer_m_;
-  // Over less than this the noise of a cloth that is still settling would pass for a rate.
+  // Over a shorter time the noise of a cloth that is still settling would be taken for a drift rate.
   if (since >= kDriftFrom_s && !(drift <= kDriftPerMinute * since / 60)) restless = true;
   if (restless) out.classes |= bit(6);
 }

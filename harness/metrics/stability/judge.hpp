@@ -14,7 +14,7 @@ namespace clothbench {
 
 struct TruthErrors;
 
-/// Thresholds of the outcome classes. All are ours; published work rarely prints its own.
+/// Thresholds of the outcome classes, all chosen for this project; published work rarely states its own.
 namespace stability {
 inline constexpr double kSpeed = 10;        ///< F1: times v_char
 inline constexpr double kGain = 0.1;        ///< F2: energy gained over M g L
@@ -26,20 +26,20 @@ inline constexpr double kAreaLow = 0.05, kAreaHigh = 4, kFoldDegrees = 170, kBad
 inline constexpr double kDepthMargins = 2, kDepthCells = 0.25, kContactGrace_s = 0.25;         // F5
 inline constexpr double kUnrest = 1e-3, kDriftPerMinute = 1e-3, kDriftFrom_s = 10;             // F6
 inline constexpr double kFall = 0.01, kFallFrom_s = 0.1;                                       // F7
-inline constexpr double kRelaxed = 0.01;  ///< mean |strain| from which on F1 to F3 count, where they wait
-inline constexpr double kQuantity = 0.02, kQuantityLength = 1e-3;  ///< F3 at the end: the truth's quantity at rest
+inline constexpr double kRelaxed = 0.01;  ///< mean |strain| below which F1 to F3 start to count, where delayed
+inline constexpr double kQuantity = 0.02, kQuantityLength = 1e-3;  ///< F3 at the end: error of the quantity at rest
 }  // namespace stability
 
-/// One frame by the outcome classes
+/// One frame rated by the outcome classes
 ///   F0 not finite   F1 speed      F2 energy gain   F3 strain     F4 geometry
 ///   F5 contact      F6 unrest     F7 stagnation    (F8, budget and device, is the runner's)
-/// Numbers are what the thresholds above are for; NaN where the scene has none or they do not count yet.
+/// The numbers are compared with the thresholds above. NaN: not defined for the scene, or not yet counted.
 struct StabilityFrame {
-  unsigned classes = 0;           ///< bit k: Fk, of those that the scene judges
+  unsigned classes = 0;           ///< bit k: Fk, only classes that the scene judges
   double speed = kMissing;        ///< greatest vertex speed over v_char
   double energy_gain = kMissing;  ///< over M g L (M v_char^2 without gravity)
   double strain_excess = kMissing, strain_p99 = kMissing;
-  double bad_geometry = kMissing;  ///< share of triangles or folds, the greater
+  double bad_geometry = kMissing;  ///< share of bad triangles or of bad folds, whichever is greater
   double depth = kMissing;         ///< over its limit; infinite: tunnelled
   double unrest = kMissing;        ///< RMS speed over sqrt(g L)
   double fall_error = kMissing;    ///< of the centre of mass, over g T^2/2
@@ -47,9 +47,9 @@ struct StabilityFrame {
 
 /// Judges the frames of one run, in order, by its scene's rules: a pure function of frames, scene and truth.
 ///
-/// Energy is what can be seen, kinetic and gravity's, against all there was at the start, elastic included (by the
-/// strain, E = Y A e^2/2), and all that hands and colliders can have put in; so a model's own elastic energy, which
-/// solvers without a modulus do not have, is never charged to it twice.
+/// The energy gain compares visible energy (kinetic and gravitational) with all energy available: that at the start,
+/// including elastic energy (from the strain, E = Y A e^2/2), and the most work that hands and colliders can have done.
+/// So the elastic energy of a model, which solvers without a modulus do not have, is never counted twice.
 class StabilityJudge {
  public:
   explicit StabilityJudge(const MetricContext&);
@@ -76,7 +76,7 @@ class StabilityJudge {
   const std::vector<Edge> edges_;
   const std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<std::array<std::uint32_t, 4>> folds_;  ///< two triangles' corners: shared edge, then the two others
-  std::optional<truth::ReferenceCase> at_rest_;      ///< the scene's known if it is about a shape at rest
+  std::optional<truth::ReferenceCase> at_rest_;      ///< the scene's reference case if it describes a shape at rest
   std::unique_ptr<stability::CapsuleCrossing> crossing_;
   double total_mass_ = 0, longer_m_ = 0, g_ = 0, stiffness_ = 0;
   bool relaxed_ = false, ever_relaxed_ = false;
@@ -86,11 +86,11 @@ class StabilityJudge {
   double settled_s_ = 0;
 };
 
-/// What a whole pass comes to.
+/// The rating of a whole pass.
 struct StabilityVerdict {
   enum class Grade { Stable, Degraded, Failed };
   Grade grade = Grade::Stable;
-  std::string klass = "ok";  ///< of the first frame that is worst
+  std::string klass = "ok";  ///< class of the first frame with the worst grade
   int frame = -1;            ///< that frame
 };
 
@@ -99,7 +99,7 @@ StabilityVerdict stability_verdict(const AccuracyPass&);
 
 const char* name_of(StabilityVerdict::Grade);
 
-/// A sentence on a class: "F2 energy gain".
+/// Label of a class: "F2 energy gain".
 std::string class_name(int k);
 
 }  // namespace clothbench

@@ -14,7 +14,7 @@ const std::vector<double>* series(const AccuracyPass& pass, const std::string& n
   return nullptr;
 }
 
-/// Least class of a set.
+/// Lowest class of a set.
 int least(unsigned classes) {
   int k = 0;
   while ((classes & (1u << k)) == 0) ++k;
