@@ -6,14 +6,14 @@
 
 namespace clothbench::android {
 
-/// Sends what the process prints (stdout and stderr) to `line`, line by line, for the rest of the process's life: an
-/// activity's own go nowhere. Make one, and keep it.
+/// Redirects stdout and stderr of the process to `line`, line by line, until the process ends; Android discards those
+/// of an activity. Create one object and keep it.
 class StdoutTap {
  public:
   explicit StdoutTap(std::function<void(const std::string&)> line);
   StdoutTap(const StdoutTap&) = delete;
   StdoutTap& operator=(const StdoutTap&) = delete;
-  /// Returns once everything printed so far has been sent, or after 2 s.
+  /// Waits until everything printed so far has been sent, at most 2 s.
   void flush();
 
  private:

@@ -10,7 +10,7 @@
 
 namespace clothbench {
 
-/// What a run is found by. `assets` tells npm from procedural rooms and hands; empty where the result does not say.
+/// Key of a run. `assets` of rooms and hands: "npm" or "procedural"; empty if the result does not tell.
 struct RunKey {
   std::string scene, solver, setting, assets;
   // Not <=>: strings have none yet in the libc++ of Android's NDK r25.
@@ -23,21 +23,21 @@ struct RunKey {
   std::string text() const;       ///< the same with the assets in brackets, if known
 };
 
-/// What of a run does not depend on the machine.
+/// The part of a run that does not depend on the machine.
 struct BaselineRun {
   RunKey key;
   std::string scenario_sha256;
   std::string status, klass;
   int failed_frame = -1;
   std::vector<std::string> stages;        ///< "<name> (<feature>, <feature>)" in order
-  std::map<std::string, double> scalars;  ///< gated ones alone; NaN or absent = not measured
-  std::map<std::string, int> versions;    ///< of the metrics that these are computed from; absent = 1
+  std::map<std::string, double> scalars;  ///< only gated ones; NaN or absent = not measured
+  std::map<std::string, int> versions;    ///< of the metrics that the scalars are computed from; absent = 1
 };
 
-/// How a baseline was made, for the reader of the file; nothing is computed from it.
+/// How a baseline was made. Only for readers of the file; nothing is computed from it.
 struct BaselineOrigin {
-  std::string command;                        ///< that wrote the baseline
-  std::vector<std::string> runs;              ///< that computed the results
+  std::string command;                        ///< command that wrote the baseline
+  std::vector<std::string> runs;              ///< commands that computed the results
   std::vector<std::string> commits, devices;  ///< of the results, sorted
 };
 
@@ -49,11 +49,11 @@ struct Baseline {
 /// The part of a result that is gated. A scalar that is not finite counts as not measured and is left out.
 BaselineRun gated_part(const RunRecord&);
 
-/// Reads and checks a baseline. Throws Error with file and JSON pointer (line and column where the text is no JSON): a
-/// key that is unknown or missing, a scalar that has no gate, a run that stands twice.
+/// Reads and checks a baseline. Throws Error with file and JSON pointer (line and column if the text is not JSON) for a
+/// key that is unknown or missing, a scalar that has no gate, or a run that is listed twice.
 Baseline read_baseline(const std::filesystem::path&);
 
-/// The file's text: one line a value, sorted; numbers read back exactly.
+/// The file's text: one line per value, sorted; numbers read back exactly.
 std::string baseline_text(const Baseline&);
 
 }  // namespace clothbench

@@ -5,8 +5,8 @@
 
 namespace clothbench {
 
-/// Workflow commands of GitHub Actions: one `::error` a failed run, one `::notice` for all that improved and one for
-/// all that is new (GitHub shows ten of a kind a step). `file`: what the annotations point to, the baseline.
+/// Workflow commands of GitHub Actions: one `::error` per failed run, one `::notice` for all improvements and one for
+/// all new runs (GitHub shows ten of a kind per step). `file`: the baseline, to which the annotations point.
 std::string github_commands(const Checked&, const std::string& file);
 
 }  // namespace clothbench

@@ -5,8 +5,8 @@
 
 namespace clothbench {
 
-/// JUnit XML as CI servers read it: one test case a run (class = scene, name = solver, setting and assets), a
-/// <failure> where it failed, what improved or is new as <system-out>. Text that XML 1.0 or UTF-8 does not allow is
+/// JUnit XML as CI servers read it: one test case per run (class = scene, name = solver, setting and assets), with a
+/// <failure> if it failed. Improvements and new runs are in <system-out>. Text that XML 1.0 or UTF-8 does not allow is
 /// replaced.
 std::string junit_xml(const Checked&);
 

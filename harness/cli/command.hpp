@@ -13,16 +13,16 @@
 
 namespace clothbench {
 
-/// What every command shares. A command adds itself to the app and runs in its callback; failures are Errors.
+/// State shared by all commands. A command adds itself to the app and runs in its callback; it throws Error on failure.
 struct Console {
   bool json = false;  ///< print a machine-readable summary instead of tables
   std::string command_line;
   std::vector<std::string> words;  ///< the same, after the program's name
   ExitCode exit_code = ExitCode::Ok;
-  std::set<std::string> reported_scenes = {};  ///< whose drawn parameters (--seed) have been printed
+  std::set<std::string> reported_scenes = {};  ///< scenes whose drawn parameters (--seed) have been printed
 
-  /// Where a command keeps its arguments: new ones for every command line, since one process may run several (an app's
-  /// session does). They live as long as the console does.
+  /// Storage for a command's arguments: a new object for every command line, since one process may run several (an
+  /// app's session does). They live as long as the console.
   template <class Arguments>
   Arguments& arguments() {
     auto made = std::make_shared<Arguments>();
@@ -56,8 +56,8 @@ void add_metamorphic(CLI::App&, Console&);
 void add_threshold(CLI::App&, Console&);
 void add_friction(CLI::App&, Console&);
 
-/// Replaces what stands between the lines "<!-- NAME begin -->" and "<!-- NAME end -->" of a README. Throws Error
-/// naming the file and the lines if they are not there.
+/// Replaces the text between the lines "<!-- NAME begin -->" and "<!-- NAME end -->" of a README. Throws Error
+/// naming the file and the lines if they are missing.
 void write_between_marks(const std::string& file, const std::string& name, const std::string& text);
 
 /// `--set` arguments: `solver.<name>=<JSON>` go to the solver, everything else to the scene.
@@ -68,7 +68,7 @@ struct Overrides {
 };
 Overrides split_overrides(const std::vector<std::string>& set);
 
-/// Options of everything that runs a solver: --device, --validate, --allow-no-device.
+/// Options of every command that runs a solver: --device, --validate, --allow-no-device.
 struct DeviceFlags {
   DeviceOptions options;
   bool allow_no_device = false;
@@ -82,11 +82,11 @@ std::pair<int, int> pixels_of(const std::string& option, const std::string& text
 CLI::Option* add_solvers(CLI::App&, const std::string& option, std::vector<std::string>& names,
                          const std::string& help);
 
-/// --require-assets: stand-ins for rooms and hands are an Error.
+/// --require-assets: using stand-ins for rooms and hands is an Error.
 void add_require_assets(CLI::App&, bool& required);
 inline Assets asset_policy(bool required) { return required ? Assets::Required : Assets::MayBeProcedural; }
 
-/// A line on the terminal that is rewritten in place; silent in a pipe.
+/// A line on the terminal that is rewritten in place; prints nothing into a pipe.
 class StatusLine {
  public:
   explicit StatusLine(bool enabled);

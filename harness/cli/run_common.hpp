@@ -13,38 +13,38 @@ struct RunFlags {
   std::string out;  ///< empty: results/runs/<study>-<UTC>
   bool resume = false;
   DeviceFlags device;
-  bool part = false;  ///< only some of the runs that the manifest names: no report of the folder at the end
+  bool part = false;  ///< only some of the manifest's runs: no report of the folder at the end
 };
 
-/// What commands have in common that ask run after run of solvers: friction, threshold, measured, metamorphic.
+/// Common options of commands that run solvers repeatedly: friction, threshold, moduli.
 struct SearchFlags {
   std::vector<std::string> solvers, set;
   std::string out;  ///< empty: nothing is stored
   bool resume = false;
   DeviceFlags device;
-  void add_to(CLI::App&);  ///< --out, --resume and those of the device
+  void add_to(CLI::App&);  ///< --out, --resume and the device options
   StudyRuns runs(const std::string& study, const Console&) const;
 };
 
 /// results/runs/<study>-<UTC>
 std::filesystem::path default_folder(const std::string& study);
 
-/// True if GPU solvers have a device; false if there is none and that is allowed. Throws Error otherwise, and for a
-/// --device that there is not.
+/// True if GPU solvers have a device; false if there is none and that is allowed. Throws Error otherwise, and if
+/// --device names a missing device.
 bool check_device(const SolverEntry& gpu, const DeviceFlags&);
 
-/// run_and_tell for a study whose runs are in other processes (protocol stability-map), `jobs` at a time. `only`:
-/// solvers of its maps.
+/// run_and_tell for a study that runs in other processes (protocol stability-map), `jobs` at a time. `only`: solvers of
+/// its maps.
 void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only,
                             int jobs, Console& console);
 
-/// The option --seed of commands whose scenes have a truth.
+/// Adds the option --seed, for commands whose scenes have a truth.
 void add_seed(CLI::App&, std::optional<std::uint64_t>& seed);
 
-/// The scene at the parameters drawn by `seed`, reported to the user once for each name; the scene itself without one.
+/// The scene with parameters drawn by `seed`, printed once for each scene name; without a seed, the scene as it is.
 Scene at_seed(Scene, const std::optional<std::uint64_t>& seed, Console&);
 
-/// Writes the manifest, executes the runs with a status line and prints what came of it. Sets the console's exit code
+/// Writes the manifest, executes the runs with a status line and prints the results. Sets the console's exit code
 /// to CheckFailed if a run broke a rule of the harness.
 void run_and_tell(RunPlan plan, StudyManifest manifest, const RunFlags& flags, Console& console);
 

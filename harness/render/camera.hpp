@@ -8,7 +8,7 @@
 
 namespace clothbench::render {
 
-/// 4 x 4, column after column, as shaders take it.
+/// 4 x 4, column-major, as in shaders.
 using Mat4 = std::array<double, 16>;
 Mat4 operator*(const Mat4& a, const Mat4& b);
 
@@ -19,26 +19,26 @@ const char* name_of(View);
 
 /// A pinhole camera. World: right-handed, +y up.
 struct Camera {
-  Vec3 eye_m{}, right{}, up{}, back{};  ///< orthonormal; `back` from what is looked at towards the eye
+  Vec3 eye_m{}, right{}, up{}, back{};  ///< orthonormal; `back` points from the target towards the eye
   double tan_half_width = 0, tan_half_height = 0;
   double near_m = 0, far_m = 0;
 
-  /// World, relative to `origin_m`, to the camera's own axes.
+  /// From world coordinates relative to `origin_m` to the camera's axes.
   Mat4 view(const Vec3& origin_m) const;
-  /// To Vulkan's clip space: y down, depth 0 at `near_m` to 1 at `far_m`. The same as an OpenXR field of view gives.
+  /// To Vulkan's clip space: y down, depth 0 at `near_m` to 1 at `far_m`. Matches xr::projection_of.
   Mat4 projection() const;
 };
 
-/// Where a point is seen: 0..1 from the picture's left and top; empty behind the camera.
+/// Position of a point in the picture: 0..1 from left and from top; empty if it is behind the camera.
 std::optional<std::array<double, 2>> seen_at(const Camera&, const Vec3& point_m);
 
 /// The nearest camera of a view that sees all of `points` (xyz interleaved [m], finite), with `margin` of the picture's
-/// width and height free all round. Front looks along -z, top down with -z upwards in the picture, corner from the
-/// front, 30 degrees to the right and 24 up; both after going `turn_deg` degrees round to the right. `aspect`: width
-/// over height. Throws Error without points.
+/// width and height free on every side. Front looks along -z. Top looks down, with -z upwards in the picture. Corner
+/// looks from the front, 30 degrees to the right and 24 up. Front and corner are turned by `turn_deg` degrees to the
+/// right. `aspect`: width over height. Throws Error without points.
 Camera frame(View, std::span<const double> points, double aspect, double margin = 0.04, double turn_deg = 0);
 
-/// From the scene towards the eye of a view, unit.
+/// Unit vector from the scene towards the eye of a view.
 Vec3 towards_eye(View, double turn_deg);
 
 /// Left and right eye of a user looking along -z at the middle of a box from `distance_m` away. 110 x 96 degrees is

@@ -15,26 +15,26 @@ enum class Colour { Checker, Strain, Depth };
 Colour colour_from(const std::string& name);
 const char* name_of(Colour);
 
-/// Between `stops`, evenly spaced, in CIELAB, where equal steps look alike; `t` from 0 to 1.
+/// Interpolates between evenly spaced `stops` in CIELAB, where equal steps look equal; `t` from 0 to 1.
 Rgb between(std::span<const Rgb> stops, double t);
 
-/// How numbers become colours. Both maps are readable without red or green, and get darker away from 0.
+/// Maps numbers to colours. Both maps are readable with red-green colour blindness, and get darker away from 0.
 struct Scale {
   double low = 0, high = 1;                        ///< values at the ends of the bar
-  bool clipped_low = false, clipped_high = false;  ///< there are values beyond
+  bool clipped_low = false, clipped_high = false;  ///< there are values beyond this end
   std::string title, unit;                         ///< "stretch", "%"
   double per_unit = 1;                             ///< value of one unit: 0.01 for %
   std::vector<Rgb> stops;
   bool zero_apart = false;  ///< 0 has a colour of its own
 
-  Rgb colour(double value) const;  ///< beyond the ends as at them
+  Rgb colour(double value) const;  ///< clamped at the ends
 };
 
-/// Ends round numbers that hold 99.5 % of the values: -x..x for strain (a ratio), 0..x for depth [m]. Not finite ones
-/// do not count.
+/// A scale whose ends are round numbers and enclose 99.5 % of the values: -x..x for strain (a ratio), 0..x for depth
+/// [m]. Ignores values that are not finite.
 Scale scale_for(Colour, std::span<const float> values);
 
-/// The scale as SceneRenderer::write_values takes it: linear RGB, and values as 0..1.
+/// The arguments of SceneRenderer::write_values: the scale's colours in linear RGB, and values mapped to 0..1.
 std::vector<vec4> table_of(const Scale&);
 std::vector<float> positions_on(const Scale&, std::span<const float> values);
 

@@ -8,28 +8,29 @@
 
 namespace clothbench::render {
 
-/// What the pictures of some frames show, all from one camera.
+/// The region that the pictures of some frames show, all from one camera.
 struct Framing {
-  Bounds near;                 ///< where the cloth is, and a margin: colliders beyond are cut off
-  Vec3 origin_m{};             ///< in the middle of it
-  std::vector<double> points;  ///< all that has to be in the picture, xyz interleaved [m]
-  /// The vertex the camera goes with, of a cloth that nothing holds and that leaves its place.
+  Bounds near;                 ///< of the cloth, with a margin; colliders beyond are cut off
+  Vec3 origin_m{};             ///< centre of the cloth's bounds
+  std::vector<double> points;  ///< points that must be in the picture, xyz interleaved [m]
+  /// The vertex that the camera follows, if nothing holds the cloth and it leaves its initial place.
   std::optional<std::uint32_t> followed;
-  double turn_deg = 0;  ///< how far round the scene front and corner stand, in quarters: see best_turn
+  double turn_deg = 0;  ///< turn of the views front and corner, a multiple of 90: see best_turn
 };
 
-/// Cloth that has left its place (by more than its own size, of one that is held, or beside a collider) does not count:
-/// it would make all the rest a dot. Not finite vertices do not either. With none left, the start's place.
+/// Ignores vertices that are not finite. Of a cloth that is held or meets colliders, also ignores vertices that left
+/// the initial bounds by more than the cloth's size, since they would make the rest tiny. With no vertex left, frames
+/// the initial bounds.
 Framing framing_of(const Motion&, std::span<const std::size_t> frames);
 
-/// The quarter turn from whose corner the most cloth is seen, in m^2 of the picture plane over `frames`, where
-/// static colliders hide some of it: a cloth over the far edge of a desk is shown from there. 0 unless another shows a
-/// fifth more, and where colliders move or there are none.
+/// The quarter turn whose corner view shows the most cloth, in m^2 of the picture plane summed over `frames`, if static
+/// colliders hide some of it: a cloth over the far edge of a desk is shown from the far side. 0 unless another turn
+/// shows a fifth more; 0 if colliders move or there are none.
 double best_turn(const Motion&, std::span<const std::size_t> frames, const Bounds& near);
 
-/// Frames that the pictures of `wanted` are framed by: some of all there are, so that every picture of a motion has the
-/// same camera and shows what the cloth comes to; `wanted` alone where nothing holds the cloth and the camera goes with
-/// it.
+/// Frames that determine the camera for the pictures of `wanted`. If the cloth is held: `wanted` and a sample of all
+/// frames, so that every picture of a motion has the same camera. If nothing holds the cloth and the camera follows it:
+/// `wanted` alone.
 std::vector<std::size_t> framed_by(const Motion&, std::span<const std::size_t> wanted);
 
 }  // namespace clothbench::render

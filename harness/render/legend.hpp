@@ -7,7 +7,7 @@
 
 namespace clothbench::render {
 
-/// Where in a picture the scene, the colour bar and the caption are: the scene takes what the others leave.
+/// Layout of scene, colour bar and caption in a picture: the scene gets the space that the others leave.
 struct Layout {
   int width = 0, height = 0;  ///< of the scene
   int legend_width = 0, caption_height = 0;
@@ -15,12 +15,12 @@ struct Layout {
 };
 
 /// Letters are a 32nd of the picture's height, and at least 9 pixels: readable in a figure half a page wide. Throws
-/// Error where no room is left for the scene.
+/// Error if no space is left for the scene.
 Layout layout_of(int width, int height, bool plain, bool legend);
 
-/// A bar with three or five numbers, right of the scene.
+/// Draws a colour bar with three or five numbers to the right of the scene.
 void draw_legend(Picture&, const Layout&, const Scale&, const Pen&);
-/// Below the scene.
+/// Draws the caption below the scene.
 void draw_caption(Picture&, const Layout&, const std::string& text, const Pen&);
 
 }  // namespace clothbench::render

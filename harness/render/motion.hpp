@@ -8,13 +8,12 @@
 
 namespace clothbench::render {
 
-/// What pictures are made of: a cloth's way, and what it touches.
+/// Input of pictures: the trajectory of a cloth, and the colliders that it touches.
 struct Motion {
-  Scene scene;        ///< of one read from a file: grid and sizes of the cloth, colliders and grips with their motion,
-                      ///< nothing else
-  bool held = false;  ///< pinned or gripped somewhere, or there are colliders: it stays where it is looked for
-  std::string name;   ///< of the run, for files
-  std::string title;  ///< for people: "hang · xpbd"
+  Scene scene;          ///< if read from a file: only the cloth's grid and sizes, and colliders and grips with motion
+  bool held = false;    ///< pinned, gripped or with colliders: the cloth stays near its initial place
+  std::string name;     ///< of the run, for file names
+  std::string title;    ///< for display: "hang · xpbd"
   std::string outcome;  ///< how the run ended, "" if well
   std::vector<double> time_s;
   std::vector<float> position;  ///< (frame, vertex, xyz) [m]
@@ -24,11 +23,11 @@ struct Motion {
   std::vector<double> at(std::size_t frame) const;
 };
 
-/// From a result file (.h5) or the part folder of a run without HDF5. No frames where it has no trajectory. Throws
-/// Error naming the file and what is wrong with it.
+/// Reads a result file (.h5) or the part folder of a run without HDF5. No frames if it has no trajectory. Throws Error
+/// naming the file and what is wrong with it.
 Motion stored_motion(const std::filesystem::path&);
 
-/// Of a run that has just finished.
+/// The motion of a run that has just finished.
 Motion motion_of(const Scene&, const RunHeader&, const Outcome&, AccuracyPass);
 
 }  // namespace clothbench::render

@@ -6,7 +6,7 @@
 
 namespace clothbench::render {
 
-/// Pictures of one size into an MP4 (H.264), by the program ffmpeg.
+/// Writes pictures of one size into an MP4 (H.264) with the program ffmpeg.
 class Movie {
  public:
   /// Is ffmpeg on the PATH?
@@ -14,14 +14,14 @@ class Movie {
 
   /// Throws Error if ffmpeg cannot be started.
   Movie(std::filesystem::path file, int width, int height, double frames_per_s);
-  /// Waits for ffmpeg, whose file of the pictures so far is whole then.
+  /// Waits for ffmpeg, which completes the file with the pictures so far.
   ~Movie();
   Movie(const Movie&) = delete;
   Movie& operator=(const Movie&) = delete;
 
-  /// Throws Error once ffmpeg takes no more.
+  /// Throws Error if ffmpeg no longer accepts input.
   void add(const Picture&);
-  /// Waits for the file to be whole. Throws Error with what ffmpeg had to say.
+  /// Waits until the file is complete. Throws Error with ffmpeg's messages.
   void finish();
 
  private:

@@ -8,21 +8,21 @@
 
 namespace clothbench::render {
 
-/// Images to draw into where nothing is shown: one for each view (an eye), all of one size.
+/// Images for offscreen drawing: one for each view (an eye), all of one size.
 class Offscreen {
  public:
-  static constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_SRGB;  ///< every device draws in it (Vulkan 1.1, table 62)
+  static constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_SRGB;  ///< mandatory for colour targets (Vulkan 1.1, table 62)
 
-  /// Throws Error where the device has no images that large.
+  /// Throws Error if the device does not support images of this size.
   Offscreen(std::shared_ptr<vulkan::Device> device, VkExtent2D extent, std::size_t count);
   ~Offscreen();
   Offscreen(const Offscreen&) = delete;
   Offscreen& operator=(const Offscreen&) = delete;
 
-  /// Draws an image for each camera, as many as there are; complete on return. The renderer outlives this. Throws
-  /// vulkan::Failure.
+  /// Draws each image with its camera (one camera per image); complete on return. The renderer must outlive this
+  /// object. Throws vulkan::Failure.
   void draw(SceneRenderer&, std::span<const Camera> cameras);
-  /// Reads one back.
+  /// Reads back image `k`.
   Picture read(std::size_t k);
 
  private:

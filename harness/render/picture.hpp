@@ -17,11 +17,11 @@ struct Picture {
     return &rgb[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3];
   }
   const std::uint8_t* at(int x, int y) const { return const_cast<Picture*>(this)->at(x, y); }
-  /// Puts another one on it, whose upper left corner comes to (x, y); what juts out is cut off.
+  /// Copies another picture onto this one, with its upper left corner at (x, y); clips it at the borders.
   void put(const Picture&, int x, int y);
 };
 
-/// Under another name, then renamed. Throws Error naming the file.
+/// Writes under a temporary name, then renames. Throws Error naming the file.
 void write_png(const std::filesystem::path&, const Picture&);
 /// Throws Error naming the file and what is wrong with it.
 Picture read_png(const std::filesystem::path&);

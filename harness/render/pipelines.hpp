@@ -8,8 +8,8 @@
 
 namespace clothbench::render {
 
-/// The pass (colour and depth with several samples, resolved into one) and the two pipelines that draw in it: cloth and
-/// colliders, with one set of buffers for both.
+/// The render pass (multisampled colour and depth, resolved to one sample) and its two pipelines, for cloth and for
+/// colliders, which share a set of buffers.
 class Pipelines {
  public:
   static constexpr std::uint32_t kBindings = 5;  ///< as in the shaders
@@ -21,7 +21,7 @@ class Pipelines {
   Pipelines& operator=(const Pipelines&) = delete;
 
   VkRenderPass pass() const { return pass_; }
-  /// Binding k is buffers[k]. Nothing recorded before may be in flight.
+  /// Binds buffers[k] to binding k. No command recorded earlier may be in flight.
   void bind(const std::array<const vulkan::Buffer*, kBindings>& buffers);
   void use(VkCommandBuffer, bool cloth, const void* constants, std::uint32_t bytes) const;
 

@@ -14,9 +14,9 @@
 
 namespace clothbench::render {
 
-/// One picture to draw: into which image, seen how. The image has the renderer's colour format, one sample a pixel and
-/// the usage COLOR_ATTACHMENT; what it held is lost, and it is in the layout COLOR_ATTACHMENT_OPTIMAL afterwards, as an
-/// OpenXR swapchain's image has to be.
+/// One picture to draw: the target image and the camera. The image has the renderer's colour format, one sample a pixel
+/// and the usage COLOR_ATTACHMENT. Its content is overwritten, and its layout is COLOR_ATTACHMENT_OPTIMAL afterwards,
+/// as OpenXR requires for images of a swapchain.
 struct Drawing {
   VkImage image = VK_NULL_HANDLE;
   std::uint32_t layer = 0;
@@ -25,46 +25,45 @@ struct Drawing {
       projection{};  ///< view: from metres relative to SceneRenderer::origin(); projection: to Vulkan's clip space
 };
 
-/// Draws one cloth and what it touches, with several samples a pixel. It knows no window and no frame loop: whoever
-/// owns images (a file to write, an eye of a headset) has it record into a command buffer of theirs, on the queue of
-/// the same device.
+/// Draws one cloth and its colliders with multisampling. It has no window and no frame loop: the owner of the images (a
+/// picture file, an eye of a headset) passes a command buffer to record into, for the queue of the same device.
 ///
-/// All its memory is that of the scene it was given. What commands recorded earlier use is replaced by set_cloth,
-/// write_values and set_surfaces, and by a picture of a new size, so nothing of its may be in flight then;
-/// write_positions overwrites.
+/// Its memory grows with the scene only. set_cloth, write_values, set_surfaces and a picture of a new size replace
+/// objects that commands recorded earlier use, so none of these commands may be in flight then; write_positions
+/// overwrites the positions in place.
 class SceneRenderer {
  public:
-  static constexpr int kSamples = 4;  ///< every device that draws has them (Vulkan 1.1, framebufferColorSampleCounts)
+  static constexpr int kSamples = 4;  ///< supported by every graphics device (Vulkan 1.1, framebufferColorSampleCounts)
 
-  /// Throws Error with ExitCode::NoDevice where the device's queue cannot draw.
+  /// Throws Error with ExitCode::NoDevice if the device's queue does not support graphics.
   SceneRenderer(std::shared_ptr<vulkan::Device> device, VkFormat colour);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
-  /// The grid, and the point of the world from which all is reckoned in float32: near the scene.
+  /// Sets the grid, and the origin of all float32 coordinates: a point of the world near the scene.
   void set_cloth(const Cloth& cloth, const Vec3& origin_m);
   const Vec3& origin() const { return origin_m_; }
 
-  /// Positions come from a buffer of the same device, a vec4 a vertex, first vertex first, relative to
-  /// `buffer_origin_m`. It outlives its use here; each picture shows what it holds then.
+  /// Draws positions from a buffer of the same device: a vec4 for each vertex, in order, relative to `buffer_origin_m`.
+  /// The buffer must outlive its use here; each picture shows its content at that time.
   void use_positions(const vulkan::Buffer& buffer, const Vec3& buffer_origin_m);
-  /// Positions come from here, xyz interleaved [m], one for each vertex (else Error). Any may be NaN: triangles there
-  /// are left out.
+  /// Draws these positions, xyz interleaved [m], one for each vertex (else Error). Any may be NaN: its triangles are
+  /// left out.
   void write_positions(std::span<const double> position_m);
-  /// The picture goes with a vertex that began at `start_m`.
+  /// The camera follows a vertex that started at `start_m`.
   void follow(std::uint32_t vertex, const Vec3& start_m);
 
-  /// Colours the cloth by a number a vertex, 0 to 1 along `colours` (linear RGB, at least 2), NaN grey; without any by
-  /// checkers.
+  /// Colours the cloth by one value per vertex, 0 to 1 along `colours` (linear RGB, at least 2), NaN grey. Without
+  /// values the cloth has a checker pattern.
   void write_values(std::span<const float> values, std::span<const vec4> colours);
   void set_surfaces(const Surfaces&);
-  /// What is seen where nothing is, linear RGBA; white if never called. Alpha 0 lets a headset's cameras through.
+  /// Background colour, linear RGBA; default white. Alpha 0 shows the passthrough image of a headset.
   void set_background(const vec4& rgba) { background_ = rgba; }
 
-  /// Records the pictures one after another: what each reads of earlier commands on the queue is waited for.
+  /// Records the pictures in order, after a barrier for data that earlier commands on the queue write.
   void record(VkCommandBuffer, std::span<const Drawing>);
-  /// Before an image that was drawn into is destroyed.
+  /// To be called before an image that was drawn into is destroyed.
   void forget(VkImage image);
 
  private:

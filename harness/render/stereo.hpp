@@ -3,9 +3,9 @@
 
 namespace clothbench::render {
 
-/// Both eyes of a headset, `width` x `height` pixels each, one after the other in one submission. The vertex shader
-/// reads a GPU solver's own buffer; of a CPU solver read_state's positions are uploaded. Either is within the clock, as
-/// a display's wait is not: nothing is shown.
+/// Draws both eyes of a headset, `width` x `height` pixels each, one after the other in one submission. For a GPU
+/// solver the vertex shader reads the solver's buffer; for a CPU solver the positions of read_state are uploaded. Both
+/// are part of the measured time. Waiting for a display is not, since nothing is displayed.
 Rendering stereo_rendering(int width, int height);
 
 }  // namespace clothbench::render

@@ -17,16 +17,16 @@ struct Bounds {
   bool empty() const { return !(low[0] <= high[0]); }
 };
 
-/// Triangles to draw of what cloth touches, in the world.
+/// Triangles of colliders and grips to draw, in world coordinates.
 struct Surfaces {
   std::vector<Vec3> position_m, normal;  ///< one a vertex; normals unit, or zero where there is none
   std::vector<std::uint8_t> look;        ///< LOOK_… of render_shared.h
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Colliders and what hands hold, of a scene at the end of frame `frame` (0 = the start). Meshes that stand still lose
-/// the triangles that do not meet `near` (a room has more walls than its desk); planes, which have no end, are drawn as
-/// large as it. What moves is whole. Things that are not finite are left out.
+/// Colliders and active grips of a scene at the end of frame `frame` (0 = the start). Static meshes are drawn without
+/// the triangles that do not meet `near` (a room has more walls than its desk); infinite planes are clipped to `near`;
+/// moving colliders are drawn whole. Triangles that are not finite are left out.
 Surfaces surfaces(const Scene&, int frame, const Bounds& near);
 
 }  // namespace clothbench::render

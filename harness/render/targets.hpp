@@ -9,7 +9,7 @@
 
 namespace clothbench::render {
 
-/// An image with memory and a view of its own.
+/// An image with its memory and view.
 class Image {
  public:
   Image(std::shared_ptr<vulkan::Device> device, VkFormat format, VkExtent2D extent, VkSampleCountFlagBits samples,
@@ -33,7 +33,7 @@ class Image {
 /// A view of one layer of a colour image, or of its depth.
 VkImageView make_view(VkDevice, VkImage, VkFormat, std::uint32_t layer);
 
-/// What pictures of one size are drawn with: samples and depth, and a framebuffer for each image they end in.
+/// Render targets for pictures of one size: multisampled colour and depth, and a framebuffer for each target image.
 class Targets {
  public:
   Targets(std::shared_ptr<vulkan::Device> device, VkRenderPass pass, VkFormat colour, VkSampleCountFlagBits samples,

@@ -9,7 +9,7 @@ namespace clothbench::render {
 /// Writes black text in DejaVu Sans (Debian: fonts-dejavu-core).
 class Pen {
  public:
-  /// Throws Error where the font is not there.
+  /// Throws Error if the font is missing.
   explicit Pen(int height_px);
   ~Pen();
   Pen(const Pen&) = delete;
@@ -17,7 +17,7 @@ class Pen {
 
   int height_px() const { return height_px_; }
   int width_of(const std::string& utf8) const;
-  /// Left end of the line the letters stand on.
+  /// Writes `utf8`; (x, baseline) is the left end of the baseline.
   void write(Picture&, int x, int baseline, const std::string& utf8) const;
 
  private:

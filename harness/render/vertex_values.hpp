@@ -7,28 +7,28 @@
 
 namespace clothbench::render {
 
-/// Of each vertex the stretch l/l0 - 1 of that structural edge at it which is furthest from its rest length; NaN where
-/// an end is not finite. Positions xyz interleaved [m].
+/// For each vertex, the stretch l/l0 - 1 of its structural edge with the greatest deviation from rest length; NaN if an
+/// end is not finite. Positions xyz interleaved [m].
 std::vector<float> vertex_strain(const Cloth&, std::span<const double> position_m);
 
-/// How deep each vertex is in the colliders of a scene [m], the deepest where it is in several, 0 outside; NaN where it
-/// is not finite.
+/// Penetration depth of each vertex in the colliders of a scene [m]: the greatest over all colliders, 0 outside, NaN if
+/// the position is not finite.
 ///
-/// Planes, spheres, boxes and capsules: from their distance. Triangles with an inside (closed, or hands): the distance
-/// to the surface of vertices with a winding number above 1/2. Others (rooms): the distance to the surface of vertices
-/// whose way since the start has crossed it, so frames come in order from the start; after one that is not finite this
-/// is NaN.
+/// Planes, spheres, boxes and capsules: from their signed distance. Meshes with an inside (closed, or hands): distance
+/// to the surface for vertices with a winding number above 1/2. Other meshes (rooms): distance to the surface for
+/// vertices whose path since the start has crossed it. This needs all frames in order from the start, and is NaN after
+/// a frame that is not finite.
 class VertexDepth {
  public:
-  /// Throws Error where a mesh is to be asked and this build has no contact metrics
+  /// Throws Error if the scene has a mesh and this build has no contact metrics
   /// (-DCLOTHBENCH_WITH_CONTACT_METRICS=OFF).
-  explicit VertexDepth(const Scene&);  ///< outlives this
+  explicit VertexDepth(const Scene&);  ///< must outlive this object
   ~VertexDepth();
   VertexDepth(const VertexDepth&) = delete;
   VertexDepth& operator=(const VertexDepth&) = delete;
 
-  /// Goes on to frame `frame` (0 = the start). Every frame in order; depths are computed only if `wanted`, else none
-  /// come back.
+  /// Advances to frame `frame` (0 = the start). Call for every frame in order. Computes depths only if `wanted`;
+  /// otherwise returns none.
   std::vector<float> at(int frame, std::span<const double> position_m, bool wanted);
 
  private:

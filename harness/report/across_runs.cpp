@@ -37,7 +37,7 @@ std::vector<double> shape_of(const Run& r) {
   return out;
 }
 
-/// Greatest difference; infinite where they are not comparable or not numbers. Equal bits give 0.
+/// Greatest difference; infinity if sizes differ or values are NaN. Bitwise equal positions give 0.
 double difference(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.size() != b.size() || a.empty()) return INFINITY;
   double most = 0;

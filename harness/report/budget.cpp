@@ -11,10 +11,10 @@
 namespace clothbench {
 namespace {
 
-// From what one dispatch costs, submission included, to the time a headset shows a frame.
+// From the cost of one dispatch with its submission to the display time of a headset's frame.
 constexpr double kLeastBudget_ms = 0.05, kMostBudget_ms = 13.9;
 constexpr std::array kBudgets_ms = {kLeastBudget_ms, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, kMostBudget_ms};
-// Errors below it are all small enough for real-time use.
+// All errors below it are small enough for real-time use.
 constexpr double kSmallEnough = 1e-3;
 
 struct Best {
@@ -31,7 +31,7 @@ Best best_within(const WorkDiagram& d, const std::string& solver, double budget_
   return out;
 }
 
-/// By what factor `other` has a smaller error than `solver` somewhere within the budgets, and where.
+/// The solver with the smallest error relative to that of `solver` at any budget: name, error ratio and budget.
 std::string beaten_by(const WorkDiagram& d, const std::string& solver) {
   double worst = 1;
   std::string out = "never";
@@ -39,7 +39,7 @@ std::string beaten_by(const WorkDiagram& d, const std::string& solver) {
     if (p.solver == solver || !p.counts() || p.frame_ms > kMostBudget_ms) continue;
     const double budget = std::max(p.frame_ms, kLeastBudget_ms);
     const double theirs = best_within(d, p.solver, budget).error, ours = best_within(d, solver, budget).error;
-    // Two clocks of one machine do not agree to more than this.
+    // Clocks of one machine agree only to about this factor.
     const double factor = ours / theirs;
     if (!(factor > std::max(worst, 1.001))) continue;
     worst = factor;

@@ -7,7 +7,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A planned run that has no result: what its name "<scene>__<solver>__<setting>" tells.
+/// Record of a planned run without a result, from its name "<scene>__<solver>__<setting>".
 RunRecord missing_run(const std::string& name, bool started) {
   RunRecord c;
   const std::size_t first = name.find("__"), last = name.rfind("__");
@@ -37,7 +37,7 @@ void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
     else
       runs.push_back(missing_run(name, fs::exists(part)));
   }
-  // A missing run stands in the row and column of its scene if another solver finished that scene.
+  // A missing run gets the scenario of its scene from a run of another solver, so that tables can place it.
   for (std::size_t k = first; k < runs.size(); ++k) {
     if (runs[k].outcome.status != "missing") continue;
     for (std::size_t j = first; j < runs.size() && runs[k].header.scenario_json.empty(); ++j)

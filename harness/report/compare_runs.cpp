@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kLevel = 0.95;
 
-/// Probability of each value of U = #{(i, j): a_i < b_j} where A and B are alike, for m and n trials: all orders are as
-/// likely. Counted by whose trial is the greatest.
+/// Probability of each value of U = #{(i, j): a_i < b_j} for m and n trials under the null hypothesis, where all orders
+/// are equally likely. Recursion over the side that has the greatest trial.
 std::vector<double> u_distribution(std::size_t m, std::size_t n) {
   std::vector<std::vector<std::vector<double>>> count(m + 1, std::vector<std::vector<double>>(n + 1));
   for (std::size_t i = 0; i <= m; ++i)
@@ -30,14 +30,14 @@ std::vector<double> u_distribution(std::size_t m, std::size_t n) {
         now[0] = 1;
         continue;
       }
-      const double a = static_cast<double>(i) / static_cast<double>(i + j);  // the greatest is one of A's
+      const double a = static_cast<double>(i) / static_cast<double>(i + j);  // P(the greatest is one of A's)
       for (std::size_t u = 0; u < count[i - 1][j].size(); ++u) now[u] += a * count[i - 1][j][u];
       for (std::size_t u = 0; u < count[i][j - 1].size(); ++u) now[u + i] += (1 - a) * count[i][j - 1][u];
     }
   return count[m][n];
 }
 
-/// Times, clocks and what hangs on them are the machine's; the rest is the solver's.
+/// Times, clocks and values derived from them depend on the machine; the rest depends on the solver.
 bool of_the_machine(const std::string& name) {
   for (const char* part : {"fps", "wall", "device_median", "pipelined", "bandwidth", "clock", "temperature", "sampled",
                            "load_s", "untimed", "trial", "jobs"})
@@ -54,7 +54,7 @@ std::string status(const RunRecord& c) {
   return c.outcome.status + (c.outcome.klass.empty() || c.outcome.klass == "ok" ? "" : " (" + c.outcome.klass + ")");
 }
 
-/// Metrics that both have, by different versions of their rule.
+/// Metrics that both runs have, with different versions of their rule.
 std::vector<ComparedRun::Versions> differing_versions(const RunRecord& a, const RunRecord& b) {
   std::vector<ComparedRun::Versions> out;
   for (const MetricSeries& m : a.accuracy.metrics)
@@ -115,7 +115,7 @@ TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>&
   double tail = 0;
   for (std::size_t k = at.size(); k-- > 0 && static_cast<double>(k) >= far;) tail += at[k];
   out.p = std::min(1.0, 2 * tail);
-  // From the kth ratio to the kth last has the level 1 - 2 P(U < k): the greatest k that keeps it.
+  // The interval from the kth ratio to the kth last has level 1 - 2 P(U < k); takes the greatest k that keeps kLevel.
   std::size_t k = 1;
   double outside = at[0];
   for (; 2 * (k + 1) <= logs.size() && 1 - 2 * (outside + at[k]) >= kLevel; ++k) outside += at[k];

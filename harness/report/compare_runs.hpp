@@ -8,21 +8,21 @@
 
 namespace clothbench {
 
-/// What two runs' trials say about one time: `ratio` is that of B to A (Hodges-Lehmann: the median of all pairwise
-/// ratios), `low` and `high` bound it at 95 % or as near above as the numbers of trials allow, `p` is two-sided by Mann
-/// and Whitney's U test (exact; ties count half). Hollander, Wolfe, Chicken, Nonparametric Statistical Methods (3rd
-/// ed.), 4.1 to 4.3.
+/// Ratio of the frame times of runs B and A, estimated from their trials. `ratio`: Hodges-Lehmann estimator, the median
+/// of all pairwise ratios B/A. `low`, `high`: its confidence interval at the lowest possible level of at least 95 %.
+/// `p`: two-sided, by the Mann-Whitney U test (exact; ties count half). Hollander, Wolfe, Chicken, Nonparametric
+/// Statistical Methods (3rd ed.), 4.1 to 4.3.
 struct TimeRatio {
   double ratio = kMissing, low = kMissing, high = kMissing, p = kMissing;
-  double level = kMissing;  ///< of the interval; below 0.95 where there are too few trials for that
-  /// Neither faster nor slower can be said: too few trials, p above 5 %, or an interval that holds 1.
+  double level = kMissing;  ///< of the interval; below 0.95 if there are too few trials
+  /// True if the difference is not significant: too few trials, p above 5 %, or an interval that contains 1.
   bool noise() const { return !(p <= 0.05) || !(level >= 0.95) || (low <= 1 && high >= 1); }
 };
 
-/// Each value one trial's mean time of a frame; positive, at most 40 on either side.
+/// `a`, `b`: mean frame time of each trial, positive; at most 40 trials each.
 TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>& b);
 
-/// A run of both results, or of one (then the other is null).
+/// A run that is in both results, or in one (the other pointer is null then).
 struct ComparedRun {
   std::string name;
   const RunRecord *a = nullptr, *b = nullptr;
@@ -37,19 +37,18 @@ struct ComparedRun {
     std::string metric;
     int a = 1, b = 1;
   };
-  std::vector<Versions>
-      versions;         ///< metrics that the two were measured by under different rules: nothing of them is compared
-  std::string outcome;  ///< "ok → diverged (F1)", empty if it is the same
+  std::vector<Versions> versions;  ///< metrics whose rule versions differ between the two; these are not compared
+  std::string outcome;             ///< "ok → diverged (F1)", empty if it is the same
 };
 
-/// Runs by name, in the order of A and then what only B has. The records must outlive it.
+/// Matches runs by name, in the order of A, then those that only B has. The records must outlive the result.
 std::vector<ComparedRun> compare_runs(const std::vector<RunRecord>& a, const std::vector<RunRecord>& b);
 
 std::vector<Table> comparison_tables(const std::vector<ComparedRun>&);
 nlohmann::json comparison_json(const std::vector<ComparedRun>&);
 
-/// What chart-per-commit tools read, smaller is better: name, unit, value, range and extra of every time and error.
-/// github-action-benchmark, customSmallerIsBetter.
+/// Input of tools that plot results per commit (github-action-benchmark, customSmallerIsBetter): name, unit, value,
+/// range and extra of every time and error.
 nlohmann::json history_json(const std::vector<RunRecord>&);
 
 }  // namespace clothbench

@@ -16,7 +16,7 @@ nlohmann::json versions_of(const RunRecord& c) {
   return out;
 }
 
-/// A run of a table for machines, with what it is grouped by.
+/// A run of an exported table (CSV, JSON), with its group.
 struct Exported : PlacedRun {
   const Family* family = nullptr;
   const char* source = "measured";

@@ -40,7 +40,7 @@ double longer_side(const json& scenario) {
   return std::max(size[0].get<double>(), size[1].get<double>());
 }
 
-/// Setting of the partner of "all-on" or "<setting>,all-on".
+/// Setting of the partner run: "default" for "all-on", <setting> for "<setting>,all-on".
 std::string plain_setting(const std::string& setting) {
   if (setting == kAllOn) return "default";
   const std::string tail = std::string(",") + kAllOn;

@@ -8,29 +8,29 @@
 
 namespace clothbench {
 
-/// Positions may move by this much of the cloth's longer side when something irrelevant is switched on.
+/// Greatest allowed change of positions, over the cloth's longer side, when an irrelevant feature is switched on.
 inline constexpr double kNoOp = 1e-6;
 
-/// A scene as it is, and the same with features switched on that it does not use (harness/scenario/irrelevant.hpp): the
-/// cost of those features.
+/// The cost of features that a scene does not use: a run of the scene as it is, and one with such features switched on
+/// (harness/scenario/irrelevant.hpp).
 struct FeatureCost {
   const RunRecord* needed = nullptr;
   const RunRecord* all = nullptr;
   std::vector<std::string> added;  ///< features
-  double moved = kMissing;  ///< greatest distance of a vertex in one from the other, over the cloth's longer side
+  double moved = kMissing;         ///< greatest distance of a vertex between the runs, over the longer side
   bool no_op() const { return moved <= kNoOp; }  ///< false where not measured
 };
 
-/// True for a run with something irrelevant in its scene.
+/// True for a run whose scene has irrelevant features switched on.
 bool is_all_on(const RunRecord&);
 
-/// Every run with something irrelevant, with its partner in the same folder: same scene, solver and setting. Those
-/// without a partner are left out. Reads trajectories. `runs` must outlive the answer.
+/// Pairs every run that has irrelevant features with the run of the same scene, solver and setting in the same folder.
+/// Runs without a partner are left out. Reads trajectories. `runs` must outlive the result.
 std::vector<FeatureCost> feature_costs(const std::vector<RunRecord>& runs);
 
-/// Rows: scene x solver: times of both, their ratio, dispatches, bytes, memory, how far the cloth moved.
+/// Rows: scene x solver. Columns: times of both, their ratio, dispatches, bytes, memory, change of positions.
 Table feature_cost_table(const std::vector<FeatureCost>&);
-/// Which solvers keep the no-op rule: rows solvers, in how many of their scenes nothing moved, worst scene.
+/// Which solvers keep the no-op rule. Rows: solvers. Columns: number of scenes that keep it, worst scene.
 Table no_op_table(const std::vector<FeatureCost>&);
 nlohmann::json feature_cost_json(const std::vector<FeatureCost>&);
 std::string feature_cost_csv(const std::vector<FeatureCost>&);

@@ -16,7 +16,7 @@ std::optional<Feature> feature(const json& name) {
   return std::nullopt;
 }
 
-/// Names of a later version that this build does not know are left out.
+/// Leaves out names of features that this build does not know (of later versions).
 FeatureSet feature_set(const json& names) {
   FeatureSet set;
   if (names.is_array())

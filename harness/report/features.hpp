@@ -10,23 +10,23 @@
 
 namespace clothbench {
 
-/// What one solver can do: declared, and shown by results.
+/// Features of one solver: declared ones, and those that results confirm.
 struct SolverFeatures {
   std::string solver;
-  bool known = false;  ///< it was in the build; if not, nothing is known of it
+  bool known = false;  ///< the solver was in the build; if not, its features are unknown
   FeatureSet supports = {}, ignores = {};
   std::vector<std::pair<Feature, Feature>> only_with = {};
   FeatureSet shown = {};  ///< served by a stage of a run that ended well
 };
 
-/// Of every solver among the runs, from what their files store; in the order of first appearance.
+/// Features of every solver among the runs, as their files store them; in the order of first appearance.
 std::vector<SolverFeatures> solver_features(const std::vector<RunRecord>& runs);
 
-/// As declared by a solver of this build; nothing is shown.
+/// Declared features of a solver of this build; `shown` is empty.
 SolverFeatures declared_features(const SolverInfo&);
 
-/// "yes", "no", "only with duplicated layer", "ignored", "not built"; "declared" for a yes that no run shows, where
-/// `with_results`.
+/// "yes", "no", "only with duplicated layer", "ignored" or "not built". With `with_results`, "declared" replaces a
+/// "yes" that no run confirms.
 std::string feature_text(const SolverFeatures&, Feature, bool with_results);
 
 /// Table 4: rows are features, columns solvers.

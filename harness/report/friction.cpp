@@ -14,7 +14,7 @@ namespace clothbench {
 namespace {
 
 using nlohmann::json;
-constexpr const char kItsProcess[] = "its process: ";  // what the message of a crash begins with
+constexpr const char kItsProcess[] = "its process: ";  // prefix of a crash message
 
 using RunPointers = std::vector<const RunRecord*>;
 
@@ -24,12 +24,12 @@ std::string protocol_of(const RunRecord& c) {
 
 bool is_try(const RunRecord& c) { return protocol_of(c) == kThresholdProtocol; }
 
-/// As its file names it: tries have names of their own.
+/// Scene name from the scene's file. The header's name differs between the runs of a search.
 std::string base_name(const RunRecord& c) { return scenario_of(c).value("name", c.header.scene); }
 
 Scene scene_of(const RunRecord& c) { return scene_from_json(scenario_of(c), c.file.empty() ? c.header.scene : c.file); }
 
-/// In the order of first appearance.
+/// Groups in the order of first appearance.
 template <class Key>
 std::vector<RunPointers> grouped(const std::vector<RunRecord>& runs, Key key) {
   std::vector<RunPointers> out;
@@ -45,7 +45,7 @@ std::vector<RunPointers> grouped(const std::vector<RunRecord>& runs, Key key) {
 ThresholdRow row_of(const RunPointers& tries) {
   const RunRecord& first = *tries.front();
   ThresholdRow row{base_name(first), first.header.solver, first.header.setting, {}, {}, {}, false};
-  // The first try is at the most friction, where the scene has its truth; at less there may be none.
+  // The first run has the greatest friction, at which the scene has a truth; with less friction there may be none.
   row.of = truth::reference_case_of(scene_of(first))->threshold.value();
   row.found = search_threshold(row.of, [&](double friction) -> std::optional<bool> {
     const std::string name = tried_scene(row.scene, friction);
@@ -79,7 +79,7 @@ json answer(const FrictionForm& form, const ThresholdRow& row) {
   return reported(form, error);
 }
 
-/// `runs`: of one solver and setting.
+/// `runs`: all of one solver and setting.
 json answer(const FrictionForm& form, const RunPointers& runs, const std::vector<ThresholdRow>& rows) {
   const RunHeader& h = runs.front()->header;
   if (form.threshold)

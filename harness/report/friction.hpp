@@ -13,13 +13,13 @@ namespace clothbench {
 /// Whether a run is a run of `clothbench threshold` or `clothbench friction`.
 bool is_friction(const RunRecord&);
 
-/// What a search found, from the runs that it asked for.
+/// The friction threshold that a search found from its runs.
 struct ThresholdRow {
   std::string scene, solver, setting;
   truth::Threshold of;
   FoundThreshold found;
-  std::string crash;        ///< what became of a plugin's process instead; empty else
-  bool unfinished = false;  ///< a run that the search asks for is not there
+  std::string crash;        ///< how a plugin's process crashed; empty if it did not
+  bool unfinished = false;  ///< a run that the search needs is missing
 };
 
 /// By scene, solver and setting, in the order of first appearance.
@@ -30,16 +30,16 @@ nlohmann::json threshold_json(const ThresholdRow&);
 /// One line.
 std::string threshold_sentence(const ThresholdRow&);
 
-/// Solvers at their settings against the closed forms (metrics/friction_forms.hpp). An error is in the form's unit,
-/// signed for thresholds, null where it is unsupported, failed, crashed or not there.
+/// Errors of solvers, for each setting, against the closed forms (metrics/friction_forms.hpp). An error has the form's
+/// unit and is signed for thresholds. It is null if the run is unsupported, failed, crashed or missing.
 Table friction_table(const std::vector<RunRecord>&);
 /// [{solver, setting, answers: [{scene, what, error, at_most, text}]}]
 nlohmann::json friction_json(const std::vector<RunRecord>&);
 
-/// Of what a folder has: friction_table, and a table of the searches.
+/// friction_table and a table of the searches, as far as `runs` has data for them.
 std::vector<Table> friction_tables(const std::vector<RunRecord>&);
 
-/// Runs of plugins whose process crashed, a line each.
+/// One line for each run of a plugin whose process crashed.
 std::vector<std::string> friction_crashes(const std::vector<RunRecord>&);
 
 }  // namespace clothbench

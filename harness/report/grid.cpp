@@ -10,7 +10,7 @@
 namespace clothbench {
 namespace {
 
-/// Where one run stands, and the scene without what tables vary.
+/// Row and column of a run, and `family`: its scene without resolution and sides.
 struct Parsed {
   Resolution resolution;
   std::string sides, name, family;

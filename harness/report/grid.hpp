@@ -12,10 +12,10 @@
 
 namespace clothbench {
 
-/// A summary value of a run; NaN where it has none.
+/// A summary value of a run; NaN if the run does not have it.
 double summary_value(const RunRecord&, const std::string& name);
 
-/// The scenario that a run ran; discarded where what is stored is no JSON.
+/// The scenario of a run; a discarded value if the stored text is not JSON.
 nlohmann::json scenario_of(const RunRecord&);
 
 /// Each value of `of(item)` once, in the order of first appearance.
@@ -35,7 +35,7 @@ const RunRecord& run_of(const Record& r) {
   return *r.run;
 }
 
-/// The runs of some records; `of`: members that point to one.
+/// The runs that the records point to; `of`: the members that point to a run.
 template <class Records, class... Of>
 std::vector<const RunRecord*> runs_of(const Records& records, Of... of) {
   std::vector<const RunRecord*> out;
@@ -43,7 +43,7 @@ std::vector<const RunRecord*> runs_of(const Records& records, Of... of) {
   return out;
 }
 
-/// Values for columns over such records (base/columns.hpp).
+/// Values of columns over records that run_of accepts (base/columns.hpp).
 inline auto summary(const std::string& name) {
   return [name](const auto& r) -> Value { return summary_value(run_of(r), name); };
 }
@@ -55,26 +55,26 @@ inline constexpr auto failed_frame_of = [](const auto& r) -> Value {
 /// Mean wall time of a frame in each trial [s], ascending.
 std::vector<double> trial_means(const RunRecord&);
 
-/// The median of what is sorted and not empty.
+/// The median of a sorted, non-empty list.
 double middle(const std::vector<double>& sorted);
 
-/// The item for which `is` holds; where there is none, `fresh` at the end.
+/// The first item for which `is` holds; if there is none, appends `fresh` and returns it.
 template <class Item, class Is>
 Item& find_or_add(std::vector<Item>& items, Is is, Item fresh) {
   const auto at = std::find_if(items.begin(), items.end(), is);
   return at == items.end() ? items.emplace_back(std::move(fresh)) : *at;
 }
 
-/// "diverged at 12", or the status where no frame failed.
+/// "diverged at 12" (the failed frame), or the status alone if no frame failed.
 std::string ending(const Outcome&);
 
 /// "–" for an empty text.
 std::string or_dash(const std::string&);
 
-/// Column of a table: cloth resolution. `grid` is {0, 0} for a cloth that is no grid.
+/// Column of a table: cloth resolution. `grid` is {0, 0} for a cloth that is not a grid.
 struct Resolution {
   int grid[2] = {0, 0};
-  std::uint32_t vertices = 0;  ///< of a cloth that is no grid; 0 otherwise
+  std::uint32_t vertices = 0;  ///< of a cloth that is not a grid; 0 otherwise
   std::string label() const;   ///< "32²", "9×7", "1234 vertices", "–"
   auto operator<=>(const Resolution&) const = default;
 };
@@ -91,34 +91,34 @@ struct Series {
   }
 };
 
-/// "xpbd substeps=4": solver and, where it is not the default, setting.
+/// "xpbd substeps=4": the solver, and the setting if it is not the default.
 std::string label_of(const RunRecord&);
 
-/// A run and where it stands. Points into the vector it was made from.
+/// A run with its row and column in a table. Points into the vector it was made from.
 struct PlacedRun {
   const RunRecord* run = nullptr;
   Resolution resolution;
   Series series;
 };
 
-/// Runs whose scenes differ in resolution and sides alone; what one set of tables shows.
+/// Runs whose scenes differ only in resolution and sides. One set of tables shows one family.
 class Family {
  public:
-  std::string name;             ///< of the scene; " (2)" is added where another family has the same name
-  int paper_table = 0;          ///< the paper's table the scene says it belongs to; 0: none
+  std::string name;             ///< of the scene; with " (2)" if another family has the same name
+  int paper_table = 0;          ///< number of the paper's table that the scene names; 0: none
   std::vector<PlacedRun> runs;  ///< in the order given
 
   std::vector<Resolution> resolutions() const;  ///< ascending
   std::vector<Series> series() const;           ///< by solver and setting; single, double-duplicated, double
   const RunRecord* find(const Series&, const Resolution&) const;
 
-  /// Rows: series; columns: resolutions. A run that did not end well says how instead of `text`.
+  /// Rows: series; columns: resolutions. If a run did not end well, its ending replaces `text`.
   Table table(const std::string& title, const std::string& note,
               const std::function<std::string(const RunRecord&)>& text) const;
 };
 
-/// Sorts runs into families by their scenes, in the order of first appearance. A run without a readable scene is a
-/// family of its own scene name, without resolution. `runs` must outlive the answer.
+/// Sorts runs into families by their scenes, in the order of first appearance. Runs without a readable scene form a
+/// family per scene name, without resolution. `runs` must outlive the result.
 std::vector<Family> families(const std::vector<RunRecord>& runs);
 
 }  // namespace clothbench

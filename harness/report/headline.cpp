@@ -22,7 +22,7 @@ bool flag(const nlohmann::json& e, const char* key) {
   return e.is_object() && e.contains(key) && e[key].is_boolean() && e[key].get<bool>();
 }
 
-/// What runs of one study share whatever the solver.
+/// Line of the properties that all runs of one study share, independent of the solver.
 std::string host_line(const nlohmann::json& e) {
   return fmt::format("CPU {} · protocol {} · commit {}{} · {}", text(e, "cpu"), text(e, "protocol"),
                      text(e, "git_commit").substr(0, 12), flag(e, "git_dirty") ? " (with local changes)" : "",
@@ -79,7 +79,7 @@ std::string gpu_of(const RunRecord& c) {
 std::string headline(const std::vector<RunRecord>& runs, Format format) {
   std::vector<std::string> software, invalid, lines, hosts;
   std::map<std::string, Span> created;
-  std::map<std::string, bool> on_gpu;  // has the host a line with a GPU?
+  std::map<std::string, bool> on_gpu;  // by host: whether it has a line with a GPU
   const auto add = [](std::vector<std::string>& v, const std::string& s) {
     if (std::find(v.begin(), v.end(), s) == v.end()) v.push_back(s);
   };

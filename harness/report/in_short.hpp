@@ -6,8 +6,8 @@
 
 namespace clothbench {
 
-/// One row a run, by scene and the fastest first: how it ended, the time of a frame and how many times that of the
-/// fastest. Runs without trials come last.
+/// One row a run, by scene, the fastest first: how it ended, its frame time, and the ratio to the fastest frame time.
+/// Runs without trials come last.
 Table in_short_table(const std::vector<RunRecord>& runs);
 
 }  // namespace clothbench

@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr std::size_t kLeastSpeeds = 3;
 
-/// What a failed bound is called, the first in this order first; other names as they are.
+/// Text for failed bounds, in order of priority; other names are printed as they are.
 constexpr std::pair<const char*, const char*> kWords[] = {
     {"tunnelled_fraction_max", "tunnelled"},   {"wrong_side_samples_max", "wrong side"},
     {"depth_vertex_max_m", "inside [m]"},      {"grip_edge_ratio_max", "edge pulled"},
@@ -33,7 +33,7 @@ std::string failure_text(const RunRecord& c, const std::string& name) {
   return what + (std::isfinite(v) ? fmt::format(" {:.3g}", v) : " not known");
 }
 
-/// By the scene's bounds.
+/// The first failed bound of the scene, as text.
 std::string broken_bound(const RunRecord& c, std::vector<BoundResult> bounds) {
   std::stable_sort(bounds.begin(), bounds.end(),
                    [](const auto& a, const auto& b) { return place(a.name) < place(b.name); });

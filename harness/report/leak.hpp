@@ -8,14 +8,14 @@
 
 namespace clothbench {
 
-/// How a run fails, or nothing: how it ended if not well, else the first bound of its scene's `expect` that is broken
-/// or not known, the same bounds that `verdict` uses. Where a scene expects nothing: cloth through a mesh, on
-/// the wrong side of a hand or a vertex over 1 mm inside it, an edge of more than twice the length that hands impose,
-/// or a strip pulled by bars whose greatest strain is in any frame more than a tenth of v0/c (what one wave brings) off
-/// the exact one. "–" where that hangs on what must not be printed.
+/// Why a run fails; empty if it does not. Its status if it did not end well; otherwise the first bound of its scene's
+/// `expect` that is broken or not known, the same bounds that `verdict` uses. Without bounds, by kind of scene: cloth
+/// through a mesh; cloth on the wrong side of a hand or a vertex more than 1 mm inside it; an edge more than twice as
+/// long as hands impose; in a strip pulled by bars, greatest strain off the exact one by more than a tenth of v0/c (the
+/// strain of one wave) in any frame. "–" if the answer depends on a withheld value.
 std::string leak_of(const std::string& kind, const RunRecord&);
 
-/// The same scene at several imposed speeds, run by one solver.
+/// Runs of one scene by one solver at several imposed speeds.
 struct SpeedSweep {
   std::string kind, scene;  ///< kind as in ContactSetUp; scene without the labels of its speeds
   Series series;
@@ -25,16 +25,16 @@ struct SpeedSweep {
   };
   std::vector<At> speeds;  ///< ascending
 
-  /// The first speed with a leak; one of "–" where it is not known whether that speed has one.
+  /// The lowest speed with a leak, or with "–" if it is not known whether that speed has one.
   std::optional<At> failure_speed() const;
   std::vector<const RunRecord*> runs = {};
 };
 
-/// Scenes at three or more speeds (`imposed_speed_m_per_s`), by the name in their file and what touches the cloth;
-/// runs that are not supported and solvers that touch nothing are left out. In the order of the set-ups.
+/// Scenes at three or more speeds (`imposed_speed_m_per_s`), grouped by scene name, kind of set-up and solver, in the
+/// order of the set-ups. Unsupported runs and solvers that ignore contact are left out.
 std::vector<SpeedSweep> speed_sweeps(const std::vector<ContactSetUp>&);
 
-/// Rows: swept scenes; columns: solvers; entries: speed of the failure speed, or up to which there was none.
+/// Rows: swept scenes; columns: solvers; entries: failure speed, or the greatest speed if none failed.
 Table leak_table(const std::vector<SpeedSweep>&);
 
 nlohmann::json leak_json(const std::vector<SpeedSweep>&);

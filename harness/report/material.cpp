@@ -23,7 +23,7 @@ bool is_full(const RunRecord& c) {
 
 double modulus(const RunRecord& c, const char* name) { return summary_value(c, std::string("material_") + name); }
 
-/// `stiffer`: the modulus of a sheet with twice the stiffness, over its own.
+/// `stiffer`: name of the modulus of a sheet with twice the stiffness, relative to that stiffness.
 std::string verdict(const SolverMaterial& m, const char* name, const char* like, const char* stiffer) {
   const RunRecord* standard = nullptr;
   for (const RunRecord* c : m.moduli)

@@ -8,47 +8,47 @@
 
 namespace clothbench {
 
-/// A modulus that differs by no more than this between settings, and from half of what a doubled one gives, is the
-/// solver's parameter.
+/// Greatest relative deviation of a modulus that the solver has as a parameter: between settings, and from half of the
+/// modulus measured at twice the stiffness.
 inline constexpr double kHeldModulus = 0.05;
 
-/// True for a run that holds effective moduli (harness/runner/effective_moduli.hpp).
+/// True for a run that measured effective moduli (harness/runner/effective_moduli.hpp).
 bool is_moduli_run(const RunRecord&);
 
-/// Whether one of a scene's stiffnesses reaches the cloth: "" if so, otherwise why not. A solver listens if doubling
-/// the stiffness doubles what is measured, and holds if every setting measured gives what the default gives, both
-/// within kHeldModulus. "not measured" where there is no measured, or no value at the default setting.
+/// Whether each stiffness of a scene is a parameter of the solver: "" if so, otherwise why not. It is one if doubling
+/// it doubles the measured modulus, and if every measured setting gives the modulus of the default setting, both within
+/// kHeldModulus. "not measured" if the default setting has no measurement.
 struct MaterialVerdict {
   std::string strip;    ///< Y of scenes with `shear: false`
   std::string sheet;    ///< Y of the others
   std::string bending;  ///< B
 };
 
-/// All moduli of one solver: the full one first, then those of other settings in the order given.
+/// All measured moduli of one solver: the full measurement first, then other settings in the order given.
 struct SolverMaterial {
   std::string solver;
   std::vector<const RunRecord*> moduli;
   MaterialVerdict verdict;
 };
 
-/// By solver, in the order of first appearance. `runs` may hold others, and must outlive the answer.
+/// By solver, in the order of first appearance. `runs` may hold other runs, and must outlive the result.
 std::vector<SolverMaterial> solver_materials(const std::vector<RunRecord>& runs);
 
-/// The stiffnesses that a scene's answer depends on.
+/// The stiffnesses that a scene's exact solution depends on.
 struct StiffnessNeed {
   bool strip = false, sheet = false, bending = false;
   bool any() const { return strip || sheet || bending; }
 };
 
-/// As measured on its truth and stored with its runs (harness/metrics/truth_dependence.hpp): those whose change by a
-/// hundredth moves what ranks the runs by 1e-4 or more. None where nothing is stored.
+/// As computed from the scene's truth and stored with its runs (harness/metrics/truth_dependence.hpp): the stiffnesses
+/// for which a change of 1 % changes the ranked quantity by 1e-4 or more. None if nothing is stored.
 StiffnessNeed stiffness_need(const RunRecord&);
 
-/// Why this solver's stiffness cannot be judged on a scene with these needs: "" if it can be, or no measured says
-/// otherwise.
+/// Why this solver cannot be ranked on a scene that depends on these stiffnesses: "" if it can be, or if no measurement
+/// shows otherwise.
 std::string stiffness_flag(const std::vector<SolverMaterial>&, const std::string& solver, const StiffnessNeed&);
 
-/// Rows: solvers at their settings; moduli over what the scenes state.
+/// Rows: solvers and settings; columns: moduli, relative to those that the scenes state.
 Table material_table(const std::vector<SolverMaterial>&);
 /// The verdicts alone.
 Table material_verdicts(const std::vector<SolverMaterial>&);

@@ -26,7 +26,7 @@ bool is_pulled_strip(const json& scenario) {
   return scenario.is_object() && scenario.value(json::json_pointer("/truth/case"), json()) == "two-hand-pull";
 }
 
-/// By what touches the cloth; the rarest first.
+/// Kind of set-up, from the types of colliders; tests the rarest types first.
 std::string kind_of(const json& scenario) {
   if (is_pulled_strip(scenario)) return "wave";
   if (filled(scenario, "grips")) return "grip";
@@ -59,7 +59,7 @@ std::string sides_of(const json& scenario) {
   return sides.is_string() ? sides.get<std::string>() : "";
 }
 
-/// A length in mm: three digits, and what is not nothing never reads as 0.
+/// A length in mm with three digits; a value other than 0 is never printed as 0.
 std::string mm(double v) {
   if (!std::isfinite(v)) return "–";
   return v == 0 ? "0" : v < 0.01 ? "<0.01" : significant(v, v < 1 ? 2 : 3);
@@ -72,7 +72,7 @@ std::string share_text(double v) {
 
 std::string number(double v) { return std::isinf(v) ? "never" : significant(v, 2); }
 
-/// Summary values that one column shows, " / " between.
+/// Summary values of one column, separated by " / ".
 struct Shown {
   std::string head;
   std::vector<const char*> names;
@@ -116,7 +116,7 @@ Columns<ContactRow> place_columns() {
           {"", "sides", [](auto& r) { return or_dash(r.series.sides); }}};
 }
 
-/// True if the solver declares to ignore all contact and grips: then a kept expectation is luck.
+/// True if the solver declares to ignore all contact and grips: a bound that holds then proves nothing.
 bool touches_nothing(const RunRecord& c) {
   const json features =
       c.header.environment.is_object() ? c.header.environment.value("solver_features", json()) : json();

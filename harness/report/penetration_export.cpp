@@ -1,4 +1,4 @@
-// Numbers of the penetration tables for machines, and the series their figures are drawn from.
+// CSV and JSON export of the penetration tables, and of the series in their figures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using nlohmann::json;
 
 std::string six_digits(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : ""; }
 
-/// Keys of where a run stands, of ContactRow and what has its members.
+/// Key columns of a run, for ContactRow and records with the same members.
 template <class Row>
 Columns<Row> contact_keys() {
   return {{"set_up", In::Both, &Row::kind},

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A word that the shell takes as it stands.
+/// Quotes a path as one word of a shell command.
 std::string quoted(const fs::path& path) {
   std::string out = "'";
   for (const char c : path.string()) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -29,14 +29,14 @@ std::string quoted(const fs::path& path) {
 
 bool runs(const std::string& command) { return std::system(command.c_str()) == 0; }
 
-/// Debian had it under another name once; empty if there is none.
+/// Name of the Node program; empty if there is none. Older versions of Debian name it nodejs.
 std::string find_node() {
   for (const char* node : {"node", "nodejs"})
     if (runs(std::string(node) + " --version >/dev/null 2>&1")) return node;
   return "";
 }
 
-/// A folder for the time of drawing.
+/// A temporary folder for drawing.
 class Scratch {
  public:
   explicit Scratch(fs::path path) : path_(std::move(path)) {
@@ -64,8 +64,8 @@ bool is_file_name(const std::string& name) {
   return !name.empty() && fs::path(name).filename() == name && name != "." && name != "..";
 }
 
-/// What an earlier report wrote. One of a version without the list is known by its report.md, which shows every
-/// picture.
+/// Pictures that an earlier report wrote. If it is of a version without the list, they are found in its report.md,
+/// which shows every picture.
 std::set<std::string> listed_pictures(const fs::path& out) {
   std::set<std::string> names;
   const auto add = [&](const std::string& name) {
@@ -94,7 +94,7 @@ void write_list(const fs::path& out, const std::set<std::string>& names) {
   write_file_atomically(out / kPicturesList, j.dump(1) + "\n");
 }
 
-/// A PNG beside every SVG of a folder; false, and none, if one could not be made.
+/// Makes a PNG of every SVG in a folder. If one fails, removes all PNGs and returns false.
 bool draw_png(const fs::path& folder) {
   std::vector<fs::path> svg;
   for (const auto& entry : fs::directory_iterator(folder))
@@ -119,7 +119,7 @@ void put_in_place(const fs::path& out, const fs::path& from) {
       throw Error(
           (out / name).string() +
           ": is in the way of a picture of that name, and no report wrote it; move it away, or give another -o");
-  // First both, so that whatever a kill leaves here is known to be a report's.
+  // Lists old and new pictures first, so that after a kill all files left here are known as a report's.
   std::set<std::string> both = old;
   both.insert(drawn.begin(), drawn.end());
   if (!both.empty()) write_list(out, both);

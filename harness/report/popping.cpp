@@ -11,7 +11,7 @@ using nlohmann::json;
 
 constexpr double kMostRatio = 1.2, kMostSpeed = 1;
 
-/// How far it popped, or how it ended.
+/// Displacement of the pop, or the status of a run that did not end well.
 Value way_of(const RunRecord& c) {
   return c.outcome.status == "ok" ? Value(summary_value(c, "pop_displacement_m")) : Value(c.outcome.status);
 }

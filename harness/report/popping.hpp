@@ -7,17 +7,15 @@
 
 namespace clothbench {
 
-/// A run of a scene in which a moving collider lets go of the cloth, beside that of the same solver at sixteen times
-/// its substeps: a study's entry of that solver with the label "x16". Points into the vector the set-ups were made
-/// from.
+/// A run of a scene in which a moving collider releases the cloth, and a run of the same solver with sixteen times the
+/// substeps (the study's entry with the label "x16"). Points into the vector the set-ups were made from.
 struct Popping {
   std::string scene;
   Series series;
   const RunRecord *run = nullptr, *finer = nullptr;
 
-  double ratio() const;  ///< of the way of the fastest vertex within three frames after the last contact; NaN if either
-                         ///< is not known
-  bool passed() const;   ///< both ran, ratio at most 1.2, no speed above its limit (pop_speed_ratio at most 1)
+  double ratio() const;  ///< of the greatest displacements within three frames after the last contact; NaN if unknown
+  bool passed() const;   ///< both ran, ratio at most 1.2, greatest speed within its limit (pop_speed_ratio at most 1)
 };
 
 inline constexpr const char* kFinerLabel = "x16";

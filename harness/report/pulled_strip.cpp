@@ -27,7 +27,7 @@ struct PulledRow {
   }
 };
 
-/// Name in the scene's file and grid: one strip at any speed.
+/// Name from the scene's file, and grid: the same for all speeds of a strip.
 std::string strip_of(const RunRecord& c) {
   const json s = scenario_of(c);
   const json grid = s.value(json::json_pointer("/cloth/grid"), json());
@@ -39,7 +39,7 @@ std::vector<PulledRow> rows_of(const std::vector<ContactSetUp>& ups) {
   std::vector<PulledRow> out;
   for (const ContactRow& r : contact_rows(ups)) {
     const double speed = summary_value(*r.run, "imposed_speed_m_per_s");
-    // A run without frames knows no speed, one without hands says nothing.
+    // A run without frames has no speed, and a solver that ignores the hands has no result to compare.
     if (r.kind != "wave" || r.run->header.solver == "ballistic" || !(speed > 0)) continue;
     const std::string strip = strip_of(*r.run);
     find_or_add(out, [&](const PulledRow& p) { return p.scene == strip && p.series == r.series; },

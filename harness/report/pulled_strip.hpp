@@ -6,10 +6,10 @@
 
 namespace clothbench {
 
-/// Rows: solvers (of each pulled strip); columns: speeds of the bars; entries: greatest strain against its exact wave,
-/// the most of all frames over v0/c, and RMS distance over space and time over L; before them, the first speed at which
-/// `leak_of` finds a fault. No rows but the header without a set-up of kind "wave". Source of the answer: reference
-/// case two-hand-pull.
+/// Rows: solvers, for each pulled strip. First column: the lowest speed at which `leak_of` finds a fault. Then a column
+/// for each speed of the bars: error of the greatest strain against the exact wave (maximum over frames, over v0/c),
+/// and RMS distance over space and time, over L. Only the header without a set-up of kind "wave". The exact solution is
+/// reference case two-hand-pull.
 Table pulled_strip_table(const std::vector<ContactSetUp>&);
 
 nlohmann::json pulled_strip_json(const std::vector<ContactSetUp>&);

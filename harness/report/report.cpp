@@ -44,19 +44,19 @@ const std::vector<std::string> kBandwidthNames = {"read_B_per_frame",
                                                   "bandwidth_window_s"};
 const std::vector<std::string> kMemoryNames = {"device_memory_B", "dispatches", "load_s"};
 
-/// All runs, without what must not be printed.
+/// All runs, without values that must not be printed.
 std::vector<RunRecord> printable(const std::vector<fs::path>& results) {
   std::vector<RunRecord> runs = collect(results);
   withhold(runs);
   return runs;
 }
 
-/// Runs by what is reported of them; copies.
+/// Copies of the runs, by the section that reports them.
 struct Parts {
   std::vector<RunRecord> stability, contact, truth, rest;
 };
 
-/// Runs of a comparison of costs, by address, and effective moduli have tables of their own.
+/// Leaves out runs with separate tables: comparisons of feature costs (by address), effective moduli, friction.
 Parts parts_of(const std::vector<RunRecord>& runs, const std::vector<FeatureCost>& costs) {
   Parts out;
   std::set<const RunRecord*> reported;
@@ -66,7 +66,7 @@ Parts parts_of(const std::vector<RunRecord>& runs, const std::vector<FeatureCost
     if (summary_value(c, "frame_wall_median_s") > 0) timed.insert(c.header.scenario_json);
   for (const RunRecord& c : runs) {
     if (reported.contains(&c) || is_moduli_run(c) || is_all_on(c) || is_friction(c)) continue;
-    // Only the name is known of a scene that has not been run. It is listed among the runs without a result.
+    // Of a scene that has not been run only the name is known; the table of runs without a result lists it.
     if (c.outcome.status == "missing" && c.header.scenario_json.empty()) continue;
     // Where no solver was timed on a pulled strip, its errors are tabulated by speed instead of by time.
     const bool by_time = has_truth(c) && !(pulls_strip(c) && !timed.contains(c.header.scenario_json));
@@ -75,8 +75,7 @@ Parts parts_of(const std::vector<RunRecord>& runs, const std::vector<FeatureCost
   return out;
 }
 
-/// What is known of some runs, for the sections of a report. Its records point to each other: it stays where it was
-/// made.
+/// Data of the runs for the sections of a report. Its members point to each other, so it must not be copied or moved.
 struct Facts {
   const std::vector<fs::path>& results;
   std::vector<RunRecord> runs = printable(results);
@@ -91,9 +90,9 @@ struct Facts {
   std::vector<WorkDiagram> diagrams = work_diagrams(parts.truth, materials);
 };
 
-/// A part of report.md and the page, and the files beside it.
+/// A section of report.md and of the page, and the files written beside it.
 struct Section : PageSection {
-  std::string markdown = {};  ///< file of its tables alone; none if empty
+  std::string markdown = {};  ///< file with only its tables; none if empty
   std::vector<std::pair<const char*, std::function<std::string()>>> files = {};
 };
 using Sections = std::vector<Section>;
@@ -231,7 +230,7 @@ Sections features_section(const Facts& f) {
 
 Sections failed_section(const Facts& f) {
   std::vector<RunRecord> runs = f.runs;
-  std::erase_if(runs, is_stability);  // their failures are what the stability tables are about
+  std::erase_if(runs, is_stability);  // the stability tables report their failures
   Sections out;
   for (Section s : {Section{{"failed", "Runs without a result", filled({failed_table(runs)})}},
                     Section{{"expect", "Expectations", filled({expect_table(runs)})}}})
@@ -239,7 +238,7 @@ Sections failed_section(const Facts& f) {
   return out;
 }
 
-/// In the order of report.md and the page, and in that of the terminal.
+/// Sections in the order of report.md and the page, and of the terminal.
 constexpr Sections (*kInReport[])(const Facts&) = {
     rates_sections,   sampled_section,  penetration_section, work_section,     stability_section,
     material_section, friction_section, cost_section,        features_section, failed_section};
@@ -247,7 +246,7 @@ constexpr Sections (*kOnTerminal[])(const Facts&) = {
     rates_sections,   sampled_section,  penetration_section, work_section,     winners_section,
     material_section, friction_section, cost_section,        features_section, stability_section};
 
-/// One page: ranks, best solvers, which solvers have stiffness as a parameter, which features are not without effect.
+/// One page: ranks, best solvers, whether stiffness is a parameter of each solver, irrelevant features with an effect.
 std::string summary_page(const Facts& f) {
   std::vector<Table> tables = {ranks_table(f.diagrams), winners_table(f.diagrams)};
   if (!f.materials.empty()) tables.push_back(material_verdicts(f.materials));
@@ -255,7 +254,7 @@ std::string summary_page(const Facts& f) {
   return markdown_of(tables);
 }
 
-/// What the page has beside the sections.
+/// Parts of the page other than the sections.
 Page page_of(const Facts& f, const std::string& head) {
   Page page;
   page.headline = head;
@@ -325,7 +324,7 @@ void print_console_report(const std::vector<fs::path>& results) {
   for (const Section& s : failed_section(f)) {
     const Table& t = s.tables[0];
     fmt::print("\n{}{}\n", t.title, t.note.empty() ? "" : " (" + t.note.substr(0, t.note.size() - 1) + ")");
-    for (std::size_t r = 1; r < t.rows.size(); ++r)  // messages are sentences: lines, not columns
+    for (std::size_t r = 1; r < t.rows.size(); ++r)  // messages are sentences and are printed as lines, not columns
       fmt::print("{}", wrapped(fmt::format("{}", fmt::join(t.rows[r], ": ")), 2, kConsoleColumns));
   }
 }

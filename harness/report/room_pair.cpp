@@ -42,7 +42,7 @@ void measure(RoomPair& pair) {
   pair.distance_max_m = apart.max_m;
 }
 
-/// Device time of the stages that serve meshes that stand still; NaN if there is none.
+/// Device time of the stages that serve static meshes; NaN if there is none.
 double mesh_stages_s(const RunRecord& c) {
   double sum = kMissing;
   for (const StageRecord& s : c.header.stages)

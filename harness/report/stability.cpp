@@ -28,7 +28,7 @@ std::string case_of(const json& scenario) {
   return scenario["stability"].value("case", "") + " " + (name.size() > 4 && name[3] == '-' ? name.substr(4) : name);
 }
 
-/// 0 stable, 1 degraded, 2 failed; -1 where the solver cannot run it or it has not been run.
+/// 0 stable, 1 degraded, 2 failed; -1 if the solver does not support it or it has not been run.
 int grade_of(const RunRecord& c) {
   if (c.outcome.status == "unsupported" || c.outcome.status == "missing") return -1;
   const auto at = c.summary.find("stability_grade");

@@ -11,7 +11,7 @@
 namespace clothbench {
 namespace {
 
-/// Four digits at most; beyond that in thousands or millions.
+/// At most four digits; greater values in thousands or millions.
 std::string fps(double v) {
   if (!std::isfinite(v)) return "–";
   if (v >= 999500) return significant(1e-6 * v, 3) + "M";
@@ -24,7 +24,7 @@ std::string with_spread(double v, double spread) {
          (std::isfinite(spread) ? fmt::format("{:.{}f} %", 100 * spread, spread >= 0.0995 ? 0 : 1) : "–");
 }
 
-/// Published values as they are printed there: to the unit.
+/// Published values with the precision of the paper: integers.
 void add_published(Table& t, const std::vector<Resolution>& columns, const nlohmann::json& published) {
   const nlohmann::json& resolutions = published.at("resolution");
   std::size_t at = 1;
@@ -53,7 +53,7 @@ std::string capped_note(const Family& f, bool paper) {
   return note;
 }
 
-/// Under tables of times and rates, why some are not printed; the others show what no clock tells.
+/// Adds to tables of times and rates why some values are withheld. Other tables do not depend on times.
 void note_withheld(const Family& family, std::vector<Table>& tables) {
   std::vector<const RunRecord*> runs;
   for (const PlacedRun& p : family.runs) runs.push_back(p.run);
@@ -65,11 +65,11 @@ void note_withheld(const Family& family, std::vector<Table>& tables) {
       }
 }
 
-/// One table of a family: a value of each run, printed.
+/// One table of a family: one value of each run, as text.
 struct ValueTable {
   std::string title, note;
   std::function<std::string(const RunRecord&)> text;
-  const char* only_with = nullptr;  ///< a summary value: no table where no run has it
+  const char* only_with = nullptr;  ///< a summary value; no table if no run has it
 };
 
 ValueTable milliseconds(const char* title, const char* note, const char* name, const char* only_with = nullptr) {
@@ -134,7 +134,7 @@ std::vector<ValueTable> device_tables(const std::string& windows) {
   };
 }
 
-/// What notes are made of: summaries are enough.
+/// Input of notes, which need only the summaries.
 std::vector<RunRecord> summaries_of(const Family& family) {
   std::vector<RunRecord> runs;
   for (const PlacedRun& p : family.runs) runs.emplace_back().summary = p.run->summary;
@@ -164,7 +164,7 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
 }
 
 Table failed_table(const std::vector<RunRecord>& runs) {
-  // One row for all runs with the same end: a feature a solver lacks is one line, not one a resolution.
+  // One row for all runs with the same ending: a missing feature is one line, not one per resolution.
   std::vector<std::vector<std::string>> rows;
   for (const RunRecord& c : runs) {
     if (c.outcome.status == "ok") continue;

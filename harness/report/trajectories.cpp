@@ -12,7 +12,7 @@ std::vector<float> positions(const RunRecord& c) {
   return read_run(c.file).accuracy.position;
 }
 
-/// NaN if either is.
+/// The greater of two values; NaN if either is NaN.
 double greater(double a, double b) { return b <= a || std::isnan(a) ? a : b; }
 
 }  // namespace

@@ -14,7 +14,7 @@ using nlohmann::json;
 const std::string kSuffix = "-turned";
 constexpr double kSamePlace = 0.05, kAtContact_s = 0.1;
 
-/// Greatest of `rms_m` up to some time after a collider is first touched; NaN where it never is, or that is not known.
+/// Greatest of `rms_m` until kAtContact_s after the first contact with a collider; NaN without contact, or if unknown.
 double until_contact(const RunRecord& c, const std::vector<double>& rms_m) {
   for (const MetricSeries& m : c.accuracy.metrics) {
     if (m.name != "touching_fraction" || m.values.size() != rms_m.size() || c.accuracy.time_s.size() != rms_m.size())
@@ -32,7 +32,7 @@ double until_contact(const RunRecord& c, const std::vector<double>& rms_m) {
 
 bool ran(const RunRecord& c) { return c.outcome.status != "unsupported" && c.outcome.status != "missing"; }
 
-/// Verdict, and what leaks.
+/// Verdict, and the leak if there is one.
 std::string reported(const std::string& kind, const RunRecord& c) {
   const std::string leak = c.outcome.status == "ok" ? leak_of(kind, c) : "";
   return verdict(c) + (leak.empty() || leak == kNotPrinted ? "" : " (" + leak + ")");

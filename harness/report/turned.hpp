@@ -7,19 +7,19 @@
 
 namespace clothbench {
 
-/// A scene and the same with its square cloth turned over: axis_u and axis_v (and what is held, u0 for v0) change
-/// places, so that vertices and triangles lie where they did and all normals point the other way. A study's axis with
-/// the label "turned" makes its name. Points into the vector the set-ups were made from.
+/// A run of a scene, and one of the same scene with its square cloth turned over: axis_u and axis_v (and the held
+/// edges, u0 for v0) are exchanged, so that all vertices keep their places and all normals are reversed. Its name has
+/// the label "turned" of a study's axis. Points into the vector the set-ups were made from.
 struct TurnedPair {
   std::string kind, scene;
   Series series;
   const RunRecord *run = nullptr, *turned = nullptr;
-  /// Distance of the vertices that were in the same places at the start, RMS over the cloth, over its longer side:
-  /// greatest up to 0.1 s after the first contact, and at the end.
+  /// Distance between vertices that started at the same place, RMS over the cloth, over its longer side: maximum until
+  /// 0.1 s after the first contact, and at the end.
   double apart_at_contact = kMissing, apart_end = kMissing;
 
-  /// Both ran, both leak or neither does (`leak_of`), and they were at most a twentieth of the longer side apart at
-  /// contact. Later a cloth that falls into folds takes whichever way rounding tips it.
+  /// Both ran, both or neither leak (`leak_of`), and they were at most a twentieth of the longer side apart at contact.
+  /// The later difference is not judged, since rounding decides how a cloth falls into folds.
   bool same() const;
 };
 

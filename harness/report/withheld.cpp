@@ -20,7 +20,7 @@ void take_out(RunRecord& c, const std::string& name, const std::string& why) {
 
 bool was_timed(const RunRecord& c) { return std::isfinite(summary_value(c, "frame_wall_median_s")); }
 
-/// The newest version of each metric among the runs, and at least this program's.
+/// The newest version of each metric among the runs and this program.
 std::map<std::string, int> newest_versions(const std::vector<RunRecord>& runs) {
   std::map<std::string, int> out;
   for (const RunRecord& c : runs)
@@ -29,7 +29,7 @@ std::map<std::string, int> newest_versions(const std::vector<RunRecord>& runs) {
   return out;
 }
 
-/// "fail: a 2 > 1; b 3 > 2" without what starts with these names; "not measured" if nothing else is broken.
+/// "fail: a 2 > 1; b 3 > 2" without the bounds of these names; "not measured" if no other bound is broken.
 std::string verdict_without(const std::string& text, const std::set<std::string>& names) {
   const std::string broken = "fail: ", between = "; ";
   if (!text.starts_with(broken)) return text == "pass" ? "not measured" : text;

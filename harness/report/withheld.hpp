@@ -7,38 +7,36 @@
 
 namespace clothbench {
 
-/// What a table shows in place of a value that is not printed.
+/// Shown in a table in place of a value that must not be printed.
 inline constexpr const char* kNotPrinted = "–";
 
-/// Whether a summary value is a time, or a rate by it.
+/// Whether a summary value is a time, or a rate computed from a time.
 bool is_time(const std::string& summary_name);
 
-/// The most clothbench jobs that ran side by side while the run was loaded and timed; NaN where its file doesn't say.
+/// Greatest number of concurrent clothbench jobs while the run was loaded and timed; NaN if its file does not tell.
 double jobs_of(const RunRecord&);
 
-/// Takes the times out of runs that were not timed alone, trials and summary, and says why in `withheld`.
+/// Removes the times (trials and summary) of runs that were not timed alone, and stores the reason in `withheld`.
 void withhold_times(std::vector<RunRecord>&);
 
-/// Takes out of the runs what was measured by an older version of a metric's rule than this program's, or than the
-/// newest among them: series, summary values computed from them, what came of bounds on these; and says why in
-/// `withheld`.
+/// Removes results of metrics whose rule version is older than this program's or than the newest among the runs:
+/// series, the summary values computed from them, and the results of bounds on these. Stores the reason in `withheld`.
 void withhold_old_versions(std::vector<RunRecord>&);
 
-/// Both: what every report is made of.
+/// Both. Every report is made from runs that this has processed.
 void withhold(std::vector<RunRecord>&);
 
-/// Why some of the runs show "–" for these summary values, a sentence for a table's note; empty where nothing is
-/// withheld.
+/// A sentence for a table's note: why some of the runs show "–" for these summary values. Empty if nothing is withheld.
 std::string withheld_note(const std::vector<const RunRecord*>&, const std::vector<std::string>& summary_names);
 
-/// `note` and that sentence.
+/// `note` followed by that sentence.
 std::string with_withheld(const std::string& note, const std::vector<const RunRecord*>&,
                           const std::vector<std::string>& summary_names);
 
-/// Reasons of one run, for these summary values; "; " between them.
+/// Why one run has no value for these names; reasons separated by "; ".
 std::string withheld_of(const RunRecord&, const std::vector<std::string>& summary_names);
 
-/// A column each of these summary values, and one of why some are not there.
+/// A column for each of these summary values, and one for the reasons why values are withheld.
 template <class Record>
 Columns<Record> summary_columns(const std::vector<std::string>& names) {
   Columns<Record> out;
@@ -50,8 +48,8 @@ Columns<Record> summary_columns(const std::vector<std::string>& names) {
   return out;
 }
 
-/// Lines for a report's head: how many runs' times, and which metrics, are not printed and why; how many runs don't
-/// say whether they were timed alone. Of runs that `withhold` has seen.
+/// Lines for a report's head: how many runs' times and which metrics are not printed, and why; how many runs do not
+/// tell whether they were timed alone. For runs that `withhold` has processed.
 std::vector<std::string> withheld_lines(const std::vector<RunRecord>&);
 
 }  // namespace clothbench

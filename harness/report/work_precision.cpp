@@ -22,8 +22,8 @@ std::string reference_case_of(const json& scenario) {
   return scenario.is_object() ? scenario.value(json::json_pointer("/truth/case"), std::string()) : "";
 }
 
-/// What ranks a reference case's runs; the reference cases themselves are in harness/truth/reference_case.hpp, a report
-/// reads only files.
+/// Definition of the error that ranks the runs of a reference case, as text. It repeats
+/// harness/truth/reference_case.hpp, since a report reads only files.
 std::string ranking_of(const std::string& known) {
   if (known == "heavy-strip") return "stretch of the strip at rest / its truth";
   if (known == "two-hand-pull") return "greatest strain, RMS over time / (v0/c)";
@@ -117,7 +117,7 @@ Value of_environment(const WorkRow& r, const char* key) {
   return e.is_object() ? e.value(key, json()) : json();
 }
 
-/// What CSV and JSON both say of a diagram and of a point, at least; R: WorkDiagram or WorkRow, WorkPoint or WorkRow.
+/// Columns of diagrams and of points common to CSV and JSON. R: WorkDiagram or WorkRow; WorkPoint or WorkRow.
 template <class R, class Of>
 Columns<R> diagram_columns(Of of) {
   return {{"scene", In::Both, [of](auto& r) { return of(r).scene; }},

@@ -16,69 +16,67 @@ struct WorkPoint {
   const RunRecord* run = nullptr;
   std::string solver, setting;
   bool on_gpu = false, ok = false;
-  double wall_ms_per_s =
-      kMissing;  ///< median wall time, ms per simulated second, frames pipelined where the solver can
-  double fenced_ms_per_s = kMissing;  ///< the same from submission to fence, each frame waited for
-  double device_ms_per_s = kMissing;  ///< the same of the device's own clock; NaN on a CPU
-  double frame_ms = kMissing;         ///< what wall_ms_per_s is of one frame of the scene
-  double error = kMissing;            ///< what ranks (the reference case's), as measured
-  double energy_gain = kMissing;      ///< over M g L; NaN where the scene does not keep energy
-  /// It ended well, with an error and a time.
+  double wall_ms_per_s = kMissing;  ///< median wall time, ms per simulated second, pipelined if the solver supports it
+  double fenced_ms_per_s = kMissing;  ///< the same, from submission to fence, waiting for each frame
+  double device_ms_per_s = kMissing;  ///< the same, by the device's clock; NaN on a CPU
+  double frame_ms = kMissing;         ///< wall_ms_per_s for one frame of the scene [ms]
+  double error = kMissing;            ///< the measured error that ranks (as the reference case defines it)
+  double energy_gain = kMissing;      ///< over M g L; NaN if the scene does not conserve energy
+  /// The run ended well and has an error and a time.
   bool counts() const { return ok && std::isfinite(error) && std::isfinite(wall_ms_per_s); }
-  bool on_front = false;  ///< no other point of its solver is as fast and more accurate
+  bool on_front = false;  ///< Pareto front: no point of its solver is better in time or error and as good in the other
 };
 
-/// All runs of one scene with a truth, and what is known of its truth.
+/// All runs of one scene that has a truth, and the errors of the truth itself.
 struct WorkDiagram {
-  std::string scene, reference_case, ranking;  ///< ranking: what the error is, in words
+  std::string scene, reference_case, ranking;  ///< ranking: definition of the error, as text
   std::vector<WorkPoint> points;               ///< by solver, then time
-  double space_error = kMissing;               ///< this mesh's truth against the continuum
+  double space_error = kMissing;               ///< of this mesh's truth against the continuum
   double uncertainty = kMissing;               ///< U_ref over the quantity's scale
   double truth_distance = kMissing, order_bdf2 = kMissing, order_conservative = kMissing;  ///< of the reference
-  StiffnessNeed need = {};                          ///< what its answer depends on
+  StiffnessNeed need = {};                          ///< stiffnesses that the exact solution depends on
   std::map<std::string, std::string> flagged = {};  ///< solvers shown but not ranked, and why (stiffness_flag)
-  double floor() const { return 3 * uncertainty; }  ///< of certainty; NaN if unknown
-  /// Errors below it are not distinguished: the greater of floor() and space_error, as far as they are known; 0 if
-  /// neither is.
+  double floor() const { return 3 * uncertainty; }  ///< uncertainty floor, 3 U_ref; NaN if unknown
+  /// Errors below it are not distinguished: the greater of floor() and space_error, of those known; 0 if neither is.
   double rank_floor() const;
-  double best_error() const;  ///< of all ranked solvers' points that ended well; NaN if there is none
-  /// Why no solver is ranked on it: the reference is missing, or not below a third of the best error. "" if it is.
+  double best_error() const;  ///< of the points of all ranked solvers that ended well; NaN if none did
+  /// Why no solver is ranked on it: there is no reference, or 3 U_ref is not below the best error. Else "".
   std::string refused() const;
 };
 
 /// True for a run whose scene states its truth.
 bool has_truth(const RunRecord&);
 
-/// Whether it takes no longer than what it simulates.
+/// Whether computing takes at most as long as the simulated time.
 bool in_real_time(const WorkPoint&);
 
-/// One diagram a scene, in the order of first appearance. `runs` must outlive the answer.
+/// One diagram a scene, in the order of first appearance. `runs` must outlive the result.
 std::vector<WorkDiagram> work_diagrams(const std::vector<RunRecord>& runs, const std::vector<SolverMaterial>& = {});
 
-/// Rows: scenes and solvers; time to 1 % and 0.1 %, best error in real time (a displayed frame of 1/72 s takes at most
-/// as long), best error at all, each with its setting; how many runs failed; the first two by the GPU's own clock;
-/// whether the solver is ranked.
+/// Rows: scenes and solvers. Columns: time to an error of 1 % and of 0.1 %, best error in real time (at most 1/72 s for
+/// a displayed frame of 1/72 s), best error without a limit, each with its setting; number of failed runs; the first
+/// two by the GPU's clock; whether the solver is ranked.
 Table work_table(const std::vector<WorkDiagram>&);
 
-/// The best of the ranked solvers (but the reference) of each scene.
+/// The best ranked solver of each scene, the reference excepted.
 Table winners_table(const std::vector<WorkDiagram>&);
 
-/// Rows: solvers; geometric means over the scenes that rank them of their ranks, never of errors; equal errors at the
-/// floor share a rank, and so do all solvers that do not reach it.
+/// Rows: solvers; columns: geometric means of their ranks (never of errors) over the scenes that rank them. Equal
+/// errors at the floor share a rank, and so do all solvers that miss the criterion.
 Table ranks_table(const std::vector<WorkDiagram>&);
 
-/// Rows: scenes and solvers; the smallest error of all settings whose frame takes at most 0.05 ... 13.9 ms, and which
-/// other solver has a smaller one anywhere between.
+/// Rows: scenes and solvers; columns: smallest error of all settings within budgets of 0.05 ... 13.9 ms a frame, and
+/// which other solver has a smaller error at any budget between.
 Table budget_table(const std::vector<WorkDiagram>&);
 
-/// Rows: scenes that keep energy and solvers; the most energy that a setting gains.
+/// Rows: solvers on scenes that conserve energy; column: greatest energy gain of any setting.
 Table energy_table(const std::vector<WorkDiagram>&);
 
-/// One row a scene: what the error is, floors, the reference's orders, its distance from the truth, and whether it
-/// ranks.
+/// One row a scene: definition of the error, floors, orders of the reference, its distance from the truth, and whether
+/// the scene ranks solvers.
 Table truth_table(const std::vector<WorkDiagram>&);
 
-/// One row a point, full precision; what the figures are drawn from.
+/// One row a point, full precision; the data of the figures.
 std::string work_csv(const std::vector<WorkDiagram>&);
 nlohmann::json work_json(const std::vector<WorkDiagram>&);
 

@@ -22,7 +22,7 @@ std::set<std::string> ranked(const WorkDiagram& d) {
   return out;
 }
 
-/// What a solver is ranked by: the least over its points, infinity if it does not get there.
+/// Ranking criterion of a solver: the least value over its points; infinity if no point counts.
 struct Criterion {
   const char* name;
   std::function<double(const WorkDiagram&, const WorkPoint&)> value;  ///< infinity: the point does not count
@@ -49,7 +49,7 @@ double least(const WorkDiagram& d, const std::string& solver, const Criterion& c
   return out;
 }
 
-/// 1 for the best; equal values share the best of their places.
+/// Rank of a solver, 1 for the best; equal values share the best of their ranks.
 int rank(const WorkDiagram& d, const std::string& solver, const Criterion& c) {
   int better = 0;
   for (const std::string& other : ranked(d)) better += least(d, other, c) < least(d, solver, c);

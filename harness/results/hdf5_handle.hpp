@@ -1,5 +1,5 @@
 #pragma once
-// Included only by the HDF5 writer and reader: one owner for every kind of identifier of the C API.
+// Included only by the HDF5 writer and reader: owner class for every kind of identifier of the C API.
 #include <hdf5.h>
 #include <hdf5_hl.h>
 
@@ -34,7 +34,7 @@ inline void check(herr_t result, const std::string& what) {
   if (result < 0) throw Error("HDF5: " + what + " failed");
 }
 
-/// The library prints its own error stack unless told not to; ours is one line.
+/// Switches off the error stack that the library prints: our errors are one line.
 class Quiet {
  public:
   Quiet() {

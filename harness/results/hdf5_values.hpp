@@ -1,5 +1,5 @@
 #pragma once
-// Included only by what reads HDF5 files: datasets and attributes as values. Throws Error saying what was not there.
+// Included only by code that reads HDF5 files: datasets and attributes as values. Throws Error naming what is missing.
 #include "clothbench/record.hpp"
 #include "results/hdf5_handle.hpp"
 

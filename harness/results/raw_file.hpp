@@ -8,12 +8,12 @@
 
 namespace clothbench {
 
-/// Raw run file, format 1: what a measurement is written to first, and all that a device without HDF5 writes.
+/// Raw run file, format 1. Every measurement is written to it first; a device without HDF5 writes nothing else.
 /// Little-endian:
 ///   8 B  "CBRAW001"
 ///   u32  length of the header, then the header (JSON, UTF-8), then u32 CRC32C of the header
 ///   frames of `frame_B` bytes each (named in the header): u32 index, payload, u32 CRC32C of index and payload
-/// A file cut short or with a damaged frame is valid up to there.
+/// A truncated file, or one with a damaged frame, is valid up to that point.
 struct RawFile {
   nlohmann::json header;
   std::vector<std::vector<std::uint8_t>> frames;  ///< payloads, in order
@@ -31,7 +31,7 @@ RawFile read_raw(const std::filesystem::path&);
 
 nlohmann::json header_to_json(const RunHeader&);
 RunHeader header_from_json(const nlohmann::json&);
-/// Of a part folder's header.raw. Throws Error naming the file.
+/// Header from a part folder's header.raw. Throws Error naming the file.
 RunHeader read_header(const std::filesystem::path&);
 
 void write_trial_file(const std::filesystem::path&, const TimedTrial&, std::size_t stages);

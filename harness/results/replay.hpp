@@ -6,17 +6,17 @@
 
 namespace clothbench {
 
-/// Colliders and grips of a scene at every frame, as result files keep them (layout in results/README.md), so that a
-/// replay needs neither the scenario's assets nor this program. Empty for a scene with neither.
+/// Colliders and grips of a scene at every frame, as result files store them (layout in results/README.md). A replay
+/// then needs neither the scenario's assets nor this program. Empty for a scene without colliders and grips.
 std::vector<StoredGroup> replay_of(const Scene&);
 
-/// Colliders and grips with their motion from what `replay_of` made; nothing else of the scene is touched. Throws Error
-/// or nlohmann::json::exception where something is missing or of another shape.
+/// Sets the scene's colliders and grips, with their motion, from the output of `replay_of`; changes nothing else.
+/// Throws Error or nlohmann::json::exception if something is missing or has another shape.
 void restore_replay(const std::vector<StoredGroup>&, Scene&);
 
-/// Gives a collider's group that has neither capsules nor triangles the ones that it is drawn by, for programs that
-/// know nothing of kinds: arrays of the same names and shapes, and whether the triangles are those of a convex body.
-/// Leaves alone what this version does not know. Throws as above.
+/// Adds the capsules or triangles to draw to a collider's group that has neither, for programs that do not know the
+/// kinds of colliders: arrays of the same names and shapes, and whether the triangles bound a convex body. Does not
+/// change groups of kinds that this version does not know. Throws as above.
 void show_shape(StoredGroup&);
 
 }  // namespace clothbench

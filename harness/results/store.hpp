@@ -13,26 +13,26 @@ namespace clothbench {
 std::string run_name(const std::string& scene, const std::string& solver, const std::string& setting);
 std::string run_name(const RunHeader&);
 
-/// What a run ends as: one HDF5 file, or the raw files it was written to (all that a build without HDF5 can).
+/// Final form of a run: one HDF5 file, or the raw files it was first written to (the only form without HDF5).
 enum class Finish { Hdf5, Raw };
 Finish best_finish();
 
-/// Writes one run, crash-safe. Every finished trial is one raw file `<dir>/<run>.part/trial-<k>.raw` (written under
-/// another name, fsync, rename), the accuracy pass one `accuracy.raw`. `finish` turns them into
+/// Writes one run, crash-safe. Every finished trial is a raw file `<dir>/<run>.part/trial-<k>.raw` (written under
+/// another name, fsync, rename); the accuracy pass is `accuracy.raw`. `finish` turns them into
 /// `<dir>/<run>.h5` + `<run>.xdmf` (tmp + fsync + rename) and removes the part folder; with Finish::Raw the part
-/// folder stays, with `outcome.raw` beside the trials. SIGKILL at any moment loses at most what has not been handed
-/// over.
+/// folder stays, with `outcome.raw` beside the trials. SIGKILL at any moment loses at most data not yet passed to
+/// this class.
 class RunWriter {
  public:
   RunWriter(std::filesystem::path dir, RunHeader header, Finish finish = best_finish());
   void write_trial(const TimedTrial&);
   void write_accuracy(const AccuracyPass&);
-  /// What moved, one file `replay.raw`; known before the first frame, so a resumed run leaves it as it is.
+  /// Writes colliders and grips, `replay.raw`. They are known before the first frame, so a resumed run keeps the file.
   void write_replay(const std::vector<StoredGroup>&);
   /// Returns the path of the finished file (the .h5, or the part folder with Finish::Raw).
   std::filesystem::path finish(const Outcome&, const std::map<std::string, double>& summary);
-  /// What an interrupted attempt at the same run left here (same scenario_sha256 and settings; anything else is an
-  /// Error naming both): trials and accuracy pass, already valid.
+  /// The valid trials and accuracy pass that an interrupted attempt at the same run left here. Throws Error naming both
+  /// if scenario_sha256 or settings differ.
   RunRecord recovered() const;
 
  private:
@@ -44,17 +44,17 @@ class RunWriter {
 /// True if `<dir>/<run>.h5` (or, without HDF5, `outcome.raw` in its part folder) exists.
 bool run_finished(const std::filesystem::path& dir, const std::string& run);
 
-/// Removes what a killed attempt at this run left behind and no reader needs: files under their temporary names, and
-/// the part folder of a run whose .h5 is there. Only for the one process that works on the run.
+/// Removes files that a killed attempt at this run left and no reader needs: files with temporary names, and the part
+/// folder of a run whose .h5 exists. Only the process that works on the run may call this.
 void remove_leftovers(const std::filesystem::path& dir, const std::string& run);
 
 /// Reads a finished file (.h5) or a part folder. Throws Error naming the file and what is wrong with it.
 RunRecord read_run(const std::filesystem::path&);
 
-/// Without positions and triangles: what tables and figures need. Cheap also for large runs.
+/// Without positions and triangles, which tables and figures do not need. Fast also for large runs.
 RunRecord read_run_summary(const std::filesystem::path&);
 
-/// What a viewer needs of a run: some of its frames, and what moved, at every frame of the scene.
+/// Data of a run for a viewer: some of its frames, and colliders and grips at every frame of the scene.
 struct Replay {
   std::vector<std::size_t> frames;  ///< ascending; 0 is the initial state
   std::vector<double> time_s;       ///< of each
@@ -63,22 +63,22 @@ struct Replay {
       groups;  ///< "colliders", "colliders/0", ..., "colliders/grips"; empty without colliders and grips
 };
 
-/// 0, stride, 2 stride, ... below `count`, and the last one. `stride` at least 1.
+/// 0, stride, 2 stride, ... below `count`, and count - 1. `stride` at least 1.
 std::vector<std::size_t> every(std::size_t count, std::size_t stride);
 
-/// Every `stride`-th frame and the last of a finished file (.h5) or a part folder; no frames where it has no
+/// Every `stride`-th frame and the last, from a finished file (.h5) or a part folder; no frames if it has no
 /// trajectory. Throws Error naming the file and what is wrong with it.
 Replay read_replay(const std::filesystem::path&, std::size_t stride);
 
 class DeviceSamples;
 
-/// Part folders of a run made without HDF5 -> the same .h5 a direct run gives, with `samples` what the device reported
-/// during the run beside it. Returns the new files; a study folder's unfinished runs are passed over, but a part
-/// folder that is named itself and is not finished is an Error.
+/// Converts part folders of runs made without HDF5 to the .h5 files that direct runs give; `samples`: the device's
+/// samples to store with them. Returns the new files. Skips unfinished runs of a study folder; throws Error if
+/// `dir_or_part` is itself an unfinished part folder.
 std::vector<std::filesystem::path> import_raw(const std::filesystem::path& dir_or_part,
                                               const DeviceSamples* samples = nullptr);
 
-/// `<dir>/study.json`: what the folder is. Written tmp + fsync + rename.
+/// `<dir>/study.json`: the study of the folder and its planned runs. Written by tmp + fsync + rename.
 struct StudyManifest {
   std::string study, created, command_line;
   nlohmann::json definition;      ///< completed study file

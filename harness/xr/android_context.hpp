@@ -2,12 +2,12 @@
 
 namespace clothbench::xr {
 
-/// What Android's runtimes ask for: the Java machine and the activity (a global reference). Null elsewhere.
+/// Handles that OpenXR runtimes on Android require: Java VM and activity (a global reference). Null elsewhere.
 struct AndroidContext {
   void* vm = nullptr;
   void* activity = nullptr;
 };
-/// Of the process; set by whoever has an activity, before a session begins.
+/// Context of the process; the owner of the activity sets it before a session begins.
 void set_android_context(const AndroidContext&);
 const AndroidContext& android_context();
 

@@ -11,13 +11,13 @@ struct Ray {
   Vec3 from_m{}, along{};  ///< `along` is unit
 };
 
-/// What the user does with the controllers: A (X on the left, menu on a simple one) shows the room, the trigger picks.
+/// Controller input: A (X on the left, menu on a simple controller) shows the room, the trigger picks a point.
 struct Pressed {
-  bool show = false;        ///< since the last time
-  std::optional<Ray> pick;  ///< where the controller pointed whose trigger was pulled since the last time
+  bool show = false;        ///< A was pressed since the last read
+  std::optional<Ray> pick;  ///< ray of the controller whose trigger was pulled since the last read
 };
 
-/// The actions of the app. There is one set of them in a session.
+/// The OpenXR actions of the app. A session has one action set.
 class Controllers {
  public:
   explicit Controllers(const Session&);

@@ -7,12 +7,12 @@
 
 namespace clothbench::xr {
 
-/// What the runtime counts by itself (XR_META_performance_metrics): frame times of application and compositor, dropped
-/// frames, utilisation. None where it has no such extension.
+/// Counters of the runtime (XR_META_performance_metrics): frame times of application and compositor, dropped frames,
+/// utilisation. None if the runtime does not have this extension.
 class Counters {
  public:
   explicit Counters(const Session&);
-  /// Calls `take` with name, units and the value now (NaN where it has none) of each.
+  /// Calls `take` with name, units and current value (NaN if it has none) of each counter.
   void read(const std::function<void(const std::string&, const std::string&, double)>& take) const;
 
  private:

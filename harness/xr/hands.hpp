@@ -7,7 +7,7 @@
 
 namespace clothbench::xr {
 
-/// The hands that the runtime tracks (XR_EXT_hand_tracking), with its capsules and meshes where it has them.
+/// Hands tracked by the runtime (XR_EXT_hand_tracking), with its capsules and meshes if it provides them.
 class Hands {
  public:
   explicit Hands(const Session&);
@@ -15,10 +15,10 @@ class Hands {
   Hands(const Hands&) = delete;
   Hands& operator=(const Hands&) = delete;
 
-  /// In the scene's space; empty unless every joint is known.
+  /// The hand in the scene's space; empty unless every joint is known.
   std::optional<assets::RecordedHand> at(assets::Side, XrTime) const;
   bool has_capsules() const { return capsules_; }
-  /// XR_FB_hand_tracking_mesh; empty where the runtime has none. Throws Error where it makes no sense.
+  /// XR_FB_hand_tracking_mesh; empty if the runtime does not have it. Throws Error if the mesh is invalid.
   std::optional<assets::RecordedMesh> mesh(assets::Side) const;
 
  private:

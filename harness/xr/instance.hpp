@@ -29,12 +29,12 @@ struct Functions {
 #undef CLOTHBENCH_XR_MEMBER
 };
 
-/// A runtime that was found, its head-mounted system, and the extensions of ours that it has.
+/// An OpenXR runtime, its head-mounted system, and those extensions we use that it has.
 class Instance {
  public:
-  /// `runtime`: the library or the manifest (.json) of a runtime, entered without a loader; empty: whatever the
-  /// system's loader finds ($XR_RUNTIME_JSON and the rest). Throws Error with ExitCode::NoDevice where there is no
-  /// loader, no runtime, no headset, or no XR_KHR_vulkan_enable2.
+  /// `runtime`: the library or the manifest (.json) of a runtime, opened without a loader; empty: the runtime that the
+  /// system's loader finds ($XR_RUNTIME_JSON and the rest). Throws Error with ExitCode::NoDevice if there is no loader,
+  /// no runtime, no headset, or no XR_KHR_vulkan_enable2.
   explicit Instance(const std::string& runtime);
   ~Instance();
   Instance(const Instance&) = delete;
@@ -58,7 +58,7 @@ class Instance {
 
   XrPath path(const std::string& text) const;
 
-  /// The Vulkan device this system shows pictures of. `get` of these options then gives the same one.
+  /// The Vulkan device that this system displays from; vulkan::Device::get with these options then returns it.
   std::shared_ptr<vulkan::Device> make_device(const DeviceOptions&) const;
 
  private:

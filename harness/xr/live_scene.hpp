@@ -13,27 +13,26 @@
 
 namespace clothbench::xr {
 
-/// What a headset can put in a scenario's place.
+/// Parts of a scenario that come from the headset.
 struct Live {
   bool hands = false, room = false;
 };
 
-/// Left and right, as far as they are seen.
+/// Left and right hand; empty if not tracked.
 using HandsNow = std::array<std::optional<assets::RecordedHand>, 2>;
 
-/// A scenario whose hands and room come from a headset. Its scripted hands are replaced by the user's, each by the one
-/// of its side, and the room by the user's with the part between six picked points; whatever else moves goes on by
-/// script.
+/// A scenario whose hands and room come from a headset. The user's hands replace the scripted hands of the same side.
+/// The part of the user's room between six picked points replaces the room. All other motion stays scripted.
 ///
-/// What is used is written first and read back: scenario, recordings and room lie in `folder` as ordinary scenes have
-/// them, so that `clothbench run FOLDER/scenario.json` runs the same frames from the same numbers.
+/// Live data are written first and read back: scenario, recordings and room are in `folder` in the formats of ordinary
+/// scenes, so that `clothbench run FOLDER/scenario.json` runs the same frames from the same numbers.
 class LiveScene {
  public:
-  /// Throws Error as load_scene, and where the scene has two hands of a side, or two rooms.
+  /// Throws Error like load_scene, and if the scene has two hands of the same side, or two rooms.
   LiveScene(const std::string& scenario, const std::vector<std::string>& overrides, std::filesystem::path folder,
             Live live);
 
-  /// The scenario as it is written: cloth and time before anything is live.
+  /// The scenario as written: cloth and time before the live parts are replaced.
   const Scene& written() const { return written_; }
   bool wants(assets::Side) const;
   bool wants_room() const { return room_.has_value(); }
@@ -45,18 +44,18 @@ class LiveScene {
     bool has_capsules = false;
     std::array<std::optional<assets::RecordedMesh>, 2> meshes;
     std::optional<assets::RoomScan> room;
-    std::vector<Vec3> picked_m;  ///< six, with a room
+    std::vector<Vec3> picked_m;  ///< six points, if the scene has a live room
   };
-  /// Makes the scene at this instant, anew if called again. Throws Error if a hand it wants is missing.
+  /// Builds the scene from the headset's current state; may be repeated. Throws Error if a required hand is missing.
   const Scene& begin(const Begin&);
   const Scene& scene() const { return scene_; }
 
-  /// Where everything is at the end of frame `index` (0 = the first); what is not seen stays where it was. Null where
-  /// nothing moves. Valid until the next call.
+  /// Poses at the end of frame `index` (0 = the first); a hand that is not tracked keeps its last pose. Null if nothing
+  /// moves. Valid until the next call.
   const FrameMotion* next(int index, const HandsNow&);
-  /// Of every frame so far, the start included.
+  /// The motion of every frame so far, including the start.
   const std::vector<FrameMotion>& motion() const { return motion_; }
-  /// Writes the recordings and the scenario of as many frames. Returns the scenario's file.
+  /// Writes the recordings, and the scenario with their number of frames. Returns the scenario's file.
   std::filesystem::path save();
 
  private:
@@ -66,7 +65,7 @@ class LiveScene {
     bool as_mesh = false;
     std::string file;
     assets::HandRecording recording;
-    std::optional<assets::Hand> stand_in;  ///< moved where the runtime has no mesh
+    std::optional<assets::Hand> stand_in;  ///< used if the runtime has no mesh
   };
   void find_live(const std::string& source, Live live);
   void keep_tracks(const std::string& source);

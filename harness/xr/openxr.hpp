@@ -1,5 +1,5 @@
 #pragma once
-// OpenXR without prototypes: every function is asked of the runtime, so that nothing links to a loader.
+// OpenXR without prototypes: every function is queried from the runtime, so that nothing links to a loader.
 #include <vulkan/vulkan.h>
 #define XR_NO_PROTOTYPES
 #define XR_USE_GRAPHICS_API_VULKAN
@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 
-/// What the oldest headers we build with (1.0.20) lack or keep for Android alone, by the OpenXR 1.1 specification:
-/// numbers and layouts are the specification's, names are ours so that newer headers do not clash.
+/// Declarations of the OpenXR 1.1 specification that the oldest supported headers (1.0.20) lack or restrict to Android.
+/// Numbers and layouts are the specification's; names are ours, to avoid clashes with newer headers.
 namespace clothbench::xr {
 
 /// XR_KHR_loader_init_android and XR_KHR_android_create_instance: the same layout with different types.
@@ -20,10 +20,10 @@ struct AndroidInfo {
   XrStructureType type;
   const void* next;
   void* vm;
-  void* activity;  ///< of the loader: a Context, which an activity is
+  void* activity;  ///< for the loader: a Context; an activity is one
 };
 
-/// How a runtime's library is entered without a loader (chapter "Loader Design", runtime negotiation).
+/// Entry into a runtime's library without a loader (chapter "Loader Design", runtime negotiation).
 struct NegotiateLoaderInfo {
   int struct_type = 1;
   std::uint32_t struct_version = 1;

@@ -7,7 +7,7 @@
 
 namespace clothbench::xr {
 
-/// Draws both eyes into the session's images, in one submission that is not waited for: the next frame does that.
+/// Draws both eyes into the session's images in one submission and does not wait for it; the next frame does.
 class Painter {
  public:
   Painter(std::shared_ptr<vulkan::Device>, Session&);
@@ -15,12 +15,12 @@ class Painter {
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 
-  /// What draws. Surfaces and positions may be replaced after `wait` alone.
+  /// The renderer. Surfaces and positions may be replaced only after `wait`.
   render::SceneRenderer& renderer() { return renderer_; }
-  /// Returns once the pictures begun last are drawn. Throws vulkan::Failure.
+  /// Waits until the pictures submitted last are drawn. Throws vulkan::Failure.
   void wait();
   void paint(const std::vector<XrView>& views);
-  double device_s() const { return device_s_; }  ///< of the pictures waited for last; NaN without timestamps
+  double device_s() const { return device_s_; }  ///< of the pictures drawn at the last `wait`; NaN without timestamps
 
  private:
   void record(std::uint32_t left, std::uint32_t right, const std::vector<XrView>& views);
@@ -36,8 +36,8 @@ class Painter {
   double device_s_;
 };
 
-/// Of an eye, metres from `origin_m`, and of its field of view to Vulkan's clip space (y down, depth 0 at near_m to 1
-/// at far_m).
+/// View matrix of an eye, in metres relative to `origin_m`; and projection matrix of its field of view to Vulkan's clip
+/// space (y down, depth 0 at near_m to 1 at far_m).
 render::Mat4 view_of(const XrPosef&, const Vec3& origin_m);
 render::Mat4 projection_of(const XrFovf&, double near_m, double far_m);
 

@@ -10,21 +10,21 @@
 
 namespace clothbench::xr {
 
-/// Set-up 2 of Kim, Ma & Hong (2025), section 3.2.4: the user sees the scanned room at the press of A and picks six
-/// points of it by the trigger; the axis-aligned box round them says which part of it the cloth meets.
+/// Set-up 2 of Kim, Ma & Hong (2025), section 3.2.4: the user shows the scanned room by pressing A and picks six points
+/// of it with the trigger. The cloth meets the part of the room in the axis-aligned box round these points.
 class Picking {
  public:
   explicit Picking(Session&);
 
-  /// Takes what the user does until this frame. True once the room is there and six points are picked.
+  /// Processes the user's input up to this frame. True once the room is available and six points are picked.
   bool ready(XrTime);
   std::string waiting_for() const;
   const std::optional<assets::RoomScan>& scan() const { return scan_; }
   const std::vector<Vec3>& picked() const { return picked_; }
 
-  /// Whether `surfaces` differ from those given last.
+  /// Whether `surfaces` differs from its last result.
   bool changed() const { return changed_; }
-  /// The room where it is shown, and a mark at each point.
+  /// The room, if it is shown, and a mark at each picked point.
   render::Surfaces surfaces();
 
  private:
@@ -36,7 +36,7 @@ class Picking {
   std::vector<Vec3> picked_;
 };
 
-/// Nearest point of the mesh on a ray, of either side of its triangles; empty if it meets none.
+/// Nearest intersection of a ray with the mesh, on either side of its triangles; empty if there is none.
 std::optional<Vec3> hit(const assets::TriangleMesh&, const Ray&);
 
 }  // namespace clothbench::xr

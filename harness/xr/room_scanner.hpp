@@ -10,14 +10,14 @@ namespace clothbench::xr {
 class RoomScanner {
  public:
   static bool offered(const Instance&);
-  /// Asks for it. Takes the session's other events from now on.
+  /// Queries the mesh. Sets Session::on_event for its lifetime.
   explicit RoomScanner(Session&);
   ~RoomScanner();
   RoomScanner(const RoomScanner&) = delete;
   RoomScanner& operator=(const RoomScanner&) = delete;
 
-  /// The mesh in its own frame and that frame in the scene's space; empty until it is there and located. Throws Error
-  /// where the runtime knows no room.
+  /// The mesh in its local frame, and that frame in the scene's space; empty until both are available. Throws Error if
+  /// the runtime has no room.
   std::optional<assets::RoomScan> at(XrTime);
 
  private:

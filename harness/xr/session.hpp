@@ -12,8 +12,8 @@
 namespace clothbench::xr {
 
 struct SessionOptions {
-  double rate_hz = 72;    ///< asked of the display where it can be
-  bool on_floor = false;  ///< the scene's space is the room's (STAGE), else where the head was at first (LOCAL)
+  double rate_hz = 72;    ///< requested refresh rate of the display, if the runtime allows it
+  bool on_floor = false;  ///< the scene's space is STAGE (the room's), else LOCAL (initial head position)
   Vec3 origin_m{};        ///< the scene's origin in that space
   bool passthrough = true;
 };
@@ -24,9 +24,9 @@ struct Eye {
   std::vector<VkImage> images;
 };
 
-/// A session: its states, its clock and its pictures. Everything is located in the scene's own space.
+/// A session: its states, its clock and its pictures. All locations are in the scene's space.
 ///
-/// Frames are `wait_frame`, `begin_frame`, `end_frame`, while `running()`; `pump` goes between them.
+/// A frame is `wait_frame`, `begin_frame`, `end_frame`, while `running()`; call `pump` between frames.
 class Session {
  public:
   Session(const Instance&, std::shared_ptr<vulkan::Device>, const SessionOptions&);
@@ -34,17 +34,17 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Takes the runtime's events, and begins and ends the session as they ask. Others go to `on_event`. False once it is
-  /// over.
+  /// Processes the runtime's events, and begins and ends the session as they require. Passes other events to
+  /// `on_event`. False once the session is over.
   bool pump();
   std::function<void(const XrEventDataBuffer&)> on_event;
   bool running() const { return running_; }
   void request_exit();
   XrFrameState wait_frame();
   void begin_frame();
-  /// Shows the pictures drawn, or nothing where `views` is empty.
+  /// Shows the pictures drawn, or nothing if `views` is empty.
   void end_frame(const XrFrameState&, const std::vector<XrView>& views);
-  /// Both eyes in the scene's space; empty where they are not known.
+  /// Both eyes in the scene's space; empty if they are not located.
   std::vector<XrView> views(XrTime) const;
 
   const Instance& instance() const { return xr_; }
@@ -54,7 +54,7 @@ class Session {
   VkFormat format() const { return format_; }
   VkExtent2D extent() const { return extent_; }
   const std::array<Eye, 2>& eyes() const { return eyes_; }
-  double refresh_rate_hz() const;  ///< the display's now; 0 where the runtime does not tell
+  double refresh_rate_hz() const;  ///< current rate of the display; 0 if unknown
   /// "XR_FB_passthrough", "alpha blend" or "none".
   const char* passthrough() const { return passthrough_name_; }
   const char* performance_level() const { return performance_; }  ///< "sustained high" or "none"

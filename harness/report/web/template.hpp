@@ -3,11 +3,11 @@
 
 namespace clothbench {
 
-/// The page without data and what draws its figures, as bundle.mjs made them when this was built.
+/// The page without data and the script that draws its figures, as bundle.mjs made them at build time.
 struct PageTemplate {
-  std::string html;          ///< empty if it could not be made
-  std::string missing;       ///< then why, as the end of a sentence
-  std::string figures = {};  ///< for Node: src/stills.js
+  std::string html;          ///< empty if it could not be built
+  std::string missing;       ///< then the reason, as the end of a sentence
+  std::string figures = {};  ///< script for Node, from src/stills.js
 };
 
 PageTemplate page_template();
