@@ -12,14 +12,14 @@
 
 namespace clothbench::bullet_baseline {
 
-/// What both solvers of this folder have in common; name, summary and settings are theirs.
+/// What both solvers of this folder share; each adds its own name, summary and settings.
 SolverInfo common_info();
 
 SettingSpec collision_margin_spec();
 SettingSpec mesh_spec();
 SettingSpec voxel_spec();
 
-/// Share of its velocity a node keeps in a step of h [s]: e^(-c h), and 1 without damping.
+/// Share of its velocity that a node keeps in a step of h [s]: e^(-c h), or 1 without damping.
 double kept_share(const Scene&, double h);
 
 /// The setting as an integer; throws Error outside [least, most].
@@ -27,8 +27,8 @@ int integer_setting(const SolverInfo&, const nlohmann::json& settings, const cha
 /// The same for a number in (least, most].
 double number_setting(const SolverInfo&, const nlohmann::json& settings, const char* name, double least, double most);
 
-/// A grid cloth as a btSoftBody, the colliders as rigid bodies and the held vertices: the half that does not depend on
-/// which of Bullet's two solvers moves the cloth.
+/// Base of both solvers: the grid cloth as a btSoftBody, the colliders as rigid bodies, and the held vertices. The
+/// derived class chooses which of Bullet's two solvers moves the cloth.
 class BulletSolver : public ClothSolver {
  public:
   BulletSolver(SolverInfo info, const nlohmann::json& settings);
@@ -45,23 +45,23 @@ class BulletSolver : public ClothSolver {
 
  protected:
   virtual int substeps_for(const Scene&) const = 0;
-  /// A new world, if the scene takes one, and in it a new body made by new_body().
+  /// Makes a new world, if the scene needs one, and a new body in it by new_body().
   virtual void build() = 0;
-  /// The body leaves the world, which then goes.
+  /// Removes the body from the world, then destroys the world.
   virtual void tear_down() = 0;
   virtual void substep(btScalar h) = 0;
-  /// After a vertex changed between held and free.
+  /// Called after a vertex changed between held and free.
   virtual void masses_changed() = 0;
 
-  /// The world a collider's rigid body goes into; null where the scene has none.
+  /// World of the colliders' rigid bodies; null where the scene has none.
   virtual btDiscreteDynamicsWorld* world() = 0;
 
-  /// Nodes at the scene's positions, mass 0 (Bullet's sign for "does not move") for what is pinned or held;
-  /// nothing that Bullet adds by default, and collisions off.
+  /// Makes a body with its nodes at the scene's positions. Pinned and held nodes have mass 0, Bullet's mark of a static
+  /// node. All that Bullet adds by default is off, collisions too.
   std::unique_ptr<btSoftBody> new_body(btSoftBodyWorldInfo&);
-  /// Links of one kind, their rest lengths from the scene: Bullet would take the distances at the start.
+  /// Adds links of one kind with the scene's rest lengths; by default Bullet takes the distances at the start.
   static void add_links(btSoftBody&, const Cloth&, EdgeKind);
-  /// Gravity, no air, no water, voxels of the distance fields.
+  /// Sets gravity, no air, no water, and the voxel size of the distance fields.
   void set_surroundings(btSoftBodyWorldInfo&) const;
   /// For the destructors of the two solvers.
   void drop();
@@ -73,7 +73,7 @@ class BulletSolver : public ClothSolver {
   std::unique_ptr<btSoftBody> body_;
 
  private:
-  /// Held vertices at `share` of the way from the last frame's end to this one's.
+  /// Sets velocities that bring held vertices to `share` of the path from the last frame's end to this one's.
   void hold(const FrameMotion& end, double share, btScalar h);
   void let_go(const FrameMotion& end);
 
@@ -84,8 +84,8 @@ class BulletSolver : public ClothSolver {
   int substeps_ = 0;
   const Scene* scene_ = nullptr;
   std::unique_ptr<ColliderBodies> colliders_;
-  FrameMotion now_;                  ///< at the end of the last frame; empty where nothing moves
-  std::vector<btScalar> free_mass_;  ///< of all vertices, held ones too
+  FrameMotion now_;                  ///< at the end of the last frame; empty in a static scene
+  std::vector<btScalar> free_mass_;  ///< masses of all vertices, held ones too
 };
 
 SolverEntry soft_entry();

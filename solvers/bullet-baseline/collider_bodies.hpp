@@ -11,18 +11,18 @@ namespace clothbench::bullet_baseline {
 
 btVector3 to_bullet(const Vec3&);
 
-/// What a mesh becomes in Bullet.
+/// How Bullet represents a mesh.
 enum class MeshAs {
   Triangles,  ///< a thin rigid body for each triangle
-  Bvh  ///< one btBvhTriangleMeshShape for static colliders: soft bodies meet it as slabs that reach 0.1 m from either
-       ///< side
+  Bvh  ///< one btBvhTriangleMeshShape for static colliders; for soft bodies its triangles are slabs that reach 0.1 m to
+       ///< either side
 };
 
 /// A scene's colliders as rigid bodies of a Bullet world: static ones, and kinematic ones for capsules.
 ///
-/// Shapes are exact where Bullet's are (sphere, box, capsule). A plane is the top of a large box, as the ground is in
-/// Bullet's own examples: btStaticPlaneShape meets soft bodies as such a slab too. Triangles of a moving mesh keep the
-/// shape they have at the start and follow in place and turn alone.
+/// Shapes are exact where Bullet's are (sphere, box, capsule). A plane is the top of a large box, like the ground in
+/// Bullet's own examples: for soft bodies btStaticPlaneShape is such a slab too. Triangles of a moving mesh move as
+/// rigid bodies, with the shape they have at the start.
 class ColliderBodies {
  public:
   /// Adds the bodies to `world`, which must outlive this. Throws Error on a capsule that changes its length.
@@ -31,13 +31,13 @@ class ColliderBodies {
   ColliderBodies(const ColliderBodies&) = delete;
   ColliderBodies& operator=(const ColliderBodies&) = delete;
 
-  /// What moves goes to where it is at `share` of the way from one instant to the next, on straight lines.
-  /// Bullet works out their velocities in the step that follows.
+  /// Moves dynamic colliders to `share` of the straight path from one instant to the next. Bullet derives their
+  /// velocities in the step that follows.
   void move(const FrameMotion& from, const FrameMotion& to, double share);
 
  private:
   struct Body {
-    std::unique_ptr<btTriangleMesh> triangles;  ///< of MeshAs::Bvh, whose shape only refers to them
+    std::unique_ptr<btTriangleMesh> triangles;  ///< for MeshAs::Bvh, whose shape only refers to them
     std::unique_ptr<btCollisionShape> shape;
     std::unique_ptr<btDefaultMotionState> motion;
     std::unique_ptr<btRigidBody> body;
@@ -62,7 +62,7 @@ class ColliderBodies {
   btDiscreteDynamicsWorld& world_;
   std::vector<Body> bodies_;
   std::vector<MovingCapsule> capsules_;
-  std::vector<MovingTriangle> triangles_;  ///< those of one mesh in a row
+  std::vector<MovingTriangle> triangles_;  ///< those of one mesh are contiguous
 };
 
 }  // namespace clothbench::bullet_baseline

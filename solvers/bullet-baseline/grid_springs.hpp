@@ -5,11 +5,11 @@
 
 namespace clothbench::bullet_baseline {
 
-/// btDeformableMassSpringForce with a stiffness of its own for each link: Bullet's has two in all, and an isotropic
-/// grid needs one along each direction, half of each on the borders, one on the diagonals and one for bending.
+/// btDeformableMassSpringForce with a stiffness for each link. Bullet's has two in all. An isotropic grid needs one
+/// along each direction, half of each on the borders, one on the diagonals and one for bending.
 ///
-/// Bullet's energy, k/2 (|d| - r)^2 with its exact second derivative, which is indefinite where a link is compressed.
-/// Nothing is damped here: Bullet's spring damping is relative to neighbours, the scenes' is not.
+/// The energy is Bullet's, k/2 (|d| - r)^2. Its second derivative is exact, so it is indefinite where a link is
+/// compressed. These springs do not damp: Bullet's spring damping is relative to neighbours, that of the scenes is not.
 class GridSprings final : public btDeformableMassSpringForce {
  public:
   /// Stiffness of each link of the one body it will be given [N/m, in Bullet's units].

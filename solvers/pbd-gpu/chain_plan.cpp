@@ -13,7 +13,7 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Of chains with two held vertices or more: see lines.cpp.
+/// Regularisation of chains with two or more held vertices: see lines.cpp.
 constexpr float kLeastRegularisation = 1e-3f;
 
 /// Edges below this share of the mean are welded.
@@ -50,7 +50,7 @@ std::vector<Strand> grid_strands(const Scene& s) {
   return out;
 }
 
-/// At every vertex edges are paired with those that go on straightest; what is paired all along makes a strand.
+/// Pairs, at every vertex, the edges that continue each other straightest. A sequence of paired edges is a strand.
 std::vector<Strand> mesh_strands(const ClothMesh& m) {
   constexpr double kStraight = -0.5;  // a turn of less than 60 degrees
   const std::size_t n = m.vertices.size(), count = m.edges.size();
@@ -160,7 +160,7 @@ ChainCloth chain_cloth(const Scene& s) {
     const std::vector<Edge> diagonals = edges(s.cloth, EdgeKind::Shear);
     all.insert(all.end(), diagonals.begin(), diagonals.end());
   }
-  // Of links that welding made parallel the stiffnesses add up.
+  // Links that welding made parallel add their stiffnesses.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<double, double>> links;  // rest, stiffness
   for (const Edge& e : all) {
     const auto ends = std::minmax(c.particle[e.a], c.particle[e.b]);
@@ -213,7 +213,7 @@ std::uint32_t ChainFamily::longest() const {
 }
 
 std::vector<ChainFamily> families_of(std::vector<Strand> all, std::size_t vertices, std::uint32_t block) {
-  // Another family is another pass; a chain that is cut short stretches where it is cut.
+  // A compromise: each family costs a pass, but a chain stretches where it is cut.
   constexpr std::size_t kEnough = 6;
   constexpr std::size_t kShort = 4;
   int wanted = 0;
@@ -224,7 +224,7 @@ std::vector<ChainFamily> families_of(std::vector<Strand> all, std::size_t vertic
   std::vector<std::vector<std::uint8_t>> used(families.size(), std::vector<std::uint8_t>(vertices, 0));
   std::vector<std::uint32_t> stamp(vertices, 0);
   std::uint32_t now = 0;
-  /// Links that go into family `f` from vertex number `from` of the strand on.
+  /// Number of the strand's links, from its vertex number `from` on, that fit into family `f`.
   const auto fits = [&](std::size_t f, const Strand& s, std::size_t from) {
     ++now;
     std::size_t k = from;
@@ -277,7 +277,7 @@ std::vector<ChainEntry> entries_of(const ChainFamily& family, const Scene& scene
   std::stable_sort(longest_first.begin(), longest_first.end(),
                    [](const auto* a, const auto* b) { return a->size() > b->size(); });
   std::vector<std::vector<ChainEntry>> blocks;
-  std::vector<std::size_t> with_room;  // blocks, by what is left of them
+  std::vector<std::size_t> with_room;  // blocks that are not full
   const auto put = [&](const std::vector<ChainEntry>& entries) {
     for (std::size_t k = with_room.size(); k-- > 0;) {
       std::vector<ChainEntry>& b = blocks[with_room[k]];
@@ -288,7 +288,7 @@ std::vector<ChainEntry> entries_of(const ChainFamily& family, const Scene& scene
     }
     blocks.push_back(entries);
     if (entries.size() < block) with_room.push_back(blocks.size() - 1);
-    if (with_room.size() > 16) with_room.erase(with_room.begin());  // nearly full ones: not worth looking at again
+    if (with_room.size() > 16) with_room.erase(with_room.begin());  // nearly full: not worth another try
   };
   for (const auto* chain : longest_first) {
     const auto held_ones = std::count_if(chain->begin(), chain->end(), [&](std::uint32_t v) { return held[v] != 0; });

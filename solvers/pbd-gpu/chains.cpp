@@ -67,14 +67,14 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth)
   weld_ = frame.add_kernel(stage, "weld", 4);
 }
 
-/// As many workgroups as the family of most blocks has.
+/// As many workgroups as the family with the most blocks needs.
 vulkan::Groups Chains::all_groups() const {
   std::uint32_t most = 0;
   for (const Family& f : families_) most = std::max(most, f.entries);
   return vulkan::groups_for(most, block_);
 }
 
-/// Vertices on each family's chains, and how many of them are free in this frame.
+/// Counts the vertices on each family's chains, and how many of them are free in this frame.
 void Chains::count_vertices() {
   const std::vector<float>& w = frame_.inverse_mass_now();
   for (Family& f : families_) {

@@ -6,22 +6,22 @@
 
 namespace clothbench::pbd_gpu {
 
-/// The constraints of `xpbd` where links are not all alike (triangle meshes, uneven grids, regions): what Lines is to
-/// even grids, a dispatch a family and substep, or all in one where the device runs all workgroups at once. One
+/// The constraints of `xpbd` where links are not all alike (triangle meshes, uneven grids, regions); even grids have
+/// Lines. It takes one dispatch a family and substep, or one in all where the device runs all workgroups at once. One
 /// iteration a substep, no bending.
 class Chains {
  public:
-  /// Adds its stages, buffers and kernels; those of the state are there.
+  /// Adds its stages, buffers and kernels. The buffers of the state must exist.
   Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth);
 
-  /// `count` of `substeps` of a frame of dt_s.
+  /// Records `count` of the `substeps` of a frame of dt_s.
   void record(int count, int substeps, double dt_s);
   bool whole_frame() const { return persistent_ && scene_.grips.vertices.empty(); }
 
  private:
   struct Family {
     std::uint32_t first_entry, entries, rounds;
-    double vertices, free;  ///< on its chains, or all of the first family's
+    double vertices, free;  ///< on its chains; the first family has all vertices
   };
   void count_vertices();
   Traffic traffic(std::size_t family) const;

@@ -102,7 +102,7 @@ MeshBuffers ColliderBuffers::add_meshes(const std::string& kind, bool moving_one
   return result;
 }
 
-/// And one more, whose a0.x is how far any of their ends goes.
+/// All capsules and one more entry, whose a0.x is the greatest displacement of any capsule end in the frame [m].
 std::vector<CapsuleShape> ColliderBuffers::capsules_between(const FrameMotion& start, const FrameMotion& end) const {
   std::vector<CapsuleShape> all;
   double most = 0;
@@ -134,7 +134,7 @@ void ColliderBuffers::add_capsules() {
   capsules_host_ = &frame_.add_host_buffer("collider capsules (upload)", capsules.buffer->bytes());
 }
 
-/// The translations carry the shift of origin, so that skinned positions come out relative to it: weights sum to 1.
+/// The translations include the shift of origin. Weights sum to 1, so skinned positions are relative to the origin.
 std::vector<JointMatrix> ColliderBuffers::matrices(const FrameMotion& motion) const {
   std::vector<JointMatrix> all;
   for (const MeshRange& range : moving.ranges)
@@ -242,7 +242,7 @@ void GripBuffer::reset() {
 bool GripBuffer::write(const FrameMotion* end) {
   const FrameMotion& to = end != nullptr ? *end : at_;
   write_to(*host_, entries(at_, to));
-  // A vertex is held through the frames that start with its flag set: let go at t, it is free from t on.
+  // A vertex is held during frames that start with its flag set: released at t, it is free from t on.
   const bool changed = held_ != at_.grip_held;
   held_ = at_.grip_held;
   if (end != nullptr) at_ = *end;

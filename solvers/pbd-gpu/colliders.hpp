@@ -14,33 +14,33 @@ struct MeshRange {
   float margin_m = 0, friction = 0;
 };
 
-/// All meshes of one kind, one after another; indices count from the first vertex of all. Null and empty where the
-/// scene has none.
+/// All meshes of one kind, one after another; indices count from the first vertex of the first mesh. Null and empty
+/// where the scene has none.
 struct MeshBuffers {
   std::vector<MeshRange> ranges;
   const vulkan::Buffer* triangles = nullptr;        ///< uvec4 each: corners, collider's index; not with keep_start
-  const vulkan::Buffer* positions = nullptr;        ///< vec4 each; of what moves, at the frame's end
-  const vulkan::Buffer* start_positions = nullptr;  ///< of what moves, at the frame's start; only if asked for
+  const vulkan::Buffer* positions = nullptr;        ///< vec4 each; of moving meshes, at the frame's end
+  const vulkan::Buffer* start_positions = nullptr;  ///< of moving meshes, at the frame's start; with keep_start
 };
 
 /// Shapes of one kind: `count` structs of pbd_shared.h.
 struct ShapeBuffer {
   const vulkan::Buffer* buffer = nullptr;
   std::uint32_t count = 0;
-  bool friction = false;  ///< any of them has some
+  bool friction = false;  ///< at least one shape has friction
 };
 
-/// What the cloth touches, on the device: of each kind of collider one buffer, only if the scene has that kind.
+/// Colliders on the device: one buffer for each kind of collider in the scene.
 ///
-/// Static colliders are written once. Dynamic ones are written by the host into a mapped buffer each frame and copied
-/// to the device in the frame's stage UploadColliders: read in place it would cross the bus once for every cache miss
-/// of every kernel of the frame instead of once. Of a skinned mesh the joints' matrices travel (48 B each); the stage
-/// SkinHand makes vertices of them.
+/// Static colliders are written once. The host writes dynamic ones into a mapped buffer each frame, and the stage
+/// UploadColliders copies it to the device: it crosses the bus once instead of at every cache miss of every kernel.
+/// For a skinned mesh only the joints' matrices are copied (48 B each), from which the stage SkinHand computes the
+/// vertices.
 class ColliderBuffers {
  public:
   /// Adds buffers, the stages the scene needs and their kernels to `frame`. Positions are relative to `origin_m`,
   /// subtracted in double. With `keep_start`, positions of moving meshes at the frame's start are kept as well
-  /// (capsules always carry both), and triangles are left to the method, which has them in an order of its own.
+  /// (capsules always have both), and the method adds the triangles itself, in a different order.
   ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, bool keep_start);
 
   ShapeBuffer planes, spheres, boxes, capsules;
@@ -50,11 +50,11 @@ class ColliderBuffers {
 
   bool written_each_frame() const { return stage_upload_ >= 0; }
 
-  /// Upload and skinning, into the frame; to be called before anything reads what moves.
+  /// Records upload and skinning; must come before any kernel that reads dynamic colliders.
   void record();
-  /// The host's side of a reset: the next frame starts at motion[0].
+  /// The host's part of a reset: the next frame starts at motion[0].
   void reset();
-  /// Before a frame is submitted: what moves goes from where the last call left it to `end`; null: it stands still.
+  /// Call before a frame is submitted: dynamic colliders move from the last call's `end` to this one; null: no motion.
   void write(const FrameMotion* end);
 
  private:
@@ -77,17 +77,17 @@ class ColliderBuffers {
   const FrameKernel* skin_ = nullptr;
 };
 
-/// Vertices that hands hold: at substep s of n a held vertex is put at (s + 1) / n of its way through the frame.
+/// Vertices that hands hold: substep s of n puts a held vertex at (s + 1) / n of its path through the frame.
 class GripBuffer {
  public:
   /// `layers` copies of the cloth's vertices lie one after another in the solver's buffers.
   GripBuffer(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, std::uint32_t layers);
 
-  /// A kernel that puts held vertices of `positions` in their place with the hand's velocity, .w of both 0; of those
-  /// let go it sets .w to the inverse mass and leaves the rest as it is. May be added for several buffers.
+  /// A kernel that sets position and velocity of held vertices to the hand's, with .w of both 0. For released vertices
+  /// it sets .w to the inverse mass and nothing else. May be added for several buffers.
   const FrameKernel* add_kernel(const vulkan::Buffer& positions);
   void record_upload();
-  /// `fraction` of the way through the frame, 0 to 1.
+  /// `fraction` of the path through the frame, 0 to 1.
   void record_move(const FrameKernel&, double fraction, double frame_s);
 
   void reset();

@@ -8,9 +8,9 @@ namespace clothbench::pbd_gpu {
 namespace {
 
 constexpr double kShort = 0.5, kLong = 1.5;  // of a link's rest length
-constexpr double kAside = 1e-3;              // of a cell; far above float32's rounding, far below anything seen
+constexpr double kAside = 1e-3;              // of a cell; far above float32's rounding, far below what is visible
 
-/// In [-1, 1), from a counter (SplitMix64; Steele, Lea & Flood 2014).
+/// Pseudo-random number in [-1, 1) from a counter (SplitMix64; Steele, Lea & Flood 2014).
 double scattered(std::uint64_t n) {
   std::uint64_t z = (n + 1) * 0x9E3779B97F4A7C15u;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;

@@ -22,15 +22,15 @@ struct Traffic {
   Traffic operator*(double times) const { return {times * read_B, times * write_B}; }
 };
 
-/// A kernel, and the stage that its dispatches are of.
+/// A kernel, and the stage of its dispatches.
 struct FrameKernel {
   int stage;
   std::uint32_t group_size;
   vulkan::Kernel kernel;
 };
 
-/// What a method and its parts build for a scene: buffers, stages, kernels, and the frame that is submitted again and
-/// again, with its plan and its bytes.
+/// What a method and its parts build for a scene: buffers, stages, kernels, and the frame that is submitted repeatedly,
+/// with its plan and its traffic.
 class FrameBuilder {
  public:
   FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes);
@@ -40,13 +40,13 @@ class FrameBuilder {
   const Scene& scene() const { return *scene_; }
   const nlohmann::json& settings() const { return settings_; }
   const nlohmann::json& tuning() const { return settings_[kTuning]; }
-  /// For this scene alone: a setting that it cannot be run with.
+  /// Replaces, for this scene only, a setting that the scene cannot be run with.
   void override_setting(const char* name, const nlohmann::json& value, const std::string& why);
   const std::shared_ptr<vulkan::Device>& device() const { return device_; }
   bool counts_bytes() const { return count_bytes_; }
 
   static constexpr int kUnbound = -1;
-  /// A device buffer that `reset` fills with these bytes (zeros beyond them). Kernels find it by its number (BIND_...,
+  /// A device buffer that `reset` fills with `initial` and zeros after it. Kernels refer to it by its number (BIND_...,
   /// pbd_shared.h).
   const vulkan::Buffer& add_buffer(int binding, const std::string& name, std::uint64_t bytes,
                                    const void* initial = nullptr, std::size_t initial_bytes = 0);
@@ -55,21 +55,21 @@ class FrameBuilder {
     static_assert(std::is_trivially_copyable_v<T>);
     return add_buffer(binding, name, items.size() * sizeof(T), items.data(), items.size() * sizeof(T));
   }
-  /// In host memory, filled with zeros.
+  /// A buffer in host memory, filled with zeros.
   const vulkan::Buffer& add_host_buffer(const std::string& name, std::uint64_t bytes, int binding = kUnbound);
 
-  /// `at_least`: how much its kernels read depends on how the cloth lies; what is declared is what every frame reads.
+  /// `at_least`: the stage's traffic depends on the shape of the cloth; the declared bytes are the least in a frame.
   int add_stage(const std::string& name, FeatureSet serves, bool at_least = false);
-  /// Kernel `name` (shaders.hpp) with the buffers that its code declares; `own` come before those of add_buffer. What
-  /// the scene lacks is declared and never touched: the positions stand in. `constants` by number.
+  /// Kernel `name` (shaders.hpp) with the buffers that its code declares; `own` take precedence over those of
+  /// add_buffer. A declared buffer that the scene lacks is never accessed, and the positions are bound instead.
+  /// `constants` by number.
   const FrameKernel* add_kernel(int stage, const std::string& name, std::uint32_t push_bytes,
                                 std::vector<std::uint32_t> constants = {}, std::uint32_t group_size = kGroupSize,
                                 const vulkan::Buffers& own = {});
   vulkan::Buffers buffers_with(vulkan::Buffers own) const;
   void leave_out(const std::string& what, const std::string& why) { plan_.left_out.push_back({what, why}); }
   void set_contact_margins(std::vector<double> margins_m) { plan_.contact_margins_m = std::move(margins_m); }
-  /// A word in host memory that a kernel sets where workgroups waited for one another in vain: such a frame is
-  /// TimedOut.
+  /// A word in host memory that a kernel sets if a barrier over all workgroups times out. The frame is then TimedOut.
   void set_timed_out(const vulkan::Buffer& word) { timed_out_ = &word; }
 
   template <class Constants>
@@ -83,8 +83,8 @@ class FrameBuilder {
   }
   void copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer& to);
 
-  /// Inverse masses of the scene's vertices in this frame [1/kg], 0 where pinned or held. record_frame is called again,
-  /// for the bytes alone, when they change.
+  /// Inverse masses of the scene's vertices in this frame [1/kg], 0 where pinned or held. When they change,
+  /// record_frame is called again to count the traffic only.
   const std::vector<float>& inverse_mass_now() const { return inverse_mass_now_; }
 
  protected:
@@ -92,7 +92,7 @@ class FrameBuilder {
   void count(int stage, Traffic);
 
   const nlohmann::json given_settings_;
-  nlohmann::json settings_;  ///< the same, but for what the scene does not allow
+  nlohmann::json settings_;  ///< the same, with the overrides for this scene
   const bool count_bytes_;
   std::shared_ptr<vulkan::Device> device_;
   const Scene* scene_ = nullptr;

@@ -10,10 +10,10 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// A frame that takes longer is taken for lost. Software devices are slow, real ones reset themselves after some 2 s.
+/// A frame that takes longer counts as lost. Software devices are slow; real ones reset themselves after some 2 s.
 constexpr double kTimeout_s = 2, kSoftwareTimeout_s = 300;
 
-/// As an application that shows one frame while the next is computed.
+/// As in an application that shows one frame while the next is computed.
 constexpr int kFramesInFlight = 2;
 
 }  // namespace
@@ -87,7 +87,7 @@ void GpuSolver::update_inverse_masses() {
     const std::uint32_t v = scene_->grips.vertices[k];
     if (grips_->held()[k] == 0) inverse_mass_now_[v] = static_cast<float>(1 / mass[v]);
   }
-  // The commands stay as they are; free vertices read and write more than held ones.
+  // Only counts the traffic again, for free vertices have more than held ones; the commands stay as recorded.
   only_counting_ = true;
   count_all(dt_s_);
   only_counting_ = false;
@@ -142,7 +142,7 @@ StepStatus GpuSolver::unless_timed_out(StepStatus status) const {
   return timed_out == 0 ? StepStatus::Ok : StepStatus::TimedOut;
 }
 
-/// What the host writes or reads every frame has one buffer, which the frame before must be done with.
+/// Data that the host writes or reads every frame has a single buffer, so the previous frame must have finished.
 int GpuSolver::frames_in_flight() const {
   const bool host_takes_part = grips_ != nullptr || (colliders_ != nullptr && colliders_->written_each_frame()) ||
                                settings_.value("readback", "none") != "none";
@@ -160,7 +160,7 @@ StepStatus GpuSolver::run_frames(const std::vector<FrameInput>& frames) {
              frame_->wait(k % kFramesInFlight, timeout_s());
              frame_->submit(k % kFramesInFlight);
            }
-           // The oldest first, so that last_cost is the last frame's.
+           // Waits for the oldest first, so that last_cost is the last frame's.
            for (std::size_t k = frames.size(); k < frames.size() + kFramesInFlight; ++k)
              frame_->wait(k % kFramesInFlight, timeout_s());
          }));
@@ -172,8 +172,8 @@ void GpuSolver::read_state(ClothState& state) const {
   state.position.assign(3 * n, kMissing);
   state.velocity.assign(3 * n, kMissing);
   if (run(*download_) != StepStatus::Ok) {
-    // A lost device has no state. If the loss was not reported yet, it has to be now, or undefined numbers would be
-    // taken for the solver's state.
+    // A lost device has no state. A loss that was not reported yet must throw here; otherwise undefined numbers would
+    // count as the solver's state.
     if (last_ != StepStatus::Ok) return;
     throw Error("solver " + info_.name + ": the device was lost, or did not answer in time, when its state was read",
                 ExitCode::CheckFailed);
@@ -187,13 +187,13 @@ void GpuSolver::read_state(ClothState& state) const {
     }
 }
 
-/// What sums could not hold begins at 0 again, and contact remembers the sides of the start.
+/// The rounding errors of compensated sums restart at 0, and contact has the sides of the scene's start.
 bool GpuSolver::restart(const ClothState& state) {
   take_messages();
   const bool more_layers = position_->bytes() > read_position_->bytes();
   if (!scene_->motion.empty() || more_layers) return false;
   reset();
-  // Inverse masses stand beside the positions.
+  // Reads back first: .w of the positions are the inverse masses.
   if (ready_ != StepStatus::Ok || run(*download_) != StepStatus::Ok) return false;
   auto* x = static_cast<float*>(read_position_->mapped());
   auto* v = static_cast<float*>(read_velocity_->mapped());

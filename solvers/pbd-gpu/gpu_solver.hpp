@@ -9,8 +9,8 @@
 
 namespace clothbench::pbd_gpu {
 
-/// What both methods share: one recorded frame submitted again and again, state read back, costs. A method fills in its
-/// buffers and its frame.
+/// What both methods share: one recorded frame that is submitted repeatedly, reading back the state, and costs. A
+/// method adds its buffers and its frame.
 class GpuSolver : public ClothSolver, protected FrameBuilder {
  public:
   GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes);
@@ -28,16 +28,15 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   Plan plan() const override { return plan_; }
   int validation_messages() const override { return *messages_; }
 
-  /// Bytes each stage's instrumented kernels counted since the last call; needs `count_bytes`.
+  /// Bytes that the instrumented kernels of each stage counted since the last call; needs `count_bytes`.
   std::vector<Traffic> counted();
-  /// Positions as the device holds them, of every copy or layer of the cloth, relative to the method's origin; for
-  /// tests.
+  /// Positions on the device, of every copy or layer of the cloth, relative to the method's origin; for tests.
   std::vector<float> device_positions() const;
-  /// What read_state reads positions from, for drawing without reading back: the scene's vertices first, a vec4 each,
-  /// relative to `origin_m()`. Of a loaded solver.
+  /// The buffer that read_state reads positions from, for drawing without reading back: the scene's vertices first, a
+  /// vec4 each, relative to `origin_m()`. The solver must be loaded.
   const vulkan::Buffer& position_buffer() const { return *position_; }
   const Vec3& origin_m() const { return origin_m_; }
-  /// What is submitted for set-up, a frame and reading back, for the test of the barriers.
+  /// The programs of set-up, a frame and reading back, for the test of the barriers.
   const vulkan::Program& upload_program() const { return *upload_; }
   const vulkan::Program& frame_program() const { return *frame_; }
   const vulkan::Program& download_program() const { return *download_; }
@@ -46,14 +45,14 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   FrameBuilder& frame() { return *this; }
   using vec4s = std::vector<vec4>;
 
-  /// Buffers and kernels of this scene.
+  /// Adds the buffers and kernels of this scene.
   virtual void build() = 0;
-  /// The frame of `dt_s`, by dispatches and copies.
+  /// Records the dispatches and copies of a frame of `dt_s`.
   virtual void record_frame(double dt_s) = 0;
 
-  /// Read back by read_state: the first `vertex_count` vec4 of each.
+  /// Sets what read_state reads back: the first `vertex_count` vec4 of each buffer.
   void set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m);
-  /// What the scene has of colliders and grips, relative to `origin_m`; their stages come where these are called.
+  /// Add the scene's colliders and grips, if any, relative to `origin_m`. Their stages come after those already added.
   void add_colliders(Vec3 origin_m, bool keep_start);
   void add_grips(Vec3 origin_m, std::uint32_t layers);
   ColliderBuffers* colliders() { return colliders_.get(); }  ///< null where the scene has none
@@ -64,11 +63,11 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   void count_all(double dt_s);
   void update_inverse_masses();
   StepStatus run(vulkan::Program& program) const;
-  /// What the device holds of a buffer, after everything submitted so far.
+  /// Contents of a buffer on the device, after everything submitted so far.
   template <class T>
   std::vector<T> fetched(const vulkan::Buffer&) const;
   StepStatus unless_timed_out(StepStatus status) const;
-  /// Messages of the layer are this solver's until another uses the device.
+  /// Counts messages of the validation layer for this solver until another solver uses the device.
   void take_messages() const { device_->count_messages_in(messages_); }
   template <class Fn>
   StepStatus guarded(Fn submit_or_wait) const;

@@ -13,7 +13,7 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Pinned vertices that touch one another, as the rectangle they fill, or the first alone if they fill none.
+/// Each connected group of pinned vertices as the rectangle that it fills, or its first vertex if it fills none.
 std::vector<PinnedRectangle> rectangles(const Cloth& c, const std::vector<std::uint32_t>& pinned) {
   const auto columns = static_cast<std::uint32_t>(c.columns), rows = static_cast<std::uint32_t>(c.rows);
   std::vector<std::uint8_t> left(c.vertex_count(), 0);
@@ -42,7 +42,7 @@ std::vector<PinnedRectangle> rectangles(const Cloth& c, const std::vector<std::u
   return found;
 }
 
-/// Does the cloth start within its tethers? If not, its pins are farther apart than it is long, or it starts stretched.
+/// True if the cloth starts within its tethers. Else its pins are too far apart for its length, or it starts stretched.
 bool start_within(const Scene& s, const Tethers& t) {
   const Cloth& c = s.cloth;
   const std::vector<double> x = initial_positions(s);
@@ -103,7 +103,7 @@ std::vector<std::uint8_t> taut_chains(const Scene& scene) {
   for (const std::uint32_t v : scene.pins.vertices) held[v] = 1;
   for (const std::uint32_t v : scene.grips.vertices) held[v] = 1;
   const std::vector<double> x = initial_positions(scene);
-  // A chord shorter than this share of the chain between leaves it room to sag, and the system its rank.
+  // If the chord is shorter than this share of the chain, the chain can sag and its system has full rank.
   constexpr double kTaut = 0.99;
   const int steps[4][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
   for (int family = 0; family < 4; ++family) {
@@ -132,12 +132,11 @@ std::vector<std::uint8_t> taut_chains(const Scene& scene) {
 
 namespace {
 
-/// What moves, and a cloth that is thrown at something, goes by half a margin in a substep (fast: a whole one,
-/// accurate: a quarter): what is struck then pulls its neighbours along before it has gone from them by more than a
-/// cell can be stretched.
+/// A moving collider, or a cloth thrown at a collider, moves by at most half a margin in a substep (fast: a whole one,
+/// accurate: a quarter). A struck vertex then pulls its neighbours along before the cells between are overstretched.
 long substeps_for_speed(const Scene& scene, int quality) {
   constexpr double kMargins[] = {1, 0.5, 0.25}, kLeast = 0.125;  // of a cell, where margins are small
-  constexpr double kMost = 160;  // 20 m/s at a margin of 4 mm; beyond, it leaks rather than stand still
+  constexpr double kMost = 160;  // 20 m/s at a margin of 4 mm; above, leaks are preferred to endless runs
   double margin = std::numeric_limits<double>::infinity();
   for (const Collider& c : scene.colliders)
     margin = std::min(margin, std::max(c.margin_m, kLeast * std::min(scene.cloth.du(), scene.cloth.dv())));
@@ -149,9 +148,9 @@ long substeps_for_speed(const Scene& scene, int quality) {
 
 double length(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }
 
-/// Layers that come closer by more than this share of their thickness in a substep leave corrections too much to do,
-/// and the cloth is slowed down (README, "Self-collision in xpbd"). How fast they may be: what the scene gives them, a
-/// fall of the cloth's length, and what moves.
+/// If layers approach by more than kMostWay of their thickness in a substep, corrections cannot separate them and the
+/// cloth is slowed down (README, "Self-collision in xpbd"). The assumed speed is the sum of the scene's initial speed,
+/// that of a fall by the cloth's length, and that of the fastest grip or collider.
 double substeps_for_layers(const Scene& scene) {
   constexpr double kMostWay = 2.0 / 3;
   const Cloth& c = scene.cloth;
@@ -180,13 +179,13 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
                         (wants_chains(scene) ? tether_table(scene).a_vertex > 0 : !tethers_of(scene).to.empty());
   const auto Y = scene.material.membrane_stiffness_N_per_m;
   const bool stiff = !Y || *Y >= 1e4;
-  // Of a frame, however long it is: a number of seconds in here would be one that similar scenes do not share. A link
-  // must not turn by more than about half a radian a substep.
+  // Substeps are counted a frame, whatever its duration: a constant in seconds would differ between scaled copies of a
+  // scene. A link must not turn by more than about half a radian a substep.
   constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
                  kDriven[] = {{8, 4}, {16, 2}, {32, 1}}, kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}},
                  kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
-  // A hand pushes a cloth in ways that no tether knows of.
+  // A hand pushes a cloth in directions that tethers do not limit.
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   const Rule rule = !touched                           ? kUntouched[k]
                     : driven                           ? kDriven[k]
@@ -194,7 +193,7 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
                     : !scene.needs.has(Feature::Shear) ? kStrips[k]
                     : scene.grips.vertices.empty()     ? kSheet[k]
                                                        : kPulled[k];
-  // Few substeps leave the links at the pins most, which carry more the finer the cloth is.
+  // With few substeps the error is largest in the links at the pins, which carry more the finer the cloth is.
   const double fine = k == 0 && rule.links_a_substep == kStiff[0].links_a_substep && links > 300 ? 1.2 : 1;
   const double short_links = wants_chains(scene) ? substeps_for_short_links(scene) : 1;
   double per_frame = short_links * std::max(rule.least, fine * links / rule.links_a_substep);
@@ -212,11 +211,11 @@ LineShape frame_shape(int columns, int rows, const LineRequest& request, const L
     LineShape s{std::bit_ceil((longest + k - 1) / k), k, 0, false};
     s.shuffles = s.lanes <= device.subgroup;
     if (s.shuffles) s.beside = request.beside != 0 ? request.beside : 1;
-    // Whole subgroups, so that threads number as their lanes do; and one for each row of bits of held vertices.
+    // Whole subgroups, so that thread and lane numbers agree, and at least one thread for each row of held vertices.
     const std::uint32_t whole = std::max(device.subgroup, 32u);
     s.threads = (s.lanes * longest + whole - 1) / whole * whole;
     const std::uint32_t state_B = 6 * 4 * 34 * static_cast<std::uint32_t>(rows) + 128;
-    // Twice the threads are worth it for shuffles, not for barriers.
+    // Twice the threads are faster with shuffles, not with barriers.
     const std::uint32_t most =
         k < 4 && (s.shuffles || vertices != 0) ? device.most_threads : std::min(256u, device.most_threads);
     if (s.threads <= most && state_B + (s.shuffles ? 0 : 16 * s.threads) <= device.shared_B) return s;
@@ -224,7 +223,7 @@ LineShape frame_shape(int columns, int rows, const LineRequest& request, const L
   return {};
 }
 
-/// What a barrier over all workgroups takes of shared memory.
+/// Shared memory that a barrier over all workgroups uses.
 constexpr std::uint32_t kBarrier_B = 16;
 
 LineShape pass_shape(int length, const LineRequest& request, const LineDevice& device) {
@@ -236,7 +235,7 @@ LineShape pass_shape(int length, const LineRequest& request, const LineDevice& d
                                : !choose || n <= 192 ? 1
                                : n <= 384            ? 2
                                                      : 4;
-  // A request for threads is for all of them; else as few as hold whole subgroups and lines.
+  // A requested number of threads is used in full; else the fewest that hold whole subgroups and lines.
   const std::uint32_t most = std::min(request.threads != 0 ? request.threads
                                       : choose             ? 1024u
                                                            : 256u,
@@ -246,7 +245,7 @@ LineShape pass_shape(int length, const LineRequest& request, const LineDevice& d
     const std::uint32_t lanes = std::bit_ceil((n + k - 1) / k);
     if (k < vertices || lanes * beside > most) continue;
     LineShape s{lanes, k, std::max(lanes * beside, least), device.subgroup > 0, beside};
-    // Whole subgroups, so that threads number as their lanes do.
+    // Whole subgroups, so that thread and lane numbers agree.
     if (s.shuffles) s.threads = (s.threads + device.subgroup - 1) / device.subgroup * device.subgroup;
     const bool exchange = !s.shuffles || lanes * beside > device.subgroup;
     if ((exchange ? 32 * s.threads : 0) + kBarrier_B <= device.shared_B) return s;
@@ -257,7 +256,7 @@ LineShape pass_shape(int length, const LineRequest& request, const LineDevice& d
 
 std::uint32_t bend_rounds(double alpha, double most_inverse_mass, const LineShape& shape) {
   const auto all = static_cast<std::uint32_t>(std::countr_zero(shape.lanes));
-  // Entries of the inverse of a matrix of bandwidth 2 fall at least like q^(distance / 2).
+  // Entries of the inverse of a matrix of bandwidth 2 decay at least like q^(distance from the diagonal / 2).
   const double q = 10 * most_inverse_mass / (6 * most_inverse_mass + alpha);
   for (std::uint32_t rounds = 0; rounds < all; ++rounds)
     if (q < 1 && std::pow(q, shape.vertices * std::exp2(rounds) / 2) < 1e-7) return rounds;

@@ -8,14 +8,14 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Least alpha over inverse mass of chains that are pulled taut between held vertices: singular in single precision
-/// without. Ten times as much shows in the length of the cloth, a tenth lets links of some cloths blow up.
+/// Least ratio of alpha to inverse mass in chains pulled taut between held vertices: with 0 their system is singular in
+/// single precision. Ten times as much visibly lengthens the cloth; with a tenth, links of some cloths blow up.
 constexpr double kRegularisation = 1e-3;
 
 /// Springs whose homogenised sheet is isotropic with uniaxial stiffness Y and Poisson ratio 1/3, the only ratio central
 /// springs allow (C12 = C66): for square cells 3/4 Y along the grid and 3/8 Y on each diagonal. On du x dv cells the
-/// same conditions give the values below; beyond an aspect of about 1.6 the grid spring would fall under a tenth of
-/// its strip's stiffness and is held there, which makes the sheet stiffer than Y. Without shear: strips of stiffness Y.
+/// same conditions give the values below. Beyond an aspect ratio of about 1.6 the grid spring would be below a tenth of
+/// its strip's stiffness; it is clamped there, so the sheet is stiffer than Y. Without shear: strips of stiffness Y.
 struct Springs {
   double along_u, along_v, diagonal;  // N/m
 };
@@ -238,7 +238,7 @@ Lines::Constraints Lines::count(std::uint32_t family) const {
   return n;
 }
 
-/// Kept multipliers are read twice and written once an iteration, the first reads none.
+/// Kept multipliers are read twice and written once an iteration; the first iteration reads none.
 Traffic Lines::multiplier_traffic(std::uint32_t family, std::uint32_t iteration) const {
   if (!keep_) return {};
   const Constraints n = count(family);
@@ -246,7 +246,7 @@ Traffic Lines::multiplier_traffic(std::uint32_t family, std::uint32_t iteration)
   return {iteration > 0 ? 2 * bytes : 0, bytes};
 }
 
-/// Of one pass of a substep: every vertex is read, free ones are written; the first also reads where tethers end.
+/// Traffic of one pass of a substep: it reads every vertex and writes free ones; the first also reads tether ends.
 Traffic Lines::pass_traffic(std::uint32_t pass) const {
   const std::vector<float>& w = frame_.inverse_mass_now();
   const auto n = static_cast<double>(w.size());
@@ -259,7 +259,7 @@ Traffic Lines::pass_traffic(std::uint32_t pass) const {
                  32 * free};
 }
 
-/// Of what sums could not hold, in each dispatch that integrates.
+/// Traffic of the rounding errors of compensated sums, in each dispatch that integrates.
 Traffic Lines::compensated_traffic() const {
   const std::vector<float>& w = frame_.inverse_mass_now();
   return {32.0 * static_cast<double>(w.size()),

@@ -7,20 +7,20 @@
 
 namespace clothbench::pbd_gpu {
 
-/// The constraints of `xpbd`: a substep integrates, tethers and solves rows, columns and diagonals, each line at once.
-/// Small cloths take any number of substeps in one dispatch of one workgroup; larger ones in one dispatch of many,
-/// where the device runs them all at once; else it is four dispatches a substep (two without shear).
+/// The constraints of `xpbd`: a substep integrates, applies tethers and solves rows, columns and diagonals, each line
+/// directly. One dispatch takes any number of substeps: of one workgroup for small cloths, of many for larger ones
+/// where the device runs them all at once. Else a substep takes four dispatches (two without shear).
 class Lines {
  public:
-  /// Adds its stages, buffers and kernels. Those of the state are there, a vec4 a vertex: positions (.w = inverse
-  /// mass), velocities, and what their sums could not hold.
+  /// Adds its stages, buffers and kernels. The buffers of the state must exist, a vec4 a vertex: positions (.w =
+  /// inverse mass), velocities, and the rounding errors of both (compensated sums).
   Lines(FrameBuilder& frame, const Scene& scene);
 
-  /// Substeps [first, first + count) of `substeps` of a frame of dt_s. A cloth that does not fit one dispatch takes one
-  /// at a time.
+  /// Records substeps [first, first + count) of the `substeps` of a frame of dt_s. A cloth that does not fit one
+  /// dispatch takes one substep a call.
   void record(int first, int count, int substeps, double dt_s);
   bool whole_frame() const { return whole_ != nullptr || (persistent_ != nullptr && scene_.grips.vertices.empty()); }
-  /// Do held vertices go with their hands in here?
+  /// True if its kernels move held vertices with their hands.
   bool moves_grips() const { return whole_ != nullptr; }
 
  private:
@@ -52,7 +52,7 @@ class Lines {
   const Tethers tethers_;
   const std::vector<std::uint8_t> taut_;
   const std::uint32_t iterations_, batch_;
-  const bool keep_;  ///< multipliers, from one iteration to the next
+  const bool keep_;  ///< multipliers are kept from one iteration to the next
   bool firm_ = false, keeps_links_ = false, keeps_hinges_ = false;
   const FrameKernel *whole_ = nullptr, *persistent_ = nullptr;
   std::array<const FrameKernel*, 3> pass_{};  ///< rows, columns, diagonals

@@ -28,7 +28,7 @@ PaperContact::PaperContact(FrameBuilder& frame, const ColliderBuffers& colliders
   add_shapes("SatisfyCubeCollisions", colliders.boxes, Feature::Box, "satisfy_cube_collisions", sizeof(BoxShape));
   add_meshes("SatisfyMeshCollisions", colliders.standing, Feature::StaticMesh, mesh_depth_m);
   add_meshes("SatisfyHandMeshCollisions", colliders.moving, Feature::MovingMesh, hand_depth_m);
-  // The end of the frame alone: two of the four vec4.
+  // Only the capsule at the frame's end is read: two of the four vec4.
   add_shapes("SatisfyCapsuleCollisions", colliders.capsules, Feature::Capsules, "satisfy_capsule_collisions", 32);
 }
 

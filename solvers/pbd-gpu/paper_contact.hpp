@@ -10,17 +10,17 @@ namespace clothbench::pbd_gpu {
 /// positions, at the end of each step. Kim, Ma & Hong 2025, 3.2.3 to 3.2.6, Algorithms 3 and 4.
 class PaperContact {
  public:
-  /// One stage and kernel for each kind of collider the scene has. `mesh_depth_m` and `hand_depth_m`: how far behind a
-  /// triangle a particle is still taken for touching it.
+  /// Adds one stage and kernel for each kind of collider in the scene. `mesh_depth_m` and `hand_depth_m`: greatest
+  /// distance behind a triangle at which a particle still counts as touching it.
   PaperContact(FrameBuilder& frame, const ColliderBuffers& colliders, float mesh_depth_m, float hand_depth_m);
-  /// For `particles`, of which `free` have an inverse mass.
+  /// Records the collisions of `particles`, of which `free` have an inverse mass above 0.
   void record(std::uint32_t particles, std::int64_t free);
 
  private:
   struct Pass {
     const FrameKernel* kernel;
     PaperContactConstants constants;
-    std::uint32_t item_bytes;  ///< read by a particle for each thing it is tested against
+    std::uint32_t item_bytes;  ///< read by a particle for each shape or triangle it is tested against
     bool friction;
   };
   void add_shapes(const char* stage, const ShapeBuffer&, Feature, const char* kernel, std::uint32_t item_bytes);

@@ -49,7 +49,7 @@ class Paper final : public GpuSolver {
     set_state(*x_, *v_, {});
   }
 
-  /// fn(a, b, rest length, kind), in the order of the buffer.
+  /// Calls fn(a, b, rest length, kind) for each constraint, in the order of the buffer.
   template <class Fn>
   void for_each_constraint(Fn fn) const {
     const auto n = static_cast<std::uint32_t>(scene().cloth.vertex_count());
@@ -73,7 +73,7 @@ class Paper final : public GpuSolver {
     add_buffer(BIND_CONSTRAINTS, "constraints", all);
   }
 
-  /// What one ProjectConstraintDeltas reads and writes, and how many particles are free.
+  /// Counts what one ProjectConstraintDeltas reads and writes, and how many particles are free.
   void count_traffic() {
     const std::vector<float>& w = inverse_mass_now();
     const auto n = static_cast<std::uint32_t>(w.size());
@@ -148,7 +148,7 @@ class Paper final : public GpuSolver {
 
   void record_step(const PaperConstants& c, int step, int steps, double dt_s) {
     const auto n = static_cast<double>(particles()), f = static_cast<double>(free_);
-    // Held or let go from the step's start on, which the kernels that follow tell from the inverse mass.
+    // Vertices are held or released from the step's start on; the kernels that follow read it from the inverse mass.
     if (hold_ != nullptr) grips()->record_move(*hold_, static_cast<double>(step) / steps, dt_s);
     dispatch(*forces_, particles(), c, {16 * n, 16 * f});
     if (damp_ != nullptr) dispatch(*damp_, particles(), c, {16 * n, 16 * n});

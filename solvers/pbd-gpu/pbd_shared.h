@@ -1,5 +1,5 @@
-// Structs that the host and the shaders share: vec4 and 4-byte scalars only, so
-// that std430 and C++ agree.
+// Structs that the host and the shaders share. Members are vec4 and 4-byte
+// scalars only, so that std430 and C++ have the same layout.
 #ifdef __cplusplus
 #pragma once
 #include <cstdint>
@@ -14,7 +14,7 @@ struct uvec4 {
 };
 #endif
 
-// Numbers of the storage buffers: each is the same in every kernel that has it.
+// Binding numbers of the storage buffers, the same in every kernel.
 const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 2, BIND_VELOCITY_COMPENSATION = 3,
           BIND_REGULARISATION = 4, BIND_LINK_MULTIPLIERS = 5, BIND_HINGE_MULTIPLIERS = 6, BIND_BARRIER = 7,
           BIND_TIMED_OUT = 8, BIND_CHAIN_ENTRIES = 9, BIND_CHAIN_FAMILIES = 10, BIND_TETHER_ENDS = 11, BIND_WELDS = 12,
@@ -25,14 +25,14 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
           BIND_BLOCKS = 33, BIND_NEAR = 34, BIND_PROPOSED = 35, BIND_PART = 36, BIND_PREDICTED = 37, BIND_DELTAS = 38,
           BIND_CONSTRAINTS = 39, BIND_COUNTER = 40, BIND_COUNT = 41;
 
-// Specialization constants: C(number, type, name, standard); number 0 is local_size_x.
+// Specialization constants: C(number, type, name, default); number 0 is local_size_x.
 
-// Of the line kernels of `xpbd`. LANES: threads a chain, a power of two. K: vertices a thread, even where the scene
-// bends. THREADS: of a workgroup. FEATURES: LINES_... TETHERS: rectangles of pinned vertices, column and row << 16 of
-// the first and last. SUBGROUP: threads that exchange by shuffles. BESIDE: neighbouring chains whose threads take
-// turns, so that columns too are read by whole sectors. EXACT: all vertices of all threads are on chains. REGULAR:
-// chains of each family that need `least`, a bit each. PERSISTENT: all workgroups run at once, and wait for one
-// another.
+// Line kernels of `xpbd`. LANES: threads a chain, a power of two. K: vertices a thread, an even number if the scene
+// has bending. THREADS: of a workgroup. FEATURES: LINES_... TETHERS: number of rectangles of pinned vertices; TETHER_n
+// and TETHER_n_LAST: column and row << 16 of the first and last vertex. SUBGROUP: threads that exchange by shuffles.
+// BESIDE: neighbouring chains whose threads alternate, so that columns too are read by whole sectors. EXACT: all
+// vertices of all threads are on chains. REGULAR: bit mask of the chains of each family that need regularisation.
+// PERSISTENT: all workgroups run at once and synchronise by barriers.
 // clang-format off
 #define LINE_CONSTANTS(C) \
   C(1, uint, LANES, 8u) C(2, uint, K, 4u) C(3, uint, COLUMNS, 2u) C(4, uint, ROWS, 2u) C(5, uint, THREADS, 64u) \
@@ -41,17 +41,17 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(14, uint, TETHER_3, 0u) C(15, uint, TETHER_3_LAST, 0u) C(16, uint, SUBGROUP, 1u) C(17, uint, BESIDE, 1u) \
   C(18, bool, EXACT, false) C(19, uint, GRIPS, 0u) C(20, uint, REGULAR_0, 0u) C(21, uint, REGULAR_1, 0u) \
   C(22, uint, REGULAR_2, 0u) C(23, uint, REGULAR_3, 0u) C(24, bool, PERSISTENT, false)
-// Of its chain kernel. TETHERS: a vertex.
+// Chain kernel of `xpbd`. TETHERS: entries a vertex.
 #define CHAIN_CONSTANTS(C) \
   C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, PERSISTENT, false)
-// Of its contact kernels. SAMPLES: on an edge. MOVING: whether any collider moves. LANES: neighbours in a subgroup that
-// hold the same point, a power of two, at most 16.
+// Contact kernels of `xpbd`. SAMPLES: on an edge. MOVING: 1 if any collider moves. LANES: neighbouring threads of a
+// subgroup that share a point, a power of two, at most 16.
 #define CONTACT_CONSTANTS(C) \
   C(1, uint, PLANES, 0u) C(2, uint, SPHERES, 0u) C(3, uint, BOXES, 0u) C(4, uint, CAPSULES, 0u) \
   C(5, uint, FRICTION, 0u) C(6, uint, STANDING_CLUSTERS, 0u) C(7, uint, MOVING_CLUSTERS, 0u) C(8, uint, SAMPLES, 0u) \
   C(9, uint, MOVING, 0u) C(10, uint, LANES, 1u)
 // clang-format on
-// Of the kernels of `paper`. NATIVE: float atomics, with which the count is a float.
+// Kernels of `paper`. NATIVE: float atomics; the count is then a float too.
 #define PAPER_CONSTANTS(C) C(1, uint, FRICTION, 0u) C(2, uint, NATIVE, 0u)
 #ifdef __cplusplus
 #define CLOTHBENCH_MEMBER(number, type, name, standard) uint name = standard;
@@ -88,19 +88,19 @@ struct PaperConstants {
   uint constraints;
   float h;          // step [s]
   float stiffness;  // k of PBD, 0..1
-  float keep;       // velocity share that damping leaves, max(0, 1 - c h)
+  float keep;       // share of velocity left by damping, max(0, 1 - c h)
   uint unused0, unused1, unused2;
 };
 
 /// Push constants of the collision kernels of `paper`.
 struct PaperContactConstants {
   uint particles;
-  uint first, count;              // of the things every particle is tested against
+  uint first, count;              // of the shapes or triangles that every particle is tested against
   float margin, depth, friction;  // of a mesh
 };
 
-// What a scene asks of the line kernels of `xpbd`: bits of their constant
-// FEATURES.
+// Features that a scene needs of the line kernels of `xpbd`: bits of their
+// constant FEATURES.
 #define LINES_DAMPING 1u
 #define LINES_BEND 2u
 #define LINES_SHEAR 4u
@@ -117,10 +117,10 @@ struct LineConstants {
   float tether_stretch;          // 1 + slack
   float rest_u, rest_v, rest_d;  // rest lengths of links [m]
   float alpha_u, alpha_v,
-      alpha_d;           // compliance over h^2 [1/kg] of links, inside
-  float bend_u, bend_v;  // the same of bending
-  float inverse_mass;    // of a vertex inside [1/kg]
-  float regularisation;  // of chains that need it: least alpha over inverse mass
+      alpha_d;           // compliance over h^2 [1/kg] of inner links
+  float bend_u, bend_v;  // the same for bending
+  float inverse_mass;    // of an inner vertex [1/kg]
+  float regularisation;  // least ratio of alpha to inverse mass, for chains that need it
   uint bend_rounds_u, bend_rounds_v;
   uint first_substep, substeps;  // of this dispatch
   float substep_part;            // of a frame
@@ -128,27 +128,27 @@ struct LineConstants {
   uint iterations;
   uint first_pass, passes;  // of this dispatch; each substep has a pass an
                             // iteration and family
-  uint timeout_polls;       // polls of a barrier of the whole dispatch before it times out
+  uint timeout_polls;       // polls of a barrier over the whole dispatch before it times out
   float per_h;              // 1/h
 };
 
-/// A vertex of a chain and the link to the next entry; `rest` below 0: there is
-/// none.
+/// A vertex of a chain and its link to the next entry; no link if `rest` is
+/// below 0.
 struct ChainEntry {
-  uint vertex;           // CHAIN_NO_VERTEX: filling
+  uint vertex;           // CHAIN_NO_VERTEX: padding
   float rest;            // [m]
   float compliance;      // [m/N]
-  float regularisation;  // least compliance over h^2, as a share of the inverse mass
+  float regularisation;  // least ratio of compliance over h^2 to inverse mass
 };
 #define CHAIN_NO_VERTEX 0xffffffffu
 
-/// A vertex that holds another within `reach` [m]; none: reach below 0.
+/// A vertex `to` that keeps another within `reach` [m]; reach below 0: no tether.
 struct TetherEnd {
   uint to;
   float reach;
 };
 
-/// Where a family's entries are, in blocks of a workgroup each.
+/// Range of a family's entries, in blocks of a workgroup each.
 struct ChainRange {
   uint first_entry, blocks, rounds;
   uint unused0;
@@ -161,10 +161,10 @@ struct ChainConstants {
   float loss;          // 1 - exp(-c h)
   float speed_limit;   // [m/s]
   float per_h;         // 1/h
-  uint first_entry;    // of the family, where a dispatch is one
-  uint rounds;         // of cyclic reduction: 2^rounds links or more are in its longest
-                       // chain
-  uint timeout_polls;  // polls of a barrier of the whole dispatch before it times out
+  uint first_entry;    // of the family, if a dispatch solves only one
+  uint rounds;         // of cyclic reduction: 2^rounds is at least the number of links of
+                       // its longest chain
+  uint timeout_polls;  // polls of a barrier over the whole dispatch before it times out
   uint families;
   uint first_pass, passes;  // of this dispatch; each substep has a pass a family
 };
@@ -190,7 +190,7 @@ struct BoxShape {
   uint unused0, unused1;
 };
 
-/// Segment at the frame's start (0) and end (1).
+/// Segment from a to b at the frame's start (0) and end (1).
 struct CapsuleShape {
   vec4 a0;  // w: radius
   vec4 b0;  // w: margin
@@ -221,20 +221,20 @@ struct GripVertex {
 
 struct GripConstants {
   uint count;
-  float fraction;     // of the frame's way
+  float fraction;     // of the path through the frame
   float per_frame_s;  // 1 / frame [1/s]
   uint unused0;
 };
 
-/// Contact of `xpbd`: at most 16 neighbouring triangles of one mesh, and the
-/// box round their way through the frame.
+/// Contact of `xpbd`: at most 16 neighbouring triangles of one mesh. ClusterBox
+/// bounds their path through the frame.
 struct MeshCluster {
   uint first, count;
   float margin, friction;
 };
 
 struct ClusterBox {
-  vec4 low;  // w: how far any of their corners goes in the frame
+  vec4 low;  // w: greatest displacement of any of their corners in the frame
   vec4 high;
 };
 
@@ -245,13 +245,13 @@ struct BoxConstants {
 /// Push constants of the contact kernels of `xpbd`.
 struct ContactConstants {
   uint columns, rows;
-  uint words;         // 32-bit words of clusters a vertex may touch
-  float begin, part;  // where the substep begins and how long it is, as
-                      // fractions of the frame
+  uint words;         // 32-bit words of the mask of clusters a vertex may touch
+  float begin, part;  // start and length of the substep, as fractions of the
+                      // frame
   float frames_per_s;
-  float least_margin_m;   // margins below it count as this
-  float border_margin_m;  // and those round an open border below this as this
-  float reach_m;          // added to the way a vertex may go in the frame
+  float least_margin_m;   // least margin
+  float border_margin_m;  // least margin round an open border
+  float reach_m;          // added to the path length of a vertex in the frame
   float sample_reach_m;   // farthest a sample lies from its first vertex
 };
 
@@ -260,12 +260,12 @@ struct SelfConstants {
   uint columns, rows;
   uint side;  // of a block, in vertices
   uint block_columns, blocks;
-  uint words;  // 32-bit words of blocks that a block may touch
+  uint words;  // 32-bit words of the mask of blocks that a block may touch
   float thickness_m, friction;
   float h;        // substep [s]
-  float reach_m;  // farther apart than this, and what they close in on each
-                  // other, no two pieces concern each other
-  float most_m;   // that a vertex is moved by one round of corrections
+  float reach_m;  // two pieces are tested if they are within this distance
+                  // plus the distance by which they may approach
+  float most_m;   // most that one round of corrections moves a vertex
   uint unused0;
 };
 

@@ -12,8 +12,8 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Most polls of a barrier of the whole dispatch before it times out, at loading and in a frame: some 10 ms and 1 s. A
-/// poll takes some 0.5 us on a GPU and 3 ns on a CPU.
+/// Most polls of a barrier over the whole dispatch before it times out, at loading (some 10 ms) and in a frame (some
+/// 1 s). A poll takes some 0.5 us on a GPU and 3 ns on a CPU.
 struct TimeoutPolls {
   std::uint32_t at_loading, in_a_frame;
 };
@@ -39,24 +39,23 @@ Constants step_constants(const FrameBuilder& frame, double dt_s, int substeps) {
   return c;
 }
 
-/// Is speed limited (LINES_LIMIT_SPEED)? What moves may drive the cloth as fast as it likes, and so may springs that
-/// start stretched.
+/// True if speed is limited (LINES_LIMIT_SPEED). Moving colliders may drive the cloth at any speed, and so may springs
+/// that start stretched.
 inline bool limits_speed(const Scene& s, bool tethered) {
   const bool driven = s.needs.has(Feature::MovingMesh) || s.needs.has(Feature::Capsules);
   return (tethered || starts_crumpled(s)) && !driven;
 }
 
-/// Does the device run all workgroups of this kernel at once (device_barrier.glsl), as tuning.device_barrier has it?
-/// Vulkan does not promise it, so they are asked to pass a grid barrier, without work: all constants 0. With "always"
-/// an Error if not.
+/// True if the device runs all workgroups of this kernel at once (device_barrier.glsl) and tuning.device_barrier allows
+/// it. Vulkan does not guarantee it, so a trial dispatch without work (all constants 0) has to pass a barrier over all
+/// workgroups. With "always" a failed trial is an Error.
 template <class Constants>
 bool runs_at_once(const FrameBuilder& frame, const std::string& kernel_name, std::vector<std::uint32_t> specialization,
                   std::uint32_t threads, vulkan::Groups groups) {
   const std::string wanted = frame.tuning()["device_barrier"];
   const std::shared_ptr<vulkan::Device>& device = frame.device();
   if (!(wanted == "always" || (wanted == "auto" && device->is_discrete()))) return false;
-  constexpr double kTimeout_s =
-      60;  // a trial that takes longer has no device to itself, or none that is well: an error either way
+  constexpr double kTimeout_s = 60;  // a longer trial means that the device is shared or faulty: an error in both cases
   const vulkan::Buffer meeting(device, "meeting", 8, vulkan::Buffer::Place::Device);
   vulkan::Buffer zeros(device, "meeting (initial)", 8, vulkan::Buffer::Place::Host),
       timed_out(device, "timed out", 4, vulkan::Buffer::Place::Host);
@@ -81,7 +80,7 @@ bool runs_at_once(const FrameBuilder& frame, const std::string& kernel_name, std
   return failed == 0;
 }
 
-/// Buffers of the barrier: its counter, and the flag that it timed out.
+/// Adds the buffers of the barrier: its counter, and the flag that it timed out.
 inline void add_meeting(FrameBuilder& frame) {
   frame.add_buffer(BIND_BARRIER, "meeting", 8);
   frame.set_timed_out(frame.add_host_buffer("timed out", 4, BIND_TIMED_OUT));

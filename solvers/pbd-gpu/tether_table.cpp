@@ -29,7 +29,7 @@ Ways ways_of(const Scene& s) {
   return w;
 }
 
-/// Pinned vertices that touch one another, largest groups first.
+/// Connected groups of pinned vertices, largest first.
 std::vector<std::vector<std::uint32_t>> groups_of(const Scene& s, const Ways& ways) {
   std::vector<std::uint8_t> left(s.cloth.vertex_count(), 0);
   for (const std::uint32_t v : s.pins.vertices) left[v] = 1;
@@ -51,7 +51,7 @@ double cross2(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// Is the mesh flat (all z alike) and is its border convex? Then the straight way is the way through the cloth.
+/// True if the mesh is flat (all z alike) with a convex border: the shortest path through the cloth is then straight.
 bool is_convex_sheet(const ClothMesh& m) {
   double low = m.vertices[0][2], high = low, size = 0, area = 0;
   for (const Vec3& x : m.vertices) {
@@ -61,7 +61,7 @@ bool is_convex_sheet(const ClothMesh& m) {
   }
   if (!(high - low <= kFlat * size)) return false;
   for (const auto& t : m.triangles) area += std::abs(cross2(m.vertices[t[0]], m.vertices[t[1]], m.vertices[t[2]])) / 2;
-  // Of all flat shapes round these points only the convex one has the area of their hull (Andrew's monotone chain).
+  // A flat mesh has the area of its convex hull (Andrew's monotone chain) only if its border is convex.
   std::vector<Vec3> points = m.vertices, hull;
   std::sort(points.begin(), points.end());
   for (const int side : {0, 1}) {
@@ -78,7 +78,7 @@ bool is_convex_sheet(const ClothMesh& m) {
   return area >= (1 - 1e-3) * hull_area;
 }
 
-/// The nearest of a group through the cloth, and how far it is at rest: from every vertex.
+/// For every vertex, the nearest vertex of a group and its distance through the cloth at rest.
 class Reach {
  public:
   Reach(const Scene& s, const Ways& ways)
@@ -106,7 +106,7 @@ class Reach {
     return scene_.needs.has(Feature::Shear) ? std::hypot(u, v) : u + v;
   }
 
-  /// Dijkstra 1959 from all of the group at once.
+  /// Shortest paths along edges from all vertices of the group at once (Dijkstra 1959).
   std::vector<TetherEnd> along_edges(const std::vector<std::uint32_t>& group) const {
     std::vector<TetherEnd> out(scene_.cloth.vertex_count(), {0, -1});
     std::vector<double> best(out.size(), std::numeric_limits<double>::infinity());

@@ -10,22 +10,22 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// A margin below this share of the cells' size counts as this: 0.16 mm for a cloth of half a metre and 32 vertices. It
-/// keeps the side of a vertex apart from the rounding of its position. More holds the cloth off visibly.
+/// Least margin as a share of the cells' size: 0.16 mm for a cloth of 0.5 m and 32 vertices. It keeps the side of a
+/// vertex distinct in spite of the rounding of its position. A larger one holds the cloth off visibly.
 constexpr double kLeastMargin = 0.01;
 
-/// Share of the greatest distance between two points of an edge that take part in contact: round an open border half of
-/// it keeps a straight edge off, 1/sqrt(2) an edge that hangs round it at a right angle, and also the corner of a sheet
-/// off the middle of a cell, where there is no point that could feel it.
+/// Least margin round an open border, as a share of the greatest spacing of contact points on an edge. A straight edge
+/// needs 1/2 to stay off the border; an edge bent round it at a right angle needs 1/sqrt(2). The latter also keeps the
+/// corner of a sheet off the middle of a cell, where there is no contact point.
 constexpr double kBorder = 0.72;
 
-/// Cosine of the turn between two triangles from which on their edge is sharp: 15 degrees.
+/// Cosine of 15 degrees, the angle between two triangles' normals above which their edge is sharp.
 constexpr double kFlatTurn = 0.966;
 
 /// Half the thickness of a fingertip.
 constexpr double kFinger_m = 0.008;
 
-/// A bit for each word of clusters, in words.
+/// Words of a mask with one bit for each word of the cluster mask.
 constexpr std::uint32_t blocks_of(std::size_t words) { return static_cast<std::uint32_t>((words + 31) / 32); }
 
 double longer_side(const Cloth& c) { return std::max(c.du(), c.dv()); }
@@ -46,7 +46,7 @@ void split(const std::vector<Vec3>& centroids, std::vector<std::uint32_t>::itera
   std::size_t axis = 0;
   for (std::size_t k = 1; k < 3; ++k)
     if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
-  // Ties by index: the same clusters on every machine.
+  // Ties are broken by index, so that clusters are the same on every machine.
   const auto middle = first + static_cast<std::ptrdiff_t>(count / 2);
   std::nth_element(first, middle, last, [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(centroids[a][axis], a) < std::pair(centroids[b][axis], b);
@@ -61,7 +61,7 @@ void split(const std::vector<Vec3>& centroids, std::vector<std::uint32_t>::itera
 
 std::vector<std::uint32_t> edge_marks(const std::vector<double>& positions,
                                       const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-  // Scans and hands repeat vertices along seams of their textures: one place is one vertex.
+  // Scans and hands repeat vertices along texture seams, so vertices at one position count as one.
   std::map<Vec3, std::uint32_t> places;
   std::vector<std::uint32_t> place;
   for (std::size_t v = 0; v < positions.size(); v += 3)
@@ -90,7 +90,7 @@ std::vector<std::uint32_t> edge_marks(const std::vector<double>& positions,
     for (std::size_t k = 0; k < 3; ++k) {
       Meeting& m = meetings[opposite(t, k)];
       const Vec3 n = normal(t);
-      // A triangle without area has no normal: sharp, to be safe.
+      // A triangle without area has no normal; its edges count as sharp, to be safe.
       if (m.triangles++ == 0)
         m.normal = n;
       else if (!(n[0] * m.normal[0] + n[1] * m.normal[1] + n[2] * m.normal[2] >= kFlatTurn))
@@ -110,7 +110,8 @@ std::uint32_t samples_needed(const Scene& scene, int wanted) {
   const double du = scene.cloth.du(), dv = scene.cloth.dv(), squared = du * du + dv * dv;
   const auto needed = [&](const Collider& c) {
     if (c.shape == Collider::Shape::Plane) return false;
-    // Height over a chord of length l of a circle of radius r: l^2 / 8r, for l well below r; stretched by half, twice.
+    // Height over a chord of length l of a circle of radius r: l^2 / 8r for l well below r; twice that if the cloth is
+    // stretched by half.
     return c.shape != Collider::Shape::Sphere || !(2 * squared / (8 * c.radius_m) <= c.margin_m);
   };
   if (std::none_of(scene.colliders.begin(), scene.colliders.end(), needed)) return 0;
@@ -121,7 +122,7 @@ std::uint32_t samples_needed(const Scene& scene, int wanted) {
     if (c.mesh) finger = std::min(finger, kFinger_m + c.margin_m);
     for (const Capsule& s : c.capsules) finger = std::min(finger, s.radius_m + c.margin_m);
   }
-  // Of points a distance p apart, half a diagonal is the way to the nearest, and as much again where cloth is
+  // If points are a distance p apart, the nearest one is up to half a diagonal away; twice that where the cloth is
   // stretched.
   const double hole = std::sqrt(2.0) * std::max(du, dv);
   std::uint32_t samples = 1;
@@ -156,8 +157,7 @@ XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m,
     stage_broad_ = frame_.add_stage("BroadPhase", meshes);
   stage_contact_ = frame_.add_stage(
       "Contact", scene.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided}), true);
-  // Contact of a margin much thinner than the cells has no float left to work in. (Open borders are held farther off
-  // still.)
+  // A margin much thinner than the cells is below float resolution. (The margin round open borders is larger still.)
   const double least = kLeastMargin * std::min(scene.cloth.du(), scene.cloth.dv());
   std::vector<double> margins;
   for (const Collider& c : scene.colliders) margins.push_back(std::max(c.margin_m, least));
@@ -255,9 +255,9 @@ void XpbdContact::add_kernels() {
   vertices_ = frame_.add_kernel(stage_contact_, "contact_vertices" + variant, kPush, s.by_number());
 }
 
-/// A point runs its proximity query alone where threads are few or work together anyway (a CPU's lanes are points); on
-/// a discrete GPU a small cloth's points do not fill the device, and one thread would read triangle after triangle,
-/// each read waiting for the last.
+/// One thread runs the proximity query of a point where threads are few or a CPU's lanes compute one point each. The
+/// points of a small cloth do not fill a discrete GPU; there one thread would read triangle after triangle, each read
+/// waiting for the previous one.
 std::uint32_t XpbdContact::lanes() const {
   const vulkan::Device& d = *frame_.device();
   const auto request = frame_.tuning()["contact_lanes"].get<std::uint32_t>();
@@ -282,9 +282,9 @@ ContactConstants XpbdContact::constants(double dt_s, int substeps) const {
   k.frames_per_s = static_cast<float>(1 / dt_s);
   k.least_margin_m = static_cast<float>(kLeastMargin * std::min(c.du(), c.dv()));
   k.border_margin_m = static_cast<float>(kBorder * std::hypot(c.du(), c.dv()) / (samples_ + 1));
-  // A vertex at rest may be hit by its neighbours: a cell's length a frame, and gravity's share.
+  // Neighbours may push a vertex at rest by a cell's length a frame, plus the displacement by gravity.
   k.reach_m = static_cast<float>(longer_side(c) + std::hypot(g[0], g[1], g[2]) * dt_s * dt_s);
-  // Half a diagonal to the middle of an edge, and as much again that the sample may lag or the edge be stretched.
+  // Half a diagonal to the middle of an edge; as much again because the sample may lag or the edge be stretched.
   k.sample_reach_m = samples_ > 0 ? static_cast<float>(std::hypot(c.du(), c.dv())) : 0.0f;
   return k;
 }
@@ -306,7 +306,7 @@ void XpbdContact::record_substep(int s, int substeps, double dt_s) {
   k.begin = static_cast<float>(static_cast<double>(s) / substeps);
   const std::vector<float>& w = frame_.inverse_mass_now();
   const std::size_t n = w.size(), columns = k.columns, rows = k.rows;
-  // What is read and written whatever the cloth does; colliders that come near cost more.
+  // Traffic for any shape of the cloth; colliders that come near add to it.
   const double shapes = 32.0 * colliders_.planes.count + 32.0 * colliders_.spheres.count +
                         80.0 * colliders_.boxes.count + 64.0 * colliders_.capsules.count;
   // Later in a frame only vertices that came near a collider search again.

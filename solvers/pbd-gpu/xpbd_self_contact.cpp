@@ -7,15 +7,14 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Rounds of corrections a substep: what one leaves in a pile, the next one finds.
+/// Rounds of corrections a substep: each resolves contacts of a pile that the previous one left.
 constexpr int kRounds = 2;
 
-/// In thicknesses. Contact begins a twentieth outside; what cannot cross is a matter of ways alone. Both as self.glsl
-/// has them.
+/// Reaches in thicknesses, consistent with self.glsl. Contact begins a twentieth of the thickness outside. For crossing
+/// only the displacements matter.
 constexpr float kContactReach = 1.05f, kCrossingReach = 2e-4f;
 
-/// Every block looks at every other once a substep, so there are no more than this, and they are no smaller than two by
-/// two.
+/// Most blocks, because every pair of blocks is compared in each search, and least vertices along a block's side.
 constexpr std::uint32_t kMostBlocks = 4096, kLeastSide = 2;
 
 std::uint32_t blocks_along(int vertices, std::uint32_t side) {
@@ -43,7 +42,7 @@ XpbdSelfContact::XpbdSelfContact(FrameBuilder& frame, const Scene& scene, const 
   starts_ = &frame_.add_buffer(BIND_STARTS, "self-contact starts", n * sizeof(vec4));
   frame_.add_buffer(BIND_BLOCKS, "self-contact blocks", 3 * blocks_ * sizeof(vec4));
   frame_.add_buffer(BIND_NEAR, "self-contact near blocks", std::uint64_t{4} * blocks_ * words_);
-  // Of each vertex one slot, of its two triangles six, of its three edges six.
+  // 13 slots of two vec4 a vertex: one for itself, six for its two triangles, six for its three edges.
   frame_.add_buffer(BIND_PROPOSED, "self-contact corrections", 26 * n * sizeof(vec4));
   frame_.add_buffer(BIND_PART, "self-contact part of the way", 4);
   const auto add = [&](const char* name) { return frame_.add_kernel(stage_, name, sizeof(SelfConstants)); };
@@ -79,18 +78,18 @@ void XpbdSelfContact::record_substep(double h) {
   k.reach_m = kContactReach * k.thickness_m;
   record_search(k);
   for (int round = 0; round < kRounds; ++round) record_round(k);
-  // Ways are others now.
+  // The corrections changed the displacements.
   k.reach_m = kCrossingReach * k.thickness_m;
   record_search(k);
   const double edges = 3 * n - 2.0 * (k.columns + k.rows) + 1;
-  // What every piece reads whatever the cloth does; what is near costs more.
+  // Traffic of every piece for any shape of the cloth; near pieces add to it.
   frame_.dispatch(*certify_, 4 * scene_.cloth.vertex_count(), k, {n * (16 + around) + edges * (32 + around), 0});
   frame_.dispatch(*move_, scene_.cloth.vertex_count(), k, {36 * n, 32 * n});
 }
 
 void XpbdSelfContact::record_search(const SelfConstants& k) {
   const double blocks = blocks_, words = words_;
-  // A block looks at its own vertices and the first ones of the next.
+  // A block reads its own vertices and the first row and column of the next blocks.
   double looked = 0;
   for (uint row = 0; row < k.rows; row += side_)
     for (uint column = 0; column < k.columns; column += side_)

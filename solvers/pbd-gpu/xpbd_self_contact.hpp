@@ -3,18 +3,18 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Contact of the cloth of `xpbd` with itself. It works on positions, velocities and where the vertices were at the
-/// substep's start, and knows nothing of how constraints are solved, nor of colliders: it comes after them and leaves
-/// nothing crossed. README, "Self-collision in xpbd", has the method.
+/// Contact of the cloth of `xpbd` with itself. It works on positions, velocities and the positions at the substep's
+/// start, independently of constraints and colliders. It runs after both, and afterwards no two pieces of the cloth
+/// have crossed. README, "Self-collision in xpbd", has the method.
 class XpbdSelfContact {
  public:
   /// Adds the stages KeepStart and SelfContact, their buffers and kernels. `positions` (.w = inverse mass) and
-  /// velocities hold one vec4 a vertex. Throws Error for what it does not do: triangle meshes, copies.
+  /// velocities hold one vec4 a vertex. Throws Error for what it does not support: triangle meshes, batches.
   XpbdSelfContact(FrameBuilder& frame, const Scene& scene, const vulkan::Buffer& positions);
 
-  /// Start of a frame, before anything moves.
+  /// Call at the start of a frame, before any vertex moves.
   void record_frame();
-  /// End of a substep of `h` seconds.
+  /// Call at the end of a substep of `h` seconds.
   void record_substep(double h);
 
  private:

@@ -18,9 +18,9 @@ class Xpbd final : public GpuSolver {
 
  private:
   void build() override {
-    // The kernel of a whole frame has the masses of an even sheet.
+    // The kernel of a whole frame assumes the masses of an even sheet.
     if (!scene().cloth.mass_factors.empty()) override_setting("one_dispatch", false, "masses are scaled");
-    // The slack of tethers is what an even sheet's own weight stretches.
+    // The slack of tethers is computed from the weight of an even sheet.
     if (!scene().cloth.mass_factors.empty() && scene().material.membrane_stiffness_N_per_m)
       override_setting("tethers", false, "masses are scaled");
     if (wants_chains(scene())) restrict_to_chains();
@@ -34,7 +34,7 @@ class Xpbd final : public GpuSolver {
     const Vec3 origin = scene().cloth.center_m;
     vec4s position, velocity;
     for (std::size_t i = 0; i < w.size(); ++i) {
-      // Relative to the cloth's first centre: a scene far from the world's origin loses no digits.
+      // Relative to the cloth's initial centre, so that a scene far from the world's origin loses no digits.
       const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k] - origin[k]); };
       const auto speed = [&](std::size_t k) { return w[i] > 0 ? static_cast<float>(start_velocity[3 * i + k]) : 0.0f; };
       position.push_back({at(0), at(1), at(2), w[i]});
@@ -71,8 +71,8 @@ class Xpbd final : public GpuSolver {
       leave_out("self-contact", "the cloth of the scene does not touch itself");
   }
 
-  /// What chains do not do: more iterations with multipliers kept, copies, bending, contact between the vertices of a
-  /// mesh.
+  /// Rejects or overrides what chains do not support: several iterations with kept multipliers, batches, bending,
+  /// contact between the vertices of a mesh.
   void restrict_to_chains() {
     if (scene().needs.has(Feature::Bend))
       throw Error(
@@ -83,7 +83,7 @@ class Xpbd final : public GpuSolver {
       override_setting("contact_samples", 0, "the cloth is a triangle mesh: its vertices alone take part in contact");
   }
 
-  /// Inverse masses of particles: what is welded together has one, and is held if any of it is.
+  /// Inverse masses of particles: welded vertices share one, and are held if any of them is.
   static std::vector<float> welded(std::vector<float> w, const ChainCloth& cloth) {
     for (const std::uint32_t v : cloth.welded) {
       float& of = w[cloth.particle[v]];
@@ -110,7 +110,7 @@ class Xpbd final : public GpuSolver {
       return;
     }
     for (int s = 0; s < substeps; ++s) {
-      // First, so that a vertex let go is free in all of its frame.
+      // First, so that a released vertex is free in the whole frame.
       if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
       if (lines_)
         lines_->record(s, 1, substeps, dt_s);
@@ -121,8 +121,8 @@ class Xpbd final : public GpuSolver {
     }
   }
 
-  /// A frame that lasts as long as several (a hitch) takes the substeps of several: a link turns no farther in one of
-  /// them, and nothing is thrown. Past a second it is the simulation that has fallen behind.
+  /// A frame as long as several (a hitch) takes the substeps of several: a link turns no farther in a substep, and no
+  /// vertex is thrown. The substeps of 1 s are the most: in a longer frame the simulation itself has fallen behind.
   int frames_in(double dt_s) const {
     constexpr double kSlack = 1.25, kMost_s = 1;  // jitter is no hitch
     const double frame = scene().time.dt();
@@ -130,11 +130,11 @@ class Xpbd final : public GpuSolver {
     return static_cast<int>(std::ceil(std::min(dt_s, std::max(kMost_s, frame)) / frame - 1e-9));
   }
 
-  static constexpr int kCrumpledSubsteps = 4;  ///< times: with fewer a tangle takes longer than a second
+  static constexpr int kCrumpledSubsteps = 4;  ///< factor; with less a tangle takes longer than 1 s
 
   bool crumpled_ = false;
-  std::unique_ptr<Lines> lines_;    ///< or
-  std::unique_ptr<Chains> chains_;  ///< if links are not all alike
+  std::unique_ptr<Lines> lines_;    ///< if links are all alike
+  std::unique_ptr<Chains> chains_;  ///< else
   std::unique_ptr<XpbdContact> contact_;
   std::unique_ptr<XpbdSelfContact> self_contact_;
   const FrameKernel* move_grips_ = nullptr;

@@ -6,13 +6,12 @@
 namespace clothbench::plugin {
 
 /// The solver in the shared library `path`, loaded once a process and never unloaded. Throws Error naming the file and
-/// what is wrong with it: it does not load or crashes (found out in a child process), another version, sizes that do
-/// not fit, a description that is not complete, a name that is taken.
+/// the fault: it does not load or crashes (tried in a child process), its version differs, its sizes do not fit, its
+/// description is incomplete, or its name is taken.
 const SolverEntry& load(const std::string& path);
 
-/// A solver of a library that this process has loaded or that $CLOTHBENCH_PLUGINS names (paths, parted by colons), to
-/// which `load` adds every path so that processes started from this one know it too. Null if there is none of that
-/// name.
+/// A solver of a library that this process has loaded, or that $CLOTHBENCH_PLUGINS names (paths, separated by colons).
+/// `load` adds every path to that variable, so that child processes find the solver too. Null if none has that name.
 const SolverEntry* find(const std::string& name);
 
 }  // namespace clothbench::plugin

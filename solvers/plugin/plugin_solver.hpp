@@ -7,7 +7,7 @@
 
 namespace clothbench::plugin {
 
-/// Settings as the C interface takes them, in the plugin's order.
+/// Values of the settings for the C interface, in the plugin's order.
 std::vector<double> setting_values(const ClothbenchPlugin&, const nlohmann::json& settings);
 
 FeatureSet features_of(std::uint32_t bits);

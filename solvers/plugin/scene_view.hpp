@@ -7,14 +7,14 @@
 
 namespace clothbench::plugin {
 
-/// A scene as the C interface shows it. The scene must outlive it; it is not to be moved once shown.
+/// A scene in the structs of the C interface. The scene must outlive the view and stay at its address.
 class SceneView {
  public:
   explicit SceneView(const Scene&);
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
   const ClothbenchScene* scene() const { return &view_; }
-  /// The frame's end; valid until the next call. Skins moving meshes, which counts as the solver's time as everywhere.
+  /// The frame's end; valid until the next call. Skins moving meshes, which counts as solver time as in all solvers.
   const ClothbenchFrame* frame(const FrameInput&);
 
  private:

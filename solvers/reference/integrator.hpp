@@ -19,7 +19,7 @@ struct Tolerance {
   double length_m = 0;      ///< of the last correction
 };
 
-/// Factorised saddle-point systems [A G^T; G -D] of one step after another; the pattern is analysed once.
+/// Factorises the saddle-point systems [A G^T; G -D] of successive steps; the sparsity pattern is analysed once.
 class SaddlePoint {
  public:
   void solve(int size, const Triplets& lower, Vector& rhs);
@@ -38,7 +38,7 @@ class Integrator {
   virtual ~Integrator() = default;
   /// Held vertices are at `held_x` (3 * vertices; only their entries count) at the end of the step.
   virtual StepStatus step(State& state, const Vector& held_x, double h) = 0;
-  /// Forgets earlier steps; also after a change of what is held.
+  /// Forgets earlier steps; call it too after a change of the held vertices.
   virtual void restart() { system_.forget(); }
 
  protected:
@@ -47,10 +47,10 @@ class Integrator {
   SaddlePoint system_;
 };
 
-/// BDF2 (the first step backward Euler), positions, velocities and tensions all at the step's end: stiffly accurate,
-/// order 2, damps what it can't resolve. Hairer & Wanner, Solving Ordinary Differential Equations II, V and VII.
+/// BDF2 (first step: backward Euler), positions, velocities and tensions all at the step's end: stiffly accurate,
+/// order 2, damps unresolved frequencies. Hairer & Wanner, Solving Ordinary Differential Equations II, V and VII.
 std::unique_ptr<Integrator> make_bdf2(Model&, Tolerance);
-/// Backward Euler, solved to the end: order 1; what small-step methods lose of energy is measured against it.
+/// Backward Euler, solved to convergence: order 1. The baseline for the energy loss of small-step methods.
 std::unique_ptr<Integrator> make_euler(Model&, Tolerance);
 /// Implicit midpoint with tensions at the midpoint: order 2, conserves momentum, no damping of its own. Compliance > 0.
 std::unique_ptr<Integrator> make_midpoint(Model&, Tolerance);

@@ -11,20 +11,20 @@ namespace clothbench::reference {
 using Vector = Eigen::VectorXd;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// C(x) = |x_b - x_a| - rest, held by a multiplier: C = compliance * lambda, so that compliance 0 is a constraint and
-/// not a large stiffness. lambda [N] is the tension.
+/// C(x) = |x_b - x_a| - rest, with a multiplier: C = compliance * lambda, so that compliance 0 is a constraint and not
+/// a large stiffness. lambda [N] is the tension.
 struct Spring {
   std::uint32_t a, b;
   double rest_m, compliance;
 };
 
-/// E = 1/2 stiffness |x_a - 2 x_b + x_c|^2, of a line of equal cells.
+/// E = 1/2 stiffness |x_a - 2 x_b + x_c|^2, for a line of equal cells.
 struct BendLine {
   std::uint32_t a, b, c;
   double stiffness;  // N/m
 };
 
-/// The discrete cloth: the continuum's maps (README), vertex masses, and which degrees of freedom there are.
+/// The discrete cloth: springs and bending from the continuum (README), vertex masses, and degrees of freedom.
 class Model {
  public:
   explicit Model(const Scene&);
@@ -37,7 +37,7 @@ class Model {
   double damping_per_s() const { return damping_per_s_; }
   const Eigen::Vector3d& gravity() const { return gravity_; }
 
-  /// Lets go of these vertices (all others keep their state); `held` is 1 for vertices whose position is given.
+  /// Sets which vertices are held; all keep their state. `held` is 1 for vertices whose position is given.
   void hold(const std::vector<std::uint8_t>& held);
   bool held(std::size_t vertex) const { return dof_[vertex] < 0; }
   /// First degree of freedom of a free vertex; negative if held.

@@ -28,7 +28,7 @@ void Buffer::create() {
   memory.memoryTypeIndex =
       place_ == Place::Device
           ? device_->memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)
-          // Cached where there is such a type: the host reads positions back through it.
+          // Host-cached memory if there is any, because the host reads positions back through it.
           : device_->memory_type(needs.memoryTypeBits, kMapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
   if (memory.memoryTypeIndex == Device::kNoMemory)
     memory.memoryTypeIndex = device_->memory_type(needs.memoryTypeBits, place_ == Place::Device ? 0 : kMapped);

@@ -84,8 +84,8 @@ void check(VkResult result, const char* call) {
 
 namespace {
 
-/// What a process has made. Kept to its end, and not destroyed then: drivers fail to load again after some hundred
-/// times (NVIDIA 580: VK_ERROR_INCOMPATIBLE_DRIVER), and their own clean-up at exit may come first.
+/// Devices of this process. They are kept to its end and not destroyed then: drivers fail to load again after some
+/// hundred times (NVIDIA 580: VK_ERROR_INCOMPATIBLE_DRIVER), and their own clean-up at exit may come first.
 struct Made {
   std::mutex mutex;
   std::map<std::tuple<int, bool, std::string>, std::shared_ptr<Device>> devices;
@@ -248,7 +248,7 @@ void Device::create_device(Maker* maker) {
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
 
-  // Float atomics are used by one named option of `paper` only; everything else is Vulkan 1.1 core.
+  // Only the setting `atomics` of `paper` uses float atomics; everything else is Vulkan 1.1 core.
   VkPhysicalDeviceShaderAtomicFloatFeaturesEXT atomics{};
   atomics.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_FEATURES_EXT;
   const char* atomic_extension = VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME;
@@ -315,7 +315,7 @@ void Device::release() {
 DeviceInfo Device::info() const {
   DeviceInfo info = describe(physical_);
   if (profile_ == nullptr) return info;
-  // A result under a profile must never pass for one of the device itself.
+  // Results under a profile must not be mistaken for results of the device itself.
   info.name += " [" + profile_->name + "]";
   nlohmann::json j = nlohmann::json::parse(info.properties_json);
   j["device_profile"] = profile_->name;

@@ -13,7 +13,7 @@
 
 namespace clothbench::vulkan {
 
-/// Thrown for a VkResult that is no bad input: lost device, time-out, exhausted memory.
+/// Thrown for a VkResult that bad input does not cause: lost device, time-out, exhausted memory.
 class Failure : public Error {
  public:
   Failure(const char* call, VkResult result);
@@ -27,7 +27,7 @@ class Failure : public Error {
 void check(VkResult result, const char* call);
 
 /// Creates the Vulkan objects of a Device in place of Vulkan itself: an OpenXR runtime adds extensions that it needs
-/// and says which GPU shows its pictures (XR_KHR_vulkan_enable2).
+/// and selects the GPU that drives the headset (XR_KHR_vulkan_enable2).
 class Maker {
  public:
   virtual ~Maker() = default;
@@ -36,15 +36,15 @@ class Maker {
   virtual VkResult create_device(VkPhysicalDevice, const VkDeviceCreateInfo&, VkDevice*) = 0;
 };
 
-/// Instance, device and its one compute queue (Vulkan 1.1 core, no required extension). One a process for each
+/// Instance, device and its one compute queue (Vulkan 1.1 core, no required extension). A process has one for each
 /// (index, validation, profile), shared by all solvers and kept until the process ends.
 class Device {
  public:
   /// The device `options.index`, or the best present: discrete, integrated, virtual, then CPU. Throws Error with
-  /// ExitCode::NoDevice where there is none, and Error where validation is asked for but the layer is missing.
+  /// ExitCode::NoDevice if there is none, and Error if validation is requested but the layer is missing.
   static std::shared_ptr<Device> get(const DeviceOptions& options);
-  /// A new device by `maker`, which `get` gives for these options from now on. `options.index` does not count. Throws
-  /// as `get`.
+  /// Makes a new device by `maker`; from then on `get` returns it for these options. The maker chooses the GPU, not
+  /// `options.index`. Throws as `get`.
   static std::shared_ptr<Device> make(const DeviceOptions& options, Maker& maker);
   static std::vector<DeviceInfo> list();
 
@@ -59,9 +59,9 @@ class Device {
   std::uint32_t queue_family() const { return family_; }
   VkCommandPool command_pool() const { return pool_; }
   VkPipelineCache pipeline_cache() const { return cache_; }
-  /// Writes the pipelines made since the last time to this user's cache, if there are any and it can.
+  /// Writes the pipeline cache to this user's file if pipelines were made since the last write. Failure is no error.
   void keep_pipelines();
-  /// Of the device, cut down to the profile where there is one.
+  /// Limits of the device, reduced to the profile's if there is one.
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
   const Profile* profile() const { return profile_; }  ///< null: the device as it is
   std::uint32_t dispatches_per_submit() const { return profile_ != nullptr ? profile_->dispatches_per_submit : ~0u; }
@@ -82,11 +82,11 @@ class Device {
 
   int validation_messages() const;
   std::vector<std::string> messages() const;  ///< text of the validation layer's warnings and errors so far
-  /// Of all devices this process has had, those of their destruction (leaked objects) included.
+  /// Messages of all devices of this process, those at their destruction (leaked objects) included.
   static int validation_messages_ever();
   void note_message(const char* text);
-  /// From now on every message adds to this count too. Solvers share a device: each names its own count before it uses
-  /// it, so that no other is blamed. Those of making the device are the first one's.
+  /// From now on every message adds to this count too. Solvers share a device, so each sets its own count before it
+  /// uses the device. Messages from making the device go to the first count.
   void count_messages_in(const std::shared_ptr<std::atomic<int>>& count);
 
   /// After VK_ERROR_DEVICE_LOST: `get` makes a new device instead of sharing this one.

@@ -9,9 +9,8 @@
 
 namespace clothbench::vulkan {
 
-/// Everything the VkPhysicalDevice chain of Vulkan 1.1 tells that compute can meet, as DeviceInfo with a JSON of
-/// limits, features, queue families, memory heaps and types, subgroup, identity and driver properties, extensions with
-/// their versions.
+/// All properties of a Vulkan 1.1 physical device that matter to compute, as DeviceInfo. Its JSON has limits, features,
+/// queue families, memory heaps and types, subgroup, identity and driver properties, extensions and their versions.
 DeviceInfo describe(VkPhysicalDevice physical);
 
 /// Every limit of the device.

@@ -9,18 +9,17 @@
 
 namespace clothbench::vulkan {
 
-/// Buffers by the number of their binding, in set 0.
+/// Buffers by binding number, in set 0.
 using Buffers = std::map<std::uint32_t, const Buffer*>;
 
-/// What a kernel does with a buffer, as its code says: readonly, writeonly or neither.
+/// A kernel's access to a buffer, as its code declares it: readonly, writeonly or neither.
 struct Binding {
   std::uint32_t number;
   const Buffer* buffer;
   Access access;
 };
 
-/// One compute pipeline with its buffers bound: of `buffers` those that its code declares. Throws Error where one is
-/// not there.
+/// One compute pipeline, bound to those of `buffers` that its code declares. Throws Error if one of them is missing.
 class Kernel {
  public:
   Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,
@@ -57,9 +56,9 @@ struct Groups {
   bool operator==(const Groups&) const = default;
 };
 
-/// Workgroups for `items` items at `group_size` each: one row, or the fewest equal rows where one would pass the 65535
-/// that every device has. The last row may reach past the items; kernels check. Throws Error past 65535 rows, and past
-/// the 32 bits of a kernel's item number.
+/// Workgroups for `items` items at `group_size` each: one row, or the fewest equal rows if one row would exceed the
+/// 65535 workgroups that every device supports. The last row may exceed the items, so kernels check. Throws Error past
+/// 65535 rows, and past the 32 bits of a kernel's item number.
 Groups groups_for(std::uint64_t items, std::uint32_t group_size);
 
 }  // namespace clothbench::vulkan

@@ -28,7 +28,7 @@ std::filesystem::path pipeline_cache_file(const VkPhysicalDeviceProperties& devi
     folder = std::filesystem::path(cache) / "clothbench";
   else if (const char* home = std::getenv("HOME"); home != nullptr && *home != 0)
     folder = std::filesystem::path(home) / ".cache" / "clothbench";
-  if (folder.empty()) return {};  // CLOTHBENCH_CACHE= too: keep none
+  if (folder.empty()) return {};  // no cache; also if CLOTHBENCH_CACHE is empty
   std::string uuid;
   for (const std::uint8_t byte : device.pipelineCacheUUID) uuid += fmt::format("{:02x}", byte);
   return folder / fmt::format("pipelines-{:04x}-{:04x}-{}.bin", device.vendorID, device.deviceID, uuid);

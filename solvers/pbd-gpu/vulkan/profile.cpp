@@ -21,7 +21,7 @@ constexpr std::uint32_t kModeLocalSize = 17, kDecorationSpecId = 1, kDecorationB
                         kBuiltInWorkgroupSize = 25, kClassWorkgroup = 4;
 const std::set<std::uint32_t> kAtomicFloat = {5612, 5613, 5616, 6033, 6034, 6095};
 
-/// A module's types and constants by id; every instruction is seen once, in order, and ids stand before their uses.
+/// Reads a module's types and constants by id. One pass in order is enough, because ids are defined before their uses.
 class Reader {
  public:
   explicit Reader(const std::vector<std::uint32_t>& specialization) : specialization_(specialization) {}
@@ -100,7 +100,7 @@ class Reader {
     return spec != spec_id_.end() && spec->second < specialization_.size() ? specialization_[spec->second] : standard;
   }
 
-  /// A block or a variable.
+  /// Marks a block or a variable as readonly or writeonly.
   void restrict(std::uint32_t id, std::uint32_t decoration) {
     if (decoration == kDecorationNonWritable) readonly_.insert(id);
     if (decoration == kDecorationNonReadable) writeonly_.insert(id);

@@ -11,8 +11,8 @@ struct SpirV {
   std::size_t bytes;
 };
 
-/// A class of devices that any device can be made to stand in for: limits are cut down to these, kernels that would not
-/// run there are refused, and a frame is split into submissions as short as there.
+/// A class of devices that any device can emulate: its limits are reduced to these, kernels that exceed them are
+/// rejected, and a frame is split into submissions as short as on such a device.
 struct Profile {
   std::string name;
   std::uint32_t shared_memory_B = 0;    ///< of a workgroup
@@ -23,8 +23,8 @@ struct Profile {
 };
 
 /// "adreno-like": what is known of the Adreno 740 of a Quest 3. 32 KiB of shared memory (Mesa, freedreno_devices.py,
-/// cs_shared_mem_size), subgroups of 64 to 128 (gfx-rs/wgpu issue 8801), VK_EXT_shader_atomic_float not confirmed;
-/// groups of at most 256 and 64 dispatches a submission are our own caution. Throws Error naming the known profiles.
+/// cs_shared_mem_size), subgroups of 64 to 128 (gfx-rs/wgpu issue 8801), VK_EXT_shader_atomic_float not confirmed. The
+/// limits of 256 threads a group and 64 dispatches a submission are our precaution. Throws Error naming known profiles.
 const Profile& find_profile(const std::string& name);
 
 /// Names `find_profile` knows.
@@ -32,7 +32,7 @@ std::vector<std::string> profile_names();
 
 enum class Access { Read, Write, ReadWrite };
 
-/// What a compute shader asks of a device and its caller, read from its code. `specialization[k]` is the value of
+/// What a compute shader needs of a device and its caller, read from its code. `specialization[k]` is the value of
 /// constant id k.
 struct ShaderNeeds {
   std::uint32_t group[3] = {1, 1, 1};
@@ -42,7 +42,7 @@ struct ShaderNeeds {
 };
 ShaderNeeds needs_of(SpirV code, const std::vector<std::uint32_t>& specialization);
 
-/// Why a shader would not run under the profile, as text; empty if it would.
+/// Reason why a shader would not run under the profile; empty if it would.
 std::string breach(const Profile&, const ShaderNeeds&);
 
 }  // namespace clothbench::vulkan

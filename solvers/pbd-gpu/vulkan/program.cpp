@@ -69,8 +69,8 @@ void Program::barrier_if_needed(const Touched& next, Unordered& since) {
   const bool hazard =
       meet(before.written, next.read) || meet(before.written, next.written) || meet(before.read, next.written);
   if (hazard) {
-    // Orders what the steps since the last such barrier wrote before what this step reads or writes, and what they read
-    // before what it writes.
+    // Orders the writes of the steps since the last such barrier before the reads and writes of this step, and their
+    // reads before its writes.
     barrier(before.stages, next.stages, accesses(before.stages) & kWrites, accesses(next.stages));
     before = {};
   }
@@ -85,8 +85,8 @@ void Program::timestamp(VkQueryPool queries, std::uint32_t query) {
   if (query_count_ > 0) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries, query);
 }
 
-/// Starts the next submission's command buffer. Submissions to one queue run in order and barriers reach over them, so
-/// a split changes nothing else.
+/// Starts the next submission's command buffer. Submissions to one queue run in order and barriers apply across them,
+/// so a split changes nothing else.
 void Program::begin(Copy& copy) {
   if (submits_.size() == copy.buffers.size()) {
     VkCommandBufferAllocateInfo allocate{};
@@ -142,8 +142,8 @@ void Program::record_copy(std::size_t k) {
 void Program::record_steps(Copy& copy) {
   begin(copy);
   if (query_count_ > 0) vkCmdResetQueryPool(commands_, copy.queries, 0, query_count_);
-  // What earlier submissions wrote or read, before anything here reads or writes it. What the host wrote is visible to
-  // every submission after it.
+  // Orders reads and writes of earlier submissions before those of this one. Host writes are visible to every
+  // submission after them.
   barrier(kWork, kWork, kWrites, kAll);
   timestamp(copy.queries, 0);
   Unordered since;
@@ -170,7 +170,7 @@ void Program::record_steps(Copy& copy) {
     if (time_stages_) timestamp(copy.queries, k + 1);
   }
   if (!time_stages_) timestamp(copy.queries, 1);
-  // What was written for the host, before it reads it.
+  // Makes writes to host buffers visible before the host reads them.
   const bool for_host = std::any_of(steps_.begin(), steps_.end(), [](const Step& s) {
     const Touched t = touched(s);
     return std::any_of(t.written.begin(), t.written.end(),
@@ -201,7 +201,7 @@ void Program::submit(std::size_t k) {
     submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &copy.buffers[s];
-    // The last submission's fence waits for all before it too.
+    // The fence of the last submission covers all earlier ones too.
     const bool last = s + 1 == submits_.size();
     check(vkQueueSubmit(device_->queue(), 1, &submit, last ? copy.fence : VK_NULL_HANDLE), "vkQueueSubmit");
   }

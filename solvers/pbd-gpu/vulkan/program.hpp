@@ -8,8 +8,8 @@
 
 namespace clothbench::vulkan {
 
-/// A frame's work in order: dispatches and copies with their stage. Barriers are placed where a later step touches
-/// what an earlier one wrote, or writes what it read, and nowhere else.
+/// A frame's work in order: dispatches and copies with their stage. Barriers are placed only where a later step reads
+/// or writes what an earlier one wrote, or writes what it read.
 class Program {
  public:
   explicit Program(std::shared_ptr<Device> device);
@@ -26,30 +26,30 @@ class Program {
   void copy(int stage, const Buffer& from, const Buffer& to) { steps_.push_back({stage, nullptr, {}, {}, &from, &to}); }
   void clear() { steps_.clear(); }
 
-  /// Records once; `run` submits the same commands again and again. With `time_stages` a timestamp follows every
-  /// step, else only the first and last are taken.
+  /// Records once; `run` submits the same commands repeatedly. With `time_stages` a timestamp follows every step, else
+  /// only the first and last are taken.
   void record(bool time_stages);
   /// Submits and waits; after a time-out, first waits for the earlier submissions. Throws Failure (VK_TIMEOUT after
   /// `timeout_s`, VK_ERROR_DEVICE_LOST, ...).
   void run(double timeout_s);
 
-  /// Records what was recorded last once more until there are `count` copies, each with commands, a fence and queries
-  /// of its own, so that as many can be in flight at once. Each begins with a barrier against everything before, so
-  /// they run in the order in which they are submitted.
+  /// Repeats the last recording until there are `count` copies, so that as many can be in flight at once. Each copy has
+  /// its own commands, fence and queries. It begins with a barrier against everything before, so copies run in the
+  /// order of submission.
   void need_copies(std::size_t count);
   /// Submits a copy that is not in flight. Throws Failure.
   void submit(std::size_t copy);
   /// Waits until a copy is no longer in flight. Throws as `run`.
   void wait(std::size_t copy, double timeout_s);
 
-  /// Dispatches in each submission: one, or as many as the device profile's dispatches_per_submit asks for.
+  /// Dispatches of each submission; one submission a frame unless the profile's dispatches_per_submit splits it.
   const std::vector<std::uint32_t>& submits() const { return submits_; }
 
   double device_s() const;                        ///< first to last timestamp of the last run; NaN without timestamps
   std::vector<double> stage_s(int stages) const;  ///< summed by stage; NaN unless recorded with time_stages
   int dispatches(int stage) const;
 
-  /// What was recorded, in order, so that a test can tell whether a barrier is missing or there in vain.
+  /// What was recorded, in order, so that a test finds missing and superfluous barriers.
   struct Recorded {
     // A barrier, where `is_barrier`:
     bool is_barrier = false;
@@ -73,16 +73,16 @@ class Program {
     std::set<const Buffer*> read, written;
     VkPipelineStageFlags stages = 0;
   };
-  /// What steps touched that no barrier has yet ordered before a later dispatch, and before a later copy.
+  /// Accesses of steps that no barrier has ordered yet before a later dispatch, and before a later copy.
   struct Unordered {
     Touched for_compute, for_transfer;
   };
   static Touched touched(const Step&);
   void barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written, VkAccessFlags next);
   void barrier_if_needed(const Touched& next, Unordered& since);
-  /// What one submission of the program needs for itself.
+  /// What each submission of the program needs separately.
   struct Copy {
-    std::vector<VkCommandBuffer> buffers;  ///< one a submission, kept from record to record
+    std::vector<VkCommandBuffer> buffers;  ///< one a submission, reused by later recordings
     VkFence fence = VK_NULL_HANDLE;
     VkQueryPool queries = VK_NULL_HANDLE;
     bool in_flight = false;
@@ -97,7 +97,7 @@ class Program {
   std::vector<Step> steps_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;  ///< being recorded
   std::vector<Copy> copies_;
-  std::size_t recorded_copies_ = 0;  ///< the first of them hold what was recorded last
+  std::size_t recorded_copies_ = 0;  ///< this many of the first copies hold the last recording
   std::vector<std::uint32_t> submits_;
   std::uint32_t query_count_ = 0;
   bool time_stages_ = false;
