@@ -29,6 +29,6 @@ stage --show tests 4 env CLOTHBENCH_NO_SKIPS=1 ctest --preset arm64-linux -j "$J
 if [ -n "${ANDROID_NDK:-}" ]; then
   stage android 5 android
 else
-  echo "ANDROID_NDK is not set: the APK for a headset was not built"
+  echo "the APK for a headset was not built, because ANDROID_NDK is not set"
 fi
 print_budget

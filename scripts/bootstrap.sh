@@ -27,7 +27,7 @@ for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' || missing+=("$package")
 done
 if [ ${#missing[@]} -eq 0 ]; then
-  echo "set-up: every package is there"
+  echo "set-up: all packages are installed"
   exit 0
 fi
 echo "set-up: installing ${missing[*]}"

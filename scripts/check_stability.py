@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a stability study must show, from `clothbench --json study` and `clothbench report` of its folder.
+"""Checks the results of a stability study, from `clothbench --json study` and `clothbench report` of its folder.
 
 usage: check_stability.py SUMMARY.json REPORT_FOLDER [SOLVER]
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Gets the room captures, hand meshes and hand poses, pinned by assets-package-lock.json: in a source tree into build/assets/node_modules,
-# else, as installed with the program, into the user's ~/.local/share/clothbench/assets/node_modules (below $XDG_DATA_HOME if that is set).
+# Downloads the room captures, hand meshes and hand poses pinned by assets-package-lock.json. A source tree gets them in
+# build/assets/node_modules; an installed program in the user's ~/.local/share/clothbench/assets/node_modules (below $XDG_DATA_HOME if that is set).
 #   scripts/fetch-assets.sh [--require-assets]
-# Without them clothbench uses procedural stand-ins, so a failure here is one line and exit 0, unless --require-assets.
+# Without them clothbench uses procedural assets, so a failure prints one line and exits with 0; with --require-assets it exits with 1.
 # Nothing from the packages is executed.
 set -euo pipefail
 
@@ -21,7 +21,7 @@ else
 fi
 
 give_up() {
-  echo "assets: $1; clothbench will use its procedural room and hand"
+  echo "assets: $1; clothbench will use procedural rooms and hands"
   exit "$require"
 }
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes an irregular triangle mesh of a square sheet as a Wavefront OBJ: scripts/make_cloth_mesh.py 32 sheet.obj
 
-As many vertices as a grid of N x N, in the plane z = 0 round the origin. Vertices inside are scattered by a third of a run, then
-evened out (Lloyd's algorithm towards the centroids of their neighbours), and joined by Delaunay triangles; the border is even.
+The mesh has as many vertices as a grid of N x N, in the plane z = 0 round the origin. Inner vertices are moved at random by a third of
+a cell, then evened out (Lloyd's algorithm towards the centroids of their neighbours). Delaunay triangles join them; the border is even.
 """
 import argparse
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Runs the benchmark's app on a Quest from this computer: checks and pins the headset, starts the app, samples frame rate,
-memory traffic, clocks and heat while it runs, puts the headset back as it was, fetches the results and merges all of it.
+"""Runs the benchmark's app on a Quest from this computer: checks the headset and fixes its settings, starts the app, samples
+frame rate, memory traffic, clocks and temperatures during the run, restores the settings, fetches the results and merges them.
 
   scripts/quest_run.py "study table3" --apk build/android-arm64/clothbench.apk
 
@@ -34,10 +34,10 @@ def arguments(words):
     p = argparse.ArgumentParser(
         prog="quest_run.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    p.add_argument("command", nargs="?", default="study table3", help="what the app shall run (default: %(default)s)")
-    p.add_argument("--apk", help="install this first")
+    p.add_argument("command", nargs="?", default="study table3", help="command that the app runs (default: %(default)s)")
+    p.add_argument("--apk", help="install this APK before the run")
     p.add_argument("--out", help="new folder for everything that is fetched; default results/runs/quest-<UTC>")
-    p.add_argument("--serial", help="which headset, where several are plugged in")
+    p.add_argument("--serial", help="serial number of the headset, if several are plugged in")
     p.add_argument(
         "--cpu-level", type=int, default=4, choices=range(0, 6), help="default %(default)s; passthrough allows 3"
     )
@@ -45,26 +45,26 @@ def arguments(words):
         "--gpu-level", type=int, default=4, choices=range(0, 6), help="default %(default)s; passthrough allows 2"
     )
     p.add_argument("--refresh-hz", type=float, default=72)
-    p.add_argument("--any-model", action="store_true", help="run on what is not a Quest 3")
+    p.add_argument("--any-model", action="store_true", help="accept models other than Quest 3")
     p.add_argument("--least-charge", type=float, default=30, metavar="PERCENT")
     p.add_argument(
-        "--hottest", type=float, default=40, metavar="CELSIUS", help="battery temperature a run may start at"
+        "--hottest", type=float, default=40, metavar="CELSIUS", help="greatest battery temperature at the start of a run (default %(default)s)"
     )
     p.add_argument("--timeout-s", type=float, default=4 * 3600)
-    p.add_argument("--poll-s", type=float, default=5, help="between looks at battery and heat")
-    p.add_argument("--settle-s", type=float, default=3, help="of the app's start, in which clocks may still move")
-    p.add_argument("--wait-s", type=float, default=60, help="for a headset that went away")
-    p.add_argument("--adb", help="the adb program")
-    p.add_argument("--clothbench", default=os.path.join(ROOT, "build", "release", "clothbench"), help="for the import")
-    p.add_argument("--state", default=default_folder(), help="where what is to be restored is kept meanwhile")
+    p.add_argument("--poll-s", type=float, default=5, help="time between two readings of battery and temperatures (default %(default)s)")
+    p.add_argument("--settle-s", type=float, default=3, help="time after the app's start in which clocks may change (default %(default)s)")
+    p.add_argument("--wait-s", type=float, default=60, help="time to wait for a headset that was unplugged (default %(default)s)")
+    p.add_argument("--adb", help="path of adb; default: from PATH or $ANDROID_HOME")
+    p.add_argument("--clothbench", default=os.path.join(ROOT, "build", "release", "clothbench"), help="path of clothbench, which imports the results")
+    p.add_argument("--state", default=default_folder(), help="folder for the settings to restore")
     p.add_argument(
-        "--restore", action="store_true", help="only put a headset back as it was before a run that was cut off"
+        "--restore", action="store_true", help="only restore the settings of a headset after a run that was cut off"
     )
     return p.parse_args(words)
 
 
 def look(adb, a):
-    """What the headset is and how it does. Raises Problem where a run would not count or not fit."""
+    """Model and state of the headset. Raises Problem if a run would not be valid or its results would not fit on it."""
 
     def prop(name):
         return adb.shell("getprop " + name).strip()
@@ -83,7 +83,7 @@ def look(adb, a):
     )
     if seen["model"] != "Quest 3" and not a.any_model:
         raise BadInput(
-            f"{adb.serial} is a {seen['model'] or 'device without a model'}, not a Quest 3 (--any-model runs on it all the same)"
+            f"{adb.serial} is a {seen['model'] or 'device without a model'}, not a Quest 3 (--any-model accepts it)"
         )
     if not (seen["level"] is not None and seen["level"] >= a.least_charge):
         raise Problem(f"battery at {seen['level']} %: at least {a.least_charge:g} % are needed (--least-charge)")
@@ -294,10 +294,10 @@ def run(a):
     if a.apk and not os.path.isfile(a.apk):
         raise BadInput(f"--apk {a.apk}: no such file")
     if os.path.exists(a.out) and os.listdir(a.out):
-        raise BadInput(f"--out {a.out}: is not empty")
+        raise BadInput(f"--out {a.out}: expected a new or empty folder")
     os.makedirs(a.out, exist_ok=True)
     if shutil.disk_usage(a.out).free < 500e6:
-        raise Problem(f"--out {a.out}: less than 500 MB are free there")
+        raise Problem(f"--out {a.out}: expected 500 MB of free space")
     return measure(adb, a, pins)
 
 

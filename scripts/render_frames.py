@@ -243,7 +243,7 @@ def main():
     runs = [Run(f) for f in a.files]
     labels = a.labels.split(",") if a.labels else [r.label for r in runs]
     if len(labels) != len(runs):
-        parser.error(f"--labels: expected {len(runs)}, one a file")
+        parser.error(f"--labels: expected {len(runs)} names, one for each file")
     view = camera(*(float(v) for v in a.view.split(",")))
     meshes = [[r.meshes(r.frame(t)) for t in times] for r in runs]
     middle, scale = fit([m for row in meshes for m in row], view, runs[0])

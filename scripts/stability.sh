@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# The full stability study, in as many calls as it takes: each stops by itself, the next goes on where it stopped.
+# The full stability study in several calls: each stops after SECONDS, and the next continues there.
 #   scripts/stability.sh OUT [SECONDS [SOLVER…]]    default: 520 s; xpbd and paper
-# Exit status 0: all there, with its report in OUT/report; 75: call again. Nothing is timed, so processes run side by side: JOBS, by default
-# one a core but two.
+# Exit status 0: complete, with its report in OUT/report; 75: call again. Nothing is timed, so JOBS processes run side by side; by default
+# two fewer than there are cores.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out=${1:?folder for the results}
@@ -19,6 +19,6 @@ timeout --foreground -s INT "$seconds" build/release/clothbench study stability 
 tail -1 "$out.log"
 case $status in
 0) build/release/clothbench report "$out" -o "$out/report" ;;
-124 | 130) echo "stopped after $seconds s: call again"; exit 75 ;;
+124 | 130) echo "stopped after $seconds s; call again to continue"; exit 75 ;;
 *) exit "$status" ;;
 esac

@@ -24,14 +24,19 @@ build() {
 # One more than the machine has cores: some tests wait for a clock or another program.
 tests() { ctest --test-dir build/release --output-on-failure -j $((JOBS + 1)) "${selection[@]}"; }
 
-# What penetrates what, against the committed baseline; gates nothing that depends on the machine's speed.
-penetration() {
-  local baseline=results/baselines/penetration.json out=build/penetration-quick
+# A study's short form against its committed baseline; gates nothing that depends on the machine's speed.
+#   against_baseline STUDY OPTIONS...
+against_baseline() {
+  local study=$1 out=build/$1-quick
+  shift
   rm -rf "$out"
-  build/release/clothbench study penetration --quick --out "$out" >"$out.txt" || { tail -20 "$out.txt"; return 1; }
+  build/release/clothbench study "$study" --quick --out "$out" "$@" >"$out.txt" || { tail -20 "$out.txt"; return 1; }
   tail -1 "$out.txt"
-  build/release/clothbench check "$out" --baseline "$baseline" --junit build/penetration-quick.xml
+  build/release/clothbench check "$out" --baseline "results/baselines/$study.json" --junit "$out.xml"
 }
+
+# What penetrates what: the published scenes, and scenes drawn by fixed seeds.
+contact() { against_baseline penetration && against_baseline contact --seed 1 --jobs "$JOBS"; }
 
 # Stiff and extreme cases: every run ends in a row, whatever happens to the solver, and none of its processes dies.
 stability() {
@@ -57,9 +62,9 @@ esac
 stage set-up 3 scripts/bootstrap.sh --tests
 stage assets 1 scripts/fetch-assets.sh
 stage build 9 build
-stage --show tests 7 tests
+stage --show tests 8 tests
 if [ "$tier" != short ]; then
-  stage contact 3 penetration
+  stage contact 4 contact
   stage stability 3 stability
 fi
 print_budget

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes what documents and the scenes' schema say of metrics and scalars from the program's registry of them: the tables of
+"""Writes the tables of metrics and scalars in documents and in the scene schema from the program's registry: the tables of
 harness/metrics/REGISTRY.md and results/baselines/README.md between their markers, and the names under `expect` of
 scenarios/schema/scene.schema.json. With --check nothing is written, and it fails if any of them is not so already.
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the short Table 3 of README.md from the published reports: frames per second, GPU time and stretch by resolution.
 
-usage: update_readme.py [--check]     --check: write nothing, and fail if the README is not so already
+usage: update_readme.py [--check]     --check: write nothing; fail if the README would change
 """
 import pathlib
 import re
@@ -52,7 +52,7 @@ def short_table():
     place = SPEED.parent.relative_to(ROOT).as_posix()
     return "\n".join([
         f"Measured: {device} ([all tables]({place}/report.md), [stretch](results/reference/hang-h200/report.md)).", "", *lines, "",
-        "Published: Quest 3, rendering included, values to the unit. Ours: simulation alone, median of five trials. `bullet-soft` "
+        "Published: Quest 3, with rendering, rounded to whole frames. Ours: without rendering, median of five trials. `bullet-soft` "
         "is not in the study of hanging sheets."])
 
 

@@ -44,7 +44,7 @@ std::vector<Entry> parse_index(const std::string& text) {
                               number, line));
     entries.push_back(std::move(e));
   }
-  if (entries.empty()) throw Error(fmt::format("assets: {}: it is empty", kIndex));
+  if (entries.empty()) throw Error(fmt::format("assets: {}: the file is empty", kIndex));
   return entries;
 }
 
@@ -52,7 +52,7 @@ std::vector<Entry> parse_index(const std::string& text) {
 
 void unpack_assets(const AssetReader& read, const fs::path& to) {
   const auto index = read(kIndex);
-  if (!index) throw Error(fmt::format("assets: {} is not among them", kIndex));
+  if (!index) throw Error(fmt::format("assets: {}: expected this file in the package", kIndex));
   {
     std::ifstream in(to / kIndex, std::ios::binary);
     std::ostringstream before;
@@ -65,7 +65,7 @@ void unpack_assets(const AssetReader& read, const fs::path& to) {
     const auto content = read(e.path);
     if (!content) throw Error(fmt::format("assets: {}: missing", e.path));
     if (content->size() != e.bytes || sha256(*content) != e.sha256)
-      throw Error(fmt::format("assets: {}: {} bytes that are not those of the index ({} bytes)", e.path,
+      throw Error(fmt::format("assets: {}: {} bytes, which differ from the file in the index ({} bytes)", e.path,
                               content->size(), e.bytes));
     fs::create_directories((to / e.path).parent_path());
     write_file_atomically(to / e.path, *content);

@@ -26,7 +26,7 @@ constexpr std::uintmax_t kMostBytes = 64u << 20;
 template <class List>
 const auto& pick(const List& list, int index, const std::string& source, const char* what) {
   if (index < 0 || static_cast<std::size_t>(index) >= list.size())
-    fail(source, fmt::format("/{}: index {}, but there are {}", what, index, list.size()));
+    fail(source, fmt::format("/{}: index {}: expected less than {}", what, index, list.size()));
   return list[static_cast<std::size_t>(index)];
 }
 
@@ -43,10 +43,10 @@ std::vector<double> numbers(const tinygltf::Model& model, int index, int type, s
   const auto& accessor = pick(model.accessors, index, source, "accessors");
   const std::string where = fmt::format("/accessors/{}", index);
   if (accessor.type != type || std::find(kinds.begin(), kinds.end(), accessor.componentType) == kinds.end())
-    fail(source, fmt::format("{}: type {} of component type {} is not what a hand has here", where, accessor.type,
-                             accessor.componentType));
+    fail(source, fmt::format("{}: type {} of component type {}: expected the types of a WebXR hand model", where,
+                             accessor.type, accessor.componentType));
   if (accessor.sparse.isSparse || accessor.normalized)
-    fail(source, where + ": sparse and normalized accessors are not read");
+    fail(source, where + ": expected an accessor that is neither sparse nor normalized");
   const auto& view = pick(model.bufferViews, accessor.bufferView, source, "bufferViews");
   const auto& buffer = pick(model.buffers, view.buffer, source, "buffers");
   const auto components = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
@@ -57,7 +57,7 @@ std::vector<double> numbers(const tinygltf::Model& model, int index, int type, s
   if (view.byteOffset > size || view.byteLength > size - view.byteOffset || accessor.byteOffset > view.byteLength ||
       stride < row || stride > 252 || accessor.count == 0 || accessor.count > view.byteLength ||
       accessor.byteOffset + (accessor.count - 1) * stride + row > view.byteLength)
-    fail(source, where + ": reaches beyond its buffer view, or is empty");
+    fail(source, where + ": expected at least one item and no more than its buffer view holds");
   std::vector<double> out;
   out.reserve(accessor.count * components);
   for (std::size_t i = 0; i < accessor.count; ++i)
@@ -145,7 +145,7 @@ std::vector<std::uint8_t> read_skin(const tinygltf::Model& model, SkinnedMesh& h
   const auto inverse =
       numbers(model, skin.inverseBindMatrices, TINYGLTF_TYPE_MAT4, {TINYGLTF_COMPONENT_TYPE_FLOAT}, source);
   if (inverse.size() != 16 * skin.joints.size())
-    fail(source, "/skins/0: as many inverse bind matrices as joints expected");
+    fail(source, "/skins/0: expected one inverse bind matrix for each joint");
   const auto world = world_transforms(model, source);
   std::vector<std::uint8_t> joints;
   std::array<bool, kJointCount> seen{};
@@ -187,7 +187,7 @@ SkinnedMesh parse_hand_glb(const std::vector<std::uint8_t>& bytes, const std::st
   const auto indices = numbers(model, primitive.indices, TINYGLTF_TYPE_SCALAR, {u8, u16, u32}, source);
   const std::size_t count = hand.stored_vertices = positions.size() / 3;
   if (joints.size() != 4 * count || weights.size() != 4 * count || indices.size() % 3 != 0)
-    fail(source, "/meshes/0/primitives/0: joints, weights and indices do not fit the positions");
+    fail(source, "/meshes/0/primitives/0: expected joints and weights for each position, and indices in threes");
 
   std::map<std::array<double, 3>, std::uint32_t> places;
   std::vector<std::uint32_t> welded(count);
@@ -223,7 +223,7 @@ SkinnedMesh read_hand_glb(const std::filesystem::path& path) {
   if (!in) throw Error(path.string() + ": cannot be opened");
   std::error_code ec;
   const auto size = std::filesystem::file_size(path, ec);
-  if (ec || size > kMostBytes) throw Error(path.string() + ": not a file of at most 64 MiB");
+  if (ec || size > kMostBytes) throw Error(path.string() + ": expected a regular file of at most 64 MiB");
   std::vector<std::uint8_t> bytes(size);
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
   if (!in) throw Error(path.string() + ": cannot be read");

@@ -126,7 +126,7 @@ bool usable(const RecordedHand& hand) {
 }
 
 RecordedHand HandRecording::at(double time_s) const {
-  if (!std::isfinite(time_s)) throw Error("hand recording: asked for a time that is not finite");
+  if (!std::isfinite(time_s)) throw Error("hand recording: argument time_s: expected a finite time");
   constexpr double kSame = 1e-6;  // of a frame: times are whole frames up to rounding
   const double frame = std::clamp(time_s * frame_rate_hz, 0.0, static_cast<double>(frames.size() - 1));
   const auto nearest = static_cast<std::size_t>(std::lround(frame));
@@ -202,8 +202,10 @@ std::string to_json(const HandRecording& r, const std::string& why) {
 RecordedMesh welded(RecordedMesh given, const std::string& source) {
   const std::size_t count = given.positions_m.size() / 3;
   if (count == 0 || given.positions_m.size() % 3 != 0 || given.joints.size() != count || given.weights.size() != count)
-    throw Error(fmt::format("{}: hand mesh: {} coordinates, joints of {} vertices, weights of {}: they do not fit",
-                            source, given.positions_m.size(), given.joints.size(), given.weights.size()));
+    throw Error(
+        fmt::format("{}: hand mesh: {} coordinates, joints of {} vertices, weights of {}: expected the same number of "
+                    "vertices in each",
+                    source, given.positions_m.size(), given.joints.size(), given.weights.size()));
   RecordedMesh out;
   out.bind = given.bind;
   for (std::size_t k = 0; k < out.bind.size(); ++k)
@@ -246,7 +248,7 @@ RecordedMesh welded(RecordedMesh given, const std::string& source) {
     if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
       out.triangles.push_back(corners);
   }
-  if (out.triangles.empty()) throw Error(source + ": hand mesh: it has no triangles");
+  if (out.triangles.empty()) throw Error(source + ": hand mesh: expected at least one triangle");
   return out;
 }
 

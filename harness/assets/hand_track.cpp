@@ -24,7 +24,7 @@ void read_pose(const JsonAt& at, HandKey& key, bool first) {
   const std::vector<std::string> known(kPoseNames.begin(), kPoseNames.end());
   const auto pose = at.maybe("pose"), blend = at.maybe("blend");
   if (!pose && first) at.fail("\"pose\" is missing; the first key must have one");
-  if (!pose && blend) blend->fail("stands without \"pose\"");
+  if (!pose && blend) blend->fail("expected \"pose\" beside it");
   if (!pose) return;
   key.pose = pose->word(known);
   key.blend_to.clear();
@@ -106,25 +106,26 @@ HandTrack retimed(HandTrack track, double speed_m_per_s) {
   for (std::size_t i = 0; i + 1 < track.keys.size(); ++i) {
     const HandKey& key = track.keys[i];
     const double before_s = track.keys[i + 1].time_s - (key.time_s - shift_s),
-                 way = (track.keys[i + 1].position_m - key.position_m).norm();
-    if (key.sweep && !(way > 0))
+                 distance_m = (track.keys[i + 1].position_m - key.position_m).norm();
+    if (key.sweep && !(distance_m > 0))
       throw Error(fmt::format("hand track: key {} is a sweep, but the next key is in the same place", i));
-    const double takes_s = key.sweep ? way / speed_m_per_s : before_s;
+    const double takes_s = key.sweep ? distance_m / speed_m_per_s : before_s;
     any = any || key.sweep;
     shift_s += takes_s - before_s;
     track.keys[i + 1].time_s += shift_s;
   }
-  if (!any) throw Error("hand track: none of its keys is a \"sweep\", so there is nothing to go at another speed");
+  if (!any) throw Error("hand track: expected a key with \"sweep\", whose speed can be changed");
   if (!(track.duration_s() <= kMostSeconds))
-    throw Error(fmt::format("hand track: at {} m/s it takes {} s, more than {}", speed_m_per_s, track.duration_s(),
-                            kMostSeconds));
+    throw Error(fmt::format("hand track: at {} m/s it takes {} s: expected at most {}", speed_m_per_s,
+                            track.duration_s(), kMostSeconds));
   return track;
 }
 
 HandSample sample(const HandTrack& track, const Hand& hand, double time_s) {
   if (track.side != hand.side)
-    throw Error(fmt::format("hand track: it is for the {} hand, not the {}", name_of(track.side), name_of(hand.side)));
-  if (!std::isfinite(time_s)) throw Error("hand track: asked for a time that is not finite");
+    throw Error(fmt::format("hand track: it is of the {} hand: expected one of the {} hand", name_of(track.side),
+                            name_of(hand.side)));
+  if (!std::isfinite(time_s)) throw Error("hand track: argument time_s: expected a finite time");
   std::size_t next = 0;
   while (next < track.keys.size() && track.keys[next].time_s <= time_s) ++next;
   const HandKey& a = track.keys[next == 0 ? 0 : next - 1];

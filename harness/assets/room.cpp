@@ -156,7 +156,7 @@ Room parse_room(const std::string& text, const std::string& source, const std::s
     if (const auto box = entity.maybe("bounded3D_META")) room.tables.push_back(table_at(entity, *box));
     if (const auto flat = entity.maybe("bounded2D_META")) tops.push_back(rectangle_at(entity, *flat));
   }
-  if (room.mesh.triangles.empty()) entities.fail("no entity has triangleMesh_META: there is no scanned mesh");
+  if (room.mesh.triangles.empty()) entities.fail("expected an entity with triangleMesh_META, the scanned mesh");
   pair_tops(room.tables, tops);
   room.zero_area_triangles = count_zero_area(room.mesh);
   return room;

@@ -57,7 +57,7 @@ SubMesh cut(const TriangleMesh& mesh, const Box& box, CutMode mode) {
 Box box_of(const std::array<Vector, 6>& points) {
   Box box;
   for (const Vector& p : points) {
-    if (!p.allFinite()) throw Error("sub-mesh box: one of the six points is not finite");
+    if (!p.allFinite()) throw Error("sub-mesh box: expected six finite points");
     box.extend(p);
   }
   return box;

@@ -52,7 +52,7 @@ class Strict : public nlohmann::json_sax<json> {
     if (keys_.back().insert(k).second) return true;
     std::string pointer;
     for (const std::string& p : path_) pointer += "/" + p;
-    throw Error(source_ + ": " + pointer + ": this key stands twice");
+    throw Error(source_ + ": " + pointer + ": this key occurs twice; expected it once");
   }
   bool parse_error(std::size_t byte, const std::string&, const nlohmann::detail::exception& e) override {
     const std::string what = e.what();

@@ -98,7 +98,8 @@ json complete_settings(const SolverInfo& info, const json& given) {
       throw Error(
           fmt::format("solver {}: setting {}: expected {}; found {}", info.name, path, kind(of[key]), value.dump()));
     if (seen.emplace(key, value).first.value() != value)
-      throw Error(fmt::format("solver {}: setting {}: given twice, and not alike", info.name, path));
+      throw Error(
+          fmt::format("solver {}: setting {}: given twice with different values; expected one value", info.name, path));
     of[key] = value;
   };
   std::string moved;

@@ -8,13 +8,16 @@ namespace clothbench {
 /// Width of the terminal [characters] that tables and their notes must fit.
 inline constexpr std::size_t kConsoleColumns = 120;
 
-/// A table of text, printed for the terminal or as Markdown. The first row of cells is the header.
+/// A table of text, printed for the terminal, as Markdown or as LaTeX. The first row of cells is the header.
 struct Table {
   std::string title, note;
   std::vector<std::vector<std::string>> rows;
   bool in_full = false;  ///< a detailed table, for files and the page only, not for the terminal
 
   std::string markdown() const;
+  /// A `table` environment for LaTeX with the package booktabs: the title as its caption, the note below the rows. Only
+  /// characters that LaTeX knows without further packages.
+  std::string latex() const;
   /// Columns beyond kConsoleColumns follow below, with the first two columns repeated. The note is wrapped. Verdicts
   /// are coloured if colour is on (base/tint.hpp).
   std::string console() const;

@@ -110,7 +110,7 @@ Baseline read_baseline(const std::filesystem::path& file) {
     const std::string where = fmt::format("{}: /runs/{}", source, k);
     b.runs.push_back(run_from(j["runs"][k], where));
     if (!seen.insert(b.runs.back().key).second)
-      throw Error(where + ": this run stands twice: " + b.runs.back().key.text());
+      throw Error(where + ": this run occurs twice; expected it once: " + b.runs.back().key.text());
   }
   std::sort(b.runs.begin(), b.runs.end(), [](const BaselineRun& x, const BaselineRun& y) { return x.key < y.key; });
   return b;

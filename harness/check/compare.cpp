@@ -29,7 +29,7 @@ std::map<std::string, Found> by_name(const std::vector<RunRecord>& runs) {
       found.missing = &c;
       continue;
     }
-    if (seen[key]++ > 0) throw Error(key.text() + ": stands twice among the results; give each run once");
+    if (seen[key]++ > 0) throw Error(key.text() + ": this run occurs twice among the results; give each run once");
     found.records.push_back(&c);
   }
   return out;
@@ -60,15 +60,20 @@ Finding missing(const Found& found) {
 
 std::string kind(const std::string& assets) { return assets.empty() ? "unnamed" : assets; }
 
-/// No verdict is made of two rules.
+/// No verdict is made of two scenes or two rules.
 void refuse_other_versions(const BaselineRun& was, const BaselineRun& is) {
+  if (was.scenario_sha256 != is.scenario_sha256)
+    throw Error(fmt::format(
+        "{}: the baseline has another version of the scene (SHA-256 of the completed scenario: {} in the baseline, {} "
+        "in the result); the two cannot be compared. Accept the result with `clothbench check RUNS --baseline FILE "
+        "--update`, or repeat the run with the scene the baseline was made with",
+        is.key.text(), was.scenario_sha256.substr(0, 12), is.scenario_sha256.substr(0, 12)));
   for (const VersionDifference& v : version_differences(was, is))
-    throw Error(
-        fmt::format("{}: metric {}: the baseline has version {} of its rule, the result version {}; the two cannot be "
-                    "compared. Accept the "
-                    "result with `clothbench check RUNS --baseline FILE --update`, or repeat the run with the "
-                    "program the baseline was made with",
-                    is.key.text(), v.metric, v.baseline, v.found));
+    throw Error(fmt::format(
+        "{}: metric {}: the baseline has version {} of its definition, the result version {}; the two cannot "
+        "be compared. Accept the result with `clothbench check RUNS --baseline FILE --update`, or repeat the "
+        "run with the program the baseline was made with",
+        is.key.text(), v.metric, v.baseline, v.found));
 }
 
 class Check {
@@ -194,7 +199,7 @@ Checked check_runs(const Baseline& baseline, const std::vector<RunRecord>& runs)
 Updated update_baseline(const Baseline& old, const std::vector<RunRecord>& runs, BaselineOrigin origin) {
   const auto results = by_name(runs);
   const auto entries = by_name(old);
-  if (runs.empty()) throw Error("--update: no run among the results");
+  if (runs.empty()) throw Error("--update: expected results with at least one run");
   Updated out;
   out.baseline.origin = std::move(origin);
   for (const auto& [name, found] : results) {

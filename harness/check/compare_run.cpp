@@ -76,7 +76,8 @@ std::vector<Finding> compare_trials(const RunRecord& r) {
       const std::vector<double>&a = r.trials[i].frame_wall_s, &b = r.trials[j].frame_wall_s;
       const bool varies = std::any_of(a.begin(), a.end(), [&](double t) { return t != a.front(); });
       if (varies && a == b)
-        return {{Verdict::Failed, "trials", "each timed anew", fmt::format("trial {} repeats trial {}", i, j), "", ""}};
+        return {{Verdict::Failed, "trials", "each trial timed separately",
+                 fmt::format("trial {} repeats trial {}", i, j), "", ""}};
     }
   return {};
 }
@@ -148,8 +149,8 @@ std::vector<Finding> compare_run(const BaselineRun& was, const RunRecord& record
   const BaselineRun is = gated_part(record);
   if (was.scenario_sha256 != is.scenario_sha256)
     return {{Verdict::Failed, "scene", was.scenario_sha256.substr(0, 12), is.scenario_sha256.substr(0, 12), "",
-             "the scene changed (SHA-256 of the completed scenario); if that was meant, rewrite the baseline with "
-             "--update"}};
+             "the scene changed (SHA-256 of the completed scenario); if this is intended, write the baseline "
+             "again with --update"}};
   std::vector<Finding> out = compare_outcome(was, is, record.outcome.message);
   if (was.status != is.status) return out;
   for (const auto& part :

@@ -51,7 +51,7 @@ std::string github_commands(const Checked& checked, const std::string& file) {
     append(improved, Verdict::Improved);
     append(fresh, Verdict::New);
   }
-  if (!improved.empty()) out += command("notice", file, "better than the baseline: accept with --update", improved);
+  if (!improved.empty()) out += command("notice", file, "better than the baseline; --update accepts it", improved);
   if (!fresh.empty()) out += command("notice", file, "not in the baseline", fresh);
   return out;
 }

@@ -51,14 +51,14 @@ std::string runs_word(std::size_t n) { return fmt::format("{} run{}", n, n == 1 
 }  // namespace
 
 std::string check_text(const Checked& checked, const std::string& file) {
-  std::string out = findings_text("Not as in " + file, checked.runs, word_for(Verdict::Failed));
+  std::string out = findings_text("Different from " + file, checked.runs, word_for(Verdict::Failed));
   out += fmt::format("check {}: {}: {} failed, {} improved, {} new, {} as in {}",
                      checked.passed() ? tinted(Tone::Good, "passed") : tinted(Tone::Bad, "FAILED"),
                      runs_word(checked.runs.size()), checked.count(Verdict::Failed), checked.count(Verdict::Improved),
                      checked.count(Verdict::New), checked.count(Verdict::Same), file);
   if (checked.other_assets > 0)
-    out += fmt::format("; {} more of the baseline stand for other assets", runs_word(checked.other_assets));
-  if (checked.passed() && checked.count(Verdict::Improved) > 0) out += "; accept what improved with --update";
+    out += fmt::format("; {} more in the baseline are for other assets", runs_word(checked.other_assets));
+  if (checked.passed() && checked.count(Verdict::Improved) > 0) out += "; --update accepts the improved ones";
   return out + "\n";
 }
 

@@ -67,7 +67,7 @@ void add_bench(CLI::App& app, Console& console) {
   auto& study_name = console.arguments<std::string>();
   study_name = "table3";
   CLI::App* cmd =
-      app.add_subcommand("bench", "The runs of a study under Google Benchmark; takes its --benchmark_… flags");
+      app.add_subcommand("bench", "Time the runs of a study with Google Benchmark; accepts its --benchmark_… flags");
   cmd->add_option("--study", study_name, "Study")->capture_default_str();
   flags.add_to(*cmd);
   // Google Benchmark reads what this command does not know; without this the words would go to the parent command.
@@ -103,8 +103,8 @@ void add_bench(CLI::App& app, Console& console) {
     const std::size_t matched = benchmark::RunSpecifiedBenchmarks();
     benchmark::Shutdown();
     if (matched == 0)
-      throw Error("bench: no run of study " + study.name +
-                  " that a solver of this build can run matches --benchmark_filter");
+      throw Error("bench: --benchmark_filter matches no run of study " + study.name +
+                  " that a solver of this build supports");
   });
 }
 

@@ -79,16 +79,19 @@ void check(const CheckArguments& a, const std::vector<RunRecord>& runs, Console&
 void add_check(CLI::App& app, Console& console) {
   CheckArguments& a = console.arguments<CheckArguments>();
   CLI::App* cmd = app.add_subcommand(
-      "check", "Compare results with a baseline: outcome, stages, dispatches, error, penetration; never times");
+      "check",
+      "Compare results with a baseline: outcome, stages, dispatches, error, penetration; times are not "
+      "compared");
   cmd->add_option("runs", a.runs, "Study folders or result files")->required();
   cmd->add_option("--baseline", a.baseline, "Baseline file, such as results/baselines/penetration.json")->required();
   CLI::Option* rewrite =
-      cmd->add_flag("--update", a.update, "Rewrite the baseline from these results and say what changed");
-  cmd->add_option("--junit", a.junit, "Also write JUnit XML, one test case a run")->excludes(rewrite);
+      cmd->add_flag("--update", a.update, "Write the baseline again from these results and print what changed");
+  cmd->add_option("--junit", a.junit, "Also write JUnit XML with one test case per run")->excludes(rewrite);
   cmd->add_flag("--github", a.github, "Also print annotations for GitHub Actions")->excludes(rewrite);
   cmd->footer(
-      "Exit codes: 0 as in the baseline or better, 1 something is worse or missing, 2 bad input.\n"
-      "Example: clothbench check results/runs/mine --baseline results/baselines/penetration.json --junit check.xml");
+      "Exit codes: 0 every run is as in the baseline or better, 1 a run is worse or missing, 2 bad "
+      "input.\nExample: clothbench check results/runs/mine --baseline results/baselines/penetration.json "
+      "--junit check.xml");
   cmd->callback([&console, &a] {
     const std::vector<fs::path> folders(a.runs.begin(), a.runs.end());
     if (!a.junit.empty() && fs::is_regular_file(a.junit))

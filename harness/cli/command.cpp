@@ -4,6 +4,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 
@@ -68,6 +69,51 @@ void write_between_marks(const std::string& file, const std::string& name, const
   write_file_atomically(file, all);
 }
 
+ChosenSolver chosen_solver(const std::string& name, const Overrides& overrides) {
+  const SolverEntry& entry = find_solver(name);
+  return {&entry, complete_settings(entry.info, overrides.solver), overrides.label()};
+}
+
+std::vector<std::string> solver_names(bool (*are)(const SolverInfo&)) {
+  std::vector<std::string> names;
+  for (const SolverEntry& e : solvers())
+    if (are == nullptr || are(e.info)) names.push_back(e.info.name);
+  return names;
+}
+
+std::vector<std::string> scene_names(const std::vector<std::string>& folders) {
+  std::vector<std::string> names;
+  const std::filesystem::path root = scenario_root();
+  for (const std::string& folder : folders) {
+    if (!std::filesystem::exists(root / folder)) continue;
+    const std::size_t first = names.size();
+    for (const auto& file : std::filesystem::recursive_directory_iterator(root / folder))
+      if (file.path().extension() == ".json")
+        names.push_back(std::filesystem::relative(file.path(), root).replace_extension().string());
+    std::sort(names.begin() + static_cast<std::ptrdiff_t>(first), names.end());
+  }
+  return names;
+}
+
+void SolverFlags::add_to(CLI::App& app, const std::string& option, const std::string& help,
+                         const std::string& set_help) {
+  add_solvers(app, option, solvers, help);
+  app.add_option("--set", set, set_help);
+}
+
+std::vector<ChosenSolver> SolverFlags::chosen(const std::vector<std::string>& by_default) const {
+  const Overrides overrides = split_overrides(set);
+  std::vector<ChosenSolver> out;
+  for (const std::string& name : solvers.empty() ? by_default : solvers) out.push_back(chosen_solver(name, overrides));
+  return out;
+}
+
+Overrides SolverFlags::of_solver(const std::string& expected) const {
+  Overrides overrides = split_overrides(set);
+  if (!overrides.scene.empty()) throw Error("--set " + overrides.scene[0] + ": " + expected);
+  return overrides;
+}
+
 std::pair<int, int> pixels_of(const std::string& option, const std::string& text) {
   constexpr int kMost = 16384;
   int width = 0, height = 0, used = 0;
@@ -80,8 +126,8 @@ std::pair<int, int> pixels_of(const std::string& option, const std::string& text
 void DeviceFlags::add_to(CLI::App& app) {
   app.add_option("--device", options.index, "Vulkan device number (see `list devices`); default: the best one");
   app.add_option("--device-profile", options.profile,
-                 "Stand in for a class of devices: adreno-like (32 KiB shared memory, groups of 256, no float atomics, "
-                 "64 dispatches a submission)");
+                 "Use only what a class of devices offers: adreno-like (32 KiB shared memory, groups of 256, no float "
+                 "atomics, 64 dispatches a submission)");
   app.add_flag("--validate", options.validation,
                "Vulkan core and synchronization validation; any message fails the run");
   app.add_flag("--allow-no-device", allow_no_device, "Leave out GPU solvers if there is no Vulkan device");
@@ -92,14 +138,14 @@ CLI::Option* add_solvers(CLI::App& app, const std::string& option, std::vector<s
   const auto name_of_plugin = [](std::string name) {
     return name.starts_with(kPluginPrefix) ? find_solver(name).info.name : name;
   };
-  return app.add_option(option, names, help + "; plugin:PATH takes the one in a shared library")
+  return app.add_option(option, names, help + "; plugin:PATH loads a solver from a shared library")
       ->transform(name_of_plugin);
 }
 
 void add_require_assets(CLI::App& app, bool& required) {
-  app.add_flag(
-      "--require-assets", required,
-      "Fail if a scene would use procedural stand-ins for rooms or hands (scripts/fetch-assets.sh gets the scans)");
+  app.add_flag("--require-assets", required,
+               "Fail if a scene would use procedural rooms or hands in place of scans (scripts/fetch-assets.sh "
+               "fetches the scans)");
 }
 
 StatusLine::StatusLine(bool enabled)

@@ -55,6 +55,7 @@ void add_xr(CLI::App&, Console&);
 void add_metamorphic(CLI::App&, Console&);
 void add_threshold(CLI::App&, Console&);
 void add_friction(CLI::App&, Console&);
+void add_conformance(CLI::App&, Console&);
 
 /// Replaces the text between the lines "<!-- NAME begin -->" and "<!-- NAME end -->" of a README. Throws Error
 /// naming the file and the lines if they are missing.
@@ -73,6 +74,34 @@ struct DeviceFlags {
   DeviceOptions options;
   bool allow_no_device = false;
   void add_to(CLI::App&);
+};
+
+/// A solver of a command, with complete settings and their short name.
+struct ChosenSolver {
+  const SolverEntry* entry;
+  nlohmann::json settings;
+  std::string setting;
+};
+ChosenSolver chosen_solver(const std::string& name, const Overrides&);
+
+/// Names of all solvers, or of those that `are` accepts.
+std::vector<std::string> solver_names(bool (*are)(const SolverInfo&) = nullptr);
+
+/// Scene files below these folders of the scenarios, as commands name them.
+std::vector<std::string> scene_names(const std::vector<std::string>& folders);
+
+/// What `list` takes.
+std::vector<std::string> list_names();
+
+/// Options of commands that run solvers: which, with which settings, on which device.
+struct SolverFlags {
+  std::vector<std::string> solvers, set;
+  DeviceFlags device;
+  /// `option`: "--solver", or "solver" for a positional one.
+  void add_to(CLI::App&, const std::string& option, const std::string& help, const std::string& set_help);
+  std::vector<ChosenSolver> chosen(const std::vector<std::string>& by_default) const;
+  /// For commands whose scenes are fixed: the overrides are the solver's alone. Throws Error with `expected` if not.
+  Overrides of_solver(const std::string& expected) const;
 };
 
 /// "1200x900" as width and height [pixels], 1 to 16384 each. Throws Error naming the option.

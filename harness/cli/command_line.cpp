@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/former_names.hpp"
+#include "base/plugin_environment.hpp"
 #include "base/tint.hpp"
 #include "cli/command.hpp"
 #include "runner/build_info.hpp"
@@ -65,6 +66,7 @@ void add_commands(CLI::App& app, Console& console) {
   add_metamorphic(app, console);
   add_threshold(app, console);
   add_friction(app, console);
+  add_conformance(app, console);
 #ifdef CLOTHBENCH_WITH_BENCH
   add_bench(app, console);
 #endif
@@ -92,21 +94,27 @@ void tell_nearest(const CLI::App& app, const std::vector<std::string>& words) {
 
 int run_command_line(const std::vector<std::string>& given) {
   const std::vector<std::string> words = current_words(given);
-  CLI::App app{"clothbench: interchangeable cloth solvers, the same scenes, comparable numbers", "clothbench"};
+  CLI::App app{
+      "clothbench: runs interchangeable cloth solvers on the same scenes and compares error, time and "
+      "robustness",
+      "clothbench"};
   app.require_subcommand(1);
   app.set_version_flag("--version",
                        std::string("clothbench ") + build_info::kVersion + " (" + build_info::kGitCommit + ")");
   app.footer(
-      "Examples: clothbench run paper/desk-flat-low --solver xpbd --solver bullet-soft\n"
-      "          clothbench study table3 --quick --out results/runs/mine\n"
-      "          clothbench report results/runs/mine -o report\n"
-      "More with each command: clothbench COMMAND --help\n"
-      "Exit codes: 0 ok, 1 a check failed, 2 bad input, 3 no device, 130 interrupted.");
+      "Examples: clothbench run paper/desk-flat-low --solver xpbd --solver bullet-soft\n          "
+      "clothbench study table3 --quick --out results/runs/mine\n          clothbench report "
+      "results/runs/mine -o report\nOptions of a command: clothbench COMMAND --help\nExit codes: 0 ok, 1 a "
+      "check failed, 2 bad input, 3 no device, 130 interrupted.");
   Console console;
   colour_output(takes_colour(STDOUT_FILENO));
   console.command_line = joined(words);
   console.words = words;
   app.add_flag("--json", console.json, "Print a machine-readable summary");
+  app.add_flag("--in-process", console.arguments<bool>(),
+               "Run plugins in this process, for a debugger; a crash of a plugin then ends the program");
+  // Before the words are read: plugins are loaded on the way.
+  if (std::find(words.begin(), words.end(), "--in-process") != words.end()) run_plugins_in_process();
   app.fallthrough();
 
   add_commands(app, console);

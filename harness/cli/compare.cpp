@@ -13,7 +13,8 @@ void add_compare(CLI::App& app, Console& console) {
        &markdown = console.arguments<std::string>();
   CLI::App* cmd = app.add_subcommand(
       "compare",
-      "Compare two results of the same study: what is faster or slower beyond noise, and which results differ");
+      "Compare two results of the same study: which runs are faster or slower beyond noise, and which "
+      "results differ");
   cmd->add_option("a", a, "Study folder or result file: before")->required();
   cmd->add_option("b", b, "Study folder or result file: after")->required();
   cmd->add_option("--markdown", markdown, "Also write the tables to this file, for a pull request");
@@ -41,9 +42,9 @@ void add_compare(CLI::App& app, Console& console) {
 
 void add_history(CLI::App& app, Console& console) {
   auto& folders = console.arguments<std::vector<std::string>>();
-  CLI::App* cmd = app.add_subcommand(
-      "history",
-      "Times and errors as the JSON that chart-per-commit tools read (github-action-benchmark: customSmallerIsBetter)");
+  CLI::App* cmd = app.add_subcommand("history",
+                                     "Print times and errors as JSON for charts over commits (github-action-benchmark: "
+                                     "customSmallerIsBetter)");
   cmd->add_option("runs", folders, "Study folders or result files")->required();
   cmd->footer("Example: clothbench history results/runs/mine > benchmark.json");
   cmd->callback([&folders] {

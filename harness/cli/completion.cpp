@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "cli/command.hpp"
 
@@ -40,26 +39,6 @@ end
 complete -c clothbench -a '(__clothbench_words)'
 )";
 
-Words scenario_names(const std::vector<const char*>& folders) {
-  Words names;
-  const std::filesystem::path root = scenario_root();
-  for (const char* folder : folders) {
-    if (!std::filesystem::exists(root / folder)) continue;
-    for (const auto& file : std::filesystem::recursive_directory_iterator(root / folder))
-      if (file.path().extension() == ".json")
-        names.push_back(folder == std::string("studies")
-                            ? file.path().stem().string()
-                            : std::filesystem::relative(file.path(), root).replace_extension().string());
-  }
-  return names;
-}
-
-Words solver_names() {
-  Words names;
-  for (const SolverEntry& e : solvers()) names.push_back(e.info.name);
-  return names;
-}
-
 /// `--set solver.<name>=` of the solvers named so far, or of all.
 Words setting_names(const Words& before) {
   Words names;
@@ -91,11 +70,14 @@ Words candidates(const CLI::App& app, const Words& before, const std::string& pr
     return names;
   }
   const std::string& name = command->get_name();
-  if (name == "study" || name == "bench") return scenario_names({"studies"});
-  if (name == "moduli" || name == "metamorphic" || name == "friction") return solver_names();
-  if (name == "list") return {"solvers", "features", "scenarios", "studies", "devices", "metrics", "scalars", "assets"};
+  if (name == "study" || name == "bench") {
+    for (const std::string& study : scene_names({"studies"})) names.push_back(study.substr(study.find('/') + 1));
+    return names;
+  }
+  if (name == "moduli" || name == "metamorphic" || name == "friction" || name == "conformance") return solver_names();
+  if (name == "list") return list_names();
   if (name == "run" || name == "plan" || name == "validate" || name == "render" || name == "threshold" || name == "xr")
-    return scenario_names({"paper", "contact", "validation", "stability", "metamorphic"});
+    return scene_names({"paper", "contact", "validation", "stability", "metamorphic"});
   return names;
 }
 
@@ -104,8 +86,9 @@ Words candidates(const CLI::App& app, const Words& before, const std::string& pr
 void add_completion(CLI::App& app, Console& console) {
   auto& shell = console.arguments<std::string>();
   auto& words = console.arguments<Words>();
-  CLI::App* cmd = app.add_subcommand("completion", "A script that completes this command in bash, zsh or fish");
-  cmd->add_option("shell", shell, "bash, zsh or fish; words: what could stand in place of the last of the words")
+  CLI::App* cmd = app.add_subcommand("completion", "Print a script that completes this command in bash, zsh or fish");
+  cmd->add_option("shell", shell,
+                  "bash, zsh or fish; `words` prints completions of the word that a command line ends with")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish", "words"}));
   cmd->add_option("words", words, "The command line after the program's name");

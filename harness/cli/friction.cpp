@@ -34,8 +34,7 @@ std::vector<nlohmann::json> settings_of(const SolverInfo& solver, const nlohmann
 void run_friction(FrictionArguments& a, Console& console) {
   const Overrides overrides = split_overrides(a.search.set);
   if (a.search.solvers.empty())
-    for (const SolverEntry& e : solvers())
-      if (!(e.info.supports & kColliderFeatures).empty()) a.search.solvers.push_back(e.info.name);
+    a.search.solvers = solver_names([](const SolverInfo& s) { return !(s.supports & kColliderFeatures).empty(); });
   Guard guard(console.words);
   StudyRuns study = a.search.runs("friction", console);
   std::vector<RunRecord> runs;
@@ -64,19 +63,18 @@ void run_friction(FrictionArguments& a, Console& console) {
 }
 
 void run_threshold(ThresholdArguments& a, Console& console) {
-  const Overrides overrides = split_overrides(a.search.set);
+  const std::vector<std::string> set = split_overrides(a.search.set).scene;
   if (a.search.solvers.empty()) a.search.solvers = {"xpbd"};
   nlohmann::json all = nlohmann::json::array();
   Guard guard(console.words);
   StudyRuns runs = a.search.runs("threshold", console);
   for (const std::string& file : a.scenes)
-    for (const std::string& name : a.search.solvers) {
-      const SolverEntry& entry = find_solver(name);
+    for (const auto& [entry, settings, setting] : a.search.chosen({})) {
       const std::vector<ThresholdRow> rows =
-          threshold_rows(threshold_runs(guard, runs, load_scene(file, overrides.scene), entry,
-                                        complete_settings(entry.info, overrides.solver), overrides.label()));
+          threshold_rows(threshold_runs(guard, runs, load_scene(file, set), *entry, settings, setting));
       for (const ThresholdRow& row : rows) {
-        if (row.found.failed || !row.crash.empty()) console.exit_code = ExitCode::CheckFailed;
+        if ((row.found.failed && row.unsupported.empty()) || !row.crash.empty())
+          console.exit_code = ExitCode::CheckFailed;
         all.push_back(threshold_json(row));
         if (!console.json) fmt::print("{}\n", threshold_sentence(row));
       }
@@ -89,14 +87,14 @@ void run_threshold(ThresholdArguments& a, Console& console) {
 void add_friction(CLI::App& app, Console& console) {
   FrictionArguments& a = console.arguments<FrictionArguments>();
   CLI::App* cmd = app.add_subcommand(
-      "friction", "Solvers by the closed forms of friction: slopes, stopping, capstan, Atwood's strip");
-  add_solvers(*cmd, "solver", a.search.solvers, "Solvers; default: all that touch anything");
+      "friction", "Compare solvers with the closed forms of friction: slopes, stopping, capstan, Atwood's strip");
+  add_solvers(*cmd, "solver", a.search.solvers, "Solvers; default: all that handle contact");
   cmd->add_option("--substeps", a.substeps,
-                  "Also at these numbers of substeps a frame, where a solver has that setting");
+                  "Also run with these numbers of substeps per frame, for solvers with that setting");
   cmd->add_option("--set", a.search.set, "Override in every run: solver.contact_samples=0");
   cmd->add_option("--readme", a.readme,
                   "Also write the table between the marks <!-- friction begin/end --> of this file");
-  a.search.add_to(*cmd);
+  a.search.add_storage_to(*cmd);
   cmd->footer("Example: clothbench friction xpbd bullet-soft --substeps 8 32");
   cmd->callback([&console, &a] { run_friction(a, console); });
 }
@@ -104,11 +102,11 @@ void add_friction(CLI::App& app, Console& console) {
 void add_threshold(CLI::App& app, Console& console) {
   ThresholdArguments& a = console.arguments<ThresholdArguments>();
   CLI::App* cmd = app.add_subcommand(
-      "threshold", "From which friction on a scene holds, found by bisection, against the closed form");
+      "threshold",
+      "Find by bisection the smallest friction at which a scene holds, and compare it with the closed form");
   cmd->add_option("scene", a.scenes, "Scenes at rest on a slope or over a cylinder")->capture_default_str();
-  add_solvers(*cmd, "--solver", a.search.solvers, "Solvers (default xpbd)");
-  cmd->add_option("--set", a.search.set, "Override: cloth.grid=[17,17], solver.substeps=20");
-  a.search.add_to(*cmd);
+  a.search.add_to(*cmd, "--solver", "Solvers (default xpbd)", "Override: cloth.grid=[17,17], solver.substeps=20");
+  a.search.add_storage_to(*cmd);
   cmd->footer("Example: clothbench threshold validation/incline-stick --solver xpbd --solver bullet-soft");
   cmd->callback([&console, &a] { run_threshold(a, console); });
 }

@@ -11,8 +11,8 @@ namespace clothbench {
 void add_import(CLI::App& app, Console& console) {
   auto& folders = console.arguments<std::vector<std::string>>();
   auto& samples_file = console.arguments<std::string>();
-  CLI::App* cmd =
-      app.add_subcommand("import", "Turn raw run files (a device without HDF5, an interrupted run) into HDF5 files");
+  CLI::App* cmd = app.add_subcommand(
+      "import", "Convert raw run files (of a device without HDF5, or of an interrupted run) to HDF5 files");
   cmd->add_option("folder", folders, "Study folders or part folders")->required();
   cmd->add_option("--samples", samples_file,
                   "Readings of the device during the run: samples.json of scripts/quest_run.py");
@@ -29,7 +29,7 @@ void add_import(CLI::App& app, Console& console) {
         if (!console.json) fmt::print("{}\n", file.string());
       }
     if (console.json) fmt::print("{}\n", rows.dump(2));
-    if (rows.empty()) fmt::print(stderr, "nothing to import: no finished part folders there\n");
+    if (rows.empty()) fmt::print(stderr, "nothing to import: these folders have no finished .part folders\n");
   });
 }
 

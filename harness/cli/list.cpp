@@ -1,10 +1,14 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <cstdlib>
+#include <iterator>
+#include <sstream>
 
 #include "assets/assets.hpp"
 #include "base/json_text.hpp"
+#include "base/plugin_environment.hpp"
 #include "check/gates.hpp"
 #include "cli/command.hpp"
 #include "metrics/registry.hpp"
@@ -15,9 +19,21 @@
 namespace clothbench {
 namespace {
 
+/// Solvers of this build, and plugins: those of --solver, and those that the environment names.
+std::vector<const SolverEntry*> all_solvers() {
+  std::vector<const SolverEntry*> out;
+  for (const SolverEntry& e : solvers()) out.push_back(&e);
+  const char* plugins = std::getenv(kPluginsVariable);  // --solver adds to it
+  std::istringstream paths(plugins != nullptr ? plugins : "");
+  for (std::string path; std::getline(paths, path, ':');)
+    if (!path.empty()) out.push_back(&find_solver(kPluginPrefix + path));
+  return out;
+}
+
 nlohmann::json list_solvers() {
   nlohmann::json rows = nlohmann::json::array();
-  for (const SolverEntry& e : solvers()) {
+  for (const SolverEntry* at : all_solvers()) {
+    const SolverEntry& e = *at;
     nlohmann::json settings = nlohmann::json::array(), features = nlohmann::json::array();
     for (const SettingSpec& s : e.info.settings)
       settings.push_back({{"name", s.name}, {"default", nlohmann::json::parse(s.default_json)}, {"doc", s.doc}});
@@ -28,39 +44,26 @@ nlohmann::json list_solvers() {
                     {"version", e.info.version},
                     {"precision", e.info.precision},
                     {"gpu", e.info.on_gpu},
+                    {"plugin", is_external(e.info)},
                     {"supports", features},
                     {"settings", settings}});
   }
   return rows;
 }
 
-nlohmann::json list_files(const char* folder) {
-  nlohmann::json rows = nlohmann::json::array();
-  const std::filesystem::path root = scenario_root();
-  if (!std::filesystem::exists(root / folder)) return rows;
-  for (const auto& file : std::filesystem::recursive_directory_iterator(root / folder))
-    if (file.path().extension() == ".json")
-      rows.push_back({{"name", std::filesystem::relative(file.path(), root).replace_extension().string()}});
-  std::sort(rows.begin(), rows.end());
-  return rows;
-}
-
 nlohmann::json list_scenarios() {
   nlohmann::json rows = nlohmann::json::array();
-  for (const char* folder : {"paper", "contact", "validation", "stability"})
-    for (auto& row : list_files(folder)) {
-      row["why"] = load_scene(row["name"].get<std::string>()).why;
-      rows.push_back(row);
-    }
+  for (const std::string& name : scene_names({"paper", "contact", "validation", "stability"}))
+    rows.push_back({{"name", name}, {"why", load_scene(name).why}});
   return rows;
 }
 
 nlohmann::json list_studies() {
-  nlohmann::json rows = list_files("studies");
-  for (auto& row : rows) {
-    const std::string name = row["name"], file = (scenario_root() / (name + ".json")).string();
-    row["name"] = name.substr(name.find('/') + 1);  // as `study` takes it
-    row["why"] = parse_json(read_text(file), file).value("why", "");
+  nlohmann::json rows = nlohmann::json::array();
+  for (const std::string& name : scene_names({"studies"})) {
+    const std::string file = (scenario_root() / (name + ".json")).string();
+    rows.push_back({{"name", name.substr(name.find('/') + 1)},  // as `study` takes it
+                    {"why", parse_json(read_text(file), file).value("why", "")}});
   }
   return rows;
 }
@@ -76,37 +79,32 @@ nlohmann::json list_devices() {
   return rows;
 }
 
-/// Into rows in the order of the registry: the file that each entry stands in.
-template <class T>
-void source_of(nlohmann::json& rows, std::vector<T> MetricGroup::*list) {
-  std::size_t at = 0;
-  for (const MetricGroup& g : metric_groups())
-    for (std::size_t k = 0; k < (g.*list).size(); ++k) rows[at++]["source"] = g.source;
-}
-
 nlohmann::json list_metrics() {
   nlohmann::json rows = nlohmann::json::array();
-  for (const Metric& m : metrics())
-    rows.push_back({{"name", m.name},
-                    {"units", m.units},
-                    {"long_name", m.long_name},
-                    {"version", m.version},
-                    {"needs", m.needs.words}});
-  source_of(rows, &MetricGroup::series);
+  for (const MetricGroup& g : metric_groups())
+    for (const Metric& m : g.series)
+      rows.push_back({{"name", m.name},
+                      {"units", m.units},
+                      {"long_name", m.long_name},
+                      {"version", m.version},
+                      {"needs", m.needs.words},
+                      {"source", g.source}});
   return rows;
 }
 
 nlohmann::json list_scalars() {
   nlohmann::json rows = nlohmann::json::array();
-  for (const Scalar& s : scalars()) {
-    rows.push_back({{"name", s.name},
-                    {"units", s.units},
-                    {"long_name", s.doc},
-                    {"of", s.from.series},
-                    {"expect", s.expect == Expect::Yes}});
-    if (s.gate != nullptr) rows.back()["check"] = {{"slack", slack_text(*s.gate)}, {"why", s.gate->why}};
-  }
-  source_of(rows, &MetricGroup::scalars);
+  auto s = scalars().begin();  // in the order of the groups, with what they are made from in their doc
+  for (const MetricGroup& g : metric_groups())
+    for (std::size_t k = 0; k < g.scalars.size(); ++k, ++s) {
+      rows.push_back({{"name", s->name},
+                      {"units", s->units},
+                      {"long_name", s->doc},
+                      {"of", s->from.series},
+                      {"expect", s->expect == Expect::Yes},
+                      {"source", g.source}});
+      if (s->gate != nullptr) rows.back()["check"] = {{"slack", slack_text(*s->gate)}, {"why", s->gate->why}};
+    }
   return rows;
 }
 
@@ -117,15 +115,22 @@ nlohmann::json list_assets() {
 
 std::vector<SolverFeatures> features() {
   std::vector<SolverFeatures> out;
-  for (const SolverEntry& e : solvers()) out.push_back(declared_features(e.info));
+  for (const SolverEntry* e : all_solvers()) out.push_back(declared_features(e->info));
   return out;
 }
+
+nlohmann::json list_features() { return feature_json(features(), false); }
+
+const std::pair<const char*, nlohmann::json (*)()> kLists[] = {
+    {"solvers", list_solvers}, {"features", list_features}, {"scenarios", list_scenarios}, {"studies", list_studies},
+    {"devices", list_devices}, {"metrics", list_metrics},   {"scalars", list_scalars},     {"assets", list_assets}};
 
 void print_rows(const nlohmann::json& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto& r = rows[i];
     std::string text = r.value("summary", r.value("why", r.value("long_name", r.value("driver", std::string()))));
-    if (r.value("software", false)) text += "  (software: for correctness, not for speed claims)";
+    if (r.value("software", false)) text += "  (software; its times say nothing of a GPU)";
+    if (r.value("plugin", false)) text += "  (" + r["folder"].get<std::string>() + ")";
     if (r.contains("units")) text += " [" + r["units"].get<std::string>() + "]";
     fmt::print("{:<24} {}\n", r["name"].get<std::string>(), text);
     if (r.contains("settings"))
@@ -137,26 +142,26 @@ void print_rows(const nlohmann::json& rows) {
 
 }  // namespace
 
+std::vector<std::string> list_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, unused] : kLists) names.emplace_back(name);
+  return names;
+}
+
 void add_list(CLI::App& app, Console& console) {
   std::string& what = console.arguments<std::string>();
   what = "solvers";
-  CLI::App* cmd = app.add_subcommand(
-      "list", "What there is: solvers, features, scenarios, studies, devices, metrics, scalars or assets");
-  cmd->add_option("what", what, "solvers | features | scenarios | studies | devices | metrics | scalars | assets")
-      ->check(
-          CLI::IsMember({"solvers", "features", "scenarios", "studies", "devices", "metrics", "scalars", "assets"}));
+  CLI::App* cmd =
+      app.add_subcommand("list", "List solvers, features, scenarios, studies, devices, metrics, scalars or assets");
+  cmd->add_option("what", what, fmt::format("{}", fmt::join(list_names(), " | ")))->check(CLI::IsMember(list_names()));
+  add_solvers(*cmd, "--solver", console.arguments<std::vector<std::string>>(),
+              "Also these, in lists of solvers and features");
   cmd->footer(
       "Examples: clothbench list solvers\n"
       "          clothbench list scenarios --json");
   cmd->callback([&console, &what] {
-    const nlohmann::json rows = what == "solvers"     ? list_solvers()
-                                : what == "scenarios" ? list_scenarios()
-                                : what == "studies"   ? list_studies()
-                                : what == "devices"   ? list_devices()
-                                : what == "features"  ? feature_json(features(), false)
-                                : what == "assets"    ? list_assets()
-                                : what == "scalars"   ? list_scalars()
-                                                      : list_metrics();
+    const auto list = std::find_if(std::begin(kLists), std::end(kLists), [&](auto& l) { return l.first == what; });
+    const nlohmann::json rows = list->second();
     if (console.json)
       fmt::print("{}\n", rows.dump(2));
     else if (what == "features")

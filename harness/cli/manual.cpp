@@ -15,28 +15,28 @@ struct Entry {
 
 constexpr std::array kEnvironment = {
     Entry{"CLOTHBENCH_SCENARIOS",
-          "Folder with scenes and studies. Without it they are looked for in share/clothbench beside the program's "
-          "folder, then in the "
-          "source tree that the program was built from. The same holds for the next."},
-    Entry{
-        "CLOTHBENCH_ASSETS",
-        "Folder node_modules with scanned rooms and hands, or the word \"procedural\" for the stand-ins. Looked for in "
-        "~/.local/share/clothbench/assets too (below $XDG_DATA_HOME where that is set), where fetch-assets.sh puts "
-        "them."},
+          "Folder with scenes and studies. Without it the program looks in share/clothbench beside its own "
+          "folder, then in the source tree that it was built from. The same holds for the next variable."},
+    Entry{"CLOTHBENCH_ASSETS",
+          "Folder node_modules with scanned rooms and hands, or the word \"procedural\" for generated ones. "
+          "The program also looks in ~/.local/share/clothbench/assets (below $XDG_DATA_HOME if that is set), "
+          "where fetch-assets.sh puts them."},
     Entry{"CLOTHBENCH_PLUGINS",
           "Shared libraries with solvers, separated by colons; a study file can then name these solvers."},
     Entry{"CLOTHBENCH_PLUGIN_LIMIT_S",
-          "Seconds without headway after which a plugin's process is ended; 900 where it is not set."},
+          "Seconds without progress after which a plugin's process is ended; default 900."},
+    Entry{"CLOTHBENCH_IN_PROCESS", "If set, as --in-process."},
     Entry{"CLOTHBENCH_DEVICE_PROFILE", "As --device-profile."},
     Entry{"CLOTHBENCH_JOBS",
-          "How many jobs run on this machine while times are taken; else the clothbench processes that /proc shows."},
-    Entry{"CLOTHBENCH_CACHE", "Folder for compiled pipelines; else clothbench below $XDG_CACHE_HOME or ~/.cache."},
-    Entry{"CLOTHBENCH_FONT", "The TrueType file that writes the words in pictures."},
-    Entry{"NO_COLOR", "Where it is set, output has no colour. On a terminal alone there is any."},
+          "Number of jobs that run on this machine during timed trials; default: the clothbench processes in "
+          "/proc."},
+    Entry{"CLOTHBENCH_CACHE", "Folder for compiled pipelines; default: clothbench below $XDG_CACHE_HOME or ~/.cache."},
+    Entry{"CLOTHBENCH_FONT", "TrueType font file for the text in pictures."},
+    Entry{"NO_COLOR", "If set, output has no colour. Without it only output to a terminal has colour."},
 };
 
 constexpr std::array kExitStatus = {
-    Entry{"0", "All went well."}, Entry{"1", "A check failed."}, Entry{"2", "An argument or a file is wrong."},
+    Entry{"0", "Success."}, Entry{"1", "A check failed."}, Entry{"2", "An argument or a file is wrong."},
     Entry{"3", "There is no Vulkan device."}, Entry{"130", "Interrupted; finished trials are kept."}};
 
 /// Text as roff takes it: its own marks are escaped, and all is in ASCII, which every output of man(1) has.
@@ -91,11 +91,10 @@ std::string manual_page(const CLI::App& app) {
       "solvers\n.SH SYNOPSIS\n.B clothbench\n.I command\n.RI [ options ]\n.SH DESCRIPTION\n",
       build_info::kVersion);
   out +=
-      "Runs interchangeable cloth solvers through the same scenes and writes down error, run time, stability, "
-      "penetration, frames per second and "
-      "bandwidth, in one HDF5 file a run. Every option of every command is listed by\n.BR \"clothbench \" "
-      "\\fIcommand\\fP \" \\-\\-help\" .\n";
-  out += ".SH OPTIONS\nOf every command:\n" + options_of(app) + ".SH COMMANDS\n";
+      "Runs interchangeable cloth solvers on the same scenes and stores error, run time, stability, "
+      "penetration, frames per second and bandwidth in one HDF5 file per run. All options of a command are "
+      "listed by\n.BR \"clothbench \" \\fIcommand\\fP \" \\-\\-help\" .\n";
+  out += ".SH OPTIONS\nOptions of every command:\n" + options_of(app) + ".SH COMMANDS\n";
   for (const CLI::App* c : app.get_subcommands({})) {
     if (c->get_group().empty()) continue;
     out += fmt::format(".SS {}\n{}\n", roff(c->get_name()), roff(c->get_description()));
@@ -108,7 +107,7 @@ std::string manual_page(const CLI::App& app) {
 }  // namespace
 
 void add_manual(CLI::App& app, Console& console) {
-  CLI::App* cmd = app.add_subcommand("manual", "The manual page, for man(1)");
+  CLI::App* cmd = app.add_subcommand("manual", "Print the manual page for man(1)");
   cmd->group("");  // for packages
   cmd->callback([&app, &console] {
     const std::string page = manual_page(app);

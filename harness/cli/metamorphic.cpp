@@ -11,9 +11,8 @@ namespace clothbench {
 namespace {
 
 struct MetamorphicArguments {
-  std::vector<std::string> solvers, set;
+  SolverFlags with;
   std::string readme;
-  DeviceFlags device;
 };
 
 std::string run(const MetamorphicResult& r) {
@@ -25,8 +24,8 @@ std::string run(const MetamorphicResult& r) {
 
 Table table_of(const std::string& solver, const std::vector<MetamorphicResult>& results) {
   Table t{fmt::format("Metamorphic properties of {}", solver),
-          "Greatest distance from what it should be, of all vertices and frames, over the longer side; \"0 bits\": no "
-          "bit differs.",
+          "Greatest distance from the expected motion over all vertices and frames, divided by the longer "
+          "side; \"0 bits\": no bit differs.",
           {{"property", "what changes"}}};
   for (const MetamorphicProperty& p : metamorphic_properties()) {
     std::vector<std::string> row = {p.name, p.doc};
@@ -44,34 +43,29 @@ Table table_of(const std::string& solver, const std::vector<MetamorphicResult>& 
 
 void add_metamorphic(CLI::App& app, Console& console) {
   MetamorphicArguments& a = console.arguments<MetamorphicArguments>();
-  CLI::App* cmd = app.add_subcommand("metamorphic",
-                                     "Properties of a solver that need no truth: similarity, mirror, rotation, "
-                                     "renumbering, flip, repeat, no-op, restart");
-  add_solvers(*cmd, "solver", a.solvers, "Solvers; default: all");
-  cmd->add_option("--set", a.set, "Setting of the solver: solver.substeps=20");
+  CLI::App* cmd =
+      app.add_subcommand("metamorphic",
+                         "Test properties of a solver that need no reference solution: similarity, mirror, rotation, "
+                         "renumbering, flip, repeat, no-op, restart");
+  a.with.add_to(*cmd, "solver", "Solvers; default: all", "Setting of the solver: solver.substeps=20");
   cmd->add_option("--readme", a.readme,
                   "Also write the tables between the marks <!-- metamorphic begin/end --> of this file");
-  a.device.add_to(*cmd);
+  a.with.device.add_to(*cmd);
   cmd->footer("Example: clothbench metamorphic xpbd --set solver.substeps=8");
   cmd->callback([&console, &a] {
-    const Overrides overrides = split_overrides(a.set);
-    if (!overrides.scene.empty())
-      throw Error("--set " + overrides.scene[0] + ": the scenes are fixed; expected solver.<name>=<value>");
-    if (a.solvers.empty())
-      for (const SolverEntry& e : solvers()) a.solvers.push_back(e.info.name);
+    a.with.of_solver("the scenes are fixed; expected solver.<name>=<value>");
     const std::vector<Scene> scenes = metamorphic_scenes();
     nlohmann::json all = nlohmann::json::array();
     std::string markdown;
     Guard guard(console.words);
-    for (const std::string& name : a.solvers) {
-      const SolverEntry& entry = find_solver(name);
+    for (const auto& [entry, settings, setting] : a.with.chosen(solver_names())) {
+      const std::string& name = entry->info.name;
       std::vector<MetamorphicResult> results;
       {
         StatusLine line(!console.json);
         for (const Scene& scene : scenes) {
-          const auto some =
-              ask_metamorphic(guard, entry, complete_settings(entry.info, overrides.solver), a.device.options, scene,
-                              [&](const std::string& what) { line.show(what, 0, 0); });
+          const auto some = ask_metamorphic(guard, *entry, settings, a.with.device.options, scene,
+                                            [&](const std::string& what) { line.show(what, 0, 0); });
           results.insert(results.end(), some.begin(), some.end());
         }
       }

@@ -13,19 +13,20 @@ struct ModuliArguments {
 };
 
 /// The measurement at the settings given, and short ones where it is looked whether it holds.
-void measure(const SolverEntry& entry, const Overrides& overrides, const ModuliArguments& a, Guard& guard,
-             StudyRuns& runs, StatusLine& line, std::vector<RunRecord>& out) {
-  const nlohmann::json settings = complete_settings(entry.info, overrides.solver);
+void measure(const ChosenSolver& solver, const ModuliArguments& a, Guard& guard, StudyRuns& runs, StatusLine& line,
+             std::vector<RunRecord>& out) {
+  const auto& [at, settings, setting] = solver;
+  const SolverEntry& entry = *at;
   const auto one = [&](const nlohmann::json& s, const std::string& label, bool full) {
     line.show(entry.info.name + " " + label, out.size(), 0);
     try {
       out.push_back(ask_material(guard, runs, entry, s, label, full));
     } catch (const Error& e) {
       if (e.code() != ExitCode::NoDevice || !a.search.device.allow_no_device) throw;
-      if (full) fmt::print(stderr, "no Vulkan device: {} is left out\n", entry.info.name);
+      if (full) fmt::print(stderr, "no Vulkan device is present: {} is left out\n", entry.info.name);
     }
   };
-  one(settings, overrides.label(), true);
+  one(settings, setting, true);
   // Whatever came of it: a plugin's child asks the same questions without knowing the answers.
   if (a.no_sweep || entry.info.ignores.has(Feature::Stretch)) return;
   for (const auto& [label, s] : swept_settings(entry.info, settings)) one(s, label, false);
@@ -35,29 +36,25 @@ void measure(const SolverEntry& entry, const Overrides& overrides, const ModuliA
 
 void add_moduli(CLI::App& app, Console& console) {
   ModuliArguments& a = console.arguments<ModuliArguments>();
-  CLI::App* cmd = app.add_subcommand("moduli",
-                                     "Measure the effective stiffness of solvers: moduli at 0, 45 and 90 "
-                                     "degrees, bending, and whether they hold over settings");
-  add_solvers(*cmd, "solver", a.search.solvers, "Solvers; default: all");
-  cmd->add_option("--set", a.search.set, "Setting of the solver: solver.substeps=20");
+  CLI::App* cmd = app.add_subcommand(
+      "moduli",
+      "Measure the effective stiffness of solvers: moduli at 0, 45 and 90 degrees, bending, and their "
+      "dependence on settings");
+  a.search.add_to(*cmd, "solver", "Solvers; default: all", "Setting of the solver: solver.substeps=20");
   cmd->add_flag("--no-sweep", a.no_sweep,
-                "Only at the settings given, not with four times the substeps and iterations too");
-  a.search.add_to(*cmd);
+                "Measure at the given settings only, not also with four times the substeps and iterations");
+  a.search.add_storage_to(*cmd);
   cmd->footer("Example: clothbench moduli xpbd --set solver.substeps=64");
   cmd->callback([&console, &a] {
-    const Overrides overrides = split_overrides(a.search.set);
-    if (!overrides.scene.empty())
-      throw Error("--set " + overrides.scene[0] + ": expected solver.<name>=<value>; the patches are fixed");
+    a.search.of_solver("expected solver.<name>=<value>; the patches are fixed");
     if (a.search.solvers.empty())
-      for (const SolverEntry& e : solvers())
-        if (!e.info.ignores.has(Feature::Stretch)) a.search.solvers.push_back(e.info.name);
+      a.search.solvers = solver_names([](const SolverInfo& s) { return !s.ignores.has(Feature::Stretch); });
     std::vector<RunRecord> moduli;
     Guard guard(console.words);
     StudyRuns runs = a.search.runs("moduli", console);
     {
       StatusLine line(!console.json);
-      for (const std::string& name : a.search.solvers)
-        measure(find_solver(name), overrides, a, guard, runs, line, moduli);
+      for (const ChosenSolver& solver : a.search.chosen({})) measure(solver, a, guard, runs, line, moduli);
     }
     if (guard.crashed()) console.exit_code = ExitCode::CheckFailed;
     const auto materials = solver_materials(moduli);

@@ -13,45 +13,37 @@ namespace clothbench {
 namespace {
 
 struct PlanArguments {
-  std::vector<std::string> scenes, solvers, set;
-  DeviceFlags device;
+  std::vector<std::string> scenes;
+  SolverFlags with;
 };
 
-nlohmann::json plan_of(const SolverRun& run, const Scene& scene) {
-  nlohmann::json needs = nlohmann::json::array(), stages = nlohmann::json::array();
-  scene.needs.for_each([&](Feature f) { needs.push_back(name_of(f)); });
-  for (const StagePlan& s : run.plan().stages) {
-    nlohmann::json serves = nlohmann::json::array();
-    s.serves.for_each([&](Feature f) { serves.push_back(name_of(f)); });
-    stages.push_back({{"name", s.name},
-                      {"serves", serves},
-                      {"dispatches", s.dispatches},
-                      {"read_B", finite_or_null(s.read_B)},
-                      {"write_B", finite_or_null(s.write_B)}});
-  }
+nlohmann::json names_of(FeatureSet features) {
+  nlohmann::json names = nlohmann::json::array();
+  features.for_each([&](Feature f) { names.push_back(name_of(f)); });
+  return names;
+}
+
+/// A plan without stages.
+nlohmann::json plan_of(const Scene& scene, const SolverEntry& entry, const std::string& status,
+                       const std::string& message) {
   nlohmann::json j = {{"scene", scene.name},
-                      {"solver", run.header().solver},
-                      {"needs", needs},
-                      {"status", run.outcome().status},
-                      {"message", run.outcome().message},
-                      {"stages", stages},
-                      {"buffers", nlohmann::json::array()},
-                      {"left_out", nlohmann::json::array()},
-                      {"contact_margins", nlohmann::json::array()}};
-  for (const char* key : {"buffers", "left_out", "contact_margins"})
-    if (run.header().plan.contains(key)) j[key] = run.header().plan[key];
+                      {"solver", entry.info.name},
+                      {"needs", names_of(scene.needs)},
+                      {"status", status},
+                      {"message", message}};
+  for (const char* list : {"stages", "buffers", "left_out", "contact_margins"}) j[list] = nlohmann::json::array();
   return j;
 }
 
-nlohmann::json crashed_plan(const Scene& scene, const SolverEntry& entry, const std::string& how) {
-  nlohmann::json needs = nlohmann::json::array();
-  scene.needs.for_each([&](Feature f) { needs.push_back(name_of(f)); });
-  nlohmann::json j = {{"scene", scene.name},
-                      {"solver", entry.info.name},
-                      {"needs", needs},
-                      {"status", "crashed"},
-                      {"message", "its process: " + how}};
-  for (const char* none : {"stages", "buffers", "left_out", "contact_margins"}) j[none] = nlohmann::json::array();
+nlohmann::json plan_of(const Scene& scene, const SolverEntry& entry, const SolverRun& run) {
+  nlohmann::json j = plan_of(scene, entry, run.outcome().status, run.outcome().message);
+  j.update(run.header().plan.is_null() ? nlohmann::json::object() : run.header().plan);
+  for (const StagePlan& s : run.plan().stages)
+    j["stages"].push_back({{"name", s.name},
+                           {"serves", names_of(s.serves)},
+                           {"dispatches", s.dispatches},
+                           {"read_B", finite_or_null(s.read_B)},
+                           {"write_B", finite_or_null(s.write_B)}});
   return j;
 }
 
@@ -93,30 +85,25 @@ void print(const nlohmann::json& p) {
 void add_plan(CLI::App& app, Console& console) {
   PlanArguments& a = console.arguments<PlanArguments>();
   CLI::App* cmd = app.add_subcommand(
-      "plan", "What a solver would run for a scene: kernels, dispatches, buffers, bytes, and what it leaves out");
+      "plan", "Print what a solver would run for a scene: kernels, dispatches, buffers, bytes and omitted features");
   cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
-  add_solvers(*cmd, "--solver", a.solvers, "Solvers; default: all");
-  cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
-  a.device.add_to(*cmd);
+  a.with.add_to(*cmd, "--solver", "Solvers; default: all", "Override: cloth.grid=[64,64], solver.substeps=20");
+  a.with.device.add_to(*cmd);
   cmd->footer(
       "Examples: clothbench plan paper/gravity --solver paper\n"
       "          clothbench plan paper/desk-flat-low --solver xpbd --set cloth.grid=[64,64] --json");
   cmd->callback([&console, &a] {
-    const Overrides overrides = split_overrides(a.set);
-    if (a.solvers.empty())
-      for (const SolverEntry& e : solvers()) a.solvers.push_back(e.info.name);
     nlohmann::json all = nlohmann::json::array();
     Guard guard(console.words);
     for (const std::string& file : a.scenes) {
-      const Scene scene = load_scene(file, overrides.scene);
-      for (const std::string& name : a.solvers) {
-        const SolverEntry& entry = find_solver(name);
-        const Guard::Answer answer = guard.run(entry, [&] {
-          return plan_of(SolverRun({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()},
-                                   a.device.options, "plan"),
-                         scene);
+      const Scene scene = load_scene(file, split_overrides(a.with.set).scene);
+      for (const ChosenSolver& s : a.with.chosen(solver_names())) {
+        const Guard::Answer answer = guard.run(*s.entry, [&] {
+          return plan_of(scene, *s.entry,
+                         SolverRun({&scene, s.entry, s.settings, s.setting}, a.with.device.options, "plan"));
         });
-        all.push_back(answer.crash.empty() ? answer.value : crashed_plan(scene, entry, answer.crash));
+        all.push_back(answer.crash.empty() ? answer.value
+                                           : plan_of(scene, *s.entry, "crashed", "its process: " + answer.crash));
         if (!console.json) print(all.back());
         if (all.back()["status"] == "error" || guard.crashed()) console.exit_code = ExitCode::CheckFailed;
       }

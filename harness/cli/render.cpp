@@ -38,19 +38,18 @@ std::vector<fs::path> runs_in(const fs::path& folder, const std::string& wanted)
   for (const fs::path& p : all) names += "\n  " + p.stem().string();
   if (all.empty()) throw Error(folder.string() + ": no result files (.h5, .part) in it");
   if (found.empty()) throw Error(folder.string() + ": no run has \"" + wanted + "\" in its name; there are" + names);
-  throw Error(folder.string() + ": " + std::to_string(all.size()) + " runs; say which with --run TEXT:" + names);
+  throw Error(folder.string() + ": " + std::to_string(all.size()) + " runs; choose one with --run TEXT:" + names);
 }
 
 /// Runs a scene for its positions alone.
 render::Motion run(const std::string& file, const RenderArguments& a, const Console& console) {
   const Overrides overrides = split_overrides(a.set);
   const Scene scene = load_scene(file, overrides.scene);
-  const SolverEntry& entry = find_solver(a.solver);
+  const auto [entry, settings, setting] = chosen_solver(a.solver, overrides);
   if (!console.json)
-    fmt::print("{}: a scenario, not a result file: nothing is stored, so {} runs it now ({:g} s of it)\n", file,
+    fmt::print("{}: this is a scenario, not a result file, so {} runs it now ({:g} s of simulated time)\n", file,
                a.solver, scene.time.duration_s);
-  SolverRun run({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()}, a.device.options,
-                "render");
+  SolverRun run({&scene, entry, settings, setting}, a.device.options, "render");
   if (!run.alive()) throw Error(file + ": " + a.solver + ": " + run.outcome().status + ": " + run.outcome().message);
   TrialRules rules;
   rules.accuracy_duration_s = scene.time.duration_s;
@@ -103,7 +102,8 @@ void render_all(const RenderArguments& a, const Console& console) {
         StatusLine line(!console.json);
         taken =
             render::take(m, shots, a.device.options, [&](const std::string& what, std::size_t done, std::size_t of) {
-              if (interrupt_requested()) throw Error("interrupted; pictures so far are kept", ExitCode::Interrupted);
+              if (interrupt_requested())
+                throw Error("interrupted; the pictures drawn so far are kept", ExitCode::Interrupted);
               line.show(what, done, of);
             });
       }
@@ -125,22 +125,23 @@ void add_render(CLI::App& app, Console& console) {
   a.size = "1200x900";
   a.solver = "xpbd";
   CLI::App* cmd =
-      app.add_subcommand("render", "Pictures (PNG) and a movie (MP4, where ffmpeg is present) of stored motions");
+      app.add_subcommand("render", "Draw pictures (PNG) and a movie (MP4, if ffmpeg is present) of stored motions");
   cmd->add_option("file", a.files, "Result files (.h5), study folders, or scenarios, which are run first")->required();
   cmd->add_option("-o,--out", a.out, "Folder to write to")->capture_default_str();
   cmd->add_option("--frames", a.frames,
                   "FRAME, FIRST:LAST or FIRST:LAST:STEP, both included; -1 is the last. Default: all");
   cmd->add_option("--view", a.views, "front, top or corner (default); more than one may be given");
   cmd->add_option("--colour,--color", a.colour,
-                  "Of the cloth: checker, strain (stretch of the edges), depth (how far it is inside a collider, or "
-                  "through a room)")
+                  "Colour of the cloth: checker, strain (stretch of the edges), depth (depth inside a collider, or "
+                  "behind the surface of a room)")
       ->capture_default_str();
-  cmd->add_option("--size", a.size, "WIDTHxHEIGHT in pixels, legend and caption included")->capture_default_str();
-  cmd->add_option("--run", a.run, "Of a folder: runs with this in their names");
-  cmd->add_flag("--plain", a.plain, "No legend and no caption");
+  cmd->add_option("--size", a.size, "Size of a picture with its legend and caption: WIDTHxHEIGHT in pixels")
+      ->capture_default_str();
+  cmd->add_option("--run", a.run, "For a folder: draw the runs with this text in their names");
+  cmd->add_flag("--plain", a.plain, "Draw no legend and no caption");
   cmd->add_flag("--no-movie", a.no_movie, "Pictures alone");
   cmd->add_option("--solver", a.solver, "Solver that runs a scenario")->capture_default_str();
-  cmd->add_option("--set", a.set, "Of a scenario: override, as with `clothbench run`");
+  cmd->add_option("--set", a.set, "For a scenario: override, as with `clothbench run`");
   a.device.add_to(*cmd);
   cmd->footer(
       "Examples: clothbench render results/runs/mine --run desk-flat-low__xpbd --view top --colour depth --frames -1\n"

@@ -11,7 +11,7 @@ void add_report(CLI::App& app, Console& console) {
   auto& out = console.arguments<std::string>();
   out = "report";
   CLI::App* cmd = app.add_subcommand(
-      "report", "An interactive page, tables (Markdown, CSV, JSON) and figures (SVG, PNG) from result files");
+      "report", "Write an interactive page, tables (Markdown, CSV, JSON) and figures (SVG, PNG) from result files");
   cmd->add_option("runs", runs, "Study folders or result files")->required();
   cmd->add_option("-o,--out", out, "Folder to write to")->capture_default_str();
   cmd->footer("Example: clothbench report results/runs/table3-20260101T000000Z -o report");
@@ -25,7 +25,7 @@ void add_report(CLI::App& app, Console& console) {
     else {
       print_console_report(paths);
       const bool page = std::filesystem::exists(options.out / "index.html");
-      fmt::print("\nreport: {}/{}\n", out, page ? "index.html (to look at), report.md" : "report.md");
+      fmt::print("\nreport: {}/{}\n", out, page ? "index.html (open it in a browser), report.md" : "report.md");
     }
   });
 }

@@ -10,12 +10,12 @@ namespace clothbench {
 namespace {
 
 struct RunArguments {
-  std::vector<std::string> scenes, solvers, set;
+  std::vector<std::string> scenes;
+  SolverFlags with;
   std::string out;
   int trials = 1;
   std::optional<std::uint64_t> seed;
   bool require_assets = false, resume = false;
-  DeviceFlags device;
 };
 
 }  // namespace
@@ -25,23 +25,21 @@ void add_run(CLI::App& app, Console& console) {
   CLI::App* cmd =
       app.add_subcommand("run", "Run scenes with solvers: one accuracy pass over the whole scene, then timed trials");
   cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
-  add_solvers(*cmd, "--solver", a.solvers, "Solvers (default xpbd)");
-  cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
+  a.with.add_to(*cmd, "--solver", "Solvers (default xpbd)", "Override: cloth.grid=[64,64], solver.substeps=20");
   cmd->add_option("--trials", a.trials, "Timed trials")->check(CLI::Range(0, 1000))->capture_default_str();
   cmd->add_option("--out", a.out, "Folder for the result files; default results/runs/run-<UTC>");
   add_seed(*cmd, a.seed);
   add_require_assets(*cmd, a.require_assets);
-  cmd->add_flag("--resume", a.resume, "Go on with the folder of an interrupted run");
-  a.device.add_to(*cmd);
+  cmd->add_flag("--resume", a.resume, "Continue the interrupted run in the folder of --out");
+  a.with.device.add_to(*cmd);
   cmd->footer(
       "Example: clothbench run paper/gravity --solver paper --set cloth.grid=[64,64] --set solver.iterations=20");
   cmd->callback([&console, &a] {
-    if (a.resume && a.out.empty()) throw Error("--resume: say which folder with --out");
-    const Overrides overrides = split_overrides(a.set);
-    if (a.solvers.empty()) a.solvers = {"xpbd"};
+    if (a.resume && a.out.empty()) throw Error("--resume: expected --out with the folder to continue");
+    const std::vector<std::string> set = split_overrides(a.with.set).scene;
     std::vector<Scene> scenes;
     for (const std::string& file : a.scenes)
-      scenes.push_back(at_seed(load_scene(file, overrides.scene, asset_policy(a.require_assets)), a.seed, console));
+      scenes.push_back(at_seed(load_scene(file, set, asset_policy(a.require_assets)), a.seed, console));
     RunPlan plan;
     plan.protocol = "run";
     plan.rules.trials = a.trials;
@@ -50,15 +48,13 @@ void add_run(CLI::App& app, Console& console) {
     for (const Scene& scene : scenes) {
       plan.rules.accuracy_duration_s = std::max(plan.rules.accuracy_duration_s, scene.time.duration_s);
       std::vector<RunSpec> group;
-      for (const std::string& name : a.solvers) {
-        const SolverEntry& entry = find_solver(name);
-        group.push_back({&scene, &entry, complete_settings(entry.info, overrides.solver), overrides.label()});
-      }
+      for (auto& [entry, settings, setting] : a.with.chosen({"xpbd"}))
+        group.push_back({&scene, entry, settings, setting});
       plan.groups.push_back(std::move(group));
     }
     StudyManifest manifest;
     manifest.study = "run";
-    run_and_tell(plan, manifest, {a.out, a.resume, a.device}, console);
+    run_and_tell(plan, manifest, {a.out, a.resume, a.with.device}, console);
   });
 }
 

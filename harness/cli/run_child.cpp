@@ -5,8 +5,8 @@ namespace clothbench {
 
 void add_run_child(CLI::App& app, Console& console) {
   std::string& folder = console.arguments<std::string>();
-  CLI::App* cmd = app.add_subcommand("run-child",
-                                     "Executes runs in this process, for a study that gives each a process of its own");
+  CLI::App* cmd =
+      app.add_subcommand("run-child", "Execute runs in this process, for a study that runs each in its own process");
   cmd->group("");  // not for people
   cmd->add_option("folder", folder)->required();
   cmd->callback(

@@ -21,9 +21,9 @@ std::filesystem::path default_folder(const std::string& study) {
   return std::filesystem::path("results/runs") / (study + "-" + stamp);
 }
 
-void SearchFlags::add_to(CLI::App& app) {
+void SearchFlags::add_storage_to(CLI::App& app) {
   CLI::Option* folder = app.add_option("--out", out, "Also store every run in this folder, for `clothbench report`");
-  app.add_flag("--resume", resume, "Go on with what is stored there")->needs(folder);
+  app.add_flag("--resume", resume, "Continue with the runs stored in that folder")->needs(folder);
   device.add_to(app);
 }
 
@@ -44,9 +44,10 @@ bool check_device(const SolverEntry& gpu, const DeviceFlags& flags) {
     return false;
   }
   if (flags.options.index >= static_cast<int>(devices.size()))
-    throw Error(fmt::format("--device {}: there are {} devices (see `clothbench list devices`)", flags.options.index,
-                            devices.size()),
-                ExitCode::NoDevice);
+    throw Error(
+        fmt::format("--device {}: expected a number below {}, the count of devices (see `clothbench list devices`)",
+                    flags.options.index, devices.size()),
+        ExitCode::NoDevice);
   return true;
 }
 
@@ -73,17 +74,29 @@ nlohmann::json seconds_json(const RunResult& r) {
   return j;
 }
 
-/// A few runs at a glance, under the tables; many are what the tables are for.
-void print_in_short(const RunPlan& plan, const std::filesystem::path& out) {
-  constexpr std::size_t kFew = 24;
-  if (plan.size() == 0 || plan.size() > kFew) return;
+/// The plan's runs as they are stored.
+std::vector<RunRecord> stored_runs(const RunPlan& plan, const std::filesystem::path& out) {
   const std::vector<std::string> names = run_names(plan);
   std::vector<RunRecord> runs = collect({out});
   std::erase_if(runs, [&](const RunRecord& c) {
     return std::find(names.begin(), names.end(), run_name(c.header)) == names.end();
   });
   withhold_times(runs);
-  fmt::print("{}", in_short_table(runs).console());
+  return runs;
+}
+
+/// Outcome and every figure of each run.
+nlohmann::json figures_of(const RunPlan& plan, const std::filesystem::path& out) {
+  nlohmann::json all = runs_json(stored_runs(plan, out));
+  for (nlohmann::json& run : all) run.erase("environment");  // in the result files
+  return all;
+}
+
+/// A few runs at a glance, under the tables; many are what the tables are for.
+void print_in_short(const RunPlan& plan, const std::filesystem::path& out) {
+  constexpr std::size_t kFew = 24;
+  if (plan.size() == 0 || plan.size() > kFew) return;
+  fmt::print("{}", in_short_table(stored_runs(plan, out)).console());
 }
 
 /// Where the time went, and what was not measured for its sake.
@@ -98,7 +111,7 @@ void print_spent(const RunResult& r) {
   }
   fmt::print("seconds: {}; together {:.0f}\n", text, all);
   if (r.runs_over_budget > 0)
-    fmt::print("not run: {} settings whose solvers had used up their time on the scene (over_budget)\n",
+    fmt::print("not run: {} settings, because their solvers had used all of their time on the scene (over_budget)\n",
                r.runs_over_budget);
   if (r.moduli_left_out > 0)
     fmt::print(
@@ -111,7 +124,8 @@ void print_spent(const RunResult& r) {
 
 void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
   app.add_option("--seed", seed,
-                 "Draw the parameters of scenes with a truth by this number, and evaluate the truth there");
+                 "Draw the parameters of scenes with an exact solution from this seed, and evaluate the solution for "
+                 "them; in a study of drawn contact scenes, the seed of the first scene");
 }
 
 Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, Console& console) {
@@ -168,7 +182,8 @@ void run_and_tell(RunPlan plan, StudyManifest manifest, const RunFlags& flags, C
                         {"moduli_left_out", result.moduli_left_out},
                         {"faults", result.faults},
                         {"expect_passed", result.expect_passed},
-                        {"expect_failed", result.expect_failed}};
+                        {"expect_failed", result.expect_failed},
+                        {"runs", flags.part ? nlohmann::json::array() : figures_of(plan, out)}};
     fmt::print("{}\n", j.dump(2));
     return;
   }

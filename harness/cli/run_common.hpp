@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "cli/command.hpp"
+#include "runner/stability_study.hpp"
 #include "runner/study_runner.hpp"
 #include "runner/study_runs.hpp"
 #include "scenario/study.hpp"
@@ -17,12 +18,10 @@ struct RunFlags {
 };
 
 /// Common options of commands that run solvers repeatedly: friction, threshold, moduli.
-struct SearchFlags {
-  std::vector<std::string> solvers, set;
+struct SearchFlags : SolverFlags {
   std::string out;  ///< empty: nothing is stored
   bool resume = false;
-  DeviceFlags device;
-  void add_to(CLI::App&);  ///< --out, --resume and the device options
+  void add_storage_to(CLI::App&);  ///< --out, --resume and the device options
   StudyRuns runs(const std::string& study, const Console&) const;
 };
 
@@ -32,6 +31,15 @@ std::filesystem::path default_folder(const std::string& study);
 /// True if GPU solvers have a device; false if there is none and that is allowed. Throws Error otherwise, and if
 /// --device names a missing device.
 bool check_device(const SolverEntry& gpu, const DeviceFlags&);
+
+/// For a study whose runs are in processes of their own: where and how, the manifest completed. GPU solvers are left
+/// out of the study and of `only` where there is no device and that is allowed.
+StabilityOptions options_apart(Study&, StudyManifest&, const RunFlags&, std::vector<std::string>& only, int jobs,
+                               const Console&);
+
+/// run_and_tell for protocol contact: `jobs` runs at a time, none of them timed.
+void run_contact_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only,
+                          int jobs, Console& console);
 
 /// run_and_tell for a study that runs in other processes (protocol stability-map), `jobs` at a time. `only`: solvers of
 /// its maps.

@@ -36,32 +36,35 @@ nlohmann::json settle(Study& study, const DeviceFlags& flags, std::vector<std::s
         if (!e.info.on_gpu) only.push_back(e.info.name);
     std::erase_if(only, is_gpu);
   }
-  return describe_environment(device, "stability-map");
+  return describe_environment(device, study.protocol);
 }
 
 }  // namespace
 
-void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only,
-                            int jobs, Console& console) {
-  const nlohmann::json environment = settle(study, flags.device, only);
-  const std::filesystem::path out =
-      flags.out.empty() ? default_folder(manifest.study) : std::filesystem::path(flags.out);
-  std::filesystem::create_directories(out);
-  manifest.created = utc_now();
-  manifest.command_line = console.command_line;
-  for (const Study::Item& item : study.scenes)
-    for (const std::size_t k : item.solvers)
-      manifest.runs.push_back(run_name(item.scene.name, study.solvers[k].solver, study.solvers[k].label));
+StabilityOptions options_apart(Study& study, StudyManifest& manifest, const RunFlags& flags,
+                               std::vector<std::string>& only, int jobs, const Console& console) {
   StabilityOptions options;
-  options.out = out;
+  options.environment = settle(study, flags.device, only);
+  options.out = flags.out.empty() ? default_folder(manifest.study) : std::filesystem::path(flags.out);
   options.program = own_program();
   options.device = flags.device.options;
   options.resume = flags.resume;
   options.jobs = jobs;
   options.solvers = only;
-  options.environment = environment;
+  std::filesystem::create_directories(options.out);
+  manifest.created = utc_now();
+  manifest.command_line = console.command_line;
+  for (const Study::Item& item : study.scenes)
+    for (const std::size_t k : item.solvers)
+      manifest.runs.push_back(run_name(item.scene.name, study.solvers[k].solver, study.solvers[k].label));
+  return options;
+}
+
+void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags& flags, std::vector<std::string> only,
+                            int jobs, Console& console) {
+  StabilityOptions options = options_apart(study, manifest, flags, only, jobs, console);
   require_same_study(study, options);
-  write_manifest(out, manifest);
+  write_manifest(options.out, manifest);
   StabilityCounts counts;
   {
     StatusLine line(!console.json);
@@ -72,14 +75,15 @@ void run_stability_and_tell(Study study, StudyManifest manifest, const RunFlags&
     counts.add(run_stability_maps(study, options));
   }
   if (console.json) {
-    nlohmann::json j = {{"out", out.string()},     {"stable", counts.stable},           {"degraded", counts.degraded},
-                        {"failed", counts.failed}, {"unsupported", counts.unsupported}, {"crashed", counts.crashed}};
+    nlohmann::json j = {{"out", options.out.string()},       {"stable", counts.stable},
+                        {"degraded", counts.degraded},       {"failed", counts.failed},
+                        {"unsupported", counts.unsupported}, {"crashed", counts.crashed}};
     fmt::print("{}\n", j.dump(2));
     return;
   }
-  print_console_report({out});
+  print_console_report({options.out});
   fmt::print("\n{} runs stable, {} degraded, {} failed ({} of them crashed or hung), {} unsupported; results in {}\n",
-             counts.stable, counts.degraded, counts.failed, counts.crashed, counts.unsupported, out.string());
+             counts.stable, counts.degraded, counts.failed, counts.crashed, counts.unsupported, options.out.string());
 }
 
 }  // namespace clothbench

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "cli/command.hpp"
 #include "cli/run_common.hpp"
@@ -16,11 +17,11 @@ namespace {
 struct StudyArguments {
   std::string study;
   std::vector<std::string> set, only;
-  int trials = 0, jobs = 0;
+  int trials = 0, jobs = 0, count = 0;
   std::optional<std::uint64_t> seed;
   std::string eye = "2064x2208", runs;
   bool with_rendering = false, list_runs = false;
-  bool full = false, short_trials = false, quick = false, require_assets = false, no_moduli = false;
+  bool full = false, short_trials = false, quick = false, require_assets = false, procedural = false, no_moduli = false;
   RunFlags run;
 };
 
@@ -33,6 +34,23 @@ std::map<std::string, std::vector<std::string>> knobs_of_plugins(const std::vect
         if (s.name == "substeps" || s.name == "iterations") out[name].push_back(s.name);
   return out;
 }
+
+/// While it lives, this process and its children find no fetched rooms and hands.
+class ProceduralAssets {
+ public:
+  ProceduralAssets() {
+    if (const char* set = std::getenv("CLOTHBENCH_ASSETS")) before_ = set;
+    ::setenv("CLOTHBENCH_ASSETS", "procedural", 1);
+  }
+  ~ProceduralAssets() {
+    before_ ? ::setenv("CLOTHBENCH_ASSETS", before_->c_str(), 1) : ::unsetenv("CLOTHBENCH_ASSETS");
+  }
+  ProceduralAssets(const ProceduralAssets&) = delete;
+  ProceduralAssets& operator=(const ProceduralAssets&) = delete;
+
+ private:
+  std::optional<std::string> before_;
+};
 
 void print_runs(const std::vector<std::string>& names, const Console& console) {
   if (console.json) return fmt::print("{}\n", nlohmann::json(names).dump(2));
@@ -48,30 +66,51 @@ Rendering rendering_of([[maybe_unused]] const std::string& eye) {
 #endif
 }
 
-/// Protocol stability-map, which judges one untimed run of every run.
-void run_maps(Study study, const StudyArguments& a, Console& console) {
-  if (a.with_rendering) throw Error("--with-rendering: studies of protocol stability-map have no timed trials");
-  if (a.trials > 0) throw Error("--trials: studies of protocol stability-map have no timed trials");
+/// Protocols stability-map and contact, which judge one untimed run of every run.
+void run_untimed(Study study, const StudyArguments& a, Console& console) {
+  const std::string of = "studies of protocol " + study.protocol;
+  if (a.with_rendering) throw Error("--with-rendering: " + of + " have no timed trials");
+  if (a.trials > 0) throw Error("--trials: " + of + " have no timed trials");
   if (a.list_runs || !a.runs.empty())
-    throw Error(
-        "--list-runs, --run: not for protocol stability-map, whose next run depends on the last; --jobs uses all "
-        "cores of a machine");
-  run_stability_and_tell(study, {study.name, "", "", study.definition, {}}, a.run, a.only, std::max(1, a.jobs),
-                         console);
+    throw Error("--list-runs, --run: not for " + of +
+                ", whose runs are in processes of their own; --jobs uses all "
+                "cores of a machine");
+  const StudyManifest manifest = {study.name, "", "", study.definition, {}};
+  const auto run = is_drawn(study) ? run_contact_and_tell : run_stability_and_tell;
+  run(std::move(study), manifest, a.run, a.only, std::max(1, a.jobs), console);
+}
+
+/// Drawn scenes say which assets they are drawn from: fetched ones unless asked otherwise.
+Assets assets_of(const StudyArguments& a) {
+  return asset_policy(a.require_assets || (!a.procedural && is_study_of(a.study, "contact")));
+}
+
+/// Options that only some protocols have.
+void check_options(const Study& study, const StudyArguments& a) {
+  if (is_drawn(study)) return;
+  if (a.count > 0) throw Error("--count: nothing is drawn in this study; only for protocol contact");
+  if (a.procedural)
+    throw Error("--procedural: only for studies of protocol contact; others say so with --set or not at all");
+  if (a.jobs > 0 && study.protocol != "stability-map")
+    throw Error("--jobs: only for studies of protocols stability-map and contact, which have no timed trials");
 }
 
 void run_study(StudyArguments& a, Console& console) {
   const Overrides overrides = split_overrides(a.set);
   if (!overrides.solver.empty()) throw Error("--set solver.…: the solver settings of a study are set in its file");
-  if (a.run.resume && a.run.out.empty()) throw Error("--resume: say which folder with --out");
+  if (a.run.resume && a.run.out.empty()) throw Error("--resume: expected --out with the folder to continue");
   const StudyLength length = a.full ? StudyLength::Full : a.quick ? StudyLength::Quick : StudyLength::Short;
+  if (a.procedural && a.require_assets) throw Error("--procedural: expected without --require-assets");
+  const std::optional<ProceduralAssets> stand_ins =
+      a.procedural ? std::optional<ProceduralAssets>(std::in_place) : std::nullopt;
   Study study =
-      load_study(a.study, {overrides.scene, length, asset_policy(a.require_assets), a.only, knobs_of_plugins(a.only)});
+      load_study(a.study, {overrides.scene, length, assets_of(a), a.only, knobs_of_plugins(a.only), a.seed, a.count});
+  check_options(study, a);
+  if (is_drawn(study)) return run_untimed(std::move(study), a, console);
   for (Study::Item& item : study.scenes) item.scene = at_seed(std::move(item.scene), a.seed, console);
   if (a.seed) study.definition["seed"] = *a.seed;
   if (a.with_rendering) study.definition["rendering"] = {{"eyes", 2}, {"pixels", a.eye}};
-  if (study.protocol == "stability-map") return run_maps(std::move(study), a, console);
-  if (a.jobs > 0) throw Error("--jobs: only for studies of protocol stability-map, which have no timed trials");
+  if (study.protocol == "stability-map") return run_untimed(std::move(study), a, console);
   RunPlan plan = plan_study(study);
   if (a.trials > 0) plan.rules.trials = a.trials;
   if (a.no_moduli) plan.measure_moduli = false;
@@ -99,33 +138,38 @@ void add_study(CLI::App& app, Console& console) {
   StudyArguments& a = console.arguments<StudyArguments>();
   CLI::App* cmd = app.add_subcommand("study", "Execute every run of a study");
   cmd->add_option("study", a.study, "Study file or name, such as table3")->required();
-  CLI::Option* quick = cmd->add_flag("--quick", a.quick,
-                                     "Fewer scenes and solvers, as the study says: for a software device on 2 cores");
-  CLI::Option* brief =
-      cmd->add_flag("--short", a.short_trials, "Every run with short trials (the default)")->excludes(quick);
-  cmd->add_flag("--full", a.full, "Every run with long trials")->excludes(quick)->excludes(brief);
-  cmd->add_option("--trials", a.trials, "Trials a run, instead of the study's")->check(CLI::Range(1, 1000));
+  CLI::Option* quick = cmd->add_flag(
+      "--quick", a.quick, "The study's short form, with fewer scenes and solvers: for a software device on 2 cores");
+  CLI::Option* brief = cmd->add_flag("--short", a.short_trials, "Short trials in every run (default)")->excludes(quick);
+  cmd->add_flag("--full", a.full, "Long trials in every run")->excludes(quick)->excludes(brief);
+  cmd->add_option("--trials", a.trials, "Number of trials per run, instead of the study's")->check(CLI::Range(1, 1000));
   add_solvers(*cmd, "--solver", a.only,
-              "Only these solvers; one that the study does not name joins with its default settings");
+              "Only these solvers; a solver that the study does not name runs with its default settings");
   cmd->add_option("--set", a.set, "Override a scene key in every run: cloth.size_m=[0.5,0.5]");
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
-  cmd->add_flag("--resume", a.run.resume, "Go on with the folder of an interrupted study");
+  cmd->add_flag("--resume", a.run.resume, "Continue the interrupted study in the folder of --out");
   add_seed(*cmd, a.seed);
-  cmd->add_flag("--list-runs", a.list_runs, "Print the runs' numbers and names and execute none");
-  cmd->add_option(
-      "--run", a.runs,
-      "Only these runs, by number: 7, or 0,3-5. They join what is in --out (scripts/slurm_study.sh spreads a study "
-      "over a cluster so)");
+  cmd->add_option("--count", a.count, "Number of scenes to draw in a study of drawn contact scenes, from --seed on")
+      ->check(CLI::Range(1, 100000));
+  cmd->add_flag("--procedural", a.procedural,
+                "Draw contact scenes from procedural rooms and hands, which need no download; tables say so");
+  cmd->add_flag("--list-runs", a.list_runs, "Print the numbers and names of the runs; execute none");
+  cmd->add_option("--run", a.runs,
+                  "Only these runs, by number: 7, or 0,3-5. Their results are added to the folder of --out "
+                  "(scripts/slurm_study.sh spreads a study over a cluster in this way)");
   cmd->add_flag("--no-moduli", a.no_moduli,
-                "No effective moduli after a work-precision study (then no solver is left unranked for its stiffness)");
+                "Do not measure effective moduli after a work-precision study; then stiffness excludes no solver "
+                "from the ranks");
   cmd->add_option("--jobs", a.jobs,
-                  "Processes at a time, of a study that gives each run a process of its own (default 1)")
+                  "Number of processes at a time, for a study that runs each run in its own process (default 1)")
       ->check(CLI::Range(1, 256));
 #ifdef CLOTHBENCH_WITH_DRAW
   CLI::Option* rendering =
       cmd->add_flag("--with-rendering", a.with_rendering,
-                    "Also time frames with their pictures, one for each eye of a headset (frame_rendered_s)");
-  cmd->add_option("--eye", a.eye, "WIDTHxHEIGHT of each picture in pixels")->capture_default_str()->needs(rendering);
+                    "Also time frames with rendering, one picture for each eye of a headset (frame_rendered_s)");
+  cmd->add_option("--eye", a.eye, "Size of each picture: WIDTHxHEIGHT in pixels")
+      ->capture_default_str()
+      ->needs(rendering);
 #endif
   add_require_assets(*cmd, a.require_assets);
   a.run.device.add_to(*cmd);

@@ -48,34 +48,33 @@ void add_xr(CLI::App& app, Console& console) {
   XrArguments& a = console.arguments<XrArguments>();
   a.solver = "xpbd";
   CLI::App* cmd = app.add_subcommand(
-      "xr", "A live session in a headset (OpenXR): the cloth is drawn, the user's hands and room touch it");
-  cmd->add_option("scene", a.scene, "Scenario file or name: its hands become the user's, its room the user's")
+      "xr", "Run a live session in a headset (OpenXR): the cloth is drawn and touches the user's hands and room");
+  cmd->add_option("scene", a.scene, "Scenario file or name; the user's hands and room replace those of the scenario")
       ->required();
   cmd->add_option("--solver", a.solver, "Solver")->capture_default_str();
   cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
   cmd->add_option("--frames", a.frames,
                   fmt::format("Frames; default: as long as the scenario lasts, at most {}", xr::kMostFrames))
       ->check(CLI::Range(1, xr::kMostFrames));
-  cmd->add_option("--rate", a.rate, "Refresh rate asked of the display [Hz]")
+  cmd->add_option("--rate", a.rate, "Requested refresh rate of the display [Hz]")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   cmd->add_option("--place", a.place,
-                  "Where the scene's origin is, x y z [m] from the head at the start, or from the floor with a room; "
-                  "default 0 -0.1 -0.6, with a room 0 0 0")
+                  "Position of the scene's origin, x y z [m] from the head at the start (default 0 -0.1 -0.6), or from "
+                  "the floor with a room (default 0 0 0)")
       ->expected(3);
-  cmd->add_flag("--no-passthrough", a.opaque, "White background instead of the picture of the cameras");
-  cmd->add_option("--timeout", a.timeout,
-                  "Time without tracked hands or picked points after which the session ends [s]")
+  cmd->add_flag("--no-passthrough", a.opaque, "White background instead of the camera picture");
+  cmd->add_option("--timeout", a.timeout, "The session ends after this time without tracked hands or picked points [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   cmd->add_option("--runtime", a.runtime,
-                  "A runtime's library or manifest, entered without the system's OpenXR loader");
+                  "Library or manifest of a runtime, loaded without the system's OpenXR loader");
   cmd->add_option("--out", a.out,
                   "Folder for the result file and the recorded scenario; default results/runs/xr-<UTC>");
   a.device.add_to(*cmd);
   cmd->footer(
-      "Example: clothbench xr paper/capsule-sweep --frames 720\n"
-      "With a room: press A to see the scan, pick six points of a desk by the trigger, and the cloth falls on it.");
+      "Example: clothbench xr paper/capsule-sweep --frames 720\nWith a room: press A to show the scan, and "
+      "pick six points of a desk with the trigger. The cloth falls on the desk.");
   cmd->callback([&console, &a] {
     const Overrides overrides = split_overrides(a.set);
     xr::LoopOptions o;

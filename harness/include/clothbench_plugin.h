@@ -2,13 +2,16 @@
  * header of clothbench.
  *
  * The library exports one function, `clothbench_plugin`, which returns a description that stays valid. Units are SI.
- * Vectors are x y z with +y up. Positions and velocities of vertices are interleaved and ordered by rows of the grid:
- * vertex (i, j), the ith of row j, has index j * columns + i. Pointers in a scene are valid until `destroy`, those in a
- * frame until `step` returns. Calls come from one thread at a time. No exception or longjmp may cross them.
+ * Coordinates are right-handed. Vectors are x y z with +y up. Positions and velocities of vertices are interleaved and
+ * ordered by rows of the grid: vertex (i, j), the ith of row j, has index j * columns + i. Pointers in a scene are
+ * valid until `destroy`, those in a frame or a restart until the call returns, texts and arrays that the plugin returns
+ * until its next call. Calls come from one thread at a time. No exception or longjmp may cross them.
  *
- * Version 1. Structs that are passed singly (plugin, scene, frame) may grow at their end within a version; structs in
- * arrays never change. Both sides state the sizes that they were compiled with, and a library that does not fit is
- * refused. See solvers/plugin/README.md; solvers/plugin/example is a complete solver. */
+ * Version 2. Libraries built for version 1 run unchanged; a library of any other version is refused. Everything marked
+ * "Version 2" is present only if the library states version 2, as CLOTHBENCH_PLUGIN_HEADER does. ClothbenchPlugin,
+ * ClothbenchScene and ClothbenchFrame may grow at their end within a version, and both sides state the sizes that they
+ * were compiled with; all other structs change with the version alone. A library that does not fit is refused. See
+ * solvers/plugin/README.md; solvers/plugin/example is a complete solver. */
 #ifndef CLOTHBENCH_PLUGIN_H
 #define CLOTHBENCH_PLUGIN_H
 #include <stdint.h>
@@ -17,7 +20,8 @@
 extern "C" {
 #endif
 
-#define CLOTHBENCH_PLUGIN_VERSION 1u
+#define CLOTHBENCH_PLUGIN_VERSION 2u
+#define CLOTHBENCH_NONE 0xFFFFFFFFu /* no vertex, no triangle */
 
 #if defined(__GNUC__)
 #define CLOTHBENCH_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -59,10 +63,22 @@ enum {
   CLOTHBENCH_TIMED_OUT = 4
 };
 
-/* An edge of the grid. `membrane_stiffness_N_per_m` is the sheet's Y = E h at the edge, infinity if it is inextensible.
- * The solver chooses how to model it, as a spring or a constraint. The edge stands for a piece of cloth `along_m` x
- * `across_m`; on the border `across_m` is half a cell. A skip edge joins two vertices with one between them, number
- * (a + b) / 2. Its `along_m` is the distance to that vertex, and its stiffness is 0. */
+/* An edge of the grid or mesh. `membrane_stiffness_N_per_m` is the sheet's Y = E h at the edge, the force per width
+ * over the strain of a strip that is pulled at one end; infinity if it is inextensible. The solver chooses how to model
+ * it, as a spring or a constraint. The edge stands for a piece of cloth `along_m` x `across_m`:
+ * - structural edge of a grid: its own length, and the width of the cloth on both sides of it: on the border half of
+ *   a cell. Of a mesh: its length, and the area of its triangles over that length.
+ * - shear edge, a diagonal of a cell: the cell's sides along the rows (`along_m`) and along the columns (`across_m`).
+ *   Both diagonals of every cell are listed, and each stands for the whole cell.
+ * - skip edge, from a to b with the vertex m = (a + b) / 2 between them: the length from a to m, and the whole width of
+ *   a cell, half on the border. Its stiffness is 0. It carries bending: a strip with bending rigidity B has the energy
+ *   B across / (2 along^3) |a - 2 m + b|^2.
+ *
+ * Springs that make the sheet: one with Y and Poisson's ratio 1/3, the only one that springs alone can have. On a cell
+ * a x b, along an edge of length a: Y (9/8 b/a - 3/8 a/b), but at least Y b / (10 a), half of that on the border; both
+ * diagonals: 3/16 Y (a^2 + b^2) / (a b). On square cells these are 3/4 Y, 3/8 Y on the border, 3/8 Y on diagonals.
+ * Without shear edges, and on a mesh, an edge has Y across / along (Van Gelder 1998, "Approximate Simulation of Elastic
+ * Membranes by Triangulated Spring Meshes"). ClothbenchScene gives these constants of the edges too. */
 typedef struct ClothbenchEdge {
   uint32_t a, b;
   double rest_m, membrane_stiffness_N_per_m, along_m, across_m;
@@ -80,13 +96,15 @@ enum {
  * triangles never change. */
 typedef struct ClothbenchCollider {
   int32_t shape;
-  int32_t moves;                    /* 1: its pose changes from frame to frame */
-  double margin_m;                  /* distance from the surface at which contact stops the cloth */
-  double friction;                  /* Coulomb coefficient between cloth and collider */
-  double center_m[3];               /* plane: a point on it; sphere, box: centre */
-  double normal[3];                 /* plane: unit vector into free space */
-  double radius_m;                  /* sphere */
-  double half_extent_m[3], axes[9]; /* box: half extents along its axes; three orthonormal axes */
+  int32_t moves;      /* 1: its pose changes from frame to frame */
+  double margin_m;    /* distance from the surface at which contact stops the cloth */
+  double friction;    /* Coulomb coefficient between cloth and collider */
+  double center_m[3]; /* plane: a point on it; sphere, box: centre */
+  double normal[3];   /* plane: unit vector into free space */
+  double radius_m;    /* sphere */
+  /* box: half extents along its axes; the axes, x y z of the first, then of the second and the third. They are unit
+   * vectors in world coordinates, orthogonal and right-handed: the third is the cross product of the first two. */
+  double half_extent_m[3], axes[9];
   uint32_t capsule_count, vertex_count, triangle_count;
   int32_t closed;            /* mesh: closed surface of a solid, with outward normals */
   const uint32_t* triangles; /* 3 each, counter-clockwise seen from free space */
@@ -107,6 +125,9 @@ typedef struct ClothbenchScene {
   double frame_rate_hz;
   uint32_t frames;
   const double *position_m, *velocity_m_per_s, *mass_kg; /* at the start; one mass per vertex */
+  /* 3 vertices each. Those of a grid are all wound alike: counter-clockwise seen from the side that the cross product
+   * of the direction of growing i and that of growing j points to. Cell (i, j) has two, (i, j) (i+1, j) (i+1, j+1) and
+   * (i, j) (i+1, j+1) (i, j+1). Those of a mesh are as in its file: neighbours may be wound oppositely. */
   uint32_t triangle_count;
   const uint32_t* triangles;
   uint32_t structural_count, shear_count, skip_count;
@@ -120,6 +141,22 @@ typedef struct ClothbenchScene {
   const ClothbenchPose* poses;            /* one per collider, at the start */
   double self_thickness_m, self_friction; /* distance between two layers of the cloth in contact, 0: no
                                              self-collision; Coulomb coefficient of cloth on cloth */
+
+  /* Version 2. */
+  /* 3 a vertex: the cloth at rest, in world coordinates. A grid lies flat in its plane, even if it starts bent, folded
+   * or scattered (position_m). Lengths of edges are those of this shape. */
+  const double* rest_position_m;
+  /* 2 a vertex: pattern coordinates of a grid along its rows and columns, from 0 to width_m and to height_m. NULL for a
+   * mesh, which has no pattern: its rest positions take that place. */
+  const double* pattern_m;
+  /* 3 a triangle: the triangle across the edge from its vertex k to its vertex (k + 1) % 3; CLOTHBENCH_NONE at the
+   * border. No edge has more than two triangles. */
+  const uint32_t* triangle_neighbours;
+  /* Scenes state no Poisson's ratio. That of the sheet of springs above, which clothbench's solver `reference` has:
+   * 1/3, and 0 for a grid without shear, whose rows and columns are strips. */
+  double poisson_ratio;
+  /* Spring constants [N/m], see ClothbenchEdge: one per structural and per shear edge; infinity where inextensible. */
+  const double *structural_spring_N_per_m, *shear_spring_N_per_m;
 } ClothbenchScene;
 
 /* One displayed frame. Its data hold at the frame's end; between frames positions change linearly. */
@@ -130,7 +167,41 @@ typedef struct ClothbenchFrame {
   const ClothbenchPose* poses;   /* one per collider */
   const double* grip_position_m; /* one per grip */
   const uint8_t* grip_held;      /* one per grip: 0 from its release on */
+
+  /* Version 2. */
+  /* The same at the end of the frame before, or at the scene's start. NULL where the above are NULL. */
+  const ClothbenchPose* poses_before;
+  const double* grip_position_before_m;
+  const uint8_t* grip_held_before;
+  /* One per collider, one per grip: 1 if it teleports in this frame, so that it has no velocity and may be put at its
+   * new place at once. Both NULL if nothing does. Marked is what moves in this frame by more than half the distance of
+   * the scene's jump. */
+  const uint8_t *collider_teleports, *grip_teleports;
 } ClothbenchFrame;
+
+/* Version 2. A state in the course of a scene, and where all else is then. */
+typedef struct ClothbenchRestart {
+  int32_t index; /* of the last frame that is over; -1: the scene's start */
+  double time_s; /* at its end */
+  const double *position_m, *velocity_m_per_s;
+  const ClothbenchPose* poses;   /* one per collider */
+  const double* grip_position_m; /* one per grip; NULL if there are none or nothing moves */
+  const uint8_t* grip_held;
+} ClothbenchRestart;
+
+/* Version 2. The device of a solver. */
+typedef struct ClothbenchDevice {
+  const char *name, *driver, *api; /* "NVIDIA RTX 4090", "NVIDIA 570.86", "CUDA 12.8" */
+  int32_t is_software;             /* 1: a CPU that stands in for a GPU: its times say nothing of one */
+  const char* properties_json;     /* a JSON object of all that the API reports, or NULL */
+} ClothbenchDevice;
+
+/* Version 2. Memory that a scene takes. */
+typedef struct ClothbenchBuffer {
+  const char* name;
+  uint64_t size_B;
+  int32_t device_local; /* 1: memory of the device; 0: of the host */
+} ClothbenchBuffer;
 
 /* A setting of the solver: `--set solver.<name>=VALUE`. */
 typedef struct ClothbenchSetting {
@@ -178,13 +249,38 @@ typedef struct ClothbenchPlugin {
    * solution. */
   double (*free_fall_m)(const double* settings, double dt_s, double gravity_m_per_s2, double velocity_m_per_s,
                         double damping_per_s, int32_t frames);
-  const char* (*device)(void*); /* NULL: the CPU */
-  double (*device_s)(void*);    /* device time of the last frame; not NULL: the solver runs on a GPU */
+  const char* (*device)(void*); /* its name; NULL: the CPU */
+  /* Device time [s] of the last frame, from the begin of its first work on the device to the end of its last, NAN if
+   * not known. Not NULL: the solver runs on a GPU. */
+  double (*device_s)(void*);
 
-  /* Older libraries end above this line. `plugin_size` shows that, and they keep working. */
+  /* The first libraries of version 1 end above this line. `plugin_size` shows that, and they keep working. */
   /* Distance [m] at which the solver keeps the cloth from the scene's collider of this index, for metrics of contact.
    * NAN, or a NULL function: the collider's margin_m. */
   double (*contact_margin_m)(void*, uint32_t collider);
+
+  /* Version 2. All of the following may be NULL. */
+  /* Why the solver cannot run this scene at these settings, beyond what `supports` says, as in "unsupported, because
+   * …"; NULL if it can. Called before `create`; a reason gives a row `unsupported` and no error. */
+  const char* (*unsupported)(const double* settings, const ClothbenchScene*);
+  /* As `restart`, which is then not called, with the moment of the scene. A solver may accept a state of a scene whose
+   * grips and colliders move. `reset` goes before it: where both are there, only `reset` restores the start. */
+  int32_t (*restart_at)(void*, const ClothbenchRestart*);
+
+  /* Of solvers on a GPU. */
+  void (*device_info)(void*, ClothbenchDevice*); /* takes the place of `device` */
+  const ClothbenchBuffer* (*buffers)(void*, uint32_t* count);
+  /* Device time [s] of every stage in the last frame, in the order of `stages`; NAN if not known. Needs a setting
+   * `stage_times`, a whole number with default 0: times are asked for only from a second solver that is created with
+   * the value 1, after the timed frames, since timestamps between stages slow a frame. Needs `device_s` too. */
+  void (*stage_device_s)(void*, double* seconds);
+  /* Frames without waiting for each. `frames_in_flight`: how many of this scene may be begun and not complete, at
+   * least 1. `submit` begins a frame as `step` does, and returns as soon as no more are in flight; it has copied all
+   * that it needs of the frame. `finish` waits for all of them. The final state equals that of `step` bit for bit. All
+   * three or none. */
+  int32_t (*frames_in_flight)(void*);
+  int32_t (*submit)(void*, const ClothbenchFrame*);
+  int32_t (*finish)(void*);
 } ClothbenchPlugin;
 
 #define CLOTHBENCH_PLUGIN_HEADER                                                                                 \

@@ -98,6 +98,7 @@ struct ColliderContact::Probes {
   std::vector<double> rest;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<Watched> watched;
+  std::vector<double> contours_m;  ///< of the last probe
   bool any_crossings = false, any_inside = false;
 };
 
@@ -109,12 +110,18 @@ SceneContact ColliderContact::probe(int frame, const std::vector<double>& positi
   const double tunnelled = p.any_crossings ? 0 : kMissing, depth = p.any_inside ? 0 : kMissing;
   SceneContact all{0, 0, 0, tunnelled, tunnelled, depth, depth, depth, depth, depth};
   double moment = 0;
-  for (std::size_t k = 0; k < p.watched.size(); ++k)
-    add(all, moment, *p.watched[k].collider, p.sample(k, frame, positions));
+  p.contours_m.clear();
+  for (std::size_t k = 0; k < p.watched.size(); ++k) {
+    const ContactSample s = p.sample(k, frame, positions);
+    p.contours_m.push_back(s.contour_length_m);
+    add(all, moment, *p.watched[k].collider, s);
+  }
   // Without penetrating area the mean depth is 0, as the other depths are. NaN stays NaN.
   all.depth_mean_m = all.area_m2 == 0 ? 0 : moment / all.area_m2;
   return all;
 }
+
+const std::vector<double>& ColliderContact::contours_m() const { return probes_->contours_m; }
 
 SelfContact self_contact(const std::vector<double>& positions,
                          const std::vector<std::array<std::uint32_t, 3>>& triangles) {

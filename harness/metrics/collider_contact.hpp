@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "metrics/metric.hpp"
+#include "scenario/strict_contact.hpp"
 
 namespace clothbench {
 
@@ -14,14 +15,6 @@ inline constexpr bool kWithContactMetrics = false;  // built without CGAL: the c
 
 inline constexpr Needs kColliders{"colliders",
                                   [](const Scene& s) { return kWithContactMetrics && !s.colliders.empty(); }};
-
-/// Whether penetration depth is defined for a collider. True for all shapes except meshes (the inside of a plane is the
-/// half-space behind it), for closed meshes with outward normals, and for skinned meshes, which are hands open at most
-/// at the wrist. Rooms have no inside.
-bool has_inside(const Collider&);
-
-/// Whether crossings of a collider are counted (tunnelled fraction). True for meshes, open or closed.
-bool counts_crossings(const Collider&);
 
 /// The contact of one cloth with all colliders of its scene, frame after frame: one contact::ContactProbe per collider,
 /// moved as Scene::motion prescribes. The geometry of the collider kind decides the method
@@ -40,6 +33,8 @@ class ColliderContact {
 
   /// Positions [m] at the end of frame `frame`, 0 = the initial state; every frame once and in order.
   SceneContact probe(int frame, const std::vector<double>& positions);
+  /// Length [m] of the contour with each collider at the last probe.
+  const std::vector<double>& contours_m() const;
 
  private:
   struct Probes;

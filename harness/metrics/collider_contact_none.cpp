@@ -12,6 +12,7 @@ ColliderContact::~ColliderContact() = default;
 SceneContact ColliderContact::probe(int, const std::vector<double>&) {
   throw Error("this build has no contact metrics");
 }
+const std::vector<double>& ColliderContact::contours_m() const { throw Error("this build has no contact metrics"); }
 
 SelfContact self_contact(const std::vector<double>&, const std::vector<std::array<std::uint32_t, 3>>&) {
   throw Error("this build has no contact metrics");
@@ -23,7 +24,7 @@ ColliderPassage::ColliderPassage(const Scene&, const std::vector<double>&) {
   throw Error("this build has no contact metrics");
 }
 ColliderPassage::~ColliderPassage() = default;
-ScenePassage ColliderPassage::probe(int, const std::vector<double>&) {
+ScenePassage ColliderPassage::probe(int, const std::vector<double>&, const std::vector<double>&) {
   throw Error("this build has no contact metrics");
 }
 

@@ -22,11 +22,11 @@ double quantity_of(const RunRecord& run) {
 const std::vector<FrictionForm>& friction_forms() {
   static const std::vector<FrictionForm> all = {{"incline-stick", "critical angle [°], ≤ 0.1", true, 1, 0.1},
                                                 {"incline-stick", "creep in 2 s [% L], ≤ 0.01", false, 100, 0.01},
-                                                {"incline-slip", "way down [%], ≤ 2", false, 100, 2},
-                                                {"incline-stop", "way to stop [%], ≤ 2", false, 100, 2},
+                                                {"incline-slip", "slip distance [%], ≤ 2", false, 100, 2},
+                                                {"incline-stop", "stopping distance [%], ≤ 2", false, 100, 2},
                                                 {"capstan-hold", "overhang held [%], ≤ 3", true, 100, 3},
-                                                {"capstan-slip", "way round [%], ≤ 3", false, 100, 3},
-                                                {"atwood", "way of Atwood's strip [%], ≤ 3", false, 100, 3}};
+                                                {"capstan-slip", "slip round the capstan [%], ≤ 3", false, 100, 3},
+                                                {"atwood", "displacement of Atwood's strip [%], ≤ 3", false, 100, 3}};
   return all;
 }
 

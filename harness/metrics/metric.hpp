@@ -28,12 +28,14 @@ struct SceneContact {
 };
 
 /// Where the cloth passed through the colliders and how it slides on them, in one frame; collider_passage.hpp. All are
-/// NaN if the cloth is not finite. The first two are also NaN after any state that was not finite, and if no collider
-/// has a centre line.
+/// NaN if the cloth is not finite. The first four are also NaN if no collider has a centre line, and the first three
+/// after any state that was not finite.
 struct ScenePassage {
   double wrong_side_fraction;  ///< of the samples' area
   double wrong_side_samples;   ///< number of vertices and cell centres
-  double touching_fraction;    ///< of the vertices' area
+  double laid_over_samples;    ///< the same of those that went round
+  double hooked_axes;          ///< number of axes that cross the cloth
+  double touching_fraction;    ///< of the triangles' rest area
   double slip_m;  ///< mean distance slid on the surface by vertices that touch in this and the previous frame
 };
 

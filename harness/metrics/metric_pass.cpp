@@ -30,7 +30,7 @@ void MetricPass::add(const ClothState& state) {
   SceneContact contact{};
   if (contact_) contact = contact_->probe(frame_, state.position);
   ScenePassage passage{};
-  if (passage_) passage = passage_->probe(frame_, state.position);
+  if (passage_) passage = passage_->probe(frame_, state.position, contact_->contours_m());
   SelfContact self{};
   if (!triangles_.empty()) self = self_contact(state.position, triangles_);
   TruthErrors truth;

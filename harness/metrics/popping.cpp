@@ -45,13 +45,14 @@ Popping popping(const RunView& r) {
   const std::vector<double> speeds = collider_speeds_m_per_s(scene);
   const double fastest = speeds.empty() ? 0 : *std::max_element(speeds.begin(), speeds.end());
   const std::size_t from = let_go(*touching, speeds, fastest), vertices = scene.cloth.vertex_count();
-  if (from == 0) return {};
+  const bool never_touched = r.whole() && greatest_of(touching) == 0;
+  if (from == 0 && !never_touched) return {};
   Popping out;
   out.way_m = 0;
-  for (std::size_t f = from; f < std::min(from + kPopFrames, r.pass.time_s.size()); ++f)
+  for (std::size_t f = from; !never_touched && f < std::min(from + kPopFrames, r.pass.time_s.size()); ++f)
     for (std::size_t v = 0; v < vertices; ++v)
       out.way_m = max_or_nan(out.way_m, moved(r.pass, vertices, v, from - 1, f));
-  out.speed_m_per_s = greatest_of(speed, from);
+  out.speed_m_per_s = never_touched ? 0 : greatest_of(speed, from);
   // Cloth that is hit moves at up to twice the collider's speed (as off a bat); falling cloth falls at most its own
   // length.
   const Vec3& g = scene.gravity_m_per_s2;
@@ -108,7 +109,7 @@ MetricGroup popping_metrics() {
       {{"pop_displacement_m",
         own(
             {"touching_fraction"},
-            "greatest way of a vertex within three frames after the last contact with a collider that moves",
+            "greatest displacement of a vertex within three frames after the last contact with a collider that moves",
             [](const RunView& r) { return popping(r).way_m; }, "m"),
         Yes, nullptr, 220},
        {"pop_speed_m_per_s",

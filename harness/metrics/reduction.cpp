@@ -72,7 +72,24 @@ double greatest_of(const std::vector<double>* values, std::size_t from) {
   return most;
 }
 
+double longest_time(const std::vector<bool>& is, const std::vector<double>& time_s) {
+  double longest = 0, run = 0;
+  for (std::size_t f = 1; f < is.size(); ++f) {
+    run = is[f] ? run + (time_s[f] - time_s[f - 1]) : 0;
+    longest = std::max(longest, run);
+  }
+  return longest;
+}
+
 Reduction greatest(const char* series) { return of(series, "greatest of all frames", from_start, greatest_from); }
+
+Reduction least(const char* series) {
+  return of(series, "least of all frames", from_start, [](const std::vector<double>& v, std::size_t) {
+    double out = -v[0];
+    for (const double x : v) out = max_or_nan(out, -x);
+    return -out;
+  });
+}
 
 Reduction last(const char* series) {
   return of(series, "last frame", from_start, [](const std::vector<double>& v, std::size_t) { return v.back(); });

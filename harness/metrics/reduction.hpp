@@ -8,6 +8,7 @@ namespace clothbench {
 
 /// Reductions of one series. The result is NaN if any frame is NaN or the series is missing.
 Reduction greatest(const char* series);
+Reduction least(const char* series);
 Reduction last(const char* series);
 Reduction sum(const char* series);
 Reduction time_mean(const char* series);         ///< by trapezoids
@@ -20,6 +21,9 @@ inline Reduction own(std::vector<std::string> series, std::string what, std::fun
   return {std::move(series), std::move(what), std::move(value), std::move(units)};
 }
 
+/// Longest time [s] without a break in which `is` is true, one value a frame. A frame stands for the interval before
+/// it.
+double longest_time(const std::vector<bool>& is, const std::vector<double>& time_s);
 /// Greatest value from an index on; NaN if any is NaN, or if there are none.
 double greatest_of(const std::vector<double>* values, std::size_t from = 0);
 /// By trapezoids; NaN for fewer than two values.

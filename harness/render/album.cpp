@@ -160,25 +160,25 @@ std::vector<std::size_t> frames_from(const std::string& text, std::size_t count)
       parts.emplace_back();
     else
       parts.back() += c;
-  if (parts.size() > 3 || text.empty()) throw fail("not one to three numbers");
+  if (parts.size() > 3 || text.empty()) throw fail("expected one to three numbers");
   const auto number = [&](const std::string& part, long otherwise) {
     if (part.empty()) return otherwise;
     long value = 0;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (error != std::errc() || end != part.data() + part.size()) throw fail("\"" + part + "\" is no number");
+    if (error != std::errc() || end != part.data() + part.size()) throw fail("\"" + part + "\": expected a number");
     return value;
   };
   const auto last_there = static_cast<long>(count) - 1;
   const auto within = [&](long f) {
     const long k = f < 0 ? f + last_there + 1 : f;
-    if (k < 0 || k > last_there) throw fail(fmt::format("there are frames 0 to {}", last_there));
+    if (k < 0 || k > last_there) throw fail(fmt::format("expected frames from 0 to {}", last_there));
     return k;
   };
   const long first = within(number(parts[0], 0));
   const long last = parts.size() == 1 ? first : within(number(parts[1], -1)),
              step = parts.size() == 3 ? number(parts[2], 1) : 1;
-  if (step < 1) throw fail("a step is at least 1");
-  if (last < first) throw fail("the last is before the first");
+  if (step < 1) throw fail("expected a step of at least 1");
+  if (last < first) throw fail("expected the last frame at or after the first");
   std::vector<std::size_t> frames;
   for (long f = first; f <= last; f += step) frames.push_back(static_cast<std::size_t>(f));
   return frames;

@@ -99,7 +99,7 @@ Vec3 towards_eye(View view, double turn_deg) {
 }
 
 Camera frame(View view, std::span<const double> points, double aspect, double margin, double turn_deg) {
-  if (points.size() < 3) throw Error("frame: there is nothing to look at");
+  if (points.size() < 3) throw Error("camera: expected at least one point to view");
   Camera c;
   look(c, view, turn_deg);
   c.tan_half_height = std::tan(radians(kFieldOfView / 2));

@@ -66,7 +66,7 @@ Framing framing_of(const Motion& m, std::span<const std::size_t> frames) {
   for (std::size_t k = 0; k < 3; ++k) f.origin_m[k] = (seen.low[k] + seen.high[k]) / 2;
   Bounds beside = seen;
   beside.grow(kSeenBeside * size);
-  // Something that stands still is the same in every frame.
+  // Static objects are the same in every frame.
   const bool moves = !m.scene.motion.empty();
   for (std::size_t i = 0; i < (moves ? frames.size() : std::min<std::size_t>(1, frames.size())); ++i)
     for (const Vec3& p : surfaces(m.scene, static_cast<int>(frames[i]), f.near).position_m)

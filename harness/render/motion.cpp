@@ -64,7 +64,7 @@ Motion stored_motion(const std::filesystem::path& path) {
   m.position = std::move(replay.position);
   if (m.scene.cloth.columns < 2 || m.scene.cloth.rows < 2 ||
       m.position.size() != m.frames() * 3 * m.scene.cloth.vertex_count())
-    throw Error(path.string() + ": its positions do not fit the grid of its scenario");
+    throw Error(path.string() + ": its positions have another number of vertices than the grid of its scenario");
   return m;
 }
 

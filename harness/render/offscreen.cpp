@@ -20,8 +20,8 @@ Offscreen::Offscreen(std::shared_ptr<vulkan::Device> device, VkExtent2D extent, 
   const std::uint32_t most = std::min({device_->limits().maxImageDimension2D, device_->limits().maxFramebufferWidth,
                                        device_->limits().maxFramebufferHeight});
   if (extent.width < 1 || extent.height < 1 || extent.width > most || extent.height > most)
-    throw Error(
-        fmt::format("a picture of {} x {}: this device draws up to {} x {}", extent.width, extent.height, most, most));
+    throw Error(fmt::format("a picture of {} x {}: expected at most {} x {} on this device", extent.width,
+                            extent.height, most, most));
   for (std::size_t k = 0; k < count; ++k)
     images_.push_back(std::make_unique<Image>(device_, kFormat, extent, VK_SAMPLE_COUNT_1_BIT,
                                               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));

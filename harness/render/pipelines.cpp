@@ -252,7 +252,7 @@ void Pipelines::bind(const std::array<const vulkan::Buffer*, kBindings>& buffers
   std::array<VkWriteDescriptorSet, kBindings> writes{};
   for (std::uint32_t k = 0; k < kBindings; ++k) {
     if (buffers[k]->bytes() > device_->limits().maxStorageBufferRange)
-      throw Error(buffers[k]->name() + ": of more bytes than this device binds");
+      throw Error(buffers[k]->name() + ": its size exceeds what this device binds");
     infos[k] = {buffers[k]->handle(), 0, VK_WHOLE_SIZE};
     writes[k].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     writes[k].dstSet = set_;

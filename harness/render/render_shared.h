@@ -12,7 +12,8 @@ struct Drawn {
   vec4 eye;         // xyz: of the viewer, from the same origin [m]; w: 1 if the cloth's colours are its values
   vec4 sheet;       // columns and rows of vertices, squares of the checker along u and v
   vec4 origin;      // xyz: added to the cloth's positions [m]
-  vec4 follow;      // xyz: where vertex w of the cloth began [m]; the picture goes with it. w < 0: it stands still
+  vec4
+      follow;  // xyz: where vertex w of the cloth began [m]; the picture goes with it. w < 0: the picture does not move
 };
 
 // Of a collider's vertex: how it looks.

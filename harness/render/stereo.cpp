@@ -30,7 +30,7 @@ class StereoDrawer : public FrameDrawer {
     renderer_.set_cloth(scene.cloth, middle);
     if (solver.info().on_gpu) {
       const auto* gpu = dynamic_cast<const pbd_gpu::GpuSolver*>(&solver);
-      if (gpu == nullptr) throw Error("solver " + solver.info().name + ": rendering knows no way to its positions");
+      if (gpu == nullptr) throw Error("solver " + solver.info().name + ": rendering has no access to its positions");
       renderer_.use_positions(gpu->position_buffer(), gpu->origin_m());
     } else {
       upload_ = true;

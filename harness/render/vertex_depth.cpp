@@ -5,6 +5,7 @@
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/collider_surface.hpp"
+#include "metrics/contact/contour.hpp"
 #include "metrics/contact/tunnel.hpp"
 #include "metrics/contact/winding.hpp"
 #include "render/vertex_values.hpp"
@@ -30,7 +31,7 @@ struct Posed {
 
 struct Watched {
   const Collider* collider;
-  std::unique_ptr<Posed> posed;                   ///< of triangles that stand still
+  std::unique_ptr<Posed> posed;                   ///< of static triangles
   std::optional<contact::TunnelHistory> history;  ///< of one without an inside
 };
 
@@ -38,6 +39,7 @@ struct Watched {
 
 struct VertexDepth::State {
   const Scene& scene;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of the cloth
   std::vector<Watched> watched;
   std::vector<double> before;
   bool history_known = true;
@@ -46,6 +48,19 @@ struct VertexDepth::State {
     static const ColliderPose kStill;
     const FrameMotion* motion = scene.motion_after(frame - 1);
     return motion != nullptr ? motion->colliders[k] : kStill;
+  }
+
+  /// What shows that cloth between `before` and `x` went through a mesh, as in contact::ContactProbe.
+  contact::StepEvidence evidence(const Posed& mesh, std::span<const double> x) const {
+    const auto crosses = [&mesh, this](std::span<const double> at) {
+      return contact::contour({at, triangles}, mesh.tree).length_m > 0;
+    };
+    return {[this, crosses, x] { return crosses(before) || crosses(x); },
+            [&mesh](const Point<3>& p, const Point<3>& q) {
+              const std::vector<double>& at = mesh.surface.positions;
+              const contact::TriangleMeshView view{at, mesh.surface.triangles};
+              return contact::Border(view, contact::welded_vertices(view)).out_of_reach(p, q, at, at);
+            }};
   }
 
   void deepen(std::size_t k, int frame, std::span<const double> x, std::vector<float>& out) {
@@ -72,12 +87,12 @@ struct VertexDepth::State {
   }
 };
 
-VertexDepth::VertexDepth(const Scene& scene) : state_(new State{scene, {}, {}}) {
+VertexDepth::VertexDepth(const Scene& scene) : state_(new State{scene, clothbench::triangles(scene.cloth), {}, {}}) {
   for (const Collider& c : scene.colliders) {
     Watched w{&c, nullptr, {}};
     if (!ClosedForm::has(c)) {
       if (!c.moves()) w.posed = std::make_unique<Posed>(c, ColliderPose{});
-      if (!has_inside(c)) w.history.emplace(scene.cloth.vertex_count());
+      if (!has_inside(c)) w.history.emplace(scene.cloth.vertex_count(), contact::edges_of(state_->triangles));
     }
     state_->watched.push_back(std::move(w));
   }
@@ -90,7 +105,7 @@ std::vector<float> VertexDepth::at(int frame, std::span<const double> x, bool wa
   if (!contact::all_finite(x)) s.history_known = false;
   if (s.history_known && !s.before.empty())
     for (Watched& w : s.watched)
-      if (w.history) w.history->advance(s.before, x, w.posed->tree);
+      if (w.history) w.history->advance(s.before, x, w.posed->tree, s.evidence(*w.posed, x));
   s.before.assign(x.begin(), x.end());
   if (!wanted) return {};
   std::vector<float> out(s.scene.cloth.vertex_count(), 0);

@@ -7,11 +7,8 @@
 
 namespace clothbench {
 
-/// A result that needs several runs of one solver at one setting:
-///   S22  error of a run with a hitch or jitter over the error of a run of the same duration in even frames: at most 3
-///   S24  the same sheet about a thousand times smaller and larger (by powers of two): bitwise equal results
-///   S25  stretch as a function of resolution: not judged, since iterative solvers get softer with resolution
-///   S26  the same run repeated in another process: bitwise equal results; with another seed: the spread
+/// A result that needs several runs of one solver at one setting, from their pairs (pairs.hpp): "even-frames", "scale",
+/// "resolution" (not judged, since iterative solvers get softer with resolution), "repeat" and the spread by "seed".
 struct AcrossRuns {
   std::string case_name, solver, setting, figure, text;  ///< figure: what `value` is
   double value = kMissing, bound = kMissing;             ///< no bound: reported, not judged

@@ -43,8 +43,9 @@ std::string beaten_by(const WorkDiagram& d, const std::string& solver) {
     const double factor = ours / theirs;
     if (!(factor > std::max(worst, 1.001))) continue;
     worst = factor;
-    out = std::isinf(factor) ? fmt::format("{}: {:.2g} at {:.3g} ms, where it has no result", p.solver, theirs, budget)
-                             : fmt::format("{}: {:.3g} times at {:.3g} ms", p.solver, factor, budget);
+    out = std::isinf(factor)
+              ? fmt::format("{}: {:.2g} at {:.3g} ms, where this solver has no result", p.solver, theirs, budget)
+              : fmt::format("{}: {:.3g} times at {:.3g} ms", p.solver, factor, budget);
     if (d.flagged.contains(p.solver)) out += " (not ranked)";
   }
   return out;
@@ -53,13 +54,12 @@ std::string beaten_by(const WorkDiagram& d, const std::string& solver) {
 }  // namespace
 
 Table budget_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{"Smallest error within a budget of time a frame",
-          "Of all settings of a solver whose frame takes at most so long, wall time, pipelined where the solver can; "
-          "≤: at 0.001 or at the floor of "
-          "the scene, below which solvers are not distinguished. –: no setting is as fast. Beaten by: the other "
-          "solver, ranked "
-          "or not, that has the smaller error at some "
-          "budget from 0.05 to 13.9 ms, and the greatest factor.",
+  Table t{"Smallest error within a time budget per frame",
+          "Smallest error among the settings of a solver whose frame takes at most this wall time; frames are "
+          "pipelined where the solver can. ≤: the error is at most 0.001 or at the scene's floor, below which "
+          "solvers are not distinguished. –: no setting is that fast. Beaten by: the other solver, ranked or "
+          "not, with the smaller error at a budget from 0.05 to 13.9 ms, and the greatest ratio of the two "
+          "errors.",
           {{"scene", "solver"}}};
   for (const double b : kBudgets_ms) t.rows[0].push_back(fmt::format("{:g} ms", b));
   t.rows[0].emplace_back("beaten by");
@@ -80,10 +80,10 @@ Table budget_table(const std::vector<WorkDiagram>& diagrams) {
 }
 
 Table energy_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{"Energy that comes from nowhere",
-          "Greatest gain over the start in any frame, over M g L, of the settings that ended well, in scenes that keep "
-          "energy; and the setting. "
-          "More than 0.001 is counted.",
+  Table t{"Energy gain where energy is conserved",
+          "Greatest gain of total energy over its value at the start, in any frame, divided by M g L, and the "
+          "setting that shows it. Only scenes that conserve energy and settings that ended ok. Last column: "
+          "the number of settings with a gain above 0.001.",
           {{"scene", "solver", "greatest gain", "setting", "settings above 0.001"}}};
   for (const WorkDiagram& d : diagrams)
     for (const std::string& solver : distinct(d.points, &WorkPoint::solver)) {

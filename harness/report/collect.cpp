@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "clothbench/error.hpp"
 #include "report/report.hpp"
 #include "results/store.hpp"
@@ -26,9 +28,23 @@ RunRecord read(const fs::path& path) {
   return c;
 }
 
+/// A folder that lost its study.json, or to which files were copied: every result file in it, by name.
+void collect_files(const fs::path& dir, std::vector<RunRecord>& runs) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(dir))
+    if (entry.path().extension() == ".h5" || fs::exists(entry.path() / "outcome.raw")) files.push_back(entry.path());
+  if (files.empty())
+    throw Error(dir.string() +
+                ": neither study.json nor a result file is in it; expected a folder that `run` or `study` wrote, or "
+                "result files (.h5)");
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) runs.push_back(read(file));
+}
+
 void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
   const std::size_t first = runs.size();
-  for (const std::string& name : read_manifest(dir).runs) {
+  const StudyManifest manifest = read_manifest(dir);
+  for (const std::string& name : manifest.runs) {
     const fs::path file = dir / (name + ".h5"), part = dir / (name + ".part");
     if (fs::exists(file))
       runs.push_back(read(file));
@@ -37,6 +53,12 @@ void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
     else
       runs.push_back(missing_run(name, fs::exists(part)));
   }
+  if (manifest.definition.is_object() && manifest.definition.contains("pairs"))
+    for (const nlohmann::json& pair : manifest.definition["pairs"])
+      for (std::size_t k = first; k < runs.size(); ++k)
+        if (RunHeader& h = runs[k].header;
+            pair.at("scene") == h.scene && pair.at("solver") == h.solver && pair.at("setting") == h.setting)
+          h.environment["pairs"].push_back(pair);
   // A missing run gets the scenario of its scene from a run of another solver, so that tables can place it.
   for (std::size_t k = first; k < runs.size(); ++k) {
     if (runs[k].outcome.status != "missing") continue;
@@ -55,7 +77,7 @@ std::vector<RunRecord> collect(const std::vector<fs::path>& results) {
     // A path with a trailing slash has an empty last part.
     const fs::path last = result.has_filename() ? result.filename() : result.parent_path().filename();
     if (fs::is_directory(result) && last.extension() != ".part")
-      collect_folder(result, runs);
+      fs::exists(result / "study.json") ? collect_folder(result, runs) : collect_files(result, runs);
     else
       runs.push_back(read(result));
   }

@@ -132,14 +132,16 @@ std::vector<ComparedRun> compare_runs(const std::vector<RunRecord>& a, const std
   };
   for (const RunRecord& c : a) {
     const std::string name = run_name(c.header);
-    if (find(name) != out.end()) throw Error("compare: " + name + " stands twice in the first run");
+    if (find(name) != out.end())
+      throw Error("compare: " + name + " occurs twice in the first folder; expected each run once");
     out.push_back({name, &c, nullptr, {}, {}, {}, {}});
   }
   for (const RunRecord& c : b) {
     const std::string name = run_name(c.header);
     auto at = find(name);
     if (at == out.end()) at = out.insert(out.end(), ComparedRun{name, nullptr, nullptr, {}, {}, {}, {}});
-    if (at->b != nullptr) throw Error("compare: " + name + " stands twice in the second run");
+    if (at->b != nullptr)
+      throw Error("compare: " + name + " occurs twice in the second folder; expected each run once");
     at->b = &c;
   }
   for (ComparedRun& c : out)
@@ -150,7 +152,7 @@ std::vector<ComparedRun> compare_runs(const std::vector<RunRecord>& a, const std
 std::vector<Table> comparison_tables(const std::vector<ComparedRun>& runs) {
   Table times{
       "Time of a frame, A against B", "", {{"run", "A [ms]", "B [ms]", "change", "95 % interval", "p", "verdict"}}};
-  Table results{"Results that are not the same", "", {{"run", "what", "A", "B"}}};
+  Table results{"Results that differ", "", {{"run", "what", "A", "B"}}};
   std::size_t timed = 0, same = 0;
   std::vector<const RunRecord*> both;
   for (const ComparedRun& c : runs) {
@@ -176,13 +178,13 @@ std::vector<Table> comparison_tables(const std::vector<ComparedRun>& runs) {
     same += c.outcome.empty() && c.metrics.empty() && c.versions.empty();
   }
   times.note = fmt::format(
-      "Median of the trials' means; change: median of all pairwise ratios; p: Mann and Whitney's U test, exact. "
-      "*noise*: p above 5 %, an interval that holds 0, or too few "
-      "trials. Of {} runs without any difference about {:.0f} would be called faster or slower by chance.",
+      "Times: median of the trials' means. Change: median of all pairwise ratios. p: Mann and Whitney's U "
+      "test, exact. *noise*: p is above 5 %, the interval holds 0, or there are too few trials. Of {} runs "
+      "without any difference, about {:.0f} would be called faster or slower by chance.",
       timed, 0.05 * static_cast<double>(timed));
   results.note = fmt::format(
-      "{} runs have the same outcome and the same results (to 1e-9); what depends on the machine is not compared "
-      "here.",
+      "{} runs have the same outcome and the same results (to 1e-9). Values that depend on the machine are "
+      "not compared here.",
       same);
   times.note = with_withheld(times.note, both, {"frame_wall_median_s"});
   return {times, results};

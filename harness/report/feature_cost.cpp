@@ -4,21 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "base/json_number.hpp"
-#include "clothbench/solver.hpp"
 #include "report/bytes.hpp"
 #include "report/grid.hpp"
-#include "report/trajectories.hpp"
 #include "report/withheld.hpp"
 
 namespace clothbench {
 namespace {
 
 using nlohmann::json;
-
-constexpr const char* kAllOn = "all-on";
 
 struct Quantity {
   const char *name, *head;
@@ -32,37 +27,24 @@ const Quantity kQuantities[] = {{"frame_wall_median_s", "wall [ms]", 1e3},
                                 {"write_B_per_frame", "written [kB]", 1e-3},
                                 {"device_memory_B", "memory [kB]", 1e-3}};
 
-std::filesystem::path folder(const RunRecord& c) { return std::filesystem::path(c.file).parent_path(); }
-
-double longer_side(const json& scenario) {
-  const json size = scenario.value(json::json_pointer("/cloth/size_m"), json());
-  if (!size.is_array() || size.size() != 2) return kMissing;
-  return std::max(size[0].get<double>(), size[1].get<double>());
-}
-
-/// Setting of the partner run: "default" for "all-on", <setting> for "<setting>,all-on".
-std::string plain_setting(const std::string& setting) {
-  if (setting == kAllOn) return "default";
-  const std::string tail = std::string(",") + kAllOn;
-  return setting.ends_with(tail) ? setting.substr(0, setting.size() - tail.size()) : setting;
-}
-
-std::string both(const FeatureCost& f, const Quantity& q) {
-  const double a = summary_value(*f.needed, q.name), b = summary_value(*f.all, q.name);
+std::string both(const RunPair& f, const Quantity& q) {
+  const double a = summary_value(*f.run, q.name), b = summary_value(*f.other, q.name);
   if (std::string(q.name) == "read_B_per_frame" && std::isfinite(a) && std::isfinite(b))
-    return bytes_read(*f.needed, q.scale * a, 3) + " → " + bytes_read(*f.all, q.scale * b, 3);
+    return bytes_read(*f.run, q.scale * a, 3) + " → " + bytes_read(*f.other, q.scale * b, 3);
   return paired(q.scale * a, q.scale * b, " → ", 3);
 }
 
-double ratio(const FeatureCost& f, const char* name) {
-  return summary_value(*f.all, name) / summary_value(*f.needed, name);
+double ratio(const RunPair& f, const char* name) { return summary_value(*f.other, name) / summary_value(*f.run, name); }
+
+std::string moved_text(const RunPair& f) {
+  for (const RunRecord* c : {f.run, f.other})
+    if (c->outcome.status != "ok") return c->outcome.status;
+  if (std::isnan(f.value)) return "not measured";
+  return f.value == 0 ? "0 (bitwise)" : fmt::format("{:.1e}", f.value);
 }
 
-std::string moved_text(const FeatureCost& f) {
-  for (const RunRecord* c : {f.needed, f.all})
-    if (c->outcome.status != "ok") return c->outcome.status;
-  if (std::isnan(f.moved)) return "not measured";
-  return f.moved == 0 ? "0 (bitwise)" : fmt::format("{:.1e}", f.moved);
+std::vector<std::string> added(const RunPair& f) {
+  return scenario_of(*f.other).value("irrelevant", std::vector<std::string>{});
 }
 
 /// One of the two runs, for JSON.
@@ -72,37 +54,35 @@ json json_of(const RunRecord& c) {
   return out;
 }
 
-Columns<FeatureCost> cost_columns() {
-  Columns<FeatureCost> out = {{"scene", "scene", [](auto& f) { return f.needed->header.scene; }},
-                              {"solver", In::Both, [](auto& f) { return f.needed->header.solver; }},
-                              {"setting", In::Both, [](auto& f) { return f.needed->header.setting; }},
-                              {"", "solver", [](auto& f) { return label_of(*f.needed); }},
-                              {"status_needed", In::Csv, [](auto& f) { return f.needed->outcome.status; }},
-                              {"status_all", In::Csv, [](auto& f) { return f.all->outcome.status; }},
-                              {"moved", In::Csv, &FeatureCost::moved},
-                              {"moved_over_longer_side", In::Json, &FeatureCost::moved},
-                              {"no_op", In::Json, &FeatureCost::no_op},
-                              {"wall_ratio", In::Json, [](auto& f) { return ratio(f, "frame_wall_median_s"); }},
-                              {"device_ratio", In::Json, [](auto& f) { return ratio(f, "frame_device_median_s"); }},
-                              {"needed", In::Json, [](auto& f) { return json_of(*f.needed); }},
-                              {"all", In::Json, [](auto& f) { return json_of(*f.all); }},
-                              {"stages_needed", In::Csv, [](auto& f) { return f.needed->header.stages.size(); }},
-                              {"stages_all", In::Csv, [](auto& f) { return f.all->header.stages.size(); }},
-                              {"added", In::Both, &FeatureCost::added}};
+Columns<RunPair> cost_columns() {
+  Columns<RunPair> out = {{"scene", "scene", [](auto& f) { return f.scene; }},
+                          {"solver", In::Both, [](auto& f) { return f.series.solver; }},
+                          {"setting", In::Both, [](auto& f) { return f.run->header.setting; }},
+                          {"", "solver", [](auto& f) { return label_of(*f.run); }},
+                          {"status_needed", In::Csv, [](auto& f) { return f.run->outcome.status; }},
+                          {"status_all", In::Csv, [](auto& f) { return f.other->outcome.status; }},
+                          {"moved", In::Csv, &RunPair::value},
+                          {"moved_over_longer_side", In::Json, &RunPair::value},
+                          {"no_op", In::Json, &RunPair::within},
+                          {"wall_ratio", In::Json, [](auto& f) { return ratio(f, "frame_wall_median_s"); }},
+                          {"device_ratio", In::Json, [](auto& f) { return ratio(f, "frame_device_median_s"); }},
+                          {"needed", In::Json, [](auto& f) { return json_of(*f.run); }},
+                          {"all", In::Json, [](auto& f) { return json_of(*f.other); }},
+                          {"stages_needed", In::Csv, [](auto& f) { return f.run->header.stages.size(); }},
+                          {"stages_all", In::Csv, [](auto& f) { return f.other->header.stages.size(); }},
+                          {"added", In::Both, added}};
   for (const Quantity& q : kQuantities) {
-    out.add({{std::string(q.name) + "_needed", In::Csv, [&](auto& f) { return summary_value(*f.needed, q.name); }},
-             {std::string(q.name) + "_all", In::Csv, [&](auto& f) { return summary_value(*f.all, q.name); }},
+    out.add({{std::string(q.name) + "_needed", In::Csv, [&](auto& f) { return summary_value(*f.run, q.name); }},
+             {std::string(q.name) + "_all", In::Csv, [&](auto& f) { return summary_value(*f.other, q.name); }},
              {"", q.head, [&](auto& f) { return both(f, q); }}});
     if (q.scale == 1e3) out.push_back({"", "×", [&](auto& f) { return ratio(f, q.name); }, digits(3)});
   }
   return out.add(
       {{"", "stages",
-        [](auto& f) { return fmt::format("{} → {}", f.needed->header.stages.size(), f.all->header.stages.size()); }},
+        [](auto& f) { return fmt::format("{} → {}", f.run->header.stages.size(), f.other->header.stages.size()); }},
        {"", "moved", moved_text},
-       {"", "added", &FeatureCost::added}});
+       {"", "added", added}});
 }
-
-bool measured(const FeatureCost& f) { return f.needed->outcome.status == "ok" && f.all->outcome.status == "ok"; }
 
 }  // namespace
 
@@ -111,68 +91,52 @@ bool is_all_on(const RunRecord& c) {
   return scenario.is_object() && scenario.contains("irrelevant");
 }
 
-std::vector<FeatureCost> feature_costs(const std::vector<RunRecord>& runs) {
-  std::vector<FeatureCost> out;
-  for (const RunRecord& c : runs) {
-    const json scenario = scenario_of(c);
-    if (!scenario.is_object() || !scenario.contains("irrelevant")) continue;
-    for (const RunRecord& n : runs) {
-      const bool same = n.header.scene == c.header.scene && n.header.solver == c.header.solver &&
-                        folder(n) == folder(c) && n.header.setting == plain_setting(c.header.setting) &&
-                        flat_settings(n.header.settings) == flat_settings(c.header.settings) && &n != &c;
-      if (!same || n.outcome.status == "missing" || c.outcome.status == "missing") continue;
-      FeatureCost f{&n, &c, scenario["irrelevant"].get<std::vector<std::string>>()};
-      if (measured(f)) f.moved = trajectories_apart(n, c).max_m / longer_side(scenario);
-      out.push_back(std::move(f));
-      break;
-    }
-  }
-  std::stable_sort(out.begin(), out.end(), [](const FeatureCost& a, const FeatureCost& b) {
-    return a.needed->header.scene < b.needed->header.scene;
-  });
+std::vector<RunPair> feature_costs(const std::vector<RunRecord>& runs) {
+  std::vector<RunPair> out = run_pairs(runs, "irrelevant");
+  for (RunPair& p : out)
+    if (!p.both_ok()) p.value = kMissing;
+  std::stable_sort(out.begin(), out.end(), [](const RunPair& a, const RunPair& b) { return a.scene < b.scene; });
   return out;
 }
 
-Table feature_cost_table(const std::vector<FeatureCost>& costs) {
+Table feature_cost_table(const std::vector<RunPair>& costs) {
   const std::string note =
-      "Each scene as it is → with every other feature of its solver switched on where it cannot matter: colliders "
-      "100 m off with "
-      "friction, bending and damping of 1e-30 (what was added: last column). Timed in turns, median. Moved: "
-      "greatest distance of a "
-      "vertex in one run from the other, over the longer side.";
-  return cost_columns().table(
-      {"Cost of features that a scene does not use",
-       with_withheld(note + fmt::format(" Bytes: {}", kWhatBytesAre),
-                     runs_of(costs, &FeatureCost::needed, &FeatureCost::all), {"frame_wall_median_s"}),
-       {}},
-      costs);
+      "Before the arrow: the scene alone. After it: the same scene with every other feature of the solver "
+      "switched on where the feature cannot change the motion: colliders 100 m away with friction, and "
+      "bending and damping of 1e-30. The last column names what was added. Both are timed in turns; times "
+      "are medians. Moved: greatest distance of a vertex between the two runs, divided by the longer side.";
+  return cost_columns().table({"Cost of features that a scene does not use",
+                               with_withheld(note + fmt::format(" Bytes: {}", kWhatBytesAre),
+                                             runs_of(costs, &RunPair::run, &RunPair::other), {"frame_wall_median_s"}),
+                               {}},
+                              costs);
 }
 
-Table no_op_table(const std::vector<FeatureCost>& costs) {
-  Table t{"Does what is irrelevant change anything?",
-          "Scenes in which no vertex moved by more than 1e-6 of the longer side. A property of each solver: where an "
-          "irrelevant feature moves the cloth, its measured errors depend on what else is in the scene.",
+Table no_op_table(const std::vector<RunPair>& costs) {
+  Table t{"Effect of irrelevant features on the motion",
+          "Passed: scenes in which no vertex moved by more than 1e-6 of the longer side. If an irrelevant "
+          "feature moves the cloth of a solver, the errors measured for that solver depend on what else is in "
+          "the scene.",
           {{"solver", "scenes passed", "bitwise", "worst", "in"}}};
-  std::vector<std::string> solvers = distinct(costs, [](const FeatureCost& f) { return f.needed->header.solver; });
+  std::vector<std::string> solvers = distinct(costs, [](const RunPair& f) { return f.series.solver; });
   std::sort(solvers.begin(), solvers.end());
   for (const std::string& solver : solvers) {
     int kept = 0, bitwise = 0, all = 0;
-    const FeatureCost* worst = nullptr;
-    for (const FeatureCost& f : costs) {
-      if (f.needed->header.solver != solver || !measured(f)) continue;
+    const RunPair* worst = nullptr;
+    for (const RunPair& f : costs) {
+      if (f.series.solver != solver || !f.both_ok()) continue;
       ++all;
-      kept += f.no_op();
-      bitwise += f.moved == 0;
-      if (worst == nullptr || !(f.moved <= worst->moved)) worst = &f;
+      kept += f.within();
+      bitwise += f.value == 0;
+      if (worst == nullptr || !(f.value <= worst->value)) worst = &f;
     }
     t.rows.push_back({solver, fmt::format("{} of {}", kept, all), fmt::format("{} of {}", bitwise, all),
-                      worst == nullptr ? "–" : moved_text(*worst),
-                      worst == nullptr ? "–" : worst->needed->header.scene});
+                      worst == nullptr ? "–" : moved_text(*worst), worst == nullptr ? "–" : worst->scene});
   }
   return t;
 }
 
-json feature_cost_json(const std::vector<FeatureCost>& costs) { return cost_columns().json(costs); }
-std::string feature_cost_csv(const std::vector<FeatureCost>& costs) { return cost_columns().csv(costs); }
+json feature_cost_json(const std::vector<RunPair>& costs) { return cost_columns().json(costs); }
+std::string feature_cost_csv(const std::vector<RunPair>& costs) { return cost_columns().csv(costs); }
 
 }  // namespace clothbench

@@ -74,10 +74,11 @@ std::string feature_text(const SolverFeatures& s, Feature f, bool with_results) 
 }
 
 Table feature_table(const std::vector<SolverFeatures>& solvers, bool with_results) {
-  Table t{"Table 4: features", "Ignored: runs without serving it.", {{"feature"}}};
+  Table t{"Table 4: features", "Ignored: the solver runs the scene and leaves the feature out.", {{"feature"}}};
   if (with_results)
     t.note =
-        "Yes: a stage served it in a run that ended well; declared: the solver says so and no run here needed it. " +
+        "Yes: a stage of the solver served the feature in a run that ended ok. Declared: the solver states "
+        "support and no run here needed it. " +
         t.note;
   for (const SolverFeatures& s : solvers) t.rows[0].push_back(s.solver);
   for (std::size_t k = 0; k < kFeatureCount; ++k) {

@@ -25,8 +25,6 @@ std::string protocol_of(const RunRecord& c) {
 bool is_try(const RunRecord& c) { return protocol_of(c) == kThresholdProtocol; }
 
 /// Scene name from the scene's file. The header's name differs between the runs of a search.
-std::string base_name(const RunRecord& c) { return scenario_of(c).value("name", c.header.scene); }
-
 Scene scene_of(const RunRecord& c) { return scene_from_json(scenario_of(c), c.file.empty() ? c.header.scene : c.file); }
 
 /// Groups in the order of first appearance.
@@ -44,7 +42,7 @@ std::vector<RunPointers> grouped(const std::vector<RunRecord>& runs, Key key) {
 
 ThresholdRow row_of(const RunPointers& tries) {
   const RunRecord& first = *tries.front();
-  ThresholdRow row{base_name(first), first.header.solver, first.header.setting, {}, {}, {}, false};
+  ThresholdRow row{base_name(first), first.header.solver, first.header.setting, {}, {}, {}, {}, false};
   // The first run has the greatest friction, at which the scene has a truth; with less friction there may be none.
   row.of = truth::reference_case_of(scene_of(first))->threshold.value();
   row.found = search_threshold(row.of, [&](double friction) -> std::optional<bool> {
@@ -55,28 +53,30 @@ ThresholdRow row_of(const RunPointers& tries) {
     return std::nullopt;
   });
   for (const RunRecord* c : tries)
+    if (c->outcome.status == "unsupported") row.unsupported = c->outcome.message;
+  for (const RunRecord* c : tries)
     if (c->outcome.status == "crashed") row.crash = c->outcome.message.substr(std::string(kItsProcess).size());
   return row;
 }
 
-json reported(const FrictionForm& form, const json& error, const std::string& text) {
+json answer_json(const FrictionForm& form, const json& error, const std::string& text) {
   return {{"scene", form.scene}, {"what", form.head}, {"error", error}, {"at_most", form.at_most}, {"text", text}};
 }
 
-json reported(const FrictionForm& form, double error) {
-  if (!std::isfinite(error)) return reported(form, nullptr, "failed");
-  return reported(form, error,
-                  fmt::format("{}{:.2g}{}", form.threshold && error > 0 ? "+" : "", error,
-                              std::abs(error) <= form.at_most ? " ✓" : ""));
+json answer_json(const FrictionForm& form, double error) {
+  if (!std::isfinite(error)) return answer_json(form, nullptr, "failed");
+  return answer_json(form, error,
+                     fmt::format("{}{:.2g}{}", form.threshold && error > 0 ? "+" : "", error,
+                                 std::abs(error) <= form.at_most ? " ✓" : ""));
 }
 
 json answer(const FrictionForm& form, const ThresholdRow& row) {
   const double error = form.scale * row.found.error;
-  if (!row.crash.empty()) return reported(form, nullptr, "crashed");
-  if (row.unfinished) return reported(form, nullptr, "–");
-  if (row.found.holds_at_least) return reported(form, error, "holds at half of it");
-  if (row.found.slips_at_most) return reported(form, error, "slips at 1.5 of it");
-  return reported(form, error);
+  if (!row.crash.empty()) return answer_json(form, nullptr, "crashed");
+  if (row.unfinished) return answer_json(form, nullptr, "–");
+  if (row.found.holds_at_least) return answer_json(form, error, "holds at half of it");
+  if (row.found.slips_at_most) return answer_json(form, error, "slips at 1.5 of it");
+  return answer_json(form, error);
 }
 
 /// `runs`: all of one solver and setting.
@@ -88,22 +88,25 @@ json answer(const FrictionForm& form, const RunPointers& runs, const std::vector
   for (const RunRecord* c : runs) {
     if (is_try(*c) || c->header.scene != form.scene) continue;
     const std::string& status = c->outcome.status;
-    if (status == "unsupported" || status == "crashed") return reported(form, nullptr, status);
-    if (!form.threshold) return reported(form, form.scale * end_error(scene_of(*c), *c));
+    if (status == "unsupported" || status == "crashed") return answer_json(form, nullptr, status);
+    if (!form.threshold) return answer_json(form, form.scale * end_error(scene_of(*c), *c));
   }
-  return reported(form, nullptr, "–");
+  return answer_json(form, nullptr, "–");
 }
 
 Table threshold_table(const std::vector<ThresholdRow>& rows) {
   Table t{"Thresholds of friction",
-          "From which coefficient of friction on a scene holds, by bisection to 0.1 % between half and 1.5 times the "
-          "exact one.",
+          "Found: the smallest coefficient of friction at which the cloth holds, by bisection to 0.1 % between "
+          "0.5 and 1.5 times the exact coefficient.",
           {{"scene", "solver", "setting", "found", "exact", "off by", "runs"}}};
   for (const ThresholdRow& r : rows) {
     const FoundThreshold& f = r.found;
     const std::string bound = f.holds_at_least ? "≤ " : f.slips_at_most ? "≥ " : "";
-    const bool known = r.crash.empty() && !r.unfinished && !f.failed;
-    const std::string why = !r.crash.empty() ? "crashed" : r.unfinished ? "–" : "failed";
+    const bool known = r.crash.empty() && r.unsupported.empty() && !r.unfinished && !f.failed;
+    const std::string why = !r.crash.empty()         ? "crashed"
+                            : !r.unsupported.empty() ? "unsupported"
+                            : r.unfinished           ? "–"
+                                                     : "failed";
     t.rows.push_back(
         {r.scene, r.solver, r.setting, known ? fmt::format("{}{:.5f}", bound, f.found) : why,
          fmt::format("{:.5f}", f.exact),
@@ -128,6 +131,7 @@ std::vector<ThresholdRow> threshold_rows(const std::vector<RunRecord>& runs) {
 
 json threshold_json(const ThresholdRow& r) {
   if (!r.crash.empty()) return {{"scene", r.scene}, {"solver", r.solver}, {"crashed", r.crash}};
+  if (!r.unsupported.empty()) return {{"scene", r.scene}, {"solver", r.solver}, {"unsupported", r.unsupported}};
   const FoundThreshold& f = r.found;
   return {{"scene", r.scene},
           {"solver", r.solver},
@@ -147,6 +151,7 @@ std::string threshold_sentence(const ThresholdRow& r) {
   const FoundThreshold& f = r.found;
   const std::string of = r.scene + " " + r.solver + ": ";
   if (!r.crash.empty()) return of + kItsProcess + r.crash;
+  if (!r.unsupported.empty()) return of + "unsupported: " + r.unsupported;
   if (f.failed) return of + fmt::format("its run failed ({} runs)", f.runs);
   return of + fmt::format("holds from friction {}{:.5f} on, exact {:.5f}; {} off by {:+.4f} {} ({} runs)",
                           f.holds_at_least  ? "<= "
@@ -169,10 +174,11 @@ json friction_json(const std::vector<RunRecord>& runs) {
 
 Table friction_table(const std::vector<RunRecord>& runs) {
   Table t{"Friction by closed forms",
-          "Errors of the critical angle (Coulomb's cone), of the creep of a sheet that friction holds, and of the "
-          "displacements of one that slips and of one that stops. Capstan: errors of the overhang that it holds (a "
-          "polygon of as many sides as rows lie on it) and of the displacements over it with and without friction. "
-          "✓: within the bound. Thresholds by bisection, 0.1 % of the coefficient.",
+          "Sheets on a slope: errors of the critical angle (Coulomb's cone), of the creep of a sheet that "
+          "friction holds, of the displacement of a sheet that slips and of one that stops. Capstan: error of "
+          "the overhang that friction holds (on a polygon with one side per row of vertices on the cylinder) "
+          "and of the displacement over the cylinder with and without friction. ✓: within the bound. "
+          "Thresholds are found by bisection to 0.1 % of the coefficient.",
           {{"solver", "setting"}}};
   for (const FrictionForm& f : friction_forms()) t.rows[0].emplace_back(f.head);
   for (const json& of : friction_json(runs)) {

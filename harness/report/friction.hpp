@@ -19,13 +19,15 @@ struct ThresholdRow {
   truth::Threshold of;
   FoundThreshold found;
   std::string crash;        ///< how a plugin's process crashed; empty if it did not
+  std::string unsupported;  ///< why the solver cannot run the scene; empty if it can
   bool unfinished = false;  ///< a run that the search needs is missing
 };
 
 /// By scene, solver and setting, in the order of first appearance.
 std::vector<ThresholdRow> threshold_rows(const std::vector<RunRecord>&);
 
-/// {scene, solver, exact, found, error, error_name, error_units, bound, failed, runs}, or {scene, solver, crashed}.
+/// {scene, solver, exact, found, error, error_name, error_units, bound, failed, runs}, {scene, solver, crashed} or
+/// {scene, solver, unsupported}.
 nlohmann::json threshold_json(const ThresholdRow&);
 /// One line.
 std::string threshold_sentence(const ThresholdRow&);

@@ -54,6 +54,11 @@ double summary_value(const RunRecord& c, const std::string& name) {
 
 nlohmann::json scenario_of(const RunRecord& c) { return nlohmann::json::parse(c.header.scenario_json, nullptr, false); }
 
+std::string base_name(const RunRecord& c) {
+  const nlohmann::json j = scenario_of(c);
+  return j.is_object() && j.contains("name") && j["name"].is_string() ? j["name"].get<std::string>() : c.header.scene;
+}
+
 std::vector<double> trial_means(const RunRecord& c) {
   std::vector<double> out;
   for (const TimedTrial& t : c.trials) {
@@ -152,6 +157,24 @@ std::vector<Family> families(const std::vector<RunRecord>& runs) {
     f.runs.push_back(std::move(placed));
   }
   return out;
+}
+
+std::string frames_mark(const RunRecord& run, const std::vector<const RunRecord*>& all) {
+  const auto frames = [](const RunRecord& c) { return c.trials.empty() ? 0 : c.trials.front().frames(); };
+  int most = 0;
+  for (const RunRecord* c : all)
+    if (c->header.scene == run.header.scene) most = std::max(most, frames(*c));
+  return frames(run) > 0 && frames(run) < most ? fmt::format(" (first {} frames)", frames(run)) : "";
+}
+
+Table without_empty_columns(Table t) {
+  for (std::size_t k = t.rows.front().size(); k-- > 1;) {
+    const auto value = [&](const auto& row) { return &row != &t.rows.front() && k < row.size() && row[k] != "–"; };
+    if (std::any_of(t.rows.begin(), t.rows.end(), value)) continue;
+    for (auto& row : t.rows)
+      if (k < row.size()) row.erase(row.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  return t;
 }
 
 }  // namespace clothbench

@@ -18,6 +18,9 @@ double summary_value(const RunRecord&, const std::string& name);
 /// The scenario of a run; a discarded value if the stored text is not JSON.
 nlohmann::json scenario_of(const RunRecord&);
 
+/// Name in the scenario's file, without the labels of axes.
+std::string base_name(const RunRecord&);
+
 /// Each value of `of(item)` once, in the order of first appearance.
 template <class Items, class Of>
 auto distinct(const Items& items, Of of) {
@@ -54,6 +57,13 @@ inline constexpr auto failed_frame_of = [](const auto& r) -> Value {
 
 /// Mean wall time of a frame in each trial [s], ascending.
 std::vector<double> trial_means(const RunRecord&);
+
+/// " (first 36 frames)" where a run timed fewer frames than another of the same scene, whose time is then of other
+/// frames too; empty if it timed as many. `all`: the runs that stand beside it.
+std::string frames_mark(const RunRecord&, const std::vector<const RunRecord*>& all);
+
+/// Without columns that show "–" alone.
+Table without_empty_columns(Table);
 
 /// The median of a sorted, non-empty list.
 double middle(const std::vector<double>& sorted);

@@ -39,6 +39,21 @@ struct Span {
   std::string text() const { return first.empty() ? "–" : first == last ? first : first + " to " + last; }
 };
 
+/// A line for each build of a plugin among the runs; two builds differ by the hash.
+std::vector<std::string> plugin_lines(const std::vector<RunRecord>& runs) {
+  std::vector<std::string> out;
+  for (const RunRecord& c : runs) {
+    const nlohmann::json& e = c.header.environment;
+    if (!e.is_object() || !e.contains("plugin")) continue;
+    const nlohmann::json& p = e["plugin"];
+    const std::string line =
+        fmt::format("Plugin {}, version {}: {}. Library {}, SHA-256 {}.", c.header.solver, text(e, "solver_version"),
+                    text(p, "summary"), text(p, "path"), text(p, "sha256").substr(0, 16));
+    if (std::find(out.begin(), out.end(), line) == out.end()) out.push_back(line);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string overhead_line(const std::vector<RunRecord>& runs) {
@@ -51,8 +66,8 @@ std::string overhead_line(const std::vector<RunRecord>& runs) {
   if (most == nullptr) return "";
   const double t = summary_value(*most, "frame_wall_median_s"), share = t * kDisplayHz;
   return fmt::format(
-      "Harness overhead: at most {:.2g} % of a 72 Hz frame (13.89 ms), {} the 1 % allowed: {:.3g} µs a frame of "
-      "{} with ballistic, whose particles only fall.\n",
+      "Harness overhead: at most {:.2g} % of a 72 Hz frame (13.89 ms), {} the 1 % allowed. Measured: "
+      "{:.3g} µs a frame of {} with ballistic, whose particles only fall.\n",
       100 * share, share < kAllowedOverhead ? "below" : "**above**", 1e6 * t, most->header.scene);
 }
 
@@ -73,7 +88,7 @@ std::string gpu_of(const RunRecord& c) {
   const nlohmann::json& e = c.header.environment;
   const std::string gpu = text(e, "gpu");
   if (gpu == "CPU" || gpu == "–") return "";
-  return flag(e, "gpu_is_software") ? gpu + " (software, not for speed claims)" : gpu;
+  return flag(e, "gpu_is_software") ? gpu + " (software; its times say nothing of a GPU)" : gpu;
 }
 
 std::string headline(const std::vector<RunRecord>& runs, Format format) {
@@ -101,7 +116,8 @@ std::string headline(const std::vector<RunRecord>& runs, Format format) {
     if (!on_gpu[host]) lines.push_back("no GPU · " + host);
   std::string out;
   for (const std::string& device : software)
-    out += fmt::format("**Software Vulkan device ({}): for correctness, not for speed claims.**\n\n", device);
+    out += fmt::format("**Software Vulkan device ({}): it shows correctness; its times say nothing of a GPU.**\n\n",
+                       device);
   for (const std::string& reason : invalid) out += fmt::format("**Not a valid measurement: {}.**\n\n", reason);
   for (const std::string& line : withheld_lines(runs)) out += fmt::format("**{}**\n\n", line);
   for (const std::string& line : lines) {
@@ -110,7 +126,8 @@ std::string headline(const std::vector<RunRecord>& runs, Format format) {
       if (line.ends_with(key)) host = line + " · " + span.text();
     out += host + "\n\n";
   }
-  if (lines.empty()) out += "No run says where it ran.\n\n";
+  if (lines.empty()) out += "No run states its machine.\n\n";
+  for (const std::string& line : plugin_lines(runs)) out += line + "\n\n";
   out += overhead_line(runs);
   if (format == Format::Markdown) return out;
   for (std::size_t at; (at = out.find("**")) != std::string::npos;) out.erase(at, 2);

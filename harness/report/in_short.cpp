@@ -12,15 +12,24 @@
 namespace clothbench {
 namespace {
 
+constexpr double kTornApart = 1;  // edges of twice their length
+
 struct Row {
   const RunRecord* run;
   double frame_s = kMissing, spread_s = kMissing;  ///< median and half the range of the trials' means
+  double stretch = kMissing;                       ///< greatest strain of a structural edge in the last second
+  /// Whether its time may be compared: it ended well, and its cloth is not torn apart.
+  bool ranked() const {
+    return std::isfinite(frame_s) && run->outcome.status == "ok" && !run->outcome.expect.starts_with("fail") &&
+           !(stretch > kTornApart);
+  }
 };
 
 Row row_of(const RunRecord& c) {
   const std::vector<double> means = trial_means(c);
-  if (means.empty()) return {&c};
-  return {&c, middle(means), means.size() > 1 ? (means.back() - means.front()) / 2 : kMissing};
+  const double stretch = summary_value(c, "stretch_max_last_second");
+  if (means.empty()) return {&c, kMissing, kMissing, stretch};
+  return {&c, middle(means), means.size() > 1 ? (means.back() - means.front()) / 2 : kMissing, stretch};
 }
 
 std::string ended(const Outcome& o) {
@@ -34,20 +43,28 @@ Table in_short_table(const std::vector<RunRecord>& runs) {
   std::map<std::string, std::vector<Row>> scenes;
   for (const RunRecord& c : runs) scenes[c.header.scene].push_back(row_of(c));
   Table t{"In short",
-          "Wall time of a frame: median of the trials' means ± half their range. Ended: ok, or whether the scene's "
-          "expectations passed.",
-          {{"scene", "solver", "setting", "outcome", "frame [ms]", "against the fastest"}}};
+          "Frame: wall time, median of the trials' means ± half their range. Outcome: how the run ended, and "
+          "whether the scene's expectations passed. Stretch: greatest strain of a structural edge in the last second. "
+          "Not ranked: runs that failed, and cloths with an edge of more than twice its length.",
+          {{"scene", "solver", "setting", "outcome", "stretch [%]", "frame [ms]", "relative to the fastest"}}};
   t.note = with_withheld(t.note, runs_of(runs, [](const RunRecord& c) { return &c; }), {"frame_wall_median_s"});
   for (auto& [scene, rows] : scenes) {
     std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
+      if (a.ranked() != b.ranked()) return a.ranked();
       return a.frame_s < b.frame_s || (std::isnan(b.frame_s) && !std::isnan(a.frame_s));
     });
     const double fastest = rows.front().frame_s;
+    std::vector<const RunRecord*> beside;
+    for (const Row& r : rows) beside.push_back(r.run);
     for (const Row& r : rows) {
       std::string time = significant(1e3 * r.frame_s, 3);
       if (std::isfinite(r.spread_s)) time += " ± " + significant(1e3 * r.spread_s, 2);
-      t.rows.push_back({scene, r.run->header.solver, r.run->header.setting, ended(r.run->outcome), time,
-                        std::isfinite(r.frame_s) ? significant(r.frame_s / fastest, 3) + "×" : "–"});
+      if (std::isfinite(r.frame_s)) time += frames_mark(*r.run, beside);
+      const std::string ratio = r.ranked()                 ? significant(r.frame_s / fastest, 3) + "×"
+                                : std::isfinite(r.frame_s) ? "not ranked"
+                                                           : "–";
+      t.rows.push_back({scene, r.run->header.solver, r.run->header.setting, ended(r.run->outcome),
+                        significant(100 * r.stretch, 3), time, ratio});
     }
   }
   return t;

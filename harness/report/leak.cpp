@@ -64,11 +64,6 @@ std::string without_bounds(const std::string& kind, const RunRecord& c) {
   return "";
 }
 
-std::string base_name(const RunRecord& c) {
-  const json j = scenario_of(c);
-  return j.is_object() && j.contains("name") && j["name"].is_string() ? j["name"].get<std::string>() : c.header.scene;
-}
-
 std::string metres_per_second(double v) { return fmt::format("{:g} m/s", v); }
 
 }  // namespace
@@ -82,6 +77,15 @@ std::string leak_of(const std::string& kind, const RunRecord& c) {
 std::optional<SpeedSweep::At> SpeedSweep::failure_speed() const {
   const auto at = std::find_if(speeds.begin(), speeds.end(), [](const At& a) { return !a.leak.empty(); });
   return at == speeds.end() ? std::nullopt : std::optional<At>(*at);
+}
+
+std::size_t SpeedSweep::paths() const {
+  std::size_t least = speeds.size();
+  for (const At& at : speeds) {
+    const auto same = [&](const At& other) { return other.speed_m_per_s == at.speed_m_per_s; };
+    least = std::min(least, static_cast<std::size_t>(std::count_if(speeds.begin(), speeds.end(), same)));
+  }
+  return least;
 }
 
 std::vector<SpeedSweep> speed_sweeps(const std::vector<ContactSetUp>& ups) {
@@ -109,25 +113,27 @@ std::vector<SpeedSweep> speed_sweeps(const std::vector<ContactSetUp>& ups) {
 }
 
 Table leak_table(const std::vector<SpeedSweep>& sweeps) {
-  Table t{"Speed of the failure speed",
-          "The lowest speed at which a solver breaks what the scene expects, and the first bound that it breaks: cloth "
-          "through a mesh, on the wrong side "
-          "of a hand or over 1 mm inside it, edges longer than so many times what the hands impose, a mean strain of "
-          "over 1 % a second after they let go, "
-          "cloth that pops faster than its limit, a greatest strain of a strip pulled by bars that is off its exact "
-          "wave by over a tenth of v0/c. The verdicts above are by the same bounds. "
-          "none: up to the greatest speed that was run.",
-          {{"scene", "speeds [m/s]"}}};
+  Table t{
+      "Failure speed",
+      "Failure speed: the lowest speed at which a solver fails a bound of the scene's `expect`. The table "
+      "names the first bound that fails: cloth through a mesh; cloth on the wrong side of a hand; cloth "
+      "more than 1 mm inside a hand; edges longer than the stated multiple of what the hands impose; a "
+      "mean strain above 1 % one second after release; popping faster than its limit; a greatest strain of "
+      "a pulled strip more than 0.1 v0/c from its exact wave. The verdicts above use the same bounds. "
+      "none: no failure up to the greatest speed that was run. Paths: scenes that were run at each speed. What holds "
+      "on one path may fail on another; the study `contact` draws many.",
+      {{"scene", "speeds [m/s]", "paths"}}};
   std::vector<std::string> solvers = distinct(sweeps, [](const SpeedSweep& s) { return s.series.label(); });
   std::sort(solvers.begin(), solvers.end());
   t.rows[0].insert(t.rows[0].end(), solvers.begin(), solvers.end());
   for (const auto& [kind, scene] : distinct(sweeps, [](const SpeedSweep& s) { return std::pair(s.kind, s.scene); })) {
-    std::vector<std::string> row = {fmt::format("{} ({})", scene, kind), "–"};
+    std::vector<std::string> row = {fmt::format("{} ({})", scene, kind), "–", "–"};
     for (const std::string& solver : solvers) {
       std::string text = "–";
       for (const SpeedSweep& s : sweeps) {
         if (s.kind != kind || s.scene != scene || s.series.label() != solver) continue;
         row[1] = fmt::format("{:g}…{:g}", s.speeds.front().speed_m_per_s, s.speeds.back().speed_m_per_s);
+        row[2] = std::to_string(s.paths());
         const auto leak = s.failure_speed();
         text = leak && leak->leak == kNotPrinted ? kNotPrinted
                : leak                            ? metres_per_second(leak->speed_m_per_s) + ": " + leak->leak
@@ -154,6 +160,7 @@ json leak_json(const std::vector<SpeedSweep>& sweeps) {
     for (const auto& at : s.speeds) row["speeds"].push_back({{"speed_m_per_s", at.speed_m_per_s}, {"leak", at.leak}});
     const auto leak = s.failure_speed();
     row["failure_speed_m_per_s"] = leak && leak->leak != kNotPrinted ? json(leak->speed_m_per_s) : json();
+    row["paths"] = s.paths();
     row["known"] = !leak || leak->leak != kNotPrinted;
     out.push_back(std::move(row));
   }

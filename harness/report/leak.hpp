@@ -27,6 +27,8 @@ struct SpeedSweep {
 
   /// The lowest speed with a leak, or with "–" if it is not known whether that speed has one.
   std::optional<At> failure_speed() const;
+  /// The least number of runs at one speed.
+  std::size_t paths() const;
   std::vector<const RunRecord*> runs = {};
 };
 

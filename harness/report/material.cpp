@@ -31,10 +31,10 @@ std::string verdict(const SolverMaterial& m, const char* name, const char* like,
   if (standard == nullptr || standard->outcome.status == "unsupported") return kNotMeasured;
   const double value = modulus(*standard, name);
   if (!std::isfinite(value)) return "no value at rest";
-  if (!(value > kHeldModulus)) return fmt::format("none: {:.2g} of what is asked for", value);
+  if (!(value > kHeldModulus)) return fmt::format("none: {:.2g} of the requested stiffness", value);
   const double answer = 2 * modulus(*standard, stiffer) / modulus(*standard, like);
   if (!(std::abs(answer / 2 - 1) <= kHeldModulus))
-    return fmt::format("does not follow: twice of it gives {:.3g} times as much", answer);
+    return fmt::format("not proportional: twice the stiffness gives {:.3g} times the modulus", answer);
   for (const RunRecord* c : m.moduli) {
     const double here = modulus(*c, name);
     if (!(std::abs(here / value - 1) <= kHeldModulus))
@@ -97,15 +97,14 @@ std::string stiffness_flag(const std::vector<SolverMaterial>& all, const std::st
 }
 
 Table material_table(const std::vector<SolverMaterial>& all) {
-  Table t{
-      "Effective moduli: the effective stiffness of solvers",
-      "Measured on hanging, sliding and bending patches at rest. E, G and B over the scene's Y, Y and B at 0, 45 and "
-      "90° to the grid; "
-      "right values: 1, 1, 1, ν = 1/3 and G = 0.375 for central springs, strip 1 (no shear), border 1. B at 45°: of "
-      "developable "
-      "bending; 0.5 for lines along the grid, which resist no twist. ×2: measured for twice the stiffness, over once.",
-      {{"solver", "setting", "E 0", "E 45", "E 90", "ν", "G", "strip", "border", "E ×2", "B 0", "B 45", "B 90",
-        "B ×2"}}};
+  Table t{"Effective moduli: the effective stiffness of solvers",
+          "Measured on patches that hang, slide and bend, at rest. E, G and B: effective moduli divided by the "
+          "scene's Y, Y and B, at 0, 45 and 90° to the grid. Exact values: E 1, 1, 1; ν = 1/3 and G = 0.375 "
+          "for central springs; strip 1 (no shear); border 1. B at 45° is 1 for developable bending and 0.5 "
+          "for lines along the grid, which do not resist twist. ×2: the modulus for twice the stiffness "
+          "divided by the modulus for the stiffness itself.",
+          {{"solver", "setting", "E 0", "E 45", "E 90", "ν", "G", "strip", "border", "E ×2", "B 0", "B 45", "B 90",
+            "B ×2"}}};
   for (const SolverMaterial& m : all)
     for (const RunRecord* c : m.moduli) {
       std::vector<std::string> row = {m.solver, c->header.setting};
@@ -123,7 +122,8 @@ Table material_table(const std::vector<SolverMaterial>& all) {
 
 Table material_verdicts(const std::vector<SolverMaterial>& all) {
   Table t{"Is stiffness a parameter?",
-          "Measured: within 5 % when doubled and over settings. NO: not ranked where the scene depends on it.",
+          "Yes: the effective modulus is within 5 % of the requested one, also for twice the stiffness and at "
+          "other settings. NO: the solver is not ranked on scenes that depend on this stiffness.",
           {{"solver", "settings", "Y of strips", "Y of sheets", "B"}}};
   for (const SolverMaterial& m : all)
     t.rows.push_back({m.solver, std::to_string(m.moduli.size()), yes_or(m.verdict.strip), yes_or(m.verdict.sheet),

@@ -76,7 +76,7 @@ std::set<std::string> listed_pictures(const fs::path& out) {
     if (!j.is_object() || j.value("format", "") != "clothbench-report-pictures" || !j.contains("pictures") ||
         !j["pictures"].is_array())
       throw Error((out / kPicturesList).string() +
-                  ": expected the list of a report's pictures; move it away, or give another -o");
+                  ": expected the list of a report's pictures; move the file away or give another folder with -o");
     for (const json& name : j["pictures"])
       if (name.is_string()) add(name.get<std::string>());
     return names;
@@ -116,9 +116,9 @@ void put_in_place(const fs::path& out, const fs::path& from) {
       drawn.insert(entry.path().filename().string());
   for (const std::string& name : drawn)
     if (!old.contains(name) && fs::exists(out / name))
-      throw Error(
-          (out / name).string() +
-          ": is in the way of a picture of that name, and no report wrote it; move it away, or give another -o");
+      throw Error((out / name).string() +
+                  ": a picture of this name must be written, but no report wrote this file; move it away or give "
+                  "another folder with -o");
   // Lists old and new pictures first, so that after a kill all files left here are known as a report's.
   std::set<std::string> both = old;
   both.insert(drawn.begin(), drawn.end());
@@ -139,9 +139,9 @@ Drawn draw_pictures(const fs::path& out, const PageTemplate& page) {
         ""};
   };
   if (page.figures.empty())
-    return without(page.missing.empty() ? "this build has none (CLOTHBENCH_WITH_PAGE)" : page.missing);
+    return without(page.missing.empty() ? "this build was made without them (CLOTHBENCH_WITH_PAGE)" : page.missing);
   const std::string node = find_node();
-  if (node.empty()) return without("no Node, 18 or later (Debian: nodejs)");
+  if (node.empty()) return without("Node 18 or later was not found (Debian: nodejs)");
   const Scratch scratch(temporary_name(fs::absolute(out) / "pictures"));
   const fs::path script = scratch.path() / "figures.cjs";
   std::ofstream(script, std::ios::binary) << page.figures;
@@ -149,7 +149,8 @@ Drawn draw_pictures(const fs::path& out, const PageTemplate& page) {
                         quoted(scratch.path()))))
     return without("Node could not draw them; 18 or later is needed (Debian: nodejs)");
   Drawn drawn{"", text_of(scratch.path() / "figures.md")};
-  if (!draw_png(scratch.path())) drawn.fault = "PNG pictures were left out: no rsvg-convert (Debian: librsvg2-bin).";
+  if (!draw_png(scratch.path()))
+    drawn.fault = "PNG pictures were left out: rsvg-convert was not found (Debian: librsvg2-bin).";
   put_in_place(out, scratch.path());
   return drawn;
 }

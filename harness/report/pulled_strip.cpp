@@ -61,14 +61,13 @@ bool same_speed(double a, double b) { return std::abs(a - b) <= 1e-6 * b; }
 }  // namespace
 
 Table pulled_strip_table(const std::vector<ContactSetUp>& ups) {
-  Table t{
-      "A strip pulled at both ends against its exact wave",
-      "Greatest strain along the strip less the exact one (reference case two-hand-pull, same mesh), the most of all "
-      "frames, over the "
-      "strain v0/c that one wave brings / RMS distance over space and time over L. Fails: the first exceeds 0.1, "
-      "or is not "
-      "known. The answer is proportional to v0: a solver whose first figure depends on the speed is not linear.",
-      {{"strip", "solver", "first that fails"}}};
+  Table t{"A strip pulled at both ends against its exact wave",
+          "First figure: the greatest strain along the strip minus the exact one (reference case "
+          "two-hand-pull, same mesh), the greatest over all frames, divided by v0/c, the strain that one wave "
+          "brings. Second figure: RMS distance over space and time, divided by L. A run fails if the first "
+          "figure exceeds 0.1 or is not known. The exact solution is proportional to v0, so a solver is not "
+          "linear if its first figure depends on the speed.",
+          {{"strip", "solver", "failure speed"}}};
   const std::vector<PulledRow> rows = rows_of(ups);
   std::vector<double> speeds;
   for (const PulledRow& r : rows)

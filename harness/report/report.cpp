@@ -12,6 +12,8 @@
 #include "clothbench/error.hpp"
 #include "metrics/registry.hpp"
 #include "report/across_runs.hpp"
+#include "report/contact_pairs.hpp"
+#include "report/contact_rates.hpp"
 #include "report/feature_cost.hpp"
 #include "report/features.hpp"
 #include "report/friction.hpp"
@@ -20,11 +22,8 @@
 #include "report/paths.hpp"
 #include "report/penetration.hpp"
 #include "report/pictures.hpp"
-#include "report/popping.hpp"
 #include "report/pulled_strip.hpp"
-#include "report/room_pair.hpp"
 #include "report/stability.hpp"
-#include "report/turned.hpp"
 #include "report/web/page.hpp"
 #include "report/withheld.hpp"
 #include "report/work_precision.hpp"
@@ -53,14 +52,14 @@ std::vector<RunRecord> printable(const std::vector<fs::path>& results) {
 
 /// Copies of the runs, by the section that reports them.
 struct Parts {
-  std::vector<RunRecord> stability, contact, truth, rest;
+  std::vector<RunRecord> stability, drawn, contact, truth, rest;
 };
 
 /// Leaves out runs with separate tables: comparisons of feature costs (by address), effective moduli, friction.
-Parts parts_of(const std::vector<RunRecord>& runs, const std::vector<FeatureCost>& costs) {
+Parts parts_of(const std::vector<RunRecord>& runs, const std::vector<RunPair>& costs) {
   Parts out;
   std::set<const RunRecord*> reported;
-  for (const FeatureCost& f : costs) reported.insert({f.needed, f.all});
+  for (const RunPair& p : costs) reported.insert({p.run, p.other});
   std::set<std::string> timed;
   for (const RunRecord& c : runs)
     if (summary_value(c, "frame_wall_median_s") > 0) timed.insert(c.header.scenario_json);
@@ -70,7 +69,12 @@ Parts parts_of(const std::vector<RunRecord>& runs, const std::vector<FeatureCost
     if (c.outcome.status == "missing" && c.header.scenario_json.empty()) continue;
     // Where no solver was timed on a pulled strip, its errors are tabulated by speed instead of by time.
     const bool by_time = has_truth(c) && !(pulls_strip(c) && !timed.contains(c.header.scenario_json));
-    (is_stability(c) ? out.stability : by_time ? out.truth : has_contact(c) ? out.contact : out.rest).push_back(c);
+    (is_stability(c)       ? out.stability
+     : is_drawn_contact(c) ? out.drawn
+     : by_time             ? out.truth
+     : has_contact(c)      ? out.contact
+                           : out.rest)
+        .push_back(c);
   }
   return out;
 }
@@ -79,14 +83,14 @@ Parts parts_of(const std::vector<RunRecord>& runs, const std::vector<FeatureCost
 struct Facts {
   const std::vector<fs::path>& results;
   std::vector<RunRecord> runs = printable(results);
-  std::vector<FeatureCost> costs = feature_costs(runs);
+  std::vector<RunPair> costs = feature_costs(runs);
   std::vector<SolverMaterial> materials = solver_materials(runs);
   Parts parts = parts_of(runs, costs);
   nlohmann::json maps = stability_maps(results), published = published_table3();
   std::vector<Family> rates = families(parts.rest);
   std::vector<ContactSetUp> ups = set_ups(parts.contact);
-  std::vector<RoomPair> rooms = room_pairs(parts.contact);
-  std::vector<TurnedPair> turned = turned_pairs(ups);
+  std::vector<RunPair> rooms = run_pairs(parts.contact, "whole-room");
+  std::vector<RunPair> turned = turned_pairs(ups);
   std::vector<WorkDiagram> diagrams = work_diagrams(parts.truth, materials);
 };
 
@@ -140,8 +144,8 @@ Sections sampled_section(const Facts& f) {
 
 std::vector<Table> penetration_tables(const Facts& f) {
   std::vector<Table> out = {verdict_table(f.ups)};
-  for (Table& t : filled({leak_table(speed_sweeps(f.ups)), pulled_strip_table(f.ups), popping_table(poppings(f.ups)),
-                          turned_table(f.turned)}))
+  for (Table& t : filled({leak_table(speed_sweeps(f.ups)), pulled_strip_table(f.ups),
+                          popping_table(popping_pairs(f.ups)), turned_table(f.turned)}))
     out.push_back(std::move(t));
   for (const ContactSetUp& u : f.ups) out.insert(out.end(), {contact_table(u), in_full(cost_table(u))});
   for (Table& t : filled({failed_expectations_table(f.ups), room_table(f.rooms)})) out.push_back(std::move(t));
@@ -155,7 +159,7 @@ Sections penetration_section(const Facts& f) {
                     {"rooms", room_json(f.rooms)},
                     {"failure_speeds", leak_json(speed_sweeps(f.ups))},
                     {"pulled_strip", pulled_strip_json(f.ups)},
-                    {"popping", popping_json(poppings(f.ups))},
+                    {"popping", popping_json(popping_pairs(f.ups))},
                     {"turned", turned_json(f.turned)}});
   };
   return {{{"penetration", "Penetration", penetration_tables(f)},
@@ -163,6 +167,17 @@ Sections penetration_section(const Facts& f) {
            {{"penetration.csv", [&] { return summary_csv(f.parts.contact, penetration_columns()); }},
             {"penetration.json", all},
             {"penetration-series.csv", [&] { return series_csv(f.ups); }}}}};
+}
+
+Sections drawn_section(const Facts& f) {
+  const std::vector<RunRecord>& runs = f.parts.drawn;
+  if (runs.empty()) return {};
+  return {{{"contact-rates", "Drawn contact scenes",
+            filled({contact_rate_table(runs), worst_contact_table(worst_contacts(runs))})},
+           "contact-rates.md",
+           {{"contact-rates.csv", [&] { return contact_rates_csv(runs); }},
+            {"contact-rates.json", [&] { return text_of(contact_rates_json(runs)); }},
+            {"contact-runs.csv", [&] { return summary_csv(runs, penetration_columns()); }}}}};
 }
 
 Sections work_section(const Facts& f) {
@@ -230,7 +245,8 @@ Sections features_section(const Facts& f) {
 
 Sections failed_section(const Facts& f) {
   std::vector<RunRecord> runs = f.runs;
-  std::erase_if(runs, is_stability);  // the stability tables report their failures
+  // Other tables report the failures of these.
+  std::erase_if(runs, [](const RunRecord& c) { return is_stability(c) || is_drawn_contact(c); });
   Sections out;
   for (Section s : {Section{{"failed", "Runs without a result", filled({failed_table(runs)})}},
                     Section{{"expect", "Expectations", filled({expect_table(runs)})}}})
@@ -240,10 +256,10 @@ Sections failed_section(const Facts& f) {
 
 /// Sections in the order of report.md and the page, and of the terminal.
 constexpr Sections (*kInReport[])(const Facts&) = {
-    rates_sections,   sampled_section,  penetration_section, work_section,     stability_section,
+    rates_sections,   sampled_section,  penetration_section, drawn_section,    work_section,  stability_section,
     material_section, friction_section, cost_section,        features_section, failed_section};
 constexpr Sections (*kOnTerminal[])(const Facts&) = {
-    rates_sections,   sampled_section,  penetration_section, work_section,     winners_section,
+    rates_sections,   sampled_section,  penetration_section, drawn_section,    work_section,     winners_section,
     material_section, friction_section, cost_section,        features_section, stability_section};
 
 /// One page: ranks, best solvers, whether stiffness is a parameter of each solver, irrelevant features with an effect.
@@ -288,15 +304,17 @@ void write_report(const std::vector<fs::path>& results, const ReportOptions& opt
   write("memory.csv", summary_csv(f.runs, kMemoryNames));
   const std::string head = headline(f.runs, Format::Markdown);
   Page page = page_of(f, head);
-  std::string all;
+  std::string all, latex = "% Tables of this report for LaTeX; \\usepackage{booktabs}.\n";
   for (const auto sections : kInReport)
     for (const Section& s : sections(f)) {
       const std::string text = markdown_of(s.tables);
       all += text;
+      for (const Table& t : s.tables) latex += "\n" + t.latex();
       if (!s.markdown.empty()) write(s.markdown, "# " + s.title + "\n\n" + head + "\n" + text);
       for (const auto& [name, content] : s.files) write(name, content());
       page.sections.push_back(s);
     }
+  write("tables.tex", latex);
   if (!f.diagrams.empty()) {
     write("summary.md", "# Summary\n\n" + head + "\n" + summary_page(f));
     page.sections.push_back({"summary", "Summary", {ranks_table(f.diagrams), winners_table(f.diagrams)}});

@@ -35,7 +35,7 @@ Table expect_table(const std::vector<RunRecord>& runs);
 enum class Format { Markdown, Console };
 
 /// Head of a report: whether the device is software; device, protocol and commit, one line for each combination among
-/// the runs; the overhead of the harness.
+/// the runs; the plugins; the overhead of the harness.
 std::string headline(const std::vector<RunRecord>& runs, Format);
 
 /// The GPU that a run ran on, and whether it is software; empty for a CPU.
@@ -67,7 +67,7 @@ nlohmann::json table3_json(const Family&, const nlohmann::json& published);
 nlohmann::json runs_json(const std::vector<RunRecord>& runs);
 
 /// Writes into `out`; throws Error if a file cannot be read or written:
-///   - always: report.md, runs.csv, runs.json, bandwidth.csv, memory.csv, features.json;
+///   - always: report.md, tables.tex, runs.csv, runs.json, bandwidth.csv, memory.csv, features.json;
 ///   - samples of the device's own counters: device-samples.csv; the paper's Table 3: table3.md, .csv, .json;
 ///   - scenes with contact: penetration.md, .csv, .json, penetration-series.csv;
 ///   - scenes with a truth: work-precision.md, .csv, .json, and one page, summary.md;

@@ -20,13 +20,12 @@ const std::vector<std::string>& sampled_names() {
 }
 
 Table sampled_table(const std::vector<RunRecord>& runs) {
-  Table t{
-      "The device's own counters during the trials",
-      "Frames the display was shown, the whole device's memory traffic (not the app's alone, not the computed bytes "
-      "of the other tables): "
-      "greatest 1 s sample in windows of 5 s, and mean. – where no sample lies within a trial.",
-      {{"scene", "solver", "FPS", "read peak / mean [GB/s]", "written peak / mean [GB/s]", "GPU [MHz]", "CPU [MHz]",
-        "hottest [°C]", "valid"}}};
+  Table t{"The device's own counters during the trials",
+          "FPS: frames that the display showed. Read and written: memory traffic of the whole device, which is "
+          "neither that of the app alone nor the computed bytes of the other tables. Peak: greatest 1 s sample "
+          "in windows of 5 s. –: no sample lies within a trial.",
+          {{"scene", "solver", "FPS", "read peak / mean [GB/s]", "written peak / mean [GB/s]", "GPU [MHz]", "CPU [MHz]",
+            "hottest [°C]", "valid"}}};
   for (const RunRecord& c : runs) {
     const auto v = [&](const char* name) { return summary_value(c, name); };
     const double valid = v("sampled_valid");

@@ -100,7 +100,7 @@ json stability_maps(const std::vector<fs::path>& results) {
     std::ifstream in(file);
     const json j = json::parse(in, nullptr, false);
     if (!j.is_object() || j.value("format", "") != "clothbench-stability")
-      throw Error(file.string() + ": not maps of a stability study");
+      throw Error(file.string() + ": expected the maps of a stability study (\"format\": \"clothbench-stability\")");
     for (const json& map : j.at("maps")) all.push_back(map);
   }
   return all;
@@ -108,9 +108,9 @@ json stability_maps(const std::vector<fs::path>& results) {
 
 Table robustness_table(const std::vector<RunRecord>& runs) {
   Table t{"Robustness",
-          "Runs of each case that were stable; degraded: strain or unrest out of bounds (F3, F6) and nothing else; "
-          "failed: any other class. F0 not finite, F1 speed, F2 energy gain, F3 strain, F4 geometry, F5 contact, F6 "
-          "unrest, F7 stagnation, F8 budget, crash or device.",
+          "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain or unrest is "
+          "out of bounds (F3, F6). Failed: any other class. Classes: F0 not finite, F1 speed, F2 energy gain, "
+          "F3 strain, F4 geometry, F5 contact, F6 unrest, F7 stagnation, F8 budget, crash or device.",
           {{"case"}}};
   const auto case_name = [](const RunRecord& c) { return case_of(scenario_of(c)); };
   const std::vector<std::string> solvers = distinct(runs, label_of);
@@ -155,8 +155,8 @@ json stability_cases(const std::vector<RunRecord>& runs) {
 
 Table headline_table(const json& maps) {
   Table t{"Largest stable values",
-          "The least over all rows and seeds of a map. ≥: the whole range is good in every row. none: some row has no "
-          "good value in the range.",
+          "Smallest over all rows and seeds of a map. ≥: every row is stable over the whole range. none: a row "
+          "has no stable value in the range.",
           {{"map", "solver", "largest"}}};
   for (const json& m : maps)
     t.note += " " + m.at("title").get<std::string>() + ": " + m.at("headline").get<std::string>() + ".";
@@ -175,8 +175,9 @@ Table headline_table(const json& maps) {
 
 Table boundary_table(const json& maps) {
   Table t{"Boundaries",
-          "Last good value of x in every row (least of its seeds), to 0.05 decades; ≥: nothing in the range is bad.",
-          {{"map", "solver", "y", "last good x", "first bad x", "seeds"}}};
+          "Last stable value of x in every row, the smallest over its seeds, to 0.05 decades. ≥: the whole "
+          "range is stable.",
+          {{"map", "solver", "y", "last stable x", "first unstable x", "seeds"}}};
   for (const json& m : maps)
     for (const json& s : m.at("solvers"))
       for (const json& row : s.at("rows")) {
@@ -193,7 +194,9 @@ Table boundary_table(const json& maps) {
 }
 
 Table first_failure_table(const std::vector<RunRecord>& runs) {
-  Table t{"What was not stable", "In brackets the first such frame.", {{"solver", "grade", "class", "runs"}}};
+  Table t{"Runs that were not stable",
+          "In brackets: the first frame of that class.",
+          {{"solver", "grade", "class", "runs"}}};
   std::map<std::tuple<std::string, int, std::string>, std::string> texts;
   for (const RunRecord& c : runs) {
     const int grade = grade_of(c);

@@ -42,14 +42,14 @@ void add_published(Table& t, const std::vector<Resolution>& columns, const nlohm
 }
 
 std::string capped_note(const Family& f, bool paper) {
-  std::string note = "Ours: mean over frames of min(72, 1/t), median of the trials, simulation alone.";
+  std::string note = "Ours: mean over frames of min(72, 1/t), median of the trials, without rendering.";
   if (paper)
     note =
-        "Published: Quest 3, rendering included, values to the unit; 11 of the 15 read the display's 72, so this "
-        "table cannot tell solvers apart: the next one can. " +
+        "Published: Quest 3, with rendering, rounded to whole frames. 11 of the 15 published values are the "
+        "display's 72, so this table does not distinguish solvers; the next one does. " +
         note;
   if (std::any_of(f.runs.begin(), f.runs.end(), [](const PlacedRun& p) { return p.series.repeat > 1; }))
-    note += " (2), (3): the same run from another file.";
+    note += " (2), (3): the same run from further files.";
   return note;
 }
 
@@ -70,28 +70,31 @@ struct ValueTable {
   std::string title, note;
   std::function<std::string(const RunRecord&)> text;
   const char* only_with = nullptr;  ///< a summary value; no table if no run has it
+  bool timed = false;               ///< shows where a run timed fewer frames than others of its scene
 };
 
 ValueTable milliseconds(const char* title, const char* note, const char* name, const char* only_with = nullptr) {
-  return {title, note, [name](const RunRecord& c) { return significant(1e3 * summary_value(c, name), 3); }, only_with};
+  return {title, note, [name](const RunRecord& c) { return significant(1e3 * summary_value(c, name), 3); }, only_with,
+          true};
 }
 
 std::vector<ValueTable> time_tables() {
   return {
       {"Frames per second, uncapped", "Median of the trials ± half their range.",
-       [](const RunRecord& c) { return with_spread(summary_value(c, "fps_median"), summary_value(c, "fps_spread")); }},
+       [](const RunRecord& c) { return with_spread(summary_value(c, "fps_median"), summary_value(c, "fps_spread")); },
+       nullptr, true},
       milliseconds("Wall time a frame [ms]", "Median over all timed frames.", "frame_wall_median_s"),
-      milliseconds("Frame time with rendering, stereo [ms]",
-                   "Median wall time of a frame and its two pictures, nothing overlapping; the file says their size. "
-                   "A GPU solver's buffer is drawn as it lies, a CPU solver's positions are uploaded. The paper's "
-                   "FPS include rendering.",
-                   "frame_rendered_median_s", "frame_rendered_median_s"),
       milliseconds(
-          "Wall time a frame, pipelined [ms]",
-          "Frames not waited for, two in flight; median of the trials' means. – where a solver waits for each.",
-          "frame_pipelined_median_s", "frame_pipelined_median_s"),
+          "Frame time with rendering, stereo [ms]",
+          "Median wall time of a frame and its two pictures, one after the other; the result file has the size "
+          "of the pictures. A GPU solver's buffer is drawn in place; a CPU solver's positions are uploaded. "
+          "The paper's FPS include rendering.",
+          "frame_rendered_median_s", "frame_rendered_median_s"),
+      milliseconds("Wall time a frame, pipelined [ms]",
+                   "Two frames in flight; median of the trials' means. –: the solver waits for each frame.",
+                   "frame_pipelined_median_s", "frame_pipelined_median_s"),
       milliseconds("GPU time a frame [ms]",
-                   "Median; first to last timestamp of the frame's one submission. – on a CPU.",
+                   "Median; first to last timestamp of the frame's one submission. –: a CPU solver.",
                    "frame_device_median_s"),
   };
 }
@@ -106,7 +109,7 @@ std::vector<ValueTable> error_tables() {
        },
        "free_fall_error"},
       {"Stretch of structural edges in the last second, mean / greatest [%]",
-       "Over edges and frames; edges shorter than at rest count as 0 in the mean.",
+       "Mean and greatest over edges and frames. Edges shorter than at rest count as 0 in the mean.",
        [](const RunRecord& c) {
          return paired(100 * summary_value(c, "stretch_mean_last_second"),
                        100 * summary_value(c, "stretch_max_last_second"), " / ", 2);
@@ -118,14 +121,14 @@ std::vector<ValueTable> error_tables() {
 std::vector<ValueTable> device_tables(const std::string& windows) {
   return {
       {"kB a frame, read / written",
-       fmt::format("Bytes: {} – for CPU solvers, of which nothing is known.", kWhatBytesAre),
+       fmt::format("Bytes: {} –: a CPU solver, whose bytes are not known.", kWhatBytesAre),
        [](const RunRecord& c) { return bytes_pair(c, "read_B_per_frame", "write_B_per_frame", 1e-3); }},
       {"Peak bandwidth, read / written [GB/s]",
-       "The same bytes over wall time; " + (windows.empty() ? "no run has any." : windows + "."),
+       "The same bytes divided by wall time; " + (windows.empty() ? "no run has byte counts." : windows + "."),
        [](const RunRecord& c) {
          return bytes_pair(c, "bandwidth_read_peak_B_per_s", "bandwidth_write_peak_B_per_s", 1e-9);
        }},
-      {"Device memory [kB] · dispatches a frame", "Buffers in device-local memory. – on a CPU.",
+      {"Device memory [kB] · dispatches a frame", "Buffers in device-local memory. –: a CPU solver.",
        [](const RunRecord& c) {
          const double m = summary_value(c, "device_memory_B"), d = summary_value(c, "dispatches");
          return std::isfinite(m) || std::isfinite(d) ? significant(1e-3 * m, 4) + " · " + significant(d, 1)
@@ -146,6 +149,20 @@ bool any_value(const Family& family, const char* name) {
                      [&](const PlacedRun& p) { return std::isfinite(summary_value(*p.run, name)); });
 }
 
+/// Adds the table of a value, unless no run has one: of a GPU where there are only CPU solvers.
+void add_values(const Family& family, const ValueTable& t, const std::string& scene, std::vector<Table>& tables) {
+  std::vector<const RunRecord*> all;
+  for (const PlacedRun& p : family.runs) all.push_back(p.run);
+  // Values that are withheld leave a table with the reason.
+  bool any = std::any_of(all.begin(), all.end(), [](const RunRecord* c) { return !c->withheld.empty(); });
+  Table table = family.table(t.title + scene, t.note, [&](const RunRecord& c) {
+    const std::string value = t.text(c);
+    any = any || (value != "–" && !value.starts_with("– /"));
+    return t.timed && value != "–" ? value + frames_mark(c, all) : value;
+  });
+  if (any) tables.push_back(std::move(table));
+}
+
 }  // namespace
 
 std::vector<Table> fps_tables(const Family& family, const nlohmann::json& published) {
@@ -157,8 +174,7 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
   if (paper) add_published(tables.back(), family.resolutions(), published);
   for (const auto& group : {time_tables(), error_tables(), device_tables(window_note(summaries_of(family)))})
     for (const ValueTable& t : group)
-      if (t.only_with == nullptr || any_value(family, t.only_with))
-        tables.push_back(family.table(t.title + scene, t.note, t.text));
+      if (t.only_with == nullptr || any_value(family, t.only_with)) add_values(family, t, scene, tables);
   note_withheld(family, tables);
   return tables;
 }

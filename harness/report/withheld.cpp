@@ -46,8 +46,8 @@ void withhold_versions(RunRecord& c, const std::map<std::string, int>& newest) {
   std::map<std::string, std::string> why;  // by metric
   for (const MetricSeries& m : c.accuracy.metrics)
     if (m.version < newest.at(m.name))
-      why[m.name] =
-          fmt::format("{} was measured by version {} of its rule, now {}", m.name, m.version, newest.at(m.name));
+      why[m.name] = fmt::format("{} was measured by version {} of its definition; the newest here is {}", m.name,
+                                m.version, newest.at(m.name));
   if (why.empty()) return;
   std::erase_if(c.accuracy.metrics, [&](const MetricSeries& m) { return why.contains(m.name); });
   std::set<std::string> bounds;
@@ -73,7 +73,7 @@ bool is_time(const std::string& name) {
 }
 
 double jobs_of(const RunRecord& c) {
-  if (const double reported = summary_value(c, "jobs"); std::isfinite(reported)) return reported;
+  if (const double stored = summary_value(c, "jobs"); std::isfinite(stored)) return stored;
   const nlohmann::json& e = c.header.environment;
   return e.is_object() && e.contains("jobs") && e["jobs"].is_number() ? e["jobs"].get<double>() : kMissing;
 }
@@ -140,8 +140,8 @@ std::vector<std::string> withheld_lines(const std::vector<RunRecord>& runs) {
   for (const auto& [why, count] : reasons)
     out.push_back(fmt::format("Not printed (–), {} run{}: {}.", count, count == 1 ? "" : "s", why));
   if (silent > 0)
-    out.push_back(fmt::format("{} of the timed runs {} of files that don't say whether anything ran beside {}.", silent,
-                              silent == 1 ? "is" : "are", silent == 1 ? "it" : "them"));
+    out.push_back(fmt::format("{} of the timed runs {} from files that do not state whether other jobs ran beside {}.",
+                              silent, silent == 1 ? "is" : "are", silent == 1 ? "it" : "them"));
   return out;
 }
 

@@ -25,11 +25,11 @@ std::string reference_case_of(const json& scenario) {
 /// Definition of the error that ranks the runs of a reference case, as text. It repeats
 /// harness/truth/reference_case.hpp, since a report reads only files.
 std::string ranking_of(const std::string& known) {
-  if (known == "heavy-strip") return "stretch of the strip at rest / its truth";
+  if (known == "heavy-strip") return "stretch of the strip at rest / exact stretch";
   if (known == "two-hand-pull") return "greatest strain, RMS over time / (v0/c)";
-  if (known == "incline") return "way along the slope, RMS over time / way at the end (at rest: L)";
+  if (known == "incline") return "displacement along the slope, RMS over time / displacement at the end (at rest: L)";
   if (known == "capstan" || known == "atwood")
-    return "way over the cylinder, RMS over time / way at the end (at rest: L)";
+    return "displacement over the cylinder, RMS over time / displacement at the end (at rest: L)";
   return known == "catenary" || known == "cantilever" ? "RMS distance at rest / L"
                                                       : "RMS distance over space and time / L";
 }
@@ -165,7 +165,7 @@ std::string WorkDiagram::refused() const {
   // The truth is exact where the reference confirms it, so only the uncertainty of the reference counts here. No solver
   // is ranked below the error of the mesh, so the reference need not be more certain than that.
   const double best = best_error();
-  if (!std::isfinite(best)) return "no solver that is judged on it has an error";
+  if (!std::isfinite(best)) return "no solver ranked on it has an error";
   const double least = std::max(best, std::isfinite(space_error) ? space_error : 0.0);
   if (!(floor() < least)) return fmt::format("3 U_ref {:.1e} is not below the best error {:.1e}", floor(), least);
   return "";
@@ -209,21 +209,18 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<RunRecord>& runs,
 }
 
 Table work_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{
-      "Error against run time",
-      "Times in ms of wall time per simulated second, frames pipelined (two in flight) where a solver can; in "
-      "brackets substeps × "
-      "iterations. Fenced: each frame from submission to fence, waited for before the next. GPU: by the device's "
-      "own clock. Errors are against the exact answer of the same mesh. In real time: a frame of 1/72 s takes at "
-      "most 1/72 s. "
-      "≤: below what tells solvers apart, three times the reference's uncertainty or the mesh's own error. Failed: "
-      "runs without "
-      "a finite error; not run: settings of more work than their solver's time on the scene allowed, each with its "
-      "reason in its file. No solver is ranked on a refused scene; see the next table. Not ranked: the scene depends "
-      "on a stiffness that "
-      "is no parameter of the solver; see the effective moduli.",
-      {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed", "to 1 %, fenced",
-        "to 0.1 %, fenced", "to 1 %, GPU", "to 0.1 %, GPU", "ranked"}}};
+  Table t{"Error against run time",
+          "Times: ms of wall time per simulated second, with pipelined frames (two in flight) where the solver "
+          "can; in brackets substeps × iterations. Fenced: each frame from submission to fence; the next "
+          "starts after it. GPU: by the device's own clock. Errors: against the exact solution of the same "
+          "mesh. In real time: a frame of 1/72 s takes at most 1/72 s. ≤: at the floor below which solvers are "
+          "not distinguished, which is three times the reference's uncertainty or the error of the mesh. "
+          "Failed: runs without a finite error. Not run: settings that need more work than the solver's time "
+          "on the scene allowed; each result file has the reason. A refused scene ranks no solver; the next "
+          "table has the reason. Not ranked: the scene depends on a stiffness that is not a parameter of the "
+          "solver; see the effective moduli.",
+          {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed",
+            "to 1 %, fenced", "to 0.1 %, fenced", "to 1 %, GPU", "to 0.1 %, GPU", "ranked"}}};
   const auto always = [](const WorkPoint&) { return true; };
   t.note = with_withheld(t.note, runs_of(work_rows(diagrams), &WorkRow::run), {"frame_wall_median_s", "truth_error"});
   for (const WorkDiagram& d : diagrams) {
@@ -255,7 +252,7 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
                         error_text(d, best(d, solver, always, &WorkPoint::error)),
                         able == 0 ? "unsupported" : failed_text(failed, all, over_budget), fenced(1e-2), fenced(1e-3),
                         by_gpu(1e-2), by_gpu(1e-3),
-                        flag != d.flagged.end()         ? "NO: stiffness not a parameter"
+                        flag != d.flagged.end()         ? "NO: stiffness is not a parameter"
                         : able == 0 || !refused.empty() ? "no"
                         : baseline                      ? "baseline"
                                                         : "yes"});
@@ -271,20 +268,17 @@ Table truth_table(const std::vector<WorkDiagram>& diagrams) {
       {"", "error", &WorkDiagram::ranking},
       {"", "space", &WorkDiagram::space_error, error},
       {"", "U_ref", &WorkDiagram::uncertainty, error},
-      {"", "reference − truth", &WorkDiagram::truth_distance, error},
+      {"", "reference − exact", &WorkDiagram::truth_distance, error},
       {"", "order BDF2", &WorkDiagram::order_bdf2, order},
       {"", "order conservative", &WorkDiagram::order_conservative, order},
       {"", "ranks", [](auto& d) { return d.refused().empty() ? "yes" : "REFUSED: " + d.refused(); }}}
-      .table(
-          {"Truths and their reference solutions",
-           "Space: the same mesh's exact solution against the continuum. U_ref: uncertainty of the reference solution "
-           "(two "
-           "integrators, three time steps) of the reference case's quantity, over its scale; its distance from the "
-           "truth must be "
-           "below it. "
-           "Order: observed, 2 declared; – where all time steps agree.",
-           {}},
-          diagrams);
+      .table({"Reference cases and their reference solutions",
+              "Space: distance of the same mesh's exact solution from the continuum's. U_ref: uncertainty of the "
+              "reference solution (two integrators, three time steps) in the reference case's quantity, over its "
+              "scale. The distance of the reference solution from the exact one must be below U_ref. Order: "
+              "observed; 2 is declared. –: all time steps agree.",
+              {}},
+             diagrams);
 }
 
 std::string work_csv(const std::vector<WorkDiagram>& diagrams) {

@@ -60,8 +60,8 @@ int rank(const WorkDiagram& d, const std::string& solver, const Criterion& c) {
 
 Table winners_table(const std::vector<WorkDiagram>& diagrams) {
   Table t{"Best solver by scene",
-          "Of the solvers that are ranked; several where they cannot be distinguished. Times in ms of wall time per "
-          "simulated second. ≤: at the floor.",
+          "Best of the ranked solvers; several names where they are not distinguished. Times: ms of wall time "
+          "per simulated second. ≤: at the floor.",
           {{"scene", "solvers ranked"}}};
   for (const Criterion& c : criteria()) t.rows[0].emplace_back(c.name);
   t.rows[0].emplace_back("not ranked");
@@ -91,8 +91,8 @@ Table winners_table(const std::vector<WorkDiagram>& diagrams) {
 
 Table ranks_table(const std::vector<WorkDiagram>& diagrams) {
   Table t{"Ranks",
-          "Geometric mean over the scenes that rank the solver; 1 is first in all of them. Errors of different scenes "
-          "are never averaged.",
+          "Geometric mean of the ranks over the scenes that rank the solver; 1: first in every scene. Errors "
+          "of different scenes are not averaged.",
           {{"solver", "scenes"}}};
   for (const Criterion& c : criteria()) t.rows[0].push_back(std::string("rank by ") + c.name);
   std::set<std::string> all;

@@ -247,7 +247,8 @@ class Writer {
                  {"s", "when the trial's first timed frame began, since 1970 UTC"});
         by_trial("trial_end_unix_s", &TimedTrial::end_unix_s,
                  {"s", "when the trial's last timed frame ended, since 1970 UTC"});
-        by_trial("jobs", &TimedTrial::jobs, {"1", "clothbench jobs on the machine meanwhile, this one included"});
+        by_trial("jobs", &TimedTrial::jobs,
+                 {"1", "clothbench jobs on the machine during the trial, this one included"});
         by_stage("stage_device_s", &TimedTrial::stage_device_s,
                  {"s", "device time of a stage, from the profiled twin"});
         number_attribute(g, "load_s", r_.header.load_s);

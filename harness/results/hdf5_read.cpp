@@ -49,7 +49,8 @@ void read_trials(hid_t file, RunRecord& r) {
   const auto by_trial = [&](const char* name) {  // older files lack some
     auto v = exists(timing, name) ? numbers<double>(timing, name, H5T_NATIVE_DOUBLE)
                                   : std::vector<double>(index.size(), kMissing);
-    if (v.size() != index.size()) throw Error(std::string("/timing/") + name + " does not fit /timing/trial");
+    if (v.size() != index.size())
+      throw Error(std::string("/timing/") + name + " has another length than /timing/trial");
     return v;
   };
   const auto pipelined = by_trial("pipelined_wall_s"), start = by_trial("trial_start_unix_s"),
@@ -60,7 +61,7 @@ void read_trials(hid_t file, RunRecord& r) {
   const std::size_t stages = r.header.stages.size();
   if (shape.size() != 2 || index.size() != shape[0] || device.size() != wall.size() || rendered.size() != wall.size() ||
       stage.size() != wall.size() * stages || read.size() != stage.size() || write.size() != stage.size())
-    throw Error("/timing and /bandwidth do not fit one another");
+    throw Error("/timing and /bandwidth have different lengths");
   for (std::size_t t = 0; t < shape[0]; ++t) {
     TimedTrial trial;
     trial.index = static_cast<int>(index[t]);

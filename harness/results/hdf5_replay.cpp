@@ -16,7 +16,7 @@ std::vector<float> rows_of(hid_t file, const std::vector<std::size_t>& frames, s
       space(H5Dget_space(d), H5Sclose, "H5Dget_space");
   const Dims dims = h5::dims_of(d);
   if (dims.size() != 2 || dims[1] != 3 || dims[0] < (frames.back() + 1) * vertices)
-    throw Error("VTKHDF/Points does not fit the times and vertices");
+    throw Error("VTKHDF/Points: expected as many points as times and vertices say");
   std::vector<float> out(frames.size() * vertices * 3);
   const hsize_t count[2] = {vertices, 3};
   const Id memory = h5::space({vertices, 3});
@@ -35,7 +35,7 @@ nlohmann::json attribute_value(hid_t at, const std::string& name) {
       type(H5Aget_type(a), H5Tclose, "H5Aget_type"), space(H5Aget_space(a), H5Sclose, "H5Aget_space");
   if (H5Tget_class(type) == H5T_STRING) return h5::text_attribute(at, name.c_str());
   const hssize_t n = H5Sget_simple_extent_npoints(space);
-  if (n < 0 || n > 64) throw Error("attribute " + name + ": expected a few numbers");
+  if (n < 0 || n > 64) throw Error("attribute " + name + ": expected one number or a short list of numbers");
   std::vector<double> values(static_cast<std::size_t>(n));
   h5::check(H5Aread(a, H5T_NATIVE_DOUBLE, values.data()), "attribute " + name);
   if (H5Sget_simple_extent_type(space) == H5S_SCALAR) return values.at(0);

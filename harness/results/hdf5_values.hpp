@@ -21,7 +21,7 @@ inline Dims dims_of(hid_t d) {
 inline hsize_t product(const Dims& dims) {
   hsize_t n = 1;
   for (hsize_t d : dims) {
-    if (d != 0 && n > kMostValues / d) throw Error("a dataset is absurdly large");
+    if (d != 0 && n > kMostValues / d) throw Error("a dataset is larger than a run can be");
     n *= d;
   }
   return n;

@@ -38,7 +38,7 @@ class Taker {
   explicit Taker(const Bytes& bytes) : bytes_(bytes) {}
   template <class T>
   void take(std::vector<T>& out, std::size_t count) {
-    if (at_ + count * sizeof(T) > bytes_.size()) throw Error("a frame is shorter than its header says");
+    if (at_ + count * sizeof(T) > bytes_.size()) throw Error("a frame is shorter than its header states");
     const std::size_t old = out.size();
     out.resize(old + count);
     if (count > 0) std::memcpy(out.data() + old, bytes_.data() + at_, count * sizeof(T));
@@ -113,14 +113,15 @@ RawFile read_raw(const std::filesystem::path& path) {
   if (all.size() < 16 || std::memcmp(data, kMagic, 8) != 0)
     throw Error(path.string() + ": not a raw run file (it does not begin with CBRAW001)");
   const std::size_t length = u32(8);
-  if (length > kMostHeader || all.size() < 16 + length) throw Error(path.string() + ": cut short within its header");
+  if (length > kMostHeader || all.size() < 16 + length)
+    throw Error(path.string() + ": the file ends within its header");
   if (crc32c(data + 12, length) != u32(12 + length)) throw Error(path.string() + ": its header is damaged (CRC32C)");
   RawFile file;
   file.header = nlohmann::json::parse(all.substr(12, length), nullptr, false);
   if (!file.header.is_object() || !file.header.contains("frame_B") || !file.header["frame_B"].is_number_unsigned())
     throw Error(path.string() + ": its header has no frame_B");
   const auto frame_B = file.header["frame_B"].get<std::size_t>();
-  if (frame_B < 8) throw Error(path.string() + ": frame_B is under 8");
+  if (frame_B < 8) throw Error(path.string() + ": frame_B: expected at least 8");
   std::size_t at = 16 + length;
   for (std::uint32_t k = 0; at < all.size(); ++k, at += frame_B) {
     const bool whole =
@@ -204,7 +205,7 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
     const RawFile file = read_raw(path);
     const auto stages = file.header.at("stages").get<std::size_t>();
     if (!file.complete || file.frames.size() != file.header.at("frames").get<std::size_t>())
-      throw Error("damaged: not all frames are there");
+      throw Error("damaged: frames are missing");
     TimedTrial t;
     t.index = file.header.at("index").get<int>();
     const auto number = [&](const char* key) {  // older files lack some
@@ -248,7 +249,7 @@ AccuracyPass read_accuracy_file(const std::filesystem::path& path) {
   return naming(path, [&] {
     const RawFile file = read_raw(path);
     if (!file.complete || file.frames.size() != file.header.at("frames").get<std::size_t>())
-      throw Error("damaged: not all frames are there");
+      throw Error("damaged: frames are missing");
     const auto vertices = file.header.at("vertices").get<std::size_t>();
     AccuracyPass a;
     for (const auto& m : file.header.at("metrics"))
@@ -291,7 +292,7 @@ void write_replay_file(const std::filesystem::path& path, const std::vector<Stor
 std::vector<StoredGroup> read_replay_file(const std::filesystem::path& path) {
   return naming(path, [&] {
     const RawFile file = read_raw(path);
-    if (!file.complete || file.frames.size() != 1) throw Error("damaged: not all of it is there");
+    if (!file.complete || file.frames.size() != 1) throw Error("damaged: a part is missing");
     Taker taker(file.frames[0]);
     std::vector<StoredGroup> groups;
     for (const auto& g : file.header.at("groups")) {

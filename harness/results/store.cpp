@@ -161,7 +161,7 @@ Replay read_replay(const fs::path& path, std::size_t stride) {
   Replay r;
   const std::size_t row = 3 * static_cast<std::size_t>(c.header.vertices);
   if (c.accuracy.position.size() < row * c.accuracy.time_s.size())
-    throw Error(path.string() + ": accuracy.raw: positions do not fit the times");
+    throw Error(path.string() + ": accuracy.raw: expected one set of positions for each time");
   r.frames = every(c.accuracy.time_s.size(), stride);
   for (const std::size_t f : r.frames) {
     r.time_s.push_back(c.accuracy.time_s[f]);

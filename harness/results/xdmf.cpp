@@ -22,7 +22,7 @@ std::string mesh(const std::string& name, const std::string& h5, const std::stri
       name, triangles, h5, triangles_at, vertices, bytes, positions_at, time);
 }
 
-/// Meshes that stand still, such as the desk under the cloth. What moves is stored as its motion, not as meshes.
+/// Static meshes, such as the desk under the cloth. Dynamic objects are stored as motion, not as meshes.
 std::string still_meshes(const RunRecord& record, const std::string& h5) {
   std::string out;
   for (const StoredGroup& g : record.replay) {

@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "base/json_text.hpp"
+#include "base/plugin_environment.hpp"
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
 #include "runner/child.hpp"
@@ -28,16 +29,16 @@ constexpr char kGuarded[] = "CLOTHBENCH_GUARDED";  // "<number of the call>:<fil
 }  // namespace
 
 ChildEnd run_again(const std::vector<std::string>& words, const std::string& variable, bool quiet,
-                   const std::function<bool()>& stands_still) {
+                   const std::function<bool()>& is_stuck) {
   std::vector<std::string> argv = {own_program().string()};
   argv.insert(argv.end(), words.begin(), words.end());
   // A group of its own: Ctrl-C comes to it once, from here, since a second one would cut it off.
   ChildProcess child(argv, {.out = quiet ? "/dev/null" : "", .own_group = true, .environment = {variable}});
-  bool reported = false;
+  bool forwarded = false;
   return child.wait([&] {
-    if (interrupt_requested() && !reported) child.signal(SIGINT);
-    reported = reported || interrupt_requested();
-    return stands_still();
+    if (interrupt_requested() && !forwarded) child.signal(SIGINT);
+    forwarded = forwarded || interrupt_requested();
+    return is_stuck();
   });
 }
 
@@ -71,7 +72,7 @@ Guard::Answer Guard::run(const SolverEntry& entry, const std::function<nlohmann:
     if (call == wanted_) answer_parent(work);
     return {nullptr, "another call's child"};
   }
-  if (!is_external(entry.info)) return {work(), ""};
+  if (!is_external(entry.info) || plugins_in_process()) return {work(), ""};
   Answer answer = ask_child(quiet);
   crashed_ = crashed_ || !answer.crash.empty();
   return answer;

@@ -10,10 +10,10 @@
 namespace clothbench {
 
 /// Runs this command again in a child process that a plugin may crash. The child gets the same arguments (`words`),
-/// `variable` ("NAME=value") in its environment, and no output if `quiet`. Ctrl-C is passed on to it. `stands_still` is
+/// `variable` ("NAME=value") in its environment, and no output if `quiet`. Ctrl-C is passed on to it. `is_stuck` is
 /// called about 50 times a second and returns whether to kill it. Throws Error if the child cannot be started.
 ChildEnd run_again(const std::vector<std::string>& words, const std::string& variable, bool quiet,
-                   const std::function<bool()>& stands_still);
+                   const std::function<bool()>& is_stuck);
 
 /// In such a child: ends this process with its parent, even if it hangs in a plugin.
 void end_with_parent();

@@ -47,7 +47,7 @@ void answer_parent() { static_cast<void>(send(STDIN_FILENO, "\n", 1, MSG_NOSIGNA
 std::filesystem::path own_program() {
 #ifdef __ANDROID__
   // An app's process is the system's program, not this one.
-  throw Error("an app cannot execute its runs in processes of their own; use the plain executable");
+  throw Error("the app cannot start child processes, which this study needs; use the plain executable");
 #else
   return std::filesystem::read_symlink("/proc/self/exe");
 #endif

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/sha256.hpp"
+#include "clothbench/unsupported_scene.hpp"
 #include "metrics/material_patch.hpp"
 #include "metrics/metric.hpp"
 #include "runner/environment.hpp"
@@ -63,6 +64,19 @@ Result settle(ClothSolver& solver, Patch patch, const Scene& scene, double limit
   return r;
 }
 
+/// The solver with the patch, or why it cannot run it.
+std::unique_ptr<ClothSolver> loaded(const SolverEntry& entry, const json& settings, const DeviceOptions& device,
+                                    const Scene& scene, std::string& why) {
+  why = unsupported(entry.info, scene.needs).empty() ? "" : "unsupported";
+  if (!why.empty()) return nullptr;
+  try {
+    return load_solver(entry, settings, device, scene);
+  } catch (const UnsupportedScene& e) {
+    why = fmt::format("unsupported, because {}", e.what());
+    return nullptr;
+  }
+}
+
 using PatchScenes = std::vector<std::pair<Patch, Scene>>;
 
 PatchScenes patch_scenes(bool full, bool bending) {
@@ -85,7 +99,7 @@ RunHeader moduli_header(const SolverEntry& entry, const std::string& setting, co
       json{{"name", kModuliScene}, {"effective_moduli", full ? "full" : "short"}, {"patches", measured}}.dump();
   h.scenario_sha256 = sha256(h.scenario_json);
   h.environment = describe_environment({}, protocol);
-  h.environment["solver_features"] = describe_features(entry.info);
+  describe_solver(entry.info, h.environment);
   return h;
 }
 
@@ -103,13 +117,14 @@ RunRecord measure_material(const SolverEntry& entry, const json& settings, const
   Moduli all;
   std::optional<double> unrest;  // of what was measured
   for (const auto& [patch, scene] : scenes) {
-    if (!unsupported(entry.info, scene.needs).empty()) {
-      c.outcome.message += fmt::format("{}{}: unsupported", c.outcome.message.empty() ? "" : "; ", patch_name(patch));
+    std::string why;
+    const auto solver = loaded(entry, settings, device, scene, why);
+    if (!solver) {
+      c.outcome.message += fmt::format("{}{}: {}", c.outcome.message.empty() ? "" : "; ", patch_name(patch), why);
       continue;
     }
-    const auto solver = load_solver(entry, settings, device, scene);
     c.header.environment = describe_environment(solver->device(), protocol);
-    c.header.environment["solver_features"] = describe_features(entry.info);
+    describe_solver(entry.info, c.header.environment);
     Result r = settle(*solver, patch, scene, limit_s);
     if (!r.fault.empty())
       c.outcome.message += fmt::format("{}{}: {}", c.outcome.message.empty() ? "" : "; ", patch_name(patch), r.fault);

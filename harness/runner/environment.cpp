@@ -4,8 +4,11 @@
 
 #include <ctime>
 #include <fstream>
+#include <map>
 #include <thread>
 
+#include "base/json_text.hpp"
+#include "base/sha256.hpp"
 #include "runner/build_info.hpp"
 #include "runner/jobs.hpp"
 #include "runner/sensors.hpp"
@@ -48,6 +51,17 @@ nlohmann::json describe_features(const SolverInfo& info) {
   info.ignores.for_each([&](Feature f) { j["ignores"].push_back(name_of(f)); });
   for (const auto& [feature, beside] : info.only_with) j["only_with"].push_back({name_of(feature), name_of(beside)});
   return j;
+}
+
+void describe_solver(const SolverInfo& info, nlohmann::json& environment) {
+  environment["solver_features"] = describe_features(info);
+  environment["solver_version"] = info.version;
+  if (!is_external(info)) return;
+  static std::map<std::string, std::string> hashes;  // by path; a loaded library stays the one that it was
+  const std::string path = info.folder.substr(std::string(kPluginPrefix).size());
+  const auto [at, is_new] = hashes.try_emplace(path);
+  if (is_new) at->second = sha256(read_text(path));
+  environment["plugin"] = {{"path", path}, {"sha256", at->second}, {"summary", info.summary}};
 }
 
 nlohmann::json describe_environment(const DeviceInfo& device, const std::string& protocol) {

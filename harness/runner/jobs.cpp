@@ -59,8 +59,8 @@ int jobs_in(const fs::path& proc, int self) {
 }
 
 int jobs_now() {
-  const char* reported = std::getenv("CLOTHBENCH_JOBS");
-  const int jobs = reported == nullptr ? 0 : std::atoi(reported);
+  const char* given = std::getenv("CLOTHBENCH_JOBS");
+  const int jobs = given == nullptr ? 0 : std::atoi(given);
   return jobs > 0 ? jobs : jobs_in("/proc", getpid());
 }
 

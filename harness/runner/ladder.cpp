@@ -14,8 +14,9 @@ std::string LadderBudget::refused(const RunSpec& spec) const {
     return fmt::format("not run: {} times the work of a setting that timed out", spec.work / c.timed_out_work);
   const double expected_s = c.last_s * spec.work / c.last_work;
   if (limit_s_ > 0 && c.seconds + expected_s > limit_s_)
-    return fmt::format("not run: it would take some {:.2g} s, and {:.2g} of the {:g} s of its solver's ladder are left",
-                       expected_s, std::max(0.0, limit_s_ - c.seconds), limit_s_);
+    return fmt::format(
+        "not run: it would take about {:.2g} s, but only {:.2g} of the {:g} s of its solver's ladder are left",
+        expected_s, std::max(0.0, limit_s_ - c.seconds), limit_s_);
   return "";
 }
 

@@ -8,6 +8,8 @@
 
 #include "base/json_number.hpp"
 #include "clothbench/error.hpp"
+#include "clothbench/restart_after.hpp"
+#include "clothbench/unsupported_scene.hpp"
 #include "metrics/metric.hpp"
 #include "runner/frame_loop.hpp"
 #include "scenario/change.hpp"
@@ -92,6 +94,8 @@ class Tester {
       if (property == "repeat") repeat(out);
       if (property == "no-op") far_colliders(out);
       if (property == "restart") restart(out);
+    } catch (const UnsupportedScene&) {
+      return unsupported_row(out);
     } catch (const Failed& f) {
       out.status = f.how;
       out.bitwise = false;
@@ -202,7 +206,7 @@ class Tester {
   void restart(MetamorphicResult& out) const {
     const auto solver = load_solver(entry_, settings_, device_, scene_);
     const std::size_t half = base_.size() / 2;
-    if (!solver->restart(base_[half])) {
+    if (!restart_after(*solver, base_[half], frame_input(scene_, static_cast<int>(half) - 1))) {
       out = unsupported_row(out);
       return;
     }
@@ -256,14 +260,14 @@ const std::vector<MetamorphicProperty>& metamorphic_properties() {
       {"mirror", "x → −x"},
       {"rotation", "the whole scene and gravity turned"},
       {"renumbering",
-       "vertices numbered from another corner, or along the other side; bound: 1e-4, or what frames half as long "
-       "change"},
+       "vertices numbered from another corner, or along the other side; bound: 1e-4, or the effect of "
+       "frames half as long"},
       {"flip",
-       "a two-sided cloth turned over: vertices and triangles where they were, all normals the other way; bound: as "
-       "for renumbering"},
+       "a two-sided cloth turned over: vertices and triangles in place, all normals reversed; bound: as for "
+       "renumbering"},
       {"repeat", "run again, and after reset: the same bits"},
       {"no-op", "a ball, a box or a mesh 100 m away"},
-      {"restart", "a new solver goes on from positions and velocities half way; bound: as for renumbering"}};
+      {"restart", "a new solver continues from the positions and velocities at half time; bound: as for renumbering"}};
   return all;
 }
 

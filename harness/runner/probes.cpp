@@ -38,7 +38,7 @@ Probes::Probes(fs::path file, bool resume) : file_(std::move(file)) {
     json line = json::parse(text, nullptr, false);
     if (!line.is_object() || !line.contains("key") || !line.contains("answer")) continue;
     const std::string key = line["key"];
-    RunAnswer answer = answer_from_json(line["answer"]);
+    RunRecord answer = answer_from_json(line["answer"]);
     line.erase("answer");
     known_[key] = {std::move(line), std::move(answer)};
   }
@@ -48,10 +48,10 @@ void Probes::require_same(const ProbedBy& by) const {
   const std::lock_guard lock(mutex_);
   const std::string prefix = prefix_of(by);
   const auto refuse = [&](const char* what, const std::string& stored, const std::string& now) {
-    throw Error(fmt::format(
-        "{}: answers of map \"{}\" by {} {} are of another {} ({}, now {}); results of both would be mixed; "
-        "give another --out, or undo the change",
-        file_.string(), by.map, by.solver, by.setting, what, stored, now));
+    throw Error(
+        fmt::format("{}: results of map \"{}\" by {} {} belong to another {} ({}, now {}); results of both would be "
+                    "mixed; give another --out, or undo the change",
+                    file_.string(), by.map, by.solver, by.setting, what, stored, now));
   };
   for (auto at = known_.lower_bound(prefix); at != known_.end() && at->first.starts_with(prefix); ++at) {
     const json& line = at->second.line;
@@ -65,20 +65,20 @@ void Probes::require_same(const ProbedBy& by) const {
   }
 }
 
-const RunAnswer* Probes::find(const std::string& key) const {
+const RunRecord* Probes::find(const std::string& key) const {
   const std::lock_guard lock(mutex_);
   const auto at = known_.find(key);
   return at == known_.end() ? nullptr : &at->second.answer;
 }
 
-const RunAnswer& Probes::add(const ProbedBy& by, const std::string& key, const RunAnswer& a) {
+const RunRecord& Probes::add(const ProbedBy& by, const std::string& key, const RunRecord& a) {
   const std::lock_guard lock(mutex_);
   const json line = {{"key", key},
                      {"scenario_sha256", by.scenario_sha256},
                      {"definition_sha256", by.definition_sha256},
                      {"solver_version", by.solver_version}};
   json whole = line;
-  whole["answer"] = to_json(a);
+  whole["answer"] = answer_to_json(a);
   const std::string text = whole.dump() + "\n";
   std::error_code error;
   // Onto a torn line nothing may be appended: both would be lost.

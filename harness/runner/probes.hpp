@@ -30,13 +30,13 @@ class Probes {
   void require_same(const ProbedBy&) const;
 
   /// Null if this probe has not been run yet. References stay valid: a map's nodes do not move.
-  const RunAnswer* find(const std::string& key) const;
-  const RunAnswer& add(const ProbedBy&, const std::string& key, const RunAnswer&);
+  const RunRecord* find(const std::string& key) const;
+  const RunRecord& add(const ProbedBy&, const std::string& key, const RunRecord&);
 
  private:
   struct Known {
     nlohmann::json line;
-    RunAnswer answer;
+    RunRecord answer;
   };
 
   const std::filesystem::path file_;

@@ -71,19 +71,19 @@ void require_same_run(const fs::path& folder, const PlannedRun& run) {
   const std::optional<RunHeader> h = stored_header(folder, run.name, file);
   if (!h) return;
   if (h->scenario_sha256 != run.scenario_sha256)
-    throw Error(fmt::format("{}: is of another scene (SHA-256 of the completed scenario {}, now {}); {}", file.string(),
-                            short_hash(h->scenario_sha256), short_hash(run.scenario_sha256), kWhatToDo));
+    throw Error(fmt::format("{}: stored for another scene (SHA-256 of the completed scenario {}, now {}); {}",
+                            file.string(), short_hash(h->scenario_sha256), short_hash(run.scenario_sha256), kWhatToDo));
   if (!same_settings(run, h->settings))
-    throw Error(fmt::format("{}: was run with other settings ({}, now {}); {}", file.string(), h->settings.dump(),
+    throw Error(fmt::format("{}: run with other settings ({}, now {}); {}", file.string(), h->settings.dump(),
                             run.settings.dump(), kWhatToDo));
   const std::string version = version_of(*h);  // older files lack it
   if (run.solver != nullptr && !version.empty() && version != run.solver->version)
-    throw Error(fmt::format("{}: was run with version {} of {}, this is version {}; {}", file.string(), version,
+    throw Error(fmt::format("{}: run with version {} of {}, which is now version {}; {}", file.string(), version,
                             run.solver->name, run.solver->version, kWhatToDo));
 }
 
 void refuse_finished_run(const fs::path& folder, const std::string& run) {
-  throw Error(fmt::format("{}: {} is already there; give another --out, or --resume to go on with this folder",
+  throw Error(fmt::format("{}: {} is already there; give another --out, or --resume to continue in this folder",
                           folder.string(), run));
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <mutex>
@@ -10,10 +9,9 @@
 #include "base/json_number.hpp"
 #include "base/json_text.hpp"
 #include "metrics/registry.hpp"
-#include "results/replay.hpp"
+#include "results/raw_file.hpp"
 #include "results/store.hpp"
 #include "runner/solver_run.hpp"
-#include "runner/whole_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -39,23 +37,12 @@ std::string last_words(const fs::path& log, std::uintmax_t from) {
 }
 
 /// The file of a run whose process could not write it.
-void write_failure(const RunRequest& r, const RunAnswer& answer) {
+void write_failure(const RunRequest& r, const RunRecord& answer) {
   static std::mutex mutex;  // the HDF5 library is not for several threads
   const std::lock_guard lock(mutex);
   const Scene scene = scene_of(r);
-  const RunHeader h = header_of(scene, r.solver, r.setting, r.settings, r.protocol);
-  if (!run_finished(r.out, run_name(h))) write_failed_run(r.out, h, answer.outcome, answer.summary);
-}
-
-RunAnswer run_here(const RunRequest& r, const SolverLookup& lookup) {
-  const auto began = std::chrono::steady_clock::now();
-  const Scene scene = scene_of(r);
-  const SolverEntry& entry = lookup(r.solver);
-  const json settings = entry.make ? complete_settings(entry.info, r.settings) : r.settings;
-  const RunRecord record = whole_run({&scene, &entry, settings, r.setting}, r.device, r.protocol, r.out, r.limit_s);
-  RunAnswer answer{record.outcome, record.summary, kMissing};
-  answer.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  return answer;
+  const RunHeader h = header_of(scene, r.solver, r.setting, r.settings, r.rules.protocol);
+  if (!run_finished(r.rules.out, run_name(h))) write_failed_run(r.rules.out, h, answer.outcome, answer.summary);
 }
 
 }  // namespace
@@ -68,12 +55,12 @@ json to_json(const RunRequest& r) {
           {"solver", r.solver},
           {"setting", r.setting},
           {"settings", r.settings},
-          {"device", r.device.index},
-          {"validate", r.device.validation},
-          {"profile", r.device.profile},
-          {"protocol", r.protocol},
-          {"limit_s", r.limit_s},
-          {"out", r.out.string()}};
+          {"device", r.rules.device.index},
+          {"validate", r.rules.device.validation},
+          {"profile", r.rules.device.profile},
+          {"protocol", r.rules.protocol},
+          {"limit_s", r.rules.limit_s},
+          {"out", r.rules.out.string()}};
 }
 
 RunRequest request_from_json(const json& j) {
@@ -85,27 +72,28 @@ RunRequest request_from_json(const json& j) {
   r.solver = j.at("solver");
   r.setting = j.at("setting");
   r.settings = j.at("settings");
-  r.device.index = j.at("device");
-  r.device.validation = j.at("validate");
-  r.device.profile = j.at("profile");
-  r.protocol = j.at("protocol");
-  r.limit_s = j.at("limit_s");
-  r.out = j.at("out").get<std::string>();
+  r.rules.device.index = j.at("device");
+  r.rules.device.validation = j.at("validate");
+  r.rules.device.profile = j.at("profile");
+  r.rules.protocol = j.at("protocol");
+  r.rules.limit_s = j.at("limit_s");
+  r.rules.out = j.at("out").get<std::string>();
   return r;
 }
 
-json to_json(const RunAnswer& a) {
-  return {{"status", a.outcome.status},        {"class", a.outcome.klass},   {"failed_frame", a.outcome.failed_frame},
-          {"message", a.outcome.message},      {"expect", a.outcome.expect}, {"summary", numbers_to_json(a.summary)},
-          {"wall_s", number_to_json(a.wall_s)}};
+json answer_to_json(const RunRecord& c, bool with_header) {
+  json j = {{"status", c.outcome.status},   {"class", c.outcome.klass},   {"failed_frame", c.outcome.failed_frame},
+            {"message", c.outcome.message}, {"expect", c.outcome.expect}, {"summary", numbers_to_json(c.summary)}};
+  if (with_header) j["header"] = header_to_json(c.header);
+  return j;
 }
 
-RunAnswer answer_from_json(const json& j) {
-  RunAnswer a;
-  a.outcome = {j.at("status"), j.at("class"), j.at("failed_frame"), j.at("message"), j.value("expect", "")};
-  a.summary = numbers_from_json(j.at("summary"));
-  a.wall_s = number_from_json(j.at("wall_s"), "wall_s");
-  return a;
+RunRecord answer_from_json(const json& j) {
+  RunRecord c;
+  c.outcome = {j.at("status"), j.at("class"), j.at("failed_frame"), j.at("message"), j.value("expect", "")};
+  c.summary = numbers_from_json(j.at("summary"));
+  if (j.contains("header")) c.header = header_from_json(j.at("header"));
+  return c;
 }
 
 void write_failed_run(const fs::path& out, const RunHeader& header, const Outcome& outcome,
@@ -115,13 +103,16 @@ void write_failed_run(const fs::path& out, const RunHeader& header, const Outcom
   RunWriter(out, header).finish(outcome, summary);
 }
 
-RunAnswer run_request(const RunRequest& r, const SolverLookup& lookup) {
+RunRecord run_request(const RunRequest& r, const SolverLookup& lookup) {
   try {
-    return run_here(r, lookup);
+    const Scene scene = scene_of(r);
+    const SolverEntry& entry = lookup(r.solver);
+    return whole_run({&scene, &entry, entry.make ? complete_settings(entry.info, r.settings) : r.settings, r.setting},
+                     r.rules);
   } catch (const std::exception& e) {  // what a solver cannot load is a row of the table, whatever it throws
-    RunAnswer answer;
-    answer.outcome = {"error", "F8", -1, e.what()};
-    return answer;
+    RunRecord failed;
+    failed.outcome = {"error", "F8", -1, e.what()};
+    return failed;
   }
 }
 
@@ -131,7 +122,8 @@ int run_child_main(const fs::path& folder, const SolverLookup& lookup) {
   serve_parent([&](const std::string& number) {
     const fs::path request = folder / ("request-" + number + ".json");
     const RunRequest r = request_from_json(parse_json(read_text(request), request.string()));
-    write_file_atomically(folder / ("answer-" + number + ".json"), to_json(run_request(r, lookup)).dump() + "\n");
+    write_file_atomically(folder / ("answer-" + number + ".json"),
+                          answer_to_json(run_request(r, lookup)).dump() + "\n");
   });
   return 0;
 }
@@ -157,10 +149,10 @@ std::optional<ChildEnd> RunWorker::ask(const RunRequest& r) {
   ++number_;
   ++runs_;
   write_file_atomically(scratch_ / fmt::format("request-{}.json", number_), to_json(r).dump() + "\n");
-  return child_->ask(std::to_string(number_), r.limit_s > 0 ? 1.2 * r.limit_s + 5 : 0);
+  return child_->ask(std::to_string(number_), r.rules.limit_s > 0 ? 1.2 * r.rules.limit_s + 5 : 0);
 }
 
-RunAnswer RunWorker::run(const RunRequest& r) {
+RunRecord RunWorker::run(const RunRequest& r) {
   std::optional<ChildEnd> end = ask(r);
   if (end && end->how != ChildEnd::How::TimedOut && runs_ > 1) {
     child_.reset();
@@ -168,24 +160,23 @@ RunAnswer RunWorker::run(const RunRequest& r) {
   }
   const fs::path answer = scratch_ / fmt::format("answer-{}.json", number_);
   if (!end) {
-    const RunAnswer a = answer_from_json(parse_json(read_text(answer), answer.string()));
+    const RunRecord a = answer_from_json(parse_json(read_text(answer), answer.string()));
     std::error_code ignored;
     fs::remove(answer, ignored);
     fs::remove(scratch_ / fmt::format("request-{}.json", number_), ignored);
     const std::string& status = a.outcome.status;
     if (status == "error" || status == "device_lost" || status == "timed_out") child_.reset();
     // A run that could not be loaded has written nothing.
-    if (status == "error" && !r.out.empty()) write_failure(r, a);
+    if (status == "error" && !r.rules.out.empty()) write_failure(r, a);
     return a;
   }
   child_.reset();
   const std::string words = last_words(scratch_ / "output.txt", said_);
-  RunAnswer out;
-  out.wall_s = end->wall_s;
+  RunRecord out;
   out.outcome = {end->how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F8", -1,
-                 "its process: " + end->text() + (words.empty() ? "" : "; last words: " + words)};
+                 "its process: " + end->text() + (words.empty() ? "" : "; last output: " + words)};
   out.summary = scalars_of({scene_of(r), {}, out.outcome}, "stability_");
-  if (!r.out.empty()) write_failure(r, out);
+  if (!r.rules.out.empty()) write_failure(r, out);
   return out;
 }
 

@@ -9,11 +9,12 @@
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
 #include "runner/child.hpp"
+#include "runner/whole_run.hpp"
 
 namespace clothbench {
 
-/// One run for a separate process: a whole scene, untimed. It holds all data of the request file that the process is
-/// given.
+/// One run: a whole scene, untimed, for this process or another. It holds all data of the request file that a process
+/// is given.
 struct RunRequest {
   nlohmann::json scenario;       ///< as in its file, not completed
   std::string source;            ///< that file
@@ -21,23 +22,15 @@ struct RunRequest {
   std::string name;              ///< of this variant of the scene
   std::string solver, setting;
   nlohmann::json settings = nlohmann::json::object();
-  DeviceOptions device = {};
-  std::string protocol;
-  double limit_s = 0;         ///< of wall time
-  std::filesystem::path out;  ///< folder for the result file; empty: only the answer is kept
-};
-
-/// Result of a request. `status` may also be `crashed`, with the signal or exit status as message.
-struct RunAnswer {
-  Outcome outcome;
-  std::map<std::string, double> summary;
-  double wall_s = kMissing;
+  RunRules rules = {};  ///< `by` stays in this process
 };
 
 nlohmann::json to_json(const RunRequest&);
 RunRequest request_from_json(const nlohmann::json&);
-nlohmann::json to_json(const RunAnswer&);
-RunAnswer answer_from_json(const nlohmann::json&);
+
+/// What a process tells of its run: outcome and summary, and the header if it is asked for.
+nlohmann::json answer_to_json(const RunRecord&, bool with_header = false);
+RunRecord answer_from_json(const nlohmann::json&);
 
 /// Writes the file of a run whose process could not write it. A file that the process left incomplete is removed: it is
 /// not the beginning of this one, but output of a crashed solver.
@@ -46,8 +39,8 @@ void write_failed_run(const std::filesystem::path& out, const RunHeader&, const 
 
 using SolverLookup = std::function<const SolverEntry&(const std::string&)>;
 
-/// Executes the run in this process: the child's side of RunWorker.
-RunAnswer run_request(const RunRequest&, const SolverLookup&);
+/// Executes the run in this process: the child's side of RunWorker. What a solver throws is the outcome `error`.
+RunRecord run_request(const RunRequest&, const SolverLookup&);
 
 /// Main function of `PROGRAM run-child FOLDER`: for every line n of its standard input, until it ends, runs
 /// FOLDER/request-n.json and writes FOLDER/answer-n.json.
@@ -63,7 +56,7 @@ class RunWorker {
   /// `scratch`: a folder for the exchanged files, used by this worker alone.
   RunWorker(std::filesystem::path program, std::filesystem::path scratch);
   ~RunWorker();
-  RunAnswer run(const RunRequest&);
+  RunRecord run(const RunRequest&);
   int children() const { return children_; }  ///< number of children started so far
 
  private:

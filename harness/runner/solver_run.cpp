@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "clothbench/unsupported_scene.hpp"
 #include "metrics/metric_pass.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/stability/judge.hpp"
@@ -61,13 +62,8 @@ nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
 /// Settings with per-stage timestamps on, if the solver offers them.
 std::optional<nlohmann::json> with_stage_times(const SolverEntry& entry, nlohmann::json settings) {
   if (!settings.contains("stage_times") || !entry.info.on_gpu) return std::nullopt;
-  settings["stage_times"] = true;
+  settings["stage_times"] = settings["stage_times"].is_boolean() ? nlohmann::json(true) : nlohmann::json(1);
   return settings;
-}
-
-void describe_solver(const SolverInfo& info, nlohmann::json& environment) {
-  environment["solver_features"] = describe_features(info);
-  environment["solver_version"] = info.version;
 }
 
 void describe_scene(const Scene& scene, nlohmann::json& environment) {
@@ -119,6 +115,10 @@ SolverRun::SolverRun(RunSpec spec, const DeviceOptions& device, const std::strin
     const auto start = Clock::now();
     solver_->load(scene);
     header_.load_s = seconds_since(start);
+  } catch (const UnsupportedScene& e) {
+    solver_.reset();
+    outcome_ = {"unsupported", "ok", -1, info.name + ": " + e.what()};
+    return;
   } catch (const SolverError& e) {
     solver_.reset();
     outcome_ = {"error", "F8", -1, e.what()};
@@ -144,7 +144,7 @@ Outcome outcome_of(StepStatus status, int frame) {
     case StepStatus::NotFinite:
       return {"not_finite", "F0", frame, "a position or velocity is not finite"};
     case StepStatus::Diverged:
-      return {"diverged", "F1", frame, "the solver gave up"};
+      return {"diverged", "F1", frame, "the solver stopped without a solution"};
     case StepStatus::DeviceLost:
       return {"device_lost", "F8", frame, "the device was lost"};
     case StepStatus::TimedOut:
@@ -193,12 +193,12 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules) {
     for (double x : state.position) pass.position.push_back(static_cast<float>(x));
     metrics.add(state);
     if (outcome_.status == "ok" && metrics.lost())
-      outcome_ = {"diverged", "F1", frame, "speed or energy out of all bounds"};
+      outcome_ = {"diverged", "F1", frame, "speed or energy exceeds every bound"};
     // A pass that was held may take any time.
     if (outcome_.status == "ok" && rules.run_limit_s > 0 && times_held() == held_before &&
         seconds_since(start) > rules.run_limit_s && frame < frames)
       outcome_ = {"timed_out", "F8", frame,
-                  fmt::format("the accuracy pass was not through after {:g} s", rules.run_limit_s)};
+                  fmt::format("the accuracy pass did not finish within {:g} s", rules.run_limit_s)};
   };
   stop_if_interrupted(kTrialsKept);
   observe(0, StepStatus::Ok);
@@ -231,6 +231,15 @@ void SolverRun::warm_up(const TrialRules& rules) {
 TimedTrial SolverRun::run_trial(int index, const TrialRules& rules, int frames) {
   TimedTrial trial;
   trial.index = index;
+  try {
+    measure(trial, rules, frames);
+  } catch (const SolverError& e) {  // its costs make no sense, or its twin could not be loaded
+    outcome_ = {"error", "F8", -1, e.what()};
+  }
+  return trial;
+}
+
+void SolverRun::measure(TimedTrial& trial, const TrialRules& rules, int frames) {
   const int jobs_before = jobs_now();
   warm_up(rules);
   const std::size_t stages = plan_.stages.size();
@@ -253,7 +262,6 @@ TimedTrial SolverRun::run_trial(int index, const TrialRules& rules, int frames) 
   if (outcome_.status == "ok" && rules.pipelined && solver_->frames_in_flight() > 1) run_pipelined(trial, rules);
   if (outcome_.status == "ok" && rules.rendering.make) run_rendered(trial, rules);
   if (outcome_.status == "ok" && rules.profiled_frames > 0) profile_stages(trial, rules.profiled_frames);
-  return trial;
 }
 
 /// The frames of the trial again, drop by drop; what a drop's first frame waits for and its last one drains is in the

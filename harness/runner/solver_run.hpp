@@ -83,6 +83,7 @@ class SolverRun {
   int accuracy_frames(double duration_s) const;
   void fail(StepStatus status, int frame);
   void warm_up(const TrialRules& rules);
+  void measure(TimedTrial& trial, const TrialRules& rules, int frames);
   void run_pipelined(TimedTrial& trial, const TrialRules& rules);
   void run_rendered(TimedTrial& trial, const TrialRules& rules);
   void profile_stages(TimedTrial& trial, int frames);

@@ -92,11 +92,11 @@ class Map {
   }
 
   /// The map as far as its rows are done.
-  json reported() const {
+  json document() const {
     json out = {{"name", j_["name"]},         {"title", j_["title"]}, {"scene", j_["scene"]},    {"good", j_["good"]},
                 {"headline", j_["headline"]}, {"theory", theory_},    {"solvers", json::array()}};
     for (const char* axis : {"x", "y"}) out[axis] = {{"label", j_[axis]["label"]}, {"unit", j_[axis]["unit"]}};
-    for (std::size_t k = 0; k < solvers_.size(); ++k) out["solvers"].push_back(reported(k));
+    for (std::size_t k = 0; k < solvers_.size(); ++k) out["solvers"].push_back(solver_json(k));
     return out;
   }
 
@@ -105,7 +105,7 @@ class Map {
     return o_.solvers.empty() || std::find(o_.solvers.begin(), o_.solvers.end(), solver) != o_.solvers.end();
   }
 
-  json reported(std::size_t k) const {
+  json solver_json(std::size_t k) const {
     const json& solver = *solvers_[k];
     json out = {{"solver", solver["solver"]},
                 {"setting", solver["label"]},
@@ -183,10 +183,10 @@ class Map {
     return by;
   }
 
-  const RunAnswer& probe(const json& solver, double x, double y, int seed, RunWorker& worker, Row& row) const {
+  const RunRecord& probe(const json& solver, double x, double y, int seed, RunWorker& worker, Row& row) const {
     const ProbedBy& by = probed_by_.at(&solver);
     const std::string key = by.key(x, y, seed);
-    const RunAnswer* found = probes_.find(key);
+    const RunRecord* found = probes_.find(key);
     if (found == nullptr) {
       stop_if_interrupted(kRunsKept);
       RunRequest r;
@@ -197,9 +197,7 @@ class Map {
       r.solver = solver["solver"];
       r.setting = by.setting;
       r.settings = settings_at(solver, x, y);
-      r.device = o_.device;
-      r.protocol = protocol_name(study_.length);
-      r.limit_s = study_.run_limit_s;
+      r.rules = {o_.device, protocol_name(study_.length), {}, study_.run_limit_s};
       found = &probes_.add(by, key, worker.run(r));
     }
     row.counts.add(*found);
@@ -222,7 +220,7 @@ class Map {
     for (int seed = 0; seed < seeds_; ++seed) {
       const auto good = [&](double x) {
         if (row.unsupported) return false;
-        const RunAnswer& a = probe(solver, x, y, seed, worker, row);
+        const RunRecord& a = probe(solver, x, y, seed, worker, row);
         if (a.outcome.status == "unsupported") {
           row.unsupported = true;
           row.message = a.outcome.message;
@@ -294,7 +292,7 @@ StabilityCounts run_stability_maps(const Study& study, const StabilityOptions& o
   const auto write = [&] {
     json all = json::array();
     for (const auto& map : maps)
-      if (map->solvers() > 0) all.push_back(map->reported());
+      if (map->solvers() > 0) all.push_back(map->document());
     write_file_atomically(
         o.out / "stability.json",
         json{{"format", "clothbench-stability"}, {"format_version", 1}, {"environment", o.environment}, {"maps", all}}

@@ -30,10 +30,7 @@ RunRequest request_of(const Study& study, const Study::Item& item, const StudySo
   r.solver = s.solver;
   r.setting = s.label;
   r.settings = s.settings;
-  r.device = o.device;
-  r.protocol = protocol_name(study.length);
-  r.limit_s = study.run_limit_s;
-  r.out = o.out;
+  r.rules = {o.device, protocol_name(study.length), o.out, study.run_limit_s};
   return r;
 }
 
@@ -45,22 +42,26 @@ PlannedRun planned(const Study::Item& item, const StudySolver& s) {
 
 }  // namespace
 
-void require_same_study(const Study& study, const StabilityOptions& o) {
+void require_same_runs(const Study& study, const StabilityOptions& o) {
   std::vector<PlannedRun> runs;
   for (const Study::Item& item : study.scenes)
     for (const std::size_t k : item.solvers) runs.push_back(planned(item, study.solvers[k]));
   require_same_runs(o.out, runs, o.resume);
+}
+
+void require_same_study(const Study& study, const StabilityOptions& o) {
+  require_same_runs(study, o);
   require_same_maps(study, o);
 }
 
-double grade_of(const RunAnswer& a) {
+double grade_of(const RunRecord& a) {
   const auto at = a.summary.find("stability_grade");
   return at != a.summary.end() && std::isfinite(at->second) ? at->second
          : a.outcome.status == "unsupported"                ? kMissing
                                                             : 2;
 }
 
-void StabilityCounts::add(const RunAnswer& a) {
+void StabilityCounts::add(const RunRecord& a) {
   const double grade = grade_of(a);
   if (a.outcome.status == "unsupported")
     ++unsupported;
@@ -83,6 +84,12 @@ void StabilityCounts::add(const StabilityCounts& more) {
 
 StabilityCounts execute_stability_runs(const Study& study, const StabilityOptions& o) {
   StabilityCounts counts;
+  execute_runs_apart(study, o, [&](const RunRecord& a) { counts.add(a); });
+  return counts;
+}
+
+void execute_runs_apart(const Study& study, const StabilityOptions& o,
+                        const std::function<void(const RunRecord&)>& ended) {
   struct Todo {
     const Study::Item* item;
     const StudySolver* solver;
@@ -104,7 +111,7 @@ StabilityCounts execute_stability_runs(const Study& study, const StabilityOption
       if (!o.resume) refuse_finished_run(o.out, run.name);
       require_same_run(o.out, run);
       const RunRecord before = read_run_summary(stored_run(o.out, run.name));
-      counts.add(RunAnswer{before.outcome, before.summary, kMissing});
+      ended(before);
     }
   // The longest first, or the last of them is waited for alone.
   std::stable_sort(todo.begin(), todo.end(), [](const Todo& a, const Todo& b) { return a.work > b.work; });
@@ -114,16 +121,15 @@ StabilityCounts execute_stability_runs(const Study& study, const StabilityOption
   for (const Todo& t : todo)
     tasks.push_back([&, t](RunWorker& worker) {
       stop_if_interrupted(kRunsKept);
-      const RunAnswer a = worker.run(request_of(study, *t.item, *t.solver, o));
+      const RunRecord a = worker.run(request_of(study, *t.item, *t.solver, o));
       const std::lock_guard lock(mutex);
-      counts.add(a);
+      ended(a);
       ++done;
       if (o.progress) o.progress(t.item->scene.name + " with " + t.solver->name(), done, all);
     });
   run_tasks(tasks, o.jobs, o.program, o.out / "scratch");
   std::error_code ignored;
   fs::remove_all(o.out / "scratch", ignored);
-  return counts;
 }
 
 }  // namespace clothbench

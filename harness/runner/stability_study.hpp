@@ -23,13 +23,13 @@ struct StabilityOptions {
 };
 
 /// 0 stable, 1 degraded, 2 failed; NaN: unsupported.
-double grade_of(const RunAnswer&);
+double grade_of(const RunRecord&);
 
 /// Number of runs of each grade, including probes of the maps.
 struct StabilityCounts {
   int stable = 0, degraded = 0, failed = 0, unsupported = 0;
   int crashed = 0;  ///< of the failed ones: processes that crashed or hung
-  void add(const RunAnswer&);
+  void add(const RunRecord&);
   void add(const StabilityCounts&);
 };
 
@@ -37,8 +37,15 @@ struct StabilityCounts {
 /// settings or solver versions, or are finished and `resume` is off.
 void require_same_study(const Study&, const StabilityOptions&);
 
-/// Executes every run of the study's scenes, in processes that are replaced after a fault, with one result file each.
-/// With `resume`, runs that are already stored are skipped.
+/// The same for the runs alone, of a study without maps.
+void require_same_runs(const Study&, const StabilityOptions&);
+
+/// Executes every run of the study's scenes, untimed, in processes that are replaced after a fault, with one result
+/// file each. With `resume`, runs that are already stored are skipped. `ended` is called for each, stored or new, one
+/// call at a time.
+void execute_runs_apart(const Study&, const StabilityOptions&, const std::function<void(const RunRecord&)>& ended);
+
+/// execute_runs_apart, with the grades counted.
 StabilityCounts execute_stability_runs(const Study&, const StabilityOptions&);
 
 }  // namespace clothbench

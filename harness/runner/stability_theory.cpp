@@ -29,9 +29,9 @@ double theory(const std::string& name, const Scene& s, int substeps) {
   if (name == "explicit-limit") return substeps * 2 / highest_frequency_rad_per_s(s);
   if (name == "float32-stagnation") {
     const Vec3& g = s.gravity_m_per_s2;
-    const double h = s.time.dt() / substeps, way = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]) * h * h;
-    // ulp(x) = 2^(e - 23) for 2^e <= x < 2^(e + 1): the way is half of it or less from 2^e on.
-    return std::exp2(std::ceil(std::log2(2 * way)) + 23);
+    const double h = s.time.dt() / substeps, step_m = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]) * h * h;
+    // ulp(x) = 2^(e - 23) for 2^e <= x < 2^(e + 1): the step is half of it or less from 2^e on.
+    return std::exp2(std::ceil(std::log2(2 * step_m)) + 23);
   }
   if (name == "substep-per-cell") return substeps;
   throw Error("theory \"" + name + "\": expected explicit-limit, float32-stagnation or substep-per-cell");
@@ -39,7 +39,7 @@ double theory(const std::string& name, const Scene& s, int substeps) {
 
 std::string theory_label(const std::string& name) {
   if (name == "explicit-limit") return "explicit limit: highest frequency x substep = 2";
-  if (name == "float32-stagnation") return "float32: gravity's way in a substep is half an ulp";
+  if (name == "float32-stagnation") return "float32: displacement by gravity in a substep is half an ulp";
   if (name == "substep-per-cell") return "one cell a substep";
   return name;
 }

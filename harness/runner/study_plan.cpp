@@ -1,8 +1,35 @@
 #include "runner/study_plan.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <memory>
+#include <sstream>
+
+#include "base/plugin_environment.hpp"
+#include "clothbench/error.hpp"
 
 namespace clothbench {
+namespace {
+
+/// Solvers of this tree and adapters that come with it. A build may lack any of them; a study that names one then has
+/// rows `unsupported`. Every other unknown name is taken for a spelling error.
+const char* const kOfThisTree[] = {"paper",     "xpbd",      "bullet-soft", "bullet-deformable",
+                                   "reference", "ballistic", "nvcloth",     "jolt"};
+
+[[noreturn]] void refuse_name(const std::string& name) {
+  std::vector<std::string> known(std::begin(kOfThisTree), std::end(kOfThisTree));
+  for (const SolverEntry& e : solvers()) known.push_back(e.info.name);
+  const char* plugins = std::getenv(kPluginsVariable);
+  std::istringstream paths(plugins != nullptr ? plugins : "");
+  for (std::string path; std::getline(paths, path, ':');)
+    if (const SolverEntry* e = path.empty() ? nullptr : external_solver(kPluginPrefix + path))
+      known.push_back(e->info.name);
+  const std::string near = nearest(name, known);
+  throw Error("the study names a solver \"" + name + "\", which is neither of clothbench nor a plugin in $" +
+              kPluginsVariable + (near.empty() ? "" : "; nearest known: " + near));
+}
+
+}  // namespace
 
 const char* protocol_name(StudyLength length) {
   return length == StudyLength::Full ? "full" : length == StudyLength::Quick ? "quick" : "short";
@@ -40,6 +67,8 @@ RunPlan plan_study(const Study& study) {
     for (const std::size_t k : item.solvers) {
       const StudySolver& s = study.solvers[k];
       if (entries[k] == nullptr) {
+        if (std::find(std::begin(kOfThisTree), std::end(kOfThisTree), s.solver) == std::end(kOfThisTree))
+          refuse_name(s.solver);
         auto absent = std::make_shared<SolverEntry>();
         absent->info.name = s.solver;
         entries[k] = absent.get();
@@ -47,7 +76,7 @@ RunPlan plan_study(const Study& study) {
       }
       const nlohmann::json settings = entries[k]->make ? complete_settings(entries[k]->info, s.settings) : s.settings;
       plan.groups[static_cast<std::size_t>(item.group)].push_back({&item.scene, entries[k], settings, s.label, s.work});
-      plan.groups[static_cast<std::size_t>(item.group)].back().timed = item.timed;
+      plan.groups[static_cast<std::size_t>(item.group)].back().timed = item.timed && s.timed;
     }
   }
   return plan;

@@ -6,27 +6,12 @@
 #include "results/raw_file.hpp"
 #include "runner/environment.hpp"
 #include "runner/run_process.hpp"
-#include "runner/whole_run.hpp"
 
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-/// As a child tells it to its parent: without series and positions.
-json reported(const RunRecord& c) {
-  return {{"header", header_to_json(c.header)}, {"answer", to_json(RunAnswer{c.outcome, c.summary, kMissing})}};
-}
-
-RunRecord heard(const json& j) {
-  RunAnswer answer = answer_from_json(j.at("answer"));
-  RunRecord c;
-  c.header = header_from_json(j.at("header"));
-  c.outcome = std::move(answer.outcome);
-  c.summary = std::move(answer.summary);
-  return c;
-}
 
 }  // namespace
 
@@ -38,7 +23,7 @@ StudyRuns::StudyRuns(DeviceOptions device, fs::path out, bool resume, StudyManif
   if (Guard::in_child() || (begun && resume)) return;
   if (begun)
     throw Error(out_.string() +
-                ": a study is already there; give another --out, or --resume to go on with this folder");
+                ": a study is already there; give another --out, or --resume to continue in this folder");
   fs::create_directories(out_);
   manifest.created = utc_now();
   write_manifest(out_, manifest);
@@ -60,9 +45,9 @@ std::optional<RunRecord> StudyRuns::stored(const PlannedRun& run) const {
 }
 
 RunRecord StudyRuns::run(const RunSpec& spec, const std::string& protocol, const truth::ReferenceCase* by) {
-  if (out_.empty()) return end_of_run(spec, device_, protocol, by);
+  if (out_.empty()) return end_of_run(spec, {device_, protocol, {}, 0, by});
   if (auto before = stored(planned_run(spec))) return *std::move(before);
-  return whole_run(spec, device_, protocol, out_, 0, by);
+  return whole_run(spec, {device_, protocol, out_, 0, by});
 }
 
 RunRecord StudyRuns::made(const PlannedRun& run, const std::function<RunRecord()>& make) {
@@ -95,10 +80,10 @@ std::vector<RunRecord> StudyRuns::ask(Guard& guard, const RunHeader& asked, cons
     out = work();
     if (!is_external(entry.info)) return nullptr;
     json all = json::array();
-    for (const RunRecord& c : out) all.push_back(reported(c));
+    for (const RunRecord& c : out) all.push_back(answer_to_json(c, true));
     return all;
   });
-  for (const json& j : answer.value) out.push_back(heard(j));
+  for (const json& j : answer.value) out.push_back(answer_from_json(j));
   if (answer.crash.empty()) return out;
   out.emplace_back();
   out.back().header = asked;

@@ -6,8 +6,10 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 
 #include "base/json_text.hpp"
+#include "base/plugin_environment.hpp"
 #include "runner/again.hpp"
 #include "runner/effective_moduli.hpp"
 #include "runner/environment.hpp"
@@ -22,7 +24,13 @@ constexpr char kVariable[] = "CLOTHBENCH_SUPERVISED";  // "new:<folder>" or "aga
 
 fs::path note_file(const fs::path& out) { return out / "running.txt"; }
 
-/// What a child was at: a run of the plan, or a effective moduli of one of its solvers.
+/// Empty if there is none: the child may remove it at any time, after a check that it exists too.
+std::string text_of_note(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What a child was at: a run of the plan, or effective moduli of one of its solvers.
 struct Doing {
   const SolverEntry* entry;
   const RunSpec* run;  ///< null: a measurement
@@ -41,15 +49,14 @@ std::optional<Doing> doing_of(const RunPlan& plan, const std::string& note) {
   return std::nullopt;
 }
 
-/// This command in a child, which is killed where a plugin's run stands still.
+/// This command in a child process, which is killed if a plugin's run makes no progress.
 ChildEnd run_watched(const std::vector<std::string>& words, const std::string& variable, const RunPlan& plan,
                      const fs::path& note) {
   using Clock = std::chrono::steady_clock;
   std::string doing;
   auto since = Clock::now();
   return run_again(words, variable, false, [&] {
-    std::error_code ignored;
-    std::string now = fs::exists(note, ignored) ? read_text(note.string()) : "";
+    std::string now = text_of_note(note);
     if (now != doing) {
       doing = std::move(now);
       since = Clock::now();
@@ -76,7 +83,7 @@ void write_row(const Doing& at, const RunPlan& plan, const fs::path& out, const 
 }  // namespace
 
 bool needs_supervision(const RunPlan& plan) {
-  if (supervised()) return false;
+  if (supervised() || plugins_in_process()) return false;
   for (const auto& group : plan.groups)
     for (const RunSpec& c : group)
       if (is_external(c.entry->info)) return true;
@@ -94,7 +101,7 @@ ExitCode supervise(const RunPlan& plan, const fs::path& out, bool resume, const 
         run_watched(words, fmt::format("{}={}:{}", kVariable, again ? "again" : "new", out.string()), plan, note);
     if (!fs::exists(note, ignored))  // it came to its end, good or bad
       return static_cast<ExitCode>(end.how == ChildEnd::How::Exited ? end.code : 1);
-    const std::string doing = read_text(note.string());
+    const std::string doing = text_of_note(note);
     const std::optional<Doing> at = doing_of(plan, doing);
     fs::remove(note, ignored);
     if (!at) throw Error(fmt::format("{}: the study's process: {}", doing, end.text()), ExitCode::CheckFailed);

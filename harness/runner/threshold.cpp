@@ -12,13 +12,21 @@
 namespace clothbench {
 namespace {
 
-truth::ReferenceCase card_with_threshold(const Scene& scene, const SolverEntry& entry) {
+truth::ReferenceCase card_with_threshold(const Scene& scene) {
   const auto known = truth::reference_case_of(scene);
   if (!known || !known->threshold)
     throw Error(scene.source +
-                ": this scene has no threshold: expected one at rest on a slope or over a cylinder, with friction");
-  if (!unsupported(entry.info, scene.needs).empty()) throw Error(entry.info.name + " cannot run " + scene.name);
+                ": this scene has no threshold; expected a cloth at rest on a slope or over a cylinder, with friction");
   return *known;
+}
+
+/// What the solver lacks for the scene; empty if it can run it.
+std::string lacks(const Scene& scene, const SolverEntry& entry) {
+  std::string text;
+  unsupported(entry.info, scene.needs).for_each([&](Feature f) {
+    text += (text.empty() ? entry.info.name + " has no " : ", ") + std::string(name_of(f));
+  });
+  return text;
 }
 
 /// The scene at one coefficient of friction, without a truth of its own: at too little of it a strip would leave its
@@ -34,7 +42,8 @@ Scene tried(const Scene& scene, const truth::Threshold& t, double friction) {
 
 FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings,
                               StudyRuns& runs, const std::string& setting, std::vector<RunRecord>* reported) {
-  const truth::ReferenceCase known = card_with_threshold(scene, entry);
+  const truth::ReferenceCase known = card_with_threshold(scene);
+  if (const std::string why = lacks(scene, entry); !why.empty()) throw Error(scene.name + ": " + why);
   const truth::Threshold& t = *known.threshold;
   return search_threshold(t, [&](double friction) {
     const Scene s = tried(scene, t, friction);
@@ -53,8 +62,15 @@ FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, cons
 
 std::vector<RunRecord> threshold_runs(Guard& guard, StudyRuns& runs, const Scene& scene, const SolverEntry& entry,
                                       const nlohmann::json& settings, const std::string& setting) {
-  card_with_threshold(scene, entry);
-  return runs.ask(guard, bare_header({&scene, &entry, settings, setting}, kThresholdProtocol), entry, [&] {
+  card_with_threshold(scene);
+  const RunHeader header = bare_header({&scene, &entry, settings, setting}, kThresholdProtocol);
+  if (std::string why = lacks(scene, entry); !why.empty()) {
+    RunRecord refused;
+    refused.header = header;
+    refused.outcome = {"unsupported", "ok", -1, std::move(why)};
+    return {refused};
+  }
+  return runs.ask(guard, header, entry, [&] {
     std::vector<RunRecord> all;
     find_threshold(scene, entry, settings, runs, setting, &all);
     return all;

@@ -13,7 +13,8 @@ FoundThreshold find_threshold(const Scene&, const SolverEntry&, const nlohmann::
 /// The same without storing any run.
 FoundThreshold find_threshold(const Scene&, const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&);
 
-/// The runs of find_threshold, in a child for a plugin; if the child crashes, one record of the scene itself.
+/// The runs of find_threshold, in a child for a plugin; if the child crashes or the solver cannot run the scene, one
+/// record of the scene itself.
 std::vector<RunRecord> threshold_runs(Guard&, StudyRuns&, const Scene&, const SolverEntry&,
                                       const nlohmann::json& settings, const std::string& setting);
 

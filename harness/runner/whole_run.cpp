@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clothbench/unsupported_scene.hpp"
 #include "results/replay.hpp"
 #include "results/store.hpp"
 #include "runner/expect.hpp"
@@ -25,24 +26,23 @@ double quantity_now(const truth::ReferenceCase& known, const Scene& scene, const
 
 }  // namespace
 
-RunRecord whole_run(const RunSpec& spec, const DeviceOptions& device, const std::string& protocol,
-                    const std::filesystem::path& out, double limit_s, const truth::ReferenceCase* by) {
-  SolverRun run(spec, device, protocol);
+RunRecord whole_run(const RunSpec& spec, const RunRules& rules) {
+  SolverRun run(spec, rules.device, rules.protocol);
   RunRecord record;
   record.header = run.header();
   std::unique_ptr<RunWriter> writer;
-  if (!out.empty()) writer = std::make_unique<RunWriter>(out, run.header());
-  TrialRules rules;
-  rules.trials = 0;
-  rules.accuracy_duration_s = spec.scene->time.duration_s;
-  rules.run_limit_s = limit_s;
-  if (run.alive()) record.accuracy = run.run_accuracy(rules);
+  if (!rules.out.empty()) writer = std::make_unique<RunWriter>(rules.out, run.header());
+  TrialRules pass;
+  pass.trials = 0;
+  pass.accuracy_duration_s = spec.scene->time.duration_s;
+  pass.run_limit_s = rules.limit_s;
+  if (run.alive()) record.accuracy = run.run_accuracy(pass);
   record.outcome = run.outcome();
   if (const int messages = run.validation_messages(); messages > 0)
     record.outcome = {"error", "ok", -1, fmt::format("{} validation messages", messages)};
   record.summary = summarise(run.spec(), run.plan(), record);
-  if (by != nullptr && record.outcome.status == "ok")
-    record.summary["truth_quantity"] = quantity_now(*by, *spec.scene, *run.solver());
+  if (rules.by != nullptr && record.outcome.status == "ok")
+    record.summary["truth_quantity"] = quantity_now(*rules.by, *spec.scene, *run.solver());
   Verdict verdict = judge(*spec.scene, record.outcome, record.accuracy, record.summary);
   record.outcome.expect = std::move(verdict.text);
   record.summary.merge(verdict.scalars);
@@ -67,16 +67,21 @@ RunHeader bare_header(const RunSpec& spec, const std::string& protocol) {
   return h;
 }
 
-RunRecord end_of_run(const RunSpec& spec, const DeviceOptions& device, const std::string& protocol,
-                     const truth::ReferenceCase* by) {
+RunRecord end_of_run(const RunSpec& spec, const RunRules& rules) {
   const Scene& scene = *spec.scene;
   RunRecord record;
-  record.header = bare_header(spec, protocol);
+  record.header = bare_header(spec, rules.protocol);
   if (!unsupported(spec.entry->info, scene.needs).empty()) {
     record.outcome.status = "unsupported";
     return record;
   }
-  const auto solver = load_solver(*spec.entry, spec.settings, device, scene);
+  std::unique_ptr<ClothSolver> solver;
+  try {
+    solver = load_solver(*spec.entry, spec.settings, rules.device, scene);
+  } catch (const UnsupportedScene& e) {
+    record.outcome = {"unsupported", "ok", -1, spec.entry->info.name + ": " + e.what()};
+    return record;
+  }
   FrameLoop loop(*solver, scene, {.frames = scene.time.frames()});
   while (loop.next()) {
   }
@@ -86,8 +91,8 @@ RunRecord end_of_run(const RunSpec& spec, const DeviceOptions& device, const std
   solver->read_state(state);
   if (!finite(state.position) || !finite(state.velocity))
     record.outcome = outcome_of(StepStatus::NotFinite, scene.time.frames());
-  else if (const auto own = by == nullptr ? truth::reference_case_of(scene) : std::nullopt; by != nullptr || own)
-    record.summary["truth_quantity"] = quantity_now(by != nullptr ? *by : *own, scene, *solver);
+  else if (const auto own = rules.by == nullptr ? truth::reference_case_of(scene) : std::nullopt; rules.by || own)
+    record.summary["truth_quantity"] = quantity_now(rules.by ? *rules.by : *own, scene, *solver);
   return record;
 }
 

@@ -72,7 +72,7 @@ fs::path file_of(const std::string& name, const std::string& source) {
 ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles,
                      const std::string& source) {
   ClothMesh m{std::move(vertices), std::move(triangles), {}, {}, 0};
-  if (m.triangles.empty()) throw Error(source + ": no triangle");
+  if (m.triangles.empty()) throw Error(source + ": expected at least one triangle");
   for (std::size_t v = 0; v < m.vertices.size(); ++v)
     if (!std::isfinite(edge_length(m.vertices[v]))) throw Error(fmt::format("{}: vertex {} is not finite", source, v));
   struct Seen {
@@ -117,7 +117,7 @@ ClothMesh parse_obj(const std::string& text, const std::string& source) {
   std::string warning, error;
   std::istringstream in(shape_lines(text));
   if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &in))
-    throw Error(fmt::format("{}: no OBJ file: {}", source, error.empty() ? "it cannot be read" : error));
+    throw Error(fmt::format("{}: expected an OBJ file: {}", source, error.empty() ? "it cannot be read" : error));
   std::vector<Vec3> vertices;
   for (std::size_t k = 0; k + 2 < attributes.vertices.size(); k += 3)
     vertices.push_back({attributes.vertices[k], attributes.vertices[k + 1], attributes.vertices[k + 2]});
@@ -135,8 +135,8 @@ std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::s
   const fs::path file = file_of(j["file"].get<std::string>(), source);
   const std::string text = read_text(file), hash = sha256(text);
   if (j.contains("sha256") && j["sha256"] != hash)
-    throw Error(fmt::format("{}: /cloth/mesh/sha256: {} is another file than the scene was made with ({})", source,
-                            file.string(), hash));
+    throw Error(fmt::format("{}: /cloth/mesh/sha256: {} differs from the file that the scene was made with ({})",
+                            source, file.string(), hash));
   j["sha256"] = hash;
   return std::make_shared<const ClothMesh>(parse_obj(text, file.string()));
 }

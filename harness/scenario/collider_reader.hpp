@@ -21,6 +21,8 @@ class ColliderReader {
   /// Checks the object against a definition of the schema and fills in its defaults.
   void complete(nlohmann::json&, const std::string& definition) const;
   [[noreturn]] void refuse(const std::string& key, const std::string& expected) const;
+  /// File and JSON pointer of a key of the object, as messages name them.
+  std::string where(const std::string& key) const { return source_ + ": " + at_ + key; }
   /// Reads a vector, which must have length 1.
   Vec3 unit(const nlohmann::json&, const std::string& key) const;
   /// Reads a path and adds its jumps to the scene.

@@ -23,7 +23,7 @@ const ColliderType& type_of(const std::string& name) {
   for (const ColliderKind& kind : collider_kinds())
     for (const ColliderType& type : kind.types)
       if (name == type.name) return type;
-  throw Error("collider type " + name + ": the schema has it, and no kind does");
+  throw Error("collider type " + name + ": it is in the schema but has no implementation");
 }
 
 class StageReader {
@@ -68,12 +68,13 @@ class StageReader {
     const auto index = over["collider"].get<std::size_t>();
     const auto table = tables_.find(index);
     if (table == tables_.end())
-      reader_.refuse("/collider", fmt::format("/colliders/{} is no collider of type room with a table", index));
+      reader_.refuse("/collider", fmt::format("/colliders/{}: expected a collider of type room with a table", index));
     const auto& [box, mesh] = table->second;
     const double drop = over["drop_m"].get<double>();
     const TablePose at = over["at"] == "center"
                              ? flat_over(box, mesh, scene_.cloth, drop)
-                             : corner_first_over(box, scene_.cloth, drop, over["tilt_deg"].get<double>() * kRadians);
+                             : corner_first_over(box, scene_.cloth, drop, over["tilt_deg"].get<double>() * kRadians,
+                                                 over["inset_m"].get<double>());
     scene_.cloth.center_m = at.center_m;
     const bool turned = over.value("turned", false);
     if (turned && (scene_.cloth.width_m != scene_.cloth.height_m)) reader_.refuse("/turned", "expected a square cloth");
@@ -117,7 +118,7 @@ class StageReader {
     if (g.by->recording) reader_.refuse("/track", "a recorded hand holds nothing; expected a hand track");
     const assets::HandSample start = assets::sample(g.by->track, *g.by->hand, 0);
     if (!start.grip)
-      reader_.refuse("/track", "this hand does not hold anything at time 0 (\"grip\": true in its first key)");
+      reader_.refuse("/track", "expected \"grip\": true in the first key; this hand holds nothing at time 0");
     const double radius = j["radius_m"].get<double>();
     const assets::Vector pinch = assets::pinch_point(start.pose);
     const std::vector<double> x = initial_positions(scene_);
@@ -125,8 +126,9 @@ class StageReader {
       if ((assets::Vector::Map(x.data() + 3 * v) - pinch).norm() <= radius)
         g.vertices.push_back(static_cast<std::uint32_t>(v));
     if (g.vertices.empty())
-      reader_.refuse("/radius_m", fmt::format("no vertex within {} m of the pinch point ({:.4f}, {:.4f}, {:.4f})",
-                                              radius, pinch.x(), pinch.y(), pinch.z()));
+      reader_.refuse("/radius_m",
+                     fmt::format("expected a vertex within {} m of the pinch point ({:.4f}, {:.4f}, {:.4f})", radius,
+                                 pinch.x(), pinch.y(), pinch.z()));
     return g;
   }
 
@@ -164,10 +166,10 @@ class StageReader {
   }
 
   static void move_by_bar(const Grip& g, double t, const std::vector<double>& x, FrameMotion& m) {
-    const Vec3 way = g.bar.way(t);
+    const Vec3 moved = g.bar.displacement(t);
     for (std::uint32_t v : g.vertices) {
       Vec3& to = m.grip_position_m.emplace_back();
-      for (std::size_t k = 0; k < 3; ++k) to[k] = x[3 * v + k] + way[k];
+      for (std::size_t k = 0; k < 3; ++k) to[k] = x[3 * v + k] + moved[k];
       m.grip_held.push_back(g.bar.held(t) ? 1 : 0);
     }
   }

@@ -43,9 +43,11 @@ class IrregularReader {
                    right = line < c.column_factors.size() ? c.column_factors[line] : 0;
       if (!(left + right > 0))
         refuse(source_, "/cloth/column_factors",
-               fmt::format("grid line {} is beside no cell that has a width: its vertices would have no mass", line));
+               fmt::format("grid line {}: expected a cell of width above 0 beside it; its vertices would have no mass",
+                           line));
     }
-    if (c.span_m > 0) refuse(source_, "/cloth/pose/span_m", "a sheet that starts as an arc has columns of one width");
+    if (c.span_m > 0)
+      refuse(source_, "/cloth/pose/span_m", "expected columns of one width for a sheet that starts as an arc");
   }
 
   std::vector<std::uint32_t> vertices(const json& j, const std::string& pointer) const {

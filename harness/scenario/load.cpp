@@ -17,6 +17,7 @@
 #include "scenario/colliders.hpp"
 #include "scenario/irregular.hpp"
 #include "scenario/schemas.hpp"
+#include "scenario/strict_contact.hpp"
 #include "scenario/vec3.hpp"
 
 namespace clothbench {
@@ -42,7 +43,7 @@ Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
           refuse(source, fmt::format("/pins/{}/{}", k, of_grids),
                  "not available on a mesh; expected \"vertices\" or \"nearest_m\"");
     if (!c.mesh && pin.contains("nearest_m"))
-      refuse(source, fmt::format("/pins/{}/nearest_m", k), "only available on a mesh");
+      refuse(source, fmt::format("/pins/{}/nearest_m", k), "expected a cloth that is a mesh");
     if (pin.contains("nearest_m"))
       for (const json& point : pin["nearest_m"]) pinned.insert(nearest_vertex(*c.mesh, vec3(point)));
     if (pin.contains("corners"))
@@ -67,7 +68,8 @@ Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
 void read_shape(json& j, Cloth& c, const std::string& source) {
   if (j.contains("mesh")) {
     for (const char* of_grids : {"grid", "size_m", "column_factors", "start"})
-      if (j.contains(of_grids)) refuse(source, std::string("/cloth/") + of_grids, "not for a cloth that is a mesh");
+      if (j.contains(of_grids))
+        refuse(source, std::string("/cloth/") + of_grids, "expected a cloth that is a grid, not a mesh");
     c.mesh = read_cloth_mesh(j["mesh"], source);
     if (c.mesh->vertices.size() > kMostVertices)
       refuse(source, "/cloth/mesh",
@@ -103,7 +105,7 @@ Cloth read_cloth(json& j, const std::string& source) {
   if (c.mesh)
     for (const char* of_grids : {"span_m", "drape", "over_table"})
       if (j["pose"].contains(of_grids))
-        refuse(source, std::string("/cloth/pose/") + of_grids, "not for a cloth that is a mesh");
+        refuse(source, std::string("/cloth/pose/") + of_grids, "expected a cloth that is a grid, not a mesh");
   c.span_m = j["pose"].value("span_m", 0.0);
   if (!(c.span_m < c.width_m))
     refuse(source, "/cloth/pose/span_m", fmt::format("expected less than the width, {} m", c.width_m));
@@ -152,7 +154,7 @@ void read_expect(const json& j, Scene& s, const std::string& source) {
     if (bounds.contains("at_least")) e.at_least = bounds["at_least"].get<double>();
     if (bounds.contains("at_most")) e.at_most = bounds["at_most"].get<double>();
     if (e.at_least && e.at_most && *e.at_least > *e.at_most)
-      refuse(source, "/expect/" + name, "at_least is above at_most");
+      refuse(source, "/expect/" + name, "expected at_least below or equal to at_most");
     s.expect.push_back(std::move(e));
   }
 }
@@ -166,7 +168,8 @@ void check_assumed(const json& scenario, const std::string& source) {
       found = scenario.contains(json::json_pointer(entry));
     } catch (const json::exception&) {
     }
-    if (!found) refuse(source, fmt::format("/assumed/{}", k), "\"" + entry + "\" points at nothing in this scene");
+    if (!found)
+      refuse(source, fmt::format("/assumed/{}", k), "\"" + entry + "\": expected the pointer of a value of this scene");
   }
 }
 
@@ -229,7 +232,7 @@ namespace {
 /// Member `key` of an object, created if it is missing, or item number `key` of an array.
 json& child(json& of, const std::string& key, const std::string& where) {
   if (of.is_object() || of.is_null()) return of[key];
-  if (!of.is_array()) throw Error(where + ": not an object's key");
+  if (!of.is_array()) throw Error(where + ": expected a key of an object");
   const bool number = !key.empty() && key.find_first_not_of("0123456789") == std::string::npos && key.size() < 6;
   if (!number || std::stoul(key) >= of.size())
     throw Error(fmt::format("{}: expected an item's number, 0 to {}", where, static_cast<long>(of.size()) - 1));
@@ -245,7 +248,7 @@ void apply_override(json& scenario, const std::string& assignment, const std::st
   const std::string text = assignment.substr(eq + 1);
   const bool has_nan = text.find("NaN") != std::string::npos;
   json value = json::parse(text, nullptr, false);
-  if (value.is_discarded() && (has_nan || text.empty())) throw Error("--set " + assignment + ": not a JSON value");
+  if (value.is_discarded() && (has_nan || text.empty())) throw Error("--set " + assignment + ": expected a JSON value");
   if (value.is_discarded()) value = text;
   json* at = &scenario;
   std::string pointer;
@@ -285,23 +288,27 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
            "bending is of grids alone; expected 0 for a cloth that is a mesh");
   if (s.cloth.mesh && scenario["material"].contains("regions"))
     refuse(source, "/material/regions", "columns are of grids alone; a mesh has one stiffness");
-  if (s.cloth.mesh && scenario.contains("truth")) refuse(source, "/truth", "the reference cases are of grids alone");
+  if (s.cloth.mesh && scenario.contains("truth"))
+    refuse(source, "/truth", "expected a cloth that is a grid; reference cases are defined for grids only");
   read_irregular(scenario, s, source);
   read_self_collision(scenario["cloth"], s.cloth, source);
   s.pins = read_pins(scenario["pins"], s.cloth, source);
-  if (scenario.contains("expect")) read_expect(scenario["expect"], s, source);
   s.gravity_m_per_s2 = vec3(scenario["gravity_m_per_s2"]);
   s.time.frame_rate_hz = scenario["time"]["frame_rate_hz"].get<double>();
   s.time.duration_s = scenario["time"]["duration_s"].get<double>();
   if (!(s.time.duration_s * s.time.frame_rate_hz <= kMostFrames))
-    refuse(source, "/time/duration_s", fmt::format("at most {} frames", kMostFrames));
-  if (s.time.frames() < 1) refuse(source, "/time/duration_s", "at least one frame");
+    refuse(source, "/time/duration_s", fmt::format("expected at most {} frames", kMostFrames));
+  if (s.time.frames() < 1) refuse(source, "/time/duration_s", "expected at least one frame");
   read_frame_times(scenario["time"], s, source);
   read_colliders(scenario, s, source, assets);
   read_stability(scenario, s);
   if (scenario.contains("seed")) s.seed = scenario["seed"].get<std::uint64_t>();
   if (scenario.contains("truth")) s.reference_case = scenario["truth"]["case"].get<std::string>();
   s.needs = derive_needs(s);
+  if (scenario.contains("expect")) {
+    complete_expect(scenario["expect"], s, source);
+    read_expect(scenario["expect"], s, source);
+  }
   s.json = scenario.dump();
   s.sha256 = sha256(with_former_keys(scenario).dump());
   return s;

@@ -29,35 +29,46 @@ ColliderPose pose_at(const MovingHand& m, bool as_mesh, double time_s) {
   return pose;
 }
 
-}  // namespace
-
-MovingHand moving_hand(const nlohmann::json& j, ColliderReader& reader, bool as_mesh) {
+/// A track or a recording in a file of its own.
+MovingHand hand_of_file(const nlohmann::json& j, ColliderReader& reader, bool as_mesh) {
   const auto name = j["track"].get<std::string>();
   const auto file = file_of_scene(name, reader.source());
   if (!file)
     reader.refuse("/track",
                   fmt::format("\"{}\": no such file beside the scene or in {}", name, scenario_root().string()));
-  if (const std::string text = read_text(*file); assets::is_hand_recording(parse_json(text, file->string()))) {
-    if (j.contains("speed_m_per_s")) reader.refuse("/speed_m_per_s", "a recording goes at the speed it was made at");
-    MovingHand m{{}, {}, assets::parse_hand_recording(text, file->string())};
-    if (as_mesh && !m.recording->mesh) m.hand = assets::open_hand(reader.assets(), m.recording->side);
-    return m;
-  }
-  assets::HandTrack track = assets::read_hand_track(*file);
+  const std::string text = read_text(*file);
+  if (!assets::is_hand_recording(parse_json(text, file->string())))
+    return {{}, assets::parse_hand_track(text, file->string()), {}};
+  if (j.contains("speed_m_per_s"))
+    reader.refuse("/speed_m_per_s", "expected no speed for a recording, which is replayed at its own speed");
+  MovingHand m{{}, {}, assets::parse_hand_recording(text, file->string())};
+  if (as_mesh && !m.recording->mesh) m.hand = assets::open_hand(reader.assets(), m.recording->side);
+  return m;
+}
+
+}  // namespace
+
+MovingHand moving_hand(const nlohmann::json& j, ColliderReader& reader, bool as_mesh) {
+  const nlohmann::json& track = j["track"];
+  MovingHand m = track.is_object() ? MovingHand{{}, assets::parse_hand_track(track.dump(), reader.where("/track")), {}}
+                                   : hand_of_file(j, reader, as_mesh);
+  if (m.recording) return m;
   if (j.contains("speed_m_per_s")) {
     try {
-      track = assets::retimed(std::move(track), j["speed_m_per_s"].get<double>());
+      m.track = assets::retimed(std::move(m.track), j["speed_m_per_s"].get<double>());
     } catch (const Error& e) {
       reader.refuse("/speed_m_per_s", e.what());
     }
   }
-  return {assets::open_hand(reader.assets(), track.side), track, {}};
+  m.hand = assets::open_hand(reader.assets(), m.track.side);
+  return m;
 }
 
 void read_hand(const nlohmann::json& j, ColliderReader& reader, Collider& c, bool as_mesh) {
   MovingHand m = moving_hand(j, reader, as_mesh);
   if (j.contains("offset_m")) m.offset_m = assets::Vector::Map(vec3(j["offset_m"]).data());
-  c.name = std::filesystem::path(j["track"].get<std::string>()).stem().string();
+  c.name = j["track"].is_object() ? std::string(assets::name_of(m.track.side)) + "-hand"
+                                  : std::filesystem::path(j["track"].get<std::string>()).stem().string();
   c.shape = as_mesh ? Collider::Shape::Mesh : Collider::Shape::Capsules;
   if (as_mesh)
     c.mesh = m.recording && m.recording->mesh ? collider_mesh(*m.recording->mesh) : collider_mesh(m.hand->mesh);

@@ -30,7 +30,7 @@ Path Path::read(const nlohmann::json& j) {
   return p;
 }
 
-Vec3 Path::way(double time_s) const {
+Vec3 Path::displacement(double time_s) const {
   const double until = stop_s ? std::min(time_s, *stop_s) : time_s;
   const double seconds = ramped(std::max(0.0, until - start_s), ramp_s);
   Vec3 out{};
@@ -64,12 +64,12 @@ Capsule moved_capsule(const Path& path, const Vec3& center, const Vec3& axis, do
                          w[0] * axis[1] - w[1] * axis[0]};
     for (std::size_t k = 0; k < 3; ++k) turned[k] = axis[k] * c + across[k] * s + w[k] * along * (1 - c);
   }
-  const Vec3 way = path.way(time_s);
+  const Vec3 displacement = path.displacement(time_s);
   Capsule out;
   out.radius_m = radius_m;
   for (std::size_t k = 0; k < 3; ++k) {
-    out.a_m[k] = center[k] + way[k] - length_m / 2 * turned[k];
-    out.b_m[k] = center[k] + way[k] + length_m / 2 * turned[k];
+    out.a_m[k] = center[k] + displacement[k] - length_m / 2 * turned[k];
+    out.b_m[k] = center[k] + displacement[k] + length_m / 2 * turned[k];
   }
   return out;
 }

@@ -23,7 +23,7 @@ struct Path {
   /// Reads velocity_m_per_s from completed JSON, and ramp_s, start_s, stop_s, release_s, jumps where present.
   static Path read(const nlohmann::json&);
   /// Displacement [m] at `time_s`.
-  Vec3 way(double time_s) const;
+  Vec3 displacement(double time_s) const;
   bool held(double time_s) const { return !release_s || time_s < *release_s; }
 };
 

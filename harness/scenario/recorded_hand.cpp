@@ -70,7 +70,7 @@ ColliderPose mesh_pose(const assets::HandRecording& recording, const assets::Rec
                                                             assets::frame_of(recording.mesh->bind[k]).inverse())));
     return pose;
   }
-  if (stand_in == nullptr) throw Error("hand recording: it has no mesh, and no hand stands in for it");
+  if (stand_in == nullptr) throw Error("hand recording: expected a mesh in it, or a hand model to use in its place");
   const assets::HandPose joints = assets::pose_of(hand);
   for (std::size_t k = 0; k < assets::kJointCount; ++k)
     pose.joints.push_back(affine(offset * (joints.joints[k] * stand_in->mesh.inverse_bind[k])));

@@ -10,9 +10,11 @@
 #include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/solver.hpp"
+#include "scenario/draw_contact.hpp"
 #include "scenario/irrelevant.hpp"
 #include "scenario/load.hpp"
 #include "scenario/schemas.hpp"
+#include "scenario/study_axes.hpp"
 
 namespace clothbench {
 namespace {
@@ -22,6 +24,7 @@ using Words = std::vector<std::string>;
 
 constexpr double kFpsAccuracy_s = 0.5;
 constexpr const char* kAllOn = "all-on";
+constexpr std::uint64_t kGreatestSeed = std::uint64_t{1} << 53;  ///< what every reader of JSON keeps
 
 /// All features that a solver could be given in this scene; none if the build does not have the solver.
 FeatureSet usable_features(const std::string& solver, FeatureSet needs) {
@@ -57,39 +60,6 @@ bool chosen(const Words& choice, const Words& labels) {
          std::any_of(labels.begin(), labels.end(), [&](const auto& l) { return contains(choice, l); });
 }
 
-struct Variant {
-  std::string suffix;
-  Words overrides, labels;
-  bool timed = true;
-};
-
-/// Cartesian product of the axes; the first varies slowest.
-std::vector<Variant> expand(const json& axes, const std::string& pointer, const std::string& source) {
-  std::vector<Variant> all(1);
-  for (std::size_t a = 0; a < axes.size(); ++a) {
-    const json& axis = axes[a];
-    if (axis["values"].size() != axis["labels"].size())
-      throw Error(fmt::format("{}: {}/axes/{}/labels: expected one label a value, {}; found {}", source, pointer, a,
-                              axis["values"].size(), axis["labels"].size()));
-    for (const auto& [key, values] : axis["with"].items())
-      if (values.size() != axis["values"].size())
-        throw Error(fmt::format("{}: {}/axes/{}/with/{}: expected one value each of the axis, {}; found {}", source,
-                                pointer, a, key, axis["values"].size(), values.size()));
-    std::vector<Variant> next;
-    for (const Variant& v : all)
-      for (std::size_t k = 0; k < axis["values"].size(); ++k) {
-        Variant w = v;
-        w.labels.push_back(axis["labels"][k].get<std::string>());
-        w.suffix += "-" + w.labels.back();
-        w.overrides.push_back(axis["key"].get<std::string>() + "=" + axis["values"][k].dump());
-        for (const auto& [key, values] : axis["with"].items()) w.overrides.push_back(key + "=" + values[k].dump());
-        next.push_back(std::move(w));
-      }
-    all = std::move(next);
-  }
-  return all;
-}
-
 /// Builds a Study from its completed file.
 class Builder {
  public:
@@ -99,7 +69,7 @@ class Builder {
   Study build() {
     study_.length = options_.length;
     if (study_.length == StudyLength::Quick) {
-      if (!j_.contains("quick")) throw Error(source_ + ": \"quick\" is missing: this study has no quick form");
+      if (!j_.contains("quick")) throw Error(source_ + ": \"quick\" is missing, so this study has no short form");
       quick_ = j_["quick"];
     }
     study_.name = j_["name"].get<std::string>();
@@ -116,9 +86,13 @@ class Builder {
     study_.pipelined = j_["pipelined"].get<bool>();
     read_solvers();
     if (study_.protocol == "feature-cost") add_all_on();
-    for (std::size_t k = 0; k < j_["scenes"].size(); ++k) read_scene(k);
+    if (study_.protocol == "contact")
+      draw_scenes();
+    else
+      for (std::size_t k = 0; k < j_["scenes"].size(); ++k) read_scene(k);
     check_words();
-    if (study_.scenes.empty()) throw Error(source_ + ": no scene with a solver is left");
+    if (study_.scenes.empty()) throw Error(source_ + ": expected at least one scene with a solver");
+    add_pairs();
     study_.definition = std::move(j_);
     return std::move(study_);
   }
@@ -130,12 +104,13 @@ class Builder {
       const json& s = j_["solvers"][k];
       StudySolver solver{s["solver"].get<std::string>(), s["label"].get<std::string>(), s["settings"],
                          assignments(s["set"]), s["only"].get<Words>()};
+      solver.pair = s.value("pair", json());
       solver_names_.push_back(solver.name());
       named.push_back(solver.solver);
-      const bool stay = stays(solver);
+      solver.timed = s["timed"].get<bool>();
       const std::string at = fmt::format("{}: /solvers/{}/ladder", source_, k);
       for (StudySolver& rung : climb(solver, s.contains("ladder") ? s["ladder"].get<Words>() : Words{}, at)) {
-        stays_.push_back(stay);
+        stays_.push_back(stays(solver));
         study_.solvers.push_back(std::move(rung));
       }
     }
@@ -159,6 +134,7 @@ class Builder {
       StudySolver s = study_.solvers[k];
       s.label = s.label == "default" ? kAllOn : s.label + "," + kAllOn;
       s.all_on = true;
+      s.pair = {{"relation", "irrelevant"}, {"with", {study_.solvers[k].label}}};
       study_.solvers.push_back(std::move(s));
       stays_.push_back(stays_[k]);
     }
@@ -212,21 +188,55 @@ class Builder {
     return contains(options_.solvers, s.solver) && (in_quick || !quick_has_it);
   }
 
-  void read_scene(std::size_t k) {
-    const json& item = j_["scenes"][k];
-    const std::string pointer = fmt::format("/scenes/{}", k), scene_file = item["file"].get<std::string>();
-    std::filesystem::path path = scene_file;
+  std::filesystem::path scene_path(std::size_t k) const {
+    const std::string name = j_["scenes"][k]["file"].get<std::string>();
+    std::filesystem::path path = name;
     if (path.is_relative() && std::filesystem::exists(file_.parent_path() / path)) path = file_.parent_path() / path;
     if (!std::filesystem::exists(path))
-      throw Error(source_ + ": " + pointer + "/file: \"" + scene_file + "\": no such file");
+      throw Error(fmt::format("{}: /scenes/{}/file: \"{}\": no such file", source_, k, name));
+    return path;
+  }
+
+  /// Every scene of the study is a kind; kinds take turns, so that a seed says which one it draws.
+  void draw_scenes() {
+    std::vector<ContactKind> kinds;
+    for (std::size_t k = 0; k < j_["scenes"].size(); ++k) {
+      kinds.push_back(contact_kind(j_["scenes"][k], scene_path(k), fmt::format("{}: /scenes/{}", source_, k),
+                                   quick_.is_null() ? json::object() : quick_["ranges"]));
+      labels_.insert(kinds.back().name);
+    }
+    const std::uint64_t first = options_.seed.value_or(1);
+    const int all = (quick_.is_null() ? j_ : quick_).value("count", j_["count"].get<int>());
+    const int count = options_.count > 0 ? options_.count : all;
+    if (!(first <= kGreatestSeed - static_cast<std::uint64_t>(count)))
+      throw Error(
+          fmt::format("--seed {}: expected at most {}", first, kGreatestSeed - static_cast<std::uint64_t>(count)));
+    ContactDrawer drawer(options_.assets);
+    for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+      const std::size_t k = seed % kinds.size();
+      Variant v;
+      v.labels = j_["scenes"][k]["labels"].get<Words>();
+      v.labels.push_back(kinds[k].name);
+      add_forms(drawer.draw(kinds[k], study_.name, seed), scene_path(k).string(), v, fmt::format("/scenes/{}", k));
+    }
+    j_["seed"] = first;
+    j_["count"] = count;
+  }
+
+  void read_scene(std::size_t k) {
+    const json& item = j_["scenes"][k];
+    const std::string pointer = fmt::format("/scenes/{}", k);
+    if (item.contains("draw")) throw Error(source_ + ": " + pointer + "/draw: only for protocol contact");
+    const std::filesystem::path path = scene_path(k);
     const json scenario = parse_json(read_text(path), path.string());
     const json name_at = scenario.is_object() ? scenario.value("name", json()) : json();
     const std::string name = name_at.is_string() ? name_at.get<std::string>() : "";
-    for (Variant& v : expand(item["axes"], pointer, source_)) {
+    for (Variant& v : expand(item["axes"], pointer, source_, options_.overrides)) {
       const auto labels = item["labels"].get<Words>();
       v.labels.insert(v.labels.end(), labels.begin(), labels.end());
       v.labels.push_back(name + v.suffix);
       v.timed = item["timed"].get<bool>();
+      v.pair = item.value("pair", json());
       labels_.insert(v.labels.begin(), v.labels.end());  // labels of the study, even if this form leaves it out
       if (item["only_full"].get<bool>() && study_.length != StudyLength::Full) continue;
       if (!quick_.is_null() && !chosen(quick_["scenes"].get<Words>(), v.labels)) continue;
@@ -261,14 +271,32 @@ class Builder {
         }
         scene.name += v.suffix;
         const int group = group_of(scene);
-        study_.scenes.push_back({std::move(scene), group, v.timed, {}});
+        study_.scenes.push_back({std::move(scene), group, v.timed, {}, v.pair});
       }
       Study::Item& item = study_.scenes[at->second];
+      const bool is_first = runs_.insert(item.scene.name + " " + solver.name()).second;
+      if (!is_first && v.merged) continue;  // another scene of the study has become the same
       item.solvers.push_back(s);
-      if (!runs_.insert(item.scene.name + " " + solver.name()).second)
+      if (!is_first)
         throw Error(fmt::format("{}: {}: two runs are named \"{}\" with {}; labels must differ", source_, pointer,
                                 item.scene.name, solver.name()));
     }
+  }
+
+  void add_pairs() {
+    const auto add = [&](const Study::Item& item, const StudySolver& s, const json& pair, const char* name) {
+      if (pair.is_null()) return;
+      json row = {
+          {"relation", pair["relation"]}, {"scene", item.scene.name}, {"solver", s.solver}, {"setting", s.label}};
+      row["with"] = {{"scene", {item.scene.name}}, {"setting", {s.label}}};
+      row["with"][name] = pair["with"];
+      j_["pairs"].push_back(std::move(row));
+    };
+    for (const Study::Item& item : study_.scenes)
+      for (const std::size_t k : item.solvers) {
+        add(item, study_.solvers[k], item.pair, "scene");
+        add(item, study_.solvers[k], study_.solvers[k].pair, "setting");
+      }
   }
 
   /// Whether the quick form runs a scene with this solver: it may restrict a solver to some scenes.
@@ -295,8 +323,17 @@ class Builder {
       }
     };
     const Words labels(labels_.begin(), labels_.end());
-    for (std::size_t s = 0; s < j_["solvers"].size(); ++s)
-      check(fmt::format("/solvers/{}/only", s), j_["solvers"][s]["only"], labels);
+    for (std::size_t k = 0; k < j_["scenes"].size(); ++k)
+      if (j_["scenes"][k].contains("pair"))
+        check(fmt::format("/scenes/{}/pair/with", k), j_["scenes"][k]["pair"]["with"], labels);
+    for (std::size_t s = 0; s < j_["solvers"].size(); ++s) {
+      const json& solver = j_["solvers"][s];
+      check(fmt::format("/solvers/{}/only", s), solver["only"], labels);
+      Words settings;  // of this solver
+      for (const json& other : j_["solvers"])
+        if (other["solver"] == solver["solver"]) settings.push_back(other["label"].get<std::string>());
+      if (solver.contains("pair")) check(fmt::format("/solvers/{}/pair/with", s), solver["pair"]["with"], settings);
+    }
     if (!j_.contains("quick")) return;
     check("/quick/scenes", j_["quick"]["scenes"], labels);
     check("/quick/solvers", j_["quick"]["solvers"], solver_names_);
@@ -318,14 +355,6 @@ class Builder {
 };
 
 }  // namespace
-
-std::string StudySolver::name() const { return label == "default" ? solver : solver + " " + label; }
-
-bool is_study(const std::string& name_or_path) {
-  const std::filesystem::path file = find_scenario(name_or_path);
-  const json j = parse_json(read_text(file), file.string());
-  return j.is_object() && j.contains("protocol");
-}
 
 Study load_study(const std::string& name_or_path, const StudyOptions& options) {
   const std::filesystem::path file = find_scenario(name_or_path);

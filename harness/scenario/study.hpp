@@ -1,6 +1,8 @@
 #pragma once
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,8 @@ struct StudySolver {
   bool joined = false;            ///< comes from StudyOptions::solvers, not from the study
   int work = 0;                   ///< product of its ladder settings; 0: it is not on the ladder
   bool all_on = false;            ///< with its other features switched on without effect (irrelevant.hpp)
+  nlohmann::json pair = {};       ///< what its runs are compared with, as in the file; null: nothing
+  bool timed = true;              ///< false: only the accuracy pass runs
   std::string name() const;       ///< name in tables: "paper", "paper whole-room"
 };
 
@@ -40,6 +44,9 @@ struct StudyOptions {
   std::vector<std::string> solvers = {};
   /// Settings that the study's ladder, if any, varies for such a solver. One without an entry here is not varied.
   std::map<std::string, std::vector<std::string>> knobs = {};
+  /// Of protocol contact: the scenes of the seeds seed, seed + 1, ..., `count` of them. Defaults: 1, and the study's.
+  std::optional<std::uint64_t> seed = {};
+  int count = 0;  ///< 0: the study's
 };
 
 /// A study with its axes expanded. Runs of one `group` are interleaved: with the protocol fps those of one grid,
@@ -51,6 +58,7 @@ struct Study {
     int group = 0;
     bool timed = true;                 ///< false: only the accuracy pass runs
     std::vector<std::size_t> solvers;  ///< indices into Study::solvers
+    nlohmann::json pair = {};          ///< as StudySolver::pair
   };
   std::string name, why, protocol;
   StudyLength length = StudyLength::Short;
@@ -60,15 +68,22 @@ struct Study {
   double accuracy_duration_s = 0;  ///< infinite: the whole scene
   double run_limit_s = 0;          ///< 0 = none
   bool stage_times = true, pipelined = false;
-  StudyRules rules;           ///< of `length`
-  nlohmann::json definition;  ///< completed study file
+  StudyRules rules;  ///< of `length`
+  /// Completed study file. If scenes or solvers have a "pair", its key "pairs" has one row for each such run: scene,
+  /// solver, setting, relation, and the scenes and settings of the same solver that it is compared with.
+  nlohmann::json definition;
 };
 
 /// Loads a study by path or name ("table3"). Throws Error as `load_scene` does, and if the quick form is requested and
 /// the study has none. Solver names are not looked up.
 Study load_study(const std::string& name_or_path, const StudyOptions& = {});
 
+/// True for protocol contact, whose scenes --seed draws.
+bool is_drawn(const Study&);
+
 /// True if the file is a study rather than a scene (has "protocol").
 bool is_study(const std::string& name_or_path);
+/// The same for a study of this protocol.
+bool is_study_of(const std::string& name_or_path, const std::string& protocol);
 
 }  // namespace clothbench

@@ -99,7 +99,7 @@ std::vector<SlidState> slide(const HeavyCapstan& c, double overhang_1, double ov
     if (!still && t > now)
       odeint::integrate_adaptive(odeint::make_controlled(1e-12, 1e-12, odeint::runge_kutta_fehlberg78<State>()), rate,
                                  x, now, t, (t - now) / 4);
-    if (!(x[0] < overhang_1)) throw Error("argument times_s: the light end has come to the cylinder");
+    if (!(x[0] < overhang_1)) throw Error("argument times_s: expected times before the light end reaches the cylinder");
     now = t;
     out.push_back({t, x[0], x[1]});
   }

@@ -16,14 +16,15 @@ constexpr double kPlace = 1e-6;  // of L: how exactly a scene must be placed
 constexpr double kHeldIncline = 1e-3,
                  kHeldCapstan = 5e-3;  // of L: creep of what holds; slipping is a hundred times as far
 
-/// The face a sheet lies on: which way is out, and how far its margin is from the sheet.
+/// The face a sheet lies on: its outward normal, and the distance of its margin from the sheet.
 struct Face {
   Vec3 normal{};
   double gap_m = std::numeric_limits<double>::infinity();
 };
 
-/// Of a box the face that has all four corners of the sheet over it, until they have moved by `way`.
-Face face_of(const Strip& s, const Collider& c, const Vec3& way) {
+/// The face of a collider under the sheet. Of a box: the face below all four corners at the start and moved by
+/// `displacement`.
+Face face_of(const Strip& s, const Collider& c, const Vec3& displacement) {
   const Cloth& cloth = s.scene.cloth;
   const auto from = [&](const Vec3& normal, const Vec3& point) {
     return Face{normal, dot(cloth.center_m - point, normal) - c.margin_m};
@@ -37,7 +38,7 @@ Face face_of(const Strip& s, const Collider& c, const Vec3& way) {
       for (int corner = 0; corner < 8; ++corner) {
         const Vec3 x = cloth.center_m + ((corner & 1) != 0 ? 0.5 : -0.5) * cloth.width_m * cloth.axis_u +
                        ((corner & 2) != 0 ? 0.5 : -0.5) * cloth.height_m * cloth.axis_v +
-                       ((corner & 4) != 0 ? 1.0 : 0.0) * way;
+                       ((corner & 4) != 0 ? 1.0 : 0.0) * displacement;
         for (std::size_t other = 0; other < 3; ++other)
           if (other != k)
             over = over && std::abs(dot(x - c.center_m, c.axes[other])) < c.half_extent_m[other] - c.margin_m;
@@ -116,21 +117,22 @@ std::function<double(const Columns&)> way_over(const Strip& s) {
   };
 }
 
-Columns draped_columns(const Strip& s, double way) {
+Columns draped_columns(const Strip& s, double displacement) {
   Columns out;
-  for (int i = 0; i <= s.links; ++i) out.push_back(draped_row(s.scene.cloth, i, s.scene.cloth.drape_offset_m + way));
+  for (int i = 0; i <= s.links; ++i)
+    out.push_back(draped_row(s.scene.cloth, i, s.scene.cloth.drape_offset_m + displacement));
   return out;
 }
 
-/// The common part of both reference cases: all that moves is one way.
-ReferenceCase over_cylinder(const Strip& s, const std::function<double(int)>& way, bool moves) {
+/// The common part of both reference cases: the displacement over the cylinder is the only unknown.
+ReferenceCase over_cylinder(const Strip& s, const std::function<double(int)>& displacement, bool moves) {
   ReferenceCase known = s.reference_case();
   known.by_quantity = true;
-  known.quantity_name = "way over the cylinder";
+  known.quantity_name = "displacement over the cylinder";
   known.quantity = way_over(s);
-  if (moves) known.quantity_scale = way(s.scene.time.frames());
+  if (moves) known.quantity_scale = displacement(s.scene.time.frames());
   // At rest exactly where the scene puts it.
-  known.columns = [s, way](int frame) { return draped_columns(s, way(frame)); };
+  known.columns = [s, displacement](int frame) { return draped_columns(s, displacement(frame)); };
   return known;
 }
 
@@ -168,14 +170,14 @@ ReferenceCase incline(const Strip& s) {
          "an initial velocity straight downhill, or none");
   const double whole = slide_distance_m(slope, most);
   face = face_of(s, collider, whole * d);
-  s.need(std::isfinite(face.gap_m), "a box that is under all of the sheet's way");
+  s.need(std::isfinite(face.gap_m), "a box that is under the whole path of the sheet");
   ReferenceCase known = s.reference_case();
   known.by_quantity = true;
-  known.quantity_name = "way along the slope";
+  known.quantity_name = "displacement along the slope";
   if (whole > 0) known.quantity_scale = whole;
-  const auto at = [s, d](double way) {
+  const auto at = [s, d](double displacement) {
     Columns out;
-    for (int i = 0; i <= s.links; ++i) out.push_back(s.start + (s.length_m * i / s.links) * s.along + way * d);
+    for (int i = 0; i <= s.links; ++i) out.push_back(s.start + (s.length_m * i / s.links) * s.along + displacement * d);
     return out;
   };
   known.columns = [s, slope, at](int frame) { return at(slide_distance_m(slope, s.time_s(frame))); };

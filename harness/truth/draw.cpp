@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <random>
 
+#include "base/dice.hpp"
 #include "clothbench/error.hpp"
 #include "scenario/change.hpp"
 #include "scenario/load.hpp"
@@ -20,34 +20,6 @@ using nlohmann::json;
 using std::numbers::pi;
 constexpr int kFewestFrames = 8;
 constexpr double kMostFrameRate_hz = 9999;
-
-/// The engine's numbers are the standard's; its distributions are each library's own.
-class Dice {
- public:
-  Dice(std::uint64_t seed, const std::string& known) {
-    std::vector<std::uint32_t> words = {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)};
-    for (const char c : known) words.push_back(static_cast<unsigned char>(c));
-    std::seed_seq sequence(words.begin(), words.end());
-    engine_.seed(sequence);
-  }
-  double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
-  double between(double low, double high) { return low + (high - low) * unit(); }
-  double log_between(double low, double high) { return low * std::pow(high / low, unit()); }
-  int whole(int low, int high) { return low + static_cast<int>(unit() * (high - low + 1)); }
-
-  /// Uniform in SO(3). Source: Shoemake, Graphics Gems III, 1992.
-  std::array<Vec3, 3> rotation() {
-    const double u = unit(), a = 2 * pi * unit(), b = 2 * pi * unit();
-    const double x = std::sqrt(1 - u) * std::sin(a), y = std::sqrt(1 - u) * std::cos(a), z = std::sqrt(u) * std::sin(b),
-                 w = std::sqrt(u) * std::cos(b);
-    return {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-             {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-             {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 class Drawing {
  public:
@@ -123,7 +95,7 @@ class Drawing {
     const Cloth& c = scene_.cloth;
     const double before =
         c.width_m / std::sqrt(*scene_.material.membrane_stiffness_N_per_m / c.areal_density_kg_per_m2);
-    // A frame for every so much of the wave's way; the format knows no more than so many a second.
+    // The wave moves by the same share of the cloth in every frame, as far as the format's greatest frame rate allows.
     const double shortest = before * rate_hz_ / kMostFrameRate_hz;
     draw_stiffness(100, std::min(1e6, density_ * std::pow(length_ / shortest, 2)));
     SceneChange paced;
@@ -138,7 +110,7 @@ class Drawing {
     }
   }
 
-  /// Gravity turns, the face stays; the box is made as long as the way.
+  /// Gravity turns, the face stays; the box is made as long as the displacement.
   void slope() {
     const Threshold* old = nullptr;
     const auto known = reference_case_of(scene_);
@@ -165,9 +137,9 @@ class Drawing {
     const double slowing = g_ * (friction * std::cos(angle) - std::sin(angle)),
                  T = j_["time"]["duration_s"].get<double>();
     if (stops) j_["time"]["duration_s"] = 1.5 * speed / slowing;
-    const double way = stops ? speed * speed / (2 * slowing) : sticks ? 0 : -0.5 * slowing * T * T;
+    const double displacement = stops ? speed * speed / (2 * slowing) : sticks ? 0 : -0.5 * slowing * T * T;
     if (face["type"] == "box")
-      for (const std::size_t k : {0u, 2u}) face["size_m"][k] = 2 * (2 * length_ + 1.5 * way);
+      for (const std::size_t k : {0u, 2u}) face["size_m"][k] = 2 * (2 * length_ + 1.5 * displacement);
   }
 
   Vec3 slope_direction() const {
@@ -257,7 +229,9 @@ class Drawing {
 
 DrawnScene draw(const Scene& scene, std::uint64_t seed) {
   if (scene.reference_case.empty())
-    throw Error(scene.source + ": --seed: the scene has no truth to evaluate at drawn parameters");
+    throw Error(scene.source +
+                ": --seed: expected a scene with \"truth\", whose parameters can be drawn; contact scenes are drawn by "
+                "`clothbench study contact --seed N`");
   reference_case_of(scene);
   return Drawing(scene, seed).draw();
 }

@@ -42,8 +42,8 @@ double over_images(const TwoHandPull& p, double x, double t, double sign, Value 
   const double half = p.length_m / 2, c = wave_speed_m_per_s(p);
   within(x, -half, half, "rest_x_m");
   double sum = 0;
-  for (double way = half; way - half <= c * t; way += p.length_m)
-    sum += value(p, t - (way - x) / c) + sign * value(p, t - (way + x) / c);
+  for (double path = half; path - half <= c * t; path += p.length_m)
+    sum += value(p, t - (path - x) / c) + sign * value(p, t - (path + x) / c);
   return sum;
 }
 

@@ -71,7 +71,7 @@ ReferenceCase pendulum(const Strip& s) {
   ReferenceCase known = s.reference_case();
   known.quantity_name = "angle from the vertical";
   known.quantity_scale = std::numbers::pi / 2;
-  // The free row's mass is all that moves: a point pendulum.
+  // Only the free row's mass moves: a point pendulum.
   const Pendulum p{s.length_m, s.g, std::numbers::pi / 2};
   known.columns = [s, p](int frame) {
     const double a = pendulum_angle_rad(p, s.time_s(frame));
@@ -253,14 +253,14 @@ ReferenceCase two_hand_pull(const Strip& s) {
   s.need_no_bending();
   s.need_damping(false);
   const TwoHandPull hands = bars_of(s);
-  const auto way = [&](std::size_t held, const Vec3& from) {
+  const auto displacement = [&](std::size_t held, const Vec3& from) {
     std::vector<double> out;
     for (const FrameMotion& m : s.scene.motion) out.push_back(dot(m.grip_position_m[held] - from, s.along));
     return out;
   };
   const std::size_t rows = static_cast<std::size_t>(s.scene.cloth.rows);
-  const auto first = way(0, s.scene.motion[0].grip_position_m[0]),
-             last = way(rows, s.scene.motion[0].grip_position_m[rows]);
+  const auto first = displacement(0, s.scene.motion[0].grip_position_m[0]),
+             last = displacement(rows, s.scene.motion[0].grip_position_m[rows]);
   ReferenceCase known = s.reference_case();
   known.by_quantity = true;
   known.speed_scale_m_per_s = hands.hand_speed_m_per_s;

@@ -6,7 +6,7 @@
 namespace clothbench::xr {
 namespace {
 
-constexpr float kPulled = 0.5f;  // half of the trigger's way
+constexpr float kPulled = 0.5f;  // half of the trigger's travel
 
 Ray ray_of(const XrPosef& p) {
   const XrQuaternionf& q = p.orientation;

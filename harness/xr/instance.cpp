@@ -119,11 +119,12 @@ void Instance::load(const std::string& runtime) {
     if (library == nullptr) throw Error(fmt::format("OpenXR runtime {}: {}", path, dlerror()), ExitCode::NoDevice);
     const auto negotiate = reinterpret_cast<NegotiateRuntime>(dlsym(library, "xrNegotiateLoaderRuntimeInterface"));
     if (negotiate == nullptr)
-      throw Error(path + ": no OpenXR runtime: it has no xrNegotiateLoaderRuntimeInterface", ExitCode::NoDevice);
+      throw Error(path + ": expected an OpenXR runtime: it has no function xrNegotiateLoaderRuntimeInterface",
+                  ExitCode::NoDevice);
     const NegotiateLoaderInfo ours;
     NegotiateRuntimeRequest theirs;
     if (XR_FAILED(negotiate(&ours, &theirs)) || theirs.get_instance_proc_addr == nullptr)
-      throw Error(path + ": this OpenXR runtime does not speak loader interface 1", ExitCode::NoDevice);
+      throw Error(path + ": expected an OpenXR runtime with loader interface 1", ExitCode::NoDevice);
     get_ = theirs.get_instance_proc_addr;
     return;
   }
@@ -140,7 +141,7 @@ void Instance::load(const std::string& runtime) {
   using InitializeLoader = XrResult(XRAPI_PTR*)(const void*);
   const auto initialize = function<InitializeLoader>("xrInitializeLoaderKHR");
   if (initialize == nullptr || XR_FAILED(initialize(&info)))
-    throw Error("the OpenXR loader does not take an Android activity (xrInitializeLoaderKHR)", ExitCode::NoDevice);
+    throw Error("the OpenXR loader does not accept an Android activity (xrInitializeLoaderKHR)", ExitCode::NoDevice);
 }
 
 void Instance::create() {
@@ -158,7 +159,7 @@ void Instance::create() {
   std::set<std::string> there;
   for (const auto& p : properties) there.insert(p.extensionName);
   if (!there.contains(XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME))
-    throw Error("the OpenXR runtime does not take Vulkan (XR_KHR_vulkan_enable2)", ExitCode::NoDevice);
+    throw Error("the OpenXR runtime does not support Vulkan (XR_KHR_vulkan_enable2)", ExitCode::NoDevice);
   enabled_ = {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
   for (const char* name : kWelcome)
     if (there.contains(name)) enabled_.insert(name);

@@ -61,7 +61,9 @@ void LiveScene::find_live(const std::string& source, Live live) {
     if ((type != "hand_capsules" && type != "hand_mesh") || !live.hands) continue;
     LiveHand hand;
     hand.collider = k;
-    hand.side = side_of_track(file_of_scene(list[k]["track"].get<std::string>(), source).value());
+    const json& track = list[k]["track"];
+    hand.side = track.is_object() ? (track["hand"] == "left" ? Side::Left : Side::Right)
+                                  : side_of_track(file_of_scene(track.get<std::string>(), source).value());
     hand.as_mesh = type == "hand_mesh";
     hand.file = std::string(assets::name_of(hand.side)) + "-hand.json";
     if (wants(hand.side))
@@ -77,7 +79,7 @@ void LiveScene::keep_tracks(const std::string& source) {
   for (const char* kind : {"colliders", "grips"}) {
     if (!document_.contains(kind)) continue;
     for (json& item : document_[kind]) {
-      if (!item.contains("track")) continue;
+      if (!item.contains("track") || item["track"].is_object()) continue;
       const fs::path from = file_of_scene(item["track"].get<std::string>(), source).value();
       if (std::any_of(hands_.begin(), hands_.end(),
                       [&](const LiveHand& h) { return &document_[kind][h.collider] == &item; }))
@@ -98,7 +100,7 @@ const Scene& LiveScene::begin(const Begin& b) {
   document_["time"] = {{"frame_rate_hz", b.frame_rate_hz}, {"duration_s", b.frames / b.frame_rate_hz}};
   for (LiveHand& h : hands_) {
     const auto side = static_cast<std::size_t>(h.side);
-    if (!b.hands[side]) throw Error(fmt::format("the {} hand is not seen", assets::name_of(h.side)));
+    if (!b.hands[side]) throw Error(fmt::format("the {} hand is not tracked", assets::name_of(h.side)));
     h.recording = {h.side, b.frame_rate_hz, b.has_capsules, {*b.hands[side]}, {}};
     if (h.as_mesh) h.recording.mesh = b.meshes[side];
     if (h.as_mesh && !h.recording.mesh) h.stand_in = assets::open_hand(assets::locate_assets(false), h.side);

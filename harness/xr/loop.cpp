@@ -215,15 +215,15 @@ class Loop {
   bool rate_settled() {
     constexpr double kTimeout_s = 1, kSame_hz = 0.5;
     if (first_frame_ == Clock::time_point{}) first_frame_ = Clock::now();
-    const double reported = session_.refresh_rate_hz();
-    return reported == 0 || std::abs(reported - o_.rate_hz) <= kSame_hz ||
+    const double rate_hz = session_.refresh_rate_hz();
+    return rate_hz == 0 || std::abs(rate_hz - o_.rate_hz) <= kSame_hz ||
            seconds(first_frame_, Clock::now()) > kTimeout_s;
   }
 
   /// As the display says, else by the runtime's prediction, which is in whole ns.
   double rate_of(const XrFrameState& state) const {
-    const double reported = session_.refresh_rate_hz();
-    return reported > 0 ? reported : std::round(1e9 / static_cast<double>(state.predictedDisplayPeriod));
+    const double rate_hz = session_.refresh_rate_hz();
+    return rate_hz > 0 ? rate_hz : std::round(1e9 / static_cast<double>(state.predictedDisplayPeriod));
   }
 
   /// The vertex shader reads a GPU solver's positions where they lie.

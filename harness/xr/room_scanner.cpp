@@ -84,7 +84,8 @@ std::optional<assets::RoomScan> RoomScanner::at(XrTime time) {
   if (room_ == XR_NULL_HANDLE) {
     if (complete_)
       throw Error(
-          "the headset knows no mesh of this room: scan it in its settings (Space Setup), and let this app see it",
+          "the headset has no mesh of this room; scan the room in the headset's settings (Space Setup) and "
+          "give this app access to the scan",
           ExitCode::CheckFailed);
     return std::nullopt;
   }

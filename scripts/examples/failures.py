@@ -3,5 +3,5 @@ from _runs import runs
 
 for name, f in runs():
     o = f["outcome"].attrs
-    if o["status"] != "ok" or str(o.get("expect", "")).startswith("fail"):
+    if o["status"] != "ok" or str(o.get("expect", "")).startswith(("fail", "broken")):  # "broken": older files
         print(f"{name}: {o['status']} ({o['class']}) {o['message']} {o.get('expect', '')}")

@@ -85,14 +85,14 @@ class Adb:
         return Stream(self._words(words))
 
     def choose(self):
-        """Settles which headset. Raises NoDevice if none is ready, BadInput if there are several or another than asked for."""
+        """Chooses the headset. Raises NoDevice if none is ready or --serial names none, BadInput if several are ready."""
         listed = formats.devices(Adb(self.program).call("devices", "-l"))
         ready = [d for d in listed if d[1] == "device"]
         if self.serial:
             state = dict((d[0], d[1]) for d in listed).get(self.serial)
             if state is None:
                 raise NoDevice(
-                    f"--serial {self.serial}: not among the devices adb sees ({', '.join(d[0] for d in listed) or 'none'})"
+                    f"--serial {self.serial}: expected one of the devices that adb finds ({', '.join(d[0] for d in listed) or 'none'})"
                 )
             if state != "device":
                 raise NoDevice(f"{self.serial} is {state}{_hint(state)}")
@@ -100,11 +100,11 @@ class Adb:
         if not ready:
             states = "; ".join(f"{d[0]} is {d[1]}{_hint(d[1])}" for d in listed)
             raise NoDevice(
-                states or "adb sees no device: plug the headset in, put it in developer mode, allow USB debugging in it"
+                states or "adb finds no device: plug the headset in, enable developer mode, and allow USB debugging"
             )
         if len(ready) > 1:
             raise BadInput(
-                "several devices: say which with --serial: " + ", ".join(f"{d[0]} ({d[2] or 'unknown'})" for d in ready)
+                "several devices are plugged in; choose one with --serial: " + ", ".join(f"{d[0]} ({d[2] or 'unknown'})" for d in ready)
             )
         self.serial = ready[0][0]
 
@@ -127,7 +127,7 @@ def _hint(state):
 
 
 class Stream:
-    """A command that goes on printing. Lines come with the host's time of their arrival."""
+    """A command that prints continuously. Each line has the host's time of its arrival."""
 
     def __init__(self, words):
         self._process = subprocess.Popen(
@@ -141,7 +141,7 @@ class Stream:
             self._lines.put((time.time(), formats.plain(raw.decode("utf-8", "replace")).rstrip("\n")))
 
     def take(self):
-        """What came since the last call."""
+        """Lines since the last call."""
         out = []
         while True:
             try:

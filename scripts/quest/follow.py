@@ -1,4 +1,4 @@
-"""Follows one run of the app: log, counters, battery, and what goes wrong meanwhile."""
+"""Follows one run of the app: log, counters, battery, and faults during the run."""
 import time
 
 from . import formats
@@ -46,7 +46,7 @@ class Follower:
         self._logcat = self._profiler = None
 
     def until_result(self, started_unix_s):
-        """Returns when the app said how it ended. Raises AppFailed, or Gone if the headset does not come back."""
+        """Returns when the app has logged its result. Raises AppFailed, or Gone if the headset does not come back."""
         missing, next_poll, end = 0, 0.0, time.monotonic() + self.options.timeout_s
         while self.result is None:
             self._take(started_unix_s)
@@ -97,12 +97,12 @@ class Follower:
         return bool(self.adb.shell(f"pidof {PACKAGE}", timeout=10, check=False).strip())
 
     def _patch(self, since):
-        """Waits for a headset that went away and goes on: the app runs on without the cable."""
-        print("  the headset does not answer; waiting for it (the app goes on without the cable)", flush=True)
+        """Waits for a headset that was unplugged, then continues. The app runs without the cable."""
+        print("  the headset does not answer; waiting for it (the app continues without the cable)", flush=True)
         self.stop_streams()
         if not self.adb.wait(self.options.wait_s):
             raise Gone(
-                f"the headset went away during the run and did not come back within {self.options.wait_s:g} s (--wait-s)"
+                f"the headset stopped answering during the run and did not answer again within {self.options.wait_s:g} s (--wait-s)"
             )
         self.gaps.append(f"the headset did not answer for {time.time() - since:.1f} s: samples are missing")
         self.start_streams()

@@ -1,4 +1,4 @@
-"""What the headset's tools print. Pure functions of text; sources in README.md."""
+"""Parsers of the output of the headset's tools: pure functions of text; sources in README.md."""
 import csv
 import io
 import re

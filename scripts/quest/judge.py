@@ -1,4 +1,4 @@
-"""Whether a run may count: clocks, heat, refresh rate and power must have stayed as they were asked for.
+"""Decides whether a run is valid: clocks, temperatures, refresh rate and power must stay at the requested values.
 
 Works on groups as samples.py makes them: {"name", "time_unix_s", "series": [{"name", "values"}]}.
 """

@@ -1,4 +1,4 @@
-"""Clock levels, refresh rate and the rest that a run changes on the headset, and their way back.
+"""Clock levels, refresh rate and other settings that a run changes on the headset, and how they are restored.
 
 Before anything is changed, what to restore is written to a file of this computer, one for each headset: a run that was
 killed, or whose headset never came back, is put right by the next start or by --restore.
@@ -68,7 +68,7 @@ class Pins:
             raise Problem(f"{name}: set to {value!r}, reads {got!r}")
 
     def restore(self, wait_s):
-        """Puts everything back, waiting `wait_s` for a headset that is not there. Raises Problem saying what is left."""
+        """Restores all settings, and waits `wait_s` for a headset that does not answer. Raises Problem with the settings that are left."""
         if not self.pending():
             return
         with open(self.file, encoding="utf-8") as text:
@@ -84,7 +84,7 @@ class Pins:
                 self._patiently(step, wait_s)
             except Gone:
                 raise Gone(
-                    f"the headset is not there to be put back as it was ({', '.join(failed + [s[0] for s in steps])}). Plug it in and run "
+                    f"the headset does not answer, so these settings are not restored ({', '.join(failed + [s[0] for s in steps])}). Plug it in and run "
                     f"quest_run.py --restore; a reboot of the headset resets the clock levels too"
                 ) from None
             except Problem as e:

@@ -2,7 +2,7 @@
 
 
 class Problem(Exception):
-    """Reported to the user as it stands."""
+    """An error whose text is shown to the user."""
 
     code = 1
 
@@ -16,4 +16,4 @@ class NoDevice(Problem):
 
 
 class Gone(NoDevice):
-    """The headset was there and answers no more: unplugged, asleep, rebooting."""
+    """The headset no longer answers: unplugged, asleep or rebooting."""

@@ -12,11 +12,12 @@ constexpr std::uint32_t kBlock = 256;
 
 }  // namespace
 
-Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth)
+Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool predicts)
     : frame_(frame),
       scene_(scene),
       block_(std::min({kBlock, frame.device()->limits().maxComputeWorkGroupInvocations,
-                       frame.device()->limits().maxComputeWorkGroupSize[0]})) {
+                       frame.device()->limits().maxComputeWorkGroupSize[0]})),
+      predicts_(predicts) {
   const FeatureSet needs = scene.needs;
   const FeatureSet serves{Feature::Stretch,   Feature::Shear,      Feature::Damping, Feature::Pins,
                           Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions};
@@ -45,6 +46,7 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth)
   if (needs.has(Feature::Damping)) s.FEATURES |= LINES_DAMPING;
   if (needs.has(Feature::Shear) || needs.has(Feature::ClothMesh)) s.FEATURES |= LINES_SHEAR;
   if (limits_speed(scene, tethers_ > 0)) s.FEATURES |= LINES_LIMIT_SPEED;
+  if (predicts_) s.FEATURES |= LINES_PREDICT;
   s.PERSISTENT = 1;
   persistent_ =
       cloth.welded.empty() && runs_at_once<ChainConstants>(frame, "chain_pass", s.by_number(), block_, all_groups());
@@ -89,14 +91,15 @@ void Chains::count_vertices() {
 
 Traffic Chains::traffic(std::size_t family) const {
   const Family& f = families_[family];
-  const double compensation = family == 0 ? 1 : 0;
-  return {16.0 * f.entries + (32 + 32 * compensation) * f.vertices + 24 * compensation * tethers_ * f.free,
-          (32 + 32 * compensation) * f.free};
+  const double compensation = family == 0 ? 1 : 0, of_start = (predicts_ ? 64 : 32) * compensation;
+  return {16.0 * f.entries + (32 + of_start) * f.vertices + 24 * compensation * tethers_ * f.free,
+          (32 + of_start) * f.free};
 }
 
-void Chains::record(int count, int substeps, double dt_s) {
+void Chains::record(int count, const TimeStep& step) {
   count_vertices();
-  auto c = step_constants<ChainConstants>(frame_, dt_s, substeps);
+  auto c = step_constants<ChainConstants>(frame_, step);
+  c.per_keep = static_cast<float>(1 / step.keep);
   c.families = static_cast<std::uint32_t>(families_.size());
   if (persistent_) {
     const vulkan::Groups groups = all_groups();
@@ -115,8 +118,12 @@ void Chains::record(int count, int substeps, double dt_s) {
       c.rounds = family.rounds;
       frame_.dispatch(*kernel_, family.entries, c, traffic(c.first_pass));
     }
-    if (weld_ != nullptr) frame_.dispatch(*weld_, welds_, welds_, {40.0 * welds_, 32.0 * welds_});
+    record_welds();
   }
+}
+
+void Chains::record_welds() {
+  if (weld_ != nullptr) frame_.dispatch(*weld_, welds_, welds_, {40.0 * welds_, 32.0 * welds_});
 }
 
 }  // namespace clothbench::pbd_gpu

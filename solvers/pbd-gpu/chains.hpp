@@ -3,6 +3,7 @@
 
 #include "chain_plan.hpp"
 #include "frame_builder.hpp"
+#include "prediction.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -12,10 +13,12 @@ namespace clothbench::pbd_gpu {
 class Chains {
  public:
   /// Adds its stages, buffers and kernels. The buffers of the state must exist.
-  Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth);
+  Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool predicts);
 
-  /// Records `count` of the `substeps` of a frame of dt_s.
-  void record(int count, int substeps, double dt_s);
+  /// Records `count` substeps, each a TimeStep.
+  void record(int count, const TimeStep&);
+  /// Puts welded vertices where those are that they are welded to; `record` ends with it.
+  void record_welds();
   bool whole_frame() const { return persistent_ && scene_.grips.vertices.empty(); }
 
  private:
@@ -30,6 +33,7 @@ class Chains {
   FrameBuilder& frame_;
   const Scene& scene_;
   const std::uint32_t block_;
+  const bool predicts_;
   std::uint32_t tethers_ = 0;
   std::vector<Family> families_;
   std::vector<ChainEntry> entries_;

@@ -71,7 +71,8 @@ const FrameKernel* FrameBuilder::add_kernel(int stage, const std::string& name, 
                                             const vulkan::Buffers& own) {
   const Shader& s = shader(name);
   const vulkan::SpirV code = count_bytes_ ? s.counted : s.code;
-  if (code.words == nullptr) throw SolverError("bytes cannot be counted: built without tests (BUILD_TESTING)");
+  if (code.words == nullptr)
+    throw SolverError("bytes cannot be counted, because this program was built without tests (BUILD_TESTING)");
   vulkan::Buffers buffers = buffers_with(own);
   if (count_bytes_) buffers[BIND_COUNTER] = counters_[static_cast<std::size_t>(stage)];
   constants.resize(std::max<std::size_t>(1, constants.size()));

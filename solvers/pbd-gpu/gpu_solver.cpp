@@ -62,22 +62,29 @@ void GpuSolver::load(const Scene& scene) {
   device_->keep_pipelines();
   upload_->record(false);
   download_->record(false);
-  record(scene.time.dt());
+  record(scene.time.dt(), scene.time.dt());
   reset();
 }
 
-void GpuSolver::record(double dt_s) {
+void GpuSolver::record(double dt_s, double last_dt_s) {
   frame_->clear();
-  count_all(dt_s);
-  for (std::size_t s = 0; s < plan_.stages.size(); ++s)
+  dt_s_ = dt_s;
+  last_dt_s_ = last_dt_s;
+  count_all();
+  for (std::size_t s = 0; s < plan_.stages.size() && last_dt_s == dt_s; ++s)  // the plan is of a frame like the last
     plan_.stages[s].dispatches = frame_->dispatches(static_cast<int>(s));
   frame_->record(settings_.value("stage_times", false));
-  dt_s_ = dt_s;
 }
 
-void GpuSolver::count_all(double dt_s) {
+/// Records the next frame unless what is recorded serves.
+void GpuSolver::prepare(double dt_s) {
+  const double last_dt_s = predicts_ ? done_dt_s_ : dt_s;
+  if (dt_s != dt_s_ || last_dt_s != last_dt_s_) record(dt_s, last_dt_s);
+}
+
+void GpuSolver::count_all() {
   for (StagePlan& s : plan_.stages) s.read_B = s.write_B = 0;
-  record_frame(dt_s);
+  record_frame(dt_s_, last_dt_s_);
 }
 
 void GpuSolver::update_inverse_masses() {
@@ -89,8 +96,10 @@ void GpuSolver::update_inverse_masses() {
   }
   // Only counts the traffic again, for free vertices have more than held ones; the commands stay as recorded.
   only_counting_ = true;
-  count_all(dt_s_);
+  count_all();
   only_counting_ = false;
+  // What was just let go has no last substep of its own.
+  done_dt_s_ = 0;
 }
 
 /// A failed call of Vulkan as the status of a step.
@@ -117,6 +126,7 @@ StepStatus GpuSolver::run(vulkan::Program& program) const {
 
 void GpuSolver::reset() {
   take_messages();
+  done_dt_s_ = 0;
   if (colliders_) colliders_->reset();
   if (grips_) {
     grips_->reset();
@@ -129,9 +139,10 @@ void GpuSolver::reset() {
 StepStatus GpuSolver::step(const FrameInput& frame) {
   take_messages();
   if (ready_ != StepStatus::Ok) return last_ = ready_;
-  if (frame.dt_s != dt_s_) record(frame.dt_s);
   if (colliders_) colliders_->write(frame.motion);
   if (grips_ && grips_->write(frame.motion)) update_inverse_masses();
+  prepare(frame.dt_s);
+  done_dt_s_ = frame.dt_s;
   return last_ = unless_timed_out(run(*frame_));
 }
 
@@ -154,6 +165,12 @@ StepStatus GpuSolver::run_frames(const std::vector<FrameInput>& frames) {
   const bool alike = std::all_of(frames.begin(), frames.end(), [&](const FrameInput& f) { return f.dt_s == dt_s_; });
   if (!alike || frames_in_flight() == 1) return ClothSolver::run_frames(frames);
   if (ready_ != StepStatus::Ok) return ready_;
+  if (predicts_ && done_dt_s_ != dt_s_ && !frames.empty()) {
+    const StepStatus status = step(frames.front());
+    if (status != StepStatus::Ok || frames.size() == 1) return status;
+    return run_frames({frames.begin() + 1, frames.end()});
+  }
+  prepare(dt_s_);
   return last_ = unless_timed_out(guarded([&] {
            frame_->need_copies(kFramesInFlight);
            for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -175,7 +192,7 @@ void GpuSolver::read_state(ClothState& state) const {
     // A lost device has no state. A loss that was not reported yet must throw here; otherwise undefined numbers would
     // count as the solver's state.
     if (last_ != StepStatus::Ok) return;
-    throw Error("solver " + info_.name + ": the device was lost, or did not answer in time, when its state was read",
+    throw Error("solver " + info_.name + ": the device was lost or timed out while its state was read",
                 ExitCode::CheckFailed);
   }
   const auto* x = static_cast<const float*>(read_position_->mapped());
@@ -187,7 +204,8 @@ void GpuSolver::read_state(ClothState& state) const {
     }
 }
 
-/// The rounding errors of compensated sums restart at 0, and contact has the sides of the scene's start.
+/// The rounding errors of compensated sums restart at 0, a prediction begins anew, and contact has the sides of the
+/// scene's start.
 bool GpuSolver::restart(const ClothState& state) {
   take_messages();
   const bool more_layers = position_->bytes() > read_position_->bytes();

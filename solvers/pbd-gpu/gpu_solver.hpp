@@ -36,6 +36,8 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   /// vec4 each, relative to `origin_m()`. The solver must be loaded.
   const vulkan::Buffer& position_buffer() const { return *position_; }
   const Vec3& origin_m() const { return origin_m_; }
+  /// What contact by planes could not do since loading; all 0 where a method has none.
+  virtual ContactFaults contact_faults() const { return {}; }
   /// The programs of set-up, a frame and reading back, for the test of the barriers.
   const vulkan::Program& upload_program() const { return *upload_; }
   const vulkan::Program& frame_program() const { return *frame_; }
@@ -47,8 +49,12 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
 
   /// Adds the buffers and kernels of this scene.
   virtual void build() = 0;
-  /// Records the dispatches and copies of a frame of `dt_s`.
-  virtual void record_frame(double dt_s) = 0;
+  /// Records the dispatches and copies of a frame of `dt_s` after one of `last_dt_s`; 0: after none, or after one that
+  /// ended with another cloth or other held vertices. `last_dt_s` is `dt_s` unless the method predicts.
+  virtual void record_frame(double dt_s, double last_dt_s) = 0;
+  /// For a method that predicts from the last substep: its frames depend on the frame before.
+  void set_predicts(bool predicts) { predicts_ = predicts; }
+  bool predicts() const { return predicts_; }
 
   /// Sets what read_state reads back: the first `vertex_count` vec4 of each buffer.
   void set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m);
@@ -59,8 +65,9 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   GripBuffer* grips() { return grips_.get(); }               ///< null where the scene has none
 
  private:
-  void record(double dt_s);
-  void count_all(double dt_s);
+  void record(double dt_s, double last_dt_s);
+  void prepare(double dt_s);
+  void count_all();
   void update_inverse_masses();
   StepStatus run(vulkan::Program& program) const;
   /// Contents of a buffer on the device, after everything submitted so far.
@@ -75,7 +82,9 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
 
   const SolverInfo info_;
   const std::shared_ptr<std::atomic<int>> messages_ = std::make_shared<std::atomic<int>>(0);
-  double dt_s_ = 0;
+  bool predicts_ = false;
+  double dt_s_ = 0, last_dt_s_ = 0;    ///< of the recorded frame, and of the one that it follows
+  double done_dt_s_ = 0;               ///< of the last frame done; 0: none that a prediction may go on from
   StepStatus ready_ = StepStatus::Ok;  ///< of the last reset
   StepStatus last_ = StepStatus::Ok;   ///< of the last reset or step
   Vec3 origin_m_{};

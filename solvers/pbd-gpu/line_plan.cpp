@@ -163,11 +163,19 @@ double substeps_for_layers(const Scene& scene) {
 
 }  // namespace
 
+bool is_tethered(const Scene& scene, const nlohmann::json& settings) {
+  return settings.value("tethers", true) &&
+         (wants_chains(scene) ? tether_table(scene).a_vertex > 0 : !tethers_of(scene).to.empty());
+}
+
+double links_of_longer_side(const Cloth& c) {
+  return c.mesh ? std::max(1.0, c.width_m / c.mesh->edge_m) : std::max(c.columns, c.rows) - 1;
+}
+
 int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   if (const int given = settings.value("substeps", 0); given > 0) return given;
   const std::string quality = settings.value("quality", "default");
-  const Cloth& c = scene.cloth;
-  const double links = c.mesh ? std::max(1.0, c.width_m / c.mesh->edge_m) : std::max(c.columns, c.rows) - 1;
+  const double links = links_of_longer_side(scene.cloth);
   struct Rule {
     double least, links_a_substep;
   };
@@ -175,8 +183,7 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   const bool touched =
       !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins, Feature::SelfCollision}))
            .empty();
-  const bool tethered = settings.value("tethers", true) &&
-                        (wants_chains(scene) ? tether_table(scene).a_vertex > 0 : !tethers_of(scene).to.empty());
+  const bool tethered = is_tethered(scene, settings);
   const auto Y = scene.material.membrane_stiffness_N_per_m;
   const bool stiff = !Y || *Y >= 1e4;
   // Substeps are counted a frame, whatever its duration: a constant in seconds would differ between scaled copies of a

@@ -38,6 +38,12 @@ double tether_stretch(const Scene&);
 /// vertices may pull it taut, so that its inextensible links are one more than its degrees of freedom, else 0.
 std::vector<std::uint8_t> taut_chains(const Scene&);
 
+/// True if tethers keep every vertex within reach of pinned ones.
+bool is_tethered(const Scene&, const nlohmann::json& settings);
+
+/// Links along the longer side; of a mesh as many as edges of its length fit.
+double links_of_longer_side(const Cloth&);
+
 /// Substeps of a frame: setting `substeps`, or if that is 0 the rule of setting `quality` (README, "Substeps").
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 

@@ -38,7 +38,7 @@ Tethers tethers_if(bool wanted, const Scene& scene) {
 
 }  // namespace
 
-Lines::Lines(FrameBuilder& frame, const Scene& scene)
+Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts)
     : frame_(frame),
       scene_(scene),
       tethers_(tethers_if(frame.settings()["tethers"].get<bool>(), scene)),
@@ -46,6 +46,7 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene)
       iterations_(frame.settings()["iterations"].get<std::uint32_t>()),
       batch_(frame.settings()["batch"].get<std::uint32_t>()),
       keep_(iterations_ > 1 && (scene.material.membrane_stiffness_N_per_m || scene.needs.has(Feature::Bend))),
+      predicts_(predicts),
       firm_(std::any_of(taut_.begin(), taut_.end(), [](std::uint8_t t) { return t != 0; })) {
   if (tethers_.to.empty()) frame_.leave_out("tethers", tethers_.why_not);
   if (!scene.needs.has(Feature::Damping)) frame_.leave_out("damping", "the scene has none");
@@ -65,13 +66,14 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene)
     add_whole(whole);
   else if (batch_ > 1)
     throw Error(
-        "solver xpbd: setting batch: takes cloths that fit one workgroup each (32 x 32 vertices, one_dispatch)");
+        "solver xpbd: setting batch: expected cloths that each fit one workgroup (32 x 32 vertices, "
+        "one_dispatch)");
   else if (!one || !add_persistent())
     add_passes();
   if (batch_ > 1 && (keep_ || !scene.grips.vertices.empty() || !scene.colliders.empty()))
     throw Error(
-        "solver xpbd: setting batch: takes no hands, no colliders, and one iteration a substep where anything is "
-        "compliant");
+        "solver xpbd: setting batch: expected a scene without hands and colliders, and one iteration per "
+        "substep if a constraint is compliant");
 }
 
 LineRequest Lines::request() const {
@@ -100,6 +102,7 @@ std::uint32_t Lines::features() const {
   if (scene_.material.membrane_stiffness_N_per_m) f |= LINES_ELASTIC;
   if (limits_speed(scene_, !tethers_.to.empty())) f |= LINES_LIMIT_SPEED;
   if (firm_) f |= LINES_FIRM;
+  if (predicts_) f |= LINES_PREDICT;
   return f;
 }
 
@@ -191,26 +194,26 @@ void Lines::add_passes() {
                                  sizeof(LineConstants), specialization(shape_[k]).by_number(), shape_[k].threads);
 }
 
-LineConstants Lines::constants(double dt_s, int substeps) const {
+LineConstants Lines::constants(double dt_s, int substeps, const TimeStep& step) const {
   const Cloth& cloth = scene_.cloth;
-  const double h = dt_s / substeps, du = cloth.du(), dv = cloth.dv();
+  const double h = step.implicit_h_s, du = cloth.du(), dv = cloth.dv();
   const auto f = [](double x) { return static_cast<float>(x); };
-  auto c = step_constants<LineConstants>(frame_, dt_s, substeps);
+  auto c = step_constants<LineConstants>(frame_, step);
   c.tether_stretch = f(tethers_.stretch);
   c.rest_u = f(du);
   c.rest_v = f(dv);
   c.rest_d = f(std::hypot(du, dv));
   if (const auto Y = scene_.material.membrane_stiffness_N_per_m) {
     const Springs k = springs(*Y, du, dv, scene_.needs.has(Feature::Shear));
-    c.alpha_u = f(1 / (k.along_u * h * h));
-    c.alpha_v = f(1 / (k.along_v * h * h));
-    if (k.diagonal > 0) c.alpha_d = f(1 / (k.diagonal * h * h));
+    c.alpha_u = f(1 / (k.along_u * h * h * step.keep));
+    c.alpha_v = f(1 / (k.along_v * h * h * step.keep));
+    if (k.diagonal > 0) c.alpha_d = f(1 / (k.diagonal * h * h * step.keep));
   }
   const double mass = cloth.areal_density_kg_per_m2 * du * dv;
   if (scene_.needs.has(Feature::Bend)) {
     const double B = scene_.material.bending_rigidity_N_m;
-    c.bend_u = f(du * du * du / (B * dv) / (h * h));
-    c.bend_v = f(dv * dv * dv / (B * du) / (h * h));
+    c.bend_u = f(du * du * du / (B * dv) / (h * h * step.keep));
+    c.bend_v = f(dv * dv * dv / (B * du) / (h * h * step.keep));
     c.bend_rounds_u = bend_rounds(static_cast<double>(c.bend_u), 4 / mass, shape_[0]);
     c.bend_rounds_v = bend_rounds(static_cast<double>(c.bend_v), 4 / mass, shape_[1]);
   }
@@ -259,15 +262,17 @@ Traffic Lines::pass_traffic(std::uint32_t pass) const {
                  32 * free};
 }
 
-/// Traffic of the rounding errors of compensated sums, in each dispatch that integrates.
+/// Traffic of the rounding errors of compensated sums, and of what a prediction goes on from, in each dispatch that
+/// integrates.
 Traffic Lines::compensated_traffic() const {
   const std::vector<float>& w = frame_.inverse_mass_now();
-  return {32.0 * static_cast<double>(w.size()),
-          32.0 * static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }))};
+  const double a_vertex_B = predicts_ ? 64 : 32;
+  return {a_vertex_B * static_cast<double>(w.size()),
+          a_vertex_B * static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }))};
 }
 
-void Lines::record(int first, int count, int substeps, double dt_s) {
-  LineConstants c = constants(dt_s, substeps);
+void Lines::record(int first, int count, int substeps, double dt_s, const TimeStep& step) {
+  LineConstants c = constants(dt_s, substeps, step);
   c.first_substep = static_cast<std::uint32_t>(first);
   c.substeps = static_cast<std::uint32_t>(count);
   const std::uint32_t passes = iterations_ * families();
@@ -278,7 +283,9 @@ void Lines::record(int first, int count, int substeps, double dt_s) {
   }
   c.passes = c.substeps * passes;
   const auto n = static_cast<double>(scene_.cloth.vertex_count());
-  Traffic t = persistent_ != nullptr ? compensated_traffic() : Traffic{64 * n * batch_, 64 * n * batch_};
+  const double a_vertex_B = predicts_ ? 96 : 64;
+  Traffic t =
+      persistent_ != nullptr ? compensated_traffic() : Traffic{a_vertex_B * n * batch_, a_vertex_B * n * batch_};
   if (whole_ != nullptr)
     t.read_B += static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count);
   for (std::uint32_t k = 0; k < passes; ++k)

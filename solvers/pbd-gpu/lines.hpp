@@ -4,6 +4,7 @@
 
 #include "frame_builder.hpp"
 #include "line_plan.hpp"
+#include "prediction.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -14,11 +15,11 @@ class Lines {
  public:
   /// Adds its stages, buffers and kernels. The buffers of the state must exist, a vec4 a vertex: positions (.w =
   /// inverse mass), velocities, and the rounding errors of both (compensated sums).
-  Lines(FrameBuilder& frame, const Scene& scene);
+  Lines(FrameBuilder& frame, const Scene& scene, bool predicts);
 
-  /// Records substeps [first, first + count) of the `substeps` of a frame of dt_s. A cloth that does not fit one
-  /// dispatch takes one substep a call.
-  void record(int first, int count, int substeps, double dt_s);
+  /// Records substeps [first, first + count) of the `substeps` of a frame of dt_s, each a TimeStep. A cloth that does
+  /// not fit one dispatch takes one substep a call.
+  void record(int first, int count, int substeps, double dt_s, const TimeStep&);
   bool whole_frame() const { return whole_ != nullptr || (persistent_ != nullptr && scene_.grips.vertices.empty()); }
   /// True if its kernels move held vertices with their hands.
   bool moves_grips() const { return whole_ != nullptr; }
@@ -42,7 +43,7 @@ class Lines {
   std::uint32_t family_of(std::uint32_t pass) const { return families() - 1 - pass % families(); }
   vulkan::Groups all_groups() const;
   std::string kernel(const char* name, bool shuffles) const;
-  LineConstants constants(double dt_s, int substeps) const;
+  LineConstants constants(double dt_s, int substeps, const TimeStep&) const;
   Constraints count(std::uint32_t family) const;
   Traffic multiplier_traffic(std::uint32_t family, std::uint32_t iteration) const;
   void record_pass(const LineConstants&);
@@ -53,6 +54,7 @@ class Lines {
   const std::vector<std::uint8_t> taut_;
   const std::uint32_t iterations_, batch_;
   const bool keep_;  ///< multipliers are kept from one iteration to the next
+  const bool predicts_;
   bool firm_ = false, keeps_links_ = false, keeps_hinges_ = false;
   const FrameKernel *whole_ = nullptr, *persistent_ = nullptr;
   std::array<const FrameKernel*, 3> pass_{};  ///< rows, columns, diagonals

@@ -125,7 +125,7 @@ class Paper final : public GpuSolver {
     if (!needs.has(Feature::DuplicatedLayer)) leave_out("second layer", "the cloth is not double-duplicated");
   }
 
-  void record_frame(double dt_s) override {
+  void record_frame(double dt_s, double) override {
     const Vec3 g = scene().gravity_m_per_s2;
     PaperConstants c{};
     c.gravity = {static_cast<float>(g[0]), static_cast<float>(g[1]), static_cast<float>(g[2]), 0};
@@ -196,7 +196,7 @@ SolverInfo paper_info() {
       {"stiffness", "0.8", "PBD's k, 0 to 1"},
       {"readback", "\"none\"", "none | blocking: copy positions and velocities to the host every frame and wait"},
       {"atomics", "\"cas\"", "cas | native: float sums by compare-and-swap, or by VK_EXT_shader_atomic_float"},
-      {"mesh_depth_m", "0.03", "a particle at most this far behind a triangle of a mesh that stands still touches it"},
+      {"mesh_depth_m", "0.03", "a particle at most this far behind a triangle of a static mesh touches it"},
       {"hand_depth_m", "0.01", "the same for the mesh of a hand"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   return info;

@@ -23,7 +23,10 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
           BIND_CLUSTER_BOXES = 24, BIND_TRIANGLES = 25, BIND_MESH_VERTICES = 26, BIND_CANDIDATES = 27,
           BIND_REACHES = 28, BIND_SIDES = 29, BIND_SAMPLE_SIDES = 30, BIND_CORRECTIONS = 31, BIND_STARTS = 32,
           BIND_BLOCKS = 33, BIND_NEAR = 34, BIND_PROPOSED = 35, BIND_PART = 36, BIND_PREDICTED = 37, BIND_DELTAS = 38,
-          BIND_CONSTRAINTS = 39, BIND_COUNTER = 40, BIND_COUNT = 41;
+          BIND_CONSTRAINTS = 39, BIND_POINT_SOURCES = 40, BIND_POINTS = 41, BIND_PIECES = 42, BIND_PIECE_BOXES = 43,
+          BIND_ELEMENTS = 44, BIND_FANS = 45, BIND_RANGES = 46, BIND_PAIRS = 47, BIND_PAIR_STATES = 48,
+          BIND_LEDGER = 49, BIND_FAULTS = 50, BIND_COUNTER = 51, BIND_LAST_POSITIONS = 52, BIND_LAST_VELOCITIES = 53,
+          BIND_COUNT = 54;
 
 // Specialization constants: C(number, type, name, default); number 0 is local_size_x.
 
@@ -50,6 +53,9 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(1, uint, PLANES, 0u) C(2, uint, SPHERES, 0u) C(3, uint, BOXES, 0u) C(4, uint, CAPSULES, 0u) \
   C(5, uint, FRICTION, 0u) C(6, uint, STANDING_CLUSTERS, 0u) C(7, uint, MOVING_CLUSTERS, 0u) C(8, uint, SAMPLES, 0u) \
   C(9, uint, MOVING, 0u) C(10, uint, LANES, 1u)
+// Plane contact of `xpbd`. PLANES: half-spaces. GRIPS: vertices that hands may hold. MOST_POINTS: of a piece.
+#define PLANE_CONTACT_CONSTANTS(C) \
+  C(1, uint, PLANES, 0u) C(2, uint, GRIPS, 0u) C(3, uint, MOST_POINTS, 3u)
 // clang-format on
 // Kernels of `paper`. NATIVE: float atomics; the count is then a float too.
 #define PAPER_CONSTANTS(C) C(1, uint, FRICTION, 0u) C(2, uint, NATIVE, 0u)
@@ -68,6 +74,7 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 CLOTHBENCH_SPECIALIZATION(LineSpecialization, LINE_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(ChainSpecialization, CHAIN_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(ContactSpecialization, CONTACT_CONSTANTS)
+CLOTHBENCH_SPECIALIZATION(PlaneContactSpecialization, PLANE_CONTACT_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(PaperSpecialization, PAPER_CONSTANTS)
 #undef CLOTHBENCH_SPECIALIZATION
 #undef CLOTHBENCH_PUT
@@ -106,18 +113,19 @@ struct PaperContactConstants {
 #define LINES_SHEAR 4u
 #define LINES_ELASTIC 8u  // links have a compliance
 #define LINES_LIMIT_SPEED 16u
-#define LINES_FIRM 32u  // chains pulled taut between two held vertices
+#define LINES_FIRM 32u     // chains pulled taut between two held vertices
+#define LINES_PREDICT 64u  // BDF2; else backward Euler
 
 /// Push constants of the line kernels of `xpbd`.
 struct LineConstants {
-  vec4 gravity_h;                // g h [m/s]
-  float h;                       // substep [s]
-  float loss;                    // 1 - exp(-c h)
+  vec4 gravity_h;                // g h keep [m/s]
+  float h;                       // implicit step, h' of TimeStep [s]
+  float loss;                    // of velocity by damping
   float speed_limit;             // [m/s]
   float tether_stretch;          // 1 + slack
   float rest_u, rest_v, rest_d;  // rest lengths of links [m]
   float alpha_u, alpha_v,
-      alpha_d;           // compliance over h^2 [1/kg] of inner links
+      alpha_d;           // compliance over h^2 keep [1/kg] of inner links
   float bend_u, bend_v;  // the same for bending
   float inverse_mass;    // of an inner vertex [1/kg]
   float regularisation;  // least ratio of alpha to inverse mass, for chains that need it
@@ -130,6 +138,7 @@ struct LineConstants {
                             // iteration and family
   uint timeout_polls;       // polls of a barrier over the whole dispatch before it times out
   float per_h;              // 1/h
+  float carry;              // share of the last substep's change that is predicted
 };
 
 /// A vertex of a chain and its link to the next entry; no link if `rest` is
@@ -156,9 +165,9 @@ struct ChainRange {
 
 /// Push constants of the chain kernel of `xpbd`.
 struct ChainConstants {
-  vec4 gravity_h;      // g h [m/s]
-  float h;             // substep [s]
-  float loss;          // 1 - exp(-c h)
+  vec4 gravity_h;      // g h keep [m/s]
+  float h;             // implicit step, h' of TimeStep [s]
+  float loss;          // of velocity by damping
   float speed_limit;   // [m/s]
   float per_h;         // 1/h
   uint first_entry;    // of the family, if a dispatch solves only one
@@ -167,6 +176,8 @@ struct ChainConstants {
   uint timeout_polls;  // polls of a barrier over the whole dispatch before it times out
   uint families;
   uint first_pass, passes;  // of this dispatch; each substep has a pass a family
+  float carry;              // share of the last substep's change that is predicted
+  float per_keep;           // 1 / keep
 };
 
 // Colliders. Lengths in metres, positions relative to the method's origin.
@@ -269,7 +280,85 @@ struct SelfConstants {
   uint unused0;
 };
 
+// Plane contact of `xpbd`: PLANES.md.
+
+/// A convex piece of a collider: the hull of `count` points, grown by `radius`.
+struct ContactPiece {
+  uint first, count;
+  float radius, margin, friction;
+  uint moves;
+  uint unused0, unused1;
+};
+
+/// A point of a piece at the frame's start and end; w unused.
+struct PiecePoint {
+  vec4 start, end;
+};
+
+/// Where a point of a moving piece comes from: vertex `index` of the moving meshes, or end `index` % 2 of capsule
+/// `index` / 2 if `capsule` is 1.
+struct PointSource {
+  uint point, index, capsule, unused0;
+};
+
+/// What is known of one pair of an element of the cloth (a triangle or a vertex) and a piece.
+struct PairState {
+  vec4 normal;   // from the piece to the cloth; w: lower bound of the pair's distance [m]
+  vec4 weights;  // of the element's vertices at its nearest point; w: dot(normal, piece's nearest point at the end)
+  vec4 way;      // of the piece's nearest point in the substep; w: distance to keep, then the plane's offset
+  vec4 push;     // proposed correction of the contact over its inverse mass; w: its part that is no velocity. Then
+                 // multipliers
+};
+
+#define PAIR_LOOKED 1u   // near enough to be asked in this substep
+#define PAIR_NEAREST 2u  // has a contact at its nearest points
+#define PAIR_PLANE 4u    // has a plane
+#define PAIR_LEVELS 4u   // reaches tried: each half of the one before
+
+/// Of the frame, on the device.
+struct ContactLedger {
+  uint pairs;     // in the list
+  float reach;    // share of the vertices' reach that the list is made for
+  float carried;  // greatest displacement of a point of any piece in the frame [m]
+  uint unused0;
+};
+
+/// Counts since loading; all are 0 unless contact failed.
+struct ContactFaults {
+  uint without_place;  // vertices that were not before all their planes at a substep's end
+  uint inside;         // pairs that touch at a substep's start
+  uint dropped;        // pairs that the list had no place for
+  uint returned;       // no fault: vertices that went back to a free place, for no nearer one was found
+};
+
+/// Push constants of the kernels of plane contact.
+struct PlaneContactConstants {
+  vec4 gravity_h;  // g h [m/s]
+  uint vertices, triangles;
+  uint capacity;        // pairs that the list has place for
+  uint pieces, groups;  // groups of PIECES_A_GROUP neighbouring pieces have a box each
+  uint first, count;    // of the items of this dispatch, where not all
+  uint before;          // 1: before the lines, with the predicted positions; 0: after them
+  uint round;           // of responses
+  float begin, end;     // of the substep, as fractions of the frame
+  float part;           // end - begin
+  float h, per_h;       // of the substep [s], [1/s]
+  float loss;           // 1 - exp(-c h)
+  float frame_s;
+  float reach_m;   // of a vertex at rest
+  float margin_m;  // greatest margin of any collider
+  uint unused0, unused1;
+};
+#define PIECES_A_GROUP 16u
+
 #ifdef __cplusplus
+static_assert(sizeof(ContactPiece) == 32);
+static_assert(sizeof(PiecePoint) == 32);
+static_assert(sizeof(PointSource) == 16);
+static_assert(sizeof(PairState) == 64);
+static_assert(sizeof(ContactLedger) == 16);
+static_assert(sizeof(ContactFaults) == 16);
+static_assert(sizeof(PlaneContactConstants) == 96);
 static_assert(sizeof(SelfConstants) == 48);
 static_assert(sizeof(MeshCluster) == 16);
 static_assert(sizeof(ClusterBox) == 32);
@@ -284,10 +373,10 @@ static_assert(sizeof(JointMatrix) == 48);
 static_assert(sizeof(GripVertex) == 48);
 static_assert(sizeof(DistanceConstraint) == 16);
 static_assert(sizeof(PaperConstants) == 48);
-static_assert(sizeof(LineConstants) == 116);
+static_assert(sizeof(LineConstants) == 120);
 static_assert(sizeof(ChainEntry) == 16);
 static_assert(sizeof(TetherEnd) == 8);
 static_assert(sizeof(ChainRange) == 16);
-static_assert(sizeof(ChainConstants) == 56);
+static_assert(sizeof(ChainConstants) == 64);
 }  // namespace clothbench::pbd_gpu
 #endif

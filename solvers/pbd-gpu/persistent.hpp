@@ -7,6 +7,7 @@
 #include "crumpled.hpp"
 #include "frame_builder.hpp"
 #include "line_plan.hpp"
+#include "prediction.hpp"
 
 // What lines and chains share: constants of a substep, and one dispatch of many workgroups that wait for one another.
 
@@ -23,15 +24,16 @@ inline TimeoutPolls timeout_polls(const vulkan::Device& d) {
 
 /// Gravity, damping, the greatest speed and the step of LineConstants or ChainConstants.
 template <class Constants>
-Constants step_constants(const FrameBuilder& frame, double dt_s, int substeps) {
+Constants step_constants(const FrameBuilder& frame, const TimeStep& step) {
   const Scene& s = frame.scene();
-  const double h = dt_s / substeps, across = std::hypot(s.cloth.width_m, s.cloth.height_m);
+  const double h = step.implicit_h_s, gain = h * step.keep, across = std::hypot(s.cloth.width_m, s.cloth.height_m);
   const Vec3 g = s.gravity_m_per_s2;
   const auto f = [](double value) { return static_cast<float>(value); };
   Constants c{};
-  c.gravity_h = {f(g[0] * h), f(g[1] * h), f(g[2] * h), 0};
+  c.gravity_h = {f(g[0] * gain), f(g[1] * gain), f(g[2] * gain), 0};
   c.h = f(h);
-  c.loss = f(-std::expm1(-s.material.damping_per_s * h));
+  c.loss = f(step.loss);
+  c.carry = f(step.carry);
   c.speed_limit = f(2 * std::sqrt(2 * norm(g) * across) + 2 * norm(s.cloth.initial_velocity_m_per_s) +
                     norm(s.cloth.spin_rad_per_s) * across);
   c.per_h = f(1 / h);
@@ -75,7 +77,7 @@ bool runs_at_once(const FrameBuilder& frame, const std::string& kernel_name, std
   std::uint32_t failed = 0;
   std::memcpy(&failed, timed_out.mapped(), 4);
   if (failed != 0 && wanted == "always")
-    throw Error("solver xpbd: setting tuning.device_barrier=always: this device does not run " +
+    throw Error("solver xpbd: setting tuning.device_barrier=always: expected a device that runs " +
                 std::to_string(groups.x * groups.y) + " workgroups of " + std::to_string(threads) + " at once");
   return failed == 0;
 }

@@ -14,13 +14,13 @@ namespace {
 constexpr std::size_t kMost = 4;  // groups of pinned vertices
 constexpr double kFlat = 1e-6;    // of the longest side
 
-struct Ways {
+struct Adjacency {
   std::vector<std::vector<std::pair<std::uint32_t, double>>>
       beside;  ///< of each vertex: neighbours and their distance at rest
 };
 
-Ways ways_of(const Scene& s) {
-  Ways w;
+Adjacency adjacency_of(const Scene& s) {
+  Adjacency w;
   w.beside.resize(s.cloth.vertex_count());
   for (const Edge& e : edges(s.cloth, EdgeKind::Structural)) {
     w.beside[e.a].emplace_back(e.b, e.rest_m);
@@ -30,7 +30,7 @@ Ways ways_of(const Scene& s) {
 }
 
 /// Connected groups of pinned vertices, largest first.
-std::vector<std::vector<std::uint32_t>> groups_of(const Scene& s, const Ways& ways) {
+std::vector<std::vector<std::uint32_t>> groups_of(const Scene& s, const Adjacency& edges) {
   std::vector<std::uint8_t> left(s.cloth.vertex_count(), 0);
   for (const std::uint32_t v : s.pins.vertices) left[v] = 1;
   std::vector<std::vector<std::uint32_t>> out;
@@ -39,7 +39,7 @@ std::vector<std::vector<std::uint32_t>> groups_of(const Scene& s, const Ways& wa
     left[seed] = 0;
     std::vector<std::uint32_t> group = {seed};
     for (std::size_t k = 0; k < group.size(); ++k)
-      for (const auto& [to, way] : ways.beside[group[k]])
+      for (const auto& [to, length] : edges.beside[group[k]])
         if (std::exchange(left[to], 0) != 0) group.push_back(to);
     out.push_back(std::move(group));
   }
@@ -81,8 +81,8 @@ bool is_convex_sheet(const ClothMesh& m) {
 /// For every vertex, the nearest vertex of a group and its distance through the cloth at rest.
 class Reach {
  public:
-  Reach(const Scene& s, const Ways& ways)
-      : scene_(s), ways_(ways), straight_(!s.cloth.mesh || is_convex_sheet(*s.cloth.mesh)) {}
+  Reach(const Scene& s, const Adjacency& edges)
+      : scene_(s), edges_(edges), straight_(!s.cloth.mesh || is_convex_sheet(*s.cloth.mesh)) {}
 
   std::vector<TetherEnd> to(const std::vector<std::uint32_t>& group) const {
     std::vector<TetherEnd> out(scene_.cloth.vertex_count(), {0, std::numeric_limits<float>::max()});
@@ -121,18 +121,18 @@ class Reach {
       const auto [d, v] = next.top();
       next.pop();
       if (d > best[v]) continue;
-      for (const auto& [to, way] : ways_.beside[v])
-        if (d + way < best[to]) {
-          best[to] = d + way;
-          out[to] = {out[v].to, static_cast<float>(d + way)};
-          next.emplace(d + way, to);
+      for (const auto& [to, length] : edges_.beside[v])
+        if (d + length < best[to]) {
+          best[to] = d + length;
+          out[to] = {out[v].to, static_cast<float>(d + length)};
+          next.emplace(d + length, to);
         }
     }
     return out;
   }
 
   const Scene& scene_;
-  const Ways& ways_;
+  const Adjacency& edges_;
   const bool straight_;
 };
 
@@ -149,10 +149,10 @@ TetherTable tether_table(const Scene& scene) {
   else if (!scene.cloth.mass_factors.empty() && scene.material.membrane_stiffness_N_per_m)
     t.why_not = "masses are scaled";
   if (!t.why_not.empty()) return t;
-  const Ways ways = ways_of(scene);
-  std::vector<std::vector<std::uint32_t>> groups = groups_of(scene, ways);
+  const Adjacency edges = adjacency_of(scene);
+  std::vector<std::vector<std::uint32_t>> groups = groups_of(scene, edges);
   if (groups.size() > kMost) groups.resize(kMost);
-  const Reach reach(scene, ways);
+  const Reach reach(scene, edges);
   const std::size_t n = scene.cloth.vertex_count();
   const double stretch = tether_stretch(scene);
   const std::vector<double> x = initial_positions(scene);
@@ -162,8 +162,8 @@ TetherTable tether_table(const Scene& scene) {
     const std::vector<TetherEnd> ends = reach.to(groups[g]);
     for (std::size_t v = 0; v < n; ++v) {
       TetherEnd e = ends[v];
-      const Vec3 way = {x[3 * v] - x[3 * e.to], x[3 * v + 1] - x[3 * e.to + 1], x[3 * v + 2] - x[3 * e.to + 2]};
-      if (e.reach >= 0 && !(norm(way) <= stretch * static_cast<double>(e.reach) + 1e-6 * scene.cloth.width_m))
+      const Vec3 offset = {x[3 * v] - x[3 * e.to], x[3 * v + 1] - x[3 * e.to + 1], x[3 * v + 2] - x[3 * e.to + 2]};
+      if (e.reach >= 0 && !(norm(offset) <= stretch * static_cast<double>(e.reach) + 1e-6 * scene.cloth.width_m))
         return {0, {}, "the cloth starts stretched"};
       e.reach *= static_cast<float>(stretch);
       t.ends[groups.size() * v + g] = e;

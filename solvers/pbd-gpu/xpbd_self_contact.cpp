@@ -26,8 +26,9 @@ std::uint32_t blocks_along(int vertices, std::uint32_t side) {
 XpbdSelfContact::XpbdSelfContact(FrameBuilder& frame, const Scene& scene, const vulkan::Buffer& positions)
     : frame_(frame), scene_(scene), x_(positions) {
   const Cloth& c = scene.cloth;
-  if (c.mesh) throw Error("solver xpbd: self-collision is of grids alone, and this cloth is a triangle mesh");
-  if (frame.settings()["batch"] != 1) throw Error("solver xpbd: setting batch: takes no self-collision");
+  if (c.mesh) throw Error("solver xpbd: self-collision: expected a cloth that is a grid, not a triangle mesh");
+  if (frame.settings()["batch"] != 1)
+    throw Error("solver xpbd: setting batch: expected a scene without self-collision");
   for (side_ = kLeastSide; blocks_ == 0 || blocks_ > kMostBlocks; side_ *= 2) {
     block_columns_ = blocks_along(c.columns, side_);
     blocks_ = block_columns_ * blocks_along(c.rows, side_);
@@ -44,7 +45,7 @@ XpbdSelfContact::XpbdSelfContact(FrameBuilder& frame, const Scene& scene, const 
   frame_.add_buffer(BIND_NEAR, "self-contact near blocks", std::uint64_t{4} * blocks_ * words_);
   // 13 slots of two vec4 a vertex: one for itself, six for its two triangles, six for its three edges.
   frame_.add_buffer(BIND_PROPOSED, "self-contact corrections", 26 * n * sizeof(vec4));
-  frame_.add_buffer(BIND_PART, "self-contact part of the way", 4);
+  frame_.add_buffer(BIND_PART, "self-contact certified part", 4);
   const auto add = [&](const char* name) { return frame_.add_kernel(stage_, name, sizeof(SelfConstants)); };
   find_blocks_ = add("self_blocks");
   find_near_ = add("self_near");

@@ -6,6 +6,8 @@
 #include "gpu_solver.hpp"
 #include "line_plan.hpp"
 #include "lines.hpp"
+#include "plane_contact.hpp"
+#include "prediction.hpp"
 #include "xpbd_contact.hpp"
 #include "xpbd_self_contact.hpp"
 
@@ -15,6 +17,8 @@ namespace {
 class Xpbd final : public GpuSolver {
  public:
   using GpuSolver::GpuSolver;
+
+  ContactFaults contact_faults() const override { return plane_contact_ ? plane_contact_->faults() : ContactFaults{}; }
 
  private:
   void build() override {
@@ -27,6 +31,8 @@ class Xpbd final : public GpuSolver {
     crumpled_ = starts_crumpled(scene());
     std::vector<double> start = initial_positions(scene());
     const bool chained = wants_chains(scene());
+    const bool planes = by_planes();
+    if (planes && !chained) override_setting("one_dispatch", false, "contact makes vertices heavier in the lines");
     const ChainCloth cloth = chained ? chain_cloth(scene()) : ChainCloth{};
     const std::vector<float> w = welded(inverse_mass_now(), cloth);
     if (crumpled_) break_symmetry(scene(), w, start);
@@ -55,13 +61,16 @@ class Xpbd final : public GpuSolver {
     set_state(x, v, origin);
     add_colliders(origin, true);
     add_grips(origin, 1);
+    add_history(position.size());
     if (chained)
-      chains_ = std::make_unique<Chains>(frame(), scene(), cloth);
+      chains_ = std::make_unique<Chains>(frame(), scene(), cloth, predicts());
     else
-      lines_ = std::make_unique<Lines>(frame(), scene());
+      lines_ = std::make_unique<Lines>(frame(), scene(), predicts());
     if (grips() != nullptr && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
     if ((scene().needs & kColliderFeatures).empty())
       leave_out("contact", "the scene has no collider");
+    else if (planes)
+      plane_contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, *colliders(), cloth.particle);
     else
       contact_ = std::make_unique<XpbdContact>(frame(), scene(), origin, *colliders(),
                                                settings()["contact_samples"].get<int>());
@@ -71,13 +80,33 @@ class Xpbd final : public GpuSolver {
       leave_out("self-contact", "the cloth of the scene does not touch itself");
   }
 
+  /// What a prediction goes on from: the state before the last substep.
+  void add_history(std::size_t particles) {
+    const Prediction prediction = prediction_of(scene(), settings());
+    set_predicts(prediction.on);
+    if (!predicts()) {
+      if (settings()["time_order"] == 2) leave_out("prediction", prediction.why_not);
+      return;
+    }
+    add_buffer(BIND_LAST_POSITIONS, "last positions", particles * sizeof(vec4));
+    add_buffer(BIND_LAST_VELOCITIES, "last velocities", particles * sizeof(vec4));
+  }
+
+  /// Whether planes hold colliders off. Self-contact moves vertices after them, across the planes.
+  bool by_planes() {
+    if (settings()[kTuning]["contact"] != "planes" || (scene().needs & kColliderFeatures).empty()) return false;
+    if (!scene().needs.has(Feature::SelfCollision)) return true;
+    leave_out("contact by planes", "the cloth of the scene touches itself");
+    return false;
+  }
+
   /// Rejects or overrides what chains do not support: several iterations with kept multipliers, batches, bending,
   /// contact between the vertices of a mesh.
   void restrict_to_chains() {
     if (scene().needs.has(Feature::Bend))
       throw Error(
           "solver xpbd: bending is of even grids alone, and this cloth is none; expected bending_rigidity_N_m 0");
-    if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: takes even grids alone");
+    if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid");
     override_setting("iterations", 1, "its links are not all alike: chains take one iteration");
     if (scene().cloth.mesh && !scene().colliders.empty())
       override_setting("contact_samples", 0, "the cloth is a triangle mesh: its vertices alone take part in contact");
@@ -93,30 +122,49 @@ class Xpbd final : public GpuSolver {
     return w;
   }
 
-  void record_frame(double dt_s) override {
-    const int substeps = xpbd_substeps(scene(), settings()) * frames_in(dt_s) *
-                         (crumpled_ && settings()["substeps"] == 0 ? kCrumpledSubsteps : 1);
+  int substeps_in(double dt_s) const {
+    return xpbd_substeps(scene(), settings()) * frames_in(dt_s) *
+           (crumpled_ && settings()["substeps"] == 0 ? kCrumpledSubsteps : 1);
+  }
+
+  TimeStep time_step_of(double dt_s, double last_dt_s) const {
+    const double last_h = last_dt_s > 0 ? last_dt_s / substeps_in(last_dt_s) : 0;
+    return time_step(predicts(), dt_s / substeps_in(dt_s), last_h, scene().material.damping_per_s);
+  }
+
+  /// Substeps [first, first + count) in as few dispatches as the kernels allow.
+  void record_lines(int first, int count, int substeps, double dt_s, const TimeStep& step) {
+    if (count == 0) return;
+    if (lines_)
+      lines_->record(first, count, substeps, dt_s, step);
+    else
+      chains_->record(count, step);
+  }
+
+  void record_frame(double dt_s, double last_dt_s) override {
+    const int substeps = substeps_in(dt_s);
+    // The first substep differs where the last frame's were of another length, or where there was none.
+    const TimeStep start = time_step_of(dt_s, last_dt_s), step = time_step_of(dt_s, dt_s);
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
     if (contact_) contact_->record_frame(dt_s, substeps);
+    if (plane_contact_) plane_contact_->record_frame(dt_s, substeps);
     if (self_contact_) self_contact_->record_frame();
-    const bool touches = contact_ || self_contact_;
-    if (lines_ && lines_->whole_frame() && !touches) {
-      lines_->record(0, substeps, substeps, dt_s);
-      return;
-    }
-    if (chains_ && chains_->whole_frame() && !touches) {
-      chains_->record(substeps, substeps, dt_s);
+    const bool touches = contact_ || plane_contact_ || self_contact_;
+    if ((lines_ ? lines_->whole_frame() : chains_->whole_frame()) && !touches) {
+      const int apart = predicts() && last_dt_s != dt_s ? 1 : 0;
+      record_lines(0, apart, substeps, dt_s, start);
+      record_lines(apart, substeps - apart, substeps, dt_s, step);
       return;
     }
     for (int s = 0; s < substeps; ++s) {
       // First, so that a released vertex is free in the whole frame.
       if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
-      if (lines_)
-        lines_->record(s, 1, substeps, dt_s);
-      else
-        chains_->record(1, substeps, dt_s);
+      if (plane_contact_) plane_contact_->record_before(s, substeps, dt_s);
+      record_lines(s, 1, substeps, dt_s, s == 0 ? start : step);
       if (contact_) contact_->record_substep(s, substeps, dt_s);
+      if (plane_contact_) plane_contact_->record_after(s, substeps, dt_s);
+      if (plane_contact_ && chains_) chains_->record_welds();
       if (self_contact_) self_contact_->record_substep(dt_s / substeps);
     }
   }
@@ -136,6 +184,7 @@ class Xpbd final : public GpuSolver {
   std::unique_ptr<Lines> lines_;    ///< if links are all alike
   std::unique_ptr<Chains> chains_;  ///< else
   std::unique_ptr<XpbdContact> contact_;
+  std::unique_ptr<PlaneContact> plane_contact_;
   std::unique_ptr<XpbdSelfContact> self_contact_;
   const FrameKernel* move_grips_ = nullptr;
 };
@@ -159,6 +208,7 @@ SolverInfo xpbd_info() {
       {"quality", "\"default\"",
        "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
       {"substeps", "0", "substeps a frame; 0: by quality"},
+      {"time_order", "1", "2: BDF2 in scenes without contact where that is safe; 1: backward Euler"},
       {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
       {"batch", "1", "number of copies of the cloth in one dispatch, to measure throughput; metrics are of the first"},
       {"contact_samples", "-1",
@@ -168,11 +218,16 @@ SolverInfo xpbd_info() {
        "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   info.tuning = {
+      {"contact", "\"samples\"",
+       "samples or planes: points on edges that search their way, or a separating plane for every pair of a triangle "
+       "and a convex piece"},
       {"contact_lanes", "0",
        "threads of the proximity query of one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
       {"device_barrier", "\"auto\"",
        "one dispatch of many workgroups that wait for one another: auto (discrete GPUs that run them all at once), "
        "always, never"},
+      {"prediction", "\"auto\"",
+       "where time_order 2 is on: auto (where it is safe), always (in every scene without contact)"},
       {"shuffles", "true", "threads of a line exchange by subgroup shuffles where lines fit a subgroup"},
       {"vertices_a_thread", "0", "of a line: 2, 4, 8, 16 or 32; 0: by line and device"},
       {"threads_a_group", "0", "of one family's workgroups: 32 to 1024; 0: by line and device"},
@@ -185,6 +240,7 @@ SolverInfo xpbd_info() {
 std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes) {
   require_between("xpbd", settings, "substeps", 0, 4096);
   require_one_of("xpbd", settings, "quality", {"fast", "default", "accurate"});
+  require_between("xpbd", settings, "time_order", 1, 2);
   require_between("xpbd", settings, "batch", 1, 262144);
   require_between("xpbd", settings, "iterations", 1, 4096);
   require_between("xpbd", settings, "contact_samples", -1, 16);
@@ -192,19 +248,26 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", tuning, "vertices_a_thread", {0, 2, 4, 8, 16, 32});
   require_one_of("xpbd", tuning, "threads_a_group", {0, 32, 64, 128, 256, 512, 1024});
   require_one_of("xpbd", tuning, "device_barrier", {"auto", "always", "never"});
+  require_one_of("xpbd", tuning, "prediction", {"auto", "always"});
+  require_one_of("xpbd", tuning, "contact", {"samples", "planes"});
   require_one_of("xpbd", tuning, "contact_lanes", {0, 1, 2, 4, 8, 16});
   return std::make_unique<Xpbd>(xpbd_info(), settings, device, count_bytes);
 }
 
-/// v <- v + g h - (1 - e^{-c h}) v, x <- x + h v, every substep.
+/// The prediction alone, every substep: without forces inside the cloth it is the whole step.
 double xpbd_free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
   const int substeps = xpbd_substeps(scene, settings);
   const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1];
-  const double loss = scene.needs.has(Feature::Damping) ? -std::expm1(-scene.material.damping_per_s * h) : 0;
-  double v = scene.cloth.initial_velocity_m_per_s[1], x = 0;
+  const double damping = scene.needs.has(Feature::Damping) ? scene.material.damping_per_s : 0;
+  const bool predicts = prediction_of(scene, settings).on;
+  double v = scene.cloth.initial_velocity_m_per_s[1], x = 0, last_v = v, last_x = x;
   for (long i = 0; i < static_cast<long>(frames) * substeps; ++i) {
-    v += g * h - loss * v;
-    x += v * h;
+    const TimeStep step = time_step(predicts, h, i > 0 ? h : 0, damping);
+    const double from_v = v + step.carry * (v - last_v), from_x = x + step.carry * (x - last_x);
+    last_v = v;
+    last_x = x;
+    v = from_v + step.keep * g * step.implicit_h_s - step.loss * from_v;
+    x = from_x + v * step.implicit_h_s;
   }
   return x;
 }

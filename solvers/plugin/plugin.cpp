@@ -16,6 +16,7 @@
 #include <memory>
 #include <sstream>
 
+#include "base/plugin_environment.hpp"
 #include "clothbench/error.hpp"
 #include "plugin/plugin_solver.hpp"
 
@@ -24,7 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kVariable[] = "CLOTHBENCH_PLUGINS";
 constexpr char kSymbol[] = "clothbench_plugin";
 using Entrance = const ClothbenchPlugin* (*)();
 
@@ -35,6 +35,10 @@ using Entrance = const ClothbenchPlugin* (*)();
 
 /// What the first header of version 1 had of ClothbenchPlugin. Libraries built with it have nothing beyond.
 constexpr std::size_t kFirstSize = offsetof(ClothbenchPlugin, contact_margin_m);
+/// What the first header of version 2 has. Everything up to `unsupported` is version 1.
+constexpr std::size_t kSecondSize = offsetof(ClothbenchPlugin, finish) + sizeof(ClothbenchPlugin::finish);
+constexpr std::size_t kEndOfFirst = offsetof(ClothbenchPlugin, unsupported);
+constexpr char kStageTimes[] = "stage_times";
 
 struct Loaded {
   std::string path;
@@ -52,9 +56,9 @@ Entrance entrance(void* library) { return reinterpret_cast<Entrance>(dlsym(libra
 [[noreturn]] void refuse(const std::string& path, const std::string& what) { throw Error(path + ": " + what); }
 
 void check_sizes(const std::string& path, const ClothbenchPlugin& c) {
-  if (c.version != CLOTHBENCH_PLUGIN_VERSION)
-    refuse(path, fmt::format("it was built for version {} of clothbench_plugin.h, this program speaks {}", c.version,
-                             CLOTHBENCH_PLUGIN_VERSION));
+  if (c.version < 1 || c.version > CLOTHBENCH_PLUGIN_VERSION)
+    refuse(path, fmt::format("it was built for version {} of clothbench_plugin.h; this program expects version 1 or {}",
+                             c.version, CLOTHBENCH_PLUGIN_VERSION));
   struct Size {
     const char* what;
     std::uint32_t theirs;
@@ -69,36 +73,14 @@ void check_sizes(const std::string& path, const ClothbenchPlugin& c) {
                         Size{"ClothbenchSetting", c.setting_size, sizeof(ClothbenchSetting), true},
                         Size{"ClothbenchStage", c.stage_size, sizeof(ClothbenchStage), true}})
     if (s.exact ? s.theirs != s.ours : s.theirs > s.ours || s.theirs == 0)
-      refuse(path, fmt::format("its {} has {} bytes, here it has {}: it was built with another clothbench_plugin.h",
+      refuse(path, fmt::format("its {} has {} bytes: expected {}; it was built with another clothbench_plugin.h",
                                s.what, s.theirs, s.ours));
-  if (c.plugin_size < kFirstSize)
-    refuse(path, fmt::format("its ClothbenchPlugin has {} bytes, at least {} are expected", c.plugin_size, kFirstSize));
+  const std::size_t least = c.version == 1 ? kFirstSize : kSecondSize;
+  if (c.plugin_size < least)
+    refuse(path, fmt::format("its ClothbenchPlugin has {} bytes: expected at least {}", c.plugin_size, least));
 }
 
-void check_description(const std::string& path, const ClothbenchPlugin& c) {
-  const std::string name = c.name != nullptr ? c.name : "";
-  if (name.empty() ||
-      name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-") != std::string::npos)
-    refuse(path, "name: expected letters, digits, . _ -; found \"" + name + "\"");
-  for (const SolverEntry& e : solvers())
-    if (e.info.name == name) refuse(path, "name: \"" + name + "\" is a solver of clothbench");
-  for (const auto& [what, text] :
-       {std::pair{"summary", c.summary}, {"solver_version", c.solver_version}, {"precision", c.precision}})
-    if (text == nullptr || *text == '\0') refuse(path, fmt::format("{}: expected a text", what));
-  if (std::string(c.precision) != "float32" && std::string(c.precision) != "float64")
-    refuse(path, "precision: expected float32 or float64");
-  if (((c.supports | c.ignores) >> kFeatureCount) != 0)
-    refuse(path, "supports, ignores: there are bits that stand for no feature");
-  if ((c.supports & c.ignores) != 0) refuse(path, "supports, ignores: a feature is either served or ignored");
-  if (c.time_order < 1) refuse(path, "time_order: expected 1 or more");
-  for (const auto& [what, there] : {std::pair{"create", c.create != nullptr},
-                                    {"destroy", c.destroy != nullptr},
-                                    {"restart or reset", c.restart != nullptr || c.reset != nullptr},
-                                    {"step", c.step != nullptr},
-                                    {"read_state", c.read_state != nullptr},
-                                    {"stages", c.stages != nullptr},
-                                    {"settings", c.settings != nullptr || c.setting_count == 0}})
-    if (!there) refuse(path, fmt::format("{}: missing", what));
+void check_settings(const std::string& path, const ClothbenchPlugin& c) {
   for (std::uint32_t k = 0; k < c.setting_count; ++k) {
     const ClothbenchSetting& s = c.settings[k];
     if (s.name == nullptr || *s.name == '\0' || s.doc == nullptr)
@@ -109,12 +91,55 @@ void check_description(const std::string& path, const ClothbenchPlugin& c) {
   }
 }
 
+/// Functions that are only of use together.
+void check_second(const std::string& path, const ClothbenchPlugin& c) {
+  const int in_flight = (c.frames_in_flight != nullptr) + (c.submit != nullptr) + (c.finish != nullptr);
+  if (in_flight % 3 != 0) refuse(path, "frames_in_flight, submit, finish: expected all three or none");
+  if (c.stage_device_s == nullptr) return;
+  if (c.device_s == nullptr) refuse(path, "stage_device_s: expected device_s too");
+  const auto* end = c.settings + c.setting_count;
+  if (std::none_of(c.settings, end, [](const ClothbenchSetting& s) {
+        return std::string(s.name) == kStageTimes && s.integer != 0 && s.default_value == 0;
+      }))
+    refuse(path, fmt::format("stage_device_s: expected a setting {}, a whole number with default 0", kStageTimes));
+}
+
+void check_description(const std::string& path, const ClothbenchPlugin& c) {
+  const std::string name = c.name != nullptr ? c.name : "";
+  if (name.empty() ||
+      name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-") != std::string::npos)
+    refuse(path, "name: expected letters, digits, . _ -; found \"" + name + "\"");
+  for (const SolverEntry& e : solvers())
+    if (e.info.name == name)
+      refuse(path, "name: \"" + name + "\" is already a solver of clothbench; expected another name");
+  for (const auto& [what, text] :
+       {std::pair{"summary", c.summary}, {"solver_version", c.solver_version}, {"precision", c.precision}})
+    if (text == nullptr || *text == '\0') refuse(path, fmt::format("{}: expected a text", what));
+  if (std::string(c.precision) != "float32" && std::string(c.precision) != "float64")
+    refuse(path, "precision: expected float32 or float64");
+  if (((c.supports | c.ignores) >> kFeatureCount) != 0)
+    refuse(path, "supports, ignores: expected bits of known features only");
+  if ((c.supports & c.ignores) != 0) refuse(path, "supports, ignores: expected each feature in one of them only");
+  if (c.time_order < 1) refuse(path, "time_order: expected 1 or more");
+  for (const auto& [what, there] :
+       {std::pair{"create", c.create != nullptr},
+        {"destroy", c.destroy != nullptr},
+        {"restart, restart_at or reset", c.restart != nullptr || c.restart_at != nullptr || c.reset != nullptr},
+        {"step", c.step != nullptr},
+        {"read_state", c.read_state != nullptr},
+        {"stages", c.stages != nullptr},
+        {"settings", c.settings != nullptr || c.setting_count == 0}})
+    if (!there) refuse(path, fmt::format("{}: missing", what));
+  check_settings(path, c);
+  check_second(path, c);
+}
+
 /// As this program's header has it: what an older library does not have is NULL.
 ClothbenchPlugin checked(const std::string& path, const ClothbenchPlugin* given) {
   if (given == nullptr) refuse(path, fmt::format("{} returns nothing", kSymbol));
   check_sizes(path, *given);
   ClothbenchPlugin c{};
-  std::memcpy(&c, given, std::min<std::size_t>(given->plugin_size, sizeof c));
+  std::memcpy(&c, given, std::min<std::size_t>(given->plugin_size, given->version == 1 ? kEndOfFirst : sizeof c));
   check_description(path, c);
   return c;
 }
@@ -190,10 +215,10 @@ SolverEntry entry_of(const std::string& path, const ClothbenchPlugin& c) {
 
 /// For processes started from this one.
 void remember(const std::string& path) {
-  const char* before = std::getenv(kVariable);
+  const char* before = std::getenv(kPluginsVariable);
   const std::string all = before != nullptr ? before : "";
   if ((":" + all + ":").find(":" + path + ":") == std::string::npos)
-    setenv(kVariable, (all.empty() ? path : all + ":" + path).c_str(), 1);
+    setenv(kPluginsVariable, (all.empty() ? path : all + ":" + path).c_str(), 1);
 }
 
 }  // namespace
@@ -207,16 +232,16 @@ const SolverEntry& load(const std::string& given) {
   const std::string path = file.string();
   for (const Loaded& l : loaded())
     if (l.path == path) return l.entry;
-  probe(path);
+  if (!plugins_in_process()) probe(path);
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) refuse(path, fmt::format("cannot be loaded: {}", dlerror()));
   const Entrance enter = entrance(library);
-  if (enter == nullptr) refuse(path, fmt::format("has no function {}: it is no plugin of clothbench", kSymbol));
+  if (enter == nullptr) refuse(path, fmt::format("has no function {}: expected a plugin of clothbench", kSymbol));
   const ClothbenchPlugin* c = enter();
   auto plugin = std::make_unique<const ClothbenchPlugin>(checked(path, c));
   for (const Loaded& l : loaded())
     if (l.entry.info.name == plugin->name)
-      refuse(path, fmt::format("name: \"{}\" is already that of {}", plugin->name, l.path));
+      refuse(path, fmt::format("name: \"{}\" is already the name of {}; expected another", plugin->name, l.path));
   SolverEntry entry = entry_of(path, *plugin);
   loaded().push_back({path, std::move(plugin), std::move(entry)});
   remember(path);
@@ -230,7 +255,7 @@ const SolverEntry* find(const std::string& name) {
     return nullptr;
   };
   if (const SolverEntry* e = among()) return e;
-  const char* listed = std::getenv(kVariable);
+  const char* listed = std::getenv(kPluginsVariable);
   std::istringstream paths(listed != nullptr ? listed : "");
   for (std::string path; std::getline(paths, path, ':');)
     if (!path.empty()) load(path);

@@ -1,6 +1,7 @@
 #include "plugin/scene_view.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace clothbench::plugin {
@@ -22,15 +23,27 @@ void copy(double (&to)[N], const From& from) {
   std::copy(std::begin(from), std::end(from), to);
 }
 
+/// Whether one of the points, x y z each, moved by more than `distance_m`.
+bool moved(const double* before, const double* now, std::size_t points, double distance_m) {
+  for (const double *a = before, *b = now; points > 0; --points, a += 3, b += 3)
+    if (!(std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) <= distance_m)) return true;
+  return false;
+}
+
 }  // namespace
 
-SceneView::SceneView(const Scene& s)
-    : scene_(s), position_(initial_positions(s)), velocity_(initial_velocities(s)), mass_(vertex_masses(s)) {
+SceneView::SceneView(const Scene& s, std::uint32_t version)
+    : scene_(s),
+      second_(version >= 2),
+      position_(initial_positions(s)),
+      velocity_(initial_velocities(s)),
+      mass_(vertex_masses(s)) {
   for (const auto& t : clothbench::triangles(s.cloth)) triangles_.insert(triangles_.end(), t.begin(), t.end());
   add_edges(EdgeKind::Structural, structural_);
   if (s.needs.has(Feature::Shear)) add_edges(EdgeKind::Shear, shear_);
   if (s.needs.has(Feature::Bend)) add_edges(EdgeKind::SkipOne, skip_);
   add_colliders();
+  if (second_) add_rest_shape();
   ClothbenchScene& v = view_;
   v.struct_size = sizeof v;
   s.needs.for_each([&](Feature f) { v.needs |= 1u << static_cast<unsigned>(f); });
@@ -60,7 +73,7 @@ SceneView::SceneView(const Scene& s)
   show(s.pins.vertices, v.pins, v.pin_count);
   show(s.grips.vertices, v.grips, v.grip_count);
   show(colliders_, v.colliders, v.collider_count);
-  v.poses = start_poses_.data();
+  v.poses = start_.poses.data();
   v.self_thickness_m = s.cloth.self_collision.thickness_m;
   v.self_friction = s.cloth.self_collision.friction;
 }
@@ -96,40 +109,104 @@ void SceneView::add_colliders() {
     }
     colliders_.push_back(v);
   }
-  poses_.resize(colliders_.size());
-  vertices_.resize(colliders_.size());
-  pose(scene_.motion.empty() ? nullptr : &scene_.motion.front());
-  start_vertices_ = vertices_;
-  start_poses_ = poses_;
-  for (std::size_t k = 0; k < poses_.size(); ++k)
-    if (!start_vertices_[k].empty()) start_poses_[k].vertices_m = start_vertices_[k].data();
+  pose(scene_.motion.empty() ? nullptr : &scene_.motion.front(), start_);
 }
 
-void SceneView::pose(const FrameMotion* motion) {
+void SceneView::add_rest_shape() {
+  const RestShape& r = rest_.emplace(scene_);
+  view_.rest_position_m = r.position_m.data();
+  view_.pattern_m = r.pattern_m.empty() ? nullptr : r.pattern_m.data();
+  view_.triangle_neighbours = r.neighbours.data();
+  view_.poisson_ratio = r.poisson_ratio;
+  view_.structural_spring_N_per_m = r.structural_N_per_m.data();
+  view_.shear_spring_N_per_m = r.shear_N_per_m.data();
+}
+
+void SceneView::pose(const FrameMotion* motion, Posed& out) const {
+  out.poses.resize(colliders_.size());
+  out.vertices.resize(colliders_.size());
   for (std::size_t k = 0; k < scene_.colliders.size(); ++k) {
     const Collider& c = scene_.colliders[k];
     const ColliderPose* now = motion != nullptr && k < motion->colliders.size() ? &motion->colliders[k] : nullptr;
     const std::vector<Capsule>& capsules = now != nullptr && !now->capsules.empty() ? now->capsules : c.capsules;
-    poses_[k].capsules = capsules.empty() ? nullptr : capsules.front().a_m.data();
+    out.poses[k].capsules = capsules.empty() ? nullptr : capsules.front().a_m.data();
     if (!c.mesh) continue;
-    if (c.mesh->skinned() && now != nullptr) vertices_[k] = posed_positions(*c.mesh, *now);
-    poses_[k].vertices_m = c.mesh->skinned() && now != nullptr ? vertices_[k].data() : c.mesh->positions.data();
+    if (c.mesh->skinned() && now != nullptr) out.vertices[k] = posed_positions(*c.mesh, *now);
+    out.poses[k].vertices_m = c.mesh->skinned() && now != nullptr ? out.vertices[k].data() : c.mesh->positions.data();
   }
 }
 
+/// Poses at the end of the frame before; must be called before `now_` is overwritten. In a run those are at hand.
+const SceneView::Posed& SceneView::pose_before(const FrameInput& in) {
+  if (in.index <= 0) return start_;
+  std::swap(before_, now_);
+  if (posed_ != in.index - 1) pose(scene_.motion_after(in.index - 1), before_);
+  return before_;
+}
+
+void SceneView::show_before(const FrameInput& in) {
+  const FrameMotion* before = in.index > 0 ? scene_.motion_after(in.index - 1) : &scene_.motion.front();
+  if (before->grip_position_m.empty()) return;
+  frame_.grip_position_before_m = before->grip_position_m.front().data();
+  frame_.grip_held_before = before->grip_held.data();
+}
+
+void SceneView::mark_teleports(const FrameInput& in) {
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const Jump& j : scene_.jumps)
+    if (j.frame == in.index + 1) least_m = std::min(least_m, j.distance_m / 2);
+  if (std::isinf(least_m)) return;
+  collider_teleports_.assign(colliders_.size(), 0);
+  grip_teleports_.assign(scene_.grips.vertices.size(), 0);
+  for (std::size_t k = 0; k < colliders_.size(); ++k) {
+    const ClothbenchPose &a = frame_.poses_before[k], &b = frame_.poses[k];
+    bool any = false;
+    for (std::size_t c = 0; c < colliders_[k].capsule_count; ++c)
+      any = any || moved(a.capsules + 7 * c, b.capsules + 7 * c, 2, least_m);
+    if (any || moved(a.vertices_m, b.vertices_m, colliders_[k].vertex_count, least_m)) collider_teleports_[k] = 1;
+  }
+  for (std::size_t g = 0; g < grip_teleports_.size() && frame_.grip_position_before_m != nullptr; ++g)
+    grip_teleports_[g] = moved(frame_.grip_position_before_m + 3 * g, frame_.grip_position_m + 3 * g, 1, least_m);
+  frame_.collider_teleports = collider_teleports_.data();
+  frame_.grip_teleports = grip_teleports_.data();
+}
+
 const ClothbenchFrame* SceneView::frame(const FrameInput& in) {
-  if (in.motion != nullptr) pose(in.motion);
   frame_ = {};
   frame_.struct_size = sizeof frame_;
   frame_.index = in.index;
   frame_.time_s = in.time_s;
   frame_.dt_s = in.dt_s;
-  frame_.poses = poses_.data();
-  if (in.motion != nullptr && !in.motion->grip_position_m.empty()) {
+  frame_.poses = start_.poses.data();
+  if (second_) frame_.poses_before = start_.poses.data();
+  if (in.motion == nullptr) return &frame_;
+  if (second_) {
+    frame_.poses_before = pose_before(in).poses.data();
+    show_before(in);
+  }
+  pose(in.motion, now_);
+  posed_ = in.index;
+  frame_.poses = now_.poses.data();
+  if (!in.motion->grip_position_m.empty()) {
     frame_.grip_position_m = in.motion->grip_position_m.front().data();
     frame_.grip_held = in.motion->grip_held.data();
   }
+  if (second_ && !scene_.jumps.empty()) mark_teleports(in);
   return &frame_;
+}
+
+const ClothbenchRestart* SceneView::restart(const ClothState& state, const FrameInput& last) {
+  restart_ = {last.index, last.time_s, state.position.data(), state.velocity.data(), start_.poses.data(),
+              nullptr,    nullptr};
+  const FrameMotion* motion = last.index < 0 && !scene_.motion.empty() ? &scene_.motion.front() : last.motion;
+  if (motion == nullptr) return &restart_;
+  pose(motion, now_);
+  posed_ = last.index;
+  restart_.poses = now_.poses.data();
+  if (motion->grip_position_m.empty()) return &restart_;
+  restart_.grip_position_m = motion->grip_position_m.front().data();
+  restart_.grip_held = motion->grip_held.data();
+  return &restart_;
 }
 
 }  // namespace clothbench::plugin

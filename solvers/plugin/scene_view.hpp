@@ -1,36 +1,56 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "clothbench/scene.hpp"
 #include "clothbench/solver.hpp"
 #include "clothbench_plugin.h"
+#include "plugin/rest_shape.hpp"
 
 namespace clothbench::plugin {
 
 /// A scene in the structs of the C interface. The scene must outlive the view and stay at its address.
 class SceneView {
  public:
-  explicit SceneView(const Scene&);
+  /// `version`: that of the plugin. What version 1 lacks is neither made nor shown.
+  SceneView(const Scene&, std::uint32_t version);
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
   const ClothbenchScene* scene() const { return &view_; }
-  /// The frame's end; valid until the next call. Skins moving meshes, which counts as solver time as in all solvers.
+  /// The frame's end; valid until the next call of `frame` or `restart`. Skins moving meshes, which counts as solver
+  /// time as in all solvers.
   const ClothbenchFrame* frame(const FrameInput&);
+  /// The state at the end of frame `last`; valid as above and while `state` is unchanged.
+  const ClothbenchRestart* restart(const ClothState& state, const FrameInput& last);
 
  private:
+  /// Poses of all colliders at one instant, with the memory that they point to.
+  struct Posed {
+    std::vector<ClothbenchPose> poses;
+    std::vector<std::vector<double>> vertices;  ///< of skinned meshes, one a collider
+  };
+
   void add_colliders();
   void add_edges(EdgeKind, std::vector<ClothbenchEdge>&);
-  void pose(const FrameMotion*);
+  void add_rest_shape();
+  void pose(const FrameMotion*, Posed&) const;
+  const Posed& pose_before(const FrameInput&);
+  void show_before(const FrameInput&);
+  void mark_teleports(const FrameInput&);
 
   const Scene& scene_;
+  const bool second_;  ///< version 2
   ClothbenchScene view_{};
   ClothbenchFrame frame_{};
+  ClothbenchRestart restart_{};
   std::vector<double> position_, velocity_, mass_;
   std::vector<std::uint32_t> triangles_;
   std::vector<ClothbenchEdge> structural_, shear_, skip_;
+  std::optional<RestShape> rest_;
   std::vector<ClothbenchCollider> colliders_;
-  std::vector<ClothbenchPose> start_poses_, poses_;
-  std::vector<std::vector<double>> start_vertices_, vertices_;  ///< of meshes, one a collider
+  Posed start_, now_, before_;
+  int posed_ = -1;  ///< index of the frame that `now_` is the end of; -1: none
+  std::vector<std::uint8_t> collider_teleports_, grip_teleports_;
 };
 
 }  // namespace clothbench::plugin

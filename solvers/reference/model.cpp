@@ -45,7 +45,7 @@ Model::Model(const Scene& scene) : mass_(vertex_masses(scene)) {
   gravity_ = Eigen::Vector3d::Map(scene.gravity_m_per_s2.data());
   for (const StiffnessRegion& r : scene.material.regions)
     if (inextensible_ != !r.membrane_stiffness_N_per_m)
-      throw Error("solver reference: regions of the material: expected all of them inextensible, or none");
+      throw Error("solver reference: /material/regions: expected all regions inextensible, or none");
   const auto add = [&](EdgeKind kind) {
     for (const Edge& e : edges(c, kind)) {
       double of_edge = inextensible_ ? 1 : stiffness(scene, e);

@@ -60,7 +60,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"not_a_scene", "\"scene\"", "\"anchor\"", "/type", "scene"},
         Bad{"version", "\"version\": 1", "\"version\": 2", "/version", "1 is understood"},
         Bad{"no_version", "\"version\": 1, ", "", "/", "\"version\" is missing"},
-        Bad{"no_mesh", "triangleMesh_META", "triangleMesh", "/spatialEntities", "no entity has triangleMesh_META"},
+        Bad{"no_mesh", "triangleMesh_META", "triangleMesh", "/spatialEntities",
+            "expected an entity with triangleMesh_META"},
         Bad{"cut_base64", kVertices.c_str(), kVertices + "AA", "/spatialEntities/1/triangleMesh_META/vertices",
             "multiple of 4"},
         Bad{"alphabet", kVertices.c_str(), kVertices + "AA*A", "/spatialEntities/1/triangleMesh_META/vertices",
@@ -149,7 +150,7 @@ TEST(Glb, WrongJsonIsAnError) {
     std::string from, to, says;
   };
   for (const Edit& e : {Edit{"\"ring-finger-tip\"", "\"ring-finger-top\"", "not a WebXR hand joint"},
-                        Edit{"\"count\":1360", "\"count\":9999", "beyond its buffer view"},
+                        Edit{"\"count\":1360", "\"count\":9999", "no more than its buffer view holds"},
                         Edit{"\"WEIGHTS_0\"", "\"WEIGHTS_9\"", "\"WEIGHTS_0\" is missing"},
                         Edit{"\"bufferView\":4", "\"bufferView\":9", "edited.glb: "},
                         Edit{"\"inverseBindMatrices\":6", "\"inverseBindMatrices\":0", "/accessors/0"}}) {

@@ -164,7 +164,7 @@ TEST_P(Bullet, IsPushedByAMovingMeshAndByCapsules) {
   }
 }
 
-/// Mean way along a slope of 30 degrees in 0.4 s.
+/// Mean displacement along a slope of 30 degrees in 0.4 s.
 double slide_m(const std::string& solver, double friction) {
   const double c = std::cos(std::numbers::pi / 6), d = std::sin(std::numbers::pi / 6);
   Scene s = with_collider(sheet(9, 9, 0.3, 0.3), plane({d, c, 0}), friction);

@@ -93,13 +93,13 @@ TEST_F(BaselineFile, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(with_change("/format", "clothbench-run").find("/format"), std::string::npos);
   EXPECT_NE(with_change("/format_version", 2).find("/format_version"), std::string::npos);
   EXPECT_NE(with_change("/runs", json::array()).find("/runs"), std::string::npos) << "nothing to hold results to";
-  EXPECT_NE(with_change("/runs/1", good["runs"][0]).find("/runs/1: this run stands twice"), std::string::npos);
+  EXPECT_NE(with_change("/runs/1", good["runs"][0]).find("/runs/1: this run occurs twice"), std::string::npos);
   json bad = good;
   bad["runs"][1].erase("scalars");
   EXPECT_NE(fault(bad.dump()).find("/runs/1: \"scalars\" is missing"), std::string::npos);
   EXPECT_NE(fault("{\n \"format\": NaN}").find("line 2"), std::string::npos);
   EXPECT_NE(fault("").find("empty"), std::string::npos);
-  EXPECT_NE(fault(R"({"format":1,"format":2})").find("stands twice"), std::string::npos);
+  EXPECT_NE(fault(R"({"format":1,"format":2})").find("occurs twice"), std::string::npos);
   EXPECT_NE(fault("[]"), "no error");
 }
 

@@ -205,8 +205,11 @@ TEST_F(CheckCommand, HoldsARealStudyOfASolverThatTheStudyDoesNotName) {
   EXPECT_EQ(command(arguments), 1) << text_;
   changed["runs"][0]["scenario_sha256"] = "0";
   std::ofstream(baseline()) << changed.dump();
-  EXPECT_EQ(command(arguments), 1);
-  EXPECT_NE(text_.find("the scene changed"), std::string::npos) << text_;
+  EXPECT_EQ(command(arguments), 2);
+  EXPECT_NE(text_.find("another version of the scene"), std::string::npos) << text_;
+  EXPECT_NE(text_.find("--update"), std::string::npos) << text_;
+  ASSERT_EQ(command(arguments + " --update"), 0) << text_;
+  EXPECT_EQ(command(arguments), 0) << text_;
 }
 
 }  // namespace

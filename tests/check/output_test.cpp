@@ -83,7 +83,7 @@ TEST(Console, ShowsWhatDiffersAndAVerdict) {
   fine.runs.push_back({{"desk", "good", "default", ""}, {}});
   fine.other_assets = 2;
   EXPECT_EQ(check_text(fine, "b.json"),
-            "check passed: 1 run: 0 failed, 0 improved, 0 new, 1 as in b.json; 2 runs more of the baseline stand for "
+            "check passed: 1 run: 0 failed, 0 improved, 0 new, 1 as in b.json; 2 runs more in the baseline are for "
             "other assets\n");
 }
 

@@ -114,6 +114,7 @@ class Console(unittest.TestCase):
             "bench": ["--benchmark_filter=gravity-8-single/ballistic"],
             "render": [self.out, "--run", "ballistic", "--frames", "0", "--size", "200x200", "-o", self.out + "-pictures"],
             "completion": ["bash"],
+            "conformance": ["ballistic", "--scene", "paper/gravity", "--no-whole"],
         }
         for command in self.commands():
             with self.subTest(command=command):

@@ -173,12 +173,12 @@ TEST_F(Cli, SolversThatWereNotBuiltAreRows) {
                       << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/contact/plane.json","labels":["a"]},
               {"file":")"
                       << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/contact/sphere.json"}],
-    "solvers":[{"solver":"ballistic","set":{"time.duration_s":0.25}},{"solver":"not-there","settings":{"x":1}}],"trials":1,
+    "solvers":[{"solver":"ballistic","set":{"time.duration_s":0.25}},{"solver":"nvcloth","settings":{"x":1}}],"trials":1,
     "short":{"frames":0,"max_wall_s":0,"min_frames":1,"warmup_s":0},"full":{"frames":0,"max_wall_s":0,"min_frames":1,"warmup_s":0},
     "quick":{"scenes":["a"],"rules":{"frames":4,"max_wall_s":0,"min_frames":4,"warmup_s":0}}})";
   const Answer a = clothbench_command("study " + file.string() + " --out " + out.string());
   ASSERT_EQ(a.code, 0) << a.text;
-  const RunRecord absent = read_run(out / "plane-drop__not-there__default.h5");
+  const RunRecord absent = read_run(out / "plane-drop__nvcloth__default.h5");
   EXPECT_EQ(absent.outcome.status, "unsupported");
   EXPECT_EQ(absent.outcome.message, "not in this build");
   EXPECT_FALSE(absent.header.environment.contains("solver_features"));
@@ -266,7 +266,7 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
   for (const std::string& words : {some + " --resume", some + " --run 0", some + " --run 1", run + " --resume"}) {
     const Answer a = clothbench_command(words);
     EXPECT_EQ(a.code, 2) << words << ": " << a.text;
-    EXPECT_NE(a.text.find("is of another scene"), std::string::npos) << a.text;
+    EXPECT_NE(a.text.find("stored for another scene"), std::string::npos) << a.text;
     EXPECT_NE(a.text.find("__ballistic__default"), std::string::npos) << a.text;
   }
   EXPECT_EQ(clothbench_command(run).code, 2) << "finished, and not to be gone on with";
@@ -314,7 +314,7 @@ TEST_F(Cli, SeedDrawsAndIsStored) {
   const Answer none =
       clothbench_command("run paper/gravity --solver ballistic --trials 0 --seed 7 --out " + (dir_ / "none").string());
   EXPECT_EQ(none.code, 2);
-  EXPECT_NE(none.text.find("no truth"), std::string::npos) << none.text;
+  EXPECT_NE(none.text.find("expected a scene with \"truth\""), std::string::npos) << none.text;
 }
 
 TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {

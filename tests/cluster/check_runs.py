@@ -57,7 +57,7 @@ with tempfile.TemporaryDirectory() as home:
     markdown = os.path.join(home, "comparison.md")
     assert "noise" in command("compare", out, out, "--markdown", markdown)
     with open(markdown, encoding="utf-8") as text:
-        assert "Results that are not the same: none" in text.read()
+        assert "Results that differ: none" in text.read()
     history = json.loads(command("history", out))
     assert {"name", "unit", "value", "extra"} <= set(history[0]) and len(history) >= len(names)
 print("runs, suggestions, compare, history: as expected")

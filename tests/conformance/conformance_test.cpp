@@ -1,8 +1,9 @@
 // One body x every registered solver x every scene: what any backend must do, whatever its method.
+#include "runner/conformance.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -12,8 +13,6 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
-#include "runner/frame_loop.hpp"
-#include "runner/stage_check.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
 
@@ -22,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Case {
-  std::string solver, scene, sides, grid, profile;
+struct Case : ConformanceCase {
+  std::string solver;
 };
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.solver << " on " << c.scene; }
@@ -46,8 +45,6 @@ const std::vector<SolverEntry>& under_test() {
 }
 
 std::vector<Case> cases() {
-  const char *const sides[] = {"single", "double-duplicated", "double"},
-                    *const grids[] = {"[2,2]", "[9,7]", "[17,33]"};  // not multiples of any workgroup
   std::vector<Case> all;
   for (const SolverEntry& e : under_test())
     for (const auto& file : fs::recursive_directory_iterator(CLOTHBENCH_SOURCE_DIR "/scenarios")) {
@@ -57,11 +54,12 @@ std::vector<Case> cases() {
       if (file.path().extension() != ".json" || folder == "schema" || folder == "studies" || folder == "assets")
         continue;
       const std::string scene = relative.replace_extension().string();
-      for (std::size_t side = 0; side < 3; ++side)
-        for (std::size_t grid = 0; grid < 3; ++grid)
-          for (const char* profile : {"", "adreno-like"})
-            if (chosen(scene, side, grid) && (*profile == '\0' || (e.info.on_gpu && grid == 2)))
-              all.push_back({e.info.name, scene, sides[side], grids[grid], profile});
+      std::size_t n = 0;  // sides, then grids, of the cases without a profile
+      for (const ConformanceCase& c : conformance_cases(scene, e.info.on_gpu)) {
+        if (c.whole) continue;  // they take minutes: `clothbench conformance` runs them
+        if (c.profile.empty()) ++n;
+        if (chosen(scene, (n - 1) / 3, (n - 1) % 3)) all.push_back({c, e.info.name});
+      }
     }
   return all;
 }
@@ -72,22 +70,6 @@ std::string case_name(const ::testing::TestParamInfo<Case>& info) {
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
   return name;
-}
-
-Scene scene_of(const Case& c) {
-  std::vector<std::string> overrides = {"cloth.sides=" + c.sides, "cloth.grid=" + c.grid};
-  // Four vertices have none near a hand.
-  if (c.grid == "[2,2]" && c.scene.find("stretch") != std::string::npos)
-    for (const char* hand : {"0", "1"}) overrides.push_back(std::string("grips.") + hand + ".radius_m=0.6");
-  if (c.grid == "[2,2]" && c.scene.find("catenary") != std::string::npos)
-    overrides.back() = "cloth.grid=[3,2]";  // 2 columns cannot bend
-  // A strip that starts over a cylinder needs runs shorter than it is thick.
-  if (c.grid != "[17,33]" &&
-      (c.scene.find("capstan") != std::string::npos || c.scene.find("atwood") != std::string::npos ||
-       c.scene.find("self-fold") != std::string::npos))
-    overrides.back() = c.grid == "[2,2]" ? "cloth.grid=[17,2]" : "cloth.grid=[17,7]";
-  if (load_scene(c.scene).cloth.mesh) overrides.pop_back();  // a mesh has one size
-  return load_scene(c.scene, overrides);
 }
 
 std::vector<std::string> names_of(FeatureSet set) {
@@ -102,90 +84,24 @@ bool over_determined(const std::string& solver, const Scene& s) {
          (s.needs.has(Feature::Shear) || s.cloth.mesh);
 }
 
-/// Why a case is no test of the solver; empty if it is.
-std::string reason_to_skip(const SolverInfo& info, const Scene& s) {
-  if (over_determined(info.name, s)) return "diverges: over-determined";
-  std::string text;
-  for (const std::string& name : names_of(unsupported(info, s.needs))) text += (text.empty() ? "has no " : ", ") + name;
-  return text;
-}
-
-class Conformance : public ::testing::TestWithParam<Case> {
- protected:
-  void SetUp() override {
-    const Case& c = GetParam();
-    scene_ = scene_of(c);
-    entry_ = &find_solver(c.solver);
-    try {
-      solver_ = entry_->make(complete_settings(entry_->info, nlohmann::json::object()), {-1, true, c.profile});
-    } catch (const Error& e) {
-      const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
-      if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
-      FAIL() << e.what();
-    }
-  }
-  void TearDown() override {
-    if (solver_) {
-      EXPECT_EQ(solver_->validation_messages(), 0);
-    }
-  }
-  void run(int frames) {
-    for (int f = 0; f < frames; ++f) ASSERT_EQ(solver_->step(frame_input(scene_, f)), StepStatus::Ok) << "frame " << f;
-  }
-
-  Scene scene_;
-  const SolverEntry* entry_ = nullptr;
-  std::unique_ptr<ClothSolver> solver_;
-};
+class Conformance : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Conformance, DoesWhatABackendMust) {
-  const SolverInfo& info = solver_->info();
-  EXPECT_EQ(info.name, entry_->info.name);
-  EXPECT_TRUE((info.supports & info.ignores).empty()) << "a feature is either served or ignored";
-  if (const std::string reason = reason_to_skip(info, scene_); !reason.empty())
-    GTEST_SKIP() << info.name << " " << reason;
-
-  solver_->load(scene_);
-  const Plan plan = solver_->plan();
-  EXPECT_EQ(check_stages(scene_, info, plan), "");
-  if ((scene_.needs & kColliderFeatures).empty()) {
-    for (const BufferPlan& b : plan.buffers)
-      EXPECT_EQ(b.name.find("olli"), std::string::npos) << b.name << ": the scene has nothing to collide with";
+  const Case& c = GetParam();
+  const Scene scene = conformance_scene(c);
+  const SolverEntry& entry = find_solver(c.solver);
+  if (const std::string reason = conformance_skip(entry.info, scene); !reason.empty()) GTEST_SKIP() << reason;
+  try {
+    const ConformanceResult result = run_conformance(entry, complete_settings(entry.info, nlohmann::json::object()),
+                                                     {.index = -1, .validation = true}, scene, c);
+    EXPECT_EQ(result.unsupported, "");
+    EXPECT_EQ(result.frames, 6);
+    for (const std::string& fault : result.faults) ADD_FAILURE() << fault;
+  } catch (const Error& e) {
+    const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
+    if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
+    FAIL() << e.what();
   }
-
-  ClothState start, once, again;
-  solver_->read_state(start);
-  const std::vector<double> rest = initial_positions(scene_);
-  ASSERT_EQ(start.position.size(), rest.size());
-  ASSERT_EQ(start.velocity.size(), rest.size());
-  for (std::size_t k = 0; k < rest.size(); ++k)
-    EXPECT_NEAR(start.position[k], rest[k], 1e-6 * scene_.cloth.width_m) << "the cloth starts where the scene puts it";
-
-  if (!GetParam().profile.empty()) {
-    const DeviceInfo device = solver_->device();
-    EXPECT_NE(device.name.find(GetParam().profile), std::string::npos) << "no result passes for the device's own";
-    EXPECT_EQ(nlohmann::json::parse(device.properties_json).at("device_profile"), GetParam().profile);
-  }
-
-  run(6);
-  solver_->read_state(once);
-  for (std::size_t k = 0; k < once.position.size(); ++k)
-    ASSERT_TRUE(std::isfinite(once.position[k]) && std::isfinite(once.velocity[k]));
-  for (std::uint32_t v : scene_.pins.vertices)
-    for (std::size_t k = 0; k < 3 && !info.ignores.has(Feature::Pins); ++k) {
-      EXPECT_NEAR(once.position[3 * v + k], rest[3 * v + k], 1e-6 * scene_.cloth.width_m);
-    }
-
-  const FrameCost cost = solver_->last_cost();
-  EXPECT_EQ(cost.stage_device_s.size(), plan.stages.size());
-  EXPECT_EQ(cost.stage_read_B.size(), plan.stages.size());
-  EXPECT_EQ(cost.stage_write_B.size(), plan.stages.size());
-  EXPECT_EQ(std::isfinite(cost.device_s), info.on_gpu) << "device time where there is a device, and only there";
-
-  solver_->reset();
-  solver_->read_state(again);
-  EXPECT_EQ(again.position, start.position) << "reset restores the start bit for bit";
-  EXPECT_EQ(again.velocity, start.velocity);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Conformance, ::testing::ValuesIn(cases()), case_name);
@@ -245,9 +161,9 @@ TEST(ConformanceSkips, AreThoseOfDeclaredFeaturesAndNoMore) {
     for (const Case& c : all) {
       if (c.solver != e.info.name) continue;
       const auto [at, is_new] = scenes.try_emplace(c.scene + " " + c.sides);
-      if (is_new) at->second = scene_of(c);
+      if (is_new) at->second = conformance_scene(c);
       ++count;
-      skipped += !reason_to_skip(e.info, at->second).empty();
+      skipped += !conformance_skip(e.info, at->second).empty();
       expected += may_skip(*lacks, at->second);
     }
     ASSERT_GT(count, 0) << e.info.name;

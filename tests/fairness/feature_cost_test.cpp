@@ -1,4 +1,5 @@
-// What is irrelevant: how it gets into a scene, that it moves nothing, and the study of its cost from the command line.
+// Irrelevant features: how they are added to a scene, that they move no vertex, and the study of their cost from the
+// command line.
 #include "report/feature_cost.hpp"
 
 #include <gtest/gtest.h>
@@ -17,6 +18,8 @@
 
 namespace clothbench {
 namespace {
+
+constexpr double kNoOp = 1e-6;  // of the longer side, as the relation "irrelevant" of pairs of runs bounds it
 
 namespace fs = std::filesystem;
 using nlohmann::json;

@@ -62,7 +62,7 @@ TEST(Patches, ReadTheShearModulus) {
 TEST(Patches, ReadRigidities) {
   Scene s = patch_scene(Patch::BendU);
   truth::ElasticaLoad load;
-  load.own_weight = 0.5 / 0.8;  // B is 0.8 of what is asked for
+  load.own_weight = 0.5 / 0.8;  // B is 0.8 of the requested stiffness
   const truth::Elastica shape(load);
   const double cell = s.cloth.du(), free_m = s.cloth.width_m - cell;
   const auto bent = moved(s, [&](double u, double) {

@@ -46,7 +46,7 @@ TEST(Verdict, AParameterIsHeardAndHeld) {
   runs[0].summary["material_E_stiffer"] = NAN;
   EXPECT_NE(verdict_of(runs).strip, "");
   runs[0].summary["material_B_0"] = 0;
-  EXPECT_EQ(verdict_of(runs).bending, "none: 0 of what is asked for");
+  EXPECT_EQ(verdict_of(runs).bending, "none: 0 of the requested stiffness");
 }
 
 TEST(Verdict, WithoutModuliNoSolverIsFlagged) {
@@ -115,7 +115,7 @@ TEST(Verdict, UnrankedSolversAreShownButNeverFirst) {
   EXPECT_EQ(diagrams[0].best_error(), 5e-3);
   const Table t = work_table(diagrams);
   EXPECT_EQ(t.rows[1][1], "deaf");
-  EXPECT_EQ(t.rows[1][11], "NO: stiffness not a parameter");
+  EXPECT_EQ(t.rows[1][11], "NO: stiffness is not a parameter");
   EXPECT_EQ(t.rows[1][2], "60 (default)") << "shown all the same";
   EXPECT_EQ(t.rows[2][9], "60 (default)") << "by the GPU's clock half of its wall time";
   EXPECT_EQ(t.rows[2][11], "yes");

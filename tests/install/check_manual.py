@@ -16,12 +16,14 @@ def said(*words):
 
 
 def variables():
-    """Those that the sources read: by name, or by a constant of the same file."""
-    out = set()
+    """Those that the sources read: by name, or by a constant."""
+    out, shared = set(), {}
+    for file in (SOURCE / "harness" / "base").glob("*.hpp"):
+        shared |= dict(re.findall(r'constexpr char (k\w+)\[\] = "(\w+)"', file.read_text(encoding="utf-8")))
     for folder in ("harness", "solvers"):
         for file in (SOURCE / folder).rglob("*.[ch]pp"):
             text = file.read_text(encoding="utf-8")
-            names = dict(re.findall(r'constexpr char (k\w+)\[\] = "(\w+)"', text))
+            names = shared | dict(re.findall(r'constexpr char (k\w+)\[\] = "(\w+)"', text))
             for word in re.findall(r"getenv\(([^)]*)\)", text):
                 if word != "folder.variable":
                     out.add(word.strip('"') if word.startswith('"') else names[word])

@@ -74,6 +74,41 @@ TEST(Passage, ASheetOutOfTheWayIsNot) {
   for (const double w : series(pass, "wrong_side_samples")) EXPECT_EQ(w, 0);
 }
 
+TEST(Passage, AHandThroughASheetThatStandsStillHooksIt) {
+  // Level, so that the upright sheet is met by the fingers' axes while the hand is in it.
+  const Scene scene = load_scene("paper/capsule-sweep", {"cloth.grid=[12,12]"});
+  const AccuracyPass pass = passed(scene, kStill);
+  const std::vector<double>& hooked = series(pass, "hooked_axes");
+  for (std::size_t f = 0; f < hooked.size(); ++f)
+    EXPECT_LE(hooked[f], 0 + (series(pass, "contact_length_m")[f] > 0 ? 19 : 0)) << "no axis without a contour";
+  // A capsule across the sheet, through it from 0.1 s on until it has gone on by its length and the way there.
+  const Scene across = load_scene(
+      "paper/capsule-sweep",
+      {"cloth.grid=[12,12]", "time.duration_s=1", "time.frame_rate_hz=100",
+       R"(colliders=[{"type":"capsule","center_m":[0.013,0.021,0.305],"radius_m":0.02,"length_m":0.4,"axis":[0,0,1],"velocity_m_per_s":[0,0,-1]}])"});
+  const AccuracyPass through = passed(across, kStill);
+  EXPECT_EQ(series(through, "hooked_axes")[10], 0);
+  for (int f = 11; f <= 50; ++f) EXPECT_EQ(series(through, "hooked_axes")[static_cast<std::size_t>(f)], 1) << f;
+  EXPECT_EQ(series(through, "hooked_axes")[51], 0);
+  for (const double w : series(through, "wrong_side_samples")) EXPECT_EQ(w, 0) << "at right angles it has no wake";
+  EXPECT_NEAR(summary_of(across, through).at("hooked_longest_s"), 0.4, 1e-9);
+  EXPECT_EQ(summary_of(across, through).at("hooked_end"), 0);
+}
+
+// Smaller than a cell and between its vertices: the face touches.
+TEST(Passage, AFingertipBetweenVerticesTouches) {
+  const auto touching = [](double z) {
+    const Scene scene = load_scene(
+        "paper/capsule-sweep",
+        {"cloth.grid=[11,11]", "time.duration_s=0.05",
+         R"(colliders=[{"type":"capsule","center_m":[0.03,0.06,)" + std::to_string(z + 0.1) +
+             R"(],"radius_m":0.02,"length_m":0.16,"axis":[0,0,1],"velocity_m_per_s":[0,0,0.001],"margin_m":0.004}])"});
+    return series(passed(scene, kStill), "touching_fraction")[0];
+  };
+  EXPECT_NEAR(touching(0.0049), 1.0 / 200, 1e-12) << "one triangle, a tolerance of 1 mm beyond the margin";
+  EXPECT_EQ(touching(0.0051), 0);
+}
+
 TEST(Passage, AStillColliderHasNoWrongSide) {
   const Scene scene = load_scene("contact/sphere", {"cloth.grid=[9,9]"});
   const AccuracyPass pass = passed(scene, kStill);
@@ -115,7 +150,7 @@ TEST(Passage, TouchIsWhereTheSolverSaysThatItHoldsTheCloth) {
     return series(passed(scene, path, 0, margins, settings), "touching_fraction")[0];
   };
   EXPECT_EQ(touching(0.02, {}), 0) << "the scene's margin is 4 mm";
-  EXPECT_EQ(touching(0.02, {kMissing}), 0) << "none told is the scene's";
+  EXPECT_EQ(touching(0.02, {kMissing}), 0) << "without one, the scene's counts";
   EXPECT_NEAR(touching(0.02, {0.02}), 1, 1e-12);
   EXPECT_NEAR(touching(0.004, {}), 1, 1e-12);
   EXPECT_EQ(touching(0.004, {0.001}), 0) << "a solver that holds it nearer does not touch it there";

@@ -18,7 +18,7 @@ TEST(FinerRows, TakeSixteenTimesTheSubstepsOfXpbd) {
       const StudySolver& s = study.solvers[k];
       if (s.label != "x16" || s.solver != "xpbd") continue;
       ++rows;
-      EXPECT_FALSE(item.timed) << item.scene.name;
+      EXPECT_FALSE(s.timed) << item.scene.name;
       EXPECT_EQ(s.settings.at("substeps").get<int>(),
                 16 * pbd_gpu::xpbd_substeps(item.scene, complete_settings(xpbd.info, nlohmann::json::object())))
           << item.scene.name;

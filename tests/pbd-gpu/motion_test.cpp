@@ -1,4 +1,4 @@
-// What moves: upload, skinning and gripped vertices.
+// Dynamic input: upload, skinning and gripped vertices.
 #include <cmath>
 #include <cstring>
 
@@ -31,7 +31,7 @@ class Mirror final : public GpuSolver {
     for (const vulkan::Buffer* b : sources_) hosts_.push_back(&add_host_buffer(b->name(), b->bytes()));
     stage_ = stage;
   }
-  void record_frame(double) override {
+  void record_frame(double, double) override {
     colliders()->record();
     for (std::size_t k = 0; k < sources_.size(); ++k) copy(stage_, *sources_[k], *hosts_[k]);
   }

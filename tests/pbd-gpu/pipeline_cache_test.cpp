@@ -2,6 +2,7 @@
 #include "vulkan/pipeline_cache.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <cstring>
@@ -12,14 +13,18 @@ namespace {
 class PipelineCache : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) / "clothbench-pipelines";
+    // Each test is a process of its own, and several run at once: a fixed name would be shared between them.
+    folder_ = std::filesystem::path(::testing::TempDir()) / ("clothbench-pipelines-" + std::to_string(::getpid()));
     std::filesystem::remove_all(folder_);
     setenv("CLOTHBENCH_CACHE", folder_.c_str(), 1);
     device_.vendorID = 0x10de;
     device_.deviceID = 0x2335;
     for (std::uint8_t k = 0; k < VK_UUID_SIZE; ++k) device_.pipelineCacheUUID[k] = k;
   }
-  void TearDown() override { unsetenv("CLOTHBENCH_CACHE"); }
+  void TearDown() override {
+    unsetenv("CLOTHBENCH_CACHE");
+    std::filesystem::remove_all(folder_);
+  }
 
   static std::vector<std::uint8_t> of(const VkPhysicalDeviceProperties& d) {
     std::vector<std::uint8_t> data(100, 7);

@@ -14,7 +14,7 @@ Stage solved(const std::string& name, Scene scene, int trials = 0) {
   return {name, std::move(scene), find_solver("xpbd"), trials};
 }
 
-Stage reported(const std::string& name, const std::string& scene, Path path) {
+Stage stage_of(const std::string& name, const std::string& scene, Path path) {
   return {name, scene_from_json(json::parse(scene), "planted/" + name), prescribed(std::move(path)), 0};
 }
 
@@ -77,8 +77,8 @@ const char* const kCurtain = R"({"name":"curtain","why":"A curtain lowered half-
   "time":{"frame_rate_hz":20,"duration_s":1},
   "expect":{"outcome":"ok","tunnelled_fraction_end":{"at_least":0.45,"at_most":0.55},"contact_length_max_m":{"at_least":0.1999,"at_most":0.2001}}})";
 
-// A capsule comes up into a sheet that stands still: 0.01 m deep in the last frame, 5 mm less the one before.
-const char* const kRising = R"({"name":"rising","why":"A capsule comes up into a sheet that stands still.",
+// A capsule comes up into a static sheet: 0.01 m deep in the last frame, 5 mm less the one before.
+const char* const kRising = R"({"name":"rising","why":"A capsule comes up into a static sheet.",
   "cloth":{"grid":[25,25],"size_m":[0.24,0.24],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{}},
   "material":{"membrane_stiffness_N_per_m":1000},
   "colliders":[{"type":"capsule","center_m":[0,-0.24,0],"axis":[0,0,1],"length_m":0.1,"radius_m":0.1,"velocity_m_per_s":[0,0.3,0]}],
@@ -86,7 +86,7 @@ const char* const kRising = R"({"name":"rising","why":"A capsule comes up into a
   "expect":{"outcome":"ok","depth_max_m":{"at_least":0.0099,"at_most":0.0101}}})";
 
 // From (0.2, 0.1) to (-0.2, -0.1) through a sheet in z = 0: under 0.2 m x 0.3 m of it.
-const char* const kThrough = R"({"name":"through","why":"A finger goes through a sheet that stands still.",
+const char* const kThrough = R"({"name":"through","why":"A finger goes through a static sheet.",
   "cloth":{"grid":[41,41],"size_m":[1,1],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"axis_u":[1,0,0],"axis_v":[0,-1,0]}},
   "material":{"membrane_stiffness_N_per_m":1000},
   "colliders":[{"type":"capsule","center_m":[0.2013,0.0017,0.1],"axis":[0,1,0],"length_m":0.3,"radius_m":0.01,"velocity_m_per_s":[-0.8,0,-0.4]}],
@@ -138,12 +138,12 @@ std::vector<Stage> stages() {
   out.push_back(solved("pushed", scene(kPushed)));
   out.push_back(solved("pulled", scene(kPulled)));
   out.push_back(solved("layers", layers()));
-  out.push_back(reported("crossed", kCrossed, lay_over));
-  out.push_back(reported("pressed", kPressed, lifted([](int f) { return down(f, 0, 0.11, 20); })));
-  out.push_back(reported("rolled", kRolled, lifted([](int f) { return down(f, 0, 0.11, 20); })));
-  out.push_back(reported("curtain", kCurtain, lifted([](int f) { return down(f, 0, 0.15, 20); })));
-  out.push_back(reported("rising", kRising, [](int, std::vector<double>&) {}));
-  out.push_back(reported("through", kThrough, [](int, std::vector<double>&) {}));
+  out.push_back(stage_of("crossed", kCrossed, lay_over));
+  out.push_back(stage_of("pressed", kPressed, lifted([](int f) { return down(f, 0, 0.11, 20); })));
+  out.push_back(stage_of("rolled", kRolled, lifted([](int f) { return down(f, 0, 0.11, 20); })));
+  out.push_back(stage_of("curtain", kCurtain, lifted([](int f) { return down(f, 0, 0.15, 20); })));
+  out.push_back(stage_of("rising", kRising, [](int, std::vector<double>&) {}));
+  out.push_back(stage_of("through", kThrough, [](int, std::vector<double>&) {}));
   return out;
 }
 

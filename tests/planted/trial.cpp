@@ -10,7 +10,7 @@
 namespace clothbench {
 namespace {
 
-/// A solver that is told of another scene, or whose answers are changed.
+/// A solver that gets another scene, or whose output is changed.
 class Faulty final : public ClothSolver {
  public:
   Faulty(std::unique_ptr<ClothSolver> inner, const Fault& fault) : inner_(std::move(inner)), fault_(fault) {}
@@ -18,9 +18,9 @@ class Faulty final : public ClothSolver {
   const SolverInfo& info() const override { return inner_->info(); }
   DeviceInfo device() const override { return inner_->device(); }
   void load(const Scene& scene) override {
-    reported_ = scene;
-    if (fault_.scene) fault_.scene(reported_);
-    inner_->load(reported_);
+    given_ = scene;
+    if (fault_.scene) fault_.scene(given_);
+    inner_->load(given_);
   }
   void reset() override {
     frame_ = 0;
@@ -28,8 +28,8 @@ class Faulty final : public ClothSolver {
   }
   StepStatus step(const FrameInput& given) override {
     FrameInput input = given;
-    input.motion = reported_.motion_after(given.index);
-    if (fault_.input) fault_.input(reported_, input);
+    input.motion = given_.motion_after(given.index);
+    if (fault_.input) fault_.input(given_, input);
     ++frame_;
     const StepStatus status = inner_->step(input);
     return fault_.status ? fault_.status(frame_) : status;
@@ -48,7 +48,7 @@ class Faulty final : public ClothSolver {
  private:
   std::unique_ptr<ClothSolver> inner_;
   const Fault& fault_;
-  Scene reported_;
+  Scene given_;
   int frame_ = 0;
 };
 
@@ -91,9 +91,9 @@ RunRecord execute_run(const Stage& stage, const Fault* fault) {
   if (variant && ShaderVariant::exchanged() == 0)
     throw std::runtime_error(fault->name + ": no kernel of the run has the fault");
   if (fault != nullptr && fault->metric_scene) {
-    Scene reported = stage.scene;
-    fault->metric_scene(reported);
-    record.accuracy.metrics = measured_in(reported, stage, spec.settings, record.accuracy);
+    Scene seen = stage.scene;
+    fault->metric_scene(seen);
+    record.accuracy.metrics = measured_in(seen, stage, spec.settings, record.accuracy);
   }
   if (fault != nullptr && fault->metrics) fault->metrics(record.accuracy);
   record.outcome = run.outcome();

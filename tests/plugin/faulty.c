@@ -12,25 +12,44 @@ typedef struct {
   const ClothbenchScene* scene;
   int steps;
   ClothbenchStage stage;
+  double x[]; /* positions */
 } Solver;
+
+static void reset(void* self) {
+  Solver* s = self;
+  memcpy(s->x, s->scene->position_m, 3 * s->scene->vertex_count * sizeof(double));
+}
 
 static void* create(const double* settings, const ClothbenchScene* scene, const char** why) {
   (void)settings;
   const char* fault = getenv("FAULT");
   if (fault && strcmp(fault, "load") == 0) return *why = "it was asked to fail", NULL;
   if (fault && strcmp(fault, "create") == 0) *(volatile int*)8 = 1;
-  Solver* s = calloc(1, sizeof *s);
+  Solver* s = calloc(1, sizeof *s + 3 * scene->vertex_count * sizeof(double));
   s->scene = scene;
   s->stage = (ClothbenchStage){"stand still", 0, 0, NAN, NAN};
-  return s;
+#ifdef FAULT_LATE
+  s->stage.serves = scene->needs;
+#endif
+  return reset(s), s;
 }
 
-static void reset(void* self) { (void)self; }
+/* As a solver whose grips come loose after 12 frames. */
+static void follow(Solver* s, const ClothbenchFrame* frame) {
+#ifdef FAULT_LATE
+  if (frame->grip_position_m == NULL || frame->index >= 12) return;
+  for (uint32_t k = 0; k < s->scene->grip_count; ++k)
+    memcpy(s->x + 3 * s->scene->grips[k], frame->grip_position_m + 3 * k, 3 * sizeof(double));
+#else
+  (void)s, (void)frame;
+#endif
+}
 
 static int32_t step(void* self, const ClothbenchFrame* frame) {
   const char* log = getenv("FRAME_LOG");
   FILE* lines = log ? fopen(log, "a") : NULL;
   if (lines) fprintf(lines, "%d %.17g %.17g\n", (int)frame->index, frame->time_s, frame->dt_s), fclose(lines);
+  follow(self, frame);
   const char* fault = getenv("FAULT");
   const char* at = fault ? strchr(fault, ':') : NULL;
   if (!at || ++((Solver*)self)->steps != atoi(at + 1)) return CLOTHBENCH_OK;
@@ -43,7 +62,7 @@ static int32_t step(void* self, const ClothbenchFrame* frame) {
 
 static void read_state(void* self, double* position, double* velocity) {
   const ClothbenchScene* c = ((Solver*)self)->scene;
-  memcpy(position, c->position_m, 3 * c->vertex_count * sizeof(double));
+  memcpy(position, ((Solver*)self)->x, 3 * c->vertex_count * sizeof(double));
   memset(velocity, 0, 3 * c->vertex_count * sizeof(double));
 }
 
@@ -52,7 +71,7 @@ static const ClothbenchStage* stages(void* self, uint32_t* count) {
   return &((Solver*)self)->stage;
 }
 
-/* Of a body that stands still. */
+/* Of a static body. */
 static double free_fall(const double* settings, double dt, double gravity, double velocity, double damping, int32_t frames) {
   (void)settings, (void)dt, (void)gravity, (void)velocity, (void)damping, (void)frames;
   return 0;
@@ -83,6 +102,7 @@ const ClothbenchPlugin* clothbench_plugin(void) {
   plugin.version = 99;
 #endif
 #ifdef FAULT_OLD_HEADER /* built before contact_margin_m was there: what lies beyond its end is not to be read */
+  plugin.version = 1;
   plugin.plugin_size = offsetof(ClothbenchPlugin, contact_margin_m);
   *(uintptr_t*)&plugin.contact_margin_m = 8;
 #endif
@@ -97,6 +117,9 @@ const ClothbenchPlugin* clothbench_plugin(void) {
 #endif
 #ifdef FAULT_STRETCHES
   plugin.name = "stretches", plugin.supports = plugin.ignores, plugin.ignores = 0;
+#endif
+#ifdef FAULT_LATE
+  plugin.name = "late", plugin.supports = plugin.ignores, plugin.ignores = 0;
 #endif
 #ifdef FAULT_NAME
   plugin.name = "ballistic";

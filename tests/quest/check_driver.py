@@ -245,7 +245,7 @@ class Driver(unittest.TestCase):
 
     def test_no_device(self):
         self.assertEqual(self.drive(devices=[]), 3, self.text)
-        self.assertIn("adb sees no device", self.text)
+        self.assertIn("adb finds no device", self.text)
         self.assertEqual(self.drive(devices=[["A1", "unauthorized", "x"]]), 3)
         self.assertIn("allow USB debugging", self.text)
 
@@ -303,7 +303,7 @@ class Driver(unittest.TestCase):
 
     def test_unplugged_for_a_while(self):
         self.assertEqual(self.drive(unplugged=[0.6, 1.6], run_s=3.5), 1, self.text)
-        self.assertIn("the app goes on without the cable", self.text)
+        self.assertIn("the app continues without the cable", self.text)
         self.assertIn("NOT VALID: the headset did not answer for", self.text)
         self.assertTrue(
             os.path.isdir(os.path.join(self.out, "runs", "table3-20260101T000000Z")), "the result was not missed"

@@ -1,5 +1,5 @@
 #!/usr/bin/python3 -IS
-"""An adb with a headset behind it that exists on paper: prints what recorded tools print, and remembers what it was told.
+"""An adb with a headset behind it that exists on paper: prints what recorded tools print, and stores the commands that it gets.
 
 $FAKE_ADB names a folder: plan.json says what goes wrong, world.json what the headset's state is, calls.log what was asked.
 Formats: `adb devices -l`, dumpsys and df of Android 14; ovrgpuprofiler, VrApi and OVR Metrics as Meta's documentation and

@@ -200,7 +200,7 @@ TEST(Album, GoesRoundWhatHidesTheCloth) {
   EXPECT_NE(turn, 0) << "the box stands where the camera would";
   EXPECT_LT(towards_eye(View::Corner, turn)[0] * eye[0] + towards_eye(View::Corner, turn)[2] * eye[2], 0.5);
   hidden.scene.motion.resize(1);
-  EXPECT_EQ(best_turn(hidden, frames, near), 0) << "what moves is looked at from the front";
+  EXPECT_EQ(best_turn(hidden, frames, near), 0) << "dynamic colliders are viewed from the front";
 }
 
 TEST(Album, FramesOneFrameAsItsWholeMotion) {

@@ -80,7 +80,7 @@ TEST_F(RenderCommand, RunsAScenarioAndSaysSo) {
       "160x120 -o " +
       out());
   ASSERT_EQ(a.code, 0) << a.text;
-  EXPECT_NE(a.text.find("nothing is stored, so ballistic runs it now"), std::string::npos);
+  EXPECT_NE(a.text.find("not a result file, so ballistic runs it now"), std::string::npos);
   EXPECT_NE(a.text.find("plane-drop__ballistic__default__corner__checker__000004.png"), std::string::npos) << a.text;
 }
 
@@ -100,8 +100,8 @@ TEST_F(RenderCommand, RefusesWhatItCannotDo) {
   std::ofstream(text) << "no result file";
   const fs::path empty = folder_->path / "nothing";
   fs::create_directories(empty);
-  const std::vector<std::pair<std::string, std::string>> wrong = {{file + " --frames 99", "there are frames 0 to"},
-                                                                  {file + " --frames x", "is no number"},
+  const std::vector<std::pair<std::string, std::string>> wrong = {{file + " --frames 99", "expected frames from 0 to"},
+                                                                  {file + " --frames x", "expected a number"},
                                                                   {file + " --view side", "front, top or corner"},
                                                                   {file + " --colour red", "checker, strain or depth"},
                                                                   {file + " --size 10", "WIDTHxHEIGHT"},

@@ -79,7 +79,7 @@ def words(svg):
     return " ".join("".join(t.itertext()) for t in xml.fromstring(svg).iter(SVG + "text"))
 
 
-def series(solver, sizes, sides="single", status="ok", gpu="Fake GPU (software, not for speed claims)", **more):
+def series(solver, sizes, sides="single", status="ok", gpu="Fake GPU (software; its times say nothing of a GPU)", **more):
     ok = status == "ok"
     return {"label": solver, "solver": solver, "setting": "default", "sides": sides, "points": [
         {"width": n, "resolution": f"{n}²", "status": status, "gpu": gpu, "fps": 1e4 / n if ok else None, "spread": 0.1 if ok else None,
@@ -107,7 +107,7 @@ class Rates(unittest.TestCase):
         self.assertEqual(sorted(svg), ["fig4", "fig5"])
         self.assertEqual(marks(svg["fig4"], "points"), 5 * 3 + 3 * 2)
         self.assertEqual(marks(svg["fig4"], "failed"), 1, "failed runs are marked, unsupported ones not")
-        for part in ("frames per second, uncapped", "vertices along one side", "software, not for speed claims", "published: column 2",
+        for part in ("frames per second, uncapped", "vertices along one side", "software; its times say nothing of a GPU", "published: column 2",
                      "1,000,000", "double"):
             self.assertIn(part, words(svg["fig4"]))
         self.assertNotIn("elsewhere", words(svg["fig4"]), "Fig. 4 is of the paper's table")
@@ -212,7 +212,7 @@ class Stability(unittest.TestCase):
         shapes = {re.sub(r"[-\d.e]+", "", p.get("d")) + p.get("fill") for g in xml.fromstring(text).iter(SVG + "g")
                   if (g.get("class") or "").endswith(" points_marks") for p in g}
         self.assertEqual(len(shapes), len(classes), "a colour and a symbol a class")
-        self.assertIn("No solver here", words(svg["stability-two"]))
+        self.assertIn("None of these solvers supports", words(svg["stability-two"]))
         self.assertEqual(marks(svg["stability-cases"], "points"), 4)
         for part in ("S02", "paper", "degraded", "share of runs"):
             self.assertIn(part, words(svg["stability-cases"]))

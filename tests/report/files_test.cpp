@@ -86,8 +86,8 @@ TEST_F(ReportFiles, PlannedRunsWithoutAFileAreMissing) {
 TEST_F(ReportFiles, WritesEveryFile) {
   const fs::path out = dir_ / "it's a report";
   write_report({run_}, {out});
-  for (const char* file :
-       {"report.md", "table3.md", "table3.csv", "table3.json", "runs.csv", "runs.json", "bandwidth.csv", "memory.csv"})
+  for (const char* file : {"report.md", "tables.tex", "table3.md", "table3.csv", "table3.json", "runs.csv", "runs.json",
+                           "bandwidth.csv", "memory.csv"})
     EXPECT_GT(fs::file_size(out / file), 0u) << file;
   const std::string md = text(out / "report.md");
   EXPECT_NE(md.find("diverged at 3"), std::string::npos);
@@ -153,7 +153,7 @@ TEST_F(ReportFiles, WhatCannotBeDrawnLeavesTheOlderPictures) {
   };
   {
     const OnlyPrograms none(dir_ / "bin");
-    left_out("Figures were left out: no Node, 18 or later (Debian: nodejs).");
+    left_out("Figures were left out: Node 18 or later was not found (Debian: nodejs).");
     none.add("node", "[ \"$1\" = --version ]");
     left_out("Figures were left out: Node could not draw them; 18 or later is needed (Debian: nodejs).");
   }
@@ -170,7 +170,8 @@ TEST_F(ReportFiles, WithoutRsvgConvertThereIsNoPng) {
   EXPECT_FALSE(fs::exists(dir_ / "out" / "fig4.png"));
   const std::string md = text(dir_ / "out" / "report.md");
   EXPECT_NE(md.find("### Figures\n\n![Drawn](fig4.svg)"), std::string::npos);
-  EXPECT_NE(md.find("PNG pictures were left out: no rsvg-convert (Debian: librsvg2-bin)."), std::string::npos);
+  EXPECT_NE(md.find("PNG pictures were left out: rsvg-convert was not found (Debian: librsvg2-bin)."),
+            std::string::npos);
 }
 
 TEST_F(ReportFiles, IsAFunctionOfTheFiles) {

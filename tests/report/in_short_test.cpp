@@ -27,9 +27,22 @@ TEST(InShort, TheFastestFirstAndWhatDidNotRunLast) {
   const Table t = in_short_table(
       {run("none", {}, crashed), run("slow", {4e-3, 4e-3}, broken), run("quick", {2e-3, 1e-3, 3e-3}, {})});
   ASSERT_EQ(t.rows.size(), 4u);
-  EXPECT_EQ(t.rows[1], (std::vector<std::string>{"drop", "quick", "default", "ok", "2.00 ± 1.0", "1.00×"}));
-  EXPECT_EQ(t.rows[2], (std::vector<std::string>{"drop", "slow", "default", "fail", "4.00 ± 0.0", "2.00×"}));
-  EXPECT_EQ(t.rows[3], (std::vector<std::string>{"drop", "none", "default", "crashed in frame 7", "–", "–"}));
+  EXPECT_EQ(t.rows[1], (std::vector<std::string>{"drop", "quick", "default", "ok", "–", "2.00 ± 1.0", "1.00×"}));
+  EXPECT_EQ(t.rows[2], (std::vector<std::string>{"drop", "slow", "default", "fail", "–", "4.00 ± 0.0", "not ranked"}));
+  EXPECT_EQ(t.rows[3], (std::vector<std::string>{"drop", "none", "default", "crashed in frame 7", "–", "–", "–"}));
+}
+
+TEST(InShort, AClothThatIsTornApartHasNoRankAndFewerFramesAreTold) {
+  RunRecord torn = run("torn", {1e-3}, {}), held = run("held", {2e-3}, {}), cut = run("cut", {3e-3}, {});
+  torn.summary["stretch_max_last_second"] = 3.57;
+  held.summary["stretch_max_last_second"] = 0.05;
+  cut.trials[0].frame_wall_s.pop_back();
+  const Table t = in_short_table({torn, held, cut});
+  ASSERT_EQ(t.rows.size(), 4u);
+  EXPECT_EQ(t.rows[1][1], "cut");
+  EXPECT_EQ(t.rows[1][5], "1.50 (first 1 frames)");
+  EXPECT_EQ(t.rows[2], (std::vector<std::string>{"drop", "held", "default", "ok", "5.00", "2.00", "1.33×"}));
+  EXPECT_EQ(t.rows[3], (std::vector<std::string>{"drop", "torn", "default", "ok", "357", "1.00", "not ranked"}));
 }
 
 TEST(Tint, IsPlainUntilSwitchedOn) {

@@ -1,4 +1,4 @@
-// Speed of the failure speed, by what touches the cloth.
+// Failure speed, by what touches the cloth.
 #include "report/leak.hpp"
 
 #include <gtest/gtest.h>
@@ -46,13 +46,25 @@ TEST(Leak, TheFailureSpeedIsReported) {
   ASSERT_EQ(t.rows.size(), 2u);
   EXPECT_EQ(t.rows[1][0], "sweep (capsules)");
   EXPECT_EQ(t.rows[1][1], "0.8…20");
-  EXPECT_TRUE(t.rows[1][2].starts_with("10 m/s: inside")) << t.rows[1][2];
-  EXPECT_EQ(t.rows[1][3], "none up to 20 m/s");
-  EXPECT_EQ(t.rows[1][4], "0.8 m/s: wrong side not known");
-  EXPECT_EQ(t.rows[1][5], "20 m/s: not_finite");
+  EXPECT_EQ(t.rows[1][2], "1") << "one path a speed";
+  EXPECT_TRUE(t.rows[1][3].starts_with("10 m/s: inside")) << t.rows[1][3];
+  EXPECT_EQ(t.rows[1][4], "none up to 20 m/s");
+  EXPECT_EQ(t.rows[1][5], "0.8 m/s: wrong side not known");
+  EXPECT_EQ(t.rows[1][6], "20 m/s: not_finite");
   const nlohmann::json j = leak_json(sweeps);
   EXPECT_EQ(j[0]["failure_speed_m_per_s"], 10);
   EXPECT_TRUE(j[1]["failure_speed_m_per_s"].is_null());
+}
+
+TEST(Leak, CountsThePathsOfTheSpeedThatHasTheFewest) {
+  std::vector<RunRecord> runs;
+  for (const double speed : {1.0, 2.0, 5.0, 5.0})
+    for (const char* path : {"-a", "-b"}) {
+      runs.push_back(sweep_run("a", speed, 0, 0));
+      runs.back().header.scene += path + std::to_string(runs.size());
+    }
+  const std::vector<ContactSetUp> ups = set_ups(runs);
+  EXPECT_EQ(speed_sweeps(ups).at(0).paths(), 2u);
 }
 
 TEST(Leak, EachKindHasItsOwn) {

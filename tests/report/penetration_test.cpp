@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "fake_runs.hpp"
+#include "report/contact_pairs.hpp"
 #include "report/features.hpp"
-#include "report/room_pair.hpp"
 
 namespace clothbench {
 namespace {
@@ -76,8 +76,8 @@ TEST(Penetration, SetUpsAreToldByWhatTouches) {
     text += "; ";
   }
   EXPECT_EQ(text, "rooms: desk-flat-low sheet; capsules: sweep; hand: push; grip: pull; shapes: ball oddest; ");
-  EXPECT_EQ(ups[0].title, "Cloth on meshes that stand still (section 4.2, Table 5)");
-  EXPECT_EQ(ups[3].title, "Hands hold and pull (section 4.4)");
+  EXPECT_EQ(ups[0].title, "Cloth on static meshes (section 4.2, Table 5)");
+  EXPECT_EQ(ups[3].title, "Hands hold and pull cloth (section 4.4)");
   for (const ContactSetUp& u : ups)
     for (const Table& t : std::vector<Table>{contact_table(u), cost_table(u)})
       for (const auto& row : t.rows) EXPECT_EQ(row.size(), t.rows[0].size()) << t.title;
@@ -90,14 +90,14 @@ TEST(Penetration, TableShowsNumbersInTheirUnits) {
   runs[1].summary["tunnelled_fraction_end"] = 0.0004;
   runs[1].summary["expect.tunnelled_fraction_max"] = 0;
   const Table t = contact_table(set_ups(runs).at(0));
-  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "tunnelled, most / end [%]"), "0 / 0");
-  EXPECT_EQ(run_of(t, "desk-flat-low", "paper", "tunnelled, most / end [%]"), "34.6 / <0.1");
-  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "contour, most / settled [mm]"), "12.3 / 0");
+  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "tunnelled, greatest / end [%]"), "0 / 0");
+  EXPECT_EQ(run_of(t, "desk-flat-low", "paper", "tunnelled, greatest / end [%]"), "34.6 / <0.1");
+  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "contour, greatest / settled [mm]"), "12.3 / 0");
   EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "tunnelled depth [mm]"), "<0.01")
       << "what is not nothing never reads as nothing";
   EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "wall / GPU [ms]"), "4.00 / 3.60");
-  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "expected"), "pass");
-  EXPECT_EQ(run_of(t, "desk-flat-low", "paper", "expected"), "fail");
+  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "verdict"), "pass");
+  EXPECT_EQ(run_of(t, "desk-flat-low", "paper", "verdict"), "fail");
   EXPECT_EQ(t.markdown().find("depth, vertex"), std::string::npos) << "a column without a value is left out";
   EXPECT_EQ(t.markdown().find("nan"), std::string::npos);
   const Table broken = failed_expectations_table(set_ups(runs));
@@ -164,18 +164,18 @@ TEST(RoomPair, DistanceIsMeasuredVertexByVertex) {
   runs[1].accuracy.position[8] = 0.25f;  // last frame, first vertex
   runs[1].summary["frame_wall_median_s"] = 0.012;
   runs[1].summary["stage_device_median_s.Mesh"] = 0.2;
-  const std::vector<RoomPair> pairs = room_pairs(runs);
+  const std::vector<RunPair> pairs = run_pairs(runs, "whole-room");
   ASSERT_EQ(pairs.size(), 1u) << "xpbd has no other half";
-  EXPECT_EQ(pairs[0].cut, &runs[0]);
-  EXPECT_EQ(pairs[0].whole, &runs[1]);
-  EXPECT_EQ(pairs[0].distance_end_m, 0.25);
-  EXPECT_EQ(pairs[0].distance_max_m, 0.5);
+  EXPECT_EQ(pairs[0].run, &runs[0]);
+  EXPECT_EQ(pairs[0].other, &runs[1]);
+  EXPECT_EQ(pairs[0].apart.end, 0.25);
+  EXPECT_EQ(pairs[0].value, 0.5);
   const auto rows = parse_markdown(room_table(pairs).markdown());
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0][3], "wall [ms]");
   EXPECT_EQ(rows[3][3], "3.00");
   EXPECT_EQ(rows[3][5], "100") << "of the stages that serve static meshes";
-  EXPECT_NE(room_table(pairs).note.find("at the end 0.25 m, over all frames 0.5 m"), std::string::npos)
+  EXPECT_NE(room_table(pairs).note.find("0.25 m at the end, 0.5 m over all frames"), std::string::npos)
       << room_table(pairs).note;
 }
 
@@ -183,18 +183,18 @@ TEST(RoomPair, WhatDiffersOtherwiseOrIsNotMeasuredIsNotCompared) {
   std::vector<RunRecord> runs = {desk_run("paper", "default", "any_vertex_inside"),
                                  desk_run("paper", "whole-room", "none")};
   runs[1].accuracy.position.pop_back();
-  EXPECT_TRUE(std::isnan(room_pairs(runs).at(0).distance_end_m)) << "trajectories of different lengths";
-  EXPECT_NE(room_table(room_pairs(runs)).note.find("not measured"), std::string::npos);
+  EXPECT_TRUE(std::isnan(run_pairs(runs, "whole-room").at(0).apart.end)) << "trajectories of different lengths";
+  EXPECT_NE(room_table(run_pairs(runs, "whole-room")).note.find("not measured"), std::string::npos);
   runs[1] = desk_run("paper", "whole-room", "none");
   runs[1].accuracy.position[0] = NAN;
-  EXPECT_TRUE(std::isnan(room_pairs(runs).at(0).distance_max_m));
+  EXPECT_TRUE(std::isnan(run_pairs(runs, "whole-room").at(0).value));
   runs[1] = desk_run("paper", "whole-room", "none");
   runs[1].header.settings["iterations"] = 7;
-  EXPECT_TRUE(room_pairs(runs).empty());
+  EXPECT_TRUE(run_pairs(runs, "whole-room").empty());
   runs[1] = desk_run("paper", "whole-room", "none");
   const auto at = runs[1].header.scenario_json.find("double-duplicated");
   runs[1].header.scenario_json.replace(at, 17, "single");
-  EXPECT_TRUE(room_pairs(runs).empty()) << "other sides";
+  EXPECT_TRUE(run_pairs(runs, "whole-room").empty()) << "other sides";
 }
 
 TEST(Features, ComeFromTheResultFilesAlone) {

@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "clothbench/error.hpp"
 #include "fake_runs.hpp"
-#include "report/popping.hpp"
+#include "report/contact_pairs.hpp"
 #include "report/pulled_strip.hpp"
 #include "report/report.hpp"
-#include "report/turned.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -42,8 +42,7 @@ TEST(PulledStrip, SaysWhichSpeedFailsFirst) {
   EXPECT_EQ(ups[0].kind, "wave");
   const Table t = pulled_strip_table(ups);
   ASSERT_EQ(t.rows.size(), 5u);
-  EXPECT_EQ(t.rows[0],
-            (std::vector<std::string>{"strip", "solver", "first that fails", "0.5 m/s", "10 m/s", "30 m/s"}));
+  EXPECT_EQ(t.rows[0], (std::vector<std::string>{"strip", "solver", "failure speed", "0.5 m/s", "10 m/s", "30 m/s"}));
   EXPECT_EQ(t.rows[1], (std::vector<std::string>{"two-hand-pull 33×5", "a", "10 m/s", "0.05 / 5.0e-06",
                                                  "0.11 / 1.0e-04", "0.3 / 3.0e-04"}));
   EXPECT_EQ(t.rows[2][2], "0.5 m/s") << "what is not known fails";
@@ -83,13 +82,13 @@ TEST(Popping, IsComparedWithTheSameSolverInSmallerSteps) {
                                  popping_run("g", "default", 0, 0.1),
                                  popping_run("g", "x16", 0, 0.1)};
   runs[10].outcome = {"diverged", "F2", 3, "", {}};
-  const auto all = poppings(set_ups(runs));
+  const auto all = popping_pairs(set_ups(runs));
   ASSERT_EQ(all.size(), 6u) << "e has no finer one";
   const Table t = popping_table(all);
   const std::vector<std::string> expected = {"pass", "fail", "fail", "not known", "did not run", "not known"};
   for (std::size_t k = 0; k < all.size(); ++k) {
     EXPECT_EQ(t.rows[k + 1].back(), expected[k]) << all[k].series.solver;
-    EXPECT_EQ(all[k].passed(), expected[k] == "pass");
+    EXPECT_EQ(popping_passed(all[k]), expected[k] == "pass");
   }
   EXPECT_EQ(t.rows[1], (std::vector<std::string>{"sweep-2mps", "a", "11.9", "10.0", "1.19", "0.90", "0.80", "pass"}));
   EXPECT_EQ(t.rows[5][3], "diverged");
@@ -121,27 +120,48 @@ TEST(Turned, VerticesOfTheSamePlaceAreCompared) {
   std::vector<RunRecord> runs = {lying("drop", false, 0), lying("drop-turned", true, 0.12f), lying("other", false, 0)};
   auto pairs = turned_pairs(set_ups(runs));
   ASSERT_EQ(pairs.size(), 1u) << "the other has not been turned";
-  EXPECT_NEAR(pairs[0].apart_at_contact, 0.12 / std::sqrt(6.0) / 2, 1e-7);
-  EXPECT_NEAR(pairs[0].apart_end, 0.36 / std::sqrt(6.0) / 2, 1e-7);
-  EXPECT_TRUE(pairs[0].same());
+  EXPECT_NEAR(pairs[0].value, 0.12 / std::sqrt(6.0) / 2, 1e-7);
+  EXPECT_NEAR(turned_json(pairs)[0]["apart_end"].get<double>(), 0.36 / std::sqrt(6.0) / 2, 1e-7);
+  EXPECT_TRUE(same_from_both_sides(pairs[0]));
   EXPECT_EQ(turned_table(pairs).rows[1].back(), "same");
   runs[1] = lying("drop-turned", true, 0.3f);
-  EXPECT_FALSE(turned_pairs(set_ups(runs))[0].same()) << "an RMS distance of 0.12 is over a twentieth of 2";
+  EXPECT_FALSE(same_from_both_sides(turned_pairs(set_ups(runs))[0]))
+      << "an RMS distance of 0.12 is over a twentieth of 2";
   runs[1] = lying("drop-turned", true, 0);
-  EXPECT_TRUE(turned_pairs(set_ups(runs))[0].same());
+  EXPECT_TRUE(same_from_both_sides(turned_pairs(set_ups(runs))[0]));
   runs[1].summary["expect.tunnelled_fraction_max"] = 0;
-  EXPECT_FALSE(turned_pairs(set_ups(runs))[0].same()) << "it leaks from this side alone";
+  EXPECT_FALSE(same_from_both_sides(turned_pairs(set_ups(runs))[0])) << "it leaks from this side alone";
   runs[0].summary["expect.tunnelled_fraction_max"] = 0;
-  EXPECT_TRUE(turned_pairs(set_ups(runs))[0].same()) << "a leak is a leak from either side";
+  EXPECT_TRUE(same_from_both_sides(turned_pairs(set_ups(runs))[0])) << "a leak is a leak from either side";
   runs[0].accuracy.metrics[0].values = {0, 0, 0, 0};
-  EXPECT_FALSE(turned_pairs(set_ups(runs))[0].same()) << "it never touched";
+  EXPECT_FALSE(same_from_both_sides(turned_pairs(set_ups(runs))[0])) << "it never touched";
   runs[0].accuracy.metrics = {};
-  EXPECT_FALSE(turned_pairs(set_ups(runs))[0].same()) << "whether it did is not known";
+  EXPECT_FALSE(same_from_both_sides(turned_pairs(set_ups(runs))[0])) << "whether it did is not known";
   runs[0] = runs[2];
   runs[0].header.scene = "drop";
   runs[1].accuracy.position.pop_back();
-  EXPECT_FALSE(turned_pairs(set_ups(runs))[0].same()) << "not known is not the same";
+  EXPECT_FALSE(same_from_both_sides(turned_pairs(set_ups(runs))[0])) << "not known is not the same";
   EXPECT_EQ(turned_json(turned_pairs(set_ups(runs)))[0]["apart_end"], nullptr);
+}
+
+TEST(Pairs, AreThoseThatTheStudyNames) {
+  std::vector<RunRecord> runs = {popping_run("a", "default", 0.0119, 0.9), popping_run("a", "fine", 0.01, 0.8),
+                                 popping_run("a", "x16", 0.01, 0.8), popping_run("b", "coarse", 0.0119, 0.9)};
+  EXPECT_EQ(run_pairs(runs, "finer").size(), 1u) << "x16, as studies of version 0.1 call it";
+  nlohmann::json pair = {{"relation", "finer"},
+                         {"with", {{"scene", {"sweep-2mps"}}, {"setting", {"coarse", "default"}}}}};
+  runs[1].header.environment["pairs"] = {pair};
+  auto pairs = run_pairs(runs, "finer");
+  ASSERT_EQ(pairs.size(), 2u);
+  for (const RunPair& p : pairs) EXPECT_EQ(p.run, &runs[0]);
+  EXPECT_EQ(pairs[0].other, &runs[1]);
+  runs[3] = popping_run("a", "coarse", 0.0119, 0.9);
+  EXPECT_EQ(run_pairs(runs, "finer")[1].run, &runs[3]) << "the first of the names that was run";
+  EXPECT_TRUE(run_pairs(runs, "scale").empty());
+  std::ifstream in(CLOTHBENCH_SOURCE_DIR "/scenarios/schema/study.schema.json");
+  for (const auto& name : nlohmann::json::parse(in)["definitions"]["pair"]["properties"]["relation"]["enum"])
+    EXPECT_NO_THROW(run_pairs(runs, name.get<std::string>()));
+  EXPECT_THROW(run_pairs(runs, "unknown"), Error);
 }
 
 /// A report of files: errors of a pulled strip without timed runs are given by speed, of one with them by time.

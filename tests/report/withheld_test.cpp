@@ -43,7 +43,7 @@ TEST(Withheld, TimesNotTakenAloneAreGoneFromEveryTableOfTimes) {
   const std::string head = headline(runs, Format::Markdown);
   EXPECT_NE(head.find("Not printed (–), 1 run: not timed alone: up to 11 jobs ran side by side."), std::string::npos)
       << head;
-  EXPECT_NE(head.find("1 of the timed runs is of files that don't say"), std::string::npos) << head;
+  EXPECT_NE(head.find("1 of the timed runs is from files that do not state"), std::string::npos) << head;
 }
 
 TEST(Withheld, FilesForMachinesHaveTheReasonInsteadOfTheTime) {
@@ -76,9 +76,9 @@ TEST(Withheld, TrialsOfSuchRunsCompareWithNothing) {
     }
   withhold_times(runs);
   withhold_times(alone);
-  EXPECT_EQ(in_short_table(runs).rows[1][4], "–");
+  EXPECT_EQ(in_short_table(runs).rows[1][5], "–");
   EXPECT_NE(in_short_table(runs).note.find("2 jobs"), std::string::npos);
-  EXPECT_NE(in_short_table(alone).rows[1][4], "–");
+  EXPECT_NE(in_short_table(alone).rows[1][5], "–");
   const auto tables = comparison_tables(compare_runs(alone, runs));
   EXPECT_EQ(tables[0].rows.size(), 1u);
   EXPECT_NE(tables[0].note.find("2 jobs"), std::string::npos) << tables[0].note;
@@ -93,7 +93,7 @@ RunRecord swept(const std::string& solver, double speed, int version, double sam
   c.accuracy.time_s = {0, 1};
   c.accuracy.metrics = {{"wrong_side_samples", "1", "", {0, samples}, version},
                         {"depth_vertex_m", "m", "", {0, 0}},
-                        {"contact_length_m", "m", "", {0, 0}}};
+                        {"contact_length_m", "m", "", {0, 0}, metric_version("contact_length_m")}};
   c.summary["imposed_speed_m_per_s"] = speed;
   c.summary["wrong_side_samples_max"] = samples;
   c.summary["depth_vertex_max_m"] = inside_kept == 1 ? 0 : 0.002;
@@ -115,9 +115,10 @@ TEST(Withheld, TwoVersionsOfARuleAreNotInOneTable) {
   const Table t = contact_table(ups.at(0));
   EXPECT_EQ(entry(t, "sweep-1", "now", "wrong side [samples]"), "7");
   EXPECT_EQ(entry(t, "sweep-1", "before", "wrong side [samples]"), "–");
-  EXPECT_EQ(entry(t, "sweep-1", "before", "crossed, longest [s]"), "–") << "computed from it too";
-  EXPECT_EQ(entry(t, "sweep-1", "before", "contour, most / settled [mm]"), "250 / –") << "another metric";
-  EXPECT_NE(t.note.find("wrong_side_samples was measured by version 1 of its rule, now 2"), std::string::npos)
+  EXPECT_EQ(entry(t, "sweep-1", "before", "longest contour [s]"), "–") << "computed from it too";
+  EXPECT_EQ(entry(t, "sweep-1", "before", "contour, greatest / settled [mm]"), "250 / –") << "another metric";
+  EXPECT_NE(t.note.find("wrong_side_samples was measured by version 1 of its definition; the newest here is 3"),
+            std::string::npos)
       << t.note;
   const Table v = verdict_table(ups);
   EXPECT_EQ(entry(v, "sweep-1", "fail", "before"), "fail") << "a bound that does not hang on it is broken";
@@ -127,29 +128,30 @@ TEST(Withheld, TwoVersionsOfARuleAreNotInOneTable) {
   EXPECT_EQ(runs[2].outcome.expect, "not measured");
   for (const MetricSeries& m : runs[1].accuracy.metrics) EXPECT_NE(m.name, "wrong_side_samples") << "nor is its series";
   EXPECT_EQ(runs_json(runs)[1]["metric_versions"].contains("wrong_side_samples"), false);
-  EXPECT_EQ(runs_json(runs)[0]["metric_versions"]["wrong_side_samples"], 2);
-  EXPECT_EQ(penetration_json(ups)[0]["withheld"], "wrong_side_samples was measured by version 1 of its rule, now 2");
+  EXPECT_EQ(runs_json(runs)[0]["metric_versions"]["wrong_side_samples"], 3);
+  EXPECT_EQ(penetration_json(ups)[0]["withheld"],
+            "wrong_side_samples was measured by version 1 of its definition; the newest here is 3");
 }
 
 TEST(Withheld, TheFirstSpeedThatFailsIsUnknownWhereALowerOneIs) {
   std::vector<RunRecord> runs;
   for (const double speed : {1.0, 2.0, 5.0}) {
     runs.push_back(swept("before", speed, 1, 0, speed == 2 ? 0 : 1));
-    runs.push_back(swept("sure", speed, speed == 5 ? 1 : 2, speed == 2));
+    runs.push_back(swept("sure", speed, speed == 5 ? 1 : 3, speed == 2));
   }
   withhold(runs);
   const Table t = leak_table(speed_sweeps(set_ups(runs)));
   ASSERT_EQ(t.rows.size(), 2u);
-  EXPECT_EQ(t.rows[1][2], "–") << "at 1 m/s nothing is known";
-  EXPECT_EQ(t.rows[1][3], "2 m/s: wrong side 1");
+  EXPECT_EQ(t.rows[1][3], "–") << "at 1 m/s nothing is known";
+  EXPECT_EQ(t.rows[1][4], "2 m/s: wrong side 1");
   EXPECT_NE(t.note.find("version 1"), std::string::npos) << t.note;
 }
 
 TEST(Withheld, AVersionNewerThanThisProgramsCountsTheMost) {
-  std::vector<RunRecord> runs = {swept("now", 1, 2, 7), swept("later", 1, 3, 7)};
+  std::vector<RunRecord> runs = {swept("now", 1, 3, 7), swept("later", 1, 4, 7)};
   withhold(runs);
   EXPECT_EQ(runs[0].withheld.at("wrong_side_samples_max"),
-            "wrong_side_samples was measured by version 2 of its rule, now 3");
+            "wrong_side_samples was measured by version 3 of its definition; the newest here is 4");
   EXPECT_TRUE(runs[1].withheld.empty());
 }
 

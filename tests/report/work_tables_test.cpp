@@ -82,7 +82,7 @@ TEST(BudgetTable, NamesWhoHasTheSmallerErrorAtAnyBudget) {
   EXPECT_EQ(row_of(t, "a").at(2), "–") << "0.05 ms";
   EXPECT_EQ(row_of(t, "a").at(6), "0.04") << "1 ms";
   EXPECT_EQ(row_of(t, "a").back(), "b: 15 times at 0.3 ms");
-  EXPECT_EQ(row_of(t, "b").back(), "a: 0.3 at 0.1 ms, where it has no result");
+  EXPECT_EQ(row_of(t, "b").back(), "a: 0.3 at 0.1 ms, where this solver has no result");
   const std::vector<RunRecord> small = {run("a", "x", 1e-4, 1e-6), run("b", "x", 1e-4, 1e-9)};
   EXPECT_EQ(row_of(budget_table(work_diagrams(small)), "a").back(), "never")
       << "below the mesh's own error no solver is better";

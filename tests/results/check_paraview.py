@@ -1,4 +1,4 @@
-"""ParaView opens the XDMF sidecar with each of its readers: the cloth, and a mesh that stands still. usage: check_paraview.py FOLDER"""
+"""ParaView opens the XDMF sidecar with each of its readers: the cloth, and a static mesh. usage: check_paraview.py FOLDER"""
 import pathlib
 import sys
 

@@ -31,7 +31,7 @@ TEST(FinerRows, TakeSixteenTimesTheSubsteps) {
     for (const std::size_t k : item.solvers) {
       const StudySolver& s = study.solvers[k];
       if (s.label != "x16" || s.solver == "xpbd") continue;
-      EXPECT_FALSE(item.timed) << item.scene.name;
+      EXPECT_FALSE(s.timed) << item.scene.name;
       if (!seen.insert(k).second) continue;
       const auto& all = solvers();
       const auto entry =
@@ -44,7 +44,7 @@ TEST(FinerRows, TakeSixteenTimesTheSubsteps) {
         EXPECT_EQ(substeps, kTimes * own) << s.name();
         continue;
       }
-      // It chooses: what it chooses is told by the bits.
+      // The solver chooses; the bits of the result show which number.
       const auto by_itself = after_some_frames(*entry, nlohmann::json::object(), item.scene);
       EXPECT_EQ(by_itself, after_some_frames(*entry, {{"substeps", substeps / kTimes}}, item.scene))
           << s.name() << ": its own rule gives another number now";

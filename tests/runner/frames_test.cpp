@@ -17,7 +17,7 @@ namespace {
 
 const std::string kHitch = R"(time.hitch={"frame":3,"dt_s":0.1})", kJitter = R"(time.jitter={"share":0.5})";
 
-/// A cloth that stands still, and what frames it was asked for.
+/// A cloth that does not move, and the frames that were requested of it.
 class Spy final : public ClothSolver {
  public:
   Spy(SolverInfo info, std::vector<FrameInput>& seen) : info_(std::move(info)), seen_(seen) {}
@@ -116,7 +116,7 @@ TEST(UnevenFrames, ReachTheSolverInThresholds) {
   expect_frames_of(s, seen);
   seen.clear();
   const SolverEntry entry = spy(seen);
-  end_of_run({&s, &entry, nlohmann::json::object()}, {}, "test");
+  end_of_run({&s, &entry, nlohmann::json::object()}, {{}, "test"});
   expect_frames_of(s, seen);
 }
 

@@ -90,7 +90,8 @@ struct Bad {
 class BadObj : public ::testing::TestWithParam<Bad> {};
 INSTANTIATE_TEST_SUITE_P(
     , BadObj,
-    ::testing::Values(Bad{"", "no triangle"}, Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "no triangle"},
+    ::testing::Values(Bad{"", "expected at least one triangle"},
+                      Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "expected at least one triangle"},
                       Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "mesh.obj"},
                       Bad{"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "triangle 0 (vertices 0, 1, 2) has no area"},
                       Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\n", "has no area"},

@@ -69,7 +69,7 @@ TEST_F(Colliders, FlatDropStartsThirtyCentimetresOverTheTable) {
 }
 
 TEST_F(Colliders, CornerDropHangsHalfOutside) {
-  const Scene s = load_scene("paper/desk-corner-high");
+  const Scene s = load_scene("contact/desk-slide");
   const auto room = assets::open_room(assets::locate_assets(false), "living_room");
   const auto& table = assets::find_table(room, "1088a241");
   const auto c = table.top_corners();
@@ -90,6 +90,20 @@ TEST_F(Colliders, CornerDropHangsHalfOutside) {
   }
   EXPECT_EQ(outside, inside);
   EXPECT_NEAR((x[3 * (x.size() / 3 - 1) + 1] - x[1]) / (std::sqrt(2.0) * 0.5), std::sin(M_PI / 3), 1e-9);
+}
+
+TEST_F(Colliders, ACornerDropMayStartInsideTheEdge) {
+  const std::string inset = "cloth.pose.over_table.inset_m=";
+  const Vec3 at = load_scene("contact/desk-slide").cloth.center_m,
+             in = load_scene("contact/desk-slide", {inset + "0.25"}).cloth.center_m;
+  const assets::Vector was(at[0], at[1], at[2]), is(in[0], in[1], in[2]);
+  EXPECT_NEAR((is - was).norm(), 0.25, 1e-9);
+  EXPECT_EQ(is.y(), was.y());
+  const auto room = assets::open_room(assets::locate_assets(false), "living_room");
+  const auto& table = assets::find_table(room, "1088a241");
+  const auto c = table.top_corners();
+  const assets::Vector center = (c[0] + c[1] + c[2] + c[3]) / 4;
+  EXPECT_LT((is - center).norm(), (was - center).norm()) << "towards the table's middle";
 }
 
 TEST_F(Colliders, HandsMoveFrameByFrame) {

@@ -73,8 +73,8 @@ TEST(Theory, HighestFrequencyOfTheSheetOf32) {
 }
 
 TEST(Theory, Float32FreezesAtATenthOfAKilometre) {
-  // Between 512 and 1024 m an ulp is 6.1e-5 m and half of it is gravity's way in 1.76 ms: 10 substeps of 1/60 s are
-  // shorter.
+  // Between 512 and 1024 m an ulp is 6.1e-5 m and half of it is the displacement by gravity in 1.76 ms: 10 substeps of
+  // 1/60 s are shorter.
   const Scene s = sheet(R"({"membrane_stiffness_N_per_m": 1000})");
   EXPECT_EQ(theory("float32-stagnation", s, 10), 512);
   EXPECT_EQ(theory("float32-stagnation", s, 8), 1024);

@@ -111,7 +111,7 @@ class Gate(unittest.TestCase):
         program = release / "clothbench"
         program.write_text(f'#!/bin/sh\n[ "$1" = study ] || exec "{CLOTHBENCH}" "$@"\n')
         program.chmod(0o755)
-        function = 'eval "$(sed -n "/^penetration()/,/^}/p" "$0")"; declare -F penetration >/dev/null || exit 9; penetration'
+        function = 'eval "$(sed -n "/^against_baseline()/,/^}/p" "$0")"; declare -F against_baseline >/dev/null || exit 9; against_baseline penetration'
         done = subprocess.run(["bash", "-c", function, SOURCE / "scripts" / "test.sh"], cwd=self.home, env=dict(os.environ), capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
         self.assertIn("results/baselines/penetration.json", done.stdout + done.stderr)

@@ -23,7 +23,7 @@ TEST(Passes, CountAlongAndAgainstTheNormal) {
 TEST(Passes, AreRelative) {
   // The cloth goes before the point: neither passes the other, however far both go.
   EXPECT_EQ(passes({0.2, 0.2, -0.1}, {0.2, 0.2, 1.6}, kTriangle, lifted(1.7)), 0);
-  // The cloth falls past a point that stands still.
+  // The cloth falls past a static point.
   EXPECT_EQ(passes({0.2, 0.2, 0}, {0.2, 0.2, 0}, lifted(1), lifted(-1)), 1);
 }
 

@@ -5,9 +5,9 @@
 
 #include "clothbench/error.hpp"
 #include "printed_table.hpp"
+#include "self_buckling.hpp"
 #include "truth/discrete_elastica.hpp"
 #include "truth/elastica.hpp"
-#include "truth/self_buckling.hpp"
 
 namespace clothbench::truth {
 namespace {

@@ -1,7 +1,7 @@
 #include "truth/catenary.hpp"
 
+#include "elastic_catenary.hpp"
 #include "printed_table.hpp"
-#include "truth/elastic_catenary.hpp"
 
 namespace clothbench::truth {
 namespace {

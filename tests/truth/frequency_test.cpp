@@ -1,8 +1,8 @@
 #include <boost/math/special_functions/laguerre.hpp>
 #include <numbers>
 
+#include "frequencies.hpp"
 #include "printed_table.hpp"
-#include "truth/frequencies.hpp"
 
 namespace clothbench::truth {
 namespace {

@@ -1,14 +1,14 @@
 #include <array>
 #include <numbers>
 
+#include "impact.hpp"
 #include "integrated.hpp"
 #include "printed_table.hpp"
+#include "spin.hpp"
 #include "truth/atwood.hpp"
 #include "truth/free_fall.hpp"
-#include "truth/impact.hpp"
 #include "truth/incline.hpp"
 #include "truth/pendulum.hpp"
-#include "truth/spin.hpp"
 
 namespace clothbench::truth {
 namespace {

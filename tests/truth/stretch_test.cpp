@@ -1,9 +1,9 @@
 #include <numbers>
 
 #include "printed_table.hpp"
+#include "sudden_gravity.hpp"
 #include "truth/heavy_stretch.hpp"
 #include "truth/pull_wave.hpp"
-#include "truth/sudden_gravity.hpp"
 
 namespace clothbench::truth {
 namespace {

@@ -184,7 +184,7 @@ TEST(ReferenceCases, ContactIsRefusedWhereTheClosedFormDoesNotHold) {
   };
   refused("incline-stick", {"colliders.0.margin_m=0.01"}, "at the collider's margin");
   refused("incline-stick", {"colliders.0.size_m=[0.2,0.1,1]"}, "all under the sheet");
-  refused("incline-stop", {"colliders.0.size_m=[0.3,0.1,1]"}, "under all of the sheet's way");
+  refused("incline-stop", {"colliders.0.size_m=[0.3,0.1,1]"}, "under the whole path of the sheet");
   refused("incline-slip", {"cloth.initial_velocity_m_per_s=[0,0,1]"}, "straight downhill");
   refused("incline-slip", {"material.damping_per_s=1"}, "no damping");
   refused("capstan-hold", {"cloth.grid=[43,5]"}, "lie evenly");

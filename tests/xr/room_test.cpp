@@ -53,7 +53,7 @@ TEST_F(Sessions, ARoomThatWasNeverScannedIsSaid) {
     run_loop(options("paper/desk-flat-low", 8));
     ADD_FAILURE() << "no error";
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("scan it"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("scan the room"), std::string::npos) << e.what();
   }
 }
 

@@ -20,16 +20,11 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
 Triangles copy(std::span<const std::array<std::uint32_t, 3>> t) { return {t.begin(), t.end()}; }
 
-/// Area of each vertex: a third of the area of its triangles.
-std::vector<double> vertex_areas(const TriangleMeshView& mesh) {
-  std::vector<double> areas(mesh.vertex_count(), 0);
-  double all = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const double share = area(mesh.triangle(t)) / 3;
-    for (const std::uint32_t v : mesh.triangles[t]) areas[v] += share;
-    all += share;
-  }
-  if (!(all > 0)) throw Error("contact cloth: expected at least one triangle with area");
+std::vector<double> areas_of(const TriangleMeshView& cloth) {
+  validate(cloth, "contact cloth");
+  std::vector<double> areas = vertex_areas(cloth);
+  if (!std::any_of(areas.begin(), areas.end(), [](double a) { return a > 0; }))
+    throw Error("contact cloth: expected at least one triangle with area");
   return areas;
 }
 
@@ -47,6 +42,7 @@ struct MeshObject {
         positions(mesh.positions.begin(), mesh.positions.end()),
         tree(mesh),
         welded(welded_vertices(mesh)),
+        border(mesh, welded),
         closed(is_closed(mesh, welded)),
         has_inside(solid == Solid::Nearly || (solid == Solid::Auto && closed)) {}
 
@@ -56,6 +52,7 @@ struct MeshObject {
   std::vector<double> positions, positions_before;  ///< the latter empty if it hasn't moved
   TriangleTree tree;
   std::vector<std::uint32_t> welded;
+  Border border;
   bool closed, has_inside;
 };
 
@@ -64,11 +61,12 @@ struct MeshObject {
 struct ContactProbe::State {
   explicit State(const TriangleMeshView& cloth)
       : triangles(copy(cloth.triangles)),
-        areas((contact::validate(cloth, "contact cloth"), vertex_areas(cloth))),
+        areas(areas_of(cloth)),
         mesh_depth(cloth),
-        history(cloth.vertex_count()) {}
+        links(edges_of(cloth.triangles)),
+        history(cloth.vertex_count(), links) {}
 
-  void advance(std::span<const double> positions);
+  void advance(std::span<const double> positions, bool contour);
   void probe_mesh(const TriangleMeshView& cloth, ContactSample&);
   void probe_shapes(const TriangleMeshView& cloth, ContactSample&) const;
   void set(const Contour& c, ContactSample& s) const {
@@ -88,21 +86,28 @@ struct ContactProbe::State {
   Triangles triangles;
   std::vector<double> areas;
   MeshDepth mesh_depth;
+  std::vector<Link> links;
   TunnelHistory history;
   std::vector<double> cloth_before;  ///< empty before the first probe
-  bool history_lost = false;
+  bool history_lost = false, contour_before = false;
   std::optional<MeshObject> mesh;
   std::vector<Capsule> shapes;
   double resolution_m = 0;
 };
 
-void ContactProbe::State::advance(std::span<const double> positions) {
+void ContactProbe::State::advance(std::span<const double> positions, bool contour) {
+  const std::vector<double>& from = mesh->positions_before.empty() ? mesh->positions : mesh->positions_before;
+  const StepEvidence evidence{
+      [either = contour || contour_before] { return either; },
+      [&](const Point<3>& p, const Point<3>& q) { return mesh->border.out_of_reach(p, q, from, mesh->positions); }};
+  contour_before = contour;
   if (!cloth_before.empty()) {
     if (mesh->positions_before.empty())
-      history.advance(cloth_before, positions, mesh->tree);
+      history.advance(cloth_before, positions, mesh->tree, evidence);
     else
       history.advance(cloth_before, positions,
-                      SweptMesh(mesh->view(mesh->positions_before), mesh->view(mesh->positions), mesh->welded));
+                      SweptMesh(mesh->view(mesh->positions_before), mesh->view(mesh->positions), mesh->welded),
+                      evidence);
   }
   cloth_before.assign(positions.begin(), positions.end());
 }
@@ -110,7 +115,7 @@ void ContactProbe::State::advance(std::span<const double> positions) {
 void ContactProbe::State::probe_mesh(const TriangleMeshView& cloth, ContactSample& s) {
   set(contour(cloth, mesh->tree), s);
   if (!history_lost) {
-    advance(cloth.positions);
+    advance(cloth.positions, s.contour_length_m > 0);
     s.tunnelled_fraction = history.fraction(areas);
     s.tunnelled_depth_max_m = 0;
     for (std::size_t i = 0; i < cloth.vertex_count(); ++i)
@@ -188,7 +193,7 @@ ContactSample ContactProbe::probe(std::span<const double> cloth_positions) {
 }
 
 void ContactProbe::reset() {
-  state_->history = TunnelHistory(state_->areas.size());
+  state_->history = TunnelHistory(state_->areas.size(), state_->links);
   state_->cloth_before.clear();
   state_->history_lost = false;
 }

@@ -32,8 +32,6 @@ class SignedDepths {
 
 }  // namespace
 
-double area(const Simplex<3>& v) { return 0.5 * (v[1] - v[0]).cross(v[2] - v[0]).norm(); }
-
 double clip_to_inside(const Simplex<3>& corners, const std::array<double, 3>& f, std::vector<Piece>& pieces) {
   const int count = static_cast<int>(std::count_if(f.begin(), f.end(), [](double x) { return x > 0; }));
   if (count == 0) return 0;

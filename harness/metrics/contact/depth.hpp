@@ -9,7 +9,7 @@ namespace clothbench::contact {
 /// How deep a cloth is in a closed object at one instant. The depth of a point is its distance to the object's surface
 /// if it is inside, and 0 outside. Areas are those of the deformed cloth. A cloth that is nowhere inside gives zeros.
 struct Depth {
-  double max_m = 0;          ///< over all sample points
+  double max_m = 0;          ///< over all sample points; exact for capsules and spheres
   double vertex_max_m = 0;   ///< over the vertices alone
   double p99_m = 0;          ///< 99 % of the penetrating area is no deeper
   double mean_m = 0;         ///< over the penetrating area
@@ -29,8 +29,6 @@ double clip_to_inside(const Simplex<3>& corners, const std::array<double, 3>& f,
 
 /// Area, mean and percentile of pieces; reorders them.
 void summarize(std::vector<Piece>& pieces, double cloth_area_m2, Depth& depth);
-
-double area(const Simplex<3>& triangle);
 
 /// Depth of a cloth in a closed or nearly closed mesh.
 ///

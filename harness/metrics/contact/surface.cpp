@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "metrics/contact/touch.hpp"
+
 namespace clothbench::contact {
 namespace {
 
@@ -82,6 +84,16 @@ std::optional<Nearest> NearSurface::operator()(const Point<3>& p, double bound_m
   const Simplex<3> was = TriangleMeshView{before, mesh_.triangles}.triangle(t);
   out.carried_m = at - (w[0] * was[0] + w[1] * was[1] + w[2] * was[2]);
   return out;
+}
+
+bool NearSurface::within(const Simplex<3>& triangle, double reach_m) const {
+  const Box tight = Box(triangle[0]).extend(triangle[1]).extend(triangle[2]);
+  const Point<3> out = Point<3>::Constant(reach_m);
+  bool found = false;
+  tree_.for_each_overlapping(Box(tight.min() - out, tight.max() + out), [&](int t) {
+    found = found || contact::within(triangle, mesh_.triangle(source_[static_cast<std::size_t>(t)]), reach_m);
+  });
+  return found;
 }
 
 }  // namespace clothbench::contact

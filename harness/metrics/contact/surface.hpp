@@ -28,6 +28,9 @@ class NearSurface {
   /// is static.
   std::optional<Nearest> operator()(const Point<3>& p, double bound_m, std::span<const double> before = {}) const;
 
+  /// Whether a triangle has a point at most `reach_m` from the mesh.
+  bool within(const Simplex<3>& triangle, double reach_m) const;
+
  private:
   TriangleMeshView mesh_;
   std::vector<std::size_t> source_;  ///< indices in the mesh of the triangles with area

@@ -72,6 +72,27 @@ bool is_closed(const TriangleMeshView& mesh, std::span<const std::uint32_t> weld
   return !passes.empty();
 }
 
+std::vector<Link> edges_of(std::span<const std::array<std::uint32_t, 3>> triangles) {
+  std::vector<Link> edges;
+  for (const auto& corner : triangles)
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t a = corner[i], b = corner[(i + 1) % 3];
+      edges.push_back({std::min(a, b), std::max(a, b)});
+    }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+double area(const Simplex<3>& v) { return 0.5 * (v[1] - v[0]).cross(v[2] - v[0]).norm(); }
+
+std::vector<double> vertex_areas(const TriangleMeshView& mesh) {
+  std::vector<double> areas(mesh.vertex_count(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) areas[v] += area(mesh.triangle(t)) / 3;
+  return areas;
+}
+
 BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
   std::vector<int> items(boxes_.size());
   std::iota(items.begin(), items.end(), 0);

@@ -36,6 +36,17 @@ std::vector<std::uint32_t> welded_vertices(const TriangleMeshView&);
 /// directions. Then the generalised winding number is an integer off the surface. `welded` comes from welded_vertices.
 bool is_closed(const TriangleMeshView&, std::span<const std::uint32_t> welded);
 
+/// Two neighbouring points of a cloth, by number.
+using Link = std::array<std::uint32_t, 2>;
+
+/// The edges of triangles, each once, the lower vertex first, in order.
+std::vector<Link> edges_of(std::span<const std::array<std::uint32_t, 3>> triangles);
+
+/// Rest area [m2] of each vertex: a third of the area of each of its triangles.
+std::vector<double> vertex_areas(const TriangleMeshView& at_rest);
+
+double area(const Simplex<3>& triangle);
+
 using Box = Eigen::AlignedBox3d;
 
 /// A hierarchy of boxes over items 0..n-1.

@@ -1,18 +1,19 @@
 #include "metrics/contact/tunnel.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
 #include <utility>
+
+#include "metrics/contact/touch.hpp"
 
 namespace clothbench::contact {
 namespace {
 
 Point<4> at_time(const Point<3>& p, double t) { return {p[0], p[1], p[2], t}; }
 
-template <class Count>
-void advance_all(std::span<const double> from, std::span<const double> to, std::vector<int>& counts, Count count) {
-  for (std::size_t i = 0; i < counts.size(); ++i)
-    counts[i] += count(Point<3>(Point<3>::Map(from.data() + 3 * i)), Point<3>(Point<3>::Map(to.data() + 3 * i)));
-}
+Point<3> vertex_of(std::span<const double> x, std::size_t i) { return Point<3>::Map(x.data() + 3 * i); }
 
 }  // namespace
 
@@ -66,13 +67,73 @@ int SweptMesh::signed_crossings(const Point<3>& p, const Point<3>& q) const {
   return sum;
 }
 
-void TunnelHistory::advance(std::span<const double> from, std::span<const double> to, const TriangleTree& mesh) {
-  advance_all(from, to, counts_,
-              [&](const Point<3>& p, const Point<3>& q) { return contact::signed_crossings(p, q, mesh); });
+Border::Border(const TriangleMeshView& mesh, std::span<const std::uint32_t> welded) {
+  std::map<Link, int> passes;
+  for (const auto& corner : mesh.triangles)
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t a = welded[corner[i]], b = welded[corner[(i + 1) % 3]];
+      if (a != b) passes[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  for (const auto& [edge, sum] : passes)
+    if (sum != 0) edges_.push_back(edge);
 }
 
-void TunnelHistory::advance(std::span<const double> from, std::span<const double> to, const SweptMesh& mesh) {
-  advance_all(from, to, counts_, [&](const Point<3>& p, const Point<3>& q) { return mesh.signed_crossings(p, q); });
+bool Border::out_of_reach(const Point<3>& p, const Point<3>& q, std::span<const double> from,
+                          std::span<const double> to) const {
+  double moved = 0;
+  for (std::size_t i = 0; i < from.size() / 3; ++i)
+    moved = std::max(moved, (vertex_of(to, i) - vertex_of(from, i)).norm());
+  const auto distance = [&](const Point<3>& point, std::span<const double> x) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [a, b] : edges_)
+      least = std::min(least, squared_distance(point, point, vertex_of(x, a), vertex_of(x, b)));
+    return std::sqrt(least);
+  };
+  return distance(p, from) + distance(q, to) > 2 * ((q - p).norm() + moved);
+}
+
+template <class Count>
+void TunnelHistory::add(std::span<const double> from, std::span<const double> to, Count count,
+                        const StepEvidence& evidence) {
+  std::vector<int> step(counts_.size());
+  for (std::size_t i = 0; i < step.size(); ++i) step[i] = count(vertex_of(from, i), vertex_of(to, i));
+  drop_unproven(step, from, to, evidence);
+  for (std::size_t i = 0; i < step.size(); ++i) counts_[i] += step[i];
+}
+
+void TunnelHistory::advance(std::span<const double> from, std::span<const double> to, const TriangleTree& mesh,
+                            const StepEvidence& evidence) {
+  add(
+      from, to, [&](const Point<3>& p, const Point<3>& q) { return contact::signed_crossings(p, q, mesh); }, evidence);
+}
+
+void TunnelHistory::advance(std::span<const double> from, std::span<const double> to, const SweptMesh& mesh,
+                            const StepEvidence& evidence) {
+  add(
+      from, to, [&](const Point<3>& p, const Point<3>& q) { return mesh.signed_crossings(p, q); }, evidence);
+}
+
+void TunnelHistory::drop_unproven(std::vector<int>& step, std::span<const double> from, std::span<const double> to,
+                                  const StepEvidence& evidence) const {
+  const auto differ = [&](const Link& l) { return step[l[0]] != step[l[1]]; };
+  if (std::none_of(links_.begin(), links_.end(), differ) || evidence.contour()) return;
+  std::vector<bool> proven(step.size(), false);
+  for (std::size_t i = 0; i < step.size(); ++i)
+    proven[i] = step[i] != 0 && evidence.out_of_reach(vertex_of(from, i), vertex_of(to, i));
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [a, b] : links_)
+      if (step[a] == step[b] && step[a] != 0 && proven[a] != proven[b]) proven[a] = proven[b] = changed = true;
+  }
+  // From the border of a piece inwards.
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [a, b] : links_) {
+      if (step[a] == step[b]) continue;
+      for (const std::uint32_t i : {a, b})
+        if (!proven[i] && step[i] != 0) step[i] = 0, changed = true;
+    }
+  }
 }
 
 double TunnelHistory::fraction(std::span<const double> weights) const {

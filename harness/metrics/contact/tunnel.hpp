@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "metrics/contact/triangle_mesh.hpp"
@@ -35,22 +36,58 @@ class SweptMesh {
   BoxTree tree_;
 };
 
+/// The edges at which a mesh is open.
+class Border {
+ public:
+  /// `welded` from welded_vertices(mesh). Copies what it needs.
+  Border(const TriangleMeshView& mesh, std::span<const std::uint32_t> welded);
+
+  /// Whether a point cannot have gone round the border in a step from p to q: it was before and after, together,
+  /// farther from it than twice its way. `from`, `to`: the mesh's positions; its greatest displacement is added to the
+  /// point's.
+  bool out_of_reach(const Point<3>& p, const Point<3>& q, std::span<const double> from,
+                    std::span<const double> to) const;
+
+ private:
+  std::vector<Link> edges_;
+};
+
+/// What shows that the crossings of a step were made, asked only where they depend on it.
+struct StepEvidence {
+  std::function<bool()> contour;  ///< whether cloth and mesh cross at the step's start or end
+  /// Whether a point on its way cannot have gone round the border.
+  std::function<bool(const Point<3>&, const Point<3>&)> out_of_reach;
+};
+
 /// Signed crossing count of every vertex since the start. It is 0 for a vertex on its initial side: one that never
 /// crossed, crossed back, or went round the border. Any other count means that the vertex has tunnelled.
+///
+/// The straight path between two frames may cut a border that the vertex went round. If there is no contour, no link of
+/// the cloth crosses the mesh, and a link between a vertex that crossed and one that did not leads round a border. So
+/// without a contour the crossings of linked vertices that crossed alike count only if they have no link to others, or
+/// if the border is out of reach for one of them.
 class TunnelHistory {
  public:
-  explicit TunnelHistory(std::size_t vertices) : counts_(vertices, 0) {}
+  /// `links` between the vertices. Without them every crossing counts.
+  explicit TunnelHistory(std::size_t vertices, std::vector<Link> links = {})
+      : counts_(vertices, 0), links_(std::move(links)) {}
 
   /// One step; both position arrays xyz interleaved and finite.
-  void advance(std::span<const double> from, std::span<const double> to, const TriangleTree& mesh);
-  void advance(std::span<const double> from, std::span<const double> to, const SweptMesh& mesh);
+  void advance(std::span<const double> from, std::span<const double> to, const TriangleTree& mesh, const StepEvidence&);
+  void advance(std::span<const double> from, std::span<const double> to, const SweptMesh& mesh, const StepEvidence&);
 
   std::span<const int> counts() const { return counts_; }
   /// Share of the total weight (rest area) of the vertices whose count isn't 0.
   double fraction(std::span<const double> weights) const;
 
  private:
+  template <class Count>
+  void add(std::span<const double> from, std::span<const double> to, Count count, const StepEvidence&);
+  void drop_unproven(std::vector<int>& step, std::span<const double> from, std::span<const double> to,
+                     const StepEvidence&) const;
+
   std::vector<int> counts_;
+  std::vector<Link> links_;
 };
 
 }  // namespace clothbench::contact

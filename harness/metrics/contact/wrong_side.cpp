@@ -54,20 +54,17 @@ class WrongSide::Passage {
 };
 
 WrongSide::WrongSide(std::span<const Bone> bones, const Point<3>& side, double reach_m, std::size_t samples,
-                     Weave weave)
-    : side_(side), reach_m_(reach_m), weave_(std::move(weave)) {
+                     std::vector<Link> links)
+    : side_(side), reach_m_(reach_m), links_(std::move(links)) {
   if (!(std::abs(side.norm() - 1) <= 1e-9) || !(reach_m > 0))
     throw Error("wrong side: expected a side of length 1 and a reach above 0");
-  if (!weave_.links.empty() && weave_.border.size() != samples)
-    throw Error("wrong side: " + std::to_string(weave_.border.size()) + " samples on the border or not, expected " +
-                std::to_string(samples));
-  for (const Link& l : weave_.links)
+  for (const Link& l : links_)
     if (!(std::max(l[0], l[1]) < samples))
       throw Error("wrong side: a link of sample " + std::to_string(std::max(l[0], l[1])) + ", expected below " +
                   std::to_string(samples));
   links_of_.resize(samples);
-  for (std::size_t l = 0; l < weave_.links.size(); ++l)
-    for (const std::uint32_t i : weave_.links[l]) links_of_[i].push_back(l);
+  for (std::size_t l = 0; l < links_.size(); ++l)
+    for (const std::uint32_t i : links_[l]) links_of_[i].push_back(l);
   std::vector<double> ends;
   for (const Bone& b : bones)
     for (const Point<3>& p : b) append(ends, p);
@@ -107,7 +104,8 @@ WrongSide::WrongSide(std::span<const Bone> bones, const Point<3>& side, double r
       add_quad(chain.endless.triangles, 4 * (chain.bones.size() + k));
     for (Surface* s : {&chain.wake, &chain.endless}) s->odd.resize(samples);
     chain.rounded.emplace(samples);
-    chain.lapped.resize(samples);
+    chain.torn.resize(links_.size());
+    chain.through.resize(samples);
     place(chain, bones);
     chains_.push_back(std::move(chain));
   }
@@ -139,7 +137,7 @@ void WrongSide::place(Chain& chain, std::span<const Bone> bones) const {
   }
 }
 
-void WrongSide::advance(std::span<const double> samples, std::span<const Bone> bones) {
+void WrongSide::advance(std::span<const double> samples, std::span<const Bone> bones, const Evidence& evidence) {
   lost_ = lost_ || !all_finite(samples);
   if (lost_) return;
   for (Chain& chain : chains_) {
@@ -148,13 +146,14 @@ void WrongSide::advance(std::span<const double> samples, std::span<const Bone> b
     if (before_.empty()) continue;
     const TriangleMeshView out{beyond, chain.beyond.triangles};
     chain.rounded->advance(before_, samples,
-                           SweptMesh(out, {chain.beyond.at, chain.beyond.triangles}, welded_vertices(out)));
+                           SweptMesh(out, {chain.beyond.at, chain.beyond.triangles}, welded_vertices(out)),
+                           {[] { return true; }, {}});
     const Passage passage({wake, chain.wake.triangles}, {chain.wake.at, chain.wake.triangles});
     follow(chain.wake, passage, samples);
-    if (weave_.links.empty()) continue;
+    if (links_.empty()) continue;
     const Passage endless_passage({endless, chain.endless.triangles}, {chain.endless.at, chain.endless.triangles});
     follow(chain.endless, endless_passage, samples);
-    find_laps(chain, passage, endless_passage, samples);
+    find_torn(chain, passage, endless_passage, samples, evidence);
   }
   before_.assign(samples.begin(), samples.end());
 }
@@ -170,7 +169,7 @@ void WrongSide::follow(Surface& surface, const Passage& passage, std::span<const
   }
   for (const std::size_t i : unclear) {
     int votes = 0;
-    for (const std::size_t l : links_of_[i]) votes += parted(surface, passage, weave_.links[l], samples) ? 1 : -1;
+    for (const std::size_t l : links_of_[i]) votes += parted(surface, passage, links_[l], samples) ? 1 : -1;
     if (votes > 0) surface.odd[i] = !surface.odd[i];
   }
 }
@@ -180,29 +179,43 @@ bool WrongSide::parted(const Surface& surface, const Passage& passage, const Lin
   return passage.between(at(samples, link[0]), at(samples, link[1])) != (surface.odd[link[0]] != surface.odd[link[1]]);
 }
 
-void WrongSide::find_laps(Chain& chain, const Passage& wake, const Passage& endless,
-                          std::span<const double> samples) const {
+void WrongSide::find_torn(Chain& chain, const Passage& wake, const Passage& endless, std::span<const double> samples,
+                          const Evidence& evidence) const {
   const std::vector<bool>& odd = chain.wake.odd;
-  std::vector<bool> torn(odd.size(), false), bordered(odd.size(), false);
-  for (const Link& l : weave_.links)
-    if ((odd[l[0]] || odd[l[1]]) && parted(chain.wake, wake, l, samples) && parted(chain.endless, endless, l, samples))
-      for (const std::uint32_t i : l) torn[i] = odd[i];
-  for (std::size_t i = 0; i < odd.size(); ++i) bordered[i] = odd[i] && weave_.border[i];
-  // Both flags spread from one sample of a piece to all others.
+  std::vector<bool>& through = chain.through;
+  through.assign(odd.size(), false);
+  for (std::size_t l = 0; l < links_.size(); ++l) {
+    const Link& ends = links_[l];
+    const auto& [a, b] = ends;
+    // A link between even samples is looked at only where its state can change.
+    if (!odd[a] && !odd[b] && !chain.torn[l] && !evidence.contour) continue;
+    const bool torn = parted(chain.wake, wake, ends, samples) && parted(chain.endless, endless, ends, samples);
+    const auto shown = [&] {
+      return evidence.contour || (evidence.crosses && evidence.crosses(at(samples, a), at(samples, b)));
+    };
+    chain.torn[l] = torn && (chain.torn[l] || shown());
+    if (!chain.torn[l]) continue;
+    for (const std::uint32_t i : ends) through[i] = through[i] || odd[i];
+  }
+  // It spreads from one sample of a piece to all others.
   for (bool changed = true; changed;) {
     changed = false;
-    for (const auto& [a, b] : weave_.links)
-      for (std::vector<bool>* of : {&torn, &bordered})
-        if (odd[a] && odd[b] && (*of)[a] != (*of)[b]) (*of)[a] = (*of)[b] = changed = true;
+    for (const auto& [a, b] : links_)
+      if (odd[a] && odd[b] && through[a] != through[b]) through[a] = through[b] = changed = true;
   }
-  for (std::size_t i = 0; i < odd.size(); ++i)
-    chain.lapped[i] = odd[i] && (chain.lapped[i] || (bordered[i] && !torn[i]));
+}
+
+bool WrongSide::Chain::wrong(std::size_t sample) const {
+  return wake.odd[sample] && (torn.empty() || through[sample]) && rounded->counts()[sample] == 0;
 }
 
 bool WrongSide::wrong(std::size_t sample) const {
-  return std::any_of(chains_.begin(), chains_.end(), [&](const Chain& c) {
-    return c.wake.odd[sample] && !c.lapped[sample] && c.rounded->counts()[sample] == 0;
-  });
+  return std::any_of(chains_.begin(), chains_.end(), [&](const Chain& c) { return c.wrong(sample); });
+}
+
+bool WrongSide::laid_over(std::size_t sample) const {
+  return !wrong(sample) &&
+         std::any_of(chains_.begin(), chains_.end(), [&](const Chain& c) { return c.wake.odd[sample]; });
 }
 
 std::size_t WrongSide::count() const {

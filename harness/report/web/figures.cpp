@@ -144,7 +144,7 @@ Table environment_table(const std::vector<RunRecord>& runs) {
     ++here.runs;
     here.solvers.insert(c.header.solver);
   }
-  Table t{"Where the runs ran", "As each result file says.", {{"what"}}};
+  Table t{"Machines of the runs", "As stated in each result file.", {{"what"}}};
   for (const Place& p : places)
     t.rows[0].push_back(fmt::format("{} ({} run{})", fmt::join(p.solvers, ", "), p.runs, p.runs == 1 ? "" : "s"));
   for (std::size_t k = 0; k < std::size(kKeys); ++k) {

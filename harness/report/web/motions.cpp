@@ -212,7 +212,7 @@ Motions motions_of(const std::vector<RunRecord>& runs, const std::set<std::strin
   };
   say(beyond, "the page holds 120; those of other settings are left out first");
   say(too_large, "too large at the coarsest thinning, or not finite from the start");
-  say(without_grid, "the cloth is no grid");
+  say(without_grid, "the cloth is not a grid");
   Motions out = packer.take();
   auto& shown = out.document["runs"];
   std::stable_sort(shown.begin(), shown.end(), [](const json& a, const json& b) {

@@ -54,7 +54,7 @@ json page_document(const std::vector<RunRecord>& runs, const Page& page, const M
 std::string page_html(const std::string& html, const json& document, const std::vector<std::string>& blobs) {
   const std::size_t at = html.find(kDataMark);
   if (at == std::string::npos)
-    throw Error("the page's template has no place for data: this build is broken", ExitCode::CheckFailed);
+    throw Error("the page's template has no place for the data; build clothbench again", ExitCode::CheckFailed);
   std::string data = "<script type=\"application/json\" id=\"clothbench-data\">" +
                      script_safe(document.dump(-1, ' ', true, json::error_handler_t::replace)) + "</script>\n";
   for (std::size_t k = 0; k < blobs.size(); ++k)

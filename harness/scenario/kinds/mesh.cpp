@@ -68,7 +68,7 @@ void read_room(const json& j, ColliderReader& reader, Collider& c) {
     }
     const auto mode = cut == "crossing" ? assets::CutMode::Crossing : assets::CutMode::AnyVertexInside;
     round_table = assets::cut(room.mesh, box, mode).mesh;
-    if (round_table.triangles.empty()) reader.refuse("", "no triangle of the room is in the box");
+    if (round_table.triangles.empty()) reader.refuse("", "expected at least one triangle of the room in the box");
   } else if (cut != "none") {
     reader.refuse("", fmt::format("\"table\" or \"points_m\" is missing; cut \"{}\" goes round one", cut));
   }

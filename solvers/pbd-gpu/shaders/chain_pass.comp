@@ -12,6 +12,8 @@ layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; }
 layout(std430, binding = BIND_VELOCITIES) coherent buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_POSITION_COMPENSATION) buffer PositionCompensation { vec4 rx[]; };
 layout(std430, binding = BIND_VELOCITY_COMPENSATION) buffer VelocityCompensation { vec4 rv[]; };
+layout(std430, binding = BIND_LAST_POSITIONS) buffer LastPositions { vec4 lx[]; };
+layout(std430, binding = BIND_LAST_VELOCITIES) buffer LastVelocities { vec4 lv[]; };
 layout(std430, binding = BIND_CHAIN_ENTRIES) readonly buffer Entries { ChainEntry entries[]; };
 layout(std430, binding = BIND_TETHER_ENDS) readonly buffer TetherEnds { TetherEnd tether_ends[]; };  // TETHERS a vertex
 layout(std430, binding = BIND_CHAIN_FAMILIES) readonly buffer Ranges { ChainRange ranges[]; };
@@ -19,7 +21,7 @@ layout(push_constant) uniform Push { ChainConstants p; };
 #include "substep.glsl"
 #include "device_barrier.glsl"
 
-vec3 pos, vel, rest_pos, rest_vel;
+vec3 pos, vel, rest_pos, rest_vel, last_pos, last_vel;
 float w;
 
 void move(vec3 step) {
@@ -43,7 +45,7 @@ void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
 /// Pinned vertices are never written, so reading them here races with nothing.
 void integrate(uint i) {
   vel = limited(vel);
-  fall(pos, vel, rest_pos, rest_vel);
+  fall(pos, vel, rest_pos, rest_vel, last_pos, last_vel);
   for (uint t = 0u; t < TETHERS; ++t) {
     COUNT_READ(24u)
     TetherEnd end = tether_ends[TETHERS * i + t];
@@ -61,14 +63,14 @@ void stretch(ChainEntry entry, uint rounds) {
   bool is = entry.rest >= 0.0 && sum > 0.0 && square > 0.0;
   float per_l = inversesqrt(square), l = square * per_l;
   vec3 g = is ? e * per_l : vec3(0.0);
-  // As in lines.glsl: what is pulled taut between held vertices gives way, by what keeps it regular and its tension from
+  // As in lines.glsl: what is pulled taut between held vertices yields, by what keeps it regular and its tension from
   // turning links farther than a substep resolves.
   float firm = entry.regularisation;
   if (firm != 0.0 && entry.rest > 0.0) {
     if (entry.compliance == 0.0) firm = max(firm, 4.0 * (l / entry.rest - 5.0));
     else if ((FEATURES & LINES_SHEAR) == 0u) firm = max(firm, l / entry.rest - 1.0);
   }
-  float soft = max(entry.compliance * p.per_h * p.per_h, firm * max(w, next.w));
+  float soft = max(entry.compliance * p.per_h * p.per_h * p.per_keep, firm * max(w, next.w));
   exchange(vec4(g, 0.0), 1u, below, above);
   float per_diagonal = is ? 1.0 / (sum + soft) : 1.0;
   // x: of the link before, y: of the link after, z: right side; the diagonal is 1.
@@ -87,7 +89,7 @@ void pass(uint number, bool first, uint rounds) {
   ChainEntry entry = LOAD(16u, entries, number);
   bool is = entry.vertex != CHAIN_NO_VERTEX;
   uint i = is ? entry.vertex : 0u;
-  pos = vel = rest_pos = rest_vel = vec3(0.0);
+  pos = vel = rest_pos = rest_vel = last_pos = last_vel = vec3(0.0);
   w = 0.0;
   if (is) {
     vec4 here = LOAD16(x, i);
@@ -97,6 +99,10 @@ void pass(uint number, bool first, uint rounds) {
     if (first) {
       rest_pos = LOAD16(rx, i).xyz;
       rest_vel = LOAD16(rv, i).xyz;
+      if (kPredicts) {
+        last_pos = LOAD16(lx, i).xyz;
+        last_vel = LOAD16(lv, i).xyz;
+      }
       if (w > 0.0) integrate(i);
     }
   }
@@ -107,6 +113,9 @@ void pass(uint number, bool first, uint rounds) {
   if (!first) return;
   STORE16(rx, i, vec4(rest_pos, 0.0));
   STORE16(rv, i, vec4(rest_vel, 0.0));
+  if (!kPredicts) return;
+  STORE16(lx, i, vec4(last_pos, 0.0));
+  STORE16(lv, i, vec4(last_vel, 0.0));
 }
 
 void main() {

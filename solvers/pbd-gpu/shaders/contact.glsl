@@ -5,12 +5,12 @@ layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; }
 layout(push_constant) uniform Push { PaperContactConstants p; };
 PAPER_CONSTANTS(SPECIALIZE)
 
-/// Moves `at` by `push` along `normal` and takes the share `friction` off its tangential way since `from`.
+/// Moves `at` by `push` along `normal` and takes the share `friction` off its tangential displacement since `from`.
 vec3 touched(vec3 at, vec3 from, vec3 normal, float push, float friction) {
   at += push * normal;
   if (FRICTION == 0u) return at;
-  vec3 way = at - from;
-  return at - min(friction, 1.0) * (way - dot(way, normal) * normal);
+  vec3 displacement = at - from;
+  return at - min(friction, 1.0) * (displacement - dot(displacement, normal) * normal);
 }
 
 /// Out of the ball of radius `reach` round `center`; its very centre has no direction and stays.

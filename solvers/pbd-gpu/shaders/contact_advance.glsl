@@ -1,19 +1,19 @@
 // Takes a point of the cloth from where it was at the substep's start, on the right side of everything, towards where
-// integration and constraints have put it, without passing through anything on the way: conservative advancement
+// integration and constraints have put it, without passing through anything on its path: conservative advancement
 // (Mirtich 1996) in space and time, against planes. Where it is at the end is the side it remembers.
 const uint kSteps = 8u;
 bool touched;  // some contact was active
 
-/// The contact's answer: no approach is left in the velocity, Coulomb friction takes of the rest, and the way left goes
+/// The contact's answer: no approach is left in the velocity, Coulomb friction takes of the rest, and the displacement left goes
 /// no nearer than the margin. A push out of the margin moves the point but is no velocity: it would pop.
 void respond_to(Touch t, inout vec3 vel) {
   vec3 surface = t.delta * p.frames_per_s;
   vec3 relative = vel - surface;
   float approach = max(0.0, -dot(relative, t.n));
   relative += approach * t.n;
-  vec3 way = left - part * t.delta;
-  float along = dot(way, t.n);
-  vec3 slide = way - along * t.n;
+  vec3 remaining = left - part * t.delta;
+  float along = dot(remaining, t.n);
+  vec3 slide = remaining - along * t.n;
   if (FRICTION == 1u) {
     float most = t.friction * approach;
     vec3 slip = relative - dot(relative, t.n) * t.n;
@@ -60,7 +60,7 @@ vec3 search(vec3 from, vec3 to, uint owner, bool wanted, inout vec3 vel, out flo
       }
       continue;
     }
-    // Nothing in the way: not by the sum, from + (to - from) is not `to` in its last digit.
+    // The path is free: not by the sum, from + (to - from) is not `to` in its last digit.
     if (k == 0u && free_part == 1.0) {
       done = true;
       continue;

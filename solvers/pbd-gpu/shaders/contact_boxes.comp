@@ -1,5 +1,5 @@
 #version 450
-// Boxes of the clusters of moving meshes, round their way through the frame: corners move in straight lines.
+// Boxes of the clusters of moving meshes, round their paths through the frame: corners move in straight lines.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_CLUSTERS) readonly buffer Clusters { MeshCluster clusters[]; };
@@ -14,15 +14,15 @@ void main() {
   if (k >= p.count) return;
   MeshCluster cluster = LOAD16(clusters, p.first + k);
   vec3 low = vec3(1e30), high = vec3(-1e30);
-  float way = 0.0;
+  float displacement = 0.0;
   for (uint t = 0u; t < cluster.count; ++t) {
     uvec4 corners = LOAD16(triangles, cluster.first + t);
     for (int c = 0; c < 3; ++c) {
       vec3 start = LOAD16(moving_start, corners[c]).xyz, end = LOAD16(moving_end, corners[c]).xyz;
       low = min(low, min(start, end));
       high = max(high, max(start, end));
-      way = max(way, distance(start, end));
+      displacement = max(displacement, distance(start, end));
     }
   }
-  STORE32(cluster_boxes, p.first + k, ClusterBox(vec4(low, way), vec4(high, 0.0)));
+  STORE32(cluster_boxes, p.first + k, ClusterBox(vec4(low, displacement), vec4(high, 0.0)));
 }

@@ -1,6 +1,6 @@
 #version 450
 // Start of a frame: how far each vertex may go in it, and, a bit each, the clusters of triangles that it, or a sample on an
-// edge that begins with it, can meet on the way. A bound that is kept (contact_vertices) and not a guess, and a list that
+// edge that begins with it, can meet on its path. A bound that is kept (contact_vertices) and not a guess, and a list that
 // cannot overflow. Before the words of a vertex' bits come blocks, a bit for each word that is not 0: of a whole room's hundreds
 // of words few are looked at.
 #extension GL_GOOGLE_include_directive : require
@@ -33,7 +33,7 @@ void main() {
       uint bits = 0u;
       for (uint k = 32u * word + lane(); k < min(32u * word + 32u, STANDING_CLUSTERS + MOVING_CLUSTERS); k += LANES) {
         ClusterBox box = LOAD(32u, cluster_boxes, k);
-        // Twice the margin: one to be held at, one for the push of the last substep, made after the way was cut to reach.
+        // Twice the margin: one to be held at, one for the push of the last substep, made after the displacement was cut to the reach.
         float margin = 2.0 * max(LOAD16(clusters, k).margin, max(p.least_margin_m, p.border_margin_m));
         vec3 apart = max(max(box.low.xyz - from, from - box.high.xyz), 0.0);
         float kept = p.sample_reach_m + margin + p.part * carried, range = reach + kept;

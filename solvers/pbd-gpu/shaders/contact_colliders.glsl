@@ -25,7 +25,7 @@ const float kKeep = 0.02;
 const float kSlack = 0.05;
 const float kTolerance = 1e-4;  // a push by less is none
 const float kFlatShare = 0.6;  // what samples keep of the margin of what stands and is flat or round
-const float kTaken = 0.9;       // of the free way, the rest is left for rounding
+const float kTaken = 0.9;       // of the free part of the path; the rest is left for rounding
 const float kOther = 0.8;       // cosine above which two normals are one contact's: neighbours in a nearly flat mesh
 const float kFar = 1e30;
 
@@ -34,22 +34,22 @@ const float kFar = 1e30;
 /// One convex piece of a collider as one point of the cloth sees it.
 struct Touch {
   float gap;             // distance beyond the margin
-  float need;            // by how much the way left would end inside the margin of this piece, taken as a plane
+  float need;            // depth inside the margin of this piece, taken as a plane, at the end of the displacement that is left
   float margin, friction;
-  vec3 n, delta;         // from the piece to the point; way of its nearest point in the whole frame
+  vec3 n, delta;         // from the piece to the point; displacement of its nearest point in the whole frame
 };
 
-// The point asked about: where it is, the way left to it in this substep, time as fraction of the frame, time left, and
+// The point of the query: where it is, the displacement left to it in this substep, time as fraction of the frame, time left, and
 // the normal of the contact that was active last.
 vec3 at, left, active_normal;
 float now, part;
-// The answer: the nearest piece, the nearest of those to respond to, and which share of the way left passes through nothing.
+// The answer: the nearest piece, the nearest of those to respond to, and the free share of the displacement that is left.
 Touch nearest, other;
 float free_part;
 float bound;   // contact with anything is at least this far away
 bool multiple_contacts;  // two pieces are in contact that are not neighbours in a nearly flat mesh
 
-/// A convex piece at distance d lies wholly behind the plane through its nearest point across n. So the way is free
+/// A convex piece at distance d lies wholly behind the plane through its nearest point across n. So the path is free
 /// of it as long as the point stays before that plane, whatever the piece's shape: nothing to solve, no root to miss.
 void consider(float d, vec3 n, vec3 delta, float margin, float friction) {
   float m = max(margin, p.least_margin_m);
@@ -85,11 +85,11 @@ void consider_shapes() {
     BoxShape s = LOAD(80u, boxes, k);
     mat3 axes = mat3(s.axis_x.xyz, s.axis_y.xyz, s.axis_z.xyz);
     vec3 local = (at - s.center.xyz) * axes, half_extent = vec3(s.axis_x.w, s.axis_y.w, s.axis_z.w);
-    vec3 beyond = abs(local) - half_extent, way = sign(local);
+    vec3 beyond = abs(local) - half_extent, outward = sign(local);
     float l = length(max(beyond, 0.0)), deepest = max(beyond.x, max(beyond.y, beyond.z));
     // Inside, the nearest face; a corner of the box is as far as its nearest point, outside.
     vec3 face = beyond.x == deepest ? vec3(1, 0, 0) : beyond.y == deepest ? vec3(0, 1, 0) : vec3(0, 0, 1);
-    vec3 n = l > 0.0 ? max(beyond, 0.0) * way / l : face * mix(vec3(-1.0), vec3(1.0), greaterThanEqual(local, vec3(0.0)));
+    vec3 n = l > 0.0 ? max(beyond, 0.0) * outward / l : face * mix(vec3(-1.0), vec3(1.0), greaterThanEqual(local, vec3(0.0)));
     consider_even(l > 0.0 ? l : deepest, axes * n, vec3(0.0), s.margin, s.friction);
   }
   for (uint k = lane(); k < CAPSULES; k += LANES) {
@@ -159,13 +159,13 @@ void consider_triangle(uvec4 corners, bool moving, float reach, float margin, fl
 }
 
 /// How far from the point a triangle of a cluster may be that can concern it.
-float reach_of(float margin, float cluster_way, float way) {
-  return way + held_at(margin) + part * cluster_way;
+float reach_of(float margin, float cluster_displacement, float displacement) {
+  return displacement + held_at(margin) + part * cluster_displacement;
 }
 
 /// `owner`: the vertex whose list of clusters holds all that the point can meet in this frame.
 void consider_meshes(uint owner, bool wanted) {
-  float way = length(left);
+  float displacement = length(left);
   uint n = p.columns * p.rows, blocks = (p.words + 31u) / 32u;
   for (uint block = 0u; block < blocks; ++block) {
     uint words = wanted ? LOAD4(candidates, block * n + owner) : 0u;
@@ -181,14 +181,14 @@ void consider_meshes(uint owner, bool wanted) {
         uint k = first + uint(findLSB(bits));
         ClusterBox box = LOAD(32u, cluster_boxes, k);
         vec3 apart = max(max(box.low.xyz - at, at - box.high.xyz), 0.0);
-        float margin = LOAD16(clusters, k).margin, reach = reach_of(margin, box.low.w, way);
+        float margin = LOAD16(clusters, k).margin, reach = reach_of(margin, box.low.w, displacement);
         if (!(dot(apart, apart) > reach * reach)) near |= bits & (~bits + 1u);
         else bound = min(bound, length(apart) - held_at(margin));
       }
       for (near = or_of_lanes(near); near != 0u; near &= near - 1u) {
         uint k = first + uint(findLSB(near));
         MeshCluster cluster = LOAD16(clusters, k);
-        float reach = reach_of(cluster.margin, LOAD16_OF(cluster_boxes[k].low).w, way);
+        float reach = reach_of(cluster.margin, LOAD16_OF(cluster_boxes[k].low).w, displacement);
         for (uint t = lane(); t < cluster.count; t += LANES)
           consider_triangle(LOAD16(triangles, cluster.first + t), k >= STANDING_CLUSTERS, reach, cluster.margin,
                             cluster.friction);

@@ -6,7 +6,7 @@
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_SIDES) buffer Sides { vec4 side[]; };  // where the vertex was at the substep's start; w: `spare`, contact_advance
-layout(std430, binding = BIND_CORRECTIONS) readonly buffer Corrections { vec4 corrections[]; };  // two a sample: way, velocity
+layout(std430, binding = BIND_CORRECTIONS) readonly buffer Corrections { vec4 corrections[]; };  // two a sample: displacement, velocity
 layout(push_constant) uniform Push { ContactConstants p; };
 #include "contact_colliders.glsl"
 #include "contact_advance.glsl"
@@ -20,9 +20,9 @@ void gather(uint family, uint first) {
     uint s = (family * SAMPLES + k) * p.columns * p.rows + first;
     vec4 c = LOAD16(corrections, 2u * s);
     if (c.w == 0.0) continue;
-    vec3 way = c.w * c.xyz, gain = c.w * LOAD16(corrections, 2u * s + 1u).xyz;
-    float l = length(way), g = length(gain);
-    sum_x += l * way;
+    vec3 displacement = c.w * c.xyz, gain = c.w * LOAD16(corrections, 2u * s + 1u).xyz;
+    float l = length(displacement), g = length(gain);
+    sum_x += l * displacement;
     sum_v += g * gain;
     weight_x += l;
     weight_v += g;
@@ -58,12 +58,12 @@ void main() {
   if (weight_x > 0.0) to.xyz += sum_x / weight_x;
   if (weight_v > 0.0) vel += sum_v / weight_v;
 #ifdef MESHES
-  // The list of clusters holds for this way and no further.
+  // The list of clusters holds for this displacement and no further.
   vec4 reach = LOAD16(reaches, i);
-  vec3 way = to.xyz - reach.xyz;
-  if (length(way) > reach.w) to.xyz = reach.xyz + way * (reach.w / length(way));
+  vec3 displacement = to.xyz - reach.xyz;
+  if (length(displacement) > reach.w) to.xyz = reach.xyz + displacement * (reach.w / length(displacement));
 #endif
-  // A vertex that is no number stays none, for the runner to find.
+  // A vertex that is NaN stays NaN, so that the runner finds it.
   float spare = p.begin > 0.0 ? was.w : 0.0;
   to.xyz = advance(from, to.xyz, i, dot(to.xyz, to.xyz) < kFar, vel, spare);
   if (lane() != 0u) return;

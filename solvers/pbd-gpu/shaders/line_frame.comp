@@ -12,6 +12,8 @@ layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_POSITION_COMPENSATION) buffer PositionCompensation { vec4 rx[]; };
 layout(std430, binding = BIND_VELOCITY_COMPENSATION) buffer VelocityCompensation { vec4 rv[]; };
+layout(std430, binding = BIND_LAST_POSITIONS) buffer LastPositions { vec4 lx[]; };
+layout(std430, binding = BIND_LAST_VELOCITIES) buffer LastVelocities { vec4 lv[]; };
 layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
 #ifdef KEEP_MULTIPLIERS
 layout(std430, binding = BIND_LINK_MULTIPLIERS) buffer LinkMultipliers { float link_multipliers[]; };
@@ -75,6 +77,10 @@ void load() {
     put(vertex(i), here.xyz, LOAD16(v, o).xyz);
     rest_pos[k] = LOAD16(rx, o).xyz;
     rest_vel[k] = LOAD16(rv, o).xyz;
+    if (kPredicts) {
+      last_pos[k] = LOAD16(lx, o).xyz;
+      last_vel[k] = LOAD16(lv, o).xyz;
+    }
     if (here.w == 0.0) atomicOr(held[vertex(i).y], 1u << vertex(i).x);
   }
   barrier();  // the state and the bits of pinned vertices before hands change them and all read them
@@ -95,6 +101,9 @@ void store() {
     STORE16(v, o, vec4(vel[k], 0.0));
     STORE16(rx, o, vec4(rest_pos[k], 0.0));
     STORE16(rv, o, vec4(rest_vel[k], 0.0));
+    if (!kPredicts) continue;
+    STORE16(lx, o, vec4(last_pos[k], 0.0));
+    STORE16(lv, o, vec4(last_vel[k], 0.0));
   }
 }
 
@@ -120,7 +129,7 @@ void main() {
   chain = thread / LANES;
   const uint families = kShears ? 4u : 2u;
   family = families - 1u;
-  [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = vec3(0.0);
+  [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
   load();
   barrier();  // what load() wrote before all read it
   for (uint s = 0u; s < p.substeps; ++s) {

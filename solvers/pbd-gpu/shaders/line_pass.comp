@@ -14,6 +14,8 @@ layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; }
 layout(std430, binding = BIND_VELOCITIES) coherent buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_POSITION_COMPENSATION) coherent buffer PositionCompensation { vec4 rx[]; };
 layout(std430, binding = BIND_VELOCITY_COMPENSATION) coherent buffer VelocityCompensation { vec4 rv[]; };
+layout(std430, binding = BIND_LAST_POSITIONS) buffer LastPositions { vec4 lx[]; };
+layout(std430, binding = BIND_LAST_VELOCITIES) buffer LastVelocities { vec4 lv[]; };
 layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };  // a number a chain, families in turn
 #ifdef KEEP_MULTIPLIERS
 layout(std430, binding = BIND_LINK_MULTIPLIERS) buffer LinkMultipliers { float link_multipliers[]; };
@@ -40,7 +42,7 @@ void pass(uint substep, bool first, bool last) {
     at[k] = 0u;
     if (!(EXACT || on_chain(i))) continue;
     at[k] = index_of(vertex(i));
-    COUNT_READ(fetches ? 64u : 32u)
+    COUNT_READ(!fetches ? 32u : kPredicts ? 96u : 64u)
     vec4 here = x[at[k]];
     pos[k] = here.xyz;
     w[k] = here.w;
@@ -48,6 +50,10 @@ void pass(uint substep, bool first, bool last) {
     if (fetches) {
       rest_pos[k] = rx[at[k]].xyz;
       rest_vel[k] = rv[at[k]].xyz;
+      if (kPredicts) {
+        last_pos[k] = lx[at[k]].xyz;
+        last_vel[k] = lv[at[k]].xyz;
+      }
     }
   }
   float least = 0.0;
@@ -59,6 +65,9 @@ void pass(uint substep, bool first, bool last) {
       if (substep + 1u < p.substeps || w[k] == 0.0) continue;
       STORE16(rx, at[k], vec4(rest_pos[k], 0.0));
       STORE16(rv, at[k], vec4(rest_vel[k], 0.0));
+      if (!kPredicts) continue;
+      STORE16(lx, at[k], vec4(last_pos[k], 0.0));
+      STORE16(lv, at[k], vec4(last_vel[k], 0.0));
     }
   }
   if (kBends && family < 2u) bend();
@@ -76,7 +85,7 @@ void main() {
   lane = thread / BESIDE % LANES;
   chain = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * (THREADS / LANES) +
           thread / (LANES * BESIDE) * BESIDE + thread % BESIDE;
-  [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = vec3(0.0);
+  [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
   const uint families = kShears ? 4u : 2u;
   if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // asked only whether all can
   for (uint n = p.first_pass; n < p.first_pass + p.passes; ++n) {

@@ -204,7 +204,7 @@ void stretch(float least) {
     g[k] = is ? e * per_l : vec3(0.0);
     // Of chains between held vertices. Strips: tension must not turn a link by more than a substep resolves, or it overshoots and
     // throws what hangs on it; across itself a chain moves by x += L x, L = dlambda w / l times a second difference, so dlambda w / l
-    // is held below 1. In sheets diagonals hold a kink. An inextensible link torn to several times its length gives way bit by bit.
+    // is held below 1. In sheets diagonals hold a kink. An inextensible link torn to several times its length yields bit by bit.
     float firm = least;
     if (least != 0.0 && kElastic && !kShears) firm = max(least, l / rest - 1.0);
     if (least != 0.0 && !kElastic) firm = max(least, 4.0 * (l / rest - 5.0));

@@ -2,6 +2,7 @@
 // from a pinned one than the cloth between them is long. `anchor(v, k)` gives where vertex v, which is pinned, is, for the
 // thread's vertex k.
 vec3 rest_pos[K], rest_vel[K];  // what the last sums could not hold
+vec3 last_pos[K], last_vel[K];  // before the last substep, if kPredicts
 
 #include "substep.glsl"
 
@@ -12,8 +13,8 @@ uvec2 nearest(uvec2 at, uint first, uint last) {
 
 /// Without shear stiffness the cloth reaches along its threads only.
 float reach_of(uvec2 at, uvec2 to) {
-  vec2 way = abs(vec2(ivec2(at) - ivec2(to))) * vec2(p.rest_u, p.rest_v);
-  return p.tether_stretch * (kShears ? length(way) : way.x + way.y);
+  vec2 across = abs(vec2(ivec2(at) - ivec2(to))) * vec2(p.rest_u, p.rest_v);
+  return p.tether_stretch * (kShears ? length(across) : across.x + across.y);
 }
 
 void integrate() {
@@ -25,7 +26,7 @@ void integrate() {
     if (TETHERS > 1u) end[1] = anchor(to[1] = nearest(at, TETHER_1, TETHER_1_LAST), k);
     if (TETHERS > 2u) end[2] = anchor(to[2] = nearest(at, TETHER_2, TETHER_2_LAST), k);
     if (TETHERS > 3u) end[3] = anchor(to[3] = nearest(at, TETHER_3, TETHER_3_LAST), k);
-    if (w[k] > 0.0) fall(pos[k], vel[k], rest_pos[k], rest_vel[k]);
+    if (w[k] > 0.0) fall(pos[k], vel[k], rest_pos[k], rest_vel[k], last_pos[k], last_vel[k]);
     [[unroll]] for (uint t = 0u; t < 4u; ++t)
       if (t < TETHERS && w[k] > 0.0) move(k, tethered(pos[k], end[t], reach_of(at, to[t])));
   }

@@ -5,10 +5,10 @@
 const float kSlack = 0.05;
 // Of the distance that layers lack, what one substep gives back.
 const float kPush = 0.5;
-// A certified way leaves this share of the distance at the substep's start, and more of it where it is below a share of the
+// A certified displacement leaves this share of the distance at the substep's start, and more of it where it is below a share of the
 // thickness: each substep leaves corrections time to push them apart again.
 const float kLeft = 0.1, kLeftNear = 0.5, kNear = 0.1;
-// Nothing comes nearer than this share of the thickness by its own way: before that, everything stops.
+// Nothing comes nearer than this share of the thickness by its own displacement: before that, everything stops.
 const float kLast = 1e-3;
 // Nearer than this share of the thickness there is no direction left that float32 could tell.
 const float kTouching = 1e-4;
@@ -31,7 +31,7 @@ vec2 on_edges(vec3 a, vec3 b, vec3 c, vec3 d) {
   return vec2(s, t);
 }
 
-/// Signed weights of the way from the nearest point of one piece to that of the other: of a vertex (first) and a triangle, or of
+/// Signed weights of the vector from the nearest point of one piece to that of the other: of a vertex (first) and a triangle, or of
 /// two edges. `inside`: the nearest points are inside both edges, so that no vertex is nearer.
 vec4 weights_of(bool edges, vec3 q[4], out bool inside) {
   inside = true;
@@ -50,9 +50,9 @@ float gap_along(bool edges, vec3 n, vec3 q[4]) {
 }
 
 /// Boxes of two blocks (low, w: radius of the ways round their middle; high; middle of the ways), one narrowed to a piece of it.
-bool concern(vec3 low, vec3 high, vec3 way, float radius, vec4 other_low, vec4 other_high, vec4 other_way, out float reach) {
+bool concern(vec3 low, vec3 high, vec3 displacement, float radius, vec4 other_low, vec4 other_high, vec4 other_displacement, out float reach) {
   vec3 apart = max(max(low - other_high.xyz, other_low.xyz - high), 0.0);
-  reach = p.reach_m + (distance(way, other_way.xyz) + radius + other_low.w) / (1.0 - kLeft);
+  reach = p.reach_m + (distance(displacement, other_displacement.xyz) + radius + other_low.w) / (1.0 - kLeft);
   return !(dot(apart, apart) > reach * reach);
 }
 

@@ -7,10 +7,10 @@ layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_PROPOSED) readonly buffer Corrections { vec4 corrections[]; };
 layout(push_constant) uniform Push { SelfConstants p; };
 
-vec4 way, gain;
+vec4 displacement, gain;
 
 void gather(uint slot) {
-  way += LOAD16(corrections, 2u * slot);
+  displacement += LOAD16(corrections, 2u * slot);
   gain += LOAD16(corrections, 2u * slot + 1u);
 }
 
@@ -21,7 +21,7 @@ void main() {
   if (at.w == 0.0) return;
   uint column = i % p.columns, row = i / p.columns, above = i - p.columns;
   bool right = column + 1u < p.columns, left = column > 0u, down = row + 1u < p.rows, up = row > 0u;
-  way = gain = vec4(0.0);
+  displacement = gain = vec4(0.0);
   gather(i);
   // Triangles: (i, right, both), (i, both, down); edges: to the right, down, both.
   uint t = n, e = 7u * n;
@@ -41,7 +41,7 @@ void main() {
   if (left) gather(e + 2u * (i - 1u) + 1u);
   if (down) gather(e + 2u * (n + i));
   if (up) gather(e + 2u * (n + above) + 1u);
-  vec3 moved = way.w > 0.0 ? way.xyz / way.w : vec3(0.0);
+  vec3 moved = displacement.w > 0.0 ? displacement.xyz / displacement.w : vec3(0.0);
   STORE16(x, i, vec4(at.xyz + moved * min(1.0, p.most_m / max(length(moved), 1e-30)), at.w));
   vec4 velocity = LOAD16(v, i);
   if (gain.w > 0.0) velocity.xyz += gain.xyz / gain.w;

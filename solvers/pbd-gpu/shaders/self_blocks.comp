@@ -18,11 +18,11 @@ void main() {
   vec3 low = vec3(1e30), high = vec3(-1e30), least = vec3(1e30), most = vec3(-1e30);
   for (uint r = row; r <= min(row + p.side, p.rows - 1u); ++r)
     for (uint c = column; c <= min(column + p.side, p.columns - 1u); ++c) {
-      vec3 from = LOAD16(starts, r * p.columns + c).xyz, way = LOAD16(x, r * p.columns + c).xyz - from;
+      vec3 from = LOAD16(starts, r * p.columns + c).xyz, displacement = LOAD16(x, r * p.columns + c).xyz - from;
       low = min(low, from);
       high = max(high, from);
-      least = min(least, way);
-      most = max(most, way);
+      least = min(least, displacement);
+      most = max(most, displacement);
     }
   STORE16(blocks, 3u * k, vec4(low, 0.5 * distance(least, most)));
   STORE16(blocks, 3u * k + 1u, vec4(high, 0.0));

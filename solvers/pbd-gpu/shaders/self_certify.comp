@@ -1,5 +1,5 @@
 #version 450
-// Which part of their way all vertices may go at once so that nothing crosses: wherever a vertex and a triangle, or two edges,
+// The part of their displacement that all vertices may move at once so that nothing crosses: wherever a vertex and a triangle, or two edges,
 // are apart by a plane at the substep's start and at its end across the same direction, they were apart all along, since vertices go
 // in straight lines. The least part of all pairs, whatever order they come in.
 #extension GL_GOOGLE_include_directive : require
@@ -18,7 +18,7 @@ float free_share(float before) {
   return clamp(1.0 - kLast * p.thickness_m / before, 0.0, 1.0 - left);
 }
 
-/// The part of the way over which a plane across n is certain to stand between the two.
+/// The part of the displacement over which a plane across n is certain to stand between the two.
 float by_plane(bool edges, vec3 n) {
   float l = length(n);
   if (!(l > 0.0)) return 0.0;
@@ -27,7 +27,7 @@ float by_plane(bool edges, vec3 n) {
   return after >= (1.0 - share) * before ? 1.0 : share * before / (before - after);
 }
 
-/// The part of the way over which no point of one comes as near to a point of the other as they are, whatever the direction.
+/// The part of the displacement over which no point of one comes as near to a point of the other as they are, whatever the direction.
 float by_distance(bool edges, float d) {
   float most = 0.0;
   for (uint a = 0u; a < (edges ? 2u : 1u); ++a)
@@ -36,7 +36,7 @@ float by_distance(bool edges, float d) {
 }
 
 void meet(bool edges) {
-  // What is held goes where it is held, and whoever is in its way can only be pushed.
+  // Held vertices follow their prescribed positions; vertices that these meet can only be pushed.
   for (uint k = 0u; k < 4u; ++k)
     if (inverse_mass[k] == 0.0 && to[k] != from[k]) return;
   bool inside;

@@ -9,13 +9,13 @@ layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; }
 layout(std430, binding = BIND_VELOCITIES) readonly buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_BLOCKS) readonly buffer Blocks { vec4 blocks[]; };
 layout(std430, binding = BIND_NEAR) readonly buffer Near { uint near[]; };
-layout(std430, binding = BIND_PROPOSED) writeonly buffer Corrections { vec4 corrections[]; };  // two a slot: way, velocity; w: their weight
+layout(std430, binding = BIND_PROPOSED) writeonly buffer Corrections { vec4 corrections[]; };  // two a slot: displacement, velocity; w: their weight
 layout(push_constant) uniform Push { SelfConstants p; };
 #include "self.glsl"
 #include "self_pieces.glsl"
 
 uint own_first, own_count;
-vec4 way_sum[3], velocity_sum[3];
+vec4 displacement_sum[3], velocity_sum[3];
 
 /// The mean of all corrections, weighted by how much each asks.
 void add(inout vec4 sum, vec3 correction) {
@@ -37,7 +37,7 @@ void meet(bool edges) {
   vec3 velocities[4];
   for (uint k = 0u; k < 4u; ++k) velocities[k] = LOAD16(v, who[k]).xyz;
   float wanted = d < p.thickness_m ? mix(d, p.thickness_m, kPush) : p.thickness_m;
-  vec3 way = max(0.0, wanted - end) * n, relative = weighted(w, velocities);
+  vec3 displacement = max(0.0, wanted - end) * n, relative = weighted(w, velocities);
   float approach = max(0.0, -dot(relative, n));
   vec3 gain = approach * n;
   if (p.friction > 0.0) {
@@ -45,11 +45,11 @@ void meet(bool edges) {
     slide -= dot(slide, n) * n;
     float most = p.friction * approach, speed = length(slip), l = length(slide);
     if (speed > 0.0) gain -= slip * min(1.0, most / speed);
-    if (l > 0.0) way -= slide * min(1.0, most * p.h / l);
+    if (l > 0.0) displacement -= slide * min(1.0, most * p.h / l);
   }
   for (uint k = 0u; k < own_count; ++k) {
     float share = w[own_first + k] * inverse_mass[own_first + k] / mass;
-    add(way_sum[k], share * way);
+    add(displacement_sum[k], share * displacement);
     add(velocity_sum[k], share * gain);
   }
 }
@@ -60,10 +60,10 @@ void propose(uint kind, uint family, uint i, uint slot) {
   if (!start_with(kind, family, i, low, high)) return;
   own_first = kind == KIND_TRIANGLE ? 1u : 0u;
   own_count = kind == KIND_VERTEX ? 1u : kind == KIND_TRIANGLE ? 3u : 2u;
-  for (uint k = 0u; k < 3u; ++k) way_sum[k] = velocity_sum[k] = vec4(0.0);
+  for (uint k = 0u; k < 3u; ++k) displacement_sum[k] = velocity_sum[k] = vec4(0.0);
   meet_all(kind, 0u, i, low, high, false);
   for (uint k = 0u; k < own_count; ++k) {
-    STORE16(corrections, 2u * (slot + k), way_sum[k]);
+    STORE16(corrections, 2u * (slot + k), displacement_sum[k]);
     STORE16(corrections, 2u * (slot + k) + 1u, velocity_sum[k]);
   }
 }

@@ -11,10 +11,10 @@ void main() {
   uint k = item();
   if (k >= p.blocks * p.words) return;
   uint own = k / p.words, first = 32u * (k % p.words), bits = 0u;
-  vec4 low = LOAD16(blocks, 3u * own), high = LOAD16(blocks, 3u * own + 1u), way = LOAD16(blocks, 3u * own + 2u);
+  vec4 low = LOAD16(blocks, 3u * own), high = LOAD16(blocks, 3u * own + 1u), displacement = LOAD16(blocks, 3u * own + 2u);
   for (uint other = first; other < min(first + 32u, p.blocks); ++other) {
     float reach;
-    if (concern(low.xyz, high.xyz, way.xyz, low.w, LOAD16(blocks, 3u * other), LOAD16(blocks, 3u * other + 1u),
+    if (concern(low.xyz, high.xyz, displacement.xyz, low.w, LOAD16(blocks, 3u * other), LOAD16(blocks, 3u * other + 1u),
                 LOAD16(blocks, 3u * other + 2u), reach))
       bits |= 1u << (other - first);
   }

@@ -85,12 +85,12 @@ void meet_at(uint kind, uint own_number, uint j, vec3 low, vec3 high, float reac
 /// `i`: the piece's first vertex, by whose block it is found. Its vertices are in who and from.
 void meet_all(uint kind, uint own_number, uint i, vec3 low, vec3 high, bool later) {
   uint block = block_of(i);
-  vec4 own_low = LOAD16(blocks, 3u * block), own_way = LOAD16(blocks, 3u * block + 2u);
+  vec4 own_low = LOAD16(blocks, 3u * block), own_displacement = LOAD16(blocks, 3u * block + 2u);
   for (uint word = 0u; word < p.words; ++word)
     for (uint bits = LOAD4(near, block * p.words + word); bits != 0u; bits &= bits - 1u) {
       uint other = 32u * word + uint(findLSB(bits));
       float reach;
-      if (!concern(low, high, own_way.xyz, own_low.w, LOAD16(blocks, 3u * other), LOAD16(blocks, 3u * other + 1u),
+      if (!concern(low, high, own_displacement.xyz, own_low.w, LOAD16(blocks, 3u * other), LOAD16(blocks, 3u * other + 1u),
                    LOAD16(blocks, 3u * other + 2u), reach))
         continue;
       uvec3 all = vertices_of(other);

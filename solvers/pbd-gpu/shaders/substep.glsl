@@ -9,20 +9,36 @@ void two_sum(vec3 a, vec3 b, out vec3 sum, out vec3 rest) {
   rest = left;
 }
 
+const bool kPredicts = (FEATURES & LINES_PREDICT) != 0u;
+
 /// v += g h - (1 - e^{-c h}) v, x += h v, both in compensated sums: with thousands of substeps a second the increments fall
 /// below the last bit of x and v, and plain sums would freeze or drift. `rest_`: what the last sums could not hold.
-void fall(inout vec3 position, inout vec3 velocity, inout vec3 rest_position, inout vec3 rest_velocity) {
-  vec3 gain = p.gravity_h.xyz, sum, rest;
-  if ((FEATURES & LINES_DAMPING) != 0u) gain -= p.loss * velocity;
+/// `last_`: before the last substep, and then before this one. A prediction adds a share of what the last substep changed
+/// (BDF2; the differences of close numbers are exact, and what their roundings leave out cancels from substep to substep).
+void fall(inout vec3 position, inout vec3 velocity, inout vec3 rest_position, inout vec3 rest_velocity,
+          inout vec3 last_position, inout vec3 last_velocity) {
+  vec3 gain = p.gravity_h.xyz, sum, rest, carried = vec3(0.0);
+  if (kPredicts) {
+    vec3 change = p.carry * (velocity - last_velocity);
+    gain += change;
+    if ((FEATURES & LINES_DAMPING) != 0u) gain -= p.loss * (velocity + change);
+    carried = p.carry * (position - last_position);
+    last_velocity = velocity;
+    last_position = position;
+  } else if ((FEATURES & LINES_DAMPING) != 0u) {
+    gain -= p.loss * velocity;
+  }
   two_sum(velocity, gain + rest_velocity, sum, rest);
   velocity = sum;
   rest_velocity = rest;
-  two_sum(position, p.h * sum + rest_position, sum, rest);
+  vec3 way = p.h * sum + rest_position;
+  if (kPredicts) way += carried;
+  two_sum(position, way, sum, rest);
   position = sum;
   rest_position = rest;
 }
 
-/// The way back to within `reach` of what a tether ends at; 0 where it is slack.
+/// The displacement back to within `reach` of what a tether ends at; 0 where it is slack.
 vec3 tethered(vec3 position, vec3 end, float reach) {
   vec3 e = position - end;
   float square = dot(e, e);

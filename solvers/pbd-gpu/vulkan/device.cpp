@@ -146,7 +146,7 @@ Device::Device(const DeviceOptions& options, Maker* maker) {
 
 void Device::create_instance(bool validation, Maker* maker) {
   if (validation && !layer_present(kValidationLayer))
-    throw Error(std::string("validation was asked for, but ") + kValidationLayer +
+    throw Error(std::string("validation was requested, but ") + kValidationLayer +
                 " is not installed (Debian: vulkan-validationlayers)");
   const VkApplicationInfo app = application();
   const VkValidationFeatureEnableEXT enable = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;

@@ -13,7 +13,7 @@ Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std
   const ShaderNeeds needs = needs_of(code_, specialization);
   for (const auto& [number, access] : needs.bindings) {
     const auto found = buffers.find(number);
-    if (found == buffers.end()) throw Error(fmt::format("kernel {}: there is no buffer {}", name_, number));
+    if (found == buffers.end()) throw Error(fmt::format("kernel {}: it has no buffer {}", name_, number));
     const Buffer& b = *found->second;
     if (b.bytes() > device_->limits().maxStorageBufferRange)
       throw Error(fmt::format("{}: buffer \"{}\" of {} B is larger than this device binds ({} B)", name_, b.name(),
@@ -131,7 +131,7 @@ Groups groups_for(std::uint64_t items, std::uint32_t group_size) {
   constexpr std::uint64_t kMost = 65535;  // least maxComputeWorkGroupCount a Vulkan device may have
   const std::uint64_t groups = items / group_size + (items % group_size != 0 ? 1 : 0);
   if (groups * group_size > std::numeric_limits<std::uint32_t>::max() || groups > kMost * kMost)
-    throw Error(fmt::format("{} items in groups of {}: a dispatch has at most 2^32 items", items, group_size));
+    throw Error(fmt::format("{} items in groups of {}: expected at most 2^32 items in a dispatch", items, group_size));
   const std::uint64_t rows = std::max<std::uint64_t>(1, (groups + kMost - 1) / kMost);
   return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows)};
 }

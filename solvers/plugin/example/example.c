@@ -93,8 +93,21 @@ static int32_t step(void* self, const ClothbenchFrame* frame) {
 const ClothbenchPlugin* clothbench_plugin(void) {
   static const ClothbenchSetting settings[] = {{"substeps", "steps a frame", 20, 1}};
   static const ClothbenchPlugin plugin = {
-      CLOTHBENCH_PLUGIN_HEADER, "example-xpbd", "XPBD with small steps on one core: an example", "2", "float64",
-      CLOTHBENCH_STRETCH | CLOTHBENCH_SHEAR | CLOTHBENCH_BEND | CLOTHBENCH_DAMPING | CLOTHBENCH_PINS, 0, 1, 1, settings,
-      create, free, restart, step, read_state, stages, NULL, NULL, NULL, NULL, NULL};
+      CLOTHBENCH_PLUGIN_HEADER,
+      .name = "example-xpbd",
+      .summary = "XPBD with small steps on one core: an example",
+      .solver_version = "2",
+      .precision = "float64",
+      .supports = CLOTHBENCH_STRETCH | CLOTHBENCH_SHEAR | CLOTHBENCH_BEND | CLOTHBENCH_DAMPING | CLOTHBENCH_PINS,
+      .time_order = 1,
+      .setting_count = 1,
+      .settings = settings,
+      .create = create,
+      .destroy = free,
+      .restart = restart,
+      .step = step,
+      .read_state = read_state,
+      .stages = stages,
+  };
   return &plugin;
 }

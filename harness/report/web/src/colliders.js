@@ -1,8 +1,8 @@
-// Colliders as they are drawn, and how deep a cloth's vertices are in them.
+// Draws colliders, and measures the depth of vertices in them.
 import * as THREE from 'three';
 import {MeshBVH} from 'three-mesh-bvh';
 
-/// Ends a and b and radius of each capsule at a time; frames as many a second as the scene has.
+/// Ends a and b and radius of each capsule at a time; `rate`: frames per second.
 function capsules(array, rate) {
   const [frames, count] = array.shape, group = new THREE.Group(), parts = [];
   for (let k = 0; k < count; ++k) {
@@ -20,10 +20,10 @@ function capsules(array, rate) {
       p.a.set(value(0), value(1), value(2));
       p.b.set(value(3), value(4), value(5));
       p.radius = value(6);
-      const way = p.b.clone().sub(p.a), length = way.length();
-      p.shaft.position.copy(p.a).addScaledVector(way, 0.5);
+      const axis = p.b.clone().sub(p.a), length = axis.length();
+      p.shaft.position.copy(p.a).addScaledVector(axis, 0.5);
       p.shaft.scale.set(p.radius, Math.max(length, 1e-9), p.radius);
-      if (length > 0) p.shaft.quaternion.setFromUnitVectors(up, way.normalize());
+      if (length > 0) p.shaft.quaternion.setFromUnitVectors(up, axis.normalize());
       p.ends.forEach((e, n) => {
         e.position.copy(n ? p.b : p.a);
         e.scale.setScalar(p.radius);
@@ -34,16 +34,15 @@ function capsules(array, rate) {
   return {
     object: group,
     move,
-    depth: x =>
-        Math.max(...parts.map(p => {
-          // A ball has no axis to be nearest on.
-          const on = p.a.equals(p.b) ? p.a : line.set(p.a, p.b).closestPointToPoint(x, true, nearest);
-          return p.radius - on.distanceTo(x);
-        }))
+    depth: x => Math.max(...parts.map(p => {
+      // A capsule of length 0 has no axis.
+      const on = p.a.equals(p.b) ? p.a : line.set(p.a, p.b).closestPointToPoint(x, true, nearest);
+      return p.radius - on.distanceTo(x);
+    }))
   };
 }
 
-/// Depth of a point in a convex body: how far it is behind the nearest of the planes of its triangles.
+/// Depth of a point in a convex body: its distance behind the nearest plane of the triangles.
 function convex_depth(position, corners) {
   const planes = [];
   for (let k = 0; k < corners.length; k += 3) {
@@ -53,7 +52,7 @@ function convex_depth(position, corners) {
   return x => Math.min(...planes.map(p => -p.distanceToPoint(x)));
 }
 
-/// Triangles that stand still, or follow their joints: x(t) = Σ weight · matrix(t) (position, 1).
+/// Static triangles, or skinned ones: x(t) = Σ weight · matrix(t) (position, 1).
 function triangle_mesh(arrays, rate, convex) {
   const rest = arrays.position_m.values, position = new Float32Array(rest);
   const geometry = new THREE.BufferGeometry();
@@ -86,7 +85,7 @@ function triangle_mesh(arrays, rate, convex) {
       tree.refit();
     };
   }
-  if (convex) {  // its edges are sharp
+  if (convex) {  // flat shading
     const faces = geometry.toNonIndexed();
     faces.computeVertexNormals();
     return {object: new THREE.Mesh(faces), depth: convex_depth(rest, arrays.triangles.values)};
@@ -104,7 +103,7 @@ function triangle_mesh(arrays, rate, convex) {
   return {object: new THREE.Mesh(geometry), move, crosses};
 }
 
-/// Small balls where hands hold the cloth.
+/// Small spheres at the points where hands hold the cloth.
 function grips(arrays, rate) {
   const [frames, count] = arrays.target_m.shape, x = arrays.target_m.values, held = arrays.held.values,
                  group = new THREE.Group();
@@ -124,14 +123,17 @@ function grips(arrays, rate) {
   };
 }
 
-/// Objects to draw of a scene's colliders (motion.js, load_colliders), each with `object`, and where it has them
-/// `move(time)`, `depth(x)` above 0 inside, `crosses(a, b)`.
+/// Objects to draw of a scene's colliders (motion.js, load_colliders), each with `object` and, if defined for
+/// its kind, `move(time)`, `depth(x)` (above 0 inside), `crosses(a, b)`.
 export function make_colliders(groups) {
   const rate = groups.find(g => g.path === 'colliders')?.attributes.frame_rate_hz ?? 72, out = [];
   for (const g of groups) {
-    if (g.path === 'colliders/grips') out.push(grips(g.arrays, rate));
-    else if (g.arrays.capsules) out.push(capsules(g.arrays.capsules, rate));
-    else if (g.arrays.position_m) out.push(triangle_mesh(g.arrays, rate, g.attributes.convex));
+    if (g.path === 'colliders/grips')
+      out.push(grips(g.arrays, rate));
+    else if (g.arrays.capsules)
+      out.push(capsules(g.arrays.capsules, rate));
+    else if (g.arrays.position_m)
+      out.push(triangle_mesh(g.arrays, rate, g.attributes.convex));
   }
   return out;
 }

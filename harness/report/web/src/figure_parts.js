@@ -2,8 +2,8 @@
 // report as pictures (stills.js):
 //   {id, title, caption, hint?, empty?, choices?, spec(theme, width, state), rows(state), remark?(state), stills}
 // `caption` stands under both, `hint` on the page alone. `choices`: [{label, options(state), first?(state)}], the
-// select boxes; `state` has the value of each by its label. `rows`: the data as a table, header first; nothing else
-// means nothing to draw. `stills`: the pictures, [{file, title, make(width), labels?, notes?, empty?}], in theme
+// select boxes; `state` has the value of each by its label. `rows`: the data as a table, header first; with the header
+// alone nothing is drawn. `stills`: the pictures, [{file, title, make(width), labels?, notes?, empty?}], in theme
 // 'paper': `labels` of the legend, `notes` below, `empty`: words in place of a plot.
 import {palette} from './theme.js';
 
@@ -20,7 +20,7 @@ export const colour = (labels, theme, title = null) => {
   const colours = palette(labels, theme);
   return {field: 'label', type: 'nominal', title, scale: {domain: labels, range: labels.map(l => colours[l])}};
 };
-/// The labels apart without colour: by symbols or dashes, in the colours' legend.
+/// Distinguishes labels without colour, by symbols or dashes, in the legend of the colours.
 const by_label = range => labels => ({
   field: 'label',
   type: 'nominal',
@@ -34,30 +34,30 @@ export const picked = theme =>
     theme === 'paper' ? {} : {params: [{name: 'pick', select: {type: 'point', fields: ['label']}, bind: 'legend'}]};
 export const fade = theme =>
     theme === 'paper' ? {value: 1} : {condition: {param: 'pick', value: 1, empty: true}, value: 0.1};
-/// What is left of the width beside a legend; on paper it stands below.
+/// Width that is left beside a legend. On paper the legend is below.
 export const beside = (theme, width, legend) => theme === 'paper' ? width : width - legend;
 
-/// The harness without a cloth model is decades from every solver: it is shown where it is alone.
+/// The harness without a cloth model is decades faster than every solver. It is drawn only if no other solver is.
 export const is_floor = row => row.solver === 'ballistic';
 export const without_floor = rows => rows.every(is_floor) ? rows : rows.filter(r => !is_floor(r));
 
-/// The devices, for a figure that is seen without its report.
+/// The devices, for a figure that is shown without its report.
 export const device_note = points => unique(points.map(p => p.gpu).filter(Boolean)).sort().join(', ');
-/// What a file may be called, whatever the scene is.
+/// A valid file name for any scene.
 export const still_name = name => name.replace(/[^A-Za-z0-9._=-]+/g, '-');
 
-/// Points with nothing of the same label at most as great in both keys and less in one.
+/// Pareto front of each label: points that no point of the same label dominates in both keys.
 export const on_front = (points, a, b) => points.filter(
     p => !points.some(q => q.label === p.label && q[a] <= p[a] && q[b] <= p[b] && (q[a] < p[a] || q[b] < p[b])));
 
-/// Panels side by side, of at most `most`: no row is left with a gap if that can be.
+/// Number of panels side by side, at most `most`; without gaps in the last row if possible.
 export function across_of(panels, most) {
   for (let n = Math.min(most, panels); n > 1; --n)
     if (panels % n === 0) return n;
   return Math.max(1, Math.min(most, panels));
 }
 
-/// Ticks of a logarithmic axis: powers of ten, 2 and 5 times them where there would be few, every other where many.
+/// Ticks of a logarithmic axis: powers of ten; also 2 and 5 times them on short axes; every other one on long axes.
 export function decades(values) {
   const first = Math.floor(Math.log10(Math.min(...values))), last = Math.ceil(Math.log10(Math.max(...values))),
         out = [];

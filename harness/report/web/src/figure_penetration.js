@@ -1,7 +1,7 @@
 // Penetration over time.
 import {across_of, beside, colour, dashes, fade, kCross, kFailed, picked, still_name, unique, without_floor} from './figure_parts.js';
 
-/// What an axis says, and the factor to its unit.
+/// Title of the axis, and the factor from SI to its unit.
 const kMetrics = {
   tunnelled_fraction: ['tunnelled [%]', 100],
   contact_length_m: ['contour [mm]', 1e3],
@@ -10,7 +10,7 @@ const kMetrics = {
   depth_vertex_m: ['depth at vertices [mm]', 1e3],
   stretch_max: ['greatest strain [%]', 100]
 };
-/// What tells solvers apart, by set-up; a metric that no run has is left out of its picture.
+/// The metrics that distinguish solvers, by set-up. A metric that no run has is not drawn.
 const kShown = {
   rooms: ['contact_length_m', 'tunnelled_fraction', 'tunnelled_depth_m'],
   hand: ['contact_length_m', 'tunnelled_fraction', 'depth_m'],
@@ -19,7 +19,8 @@ const kShown = {
   grip: ['stretch_max'],
   wave: ['stretch_max']
 };
-const kDeep_mm = 50;  // from here on an axis of depth is logarithmic above 1 mm: what fell through goes on falling
+const kDeep_mm =
+    50;  // from here on an axis of depth is logarithmic above 1 mm, since a cloth that fell through keeps falling
 
 function series_rows(scene, metric) {
   return without_floor(scene.rows)
@@ -106,21 +107,21 @@ function still(up) {
     concat: panels.map(({scene, metric, heading}, k) => {
       const p = panel(scene, metric, labels, 'paper', Math.max(130, width / across - 50), 90);
       for (const layer of p.layer) {
-        layer.name += `_${k}`;  // names must not meet
+        layer.name += `_${k}`;  // names must be unique
         // The time stands below the lowest row.
         if (k + across < panels.length) layer.encoding.x = {...layer.encoding.x, title: null};
       }
       return {...p, title: heading ? {text: heading, anchor: 'start', fontWeight: 'bold'} : null};
     })
   });
-  return {file, title, labels, notes: [failed ? '×: where a run failed' : ''], make};
+  return {file, title, labels, notes: [failed ? '×: time at which a run failed' : ''], make};
 }
 
 export function penetration_figure(ups) {
   const scenes = ups.flatMap(u => u.scenes), named = Object.fromEntries(scenes.map(s => [s.name, s]));
   const at = state => named[state.Scene];
   const metrics = scene => Object.keys(kMetrics).filter(m => scene.rows.some(r => m in r.metrics));
-  // The first that shows something: most scenes are meant to be all zero.
+  // The first metric with a value above 0: most scenes expect zeros.
   const first = scene => metrics(scene).find(m => series_rows(scene, m).some(d => d.value > 0));
   const rows = state => state.Metric ? series_rows(at(state), state.Metric) : [];
   return {
@@ -128,7 +129,7 @@ export function penetration_figure(ups) {
     title: 'Penetration over time',
     spec: (theme, width, state) =>
         panel(at(state), state.Metric, labels_of([at(state)]), theme, beside(theme, width, 220), 320),
-    empty: 'This scene has no such series.',
+    empty: 'No run of this scene has this metric.',
     choices: [
       {label: 'Scene', options: () => scenes.map(s => ({value: s.name, text: s.name}))}, {
         label: 'Metric',
@@ -136,8 +137,8 @@ export function penetration_figure(ups) {
         first: state => first(at(state))
       }
     ],
-    caption: 'One line a solver, one value a frame. A cross on the lower edge: where a run failed. Ballistic, which ' +
-        'nothing stops, is left out.',
+    caption: 'One line for each solver, one value for each frame. A cross on the lower edge marks the time at ' +
+        'which a run failed. Ballistic, which handles no contact, is not drawn.',
     rows: state => [
         ['scene', 'metric', 'solver', 'time_s', 'value'],
         ...rows(state).map(d => [state.Scene, state.Metric, d.label, d.time, d.raw])],

@@ -44,7 +44,7 @@ function rate_rows(family) {
   return rows;
 }
 
-/// On paper lines that lie on one another show through the points.
+/// On paper points are hollow, so that overlapping lines stay visible.
 const hollow = theme => theme === 'paper' ? {type: 'point', fill: '#ffffff', size: 34, strokeWidth: 1.4} :
                                             {type: 'point', filled: true, size: 46};
 
@@ -59,7 +59,7 @@ const side_encoding = rows => {
   const used = kSides.domain.filter(s => rows.some(r => r.sides === s));
   const pick = list => used.map(s => list[kSides.domain.indexOf(s)]);
   return {
-    // Another field with another domain, or the legend's symbols would be dashed.
+    // A field with a domain of its own; otherwise the symbols of the legend would be dashed.
     strokeDash: {
       field: 'dash',
       type: 'nominal',
@@ -76,12 +76,12 @@ const side_encoding = rows => {
   };
 };
 
-/// What stands above the axis of Fig. 4, in words.
+/// A note with the rates above the axis of Fig. 4.
 function floor_note(family) {
   const rates = family.series.filter(is_floor).flatMap(s => s.points).map(p => p.fps).filter(fps => fps > 0);
   if (!rates.length || family.series.every(is_floor)) return '';
   const [low, high] = [Math.min(...rates), Math.max(...rates)].map(v => Math.round(v).toLocaleString('en-US'));
-  return `Not drawn: ballistic, the harness without a cloth model, ${low} to ${high}.`;
+  return `Not drawn: ballistic, which is the harness without a cloth model (${low} to ${high} frames per second).`;
 }
 
 function rates_spec(all, labels, theme, width) {
@@ -110,7 +110,7 @@ function rates_spec(all, labels, theme, width) {
       {
         name: 'cap_text',
         data: {values: [{fps: 72}]},
-        mark: {type: 'text', align: 'left', baseline: 'top', dx: 4, dy: 5, text: '72 Hz, the display'},
+        mark: {type: 'text', align: 'left', baseline: 'top', dx: 4, dy: 5, text: '72 Hz, refresh rate of the display'},
         encoding: {x: {value: 0}, y}
       },
       {
@@ -149,10 +149,11 @@ export function rates_figure(family, index, file) {
     id: `rates-${index}`,
     title,
     spec,
-    caption: 'Uncapped, median of the trials; bars: half their range; a cross on the lower edge: a run that failed. ' +
-        (paper ? 'Grey: published (Quest 3, capped at 72 Hz, rendering included). ' : '') +
-        'Ballistic, the harness without a cloth model, is left out.',
-    hint: 'Click a name to show it alone.',
+    caption:
+        'Uncapped frame rates. Points: median of the trials. Bars: half their range. A cross on the lower edge: a run that failed. ' +
+        (paper ? 'Grey: published values (Quest 3, capped at 72 Hz, with rendering). ' : '') +
+        'Ballistic, which is the harness without a cloth model, is not drawn.',
+    hint: 'Click a name in the legend to show that solver alone.',
     rows: () => [
         ['solver', 'sides', 'width', 'fps', 'low', 'high', 'status'],
         ...all.map(r => [r.label, r.sides, r.width, r.fps, r.low, r.high, r.status])],
@@ -229,15 +230,15 @@ export function bandwidth_figure(family, index, file) {
   const absent = unique(
       family.series.filter(s => s.points.some(p => p.status === 'ok') && !labels.includes(s.label)).map(s => s.solver));
   const title = `${family.paper_table === 3 ? 'Fig. 5: ' : ''}Peak bandwidth by resolution (${family.name})`;
-  const empty = 'No GPU solver among the runs: no bytes are known.';
+  const empty = 'No run is of a GPU solver, so no bytes are known.';
   return {
     id: `bandwidth-${index}`,
     title,
     spec,
     empty,
     caption: 'Bytes that shaders load and store, computed from the scene and the kernels, per second of wall time' +
-        `${over}. CPU solvers are absent: nothing is known of their bytes. ` +
-        'The paper’s values are published as a graph alone.',
+        `${over}. The bytes of CPU solvers are not known. ` +
+        'The paper publishes its values as a graph only.',
     rows: () => [
         ['solver', 'sides', 'width', 'way', 'GB_per_s'],
         ...rows.map(r => [r.label, r.sides, r.width, r.way, r.GB_per_s])],

@@ -1,4 +1,4 @@
-// Stability maps: every probe by its outcome class, in colour and in symbol, where it turns, and what theory says.
+// Stability maps: every probe by its outcome class in colour and symbol, the boundary of stability, and the theory.
 import {across_of, beside, decades, still_name, unique} from './figure_parts.js';
 
 /// A polygon through `radii` in turn, evenly round, within -1..1.
@@ -9,7 +9,7 @@ function polygon(corners, ...radii) {
   });
   return `M${points.join('L')}Z`;
 }
-const slanted = polygon(4, 0.4, 1.2);  // a cross that stands on two feet, once turned
+const slanted = polygon(4, 0.4, 1.2);  // half of an upright cross that stands on two arms
 
 /// Okabe & Ito's palette; `dark` where a colour would not be seen on black.
 const kClasses = [
@@ -50,7 +50,8 @@ function probes_of(solver) {
                                                      }));
 }
 
-/// Of every row that turns: the middle of its turn, and the range of that over the seeds.
+/// For every row with a boundary: the boundary (geometric mean of last stable and first unstable) and its range over
+/// the seeds.
 function boundary_of(solver) {
   return solver.rows.flatMap(row => {
     const turns =
@@ -69,7 +70,7 @@ function rows_of(map) {
       s => [...theory_of(map), ...boundary_of(s), ...probes_of(s)].map(r => ({...r, panel: heading(s, map)})));
 }
 
-/// Ends of an axis: those of the probes and a little more; a theory far outside is cut off.
+/// Ends of an axis: those of the probes and a margin. Theory far outside is clipped.
 function ends(probes, key) {
   const values = probes.map(p => p[key]), room = 1.7;
   return [Math.min(...values) / room, Math.max(...values) * room];
@@ -131,7 +132,7 @@ function panels(map, rows, theme, width) {
           encoding: {x, y, order: {field: 'y', type: 'quantitative'}}
         },
         {
-          name: 'turns',  // also where only one row turns
+          name: 'turns',  // visible where only one row has a boundary, too
           transform: of('boundary'),
           mark: {type: 'tick', orient: 'vertical', size: 14, thickness: 1.6, color: ink, clip: true},
           encoding: {x, y}
@@ -152,8 +153,8 @@ function panels(map, rows, theme, width) {
             shape: {field: 'outcome', type: 'nominal', title: 'outcome', scale: scale(present.map(c => c.shape))},
             tooltip: [
               {field: 'solver'}, {field: 'outcome'}, {field: 'x', title: label_of(map.x), format: '.4~g'},
-              {field: 'y', title: label_of(map.y), format: '.4~g'}, {field: 'frame', title: 'first such frame'},
-              {field: 'status'}, {field: 'message'}
+              {field: 'y', title: label_of(map.y), format: '.4~g'},
+              {field: 'frame', title: 'first frame of that class'}, {field: 'status'}, {field: 'message'}
             ]
           }
         }
@@ -162,7 +163,7 @@ function panels(map, rows, theme, width) {
   };
 }
 
-const empty = 'No solver here can run this map.';
+const empty = 'None of these solvers supports this map.';
 
 /// `maps` as in a study folder's stability.json.
 export function stability_figure(maps) {
@@ -186,10 +187,10 @@ export function stability_figure(maps) {
       first: () => maps.find(m => drawn(m).length)?.name
     }],
     empty,
-    caption:
-        'Every probe of the first seed by its outcome class, in colour and symbol; the line is where a row turns, ' +
-        'wide where its seeds differ; broken lines: theory. Above each panel the largest stable value.',
-    hint: 'Hover for the numbers.',
+    caption: 'Points: probes of the first seed; colour and symbol give the outcome class. Line: boundary between ' +
+        'stable and unstable in each row; its width is the range over the seeds. Broken lines: theory. Above ' +
+        'each panel: the largest stable value.',
+    hint: 'Hover over a point for its values.',
     rows: state => {
       const probes = rows_of(at(state)).filter(r => r.kind === 'probe');
       return [
@@ -245,7 +246,7 @@ export function cases_figure(cases) {
     id: 'stability-cases',
     title,
     spec: make,
-    caption: 'Share of every case’s runs that were stable, degraded and failed, from left to right.',
+    caption: 'Share of the runs of each case that were stable, degraded or failed, from left to right.',
     rows: () => [['case', 'solver', ...grades], ...cases.map(c => [c.case, c.solver, ...grades.map(g => c[g])])],
     stills: [{file: 'stability-cases', title, make: w => make('paper', w)}]
   };

@@ -84,8 +84,7 @@ function stretch_spec(points, labels, theme, width) {
   };
 }
 
-/// What stretches less costs more: settings of a solver in the plane of both, a panel a resolution. Null where no
-/// solver has two settings.
+/// Stretch against GPU time of each setting, one panel per resolution. Null if no solver has two settings.
 export function stretch_figure(family, index) {
   const points = points_of(family);
   const settings = solver => unique(points.filter(r => r.label === solver).map(r => r.setting)).length;
@@ -97,8 +96,8 @@ export function stretch_figure(family, index) {
     title,
     spec,
     caption:
-        'Stretch of structural edges in the scene’s last second, greatest and mean, against the GPU’s time for a ' +
-        'frame: a point a setting; lines: where no setting of the solver is faster and stretches less.',
+        'Stretch of structural edges in the last second of the scene, greatest and mean, against GPU time per frame. ' +
+        'Each point is a setting. Lines join the settings for which no other setting of the solver is faster and stretches less.',
     rows: () => [
         ['solver', 'setting', 'sides', 'resolution', 'ms', 'greatest_percent', 'mean_percent'],
         ...points.map(r => [r.label, r.setting, r.sides, r.resolution, r.ms, r.greatest, r.mean])],

@@ -13,7 +13,7 @@ function data_of(diagram, clock) {
                                     error: p.error,
                                     ranked: !(p.solver in diagram.not_ranked),
                                     stored_front: p.on_front,
-                                    // A CPU has one clock.
+                                    // A CPU solver has one clock.
                                     time: clock === 'wall' ? p.wall_ms_per_s : p.device_ms_per_s ?? p.wall_ms_per_s
                                   }));
   const good = rows.filter(r => r.status === 'ok' && r.error > 0 && r.time > 0);
@@ -30,7 +30,7 @@ function data_of(diagram, clock) {
   };
 }
 
-/// Labelled floors of the error. One far below every point is stated in words: it would press the points together.
+/// Labelled floors of the error. A floor far below every point is stated in a note; drawn, it would compress the axis.
 function floors_of(diagram, good) {
   const least = Math.min(...good.map(r => r.error));
   return [
@@ -40,7 +40,7 @@ function floors_of(diagram, good) {
       .map(f => ({...f, what: `${f.what} ${f.error.toExponential(1)}`, far: f.error < 1e-3 * least}));
 }
 
-/// A long name of an axis, on lines.
+/// Breaks the long name of an axis into lines.
 const lines_of = (text, most) => text.split(' ').reduce(
     (lines, word) => (lines.at(-1) + word).length < most ? [...lines.slice(0, -1), `${lines.at(-1)} ${word}`.trim()] :
                                                            [...lines, word],
@@ -54,8 +54,8 @@ function work_spec(diagram, clock, theme, width) {
   const x = {
     field: 'time',
     type: 'quantitative',
-    title: clock === 'wall' ? 'wall time, pipelined where a solver can [ms per simulated second]' :
-                              'GPU time, of CPU solvers wall time [ms per simulated second]',
+    title: clock === 'wall' ? 'wall time, pipelined where the solver can [ms per simulated second]' :
+                              'GPU time; wall time for CPU solvers [ms per simulated second]',
     scale: {type: 'log', padding: 10},
     axis: {format: '~g', values: decades(good.map(r => r.time).concat(1000))}
   };
@@ -136,7 +136,7 @@ function work_spec(diagram, clock, theme, width) {
   };
 }
 
-/// What the picture alone does not say, a sentence each.
+/// Sentences on what the picture does not show.
 function notes_of(diagram) {
   const {rows, good, failed, untimed} = data_of(diagram, 'wall'), bad = [...failed, ...untimed];
   const out = unique(rows.map(r => r.label)).flatMap(label => {
@@ -164,8 +164,8 @@ export function work_figure(diagrams) {
     labels: unique(d.points.map(p => p.solver)),
     empty: data_of(d, 'wall').good.length ? '' : 'No run of this scene has an error and a time.',
     notes: [
-      `${d.scene}. Thick: fronts; dashed: by the GPU’s own clock; shaded: not distinguished; ×: failed.`, ...notes_of(d),
-      device_note(d.points)
+      `${d.scene}. Thick: fronts. Dashed: fronts by GPU time. Shaded: solvers are not distinguished. ×: failed.`,
+      ...notes_of(d), device_note(d.points)
     ],
     make: w => work_spec(d, 'wall', 'paper', w)
   });
@@ -178,15 +178,15 @@ export function work_figure(diagrams) {
       {label: 'Scene', options: () => diagrams.map(d => ({value: d.scene, text: words(d)}))}, {
         label: 'Clock',
         options: () =>
-            [{value: 'wall', text: 'wall, pipelined where a solver can'},
-             {value: 'device', text: 'GPU (CPU solvers: wall)'}]
+            [{value: 'wall', text: 'wall time, pipelined where the solver can'},
+             {value: 'device', text: 'GPU time (CPU solvers: wall time)'}]
       }
     ],
-    caption:
-        'Every point a setting, thick each solver’s front, dashed the same by the GPU’s own clock; crosses on the ' +
-        'upper edge: runs that failed, by their time where they have one, else on the right. Dotted: real time ' +
-        '(1000 ms/s). Shaded: below the floors errors are not distinguished.',
-    hint: 'Hover for the setting.',
+    caption: 'Each point is a setting. Thick lines: the front of each solver. Dashed lines: the front by GPU ' +
+        'time. Crosses on the upper edge: runs that failed, at their run time, or at the right end if they ' +
+        'have none. Dotted: real time (1000 ms/s). Shaded: below the floors, where errors are not ' +
+        'distinguished.',
+    hint: 'Hover over a point for its setting.',
     rows: state => [
         ['scene', 'solver', 'setting', 'status', 'ms_per_s', 'error', 'on_front'],
         ...data_of(at(state), state.Clock)

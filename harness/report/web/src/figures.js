@@ -5,8 +5,8 @@ import {cases_figure, stability_figure} from './figure_stability.js';
 import {stretch_figure} from './figure_stretch.js';
 import {work_figure} from './figure_work.js';
 
-/// {section id: figures}, for the sections that have data; of rates a list for each family. Figs. 4 and 5 are those of
-/// the paper's table, or of the first family.
+/// {section id: figures} for the sections that have data; `rates` has one list per family. Figs. 4 and 5 are those of
+/// the paper's table if it was run, else those of the first family.
 export function make_figures(doc) {
   const main = doc.rates.find(f => f.paper_table === 3) ?? doc.rates[0];
   const file = (family, name) => family === main ? name : null;

@@ -12,7 +12,7 @@ const kOrder = [
 const kAfterViewer = ['material', 'feature-cost', 'features', 'failed', 'expect', 'environment'];
 const rank = id => kOrder.includes(id) ? kOrder.indexOf(id) : kOrder.length;
 
-/// "**" marks what must not be missed; paragraphs are apart by a blank line.
+/// "**" marks warnings; blank lines separate paragraphs.
 function headline(text) {
   return text.split(/\n+/).filter(Boolean).map(line => {
     const parts = line.split('**');
@@ -22,7 +22,7 @@ function headline(text) {
 }
 
 function section(s, id, figures) {
-  // The table that counts, then the figures, then the others; diagrams stand before the table that sums them up.
+  // The main table, then the figures, then the other tables. Work-precision figures come before all tables.
   const blocks = s.tables.map(table_block), first = s.id === 'work-precision' ? 0 : 1;
   return element(
       'section', {id, 'aria-labelledby': `${id}-title`}, element('h2', {id: `${id}-title`}, s.title),
@@ -36,7 +36,7 @@ function start() {
       .append(
           ...headline(doc.headline),
           ...(doc.commands.length ? [element(
-                                        'p', {class: 'soft'}, 'Made by ',
+                                        'p', {class: 'soft'}, 'Written by ',
                                         doc.commands.flatMap((c, k) => [k ? ', ' : '', element('code', {}, c)]), '.')] :
                                     []));
 
@@ -44,7 +44,7 @@ function start() {
   const sorted = doc.sections.map((s, k) => ({s, k})).sort((a, b) => rank(a.s.id) - rank(b.s.id) || a.k - b.k);
   for (const {s} of sorted) {
     const nth = seen[s.id] = (seen[s.id] ?? 0) + 1, id = nth > 1 ? `${s.id}-${nth}` : s.id;
-    // Of rates each section has its own figures; elsewhere all stand in the first.
+    // Each section of rates has figures of its own. Elsewhere the first section has all of them.
     const own = s.id === 'rates' ? figures.rates[nth - 1] ?? [] : nth === 1 ? figures[s.id] ?? [] : [];
     document.getElementById(kAfterViewer.includes(s.id) ? 'later' : 'sections').append(section(s, id, own));
     links.push({id, title: s.title, later: kAfterViewer.includes(s.id)});
@@ -57,7 +57,7 @@ function start() {
   document.getElementById('contents')
       .append(element('ul', {}, all.map(l => element('li', {}, element('a', {href: `#${l.id}`}, l.title)))));
   start_plots();
-  // For the browser's console, and for tests.
+  // Used by tests and the browser's console.
   window.clothbench = {document: doc};
   if (!has_viewer) return;
   document.getElementById('viewer-section').hidden = false;

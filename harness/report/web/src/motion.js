@@ -52,14 +52,14 @@ export class Motion {
     return [low, (time - t[low]) / (t[high] - t[low])];
   }
 
-  /// Positions at `time` into `out` (vertex, xyz), between stored frames on straight lines.
+  /// Positions at `time` into `out` (vertex, xyz), interpolated linearly between stored frames.
   at(time, out) {
     const [f, w] = this.place(time), size = 3 * this.vertices, a = f * size, b = w > 0 ? a + size : a;
     for (let k = 0; k < size; ++k) out[k] = this.position[a + k] * (1 - w) + this.position[b + k] * w;
     return out;
   }
 
-  /// Corners of the triangles, as the solver's grid has them.
+  /// Vertex indices of the triangles of the grid.
   triangles() {
     const out = [], c = this.columns;
     for (let j = 0; j + 1 < this.rows; ++j)
@@ -93,14 +93,14 @@ export class Motion {
     return {low, high};
   }
 
-  /// What was left out of it, in words.
+  /// A sentence on what was left out of the motion.
   thinning() {
     const {run} = this, kept = run.frames.length, grid = run.grid[0] * run.grid[1];
     const step =
         run.step_m >= 1e-3 ? `${(1e3 * run.step_m).toPrecision(2)} mm` : `${(1e6 * run.step_m).toPrecision(2)} µm`;
     return `${kept === run.frames_stored ? 'every frame' : `${kept} of ${run.frames_stored} frames`}, ` +
         `${this.vertices === grid ? 'every vertex' : `${this.vertices} of ${grid} vertices`}, positions to ${step}` +
-        (run.cut_at >= 0 ? `; ends where it flew apart or was not finite, frame ${run.cut_at}` : '');
+        (run.cut_at >= 0 ? `; ends at frame ${run.cut_at}, where the cloth flew apart or was not finite` : '');
   }
 }
 

@@ -4,7 +4,7 @@ import * as THREE from 'three';
 import {make_colliders, penetration} from './colliders.js';
 import {load_colliders, Motion, strain} from './motion.js';
 
-// Viridis at fifths, from its published values; strain and depth read the same for every kind of sight.
+// Viridis at fifths, from its published values; readable with every common colour blindness.
 const kRamp = ['#440154', '#414487', '#2a788e', '#22a884', '#7ad151', '#fde725'].map(c => new THREE.Color(c));
 export const ramp_css = `linear-gradient(to right, ${kRamp.map(c => `#${c.getHexString()}`).join(', ')})`;
 const kCrossing = new THREE.Color('#ff1f8f');
@@ -59,7 +59,7 @@ export class Panel {
       polygonOffset: true,
       polygonOffsetFactor: 1,
       polygonOffsetUnits: 1
-    });  // a cloth that lies on it is seen
+    });  // so that a cloth on the surface is visible
     this.colliders = make_colliders(colliders);
     this.group = new THREE.Group();
     for (const c of this.colliders) {
@@ -80,8 +80,8 @@ export class Panel {
     return new Panel(motion, colliders);
   }
 
-  /// What the camera should see: where the cloth starts, and as much of its way and of the colliders as is near. A
-  /// cloth that slides off a desk falls for metres, and would be a dot if all of that were to fit.
+  /// The box to view: the cloth at the start, and the parts of its path and of the colliders that are near. A cloth
+  /// that slides off a desk falls for metres; a box around its whole path would reduce it to a dot.
   view_box() {
     const box = frame => {
       const {low, high} = this.motion.box(frame);
@@ -101,7 +101,7 @@ export class Panel {
     return out;
   }
 
-  /// From which corner the cloth stands before its colliders: signs of x and z.
+  /// The corner from which the cloth is in front of its colliders: signs of x and z.
   side() {
     const solid = new THREE.Box3(), {low, high} = this.motion.box(0);
     for (const c of this.colliders) solid.union(new THREE.Box3().setFromObject(c.object));
@@ -125,11 +125,14 @@ export class Panel {
           map = colouring === 'checks' ? this.checks : null;
     if (this.cloth.material.map !== map) Object.assign(this.cloth.material, {map, needsUpdate: true});
     for (let v = 0; v < motion.vertices; ++v) {
-      if (colouring === 'checks') colour.set(0xffffff);
+      if (colouring === 'checks')
+        colour.set(0xffffff);
       else {
         const x = this.value[v];
-        if (x < 0) ++crossing;
-        else greatest = Math.max(greatest ?? 0, x);
+        if (x < 0)
+          ++crossing;
+        else
+          greatest = Math.max(greatest ?? 0, x);
         x < 0                                      ? colour.copy(kCrossing) :
             colouring === 'penetration' && x === 0 ? colour.set(0xc9d1da) :
                                                      ramp(x / most, colour);

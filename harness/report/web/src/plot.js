@@ -19,7 +19,7 @@ function make_view(spec, name, container) {
 
 /// The element of a figure (figure_parts.js), with hover, controls and downloads.
 export function plot_figure(
-    {id, title, caption, hint, spec, rows, choices = [], empty = 'Nothing to show.', remark = null}) {
+    {id, title, caption, hint, spec, rows, choices = [], empty = 'There are no data for this choice.', remark = null}) {
   const plot = element('div', {class: 'plot', id});
   const remarks = element('p', {class: 'note'});
   const state = {};
@@ -38,7 +38,7 @@ export function plot_figure(
                                  settle();
                                  redraw();
                                }));
-  // What can be chosen hangs on what was chosen before it.
+  // The options of a control depend on the controls before it.
   const settle = () => choices.forEach(({label, options, first}, k) => {
     const list = options(state);
     if (!list.some(o => o.value === state[label])) state[label] = first?.(state) ?? list[0]?.value ?? '';
@@ -46,7 +46,7 @@ export function plot_figure(
         ...list.map(o => new Option(o.text, o.value, o.value === state[label], o.value === state[label])));
   });
   settle();
-  // What is saved is for paper: light, on white, and of one size whatever the window's.
+  // Saved figures are light, on white, and of one size for every window.
   const paper = () =>
       make_view({...spec('light', 760, state), description: title, background: '#ffffff', padding: 10}, 'light', null);
   const name = file_name(title);

@@ -25,6 +25,7 @@ export function config(theme) {
       labelFontSize: paper ? 11 : 12,
       titleFontSize: paper ? 11 : 12,
       symbolSize: 80,
+      symbolLimit: 0,  // every label, however many
       labelLimit: paper ? 420 : 260,
       ...(paper ? {orient: 'bottom', layout: {bottom: {direction: 'vertical', anchor: 'start', margin: 6}}} : {})
     },

@@ -1,7 +1,7 @@
-// The figures of a report as pictures, by Node alone: what bundle.mjs makes stills.cjs of.
+// Draws the figures of a report in Node; bundle.mjs makes stills.cjs of this file.
 //   node stills.cjs REPORT/index.html OUT      writes OUT/<figure>.svg, and OUT/figures.md, which shows them
-// Reads the data that the page embeds. Vega measures text with a canvas, which Node lacks: widths are those of DejaVu
-// Sans, wider than what most systems have, so nothing is cut off.
+// Reads the data that the page embeds. Vega measures text with a canvas, which Node lacks. The widths here are those of
+// DejaVu Sans, which is wider than most system fonts, so no text is cut off.
 import {readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import * as vega from 'vega';
@@ -23,7 +23,7 @@ const width_of = (text, size) =>
 vega.textMetrics.width = (item, text) =>
     width_of(text ?? '', vega.textMetrics.height(item)) * (item.fontWeight === 'bold' ? 1.1 : 1);
 
-/// Lines no wider than the picture.
+/// Wraps text to the width of the picture.
 function wrapped(text, width) {
   const lines = [''];
   for (const word of text.split(' '))
@@ -34,7 +34,7 @@ function wrapped(text, width) {
   return lines.filter(Boolean);
 }
 
-/// As many columns as the longest label leaves room for.
+/// Number of columns of the legend, by its longest label.
 const columns_for = labels =>
     Math.max(1, Math.floor(kWidth_px / (30 + Math.max(0, ...labels.map(l => width_of(l, 11))))));
 
@@ -60,7 +60,7 @@ async function draw(still) {
   return (await view.runAsync()).toSVG();
 }
 
-/// The data element of a page, or the same as a file of its own.
+/// The document from a page, or from a JSON file.
 function document_of(file) {
   const text = readFileSync(file, 'utf8');
   const data = text.match(/<script type="application\/json" id="clothbench-data">([^]*?)<\/script>/)?.[1] ?? text;

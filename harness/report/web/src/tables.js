@@ -75,7 +75,7 @@ function body_cell(text, row_header, numeric) {
 /// Title, downloads, table, note.
 export function table_block(t) {
   const [head, ...body] = t.rows;
-  // A column is set as text where most of what it holds is.
+  // A column is aligned as text if most of its values are text.
   const numeric = head.map((_, k) => body.filter(r => is_number(r[k] ?? '')).length * 2 >= body.length);
   const table = element(
       'table', {}, element('caption', {class: 'skip'}, t.title),

@@ -1,4 +1,4 @@
-/// Light or dark: as the system says until the button is used. `changed` is called with the theme's name.
+/// Light or dark: the system's choice until the button is used. `changed` is called with the theme's name.
 const listeners = [];
 export const on_theme = listener => listeners.push(listener);
 export const theme = () => document.documentElement.dataset.theme === 'dark' ? 'dark' : 'light';
@@ -25,7 +25,7 @@ export function start_theme() {
   apply(wanted());
 }
 
-// After Okabe & Ito's palette, readable with every common colour blindness; on paper as in the light.
+// After Okabe & Ito's palette, readable with every common colour blindness. Paper has the colours of the light theme.
 const kColours = {
   light: {
     xpbd: '#0072B2',
@@ -55,6 +55,18 @@ const kPublished = {
   dark: ['#6F7780', '#8C949C', '#B0B8C0']
 };
 
+const hex = v => Math.round(255 * v).toString(16).padStart(2, '0');
+/// Further colours, all different: hues a golden angle apart, of changing lightness.
+function generated(k, name) {
+  const hue = (k * 137.508) % 360, light = name === 'dark' ? 0.62 + 0.06 * (k % 4) : 0.28 + 0.06 * (k % 4),
+        saturation = 0.55 + 0.15 * (k % 3), a = saturation * Math.min(light, 1 - light);
+  const channel = n => {
+    const at = (n + hue / 30) % 12;
+    return light - a * Math.max(-1, Math.min(at - 3, 9 - at, 1));
+  };
+  return `#${hex(channel(0))}${hex(channel(8))}${hex(channel(4))}`.toUpperCase();
+}
+
 /// {label: colour} for every label, stable as long as the labels are.
 export function palette(labels, theme_name = theme()) {
   const name = theme_name === 'dark' ? 'dark' : 'light', out = {};
@@ -62,6 +74,6 @@ export function palette(labels, theme_name = theme()) {
   for (const label of labels)
     out[label] = kColours[name][label] ??
         (label.startsWith('published') ? kPublished[name][published++ % 3] :
-                                         kSpare[name][spare++ % kSpare[name].length]);
+                                         kSpare[name][spare++] ?? generated(spare, name));
   return out;
 }

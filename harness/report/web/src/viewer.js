@@ -16,7 +16,7 @@ const kScales = {
   strain: [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1].map(v => ({value: v, text: `${100 * v} %`})),
   penetration: [1, 5, 20].map(v => ({value: v * 1e-3, text: `${v} mm`}))
 };
-/// Three digits; what is not nothing never reads as 0.
+/// Three digits; a value above 0 is never shown as 0.
 const number = (v, unit) => v === 0 ? '0' : v < 1e-3 ? `<0.001 ${unit}` : `${v.toPrecision(3)} ${unit}`;
 const percent = v => number(100 * v, '%'), millimetres = v => number(1e3 * v, 'mm');
 const kWords = {
@@ -51,7 +51,7 @@ class Viewer {
     } catch (error) {
       this.stage.replaceWith(element(
           'p', {class: 'warning'},
-          'This browser has no WebGL, so motions are not shown; everything else on the page is complete.'));
+          'Motions need WebGL, which this browser lacks or has disabled. The rest of the page is complete.'));
       this.broken = String(error);
       return;
     }
@@ -63,7 +63,7 @@ class Viewer {
     });
     this.controls.enablePan = true;
     new ResizeObserver(() => this.resize()).observe(this.stage);
-    on_theme(() => this.draw());  // at once: a page about to be printed waits for no frame
+    on_theme(() => this.draw());  // at once: printing does not wait for a frame
     const frame = now => {
       this.tick(now);
       requestAnimationFrame(frame);
@@ -76,7 +76,9 @@ class Viewer {
     this.canvas = element('canvas', {
       role: 'img',
       tabindex: '0',
-      'aria-label': 'Motions side by side. Space plays, arrow keys step, Home and End go to the ends; drag to turn.'
+      'aria-label':
+          'Motions side by side. Space: play or pause. Arrow keys: one frame. Home and End: first and last frame. ' +
+          'Drag: rotate.'
     });
     this.overlay = element('div', {class: 'panels'});
     this.stage = element('div', {id: 'stage'}, this.canvas, this.overlay);
@@ -118,8 +120,8 @@ class Viewer {
     this.root.append(
         element(
             'p', {class: 'soft'},
-            'Positions as the result files have them, thinned and rounded to fit this page; by how much stands below. ' +
-                'Between stored frames the motion is drawn on straight lines.'),
+            'Positions from the result files, thinned and rounded to fit this page; the details are below. ' +
+                'Between stored frames, positions are interpolated linearly.'),
         element(
             'div', {class: 'bar'}, this.scene_list, this.add_button,
             element(
@@ -135,7 +137,7 @@ class Viewer {
         element(
             'div', {class: 'bar'}, this.play_button,
             element('button', {type: 'button', 'aria-label': 'One frame back', onclick: () => this.step(-1)}, '◂'),
-            element('button', {type: 'button', 'aria-label': 'One frame on', onclick: () => this.step(1)}, '▸'),
+            element('button', {type: 'button', 'aria-label': 'One frame forward', onclick: () => this.step(1)}, '▸'),
             this.scrub, this.clock,
             select(
                 'Speed', [0.1, 0.25, 0.5, 1, 2].map(v => ({value: String(v), text: `${v}×`})), '1',
@@ -143,14 +145,13 @@ class Viewer {
                   this.speed = Number(v);
                 })),
         element(
-            'details', {}, element('summary', {}, 'What was thinned, what the colours are'),
-            this.notes = element('ul', {class: 'soft'}),
+            'details', {}, element('summary', {}, 'Thinning and colours'), this.notes = element('ul', {class: 'soft'}),
             element(
                 'p', {class: 'soft'},
-                'Strain: greatest |length / rest − 1| of the edges along rows and columns at a vertex. Penetration: depth ' +
-                    'of the vertices in planes, spheres, boxes and capsules, margin not counted; ' +
-                    'for meshes, vertices whose edges cross the surface. Colours come from the rounded positions and are for ' +
-                    'looking; the numbers under a motion and in the tables come from the full ones.'),
+                'Strain: greatest |length / rest − 1| of the edges along rows and columns at a vertex. Penetration: ' +
+                    'depth of the vertices in planes, spheres, boxes and capsules, without the margin; for meshes, ' +
+                    'vertices with an edge that crosses the surface. Colours are computed from the rounded positions and ' +
+                    'are approximate. The numbers under a motion and in the tables are computed from the full positions.'),
             ...this.motions.left_out.map(t => element('p', {class: 'soft'}, `Left out: ${t}`))));
     this.stage.addEventListener('keydown', e => this.key(e));
     this.colour('checks');
@@ -170,7 +171,7 @@ class Viewer {
     e.preventDefault();
   }
 
-  /// All solvers on a scene, as many as fit; settings other than the default only where there is room.
+  /// All solvers on a scene, as many as fit; further settings only if there is room.
   async show_scene(scene) {
     const runs = this.motions.runs.filter(c => c.scene === scene);
     const first = runs.filter((c, k) => runs.findIndex(d => d.solver === c.solver) === k),
@@ -185,7 +186,7 @@ class Viewer {
   async set(runs) {
     const turn = this.turn = (this.turn ?? 0) + 1;
     const panels = await Promise.all(runs.map(c => Panel.load(this.motions, c)));
-    if (turn !== this.turn) return panels.forEach(p => p.dispose());  // another choice came in between
+    if (turn !== this.turn) return panels.forEach(p => p.dispose());  // the user chose again meanwhile
     this.panels.forEach(p => p.dispose());
     this.panels = panels;
     this.arrange();
@@ -206,7 +207,7 @@ class Viewer {
     return this.set(runs);
   }
 
-  /// Runs of one scene stand where they are; another scene's middle is moved to the same place.
+  /// Runs of one scene keep their relative positions; the centres of different scenes are aligned.
   arrange() {
     this.end = Math.max(0, ...this.panels.map(p => p.motion.time_s.at(-1)));
     this.scrub.max = String(this.end || 1);
@@ -319,10 +320,10 @@ class Viewer {
   }
 
   /// To the next stored frame of the first motion.
-  step(way) {
+  step(direction) {
     this.play(false);
     const t = this.panels[0]?.motion.time_s ?? [0], slack = 1e-9;
-    const next = way > 0 ? t.find(x => x > this.time + slack) : t.findLast(x => x < this.time - slack);
+    const next = direction > 0 ? t.find(x => x > this.time + slack) : t.findLast(x => x < this.time - slack);
     if (next !== undefined) this.seek(next);
   }
 
@@ -371,7 +372,7 @@ class Viewer {
       const v = run.metrics[key]?.[f];
       if (v !== undefined && v !== null) words.push(`${word} ${text(v)}`);
     }
-    if (shown?.crossing) words.push(`${shown.crossing} vertices at a crossing`);
+    if (shown?.crossing) words.push(`${shown.crossing} vertices on a crossing edge`);
     return words.join(' · ') || run.sides;
   }
 
@@ -387,7 +388,7 @@ class Viewer {
 export function start_viewer(root, motions) {
   const viewer = new Viewer(root, motions);
   if (!viewer.broken) {
-    // The first scene with something to touch says most.
+    // The first scene with a collider shows most.
     const run = motions.runs.find(c => c.colliders !== undefined && c.setting !== 'all-on') ?? motions.runs[0];
     viewer.ready = viewer.show_scene(run.scene);
   }

@@ -1,0 +1,90 @@
+#include "runner/conformance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/tint.hpp"
+#include "cli/command.hpp"
+
+namespace clothbench {
+namespace {
+
+struct ConformanceArguments {
+  SolverFlags with;
+  std::vector<std::string> scenes;
+  bool no_whole = false;
+  double limit_s = 20;
+};
+
+void print(const std::string& solver, const ConformanceRow& r) {
+  const Tone tone = r.status == "pass" ? Tone::Good : r.status == "FAIL" ? Tone::Bad : Tone::Doubtful;
+  std::string text = fmt::format("{} cases", r.cases - r.skipped);
+  if (r.skipped > 0) text += fmt::format(", {} skipped", r.skipped);
+  if (r.frames_whole > 0 && r.frames_whole < r.frames_of_scene)
+    text += fmt::format(", first {} of {} frames", r.frames_whole, r.frames_of_scene);
+  else if (r.frames_whole > 0)
+    text += fmt::format(", all {} frames", r.frames_whole);
+  if (r.status == "skipped" && !r.faults.empty()) text = r.faults.front();
+  fmt::print("{} {} {}: {}\n", tinted(tone, fmt::format("{:<7}", r.status)), solver, r.scene, text);
+  if (r.status != "FAIL") return;
+  for (const std::string& f : r.faults) fmt::print("        {}\n", f);
+}
+
+/// By scene name; a name that no scene has is a spelling error.
+std::vector<std::string> chosen_scenes(const std::vector<std::string>& given) {
+  const std::vector<std::string> all = scene_names({"paper", "contact", "validation", "metamorphic"});
+  for (const std::string& name : given)
+    if (std::find(all.begin(), all.end(), name) == all.end()) {
+      const std::string near = nearest(name, all);
+      throw Error("--scene " + name + ": no such scene" + (near.empty() ? "" : "; nearest known: " + near));
+    }
+  return given.empty() ? all : given;
+}
+
+void run(const ConformanceArguments& a, Console& console) {
+  a.with.of_solver("the scenes are fixed; expected solver.<name>=<value>");
+  const std::vector<std::string> scenes = chosen_scenes(a.scenes);
+  nlohmann::json all = nlohmann::json::array();
+  int passed = 0, failed = 0, skipped = 0;
+  Guard guard(console.words);
+  for (const auto& [entry, settings, setting] : a.with.chosen({}))
+    for (const std::string& scene : scenes) {
+      const ConformanceRow row =
+          ask_conformance(guard, *entry, settings, a.with.device.options, scene, !a.no_whole, a.limit_s);
+      (row.status == "pass" ? passed : row.status == "skipped" ? skipped : failed) += 1;
+      all.push_back(conformance_json(row));
+      all.back()["solver"] = entry->info.name;
+      all.back()["setting"] = setting;
+      if (!console.json) print(entry->info.name, row);
+      std::fflush(stdout);
+    }
+  if (failed > 0) console.exit_code = ExitCode::CheckFailed;
+  if (console.json) return fmt::print("{}\n", all.dump(2));
+  fmt::print("{} scenes pass, {} fail, {} skipped\n", passed, failed, skipped);
+  if (passed + failed == 0) fmt::print("nothing was tested: the solver supports none of these scenes\n");
+}
+
+}  // namespace
+
+void add_conformance(CLI::App& app, Console& console) {
+  ConformanceArguments& a = console.arguments<ConformanceArguments>();
+  CLI::App* cmd = app.add_subcommand(
+      "conformance",
+      "Check that a solver does what every solver must: stages, start, pins, grips, finite frames, reset; on small "
+      "grids of every scene and on whole scenes");
+  a.with.add_to(*cmd, "solver", "Solvers", "Setting of the solver: solver.substeps=20");
+  cmd->get_option("solver")->required();
+  cmd->add_option("--scene", a.scenes, "Only these scenes, such as paper/gravity");
+  cmd->add_flag("--no-whole", a.no_whole, "Six frames on small grids only, no whole scenes");
+  cmd->add_option("--limit", a.limit_s, "A whole scene ends after this much time in the solver [s]; 0: never")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  a.with.device.add_to(*cmd);
+  cmd->footer(
+      "Examples: clothbench conformance plugin:mine.so\n"
+      "          clothbench conformance xpbd --scene paper/gravity --scene contact/sphere");
+  cmd->callback([&console, &a] { run(a, console); });
+}
+
+}  // namespace clothbench

@@ -1,0 +1,35 @@
+// Where the cloth ends up: how low it hangs, and whether it touches what it should lie on.
+#include <algorithm>
+#include <limits>
+
+#include "metrics/collider_contact.hpp"
+#include "metrics/reduction.hpp"
+
+namespace clothbench {
+namespace {
+
+bool can_lie(const Scene& s) { return kGravity.met(s) && !s.colliders.empty(); }
+
+double lowest_height(const MetricFrame& f) {
+  const Vec3& g = f.context.scene.gravity_m_per_s2;
+  const double strength = norm(g[0], g[1], g[2]);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k + 2 < f.state.position.size(); k += 3) {
+    const double* x = &f.state.position[k];
+    const double height = -(x[0] * g[0] + x[1] * g[1] + x[2] * g[2]) / strength;
+    least = -max_or_nan(-least, -height);
+  }
+  return least;
+}
+
+}  // namespace
+
+MetricGroup lying_metrics() {
+  using enum Expect;
+  return {{{"lowest_height_m", "m", "height of the lowest vertex above the origin, against gravity",
+            Needs{"colliders, gravity", can_lie}, lowest_height}},
+          {{"lowest_height_min_m", least("lowest_height_m"), Yes},
+           {"touching_fraction_end", last("touching_fraction"), Yes}}};
+}
+
+}  // namespace clothbench

@@ -1,0 +1,261 @@
+#include "runner/conformance.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "clothbench/error.hpp"
+#include "clothbench/unsupported_scene.hpp"
+#include "runner/frame_loop.hpp"
+#include "runner/stage_check.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFrames = 6;
+constexpr double kStill = 1e-6;   // of the width
+constexpr double kHeld_m = 1e-3;  // single precision and a soft hold; a wrong grip is off by centimetres
+constexpr std::size_t kFaultsKept = 8;
+
+std::string joined_names(FeatureSet set) {
+  std::string text;
+  set.for_each([&](Feature f) { text += (text.empty() ? "" : ", ") + std::string(name_of(f)); });
+  return text;
+}
+
+/// One case while it runs.
+class Conformer {
+ public:
+  Conformer(const SolverEntry& entry, const Scene& scene, ClothSolver& solver)
+      : info_(entry.info), scene_(scene), solver_(solver), rest_(initial_positions(scene)), plan_(solver.plan()) {}
+
+  ConformanceResult run(const ConformanceCase& c, double limit_s) {
+    check_plan();
+    check_start();
+    if (!c.profile.empty()) check_profile(c.profile);
+    step(c.whole ? scene_.time.frames() : kFrames, limit_s);
+    check_cost();
+    check_reset();
+    if (const int messages = solver_.validation_messages(); messages > 0)
+      fault(fmt::format("{} validation messages", messages));
+    return std::move(out_);
+  }
+
+ private:
+  void fault(std::string what) {
+    if (out_.faults.size() < kFaultsKept) out_.faults.push_back(std::move(what));
+  }
+
+  void check_plan() {
+    if (const std::string wrong = check_stages(scene_, info_, plan_); !wrong.empty()) fault("stages: " + wrong);
+    if (!(scene_.needs & kColliderFeatures).empty()) return;
+    for (const BufferPlan& b : plan_.buffers)
+      if (b.name.find("olli") != std::string::npos)
+        fault("buffer " + b.name + ": the scene has nothing to collide with");
+  }
+
+  void check_start() {
+    solver_.read_state(start_);
+    if (start_.position.size() != rest_.size() || start_.velocity.size() != rest_.size())
+      return fault(fmt::format("read_state: expected {} positions and velocities; found {} and {}", rest_.size(),
+                               start_.position.size(), start_.velocity.size()));
+    double off = 0;
+    for (std::size_t k = 0; k < rest_.size(); ++k) off = worse(off, std::abs(start_.position[k] - rest_[k]));
+    if (!(off <= kStill * scene_.cloth.width_m))
+      fault(fmt::format("start: a vertex is {:.3g} m from where the scene puts it", off));
+  }
+
+  void check_profile(const std::string& profile) {
+    const DeviceInfo device = solver_.device();
+    if (device.name.find(profile) == std::string::npos)
+      fault("device " + device.name + ": its name does not say " + profile);
+    if (json::parse(device.properties_json).value("device_profile", "") != profile)
+      fault("device " + device.name + ": its properties do not state device_profile " + profile);
+  }
+
+  void step(int frames, double limit_s) {
+    FrameLoop loop(solver_, scene_, {.frames = frames});
+    while (loop.next()) {
+      ++out_.frames;
+      solver_.read_state(now_);
+      if (!check_frame(loop.index())) return;
+      if (limit_s > 0 && loop.elapsed_s() > limit_s) return;
+    }
+    if (loop.failed()) fault(fmt::format("frame {}: step failed", loop.index()));
+  }
+
+  /// False where what follows would repeat the same fault.
+  bool check_frame(int frame) {
+    double pins = 0, grips = 0;
+    for (std::size_t k = 0; k < now_.position.size(); ++k)
+      if (!std::isfinite(now_.position[k]) || !std::isfinite(now_.velocity[k])) {
+        fault(fmt::format("frame {}: vertex {} is not finite", frame, k / 3));
+        return false;
+      }
+    for (std::uint32_t v : scene_.pins.vertices)
+      for (std::size_t k = 0; k < 3; ++k) pins = worse(pins, std::abs(now_.position[3 * v + k] - rest_[3 * v + k]));
+    if (!info_.ignores.has(Feature::Pins) && !(pins <= kStill * scene_.cloth.width_m)) {
+      fault(fmt::format("frame {}: a pinned vertex has moved by {:.3g} m", frame, pins));
+      return false;
+    }
+    if (const FrameMotion* motion = scene_.motion_after(frame); motion != nullptr)
+      for (std::size_t g = 0; g < motion->grip_position_m.size(); ++g) {
+        const Vec3& held = motion->grip_position_m[g];
+        const double* x = &now_.position[3 * std::size_t{scene_.grips.vertices[g]}];
+        if (motion->grip_held[g] != 0) grips = worse(grips, std::hypot(x[0] - held[0], x[1] - held[1], x[2] - held[2]));
+      }
+    if (info_.ignores.has(Feature::MovingPins) || grips <= kHeld_m) return true;
+    fault(fmt::format("frame {}: a held vertex is {:.3g} m from its hand", frame, grips));
+    return false;
+  }
+
+  void check_cost() {
+    const FrameCost cost = solver_.last_cost();
+    const std::size_t stages = plan_.stages.size();
+    if (cost.stage_device_s.size() != stages || cost.stage_read_B.size() != stages ||
+        cost.stage_write_B.size() != stages)
+      fault(fmt::format("costs of a frame: expected one a stage, {}", stages));
+    if (std::isfinite(cost.device_s) != info_.on_gpu)
+      fault(info_.on_gpu ? "device time: missing, though the solver runs on a GPU"
+                         : "device time: given, though the solver runs on the CPU");
+  }
+
+  void check_reset() {
+    solver_.reset();
+    ClothState again;
+    solver_.read_state(again);
+    if (again.position != start_.position || again.velocity != start_.velocity)
+      fault("reset: expected the start bit for bit");
+  }
+
+  static double worse(double a, double b) { return b <= a ? a : b; }  // NaN stays
+
+  const SolverInfo& info_;
+  const Scene& scene_;
+  ClothSolver& solver_;
+  const std::vector<double> rest_;
+  const Plan plan_;
+  ClothState start_, now_;
+  ConformanceResult out_;
+};
+
+std::string name_of_case(const ConformanceCase& c) {
+  if (c.whole) return "whole scene";
+  return c.sides + " " + c.grid + (c.profile.empty() ? "" : " " + c.profile);
+}
+
+/// One case's part of its row.
+void add_case(const SolverEntry& entry, const json& settings, const DeviceOptions& device, const ConformanceCase& c,
+              double limit_s, ConformanceRow& row) {
+  ++row.cases;
+  const Scene scene = conformance_scene(c);
+  std::string why = conformance_skip(entry.info, scene);
+  if (c.whole) row.frames_of_scene = scene.time.frames();
+  ConformanceResult result;
+  if (why.empty()) {
+    try {
+      result = run_conformance(entry, settings, device, scene, c, limit_s);
+      why = result.unsupported;
+    } catch (const SolverError& e) {
+      result.faults = {e.what()};
+    }
+  }
+  if (!why.empty()) {
+    ++row.skipped;
+    if (row.skipped == row.cases) row.faults = {why};
+    return;
+  }
+  if (row.status == "skipped") row.faults.clear();
+  if (row.status != "FAIL") row.status = result.faults.empty() ? "pass" : "FAIL";
+  if (c.whole) row.frames_whole = result.frames;
+  for (const std::string& f : result.faults) row.faults.push_back(name_of_case(c) + ": " + f);
+}
+
+}  // namespace
+
+std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool profiles) {
+  std::vector<ConformanceCase> out;
+  for (const char* sides : {"single", "double-duplicated", "double"})
+    for (const char* grid : {"[2,2]", "[9,7]", "[17,33]"}) {  // not multiples of any workgroup
+      out.push_back({scene, sides, grid, "", false});
+      if (profiles && std::string(grid) == "[17,33]") out.push_back({scene, sides, grid, "adreno-like", false});
+    }
+  out.push_back({scene, "", "", "", true});
+  return out;
+}
+
+Scene conformance_scene(const ConformanceCase& c) {
+  if (c.whole) return load_scene(c.scene);
+  std::vector<std::string> overrides = {"cloth.sides=" + c.sides, "cloth.grid=" + c.grid};
+  const auto is = [&](const char* word) { return c.scene.find(word) != std::string::npos; };
+  // Four vertices have none near a hand.
+  if (c.grid == "[2,2]" && is("stretch"))
+    for (const char* hand : {"0", "1"}) overrides.push_back(std::string("grips.") + hand + ".radius_m=0.6");
+  if (c.grid == "[2,2]" && is("catenary")) overrides.back() = "cloth.grid=[3,2]";  // 2 columns cannot bend
+  // A strip that starts over a cylinder needs runs shorter than it is thick.
+  if (c.grid != "[17,33]" && (is("capstan") || is("atwood") || is("self-fold")))
+    overrides.back() = c.grid == "[2,2]" ? "cloth.grid=[17,2]" : "cloth.grid=[17,7]";
+  if (load_scene(c.scene).cloth.mesh) overrides.pop_back();  // a mesh has one size
+  return load_scene(c.scene, overrides);
+}
+
+std::string conformance_skip(const SolverInfo& info, const Scene& s) {
+  // Its constraints are exact: a sheet with inextensible diagonals too has more of them than ways to move.
+  if (info.name == "reference" && !s.material.membrane_stiffness_N_per_m &&
+      (s.needs.has(Feature::Shear) || s.cloth.mesh))
+    return "reference diverges: over-determined";
+  const FeatureSet missing = unsupported(info, s.needs);
+  return missing.empty() ? "" : info.name + " has no " + joined_names(missing);
+}
+
+ConformanceResult run_conformance(const SolverEntry& entry, const json& settings, const DeviceOptions& device,
+                                  const Scene& scene, const ConformanceCase& c, double limit_s) {
+  DeviceOptions options = device;
+  if (!c.profile.empty()) options.profile = c.profile;
+  const auto solver = entry.make(settings, options);
+  ConformanceResult refused;
+  if (solver->info().name != entry.info.name) refused.faults = {"info: another name than that of the solver"};
+  if (!(entry.info.supports & entry.info.ignores).empty())
+    refused.faults.push_back("supports, ignores: a feature is in both");
+  try {
+    solver->load(scene);
+  } catch (const UnsupportedScene& e) {
+    refused.unsupported = entry.info.name + ": " + e.what();
+    return refused;
+  }
+  ConformanceResult out = Conformer(entry, scene, *solver).run(c, limit_s);
+  out.faults.insert(out.faults.begin(), refused.faults.begin(), refused.faults.end());
+  return out;
+}
+
+json conformance_json(const ConformanceRow& r) {
+  return {{"scene", r.scene},
+          {"status", r.status},
+          {"cases", r.cases},
+          {"skipped", r.skipped},
+          {"frames_whole", r.frames_whole},
+          {"frames_of_scene", r.frames_of_scene},
+          {"faults", r.faults}};
+}
+
+ConformanceRow ask_conformance(Guard& guard, const SolverEntry& entry, const json& settings,
+                               const DeviceOptions& device, const std::string& scene, bool whole, double limit_s) {
+  const Guard::Answer answer = guard.run(entry, [&] {
+    ConformanceRow row;
+    row.scene = scene;
+    row.status = "skipped";
+    for (const ConformanceCase& c : conformance_cases(scene, entry.info.on_gpu && !is_external(entry.info)))
+      if (whole || !c.whole) add_case(entry, settings, device, c, limit_s, row);
+    return conformance_json(row);
+  });
+  if (!answer.crash.empty()) return {scene, "FAIL", 0, 0, 0, 0, {"crashed: " + answer.crash}};
+  const json& j = answer.value;
+  return {j["scene"], j["status"], j["cases"], j["skipped"], j["frames_whole"], j["frames_of_scene"], j["faults"]};
+}
+
+}  // namespace clothbench

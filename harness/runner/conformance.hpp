@@ -1,0 +1,57 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "clothbench/scene.hpp"
+#include "clothbench/solver.hpp"
+#include "runner/again.hpp"
+
+namespace clothbench {
+
+/// What every solver must do, whatever its method: six frames of each scene with every kind of sides on three grids,
+/// and each scene whole at its own size.
+struct ConformanceCase {
+  std::string scene;    ///< as commands name it: "paper/gravity"
+  std::string sides;    ///< "single", "double-duplicated", "double"; empty: as the scene has it
+  std::string grid;     ///< "[9,7]"; empty: as the scene has it
+  std::string profile;  ///< a class of devices (DeviceOptions::profile), or empty
+  bool whole = false;   ///< all frames of the scene instead of six
+};
+
+/// Cases of one scene; `profiles` adds those that emulate small devices, for solvers on a GPU. Whole scenes come last.
+std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool profiles);
+
+/// The scene of a case. Two or three grid lines are too few for some scenes, which then get the least grid that works.
+Scene conformance_scene(const ConformanceCase&);
+
+/// Why a case is no test of the solver, such as "xpbd has no render"; empty if it is.
+std::string conformance_skip(const SolverInfo&, const Scene&);
+
+struct ConformanceResult {
+  std::string unsupported;          ///< the solver's own reason for not running the scene (UnsupportedScene)
+  int frames = 0;                   ///< computed
+  std::vector<std::string> faults;  ///< empty: the solver did what it must
+};
+
+/// Runs a case and lists what is wrong: stages that do not serve what the scene needs; a start elsewhere than the
+/// scene's (1e-6 of the width); a frame that fails or is not finite; pins that moved (1e-6 of the width); grips farther
+/// than 1 mm from where they are held; costs without a stage; device times where there is no device or none where there
+/// is; a reset that does not restore the start bit for bit; messages of a validation layer. A whole scene ends after
+/// `limit_s` of wall time (0: never), with what was found until then.
+ConformanceResult run_conformance(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
+                                  const Scene&, const ConformanceCase&, double limit_s = 0);
+
+/// One line of the command's answer: all cases of a scene.
+struct ConformanceRow {
+  std::string scene, status;  ///< status: "pass", "FAIL", "skipped" (no case is one for the solver)
+  int cases = 0, skipped = 0, frames_whole = 0, frames_of_scene = 0;
+  std::vector<std::string> faults;  ///< with the case before each; of a skipped row the reason
+};
+
+/// All cases of a scene, in a child for a plugin; a crash is a fault.
+ConformanceRow ask_conformance(Guard&, const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
+                               const std::string& scene, bool whole, double limit_s);
+
+nlohmann::json conformance_json(const ConformanceRow&);
+
+}  // namespace clothbench

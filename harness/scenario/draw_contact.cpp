@@ -1,0 +1,223 @@
+#include "scenario/draw_contact.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "assets/submesh.hpp"
+#include "base/json_text.hpp"
+#include "scenario/drawn_values.hpp"
+#include "scenario/recorded_hand.hpp"
+#include "scenario/table_pose.hpp"
+#include "scenario/vec3.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+using std::numbers::pi;
+
+constexpr double kFloorBelow_m = 1, kFloorSide_m = 100, kFloorDepth_m = 1;
+constexpr double kGravity_m_per_s2 = 9.81;
+
+double scaled_unit(double x) { return std::round(x * 1e12) / 1e12; }
+
+/// Axes of a cloth that lies level, turned by a yaw, and tilted about a level axis.
+std::array<Vec3, 2> draw_axes(DrawnValues& draw) {
+  const double yaw = draw.between("yaw_deg") * pi / 180, tilt = draw.between("tilt_deg") * pi / 180,
+               about = draw.between("yaw_deg", "tilt_about_deg") * pi / 180;
+  const Eigen::AngleAxisd turn(tilt, assets::Vector(std::cos(about), 0, std::sin(about)));
+  std::array<Vec3, 2> out = {to_vec3(turn * assets::Vector(std::cos(yaw), 0, std::sin(yaw))),
+                             to_vec3(turn * assets::Vector(-std::sin(yaw), 0, std::cos(yaw)))};
+  for (Vec3& axis : out)
+    for (double& x : axis) x = scaled_unit(x);
+  return out;
+}
+
+/// Places the cloth with its lowest point `height_m` above `below_m`, over (x, z).
+void place(json& scene, const std::array<Vec3, 2>& axes, double x, double z, double lowest_m) {
+  json& cloth = scene["cloth"];
+  const double reach = (cloth["size_m"][0].get<double>() * std::abs(axes[0][1]) +
+                        cloth["size_m"][1].get<double>() * std::abs(axes[1][1])) /
+                       2;
+  cloth["pose"] = {{"center_m", rounded(Vec3{x, lowest_m + reach, z})}, {"axis_u", axes[0]}, {"axis_v", axes[1]}};
+}
+
+/// A throw in any direction that does not go up. Returns its speed.
+double draw_throw(json& scene, DrawnValues& draw) {
+  const double speed = draw.between("throw_m_per_s"), round = draw.dice().between(0, 2 * pi),
+               down = std::asin(draw.dice().unit());
+  const Vec3 v = rounded(Vec3{speed * std::cos(down) * std::cos(round), -speed * std::sin(down),
+                              speed * std::cos(down) * std::sin(round)});
+  scene["cloth"]["initial_velocity_m_per_s"] = v;
+  for (std::size_t k = 0; k < 3; ++k) draw.note(std::string("throw_") + "xyz"[k] + "_m_per_s", v[k]);
+  return speed;
+}
+
+double after_fall(double speed, double height_m) {
+  return std::hypot(speed, std::sqrt(2 * kGravity_m_per_s2 * height_m));
+}
+
+/// A box, since some solvers do not know planes.
+void add_floor(json& scene, double x, double top_m, double z) {
+  json floor = {{"type", "box"},
+                {"center_m", rounded(Vec3{x, top_m - kFloorDepth_m / 2, z})},
+                {"size_m", {kFloorSide_m, kFloorDepth_m, kFloorSide_m}}};
+  for (const char* key : {"margin_m", "friction"})
+    if (scene["colliders"][0].contains(key)) floor[key] = scene["colliders"][0][key];
+  scene["colliders"].push_back(std::move(floor));
+}
+
+/// How far a turned box reaches above its centre.
+double reach_up(const std::array<Vec3, 3>& turn, const Vec3& size_m) {
+  return (std::abs(turn[1][0]) * size_m[0] + std::abs(turn[1][1]) * size_m[1] + std::abs(turn[1][2]) * size_m[2]) / 2;
+}
+
+double draw_shape(json& scene, DrawnValues& draw) {
+  json& c = scene["colliders"][0];
+  double top = 0;
+  if (c["type"] == "sphere") {
+    c["radius_m"] = top = draw.between("radius_m");
+  } else {
+    const Vec3 size = {draw.between("size_m", "size_x_m"), draw.between("size_m", "size_y_m"),
+                       draw.between("size_m", "size_z_m")};
+    const auto turn = draw.dice().rotation();
+    c["size_m"] = size;
+    c["rotation_deg"] = rounded(euler_deg(turn));
+    for (std::size_t k = 0; k < 3; ++k) draw.note(std::string("box_about_") + "xyz"[k] + "_deg", c["rotation_deg"][k]);
+    top = reach_up(turn, size);
+  }
+  const auto axes = draw_axes(draw);
+  const double x = draw.between("off_m", "off_x_m"), z = draw.between("off_m", "off_z_m"),
+               height = draw.between("height_m");
+  place(scene, axes, x, z, top + height);
+  const double speed = draw_throw(scene, draw);
+  add_floor(scene, 0, -kFloorBelow_m, 0);
+  return after_fall(speed, height);
+}
+
+void draw_start(json& scene, DrawnValues& draw) {
+  const int seed = draw.dice().whole(0, 1000000000);
+  scene["cloth"]["start"] = {{"shape", "rest"}, {"noise_m", draw.between("noise_m")}, {"seed", seed}};
+  scene["cloth"]["self_collision"]["thickness_m"] = draw.between("thickness_m");
+  draw.note("start_seed", seed);
+}
+
+double draw_fold(json& scene, DrawnValues& draw) {
+  const double radius = draw.between("radius_m"), height = draw.between("height_m");
+  json& pose = scene["cloth"]["pose"];
+  pose["drape"]["radius_m"] = radius;
+  pose["center_m"] = {0, rounded(radius + height), 0};
+  draw_start(scene, draw);
+  return after_fall(0, height);
+}
+
+double draw_crumple(json& scene, DrawnValues& draw) {
+  const double height = draw.between("height_m"), thrown = draw.between("throw_m_per_s"),
+               yaw = draw.between("yaw_deg") * pi / 180;
+  json& pose = scene["cloth"]["pose"];
+  pose["center_m"] = {0, rounded(scene["cloth"]["size_m"][1].get<double>() / 2 + height), 0};
+  pose["axis_u"] = {scaled_unit(std::cos(yaw)), 0, scaled_unit(std::sin(yaw))};
+  scene["cloth"]["initial_velocity_m_per_s"] = {0, -thrown, 0};
+  draw_start(scene, draw);
+  return after_fall(thrown, height);
+}
+
+}  // namespace
+
+/// All tables of all rooms, with the meshes that a scene cuts out round them. Read once: a room takes a while.
+struct ContactDrawer::Tables {
+  struct Place {
+    std::string room;
+    assets::Table table;
+    std::shared_ptr<ColliderMesh> mesh;
+  };
+  std::vector<Place> places;
+
+  Tables(const assets::AssetSource& source, double below_m, double above_m) {
+    // Procedurally, all names are one room.
+    for (const std::string_view name : assets::kRoomNames) {
+      const assets::Room room = assets::open_room(source, std::string(name));
+      for (const assets::Table& t : room.tables) {
+        const auto part = assets::cut(room.mesh, assets::box_of(assets::six_points(t, below_m, above_m)),
+                                      assets::CutMode::AnyVertexInside);
+        if (!part.mesh.triangles.empty()) places.push_back({std::string(name), t, collider_mesh(part.mesh)});
+      }
+      if (!source.npm) break;
+    }
+    if (places.empty()) throw Error("the rooms have no table to drop a cloth on");
+  }
+
+  double draw(json& scene, DrawnValues& draw) const {
+    const Place& at = places[static_cast<std::size_t>(draw.dice().whole(0, static_cast<int>(places.size()) - 1))];
+    scene["colliders"][0]["room"] = at.room;
+    scene["colliders"][0]["table"] = at.table.uuid;
+    draw.note("room", at.room);
+    draw.note("table", at.table.uuid);
+    const auto corners = at.table.top_corners();
+    const double a = draw.between("along_table"), b = draw.between("across_table");
+    const assets::Vector point = corners[0] + a * (corners[1] - corners[0]) + b * (corners[3] - corners[0]);
+    const auto axes = draw_axes(draw);
+    const double height = draw.between("height_m"), reach = std::hypot(scene["cloth"]["size_m"][0].get<double>(),
+                                                                       scene["cloth"]["size_m"][1].get<double>());
+    const double below = highest_below(*at.mesh, {to_vec3(point), {{{1, 0, 0}, {0, 0, 1}}}, {reach, reach}});
+    const double top = std::max(below, at.table.top_height());
+    place(scene, axes, point.x(), point.z(), top + height);
+    const double speed = draw_throw(scene, draw);
+    add_floor(scene, point.x(), at.table.top_height() - kFloorBelow_m, point.z());
+    return after_fall(speed, height);
+  }
+};
+
+ContactKind contact_kind(const json& entry, const std::filesystem::path& base, const std::string& at,
+                         const json& ranges) {
+  if (!entry.contains("draw")) throw Error(at + ": \"draw\" is missing, for protocol contact");
+  const json& draw = entry["draw"];
+  ContactKind kind{draw["kind"], draw["how"], parse_json(read_text(base), base.string()), draw["ranges"], at + "/draw"};
+  for (const auto& [key, value] : draw["set"].items())
+    apply_override(kind.base, key + "=" + value.dump(), base.string());
+  for (const auto& [name, range] : ranges.items())
+    if (kind.ranges.contains(name)) kind.ranges[name] = range;
+  return kind;
+}
+
+ContactDrawer::ContactDrawer(Assets assets) : source_(assets::locate_assets(assets == Assets::Required)) {}
+ContactDrawer::~ContactDrawer() = default;
+
+json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std::uint64_t seed) {
+  DrawnValues draw(Dice(seed, kind.name), kind.ranges, kind.at + "/ranges");
+  json scene = kind.base;
+  const int grid = draw.whole("grid");
+  scene["cloth"]["grid"] = {grid, grid};
+  double speed = 0;
+  if (kind.how == "desk") {
+    if (!tables_) {
+      const json& room = scene["colliders"][0];
+      tables_ = std::make_unique<Tables>(source_, room.value("below_m", 0.1), room.value("above_m", 0.05));
+    }
+    speed = tables_->draw(scene, draw);
+  } else {
+    static constexpr std::pair<const char*, double (*)(json&, DrawnValues&)> kHow[] = {
+        {"shape", draw_shape},     {"sweep", draw_sweep}, {"push", draw_push},
+        {"stretch", draw_stretch}, {"fold", draw_fold},   {"crumple", draw_crumple}};
+    const auto how = std::find_if(std::begin(kHow), std::end(kHow), [&](const auto& h) { return kind.how == h.first; });
+    if (how == std::end(kHow)) throw Error(kind.at + "/how: \"" + kind.how + "\": nothing draws that");
+    speed = how->second(scene, draw);
+  }
+  draw.check_all_used();
+  scene["name"] = fmt::format("{}-{}-{}", study, seed, kind.name);
+  scene["seed"] = seed;
+  scene["drawn"] = {{"study", study},
+                    {"kind", kind.name},
+                    {"assets", source_.kind()},
+                    {"speed_m_per_s", rounded(speed)},
+                    {"values", draw.values()}};
+  // Of the paper's scene, which this is no longer.
+  for (const char* key : {"paper", "assumed"}) scene.erase(key);
+  return scene;
+}
+
+}  // namespace clothbench

@@ -1,0 +1,142 @@
+#include "contact_pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "xpbd_contact.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// Least margin as a share of the cells' size: 0.16 mm for a cloth of 0.5 m and 32 vertices.
+constexpr double kLeastMargin = 0.01;
+
+class Maker {
+ public:
+  Maker(const Scene& scene, Vec3 origin, const ColliderBuffers& colliders)
+      : scene_(scene), origin_(origin), colliders_(colliders) {}
+
+  ContactPieces all() {
+    const double least = kLeastMargin * std::min(scene_.cloth.du(), scene_.cloth.dv());
+    for (std::size_t k = 0; k < scene_.colliders.size(); ++k) {
+      const Collider& c = scene_.colliders[k];
+      made_.margins_m.push_back(std::max(c.margin_m, least));
+      made_.most_margin_m = std::max(made_.most_margin_m, made_.margins_m.back());
+      add(c, k);
+    }
+    add_boxes();
+    return std::move(made_);
+  }
+
+ private:
+  void add(const Collider& c, std::size_t k) {
+    if (c.shape == Collider::Shape::Sphere) {
+      begin(k, c.radius_m);
+      point(c.center_m);
+    } else if (c.shape == Collider::Shape::Box) {
+      begin(k, 0);
+      for (unsigned corner = 0; corner < 8; ++corner) point(corner_of(c, corner));
+    } else if (c.shape == Collider::Shape::Capsules) {
+      for (const Capsule& s : c.capsules) {
+        begin(k, s.radius_m);
+        from_capsule(s.a_m);
+        from_capsule(s.b_m);
+      }
+    } else if (c.shape == Collider::Shape::Mesh) {
+      add_mesh(c, k);
+    }
+  }
+
+  static Vec3 corner_of(const Collider& c, unsigned corner) {
+    Vec3 at = c.center_m;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t d = 0; d < 3; ++d)
+        at[d] += ((corner >> axis & 1) != 0 ? 1 : -1) * c.half_extent_m[axis] * c.axes[axis][d];
+    return at;
+  }
+
+  void add_mesh(const Collider& c, std::size_t k) {
+    const ColliderMesh& mesh = *c.mesh;
+    const std::vector<double> at =
+        c.moves() ? posed_positions(mesh, scene_.motion.at(0).colliders.at(k)) : mesh.positions;
+    const auto vertex = [&](std::uint32_t v) { point({at[3 * v], at[3 * v + 1], at[3 * v + 2]}); };
+    const Clusters clusters = cluster(at, mesh.triangles);
+    if (!c.moves()) {
+      for (const std::uint32_t t : clusters.triangles) {
+        begin(k, 0);
+        for (const std::uint32_t v : mesh.triangles[t]) vertex(v);
+      }
+      return;
+    }
+    const auto range = std::find_if(colliders_.moving.ranges.begin(), colliders_.moving.ranges.end(),
+                                    [&](const MeshRange& r) { return r.collider == k; });
+    std::size_t next = 0;
+    for (const std::uint32_t size : clusters.sizes) {
+      std::vector<std::uint32_t> corners;
+      for (const std::size_t end = next + size; next < end; ++next)
+        for (const std::uint32_t v : mesh.triangles[clusters.triangles[next]]) corners.push_back(v);
+      std::sort(corners.begin(), corners.end());
+      corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+      begin(k, 0);
+      for (const std::uint32_t v : corners) {
+        made_.sources.push_back({static_cast<uint>(made_.points.size()), range->first_vertex + v, 0, 0});
+        vertex(v);
+      }
+    }
+  }
+
+  void begin(std::size_t collider, double radius_m) {
+    const Collider& c = scene_.colliders[collider];
+    made_.pieces.push_back({static_cast<uint>(made_.points.size()), 0, static_cast<float>(radius_m),
+                            static_cast<float>(made_.margins_m.back()), static_cast<float>(c.friction),
+                            c.moves() ? 1u : 0u, 0, 0});
+  }
+
+  void point(const Vec3& at) {
+    const auto x = [&](std::size_t d) { return static_cast<float>(at[d] - origin_[d]); };
+    made_.points.push_back({{x(0), x(1), x(2), 0}, {x(0), x(1), x(2), 0}});
+    made_.most_points = std::max(made_.most_points, ++made_.pieces.back().count);
+  }
+
+  void from_capsule(const Vec3& at) {
+    made_.sources.push_back({static_cast<uint>(made_.points.size()), capsule_ends_++, 1, 0});
+    point(at);
+  }
+
+  void add_boxes() {
+    const auto around = [](ClusterBox& box, const vec4& low, const vec4& high) {
+      box.low = {std::min(box.low.x, low.x), std::min(box.low.y, low.y), std::min(box.low.z, low.z), 0};
+      box.high = {std::max(box.high.x, high.x), std::max(box.high.y, high.y), std::max(box.high.z, high.z), 0};
+    };
+    constexpr float kFar = 1e30f;
+    const ClusterBox none{{kFar, kFar, kFar, 0}, {-kFar, -kFar, -kFar, 0}};
+    std::vector<ClusterBox> groups;
+    for (std::size_t k = 0; k < made_.pieces.size(); ++k) {
+      const ContactPiece& piece = made_.pieces[k];
+      const float more = piece.radius + piece.margin;
+      ClusterBox box = none;
+      for (std::size_t j = piece.first; j < piece.first + piece.count; ++j) {
+        const vec4& at = made_.points[j].start;
+        around(box, {at.x - more, at.y - more, at.z - more, 0}, {at.x + more, at.y + more, at.z + more, 0});
+      }
+      if (k % PIECES_A_GROUP == 0) groups.push_back(none);
+      around(groups.back(), box.low, box.high);
+      made_.boxes.push_back(box);
+    }
+    made_.boxes.insert(made_.boxes.end(), groups.begin(), groups.end());
+  }
+
+  const Scene& scene_;
+  const Vec3 origin_;
+  const ColliderBuffers& colliders_;
+  ContactPieces made_;
+  uint capsule_ends_ = 0;
+};
+
+}  // namespace
+
+ContactPieces contact_pieces(const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders) {
+  return Maker(scene, origin_m, colliders).all();
+}
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,23 @@
+#pragma once
+#include <vector>
+
+#include "colliders.hpp"
+
+namespace clothbench::pbd_gpu {
+
+/// The convex pieces of a scene's colliders but for planes: of a capsule, a segment and its radius; of a sphere, a
+/// point and its radius; of a box, the hull of its corners; of a mesh that stands, each triangle; of one that moves,
+/// hulls of clusters of at most Clusters::kClusterSize neighbouring triangles.
+struct ContactPieces {
+  std::vector<ContactPiece> pieces;
+  std::vector<PiecePoint> points;    ///< piece after piece, where they are at the scene's start [m]
+  std::vector<PointSource> sources;  ///< of the points of moving pieces
+  std::vector<ClusterBox> boxes;     ///< of the pieces, then of groups of PIECES_A_GROUP of them
+  std::uint32_t most_points = 1;     ///< of a piece
+  double most_margin_m = 0;
+  std::vector<double> margins_m;  ///< one a collider, those used
+};
+/// Positions are relative to `origin_m`.
+ContactPieces contact_pieces(const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders);
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,180 @@
+#include "plane_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// Pairs that the list has place for: the lists of heaps and desks are a third of it, and where it does not suffice the
+/// vertices' reach is cut.
+constexpr std::uint32_t kPairsAnElement = 64, kLeastPairs = 1u << 16, kMostPairs = 1u << 20;
+constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9, kScanThreads = 256;
+/// Responses before and after the constraints.
+constexpr std::uint32_t kRoundsAfter = 2;
+
+}  // namespace
+
+PlaneContact::PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
+                           const std::vector<std::uint32_t>& particle)
+    : frame_(frame), scene_(scene), colliders_(colliders) {
+  const FeatureSet serves = scene.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided});
+  stage_pairs_ = frame_.add_stage("PlanePairs", serves, true);
+  stage_ = frame_.add_stage("PlaneContact", serves, true);
+  const ContactPieces all = contact_pieces(scene, origin_m, colliders);
+  frame_.set_contact_margins(all.margins_m);
+  most_margin_m_ = all.most_margin_m;
+  most_points_ = all.most_points;
+  pieces_ = static_cast<std::uint32_t>(all.pieces.size());
+  groups_ = static_cast<std::uint32_t>(all.boxes.size() - all.pieces.size());
+  moving_points_ = static_cast<std::uint32_t>(all.sources.size());
+  if (pieces_ > 0) {
+    frame_.add_buffer(BIND_PIECES, "contact pieces", all.pieces);
+    frame_.add_buffer(BIND_POINTS, "contact points", all.points);
+    frame_.add_buffer(BIND_PIECE_BOXES, "contact piece boxes", all.boxes);
+  }
+  if (moving_points_ > 0) frame_.add_buffer(BIND_POINT_SOURCES, "contact point sources", all.sources);
+  add_elements(particle);
+  add_kernels();
+}
+
+void PlaneContact::add_elements(const std::vector<std::uint32_t>& particle) {
+  const auto n = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
+  const auto of = [&](std::uint32_t v) { return particle.empty() ? v : particle[v]; };
+  std::vector<uvec4> elements;
+  std::vector<std::vector<std::uint32_t>> fans(n);
+  for (const auto& t : triangles(scene_.cloth)) {
+    const auto number = static_cast<std::uint32_t>(elements.size());
+    elements.push_back({of(t[0]), of(t[1]), of(t[2]), 3});
+    for (std::uint32_t corner = 0; corner < 3; ++corner) fans[of(t[corner])].push_back(4 * number + corner);
+  }
+  triangles_ = static_cast<std::uint32_t>(elements.size());
+  for (std::uint32_t v = 0; v < n; ++v) elements.push_back({v, v, v, 1});
+  std::vector<std::uint32_t> all;
+  auto first = n + 1;
+  for (const auto& fan : fans) {
+    all.push_back(first);
+    first += static_cast<std::uint32_t>(fan.size());
+  }
+  all.push_back(first);
+  for (const auto& fan : fans) all.insert(all.end(), fan.begin(), fan.end());
+  const auto count = static_cast<std::uint32_t>(elements.size());
+  capacity_ = std::clamp(kPairsAnElement * count, kLeastPairs, kMostPairs);
+  frame_.add_buffer(BIND_ELEMENTS, "contact elements", elements);
+  frame_.add_buffer(BIND_FANS, "contact fans", all);
+  frame_.add_buffer(BIND_RANGES, "contact ranges", count * sizeof(uvec4));
+  frame_.add_buffer(BIND_PAIRS, "contact pairs", std::uint64_t{capacity_} * sizeof(uvec4));
+  frame_.add_buffer(BIND_PAIR_STATES, "contact pair states", std::uint64_t{capacity_} * sizeof(PairState));
+  frame_.add_buffer(BIND_LEDGER, "contact ledger", sizeof(ContactLedger));
+  frame_.add_buffer(BIND_PREDICTED, "contact proposals", n * sizeof(vec4));
+  frame_.add_buffer(BIND_STARTS, "contact starts", n * sizeof(vec4));
+  frame_.add_buffer(BIND_REACHES, "contact reaches", n * sizeof(vec4));
+  frame_.add_buffer(BIND_SIDES, "contact ways", n * sizeof(float));
+  faults_ = &frame_.add_host_buffer("contact faults", sizeof(ContactFaults), BIND_FAULTS);
+}
+
+void PlaneContact::add_kernels() {
+  PlaneContactSpecialization s;
+  s.PLANES = colliders_.planes.count;
+  s.GRIPS = static_cast<uint>(scene_.grips.vertices.size());
+  s.MOST_POINTS = most_points_;
+  constexpr auto kPush = static_cast<std::uint32_t>(sizeof(PlaneContactConstants));
+  const auto add = [&](int stage, const char* name, std::uint32_t threads = kGroupSize) {
+    return frame_.add_kernel(stage, name, kPush, s.by_number(), threads);
+  };
+  reach_ = add(stage_pairs_, "plane_reach");
+  if (pieces_ > 0) {
+    if (moving_points_ > 0) {
+      points_ = add(stage_pairs_, "plane_points");
+      boxes_ = add(stage_pairs_, "plane_boxes");
+    }
+    count_ = add(stage_pairs_, "plane_list");
+    scan_ = add(stage_pairs_, "plane_scan", kScanThreads);
+    fill_ = add(stage_pairs_, "plane_list_fill");
+    query_ = add(stage_, "plane_query");
+    respond_ = add(stage_, "plane_respond");
+    choose_ = add(stage_, "plane_choose");
+  }
+  predict_ = add(stage_, "plane_predict");
+  gather_ = add(stage_, "plane_gather");
+  settle_ = add(stage_, "plane_settle");
+  project_ = add(stage_, "plane_project");
+}
+
+PlaneContactConstants PlaneContact::constants(int s, int substeps, double dt_s) const {
+  const Cloth& cloth = scene_.cloth;
+  const Vec3 g = scene_.gravity_m_per_s2;
+  const double h = dt_s / substeps;
+  const auto f = [](double x) { return static_cast<float>(x); };
+  PlaneContactConstants c{};
+  c.gravity_h = {f(g[0] * h), f(g[1] * h), f(g[2] * h), 0};
+  c.vertices = static_cast<uint>(cloth.vertex_count());
+  c.triangles = triangles_;
+  c.capacity = capacity_;
+  c.pieces = pieces_;
+  c.groups = groups_;
+  c.begin = f(static_cast<double>(s) / substeps);
+  c.end = f((s + 1.0) / substeps);
+  c.part = f(1.0 / substeps);
+  c.h = f(h);
+  c.per_h = f(1 / h);
+  c.loss = scene_.needs.has(Feature::Damping) ? f(-std::expm1(-scene_.material.damping_per_s * h)) : 0;
+  c.frame_s = f(dt_s);
+  c.reach_m = f(0.5 * std::max(cloth.du(), cloth.dv()) + std::hypot(g[0], g[1], g[2]) * dt_s * dt_s);
+  c.margin_m = f(most_margin_m_);
+  return c;
+}
+
+void PlaneContact::vertices(const FrameKernel* kernel, const PlaneContactConstants& c) {
+  frame_.dispatch(*kernel, c.vertices, c, {16.0 * c.vertices, 16.0 * c.vertices});
+}
+
+void PlaneContact::pairs(const FrameKernel* kernel, const PlaneContactConstants& c) {
+  const std::uint32_t threads = frame_.device()->is_software() ? kSoftwareThreads : kPairThreads;
+  if (kernel != nullptr) frame_.dispatch(*kernel, threads, c, {});
+}
+
+void PlaneContact::record_frame(double dt_s, int substeps) {
+  PlaneContactConstants c = constants(0, substeps, dt_s);
+  c.count = moving_points_;
+  if (points_ != nullptr) {
+    frame_.dispatch(*points_, moving_points_, c, {48.0 * moving_points_, 32.0 * moving_points_});
+    frame_.dispatch(*boxes_, groups_, c, {32.0 * moving_points_, 32.0 * groups_});
+  }
+  vertices(reach_, c);
+  if (pieces_ == 0) return;
+  const std::uint32_t elements = c.triangles + c.vertices;
+  frame_.dispatch(*count_, std::min(elements, kPairThreads), c, {32.0 * elements, 16.0 * elements});
+  frame_.dispatch_groups(*scan_, {1, 1}, c, {16.0 * elements, 16.0 * elements});
+  frame_.dispatch(*fill_, std::min(elements, kPairThreads), c, {32.0 * elements, 0});
+}
+
+void PlaneContact::record_before(int s, int substeps, double dt_s) {
+  PlaneContactConstants c = constants(s, substeps, dt_s);
+  c.before = 1;
+  vertices(predict_, c);
+  pairs(query_, c);
+  vertices(gather_, c);
+}
+
+void PlaneContact::record_after(int s, int substeps, double dt_s) {
+  PlaneContactConstants c = constants(s, substeps, dt_s);
+  vertices(settle_, c);
+  pairs(query_, c);
+  vertices(gather_, c);
+  for (c.round = 1; c.round < kRoundsAfter; ++c.round) {
+    pairs(respond_, c);
+    vertices(gather_, c);
+  }
+  pairs(choose_, c);
+  vertices(project_, c);
+}
+
+ContactFaults PlaneContact::faults() const {
+  ContactFaults f{};
+  std::memcpy(&f, faults_->mapped(), sizeof f);
+  return f;
+}
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,50 @@
+#pragma once
+#include <vector>
+
+#include "colliders.hpp"
+#include "contact_pieces.hpp"
+
+namespace clothbench::pbd_gpu {
+
+/// Contact of `xpbd` by separating planes: PLANES.md. Every pair of a triangle of the cloth and a convex
+/// piece of a collider that may meet in a substep has a plane that parts both ends of the straight way, and no vertex
+/// ends a substep behind a plane of one of its triangles. Works on positions and velocities alone; what solves the
+/// constraints comes between `record_before` and `record_after` and reads inverse masses in .w of the positions.
+class PlaneContact {
+ public:
+  /// Adds buffers, the stages PlanePairs and PlaneContact, and their kernels. `particle`: of each vertex, the vertex
+  /// that it is welded to (or itself).
+  PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
+               const std::vector<std::uint32_t>& particle);
+
+  /// Call at the start of a frame, after the colliders' record().
+  void record_frame(double dt_s, int substeps);
+  /// Call in substep s after held vertices have moved and before the constraints are solved.
+  void record_before(int s, int substeps, double dt_s);
+  /// Call at the end of substep s.
+  void record_after(int s, int substeps, double dt_s);
+
+  /// What went wrong since loading; PLANES.md says what each count means.
+  ContactFaults faults() const;
+
+ private:
+  void add_elements(const std::vector<std::uint32_t>& particle);
+  void add_pieces();
+  void add_kernels();
+  PlaneContactConstants constants(int s, int substeps, double dt_s) const;
+  void vertices(const FrameKernel* kernel, const PlaneContactConstants& c);
+  void pairs(const FrameKernel* kernel, const PlaneContactConstants& c);
+
+  FrameBuilder& frame_;
+  const Scene& scene_;
+  const ColliderBuffers& colliders_;
+  std::uint32_t triangles_ = 0, pieces_ = 0, groups_ = 0, moving_points_ = 0, capacity_ = 0, most_points_ = 1;
+  double most_margin_m_ = 0;
+  int stage_pairs_ = -1, stage_ = -1;
+  const vulkan::Buffer* faults_ = nullptr;
+  const FrameKernel *points_ = nullptr, *boxes_ = nullptr, *reach_ = nullptr, *count_ = nullptr, *scan_ = nullptr,
+                    *fill_ = nullptr, *predict_ = nullptr, *query_ = nullptr, *gather_ = nullptr, *settle_ = nullptr,
+                    *respond_ = nullptr, *choose_ = nullptr, *project_ = nullptr;
+};
+
+}  // namespace clothbench::pbd_gpu

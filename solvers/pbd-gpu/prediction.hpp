@@ -1,0 +1,29 @@
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "clothbench/scene.hpp"
+
+namespace clothbench::pbd_gpu {
+
+/// One substep of `xpbd` (INTEGRATION.md). Backward Euler: carry 0 and implicit_h_s = h. BDF2 with variable steps: the
+/// prediction x + carry (x - x_last) + implicit_h_s v, and the same for v; constraints are solved for implicit_h_s.
+struct TimeStep {
+  double implicit_h_s;  ///< h' [s]
+  double carry;         ///< share of the last substep's change that the prediction repeats
+  double loss;          ///< share of velocity that damping takes
+  double keep;          ///< factor of all forces: 1 for backward Euler, 1 - loss for BDF2
+};
+/// A substep of h_s after one of last_h_s. A cloth that does not predict takes backward Euler with explicit damping;
+/// one that predicts takes implicit damping, and begins (last_h_s 0) with a substep of backward Euler.
+TimeStep time_step(bool predicts, double h_s, double last_h_s, double damping_per_s);
+
+/// Whether a scene is integrated by BDF2, and else why not.
+struct Prediction {
+  bool on = false;
+  std::string why_not;
+};
+/// The same for every cloth of the same features that nothing holds.
+Prediction prediction_of(const Scene&, const nlohmann::json& settings);
+
+}  // namespace clothbench::pbd_gpu

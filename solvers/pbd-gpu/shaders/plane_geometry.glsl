@@ -1,0 +1,135 @@
+// Nearest points of an element of the cloth (a triangle or a vertex) and a convex piece. Every distance that is used is
+// certified: the gap between the two along a direction, which is at most their distance whatever rounding did to the
+// direction, and equal to it for the best one. Coordinates are relative to the element's first vertex.
+vec3 cloth[3];     // the element's vertices
+uint corners;      // how many: 1 or 3
+vec3 piece_at[3];  // a piece of at most three points
+ContactPiece piece;
+vec3 around;       // origin of all these
+
+struct Nearest {
+  vec3 n;    // from the piece to the cloth
+  float gap; // between the element and the piece without its radius; at most 0: they touch
+  vec3 on_cloth, on_piece;  // weights; those of the piece only if it has at most three points
+  vec3 witness, way;  // the piece's nearest point at the end, and its way in the substep
+};
+
+vec3 point_at(uint j, float t) {
+  PiecePoint q = points[piece.first + j];
+  // Exact at both ends of the frame, and for what stands.
+  return (t == 1.0 ? q.end.xyz : q.start.xyz + t * (q.end.xyz - q.start.xyz)) - around;
+}
+
+/// Gap along n between points of the cloth and the piece at time t.
+float gap_along(vec3 n, vec3 a, vec3 b, vec3 c, float t) {
+  float low = min(dot(n, a), min(dot(n, b), dot(n, c))), high = -1e30;
+  for (uint j = 0u; j < piece.count; ++j) high = max(high, dot(n, point_at(j, t)));
+  return low - high;
+}
+float gap_now(vec3 n, float t) { return gap_along(n, cloth[0], cloth[1], cloth[2], t); }
+
+/// Keeps the direction with the greater gap.
+void try_normal(inout Nearest best, vec3 n, float t) {
+  float l = length(n);
+  if (!(l > 0.0)) return;
+  n /= l;
+  float gap = gap_now(n, t);
+  if (!(gap > best.gap)) return;
+  best.gap = gap;
+  best.n = n;
+}
+
+// ---- at most three points: features pair by pair, in closed form (Ericson 2005, "Real-Time Collision Detection", 5.1.5 and 5.1.9)
+
+struct Feature {
+  float square;
+  vec3 on_cloth, on_piece, apart, normal;  // normal: of the face, or across both edges
+};
+
+void take(inout Feature best, vec3 on_cloth, vec3 on_piece, vec3 normal) {
+  vec3 d = on_cloth.x * cloth[0] + on_cloth.y * cloth[1] + on_cloth.z * cloth[2] - on_piece.x * piece_at[0] -
+           on_piece.y * piece_at[1] - on_piece.z * piece_at[2];
+  float square = dot(d, d);
+  if (square < best.square) best = Feature(square, on_cloth, on_piece, d, normal);
+}
+
+/// Edge i of the element with edge j of the piece; a point is an edge without length.
+void edges(inout Feature best, uint i, uint j) {
+  uint i2 = corners == 3u ? (i + 1u) % 3u : i, j2 = piece.count == 1u ? j : (j + 1u) % piece.count;
+  vec3 e = cloth[i2] - cloth[i], f = piece_at[j2] - piece_at[j], g = cloth[i] - piece_at[j];
+  float ee = dot(e, e), ff = dot(f, f), ef = dot(e, f), eg = dot(e, g), fg = dot(f, g), all = ee * ff - ef * ef;
+  float s = all > 0.0 ? clamp((ef * fg - ff * eg) / all, 0.0, 1.0) : 0.0;
+  float t = ff > 0.0 ? clamp((ef * s + fg) / ff, 0.0, 1.0) : 0.0;
+  s = ee > 0.0 ? clamp((ef * t - eg) / ee, 0.0, 1.0) : 0.0;
+  vec3 on_cloth = vec3(0.0), on_piece = vec3(0.0);
+  on_cloth[i] = 1.0 - s;
+  on_piece[j] = 1.0 - t;
+  on_cloth[i2] += s;
+  on_piece[j2] += t;
+  take(best, on_cloth, on_piece, cross(e, f));
+}
+
+/// Weights of the foot of p on the plane of a triangle; false outside it, where the edges are nearer.
+bool foot(vec3 p, vec3 a, vec3 b, vec3 c, out vec3 weights, out vec3 n) {
+  vec3 ab = b - a, ac = c - a, ap = p - a;
+  n = cross(ab, ac);
+  float all = dot(n, n), wb = dot(cross(ap, ac), n), wc = dot(cross(ab, ap), n);
+  if (!(all > 0.0 && wb >= 0.0 && wc >= 0.0 && wb + wc <= all)) return false;
+  weights = vec3(all - wb - wc, wb, wc) / all;
+  return true;
+}
+
+Feature nearest_feature() {
+  Feature best = Feature(1e30, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+  uint sides = piece.count == 3u ? 3u : 1u;
+  for (uint i = 0u; i < corners; ++i)
+    for (uint j = 0u; j < sides; ++j) edges(best, i, j);
+  vec3 weights, n;
+  if (corners == 3u)
+    for (uint j = 0u; j < piece.count; ++j)
+      if (foot(piece_at[j], cloth[0], cloth[1], cloth[2], weights, n)) {
+        vec3 one = vec3(0.0);
+        one[j] = 1.0;
+        take(best, weights, one, n);
+      }
+  if (piece.count == 3u)
+    for (uint i = 0u; i < corners; ++i)
+      if (foot(cloth[i], piece_at[0], piece_at[1], piece_at[2], weights, n)) {
+        vec3 one = vec3(0.0);
+        one[i] = 1.0;
+        take(best, one, weights, n);
+      }
+  return best;
+}
+
+void load_piece(float t) {
+  for (uint j = 0u; j < 3u; ++j) piece_at[j] = j < piece.count ? point_at(j, t) : vec3(0.0);
+}
+
+/// The element at `cloth` and the piece at time `begin`; its ways are those until `end`.
+Nearest nearest_of_few(float begin, float end) {
+  load_piece(begin);
+  Feature f = nearest_feature();
+  Nearest r = Nearest(vec3(0.0), -1e30, f.on_cloth, f.on_piece, vec3(0.0), vec3(0.0));
+  try_normal(r, f.apart, begin);
+  // Of what nearly touches the difference of the nearest points has lost its digits; across the features it has not.
+  float across = dot(f.normal, f.apart);
+  if (f.square < 1e-6) try_normal(r, across < 0.0 ? -f.normal : f.normal, begin);
+  for (uint j = 0u; j < piece.count; ++j) {
+    r.witness += f.on_piece[j] * point_at(j, end);
+    r.way += f.on_piece[j] * piece_at[j];
+  }
+  r.way = r.witness - r.way;
+  return r;
+}
+#include "plane_hull.glsl"
+
+Nearest nearest_at(float begin, float end, vec3 guess) {
+  Nearest r;
+  if (MOST_POINTS > 3u && piece.count > 3u)
+    r = nearest_of_hull(begin, end, guess);
+  else
+    r = nearest_of_few(begin, end);
+  if (!(r.gap > 0.0)) try_normal(r, guess, begin);
+  return r;
+}

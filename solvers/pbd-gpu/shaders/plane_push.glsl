@@ -1,0 +1,31 @@
+// What a contact proposes (Macklin et al. 2016, XPBD's position-level contact with zero compliance): its nearest point as far from the
+// piece as it should be, and Coulomb friction against the way relative to the piece.
+
+/// Margin that the contact keeps. Edges and faces keep less from what stands: flat cloth would be lifted off its vertices.
+float kept_margin(uvec4 e, vec3 weights) {
+  bool inner = e.w == 3u && max(weights.x, max(weights.y, weights.z)) < 1.0 - kTiny;
+  return piece.margin * (inner && piece.moves == 0u ? kStandingShare : 1.0);
+}
+
+/// Proposed correction of a contact over the inverse mass of its point; w: its part along the normal that is no velocity.
+vec4 push_of(uvec4 e, PairState s) {
+  float gap = -s.weights.w, mass = 0.0;
+  vec3 slip = -s.way.xyz;
+  for (uint c = 0u; c < e.w; ++c) {
+    vec4 at = y[e[c]];
+    float b = s.weights[c];
+    gap += b * dot(s.normal.xyz, at.xyz);
+    slip += b * (at.xyz - starts[e[c]].xyz);
+    mass += at.w * b * b;
+  }
+  if (!(mass > 0.0)) return vec4(0.0);
+  float push = s.way.w - gap;
+  float out_by = p.round == 0u ? clamp(kept_margin(e, s.weights.xyz) - s.way.w, 0.0, kRecovered * piece.margin) : 0.0;
+  if (!(push + out_by > 0.0)) return vec4(0.0);
+  float moving = max(0.0, push);
+  slip -= dot(slip, s.normal.xyz) * s.normal.xyz;
+  float l = length(slip);
+  vec3 by = moving * s.normal.xyz;
+  if (l > 0.0 && moving > 0.0) by -= min(1.0, piece.friction * moving / l) * slip;
+  return vec4(by, push + out_by - moving) / mass;
+}

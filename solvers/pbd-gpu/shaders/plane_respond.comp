@@ -1,0 +1,21 @@
+#version 450
+// A further round of responses: the proposed corrections of contacts at the vertices' new places.
+#extension GL_GOOGLE_include_directive : require
+#include "common.glsl"
+#include "plane_buffers.glsl"
+layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };
+layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
+layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_PAIRS) readonly buffer Pairs { uvec4 pairs[]; };
+layout(std430, binding = BIND_PAIR_STATES) buffer States { PairState states[]; };
+ContactPiece piece;
+#include "plane_push.glsl"
+
+void main() {
+  for (uint k = item(); k < ledger.pairs; k += stride()) {
+    uvec4 pair = LOAD16(pairs, k);
+    if ((pair.z & PAIR_NEAREST) == 0u) continue;
+    piece = pieces[pair.y];
+    states[k].push = push_of(LOAD16(elements, pair.x), states[k]);
+  }
+}

@@ -1,0 +1,152 @@
+/// What the adapters of engines from elsewhere share: the sheet at rest, its springs, its stages. Header only, so that
+/// an adapter builds with clothbench_plugin.h and its engine alone.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "clothbench_plugin.h"
+
+namespace clothbench::peer {
+
+struct Point : std::array<double, 3> {};
+
+inline Point point(const double* x, std::size_t k) { return {x[3 * k], x[3 * k + 1], x[3 * k + 2]}; }
+inline Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline double length(const Point& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+inline Point cross(const Point& a, const Point& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+inline bool needs(const ClothbenchScene& s, std::uint32_t features) { return (s.needs & features) != 0; }
+
+/// The sheet at rest [m], one point per vertex.
+inline std::vector<Point> rest_points(const ClothbenchScene& s) {
+  std::vector<Point> out;
+  for (std::uint32_t v = 0; v < s.vertex_count; ++v) out.push_back(point(s.rest_position_m, v));
+  return out;
+}
+
+enum class Kind { Structural, Shear, Bend };
+
+struct Spring {
+  std::uint32_t a, b;
+  double rest_m, stiffness_N_per_m;  ///< infinity: inextensible
+  Kind kind;
+};
+
+/// The sheet as springs: clothbench_plugin.h's for stretch and shear, and skip edges of B across / along^3 for bending
+/// (none at small curvature).
+inline std::vector<Spring> springs(const ClothbenchScene& s) {
+  std::vector<Spring> out;
+  for (std::uint32_t k = 0; k < s.structural_count; ++k) {
+    const ClothbenchEdge& e = s.structural_edges[k];
+    out.push_back({e.a, e.b, e.rest_m, s.structural_spring_N_per_m[k], Kind::Structural});
+  }
+  for (std::uint32_t k = 0; k < s.shear_count; ++k) {
+    const ClothbenchEdge& e = s.shear_edges[k];
+    out.push_back({e.a, e.b, e.rest_m, s.shear_spring_N_per_m[k], Kind::Shear});
+  }
+  for (std::uint32_t k = 0; needs(s, CLOTHBENCH_BEND) && k < s.skip_count; ++k) {
+    const ClothbenchEdge& e = s.skip_edges[k];
+    const double a = e.along_m;
+    out.push_back({e.a, e.b, e.rest_m, s.bending_rigidity_N_m * e.across_m / (a * a * a), Kind::Bend});
+  }
+  return out;
+}
+
+/// Centre of the cloth's bounds [m]. The engines work in float32 around it, so a cloth far from the origin keeps its
+/// digits.
+inline Point centre(const ClothbenchScene& s) {
+  Point low = point(s.position_m, 0), high = low;
+  for (std::uint32_t v = 1; v < s.vertex_count; ++v)
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], s.position_m[3 * v + k]);
+      high[k] = std::max(high[k], s.position_m[3 * v + k]);
+    }
+  return {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2};
+}
+
+/// The normal of each vertex of a mesh: the mean of its triangles' normals, weighted by area. Zero where it has none.
+inline std::vector<Point> vertex_normals(const ClothbenchCollider& c, const double* vertices_m) {
+  std::vector<Point> out(c.vertex_count, Point{});
+  for (std::uint32_t t = 0; t < c.triangle_count; ++t) {
+    const std::uint32_t* v = c.triangles + 3 * t;
+    const Point n =
+        cross(point(vertices_m, v[1]) - point(vertices_m, v[0]), point(vertices_m, v[2]) - point(vertices_m, v[0]));
+    for (int corner = 0; corner < 3; ++corner)
+      for (std::size_t k = 0; k < 3; ++k) out[v[corner]][k] += n[k];
+  }
+  for (Point& n : out) {
+    const double l = length(n);
+    for (double& x : n) x = l > 0 ? x / l : 0;
+  }
+  return out;
+}
+
+constexpr std::uint32_t kColliders = CLOTHBENCH_SPHERE | CLOTHBENCH_BOX | CLOTHBENCH_PLANE | CLOTHBENCH_CAPSULES |
+                                     CLOTHBENCH_STATIC_MESH | CLOTHBENCH_MOVING_MESH;
+
+/// The distance at which a collider holds the cloth: the setting, or the scene's margin where the setting is 0.
+inline double margin(double setting_m, const ClothbenchCollider& c) { return setting_m > 0 ? setting_m : c.margin_m; }
+
+/// Every feature that is served and needed, in one stage: an engine's step cannot be divided from outside.
+inline ClothbenchStage whole_step(const char* name, const ClothbenchScene& s, std::uint32_t supports) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  return {name, s.needs & supports, 0, unknown, unknown};
+}
+
+/// A text that is valid until the next call, which comes from the same thread.
+inline const char* kept(const std::string& text) {
+  static std::string last;
+  last = text;
+  return last.c_str();
+}
+
+/// The C functions over an adapter: `Settings` from an array of values; `Solver` from settings and a scene; and
+/// `obstacle(settings, scene)`, the reason why the engine cannot run the scene, empty if it can.
+template <typename Solver, typename Settings>
+ClothbenchPlugin plugin() {
+  ClothbenchPlugin p{};
+  const std::uint32_t header[] = {CLOTHBENCH_PLUGIN_HEADER};
+  std::memcpy(&p, header, sizeof header);
+  p.precision = "float32";
+  p.time_order = 1;
+  p.create = [](const double* settings, const ClothbenchScene* scene, const char** why) -> void* {
+    try {
+      return new Solver(Settings(settings), *scene);
+    } catch (const std::exception& e) {
+      *why = kept(e.what());
+      return nullptr;
+    }
+  };
+  p.destroy = [](void* self) { delete static_cast<Solver*>(self); };
+  p.step = [](void* self, const ClothbenchFrame* frame) { return static_cast<Solver*>(self)->step(*frame); };
+  p.read_state = [](void* self, double* x, double* v) { static_cast<Solver*>(self)->read(x, v); };
+  p.stages = [](void* self, std::uint32_t* count) -> const ClothbenchStage* {
+    *count = 1;
+    return &static_cast<Solver*>(self)->stage;
+  };
+  p.reset = [](void* self) { static_cast<Solver*>(self)->reset(); };
+  p.restart_at = [](void* self, const ClothbenchRestart* at) -> std::int32_t {
+    static_cast<Solver*>(self)->restart(*at);
+    return 1;
+  };
+  p.contact_margin_m = [](void* self, std::uint32_t collider) {
+    return static_cast<Solver*>(self)->margin_m(collider);
+  };
+  p.unsupported = [](const double* settings, const ClothbenchScene* scene) -> const char* {
+    const std::string why = obstacle(Settings(settings), *scene);
+    return why.empty() ? nullptr : kept(why);
+  };
+  return p;
+}
+
+}  // namespace clothbench::peer

@@ -1,0 +1,119 @@
+// `clothbench study contact` as a user meets it: draws, runs, resumes, reports, and runs a stored scene again.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "results/store.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Answer {
+  int code = -1;
+  std::string text;
+};
+
+/// `before`: assignments of the environment.
+Answer command(const std::string& arguments, const std::string& before = "") {
+  Answer a;
+  FILE* pipe = popen((before + " " + CLOTHBENCH_COMMAND + " " + arguments + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) return a;
+  std::array<char, 4096> chunk{};
+  while (const std::size_t n = fread(chunk.data(), 1, chunk.size(), pipe)) a.text.append(chunk.data(), n);
+  const int status = pclose(pipe);
+  a.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return a;
+}
+
+class DrawnStudy : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = fs::temp_directory_path() / ("clothbench-drawn-" + std::to_string(getpid()) + "-" +
+                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(dir_);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+  std::string out() const { return (dir_ / "out").string(); }
+  static std::string text_of(const fs::path& file) {
+    std::ifstream in(file);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  fs::path dir_;
+};
+
+TEST_F(DrawnStudy, RunsResumesReportsAndItsScenesRunAgain) {
+  // Of seeds 4 to 6: a stretch, a ball and a box.
+  const std::string study =
+      "study contact --quick --procedural --seed 4 --solver ballistic --set time.duration_s=0.1 --out " + out();
+  const Answer first = command(study + " --count 2 --jobs 2");
+  ASSERT_EQ(first.code, 0) << first.text;
+  EXPECT_NE(first.text.find("contact-4-stretch: speed"), std::string::npos) << first.text;
+  EXPECT_NE(first.text.find("0 of 2 runs passed"), std::string::npos) << "what touches nothing passes nothing";
+  const Answer more = command(study + " --count 3 --resume");
+  ASSERT_EQ(more.code, 0) << more.text;
+  EXPECT_NE(more.text.find("0 of 3 runs passed"), std::string::npos) << more.text;
+  const fs::path report = dir_ / "report";
+  ASSERT_EQ(command("report " + out() + " -o " + report.string()).code, 0);
+  const std::string tables = text_of(report / "contact-rates.md");
+  EXPECT_NE(tables.find("stretch (procedural)"), std::string::npos) << tables;
+  EXPECT_NE(tables.find("box (procedural)"), std::string::npos) << "every row says so\n" << tables;
+  EXPECT_NE(tables.find("clothbench study contact --seed 4 --count 1 --solver ballistic --quick --procedural"),
+            std::string::npos)
+      << tables;
+  const auto rates = nlohmann::json::parse(text_of(report / "contact-rates.json"));
+  EXPECT_EQ(rates["rates"].back()["kind"], "all");
+  EXPECT_EQ(rates["rates"].back()["drawn"], 3);
+  EXPECT_EQ(rates["rates"].back()["passed"], 0);
+
+  const RunRecord stored = read_run_summary(dir_ / "out" / "contact-5-sphere__ballistic__default.h5");
+  std::ofstream(dir_ / "again.json") << stored.header.scenario_json;
+  const Answer again = command("run " + (dir_ / "again.json").string() + " --solver ballistic --trials 0 --out " +
+                               (dir_ / "again").string());
+  ASSERT_EQ(again.code, 0) << again.text;
+  const RunRecord second = read_run_summary(dir_ / "again" / "contact-5-sphere__ballistic__default.h5");
+  EXPECT_EQ(second.header.scenario_sha256, stored.header.scenario_sha256);
+  EXPECT_EQ(second.summary.at("stretch_max"), stored.summary.at("stretch_max"));
+}
+
+TEST_F(DrawnStudy, RefusesBadInputWithOneError) {
+  const std::string away = "CLOTHBENCH_ASSETS=procedural";
+  const struct {
+    std::string arguments, expected, environment = {};
+  } cases[] = {
+      {"study contact --seed 1 --count 0", "--count"},
+      {"study contact --seed many --count 1", "--seed"},
+      {"study contact --seed -1 --count 1", "--seed"},
+      {"study contact --seed 9007199254740992 --count 1", "--seed 9007199254740992: expected at most"},
+      {"study contact --seed 1 --count 1 --solver ballistic", "assets required: CLOTHBENCH_ASSETS=procedural", away},
+      {"study contact --procedural --require-assets", "--procedural"},
+      {"study table3 --count 3", "--count: nothing is drawn in this study"},
+      {"study table3 --procedural", "--procedural: only for studies of protocol contact"},
+      {"study table3 --seed 1", "--seed: expected a scene with \"truth\""},
+      {"run paper/desk-flat-low --seed 1 --solver ballistic",
+       "contact scenes are drawn by `clothbench study contact --seed N`"},
+      {"study contact --seed 1 --count 1 --procedural --trials 3", "--trials"},
+  };
+  for (const auto& c : cases) {
+    const Answer a = command(c.arguments, c.environment);
+    EXPECT_EQ(a.code, 2) << c.arguments << "\n" << a.text;
+    EXPECT_NE(a.text.find(c.expected), std::string::npos) << c.arguments << "\n" << a.text;
+  }
+  // Where nothing has been fetched, the message names what fetches it.
+  const Answer a = command("study contact --seed 1 --count 1 --solver ballistic", "CLOTHBENCH_ASSETS=" + dir_.string());
+  EXPECT_EQ(a.code, 2);
+  EXPECT_NE(a.text.find("scripts/fetch-assets.sh"), std::string::npos) << a.text;
+}
+
+}  // namespace
+}  // namespace clothbench

@@ -1,0 +1,241 @@
+// Contact of `xpbd` by planes: no pair of a triangle and a piece meets, at any step, checked by force; the same bits
+// again; friction; what a scene does not need is not there.
+#include "plane_contact.hpp"
+
+#include <set>
+
+#include "contact_scenes.hpp"
+#include "mesh_scene.hpp"
+#include "plane_contact_check.hpp"
+#include "plane_contact_reference.hpp"
+#include "runner/stage_check.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+nlohmann::json by_planes(nlohmann::json settings = nlohmann::json::object()) {
+  settings[kTuning]["contact"] = "planes";
+  return settings;
+}
+
+Collider half_space(Vec3 point, Vec3 normal, double friction) {
+  Collider c = touching(Collider::Shape::Plane, friction);
+  c.center_m = point;
+  c.normal = normal;
+  return c;
+}
+
+/// Instant k of a hand round (-1, 0, 0) that goes 10 mm an instant along x, its two joints turning against each other.
+void pose_hand(ColliderPose& pose, std::size_t k) {
+  for (std::size_t joint = 0; joint < pose.joints.size(); ++joint) {
+    const double way = 0.01 * static_cast<double>(k), turn = 0.002 * static_cast<double>(k) * (joint == 0 ? 1 : -1),
+                 cosine = std::cos(turn), sine = std::sin(turn);
+    pose.joints[joint] = {{{cosine, -sine, 0, way + cosine - 1}, {sine, cosine, 0, sine}, {0, 0, 1, 0}}};
+  }
+}
+
+/// A sheet that falls onto something; frames are steps, so that every one of them can be checked.
+Scene falling_in_steps(const Collider& collider, double steps_per_s) {
+  Scene s = with_collider(sheet(12, 10), collider);
+  s.cloth.sides = Sides::Double;
+  s.needs.add(Feature::DoubleSided);
+  s.cloth.center_m = {0, 0.26, 0};
+  s.cloth.initial_velocity_m_per_s = {0.4, -3, 0.3};
+  s.time = {steps_per_s, 0.2};
+  if (collider.moves()) s = moving(s);
+  for (std::size_t k = 0; collider.mesh && k < s.motion.size(); ++k) pose_hand(s.motion[k].colliders.at(0), k);
+  return s;
+}
+
+void expect_all_parted(std::unique_ptr<GpuSolver> solver, const Scene& s, const std::string& what) {
+  SCOPED_TRACE(what);
+  solver->load(s);
+  EXPECT_EQ(check_stages(s, solver->info(), solver->plan()), "");
+  std::vector<double> before = initial_positions(s);
+  long pairs = 0;
+  for (int f = 0; f < s.time.frames(); ++f) {
+    const ClothState state = after_frame(*solver, s, f);
+    const PairCheck check = check_pairs(s, before, state.position, f);
+    ASSERT_EQ(check.pairs, check.parted) << "step " << f;
+    pairs += check.pairs;
+    before = state.position;
+  }
+  EXPECT_GT(pairs, 0) << "something must come near for this to say anything";
+  const ContactFaults faults = solver->contact_faults();
+  EXPECT_EQ(faults.without_place, 0u);
+  EXPECT_EQ(faults.dropped, 0u);
+  EXPECT_EQ(faults.inside, 0u);
+}
+
+class PlaneContacts : public Gpu {};
+
+TEST_F(PlaneContacts, PartEveryPairAtEveryStep) {
+  const std::vector<std::pair<std::string, Collider>> kinds = {
+      {"sphere", sphere({0.02, 0.04, 0.03}, 0.09, kContactFriction)},
+      {"box", box({0.03, 0.01, 0.01}, {0.3, 0.07, 0.2}, kContactFriction)},
+      {"capsules", capsules({-1, 0.04, 0}, kContactFriction)},
+      {"mesh", octahedron({0.013, 0.017, 0.021}, 0.12, false, kContactFriction)},
+      {"hand", octahedron({-1, 0.017, 0.021}, 0.12, true, kContactFriction)},
+      {"open sheet", open_sheet({0.03, 0.1, 0.01}, 0.32, kContactFriction)}};
+  // A moving collider goes 10 mm a step: 5 and 12 m/s.
+  for (const double steps_per_s : {500.0, 1200.0})
+    for (const auto& [name, collider] : kinds) {
+      if (!collider.moves() && steps_per_s > 500) continue;
+      expect_all_parted(make("xpbd", by_planes({{"substeps", 1}})), falling_in_steps(collider, steps_per_s),
+                        name + " at " + std::to_string(steps_per_s));
+    }
+}
+
+TEST_F(PlaneContacts, PartEveryPairOfATriangleMesh) {
+  Scene s = with_collider(mesh_sheet(8), sphere({0.02, -0.72, 0.05}, 0.1, kContactFriction));
+  s.pins.vertices.clear();
+  s.needs = s.needs - FeatureSet{Feature::Pins};
+  s.cloth.sides = Sides::Double;
+  s.needs.add(Feature::DoubleSided);
+  s.cloth.initial_velocity_m_per_s = {0.1, -3, 0.2};
+  s.time = {400, 0.3};
+  expect_all_parted(make("xpbd", by_planes({{"substeps", 1}})), s, "mesh");
+}
+
+TEST_F(PlaneContacts, AgreeWithDoublePrecisionOver100Substeps) {
+  const std::vector<std::pair<std::string, Collider>> kinds = {
+      {"half-space", half_space({0, -0.2, 0}, {0.6, 0.8, 0}, kContactFriction)},
+      {"sphere", sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction)},
+      {"box", box({0.03, 0.01, 0.01}, {0.3, 0.07, 0.2}, kContactFriction)},
+      {"capsules", capsules({-0.1, 0.04, 0}, kContactFriction)},
+      {"mesh", octahedron({0.013, 0.017, 0.021}, 0.12, false, kContactFriction)},
+      {"hand", octahedron({-0.1, 0.017, 0.021}, 0.12, true, kContactFriction)},
+      {"open sheet", open_sheet({0.03, 0.1, 0.01}, 0.32, kContactFriction)}};
+  for (const auto& [name, collider] : kinds) {
+    Scene s = with_collider(sheet(9, 7), collider);
+    s.material.membrane_stiffness_N_per_m = 1e-12;  // nothing but contact moves a vertex
+    s.cloth.center_m = {0, 0.3, 0};
+    s.cloth.initial_velocity_m_per_s = {0.4, -3, 0.3};
+    s = moving(s);
+    PlaneContactReference reference(s, 10);
+    const auto solver = make("xpbd", by_planes({{"substeps", 10}}));
+    solver->load(s);
+    double most = 0;
+    for (int f = 0; f < 10; ++f) {
+      reference.frame(f);
+      const ClothState state = after_frame(*solver, s, f);
+      for (std::size_t i = 0; i < reference.x.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+          most = std::max(most, std::abs(state.position[3 * i + k] - reference.x[i][static_cast<long>(k)]));
+    }
+    // Where two flat things meet, which of the points that are as near is taken is up to rounding.
+    const double tolerance = name == "box" || name == "open sheet" ? 3e-4 : 1e-5;
+    EXPECT_TRUE(most <= tolerance) << name << ": " << most << " m; " << reference.responses << " responses, "
+                                   << reference.projected << " projections";
+    EXPECT_GT(reference.responses, 0) << name;
+    EXPECT_EQ(reference.without_place, 0) << name;
+  }
+}
+
+TEST_F(PlaneContacts, StopAFallOnAHalfSpace) {
+  Scene s = with_collider(sheet(9, 7), half_space({0, 0, 0}, {0.6, 0.8, 0}, kContactFriction));
+  s.cloth.center_m = {0, 0.5, 0};
+  const auto solver = make("xpbd", by_planes());
+  solver->load(s);
+  for (int f = 0; f < 60; ++f) {
+    const ClothState state = after_frame(*solver, s, f);
+    for (std::size_t i = 0; i < state.position.size(); i += 3)
+      ASSERT_GT(0.6 * state.position[i] + 0.8 * state.position[i + 1], 0) << "frame " << f;
+  }
+}
+
+TEST_F(PlaneContacts, HoldOnAnInclineUpToTheAngleOfFrictionAndSlideBeyond) {
+  const double friction = 0.5, g = 9.81, T = 0.5;
+  for (const double share : {0.98, 1.1}) {
+    const double angle = std::atan(share * friction), sine = std::sin(angle), cosine = std::cos(angle);
+    Scene s = with_collider(sheet(5, 5, 0.4, 0.4), half_space({0, 0, 0}, {sine, cosine, 0}, friction));
+    s.cloth.axis_u = {cosine, -sine, 0};
+    s.cloth.center_m = {0.02 * sine, 0.02 * cosine, 0};
+    const auto solver = make("xpbd", by_planes());
+    solver->load(s);
+    const ClothState state = after(*solver, s, 36);
+    const std::vector<double> start = initial_positions(s);
+    for (std::size_t i = 0; i < start.size(); i += 3) {
+      const double slid = cosine * (state.position[i] - start[i]) - sine * (state.position[i + 1] - start[i + 1]);
+      const double expected = std::max(0.0, 0.5 * g * (sine - friction * cosine) * T * T);
+      EXPECT_NEAR(slid, expected, std::max(1e-5, 0.02 * expected)) << "tangent " << share << " of the friction";
+    }
+  }
+}
+
+Scene of_every_kind() {
+  Scene s = everything(with_pins(sheet(17, 13)));
+  s.cloth.sides = Sides::Double;
+  s.needs = s.needs - FeatureSet{Feature::DuplicatedLayer};
+  s.needs.add(Feature::DoubleSided);
+  s = with_collider(s, half_space({0, -0.2, 0}, {0, 1, 0}, kContactFriction));
+  s.motion.clear();
+  return moving(s);
+}
+
+TEST_F(PlaneContacts, RepeatBitForBit) {
+  const Scene s = of_every_kind();
+  const auto one = make("xpbd", by_planes()), two = make("xpbd", by_planes());
+  one->load(s);
+  two->load(s);
+  EXPECT_EQ(check_stages(s, one->info(), one->plan()), "");
+  const ClothState a = after(*one, s, 12), b = after(*two, s, 12);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.velocity, b.velocity);
+  one->reset();
+  const ClothState again = after(*one, s, 12);
+  EXPECT_EQ(a.position, again.position) << "reset restores the colliders and the list of pairs too";
+}
+
+TEST_F(PlaneContacts, AreLeftOutPieceByPiece) {
+  const Scene plain = sheet(5, 4);
+  const std::set<std::string> vertices = {"plane_reach", "plane_predict", "plane_gather", "plane_settle",
+                                          "plane_project"},
+                              pairs = {"plane_list",  "plane_scan",    "plane_list_fill",
+                                       "plane_query", "plane_respond", "plane_choose"},
+                              motion = {"plane_points", "plane_boxes"};
+  const auto together = [](std::set<std::string> a, const std::set<std::string>& b) {
+    a.insert(b.begin(), b.end());
+    return a;
+  };
+  const std::vector<std::pair<Scene, std::set<std::string>>> cases = {
+      {plain, {}},
+      {with_collider(plain, half_space({0, -0.2, 0}, {0, 1, 0}, 0)), vertices},
+      {with_collider(plain, sphere({0, -0.2, 0}, 0.1)), together(vertices, pairs)},
+      {moving(with_collider(plain, capsules({0, -0.2, 0}))), together(together(vertices, pairs), motion)}};
+  for (const auto& [scene, expected] : cases) {
+    const auto solver = make("xpbd", by_planes());
+    solver->load(scene);
+    std::set<std::string> kernels;
+    for (const auto& r : solver->frame_program().recorded())
+      if (r.kernel != nullptr && r.kernel->name().starts_with("plane")) kernels.insert(r.kernel->name());
+    EXPECT_EQ(kernels, expected);
+    for (const BufferPlan& b : solver->plan().buffers)
+      if (expected.empty()) {
+        EXPECT_FALSE(b.name.starts_with("contact")) << b.name;
+      }
+  }
+}
+
+TEST_F(PlaneContacts, LetHeldVerticesPassAndNoFreeOnes) {
+  Scene s = with_collider(sheet(9, 7), sphere({0.2, -0.15, 0}, 0.1));
+  s.cloth.sides = Sides::Double;
+  s.needs.add(Feature::DoubleSided);
+  s = moving(s, {0, 8}, 4);
+  const auto solver = make("xpbd", by_planes());
+  solver->load(s);
+  EXPECT_EQ(check_stages(s, solver->info(), solver->plan()), "");
+  for (int f = 0; f < 20; ++f) {
+    const ClothState state = after_frame(*solver, s, f);
+    for (std::size_t k = 0; k < 2 && f < 4; ++k)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(state.position[3 * s.grips.vertices[k] + axis],
+                    s.motion[static_cast<std::size_t>(f) + 1].grip_position_m[k][axis], 1e-6);
+    for (std::size_t i = 0; i < state.position.size(); i += 3)
+      EXPECT_GT(std::hypot(state.position[i] - 0.2, state.position[i + 1] + 0.15, state.position[i + 2]), 0.1);
+  }
+  EXPECT_EQ(solver->contact_faults().without_place, 0u);
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu

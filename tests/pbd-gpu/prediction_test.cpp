@@ -1,0 +1,199 @@
+// Second order in time (BDF2): errors against `reference` in double precision (of bending against its own limit), the
+// frames at which it begins anew, and the scenes in which it is off.
+#include "prediction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact_scenes.hpp"
+#include "gpu_fixture.hpp"
+#include "line_plan.hpp"
+#include "mesh_scene.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// Settings of a solver that predicts.
+nlohmann::json predicting(nlohmann::json given = nlohmann::json::object()) {
+  given["time_order"] = 2;
+  return given;
+}
+
+class Predicted : public Gpu {
+ protected:
+  static std::vector<ClothState> motion(const Scene& s, const std::string& solver, nlohmann::json given) {
+    const SolverEntry& e = find_solver(solver);
+    const auto made = e.make(complete_settings(e.info, given), {});
+    made->load(s);
+    std::vector<ClothState> out;
+    for (int f = 0; f < s.time.frames(); ++f) out.push_back(after_frame(*made, s, f));
+    return out;
+  }
+  /// Root of the mean square of the distance of all vertices in all frames, over the longer side; NaN if any is.
+  static double rms(const Scene& s, const std::vector<ClothState>& a, const std::vector<ClothState>& b) {
+    double sum = 0, n = 0;
+    for (std::size_t f = 0; f < a.size(); ++f)
+      for (std::size_t k = 0; k < a[f].position.size(); ++k) {
+        sum += std::pow(a[f].position[k] - b[f].position[k], 2);
+        n += 1.0 / 3;
+      }
+    return std::sqrt(sum / n) / std::max(s.cloth.width_m, s.cloth.height_m);
+  }
+  static std::string why_not(const Scene& s, const nlohmann::json& given = nlohmann::json::object()) {
+    const auto solver = make("xpbd", predicting(given));
+    solver->load(s);
+    for (const LeftOut& l : solver->plan().left_out)
+      if (l.what == "prediction") return l.why;
+    return "";
+  }
+};
+
+/// A sheet that hangs by one edge and swings in its own plane and out of it, or a strip.
+Scene swing(Scene s) {
+  s.pins.vertices = edge_vertices(s.cloth, "u0");
+  s.needs.add(Feature::Pins);
+  s.time = {60, 0.4};
+  return s;
+}
+
+TEST_F(Predicted, StripsAndSheetsOfSecondOrderInTime) {
+  Scene strip = swing(sheet(33, 2, 1, 1.0 / 32)), elastic = swing(sheet(9, 9)),
+        bends = swing(sheet(34, 2, 33.0 / 32, 1.0 / 32));
+  strip.needs = strip.needs - FeatureSet{Feature::Shear};
+  strip.material.membrane_stiffness_N_per_m.reset();
+  bends.needs = strip.needs;
+  bends.needs.add(Feature::Bend);
+  bends.material.membrane_stiffness_N_per_m.reset();
+  bends.material.bending_rigidity_N_m = 0.2 * 9.81 / 10;
+  bends.pins.vertices = clamp_vertices(bends.cloth, "u0");
+  struct Row {
+    const char* what;
+    const Scene& scene;
+    double at_8;
+  };
+  for (const Row& row :
+       {Row{"strip", strip, 9e-5}, {"elastic sheet", elastic, 1.5e-4}, {"bending strip", bends, 1.5e-4}}) {
+    const auto right = row.scene.needs.has(Feature::Bend) ? motion(row.scene, "xpbd", predicting({{"substeps", 128}}))
+                                                          : motion(row.scene, "reference", {{"substeps", 64}});
+    double error[3];
+    for (int k = 0; k < 3; ++k)
+      error[k] = rms(row.scene, motion(row.scene, "xpbd", predicting({{"substeps", 4 << k}})), right);
+    const double euler = rms(row.scene, motion(row.scene, "xpbd", {{"substeps", 8}}), right);
+    EXPECT_LE(error[1], row.at_8) << row.what;
+    EXPECT_LE(error[1], 0.2 * euler) << row.what << ": or this compares nothing";
+    EXPECT_GE(std::log2(error[0] / error[2]) / 2, 1.3) << row.what;
+  }
+}
+
+TEST_F(Predicted, UnevenFramesKeepTheOrder) {
+  Scene even = swing(sheet(33, 2, 1, 1.0 / 32)), uneven = even;
+  even.needs = uneven.needs = even.needs - FeatureSet{Feature::Shear};
+  even.material.membrane_stiffness_N_per_m.reset();
+  uneven.material.membrane_stiffness_N_per_m.reset();
+  const auto right = motion(even, "reference", {{"substeps", 200}});
+  // Pairs of frames of 1.3 and 0.7 times their length end where two even ones do.
+  double error[2];
+  for (int k = 0; k < 2; ++k) {
+    const auto solver = make("xpbd", predicting({{"substeps", 5 << k}}));
+    solver->load(uneven);
+    std::vector<ClothState> here, there;
+    for (int f = 0; f < uneven.time.frames(); ++f) {
+      const double dt = even.time.dt() * (f % 2 == 0 ? 1.3 : 0.7);
+      EXPECT_EQ(solver->step({f, 0, dt, nullptr}), StepStatus::Ok);
+      ClothState state;
+      solver->read_state(state);
+      if (f % 2 == 0) continue;
+      here.push_back(state);
+      there.push_back(right[static_cast<std::size_t>(f)]);
+    }
+    error[k] = rms(even, here, there);
+  }
+  EXPECT_LE(error[0], 3e-4);
+  EXPECT_LE(error[1], 9e-5);
+  EXPECT_GE(std::log2(error[0] / error[1]), 1.6);
+}
+
+/// A new length of frame, a reset, a restart and a vertex let go of begin with a substep of backward Euler or with a
+/// prediction of another ratio; the next frame is like any other again.
+TEST_F(Predicted, BeginsAnewWhereThereIsNoLastSubstep) {
+  const Scene s = with_bending(with_pins(sheet(9, 7)));
+  const auto solver = make("xpbd", predicting({{"substeps", 5}}));
+  solver->load(s);
+  const ClothState once = after(*solver, s, 9);
+  solver->reset();
+  EXPECT_EQ(after(*solver, s, 9).position, once.position);
+  ASSERT_TRUE(solver->restart(once));
+  const ClothState again = after(*solver, s, 9);
+  solver->reset();
+  const ClothState straight = after(*solver, s, 18);
+  double most = 0;
+  for (std::size_t k = 0; k < again.position.size(); ++k)
+    most = std::max(most, std::abs(again.position[k] - straight.position[k]));
+  EXPECT_LE(most, 2e-3) << "one substep of first order";
+  // Let go, what was held flies on at the hand's speed and falls.
+  constexpr int kRelease = 4, kFlight = 12;
+  Scene flies = sheet(5, 4);
+  std::vector<std::uint32_t> all(20);
+  for (std::uint32_t v = 0; v < 20; ++v) all[v] = v;
+  flies = moving(flies, all, kRelease);
+  const auto thrown = make("xpbd", predicting({{"substeps", 3}}));
+  thrown->load(flies);
+  const std::vector<double> rest = initial_positions(flies);
+  const ClothState end = after(*thrown, flies, kRelease + kFlight);
+  const double fall = xpbd_free_fall_m(sheet(5, 4), predicting({{"substeps", 3}}), kFlight);
+  for (std::size_t v = 0; v < 20; ++v) {
+    EXPECT_NEAR(end.position[3 * v], rest[3 * v] + 0.02 * (kRelease + kFlight), 1e-4);
+    EXPECT_NEAR(end.position[3 * v + 1], rest[3 * v + 1] + 0.03 * (kRelease + kFlight) + fall, 1e-4);
+  }
+}
+
+TEST_F(Predicted, FreeFallIsOfSecondOrder) {
+  const Scene s = sheet(3, 3);
+  for (const int substeps : {3, 6}) {
+    const double t = 36 * s.time.dt(), h = s.time.dt() / substeps;
+    EXPECT_LE(std::abs(xpbd_free_fall_m(s, predicting({{"substeps", substeps}}), 36) + 0.5 * 9.81 * t * t),
+              9.81 * h * h);
+  }
+}
+
+TEST_F(Predicted, IsOffWhereItIsNotSafeAndSaysWhy) {
+  EXPECT_EQ(why_not(sheet(9, 9)), "");
+  EXPECT_EQ(why_not(with_pins(sheet(33, 33))), "");
+  EXPECT_NE(why_not(with_collider(sheet(9, 9), sphere({0, -1, 0}, 0.2))).find("touches"), std::string::npos);
+  Scene stiff = with_pins(sheet(33, 33));
+  stiff.material.membrane_stiffness_N_per_m = 1e6;
+  EXPECT_NE(why_not(stiff).find("wave"), std::string::npos);
+  Scene firm = with_pins(sheet(33, 33));
+  firm.material.membrane_stiffness_N_per_m.reset();
+  EXPECT_EQ(why_not(firm), "");
+  EXPECT_NE(why_not(firm, {{"tethers", false}, {"substeps", 8}}).find("tethers"), std::string::npos);
+  EXPECT_EQ(why_not(firm, {{"tethers", false}, {"substeps", 11}}), "");
+  // What is off has no buffers.
+  for (const bool off : {true, false}) {
+    const auto solver = make("xpbd", off ? nlohmann::json::object() : predicting());
+    solver->load(firm);
+    int history = 0;
+    for (const BufferPlan& b : solver->plan().buffers) history += b.device_local && b.name.starts_with("last ");
+    EXPECT_EQ(history, off ? 0 : 2);
+  }
+}
+
+/// One workgroup, many, and a dispatch a family predict alike; and so do chains where links are all alike.
+TEST_F(Predicted, EveryKernelPredictsAlike) {
+  const Scene s = with_damping(with_pins(sheet(17, 9)));
+  const auto one = motion(s, "xpbd", predicting({{"substeps", 6}})),
+             many = motion(s, "xpbd", predicting({{"substeps", 6}, {"one_dispatch", false}}));
+  EXPECT_LE(rms(s, one, many), 2e-5);
+  Scene mesh = with_damping(mesh_sheet(8));
+  mesh.time = {60, 0.5};
+  mesh.material.membrane_stiffness_N_per_m = 300;
+  ASSERT_EQ(why_not(mesh, {{"substeps", 40}, {"tethers", false}}), "");
+  const auto right = motion(mesh, "reference", {{"substeps", 40}});
+  const double error = rms(mesh, motion(mesh, "xpbd", predicting({{"substeps", 40}, {"tethers", false}})), right),
+               euler = rms(mesh, motion(mesh, "xpbd", {{"substeps", 40}, {"tethers", false}}), right);
+  EXPECT_LE(error, 0.5 * euler);
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,70 @@
+"""usage: check_peer.py CLOTHBENCH PLUGIN SOURCE: what the adapter of an engine must do in whole scenes."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+CLOTHBENCH, PLUGIN, SOURCE = sys.argv[1:4]
+ENGINE = pathlib.Path(PLUGIN).stem.replace("libclothbench_", "")
+
+
+class Peer(unittest.TestCase):
+    def run_on(self, scene, *changes):
+        out = tempfile.mkdtemp(prefix="clothbench-peer-")
+        self.addCleanup(shutil.rmtree, out, ignore_errors=True)
+        command = [CLOTHBENCH, "run", scene, "--solver", "plugin:" + PLUGIN, "--trials", "0", "--out", out]
+        for change in changes:
+            command += ["--set", change]
+        env = dict(os.environ, CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios"), CLOTHBENCH_ASSETS="procedural")
+        done = subprocess.run(command, env=env, cwd=out, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        (file,) = pathlib.Path(out).glob("*.h5")
+        with h5py.File(file) as f:
+            self.text = done.stdout
+            return dict(f["outcome"].attrs), dict(f["summary"].attrs), f["trajectory/position"][...] if "trajectory" in f else None
+
+    def test_a_hanging_sheet_stretches_little(self):
+        outcome, summary, first = self.run_on("validation/hang")
+        self.assertEqual(outcome["status"], "ok", self.text)
+        self.assertLess(summary["stretch_max_last_second"], {"nvcloth": 0.08, "jolt": 0.3}[ENGINE])
+        self.assertTrue(numpy.array_equal(first, self.run_on("validation/hang")[2]), "not the same bits")
+
+    def test_a_plane_holds_the_cloth_at_its_margin(self):
+        outcome, summary, _ = self.run_on("contact/plane")
+        self.assertEqual(outcome["expect"], "pass", self.text)
+        self.assertAlmostEqual(summary["lowest_height_min_m"], 0.004, delta=1e-4)
+
+    def test_at_a_margin_of_20_mm_a_box_is_not_entered(self):
+        outcome, summary, _ = self.run_on("contact/box", "solver.collision_margin_m=0.02")
+        self.assertEqual(outcome["status"], "ok", self.text)
+        self.assertEqual(summary["contact_length_max_m"], 0)
+
+    def test_friction_on_a_slope(self):
+        # Two thirds of a metre without friction; by Coulomb's law 0.08 m here, and nothing on the gentler slope.
+        self.assertEqual(self.run_on("validation/incline-stick")[0]["expect"], "pass", self.text)
+        self.assertAlmostEqual(self.run_on("validation/incline-slip")[1]["slip_m"], 0.08, delta=0.02)
+
+    def test_hands_hold_their_vertices(self):
+        summary = self.run_on("paper/two-hand-stretch-2mps")[1]
+        self.assertLess(summary["grip_error_max_m"], 1e-6)
+
+    def test_far_from_the_origin(self):
+        self.assertEqual(self.run_on("stability/s11-far-away")[0]["status"], "ok", self.text)
+
+    def test_what_the_engine_cannot_do_has_a_reason(self):
+        outcome = self.run_on("validation/capstan-hold", "time.duration_s=0.1")[0]
+        if ENGINE == "nvcloth":
+            self.assertEqual(outcome["status"], "unsupported")
+            self.assertIn("no friction", outcome["message"])
+            self.assertIn("not built", self.run_on("validation/hang", "solver.cuda=1")[0]["message"])
+        else:
+            self.assertEqual(outcome["status"], "ok", self.text)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,166 @@
+"""usage: check_authors.py CLOTHBENCH EXAMPLE LIBRARIES SOURCE: what authors of solvers ask of the command."""
+import hashlib
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+
+CLOTHBENCH, EXAMPLE, LIBRARIES, SOURCE = sys.argv[1:5]
+RULES = {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0}
+
+
+class Authors(unittest.TestCase):
+    def setUp(self):
+        self.home = tempfile.mkdtemp(prefix="clothbench-authors-")
+        self.addCleanup(shutil.rmtree, self.home, ignore_errors=True)
+        self.out = os.path.join(self.home, "out")
+
+    def command(self, *words, **environment):
+        env = dict(os.environ, CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios"))
+        env.pop("CLOTHBENCH_PLUGINS", None)
+        env.update(environment)
+        done = subprocess.run(
+            [CLOTHBENCH, *words], env=env, cwd=self.home, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
+        self.text = done.stdout
+        return done.returncode
+
+    def rows(self, *words, code=0, **environment):
+        self.assertEqual(self.command("--json", *words, **environment), code, self.text)
+        return json.loads(self.text[min(k for k in (self.text.find("[\n"), self.text.find("{\n")) if k >= 0) :])
+
+    def library(self, name):
+        return "plugin:" + os.path.join(LIBRARIES, name + ".so")
+
+    def study(self, **more):
+        scene = os.path.join(SOURCE, "scenarios", "paper", "gravity.json")
+        study = {"name": "small", "why": "A test.", "protocol": "fps", "trials": 1,
+                 "scenes": [{"file": scene, "axes": [{"key": "cloth.sides", "values": ["single", "double"], "labels": ["single", "double"]}]}],
+                 "solvers": [{"solver": "ballistic"}], "short": RULES, "full": RULES, **more}
+        file = os.path.join(self.home, "small.json")
+        pathlib.Path(file).write_text(json.dumps(study), encoding="utf-8")
+        return file
+
+    def test_moduli_of_plugins_with_substeps(self):
+        solvers = ["plugin:" + EXAMPLE, self.library("faulty_STRETCHES")]
+        rows = {r["solver"]: r for r in self.rows("moduli", *solvers)}
+        moduli = rows["example-xpbd"]["moduli"]
+        self.assertEqual([m["setting"] for m in moduli], ["default", "substeps=80"])
+        self.assertEqual({m["status"] for m in moduli}, {"ok"})
+        self.assertGreater(moduli[1]["E_0"], moduli[0]["E_0"])
+        self.assertEqual([m["status"] for m in rows["stretches"]["moduli"]], ["ok"])
+
+    def test_two_builds_of_a_plugin_can_be_told_apart(self):
+        words = ["run", "paper/gravity", "--solver", "plugin:" + EXAMPLE, "--set", "cloth.grid=[5,5]", "--trials", "0"]
+        self.assertEqual(self.command(*words, "--out", self.out), 0, self.text)
+        with h5py.File(os.path.join(self.out, "gravity__example-xpbd__default.h5")) as f:
+            environment = json.loads(f["header_json"][0])["environment"]
+        self.assertEqual(environment["solver_version"], "2")
+        plugin = environment["plugin"]
+        self.assertEqual(plugin["path"], os.path.realpath(EXAMPLE))
+        self.assertEqual(plugin["sha256"], hashlib.sha256(pathlib.Path(EXAMPLE).read_bytes()).hexdigest())
+        self.assertIn("XPBD", plugin["summary"])
+        report = os.path.join(self.home, "report")
+        self.assertEqual(self.command("report", self.out, "-o", report), 0, self.text)
+        for name in ("report.md", "index.html"):
+            page = pathlib.Path(report, name)
+            if page.exists() or name == "report.md":
+                self.assertIn("Plugin example-xpbd, version 2", page.read_text(encoding="utf-8"), name)
+                self.assertIn(plugin["sha256"][:16], page.read_text(encoding="utf-8"), name)
+
+    def test_threshold_goes_on_when_a_solver_cannot_run_the_scene(self):
+        words = ["threshold", "validation/incline-stick", "--solver", "plugin:" + EXAMPLE, "--solver", self.library("faulty_NONE")]
+        refused, found = self.rows(*words)
+        self.assertIn("example-xpbd has no", refused["unsupported"])
+        self.assertGreater(found["runs"], 0)
+
+    def test_a_misspelt_solver_of_a_study_is_an_error(self):
+        file = self.study(solvers=[{"solver": "ballistic"}, {"solver": "bullet-sofd"}])
+        self.assertEqual(self.command("study", file, "--out", self.out), 2, self.text)
+        self.assertIn('"bullet-sofd"', self.text)
+        self.assertIn("nearest known: bullet-soft", self.text)
+        file = self.study(solvers=[{"solver": "exampel-xpbd"}])
+        self.assertEqual(self.command("study", file, "--out", self.out, CLOTHBENCH_PLUGINS=EXAMPLE), 2, self.text)
+        self.assertIn("nearest known: example-xpbd", self.text)
+
+    def test_an_override_of_an_axis_names_its_runs(self):
+        for value, names in (("single", ["single"]), ("double-duplicated", ["double-duplicated"])):
+            runs = self.rows("study", self.study(), "--set", "cloth.sides=" + value, "--list-runs")
+            self.assertEqual(runs, [f"gravity-{n}__ballistic__default" for n in names])
+        runs = self.rows("study", "table3", "--solver", "ballistic", "--set", "cloth.sides=single", "--list-runs")
+        self.assertTrue(all("-single__" in r for r in runs) and len(runs) == 5, runs)
+        runs = self.rows("study", "table3", "--quick", "--solver", "ballistic", "--set", "cloth.grid=[24,24]", "--list-runs")
+        self.assertTrue(runs and all("-24-24-" in r for r in runs), runs)
+
+    def test_a_report_of_a_folder_that_lost_its_study(self):
+        words = ["study", self.study(), "--out", self.out]
+        self.assertEqual(self.command(*words), 0, self.text)
+        os.remove(os.path.join(self.out, "study.json"))
+        self.assertEqual(self.command("report", self.out, "-o", os.path.join(self.home, "r")), 0, self.text)
+        self.assertIn("gravity", pathlib.Path(self.home, "r", "report.md").read_text(encoding="utf-8"))
+        os.mkdir(os.path.join(self.home, "empty"))
+        self.assertEqual(self.command("report", "empty", "-o", "none"), 2, self.text)
+        self.assertIn("neither study.json nor a result file", self.text)
+
+    def test_lists_have_plugins_with_their_settings(self):
+        for words, environment in ((["--solver", "plugin:" + EXAMPLE], {}), ([], {"CLOTHBENCH_PLUGINS": EXAMPLE})):
+            (mine,) = [r for r in self.rows("list", "solvers", *words, **environment) if r["name"] == "example-xpbd"]
+            self.assertTrue(mine["plugin"])
+            self.assertEqual([s["name"] for s in mine["settings"]], ["substeps"])
+            self.assertEqual(self.command("list", "solvers", *words, **environment), 0)
+            self.assertIn("solver.substeps=20  steps a frame", self.text)
+            self.assertEqual(self.command("list", "features", *words, **environment), 0)
+            self.assertIn("example-xpbd", self.text)
+
+    def test_run_gives_its_figures_to_programs(self):
+        words = ["run", "paper/gravity", "--solver", "ballistic", "--set", "cloth.grid=[5,5]", "--out", self.out]
+        (run,) = self.rows(*words)["runs"]
+        self.assertEqual((run["scene"], run["solver"], run["outcome"]["status"]), ("gravity", "ballistic", "ok"))
+        self.assertLess(run["summary"]["free_fall_error"], 1e-12)
+        self.assertNotIn("environment", run)
+
+    def test_in_process_there_is_no_child(self):
+        words = ["run", "paper/gravity", "--solver", self.library("faulty_NONE"), "--set", "cloth.grid=[5,5]", "--out", self.out]
+        self.assertEqual(self.command("--in-process", *words), 0, self.text)
+        shutil.rmtree(self.out)
+        # A crash is the program's own: a debugger stops at it.
+        self.assertEqual(self.command(*words, "--in-process", FAULT="crash:3"), -11, self.text)
+        self.assertEqual(self.command("plan", "paper/gravity", "--solver", self.library("faulty_NONE"), "--in-process", FAULT="create"), -11)
+
+    def conform(self, *words, code, **environment):
+        return self.rows("conformance", *words, "--limit", "1", code=code, **environment)
+
+    def test_conformance_of_a_plugin(self):
+        scenes = ["--scene", "paper/gravity", "--scene", "validation/hang-elastic", "--scene", "contact/sphere"]
+        rows = self.conform("plugin:" + EXAMPLE, *scenes, code=0)
+        self.assertEqual([r["status"] for r in rows], ["pass", "pass", "skipped"])
+        self.assertEqual((rows[0]["cases"], rows[0]["solver"]), (10, "example-xpbd"))
+        self.assertGreater(rows[0]["frames_whole"], 6)
+        self.assertIn("example-xpbd has no", rows[2]["faults"][0])
+        self.assertEqual(self.command("conformance", "plugin:" + EXAMPLE, "--scene", "paper/gravity", "--no-whole"), 0)
+        self.assertRegex(self.text, r"pass +example-xpbd paper/gravity: \d+ cases")
+        self.assertIn("1 scenes pass, 0 fail, 0 skipped", self.text)
+
+    def test_conformance_finds_faults(self):
+        scene = ["--scene", "paper/gravity"]
+        for fault, word in (("nan:3", "step failed"), ("crash:3", "signal 11"), ("load", "it was asked to fail")):
+            (row,) = self.conform(self.library("faulty_NONE"), *scene, code=1, FAULT=fault)
+            self.assertEqual(row["status"], "FAIL")
+            self.assertIn(word, " ".join(row["faults"]))
+        (row,) = self.conform(self.library("faulty_STRETCHES"), *scene, code=1)
+        self.assertIn("stages:", " ".join(row["faults"]))
+        # Six frames show nothing wrong; the whole scene does. Where hands move, a loose grip is not held.
+        (row,) = self.conform(self.library("faulty_LATE"), "--scene", "paper/two-hand-stretch-0p5mps", code=1)
+        self.assertTrue(all(f.startswith("whole scene: ") and "from its hand" in f for f in row["faults"]), row)
+        self.assertEqual(self.command("conformance", "ballistic", "--scene", "paper/gravitiy"), 2)
+        self.assertIn("nearest known: paper/gravity", self.text)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[5:])

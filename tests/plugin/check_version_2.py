@@ -1,0 +1,175 @@
+"""usage: check_version_2.py CLOTHBENCH EXAMPLE LIBRARIES SOURCE: version 2 of the plugin interface, and version 1."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+CLOTHBENCH, EXAMPLE, LIBRARIES, SOURCE = sys.argv[1:5]
+SMALL = ["--set", "cloth.grid=[8,8]", "--set", "cloth.sides=single"]
+
+
+class Version2(unittest.TestCase):
+    def setUp(self):
+        self.home = tempfile.mkdtemp(prefix="clothbench-plugin-")
+        self.addCleanup(shutil.rmtree, self.home, ignore_errors=True)
+        self.out = os.path.join(self.home, "out")
+        self.log = os.path.join(self.home, "log.txt")
+
+    def command(self, *words, **environment):
+        env = dict(os.environ, CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios"), LOG=self.log, **environment)
+        env.pop("CLOTHBENCH_PLUGINS", None)
+        done = subprocess.run(
+            [CLOTHBENCH, *words], env=env, cwd=self.home, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
+        self.text = done.stdout
+        return done.returncode
+
+    def library(self, name="second_NONE"):
+        return "plugin:" + os.path.join(LIBRARIES, name + ".so")
+
+    def run_on(self, scene, *more, trials=1, code=0, **environment):
+        words = ["run", scene, "--solver", self.library(), "--trials", str(trials), "--out", self.out, *more]
+        self.assertEqual(self.command(*words, **environment), code, self.text)
+
+    def stored(self, name):
+        return h5py.File(os.path.join(self.out, name + ".h5"))
+
+    def noted(self):
+        return pathlib.Path(self.log).read_text(encoding="utf-8") if os.path.exists(self.log) else ""
+
+    def test_a_library_of_version_1_runs_as_the_same_source_built_for_version_2(self):
+        positions = []
+        for at, library in enumerate((self.library("first_example"), "plugin:" + EXAMPLE)):
+            self.out = os.path.join(self.home, str(at))
+            words = ["run", "paper/gravity", "--solver", library, "--trials", "1", "--out", self.out, *SMALL]
+            self.assertEqual(self.command(*words), 0, self.text)
+            with self.stored("gravity__example-xpbd__default") as f:
+                self.assertEqual(f["outcome"].attrs["status"], "ok")
+                positions.append(f["trajectory/position"][...])
+        self.assertTrue(numpy.array_equal(positions[0], positions[1]))
+
+    def test_the_rest_shape_and_springs_of_grids_and_meshes(self):
+        # The plugin checks what it is given and refuses to be created if it is wrong.
+        for scene, *more in (
+            ("paper/gravity", *SMALL),
+            ("paper/gravity", *SMALL, "--set", "material.membrane_stiffness_N_per_m=50"),
+            ("validation/capstan-hold",),  # draped
+            ("validation/hang-elastic",),  # strips, without shear
+            ("validation/hang-mesh",),
+            ("stability/s13-sliver",),  # uneven cells
+            ("stability/s15-crumpled",),
+            ("stability/s18-soup",),
+        ):
+            shutil.rmtree(self.out, ignore_errors=True)
+            with self.subTest(scene=scene):
+                self.run_on(scene, *more, trials=0)
+                (file,) = pathlib.Path(self.out).glob("*.h5")
+                with h5py.File(file) as f:
+                    self.assertNotEqual(f["outcome"].attrs["status"], "error", dict(f["outcome"].attrs))
+
+    def test_the_device_its_buffers_and_its_times_are_stored(self):
+        self.run_on("paper/gravity", *SMALL)
+        with self.stored("gravity__second__default") as f:
+            self.assertEqual(f["outcome"].attrs["status"], "ok", dict(f["outcome"].attrs))
+            header = json.loads(f["header_json"][0])
+            environment = header["environment"]
+            self.assertEqual(
+                [environment[k] for k in ("gpu", "driver", "api", "gpu_is_software")],
+                ["Paper GPU", "driver 7", "CUDA 1.0", True],
+            )
+            self.assertEqual(environment["gpu_properties"], {"cores": 3})
+            n = 24 * 64
+            self.assertEqual(
+                header["plan"]["buffers"],
+                [
+                    {"name": "positions", "bytes": n, "device_local": True},
+                    {"name": "velocities", "bytes": n, "device_local": False},
+                ],
+            )
+            self.assertTrue((f["timing/frame_device_s"][...] == 1e-4).all())
+            # Of the frames run again for them; the solver that is timed is not asked.
+            self.assertEqual(numpy.nanmax(f["timing/stage_device_s"][...]), 5e-5)
+            self.assertEqual(numpy.nanmin(f["timing/stage_device_s"][...]), 5e-5)
+        self.assertIn("create stage_times=1", self.noted())
+
+    def test_frames_in_flight(self):
+        rules = {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0}
+        scene = os.path.join(SOURCE, "scenarios", "validation", "free-fall.json")
+        study = {"name": "small", "why": "Frames in flight.", "protocol": "fps", "trials": 1, "pipelined": True,
+                 "scenes": [{"file": scene}], "solvers": [{"solver": "ballistic"}], "short": rules, "full": rules}
+        file = os.path.join(self.home, "small.json")
+        pathlib.Path(file).write_text(json.dumps(study), encoding="utf-8")
+        words = ["study", file, "--solver", self.library(), "--set", "cloth.grid=[5,5]", "--out", self.out]
+        self.assertEqual(self.command(*words), 0, self.text)
+        self.assertIn("finish in_flight=2", self.noted())
+        (found,) = pathlib.Path(self.out).glob("*__second__*.h5")
+        with h5py.File(found) as f:
+            self.assertGreater(f["timing/pipelined_wall_s"][0], 0)
+
+    def test_a_scene_that_it_cannot_run_is_unsupported_because_it_says_so(self):
+        self.run_on("paper/gravity", "--set", "cloth.grid=[13,8]", "--set", "cloth.sides=single")
+        with self.stored("gravity__second__default") as f:
+            self.assertEqual(f["outcome"].attrs["status"], "unsupported")
+            self.assertEqual(f["outcome"].attrs["message"], "second: 13 columns are too many")
+        self.assertEqual(self.command("plan", "paper/gravity", "--solver", self.library(), FAULT="refuse"), 0, self.text)
+        self.assertIn("unsupported", self.text)
+        self.assertIn("it was asked to refuse", self.text)
+        self.assertEqual(self.command("metamorphic", self.library(), FAULT="refuse"), 0, self.text)
+        self.assertIn("unsupported", self.text)
+
+    def test_frames_begin_where_the_last_ended_and_jumps_are_marked(self):
+        self.run_on("stability/s17-collider-teleport", trials=0)
+        (file,) = pathlib.Path(self.out).glob("*.h5")
+        with h5py.File(file) as f:
+            self.assertNotEqual(f["outcome"].attrs["status"], "error", dict(f["outcome"].attrs))
+            self.assertNotIn("without a solution", f["outcome"].attrs["message"])
+        self.assertRegex(self.noted(), r"teleport frame=\d+ collider=0")
+        os.remove(self.log)
+        shutil.rmtree(self.out)
+        self.run_on("stability/s08-jerk", trials=0)
+        self.assertRegex(self.noted(), r"teleport frame=\d+ grip=\d+")
+        self.assertNotIn("collider", self.noted())
+
+    def test_a_restart_comes_with_its_moment(self):
+        self.assertIn(self.command("metamorphic", self.library()), (0, 1), self.text)
+        self.assertRegex(self.noted(), r"restart index=[1-9]\d* time=0\.[0-9]+")
+
+    def test_what_is_refused(self):
+        for library, words in (
+            ("second_VERSION_3", ("version 3", "version 1 or 2")),
+            ("second_TOO_SMALL", ("its ClothbenchPlugin has", "expected at least")),
+            ("second_NO_FINISH", ("frames_in_flight, submit, finish: expected all three or none",)),
+            ("second_NO_STAGE_SETTING", ("stage_device_s: expected a setting stage_times",)),
+        ):
+            words_given = ["run", "paper/gravity", "--solver", self.library(library), "--out", self.out]
+            self.assertEqual(self.command(*words_given), 2, self.text)
+            for word in words:
+                self.assertIn(word, self.text)
+
+    def test_faulty_values_are_told(self):
+        for fault, message in (
+            ("unsupported", "unsupported: expected a reason or NULL; found an empty text"),
+            ("driver", "device_info: driver: expected a text"),
+            ("properties", "device_info: properties_json: expected a JSON object; found [3]"),
+            ("buffers", "buffers: buffer 1: expected a name"),
+            ("in_flight", "frames_in_flight: expected 1 or more; found 0"),
+            ("device_time", "device_s: expected a time of 0 s or more, or NAN; found -1"),
+            ("stage_time", "stage_device_s: expected a time of 0 s or more, or NAN; found -1"),
+        ):
+            shutil.rmtree(self.out, ignore_errors=True)
+            with self.subTest(fault=fault):
+                self.run_on("paper/gravity", *SMALL, code=1, FAULT=fault)
+                with self.stored("gravity__second__default") as f:
+                    self.assertEqual(f["outcome"].attrs["status"], "error")
+                    self.assertIn(message, f["outcome"].attrs["message"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[5:])

@@ -1,0 +1,224 @@
+// Scenes of the study of drawn contact: the same for a seed, others for others, all within their ranges and loadable.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+#include <thread>
+
+#include "assets/assets.hpp"
+#include "base/json_text.hpp"
+#include "base/sha256.hpp"
+#include "clothbench/error.hpp"
+#include "scenario/draw_contact.hpp"
+#include "scenario/load.hpp"
+#include "scenario/study.hpp"
+#include "scratch_folder.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kKinds = 9;
+
+/// One form of each scene: as `bullet-soft` runs it.
+Study drawn(std::uint64_t seed, int count, StudyLength length = StudyLength::Short) {
+  StudyOptions o;
+  o.length = length;
+  o.solvers = {"bullet-soft"};
+  o.seed = seed;
+  o.count = count;
+  return load_study("contact", o);
+}
+
+std::string all_json(const Study& s) {
+  std::string out;
+  for (const Study::Item& item : s.scenes) out += item.scene.json + "\n";
+  return out;
+}
+
+TEST(DrawContact, IsTheSameForASeedHoweverManyThreadsDraw) {
+  const std::string once = all_json(drawn(17, kKinds));
+  std::vector<std::string> others(2);
+  std::vector<std::thread> threads;
+  for (std::string& other : others) threads.emplace_back([&other] { other = all_json(drawn(17, kKinds)); });
+  for (std::thread& t : threads) t.join();
+  for (const std::string& other : others) EXPECT_EQ(other, once);
+  // A scene depends on its own seed alone.
+  const Study some = drawn(19, 1);
+  EXPECT_EQ(some.scenes[0].scene.json, drawn(17, kKinds).scenes[2].scene.json);
+  std::set<std::string> different;
+  for (const Study::Item& item : drawn(1, 2 * kKinds).scenes) different.insert(item.scene.sha256);
+  EXPECT_EQ(different.size(), 2u * kKinds);
+}
+
+TEST(DrawContact, AllScenesOf200SeedsLoadAndLoadAgain) {
+  const Study study = drawn(1, 200);
+  ASSERT_EQ(study.scenes.size(), 200u);
+  for (const Study::Item& item : study.scenes) {
+    const json scene = json::parse(item.scene.json);
+    EXPECT_EQ(item.scene.name,
+              "contact-" + std::to_string(*item.scene.seed) + "-" + scene["drawn"]["kind"].get<std::string>());
+    EXPECT_GE(item.scene.expect.size(), 3u) << item.scene.name;
+    if (*item.scene.seed > 2 * kKinds) continue;
+    const Scene again = scene_from_json(scene, "again");
+    EXPECT_EQ(again.sha256, item.scene.sha256) << item.scene.name;
+  }
+}
+
+/// Scenes of the seeds from 1 on as drawn, neither completed nor loaded, which takes a while.
+std::vector<json> drawn_alone(std::uint64_t count) {
+  const std::filesystem::path file = find_scenario("contact");
+  const json study = drawn(1, 1).definition;
+  std::vector<ContactKind> kinds;
+  for (const json& item : study["scenes"])
+    kinds.push_back(
+        contact_kind(item, file.parent_path() / item["file"].get<std::string>(), "contact", json::object()));
+  ContactDrawer drawer(Assets::MayBeProcedural);
+  std::vector<json> out;
+  for (std::uint64_t seed = 1; seed <= count; ++seed)
+    out.push_back(drawer.draw(kinds[seed % kinds.size()], "contact", seed));
+  return out;
+}
+
+/// Least and greatest of each drawn value, over kinds.
+std::map<std::string, std::array<double, 2>> extremes(const std::vector<json>& scenes, const std::string& kind) {
+  std::map<std::string, std::array<double, 2>> out;
+  for (const json& scene : scenes) {
+    const json& about = scene["drawn"];
+    if (about["kind"] != kind) continue;
+    for (const auto& [name, value] : about["values"].items()) {
+      if (!value.is_number()) continue;
+      auto& [low, high] = out.emplace(name, std::array<double, 2>{INFINITY, -INFINITY}).first->second;
+      low = std::min(low, value.get<double>());
+      high = std::max(high, value.get<double>());
+    }
+  }
+  return out;
+}
+
+TEST(DrawContact, EveryRangeIsCoveredAndKept) {
+  const std::vector<json> scenes = drawn_alone(40 * kKinds);
+  const json study = drawn(1, 1).definition;
+  for (const json& item : study["scenes"]) {
+    const json& draw = item["draw"];
+    const auto found = extremes(scenes, draw["kind"]);
+    for (const auto& [name, range] : draw["ranges"].items()) {
+      const double low = range[0], high = range[1];
+      bool any = false;
+      for (const auto& [drawn_name, is] : found) {
+        // A range may be drawn from several times, under names of its own.
+        const bool its = drawn_name == name || (name == "depth_m" && drawn_name == "depth_in_m");
+        if (!its) continue;
+        any = true;
+        EXPECT_GE(is[0], low - 1e-6) << draw["kind"] << " " << name;
+        EXPECT_LE(is[1], high + 1e-6) << draw["kind"] << " " << name;
+        const bool logarithmic = name == "speed_m_per_s" || name == "push_s";
+        const double spread =
+            logarithmic ? std::log(is[1] / is[0]) / std::log(high / low) : (is[1] - is[0]) / (high - low);
+        EXPECT_TRUE(spread >= 0.8 || high == low) << draw["kind"] << " " << name;
+      }
+      const bool named_apart =
+          name == "off_m" || name == "size_m" || (name == "above_middle_m" && draw["how"] == "stretch");
+      EXPECT_TRUE(any || named_apart) << draw["kind"] << " " << name;
+    }
+  }
+}
+
+TEST(DrawContact, WordsAreCovered) {
+  std::map<std::string, std::set<std::string>> words;
+  for (const json& scene : drawn_alone(100 * kKinds))
+    for (const auto& [name, value] : scene["drawn"]["values"].items())
+      if (value.is_string()) words[name].insert(value.get<std::string>());
+  EXPECT_EQ(words["hand"].size(), 2u);
+  EXPECT_EQ(words["pose"].size(), assets::kPoseNames.size());
+  if (!assets::locate_assets(false).npm) GTEST_SKIP() << "rooms have not been fetched";
+  EXPECT_EQ(words["room"].size(), 5u);
+  EXPECT_GE(words["table"].size(), 8u) << "any table of any room";
+}
+
+TEST(DrawContact, HandsComeFromAfarAndStayAwayForASecond) {
+  for (const Study::Item& item : drawn(1, 3 * kKinds).scenes) {
+    json as_capsules = json::parse(item.scene.json);
+    if (as_capsules["colliders"].empty() || !as_capsules["colliders"][0].contains("track")) continue;
+    as_capsules["colliders"][0]["type"] = "hand_capsules";
+    const Scene s = scene_from_json(as_capsules, "as capsules");
+    const auto nearest_to_cloth = [&](int frame) {  // the cloth hangs in z = 0
+      double least = INFINITY;
+      const ColliderPose& pose = s.motion[static_cast<std::size_t>(frame)].colliders[0];
+      for (const Capsule& c : pose.capsules)
+        least = std::min({least, std::abs(c.a_m[2]) - c.radius_m, std::abs(c.b_m[2]) - c.radius_m});
+      return least;
+    };
+    EXPECT_GT(nearest_to_cloth(0), 0.05) << s.name;
+    const int last = s.time.frames(), before = last - static_cast<int>(s.time.frame_rate_hz);
+    EXPECT_GT(nearest_to_cloth(before + 1), 0.05) << s.name;
+    EXPECT_EQ(s.time.frame_rate_hz,
+              72 * std::max(1.0, std::ceil(json::parse(s.json)["drawn"]["speed_m_per_s"].get<double>() / 5)))
+        << s.name;
+  }
+}
+
+TEST(DrawContact, RecordedScenesStayAsTheyAre) {
+  // Without desks, which depend on the rooms that are there.
+  std::string all;
+  for (const Study::Item& item : drawn(1, 8).scenes) {
+    const json scene = json::parse(item.scene.json);
+    all += scene["name"].dump() + scene["drawn"]["values"].dump() + scene["cloth"]["pose"].dump();
+    for (const char* list : {"colliders", "grips"})
+      for (const json& one : scene[list]) all += one.value("track", json()).dump();
+  }
+  EXPECT_EQ(sha256(all), "0e25ad59dcdd1f662cb17129956069a86d3ff8ea8975d4a407bc56db5401de74");
+}
+
+TEST(DrawContact, RefusesBadInput) {
+  const auto message = [](const auto& act) -> std::string {
+    try {
+      act();
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message([] { drawn(std::uint64_t{1} << 60, 1); }).find("--seed 1152921504606846976: expected at most"),
+            std::string::npos);
+  const json good = json::parse(read_text(find_scenario("contact")));
+  const auto with = [&](const std::function<void(json&)>& change) {
+    json j = good;
+    for (json& item : j["scenes"])
+      item["file"] = (scenario_root() / "studies" / item["file"].get<std::string>()).lexically_normal().string();
+    change(j);
+    const ScratchFolder folder;
+    const auto file = folder.file("mine.json", j.dump());
+    StudyOptions o;
+    o.count = 1;
+    return message([&] { load_study(file, o); });
+  };
+  EXPECT_EQ(with([](json&) {}), "");
+  EXPECT_NE(with([](json& j) {
+              j["scenes"][1]["draw"]["ranges"].erase("way_m");
+            }).find("/scenes/1/draw/ranges: \"way_m\" is missing"),
+            std::string::npos);
+  EXPECT_NE(with([](json& j) {
+              j["scenes"][1]["draw"]["ranges"]["wy_m"] = {0, 1};
+            }).find("/scenes/1/draw/ranges/wy_m: nothing is drawn from it; nearest known: way_m"),
+            std::string::npos);
+  EXPECT_NE(with([](json& j) {
+              j["scenes"][1]["draw"]["ranges"]["way_m"] = {1, 0};
+            }).find("/scenes/1/draw/ranges/way_m: expected the lower bound first"),
+            std::string::npos);
+  EXPECT_NE(with([](json& j) {
+              j["scenes"][1]["draw"]["ranges"]["speed_m_per_s"] = {0, 1};
+            }).find("expected a range above 0"),
+            std::string::npos);
+  EXPECT_NE(with([](json& j) { j["scenes"][2].erase("draw"); }).find("/scenes/2: \"draw\" is missing"),
+            std::string::npos);
+  EXPECT_NE(with([](json& j) { j["protocol"] = "penetration"; }).find("/scenes/0/draw: only for protocol contact"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace clothbench
