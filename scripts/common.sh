@@ -50,7 +50,7 @@ stage() {
   set -e
   local took=$((SECONDS - start)) note=
   if [ "$took" -gt "$limit" ]; then note=', over its budget'; fi
-  if [ $((took * 2)) -gt $((limit * 3)) ]; then over_budget=1; fi
+  if [ "$took" -gt $((limit * 3)) ]; then over_budget=1; fi
   stage_line "$name" "$took" "$([ "$status" -eq 0 ] && echo done || echo "failed, status $status")$note"
   [ -t 1 ] && echo
   budget_rows+=("$(printf '%-12s %5d s of %5d s%s' "$name" "$took" "$limit" "$note")")
@@ -79,13 +79,15 @@ stage_ticker() {
 # The last count that ninja printed; nothing for other programs.
 stage_progress() { tail -c 4000 "$1" 2>/dev/null | grep -oE '\[[0-9]+/[0-9]+\]' | tail -1 || true; }
 
-# Prints the time of every stage. With `enforce`, in CI, a stage that took half as long again as its budget is a failure.
+# Prints the time of every stage. With `enforce`, in CI, a stage that took three times its budget is a failure: the same work was seen
+# to take twice as long on a machine with other work beside it, and that is no fault of the change.
 print_budget() {
   echo
   echo "time used, of the budget on 2 cores (this run: $JOBS jobs; logs: $stage_logs):"
   printf '  %s\n' "${budget_rows[@]}"
+  printf '  %-12s %5d s\n' together "$SECONDS"
   if [ "${1:-}" = enforce ] && [ "$over_budget" -ne 0 ] && [ "${CI:-}" = true ]; then
-    echo "a stage took more than one and a half times its budget" >&2
+    echo "a stage took more than three times its budget" >&2
     return 1
   fi
 }
