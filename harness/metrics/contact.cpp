@@ -8,13 +8,15 @@
 namespace clothbench {
 namespace {
 
-/// 1: capsules and spheres by a subdivision that reads shallow contours up to 27 % low.
-constexpr int kContour = 2;
+/// 1: capsules and spheres by a subdivision that reads shallow contours up to 27 % low. 2: capsules within 1 %.
+constexpr int kContour = 3;
 /// 1: the straight path between two frames, whether or not anything shows that it was taken.
 constexpr int kTunnelled = 2;
 
 /// 1: of capsules and spheres at the points of a subdivision, no finer at the contour.
-constexpr int kDepths = 2;
+constexpr int kGreatestDepth = 2;
+/// 1: as above. 2: of capsules and spheres within 1 %.
+constexpr int kDepths = 3;
 
 bool can_tunnel(const Scene& s) {
   return kWithContactMetrics && std::any_of(s.colliders.begin(), s.colliders.end(), counts_crossings);
@@ -88,7 +90,7 @@ std::vector<Metric> contact_series() {
       {"tunnelled_depth_m", "m", "greatest distance of a tunnelled vertex from the mesh", kMeshes,
        contact_field(&C::tunnelled_depth_m), kTunnelled, plotted("tunnelled depth [m]", 3, 3)},
       {"depth_m", "m", "greatest depth in a collider, between the vertices too", kInside, contact_field(&C::depth_m),
-       kDepths, plotted("depth [m]", 4, 4)},
+       kGreatestDepth, plotted("depth [m]", 4, 4)},
       {"depth_vertex_m", "m", "greatest depth of a vertex in a collider", kInside, contact_field(&C::depth_vertex_m), 1,
        plotted("depth at vertices [m]", 5, 5)},
       {"depth_p99_m", "m", "depth that 99 % of the penetrating area keeps below", kInside,

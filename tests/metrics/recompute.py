@@ -11,13 +11,11 @@ import sys
 import h5py
 import numpy as np
 
-from recompute_contact import contact_series
+from recompute_contact import contact_series, vertices_of
 from recompute_geometry import area, cross, norm, pairs_of_triangles
 from recompute_passage import passage_series
 
 RELATIVE, ABSOLUTE = 1e-6, 1e-9
-CAPSULES = 0.01  # relative: what contours with capsules, and areas inside of capsules and spheres, promise
-INSIDE = {"penetrating_area_m2", "penetrating_area_max_m2", "depth_mean_m", "depth_p99_m", "depth_time_mean_m"}
 SERIES, SCALARS = 27, 42  # computed at least
 
 # Names that are not recomputed, and why. A name that ends in * stands for all that begin so.
@@ -108,15 +106,23 @@ def settled(run):
     return run.time >= run.time[-1] - 0.5 - 0.5 / run.scene["time"]["frame_rate_hz"]
 
 
+def ends_of(c):
+    """Points of a moving collider, frame after frame: the ends of capsules, or some 64 vertices of a mesh."""
+    if c["shape"] == "capsules":
+        return c["capsules"][:, :, :6].reshape(len(c["capsules"]), -1, 3)
+    some = slice(None, None, max(1, len(c["position_m"]) // 64))
+    return np.array([vertices_of(c, f)[some] for f in range(len(c["joint_matrix"]))])
+
+
 def popping(run, touching):
     """Greatest displacement within three frames after the last contact that began before the colliders stood still; NaN without one."""
-    moving = [c for c in run.colliders if c["shape"] == "capsules"]
+    moving = [c for c in run.colliders if c["shape"] == "capsules" or "joint_matrix" in c]
     if not moving:
         return np.nan
     rate = run.scene["time"]["frame_rate_hz"]
     speed = np.zeros(len(run.time))
     for c in moving:
-        ends = c["capsules"][:, :, :6].reshape(len(c["capsules"]), -1, 3)[:len(run.time)]
+        ends = ends_of(c)[:len(run.time)]
         speed[1:] = np.maximum(speed[1:], norm(np.diff(ends, axis=0)).max(1) * rate)
     slow = speed <= 1e-6 * speed.max()
     rests = slow & np.r_[slow[1:], True]
@@ -206,13 +212,10 @@ def left_out(name):
     return next((why for n, why in LEFT_OUT.items() if name == n or (n.endswith("*") and name.startswith(n[:-1]))), None)
 
 
-def differ(run, name, stored, mine):
+def differ(stored, mine):
     stored, mine = np.asarray(stored, float), np.asarray(mine, float)
-    shapes = {c["shape"] for c in run.colliders}
-    sampled = (name.startswith("contact_length") and "capsules" in shapes) or (name in INSIDE and shapes & {"capsules", "sphere"})
-    relative = CAPSULES if sampled else RELATIVE
     with np.errstate(invalid="ignore"):
-        near = np.abs(stored - mine) <= np.maximum(ABSOLUTE, relative * np.abs(stored))
+        near = np.abs(stored - mine) <= np.maximum(ABSOLUTE, RELATIVE * np.abs(stored))
     same = (np.isnan(stored) & np.isnan(mine)) | (stored == mine) | near
     return np.flatnonzero(~np.atleast_1d(same))
 
@@ -223,7 +226,7 @@ def compare(run, computed, faults, seen, missing):
             if name in mine:
                 seen.setdefault((kind, name), 0)
                 seen[kind, name] += 1
-                for k in differ(run, name, value, mine[name])[:1]:
+                for k in differ(value, mine[name])[:1]:
                     faults.append(f"{run.name}: {kind} {name}[{k}]: stored {np.atleast_1d(value)[k]!r}, computed {np.atleast_1d(mine[name])[k]!r}")
             elif kind == "series" or not np.isnan(value):
                 missing.setdefault((kind, name), run.name)

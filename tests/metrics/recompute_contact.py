@@ -1,8 +1,9 @@
 """Contour, depth and tunnelling of stored runs, for recompute.py."""
 import numpy as np
 
-from recompute_geometry import (area, box_triangles, clipped, cross, depth_figures, dot, norm, pairs_of_triangles, point_to_segment, point_to_triangle,
-                                segment_in_triangle, segment_to_triangle, sphere_contour)
+from recompute_geometry import (box_triangles, clipped, cross, depth_figures, dot, norm, pairs_of_triangles, point_to_segment, point_to_triangle,
+                                segment_in_triangle)
+from recompute_section import round_figures
 
 
 def half_space(run, c, x):
@@ -19,48 +20,9 @@ def half_space(run, c, x):
             "figures": depth_figures(pieces)}
 
 
-HALVINGS = 5  # of a triangle's edges, for what is inside of capsules
-
-
-def parts_of(t, halvings):
-    """A triangle cut into 4^halvings parts: (part, corner, 3)."""
-    t = t[None]
-    for _ in range(halvings):
-        m = [(t[:, i] + t[:, (i + 1) % 3]) / 2 for i in range(3)]
-        t = np.concatenate([np.stack(c, 1) for c in ((t[:, 0], m[0], m[2]), (m[0], t[:, 1], m[1]), (m[2], m[1], t[:, 2]), (m[0], m[1], m[2]))])
-    return t
-
-
-def inside_capsules(t, shapes):
-    """Parts of a triangle inside of capsules: (area, mean depth) each; a part counts by the share of its points that are inside."""
-    parts = parts_of(t, HALVINGS)
-    middle = parts.mean(1)
-    reach = norm(parts[0] - middle[0]).max()
-    parts = parts[np.max([r - point_to_segment(middle, a, b) for a, b, r in shapes], 0) > -reach]
-    grid = np.array([(i, j, 14 - i - j) for i in range(15) for j in range(15 - i)])
-    weights = (grid + 1 / 3) / 15  # the middles of 120 equal triangles that stand as the whole does
-    depth = np.max([r - point_to_segment(np.einsum("gc,pck->pgk", weights, parts), a, b) for a, b, r in shapes], 0)
-    within = depth > 0
-    share = within.mean(1)
-    keep = share > 0
-    mean = np.divide(np.where(within, depth, 0).sum(1), within.sum(1), where=keep, out=np.zeros(len(parts)))
-    each = float(area(t)) / 4**HALVINGS
-    return [(each * s, m) for s, m in zip(share[keep], mean[keep])]
-
-
-def round_depth(run, x, shapes):
-    """Greatest depth of the cloth in capsules, edges and faces included, and figures of what is inside."""
-    t = x[run.triangles]
-    depth = np.array([r - segment_to_triangle(np.broadcast_to(a, (len(t), 3)), np.broadcast_to(b, (len(t), 3)), t) for a, b, r in shapes])
-    pieces = [piece for k in np.flatnonzero(depth.max(0) > 0) for piece in inside_capsules(t[k], [s for s, d in zip(shapes, depth[:, k]) if d > 0])]
-    return {"depth": max(0.0, float(depth.max())), "figures": depth_figures(pieces)}
-
-
 def one_sphere(run, c, x):
     centre, radius = np.array(c["center_m"], float), float(c["radius_m"])
-    lengths = np.array([sphere_contour(x[t], centre, radius) for t in run.triangles])
-    return {"length": lengths.sum(), "pairs": (lengths > 0).sum(), "cut": (lengths > 0).mean(), "vertex": max(0.0, (radius - norm(x - centre)).max())} | round_depth(
-        run, x, [(centre, centre, radius)])
+    return {"vertex": max(0.0, (radius - norm(x - centre)).max())} | round_figures(x[run.triangles], [(centre, centre, radius)])
 
 
 def one_box(run, c, x):
@@ -80,53 +42,98 @@ def one_box(run, c, x):
     return {"length": lengths.sum(), "cut": met.any(1).mean(), "vertex": max(0.0, -distance(x).min()), "depth": deepest, "figures": depth_figures(pieces)}
 
 
-def capsule_contour(t, capsules):
-    """Length of the contour in a triangle: the border of what is inside, walked by angle from an inner point of each capsule's section."""
-    n = cross(t[1] - t[0], t[2] - t[0])
-    n /= norm(n)
-    e = (t[1] - t[0]) / norm(t[1] - t[0])
-    f = cross(n, e)
-    length = 0.0
-    for k, (a, b, r) in enumerate(capsules):
-        # The deepest point in the plane: the axis's point nearest to it, projected.
-        ha, hb = dot(a - t[0], n), dot(b - t[0], n)
-        s = np.clip(ha / (ha - hb), 0, 1) if ha != hb else 0.5
-        foot = a + s * (b - a)
-        inner = foot - dot(foot - t[0], n) * n
-        if point_to_segment(inner, a, b) >= r:
-            continue
-        angle = np.linspace(0, 2 * np.pi, 2001)
-        way = np.cos(angle)[:, None] * e + np.sin(angle)[:, None] * f
-        low, high = np.zeros(len(angle)), np.full(len(angle), norm(b - a) + 2 * r)
-        for _ in range(30):
-            m = (low + high) / 2
-            inside = point_to_segment(inner + m[:, None] * way, a, b) < r
-            low, high = np.where(inside, m, low), np.where(inside, high, m)
-        border = inner + low[:, None] * way
-        middle = (border[1:] + border[:-1]) / 2
-        kept = np.all([dot(cross(t[(i + 1) % 3] - t[i], middle - t[i]), n) >= 0 for i in range(3)], 0)
-        for other, (a2, b2, r2) in enumerate(capsules):
-            if other != k:
-                kept &= point_to_segment(middle, a2, b2) >= r2
-        length += norm(np.diff(border, axis=0))[kept].sum()
-    return length
-
-
 def capsules_of(c, frame):
     return [(v[:3], v[3:6], v[6]) for v in c["capsules"][min(frame, len(c["capsules"]) - 1)]]
 
 
+FINGERS = ((1, 4), (5, 9), (10, 14), (15, 19), (20, 24))  # first and last joints, in the order of the WebXR Hand Input module
+
+
+def centre_lines(c):
+    """Of each finger of a hand mesh: (joint, point at rest) along the middle of its flesh, the last one half-way on to the tip."""
+    x, weight = np.array(c["position_m"], float), np.zeros((len(c["position_m"]), c["joint_matrix"].shape[1]))
+    for k in range(4):
+        np.add.at(weight, (np.arange(len(x)), c["joint_index"][:, k]), c["joint_weight"][:, k])
+    out = []
+    for first, last in FINGERS:
+        line = [(j, weight[:, j] @ x / weight[:, j].sum()) for j in range(first, last + 1) if weight[:, j].sum() >= 1]
+        if len(line) >= 2:
+            end, middle = line[-1]
+            along = (middle - line[-2][1]) / norm(middle - line[-2][1])
+            ahead = max([0.0] + list((x[weight[:, end] >= 0.5] - middle) @ along))
+            out.append(line + ([(end, middle + ahead / 2 * along)] if ahead > 0 else []))
+    return out
+
+
+def bones_of(c, frame):
+    """Segments along the middle of a hand, one (a, b) each."""
+    if c["shape"] == "capsules":
+        return [(a, b) for a, b, _ in capsules_of(c, frame)]
+    if "lines" not in c:
+        c["lines"] = centre_lines(c)
+    matrix = c["joint_matrix"][min(frame, len(c["joint_matrix"]) - 1)]
+    posed = [[matrix[j, :, :3] @ p + matrix[j, :, 3] for j, p in line] for line in c["lines"]]
+    return [pair for line in posed for pair in zip(line, line[1:])]
+
+
+def vertices_of(c, frame):
+    """Of a mesh: its positions, or for a skinned one the sums of what its joints do with them."""
+    x = np.array(c["position_m"], float)
+    if "joint_matrix" not in c:
+        return x
+    matrix = np.array(c["joint_matrix"][min(frame, len(c["joint_matrix"]) - 1)], float)[c["joint_index"]]
+    each = np.einsum("vkij,vj->vki", matrix[..., :3], x) + matrix[..., 3]
+    return np.einsum("vk,vki->vi", np.array(c["joint_weight"], float), each)
+
+
+def near_pairs(t, faces, reach=0.0):
+    """Pairs of triangles whose boxes are at most `reach` apart in each direction."""
+    (low, high), (face_low, face_high) = ((v.min(-2) - reach / 2, v.max(-2) + reach / 2) for v in (t, faces))
+    return np.nonzero(np.all((low[:, None] <= face_high[None]) & (face_low[None] <= high[:, None]), -1))
+
+
+def mesh_contour(t, faces):
+    a, b = near_pairs(t, faces)
+    met, lengths = pairs_of_triangles(t[a], faces[b])
+    return {"length": lengths.sum(), "pairs": met.sum(), "cut": len(set(a[met])) / len(t)}
+
+
+def inside_mesh(p, faces):
+    """Whether points are inside a closed mesh, by the sum of its solid angles (van Oosterom & Strackee 1983)."""
+    r = faces[None] - p[:, None, None]
+    size = norm(r)
+    a, b, c = r[:, :, 0], r[:, :, 1], r[:, :, 2]
+    below = size.prod(-1) + dot(a, b) * size[..., 2] + dot(b, c) * size[..., 0] + dot(c, a) * size[..., 1]
+    return 2 * np.arctan2(dot(a, cross(b, c)), below).sum(1) > 2 * np.pi
+
+
+def seven_points(t):
+    """Corners and middles of edges in turn, and the middle."""
+    return np.stack([t[:, 0], (t[:, 0] + t[:, 1]) / 2, t[:, 1], (t[:, 1] + t[:, 2]) / 2, t[:, 2], (t[:, 2] + t[:, 0]) / 2, t.mean(1)], 1)
+
+
+def closed_mesh(run, c, x, frame):
+    """A mesh with an inside. What is inside now has gone in: the crossings of its way add up to that."""
+    faces, t = vertices_of(c, frame)[c["triangles"]], x[run.triangles]
+    points = seven_points(t)
+    depth = np.full(points.shape[:2], -np.inf)
+    near = np.flatnonzero(np.all((points.min(1) <= faces.max((0, 1))) & (points.max(1) >= faces.min((0, 1))), -1))
+    for k in near:
+        distance = point_to_triangle(points[k][:, None], faces[None]).min(1)
+        depth[k] = np.where(inside_mesh(points[k], faces), distance, -distance)
+    pieces = [piece for k in near for i in range(6) for piece in clipped(points[k][[i, (i + 1) % 6, 6]], depth[k][[i, (i + 1) % 6, 6]])[1]]
+    vertex = np.full(len(x), -np.inf)
+    for i in range(3):
+        np.maximum.at(vertex, run.triangles[:, i], depth[:, 2 * i])
+    within = vertex > 0
+    return mesh_contour(t, faces) | {
+        "through": run.vertex_area[within].sum() / run.vertex_area.sum(), "through_depth": max(0.0, vertex.max()),
+        "depth": max(0.0, depth.max()), "vertex": max(0.0, vertex.max()), "figures": depth_figures(pieces)}
+
+
 def all_capsules(run, c, x, frame):
     shapes = capsules_of(c, frame)
-    length = 0.0
-    for corners in run.triangles:
-        t = x[corners]
-        middle = t.mean(0)
-        reach = norm(t - middle).max()
-        near = [s for s in shapes if point_to_segment(middle, s[0], s[1]) <= s[2] + reach]
-        if near:
-            length += capsule_contour(t, near)
-    return {"length": length, "vertex": max(0.0, max((r - point_to_segment(x, a, b)).max() for a, b, r in shapes))} | round_depth(run, x, shapes)
+    return {"vertex": max(0.0, max((r - point_to_segment(x, a, b)).max() for a, b, r in shapes))} | round_figures(x[run.triangles], shapes)
 
 
 class Mesh:
@@ -175,13 +182,11 @@ class Mesh:
         self.before, self.contour_before = x, contour
 
     def figures(self, run, x):
-        t = x[run.triangles]
-        met, lengths = pairs_of_triangles(t[:, None], np.broadcast_to(self.faces, (len(t),) + self.faces.shape))
-        self.step(x, lengths.sum() > 0)
+        contour = mesh_contour(x[run.triangles], self.faces)
+        self.step(x, contour["length"] > 0)
         through = self.counts != 0
         depth = point_to_triangle(x[through][:, None], self.faces[None]).min(1).max() if through.any() else 0.0
-        return {"length": lengths.sum(), "pairs": met.sum(), "cut": met.any(1).mean(),
-                "through": run.vertex_area[through].sum() / run.vertex_area.sum(), "through_depth": depth}
+        return contour | {"through": run.vertex_area[through].sum() / run.vertex_area.sum(), "through_depth": depth}
 
 
 def sampled(run, k, c, frame, mesh):
@@ -192,11 +197,13 @@ def sampled(run, k, c, frame, mesh):
         return one_sphere(run, c, x)
     if c["shape"] == "box":
         return one_box(run, c, x)
-    return all_capsules(run, c, x, frame) if c["shape"] == "capsules" else mesh[k].figures(run, x)
+    if c["shape"] == "capsules":
+        return all_capsules(run, c, x, frame)
+    return mesh[k].figures(run, x) if k in mesh else closed_mesh(run, c, x, frame)
 
 
 def contact_series(run):
-    mesh = {k: Mesh(run, c) for k, c in enumerate(run.colliders) if c["shape"] == "mesh"}
+    mesh = {k: Mesh(run, c) for k, c in enumerate(run.colliders) if c["shape"] == "mesh" and not c["closed"]}
     frames = [[sampled(run, k, c, f, mesh) for k, c in enumerate(run.colliders)] for f in range(len(run.time))]
 
     def over(key, combine):

@@ -128,35 +128,6 @@ def depth_figures(pieces):
     return whole, sum(a * d for a, d in pieces) / whole, pieces[int(np.argmax(below >= 0.99 * whole))][1]
 
 
-def sphere_contour(t, centre, radius):
-    """Length of a sphere's circle in the plane of a triangle that lies in it: one interval of angles a half-plane."""
-    n = cross(t[1] - t[0], t[2] - t[0])
-    n = n / norm(n)
-    height = dot(centre - t[0], n)
-    if abs(height) >= radius:
-        return 0.0
-    r, middle = np.sqrt(radius**2 - height**2), centre - height * n
-    x = (t[1] - t[0]) / norm(t[1] - t[0])
-    y = cross(n, x)
-    cuts = {0.0, 2 * np.pi}
-    sides = []
-    for i in range(3):
-        inward = cross(n, t[(i + 1) % 3] - t[i])
-        inward = inward / norm(inward)
-        away, a, b = dot(middle - t[i], inward), dot(x, inward), dot(y, inward)
-        sides.append((away, a, b))  # inside: away + r (a cos + b sin) >= 0
-        if abs(away) < r:
-            turn, half = np.arctan2(b, a), np.arccos(-away / r)
-            cuts |= {(turn + half) % (2 * np.pi), (turn - half) % (2 * np.pi)}
-    cuts = sorted(cuts)
-    inside = 0.0
-    for low, high in zip(cuts, cuts[1:]):
-        m = (low + high) / 2
-        if all(away + r * (a * np.cos(m) + b * np.sin(m)) >= 0 for away, a, b in sides):
-            inside += high - low
-    return float(r * inside)
-
-
 def box_triangles(attributes):
     """The 12 triangles of a box, and its signed distance."""
     centre, half = np.array(attributes["center_m"]), np.array(attributes["half_extent_m"])

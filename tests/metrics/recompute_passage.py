@@ -5,7 +5,7 @@ towards the side. Between frames everything moves in straight lines, so that is 
 """
 import numpy as np
 
-from recompute_contact import capsules_of
+from recompute_contact import bones_of, capsules_of, near_pairs, vertices_of
 from recompute_geometry import (box_triangles, cross, dot, norm, point_to_segment, point_to_triangle, segment_in_triangle, segment_to_segment,
                                 segment_to_triangle, triangle_to_triangle)
 
@@ -25,10 +25,16 @@ def nearest_distance(run, c, frame, x):
         faces, distance = box_triangles(c)
         vertices = distance(x)
     else:
-        faces = np.array(c["position_m"], float)[c["triangles"]]
-        vertices = point_to_triangle(x[:, None], faces[None]).min(1)
-    between = triangle_to_triangle(t[:, None], np.broadcast_to(faces, (len(t),) + faces.shape)).min(1)
-    return vertices, np.minimum(vertices[run.triangles].min(1), between)
+        # Farther than the reach it does not matter how far.
+        faces = vertices_of(c, frame)[c["triangles"]]
+        vertices = np.full(len(x), np.inf)
+        near = np.flatnonzero(np.all((x >= faces.min((0, 1)) - c["reach_m"]) & (x <= faces.max((0, 1)) + c["reach_m"]), -1))
+        for k in near:
+            vertices[k] = point_to_triangle(x[k], faces).min()
+    out = vertices[run.triangles].min(1)
+    a, b = near_pairs(t, faces, 2 * c["reach_m"])
+    np.minimum.at(out, a, triangle_to_triangle(t[a], faces[b]))
+    return vertices, out
 
 
 def surface_step(c, frame, p):
@@ -69,7 +75,7 @@ def hooked(run, c):
     out = []
     for f, x in enumerate(run.x):
         t = x[run.triangles]
-        out.append(sum(segment_in_triangle(np.broadcast_to(a, (len(t), 3)), np.broadcast_to(b, (len(t), 3)), t)[0].any() for a, b, _ in capsules_of(c, f)))
+        out.append(sum(segment_in_triangle(np.broadcast_to(a, (len(t), 3)), np.broadcast_to(b, (len(t), 3)), t)[0].any() for a, b in bones_of(c, f)))
     return np.array(out, float)
 
 
@@ -157,9 +163,9 @@ class Surface:
         return self.between != (self.odd[links[:, 0]] != self.odd[links[:, 1]])
 
 
-def chains_of(capsules):
+def chains_of(bones):
     """Bones that are joined end to end, and the free ends of each chain."""
-    places = [[tuple(c[0]), tuple(c[1])] for c in capsules]
+    places = [[tuple(a), tuple(b)] for a, b in bones]
     used = [k for k, (a, b) in enumerate(places) if a != b]
     groups = []
     for k in used:
@@ -181,25 +187,33 @@ def samples_and_links(run):
     return cells, np.concatenate([sides, middles]), np.concatenate([run.vertex_area, np.full(len(cells), cell)])
 
 
+def crosses(c, f, a, b):
+    """Whether segments cross a hand."""
+    if c["shape"] == "capsules":
+        return np.any([segment_to_segment(a, b, np.broadcast_to(s, a.shape), np.broadcast_to(e, a.shape)) < r for s, e, r in capsules_of(c, f)], 0)
+    faces = vertices_of(c, f)[c["triangles"]]
+    return np.array([segment_in_triangle(p, q, faces)[0].any() for p, q in zip(a, b)])
+
+
 def wrong_side(run, c, contours):
     cells, links, weights = samples_and_links(run)
     samples = np.concatenate([run.x, run.x[:, cells].mean(2)], 1)
-    first = capsules_of(c, 0)
+    first = bones_of(c, 0)
     sheet = cross(run.u, run.v)
-    middle = np.mean([(a + b) / 2 for a, b, _ in first], 0)
+    middle = np.mean([(a + b) / 2 for a, b in first], 0)
     centre = run.start.mean(0)
     side = sheet / norm(sheet) * (-1 if dot(sheet, middle - centre) < 0 else 1)
     reach = 4 * (run.width + run.height + norm(middle - centre))
 
     def out(f, k, e):
-        a, b, _ = capsules_of(c, f)[k]
+        a, b = bones_of(c, f)[k]
         tip, other = (a, b) if e == 0 else (b, a)
         return tip, reach * (tip - other) / norm(tip - other)
     n = samples.shape[1]
     wrong, laid = np.zeros((len(run.x), n), bool), np.zeros((len(run.x), n), bool)
     for group, free in chains_of(first):
-        wake = Surface(lambda f, g=group: [capsules_of(c, f)[k][:2] for k in g], n)
-        endless = Surface(lambda f, g=group, e=free: [capsules_of(c, f)[k][:2] for k in g] + [(t, t + o) for t, o in (out(f, *at) for at in e)], n)
+        wake = Surface(lambda f, g=group: [bones_of(c, f)[k] for k in g], n)
+        endless = Surface(lambda f, g=group, e=free: [bones_of(c, f)[k] for k in g] + [(t, t + o) for t, o in (out(f, *at) for at in e)], n)
         rounded, shown = np.zeros(n, int), np.zeros(len(links), bool)
         for f in range(1, len(run.x)):
             p, q = samples[f - 1], samples[f]
@@ -212,7 +226,7 @@ def wrong_side(run, c, contours):
             odd_end = wake.odd[links].any(1)
             if not evidence and (torn & odd_end).any():
                 a, b = q[links[:, 0]], q[links[:, 1]]
-                now = odd_end & np.any([segment_to_segment(a, b, np.broadcast_to(s, a.shape), np.broadcast_to(e, a.shape)) < r for s, e, r in capsules_of(c, f)], 0)
+                now = odd_end & crosses(c, f, a, b)
             shown = torn & (shown | now)
             through = np.zeros(n, bool)
             np.logical_or.at(through, links[shown].ravel(), True)
@@ -231,7 +245,7 @@ def passage_series(run, computed):
     out = dict(zip(("touching_fraction", "slip_m"), touch(run)))
     if any(c["shape"] not in ("plane", "sphere", "capsules") for c in run.colliders):
         del out["slip_m"]
-    moving = [(k, c) for k, c in enumerate(run.colliders) if c["shape"] == "capsules"]
+    moving = [(k, c) for k, c in enumerate(run.colliders) if c["shape"] == "capsules" or "joint_matrix" in c]
     if moving:
         out["hooked_axes"] = sum(hooked(run, c) for _, c in moving)
         of = [wrong_side(run, c, run.contours[:, k]) for k, c in moving]

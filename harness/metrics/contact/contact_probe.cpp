@@ -92,7 +92,6 @@ struct ContactProbe::State {
   bool history_lost = false, contour_before = false;
   std::optional<MeshObject> mesh;
   std::vector<Capsule> shapes;
-  double resolution_m = 0;
 };
 
 void ContactProbe::State::advance(std::span<const double> positions, bool contour) {
@@ -126,7 +125,7 @@ void ContactProbe::State::probe_mesh(const TriangleMeshView& cloth, ContactSampl
 }
 
 void ContactProbe::State::probe_shapes(const TriangleMeshView& cloth, ContactSample& s) const {
-  const ShapesResult result = shapes_contact(cloth, shapes, resolution_m);
+  const ShapesResult result = shapes_contact(cloth, shapes);
   set(result.contour, s);
   set(result.depth, s);
   double inside = 0, all = 0;
@@ -143,11 +142,10 @@ ContactProbe::ContactProbe(const TriangleMeshView& cloth_at_rest, const Triangle
   state_->mesh.emplace(object, solid);
 }
 
-ContactProbe::ContactProbe(const TriangleMeshView& cloth_at_rest, std::span<const Capsule> shapes, double resolution_m)
+ContactProbe::ContactProbe(const TriangleMeshView& cloth_at_rest, std::span<const Capsule> shapes)
     : state_(std::make_unique<State>(cloth_at_rest)) {
   validate(shapes);
   state_->shapes.assign(shapes.begin(), shapes.end());
-  state_->resolution_m = resolution_m > 0 ? resolution_m : default_resolution_m(shapes);
 }
 
 ContactProbe::~ContactProbe() = default;

@@ -42,8 +42,8 @@ class ContactProbe {
   /// The cloth's rest positions give each vertex its share of area. Copies all the data it needs. Throws Error for bad
   /// indices, numbers that are not finite, or a cloth without area.
   ContactProbe(const TriangleMeshView& cloth_at_rest, const TriangleMeshView& object, Solid solid = Solid::Auto);
-  /// As above; radii must be positive. `resolution_m` as in shapes_contact, by default default_resolution_m.
-  ContactProbe(const TriangleMeshView& cloth_at_rest, std::span<const Capsule> shapes, double resolution_m = 0);
+  /// As above; radii must be positive.
+  ContactProbe(const TriangleMeshView& cloth_at_rest, std::span<const Capsule> shapes);
   ~ContactProbe();
   ContactProbe(ContactProbe&&) noexcept;
   ContactProbe& operator=(ContactProbe&&) noexcept;

@@ -3,44 +3,23 @@
 
 #include "metrics/contact/contour.hpp"
 #include "metrics/contact/depth.hpp"
+#include "metrics/contact/section.hpp"
 
 namespace clothbench::contact {
 
-/// All points within `radius_m` of the segment a-b; a sphere if a = b.
-struct Capsule {
-  Point<3> a, b;
-  double radius_m;
-};
-
-inline Capsule sphere(const Point<3>& centre, double radius_m) { return {centre, centre, radius_m}; }
-
-/// Signed distance [m] to the surface, negative inside; exact.
-double signed_distance(const Point<3>& p, const Capsule&);
-
 struct ShapesResult {
-  Contour contour;           ///< pairs: (cloth triangle, capsule) that contain part of the contour
-  Depth depth;               ///< in the union: the greatest depth in any single capsule
+  Contour contour;  ///< pairs: (cloth triangle, capsule) that contain part of the contour
+  Depth depth;      ///< in the union: the depth of a point is that in the single capsule in which it is deepest
   std::vector<bool> inside;  ///< one per vertex
 };
 
-/// Contour and depth of a cloth in a union of capsules, from their signed distance instead of a tessellation.
+/// Contour and depth of a cloth in a union of capsules, from the plane sections of the capsules (TriangleSection).
 ///
-/// Each edge of a cloth triangle is halved until no edge is longer than `resolution_m`. A part is discarded as soon as
-/// the distance at its centre proves it outside (the distance is 1-Lipschitz). A part at the contour is halved up to
-/// six times more, until its contour changes by less than 0.5 %. In the smallest parts the distance is taken as linear,
-/// so the errors of area and mean are quadratic in the resolution. At most kMaxHalvings subdivisions to the resolution
-/// bound the work for a cloth that has been torn apart.
-///
-/// The greatest depth is exact: the radius less the distance between a triangle and the capsule's segment. The contour
-/// with a sphere alone is exact too: arcs of circles (contour_with_sphere). A contour with capsules that fits between
-/// the corners of the last parts, shorter than a hundredth of the radius, may be missed.
-ShapesResult shapes_contact(const TriangleMeshView& cloth, std::span<const Capsule> shapes, double resolution_m);
-inline constexpr int kMaxHalvings = 7;
-
-/// Length [m] of the curve in which a triangle and a sphere (a capsule with a = b) cross, in closed form.
-double contour_with_sphere(const Simplex<3>& triangle, const Capsule& sphere);
-
-/// An eighth of the smallest radius.
-double default_resolution_m(std::span<const Capsule> shapes);
+/// The points deeper than d are those inside of the same capsules with radii less by d. So the mean depth is the
+/// integral of that area over d, by Gauss's rule of kDepthNodes points for each triangle, over the area at d = 0; and
+/// the 99th percentile is the d at which a hundredth of the area at 0 is left. Contour, greatest depth and area are
+/// correct to 1e-9 m and 1e-9 m2, the percentile to 1e-9 m, and the mean to a thousandth of itself.
+ShapesResult shapes_contact(const TriangleMeshView& cloth, std::span<const Capsule> shapes);
+inline constexpr int kDepthNodes = 8;
 
 }  // namespace clothbench::contact

@@ -1,5 +1,5 @@
 #pragma once
-#include "metrics/contact/shapes.hpp"
+#include "metrics/contact/section.hpp"
 #include "metrics/contact/triangle_mesh.hpp"
 
 namespace clothbench::contact {
