@@ -251,7 +251,7 @@ TEST(ContactScene, ACurtainHalfWayThroughAPatchHasTunnelledByHalf) {
 
 TEST(ContactScene, AHandPushedThroughAStillClothTunnelsAndComesBack) {
   const ScratchFolder folder;
-  const Scene scene = load_scene("paper/hand-push");
+  const Scene scene = load_scene("paper/hand-push", {"time.frame_rate_hz=24"});
   const auto start = std::chrono::steady_clock::now();
   const RunRecord r = run(scene, prescribed([](int, std::vector<double>&) {}), folder);
   const double frame_s =
