@@ -281,6 +281,11 @@ typedef struct ClothbenchPlugin {
   int32_t (*frames_in_flight)(void*);
   int32_t (*submit)(void*, const ClothbenchFrame*);
   int32_t (*finish)(void*);
+
+  /* The first libraries of version 2 end above this line. */
+  /* Engine from elsewhere that the solver wraps, in its authors' spelling: "NvCloth". A report puts the solver beside
+   * published results of the same engine. NULL: none. */
+  const char* engine;
 } ClothbenchPlugin;
 
 #define CLOTHBENCH_PLUGIN_HEADER                                                                                 \

@@ -85,6 +85,8 @@ class Version2(unittest.TestCase):
                 ["Paper GPU", "driver 7", "CUDA 1.0", True],
             )
             self.assertEqual(environment["gpu_properties"], {"cores": 3})
+            self.assertEqual(environment["plugin"]["engine"], "Engine")
+            self.assertNotIn("frame_cpu_s", f["timing"], "a solver on a GPU")
             n = 24 * 64
             self.assertEqual(
                 header["plan"]["buffers"],

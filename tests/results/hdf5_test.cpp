@@ -33,6 +33,7 @@ class Hdf5 : public ::testing::Test {
 TEST_F(Hdf5, RoundTrip) {
   RunRecord r = sample_run();
   r.trials[2].frame_wall_s.resize(3);  // a trial may stop early
+  r.trials[2].frame_cpu_s.resize(3);
   r.trials[2].frame_device_s.resize(3);
   for (auto* s : {&r.trials[2].stage_device_s, &r.trials[2].stage_read_B, &r.trials[2].stage_write_B}) s->resize(6);
   write_hdf5(dir_ / "x.h5", r);
