@@ -52,7 +52,7 @@ if [[ -z $parts || $parts == *untimed* ]]; then
   part margins study solvers/plugin/studies/peers-margins.json $quick
   part moduli moduli nvcloth jolt bullet-soft ${quick:+--no-sweep}
   part friction friction nvcloth jolt bullet-soft
+  part stability study stability --quick "${three[@]}" # the whole of it takes hours: scripts/stability.sh
   part contact study contact --seed 1 --count "$([ -n "$quick" ] && echo 2 || echo 18)" $quick "${three[@]}"
   part penetration study penetration $quick --trials 1 "${three[@]}"
-  part stability study stability $quick "${three[@]}"
 fi

@@ -301,13 +301,15 @@ Table contact_table(const ContactSetUp& s) {
       columns.push_back({"", shown.head, [&](auto& r) { return shown_text(*r.run, shown); }, {}, shown.unit});
   }
   const std::vector<const RunRecord*> runs = runs_of(rows, &ContactRow::run);
-  columns.add({{"", "wall / GPU [ms]",
-                [&](auto& r) {
-                  const std::string times = paired(1e3 * summary_value(*r.run, "frame_wall_median_s"),
-                                                   1e3 * summary_value(*r.run, "frame_device_median_s"), " / ", 3);
-                  return times == "–" ? times : times + frames_mark(*r.run, runs);
-                }},
-               {"", "verdict", [](auto& r) { return verdict(*r.run); }}});
+  const auto times_of = [&](auto& r) {
+    const std::string times = paired(1e3 * summary_value(*r.run, "frame_wall_median_s"),
+                                     1e3 * summary_value(*r.run, "frame_device_median_s"), " / ", 3);
+    return times == "–" ? times : times + frames_mark(*r.run, runs);
+  };
+  // Times that are withheld leave their column, and the note says why.
+  if (std::any_of(rows.begin(), rows.end(), [&](auto& r) { return times_of(r) != "–" || !r.run->withheld.empty(); }))
+    columns.push_back({"", "wall / GPU [ms]", times_of});
+  columns.push_back({"", "verdict", [](auto& r) { return verdict(*r.run); }});
   return columns.table({s.title, with_withheld("", runs, names), {}}, rows);
 }
 

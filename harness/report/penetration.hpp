@@ -69,7 +69,8 @@ Table verdict_table(const std::vector<ContactSetUp>&);
 /// Rows: scene x solver; columns: penetration and cost. A column without any value is left out.
 Table contact_table(const ContactSetUp&);
 
-/// The same rows; columns: bytes, memory, dispatches, time to load.
+/// The same rows; columns: bytes, memory, dispatches, time to load, as far as any run has them; without any only the
+/// three that name the run.
 Table cost_table(const ContactSetUp&);
 
 /// Every broken bound with its value; only the header if there is none.

@@ -149,7 +149,10 @@ std::vector<Table> penetration_tables(const Facts& f) {
   for (Table& t : filled({leak_table(speed_sweeps(f.ups)), pulled_strip_table(f.ups),
                           popping_table(popping_pairs(f.ups)), turned_table(f.turned)}))
     out.push_back(std::move(t));
-  for (const ContactSetUp& u : f.ups) out.insert(out.end(), {contact_table(u), in_full(cost_table(u))});
+  for (const ContactSetUp& u : f.ups) {
+    out.push_back(contact_table(u));
+    if (Table costs = cost_table(u); costs.rows.front().size() > 3) out.push_back(in_full(std::move(costs)));
+  }
   for (Table& t : filled({failed_expectations_table(f.ups), room_table(f.rooms)})) out.push_back(std::move(t));
   return out;
 }
