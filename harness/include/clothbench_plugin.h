@@ -234,7 +234,7 @@ typedef struct ClothbenchPlugin {
   /* Features. A scene is run if the solver supports or ignores all that it needs, as if it did not need what is
    * ignored; a scene that needs any other gives a row `unsupported`. */
   uint32_t supports, ignores;
-  int32_t time_order;         /* order of accuracy in the time step */
+  int32_t time_order; /* order of accuracy in the time step */
   uint32_t setting_count;
   const ClothbenchSetting* settings;
 

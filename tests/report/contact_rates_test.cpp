@@ -96,8 +96,9 @@ TEST(ContactRates, WorstIsWhatDidNotEndThenTheLongestContour) {
   EXPECT_EQ(worst[2].run->header.scene, "contact-4-desk");
   const auto j = contact_rates_json(runs);
   EXPECT_EQ(j["worst"][0]["scene"], "contact-7-sweep");
-  EXPECT_NE(contact_rates_csv(runs).find("solver,setting,kind,speed_m_per_s,assets,held_at_mm,passed,drawn,unsupported,not_ended,"
-                                         "rate_low,rate_high"),
+  EXPECT_NE(contact_rates_csv(runs).find(
+                "solver,setting,kind,speed_m_per_s,assets,held_at_mm,passed,drawn,unsupported,not_ended,"
+                "rate_low,rate_high"),
             std::string::npos);
 }
 
