@@ -55,7 +55,7 @@ for engine in "$@"; do
     *) echo "scripts/peers.sh: $engine: expected nvcloth or jolt" >&2; exit 2 ;;
   esac
   cmake -S "solvers/plugin/$engine" -B "build/peers/$engine" "-D$variable=$root" >/dev/null
-  cmake --build "build/peers/$engine" -j "$JOBS" --target "clothbench_$engine" "${engine}_peer_time" >"build/peers/$engine.log" ||
+  cmake --build "build/peers/$engine" -j "$JOBS" --target "clothbench_$engine" >"build/peers/$engine.log" ||
     { tail -20 "build/peers/$engine.log" >&2; exit 1; }
   plugin=build/peers/$engine/libclothbench_$engine.so
   echo "built: $plugin"
