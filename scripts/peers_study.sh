@@ -52,11 +52,11 @@ fi
 if [[ -z $parts || $parts == *untimed* ]]; then
   part friction friction nvcloth jolt bullet-soft
   part moduli moduli nvcloth jolt bullet-soft ${quick:+--no-sweep}
+  part margins study solvers/plugin/studies/peers-margins.json $quick
   # The whole of these takes hours: scripts/stability.sh, study contact --count 108.
   part stability study stability --quick --jobs 2 "${three[@]}"
-  part contact study contact --seed 1 --count "$([ -n "$quick" ] && echo 2 || echo 9)" $quick --jobs 2 "${three[@]}"
   part penetration study penetration --quick --trials 1 "${three[@]}"
-  part margins study solvers/plugin/studies/peers-margins.json $quick
+  part contact study contact --seed 1 --count "$([ -n "$quick" ] && echo 2 || echo 9)" $quick --jobs 2 "${three[@]}"
 fi
 # take STUDY FILE NAME: a report's file as NAME; paths of plugins are those in this tree.
 take() {
