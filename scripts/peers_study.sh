@@ -56,7 +56,7 @@ if [[ -z $parts || $parts == *untimed* ]]; then
   # The whole of these takes hours: scripts/stability.sh, study contact --count 108.
   part stability study stability --quick --jobs 2 "${three[@]}"
   part penetration study penetration --quick --trials 1 "${three[@]}"
-  part contact study contact --seed 1 --count "$([ -n "$quick" ] && echo 2 || echo 9)" $quick --jobs 2 "${three[@]}"
+  part contact study contact --quick --seed 1 --count "$([ -n "$quick" ] && echo 2 || echo 9)" --jobs 2 "${three[@]}"
 fi
 # take STUDY FILE NAME: a report's file as NAME; paths of plugins are those in this tree.
 take() {

@@ -220,8 +220,11 @@ std::pair<double, double> held_at_m(const RunRecord& c) {
       stated.insert(m.value("collider", ""));
       add(m.value("margin_m", json()));
     }
+  // Colliders have the names of their types there, or of what they stand for; a list as long as the scene's is of all.
   const json scenario = scenario_of(c);
-  if (filled(scenario, "colliders"))
+  const bool all = filled(c.header.plan, "contact_margins") && filled(scenario, "colliders") &&
+                   c.header.plan["contact_margins"].size() >= scenario["colliders"].size();
+  if (filled(scenario, "colliders") && !all)
     for (const json& collider : scenario["colliders"])
       if (collider.is_object() && !stated.contains(collider.value("type", ""))) add(collider.value("margin_m", json()));
   return out;

@@ -236,7 +236,7 @@ TEST(Penetration, TablesSayWhereTheSolverHoldsTheCloth) {
   std::vector<RunRecord> runs = {of_scene(desk_run("xpbd", "default", ""), "box", scenario),
                                  of_scene(desk_run("other", "default", ""), "box", scenario),
                                  of_scene(desk_run("none", "default", ""), "box", scenario)};
-  runs[1].header.plan["contact_margins"] = {{{"collider", "box"}, {"margin_m", 0.02}}};
+  runs[1].header.plan["contact_margins"] = {{{"collider", "named otherwise"}, {"margin_m", 0.02}}};
   runs[2].outcome.status = "unsupported";
   EXPECT_EQ(held_at(runs[0]), "4") << "the scene's margin";
   EXPECT_EQ(held_at(runs[1]), "20") << "what the solver states";
