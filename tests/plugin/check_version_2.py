@@ -52,6 +52,9 @@ class Version2(unittest.TestCase):
             self.assertEqual(self.command(*words), 0, self.text)
             with self.stored("gravity__example-xpbd__default") as f:
                 self.assertEqual(f["outcome"].attrs["status"], "ok")
+                cpu, wall = f["timing/frame_cpu_s"][...], f["timing/frame_wall_s"][...]
+                self.assertTrue((cpu > 0).all(), "a solver on the host")
+                self.assertLess(cpu.sum(), 1.1 * wall.sum() + 1e-3, "it has one thread")
                 positions.append(f["trajectory/position"][...])
         self.assertTrue(numpy.array_equal(positions[0], positions[1]))
 
