@@ -256,7 +256,7 @@ TEST(Tables, APluginStandsBelowThePublishedRowOfItsEngine) {
   EXPECT_EQ(names, (std::vector<std::string>{"solver", "published: Unity Cloth", "peer", "published: PBD single-sided",
                                              "published: PBD double-sided", "ballistic", "bullet-soft", "other",
                                              "plain", "xpbd", "xpbd"}));
-  EXPECT_NE(t.note.find("peer: It is open source"), std::string::npos) << t.note;
+  EXPECT_NE(t.note.find("peer: the engine behind Unity Cloth"), std::string::npos) << t.note;
   EXPECT_NE(t.note.find("not Unity Cloth"), std::string::npos) << t.note;
   EXPECT_EQ(table_of(study(), "Table 3").note.find("not Unity Cloth"), std::string::npos) << "no such plugin";
   EXPECT_EQ(entry(table_of(runs, "CPU time"), "peer", "single", "8²"), "0.900");
