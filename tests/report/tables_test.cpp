@@ -280,6 +280,8 @@ TEST(Tables, PluginsAreMarkedInTablesAndDataAlike) {
   EXPECT_EQ(
       marks.data({{"series", {{{"label", "jolt a=1"}, {"scene", "jolt"}}}}, {"not_ranked", {{"jolt", "why"}}}}),
       nlohmann::json({{"series", {{{"label", "jolt† a=1"}, {"scene", "jolt"}}}}, {"not_ranked", {{"jolt†", "why"}}}}));
+  EXPECT_NE(t.latex().find("jolt$^\\dagger$ x=1"), std::string::npos) << t.latex();
+  EXPECT_EQ(t.latex().find("†"), std::string::npos) << "LaTeX does not know it without a package";
   const PluginMarks none(study());
   EXPECT_EQ(none.text("jolt"), "jolt");
   EXPECT_NE(headline(runs, Format::Markdown).find("jolt† is a plugin"), std::string::npos);
