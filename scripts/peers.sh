@@ -1,10 +1,15 @@
 #!/usr/bin/env bash
 # Builds the plugins of NvCloth and Jolt from checkouts below DIR and holds them to clothbench's conformance.
 #   scripts/peers.sh DIR [nvcloth | jolt]
+#   scripts/peers.sh --study OUT [timed | untimed] [--quick]     their studies, see scripts/peers_study.sh
 # DIR/NvCloth and DIR/JoltPhysics are used as they are, and a line says if one is not at the commit named here; a missing
 # one is cloned at that commit from NVCLOTH_URL or JOLT_URL (default: GitHub). Plugins: build/peers. Needs git, CMake and, for
 # conformance, build/release/clothbench (scripts/run.sh builds it). JOBS: see scripts/common.sh.
 set -euo pipefail
+if [ "${1:-}" = --study ]; then
+  shift
+  exec "$(dirname "$0")/peers_study.sh" "$@"
+fi
 case "${1:-}" in
   '' | -*) echo "usage: scripts/peers.sh DIR [nvcloth | jolt]" >&2; exit 2 ;;
 esac
@@ -50,7 +55,7 @@ for engine in "$@"; do
     *) echo "scripts/peers.sh: $engine: expected nvcloth or jolt" >&2; exit 2 ;;
   esac
   cmake -S "solvers/plugin/$engine" -B "build/peers/$engine" "-D$variable=$root" >/dev/null
-  cmake --build "build/peers/$engine" -j "$JOBS" --target "clothbench_$engine" "${engine}_peer_time" >"build/peers/$engine.log" ||
+  cmake --build "build/peers/$engine" -j "$JOBS" --target "clothbench_$engine" >"build/peers/$engine.log" ||
     { tail -20 "build/peers/$engine.log" >&2; exit 1; }
   plugin=build/peers/$engine/libclothbench_$engine.so
   echo "built: $plugin"

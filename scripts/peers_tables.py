@@ -1,107 +1,146 @@
 #!/usr/bin/env python3
-"""The tables of solvers/plugin/PEERS.md, in Markdown.
+"""The tables of the peers' studies (scripts/peers.sh --study), in Markdown.
 
-    scripts/peers_tables.py hang PEER_TIME [--sizes 32,64,128] [--seeds 5] PLUGIN.so[,setting=value…]…
-    scripts/peers_tables.py contact CLOTHBENCH [--scenes contact/box,…] SOLVER[,setting=value…]…
+    scripts/peers_tables.py FOLDER [--check] DOCUMENT…
 
-hang: thread CPU time of a frame [ms] and greatest stretch of the last second [%] of `validation/hang`, measured by peer_time
-(solvers/plugin/peer_time.cpp, built beside each plugin): medians over seeds, with the lowest and the highest in brackets.
+Fills the DOCUMENTs between marks such as <!-- peers hang begin --> and <!-- peers hang end -->; --check only compares. FOLDER
+holds what it reads, results/reference/peers:
 
-contact: for each solver and scene the distance at which it holds the cloth [mm], the greatest length of the contour along which
-the cloth passes through colliders [m], the greatest depth [mm] and the share of vertices that went through [%]. "unsupported"
-where the solver cannot run the scene.
+hang (hang.csv): CPU time of a frame [ms] and greatest stretch of the last second [%], medians over the sheets of peers-hang,
+with the lowest and the highest in brackets.
+
+margins (margins.json): for each solver and scene of peers-margins the greatest length of the contour along which the cloth
+passes through colliders [m], the greatest depth [mm] and the share of vertices that went through [%], by the distance [mm] at
+which the solver holds the cloth.
+
+contact (contact.csv): scenes of `study contact` that a solver passes, of those drawn, by kind.
+
+stability (stability.csv): runs of `study stability --quick` by grade.
 """
 import argparse
+import csv
 import json
-import os
 import pathlib
 import statistics
-import subprocess
 import sys
-import tempfile
-
-def run(clothbench, solver, scene, out):
-    """Summary of a run without trials; None where the solver cannot run the scene."""
-    import h5py  # not for `hang`, which reads no files
-
-    name, *settings = solver.split(",")
-    command = [clothbench, "run", scene, "--solver", name, "--trials", "0", "--out", out]
-    for setting in settings:
-        command += ["--set", "solver." + setting]
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    (file,) = list(pathlib.Path(out).glob("*.h5")) or sys.exit(done.stdout)
-    with h5py.File(file) as f:
-        outcome = dict(f["outcome"].attrs)
-        if outcome["status"] == "unsupported":
-            return None
-        if outcome["status"] != "ok":
-            sys.exit(f"{solver} on {scene}: {outcome['status']} {outcome['message']}")
-        summary = dict(f["summary"].attrs)
-        summary["margins"] = [m["margin_m"] for m in (json.loads(f["header_json"][0])["plan"] or {}).get("contact_margins", [])]
-        return summary
 
 
-def measured(peer_time, plugin, size, seed):
-    """CPU time of a frame [ms] and greatest stretch [%]."""
-    library, *settings = plugin.split(",")
-    command = [peer_time, library, str(size), str(seed), *settings]
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
-    if done.returncode != 0:
-        sys.exit(done.stderr)
-    return [float(x) for x in done.stdout.split()]
+def number(text):
+    return float(text) if text not in ("", None) else float("nan")
 
 
-def spread(values, digits):
-    return f"{statistics.median(values):.{digits}g} ({min(values):.{digits}g}–{max(values):.{digits}g})"
+def rows_of(path):
+    with open(path, encoding="utf-8", newline="") as f:
+        return list(csv.DictReader(f))
 
 
-def label(solver):
-    name, *settings = solver.split(",")
-    return " ".join([pathlib.Path(name).stem.replace("libclothbench_", ""), *settings])
+def label(row):
+    return row["solver"] if row["setting"] in ("", "default") else f"{row['solver']} {row['setting']}"
 
 
-def hang(a):
-    sizes = [int(n) for n in a.sizes.split(",")]
-    print("| solver | " + " | ".join(f"{n}²: ms | {n}²: stretch %" for n in sizes) + " |")
-    print("|---|" + "--:|" * (2 * len(sizes)))
-    for solver in a.solver:
-        cells = []
-        for size in sizes:
-            found = [measured(a.program, solver, size, seed) for seed in range(a.seeds)]
-            cells += [spread(list(column), 2) for column in zip(*found)]
-        print(f"| {label(solver)} | " + " | ".join(cells) + " |", flush=True)
+def distinct(values):
+    return list(dict.fromkeys(values))
 
 
-def contact(a):
-    scenes = a.scenes.split(",")
-    print("| solver | holds at | " + " | ".join(scenes) + " |")
-    print("|---|--:|" + "--:|" * len(scenes))
-    for solver in a.solver:
-        cells, margins = [], set()
+def markdown(head, rows):
+    lines = [head, *rows]
+    text = ["| " + " | ".join(row) + " |" for row in lines]
+    return "\n".join([text[0], "|---|" + "--:|" * (len(head) - 1), *text[1:]])
+
+
+def spread(values):
+    texts = [f"{v:.0f}" if v >= 100 else f"{v:.2g}" for v in (statistics.median(values), min(values), max(values))]
+    return texts[0] if len(values) == 1 else f"{texts[0]} ({texts[1]}–{texts[2]})"
+
+
+def hang(folder):
+    rows = [r for r in rows_of(folder / "hang.csv") if r["status"] == "ok"]
+    sizes = sorted({int(r["grid_x"]) for r in rows})
+    leading = lambda setting: float(setting.split()[0]) if setting[:1].isdigit() else 0  # "300 Hz" before "1200 Hz"
+    order = sorted(distinct((r["solver"], r["setting"]) for r in rows), key=lambda k: (k[0], leading(k[1])))
+    out = []
+    for solver, setting in order:
+        cells = [label({"solver": solver, "setting": setting})]
+        for n in sizes:
+            mine = [r for r in rows if (r["solver"], r["setting"]) == (solver, setting) and int(r["grid_x"]) == n]
+            times = [1e3 * number(r["frame_cpu_median_s"]) for r in mine]
+            stretch = [100 * number(r["stretch_max_last_second"]) for r in mine]
+            cells += [spread(v) if v and not any(x != x for x in v) else "–" for v in (times, stretch)]
+        out.append(cells)
+    return markdown(["solver"] + [f"{n}²: {what}" for n in sizes for what in ("ms", "stretch %")], out)
+
+
+def margins(folder):
+    rows = json.loads((folder / "margins.json").read_text(encoding="utf-8"))["runs"]
+    scenes = distinct(r["scene"] for r in rows)
+    out = []
+    for name in sorted(distinct(label(r) for r in rows)):
+        mine = {r["scene"]: r for r in rows if label(r) == name}
+        held = sorted({round(1e3 * r["held_at_most_m"], 3) for r in mine.values() if r["held_at_most_m"] is not None})
+        cells = [name, ", ".join(f"{h:g}" for h in held) + " mm"]
         for scene in scenes:
-            with tempfile.TemporaryDirectory() as out:
-                found = run(a.program, solver, scene, out)
-            if found is None:
-                cells.append("unsupported")
+            r = mine.get(scene)
+            if r is None or r["status"] != "ok":
+                cells.append("–" if r is None else r["status"])
                 continue
-            margins.update(round(1000 * m, 3) for m in found["margins"])
-            numbers = (found["contact_length_max_m"], 1000 * found["depth_max_m"], 100 * found["tunnelled_fraction_max"])
-            cells.append(", ".join("–" if x != x else f"{x:.2g}{unit}" for x, unit in zip(numbers, (" m", " mm", " %"))))
-        held = " to ".join(f"{m:g}" for m in sorted({min(margins), max(margins)})) if margins else "–"
-        print(f"| {label(solver)} | {held} mm | " + " | ".join(cells) + " |", flush=True)
+            values = ((r["contact_length_max_m"], 1, " m"), (r["depth_max_m"], 1e3, " mm"), (r["tunnelled_fraction_max"], 100, " %"))
+            cells.append(", ".join("–" if v is None else f"{factor * v:.2g}{unit}" for v, factor, unit in values))
+        out.append(cells)
+    return markdown(["solver", "holds at", *scenes], out)
+
+
+def contact(folder):
+    rows = [r for r in rows_of(folder / "contact.csv") if r["speed_m_per_s"] == "all"]
+    kinds = distinct(r["kind"] for r in rows)
+    out = []
+    for name in sorted(distinct(label(r) for r in rows)):
+        mine = {r["kind"]: r for r in rows if label(r) == name}
+        held = next((r["held_at_mm"] for r in mine.values() if r["held_at_mm"]), "–")
+        out.append([name, held, *(f"{mine[k]['passed']}/{mine[k]['drawn']}" if k in mine else "–" for k in kinds)])
+    return markdown(["solver", "holds at [mm]", *kinds], out)
+
+
+def stability(folder):
+    rows = rows_of(folder / "stability.csv")
+    grades = ("stable", "degraded", "failed")
+    out = []
+    for name in sorted(distinct(label(r) for r in rows)):
+        mine = [r for r in rows if label(r) == name]
+        unsupported = sum(r["status"] == "unsupported" for r in mine)
+        out.append([name, str(len(mine)), *(str(sum(r["grade"] == g for r in mine)) for g in grades), str(unsupported)])
+    return markdown(["solver", "runs", *grades, "unsupported"], out)
+
+
+TABLES = {"hang": hang, "margins": margins, "contact": contact, "stability": stability}
+SOURCES = {"hang": "hang.csv", "margins": "margins.json", "contact": "contact.csv", "stability": "stability.csv"}
+
+
+def filled(text, folder):
+    for name, make in TABLES.items():
+        begin, end = f"<!-- peers {name} begin -->\n", f"<!-- peers {name} end -->"
+        if begin in text and (folder / SOURCES[name]).exists():
+            before, rest = text.split(begin, 1)
+            text = before + begin + "\n" + make(folder) + "\n\n" + end + rest.split(end, 1)[1]
+    return text
 
 
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("table", choices=("hang", "contact"))
-    arguments.add_argument("program", help="peer_time or clothbench")
-    arguments.add_argument("solver", nargs="+")
-    arguments.add_argument("--sizes", default="32,64,128")
-    arguments.add_argument("--scenes", default="contact/sphere,contact/box,contact/open-sheet,paper/desk-flat-high,paper/capsule-sweep")
-    arguments.add_argument("--seeds", type=int, default=5)
+    arguments.add_argument("folder", type=pathlib.Path)
+    arguments.add_argument("document", nargs="+", type=pathlib.Path)
+    arguments.add_argument("--check", action="store_true", help="write nothing; exit 1 if a document would change")
     a = arguments.parse_args()
-    os.environ["CLOTHBENCH_JOBS"] = "1"
-    {"hang": hang, "contact": contact}[a.table](a)
+    stale = []
+    for document in a.document:
+        before = document.read_text(encoding="utf-8")
+        after = filled(before, a.folder)
+        if after == before:
+            continue
+        stale.append(str(document))
+        if not a.check:
+            document.write_text(after, encoding="utf-8")
+    if a.check and stale:
+        sys.exit(f"not what {a.folder} has: {', '.join(stale)} (scripts/peers_tables.py {a.folder} {' '.join(stale)})")
 
 
 if __name__ == "__main__":

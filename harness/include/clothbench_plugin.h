@@ -11,7 +11,11 @@
  * "Version 2" is present only if the library states version 2, as CLOTHBENCH_PLUGIN_HEADER does. ClothbenchPlugin,
  * ClothbenchScene and ClothbenchFrame may grow at their end within a version, and both sides state the sizes that they
  * were compiled with; all other structs change with the version alone. A library that does not fit is refused. See
- * solvers/plugin/README.md; solvers/plugin/example is a complete solver. */
+ * solvers/plugin/README.md; solvers/plugin/example is a complete solver.
+ *
+ *   cc -std=c99 -O2 -shared -fPIC -I <folder of this file> mine.c -lm -o mine.so
+ *   clothbench list solvers --solver plugin:mine.so      it loads
+ *   clothbench conformance plugin:mine.so                what every solver must do */
 #ifndef CLOTHBENCH_PLUGIN_H
 #define CLOTHBENCH_PLUGIN_H
 #include <stdint.h>
@@ -45,7 +49,8 @@ enum {
   CLOTHBENCH_MOVING_MESH = 1 << 11,
   CLOTHBENCH_FRICTION = 1 << 12,
   CLOTHBENCH_DOUBLE_SIDED = 1 << 13,     /* contact from both sides without a second layer */
-  CLOTHBENCH_DUPLICATED_LAYER = 1 << 14, /* a second, oppositely wound layer tied to the first */
+  CLOTHBENCH_DUPLICATED_LAYER = 1 << 14, /* a second, oppositely wound layer tied to the first; the solver makes it: the
+                                            scene has the vertices of one layer alone, and so has `read_state` */
   CLOTHBENCH_SELF_COLLISION = 1 << 15,
   CLOTHBENCH_RENDER = 1 << 16,
   CLOTHBENCH_UNEVEN_GRID = 1 << 17, /* cells of different widths */
@@ -226,8 +231,10 @@ typedef struct ClothbenchPlugin {
   const char* summary; /* one line */
   const char* solver_version; /* raise it when results change */
   const char* precision;      /* "float32" or "float64" */
-  uint32_t supports, ignores; /* features; a scene that needs any other gives a row `unsupported` */
-  int32_t time_order;         /* order of accuracy in the time step */
+  /* Features. A scene is run if the solver supports or ignores all that it needs, as if it did not need what is
+   * ignored; a scene that needs any other gives a row `unsupported`. */
+  uint32_t supports, ignores;
+  int32_t time_order; /* order of accuracy in the time step */
   uint32_t setting_count;
   const ClothbenchSetting* settings;
 
@@ -281,6 +288,11 @@ typedef struct ClothbenchPlugin {
   int32_t (*frames_in_flight)(void*);
   int32_t (*submit)(void*, const ClothbenchFrame*);
   int32_t (*finish)(void*);
+
+  /* The first libraries of version 2 end above this line. */
+  /* Engine from elsewhere that the solver wraps, in its authors' spelling: "NvCloth". A report puts the solver beside
+   * published results of the same engine. NULL: none. */
+  const char* engine;
 } ClothbenchPlugin;
 
 #define CLOTHBENCH_PLUGIN_HEADER                                                                                 \

@@ -129,6 +129,7 @@ double dispatches(const RunView& r) {
 constexpr const char* kStage = "stage_device_median_s.";
 
 bool timed(const RunView& r) { return r.run != nullptr; }
+bool on_host(const RunView& r) { return timed(r) && !of_frames(r, &TimedTrial::frame_cpu_s).empty(); }
 bool rendered(const RunView& r) { return timed(r) && !of_frames(r, &TimedTrial::frame_rendered_s).empty(); }
 
 Scalar reported(const char* name, const char* units, const char* doc, std::function<double(const RunView&)> value,
@@ -181,6 +182,8 @@ MetricGroup timing_metrics() {
       reported("fps_at_72", "s-1", "mean over frames of min(72, 1/t), median of the trials",
                [](const RunView& r) { return median(of_trials(r, capped_rate)); }),
       median_frame("frame_wall_median_s", "wall time of a frame, median of all timed frames", &T::frame_wall_s, 410),
+      median_frame("frame_cpu_median_s", "CPU time of a frame of a solver on the host, summed over its threads, median",
+                   &T::frame_cpu_s, 415),
       reported("frame_wall_iqr_s", "s", "wall time of a frame, interquartile range", wall_iqr),
       reported("frame_pipelined_median_s", "s",
                "wall time of a frame that is not waited for, median of the trials' means",
@@ -213,6 +216,7 @@ MetricGroup timing_metrics() {
   for (Scalar& s : g.scalars) {
     if (s.name == "dispatches") s.gate = &kCount;
     if (s.name.find("rendered") != std::string::npos) s.present = rendered;
+    if (s.name == "frame_cpu_median_s") s.present = on_host;
   }
   return g;
 }

@@ -1,11 +1,13 @@
 #include "report/contact_rates.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/columns.hpp"
 #include "report/grid.hpp"
@@ -79,6 +81,7 @@ Columns<ContactRate> rate_columns() {
           {"kind", In::Both, &ContactRate::kind},
           {"speed_m_per_s", In::Both, &ContactRate::band},
           {"assets", In::Both, &ContactRate::assets},
+          {"held_at_mm", In::Both, &ContactRate::held_at},
           {"passed", In::Both, &ContactRate::passed},
           {"drawn", In::Both, &ContactRate::drawn},
           {"unsupported", In::Both, &ContactRate::unsupported},
@@ -117,16 +120,19 @@ std::vector<ContactRate> contact_rates(const std::vector<RunRecord>& runs) {
     for (const std::string& kind : kinds)
       for (const std::string& band : bands) {
         ContactRate r{solver, setting, kind, band, assets};
+        std::set<std::string> held;
         for (const DrawnRun& d : all) {
           const RunHeader& h = d.run->header;
           if (h.solver != solver || h.setting != setting || d.assets != assets) continue;
           if ((kind != kAll && kind != d.kind) || (band != kAll && band != band_of(d.speed_m_per_s))) continue;
           ++r.drawn;
+          if (const std::string at = held_at(*d.run); at != "–") held.insert(at);
           const std::string& status = d.run->outcome.status;
           r.passed += verdict(*d.run) == "pass" ? 1 : 0;
           r.unsupported += status == "unsupported" ? 1 : 0;
           r.not_ended += status != "unsupported" && status != "ok" ? 1 : 0;
         }
+        r.held_at = fmt::format("{}", fmt::join(held, ", "));
         if (r.drawn > 0) out.push_back(std::move(r));
       }
   }
@@ -137,8 +143,9 @@ Table contact_rate_table(const std::vector<RunRecord>& runs) {
   Table t{
       "Drawn contact scenes: share that keeps every bound",
       "Passed of drawn, by the speed [m/s] of the hand or of the cloth where it first touches; in brackets the 95 % "
-      "interval of the probability (Wilson). Unsupported and timed out: not passed.",
-      {{"solver", "kind"}}};
+      "interval of the probability (Wilson). Unsupported and timed out: not passed. Holds at: distance at which the "
+      "solver holds the cloth off colliders.",
+      {{"solver", "kind", "holds at [mm]"}}};
   const auto missing =
       std::count_if(runs.begin(), runs.end(), [](const RunRecord& c) { return c.outcome.status == "missing"; });
   if (missing > 0)
@@ -150,12 +157,16 @@ Table contact_rate_table(const std::vector<RunRecord>& runs) {
   t.rows[0].emplace_back(kAll);
   for (const ContactRate& r : contact_rates(runs)) {
     const std::string solver = r.setting == "default" ? r.solver : r.solver + " " + r.setting;
-    const std::vector<std::string> fresh = {solver, shown_kind(r.kind, r.assets), "–", "–", "–", "–", "–"};
+    const std::vector<std::string> fresh = {solver, shown_kind(r.kind, r.assets), "–", "–", "–", "–", "–", "–"};
     auto& row = find_or_add(
         t.rows, [&](const auto& at) { return at[0] == fresh[0] && at[1] == fresh[1]; }, fresh);
     const auto column = std::find(t.rows[0].begin(), t.rows[0].end(), r.band) - t.rows[0].begin();
     row[static_cast<std::size_t>(column)] = rate_text(r);
+    if (r.band == kAll) row[2] = or_dash(r.held_at);
   }
+  const bool known = std::any_of(t.rows.begin() + 1, t.rows.end(), [](const auto& row) { return row[2] != "–"; });
+  for (auto& row : t.rows)
+    if (!known) row.erase(row.begin() + 2);
   return t;
 }
 

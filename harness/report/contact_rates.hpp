@@ -21,6 +21,7 @@ struct ContactRate {
   std::string assets;
   std::size_t passed = 0, drawn = 0;
   std::size_t unsupported = 0, not_ended = 0;  ///< of those drawn; not_ended: timed out, crashed, diverged, ...
+  std::string held_at = {};                    ///< distances [mm] at which the solver holds the cloth; empty: none ran
   Interval interval() const { return wilson_95(passed, drawn); }
 };
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/json_number.hpp"
+#include "report/plugin_marks.hpp"
 #include "report/report.hpp"
 #include "report/withheld.hpp"
 
@@ -41,9 +42,10 @@ Columns<Exported> table3_columns() {
   Columns<Exported> out = {{"source", In::Csv, &Exported::source}};
   return out.add(solver_columns())
       .add(grid_columns())
-      .add({{"failed_frame", In::Both, failed_frame_of}})
+      .add({{"failed_frame", In::Both, failed_frame_of},
+            {"engine", In::Both, [](auto& r) { return engine_of(*r.run); }}})
       .add(summary_columns<Exported>({"fps_at_72", "fps_median", "fps_mean", "fps_spread", "frame_wall_median_s",
-                                      "frame_device_median_s", "free_fall_error"}));
+                                      "frame_cpu_median_s", "frame_device_median_s", "free_fall_error"}));
 }
 
 /// The published values as runs.

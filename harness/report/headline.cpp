@@ -47,8 +47,8 @@ std::vector<std::string> plugin_lines(const std::vector<RunRecord>& runs) {
     if (!e.is_object() || !e.contains("plugin")) continue;
     const nlohmann::json& p = e["plugin"];
     const std::string line =
-        fmt::format("Plugin {}, version {}: {}. Library {}, SHA-256 {}.", c.header.solver, text(e, "solver_version"),
-                    text(p, "summary"), text(p, "path"), text(p, "sha256").substr(0, 16));
+        fmt::format("{}† is a plugin, version {}: {}. Library {}, SHA-256 {}.", c.header.solver,
+                    text(e, "solver_version"), text(p, "summary"), text(p, "path"), text(p, "sha256").substr(0, 16));
     if (std::find(out.begin(), out.end(), line) == out.end()) out.push_back(line);
   }
   return out;

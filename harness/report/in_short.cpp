@@ -7,6 +7,7 @@
 #include <map>
 
 #include "report/grid.hpp"
+#include "report/plugin_marks.hpp"
 #include "report/withheld.hpp"
 
 namespace clothbench {
@@ -67,7 +68,7 @@ Table in_short_table(const std::vector<RunRecord>& runs) {
                         significant(100 * r.stretch, 3), time, ratio});
     }
   }
-  return t;
+  return PluginMarks(runs).table(std::move(t));
 }
 
 }  // namespace clothbench

@@ -205,13 +205,64 @@ std::string verdict(const RunRecord& c) {
   return touches_nothing(c) ? "ignored" : "pass";
 }
 
+std::pair<double, double> held_at_m(const RunRecord& c) {
+  std::pair<double, double> out = {kMissing, kMissing};
+  if (c.outcome.status == "unsupported" || c.outcome.status == "missing") return out;
+  std::set<std::string> stated;
+  const auto add = [&](const json& margin) {
+    if (!margin.is_number()) return;
+    const double m = margin.get<double>();
+    if (!(out.first <= m)) out.first = m;
+    if (!(out.second >= m)) out.second = m;
+  };
+  if (filled(c.header.plan, "contact_margins"))
+    for (const json& m : c.header.plan["contact_margins"]) {
+      stated.insert(m.value("collider", ""));
+      add(m.value("margin_m", json()));
+    }
+  // Colliders have the names of their types there, or of what they stand for; a list as long as the scene's is of all.
+  const json scenario = scenario_of(c);
+  const bool all = filled(c.header.plan, "contact_margins") && filled(scenario, "colliders") &&
+                   c.header.plan["contact_margins"].size() >= scenario["colliders"].size();
+  if (filled(scenario, "colliders") && !all)
+    for (const json& collider : scenario["colliders"])
+      if (collider.is_object() && !stated.contains(collider.value("type", ""))) add(collider.value("margin_m", json()));
+  return out;
+}
+
+std::string held_at(const RunRecord& c) {
+  const auto [least, most] = held_at_m(c);
+  if (!std::isfinite(most)) return "–";
+  return least == most ? fmt::format("{:.3g}", 1e3 * most) : fmt::format("{:.3g} to {:.3g}", 1e3 * least, 1e3 * most);
+}
+
+namespace {
+
+/// Of all runs of a solver: "4, 20".
+std::vector<std::string> held_row(const std::vector<ContactRow>& all, const std::vector<std::string>& solvers) {
+  std::vector<std::string> row = {"(the solver holds the cloth at [mm])"};
+  for (const std::string& solver : solvers) {
+    std::set<std::pair<double, std::string>> held;
+    for (const ContactRow& r : all)
+      if (r.series.label() == solver && std::isfinite(held_at_m(*r.run).second))
+        held.insert({held_at_m(*r.run).second, held_at(*r.run)});
+    std::string text;
+    for (const auto& [m, words] : held) text += (text.empty() ? "" : ", ") + words;
+    row.push_back(or_dash(text));
+  }
+  return row;
+}
+
+}  // namespace
+
 Table verdict_table(const std::vector<ContactSetUp>& ups) {
   const std::vector<ContactRow> all = contact_rows(ups);
   std::vector<std::string> solvers = distinct(all, [](const ContactRow& r) { return r.series.label(); });
   std::sort(solvers.begin(), solvers.end());
   Table t{"Penetration: verdict on each scene's expectations",
           "Pass: every bound of the scene's `expect` holds over the whole scene. Ignored: the scene passes "
-          "although the solver handles no contact. –: not run, or the scene has no bounds. Columns of the "
+          "although the solver handles no contact. –: not run, or the scene has no bounds. Holds at: distance at "
+          "which the solver holds the cloth off colliders; compare solvers at equal distances. Columns of the "
           "tables below. Tunnelled: share of the cloth that has passed to the other side of a mesh. Contour: "
           "length of the curves in which cloth and colliders cross; settled: the greatest value in the last "
           "0.5 s. Depth: how far the cloth is inside a collider, without the margin. Wrong side: vertices and "
@@ -222,6 +273,8 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
           "Time: median over the timed frames.",
           {{"scene"}}};
   t.rows[0].insert(t.rows[0].end(), solvers.begin(), solvers.end());
+  const std::vector<std::string> held = held_row(all, solvers);
+  if (std::any_of(held.begin() + 1, held.end(), [](const std::string& x) { return x != "–"; })) t.rows.push_back(held);
   std::set<std::string> bounds;
   for (const ContactSetUp& u : ups)
     for (const ContactScene& s : u.scenes) {
@@ -242,6 +295,8 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
 Table contact_table(const ContactSetUp& s) {
   const std::vector<ContactRow> rows = contact_rows({s});
   Columns<ContactRow> columns = place_columns();
+  if (std::any_of(rows.begin(), rows.end(), [](auto& r) { return held_at(*r.run) != "–"; }))
+    columns.push_back({"", "holds at [mm]", [](auto& r) { return held_at(*r.run); }});
   std::vector<std::string> names = {"frame_wall_median_s"};
   for (const Shown& shown : kShown) {
     names.insert(names.end(), shown.names.begin(), shown.names.end());
@@ -249,13 +304,15 @@ Table contact_table(const ContactSetUp& s) {
       columns.push_back({"", shown.head, [&](auto& r) { return shown_text(*r.run, shown); }, {}, shown.unit});
   }
   const std::vector<const RunRecord*> runs = runs_of(rows, &ContactRow::run);
-  columns.add({{"", "wall / GPU [ms]",
-                [&](auto& r) {
-                  const std::string times = paired(1e3 * summary_value(*r.run, "frame_wall_median_s"),
-                                                   1e3 * summary_value(*r.run, "frame_device_median_s"), " / ", 3);
-                  return times == "–" ? times : times + frames_mark(*r.run, runs);
-                }},
-               {"", "verdict", [](auto& r) { return verdict(*r.run); }}});
+  const auto times_of = [&](auto& r) {
+    const std::string times = paired(1e3 * summary_value(*r.run, "frame_wall_median_s"),
+                                     1e3 * summary_value(*r.run, "frame_device_median_s"), " / ", 3);
+    return times == "–" ? times : times + frames_mark(*r.run, runs);
+  };
+  // Times that are withheld leave their column, and the note says why.
+  if (std::any_of(rows.begin(), rows.end(), [&](auto& r) { return times_of(r) != "–" || !r.run->withheld.empty(); }))
+    columns.push_back({"", "wall / GPU [ms]", times_of});
+  columns.push_back({"", "verdict", [](auto& r) { return verdict(*r.run); }});
   return columns.table({s.title, with_withheld("", runs, names), {}}, rows);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/table.hpp"
@@ -56,13 +57,20 @@ std::vector<BoundResult> bound_results(const RunRecord&);
 /// well, its ending.
 std::string verdict(const RunRecord&);
 
-/// Rows: scenes; columns: solvers; entries: `verdict`.
+/// Least and greatest distance [m] at which the run's solver holds the cloth off its colliders: what the solver states,
+/// else the scene's margin. NaN if the scene has no collider or the run did not begin.
+std::pair<double, double> held_at_m(const RunRecord&);
+/// The same in mm, as text: "4", "4 to 20", "–".
+std::string held_at(const RunRecord&);
+
+/// Rows: scenes, below a row of the distances at which solvers hold the cloth; columns: solvers; entries: `verdict`.
 Table verdict_table(const std::vector<ContactSetUp>&);
 
 /// Rows: scene x solver; columns: penetration and cost. A column without any value is left out.
 Table contact_table(const ContactSetUp&);
 
-/// The same rows; columns: bytes, memory, dispatches, time to load.
+/// The same rows; columns: bytes, memory, dispatches, time to load, as far as any run has them; without any only the
+/// three that name the run.
 Table cost_table(const ContactSetUp&);
 
 /// Every broken bound with its value; only the header if there is none.

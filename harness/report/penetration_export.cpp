@@ -42,7 +42,9 @@ Value value_at(const Frame& f, const std::string& name) {
 
 json penetration_json(const std::vector<ContactSetUp>& ups) {
   return contact_keys<ContactRow>()
-      .add({{"expect", In::Both, [](auto& r) { return verdict(*r.run); }}})
+      .add({{"expect", In::Both, [](auto& r) { return verdict(*r.run); }},
+            {"held_at_least_m", In::Both, [](auto& r) { return held_at_m(*r.run).first; }},
+            {"held_at_most_m", In::Both, [](auto& r) { return held_at_m(*r.run).second; }}})
       .add(summary_columns<ContactRow>(penetration_columns()))
       .json(contact_rows(ups));
 }

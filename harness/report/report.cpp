@@ -22,6 +22,7 @@
 #include "report/paths.hpp"
 #include "report/penetration.hpp"
 #include "report/pictures.hpp"
+#include "report/plugin_marks.hpp"
 #include "report/pulled_strip.hpp"
 #include "report/stability.hpp"
 #include "report/web/page.hpp"
@@ -92,6 +93,7 @@ struct Facts {
   std::vector<RunPair> rooms = run_pairs(parts.contact, "whole-room");
   std::vector<RunPair> turned = turned_pairs(ups);
   std::vector<WorkDiagram> diagrams = work_diagrams(parts.truth, materials);
+  PluginMarks marks{runs};
 };
 
 /// A section of report.md and of the page, and the files written beside it.
@@ -147,7 +149,10 @@ std::vector<Table> penetration_tables(const Facts& f) {
   for (Table& t : filled({leak_table(speed_sweeps(f.ups)), pulled_strip_table(f.ups),
                           popping_table(popping_pairs(f.ups)), turned_table(f.turned)}))
     out.push_back(std::move(t));
-  for (const ContactSetUp& u : f.ups) out.insert(out.end(), {contact_table(u), in_full(cost_table(u))});
+  for (const ContactSetUp& u : f.ups) {
+    out.push_back(contact_table(u));
+    if (Table costs = cost_table(u); costs.rows.front().size() > 3) out.push_back(in_full(std::move(costs)));
+  }
   for (Table& t : filled({failed_expectations_table(f.ups), room_table(f.rooms)})) out.push_back(std::move(t));
   return out;
 }
@@ -267,18 +272,25 @@ std::string summary_page(const Facts& f) {
   std::vector<Table> tables = {ranks_table(f.diagrams), winners_table(f.diagrams)};
   if (!f.materials.empty()) tables.push_back(material_verdicts(f.materials));
   if (!f.costs.empty()) tables.push_back(no_op_table(f.costs));
-  return markdown_of(tables);
+  return markdown_of(f.marks.tables(tables));
+}
+
+/// The sections with their plugins marked.
+Sections marked(Sections (*sections)(const Facts&), const Facts& f) {
+  Sections out = sections(f);
+  for (Section& s : out) s.tables = f.marks.tables(std::move(s.tables));
+  return out;
 }
 
 /// Parts of the page other than the sections.
 Page page_of(const Facts& f, const std::string& head) {
   Page page;
   page.headline = head;
-  page.rates = rates_json(f.rates, f.published);
-  page.penetration = contact_series_json(f.ups);
-  page.work = work_json(f.diagrams);
-  page.maps = f.maps;
-  page.cases = stability_cases(f.parts.stability);
+  page.rates = f.marks.data(rates_json(f.rates, f.published));
+  page.penetration = f.marks.data(contact_series_json(f.ups));
+  page.work = f.marks.data(work_json(f.diagrams));
+  page.maps = f.marks.data(f.maps);
+  page.cases = f.marks.data(stability_cases(f.parts.stability));
   page.commands = commands_of(f.results);
   for (const WorkDiagram& d : f.diagrams)
     for (const WorkPoint& p : d.points)
@@ -306,7 +318,7 @@ void write_report(const std::vector<fs::path>& results, const ReportOptions& opt
   Page page = page_of(f, head);
   std::string all, latex = "% Tables of this report for LaTeX; \\usepackage{booktabs}.\n";
   for (const auto sections : kInReport)
-    for (const Section& s : sections(f)) {
+    for (const Section& s : marked(sections, f)) {
       const std::string text = markdown_of(s.tables);
       all += text;
       for (const Table& t : s.tables) latex += "\n" + t.latex();
@@ -317,9 +329,10 @@ void write_report(const std::vector<fs::path>& results, const ReportOptions& opt
   write("tables.tex", latex);
   if (!f.diagrams.empty()) {
     write("summary.md", "# Summary\n\n" + head + "\n" + summary_page(f));
-    page.sections.push_back({"summary", "Summary", {ranks_table(f.diagrams), winners_table(f.diagrams)}});
+    page.sections.push_back(
+        {"summary", "Summary", f.marks.tables({ranks_table(f.diagrams), winners_table(f.diagrams)})});
   }
-  page.sections.push_back({"environment", "Environment", {environment_table(f.runs)}});
+  page.sections.push_back({"environment", "Environment", f.marks.tables({environment_table(f.runs)})});
   const PageTemplate with = page_template();
   const std::string no_page = write_page(options.out, f.runs, page, with);
   const auto [no_figures, figures] = draw_pictures(options.out, with);
@@ -336,10 +349,10 @@ void print_console_report(const std::vector<fs::path>& results) {
   const Facts f{results};
   fmt::print("{}", headline(f.runs, Format::Console));
   for (const auto sections : kOnTerminal)
-    for (const Section& s : sections(f))
+    for (const Section& s : marked(sections, f))
       for (const Table& t : s.tables)
         if (!t.in_full) fmt::print("{}", t.console());
-  for (const Section& s : failed_section(f)) {
+  for (const Section& s : marked(failed_section, f)) {
     const Table& t = s.tables[0];
     fmt::print("\n{}{}\n", t.title, t.note.empty() ? "" : " (" + t.note.substr(0, t.note.size() - 1) + ")");
     for (std::size_t r = 1; r < t.rows.size(); ++r)  // messages are sentences and are printed as lines, not columns

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "report/bytes.hpp"
+#include "report/plugin_marks.hpp"
 #include "report/report.hpp"
 #include "report/withheld.hpp"
 
@@ -24,21 +25,55 @@ std::string with_spread(double v, double spread) {
          (std::isfinite(spread) ? fmt::format("{:.{}f} %", 100 * spread, spread >= 0.0995 ? 0 : 1) : "–");
 }
 
+using Rows = std::vector<std::vector<std::string>>;
+
 /// Published values with the precision of the paper: integers.
-void add_published(Table& t, const std::vector<Resolution>& columns, const nlohmann::json& published) {
-  const nlohmann::json& resolutions = published.at("resolution");
-  std::size_t at = 1;
-  for (const nlohmann::json& column : published.at("columns")) {
-    std::vector<std::string> row = {"published: " + column.at("name").get<std::string>(), column.value("sides", "–")};
-    for (const Resolution& r : columns) {
-      std::string run = "–";
-      for (std::size_t k = 0; k < resolutions.size(); ++k)
-        if (r.grid[0] == resolutions[k].get<int>() && r.grid[1] == r.grid[0])
-          run = fmt::format("{:g}", column.at("fps").at(k).get<double>());
-      row.push_back(run);
-    }
-    t.rows.insert(t.rows.begin() + static_cast<std::ptrdiff_t>(at++), std::move(row));
+std::vector<std::string> published_row(const nlohmann::json& column, const std::vector<Resolution>& columns,
+                                       const nlohmann::json& resolutions) {
+  std::vector<std::string> row = {"published: " + column.at("name").get<std::string>(), column.value("sides", "–")};
+  for (const Resolution& r : columns) {
+    std::string run = "–";
+    for (std::size_t k = 0; k < resolutions.size(); ++k)
+      if (r.grid[0] == resolutions[k].get<int>() && r.grid[1] == r.grid[0])
+        run = fmt::format("{:g}", column.at("fps").at(k).get<double>());
+    row.push_back(run);
   }
+  return row;
+}
+
+/// Engine of each series' plugin, in the order of the rows of Family::table.
+std::vector<std::string> engines_of(const Family& family) {
+  std::vector<std::string> out;
+  for (const Series& s : family.series()) {
+    const auto run = std::find_if(family.runs.begin(), family.runs.end(), [&](const auto& p) { return p.series == s; });
+    out.push_back(engine_of(*run->run));
+  }
+  return out;
+}
+
+/// Puts the published rows first. Rows of a plugin move below the published row of the engine that it wraps, and the
+/// note says what they are.
+void add_published(Table& t, const Family& family, const nlohmann::json& published) {
+  const std::vector<std::string> engines = engines_of(family);
+  const std::vector<Resolution> columns = family.resolutions();
+  Rows first = {t.rows.front()}, rest;
+  std::vector<bool> moved(engines.size(), false);
+  for (const nlohmann::json& column : published.at("columns")) {
+    first.push_back(published_row(column, columns, published.at("resolution")));
+    const std::string engine = column.value("engine", "");
+    std::string name;
+    for (std::size_t k = 0; k < engines.size() && !engine.empty(); ++k) {
+      if (engines[k] != engine) continue;
+      first.push_back(t.rows[k + 1]);
+      name = family.series()[k].solver;
+      moved[k] = true;
+    }
+    if (!name.empty()) t.note += fmt::format(" {}: {}", name, column.value("peer", ""));
+  }
+  for (std::size_t k = 0; k < engines.size(); ++k)
+    if (!moved[k]) rest.push_back(t.rows[k + 1]);
+  t.rows = std::move(first);
+  t.rows.insert(t.rows.end(), rest.begin(), rest.end());
 }
 
 std::string capped_note(const Family& f, bool paper) {
@@ -71,11 +106,13 @@ struct ValueTable {
   std::function<std::string(const RunRecord&)> text;
   const char* only_with = nullptr;  ///< a summary value; no table if no run has it
   bool timed = false;               ///< shows where a run timed fewer frames than others of its scene
+  bool of_gpus = false;             ///< no table where no run is of a GPU
 };
 
-ValueTable milliseconds(const char* title, const char* note, const char* name, const char* only_with = nullptr) {
-  return {title, note, [name](const RunRecord& c) { return significant(1e3 * summary_value(c, name), 3); }, only_with,
-          true};
+ValueTable milliseconds(const char* title, const char* note, const char* name, const char* only_with = nullptr,
+                        bool of_gpus = false) {
+  return {title,     note, [name](const RunRecord& c) { return significant(1e3 * summary_value(c, name), 3); },
+          only_with, true, of_gpus};
 }
 
 std::vector<ValueTable> time_tables() {
@@ -84,6 +121,9 @@ std::vector<ValueTable> time_tables() {
        [](const RunRecord& c) { return with_spread(summary_value(c, "fps_median"), summary_value(c, "fps_spread")); },
        nullptr, true},
       milliseconds("Wall time a frame [ms]", "Median over all timed frames.", "frame_wall_median_s"),
+      milliseconds("CPU time a frame [ms]",
+                   "Median over the same frames; the sum over a solver's threads. –: a GPU solver, or an older file.",
+                   "frame_cpu_median_s", "frame_cpu_median_s"),
       milliseconds(
           "Frame time with rendering, stereo [ms]",
           "Median wall time of a frame and its two pictures, one after the other; the result file has the size "
@@ -95,7 +135,7 @@ std::vector<ValueTable> time_tables() {
                    "frame_pipelined_median_s", "frame_pipelined_median_s"),
       milliseconds("GPU time a frame [ms]",
                    "Median; first to last timestamp of the frame's one submission. –: a CPU solver.",
-                   "frame_device_median_s"),
+                   "frame_device_median_s", nullptr, true),
   };
 }
 
@@ -119,7 +159,7 @@ std::vector<ValueTable> error_tables() {
 }
 
 std::vector<ValueTable> device_tables(const std::string& windows) {
-  return {
+  std::vector<ValueTable> out = {
       {"kB a frame, read / written",
        fmt::format("Bytes: {} –: a CPU solver, whose bytes are not known.", kWhatBytesAre),
        [](const RunRecord& c) { return bytes_pair(c, "read_B_per_frame", "write_B_per_frame", 1e-3); }},
@@ -135,6 +175,8 @@ std::vector<ValueTable> device_tables(const std::string& windows) {
                                                      : std::string("–");
        }},
   };
+  for (ValueTable& t : out) t.of_gpus = true;
+  return out;
 }
 
 /// Input of notes, which need only the summaries.
@@ -171,10 +213,13 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
   std::vector<Table> tables = {
       family.table((paper ? "Table 3: frames" : "Frames") + std::string(" per second, capped at 72") + scene,
                    capped_note(family, paper), [](const RunRecord& c) { return fps(summary_value(c, "fps_at_72")); })};
-  if (paper) add_published(tables.back(), family.resolutions(), published);
+  if (paper) add_published(tables.back(), family, published);
+  const bool on_gpu =
+      std::any_of(family.runs.begin(), family.runs.end(), [](const PlacedRun& p) { return !gpu_of(*p.run).empty(); });
   for (const auto& group : {time_tables(), error_tables(), device_tables(window_note(summaries_of(family)))})
     for (const ValueTable& t : group)
-      if (t.only_with == nullptr || any_value(family, t.only_with)) add_values(family, t, scene, tables);
+      if ((t.only_with == nullptr || any_value(family, t.only_with)) && (!t.of_gpus || on_gpu))
+        add_values(family, t, scene, tables);
   note_withheld(family, tables);
   return tables;
 }

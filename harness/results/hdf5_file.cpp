@@ -234,9 +234,14 @@ class Writer {
         by_frame("frame_wall_s", &TimedTrial::frame_wall_s, {"s", "wall time of a frame"});
         by_frame("frame_device_s", &TimedTrial::frame_device_s,
                  {"s", "device time of a frame, first to last timestamp"});
-        if (std::any_of(r_.trials.begin(), r_.trials.end(),
-                        [](const TimedTrial& t) { return !t.frame_rendered_s.empty(); }))
-          by_frame("frame_rendered_s", &TimedTrial::frame_rendered_s, {"s", "wall time of a frame and its picture"});
+        const auto by_frame_if_any = [&](const char* name, std::vector<double> TimedTrial::*series,
+                                         const char* long_name) {
+          if (std::any_of(r_.trials.begin(), r_.trials.end(),
+                          [&](const TimedTrial& t) { return !(t.*series).empty(); }))
+            by_frame(name, series, {"s", long_name});
+        };
+        by_frame_if_any("frame_rendered_s", &TimedTrial::frame_rendered_s, "wall time of a frame and its picture");
+        by_frame_if_any("frame_cpu_s", &TimedTrial::frame_cpu_s, "CPU time of a frame, of all threads of the process");
         const auto by_trial = [&](const char* name, double TimedTrial::*value, const Label& label) {
           std::vector<double> values;
           for (const TimedTrial& t : r_.trials) values.push_back(t.*value);

@@ -55,12 +55,15 @@ void read_trials(hid_t file, RunRecord& r) {
   };
   const auto pipelined = by_trial("pipelined_wall_s"), start = by_trial("trial_start_unix_s"),
              end = by_trial("trial_end_unix_s"), jobs = by_trial("jobs");
-  const auto rendered = exists(timing, "frame_rendered_s")
-                            ? numbers<double>(timing, "frame_rendered_s", H5T_NATIVE_DOUBLE)
-                            : std::vector<double>(wall.size(), kMissing);
+  const auto by_frame = [&](const char* name) {  // older files lack some
+    return exists(timing, name) ? numbers<double>(timing, name, H5T_NATIVE_DOUBLE)
+                                : std::vector<double>(wall.size(), kMissing);
+  };
+  const auto rendered = by_frame("frame_rendered_s"), cpu = by_frame("frame_cpu_s");
   const std::size_t stages = r.header.stages.size();
   if (shape.size() != 2 || index.size() != shape[0] || device.size() != wall.size() || rendered.size() != wall.size() ||
-      stage.size() != wall.size() * stages || read.size() != stage.size() || write.size() != stage.size())
+      cpu.size() != wall.size() || stage.size() != wall.size() * stages || read.size() != stage.size() ||
+      write.size() != stage.size())
     throw Error("/timing and /bandwidth have different lengths");
   for (std::size_t t = 0; t < shape[0]; ++t) {
     TimedTrial trial;
@@ -74,6 +77,7 @@ void read_trials(hid_t file, RunRecord& r) {
       trial.frame_wall_s.push_back(wall[k]);
       trial.frame_device_s.push_back(device[k]);
       if (!std::isnan(rendered[k])) trial.frame_rendered_s.push_back(rendered[k]);
+      if (!std::isnan(cpu[k])) trial.frame_cpu_s.push_back(cpu[k]);
       const auto append = [&](std::vector<double>& to, const std::vector<double>& from) {
         to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(k * stages),
                   from.begin() + static_cast<std::ptrdiff_t>((k + 1) * stages));

@@ -197,6 +197,7 @@ void write_trial_file(const std::filesystem::path& path, const TimedTrial& t, st
                            {"end_unix_s", number_to_json(t.end_unix_s)},
                            {"jobs", t.jobs}};
   if (!t.frame_rendered_s.empty()) header["frame_rendered_s"] = t.frame_rendered_s;
+  if (!t.frame_cpu_s.empty()) header["frame_cpu_s"] = t.frame_cpu_s;
   write_raw(path, std::move(header), frames);
 }
 
@@ -215,8 +216,9 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
     t.start_unix_s = number("start_unix_s");
     t.end_unix_s = number("end_unix_s");
     t.jobs = number("jobs");
-    if (file.header.contains("frame_rendered_s"))
-      t.frame_rendered_s = file.header["frame_rendered_s"].get<std::vector<double>>();
+    const auto list = [&](const char* key) { return file.header.value(key, std::vector<double>()); };
+    t.frame_rendered_s = list("frame_rendered_s");
+    t.frame_cpu_s = list("frame_cpu_s");
     for (const Bytes& b : file.frames) {
       Taker taker(b);
       taker.take(t.frame_wall_s, 1);

@@ -62,6 +62,7 @@ void describe_solver(const SolverInfo& info, nlohmann::json& environment) {
   const auto [at, is_new] = hashes.try_emplace(path);
   if (is_new) at->second = sha256(read_text(path));
   environment["plugin"] = {{"path", path}, {"sha256", at->second}, {"summary", info.summary}};
+  if (!info.engine.empty()) environment["plugin"]["engine"] = info.engine;
 }
 
 nlohmann::json describe_environment(const DeviceInfo& device, const std::string& protocol) {

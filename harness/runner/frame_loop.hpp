@@ -1,5 +1,6 @@
 #pragma once
 #include <chrono>
+#include <ctime>
 #include <limits>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -25,6 +26,7 @@ struct FrameRules {
   double max_wall_s = 0;                    ///< no frame begins after this much timed wall time; 0 = no limit
   int min_frames = 0;                       ///< ... but never before this many
   const char* interrupted = "interrupted";  ///< message thrown between frames on Ctrl-C; null: not interrupted
+  bool cpu_clock = false;                   ///< also read the CPU clock, outside of the wall clock
 };
 
 inline constexpr int kAsManyAsItTakes = std::numeric_limits<int>::max();
@@ -48,9 +50,12 @@ class FrameLoop {
   bool next(Step&& step) {
     if (!begin()) return false;
     const FrameInput input = frame_input(scene_, in_drop());
+    const double cpu_start_s = rules_.cpu_clock ? process_cpu_s() : 0;
     const auto start = Clock::now();
     status_ = step(input);
-    return stop_clock(start);
+    const bool stepped = stop_clock(start);
+    cpu_s_ = rules_.cpu_clock ? process_cpu_s() - cpu_start_s : 0;
+    return stepped;
   }
   /// Steps all frames of the next drop with one time measurement, without waiting for each (ClothSolver::run_frames).
   bool next_drop();
@@ -60,12 +65,19 @@ class FrameLoop {
   StepStatus status() const { return status_; }    ///< of the last frame
   bool failed() const { return status_ != StepStatus::Ok; }
   double wall_s() const { return wall_s_; }        ///< timed wall time of the last frame
+  double cpu_s() const { return cpu_s_; }          ///< CPU time of the last frame, of all threads; 0 without the clock
   double elapsed_s() const { return elapsed_s_; }  ///< ... of all frames
 
  private:
   using Clock = std::chrono::steady_clock;
 
   bool begin();
+  /// CPU time of the process [s]: the stepping thread's, and that of threads which a solver has started.
+  static double process_cpu_s() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
   int in_drop(int frame) const { return rules_.drop_frames > 0 ? frame % rules_.drop_frames : frame; }
   bool stop_clock(Clock::time_point start) {
     wall_s_ = std::chrono::duration<double>(Clock::now() - start).count();
@@ -78,7 +90,7 @@ class FrameLoop {
   const FrameRules rules_;
   int index_, behind_ = 0;  ///< behind_: frames of the last drop after its first
   StepStatus status_ = StepStatus::Ok;
-  double wall_s_ = 0, elapsed_s_ = 0;
+  double wall_s_ = 0, elapsed_s_ = 0, cpu_s_ = 0;
 };
 
 }  // namespace clothbench

@@ -246,11 +246,13 @@ void SolverRun::measure(TimedTrial& trial, const TrialRules& rules, int frames) 
   const int asked = rules.frames > 0 ? rules.frames : spec_.scene->time.frames();
   trial.start_unix_s = trial.end_unix_s = unix_now();
   solver_->reset();
-  FrameLoop loop(*solver_, *spec_.scene,
-                 frames > 0 ? frame_rules(rules, frames) : frame_rules(rules, asked, rules.max_wall_s));
+  FrameRules timed = frames > 0 ? frame_rules(rules, frames) : frame_rules(rules, asked, rules.max_wall_s);
+  timed.cpu_clock = !spec_.entry->info.on_gpu;
+  FrameLoop loop(*solver_, *spec_.scene, timed);
   while (loop.next()) {
     const FrameCost cost = solver_->last_cost();
     trial.frame_wall_s.push_back(loop.wall_s());
+    if (timed.cpu_clock) trial.frame_cpu_s.push_back(loop.cpu_s());
     trial.frame_device_s.push_back(cost.device_s);
     trial.stage_device_s.insert(trial.stage_device_s.end(), stages, kMissing);
     trial.stage_read_B.insert(trial.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());

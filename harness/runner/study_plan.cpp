@@ -7,17 +7,13 @@
 
 #include "base/plugin_environment.hpp"
 #include "clothbench/error.hpp"
+#include "clothbench/solver_names.hpp"
 
 namespace clothbench {
 namespace {
 
-/// Solvers of this tree and adapters that come with it. A build may lack any of them; a study that names one then has
-/// rows `unsupported`. Every other unknown name is taken for a spelling error.
-const char* const kOfThisTree[] = {"paper",     "xpbd",      "bullet-soft", "bullet-deformable",
-                                   "reference", "ballistic", "nvcloth",     "jolt"};
-
 [[noreturn]] void refuse_name(const std::string& name) {
-  std::vector<std::string> known(std::begin(kOfThisTree), std::end(kOfThisTree));
+  std::vector<std::string> known = solver_names_of_tree();
   for (const SolverEntry& e : solvers()) known.push_back(e.info.name);
   const char* plugins = std::getenv(kPluginsVariable);
   std::istringstream paths(plugins != nullptr ? plugins : "");
@@ -67,8 +63,8 @@ RunPlan plan_study(const Study& study) {
     for (const std::size_t k : item.solvers) {
       const StudySolver& s = study.solvers[k];
       if (entries[k] == nullptr) {
-        if (std::find(std::begin(kOfThisTree), std::end(kOfThisTree), s.solver) == std::end(kOfThisTree))
-          refuse_name(s.solver);
+        const std::vector<std::string>& names = solver_names_of_tree();
+        if (std::find(names.begin(), names.end(), s.solver) == names.end()) refuse_name(s.solver);
         auto absent = std::make_shared<SolverEntry>();
         absent->info.name = s.solver;
         entries[k] = absent.get();

@@ -24,12 +24,3 @@ function(clothbench_plugin_header target)
     target_link_libraries(${target} PRIVATE clothbench::plugin)
   endif()
 endfunction()
-
-# clothbench_peer_time(<target>): peer_time, a program beside the plugin that measures it.
-function(clothbench_peer_time target)
-  add_executable(${target} ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/peer_time.cpp)
-  set_target_properties(${target} PROPERTIES CXX_STANDARD 17 CXX_EXTENSIONS OFF UNITY_BUILD OFF)
-  target_compile_options(${target} PRIVATE -Wall -Wextra)
-  target_link_libraries(${target} PRIVATE ${CMAKE_DL_LIBS})
-  clothbench_plugin_header(${target})
-endfunction()

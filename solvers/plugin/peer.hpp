@@ -94,13 +94,30 @@ inline std::vector<Point> vertex_normals(const ClothbenchCollider& c, const doub
 constexpr std::uint32_t kColliders = CLOTHBENCH_SPHERE | CLOTHBENCH_BOX | CLOTHBENCH_PLANE | CLOTHBENCH_CAPSULES |
                                      CLOTHBENCH_STATIC_MESH | CLOTHBENCH_MOVING_MESH;
 
+/// All but self-collision and a duplicated layer. What else an engine cannot do, its `obstacle` says.
+constexpr std::uint32_t kSupports = CLOTHBENCH_STRETCH | CLOTHBENCH_SHEAR | CLOTHBENCH_BEND | CLOTHBENCH_DAMPING |
+                                    CLOTHBENCH_PINS | CLOTHBENCH_MOVING_PINS | kColliders | CLOTHBENCH_FRICTION |
+                                    CLOTHBENCH_DOUBLE_SIDED | CLOTHBENCH_UNEVEN_GRID | CLOTHBENCH_REGIONS |
+                                    CLOTHBENCH_SPIN | CLOTHBENCH_CLOTH_MESH;
+
 /// The distance at which a collider holds the cloth: the setting, or the scene's margin where the setting is 0.
 inline double margin(double setting_m, const ClothbenchCollider& c) { return setting_m > 0 ? setting_m : c.margin_m; }
 
 /// Every feature that is served and needed, in one stage: an engine's step cannot be divided from outside.
-inline ClothbenchStage whole_step(const char* name, const ClothbenchScene& s, std::uint32_t supports) {
+inline ClothbenchStage whole_step(const char* name, const ClothbenchScene& s) {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
-  return {name, s.needs & supports, 0, unknown, unknown};
+  return {name, s.needs & kSupports, 0, unknown, unknown};
+}
+
+/// Free fall [m] by an integrator that changes the velocity [m/s] first: `steps` times v = next(v), x += h v.
+template <typename Next>
+double fallen_m(std::int64_t steps, double h, double velocity, Next next) {
+  double out = 0;
+  for (std::int64_t k = 0; k < steps; ++k) {
+    velocity = next(velocity);
+    out += h * velocity;
+  }
+  return out;
 }
 
 /// A text that is valid until the next call, which comes from the same thread.
@@ -110,15 +127,30 @@ inline const char* kept(const std::string& text) {
   return last.c_str();
 }
 
-/// The C functions over an adapter: `Settings` from an array of values; `Solver` from settings and a scene; and
-/// `obstacle(settings, scene)`, the reason why the engine cannot run the scene, empty if it can.
-template <typename Solver, typename Settings>
-ClothbenchPlugin plugin() {
+/// What an adapter says of itself.
+struct About {
+  const char *name, *engine, *summary, *version;
+  double (*free_fall_m)(const double*, double, double, double, double, std::int32_t);
+};
+
+/// The C functions over an adapter: `Settings` from an array of values, in the order of `settings`; `Solver` from
+/// settings and a scene; and `obstacle(settings, scene)`, the reason why the engine cannot run the scene, empty if it
+/// can.
+template <typename Solver, typename Settings, std::uint32_t kCount>
+ClothbenchPlugin plugin(const About& about, const ClothbenchSetting (&settings)[kCount]) {
   ClothbenchPlugin p{};
   const std::uint32_t header[] = {CLOTHBENCH_PLUGIN_HEADER};
   std::memcpy(&p, header, sizeof header);
+  p.name = about.name;
+  p.engine = about.engine;
+  p.summary = about.summary;
+  p.solver_version = about.version;
   p.precision = "float32";
   p.time_order = 1;
+  p.supports = kSupports;
+  p.setting_count = kCount;
+  p.settings = settings;
+  p.free_fall_m = about.free_fall_m;
   p.create = [](const double* settings, const ClothbenchScene* scene, const char** why) -> void* {
     try {
       return new Solver(Settings(settings), *scene);

@@ -120,6 +120,7 @@ void check_description(const std::string& path, const ClothbenchPlugin& c) {
   if (((c.supports | c.ignores) >> kFeatureCount) != 0)
     refuse(path, "supports, ignores: expected bits of known features only");
   if ((c.supports & c.ignores) != 0) refuse(path, "supports, ignores: expected each feature in one of them only");
+  if (c.engine != nullptr && *c.engine == '\0') refuse(path, "engine: expected a text or NULL");
   if (c.time_order < 1) refuse(path, "time_order: expected 1 or more");
   for (const auto& [what, there] :
        {std::pair{"create", c.create != nullptr},
@@ -183,6 +184,7 @@ SolverInfo describe(const std::string& path, const ClothbenchPlugin& c) {
   info.supports = features_of(c.supports);
   info.ignores = features_of(c.ignores);
   info.time_order = c.time_order;
+  if (c.engine != nullptr) info.engine = c.engine;
   for (std::uint32_t k = 0; k < c.setting_count; ++k) {
     const ClothbenchSetting& s = c.settings[k];
     const nlohmann::json value =

@@ -13,6 +13,7 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
+#include "clothbench/solver_names.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
 
@@ -82,6 +83,14 @@ std::vector<std::string> names_of(FeatureSet set) {
 bool over_determined(const std::string& solver, const Scene& s) {
   return solver == "reference" && !s.material.membrane_stiffness_N_per_m &&
          (s.needs.has(Feature::Shear) || s.cloth.mesh);
+}
+
+// A study that names a solver of the tree must know it in a build without it.
+TEST(SolverNames, OfEverySolverThatIsBuilt) {
+  const std::vector<std::string>& names = solver_names_of_tree();
+  for (const SolverEntry& e : solvers())
+    EXPECT_NE(std::find(names.begin(), names.end(), e.info.name), names.end())
+        << e.info.name << ": missing in its line of solvers/CMakeLists.txt";
 }
 
 class Conformance : public ::testing::TestWithParam<Case> {};

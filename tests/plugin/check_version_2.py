@@ -52,6 +52,9 @@ class Version2(unittest.TestCase):
             self.assertEqual(self.command(*words), 0, self.text)
             with self.stored("gravity__example-xpbd__default") as f:
                 self.assertEqual(f["outcome"].attrs["status"], "ok")
+                cpu, wall = f["timing/frame_cpu_s"][...], f["timing/frame_wall_s"][...]
+                self.assertTrue((cpu > 0).all(), "a solver on the host")
+                self.assertLess(cpu.sum(), 1.1 * wall.sum() + 1e-3, "it has one thread")
                 positions.append(f["trajectory/position"][...])
         self.assertTrue(numpy.array_equal(positions[0], positions[1]))
 
@@ -85,6 +88,8 @@ class Version2(unittest.TestCase):
                 ["Paper GPU", "driver 7", "CUDA 1.0", True],
             )
             self.assertEqual(environment["gpu_properties"], {"cores": 3})
+            self.assertEqual(environment["plugin"]["engine"], "Engine")
+            self.assertNotIn("frame_cpu_s", f["timing"], "a solver on a GPU")
             n = 24 * 64
             self.assertEqual(
                 header["plan"]["buffers"],

@@ -4,6 +4,7 @@
  * the calls that a test counts. */
 #include <math.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -241,6 +242,7 @@ CLOTHBENCH_PLUGIN_EXPORT const ClothbenchPlugin* clothbench_plugin(void) {
   plugin.device_info = device_info, plugin.buffers = buffers;
   plugin.device_s = device_s, plugin.stage_device_s = stage_device_s;
   plugin.frames_in_flight = frames_in_flight, plugin.submit = submit, plugin.finish = finish;
+  plugin.engine = "Engine";
 #ifdef FAULT_NO_FINISH
   plugin.finish = NULL;
 #endif
@@ -248,7 +250,7 @@ CLOTHBENCH_PLUGIN_EXPORT const ClothbenchPlugin* clothbench_plugin(void) {
   plugin.setting_count = 0;
 #endif
 #ifdef FAULT_TOO_SMALL
-  plugin.plugin_size -= 8;
+  plugin.plugin_size = offsetof(ClothbenchPlugin, finish);
 #endif
 #ifdef FAULT_VERSION_3
   plugin.version = 3;

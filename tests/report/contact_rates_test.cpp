@@ -69,6 +69,16 @@ TEST(ContactRates, TableHasARowAKindAndAColumnASpeedBand) {
   EXPECT_EQ(contact_rate_table({drawn("xpbd", "desk", 1, 1, "pass", 0, "procedural")}).rows[1][1], "desk (procedural)");
 }
 
+TEST(ContactRates, ATableSaysWhereTheSolverHoldsTheCloth) {
+  std::vector<RunRecord> runs = {drawn("xpbd", "desk", 1, 1, "pass", 0, "procedural")};
+  runs[0].header.plan["contact_margins"] = {{{"collider", "mesh"}, {"margin_m", 0.02}}};
+  const Table t = contact_rate_table(runs);
+  EXPECT_EQ(t.rows[0][2], "holds at [mm]");
+  EXPECT_EQ(t.rows[1][2], "20");
+  EXPECT_EQ(t.rows[1].size(), t.rows[0].size());
+  EXPECT_EQ(contact_rates(runs).front().held_at, "20");
+}
+
 TEST(ContactRates, AnUnfinishedStudySaysSo) {
   std::vector<RunRecord> runs = sample();
   EXPECT_EQ(contact_rate_table(runs).note.find("missing"), std::string::npos);
@@ -86,8 +96,9 @@ TEST(ContactRates, WorstIsWhatDidNotEndThenTheLongestContour) {
   EXPECT_EQ(worst[2].run->header.scene, "contact-4-desk");
   const auto j = contact_rates_json(runs);
   EXPECT_EQ(j["worst"][0]["scene"], "contact-7-sweep");
-  EXPECT_NE(contact_rates_csv(runs).find("solver,setting,kind,speed_m_per_s,assets,passed,drawn,unsupported,not_ended,"
-                                         "rate_low,rate_high"),
+  EXPECT_NE(contact_rates_csv(runs).find(
+                "solver,setting,kind,speed_m_per_s,assets,held_at_mm,passed,drawn,unsupported,not_ended,"
+                "rate_low,rate_high"),
             std::string::npos);
 }
 

@@ -231,5 +231,28 @@ TEST(Features, ComeFromTheResultFilesAlone) {
             "ignored");
 }
 
+TEST(Penetration, TablesSayWhereTheSolverHoldsTheCloth) {
+  const std::string scenario = R"({"cloth":{"grid":[8,8]},"colliders":[{"type":"box","margin_m":0.004}]})";
+  std::vector<RunRecord> runs = {of_scene(desk_run("xpbd", "default", ""), "box", scenario),
+                                 of_scene(desk_run("other", "default", ""), "box", scenario),
+                                 of_scene(desk_run("none", "default", ""), "box", scenario)};
+  runs[1].header.plan["contact_margins"] = {{{"collider", "named otherwise"}, {"margin_m", 0.02}}};
+  runs[2].outcome.status = "unsupported";
+  EXPECT_EQ(held_at(runs[0]), "4") << "the scene's margin";
+  EXPECT_EQ(held_at(runs[1]), "20") << "what the solver states";
+  EXPECT_EQ(held_at(runs[2]), "–");
+  runs[1].header.plan["contact_margins"].push_back({{"collider", "box"}, {"margin_m", 0.0035}});
+  EXPECT_EQ(held_at(runs[1]), "3.5 to 20");
+  const std::vector<ContactSetUp> ups = set_ups(runs);
+  const Table verdicts = verdict_table(ups);
+  EXPECT_EQ(verdicts.rows.at(0), (std::vector<std::string>{"scene", "none", "other", "xpbd"}));
+  EXPECT_EQ(verdicts.rows.at(1),
+            (std::vector<std::string>{"(the solver holds the cloth at [mm])", "–", "3.5 to 20", "4"}));
+  const Table t = contact_table(ups.at(0));
+  EXPECT_EQ(t.rows.at(0).at(3), "holds at [mm]");
+  EXPECT_EQ(t.rows.at(2).at(3), "3.5 to 20");
+  EXPECT_EQ(penetration_json(ups).at(1).at("held_at_most_m"), 0.02);
+}
+
 }  // namespace
 }  // namespace clothbench

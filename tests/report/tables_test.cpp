@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "fake_runs.hpp"
+#include "report/plugin_marks.hpp"
+#include "report/withheld.hpp"
 
 namespace clothbench {
 namespace {
@@ -76,6 +78,17 @@ TEST(Tables, MissingValuesAreDashes) {
     EXPECT_EQ(entry(t, "xpbd", "single", "8²"), "–") << t.title;
     EXPECT_EQ(t.markdown().find("nan"), std::string::npos) << t.title;
   }
+}
+
+TEST(Tables, WithoutAGpuThereAreNoTablesOfDashes) {
+  std::vector<RunRecord> runs;
+  for (const char* solver : {"bullet-soft", "other"}) runs.push_back(fake_run(solver, 8, "single", 1e-3, false));
+  // Two jobs at a time: times are withheld, which leaves their tables; those of a GPU go all the same.
+  for (RunRecord& c : runs) c.summary["jobs"] = 2;
+  withhold(runs);
+  for (const char* word : {"GPU time", "kB a frame", "bandwidth", "memory"})
+    EXPECT_THROW(table_of(runs, word), std::runtime_error) << word;
+  EXPECT_EQ(entry(table_of(runs, "Wall time"), "other", "single", "8²"), "–");
 }
 
 TEST(Tables, RunsThatFailedSayHow) {
@@ -221,6 +234,57 @@ TEST(Headline, OverheadIsTheSlowestBallisticRun) {
       << overhead_line(runs);
   EXPECT_EQ(overhead_line({fake_run("xpbd", 8, "single", 1)}), "");
   EXPECT_EQ(overhead_line({with_outcome(fake_run("ballistic", 8, "single", 1), "timed_out", 3, "")}), "");
+}
+
+/// A run of a plugin, which wraps this engine.
+RunRecord plugin_run(const std::string& solver, int n, const std::string& engine) {
+  RunRecord c = fake_run(solver, n, "single", 1e-3, false);
+  c.header.environment["plugin"] = {{"path", "/p.so"}, {"sha256", "00ff"}, {"summary", "a plugin"}};
+  if (!engine.empty()) c.header.environment["plugin"]["engine"] = engine;
+  c.summary["frame_cpu_median_s"] = 9e-4;
+  return c;
+}
+
+TEST(Tables, APluginStandsBelowThePublishedRowOfItsEngine) {
+  std::vector<RunRecord> runs = study();
+  runs.push_back(plugin_run("other", 8, "Unlike"));
+  runs.push_back(plugin_run("peer", 8, "NvCloth"));
+  runs.push_back(plugin_run("plain", 8, ""));
+  const Table t = table_of(runs, "Table 3");
+  std::vector<std::string> names;
+  for (const auto& row : t.rows) names.push_back(row.at(0));
+  EXPECT_EQ(names, (std::vector<std::string>{"solver", "published: Unity Cloth", "peer", "published: PBD single-sided",
+                                             "published: PBD double-sided", "ballistic", "bullet-soft", "other",
+                                             "plain", "xpbd", "xpbd"}));
+  EXPECT_NE(t.note.find("peer: the engine behind Unity Cloth"), std::string::npos) << t.note;
+  EXPECT_NE(t.note.find("not Unity Cloth"), std::string::npos) << t.note;
+  EXPECT_EQ(table_of(study(), "Table 3").note.find("not Unity Cloth"), std::string::npos) << "no such plugin";
+  EXPECT_EQ(entry(table_of(runs, "CPU time"), "peer", "single", "8²"), "0.900");
+  EXPECT_EQ(entry(table_of(runs, "CPU time"), "xpbd", "single", "8²"), "–");
+  EXPECT_THROW(table_of(study(), "CPU time"), std::runtime_error) << "files without CPU times have no such table";
+}
+
+TEST(Tables, PluginsAreMarkedInTablesAndDataAlike) {
+  std::vector<RunRecord> runs = study();
+  runs.push_back(plugin_run("jolt", 8, ""));
+  const PluginMarks marks(runs);
+  EXPECT_EQ(marks.text("jolt"), "jolt†");
+  EXPECT_EQ(marks.text("jolt iterations=5, xpbd; not jolting nor my-jolt"),
+            "jolt† iterations=5, xpbd; not jolting nor my-jolt");
+  EXPECT_EQ(marks.text(marks.text("jolt")), "jolt†") << "once";
+  const Table t = marks.table({"", "N.", {{"scene", "solver", "jolt"}, {"jolt", "jolt x=1", "pass"}}});
+  EXPECT_EQ(t.rows,
+            (std::vector<std::vector<std::string>>{{"scene", "solver", "jolt†"}, {"jolt", "jolt† x=1", "pass"}}));
+  EXPECT_EQ(t.note, "N. †: a plugin, built outside of clothbench.");
+  EXPECT_EQ(marks.table({"", "N.", {{"solver"}, {"xpbd"}}}).note, "N.");
+  EXPECT_EQ(
+      marks.data({{"series", {{{"label", "jolt a=1"}, {"scene", "jolt"}}}}, {"not_ranked", {{"jolt", "why"}}}}),
+      nlohmann::json({{"series", {{{"label", "jolt† a=1"}, {"scene", "jolt"}}}}, {"not_ranked", {{"jolt†", "why"}}}}));
+  EXPECT_NE(t.latex().find("jolt$^\\dagger$ x=1"), std::string::npos) << t.latex();
+  EXPECT_EQ(t.latex().find("†"), std::string::npos) << "LaTeX does not know it without a package";
+  const PluginMarks none(study());
+  EXPECT_EQ(none.text("jolt"), "jolt");
+  EXPECT_NE(headline(runs, Format::Markdown).find("jolt† is a plugin"), std::string::npos);
 }
 
 }  // namespace

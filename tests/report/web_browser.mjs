@@ -60,6 +60,22 @@ async function check_tables() {
                 .map(t => [t.rows.length, t.rows[0].length])
                 .sort());
   equal(sizes.sort(), wanted, 'rows and columns of the tables');
+  // Verdicts of many solvers: upright heads, and all of the table in sight.
+  const upright = await page.$$eval(
+      '.table table', list => list.every(t => t.classList.contains('many') === t.rows[0].cells.length >= 11));
+  check(upright, 'tables of many columns, and no others, have upright heads');
+  const cut = await page.evaluate(() => {
+    const row = (tag, first, cell) => `<tr><th>${first}</th>${`<${tag}>${cell}</${tag}>`.repeat(13)}</tr>`;
+    const box = document.createElement('div');
+    box.className = 'scroll';
+    box.innerHTML = `<table class="many"><thead>${row('th', 'scene', 'bullet-soft† margin 20 mm')}</thead>` +
+        `<tbody>${row('td', 'two-hand-stretch-0p5mps', 'unsupported')}</tbody></table>`;
+    document.querySelector('main').append(box);
+    const wide = box.scrollWidth - box.clientWidth;
+    box.remove();
+    return wide;
+  });
+  check(cut <= 0, `a table of verdicts of 13 solvers fits, ${cut} px too wide`);
   const hidden = await page.$$eval(
       'h2, h3, table, figure',
       list => list.filter(e => {

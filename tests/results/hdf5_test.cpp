@@ -30,9 +30,20 @@ class Hdf5 : public ::testing::Test {
   fs::path dir_;
 };
 
+TEST_F(Hdf5, FilesWithoutCpuTimesAreRead) {
+  RunRecord r = sample_run();
+  for (TimedTrial& t : r.trials) t.frame_cpu_s.clear();  // GPU solvers, and files of before
+  write_hdf5(dir_ / "gpu.h5", r);
+  write_hdf5(dir_ / "host.h5", sample_run());
+  EXPECT_EQ(bytes(dir_ / "gpu.h5").find("frame_cpu_s"), std::string::npos) << "stored only where there are any";
+  EXPECT_NE(bytes(dir_ / "host.h5").find("frame_cpu_s"), std::string::npos);
+  for (const TimedTrial& t : read_hdf5(dir_ / "gpu.h5", false).trials) EXPECT_TRUE(t.frame_cpu_s.empty());
+}
+
 TEST_F(Hdf5, RoundTrip) {
   RunRecord r = sample_run();
   r.trials[2].frame_wall_s.resize(3);  // a trial may stop early
+  r.trials[2].frame_cpu_s.resize(3);
   r.trials[2].frame_device_s.resize(3);
   for (auto* s : {&r.trials[2].stage_device_s, &r.trials[2].stage_read_B, &r.trials[2].stage_write_B}) s->resize(6);
   write_hdf5(dir_ / "x.h5", r);

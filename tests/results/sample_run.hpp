@@ -30,6 +30,7 @@ inline RunRecord sample_run(int trials = 3, int frames = 4, std::uint32_t vertic
     if (t != 2) trial.end_unix_s = trial.start_unix_s + 4.125;
     for (int f = 0; f < frames; ++f) {
       trial.frame_wall_s.push_back(1e-3 * (1 + t) + 1e-5 * f);
+      if (t != 1) trial.frame_cpu_s.push_back(1.1e-3 * (1 + t) + 1e-7 * f);
       trial.frame_device_s.push_back(t == 1 ? kMissing : 9e-4 + 1e-6 * f);
       for (int s = 0; s < 2; ++s) {
         trial.stage_device_s.push_back(f < 2 ? 1e-4 * (s + 1) : kMissing);
@@ -77,6 +78,7 @@ inline bool same(const TimedTrial& a, const TimedTrial& b) {
          same(std::vector{a.pipelined_wall_s, a.start_unix_s, a.end_unix_s, a.jobs},
               std::vector{b.pipelined_wall_s, b.start_unix_s, b.end_unix_s, b.jobs}) &&
          same(a.frame_wall_s, b.frame_wall_s) && same(a.frame_device_s, b.frame_device_s) &&
+         same(a.frame_cpu_s, b.frame_cpu_s) && same(a.frame_rendered_s, b.frame_rendered_s) &&
          same(a.stage_device_s, b.stage_device_s) && same(a.stage_read_B, b.stage_read_B) &&
          same(a.stage_write_B, b.stage_write_B);
 }

@@ -35,6 +35,7 @@ struct SolverInfo {
   /// Settings for tests and measurements alone, members of one object setting: "tuning": {"shuffles": false}. They
   /// appear in no list.
   std::vector<SettingSpec> tuning = {};
+  std::string engine = {};  ///< that a plugin wraps, as clothbench_plugin.h states it; empty for other solvers
 };
 
 /// The features of `needs` that the solver cannot run, `only_with` included; empty if it can run the scene.

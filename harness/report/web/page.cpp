@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "clothbench/error.hpp"
+#include "report/plugin_marks.hpp"
 #include "report/web/template.hpp"
 #include "results/store.hpp"
 
@@ -48,7 +49,7 @@ json page_document(const std::vector<RunRecord>& runs, const Page& page, const M
           {"maps", page.maps},
           {"cases", page.cases},
           {"commands", page.commands},
-          {"motions", motions.document}};
+          {"motions", PluginMarks(runs).data(motions.document)}};
 }
 
 std::string page_html(const std::string& html, const json& document, const std::vector<std::string>& blobs) {

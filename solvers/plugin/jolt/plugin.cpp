@@ -10,12 +10,7 @@ double free_fall_m(const double* values, double dt_s, double gravity, double vel
   const Settings settings(values);
   const int n = settings.iterations * settings.collision_steps;
   const double h = dt_s / n, kept = std::max(0.0, 1 - damping * h);
-  double fallen = 0;
-  for (std::int64_t k = 0; k < static_cast<std::int64_t>(frames) * n; ++k) {
-    velocity = kept * (velocity + h * gravity);
-    fallen += h * velocity;
-  }
-  return fallen;
+  return peer::fallen_m(std::int64_t{frames} * n, h, velocity, [=](double v) { return kept * (v + h * gravity); });
 }
 
 const ClothbenchSetting kSettings[] = {
@@ -31,16 +26,7 @@ const ClothbenchSetting kSettings[] = {
 
 extern "C" const ClothbenchPlugin* clothbench_plugin(void) {
   using namespace clothbench::jolt;
-  static const ClothbenchPlugin plugin = [] {
-    ClothbenchPlugin p = clothbench::peer::plugin<Solver, Settings>();
-    p.name = "jolt";
-    p.summary = "Jolt Physics' soft bodies on one CPU core (AVX2)";
-    p.solver_version = "1";
-    p.supports = kSupports;
-    p.setting_count = sizeof kSettings / sizeof *kSettings;
-    p.settings = kSettings;
-    p.free_fall_m = free_fall_m;
-    return p;
-  }();
+  static const ClothbenchPlugin plugin = clothbench::peer::plugin<Solver, Settings>(
+      {"jolt", "Jolt Physics", "Jolt Physics' soft bodies on one CPU core (AVX2)", "1", free_fall_m}, kSettings);
   return &plugin;
 }

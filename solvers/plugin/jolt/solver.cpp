@@ -67,7 +67,7 @@ std::string obstacle(const Settings& settings, const ClothbenchScene&) {
 }
 
 Solver::Solver(const Settings& settings, const ClothbenchScene& s)
-    : stage(peer::whole_step("update", s, kSupports)),
+    : stage(peer::whole_step("update", s)),
       scene_(s),
       settings_(settings),
       origin_(peer::centre(s)),

@@ -17,11 +17,6 @@ struct Settings {
   explicit Settings(const double* values);
 };
 
-constexpr std::uint32_t kSupports = CLOTHBENCH_STRETCH | CLOTHBENCH_SHEAR | CLOTHBENCH_BEND | CLOTHBENCH_DAMPING |
-                                    CLOTHBENCH_PINS | CLOTHBENCH_MOVING_PINS | peer::kColliders | CLOTHBENCH_FRICTION |
-                                    CLOTHBENCH_DOUBLE_SIDED | CLOTHBENCH_UNEVEN_GRID | CLOTHBENCH_REGIONS |
-                                    CLOTHBENCH_SPIN | CLOTHBENCH_CLOTH_MESH;
-
 /// Why the engine cannot run a scene; empty if it can.
 std::string obstacle(const Settings&, const ClothbenchScene&);
 

@@ -9,12 +9,7 @@ double free_fall_m(const double* values, double dt_s, double gravity, double vel
                    std::int32_t frames) {
   const int n = Settings(values).iterations(dt_s);
   const double h = dt_s / n, kept = std::exp(-damping * h);
-  double fallen = 0;
-  for (std::int64_t k = 0; k < static_cast<std::int64_t>(frames) * n; ++k) {
-    velocity = kept * velocity + h * gravity;
-    fallen += h * velocity;
-  }
-  return fallen;
+  return peer::fallen_m(std::int64_t{frames} * n, h, velocity, [=](double v) { return kept * v + h * gravity; });
 }
 
 const ClothbenchSetting kSettings[] = {
@@ -33,16 +28,7 @@ const ClothbenchSetting kSettings[] = {
 
 extern "C" const ClothbenchPlugin* clothbench_plugin(void) {
   using namespace clothbench::nvcloth;
-  static const ClothbenchPlugin plugin = [] {
-    ClothbenchPlugin p = clothbench::peer::plugin<Solver, Settings>();
-    p.name = "nvcloth";
-    p.summary = "NvCloth 1.1.6 on one CPU core (SSE2), in centimetres";
-    p.solver_version = "1";
-    p.supports = kSupports;
-    p.setting_count = sizeof kSettings / sizeof *kSettings;
-    p.settings = kSettings;
-    p.free_fall_m = free_fall_m;
-    return p;
-  }();
+  static const ClothbenchPlugin plugin = clothbench::peer::plugin<Solver, Settings>(
+      {"nvcloth", "NvCloth", "NvCloth 1.1.6 on one CPU core (SSE2), in centimetres", "1", free_fall_m}, kSettings);
   return &plugin;
 }

@@ -92,7 +92,7 @@ std::string obstacle(const Settings& settings, const ClothbenchScene& s) {
 }
 
 Solver::Solver(const Settings& settings, const ClothbenchScene& s)
-    : stage(peer::whole_step("simulate", s, kSupports)),
+    : stage(peer::whole_step("simulate", s)),
       scene_(s),
       settings_(settings),
       origin_(peer::centre(s)),

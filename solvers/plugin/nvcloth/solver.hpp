@@ -18,11 +18,6 @@ struct Settings {
   double frequency_hz(double frame_rate_hz) const;
 };
 
-constexpr std::uint32_t kSupports = CLOTHBENCH_STRETCH | CLOTHBENCH_SHEAR | CLOTHBENCH_BEND | CLOTHBENCH_DAMPING |
-                                    CLOTHBENCH_PINS | CLOTHBENCH_MOVING_PINS | peer::kColliders | CLOTHBENCH_FRICTION |
-                                    CLOTHBENCH_DOUBLE_SIDED | CLOTHBENCH_UNEVEN_GRID | CLOTHBENCH_REGIONS |
-                                    CLOTHBENCH_SPIN | CLOTHBENCH_CLOTH_MESH;
-
 /// Why the engine cannot run a scene; empty if it can.
 std::string obstacle(const Settings&, const ClothbenchScene&);
 

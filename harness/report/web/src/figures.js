@@ -5,6 +5,9 @@ import {cases_figure, stability_figure} from './figure_stability.js';
 import {stretch_figure} from './figure_stretch.js';
 import {work_figure} from './figure_work.js';
 
+/// Bytes are known of GPU solvers alone.
+const on_gpu = family => family.series.some(s => s.points.some(p => p.gpu));
+
 /// {section id: figures} for the sections that have data; `rates` has one list per family. Figs. 4 and 5 are those of
 /// the paper's table if it was run, else those of the first family.
 export function make_figures(doc) {
@@ -13,7 +16,8 @@ export function make_figures(doc) {
   return {
     rates: doc.rates.map(
         (family, k) => [rates_figure(family, k, file(family, 'fig4')),
-                        bandwidth_figure(family, k, file(family, 'fig5')), stretch_figure(family, k)]
+                        on_gpu(family) ? bandwidth_figure(family, k, file(family, 'fig5')) : null,
+                        stretch_figure(family, k)]
                            .filter(Boolean)),
     'work-precision': doc.work.length ? [work_figure(doc.work)] : [],
     penetration: doc.penetration.length ? [penetration_figure(doc.penetration)] : [],

@@ -41,7 +41,8 @@ const columns_for = labels =>
 function full_spec({title, empty, labels = [], notes = [], make}) {
   const plot =
       empty ? {data: {values: [{}]}, width: kWidth_px, height: 60, mark: {type: 'text', text: empty}} : make(kWidth_px);
-  const lines = notes.filter(Boolean).flatMap(n => wrapped(n, kWidth_px));
+  const plugins = labels.some(l => l.includes('†')) ? '†: a plugin, built outside of clothbench.' : '';
+  const lines = [...notes, plugins].filter(Boolean).flatMap(n => wrapped(n, kWidth_px));
   const below = lines.length ? {text: lines, orient: 'bottom', anchor: 'start', fontSize: kNote_px, offset: 8} : null;
   const look = config('paper');
   look.legend.columns = columns_for(labels);

@@ -35,6 +35,7 @@ const kTex = {
   '<': '$<$',
   '>': '$>$',
   '°': '$^\\circ$',
+  '†': '$^\\dagger$',
   'µ': '$\\mu$',
   'ν': '$\\nu$',
   '₀': '$_0$',
@@ -63,6 +64,8 @@ export function to_latex(t) {
 
 const kBad = /^(fail\b|unsupported|missing|diverged|not_finite|timed_out|device_lost|error|no$|NO|REFUSED)/;
 const kGood = /^(pass\b|yes$)/;
+/// From here on a table's heads stand upright.
+const kManyColumns = 11;
 const is_number = text => /^[≤<>]?\s?[-−]?\d/.test(text) || text === '–';
 
 function body_cell(text, row_header, numeric) {
@@ -78,7 +81,7 @@ export function table_block(t) {
   // A column is aligned as text if most of its values are text.
   const numeric = head.map((_, k) => body.filter(r => is_number(r[k] ?? '')).length * 2 >= body.length);
   const table = element(
-      'table', {}, element('caption', {class: 'skip'}, t.title),
+      'table', {class: head.length >= kManyColumns ? 'many' : null}, element('caption', {class: 'skip'}, t.title),
       element(
           'thead', {},
           element('tr', {}, head.map((h, k) => element('th', {scope: 'col', class: numeric[k] ? null : 'text'}, h)))),

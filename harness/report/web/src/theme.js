@@ -67,6 +67,19 @@ function generated(k, name) {
   return `#${hex(channel(0))}${hex(channel(8))}${hex(channel(4))}`.toUpperCase();
 }
 
+const channels = colour => [1, 3, 5].map(at => parseInt(colour.slice(at, at + 2), 16));
+const distance = (a, b) => Math.hypot(...channels(a).map((v, k) => v - channels(b)[k]));
+/// The next further colour that is unlike all in `used`; where there are too many for that, the least alike so far.
+function unlike(used, name) {
+  const kUnlike = 60, kTries = 24;
+  let best = null, apart = -1;
+  for (let k = used.length; k < used.length + kTries && apart < kUnlike; ++k) {
+    const colour = generated(k, name), nearest = Math.min(...used.map(u => distance(colour, u)));
+    if (nearest > apart) [best, apart] = [colour, nearest];
+  }
+  return best;
+}
+
 /// {label: colour} for every label, stable as long as the labels are.
 export function palette(labels, theme_name = theme()) {
   const name = theme_name === 'dark' ? 'dark' : 'light', out = {};
@@ -74,6 +87,6 @@ export function palette(labels, theme_name = theme()) {
   for (const label of labels)
     out[label] = kColours[name][label] ??
         (label.startsWith('published') ? kPublished[name][published++ % 3] :
-                                         kSpare[name][spare++] ?? generated(spare, name));
+                                         kSpare[name][spare++] ?? unlike([...Object.values(out), ...kSpare[name]], name));
   return out;
 }

@@ -1,0 +1,87 @@
+#!/usr/bin/env bash
+# Every study that the plugins of NvCloth and Jolt can run, with Bullet's soft body beside them, into OUT.
+#   scripts/peers.sh --study OUT [timed | untimed | publish] [--quick]
+# timed: run it alone on the machine. untimed: its times are not used, so it may run beside other work. Without either, both.
+# publish: copies what results/reference/peers shows of the reports that are there, and fills its tables.
+# --quick: a few scenes, to see that all of it works. What is finished stays: call it again to continue. Each study prints
+# the seconds that it took. Reports: OUT/report-<study>. Needs build/release/clothbench (or CLOTHBENCH) and build/peers (scripts/peers.sh DIR).
+set -euo pipefail
+out= quick= parts=
+for word in "$@"; do
+  case $word in
+    --quick) quick=--quick ;;
+    timed | untimed | publish) parts="$parts $word" ;;
+    -*) echo "scripts/peers.sh --study: $word: expected OUT, timed, untimed, publish or --quick" >&2; exit 2 ;;
+    *) out=$word ;;
+  esac
+done
+[ -n "$out" ] || { echo "usage: scripts/peers.sh --study OUT [timed | untimed | publish] [--quick]" >&2; exit 2; }
+mkdir -p "$out"
+out=$(cd "$out" && pwd)
+cd "$(dirname "$0")/.."
+bench=${CLOTHBENCH:-build/release/clothbench}
+for engine in nvcloth jolt; do
+  plugin=$PWD/build/peers/$engine/libclothbench_$engine.so
+  [ -e "$plugin" ] || { echo "scripts/peers.sh --study: $plugin: not built; scripts/peers.sh DIR builds it" >&2; exit 1; }
+  CLOTHBENCH_PLUGINS=${CLOTHBENCH_PLUGINS:+$CLOTHBENCH_PLUGINS:}$plugin
+done
+export CLOTHBENCH_PLUGINS
+three=(--solver nvcloth --solver jolt --solver bullet-soft)
+
+# part NAME COMMAND…: runs it with its folder as --out, once; a part that is interrupted continues there.
+part() {
+  local name=$1 start=$SECONDS resume=() status=0
+  shift
+  [ ! -e "$out/$name.done" ] || return 0
+  [ ! -d "$out/$name" ] || resume=(--resume)
+  "$bench" "$@" --out "$out/$name" "${resume[@]}" >"$out/$name.log" 2>&1 || status=$?
+  # Exit status 1: rows crashed, diverged or timed out, which are results.
+  if [ "$status" -gt 1 ]; then
+    tail -5 "$out/$name.log" >&2
+    return "$status"
+  fi
+  "$bench" report "$out/$name" -o "$out/report-$name" >"$out/report-$name.log" 2>&1 || { tail -5 "$out/report-$name.log" >&2; return 1; }
+  echo "$name $((SECONDS - start)) s" | tee "$out/$name.done"
+}
+
+if [[ -z $parts || $parts == *" timed"* ]]; then
+  part table3 study table3 ${quick:-"--short"} --trials 3 "${three[@]}"
+  part hang study solvers/plugin/studies/peers-hang.json $quick
+  part work-precision study work-precision ${quick:-"--short"} --trials 2 --no-moduli "${three[@]}"
+fi
+if [[ -z $parts || $parts == *untimed* ]]; then
+  part friction friction nvcloth jolt bullet-soft
+  part moduli moduli nvcloth jolt bullet-soft ${quick:+--no-sweep}
+  part margins study solvers/plugin/studies/peers-margins.json $quick
+  # The whole of these takes hours: scripts/stability.sh, study contact --count 108.
+  part stability study stability --quick --jobs 2 "${three[@]}"
+  part penetration study penetration --quick --trials 1 "${three[@]}"
+  part contact study contact --quick --seed 1 --count "$([ -n "$quick" ] && echo 2 || echo 9)" --jobs 2 "${three[@]}"
+fi
+# take STUDY FILE NAME: a report's file as NAME; paths of plugins are those in this tree.
+take() {
+  [ -e "$out/$1.done" ] || return 0
+  if [[ $2 == *.png ]]; then cp "$out/report-$1/$2" "$shown/$3"; else sed "s|$PWD/||g" "$out/report-$1/$2" >"$shown/$3"; fi
+}
+if [[ $parts == *publish* ]]; then
+  shown=$PWD/results/reference/peers
+  take table3 table3.md table3.md
+  take table3 table3.csv table3.csv
+  take table3 fig4.png fig4.png
+  take hang report.md hang.md
+  take hang runs.csv hang.csv
+  take work-precision work-precision-swing-strip-32.png work-precision-swing-strip-32.png
+  take work-precision work-precision.md work-precision.md
+  take work-precision work-precision.csv work-precision.csv
+  take work-precision summary.md summary.md
+  take moduli material.md material.md
+  take friction friction.md friction.md
+  take penetration penetration.md penetration.md
+  take margins penetration.md margins.md
+  take margins penetration.json margins.json
+  take contact contact-rates.md contact-rates.md
+  take contact contact-rates.csv contact.csv
+  take stability stability.md stability.md
+  take stability stability.csv stability.csv
+  scripts/peers_tables.py "$shown" "$shown/README.md" solvers/plugin/PEERS.md
+fi
