@@ -187,13 +187,53 @@ TEST_F(PlaneContacts, RepeatBitForBit) {
   EXPECT_EQ(a.position, again.position) << "reset restores the colliders and the list of pairs too";
 }
 
+/// A whole frame in one dispatch moves the cloth bit for bit as a dispatch a phase does.
+void expect_same_bits_in_one_dispatch(const Scene& s, int frames, const std::string& what) {
+  SCOPED_TRACE(what);
+  const auto run = [&](const char* in_one, ClothState& end, ContactFaults& faults) {
+    nlohmann::json settings = by_planes({{"substeps", 6}});
+    settings[kTuning]["contact_frame"] = in_one;
+    const auto solver = make_xpbd(complete_settings(xpbd_info(), settings), {-1, true});
+    solver->load(s);
+    EXPECT_EQ(check_stages(s, solver->info(), solver->plan()), "");
+    end = after(*solver, s, frames);
+    faults = solver->contact_faults();
+    long dispatches = 0;
+    for (const StagePlan& stage : solver->plan().stages) dispatches += stage.dispatches;
+    return dispatches;
+  };
+  ClothState one, many;
+  ContactFaults of_one{}, of_many{};
+  EXPECT_LE(run("always", one, of_one), 3) << "skinning, pieces, the frame";
+  EXPECT_GT(run("never", many, of_many), 6 * 12);
+  EXPECT_EQ(one.position, many.position);
+  EXPECT_EQ(one.velocity, many.velocity);
+  EXPECT_EQ(of_one.returned, of_many.returned);
+  EXPECT_EQ(of_one.without_place, of_many.without_place);
+  EXPECT_EQ(of_one.dropped, of_many.dropped);
+}
+
+/// A sheet that falls onto something in frames of the usual length.
+Scene falling(const Collider& collider, int columns, int rows) {
+  Scene s = with_damping(with_bending(with_collider(sheet(columns, rows), collider)));
+  s.cloth.sides = Sides::Double;
+  s.needs.add(Feature::DoubleSided);
+  s.cloth.center_m = {0, 0.26, 0};
+  s.cloth.initial_velocity_m_per_s = {0.4, -3, 0.3};
+  return collider.moves() ? moving(s) : s;
+}
+
+TEST_F(PlaneContacts, HaveTheSameBitsInOneDispatch) {
+  expect_same_bits_in_one_dispatch(falling(sphere({0.02, 0.04, 0.03}, 0.09, kContactFriction), 9, 7), 8, "sphere");
+}
+
 TEST_F(PlaneContacts, AreLeftOutPieceByPiece) {
   const Scene plain = sheet(5, 4);
   const std::set<std::string> vertices = {"plane_reach", "plane_predict", "plane_gather", "plane_settle",
                                           "plane_project"},
                               pairs = {"plane_list",  "plane_scan",    "plane_list_fill",
                                        "plane_query", "plane_respond", "plane_choose"},
-                              motion = {"plane_points", "plane_boxes"};
+                              motion = {"plane_pieces"};
   const auto together = [](std::set<std::string> a, const std::set<std::string>& b) {
     a.insert(b.begin(), b.end());
     return a;
