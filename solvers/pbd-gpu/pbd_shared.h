@@ -335,7 +335,7 @@ struct ContactLedger {
   uint unused0;
 };
 
-/// Counts since loading; all are 0 unless contact failed.
+/// Counts since loading or reset; all are 0 unless contact failed.
 struct ContactFaults {
   uint without_place;  // vertices that were not before all their planes at a substep's end
   uint inside;         // pairs that touch at a substep's start

@@ -61,7 +61,8 @@ void PlaneContact::add_elements(const std::vector<std::uint32_t>& particle) {
   all.push_back(first);
   for (const auto& fan : fans) all.insert(all.end(), fan.begin(), fan.end());
   const auto count = static_cast<std::uint32_t>(elements.size());
-  capacity_ = std::clamp(kPairsAnElement * count, kLeastPairs, kMostPairs);
+  capacity_ = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
+  if (capacity_ == 0) capacity_ = std::clamp(kPairsAnElement * count, kLeastPairs, kMostPairs);
   frame_.add_buffer(BIND_ELEMENTS, "contact elements", elements);
   frame_.add_buffer(BIND_FANS, "contact fans", all);
   frame_.add_buffer(BIND_RANGES, "contact ranges", count * sizeof(uvec4));
@@ -201,5 +202,7 @@ ContactFaults PlaneContact::faults() const {
   std::memcpy(&f, faults_->mapped(), sizeof f);
   return f;
 }
+
+void PlaneContact::clear_faults() { std::memset(faults_->mapped(), 0, sizeof(ContactFaults)); }
 
 }  // namespace clothbench::pbd_gpu

@@ -35,8 +35,9 @@ class PlaneContact {
   PlaneFrameSpecialization frame_specialization() const;
   PlaneContactConstants constants(int s, int substeps, double dt_s) const;
 
-  /// What went wrong since loading; PLANES.md says what each count means.
+  /// What went wrong since loading or clear_faults(); PLANES.md says what each count means.
   ContactFaults faults() const;
+  void clear_faults();
 
  private:
   void add_elements(const std::vector<std::uint32_t>& particle);

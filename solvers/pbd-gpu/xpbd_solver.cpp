@@ -21,6 +21,22 @@ class Xpbd final : public GpuSolver {
 
   ContactFaults contact_faults() const override { return plane_contact_ ? plane_contact_->faults() : ContactFaults{}; }
 
+  std::vector<SolverCount> counts() const override {
+    if (!plane_contact_) return {};
+    const ContactFaults f = plane_contact_->faults();
+    return {{"contact_squeezed", "vertices that were put at the nearest place, for none was before all their planes",
+             static_cast<double>(f.without_place)},
+            {"contact_inside", "pairs of a triangle and a piece that met at a substep's start",
+             static_cast<double>(f.inside)},
+            {"contact_dropped", "pairs that the list had no place for", static_cast<double>(f.dropped),
+             "contact: the list of pairs had no place for all of them"}};
+  }
+
+  void reset() override {
+    GpuSolver::reset();
+    if (plane_contact_) plane_contact_->clear_faults();
+  }
+
  private:
   void build() override {
     // The kernel of a whole frame assumes the masses of an even sheet.
@@ -94,12 +110,17 @@ class Xpbd final : public GpuSolver {
     add_buffer(BIND_LAST_VELOCITIES, "last velocities", particles * sizeof(vec4));
   }
 
-  /// Whether planes hold colliders off. Self-contact moves vertices after them, across the planes.
+  /// Whether planes hold colliders off.
   bool by_planes() {
-    if (settings()[kTuning]["contact"] != "planes" || (scene().needs & kColliderFeatures).empty()) return false;
-    if (!scene().needs.has(Feature::SelfCollision)) return true;
-    leave_out("contact by planes", "the cloth of the scene touches itself");
-    return false;
+    const bool planes = contact_by_planes(scene(), settings());
+    if (!planes && settings()[kTuning]["contact"] == "planes" && scene().needs.has(Feature::SelfCollision))
+      leave_out("contact by planes", "the cloth of the scene touches itself");
+    if (const int wanted = substeps_over_budget(scene(), settings()); wanted > 0)
+      leave_out(
+          std::to_string(wanted) + " substeps",
+          "the colliders are fast: " + std::to_string(xpbd_substeps(scene(), settings())) +
+              " are the most a frame may cost; the cloth is overstretched for some frames, and nothing is passed");
+    return planes;
   }
 
   /// Rejects or overrides what chains do not support: several iterations with kept multipliers, batches, bending,
@@ -237,6 +258,7 @@ SolverInfo xpbd_info() {
        "and a convex piece"},
       {"contact_frame", "\"auto\"",
        "with contact=planes, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, never"},
+      {"contact_pairs", "0", "with contact=planes, pairs that the list has place for; 0: by the cloth's elements"},
       {"contact_lanes", "0",
        "threads of the proximity query of one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
       {"device_barrier", "\"auto\"",
@@ -267,6 +289,7 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", tuning, "prediction", {"auto", "always"});
   require_one_of("xpbd", tuning, "contact", {"samples", "planes"});
   require_one_of("xpbd", tuning, "contact_frame", {"auto", "always", "never"});
+  require_between("xpbd", tuning, "contact_pairs", 0, 1 << 24);
   require_one_of("xpbd", tuning, "contact_lanes", {0, 1, 2, 4, 8, 16});
   return std::make_unique<Xpbd>(xpbd_info(), settings, device, count_bytes);
 }

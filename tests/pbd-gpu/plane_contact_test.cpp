@@ -9,6 +9,7 @@
 #include "plane_contact_check.hpp"
 #include "plane_contact_reference.hpp"
 #include "runner/stage_check.hpp"
+#include "runner/whole_run.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -185,6 +186,28 @@ TEST_F(PlaneContacts, RepeatBitForBit) {
   one->reset();
   const ClothState again = after(*one, s, 12);
   EXPECT_EQ(a.position, again.position) << "reset restores the colliders and the list of pairs too";
+}
+
+/// A list that is too short cuts the reach, and what it then has no place for makes the run an error.
+TEST_F(PlaneContacts, DropNoPairInSilence) {
+  Scene s = falling_in_steps(sphere({0.02, 0.2, 0.03}, 0.09, kContactFriction), 100);
+  const SolverEntry& entry = find_solver("xpbd");
+  for (const auto& [places, dropped] : {std::pair{0, false}, {3, true}}) {
+    nlohmann::json settings = by_planes({{"substeps", 2}});
+    settings[kTuning]["contact_pairs"] = places;
+    RunSpec spec{&s, &entry, complete_settings(xpbd_info(), settings)};
+    const RunRecord run = whole_run(spec, {});
+    EXPECT_EQ(run.outcome.status, dropped ? "error" : "ok") << run.outcome.message;
+    const auto series = std::find_if(run.accuracy.metrics.begin(), run.accuracy.metrics.end(),
+                                     [](const MetricSeries& m) { return m.name == "contact_dropped"; });
+    ASSERT_NE(series, run.accuracy.metrics.end());
+    ASSERT_EQ(series->values.size(), run.accuracy.time_s.size());
+    EXPECT_EQ(series->values.back() > 0, dropped);
+    if (!dropped) continue;
+    EXPECT_NE(run.outcome.message.find("list of pairs"), std::string::npos) << run.outcome.message;
+    EXPECT_EQ(series->values[static_cast<std::size_t>(run.outcome.failed_frame)], series->values.back());
+    EXPECT_EQ(series->values[static_cast<std::size_t>(run.outcome.failed_frame) - 1], 0);
+  }
 }
 
 /// A whole frame in one dispatch moves the cloth bit for bit as a dispatch a phase does.

@@ -81,6 +81,42 @@ void add_kernels(std::vector<Fault>& f) {
          "if (GRIPS > 999999u) move_held(s);");
 }
 
+/// A fault in every phase of contact by planes.
+void add_planes(std::vector<Fault>& f) {
+  const auto kernel = [&](const char* name, const char* file, const char* is, const char* is_to_be) {
+    Fault fault{name, "struck"};
+    fault.shader = ShaderFault{file, is, is_to_be};
+    f.push_back(std::move(fault));
+  };
+  kernel("points of pieces stand still within the frame", "plane_pieces.comp", "PiecePoint(c.b0, c.b1)",
+         "PiecePoint(c.b0, c.b0)");
+  kernel("reach without the speed of the vertex", "plane_reach.glsl", "+ 1.5 * length(", "+ 0.0 * length(");
+  kernel("one pair in three not listed", "plane_list.glsl", "        ++n[l];",
+         "        n[l] += k % 3u == 1u ? 0u : 1u;");
+  kernel("pairs of each element begin one too late", "plane_scan.glsl", "uvec4(min(first, CAPACITY), ",
+         "uvec4(min(first + 1u, CAPACITY), ");
+  kernel("proposal without gravity and velocity", "plane_vertices.glsl", "at.xyz += p.h * (vel ",
+         "at.xyz += 0.0 * p.h * (vel ");
+  kernel("bounds of distances do not lose the ways", "plane_query.glsl", "bound -= most_of(e, true) + moved;",
+         "bound -= 0.0;");
+  kernel("normal of the nearest points flipped", "plane_query.glsl", "s.normal = vec4(r.n, gap);",
+         "s.normal = vec4(-r.n, gap);");
+  kernel("friction along the slip", "plane_push.glsl", "by -= min(1.0, piece.friction",
+         "by += min(1.0, piece.friction");
+  kernel("response half as far", "plane_push.glsl", "vec4(by, push + out_by - moving) / mass",
+         "0.5 * vec4(by, push + out_by - moving) / mass");
+  kernel("responses of the last corner not gathered", "plane_gather.glsl", "from_pairs(fan / 4u, fan % 4u, at.w);",
+         "if (fan % 4u != 2u) from_pairs(fan / 4u, fan % 4u, at.w);");
+  kernel("what was struck no heavier in the lines", "plane_gather.glsl", "at.w / (1.0 + held)", "at.w");
+  kernel("a hull that misses a corner", "plane_geometry.glsl", "uint j = 0u; j < piece.count; ++j) high",
+         "uint j = 1u; j < piece.count; ++j) high");
+  kernel("planes a millimetre inside the piece", "plane_choose.glsl", "dot(n, around) + least;",
+         "dot(n, around) + least - 1e-3;");
+  kernel("planes forgotten", "plane_project.glsl", "if (worst(at) >= 0.0) return at;", "return at;");
+  kernel("projected onto all planes but those of the last triangle", "plane_project.glsl", "any_planes && f < end_fan;",
+         "any_planes && f + 1u < end_fan;");
+}
+
 void add_inputs(std::vector<Fault>& f) {
   const auto scene = [&](const char* name, const char* stage, std::function<void(Scene&)> change) {
     Fault fault{name, stage};
@@ -220,6 +256,7 @@ void add_records(std::vector<Fault>& f) {
 std::vector<Fault> faults() {
   std::vector<Fault> out;
   add_kernels(out);
+  add_planes(out);
   add_inputs(out);
   add_outputs(out);
   add_metrics(out);

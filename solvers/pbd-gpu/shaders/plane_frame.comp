@@ -63,43 +63,69 @@ const uint kThreads = THREADS;
 #define MEET if (!grid_barrier()) return
 #define MEET_OR_FAIL if (!grid_barrier()) return false
 #define COUNTED(t) ledger.asked[t]
-#define CLOTH_LOW(c) ledger.cloth_low[c]
-#define CLOTH_HIGH(c) ledger.cloth_high[c]
+#define CLOTH_LOW ledger.cloth_low
+#define CLOTH_HIGH ledger.cloth_high
 #else
 #define MEET { memoryBarrierBuffer(); barrier(); }
 #define MEET_OR_FAIL MEET
-shared uint asked[2], cloth_low[3], cloth_high[3];
+shared uint asked[2];
 #define COUNTED(t) asked[t]
-#define CLOTH_LOW(c) cloth_low[c]
-#define CLOTH_HIGH(c) cloth_high[c]
+#define CLOTH_LOW cloth_low
+#define CLOTH_HIGH cloth_high
 #endif
-shared uint any_near;
+shared uint any_near, cloth_low[3], cloth_high[3];
 
 const uint kTurns = 3u;
 uint me, everyone;  // this thread among those of all workgroups
 #define EACH(i, count) for (uint i = me; i < (count); i += everyone)
 
-/// Box of everywhere that the cloth may go in the frame.
-void widen_cloth(vec4 reach) {
-  for (uint c = 0u; c < 3u; ++c) {
-    atomicMin(CLOTH_LOW(c), ordered(reach[c] - reach.w));
-    atomicMax(CLOTH_HIGH(c), ordered(reach[c] + reach.w));
+/// Reaches of all vertices, and the box of everywhere that the cloth may go in the frame: first of a thread's vertices, then of a
+/// subgroup, a workgroup, all of them, so that few threads wait for one another's sums.
+void reach_and_widen(float carried) {
+  uvec3 from = uvec3(kLowNone), to = uvec3(kHighNone);
+  EACH(i, VERTICES) {
+    vec4 reach = reach_of_vertex(i, carried);
+    for (uint c = 0u; c < 3u; ++c) {
+      from[c] = min(from[c], ordered(reach[c] - reach.w));
+      to[c] = max(to[c], ordered(reach[c] + reach.w));
+    }
   }
+  barrier();  // all lanes have theirs
+#ifdef SHUFFLES
+  for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) {
+    from = min(from, subgroupShuffleXor(from, n));
+    to = max(to, subgroupShuffleXor(to, n));
+  }
+  bool speaks = gl_SubgroupInvocationID == 0u;
+#else
+  const bool speaks = true;
+#endif
+  for (uint c = 0u; speaks && c < 3u; ++c) {
+    atomicMin(cloth_low[c], from[c]);
+    atomicMax(cloth_high[c], to[c]);
+  }
+#ifdef MANY_GROUPS
+  barrier();  // the workgroup's box before that of all
+  if (thread < 3u) {
+    atomicMin(ledger.cloth_low[thread], cloth_low[thread]);
+    atomicMax(ledger.cloth_high[thread], cloth_high[thread]);
+  }
+#endif
 }
 bool meets_cloth(ClusterBox b) {
   for (uint c = 0u; c < 3u; ++c)
-    if (CLOTH_LOW(c) > ordered(b.high[c]) || ordered(b.low[c]) > CLOTH_HIGH(c)) return false;
+    if (CLOTH_LOW[c] > ordered(b.high[c]) || ordered(b.low[c]) > CLOTH_HIGH[c]) return false;
   return true;
 }
 
 /// The frame's list of pairs. Where no piece comes near the cloth there is none, and it costs a look at the groups' boxes.
 bool list_pairs() {
   if (thread == 0u) any_near = 0u;
-#ifndef MANY_GROUPS
   if (thread < 3u) {
-    CLOTH_LOW(thread) = kLowNone;
-    CLOTH_HIGH(thread) = kHighNone;
+    cloth_low[thread] = kLowNone;
+    cloth_high[thread] = kHighNone;
   }
+#ifndef MANY_GROUPS
   if (thread < 2u) COUNTED(thread) = 0u;
 #endif
   float carried = greatest_displacement();
@@ -109,7 +135,7 @@ bool list_pairs() {
     ledger.pairs = 0u;
   }
   MEET_OR_FAIL;  // empty boxes before they are widened
-  EACH(i, VERTICES) widen_cloth(reach_of_vertex(i, carried));
+  reach_and_widen(carried);
   MEET_OR_FAIL;  // reaches before the list
   for (uint g = thread; g < GROUPS; g += THREADS)
     if (meets_cloth(LOAD(32u, boxes, PIECES + g))) any_near = 1u;
@@ -236,8 +262,8 @@ void main() {
     if (!substep_with(s, touches, pair_count)) return;
 #ifdef MANY_GROUPS
   if (me < 3u) {
-    CLOTH_LOW(me) = kLowNone;
-    CLOTH_HIGH(me) = kHighNone;
+    ledger.cloth_low[me] = kLowNone;
+    ledger.cloth_high[me] = kHighNone;
   }
   leave_grid_barrier();
 #endif
