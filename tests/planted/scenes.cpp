@@ -148,6 +148,8 @@ std::vector<Stage> stages() {
   out.push_back(solved("pushed", scene(kPushed)));
   out.push_back(solved("struck", scene(kStruck)));
   out.back().settings = {{"substeps", 3}, {kTuning, {{"contact", "planes"}}}};
+  out.push_back(solved("wrapped", load_scene("validation/capstan-slip")));
+  out.back().settings = {{"substeps", 16}, {kTuning, {{"contact", "planes"}}}};
   out.push_back(solved("pulled", scene(kPulled)));
   out.push_back(solved("layers", layers()));
   out.push_back(stage_of("crossed", kCrossed, lay_over));

@@ -76,8 +76,8 @@ shared uint asked[2];
 shared uint any_near, cloth_low[3], cloth_high[3];
 
 const uint kTurns = 3u;
-uint me, everyone;  // this thread among those of all workgroups
-#define EACH(i, count) for (uint i = me; i < (count); i += everyone)
+uint me, all_threads;  // this thread among those of all workgroups
+#define EACH(i, count) for (uint i = me; i < (count); i += all_threads)
 
 /// Reaches of all vertices, and the box of everywhere that the cloth may go in the frame: first of a thread's vertices, then of a
 /// subgroup, a workgroup, all of them, so that few threads wait for one another's sums.
@@ -246,7 +246,7 @@ void main() {
   uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
   chain = group * (THREADS / LANES) + thread / (LANES * BESIDE) * BESIDE + thread % BESIDE;
   me = group * THREADS + thread;
-  everyone = THREADS * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+  all_threads = THREADS * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
   [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
 #ifdef MANY_GROUPS
   if (p.passes == 0u) {  // asked only whether all can
