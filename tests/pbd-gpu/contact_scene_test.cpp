@@ -72,7 +72,6 @@ class PlaneContactScenes : public ContactScenes {
     EXPECT_LE(r.stretch, most_stretch);
   }
 };
-TEST_P(PlaneContactScenes, DeskFlatHigh) { expect_no_contour("paper/desk-flat-high", 1); }
 TEST_P(PlaneContactScenes, DeskCornerLow) { expect_no_contour("paper/desk-corner-low", 1); }
 TEST_P(PlaneContactScenes, CapsuleSweep) { expect_no_contour("paper/capsule-sweep", 0.1); }
 TEST_P(PlaneContactScenes, HandPush) { expect_no_contour("paper/hand-push", 0.2); }

@@ -107,8 +107,8 @@ void add_planes(std::vector<Fault>& f) {
          "by += min(1.0, piece.friction");
   kernel("friction half as great", "wrapped", "plane_push.glsl", "by -= min(1.0, piece.friction",
          "by -= min(1.0, 0.5 * piece.friction");
-  kernel("responses of the last corner not gathered", "wrapped", "plane_gather.glsl",
-         "from_pairs(fan / 4u, fan % 4u, at.w);", "if (fan % 4u != 2u) from_pairs(fan / 4u, fan % 4u, at.w);");
+  kernel("responses taken from the velocity, not given to it", "wrapped", "plane_gather.glsl",
+         "sum_moving += l * moving;", "sum_moving -= l * moving;");
   kernel("no responses of vertices", "wrapped", "plane_gather.glsl", "from_pairs(TRIANGLES + i, 0u, at.w);", "");
   kernel("what was struck no heavier in the lines", "struck", "plane_gather.glsl", "at.w / (1.0 + held)", "at.w");
   kernel("a hull that misses a corner", "struck", "plane_geometry.glsl", "uint j = 0u; j < piece.count; ++j) high",
