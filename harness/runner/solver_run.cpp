@@ -59,6 +59,19 @@ nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
   return j;
 }
 
+/// Adds what the solver has counted after a frame, a series a count. Returns what makes the run an error.
+std::string add_counts(const ClothSolver& solver, std::size_t frames, std::vector<MetricSeries>& series) {
+  std::string fault;
+  const std::vector<SolverCount> counts = solver.counts();
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    const SolverCount& c = counts[k];
+    if (series.size() <= k) series.push_back({c.name, "1", c.long_name, std::vector<double>(frames - 1, kMissing)});
+    series[k].values.push_back(c.count);
+    if (!(c.count <= 0) && !c.fault.empty() && fault.empty()) fault = fmt::format("{} ({:g})", c.fault, c.count);
+  }
+  return fault;
+}
+
 /// Settings with per-stage timestamps on, if the solver offers them.
 std::optional<nlohmann::json> with_stage_times(const SolverEntry& entry, nlohmann::json settings) {
   if (!settings.contains("stage_times") || !entry.info.on_gpu) return std::nullopt;
@@ -177,6 +190,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules) {
   const MetricContext context{scene, *spec_.entry, spec_.settings, plan_.contact_margins_m};
   AccuracyPass pass;
   MetricPass metrics(context);
+  std::vector<MetricSeries> counts;
   solver_->reset();
   ClothState state;
   const auto observe = [&](int frame, StepStatus status) {
@@ -192,6 +206,8 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules) {
     pass.time_s.push_back(scene.time.at(frame));
     for (double x : state.position) pass.position.push_back(static_cast<float>(x));
     metrics.add(state);
+    const std::string fault = add_counts(*solver_, pass.time_s.size(), counts);
+    if (outcome_.status == "ok" && !fault.empty()) outcome_ = {"error", "ok", frame, fault};
     if (outcome_.status == "ok" && metrics.lost())
       outcome_ = {"diverged", "F1", frame, "speed or energy exceeds every bound"};
     // A pass that was held may take any time.
@@ -205,6 +221,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules) {
   FrameLoop loop(*solver_, scene, {.frames = frames, .interrupted = kTrialsKept});
   while (outcome_.status == "ok" && (loop.next() || loop.failed())) observe(loop.index() + 1, loop.status());
   pass.metrics = metrics.take();
+  pass.metrics.insert(pass.metrics.end(), counts.begin(), counts.end());
   const StabilityVerdict verdict = stability_verdict(pass);
   if (verdict.klass != "ok" && outcome_.klass != "F8") {
     outcome_.klass = verdict.klass;

@@ -79,7 +79,7 @@ class Maker {
       corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
       begin(k, 0);
       for (const std::uint32_t v : corners) {
-        made_.sources.push_back({static_cast<uint>(made_.points.size()), range->first_vertex + v, 0, 0});
+        made_.sources.push_back({static_cast<uint>(made_.points.size()), range->first_vertex + v, 0, this_piece()});
         vertex(v);
       }
     }
@@ -89,8 +89,10 @@ class Maker {
     const Collider& c = scene_.colliders[collider];
     made_.pieces.push_back({static_cast<uint>(made_.points.size()), 0, static_cast<float>(radius_m),
                             static_cast<float>(made_.margins_m.back()), static_cast<float>(c.friction),
-                            c.moves() ? 1u : 0u, 0, 0});
+                            c.moves() ? 1u : 0u, static_cast<uint>(made_.sources.size()), 0});
   }
+
+  uint this_piece() const { return static_cast<uint>(made_.pieces.size()) - 1; }
 
   void point(const Vec3& at) {
     const auto x = [&](std::size_t d) { return static_cast<float>(at[d] - origin_[d]); };
@@ -99,7 +101,7 @@ class Maker {
   }
 
   void from_capsule(const Vec3& at) {
-    made_.sources.push_back({static_cast<uint>(made_.points.size()), capsule_ends_++, 1, 0});
+    made_.sources.push_back({static_cast<uint>(made_.points.size()), capsule_ends_++, 1, this_piece()});
     point(at);
   }
 

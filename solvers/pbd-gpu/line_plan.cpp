@@ -9,6 +9,7 @@
 #include "chain_plan.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/motion.hpp"
+#include "clothbench/solver.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -132,18 +133,36 @@ std::vector<std::uint8_t> taut_chains(const Scene& scene) {
 
 namespace {
 
-/// A moving collider, or a cloth thrown at a collider, moves by at most half a margin in a substep (fast: a whole one,
-/// accurate: a quarter). A struck vertex then pulls its neighbours along before the cells between are overstretched.
-long substeps_for_speed(const Scene& scene, int quality) {
-  constexpr double kMargins[] = {1, 0.5, 0.25}, kLeast = 0.125;  // of a cell, where margins are small
-  constexpr double kMost = 160;  // 20 m/s at a margin of 4 mm; above, leaks are preferred to endless runs
+/// Substeps in which a moving collider, or a cloth thrown at a collider, moves by so many margins. A struck vertex then
+/// pulls its neighbours along before the cells between are overstretched.
+double substeps_by_margins(const Scene& scene, double margins) {
+  constexpr double kLeast = 0.125;  // of a cell, where margins are small
   double margin = std::numeric_limits<double>::infinity();
   for (const Collider& c : scene.colliders)
     margin = std::min(margin, std::max(c.margin_m, kLeast * std::min(scene.cloth.du(), scene.cloth.dv())));
   if (!(margin < std::numeric_limits<double>::infinity())) return 1;
   const Vec3 v = scene.cloth.initial_velocity_m_per_s;
   const double speed = collider_speed_m_per_s(scene) + std::hypot(v[0], v[1], v[2]);
-  return std::lround(std::min(kMost, std::ceil(speed * scene.time.dt() / (kMargins[quality] * margin))));
+  return std::ceil(speed * scene.time.dt() / (margins * margin));
+}
+
+/// Points on edges: half a margin a substep (fast: a whole one, accurate: a quarter).
+double substeps_for_speed(const Scene& scene, int quality) {
+  constexpr double kMargins[] = {1, 0.5, 0.25};
+  constexpr double kMost = 160;  // 20 m/s at a margin of 4 mm; above, leaks are preferred to endless runs
+  return std::min(kMost, substeps_by_margins(scene, kMargins[quality]));
+}
+
+/// Planes: nothing is passed with any number, so that this is a matter of quality, and may be capped by what a frame
+/// may cost. A margin a substep (fast: two, accurate: a half), at a margin of 4 mm up to 9.2 m/s.
+constexpr double kPlaneMargins[] = {2, 1, 0.5}, kPlaneBudget[] = {16, 32, 64};
+double substeps_for_planes(const Scene& scene, int quality) {
+  return std::min(kPlaneBudget[quality], substeps_by_margins(scene, kPlaneMargins[quality]));
+}
+
+int quality_of(const nlohmann::json& settings) {
+  const std::string quality = settings.value("quality", "default");
+  return quality == "fast" ? 0 : quality == "default" ? 1 : 2;
 }
 
 double length(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }
@@ -168,18 +187,29 @@ bool is_tethered(const Scene& scene, const nlohmann::json& settings) {
          (wants_chains(scene) ? tether_table(scene).a_vertex > 0 : !tethers_of(scene).to.empty());
 }
 
+bool contact_by_planes(const Scene& scene, const nlohmann::json& settings) {
+  return settings.value(kTuning, nlohmann::json::object()).value("contact", "samples") == "planes" &&
+         !(scene.needs & kColliderFeatures).empty() && !scene.needs.has(Feature::SelfCollision);
+}
+
+int substeps_over_budget(const Scene& scene, const nlohmann::json& settings) {
+  if (settings.value("substeps", 0) > 0 || !contact_by_planes(scene, settings)) return 0;
+  const double wanted = substeps_by_margins(scene, kPlaneMargins[quality_of(settings)]);
+  return wanted > xpbd_substeps(scene, settings) ? static_cast<int>(std::min(wanted, 1e6)) : 0;
+}
+
 double links_of_longer_side(const Cloth& c) {
   return c.mesh ? std::max(1.0, c.width_m / c.mesh->edge_m) : std::max(c.columns, c.rows) - 1;
 }
 
 int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   if (const int given = settings.value("substeps", 0); given > 0) return given;
-  const std::string quality = settings.value("quality", "default");
   const double links = links_of_longer_side(scene.cloth);
   struct Rule {
     double least, links_a_substep;
   };
-  const int k = quality == "fast" ? 0 : quality == "default" ? 1 : 2;
+  const int k = quality_of(settings);
+  const bool planes = contact_by_planes(scene, settings);
   const bool touched =
       !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins, Feature::SelfCollision}))
            .empty();
@@ -190,22 +220,26 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   // scene. A link must not turn by more than about half a radian a substep.
   constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
-                 kDriven[] = {{8, 4}, {16, 2}, {32, 1}}, kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}},
+                 kDriven[] = {{8, 4}, {16, 2}, {32, 1}}, kDrivenByPlanes[] = {{5, 6}, {8, 4}, {20, 1.5}},
+                 kLaid[] = {{8, 4}, {16, 2}, {32, 1}}, kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}},
                  kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
+  const auto& grips = scene.grips.vertices;
   // A hand pushes a cloth in directions that tethers do not limit.
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   const Rule rule = !touched                           ? kUntouched[k]
-                    : driven                           ? kDriven[k]
+                    : driven                           ? (planes ? kDrivenByPlanes[k] : kDriven[k])
                     : tethered                         ? (stiff ? kStiff[k] : kTethered[k])
+                    : planes && grips.empty()          ? kLaid[k]
                     : !scene.needs.has(Feature::Shear) ? kStrips[k]
-                    : scene.grips.vertices.empty()     ? kSheet[k]
+                    : grips.empty()                    ? kSheet[k]
                                                        : kPulled[k];
   // With few substeps the error is largest in the links at the pins, which carry more the finer the cloth is.
   const double fine = k == 0 && rule.links_a_substep == kStiff[0].links_a_substep && links > 300 ? 1.2 : 1;
   const double short_links = wants_chains(scene) ? substeps_for_short_links(scene) : 1;
   double per_frame = short_links * std::max(rule.least, fine * links / rule.links_a_substep);
   if (scene.needs.has(Feature::SelfCollision)) per_frame = std::max(per_frame, substeps_for_layers(scene));
-  return static_cast<int>(std::clamp(std::max(std::lround(per_frame), substeps_for_speed(scene, k)), 1L, 4096L));
+  const double for_speed = planes ? substeps_for_planes(scene, k) : substeps_for_speed(scene, k);
+  return static_cast<int>(std::clamp(std::max(std::lround(per_frame), std::lround(for_speed)), 1L, 4096L));
 }
 
 LineShape frame_shape(int columns, int rows, const LineRequest& request, const LineDevice& device) {

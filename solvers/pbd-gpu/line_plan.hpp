@@ -47,6 +47,14 @@ double links_of_longer_side(const Cloth&);
 /// Substeps of a frame: setting `substeps`, or if that is 0 the rule of setting `quality` (README, "Substeps").
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 
+/// Whether planes hold colliders off the cloth (PLANES.md): setting `tuning.contact`, in a scene with colliders whose
+/// cloth does not touch itself. Self-contact moves vertices after the planes, across them.
+bool contact_by_planes(const Scene&, const nlohmann::json& settings);
+
+/// Substeps that the speed of colliders asks for with contact by planes, where that is more than they get: beyond, the
+/// cloth is overstretched for some frames, and nothing is passed. 0 where it is not.
+int substeps_over_budget(const Scene&, const nlohmann::json& settings);
+
 /// Properties of a device that decide how lines are spread over threads.
 struct LineDevice {
   std::uint32_t subgroup = 0;  ///< lanes that exchange by shuffles; 0 = none

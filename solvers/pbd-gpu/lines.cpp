@@ -60,8 +60,11 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts)
   keeps_hinges_ = keep_ && scene.needs.has(Feature::Bend);
   if (keeps_links_) frame_.add_buffer(BIND_LINK_MULTIPLIERS, "link multipliers", families() * n * 4);
   if (keeps_hinges_) frame_.add_buffer(BIND_HINGE_MULTIPLIERS, "hinge multipliers", 2 * n * sizeof(vec4));
-  const bool one = frame.settings()["one_dispatch"].get<bool>();
-  const LineShape whole = frame_shape(scene.cloth.columns, scene.cloth.rows, request(), device());
+}
+
+void Lines::add_kernels(bool any_masses) {
+  const bool one = frame_.settings()["one_dispatch"].get<bool>() && !any_masses;
+  const LineShape whole = frame_shape(scene_.cloth.columns, scene_.cloth.rows, request(), device());
   if (whole.threads > 0 && one)
     add_whole(whole);
   else if (batch_ > 1)
@@ -70,7 +73,7 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts)
         "one_dispatch)");
   else if (!one || !add_persistent())
     add_passes();
-  if (batch_ > 1 && (keep_ || !scene.grips.vertices.empty() || !scene.colliders.empty()))
+  if (batch_ > 1 && (keep_ || !scene_.grips.vertices.empty() || !scene_.colliders.empty()))
     throw Error(
         "solver xpbd: setting batch: expected a scene without hands and colliders, and one iteration per "
         "substep if a constraint is compliant");
@@ -152,15 +155,31 @@ void Lines::add_whole(const LineShape& shape) {
 }
 
 void Lines::add_regularisation() {
-  if (!firm_) return;
+  if (!firm_ || added_regularisation_) return;
+  added_regularisation_ = true;
   std::vector<float> least;
   for (const std::uint8_t taut : taut_) least.push_back(taut != 0 ? static_cast<float>(kRegularisation) : 0.0f);
   frame_.add_buffer(BIND_REGULARISATION, "regularisation", least);
 }
 
-vulkan::Groups Lines::all_groups() const {
+vulkan::Groups Lines::groups_of(const LineShape& shape) const {
   const auto chains = static_cast<std::uint32_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
-  return vulkan::groups_for(chains, shape_[0].chains_a_group());
+  return vulkan::groups_for(chains, shape.chains_a_group());
+}
+
+LineShape Lines::frame_shape_with_contact(bool many) const {
+  const Cloth& c = scene_.cloth;
+  if (keep_ || (many && device().subgroup == 0)) return {};
+  return many ? pass_shape(std::max(c.columns, c.rows), request(), device())
+              : frame_shape(c.columns, c.rows, request(), device());
+}
+
+LineSpecialization Lines::specialization_with_contact(const LineShape& shape, bool many) {
+  shape_[0] = shape_[1] = shape_[2] = shape;
+  LineSpecialization s = specialization(shape);
+  s.GRIPS = static_cast<std::uint32_t>(scene_.grips.vertices.size());
+  s.PERSISTENT = many ? 1 : 0;
+  return s;
 }
 
 /// False where the device does not run all workgroups at once, or where that is unknown.
@@ -260,6 +279,12 @@ Traffic Lines::pass_traffic(std::uint32_t pass) const {
          Traffic{32 * n + (firm_ ? 4.0 * shape_[std::min(family, 2u)].lanes * chains : 0) +
                      (pass == 0 ? 16 * static_cast<double>(tethers_.to.size()) * free : 0),
                  32 * free};
+}
+
+Traffic Lines::substep_traffic() const {
+  Traffic t;
+  for (std::uint32_t k = 0; k < passes(); ++k) t = t + pass_traffic(k);
+  return t;
 }
 
 /// Traffic of the rounding errors of compensated sums, and of what a prediction goes on from, in each dispatch that

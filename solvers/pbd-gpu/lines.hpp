@@ -16,6 +16,18 @@ class Lines {
   /// Adds its stages, buffers and kernels. The buffers of the state must exist, a vec4 a vertex: positions (.w =
   /// inverse mass), velocities, and the rounding errors of both (compensated sums).
   Lines(FrameBuilder& frame, const Scene& scene, bool predicts);
+  /// Adds its stages and kernels. With contact by planes vertices have any inverse mass while they are solved, which
+  /// the kernels of a dispatch a family alone can do.
+  void add_kernels(bool any_masses);
+  /// The kernel of lines and contact in one, where the cloth is to have one: its shape (threads 0 if cloth or device do
+  /// not fit it) of one workgroup or of many that run at once, and what it is specialized to.
+  LineShape frame_shape_with_contact(bool many) const;
+  LineSpecialization specialization_with_contact(const LineShape&, bool many);
+  vulkan::Groups groups_of(const LineShape&) const;
+  LineConstants constants(double dt_s, int substeps, const TimeStep&) const;
+  void add_regularisation();        ///< of kernels that have lines in memory
+  Traffic substep_traffic() const;  ///< of all passes
+  std::uint32_t passes() const { return iterations_ * families(); }
 
   /// Records substeps [first, first + count) of the `substeps` of a frame of dt_s, each a TimeStep. A cloth that does
   /// not fit one dispatch takes one substep a call.
@@ -34,16 +46,14 @@ class Lines {
   void add_whole(const LineShape&);
   bool add_persistent();
   void add_passes();
-  void add_regularisation();
   LineRequest request() const;
   Traffic pass_traffic(std::uint32_t pass) const;
   Traffic compensated_traffic() const;
   std::uint32_t families() const { return scene_.needs.has(Feature::Shear) ? 4 : 2; }
   /// Diagonals are solved first, then columns, then rows: the constraints along warp and weft are satisfied best.
   std::uint32_t family_of(std::uint32_t pass) const { return families() - 1 - pass % families(); }
-  vulkan::Groups all_groups() const;
+  vulkan::Groups all_groups() const { return groups_of(shape_[0]); }
   std::string kernel(const char* name, bool shuffles) const;
-  LineConstants constants(double dt_s, int substeps, const TimeStep&) const;
   Constraints count(std::uint32_t family) const;
   Traffic multiplier_traffic(std::uint32_t family, std::uint32_t iteration) const;
   void record_pass(const LineConstants&);
@@ -55,7 +65,7 @@ class Lines {
   const std::uint32_t iterations_, batch_;
   const bool keep_;  ///< multipliers are kept from one iteration to the next
   const bool predicts_;
-  bool firm_ = false, keeps_links_ = false, keeps_hinges_ = false;
+  bool added_regularisation_ = false, firm_ = false, keeps_links_ = false, keeps_hinges_ = false;
   const FrameKernel *whole_ = nullptr, *persistent_ = nullptr;
   std::array<const FrameKernel*, 3> pass_{};  ///< rows, columns, diagonals
   std::array<LineShape, 3> shape_{};

@@ -53,9 +53,15 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(1, uint, PLANES, 0u) C(2, uint, SPHERES, 0u) C(3, uint, BOXES, 0u) C(4, uint, CAPSULES, 0u) \
   C(5, uint, FRICTION, 0u) C(6, uint, STANDING_CLUSTERS, 0u) C(7, uint, MOVING_CLUSTERS, 0u) C(8, uint, SAMPLES, 0u) \
   C(9, uint, MOVING, 0u) C(10, uint, LANES, 1u)
-// Plane contact of `xpbd`. PLANES: half-spaces. GRIPS: vertices that hands may hold. MOST_POINTS: of a piece.
+// Plane contact of `xpbd`. PLANES: half-spaces. GRIPS: vertices that hands may hold. MOST_POINTS: of a piece. MOVING: 1
+// if any piece moves.
 #define PLANE_CONTACT_CONSTANTS(C) \
-  C(1, uint, PLANES, 0u) C(2, uint, GRIPS, 0u) C(3, uint, MOST_POINTS, 3u)
+  C(1, uint, PLANES, 0u) C(2, uint, GRIPS, 0u) C(3, uint, MOST_POINTS, 3u) C(4, uint, MOVING, 0u)
+// The same, for the kernel of a whole frame, beside LINE_CONSTANTS. MARGIN_BITS: of the greatest margin, a float.
+#define PLANE_FRAME_CONSTANTS(C) \
+  C(25, uint, PLANES, 0u) C(26, uint, MOST_POINTS, 3u) C(27, uint, MOVING, 0u) C(28, uint, VERTICES, 4u) \
+  C(29, uint, TRIANGLES, 2u) C(30, uint, CAPACITY, 0u) C(31, uint, PIECES, 0u) C(32, uint, GROUPS, 0u) \
+  C(33, uint, MARGIN_BITS, 0u)
 // clang-format on
 // Kernels of `paper`. NATIVE: float atomics; the count is then a float too.
 #define PAPER_CONSTANTS(C) C(1, uint, FRICTION, 0u) C(2, uint, NATIVE, 0u)
@@ -66,7 +72,7 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   struct Name {                               \
     LIST(CLOTHBENCH_MEMBER)                   \
     std::vector<uint> by_number() const {     \
-      std::vector<uint> all(32);              \
+      std::vector<uint> all(40);              \
       LIST(CLOTHBENCH_PUT)                    \
       return all;                             \
     }                                         \
@@ -75,6 +81,7 @@ CLOTHBENCH_SPECIALIZATION(LineSpecialization, LINE_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(ChainSpecialization, CHAIN_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(ContactSpecialization, CONTACT_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(PlaneContactSpecialization, PLANE_CONTACT_CONSTANTS)
+CLOTHBENCH_SPECIALIZATION(PlaneFrameSpecialization, PLANE_FRAME_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(PaperSpecialization, PAPER_CONSTANTS)
 #undef CLOTHBENCH_SPECIALIZATION
 #undef CLOTHBENCH_PUT
@@ -139,6 +146,8 @@ struct LineConstants {
   uint timeout_polls;       // polls of a barrier over the whole dispatch before it times out
   float per_h;              // 1/h
   float carry;              // share of the last substep's change that is predicted
+  float frame_s;            // with contact by planes, as is reach_m
+  float reach_m;            // of a vertex at rest
 };
 
 /// A vertex of a chain and its link to the next entry; no link if `rest` is
@@ -287,7 +296,8 @@ struct ContactPiece {
   uint first, count;
   float radius, margin, friction;
   uint moves;
-  uint unused0, unused1;
+  uint first_source;  // of its points if it moves; else of the next piece that does
+  uint unused0;
 };
 
 /// A point of a piece at the frame's start and end; w unused.
@@ -298,7 +308,7 @@ struct PiecePoint {
 /// Where a point of a moving piece comes from: vertex `index` of the moving meshes, or end `index` % 2 of capsule
 /// `index` / 2 if `capsule` is 1.
 struct PointSource {
-  uint point, index, capsule, unused0;
+  uint point, index, capsule, piece;
 };
 
 /// What is known of one pair of an element of the cloth (a triangle or a vertex) and a piece.
@@ -317,13 +327,15 @@ struct PairState {
 
 /// Of the frame, on the device.
 struct ContactLedger {
-  uint pairs;     // in the list
-  float reach;    // share of the vertices' reach that the list is made for
-  float carried;  // greatest displacement of a point of any piece in the frame [m]
+  uint pairs;                        // in the list
+  float reach;                       // share of the vertices' reach that the list is made for
+  float carried;                     // greatest displacement of a point of any piece in the frame [m]
+  uint asked[2];                     // pairs near in this substep, before and after the lines
+  uint cloth_low[3], cloth_high[3];  // box that the cloth may be in, in the order of box_bits.glsl
   uint unused0;
 };
 
-/// Counts since loading; all are 0 unless contact failed.
+/// Counts since loading or reset; all are 0 unless contact failed.
 struct ContactFaults {
   uint without_place;  // vertices that were not before all their planes at a substep's end
   uint inside;         // pairs that touch at a substep's start
@@ -335,19 +347,17 @@ struct ContactFaults {
 struct PlaneContactConstants {
   vec4 gravity_h;  // g h [m/s]
   uint vertices, triangles;
-  uint capacity;        // pairs that the list has place for
-  uint pieces, groups;  // groups of PIECES_A_GROUP neighbouring pieces have a box each
-  uint first, count;    // of the items of this dispatch, where not all
-  uint before;          // 1: before the lines, with the predicted positions; 0: after them
-  uint round;           // of responses
-  float begin, end;     // of the substep, as fractions of the frame
-  float part;           // end - begin
-  float h, per_h;       // of the substep [s], [1/s]
-  float loss;           // 1 - exp(-c h)
+  uint capacity;                 // pairs that the list has place for
+  uint pieces, groups;           // groups of PIECES_A_GROUP neighbouring pieces have a box each
+  uint turn;                     // of responses: 0 before the lines, with the predicted positions; 1 and on after them
+  uint first_substep, substeps;  // this substep; those of the frame
+  float substep_part;            // of the frame
+  float h, per_h;                // of the substep [s], [1/s]
+  float loss;                    // 1 - exp(-c h)
   float frame_s;
   float reach_m;   // of a vertex at rest
   float margin_m;  // greatest margin of any collider
-  uint unused0, unused1;
+  uint unused0;
 };
 #define PIECES_A_GROUP 16u
 
@@ -356,9 +366,9 @@ static_assert(sizeof(ContactPiece) == 32);
 static_assert(sizeof(PiecePoint) == 32);
 static_assert(sizeof(PointSource) == 16);
 static_assert(sizeof(PairState) == 64);
-static_assert(sizeof(ContactLedger) == 16);
+static_assert(sizeof(ContactLedger) == 48);
 static_assert(sizeof(ContactFaults) == 16);
-static_assert(sizeof(PlaneContactConstants) == 96);
+static_assert(sizeof(PlaneContactConstants) == 80);
 static_assert(sizeof(SelfConstants) == 48);
 static_assert(sizeof(MeshCluster) == 16);
 static_assert(sizeof(ClusterBox) == 32);
@@ -373,7 +383,7 @@ static_assert(sizeof(JointMatrix) == 48);
 static_assert(sizeof(GripVertex) == 48);
 static_assert(sizeof(DistanceConstraint) == 16);
 static_assert(sizeof(PaperConstants) == 48);
-static_assert(sizeof(LineConstants) == 120);
+static_assert(sizeof(LineConstants) == 128);
 static_assert(sizeof(ChainEntry) == 16);
 static_assert(sizeof(TetherEnd) == 8);
 static_assert(sizeof(ChainRange) == 16);

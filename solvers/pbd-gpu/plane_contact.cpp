@@ -1,6 +1,7 @@
 #include "plane_contact.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -19,9 +20,6 @@ constexpr std::uint32_t kRoundsAfter = 2;
 PlaneContact::PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
                            const std::vector<std::uint32_t>& particle)
     : frame_(frame), scene_(scene), colliders_(colliders) {
-  const FeatureSet serves = scene.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided});
-  stage_pairs_ = frame_.add_stage("PlanePairs", serves, true);
-  stage_ = frame_.add_stage("PlaneContact", serves, true);
   const ContactPieces all = contact_pieces(scene, origin_m, colliders);
   frame_.set_contact_margins(all.margins_m);
   most_margin_m_ = all.most_margin_m;
@@ -36,7 +34,10 @@ PlaneContact::PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_
   }
   if (moving_points_ > 0) frame_.add_buffer(BIND_POINT_SOURCES, "contact point sources", all.sources);
   add_elements(particle);
-  add_kernels();
+  if (moving_points_ == 0) return;
+  stage_pairs_ = frame_.add_stage("PlanePairs", serves(), true);
+  moved_ = frame_.add_kernel(stage_pairs_, "plane_pieces", sizeof(PlaneContactConstants), specialization().by_number(),
+                             kGroupSize);
 }
 
 void PlaneContact::add_elements(const std::vector<std::uint32_t>& particle) {
@@ -60,13 +61,16 @@ void PlaneContact::add_elements(const std::vector<std::uint32_t>& particle) {
   all.push_back(first);
   for (const auto& fan : fans) all.insert(all.end(), fan.begin(), fan.end());
   const auto count = static_cast<std::uint32_t>(elements.size());
-  capacity_ = std::clamp(kPairsAnElement * count, kLeastPairs, kMostPairs);
+  capacity_ = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
+  if (capacity_ == 0) capacity_ = std::clamp(kPairsAnElement * count, kLeastPairs, kMostPairs);
   frame_.add_buffer(BIND_ELEMENTS, "contact elements", elements);
   frame_.add_buffer(BIND_FANS, "contact fans", all);
   frame_.add_buffer(BIND_RANGES, "contact ranges", count * sizeof(uvec4));
   frame_.add_buffer(BIND_PAIRS, "contact pairs", std::uint64_t{capacity_} * sizeof(uvec4));
   frame_.add_buffer(BIND_PAIR_STATES, "contact pair states", std::uint64_t{capacity_} * sizeof(PairState));
-  frame_.add_buffer(BIND_LEDGER, "contact ledger", sizeof(ContactLedger));
+  ContactLedger ledger{};
+  std::fill(std::begin(ledger.cloth_low), std::end(ledger.cloth_low), ~0u);
+  frame_.add_buffer(BIND_LEDGER, "contact ledger", std::vector{ledger});
   frame_.add_buffer(BIND_PREDICTED, "contact proposals", n * sizeof(vec4));
   frame_.add_buffer(BIND_STARTS, "contact starts", n * sizeof(vec4));
   frame_.add_buffer(BIND_REACHES, "contact reaches", n * sizeof(vec4));
@@ -74,21 +78,42 @@ void PlaneContact::add_elements(const std::vector<std::uint32_t>& particle) {
   faults_ = &frame_.add_host_buffer("contact faults", sizeof(ContactFaults), BIND_FAULTS);
 }
 
-void PlaneContact::add_kernels() {
+PlaneContactSpecialization PlaneContact::specialization() const {
   PlaneContactSpecialization s;
   s.PLANES = colliders_.planes.count;
   s.GRIPS = static_cast<uint>(scene_.grips.vertices.size());
   s.MOST_POINTS = most_points_;
+  s.MOVING = moving_points_ > 0 ? 1 : 0;
+  return s;
+}
+
+PlaneFrameSpecialization PlaneContact::frame_specialization() const {
+  PlaneFrameSpecialization s;
+  s.PLANES = colliders_.planes.count;
+  s.MOST_POINTS = most_points_;
+  s.MOVING = moving_points_ > 0 ? 1 : 0;
+  s.VERTICES = static_cast<uint>(scene_.cloth.vertex_count());
+  s.TRIANGLES = triangles_;
+  s.CAPACITY = capacity_;
+  s.PIECES = pieces_;
+  s.GROUPS = groups_;
+  s.MARGIN_BITS = std::bit_cast<uint>(static_cast<float>(most_margin_m_));
+  return s;
+}
+
+FeatureSet PlaneContact::serves() const {
+  return scene_.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided});
+}
+
+void PlaneContact::add_kernels() {
+  if (stage_pairs_ < 0) stage_pairs_ = frame_.add_stage("PlanePairs", serves(), true);
+  stage_ = frame_.add_stage("PlaneContact", serves(), true);
   constexpr auto kPush = static_cast<std::uint32_t>(sizeof(PlaneContactConstants));
   const auto add = [&](int stage, const char* name, std::uint32_t threads = kGroupSize) {
-    return frame_.add_kernel(stage, name, kPush, s.by_number(), threads);
+    return frame_.add_kernel(stage, name, kPush, specialization().by_number(), threads);
   };
   reach_ = add(stage_pairs_, "plane_reach");
   if (pieces_ > 0) {
-    if (moving_points_ > 0) {
-      points_ = add(stage_pairs_, "plane_points");
-      boxes_ = add(stage_pairs_, "plane_boxes");
-    }
     count_ = add(stage_pairs_, "plane_list");
     scan_ = add(stage_pairs_, "plane_scan", kScanThreads);
     fill_ = add(stage_pairs_, "plane_list_fill");
@@ -114,9 +139,9 @@ PlaneContactConstants PlaneContact::constants(int s, int substeps, double dt_s) 
   c.capacity = capacity_;
   c.pieces = pieces_;
   c.groups = groups_;
-  c.begin = f(static_cast<double>(s) / substeps);
-  c.end = f((s + 1.0) / substeps);
-  c.part = f(1.0 / substeps);
+  c.first_substep = static_cast<uint>(s);
+  c.substeps = static_cast<uint>(substeps);
+  c.substep_part = f(1.0 / substeps);
   c.h = f(h);
   c.per_h = f(1 / h);
   c.loss = scene_.needs.has(Feature::Damping) ? f(-std::expm1(-scene_.material.damping_per_s * h)) : 0;
@@ -135,13 +160,14 @@ void PlaneContact::pairs(const FrameKernel* kernel, const PlaneContactConstants&
   if (kernel != nullptr) frame_.dispatch(*kernel, threads, c, {});
 }
 
-void PlaneContact::record_frame(double dt_s, int substeps) {
-  PlaneContactConstants c = constants(0, substeps, dt_s);
-  c.count = moving_points_;
-  if (points_ != nullptr) {
-    frame_.dispatch(*points_, moving_points_, c, {48.0 * moving_points_, 32.0 * moving_points_});
-    frame_.dispatch(*boxes_, groups_, c, {32.0 * moving_points_, 32.0 * groups_});
-  }
+void PlaneContact::record_pieces(double dt_s, int substeps) {
+  if (moved_ == nullptr) return;
+  frame_.dispatch_groups(*moved_, vulkan::groups_for(groups_, 1), constants(0, substeps, dt_s),
+                         {48.0 * moving_points_, 32.0 * moving_points_ + 32.0 * groups_});
+}
+
+void PlaneContact::record_list(double dt_s, int substeps) {
+  const PlaneContactConstants c = constants(0, substeps, dt_s);
   vertices(reach_, c);
   if (pieces_ == 0) return;
   const std::uint32_t elements = c.triangles + c.vertices;
@@ -151,8 +177,7 @@ void PlaneContact::record_frame(double dt_s, int substeps) {
 }
 
 void PlaneContact::record_before(int s, int substeps, double dt_s) {
-  PlaneContactConstants c = constants(s, substeps, dt_s);
-  c.before = 1;
+  const PlaneContactConstants c = constants(s, substeps, dt_s);
   vertices(predict_, c);
   pairs(query_, c);
   vertices(gather_, c);
@@ -160,10 +185,11 @@ void PlaneContact::record_before(int s, int substeps, double dt_s) {
 
 void PlaneContact::record_after(int s, int substeps, double dt_s) {
   PlaneContactConstants c = constants(s, substeps, dt_s);
+  c.turn = 1;
   vertices(settle_, c);
   pairs(query_, c);
   vertices(gather_, c);
-  for (c.round = 1; c.round < kRoundsAfter; ++c.round) {
+  for (c.turn = 2; c.turn <= kRoundsAfter; ++c.turn) {
     pairs(respond_, c);
     vertices(gather_, c);
   }
@@ -176,5 +202,7 @@ ContactFaults PlaneContact::faults() const {
   std::memcpy(&f, faults_->mapped(), sizeof f);
   return f;
 }
+
+void PlaneContact::clear_faults() { std::memset(faults_->mapped(), 0, sizeof(ContactFaults)); }
 
 }  // namespace clothbench::pbd_gpu

@@ -9,29 +9,39 @@ namespace clothbench::pbd_gpu {
 /// Contact of `xpbd` by separating planes: PLANES.md. Every pair of a triangle of the cloth and a convex
 /// piece of a collider that may meet in a substep has a plane that parts both ends of the straight way, and no vertex
 /// ends a substep behind a plane of one of its triangles. Works on positions and velocities alone; what solves the
-/// constraints comes between `record_before` and `record_after` and reads inverse masses in .w of the positions.
+/// constraints comes between `record_before` and `record_after` and reads inverse masses in .w of the positions. Where
+/// PlaneFrame has the whole frame in one kernel, `record_pieces` alone is called.
 class PlaneContact {
  public:
-  /// Adds buffers, the stages PlanePairs and PlaneContact, and their kernels. `particle`: of each vertex, the vertex
-  /// that it is welded to (or itself).
+  /// Adds buffers, and what moving pieces need. `particle`: of each vertex, the vertex that it is welded to (or
+  /// itself).
   PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
                const std::vector<std::uint32_t>& particle);
+  /// Adds the stages PlanePairs and PlaneContact with a kernel a phase, for record_list, record_before and
+  /// record_after.
+  void add_kernels();
 
-  /// Call at the start of a frame, after the colliders' record().
-  void record_frame(double dt_s, int substeps);
+  /// Where moving pieces are in this frame. Call at the start of a frame, after the colliders' record().
+  void record_pieces(double dt_s, int substeps);
+  /// The list of pairs. Call after record_pieces.
+  void record_list(double dt_s, int substeps);
   /// Call in substep s after held vertices have moved and before the constraints are solved.
   void record_before(int s, int substeps, double dt_s);
   /// Call at the end of substep s.
   void record_after(int s, int substeps, double dt_s);
 
-  /// What went wrong since loading; PLANES.md says what each count means.
+  FeatureSet serves() const;
+  /// What the kernel of a whole frame needs of the scene.
+  PlaneFrameSpecialization frame_specialization() const;
+  PlaneContactConstants constants(int s, int substeps, double dt_s) const;
+
+  /// What went wrong since loading or clear_faults(); PLANES.md says what each count means.
   ContactFaults faults() const;
+  void clear_faults();
 
  private:
   void add_elements(const std::vector<std::uint32_t>& particle);
-  void add_pieces();
-  void add_kernels();
-  PlaneContactConstants constants(int s, int substeps, double dt_s) const;
+  PlaneContactSpecialization specialization() const;
   void vertices(const FrameKernel* kernel, const PlaneContactConstants& c);
   void pairs(const FrameKernel* kernel, const PlaneContactConstants& c);
 
@@ -42,9 +52,9 @@ class PlaneContact {
   double most_margin_m_ = 0;
   int stage_pairs_ = -1, stage_ = -1;
   const vulkan::Buffer* faults_ = nullptr;
-  const FrameKernel *points_ = nullptr, *boxes_ = nullptr, *reach_ = nullptr, *count_ = nullptr, *scan_ = nullptr,
-                    *fill_ = nullptr, *predict_ = nullptr, *query_ = nullptr, *gather_ = nullptr, *settle_ = nullptr,
-                    *respond_ = nullptr, *choose_ = nullptr, *project_ = nullptr;
+  const FrameKernel *moved_ = nullptr, *reach_ = nullptr, *count_ = nullptr, *scan_ = nullptr, *fill_ = nullptr,
+                    *predict_ = nullptr, *query_ = nullptr, *gather_ = nullptr, *settle_ = nullptr, *respond_ = nullptr,
+                    *choose_ = nullptr, *project_ = nullptr;
 };
 
 }  // namespace clothbench::pbd_gpu

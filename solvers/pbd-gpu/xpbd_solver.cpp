@@ -7,6 +7,7 @@
 #include "line_plan.hpp"
 #include "lines.hpp"
 #include "plane_contact.hpp"
+#include "plane_frame.hpp"
 #include "prediction.hpp"
 #include "xpbd_contact.hpp"
 #include "xpbd_self_contact.hpp"
@@ -20,6 +21,22 @@ class Xpbd final : public GpuSolver {
 
   ContactFaults contact_faults() const override { return plane_contact_ ? plane_contact_->faults() : ContactFaults{}; }
 
+  std::vector<SolverCount> counts() const override {
+    if (!plane_contact_) return {};
+    const ContactFaults f = plane_contact_->faults();
+    return {{"contact_squeezed", "vertices that were put at the nearest place, for none was before all their planes",
+             static_cast<double>(f.without_place)},
+            {"contact_inside", "pairs of a triangle and a piece that met at a substep's start",
+             static_cast<double>(f.inside)},
+            {"contact_dropped", "pairs that the list had no place for", static_cast<double>(f.dropped),
+             "contact: the list of pairs had no place for all of them"}};
+  }
+
+  void reset() override {
+    GpuSolver::reset();
+    if (plane_contact_) plane_contact_->clear_faults();
+  }
+
  private:
   void build() override {
     // The kernel of a whole frame assumes the masses of an even sheet.
@@ -32,7 +49,6 @@ class Xpbd final : public GpuSolver {
     std::vector<double> start = initial_positions(scene());
     const bool chained = wants_chains(scene());
     const bool planes = by_planes();
-    if (planes && !chained) override_setting("one_dispatch", false, "contact makes vertices heavier in the lines");
     const ChainCloth cloth = chained ? chain_cloth(scene()) : ChainCloth{};
     const std::vector<float> w = welded(inverse_mass_now(), cloth);
     if (crumpled_) break_symmetry(scene(), w, start);
@@ -62,16 +78,18 @@ class Xpbd final : public GpuSolver {
     add_colliders(origin, true);
     add_grips(origin, 1);
     add_history(position.size());
+    if (planes) plane_contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, *colliders(), cloth.particle);
     if (chained)
       chains_ = std::make_unique<Chains>(frame(), scene(), cloth, predicts());
     else
       lines_ = std::make_unique<Lines>(frame(), scene(), predicts());
-    if (grips() != nullptr && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
+    if (planes && lines_) plane_frame_ = PlaneFrame::make(frame(), *lines_, *plane_contact_);
+    if (lines_ && !plane_frame_) lines_->add_kernels(planes);
+    if (planes && !plane_frame_) plane_contact_->add_kernels();
+    if (grips() != nullptr && !plane_frame_ && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
     if ((scene().needs & kColliderFeatures).empty())
       leave_out("contact", "the scene has no collider");
-    else if (planes)
-      plane_contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, *colliders(), cloth.particle);
-    else
+    else if (!planes)
       contact_ = std::make_unique<XpbdContact>(frame(), scene(), origin, *colliders(),
                                                settings()["contact_samples"].get<int>());
     if (scene().needs.has(Feature::SelfCollision))
@@ -92,12 +110,17 @@ class Xpbd final : public GpuSolver {
     add_buffer(BIND_LAST_VELOCITIES, "last velocities", particles * sizeof(vec4));
   }
 
-  /// Whether planes hold colliders off. Self-contact moves vertices after them, across the planes.
+  /// Whether planes hold colliders off.
   bool by_planes() {
-    if (settings()[kTuning]["contact"] != "planes" || (scene().needs & kColliderFeatures).empty()) return false;
-    if (!scene().needs.has(Feature::SelfCollision)) return true;
-    leave_out("contact by planes", "the cloth of the scene touches itself");
-    return false;
+    const bool planes = contact_by_planes(scene(), settings());
+    if (!planes && settings()[kTuning]["contact"] == "planes" && scene().needs.has(Feature::SelfCollision))
+      leave_out("contact by planes", "the cloth of the scene touches itself");
+    if (const int wanted = substeps_over_budget(scene(), settings()); wanted > 0)
+      leave_out(
+          std::to_string(wanted) + " substeps",
+          "the colliders are fast: " + std::to_string(xpbd_substeps(scene(), settings())) +
+              " are the most a frame may cost; the cloth is overstretched for some frames, and nothing is passed");
+    return planes;
   }
 
   /// Rejects or overrides what chains do not support: several iterations with kept multipliers, batches, bending,
@@ -148,7 +171,12 @@ class Xpbd final : public GpuSolver {
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
     if (contact_) contact_->record_frame(dt_s, substeps);
-    if (plane_contact_) plane_contact_->record_frame(dt_s, substeps);
+    if (plane_contact_) plane_contact_->record_pieces(dt_s, substeps);
+    if (plane_frame_) {
+      plane_frame_->record(substeps, dt_s, step);
+      return;
+    }
+    if (plane_contact_) plane_contact_->record_list(dt_s, substeps);
     if (self_contact_) self_contact_->record_frame();
     const bool touches = contact_ || plane_contact_ || self_contact_;
     if ((lines_ ? lines_->whole_frame() : chains_->whole_frame()) && !touches) {
@@ -159,7 +187,7 @@ class Xpbd final : public GpuSolver {
     }
     for (int s = 0; s < substeps; ++s) {
       // First, so that a released vertex is free in the whole frame.
-      if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
+      if (move_grips_ != nullptr) grips()->record_move(*move_grips_, fraction_after(s, substeps), dt_s);
       if (plane_contact_) plane_contact_->record_before(s, substeps, dt_s);
       record_lines(s, 1, substeps, dt_s, s == 0 ? start : step);
       if (contact_) contact_->record_substep(s, substeps, dt_s);
@@ -167,6 +195,12 @@ class Xpbd final : public GpuSolver {
       if (plane_contact_ && chains_) chains_->record_welds();
       if (self_contact_) self_contact_->record_substep(dt_s / substeps);
     }
+  }
+
+  /// Where a substep ends, as a fraction of the frame; with planes as time_of() of their kernels has it.
+  double fraction_after(int s, int substeps) const {
+    if (!plane_contact_ || s + 1 == substeps) return (s + 1.0) / substeps;
+    return static_cast<double>(static_cast<float>(s + 1) * static_cast<float>(1.0 / substeps));
   }
 
   /// A frame as long as several (a hitch) takes the substeps of several: a link turns no farther in a substep, and no
@@ -185,6 +219,7 @@ class Xpbd final : public GpuSolver {
   std::unique_ptr<Chains> chains_;  ///< else
   std::unique_ptr<XpbdContact> contact_;
   std::unique_ptr<PlaneContact> plane_contact_;
+  std::unique_ptr<PlaneFrame> plane_frame_;  ///< lines and contact by planes in one kernel, where it fits
   std::unique_ptr<XpbdSelfContact> self_contact_;
   const FrameKernel* move_grips_ = nullptr;
 };
@@ -221,6 +256,9 @@ SolverInfo xpbd_info() {
       {"contact", "\"samples\"",
        "samples or planes: points on edges that search their way, or a separating plane for every pair of a triangle "
        "and a convex piece"},
+      {"contact_frame", "\"auto\"",
+       "with contact=planes, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, never"},
+      {"contact_pairs", "0", "with contact=planes, pairs that the list has place for; 0: by the cloth's elements"},
       {"contact_lanes", "0",
        "threads of the proximity query of one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
       {"device_barrier", "\"auto\"",
@@ -250,6 +288,8 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", tuning, "device_barrier", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "prediction", {"auto", "always"});
   require_one_of("xpbd", tuning, "contact", {"samples", "planes"});
+  require_one_of("xpbd", tuning, "contact_frame", {"auto", "always", "never"});
+  require_between("xpbd", tuning, "contact_pairs", 0, 1 << 24);
   require_one_of("xpbd", tuning, "contact_lanes", {0, 1, 2, 4, 8, 16});
   return std::make_unique<Xpbd>(xpbd_info(), settings, device, count_bytes);
 }

@@ -12,13 +12,13 @@ namespace {
 /// On the fetched rooms and hands where they are, and on their procedural stand-ins.
 class ContactScenes : public Gpu, public ::testing::WithParamInterface<const char*> {
  protected:
-  static ContactRun run(const std::string& scene_name) {
+  static ContactRun run(const std::string& scene_name, const nlohmann::json& settings = nlohmann::json::object()) {
     const char* variable = std::getenv("CLOTHBENCH_ASSETS");
     const std::string before = variable != nullptr ? variable : "";
     if (*GetParam() != 0) setenv("CLOTHBENCH_ASSETS", GetParam(), 1);
     const Scene scene = load_scene(scene_name);
     variable != nullptr ? setenv("CLOTHBENCH_ASSETS", before.c_str(), 1) : unsetenv("CLOTHBENCH_ASSETS");
-    const auto solver = make_xpbd(complete_settings(xpbd_info(), nlohmann::json::object()), {});
+    const auto solver = make_xpbd(complete_settings(xpbd_info(), settings), {});
     solver->load(scene);
     const ContactRun r = run_contact(*solver, scene);
     fmt::print(
@@ -28,6 +28,7 @@ class ContactScenes : public Gpu, public ::testing::WithParamInterface<const cha
         scene_name, scene.assets, r.tunnelled_fraction, r.tunnelled_depth_m, r.contour_m, r.settled_contour_m,
         r.vertex_depth_m, r.stretch, r.stretch_end, r.kinetic_end_J, r.drift_end_m_per_s, 1e3 * r.step_s);
     EXPECT_TRUE(r.finite);
+    for (const SolverCount& c : solver->counts()) EXPECT_EQ(c.count, 0) << scene_name << ": " << c.long_name;
     return r;
   }
 
@@ -61,6 +62,24 @@ TEST_P(PlainContactScenes, OpenSheet) { expect_on_its_side("contact/open-sheet")
 TEST_P(PlainContactScenes, Plane) { EXPECT_EQ(run("contact/plane").vertex_depth_m, 0); }
 TEST_P(PlainContactScenes, Sphere) { EXPECT_EQ(run("contact/sphere").vertex_depth_m, 0); }
 TEST_P(PlainContactScenes, Box) { EXPECT_EQ(run("contact/box").vertex_depth_m, 0); }
+/// Contact by planes: nothing crosses a collider in any frame.
+class PlaneContactScenes : public ContactScenes {
+ protected:
+  static void expect_no_contour(const std::string& scene, double most_stretch) {
+    const ContactRun r = run(scene, {{kTuning, {{"contact", "planes"}}}});
+    EXPECT_EQ(r.contour_m, 0);
+    EXPECT_EQ(r.tunnelled_fraction, 0);
+    EXPECT_LE(r.stretch, most_stretch);
+  }
+};
+TEST_P(PlaneContactScenes, DeskCornerLow) { expect_no_contour("paper/desk-corner-low", 1); }
+TEST_P(PlaneContactScenes, CapsuleSweep) { expect_no_contour("paper/capsule-sweep", 0.1); }
+TEST_P(PlaneContactScenes, HandPush) { expect_no_contour("paper/hand-push", 0.2); }
+TEST_P(PlaneContactScenes, OpenSheet) { expect_no_contour("contact/open-sheet", 0.6); }
+TEST_P(PlaneContactScenes, Sphere) { expect_no_contour("contact/sphere", 0.1); }
+INSTANTIATE_TEST_SUITE_P(Planes, PlaneContactScenes, ::testing::Values("procedural"),
+                         [](const auto&) { return "Procedural"; });
+
 INSTANTIATE_TEST_SUITE_P(NoAssets, PlainContactScenes, ::testing::Values(""), [](const auto&) { return "Default"; });
 
 }  // namespace

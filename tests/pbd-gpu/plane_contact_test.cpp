@@ -5,10 +5,12 @@
 #include <set>
 
 #include "contact_scenes.hpp"
+#include "line_plan.hpp"
 #include "mesh_scene.hpp"
 #include "plane_contact_check.hpp"
 #include "plane_contact_reference.hpp"
 #include "runner/stage_check.hpp"
+#include "runner/whole_run.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -187,13 +189,71 @@ TEST_F(PlaneContacts, RepeatBitForBit) {
   EXPECT_EQ(a.position, again.position) << "reset restores the colliders and the list of pairs too";
 }
 
+/// A list that is too short cuts the reach, and what it then has no place for makes the run an error.
+TEST_F(PlaneContacts, DropNoPairInSilence) {
+  Scene s = falling_in_steps(sphere({0.02, 0.2, 0.03}, 0.09, kContactFriction), 100);
+  const SolverEntry& entry = find_solver("xpbd");
+  for (const auto& [places, dropped] : {std::pair{0, false}, {3, true}}) {
+    nlohmann::json settings = by_planes({{"substeps", 2}});
+    settings[kTuning]["contact_pairs"] = places;
+    RunSpec spec{&s, &entry, complete_settings(xpbd_info(), settings)};
+    const RunRecord run = whole_run(spec, {});
+    EXPECT_EQ(run.outcome.status, dropped ? "error" : "ok") << run.outcome.message;
+    const auto series = std::find_if(run.accuracy.metrics.begin(), run.accuracy.metrics.end(),
+                                     [](const MetricSeries& m) { return m.name == "contact_dropped"; });
+    ASSERT_NE(series, run.accuracy.metrics.end());
+    ASSERT_EQ(series->values.size(), run.accuracy.time_s.size());
+    EXPECT_EQ(series->values.back() > 0, dropped);
+    if (!dropped) continue;
+    EXPECT_NE(run.outcome.message.find("list of pairs"), std::string::npos) << run.outcome.message;
+    EXPECT_EQ(series->values[static_cast<std::size_t>(run.outcome.failed_frame)], series->values.back());
+    EXPECT_EQ(series->values[static_cast<std::size_t>(run.outcome.failed_frame) - 1], 0);
+  }
+}
+
+TEST_F(PlaneContacts, SayWhereTheirSubstepsAreCapped) {
+  for (const auto& [speed, substeps, wanted] : {std::tuple{10.0, 16, 0}, {40.0, 28, 0}, {60.0, 32, 42}}) {
+    Scene s = with_collider(sheet(9, 7), sphere({0, -0.3, 0}, 0.1));
+    s.cloth.initial_velocity_m_per_s = {0, -speed, 0};
+    const nlohmann::json settings = complete_settings(xpbd_info(), by_planes());
+    EXPECT_EQ(xpbd_substeps(s, settings), substeps) << "a margin of 20 mm a substep, at most 32";
+    EXPECT_EQ(substeps_over_budget(s, settings), wanted);
+    const auto solver = make("xpbd", by_planes());
+    solver->load(s);
+    bool said = false;
+    for (const LeftOut& l : solver->plan().left_out) said = said || l.what == std::to_string(wanted) + " substeps";
+    EXPECT_EQ(said, wanted > 0);
+  }
+}
+
+/// A whole frame in one dispatch moves the cloth bit for bit as a dispatch a phase does; pbd_gpu_plane_frame_test has
+/// all kinds of colliders, which take a CPU device some ten seconds to compile.
+TEST_F(PlaneContacts, HaveTheSameBitsInOneDispatch) {
+  Scene s = with_damping(with_collider(sheet(9, 7), half_space({0, 0, 0}, {0.6, 0.8, 0}, kContactFriction)));
+  s.cloth.center_m = {0, 0.4, 0};
+  const auto run = [&](const char* in_one, int dispatches) {
+    nlohmann::json settings = by_planes({{"substeps", 6}});
+    settings[kTuning]["contact_frame"] = in_one;
+    const auto solver = make("xpbd", settings);
+    solver->load(s);
+    int all = 0;
+    for (const StagePlan& stage : solver->plan().stages) all += stage.dispatches;
+    EXPECT_EQ(all, dispatches);
+    return after(*solver, s, 20);
+  };
+  // A dispatch a phase: the reach; in each substep 6 of vertices and 4 of families.
+  const ClothState one = run("always", 1), many = run("never", 1 + 6 * (6 + 4));
+  EXPECT_EQ(one.position, many.position);
+  EXPECT_EQ(one.velocity, many.velocity);
+}
+
 TEST_F(PlaneContacts, AreLeftOutPieceByPiece) {
   const Scene plain = sheet(5, 4);
   const std::set<std::string> vertices = {"plane_reach", "plane_predict", "plane_gather", "plane_settle",
                                           "plane_project"},
                               pairs = {"plane_list",  "plane_scan",    "plane_list_fill",
                                        "plane_query", "plane_respond", "plane_choose"},
-                              motion = {"plane_points", "plane_boxes"};
+                              motion = {"plane_pieces"};
   const auto together = [](std::set<std::string> a, const std::set<std::string>& b) {
     a.insert(b.begin(), b.end());
     return a;

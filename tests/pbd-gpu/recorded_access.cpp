@@ -124,6 +124,10 @@ std::vector<Event> time_line(const std::vector<const vulkan::Program*>& submitte
     for (const auto& r : p->recorded()) {
       if (r.from != nullptr && r.from->place() == vulkan::Buffer::Place::Host) filled.insert(r.from);
       if (r.to != nullptr && r.to->place() == vulkan::Buffer::Place::Host) fetched.insert(r.to);
+      if (r.kernel == nullptr) continue;
+      for (const vulkan::Binding& b : r.kernel->bindings())  // a kernel's own counts in host memory
+        if (b.access != vulkan::Access::Read && b.buffer->place() == vulkan::Buffer::Place::Host)
+          fetched.insert(b.buffer);
     }
   constexpr VkPipelineStageFlags kEverything = ~VkPipelineStageFlags{0};
   std::vector<Event> events = {host(filled, fetched)};

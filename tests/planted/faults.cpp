@@ -81,6 +81,45 @@ void add_kernels(std::vector<Fault>& f) {
          "if (GRIPS > 999999u) move_held(s);");
 }
 
+/// A fault in every phase of contact by planes. Where planes hold ("struck") responses may be wrong and nothing is
+/// passed; what a rope's friction on a drum is ("wrapped") they alone decide.
+void add_planes(std::vector<Fault>& f) {
+  const auto kernel = [&](const char* name, const char* stage, const char* file, const char* is, const char* is_to_be) {
+    Fault fault{name, stage};
+    fault.shader = ShaderFault{file, is, is_to_be};
+    f.push_back(std::move(fault));
+  };
+  kernel("points of pieces stand still within the frame", "struck", "plane_pieces.comp", "PiecePoint(c.b0, c.b1)",
+         "PiecePoint(c.b0, c.b0)");
+  kernel("a tenth of the reach", "struck", "plane_reach.glsl", "STORE16(reaches, i, vec4(at.xyz, reach));",
+         "STORE16(reaches, i, vec4(at.xyz, 0.1 * reach));");
+  kernel("one pair in three not listed", "struck", "plane_list.glsl", "        ++n[l];",
+         "        n[l] += k % 3u == 1u ? 0u : 1u;");
+  kernel("half of each element's pairs not found again", "struck", "plane_scan.glsl", "min(count, room), 0u",
+         "min(count, room) / 2u, 0u");
+  kernel("start of the substep not what it was", "wrapped", "plane_vertices.glsl", "at.xyz += p.h * (vel ",
+         "at.xyz += -9.0 * p.h * (vel ");
+  kernel("bounds of distances do not lose the ways", "struck", "plane_query.glsl", "bound -= most_of(e, true) + moved;",
+         "bound -= 0.0;");
+  kernel("normal of the nearest points flipped", "struck", "plane_query.glsl", "s.normal = vec4(r.n, gap);",
+         "s.normal = vec4(-r.n, gap);");
+  kernel("friction along the slip", "wrapped", "plane_push.glsl", "by -= min(1.0, piece.friction",
+         "by += min(1.0, piece.friction");
+  kernel("friction half as great", "wrapped", "plane_push.glsl", "by -= min(1.0, piece.friction",
+         "by -= min(1.0, 0.5 * piece.friction");
+  kernel("responses taken from the velocity, not given to it", "wrapped", "plane_gather.glsl",
+         "sum_moving += l * moving;", "sum_moving -= l * moving;");
+  kernel("no responses of vertices", "wrapped", "plane_gather.glsl", "from_pairs(TRIANGLES + i, 0u, at.w);", "");
+  kernel("what was struck no heavier in the lines", "struck", "plane_gather.glsl", "at.w / (1.0 + held)", "at.w");
+  kernel("a hull that misses a corner", "struck", "plane_geometry.glsl", "uint j = 0u; j < piece.count; ++j) high",
+         "uint j = 1u; j < piece.count; ++j) high");
+  kernel("planes a millimetre inside the piece", "struck", "plane_choose.glsl", "dot(n, around) + least;",
+         "dot(n, around) + least - 1e-3;");
+  kernel("planes forgotten", "struck", "plane_project.glsl", "if (worst(at) >= 0.0) return at;", "return at;");
+  kernel("projected onto all planes but those of the last triangle", "struck", "plane_project.glsl",
+         "any_planes && f < end_fan;", "any_planes && f + 1u < end_fan;");
+}
+
 void add_inputs(std::vector<Fault>& f) {
   const auto scene = [&](const char* name, const char* stage, std::function<void(Scene&)> change) {
     Fault fault{name, stage};
@@ -220,6 +259,7 @@ void add_records(std::vector<Fault>& f) {
 std::vector<Fault> faults() {
   std::vector<Fault> out;
   add_kernels(out);
+  add_planes(out);
   add_inputs(out);
   add_outputs(out);
   add_metrics(out);

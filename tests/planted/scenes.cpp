@@ -47,6 +47,16 @@ const char* const kPushed = R"({"name":"pushed","why":"A capsule pushes a hangin
   "time":{"frame_rate_hz":72,"duration_s":0.4},
   "expect":{"outcome":"ok","depth_vertex_max_m":{"at_most":0.001},"wrong_side_samples_max":{"at_most":0}}})";
 
+// Contact by planes, in so few substeps that responses do not suffice and planes have to hold: a corner of a box and a
+// fingertip that comes up through the inside of a cell.
+const char* const kStruck = R"({"name":"struck","why":"A sheet is thrown onto a box and a fingertip that comes up.",
+  "cloth":{"grid":[17,17],"size_m":[0.5,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0.9,-4,0.3],"pose":{"center_m":[0.003,0.14,0.002]}},
+  "material":{"membrane_stiffness_N_per_m":1000,"damping_per_s":0.1},
+  "colliders":[{"type":"box","center_m":[-0.1,0,-0.05],"size_m":[0.15,0.1,0.2],"margin_m":0.004,"friction":0.5},
+    {"type":"capsule","center_m":[0.122,-0.1,0.113],"axis":[0,1,0],"length_m":0.1,"radius_m":0.007,"velocity_m_per_s":[0,4,0],"stop_s":0.08,"margin_m":0.004,"friction":0.3}],
+  "time":{"frame_rate_hz":72,"duration_s":0.3},
+  "expect":{"outcome":"ok","depth_max_m":{"at_most":1e-5}}})";
+
 const char* const kPulled = R"({"name":"pulled","why":"Two bars pull a sheet apart and let go.",
   "cloth":{"grid":[17,9],"size_m":[0.5,0.25],"areal_density_kg_per_m2":0.2,"sides":"single","pose":{}},
   "material":{"membrane_stiffness_N_per_m":1000},"gravity_m_per_s2":[0,0,0],
@@ -136,6 +146,10 @@ std::vector<Stage> stages() {
                                                              "cloth.pose.center_m=[0,0.2,0]"})));
   out.push_back(solved("tiles", over_tiles()));
   out.push_back(solved("pushed", scene(kPushed)));
+  out.push_back(solved("struck", scene(kStruck)));
+  out.back().settings = {{"substeps", 3}, {kTuning, {{"contact", "planes"}}}};
+  out.push_back(solved("wrapped", load_scene("validation/capstan-slip")));
+  out.back().settings = {{"substeps", 16}, {kTuning, {{"contact", "planes"}}}};
   out.push_back(solved("pulled", scene(kPulled)));
   out.push_back(solved("layers", layers()));
   out.push_back(stage_of("crossed", kCrossed, lay_over));

@@ -76,7 +76,7 @@ RunRecord execute_run(const Stage& stage, const Fault* fault) {
     };
   std::optional<ShaderVariant> variant;
   if (fault != nullptr && fault->shader) variant.emplace(*fault->shader);
-  RunSpec spec{&stage.scene, &entry, complete_settings(entry.info, nlohmann::json::object())};
+  RunSpec spec{&stage.scene, &entry, complete_settings(entry.info, stage.settings)};
   if (fault != nullptr && fault->settings) fault->settings(spec.settings);
   TrialRules rules;
   rules.frames = rules.min_frames = 12;

@@ -16,6 +16,7 @@ struct Stage {
   Scene scene;
   SolverEntry entry;
   int trials = 0;
+  nlohmann::json settings = nlohmann::json::object();
 };
 
 /// One thing that is wrong. Of the places where it may sit only one is filled.

@@ -89,6 +89,13 @@ struct FrameCost {
   std::vector<double> stage_read_B, stage_write_B;
 };
 
+/// How often since `reset` a solver could not do what it promises. Stored as a series over the frames of a run.
+struct SolverCount {
+  std::string name, long_name;
+  double count = 0;
+  std::string fault = {};  ///< if a count above 0 makes the run an error: what went wrong
+};
+
 /// Input of one frame. Times are those at the frame's end.
 struct FrameInput {
   int index = 0;
@@ -140,6 +147,8 @@ class ClothSolver {
   virtual bool restart(const ClothState&) { return false; }
   virtual FrameCost last_cost() const = 0;
   virtual Plan plan() const = 0;
+  /// The same entries in the same order after every frame of a loaded scene; empty where nothing can go wrong unseen.
+  virtual std::vector<SolverCount> counts() const { return {}; }
   /// Messages of the validation layer that this solver has caused so far; 0 without a validation layer.
   virtual int validation_messages() const { return 0; }
 };

@@ -31,54 +31,7 @@ vec3 anchor(uvec2 at, uint k) {
 #include "lines_integrate.glsl"
 #include "device_barrier.glsl"
 
-// Compensation terms are of the first family's chains, so threads that stay with them keep them from substep to substep.
-void pass(uint substep, bool first, bool last) {
-  uint at[K];
-  bool fetches = first && substep == 0u;
-  [[unroll]] for (uint k = 0u; k < K; ++k) {
-    uint i = lane * K + k;
-    pos[k] = vel[k] = vec3(0.0);
-    w[k] = 0.0;
-    at[k] = 0u;
-    if (!(EXACT || on_chain(i))) continue;
-    at[k] = index_of(vertex(i));
-    COUNT_READ(!fetches ? 32u : kPredicts ? 96u : 64u)
-    vec4 here = x[at[k]];
-    pos[k] = here.xyz;
-    w[k] = here.w;
-    vel[k] = v[at[k]].xyz;
-    if (fetches) {
-      rest_pos[k] = rx[at[k]].xyz;
-      rest_vel[k] = rv[at[k]].xyz;
-      if (kPredicts) {
-        last_pos[k] = lx[at[k]].xyz;
-        last_vel[k] = lv[at[k]].xyz;
-      }
-    }
-  }
-  float least = 0.0;
-  if ((FEATURES & LINES_FIRM) != 0u && chain < chain_count())
-    least = LOAD4(regularisation, family * max(COLUMNS, ROWS) + chain);
-  if (first) {
-    integrate();
-    [[unroll]] for (uint k = 0u; k < K; ++k) {
-      if (substep + 1u < p.substeps || w[k] == 0.0) continue;
-      STORE16(rx, at[k], vec4(rest_pos[k], 0.0));
-      STORE16(rv, at[k], vec4(rest_vel[k], 0.0));
-      if (!kPredicts) continue;
-      STORE16(lx, at[k], vec4(last_pos[k], 0.0));
-      STORE16(lv, at[k], vec4(last_vel[k], 0.0));
-    }
-  }
-  if (kBends && family < 2u) bend();
-  stretch(least);
-  if (last) limit_speed();
-  [[unroll]] for (uint k = 0u; k < K; ++k) {
-    if (w[k] == 0.0) continue;
-    STORE16(x, at[k], vec4(pos[k], w[k]));
-    STORE16(v, at[k], vec4(vel[k], 0.0));
-  }
-}
+#include "line_family.glsl"
 
 void main() {
   set_thread();

@@ -1,14 +1,22 @@
-// What the kernels of plane contact share: the list of pairs, and what is known of elements and pieces. Elements are the
-// cloth's triangles, then its vertices; each has a range of pairs, in the order of pieces.
+// What the kernels of plane contact share: what is known of elements and pieces, and of the substep. Elements are the cloth's
+// triangles, then its vertices; each has a range of pairs, in the order of pieces. A kernel of a phase has its counts as
+// push constants, the kernel of a whole frame as specialization constants of the same names.
+#ifndef PLANE_FRAME
 layout(push_constant) uniform Push { PlaneContactConstants p; };
 PLANE_CONTACT_CONSTANTS(SPECIALIZE)
+#define VERTICES p.vertices
+#define TRIANGLES p.triangles
+#define CAPACITY p.capacity
+#define PIECES p.pieces
+#define GROUPS p.groups
+#define MARGIN_M p.margin_m
+#endif
 
 layout(std430, binding = BIND_PIECES) readonly buffer Pieces { ContactPiece pieces[]; };
 layout(std430, binding = BIND_POINTS) readonly buffer Points { PiecePoint points[]; };
 layout(std430, binding = BIND_PIECE_BOXES) readonly buffer PieceBoxes { ClusterBox boxes[]; };  // groups' after pieces'
 layout(std430, binding = BIND_PLANES) readonly buffer Planes { PlaneShape half_spaces[]; };
 layout(std430, binding = BIND_ELEMENTS) readonly buffer Elements { uvec4 elements[]; };  // vertices, number of them
-layout(std430, binding = BIND_RANGES) readonly buffer Ranges { uvec4 ranges[]; };        // x: first pair, y: pairs
 
 const float kGuard_m = 2e-4;    // distance of planes from pieces
 const float kRecovered = 0.1;   // share of the margin by which what is too near is let out a substep
@@ -16,5 +24,15 @@ const float kStandingShare = 0.75;  // of the margin: what edges and faces keep 
 const float kHold_m = 1e-3;     // a push before the lines of so much doubles a vertex' mass in them
 const float kRounding_m = 2e-7;  // of positions
 const float kTiny = 1e-6;       // a weight below is none
+
+uint turn = 0u;  // 0: before the lines, with the predicted positions; 1 and on: rounds of responses after them
+float t_begin = 0.0, t_end = 1.0;  // of the substep, as fractions of the frame
+
+/// Exact at the frame's end: there the next frame begins.
+float time_of(uint substep) { return substep >= p.substeps ? 1.0 : float(substep) * p.substep_part; }
+void begin_substep(uint substep) {
+  t_begin = time_of(substep);
+  t_end = time_of(substep + 1u);
+}
 
 uint stride() { return gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_WorkGroupSize.x; }

@@ -1,6 +1,5 @@
 #version 450
-// A plane for every pair that was looked at: across its start's normal where the proposed end is before it, else across any that
-// parts both ends of the way. Vertices go straight, so what a plane parts at both ends it parts in between.
+// Before a substep's end, a thread a pair.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
@@ -10,53 +9,9 @@ layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger led
 layout(std430, binding = BIND_PAIRS) readonly buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_PAIR_STATES) buffer States { PairState states[]; };
 #include "plane_geometry.glsl"
-
-vec3 starting[3], proposed[3];
-
-float farthest_point(vec3 n) {
-  float high = -1e30;
-  for (uint j = 0u; j < piece.count; ++j) high = max(high, dot(n, point_at(j, p.end)));
-  return high + piece.radius;
-}
-float gap_at_start(vec3 n) { return gap_along(n, starting[0], starting[1], starting[2], p.begin) - piece.radius; }
-float gap_at_end(vec3 n) { return gap_along(n, proposed[0], proposed[1], proposed[2], p.end) - piece.radius; }
-
-/// The normal at the end, or half-way to it.
-bool another(vec3 old, float least, out vec3 n) {
-  for (uint c = 0u; c < 3u; ++c) cloth[c] = proposed[c];
-  corners = 3u;
-  Nearest r = nearest_at(p.end, p.end, vec3(0.0));
-  if (!(r.gap > piece.radius)) return false;
-  const float kBlends[4] = float[4](1.0, 0.5, 0.75, 0.25);
-  for (uint k = 0u; k < 4u; ++k) {
-    n = mix(old, r.n, kBlends[k]);
-    float l = length(n);
-    if (!(l > 0.2)) continue;
-    n /= l;
-    if (gap_at_start(n) >= least && gap_at_end(n) >= least) return true;
-  }
-  return false;
-}
+#include "plane_choose.glsl"
 
 void main() {
-  for (uint k = item(); k < ledger.pairs; k += stride()) {
-    uvec4 pair = LOAD16(pairs, k);
-    if ((pair.z & PAIR_PLANE) == 0u) continue;
-    uvec4 e = LOAD16(elements, pair.x);
-    piece = pieces[pair.y];
-    vec4 normal = states[k].normal;
-    around = starts[e.x].xyz;
-    for (uint c = 0u; c < 3u; ++c) {
-      starting[c] = starts[e[c]].xyz - around;
-      proposed[c] = y[e[c]].xyz - around;
-    }
-    vec3 n = normal.xyz, other;
-    float least = min(normal.w, kGuard_m);  // below 0: inside a radius, and no deeper
-    if (gap_at_end(n) < least && another(n, least, other)) {
-      n = other;
-      states[k].normal.xyz = n;
-    }
-    states[k].way.w = farthest_point(n) + dot(n, around) + least;
-    states[k].push = vec4(0.0);  // multipliers of plane_project
-  }
+  begin_substep(p.first_substep);
+  for (uint k = item(); k < ledger.pairs; k += stride()) choose(k);
 }

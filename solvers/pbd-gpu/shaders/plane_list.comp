@@ -1,76 +1,27 @@
 #version 450
-// Start of a frame: pairs of an element and a piece whose boxes meet, the element's grown by its vertices' reaches. First they are
-// counted for several shares of the reaches (plane_scan chooses the greatest one that the list has place for); FILL writes them.
+// Start of a frame, a thread an element: counts its pairs; FILL writes them.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_REACHES) readonly buffer Reaches { vec4 reaches[]; };
 #ifdef FILL
+layout(std430, binding = BIND_RANGES) readonly buffer Ranges { uvec4 ranges[]; };
 layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_PAIRS) writeonly buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_PAIR_STATES) writeonly buffer States { PairState states[]; };
+#define FILL_ALONE
 #else
-layout(std430, binding = BIND_RANGES) writeonly buffer Counts { uvec4 counts[]; };
+layout(std430, binding = BIND_RANGES) writeonly buffer Ranges { uvec4 ranges[]; };
+#define COUNT_ALONE
 #endif
-
-vec3 low, high;
-void box_for(uvec4 e, float share) {
-  low = vec3(1e30);
-  high = vec3(-1e30);
-  for (uint c = 0u; c < e.w; ++c) {
-    vec4 r = LOAD16(reaches, e[c]);
-    low = min(low, r.xyz - share * r.w);
-    high = max(high, r.xyz + share * r.w);
-  }
-}
-bool meets(ClusterBox b) {
-  return all(lessThanEqual(low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, high));
-}
-
-#ifdef FILL
-void element(uint k) {
-  uvec4 range = LOAD16(ranges, k);
-  box_for(LOAD16(elements, k), ledger.reach);
-  uint at = range.x, end = range.x + range.y;
-  for (uint g = 0u; g < p.groups && at < end; ++g) {
-    if (!meets(LOAD(32u, boxes, p.pieces + g))) continue;
-    for (uint q = PIECES_A_GROUP * g; q < min(PIECES_A_GROUP * (g + 1u), p.pieces) && at < end; ++q) {
-      if (!meets(LOAD(32u, boxes, q))) continue;
-      STORE16(pairs, at, uvec4(k, q, 0u, 0u));
-      states[at].normal = vec4(0.0);
-      states[at].push = vec4(0.0);
-      ++at;
-    }
-  }
-}
-#else
-void element(uint k) {
-  uvec4 e = LOAD16(elements, k), n = uvec4(0u);
-  vec3 lows[PAIR_LEVELS], highs[PAIR_LEVELS];
-  float share = 1.0;
-  for (uint l = 0u; l < PAIR_LEVELS; ++l, share *= 0.5) {
-    box_for(e, share);
-    lows[l] = low;
-    highs[l] = high;
-  }
-  for (uint g = 0u; g < p.groups; ++g) {
-    low = lows[0];
-    high = highs[0];
-    if (!meets(LOAD(32u, boxes, p.pieces + g))) continue;
-    for (uint q = PIECES_A_GROUP * g; q < min(PIECES_A_GROUP * (g + 1u), p.pieces); ++q) {
-      ClusterBox box = LOAD(32u, boxes, q);
-      for (uint l = 0u; l < PAIR_LEVELS; ++l) {
-        low = lows[l];
-        high = highs[l];
-        if (!meets(box)) break;
-        ++n[l];
-      }
-    }
-  }
-  STORE16(counts, k, n);
-}
-#endif
+#include "plane_list.glsl"
 
 void main() {
-  for (uint k = item(); k < p.triangles + p.vertices; k += stride()) element(k);
+  for (uint k = item(); k < TRIANGLES + VERTICES; k += stride()) {
+#ifdef FILL
+    fill_pairs_of(k);
+#else
+    count_pairs_of(k);
+#endif
+  }
 }

@@ -1,16 +1,17 @@
 #version 450
-// Start of a substep, a thread a vertex: where it would be without links and contact. Tethers come with the lines.
+// Start of a substep, a thread a vertex.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
+layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) readonly buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_PREDICTED) writeonly buffer Proposed { vec4 y[]; };
+layout(std430, binding = BIND_STARTS) buffer Starts { vec4 starts[]; };
+layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
+#define PREDICT_ALONE
 #include "plane_vertices.glsl"
 
 void main() {
   uint i = item();
-  if (i >= p.vertices) return;
-  vec4 at = LOAD16(x, i);
-  vec3 vel = LOAD16(v, i).xyz;
-  if (at.w > 0.0) at.xyz += p.h * (vel + p.gravity_h.xyz - p.loss * vel);
-  STORE16(y, i, at);
-  starts[i].w = farthest(i, at.xyz);
+  if (i < VERTICES) predict(i);
 }

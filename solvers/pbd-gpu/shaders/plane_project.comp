@@ -1,147 +1,21 @@
 #version 450
-// A substep's end, a thread a vertex: its place before the planes of all its triangles that is nearest to the proposed one (Hildreth
-// 1957: multipliers one after another), no farther than it may go. If that is not found, as near to it as planes let it come from a
-// place that is known to be free.
+// A substep's end, a thread a vertex.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
-#include "plane_vertices.glsl"
+layout(std430, binding = BIND_POSITIONS) writeonly buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
+layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };  // w: inverse mass
+layout(std430, binding = BIND_STARTS) buffer Starts { vec4 starts[]; };  // at the substep's start; w: farthest it may go
 layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };
+layout(std430, binding = BIND_RANGES) readonly buffer Ranges { uvec4 ranges[]; };
 layout(std430, binding = BIND_PAIRS) readonly buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_PAIR_STATES) buffer States { PairState states[]; };
 layout(std430, binding = BIND_SIDES) writeonly buffer Ways { float ways[]; };
 layout(std430, binding = BIND_FAULTS) buffer Faults { ContactFaults faults; };
-
-const uint kSweeps = 30u;
-const float kNoPlace_m = 2e-6;  // that a vertex may lack before its planes, by rounding
-uint first_fan, end_fan;
-vec3 start;
-
-/// Offset of a half-space of the scene in this substep; what starts behind it goes no deeper.
-float half_space(PlaneShape s) {
-  return s.normal.w + min(dot(start, s.normal.xyz) - s.normal.w, kGuard_m);
-}
-
-// Every plane of the vertex: `n`, `s` and `k`, its pair.
-#define EACH_PLANE(BODY)                                                     \
-  for (uint f = first_fan; f < end_fan; ++f) {                               \
-    uint fan = fans[f], corner = fan % 4u;                                   \
-    uvec2 range = ranges[fan / 4u].xy;                                       \
-    for (uint k = range.x; k < range.x + range.y; ++k) {                     \
-      if ((pairs[k].z & PAIR_PLANE) == 0u) continue;                         \
-      vec3 n = states[k].normal.xyz;                                         \
-      float s = states[k].way.w;                                             \
-      BODY                                                                   \
-    }                                                                        \
-  }
-
-/// The least distance before any plane.
-float worst(vec3 at) {
-  float least = 1e30;
-  for (uint h = 0u; h < PLANES; ++h) least = min(least, dot(at, half_spaces[h].normal.xyz) - half_space(half_spaces[h]));
-  EACH_PLANE(least = min(least, dot(n, at) - s);)
-  return least;
-}
-
-vec3 projected(vec3 at) {
-  float of_half_spaces[PLANES + 1u];
-  for (uint h = 0u; h < PLANES; ++h) of_half_spaces[h] = 0.0;
-  for (uint sweep = 0u; sweep < kSweeps; ++sweep) {
-    float most = 0.0;
-    for (uint h = 0u; h < PLANES; ++h) {
-      vec3 n = half_spaces[h].normal.xyz;
-      float by = max(-of_half_spaces[h], half_space(half_spaces[h]) + kRounding_m - dot(n, at));
-      of_half_spaces[h] += by;
-      at += by * n;
-      most = max(most, abs(by));
-    }
-    EACH_PLANE(
-      float old = states[k].push[corner];
-      float by = max(-old, s + kRounding_m - dot(n, at));
-      if (by != 0.0) {
-        states[k].push[corner] = old + by;
-        at += by * n;
-        most = max(most, abs(by));
-      }
-    )
-    if (most < 0.5 * kRounding_m) break;
-  }
-  return at;
-}
-
-/// Displacement of a piece in this substep, its points' mean: what it carries along stays free of it.
-vec3 way_of(uint k) {
-  ContactPiece q = pieces[k];
-  vec3 way = vec3(0.0);
-  for (uint j = 0u; j < q.count; ++j) {
-    PiecePoint at = points[q.first + j];
-    way += at.end.xyz - at.start.xyz;
-  }
-  return way * p.part / float(q.count);
-}
-
-/// From a free place as far towards `to` as planes and `room` let it.
-vec3 back_from(vec3 to, float room) {
-  vec3 free = start;
-  float best = worst(start);
-  EACH_PLANE(
-    if (best < -kRounding_m && pieces[pairs[k].y].moves != 0u && s == s) {
-      vec3 there = start + way_of(pairs[k].y);
-      float is = worst(there);
-      if (is > best) {
-        best = is;
-        free = there;
-      }
-    }
-  )
-  if (best < -kRounding_m) {
-    float at_end = worst(to);
-    if (at_end > best && distance(to, start) <= room) {
-      best = at_end;
-      free = to;
-    }
-    if (best < -kNoPlace_m) atomicAdd(faults.without_place, 1u);
-    return free;
-  }
-  atomicAdd(faults.returned, 1u);
-  float part = 1.0;
-  for (uint h = 0u; h < PLANES; ++h) {
-    float s = half_space(half_spaces[h]), from = dot(half_spaces[h].normal.xyz, free) - s, end = dot(half_spaces[h].normal.xyz, to) - s;
-    if (end < 0.0) part = min(part, from > 0.0 ? from / (from - end) : 0.0);
-  }
-  EACH_PLANE(
-    float from = dot(n, free) - s;
-    float end = dot(n, to) - s;
-    if (end < 0.0) part = min(part, from > 0.0 ? from / (from - end) : 0.0);
-  )
-  vec3 way = part * (to - free);
-  float left = max(0.0, room - distance(free, start)), l = length(way);
-  return free + (l > left ? left / l : 1.0) * way;
-}
-
-vec3 place(vec3 to, float room) {
-  vec3 way = to - start;
-  float l = length(way);
-  vec3 at = l > room ? start + (room / l) * way : to;
-  if (worst(at) >= 0.0) return at;
-  at = projected(at);
-  if (worst(at) >= -kRounding_m && distance(at, start) <= room) return at;
-  return back_from(at, room);
-}
+#include "plane_project.glsl"
 
 void main() {
   uint i = item();
-  if (i >= p.vertices) return;
-  vec4 proposed = LOAD16(y, i), from = LOAD16(starts, i);
-  start = from.xyz;
-  vec3 at = proposed.xyz;
-  if (proposed.w > 0.0) {
-    first_fan = LOAD4(fans, i);
-    end_fan = LOAD4(fans, i + 1u);
-    at = place(at, from.w);
-    if (at != proposed.xyz) STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * (at - proposed.xyz), 0.0));
-    STORE16(x, i, vec4(at, proposed.w));
-  }
-  STORE4(ways, i, distance(at, start));
-  STORE16(starts, i, vec4(at, 0.0));
+  if (i < VERTICES) project(i);
 }

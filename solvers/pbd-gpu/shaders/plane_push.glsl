@@ -20,7 +20,7 @@ vec4 push_of(uvec4 e, PairState s) {
   }
   if (!(mass > 0.0)) return vec4(0.0);
   float push = s.way.w - gap;
-  float out_by = p.round == 0u ? clamp(kept_margin(e, s.weights.xyz) - s.way.w, 0.0, kRecovered * piece.margin) : 0.0;
+  float out_by = turn < 2u ? clamp(kept_margin(e, s.weights.xyz) - s.way.w, 0.0, kRecovered * piece.margin) : 0.0;
   if (!(push + out_by > 0.0)) return vec4(0.0);
   float moving = max(0.0, push);
   slip -= dot(slip, s.normal.xyz) * s.normal.xyz;

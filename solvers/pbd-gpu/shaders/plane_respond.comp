@@ -1,5 +1,5 @@
 #version 450
-// A further round of responses: the proposed corrections of contacts at the vertices' new places.
+// A further round of responses, a thread a pair: the proposed corrections of contacts at the vertices' new places.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
@@ -10,12 +10,9 @@ layout(std430, binding = BIND_PAIRS) readonly buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_PAIR_STATES) buffer States { PairState states[]; };
 ContactPiece piece;
 #include "plane_push.glsl"
+#include "plane_respond.glsl"
 
 void main() {
-  for (uint k = item(); k < ledger.pairs; k += stride()) {
-    uvec4 pair = LOAD16(pairs, k);
-    if ((pair.z & PAIR_NEAREST) == 0u) continue;
-    piece = pieces[pair.y];
-    states[k].push = push_of(LOAD16(elements, pair.x), states[k]);
-  }
+  turn = p.turn;
+  for (uint k = item(); k < ledger.pairs; k += stride()) respond(k);
 }

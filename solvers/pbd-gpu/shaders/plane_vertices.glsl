@@ -1,11 +1,37 @@
-// What the kernels of plane contact know of a vertex.
-layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };      // w: inverse mass in the lines
-layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
-layout(std430, binding = BIND_PREDICTED) buffer Proposed { vec4 y[]; };       // w: inverse mass
-layout(std430, binding = BIND_STARTS) buffer Starts { vec4 starts[]; };       // at the substep's start; w: farthest it may go
-layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
+// What plane contact does with a vertex at a substep's start and after its constraints.
 
 /// How far a vertex may go from its start: its proposed way, and what a collider may push it.
 float farthest(uint i, vec3 to) {
-  return distance(to, starts[i].xyz) + p.part * ledger.carried + p.margin_m;
+  return distance(to, starts[i].xyz) + p.substep_part * ledger.carried + MARGIN_M;
 }
+
+#ifndef SETTLE_ALONE
+/// Where a vertex would be without links and contact. Tethers come with the lines.
+void predict(uint i) {
+  vec4 at = LOAD16(x, i);
+  vec3 vel = LOAD16(v, i).xyz;
+  if (at.w > 0.0) at.xyz += p.h * (vel + p.gravity_h.xyz - p.loss * vel);
+  STORE16(y, i, at);
+  starts[i].w = farthest(i, at.xyz);
+}
+#endif
+
+#ifndef PREDICT_ALONE
+/// Where the lines have put a vertex, within the frame's reach.
+vec3 within_reach(uint i, vec3 to, float w) {
+  vec4 reach = LOAD16(reaches, i);
+  vec3 way = to - reach.xyz;
+  float l = length(way), most = reach.w * ledger.reach;
+  if (!(w > 0.0 && l > most)) return to;
+  vec3 kept = reach.xyz + (most / l) * way;
+  STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * (kept - to), 0.0));
+  return kept;
+}
+
+void settle(uint i) {
+  float w = LOAD16(y, i).w;
+  vec3 to = within_reach(i, LOAD16(x, i).xyz, w);
+  STORE16(y, i, vec4(to, w));
+  starts[i].w = farthest(i, to);
+}
+#endif

@@ -1,0 +1,63 @@
+#include "plane_frame.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "persistent.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// Threads whose sums plane_scan.glsl adds up together.
+constexpr std::uint32_t kScanBlock = 32;
+
+}  // namespace
+
+std::unique_ptr<PlaneFrame> PlaneFrame::make(FrameBuilder& frame, Lines& lines, PlaneContact& contact) {
+  const std::string wanted = frame.tuning()["contact_frame"];
+  if (!frame.settings()["one_dispatch"].get<bool>() || wanted == "never") return nullptr;
+  // A CPU takes seconds to compile it, and runs a workgroup on one of its cores.
+  const vulkan::Device& device = *frame.device();
+  if (wanted == "auto" && device.is_software() && device.profile() == nullptr) return nullptr;
+  std::unique_ptr<PlaneFrame> made(new PlaneFrame(frame, lines, contact));
+  if (made->add_kernel(false) || made->add_kernel(true)) return made;
+  if (wanted == "always")
+    throw Error(
+        "solver xpbd: setting tuning.contact_frame=always: expected an even grid of at most 32 x 32 vertices, or a "
+        "device "
+        "that runs all workgroups at once, and one iteration a substep");
+  return nullptr;
+}
+
+bool PlaneFrame::add_kernel(bool many) {
+  const LineShape shape = lines_.frame_shape_with_contact(many);
+  if (shape.threads == 0 || shape.threads % kScanBlock != 0) return false;
+  std::vector<std::uint32_t> constants = lines_.specialization_with_contact(shape, many).by_number();
+  const std::vector<std::uint32_t> contact = contact_.frame_specialization().by_number();
+  std::transform(contact.begin(), contact.end(), constants.begin(), constants.begin(), std::bit_or<>());
+  const std::string name = std::string("plane_frame") + (many ? "_many" : "") + (shape.shuffles ? "_shuffle" : "");
+  groups_ = many ? lines_.groups_of(shape) : vulkan::Groups{1, 1};
+  lines_.add_regularisation();
+  if (many) {
+    if (!runs_at_once<LineConstants>(frame_, name, constants, shape.threads, groups_)) return false;
+    add_meeting(frame_);
+  }
+  const FeatureSet of_lines{Feature::Stretch, Feature::Shear, Feature::Bend,
+                            Feature::Damping, Feature::Pins,  Feature::MovingPins};
+  const int stage = frame_.add_stage("LinesAndContact", (frame_.scene().needs & of_lines) | contact_.serves(), true);
+  kernel_ = frame_.add_kernel(stage, name, sizeof(LineConstants), constants, shape.threads);
+  return true;
+}
+
+void PlaneFrame::record(int substeps, double dt_s, const TimeStep& step) {
+  LineConstants c = lines_.constants(dt_s, substeps, step);
+  const PlaneContactConstants contact = contact_.constants(0, substeps, dt_s);
+  c.substeps = static_cast<std::uint32_t>(substeps);
+  c.passes = c.substeps * lines_.passes();
+  c.frame_s = contact.frame_s;
+  c.reach_m = contact.reach_m;
+  const auto n = static_cast<double>(frame_.scene().cloth.vertex_count());
+  frame_.dispatch_groups(*kernel_, groups_, c, lines_.substep_traffic() * substeps + Traffic{32 * n, 36 * n});
+}
+
+}  // namespace clothbench::pbd_gpu

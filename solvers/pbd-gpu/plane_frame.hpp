@@ -1,0 +1,32 @@
+#pragma once
+#include <memory>
+
+#include "lines.hpp"
+#include "plane_contact.hpp"
+
+namespace clothbench::pbd_gpu {
+
+/// Lines and contact by planes of a whole frame in one kernel (shaders/plane_frame.comp), with the bits of the kernels
+/// of the phases. It also moves held vertices.
+class PlaneFrame {
+ public:
+  /// Null where cloth, device or settings do not allow it: one workgroup takes a cloth of at most 32 x 32 vertices; a
+  /// larger one takes a device that runs all its workgroups at once.
+  static std::unique_ptr<PlaneFrame> make(FrameBuilder& frame, Lines& lines, PlaneContact& contact);
+
+  /// Call after PlaneContact::record_pieces.
+  void record(int substeps, double dt_s, const TimeStep&);
+
+ private:
+  PlaneFrame(FrameBuilder& frame, Lines& lines, PlaneContact& contact)
+      : frame_(frame), lines_(lines), contact_(contact) {}
+  bool add_kernel(bool many);
+
+  FrameBuilder& frame_;
+  Lines& lines_;
+  PlaneContact& contact_;
+  vulkan::Groups groups_{1, 1};
+  const FrameKernel* kernel_ = nullptr;
+};
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,270 @@
+#version 450
+// A frame of cloth with contact by planes in one dispatch: the list of pairs, then every substep with its lines, phase for phase as
+// the kernels of the phases have it and with the same bits. One workgroup takes a cloth of at most 32 x 32 vertices; with
+// MANY_GROUPS any number of workgroups that run at once wait for one another (device_barrier.glsl).
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#ifdef SHUFFLES
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#endif
+#include "common.glsl"
+#define PLANE_FRAME
+#ifdef MANY_GROUPS
+#define STATE coherent
+#else
+// One workgroup is on one multiprocessor: what its threads write before memoryBarrierBuffer() and barrier() they all see.
+#define STATE
+#endif
+layout(std430, binding = BIND_POSITIONS) STATE buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
+layout(std430, binding = BIND_VELOCITIES) STATE buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_POSITION_COMPENSATION) STATE buffer PositionCompensation { vec4 rx[]; };
+layout(std430, binding = BIND_VELOCITY_COMPENSATION) STATE buffer VelocityCompensation { vec4 rv[]; };
+layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };
+layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
+layout(std430, binding = BIND_PREDICTED) STATE buffer Proposed { vec4 y[]; };  // w: inverse mass
+layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };  // at the substep's start; w: farthest it may go
+layout(std430, binding = BIND_REACHES) STATE buffer Reaches { vec4 reaches[]; };
+layout(std430, binding = BIND_SIDES) STATE buffer Ways { float ways[]; };
+layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };
+layout(std430, binding = BIND_RANGES) STATE buffer Ranges { uvec4 ranges[]; };
+layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // of the first of them, w: pairs that are asked
+layout(std430, binding = BIND_PAIR_STATES) STATE buffer States { PairState states[]; };
+layout(std430, binding = BIND_LEDGER) STATE buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_FAULTS) STATE buffer Faults { ContactFaults faults; };
+
+PLANE_FRAME_CONSTANTS(SPECIALIZE)
+#define MARGIN_M uintBitsToFloat(MARGIN_BITS)
+#include "lines.glsl"
+vec3 anchor(uvec2 at, uint k) {
+  if (w[k] > 0.0) COUNT_READ(16u)
+  return x[index_of(at)].xyz;
+}
+#include "lines_integrate.glsl"
+#include "line_family.glsl"
+#include "grip.glsl"
+#include "plane_buffers.glsl"
+#include "plane_vertices.glsl"
+#include "plane_reach.glsl"
+#include "plane_list.glsl"
+#include "plane_geometry.glsl"
+#include "plane_push.glsl"
+#include "plane_query.glsl"
+#include "plane_respond.glsl"
+#include "plane_gather.glsl"
+#include "plane_choose.glsl"
+#include "plane_project.glsl"
+#include "box_bits.glsl"
+const uint kThreads = THREADS;
+#include "plane_scan.glsl"
+
+#ifdef MANY_GROUPS
+#include "device_barrier.glsl"
+#define MEET if (!grid_barrier()) return
+#define MEET_OR_FAIL if (!grid_barrier()) return false
+#define COUNTED(t) ledger.asked[t]
+#define CLOTH_LOW ledger.cloth_low
+#define CLOTH_HIGH ledger.cloth_high
+#else
+#define MEET { memoryBarrierBuffer(); barrier(); }
+#define MEET_OR_FAIL MEET
+shared uint asked[2];
+#define COUNTED(t) asked[t]
+#define CLOTH_LOW cloth_low
+#define CLOTH_HIGH cloth_high
+#endif
+shared uint any_near, cloth_low[3], cloth_high[3];
+
+const uint kTurns = 3u;
+uint me, all_threads;  // this thread among those of all workgroups
+#define EACH(i, count) for (uint i = me; i < (count); i += all_threads)
+
+/// Reaches of all vertices, and the box of everywhere that the cloth may go in the frame: first of a thread's vertices, then of a
+/// subgroup, a workgroup, all of them, so that few threads wait for one another's sums.
+void reach_and_widen(float carried) {
+  uvec3 from = uvec3(kLowNone), to = uvec3(kHighNone);
+  EACH(i, VERTICES) {
+    vec4 reach = reach_of_vertex(i, carried);
+    for (uint c = 0u; c < 3u; ++c) {
+      from[c] = min(from[c], ordered(reach[c] - reach.w));
+      to[c] = max(to[c], ordered(reach[c] + reach.w));
+    }
+  }
+  barrier();  // all lanes have theirs
+#ifdef SHUFFLES
+  for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) {
+    from = min(from, subgroupShuffleXor(from, n));
+    to = max(to, subgroupShuffleXor(to, n));
+  }
+  bool speaks = gl_SubgroupInvocationID == 0u;
+#else
+  const bool speaks = true;
+#endif
+  for (uint c = 0u; speaks && c < 3u; ++c) {
+    atomicMin(cloth_low[c], from[c]);
+    atomicMax(cloth_high[c], to[c]);
+  }
+#ifdef MANY_GROUPS
+  barrier();  // the workgroup's box before that of all
+  if (thread < 3u) {
+    atomicMin(ledger.cloth_low[thread], cloth_low[thread]);
+    atomicMax(ledger.cloth_high[thread], cloth_high[thread]);
+  }
+#endif
+}
+bool meets_cloth(ClusterBox b) {
+  for (uint c = 0u; c < 3u; ++c)
+    if (CLOTH_LOW[c] > ordered(b.high[c]) || ordered(b.low[c]) > CLOTH_HIGH[c]) return false;
+  return true;
+}
+
+/// The frame's list of pairs. Where no piece comes near the cloth there is none, and it costs a look at the groups' boxes.
+bool list_pairs() {
+  if (thread == 0u) any_near = 0u;
+  if (thread < 3u) {
+    cloth_low[thread] = kLowNone;
+    cloth_high[thread] = kHighNone;
+  }
+#ifndef MANY_GROUPS
+  if (thread < 2u) COUNTED(thread) = 0u;
+#endif
+  float carried = greatest_displacement();
+  if (me == 0u) {
+    ledger.carried = carried;
+    ledger.reach = 1.0;
+    ledger.pairs = 0u;
+  }
+  MEET_OR_FAIL;  // empty boxes before they are widened
+  reach_and_widen(carried);
+  MEET_OR_FAIL;  // reaches before the list
+  for (uint g = thread; g < GROUPS; g += THREADS)
+    if (meets_cloth(LOAD(32u, boxes, PIECES + g))) any_near = 1u;
+  barrier();  // every thread's look before the answer
+  if (any_near == 0u) return true;
+  EACH(k, TRIANGLES + VERTICES) count_pairs_of(k);
+  MEET_OR_FAIL;  // counts before their sums
+  if (me == thread) scan_ranges(thread);
+  MEET_OR_FAIL;  // where the pairs begin before they are written
+  EACH(k, TRIANGLES + VERTICES) fill_pairs_of(k);
+  MEET_OR_FAIL;  // the list before it is read
+  return true;
+}
+
+/// Pairs that are near are put in a list of their own, in no fixed order: each is asked for itself. Threads of one workgroup share
+/// them out once all are known; workgroups ask them at once, for waiting costs them more.
+void look_for_near(uint pair_count) {
+  EACH(k, pair_count) {
+    if (!is_near(k)) continue;
+    pairs[atomicAdd(COUNTED(min(turn, 1u)), 1u)].w = k;
+#ifdef MANY_GROUPS
+    ask(k);
+#endif
+  }
+}
+
+bool solve_lines(uint substep) {
+  const uint families = kShears ? 4u : 2u;
+  uint passes = families * p.iterations;
+  for (uint n = 0u; n < passes; ++n) {
+    uint which = n % families;
+    family = families - 1u - which;
+    iteration = n / families;
+    pass(substep, which == 0u && iteration == 0u, which + 1u == families && iteration + 1u == p.iterations);
+    MEET_OR_FAIL;  // this family's writes before the next one's reads
+  }
+  return true;
+}
+
+/// Responses before (turn 0) and after the lines.
+bool respond_to_contact(uint pair_count, out uint near) {
+  near = 0u;
+  if (turn < 2u) {
+    EACH(i, VERTICES) {
+      if (turn == 0u) predict(i);
+      else settle(i);
+    }
+    MEET_OR_FAIL;  // proposals before pairs read them
+    look_for_near(pair_count);
+    MEET_OR_FAIL;  // the near pairs before they are shared out
+  }
+  near = COUNTED(min(turn, 1u));
+  if (near > 0u) {
+    EACH(n, near) {
+      uint k = pairs[n].w;
+      if (turn == 2u) respond(k);
+#ifndef MANY_GROUPS
+      else ask(k);
+#endif
+    }
+    MEET_OR_FAIL;  // what contacts propose before vertices take it
+  }
+  if (me == 0u) COUNTED(turn == 0u ? 1u : 0u) = 0u;
+  if (near == 0u && PLANES == 0u) return true;
+  EACH(i, VERTICES) gather(i);
+  MEET_OR_FAIL;  // vertices before what reads them
+  return true;
+}
+
+/// What is left of a substep where no collider is near: the reach of the frame.
+void keep_reach() {
+  EACH(i, VERTICES) {
+    vec4 at = LOAD16(x, i);
+    vec3 to = within_reach(i, at.xyz, at.w);
+    if (to != at.xyz) STORE16(x, i, vec4(to, at.w));
+  }
+}
+
+bool substep_with(uint s, bool touches, uint pair_count) {
+  begin_substep(s);
+  if (GRIPS > 0u) {
+    EACH(g, GRIPS) move_grip(g, t_end, p.frames_per_s);
+    MEET_OR_FAIL;  // held vertices before all read them
+  }
+  uint near = 0u;
+  for (turn = 0u; turn < (touches ? kTurns : 1u); ++turn) {
+    if (touches && !respond_to_contact(pair_count, near)) return false;
+    if (turn == 0u && !solve_lines(s)) return false;
+  }
+  if (!touches) {
+    keep_reach();
+    MEET_OR_FAIL;  // before the next substep's lines
+    return true;
+  }
+  if (near > 0u) {
+    EACH(n, near) choose(pairs[n].w);
+    MEET_OR_FAIL;  // planes before vertices are put before them
+  }
+  any_planes = near > 0u;
+  EACH(i, VERTICES) project(i);
+  MEET_OR_FAIL;  // the substep's end before the next one
+  return true;
+}
+
+void main() {
+  set_thread();
+  lane = thread / BESIDE % LANES;
+  uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  chain = group * (THREADS / LANES) + thread / (LANES * BESIDE) * BESIDE + thread % BESIDE;
+  me = group * THREADS + thread;
+  all_threads = THREADS * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+  [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
+#ifdef MANY_GROUPS
+  if (p.passes == 0u) {  // asked only whether all can
+    MEET;
+    leave_grid_barrier();
+    return;
+  }
+#endif
+  if (!list_pairs()) return;
+  uint pair_count = ledger.pairs;
+  bool touches = pair_count > 0u || PLANES > 0u;
+  for (uint s = 0u; s < p.substeps; ++s)
+    if (!substep_with(s, touches, pair_count)) return;
+#ifdef MANY_GROUPS
+  if (me < 3u) {
+    ledger.cloth_low[me] = kLowNone;
+    ledger.cloth_high[me] = kHighNone;
+  }
+  leave_grid_barrier();
+#endif
+}

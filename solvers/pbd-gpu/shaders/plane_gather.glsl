@@ -1,0 +1,61 @@
+// A round's end: a vertex takes the mean of what its contacts propose, weighted by length (Jacobi: no contact sees another's move).
+// Before the lines the proposed corrections go into velocity and position, and what was pushed is heavier in the lines.
+vec3 sum, sum_moving;
+float lengths;
+
+void propose(vec3 moving, vec3 out_by) {
+  vec3 all = moving + out_by;
+  float l = length(all);
+  sum += l * all;
+  sum_moving += l * moving;
+  lengths += l;
+}
+
+void from_half_spaces(vec4 at, vec3 start) {
+  for (uint k = 0u; k < PLANES; ++k) {
+    PlaneShape s = LOAD(32u, half_spaces, k);
+    float before = dot(start, s.normal.xyz) - s.normal.w, gap = dot(at.xyz, s.normal.xyz) - s.normal.w;
+    float push = min(s.margin, before) - gap;
+    float out_by = turn < 2u ? clamp(s.margin - before, 0.0, kRecovered * s.margin) : 0.0;
+    if (!(push + out_by > 0.0)) continue;
+    float moving = max(0.0, push);
+    vec3 slip = at.xyz - start, m = moving * s.normal.xyz;
+    slip -= dot(slip, s.normal.xyz) * s.normal.xyz;
+    float l = length(slip);
+    if (l > 0.0 && moving > 0.0) m -= min(1.0, s.friction * moving / l) * slip;
+    propose(m, (push + out_by - moving) * s.normal.xyz);
+  }
+}
+
+void from_pairs(uint element, uint corner, float w) {
+  uvec4 range = LOAD16(ranges, element);
+  for (uint k = range.x; k < range.x + range.y; ++k) {
+    vec4 push = LOAD16_OF(states[k].push);
+    if (push == vec4(0.0)) continue;
+    float share = w * states[k].weights[corner];
+    propose(share * push.xyz, share * push.w * states[k].normal.xyz);
+  }
+}
+
+void gather(uint i) {
+  vec4 at = LOAD16(y, i);
+  if (at.w == 0.0) return;
+  sum = sum_moving = vec3(0.0);
+  lengths = 0.0;
+  from_half_spaces(at, LOAD16(starts, i).xyz);
+  from_pairs(TRIANGLES + i, 0u, at.w);
+  uint first = LOAD4(fans, i), end = LOAD4(fans, i + 1u);
+  for (uint k = first; k < end; ++k) {
+    uint fan = LOAD4(fans, k);
+    from_pairs(fan / 4u, fan % 4u, at.w);
+  }
+  if (!(lengths > 0.0)) return;
+  vec3 by = sum / lengths, moving = sum_moving / lengths;
+  STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * moving, 0.0));
+  if (turn > 0u) {
+    STORE16(y, i, vec4(at.xyz + by, at.w));
+    return;
+  }
+  float held = dot(by, by) / (kHold_m * kHold_m);
+  STORE16(x, i, vec4(LOAD16(x, i).xyz + by - moving, at.w / (1.0 + held)));
+}

@@ -1,0 +1,81 @@
+// Pairs that are near enough for this substep: nearest points at its start, and a contact there.
+
+float piece_way(uint k) { return p.substep_part * LOAD16_OF(boxes[k].low).w; }
+float most_of(uvec4 e, bool of_ways) {
+  float most = 0.0;
+  for (uint c = 0u; c < e.w; ++c) most = max(most, of_ways ? LOAD4(ways, e[c]) : starts[e[c]].w);
+  return most;
+}
+
+/// A triangle that stands is its own plane where that parts the pair: no nearest points are needed, and no contact but the
+/// vertices'.
+bool parted_by_face(uvec4 e, inout PairState s) {
+  if (piece.count != 3u || piece.moves != 0u || piece.radius != 0.0 || e.w != 3u) return false;
+  load_piece(t_begin);
+  vec3 n = cross(piece_at[1] - piece_at[0], piece_at[2] - piece_at[0]);
+  float l = length(n);
+  if (!(l > 0.0)) return false;
+  n /= l;
+  vec3 start = vec3(0.0), end = vec3(0.0);
+  for (uint c = 0u; c < 3u; ++c) {
+    start[c] = dot(n, cloth[c] - piece_at[0]);
+    end[c] = dot(n, y[e[c]].xyz - around - piece_at[0]);
+  }
+  if (max(start.x, max(start.y, start.z)) < 0.0) {
+    n = -n;
+    start = -start;
+    end = -end;
+  }
+  float gap = min(start.x, min(start.y, start.z));
+  if (!(gap >= max(kGuard_m, kStandingShare * piece.margin) && min(end.x, min(end.y, end.z)) >= kGuard_m)) return false;
+  s.normal = vec4(n, gap);
+  return true;
+}
+
+uint look(uvec4 e, inout PairState s) {
+  s.push = vec4(0.0);
+  around = starts[e.x].xyz;
+  for (uint c = 0u; c < 3u; ++c) cloth[c] = starts[e[min(c, e.w - 1u)]].xyz - around;
+  corners = e.w;
+  if (parted_by_face(e, s)) return PAIR_LOOKED | PAIR_PLANE;
+  Nearest r = nearest_at(t_begin, t_end, s.normal.xyz);
+  if (!(r.gap > 0.0)) {
+    if (turn == 0u) atomicAdd(faults.inside, 1u);
+    s.normal.w = 0.0;
+    return PAIR_LOOKED;
+  }
+  float gap = r.gap - piece.radius;
+  s.normal = vec4(r.n, gap);
+  s.weights = vec4(r.on_cloth, dot(r.n, r.witness + around) + piece.radius);
+  s.way = vec4(r.way, min(kept_margin(e, s.weights.xyz), gap));
+  return PAIR_LOOKED | PAIR_NEAREST | (e.w == 3u ? PAIR_PLANE : 0u);
+}
+
+/// Whether a pair is near enough to be asked in this substep, or has been. Before the lines its bound loses the ways of the last one.
+bool is_near(uint k) {
+  uvec4 pair = LOAD16(pairs, k);
+  uvec4 e = LOAD16(elements, pair.x);
+  float moved = piece_way(pair.y), bound = states[k].normal.w;
+  if (turn == 0u) {
+    bound -= most_of(e, true) + moved;
+    states[k].normal.w = bound;
+    if (pair.z != 0u) states[k].push = vec4(0.0);
+    pairs[k].z = pair.z = 0u;
+  }
+  return bound <= most_of(e, false) + moved || pair.z != 0u;
+}
+
+/// Asks a pair that is near for its nearest points, unless that is done, and what its contact proposes.
+void ask(uint k) {
+  uvec4 pair = LOAD16(pairs, k);
+  uvec4 e = LOAD16(elements, pair.x);
+  PairState s = states[k];
+  piece = pieces[pair.y];
+  bool near = s.normal.w <= most_of(e, false) + piece_way(pair.y);
+  if (near && (pair.z & PAIR_NEAREST) == 0u) {
+    pair.z = look(e, s);
+    pairs[k].z = pair.z;
+  }
+  if ((pair.z & PAIR_NEAREST) != 0u) s.push = push_of(e, s);
+  states[k] = s;
+}

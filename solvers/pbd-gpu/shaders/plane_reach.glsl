@@ -1,0 +1,22 @@
+// Start of a frame: how far each vertex may go in it. The list of pairs is made for that, and vertices keep to it.
+
+/// Greatest displacement of a point of any piece in the frame.
+float greatest_displacement() {
+  float carried = 0.0;
+  for (uint g = 0u; MOVING != 0u && g < GROUPS; ++g) carried = max(carried, LOAD16_OF(boxes[PIECES + g].low).w);
+  return carried;
+}
+
+/// The reach of vertex i, in .w of its place.
+vec4 reach_of_vertex(uint i, float carried) {
+  vec4 at = LOAD16(x, i);
+  float reach = p.reach_m + 1.5 * length(LOAD16(v, i).xyz) * p.frame_s + carried;
+  for (uint k = 0u; k < GRIPS; ++k) {
+    GripVertex grip = LOAD(48u, grips, k);
+    if (grip.vertex == i && grip.held != 0u) reach = max(reach, distance(at.xyz, grip.to.xyz));
+  }
+  STORE16(starts, i, vec4(at.xyz, 0.0));
+  STORE16(reaches, i, vec4(at.xyz, reach));
+  STORE4(ways, i, 0.0);
+  return vec4(at.xyz, reach);
+}

@@ -1,0 +1,38 @@
+// One workgroup: the greatest share of the reaches whose pairs the list has place for, and where each element's pairs begin. `sums`
+// has a place for each of its kThreads threads, a multiple of kBlock.
+const uint kBlock = 32u;
+shared uvec4 sums[kThreads];
+shared uvec4 block_sums[1024u / kBlock];
+
+void scan_ranges(uint t) {
+  uint n = TRIANGLES + VERTICES, each = (n + kThreads - 1u) / kThreads;
+  uint begin = min(t * each, n), end = min(begin + each, n);
+  uvec4 sum = uvec4(0u);
+  for (uint k = begin; k < end; ++k) sum += LOAD16(ranges, k);
+  sums[t] = sum;
+  barrier();  // the threads' sums before those of blocks of threads
+  if (t % kBlock == 0u) {
+    uvec4 of_block = uvec4(0u);
+    for (uint k = 0u; k < kBlock; ++k) of_block += sums[t + k];
+    block_sums[t / kBlock] = of_block;
+  }
+  barrier();  // sums of blocks before all read them
+  uvec4 before = uvec4(0u), all = uvec4(0u);
+  for (uint b = 0u; b < kThreads / kBlock; ++b) {
+    if (b < t / kBlock) before += block_sums[b];
+    all += block_sums[b];
+  }
+  for (uint k = t / kBlock * kBlock; k < t; ++k) before += sums[k];
+  uint level = 0u;
+  while (level + 1u < PAIR_LEVELS && all[level] > CAPACITY) ++level;
+  uint first = before[level];
+  for (uint k = begin; k < end; ++k) {
+    uint count = ranges[k][level], room = first < CAPACITY ? CAPACITY - first : 0u;
+    STORE16(ranges, k, uvec4(min(first, CAPACITY), min(count, room), 0u, 0u));
+    first += count;
+  }
+  if (t > 0u) return;
+  ledger.pairs = min(all[level], CAPACITY);
+  ledger.reach = uintBitsToFloat((127u - level) << 23u);  // 2^-level exactly
+  if (all[level] > CAPACITY) faults.dropped += all[level] - CAPACITY;
+}

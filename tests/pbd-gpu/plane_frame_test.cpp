@@ -1,0 +1,166 @@
+// Contact by planes in one dispatch: bit for bit the motion of a dispatch a phase, for every kind of collider, for held
+// vertices, by one workgroup and by many; and what it costs where no collider is near.
+#include <set>
+
+#include "contact_scenes.hpp"
+#include "plane_contact.hpp"
+#include "recorded_access.hpp"
+#include "runner/stage_check.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+constexpr int kSubsteps = 6;
+
+struct FrameRun {
+  ClothState end;
+  ContactFaults faults{};
+  long dispatches = 0;
+  std::set<std::string> kernels;
+  bool timed_out = false;
+};
+
+class PlaneFrames : public Gpu {
+ protected:
+  static FrameRun run(const Scene& s, const char* in_one, int frames, nlohmann::json tuning = nlohmann::json::object(),
+                      const DeviceOptions& device = options()) {
+    nlohmann::json settings = {{"substeps", kSubsteps}};
+    tuning["contact"] = "planes";
+    tuning["contact_frame"] = in_one;
+    settings[kTuning] = tuning;
+    const auto solver = make_xpbd(complete_settings(xpbd_info(), settings), device);
+    solver->load(s);
+    EXPECT_EQ(check_stages(s, solver->info(), solver->plan()), "");
+    FrameRun r;
+    for (const StagePlan& stage : solver->plan().stages) r.dispatches += stage.dispatches;
+    for (const auto& recorded : solver->frame_program().recorded())
+      if (recorded.kernel != nullptr) r.kernels.insert(recorded.kernel->name());
+    for (int f = 0; f < frames && !r.timed_out; ++f)
+      r.timed_out = solver->step({f, (f + 1) * s.time.dt(), s.time.dt(), s.motion_after(f)}) == StepStatus::TimedOut;
+    solver->read_state(r.end);
+    r.faults = solver->contact_faults();
+    return r;
+  }
+
+  static void expect_same(const FrameRun& one, const FrameRun& many) {
+    EXPECT_EQ(one.end.position, many.end.position);
+    EXPECT_EQ(one.end.velocity, many.end.velocity);
+    EXPECT_EQ(one.faults.returned, many.faults.returned);
+    EXPECT_EQ(one.faults.without_place, many.faults.without_place);
+    EXPECT_EQ(one.faults.inside, many.faults.inside);
+    EXPECT_EQ(one.faults.dropped, many.faults.dropped);
+  }
+};
+
+/// A sheet that falls onto something in frames of the usual length.
+Scene falling(int columns, int rows, const Collider& collider) {
+  Scene s = with_damping(with_bending(with_collider(sheet(columns, rows), collider)));
+  s.cloth.sides = Sides::Double;
+  s.needs.add(Feature::DoubleSided);
+  s.cloth.center_m = {0, 0.2, 0};
+  s.cloth.initial_velocity_m_per_s = {0.4, -3, 0.3};
+  return s;
+}
+
+Collider ground() {
+  Collider c = touching(Collider::Shape::Plane, kContactFriction);
+  c.center_m = {0, -0.05, 0};
+  c.normal = {0, 1, 0};
+  return c;
+}
+
+TEST_F(PlaneFrames, MoveTheClothBitForBitAsADispatchAPhaseDoes) {
+  const std::vector<std::pair<std::string, Collider>> kinds = {
+      {"half-space", ground()},
+      {"sphere", sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction)},
+      {"box", box({0.03, 0.01, 0.01}, {0.3, 0.07, 0.2}, kContactFriction)},
+      {"capsules", capsules({-0.1, 0.04, 0}, kContactFriction)},
+      {"mesh", octahedron({0.013, 0.017, 0.021}, 0.12, false, kContactFriction)},
+      {"hand", octahedron({-0.1, 0.017, 0.021}, 0.12, true, kContactFriction)},
+      {"open sheet", open_sheet({0.03, 0.1, 0.01}, 0.32, kContactFriction)}};
+  // Compiling the kernel takes a CPU longer than running it: held vertices come with two of the kinds.
+  for (const auto& [name, collider] : kinds) {
+    const bool held = name == "sphere" || name == "hand";
+    SCOPED_TRACE(name);
+    Scene s = falling(17, 13, collider);
+    if (held)
+      s = moving(s, {0, 8}, 4);
+    else if (collider.moves())
+      s = moving(s);
+    const FrameRun one = run(s, "always", 10), many = run(s, "never", 10);
+    expect_same(one, many);
+    EXPECT_LE(one.dispatches, collider.mesh && collider.moves() ? 3 : collider.moves() ? 2 : 1);
+    EXPECT_GT(many.dispatches, kSubsteps * 8);
+  }
+}
+
+TEST_F(PlaneFrames, OfTheLargestClothOfOneWorkgroup) {
+  const Scene s = falling(32, 32, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
+  const FrameRun one = run(s, "always", 6);
+  EXPECT_EQ(one.dispatches, 1);
+  expect_same(one, run(s, "never", 6));
+}
+
+TEST_F(PlaneFrames, WithinTheLimitsOfAMobileGpu) {
+  const Scene s = moving(falling(32, 32, octahedron({-0.1, 0.017, 0.021}, 0.12, true, kContactFriction)));
+  DeviceOptions mobile = options();
+  mobile.profile = "adreno-like";
+  const FrameRun one = run(s, "auto", 5, {}, mobile);
+  EXPECT_TRUE(one.kernels.contains("plane_frame") || one.kernels.contains("plane_frame_shuffle"));
+  EXPECT_LE(one.dispatches, 6);
+  expect_same(one, run(s, "never", 5, {}, mobile));
+}
+
+TEST_F(PlaneFrames, OfManyWorkgroupsThatWaitForOneAnother) {
+  const Scene s = falling(33, 31, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
+  int agreed = 0;
+  for (const auto& [threads, vertices] : {std::pair{512, 8}, {512, 2}}) {  // 1 and 3 workgroups
+    nlohmann::json tuning = {
+        {"device_barrier", "always"}, {"threads_a_group", threads}, {"vertices_a_thread", vertices}};
+    FrameRun one;
+    try {
+      one = run(s, "always", 6, tuning);
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("device_barrier=always"), std::string::npos) << e.what();
+      continue;
+    }
+    if (one.timed_out) continue;
+    EXPECT_TRUE(one.kernels.contains("plane_frame_many_shuffle"));
+    EXPECT_EQ(one.dispatches, 1);
+    tuning["device_barrier"] = "never";
+    expect_same(one, run(s, "never", 6, tuning));
+    ++agreed;
+  }
+  EXPECT_GE(agreed, 1);
+}
+
+TEST_F(PlaneFrames, DoWithBuffersWhatTheirQualifiersSay) {
+  const auto solver = make("xpbd", {{"tuning", {{"contact", "planes"}, {"contact_frame", "always"}}}});
+  solver->load(moving(falling(9, 7, capsules({-0.1, 0.04, 0}, kContactFriction)), {0}, 4));
+  int kernels = 0;
+  for (const auto& r : solver->frame_program().recorded()) {
+    if (r.kernel == nullptr) continue;
+    ++kernels;
+    for (const BufferUse& u : uses_of(r.kernel->code())) {
+      const std::string where = r.kernel->name() + " binding " + std::to_string(u.binding);
+      EXPECT_EQ(u.declared_readonly, !u.written) << where;
+      EXPECT_EQ(u.declared_writeonly, !u.read) << where;
+    }
+  }
+  EXPECT_EQ(kernels, 2) << "pieces and the frame";
+}
+
+TEST_F(PlaneFrames, WhereNoColliderIsNear) {
+  Scene s = falling(17, 13, sphere({0.02, -9, 0.03}, 0.13, kContactFriction));
+  const FrameRun one = run(s, "always", 4), many = run(s, "never", 4);
+  expect_same(one, many);
+}
+
+TEST_F(PlaneFrames, AreRefusedWhereTheyCannotBe) {
+  const Scene s = falling(33, 31, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
+  EXPECT_THROW(run(s, "always", 1, {{"device_barrier", "never"}}), Error);
+  EXPECT_NO_THROW(run(s, "auto", 1, {{"device_barrier", "never"}}));
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu
