@@ -29,7 +29,7 @@ std::vector<std::string> words_of(std::istringstream& line) {
   return out;
 }
 
-/// The OBJ library reads what is no number as 0, so that a NaN would pass for a place.
+/// The OBJ library reads any other word as 0, so a NaN would count as a position.
 void check_numbers(const std::string& line, std::size_t number, std::size_t most, const std::string& source) {
   std::istringstream words(line);
   std::string word;
