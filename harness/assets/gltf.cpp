@@ -1,85 +1,23 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
+#include "assets/gltf_file.hpp"
 #include "assets/hand.hpp"
 #include "clothbench/error.hpp"
-#define TINYGLTF_IMPLEMENTATION
-#define TINYGLTF_NO_STB_IMAGE
-#define TINYGLTF_NO_STB_IMAGE_WRITE
-#define TINYGLTF_NO_EXTERNAL_IMAGE
-#define TINYGLTF_NO_INCLUDE_JSON
-#include <tiny_gltf.h>
 
 namespace clothbench::assets {
 namespace {
 
+using gltf::fail, gltf::pick, gltf::world_transforms;
+
 constexpr std::uintmax_t kMostBytes = 64u << 20;
 
-[[noreturn]] void fail(const std::string& source, const std::string& message) { throw Error(source + ": " + message); }
-
-/// `at` of a list that a file's index points into.
-template <class List>
-const auto& pick(const List& list, int index, const std::string& source, const char* what) {
-  if (index < 0 || static_cast<std::size_t>(index) >= list.size())
-    fail(source, fmt::format("/{}: index {}: expected less than {}", what, index, list.size()));
-  return list[static_cast<std::size_t>(index)];
-}
-
-template <class Item>
-Item item_at(const unsigned char* from) {
-  Item item;
-  std::memcpy(&item, from, sizeof(Item));
-  return item;
-}
-
-/// One accessor as plain numbers, (count, components) row-major. tinygltf checks none of this.
 std::vector<double> numbers(const tinygltf::Model& model, int index, int type, std::initializer_list<int> kinds,
                             const std::string& source) {
-  const auto& accessor = pick(model.accessors, index, source, "accessors");
-  const std::string where = fmt::format("/accessors/{}", index);
-  if (accessor.type != type || std::find(kinds.begin(), kinds.end(), accessor.componentType) == kinds.end())
-    fail(source, fmt::format("{}: type {} of component type {}: expected the types of a WebXR hand model", where,
-                             accessor.type, accessor.componentType));
-  if (accessor.sparse.isSparse || accessor.normalized)
-    fail(source, where + ": expected an accessor that is neither sparse nor normalized");
-  const auto& view = pick(model.bufferViews, accessor.bufferView, source, "bufferViews");
-  const auto& buffer = pick(model.buffers, view.buffer, source, "buffers");
-  const auto components = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
-  const auto item =
-      static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)));
-  const std::size_t row = components * item, stride = view.byteStride == 0 ? row : view.byteStride;
-  const std::size_t size = buffer.data.size();
-  if (view.byteOffset > size || view.byteLength > size - view.byteOffset || accessor.byteOffset > view.byteLength ||
-      stride < row || stride > 252 || accessor.count == 0 || accessor.count > view.byteLength ||
-      accessor.byteOffset + (accessor.count - 1) * stride + row > view.byteLength)
-    fail(source, where + ": expected at least one item and no more than its buffer view holds");
-  std::vector<double> out;
-  out.reserve(accessor.count * components);
-  for (std::size_t i = 0; i < accessor.count; ++i)
-    for (std::size_t k = 0; k < components; ++k) {
-      const unsigned char* from = buffer.data.data() + view.byteOffset + accessor.byteOffset + i * stride + k * item;
-      switch (accessor.componentType) {
-        case TINYGLTF_COMPONENT_TYPE_FLOAT:
-          out.push_back(item_at<float>(from));
-          break;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-          out.push_back(*from);
-          break;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-          out.push_back(item_at<std::uint16_t>(from));
-          break;
-        default:
-          out.push_back(item_at<std::uint32_t>(from));
-          break;
-      }
-      if (!std::isfinite(out.back())) fail(source, fmt::format("{}: item {} is not finite", where, i));
-    }
-  return out;
+  return gltf::numbers(model, index, type, kinds, source, "a WebXR hand model");
 }
 
 int attribute(const tinygltf::Primitive& primitive, const char* name, const std::string& source) {
@@ -87,56 +25,6 @@ int attribute(const tinygltf::Primitive& primitive, const char* name, const std:
   if (found == primitive.attributes.end())
     fail(source, fmt::format("/meshes/0/primitives/0/attributes: \"{}\" is missing", name));
   return found->second;
-}
-
-Eigen::Affine3d local_transform(const tinygltf::Node& node) {
-  if (node.matrix.size() == 16) return Eigen::Affine3d(Eigen::Map<const Eigen::Matrix4d>(node.matrix.data()));
-  Eigen::Affine3d t = Eigen::Affine3d::Identity();
-  if (node.translation.size() == 3) t.translate(Vector::Map(node.translation.data()));
-  if (node.rotation.size() == 4)
-    t.rotate(Eigen::Quaterniond(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]).normalized());
-  if (node.scale.size() == 3) t.scale(Vector::Map(node.scale.data()));
-  return t;
-}
-
-/// World transforms of all nodes; a node that is its own ancestor, or has two parents, is refused.
-std::vector<Eigen::Affine3d> world_transforms(const tinygltf::Model& model, const std::string& source) {
-  std::vector<int> parent(model.nodes.size(), -1);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    for (int child : model.nodes[n].children) {
-      pick(model.nodes, child, source, "nodes");
-      if (parent[static_cast<std::size_t>(child)] != -1) fail(source, fmt::format("/nodes/{}: has two parents", child));
-      parent[static_cast<std::size_t>(child)] = static_cast<int>(n);
-    }
-  std::vector<Eigen::Affine3d> world(model.nodes.size());
-  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
-    Eigen::Affine3d t = Eigen::Affine3d::Identity();
-    std::size_t steps = 0;
-    for (int at = static_cast<int>(n); at != -1; at = parent[static_cast<std::size_t>(at)]) {
-      if (++steps > model.nodes.size()) fail(source, fmt::format("/nodes/{}: is its own ancestor", n));
-      t = local_transform(model.nodes[static_cast<std::size_t>(at)]) * t;
-    }
-    world[n] = t;
-  }
-  return world;
-}
-
-tinygltf::Model parse(const std::vector<std::uint8_t>& bytes, const std::string& source) {
-  tinygltf::TinyGLTF loader;
-  tinygltf::Model model;
-  std::string error, warning;
-  bool ok = false;
-  try {
-    if (bytes.size() >= 12 && bytes.size() <= kMostBytes)
-      ok = loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), static_cast<unsigned>(bytes.size()), "");
-    else
-      error = fmt::format("{} bytes", bytes.size());
-  } catch (const std::exception& e) {
-    error = e.what();
-  }
-  while (!error.empty() && error.back() == '\n') error.pop_back();
-  if (!ok) fail(source, "not a binary glTF file (cut off?): " + (error.empty() ? "unreadable" : error));
-  return model;
 }
 
 /// The skin's joints as indices into kJointNames; fills the frames at rest.
@@ -172,7 +60,7 @@ std::vector<std::uint8_t> read_skin(const tinygltf::Model& model, SkinnedMesh& h
 }  // namespace
 
 SkinnedMesh parse_hand_glb(const std::vector<std::uint8_t>& bytes, const std::string& source) {
-  const tinygltf::Model model = parse(bytes, source);
+  const tinygltf::Model model = gltf::parse_binary(bytes.data(), bytes.size(), source);
   if (model.meshes.size() != 1 || model.meshes[0].primitives.size() != 1)
     fail(source, "/meshes: expected one mesh of one primitive");
   const auto& primitive = model.meshes[0].primitives[0];

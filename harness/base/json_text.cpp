@@ -14,7 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uintmax_t kMostBytes = 16u << 20;
 constexpr std::size_t kDeepest = 64;
 
 std::string at(const std::string& text, std::size_t byte) {
@@ -113,13 +112,13 @@ void refuse(const std::string& source, const std::string& pointer, const std::st
   throw Error(source + ": " + pointer + ": " + expected);
 }
 
-std::string read_text(const std::filesystem::path& path) {
+std::string read_text(const std::filesystem::path& path, std::uintmax_t most_bytes) {
   std::error_code ec;
   if (!std::filesystem::exists(path, ec)) throw Error(path.string() + ": no such file");
-  if (std::filesystem::is_directory(path, ec)) throw Error(path.string() + ": a folder; expected a JSON file");
+  if (std::filesystem::is_directory(path, ec)) throw Error(path.string() + ": a folder; expected a file");
   const auto size = std::filesystem::file_size(path, ec);
-  if (!ec && size > kMostBytes)
-    throw Error(fmt::format("{}: {} bytes; at most {} are read", path.string(), size, kMostBytes));
+  if (!ec && size > most_bytes)
+    throw Error(fmt::format("{}: {} bytes; at most {} are read", path.string(), size, most_bytes));
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();

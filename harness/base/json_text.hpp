@@ -1,12 +1,14 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
 namespace clothbench {
 
-/// Reads a whole file as text. Throws Error naming the file if it is missing, a folder, unreadable or over 16 MiB.
-std::string read_text(const std::filesystem::path&);
+/// Reads a whole file. Throws Error naming the file if it is missing, a folder, unreadable or over `most_bytes`, which
+/// is checked before anything is read.
+std::string read_text(const std::filesystem::path&, std::uintmax_t most_bytes = 16u << 20);
 
 /// Strict JSON: no duplicate keys, no NaN or Infinity, no number beyond double range, nesting <= 64. Throws Error with
 /// `source` and line and column, or the JSON pointer of a repeated key.

@@ -132,7 +132,7 @@ typedef struct ClothbenchScene {
   const double *position_m, *velocity_m_per_s, *mass_kg; /* at the start; one mass per vertex */
   /* 3 vertices each. Those of a grid are all wound alike: counter-clockwise seen from the side that the cross product
    * of the direction of growing i and that of growing j points to. Cell (i, j) has two, (i, j) (i+1, j) (i+1, j+1) and
-   * (i, j) (i+1, j+1) (i, j+1). Those of a mesh are as in its file: neighbours may be wound oppositely. */
+   * (i, j) (i+1, j+1) (i, j+1). Those of a mesh are as in its file, neighbours wound alike. */
   uint32_t triangle_count;
   const uint32_t* triangles;
   uint32_t structural_count, shear_count, skip_count;

@@ -21,6 +21,25 @@ struct Sample {
   Vec3 at, area;
 };
 
+/// Every so many triangles of a mesh, each for as many.
+void add_samples(const ClothMesh& mesh, const std::vector<double>& x, const Bounds& near, std::vector<Sample>& out) {
+  constexpr std::size_t kSome = 80;
+  const std::size_t step = mesh.triangles.size() / kSome + 1;
+  for (std::size_t k = 0; k < mesh.triangles.size(); k += step) {
+    const auto corner = [&](std::size_t c) {
+      const std::size_t v = 3 * std::size_t{mesh.triangles[k][c]};
+      return Vec3{x[v], x[v + 1], x[v + 2]};
+    };
+    const Vec3 a = corner(0), b = corner(1), c = corner(2), area = cross(minus(b, a), minus(c, a));
+    Sample s{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      s.at[i] = (a[i] + b[i] + c[i]) / 3;
+      s.area[i] = area[i] / 2 * static_cast<double>(step);
+    }
+    if (near.holds(s.at) && std::isfinite(dot(s.area, s.area))) out.push_back(s);
+  }
+}
+
 std::vector<Sample> samples(const Motion& m, std::span<const std::size_t> frames, const Bounds& near) {
   constexpr std::size_t kFrames = 12, kAcross = 9;
   std::vector<Sample> out;
@@ -28,6 +47,10 @@ std::vector<Sample> samples(const Motion& m, std::span<const std::size_t> frames
                     step = std::max(columns, rows) / kAcross + 1;
   for (std::size_t k = 0; k < std::min(kFrames, frames.size()); ++k) {
     const std::vector<double> x = m.at(frames[k * frames.size() / std::min(kFrames, frames.size())]);
+    if (m.scene.cloth.mesh) {
+      add_samples(*m.scene.cloth.mesh, x, near, out);
+      continue;
+    }
     const auto vertex = [&](std::size_t i, std::size_t j) {
       const std::size_t v = 3 * (j * columns + i);
       return Vec3{x[v], x[v + 1], x[v + 2]};

@@ -35,6 +35,7 @@ struct Module {
   Module& operator=(const Module&) = delete;
 };
 
+constexpr std::uint32_t kColours = 4;  // the binding that fragments read
 constexpr VkShaderStageFlags kBoth = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
 }  // namespace
@@ -127,7 +128,7 @@ void Pipelines::create_pass(VkFormat colour, VkSampleCountFlagBits samples) {
 void Pipelines::create_set() {
   std::array<VkDescriptorSetLayoutBinding, kBindings> slots{};
   for (std::uint32_t k = 0; k < kBindings; ++k) {
-    const VkShaderStageFlags stage = k == kBindings - 1 ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT;
+    const VkShaderStageFlags stage = k == kColours ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT;
     slots[k] = {k, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, stage, nullptr};
   }
   VkDescriptorSetLayoutCreateInfo layout{};

@@ -12,7 +12,7 @@ namespace clothbench::render {
 /// colliders, which share a set of buffers.
 class Pipelines {
  public:
-  static constexpr std::uint32_t kBindings = 5;  ///< as in the shaders
+  static constexpr std::uint32_t kBindings = 6;  ///< as in the shaders
   static constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
   Pipelines(std::shared_ptr<vulkan::Device> device, VkFormat colour, VkSampleCountFlagBits samples);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -40,6 +41,41 @@ Vec3 eye_of(const Mat4& view) {
   return eye;
 }
 
+/// The two axes along which a mesh extends most; the checker lies in their plane where there is no pattern.
+std::array<std::size_t, 2> longest_axes(const ClothMesh& m) {
+  Vec3 low = m.vertices.front(), high = low;
+  for (const Vec3& x : m.vertices)
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], x[k]);
+      high[k] = std::max(high[k], x[k]);
+    }
+  const Vec3 sides = minus(high, low);
+  const std::size_t least = std::min_element(sides.rbegin(), sides.rend()).base() - sides.begin() - 1;
+  return {least == 0 ? 1u : 0u, least == 2 ? 1u : 2u};
+}
+
+/// What cloth.vert reads of a mesh. `per_m`: squares of the checker in a metre.
+std::vector<std::uint32_t> mesh_words(const ClothMesh& m, double per_m) {
+  std::vector<std::uint32_t> words, first(m.vertices.size() + 1, 0);
+  const auto axes = longest_axes(m);
+  for (std::size_t t = 0; t < m.triangles.size(); ++t)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t v = m.triangles[t][c];
+      std::array<double, 2> at = {m.vertices[v][axes[0]], m.vertices[v][axes[1]]};
+      if (!m.pattern_m.empty()) at = m.pattern_m[t][c];
+      words.push_back(v);
+      for (const double x : at) words.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(x * per_m)));
+      ++first[v + 1];
+    }
+  for (std::size_t v = 0; v + 1 < first.size(); ++v) first[v + 1] += first[v];
+  std::vector<std::uint32_t> lists(3 * m.triangles.size()), next = first;
+  for (std::uint32_t t = 0; t < m.triangles.size(); ++t)
+    for (const std::uint32_t v : m.triangles[t]) lists[next[v]++] = t;
+  words.insert(words.end(), first.begin(), first.end());
+  words.insert(words.end(), lists.begin(), lists.end());
+  return words;
+}
+
 }  // namespace
 
 SceneRenderer::SceneRenderer(std::shared_ptr<vulkan::Device> device, VkFormat colour)
@@ -59,7 +95,7 @@ std::unique_ptr<vulkan::Buffer> SceneRenderer::filled(const char* name, const vo
 }
 
 void SceneRenderer::set_cloth(const Cloth& cloth, const Vec3& origin_m) {
-  if (cloth.columns < 2 || cloth.rows < 2)
+  if (!cloth.mesh && (cloth.columns < 2 || cloth.rows < 2))
     throw Error(
         fmt::format("the cloth's grid is {} x {}: expected at least 2 x 2 vertices", cloth.columns, cloth.rows));
   columns_ = cloth.columns;
@@ -73,6 +109,13 @@ void SceneRenderer::set_cloth(const Cloth& cloth, const Vec3& origin_m) {
   };
   squares_u_ = squares(cloth.width_m);
   squares_v_ = squares(cloth.height_m);
+  mesh_triangles_ = 0;
+  mesh_.reset();
+  if (cloth.mesh) {
+    const std::vector<std::uint32_t> words = mesh_words(*cloth.mesh, shorter > 0 ? kSquares / shorter : 1);
+    mesh_ = filled("mesh to draw", words.data(), words.size() * sizeof(std::uint32_t));
+    mesh_triangles_ = static_cast<std::uint32_t>(cloth.mesh->triangles.size());
+  }
   own_positions_.reset();
   values_.reset();
   colours_.reset();
@@ -146,7 +189,7 @@ void SceneRenderer::bind_buffers() {
   if (positions_ == nullptr) throw Error("SceneRenderer::record: there are no positions to draw");
   if (bound_) return;
   const auto or_any = [&](const std::unique_ptr<vulkan::Buffer>& b) { return b ? b.get() : positions_; };
-  pipelines_.bind({positions_, or_any(values_), vertices_.get(), corners_.get(), or_any(colours_)});
+  pipelines_.bind({positions_, or_any(values_), vertices_.get(), corners_.get(), or_any(colours_), or_any(mesh_)});
   bound_ = true;
 }
 
@@ -157,6 +200,7 @@ Drawn SceneRenderer::constants(const Drawing& drawing) const {
     for (std::size_t r = 0; r < 4; ++r) d.to_clip[c][r] = static_cast<float>(to_clip[4 * c + r]);
   d.eye = as_vec4(eye_of(drawing.view), by_value_ ? 1 : 0);
   d.sheet = {static_cast<float>(columns_), static_cast<float>(rows_), squares_u_, squares_v_};
+  if (mesh_triangles_ > 0) d.sheet = {static_cast<float>(mesh_triangles_), 0, static_cast<float>(columns_), 0};
   d.origin = as_vec4(minus(buffer_origin_m_, origin_m_), 0);
   d.follow = as_vec4(minus(follow_start_m_, buffer_origin_m_), follow_vertex_);
   return d;
@@ -195,7 +239,9 @@ void SceneRenderer::record_one(VkCommandBuffer commands, const Drawing& drawing)
   vkCmdSetScissor(commands, 0, 1, &begin.renderArea);
   const Drawn d = constants(drawing);
   pipelines_.use(commands, true, &d, sizeof d);
-  vkCmdDraw(commands, static_cast<std::uint32_t>(6 * (columns_ - 1) * (rows_ - 1)), 1, 0, 0);
+  const std::uint32_t corners =
+      mesh_triangles_ > 0 ? 3 * mesh_triangles_ : static_cast<std::uint32_t>(6 * (columns_ - 1) * (rows_ - 1));
+  vkCmdDraw(commands, corners, 1, 0, 0);
   if (corner_count_ > 0) {
     pipelines_.use(commands, false, &d, sizeof d);
     vkCmdDraw(commands, corner_count_, 1, 0, 0);

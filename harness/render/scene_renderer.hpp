@@ -41,7 +41,7 @@ class SceneRenderer {
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
-  /// Sets the grid, and the origin of all float32 coordinates: a point of the world near the scene.
+  /// Sets the grid or the mesh, and the origin of all float32 coordinates: a point of the world near the scene.
   void set_cloth(const Cloth& cloth, const Vec3& origin_m);
   const Vec3& origin() const { return origin_m_; }
 
@@ -76,13 +76,14 @@ class SceneRenderer {
   VkFormat format_;
   Pipelines pipelines_;
   std::unique_ptr<Targets> targets_;  ///< of the last picture's size
-  int columns_ = 0, rows_ = 0;
+  int columns_ = 0, rows_ = 0;        ///< of a mesh: vertices and 1
+  std::uint32_t mesh_triangles_ = 0;  ///< 0: a grid
   float squares_u_ = 0, squares_v_ = 0;
   Vec3 origin_m_{}, buffer_origin_m_{}, follow_start_m_{};
   int follow_vertex_ = -1;
   vec4 background_{1, 1, 1, 1};
   bool by_value_ = false, bound_ = false;
-  std::unique_ptr<vulkan::Buffer> own_positions_, values_, colours_, vertices_, corners_;
+  std::unique_ptr<vulkan::Buffer> own_positions_, values_, colours_, vertices_, corners_, mesh_;
   const vulkan::Buffer* positions_ = nullptr;
   std::uint32_t corner_count_ = 0;
 };

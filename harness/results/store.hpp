@@ -51,7 +51,7 @@ void remove_leftovers(const std::filesystem::path& dir, const std::string& run);
 /// Reads a finished file (.h5) or a part folder. Throws Error naming the file and what is wrong with it.
 RunRecord read_run(const std::filesystem::path&);
 
-/// Without positions and triangles, which tables and figures do not need. Fast also for large runs.
+/// Without positions, nor triangles of a grid, which tables and figures do not need. Fast also for large runs.
 RunRecord read_run_summary(const std::filesystem::path&);
 
 /// Data of a run for a viewer: some of its frames, and colliders and grips at every frame of the scene.

@@ -10,6 +10,7 @@
 #include "clothbench/unsupported_scene.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/stage_check.hpp"
+#include "scenario/as_mesh.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -146,7 +147,7 @@ class Conformer {
 
 std::string name_of_case(const ConformanceCase& c) {
   if (c.whole) return "whole scene";
-  return c.sides + " " + c.grid + (c.profile.empty() ? "" : " " + c.profile);
+  return c.sides + " " + c.grid + (c.mesh ? " mesh" : "") + (c.profile.empty() ? "" : " " + c.profile);
 }
 
 /// One case's part of its row.
@@ -185,6 +186,8 @@ std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool pr
       out.push_back({scene, sides, grid, "", false});
       if (profiles && std::string(grid) == "[17,33]") out.push_back({scene, sides, grid, "adreno-like", false});
     }
+  for (const char* sides : {"single", "double-duplicated", "double"})
+    out.push_back({scene, sides, "[9,7]", "", false, true});
   out.push_back({scene, "", "", "", true});
   return out;
 }
@@ -200,8 +203,10 @@ Scene conformance_scene(const ConformanceCase& c) {
   // A strip that starts over a cylinder needs runs shorter than it is thick.
   if (c.grid != "[17,33]" && (is("capstan") || is("atwood") || is("self-fold")))
     overrides.back() = c.grid == "[2,2]" ? "cloth.grid=[17,2]" : "cloth.grid=[17,7]";
-  if (load_scene(c.scene).cloth.mesh) overrides.pop_back();  // a mesh has one size
-  return load_scene(c.scene, overrides);
+  if (load_scene(c.scene).cloth.mesh) overrides.pop_back();  // a mesh has one size,
+  if (is("garments/"))                                       // but of garments there is a small one
+    overrides.push_back("cloth.mesh.file=assets" + c.scene.substr(c.scene.rfind('/')) + "-small.obj");
+  return c.mesh ? as_mesh(load_scene(c.scene, overrides)) : load_scene(c.scene, overrides);
 }
 
 std::string conformance_skip(const SolverInfo& info, const Scene& s) {
@@ -209,6 +214,8 @@ std::string conformance_skip(const SolverInfo& info, const Scene& s) {
   if (info.name == "reference" && !s.material.membrane_stiffness_N_per_m &&
       (s.needs.has(Feature::Shear) || s.cloth.mesh))
     return "reference diverges: over-determined";
+  if (info.name == "xpbd" && s.cloth.mesh && s.needs.has(Feature::SelfCollision))
+    return "xpbd has self_collision for grids alone";
   const FeatureSet missing = unsupported(info, s.needs);
   return missing.empty() ? "" : info.name + " has no " + joined_names(missing);
 }

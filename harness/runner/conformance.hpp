@@ -8,14 +8,15 @@
 
 namespace clothbench {
 
-/// What every solver must do, whatever its method: six frames of each scene with every kind of sides on three grids,
-/// and each scene whole at its own size.
+/// What every solver must do, whatever its method: six frames of each scene with every kind of sides on three grids and
+/// on a triangle mesh, and each scene whole at its own size.
 struct ConformanceCase {
   std::string scene;    ///< as commands name it: "paper/gravity"
   std::string sides;    ///< "single", "double-duplicated", "double"; empty: as the scene has it
   std::string grid;     ///< "[9,7]"; empty: as the scene has it
   std::string profile;  ///< a class of devices (DeviceOptions::profile), or empty
   bool whole = false;   ///< all frames of the scene instead of six
+  bool mesh = false;    ///< the grid's cloth as a triangle mesh (as_mesh)
 };
 
 /// Cases of one scene; `profiles` adds those that emulate small devices, for solvers on a GPU. Whole scenes come last.

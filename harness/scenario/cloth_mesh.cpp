@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
-#include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <set>
 
 #include "base/json_text.hpp"
 #include "base/sha256.hpp"
@@ -15,50 +16,131 @@
 #include "clothbench/vector.hpp"
 #include "scenario/load.hpp"
 #include "scenario/recorded_hand.hpp"
-
-#define TINYOBJLOADER_IMPLEMENTATION
-#define TINYOBJLOADER_USE_DOUBLE
-#include <tiny_obj_loader.h>
+#include "scenario/weld.hpp"
 
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::uintmax_t kMostBytes = 256u << 20;
 // Least area of a triangle over the square of its longest side. Below it rounding errors dominate the normal.
 constexpr double kLeastArea = 1e-9;
 
+using Triangle = std::array<std::uint32_t, 3>;
+
 double edge_length(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 
-double area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 p = minus(b, a), q = minus(c, a);
+double area_of(const std::array<Vec3, 3>& x) {
+  const Vec3 p = minus(x[1], x[0]), q = minus(x[2], x[0]);
   return 0.5 * std::hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]);
 }
 
-void check_triangle(const std::vector<Vec3>& x, const std::array<std::uint32_t, 3>& t, std::size_t k,
-                    const std::string& source) {
-  for (const std::uint32_t v : t)
-    if (v >= x.size())
-      throw Error(fmt::format("{}: triangle {}: vertex {} of {} (the first is 0)", source, k, v, x.size()));
-  const double longest = std::max({edge_length(minus(x[t[1]], x[t[0]])), edge_length(minus(x[t[2]], x[t[1]])),
-                                   edge_length(minus(x[t[0]], x[t[2]]))});
-  if (!(area_of(x[t[0]], x[t[1]], x[t[2]]) > kLeastArea * longest * longest))
-    throw Error(fmt::format("{}: triangle {} (vertices {}, {}, {}) has no area", source, k, t[0], t[1], t[2]));
+bool has_area(const std::array<Vec3, 3>& x) {
+  const double longest =
+      std::max({edge_length(minus(x[1], x[0])), edge_length(minus(x[2], x[1])), edge_length(minus(x[0], x[2]))});
+  return area_of(x) > kLeastArea * longest * longest;
 }
 
-/// The lines that define geometry. A lone carriage return ends a line too, as in the OBJ library. All other content
-/// (materials, skin weights, curves) is untrusted and dropped unread.
-std::string shape_lines(const std::string& text) {
-  std::string lines = text, out, line;
-  std::replace(lines.begin(), lines.end(), '\r', '\n');
-  std::istringstream in(lines);
-  while (std::getline(in, line)) {
-    std::istringstream words(line);
-    std::string first;
-    words >> first;
-    if (first == "v" || first == "vt" || first == "vn" || first == "f") out += line + "\n";
+void check_triangles(const ClothMesh& m, const std::string& source) {
+  if (m.triangles.empty()) throw Error(source + ": expected at least one triangle");
+  for (std::size_t v = 0; v < m.vertices.size(); ++v)
+    if (!std::isfinite(edge_length(m.vertices[v]))) throw Error(fmt::format("{}: vertex {} is not finite", source, v));
+  std::vector<std::uint8_t> used(m.vertices.size(), 0);
+  std::vector<std::pair<Triangle, std::size_t>> sorted;
+  for (std::size_t k = 0; k < m.triangles.size(); ++k) {
+    const Triangle& t = m.triangles[k];
+    for (const std::uint32_t v : t) {
+      if (v >= m.vertices.size())
+        throw Error(fmt::format("{}: triangle {}: vertex {} of {} (the first is 0)", source, k, v, m.vertices.size()));
+      used[v] = 1;
+    }
+    if (!has_area({m.vertices[t[0]], m.vertices[t[1]], m.vertices[t[2]]}))
+      throw Error(fmt::format("{}: triangle {} (vertices {}, {}, {}) has no area", source, k, t[0], t[1], t[2]));
+    if (!m.pattern_m.empty() && !has_area(rest_corners(m, k)))
+      throw Error(fmt::format("{}: triangle {} (vertices {}, {}, {}) has no area in texture coordinates", source, k,
+                              t[0], t[1], t[2]));
+    sorted.emplace_back(t, k);
+    std::sort(sorted.back().first.begin(), sorted.back().first.end());
   }
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t k = 1; k < sorted.size(); ++k)
+    if (sorted[k - 1].first == sorted[k].first)
+      throw Error(fmt::format("{}: triangles {} and {} have the same vertices", source, sorted[k - 1].second,
+                              sorted[k].second));
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v] == 0) throw Error(fmt::format("{}: vertex {} is in no triangle and would have no mass", source, v));
+}
+
+/// A side of a triangle, its ends in ascending order.
+struct Side {
+  std::uint32_t a, b, triangle, corner;
+  bool forward;  ///< the triangle runs from a to b
+};
+
+std::vector<Side> sides_of(const ClothMesh& m) {
+  std::vector<Side> out;
+  out.reserve(3 * m.triangles.size());
+  for (std::uint32_t k = 0; k < m.triangles.size(); ++k)
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      const std::uint32_t from = m.triangles[k][c], to = m.triangles[k][(c + 1) % 3];
+      out.push_back({std::min(from, to), std::max(from, to), k, c, from < to});
+    }
+  std::sort(out.begin(), out.end(), [](const Side& p, const Side& q) {
+    return std::tie(p.a, p.b, p.triangle) < std::tie(q.a, q.b, q.triangle);
+  });
   return out;
+}
+
+void add_edges(ClothMesh& m, const std::string& source) {
+  const std::vector<Side> sides = sides_of(m);
+  double all = 0;
+  for (std::size_t k = 0; k < sides.size();) {
+    const Side& s = sides[k];
+    double area = 0, rest = 0;
+    std::size_t count = 0;
+    for (; k + count < sides.size() && sides[k + count].a == s.a && sides[k + count].b == s.b; ++count) {
+      const Side& t = sides[k + count];
+      const std::array<Vec3, 3> x = rest_corners(m, t.triangle);
+      area += area_of(x);
+      rest += edge_length(minus(x[(t.corner + 1) % 3], x[t.corner]));
+    }
+    if (count > 2)
+      throw Error(fmt::format("{}: the edge of vertices {} and {} has more than two triangles", source, s.a, s.b));
+    if (count == 2 && s.forward == sides[k + 1].forward)
+      throw Error(
+          fmt::format("{}: triangles {} and {} are wound oppositely: both run from vertex {} to {}; expected the "
+                      "triangles of a cloth to be wound alike",
+                      source, s.triangle, sides[k + 1].triangle, s.forward ? s.a : s.b, s.forward ? s.b : s.a));
+    // The two sides of a seam may differ in length; the sewn edge has their mean.
+    m.edges.push_back({s.a, s.b, rest / static_cast<double>(count), EdgeKind::Structural});
+    m.areas_m2.push_back(area);
+    k += count;
+  }
+  for (const Edge& e : m.edges) all += e.rest_m / static_cast<double>(m.edges.size());
+  m.edge_m = all;
+}
+
+/// The triangles' shape at rest by their texture coordinates.
+void add_pattern(ClothMesh& m, const assets::MeshFile& file, double unit_m, const std::string& source) {
+  m.pattern_m = file.texture;
+  for (std::size_t k = 0; k < m.pattern_m.size(); ++k)
+    for (auto& corner : m.pattern_m[k])
+      for (double& c : corner) {
+        if (!std::isfinite(c))
+          throw Error(fmt::format(
+              "{}: triangle {} has no finite texture coordinates, which are to be its shape at rest", source, k));
+        c *= unit_m;
+      }
+}
+
+/// Vertices of the triangles of every group, ascending.
+void add_groups(ClothMesh& m, const assets::MeshFile& file) {
+  for (const auto& [name, members] : file.groups) {
+    std::set<std::uint32_t> vertices;
+    for (const std::uint32_t t : members) vertices.insert(m.triangles[t].begin(), m.triangles[t].end());
+    m.groups[name].assign(vertices.begin(), vertices.end());
+  }
 }
 
 fs::path file_of(const std::string& name, const std::string& source) {
@@ -67,78 +149,108 @@ fs::path file_of(const std::string& name, const std::string& source) {
                           scenario_root().string()));
 }
 
+void notice_welded(const ClothMesh& m, const std::string& file) {
+  static std::mutex mutex;
+  static std::set<std::string> noticed;
+  const std::lock_guard lock(mutex);
+  if (m.welded_vertices == 0 || !noticed.insert(file).second) return;
+  fmt::print(stderr, "notice: {}: {} vertices lie where an earlier one does and were welded to it\n", file,
+             m.welded_vertices);
+}
+
+/// The scale that gives the pattern the area that the cloth has at the start, as a proposal [m a unit].
+double fitting_unit_m(const assets::MeshFile& file) {
+  double start = 0, pattern = 0;
+  for (std::size_t k = 0; k < file.triangles.size(); ++k) {
+    const Triangle& t = file.triangles[k];
+    if (std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return v >= file.vertices.size(); })) return 0;
+    start += area_of({file.vertices[t[0]], file.vertices[t[1]], file.vertices[t[2]]});
+    const auto& p = file.texture[k];
+    pattern += area_of({Vec3{p[0][0], p[0][1], 0}, Vec3{p[1][0], p[1][1], 0}, Vec3{p[2][0], p[2][1], 0}});
+  }
+  return std::sqrt(start / pattern);
+}
+
+MeshChoices choices_of(const nlohmann::json& j, const assets::MeshFile& file, const std::string& source) {
+  MeshChoices out;
+  out.weld_m = j.value("weld_m", 0.0);
+  const bool texture = j.value("rest", std::string("vertices")) == "texture";
+  if (!texture && j.contains("texture_unit_m"))
+    refuse(source, "/cloth/mesh/texture_unit_m", "expected \"rest\": \"texture\" beside it");
+  if (!texture) return out;
+  if (!j.contains("texture_unit_m")) {
+    const double fits = fitting_unit_m(file);
+    refuse(source, "/cloth/mesh",
+           "\"texture_unit_m\" is missing: the length in metres of one unit of the texture coordinates" +
+               (fits > 0 && std::isfinite(fits)
+                    ? fmt::format("; {:.6g} would give the pattern the area that the cloth has at the start", fits)
+                    : std::string()));
+  }
+  out.texture_unit_m = j["texture_unit_m"].get<double>();
+  return out;
+}
+
 }  // namespace
 
-ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles,
-                     const std::string& source) {
-  ClothMesh m{std::move(vertices), std::move(triangles), {}, {}, 0};
-  if (m.triangles.empty()) throw Error(source + ": expected at least one triangle");
-  for (std::size_t v = 0; v < m.vertices.size(); ++v)
-    if (!std::isfinite(edge_length(m.vertices[v]))) throw Error(fmt::format("{}: vertex {} is not finite", source, v));
-  struct Seen {
-    double areas = 0;
-    int triangles = 0;
-  };
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Seen> seen;
-  std::vector<std::uint8_t> used(m.vertices.size(), 0);
-  std::map<std::array<std::uint32_t, 3>, std::size_t> same;
-  for (std::size_t k = 0; k < m.triangles.size(); ++k) {
-    const auto& t = m.triangles[k];
-    check_triangle(m.vertices, t, k, source);
-    std::array<std::uint32_t, 3> sorted = t;
-    std::sort(sorted.begin(), sorted.end());
-    if (const auto [at, fresh] = same.emplace(sorted, k); !fresh)
-      throw Error(fmt::format("{}: triangles {} and {} have the same vertices", source, at->second, k));
-    const double area = area_of(m.vertices[t[0]], m.vertices[t[1]], m.vertices[t[2]]);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto [a, b] = std::minmax(t[c], t[(c + 1) % 3]);
-      Seen& edge = seen[{a, b}];
-      edge.areas += area;
-      if (++edge.triangles > 2)
-        throw Error(fmt::format("{}: the edge of vertices {} and {} has more than two triangles", source, a, b));
-      used[t[c]] = 1;
-    }
-  }
-  for (std::size_t v = 0; v < used.size(); ++v)
-    if (used[v] == 0) throw Error(fmt::format("{}: vertex {} is in no triangle and would have no mass", source, v));
-  for (const auto& [ends, edge] : seen) {
-    const double rest = edge_length(minus(m.vertices[ends.second], m.vertices[ends.first]));
-    m.edges.push_back({ends.first, ends.second, rest, EdgeKind::Structural});
-    m.areas_m2.push_back(edge.areas);
-    m.edge_m += rest / static_cast<double>(seen.size());
-  }
+ClothMesh cloth_mesh(assets::MeshFile file, const MeshChoices& choices, const std::string& source) {
+  ClothMesh m;
+  m.welded_vertices = weld(file, choices.weld_m);
+  m.vertices = std::move(file.vertices);
+  m.triangles = std::move(file.triangles);
+  if (choices.texture_unit_m > 0) add_pattern(m, file, choices.texture_unit_m, source);
+  check_triangles(m, source);
+  add_edges(m, source);
+  add_groups(m, file);
   return m;
 }
 
+ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, const std::string& source) {
+  assets::MeshFile file;
+  file.vertices = std::move(vertices);
+  file.triangles = std::move(triangles);
+  return cloth_mesh(std::move(file), {}, source);
+}
+
 ClothMesh parse_obj(const std::string& text, const std::string& source) {
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning, error;
-  std::istringstream in(shape_lines(text));
-  if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &in))
-    throw Error(fmt::format("{}: expected an OBJ file: {}", source, error.empty() ? "it cannot be read" : error));
-  std::vector<Vec3> vertices;
-  for (std::size_t k = 0; k + 2 < attributes.vertices.size(); k += 3)
-    vertices.push_back({attributes.vertices[k], attributes.vertices[k + 1], attributes.vertices[k + 2]});
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const tinyobj::shape_t& shape : shapes)
-    for (std::size_t k = 0; k + 2 < shape.mesh.indices.size(); k += 3) {
-      std::array<std::uint32_t, 3> t{};
-      for (std::size_t c = 0; c < 3; ++c) t[c] = static_cast<std::uint32_t>(shape.mesh.indices[k + c].vertex_index);
-      triangles.push_back(t);
-    }
-  return cloth_mesh(std::move(vertices), std::move(triangles), source);
+  return cloth_mesh(read_obj(text, source), {}, source);
 }
 
 std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::string& source) {
   const fs::path file = file_of(j["file"].get<std::string>(), source);
-  const std::string text = read_text(file), hash = sha256(text);
+  const std::string text = read_text(file, kMostBytes), hash = sha256(text);
   if (j.contains("sha256") && j["sha256"] != hash)
     throw Error(fmt::format("{}: /cloth/mesh/sha256: {} differs from the file that the scene was made with ({})",
                             source, file.string(), hash));
   j["sha256"] = hash;
-  return std::make_shared<const ClothMesh>(parse_obj(text, file.string()));
+  const bool gltf = file.extension() == ".glb" || file.extension() == ".gltf";
+  const assets::MeshFile read = gltf ? assets::parse_gltf(text, file.string()) : read_obj(text, file.string());
+  const MeshChoices choices = choices_of(j, read, source);
+  auto mesh = std::make_shared<const ClothMesh>(cloth_mesh(read, choices, file.string()));
+  notice_welded(*mesh, file.string());
+  return mesh;
+}
+
+const std::vector<std::uint32_t>& group_vertices(const Cloth& c, const std::string& name, const std::string& source,
+                                                 const std::string& pointer) {
+  if (!c.mesh) refuse(source, pointer, "expected a cloth that is a mesh");
+  const auto found = c.mesh->groups.find(name);
+  if (found != c.mesh->groups.end() && !found->second.empty()) return found->second;
+  std::vector<std::string> known;
+  for (const auto& [group, vertices] : c.mesh->groups)
+    if (!vertices.empty()) known.push_back(group);
+  constexpr std::size_t kMost = 20;
+  const std::size_t all = known.size();
+  known.resize(std::min(all, kMost));
+  refuse(source, pointer,
+         fmt::format("the mesh has no triangles in a group \"{}\"; expected {}", name,
+                     known.empty() ? std::string("a mesh with named groups")
+                                   : fmt::format("one of: {}{}", fmt::join(known, ", "), all > kMost ? ", ..." : "")));
+}
+
+std::vector<std::uint32_t> named_edge(const Cloth& c, const std::string& edge, const std::string& source,
+                                      const std::string& pointer) {
+  if (c.mesh) refuse(source, pointer, "not available on a mesh; expected \"group\"");
+  return edge_vertices(c, edge);
 }
 
 std::pair<double, double> longest_sides(const ClothMesh& m) {

@@ -6,23 +6,45 @@
 #include <utility>
 #include <vector>
 
+#include "assets/mesh_file.hpp"
 #include "clothbench/scene.hpp"
 
 namespace clothbench {
 
-/// Reads `cloth.mesh` of a scene: {"file": a Wavefront OBJ beside the scene or in the scenario root}. Faces with more
-/// than three corners are triangulated; normals, materials and texture coordinates are ignored. Adds "sha256" of the
-/// file to `j`; a value that `j` already has must match. Throws Error with file and pointer if the file cannot be read
-/// or is not a valid cloth (see cloth_mesh).
+/// Reads `cloth.mesh` of a scene: {"file": a Wavefront OBJ or a glTF file beside the scene or in the scenario root}.
+/// Faces with more than three corners are triangulated; normals and materials are ignored. Adds "sha256" of the file to
+/// `j`; a value that `j` already has must match. Prints a notice on stderr, once per file, if vertices were welded.
+/// Throws Error with file and pointer if the file cannot be read or is not a valid cloth (see cloth_mesh).
 std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::string& source);
 
-/// The mesh in the text of an OBJ file.
+/// The triangles in the text of an OBJ file; groups are the names of its lines "g" and "o".
+assets::MeshFile read_obj(const std::string& text, const std::string& source);
+/// The cloth in the text of an OBJ file.
 ClothMesh parse_obj(const std::string& text, const std::string& source);
 
-/// A cloth of these triangles. Throws Error naming `source` and the first invalid vertex, edge or triangle: not finite,
-/// out of range, without area, duplicate, a vertex of no triangle, an edge of more than two triangles.
+/// What a scene asks of its mesh.
+struct MeshChoices {
+  /// Length [m] of a unit of the texture coordinates that give the shape at rest; 0: the vertices give it.
+  double texture_unit_m = 0;
+  double weld_m = 0;  ///< vertices within this distance [m] of an earlier one become that one; 0: those in one place
+};
+
+/// The cloth of a file's triangles. Throws Error naming `source` and the first invalid vertex, edge or triangle: not
+/// finite, out of range, without area (at the start or at rest), duplicate, a vertex of no triangle, an edge of more
+/// than two triangles, neighbours that are wound oppositely.
+ClothMesh cloth_mesh(assets::MeshFile, const MeshChoices&, const std::string& source);
+/// The same of triangles whose vertices are their shape at rest.
 ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles,
                      const std::string& source);
+
+/// Vertices of a named group of the cloth's mesh. Throws Error at `pointer` of the scene if the cloth is a grid, or has
+/// no such group; names those that it has.
+const std::vector<std::uint32_t>& group_vertices(const Cloth&, const std::string& name, const std::string& source,
+                                                 const std::string& pointer);
+
+/// Vertices of an edge ("u0") of a grid. Throws Error at `pointer` of the scene if the cloth is a mesh.
+std::vector<std::uint32_t> named_edge(const Cloth&, const std::string& edge, const std::string& source,
+                                      const std::string& pointer);
 
 /// Longest and second longest side [m] of the mesh's bounding box.
 std::pair<double, double> longest_sides(const ClothMesh&);

@@ -29,6 +29,8 @@ class ColliderReader {
   Path path(const nlohmann::json&) const;
   const assets::AssetSource& assets();
   const std::string& source() const { return source_; }
+  /// JSON pointer of the object.
+  const std::string& pointer() const { return at_; }
 
   std::function<ColliderPose(double time_s)> pose;  ///< of a dynamic collider
   struct RoundTable {

@@ -7,6 +7,7 @@
 
 #include "assets/hand_track.hpp"
 #include "clothbench/error.hpp"
+#include "scenario/cloth_mesh.hpp"
 #include "scenario/collider_kinds.hpp"
 #include "scenario/moving_hand.hpp"
 #include "scenario/table_pose.hpp"
@@ -92,7 +93,7 @@ class StageReader {
   };
 
   void grip(json& j) {
-    const bool edge = j.contains("edge");
+    const bool edge = j.contains("edge") || j.contains("group");
     reader_.complete(j, edge ? "grip_edge" : "grip_hand");
     Grip g = edge ? edge_grip(j) : hand_grip(j);
     for (std::uint32_t v : g.vertices) {
@@ -108,7 +109,10 @@ class StageReader {
   Grip edge_grip(const json& j) {
     Grip g;
     g.bar = reader_.path(j);
-    g.vertices = edge_vertices(scene_.cloth, j["edge"].get<std::string>());
+    if (j.contains("edge") == j.contains("group")) reader_.refuse("", "expected either \"edge\" or \"group\"");
+    const std::string at = reader_.pointer() + (j.contains("edge") ? "/edge" : "/group");
+    g.vertices = j.contains("edge") ? named_edge(scene_.cloth, j["edge"].get<std::string>(), reader_.source(), at)
+                                    : group_vertices(scene_.cloth, j["group"].get<std::string>(), reader_.source(), at);
     return g;
   }
 

@@ -38,12 +38,13 @@ Vec3 normal_of(const Cloth& c) {
 
 std::vector<double> mesh_masses(const Cloth& c) {
   std::vector<double> mass(c.vertex_count(), 0);
-  const std::vector<Vec3>& x = c.mesh->vertices;
-  for (const auto& t : c.mesh->triangles) {
+  for (std::size_t n = 0; n < c.mesh->triangles.size(); ++n) {
+    const auto& t = c.mesh->triangles[n];
+    const std::array<Vec3, 3> x = rest_corners(*c.mesh, n);
     Vec3 p{}, q{};
     for (std::size_t k = 0; k < 3; ++k) {
-      p[k] = x[t[1]][k] - x[t[0]][k];
-      q[k] = x[t[2]][k] - x[t[0]][k];
+      p[k] = x[1][k] - x[0][k];
+      q[k] = x[2][k] - x[0][k];
     }
     const double area =
         0.5 * std::hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]);
@@ -100,6 +101,14 @@ Vec3 Scene::rest_position(int i, int j) const {
   return p;
 }
 
+std::array<Vec3, 3> rest_corners(const ClothMesh& m, std::size_t triangle) {
+  const auto& t = m.triangles[triangle];
+  if (m.pattern_m.empty()) return {m.vertices[t[0]], m.vertices[t[1]], m.vertices[t[2]]};
+  std::array<Vec3, 3> out{};
+  for (std::size_t c = 0; c < 3; ++c) out[c] = {m.pattern_m[triangle][c][0], m.pattern_m[triangle][c][1], 0};
+  return out;
+}
+
 double drape_turn_rad(const Cloth& c) { return 2 * std::asin(c.du() / (2 * c.drape_radius_m)); }
 
 Vec3 draped_row(const Cloth& c, int i, double offset_m) {
@@ -150,8 +159,8 @@ std::vector<double> vertex_masses(const Scene& scene) {
 double Cloth::least_height_m() const {
   double least = std::numeric_limits<double>::infinity();
   if (mesh)
-    for (const auto& t : mesh->triangles) {
-      const Vec3 &a = mesh->vertices[t[0]], &b = mesh->vertices[t[1]], &p = mesh->vertices[t[2]];
+    for (std::size_t k = 0; k < mesh->triangles.size(); ++k) {
+      const auto [a, b, p] = rest_corners(*mesh, k);
       const Vec3 u = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
       const double twice_area =
           std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clothbench/error.hpp"
+#include "scenario/cloth_mesh.hpp"
 #include "scenario/vec3.hpp"
 
 namespace clothbench {
@@ -52,7 +53,9 @@ class IrregularReader {
 
   std::vector<std::uint32_t> vertices(const json& j, const std::string& pointer) const {
     std::vector<std::uint32_t> out;
-    if (j.contains("edge")) return edge_vertices(s_.cloth, j["edge"].get<std::string>());
+    if (j.contains("group"))
+      return group_vertices(s_.cloth, j["group"].get<std::string>(), source_, pointer + "/group");
+    if (j.contains("edge")) return named_edge(s_.cloth, j["edge"].get<std::string>(), source_, pointer + "/edge");
     if (j.contains("vertices"))
       for (const json& v : j["vertices"]) {
         if (v.get<std::size_t>() >= s_.cloth.vertex_count())
@@ -60,7 +63,7 @@ class IrregularReader {
                  fmt::format("vertex {} of {} (the first is 0)", v.get<std::size_t>(), s_.cloth.vertex_count()));
         out.push_back(v.get<std::uint32_t>());
       }
-    if (out.empty()) refuse(source_, pointer, "expected \"edge\" or \"vertices\"");
+    if (out.empty()) refuse(source_, pointer, "expected \"edge\", \"group\" or \"vertices\"");
     return out;
   }
 

@@ -41,9 +41,13 @@ Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
       for (const char* of_grids : {"corners", "edge", "clamp"})
         if (pin.contains(of_grids))
           refuse(source, fmt::format("/pins/{}/{}", k, of_grids),
-                 "not available on a mesh; expected \"vertices\" or \"nearest_m\"");
+                 "not available on a mesh; expected \"group\", \"vertices\" or \"nearest_m\"");
     if (!c.mesh && pin.contains("nearest_m"))
       refuse(source, fmt::format("/pins/{}/nearest_m", k), "expected a cloth that is a mesh");
+    if (pin.contains("group"))
+      for (std::uint32_t v :
+           group_vertices(c, pin["group"].get<std::string>(), source, fmt::format("/pins/{}/group", k)))
+        pinned.insert(v);
     if (pin.contains("nearest_m"))
       for (const json& point : pin["nearest_m"]) pinned.insert(nearest_vertex(*c.mesh, vec3(point)));
     if (pin.contains("corners"))
@@ -67,7 +71,7 @@ Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
 /// Reads either a grid and its size or a mesh.
 void read_shape(json& j, Cloth& c, const std::string& source) {
   if (j.contains("mesh")) {
-    for (const char* of_grids : {"grid", "size_m", "column_factors", "start"})
+    for (const char* of_grids : {"grid", "size_m", "column_factors"})
       if (j.contains(of_grids))
         refuse(source, std::string("/cloth/") + of_grids, "expected a cloth that is a grid, not a mesh");
     c.mesh = read_cloth_mesh(j["mesh"], source);

@@ -34,11 +34,26 @@ class Random {
   std::uint64_t state_;
 };
 
+/// The sheet, or the box round a mesh: lowest coordinate and extent [m] along u.
+struct AlongU {
+  double low, width;
+};
+
+AlongU along_u(const Cloth& c) {
+  if (!c.mesh) return {-c.width_m / 2, c.width_m};
+  double low = c.mesh->vertices.front()[0], high = low;
+  for (const Vec3& x : c.mesh->vertices) {
+    low = std::min(low, x[0]);
+    high = std::max(high, x[0]);
+  }
+  return {low, high - low};
+}
+
 /// Position [m] of a vertex in column i, in the frame (axis_u, axis_v, normal) about the centre.
 Vec3 shaped(const Cloth& c, int i, Random& random) {
   const Start& s = c.start;
   const double turn = 2 * std::numbers::pi * random.uniform(), share = random.uniform();
-  const double u = c.line_u_m(i) - c.width_m / 2;
+  const double u = c.mesh ? c.mesh->vertices[static_cast<std::size_t>(i)][0] : c.line_u_m(i) - c.width_m / 2;
   switch (s.shape) {
     case Start::Shape::Rest:
       return {};
@@ -60,22 +75,30 @@ Vec3 shaped(const Cloth& c, int i, Random& random) {
   return {};
 }
 
-/// Folded coordinate [m] along u: a triangular wave whose half period is one layer.
-double folded_u(const Cloth& c, int i) {
-  const double leaf = c.width_m / c.start.folds, u = c.line_u_m(i);
-  const double in_pair = std::fmod(u, 2 * leaf);
+/// Folded coordinate [m] along u, from the lowest: a triangular wave whose half period is one layer.
+double folded_u(double u, double width_m, int folds) {
+  const double leaf = width_m / folds, in_pair = std::fmod(u, 2 * leaf);
   return in_pair <= leaf ? in_pair : 2 * leaf - in_pair;
+}
+
+/// A vertex of a folded sheet, or of a mesh that is pressed flat and folded.
+Vec3 folded(const Cloth& c, const AlongU& u, int i, int j) {
+  if (!c.mesh)
+    return {folded_u(c.line_u_m(i), c.width_m, c.start.folds) - c.width_m / 2, j * c.dv() - c.height_m / 2, 0};
+  const Vec3& at = c.mesh->vertices[static_cast<std::size_t>(i)];
+  return {u.low + folded_u(at[0] - u.low, u.width, c.start.folds), at[1], 0};
 }
 
 void put_shape(const Scene& scene, const std::vector<std::uint8_t>& pinned, std::vector<double>& x) {
   const Cloth& c = scene.cloth;
   const Vec3 normal = cross(c.axis_u, c.axis_v);
+  const AlongU u = along_u(c);
   for (int j = 0; j < c.rows; ++j)
     for (int i = 0; i < c.columns; ++i) {
       const auto v = static_cast<std::size_t>(j * c.columns + i);
       Random random(c.start.seed, v);
       Vec3 p = shaped(c, i, random);
-      if (c.start.shape == Start::Shape::Folded) p = {folded_u(c, i) - c.width_m / 2, j * c.dv() - c.height_m / 2, 0};
+      if (c.start.shape == Start::Shape::Folded) p = folded(c, u, i, j);
       if (pinned[v] != 0) continue;
       for (std::size_t k = 0; k < 3; ++k)
         x[3 * v + k] = c.center_m[k] + p[0] * c.axis_u[k] + p[1] * c.axis_v[k] + p[2] * normal[k];

@@ -20,7 +20,8 @@ SolverInfo common_info() {
   info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,       Feature::Damping,
                    Feature::Pins,     Feature::MovingPins,  Feature::Sphere,     Feature::Box,
                    Feature::Plane,    Feature::Capsules,    Feature::StaticMesh, Feature::MovingMesh,
-                   Feature::Friction, Feature::DoubleSided, Feature::UnevenGrid, Feature::Spin};
+                   Feature::Friction, Feature::DoubleSided, Feature::UnevenGrid, Feature::Spin,
+                   Feature::ClothMesh};
   return info;
 }
 

@@ -11,6 +11,7 @@
 
 #include "bullet-baseline/bullet_solver.hpp"
 #include "bullet-baseline/grid_springs.hpp"
+#include "clothbench/vector.hpp"
 
 namespace clothbench::bullet_baseline {
 namespace {
@@ -76,11 +77,34 @@ bool linked(const Scene& scene, EdgeKind kind) {
   return kind != EdgeKind::SkipOne || scene.needs.has(Feature::Bend);
 }
 
+/// The same bound for a mesh at its start. The greatest eigenvalue of S_i is at most its Frobenius norm.
+double stiffest_of_mesh_rad_per_s(const Scene& scene) {
+  const std::vector<double> mass = vertex_masses(scene);
+  const std::vector<Vec3>& x = scene.cloth.mesh->vertices;
+  const LinkStiffness stiffness(scene);
+  std::vector<std::array<double, 9>> sums(mass.size(), std::array<double, 9>{});
+  for (const Edge& e : edges(scene.cloth, EdgeKind::Structural)) {
+    const Vec3 along = minus(x[e.b], x[e.a]);
+    const double k = stiffness.of(e) / dot(along, along);
+    for (std::uint32_t i : {e.a, e.b})
+      for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = 0; c < 3; ++c) sums[i][3 * r + c] += k * along[r] * along[c];
+  }
+  double most = 0;
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    double square = 0;
+    for (const double s : sums[i]) square += s * s;
+    most = std::max(most, std::sqrt(square) / mass[i]);
+  }
+  return std::sqrt(2 * most);
+}
+
 /// An upper bound of the flat sheet's highest angular frequency [1/s].
 ///
 /// Of a mass-spring system sum k (n.(x_i - x_j))^2 <= 2 sum_i x_i.S_i x_i with S_i = sum k n n^T over the links of
 /// vertex i, hence omega^2 <= 2 max_i lambda_max(S_i)/m_i.
 double stiffest_rad_per_s(const Scene& scene) {
+  if (scene.cloth.mesh) return stiffest_of_mesh_rad_per_s(scene);
   const std::vector<double> mass = vertex_masses(scene);
   const LinkStiffness stiffness(scene);
   const double b = scene.cloth.dv();

@@ -187,7 +187,8 @@ SolverInfo paper_info() {
                    Feature::Damping,         Feature::Pins,       Feature::MovingPins,
                    Feature::Sphere,          Feature::Box,        Feature::Capsules,
                    Feature::StaticMesh,      Feature::MovingMesh, Feature::Friction,
-                   Feature::DuplicatedLayer, Feature::UnevenGrid, Feature::Spin};
+                   Feature::DuplicatedLayer, Feature::UnevenGrid, Feature::Spin,
+                   Feature::ClothMesh};
   // Table 4 of the article: a single-sided cloth does not touch meshes.
   info.only_with = {{Feature::StaticMesh, Feature::DuplicatedLayer}, {Feature::MovingMesh, Feature::DuplicatedLayer}};
   info.settings = {

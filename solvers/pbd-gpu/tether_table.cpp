@@ -51,8 +51,10 @@ double cross2(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// True if the mesh is flat (all z alike) with a convex border: the shortest path through the cloth is then straight.
+/// True if the mesh rests flat as it starts (all z alike) with a convex border: the shortest path through the cloth is
+/// then straight.
 bool is_convex_sheet(const ClothMesh& m) {
+  if (!m.pattern_m.empty()) return false;
   double low = m.vertices[0][2], high = low, size = 0, area = 0;
   for (const Vec3& x : m.vertices) {
     low = std::min(low, x[2]);

@@ -67,7 +67,7 @@ std::vector<Case> cases() {
 
 std::string case_name(const ::testing::TestParamInfo<Case>& info) {
   std::string name = info.param.solver + "_" + info.param.scene + "_" + info.param.sides + "_" + info.param.grid +
-                     (info.param.profile.empty() ? "" : "_" + info.param.profile);
+                     (info.param.mesh ? "_mesh" : "") + (info.param.profile.empty() ? "" : "_" + info.param.profile);
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
   return name;
@@ -128,18 +128,11 @@ const std::vector<Lacks> kLacks = {
     {"ballistic", {}, {}, 0},
     {"xpbd", {Feature::DuplicatedLayer, Feature::Render}, {}, 0.36},
     {"paper",
-     {Feature::Plane, Feature::DoubleSided, Feature::SelfCollision, Feature::Render, Feature::Regions,
-      Feature::ClothMesh},
+     {Feature::Plane, Feature::DoubleSided, Feature::SelfCollision, Feature::Render, Feature::Regions},
      {{Feature::StaticMesh, Feature::DuplicatedLayer}, {Feature::MovingMesh, Feature::DuplicatedLayer}},
      0.38},
-    {"bullet-soft",
-     {Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render, Feature::Regions, Feature::ClothMesh},
-     {},
-     0.4},
-    {"bullet-deformable",
-     {Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render, Feature::ClothMesh},
-     {},
-     0.4},
+    {"bullet-soft", {Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render, Feature::Regions}, {}, 0.4},
+    {"bullet-deformable", {Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render}, {}, 0.4},
     {"reference", kNoBodies | FeatureSet{Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render}, {}, 0.74},
     {"example-xpbd",
      kNoBodies | FeatureSet{Feature::MovingPins, Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render,

@@ -71,7 +71,7 @@ TEST_P(Files, HoldAllThatIsDrawn) {
 INSTANTIATE_TEST_SUITE_P(Album, Files,
                          ::testing::Values("contact/sphere", "contact/box", "contact/plane", "paper/capsule-sweep",
                                            "paper/hand-push", "paper/desk-flat-low", "paper/two-hand-stretch-2mps",
-                                           "paper/gravity"));
+                                           "paper/gravity", "validation/hang-mesh"));
 
 TEST(Album, TakesPicturesOfTheSizeAskedForWithBarAndCaption) {
   const Folder folder("shots");

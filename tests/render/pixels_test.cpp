@@ -5,6 +5,7 @@
 
 #include "gpu_solver.hpp"
 #include "render/offscreen.hpp"
+#include "scenario/as_mesh.hpp"
 #include "scenario/load.hpp"
 #include "sheets.hpp"
 
@@ -70,6 +71,31 @@ TEST_F(Pixels, SquaresAreLightAndDarkInTurn) {
       EXPECT_GT(std::abs(here[2] - next[2]), 40) << "neighbours differ at " << i << " " << j;
     }
   EXPECT_TRUE(white(pixel(p, {0.8, 0.8, 0})));
+}
+
+TEST_F(Pixels, AMeshLooksAsItsGridDoes) {
+  Scene s;
+  s.cloth = upright(9, 9);
+  s.cloth.areal_density_kg_per_m2 = 0.2;
+  std::vector<double> x = positions_of(s.cloth);
+  for (std::size_t k = 0; k < x.size(); k += 3) x[k + 2] = 0.2 * x[k] * x[k];
+  const Picture grid = draw(s.cloth, x), mesh = draw(as_mesh(s).cloth, x);
+  int differ = 0, drawn = 0;
+  for (int row = 0; row < kSize; ++row)
+    for (int column = 0; column < kSize; ++column) {
+      const std::uint8_t *a = grid.at(column, row), *b = mesh.at(column, row);
+      drawn += a[0] + a[1] + a[2] < 765 ? 1 : 0;
+      for (int k = 0; k < 3; ++k)
+        if (std::abs(a[k] - b[k]) > 24) {
+          ++differ;
+          break;
+        }
+    }
+  EXPECT_GT(drawn, 1000);
+  EXPECT_LT(differ, drawn / 50) << "other diagonals, and so slightly other normals";
+  x[3 * 40] = NAN;
+  EXPECT_TRUE(white(pixel(draw(as_mesh(s).cloth, x), {0.02, 0.01, 0}))) << "what is not finite is left out";
+  EXPECT_TRUE(orange(pixel(draw(as_mesh(s).cloth, x), {0.4, 0.4, 0.032})));
 }
 
 TEST_F(Pixels, BothSidesAreShadedAndToldApart) {

@@ -90,16 +90,19 @@ struct Bad {
 class BadObj : public ::testing::TestWithParam<Bad> {};
 INSTANTIATE_TEST_SUITE_P(
     , BadObj,
-    ::testing::Values(Bad{"", "expected at least one triangle"},
-                      Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "expected at least one triangle"},
-                      Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "mesh.obj"},
-                      Bad{"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "triangle 0 (vertices 0, 1, 2) has no area"},
-                      Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\n", "has no area"},
-                      Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n", "vertex 3 is in no triangle"},
-                      Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n", "triangles 0 and 1 have the same vertices"},
-                      Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n",
-                          "more than two triangles"},
-                      Bad{"v 1e400 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mesh.obj"}));
+    ::testing::Values(
+        Bad{"", "expected at least one triangle"}, Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "expected at least one triangle"},
+        Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "mesh.obj"},
+        Bad{"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "triangle 0 (vertices 0, 1, 2) has no area"},
+        Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\n", "has no area"},
+        Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n", "vertex 3 is in no triangle"},
+        Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n", "triangles 0 and 1 have the same vertices"},
+        Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n", "more than two triangles"},
+        Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 3 4\n",
+            "triangles 0 and 1 are wound oppositely: both run from vertex 1 to 2"},
+        Bad{"v 0 0 0\nv 1 0 0\nv 1 0 0\nf 1 2 3\n", "has no area"},
+        Bad{"#\nv 0 nan 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mesh.obj: line 2: \"nan\": expected a finite number"},
+        Bad{"v 1e400 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mesh.obj"}));
 
 TEST_P(BadObj, IsRefusedNamingFileAndWhat) {
   const std::string message = refusal([&] { parse_obj(GetParam().text, "mesh.obj"); });
@@ -118,11 +121,12 @@ TEST(ClothMesh, RefusesWhatIsOfGridsAlone) {
   for (const auto& [pointer, value] :
        std::vector<std::pair<const char*, json>>{{"/cloth/grid", {2, 2}},
                                                  {"/cloth/size_m", {1, 1}},
-                                                 {"/cloth/start", {{"shape", "sphere"}}},
                                                  {"/cloth/pose/span_m", 0.5},
                                                  {"/material/bending_rigidity_N_m", 1e-5},
                                                  {"/pins", {{{"edge", "u0"}}}},
                                                  {"/pins", {{{"corners", {"u0v0"}}}}},
+                                                 {"/grips", {{{"edge", "u0"}, {"velocity_m_per_s", {0, 0, 0}}}}},
+                                                 {"/cloth/mass_factors", {{{"edge", "u0"}, {"factor", 2}}}},
                                                  {"/cloth/mesh/file", "none.obj"}})
     EXPECT_NE(with(pointer, value).find(pointer), std::string::npos) << pointer << ": " << with(pointer, value);
   json neither = scenario("square.obj");

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,14 +44,22 @@ struct Edge {
   EdgeKind kind;
 };
 
-/// A cloth of any shape and topology, at rest. Its frame has origin center_m and axes axis_u, axis_v, axis_u x axis_v.
+/// A cloth of any shape and topology. Its frame has origin center_m and axes axis_u, axis_v, axis_u x axis_v.
 struct ClothMesh {
-  std::vector<Vec3> vertices;                           ///< [m]
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of positive area
+  std::vector<Vec3> vertices;                           ///< [m]; where it starts, and its shape at rest if no pattern
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of positive area; neighbours are wound alike
   std::vector<Edge> edges;                              ///< each edge once, all structural, a < b, ascending order
   std::vector<double> areas_m2;                         ///< per edge: the sum of the areas of its triangles
   double edge_m = 0;                                    ///< mean length of an edge
+  /// Shape at rest of each triangle: its corners in the plane of its pattern [m]. Empty: `vertices` are the shape at
+  /// rest. The same vertex may lie in several places, along seams.
+  std::vector<std::array<std::array<double, 2>, 3>> pattern_m;
+  std::map<std::string, std::vector<std::uint32_t>> groups;  ///< vertices by the file's names, ascending
+  std::size_t welded_vertices = 0;                           ///< of the file, that became another one
 };
+
+/// Corners [m] of a triangle at rest, in the mesh's frame or in the plane of its pattern.
+std::array<Vec3, 3> rest_corners(const ClothMesh&, std::size_t triangle);
 
 /// Contact of a cloth with itself.
 struct SelfCollision {

@@ -33,7 +33,8 @@ constexpr Level kLevels[] = {{1, 65}, {2, 65}, {3, 65},  {4, 65},  {4, 33},
 struct Candidate {
   const RunRecord* run = nullptr;
   json scenario;
-  std::size_t columns = 0, rows = 0;
+  std::size_t columns = 0, rows = 0;  // of a mesh: its vertices and 1
+  bool mesh = false;
   int rank = 0;
   std::size_t turn = 0;  // among those of its scene, solver and rank
 };
@@ -57,7 +58,13 @@ std::vector<Candidate> candidates(const std::vector<RunRecord>& runs, const std:
       k.columns = grid[0];
       k.rows = grid[1];
     }
-    if (k.columns < 2 || k.rows < 2 || k.columns * k.rows != c.header.vertices) {
+    if (k.scenario.is_object() && k.scenario.contains(json::json_pointer("/cloth/mesh"))) {
+      k.mesh = true;
+      k.columns = c.header.vertices;
+      k.rows = 1;
+    }
+    if (!(k.mesh ? c.header.triangles.size() >= 3 : k.columns >= 2 && k.rows >= 2) ||
+        k.columns * k.rows != c.header.vertices) {
       ++without;
       continue;
     }
@@ -84,7 +91,9 @@ class Packer {
     const std::size_t frames = k.run->accuracy.time_s.size();
     for (const Level& level : kLevels) {
       if (frames / level.frame_stride * 3 * k.run->header.vertices > kMostFloats) continue;
-      const std::size_t width = std::max(k.columns, k.rows), step = (width + level.most_width - 1) / level.most_width;
+      // A mesh keeps all of its vertices.
+      const std::size_t width = std::max(k.columns, k.rows),
+                        step = k.mesh ? 1 : (width + level.most_width - 1) / level.most_width;
       // Six bytes a vertex, deflated to a fifth at best: what is sure not to fit is not read.
       const std::size_t least_B = frames / level.frame_stride * (k.columns / step) * (k.rows / step) * 6 / 5;
       if (least_B > share) continue;
@@ -133,17 +142,22 @@ class Packer {
               {"status", c.outcome.status},
               {"failed_frame", c.outcome.failed_frame},
               {"message", c.outcome.message},
-              {"grid", {k.columns, k.rows}},
-              {"size_m", {size(0), size(1)}},
               {"frames_stored", c.accuracy.time_s.size()},
               {"frames", motion.frames},
               {"time_s", std::move(time_s)},
-              {"columns", motion.columns},
-              {"rows", motion.rows},
               {"step_m", motion.step_m},
               {"origin", motion.origin},
               {"cut_at", motion.cut_at},
               {"metrics", std::move(metrics)}};
+    if (k.mesh) {
+      e["vertices"] = k.columns;
+      e["triangles"] = blob(pack_words(c.header.triangles));
+    } else {
+      e["grid"] = {k.columns, k.rows};
+      e["size_m"] = {size(0), size(1)};
+      e["columns"] = motion.columns;
+      e["rows"] = motion.rows;
+    }
     if (const std::string which = colliders(c, replay.groups); !which.empty()) e["colliders"] = std::stoul(which);
     e["blob"] = blob(motion.bytes);
     out_.document["runs"].push_back(std::move(e));
@@ -194,8 +208,8 @@ class Packer {
 }  // namespace
 
 Motions motions_of(const std::vector<RunRecord>& runs, const std::set<std::string>& fronts, std::size_t budget_B) {
-  std::size_t without_grid = 0, too_large = 0, beyond = 0;
-  std::vector<Candidate> all = candidates(runs, fronts, without_grid);
+  std::size_t without_cloth = 0, too_large = 0, beyond = 0;
+  std::vector<Candidate> all = candidates(runs, fronts, without_cloth);
   if (all.size() > kMostRuns) {
     beyond = all.size() - kMostRuns;
     all.resize(kMostRuns);
@@ -212,7 +226,7 @@ Motions motions_of(const std::vector<RunRecord>& runs, const std::set<std::strin
   };
   say(beyond, "the page holds 120; those of other settings are left out first");
   say(too_large, "too large at the coarsest thinning, or not finite from the start");
-  say(without_grid, "the cloth is not a grid");
+  say(without_cloth, "its file has no triangles of its cloth");
   Motions out = packer.take();
   auto& shown = out.document["runs"];
   std::stable_sort(shown.begin(), shown.end(), [](const json& a, const json& b) {

@@ -17,9 +17,10 @@ export class Motion {
   static async load(run) {
     const m = new Motion();
     m.run = run;
-    m.columns = run.columns.length;
-    m.rows = run.rows.length;
-    m.vertices = m.columns * m.rows;
+    m.corners = 'triangles' in run ? new Uint32Array(await words(run.triangles, 4)) : null;  // of a mesh
+    m.columns = run.columns?.length;
+    m.rows = run.rows?.length;
+    m.vertices = m.corners ? run.vertices : m.columns * m.rows;
     m.time_s = run.time_s;
     const residual = new Uint16Array(await words(run.blob, 2)), n = m.vertices;
     m.position = new Float32Array(residual.length);  // (frame, vertex, xyz)
@@ -59,8 +60,9 @@ export class Motion {
     return out;
   }
 
-  /// Vertex indices of the triangles of the grid.
+  /// Vertex indices of the triangles of the grid or mesh.
   triangles() {
+    if (this.corners) return Array.from(this.corners);
     const out = [], c = this.columns;
     for (let j = 0; j + 1 < this.rows; ++j)
       for (let i = 0; i + 1 < c; ++i) {
@@ -70,8 +72,10 @@ export class Motion {
     return out;
   }
 
-  /// [a, b, rest length in m] of the edges along rows and columns.
+  /// [a, b, rest length in m] of the edges along rows and columns; of a mesh all edges with their lengths in the first
+  /// frame.
   structural() {
+    if (this.corners) return this.edges_of_mesh();
     const {run} = this, out = [], c = this.columns;
     const du = run.size_m[0] / (run.grid[0] - 1), dv = run.size_m[1] / (run.grid[1] - 1);
     for (let j = 0; j < this.rows; ++j)
@@ -80,6 +84,44 @@ export class Motion {
         if (j + 1 < this.rows) out.push([j * c + i, (j + 1) * c + i, dv * (run.rows[j + 1] - run.rows[j])]);
       }
     return out;
+  }
+
+  edges_of_mesh() {
+    const seen = new Set(), out = [], x = this.position, n = this.vertices;
+    this.corners.forEach((a, k) => {
+      const b = this.corners[k % 3 === 2 ? k - 2 : k + 1], key = Math.min(a, b) * n + Math.max(a, b);
+      if (seen.has(key)) return;
+      seen.add(key);
+      out.push([a, b, Math.hypot(x[3 * a] - x[3 * b], x[3 * a + 1] - x[3 * b + 1], x[3 * a + 2] - x[3 * b + 2])]);
+    });
+    return out;
+  }
+
+  /// Place of each vertex on the checker, 0 to 1 across the cloth: of a mesh by the two longest sides of its first frame.
+  places() {
+    if (!this.corners)
+      return Array.from(
+          {length: this.vertices},
+          (_, v) => [(v % this.columns) / (this.columns - 1), Math.floor(v / this.columns) / (this.rows - 1)]);
+    const {low, sides} = this.sides(), axes = this.longest(sides);
+    return Array.from(
+        {length: this.vertices}, (_, v) => axes.map(a => (this.position[3 * v + a] - low[a]) / (sides[a] || 1)));
+  }
+
+  /// Width and height [m] of the cloth.
+  size_m() {
+    if (!this.corners) return this.run.size_m;
+    const {sides} = this.sides();
+    return this.longest(sides).map(a => Math.max(sides[a], 1e-9));
+  }
+
+  sides() {
+    const {low, high} = this.box(0);
+    return {low, sides: high.map((h, a) => h - low[a])};
+  }
+
+  longest(sides) {
+    return [0, 1, 2].sort((a, b) => sides[b] - sides[a]).slice(0, 2);
   }
 
   /// Least and greatest corner of one frame.
@@ -95,11 +137,12 @@ export class Motion {
 
   /// A sentence on what was left out of the motion.
   thinning() {
-    const {run} = this, kept = run.frames.length, grid = run.grid[0] * run.grid[1];
+    const {run} = this, kept = run.frames.length, grid = this.corners ? this.vertices : run.grid[0] * run.grid[1];
     const step =
         run.step_m >= 1e-3 ? `${(1e3 * run.step_m).toPrecision(2)} mm` : `${(1e6 * run.step_m).toPrecision(2)} µm`;
     return `${kept === run.frames_stored ? 'every frame' : `${kept} of ${run.frames_stored} frames`}, ` +
         `${this.vertices === grid ? 'every vertex' : `${this.vertices} of ${grid} vertices`}, positions to ${step}` +
+        (this.corners ? ', stretch against the first frame' : '') +
         (run.cut_at >= 0 ? `; ends at frame ${run.cut_at}, where the cloth flew apart or was not finite` : '');
   }
 }

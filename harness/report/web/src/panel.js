@@ -39,11 +39,8 @@ export class Panel {
     g.setAttribute(
         'color', new THREE.BufferAttribute(new Float32Array(3 * motion.vertices), 3).setUsage(THREE.DynamicDrawUsage));
     g.setIndex(motion.triangles());
-    const uv = Array.from(
-        {length: motion.vertices},
-        (_, v) => [(v % motion.columns) / (motion.columns - 1), Math.floor(v / motion.columns) / (motion.rows - 1)]);
-    g.setAttribute('uv', new THREE.BufferAttribute(new Float32Array(uv.flat()), 2));
-    this.checks = checks(motion.run.size_m);
+    g.setAttribute('uv', new THREE.BufferAttribute(new Float32Array(motion.places().flat()), 2));
+    this.checks = checks(motion.size_m());
     this.cloth = new THREE.Mesh(
         g, new THREE.MeshStandardMaterial({vertexColors: true, side: THREE.DoubleSide, roughness: 0.85, metalness: 0}));
     this.wires = new THREE.LineSegments(

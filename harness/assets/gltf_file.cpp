@@ -1,0 +1,151 @@
+#include "assets/gltf_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+// The header again, for the definitions; a file that is compiled together with this one must not get them twice.
+#define TINYGLTF_IMPLEMENTATION
+#include <tiny_gltf.h>
+#undef TINYGLTF_IMPLEMENTATION
+
+#include "base/json_text.hpp"
+#include "clothbench/error.hpp"
+
+namespace clothbench::assets::gltf {
+namespace {
+
+constexpr std::uintmax_t kMostBytes = 256u << 20;
+
+template <class Item>
+Item item_at(const unsigned char* from) {
+  Item item;
+  std::memcpy(&item, from, sizeof(Item));
+  return item;
+}
+
+Eigen::Affine3d local_transform(const tinygltf::Node& node) {
+  if (node.matrix.size() == 16) return Eigen::Affine3d(Eigen::Map<const Eigen::Matrix4d>(node.matrix.data()));
+  Eigen::Affine3d t = Eigen::Affine3d::Identity();
+  if (node.translation.size() == 3) t.translate(Vector::Map(node.translation.data()));
+  if (node.rotation.size() == 4)
+    t.rotate(Eigen::Quaterniond(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]).normalized());
+  if (node.scale.size() == 3) t.scale(Vector::Map(node.scale.data()));
+  return t;
+}
+
+/// Images are of no use here, and this build cannot decode them: each stays empty.
+bool leave_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
+  return true;
+}
+
+template <class Load>
+tinygltf::Model loaded(const std::string& source, const char* kind, Load load) {
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(leave_image, nullptr);
+  tinygltf::Model model;
+  std::string error, warning;
+  bool ok = false;
+  try {
+    ok = load(loader, model, error, warning);
+  } catch (const std::exception& e) {
+    error = e.what();
+  }
+  while (!error.empty() && error.back() == '\n') error.pop_back();
+  if (!ok) fail(source, fmt::format("not a {}: {}", kind, error.empty() ? "unreadable" : error));
+  return model;
+}
+
+}  // namespace
+
+void fail(const std::string& source, const std::string& message) { throw Error(source + ": " + message); }
+
+std::vector<double> numbers(const tinygltf::Model& model, int index, int type, std::initializer_list<int> kinds,
+                            const std::string& source, const char* expected) {
+  const auto& accessor = pick(model.accessors, index, source, "accessors");
+  const std::string where = fmt::format("/accessors/{}", index);
+  if (accessor.type != type || std::find(kinds.begin(), kinds.end(), accessor.componentType) == kinds.end())
+    fail(source, fmt::format("{}: type {} of component type {}: expected the types of {}", where, accessor.type,
+                             accessor.componentType, expected));
+  if (accessor.sparse.isSparse || accessor.normalized)
+    fail(source, where + ": expected an accessor that is neither sparse nor normalized");
+  const auto& view = pick(model.bufferViews, accessor.bufferView, source, "bufferViews");
+  const auto& buffer = pick(model.buffers, view.buffer, source, "buffers");
+  const auto components = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
+  const auto item =
+      static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)));
+  const std::size_t row = components * item, stride = view.byteStride == 0 ? row : view.byteStride;
+  const std::size_t size = buffer.data.size();
+  if (view.byteOffset > size || view.byteLength > size - view.byteOffset || accessor.byteOffset > view.byteLength ||
+      stride < row || stride > 252 || accessor.count == 0 || accessor.count > view.byteLength ||
+      accessor.byteOffset + (accessor.count - 1) * stride + row > view.byteLength)
+    fail(source, where + ": expected at least one item and no more than its buffer view holds");
+  std::vector<double> out;
+  out.reserve(accessor.count * components);
+  for (std::size_t i = 0; i < accessor.count; ++i)
+    for (std::size_t k = 0; k < components; ++k) {
+      const unsigned char* from = buffer.data.data() + view.byteOffset + accessor.byteOffset + i * stride + k * item;
+      switch (accessor.componentType) {
+        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+          out.push_back(item_at<float>(from));
+          break;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+          out.push_back(*from);
+          break;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+          out.push_back(item_at<std::uint16_t>(from));
+          break;
+        default:
+          out.push_back(item_at<std::uint32_t>(from));
+          break;
+      }
+      if (!std::isfinite(out.back())) fail(source, fmt::format("{}: item {} is not finite", where, i));
+    }
+  return out;
+}
+
+std::vector<Eigen::Affine3d> world_transforms(const tinygltf::Model& model, const std::string& source) {
+  std::vector<int> parent(model.nodes.size(), -1);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    for (int child : model.nodes[n].children) {
+      pick(model.nodes, child, source, "nodes");
+      if (parent[static_cast<std::size_t>(child)] != -1) fail(source, fmt::format("/nodes/{}: has two parents", child));
+      parent[static_cast<std::size_t>(child)] = static_cast<int>(n);
+    }
+  std::vector<Eigen::Affine3d> world(model.nodes.size());
+  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+    Eigen::Affine3d t = Eigen::Affine3d::Identity();
+    std::size_t steps = 0;
+    for (int at = static_cast<int>(n); at != -1; at = parent[static_cast<std::size_t>(at)]) {
+      if (++steps > model.nodes.size()) fail(source, fmt::format("/nodes/{}: is its own ancestor", n));
+      t = local_transform(model.nodes[static_cast<std::size_t>(at)]) * t;
+    }
+    world[n] = t;
+  }
+  return world;
+}
+
+tinygltf::Model parse_binary(const std::uint8_t* bytes, std::size_t size, const std::string& source) {
+  return loaded(source, "binary glTF file (cut off?)", [&](auto& loader, auto& model, auto& error, auto& warning) {
+    if (size >= 12 && size <= kMostBytes)
+      return loader.LoadBinaryFromMemory(&model, &error, &warning, bytes, static_cast<unsigned>(size), "");
+    error = fmt::format("{} bytes", size);
+    return false;
+  });
+}
+
+tinygltf::Model parse_text(const std::string& text, const std::string& source) {
+  const nlohmann::json parsed = parse_json(text, source);
+  if (!parsed.is_object()) fail(source, "expected a glTF file: a JSON object");
+  // The library would open any file that the text names; the hash of a scene's mesh would not include it.
+  const nlohmann::json buffers = parsed.value("buffers", nlohmann::json::array());
+  for (std::size_t k = 0; k < buffers.size(); ++k)
+    if (!buffers[k].is_object() || !buffers[k].contains("uri") || !buffers[k]["uri"].is_string() ||
+        !buffers[k]["uri"].get<std::string>().starts_with("data:"))
+      fail(source, fmt::format("/buffers/{}/uri: expected the buffer inside the file: a data URI, or a .glb file", k));
+  return loaded(source, "glTF file", [&](auto& loader, auto& model, auto& error, auto& warning) {
+    return loader.LoadASCIIFromString(&model, &error, &warning, text.data(), static_cast<unsigned>(text.size()), "");
+  });
+}
+
+}  // namespace clothbench::assets::gltf

@@ -1,0 +1,248 @@
+// What a mesh's file says beyond its triangles: texture coordinates, seams, names; glTF beside OBJ.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "assets/base64.hpp"
+#include "clothbench/error.hpp"
+#include "scenario/cloth_mesh.hpp"
+#include "scenario/load.hpp"
+#include "scratch_folder.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+// Two triangles of a unit square that meet along a seam: vertices 2 and 3 are there twice. Each panel has its own
+// place in the pattern, the second twice as large.
+constexpr char kPanels[] =
+    "o front\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\ng waist left\nf 1/1 2/2 3/3\n"
+    "o back\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 2 0\nvt 2 1\nvt 1 1\ng\nf 4/4 5/5 6/6\n";
+
+json scenario(const std::string& file) {
+  return {{"name", "panels"},
+          {"why", "a mesh for the tests"},
+          {"cloth", {{"mesh", {{"file", file}}}, {"areal_density_kg_per_m2", 0.3}, {"sides", "single"}}},
+          {"material", {{"membrane_stiffness_N_per_m", 1000}}},
+          {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}}};
+}
+
+template <class Fn>
+std::string refusal(Fn fn) {
+  try {
+    fn();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+Scene scene_of(const ScratchFolder& folder, const char* file, const char* pointer, const json& value) {
+  json j = scenario(file);
+  if (*pointer != 0) j[json::json_pointer(pointer)] = value;
+  return load_scene(folder.file("panels.json", j.dump()));
+}
+
+TEST(MeshInput, WeldsVerticesInOnePlaceWithANotice) {
+  const ScratchFolder folder;
+  folder.file("panels.obj", kPanels);
+  ::testing::internal::CaptureStderr();
+  const Scene s = scene_of(folder, "panels.obj", "", {});
+  EXPECT_NE(::testing::internal::GetCapturedStderr().find("2 vertices"), std::string::npos);
+  EXPECT_EQ(s.cloth.vertex_count(), 4u);
+  EXPECT_EQ(s.cloth.mesh->edges.size(), 5u) << "one seam";
+  EXPECT_EQ(s.cloth.mesh->triangles[1], (std::array<std::uint32_t, 3>{1, 3, 2}));
+}
+
+TEST(MeshInput, WeldsWithinADistance) {
+  const char* text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.001 0 0\nv 1 1 0\nv 0 1.001 0\nf 1 2 3\nf 4 5 6\n";
+  const assets::MeshFile file = read_obj(text, "near.obj");
+  EXPECT_EQ(cloth_mesh(file, {0, 0}, "near.obj").vertices.size(), 6u);
+  EXPECT_EQ(cloth_mesh(file, {0, 0.0005}, "near.obj").vertices.size(), 6u);
+  const ClothMesh welded = cloth_mesh(file, {0, 0.0011}, "near.obj");
+  EXPECT_EQ(welded.vertices.size(), 4u);
+  EXPECT_EQ(welded.welded_vertices, 2u);
+  EXPECT_NE(refusal([&] { cloth_mesh(file, {0, 2}, "near.obj"); }).find("has no area"), std::string::npos);
+}
+
+TEST(MeshInput, RestsAsItsTextureSays) {
+  const ScratchFolder folder;
+  folder.file("panels.obj", kPanels);
+  const Scene s = scene_of(folder, "panels.obj", "/cloth/mesh",
+                           {{"file", "panels.obj"}, {"rest", "texture"}, {"texture_unit_m", 2}});
+  const std::vector<double> mass = vertex_masses(s);
+  // Panels of legs 1 m and 2 m: areas 1/2 and 2.
+  EXPECT_NEAR(std::accumulate(mass.begin(), mass.end(), 0.0), 0.3 * 2.5, 1e-12);
+  for (const Edge& e : edges(s.cloth, EdgeKind::Structural)) {
+    const double expected = e.a == 1 && e.b == 2 ? 1.5 * std::sqrt(2.0) : e.b == 3 ? 2 : 1;  // seam: the mean
+    EXPECT_NEAR(e.rest_m, expected, 1e-12) << e.a << " " << e.b;
+  }
+  EXPECT_EQ(s.rest_position(3, 0), (Vec3{1, 0, 1})) << "it starts where its vertices are";
+  EXPECT_NEAR(s.cloth.least_height_m(), std::sqrt(0.5), 1e-12);
+}
+
+TEST(MeshInput, RefusesTexturesThatAreNoShape) {
+  const ScratchFolder folder;
+  folder.file("panels.obj", kPanels);
+  folder.file("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.file("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 2 0\nf 1/1 2/2 3/3\n");
+  const auto message = [&](const json& mesh) { return refusal([&] { scene_of(folder, "", "/cloth/mesh", mesh); }); };
+  // Areas: 1 at the start, 0.125 + 0.5 in the pattern.
+  EXPECT_NE(message({{"file", "panels.obj"}, {"rest", "texture"}}).find("1.26491 would give"), std::string::npos)
+      << message({{"file", "panels.obj"}, {"rest", "texture"}});
+  EXPECT_NE(message({{"file", "panels.obj"}, {"texture_unit_m", 1}}).find("/cloth/mesh/texture_unit_m"),
+            std::string::npos);
+  EXPECT_NE(message({{"file", "bare.obj"}, {"rest", "texture"}, {"texture_unit_m", 1}})
+                .find("bare.obj: triangle 0 has no finite texture"),
+            std::string::npos);
+  EXPECT_NE(message({{"file", "flat.obj"}, {"rest", "texture"}, {"texture_unit_m", 1}})
+                .find("flat.obj: triangle 0 (vertices 0, 1, 2) has no area in texture"),
+            std::string::npos);
+  EXPECT_NE(message({{"file", "panels.obj"}, {"rest", "cotton"}}).find("/cloth/mesh/rest"), std::string::npos);
+}
+
+TEST(MeshInput, NamesOfFacesAreGroupsOfVertices) {
+  const ScratchFolder folder;
+  folder.file("panels.obj", kPanels);
+  const auto pins = [&](const char* group) {
+    return scene_of(folder, "panels.obj", "/pins", {{{"group", group}}}).pins.vertices;
+  };
+  EXPECT_EQ(pins("waist"), (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(pins("left"), pins("waist")) << "a face may have several names";
+  EXPECT_EQ(pins("front"), pins("waist"));
+  EXPECT_EQ(pins("back"), (std::vector<std::uint32_t>{1, 2, 3})) << "the seam belongs to both";
+  const std::string unknown = refusal([&] { pins("wrist"); });
+  EXPECT_NE(unknown.find("/pins/0/group"), std::string::npos) << unknown;
+  EXPECT_NE(unknown.find("one of: back, front, left, waist"), std::string::npos) << unknown;
+  const Scene held = scene_of(folder, "panels.obj", "/grips", {{{"group", "waist"}, {"velocity_m_per_s", {0, 1, 0}}}});
+  EXPECT_EQ(held.grips.vertices, (std::vector<std::uint32_t>{0, 1, 2}));
+  const Scene heavy = scene_of(folder, "panels.obj", "/cloth/mass_factors", {{{"group", "back"}, {"factor", 3}}});
+  EXPECT_EQ(heavy.cloth.mass_factors, (std::vector<double>{1, 3, 3, 3}));
+  EXPECT_NE(refusal([&] {
+              scene_of(folder, "panels.obj", "/grips", {{{"velocity_m_per_s", {0, 1, 0}}}});
+            }).find("/grips/0"),
+            std::string::npos);
+}
+
+TEST(MeshInput, StartsCrumpledToo) {
+  const ScratchFolder folder;
+  folder.file("panels.obj", kPanels);
+  const Scene ball = scene_of(folder, "panels.obj", "/cloth/start", {{"shape", "sphere"}, {"radius_m", 0.25}});
+  const std::vector<double> x = initial_positions(ball);
+  for (std::size_t v = 0; v < 4; ++v) EXPECT_NEAR(std::hypot(x[3 * v], x[3 * v + 1], x[3 * v + 2]), 0.25, 1e-12);
+  const Scene folded = scene_of(folder, "panels.obj", "/cloth/start", {{"shape", "folded"}, {"folds", 2}});
+  EXPECT_EQ(initial_positions(folded)[3], 0) << "x = 1 is folded back onto x = 0";
+}
+
+/// A text glTF of one square: positions, texture coordinates and 16-bit indices in one buffer.
+json square_gltf() {
+  const float x[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, uv[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+  const std::uint16_t index[6] = {0, 1, 2, 0, 2, 3};
+  std::string bytes(sizeof(x) + sizeof(uv) + sizeof(index), 0);
+  std::memcpy(bytes.data(), x, sizeof(x));
+  std::memcpy(bytes.data() + sizeof(x), uv, sizeof(uv));
+  std::memcpy(bytes.data() + sizeof(x) + sizeof(uv), index, sizeof(index));
+  return {
+      {"asset", {{"version", "2.0"}}},
+      {"nodes", {{{"name", "cape"}, {"mesh", 0}, {"scale", {2, 2, 2}}, {"translation", {0, 0, 5}}}}},
+      {"meshes",
+       {{{"name", "cloth"},
+         {"primitives", {{{"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}}}, {"indices", 2}, {"material", 0}}}}}}},
+      {"materials", {{{"name", "silk"}}}},
+      {"accessors",
+       {{{"bufferView", 0}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}},
+        {{"bufferView", 1}, {"componentType", 5126}, {"count", 4}, {"type", "VEC2"}},
+        {{"bufferView", 2}, {"componentType", 5123}, {"count", 6}, {"type", "SCALAR"}}}},
+      {"bufferViews",
+       {{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 48}},
+        {{"buffer", 0}, {"byteOffset", 48}, {"byteLength", 32}},
+        {{"buffer", 0}, {"byteOffset", 80}, {"byteLength", 12}}}},
+      {"buffers",
+       {{{"byteLength", bytes.size()},
+         {"uri", "data:application/octet-stream;base64," +
+                     assets::encode_base64(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size())}}}}};
+}
+
+/// The same as a .glb, its buffer outside the text.
+std::string binary(json j) {
+  const std::string uri = j["buffers"][0]["uri"];
+  std::vector<std::uint8_t> bytes;
+  std::string problem;
+  EXPECT_TRUE(assets::decode_base64(uri.substr(uri.find(',') + 1), bytes, problem)) << problem;
+  std::string data(bytes.begin(), bytes.end());
+  j["buffers"][0].erase("uri");
+  std::string text = j.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  data.resize((data.size() + 3) / 4 * 4, 0);
+  std::string out = "glTF";
+  const auto word = [&](std::size_t value) {
+    const auto w = static_cast<std::uint32_t>(value);
+    out.append(reinterpret_cast<const char*>(&w), 4);
+  };
+  word(2), word(12 + 8 + text.size() + 8 + data.size());
+  word(text.size()), out += "JSON" + text;
+  word(data.size()), out += std::string("BIN\0", 4) + data;
+  return out;
+}
+
+TEST(MeshInput, ReadsGltf) {
+  const ScratchFolder folder;
+  folder.file("square.gltf", square_gltf().dump());
+  folder.file("square.glb", binary(square_gltf()));
+  for (const char* file : {"square.gltf", "square.glb"}) {
+    const Scene s = scene_of(folder, file, "/pins", {{{"group", "silk"}}});
+    EXPECT_EQ(s.cloth.mesh->vertices, (std::vector<Vec3>{{0, 0, 5}, {2, 0, 5}, {2, 2, 5}, {0, 2, 5}}))
+        << file << ": placed by its node";
+    EXPECT_EQ(s.cloth.mesh->triangles.size(), 2u);
+    for (const char* group : {"cape", "cloth", "silk"}) EXPECT_EQ(s.cloth.mesh->groups.at(group).size(), 4u) << group;
+    EXPECT_EQ(s.pins.vertices.size(), 4u);
+    const Scene pattern =
+        scene_of(folder, file, "/cloth/mesh", {{"file", file}, {"rest", "texture"}, {"texture_unit_m", 0.5}});
+    const std::vector<double> mass = vertex_masses(pattern);
+    EXPECT_NEAR(std::accumulate(mass.begin(), mass.end(), 0.0), 0.3 * 0.25, 1e-12);
+  }
+}
+
+TEST(MeshInput, MirroredNodesKeepTheirFrontOutside) {
+  json j = square_gltf();
+  j["nodes"][0]["scale"] = {-1, 1, 1};
+  EXPECT_EQ(assets::parse_gltf(j.dump(), "m.gltf").vertices[0], (Vec3{-1, 1, 5})) << "the last corner comes first";
+}
+
+TEST(MeshInput, RefusesBadGltfNamingThePlace) {
+  const auto message = [](const char* pointer, const json& value) {
+    json j = square_gltf();
+    j[json::json_pointer(pointer)] = value;
+    return refusal([&] { cloth_mesh(assets::parse_gltf(j.dump(), "m.gltf"), {}, "m.gltf"); });
+  };
+  for (const auto& [pointer, value, expected] : std::vector<std::tuple<const char*, json, const char*>>{
+           {"/buffers/0/uri", "/etc/passwd", "/buffers/0/uri: expected the buffer inside"},
+           {"/meshes/0/primitives/0/mode", 1, "/meshes/0/primitives/0/mode: expected triangles"},
+           {"/meshes/0/primitives/0/attributes", {{"NORMAL", 0}}, "\"POSITION\" is missing"},
+           {"/accessors/0/bufferView", 9, "/bufferViews: index 9"},
+           {"/accessors/0/count", 2, "expected as many texture coordinates as positions"},
+           {"/accessors/2/componentType", 5121, "has no area"},
+           {"/accessors/2/count", 7, "/accessors/2"},
+           {"/nodes", json::array({{{"name", "empty"}}}), "/nodes: expected a node with a mesh"},
+           {"/nodes/0/skin", 0, "/nodes/0/skin"}}) {
+    EXPECT_NE(message(pointer, value).find(expected), std::string::npos) << pointer << ": " << message(pointer, value);
+    EXPECT_EQ(message(pointer, value).find("m.gltf"), 0u);
+  }
+  EXPECT_NE(refusal([] { assets::parse_gltf("glTF, but no more", "cut.glb"); }).find("cut.glb: not a binary glTF"),
+            std::string::npos);
+  EXPECT_NE(refusal([] { assets::parse_gltf("{", "cut.gltf"); }).find("cut.gltf"), std::string::npos);
+}
+
+TEST(MeshInput, FilesThatAreTooLargeAreNotRead) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("huge.obj", "");
+  std::filesystem::resize_file(path, std::uintmax_t{300} << 20);  // takes no place on the disk
+  EXPECT_NE(refusal([&] { scene_of(folder, "huge.obj", "", {}); }).find("at most 268435456 are read"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace clothbench
