@@ -138,7 +138,7 @@ const std::vector<Lacks> kLacks = {
      kNoBodies | FeatureSet{Feature::MovingPins, Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render,
                             Feature::UnevenGrid, Feature::Regions, Feature::Spin, Feature::ClothMesh},
      {},
-     0.79},
+     0.8},
 };
 
 /// Whether the table says that the case is skipped.

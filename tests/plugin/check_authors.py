@@ -140,7 +140,7 @@ class Authors(unittest.TestCase):
         scenes = ["--scene", "paper/gravity", "--scene", "validation/hang-elastic", "--scene", "contact/sphere"]
         rows = self.conform("plugin:" + EXAMPLE, *scenes, code=0)
         self.assertEqual([r["status"] for r in rows], ["pass", "pass", "skipped"])
-        self.assertEqual((rows[0]["cases"], rows[0]["solver"]), (10, "example-xpbd"))
+        self.assertEqual((rows[0]["cases"], rows[0]["solver"]), (13, "example-xpbd"))
         self.assertGreater(rows[0]["frames_whole"], 6)
         self.assertIn("example-xpbd has no", rows[2]["faults"][0])
         self.assertEqual(self.command("conformance", "plugin:" + EXAMPLE, "--scene", "paper/gravity", "--no-whole"), 0)

@@ -66,7 +66,7 @@ TEST(Masses, AreScaledWhereTold) {
             std::string::npos);
   EXPECT_NE(complaint({R"(cloth.mass_factors=[{"vertices": [15], "factor": 2}])"}).find("vertex 15 of 15"),
             std::string::npos);
-  EXPECT_NE(complaint({R"(cloth.mass_factors=[{"factor": 2}])"}).find("expected \"edge\" or \"vertices\""),
+  EXPECT_NE(complaint({R"(cloth.mass_factors=[{"factor": 2}])"}).find("expected \"edge\", \"group\" or \"vertices\""),
             std::string::npos);
 }
 
