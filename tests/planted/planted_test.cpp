@@ -21,6 +21,11 @@ const Stage& stage(const std::string& name) {
   throw std::runtime_error("no stage " + name);
 }
 
+/// Contact by planes, which is no default yet, takes half of the time: it is left to the slow tier's planted.whole.
+bool left_to_slow_tier(const std::string& stage) {
+  return std::getenv("CLOTHBENCH_WHOLE_MATRIX") == nullptr && (stage == "struck" || stage == "wrapped");
+}
+
 const RunRecord& healthy(const std::string& name) {
   static std::map<std::string, RunRecord> known;
   if (!known.contains(name)) known.emplace(name, execute_run(stage(name)));
@@ -52,6 +57,7 @@ class Planted : public ::testing::Test {
 
 TEST_F(Planted, AHealthyRunPassesTwice) {
   for (const Stage& s : stages()) {
+    if (left_to_slow_tier(s.name)) continue;
     EXPECT_EQ(healthy(s.name).outcome.status, "ok") << s.name << ": " << healthy(s.name).outcome.message;
     EXPECT_FALSE(healthy(s.name).outcome.expect.starts_with("fail"))
         << s.name << ": " << healthy(s.name).outcome.expect;
@@ -61,9 +67,10 @@ TEST_F(Planted, AHealthyRunPassesTwice) {
 
 TEST_F(Planted, EveryFaultIsCaught) {
   const std::vector<Fault> all = faults();
-  EXPECT_GE(all.size(), 20u);
-  int timed_out = 0;
+  int planted = 0, missed = 0;
   for (const Fault& f : all) {
+    if (left_to_slow_tier(f.stage)) continue;
+    ++planted;
     std::string caught;
     try {
       const RunRecord is = execute_run(stage(f.stage), &f);
@@ -74,10 +81,11 @@ TEST_F(Planted, EveryFaultIsCaught) {
     }
     fmt::print("  {:<52} {:<11} {}\n", f.name, f.stage, caught.empty() ? "MISSED" : caught.substr(0, 150));
     std::fflush(stdout);
-    timed_out += caught.empty();
+    missed += caught.empty();
     EXPECT_NE(caught, "") << f.name;
   }
-  fmt::print("  {} faults, {} caught\n", all.size(), static_cast<int>(all.size()) - timed_out);
+  fmt::print("  {} faults, {} caught\n", planted, planted - missed);
+  EXPECT_GE(planted, 50);
 }
 
 TEST_F(Planted, AFaultThatIsNowhereIsAnError) {
