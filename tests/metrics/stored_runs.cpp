@@ -92,9 +92,7 @@ std::vector<Sample> samples() {
       {"paper/capsule-sweep", {small, "time.duration_s=0.8", capsule}, prescribed(waves(0.03))},
       {"paper/capsule-sweep", {small, "time.duration_s=1.45", "time.frame_rate_hz=18"}, prescribed(waves(0.01))},
       {"paper/two-hand-stretch-2mps", {"cloth.grid=[9,9]", "time.duration_s=3"}, prescribed(waves(0.01))},
-      {"paper/hand-push",
-       {"cloth.grid=[9,9]", "time.duration_s=2.4", "time.frame_rate_hz=8"},
-       prescribed(waves(0.01))},
+      {"paper/hand-push", {"cloth.grid=[9,9]", "time.duration_s=2.4", "time.frame_rate_hz=8"}, prescribed(waves(0.01))},
       {"paper/desk-flat-low", {small, "time.duration_s=0.5"}, prescribed(waves(0.01, 0.03))},
       {"contact/self-fold", {"cloth.grid=[12,12]", few}, prescribed(rolled())}};
   return out;
