@@ -24,8 +24,7 @@ std::unique_ptr<PlaneFrame> PlaneFrame::make(FrameBuilder& frame, Lines& lines, 
   if (wanted == "always")
     throw Error(
         "solver xpbd: setting tuning.contact_frame=always: expected an even grid of at most 32 x 32 vertices, or a "
-        "device "
-        "that runs all workgroups at once, and one iteration a substep");
+        "device that runs all workgroups at once, and one iteration a substep");
   return nullptr;
 }
 

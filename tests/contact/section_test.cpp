@@ -1,11 +1,10 @@
 // What a triangle has of a union of capsules, against identities that hold for any of them, drawn by a seed.
-#include "metrics/contact/section.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "meshes.hpp"
+#include "metrics/contact/shapes.hpp"
 
 namespace clothbench::contact {
 namespace {
@@ -145,6 +144,35 @@ TEST(Section, NearlyParallel) {
     EXPECT_NEAR(s.border().length_m, 2 * length + 2 * std::numbers::pi * half, 2e-9) << rise;
     EXPECT_NEAR(s.area_deeper_m2(0), 2 * length * half + std::numbers::pi * half * half, 1e-9) << rise;
   }
+}
+
+// The rule of eight points of shapes_contact against 400 points, triangle by triangle.
+TEST(Section, MeanDepthIsNearItsIntegral) {
+  Draw draw(5);
+  double worst = 0, squares = 0;
+  int met = 0;
+  for (int k = 0; k < 400; ++k) {
+    const Simplex<3> v = draw.triangle();
+    const std::vector<Capsule> shapes = draw.chain(1 + k % 3);
+    const TriangleSection section(v, shapes);
+    const double area = section.area_deeper_m2(0);
+    if (!(area > 1e-6)) continue;
+    constexpr int kSteps = 400;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i) sum += section.area_deeper_m2((i + 0.5) / kSteps * section.depth_m());
+    const double mean = sum * section.depth_m() / kSteps / area;
+    Mesh mesh;
+    mesh.triangles.push_back({mesh.add(v[0]), mesh.add(v[1]), mesh.add(v[2])});
+    const double error = std::abs(shapes_contact(mesh.view(), shapes).depth.mean_m / mean - 1);
+    worst = std::max(worst, error);
+    squares += error * error;
+    ++met;
+  }
+  const double rms = std::sqrt(squares / met);
+  std::printf("  %d triangles, error of the mean depth: greatest %.1e, RMS %.1e\n", met, worst, rms);
+  EXPECT_GT(met, 50);
+  EXPECT_LT(worst, 0.03);
+  EXPECT_LT(rms, 3e-3);
 }
 
 TEST(Section, NoAreaIsNoSection) {
