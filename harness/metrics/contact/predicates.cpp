@@ -8,32 +8,31 @@
 namespace clothbench::contact {
 namespace {
 
-/// Determinant by expansion along the first row. With kPermanent all terms are added: given |entries|, this is the sum
-/// of all magnitudes.
+template <class T, int N>
+using Square = std::array<std::array<T, N>, N>;
+
+/// Determinant by minors of two rows (Laplace). With kPermanent all terms are added: given |entries|, this is the sum
+/// of all magnitudes. Written out, because most of a contact metric's time is spent here.
 template <class T, int N, bool kPermanent = false>
-T expand(const std::array<std::array<T, N>, N>& m) {
-  if constexpr (N == 1) {
-    return m[0][0];
+T determinant(const Square<T, N>& m) {
+  const auto less = [](const T& a, const T& b) -> T { return kPermanent ? a + b : a - b; };
+  const auto minor = [&](int row, int i, int j) { return less(m[row][i] * m[row + 1][j], m[row][j] * m[row + 1][i]); };
+  if constexpr (N == 2) {
+    return minor(0, 0, 1);
+  } else if constexpr (N == 3) {
+    return less(m[0][0] * minor(1, 1, 2), m[0][1] * minor(1, 0, 2)) + m[0][2] * minor(1, 0, 1);
   } else {
-    T sum = T(0);
-    for (int column = 0; column < N; ++column) {
-      std::array<std::array<T, N - 1>, N - 1> minor;
-      for (int i = 1; i < N; ++i)
-        for (int j = 0, k = 0; j < N; ++j)
-          if (j != column) minor[i - 1][k++] = m[i][j];
-      const T term = m[0][column] * expand<T, N - 1, kPermanent>(minor);
-      sum = kPermanent || column % 2 == 0 ? sum + term : sum - term;
-    }
-    return sum;
+    return less(minor(0, 0, 1) * minor(2, 2, 3), minor(0, 0, 2) * minor(2, 1, 3)) + minor(0, 0, 3) * minor(2, 1, 2) +
+           less(minor(0, 1, 2) * minor(2, 0, 3), minor(0, 1, 3) * minor(2, 0, 2)) + minor(0, 2, 3) * minor(2, 0, 1);
   }
 }
 
 template <int N>
 int exact_sign(const std::array<Point<N>, N>& head, const std::array<Point<N>, N>& tail) {
-  std::array<std::array<CGAL::MP_Float, N>, N> m;
+  Square<CGAL::MP_Float, N> m;
   for (int i = 0; i < N; ++i)
     for (int j = 0; j < N; ++j) m[i][j] = CGAL::MP_Float(head[i][j]) - CGAL::MP_Float(tail[i][j]);
-  return static_cast<int>(CGAL::sign(expand<CGAL::MP_Float, N>(m)));
+  return static_cast<int>(CGAL::sign(determinant<CGAL::MP_Float, N>(m)));
 }
 
 /// Sign of the determinant with its last row translated by shift * (e, e^2, e^3, 0): the first nonzero cofactor of that
@@ -68,23 +67,22 @@ int side(const Simplex<N>& v, const Point<N>& p, int shift) {
 
 template <int N>
 int sign_of_determinant(const std::array<Point<N>, N>& head, const std::array<Point<N>, N>& tail) {
-  std::array<std::array<double, N>, N> m, magnitude;
+  Square<double, N> m, magnitude;
   for (int i = 0; i < N; ++i)
     for (int j = 0; j < N; ++j) {
       m[i][j] = head[i][j] - tail[i][j];
       magnitude[i][j] = std::abs(m[i][j]);
     }
-  const double determinant = expand<double, N>(m);
-  const double bound = expand<double, N, true>(magnitude);
+  const double value = determinant<double, N>(m);
+  const double bound = determinant<double, N, true>(magnitude);
   // A term is rounded at most 4 (differences) + 3 (products) + 6 (sums) times for N = 4: 13 * 2^-53 < 2^-48. The
   // absolute bound covers errors of underflow; an overflow fails the comparison, as NaN does.
   constexpr double kRelative = 0x1p-48, kLeast = 0x1p-900;
-  if (std::abs(determinant) > kRelative * bound && bound > kLeast && std::isfinite(bound))
-    return determinant > 0 ? 1 : -1;
+  if (std::abs(value) > kRelative * bound && bound > kLeast && std::isfinite(bound)) return value > 0 ? 1 : -1;
   // Every term has a factor that is exactly 0: points that share a coordinate, the common tie.
   for (auto& row : magnitude)
     for (double& x : row) x = x == 0 ? 0 : 1;
-  if (expand<double, N, true>(magnitude) == 0) return 0;
+  if (determinant<double, N, true>(magnitude) == 0) return 0;
   return exact_sign<N>(head, tail);
 }
 

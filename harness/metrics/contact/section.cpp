@@ -37,6 +37,10 @@ TriangleSection::TriangleSection(const Simplex<3>& triangle, std::span<const Cap
 }
 
 void TriangleSection::add(const Capsule& c, std::size_t index) {
+  // Most capsules are far away, which the boxes tell at less cost; the factor covers rounding.
+  const Eigen::AlignedBox3d box = Eigen::AlignedBox3d(corners_[0]).extend(corners_[1]).extend(corners_[2]);
+  const double apart = box.squaredExteriorDistance(Eigen::AlignedBox3d(c.a).extend(c.b));
+  if (apart > c.radius_m * c.radius_m * (1 + 1e-12)) return;
   const double depth = c.radius_m - std::sqrt(squared_distance(c.a, c.b, corners_));
   if (!(depth > 0)) return;
   depth_m_ = std::max(depth_m_, depth);
