@@ -101,7 +101,7 @@ std::vector<SpeedSweep> speed_sweeps(const std::vector<ContactSetUp>& ups) {
         all, [&](const SpeedSweep& x) { return x.kind == r.kind && x.scene == base && x.series == r.series; },
         {r.kind, base, r.series, {}});
     at.speeds.push_back({speed, leak_of(r.kind, *r.run)});
-    at.runs.push_back(r.run);
+    at.runs.push_back(r);
   }
   for (SpeedSweep& s : all)
     std::stable_sort(s.speeds.begin(), s.speeds.end(),
@@ -126,6 +126,12 @@ Table leak_table(const std::vector<SpeedSweep>& sweeps) {
   std::vector<std::string> solvers = distinct(sweeps, [](const SpeedSweep& s) { return s.series.label(); });
   std::sort(solvers.begin(), solvers.end());
   t.rows[0].insert(t.rows[0].end(), solvers.begin(), solvers.end());
+  std::vector<ContactRow> all;
+  for (const SpeedSweep& s : sweeps) all.insert(all.end(), s.runs.begin(), s.runs.end());
+  if (const std::vector<std::string> held = held_row(all, solvers); !held.empty()) {
+    t.rows.push_back({kHeldAt, "–", "–"});
+    t.rows.back().insert(t.rows.back().end(), held.begin(), held.end());
+  }
   for (const auto& [kind, scene] : distinct(sweeps, [](const SpeedSweep& s) { return std::pair(s.kind, s.scene); })) {
     std::vector<std::string> row = {fmt::format("{} ({})", scene, kind), "–", "–"};
     for (const std::string& solver : solvers) {
@@ -144,7 +150,7 @@ Table leak_table(const std::vector<SpeedSweep>& sweeps) {
     t.rows.push_back(std::move(row));
   }
   std::vector<const RunRecord*> runs;
-  for (const SpeedSweep& s : sweeps) runs.insert(runs.end(), s.runs.begin(), s.runs.end());
+  for (const ContactRow& r : all) runs.push_back(r.run);
   std::vector<std::string> names;
   for (const auto& [name, unused] : kWords) names.emplace_back(name);
   t.note = with_withheld(t.note, runs, names);

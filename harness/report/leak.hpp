@@ -29,14 +29,15 @@ struct SpeedSweep {
   std::optional<At> failure_speed() const;
   /// The least number of runs at one speed.
   std::size_t paths() const;
-  std::vector<const RunRecord*> runs = {};
+  std::vector<ContactRow> runs = {};
 };
 
 /// Scenes at three or more speeds (`imposed_speed_m_per_s`), grouped by scene name, kind of set-up and solver, in the
 /// order of the set-ups. Unsupported runs and solvers that ignore contact are left out.
 std::vector<SpeedSweep> speed_sweeps(const std::vector<ContactSetUp>&);
 
-/// Rows: swept scenes; columns: solvers; entries: failure speed, or the greatest speed if none failed.
+/// Rows: swept scenes, below a row of the distances at which solvers hold the cloth; columns: solvers; entries: failure
+/// speed, or the greatest speed if none failed.
 Table leak_table(const std::vector<SpeedSweep>&);
 
 nlohmann::json leak_json(const std::vector<SpeedSweep>&);

@@ -236,11 +236,8 @@ std::string held_at(const RunRecord& c) {
   return least == most ? fmt::format("{:.3g}", 1e3 * most) : fmt::format("{:.3g} to {:.3g}", 1e3 * least, 1e3 * most);
 }
 
-namespace {
-
-/// Of all runs of a solver: "4, 20".
 std::vector<std::string> held_row(const std::vector<ContactRow>& all, const std::vector<std::string>& solvers) {
-  std::vector<std::string> row = {"(the solver holds the cloth at [mm])"};
+  std::vector<std::string> row;
   for (const std::string& solver : solvers) {
     std::set<std::pair<double, std::string>> held;
     for (const ContactRow& r : all)
@@ -250,10 +247,8 @@ std::vector<std::string> held_row(const std::vector<ContactRow>& all, const std:
     for (const auto& [m, words] : held) text += (text.empty() ? "" : ", ") + words;
     row.push_back(or_dash(text));
   }
-  return row;
+  return std::all_of(row.begin(), row.end(), [](const std::string& x) { return x == "–"; }) ? decltype(row)() : row;
 }
-
-}  // namespace
 
 Table verdict_table(const std::vector<ContactSetUp>& ups) {
   const std::vector<ContactRow> all = contact_rows(ups);
@@ -273,8 +268,10 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
           "Time: median over the timed frames.",
           {{"scene"}}};
   t.rows[0].insert(t.rows[0].end(), solvers.begin(), solvers.end());
-  const std::vector<std::string> held = held_row(all, solvers);
-  if (std::any_of(held.begin() + 1, held.end(), [](const std::string& x) { return x != "–"; })) t.rows.push_back(held);
+  if (const std::vector<std::string> held = held_row(all, solvers); !held.empty()) {
+    t.rows.push_back({kHeldAt});
+    t.rows.back().insert(t.rows.back().end(), held.begin(), held.end());
+  }
   std::set<std::string> bounds;
   for (const ContactSetUp& u : ups)
     for (const ContactScene& s : u.scenes) {

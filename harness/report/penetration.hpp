@@ -62,6 +62,11 @@ std::string verdict(const RunRecord&);
 std::pair<double, double> held_at_m(const RunRecord&);
 /// The same in mm, as text: "4", "4 to 20", "–".
 std::string held_at(const RunRecord&);
+/// The same for each of `solvers` (labels of series) over all its rows: "4, 20". Empty if no run holds a cloth off
+/// anything.
+std::vector<std::string> held_row(const std::vector<ContactRow>&, const std::vector<std::string>& solvers);
+/// The head of that row.
+inline constexpr const char* kHeldAt = "(the solver holds the cloth at [mm])";
 
 /// Rows: scenes, below a row of the distances at which solvers hold the cloth; columns: solvers; entries: `verdict`.
 Table verdict_table(const std::vector<ContactSetUp>&);

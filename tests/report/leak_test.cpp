@@ -67,6 +67,20 @@ TEST(Leak, CountsThePathsOfTheSpeedThatHasTheFewest) {
   EXPECT_EQ(speed_sweeps(ups).at(0).paths(), 2u);
 }
 
+TEST(Leak, SaysAtWhichDistanceEachSolverHoldsTheCloth) {
+  std::vector<RunRecord> runs;
+  for (const double speed : {1.0, 2.0, 5.0})
+    for (const char* solver : {"a", "b"}) {
+      runs.push_back(sweep_run(solver, speed, 0, 0));
+      runs.back().header.plan["contact_margins"] = {
+          {{"collider", "hand_capsules"}, {"margin_m", solver[0] == 'a' ? 0.004 : 0.02}}};
+    }
+  const std::vector<ContactSetUp> ups = set_ups(runs);
+  const Table t = leak_table(speed_sweeps(ups));
+  ASSERT_EQ(t.rows.size(), 3u);
+  EXPECT_EQ(t.rows[1], (std::vector<std::string>{kHeldAt, "–", "–", "4", "20"}));
+}
+
 TEST(Leak, EachKindHasItsOwn) {
   RunRecord c = fake_run("a", 32, "double", 0.004);
   c.summary["tunnelled_fraction_max"] = 0;
