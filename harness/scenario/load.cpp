@@ -287,9 +287,6 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   s.material.bending_rigidity_N_m = material["bending_rigidity_N_m"].get<double>();
   s.material.damping_per_s = material["damping_per_s"].get<double>();
   s.material.shear = material["shear"].get<bool>();
-  if (s.cloth.mesh && s.material.bending_rigidity_N_m > 0)
-    refuse(source, "/material/bending_rigidity_N_m",
-           "bending is of grids alone; expected 0 for a cloth that is a mesh");
   if (s.cloth.mesh && scenario["material"].contains("regions"))
     refuse(source, "/material/regions", "columns are of grids alone; a mesh has one stiffness");
   if (s.cloth.mesh && scenario.contains("truth"))

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clothbench/unsupported_scene.hpp"
+
 namespace clothbench::bullet_baseline {
 namespace {
 
@@ -77,6 +79,7 @@ BulletSolver::BulletSolver(SolverInfo info, const nlohmann::json& settings)
 DeviceInfo BulletSolver::device() const { return {"CPU", version(), "C++", false, "{}"}; }
 
 void BulletSolver::load(const Scene& scene) {
+  refuse_mesh_bending(scene);
   if (body_) drop();
   scene_ = &scene;
   substeps_ = substeps_for(scene);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "clothbench/error.hpp"
+#include "mesh_bending.hpp"
 
 namespace clothbench::reference {
 namespace {
@@ -36,6 +37,13 @@ void add_block(const Eigen::Matrix3d& block, int row, int column, Triplets& out)
       if (row + r >= column + c) out.emplace_back(row + r, column + c, block(r, c));
 }
 
+template <class Fn>
+void for_each_entry(const Eigen::SparseMatrix<double>& m, Fn&& fn) {
+  for (int column = 0; column < m.outerSize(); ++column)
+    for (Eigen::SparseMatrix<double>::InnerIterator it(m, column); it; ++it)
+      fn(static_cast<std::uint32_t>(it.row()), static_cast<std::uint32_t>(column), it.value());
+}
+
 }  // namespace
 
 Model::Model(const Scene& scene) : mass_(vertex_masses(scene)) {
@@ -56,8 +64,10 @@ Model::Model(const Scene& scene) : mass_(vertex_masses(scene)) {
   };
   add(EdgeKind::Structural);
   if (scene.needs.has(Feature::Shear)) add(EdgeKind::Shear);
-  if (scene.needs.has(Feature::Bend)) {
-    const double B = scene.material.bending_rigidity_N_m;
+  const double B = scene.material.bending_rigidity_N_m;
+  if (scene.needs.has(Feature::Bend) && c.mesh) {
+    bending_ = bending_matrix(*c.mesh, B, scene.pins.vertices);
+  } else if (scene.needs.has(Feature::Bend)) {
     for (const Edge& e : edges(c, EdgeKind::SkipOne)) {
       const double a = e.rest_m / 2, w = edge_cell(c, e).across_m;
       // Two pinned vertices in a row are a clamp: its hinge stands for half a cell, so it is twice as stiff.
@@ -102,6 +112,7 @@ Vector Model::force(const Vector& x) const {
     f.segment<3>(3 * l.b) += 2 * pull;
     f.segment<3>(3 * l.c) -= pull;
   }
+  for_each_entry(bending_, [&](std::uint32_t i, std::uint32_t j, double k) { f.segment<3>(3 * i) -= k * at(x, j); });
   return f;
 }
 
@@ -134,6 +145,9 @@ void Model::add_stiffness(const Vector& x, const Vector& lambda, double scale, T
         if (dof[p] >= dof[q])
           add_block(scale * l.stiffness * kStencil[p] * kStencil[q] * Eigen::Matrix3d::Identity(), dof[p], dof[q], out);
   }
+  for_each_entry(bending_, [&](std::uint32_t i, std::uint32_t j, double k) {
+    if (dof_[i] >= dof_[j]) add_block(scale * k * Eigen::Matrix3d::Identity(), dof_[i], dof_[j], out);
+  });
 }
 
 void Model::add_gradient(const Vector& x, double scale, int first_row, Triplets& out) const {
@@ -158,17 +172,19 @@ double Model::energy(const Vector& x, const Vector& v) const {
     if (springs_[s].compliance > 0)
       e += 0.5 * C[static_cast<Eigen::Index>(s)] * C[static_cast<Eigen::Index>(s)] / springs_[s].compliance;
   for (const BendLine& l : lines_) e += 0.5 * l.stiffness * (at(x, l.a) - 2 * at(x, l.b) + at(x, l.c)).squaredNorm();
+  for_each_entry(bending_, [&](std::uint32_t i, std::uint32_t j, double k) { e += 0.5 * k * at(x, i).dot(at(x, j)); });
   return e;
 }
 
 double Model::highest_bending_frequency() const {
-  // Gershgorin: a row of the stencil's matrix sums to at most 16 stiffness in each direction.
+  // Gershgorin: a row of a line's matrix sums to at most 16 stiffness in each direction.
   std::vector<double> row(mass_.size(), 0);
   for (const BendLine& l : lines_) {
     row[l.a] += 4 * l.stiffness;
     row[l.b] += 8 * l.stiffness;
     row[l.c] += 4 * l.stiffness;
   }
+  for_each_entry(bending_, [&](std::uint32_t i, std::uint32_t, double k) { row[i] += std::abs(k); });
   double square = 0;
   for (std::size_t v = 0; v < mass_.size(); ++v) square = std::max(square, row[v] / mass_[v]);
   return std::sqrt(square);

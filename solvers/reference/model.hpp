@@ -64,6 +64,7 @@ class Model {
   std::vector<double> mass_;
   std::vector<Spring> springs_;
   std::vector<BendLine> lines_;
+  Eigen::SparseMatrix<double> bending_;  // of a mesh, else empty
   std::vector<int> dof_;
   int free_dofs_ = 0;
   bool inextensible_ = false;

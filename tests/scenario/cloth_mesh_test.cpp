@@ -122,7 +122,6 @@ TEST(ClothMesh, RefusesWhatIsOfGridsAlone) {
        std::vector<std::pair<const char*, json>>{{"/cloth/grid", {2, 2}},
                                                  {"/cloth/size_m", {1, 1}},
                                                  {"/cloth/pose/span_m", 0.5},
-                                                 {"/material/bending_rigidity_N_m", 1e-5},
                                                  {"/pins", {{{"edge", "u0"}}}},
                                                  {"/pins", {{{"corners", {"u0v0"}}}}},
                                                  {"/grips", {{{"edge", "u0"}, {"velocity_m_per_s", {0, 0, 0}}}}},

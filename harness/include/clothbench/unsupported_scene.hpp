@@ -2,6 +2,7 @@
 #include <string>
 
 #include "clothbench/error.hpp"
+#include "clothbench/scene.hpp"
 
 namespace clothbench {
 
@@ -11,5 +12,12 @@ class UnsupportedScene : public SolverError {
  public:
   explicit UnsupportedScene(const std::string& message) : SolverError(message) {}
 };
+
+/// For solvers whose resistance to bending is that of grids. Throws if the scene has a triangle mesh that resists
+/// bending.
+inline void refuse_mesh_bending(const Scene& scene) {
+  if (scene.cloth.mesh && scene.material.bending_rigidity_N_m > 0)
+    throw UnsupportedScene("it has no resistance to bending for triangle meshes; the solver reference has");
+}
 
 }  // namespace clothbench
