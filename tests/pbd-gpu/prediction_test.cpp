@@ -19,6 +19,10 @@ nlohmann::json predicting(nlohmann::json given = nlohmann::json::object()) {
   given["time_order"] = 2;
   return given;
 }
+nlohmann::json by_euler(nlohmann::json given) {
+  given["time_order"] = 1;
+  return given;
+}
 
 class Predicted : public Gpu {
  protected:
@@ -79,7 +83,7 @@ TEST_F(Predicted, StripsAndSheetsOfSecondOrderInTime) {
     double error[3];
     for (int k = 0; k < 3; ++k)
       error[k] = rms(row.scene, motion(row.scene, "xpbd", predicting({{"substeps", 4 << k}})), right);
-    const double euler = rms(row.scene, motion(row.scene, "xpbd", {{"substeps", 8}}), right);
+    const double euler = rms(row.scene, motion(row.scene, "xpbd", by_euler({{"substeps", 8}})), right);
     EXPECT_LE(error[1], row.at_8) << row.what;
     EXPECT_LE(error[1], 0.2 * euler) << row.what << ": or this compares nothing";
     EXPECT_GE(std::log2(error[0] / error[2]) / 2, 1.3) << row.what;
@@ -167,11 +171,17 @@ TEST_F(Predicted, IsOffWhereItIsNotSafeAndSaysWhy) {
   Scene firm = with_pins(sheet(33, 33));
   firm.material.membrane_stiffness_N_per_m.reset();
   EXPECT_EQ(why_not(firm), "");
-  EXPECT_NE(why_not(firm, {{"tethers", false}, {"substeps", 8}}).find("tethers"), std::string::npos);
-  EXPECT_EQ(why_not(firm, {{"tethers", false}, {"substeps", 11}}), "");
+  nlohmann::json few = {{"tethers", false}, {"substeps", 8}, {"tuning", {{"tension", "never"}}}};
+  EXPECT_NE(why_not(firm, few).find("tethers"), std::string::npos);
+  few["substeps"] = 11;
+  EXPECT_EQ(why_not(firm, few), "");
+  EXPECT_EQ(why_not(firm, {{"tethers", false}, {"substeps", 8}}), "") << "implicit tension holds it";
+  // A collider out of reach changes nothing, and one that may be touched does.
+  EXPECT_EQ(why_not(with_collider(with_pins(sheet(9, 9)), sphere({100, 0, 0}, 1))), "");
+  EXPECT_NE(why_not(with_collider(with_pins(sheet(9, 9)), sphere({4, 0, 0}, 1))).find("touches"), std::string::npos);
   // What is off has no buffers.
   for (const bool off : {true, false}) {
-    const auto solver = make("xpbd", off ? nlohmann::json::object() : predicting());
+    const auto solver = make("xpbd", off ? by_euler({}) : nlohmann::json::object());
     solver->load(firm);
     int history = 0;
     for (const BufferPlan& b : solver->plan().buffers) history += b.device_local && b.name.starts_with("last ");
@@ -191,7 +201,7 @@ TEST_F(Predicted, EveryKernelPredictsAlike) {
   ASSERT_EQ(why_not(mesh, {{"substeps", 40}, {"tethers", false}}), "");
   const auto right = motion(mesh, "reference", {{"substeps", 40}});
   const double error = rms(mesh, motion(mesh, "xpbd", predicting({{"substeps", 40}, {"tethers", false}})), right),
-               euler = rms(mesh, motion(mesh, "xpbd", {{"substeps", 40}, {"tethers", false}}), right);
+               euler = rms(mesh, motion(mesh, "xpbd", by_euler({{"substeps", 40}, {"tethers", false}})), right);
   EXPECT_LE(error, 0.5 * euler);
 }
 
