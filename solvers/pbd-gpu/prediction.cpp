@@ -78,8 +78,6 @@ double reach_m(const Scene& s) {
   return start + 2 * across + speed * t + 0.5 * norm(s.gravity_m_per_s2) * t * t;
 }
 
-bool held(const Scene& scene) { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
-
 /// True if inextensible lines may be pulled apart at their two ends: by hands, or by pins too far apart. Pins that
 /// leave tethers their reach do not.
 bool may_be_pulled_apart(const Scene& scene) {
@@ -104,6 +102,8 @@ bool resolves_waves(const Scene& scene, int substeps) {
 
 }  // namespace
 
+bool is_held(const Scene& scene) { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
+
 bool touches_nothing(const Scene& scene) {
   if (scene.needs.has(Feature::SelfCollision)) return false;
   if (scene.colliders.empty()) return true;
@@ -120,7 +120,7 @@ Choice tension_of(const Scene& scene, const nlohmann::json& settings) {
   if (settings.value("iterations", 1) > 1) return {false, "setting iterations: multipliers start from the last ones"};
   if (!touches_nothing(scene) || contact_by_planes(scene, settings)) return {false, "the cloth touches"};
   if (wanted == "always") return {true, ""};
-  if (!held(scene)) return {false, "nothing holds the cloth"};
+  if (!is_held(scene)) return {false, "nothing holds the cloth"};
   if (is_tethered(scene, settings) && scene.cloth.mass_factors.empty())
     return {false, "tethers hold the cloth, for less"};
   return {true, ""};
@@ -134,7 +134,7 @@ Choice prediction_of(const Scene& scene, const nlohmann::json& settings) {
     return {false, "the cloth touches: a contact would rebound"};
   if (wanted == "always") return {true, ""};
   if (starts_crumpled(scene)) return {false, "the cloth starts crumpled"};
-  if (!held(scene)) return {true, ""};
+  if (!is_held(scene)) return {true, ""};
   const int substeps = xpbd_substeps(scene, settings);
   const bool tension = tension_of(scene, settings).on;
   if (!tension && may_be_pulled_apart(scene))

@@ -28,6 +28,8 @@ Choice prediction_of(const Scene&, const nlohmann::json& settings);
 /// Whether its links get implicit tension (INTEGRATION.md).
 Choice tension_of(const Scene&, const nlohmann::json& settings);
 
+/// True if pins or hands hold it.
+bool is_held(const Scene&);
 /// True if the cloth meets neither itself nor a collider in the scene's time. Colliders that stand, and are farther
 /// away than a fall from its start takes it, count as none: the motion is the same with and without them.
 bool touches_nothing(const Scene&);

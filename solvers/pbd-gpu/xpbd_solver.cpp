@@ -80,6 +80,9 @@ class Xpbd final : public GpuSolver {
     add_history(position.size());
     const Choice tension = tension_of(scene(), settings());
     if (!tension.on) leave_out("implicit tension", tension.why_not);
+    if (const int calm = substeps_without_gravity(scene(), settings()); calm > 0)
+      leave_out(std::to_string(calm) + " substeps",
+                "gravity takes the cloth far in a frame: " + std::to_string(xpbd_substeps(scene(), settings())));
     if (planes) plane_contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, *colliders(), cloth.particle);
     if (chained)
       chains_ = std::make_unique<Chains>(frame(), scene(), cloth, predicts(), tension.on);
