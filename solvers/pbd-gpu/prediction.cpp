@@ -86,6 +86,9 @@ bool may_be_pulled_apart(const Scene& scene) {
   return std::any_of(taut.begin(), taut.end(), [](std::uint8_t t) { return t != 0; });
 }
 
+/// True if its lines share no links: nothing is left by one family to another.
+bool is_strip(const Scene& s) { return !s.needs.has(Feature::Shear) && !s.needs.has(Feature::ClothMesh); }
+
 /// True unless a stretch wave crosses more than kMostOfCloth of an elastic cloth in a substep. Above, a horizontal
 /// sheet let go of by two corners gains up to seven times the energy that it gains under backward Euler, and below less
 /// (INTEGRATION.md has the table). Inextensible cloth stores no energy in its links.
@@ -120,16 +123,20 @@ Choice tension_of(const Scene& scene, const nlohmann::json& settings) {
   if (settings.value("iterations", 1) > 1) return {false, "setting iterations: multipliers start from the last ones"};
   if (!touches_nothing(scene) || contact_by_planes(scene, settings)) return {false, "the cloth touches"};
   if (wanted == "always") return {true, ""};
+  if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};
   if (!is_held(scene)) return {false, "nothing holds the cloth"};
   if (is_tethered(scene, settings) && scene.cloth.mass_factors.empty())
     return {false, "tethers hold the cloth, for less"};
+  if (is_strip(scene)) return {true, ""};
+  if (starts_crumpled(scene)) return {false, "the sheet starts crumpled"};
+  if (!resolves_waves(scene, xpbd_substeps(scene, settings)))
+    return {false, "a wave crosses the sheet in too few substeps: it would not come to rest"};
   return {true, ""};
 }
 
 Choice prediction_of(const Scene& scene, const nlohmann::json& settings) {
   const std::string wanted = tuned(settings, "prediction");
   if (settings.value("time_order", 2) < 2 && wanted != "always") return {false, "setting time_order=1"};
-  const FeatureSet needs = scene.needs;
   if (!touches_nothing(scene) || contact_by_planes(scene, settings))
     return {false, "the cloth touches: a contact would rebound"};
   if (wanted == "always") return {true, ""};
@@ -140,7 +147,7 @@ Choice prediction_of(const Scene& scene, const nlohmann::json& settings) {
   if (!tension && may_be_pulled_apart(scene))
     return {false, "inextensible lines may be pulled apart at both ends, and would be thrown farther"};
   // A strip's links are one system and solved exactly; what a sheet's families leave to one another is not.
-  if (!needs.has(Feature::Shear) && !needs.has(Feature::ClothMesh)) return {true, ""};
+  if (is_strip(scene)) return {true, ""};
   if (!resolves_waves(scene, substeps))
     return {false, "a wave crosses the cloth in too few substeps: stiff links would gain energy"};
   if (!tension && !is_tethered(scene, settings) && substeps < std::lround(links_of_longer_side(scene.cloth) / 3))

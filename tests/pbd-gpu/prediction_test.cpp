@@ -237,6 +237,43 @@ TEST_F(Predicted, TensionHoldsLoadsAndWhatIsPulledTooFar) {
   }
 }
 
+/// A hundred and a thousand times the earth's gravity; scaled scenes have the same substeps, and those in contact no
+/// more.
+TEST_F(Predicted, SubstepsGrowWithTheRootOfGravity) {
+  Scene s = swing(sheet(33, 2, 1, 1.0 / 32));
+  s.needs = s.needs - FeatureSet{Feature::Shear};
+  s.material.membrane_stiffness_N_per_m.reset();
+  const auto at = [&](double times) {
+    Scene heavy = s;
+    heavy.gravity_m_per_s2 = {0, -9.81 * times, 0};
+    return heavy;
+  };
+  const auto substeps = [](const Scene& scene) { return xpbd_substeps(scene, predicting()); };
+  EXPECT_EQ(substeps(at(8)), substeps(s));
+  EXPECT_EQ(substeps_without_gravity(at(8), predicting()), 0);
+  EXPECT_NEAR(substeps(at(1000)), std::sqrt(10) * substeps(at(100)), 2);
+  EXPECT_EQ(substeps_without_gravity(at(100), predicting()), substeps(s));
+  Scene small = at(100);
+  small.cloth.width_m /= 64;
+  small.cloth.height_m /= 64;
+  small.time = {480, 0.05};
+  EXPECT_EQ(substeps(small), substeps(at(100)));
+  EXPECT_EQ(substeps(with_collider(at(100), sphere({0, -1, 0}, 0.2))),
+            substeps(with_collider(s, sphere({0, -1, 0}, 0.2))));
+  const auto most = [&](const Scene& scene, const nlohmann::json& given) {
+    double strained = 0;
+    for (const ClothState& state : motion(scene, "xpbd", given)) {
+      const double here = strain(scene, state);
+      if (!(here <= strained)) strained = here;
+    }
+    return strained;
+  };
+  for (const double times : {100, 1000}) {
+    EXPECT_LE(most(at(times), nlohmann::json::object()), 3e-2) << times;
+    EXPECT_FALSE(most(at(times), {{"substeps", 3}}) <= 3e-2) << times << ": or this tests nothing";
+  }
+}
+
 /// One workgroup, many, and a dispatch a family predict alike; and so do chains where links are all alike.
 TEST_F(Predicted, EveryKernelPredictsAlike) {
   const Scene s = with_damping(with_pins(sheet(17, 9)));
