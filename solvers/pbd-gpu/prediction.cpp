@@ -151,9 +151,10 @@ Choice prediction_of(const Scene& scene, const nlohmann::json& settings) {
   if (!resolves_waves(scene, substeps))
     return {false, "a wave crosses the cloth in too few substeps: stiff links would gain energy"};
   // Tethers hold a grid, whose rows are solved last and whole; no family that is solved last holds all of a mesh.
-  const bool holds = is_tethered(scene, settings) && !scene.needs.has(Feature::ClothMesh);
-  if (!tension && !holds && substeps < std::lround(links_of_longer_side(scene.cloth) / 3))
-    return {false, "a mesh or no tethers, and fewer substeps than a third of the links: the cloth would be thrown"};
+  if (!tension && scene.needs.has(Feature::ClothMesh))
+    return {false, "a triangle mesh without implicit tension: single links would stretch far"};
+  if (!tension && !is_tethered(scene, settings) && substeps < std::lround(links_of_longer_side(scene.cloth) / 3))
+    return {false, "no tethers and fewer substeps than a third of the links: the cloth would be thrown"};
   return {true, ""};
 }
 
