@@ -12,12 +12,13 @@ constexpr std::uint32_t kBlock = 256;
 
 }  // namespace
 
-Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool predicts)
+Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool predicts, bool tension)
     : frame_(frame),
       scene_(scene),
       block_(std::min({kBlock, frame.device()->limits().maxComputeWorkGroupInvocations,
                        frame.device()->limits().maxComputeWorkGroupSize[0]})),
-      predicts_(predicts) {
+      predicts_(predicts),
+      tension_(tension) {
   const FeatureSet needs = scene.needs;
   const FeatureSet serves{Feature::Stretch,   Feature::Shear,      Feature::Damping, Feature::Pins,
                           Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions};
@@ -47,6 +48,7 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
   if (needs.has(Feature::Shear) || needs.has(Feature::ClothMesh)) s.FEATURES |= LINES_SHEAR;
   if (limits_speed(scene, tethers_ > 0)) s.FEATURES |= LINES_LIMIT_SPEED;
   if (predicts_) s.FEATURES |= LINES_PREDICT;
+  if (tension_) s.FEATURES |= LINES_TENSION;
   s.PERSISTENT = 1;
   persistent_ =
       cloth.welded.empty() && runs_at_once<ChainConstants>(frame, "chain_pass", s.by_number(), block_, all_groups());

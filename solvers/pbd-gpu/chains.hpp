@@ -13,7 +13,7 @@ namespace clothbench::pbd_gpu {
 class Chains {
  public:
   /// Adds its stages, buffers and kernels. The buffers of the state must exist.
-  Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool predicts);
+  Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool predicts, bool tension);
 
   /// Records `count` substeps, each a TimeStep.
   void record(int count, const TimeStep&);
@@ -33,7 +33,7 @@ class Chains {
   FrameBuilder& frame_;
   const Scene& scene_;
   const std::uint32_t block_;
-  const bool predicts_;
+  const bool predicts_, tension_;
   std::uint32_t tethers_ = 0;
   std::vector<Family> families_;
   std::vector<ChainEntry> entries_;

@@ -10,6 +10,7 @@
 #include "clothbench/error.hpp"
 #include "clothbench/motion.hpp"
 #include "clothbench/solver.hpp"
+#include "prediction.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -160,6 +161,15 @@ double substeps_for_planes(const Scene& scene, int quality) {
   return std::min(kPlaneBudget[quality], substeps_by_margins(scene, kPlaneMargins[quality]));
 }
 
+/// A frame in which gravity takes the cloth far stands for several: what it swings through in a substep grows with
+/// dt sqrt(g / L), so that above kMost of it substeps grow with the square root of gravity.
+double frames_for_gravity(const Scene& scene) {
+  constexpr double kMost = 0.15;
+  const double longer = std::max(scene.cloth.width_m, scene.cloth.height_m);
+  const double swing = scene.time.dt() * std::sqrt(norm(scene.gravity_m_per_s2) / longer);
+  return swing > kMost && is_held(scene) && touches_nothing(scene) ? swing / kMost : 1;
+}
+
 int quality_of(const nlohmann::json& settings) {
   const std::string quality = settings.value("quality", "default");
   return quality == "fast" ? 0 : quality == "default" ? 1 : 2;
@@ -196,6 +206,13 @@ int substeps_over_budget(const Scene& scene, const nlohmann::json& settings) {
   if (settings.value("substeps", 0) > 0 || !contact_by_planes(scene, settings)) return 0;
   const double wanted = substeps_by_margins(scene, kPlaneMargins[quality_of(settings)]);
   return wanted > xpbd_substeps(scene, settings) ? static_cast<int>(std::min(wanted, 1e6)) : 0;
+}
+
+int substeps_without_gravity(const Scene& scene, const nlohmann::json& settings) {
+  Scene calm = scene;
+  calm.gravity_m_per_s2 = {};
+  const int substeps = xpbd_substeps(calm, settings);
+  return substeps < xpbd_substeps(scene, settings) ? substeps : 0;
 }
 
 double links_of_longer_side(const Cloth& c) {
@@ -236,7 +253,8 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   // With few substeps the error is largest in the links at the pins, which carry more the finer the cloth is.
   const double fine = k == 0 && rule.links_a_substep == kStiff[0].links_a_substep && links > 300 ? 1.2 : 1;
   const double short_links = wants_chains(scene) ? substeps_for_short_links(scene) : 1;
-  double per_frame = short_links * std::max(rule.least, fine * links / rule.links_a_substep);
+  double per_frame =
+      short_links * frames_for_gravity(scene) * std::max(rule.least, fine * links / rule.links_a_substep);
   if (scene.needs.has(Feature::SelfCollision)) per_frame = std::max(per_frame, substeps_for_layers(scene));
   const double for_speed = planes ? substeps_for_planes(scene, k) : substeps_for_speed(scene, k);
   return static_cast<int>(std::clamp(std::max(std::lround(per_frame), std::lround(for_speed)), 1L, 4096L));

@@ -47,6 +47,9 @@ double links_of_longer_side(const Cloth&);
 /// Substeps of a frame: setting `substeps`, or if that is 0 the rule of setting `quality` (README, "Substeps").
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 
+/// Substeps of the same scene without gravity where gravity asks for more, else 0.
+int substeps_without_gravity(const Scene&, const nlohmann::json& settings);
+
 /// Whether planes hold colliders off the cloth (PLANES.md): setting `tuning.contact`, in a scene with colliders whose
 /// cloth does not touch itself. Self-contact moves vertices after the planes, across them.
 bool contact_by_planes(const Scene&, const nlohmann::json& settings);

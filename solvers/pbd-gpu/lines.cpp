@@ -38,7 +38,7 @@ Tethers tethers_if(bool wanted, const Scene& scene) {
 
 }  // namespace
 
-Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts)
+Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts, bool tension)
     : frame_(frame),
       scene_(scene),
       tethers_(tethers_if(frame.settings()["tethers"].get<bool>(), scene)),
@@ -47,6 +47,7 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts)
       batch_(frame.settings()["batch"].get<std::uint32_t>()),
       keep_(iterations_ > 1 && (scene.material.membrane_stiffness_N_per_m || scene.needs.has(Feature::Bend))),
       predicts_(predicts),
+      tension_(tension),
       firm_(std::any_of(taut_.begin(), taut_.end(), [](std::uint8_t t) { return t != 0; })) {
   if (tethers_.to.empty()) frame_.leave_out("tethers", tethers_.why_not);
   if (!scene.needs.has(Feature::Damping)) frame_.leave_out("damping", "the scene has none");
@@ -106,6 +107,7 @@ std::uint32_t Lines::features() const {
   if (limits_speed(scene_, !tethers_.to.empty())) f |= LINES_LIMIT_SPEED;
   if (firm_) f |= LINES_FIRM;
   if (predicts_) f |= LINES_PREDICT;
+  if (tension_) f |= LINES_TENSION;
   return f;
 }
 

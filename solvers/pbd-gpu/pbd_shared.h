@@ -120,8 +120,9 @@ struct PaperContactConstants {
 #define LINES_SHEAR 4u
 #define LINES_ELASTIC 8u  // links have a compliance
 #define LINES_LIMIT_SPEED 16u
-#define LINES_FIRM 32u     // chains pulled taut between two held vertices
-#define LINES_PREDICT 64u  // BDF2; else backward Euler
+#define LINES_FIRM 32u      // chains pulled taut between two held vertices
+#define LINES_PREDICT 64u   // BDF2; else backward Euler
+#define LINES_TENSION 128u  // implicit tension
 
 /// Push constants of the line kernels of `xpbd`.
 struct LineConstants {

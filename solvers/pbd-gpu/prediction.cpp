@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "chain_plan.hpp"
+#include "clothbench/motion.hpp"
 #include "clothbench/solver.hpp"
 #include "crumpled.hpp"
 #include "line_plan.hpp"
@@ -24,7 +26,57 @@ TimeStep time_step(bool predicts, double h_s, double last_h_s, double damping_pe
 
 namespace {
 
-bool held(const Scene& scene) { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
+std::string tuned(const nlohmann::json& settings, const char* member) {
+  return settings.value(kTuning, nlohmann::json::object()).value(member, "auto");
+}
+
+/// Lower bound of the distance [m] from a point to a collider that stands.
+double distance_to(const Collider& c, const Vec3& from) {
+  const auto to = [&](const Vec3& p) { return norm(Vec3{p[0] - from[0], p[1] - from[1], p[2] - from[2]}); };
+  switch (c.shape) {
+    case Collider::Shape::Plane:
+      return (from[0] - c.center_m[0]) * c.normal[0] + (from[1] - c.center_m[1]) * c.normal[1] +
+             (from[2] - c.center_m[2]) * c.normal[2];
+    case Collider::Shape::Sphere:
+      return to(c.center_m) - c.radius_m;
+    case Collider::Shape::Box:
+      return to(c.center_m) - norm(c.half_extent_m);
+    case Collider::Shape::Mesh: {
+      // Every point of a triangle is nearer to its first corner than the triangle's longest side.
+      double least = std::numeric_limits<double>::infinity();
+      for (const auto& t : c.mesh->triangles) {
+        const auto corner = [&](std::size_t k) {
+          const double* p = &c.mesh->positions[3 * std::size_t{t[k]}];
+          return Vec3{p[0], p[1], p[2]};
+        };
+        const Vec3 a = corner(0);
+        double side = 0;
+        for (const std::size_t k : {1u, 2u}) {
+          const Vec3 b = corner(k);
+          side = std::max(side, norm(Vec3{b[0] - a[0], b[1] - a[1], b[2] - a[2]}));
+        }
+        least = std::min(least, to(a) - side);
+      }
+      return least;
+    }
+    case Collider::Shape::Capsules:
+      break;
+  }
+  return 0;
+}
+
+/// Distance [m] from the cloth's centre that no vertex leaves while nothing but gravity, its own links and what holds
+/// it act: where the farthest one starts, twice the cloth's diagonal, and the way of a fall at its first speed.
+double reach_m(const Scene& s) {
+  const Cloth& c = s.cloth;
+  const std::vector<double> x = initial_positions(s);
+  double start = 0;
+  for (std::size_t i = 0; i + 2 < x.size(); i += 3)
+    start = std::max(start, norm(Vec3{x[i] - c.center_m[0], x[i + 1] - c.center_m[1], x[i + 2] - c.center_m[2]}));
+  const double across = std::hypot(c.width_m, c.height_m), t = s.time.duration_s;
+  const double speed = norm(c.initial_velocity_m_per_s) + norm(c.spin_rad_per_s) * across + grip_speed_m_per_s(s);
+  return start + 2 * across + speed * t + 0.5 * norm(s.gravity_m_per_s2) * t * t;
+}
 
 /// True if inextensible lines may be pulled apart at their two ends: by hands, or by pins too far apart. Pins that
 /// leave tethers their reach do not.
@@ -33,6 +85,9 @@ bool may_be_pulled_apart(const Scene& scene) {
   const std::vector<std::uint8_t> taut = taut_chains(scene);
   return std::any_of(taut.begin(), taut.end(), [](std::uint8_t t) { return t != 0; });
 }
+
+/// True if its lines share no links: nothing is left by one family to another.
+bool is_strip(const Scene& s) { return !s.needs.has(Feature::Shear) && !s.needs.has(Feature::ClothMesh); }
 
 /// True unless a stretch wave crosses more than kMostOfCloth of an elastic cloth in a substep. Above, a horizontal
 /// sheet let go of by two corners gains up to seven times the energy that it gains under backward Euler, and below less
@@ -50,23 +105,55 @@ bool resolves_waves(const Scene& scene, int substeps) {
 
 }  // namespace
 
-Prediction prediction_of(const Scene& scene, const nlohmann::json& settings) {
-  const std::string wanted = settings.value(kTuning, nlohmann::json::object()).value("prediction", "auto");
-  if (settings.value("time_order", 1) < 2 && wanted != "always") return {false, "setting time_order=1"};
-  const FeatureSet needs = scene.needs;
-  if (!(needs & (kColliderFeatures | FeatureSet{Feature::SelfCollision})).empty())
+bool is_held(const Scene& scene) { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
+
+bool touches_nothing(const Scene& scene) {
+  if (scene.needs.has(Feature::SelfCollision)) return false;
+  if (scene.colliders.empty()) return true;
+  if (!scene.jumps.empty()) return false;
+  const double reach = reach_m(scene);
+  return std::all_of(scene.colliders.begin(), scene.colliders.end(), [&](const Collider& c) {
+    return !c.moves() && distance_to(c, scene.cloth.center_m) > reach + c.margin_m;
+  });
+}
+
+Choice tension_of(const Scene& scene, const nlohmann::json& settings) {
+  const std::string wanted = tuned(settings, "tension");
+  if (wanted == "never") return {false, "setting tuning.tension=never"};
+  if (settings.value("iterations", 1) > 1) return {false, "setting iterations: multipliers start from the last ones"};
+  if (!touches_nothing(scene) || contact_by_planes(scene, settings)) return {false, "the cloth touches"};
+  if (wanted == "always") return {true, ""};
+  if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};
+  if (!is_held(scene)) return {false, "nothing holds the cloth"};
+  if (is_tethered(scene, settings) && scene.cloth.mass_factors.empty())
+    return {false, "tethers hold the cloth, for less"};
+  if (is_strip(scene)) return {true, ""};
+  if (starts_crumpled(scene)) return {false, "the sheet starts crumpled"};
+  if (!resolves_waves(scene, xpbd_substeps(scene, settings)))
+    return {false, "a wave crosses the sheet in too few substeps: it would not come to rest"};
+  return {true, ""};
+}
+
+Choice prediction_of(const Scene& scene, const nlohmann::json& settings) {
+  const std::string wanted = tuned(settings, "prediction");
+  if (settings.value("time_order", 2) < 2 && wanted != "always") return {false, "setting time_order=1"};
+  if (!touches_nothing(scene) || contact_by_planes(scene, settings))
     return {false, "the cloth touches: a contact would rebound"};
   if (wanted == "always") return {true, ""};
   if (starts_crumpled(scene)) return {false, "the cloth starts crumpled"};
-  if (!held(scene)) return {true, ""};
+  if (!is_held(scene)) return {true, ""};
   const int substeps = xpbd_substeps(scene, settings);
-  if (may_be_pulled_apart(scene))
+  const bool tension = tension_of(scene, settings).on;
+  if (!tension && may_be_pulled_apart(scene))
     return {false, "inextensible lines may be pulled apart at both ends, and would be thrown farther"};
   // A strip's links are one system and solved exactly; what a sheet's families leave to one another is not.
-  if (!needs.has(Feature::Shear) && !needs.has(Feature::ClothMesh)) return {true, ""};
+  if (is_strip(scene)) return {true, ""};
   if (!resolves_waves(scene, substeps))
     return {false, "a wave crosses the cloth in too few substeps: stiff links would gain energy"};
-  if (!is_tethered(scene, settings) && substeps < std::lround(links_of_longer_side(scene.cloth) / 3))
+  // Tethers hold a grid, whose rows are solved last and whole; no family that is solved last holds all of a mesh.
+  if (!tension && scene.needs.has(Feature::ClothMesh))
+    return {false, "a triangle mesh without implicit tension: single links would stretch far"};
+  if (!tension && !is_tethered(scene, settings) && substeps < std::lround(links_of_longer_side(scene.cloth) / 3))
     return {false, "no tethers and fewer substeps than a third of the links: the cloth would be thrown"};
   return {true, ""};
 }

@@ -18,12 +18,20 @@ struct TimeStep {
 /// one that predicts takes implicit damping, and begins (last_h_s 0) with a substep of backward Euler.
 TimeStep time_step(bool predicts, double h_s, double last_h_s, double damping_per_s);
 
-/// Whether a scene is integrated by BDF2, and else why not.
-struct Prediction {
+/// Whether a scene gets a part of the method, and else why not.
+struct Choice {
   bool on = false;
   std::string why_not;
 };
-/// The same for every cloth of the same features that nothing holds.
-Prediction prediction_of(const Scene&, const nlohmann::json& settings);
+/// Whether a scene is integrated by BDF2. The same for every cloth of the same features that nothing holds.
+Choice prediction_of(const Scene&, const nlohmann::json& settings);
+/// Whether its links get implicit tension (INTEGRATION.md).
+Choice tension_of(const Scene&, const nlohmann::json& settings);
+
+/// True if pins or hands hold it.
+bool is_held(const Scene&);
+/// True if the cloth meets neither itself nor a collider in the scene's time. Colliders that stand, and are farther
+/// away than a fall from its start takes it, count as none: the motion is the same with and without them.
+bool touches_nothing(const Scene&);
 
 }  // namespace clothbench::pbd_gpu

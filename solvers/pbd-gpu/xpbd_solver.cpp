@@ -78,11 +78,16 @@ class Xpbd final : public GpuSolver {
     add_colliders(origin, true);
     add_grips(origin, 1);
     add_history(position.size());
+    const Choice tension = tension_of(scene(), settings());
+    if (!tension.on) leave_out("implicit tension", tension.why_not);
+    if (const int calm = substeps_without_gravity(scene(), settings()); calm > 0)
+      leave_out(std::to_string(calm) + " substeps",
+                "gravity takes the cloth far in a frame: " + std::to_string(xpbd_substeps(scene(), settings())));
     if (planes) plane_contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, *colliders(), cloth.particle);
     if (chained)
-      chains_ = std::make_unique<Chains>(frame(), scene(), cloth, predicts());
+      chains_ = std::make_unique<Chains>(frame(), scene(), cloth, predicts(), tension.on);
     else
-      lines_ = std::make_unique<Lines>(frame(), scene(), predicts());
+      lines_ = std::make_unique<Lines>(frame(), scene(), predicts(), tension.on);
     if (planes && lines_) plane_frame_ = PlaneFrame::make(frame(), *lines_, *plane_contact_);
     if (lines_ && !plane_frame_) lines_->add_kernels(planes);
     if (planes && !plane_frame_) plane_contact_->add_kernels();
@@ -100,10 +105,10 @@ class Xpbd final : public GpuSolver {
 
   /// What a prediction goes on from: the state before the last substep.
   void add_history(std::size_t particles) {
-    const Prediction prediction = prediction_of(scene(), settings());
+    const Choice prediction = prediction_of(scene(), settings());
     set_predicts(prediction.on);
     if (!predicts()) {
-      if (settings()["time_order"] == 2) leave_out("prediction", prediction.why_not);
+      leave_out("prediction", prediction.why_not);
       return;
     }
     add_buffer(BIND_LAST_POSITIONS, "last positions", particles * sizeof(vec4));
@@ -233,6 +238,7 @@ SolverInfo xpbd_info() {
   info.summary = "extended PBD in small steps: whole grid lines solved at once, tethers; bitwise repeatable";
   info.version = "2";
   info.precision = "float32";
+  info.time_order = 2;
   info.on_gpu = true;
   info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,         Feature::Damping,
                    Feature::Pins,     Feature::MovingPins,  Feature::Sphere,       Feature::Box,
@@ -243,7 +249,7 @@ SolverInfo xpbd_info() {
       {"quality", "\"default\"",
        "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
       {"substeps", "0", "substeps a frame; 0: by quality"},
-      {"time_order", "1", "2: BDF2 in scenes without contact where that is safe; 1: backward Euler"},
+      {"time_order", "2", "2: BDF2 in scenes without contact where that is safe; 1: backward Euler"},
       {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
       {"batch", "1", "number of copies of the cloth in one dispatch, to measure throughput; metrics are of the first"},
       {"contact_samples", "-1",
@@ -266,6 +272,8 @@ SolverInfo xpbd_info() {
        "always, never"},
       {"prediction", "\"auto\"",
        "where time_order 2 is on: auto (where it is safe), always (in every scene without contact)"},
+      {"tension", "\"auto\"",
+       "where links get implicit tension: auto (where it pays), always (in every scene without contact), never"},
       {"shuffles", "true", "threads of a line exchange by subgroup shuffles where lines fit a subgroup"},
       {"vertices_a_thread", "0", "of a line: 2, 4, 8, 16 or 32; 0: by line and device"},
       {"threads_a_group", "0", "of one family's workgroups: 32 to 1024; 0: by line and device"},
@@ -287,6 +295,7 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", tuning, "threads_a_group", {0, 32, 64, 128, 256, 512, 1024});
   require_one_of("xpbd", tuning, "device_barrier", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "prediction", {"auto", "always"});
+  require_one_of("xpbd", tuning, "tension", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "contact", {"samples", "planes"});
   require_one_of("xpbd", tuning, "contact_frame", {"auto", "always", "never"});
   require_between("xpbd", tuning, "contact_pairs", 0, 1 << 24);

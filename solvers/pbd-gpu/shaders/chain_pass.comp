@@ -55,7 +55,13 @@ void integrate(uint i) {
   }
 }
 
-void stretch(ChainEntry entry, uint rounds) {
+const bool kTension = (FEATURES & LINES_TENSION) != 0u;
+vec3 direction, direction_below;  // of the thread's link and of the one before; 0 where there is none
+float link_length;
+
+/// Solves the links of the chain where its vertices are now, which carry `pull` (tension over length) already. Returns the
+/// multipliers of the link before and of the thread's.
+vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   vec4 none, next, below, above;
   exchange(vec4(pos, w), 1u, none, next);
   vec3 e = next.xyz - pos;
@@ -66,23 +72,57 @@ void stretch(ChainEntry entry, uint rounds) {
   // As in lines.glsl: what is pulled taut between held vertices yields, by what keeps it regular and its tension from
   // turning links farther than a substep resolves.
   float firm = entry.regularisation;
-  if (firm != 0.0 && entry.rest > 0.0) {
+  if (kTension) firm = entry.compliance == 0.0 ? firm : 0.0;
+  else if (firm != 0.0 && entry.rest > 0.0) {
     if (entry.compliance == 0.0) firm = max(firm, 4.0 * (l / entry.rest - 5.0));
     else if ((FEATURES & LINES_SHEAR) == 0u) firm = max(firm, l / entry.rest - 1.0);
   }
   float soft = max(entry.compliance * p.per_h * p.per_h * p.per_keep, firm * max(w, next.w));
   exchange(vec4(g, 0.0), 1u, below, above);
   float per_diagonal = is ? 1.0 / (sum + soft) : 1.0;
+  float right = entry.rest - l;
+  if (kTension) right += soft * pull * l;
   // x: of the link before, y: of the link after, z: right side; the diagonal is 1.
-  vec3 row = is ? vec3(-w * dot(below.xyz, g), -next.w * dot(g, above.xyz), entry.rest - l) * per_diagonal : vec3(0.0);
-  vec3 g_below = below.xyz;
+  vec3 row = is ? vec3(-w * dot(below.xyz, g), -next.w * dot(g, above.xyz), right) * per_diagonal : vec3(0.0);
+  direction = g;
+  direction_below = below.xyz;
+  link_length = l;
   for (uint r = 0u; r < rounds; ++r) {
     exchange(vec4(row, 0.0), 1u << r, below, above);
     float per = 1.0 / (1.0 - row.x * below.y - row.y * above.x);
     row = vec3(-row.x * below.x, -row.y * above.y, row.z - row.x * below.z - row.y * above.z) * per;
   }
   exchange(vec4(row, 0.0), 1u, below, above);
-  move(w * (below.z * g_below - row.z * g));
+  return vec2(below.z, row.z);
+}
+
+/// Moves the vertices by zero-length springs of tension over length `pull` (tension.glsl). A chain has a vertex more than
+/// links, so its system needs a round more.
+void turn(float pull, uint rounds) {
+  vec4 below, above, right_below, right_above;
+  exchange(vec4(pos, pull), 1u, below, above);
+  float before = w * below.w, after = w * pull, per = 1.0 / (1.0 + before + after);
+  vec3 right = (before * (below.xyz - pos) + after * (above.xyz - pos)) * per;
+  vec2 row = vec2(-before, -after) * per;  // of the vertices before and after; the diagonal is 1
+  for (uint r = 0u; r <= rounds; ++r) {
+    exchange(vec4(row, 0.0, 0.0), 1u << r, below, above);
+    exchange(vec4(right, 0.0), 1u << r, right_below, right_above);
+    per = 1.0 / (1.0 - row.x * below.y - row.y * above.x);
+    right = (right - row.x * right_below.xyz - row.y * right_above.xyz) * per;
+    row = vec2(-row.x * below.x, -row.y * above.y) * per;
+  }
+  if (w > 0.0) move(right);
+}
+
+void stretch(ChainEntry entry, uint rounds) {
+  float pull = 0.0;
+  if (kTension) {
+    float lambda = solve_links(entry, rounds, 0.0).y;
+    pull = direction != vec3(0.0) ? max(-lambda, 0.0) / link_length : 0.0;
+    turn(pull, rounds);
+  }
+  vec2 lambda = solve_links(entry, rounds, pull);
+  move(w * (lambda.x * direction_below - lambda.y * direction));
 }
 
 void pass(uint number, bool first, uint rounds) {

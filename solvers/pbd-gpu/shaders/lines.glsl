@@ -8,6 +8,13 @@ layout(push_constant) uniform Push { LineConstants p; };
 const bool kBends = (FEATURES & LINES_BEND) != 0u;
 const bool kShears = (FEATURES & LINES_SHEAR) != 0u;
 const bool kElastic = (FEATURES & LINES_ELASTIC) != 0u;
+// Kept multipliers and contact by planes have no implicit tension.
+#if !defined(KEEP_MULTIPLIERS) && !defined(PLANE_FRAME)
+#define TENSION
+const bool kTension = (FEATURES & LINES_TENSION) != 0u;
+#else
+const bool kTension = false;
+#endif
 
 uint thread, lane, chain, family, iteration;
 vec3 pos[K], vel[K];
@@ -185,15 +192,20 @@ void move(uint k, vec3 step) {
   vel[k] += step * p.per_h;
 }
 
+vec3 direction[K], direction_below;  // of links; 0 where there is none
+float w_above;                       // inverse mass of the vertex after the thread's
+#ifdef TENSION
+float link_length[K], pull[K];  // tension over length that links carry already
+#endif
+
 /// Distance constraints of all links of the chain (Macklin, Mueller & Chentanez 2016, eq. 18, for all at once):
 /// (G M^-1 G^T + alpha) dlambda = -C - alpha lambda. `least` is a share of the inverse mass that alpha is at least.
-void stretch(float least) {
+void link_equations(float least) {
   vec4 below, above, none;
   exchange(vec4(pos[0], w[0]), 1u, none, above);
-  float w_above = above.w;
+  w_above = above.w;
   float alpha = (family == 0u ? p.alpha_u : family == 1u ? p.alpha_v : p.alpha_d) * border();
   float rest = family == 0u ? p.rest_u : family == 1u ? p.rest_v : p.rest_d;
-  vec3 g[K];
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     vec4 next = above;
     if (k + 1u < K) next = vec4(pos[k + 1u], w[k + 1u]);
@@ -201,40 +213,58 @@ void stretch(float least) {
     float square = dot(e, e), sum = w[k] + next.w;
     bool is = goes_on(lane * K + k) && sum > 0.0 && square > 0.0;
     float per_l = inversesqrt(square), l = square * per_l;
-    g[k] = is ? e * per_l : vec3(0.0);
+    direction[k] = is ? e * per_l : vec3(0.0);
     // Of chains between held vertices. Strips: tension must not turn a link by more than a substep resolves, or it overshoots and
     // throws what hangs on it; across itself a chain moves by x += L x, L = dlambda w / l times a second difference, so dlambda w / l
     // is held below 1. In sheets diagonals hold a kink. An inextensible link torn to several times its length yields bit by bit.
+    // Implicit tension turns links by no more than they can turn, so that elastic links need none of it.
     float firm = least;
-    if (least != 0.0 && kElastic && !kShears) firm = max(least, l / rest - 1.0);
-    if (least != 0.0 && !kElastic) firm = max(least, 4.0 * (l / rest - 5.0));
+    if (kTension) firm = kElastic ? 0.0 : least;
+    else if (least != 0.0 && kElastic && !kShears) firm = max(least, l / rest - 1.0);
+    else if (least != 0.0 && !kElastic) firm = max(least, 4.0 * (l / rest - 5.0));
     float soft = max(alpha, firm * max(w[k], next.w));
     link_diagonal[k] = is ? sum + soft : 1.0;
     link_right[k] = is ? rest - l : 0.0;
+#ifdef TENSION
+    link_length[k] = l;
+    if (kTension && is) link_right[k] += soft * pull[k] * l;
+#endif
 #ifdef KEEP_MULTIPLIERS
     if (kElastic && is && iteration > 0u)
       link_right[k] -= (kShears ? alpha : soft) * LOAD4(link_multipliers, family * COLUMNS * ROWS + index_of(vertex(lane * K + k)));
 #endif
   }
-  exchange(vec4(g[K - 1u], 0.0), 1u, below, none);
-  exchange(vec4(g[0], 0.0), 1u, none, above);
-  vec3 g_below = lane > 0u ? below.xyz : vec3(0.0), g_above = lane + 1u < LANES ? above.xyz : vec3(0.0);
+  exchange(vec4(direction[K - 1u], 0.0), 1u, below, none);
+  exchange(vec4(direction[0], 0.0), 1u, none, above);
+  direction_below = lane > 0u ? below.xyz : vec3(0.0);
+  vec3 direction_above = lane + 1u < LANES ? above.xyz : vec3(0.0);
   [[unroll]] for (uint k = 0u; k < K; ++k) {
-    vec3 before = g_below, next = g_above;
+    vec3 before = direction_below, next = direction_above;
     float w_next = w_above;
-    if (k > 0u) before = g[k - 1u];
-    if (k + 1u < K) { next = g[k + 1u]; w_next = w[k + 1u]; }
-    link_lower[k] = -w[k] * dot(before, g[k]);
-    link_upper[k] = -w_next * dot(g[k], next);
+    if (k > 0u) before = direction[k - 1u];
+    if (k + 1u < K) { next = direction[k + 1u]; w_next = w[k + 1u]; }
+    link_lower[k] = -w[k] * dot(before, direction[k]);
+    link_upper[k] = -w_next * dot(direction[k], next);
   }
+}
+
+#ifdef TENSION
+#include "tension.glsl"
+#endif
+
+void stretch(float least) {
+#ifdef TENSION
+  if (kTension) turn_by_tension(least);
+#endif
+  link_equations(least);
   float lambda_below;
   solve_links(32u, lambda_below);
   [[unroll]] for (uint k = 0u; k < K; ++k) {
-    vec3 pull = lambda_below * g_below;
-    if (k > 0u) pull = link_right[k - 1u] * g[k - 1u];
-    move(k, w[k] * (pull - link_right[k] * g[k]));
+    vec3 step = lambda_below * direction_below;
+    if (k > 0u) step = link_right[k - 1u] * direction[k - 1u];
+    move(k, w[k] * (step - link_right[k] * direction[k]));
 #ifdef KEEP_MULTIPLIERS
-    if (kElastic && g[k] != vec3(0.0)) {
+    if (kElastic && direction[k] != vec3(0.0)) {
       uint at = family * COLUMNS * ROWS + index_of(vertex(lane * K + k));
       float lambda = link_right[k];
       if (iteration > 0u) lambda += LOAD4(link_multipliers, at);
