@@ -26,7 +26,8 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
           BIND_CONSTRAINTS = 39, BIND_POINT_SOURCES = 40, BIND_POINTS = 41, BIND_PIECES = 42, BIND_PIECE_BOXES = 43,
           BIND_ELEMENTS = 44, BIND_FANS = 45, BIND_RANGES = 46, BIND_PAIRS = 47, BIND_PAIR_STATES = 48,
           BIND_LEDGER = 49, BIND_FAULTS = 50, BIND_COUNTER = 51, BIND_LAST_POSITIONS = 52, BIND_LAST_VELOCITIES = 53,
-          BIND_COUNT = 54;
+          BIND_SELF_ORDER = 54, BIND_SELF_BOXES = 55, BIND_SELF_RANGES = 56, BIND_SELF_PAIRS = 57, BIND_SELF_WAYS = 58,
+          BIND_SELF_NEAR = 59, BIND_SELF_CONTACTS = 60, BIND_SELF_PUSHES = 61, BIND_COUNT = 62;
 
 // Specialization constants: C(number, type, name, default); number 0 is local_size_x.
 
@@ -54,14 +55,18 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(5, uint, FRICTION, 0u) C(6, uint, STANDING_CLUSTERS, 0u) C(7, uint, MOVING_CLUSTERS, 0u) C(8, uint, SAMPLES, 0u) \
   C(9, uint, MOVING, 0u) C(10, uint, LANES, 1u)
 // Plane contact of `xpbd`. PLANES: half-spaces. GRIPS: vertices that hands may hold. MOST_POINTS: of a piece. MOVING: 1
-// if any piece moves.
+// if any piece moves. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, NEAR_CAPACITY: pairs and near pairs
+// that its lists have place for; THICKNESS_BITS, SELF_FRICTION_BITS: floats.
 #define PLANE_CONTACT_CONSTANTS(C) \
-  C(1, uint, PLANES, 0u) C(2, uint, GRIPS, 0u) C(3, uint, MOST_POINTS, 3u) C(4, uint, MOVING, 0u)
+  C(1, uint, PLANES, 0u) C(2, uint, GRIPS, 0u) C(3, uint, MOST_POINTS, 3u) C(4, uint, MOVING, 0u) C(5, uint, SELF, 0u) \
+  C(6, uint, SELF_CAPACITY, 0u) C(7, uint, NEAR_CAPACITY, 0u) C(8, uint, THICKNESS_BITS, 0u) \
+  C(9, uint, SELF_FRICTION_BITS, 0u)
 // The same, for the kernel of a whole frame, beside LINE_CONSTANTS. MARGIN_BITS: of the greatest margin, a float.
 #define PLANE_FRAME_CONSTANTS(C) \
   C(25, uint, PLANES, 0u) C(26, uint, MOST_POINTS, 3u) C(27, uint, MOVING, 0u) C(28, uint, VERTICES, 4u) \
   C(29, uint, TRIANGLES, 2u) C(30, uint, CAPACITY, 0u) C(31, uint, PIECES, 0u) C(32, uint, GROUPS, 0u) \
-  C(33, uint, MARGIN_BITS, 0u)
+  C(33, uint, MARGIN_BITS, 0u) C(34, uint, SELF, 0u) C(35, uint, SELF_CAPACITY, 0u) C(36, uint, NEAR_CAPACITY, 0u) \
+  C(37, uint, THICKNESS_BITS, 0u) C(38, uint, SELF_FRICTION_BITS, 0u)
 // clang-format on
 // Kernels of `paper`. NATIVE: float atomics; the count is then a float too.
 #define PAPER_CONSTANTS(C) C(1, uint, FRICTION, 0u) C(2, uint, NATIVE, 0u)
@@ -332,7 +337,43 @@ struct ContactLedger {
   float carried;                     // greatest displacement of a point of any piece in the frame [m]
   uint asked[2];                     // pairs near in this substep, before and after the lines
   uint cloth_low[3], cloth_high[3];  // box that the cloth may be in, in the order of box_bits.glsl
-  uint unused0;
+  float self_reach;                  // as reach, of the list of the cloth with itself
+  uint self_near[2];                 // its pairs near in this substep, before and after the lines
+  uint unused0, unused1;
+};
+
+/// Of a triangle of the cloth, by half of the thickness larger: at rest, and grown by its vertices' reaches.
+struct SelfBox {
+  vec4 low_0, high_0, low_1, high_1;  // w unused
+};
+
+/// A pair of triangles of the cloth, listed with each of the two.
+struct SelfPair {
+  uint other;
+  float bound;  // lower bound of their distance [m]
+};
+
+/// A pair of triangles that is near in this substep, as one of the two has it.
+struct SelfNear {
+  uint own, other;
+  uint pair;      // its SelfPair
+  uint contacts;  // bit mask of its SelfContacts; 0: they touch, and nothing is done
+  vec4 plane;     // normal, towards the own triangle; w: offset
+  vec4 multipliers;  // of the own triangle's vertices
+};
+
+/// Of a near pair: the nearest points of the two triangles, then each vertex of the one and the other triangle, with the
+/// triangle of the lower number first.
+struct SelfContact {
+  vec4 normal;  // towards the first triangle; w: distance to keep [m]
+  vec4 first, second;  // weights of the vertices at the nearest points; w unused
+};
+#define SELF_CONTACTS 7u
+
+/// What a near pair proposes for a vertex: sums weighted by length.
+struct SelfPush {
+  vec4 all;     // w: sum of lengths
+  vec4 moving;  // its part that is velocity
 };
 
 /// Counts since loading or reset; all are 0 unless contact failed.
@@ -366,7 +407,12 @@ static_assert(sizeof(ContactPiece) == 32);
 static_assert(sizeof(PiecePoint) == 32);
 static_assert(sizeof(PointSource) == 16);
 static_assert(sizeof(PairState) == 64);
-static_assert(sizeof(ContactLedger) == 48);
+static_assert(sizeof(ContactLedger) == 64);
+static_assert(sizeof(SelfBox) == 64);
+static_assert(sizeof(SelfPair) == 8);
+static_assert(sizeof(SelfNear) == 48);
+static_assert(sizeof(SelfContact) == 48);
+static_assert(sizeof(SelfPush) == 32);
 static_assert(sizeof(ContactFaults) == 16);
 static_assert(sizeof(PlaneContactConstants) == 80);
 static_assert(sizeof(SelfConstants) == 48);
