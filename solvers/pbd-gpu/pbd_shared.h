@@ -357,7 +357,7 @@ struct SelfPair {
 struct SelfNear {
   uint own, other;
   uint pair;      // its SelfPair
-  uint contacts;  // bit mask of its SelfContacts; 0: they touch, and nothing is done
+  uint contacts;  // bit mask of its SelfContacts; 0: they touch or are too far apart, and nothing is done
   vec4 plane;     // normal, towards the own triangle; w: offset
   vec4 multipliers;  // of the own triangle's vertices
 };

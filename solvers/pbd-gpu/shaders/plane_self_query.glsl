@@ -84,13 +84,11 @@ void query_self(uint k) {
   self_near[k].plane = normal;
   self_pairs[self_near[k].pair].bound = max(normal.w, 0.0);
   uint contacts = 0u;
-  if (normal.w > 0.0) {
+  if (normal.w > 0.0 && normal.w <= most_a + most_b) {
     keep_contact(contacts, k, 0u, normal, f.on_cloth, f.on_piece);
-    if (normal.w <= most_a + most_b) {
-      vertex_contacts(contacts, k, first, a, b, most_a + most_b, true);
-      vertex_contacts(contacts, k, second, b, a, most_a + most_b, false);
-    }
-  } else if (turn == 0u && self_near[k].own == first) {
+    vertex_contacts(contacts, k, first, a, b, most_a + most_b, true);
+    vertex_contacts(contacts, k, second, b, a, most_a + most_b, false);
+  } else if (!(normal.w > 0.0) && turn == 0u && self_near[k].own == first) {
     atomicAdd(faults.inside, 1u);
   }
   self_near[k].contacts = contacts;
