@@ -55,18 +55,18 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(5, uint, FRICTION, 0u) C(6, uint, STANDING_CLUSTERS, 0u) C(7, uint, MOVING_CLUSTERS, 0u) C(8, uint, SAMPLES, 0u) \
   C(9, uint, MOVING, 0u) C(10, uint, LANES, 1u)
 // Plane contact of `xpbd`. PLANES: half-spaces. GRIPS: vertices that hands may hold. MOST_POINTS: of a piece. MOVING: 1
-// if any piece moves. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, NEAR_CAPACITY: pairs and near pairs
-// that its lists have place for; THICKNESS_BITS, SELF_FRICTION_BITS: floats.
+// if any piece moves. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, NEAR_CAPACITY, TOUCHING_CAPACITY:
+// pairs, near pairs and those with contacts that its lists have place for; THICKNESS_BITS, SELF_FRICTION_BITS: floats.
 #define PLANE_CONTACT_CONSTANTS(C) \
   C(1, uint, PLANES, 0u) C(2, uint, GRIPS, 0u) C(3, uint, MOST_POINTS, 3u) C(4, uint, MOVING, 0u) C(5, uint, SELF, 0u) \
-  C(6, uint, SELF_CAPACITY, 0u) C(7, uint, NEAR_CAPACITY, 0u) C(8, uint, THICKNESS_BITS, 0u) \
-  C(9, uint, SELF_FRICTION_BITS, 0u)
+  C(6, uint, SELF_CAPACITY, 0u) C(7, uint, NEAR_CAPACITY, 0u) C(8, uint, TOUCHING_CAPACITY, 0u) \
+  C(9, uint, THICKNESS_BITS, 0u) C(10, uint, SELF_FRICTION_BITS, 0u)
 // The same, for the kernel of a whole frame, beside LINE_CONSTANTS. MARGIN_BITS: of the greatest margin, a float.
 #define PLANE_FRAME_CONSTANTS(C) \
   C(25, uint, PLANES, 0u) C(26, uint, MOST_POINTS, 3u) C(27, uint, MOVING, 0u) C(28, uint, VERTICES, 4u) \
   C(29, uint, TRIANGLES, 2u) C(30, uint, CAPACITY, 0u) C(31, uint, PIECES, 0u) C(32, uint, GROUPS, 0u) \
   C(33, uint, MARGIN_BITS, 0u) C(34, uint, SELF, 0u) C(35, uint, SELF_CAPACITY, 0u) C(36, uint, NEAR_CAPACITY, 0u) \
-  C(37, uint, THICKNESS_BITS, 0u) C(38, uint, SELF_FRICTION_BITS, 0u)
+  C(37, uint, TOUCHING_CAPACITY, 0u) C(38, uint, THICKNESS_BITS, 0u) C(39, uint, SELF_FRICTION_BITS, 0u)
 // clang-format on
 // Kernels of `paper`. NATIVE: float atomics; the count is then a float too.
 #define PAPER_CONSTANTS(C) C(1, uint, FRICTION, 0u) C(2, uint, NATIVE, 0u)
@@ -339,7 +339,7 @@ struct ContactLedger {
   uint cloth_low[3], cloth_high[3];  // box that the cloth may be in, in the order of box_bits.glsl
   float self_reach;                  // as reach, of the list of the cloth with itself
   uint self_near[2];                 // its pairs near in this substep, before and after the lines
-  uint unused0, unused1;
+  uint self_touching[2];             // those of them that have contacts
 };
 
 /// Of a triangle of the cloth, by half of the thickness larger: at rest, and grown by its vertices' reaches.
@@ -356,8 +356,8 @@ struct SelfPair {
 /// A pair of triangles that is near in this substep, as one of the two has it.
 struct SelfNear {
   uint own, other;
-  uint pair;      // its SelfPair
-  uint contacts;  // bit mask of its SelfContacts; 0: they touch or are too far apart, and nothing is done
+  uint link;      // its SelfPair; once asked, where its contacts are
+  uint marks;     // bit mask of its contacts, and SELF_PLANE if it has a plane
   vec4 plane;     // normal, towards the own triangle; w: offset
   vec4 multipliers;  // of the own triangle's vertices
 };
@@ -369,6 +369,7 @@ struct SelfContact {
   vec4 first, second;  // weights of the vertices at the nearest points; w unused
 };
 #define SELF_CONTACTS 7u
+#define SELF_PLANE 128u
 
 /// What a near pair proposes for a vertex: sums weighted by length.
 struct SelfPush {

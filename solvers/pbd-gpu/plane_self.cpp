@@ -8,9 +8,10 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Pairs and near pairs that the lists have place for. Heaps list some 200 pairs a triangle and ask 10; where the list
-/// does not suffice, the vertices' reach is cut.
-constexpr std::uint32_t kPairsATriangle = 512, kMostSelfPairs = 1u << 24, kNearATriangle = 48, kMostNear = 1u << 20;
+/// Pairs, near pairs and those with contacts that the lists have place for. Heaps list some 200 pairs a triangle, of which
+/// 10 are near. Where the list does not suffice, the vertices' reach is cut.
+constexpr std::uint32_t kPairsATriangle = 512, kMostSelfPairs = 1u << 24, kNearATriangle = 256, kMostNear = 1u << 22,
+                        kTouchingATriangle = 32, kLeastTouching = 1u << 15;
 constexpr std::uint32_t kNearThreads = 1u << 14, kSoftwareNearThreads = 1u << 9, kSelfScanThreads = 256;
 
 }  // namespace
@@ -25,6 +26,7 @@ PlaneSelf::PlaneSelf(FrameBuilder& frame, const Scene& scene, const std::vector<
   const std::uint32_t wanted = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
   capacity_ = wanted != 0 ? wanted : std::min(kPairsATriangle * triangles_, kMostSelfPairs);
   near_capacity_ = wanted != 0 ? wanted : std::min(kNearATriangle * triangles_, kMostNear);
+  touching_capacity_ = std::min(near_capacity_, std::max(kTouchingATriangle * triangles_, kLeastTouching));
   thickness_bits_ = std::bit_cast<std::uint32_t>(static_cast<float>(scene.cloth.self_collision.thickness_m));
   friction_bits_ = std::bit_cast<std::uint32_t>(static_cast<float>(scene.cloth.self_collision.friction));
   const std::uint32_t groups = (triangles_ + PIECES_A_GROUP - 1) / PIECES_A_GROUP;
@@ -35,8 +37,8 @@ PlaneSelf::PlaneSelf(FrameBuilder& frame, const Scene& scene, const std::vector<
   frame_.add_buffer(BIND_SELF_WAYS, "self-contact ways", triangles_ * sizeof(vec4));
   frame_.add_buffer(BIND_SELF_NEAR, "self-contact near pairs", std::uint64_t{near_capacity_} * sizeof(SelfNear));
   frame_.add_buffer(BIND_SELF_CONTACTS, "self-contact contacts",
-                    std::uint64_t{near_capacity_} * SELF_CONTACTS * sizeof(SelfContact));
-  frame_.add_buffer(BIND_SELF_PUSHES, "self-contact pushes", std::uint64_t{near_capacity_} * 3 * sizeof(SelfPush));
+                    std::uint64_t{touching_capacity_} * SELF_CONTACTS * sizeof(SelfContact));
+  frame_.add_buffer(BIND_SELF_PUSHES, "self-contact pushes", std::uint64_t{touching_capacity_} * 3 * sizeof(SelfPush));
 }
 
 void PlaneSelf::add_kernels(int stage_pairs, int stage, const std::vector<std::uint32_t>& constants) {

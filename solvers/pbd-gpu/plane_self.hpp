@@ -17,6 +17,7 @@ class PlaneSelf {
     s.SELF = 1;
     s.SELF_CAPACITY = capacity_;
     s.NEAR_CAPACITY = near_capacity_;
+    s.TOUCHING_CAPACITY = touching_capacity_;
     s.THICKNESS_BITS = thickness_bits_;
     s.SELF_FRICTION_BITS = friction_bits_;
   }
@@ -31,7 +32,7 @@ class PlaneSelf {
   void near_pairs(const FrameKernel* kernel, const PlaneContactConstants&);
 
   FrameBuilder& frame_;
-  std::uint32_t triangles_ = 0, capacity_ = 0, near_capacity_ = 0, thickness_bits_ = 0, friction_bits_ = 0;
+  std::uint32_t triangles_ = 0, capacity_ = 0, near_capacity_ = 0, touching_capacity_ = 0, thickness_bits_ = 0, friction_bits_ = 0;
   const FrameKernel *boxes_ = nullptr, *count_ = nullptr, *scan_ = nullptr, *fill_ = nullptr, *ways_ = nullptr,
                     *near_ = nullptr, *query_ = nullptr, *respond_ = nullptr, *choose_ = nullptr;
 };

@@ -41,10 +41,12 @@ void from_pairs(uint element, uint corner, float w) {
 void from_self(uint element, uint corner) {
   uvec4 range = LOAD16(self_ranges, element);
   for (uint k = range.z; k < range.z + range.w; ++k) {
-    vec4 all = LOAD16_OF(self_pushes[3u * k + corner].all);
+    uint at = 3u * self_near[k].link + corner;
+    if ((self_near[k].marks & ~SELF_PLANE) == 0u) continue;
+    vec4 all = LOAD16_OF(self_pushes[at].all);
     if (all.w == 0.0) continue;
     sum += all.xyz;
-    sum_moving += LOAD16_OF(self_pushes[3u * k + corner].moving).xyz;
+    sum_moving += LOAD16_OF(self_pushes[at].moving).xyz;
     lengths += all.w;
   }
 }

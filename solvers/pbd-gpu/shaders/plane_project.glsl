@@ -31,7 +31,7 @@ float half_space(PlaneShape s) {
     uint fan = fans[f], corner = fan % 4u;                                   \
     uvec2 range = self_ranges[fan / 4u].zw;                                  \
     for (uint k = range.x; k < range.x + range.y; ++k) {                     \
-      if (self_near[k].contacts == 0u) continue;                             \
+      if ((self_near[k].marks & SELF_PLANE) == 0u) continue;                 \
       vec3 n = self_near[k].plane.xyz;                                       \
       float s = self_near[k].plane.w;                                        \
       BODY                                                                   \

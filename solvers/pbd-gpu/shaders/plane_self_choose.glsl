@@ -1,7 +1,7 @@
 // The plane between two triangles of the cloth: across the start's normal, in the middle of their proposed ends, but within the gap that
 // they have at the start. So staying satisfies all planes of the cloth with itself at once.
 void choose_self(uint k) {
-  if (self_near[k].contacts == 0u) return;
+  if ((self_near[k].marks & SELF_PLANE) == 0u) return;
   uint own = self_near[k].own, other = self_near[k].other;
   uvec4 a = LOAD16(elements, min(own, other)), b = LOAD16(elements, max(own, other));
   vec3 origin = starts[a.x].xyz, n = self_near[k].plane.xyz;

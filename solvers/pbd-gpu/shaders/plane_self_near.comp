@@ -13,6 +13,6 @@ layout(std430, binding = BIND_FAULTS) buffer Faults { ContactFaults faults; };
 
 void main() {
   turn = p.turn;
-  if (item() == 0u) ledger.self_near[turn == 0u ? 1u : 0u] = 0u;
+  if (item() == 0u) ledger.self_near[turn == 0u ? 1u : 0u] = ledger.self_touching[turn == 0u ? 1u : 0u] = 0u;
   for (uint t = item(); t < TRIANGLES; t += stride()) collect_near(t);
 }

@@ -31,7 +31,7 @@ void collect_near(uint t) {
     if (!(self_pairs[k].bound <= own.y + LOAD16(self_ways, other).y)) continue;
     self_near[at].own = t;
     self_near[at].other = other;
-    self_near[at].pair = k;
+    self_near[at].link = k;
     ++at;
   }
 }

@@ -39,10 +39,11 @@ void push_of_contact(SelfContact s, uvec4 a, uvec4 b, bool own_is_a) {
 }
 
 void push_self(uint k) {
-  uint own = self_near[k].own, other = self_near[k].other, contacts = self_near[k].contacts;
+  uint own = self_near[k].own, other = self_near[k].other, contacts = self_near[k].marks & ~SELF_PLANE, at = self_near[k].link;
+  if (contacts == 0u) return;
   for (uint c = 0u; c < 3u; ++c) own_push[c] = SelfPush(vec4(0.0), vec4(0.0));
   uvec4 a = LOAD16(elements, min(own, other)), b = LOAD16(elements, max(own, other));
   for (uint c = 0u; c < SELF_CONTACTS; ++c)
-    if ((contacts & (1u << c)) != 0u) push_of_contact(LOAD(48u, self_contacts, SELF_CONTACTS * k + c), a, b, own < other);
-  for (uint c = 0u; c < 3u; ++c) STORE32(self_pushes, 3u * k + c, own_push[c]);
+    if ((contacts & (1u << c)) != 0u) push_of_contact(LOAD(48u, self_contacts, SELF_CONTACTS * at + c), a, b, own < other);
+  for (uint c = 0u; c < 3u; ++c) STORE32(self_pushes, 3u * at + c, own_push[c]);
 }

@@ -6,7 +6,7 @@
 layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };
 layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
 layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };
-layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_SELF_PAIRS) writeonly buffer SelfPairs { SelfPair self_pairs[]; };
 layout(std430, binding = BIND_SELF_NEAR) buffer SelfNears { SelfNear self_near[]; };
 layout(std430, binding = BIND_SELF_CONTACTS) buffer SelfContacts { SelfContact self_contacts[]; };

@@ -38,14 +38,17 @@ vec4 best_normal(Feature f) {
   return best;
 }
 
-void keep_contact(inout uint contacts, uint k, uint c, vec4 normal, vec3 first, vec3 second) {
+// The contacts of a pair that are found, before it is known where there is place for them.
+SelfContact found[SELF_CONTACTS];
+uint contacts;
+
+void keep_contact(uint c, vec4 normal, vec3 first, vec3 second) {
   if (!(normal.w > 0.0)) return;
   contacts |= 1u << c;
-  self_contacts[SELF_CONTACTS * k + c] =
-      SelfContact(vec4(normal.xyz, min(THICKNESS_M, normal.w)), vec4(first, 0.0), vec4(second, 0.0));
+  found[c] = SelfContact(vec4(normal.xyz, min(THICKNESS_M, normal.w)), vec4(first, 0.0), vec4(second, 0.0));
 }
 
-void vertex_contacts(inout uint contacts, uint k, uint own, uvec4 e, uvec4 other, float reach, bool is_first) {
+void vertex_contacts(uint own, uvec4 e, uvec4 other, float reach, bool is_first) {
   corners = 1u;
   piece.count = 3u;
   for (uint c = 0u; c < 3u; ++c) piece_at[c] = is_first ? second_at[c] : first_at[c];
@@ -58,10 +61,40 @@ void vertex_contacts(inout uint contacts, uint k, uint own, uvec4 e, uvec4 other
     vec3 one = vec3(0.0);
     one[c] = 1.0;
     if (is_first)
-      keep_contact(contacts, k, 1u + c, n, one, f.on_piece);
+      keep_contact(1u + c, n, one, f.on_piece);
     else
-      keep_contact(contacts, k, 4u + c, vec4(-n.xyz, n.w), f.on_piece, one);
+      keep_contact(4u + c, vec4(-n.xyz, n.w), f.on_piece, one);
   }
+}
+
+/// Greatest distance by which two triangles may approach, each going to its proposed end.
+float approach(uvec4 a, uvec4 b, vec3 origin) {
+  vec3 way_a[3], way_b[3], middle_a = vec3(0.0), middle_b = vec3(0.0);
+  for (uint c = 0u; c < 3u; ++c) {
+    way_a[c] = y[a[c]].xyz - origin - first_at[c];
+    way_b[c] = y[b[c]].xyz - origin - second_at[c];
+    middle_a += way_a[c] / 3.0;
+    middle_b += way_b[c] / 3.0;
+  }
+  float around_a = 0.0, around_b = 0.0;
+  for (uint c = 0u; c < 3u; ++c) {
+    around_a = max(around_a, distance(way_a[c], middle_a));
+    around_b = max(around_b, distance(way_b[c], middle_b));
+  }
+  return distance(middle_a, middle_b) + around_a + around_b;
+}
+
+/// Keeps what was found. Where it lies is in no fixed order, and nothing depends on it.
+void store_contacts(uint k) {
+  uint at = atomicAdd(ledger.self_touching[min(turn, 1u)], 1u);
+  if (at >= TOUCHING_CAPACITY) {
+    atomicAdd(faults.dropped, 1u);
+    contacts = 0u;
+    return;
+  }
+  self_near[k].link = at;
+  for (uint c = 0u; c < SELF_CONTACTS; ++c)
+    if ((contacts & (1u << c)) != 0u) self_contacts[SELF_CONTACTS * at + c] = found[c];
 }
 
 void query_self(uint k) {
@@ -82,14 +115,16 @@ void query_self(uint k) {
   vec4 normal = best_normal(f);
   self_near[k].multipliers = vec4(0.0);
   self_near[k].plane = normal;
-  self_pairs[self_near[k].pair].bound = max(normal.w, 0.0);
-  uint contacts = 0u;
-  if (normal.w > 0.0 && normal.w <= most_a + most_b) {
-    keep_contact(contacts, k, 0u, normal, f.on_cloth, f.on_piece);
-    vertex_contacts(contacts, k, first, a, b, most_a + most_b, true);
-    vertex_contacts(contacts, k, second, b, a, most_a + most_b, false);
-  } else if (!(normal.w > 0.0) && turn == 0u && self_near[k].own == first) {
-    atomicAdd(faults.inside, 1u);
+  self_pairs[self_near[k].link].bound = max(normal.w, 0.0);
+  contacts = 0u;
+  bool parted = normal.w > 0.0 && normal.w <= most_a + most_b;
+  float reach = approach(a, b, origin) + THICKNESS_M;
+  if (parted && normal.w <= reach) {
+    keep_contact(0u, normal, f.on_cloth, f.on_piece);
+    vertex_contacts(first, a, b, reach, true);
+    vertex_contacts(second, b, a, reach, false);
+    store_contacts(k);
   }
-  self_near[k].contacts = contacts;
+  if (!(normal.w > 0.0) && turn == 0u && self_near[k].own == first) atomicAdd(faults.inside, 1u);
+  self_near[k].marks = contacts | (parted ? SELF_PLANE : 0u);
 }
