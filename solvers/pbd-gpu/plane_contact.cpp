@@ -107,7 +107,8 @@ PlaneFrameSpecialization PlaneContact::frame_specialization() const {
 }
 
 FeatureSet PlaneContact::serves() const {
-  return scene_.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::SelfCollision});
+  return scene_.needs &
+         (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::SelfCollision});
 }
 
 void PlaneContact::add_kernels() {

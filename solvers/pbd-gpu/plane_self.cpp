@@ -8,8 +8,8 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Pairs, near pairs and those with contacts that the lists have place for. Heaps list some 200 pairs a triangle, of which
-/// 10 are near. Where the list does not suffice, the vertices' reach is cut.
+/// Pairs, near pairs and those with contacts that the lists have place for. Heaps list some 200 pairs a triangle, of
+/// which 10 are near. Where the list does not suffice, the vertices' reach is cut.
 constexpr std::uint32_t kPairsATriangle = 512, kMostSelfPairs = 1u << 24, kNearATriangle = 256, kMostNear = 1u << 22,
                         kTouchingATriangle = 32, kLeastTouching = 1u << 15;
 constexpr std::uint32_t kNearThreads = 1u << 14, kSoftwareNearThreads = 1u << 9, kSelfScanThreads = 256;
@@ -51,7 +51,10 @@ void PlaneSelf::add_kernels(int stage_pairs, int stage, const std::vector<std::u
   scan_ = add(stage_pairs, "plane_scan_self", kSelfScanThreads);
   fill_ = add(stage_pairs, "plane_self_list_fill");
   ways_ = add(stage, "plane_self_ways");
-  near_ = add(stage, "plane_self_near");
+  const bool shuffles = !frame_.counts_bytes() && frame_.tuning()["shuffles"].get<bool>();
+  sharers_ = shuffles ? std::max(1u, frame_.device()->shuffled_lanes()) : 1;
+  if (sharers_ > kGroupSize) sharers_ = 1;
+  near_ = add(stage, sharers_ > 1 ? "plane_self_near_shuffle" : "plane_self_near");
   query_ = add(stage, "plane_self_query");
   respond_ = add(stage, "plane_self_respond");
   choose_ = add(stage, "plane_self_choose");
@@ -72,7 +75,7 @@ void PlaneSelf::record_list(const PlaneContactConstants& c) {
 void PlaneSelf::record_query(const PlaneContactConstants& c) {
   const double t = triangles_;
   frame_.dispatch(*ways_, triangles_, c, {76 * t, 16 * t});
-  frame_.dispatch(*near_, triangles_, c, {32 * t, 16 * t});
+  frame_.dispatch(*near_, std::uint64_t{sharers_} * triangles_, c, {32 * t, 16 * t});
   near_pairs(query_, c);
 }
 

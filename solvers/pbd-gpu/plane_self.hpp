@@ -3,15 +3,16 @@
 
 namespace clothbench::pbd_gpu {
 
-/// The cloth's pairs with itself in contact by planes (PLANES.md): triangles without a common vertex. PlaneContact has the
-/// phases of vertices, and calls these between them.
+/// The cloth's pairs with itself in contact by planes (PLANES.md): triangles without a common vertex. PlaneContact has
+/// the phases of vertices, and calls these between them.
 class PlaneSelf {
  public:
   /// Adds buffers. `particle`: of each vertex, the vertex that it is welded to; empty: itself.
   PlaneSelf(FrameBuilder& frame, const Scene& scene, const std::vector<std::uint32_t>& particle);
   void add_kernels(int stage_pairs, int stage, const std::vector<std::uint32_t>& constants);
 
-  /// Specialization constants of all kernels of contact by planes: PlaneContactSpecialization, PlaneFrameSpecialization.
+  /// Specialization constants of all kernels of contact by planes: PlaneContactSpecialization,
+  /// PlaneFrameSpecialization.
   template <class Specialization>
   void specialize(Specialization& s) const {
     s.SELF = 1;
@@ -32,7 +33,9 @@ class PlaneSelf {
   void near_pairs(const FrameKernel* kernel, const PlaneContactConstants&);
 
   FrameBuilder& frame_;
-  std::uint32_t triangles_ = 0, capacity_ = 0, near_capacity_ = 0, touching_capacity_ = 0, thickness_bits_ = 0, friction_bits_ = 0;
+  std::uint32_t triangles_ = 0, capacity_ = 0, near_capacity_ = 0, touching_capacity_ = 0, thickness_bits_ = 0,
+                friction_bits_ = 0;
+  std::uint32_t sharers_ = 1;  ///< threads that share a triangle's list
   const FrameKernel *boxes_ = nullptr, *count_ = nullptr, *scan_ = nullptr, *fill_ = nullptr, *ways_ = nullptr,
                     *near_ = nullptr, *query_ = nullptr, *respond_ = nullptr, *choose_ = nullptr;
 };

@@ -26,8 +26,7 @@ class Xpbd final : public GpuSolver {
     const ContactFaults f = plane_contact_->faults();
     return {{"contact_squeezed", "vertices that were put at the nearest place, for none was before all their planes",
              static_cast<double>(f.without_place)},
-            {"contact_inside", "pairs that met at a substep's start",
-             static_cast<double>(f.inside)},
+            {"contact_inside", "pairs that met at a substep's start", static_cast<double>(f.inside)},
             {"contact_dropped", "pairs that the list had no place for", static_cast<double>(f.dropped),
              "contact: the list of pairs had no place for all of them"}};
   }

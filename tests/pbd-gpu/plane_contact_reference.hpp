@@ -8,9 +8,8 @@
 namespace clothbench::pbd_gpu {
 
 /// Contact by planes in double on the CPU, phase by phase as PLANES.md has it and by brute force: every element against
-/// every piece and triangle against triangle, no boxes, no lists, and the nearest point of a hull over every three of its
-/// points. Cloth that nothing
-/// holds together, so that contact alone is seen.
+/// every piece and triangle against triangle, no boxes, no lists, and the nearest point of a hull over every three of
+/// its points. Cloth that nothing holds together, so that contact alone is seen.
 class PlaneContactReference {
  public:
   PlaneContactReference(const Scene& scene, int substeps);

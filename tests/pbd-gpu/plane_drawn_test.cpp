@@ -132,8 +132,10 @@ void PlaneDraws::expect_to_pass(Scene (*scene_of)(unsigned), int usual, long lea
     if (!fault.empty()) failed += fmt::format("\n  {}: {}", s.name, fault);
   }
   const auto [low, high] = interval(passed, count);
-  fmt::print("{} of {} scenes pass (95 % interval {:.3f} to {:.3f}), {} pairs with pieces and {} of the cloth with itself certified{}\n", passed, count, low, high,
-             pairs, own_pairs, failed);
+  fmt::print(
+      "{} of {} scenes pass (95 % interval {:.3f} to {:.3f}), {} pairs with pieces and {} of the cloth with itself "
+      "certified{}\n",
+      passed, count, low, high, pairs, own_pairs, failed);
   EXPECT_GT(pairs, 1000L * count) << "something must come near for this to say anything";
   EXPECT_TRUE(own_pairs >= least_own * count);
   EXPECT_EQ(passed, count) << failed;

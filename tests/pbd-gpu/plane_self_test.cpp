@@ -1,5 +1,5 @@
-// Contact of the cloth with itself by planes: against double precision over all pairs, certified at every step, the same
-// bits again, with a collider and without one.
+// Contact of the cloth with itself by planes: against double precision over all pairs, certified at every step, the
+// same bits again, with a collider and without one.
 #include <set>
 
 #include "contact_scenes.hpp"
@@ -69,7 +69,8 @@ void expect_all_parted(GpuSolver& solver, const Scene& s) {
   long pairs = 0;
   for (int f = 0; f < s.time.frames(); ++f) {
     const ClothState state = after_frame(solver, s, f);
-    const PairCheck own = check_self_pairs(s, before, state.position), pieces = check_pairs(s, before, state.position, f);
+    const PairCheck own = check_self_pairs(s, before, state.position),
+                    pieces = check_pairs(s, before, state.position, f);
     ASSERT_EQ(own.pairs, own.parted) << "step " << f;
     ASSERT_EQ(pieces.pairs, pieces.parted) << "step " << f;
     pairs += own.pairs;

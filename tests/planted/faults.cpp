@@ -127,7 +127,8 @@ void add_self_planes(std::vector<Fault>& f) {
     fault.shader = ShaderFault{file, is, is_to_be};
     f.push_back(std::move(fault));
   };
-  kernel("boxes without the vertices' reaches", "plane_self_boxes.glsl", "r.xyz - (half_m + r.w)", "r.xyz - half_m");
+  kernel("boxes of a tenth of the size", "self_box.glsl", "return b.low_0.xyz +",
+         "return 0.9 * b.high_0.xyz + 0.1 * b.low_0.xyz +");
   kernel("triangles whose numbers differ by few not paired", "plane_self_list.glsl", "if (a[c] == b.x ",
          "if (abs(int(a[c]) - int(b.x)) < 60 ");
   kernel("half of each triangle's pairs lost", "plane_self_near.glsl", "k < range.x + range.y; ++k)\n    if",
@@ -138,10 +139,10 @@ void add_self_planes(std::vector<Fault>& f) {
          "self_near[k].plane = vec4(-normal.xyz, normal.w);");
   kernel("planes of the second triangle on its wrong side", "plane_self_choose.glsl", "vec4(-n, half_m - offset)",
          "vec4(-n, half_m - offset - 0.01)");
-  kernel("planes of the cloth with itself forgotten", "plane_project.glsl", "if (self_near[k].contacts == 0u) continue;",
-         "continue;");
-  kernel("projected onto the cloth's planes of all but the last triangle", "plane_project.glsl", "SELF != 0u && f < end_fan;",
-         "SELF != 0u && f + 1u < end_fan;");
+  kernel("planes of the cloth with itself forgotten", "plane_project.glsl",
+         "if ((self_near[k].marks & SELF_PLANE) == 0u) continue;", "if (true) continue;");
+  kernel("projected onto the cloth's planes of all but the last triangle", "plane_project.glsl",
+         "SELF != 0u && f < end_fan;", "SELF != 0u && f + 1u < end_fan;");
 }
 
 void add_inputs(std::vector<Fault>& f) {

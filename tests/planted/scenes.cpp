@@ -158,7 +158,7 @@ std::vector<Stage> stages() {
   out.push_back(solved("struck", scene(kStruck)));
   out.back().settings = {{"substeps", 3}, {kTuning, {{"contact", "planes"}}}};
   out.push_back(solved("heaped", scene(kHeaped)));
-  out.back().settings = {{"substeps", 6}, {kTuning, {{"contact", "planes"}}}};
+  out.back().settings = {{"substeps", 2}, {kTuning, {{"contact", "planes"}}}};
   out.push_back(solved("wrapped", load_scene("validation/capstan-slip")));
   out.back().settings = {{"substeps", 16}, {kTuning, {{"contact", "planes"}}}};
   out.push_back(solved("pulled", scene(kPulled)));
