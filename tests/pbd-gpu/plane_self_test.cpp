@@ -3,6 +3,7 @@
 #include <set>
 
 #include "contact_scenes.hpp"
+#include "mesh_scene.hpp"
 #include "plane_contact_check.hpp"
 #include "plane_contact_reference.hpp"
 #include "runner/stage_check.hpp"
@@ -96,6 +97,25 @@ TEST_F(PlaneSelfContacts, PartEveryPairWithMovingCapsules) {
   expect_all_parted(*make("xpbd", by_planes(1)), moving(s));
 }
 
+TEST_F(PlaneSelfContacts, PartEveryPairOfATriangleMesh) {
+  Scene s = with_collider(mesh_sheet(8), sphere({0.02, -0.72, 0.05}, 0.1, kContactFriction));
+  s.pins.vertices.clear();
+  s.needs = s.needs - FeatureSet{Feature::Pins};
+  s.cloth.sides = Sides::Double;
+  s.needs.add(Feature::DoubleSided);
+  s.cloth.self_collision = {0.01, kContactFriction};
+  s.needs.add(Feature::SelfCollision);
+  s.cloth.initial_velocity_m_per_s = {0.1, -4, 0.2};
+  s.time = {400, 0.3};
+  expect_all_parted(*make("xpbd", by_planes(1)), s);
+}
+
+TEST_F(PlaneSelfContacts, AreOfOneClothAlone) {
+  nlohmann::json settings = by_planes();
+  settings["batch"] = 2;
+  EXPECT_THROW(make("xpbd", settings)->load(fold_on_floor()), Error);
+}
+
 TEST_F(PlaneSelfContacts, WithoutThemTheFoldPassesItself) {
   Scene s = fold_on_floor();
   s.cloth.self_collision = {};
@@ -127,6 +147,11 @@ TEST_F(PlaneSelfContacts, RepeatBitForBitAndTakeNoSamples) {
   EXPECT_EQ(a.velocity, b.velocity);
   one->reset();
   EXPECT_EQ(after(*one, s, 20).position, a.position);
+  nlohmann::json settings = by_planes();
+  settings[kTuning]["shuffles"] = false;  // a thread a list in place of a subgroup
+  const auto alone = make("xpbd", settings);
+  alone->load(s);
+  EXPECT_EQ(after(*alone, s, 20).position, a.position);
 }
 
 TEST_F(PlaneSelfContacts, WorkWithoutACollider) {

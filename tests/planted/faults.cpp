@@ -133,7 +133,8 @@ void add_self_planes(std::vector<Fault>& f) {
          "if (abs(int(a[c]) - int(b.x)) < 60 ");
   kernel("half of each triangle's pairs lost", "plane_self_near.glsl", "k < range.x + range.y; ++k)\n    if",
          "k < range.x + range.y / 2u; ++k)\n    if");
-  kernel("bounds of distances grow", "plane_self_near.glsl", "bound -= own.x", "bound -= -3.0 * own.x");
+  kernel("bounds of distances grow", "plane_self_near.glsl", "bound -= own.x + other.x;",
+         "bound += 10.0 * (own.x + other.x);");
   kernel("contacts drawn together", "plane_self_push.glsl", "vec3 by = moving * n;", "vec3 by = -moving * n;");
   kernel("normal of the nearest points flipped", "plane_self_query.glsl", "self_near[k].plane = normal;",
          "self_near[k].plane = vec4(-normal.xyz, normal.w);");
@@ -141,8 +142,8 @@ void add_self_planes(std::vector<Fault>& f) {
          "vec4(-n, half_m - offset - 0.01)");
   kernel("planes of the cloth with itself forgotten", "plane_project.glsl",
          "if ((self_near[k].marks & SELF_PLANE) == 0u) continue;", "if (true) continue;");
-  kernel("projected onto the cloth's planes of all but the last triangle", "plane_project.glsl",
-         "SELF != 0u && f < end_fan;", "SELF != 0u && f + 1u < end_fan;");
+  kernel("projected onto the cloth's planes of all but three triangles", "plane_project.glsl",
+         "SELF != 0u && f < end_fan;", "SELF != 0u && f + 3u < end_fan;");
 }
 
 void add_inputs(std::vector<Fault>& f) {

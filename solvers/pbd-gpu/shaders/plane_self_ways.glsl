@@ -1,4 +1,4 @@
-// Of a triangle: the greatest way of its vertices in the last substep, and how far any of them may go in this one.
+// Of a triangle: the greatest displacement of its vertices in the last substep, and how far any of them may go in this one.
 void ways_of_triangle(uint t) {
   uvec4 e = LOAD16(elements, t);
   vec2 most = vec2(0.0);
