@@ -106,7 +106,7 @@ TEST_F(PlaneSelfContacts, PartEveryPairOfATriangleMesh) {
   s.cloth.self_collision = {0.01, kContactFriction};
   s.needs.add(Feature::SelfCollision);
   s.cloth.initial_velocity_m_per_s = {0.1, -4, 0.2};
-  s.time = {400, 0.3};
+  s.time = {400, 0.25};
   expect_all_parted(*make("xpbd", by_planes(1)), s);
 }
 
@@ -142,16 +142,16 @@ TEST_F(PlaneSelfContacts, RepeatBitForBitAndTakeNoSamples) {
   std::set<std::string> stages;
   for (const StagePlan& stage : one->plan().stages) stages.insert(stage.name);
   EXPECT_FALSE(stages.contains("SelfContact") || stages.contains("Contact"));
-  const ClothState a = after(*one, s, 20), b = after(*two, s, 20);
+  const ClothState a = after(*one, s, 8), b = after(*two, s, 8);
   EXPECT_EQ(a.position, b.position);
   EXPECT_EQ(a.velocity, b.velocity);
   one->reset();
-  EXPECT_EQ(after(*one, s, 20).position, a.position);
+  EXPECT_EQ(after(*one, s, 8).position, a.position);
   nlohmann::json settings = by_planes();
   settings[kTuning]["shuffles"] = false;  // a thread a list in place of a subgroup
   const auto alone = make("xpbd", settings);
   alone->load(s);
-  EXPECT_EQ(after(*alone, s, 20).position, a.position);
+  EXPECT_EQ(after(*alone, s, 8).position, a.position);
 }
 
 TEST_F(PlaneSelfContacts, WorkWithoutACollider) {
