@@ -32,9 +32,9 @@ layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // 
 layout(std430, binding = BIND_PAIR_STATES) STATE buffer States { PairState states[]; };
 layout(std430, binding = BIND_LEDGER) STATE buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_FAULTS) STATE buffer Faults { ContactFaults faults; };
-layout(std430, binding = BIND_SELF_RANGES) STATE buffer SelfRanges { uvec4 self_ranges[]; };
+layout(std430, binding = BIND_SELF_RANGES) readonly buffer SelfRanges { uvec4 self_ranges[]; };
 layout(std430, binding = BIND_SELF_NEAR) STATE buffer SelfNears { SelfNear self_near[]; };
-layout(std430, binding = BIND_SELF_PUSHES) STATE buffer SelfPushes { SelfPush self_pushes[]; };
+layout(std430, binding = BIND_SELF_PUSHES) readonly buffer SelfPushes { SelfPush self_pushes[]; };
 
 PLANE_FRAME_CONSTANTS(SPECIALIZE)
 #define MARGIN_M uintBitsToFloat(MARGIN_BITS)

@@ -10,7 +10,7 @@
 layout(std430, binding = BIND_SELF_WAYS) readonly buffer SelfWays { vec4 self_ways[]; };
 layout(std430, binding = BIND_SELF_RANGES) buffer SelfRanges { uvec4 self_ranges[]; };
 layout(std430, binding = BIND_SELF_PAIRS) buffer SelfPairs { SelfPair self_pairs[]; };
-layout(std430, binding = BIND_SELF_NEAR) buffer SelfNears { SelfNear self_near[]; };
+layout(std430, binding = BIND_SELF_NEAR) writeonly buffer SelfNears { SelfNear self_near[]; };
 layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_FAULTS) buffer Faults { ContactFaults faults; };
 #include "plane_self_near.glsl"
