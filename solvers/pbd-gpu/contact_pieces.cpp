@@ -13,7 +13,7 @@ constexpr double kLeastMargin = 0.01;
 
 class Maker {
  public:
-  Maker(const Scene& scene, Vec3 origin, const ColliderBuffers& colliders)
+  Maker(const Scene& scene, Vec3 origin, const ColliderBuffers* colliders)
       : scene_(scene), origin_(origin), colliders_(colliders) {}
 
   ContactPieces all() {
@@ -68,7 +68,7 @@ class Maker {
       }
       return;
     }
-    const auto range = std::find_if(colliders_.moving.ranges.begin(), colliders_.moving.ranges.end(),
+    const auto range = std::find_if(colliders_->moving.ranges.begin(), colliders_->moving.ranges.end(),
                                     [&](const MeshRange& r) { return r.collider == k; });
     std::size_t next = 0;
     for (const std::uint32_t size : clusters.sizes) {
@@ -130,14 +130,14 @@ class Maker {
 
   const Scene& scene_;
   const Vec3 origin_;
-  const ColliderBuffers& colliders_;
+  const ColliderBuffers* colliders_;
   ContactPieces made_;
   uint capsule_ends_ = 0;
 };
 
 }  // namespace
 
-ContactPieces contact_pieces(const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders) {
+ContactPieces contact_pieces(const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders) {
   return Maker(scene, origin_m, colliders).all();
 }
 

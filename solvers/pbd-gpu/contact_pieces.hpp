@@ -18,6 +18,6 @@ struct ContactPieces {
   std::vector<double> margins_m;  ///< one a collider, those used
 };
 /// Positions are relative to `origin_m`.
-ContactPieces contact_pieces(const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders);
+ContactPieces contact_pieces(const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders);
 
 }  // namespace clothbench::pbd_gpu

@@ -199,7 +199,7 @@ bool is_tethered(const Scene& scene, const nlohmann::json& settings) {
 
 bool contact_by_planes(const Scene& scene, const nlohmann::json& settings) {
   return settings.value(kTuning, nlohmann::json::object()).value("contact", "samples") == "planes" &&
-         !(scene.needs & kColliderFeatures).empty() && !scene.needs.has(Feature::SelfCollision);
+         !(scene.needs & (kColliderFeatures | FeatureSet{Feature::SelfCollision})).empty();
 }
 
 int substeps_over_budget(const Scene& scene, const nlohmann::json& settings) {

@@ -26,7 +26,8 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
           BIND_CONSTRAINTS = 39, BIND_POINT_SOURCES = 40, BIND_POINTS = 41, BIND_PIECES = 42, BIND_PIECE_BOXES = 43,
           BIND_ELEMENTS = 44, BIND_FANS = 45, BIND_RANGES = 46, BIND_PAIRS = 47, BIND_PAIR_STATES = 48,
           BIND_LEDGER = 49, BIND_FAULTS = 50, BIND_COUNTER = 51, BIND_LAST_POSITIONS = 52, BIND_LAST_VELOCITIES = 53,
-          BIND_COUNT = 54;
+          BIND_SELF_ORDER = 54, BIND_SELF_BOXES = 55, BIND_SELF_RANGES = 56, BIND_SELF_PAIRS = 57, BIND_SELF_WAYS = 58,
+          BIND_SELF_NEAR = 59, BIND_SELF_CONTACTS = 60, BIND_SELF_PUSHES = 61, BIND_COUNT = 62;
 
 // Specialization constants: C(number, type, name, default); number 0 is local_size_x.
 
@@ -54,14 +55,18 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(5, uint, FRICTION, 0u) C(6, uint, STANDING_CLUSTERS, 0u) C(7, uint, MOVING_CLUSTERS, 0u) C(8, uint, SAMPLES, 0u) \
   C(9, uint, MOVING, 0u) C(10, uint, LANES, 1u)
 // Plane contact of `xpbd`. PLANES: half-spaces. GRIPS: vertices that hands may hold. MOST_POINTS: of a piece. MOVING: 1
-// if any piece moves.
+// if any piece moves. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, NEAR_CAPACITY, TOUCHING_CAPACITY:
+// pairs, near pairs and those with contacts that its lists have place for; THICKNESS_BITS, SELF_FRICTION_BITS: floats.
 #define PLANE_CONTACT_CONSTANTS(C) \
-  C(1, uint, PLANES, 0u) C(2, uint, GRIPS, 0u) C(3, uint, MOST_POINTS, 3u) C(4, uint, MOVING, 0u)
+  C(1, uint, PLANES, 0u) C(2, uint, GRIPS, 0u) C(3, uint, MOST_POINTS, 3u) C(4, uint, MOVING, 0u) C(5, uint, SELF, 0u) \
+  C(6, uint, SELF_CAPACITY, 0u) C(7, uint, NEAR_CAPACITY, 0u) C(8, uint, TOUCHING_CAPACITY, 0u) \
+  C(9, uint, THICKNESS_BITS, 0u) C(10, uint, SELF_FRICTION_BITS, 0u)
 // The same, for the kernel of a whole frame, beside LINE_CONSTANTS. MARGIN_BITS: of the greatest margin, a float.
 #define PLANE_FRAME_CONSTANTS(C) \
   C(25, uint, PLANES, 0u) C(26, uint, MOST_POINTS, 3u) C(27, uint, MOVING, 0u) C(28, uint, VERTICES, 4u) \
   C(29, uint, TRIANGLES, 2u) C(30, uint, CAPACITY, 0u) C(31, uint, PIECES, 0u) C(32, uint, GROUPS, 0u) \
-  C(33, uint, MARGIN_BITS, 0u)
+  C(33, uint, MARGIN_BITS, 0u) C(34, uint, SELF, 0u) C(35, uint, SELF_CAPACITY, 0u) C(36, uint, NEAR_CAPACITY, 0u) \
+  C(37, uint, TOUCHING_CAPACITY, 0u) C(38, uint, THICKNESS_BITS, 0u) C(39, uint, SELF_FRICTION_BITS, 0u)
 // clang-format on
 // Kernels of `paper`. NATIVE: float atomics; the count is then a float too.
 #define PAPER_CONSTANTS(C) C(1, uint, FRICTION, 0u) C(2, uint, NATIVE, 0u)
@@ -290,86 +295,9 @@ struct SelfConstants {
   uint unused0;
 };
 
-// Plane contact of `xpbd`: PLANES.md.
-
-/// A convex piece of a collider: the hull of `count` points, grown by `radius`.
-struct ContactPiece {
-  uint first, count;
-  float radius, margin, friction;
-  uint moves;
-  uint first_source;  // of its points if it moves; else of the next piece that does
-  uint unused0;
-};
-
-/// A point of a piece at the frame's start and end; w unused.
-struct PiecePoint {
-  vec4 start, end;
-};
-
-/// Where a point of a moving piece comes from: vertex `index` of the moving meshes, or end `index` % 2 of capsule
-/// `index` / 2 if `capsule` is 1.
-struct PointSource {
-  uint point, index, capsule, piece;
-};
-
-/// What is known of one pair of an element of the cloth (a triangle or a vertex) and a piece.
-struct PairState {
-  vec4 normal;   // from the piece to the cloth; w: lower bound of the pair's distance [m]
-  vec4 weights;  // of the element's vertices at its nearest point; w: dot(normal, piece's nearest point at the end)
-  vec4 way;      // of the piece's nearest point in the substep; w: distance to keep, then the plane's offset
-  vec4 push;     // proposed correction of the contact over its inverse mass; w: its part that is no velocity. Then
-                 // multipliers
-};
-
-#define PAIR_LOOKED 1u   // near enough to be asked in this substep
-#define PAIR_NEAREST 2u  // has a contact at its nearest points
-#define PAIR_PLANE 4u    // has a plane
-#define PAIR_LEVELS 4u   // reaches tried: each half of the one before
-
-/// Of the frame, on the device.
-struct ContactLedger {
-  uint pairs;                        // in the list
-  float reach;                       // share of the vertices' reach that the list is made for
-  float carried;                     // greatest displacement of a point of any piece in the frame [m]
-  uint asked[2];                     // pairs near in this substep, before and after the lines
-  uint cloth_low[3], cloth_high[3];  // box that the cloth may be in, in the order of box_bits.glsl
-  uint unused0;
-};
-
-/// Counts since loading or reset; all are 0 unless contact failed.
-struct ContactFaults {
-  uint without_place;  // vertices that were not before all their planes at a substep's end
-  uint inside;         // pairs that touch at a substep's start
-  uint dropped;        // pairs that the list had no place for
-  uint returned;       // no fault: vertices that went back to a free place, for no nearer one was found
-};
-
-/// Push constants of the kernels of plane contact.
-struct PlaneContactConstants {
-  vec4 gravity_h;  // g h [m/s]
-  uint vertices, triangles;
-  uint capacity;                 // pairs that the list has place for
-  uint pieces, groups;           // groups of PIECES_A_GROUP neighbouring pieces have a box each
-  uint turn;                     // of responses: 0 before the lines, with the predicted positions; 1 and on after them
-  uint first_substep, substeps;  // this substep; those of the frame
-  float substep_part;            // of the frame
-  float h, per_h;                // of the substep [s], [1/s]
-  float loss;                    // 1 - exp(-c h)
-  float frame_s;
-  float reach_m;   // of a vertex at rest
-  float margin_m;  // greatest margin of any collider
-  uint unused0;
-};
-#define PIECES_A_GROUP 16u
+#include "plane_shared.h"
 
 #ifdef __cplusplus
-static_assert(sizeof(ContactPiece) == 32);
-static_assert(sizeof(PiecePoint) == 32);
-static_assert(sizeof(PointSource) == 16);
-static_assert(sizeof(PairState) == 64);
-static_assert(sizeof(ContactLedger) == 48);
-static_assert(sizeof(ContactFaults) == 16);
-static_assert(sizeof(PlaneContactConstants) == 80);
 static_assert(sizeof(SelfConstants) == 48);
 static_assert(sizeof(MeshCluster) == 16);
 static_assert(sizeof(ClusterBox) == 32);

@@ -17,9 +17,9 @@ constexpr std::uint32_t kRoundsAfter = 2;
 
 }  // namespace
 
-PlaneContact::PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
+PlaneContact::PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
                            const std::vector<std::uint32_t>& particle)
-    : frame_(frame), scene_(scene), colliders_(colliders) {
+    : frame_(frame), scene_(scene), half_spaces_(colliders != nullptr ? colliders->planes.count : 0) {
   const ContactPieces all = contact_pieces(scene, origin_m, colliders);
   frame_.set_contact_margins(all.margins_m);
   most_margin_m_ = all.most_margin_m;
@@ -34,6 +34,10 @@ PlaneContact::PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_
   }
   if (moving_points_ > 0) frame_.add_buffer(BIND_POINT_SOURCES, "contact point sources", all.sources);
   add_elements(particle);
+  if (scene.needs.has(Feature::SelfCollision)) {
+    most_margin_m_ = std::max(most_margin_m_, 0.5 * scene.cloth.self_collision.thickness_m);
+    self_ = std::make_unique<PlaneSelf>(frame, scene, particle);
+  }
   if (moving_points_ == 0) return;
   stage_pairs_ = frame_.add_stage("PlanePairs", serves(), true);
   moved_ = frame_.add_kernel(stage_pairs_, "plane_pieces", sizeof(PlaneContactConstants), specialization().by_number(),
@@ -80,16 +84,17 @@ void PlaneContact::add_elements(const std::vector<std::uint32_t>& particle) {
 
 PlaneContactSpecialization PlaneContact::specialization() const {
   PlaneContactSpecialization s;
-  s.PLANES = colliders_.planes.count;
+  s.PLANES = half_spaces_;
   s.GRIPS = static_cast<uint>(scene_.grips.vertices.size());
   s.MOST_POINTS = most_points_;
   s.MOVING = moving_points_ > 0 ? 1 : 0;
+  if (self_) self_->specialize(s);
   return s;
 }
 
 PlaneFrameSpecialization PlaneContact::frame_specialization() const {
   PlaneFrameSpecialization s;
-  s.PLANES = colliders_.planes.count;
+  s.PLANES = half_spaces_;
   s.MOST_POINTS = most_points_;
   s.MOVING = moving_points_ > 0 ? 1 : 0;
   s.VERTICES = static_cast<uint>(scene_.cloth.vertex_count());
@@ -102,7 +107,8 @@ PlaneFrameSpecialization PlaneContact::frame_specialization() const {
 }
 
 FeatureSet PlaneContact::serves() const {
-  return scene_.needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided});
+  return scene_.needs &
+         (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::SelfCollision});
 }
 
 void PlaneContact::add_kernels() {
@@ -121,6 +127,7 @@ void PlaneContact::add_kernels() {
     respond_ = add(stage_, "plane_respond");
     choose_ = add(stage_, "plane_choose");
   }
+  if (self_) self_->add_kernels(stage_pairs_, stage_, specialization().by_number());
   predict_ = add(stage_, "plane_predict");
   gather_ = add(stage_, "plane_gather");
   settle_ = add(stage_, "plane_settle");
@@ -169,6 +176,7 @@ void PlaneContact::record_pieces(double dt_s, int substeps) {
 void PlaneContact::record_list(double dt_s, int substeps) {
   const PlaneContactConstants c = constants(0, substeps, dt_s);
   vertices(reach_, c);
+  if (self_) self_->record_list(c);
   if (pieces_ == 0) return;
   const std::uint32_t elements = c.triangles + c.vertices;
   frame_.dispatch(*count_, std::min(elements, kPairThreads), c, {32.0 * elements, 16.0 * elements});
@@ -180,6 +188,7 @@ void PlaneContact::record_before(int s, int substeps, double dt_s) {
   const PlaneContactConstants c = constants(s, substeps, dt_s);
   vertices(predict_, c);
   pairs(query_, c);
+  if (self_) self_->record_query(c);
   vertices(gather_, c);
 }
 
@@ -188,12 +197,15 @@ void PlaneContact::record_after(int s, int substeps, double dt_s) {
   c.turn = 1;
   vertices(settle_, c);
   pairs(query_, c);
+  if (self_) self_->record_query(c);
   vertices(gather_, c);
   for (c.turn = 2; c.turn <= kRoundsAfter; ++c.turn) {
     pairs(respond_, c);
+    if (self_) self_->record_response(c);
     vertices(gather_, c);
   }
   pairs(choose_, c);
+  if (self_) self_->record_planes(c);
   vertices(project_, c);
 }
 

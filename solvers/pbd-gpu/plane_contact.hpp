@@ -1,8 +1,10 @@
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "colliders.hpp"
 #include "contact_pieces.hpp"
+#include "plane_self.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -15,7 +17,8 @@ class PlaneContact {
  public:
   /// Adds buffers, and what moving pieces need. `particle`: of each vertex, the vertex that it is welded to (or
   /// itself).
-  PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers& colliders,
+  /// `colliders`: null if the scene has none.
+  PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
                const std::vector<std::uint32_t>& particle);
   /// Adds the stages PlanePairs and PlaneContact with a kernel a phase, for record_list, record_before and
   /// record_after.
@@ -31,6 +34,7 @@ class PlaneContact {
   void record_after(int s, int substeps, double dt_s);
 
   FeatureSet serves() const;
+  bool with_itself() const { return self_ != nullptr; }
   /// What the kernel of a whole frame needs of the scene.
   PlaneFrameSpecialization frame_specialization() const;
   PlaneContactConstants constants(int s, int substeps, double dt_s) const;
@@ -47,7 +51,8 @@ class PlaneContact {
 
   FrameBuilder& frame_;
   const Scene& scene_;
-  const ColliderBuffers& colliders_;
+  const std::uint32_t half_spaces_;
+  std::unique_ptr<PlaneSelf> self_;  ///< if the cloth touches itself
   std::uint32_t triangles_ = 0, pieces_ = 0, groups_ = 0, moving_points_ = 0, capacity_ = 0, most_points_ = 1;
   double most_margin_m_ = 0;
   int stage_pairs_ = -1, stage_ = -1;

@@ -15,6 +15,7 @@ constexpr std::uint32_t kScanBlock = 32;
 
 std::unique_ptr<PlaneFrame> PlaneFrame::make(FrameBuilder& frame, Lines& lines, PlaneContact& contact) {
   const std::string wanted = frame.tuning()["contact_frame"];
+  if (contact.with_itself()) return nullptr;
   if (!frame.settings()["one_dispatch"].get<bool>() || wanted == "never") return nullptr;
   // A CPU takes seconds to compile it, and runs a workgroup on one of its cores.
   const vulkan::Device& device = *frame.device();

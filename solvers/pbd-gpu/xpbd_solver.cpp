@@ -26,8 +26,7 @@ class Xpbd final : public GpuSolver {
     const ContactFaults f = plane_contact_->faults();
     return {{"contact_squeezed", "vertices that were put at the nearest place, for none was before all their planes",
              static_cast<double>(f.without_place)},
-            {"contact_inside", "pairs of a triangle and a piece that met at a substep's start",
-             static_cast<double>(f.inside)},
+            {"contact_inside", "pairs that met at a substep's start", static_cast<double>(f.inside)},
             {"contact_dropped", "pairs that the list had no place for", static_cast<double>(f.dropped),
              "contact: the list of pairs had no place for all of them"}};
   }
@@ -83,7 +82,7 @@ class Xpbd final : public GpuSolver {
     if (const int calm = substeps_without_gravity(scene(), settings()); calm > 0)
       leave_out(std::to_string(calm) + " substeps",
                 "gravity takes the cloth far in a frame: " + std::to_string(xpbd_substeps(scene(), settings())));
-    if (planes) plane_contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, *colliders(), cloth.particle);
+    if (planes) plane_contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, colliders(), cloth.particle);
     if (chained)
       chains_ = std::make_unique<Chains>(frame(), scene(), cloth, predicts(), tension.on);
     else
@@ -97,9 +96,9 @@ class Xpbd final : public GpuSolver {
     else if (!planes)
       contact_ = std::make_unique<XpbdContact>(frame(), scene(), origin, *colliders(),
                                                settings()["contact_samples"].get<int>());
-    if (scene().needs.has(Feature::SelfCollision))
+    if (scene().needs.has(Feature::SelfCollision) && !planes)
       self_contact_ = std::make_unique<XpbdSelfContact>(frame(), scene(), x);
-    else
+    else if (!planes || !scene().needs.has(Feature::SelfCollision))
       leave_out("self-contact", "the cloth of the scene does not touch itself");
   }
 
@@ -118,8 +117,6 @@ class Xpbd final : public GpuSolver {
   /// Whether planes hold colliders off.
   bool by_planes() {
     const bool planes = contact_by_planes(scene(), settings());
-    if (!planes && settings()[kTuning]["contact"] == "planes" && scene().needs.has(Feature::SelfCollision))
-      leave_out("contact by planes", "the cloth of the scene touches itself");
     if (const int wanted = substeps_over_budget(scene(), settings()); wanted > 0)
       leave_out(
           std::to_string(wanted) + " substeps",

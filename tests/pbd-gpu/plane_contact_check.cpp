@@ -145,4 +145,28 @@ PairCheck check_pairs(const Scene& scene, const std::vector<double>& before, con
   return check;
 }
 
+PairCheck check_self_pairs(const Scene& scene, const std::vector<double>& before, const std::vector<double>& after) {
+  PairCheck check;
+  const auto all = triangles(scene.cloth);
+  std::vector<Swept> swept;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const auto& t : all) {
+    swept.push_back({{point(before, t[0]), point(before, t[1]), point(before, t[2])},
+                     {point(after, t[0]), point(after, t[1]), point(after, t[2])},
+                     0});
+    boxes.push_back(box_of(swept.back().start, swept.back().end, 0));
+  }
+  for (std::size_t a = 0; a < all.size(); ++a)
+    for (std::size_t b = a + 1; b < all.size(); ++b) {
+      if (!boxes[a].intersects(boxes[b])) continue;
+      const bool joined = std::any_of(all[a].begin(), all[a].end(), [&](std::uint32_t v) {
+        return std::find(all[b].begin(), all[b].end(), v) != all[b].end();
+      });
+      if (joined) continue;
+      ++check.pairs;
+      check.parted += parted(swept[a].start, swept[a].end, swept[b]) ? 1 : 0;
+    }
+  return check;
+}
+
 }  // namespace clothbench::pbd_gpu

@@ -17,4 +17,7 @@ struct PairCheck {
 PairCheck check_pairs(const Scene& scene, const std::vector<double>& before, const std::vector<double>& after,
                       int frame);
 
+/// The same of the cloth's triangles with each other, those without a common vertex.
+PairCheck check_self_pairs(const Scene& scene, const std::vector<double>& before, const std::vector<double>& after);
+
 }  // namespace clothbench::pbd_gpu

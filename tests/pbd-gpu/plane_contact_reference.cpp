@@ -51,6 +51,11 @@ PlaneContactReference::PlaneContactReference(const Scene& scene, int substeps) :
     if (c.shape == Collider::Shape::Plane)
       halves_.push_back({point(c.normal), point(c.normal).dot(point(c.center_m)), c.margin_m, c.friction});
   }
+  thickness_ = scene.cloth.self_collision.thickness_m;
+  most_margin_ = std::max(most_margin_, 0.5 * thickness_);
+  self_wishes_.resize(x.size());
+  self_planes_.resize(x.size());
+  if (thickness_ > 0) make_self_contacts();
 }
 
 void PlaneContactReference::place_pieces(int index) {
@@ -142,21 +147,28 @@ void PlaneContactReference::substep(int s) {
   x0_ = x;
   y_ = x;
   for (std::size_t i = 0; i < x.size(); ++i) y_[i] += h_ * (v[i] + g);
+  const auto rooms = [&] {
+    std::vector<double> room(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) room[i] = (y_[i] - x0_[i]).norm() + carried + most_margin_;
+    return room;
+  };
   for (Element& e : elements_) query(e);
+  query_self(rooms());
   respond(true, 0);
   for (std::size_t i = 0; i < x.size(); ++i) {
     v[i] += g;
     x[i] += h_ * v[i];
   }
   y_ = x;
-  std::vector<double> room(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) room[i] = (y_[i] - x0_[i]).norm() + carried + most_margin_;
+  const std::vector<double> room = rooms();
   for (Element& e : elements_) query(e);
+  query_self(room);
   respond(false, 0);
   respond(false, 1);
   for (Element& e : elements_)
     for (Pair& pair : e.pairs)
       if (pair.plane) choose(e, pair);
+  choose_self();
   for (std::size_t i = 0; i < x.size(); ++i) {
     x[i] = place(i, room[i]);
     v[i] += (x[i] - y_[i]) / h_;
@@ -258,6 +270,7 @@ void PlaneContactReference::respond(bool before, int round) {
   for (Element& e : elements_)
     for (Pair& pair : e.pairs)
       if (pair.contact) push_of(e, pair, round);
+  wish_self(before ? 0 : round);
   std::vector<V> by(x.size(), V::Zero()), moving(x.size(), V::Zero());
   for (std::size_t i = 0; i < x.size(); ++i) {
     double lengths = 0;
@@ -289,6 +302,7 @@ void PlaneContactReference::respond(bool before, int round) {
     };
     from(elements_[elements_.size() - x.size() + i], 0);
     for (const auto& [triangle, corner] : fans_[i]) from(elements_[triangle], corner);
+    for (const Wish& wish : self_wishes_[i]) propose(wish.moving, wish.out);
     if (lengths > 0) by[i] /= lengths, moving[i] /= lengths;
   }
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -341,6 +355,7 @@ double PlaneContactReference::worst(std::size_t i, const V& at) const {
   for (const Half& h : halves_) least = std::min(least, h.n.dot(at) - offset_of(h, i));
   const_cast<PlaneContactReference*>(this)->each_plane(
       i, [&](const Pair& pair, std::size_t) { least = std::min(least, pair.nearest.n.dot(at) - pair.offset); });
+  for (const SelfPlane& plane : self_planes_[i]) least = std::min(least, plane.n.dot(at) - plane.offset);
   return least;
 }
 
@@ -356,6 +371,7 @@ Eigen::Vector3d PlaneContactReference::projected_on_planes(std::size_t i, V at) 
     };
     for (std::size_t k = 0; k < halves_.size(); ++k) onto(halves_[k].n, offset_of(halves_[k], i), multipliers[k]);
     each_plane(i, [&](Pair& pair, std::size_t corner) { onto(pair.nearest.n, pair.offset, pair.multipliers[corner]); });
+    for (SelfPlane& plane : self_planes_[i]) onto(plane.n, plane.offset, plane.multiplier);
     if (most < 0.5 * kRounding) break;
   }
   return at;

@@ -8,8 +8,8 @@
 namespace clothbench::pbd_gpu {
 
 /// Contact by planes in double on the CPU, phase by phase as PLANES.md has it and by brute force: every element against
-/// every piece, no boxes, no lists, and the nearest point of a hull over every three of its points. Cloth that nothing
-/// holds together, so that contact alone is seen.
+/// every piece and triangle against triangle, no boxes, no lists, and the nearest point of a hull over every three of
+/// its points. Cloth that nothing holds together, so that contact alone is seen.
 class PlaneContactReference {
  public:
   PlaneContactReference(const Scene& scene, int substeps);
@@ -17,7 +17,7 @@ class PlaneContactReference {
   void frame(int index);
 
   std::vector<Eigen::Vector3d> x, v;  ///< positions [m] and velocities [m/s], one a vertex
-  long responses = 0, projected = 0, without_place = 0;
+  long responses = 0, self_responses = 0, projected = 0, without_place = 0;
 
  private:
   using V = Eigen::Vector3d;
@@ -48,6 +48,22 @@ class PlaneContactReference {
     std::vector<std::size_t> vertices;
     std::vector<Pair> pairs;
   };
+  /// Two triangles of the cloth without a common vertex, or a vertex and a triangle: the contact alone.
+  struct SelfContact {
+    std::vector<std::size_t> first, second;  ///< vertices
+    Nearest nearest;                         ///< direction to the first
+    V on_second = V::Zero();                 ///< weights
+    double target = 0;
+    bool near = false;
+  };
+  struct SelfPlane {
+    V n;
+    double offset;
+    double multiplier = 0;
+  };
+  struct Wish {
+    V moving, out;
+  };
   struct Half {
     V n;
     double offset, margin, friction;
@@ -60,6 +76,12 @@ class PlaneContactReference {
   bool parted_by_face(const Element& e, Pair& pair) const;
   Nearest nearest(const Points& cloth, const Points& piece, const Points& end) const;
   double kept_margin(const Element& e, const Pair& pair) const;
+  void make_self_contacts();
+  void query_self(const std::vector<double>& room);
+  void query_self(SelfContact& s, const std::vector<double>& room) const;
+  void wish_self(int round);
+  void wish_of(const SelfContact& s, int round);
+  void choose_self();
   void respond(bool before, int round);
   void push_of(const Element& e, Pair& pair, int round) const;
   void choose(const Element& e, Pair& pair) const;
@@ -72,12 +94,16 @@ class PlaneContactReference {
 
   const Scene& scene_;
   const int substeps_;
-  double h_ = 0, least_margin_ = 0, most_margin_ = 0;
+  double h_ = 0, least_margin_ = 0, most_margin_ = 0, thickness_ = 0;
   std::vector<double> w_;
   std::vector<V> y_, x0_;
   std::vector<Piece> pieces_;
   std::vector<Half> halves_;
   std::vector<Element> elements_;
+  std::vector<SelfContact> self_;               ///< triangles with triangles, then vertices with triangles
+  std::size_t self_pairs_ = 0;                  ///< of triangles
+  std::vector<std::vector<Wish>> self_wishes_;  ///< of each vertex
+  std::vector<std::vector<SelfPlane>> self_planes_;
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> fans_;  ///< triangle and corner, of each vertex
 };
 

@@ -120,6 +120,32 @@ void add_planes(std::vector<Fault>& f) {
          "any_planes && f < end_fan;", "any_planes && f + 1u < end_fan;");
 }
 
+/// The same of the cloth's contact with itself.
+void add_self_planes(std::vector<Fault>& f) {
+  const auto kernel = [&](const char* name, const char* file, const char* is, const char* is_to_be) {
+    Fault fault{name, "heaped"};
+    fault.shader = ShaderFault{file, is, is_to_be};
+    f.push_back(std::move(fault));
+  };
+  kernel("boxes of a tenth of the size", "self_box.glsl", "return b.low_0.xyz +",
+         "return 0.9 * b.high_0.xyz + 0.1 * b.low_0.xyz +");
+  kernel("triangles whose numbers differ by few not paired", "plane_self_list.glsl", "if (a[c] == b.x ",
+         "if (abs(int(a[c]) - int(b.x)) < 60 ");
+  kernel("half of each triangle's pairs lost", "plane_self_near.glsl", "k < range.x + range.y; ++k)\n    if",
+         "k < range.x + range.y / 2u; ++k)\n    if");
+  kernel("bounds of distances grow", "plane_self_near.glsl", "bound -= own.x + other.x;",
+         "bound += 10.0 * (own.x + other.x);");
+  kernel("contacts drawn together", "plane_self_push.glsl", "vec3 by = moving * n;", "vec3 by = -moving * n;");
+  kernel("normal of the nearest points flipped", "plane_self_query.glsl", "self_near[k].plane = normal;",
+         "self_near[k].plane = vec4(-normal.xyz, normal.w);");
+  kernel("planes of the second triangle on its wrong side", "plane_self_choose.glsl", "vec4(-n, half_m - offset)",
+         "vec4(-n, half_m - offset - 0.01)");
+  kernel("planes of the cloth with itself forgotten", "plane_project.glsl",
+         "if ((self_near[k].marks & SELF_PLANE) == 0u) continue;", "if (true) continue;");
+  kernel("projected onto the cloth's planes of all but three triangles", "plane_project.glsl",
+         "SELF != 0u && f < end_fan;", "SELF != 0u && f + 3u < end_fan;");
+}
+
 void add_inputs(std::vector<Fault>& f) {
   const auto scene = [&](const char* name, const char* stage, std::function<void(Scene&)> change) {
     Fault fault{name, stage};
@@ -260,6 +286,7 @@ std::vector<Fault> faults() {
   std::vector<Fault> out;
   add_kernels(out);
   add_planes(out);
+  add_self_planes(out);
   add_inputs(out);
   add_outputs(out);
   add_metrics(out);

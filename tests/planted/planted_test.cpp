@@ -23,7 +23,8 @@ const Stage& stage(const std::string& name) {
 
 /// Contact by planes, which is no default yet, takes half of the time: it is left to the slow tier's planted.whole.
 bool left_to_slow_tier(const std::string& stage) {
-  return std::getenv("CLOTHBENCH_WHOLE_MATRIX") == nullptr && (stage == "struck" || stage == "wrapped");
+  return std::getenv("CLOTHBENCH_WHOLE_MATRIX") == nullptr &&
+         (stage == "struck" || stage == "wrapped" || stage == "heaped");
 }
 
 const RunRecord& healthy(const std::string& name) {

@@ -57,6 +57,15 @@ const char* const kStruck = R"({"name":"struck","why":"A sheet is thrown onto a 
   "time":{"frame_rate_hz":72,"duration_s":0.3},
   "expect":{"outcome":"ok","depth_max_m":{"at_most":1e-5}}})";
 
+// The same of the cloth with itself: it is thrown into a heap in so few substeps that planes have to hold.
+const char* const kHeaped = R"({"name":"heaped","why":"A folded sheet is thrown onto the floor and onto itself.",
+  "cloth":{"grid":[17,17],"size_m":[0.5,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0.6,-5,0.4],
+           "pose":{"center_m":[0,0.1,0],"axis_u":[0,1,0],"axis_v":[0,0,1],"drape":{"radius_m":0.04}},"start":{"shape":"rest","noise_m":0.001,"seed":8},
+           "self_collision":{"thickness_m":0.006,"friction":0.5}},
+  "material":{"membrane_stiffness_N_per_m":1000,"damping_per_s":0.1},"colliders":[{"type":"plane","point_m":[0,0,0],"margin_m":0.004,"friction":0.3}],
+  "time":{"frame_rate_hz":72,"duration_s":0.3},
+  "expect":{"outcome":"ok","self_contact_pairs_max":{"at_most":0}}})";
+
 const char* const kPulled = R"({"name":"pulled","why":"Two bars pull a sheet apart and let go.",
   "cloth":{"grid":[17,9],"size_m":[0.5,0.25],"areal_density_kg_per_m2":0.2,"sides":"single","pose":{}},
   "material":{"membrane_stiffness_N_per_m":1000},"gravity_m_per_s2":[0,0,0],
@@ -148,6 +157,8 @@ std::vector<Stage> stages() {
   out.push_back(solved("pushed", scene(kPushed)));
   out.push_back(solved("struck", scene(kStruck)));
   out.back().settings = {{"substeps", 3}, {kTuning, {{"contact", "planes"}}}};
+  out.push_back(solved("heaped", scene(kHeaped)));
+  out.back().settings = {{"substeps", 2}, {kTuning, {{"contact", "planes"}}}};
   out.push_back(solved("wrapped", load_scene("validation/capstan-slip")));
   out.back().settings = {{"substeps", 16}, {kTuning, {{"contact", "planes"}}}};
   out.push_back(solved("pulled", scene(kPulled)));

@@ -94,7 +94,8 @@ ShaderVariant::ShaderVariant(const ShaderFault& fault) {
   fs::remove_all(a.folder);
   fs::create_directories(a.folder);
   fs::copy(fs::path(CLOTHBENCH_KERNEL_SOURCES) / "shaders", a.folder / "shaders", fs::copy_options::recursive);
-  fs::copy(fs::path(CLOTHBENCH_KERNEL_SOURCES) / "pbd_shared.h", a.folder / "pbd_shared.h");
+  for (const char* shared : {"pbd_shared.h", "plane_shared.h"})
+    fs::copy(fs::path(CLOTHBENCH_KERNEL_SOURCES) / shared, a.folder / shared);
   const fs::path file = a.folder / "shaders" / fault.file;
   const Code code = read(file);
   std::string text(code.begin(), code.end());

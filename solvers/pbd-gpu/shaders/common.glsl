@@ -20,6 +20,7 @@ layout(std430, binding = BIND_COUNTER) buffer Counter { uint counted_read, count
 #define STORE16(array, i, value) { atomicAdd(counted_write, 16u); array[i] = (value); }
 #define STORE4(array, i, value) { atomicAdd(counted_write, 4u); array[i] = (value); }
 #define STORE32(array, i, value) { atomicAdd(counted_write, 32u); array[i] = (value); }
+#define STORE64(array, i, value) { atomicAdd(counted_write, 64u); array[i] = (value); }
 #define COUNT_ATOMIC { atomicAdd(counted_read, 4u); atomicAdd(counted_write, 4u); }
 #define COUNT_READ(bytes) { atomicAdd(counted_read, bytes); }
 #else
@@ -30,6 +31,7 @@ layout(std430, binding = BIND_COUNTER) buffer Counter { uint counted_read, count
 #define STORE16(array, i, value) { array[i] = (value); }
 #define STORE4(array, i, value) { array[i] = (value); }
 #define STORE32(array, i, value) { array[i] = (value); }
+#define STORE64(array, i, value) { array[i] = (value); }
 #define COUNT_ATOMIC
 #define COUNT_READ(bytes) {}
 #endif

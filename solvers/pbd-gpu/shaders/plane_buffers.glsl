@@ -16,6 +16,8 @@ layout(std430, binding = BIND_PIECES) readonly buffer Pieces { ContactPiece piec
 layout(std430, binding = BIND_POINTS) readonly buffer Points { PiecePoint points[]; };
 layout(std430, binding = BIND_PIECE_BOXES) readonly buffer PieceBoxes { ClusterBox boxes[]; };  // groups' after pieces'
 layout(std430, binding = BIND_PLANES) readonly buffer Planes { PlaneShape half_spaces[]; };
+#define THICKNESS_M uintBitsToFloat(THICKNESS_BITS)
+#define SELF_FRICTION uintBitsToFloat(SELF_FRICTION_BITS)
 layout(std430, binding = BIND_ELEMENTS) readonly buffer Elements { uvec4 elements[]; };  // vertices, number of them
 
 const float kGuard_m = 2e-4;    // distance of planes from pieces

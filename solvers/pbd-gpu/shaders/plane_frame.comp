@@ -32,6 +32,9 @@ layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // 
 layout(std430, binding = BIND_PAIR_STATES) STATE buffer States { PairState states[]; };
 layout(std430, binding = BIND_LEDGER) STATE buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_FAULTS) STATE buffer Faults { ContactFaults faults; };
+layout(std430, binding = BIND_SELF_RANGES) readonly buffer SelfRanges { uvec4 self_ranges[]; };
+layout(std430, binding = BIND_SELF_NEAR) STATE buffer SelfNears { SelfNear self_near[]; };
+layout(std430, binding = BIND_SELF_PUSHES) readonly buffer SelfPushes { SelfPush self_pushes[]; };
 
 PLANE_FRAME_CONSTANTS(SPECIALIZE)
 #define MARGIN_M uintBitsToFloat(MARGIN_BITS)
@@ -56,6 +59,9 @@ vec3 anchor(uvec2 at, uint k) {
 #include "plane_project.glsl"
 #include "box_bits.glsl"
 const uint kThreads = THREADS;
+#define SCAN_RANGES ranges
+#define SCAN_COUNT (TRIANGLES + VERTICES)
+#define SCAN_CAPACITY CAPACITY
 #include "plane_scan.glsl"
 
 #ifdef MANY_GROUPS

@@ -10,6 +10,9 @@ layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
 layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };  // first entry a vertex; 4 triangle + corner
 layout(std430, binding = BIND_RANGES) readonly buffer Ranges { uvec4 ranges[]; };  // x: first pair, y: pairs
 layout(std430, binding = BIND_PAIR_STATES) readonly buffer States { PairState states[]; };
+layout(std430, binding = BIND_SELF_RANGES) readonly buffer SelfRanges { uvec4 self_ranges[]; };  // z: first near pair, w: near pairs
+layout(std430, binding = BIND_SELF_NEAR) readonly buffer SelfNears { SelfNear self_near[]; };
+layout(std430, binding = BIND_SELF_PUSHES) readonly buffer SelfPushes { SelfPush self_pushes[]; };
 #include "plane_gather.glsl"
 
 void main() {

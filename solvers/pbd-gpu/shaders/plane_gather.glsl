@@ -37,6 +37,20 @@ void from_pairs(uint element, uint corner, float w) {
   }
 }
 
+/// From the pairs of the vertex' triangles with others of the cloth.
+void from_self(uint element, uint corner) {
+  uvec4 range = LOAD16(self_ranges, element);
+  for (uint k = range.z; k < range.z + range.w; ++k) {
+    uint at = 3u * self_near[k].link + corner;
+    if ((self_near[k].marks & ~SELF_PLANE) == 0u) continue;
+    vec4 all = LOAD16_OF(self_pushes[at].all);
+    if (all.w == 0.0) continue;
+    sum += all.xyz;
+    sum_moving += LOAD16_OF(self_pushes[at].moving).xyz;
+    lengths += all.w;
+  }
+}
+
 void gather(uint i) {
   vec4 at = LOAD16(y, i);
   if (at.w == 0.0) return;
@@ -48,6 +62,7 @@ void gather(uint i) {
   for (uint k = first; k < end; ++k) {
     uint fan = LOAD4(fans, k);
     from_pairs(fan / 4u, fan % 4u, at.w);
+    if (SELF != 0u) from_self(fan / 4u, fan % 4u);
   }
   if (!(lengths > 0.0)) return;
   vec3 by = sum / lengths, moving = sum_moving / lengths;

@@ -13,6 +13,8 @@ layout(std430, binding = BIND_PAIRS) readonly buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_PAIR_STATES) buffer States { PairState states[]; };
 layout(std430, binding = BIND_SIDES) writeonly buffer Ways { float ways[]; };
 layout(std430, binding = BIND_FAULTS) buffer Faults { ContactFaults faults; };
+layout(std430, binding = BIND_SELF_RANGES) readonly buffer SelfRanges { uvec4 self_ranges[]; };
+layout(std430, binding = BIND_SELF_NEAR) buffer SelfNears { SelfNear self_near[]; };
 #include "plane_project.glsl"
 
 void main() {

@@ -25,11 +25,25 @@ float half_space(PlaneShape s) {
     }                                                                        \
   }
 
+// The same of the planes between its triangles and others of the cloth; `k`: the near pair.
+#define EACH_SELF_PLANE(BODY)                                                \
+  for (uint f = first_fan; SELF != 0u && f < end_fan; ++f) {                 \
+    uint fan = fans[f], corner = fan % 4u;                                   \
+    uvec2 range = self_ranges[fan / 4u].zw;                                  \
+    for (uint k = range.x; k < range.x + range.y; ++k) {                     \
+      if ((self_near[k].marks & SELF_PLANE) == 0u) continue;                 \
+      vec3 n = self_near[k].plane.xyz;                                       \
+      float s = self_near[k].plane.w;                                        \
+      BODY                                                                   \
+    }                                                                        \
+  }
+
 /// The least distance before any plane.
 float worst(vec3 at) {
   float least = 1e30;
   for (uint h = 0u; h < PLANES; ++h) least = min(least, dot(at, half_spaces[h].normal.xyz) - half_space(half_spaces[h]));
   EACH_PLANE(least = min(least, dot(n, at) - s);)
+  EACH_SELF_PLANE(least = min(least, dot(n, at) - s);)
   return least;
 }
 
@@ -50,6 +64,15 @@ vec3 projected(vec3 at) {
       float by = max(-old, s + kRounding_m - dot(n, at));
       if (by != 0.0) {
         states[k].push[corner] = old + by;
+        at += by * n;
+        most = max(most, abs(by));
+      }
+    )
+    EACH_SELF_PLANE(
+      float old = self_near[k].multipliers[corner];
+      float by = max(-old, s + kRounding_m - dot(n, at));
+      if (by != 0.0) {
+        self_near[k].multipliers[corner] = old + by;
         at += by * n;
         most = max(most, abs(by));
       }
@@ -100,6 +123,11 @@ vec3 back_from(vec3 to, float room) {
     if (end < 0.0) part = min(part, from > 0.0 ? from / (from - end) : 0.0);
   }
   EACH_PLANE(
+    float from = dot(n, free) - s;
+    float end = dot(n, to) - s;
+    if (end < 0.0) part = min(part, from > 0.0 ? from / (from - end) : 0.0);
+  )
+  EACH_SELF_PLANE(
     float from = dot(n, free) - s;
     float end = dot(n, to) - s;
     if (end < 0.0) part = min(part, from > 0.0 ? from / (from - end) : 0.0);

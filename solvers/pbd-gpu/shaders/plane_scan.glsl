@@ -1,14 +1,15 @@
 // One workgroup: the greatest share of the reaches whose pairs the list has place for, and where each element's pairs begin. `sums`
-// has a place for each of its kThreads threads, a multiple of kBlock.
+// has a place for each of its kThreads threads, a multiple of kBlock. SCAN_RANGES
+// of SCAN_COUNT elements: in: pairs at each share; out: first, pairs.
 const uint kBlock = 32u;
 shared uvec4 sums[kThreads];
 shared uvec4 block_sums[1024u / kBlock];
 
 void scan_ranges(uint t) {
-  uint n = TRIANGLES + VERTICES, each = (n + kThreads - 1u) / kThreads;
+  uint n = SCAN_COUNT, each = (n + kThreads - 1u) / kThreads;
   uint begin = min(t * each, n), end = min(begin + each, n);
   uvec4 sum = uvec4(0u);
-  for (uint k = begin; k < end; ++k) sum += LOAD16(ranges, k);
+  for (uint k = begin; k < end; ++k) sum += LOAD16(SCAN_RANGES, k);
   sums[t] = sum;
   barrier();  // the threads' sums before those of blocks of threads
   if (t % kBlock == 0u) {
@@ -24,15 +25,20 @@ void scan_ranges(uint t) {
   }
   for (uint k = t / kBlock * kBlock; k < t; ++k) before += sums[k];
   uint level = 0u;
-  while (level + 1u < PAIR_LEVELS && all[level] > CAPACITY) ++level;
+  while (level + 1u < PAIR_LEVELS && all[level] > SCAN_CAPACITY) ++level;
   uint first = before[level];
   for (uint k = begin; k < end; ++k) {
-    uint count = ranges[k][level], room = first < CAPACITY ? CAPACITY - first : 0u;
-    STORE16(ranges, k, uvec4(min(first, CAPACITY), min(count, room), 0u, 0u));
+    uint count = SCAN_RANGES[k][level], room = first < SCAN_CAPACITY ? SCAN_CAPACITY - first : 0u;
+    STORE16(SCAN_RANGES, k, uvec4(min(first, SCAN_CAPACITY), min(count, room), 0u, 0u));
     first += count;
   }
   if (t > 0u) return;
-  ledger.pairs = min(all[level], CAPACITY);
-  ledger.reach = uintBitsToFloat((127u - level) << 23u);  // 2^-level exactly
-  if (all[level] > CAPACITY) faults.dropped += all[level] - CAPACITY;
+  float share = uintBitsToFloat((127u - level) << 23u);  // 2^-level exactly
+#ifdef SCAN_SELF
+  ledger.self_reach = share;
+#else
+  ledger.pairs = min(all[level], SCAN_CAPACITY);
+  ledger.reach = share;
+#endif
+  if (all[level] > SCAN_CAPACITY) faults.dropped += all[level] - SCAN_CAPACITY;
 }

@@ -21,7 +21,7 @@ void predict(uint i) {
 vec3 within_reach(uint i, vec3 to, float w) {
   vec4 reach = LOAD16(reaches, i);
   vec3 way = to - reach.xyz;
-  float l = length(way), most = reach.w * ledger.reach;
+  float l = length(way), most = reach.w * (SELF != 0u ? min(ledger.reach, ledger.self_reach) : ledger.reach);
   if (!(w > 0.0 && l > most)) return to;
   vec3 kept = reach.xyz + (most / l) * way;
   STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * (kept - to), 0.0));

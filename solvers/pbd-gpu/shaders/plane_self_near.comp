@@ -1,0 +1,28 @@
+#version 450
+// Twice a substep, a thread a triangle; SHUFFLES: a subgroup a triangle.
+#extension GL_GOOGLE_include_directive : require
+#ifdef SHUFFLES
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#endif
+#include "common.glsl"
+#include "plane_buffers.glsl"
+layout(std430, binding = BIND_SELF_WAYS) readonly buffer SelfWays { vec4 self_ways[]; };
+layout(std430, binding = BIND_SELF_RANGES) buffer SelfRanges { uvec4 self_ranges[]; };
+layout(std430, binding = BIND_SELF_PAIRS) buffer SelfPairs { SelfPair self_pairs[]; };
+layout(std430, binding = BIND_SELF_NEAR) writeonly buffer SelfNears { SelfNear self_near[]; };
+layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_FAULTS) buffer Faults { ContactFaults faults; };
+#include "plane_self_near.glsl"
+
+void main() {
+  turn = p.turn;
+  if (item() == 0u) ledger.self_near[turn == 0u ? 1u : 0u] = ledger.self_touching[turn == 0u ? 1u : 0u] = 0u;
+#ifdef SHUFFLES
+  uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  uint subgroups = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_NumSubgroups;
+  for (uint t = group * gl_NumSubgroups + gl_SubgroupID; t < TRIANGLES; t += subgroups) collect_near(t);
+#else
+  for (uint t = item(); t < TRIANGLES; t += stride()) collect_near(t);
+#endif
+}

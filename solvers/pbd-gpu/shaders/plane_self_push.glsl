@@ -1,0 +1,49 @@
+// What the contacts of a near pair propose for the vertices of its own triangle, as plane_push.glsl has it for pieces; both sides move.
+SelfPush own_push[3];
+
+void propose_self(uint corner, float share, vec3 by, float out_by, vec3 normal) {
+  vec3 moving = share * by, all = moving + share * out_by * normal;
+  float l = length(all);
+  own_push[corner].all += vec4(l * all, l);
+  own_push[corner].moving += vec4(l * moving, 0.0);
+}
+
+/// `a`, `b`: vertices of the triangles of the lower and the higher number.
+void push_of_contact(SelfContact s, uvec4 a, uvec4 b, bool own_is_a) {
+  vec3 origin = starts[a.x].xyz, apart = vec3(0.0), slip = vec3(0.0);
+  vec3 w_a, w_b;
+  float mass = 0.0;
+  for (uint c = 0u; c < 3u; ++c) {
+    vec4 at_a = y[a[c]], at_b = y[b[c]];
+    apart += s.first[c] * (at_a.xyz - origin) - s.second[c] * (at_b.xyz - origin);
+    slip += s.first[c] * (at_a.xyz - starts[a[c]].xyz) - s.second[c] * (at_b.xyz - starts[b[c]].xyz);
+    mass += at_a.w * s.first[c] * s.first[c] + at_b.w * s.second[c] * s.second[c];
+    w_a[c] = at_a.w;
+    w_b[c] = at_b.w;
+  }
+  if (!(mass > 0.0)) return;
+  vec3 n = s.normal.xyz;
+  float push = s.normal.w - dot(n, apart);
+  float out_by = turn < 2u ? clamp(THICKNESS_M - s.normal.w, 0.0, kRecovered * THICKNESS_M) : 0.0;
+  if (!(push + out_by > 0.0)) return;
+  float moving = max(0.0, push);
+  slip -= dot(slip, n) * n;
+  float l = length(slip);
+  vec3 by = moving * n;
+  if (l > 0.0 && moving > 0.0) by -= min(1.0, SELF_FRICTION * moving / l) * slip;
+  out_by = push + out_by - moving;
+  for (uint c = 0u; c < 3u; ++c) {
+    float share = own_is_a ? s.first[c] * w_a[c] : -s.second[c] * w_b[c];
+    if (share != 0.0) propose_self(c, share / mass, by, out_by, n);
+  }
+}
+
+void push_self(uint k) {
+  uint own = self_near[k].own, other = self_near[k].other, contacts = self_near[k].marks & ~SELF_PLANE, at = self_near[k].link;
+  if (contacts == 0u) return;
+  for (uint c = 0u; c < 3u; ++c) own_push[c] = SelfPush(vec4(0.0), vec4(0.0));
+  uvec4 a = LOAD16(elements, min(own, other)), b = LOAD16(elements, max(own, other));
+  for (uint c = 0u; c < SELF_CONTACTS; ++c)
+    if ((contacts & (1u << c)) != 0u) push_of_contact(LOAD(48u, self_contacts, SELF_CONTACTS * at + c), a, b, own < other);
+  for (uint c = 0u; c < 3u; ++c) STORE32(self_pushes, 3u * at + c, own_push[c]);
+}
