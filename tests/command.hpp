@@ -1,13 +1,12 @@
 #pragma once
 // The command as a user calls it.
-#include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdio>
-#include <filesystem>
 #include <string>
+
+#include "with_folder.hpp"
 
 namespace clothbench::testing_command {
 
@@ -32,19 +31,5 @@ inline Answer command(const std::string& arguments, Streams streams = Streams::B
   a.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return a;
 }
-
-/// A test with a folder of its own.
-class WithFolder : public ::testing::Test {
- protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    dir_ = std::filesystem::temp_directory_path() /
-           ("clothbench-" + std::to_string(getpid()) + "-" + info->test_suite_name() + "-" + info->name());
-    std::filesystem::create_directories(dir_);
-  }
-  void TearDown() override { std::filesystem::remove_all(dir_); }
-
-  std::filesystem::path dir_;
-};
 
 }  // namespace clothbench::testing_command

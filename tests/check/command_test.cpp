@@ -18,7 +18,7 @@ using nlohmann::json;
 
 using testing_command::Streams;
 
-class CheckCommand : public testing_command::WithFolder {
+class CheckCommand : public WithFolder {
  protected:
   void SetUp() override {
     WithFolder::SetUp();

@@ -27,7 +27,7 @@ nlohmann::json json_of(const std::string& arguments) {
   return nlohmann::json::parse(a.text, nullptr, false);
 }
 
-class Cli : public testing_command::WithFolder {
+class Cli : public WithFolder {
  protected:
   /// A study of ballistic runs, quick enough to interrupt at will.
   std::string small_study() const {

@@ -21,7 +21,7 @@ Answer command(const std::string& arguments, const std::string& before = "") {
   return testing_command::command(arguments, testing_command::Streams::Both, before);
 }
 
-class DrawnStudy : public testing_command::WithFolder {
+class DrawnStudy : public WithFolder {
  protected:
   std::string out() const { return (dir_ / "out").string(); }
   static std::string text_of(const fs::path& file) {
