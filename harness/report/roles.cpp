@@ -1,7 +1,6 @@
 #include "report/roles.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "report/paths.hpp"
 
@@ -9,12 +8,16 @@ namespace clothbench {
 namespace {
 
 bool has_role(const std::string& solver, const char* role) {
-  static const nlohmann::json roles = nlohmann::json::parse(kSolverRoles);
-  const nlohmann::json& names = roles.at(role);
+  const nlohmann::json& names = solver_roles().at(role);
   return std::find(names.begin(), names.end(), solver) != names.end();
 }
 
 }  // namespace
+
+const nlohmann::json& solver_roles() {
+  static const nlohmann::json all = nlohmann::json::parse(kSolverRoles);
+  return all;
+}
 
 bool is_floor(const std::string& solver) { return has_role(solver, "floor"); }
 bool is_baseline(const std::string& solver) { return has_role(solver, "baseline"); }
