@@ -57,4 +57,22 @@ std::string current_scenario(const std::string& stored) {
   return scenario.dump();
 }
 
+std::vector<std::string> current_words(std::vector<std::string> words) {
+  static const std::map<std::string, std::string> kOptions = {
+      {"--cell", "--run"}, {"--list-cells", "--list-runs"}, {"--no-cards", "--no-moduli"}, {"--patience", "--timeout"}};
+  const auto command = std::find_if(words.begin(), words.end(), [](const auto& w) { return !w.starts_with("-"); });
+  if (command != words.end() && *command == "card") {
+    notice_renamed("clothbench", "card", "moduli");
+    *command = "moduli";
+  }
+  for (std::string& word : words) {
+    const std::size_t end = std::min(word.find('='), word.size());
+    const auto found = kOptions.find(word.substr(0, end));
+    if (found == kOptions.end()) continue;
+    notice_renamed("clothbench", found->first, found->second);
+    word.replace(0, end, found->second);
+  }
+  return words;
+}
+
 }  // namespace clothbench

@@ -1,6 +1,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace clothbench {
 
@@ -23,5 +24,8 @@ std::string current_verdict(const std::string& stored);
 
 /// The stored scenario of a run in current terms (truth.card, material_card). Text that is no JSON object is unchanged.
 std::string current_scenario(const std::string& stored);
+
+/// Arguments of the command with the words of version 0.1 replaced by the current ones, with a notice for each.
+std::vector<std::string> current_words(std::vector<std::string> words);
 
 }  // namespace clothbench

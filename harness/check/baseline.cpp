@@ -127,4 +127,32 @@ std::string baseline_text(const Baseline& b) {
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
+namespace {
+
+std::string text_at(const nlohmann::json& environment, const char* key) {
+  return environment.contains(key) && environment[key].is_string() ? environment[key].get<std::string>() : "";
+}
+
+}  // namespace
+
+BaselineOrigin origin_of(const std::vector<std::filesystem::path>& folders, const std::vector<RunRecord>& runs,
+                         const std::string& command) {
+  BaselineOrigin origin;
+  origin.command = command;
+  for (const std::filesystem::path& folder : folders)
+    if (std::filesystem::is_regular_file(folder / "study.json"))
+      origin.runs.push_back(read_manifest(folder).command_line);
+  std::set<std::string> commits, devices;
+  for (const RunRecord& c : runs) {
+    const nlohmann::json& e = c.header.environment;
+    const std::string commit = text_at(e, "git_commit"), device = text_at(e, "gpu");
+    if (!commit.empty()) commits.insert(commit + (e.contains("git_dirty") && e["git_dirty"] == true ? "-dirty" : ""));
+    if (!device.empty()) devices.insert(device);
+  }
+  std::sort(origin.runs.begin(), origin.runs.end());
+  origin.commits.assign(commits.begin(), commits.end());
+  origin.devices.assign(devices.begin(), devices.end());
+  return origin;
+}
+
 }  // namespace clothbench

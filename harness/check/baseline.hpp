@@ -41,6 +41,10 @@ struct BaselineOrigin {
   std::vector<std::string> commits, devices;  ///< of the results, sorted
 };
 
+/// Of a baseline that `command` makes of these runs.
+BaselineOrigin origin_of(const std::vector<std::filesystem::path>& folders, const std::vector<RunRecord>& runs,
+                         const std::string& command);
+
 struct Baseline {
   BaselineOrigin origin;
   std::vector<BaselineRun> runs;  ///< sorted by key, no key twice

@@ -107,7 +107,7 @@ bool hangs_on(const std::string& scalar, const std::vector<VersionDifference>& v
                      [&](const auto& v) { return std::find(behind.begin(), behind.end(), v.metric) != behind.end(); });
 }
 
-std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& is, double length_m) {
+std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& is, const RunRecord& record) {
   std::map<std::string, double> names = was.scalars;
   names.insert(is.scalars.begin(), is.scalars.end());
   const auto value = [](const BaselineRun& c, const std::string& name) {
@@ -122,7 +122,9 @@ std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& 
   for (const auto& [name, unused] : names) {
     if (hangs_on(name, versions)) continue;
     const double before = value(was, name), now = value(is, name);
-    const double tolerance = slack(*find_gate(name), before, length_m);
+    const Gate& gate = *find_gate(name);
+    // Measured moduli and relations of runs have no cloth of their own.
+    const double tolerance = slack(gate, before, gate.unit == SlackUnit::One ? 1 : length_of(record));
     const Verdict verdict = judge(name, before, now, tolerance);
     if (verdict == Verdict::Same) continue;
     const std::string limit = !is_verdict(name) && std::isfinite(before) ? "≤ " + shown(name, before + tolerance) : "";
@@ -153,8 +155,7 @@ std::vector<Finding> compare_run(const BaselineRun& was, const RunRecord& record
              "again with --update"}};
   std::vector<Finding> out = compare_outcome(was, is, record.outcome.message);
   if (was.status != is.status) return out;
-  for (const auto& part :
-       {compare_stages(was, is), compare_trials(record), compare_scalars(was, is, length_of(record))})
+  for (const auto& part : {compare_stages(was, is), compare_trials(record), compare_scalars(was, is, record)})
     out.insert(out.end(), part.begin(), part.end());
   return out;
 }

@@ -1,8 +1,4 @@
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <set>
-
+#include "base/files.hpp"
 #include "check/baseline.hpp"
 #include "check/compare.hpp"
 #include "check/github.hpp"
@@ -10,7 +6,6 @@
 #include "check/print.hpp"
 #include "cli/command.hpp"
 #include "report/report.hpp"
-#include "results/store.hpp"
 
 namespace clothbench {
 namespace {
@@ -23,51 +18,18 @@ struct CheckArguments {
   bool github = false, update = false;
 };
 
-std::string text_at(const nlohmann::json& environment, const char* key) {
-  return environment.contains(key) && environment[key].is_string() ? environment[key].get<std::string>() : "";
-}
-
-BaselineOrigin origin_of(const std::vector<fs::path>& folders, const std::vector<RunRecord>& runs,
-                         const std::string& command) {
-  BaselineOrigin origin;
-  origin.command = command;
-  for (const fs::path& folder : folders)
-    if (fs::is_regular_file(folder / "study.json")) origin.runs.push_back(read_manifest(folder).command_line);
-  std::set<std::string> commits, devices;
-  for (const RunRecord& c : runs) {
-    const nlohmann::json& e = c.header.environment;
-    const std::string commit = text_at(e, "git_commit"), device = text_at(e, "gpu");
-    if (!commit.empty()) commits.insert(commit + (e.contains("git_dirty") && e["git_dirty"] == true ? "-dirty" : ""));
-    if (!device.empty()) devices.insert(device);
-  }
-  std::sort(origin.runs.begin(), origin.runs.end());
-  origin.commits.assign(commits.begin(), commits.end());
-  origin.devices.assign(devices.begin(), devices.end());
-  return origin;
-}
-
-void print_json(const nlohmann::json& j) {
-  fmt::print("{}\n", j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-}
-
 void update(const CheckArguments& a, const std::vector<fs::path>& folders, const std::vector<RunRecord>& runs,
             const Console& console) {
   const Baseline old = fs::exists(a.baseline) ? read_baseline(a.baseline) : Baseline{};
   const Updated updated = update_baseline(old, runs, origin_of(folders, runs, console.command_line));
   write_file_atomically(a.baseline, baseline_text(updated.baseline));
-  if (console.json)
-    print_json(update_json(updated, a.baseline));
-  else
-    fmt::print("{}", update_text(updated, a.baseline));
+  console.print([&] { return update_json(updated, a.baseline); }, [&] { return update_text(updated, a.baseline); });
 }
 
 void check(const CheckArguments& a, const std::vector<RunRecord>& runs, Console& console) {
   const Checked checked = check_runs(read_baseline(a.baseline), runs);
   if (!a.junit.empty()) write_file_atomically(a.junit, junit_xml(checked));
-  if (console.json)
-    print_json(check_json(checked, a.baseline));
-  else
-    fmt::print("{}", check_text(checked, a.baseline));
+  console.print([&] { return check_json(checked, a.baseline); }, [&] { return check_text(checked, a.baseline); });
   std::fflush(stdout);
   // A runner reads commands from both streams; on stdout they would spoil the JSON.
   if (a.github) fmt::print(console.json ? stderr : stdout, "{}", github_commands(checked, a.baseline));

@@ -1,99 +1,11 @@
 #include "cli/command.hpp"
 
-#include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 
-#include "base/json_text.hpp"
-#include "results/store.hpp"
-#include "runner/again.hpp"
+#include "report/report.hpp"
+#include "truth/draw.hpp"
 
 namespace clothbench {
-namespace {
-
-double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-std::string left_for(double s) {
-  constexpr double kFewSeconds = 100;
-  return s < kFewSeconds ? fmt::format("about {:.0f} s left", s) : fmt::format("about {:.0f} min left", s / 60);
-}
-
-std::size_t columns() {
-  constexpr std::size_t kUsual = 80;
-  winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : kUsual;
-}
-
-}  // namespace
-
-Overrides split_overrides(const std::vector<std::string>& set) {
-  const std::string prefix = "solver.";
-  Overrides out;
-  for (const std::string& item : set) {
-    if (item.rfind(prefix, 0) != 0) {
-      out.scene.push_back(item);
-      continue;
-    }
-    const auto eq = item.find('=');
-    if (eq == std::string::npos) throw Error("--set " + item + ": expected solver.<name>=<value>");
-    const std::string key = item.substr(prefix.size(), eq - prefix.size()), text = item.substr(eq + 1);
-    nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
-    if (value.is_discarded()) value = text;
-    if (const std::string tuning = std::string(kTuning) + "."; key.starts_with(tuning))
-      out.solver[kTuning].update({{key.substr(tuning.size()), value}});
-    else
-      out.solver[key] = value;
-  }
-  return out;
-}
-
-std::string Overrides::label() const {
-  std::string text;
-  const nlohmann::json flat = flat_settings(solver);
-  for (const auto& [key, value] : flat.items())
-    text += (text.empty() ? "" : ",") + key + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
-  return text.empty() ? "default" : text;
-}
-
-void write_between_marks(const std::string& file, const std::string& name, const std::string& text) {
-  const std::string begin = "<!-- " + name + " begin -->\n", end = "<!-- " + name + " end -->";
-  std::string all = read_text(file);
-  const std::size_t from = all.find(begin), to = all.find(end);
-  if (from == std::string::npos || to == std::string::npos || to < from)
-    throw Error(file + ": expected the lines " + begin.substr(0, begin.size() - 1) + " and " + end);
-  all.replace(from + begin.size(), to - from - begin.size(), text);
-  write_file_atomically(file, all);
-}
-
-ChosenSolver chosen_solver(const std::string& name, const Overrides& overrides) {
-  const SolverEntry& entry = find_solver(name);
-  return {&entry, complete_settings(entry.info, overrides.solver), overrides.label()};
-}
-
-std::vector<std::string> solver_names(bool (*are)(const SolverInfo&)) {
-  std::vector<std::string> names;
-  for (const SolverEntry& e : solvers())
-    if (are == nullptr || are(e.info)) names.push_back(e.info.name);
-  return names;
-}
-
-std::vector<std::string> scene_names(const std::vector<std::string>& folders) {
-  std::vector<std::string> names;
-  const std::filesystem::path root = scenario_root();
-  for (const std::string& folder : folders) {
-    if (!std::filesystem::exists(root / folder)) continue;
-    const std::size_t first = names.size();
-    for (const auto& file : std::filesystem::recursive_directory_iterator(root / folder))
-      if (file.path().extension() == ".json")
-        names.push_back(std::filesystem::relative(file.path(), root).replace_extension().string());
-    std::sort(names.begin() + static_cast<std::ptrdiff_t>(first), names.end());
-  }
-  return names;
-}
 
 void SolverFlags::add_to(CLI::App& app, const std::string& option, const std::string& help,
                          const std::string& set_help) {
@@ -108,10 +20,20 @@ std::vector<ChosenSolver> SolverFlags::chosen(const std::vector<std::string>& by
   return out;
 }
 
-Overrides SolverFlags::of_solver(const std::string& expected) const {
-  Overrides overrides = split_overrides(set);
-  if (!overrides.scene.empty()) throw Error("--set " + overrides.scene[0] + ": " + expected);
-  return overrides;
+void RunFlags::tell(Console& console, const std::function<StudyEnd(const StudyCall&)>& execute) const {
+  StudyEnd end;
+  {
+    StatusLine line(console.shows_status());
+    StudyCall call{out, resume, part, device, console.command_line, console.words, {}};
+    call.progress = [&](const std::string& what, std::size_t done, std::size_t of) { line.show(what, done, of); };
+    if (!console.json) call.tell = [](const std::string& text) { fmt::print("{}\n", text); };
+    end = execute(call);
+  }
+  if (end.exit_code != ExitCode::Ok || end.told) console.exit_code = end.exit_code;
+  if (end.told) return;
+  for (const std::string& fault : end.faults) fmt::print(stderr, "FAULT {}\n", fault);
+  if (!console.json && !part) print_console_report({end.out});
+  console.print(end.json, end.text);
 }
 
 std::pair<int, int> pixels_of(const std::string& option, const std::string& text) {
@@ -148,26 +70,22 @@ void add_require_assets(CLI::App& app, bool& required) {
                "fetches the scans)");
 }
 
-StatusLine::StatusLine(bool enabled)
-    : enabled_(enabled && isatty(STDERR_FILENO) != 0 && !Guard::in_child()), start_s_(now_s()) {}
-
-StatusLine::~StatusLine() {
-  if (enabled_ && width_ > 0) fmt::print(stderr, "\r{:{}}\r", "", width_);
+void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
+  app.add_option("--seed", seed,
+                 "Draw the parameters of scenes with an exact solution from this seed, and evaluate the solution for "
+                 "them; in a study of drawn contact scenes, the seed of the first scene");
 }
 
-void StatusLine::show(const std::string& what, std::size_t done, std::size_t total) {
-  if (!enabled_) return;
-  const double elapsed_s = now_s() - start_s_;
-  std::string line = total > 0 ? fmt::format("[{}/{}] {}", done, total, what) : what, eta;
-  if (done > 0 && done < total)
-    eta = "  " + left_for(elapsed_s / static_cast<double>(done) * static_cast<double>(total - done));
-  // A line that breaks could not be rewritten.
-  const std::size_t room = columns() - 1;
-  if (line.size() + eta.size() > room) line.resize(room > eta.size() ? room - eta.size() : 0);
-  line += eta;
-  fmt::print(stderr, "\r{:<{}}", line, width_);
-  std::fflush(stderr);
-  width_ = line.size();
+Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, Console& console) {
+  if (!seed) return scene;
+  truth::DrawnScene drawn = truth::draw(scene, *seed);
+  if (!console.json && console.reported_scenes.insert(scene.name).second) {
+    std::string text;
+    for (const auto& [name, value] : drawn.values) text += fmt::format(" {}={:.6g}", name, value);
+    fmt::print("{} --seed {}:{} frame_rate_hz={:.6g} duration_s={:.6g}\n", scene.name, *seed, text,
+               drawn.scene.time.frame_rate_hz, drawn.scene.time.duration_s);
+  }
+  return std::move(drawn.scene);
 }
 
 }  // namespace clothbench

@@ -1,10 +1,8 @@
 #include "cli/command_line.hpp"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <map>
 
 #include "base/former_names.hpp"
 #include "base/plugin_environment.hpp"
@@ -25,60 +23,25 @@ std::string joined(const std::vector<std::string>& words) {
 int report_error(const Console& console, const std::string& why, ExitCode code) {
   const bool colour = takes_colour(STDERR_FILENO);
   fmt::print(stderr, "{}clothbench:{} {}\n", colour ? "\x1b[31m" : "", colour ? "\x1b[0m" : "", why);
-  if (console.json)
-    fmt::print("{}\n", nlohmann::json{{"error", why}, {"exit_code", static_cast<int>(code)}}.dump(
-                           2, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (console.json) Console::print({{"error", why}, {"exit_code", static_cast<int>(code)}});
   return static_cast<int>(code);
 }
 
-/// Words that commands had in version 0.1, with the ones of today.
-std::vector<std::string> current_words(std::vector<std::string> words) {
-  static const std::map<std::string, std::string> kOptions = {
-      {"--cell", "--run"}, {"--list-cells", "--list-runs"}, {"--no-cards", "--no-moduli"}, {"--patience", "--timeout"}};
-  const auto command = std::find_if(words.begin(), words.end(), [](const auto& w) { return !w.starts_with("-"); });
-  if (command != words.end() && *command == "card") {
-    notice_renamed("clothbench", "card", "moduli");
-    *command = "moduli";
-  }
-  for (std::string& word : words) {
-    const std::size_t end = std::min(word.find('='), word.size());
-    const auto found = kOptions.find(word.substr(0, end));
-    if (found == kOptions.end()) continue;
-    notice_renamed("clothbench", found->first, found->second);
-    word.replace(0, end, found->second);
-  }
-  return words;
-}
-
-void add_commands(CLI::App& app, Console& console) {
-  add_list(app, console);
-  add_validate(app, console);
-  add_plan(app, console);
-  add_moduli(app, console);
-  add_run(app, console);
-  add_run_child(app, console);
-  add_study(app, console);
-  add_report(app, console);
-  add_import(app, console);
-  add_check(app, console);
-  add_compare(app, console);
-  add_history(app, console);
-  add_metamorphic(app, console);
-  add_threshold(app, console);
-  add_friction(app, console);
-  add_conformance(app, console);
+/// In the order of the help.
+constexpr AddCommand* kCommands[] = {add_list,        add_validate,  add_plan,     add_moduli,
+                                     add_run,         add_run_child, add_study,    add_report,
+                                     add_import,      add_check,     add_compare,  add_history,
+                                     add_metamorphic, add_threshold, add_friction, add_conformance,
 #ifdef CLOTHBENCH_WITH_BENCH
-  add_bench(app, console);
+                                     add_bench,
 #endif
 #ifdef CLOTHBENCH_WITH_RENDER
-  add_render(app, console);
+                                     add_render,
 #endif
 #ifdef CLOTHBENCH_WITH_XR
-  add_xr(app, console);
+                                     add_xr,
 #endif
-  add_completion(app, console);
-  add_manual(app, console);
-}
+                                     add_completion,  add_manual};
 
 /// Of a first word that is no command.
 void tell_nearest(const CLI::App& app, const std::vector<std::string>& words) {
@@ -117,7 +80,7 @@ int run_command_line(const std::vector<std::string>& given) {
   if (std::find(words.begin(), words.end(), "--in-process") != words.end()) run_plugins_in_process();
   app.fallthrough();
 
-  add_commands(app, console);
+  for (AddCommand* add : kCommands) add(app, console);
   try {
     // CLI11 takes the words last first.
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));

@@ -1,10 +1,8 @@
-#include <fmt/format.h>
-
+#include "base/files.hpp"
 #include "cli/command.hpp"
 #include "report/compare_runs.hpp"
 #include "report/report.hpp"
 #include "report/withheld.hpp"
-#include "results/store.hpp"
 
 namespace clothbench {
 
@@ -25,18 +23,14 @@ void add_compare(CLI::App& app, Console& console) {
     withhold_times(after);
     const std::vector<ComparedRun> runs = compare_runs(before, after);
     const std::vector<Table> tables = comparison_tables(runs);
-    if (!markdown.empty()) {
-      std::string text = fmt::format("A: `{}`, B: `{}`\n\n", a, b);
-      for (const Table& t : tables)
-        text += t.rows.size() > 1 ? t.markdown() + "\n" : t.title + ": none. " + t.note + "\n\n";
-      write_file_atomically(markdown, text);
+    std::string text, page = fmt::format("A: `{}`, B: `{}`\n\n", a, b);
+    for (const Table& t : tables) {
+      const bool any = t.rows.size() > 1;
+      text += any ? t.console() : fmt::format("\n{}: none\n  {}\n", t.title, t.note);
+      page += any ? t.markdown() + "\n" : t.title + ": none. " + t.note + "\n\n";
     }
-    if (console.json) return fmt::print("{}\n", comparison_json(runs).dump(2));
-    for (const Table& t : tables)
-      if (t.rows.size() > 1)
-        fmt::print("{}", t.console());
-      else
-        fmt::print("\n{}: none\n  {}\n", t.title, t.note);
+    if (!markdown.empty()) write_file_atomically(markdown, page);
+    console.print([&] { return comparison_json(runs); }, [&] { return text; });
   });
 }
 
@@ -50,7 +44,7 @@ void add_history(CLI::App& app, Console& console) {
   cmd->callback([&folders] {
     std::vector<RunRecord> runs = collect({folders.begin(), folders.end()});
     withhold(runs);
-    fmt::print("{}\n", history_json(runs).dump(2));
+    Console::print(history_json(runs));
   });
 }
 

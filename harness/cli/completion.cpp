@@ -1,43 +1,15 @@
 // Completion of the command line. What a shell's script asks for is answered from the very commands, options, solvers
 // and files there are, so it cannot grow old.
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "cli/command.hpp"
+#include "cli/texts.hpp"
+#include "studies/lists.hpp"
 
 namespace clothbench {
 namespace {
 
 using Words = std::vector<std::string>;
-
-constexpr const char* kBash = R"(_clothbench() {
-  local IFS=$'\n' line=${COMP_LINE:0:COMP_POINT} words
-  IFS=' ' read -ra words <<<"$line"
-  [[ $line == *' ' ]] && words+=('')
-  COMPREPLY=($("${words[0]}" completion words -- "${words[@]:1}" 2>/dev/null))
-  [[ ${COMPREPLY[0]} == *[=/] ]] && compopt -o nospace
-  # Bash puts the answer in place of what stands after its own last break.
-  local cut=${words[${#words[@]}-1]%"${COMP_WORDS[COMP_CWORD]}"}
-  COMPREPLY=("${COMPREPLY[@]#"$cut"}")
-}
-complete -o default -F _clothbench clothbench
-)";
-constexpr const char* kZsh = R"(#compdef clothbench
-_clothbench() {
-  local -a found
-  found=("${(@f)$("${words[1]}" completion words -- "${(@)words[2,CURRENT]}" 2>/dev/null)}")
-  [[ -n "$found[1]" ]] && compadd -Q -- "${found[@]}" || _files
-}
-# A file of $fpath is itself the function when it is first asked.
-if [[ $funcstack[1] == _clothbench ]]; then _clothbench "$@"; else compdef _clothbench clothbench; fi
-)";
-constexpr const char* kFish = R"(function __clothbench_words
-  set -l words (commandline -opc)
-  clothbench completion words -- $words[2..-1] (commandline -ct) 2>/dev/null
-end
-complete -c clothbench -a '(__clothbench_words)'
-)";
 
 /// `--set solver.<name>=` of the solvers named so far, or of all.
 Words setting_names(const Words& before) {
@@ -97,9 +69,11 @@ void add_completion(CLI::App& app, Console& console) {
       "          clothbench completion zsh > ~/.zfunc/_clothbench\n"
       "          clothbench completion fish > ~/.config/fish/completions/clothbench.fish");
   cmd->callback([&app, &console, &shell, &words] {
-    const std::string script = shell == "bash" ? kBash : shell == "zsh" ? kZsh : shell == "fish" ? kFish : "";
-    if (!script.empty() && console.json)
-      return fmt::print("{}\n", nlohmann::json{{"shell", shell}, {"script", script}}.dump(2));
+    const std::string script = shell == "bash"   ? texts::kBash
+                               : shell == "zsh"  ? texts::kZsh
+                               : shell == "fish" ? texts::kFish
+                                                 : "";
+    if (!script.empty() && console.json) return Console::print({{"shell", shell}, {"script", script}});
     if (!script.empty()) return fmt::print("{}", script);
     const std::string prefix = words.empty() ? "" : words.back();
     if (!words.empty()) words.pop_back();
@@ -108,7 +82,7 @@ void add_completion(CLI::App& app, Console& console) {
     found.erase(std::unique(found.begin(), found.end()), found.end());
     if (console.json) {
       std::erase_if(found, [&](const std::string& word) { return !word.starts_with(prefix); });
-      return fmt::print("{}\n", nlohmann::json(found).dump(2));
+      return Console::print(found);
     }
     for (const std::string& word : found)
       if (word.starts_with(prefix)) fmt::print("{}\n", word);

@@ -1,10 +1,5 @@
 #include "runner/conformance.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
-#include "base/tint.hpp"
 #include "cli/command.hpp"
 
 namespace clothbench {
@@ -17,34 +12,9 @@ struct ConformanceArguments {
   double limit_s = 20;
 };
 
-void print(const std::string& solver, const ConformanceRow& r) {
-  const Tone tone = r.status == "pass" ? Tone::Good : r.status == "FAIL" ? Tone::Bad : Tone::Doubtful;
-  std::string text = fmt::format("{} cases", r.cases - r.skipped);
-  if (r.skipped > 0) text += fmt::format(", {} skipped", r.skipped);
-  if (r.frames_whole > 0 && r.frames_whole < r.frames_of_scene)
-    text += fmt::format(", first {} of {} frames", r.frames_whole, r.frames_of_scene);
-  else if (r.frames_whole > 0)
-    text += fmt::format(", all {} frames", r.frames_whole);
-  if (r.status == "skipped" && !r.faults.empty()) text = r.faults.front();
-  fmt::print("{} {} {}: {}\n", tinted(tone, fmt::format("{:<7}", r.status)), solver, r.scene, text);
-  if (r.status != "FAIL") return;
-  for (const std::string& f : r.faults) fmt::print("        {}\n", f);
-}
-
-/// By scene name; a name that no scene has is a spelling error.
-std::vector<std::string> chosen_scenes(const std::vector<std::string>& given) {
-  const std::vector<std::string> all = scene_names({"paper", "contact", "validation", "metamorphic"});
-  for (const std::string& name : given)
-    if (std::find(all.begin(), all.end(), name) == all.end()) {
-      const std::string near = nearest(name, all);
-      throw Error("--scene " + name + ": no such scene" + (near.empty() ? "" : "; nearest known: " + near));
-    }
-  return given.empty() ? all : given;
-}
-
 void run(const ConformanceArguments& a, Console& console) {
-  a.with.of_solver("the scenes are fixed; expected solver.<name>=<value>");
-  const std::vector<std::string> scenes = chosen_scenes(a.scenes);
+  refuse_scene(a.with.set, "the scenes are fixed; expected solver.<name>=<value>");
+  const std::vector<std::string> scenes = conformance_scenes(a.scenes);
   nlohmann::json all = nlohmann::json::array();
   int passed = 0, failed = 0, skipped = 0;
   Guard guard(console.words);
@@ -56,11 +26,11 @@ void run(const ConformanceArguments& a, Console& console) {
       all.push_back(conformance_json(row));
       all.back()["solver"] = entry->info.name;
       all.back()["setting"] = setting;
-      if (!console.json) print(entry->info.name, row);
+      if (!console.json) fmt::print("{}", conformance_text(entry->info.name, row));
       std::fflush(stdout);
     }
   if (failed > 0) console.exit_code = ExitCode::CheckFailed;
-  if (console.json) return fmt::print("{}\n", all.dump(2));
+  if (console.json) return Console::print(all);
   fmt::print("{} scenes pass, {} fail, {} skipped\n", passed, failed, skipped);
   if (passed + failed == 0) fmt::print("nothing was tested: the solver supports none of these scenes\n");
 }

@@ -1,7 +1,3 @@
-#include <fmt/format.h>
-
-#include <optional>
-
 #include "cli/command.hpp"
 #include "results/device_samples.hpp"
 #include "results/store.hpp"
@@ -28,7 +24,7 @@ void add_import(CLI::App& app, Console& console) {
         rows.push_back(file.string());
         if (!console.json) fmt::print("{}\n", file.string());
       }
-    if (console.json) fmt::print("{}\n", rows.dump(2));
+    if (console.json) Console::print(rows);
     if (rows.empty()) fmt::print(stderr, "nothing to import: these folders have no finished .part folders\n");
   });
 }

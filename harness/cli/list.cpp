@@ -1,152 +1,9 @@
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <iterator>
-#include <sstream>
-
-#include "assets/assets.hpp"
-#include "base/json_text.hpp"
-#include "base/plugin_environment.hpp"
-#include "check/gates.hpp"
 #include "cli/command.hpp"
-#include "metrics/registry.hpp"
-#include "report/features.hpp"
-#include "scenario/load.hpp"
-#include "scenario/study.hpp"
+#include "studies/lists.hpp"
 
 namespace clothbench {
-namespace {
-
-/// Solvers of this build, and plugins: those of --solver, and those that the environment names.
-std::vector<const SolverEntry*> all_solvers() {
-  std::vector<const SolverEntry*> out;
-  for (const SolverEntry& e : solvers()) out.push_back(&e);
-  const char* plugins = std::getenv(kPluginsVariable);  // --solver adds to it
-  std::istringstream paths(plugins != nullptr ? plugins : "");
-  for (std::string path; std::getline(paths, path, ':');)
-    if (!path.empty()) out.push_back(&find_solver(kPluginPrefix + path));
-  return out;
-}
-
-nlohmann::json list_solvers() {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const SolverEntry* at : all_solvers()) {
-    const SolverEntry& e = *at;
-    nlohmann::json settings = nlohmann::json::array(), features = nlohmann::json::array();
-    for (const SettingSpec& s : e.info.settings)
-      settings.push_back({{"name", s.name}, {"default", nlohmann::json::parse(s.default_json)}, {"doc", s.doc}});
-    e.info.supports.for_each([&](Feature f) { features.push_back(name_of(f)); });
-    rows.push_back({{"name", e.info.name},
-                    {"folder", e.info.folder},
-                    {"summary", e.info.summary},
-                    {"version", e.info.version},
-                    {"precision", e.info.precision},
-                    {"gpu", e.info.on_gpu},
-                    {"plugin", is_external(e.info)},
-                    {"supports", features},
-                    {"settings", settings}});
-  }
-  return rows;
-}
-
-nlohmann::json list_scenarios() {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const std::string& name : scene_names({"paper", "contact", "validation", "stability"}))
-    rows.push_back({{"name", name}, {"why", load_scene(name).why}});
-  return rows;
-}
-
-nlohmann::json list_studies() {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const std::string& name : scene_names({"studies"})) {
-    const std::string file = (scenario_root() / (name + ".json")).string();
-    rows.push_back({{"name", name.substr(name.find('/') + 1)},  // as `study` takes it
-                    {"why", parse_json(read_text(file), file).value("why", "")}});
-  }
-  return rows;
-}
-
-nlohmann::json list_devices() {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const SolverEntry& e : solvers()) {
-    if (!e.devices) continue;
-    for (const DeviceInfo& d : e.devices())
-      rows.push_back({{"name", d.name}, {"driver", d.driver}, {"api", d.api}, {"software", d.is_software}});
-    break;  // all GPU backends here see the same Vulkan devices
-  }
-  return rows;
-}
-
-nlohmann::json list_metrics() {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const MetricGroup& g : metric_groups())
-    for (const Metric& m : g.series)
-      rows.push_back({{"name", m.name},
-                      {"units", m.units},
-                      {"long_name", m.long_name},
-                      {"version", m.version},
-                      {"needs", m.needs.words},
-                      {"source", g.source}});
-  return rows;
-}
-
-nlohmann::json list_scalars() {
-  nlohmann::json rows = nlohmann::json::array();
-  auto s = scalars().begin();  // in the order of the groups, with what they are made from in their doc
-  for (const MetricGroup& g : metric_groups())
-    for (std::size_t k = 0; k < g.scalars.size(); ++k, ++s) {
-      rows.push_back({{"name", s->name},
-                      {"units", s->units},
-                      {"long_name", s->doc},
-                      {"of", s->from.series},
-                      {"expect", s->expect == Expect::Yes},
-                      {"source", g.source}});
-      if (s->gate != nullptr) rows.back()["check"] = {{"slack", slack_text(*s->gate)}, {"why", s->gate->why}};
-    }
-  return rows;
-}
-
-nlohmann::json list_assets() {
-  const assets::AssetSource source = assets::locate_assets(false);
-  return {{{"name", source.kind()}, {"summary", source.reason}, {"folder", source.root.string()}}};
-}
-
-std::vector<SolverFeatures> features() {
-  std::vector<SolverFeatures> out;
-  for (const SolverEntry* e : all_solvers()) out.push_back(declared_features(e->info));
-  return out;
-}
-
-nlohmann::json list_features() { return feature_json(features(), false); }
-
-const std::pair<const char*, nlohmann::json (*)()> kLists[] = {
-    {"solvers", list_solvers}, {"features", list_features}, {"scenarios", list_scenarios}, {"studies", list_studies},
-    {"devices", list_devices}, {"metrics", list_metrics},   {"scalars", list_scalars},     {"assets", list_assets}};
-
-void print_rows(const nlohmann::json& rows) {
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto& r = rows[i];
-    std::string text = r.value("summary", r.value("why", r.value("long_name", r.value("driver", std::string()))));
-    if (r.value("software", false)) text += "  (software; its times say nothing of a GPU)";
-    if (r.value("plugin", false)) text += "  (" + r["folder"].get<std::string>() + ")";
-    if (r.contains("units")) text += " [" + r["units"].get<std::string>() + "]";
-    fmt::print("{:<24} {}\n", r["name"].get<std::string>(), text);
-    if (r.contains("settings"))
-      for (const auto& s : r["settings"])
-        fmt::print("    solver.{}={}  {}\n", s["name"].get<std::string>(), s["default"].dump(),
-                   s["doc"].get<std::string>());
-  }
-}
-
-}  // namespace
-
-std::vector<std::string> list_names() {
-  std::vector<std::string> names;
-  for (const auto& [name, unused] : kLists) names.emplace_back(name);
-  return names;
-}
 
 void add_list(CLI::App& app, Console& console) {
   std::string& what = console.arguments<std::string>();
@@ -159,18 +16,7 @@ void add_list(CLI::App& app, Console& console) {
   cmd->footer(
       "Examples: clothbench list solvers\n"
       "          clothbench list scenarios --json");
-  cmd->callback([&console, &what] {
-    const auto list = std::find_if(std::begin(kLists), std::end(kLists), [&](auto& l) { return l.first == what; });
-    const nlohmann::json rows = list->second();
-    if (console.json)
-      fmt::print("{}\n", rows.dump(2));
-    else if (what == "features")
-      fmt::print("{}", feature_table(features(), false).console());
-    else if (rows.empty())
-      fmt::print("no {}\n", what);
-    else
-      print_rows(rows);
-  });
+  cmd->callback([&] { console.print([&] { return list_of(what); }, [&] { return list_text(what); }); });
 }
 
 }  // namespace clothbench

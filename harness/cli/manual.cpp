@@ -1,43 +1,10 @@
 // The manual page, made from the commands and options that there are.
-#include <fmt/format.h>
-
-#include <array>
-
 #include "cli/command.hpp"
+#include "cli/texts.hpp"
 #include "runner/build_info.hpp"
 
 namespace clothbench {
 namespace {
-
-struct Entry {
-  const char *name, *text;
-};
-
-constexpr std::array kEnvironment = {
-    Entry{"CLOTHBENCH_SCENARIOS",
-          "Folder with scenes and studies. Without it the program looks in share/clothbench beside its own "
-          "folder, then in the source tree that it was built from. The same holds for the next variable."},
-    Entry{"CLOTHBENCH_ASSETS",
-          "Folder node_modules with scanned rooms and hands, or the word \"procedural\" for generated ones. "
-          "The program also looks in ~/.local/share/clothbench/assets (below $XDG_DATA_HOME if that is set), "
-          "where fetch-assets.sh puts them."},
-    Entry{"CLOTHBENCH_PLUGINS",
-          "Shared libraries with solvers, separated by colons; a study file can then name these solvers."},
-    Entry{"CLOTHBENCH_PLUGIN_LIMIT_S",
-          "Seconds without progress after which a plugin's process is ended; default 900."},
-    Entry{"CLOTHBENCH_IN_PROCESS", "If set, as --in-process."},
-    Entry{"CLOTHBENCH_DEVICE_PROFILE", "As --device-profile."},
-    Entry{"CLOTHBENCH_JOBS",
-          "Number of jobs that run on this machine during timed trials; default: the clothbench processes in "
-          "/proc."},
-    Entry{"CLOTHBENCH_CACHE", "Folder for compiled pipelines; default: clothbench below $XDG_CACHE_HOME or ~/.cache."},
-    Entry{"CLOTHBENCH_FONT", "TrueType font file for the text in pictures."},
-    Entry{"NO_COLOR", "If set, output has no colour. Without it only output to a terminal has colour."},
-};
-
-constexpr std::array kExitStatus = {
-    Entry{"0", "Success."}, Entry{"1", "A check failed."}, Entry{"2", "An argument or a file is wrong."},
-    Entry{"3", "There is no Vulkan device."}, Entry{"130", "Interrupted; finished trials are kept."}};
 
 /// Text as roff takes it: its own marks are escaped, and all is in ASCII, which every output of man(1) has.
 std::string roff(std::string text) {
@@ -60,13 +27,6 @@ std::string roff(std::string text) {
 
 std::string entry(const std::string& name, const std::string& text) {
   return fmt::format(".TP\n\\fB{}\\fP\n{}\n", roff(name), roff(text));
-}
-
-template <typename Entries>
-std::string section(const char* title, const Entries& entries) {
-  std::string out = fmt::format(".SH {}\n", title);
-  for (const Entry& e : entries) out += entry(e.name, e.text);
-  return out;
 }
 
 /// As it stands, line by line.
@@ -100,8 +60,7 @@ std::string manual_page(const CLI::App& app) {
     out += fmt::format(".SS {}\n{}\n", roff(c->get_name()), roff(c->get_description()));
     out += options_of(*c) + verbatim(c->get_footer());
   }
-  out += section("EXIT STATUS", kExitStatus) + section("ENVIRONMENT", kEnvironment);
-  return out + ".SH EXAMPLES\n" + verbatim(app.get_footer());
+  return out + texts::kManual + ".SH EXAMPLES\n" + verbatim(app.get_footer());
 }
 
 }  // namespace
@@ -111,8 +70,7 @@ void add_manual(CLI::App& app, Console& console) {
   cmd->group("");  // for packages
   cmd->callback([&app, &console] {
     const std::string page = manual_page(app);
-    if (console.json) return fmt::print("{}\n", nlohmann::json{{"page", page}}.dump(2));
-    fmt::print("{}", page);
+    console.print([&] { return nlohmann::json{{"page", page}}; }, [&] { return page; });
   });
 }
 

@@ -1,15 +1,10 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <tuple>
 
 #include "cli/command.hpp"
 #include "render/album.hpp"
-#include "results/store.hpp"
-#include "runner/again.hpp"
+#include "render/run_motion.hpp"
 #include "runner/interrupt.hpp"
-#include "runner/solver_run.hpp"
-#include "scenario/load.hpp"
 
 namespace clothbench {
 namespace {
@@ -23,65 +18,17 @@ struct RenderArguments {
   DeviceFlags device;
 };
 
-bool is_run(const fs::path& p) { return p.extension() == ".h5" || p.extension() == ".part"; }
-
-/// Result files of a folder whose names have `wanted` in them. Throws Error where that leaves it open which are meant.
-std::vector<fs::path> runs_in(const fs::path& folder, const std::string& wanted) {
-  std::vector<fs::path> all, found;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (is_run(entry.path())) all.push_back(entry.path());
-  std::sort(all.begin(), all.end());
-  for (const fs::path& p : all)
-    if (p.stem().string().find(wanted) != std::string::npos) found.push_back(p);
-  if (!found.empty() && (!wanted.empty() || found.size() == 1)) return found;
-  std::string names;
-  for (const fs::path& p : all) names += "\n  " + p.stem().string();
-  if (all.empty()) throw Error(folder.string() + ": no result files (.h5, .part) in it");
-  if (found.empty()) throw Error(folder.string() + ": no run has \"" + wanted + "\" in its name; there are" + names);
-  throw Error(folder.string() + ": " + std::to_string(all.size()) + " runs; choose one with --run TEXT:" + names);
-}
-
-/// Runs a scene for its positions alone.
-render::Motion run(const std::string& file, const RenderArguments& a, const Console& console) {
-  const Overrides overrides = split_overrides(a.set);
-  const Scene scene = load_scene(file, overrides.scene);
-  const auto [entry, settings, setting] = chosen_solver(a.solver, overrides);
-  if (!console.json)
-    fmt::print("{}: this is a scenario, not a result file, so {} runs it now ({:g} s of simulated time)\n", file,
-               a.solver, scene.time.duration_s);
-  SolverRun run({&scene, entry, settings, setting}, a.device.options, "render");
-  if (!run.alive()) throw Error(file + ": " + a.solver + ": " + run.outcome().status + ": " + run.outcome().message);
-  TrialRules rules;
-  rules.accuracy_duration_s = scene.time.duration_s;
-  AccuracyPass pass = run.run_accuracy(rules);
-  return render::motion_of(scene, run.header(), run.outcome(), std::move(pass));
-}
-
-std::vector<render::Motion> motions_of(const std::string& file, const RenderArguments& a, const Console& console) {
-  std::vector<render::Motion> out;
-  const fs::path path = file;
-  if (fs::is_directory(path) && !is_run(path)) {
-    for (const fs::path& p : runs_in(path, a.run)) out.push_back(render::stored_motion(p));
-  } else if (is_run(path)) {
-    out.push_back(render::stored_motion(path));
-  } else {
-    out.push_back(run(file, a, console));
-  }
-  for (const render::Motion& m : out)
-    if (m.frames() == 0)
-      throw Error(file + ": " + m.name + " has no trajectory" + (m.outcome.empty() ? "" : " (" + m.outcome + ")") +
-                  "; a scenario can be run directly: clothbench render SCENE");
-  return out;
-}
-
-void tell(const render::Taken& t) {
-  if (t.pictures.size() == 1)
-    fmt::print("{}\n", t.pictures[0].string());
-  else if (!t.pictures.empty())
-    fmt::print("{} pictures: {} … {}\n", t.pictures.size(), t.pictures.front().string(),
-               t.pictures.back().filename().string());
-  for (const fs::path& m : t.movies) fmt::print("{}\n", m.string());
-  if (!t.no_movie.empty()) fmt::print("{}\n", t.no_movie);
+/// Runs a scenario for its positions alone.
+auto run_of(const RenderArguments& a, const Console& console) {
+  return [&](const std::string& file) {
+    const Overrides overrides = split_overrides(a.set);
+    const Scene scene = load_scene(file, overrides.scene);
+    const auto [entry, settings, setting] = chosen_solver(a.solver, overrides);
+    if (!console.json)
+      fmt::print("{}: this is a scenario, not a result file, so {} runs it now ({:g} s of simulated time)\n", file,
+                 a.solver, scene.time.duration_s);
+    return render::run_motion({&scene, entry, settings, setting}, a.device.options);
+  };
 }
 
 void render_all(const RenderArguments& a, const Console& console) {
@@ -95,11 +42,11 @@ void render_all(const RenderArguments& a, const Console& console) {
   shots.out = a.out;
   nlohmann::json reported = {{"pictures", nlohmann::json::array()}, {"movies", nlohmann::json::array()}};
   for (const std::string& file : a.files)
-    for (const render::Motion& m : motions_of(file, a, console)) {
+    for (const render::Motion& m : render::motions_of(file, run_of(a, console), a.run)) {
       shots.frames = render::frames_from(a.frames, m.frames());
       render::Taken taken;
       {
-        StatusLine line(!console.json);
+        StatusLine line(console.shows_status());
         taken =
             render::take(m, shots, a.device.options, [&](const std::string& what, std::size_t done, std::size_t of) {
               if (interrupt_requested())
@@ -110,9 +57,9 @@ void render_all(const RenderArguments& a, const Console& console) {
       for (const fs::path& p : taken.pictures) reported["pictures"].push_back(p.string());
       for (const fs::path& p : taken.movies) reported["movies"].push_back(p.string());
       if (!taken.no_movie.empty()) reported["no_movie"] = taken.no_movie;
-      if (!console.json) tell(taken);
+      if (!console.json) fmt::print("{}", render::taken_text(taken));
     }
-  if (console.json) fmt::print("{}\n", reported.dump(2));
+  if (console.json) Console::print(reported);
 }
 
 }  // namespace
@@ -148,7 +95,7 @@ void add_render(CLI::App& app, Console& console) {
       "          clothbench render paper/hand-push --frames 0:-1:4 -o push");
   cmd->callback([&console, &a] {
     const bool runs = std::any_of(a.files.begin(), a.files.end(),
-                                  [](const fs::path& f) { return !fs::is_directory(f) && !is_run(f); });
+                                  [](const fs::path& f) { return !fs::is_directory(f) && !render::is_run(f); });
     const SolverEntry* solver = runs ? &find_solver(a.solver) : nullptr;
     if (solver == nullptr || !is_external(solver->info)) return render_all(a, console);
     const std::string crash = Guard(console.words)

@@ -1,7 +1,5 @@
 #include "report/report.hpp"
 
-#include <fmt/format.h>
-
 #include "cli/command.hpp"
 
 namespace clothbench {
@@ -20,13 +18,10 @@ void add_report(CLI::App& app, Console& console) {
     ReportOptions options;
     options.out = out;
     write_report(paths, options);
-    if (console.json)
-      fmt::print("{}\n", nlohmann::json{{"out", out}}.dump(2));
-    else {
-      print_console_report(paths);
-      const bool page = std::filesystem::exists(options.out / "index.html");
-      fmt::print("\nreport: {}/{}\n", out, page ? "index.html (open it in a browser), report.md" : "report.md");
-    }
+    if (console.json) return Console::print({{"out", out}});
+    print_console_report(paths);
+    const bool page = std::filesystem::exists(options.out / "index.html");
+    fmt::print("\nreport: {}/{}\n", out, page ? "index.html (open it in a browser), report.md" : "report.md");
   });
 }
 

@@ -1,10 +1,4 @@
-#include <fmt/format.h>
-
-#include <filesystem>
-
 #include "cli/command.hpp"
-#include "cli/run_common.hpp"
-#include "scenario/load.hpp"
 
 namespace clothbench {
 namespace {
@@ -54,7 +48,8 @@ void add_run(CLI::App& app, Console& console) {
     }
     StudyManifest manifest;
     manifest.study = "run";
-    run_and_tell(plan, manifest, {a.out, a.resume, a.with.device}, console);
+    RunFlags{a.out, a.resume, false, a.with.device}.tell(
+        console, [&](const StudyCall& call) { return execute_study(plan, manifest, call); });
   });
 }
 

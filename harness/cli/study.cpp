@@ -1,10 +1,7 @@
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cstdlib>
 
+#include "assets/assets.hpp"
 #include "cli/command.hpp"
-#include "cli/run_common.hpp"
 #include "runner/run_choice.hpp"
 #include "runner/study_plan.hpp"
 #ifdef CLOTHBENCH_WITH_DRAW
@@ -25,35 +22,8 @@ struct StudyArguments {
   RunFlags run;
 };
 
-/// A plugin climbs a study's ladder by the knobs that it has in common with the solvers here.
-std::map<std::string, std::vector<std::string>> knobs_of_plugins(const std::vector<std::string>& names) {
-  std::map<std::string, std::vector<std::string>> out;
-  for (const std::string& name : names)
-    if (const SolverEntry* e = known_solver(name); e != nullptr && is_external(e->info))
-      for (const SettingSpec& s : e->info.settings)
-        if (s.name == "substeps" || s.name == "iterations") out[name].push_back(s.name);
-  return out;
-}
-
-/// While it lives, this process and its children find no fetched rooms and hands.
-class ProceduralAssets {
- public:
-  ProceduralAssets() {
-    if (const char* set = std::getenv("CLOTHBENCH_ASSETS")) before_ = set;
-    ::setenv("CLOTHBENCH_ASSETS", "procedural", 1);
-  }
-  ~ProceduralAssets() {
-    before_ ? ::setenv("CLOTHBENCH_ASSETS", before_->c_str(), 1) : ::unsetenv("CLOTHBENCH_ASSETS");
-  }
-  ProceduralAssets(const ProceduralAssets&) = delete;
-  ProceduralAssets& operator=(const ProceduralAssets&) = delete;
-
- private:
-  std::optional<std::string> before_;
-};
-
 void print_runs(const std::vector<std::string>& names, const Console& console) {
-  if (console.json) return fmt::print("{}\n", nlohmann::json(names).dump(2));
+  if (console.json) return Console::print(names);
   for (std::size_t k = 0; k < names.size(); ++k) fmt::print("{}\t{}\n", k, names[k]);
 }
 
@@ -76,8 +46,9 @@ void run_untimed(Study study, const StudyArguments& a, Console& console) {
                 ", whose runs are in processes of their own; --jobs uses all "
                 "cores of a machine");
   const StudyManifest manifest = {study.name, "", "", study.definition, {}};
-  const auto run = is_drawn(study) ? run_contact_and_tell : run_stability_and_tell;
-  run(std::move(study), manifest, a.run, a.only, std::max(1, a.jobs), console);
+  a.run.tell(console, [&](const StudyCall& call) {
+    return execute_apart(std::move(study), manifest, call, a.only, std::max(1, a.jobs));
+  });
 }
 
 /// Drawn scenes say which assets they are drawn from: fetched ones unless asked otherwise.
@@ -101,8 +72,8 @@ void run_study(StudyArguments& a, Console& console) {
   if (a.run.resume && a.run.out.empty()) throw Error("--resume: expected --out with the folder to continue");
   const StudyLength length = a.full ? StudyLength::Full : a.quick ? StudyLength::Quick : StudyLength::Short;
   if (a.procedural && a.require_assets) throw Error("--procedural: expected without --require-assets");
-  const std::optional<ProceduralAssets> stand_ins =
-      a.procedural ? std::optional<ProceduralAssets>(std::in_place) : std::nullopt;
+  const std::optional<assets::ProceduralAssets> stand_ins =
+      a.procedural ? std::optional<assets::ProceduralAssets>(std::in_place) : std::nullopt;
   Study study =
       load_study(a.study, {overrides.scene, length, assets_of(a), a.only, knobs_of_plugins(a.only), a.seed, a.count});
   check_options(study, a);
@@ -129,7 +100,7 @@ void run_study(StudyArguments& a, Console& console) {
     plan.measure_moduli = false;  // of fronts, which need all runs
     a.run.resume = a.run.part = true;
   }
-  run_and_tell(std::move(plan), std::move(manifest), a.run, console);
+  a.run.tell(console, [&](const StudyCall& call) { return execute_study(std::move(plan), manifest, call); });
 }
 
 }  // namespace

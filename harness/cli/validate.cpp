@@ -1,8 +1,5 @@
-#include <fmt/format.h>
-
 #include "base/tint.hpp"
 #include "cli/command.hpp"
-#include "scenario/load.hpp"
 #include "scenario/study.hpp"
 
 namespace clothbench {
@@ -31,7 +28,7 @@ void add_validate(CLI::App& app, Console& console) {
       if (!console.json)
         fmt::print("{}\n", fault.empty() ? file + ": " + tinted(Tone::Good, "ok") : tinted(Tone::Bad, fault));
     }
-    if (console.json) fmt::print("{}\n", rows.dump(2));
+    if (console.json) Console::print(rows);
   });
 }
 

@@ -1,7 +1,4 @@
-#include <fmt/format.h>
-
 #include "cli/command.hpp"
-#include "cli/run_common.hpp"
 #include "runner/interrupt.hpp"
 #include "xr/loop.hpp"
 
@@ -17,30 +14,6 @@ struct XrArguments {
   bool opaque = false;
   DeviceFlags device;
 };
-
-void print(const xr::LoopResult& r, const Console& console) {
-  const auto& s = r.summary;
-  if (console.json) {
-    fmt::print("{}\n", nlohmann::json({{"file", r.file.string()},
-                                       {"scenario", r.scenario.string()},
-                                       {"status", r.outcome.status},
-                                       {"message", r.outcome.message},
-                                       {"summary", s}})
-                           .dump(2));
-    return;
-  }
-  const auto of = [&](const char* name) { return s.contains(name) ? s.at(name) : kMissing; };
-  fmt::print("{:.0f} frames: {}\n", of("xr_frames"), r.outcome.status);
-  fmt::print("frames a second    median {:.1f}   mean {:.1f}   worst {:.1f}\n", of("xr_fps_median"), of("xr_fps_mean"),
-             of("xr_fps_worst"));
-  fmt::print("shown after        1 period {:.1f} %   2 {:.1f} %   3 {:.1f} %   more {:.1f} %\n",
-             100 * of("xr_share_1_period"), 100 * of("xr_share_2_periods"), 100 * of("xr_share_3_periods"),
-             100 * of("xr_share_more_periods"));
-  fmt::print("step               median {:.3f} ms   99 % {:.3f} ms   on the device {:.3f} ms\n",
-             1e3 * of("xr_step_median_s"), 1e3 * of("xr_step_p99_s"), 1e3 * of("xr_step_device_median_s"));
-  fmt::print("both pictures      median {:.3f} ms on the device\n", 1e3 * of("xr_paint_device_median_s"));
-  fmt::print("results in {}; the session replays with: clothbench run {}\n", r.file.string(), r.scenario.string());
-}
 
 }  // namespace
 
@@ -93,7 +66,7 @@ void add_xr(CLI::App& app, Console& console) {
     o.out = a.out.empty() ? default_folder("xr") : std::filesystem::path(a.out);
     if (!console.json) o.tell = [](const std::string& text) { fmt::print("{}\n", text); };
     const xr::LoopResult r = xr::run_loop(o);
-    print(r, console);
+    console.print([&] { return xr::loop_json(r); }, [&] { return xr::loop_text(r); });
     if (r.outcome.status != "ok" || r.validation_messages > 0) console.exit_code = ExitCode::CheckFailed;
     if (interrupt_requested()) console.exit_code = ExitCode::Interrupted;
     if (r.outcome.status != "ok")

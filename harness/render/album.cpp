@@ -184,4 +184,15 @@ std::vector<std::size_t> frames_from(const std::string& text, std::size_t count)
   return frames;
 }
 
+std::string taken_text(const Taken& t) {
+  std::string text;
+  if (t.pictures.size() == 1)
+    text = t.pictures[0].string() + "\n";
+  else if (!t.pictures.empty())
+    text = fmt::format("{} pictures: {} … {}\n", t.pictures.size(), t.pictures.front().string(),
+                       t.pictures.back().filename().string());
+  for (const std::filesystem::path& m : t.movies) text += m.string() + "\n";
+  return text + (t.no_movie.empty() ? "" : t.no_movie + "\n");
+}
+
 }  // namespace clothbench::render

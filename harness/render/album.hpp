@@ -31,6 +31,9 @@ struct Taken {
 Taken take(const Motion&, const Shots&, const DeviceOptions&,
            const std::function<void(const std::string&, std::size_t, std::size_t)>& progress = {});
 
+/// What was written, for the terminal; many pictures are one line.
+std::string taken_text(const Taken&);
+
 /// Frame numbers from "12", "0:71" or "0:-1:4" (first and last, both included, and step; -1 is the last frame; an
 /// empty end is the first or the last frame). Throws Error naming --frames and the expected form.
 std::vector<std::size_t> frames_from(const std::string& text, std::size_t count);

@@ -6,6 +6,8 @@
 #include <array>
 #include <utility>
 
+#include "vulkan/make.hpp"
+
 namespace clothbench::render {
 namespace {
 
@@ -25,17 +27,12 @@ Offscreen::Offscreen(std::shared_ptr<vulkan::Device> device, VkExtent2D extent, 
   for (std::size_t k = 0; k < count; ++k)
     images_.push_back(std::make_unique<Image>(device_, kFormat, extent, VK_SAMPLE_COUNT_1_BIT,
                                               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
-  VkCommandBufferAllocateInfo allocate{};
-  allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  allocate.commandPool = device_->command_pool();
-  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  allocate.commandBufferCount = 1;
-  check(vkAllocateCommandBuffers(device_->handle(), &allocate, &commands_), "vkAllocateCommandBuffers");
-  VkFenceCreateInfo fence{};
-  fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  if (const VkResult made = vkCreateFence(device_->handle(), &fence, nullptr, &fence_); made != VK_SUCCESS) {
+  commands_ = vulkan::make_commands(*device_);
+  try {
+    fence_ = vulkan::make_fence(*device_);
+  } catch (...) {  // no destructor runs then
     vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands_);
-    check(made, "vkCreateFence");
+    throw;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "render/render_shared.h"
+#include "vulkan/make.hpp"
 
 namespace clothbench::render {
 namespace {
@@ -126,29 +127,12 @@ void Pipelines::create_pass(VkFormat colour, VkSampleCountFlagBits samples) {
 }
 
 void Pipelines::create_set() {
-  std::array<VkDescriptorSetLayoutBinding, kBindings> slots{};
+  std::vector<VkDescriptorSetLayoutBinding> slots(kBindings);
   for (std::uint32_t k = 0; k < kBindings; ++k) {
     const VkShaderStageFlags stage = k == kColours ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT;
     slots[k] = {k, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, stage, nullptr};
   }
-  VkDescriptorSetLayoutCreateInfo layout{};
-  layout.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  layout.bindingCount = kBindings;
-  layout.pBindings = slots.data();
-  check(vkCreateDescriptorSetLayout(device_->handle(), &layout, nullptr, &set_layout_), "vkCreateDescriptorSetLayout");
-  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kBindings};
-  VkDescriptorPoolCreateInfo pool{};
-  pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-  pool.maxSets = 1;
-  pool.poolSizeCount = 1;
-  pool.pPoolSizes = &size;
-  check(vkCreateDescriptorPool(device_->handle(), &pool, nullptr, &pool_), "vkCreateDescriptorPool");
-  VkDescriptorSetAllocateInfo allocate{};
-  allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-  allocate.descriptorPool = pool_;
-  allocate.descriptorSetCount = 1;
-  allocate.pSetLayouts = &set_layout_;
-  check(vkAllocateDescriptorSets(device_->handle(), &allocate, &set_), "vkAllocateDescriptorSets");
+  vulkan::make_storage_set(*device_, slots, set_layout_, pool_, set_);
 }
 
 void Pipelines::create_layout() {

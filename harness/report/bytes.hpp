@@ -8,8 +8,8 @@ namespace clothbench {
 /// Definition of the byte counts, for the notes of tables.
 inline constexpr const char* kWhatBytesAre =
     "loads and stores of the shaders, computed from the scene and the kernels' loops; tests compare them "
-    "with instrumented kernels. ≥: a lower bound, where the bytes read depend on the shape of the cloth "
-    "(contact of xpbd). Retries of atomics are not counted.";
+    "with instrumented kernels. ≥: a lower bound, where the bytes read depend on the shape of the cloth, "
+    "as in contact. Retries of atomics are not counted.";
 
 /// True if the bytes that the run's stages read are a lower bound.
 bool reads_at_least(const RunRecord&);

@@ -10,6 +10,7 @@
 #include "clothbench/error.hpp"
 #include "metrics/registry.hpp"
 #include "report/grid.hpp"
+#include "report/pairs.hpp"
 #include "report/withheld.hpp"
 #include "results/store.hpp"
 
@@ -81,6 +82,7 @@ void compare_run(ComparedRun& c) {
     const double a = summary_value(*c.a, name), b = summary_value(*c.b, name);
     if (differ(a, b)) c.metrics.push_back({name, a, b});
   }
+  if (!c.metrics.empty() && c.outcome.empty()) c.apart = pair_of(*c.a, *c.b, "before").value;
 }
 
 std::string percent(double ratio) { return std::isfinite(ratio) ? fmt::format("{:+.1f} %", 100 * (ratio - 1)) : "–"; }
@@ -134,12 +136,12 @@ std::vector<ComparedRun> compare_runs(const std::vector<RunRecord>& a, const std
     const std::string name = run_name(c.header);
     if (find(name) != out.end())
       throw Error("compare: " + name + " occurs twice in the first folder; expected each run once");
-    out.push_back({name, &c, nullptr, {}, {}, {}, {}});
+    out.push_back({name, &c});
   }
   for (const RunRecord& c : b) {
     const std::string name = run_name(c.header);
     auto at = find(name);
-    if (at == out.end()) at = out.insert(out.end(), ComparedRun{name, nullptr, nullptr, {}, {}, {}, {}});
+    if (at == out.end()) at = out.insert(out.end(), ComparedRun{name});
     if (at->b != nullptr)
       throw Error("compare: " + name + " occurs twice in the second folder; expected each run once");
     at->b = &c;
@@ -172,6 +174,8 @@ std::vector<Table> comparison_tables(const std::vector<ComparedRun>& runs) {
     if (!c.outcome.empty()) results.rows.push_back({c.name, "outcome", status(*c.a), status(*c.b)});
     for (const ComparedRun::Change& m : c.metrics)
       results.rows.push_back({c.name, m.name, significant(m.a, 6), significant(m.b, 6)});
+    if (std::isfinite(c.apart))
+      results.rows.push_back({c.name, "positions, apart over L", "–", significant(c.apart, 3)});
     for (const ComparedRun::Versions& v : c.versions)
       results.rows.push_back(
           {c.name, v.metric, fmt::format("by version {}", v.a), fmt::format("by version {}: not compared", v.b)});
@@ -203,6 +207,7 @@ nlohmann::json comparison_json(const std::vector<ComparedRun>& runs) {
                           {"high", finite_or_null(c.time.high)},
                           {"level", finite_or_null(c.time.level)},
                           {"p", finite_or_null(c.time.p)},
+                          {"apart", finite_or_null(c.apart)},
                           {"metrics", nlohmann::json::object()}};
     for (const ComparedRun::Versions& v : c.versions) row["versions"][v.metric] = {v.a, v.b};
     for (const ComparedRun::Change& m : c.metrics) row["metrics"][m.name] = {finite_or_null(m.a), finite_or_null(m.b)};

@@ -8,6 +8,7 @@
 #include "base/json_number.hpp"
 #include "report/bytes.hpp"
 #include "report/leak.hpp"
+#include "report/roles.hpp"
 #include "report/withheld.hpp"
 
 namespace clothbench {
@@ -123,7 +124,7 @@ std::string distance(double m) { return std::isfinite(m) ? fmt::format("{:.3g} m
 
 std::vector<RunPair> turned_pairs(const std::vector<ContactSetUp>& ups) {
   std::vector<RunPair> out = run_pairs(contact_rows(ups), "turned-over");
-  std::erase_if(out, [](const RunPair& p) { return p.series.solver == "ballistic" || !ran(*p.run) || !ran(*p.other); });
+  std::erase_if(out, [](const RunPair& p) { return is_floor(p.series.solver) || !ran(*p.run) || !ran(*p.other); });
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "report/report.hpp"
+#include "report/roles.hpp"
 #include "report/withheld.hpp"
 
 namespace clothbench {
@@ -59,7 +60,7 @@ std::vector<std::string> plugin_lines(const std::vector<RunRecord>& runs) {
 std::string overhead_line(const std::vector<RunRecord>& runs) {
   const RunRecord* most = nullptr;
   for (const RunRecord& c : runs) {
-    if (c.header.solver != "ballistic" || c.outcome.status != "ok") continue;
+    if (!is_floor(c.header.solver) || c.outcome.status != "ok") continue;
     const double t = summary_value(c, "frame_wall_median_s");
     if (std::isfinite(t) && (most == nullptr || t > summary_value(*most, "frame_wall_median_s"))) most = &c;
   }
@@ -67,8 +68,8 @@ std::string overhead_line(const std::vector<RunRecord>& runs) {
   const double t = summary_value(*most, "frame_wall_median_s"), share = t * kDisplayHz;
   return fmt::format(
       "Harness overhead: at most {:.2g} % of a 72 Hz frame (13.89 ms), {} the 1 % allowed. Measured: "
-      "{:.3g} µs a frame of {} with ballistic, whose particles only fall.\n",
-      100 * share, share < kAllowedOverhead ? "below" : "**above**", 1e6 * t, most->header.scene);
+      "{:.3g} µs a frame of {} with {}, whose particles only fall.\n",
+      100 * share, share < kAllowedOverhead ? "below" : "**above**", 1e6 * t, most->header.scene, most->header.solver);
 }
 
 std::string window_note(const std::vector<RunRecord>& runs) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "report/roles.hpp"
 #include "report/withheld.hpp"
 
 namespace clothbench {
@@ -94,7 +95,7 @@ std::vector<SpeedSweep> speed_sweeps(const std::vector<ContactSetUp>& ups) {
     const double speed = summary_value(*r.run, "imposed_speed_m_per_s");
     const std::string& status = r.run->outcome.status;
     if (!(speed > 0) || status == "unsupported" || status == "over_budget" || verdict(*r.run) == "ignored" ||
-        r.run->header.solver == "ballistic")
+        is_floor(r.run->header.solver))
       continue;
     const std::string base = base_name(*r.run);
     SpeedSweep& at = find_or_add(

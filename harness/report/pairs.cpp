@@ -38,7 +38,9 @@ Path path_of(const RunRecord& c, Map map) {
 
 /// Two numbers of the cloth, such as its grid; none if it has no such pair.
 std::optional<std::pair<double, double>> two_of(const RunRecord& c, const char* key) {
-  const json j = scenario_of(c).value(json::json_pointer(std::string("/cloth/") + key), json());
+  const json scenario = scenario_of(c);
+  const json j =
+      scenario.is_object() ? scenario.value(json::json_pointer(std::string("/cloth/") + key), json()) : json();
   if (!j.is_array() || j.size() != 2) return std::nullopt;
   return std::pair{j[0].get<double>(), j[1].get<double>()};
 }
@@ -189,17 +191,21 @@ double formerly_repeat(const ContactRow& o, const json& its, const ContactRow& r
   return pair_if(both_of("S26", o, its, r, scenario) && seed_of(its) == seed_of(scenario));
 }
 
+/// Never of one study.
+double formerly_none(const ContactRow&, const json&, const ContactRow&, const json&) { return INFINITY; }
+
 /// The run with the least seed.
 double formerly_seed(const ContactRow& o, const json& its, const ContactRow& r, const json& scenario) {
   const bool is = both_of("S26", o, its, r, scenario) && seed_of(scenario) < seed_of(its);
   return is ? seed_of(scenario) : INFINITY;
 }
 
+double most_over_side(const RunPair& p) { return p.apart.most / longer_side(*p.run); }
+
 const PairRelation kRelations[] = {
     {"turned-over", Map::Transposed, until_contact, 0.05, formerly_turned},
     {"whole-room", Map::Same, [](const RunPair& p) { return p.apart.most; }, kMissing, formerly_whole},
-    {"irrelevant", Map::Same, [](const RunPair& p) { return p.apart.most / longer_side(*p.run); }, 1e-6,
-     formerly_irrelevant},
+    {"irrelevant", Map::Same, most_over_side, 1e-6, formerly_irrelevant},
     {"finer", Map::None, [](const RunPair& p) { return ratio(*p.run, *p.other, "pop_displacement_m"); }, 1.2,
      formerly_finer},
     {"even-frames", Map::None, [](const RunPair& p) { return ratio(*p.other, *p.run, "truth_e2"); }, 3, formerly_even},
@@ -207,7 +213,23 @@ const PairRelation kRelations[] = {
     {"resolution", Map::None, [](const RunPair& p) { return ratio(*p.other, *p.run, "stretch_max_last_second"); },
      kMissing, formerly_coarser},
     {"repeat", Map::Shape, coordinate, 0, formerly_repeat},
-    {"seed", Map::Shape, coordinate, kMissing, formerly_seed}};
+    {"seed", Map::Shape, coordinate, kMissing, formerly_seed},
+    {"before", Map::Same, most_over_side, 0, formerly_none}};
+
+const PairRelation& relation_of(const std::string& name) {
+  const auto at = std::find_if(std::begin(kRelations), std::end(kRelations), [&](auto& r) { return r.name == name; });
+  if (at == std::end(kRelations)) throw Error("no relation of two runs is called " + name);
+  return *at;
+}
+
+RunPair measured(const ContactRow& run, const RunRecord& other, const PairRelation& relation) {
+  RunPair p{run, &other, &relation};
+  p.apart = measure(p);
+  p.value = relation.value(p);
+  return p;
+}
+
+ContactRow plain_row(const RunRecord& c) { return {&c, {c.header.solver, c.header.setting, ""}, "", c.header.scene}; }
 
 struct Seen {
   const ContactRow* row;
@@ -245,9 +267,7 @@ double longer_side(const RunRecord& c) {
 bool RunPair::within() const { return value <= relation->bound; }
 
 std::vector<RunPair> run_pairs(const std::vector<ContactRow>& rows, const std::string& name) {
-  const auto at = std::find_if(std::begin(kRelations), std::end(kRelations), [&](auto& r) { return r.name == name; });
-  if (at == std::end(kRelations)) throw Error("no relation of two runs is called " + name);
-  const PairRelation& relation = *at;
+  const PairRelation& relation = relation_of(name);
   std::vector<Seen> seen;
   for (const ContactRow& r : rows)
     if (r.run->outcome.status != "missing") seen.emplace_back(r);
@@ -264,10 +284,7 @@ std::vector<RunPair> run_pairs(const std::vector<ContactRow>& rows, const std::s
       }
     }
     if (with == nullptr) continue;
-    RunPair p{*with->row, o.row->run, &relation};
-    p.apart = measure(p);
-    p.value = relation.value(p);
-    found.emplace_back(with, std::move(p));
+    found.emplace_back(with, measured(*with->row, *o.row->run, relation));
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<RunPair> out;
@@ -277,8 +294,12 @@ std::vector<RunPair> run_pairs(const std::vector<ContactRow>& rows, const std::s
 
 std::vector<RunPair> run_pairs(const std::vector<RunRecord>& runs, const std::string& relation) {
   std::vector<ContactRow> rows;
-  for (const RunRecord& c : runs) rows.push_back({&c, {c.header.solver, c.header.setting, ""}, "", c.header.scene});
+  for (const RunRecord& c : runs) rows.push_back(plain_row(c));
   return run_pairs(rows, relation);
+}
+
+RunPair pair_of(const RunRecord& run, const RunRecord& other, const std::string& relation) {
+  return measured(plain_row(run), other, relation_of(relation));
 }
 
 }  // namespace clothbench

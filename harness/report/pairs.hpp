@@ -39,6 +39,7 @@ struct RunPair : ContactRow {
 ///   resolution   finer cells: greatest strain of the last second, `other` over `run`
 ///   repeat       the same run in another process: greatest difference over the width, 0
 ///   seed         another seed: greatest difference over the width
+///   before       the same run in another result (`clothbench compare`): greatest distance over the longer side, 0
 struct PairRelation {
   enum class Map { None, Same, Transposed, Shape };  ///< Shape: relative to the cloth's centre, in widths
 
@@ -60,5 +61,8 @@ double longer_side(const RunRecord&);
 /// relation. Reads trajectories from the runs' files if the records do not hold them.
 std::vector<RunPair> run_pairs(const std::vector<ContactRow>&, const std::string& relation);
 std::vector<RunPair> run_pairs(const std::vector<RunRecord>&, const std::string& relation);
+
+/// These two runs by the relation, whatever their study compares them with.
+RunPair pair_of(const RunRecord& run, const RunRecord& other, const std::string& relation);
 
 }  // namespace clothbench

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/roles.hpp"
+
 namespace clothbench {
 namespace {
 
@@ -40,7 +42,7 @@ std::vector<PulledRow> rows_of(const std::vector<ContactSetUp>& ups) {
   for (const ContactRow& r : contact_rows(ups)) {
     const double speed = summary_value(*r.run, "imposed_speed_m_per_s");
     // A run without frames has no speed, and a solver that ignores the hands has no result to compare.
-    if (r.kind != "wave" || r.run->header.solver == "ballistic" || !(speed > 0)) continue;
+    if (r.kind != "wave" || is_floor(r.run->header.solver) || !(speed > 0)) continue;
     const std::string strip = strip_of(*r.run);
     find_or_add(out, [&](const PulledRow& p) { return p.scene == strip && p.series == r.series; },
                 {strip, r.series, {}})

@@ -19,6 +19,7 @@
 #include "report/friction.hpp"
 #include "report/leak.hpp"
 #include "report/material.hpp"
+#include "report/metamorphic.hpp"
 #include "report/paths.hpp"
 #include "report/penetration.hpp"
 #include "report/pictures.hpp"
@@ -56,7 +57,8 @@ struct Parts {
   std::vector<RunRecord> stability, drawn, contact, truth, rest;
 };
 
-/// Leaves out runs with separate tables: comparisons of feature costs (by address), effective moduli, friction.
+/// Leaves out runs with separate tables: comparisons of feature costs (by address), effective moduli, friction,
+/// metamorphic properties.
 Parts parts_of(const std::vector<RunRecord>& runs, const std::vector<RunPair>& costs) {
   Parts out;
   std::set<const RunRecord*> reported;
@@ -65,7 +67,7 @@ Parts parts_of(const std::vector<RunRecord>& runs, const std::vector<RunPair>& c
   for (const RunRecord& c : runs)
     if (summary_value(c, "frame_wall_median_s") > 0) timed.insert(c.header.scenario_json);
   for (const RunRecord& c : runs) {
-    if (reported.contains(&c) || is_moduli_run(c) || is_all_on(c) || is_friction(c)) continue;
+    if (reported.contains(&c) || is_moduli_run(c) || is_all_on(c) || is_friction(c) || is_metamorphic(c)) continue;
     // Of a scene that has not been run only the name is known; the table of runs without a result lists it.
     if (c.outcome.status == "missing" && c.header.scenario_json.empty()) continue;
     // Where no solver was timed on a pulled strip, its errors are tabulated by speed instead of by time.
@@ -231,6 +233,14 @@ Sections friction_section(const Facts& f) {
                                                                          }}}}};
 }
 
+Sections metamorphic_section(const Facts& f) {
+  std::vector<Table> tables = metamorphic_tables(f.runs);
+  if (tables.empty()) return {};
+  return {{{"metamorphic", "Metamorphic properties", std::move(tables)},
+           "metamorphic.md",
+           {{"metamorphic.json", [&] { return text_of(metamorphic_json(f.runs)); }}}}};
+}
+
 Sections cost_section(const Facts& f) {
   if (f.costs.empty()) return {};
   return {{{"feature-cost", "Feature cost", {feature_cost_table(f.costs), no_op_table(f.costs)}},
@@ -261,11 +271,11 @@ Sections failed_section(const Facts& f) {
 
 /// Sections in the order of report.md and the page, and of the terminal.
 constexpr Sections (*kInReport[])(const Facts&) = {
-    rates_sections,   sampled_section,  penetration_section, drawn_section,    work_section,  stability_section,
-    material_section, friction_section, cost_section,        features_section, failed_section};
+    rates_sections,   sampled_section,  penetration_section, drawn_section, work_section,     stability_section,
+    material_section, friction_section, metamorphic_section, cost_section,  features_section, failed_section};
 constexpr Sections (*kOnTerminal[])(const Facts&) = {
-    rates_sections,   sampled_section,  penetration_section, drawn_section,    work_section,     winners_section,
-    material_section, friction_section, cost_section,        features_section, stability_section};
+    rates_sections,   sampled_section,  penetration_section, drawn_section, work_section,     winners_section,
+    material_section, friction_section, metamorphic_section, cost_section,  features_section, stability_section};
 
 /// One page: ranks, best solvers, whether stiffness is a parameter of each solver, irrelevant features with an effect.
 std::string summary_page(const Facts& f) {

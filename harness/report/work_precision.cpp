@@ -9,6 +9,7 @@
 
 #include "report/grid.hpp"
 #include "report/report.hpp"
+#include "report/roles.hpp"
 #include "report/withheld.hpp"
 
 namespace clothbench {
@@ -149,7 +150,7 @@ bool in_real_time(const WorkPoint& p) { return p.wall_ms_per_s <= kRealTime_ms_p
 double WorkDiagram::best_error() const {
   double least = kMissing;
   for (const WorkPoint& p : points)
-    if (p.counts() && p.solver != "reference" && !flagged.contains(p.solver) && !(least <= p.error)) least = p.error;
+    if (p.counts() && !is_baseline(p.solver) && !flagged.contains(p.solver) && !(least <= p.error)) least = p.error;
   return least;
 }
 
@@ -244,7 +245,7 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
         return time_text(best(d, solver, within(most), &WorkPoint::fenced_ms_per_s), &WorkPoint::fenced_ms_per_s);
       };
       const auto flag = d.flagged.find(solver);
-      const bool baseline = solver == "reference";
+      const bool baseline = is_baseline(solver);
       t.rows.push_back({d.scene + (refused.empty() ? "" : " (refused)"), solver,
                         time_text(best(d, solver, within(1e-2), &WorkPoint::wall_ms_per_s)),
                         time_text(best(d, solver, within(1e-3), &WorkPoint::wall_ms_per_s)),

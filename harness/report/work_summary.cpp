@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "report/roles.hpp"
 #include "report/work_precision.hpp"
 
 namespace clothbench {
@@ -16,7 +17,7 @@ std::set<std::string> ranked(const WorkDiagram& d) {
   if (!d.refused().empty()) return out;
   for (const WorkPoint& p : d.points) {
     const std::string& status = p.run->outcome.status;
-    if (p.solver != "reference" && !d.flagged.contains(p.solver) && status != "unsupported" && status != "missing")
+    if (!is_baseline(p.solver) && !d.flagged.contains(p.solver) && status != "unsupported" && status != "missing")
       out.insert(p.solver);
   }
   return out;

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/tint.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/unsupported_scene.hpp"
 #include "runner/frame_loop.hpp"
@@ -22,12 +24,6 @@ constexpr int kFrames = 6;
 constexpr double kStill = 1e-6;   // of the width
 constexpr double kHeld_m = 1e-3;  // single precision and a soft hold; a wrong grip is off by centimetres
 constexpr std::size_t kFaultsKept = 8;
-
-std::string joined_names(FeatureSet set) {
-  std::string text;
-  set.for_each([&](Feature f) { text += (text.empty() ? "" : ", ") + std::string(name_of(f)); });
-  return text;
-}
 
 /// One case while it runs.
 class Conformer {
@@ -216,8 +212,7 @@ std::string conformance_skip(const SolverInfo& info, const Scene& s) {
     return "reference diverges: over-determined";
   if (info.name == "xpbd" && s.cloth.mesh && s.needs.has(Feature::SelfCollision))
     return "xpbd has self_collision for grids alone";
-  const FeatureSet missing = unsupported(info, s.needs);
-  return missing.empty() ? "" : info.name + " has no " + joined_names(missing);
+  return missing_features(info, s.needs);
 }
 
 ConformanceResult run_conformance(const SolverEntry& entry, const json& settings, const DeviceOptions& device,
@@ -248,6 +243,31 @@ json conformance_json(const ConformanceRow& r) {
           {"frames_whole", r.frames_whole},
           {"frames_of_scene", r.frames_of_scene},
           {"faults", r.faults}};
+}
+
+std::vector<std::string> conformance_scenes(const std::vector<std::string>& chosen) {
+  const std::vector<std::string> all = scene_names({"paper", "contact", "validation", "metamorphic"});
+  for (const std::string& name : chosen)
+    if (std::find(all.begin(), all.end(), name) == all.end()) {
+      const std::string near = nearest(name, all);
+      throw Error("--scene " + name + ": no such scene" + (near.empty() ? "" : "; nearest known: " + near));
+    }
+  return chosen.empty() ? all : chosen;
+}
+
+std::string conformance_text(const std::string& solver, const ConformanceRow& r) {
+  const Tone tone = r.status == "pass" ? Tone::Good : r.status == "FAIL" ? Tone::Bad : Tone::Doubtful;
+  std::string text = fmt::format("{} cases", r.cases - r.skipped);
+  if (r.skipped > 0) text += fmt::format(", {} skipped", r.skipped);
+  if (r.frames_whole > 0 && r.frames_whole < r.frames_of_scene)
+    text += fmt::format(", first {} of {} frames", r.frames_whole, r.frames_of_scene);
+  else if (r.frames_whole > 0)
+    text += fmt::format(", all {} frames", r.frames_whole);
+  if (r.status == "skipped" && !r.faults.empty()) text = r.faults.front();
+  text = fmt::format("{} {} {}: {}\n", tinted(tone, fmt::format("{:<7}", r.status)), solver, r.scene, text);
+  if (r.status != "FAIL") return text;
+  for (const std::string& f : r.faults) text += fmt::format("        {}\n", f);
+  return text;
 }
 
 ConformanceRow ask_conformance(Guard& guard, const SolverEntry& entry, const json& settings,

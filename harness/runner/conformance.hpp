@@ -54,5 +54,10 @@ ConformanceRow ask_conformance(Guard&, const SolverEntry&, const nlohmann::json&
                                const std::string& scene, bool whole, double limit_s);
 
 nlohmann::json conformance_json(const ConformanceRow&);
+/// The same for the terminal.
+std::string conformance_text(const std::string& solver, const ConformanceRow&);
+
+/// Scenes that are tested unless others are chosen. Throws Error for a chosen one that is none of them.
+std::vector<std::string> conformance_scenes(const std::vector<std::string>& chosen);
 
 }  // namespace clothbench

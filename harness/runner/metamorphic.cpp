@@ -6,11 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/json_number.hpp"
+#include "base/sha256.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/restart_after.hpp"
 #include "clothbench/unsupported_scene.hpp"
 #include "metrics/metric.hpp"
+#include "metrics/registry.hpp"
+#include "runner/environment.hpp"
 #include "runner/frame_loop.hpp"
 #include "scenario/change.hpp"
 #include "scenario/load.hpp"
@@ -24,7 +26,7 @@ constexpr double kSame = 1e-4, kNothing = 1e-6;
 constexpr double kFar_m = 100;
 
 struct Failed {
-  std::string how;
+  Outcome outcome;
 };
 
 /// Every frame's positions and velocities.
@@ -35,7 +37,7 @@ Trace trace_of(ClothSolver& solver, const Scene& s, Trace out = {}) {
   FrameLoop loop(solver, s, {.first = static_cast<int>(out.size()), .frames = s.time.frames()});
   solver.read_state(out.emplace_back());
   while (loop.next()) solver.read_state(out.emplace_back());
-  if (loop.failed()) throw Failed{"failed"};
+  if (loop.failed()) throw Failed{outcome_of(loop.status(), loop.index())};
   return out;
 }
 
@@ -81,7 +83,8 @@ class Tester {
   MetamorphicResult test(const std::string& property) {
     MetamorphicResult out{property, scene_.name, "", 0, true, kSame};
     // A two-sided scene may still have a form that it knows.
-    if (!supported(scene_) && property != "flip") return unsupported_row(out);
+    if (!supported(scene_) && property != "flip")
+      return unsupported_row(out, missing_features(entry_.info, scene_.needs));
     if (!scene_.time.ends_s.empty() && changes_scene(property)) return unsupported_row(out);
     try {
       if (base_.empty() && property != "flip") base_ = run(scene_);
@@ -94,10 +97,11 @@ class Tester {
       if (property == "repeat") repeat(out);
       if (property == "no-op") far_colliders(out);
       if (property == "restart") restart(out);
-    } catch (const UnsupportedScene&) {
-      return unsupported_row(out);
+    } catch (const UnsupportedScene& e) {
+      return unsupported_row(out, e.what());
     } catch (const Failed& f) {
-      out.status = f.how;
+      out.status = "failed";
+      out.outcome = f.outcome;
       out.bitwise = false;
       out.distance = std::nan("");
     }
@@ -105,6 +109,9 @@ class Tester {
       out.status = (out.at_most == 0 ? out.bitwise : out.distance <= out.at_most) ? "pass" : "fail";
     return out;
   }
+
+  /// Of the runs so far.
+  const DeviceInfo& device() const { return ran_on_; }
 
  private:
   /// Scenes whose clock is uneven are made for one place, one size and one numbering.
@@ -114,14 +121,21 @@ class Tester {
 
   bool supported(const Scene& s) const { return unsupported(entry_.info, s.needs).empty(); }
 
-  static MetamorphicResult unsupported_row(MetamorphicResult out) {
+  static MetamorphicResult unsupported_row(MetamorphicResult out, const std::string& why = "") {
     out.status = "unsupported";
+    out.outcome = {"unsupported", "ok", -1, why.empty() ? out.property + " does not apply to it" : why};
     out.bitwise = false;
     out.distance = std::nan("");
     return out;
   }
 
-  Trace run(const Scene& s) const { return trace_of(*load_solver(entry_, settings_, device_, s), s); }
+  std::unique_ptr<ClothSolver> loaded(const Scene& s) const {
+    auto solver = load_solver(entry_, settings_, device_, s);
+    ran_on_ = solver->device();
+    return solver;
+  }
+
+  Trace run(const Scene& s) const { return trace_of(*loaded(s), s); }
 
   Scene made(json scenario) const {
     scenario.erase("truth");  // positions alone are compared
@@ -204,7 +218,7 @@ class Tester {
 
   /// Goes on from the state half way, in a solver that was not there before.
   void restart(MetamorphicResult& out) const {
-    const auto solver = load_solver(entry_, settings_, device_, scene_);
+    const auto solver = loaded(scene_);
     const std::size_t half = base_.size() / 2;
     if (!restart_after(*solver, base_[half], frame_input(scene_, static_cast<int>(half) - 1))) {
       out = unsupported_row(out);
@@ -217,7 +231,7 @@ class Tester {
 
   void repeat(MetamorphicResult& out) const {
     out.at_most = 0;
-    const auto solver = load_solver(entry_, settings_, device_, scene_);
+    const auto solver = loaded(scene_);
     compare(base_, trace_of(*solver, scene_), {}, side_, out);
     solver->reset();
     compare(base_, trace_of(*solver, scene_), {}, side_, out);
@@ -249,6 +263,7 @@ class Tester {
   const json json_;
   const double side_;
   Trace base_;
+  mutable DeviceInfo ran_on_;
 };
 
 }  // namespace
@@ -293,33 +308,69 @@ std::vector<MetamorphicResult> run_metamorphic(const SolverEntry& entry, const j
   return out;
 }
 
-json metamorphic_json(const std::string& solver, const MetamorphicResult& r) {
-  return {{"solver", solver},
-          {"property", r.property},
-          {"scene", r.scene},
-          {"status", r.status},
-          {"distance", finite_or_null(r.distance)},
-          {"bitwise", r.bitwise},
-          {"at_most", r.at_most}};
+namespace {
+
+constexpr const char* kProtocol = "metamorphic";
+
+RunHeader header_of(const SolverEntry& entry, const json& settings, const std::string& setting, const Scene& scene,
+                    const MetamorphicProperty& property) {
+  RunHeader h;
+  h.scene = scene.name + "-" + property.name;
+  h.solver = entry.info.name;
+  h.setting = setting;
+  h.settings = settings;
+  h.scenario_json = json{{"name", h.scene},
+                         {"metamorphic", {{"scene", scene.name}, {"property", property.name}, {"doc", property.doc}}},
+                         {"base", json::parse(scene.json)}}
+                        .dump();
+  h.scenario_sha256 = sha256(h.scenario_json);
+  h.environment = describe_environment({}, kProtocol);
+  describe_solver(entry.info, h.environment);
+  return h;
 }
 
-std::vector<MetamorphicResult> ask_metamorphic(Guard& guard, const SolverEntry& entry, const json& settings,
-                                               const DeviceOptions& device, const Scene& scene,
-                                               const std::function<void(const std::string&)>& note) {
-  const Guard::Answer answer = guard.run(entry, [&] {
-    json rows = json::array();
-    for (const MetamorphicResult& r : run_metamorphic(entry, settings, device, {scene}, note))
-      rows.push_back(metamorphic_json(entry.info.name, r));
-    return rows;
-  });
-  std::vector<MetamorphicResult> out;
-  if (answer.crash.empty())
-    for (const json& j : answer.value)
-      out.push_back({j["property"], j["scene"], j["status"],
-                     j["distance"].is_null() ? std::nan("") : j["distance"].get<double>(), j["bitwise"], j["at_most"]});
-  else
-    for (const MetamorphicProperty& p : metamorphic_properties())
-      out.push_back({p.name, scene.name, "crashed: " + answer.crash, std::nan(""), false, 0});
+/// The bound is a bound of the scene's, so that `check` and the table of expectations judge it.
+RunRecord record_of(RunHeader header, const MetamorphicResult& r, const DeviceInfo& device, const SolverInfo& info) {
+  RunRecord c;
+  c.header = std::move(header);
+  c.header.environment = describe_environment(device, kProtocol);
+  describe_solver(info, c.header.environment);
+  c.outcome = r.outcome;
+  const bool judged = r.status == "pass" || r.status == "fail";
+  c.summary = {{"metamorphic_distance", r.distance},
+               {"metamorphic_at_most", r.at_most},
+               {"metamorphic_bits_differ", !judged     ? kMissing
+                                           : r.bitwise ? 0
+                                                       : 1},
+               {kExpect + "metamorphic_distance", !judged              ? kMissing
+                                                  : r.status == "pass" ? 1
+                                                                       : 0}};
+  c.outcome.expect = r.status == "pass"   ? "pass"
+                     : r.status == "fail" ? fmt::format("fail: {} on {}: distance {:.4g} > {:.4g}", r.property, r.scene,
+                                                        r.distance, r.at_most)
+                                          : "not measured";
+  return c;
+}
+
+}  // namespace
+
+std::vector<RunRecord> metamorphic_runs(Guard& guard, StudyRuns& runs, const SolverEntry& entry, const json& settings,
+                                        const std::string& setting, const Scene& scene,
+                                        const std::function<void(const std::string&)>& note) {
+  std::vector<RunRecord> out;
+  Tester tester(entry, settings, runs.device(), scene);
+  for (const MetamorphicProperty& p : metamorphic_properties()) {
+    if (note) note(fmt::format("{}: {} on {}", entry.info.name, p.name, scene.name));
+    const RunHeader header = header_of(entry, settings, setting, scene, p);
+    const PlannedRun planned{run_name(header), header.scenario_sha256, settings, &entry.info};
+    const std::vector<RunRecord> some = runs.ask(guard, header, entry, [&] {
+      return std::vector{runs.made(planned, [&] {
+        const MetamorphicResult r = tester.test(p.name);
+        return record_of(header, r, tester.device(), entry.info);
+      })};
+    });
+    out.insert(out.end(), some.begin(), some.end());
+  }
   return out;
 }
 

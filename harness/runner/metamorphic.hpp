@@ -1,22 +1,22 @@
 #pragma once
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "clothbench/scene.hpp"
 #include "clothbench/solver.hpp"
-#include "runner/again.hpp"
+#include "runner/study_runs.hpp"
 
 namespace clothbench {
 
 /// A solver's response to a change of the scene whose effect is known without a truth.
 struct MetamorphicResult {
   std::string property, scene;
-  std::string status;    ///< "pass", "fail", "unsupported", or how a run failed
+  std::string status;    ///< "pass", "fail", "unsupported" or "failed"
   double distance = 0;   ///< greatest over all vertices and frames, relative to the cloth's longer side
   bool bitwise = false;  ///< every bit of every position and velocity is as expected
   double at_most = 0;    ///< bound on the distance; 0 = must be bitwise equal
+  Outcome outcome = {};  ///< of the first run that did not end well
 };
 
 struct MetamorphicProperty {
@@ -51,12 +51,10 @@ std::vector<MetamorphicResult> run_metamorphic(const SolverEntry&, const nlohman
                                                const std::vector<Scene>& scenes,
                                                const std::function<void(const std::string&)>& note = {});
 
-/// The output of `clothbench metamorphic --json`.
-nlohmann::json metamorphic_json(const std::string& solver, const MetamorphicResult&);
-
-/// Every property on one scene, in a child for a plugin; "crashed" for all of them if any property crashes the child.
-std::vector<MetamorphicResult> ask_metamorphic(Guard&, const SolverEntry&, const nlohmann::json& settings,
-                                               const DeviceOptions&, const Scene&,
-                                               const std::function<void(const std::string&)>& note);
+/// Every property on one scene, each stored as a run of its own without positions (report/metamorphic.hpp), and each in
+/// a child for a plugin, whose crash is that run's outcome. A resumed study measures only what is not stored.
+std::vector<RunRecord> metamorphic_runs(Guard&, StudyRuns&, const SolverEntry&, const nlohmann::json& settings,
+                                        const std::string& setting, const Scene&,
+                                        const std::function<void(const std::string&)>& note);
 
 }  // namespace clothbench

@@ -36,12 +36,6 @@ bool all_finite(const std::vector<double>& values) {
   return true;
 }
 
-std::string join(FeatureSet set) {
-  std::string text;
-  set.for_each([&](Feature f) { text += (text.empty() ? "" : ", ") + std::string(name_of(f)); });
-  return text;
-}
-
 /// What the declared bytes of a stage are.
 std::string bytes_word(const StagePlan& s) {
   if (!std::isfinite(s.read_B) && !std::isfinite(s.write_B)) return "";
@@ -113,10 +107,9 @@ SolverRun::SolverRun(RunSpec spec, const DeviceOptions& device, const std::strin
     if (spec_.entry->make) describe_solver(info, header_.environment);
   };
   describe_run();
-  const FeatureSet missing = unsupported(info, scene.needs);
+  const std::string missing = missing_features(info, scene.needs);
   if (!spec_.entry->make || !missing.empty()) {
-    outcome_ = {"unsupported", "ok", -1,
-                spec_.entry->make ? info.name + " has no " + join(missing) : "not in this build"};
+    outcome_ = {"unsupported", "ok", -1, spec_.entry->make ? missing : "not in this build"};
     return;
   }
   if (!spec_.over_budget.empty()) {

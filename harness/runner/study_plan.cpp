@@ -1,25 +1,19 @@
 #include "runner/study_plan.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
-#include <sstream>
 
 #include "base/plugin_environment.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver_names.hpp"
+#include "runner/solver_choice.hpp"
 
 namespace clothbench {
 namespace {
 
 [[noreturn]] void refuse_name(const std::string& name) {
   std::vector<std::string> known = solver_names_of_tree();
-  for (const SolverEntry& e : solvers()) known.push_back(e.info.name);
-  const char* plugins = std::getenv(kPluginsVariable);
-  std::istringstream paths(plugins != nullptr ? plugins : "");
-  for (std::string path; std::getline(paths, path, ':');)
-    if (const SolverEntry* e = path.empty() ? nullptr : external_solver(kPluginPrefix + path))
-      known.push_back(e->info.name);
+  for (const SolverEntry* e : all_solvers()) known.push_back(e->info.name);
   const std::string near = nearest(name, known);
   throw Error("the study names a solver \"" + name + "\", which is neither of clothbench nor a plugin in $" +
               kPluginsVariable + (near.empty() ? "" : "; nearest known: " + near));
@@ -35,6 +29,15 @@ const SolverEntry* known_solver(const std::string& name) {
   for (const SolverEntry& e : solvers())
     if (e.info.name == name) return &e;
   return external_solver(name);
+}
+
+std::map<std::string, std::vector<std::string>> knobs_of_plugins(const std::vector<std::string>& names) {
+  std::map<std::string, std::vector<std::string>> out;
+  for (const std::string& name : names)
+    if (const SolverEntry* e = known_solver(name); e != nullptr && is_external(e->info))
+      for (const SettingSpec& s : e->info.settings)
+        if (s.name == "substeps" || s.name == "iterations") out[name].push_back(s.name);
+  return out;
 }
 
 RunPlan plan_study(const Study& study) {

@@ -20,15 +20,6 @@ truth::ReferenceCase card_with_threshold(const Scene& scene) {
   return *known;
 }
 
-/// What the solver lacks for the scene; empty if it can run it.
-std::string lacks(const Scene& scene, const SolverEntry& entry) {
-  std::string text;
-  unsupported(entry.info, scene.needs).for_each([&](Feature f) {
-    text += (text.empty() ? entry.info.name + " has no " : ", ") + std::string(name_of(f));
-  });
-  return text;
-}
-
 /// The scene at one coefficient of friction, without a truth of its own: at too little of it a strip would leave its
 /// cylinder, and there is none.
 Scene tried(const Scene& scene, const truth::Threshold& t, double friction) {
@@ -43,7 +34,8 @@ Scene tried(const Scene& scene, const truth::Threshold& t, double friction) {
 FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings,
                               StudyRuns& runs, const std::string& setting, std::vector<RunRecord>* reported) {
   const truth::ReferenceCase known = card_with_threshold(scene);
-  if (const std::string why = lacks(scene, entry); !why.empty()) throw Error(scene.name + ": " + why);
+  if (const std::string why = missing_features(entry.info, scene.needs); !why.empty())
+    throw Error(scene.name + ": " + why);
   const truth::Threshold& t = *known.threshold;
   return search_threshold(t, [&](double friction) {
     const Scene s = tried(scene, t, friction);
@@ -64,7 +56,7 @@ std::vector<RunRecord> threshold_runs(Guard& guard, StudyRuns& runs, const Scene
                                       const nlohmann::json& settings, const std::string& setting) {
   card_with_threshold(scene);
   const RunHeader header = bare_header({&scene, &entry, settings, setting}, kThresholdProtocol);
-  if (std::string why = lacks(scene, entry); !why.empty()) {
+  if (std::string why = missing_features(entry.info, scene.needs); !why.empty()) {
     RunRecord refused;
     refused.header = header;
     refused.outcome = {"unsupported", "ok", -1, std::move(why)};

@@ -42,4 +42,12 @@ FeatureSet unsupported(const SolverInfo& info, FeatureSet needs) {
   return missing;
 }
 
+std::string missing_features(const SolverInfo& info, FeatureSet needs) {
+  std::string text;
+  unsupported(info, needs).for_each([&](Feature f) {
+    text += (text.empty() ? info.name + " has no " : ", ") + std::string(name_of(f));
+  });
+  return text;
+}
+
 }  // namespace clothbench

@@ -320,4 +320,18 @@ Scene load_scene(const std::string& name_or_path, const std::vector<std::string>
   return scene_from_json(parse_json(read_text(file), file.string()), file.string(), overrides, assets);
 }
 
+std::vector<std::string> scene_names(const std::vector<std::string>& folders) {
+  std::vector<std::string> names;
+  const std::filesystem::path root = scenario_root();
+  for (const std::string& folder : folders) {
+    if (!std::filesystem::exists(root / folder)) continue;
+    const std::size_t first = names.size();
+    for (const auto& file : std::filesystem::recursive_directory_iterator(root / folder))
+      if (file.path().extension() == ".json")
+        names.push_back(std::filesystem::relative(file.path(), root).replace_extension().string());
+    std::sort(names.begin() + static_cast<std::ptrdiff_t>(first), names.end());
+  }
+  return names;
+}
+
 }  // namespace clothbench

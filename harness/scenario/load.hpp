@@ -15,6 +15,9 @@ std::filesystem::path scenario_root();
 /// The file `name_or_path`, else `<scenario_root>/<name>.json` or its studies/<name>.json. Throws Error if none exists.
 std::filesystem::path find_scenario(const std::string& name_or_path);
 
+/// Scene files below these folders of the scenarios, as commands name them.
+std::vector<std::string> scene_names(const std::vector<std::string>& folders);
+
 /// Whether procedural stand-ins may replace rooms and hands that have not been fetched.
 enum class Assets { MayBeProcedural, Required };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "clothbench/record.hpp"
+#include "vulkan/make.hpp"
 
 namespace clothbench::xr {
 namespace {
@@ -53,21 +54,9 @@ render::Mat4 projection_of(const XrFovf& fov, double near_m, double far_m) {
 Painter::Painter(std::shared_ptr<vulkan::Device> device, Session& session)
     : device_(std::move(device)), session_(session), renderer_(device_, session.format()), device_s_(kMissing) {
   try {
-    VkCommandBufferAllocateInfo allocate{};
-    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    allocate.commandPool = device_->command_pool();
-    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    allocate.commandBufferCount = 1;
-    check(vkAllocateCommandBuffers(device_->handle(), &allocate, &commands_), "vkAllocateCommandBuffers");
-    VkFenceCreateInfo fence{};
-    fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-    check(vkCreateFence(device_->handle(), &fence, nullptr, &fence_), "vkCreateFence");
-    if (!device_->has_timestamps()) return;
-    VkQueryPoolCreateInfo queries{};
-    queries.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-    queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    queries.queryCount = 2;
-    check(vkCreateQueryPool(device_->handle(), &queries, nullptr, &queries_), "vkCreateQueryPool");
+    commands_ = vulkan::make_commands(*device_);
+    fence_ = vulkan::make_fence(*device_);
+    if (device_->has_timestamps()) queries_ = vulkan::make_timestamps(*device_, 2);
   } catch (...) {
     release();
     throw;

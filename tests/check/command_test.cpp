@@ -1,10 +1,8 @@
 // `clothbench check` as a user meets it: exit codes, files, a study of the ballistic solver as the subject.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include "command.hpp"
 
-#include <array>
-#include <cstdio>
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -18,15 +16,14 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class CheckCommand : public ::testing::Test {
+using testing_command::Streams;
+
+class CheckCommand : public WithFolder {
  protected:
   void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    dir_ = fs::temp_directory_path() / ("clothbench-check-" + std::to_string(getpid()) + "-" + info->name());
-    fs::create_directories(dir_);
+    WithFolder::SetUp();
     write_study({contact_run("desk"), contact_run("sweep")});
   }
-  void TearDown() override { fs::remove_all(dir_); }
 
   /// A study folder with these runs, as `clothbench study` leaves it.
   void write_study(const std::vector<RunRecord>& runs) {
@@ -44,16 +41,10 @@ class CheckCommand : public ::testing::Test {
   fs::path run() const { return dir_ / "run"; }
   fs::path baseline() const { return dir_ / "baseline.json"; }
 
-  int command(const std::string& arguments, bool with_stderr = true) {
-    const std::string line =
-        std::string(CLOTHBENCH_COMMAND) + " " + arguments + (with_stderr ? " 2>&1" : " 2>/dev/null");
-    text_.clear();
-    FILE* pipe = popen(line.c_str(), "r");
-    if (pipe == nullptr) return -1;
-    std::array<char, 4096> chunk{};
-    while (const std::size_t n = fread(chunk.data(), 1, chunk.size(), pipe)) text_.append(chunk.data(), n);
-    const int status = pclose(pipe);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  int command(const std::string& arguments, Streams streams = Streams::Both) {
+    const testing_command::Answer a = testing_command::command(arguments, streams);
+    text_ = a.text;
+    return a.code;
   }
   int check(const std::string& more = "") {
     return command("check " + run().string() + " --baseline " + baseline().string() + " " + more);
@@ -64,7 +55,6 @@ class CheckCommand : public ::testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  fs::path dir_;
   std::string text_;
 };
 
@@ -174,7 +164,7 @@ TEST_F(CheckCommand, JunitGithubAndJson) {
             std::string::npos)
       << text_;
   EXPECT_NE(content(junit).find("failures=\"1\""), std::string::npos);
-  EXPECT_EQ(command("check --json --github " + run().string() + " --baseline " + baseline().string(), false), 1);
+  EXPECT_EQ(command("check --json --github " + run().string() + " --baseline " + baseline().string(), Streams::Out), 1);
   const json j = json::parse(text_);
   EXPECT_EQ(j.at("passed"), false);
   EXPECT_EQ(j.at("runs").size(), 2u);

@@ -4,7 +4,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "command.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -19,40 +19,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Answer {
-  int code = -1;
-  std::string text;
-};
-
-/// Runs `clothbench <arguments>`; stdout and stderr together unless `quiet_stderr`.
-Answer clothbench_command(const std::string& arguments, bool quiet_stderr = false) {
-  const std::string command =
-      std::string(CLOTHBENCH_COMMAND) + " " + arguments + (quiet_stderr ? " 2>/dev/null" : " 2>&1");
-  Answer a;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return a;
-  std::array<char, 4096> chunk{};
-  while (const std::size_t n = fread(chunk.data(), 1, chunk.size(), pipe)) a.text.append(chunk.data(), n);
-  const int status = pclose(pipe);
-  a.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return a;
-}
+using testing_command::Answer, testing_command::command, testing_command::Streams;
 
 nlohmann::json json_of(const std::string& arguments) {
-  const Answer a = clothbench_command("--json " + arguments, true);
+  const Answer a = command("--json " + arguments, Streams::Out);
   EXPECT_EQ(a.code, 0) << a.text;
   return nlohmann::json::parse(a.text, nullptr, false);
 }
 
-class Cli : public ::testing::Test {
+class Cli : public WithFolder {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    dir_ = fs::temp_directory_path() / ("clothbench-cli-" + std::to_string(getpid()) + "-" + info->name());
-    fs::create_directories(dir_);
-  }
-  void TearDown() override { fs::remove_all(dir_); }
-
   /// A study of ballistic runs, quick enough to interrupt at will.
   std::string small_study() const {
     const fs::path file = dir_ / "small.json";
@@ -66,14 +42,10 @@ class Cli : public ::testing::Test {
       "drop_frames":12,"accuracy_duration_s":0.5})";
     return file.string();
   }
-
-  fs::path dir_;
 };
 
 TEST_F(Cli, CompletesFromWhatThereIs) {
-  const auto words = [](const std::string& line) {
-    return clothbench_command("completion words -- " + line, true).text;
-  };
+  const auto words = [](const std::string& line) { return command("completion words -- " + line, Streams::Out).text; };
   EXPECT_EQ(words("stud"), "study\n");
   EXPECT_EQ(words("study table"), "table3\n");
   EXPECT_EQ(words("run paper/hand"), "paper/hand-push\n");
@@ -97,7 +69,7 @@ TEST_F(Cli, CompletesFromWhatThereIs) {
 }
 
 TEST_F(Cli, HelpNamesEveryCommand) {
-  const Answer a = clothbench_command("--help");
+  const Answer a = command("--help");
   EXPECT_EQ(a.code, 0);
   for (const char* word : {"list", "run", "study", "plan", "report", "validate", "import", "check", "bench"})
     EXPECT_NE(a.text.find(word), std::string::npos) << word;
@@ -106,16 +78,16 @@ TEST_F(Cli, HelpNamesEveryCommand) {
 TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {
   const fs::path bad = dir_ / "bad.json";
   std::ofstream(bad) << R"({"name":"x","why":"y","cloth":{"gird":[8,8]}})";
-  const Answer a = clothbench_command("run " + bad.string() + " --solver ballistic --out " + (dir_ / "o").string());
+  const Answer a = command("run " + bad.string() + " --solver ballistic --out " + (dir_ / "o").string());
   EXPECT_EQ(a.code, 2) << a.text;
   EXPECT_NE(a.text.find("bad.json"), std::string::npos) << a.text;
-  EXPECT_EQ(clothbench_command("run no-such-scene").code, 2);
-  EXPECT_EQ(clothbench_command("frobnicate").code, 2);
-  const Answer unknown = clothbench_command("run paper/gravity --solver balistic --out " + (dir_ / "p").string());
+  EXPECT_EQ(command("run no-such-scene").code, 2);
+  EXPECT_EQ(command("frobnicate").code, 2);
+  const Answer unknown = command("run paper/gravity --solver balistic --out " + (dir_ / "p").string());
   EXPECT_EQ(unknown.code, 2);
   EXPECT_NE(unknown.text.find("ballistic"), std::string::npos) << "the nearest name: " << unknown.text;
   const Answer setting =
-      clothbench_command("run paper/gravity --solver ballistic --set solver.x=1 --out " + (dir_ / "q").string());
+      command("run paper/gravity --solver ballistic --set solver.x=1 --out " + (dir_ / "q").string());
   EXPECT_EQ(setting.code, 2) << setting.text;
 }
 
@@ -141,12 +113,12 @@ TEST_F(Cli, BenchIsAGoogleBenchmarkProgram) {
   ASSERT_EQ(j["benchmarks"].size(), 1u);
   EXPECT_EQ(j["benchmarks"][0]["iterations"], 72) << "a fixed number of frames, whatever the clock says";
   EXPECT_GT(j["benchmarks"][0]["fps"].get<double>(), 0);
-  EXPECT_EQ(clothbench_command("bench --no-such-flag").code, 2);
+  EXPECT_EQ(command("bench --no-such-flag").code, 2);
 }
 
 TEST_F(Cli, StudyThenReport) {
   const fs::path out = dir_ / "study";
-  const Answer a = clothbench_command("study " + small_study() + " --out " + out.string());
+  const Answer a = command("study " + small_study() + " --out " + out.string());
   ASSERT_EQ(a.code, 0) << a.text;
   const StudyManifest manifest = read_manifest(out);
   ASSERT_EQ(manifest.runs.size(), 2u);
@@ -159,9 +131,9 @@ TEST_F(Cli, StudyThenReport) {
     EXPECT_GT(r.summary.at("fps_median"), 0);
     EXPECT_TRUE(std::isnan(r.summary.at("read_B_per_frame"))) << "bytes of a CPU solver are missing";
   }
-  const Answer again = clothbench_command("study " + small_study() + " --out " + out.string());
+  const Answer again = command("study " + small_study() + " --out " + out.string());
   EXPECT_EQ(again.code, 2) << "finished runs are not overwritten: " << again.text;
-  const Answer report = clothbench_command("report " + out.string() + " -o " + (dir_ / "report").string());
+  const Answer report = command("report " + out.string() + " -o " + (dir_ / "report").string());
   EXPECT_EQ(report.code, 0) << report.text;
   EXPECT_TRUE(fs::exists(dir_ / "report" / "report.md"));
 }
@@ -176,7 +148,7 @@ TEST_F(Cli, SolversThatWereNotBuiltAreRows) {
     "solvers":[{"solver":"ballistic","set":{"time.duration_s":0.25}},{"solver":"nvcloth","settings":{"x":1}}],"trials":1,
     "short":{"frames":0,"max_wall_s":0,"min_frames":1,"warmup_s":0},"full":{"frames":0,"max_wall_s":0,"min_frames":1,"warmup_s":0},
     "quick":{"scenes":["a"],"rules":{"frames":4,"max_wall_s":0,"min_frames":4,"warmup_s":0}}})";
-  const Answer a = clothbench_command("study " + file.string() + " --out " + out.string());
+  const Answer a = command("study " + file.string() + " --out " + out.string());
   ASSERT_EQ(a.code, 0) << a.text;
   const RunRecord absent = read_run(out / "plane-drop__nvcloth__default.h5");
   EXPECT_EQ(absent.outcome.status, "unsupported");
@@ -188,27 +160,27 @@ TEST_F(Cli, SolversThatWereNotBuiltAreRows) {
   EXPECT_EQ(here.trials.at(0).frames(), 18) << "frames 0: from beginning to end";
   EXPECT_TRUE(here.header.environment.at("solver_features").at("ignores").is_array());
   const std::string report = (dir_ / "report").string();
-  ASSERT_EQ(clothbench_command("report " + out.string() + " -o " + report).code, 0);
+  ASSERT_EQ(command("report " + out.string() + " -o " + report).code, 0);
   for (const char* name :
        {"penetration.md", "penetration.csv", "penetration.json", "penetration-series.csv", "features.json"})
     EXPECT_TRUE(fs::exists(fs::path(report) / name)) << name;
 
   EXPECT_EQ(json_of("study " + file.string() + " --quick --out " + (dir_ / "quick").string()).at("ok"), 1);
   EXPECT_EQ(read_run(dir_ / "quick" / "plane-drop__ballistic__default.h5").header.environment.at("protocol"), "quick");
-  EXPECT_EQ(clothbench_command("study " + small_study() + " --quick --out " + (dir_ / "q").string()).code, 2)
+  EXPECT_EQ(command("study " + small_study() + " --quick --out " + (dir_ / "q").string()).code, 2)
       << "it has no quick form";
-  EXPECT_EQ(clothbench_command("study " + file.string() + " --solver balistic --out " + (dir_ / "b").string()).code, 2);
+  EXPECT_EQ(command("study " + file.string() + " --solver balistic --out " + (dir_ / "b").string()).code, 2);
 }
 
 TEST_F(Cli, RequiredAssetsMustBeThere) {
   const std::string to = " --solver ballistic --trials 0 --out " + (dir_ / "o").string();
   ASSERT_EQ(setenv("CLOTHBENCH_ASSETS", "procedural", 1), 0);
   EXPECT_EQ(json_of("list assets").at(0).at("name"), "procedural");
-  const Answer a = clothbench_command("run paper/desk-flat-low --require-assets" + to);
+  const Answer a = command("run paper/desk-flat-low --require-assets" + to);
   EXPECT_EQ(a.code, 2) << a.text;
   EXPECT_NE(a.text.find("assets required"), std::string::npos) << a.text;
-  EXPECT_EQ(clothbench_command("run paper/gravity --require-assets" + to).code, 0) << "a scene that uses none";
-  EXPECT_EQ(clothbench_command("study penetration --quick --require-assets --out " + (dir_ / "s").string()).code, 2);
+  EXPECT_EQ(command("run paper/gravity --require-assets" + to).code, 0) << "a scene that uses none";
+  EXPECT_EQ(command("study penetration --quick --require-assets --out " + (dir_ / "s").string()).code, 2);
   EXPECT_FALSE(fs::exists(dir_ / "s")) << "nothing has begun";
   unsetenv("CLOTHBENCH_ASSETS");
 }
@@ -235,7 +207,7 @@ TEST_F(Cli, CtrlCKeepsFinishedTrialsAndResumeCompletes) {
   const fs::path out = dir_ / "study";
   const std::string study = small_study();
   EXPECT_EQ(run_and_signal(study, out, SIGINT, 250, false), 130);
-  const Answer a = clothbench_command("study " + study + " --out " + out.string() + " --resume");
+  const Answer a = command("study " + study + " --out " + out.string() + " --resume");
   EXPECT_EQ(a.code, 0) << a.text;
   for (const std::string& run : read_manifest(out).runs) EXPECT_EQ(read_run(out / (run + ".h5")).trials.size(), 3u);
 }
@@ -257,19 +229,19 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
   const std::string run = "run " + scene.string() + " --solver ballistic --trials 0 --set time.duration_s=0.1 --out " +
                           one.string(),
                     some = "study " + study.string() + " --out " + out.string();
-  ASSERT_EQ(clothbench_command(some + " --run 0").code, 0);
-  ASSERT_EQ(clothbench_command(run).code, 0);
+  ASSERT_EQ(command(some + " --run 0").code, 0);
+  ASSERT_EQ(command(run).code, 0);
   j["gravity_m_per_s2"] = {0, -1, 0};
   std::ofstream(scene) << j.dump();
   const std::string manifest = bytes(out / "study.json"), manifest_of_run = bytes(one / "study.json");
   // SolverRun 1 has not been run: it would join one of another scene.
   for (const std::string& words : {some + " --resume", some + " --run 0", some + " --run 1", run + " --resume"}) {
-    const Answer a = clothbench_command(words);
+    const Answer a = command(words);
     EXPECT_EQ(a.code, 2) << words << ": " << a.text;
     EXPECT_NE(a.text.find("stored for another scene"), std::string::npos) << a.text;
     EXPECT_NE(a.text.find("__ballistic__default"), std::string::npos) << a.text;
   }
-  EXPECT_EQ(clothbench_command(run).code, 2) << "finished, and not to be gone on with";
+  EXPECT_EQ(command(run).code, 2) << "finished, and not to be gone on with";
   EXPECT_EQ(bytes(out / "study.json"), manifest);
   EXPECT_EQ(bytes(one / "study.json"), manifest_of_run);
   EXPECT_EQ(std::distance(fs::directory_iterator(out), fs::directory_iterator()), 3)
@@ -280,7 +252,7 @@ TEST_F(Cli, KilledAnywhereResumeCompletes) {
   const fs::path out = dir_ / "study";
   const std::string study = small_study();
   for (int after_ms = 5; after_ms < 700; after_ms += 60) run_and_signal(study, out, SIGKILL, after_ms, after_ms > 5);
-  const Answer a = clothbench_command("study " + study + " --out " + out.string() + " --resume");
+  const Answer a = command("study " + study + " --out " + out.string() + " --resume");
   EXPECT_EQ(a.code, 0) << a.text;
   for (const std::string& run : read_manifest(out).runs) EXPECT_EQ(read_run(out / (run + ".h5")).trials.size(), 3u);
 }
@@ -290,9 +262,7 @@ TEST_F(Cli, OwnOverheadIsUnderOnePercentOfAFrame) {
   GTEST_SKIP() << "a sanitizer's build is not what is timed";
 #endif
   const fs::path out = dir_ / "run";
-  ASSERT_EQ(
-      clothbench_command("run paper/gravity --solver ballistic --set cloth.grid=[128,128] --out " + out.string()).code,
-      0);
+  ASSERT_EQ(command("run paper/gravity --solver ballistic --set cloth.grid=[128,128] --out " + out.string()).code, 0);
   for (const auto& file : fs::directory_iterator(out))
     if (file.path().extension() == ".h5") {
       const double frame_s = read_run_summary(file.path()).summary.at("frame_wall_median_s");
@@ -302,7 +272,7 @@ TEST_F(Cli, OwnOverheadIsUnderOnePercentOfAFrame) {
 
 TEST_F(Cli, SeedDrawsAndIsStored) {
   const std::string run = "run validation/swing-strip --solver ballistic --trials 0 --out " + dir_.string();
-  const Answer one = clothbench_command(run + "/one --seed 7"), two = clothbench_command(run + "/two --seed 7");
+  const Answer one = command(run + "/one --seed 7"), two = command(run + "/two --seed 7");
   EXPECT_EQ(one.code, 0) << one.text;
   EXPECT_NE(one.text.find("swing-strip --seed 7: length_m=0.240201"), std::string::npos) << one.text;
   std::string scenes[2];
@@ -312,7 +282,7 @@ TEST_F(Cli, SeedDrawsAndIsStored) {
   EXPECT_EQ(scenes[0], scenes[1]);
   EXPECT_NE(scenes[0].find("\"seed\":7"), std::string::npos);
   const Answer none =
-      clothbench_command("run paper/gravity --solver ballistic --trials 0 --seed 7 --out " + (dir_ / "none").string());
+      command("run paper/gravity --solver ballistic --trials 0 --seed 7 --out " + (dir_ / "none").string());
   EXPECT_EQ(none.code, 2);
   EXPECT_NE(none.text.find("expected a scene with \"truth\""), std::string::npos) << none.text;
 }
@@ -323,8 +293,8 @@ TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
   for (const auto& p : properties) EXPECT_TRUE(p["status"] == "pass") << p.dump();
   const nlohmann::json found = json_of("threshold validation/incline-stick --solver ballistic");
   EXPECT_EQ(found[0]["bound"], ">= ") << "it falls through at any friction";
-  EXPECT_EQ(clothbench_command("threshold validation/atwood --solver ballistic").code, 2);
-  EXPECT_EQ(clothbench_command("metamorphic ballistic --set cloth.grid=[3,3]").code, 2);
+  EXPECT_EQ(command("threshold validation/atwood --solver ballistic").code, 2);
+  EXPECT_EQ(command("metamorphic ballistic --set cloth.grid=[3,3]").code, 2);
   const nlohmann::json friction = json_of("friction ballistic --substeps 64");
   ASSERT_EQ(friction.size(), 1u) << "it has no substeps";
   ASSERT_EQ(friction[0]["answers"].size(), 7u);
@@ -332,8 +302,7 @@ TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
     EXPECT_EQ(answer["text"].get<std::string>().find("✓"), std::string::npos)
         << answer << ": it falls through everything";
   EXPECT_EQ(friction[0]["answers"][0]["text"], "slips at 1.5 of it");
-  EXPECT_EQ(clothbench_command("friction ballistic --readme " CLOTHBENCH_SOURCE_DIR "/LICENSE").code, 2)
-      << "no marks there";
+  EXPECT_EQ(command("friction ballistic --readme " CLOTHBENCH_SOURCE_DIR "/LICENSE").code, 2) << "no marks there";
 }
 
 /// One row, whether its runs are stored or not, found now or read again; and a report has it too.
@@ -341,11 +310,12 @@ TEST_F(Cli, SearchesAndCardsAreStoredGoneOnWithAndReported) {
   const auto out = [&](const char* name) { return " --out " + (dir_ / name).string(); };
   const std::string threshold = "threshold validation/capstan-hold --solver ballistic --set time.duration_s=0.5",
                     measured = "moduli bullet-soft --no-sweep --set solver.substeps=1 --set solver.iterations=1";
-  for (const auto& [words, folder] : {std::pair{threshold, "threshold"}, std::pair{measured, "moduli"}}) {
-    if (clothbench_command("list solvers").text.find("bullet-soft") == std::string::npos && words == measured) continue;
+  for (const auto& [words, folder] : {std::pair{threshold, "threshold"}, std::pair{measured, "moduli"},
+                                      std::pair<std::string, const char*>{"metamorphic ballistic", "relations"}}) {
+    if (command("list solvers").text.find("bullet-soft") == std::string::npos && words == measured) continue;
     const nlohmann::json found = json_of(words);
     EXPECT_EQ(json_of(words + out(folder)), found) << words;
-    const Answer again = clothbench_command(words + out(folder));
+    const Answer again = command(words + out(folder));
     EXPECT_EQ(again.code, 2) << again.text;
     EXPECT_NE(again.text.find("--resume"), std::string::npos) << again.text;
     EXPECT_EQ(json_of(words + out(folder) + " --resume"), found) << words;
@@ -353,12 +323,42 @@ TEST_F(Cli, SearchesAndCardsAreStoredGoneOnWithAndReported) {
   const RunRecord high = read_run(dir_ / "threshold" / (read_manifest(dir_ / "threshold").runs.at(0) + ".h5"));
   EXPECT_EQ(high.header.environment["protocol"], "threshold");
   EXPECT_EQ(high.accuracy.time_s.size(), 31u) << "positions are stored as of any run";
-  const Answer report =
-      clothbench_command("report " + (dir_ / "threshold").string() + " -o " + (dir_ / "report").string());
+  const Answer report = command("report " + (dir_ / "threshold").string() + " -o " + (dir_ / "report").string());
   EXPECT_EQ(report.code, 0) << report.text;
   EXPECT_NE(report.text.find("Thresholds of friction"), std::string::npos) << report.text;
   EXPECT_NE(report.text.find("≤ 0.11378"), std::string::npos) << report.text;
   EXPECT_TRUE(fs::exists(dir_ / "report" / "friction.json"));
+}
+
+/// Relations are runs: a report has their table, `check` their bounds, and a resumed study measures only what is
+/// missing.
+TEST_F(Cli, MetamorphicRelationsAreReportedCheckedAndResumed) {
+  const std::string out = (dir_ / "relations").string(), words = "metamorphic ballistic --out " + out;
+  const nlohmann::json found = json_of(words);
+  const fs::path mirror = fs::path(out) / "metamorphic-sheet-mirror__ballistic__default.h5";
+  ASSERT_TRUE(fs::exists(mirror));
+  const auto kept = fs::last_write_time(fs::path(out) / "metamorphic-sheet-repeat__ballistic__default.h5");
+  fs::remove(mirror);
+  EXPECT_EQ(json_of(words + " --resume"), found);
+  EXPECT_TRUE(fs::exists(mirror));
+  EXPECT_EQ(fs::last_write_time(fs::path(out) / "metamorphic-sheet-repeat__ballistic__default.h5"), kept);
+
+  const std::string check = "check " + out + " --baseline " + (dir_ / "b.json").string();
+  ASSERT_EQ(command(check + " --update").code, 0);
+  EXPECT_EQ(command(check).code, 0) << command(check).text;
+  RunRecord broken = read_run(mirror);
+  broken.summary["expect.metamorphic_distance"] = 0;
+  fs::remove(mirror);
+  RunWriter(out, broken.header).finish(broken.outcome, broken.summary);
+  const Answer worse = command(check);
+  EXPECT_EQ(worse.code, 1) << worse.text;
+  EXPECT_NE(worse.text.find("expect.metamorphic_distance"), std::string::npos) << worse.text;
+
+  const Answer report = command("report " + out + " -o " + (dir_ / "report").string());
+  ASSERT_EQ(report.code, 0) << report.text;
+  EXPECT_NE(report.text.find("Metamorphic properties of ballistic"), std::string::npos) << report.text;
+  std::ifstream stored(dir_ / "report" / "metamorphic.json");
+  EXPECT_EQ(nlohmann::json::parse(stored).size(), found.size());
 }
 
 }  // namespace

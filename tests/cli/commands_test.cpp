@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "cli/command_line.hpp"
+#include "command.hpp"
 
 namespace clothbench {
 namespace {
@@ -15,10 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-struct Answer {
-  int code = -1;
-  std::string text;  ///< of stdout
-};
+using testing_command::Answer;
 
 Answer in_this_process(const Words& words) {
   testing::internal::CaptureStdout();
@@ -29,16 +27,9 @@ Answer in_this_process(const Words& words) {
 }
 
 Answer in_a_new_process(const Words& words) {
-  std::string command = CLOTHBENCH_COMMAND;
-  for (const std::string& word : words) command += " '" + word + "'";
-  FILE* pipe = popen((command + " 2>/dev/null").c_str(), "r");
-  if (pipe == nullptr) return {};
-  Answer a;
-  std::array<char, 4096> chunk{};
-  while (const std::size_t n = fread(chunk.data(), 1, chunk.size(), pipe)) a.text.append(chunk.data(), n);
-  const int status = pclose(pipe);
-  a.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return a;
+  std::string quoted;
+  for (const std::string& word : words) quoted += " '" + word + "'";
+  return testing_command::command(quoted, testing_command::Streams::Out);
 }
 
 struct Pair {

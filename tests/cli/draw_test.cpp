@@ -1,15 +1,12 @@
 // `clothbench study contact` as a user meets it: draws, runs, resumes, reports, and runs a stored scene again.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "command.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -17,31 +14,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Answer {
-  int code = -1;
-  std::string text;
-};
+using testing_command::Answer;
 
 /// `before`: assignments of the environment.
 Answer command(const std::string& arguments, const std::string& before = "") {
-  Answer a;
-  FILE* pipe = popen((before + " " + CLOTHBENCH_COMMAND + " " + arguments + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return a;
-  std::array<char, 4096> chunk{};
-  while (const std::size_t n = fread(chunk.data(), 1, chunk.size(), pipe)) a.text.append(chunk.data(), n);
-  const int status = pclose(pipe);
-  a.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return a;
+  return testing_command::command(arguments, testing_command::Streams::Both, before);
 }
 
-class DrawnStudy : public ::testing::Test {
+class DrawnStudy : public WithFolder {
  protected:
-  void SetUp() override {
-    dir_ = fs::temp_directory_path() / ("clothbench-drawn-" + std::to_string(getpid()) + "-" +
-                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(dir_);
-  }
-  void TearDown() override { fs::remove_all(dir_); }
   std::string out() const { return (dir_ / "out").string(); }
   static std::string text_of(const fs::path& file) {
     std::ifstream in(file);
@@ -49,7 +30,6 @@ class DrawnStudy : public ::testing::Test {
     text << in.rdbuf();
     return text.str();
   }
-  fs::path dir_;
 };
 
 TEST_F(DrawnStudy, RunsResumesReportsAndItsScenesRunAgain) {

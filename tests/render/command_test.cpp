@@ -1,9 +1,8 @@
 // `clothbench render` as a user meets it.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
+#include "command.hpp"
 
-#include <array>
-#include <cstdio>
+#include <gtest/gtest.h>
+
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -15,21 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Answer {
-  int code = -1;
-  std::string text;
-};
+using testing_command::Answer;
 
 Answer command(const std::string& arguments, const std::string& environment = "") {
-  const std::string line = environment + " " + CLOTHBENCH_COMMAND + " " + arguments + " 2>&1";
-  Answer a;
-  FILE* pipe = popen(line.c_str(), "r");
-  if (pipe == nullptr) return a;
-  std::array<char, 4096> chunk{};
-  while (const std::size_t n = fread(chunk.data(), 1, chunk.size(), pipe)) a.text.append(chunk.data(), n);
-  const int status = pclose(pipe);
-  a.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return a;
+  return testing_command::command(arguments, testing_command::Streams::Both, environment);
 }
 
 /// Two runs with positions, executed once for all tests.

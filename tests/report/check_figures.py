@@ -14,7 +14,8 @@ import unittest
 import xml.etree.ElementTree as xml
 
 NODE, SCRIPT = sys.argv[1:3]
-EMPTY = {"rates": [], "work": [], "penetration": [], "maps": [], "cases": []}
+SOLVERS = json.loads((pathlib.Path(__file__).parents[2] / "harness/report/solvers.json").read_text(encoding="utf-8"))
+EMPTY = {"rates": [], "work": [], "penetration": [], "maps": [], "cases": [], "solvers": SOLVERS}
 SVG = "{http://www.w3.org/2000/svg}"
 
 

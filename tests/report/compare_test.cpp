@@ -90,6 +90,30 @@ TEST(CompareRuns, TellsTimesResultsAndOutcomesApart) {
   EXPECT_EQ(comparison_json(runs)[0]["verdict"], "noise");
 }
 
+/// Positions are compared where a result differs, by the mechanism of all pairs of runs.
+TEST(CompareRuns, SaysHowFarApartTheMotionsAre) {
+  const auto moved = [](double by_m, double error) {
+    RunRecord c = run("sheet", 1e-3, error);
+    c.header.vertices = 2;
+    c.header.scenario_json = R"({"cloth": {"size_m": [2, 1]}})";
+    c.accuracy.time_s = {0, 1};
+    c.accuracy.position = {0, 0, 0, 2, 0, 0, 0, static_cast<float>(by_m), 0, 2, 0, 0};
+    return c;
+  };
+  const auto apart = [&](double by_m, double error) {
+    const std::vector<RunRecord> a = {moved(0, 0.5)}, b = {moved(by_m, error)};
+    return compare_runs(a, b)[0].apart;
+  };
+  EXPECT_NEAR(apart(0.5, 0.25), 0.25, 1e-6) << "half a metre over the longer side of 2 m";
+  EXPECT_EQ(apart(0, 0.25), 0);
+  EXPECT_TRUE(std::isnan(apart(0.5, 0.5))) << "no value differs: not read";
+  const std::vector<RunRecord> a = {moved(0, 0.5)}, b = {moved(0.5, 0.25)};
+  EXPECT_NE(comparison_tables(compare_runs(a, b))[1].markdown().find("apart over L"), std::string::npos);
+  std::vector<RunRecord> other = b;
+  other[0].accuracy.position.resize(6);
+  EXPECT_TRUE(std::isnan(compare_runs(a, other)[0].apart)) << "other frames cannot be compared";
+}
+
 TEST(History, IsWhatChartToolsRead) {
   const auto j = history_json({run("x", 2e-3, 0.5)});
   ASSERT_EQ(j.size(), 2u);

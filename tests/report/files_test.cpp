@@ -9,17 +9,17 @@
 #include "fake_runs.hpp"
 #include "report/web/template.hpp"
 #include "results/store.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ReportFiles : public ::testing::Test {
+class ReportFiles : public WithFolder {
  protected:
   void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    dir_ = fs::temp_directory_path() / ("clothbench-report-" + std::to_string(getpid()) + "-" + info->name());
+    WithFolder::SetUp();
     run_ = dir_ / "run";
     fs::create_directories(run_);
     StudyManifest manifest{"table3", "2026-01-01T00:00:00Z", "clothbench study table3", nlohmann::json::object(), {}};
@@ -29,7 +29,6 @@ class ReportFiles : public ::testing::Test {
     manifest.runs.push_back("gravity-77-single__paper__default");
     write_manifest(run_, manifest);
   }
-  void TearDown() override { fs::remove_all(dir_); }
 
   void write_run(const RunRecord& c, StudyManifest& manifest) {
     RunWriter writer(run_, c.header);
@@ -43,7 +42,7 @@ class ReportFiles : public ::testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  fs::path dir_, run_;
+  fs::path run_;
 };
 
 /// Programs of the PATH while it lives: none but what is put into its folder.

@@ -11,6 +11,7 @@
 #include "report/web/packed.hpp"
 #include "report/web/page.hpp"
 #include "results/store.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench {
 namespace {
@@ -110,11 +111,10 @@ TEST(PackedMotion, Base64AsInRfc4648) {
   for (const auto& [bytes, text] : pairs) EXPECT_EQ(base64(bytes), text);
 }
 
-class WebFiles : public ::testing::Test {
+class WebFiles : public WithFolder {
  protected:
   void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    dir_ = fs::temp_directory_path() / ("clothbench-web-" + std::to_string(getpid()) + "-" + info->name());
+    WithFolder::SetUp();
     StudyManifest manifest{
         "table3", "2026-01-01T00:00:00Z", "clothbench study </script><b>table3", nlohmann::json::object(), {}};
     fs::create_directories(dir_ / "run");
@@ -139,8 +139,6 @@ class WebFiles : public ::testing::Test {
       }
     write_manifest(dir_ / "run", manifest);
   }
-  void TearDown() override { fs::remove_all(dir_); }
-  fs::path dir_;
 };
 
 TEST_F(WebFiles, ReplayHasEveryNthFrameAndTheColliders) {

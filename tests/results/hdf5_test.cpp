@@ -9,25 +9,19 @@
 #include "results/raw_file.hpp"
 #include "results/store.hpp"
 #include "sample_run.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Hdf5 : public ::testing::Test {
+class Hdf5 : public WithFolder {
  protected:
-  void SetUp() override {
-    dir_ = fs::temp_directory_path() / ("clothbench-h5-" + std::to_string(getpid()) +
-                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(dir_);
-  }
-  void TearDown() override { fs::remove_all(dir_); }
   static std::string bytes(const fs::path& p) {
     std::ifstream in(p, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  fs::path dir_;
 };
 
 TEST_F(Hdf5, FilesWithoutCpuTimesAreRead) {

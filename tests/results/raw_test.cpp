@@ -11,29 +11,24 @@
 #include "results/raw_file.hpp"
 #include "results/store.hpp"
 #include "sample_run.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Raw : public ::testing::Test {
+class Raw : public WithFolder {
  protected:
-  void SetUp() override {
-    dir_ = fs::temp_directory_path() / ("clothbench-raw-" + std::to_string(getpid()) +
-                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(dir_);
-  }
   void TearDown() override {
     fs::permissions(dir_, fs::perms::owner_all);
-    fs::remove_all(dir_);
+    WithFolder::TearDown();
   }
   static std::string bytes(const fs::path& p) {
     std::ifstream in(p, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
   static void write(const fs::path& p, const std::string& s) { std::ofstream(p, std::ios::binary) << s; }
-  fs::path dir_;
 };
 
 TEST_F(Raw, Crc32cAgreesWithThePublishedVector) {

@@ -7,25 +7,19 @@
 #include <fstream>
 
 #include "runner/environment.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Sensors : public ::testing::Test {
+class Sensors : public WithFolder {
  protected:
-  void SetUp() override {
-    root_ = fs::temp_directory_path() / ("clothbench-sensors-" + std::to_string(getpid()) +
-                                         ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(root_);
-  }
-  void TearDown() override { fs::remove_all(root_); }
   void put(const std::string& file, const std::string& text) {
-    fs::create_directories((root_ / file).parent_path());
-    std::ofstream(root_ / file) << text << "\n";
+    fs::create_directories((dir_ / file).parent_path());
+    std::ofstream(dir_ / file) << text << "\n";
   }
-  fs::path root_;
 };
 
 TEST_F(Sensors, ReadsAPhonesTree) {
@@ -42,7 +36,7 @@ TEST_F(Sensors, ReadsAPhonesTree) {
   put("sys/class/thermal/thermal_zone1/temp", "-274000");  // switched off
   put("sys/class/thermal/thermal_zone12/temp", "38000");
   put("sys/class/thermal/cooling_device0/type", "gpu");
-  const nlohmann::json s = read_sensors(root_);
+  const nlohmann::json s = read_sensors(dir_);
   ASSERT_EQ(s["cpus"].size(), 3u);
   EXPECT_EQ(s["cpus"][0]["frequency_Hz"], 1382400e3);
   EXPECT_EQ(s["cpus"][1]["cpu"], 2) << "in numerical order";
@@ -62,7 +56,7 @@ TEST_F(Sensors, ReadsAPhonesTree) {
 TEST_F(Sensors, NothingReadableIsMissingNotZero) {
   put("sys/class/thermal/thermal_zone0/temp", "");
   put("sys/class/kgsl/kgsl-3d0/gpuclk", "unknown");
-  const nlohmann::json s = read_sensors(root_);
+  const nlohmann::json s = read_sensors(dir_);
   EXPECT_TRUE(s["cpus"].empty() && s["gpu"].empty() && s["temperatures"].empty()) << s;
   std::map<std::string, double> summary;
   summarise_sensors(s, "start", summary);

@@ -29,17 +29,6 @@ json scenario(const std::string& file) {
           {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}}};
 }
 
-/// The message of what it throws.
-template <class Fn>
-std::string refusal(Fn fn) {
-  try {
-    fn();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
-}
-
 TEST(ClothMesh, IsReadFromAnObjFile) {
   const ClothMesh m = parse_obj(kSquare, "square.obj");
   EXPECT_EQ(m.vertices.size(), 4u);

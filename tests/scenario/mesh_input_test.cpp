@@ -30,16 +30,6 @@ json scenario(const std::string& file) {
           {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}}};
 }
 
-template <class Fn>
-std::string refusal(Fn fn) {
-  try {
-    fn();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
-}
-
 Scene scene_of(const ScratchFolder& folder, const char* file, const char* pointer, const json& value) {
   json j = scenario(file);
   if (*pointer != 0) j[json::json_pointer(pointer)] = value;

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "clothbench/error.hpp"
+
 namespace clothbench {
 
 /// Test name of a table row from its words; without one GoogleTest prints the row's addresses.
@@ -14,6 +16,17 @@ inline std::string test_name(const std::string& words) {
   std::string out;
   for (char c : words) out += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   return out;
+}
+
+/// The message of the Error that `call` throws; empty if it throws none.
+template <class Call>
+std::string refusal(Call call) {
+  try {
+    call();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
 }
 
 /// A folder of this process and test alone, gone afterwards: tests of two builds may run at once.

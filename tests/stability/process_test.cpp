@@ -10,22 +10,18 @@
 #include "results/store.hpp"
 #include "runner/child.hpp"
 #include "runner/run_process.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Process : public ::testing::Test {
+class Process : public WithFolder {
  protected:
-  void SetUp() override {
-    dir_ = fs::temp_directory_path() / ("clothbench-process-" + std::to_string(::getpid()) +
-                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(dir_);
-  }
   void TearDown() override {
     worker_.reset();
-    fs::remove_all(dir_);
+    WithFolder::TearDown();
   }
 
   RunRecord run(const std::string& solver, double limit_s = 0, bool keep = true) {
@@ -47,7 +43,6 @@ class Process : public ::testing::Test {
     return read_run_summary(fs::exists(dir_ / (run + ".h5")) ? dir_ / (run + ".h5") : dir_ / (run + ".part"));
   }
 
-  fs::path dir_;
   std::unique_ptr<RunWorker> worker_;
 };
 

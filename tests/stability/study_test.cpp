@@ -15,6 +15,7 @@
 #include "runner/stability_map.hpp"
 #include "runner/stability_study.hpp"
 #include "scenario/load.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench {
 namespace {
@@ -22,12 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class StabilityStudy : public ::testing::Test {
+class StabilityStudy : public WithFolder {
  protected:
   void SetUp() override {
-    dir_ = fs::temp_directory_path() / ("clothbench-stability-" + std::to_string(::getpid()) +
-                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(dir_);
+    WithFolder::SetUp();
     // The falling stone of the child is out of all bounds once its cloth starts faster than ten times a fall.
     write("thrown.json", {{"name", "thrown"},
                           {"why", "thrown ever faster in a test"},
@@ -70,7 +69,6 @@ class StabilityStudy : public ::testing::Test {
                         {"set", {{"cloth.areal_density_kg_per_m2", "0.1*y"}}}}}}}}};
     write("maps.json", study_json_);
   }
-  void TearDown() override { fs::remove_all(dir_); }
   void write(const char* name, const json& j) const { std::ofstream(dir_ / name) << j.dump(); }
   StabilityOptions options(bool resume) const {
     StabilityOptions o;
@@ -85,7 +83,6 @@ class StabilityStudy : public ::testing::Test {
     return json::parse(in).at("maps");
   }
 
-  fs::path dir_;
   json study_json_;
 };
 

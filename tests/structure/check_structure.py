@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 
 # A room may include those before it, and the public interface (include/clothbench); nothing after it.
-ROOMS = ["base", "assets", "scenario", "truth", "metrics", "results", "runner", "report", "check", "render", "xr", "cli", "android"]
+ROOMS = ["base", "assets", "scenario", "truth", "metrics", "results", "runner", "report", "check", "studies", "render", "xr", "cli", "android"]
 # A solver may include the public interface and base.
 SOLVERS_MAY_INCLUDE = {"base", "clothbench"}
 

@@ -4,6 +4,7 @@
 
 #include "clothbench/error.hpp"
 #include "report/plugin_marks.hpp"
+#include "report/roles.hpp"
 #include "report/web/template.hpp"
 #include "results/store.hpp"
 
@@ -49,6 +50,7 @@ json page_document(const std::vector<RunRecord>& runs, const Page& page, const M
           {"maps", page.maps},
           {"cases", page.cases},
           {"commands", page.commands},
+          {"solvers", solver_roles()},
           {"motions", PluginMarks(runs).data(motions.document)}};
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "vulkan/make.hpp"
+
 namespace clothbench::vulkan {
 
 Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,
@@ -46,11 +48,7 @@ void Kernel::create_layout(std::uint32_t push_bytes) {
   std::vector<VkDescriptorSetLayoutBinding> slots;
   for (const Binding& b : bindings_)
     slots.push_back({b.number, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
-  VkDescriptorSetLayoutCreateInfo set{};
-  set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  set.bindingCount = static_cast<std::uint32_t>(slots.size());
-  set.pBindings = slots.data();
-  check(vkCreateDescriptorSetLayout(device_->handle(), &set, nullptr, &set_layout_), "vkCreateDescriptorSetLayout");
+  make_storage_set(*device_, slots, set_layout_, pool_, set_);
   const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
   VkPipelineLayoutCreateInfo layout{};
   layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
@@ -62,19 +60,6 @@ void Kernel::create_layout(std::uint32_t push_bytes) {
 }
 
 void Kernel::create_set() {
-  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, static_cast<std::uint32_t>(bindings_.size())};
-  VkDescriptorPoolCreateInfo pool{};
-  pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-  pool.maxSets = 1;
-  pool.poolSizeCount = 1;
-  pool.pPoolSizes = &size;
-  check(vkCreateDescriptorPool(device_->handle(), &pool, nullptr, &pool_), "vkCreateDescriptorPool");
-  VkDescriptorSetAllocateInfo allocate{};
-  allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-  allocate.descriptorPool = pool_;
-  allocate.descriptorSetCount = 1;
-  allocate.pSetLayouts = &set_layout_;
-  check(vkAllocateDescriptorSets(device_->handle(), &allocate, &set_), "vkAllocateDescriptorSets");
   std::vector<VkDescriptorBufferInfo> infos;
   for (const Binding& b : bindings_) infos.push_back({b.buffer->handle(), 0, VK_WHOLE_SIZE});
   std::vector<VkWriteDescriptorSet> writes;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "vulkan/make.hpp"
+
 namespace clothbench::vulkan {
 namespace {
 
@@ -89,14 +91,7 @@ void Program::timestamp(VkQueryPool queries, std::uint32_t query) {
 /// so a split changes nothing else.
 void Program::begin(Copy& copy) {
   if (submits_.size() == copy.buffers.size()) {
-    VkCommandBufferAllocateInfo allocate{};
-    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    allocate.commandPool = device_->command_pool();
-    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    allocate.commandBufferCount = 1;
-    VkCommandBuffer next = VK_NULL_HANDLE;
-    check(vkAllocateCommandBuffers(device_->handle(), &allocate, &next), "vkAllocateCommandBuffers");
-    copy.buffers.push_back(next);
+    copy.buffers.push_back(make_commands(*device_));
   }
   commands_ = copy.buffers[submits_.size()];
   submits_.push_back(0);
@@ -119,21 +114,13 @@ void Program::need_copies(std::size_t count) {
 
 void Program::record_copy(std::size_t k) {
   if (copies_.size() == k) {
-    VkFenceCreateInfo fence{};
-    fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
     copies_.emplace_back();
-    check(vkCreateFence(device_->handle(), &fence, nullptr, &copies_.back().fence), "vkCreateFence");
+    copies_.back().fence = make_fence(*device_);
   }
   Copy& copy = copies_[k];
   vkDestroyQueryPool(device_->handle(), copy.queries, nullptr);
   copy.queries = VK_NULL_HANDLE;
-  if (query_count_ > 0) {
-    VkQueryPoolCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    info.queryCount = query_count_;
-    check(vkCreateQueryPool(device_->handle(), &info, nullptr, &copy.queries), "vkCreateQueryPool");
-  }
+  if (query_count_ > 0) copy.queries = make_timestamps(*device_, query_count_);
   recorded_.clear();
   submits_.clear();
   record_steps(copy);

@@ -38,7 +38,9 @@ export const fade = theme =>
 export const beside = (theme, width, legend) => theme === 'paper' ? width : width - legend;
 
 /// The harness without a cloth model is decades faster than every solver. It is drawn only if no other solver is.
-export const is_floor = row => row.solver === 'ballistic';
+let floor = [];
+export const set_floor = solvers => floor = solvers;
+export const is_floor = row => floor.includes(row.solver);
 export const without_floor = rows => rows.every(is_floor) ? rows : rows.filter(r => !is_floor(r));
 
 /// The devices, for a figure that is shown without its report.

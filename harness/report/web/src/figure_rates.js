@@ -78,10 +78,11 @@ const side_encoding = rows => {
 
 /// A note with the rates above the axis of Fig. 4.
 function floor_note(family) {
-  const rates = family.series.filter(is_floor).flatMap(s => s.points).map(p => p.fps).filter(fps => fps > 0);
+  const floor = family.series.filter(is_floor), names = unique(floor.map(s => s.solver)).join(', ');
+  const rates = floor.flatMap(s => s.points).map(p => p.fps).filter(fps => fps > 0);
   if (!rates.length || family.series.every(is_floor)) return '';
   const [low, high] = [Math.min(...rates), Math.max(...rates)].map(v => Math.round(v).toLocaleString('en-US'));
-  return `Not drawn: ballistic, which is the harness without a cloth model (${low} to ${high} frames per second).`;
+  return `Not drawn: ${names}, which is the harness without a cloth model (${low} to ${high} frames per second).`;
 }
 
 function rates_spec(all, labels, theme, width) {

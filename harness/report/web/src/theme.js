@@ -25,27 +25,10 @@ export function start_theme() {
   apply(wanted());
 }
 
-// After Okabe & Ito's palette, readable with every common colour blindness. Paper has the colours of the light theme.
-const kColours = {
-  light: {
-    xpbd: '#0072B2',
-    paper: '#D55E00',
-    'paper readback=blocking': '#CC79A7',
-    'bullet-soft': '#009E73',
-    'bullet-deformable': '#B58900',
-    reference: '#555555',
-    ballistic: '#000000'
-  },
-  dark: {
-    xpbd: '#56B4E9',
-    paper: '#F0803C',
-    'paper readback=blocking': '#E0A0C8',
-    'bullet-soft': '#2FCB9B',
-    'bullet-deformable': '#E6B422',
-    reference: '#A8B0B8',
-    ballistic: '#FFFFFF'
-  }
-};
+// Colours by label that the document asks for (solvers.json); others get the spare ones. Paper has those of light.
+let asked = {light: {}, dark: {}};
+export const ask_colours = colours => asked = colours;
+// After Okabe & Ito's palette, readable with every common colour blindness.
 const kSpare = {
   light: ['#7B4FB5', '#56B4E9', '#8C564B', '#E69F00', '#6B8E23', '#B03060', '#1B4F72', '#AAAA00'],
   dark: ['#B79AE8', '#8CC8E0', '#D0A090', '#F5B942', '#B5D05A', '#F080A0', '#9FB8FF', '#E8E86A']
@@ -85,7 +68,7 @@ export function palette(labels, theme_name = theme()) {
   const name = theme_name === 'dark' ? 'dark' : 'light', out = {};
   let spare = 0, published = 0;
   for (const label of labels)
-    out[label] = kColours[name][label] ??
+    out[label] = asked[name][label] ??
         (label.startsWith('published') ? kPublished[name][published++ % 3] :
                                          kSpare[name][spare++] ?? unlike([...Object.values(out), ...kSpare[name]], name));
   return out;

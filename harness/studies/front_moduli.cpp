@@ -1,4 +1,4 @@
-#include "cli/study_moduli.hpp"
+#include "studies/front_moduli.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -6,13 +6,13 @@
 
 #include "clothbench/error.hpp"
 #include "report/report.hpp"
+#include "report/roles.hpp"
 #include "report/work_precision.hpp"
 #include "runner/effective_moduli.hpp"
 
 namespace clothbench {
 namespace {
 
-constexpr const char* kBaseline = "reference";
 constexpr double kFullLimit_s = 20,
                  kShortLimit_s = 5;  // wall time of a patch in a full study; the default measured's otherwise:
 constexpr double kDefaultLimit_s = 8;
@@ -40,7 +40,7 @@ std::vector<const SolverEntry*> solvers_of(const RunPlan& plan) {
 std::vector<Wanted> default_moduli(const RunPlan& plan, bool whole) {
   std::vector<Wanted> all;
   for (const SolverEntry* e : solvers_of(plan))
-    if (!e->info.ignores.has(Feature::Stretch) && (whole || e->info.name != kBaseline))
+    if (!e->info.ignores.has(Feature::Stretch) && (whole || !is_baseline(e->info.name)))
       all.push_back({e, complete_settings(e->info, nlohmann::json::object()), "default", true});
   return all;
 }
@@ -61,7 +61,7 @@ std::vector<Wanted> front_moduli(const RunPlan& plan, const std::filesystem::pat
   };
   const std::vector<WorkDiagram> diagrams = work_diagrams(runs, materials);
   for (const SolverEntry* e : solvers_of(plan)) {
-    if (e->info.ignores.has(Feature::Stretch) || e->info.name == kBaseline) continue;
+    if (e->info.ignores.has(Feature::Stretch) || is_baseline(e->info.name)) continue;
     const bool bends = stiffness_flag(materials, e->info.name, {false, false, true}).empty();
     for (const WorkDiagram& d : diagrams)
       for (const WorkPoint& p : d.points) {

@@ -1,0 +1,23 @@
+#pragma once
+#include <cstddef>
+#include <string>
+
+namespace clothbench {
+
+/// A line on the terminal that is rewritten in place and removed at the end; prints nothing into a pipe.
+class StatusLine {
+ public:
+  explicit StatusLine(bool enabled);
+  ~StatusLine();
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+  /// `total` 0: unknown, so neither counts nor remaining time are printed.
+  void show(const std::string& what, std::size_t done = 0, std::size_t total = 0);
+
+ private:
+  bool enabled_;
+  double start_s_;
+  std::size_t width_ = 0;
+};
+
+}  // namespace clothbench

@@ -1,0 +1,139 @@
+#include "studies/execute.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/tint.hpp"
+#include "report/in_short.hpp"
+#include "report/report.hpp"
+#include "report/withheld.hpp"
+#include "runner/environment.hpp"
+#include "runner/run_choice.hpp"
+#include "runner/supervise.hpp"
+#include "studies/front_moduli.hpp"
+
+namespace clothbench {
+namespace {
+
+nlohmann::json seconds_json(const RunResult& r) {
+  nlohmann::json j = nlohmann::json::object();
+  for (const auto& [name, s] : r.seconds) j[name] = {{"runs", s}};
+  for (const auto& [name, s] : r.moduli_seconds) j[name]["moduli"] = s;
+  return j;
+}
+
+/// Of all runs of a command those of its plan, as they are stored.
+std::vector<RunRecord> stored_runs(const std::vector<std::string>& names, const std::filesystem::path& out) {
+  std::vector<RunRecord> runs = collect({out});
+  std::erase_if(runs, [&](const RunRecord& c) {
+    return std::find(names.begin(), names.end(), run_name(c.header)) == names.end();
+  });
+  withhold_times(runs);
+  return runs;
+}
+
+/// Outcome and every figure of each run.
+nlohmann::json figures_of(const std::vector<std::string>& names, const std::filesystem::path& out) {
+  nlohmann::json all = runs_json(stored_runs(names, out));
+  for (nlohmann::json& run : all) run.erase("environment");  // in the result files
+  return all;
+}
+
+nlohmann::json summary_of(const RunResult& r, const std::filesystem::path& out, nlohmann::json figures) {
+  return {{"out", out.string()},
+          {"ok", r.runs_ok},
+          {"unsupported", r.runs_unsupported},
+          {"over_budget", r.runs_over_budget},
+          {"failed", r.runs_failed},
+          {"seconds", seconds_json(r)},
+          {"moduli", r.moduli},
+          {"moduli_left_out", r.moduli_left_out},
+          {"faults", r.faults},
+          {"expect_passed", r.expect_passed},
+          {"expect_failed", r.expect_failed},
+          {"runs", std::move(figures)}};
+}
+
+/// Where the time went, and what was not measured for its sake.
+std::string spent(const RunResult& r) {
+  std::string text;
+  double all = 0;
+  for (const auto& [name, s] : r.seconds) {
+    const auto moduli = r.moduli_seconds.find(name);
+    text += fmt::format("{}{} {:.1f}", text.empty() ? "" : ", ", name, s);
+    if (moduli != r.moduli_seconds.end()) text += fmt::format(" + {:.1f} on moduli", moduli->second);
+    all += s + (moduli == r.moduli_seconds.end() ? 0 : moduli->second);
+  }
+  text = fmt::format("seconds: {}; together {:.0f}\n", text, all);
+  if (r.runs_over_budget > 0)
+    text += fmt::format(
+        "not run: {} settings, because their solvers had used all of their time on the scene "
+        "(over_budget)\n",
+        r.runs_over_budget);
+  if (r.moduli_left_out > 0)
+    text += fmt::format(
+        "not run: effective moduli of {} settings on fronts, which could change no verdict; a full "
+        "study measures all\n",
+        r.moduli_left_out);
+  return text;
+}
+
+/// A few runs at a glance, under the tables; many are what the tables are for.
+std::string text_of(const RunResult& r, const std::vector<std::string>& names, const std::filesystem::path& out) {
+  constexpr std::size_t kFew = 24;
+  const auto counted = [](int n, const char* what, Tone tone) {
+    return tinted(n > 0 ? tone : Tone::Plain, fmt::format("{} {}", n, what));
+  };
+  return (names.empty() || names.size() > kFew ? "" : in_short_table(stored_runs(names, out)).console()) +
+         fmt::format("\n{}, {}, {}; results in {}\n", counted(r.runs_ok, "runs ok", Tone::Good),
+                     counted(r.runs_unsupported, "unsupported", Tone::Doubtful),
+                     counted(r.runs_failed, "failed", Tone::Bad), out.string()) +
+         spent(r);
+}
+
+}  // namespace
+
+std::filesystem::path default_folder(const std::string& study) {
+  std::string stamp = utc_now();
+  std::erase_if(stamp, [](char c) { return c == '-' || c == ':'; });
+  return std::filesystem::path("results/runs") / (study + "-" + stamp);
+}
+
+StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& call) {
+  settle_device(plan, call.device);
+  const std::optional<Supervised> parent = supervised();
+  StudyEnd end;
+  end.out = parent ? parent->out : call.out.empty() ? default_folder(manifest.study) : call.out;
+  const bool resume = parent ? parent->resume : call.resume;
+  require_same_runs(end.out, plan, resume);
+  std::filesystem::create_directories(end.out);
+  if (needs_supervision(plan)) {
+    end.exit_code = supervise(plan, end.out, call.resume, call.words);
+    end.told = true;
+    return end;
+  }
+  const std::vector<std::string> names = run_names(plan);
+  manifest.created = utc_now();
+  manifest.command_line = call.command_line;
+  if (manifest.runs.empty()) manifest.runs = names;
+  write_manifest(end.out, manifest);
+
+  const RunningNote note(parent);
+  const RunOptions options{end.out, resume, call.device.options,
+                           [&](const std::string& what, std::size_t done, std::size_t total) {
+                             call.progress(what, done, total);
+                             note.write(what);
+                           }};
+  RunResult result = execute_runs(plan, options);
+  if (plan.measure_moduli) add_moduli_runs(plan, options, manifest, result);
+  end.faults = result.faults;
+  if (!end.faults.empty()) end.exit_code = ExitCode::CheckFailed;
+  end.json = [=, out = end.out, part = call.part] {
+    return summary_of(result, out, part ? nlohmann::json::array() : figures_of(names, out));
+  };
+  end.text = [=, out = end.out] { return text_of(result, names, out); };
+  return end;
+}
+
+}  // namespace clothbench
