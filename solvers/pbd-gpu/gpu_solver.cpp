@@ -135,7 +135,9 @@ void GpuSolver::reset() {
     update_inverse_masses();
   }
   if (timed_out_ != nullptr) std::memset(timed_out_->mapped(), 0, sizeof(std::uint32_t));
-  last_ = ready_ = run(*upload_);
+  // A loss here is reported by the next step, or by a read of the state before it.
+  ready_ = run(*upload_);
+  last_ = StepStatus::Ok;
 }
 
 StepStatus GpuSolver::step(const FrameInput& frame) {

@@ -97,8 +97,9 @@ INSTANTIATE_TEST_SUITE_P(Every, NoOp, ::testing::ValuesIn(cases()), [](const aut
 });
 
 std::vector<double> run(const SolverEntry& entry, const Scene& scene, int frames) {
-  // As in the study: the substeps that a solver chooses by itself may depend on the features of the scene.
-  const json settings = entry.info.name == "xpbd" ? json{{"substeps", 10}} : json::object();
+  // As in the study: the substeps and the order in time that a solver chooses by itself may depend on the features of
+  // the scene.
+  const json settings = entry.info.name == "xpbd" ? json{{"substeps", 10}, {"time_order", 1}} : json::object();
   const auto solver = entry.make(complete_settings(entry.info, settings), {});
   solver->load(scene);
   EXPECT_EQ(check_stages(scene, entry.info, solver->plan()), "");

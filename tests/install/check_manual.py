@@ -25,7 +25,7 @@ def variables():
             text = file.read_text(encoding="utf-8")
             names = shared | dict(re.findall(r'constexpr char (k\w+)\[\] = "(\w+)"', text))
             for word in re.findall(r"getenv\(([^)]*)\)", text):
-                if word != "folder.variable":
+                if not word.endswith(".variable"):
                     out.add(word.strip('"') if word.startswith('"') else names[word])
     folders = (SOURCE / "harness" / "base" / "data_folder.hpp").read_text(encoding="utf-8")
     return out | set(re.findall(r'"(CLOTHBENCH_\w+)"', folders))

@@ -73,8 +73,8 @@ void add_kernels(std::vector<Fault>& f) {
   kernel("bending with the wrong sign", "cantilever", "lines.glsl", "w[k] * (last - 2.0 * lambda[k] + next)",
          "w[k] * (2.0 * lambda[k] - last - next)");
   kernel("clamp a cell too soft", "cantilever", "lines.glsl", "? 0.5 * alpha : alpha;", "? 2.0 * alpha : alpha;");
-  kernel("damping halved in the kernel", "fall", "substep.glsl", "gain -= p.loss * velocity;",
-         "gain -= 0.5 * p.loss * velocity;");
+  kernel("damping halved in the kernel", "fall", "substep.glsl", "gain -= p.loss * (velocity + change);",
+         "gain -= 0.5 * p.loss * (velocity + change);");
   kernel("gravity 1 % weak in the kernel", "fall", "substep.glsl", "vec3 gain = p.gravity_h.xyz,",
          "vec3 gain = 0.99 * p.gravity_h.xyz,");
   kernel("grips forgotten by the kernel", "pulled", "line_frame.comp", "if (GRIPS > 0u) move_held(s);",
