@@ -21,7 +21,8 @@ std::unique_ptr<PlaneFrame> PlaneFrame::make(FrameBuilder& frame, Lines& lines, 
   const vulkan::Device& device = *frame.device();
   if (wanted == "auto" && device.is_software() && device.profile() == nullptr) return nullptr;
   std::unique_ptr<PlaneFrame> made(new PlaneFrame(frame, lines, contact));
-  if (made->add_kernel(false) || made->add_kernel(true)) return made;
+  const bool spread = frame.tuning()["contact_groups"].get<int>() > 0;
+  if ((!spread && made->add_kernel(false)) || made->add_kernel(true)) return made;
   if (wanted == "always")
     throw Error(
         "solver xpbd: setting tuning.contact_frame=always: expected an even grid of at most 32 x 32 vertices, or a "
@@ -32,11 +33,18 @@ std::unique_ptr<PlaneFrame> PlaneFrame::make(FrameBuilder& frame, Lines& lines, 
 bool PlaneFrame::add_kernel(bool many) {
   const LineShape shape = lines_.frame_shape_with_contact(many);
   if (shape.threads == 0 || shape.threads % kScanBlock != 0) return false;
-  std::vector<std::uint32_t> constants = lines_.specialization_with_contact(shape, many).by_number();
+  LineSpecialization lines = lines_.specialization_with_contact(shape, many);
+  groups_ = many ? lines_.groups_of(shape) : vulkan::Groups{1, 1};
+  // Workgroups beyond those of the lines have pairs and vertices alone, and so threads without a line.
+  const auto wanted = frame_.tuning()["contact_groups"].get<std::uint32_t>();
+  if (many && wanted > groups_.x * groups_.y) {
+    groups_ = vulkan::groups_for(wanted, 1);
+    lines.EXACT = 0;
+  }
+  std::vector<std::uint32_t> constants = lines.by_number();
   const std::vector<std::uint32_t> contact = contact_.frame_specialization().by_number();
   std::transform(contact.begin(), contact.end(), constants.begin(), constants.begin(), std::bit_or<>());
   const std::string name = std::string("plane_frame") + (many ? "_many" : "") + (shape.shuffles ? "_shuffle" : "");
-  groups_ = many ? lines_.groups_of(shape) : vulkan::Groups{1, 1};
   lines_.add_regularisation();
   if (many) {
     if (!runs_at_once<LineConstants>(frame_, name, constants, shape.threads, groups_)) return false;

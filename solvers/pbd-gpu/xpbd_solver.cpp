@@ -261,6 +261,9 @@ SolverInfo xpbd_info() {
        "and a convex piece"},
       {"contact_frame", "\"auto\"",
        "with contact=planes, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, never"},
+      {"contact_groups", "0",
+       "with contact=planes, least workgroups of a frame in one dispatch, which must all run at once; 0: one up to 32 x "
+       "32 vertices, and for larger cloths those of its lines"},
       {"contact_pairs", "0", "with contact=planes, pairs that the list has place for; 0: by the cloth's elements"},
       {"contact_lanes", "0",
        "threads of the proximity query of one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
@@ -295,6 +298,7 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", tuning, "tension", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "contact", {"samples", "planes"});
   require_one_of("xpbd", tuning, "contact_frame", {"auto", "always", "never"});
+  require_between("xpbd", tuning, "contact_groups", 0, 1024);
   require_between("xpbd", tuning, "contact_pairs", 0, 1 << 24);
   require_one_of("xpbd", tuning, "contact_lanes", {0, 1, 2, 4, 8, 16});
   return std::make_unique<Xpbd>(xpbd_info(), settings, device, count_bytes);

@@ -112,11 +112,17 @@ TEST_F(PlaneFrames, WithinTheLimitsOfAMobileGpu) {
 }
 
 TEST_F(PlaneFrames, OfManyWorkgroupsThatWaitForOneAnother) {
-  const Scene s = falling(33, 31, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
+  struct Shape {
+    int columns, rows, threads, vertices, groups;
+  };
   int agreed = 0;
-  for (const auto& [threads, vertices] : {std::pair{512, 8}, {512, 2}}) {  // 1 and 3 workgroups
-    nlohmann::json tuning = {
-        {"device_barrier", "always"}, {"threads_a_group", threads}, {"vertices_a_thread", vertices}};
+  // 1 and 3 workgroups, and 2 of which one has a square cloth's lines
+  for (const Shape& w : {Shape{33, 31, 512, 8, 0}, {33, 31, 512, 2, 0}, {16, 16, 512, 8, 2}}) {
+    const Scene s = falling(w.columns, w.rows, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
+    nlohmann::json tuning = {{"device_barrier", "always"},
+                             {"threads_a_group", w.threads},
+                             {"vertices_a_thread", w.vertices},
+                             {"contact_groups", w.groups}};
     FrameRun one;
     try {
       one = run(s, "always", 6, tuning);
