@@ -180,7 +180,7 @@ Table room_table(const std::vector<RunPair>& pairs) {
   for (const RoomQuantity& q : kRoomQuantities) t.rows[0].emplace_back(q.head);
   for (const RunPair& p : pairs) {
     const auto row = [&](const char* mesh, const auto& text) {
-      t.rows.push_back({p.scene, p.series.solver, mesh});
+      t.rows.push_back({p.scene, p.series.label(), mesh});
       for (const RoomQuantity& q : kRoomQuantities) t.rows.back().push_back(text(q));
     };
     row("SubMesh", [&](const RoomQuantity& q) { return q.text(*p.run); });
@@ -189,7 +189,7 @@ Table room_table(const std::vector<RunPair>& pairs) {
     t.note += fmt::format(
         "{}{}, {}: greatest distance between the positions of the two runs: {} at the end, {} over all "
         "frames.",
-        t.note.empty() ? "" : " ", p.scene, p.series.solver, distance(p.apart.end), distance(p.value));
+        t.note.empty() ? "" : " ", p.scene, p.series.label(), distance(p.apart.end), distance(p.value));
   }
   t.note = with_withheld(t.note, runs_of(pairs, &RunPair::run, &RunPair::other), {"frame_wall_median_s", "load_s"});
   return t;
