@@ -78,6 +78,7 @@ if [[ $parts == *publish* ]]; then
   take moduli material.md material.md
   take friction friction.md friction.md
   take penetration penetration.md penetration.md
+  take penetration penetration.json penetration.json
   take margins penetration.md margins.md
   take margins penetration.json margins.json
   take contact contact-rates.md contact-rates.md
