@@ -22,7 +22,8 @@ cd "$(dirname "$0")/.."
 bench=${CLOTHBENCH:-build/release/clothbench}
 for engine in nvcloth jolt; do
   plugin=$PWD/build/peers/$engine/libclothbench_$engine.so
-  [ -e "$plugin" ] || { echo "scripts/peers.sh --study: $plugin: not built; scripts/peers.sh DIR builds it" >&2; exit 1; }
+  [[ $parts == " publish" ]] || [ -e "$plugin" ] ||
+    { echo "scripts/peers.sh --study: $plugin: not built; scripts/peers.sh DIR builds it" >&2; exit 1; }
   CLOTHBENCH_PLUGINS=${CLOTHBENCH_PLUGINS:+$CLOTHBENCH_PLUGINS:}$plugin
 done
 export CLOTHBENCH_PLUGINS
@@ -53,15 +54,15 @@ if [[ -z $parts || $parts == *untimed* ]]; then
   part friction friction nvcloth jolt bullet-soft
   part moduli moduli nvcloth jolt bullet-soft ${quick:+--no-sweep}
   part margins study solvers/plugin/studies/peers-margins.json $quick
-  # The whole of these takes hours: scripts/stability.sh, study contact --count 108.
-  part stability study stability --quick --jobs 2 "${three[@]}"
-  part penetration study penetration --quick --trials 1 "${three[@]}"
-  part contact study contact --quick --seed 1 --count "$([ -n "$quick" ] && echo 2 || echo 9)" --jobs 2 "${three[@]}"
+  part stability study stability ${quick:-"--short"} --jobs 2 "${three[@]}"
+  part penetration study penetration ${quick:-"--short"} --trials 1 "${three[@]}"
+  part contact study contact $quick --seed 1 --count "$([ -n "$quick" ] && echo 2 || echo 108)" --jobs 2 "${three[@]}"
 fi
 # take STUDY FILE NAME: a report's file as NAME; paths of plugins are those in this tree.
 take() {
   [ -e "$out/$1.done" ] || return 0
-  if [[ $2 == *.png ]]; then cp "$out/report-$1/$2" "$shown/$3"; else sed "s|$PWD/||g" "$out/report-$1/$2" >"$shown/$3"; fi
+  if [[ $2 == *.png ]]; then cp "$out/report-$1/$2" "$shown/$3"; return; fi
+  sed -E "s#[^ \",]*/libclothbench_(nvcloth|jolt)\.so#build/peers/\1/libclothbench_\1.so#g; s#$PWD/##g" "$out/report-$1/$2" >"$shown/$3"
 }
 if [[ $parts == *publish* ]]; then
   shown=$PWD/results/reference/peers
@@ -77,10 +78,12 @@ if [[ $parts == *publish* ]]; then
   take moduli material.md material.md
   take friction friction.md friction.md
   take penetration penetration.md penetration.md
+  take penetration penetration.json penetration.json
   take margins penetration.md margins.md
   take margins penetration.json margins.json
   take contact contact-rates.md contact-rates.md
   take contact contact-rates.csv contact.csv
+  take contact contact-runs.csv contact-runs.csv
   take stability stability.md stability.md
   take stability stability.csv stability.csv
   scripts/peers_tables.py "$shown" "$shown/README.md" solvers/plugin/PEERS.md

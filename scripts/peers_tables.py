@@ -13,9 +13,11 @@ margins (margins.json): for each solver and scene of peers-margins the greatest 
 passes through colliders [m], the greatest depth [mm] and the share of vertices that went through [%], by the distance [mm] at
 which the solver holds the cloth.
 
-contact (contact.csv): scenes of `study contact` that a solver passes, of those drawn, by kind.
+contact (contact.csv): scenes of `study contact` that a solver passes, of those drawn, by kind; kinds that it does not support.
+Where contact.csv has no `bullet-soft`, its row is that of the same seeds in contact-h200, beside FOLDER, and the distance at
+which it holds the cloth is that of penetration.json.
 
-stability (stability.csv): runs of `study stability --quick` by grade.
+stability (stability.csv): runs of `study stability --short` by grade, and the classes of those that failed.
 """
 import argparse
 import csv
@@ -91,12 +93,19 @@ def margins(folder):
 
 def contact(folder):
     rows = [r for r in rows_of(folder / "contact.csv") if r["speed_m_per_s"] == "all"]
+    elsewhere = folder.parent / "contact-h200" / "contact-rates.csv"
+    if "bullet-soft" not in {r["solver"] for r in rows} and elsewhere.exists():
+        held = [r["held_at_most_m"] for r in json.loads((folder / "penetration.json").read_text(encoding="utf-8"))["runs"]
+                if label(r) == "bullet-soft" and r["held_at_most_m"] is not None]
+        rows += [r | {"solver": "bullet-soft (contact-h200)", "held_at_mm": f"{1e3 * max(held):g}"} for r in rows_of(elsewhere)
+                 if r["solver"] == "bullet-soft" and r["speed_m_per_s"] == "all"]
     kinds = distinct(r["kind"] for r in rows)
     out = []
     for name in sorted(distinct(label(r) for r in rows)):
         mine = {r["kind"]: r for r in rows if label(r) == name}
         held = next((r["held_at_mm"] for r in mine.values() if r["held_at_mm"]), "–")
-        out.append([name, held, *(f"{mine[k]['passed']}/{mine[k]['drawn']}" if k in mine else "–" for k in kinds)])
+        cell = lambda r: "–" if r["unsupported"] == r["drawn"] else f"{r['passed']}/{r['drawn']}"
+        out.append([name, held, *(cell(mine[k]) if k in mine else "–" for k in kinds)])
     return markdown(["solver", "holds at [mm]", *kinds], out)
 
 
@@ -107,8 +116,10 @@ def stability(folder):
     for name in sorted(distinct(label(r) for r in rows)):
         mine = [r for r in rows if label(r) == name]
         unsupported = sum(r["status"] == "unsupported" for r in mine)
-        out.append([name, str(len(mine)), *(str(sum(r["grade"] == g for r in mine)) for g in grades), str(unsupported)])
-    return markdown(["solver", "runs", *grades, "unsupported"], out)
+        why = [r["class"] for r in mine if r["grade"] == "failed"]
+        classes = ", ".join(f"{c} {why.count(c)}" for c in sorted(set(why))) or "–"
+        out.append([name, str(len(mine)), *(str(sum(r["grade"] == g for r in mine)) for g in grades), classes, str(unsupported)])
+    return markdown(["solver", "runs", *grades, "classes of failed", "unsupported"], out)
 
 
 TABLES = {"hang": hang, "margins": margins, "contact": contact, "stability": stability}
