@@ -14,7 +14,7 @@ passes through colliders [m], the greatest depth [mm] and the share of vertices 
 which the solver holds the cloth.
 
 contact (contact.csv): scenes of `study contact` that a solver passes, of those drawn, by kind; kinds that it does not support.
-Where contact.csv has no `bullet-soft`, its row is that of the same seeds in contact-h200, beside FOLDER, and the distance at
+Where contact.csv has no `bullet-soft`, its row is that of the same scenes in contact-h200, beside FOLDER, and the distance at
 which it holds the cloth is that of penetration.json.
 
 stability (stability.csv): runs of `study stability --short` by grade, and the classes of those that failed.
@@ -93,12 +93,17 @@ def margins(folder):
 
 def contact(folder):
     rows = [r for r in rows_of(folder / "contact.csv") if r["speed_m_per_s"] == "all"]
-    elsewhere = folder.parent / "contact-h200" / "contact-rates.csv"
+    elsewhere = folder.parent / "contact-h200" / "contact-runs.csv"
     if "bullet-soft" not in {r["solver"] for r in rows} and elsewhere.exists():
+        seeds = {r["scene"] for r in rows_of(folder / "contact-runs.csv")}
         held = [r["held_at_most_m"] for r in json.loads((folder / "penetration.json").read_text(encoding="utf-8"))["runs"]
                 if label(r) == "bullet-soft" and r["held_at_most_m"] is not None]
-        rows += [r | {"solver": "bullet-soft (contact-h200)", "held_at_mm": f"{1e3 * max(held):g}"} for r in rows_of(elsewhere)
-                 if r["solver"] == "bullet-soft" and r["speed_m_per_s"] == "all"]
+        bullet = [r for r in rows_of(elsewhere) if r["solver"] == "bullet-soft" and r["scene"] in seeds]
+        for kind in ["all", *distinct(r["kind"] for r in rows if r["kind"] != "all")]:
+            drawn = [r for r in bullet if kind == "all" or r["scene"].split("-", 2)[2] == kind]
+            rows.append({"solver": "bullet-soft (contact-h200)", "setting": "default", "kind": kind, "held_at_mm": f"{1e3 * max(held):g}",
+                         "drawn": str(len(drawn)), "passed": str(sum(r["expect"] == "pass" for r in drawn)),
+                         "unsupported": str(sum(r["status"] == "unsupported" for r in drawn))})
     kinds = distinct(r["kind"] for r in rows)
     out = []
     for name in sorted(distinct(label(r) for r in rows)):
