@@ -108,7 +108,7 @@ class GroupRun {
     if (run_finished(options_.out, name)) {
       if (!options_.resume) refuse_finished_run(options_.out, name);
       require_same_run(options_.out, planned_run(spec));
-      if (spec.work > 0) recall(spec, name);
+      recall(spec, name);
       ++done_;
       return;
     }
@@ -120,9 +120,11 @@ class GroupRun {
     if (spec.over_budget.empty()) budget_.spent(spec, r.untimed_s, r.run->outcome().status);
   }
 
-  /// What a run of an earlier session took of its ladder's budget.
+  /// Counts a run of an earlier session, and what it took of its ladder's budget.
   void recall(const RunSpec& spec, const std::string& name) {
     const RunRecord before = read_run_summary(stored_run(options_.out, name));
+    count(name, before.outcome);
+    if (!(spec.work > 0)) return;
     const auto took = before.summary.find("untimed_s");
     if (before.outcome.status != "over_budget" && took != before.summary.end())
       budget_.spent(spec, took->second, before.outcome.status);
@@ -177,6 +179,20 @@ class GroupRun {
       result_.faults.push_back(fmt::format("{}: {} validation messages", r.name(), messages));
     }
     if (outcome.status == "error") result_.faults.push_back(r.name() + ": " + outcome.message);
+    r.record.outcome = outcome;
+    std::map<std::string, double> summary = summarise(r.run->spec(), r.run->plan(), r.record);
+    summarise_sensors(r.record.header.environment.value("sensors", nlohmann::json::object()), "start", summary);
+    summarise_sensors(r.sensors.is_null() ? nlohmann::json::object() : r.sensors, "end", summary);
+    summary["untimed_s"] = r.untimed_s;
+    Verdict verdict = judge(*r.run->spec().scene, outcome, r.record.accuracy, summary);
+    outcome.expect = std::move(verdict.text);
+    count(r.name(), outcome);
+    summary.merge(verdict.scalars);
+    result_.files.push_back(r.writer->finish(outcome, summary));
+    ++done_;
+  }
+
+  void count(const std::string& name, const Outcome& outcome) {
     if (outcome.status == "ok")
       ++result_.runs_ok;
     else if (outcome.status == "unsupported")
@@ -185,18 +201,8 @@ class GroupRun {
       ++result_.runs_over_budget;
     else
       ++result_.runs_failed;
-    r.record.outcome = outcome;
-    std::map<std::string, double> summary = summarise(r.run->spec(), r.run->plan(), r.record);
-    summarise_sensors(r.record.header.environment.value("sensors", nlohmann::json::object()), "start", summary);
-    summarise_sensors(r.sensors.is_null() ? nlohmann::json::object() : r.sensors, "end", summary);
-    summary["untimed_s"] = r.untimed_s;
-    Verdict verdict = judge(*r.run->spec().scene, outcome, r.record.accuracy, summary);
-    if (verdict.text == "pass") ++result_.expect_passed;
-    if (verdict.text.starts_with("fail")) result_.expect_failed.push_back(r.name() + ": " + verdict.text);
-    outcome.expect = std::move(verdict.text);
-    summary.merge(verdict.scalars);
-    result_.files.push_back(r.writer->finish(outcome, summary));
-    ++done_;
+    if (outcome.expect == "pass") ++result_.expect_passed;
+    if (outcome.expect.starts_with("fail")) result_.expect_failed.push_back(name + ": " + outcome.expect);
   }
 
   const RunPlan& plan_;

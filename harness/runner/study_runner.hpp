@@ -33,7 +33,8 @@ struct RunOptions {
 };
 
 struct RunResult {
-  std::vector<std::filesystem::path> files;
+  std::vector<std::filesystem::path> files;  ///< of this session
+  /// Of all runs of the plan, also those that an earlier session stored.
   int runs_ok = 0, runs_unsupported = 0, runs_over_budget = 0, runs_failed = 0;
   /// Wall time by solver for loads, passes, trials and files; "reference solutions" is another entry.
   std::map<std::string, double> seconds, moduli_seconds;  ///< moduli_seconds: of effective moduli

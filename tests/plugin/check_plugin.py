@@ -175,6 +175,7 @@ class Plugin(unittest.TestCase):
             self.assertIn(where, outcome["message"])
             self.assertEqual(self.stored("gravity__ballistic__default")[0]["status"], "ok")
             self.assertIn("crashed", self.text)
+            self.assertIn("1 runs ok, 0 unsupported, 1 failed", self.text)
             self.assertEqual([f for f in os.listdir(self.out) if not f.endswith((".h5", ".xdmf", ".json"))], [])
             shutil.rmtree(self.out)
 
