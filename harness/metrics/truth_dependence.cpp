@@ -25,7 +25,7 @@ double change(const TruthJudge& judge, const Scene& scene, const std::string& ke
   for (int k = known->settles ? kFrames : 1; k <= kFrames; ++k) {
     const int frame = last * k / kFrames;
     ClothState state;
-    state.position = truth::vertex_values(other.cloth, known->columns(frame), true);
+    state.position = truth::vertex_positions(other.cloth, *known, frame);
     state.velocity.assign(state.position.size(), 0);
     const TruthErrors e = judge.judge(frame, state);
     most = max_or_nan(most, judge.reference_case().by_quantity ? e.quantity_error : e.e2);

@@ -57,7 +57,7 @@ TruthErrors TruthJudge::judge(int frame, const ClothState& state) const {
   TruthErrors out;
   if (!finite(state.position) || !finite(state.velocity)) return out;
   const std::vector<Vec3> columns = case_.columns(frame);
-  const std::vector<double> vertices = truth::vertex_values(c, columns, true);
+  const std::vector<double> vertices = truth::vertex_positions(c, case_, frame);
   const auto here = sampler_.sample(state.position), there = sampler_.sample(vertices);
   out.e2 = lattice_e2(here, there);
   out.greatest = truth::lattice_greatest_error(lattice_, here, there, lattice_.longer_side_m());
@@ -92,6 +92,7 @@ double TruthJudge::space_error(int frame) const {
 }
 
 double TruthJudge::space_error() const {
+  if (case_.vertices) return kMissing;
   if (!case_.continuum) return 0;
   const int last = scene_.time.frames();
   if (case_.settles) return space_error(last);

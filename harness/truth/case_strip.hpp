@@ -1,11 +1,13 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
+#include "truth/pull_wave.hpp"
 #include "truth/reference_case.hpp"
 
 // Only for the reference cases: their requirements on a scene.
@@ -93,6 +95,13 @@ struct Strip {
 
   static constexpr double kLevel = 1e-9;
 };
+
+/// Speed and ramp of the two hands, from the scene's file; that they are alike and opposite.
+TwoHandPull bars_of(const Strip&);
+
+// Reference cases of sheets that shear, sheet_cases.cpp.
+ReferenceCase swing_sheet(const Strip&);
+ReferenceCase pulled_sheet(const Strip&);
 
 // ReferenceCases of contact, contact_cases.cpp.
 ReferenceCase incline(const Strip&);

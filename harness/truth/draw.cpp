@@ -42,13 +42,14 @@ class Drawing {
     j_ = change_scene(std::move(j_), sized, scene_.source);
     if (old_g > 0) set_gravity(scaled(g_ / old_g, scene_.gravity_m_per_s2));
     j_["cloth"]["areal_density_kg_per_m2"] = density_;
-    const bool keeps_rate = known != "two-hand-pull";
+    const bool keeps_rate = known != "two-hand-pull" && known != "pulled-sheet";
     if (known == "free-fall") draw_stiffness(100);
     if (known == "heavy-strip")
       draw_stiffness(std::max(100.0, 100 * density_ * g_ * length_));  // strains of 1 % at most
     if (known == "catenary") span();
     if (known == "cantilever") bending();
-    if (known == "two-hand-pull") pull();
+    if (!keeps_rate) pull();
+    if (known == "swing-sheet") weight_over_stiffness();
     if (known == "incline") slope();
     if (known == "capstan") overhangs();
     if (known == "atwood") weights();
@@ -73,6 +74,9 @@ class Drawing {
     note("membrane_stiffness_N_per_m", stiffness_ = dice_.log_between(least, most));
     j_["material"]["membrane_stiffness_N_per_m"] = stiffness_;
   }
+
+  /// Within a factor of about two of the scene's: softer sheets fold, and stiffer ones take long to integrate.
+  void weight_over_stiffness() { draw_stiffness(250 * density_ * g_ * length_, 1000 * density_ * g_ * length_); }
 
   void span() {
     const double share = dice_.between(0.5, 0.95);

@@ -224,7 +224,8 @@ ReferenceCase cantilever(const Strip& s) {
   return known;
 }
 
-/// Speed and ramp of the bars, from the scene's file; that they are alike and opposite.
+}  // namespace
+
 TwoHandPull bars_of(const Strip& s) {
   const nlohmann::json grips = nlohmann::json::parse(s.scene.json).at("grips");
   const auto velocity = [&](std::size_t k) {
@@ -244,6 +245,8 @@ TwoHandPull bars_of(const Strip& s) {
   s.need(speed > 0 && alike && s.scene.pins.vertices.empty(), kBars);
   return {s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), speed, ramp_s};
 }
+
+namespace {
 
 ReferenceCase two_hand_pull(const Strip& s) {
   s.need(s.g == 0, "no gravity");
@@ -300,6 +303,8 @@ std::optional<ReferenceCase> reference_case_of(const Scene& scene) {
   if (scene.reference_case.empty()) return std::nullopt;
   const Strip s(scene);
   if (scene.reference_case == "incline") return incline(s);
+  if (scene.reference_case == "swing-sheet") return swing_sheet(s);
+  if (scene.reference_case == "pulled-sheet") return pulled_sheet(s);
   s.need_rows();
   if (scene.reference_case == "capstan") return capstan(s);
   if (scene.reference_case == "atwood") return atwood(s);
@@ -325,6 +330,10 @@ std::vector<Vec3> column_means(const Cloth& c, const std::vector<double>& values
   for (std::size_t v = 0; v < c.vertex_count(); ++v)
     for (std::size_t k = 0; k < 3; ++k) out[v % out.size()][k] += values[3 * v + k] / c.rows;
   return out;
+}
+
+std::vector<double> vertex_positions(const Cloth& c, const ReferenceCase& known, int frame) {
+  return known.vertices ? known.vertices(frame) : vertex_values(c, known.columns(frame), true);
 }
 
 std::vector<double> vertex_values(const Cloth& c, const std::vector<Vec3>& columns, bool offset) {

@@ -18,9 +18,10 @@ struct Threshold {
   std::function<double(double found)> error;
 };
 
-/// The exact solution of one scene with a `truth` block; all parameters are the scene's. All reference cases are strips
-/// along u (or sheets) whose rows move alike. So a solution is one position for each column of the grid, on the middle
-/// line of the sheet; a vertex lies at its column's position plus its offset along axis_v.
+/// The exact solution of one scene with a `truth` block; all parameters are the scene's. Most reference cases are
+/// strips along u (or sheets) whose rows move alike. So a solution is one position for each column of the grid, on the
+/// middle line of the sheet; a vertex lies at its column's position plus its offset along axis_v. Sheets that shear
+/// have a position for each vertex, and `columns` are the means over the rows.
 ///
 /// `columns` is the solution for the same mesh where there is one (a chain of as many links, springs, hinges), so that
 /// a run's distance from it has no spatial discretisation error; `continuum` is the solution without a mesh.
@@ -33,6 +34,7 @@ struct ReferenceCase {
   double speed_scale_m_per_s = 1;  ///< the same for speeds
 
   std::function<std::vector<Vec3>(int frame)> columns;        ///< [m]
+  std::function<std::vector<double>(int frame)> vertices;     ///< [m], 3 each; null: `columns` say all
   std::function<std::vector<Vec3>(int frame)> column_speeds;  ///< [m/s]; null if there is no solution
   std::function<Vec3(double share, int frame)> continuum;     ///< at a share 0..1 of the width; null: as `columns`
   std::function<double(const std::vector<Vec3>& columns)> quantity;  ///< of a run's columns (means over the rows)
@@ -48,6 +50,9 @@ std::string ranking_label(const ReferenceCase&);
 
 /// Means over the rows of `values` (3 per vertex), one per column.
 std::vector<Vec3> column_means(const Cloth&, const std::vector<double>& values);
+
+/// Positions of all vertices (3 each) of a reference case in a frame [m].
+std::vector<double> vertex_positions(const Cloth&, const ReferenceCase&, int frame);
 
 /// Vertex values (3 per vertex) from columns; `offset`: adds each row's position along axis_v (for positions, not
 /// speeds).

@@ -72,7 +72,7 @@ TEST(Dependence, IsMeasuredOnEveryTruth) {
   for (const char* name : {"cantilever-1", "cantilever-10", "cantilever-100"})
     EXPECT_EQ(need_of(name), "bending") << name;
   for (const char* name : {"free-fall", "pendulum", "swing-strip", "catenary", "incline-stick", "incline-slip",
-                           "incline-stop", "capstan-hold", "capstan-slip", "atwood"})
+                           "incline-stop", "capstan-hold", "capstan-slip", "atwood", "swing-sheet", "pulled-sheet"})
     EXPECT_EQ(need_of(name), "") << name;
   // The strip's stretch is rho g L^2 / 2 Y: a tenth more stiffness, an eleventh less stretch.
   const auto heavy = truth_dependence(load_scene("validation/heavy-strip"));

@@ -78,6 +78,9 @@ TEST_F(Friction, CapstanHoldsWithinThreePerCent) {
   EXPECT_LE(std::abs(rows.error), 0.03);
 }
 
+/// The error falls with the substeps, of which a finer strip has more at default.
+TEST_F(Friction, CapstanSlidesWithinFivePerCent) { EXPECT_LE(end_error("capstan-slip"), 0.05); }
+
 TEST_F(Friction, AtwoodRunsOffAsItShould) {
   settings_["substeps"] = 128;
   settings_["contact_samples"] =

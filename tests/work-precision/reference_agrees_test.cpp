@@ -14,7 +14,8 @@ namespace {
 class ReferenceAgrees : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Every, ReferenceAgrees,
                          ::testing::Values("free-fall", "pendulum", "swing-strip", "heavy-strip", "catenary",
-                                           "cantilever-1", "cantilever-10", "cantilever-100", "two-hand-pull"),
+                                           "cantilever-1", "cantilever-10", "cantilever-100", "two-hand-pull",
+                                           "swing-sheet", "pulled-sheet"),
                          [](const auto& i) {
                            std::string name = i.param;
                            for (char& c : name)

@@ -22,7 +22,8 @@ namespace {
 
 const char* const kScenes[] = {"free-fall",    "pendulum",      "swing-strip",    "heavy-strip",   "catenary",
                                "cantilever-1", "cantilever-10", "cantilever-100", "two-hand-pull", "incline-stick",
-                               "incline-slip", "incline-stop",  "capstan-hold",   "capstan-slip",  "atwood"};
+                               "incline-slip", "incline-stop",  "capstan-hold",   "capstan-slip",  "atwood",
+                               "swing-sheet",  "pulled-sheet"};
 
 Scene scene(const std::string& name, const std::vector<std::string>& set = {}) {
   return load_scene("validation/" + name, set);
@@ -32,7 +33,7 @@ Scene scene(const std::string& name, const std::vector<std::string>& set = {}) {
 ClothState truth_state(const Scene& s, const truth::ReferenceCase& known, int frame) {
   const std::vector<Vec3> speeds =
       known.column_speeds ? known.column_speeds(frame) : std::vector<Vec3>(static_cast<std::size_t>(s.cloth.columns));
-  return {truth::vertex_values(s.cloth, known.columns(frame), true), truth::vertex_values(s.cloth, speeds, false)};
+  return {truth::vertex_positions(s.cloth, known, frame), truth::vertex_values(s.cloth, speeds, false)};
 }
 
 class ReferenceCases : public ::testing::TestWithParam<const char*> {};
@@ -237,6 +238,7 @@ TEST(SlidingCapstan, IsAtwoodsWithoutFrictionAndStartsAtTheThreshold) {
 TEST(Seed, DrawsScenesThatTheirCasesAnswerAndTheSameOnesAgain) {
   for (const char* name : kScenes) {
     const Scene s = scene(name);
+    const bool is_sheet = s.reference_case.find("sheet") != std::string::npos;  // takes longer to integrate
     for (const std::uint64_t seed : {0ull, 1ull, 2ull, 3ull, 7ull, 123456789012345ull}) {
       const auto one = truth::draw(s, seed), two = truth::draw(s, seed);
       EXPECT_EQ(one.scene.json, two.scene.json);
@@ -253,6 +255,7 @@ TEST(Seed, DrawsScenesThatTheirCasesAnswerAndTheSameOnesAgain) {
         return std::abs(c.quantity(c.columns(of.time.frames()))) > 1e-9;
       };
       EXPECT_EQ(moves(*before, s), moves(*after, one.scene)) << name << ": what holds still holds, what slips slips";
+      if (is_sheet) break;
     }
   }
   // Recorded: the same numbers on every machine.
