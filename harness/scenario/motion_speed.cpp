@@ -65,4 +65,19 @@ double grip_speed_m_per_s(const Scene& scene) {
   return most;
 }
 
+double grip_strain(const Scene& scene) {
+  if (scene.motion.empty()) return 0;
+  const auto apart = [](const FrameMotion& m, std::size_t g) {
+    const Vec3 &a = m.grip_position_m[0], &b = m.grip_position_m[g];
+    return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+  };
+  const FrameMotion& start = scene.motion.front();
+  double most = 0;
+  for (const FrameMotion& m : scene.motion)
+    for (std::size_t g = 1; g < m.grip_position_m.size(); ++g)
+      if (m.grip_held[0] != 0 && m.grip_held[g] != 0 && apart(start, g) > 0)
+        most = std::max(most, apart(m, g) / apart(start, g) - 1);
+  return most;
+}
+
 }  // namespace clothbench

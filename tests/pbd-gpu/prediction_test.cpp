@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clothbench/motion.hpp"
 #include "contact_scenes.hpp"
 #include "gpu_fixture.hpp"
 #include "line_plan.hpp"
@@ -180,6 +181,10 @@ TEST_F(Predicted, IsOffWhereItIsNotSafeAndSaysWhy) {
   EXPECT_EQ(why_not(firm, {{"tethers", false}, {"substeps", 8}}), "") << "implicit tension holds it";
   // A collider out of reach changes nothing, and one that may be touched does.
   EXPECT_EQ(why_not(with_collider(with_pins(sheet(9, 9)), sphere({100, 0, 0}, 1))), "");
+  const std::string pull = "paper/two-hand-stretch-";
+  EXPECT_EQ(why_not(load_scene(pull + "2mps")), "");
+  EXPECT_NE(why_not(load_scene(pull + "10mps")).find("half of their distance"), std::string::npos);
+  EXPECT_NEAR(grip_strain(load_scene("validation/pulled-sheet")), 0.3, 0.1);
   EXPECT_NE(why_not(with_collider(with_pins(sheet(9, 9)), sphere({4, 0, 0}, 1))).find("touches"), std::string::npos);
   // What is off has no buffers.
   for (const bool off : {true, false}) {

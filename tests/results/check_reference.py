@@ -74,9 +74,18 @@ for text in (limits, index):
     for kind, words in (("push", "pushes"), ("sweep-mesh", "sweeps of a hand mesh"), ("sweep-capsules", "sweeps of capsules")):
         assert f"{passed('xpbd', 'default', kind)} {words}" in re.sub(r"\s+", " ", text), kind
 for solver, setting in (("xpbd", "default"), ("bullet-soft", "default"), ("paper", "default")):
-    count = rates[solver, setting, "all"]["passed"]
-    assert f"`{solver}` passes {count} of 108" in study or f"`{solver}` {count}" in study, solver
+    count, drawn = (rates[solver, setting, "all"][k] for k in ("passed", "drawn"))
+    assert f"`{solver}` passes {count} of {drawn}" in study or f"`{solver}` {count}" in study, solver
 assert f"{rates['xpbd', 'accurate', 'all']['passed']} at `accurate`" in study
+
+# And of the published ones.
+with open(reference / "penetration/penetration.csv", encoding="utf-8", newline="") as f:
+    verdicts = [(r["solver"], r["expect"].split(":")[0]) for r in csv.DictReader(f) if r["setting"] == "default"]
+published = (reference / "penetration/README.md").read_text(encoding="utf-8")
+count = {s: (verdicts.count((s, "pass")), verdicts.count((s, "pass")) + verdicts.count((s, "fail"))) for s, _ in verdicts}
+assert "**`xpbd`** passes {} of {} scenes".format(*count["xpbd"]) in published, count
+assert "**`bullet-deformable`** passes {} of the {} that it supports, **`bullet-soft`** {}".format(*count["bullet-deformable"], count["bullet-soft"][0]) in published, count
+assert count["paper"][0] == 0 and f"`xpbd` passes {total['passed']}" in published, count
 
 # The baseline says by which versions it was measured.
 cells = json.loads((root / "results/baselines/penetration.json").read_text(encoding="utf-8"))["runs"]

@@ -15,4 +15,8 @@ std::vector<double> collider_speeds_m_per_s(const Scene&);
 /// Greatest frame-to-frame speed [m/s] of the gripped vertices while they are held.
 double grip_speed_m_per_s(const Scene&);
 
+/// Greatest strain that hands impose: growth of the straight distance between the first gripped vertex and another,
+/// over that distance at the start, while both are held. 0 if the hands are static or come closer.
+double grip_strain(const Scene&);
+
 }  // namespace clothbench
