@@ -262,9 +262,8 @@ SolverInfo xpbd_info() {
       {"contact_frame", "\"auto\"",
        "with contact=planes, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, never"},
       {"contact_groups", "0",
-       "with contact=planes, least workgroups of a frame in one dispatch, which must all run at once; 0: one up to 32 "
-       "x "
-       "32 vertices, and for larger cloths those of its lines"},
+       "with contact=planes, least workgroups of a frame in one dispatch, which must all run at once; 0: one for at "
+       "most 32 x 32 vertices, else those of its lines"},
       {"contact_pairs", "0", "with contact=planes, pairs that the list has place for; 0: by the cloth's elements"},
       {"contact_lanes", "0",
        "threads of the proximity query of one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},

@@ -78,6 +78,24 @@ for solver, setting in (("xpbd", "default"), ("bullet-soft", "default"), ("paper
     assert f"`{solver}` passes {count} of {drawn}" in study or f"`{solver}` {count}" in study, solver
 assert f"{rates['xpbd', 'accurate', 'all']['passed']} at `accurate`" in study
 
+# And what it says of cost, in milliseconds of GPU time.
+with open(reference / "contact-h200/cost.csv", encoding="utf-8", newline="") as f:
+    cost = {(r["scene"], r["setting"]): 1e3 * float(r["frame_device_median_s"]) for r in csv.DictReader(f)}
+plain = re.sub(r"\s+", " ", study)
+sweeps = [f"capsule-sweep-{v}mps" for v in ("0p8", "3p3", "7p7", "13")]
+low, high = (lambda s: min(cost[k, s] for k in sweeps)), (lambda s: max(cost[k, s] for k in sweeps))
+for words in (
+    f"planes cost {low('planes'):.2f} to {high('planes'):.2f} ms",
+    f"points on edges {low('default'):.2f} to {high('default'):.2f}",
+    f"128 they cost {cost['capsule-sweep-128', 'planes']:.2f} and {cost['capsule-sweep-128', 'default']:.2f} ms",
+    f"{cost['hand-push', 'planes']:.1f} ms for {cost['hand-push', 'default']:.2f}",
+    f"{cost['desk-flat-low-desk', 'planes']:.1f} ms on the desk for {cost['desk-flat-low-desk', 'default']:.2f}",
+    f"{cost['box-drop', 'planes']:.1f} ms on a box for {cost['box-drop', 'default']:.2f}",
+    f"{cost['sphere-drop', 'planes']:.1f} ms on a sphere for {cost['sphere-drop', 'default']:.2f}",
+    f"{cost['self-fold', 'planes']:.1f} ms for {cost['self-fold', 'default']:.1f} (`self-fold`)",
+):
+    assert words in plain, words
+
 # And of the published ones.
 with open(reference / "penetration/penetration.csv", encoding="utf-8", newline="") as f:
     verdicts = [(r["solver"], r["expect"].split(":")[0]) for r in csv.DictReader(f) if r["setting"] == "default"]
