@@ -98,7 +98,7 @@ class Xpbd final : public GpuSolver {
                                                settings()["contact_samples"].get<int>());
     if (scene().needs.has(Feature::SelfCollision) && !planes)
       self_contact_ = std::make_unique<XpbdSelfContact>(frame(), scene(), x);
-    else if (!planes || !scene().needs.has(Feature::SelfCollision))
+    else if (!scene().needs.has(Feature::SelfCollision))
       leave_out("self-contact", "the cloth of the scene does not touch itself");
   }
 
