@@ -34,8 +34,7 @@ class Maker {
       begin(k, c.radius_m);
       point(c.center_m);
     } else if (c.shape == Collider::Shape::Box) {
-      begin(k, 0);
-      for (unsigned corner = 0; corner < 8; ++corner) point(corner_of(c, corner));
+      add_box(c, k);
     } else if (c.shape == Collider::Shape::Capsules) {
       for (const Capsule& s : c.capsules) {
         begin(k, s.radius_m);
@@ -44,6 +43,19 @@ class Maker {
       }
     } else if (c.shape == Collider::Shape::Mesh) {
       add_mesh(c, k);
+    }
+  }
+
+  /// Its faces as triangles: their own planes part most of what lies on them, which the hull of the corners does not tell.
+  void add_box(const Collider& c, std::size_t k) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const unsigned a = 1u << axis, b = 1u << (axis + 1) % 3, side = 1u << (axis + 2) % 3;
+      for (const unsigned from : {0u, side}) {
+        for (const unsigned third : {a, b}) {
+          begin(k, 0);
+          for (const unsigned corner : {from, from + third, from + a + b}) point(corner_of(c, corner));
+        }
+      }
     }
   }
 

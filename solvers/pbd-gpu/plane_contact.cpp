@@ -12,6 +12,8 @@ namespace {
 /// vertices' reach is cut.
 constexpr std::uint32_t kPairsAnElement = 64, kLeastPairs = 1u << 16, kMostPairs = 1u << 20;
 constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9, kScanThreads = 256;
+/// Lanes that share an element's pairs or a vertex: the parts of the sum in plane_gather.glsl.
+constexpr std::uint32_t kMostTeam = 8;
 /// Responses before and after the constraints.
 constexpr std::uint32_t kRoundsAfter = 2;
 
@@ -34,6 +36,8 @@ PlaneContact::PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_
   }
   if (moving_points_ > 0) frame_.add_buffer(BIND_POINT_SOURCES, "contact point sources", all.sources);
   add_elements(particle);
+  if (!frame_.counts_bytes() && frame_.tuning()["shuffles"].get<bool>())
+    team_ = std::bit_floor(std::clamp(frame_.device()->shuffled_lanes(), 1u, kMostTeam));
   if (scene.needs.has(Feature::SelfCollision)) {
     most_margin_m_ = std::max(most_margin_m_, 0.5 * scene.cloth.self_collision.thickness_m);
     self_ = std::make_unique<PlaneSelf>(frame, scene, particle);
@@ -70,6 +74,8 @@ void PlaneContact::add_elements(const std::vector<std::uint32_t>& particle) {
   frame_.add_buffer(BIND_ELEMENTS, "contact elements", elements);
   frame_.add_buffer(BIND_FANS, "contact fans", all);
   frame_.add_buffer(BIND_RANGES, "contact ranges", count * sizeof(uvec4));
+  frame_.add_buffer(BIND_TOUCHED, "contact touched", 2 * std::uint64_t{n} * sizeof(uint));
+  frame_.add_buffer(BIND_NEAR_BITS, "contact near pairs", (capacity_ / 32 + 1) * sizeof(uint));
   frame_.add_buffer(BIND_PAIRS, "contact pairs", std::uint64_t{capacity_} * sizeof(uvec4));
   frame_.add_buffer(BIND_PAIR_STATES, "contact pair states", std::uint64_t{capacity_} * sizeof(PairState));
   ContactLedger ledger{};
@@ -88,6 +94,7 @@ PlaneContactSpecialization PlaneContact::specialization() const {
   s.GRIPS = static_cast<uint>(scene_.grips.vertices.size());
   s.MOST_POINTS = most_points_;
   s.MOVING = moving_points_ > 0 ? 1 : 0;
+  s.TEAM = team_;
   if (self_) self_->specialize(s);
   return s;
 }
@@ -97,6 +104,7 @@ PlaneFrameSpecialization PlaneContact::frame_specialization() const {
   s.PLANES = half_spaces_;
   s.MOST_POINTS = most_points_;
   s.MOVING = moving_points_ > 0 ? 1 : 0;
+  s.TEAM = team_;
   s.VERTICES = static_cast<uint>(scene_.cloth.vertex_count());
   s.TRIANGLES = triangles_;
   s.CAPACITY = capacity_;
@@ -123,15 +131,16 @@ void PlaneContact::add_kernels() {
     count_ = add(stage_pairs_, "plane_list");
     scan_ = add(stage_pairs_, "plane_scan", kScanThreads);
     fill_ = add(stage_pairs_, "plane_list_fill");
+    near_ = add(stage_, "plane_near");
     query_ = add(stage_, "plane_query");
     respond_ = add(stage_, "plane_respond");
     choose_ = add(stage_, "plane_choose");
   }
   if (self_) self_->add_kernels(stage_pairs_, stage_, specialization().by_number());
   predict_ = add(stage_, "plane_predict");
-  gather_ = add(stage_, "plane_gather");
+  gather_ = add(stage_, team_ > 1 ? "plane_gather_shuffle" : "plane_gather");
   settle_ = add(stage_, "plane_settle");
-  project_ = add(stage_, "plane_project");
+  project_ = add(stage_, team_ > 1 ? "plane_project_shuffle" : "plane_project");
 }
 
 PlaneContactConstants PlaneContact::constants(int s, int substeps, double dt_s) const {
@@ -162,6 +171,10 @@ void PlaneContact::vertices(const FrameKernel* kernel, const PlaneContactConstan
   frame_.dispatch(*kernel, c.vertices, c, {16.0 * c.vertices, 16.0 * c.vertices});
 }
 
+void PlaneContact::shared_vertices(const FrameKernel* kernel, const PlaneContactConstants& c) {
+  frame_.dispatch(*kernel, std::uint64_t{team_} * c.vertices, c, {16.0 * c.vertices, 16.0 * c.vertices});
+}
+
 void PlaneContact::pairs(const FrameKernel* kernel, const PlaneContactConstants& c) {
   const std::uint32_t threads = frame_.device()->is_software() ? kSoftwareThreads : kPairThreads;
   if (kernel != nullptr) frame_.dispatch(*kernel, threads, c, {});
@@ -187,26 +200,28 @@ void PlaneContact::record_list(double dt_s, int substeps) {
 void PlaneContact::record_before(int s, int substeps, double dt_s) {
   const PlaneContactConstants c = constants(s, substeps, dt_s);
   vertices(predict_, c);
+  pairs(near_, c);
   pairs(query_, c);
   if (self_) self_->record_query(c);
-  vertices(gather_, c);
+  shared_vertices(gather_, c);
 }
 
 void PlaneContact::record_after(int s, int substeps, double dt_s) {
   PlaneContactConstants c = constants(s, substeps, dt_s);
   c.turn = 1;
   vertices(settle_, c);
+  pairs(near_, c);
   pairs(query_, c);
   if (self_) self_->record_query(c);
-  vertices(gather_, c);
+  shared_vertices(gather_, c);
   for (c.turn = 2; c.turn <= kRoundsAfter; ++c.turn) {
     pairs(respond_, c);
     if (self_) self_->record_response(c);
-    vertices(gather_, c);
+    shared_vertices(gather_, c);
   }
   pairs(choose_, c);
   if (self_) self_->record_planes(c);
-  vertices(project_, c);
+  shared_vertices(project_, c);
 }
 
 ContactFaults PlaneContact::faults() const {

@@ -47,19 +47,21 @@ class PlaneContact {
   void add_elements(const std::vector<std::uint32_t>& particle);
   PlaneContactSpecialization specialization() const;
   void vertices(const FrameKernel* kernel, const PlaneContactConstants& c);
+  void shared_vertices(const FrameKernel* kernel, const PlaneContactConstants& c);
   void pairs(const FrameKernel* kernel, const PlaneContactConstants& c);
 
   FrameBuilder& frame_;
   const Scene& scene_;
   const std::uint32_t half_spaces_;
   std::unique_ptr<PlaneSelf> self_;  ///< if the cloth touches itself
+  std::uint32_t team_ = 1;           ///< lanes that share an element's pairs or a vertex
   std::uint32_t triangles_ = 0, pieces_ = 0, groups_ = 0, moving_points_ = 0, capacity_ = 0, most_points_ = 1;
   double most_margin_m_ = 0;
   int stage_pairs_ = -1, stage_ = -1;
   const vulkan::Buffer* faults_ = nullptr;
   const FrameKernel *moved_ = nullptr, *reach_ = nullptr, *count_ = nullptr, *scan_ = nullptr, *fill_ = nullptr,
-                    *predict_ = nullptr, *query_ = nullptr, *gather_ = nullptr, *settle_ = nullptr, *respond_ = nullptr,
-                    *choose_ = nullptr, *project_ = nullptr;
+                    *predict_ = nullptr, *near_ = nullptr, *query_ = nullptr, *gather_ = nullptr, *settle_ = nullptr,
+                    *respond_ = nullptr, *choose_ = nullptr, *project_ = nullptr;
 };
 
 }  // namespace clothbench::pbd_gpu

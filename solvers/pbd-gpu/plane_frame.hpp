@@ -20,7 +20,7 @@ class PlaneFrame {
  private:
   PlaneFrame(FrameBuilder& frame, Lines& lines, PlaneContact& contact)
       : frame_(frame), lines_(lines), contact_(contact) {}
-  bool add_kernel(bool many);
+  bool add_kernel(bool many, std::uint32_t least_groups);
 
   FrameBuilder& frame_;
   Lines& lines_;

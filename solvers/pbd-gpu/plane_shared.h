@@ -26,7 +26,7 @@ struct PointSource {
 struct PairState {
   vec4 normal;   // from the piece to the cloth; w: lower bound of the pair's distance [m]
   vec4 weights;  // of the element's vertices at its nearest point; w: dot(normal, piece's nearest point at the end)
-  vec4 way;      // of the piece's nearest point in the substep; w: distance to keep, then the plane's offset
+  vec4 way;      // of the piece's nearest point in the substep; w: distance to keep. Then the plane, w: offset
   vec4 push;     // proposed correction of the contact over its inverse mass; w: its part that is no velocity. Then
                  // multipliers
 };
@@ -46,6 +46,8 @@ struct ContactLedger {
   float self_reach;                  // as reach, of the list of the cloth with itself
   uint self_near[2];                 // its pairs near in this substep, before and after the lines
   uint self_touching[2];             // those of them that have contacts
+  uint touched_vertices;             // vertices with pairs of their own or of their triangles
+  uint unused0[3];
 };
 
 /// Of a triangle of the cloth, by half of the thickness larger: at rest, and grown by its vertices' reaches.
@@ -114,7 +116,7 @@ static_assert(sizeof(ContactPiece) == 32);
 static_assert(sizeof(PiecePoint) == 32);
 static_assert(sizeof(PointSource) == 16);
 static_assert(sizeof(PairState) == 64);
-static_assert(sizeof(ContactLedger) == 64);
+static_assert(sizeof(ContactLedger) == 80);
 static_assert(sizeof(SelfBox) == 64);
 static_assert(sizeof(SelfPair) == 8);
 static_assert(sizeof(SelfNear) == 48);

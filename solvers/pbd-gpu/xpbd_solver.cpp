@@ -250,21 +250,24 @@ SolverInfo xpbd_info() {
       {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
       {"batch", "1", "number of copies of the cloth in one dispatch, to measure throughput; metrics are of the first"},
       {"contact_samples", "-1",
-       "points on each edge that take part in contact beside its two vertices, 0 to 16; -1: as colliders ask"},
+       "points on each edge that take part in contact beside its two vertices, 0 to 16; -1: as colliders ask, and "
+       "planes "
+       "in their place where a collider moves"},
       {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
       {"one_dispatch", "true",
        "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   info.tuning = {
-      {"contact", "\"samples\"",
+      {"contact", "\"auto\"",
        "samples or planes: points on edges that search their way, or a separating plane for every pair of a triangle "
-       "and a convex piece"},
+       "and a convex piece; auto: planes where a collider moves"},
       {"contact_frame", "\"auto\"",
-       "with contact=planes, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, never"},
+       "with contact by planes, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, "
+       "never"},
       {"contact_groups", "0",
-       "with contact=planes, least workgroups of a frame in one dispatch, which must all run at once; 0: one for at "
-       "most 32 x 32 vertices, else those of its lines"},
-      {"contact_pairs", "0", "with contact=planes, pairs that the list has place for; 0: by the cloth's elements"},
+       "with contact by planes, least workgroups of a frame in one dispatch, which must all run at once; 0: one for at "
+       "most 32 x 32 vertices that only capsules touch, else 64 or those of the lines"},
+      {"contact_pairs", "0", "with contact by planes, pairs that the list has place for; 0: by the cloth's elements"},
       {"contact_lanes", "0",
        "threads of the proximity query of one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
       {"device_barrier", "\"auto\"",
@@ -296,7 +299,7 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", tuning, "device_barrier", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "prediction", {"auto", "always"});
   require_one_of("xpbd", tuning, "tension", {"auto", "always", "never"});
-  require_one_of("xpbd", tuning, "contact", {"samples", "planes"});
+  require_one_of("xpbd", tuning, "contact", {"auto", "samples", "planes"});
   require_one_of("xpbd", tuning, "contact_frame", {"auto", "always", "never"});
   require_between("xpbd", tuning, "contact_groups", 0, 1024);
   require_between("xpbd", tuning, "contact_pairs", 0, 1 << 24);

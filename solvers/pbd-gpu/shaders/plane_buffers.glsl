@@ -27,6 +27,19 @@ const float kHold_m = 1e-3;     // a push before the lines of so much doubles a 
 const float kRounding_m = 2e-7;  // of positions
 const float kTiny = 1e-6;       // a weight below is none
 
+/// Of a range of pairs those that are near, `k`, in the list's order.
+#define EACH_NEAR_PAIR(RANGE, BODY)                                                                                          \
+  uvec2 of = (RANGE).xy;                                                                                                     \
+  for (uint word = of.x / 32u, last = of.x + of.y; 32u * word < last; ++word) {                                              \
+    uint bits = LOAD4(near_bits, word);                                                                                      \
+    if (32u * word < of.x) bits &= ~0u << of.x % 32u;                                                                        \
+    if (last - 32u * word < 32u) bits &= (1u << last % 32u) - 1u;                                                            \
+    for (; bits != 0u; bits &= bits - 1u) {                                                                                  \
+      uint k = 32u * word + uint(findLSB(bits));                                                                             \
+      BODY                                                                                                                   \
+    }                                                                                                                        \
+  }
+
 uint turn = 0u;  // 0: before the lines, with the predicted positions; 1 and on: rounds of responses after them
 float t_begin = 0.0, t_end = 1.0;  // of the substep, as fractions of the frame
 

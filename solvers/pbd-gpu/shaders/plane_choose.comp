@@ -1,5 +1,5 @@
 #version 450
-// Before a substep's end, a thread a pair.
+// Before a substep's end, a thread a near pair.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
@@ -13,5 +13,5 @@ layout(std430, binding = BIND_PAIR_STATES) buffer States { PairState states[]; }
 
 void main() {
   begin_substep(p.first_substep);
-  for (uint k = item(); k < ledger.pairs; k += stride()) choose(k);
+  for (uint n = item(); n < ledger.asked[1]; n += stride()) choose(pairs[n].w);
 }

@@ -44,6 +44,6 @@ void choose(uint k) {
     n = other;
     states[k].normal.xyz = n;
   }
-  states[k].way.w = farthest_point(n) + dot(n, around) + least;
+  states[k].way = vec4(n, farthest_point(n) + dot(n, around) + least);
   states[k].push = vec4(0.0);  // multipliers of plane_project
 }

@@ -27,6 +27,8 @@ layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };  /
 layout(std430, binding = BIND_REACHES) STATE buffer Reaches { vec4 reaches[]; };
 layout(std430, binding = BIND_SIDES) STATE buffer Ways { float ways[]; };
 layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };
+layout(std430, binding = BIND_NEAR_BITS) STATE buffer NearBits { uint near_bits[]; };
+layout(std430, binding = BIND_TOUCHED) STATE buffer Touched { uint touched[]; };
 layout(std430, binding = BIND_RANGES) STATE buffer Ranges { uvec4 ranges[]; };
 layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // of the first of them, w: pairs that are asked
 layout(std430, binding = BIND_PAIR_STATES) STATE buffer States { PairState states[]; };
@@ -53,6 +55,7 @@ vec3 anchor(uvec2 at, uint k) {
 #include "plane_geometry.glsl"
 #include "plane_push.glsl"
 #include "plane_query.glsl"
+#include "plane_team.glsl"
 #include "plane_respond.glsl"
 #include "plane_gather.glsl"
 #include "plane_choose.glsl"
@@ -80,6 +83,8 @@ shared uint asked[2];
 #define CLOTH_HIGH cloth_high
 #endif
 shared uint any_near, cloth_low[3], cloth_high[3];
+#define NEAR_COUNT COUNTED(min(turn, 1u))
+#include "plane_near.glsl"
 
 const uint kTurns = 3u;
 uint me, all_threads;  // this thread among those of all workgroups
@@ -138,7 +143,7 @@ bool list_pairs() {
   if (me == 0u) {
     ledger.carried = carried;
     ledger.reach = 1.0;
-    ledger.pairs = 0u;
+    ledger.pairs = ledger.touched_vertices = 0u;
   }
   MEET_OR_FAIL;  // empty boxes before they are widened
   reach_and_widen(carried);
@@ -152,16 +157,16 @@ bool list_pairs() {
   if (me == thread) scan_ranges(thread);
   MEET_OR_FAIL;  // where the pairs begin before they are written
   EACH(k, TRIANGLES + VERTICES) fill_pairs_of(k);
+  EACH(i, VERTICES) list_touched(i);
   MEET_OR_FAIL;  // the list before it is read
   return true;
 }
 
-/// Pairs that are near are put in a list of their own, in no fixed order: each is asked for itself. Threads of one workgroup share
-/// them out once all are known; workgroups ask them at once, for waiting costs them more.
-void look_for_near(uint pair_count) {
-  EACH(k, pair_count) {
+/// Threads of one workgroup share the near pairs out once all are known; workgroups ask them at once, for waiting costs them more.
+void look_for_near() {
+  EACH(k, ledger.pairs) {
     if (!is_near(k)) continue;
-    pairs[atomicAdd(COUNTED(min(turn, 1u)), 1u)].w = k;
+    list_near(k);
 #ifdef MANY_GROUPS
     ask(k);
 #endif
@@ -182,15 +187,16 @@ bool solve_lines(uint substep) {
 }
 
 /// Responses before (turn 0) and after the lines.
-bool respond_to_contact(uint pair_count, out uint near) {
+bool respond_to_contact(out uint near) {
   near = 0u;
   if (turn < 2u) {
     EACH(i, VERTICES) {
       if (turn == 0u) predict(i);
       else settle(i);
     }
+    forget_near(me, all_threads);
     MEET_OR_FAIL;  // proposals before pairs read them
-    look_for_near(pair_count);
+    look_for_near();
     MEET_OR_FAIL;  // the near pairs before they are shared out
   }
   near = COUNTED(min(turn, 1u));
@@ -206,7 +212,8 @@ bool respond_to_contact(uint pair_count, out uint near) {
   }
   if (me == 0u) COUNTED(turn == 0u ? 1u : 0u) = 0u;
   if (near == 0u && PLANES == 0u) return true;
-  EACH(i, VERTICES) gather(i);
+  any_pairs = near > 0u;
+  gather_all(me, all_threads);
   MEET_OR_FAIL;  // vertices before what reads them
   return true;
 }
@@ -220,7 +227,7 @@ void keep_reach() {
   }
 }
 
-bool substep_with(uint s, bool touches, uint pair_count) {
+bool substep_with(uint s, bool touches) {
   begin_substep(s);
   if (GRIPS > 0u) {
     EACH(g, GRIPS) move_grip(g, t_end, p.frames_per_s);
@@ -228,7 +235,7 @@ bool substep_with(uint s, bool touches, uint pair_count) {
   }
   uint near = 0u;
   for (turn = 0u; turn < (touches ? kTurns : 1u); ++turn) {
-    if (touches && !respond_to_contact(pair_count, near)) return false;
+    if (touches && !respond_to_contact(near)) return false;
     if (turn == 0u && !solve_lines(s)) return false;
   }
   if (!touches) {
@@ -241,7 +248,7 @@ bool substep_with(uint s, bool touches, uint pair_count) {
     MEET_OR_FAIL;  // planes before vertices are put before them
   }
   any_planes = near > 0u;
-  EACH(i, VERTICES) project(i);
+  project_all(me, all_threads);
   MEET_OR_FAIL;  // the substep's end before the next one
   return true;
 }
@@ -262,10 +269,9 @@ void main() {
   }
 #endif
   if (!list_pairs()) return;
-  uint pair_count = ledger.pairs;
-  bool touches = pair_count > 0u || PLANES > 0u;
+  bool touches = ledger.pairs > 0u || PLANES > 0u;
   for (uint s = 0u; s < p.substeps; ++s)
-    if (!substep_with(s, touches, pair_count)) return;
+    if (!substep_with(s, touches)) return;
 #ifdef MANY_GROUPS
   if (me < 3u) {
     ledger.cloth_low[me] = kLowNone;

@@ -1,5 +1,9 @@
 // A round's end: a vertex takes the mean of what its contacts propose, weighted by length (Jacobi: no contact sees another's move).
 // Before the lines the proposed corrections go into velocity and position, and what was pushed is heavier in the lines.
+// The sum has a fixed order, whatever the number of lanes that share it: SHARES of it, of a vertex' own pairs and of every SHARES-th
+// triangle, one after another.
+const uint SHARES = 8u;
+bool any_pairs = true;  // in this frame's list of near pairs
 vec3 sum, sum_moving;
 float lengths;
 
@@ -28,13 +32,13 @@ void from_half_spaces(vec4 at, vec3 start) {
 }
 
 void from_pairs(uint element, uint corner, float w) {
-  uvec4 range = LOAD16(ranges, element);
-  for (uint k = range.x; k < range.x + range.y; ++k) {
+  EACH_NEAR_PAIR(LOAD16(ranges, element), {
     vec4 push = LOAD16_OF(states[k].push);
-    if (push == vec4(0.0)) continue;
-    float share = w * states[k].weights[corner];
-    propose(share * push.xyz, share * push.w * states[k].normal.xyz);
-  }
+    if (push != vec4(0.0)) {
+      float share = w * states[k].weights[corner];
+      propose(share * push.xyz, share * push.w * states[k].normal.xyz);
+    }
+  })
 }
 
 /// From the pairs of the vertex' triangles with others of the cloth.
@@ -51,20 +55,42 @@ void from_self(uint element, uint corner) {
   }
 }
 
-void gather(uint i) {
-  vec4 at = LOAD16(y, i);
-  if (at.w == 0.0) return;
-  sum = sum_moving = vec3(0.0);
-  lengths = 0.0;
-  from_half_spaces(at, LOAD16(starts, i).xyz);
-  from_pairs(TRIANGLES + i, 0u, at.w);
-  uint first = LOAD4(fans, i), end = LOAD4(fans, i + 1u);
-  for (uint k = first; k < end; ++k) {
+void gather_part(uint i, vec4 at, uint part) {
+  if (part + 1u == SHARES) {
+    from_half_spaces(at, LOAD16(starts, i).xyz);
+    if (any_pairs) from_pairs(TRIANGLES + i, 0u, at.w);
+  }
+  uint first = LOAD4(fans, i) + part, end = LOAD4(fans, i + 1u);
+  for (uint k = first; k < end; k += SHARES) {
     uint fan = LOAD4(fans, k);
-    from_pairs(fan / 4u, fan % 4u, at.w);
+    if (any_pairs) from_pairs(fan / 4u, fan % 4u, at.w);
     if (SELF != 0u) from_self(fan / 4u, fan % 4u);
   }
-  if (!(lengths > 0.0)) return;
+}
+
+/// The sums of all parts in their order, in every lane of the team.
+void gather_parts(uint i, vec4 at, bool live) {
+  vec3 of_all = vec3(0.0), moving_of_all = vec3(0.0);
+  float lengths_of_all = 0.0;
+  [[unroll]] for (uint k = 0u; k < SHARES; k += TEAM) {
+    sum = sum_moving = vec3(0.0);
+    lengths = 0.0;
+    if (live) gather_part(i, at, k + team_lane());
+    [[unroll]] for (uint n = 0u; n < TEAM; ++n) {
+      of_all += FROM_LANE(sum, n);
+      moving_of_all += FROM_LANE(sum_moving, n);
+      lengths_of_all += FROM_LANE(lengths, n);
+    }
+  }
+  sum = of_all;
+  sum_moving = moving_of_all;
+  lengths = lengths_of_all;
+}
+
+void gather(uint i, bool valid) {
+  vec4 at = valid ? LOAD16(y, i) : vec4(0.0);
+  gather_parts(i, at, at.w != 0.0);
+  if (team_lane() != 0u || !(lengths > 0.0)) return;
   vec3 by = sum / lengths, moving = sum_moving / lengths;
   STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * moving, 0.0));
   if (turn > 0u) {
@@ -73,4 +99,16 @@ void gather(uint i) {
   }
   float held = dot(by, by) / (kHold_m * kHold_m);
   STORE16(x, i, vec4(LOAD16(x, i).xyz + by - moving, at.w / (1.0 + held)));
+}
+
+/// Thread `first` of `at_once`, and the team that it is in, take their share of the vertices that contact may move.
+void gather_all(uint first, uint at_once) {
+  bool all_of_them = PLANES > 0u || SELF != 0u;
+  uint count = all_of_them ? VERTICES : ledger.touched_vertices;
+  for (uint n = first / TEAM; most_of_subgroup(n < count ? 1u : 0u) != 0u; n += at_once / TEAM) {
+    bool valid = n < count;
+    uint i = n;
+    if (valid && !all_of_them) i = LOAD4(touched, n);
+    gather(i, valid);
+  }
 }

@@ -1,12 +1,14 @@
 #version 450
-// Start of a frame, a thread an element: counts its pairs; FILL writes them.
+// Start of a frame, a thread an element: counts its pairs; FILL writes them, and what they touch.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_REACHES) readonly buffer Reaches { vec4 reaches[]; };
 #ifdef FILL
 layout(std430, binding = BIND_RANGES) readonly buffer Ranges { uvec4 ranges[]; };
-layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };
+layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_TOUCHED) writeonly buffer Touched { uint touched[]; };
 layout(std430, binding = BIND_PAIRS) writeonly buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_PAIR_STATES) writeonly buffer States { PairState states[]; };
 #define FILL_ALONE
@@ -24,4 +26,7 @@ void main() {
     count_pairs_of(k);
 #endif
   }
+#ifdef FILL
+  for (uint i = item(); i < VERTICES; i += stride()) list_touched(i);
+#endif
 }

@@ -8,10 +8,12 @@ layout(std430, binding = BIND_VELOCITIES) readonly buffer Velocities { vec4 v[];
 layout(std430, binding = BIND_PREDICTED) writeonly buffer Proposed { vec4 y[]; };
 layout(std430, binding = BIND_STARTS) buffer Starts { vec4 starts[]; };
 layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_NEAR_BITS) writeonly buffer NearBits { uint near_bits[]; };
 #define PREDICT_ALONE
 #include "plane_vertices.glsl"
 
 void main() {
   uint i = item();
   if (i < VERTICES) predict(i);
+  if (PIECES > 0u) forget_near(i, stride());
 }

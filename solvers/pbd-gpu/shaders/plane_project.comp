@@ -1,6 +1,10 @@
 #version 450
-// A substep's end, a thread a vertex.
+// A substep's end, a thread a vertex; SHUFFLES: a team of lanes.
 #extension GL_GOOGLE_include_directive : require
+#ifdef SHUFFLES
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#endif
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_POSITIONS) writeonly buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
@@ -9,15 +13,16 @@ layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };
 layout(std430, binding = BIND_STARTS) buffer Starts { vec4 starts[]; };  // at the substep's start; w: farthest it may go
 layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };
 layout(std430, binding = BIND_RANGES) readonly buffer Ranges { uvec4 ranges[]; };
+layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_TOUCHED) readonly buffer Touched { uint touched[]; };
+layout(std430, binding = BIND_NEAR_BITS) readonly buffer NearBits { uint near_bits[]; };
 layout(std430, binding = BIND_PAIRS) readonly buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_PAIR_STATES) buffer States { PairState states[]; };
 layout(std430, binding = BIND_SIDES) writeonly buffer Ways { float ways[]; };
 layout(std430, binding = BIND_FAULTS) buffer Faults { ContactFaults faults; };
 layout(std430, binding = BIND_SELF_RANGES) readonly buffer SelfRanges { uvec4 self_ranges[]; };
 layout(std430, binding = BIND_SELF_NEAR) buffer SelfNears { SelfNear self_near[]; };
+#include "plane_team.glsl"
 #include "plane_project.glsl"
 
-void main() {
-  uint i = item();
-  if (i < VERTICES) project(i);
-}
+void main() { project_all(item(), stride()); }

@@ -3,8 +3,8 @@
 // place that is known to be free.
 const uint kSweeps = 30u;
 const float kNoPlace_m = 2e-6;  // that a vertex may lack before its planes, by rounding
-uint first_fan, end_fan;
-bool any_planes = true;
+uint first_fan, end_fan, fan_step = 1u;
+bool any_planes = true;  // of pairs
 vec3 start;
 
 /// Offset of a half-space of the scene in this substep; what starts behind it goes no deeper.
@@ -14,20 +14,20 @@ float half_space(PlaneShape s) {
 
 // Every plane of the vertex: `n`, `s` and `k`, its pair.
 #define EACH_PLANE(BODY)                                                     \
-  for (uint f = first_fan; any_planes && f < end_fan; ++f) {                 \
+  for (uint f = first_fan; any_planes && f < end_fan; f += fan_step) {       \
     uint fan = fans[f], corner = fan % 4u;                                   \
-    uvec2 range = ranges[fan / 4u].xy;                                       \
-    for (uint k = range.x; k < range.x + range.y; ++k) {                     \
+    EACH_NEAR_PAIR(ranges[fan / 4u],                                         \
       if ((pairs[k].z & PAIR_PLANE) == 0u) continue;                         \
-      vec3 n = states[k].normal.xyz;                                         \
-      float s = states[k].way.w;                                             \
+      vec4 plane = states[k].way;                                            \
+      vec3 n = plane.xyz;                                                    \
+      float s = plane.w;                                                     \
       BODY                                                                   \
-    }                                                                        \
+    )                                                                        \
   }
 
 // The same of the planes between its triangles and others of the cloth; `k`: the near pair.
 #define EACH_SELF_PLANE(BODY)                                                \
-  for (uint f = first_fan; SELF != 0u && f < end_fan; ++f) {                 \
+  for (uint f = first_fan; SELF != 0u && f < end_fan; f += fan_step) {               \
     uint fan = fans[f], corner = fan % 4u;                                   \
     uvec2 range = self_ranges[fan / 4u].zw;                                  \
     for (uint k = range.x; k < range.x + range.y; ++k) {                     \
@@ -137,27 +137,71 @@ vec3 back_from(vec3 to, float room) {
   return free + (l > left ? left / l : 1.0) * way;
 }
 
-vec3 place(vec3 to, float room) {
-  vec3 way = to - start;
-  float l = length(way);
-  vec3 at = l > room ? start + (room / l) * way : to;
-  if (worst(at) >= 0.0) return at;
+/// As near to `at` as planes let a vertex come.
+vec3 placed(vec3 at, float room) {
   at = projected(at);
   if (worst(at) >= -kRounding_m && distance(at, start) <= room) return at;
   return back_from(at, room);
 }
 
-void project(uint i) {
-  vec4 proposed = LOAD16(y, i), from = LOAD16(starts, i);
-  start = from.xyz;
-  vec3 at = proposed.xyz;
+vec3 within(vec3 to, float room) {
+  vec3 way = to - start;
+  float l = length(way);
+  return l > room ? start + (room / l) * way : to;
+}
+
+void end_substep(uint i, vec4 proposed, vec3 at) {
   if (proposed.w > 0.0) {
-    first_fan = LOAD4(fans, i);
-    end_fan = LOAD4(fans, i + 1u);
-    at = place(at, from.w);
     if (at != proposed.xyz) STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * (at - proposed.xyz), 0.0));
     STORE16(x, i, vec4(at, proposed.w));
   }
   STORE4(ways, i, distance(at, start));
   STORE16(starts, i, vec4(at, 0.0));
+}
+
+/// Of a vertex without planes.
+void project_free(uint i) {
+  vec4 proposed = LOAD16(y, i), from = LOAD16(starts, i);
+  start = from.xyz;
+  end_substep(i, proposed, proposed.w > 0.0 ? within(proposed.xyz, from.w) : proposed.xyz);
+}
+
+/// Every lane of a team comes along; one of them goes on where planes are in the way.
+void project(uint i, bool valid) {
+  vec4 proposed = vec4(0.0), from = vec4(0.0);
+  float least = 1e30;
+  if (valid) {
+    proposed = LOAD16(y, i);
+    from = LOAD16(starts, i);
+  }
+  start = from.xyz;
+  vec3 at = proposed.xyz;
+  if (proposed.w > 0.0) {
+    at = within(at, from.w);
+    uint first = LOAD4(fans, i);
+    end_fan = LOAD4(fans, i + 1u);
+    first_fan = first + team_lane();
+    fan_step = TEAM;
+    least = worst(at);
+    first_fan = first;
+    fan_step = 1u;
+  }
+  least = least_of_team(least);
+  if (!valid || team_lane() != 0u) return;
+  if (proposed.w > 0.0 && !(least >= 0.0)) at = placed(at, from.w);
+  end_substep(i, proposed, at);
+}
+
+/// Thread `first` of `at_once`, and the team that it is in, take their share of the vertices.
+void project_all(uint first, uint at_once) {
+  bool all_of_them = PLANES > 0u || SELF != 0u;
+  for (uint i = first; !all_of_them && i < VERTICES; i += at_once)
+    if (PIECES == 0u || LOAD4(touched, VERTICES + i) == 0u) project_free(i);
+  uint count = all_of_them ? VERTICES : PIECES == 0u ? 0u : ledger.touched_vertices;
+  for (uint n = first / TEAM; most_of_subgroup(n < count ? 1u : 0u) != 0u; n += at_once / TEAM) {
+    bool valid = n < count;
+    uint i = n;
+    if (valid && !all_of_them) i = LOAD4(touched, n);
+    project(i, valid);
+  }
 }

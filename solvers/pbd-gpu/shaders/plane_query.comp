@@ -1,11 +1,10 @@
 #version 450
-// Twice a substep, a thread a pair.
+// Twice a substep, a thread a near pair.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };
 layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
-layout(std430, binding = BIND_SIDES) readonly buffer Ways { float ways[]; };
 layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_PAIRS) buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_PAIR_STATES) buffer States { PairState states[]; };
@@ -17,6 +16,5 @@ layout(std430, binding = BIND_FAULTS) buffer Faults { ContactFaults faults; };
 void main() {
   turn = p.turn;
   begin_substep(p.first_substep);
-  for (uint k = item(); k < ledger.pairs; k += stride())
-    if (is_near(k)) ask(k);
+  for (uint n = item(); n < ledger.asked[min(turn, 1u)]; n += stride()) ask(pairs[n].w);
 }

@@ -1,11 +1,4 @@
-// Pairs that are near enough for this substep: nearest points at its start, and a contact there.
-
-float piece_way(uint k) { return p.substep_part * LOAD16_OF(boxes[k].low).w; }
-float most_of(uvec4 e, bool of_ways) {
-  float most = 0.0;
-  for (uint c = 0u; c < e.w; ++c) most = max(most, of_ways ? LOAD4(ways, e[c]) : starts[e[c]].w);
-  return most;
-}
+// Nearest points of near pairs at the substep's start, and a contact there.
 
 /// A triangle that stands is its own plane where that parts the pair: no nearest points are needed, and no contact but the
 /// vertices'.
@@ -51,28 +44,13 @@ uint look(uvec4 e, inout PairState s) {
   return PAIR_LOOKED | PAIR_NEAREST | (e.w == 3u ? PAIR_PLANE : 0u);
 }
 
-/// Whether a pair is near enough to be asked in this substep, or has been. Before the lines its bound loses the ways of the last one.
-bool is_near(uint k) {
-  uvec4 pair = LOAD16(pairs, k);
-  uvec4 e = LOAD16(elements, pair.x);
-  float moved = piece_way(pair.y), bound = states[k].normal.w;
-  if (turn == 0u) {
-    bound -= most_of(e, true) + moved;
-    states[k].normal.w = bound;
-    if (pair.z != 0u) states[k].push = vec4(0.0);
-    pairs[k].z = pair.z = 0u;
-  }
-  return bound <= most_of(e, false) + moved || pair.z != 0u;
-}
-
 /// Asks a pair that is near for its nearest points, unless that is done, and what its contact proposes.
 void ask(uint k) {
   uvec4 pair = LOAD16(pairs, k);
   uvec4 e = LOAD16(elements, pair.x);
   PairState s = states[k];
   piece = pieces[pair.y];
-  bool near = s.normal.w <= most_of(e, false) + piece_way(pair.y);
-  if (near && (pair.z & PAIR_NEAREST) == 0u) {
+  if ((pair.z & PAIR_NEAREST) == 0u) {
     pair.z = look(e, s);
     pairs[k].z = pair.z;
   }

@@ -20,4 +20,6 @@ void main() {
   if (i != 0u) return;
   ledger.carried = carried;
   ledger.reach = 1.0;  // plane_scan may cut it
+  ledger.touched_vertices = 0u;
+  ledger.asked[0] = ledger.asked[1] = 0u;
 }

@@ -1,5 +1,5 @@
 #version 450
-// A further round of responses, a thread a pair: the proposed corrections of contacts at the vertices' new places.
+// A further round of responses, a thread a near pair: the proposed corrections of contacts at the vertices' new places.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
@@ -14,5 +14,5 @@ ContactPiece piece;
 
 void main() {
   turn = p.turn;
-  for (uint k = item(); k < ledger.pairs; k += stride()) respond(k);
+  for (uint n = item(); n < ledger.asked[1]; n += stride()) respond(pairs[n].w);
 }

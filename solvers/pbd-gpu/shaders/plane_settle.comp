@@ -9,10 +9,12 @@ layout(std430, binding = BIND_PREDICTED) buffer Proposed { vec4 y[]; };
 layout(std430, binding = BIND_STARTS) buffer Starts { vec4 starts[]; };
 layout(std430, binding = BIND_REACHES) readonly buffer Reaches { vec4 reaches[]; };
 layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_NEAR_BITS) writeonly buffer NearBits { uint near_bits[]; };
 #define SETTLE_ALONE
 #include "plane_vertices.glsl"
 
 void main() {
   uint i = item();
   if (i < VERTICES) settle(i);
+  if (PIECES > 0u) forget_near(i, stride());
 }

@@ -5,6 +5,11 @@ float farthest(uint i, vec3 to) {
   return distance(to, starts[i].xyz) + p.substep_part * ledger.carried + MARGIN_M;
 }
 
+/// Before pairs are asked whether they are near. Thread `first` of `at_once` takes its share.
+void forget_near(uint first, uint at_once) {
+  for (uint k = first; k < (ledger.pairs + 31u) / 32u; k += at_once) near_bits[k] = 0u;
+}
+
 #ifndef SETTLE_ALONE
 /// Where a vertex would be without links and contact. Tethers come with the lines.
 void predict(uint i) {
