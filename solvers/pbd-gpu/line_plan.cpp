@@ -202,7 +202,7 @@ bool contact_by_planes(const Scene& scene, const nlohmann::json& settings) {
   const std::string wanted = settings.value(kTuning, nlohmann::json::object()).value("contact", "auto");
   if (wanted != "auto") return wanted == "planes";
   const bool moving = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
-  return moving && settings.value("batch", 1) == 1 && settings.value("contact_samples", -1) < 0;
+  return (moving || scene.cloth.mesh) && settings.value("batch", 1) == 1 && settings.value("contact_samples", -1) < 0;
 }
 
 int substeps_over_budget(const Scene& scene, const nlohmann::json& settings) {

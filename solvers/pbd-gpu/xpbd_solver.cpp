@@ -133,8 +133,8 @@ class Xpbd final : public GpuSolver {
           "solver xpbd: bending is of even grids alone, and this cloth is none; expected bending_rigidity_N_m 0");
     if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid");
     override_setting("iterations", 1, "its links are not all alike: chains take one iteration");
-    if (scene().cloth.mesh && !scene().colliders.empty())
-      override_setting("contact_samples", 0, "the cloth is a triangle mesh: its vertices alone take part in contact");
+    if (scene().cloth.mesh && !scene().colliders.empty() && !contact_by_planes(scene(), settings()))
+      override_setting("contact_samples", 0, "points on edges are those of grids: vertices alone take part in contact");
   }
 
   /// Inverse masses of particles: welded vertices share one, and are held if any of them is.
@@ -252,7 +252,7 @@ SolverInfo xpbd_info() {
       {"contact_samples", "-1",
        "points on each edge that take part in contact beside its two vertices, 0 to 16; -1: as colliders ask, and "
        "planes "
-       "in their place where a collider moves"},
+       "in their place where a collider moves or the cloth is a triangle mesh"},
       {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
       {"one_dispatch", "true",
        "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
@@ -260,7 +260,7 @@ SolverInfo xpbd_info() {
   info.tuning = {
       {"contact", "\"auto\"",
        "samples or planes: points on edges that search their way, or a separating plane for every pair of a triangle "
-       "and a convex piece; auto: planes where a collider moves"},
+       "and a convex piece; auto: planes where a collider moves or the cloth is a triangle mesh"},
       {"contact_frame", "\"auto\"",
        "with contact by planes, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, "
        "never"},
