@@ -85,7 +85,7 @@ TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
         c.a_m[0] += speed * static_cast<double>(f) * s.time.dt();
         c.b_m[0] += speed * static_cast<double>(f) * s.time.dt();
       }
-    return xpbd_substeps(changed, {{"quality", quality}});
+    return xpbd_substeps(changed, {{"quality", quality}, {kTuning, {{"contact", "samples"}}}});
   };
   EXPECT_EQ(of(0.8, "default"), 16) << "31 links over 2: it goes 11 mm, by less than 2 mm in each";
   EXPECT_EQ(of(5, "default"), 35);
@@ -97,7 +97,7 @@ TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
     s.motion[f].colliders[0].capsules = s.colliders[0].capsules;
     if (f >= 2) s.motion[f].colliders[0].capsules[0].a_m[0] += 1;
   }
-  EXPECT_EQ(xpbd_substeps(s, {{"quality", "default"}}), 16) << "a jump is no motion";
+  EXPECT_EQ(xpbd_substeps(s, {{"quality", "default"}, {kTuning, {{"contact", "samples"}}}}), 16) << "a jump is no motion";
 }
 
 TEST(Shapes, FitDevices) {

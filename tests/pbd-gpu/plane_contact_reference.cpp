@@ -71,14 +71,25 @@ void PlaneContactReference::place_pieces(int index) {
     };
     if (c.shape == Collider::Shape::Sphere) add({point(c.center_m)}, {point(c.center_m)}, c.radius_m);
     if (c.shape == Collider::Shape::Box) {
-      Points corners;
-      for (int corner = 0; corner < 8; ++corner) {
+      const auto corner = [&](const std::array<double, 3>& signs) {
         V at = point(c.center_m);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          at += ((corner >> axis & 1) != 0 ? 1 : -1) * c.half_extent_m[axis] * point(c.axes[axis]);
-        corners.push_back(at);
-      }
-      add(corners, corners, 0);
+        for (std::size_t axis = 0; axis < 3; ++axis) at += signs[axis] * c.half_extent_m[axis] * point(c.axes[axis]);
+        return at;
+      };
+      // Each face as two triangles.
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const double side : {-1.0, 1.0})
+          for (const bool second : {false, true}) {
+            std::array<double, 3> from{}, to{}, third{};
+            const std::size_t u = axis, v = (axis + 1) % 3, n = (axis + 2) % 3;
+            from[n] = to[n] = third[n] = side;
+            from[u] = from[v] = -1;
+            to[u] = to[v] = 1;
+            third[u] = second ? -1 : 1;
+            third[v] = second ? 1 : -1;
+            const Points corners = {corner(from), corner(third), corner(to)};
+            add(corners, corners, 0);
+          }
     }
     if (c.shape == Collider::Shape::Capsules) {
       const ColliderPose a = pose(index), b = pose(index + 1);

@@ -211,7 +211,7 @@ TEST_F(Gpu, ContactIsLeftOutPieceByPiece) {
        {"skin_mesh_keep_start", "contact_boxes", "contact_candidates", "contact_samples_mesh", "contact_vertices_mesh"},
        true}};
   for (const Case& c : cases) {
-    const auto solver = make("xpbd");
+    const auto solver = make("xpbd", {{kTuning, {{"contact", "samples"}}}});
     solver->load(c.scene);
     std::set<std::string> kernels;
     for (const auto& r : solver->frame_program().recorded())

@@ -99,7 +99,7 @@ void add_planes(std::vector<Fault>& f) {
          "min(count, room) / 2u, 0u");
   kernel("start of the substep not what it was", "wrapped", "plane_vertices.glsl", "at.xyz += p.h * (vel ",
          "at.xyz += -9.0 * p.h * (vel ");
-  kernel("bounds of distances do not lose the ways", "struck", "plane_query.glsl", "bound -= most_of(e, true) + moved;",
+  kernel("bounds of distances do not lose the ways", "struck", "plane_near.glsl", "bound -= most_of(e, true) + moved;",
          "bound -= 0.0;");
   kernel("normal of the nearest points flipped", "struck", "plane_query.glsl", "s.normal = vec4(r.n, gap);",
          "s.normal = vec4(-r.n, gap);");
@@ -115,7 +115,11 @@ void add_planes(std::vector<Fault>& f) {
          "uint j = 1u; j < piece.count; ++j) high");
   kernel("planes a millimetre inside the piece", "struck", "plane_choose.glsl", "dot(n, around) + least;",
          "dot(n, around) + least - 1e-3;");
-  kernel("planes forgotten", "struck", "plane_project.glsl", "if (worst(at) >= 0.0) return at;", "return at;");
+  kernel("planes forgotten", "struck", "plane_project.glsl",
+         "if (proposed.w > 0.0 && !(least >= 0.0)) at = placed(at, from.w);", "");
+  kernel("a lane's triangles left out of a vertex' sum", "wrapped", "plane_gather.glsl", "if (live) gather_part(",
+         "if (live && k + team_lane() != 2u) gather_part(");
+  kernel("near pairs without their bit", "struck", "plane_near.glsl", "atomicOr(near_bits[k / 32u], 1u << k % 32u);", "");
   kernel("projected onto all planes but those of the last triangle", "struck", "plane_project.glsl",
          "any_planes && f < end_fan;", "any_planes && f + 1u < end_fan;");
 }

@@ -21,7 +21,7 @@ const Stage& stage(const std::string& name) {
   throw std::runtime_error("no stage " + name);
 }
 
-/// Contact by planes, which is no default yet, takes half of the time: it is left to the slow tier's planted.whole.
+/// Contact by planes takes half of the time: it is left to the slow tier's planted.whole.
 bool left_to_slow_tier(const std::string& stage) {
   return std::getenv("CLOTHBENCH_WHOLE_MATRIX") == nullptr &&
          (stage == "struck" || stage == "wrapped" || stage == "heaped");

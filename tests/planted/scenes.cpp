@@ -160,6 +160,7 @@ std::vector<Stage> stages() {
                                                              "cloth.pose.center_m=[0,0.2,0]"})));
   out.push_back(solved("tiles", over_tiles()));
   out.push_back(solved("pushed", scene(kPushed)));
+  out.back().settings = {{kTuning, {{"contact", "samples"}}}};
   out.push_back(solved("struck", scene(kStruck)));
   out.back().settings = {{"substeps", 3}, {kTuning, {{"contact", "planes"}}}};
   out.push_back(solved("heaped", scene(kHeaped)));
