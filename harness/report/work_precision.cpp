@@ -11,6 +11,7 @@
 #include "report/report.hpp"
 #include "report/roles.hpp"
 #include "report/withheld.hpp"
+#include "truth/reference_case.hpp"
 
 namespace clothbench {
 namespace {
@@ -21,18 +22,6 @@ constexpr double kRealTime_ms_per_s = 1000;  // a 72 Hz frame simulates 1/72 s i
 
 std::string reference_case_of(const json& scenario) {
   return scenario.is_object() ? scenario.value(json::json_pointer("/truth/case"), std::string()) : "";
-}
-
-/// Definition of the error that ranks the runs of a reference case, as text. It repeats
-/// harness/truth/reference_case.hpp, since a report reads only files.
-std::string ranking_of(const std::string& known) {
-  if (known == "heavy-strip") return "stretch of the strip at rest / exact stretch";
-  if (known == "two-hand-pull") return "greatest strain, RMS over time / (v0/c)";
-  if (known == "incline") return "displacement along the slope, RMS over time / displacement at the end (at rest: L)";
-  if (known == "capstan" || known == "atwood")
-    return "displacement over the cylinder, RMS over time / displacement at the end (at rest: L)";
-  return known == "catenary" || known == "cantilever" ? "RMS distance at rest / L"
-                                                      : "RMS distance over space and time / L";
 }
 
 WorkPoint point_of(const RunRecord& c, const json& scenario) {
@@ -204,7 +193,7 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<RunRecord>& runs,
     if (known.empty()) continue;
     auto at = std::find_if(out.begin(), out.end(), [&](const WorkDiagram& d) { return d.scene == c.header.scene; });
     if (at == out.end()) {
-      out.push_back({c.header.scene, known, ranking_of(known), {}});
+      out.push_back({c.header.scene, known, truth::ranking_of(known), {}});
       at = out.end() - 1;
     }
     if (std::string why = stiffness_flag(materials, c.header.solver, stiffness_need(c)); !why.empty())
