@@ -110,10 +110,7 @@ Columns<WorstContact> worst_columns() {
 
 }  // namespace
 
-bool is_drawn_contact(const RunRecord& c) {
-  const json scenario = scenario_of(c);
-  return scenario.is_object() && scenario.contains("drawn");
-}
+bool is_drawn_contact(const RunRecord& c) { return has_block(c, "drawn"); }
 
 std::vector<ContactRate> contact_rates(const std::vector<RunRecord>& runs) {
   const std::vector<DrawnRun> all = drawn_runs(runs);

@@ -86,10 +86,7 @@ Columns<RunPair> cost_columns() {
 
 }  // namespace
 
-bool is_all_on(const RunRecord& c) {
-  const json scenario = scenario_of(c);
-  return scenario.is_object() && scenario.contains("irrelevant");
-}
+bool is_all_on(const RunRecord& c) { return has_block(c, "irrelevant"); }
 
 std::vector<RunPair> feature_costs(const std::vector<RunRecord>& runs) {
   std::vector<RunPair> out = run_pairs(runs, "irrelevant");

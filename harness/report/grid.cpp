@@ -54,6 +54,11 @@ double summary_value(const RunRecord& c, const std::string& name) {
 
 nlohmann::json scenario_of(const RunRecord& c) { return nlohmann::json::parse(c.header.scenario_json, nullptr, false); }
 
+bool has_block(const RunRecord& c, const char* name) {
+  const nlohmann::json s = scenario_of(c);
+  return s.is_object() && s.contains(name);
+}
+
 std::string base_name(const RunRecord& c) {
   const nlohmann::json j = scenario_of(c);
   return j.is_object() && j.contains("name") && j["name"].is_string() ? j["name"].get<std::string>() : c.header.scene;

@@ -19,6 +19,10 @@ double summary_value(const RunRecord&, const std::string& name);
 /// The scenario of a run; a discarded value if the stored text is not JSON.
 nlohmann::json scenario_of(const RunRecord&);
 
+/// Whether the scenario has this block, as the protocol that made the run writes it: "stability", "drawn",
+/// "metamorphic", "effective_moduli", "irrelevant".
+bool has_block(const RunRecord&, const char* name);
+
 /// Name in the scenario's file, without the labels of axes.
 std::string base_name(const RunRecord&);
 

@@ -61,10 +61,7 @@ std::string yes_or(const std::string& why) { return why.empty() ? "yes" : why ==
 
 }  // namespace
 
-bool is_moduli_run(const RunRecord& c) {
-  const json s = scenario_of(c);
-  return s.is_object() && s.contains("effective_moduli");
-}
+bool is_moduli_run(const RunRecord& c) { return has_block(c, "effective_moduli"); }
 
 std::vector<SolverMaterial> solver_materials(const std::vector<RunRecord>& runs) {
   std::vector<SolverMaterial> out;

@@ -50,10 +50,7 @@ std::string text_of(const Row& r) {
 
 }  // namespace
 
-bool is_metamorphic(const RunRecord& c) {
-  const json s = scenario_of(c);
-  return s.is_object() && s.contains("metamorphic");
-}
+bool is_metamorphic(const RunRecord& c) { return has_block(c, "metamorphic"); }
 
 std::vector<Table> metamorphic_tables(const std::vector<RunRecord>& runs) {
   std::vector<Table> out;

@@ -98,10 +98,7 @@ std::string with_unit(const std::string& value, const json& axis) {
 
 }  // namespace
 
-bool is_stability(const RunRecord& c) {
-  const json scenario = scenario_of(c);
-  return scenario.is_object() && scenario.contains("stability");
-}
+bool is_stability(const RunRecord& c) { return has_block(c, "stability"); }
 
 json stability_maps(const std::vector<fs::path>& results) {
   json all = json::array();
