@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "base/table.hpp"
+#include "base/columns.hpp"
 #include "base/tint.hpp"
 
 namespace clothbench {
@@ -12,18 +12,30 @@ using nlohmann::json;
 
 /// Table and messages of `runs`, worst verdict first; empty if there is no finding. `worse`: what a failure is called.
 std::string findings_text(const std::string& title, const std::vector<CheckedRun>& runs, const char* worse) {
-  Table table{title, "", {{"run", "quantity", "verdict", "baseline", "found", "allowed"}}};
+  struct Row {
+    std::string run;
+    const Finding* finding;
+  };
+  std::vector<Row> rows;
   std::string messages;
   for (const Verdict verdict : {Verdict::Failed, Verdict::Improved, Verdict::New})
     for (const CheckedRun& run : runs)
       for (const Finding& f : run.findings) {
         if (f.verdict != verdict) continue;
-        table.rows.push_back({run.key.text(), f.quantity, f.verdict == Verdict::Failed ? worse : word_for(f.verdict),
-                              f.baseline, f.found, f.allowed});
+        rows.push_back({run.key.text(), &f});
         if (!f.message.empty() && verdict != Verdict::New)
           messages += wrapped(fmt::format("{}: {}: {}", run.key.text(), f.quantity, f.message), 2, kConsoleColumns);
       }
-  return table.rows.size() == 1 ? "" : table.console() + messages + "\n";
+  if (rows.empty()) return "";
+  const Columns<Row> columns = {
+      {"", "run", &Row::run},
+      {"", "quantity", [](auto& r) { return r.finding->quantity; }},
+      {"", "verdict",
+       [=](auto& r) { return r.finding->verdict == Verdict::Failed ? worse : word_for(r.finding->verdict); }},
+      {"", "baseline", [](auto& r) { return r.finding->baseline; }},
+      {"", "found", [](auto& r) { return r.finding->found; }},
+      {"", "allowed", [](auto& r) { return r.finding->allowed; }}};
+  return columns.table({title, "", {}}, rows).console() + messages + "\n";
 }
 
 json key_json(const RunKey& key) {

@@ -54,55 +54,56 @@ std::string beaten_by(const WorkDiagram& d, const std::string& solver) {
 }  // namespace
 
 Table budget_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{"Smallest error within a time budget per frame",
-          "Smallest error among the settings of a solver whose frame takes at most this wall time; frames are "
-          "pipelined where the solver can. ≤: the error is at most 0.001 or at the scene's floor, below which "
-          "solvers are not distinguished. –: no setting is that fast. Beaten by: the other solver, ranked or "
-          "not, with the smaller error at a budget from 0.05 to 13.9 ms, and the greatest ratio of the two "
-          "errors.",
-          {{"scene", "solver"}}};
-  for (const double b : kBudgets_ms) t.rows[0].push_back(fmt::format("{:g} ms", b));
-  t.rows[0].emplace_back("beaten by");
-  for (const WorkDiagram& d : diagrams) {
-    const double floor = std::max(kSmallEnough, d.rank_floor());
-    for (const std::string& solver : distinct(d.points, &WorkPoint::solver)) {
-      std::vector<std::string> row = {d.scene, solver};
-      for (const double b : kBudgets_ms) {
-        const Best best = best_within(d, solver, b);
-        row.push_back(best.point == nullptr ? "–"
-                                            : fmt::format("{}{:.2g}", best.error <= floor ? "≤ " : "", best.error));
-      }
-      row.push_back(beaten_by(d, solver));
-      t.rows.push_back(std::move(row));
-    }
-  }
-  return t;
+  return Columns<SolverOfScene>{{"", "scene", &SolverOfScene::scene}, {"", "solver", &SolverOfScene::solver}}
+      .across(
+          kBudgets_ms, [](double b) { return fmt::format("{:g} ms", b); },
+          [](const SolverOfScene& s, double budget_ms) {
+            const Best best = best_within(*s.diagram, s.solver, budget_ms);
+            const bool at_floor = best.error <= std::max(kSmallEnough, s.diagram->rank_floor());
+            return best.point == nullptr ? "" : fmt::format("{}{:.2g}", at_floor ? "≤ " : "", best.error);
+          })
+      .add({{"", "beaten by", [](auto& s) { return beaten_by(*s.diagram, s.solver); }}})
+      .table({"Smallest error within a time budget per frame",
+              "Smallest error among the settings of a solver whose frame takes at most this wall time; frames are "
+              "pipelined where the solver can. ≤: the error is at most 0.001 or at the scene's floor, below which "
+              "solvers are not distinguished. –: no setting is that fast. Beaten by: the other solver, ranked or "
+              "not, with the smaller error at a budget from 0.05 to 13.9 ms, and the greatest ratio of the two "
+              "errors.",
+              {}},
+             solvers_of(diagrams));
 }
 
 Table energy_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{"Energy gain where energy is conserved",
-          "Greatest gain of total energy over its value at the start, in any frame, divided by M g L, and the "
-          "setting that shows it. Only scenes that conserve energy and settings that ended ok. Last column: "
-          "the number of settings with a gain above 0.001.",
-          {{"scene", "solver", "greatest gain", "setting", "settings above 0.001"}}};
-  for (const WorkDiagram& d : diagrams)
-    for (const std::string& solver : distinct(d.points, &WorkPoint::solver)) {
-      double most = -1;
-      int above = 0, all = 0;
-      std::string setting;
-      for (const WorkPoint& p : d.points) {
-        if (p.solver != solver || !p.counts() || !std::isfinite(p.energy_gain)) continue;
-        ++all;
-        above += !(p.energy_gain <= 1e-3);
-        if (p.energy_gain > most) {
-          most = p.energy_gain;
-          setting = p.setting;
-        }
+  struct Gain : SolverOfScene {
+    double most = -1;
+    int above = 0, all = 0;
+    std::string setting = {};
+  };
+  std::vector<Gain> gains;
+  for (const SolverOfScene& s : solvers_of(diagrams)) {
+    Gain g{s};
+    for (const WorkPoint& p : s.diagram->points) {
+      if (p.solver != s.solver || !p.counts() || !std::isfinite(p.energy_gain)) continue;
+      ++g.all;
+      g.above += !(p.energy_gain <= 1e-3);
+      if (p.energy_gain > g.most) {
+        g.most = p.energy_gain;
+        g.setting = p.setting;
       }
-      if (all > 0)
-        t.rows.push_back({d.scene, solver, fmt::format("{:.1e}", most), setting, fmt::format("{} of {}", above, all)});
     }
-  return t;
+    if (g.all > 0) gains.push_back(std::move(g));
+  }
+  return Columns<Gain>{{"", "scene", &Gain::scene},
+                       {"", "solver", &Gain::solver},
+                       {"", "greatest gain", &Gain::most, in_form("{:.1e}")},
+                       {"", "setting", &Gain::setting},
+                       {"", "settings above 0.001", [](auto& g) { return fmt::format("{} of {}", g.above, g.all); }}}
+      .table({"Energy gain where energy is conserved",
+              "Greatest gain of total energy over its value at the start, in any frame, divided by M g L, and the "
+              "setting that shows it. Only scenes that conserve energy and settings that ended ok. Last column: "
+              "the number of settings with a gain above 0.001.",
+              {}},
+             gains);
 }
 
 }  // namespace clothbench

@@ -51,9 +51,7 @@ bool differ(double a, double b) {
   return !(std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)));
 }
 
-std::string status(const RunRecord& c) {
-  return c.outcome.status + (c.outcome.klass.empty() || c.outcome.klass == "ok" ? "" : " (" + c.outcome.klass + ")");
-}
+std::string status(const RunRecord& c) { return status_with_class(c.outcome); }
 
 /// Metrics that both runs have, with different versions of their rule.
 std::vector<ComparedRun::Versions> differing_versions(const RunRecord& a, const RunRecord& b) {
@@ -152,46 +150,58 @@ std::vector<ComparedRun> compare_runs(const std::vector<RunRecord>& a, const std
 }
 
 std::vector<Table> comparison_tables(const std::vector<ComparedRun>& runs) {
-  Table times{
-      "Time of a frame, A against B", "", {{"run", "A [ms]", "B [ms]", "change", "95 % interval", "p", "verdict"}}};
-  Table results{"Results that differ", "", {{"run", "what", "A", "B"}}};
-  std::size_t timed = 0, same = 0;
+  struct Difference {
+    std::string run, what, a, b;
+  };
+  std::vector<Difference> differences;
+  std::vector<ComparedRun> timed;
+  std::size_t same = 0;
   std::vector<const RunRecord*> both;
   for (const ComparedRun& c : runs) {
     for (const RunRecord* r : {c.a, c.b})
       if (r != nullptr) both.push_back(r);
     if (c.a == nullptr || c.b == nullptr) {
-      results.rows.push_back({c.name, "run", c.a != nullptr ? status(*c.a) : "–", c.b != nullptr ? status(*c.b) : "–"});
+      differences.push_back({c.name, "run", c.a != nullptr ? status(*c.a) : "–", c.b != nullptr ? status(*c.b) : "–"});
       continue;
     }
-    if (std::isfinite(c.time.ratio)) {
-      ++timed;
-      const bool enough = c.time.level >= kLevel;
-      times.rows.push_back({c.name, significant(mean_ms(*c.a), 4), significant(mean_ms(*c.b), 4), percent(c.time.ratio),
-                            enough ? percent(c.time.low) + " … " + percent(c.time.high) : "too few trials",
-                            significant(c.time.p, 2), verdict(c.time)});
-    }
-    if (!c.outcome.empty()) results.rows.push_back({c.name, "outcome", status(*c.a), status(*c.b)});
+    if (std::isfinite(c.time.ratio)) timed.push_back(c);
+    if (!c.outcome.empty()) differences.push_back({c.name, "outcome", status(*c.a), status(*c.b)});
     for (const ComparedRun::Change& m : c.metrics)
-      results.rows.push_back({c.name, m.name, significant(m.a, 6), significant(m.b, 6)});
+      differences.push_back({c.name, m.name, significant(m.a, 6), significant(m.b, 6)});
     if (std::isfinite(c.apart))
-      results.rows.push_back({c.name, "positions, apart over L", "–", significant(c.apart, 3)});
+      differences.push_back({c.name, "positions, apart over L", "–", significant(c.apart, 3)});
     for (const ComparedRun::Versions& v : c.versions)
-      results.rows.push_back(
+      differences.push_back(
           {c.name, v.metric, fmt::format("by version {}", v.a), fmt::format("by version {}: not compared", v.b)});
     same += c.outcome.empty() && c.metrics.empty() && c.versions.empty();
   }
-  times.note = fmt::format(
+  const Columns<ComparedRun> times = {
+      {"", "run", &ComparedRun::name},
+      {"", "A", [](auto& c) { return mean_ms(*c.a); }, digits(4), {"ms"}},
+      {"", "B", [](auto& c) { return mean_ms(*c.b); }, digits(4), {"ms"}},
+      {"", "change", [](auto& c) { return percent(c.time.ratio); }},
+      {"", "95 % interval",
+       [](auto& c) {
+         return c.time.level >= kLevel ? percent(c.time.low) + " … " + percent(c.time.high) : "too few trials";
+       }},
+      {"", "p", [](auto& c) { return c.time.p; }, digits(2)},
+      {"", "verdict", [](auto& c) { return verdict(c.time); }}};
+  const Columns<Difference> results = {{"", "run", &Difference::run},
+                                       {"", "what", &Difference::what},
+                                       {"", "A", &Difference::a},
+                                       {"", "B", &Difference::b}};
+  const std::string of_times = fmt::format(
       "Times: median of the trials' means. Change: median of all pairwise ratios. p: Mann and Whitney's U "
       "test, exact. *noise*: p is above 5 %, the interval holds 0, or there are too few trials. Of {} runs "
       "without any difference, about {:.0f} would be called faster or slower by chance.",
-      timed, 0.05 * static_cast<double>(timed));
-  results.note = fmt::format(
+      timed.size(), 0.05 * static_cast<double>(timed.size()));
+  const std::string of_results = fmt::format(
       "{} runs have the same outcome and the same results (to 1e-9). Values that depend on the machine are "
       "not compared here.",
       same);
-  times.note = with_withheld(times.note, both, {"frame_wall_median_s"});
-  return {times, results};
+  return {
+      times.table({"Time of a frame, A against B", with_withheld(of_times, both, {"frame_wall_median_s"}), {}}, timed),
+      results.table({"Results that differ", of_results, {}}, differences)};
 }
 
 nlohmann::json comparison_json(const std::vector<ComparedRun>& runs) {

@@ -176,23 +176,30 @@ Table popping_table(const std::vector<RunPair>& all) {
 json popping_json(const std::vector<RunPair>& all) { return popping_columns().json(all); }
 
 Table room_table(const std::vector<RunPair>& pairs) {
-  Table t{"SubMesh against the whole room (section 3.2.4)", "", {{"scene", "solver", "mesh"}}};
-  for (const RoomQuantity& q : kRoomQuantities) t.rows[0].emplace_back(q.head);
+  struct Room {
+    const RunPair* pair;
+    const char* mesh;
+    std::function<std::string(const RoomQuantity&)> text;
+  };
+  std::vector<Room> rows;
+  std::string note;
   for (const RunPair& p : pairs) {
-    const auto row = [&](const char* mesh, const auto& text) {
-      t.rows.push_back({p.scene, p.series.label(), mesh});
-      for (const RoomQuantity& q : kRoomQuantities) t.rows.back().push_back(text(q));
-    };
-    row("SubMesh", [&](const RoomQuantity& q) { return q.text(*p.run); });
-    row("whole room", [&](const RoomQuantity& q) { return q.text(*p.other); });
-    row("ratio", [&](const RoomQuantity& q) { return significant(q.of(*p.other) / q.of(*p.run), 3); });
-    t.note += fmt::format(
+    rows.push_back({&p, "SubMesh", [&](auto& q) { return q.text(*p.run); }});
+    rows.push_back({&p, "whole room", [&](auto& q) { return q.text(*p.other); }});
+    rows.push_back({&p, "ratio", [&](auto& q) { return significant(q.of(*p.other) / q.of(*p.run), 3); }});
+    note += fmt::format(
         "{}{}, {}: greatest distance between the positions of the two runs: {} at the end, {} over all "
         "frames.",
-        t.note.empty() ? "" : " ", p.scene, p.series.label(), distance(p.apart.end), distance(p.value));
+        note.empty() ? "" : " ", p.scene, p.series.label(), distance(p.apart.end), distance(p.value));
   }
-  t.note = with_withheld(t.note, runs_of(pairs, &RunPair::run, &RunPair::other), {"frame_wall_median_s", "load_s"});
-  return t;
+  return Columns<Room>{{"", "scene", [](auto& r) { return r.pair->scene; }},
+                       {"", "solver", [](auto& r) { return r.pair->series.label(); }},
+                       {"", "mesh", &Room::mesh}}
+      .across(kRoomQuantities, &RoomQuantity::head, [](const Room& r, const RoomQuantity& q) { return r.text(q); })
+      .table({"SubMesh against the whole room (section 3.2.4)",
+              with_withheld(note, runs_of(pairs, &RunPair::run, &RunPair::other), {"frame_wall_median_s", "load_s"}),
+              {}},
+             rows);
 }
 
 json room_json(const std::vector<RunPair>& pairs) {

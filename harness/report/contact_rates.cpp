@@ -27,6 +27,14 @@ std::string band_name(std::size_t k) {
   return k + 1 == kBands.size() ? fmt::format("≥ {:g}", kBands[k]) : fmt::format("{:g}–{:g}", kBands[k], kBands[k + 1]);
 }
 
+/// Every band and all of them.
+std::vector<std::string> band_names() {
+  std::vector<std::string> out;
+  for (std::size_t k = 0; k < kBands.size(); ++k) out.push_back(band_name(k));
+  out.emplace_back(kAll);
+  return out;
+}
+
 std::string band_of(double speed_m_per_s) {
   std::size_t k = kBands.size() - 1;
   while (k > 0 && !(speed_m_per_s >= kBands[k])) --k;
@@ -102,23 +110,17 @@ Columns<WorstContact> worst_columns() {
 
 }  // namespace
 
-bool is_drawn_contact(const RunRecord& c) {
-  const json scenario = scenario_of(c);
-  return scenario.is_object() && scenario.contains("drawn");
-}
+bool is_drawn_contact(const RunRecord& c) { return has_block(c, "drawn"); }
 
 std::vector<ContactRate> contact_rates(const std::vector<RunRecord>& runs) {
   const std::vector<DrawnRun> all = drawn_runs(runs);
-  std::vector<std::string> bands;
-  for (std::size_t k = 0; k < kBands.size(); ++k) bands.push_back(band_name(k));
-  bands.emplace_back(kAll);
   std::vector<ContactRate> out;
   for (const auto& [solver, setting, assets] : distinct(
            all, [](const DrawnRun& d) { return std::tuple(d.run->header.solver, d.run->header.setting, d.assets); })) {
     std::vector<std::string> kinds = distinct(all, &DrawnRun::kind);
     kinds.emplace_back(kAll);
     for (const std::string& kind : kinds)
-      for (const std::string& band : bands) {
+      for (const std::string& band : band_names()) {
         ContactRate r{solver, setting, kind, band, assets};
         std::set<std::string> held;
         for (const DrawnRun& d : all) {
@@ -145,7 +147,7 @@ Table contact_rate_table(const std::vector<RunRecord>& runs) {
       "Passed of drawn, by the speed [m/s] of the hand or of the cloth where it first touches; in brackets the 95 % "
       "interval of the probability (Wilson). Unsupported and timed out: not passed. Holds at: distance at which the "
       "solver holds the cloth off colliders.",
-      {{"solver", "kind", "holds at [mm]"}}};
+      {}};
   const auto missing =
       std::count_if(runs.begin(), runs.end(), [](const RunRecord& c) { return c.outcome.status == "missing"; });
   if (missing > 0)
@@ -153,21 +155,25 @@ Table contact_rate_table(const std::vector<RunRecord>& runs) {
         " {} of {} runs are missing. The longest run first, so that rates of an unfinished study are biased; "
         "--resume completes it.",
         missing, runs.size());
-  for (std::size_t k = 0; k < kBands.size(); ++k) t.rows[0].push_back(band_name(k));
-  t.rows[0].emplace_back(kAll);
-  for (const ContactRate& r : contact_rates(runs)) {
-    const std::string solver = r.setting == "default" ? r.solver : r.solver + " " + r.setting;
-    const std::vector<std::string> fresh = {solver, shown_kind(r.kind, r.assets), "–", "–", "–", "–", "–", "–"};
-    auto& row = find_or_add(
-        t.rows, [&](const auto& at) { return at[0] == fresh[0] && at[1] == fresh[1]; }, fresh);
-    const auto column = std::find(t.rows[0].begin(), t.rows[0].end(), r.band) - t.rows[0].begin();
-    row[static_cast<std::size_t>(column)] = rate_text(r);
-    if (r.band == kAll) row[2] = or_dash(r.held_at);
-  }
-  const bool known = std::any_of(t.rows.begin() + 1, t.rows.end(), [](const auto& row) { return row[2] != "–"; });
-  for (auto& row : t.rows)
-    if (!known) row.erase(row.begin() + 2);
-  return t;
+  const std::vector<ContactRate> rates = contact_rates(runs);
+  Columns<ContactRate> columns = {
+      {"", "solver", [](auto& r) { return r.setting == "default" ? r.solver : r.solver + " " + r.setting; }},
+      {"", "kind", [](auto& r) { return shown_kind(r.kind, r.assets); }}};
+  // Of one solver, setting and kind all bands; the band of all speeds stands for the row.
+  std::vector<ContactRate> rows;
+  for (const ContactRate& r : rates)
+    if (r.band == kAll) rows.push_back(r);
+  if (std::any_of(rows.begin(), rows.end(), [](auto& r) { return !r.held_at.empty(); }))
+    columns.push_back({"", "holds at [mm]", [](auto& r) { return or_dash(r.held_at); }});
+  return columns
+      .across(band_names(), std::identity{},
+              [&](const ContactRate& row, const std::string& band) {
+                const auto key = [](const ContactRate& r) { return std::tie(r.solver, r.setting, r.kind, r.assets); };
+                const auto at = std::find_if(rates.begin(), rates.end(),
+                                             [&](auto& r) { return key(r) == key(row) && r.band == band; });
+                return at == rates.end() ? "" : rate_text(*at);
+              })
+      .table(std::move(t), rows);
 }
 
 std::vector<WorstContact> worst_contacts(const std::vector<RunRecord>& runs) {

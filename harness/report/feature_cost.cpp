@@ -86,10 +86,7 @@ Columns<RunPair> cost_columns() {
 
 }  // namespace
 
-bool is_all_on(const RunRecord& c) {
-  const json scenario = scenario_of(c);
-  return scenario.is_object() && scenario.contains("irrelevant");
-}
+bool is_all_on(const RunRecord& c) { return has_block(c, "irrelevant"); }
 
 std::vector<RunPair> feature_costs(const std::vector<RunRecord>& runs) {
   std::vector<RunPair> out = run_pairs(runs, "irrelevant");
@@ -113,27 +110,32 @@ Table feature_cost_table(const std::vector<RunPair>& costs) {
 }
 
 Table no_op_table(const std::vector<RunPair>& costs) {
-  Table t{"Effect of irrelevant features on the motion",
-          "Passed: scenes in which no vertex moved by more than 1e-6 of the longer side. If an irrelevant "
-          "feature moves the cloth of a solver, the errors measured for that solver depend on what else is in "
-          "the scene.",
-          {{"solver", "scenes passed", "bitwise", "worst", "in"}}};
-  std::vector<std::string> solvers = distinct(costs, [](const RunPair& f) { return f.series.solver; });
-  std::sort(solvers.begin(), solvers.end());
-  for (const std::string& solver : solvers) {
+  struct Effect {
+    std::string solver;
     int kept = 0, bitwise = 0, all = 0;
     const RunPair* worst = nullptr;
-    for (const RunPair& f : costs) {
-      if (f.series.solver != solver || !f.both_ok()) continue;
-      ++all;
-      kept += f.within();
-      bitwise += f.value == 0;
-      if (worst == nullptr || !(f.value <= worst->value)) worst = &f;
-    }
-    t.rows.push_back({solver, fmt::format("{} of {}", kept, all), fmt::format("{} of {}", bitwise, all),
-                      worst == nullptr ? "–" : moved_text(*worst), worst == nullptr ? "–" : worst->scene});
+  };
+  std::vector<Effect> effects;
+  for (const RunPair& f : costs) {
+    Effect& e = find_or_add(effects, [&](const Effect& at) { return at.solver == f.series.solver; }, {f.series.solver});
+    if (!f.both_ok()) continue;
+    ++e.all;
+    e.kept += f.within();
+    e.bitwise += f.value == 0;
+    if (e.worst == nullptr || !(f.value <= e.worst->value)) e.worst = &f;
   }
-  return t;
+  std::sort(effects.begin(), effects.end(), [](const Effect& a, const Effect& b) { return a.solver < b.solver; });
+  return Columns<Effect>{{"", "solver", &Effect::solver},
+                         {"", "scenes passed", [](auto& e) { return fmt::format("{} of {}", e.kept, e.all); }},
+                         {"", "bitwise", [](auto& e) { return fmt::format("{} of {}", e.bitwise, e.all); }},
+                         {"", "worst", [](auto& e) { return e.worst == nullptr ? "–" : moved_text(*e.worst); }},
+                         {"", "in", [](auto& e) { return e.worst == nullptr ? "–" : e.worst->scene; }}}
+      .table({"Effect of irrelevant features on the motion",
+              "Passed: scenes in which no vertex moved by more than 1e-6 of the longer side. If an irrelevant "
+              "feature moves the cloth of a solver, the errors measured for that solver depend on what else is in "
+              "the scene.",
+              {}},
+             effects);
 }
 
 json feature_cost_json(const std::vector<RunPair>& costs) { return cost_columns().json(costs); }

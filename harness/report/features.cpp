@@ -74,19 +74,17 @@ std::string feature_text(const SolverFeatures& s, Feature f, bool with_results) 
 }
 
 Table feature_table(const std::vector<SolverFeatures>& solvers, bool with_results) {
-  Table t{"Table 4: features", "Ignored: the solver runs the scene and leaves the feature out.", {{"feature"}}};
-  if (with_results)
-    t.note =
-        "Yes: a stage of the solver served the feature in a run that ended ok. Declared: the solver states "
-        "support and no run here needed it. " +
-        t.note;
-  for (const SolverFeatures& s : solvers) t.rows[0].push_back(s.solver);
-  for (std::size_t k = 0; k < kFeatureCount; ++k) {
-    std::vector<std::string> row = {words(kFeatures[k].name)};
-    for (const SolverFeatures& s : solvers) row.push_back(feature_text(s, static_cast<Feature>(k), with_results));
-    t.rows.push_back(std::move(row));
-  }
-  return t;
+  const std::string note = with_results
+                               ? "Yes: a stage of the solver served the feature in a run that ended ok. Declared: the "
+                                 "solver states support and no run here needed it. "
+                               : "";
+  return Columns<FeatureRow>{{"", "feature", [](auto& f) { return words(f.name); }}}
+      .across(solvers, &SolverFeatures::solver,
+              [&](const FeatureRow& f, const SolverFeatures& s) {
+                return feature_text(s, static_cast<Feature>(&f - kFeatures.data()), with_results);
+              })
+      .table({"Table 4: features", note + "Ignored: the solver runs the scene and leaves the feature out.", {}},
+             kFeatures);
 }
 
 json feature_json(const std::vector<SolverFeatures>& solvers, bool with_results) {

@@ -95,25 +95,30 @@ json answer(const FrictionForm& form, const RunPointers& runs, const std::vector
 }
 
 Table threshold_table(const std::vector<ThresholdRow>& rows) {
-  Table t{"Thresholds of friction",
-          "Found: the smallest coefficient of friction at which the cloth holds, by bisection to 0.1 % between "
-          "0.5 and 1.5 times the exact coefficient.",
-          {{"scene", "solver", "setting", "found", "exact", "off by", "runs"}}};
-  for (const ThresholdRow& r : rows) {
-    const FoundThreshold& f = r.found;
-    const std::string bound = f.holds_at_least ? "≤ " : f.slips_at_most ? "≥ " : "";
-    const bool known = r.crash.empty() && r.unsupported.empty() && !r.unfinished && !f.failed;
-    const std::string why = !r.crash.empty()         ? "crashed"
-                            : !r.unsupported.empty() ? "unsupported"
-                            : r.unfinished           ? "–"
-                                                     : "failed";
-    t.rows.push_back(
-        {r.scene, r.solver, r.setting, known ? fmt::format("{}{:.5f}", bound, f.found) : why,
-         fmt::format("{:.5f}", f.exact),
-         known ? fmt::format("{:+.4f}{}", f.error, r.of.error_units == "1" ? "" : " " + r.of.error_units) : "–",
-         std::to_string(f.runs)});
-  }
-  return t;
+  static const auto known = [](const ThresholdRow& r) {
+    return r.crash.empty() && r.unsupported.empty() && !r.unfinished && !r.found.failed;
+  };
+  static const auto found = [](const ThresholdRow& r) -> std::string {
+    if (known(r))
+      return fmt::format("{}{:.5f}", r.found.holds_at_least ? "≤ " : r.found.slips_at_most ? "≥ " : "", r.found.found);
+    return !r.crash.empty() ? "crashed" : !r.unsupported.empty() ? "unsupported" : r.unfinished ? "–" : "failed";
+  };
+  static const auto off = [](const ThresholdRow& r) -> std::string {
+    if (!known(r)) return "–";
+    return fmt::format("{:+.4f}{}", r.found.error, r.of.error_units == "1" ? "" : " " + r.of.error_units);
+  };
+  return Columns<ThresholdRow>{{"", "scene", &ThresholdRow::scene},
+                               {"", "solver", &ThresholdRow::solver},
+                               {"", "setting", &ThresholdRow::setting},
+                               {"", "found", found},
+                               {"", "exact", [](auto& r) { return r.found.exact; }, in_form("{:.5f}")},
+                               {"", "off by", off},
+                               {"", "runs", [](auto& r) { return r.found.runs; }}}
+      .table({"Thresholds of friction",
+              "Found: the smallest coefficient of friction at which the cloth holds, by bisection to 0.1 % between "
+              "0.5 and 1.5 times the exact coefficient.",
+              {}},
+             rows);
 }
 
 }  // namespace
@@ -173,19 +178,20 @@ json friction_json(const std::vector<RunRecord>& runs) {
 }
 
 Table friction_table(const std::vector<RunRecord>& runs) {
-  Table t{"Friction by closed forms",
-          "Sheets on a slope: errors of the critical angle (Coulomb's cone), of the creep of a sheet that "
-          "friction holds, of the displacement of a sheet that slips and of one that stops. Capstan: error of "
-          "the overhang that friction holds (on a polygon with one side per row of vertices on the cylinder) "
-          "and of the displacement over the cylinder with and without friction. ✓: within the bound. "
-          "Thresholds are found by bisection to 0.1 % of the coefficient.",
-          {{"solver", "setting"}}};
-  for (const FrictionForm& f : friction_forms()) t.rows[0].emplace_back(f.head);
-  for (const json& of : friction_json(runs)) {
-    t.rows.push_back({of["solver"], of["setting"]});
-    for (const json& a : of["answers"]) t.rows.back().push_back(a["text"]);
-  }
-  return t;
+  std::size_t k = 0;
+  Columns<json> columns = {{"", "solver", [](auto& j) { return j["solver"]; }},
+                           {"", "setting", [](auto& j) { return j["setting"]; }}};
+  for (const FrictionForm& f : friction_forms())
+    columns.push_back({"", f.head, [k = k++](auto& j) { return j["answers"][k]["text"]; }});
+  return columns.table(
+      {"Friction by closed forms",
+       "Sheets on a slope: errors of the critical angle (Coulomb's cone), of the creep of a sheet that "
+       "friction holds, of the displacement of a sheet that slips and of one that stops. Capstan: error of "
+       "the overhang that friction holds (on a polygon with one side per row of vertices on the cylinder) "
+       "and of the displacement over the cylinder with and without friction. ✓: within the bound. "
+       "Thresholds are found by bisection to 0.1 % of the coefficient.",
+       {}},
+      friction_json(runs));
 }
 
 std::vector<Table> friction_tables(const std::vector<RunRecord>& runs) {

@@ -54,9 +54,24 @@ double summary_value(const RunRecord& c, const std::string& name) {
 
 nlohmann::json scenario_of(const RunRecord& c) { return nlohmann::json::parse(c.header.scenario_json, nullptr, false); }
 
+bool has_block(const RunRecord& c, const char* name) {
+  const nlohmann::json s = scenario_of(c);
+  return s.is_object() && s.contains(name);
+}
+
 std::string base_name(const RunRecord& c) {
   const nlohmann::json j = scenario_of(c);
   return j.is_object() && j.contains("name") && j["name"].is_string() ? j["name"].get<std::string>() : c.header.scene;
+}
+
+Columns<TextRow> text_columns(const std::vector<std::string>& heads, const std::vector<std::string>& across) {
+  Columns<TextRow> out = {{"", heads.front(), &TextRow::name}};
+  for (std::size_t k = 0; k + 1 < heads.size(); ++k)
+    out.push_back({"", heads[k + 1], [k](auto& r) { return k < r.more.size() ? Value(r.more[k]) : Value(); }});
+  return out.across(across, std::identity{}, [](const TextRow& r, const std::string& column) {
+    const auto at = r.cells.find(column);
+    return at == r.cells.end() ? "" : at->second;
+  });
 }
 
 std::vector<double> trial_means(const RunRecord& c) {
@@ -77,6 +92,10 @@ double middle(const std::vector<double>& sorted) {
 
 std::string ending(const Outcome& o) {
   return o.failed_frame < 0 ? o.status : fmt::format("{} at {}", o.status, o.failed_frame);
+}
+
+std::string status_with_class(const Outcome& o) {
+  return o.status + (o.klass.empty() || o.klass == "ok" ? "" : " (" + o.klass + ")");
 }
 
 std::string or_dash(const std::string& text) { return text.empty() ? "–" : text; }
@@ -121,20 +140,17 @@ const RunRecord* Family::find(const Series& s, const Resolution& r) const {
   return nullptr;
 }
 
+std::string Family::cell(const Series& s, const Resolution& r,
+                         const std::function<std::string(const RunRecord&)>& text) const {
+  const RunRecord* c = find(s, r);
+  return c == nullptr ? "" : c->outcome.status == "ok" ? text(*c) : ending(c->outcome);
+}
+
 Table Family::table(const std::string& title, const std::string& note,
                     const std::function<std::string(const RunRecord&)>& text) const {
-  const std::vector<Resolution> columns = resolutions();
-  Table t{title, note, {{"solver", "sides"}}};
-  for (const Resolution& r : columns) t.rows[0].push_back(r.label());
-  for (const Series& s : series()) {
-    std::vector<std::string> row = {s.label(), or_dash(s.sides)};
-    for (const Resolution& r : columns) {
-      const RunRecord* c = find(s, r);
-      row.push_back(c == nullptr ? "–" : c->outcome.status == "ok" ? text(*c) : ending(c->outcome));
-    }
-    t.rows.push_back(std::move(row));
-  }
-  return t;
+  return Columns<Series>{{"", "solver", &Series::label}, {"", "sides", [](auto& s) { return or_dash(s.sides); }}}
+      .across(resolutions(), &Resolution::label, [&](const Series& s, const Resolution& r) { return cell(s, r, text); })
+      .table({title, note, {}}, series());
 }
 
 std::vector<Family> families(const std::vector<RunRecord>& runs) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -17,6 +18,10 @@ double summary_value(const RunRecord&, const std::string& name);
 
 /// The scenario of a run; a discarded value if the stored text is not JSON.
 nlohmann::json scenario_of(const RunRecord&);
+
+/// Whether the scenario has this block, as the protocol that made the run writes it: "stability", "drawn",
+/// "metamorphic", "effective_moduli", "irrelevant".
+bool has_block(const RunRecord&, const char* name);
 
 /// Name in the scenario's file, without the labels of axes.
 std::string base_name(const RunRecord&);
@@ -55,6 +60,14 @@ inline constexpr auto failed_frame_of = [](const auto& r) -> Value {
   return run_of(r).outcome.failed_frame < 0 ? absent() : Value(run_of(r).outcome.failed_frame);
 };
 
+/// A row of a pivot that has text alone: its name, what else stands before the pivot, and its cells by column.
+struct TextRow {
+  std::string name;
+  std::vector<std::string> more = {};
+  std::map<std::string, std::string> cells = {};
+};
+Columns<TextRow> text_columns(const std::vector<std::string>& heads, const std::vector<std::string>& across);
+
 /// Mean wall time of a frame in each trial [s], ascending.
 std::vector<double> trial_means(const RunRecord&);
 
@@ -77,6 +90,9 @@ Item& find_or_add(std::vector<Item>& items, Is is, Item fresh) {
 
 /// "diverged at 12" (the failed frame), or the status alone if no frame failed.
 std::string ending(const Outcome&);
+
+/// "diverged (F1)"; the status alone if it has no class.
+std::string status_with_class(const Outcome&);
 
 /// "–" for an empty text.
 std::string or_dash(const std::string&);
@@ -121,6 +137,9 @@ class Family {
   std::vector<Resolution> resolutions() const;  ///< ascending
   std::vector<Series> series() const;           ///< by solver and setting; single, double-duplicated, double
   const RunRecord* find(const Series&, const Resolution&) const;
+
+  /// `text` of a run that ended well, else its ending; empty without a run.
+  std::string cell(const Series&, const Resolution&, const std::function<std::string(const RunRecord&)>& text) const;
 
   /// Rows: series; columns: resolutions. If a run did not end well, its ending replaces `text`.
   Table table(const std::string& title, const std::string& note,

@@ -19,6 +19,7 @@ struct Row {
   const RunRecord* run;
   double frame_s = kMissing, spread_s = kMissing;  ///< median and half the range of the trials' means
   double stretch = kMissing;                       ///< greatest strain of a structural edge in the last second
+  double fastest_s = kMissing;                     ///< frame_s of its scene's first run
   /// Whether its time may be compared: it ended well, and its cloth is not torn apart.
   bool ranked() const {
     return std::isfinite(frame_s) && run->outcome.status == "ok" && !run->outcome.expect.starts_with("fail") &&
@@ -43,32 +44,40 @@ std::string ended(const Outcome& o) {
 Table in_short_table(const std::vector<RunRecord>& runs) {
   std::map<std::string, std::vector<Row>> scenes;
   for (const RunRecord& c : runs) scenes[c.header.scene].push_back(row_of(c));
-  Table t{"In short",
-          "Frame: wall time, median of the trials' means ± half their range. Outcome: how the run ended, and "
-          "whether the scene's expectations passed. Stretch: greatest strain of a structural edge in the last second. "
-          "Not ranked: runs that failed, and cloths with an edge of more than twice its length.",
-          {{"scene", "solver", "setting", "outcome", "stretch [%]", "frame [ms]", "relative to the fastest"}}};
-  t.note = with_withheld(t.note, runs_of(runs, [](const RunRecord& c) { return &c; }), {"frame_wall_median_s"});
+  std::vector<Row> all;
   for (auto& [scene, rows] : scenes) {
     std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
       if (a.ranked() != b.ranked()) return a.ranked();
       return a.frame_s < b.frame_s || (std::isnan(b.frame_s) && !std::isnan(a.frame_s));
     });
-    const double fastest = rows.front().frame_s;
-    std::vector<const RunRecord*> beside;
-    for (const Row& r : rows) beside.push_back(r.run);
-    for (const Row& r : rows) {
-      std::string time = significant(1e3 * r.frame_s, 3);
-      if (std::isfinite(r.spread_s)) time += " ± " + significant(1e3 * r.spread_s, 2);
-      if (std::isfinite(r.frame_s)) time += frames_mark(*r.run, beside);
-      const std::string ratio = r.ranked()                 ? significant(r.frame_s / fastest, 3) + "×"
-                                : std::isfinite(r.frame_s) ? "not ranked"
-                                                           : "–";
-      t.rows.push_back({scene, r.run->header.solver, r.run->header.setting, ended(r.run->outcome),
-                        significant(100 * r.stretch, 3), time, ratio});
+    for (Row& r : rows) {
+      r.fastest_s = rows.front().frame_s;
+      all.push_back(r);
     }
   }
-  return PluginMarks(runs).table(std::move(t));
+  const std::vector<const RunRecord*> beside = runs_of(runs, [](const RunRecord& c) { return &c; });
+  const auto time = [&](const Row& r) {
+    std::string text = significant(1e3 * r.frame_s, 3);
+    if (std::isfinite(r.spread_s)) text += " ± " + significant(1e3 * r.spread_s, 2);
+    return std::isfinite(r.frame_s) ? text + frames_mark(*r.run, beside) : text;
+  };
+  const Columns<Row> columns = {{"", "scene", [](auto& r) { return r.run->header.scene; }},
+                                {"", "solver", [](auto& r) { return r.run->header.solver; }},
+                                {"", "setting", [](auto& r) { return r.run->header.setting; }},
+                                {"", "outcome", [](auto& r) { return ended(r.run->outcome); }},
+                                {"", "stretch", &Row::stretch, digits(3), {"%", 100}},
+                                {"", "frame [ms]", time},
+                                {"", "relative to the fastest", [](auto& r) {
+                                   return r.ranked()                 ? significant(r.frame_s / r.fastest_s, 3) + "×"
+                                          : std::isfinite(r.frame_s) ? "not ranked"
+                                                                     : "–";
+                                 }}};
+  const char* note =
+      "Frame: wall time, median of the trials' means ± half their range. Outcome: how the run ended, and "
+      "whether the scene's expectations passed. Stretch: greatest strain of a structural edge in the last second. "
+      "Not ranked: runs that failed, and cloths with an edge of more than twice its length.";
+  return PluginMarks(runs).table(
+      columns.table({"In short", with_withheld(note, beside, {"frame_wall_median_s"}), {}}, all));
 }
 
 }  // namespace clothbench

@@ -65,7 +65,11 @@ std::string without_bounds(const std::string& kind, const RunRecord& c) {
   return "";
 }
 
-std::string metres_per_second(double v) { return fmt::format("{:g} m/s", v); }
+std::string failure_speed_text(const SpeedSweep& s) {
+  const auto leak = s.failure_speed();
+  if (!leak) return fmt::format("none up to {:g} m/s", s.speeds.back().speed_m_per_s);
+  return leak->leak == kNotPrinted ? kNotPrinted : fmt::format("{:g} m/s: {}", leak->speed_m_per_s, leak->leak);
+}
 
 }  // namespace
 
@@ -114,48 +118,39 @@ std::vector<SpeedSweep> speed_sweeps(const std::vector<ContactSetUp>& ups) {
 }
 
 Table leak_table(const std::vector<SpeedSweep>& sweeps) {
-  Table t{
-      "Failure speed",
-      "Failure speed: the lowest speed at which a solver fails a bound of the scene's `expect`. The table "
-      "names the first bound that fails: cloth through a mesh; cloth on the wrong side of a hand; cloth "
-      "more than 1 mm inside a hand; edges longer than the stated multiple of what the hands impose; a "
-      "mean strain above 1 % one second after release; popping faster than its limit; a greatest strain of "
-      "a pulled strip more than 0.1 v0/c from its exact wave. The verdicts above use the same bounds. "
-      "none: no failure up to the greatest speed that was run. Paths: scenes that were run at each speed. What holds "
-      "on one path may fail on another; the study `contact` draws many.",
-      {{"scene", "speeds [m/s]", "paths"}}};
   std::vector<std::string> solvers = distinct(sweeps, [](const SpeedSweep& s) { return s.series.label(); });
   std::sort(solvers.begin(), solvers.end());
-  t.rows[0].insert(t.rows[0].end(), solvers.begin(), solvers.end());
   std::vector<ContactRow> all;
   for (const SpeedSweep& s : sweeps) all.insert(all.end(), s.runs.begin(), s.runs.end());
-  if (const std::vector<std::string> held = held_row(all, solvers); !held.empty()) {
-    t.rows.push_back({kHeldAt, "–", "–"});
-    t.rows.back().insert(t.rows.back().end(), held.begin(), held.end());
-  }
+  std::vector<TextRow> rows = {held_row(all)};
+  if (rows.front().cells.empty()) rows.clear();
   for (const auto& [kind, scene] : distinct(sweeps, [](const SpeedSweep& s) { return std::pair(s.kind, s.scene); })) {
-    std::vector<std::string> row = {fmt::format("{} ({})", scene, kind), "–", "–"};
-    for (const std::string& solver : solvers) {
-      std::string text = "–";
+    TextRow row{fmt::format("{} ({})", scene, kind)};
+    for (const std::string& solver : solvers)
       for (const SpeedSweep& s : sweeps) {
         if (s.kind != kind || s.scene != scene || s.series.label() != solver) continue;
-        row[1] = fmt::format("{:g}…{:g}", s.speeds.front().speed_m_per_s, s.speeds.back().speed_m_per_s);
-        row[2] = std::to_string(s.paths());
-        const auto leak = s.failure_speed();
-        text = leak && leak->leak == kNotPrinted ? kNotPrinted
-               : leak                            ? metres_per_second(leak->speed_m_per_s) + ": " + leak->leak
-                                                 : "none up to " + metres_per_second(s.speeds.back().speed_m_per_s);
+        row.more = {fmt::format("{:g}…{:g}", s.speeds.front().speed_m_per_s, s.speeds.back().speed_m_per_s),
+                    std::to_string(s.paths())};
+        row.cells[solver] = failure_speed_text(s);
       }
-      row.push_back(text);
-    }
-    t.rows.push_back(std::move(row));
+    rows.push_back(std::move(row));
   }
-  std::vector<const RunRecord*> runs;
-  for (const ContactRow& r : all) runs.push_back(r.run);
   std::vector<std::string> names;
   for (const auto& [name, unused] : kWords) names.emplace_back(name);
-  t.note = with_withheld(t.note, runs, names);
-  return t;
+  return text_columns({"scene", "speeds [m/s]", "paths"}, solvers)
+      .table({"Failure speed",
+              with_withheld(
+                  "Failure speed: the lowest speed at which a solver fails a bound of the scene's `expect`. The table "
+                  "names the first bound that fails: cloth through a mesh; cloth on the wrong side of a hand; cloth "
+                  "more than 1 mm inside a hand; edges longer than the stated multiple of what the hands impose; a "
+                  "mean strain above 1 % one second after release; popping faster than its limit; a greatest strain of "
+                  "a pulled strip more than 0.1 v0/c from its exact wave. The verdicts above use the same bounds. "
+                  "none: no failure up to the greatest speed that was run. Paths: scenes that were run at each speed. "
+                  "What holds "
+                  "on one path may fail on another; the study `contact` draws many.",
+                  runs_of(all, &ContactRow::run), names),
+              {}},
+             rows);
 }
 
 json leak_json(const std::vector<SpeedSweep>& sweeps) {

@@ -13,8 +13,15 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kNotMeasured = "not measured";
-constexpr const char* kModuli[] = {"E_0",          "E_45",      "E_90", "nu",   "G",    "E_strip",
-                                   "strip_border", "E_stiffer", "B_0",  "B_45", "B_90", "B_stiffer"};
+/// Moduli in the order of the table.
+struct Modulus {
+  const char *name, *head;
+  const char* over = nullptr;  ///< for a sheet of twice the stiffness: the modulus of one of the stiffness itself
+};
+constexpr Modulus kModuli[] = {
+    {"E_0", "E 0"}, {"E_45", "E 45"},     {"E_90", "E 90"},           {"nu", "ν"},
+    {"G", "G"},     {"E_strip", "strip"}, {"strip_border", "border"}, {"E_stiffer", "E ×2", "E_0"},
+    {"B_0", "B 0"}, {"B_45", "B 45"},     {"B_90", "B 90"},           {"B_stiffer", "B ×2", "B_0"}};
 
 bool is_full(const RunRecord& c) {
   const json s = scenario_of(c);
@@ -54,10 +61,7 @@ std::string yes_or(const std::string& why) { return why.empty() ? "yes" : why ==
 
 }  // namespace
 
-bool is_moduli_run(const RunRecord& c) {
-  const json s = scenario_of(c);
-  return s.is_object() && s.contains("effective_moduli");
-}
+bool is_moduli_run(const RunRecord& c) { return has_block(c, "effective_moduli"); }
 
 std::vector<SolverMaterial> solver_materials(const std::vector<RunRecord>& runs) {
   std::vector<SolverMaterial> out;
@@ -97,38 +101,38 @@ std::string stiffness_flag(const std::vector<SolverMaterial>& all, const std::st
 }
 
 Table material_table(const std::vector<SolverMaterial>& all) {
-  Table t{"Effective moduli: the effective stiffness of solvers",
-          "Measured on patches that hang, slide and bend, at rest. E, G and B: effective moduli divided by the "
-          "scene's Y, Y and B, at 0, 45 and 90° to the grid. Exact values: E 1, 1, 1; ν = 1/3 and G = 0.375 "
-          "for central springs; strip 1 (no shear); border 1. B at 45° is 1 for developable bending and 0.5 "
-          "for lines along the grid, which do not resist twist. ×2: the modulus for twice the stiffness "
-          "divided by the modulus for the stiffness itself.",
-          {{"solver", "setting", "E 0", "E 45", "E 90", "ν", "G", "strip", "border", "E ×2", "B 0", "B 45", "B 90",
-            "B ×2"}}};
-  for (const SolverMaterial& m : all)
-    for (const RunRecord* c : m.moduli) {
-      std::vector<std::string> row = {m.solver, c->header.setting};
-      for (const char* name : kModuli) {
-        double v = modulus(*c, name);
-        if (std::string(name) == "E_stiffer") v *= 2 / modulus(*c, "E_0");
-        if (std::string(name) == "B_stiffer") v *= 2 / modulus(*c, "B_0");
-        row.push_back(ratio(v));
-      }
-      if (c->outcome.status != "ok") row[2] = c->outcome.status;
-      t.rows.push_back(std::move(row));
-    }
-  return t;
+  std::vector<const RunRecord*> runs;
+  for (const SolverMaterial& m : all) runs.insert(runs.end(), m.moduli.begin(), m.moduli.end());
+  using Run = const RunRecord*;
+  Columns<Run> columns = {{"", "solver", [](auto& c) { return c->header.solver; }},
+                          {"", "setting", [](auto& c) { return c->header.setting; }}};
+  return columns
+      .across(kModuli, &Modulus::head,
+              [](const Run& c, const Modulus& m) {
+                if (std::string(m.name) == "E_0" && c->outcome.status != "ok") return c->outcome.status;
+                return ratio(modulus(*c, m.name) * (m.over == nullptr ? 1 : 2 / modulus(*c, m.over)));
+              })
+      .table({"Effective moduli: the effective stiffness of solvers",
+              "Measured on patches that hang, slide and bend, at rest. E, G and B: effective moduli divided by the "
+              "scene's Y, Y and B, at 0, 45 and 90° to the grid. Exact values: E 1, 1, 1; ν = 1/3 and G = 0.375 "
+              "for central springs; strip 1 (no shear); border 1. B at 45° is 1 for developable bending and 0.5 "
+              "for lines along the grid, which do not resist twist. ×2: the modulus for twice the stiffness "
+              "divided by the modulus for the stiffness itself.",
+              {}},
+             runs);
 }
 
 Table material_verdicts(const std::vector<SolverMaterial>& all) {
-  Table t{"Is stiffness a parameter?",
-          "Yes: the effective modulus is within 5 % of the requested one, also for twice the stiffness and at "
-          "other settings. NO: the solver is not ranked on scenes that depend on this stiffness.",
-          {{"solver", "settings", "Y of strips", "Y of sheets", "B"}}};
-  for (const SolverMaterial& m : all)
-    t.rows.push_back({m.solver, std::to_string(m.moduli.size()), yes_or(m.verdict.strip), yes_or(m.verdict.sheet),
-                      yes_or(m.verdict.bending)});
-  return t;
+  return Columns<SolverMaterial>{{"", "solver", &SolverMaterial::solver},
+                                 {"", "settings", [](auto& m) { return m.moduli.size(); }},
+                                 {"", "Y of strips", [](auto& m) { return yes_or(m.verdict.strip); }},
+                                 {"", "Y of sheets", [](auto& m) { return yes_or(m.verdict.sheet); }},
+                                 {"", "B", [](auto& m) { return yes_or(m.verdict.bending); }}}
+      .table({"Is stiffness a parameter?",
+              "Yes: the effective modulus is within 5 % of the requested one, also for twice the stiffness and at "
+              "other settings. NO: the solver is not ranked on scenes that depend on this stiffness.",
+              {}},
+             all);
 }
 
 json material_json(const std::vector<SolverMaterial>& all) {

@@ -48,40 +48,33 @@ std::string text_of(const Row& r) {
   return fmt::format("{} ({})", r.status, figure);
 }
 
-/// Index of the text in the list, added at its end if it is new.
-std::size_t place(std::vector<std::string>& list, const std::string& text) {
-  const auto at = std::find(list.begin(), list.end(), text);
-  if (at == list.end()) list.push_back(text);
-  return static_cast<std::size_t>(std::find(list.begin(), list.end(), text) - list.begin());
-}
-
 }  // namespace
 
-bool is_metamorphic(const RunRecord& c) {
-  const json s = scenario_of(c);
-  return s.is_object() && s.contains("metamorphic");
-}
+bool is_metamorphic(const RunRecord& c) { return has_block(c, "metamorphic"); }
 
 std::vector<Table> metamorphic_tables(const std::vector<RunRecord>& runs) {
   std::vector<Table> out;
-  std::vector<std::string> labels, scenes;
   const std::vector<Row> all = rows_of(runs);
-  for (const Row& r : all) place(scenes, r.scene);
-  for (const Row& r : all) {
-    const std::size_t k = place(labels, r.label);
-    if (k == out.size()) {
-      out.push_back({fmt::format("Metamorphic properties of {}", r.label),
-                     "Greatest distance from the expected motion over all vertices and frames, divided by the longer "
-                     "side; \"0 bits\": no bit differs.",
-                     {{"property", "what changes"}}});
-      out[k].rows[0].insert(out[k].rows[0].end(), scenes.begin(), scenes.end());
-    }
-    std::vector<std::string> empty(2 + scenes.size(), "–");
-    empty[0] = r.property;
-    empty[1] = r.doc;
-    auto& row = find_or_add(
-        out[k].rows, [&](const auto& cells) { return cells[0] == r.property; }, empty);
-    row[2 + place(scenes, r.scene)] = text_of(r);
+  for (const std::string& label : distinct(all, &Row::label)) {
+    std::vector<Row> rows;  // the first of each property
+    for (const Row& r : all)
+      if (r.label == label)
+        find_or_add(
+            rows, [&](const Row& x) { return x.property == r.property; }, r);
+    out.push_back(
+        Columns<Row>{{"", "property", &Row::property}, {"", "what changes", &Row::doc}}
+            .across(distinct(all, &Row::scene), std::identity{},
+                    [&](const Row& row, const std::string& scene) {
+                      std::string text;
+                      for (const Row& r : all)
+                        if (r.label == label && r.property == row.property && r.scene == scene) text = text_of(r);
+                      return text;
+                    })
+            .table({fmt::format("Metamorphic properties of {}", label),
+                    "Greatest distance from the expected motion over all vertices and frames, divided by the longer "
+                    "side; \"0 bits\": no bit differs.",
+                    {}},
+                   rows));
   }
   return out;
 }

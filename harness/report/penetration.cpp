@@ -236,57 +236,48 @@ std::string held_at(const RunRecord& c) {
   return least == most ? fmt::format("{:.3g}", 1e3 * most) : fmt::format("{:.3g} to {:.3g}", 1e3 * least, 1e3 * most);
 }
 
-std::vector<std::string> held_row(const std::vector<ContactRow>& all, const std::vector<std::string>& solvers) {
-  std::vector<std::string> row;
-  for (const std::string& solver : solvers) {
-    std::set<std::pair<double, std::string>> held;
-    for (const ContactRow& r : all)
-      if (r.series.label() == solver && std::isfinite(held_at_m(*r.run).second))
-        held.insert({held_at_m(*r.run).second, held_at(*r.run)});
-    std::string text;
-    for (const auto& [m, words] : held) text += (text.empty() ? "" : ", ") + words;
-    row.push_back(or_dash(text));
-  }
-  return std::all_of(row.begin(), row.end(), [](const std::string& x) { return x == "–"; }) ? decltype(row)() : row;
+TextRow held_row(const std::vector<ContactRow>& all) {
+  std::map<std::string, std::set<std::pair<double, std::string>>> held;
+  for (const ContactRow& r : all)
+    if (const double most = held_at_m(*r.run).second; std::isfinite(most))
+      held[r.series.label()].insert({most, held_at(*r.run)});
+  TextRow row{kHeldAt};
+  for (const auto& [solver, at] : held)
+    for (const auto& [m, words] : at) row.cells[solver] += (row.cells[solver].empty() ? "" : ", ") + words;
+  return row;
 }
 
 Table verdict_table(const std::vector<ContactSetUp>& ups) {
   const std::vector<ContactRow> all = contact_rows(ups);
   std::vector<std::string> solvers = distinct(all, [](const ContactRow& r) { return r.series.label(); });
   std::sort(solvers.begin(), solvers.end());
-  Table t{"Penetration: verdict on each scene's expectations",
-          "Pass: every bound of the scene's `expect` holds over the whole scene. Ignored: the scene passes "
-          "although the solver handles no contact. –: not run, or the scene has no bounds. Holds at: distance at "
-          "which the solver holds the cloth off colliders; compare solvers at equal distances. Columns of the "
-          "tables below. Tunnelled: share of the cloth that has passed to the other side of a mesh. Contour: "
-          "length of the curves in which cloth and colliders cross; settled: the greatest value in the last "
-          "0.5 s. Depth: how far the cloth is inside a collider, without the margin. Wrong side: vertices and "
-          "cell centres that a moving hand went through. Longest contour: longest time without a break in "
-          "which cloth and colliders cross. Popping: greatest displacement of a vertex within 3 frames after "
-          "the last contact, and its speed divided by a limit; the limit is the greater of twice the hand's "
-          "speed and the speed of a fall over the cloth's length. Strain: strain of the structural edges. "
-          "Time: median over the timed frames.",
-          {{"scene"}}};
-  t.rows[0].insert(t.rows[0].end(), solvers.begin(), solvers.end());
-  if (const std::vector<std::string> held = held_row(all, solvers); !held.empty()) {
-    t.rows.push_back({kHeldAt});
-    t.rows.back().insert(t.rows.back().end(), held.begin(), held.end());
-  }
+  std::vector<TextRow> rows = {held_row(all)};
+  if (rows.front().cells.empty()) rows.clear();
   std::set<std::string> bounds;
   for (const ContactSetUp& u : ups)
     for (const ContactScene& s : u.scenes) {
-      std::vector<std::string> row = {s.name};
-      for (const std::string& solver : solvers) {
-        const auto at =
-            std::find_if(s.rows.begin(), s.rows.end(), [&](const ContactRow& r) { return r.series.label() == solver; });
-        row.push_back(at == s.rows.end() ? "–" : verdict(*at->run));
-      }
-      t.rows.push_back(std::move(row));
+      rows.push_back({s.name});
+      for (const ContactRow& r : s.rows) rows.back().cells.emplace(r.series.label(), verdict(*r.run));
     }
   for (const ContactRow& r : all)
     for (const BoundResult& b : bound_results(*r.run)) bounds.insert(kExpect + b.name);
-  t.note = with_withheld(t.note, runs_of(all, &ContactRow::run), {bounds.begin(), bounds.end()});
-  return t;
+  return text_columns({"scene"}, solvers)
+      .table({"Penetration: verdict on each scene's expectations",
+              with_withheld(
+                  "Pass: every bound of the scene's `expect` holds over the whole scene. Ignored: the scene passes "
+                  "although the solver handles no contact. –: not run, or the scene has no bounds. Holds at: distance "
+                  "at which the solver holds the cloth off colliders; compare solvers at equal distances. Columns of "
+                  "the tables below. Tunnelled: share of the cloth that has passed to the other side of a mesh. "
+                  "Contour: length of the curves in which cloth and colliders cross; settled: the greatest value in "
+                  "the last 0.5 s. Depth: how far the cloth is inside a collider, without the margin. Wrong side: "
+                  "vertices and cell centres that a moving hand went through. Longest contour: longest time without a "
+                  "break in which cloth and colliders cross. Popping: greatest displacement of a vertex within 3 "
+                  "frames after the last contact, and its speed divided by a limit; the limit is the greater of twice "
+                  "the hand's speed and the speed of a fall over the cloth's length. Strain: strain of the structural "
+                  "edges. Time: median over the timed frames.",
+                  runs_of(all, &ContactRow::run), {bounds.begin(), bounds.end()}),
+              {}},
+             rows);
 }
 
 Table contact_table(const ContactSetUp& s) {
@@ -329,14 +320,24 @@ Table cost_table(const ContactSetUp& s) {
 }
 
 Table failed_expectations_table(const std::vector<ContactSetUp>& ups) {
-  Table t{"Bounds that failed", "", {{"scene", "solver", "bound", "expected", "found"}}};
+  struct Broken : ContactRow {
+    std::string name;
+  };
+  std::vector<Broken> all;
   for (const ContactRow& r : contact_rows(ups))
-    for (const auto& [what, kept] : bound_results(*r.run)) {
-      if (kept != 0) continue;
-      t.rows.push_back({r.scene, r.series.label(), what, bound(scenario_of(*r.run), what),
-                        what == "outcome" ? ending(r.run->outcome) : in_form("{:.4g}")(summary_value(*r.run, what))});
-    }
-  return t;
+    for (const auto& [name, kept] : bound_results(*r.run))
+      if (kept == 0) all.push_back({r, name});
+  return Columns<Broken>{{"", "scene", &Broken::scene},
+                         {"", "solver", [](auto& b) { return b.series.label(); }},
+                         {"", "bound", &Broken::name},
+                         {"", "expected", [](auto& b) { return bound(scenario_of(*b.run), b.name); }},
+                         {"", "found",
+                          [](auto& b) -> Value {
+                            if (b.name == "outcome") return ending(b.run->outcome);
+                            return summary_value(*b.run, b.name);
+                          },
+                          in_form("{:.4g}")}}
+      .table({"Bounds that failed", "", {}}, all);
 }
 
 }  // namespace clothbench

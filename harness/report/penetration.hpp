@@ -62,9 +62,8 @@ std::string verdict(const RunRecord&);
 std::pair<double, double> held_at_m(const RunRecord&);
 /// The same in mm, as text: "4", "4 to 20", "–".
 std::string held_at(const RunRecord&);
-/// The same for each of `solvers` (labels of series) over all its rows: "4, 20". Empty if no run holds a cloth off
-/// anything.
-std::vector<std::string> held_row(const std::vector<ContactRow>&, const std::vector<std::string>& solvers);
+/// The same by solver (labels of series) over all its rows: "4, 20". No cells if no run holds a cloth off anything.
+TextRow held_row(const std::vector<ContactRow>&);
 /// The head of that row.
 inline constexpr const char* kHeldAt = "(the solver holds the cloth at [mm])";
 

@@ -63,13 +63,6 @@ bool same_speed(double a, double b) { return std::abs(a - b) <= 1e-6 * b; }
 }  // namespace
 
 Table pulled_strip_table(const std::vector<ContactSetUp>& ups) {
-  Table t{"A strip pulled at both ends against its exact wave",
-          "First figure: the greatest strain along the strip minus the exact one (reference case "
-          "two-hand-pull, same mesh), the greatest over all frames, divided by v0/c, the strain that one wave "
-          "brings. Second figure: RMS distance over space and time, divided by L. A run fails if the first "
-          "figure exceeds 0.1 or is not known. The exact solution is proportional to v0, so a solver is not "
-          "linear if its first figure depends on the speed.",
-          {{"strip", "solver", "failure speed"}}};
   const std::vector<PulledRow> rows = rows_of(ups);
   std::vector<double> speeds;
   for (const PulledRow& r : rows)
@@ -77,26 +70,33 @@ Table pulled_strip_table(const std::vector<ContactSetUp>& ups) {
       if (std::none_of(speeds.begin(), speeds.end(), [&](double v) { return same_speed(v, c.speed_m_per_s); }))
         speeds.push_back(c.speed_m_per_s);
   std::sort(speeds.begin(), speeds.end());
-  for (const double v : speeds) t.rows[0].push_back(fmt::format("{:g} m/s", v));
-  for (const PulledRow& r : rows) {
+  static const auto in_metres = [](double v) { return fmt::format("{:g} m/s", v); };
+  static const auto failure_speed = [](const PulledRow& r) -> std::string {
     const PulledRun* fault = r.first_fault();
-    std::vector<std::string> row = {r.scene, r.series.label(),
-                                    fault != nullptr && leak_of("wave", *fault->run) == "–" ? "–"
-                                    : fault == nullptr ? fmt::format("none up to {:g} m/s", r.runs.back().speed_m_per_s)
-                                                       : fmt::format("{:g} m/s", fault->speed_m_per_s)};
-    for (const double v : speeds) {
-      std::string text = "–";
-      for (const PulledRun& c : r.runs) {
-        if (!same_speed(v, c.speed_m_per_s)) continue;
-        text = c.run->outcome.status != "ok" ? c.run->outcome.status
-                                             : in_form("{:.2g}")(summary_value(*c.run, "truth_quantity_error_max")) +
-                                                   " / " + in_form("{:.1e}")(summary_value(*c.run, "truth_e2"));
-      }
-      row.push_back(text);
-    }
-    t.rows.push_back(std::move(row));
-  }
-  return t;
+    if (fault == nullptr) return "none up to " + in_metres(r.runs.back().speed_m_per_s);
+    return leak_of("wave", *fault->run) == "–" ? "–" : in_metres(fault->speed_m_per_s);
+  };
+  static const auto errors = [](const PulledRow& r, double v) -> std::string {
+    const auto at =
+        std::find_if(r.runs.rbegin(), r.runs.rend(), [&](auto& c) { return same_speed(v, c.speed_m_per_s); });
+    if (at == r.runs.rend()) return "";
+    const RunRecord& c = *at->run;
+    if (c.outcome.status != "ok") return c.outcome.status;
+    return in_form("{:.2g}")(summary_value(c, "truth_quantity_error_max")) + " / " +
+           in_form("{:.1e}")(summary_value(c, "truth_e2"));
+  };
+  return Columns<PulledRow>{{"", "strip", &PulledRow::scene},
+                            {"", "solver", [](auto& r) { return r.series.label(); }},
+                            {"", "failure speed", failure_speed}}
+      .across(speeds, in_metres, errors)
+      .table({"A strip pulled at both ends against its exact wave",
+              "First figure: the greatest strain along the strip minus the exact one (reference case "
+              "two-hand-pull, same mesh), the greatest over all frames, divided by v0/c, the strain that one wave "
+              "brings. Second figure: RMS distance over space and time, divided by L. A run fails if the first "
+              "figure exceeds 0.1 or is not known. The exact solution is proportional to v0, so a solver is not "
+              "linear if its first figure depends on the speed.",
+              {}},
+             rows);
 }
 
 json pulled_strip_json(const std::vector<ContactSetUp>& ups) {

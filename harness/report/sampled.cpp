@@ -20,24 +20,31 @@ const std::vector<std::string>& sampled_names() {
 }
 
 Table sampled_table(const std::vector<RunRecord>& runs) {
-  Table t{"The device's own counters during the trials",
-          "FPS: frames that the display showed. Read and written: memory traffic of the whole device, which is "
-          "neither that of the app alone nor the computed bytes of the other tables. Peak: greatest 1 s sample "
-          "in windows of 5 s. –: no sample lies within a trial.",
-          {{"scene", "solver", "FPS", "read peak / mean [GB/s]", "written peak / mean [GB/s]", "GPU [MHz]", "CPU [MHz]",
-            "hottest [°C]", "valid"}}};
-  for (const RunRecord& c : runs) {
-    const auto v = [&](const char* name) { return summary_value(c, name); };
-    const double valid = v("sampled_valid");
-    if (!std::isfinite(valid)) continue;
-    t.rows.push_back({c.header.scene, label_of(c), significant(v("sampled_fps_mean"), 3),
-                      paired(1e-9 * v("sampled_read_peak_B_per_s"), 1e-9 * v("sampled_read_mean_B_per_s"), " / ", 3),
-                      paired(1e-9 * v("sampled_write_peak_B_per_s"), 1e-9 * v("sampled_write_mean_B_per_s"), " / ", 3),
-                      significant(1e-6 * v("sampled_gpu_clock_mean_Hz"), 4),
-                      significant(1e-6 * v("sampled_cpu_clock_mean_Hz"), 4),
-                      significant(v("sampled_temperature_max_C"), 3), valid == 1 ? "yes" : "no"});
-  }
-  return t;
+  constexpr Unit kMegahertz{"MHz", 1e-6};
+  static const auto rates = [](const std::string& of) {
+    return [=](const RunRecord& c) {
+      return paired(1e-9 * summary_value(c, "sampled_" + of + "_peak_B_per_s"),
+                    1e-9 * summary_value(c, "sampled_" + of + "_mean_B_per_s"), " / ", 3);
+    };
+  };
+  std::vector<RunRecord> sampled = runs;
+  std::erase_if(sampled, [](auto& c) { return !std::isfinite(summary_value(c, "sampled_valid")); });
+  return Columns<RunRecord>{
+      {"", "scene", [](auto& c) { return c.header.scene; }},
+      {"", "solver", label_of},
+      {"", "FPS", summary("sampled_fps_mean"), digits(3)},
+      {"", "read peak / mean [GB/s]", rates("read")},
+      {"", "written peak / mean [GB/s]", rates("write")},
+      {"", "GPU", summary("sampled_gpu_clock_mean_Hz"), digits(4), kMegahertz},
+      {"", "CPU", summary("sampled_cpu_clock_mean_Hz"), digits(4), kMegahertz},
+      {"", "hottest [°C]", summary("sampled_temperature_max_C"), digits(3)},
+      {"", "valid", [](auto& c) { return summary_value(c, "sampled_valid") == 1 ? "yes" : "no"; }}}
+      .table({"The device's own counters during the trials",
+              "FPS: frames that the display showed. Read and written: memory traffic of the whole device, which is "
+              "neither that of the app alone nor the computed bytes of the other tables. Peak: greatest 1 s sample "
+              "in windows of 5 s. –: no sample lies within a trial.",
+              {}},
+             sampled);
 }
 
 }  // namespace clothbench

@@ -79,6 +79,18 @@ std::string name_of(const json& solver) {
   return solver.at("solver").get<std::string>() + (setting == "default" ? "" : " " + setting);
 }
 
+/// A solver in a map.
+struct MapRow {
+  const json *map, *solver;
+};
+
+std::vector<MapRow> map_rows(const json& maps) {
+  std::vector<MapRow> out;
+  for (const json& m : maps)
+    for (const json& s : m.at("solvers")) out.push_back({&m, &s});
+  return out;
+}
+
 std::string with_unit(const std::string& value, const json& axis) {
   const auto unit = axis.value("unit", "");
   return unit.empty() ? value : value + " " + unit;
@@ -86,10 +98,7 @@ std::string with_unit(const std::string& value, const json& axis) {
 
 }  // namespace
 
-bool is_stability(const RunRecord& c) {
-  const json scenario = scenario_of(c);
-  return scenario.is_object() && scenario.contains("stability");
-}
+bool is_stability(const RunRecord& c) { return has_block(c, "stability"); }
 
 json stability_maps(const std::vector<fs::path>& results) {
   json all = json::array();
@@ -107,32 +116,24 @@ json stability_maps(const std::vector<fs::path>& results) {
 }
 
 Table robustness_table(const std::vector<RunRecord>& runs) {
-  Table t{"Robustness",
-          "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain or unrest is "
-          "out of bounds (F3, F6). Failed: any other class. Classes: F0 not finite, F1 speed, F2 energy gain, "
-          "F3 strain, F4 geometry, F5 contact, F6 unrest, F7 stagnation, F8 budget, crash or device.",
-          {{"case"}}};
-  const auto case_name = [](const RunRecord& c) { return case_of(scenario_of(c)); };
-  const std::vector<std::string> solvers = distinct(runs, label_of);
+  const std::string kAll = "all";
+  std::vector<std::string> cases = distinct(runs, [](const RunRecord& c) { return case_of(scenario_of(c)); });
+  cases.push_back(kAll);
   std::map<std::pair<std::string, std::string>, Tally> tally;
-  std::map<std::string, Tally> whole;
-  for (const RunRecord& c : runs) {
-    tally[{case_name(c), label_of(c)}].add(c);
-    whole[label_of(c)].add(c);
-  }
-  t.rows.back().insert(t.rows.back().end(), solvers.begin(), solvers.end());
-  const auto row = [&](const std::string& title, const auto& of) {
-    std::vector<std::string> r = {title};
-    for (const std::string& s : solvers) r.push_back(of(s));
-    t.rows.push_back(std::move(r));
-  };
-  for (const std::string& kase : distinct(runs, case_name))
-    row(kase, [&](const std::string& s) {
-      const auto at = tally.find({kase, s});
-      return at == tally.end() ? std::string("–") : at->second.text();
-    });
-  row("all", [&](const std::string& s) { return whole[s].text(); });
-  return t;
+  for (const RunRecord& c : runs)
+    for (const std::string& kase : {case_of(scenario_of(c)), kAll}) tally[{kase, label_of(c)}].add(c);
+  return Columns<std::string>{{"", "case", [](auto& kase) { return kase; }}}
+      .across(distinct(runs, label_of), std::identity{},
+              [&](const std::string& kase, const std::string& solver) {
+                const auto at = tally.find({kase, solver});
+                return at == tally.end() ? "" : at->second.text();
+              })
+      .table({"Robustness",
+              "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain or unrest is "
+              "out of bounds (F3, F6). Failed: any other class. Classes: F0 not finite, F1 speed, F2 energy gain, "
+              "F3 strain, F4 geometry, F5 contact, F6 unrest, F7 stagnation, F8 budget, crash or device.",
+              {}},
+             cases);
 }
 
 json stability_cases(const std::vector<RunRecord>& runs) {
@@ -154,49 +155,54 @@ json stability_cases(const std::vector<RunRecord>& runs) {
 }
 
 Table headline_table(const json& maps) {
-  Table t{"Largest stable values",
-          "Smallest over all rows and seeds of a map. ≥: every row is stable over the whole range. none: a row "
-          "has no stable value in the range.",
-          {{"map", "solver", "largest"}}};
+  std::string note =
+      "Smallest over all rows and seeds of a map. ≥: every row is stable over the whole range. none: a row "
+      "has no stable value in the range.";
   for (const json& m : maps)
-    t.note += " " + m.at("title").get<std::string>() + ": " + m.at("headline").get<std::string>() + ".";
-  for (const json& m : maps)
-    for (const json& s : m.at("solvers")) {
-      std::string value = "unsupported";
-      if (!s.at("unsupported").get<bool>()) {
-        const double largest = s.at("largest").is_null() ? 0 : s.at("largest").get<double>();
-        value = largest == 0 ? "none"
-                             : with_unit((s.at("open").get<bool>() ? "≥ " : "") + short_number(largest), m.at("x"));
-      }
-      t.rows.push_back({m.at("title"), name_of(s), value});
-    }
-  return t;
+    note += " " + m.at("title").get<std::string>() + ": " + m.at("headline").get<std::string>() + ".";
+  static const auto largest = [](const MapRow& r) -> std::string {
+    const json& s = *r.solver;
+    if (s.at("unsupported").get<bool>()) return "unsupported";
+    const double v = s.at("largest").is_null() ? 0 : s.at("largest").get<double>();
+    return v == 0 ? "none" : with_unit((s.at("open").get<bool>() ? "≥ " : "") + short_number(v), r.map->at("x"));
+  };
+  return Columns<MapRow>{{"", "map", [](auto& r) { return r.map->at("title"); }},
+                         {"", "solver", [](auto& r) { return name_of(*r.solver); }},
+                         {"", "largest", largest}}
+      .table({"Largest stable values", note, {}}, map_rows(maps));
 }
 
 Table boundary_table(const json& maps) {
-  Table t{"Boundaries",
-          "Last stable value of x in every row, the smallest over its seeds, to 0.05 decades. ≥: the whole "
-          "range is stable.",
-          {{"map", "solver", "y", "last stable x", "first unstable x", "seeds"}}};
-  for (const json& m : maps)
-    for (const json& s : m.at("solvers"))
-      for (const json& row : s.at("rows")) {
-        double good = INFINITY, bad = INFINITY;
-        for (const json& seed : row.at("seeds")) {
-          good = std::min(good, seed.at("last_good").get<double>());
-          if (!seed.at("first_bad").is_null()) bad = std::min(bad, seed.at("first_bad").get<double>());
-        }
-        t.rows.push_back({m.at("name"), name_of(s), with_unit(short_number(row.at("y")), m.at("y")),
-                          good == 0 ? "none" : (std::isfinite(bad) ? "" : "≥ ") + short_number(good),
-                          std::isfinite(bad) ? short_number(bad) : "–", std::to_string(row.at("seeds").size())});
+  struct Boundary : MapRow {
+    const json* row = nullptr;
+    double good = INFINITY, bad = INFINITY;
+  };
+  std::vector<Boundary> all;
+  for (const MapRow& r : map_rows(maps))
+    for (const json& row : r.solver->at("rows")) {
+      Boundary& b = all.emplace_back(Boundary{r, &row});
+      for (const json& seed : row.at("seeds")) {
+        b.good = std::min(b.good, seed.at("last_good").get<double>());
+        if (!seed.at("first_bad").is_null()) b.bad = std::min(b.bad, seed.at("first_bad").get<double>());
       }
-  return t;
+    }
+  static const auto last_stable = [](const Boundary& b) {
+    return b.good == 0 ? "none" : (std::isfinite(b.bad) ? "" : "≥ ") + short_number(b.good);
+  };
+  return Columns<Boundary>{{"", "map", [](auto& b) { return b.map->at("name"); }},
+                           {"", "solver", [](auto& b) { return name_of(*b.solver); }},
+                           {"", "y", [](auto& b) { return with_unit(short_number(b.row->at("y")), b.map->at("y")); }},
+                           {"", "last stable x", last_stable},
+                           {"", "first unstable x", &Boundary::bad, in_form("{:.3g}")},
+                           {"", "seeds", [](auto& b) { return b.row->at("seeds").size(); }}}
+      .table({"Boundaries",
+              "Last stable value of x in every row, the smallest over its seeds, to 0.05 decades. ≥: the whole "
+              "range is stable.",
+              {}},
+             all);
 }
 
 Table first_failure_table(const std::vector<RunRecord>& runs) {
-  Table t{"Runs that were not stable",
-          "In brackets: the first frame of that class.",
-          {{"solver", "grade", "class", "runs"}}};
   std::map<std::tuple<std::string, int, std::string>, std::string> texts;
   for (const RunRecord& c : runs) {
     const int grade = grade_of(c);
@@ -206,9 +212,11 @@ Table first_failure_table(const std::vector<RunRecord>& runs) {
     if (c.outcome.failed_frame >= 0) text += fmt::format(" ({})", c.outcome.failed_frame);
     if (c.outcome.status != "ok" && c.outcome.status != "diverged") text += " " + c.outcome.status;
   }
-  for (const auto& [key, text] : texts)
-    t.rows.push_back({std::get<0>(key), kGrades[-std::get<1>(key)], std::get<2>(key), text});
-  return t;
+  return Columns<decltype(texts)::value_type>{{"", "solver", [](auto& t) { return std::get<0>(t.first); }},
+                                              {"", "grade", [](auto& t) { return kGrades[-std::get<1>(t.first)]; }},
+                                              {"", "class", [](auto& t) { return std::get<2>(t.first); }},
+                                              {"", "runs", [](auto& t) { return t.second; }}}
+      .table({"Runs that were not stable", "In brackets: the first frame of that class.", {}}, texts);
 }
 
 std::string stability_csv(const std::vector<RunRecord>& runs) {

@@ -25,55 +25,54 @@ std::string with_spread(double v, double spread) {
          (std::isfinite(spread) ? fmt::format("{:.{}f} %", 100 * spread, spread >= 0.0995 ? 0 : 1) : "–");
 }
 
-using Rows = std::vector<std::vector<std::string>>;
+/// A row of the paper's table: a published solver, or a series of ours.
+struct PaperRow {
+  const nlohmann::json* published = nullptr;
+  Series series = {};
+};
 
-/// Published values with the precision of the paper: integers.
-std::vector<std::string> published_row(const nlohmann::json& column, const std::vector<Resolution>& columns,
-                                       const nlohmann::json& resolutions) {
-  std::vector<std::string> row = {"published: " + column.at("name").get<std::string>(), column.value("sides", "–")};
-  for (const Resolution& r : columns) {
-    std::string run = "–";
-    for (std::size_t k = 0; k < resolutions.size(); ++k)
-      if (r.grid[0] == resolutions[k].get<int>() && r.grid[1] == r.grid[0])
-        run = fmt::format("{:g}", column.at("fps").at(k).get<double>());
-    row.push_back(run);
+/// Published rows, each with the rows below it of plugins that wrap its engine; then ours. `note` says what those are.
+std::vector<PaperRow> paper_rows(const Family& family, const nlohmann::json& published, std::string& note) {
+  std::vector<PaperRow> out;
+  std::vector<Series> ours = family.series();
+  const auto engine = [&](const Series& s) {
+    return engine_of(
+        *std::find_if(family.runs.begin(), family.runs.end(), [&](auto& p) { return p.series == s; })->run);
+  };
+  for (const nlohmann::json& column : published.at("columns")) {
+    out.push_back({&column});
+    const auto wraps = [&](const Series& s) { return column.contains("engine") && engine(s) == column["engine"]; };
+    for (const Series& s : ours)
+      if (wraps(s)) out.push_back({nullptr, s});
+    if (out.back().published == nullptr)
+      note += fmt::format(" {}: {}", out.back().series.solver, column.value("peer", ""));
+    std::erase_if(ours, wraps);
   }
-  return row;
-}
-
-/// Engine of each series' plugin, in the order of the rows of Family::table.
-std::vector<std::string> engines_of(const Family& family) {
-  std::vector<std::string> out;
-  for (const Series& s : family.series()) {
-    const auto run = std::find_if(family.runs.begin(), family.runs.end(), [&](const auto& p) { return p.series == s; });
-    out.push_back(engine_of(*run->run));
-  }
+  for (const Series& s : ours) out.push_back({nullptr, s});
   return out;
 }
 
-/// Puts the published rows first. Rows of a plugin move below the published row of the engine that it wraps, and the
-/// note says what they are.
-void add_published(Table& t, const Family& family, const nlohmann::json& published) {
-  const std::vector<std::string> engines = engines_of(family);
-  const std::vector<Resolution> columns = family.resolutions();
-  Rows first = {t.rows.front()}, rest;
-  std::vector<bool> moved(engines.size(), false);
-  for (const nlohmann::json& column : published.at("columns")) {
-    first.push_back(published_row(column, columns, published.at("resolution")));
-    const std::string engine = column.value("engine", "");
-    std::string name;
-    for (std::size_t k = 0; k < engines.size() && !engine.empty(); ++k) {
-      if (engines[k] != engine) continue;
-      first.push_back(t.rows[k + 1]);
-      name = family.series()[k].solver;
-      moved[k] = true;
-    }
-    if (!name.empty()) t.note += fmt::format(" {}: {}", name, column.value("peer", ""));
-  }
-  for (std::size_t k = 0; k < engines.size(); ++k)
-    if (!moved[k]) rest.push_back(t.rows[k + 1]);
-  t.rows = std::move(first);
-  t.rows.insert(t.rows.end(), rest.begin(), rest.end());
+/// The family's table with the published values, as integers as in the paper.
+Table paper_table(const Family& family, const nlohmann::json& published, const std::string& title, std::string note,
+                  const std::function<std::string(const RunRecord&)>& text) {
+  const std::vector<PaperRow> rows = paper_rows(family, published, note);
+  const nlohmann::json& widths = published.at("resolution");
+  static const auto name = [](const PaperRow& r) {
+    return r.published == nullptr ? r.series.label() : "published: " + r.published->at("name").get<std::string>();
+  };
+  static const auto sides = [](const PaperRow& r) {
+    return r.published == nullptr ? or_dash(r.series.sides) : r.published->value("sides", "–");
+  };
+  return Columns<PaperRow>{{"", "solver", name}, {"", "sides", sides}}
+      .across(family.resolutions(), &Resolution::label,
+              [&](const PaperRow& r, const Resolution& at) -> std::string {
+                if (r.published == nullptr) return family.cell(r.series, at, text);
+                for (std::size_t k = 0; k < widths.size(); ++k)
+                  if (at.grid[0] == widths[k].get<int>() && at.grid[1] == at.grid[0])
+                    return fmt::format("{:g}", r.published->at("fps").at(k).get<double>());
+                return "";
+              })
+      .table({title, std::move(note), {}}, rows);
 }
 
 std::string capped_note(const Family& f, bool paper) {
@@ -210,10 +209,10 @@ void add_values(const Family& family, const ValueTable& t, const std::string& sc
 std::vector<Table> fps_tables(const Family& family, const nlohmann::json& published) {
   const bool paper = family.paper_table == 3;
   const std::string scene = paper ? "" : " (" + family.name + ")";
-  std::vector<Table> tables = {
-      family.table((paper ? "Table 3: frames" : "Frames") + std::string(" per second, capped at 72") + scene,
-                   capped_note(family, paper), [](const RunRecord& c) { return fps(summary_value(c, "fps_at_72")); })};
-  if (paper) add_published(tables.back(), family, published);
+  const std::string title = (paper ? "Table 3: frames" : "Frames") + std::string(" per second, capped at 72") + scene;
+  const auto capped = [](const RunRecord& c) { return fps(summary_value(c, "fps_at_72")); };
+  std::vector<Table> tables = {paper ? paper_table(family, published, title, capped_note(family, paper), capped)
+                                     : family.table(title, capped_note(family, paper), capped)};
   const bool on_gpu =
       std::any_of(family.runs.begin(), family.runs.end(), [](const PlacedRun& p) { return !gpu_of(*p.run).empty(); });
   for (const auto& group : {time_tables(), error_tables(), device_tables(window_note(summaries_of(family)))})
@@ -226,33 +225,42 @@ std::vector<Table> fps_tables(const Family& family, const nlohmann::json& publis
 
 Table failed_table(const std::vector<RunRecord>& runs) {
   // One row for all runs with the same ending: a missing feature is one line, not one per resolution.
-  std::vector<std::vector<std::string>> rows;
+  struct Ending {
+    std::string solver, status, message, scenes = {};
+    bool operator==(const Ending& o) const {
+      return std::tie(solver, status, message) == std::tie(o.solver, o.status, o.message);
+    }
+  };
+  std::vector<Ending> all;
   for (const RunRecord& c : runs) {
     if (c.outcome.status == "ok") continue;
-    std::string status = c.outcome.status, scene = c.header.scene;
-    if (c.outcome.klass != "ok" && !c.outcome.klass.empty()) status += " (" + c.outcome.klass + ")";
+    std::string scene = c.header.scene;
     if (c.outcome.failed_frame >= 0) scene += fmt::format(" (frame {})", c.outcome.failed_frame);
-    std::vector<std::string> row = {label_of(c), status, or_dash(c.outcome.message), ""};
+    const Ending same{label_of(c), status_with_class(c.outcome), c.outcome.message};
     std::string& scenes = find_or_add(
-                              rows, [&](const auto& r) { return std::equal(r.begin(), r.end() - 1, row.begin()); }, row)
-                              .back();
+                              all, [&](const Ending& e) { return e == same; }, same)
+                              .scenes;
     scenes += (scenes.empty() ? "" : ", ") + scene;
   }
-  Table t{"Runs without a result", "", {{"solver", "status", "message", "scenes"}}};
-  t.rows.insert(t.rows.end(), rows.begin(), rows.end());
-  return t;
+  return Columns<Ending>{{"", "solver", &Ending::solver},
+                         {"", "status", &Ending::status},
+                         {"", "message", [](auto& e) { return or_dash(e.message); }},
+                         {"", "scenes", &Ending::scenes}}
+      .table({"Runs without a result", "", {}}, all);
 }
 
 Table expect_table(const std::vector<RunRecord>& runs) {
-  Table t{"Expectations that failed", "", {{"scene", "solver", "verdict"}}};
-  std::size_t kept = 0, unknown = 0;
-  for (const RunRecord& c : runs) {
-    kept += c.outcome.expect == "pass";
-    unknown += c.outcome.expect == "not measured";
-    if (c.outcome.expect.starts_with("fail")) t.rows.push_back({c.header.scene, label_of(c), c.outcome.expect});
-  }
-  t.note = fmt::format("{} passed, {} not measured.", kept, unknown);
-  return t;
+  const auto count = [&](const auto& is) { return std::count_if(runs.begin(), runs.end(), is); };
+  std::vector<RunRecord> failed = runs;
+  std::erase_if(failed, [](auto& c) { return !c.outcome.expect.starts_with("fail"); });
+  return Columns<RunRecord>{{"", "scene", [](auto& c) { return c.header.scene; }},
+                            {"", "solver", label_of},
+                            {"", "verdict", [](auto& c) { return c.outcome.expect; }}}
+      .table({"Expectations that failed",
+              fmt::format("{} passed, {} not measured.", count([](auto& c) { return c.outcome.expect == "pass"; }),
+                          count([](auto& c) { return c.outcome.expect == "not measured"; })),
+              {}},
+             failed);
 }
 
 }  // namespace clothbench

@@ -11,6 +11,7 @@
 #include "report/report.hpp"
 #include "report/roles.hpp"
 #include "report/withheld.hpp"
+#include "truth/reference_case.hpp"
 
 namespace clothbench {
 namespace {
@@ -21,18 +22,6 @@ constexpr double kRealTime_ms_per_s = 1000;  // a 72 Hz frame simulates 1/72 s i
 
 std::string reference_case_of(const json& scenario) {
   return scenario.is_object() ? scenario.value(json::json_pointer("/truth/case"), std::string()) : "";
-}
-
-/// Definition of the error that ranks the runs of a reference case, as text. It repeats
-/// harness/truth/reference_case.hpp, since a report reads only files.
-std::string ranking_of(const std::string& known) {
-  if (known == "heavy-strip") return "stretch of the strip at rest / exact stretch";
-  if (known == "two-hand-pull") return "greatest strain, RMS over time / (v0/c)";
-  if (known == "incline") return "displacement along the slope, RMS over time / displacement at the end (at rest: L)";
-  if (known == "capstan" || known == "atwood")
-    return "displacement over the cylinder, RMS over time / displacement at the end (at rest: L)";
-  return known == "catenary" || known == "cantilever" ? "RMS distance at rest / L"
-                                                      : "RMS distance over space and time / L";
 }
 
 WorkPoint point_of(const RunRecord& c, const json& scenario) {
@@ -81,14 +70,9 @@ std::string short_setting(const WorkPoint& p) {
   return p.setting.substr(first.size(), at - first.size()) + "×" + p.setting.substr(at + second.size());
 }
 
-std::string time_text(const WorkPoint* p, double WorkPoint::*clock = &WorkPoint::wall_ms_per_s) {
+std::string time_text(const WorkPoint* p, double WorkPoint::*clock) {
   return p == nullptr ? "–" : fmt::format("{:.3g} ({})", p->*clock, short_setting(*p));
 }
-
-auto within(double most) {
-  return [most](const WorkPoint& p) { return p.error <= most; };
-}
-bool timed_on_gpu(const WorkPoint& p) { return std::isfinite(p.device_ms_per_s); }
 
 /// Errors are not distinguished below the floor.
 std::string error_text(const WorkDiagram& d, const WorkPoint* p) {
@@ -97,8 +81,34 @@ std::string error_text(const WorkDiagram& d, const WorkPoint* p) {
   return fmt::format("{}{:.2g} ({})", below ? "≤ " : "", below ? d.rank_floor() : p->error, short_setting(*p));
 }
 
-std::string failed_text(std::size_t failed, std::size_t all, std::size_t over_budget) {
-  return fmt::format("{} of {}", failed, all) + (over_budget > 0 ? fmt::format(", {} not run", over_budget) : "");
+/// Settings of a solver on a scene: those without a result, those whose time was used up, and all.
+struct Counted {
+  std::size_t failed = 0, all = 0, able = 0, over_budget = 0;
+  explicit Counted(const SolverOfScene& s) {
+    for (const WorkPoint& p : s.diagram->points) {
+      if (p.solver != s.solver) continue;
+      const std::string& status = p.run->outcome.status;
+      ++all;
+      if (status == "over_budget")
+        ++over_budget;
+      else if (!p.counts() && !p.run->withheld.contains("frame_wall_median_s"))
+        ++failed;
+      if (status != "unsupported" && status != "missing") ++able;
+    }
+  }
+};
+
+std::string failed_text(const SolverOfScene& s) {
+  const Counted n(s);
+  if (n.able == 0) return "unsupported";
+  return fmt::format("{} of {}", n.failed, n.all) +
+         (n.over_budget > 0 ? fmt::format(", {} not run", n.over_budget) : "");
+}
+
+std::string ranked_text(const SolverOfScene& s) {
+  if (s.diagram->flagged.contains(s.solver)) return "NO: stiffness is not a parameter";
+  if (Counted(s).able == 0 || !s.diagram->refused().empty()) return "no";
+  return is_baseline(s.solver) ? "baseline" : "yes";
 }
 
 /// A point with its diagram, for CSV.
@@ -183,7 +193,7 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<RunRecord>& runs,
     if (known.empty()) continue;
     auto at = std::find_if(out.begin(), out.end(), [&](const WorkDiagram& d) { return d.scene == c.header.scene; });
     if (at == out.end()) {
-      out.push_back({c.header.scene, known, ranking_of(known), {}});
+      out.push_back({c.header.scene, known, truth::ranking_of(known), {}});
       at = out.end() - 1;
     }
     if (std::string why = stiffness_flag(materials, c.header.solver, stiffness_need(c)); !why.empty())
@@ -209,57 +219,53 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<RunRecord>& runs,
   return out;
 }
 
+std::vector<SolverOfScene> solvers_of(const std::vector<WorkDiagram>& diagrams) {
+  std::vector<SolverOfScene> out;
+  for (const WorkDiagram& d : diagrams)
+    for (std::string& solver : distinct(d.points, &WorkPoint::solver)) out.push_back({&d, d.scene, std::move(solver)});
+  return out;
+}
+
 Table work_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{"Error against run time",
-          "Times: ms of wall time per simulated second, with pipelined frames (two in flight) where the solver "
-          "can; in brackets substeps × iterations. Fenced: each frame from submission to fence; the next "
-          "starts after it. GPU: by the device's own clock. Errors: against the exact solution of the same "
-          "mesh. In real time: a frame of 1/72 s takes at most 1/72 s. ≤: at the floor below which solvers are "
-          "not distinguished, which is three times the reference's uncertainty or the error of the mesh. "
-          "Failed: runs without a finite error. Not run: settings that need more work than the solver's time "
-          "on the scene allowed; each result file has the reason. A refused scene ranks no solver; the next "
-          "table has the reason. Not ranked: the scene depends on a stiffness that is not a parameter of the "
-          "solver; see the effective moduli.",
-          {{"scene", "solver", "to 1 %", "to 0.1 %", "best error in real time", "best error", "failed",
-            "to 1 %, fenced", "to 0.1 %, fenced", "to 1 %, GPU", "to 0.1 %, GPU", "ranked"}}};
-  const auto always = [](const WorkPoint&) { return true; };
-  t.note = with_withheld(t.note, runs_of(work_rows(diagrams), &WorkRow::run), {"frame_wall_median_s", "truth_error"});
-  for (const WorkDiagram& d : diagrams) {
-    const std::string refused = d.refused();
-    for (const std::string& solver : distinct(d.points, &WorkPoint::solver)) {
-      std::size_t failed = 0, all = 0, able = 0, over_budget = 0;
-      for (const WorkPoint& p : d.points)
-        if (p.solver == solver) {
-          ++all;
-          if (p.run->outcome.status == "over_budget")
-            ++over_budget;
-          else if (!p.counts() && !p.run->withheld.contains("frame_wall_median_s"))
-            ++failed;
-          if (p.run->outcome.status != "unsupported" && p.run->outcome.status != "missing") ++able;
-        }
-      const auto by_gpu = [&](double most) {
-        const auto counts = [&](const WorkPoint& p) { return timed_on_gpu(p) && p.error <= most; };
-        return time_text(best(d, solver, counts, &WorkPoint::device_ms_per_s), &WorkPoint::device_ms_per_s);
-      };
-      const auto fenced = [&](double most) {
-        return time_text(best(d, solver, within(most), &WorkPoint::fenced_ms_per_s), &WorkPoint::fenced_ms_per_s);
-      };
-      const auto flag = d.flagged.find(solver);
-      const bool baseline = is_baseline(solver);
-      t.rows.push_back({d.scene + (refused.empty() ? "" : " (refused)"), solver,
-                        time_text(best(d, solver, within(1e-2), &WorkPoint::wall_ms_per_s)),
-                        time_text(best(d, solver, within(1e-3), &WorkPoint::wall_ms_per_s)),
-                        error_text(d, best(d, solver, in_real_time, &WorkPoint::error)),
-                        error_text(d, best(d, solver, always, &WorkPoint::error)),
-                        able == 0 ? "unsupported" : failed_text(failed, all, over_budget), fenced(1e-2), fenced(1e-3),
-                        by_gpu(1e-2), by_gpu(1e-3),
-                        flag != d.flagged.end()         ? "NO: stiffness is not a parameter"
-                        : able == 0 || !refused.empty() ? "no"
-                        : baseline                      ? "baseline"
-                                                        : "yes"});
-    }
-  }
-  return t;
+  // Least time to an error of at most `most`, by a clock.
+  const auto to = [](double most, double WorkPoint::*clock) {
+    return [=](const SolverOfScene& s) {
+      const auto counts = [&](const WorkPoint& p) { return std::isfinite(p.*clock) && p.error <= most; };
+      return time_text(best(*s.diagram, s.solver, counts, clock), clock);
+    };
+  };
+  const auto least = [](const auto& when) {
+    return [=](const SolverOfScene& s) {
+      return error_text(*s.diagram, best(*s.diagram, s.solver, when, &WorkPoint::error));
+    };
+  };
+  return Columns<SolverOfScene>{
+      {"", "scene", [](auto& s) { return s.scene + (s.diagram->refused().empty() ? "" : " (refused)"); }},
+      {"", "solver", &SolverOfScene::solver},
+      {"", "to 1 %", to(1e-2, &WorkPoint::wall_ms_per_s)},
+      {"", "to 0.1 %", to(1e-3, &WorkPoint::wall_ms_per_s)},
+      {"", "best error in real time", least(in_real_time)},
+      {"", "best error", least([](const WorkPoint&) { return true; })},
+      {"", "failed", failed_text},
+      {"", "to 1 %, fenced", to(1e-2, &WorkPoint::fenced_ms_per_s)},
+      {"", "to 0.1 %, fenced", to(1e-3, &WorkPoint::fenced_ms_per_s)},
+      {"", "to 1 %, GPU", to(1e-2, &WorkPoint::device_ms_per_s)},
+      {"", "to 0.1 %, GPU", to(1e-3, &WorkPoint::device_ms_per_s)},
+      {"", "ranked", ranked_text}}
+      .table({"Error against run time",
+              with_withheld(
+                  "Times: ms of wall time per simulated second, with pipelined frames (two in flight) where the solver "
+                  "can; in brackets substeps × iterations. Fenced: each frame from submission to fence; the next "
+                  "starts after it. GPU: by the device's own clock. Errors: against the exact solution of the same "
+                  "mesh. In real time: a frame of 1/72 s takes at most 1/72 s. ≤: at the floor below which solvers are "
+                  "not distinguished, which is three times the reference's uncertainty or the error of the mesh. "
+                  "Failed: runs without a finite error. Not run: settings that need more work than the solver's time "
+                  "on the scene allowed; each result file has the reason. A refused scene ranks no solver; the next "
+                  "table has the reason. Not ranked: the scene depends on a stiffness that is not a parameter of the "
+                  "solver; see the effective moduli.",
+                  runs_of(work_rows(diagrams), &WorkRow::run), {"frame_wall_median_s", "truth_error"}),
+              {}},
+             solvers_of(diagrams));
 }
 
 Table truth_table(const std::vector<WorkDiagram>& diagrams) {

@@ -44,6 +44,14 @@ struct WorkDiagram {
   std::string refused() const;
 };
 
+/// A row of tables: a solver with points in a diagram.
+struct SolverOfScene {
+  const WorkDiagram* diagram;
+  std::string scene, solver;
+};
+/// All of them, by diagram and in the order of its points. `diagrams` must outlive the result.
+std::vector<SolverOfScene> solvers_of(const std::vector<WorkDiagram>& diagrams);
+
 /// True for a run whose scene states its truth.
 bool has_truth(const RunRecord&);
 

@@ -60,57 +60,61 @@ int rank(const WorkDiagram& d, const std::string& solver, const Criterion& c) {
 }  // namespace
 
 Table winners_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{"Best solver by scene",
-          "Best of the ranked solvers; several names where they are not distinguished. Times: ms of wall time "
-          "per simulated second. ≤: at the floor.",
-          {{"scene", "solvers ranked"}}};
-  for (const Criterion& c : criteria()) t.rows[0].emplace_back(c.name);
-  t.rows[0].emplace_back("not ranked");
-  for (const WorkDiagram& d : diagrams) {
-    const std::set<std::string> able = ranked(d);
-    std::vector<std::string> row = {d.scene, d.refused().empty() ? std::to_string(able.size()) : "refused"};
-    for (const Criterion& c : criteria()) {
-      std::string names;
-      double value = INFINITY;
-      for (const std::string& s : able)
-        if (rank(d, s, c) == 1 && std::isfinite(least(d, s, c))) {
-          names += (names.empty() ? "" : ", ") + s;
-          value = least(d, s, c);
-        }
-      const bool is_error = &c == &criteria().back();
-      row.push_back(names.empty()
-                        ? "–"
-                        : fmt::format("{} ({}{:.2g})", names, is_error && value <= d.rank_floor() ? "≤ " : "", value));
-    }
-    std::string flagged;
-    for (const auto& [solver, why] : d.flagged) flagged += (flagged.empty() ? "" : ", ") + solver;
-    row.push_back(flagged.empty() ? "–" : flagged);
-    t.rows.push_back(std::move(row));
-  }
-  return t;
+  static const auto winners = [](const WorkDiagram& d, const Criterion& c) -> std::string {
+    std::string names;
+    double value = INFINITY;
+    for (const std::string& s : ranked(d))
+      if (rank(d, s, c) == 1 && std::isfinite(least(d, s, c))) {
+        names += (names.empty() ? "" : ", ") + s;
+        value = least(d, s, c);
+      }
+    const bool at_floor = &c == &criteria().back() && value <= d.rank_floor();
+    return names.empty() ? "" : fmt::format("{} ({}{:.2g})", names, at_floor ? "≤ " : "", value);
+  };
+  Columns<WorkDiagram> columns = {{"", "scene", &WorkDiagram::scene},
+                                  {"", "solvers ranked", [](auto& d) {
+                                     return d.refused().empty() ? std::to_string(ranked(d).size()) : "refused";
+                                   }}};
+  for (const Criterion& c : criteria())
+    columns.push_back({"", c.name, [&c](auto& d) { return or_dash(winners(d, c)); }});
+  return columns
+      .add({{"", "not ranked",
+             [](auto& d) {
+               std::string flagged;
+               for (const auto& [solver, why] : d.flagged) flagged += (flagged.empty() ? "" : ", ") + solver;
+               return or_dash(flagged);
+             }}})
+      .table({"Best solver by scene",
+              "Best of the ranked solvers; several names where they are not distinguished. Times: ms of wall time "
+              "per simulated second. ≤: at the floor.",
+              {}},
+             diagrams);
 }
 
 Table ranks_table(const std::vector<WorkDiagram>& diagrams) {
-  Table t{"Ranks",
-          "Geometric mean of the ranks over the scenes that rank the solver; 1: first in every scene. Errors "
-          "of different scenes are not averaged.",
-          {{"solver", "scenes"}}};
-  for (const Criterion& c : criteria()) t.rows[0].push_back(std::string("rank by ") + c.name);
   std::set<std::string> all;
   for (const WorkDiagram& d : diagrams) all.merge(ranked(d));
-  for (const std::string& solver : all) {
-    int scenes = 0;
-    std::vector<double> logs(criteria().size(), 0);
-    for (const WorkDiagram& d : diagrams) {
-      if (!ranked(d).contains(solver)) continue;
-      ++scenes;
-      for (std::size_t k = 0; k < logs.size(); ++k) logs[k] += std::log(rank(d, solver, criteria()[k]));
-    }
-    std::vector<std::string> row = {solver, std::to_string(scenes)};
-    for (const double sum : logs) row.push_back(fmt::format("{:.2f}", std::exp(sum / scenes)));
-    t.rows.push_back(std::move(row));
-  }
-  return t;
+  const auto ranking = [&](const std::string& solver) {
+    std::vector<const WorkDiagram*> out;
+    for (const WorkDiagram& d : diagrams)
+      if (ranked(d).contains(solver)) out.push_back(&d);
+    return out;
+  };
+  Columns<std::string> columns = {{"", "solver", [](auto& s) { return s; }},
+                                  {"", "scenes", [&](auto& s) { return ranking(s).size(); }}};
+  for (const Criterion& c : criteria())
+    columns.push_back({"", std::string("rank by ") + c.name,
+                       [&](auto& s) {
+                         double sum = 0;
+                         for (const WorkDiagram* d : ranking(s)) sum += std::log(rank(*d, s, c));
+                         return std::exp(sum / static_cast<double>(ranking(s).size()));
+                       },
+                       in_form("{:.2f}")});
+  return columns.table({"Ranks",
+                        "Geometric mean of the ranks over the scenes that rank the solver; 1: first in every scene. "
+                        "Errors of different scenes are not averaged.",
+                        {}},
+                       all);
 }
 
 }  // namespace clothbench

@@ -319,9 +319,14 @@ std::optional<ReferenceCase> reference_case_of(const Scene& scene) {
   throw Error(scene.source + ": /truth/case: no reference case \"" + scene.reference_case + "\"");
 }
 
-std::string ranking_label(const ReferenceCase& c) {
-  if (c.by_quantity) return c.quantity_name;
-  return c.settles ? "RMS distance at rest / L" : "RMS distance / L";
+std::string ranking_of(const std::string& known) {
+  if (known == "heavy-strip") return "stretch of the strip at rest / exact stretch";
+  if (known == "two-hand-pull") return "greatest strain, RMS over time / (v0/c)";
+  if (known == "incline") return "displacement along the slope, RMS over time / displacement at the end (at rest: L)";
+  if (known == "capstan" || known == "atwood")
+    return "displacement over the cylinder, RMS over time / displacement at the end (at rest: L)";
+  return known == "catenary" || known == "cantilever" ? "RMS distance at rest / L"
+                                                      : "RMS distance over space and time / L";
 }
 
 std::vector<Vec3> column_means(const Cloth& c, const std::vector<double>& values) {

@@ -45,8 +45,8 @@ struct ReferenceCase {
 /// reference case's requirements.
 std::optional<ReferenceCase> reference_case_of(const Scene&);
 
-/// Name of a reference case's ranking error, for headings: "E2", "quantity".
-std::string ranking_label(const ReferenceCase&);
+/// Definition of the error that ranks the runs of a reference case of this name, as text.
+std::string ranking_of(const std::string& reference_case);
 
 /// Means over the rows of `values` (3 per vertex), one per column.
 std::vector<Vec3> column_means(const Cloth&, const std::vector<double>& values);

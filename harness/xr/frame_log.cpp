@@ -1,8 +1,11 @@
 #include "xr/frame_log.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numeric>
+
+#include "runner/jobs.hpp"
 
 namespace clothbench::xr {
 namespace {
@@ -46,6 +49,18 @@ void FrameLog::add_counter(const std::string& name, const std::string& units, do
   c.units = units;
   c.values.resize(rows_.size(), kMissing);  // it may have come later than the first frame
   c.values.push_back(value);
+}
+
+void FrameLog::add_step(const FrameCost& cost, double step_s) {
+  const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  if (trial_.frames() == 0) trial_.jobs = jobs_now();
+  if (trial_.frames() == 0) trial_.start_unix_s = now - step_s;
+  trial_.end_unix_s = now;
+  trial_.frame_wall_s.push_back(step_s);
+  trial_.frame_device_s.push_back(cost.device_s);
+  trial_.stage_device_s.insert(trial_.stage_device_s.end(), cost.stage_read_B.size(), kMissing);
+  trial_.stage_read_B.insert(trial_.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
+  trial_.stage_write_B.insert(trial_.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
 }
 
 std::vector<double> FrameLog::periods() const {

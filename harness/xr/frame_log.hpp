@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "clothbench/record.hpp"
+#include "clothbench/solver.hpp"
 
 namespace clothbench::xr {
 
@@ -34,6 +35,10 @@ class FrameLog {
   void add_counter(const std::string& name, const std::string& units, double value);
   const std::vector<FrameRow>& rows() const { return rows_; }
 
+  /// The steps are a timed trial as of any run, so that what a headset's tools sampled meanwhile finds its time.
+  void add_step(const FrameCost&, double step_s);
+  const TimedTrial& trial() const { return trial_; }
+
   /// For each frame, the number of refresh periods since the previous frame; NaN for the first. 1 is the display's
   /// rate, 2 half of it, 3 a third.
   std::vector<double> periods() const;
@@ -48,6 +53,7 @@ class FrameLog {
     std::vector<double> values;
   };
   std::vector<FrameRow> rows_;
+  TimedTrial trial_;
   std::map<std::string, Counter> counters_;
 };
 

@@ -12,7 +12,6 @@
 #include "runner/environment.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"
-#include "runner/jobs.hpp"
 #include "runner/solver_run.hpp"
 #include "xr/counters.hpp"
 #include "xr/hands.hpp"
@@ -30,6 +29,13 @@ constexpr Vec3 kBeforeTheEyes_m = {0, -0.1, -0.6};
 
 double seconds(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
+}
+
+HandsNow hands_at(const std::optional<Hands>& hands, const LiveScene& live, XrTime time) {
+  HandsNow now;
+  for (const Side side : {Side::Left, Side::Right})
+    if (hands && live.wants(side)) now[static_cast<std::size_t>(side)] = hands->at(side, time);
+  return now;
 }
 
 class Loop {
@@ -164,24 +170,17 @@ class Loop {
     return first_time_;
   }
 
-  HandsNow hands_at(XrTime time) const {
-    HandsNow now;
-    for (const Side side : {Side::Left, Side::Right})
-      if (hands_ && live_.wants(side)) now[static_cast<std::size_t>(side)] = hands_->at(side, time);
-    return now;
-  }
-
   /// Frames before the first of the session: until there is something to begin with. It is begun twice: solvers make
   /// their kernels the first time, which takes so long that the hands are elsewhere afterwards.
   void prepare(const XrFrameState& state) {
     if (done_) return;
     LiveScene::Begin b;
-    b.hands = hands_at(state.predictedDisplayTime);
+    b.hands = hands_at(hands_, live_, state.predictedDisplayTime);
     for (const Side side : {Side::Left, Side::Right})
       if (live_.wants(side) && !b.hands[static_cast<std::size_t>(side)]) return;
     if (picking_ && !picking_->ready(state.predictedDisplayTime)) return;
     if (!rate_settled()) return;
-    b.frame_rate_hz = rate_of(state);
+    b.frame_rate_hz = session_.frame_rate_hz(state);
     b.frames =
         o_.frames > 0 ? o_.frames : static_cast<int>(std::lround(live_.written().time.duration_s * b.frame_rate_hz));
     frames_ = b.frames;
@@ -220,12 +219,6 @@ class Loop {
            seconds(first_frame_, Clock::now()) > kTimeout_s;
   }
 
-  /// As the display says, else by the runtime's prediction, which is in whole ns.
-  double rate_of(const XrFrameState& state) const {
-    const double rate_hz = session_.refresh_rate_hz();
-    return rate_hz > 0 ? rate_hz : std::round(1e9 / static_cast<double>(state.predictedDisplayPeriod));
-  }
-
   /// The vertex shader reads a GPU solver's positions where they lie.
   void show_live() {
     const Scene& s = live_.scene();
@@ -248,7 +241,7 @@ class Loop {
   void step(XrTime time, FrameRow& row) {
     const auto index = static_cast<int>(log_.rows().size());
     const auto t0 = Clock::now();
-    const HandsNow now = hands_at(time);
+    const HandsNow now = hands_at(hands_, live_, time);
     if (live_.wants(Side::Left)) row.left_seen = now[0] ? 1 : 0;
     if (live_.wants(Side::Right)) row.right_seen = now[1] ? 1 : 0;
     const auto t1 = Clock::now();
@@ -271,7 +264,7 @@ class Loop {
     row.step_s = seconds(t3, t4);
     const FrameCost cost = run_->solver()->last_cost();
     row.step_device_s = cost.device_s;
-    note(cost, row);
+    log_.add_step(cost, row.step_s);
     if (status != StepStatus::Ok) {
       outcome_ = outcome_of(status, index);
       done_ = true;
@@ -280,19 +273,6 @@ class Loop {
     shown_.motion.clear();
     if (motion != nullptr) shown_.motion.push_back(*motion);
     stale_ = stale_ || motion != nullptr;
-  }
-
-  /// The steps are a timed trial as of any run, so that what a headset's tools sampled meanwhile finds its time.
-  void note(const FrameCost& cost, const FrameRow& row) {
-    const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-    if (trial_.frames() == 0) trial_.jobs = jobs_now();
-    if (trial_.frames() == 0) trial_.start_unix_s = now - row.step_s;
-    trial_.end_unix_s = now;
-    trial_.frame_wall_s.push_back(row.step_s);
-    trial_.frame_device_s.push_back(cost.device_s);
-    trial_.stage_device_s.insert(trial_.stage_device_s.end(), cost.stage_read_B.size(), kMissing);
-    trial_.stage_read_B.insert(trial_.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
-    trial_.stage_write_B.insert(trial_.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
   }
 
   void paint(const std::vector<XrView>& views) {
@@ -363,11 +343,11 @@ class Loop {
     RunRecord record;
     record.header = run_->header();
     record.outcome = outcome_;
-    record.trials = {trial_};
+    record.trials = {log_.trial()};
     r.summary = summarise(run_->spec(), run_->plan(), record);
     r.summary.merge(log_.summary());
     RunWriter writer(o_.out, run_->header());
-    writer.write_trial(trial_);
+    writer.write_trial(log_.trial());
     writer.write_replay(groups);
     r.file = writer.finish(outcome_, r.summary);
     r.log = log_;
@@ -391,7 +371,6 @@ class Loop {
   int frames_ = 0;
   XrTime first_time_ = 0;
   FrameLog log_;
-  TimedTrial trial_;
   Outcome outcome_;
   ClothState state_;
   Scene shown_;  ///< what is drawn beside the cloth

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace clothbench::xr {
 namespace {
@@ -157,6 +158,11 @@ void Session::request_rate(double rate_hz) const {
   // A rate that the display does not have is no error: the log tells what it runs at.
   xr_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB")(session_,
                                                                                    static_cast<float>(rate_hz));
+}
+
+double Session::frame_rate_hz(const XrFrameState& state) const {
+  const double rate_hz = refresh_rate_hz();
+  return rate_hz > 0 ? rate_hz : std::round(1e9 / static_cast<double>(state.predictedDisplayPeriod));
 }
 
 double Session::refresh_rate_hz() const {

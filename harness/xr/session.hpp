@@ -55,6 +55,8 @@ class Session {
   VkExtent2D extent() const { return extent_; }
   const std::array<Eye, 2>& eyes() const { return eyes_; }
   double refresh_rate_hz() const;  ///< current rate of the display; 0 if unknown
+  /// The same; by the runtime's prediction, which is in whole ns, if unknown.
+  double frame_rate_hz(const XrFrameState&) const;
   /// "XR_FB_passthrough", "alpha blend" or "none".
   const char* passthrough() const { return passthrough_name_; }
   const char* performance_level() const { return performance_; }  ///< "sustained high" or "none"

@@ -6,6 +6,7 @@
 Prints one line a fault and exits with 1; with 77 (skipped) where a needed program is missing and nothing else is wrong.
 """
 import argparse
+import ast
 import re
 import shutil
 import subprocess
@@ -23,10 +24,6 @@ MOST_LINES_OF_A_FILE = 400
 MOST_LINES_OF_A_FUNCTION = 60
 # A table, row after row, and a macro that pmccabe takes for a function's head.
 LONG_ON_PURPOSE = {"clothbench::metrics", "__attribute__"}
-# Known, and to become fewer: a name leaves this list when its function is short, and none is added.
-TOO_LONG = {
-    "harness/xr/loop.cpp",
-}
 
 
 def files(*patterns):
@@ -70,7 +67,7 @@ def long_files():
         if not path.endswith(code):
             continue
         lines = len((ROOT / path).read_text().splitlines())
-        if lines > MOST_LINES_OF_A_FILE and path not in TOO_LONG:
+        if lines > MOST_LINES_OF_A_FILE:
             yield f"{path}: {lines} lines; at most {MOST_LINES_OF_A_FILE}"
 
 
@@ -78,21 +75,32 @@ def long_functions():
     sources = files("harness/*.cpp", "harness/*.hpp", "solvers/*.cpp", "solvers/*.hpp")
     # Columns: complexity twice, statements, first line, lines, file(line): name.
     out = subprocess.run(["pmccabe", *sources], cwd=ROOT, capture_output=True, text=True).stdout
-    short_now = set(name for name in TOO_LONG if name.startswith("clothbench::"))
     count = 0
     for line in out.splitlines():
         fields = line.split("\t")
         lines, place, name = int(fields[4]), *fields[5].split(": ", 1)
         count += 1
-        if lines <= MOST_LINES_OF_A_FUNCTION or name in LONG_ON_PURPOSE:
-            continue
-        short_now.discard(name)
-        if name not in TOO_LONG:
+        if lines > MOST_LINES_OF_A_FUNCTION and name not in LONG_ON_PURPOSE:
             yield f"{place}: {name}: {lines} lines; at most {MOST_LINES_OF_A_FUNCTION}"
     if count < 1000:
         yield f"pmccabe found {count} functions; there are over a thousand"
-    for name in sorted(short_now):
-        yield f"{name} is short now: take it off TOO_LONG in {Path(__file__).name}"
+
+
+def long_scripts():
+    """Functions of Python, and of JavaScript by their first and last line, which the format puts in one column."""
+    for path in files("harness/*.py", "scripts/*.py"):
+        for node in ast.walk(ast.parse((ROOT / path).read_text())):
+            if isinstance(node, ast.FunctionDef) and node.end_lineno - node.lineno >= MOST_LINES_OF_A_FUNCTION:
+                yield f"{path}({node.lineno}): {node.name}: {node.end_lineno - node.lineno + 1} lines; at most {MOST_LINES_OF_A_FUNCTION}"
+    for path in files("harness/*.js", "harness/*.mjs", "scripts/*.mjs"):
+        first = 0
+        for k, line in enumerate((ROOT / path).read_text().splitlines(), 1):
+            if re.match(r"( {2})?(export )?(async )?(function\*? |(?!if|for|while|switch)\w+\(.*\) \{$)", line):
+                first, head = k, line.strip()
+            if re.match(r"( {2})?\}", line) and first and k - first >= MOST_LINES_OF_A_FUNCTION:
+                yield f"{path}({first}): {head}: {k - first + 1} lines; at most {MOST_LINES_OF_A_FUNCTION}"
+            if re.match(r"\}", line):
+                first = 0
 
 
 def unformatted():
@@ -106,7 +114,7 @@ def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--list", action="store_true")
     show = arguments.parse_args().list
-    faults = wrong_includes(show) + list(long_files())
+    faults = wrong_includes(show) + list(long_files()) + list(long_scripts())
     missing = [program for program in ("pmccabe", "clang-format-14") if not shutil.which(program)]
     if "pmccabe" not in missing:
         faults += long_functions()

@@ -1,4 +1,4 @@
-#include "truth/lateral_buckling.hpp"
+#include "lateral_buckling.hpp"
 
 #include <gtest/gtest.h>
 

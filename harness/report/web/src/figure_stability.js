@@ -76,10 +76,58 @@ function ends(probes, key) {
   return [Math.min(...values) / room, Math.max(...values) * room];
 }
 
-function panels(map, rows, theme, width) {
-  const probes = rows.filter(r => r.kind === 'probe'),
-        present = kClasses.filter(c => probes.some(p => p.outcome === c.words));
+const of = kind => [{filter: `datum.kind === '${kind}'`}];
+
+function theory_layer(rows, x, y, theme) {
   const lines = [...new Set(rows.filter(r => r.kind === 'theory').map(r => r.line))];
+  return {
+    name: 'theory',
+    transform: of('theory'),
+    mark: {type: 'line', clip: true, strokeWidth: 1.8, color: theme === 'dark' ? '#56B4E9' : '#0072B2'},
+    encoding: {
+      x,
+      y,
+      strokeDash: {
+        field: 'line',
+        type: 'nominal',
+        title: lines.length ? 'theory' : null,
+        scale: {domain: lines, range: lines.map((_, k) => kDashes[k % kDashes.length])},
+        legend: lines.length ? {symbolType: 'stroke', symbolSize: 500, orient: 'bottom', labelLimit: 800, columns: 1} :
+                               null
+      },
+      order: {field: 'y', type: 'quantitative'}
+    }
+  };
+}
+
+function points_layer(map, probes, x, y, ink, theme) {
+  const present = kClasses.filter(c => probes.some(p => p.outcome === c.words));
+  const scale = range => ({domain: present.map(c => c.words), range});
+  return {
+    name: 'points',
+    transform: of('probe'),
+    mark: {type: 'point', filled: true, opacity: 1, size: 70, stroke: ink, strokeWidth: 0.6},
+    encoding: {
+      x,
+      y,
+      color: {
+        field: 'outcome',
+        type: 'nominal',
+        title: 'outcome',
+        scale: scale(present.map(c => theme === 'dark' ? c.dark ?? c.light : c.light))
+      },
+      shape: {field: 'outcome', type: 'nominal', title: 'outcome', scale: scale(present.map(c => c.shape))},
+      tooltip: [
+        {field: 'solver'}, {field: 'outcome'}, {field: 'x', title: label_of(map.x), format: '.4~g'},
+        {field: 'y', title: label_of(map.y), format: '.4~g'}, {field: 'frame', title: 'first frame of that class'},
+        {field: 'status'}, {field: 'message'}
+      ]
+    }
+  };
+}
+
+function panels(map, rows, theme, width) {
+  const probes = rows.filter(r => r.kind === 'probe');
   const axis = key => ({
     field: key,
     type: 'quantitative',
@@ -88,8 +136,6 @@ function panels(map, rows, theme, width) {
     axis: {format: '~g', labelOverlap: true, values: decades(ends(probes, key))}
   });
   const x = axis('x'), y = axis('y'), ink = theme === 'dark' ? '#e3e8ee' : theme === 'light' ? '#1b1f24' : '#000000';
-  const of = kind => [{filter: `datum.kind === '${kind}'`}];
-  const scale = range => ({domain: present.map(c => c.words), range});
   const room = beside(theme, width, 240),
         across = across_of(drawn(map).length, Math.max(1, Math.min(3, Math.floor(room / 150))));
   return {
@@ -100,26 +146,7 @@ function panels(map, rows, theme, width) {
       width: Math.max(theme === 'paper' ? 110 : 150, Math.floor(room / across) - 24),
       height: theme === 'paper' ? 160 : 210,
       layer: [
-        {
-          name: 'theory',
-          transform: of('theory'),
-          mark: {type: 'line', clip: true, strokeWidth: 1.8, color: theme === 'dark' ? '#56B4E9' : '#0072B2'},
-          encoding: {
-            x,
-            y,
-            strokeDash: {
-              field: 'line',
-              type: 'nominal',
-              title: lines.length ? 'theory' : null,
-              scale: {domain: lines, range: lines.map((_, k) => kDashes[k % kDashes.length])},
-              legend: lines.length ?
-                  {symbolType: 'stroke', symbolSize: 500, orient: 'bottom', labelLimit: 800, columns: 1} :
-                  null
-            },
-            order: {field: 'y', type: 'quantitative'}
-          }
-        },
-        {
+        theory_layer(rows, x, y, theme), {
           name: 'seeds',
           transform: of('boundary'),
           mark: {type: 'rule', strokeWidth: 5, opacity: 0.35, color: ink, clip: true},
@@ -137,27 +164,7 @@ function panels(map, rows, theme, width) {
           mark: {type: 'tick', orient: 'vertical', size: 14, thickness: 1.6, color: ink, clip: true},
           encoding: {x, y}
         },
-        {
-          name: 'points',
-          transform: of('probe'),
-          mark: {type: 'point', filled: true, opacity: 1, size: 70, stroke: ink, strokeWidth: 0.6},
-          encoding: {
-            x,
-            y,
-            color: {
-              field: 'outcome',
-              type: 'nominal',
-              title: 'outcome',
-              scale: scale(present.map(c => theme === 'dark' ? c.dark ?? c.light : c.light))
-            },
-            shape: {field: 'outcome', type: 'nominal', title: 'outcome', scale: scale(present.map(c => c.shape))},
-            tooltip: [
-              {field: 'solver'}, {field: 'outcome'}, {field: 'x', title: label_of(map.x), format: '.4~g'},
-              {field: 'y', title: label_of(map.y), format: '.4~g'},
-              {field: 'frame', title: 'first frame of that class'}, {field: 'status'}, {field: 'message'}
-            ]
-          }
-        }
+        points_layer(map, probes, x, y, ink, theme)
       ]
     }
   };

@@ -46,11 +46,28 @@ const lines_of = (text, most) => text.split(' ').reduce(
                                                            [...lines, word],
     ['']);
 
-function work_spec(diagram, clock, theme, width) {
-  const {rows, good, front, device, failed, untimed} = data_of(diagram, clock);
-  const labels = unique(rows.map(r => r.label)), color = colour(labels, theme), shape = symbols(labels);
-  const opacity = fade(theme), floors = floors_of(diagram, good).filter(f => !f.far);
-  const height = theme === 'paper' ? 300 : 400;
+/// Layers behind the points: the floors of the error, and real time.
+const background = (floors, x, y, height) =>
+    [{
+      name: 'not_distinguished',
+      data: {values: floors.length ? [{error: Math.max(...floors.map(f => f.error))}] : []},
+      mark: {type: 'rect', opacity: 0.12, color: '#808080'},
+      encoding: {y, y2: {value: height}, x: {value: 0}, x2: {value: 'width'}}
+    },
+     {name: 'floors', data: {values: floors}, mark: {type: 'rule', strokeDash: [5, 4]}, encoding: {y}}, {
+       name: 'floor_text',
+       data: {values: floors},
+       mark: {type: 'text', align: 'right', baseline: 'bottom', dx: -4, dy: -2},
+       encoding: {x: {value: 'width'}, y, text: {field: 'what'}}
+     },
+     {name: 'real_time', data: {values: [{time: 1000}]}, mark: {type: 'rule', strokeDash: [2, 3]}, encoding: {x}}, {
+       name: 'real_time_text',
+       data: {values: [{time: 1000}]},
+       mark: {type: 'text', align: 'left', baseline: 'top', dx: 4, dy: 4, text: 'real time'},
+       encoding: {x, y: {value: 0}}
+     }];
+
+function axes_of(diagram, clock, theme, good, floors) {
   const x = {
     field: 'time',
     type: 'quantitative',
@@ -66,6 +83,15 @@ function work_spec(diagram, clock, theme, width) {
     scale: {type: 'log', padding: 10},
     axis: {format: '.0e', values: decades(good.map(r => r.error).concat(floors.map(f => f.error)))}
   };
+  return {x, y};
+}
+
+function work_spec(diagram, clock, theme, width) {
+  const {rows, good, front, device, failed, untimed} = data_of(diagram, clock);
+  const labels = unique(rows.map(r => r.label)), color = colour(labels, theme), shape = symbols(labels);
+  const opacity = fade(theme), floors = floors_of(diagram, good).filter(f => !f.far);
+  const height = theme === 'paper' ? 300 : 400;
+  const {x, y} = axes_of(diagram, clock, theme, good, floors);
   const tip = [
     {field: 'label', title: 'solver'}, {field: 'setting'}, {field: 'time', format: '.4~r', title: 'ms/s'},
     {field: 'error', format: '.3~e'}, {field: 'status'}
@@ -76,26 +102,7 @@ function work_spec(diagram, clock, theme, width) {
     height,
     data: {values: good},
     layer: [
-      {
-        name: 'not_distinguished',
-        data: {values: floors.length ? [{error: Math.max(...floors.map(f => f.error))}] : []},
-        mark: {type: 'rect', opacity: 0.12, color: '#808080'},
-        encoding: {y, y2: {value: height}, x: {value: 0}, x2: {value: 'width'}}
-      },
-      {name: 'floors', data: {values: floors}, mark: {type: 'rule', strokeDash: [5, 4]}, encoding: {y}},
-      {
-        name: 'floor_text',
-        data: {values: floors},
-        mark: {type: 'text', align: 'right', baseline: 'bottom', dx: -4, dy: -2},
-        encoding: {x: {value: 'width'}, y, text: {field: 'what'}}
-      },
-      {name: 'real_time', data: {values: [{time: 1000}]}, mark: {type: 'rule', strokeDash: [2, 3]}, encoding: {x}},
-      {
-        name: 'real_time_text',
-        data: {values: [{time: 1000}]},
-        mark: {type: 'text', align: 'left', baseline: 'top', dx: 4, dy: 4, text: 'real time'},
-        encoding: {x, y: {value: 0}}
-      },
+      ...background(floors, x, y, height),
       {
         name: 'fronts',
         data: {values: front},

@@ -58,9 +58,7 @@ class Viewer {
     this.renderer.setScissorTest(true);
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 200);
     this.controls = new OrbitControls(this.camera, this.canvas);
-    this.controls.addEventListener('change', () => {
-      this.stale = true;
-    });
+    this.controls.addEventListener('change', () => Object.assign(this, {stale: true}));
     this.controls.enablePan = true;
     new ResizeObserver(() => this.resize()).observe(this.stage);
     on_theme(() => this.draw());  // at once: printing does not wait for a frame
@@ -106,6 +104,12 @@ class Viewer {
         ],
         'checks', v => this.colour(v));
     this.colour_list = colouring.querySelector('select');
+    this.lay_out(colouring);
+    this.stage.addEventListener('keydown', e => this.key(e));
+    this.colour('checks');
+  }
+
+  lay_out(colouring) {
     const toggle = (text, key) => {
       const box = element('input', {
         type: 'checkbox',
@@ -141,9 +145,7 @@ class Viewer {
             this.scrub, this.clock,
             select(
                 'Speed', [0.1, 0.25, 0.5, 1, 2].map(v => ({value: String(v), text: `${v}×`})), '1',
-                v => {
-                  this.speed = Number(v);
-                })),
+                v => Object.assign(this, {speed: Number(v)}))),
         element(
             'details', {}, element('summary', {}, 'Thinning and colours'), this.notes = element('ul', {class: 'soft'}),
             element(
@@ -153,8 +155,6 @@ class Viewer {
                     'vertices with an edge that crosses the surface. Colours are computed from the rounded positions and ' +
                     'are approximate. The numbers under a motion and in the tables are computed from the full positions.'),
             ...this.motions.left_out.map(t => element('p', {class: 'soft'}, `Left out: ${t}`))));
-    this.stage.addEventListener('keydown', e => this.key(e));
-    this.colour('checks');
   }
 
   key(e) {
@@ -202,8 +202,10 @@ class Viewer {
 
   replace(k, run) {
     const runs = this.panels.map(p => p.motion.run);
-    if (run) runs[k] = run;
-    else runs.splice(k, 1);
+    if (run)
+      runs[k] = run;
+    else
+      runs.splice(k, 1);
     return this.set(runs);
   }
 
@@ -243,8 +245,7 @@ class Viewer {
                           element('option', {value: String(n), selected: c === panel.motion.run}, this.name(c)) :
                           null)));
     const list = element(
-        'select', {'aria-label': `Motion ${k + 1}`, onchange: () => this.replace(k, runs[Number(list.value)])},
-        groups);
+        'select', {'aria-label': `Motion ${k + 1}`, onchange: () => this.replace(k, runs[Number(list.value)])}, groups);
     const close = element(
         'button', {type: 'button', 'aria-label': `Remove motion ${k + 1}`, onclick: () => this.replace(k, null)}, '×');
     panel.readout = element('output', {});
@@ -350,8 +351,10 @@ class Viewer {
     this.camera.updateProjectionMatrix();
     this.panels.forEach((p, k) => {
       const shown = p.show(this.time, this.colouring, this.most[this.colouring]);
-      if (this.follow) p.middle(p.scene.position).negate();
-      else p.scene.position.copy(this.middles[p.motion.run.scene]);
+      if (this.follow)
+        p.middle(p.scene.position).negate();
+      else
+        p.scene.position.copy(this.middles[p.motion.run.scene]);
       p.group.visible = this.colliders;
       p.wires.visible = this.wires;
       p.scene.background = new THREE.Color(theme() === 'dark' ? 0x1a2028 : 0xf2f4f6);

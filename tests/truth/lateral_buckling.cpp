@@ -1,4 +1,4 @@
-#include "truth/lateral_buckling.hpp"
+#include "lateral_buckling.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "clothbench/error.hpp"
+#include "lateral_buckling_table.hpp"
 #include "truth/checks.hpp"
-#include "truth/lateral_buckling_table.hpp"
 
 namespace clothbench::truth {
 namespace {

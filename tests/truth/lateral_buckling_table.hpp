@@ -1,6 +1,6 @@
 #pragma once
 
-#include "truth/lateral_buckling.hpp"
+#include "lateral_buckling.hpp"
 
 namespace clothbench::truth {
 
