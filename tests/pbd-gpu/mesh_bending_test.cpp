@@ -80,6 +80,16 @@ TEST(MeshBendingMatrix, ACantileverIsThatOfABeamOnDrawnMeshes) {
   }
 }
 
+/// Single errors change their sign, so this is about all of them together.
+TEST(MeshBendingMatrix, ACantileverConvergesWithOrderTwo) {
+  const auto error = [](int cells) {
+    double sum = 0;
+    for (unsigned seed = 1; seed <= 6; ++seed) sum += std::pow(tip_over_beam(cells, 0.06 * (seed - 1), seed) - 1, 2);
+    return std::sqrt(sum / 6);
+  };
+  EXPECT_GE(std::log(error(8) / error(24)) / std::log(3), 1.8);
+}
+
 /// Why xpbd does not have them.
 TEST(MeshBendingMatrix, HingesOfQuadraticBendingAreTwiceTooStiff) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
