@@ -150,7 +150,7 @@ std::string name_of_case(const ConformanceCase& c) {
 void add_case(const SolverEntry& entry, const json& settings, const DeviceOptions& device, const ConformanceCase& c,
               double limit_s, ConformanceRow& row) {
   ++row.cases;
-  const Scene scene = conformance_scene(c);
+  const Scene scene = conformance_scene(c, entry.info.name);
   std::string why = conformance_skip(entry.info, scene);
   if (c.whole) row.frames_of_scene = scene.time.frames();
   ConformanceResult result;
@@ -188,7 +188,7 @@ std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool pr
   return out;
 }
 
-Scene conformance_scene(const ConformanceCase& c) {
+Scene conformance_scene(const ConformanceCase& c, const std::string& solver) {
   if (c.whole) return load_scene(c.scene);
   std::vector<std::string> overrides = {"cloth.sides=" + c.sides, "cloth.grid=" + c.grid};
   const auto is = [&](const char* word) { return c.scene.find(word) != std::string::npos; };
@@ -202,7 +202,8 @@ Scene conformance_scene(const ConformanceCase& c) {
   if (load_scene(c.scene).cloth.mesh) overrides.pop_back();  // a mesh has one size,
   if (is("garments/"))                                       // but of garments there is a small one
     overrides.push_back("cloth.mesh.file=assets" + c.scene.substr(c.scene.rfind('/')) + "-small.obj");
-  return c.mesh ? as_mesh(load_scene(c.scene, overrides)) : load_scene(c.scene, overrides);
+  const bool bends = solver == "reference" || solver == "xpbd";
+  return c.mesh ? as_mesh(load_scene(c.scene, overrides), bends) : load_scene(c.scene, overrides);
 }
 
 std::string conformance_skip(const SolverInfo& info, const Scene& s) {

@@ -23,7 +23,8 @@ struct ConformanceCase {
 std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool profiles);
 
 /// The scene of a case. Two or three grid lines are too few for some scenes, which then get the least grid that works.
-Scene conformance_scene(const ConformanceCase&);
+/// A mesh bends for the solvers that have bending of meshes.
+Scene conformance_scene(const ConformanceCase&, const std::string& solver);
 
 /// Why a case is no test of the solver, such as "xpbd has no render"; empty if it is.
 std::string conformance_skip(const SolverInfo&, const Scene&);

@@ -12,7 +12,7 @@ bool turned(int i, int j) { return (7 * i + 5 * j + i * j) % 3 == 0; }
 
 }  // namespace
 
-Scene as_mesh(Scene s) {
+Scene as_mesh(Scene s, bool bends) {
   Cloth& c = s.cloth;
   if (c.mesh) return s;
   const bool bent = c.span_m > 0 || c.drape_radius_m > 0;
@@ -46,7 +46,7 @@ Scene as_mesh(Scene s) {
   c.span_m = c.drape_radius_m = 0;
   c.column_factors.clear();
   s.material.regions.clear();
-  s.material.bending_rigidity_N_m = 0;
+  if (!bends) s.material.bending_rigidity_N_m = 0;
   s.reference_case.clear();
   s.expect.clear();
   s.needs = derive_needs(s);

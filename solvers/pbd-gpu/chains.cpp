@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 
+#include "mesh_bending.hpp"
 #include "persistent.hpp"
 
 namespace clothbench::pbd_gpu {
@@ -21,7 +22,7 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
       tension_(tension) {
   const FeatureSet needs = scene.needs;
   const FeatureSet serves{Feature::Stretch,   Feature::Shear,      Feature::Damping, Feature::Pins,
-                          Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions};
+                          Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions, Feature::Bend};
   const int stage = frame.add_stage("Chains", needs & serves);
   TetherTable tethers;
   if (frame.settings()["tethers"].get<bool>())
@@ -39,6 +40,7 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
         {static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds, 0, 0});
     entries_.insert(entries_.end(), more.begin(), more.end());
   }
+  add_bending();
   frame.add_buffer(BIND_CHAIN_ENTRIES, "chain entries", entries_);
   if (tethers_ > 0) frame.add_buffer(BIND_TETHER_ENDS, "tether ends", tethers.ends);
   ChainSpecialization s;
@@ -47,6 +49,7 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
   if (needs.has(Feature::Damping)) s.FEATURES |= LINES_DAMPING;
   if (needs.has(Feature::Shear) || needs.has(Feature::ClothMesh)) s.FEATURES |= LINES_SHEAR;
   if (limits_speed(scene, tethers_ > 0)) s.FEATURES |= LINES_LIMIT_SPEED;
+  if (bends_) s.FEATURES |= LINES_BEND;
   if (predicts_) s.FEATURES |= LINES_PREDICT;
   if (tension_) s.FEATURES |= LINES_TENSION;
   s.PERSISTENT = 1;
@@ -71,6 +74,21 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
   weld_ = frame.add_kernel(stage, "weld", 4);
 }
 
+void Chains::add_bending() {
+  bends_ = scene_.needs.has(Feature::Bend);
+  if (!bends_) {
+    frame_.leave_out("bending", "the scene has no bending");
+    return;
+  }
+  const BendingMatrix K = bending_matrix(scene_);
+  most_per_s2_ = K.most_per_s2;
+  const BendingTable table = bending_table(K);
+  slices_ = table.slices;
+  frame_.add_buffer(BIND_BENDING_SLICES, "bending slices", table.slices);
+  frame_.add_buffer(BIND_BENDING_ENTRIES, "bending entries", table.entries);
+  frame_.add_buffer(BIND_BENDING_STEPS, "bending steps", 3 * scene_.cloth.vertex_count() * sizeof(vec4));
+}
+
 /// As many workgroups as the family with the most blocks needs.
 vulkan::Groups Chains::all_groups() const {
   std::uint32_t most = 0;
@@ -89,13 +107,36 @@ void Chains::count_vertices() {
       f.free += w[entries_[k].vertex] > 0 ? 1 : 0;
     }
   }
+  free_ = free_entries_ = 0;
+  for (std::size_t i = 0; bends_ && i < w.size(); ++i)
+    if (w[i] > 0) {
+      free_ += 1;
+      free_entries_ += slices_[i / BENDING_ROWS].width;
+    }
 }
 
-Traffic Chains::traffic(std::size_t family) const {
+Traffic Chains::traffic(std::size_t family, bool integrates) const {
   const Family& f = families_[family];
-  const double compensation = family == 0 ? 1 : 0, of_start = (predicts_ ? 64 : 32) * compensation;
+  const double compensation = integrates ? 1 : 0, of_start = (predicts_ ? 64 : 32) * compensation;
   return {16.0 * f.entries + (32 + of_start) * f.vertices + 24 * compensation * tethers_ * f.free,
           (32 + of_start) * f.free};
+}
+
+/// The first iteration reads positions and no steps, and writes the right side; the last writes the state.
+Traffic Chains::bending_traffic(std::uint32_t iteration, std::uint32_t iterations) const {
+  const auto n = static_cast<double>(scene_.cloth.vertex_count());
+  const bool last = iteration == iterations;
+  const double steps = iteration == 1 ? 0 : iteration == 2 ? 2 : 3;
+  return {16 * n + (8 + 16 * steps + (last ? 16 : 0)) * free_ + 24 * free_entries_,
+          last ? 32 * free_ : 16 * n + (iteration == 1 ? 16 * free_ : 0)};
+}
+
+std::vector<Traffic> Chains::passes(std::uint32_t bending_iterations) const {
+  std::vector<Traffic> all;
+  if (bends_) all.push_back(traffic(0, true));
+  for (std::uint32_t k = 1; k <= bending_iterations; ++k) all.push_back(bending_traffic(k, bending_iterations));
+  for (std::size_t f = 0; f < families_.size(); ++f) all.push_back(traffic(f, f == 0 && !bends_));
+  return all;
 }
 
 void Chains::record(int count, const TimeStep& step) {
@@ -103,22 +144,34 @@ void Chains::record(int count, const TimeStep& step) {
   auto c = step_constants<ChainConstants>(frame_, step);
   c.per_keep = static_cast<float>(1 / step.keep);
   c.families = static_cast<std::uint32_t>(families_.size());
+  if (bends_) {
+    const double square = step.implicit_h_s * step.implicit_h_s * step.keep, most = square * most_per_s2_;
+    c.bending_iterations = bending_iterations(most);
+    c.vertices = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
+    c.bending_step = static_cast<float>(square);
+    c.bending_gain = static_cast<float>(2 / (2 + most));
+    c.bending_spread = static_cast<float>(most / (2 + most) * (most / (2 + most)) / 4);
+  }
+  const std::vector<Traffic> all = passes(c.bending_iterations);
+  const std::size_t first_family = all.size() - families_.size();
   if (persistent_) {
     const vulkan::Groups groups = all_groups();
-    Traffic all;
-    for (std::size_t k = 0; k < families_.size(); ++k)
-      all = all + (traffic(k) + Traffic{16.0 * groups.x * groups.y * block_, 0}) * count;
-    c.passes = c.families * static_cast<std::uint32_t>(count);
-    frame_.dispatch_groups(*kernel_, groups, c, all);
+    const double ranges = 16.0 * groups.x * groups.y * block_;
+    Traffic sum;
+    for (std::size_t k = 0; k < all.size(); ++k)
+      sum = sum + (all[k] + Traffic{k == 0 || k >= first_family ? ranges : 0, 0}) * count;
+    c.passes = static_cast<std::uint32_t>(all.size()) * static_cast<std::uint32_t>(count);
+    frame_.dispatch_groups(*kernel_, groups, c, sum);
     return;
   }
   c.passes = 1;
   for (int s = 0; s < count; ++s) {
-    for (c.first_pass = 0; c.first_pass < c.families; ++c.first_pass) {
-      const Family& family = families_[c.first_pass];
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const Family& family = families_[k < first_family ? 0 : k - first_family];
+      c.first_pass = static_cast<std::uint32_t>(k);
       c.first_entry = family.first_entry;
       c.rounds = family.rounds;
-      frame_.dispatch(*kernel_, family.entries, c, traffic(c.first_pass));
+      frame_.dispatch(*kernel_, k > 0 && k < first_family ? c.vertices : family.entries, c, all[k]);
     }
     record_welds();
   }

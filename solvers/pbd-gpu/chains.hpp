@@ -9,7 +9,7 @@ namespace clothbench::pbd_gpu {
 
 /// The constraints of `xpbd` where links are not all alike (triangle meshes, uneven grids, regions); even grids have
 /// Lines. It takes one dispatch a family and substep, or one in all where the device runs all workgroups at once. One
-/// iteration a substep, no bending.
+/// iteration a substep. Bending of meshes is solved before the links of a substep, all at once.
 class Chains {
  public:
   /// Adds its stages, buffers and kernels. The buffers of the state must exist.
@@ -26,8 +26,13 @@ class Chains {
     std::uint32_t first_entry, entries, rounds;
     double vertices, free;  ///< on its chains; the first family has all vertices
   };
+  void add_bending();
   void count_vertices();
-  Traffic traffic(std::size_t family) const;
+  Traffic traffic(std::size_t family, bool integrates) const;
+  Traffic bending_traffic(std::uint32_t iteration, std::uint32_t iterations) const;
+  /// Number and traffic of a substep's passes: one that integrates and the iterations of bending, if there are any,
+  /// then families.
+  std::vector<Traffic> passes(std::uint32_t bending_iterations) const;
   vulkan::Groups all_groups() const;
 
   FrameBuilder& frame_;
@@ -40,6 +45,10 @@ class Chains {
   bool persistent_ = false;
   const FrameKernel *kernel_ = nullptr, *weld_ = nullptr;
   std::uint32_t welds_ = 0;
+  bool bends_ = false;
+  double most_per_s2_ = 0;  ///< at least the greatest eigenvalue of bending
+  std::vector<BendingSlice> slices_;
+  double free_ = 0, free_entries_ = 0;  ///< vertices that nothing holds in this frame, and entries of their rows
 };
 
 }  // namespace clothbench::pbd_gpu

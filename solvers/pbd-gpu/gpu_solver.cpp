@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "clothbench/record.hpp"
-#include "clothbench/unsupported_scene.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -57,7 +56,6 @@ void GpuSolver::add_grips(Vec3 origin_m, std::uint32_t layers) {
 }
 
 void GpuSolver::load(const Scene& scene) {
-  refuse_mesh_bending(scene);
   take_messages();
   begin(scene);
   build();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clothbench/unsupported_scene.hpp"
 #include "gpu_solver.hpp"
 #include "paper_contact.hpp"
 
@@ -14,6 +15,7 @@ class Paper final : public GpuSolver {
 
  private:
   void build() override {
+    refuse_mesh_bending(scene());
     if (native() && !device_->has_float_atomics())
       throw Error(
           "solver paper: setting atomics=native: this device has no float atomics (VK_EXT_shader_atomic_float)");

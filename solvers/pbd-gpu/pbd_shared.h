@@ -28,7 +28,7 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
           BIND_LEDGER = 49, BIND_FAULTS = 50, BIND_COUNTER = 51, BIND_LAST_POSITIONS = 52, BIND_LAST_VELOCITIES = 53,
           BIND_SELF_ORDER = 54, BIND_SELF_BOXES = 55, BIND_SELF_RANGES = 56, BIND_SELF_PAIRS = 57, BIND_SELF_WAYS = 58,
           BIND_SELF_NEAR = 59, BIND_SELF_CONTACTS = 60, BIND_SELF_PUSHES = 61, BIND_TOUCHED = 62, BIND_NEAR_BITS = 63,
-          BIND_COUNT = 64;
+          BIND_BENDING_SLICES = 64, BIND_BENDING_ENTRIES = 65, BIND_BENDING_STEPS = 66, BIND_COUNT = 67;
 
 // Specialization constants: C(number, type, name, default); number 0 is local_size_x.
 
@@ -180,6 +180,18 @@ struct ChainRange {
   uint unused0;
 };
 
+/// Rows of a slice of the bending matrix of a mesh: those of a subgroup or a part of one.
+#define BENDING_ROWS 32u
+/// Entry of that matrix, beside the diagonal.
+struct BendingEntry {
+  uint column;
+  float stiffness;  // [N/m]
+};
+/// Entry j of the slice's row r is number first + BENDING_ROWS j + r, j below width.
+struct BendingSlice {
+  uint first, width;
+};
+
 /// Push constants of the chain kernel of `xpbd`.
 struct ChainConstants {
   vec4 gravity_h;      // g h keep [m/s]
@@ -195,6 +207,11 @@ struct ChainConstants {
   uint first_pass, passes;  // of this dispatch; each substep has a pass a family
   float carry;              // share of the last substep's change that is predicted
   float per_keep;           // 1 / keep
+  uint bending_iterations;  // passes a substep, after one that integrates and before those of families; 0: no bending
+  uint vertices;
+  float bending_step;    // h^2 keep [s^2]
+  float bending_gain;    // of the first iteration, 2 / (2 + m), m the greatest eigenvalue of h^2 keep M^-1 K
+  float bending_spread;  // (m / (2 + m))^2 / 4
 };
 
 // Colliders. Lengths in metres, positions relative to the method's origin.
@@ -318,6 +335,6 @@ static_assert(sizeof(LineConstants) == 128);
 static_assert(sizeof(ChainEntry) == 16);
 static_assert(sizeof(TetherEnd) == 8);
 static_assert(sizeof(ChainRange) == 16);
-static_assert(sizeof(ChainConstants) == 64);
+static_assert(sizeof(ChainConstants) == 84);
 }  // namespace clothbench::pbd_gpu
 #endif

@@ -1,4 +1,6 @@
 // XPBD in small steps (Macklin, Müller & Chentanez 2016; Macklin et al. 2019), every grid line solved at once.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "chains.hpp"
@@ -49,6 +51,11 @@ class Xpbd final : public GpuSolver {
     const bool chained = wants_chains(scene());
     const bool planes = by_planes();
     const ChainCloth cloth = chained ? chain_cloth(scene()) : ChainCloth{};
+    if (!cloth.welded.empty() && scene().needs.has(Feature::Bend))
+      throw Error(fmt::format(
+          "solver xpbd: /cloth/mesh: vertex {} is on an edge shorter than a fiftieth of the mean; expected none in a "
+          "cloth that bends",
+          cloth.welded.front()));
     const std::vector<float> w = welded(inverse_mass_now(), cloth);
     if (crumpled_) break_symmetry(scene(), w, start);
     const std::vector<double> start_velocity = initial_velocities(scene());
@@ -125,12 +132,13 @@ class Xpbd final : public GpuSolver {
     return planes;
   }
 
-  /// Rejects or overrides what chains do not support: several iterations with kept multipliers, batches, bending,
-  /// contact between the vertices of a mesh.
+  /// Rejects or overrides what chains do not support: several iterations with kept multipliers, batches, bending of
+  /// anything but meshes whose edges all are links, contact between the vertices of a mesh.
   void restrict_to_chains() {
-    if (scene().needs.has(Feature::Bend))
+    if (scene().needs.has(Feature::Bend) && !scene().cloth.mesh)
       throw Error(
-          "solver xpbd: bending is of even grids alone, and this cloth is none; expected bending_rigidity_N_m 0");
+          "solver xpbd: bending is of even grids and triangle meshes, and this cloth is neither; expected "
+          "bending_rigidity_N_m 0");
     if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid");
     override_setting("iterations", 1, "its links are not all alike: chains take one iteration");
     if (scene().cloth.mesh && !scene().colliders.empty() && !contact_by_planes(scene(), settings()))

@@ -97,7 +97,7 @@ class Conformance : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Conformance, DoesWhatABackendMust) {
   const Case& c = GetParam();
-  const Scene scene = conformance_scene(c);
+  const Scene scene = conformance_scene(c, c.solver);
   const SolverEntry& entry = find_solver(c.solver);
   if (const std::string reason = conformance_skip(entry.info, scene); !reason.empty()) GTEST_SKIP() << reason;
   try {
@@ -163,7 +163,7 @@ TEST(ConformanceSkips, AreThoseOfDeclaredFeaturesAndNoMore) {
     for (const Case& c : all) {
       if (c.solver != e.info.name) continue;
       const auto [at, is_new] = scenes.try_emplace(c.scene + " " + c.sides);
-      if (is_new) at->second = conformance_scene(c);
+      if (is_new) at->second = conformance_scene(c, c.solver);
       ++count;
       skipped += !conformance_skip(e.info, at->second).empty();
       expected += may_skip(*lacks, at->second);

@@ -55,6 +55,32 @@ def meshes():
     put("obj", "quads.obj", b"# two\no sheet\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf -5/1/1 -2//1 -1 -4\n")
 
 
+def gltf_meshes():
+    """A square of two triangles with texture coordinates, placed by its node: as text and as a binary file."""
+    parts = [struct.pack("<12f", 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0), struct.pack("<8f", 0, 0, 1, 0, 1, 1, 0, 1), struct.pack("<6H", 0, 1, 2, 0, 2, 3)]
+    data, views = b"".join(parts), []
+    for k, part in enumerate(parts):
+        views.append({"buffer": 0, "byteOffset": sum(len(p) for p in parts[:k]), "byteLength": len(part)})
+    gltf = {"asset": {"version": "2.0"}, "buffers": [{"byteLength": len(data)}], "bufferViews": views,
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+                          {"bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC2"},
+                          {"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+            "materials": [{"name": "silk"}],
+            "meshes": [{"name": "cloth", "primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2, "material": 0}]}],
+            "nodes": [{"name": "cape", "mesh": 0, "translation": [0, 0, 5], "scale": [2, 2, 2]}], "scenes": [{"nodes": [0]}], "scene": 0}
+    put("gltf", "square.glb", container(json.dumps(gltf, separators=(",", ":")).encode(), data))
+    gltf["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    put("gltf", "square.gltf", json.dumps(gltf).encode())
+
+
+def container(text, data):
+    """A binary glTF of a JSON and a binary chunk."""
+    text += b" " * (-len(text) % 4)
+    data += b"\0" * (-len(data) % 4)
+    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(data), 0x004E4942) + data
+    return b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
+
+
 def rooms():
     def packed(kind, values):
         return base64.b64encode(struct.pack(f"<{len(values)}{kind}", *values)).decode()
@@ -83,10 +109,7 @@ def hands():
             "nodes": [{"name": n} for n in JOINTS], "skins": [{"inverseBindMatrices": 0, "joints": list(range(25))}]}
     text, data = json.dumps(gltf, separators=(",", ":")).encode(), b"".join(parts)
     put("hand", "tetrahedron.parts", text + b"\0" + data)
-    text += b" " * (-len(text) % 4)
-    data += b"\0" * (-len(data) % 4)
-    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(data), 0x004E4942) + data
-    put("hand", "tetrahedron.glb", b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks)
+    put("hand", "tetrahedron.glb", container(text, data))
 
 
 def recording():
@@ -129,5 +152,5 @@ def hdf5():
     put("hdf5", "header", bytes([7, 0, 0, 0, 0]) + b'{"scene":"s","solver":"x","setting":"d","settings":{},"stages":[]}')
 
 
-for write in (scenes, meshes, rooms, hands, tracks, raw, hdf5):
+for write in (scenes, meshes, gltf_meshes, rooms, hands, tracks, raw, hdf5):
     write()

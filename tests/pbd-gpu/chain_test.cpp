@@ -182,7 +182,8 @@ TEST_F(Chained, SliversDoNotThrowWhatHangsOnThem) {
 /// has none to wait for.
 TEST_F(Chained, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
   int agreed = 0;
-  for (const Scene& s : {with_damping(mesh_sheet(12)), with_damping(mesh_sheet(20))}) {
+  for (const Scene& s :
+       {with_damping(mesh_sheet(12)), with_damping(mesh_sheet(20)), with_damping(with_bending(mesh_sheet(12)))}) {
     const auto passes = make("xpbd", {{"tuning", {{"device_barrier", "never"}}}}),
                persistent = make("xpbd", {{"tuning", {{"device_barrier", "always"}}}});
     passes->load(s);

@@ -17,7 +17,7 @@ class UnsupportedScene : public SolverError {
 /// bending.
 inline void refuse_mesh_bending(const Scene& scene) {
   if (scene.cloth.mesh && scene.material.bending_rigidity_N_m > 0)
-    throw UnsupportedScene("it has no resistance to bending for triangle meshes; the solver reference has");
+    throw UnsupportedScene("it has no resistance to bending for triangle meshes; the solvers reference and xpbd have");
 }
 
 }  // namespace clothbench

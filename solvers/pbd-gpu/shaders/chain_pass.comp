@@ -3,8 +3,9 @@
 // a path of links of which each vertex of the cloth is on at most one in a family; a thread holds a vertex and the link to the next
 // entry, a workgroup a block of whole chains. The links of a chain are a tridiagonal system in their multipliers (Macklin, Mueller &
 // Chentanez 2016, eq. 18, for all at once), solved by parallel cyclic reduction. The first family of a substep has every vertex
-// and integrates what it loads. A dispatch is one family, or with PERSISTENT any number of them: then all its workgroups run at
-// once, and wait for one another after each.
+// and integrates what it loads. A mesh that bends has passes before the first family: one that integrates, then the iterations
+// of its bending, a thread a vertex. A dispatch is one pass, or with PERSISTENT any number of them: then all its workgroups run
+// at once, and wait for one another after each.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 CHAIN_CONSTANTS(SPECIALIZE)
@@ -17,6 +18,9 @@ layout(std430, binding = BIND_LAST_VELOCITIES) buffer LastVelocities { vec4 lv[]
 layout(std430, binding = BIND_CHAIN_ENTRIES) readonly buffer Entries { ChainEntry entries[]; };
 layout(std430, binding = BIND_TETHER_ENDS) readonly buffer TetherEnds { TetherEnd tether_ends[]; };  // TETHERS a vertex
 layout(std430, binding = BIND_CHAIN_FAMILIES) readonly buffer Ranges { ChainRange ranges[]; };
+layout(std430, binding = BIND_BENDING_SLICES) readonly buffer Slices { BendingSlice slices[]; };
+layout(std430, binding = BIND_BENDING_ENTRIES) readonly buffer BendingEntries { BendingEntry bending[]; };
+layout(std430, binding = BIND_BENDING_STEPS) coherent buffer BendingSteps { vec4 bent[]; };  // right sides, odd steps, even steps
 layout(push_constant) uniform Push { ChainConstants p; };
 #include "substep.glsl"
 #include "device_barrier.glsl"
@@ -125,7 +129,7 @@ void stretch(ChainEntry entry, uint rounds) {
   move(w * (lambda.x * direction_below - lambda.y * direction));
 }
 
-void pass(uint number, bool first, uint rounds) {
+void pass(uint number, bool first, bool links, uint rounds) {
   ChainEntry entry = LOAD(16u, entries, number);
   bool is = entry.vertex != CHAIN_NO_VERTEX;
   uint i = is ? entry.vertex : 0u;
@@ -146,7 +150,7 @@ void pass(uint number, bool first, uint rounds) {
       if (w > 0.0) integrate(i);
     }
   }
-  stretch(entry, rounds);
+  if (links) stretch(entry, rounds);
   if (w == 0.0) return;
   STORE16(x, i, vec4(pos, w));
   STORE16(v, i, vec4(vel, 0.0));
@@ -158,15 +162,72 @@ void pass(uint number, bool first, uint rounds) {
   STORE16(lv, i, vec4(last_vel, 0.0));
 }
 
+const bool kBends = (FEATURES & LINES_BEND) != 0u;
+float weight = 2.0;     // of iteration `weight_of` of bending
+uint weight_of = 1u;
+
+/// The weight of Chebyshev's iteration k, from 2 on; the same in a dispatch of all passes as in one of one.
+float weight_at(uint k) {
+  if (k < weight_of) {
+    weight = 2.0;
+    weight_of = 1u;
+  }
+  for (; weight_of < k; ++weight_of) weight = 1.0 / (1.0 - p.bending_spread * weight);
+  return weight;
+}
+
+/// An iteration for the way d of x + d, where bending is in balance: (1 + c M^-1 K) d = -c M^-1 K x, c = h^2 keep, whose
+/// eigenvalues lie in [1, 1 + m] (Chebyshev's semi-iteration; Golub & Varga 1961). Rows of K sum to 0, and differences of
+/// neighbours lose no digits.
+void bend(uint i, uint k) {
+  uint odd = p.vertices, even = 2u * p.vertices, now = k % 2u != 0u ? odd : even, before = odd + even - now;
+  vec4 here = LOAD16(x, i);
+  if (here.w == 0.0) {  // held vertices do not move; one may have moved in the last frame
+    if (k < p.bending_iterations) STORE16(bent, now + i, vec4(0.0));
+    return;
+  }
+  vec3 mine = k > 1u ? LOAD16(bent, before + i).xyz : here.xyz, force = vec3(0.0);
+  BendingSlice slice = LOAD(8u, slices, i / BENDING_ROWS);
+  uint at = slice.first + i % BENDING_ROWS;
+  for (uint j = 0u; j < slice.width; ++j) {
+    BendingEntry entry = LOAD(8u, bending, at + BENDING_ROWS * j);
+    vec3 other = k > 1u ? LOAD16(bent, before + entry.column).xyz : LOAD16(x, entry.column).xyz;
+    force += entry.stiffness * (other - mine);
+  }
+  vec3 step = -p.bending_step * here.w * force;
+  if (k == 1u) {
+    if (k < p.bending_iterations) STORE16(bent, i, vec4(step, 0.0));
+    step *= p.bending_gain;
+  } else {
+    vec3 last = k > 2u ? LOAD16(bent, now + i).xyz : vec3(0.0);
+    step += LOAD16(bent, i).xyz - mine;
+    step = last + weight_at(k) * (p.bending_gain * step + mine - last);
+  }
+  if (k < p.bending_iterations) {
+    STORE16(bent, now + i, vec4(step, 0.0));
+    return;
+  }
+  pos = here.xyz;
+  vel = LOAD16(v, i).xyz;
+  move(step);
+  STORE16(x, i, vec4(pos, here.w));
+  STORE16(v, i, vec4(vel, 0.0));
+}
+
 void main() {
   if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // asked only whether all can
   uint block = item() / THREADS;
   for (uint n = p.first_pass; n < p.first_pass + p.passes; ++n) {
     if (PERSISTENT && n > p.first_pass && !grid_barrier()) return;
-    uint f = n % p.families;
+    uint bends = kBends ? 1u + p.bending_iterations : 0u, number = n % (p.families + bends);
+    if (kBends && number > 0u && number < bends) {
+      if (item() < p.vertices) bend(item(), number);
+      continue;
+    }
+    uint f = number < bends ? 0u : number - bends;
     ChainRange range = ChainRange(p.first_entry, block + 1u, p.rounds, 0u);
     if (PERSISTENT) range = LOAD(16u, ranges, f);
-    if (block < range.blocks) pass(range.first_entry + item(), f == 0u, range.rounds);
+    if (block < range.blocks) pass(range.first_entry + item(), number == 0u, number >= bends, range.rounds);
   }
   if (PERSISTENT) leave_grid_barrier();
 }
