@@ -273,7 +273,7 @@ LineShape frame_shape(int columns, int rows, const LineRequest& request, const L
     // Whole subgroups, so that thread and lane numbers agree, and at least one thread for each row of held vertices.
     const std::uint32_t whole = std::max(device.subgroup, 32u);
     s.threads = (s.lanes * longest + whole - 1) / whole * whole;
-    const std::uint32_t state_B = 6 * 4 * 34 * static_cast<std::uint32_t>(rows) + 128;
+    const std::uint32_t state_B = (request.couples ? 10 : 6) * 4 * 34 * static_cast<std::uint32_t>(rows) + 128;
     // Twice the threads are faster with shuffles, not with barriers.
     const std::uint32_t most =
         k < 4 && (s.shuffles || vertices != 0) ? device.most_threads : std::min(256u, device.most_threads);

@@ -77,6 +77,7 @@ struct LineShape {
 /// The user's request for a shape; 0: chosen here.
 struct LineRequest {
   std::uint32_t vertices = 0, threads = 0, beside = 0;
+  bool couples = false;  ///< a vertex has a shift too (INTEGRATION.md)
 };
 /// Shape of the kernel that computes a frame of a whole cloth; threads = 0 if the cloth or the device does not fit it.
 LineShape frame_shape(int columns, int rows, const LineRequest&, const LineDevice&);

@@ -171,4 +171,40 @@ Choice prediction_of(const Scene& scene, const nlohmann::json& settings) {
   return {true, ""};
 }
 
+namespace {
+
+/// True unless a stretch wave crosses more than kMostOfSide of the cloth's shorter side in an implicit substep of BDF2.
+/// Above, what the families keep of one another feeds oscillations.
+bool resolves_sides(const Scene& scene, int substeps) {
+  constexpr double kMostOfSide = 1.15;
+  const Cloth& c = scene.cloth;
+  const double h = 2.0 / 3 * scene.time.dt() / substeps;
+  const double way = h * std::sqrt(*scene.material.membrane_stiffness_N_per_m / c.areal_density_kg_per_m2);
+  return way <= kMostOfSide * std::min(c.width_m, c.height_m);
+}
+
+}  // namespace
+
+Choice coupling_of(const Scene& scene, const nlohmann::json& settings) {
+  constexpr int kLeastLinks = 4;
+  constexpr double kSquare = 0.05;
+  const std::string wanted = tuned(settings, "coupling");
+  if (wanted == "never") return {false, "setting tuning.coupling=never"};
+  const Cloth& c = scene.cloth;
+  if (!scene.material.membrane_stiffness_N_per_m) return {false, "the cloth is inextensible"};
+  if (!scene.needs.has(Feature::Shear)) return {false, "the scene has no shear stiffness"};
+  if (wants_chains(scene) || !c.mass_factors.empty()) return {false, "links or masses are not all alike"};
+  if (settings.value("iterations", 1) > 1) return {false, "setting iterations: multipliers start from the last ones"};
+  if (!touches_nothing(scene) || contact_by_planes(scene, settings)) return {false, "the cloth touches"};
+  if (wanted == "always") return {true, ""};
+  if (!is_held(scene)) return {false, "nothing holds the cloth: no tension lasts"};
+  if (const Choice prediction = prediction_of(scene, settings); !prediction.on)
+    return {false, "first order in time: " + prediction.why_not};
+  if (!(std::abs(c.du() / c.dv() - 1) <= kSquare)) return {false, "cells are not square"};
+  if (std::min(c.columns, c.rows) <= kLeastLinks) return {false, "fewer than four links across the cloth"};
+  if (!resolves_sides(scene, xpbd_substeps(scene, settings)))
+    return {false, "a wave crosses more than the shorter side in a substep: the modulus is below Y"};
+  return {true, ""};
+}
+
 }  // namespace clothbench::pbd_gpu

@@ -28,6 +28,9 @@ Choice prediction_of(const Scene&, const nlohmann::json& settings);
 /// Whether its links get implicit tension (INTEGRATION.md).
 Choice tension_of(const Scene&, const nlohmann::json& settings);
 
+/// Whether its diagonals are solved where columns and rows will put the vertices (INTEGRATION.md).
+Choice coupling_of(const Scene&, const nlohmann::json& settings);
+
 /// True if pins or hands hold it.
 bool is_held(const Scene&);
 /// True if the cloth meets neither itself nor a collider in the scene's time. Colliders that stand, and are farther
