@@ -154,7 +154,9 @@ class LineModel {
     if (f < 2 || !couples_) return 0;
     const double du = s_.cloth.du(), dv = s_.cloth.dv();
     const auto along = [&](std::size_t i) {
-      return m_.w[i] > 0 ? h_ * h_ * ((f == 2 ? du : -du) * shift_[i][0] + dv * shift_[i][1]) / std::hypot(du, dv) : 0;
+      return m_.w[i] > 0
+                 ? 0.995 * h_ * h_ * ((f == 2 ? du : -du) * shift_[i][0] + dv * shift_[i][1]) / std::hypot(du, dv)
+                 : 0;
     };
     return along(b) - along(a);
   }
@@ -168,7 +170,7 @@ class LineModel {
     for (std::size_t k = 0; k < line.size() && f < 2; ++k) {
       const double before = k > 0 ? lambda[k - 1] : 0, after = k + 1 < line.size() ? lambda[k] : 0,
                    moved = m_.w[line[k]] * (before - after) / (h_ * h_),
-                   most = 0.05 * (f == 0 ? s_.cloth.du() : s_.cloth.dv()) / (h_ * h_);
+                   most = 0.25 * (f == 0 ? s_.cloth.du() : s_.cloth.dv()) / (h_ * h_);
       double &second = shift_[line[k]][static_cast<std::size_t>(f)],
              &first = shift_[line[k]][2 + static_cast<std::size_t>(f)];
       second = std::clamp(second + rate_ * (first - second), -most, most);

@@ -2,7 +2,8 @@
 // they foresee: it changes the lengths that diagonals are solved for, by what a low-pass filter of second order makes
 // of those of the last substeps. Links creep, without which that would feed oscillations.
 const float kMostRate = 0.04, kRatePerFrame = 0.2;  // of the filters, a substep
-const float kMostShift = 0.05;                      // of a cell
+const float kMostShift = 0.25;                      // of a cell
+const float kForeseen = 0.995;                      // share of shifts; with all, some flat sheets drift in a minute
 vec4 shift[K];    // displacement along rows (x) and columns (y) [m], and the filter's first stage (z, w)
 float creep[K];  // of links: longer by it at the same tension [m]
 
@@ -18,7 +19,7 @@ float at_once() {
 /// What the shift of the thread's vertex k adds along its diagonal.
 float along_diagonal(uint k) {
   vec2 part = vec2(family == 2u ? p.rest_u : -p.rest_u, p.rest_v) / p.rest_d;
-  return family >= 2u ? dot(part, shift[k].xy) : 0.0;
+  return family >= 2u ? kForeseen * dot(part, shift[k].xy) : 0.0;
 }
 
 uint creep_index(uint k) { return family * COLUMNS * ROWS + 3u * first_vertex + index_of(vertex(lane * K + k)); }
