@@ -126,7 +126,8 @@ void store() {
     STORE16(x, o, vec4(pos[k], w[k]));
     STORE16(v, o, vec4(vel[k], 0.0));
 #ifdef COUPLE
-    STORE16(shifts, o, p.per_h * p.per_h * shift[k]);
+    uint at = vertex(i).y * kStride + vertex(i).x;  // as it is there, so that no bit depends on where dispatches end
+    STORE16(shifts, o, vec4(su[at], sv[at], filter_u[at], filter_v[at]));
 #endif
     STORE16(rx, o, vec4(rest_pos[k], 0.0));
     STORE16(rv, o, vec4(rest_vel[k], 0.0));
