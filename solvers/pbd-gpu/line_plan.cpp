@@ -170,6 +170,9 @@ double frames_for_gravity(const Scene& scene) {
   return swing > kMost && is_held(scene) && touches_nothing(scene) ? swing / kMost : 1;
 }
 
+/// Most substeps that a sheet takes so that its modulus is Y: up to Y dt^2/(rho L^2) of about 0.0028, 2000 N/m on 1 m.
+double most_to_couple(double links) { return std::max(6.0, links / 6); }
+
 int quality_of(const nlohmann::json& settings) {
   const std::string quality = settings.value("quality", "default");
   return quality == "fast" ? 0 : quality == "default" ? 1 : 2;
@@ -259,6 +262,8 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   double per_frame =
       short_links * frames_for_gravity(scene) * std::max(rule.least, fine * links / rule.links_a_substep);
   if (scene.needs.has(Feature::SelfCollision)) per_frame = std::max(per_frame, substeps_for_layers(scene));
+  if (const double needed = std::ceil(substeps_to_couple(scene)); needed <= most_to_couple(links) && needed > per_frame)
+    if (may_couple(scene, settings).on) per_frame = needed;
   const double for_speed = planes ? substeps_for_planes(scene, k) : substeps_for_speed(scene, k);
   return static_cast<int>(std::clamp(std::max(std::lround(per_frame), std::lround(for_speed)), 1L, 4096L));
 }
@@ -276,7 +281,7 @@ LineShape frame_shape(int columns, int rows, const LineRequest& request, const L
     // Whole subgroups, so that thread and lane numbers agree, and at least one thread for each row of held vertices.
     const std::uint32_t whole = std::max(device.subgroup, 32u);
     s.threads = (s.lanes * longest + whole - 1) / whole * whole;
-    const std::uint32_t state_B = 6 * 4 * 34 * static_cast<std::uint32_t>(rows) + 128;
+    const std::uint32_t state_B = (request.couples ? 10 : 6) * 4 * 34 * static_cast<std::uint32_t>(rows) + 128;
     // Twice the threads are faster with shuffles, not with barriers.
     const std::uint32_t most =
         k < 4 && (s.shuffles || vertices != 0) ? device.most_threads : std::min(256u, device.most_threads);

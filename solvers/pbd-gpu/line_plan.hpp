@@ -9,6 +9,12 @@
 
 namespace clothbench::pbd_gpu {
 
+/// Whether a scene gets a part of the method, and else why not.
+struct Choice {
+  bool on = false;
+  std::string why_not;
+};
+
 /// Length of a vector.
 inline double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 
@@ -47,6 +53,12 @@ double links_of_longer_side(const Cloth&);
 /// Substeps of a frame: setting `substeps`, or if that is 0 the rule of setting `quality` (README, "Substeps").
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 
+/// Whether links and masses are all alike in an elastic sheet that is held and touches nothing, so that its families
+/// may be coupled (INTEGRATION.md); else why not.
+Choice may_couple(const Scene&, const nlohmann::json& settings);
+/// Implicit substeps of BDF2 in a frame that a stretch wave takes across as many cells as coupled families bear.
+double substeps_to_couple(const Scene&);
+
 /// Substeps of the same scene without gravity where gravity asks for more, else 0.
 int substeps_without_gravity(const Scene&, const nlohmann::json& settings);
 
@@ -77,6 +89,7 @@ struct LineShape {
 /// The user's request for a shape; 0: chosen here.
 struct LineRequest {
   std::uint32_t vertices = 0, threads = 0, beside = 0;
+  bool couples = false;  ///< a vertex has a shift too (INTEGRATION.md)
 };
 /// Shape of the kernel that computes a frame of a whole cloth; threads = 0 if the cloth or the device does not fit it.
 LineShape frame_shape(int columns, int rows, const LineRequest&, const LineDevice&);

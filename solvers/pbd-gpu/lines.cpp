@@ -38,7 +38,7 @@ Tethers tethers_if(bool wanted, const Scene& scene) {
 
 }  // namespace
 
-Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts, bool tension)
+Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts, bool tension, bool couples)
     : frame_(frame),
       scene_(scene),
       tethers_(tethers_if(frame.settings()["tethers"].get<bool>(), scene)),
@@ -48,6 +48,7 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts, bool tensio
       keep_(iterations_ > 1 && (scene.material.membrane_stiffness_N_per_m || scene.needs.has(Feature::Bend))),
       predicts_(predicts),
       tension_(tension),
+      couples_(couples),
       firm_(std::any_of(taut_.begin(), taut_.end(), [](std::uint8_t t) { return t != 0; })) {
   if (tethers_.to.empty()) frame_.leave_out("tethers", tethers_.why_not);
   if (!scene.needs.has(Feature::Damping)) frame_.leave_out("damping", "the scene has none");
@@ -61,6 +62,9 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts, bool tensio
   keeps_hinges_ = keep_ && scene.needs.has(Feature::Bend);
   if (keeps_links_) frame_.add_buffer(BIND_LINK_MULTIPLIERS, "link multipliers", families() * n * 4);
   if (keeps_hinges_) frame_.add_buffer(BIND_HINGE_MULTIPLIERS, "hinge multipliers", 2 * n * sizeof(vec4));
+  if (!couples_) return;
+  frame_.add_buffer(BIND_SHIFTS, "shifts by columns and rows", batch_ * n * sizeof(vec4));
+  frame_.add_buffer(BIND_LINK_CREEP, "creep of links", batch_ * families() * n * sizeof(float));
 }
 
 void Lines::add_kernels(bool any_masses) {
@@ -82,8 +86,8 @@ void Lines::add_kernels(bool any_masses) {
 
 LineRequest Lines::request() const {
   return {frame_.tuning()["vertices_a_thread"].get<std::uint32_t>(),
-          frame_.tuning()["threads_a_group"].get<std::uint32_t>(),
-          frame_.tuning()["lines_beside"].get<std::uint32_t>()};
+          frame_.tuning()["threads_a_group"].get<std::uint32_t>(), frame_.tuning()["lines_beside"].get<std::uint32_t>(),
+          couples_};
 }
 
 LineDevice Lines::device() const {
@@ -138,7 +142,7 @@ LineSpecialization Lines::specialization(const LineShape& shape) const {
 }
 
 std::string Lines::kernel(const char* name, bool shuffles) const {
-  return std::string(name) + (shuffles ? "_shuffle" : "") + (keep_ ? "_keep" : "");
+  return std::string(name) + (shuffles ? "_shuffle" : "") + (keep_ ? "_keep" : couples_ ? "_couple" : "");
 }
 
 void Lines::add_whole(const LineShape& shape) {
@@ -270,6 +274,14 @@ Traffic Lines::multiplier_traffic(std::uint32_t family, std::uint32_t iteration)
   return {iteration > 0 ? 2 * bytes : 0, bytes};
 }
 
+/// The creep of every link of a family is read and written.
+Traffic Lines::creep_traffic(std::uint32_t family) const {
+  if (!couples_) return {};
+  const double columns = scene_.cloth.columns, rows = scene_.cloth.rows;
+  const double bytes = 4 * (family == 1 ? columns : columns - 1) * (family == 0 ? rows : rows - 1);
+  return {bytes, bytes};
+}
+
 /// Traffic of one pass of a substep: it reads every vertex and writes free ones; the first also reads tether ends.
 Traffic Lines::pass_traffic(std::uint32_t pass) const {
   const std::vector<float>& w = frame_.inverse_mass_now();
@@ -277,7 +289,8 @@ Traffic Lines::pass_traffic(std::uint32_t pass) const {
   const auto free = static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }));
   const std::uint32_t family = family_of(pass);
   const auto chains = static_cast<double>(family == 0 ? scene_.cloth.rows : scene_.cloth.columns);
-  return multiplier_traffic(family, pass / families()) +
+  const Traffic shifts = couples_ ? Traffic{16 * n, family < 2 ? 16 * free : 0} : Traffic{};
+  return multiplier_traffic(family, pass / families()) + creep_traffic(family) + shifts +
          Traffic{32 * n + (firm_ ? 4.0 * shape_[std::min(family, 2u)].lanes * chains : 0) +
                      (pass == 0 ? 16 * static_cast<double>(tethers_.to.size()) * free : 0),
                  32 * free};
@@ -310,13 +323,15 @@ void Lines::record(int first, int count, int substeps, double dt_s, const TimeSt
   }
   c.passes = c.substeps * passes;
   const auto n = static_cast<double>(scene_.cloth.vertex_count());
-  const double a_vertex_B = predicts_ ? 96 : 64;
+  const double a_vertex_B = (predicts_ ? 96 : 64) + (couples_ ? 16 : 0);
   Traffic t =
       persistent_ != nullptr ? compensated_traffic() : Traffic{a_vertex_B * n * batch_, a_vertex_B * n * batch_};
   if (whole_ != nullptr)
     t.read_B += static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count);
   for (std::uint32_t k = 0; k < passes; ++k)
-    t = t + (whole_ != nullptr ? multiplier_traffic(family_of(k), k / families()) : pass_traffic(k)) * count;
+    t = t + (whole_ != nullptr ? multiplier_traffic(family_of(k), k / families()) + creep_traffic(family_of(k)) * batch_
+                               : pass_traffic(k)) *
+                count;
   if (whole_ != nullptr)
     frame_.dispatch_groups(*whole_, vulkan::groups_for(batch_, 1), c, t);
   else

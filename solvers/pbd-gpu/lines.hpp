@@ -15,7 +15,7 @@ class Lines {
  public:
   /// Adds its stages, buffers and kernels. The buffers of the state must exist, a vec4 a vertex: positions (.w =
   /// inverse mass), velocities, and the rounding errors of both (compensated sums).
-  Lines(FrameBuilder& frame, const Scene& scene, bool predicts, bool tension);
+  Lines(FrameBuilder& frame, const Scene& scene, bool predicts, bool tension, bool couples);
   /// Adds its stages and kernels. With contact by planes vertices have any inverse mass while they are solved, which
   /// the kernels of a dispatch a family alone can do.
   void add_kernels(bool any_masses);
@@ -56,6 +56,7 @@ class Lines {
   std::string kernel(const char* name, bool shuffles) const;
   Constraints count(std::uint32_t family) const;
   Traffic multiplier_traffic(std::uint32_t family, std::uint32_t iteration) const;
+  Traffic creep_traffic(std::uint32_t family) const;
   void record_pass(const LineConstants&);
 
   FrameBuilder& frame_;
@@ -64,7 +65,7 @@ class Lines {
   const std::vector<std::uint8_t> taut_;
   const std::uint32_t iterations_, batch_;
   const bool keep_;  ///< multipliers are kept from one iteration to the next
-  const bool predicts_, tension_;
+  const bool predicts_, tension_, couples_;
   bool added_regularisation_ = false, firm_ = false, keeps_links_ = false, keeps_hinges_ = false;
   const FrameKernel *whole_ = nullptr, *persistent_ = nullptr;
   std::array<const FrameKernel*, 3> pass_{};  ///< rows, columns, diagonals

@@ -171,4 +171,45 @@ Choice prediction_of(const Scene& scene, const nlohmann::json& settings) {
   return {true, ""};
 }
 
+double substeps_to_couple(const Scene& scene) {
+  // Squared, h'^2 Y / m: at 100 a patch of 65 x 17 vertices leaves its modulus within seconds, at 52 within a minute;
+  // at 47 it keeps it.
+  constexpr double kMostCells = 6.9;
+  // Beyond the shorter side, what the families keep of one another feeds oscillations.
+  constexpr double kMostOfSide = 1.15;
+  const Cloth& c = scene.cloth;
+  const double way = 2.0 / 3 * scene.time.dt() *
+                     std::sqrt(scene.material.membrane_stiffness_N_per_m.value_or(0) / c.areal_density_kg_per_m2);
+  return way / std::min(kMostCells * std::min(c.du(), c.dv()), kMostOfSide * std::min(c.width_m, c.height_m));
+}
+
+Choice may_couple(const Scene& scene, const nlohmann::json& settings) {
+  constexpr int kLeastLinks = 4;
+  constexpr double kSquare = 0.05;
+  const std::string wanted = tuned(settings, "coupling");
+  if (wanted == "never") return {false, "setting tuning.coupling=never"};
+  const Cloth& c = scene.cloth;
+  if (!scene.material.membrane_stiffness_N_per_m) return {false, "the cloth is inextensible"};
+  if (!scene.needs.has(Feature::Shear)) return {false, "the scene has no shear stiffness"};
+  if (wants_chains(scene) || !c.mass_factors.empty()) return {false, "links or masses are not all alike"};
+  if (settings.value("iterations", 1) > 1) return {false, "setting iterations: multipliers start from the last ones"};
+  if (!touches_nothing(scene) || contact_by_planes(scene, settings)) return {false, "the cloth touches"};
+  if (wanted == "always") return {true, ""};
+  if (!is_held(scene)) return {false, "nothing holds the cloth: no tension lasts"};
+  if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};
+  if (!(std::abs(c.du() / c.dv() - 1) <= kSquare)) return {false, "cells are not square"};
+  if (std::min(c.columns, c.rows) <= kLeastLinks) return {false, "fewer than four links across the cloth"};
+  return {true, ""};
+}
+
+Choice coupling_of(const Scene& scene, const nlohmann::json& settings) {
+  const Choice may = may_couple(scene, settings);
+  if (!may.on || tuned(settings, "coupling") == "always") return may;
+  if (const Choice prediction = prediction_of(scene, settings); !prediction.on)
+    return {false, "first order in time: " + prediction.why_not};
+  if (!(substeps_to_couple(scene) <= xpbd_substeps(scene, settings)))
+    return {false, "a wave crosses too many cells in a substep: the modulus of the sheet is below Y"};
+  return {true, ""};
+}
+
 }  // namespace clothbench::pbd_gpu

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "clothbench/scene.hpp"
+#include "line_plan.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -18,15 +19,13 @@ struct TimeStep {
 /// one that predicts takes implicit damping, and begins (last_h_s 0) with a substep of backward Euler.
 TimeStep time_step(bool predicts, double h_s, double last_h_s, double damping_per_s);
 
-/// Whether a scene gets a part of the method, and else why not.
-struct Choice {
-  bool on = false;
-  std::string why_not;
-};
 /// Whether a scene is integrated by BDF2. The same for every cloth of the same features that nothing holds.
 Choice prediction_of(const Scene&, const nlohmann::json& settings);
 /// Whether its links get implicit tension (INTEGRATION.md).
 Choice tension_of(const Scene&, const nlohmann::json& settings);
+
+/// Whether its diagonals are solved where columns and rows will put the vertices (INTEGRATION.md).
+Choice coupling_of(const Scene&, const nlohmann::json& settings);
 
 /// True if pins or hands hold it.
 bool is_held(const Scene&);

@@ -86,6 +86,8 @@ class Xpbd final : public GpuSolver {
     add_history(position.size());
     const Choice tension = tension_of(scene(), settings());
     if (!tension.on) leave_out("implicit tension", tension.why_not);
+    const Choice coupling = coupling_of(scene(), settings());
+    if (!coupling.on) leave_out("coupling of families", coupling.why_not);
     if (const int calm = substeps_without_gravity(scene(), settings()); calm > 0)
       leave_out(std::to_string(calm) + " substeps",
                 "gravity takes the cloth far in a frame: " + std::to_string(xpbd_substeps(scene(), settings())));
@@ -93,7 +95,7 @@ class Xpbd final : public GpuSolver {
     if (chained)
       chains_ = std::make_unique<Chains>(frame(), scene(), cloth, predicts(), tension.on);
     else
-      lines_ = std::make_unique<Lines>(frame(), scene(), predicts(), tension.on);
+      lines_ = std::make_unique<Lines>(frame(), scene(), predicts(), tension.on, coupling.on);
     if (planes && lines_) plane_frame_ = PlaneFrame::make(frame(), *lines_, *plane_contact_);
     if (lines_ && !plane_frame_) lines_->add_kernels(planes);
     if (planes && !plane_frame_) plane_contact_->add_kernels();
@@ -285,6 +287,9 @@ SolverInfo xpbd_info() {
        "where time_order 2 is on: auto (where it is safe), always (in every scene without contact)"},
       {"tension", "\"auto\"",
        "where links get implicit tension: auto (where it pays), always (in every scene without contact), never"},
+      {"coupling", "\"auto\"",
+       "where diagonals are solved where columns and rows will put the vertices: auto (sheets whose modulus needs it), "
+       "always (in every elastic sheet without contact), never"},
       {"shuffles", "true", "threads of a line exchange by subgroup shuffles where lines fit a subgroup"},
       {"vertices_a_thread", "0", "of a line: 2, 4, 8, 16 or 32; 0: by line and device"},
       {"threads_a_group", "0", "of one family's workgroups: 32 to 1024; 0: by line and device"},
@@ -307,6 +312,7 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", tuning, "device_barrier", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "prediction", {"auto", "always"});
   require_one_of("xpbd", tuning, "tension", {"auto", "always", "never"});
+  require_one_of("xpbd", tuning, "coupling", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "contact", {"auto", "samples", "planes"});
   require_one_of("xpbd", tuning, "contact_frame", {"auto", "always", "never"});
   require_between("xpbd", tuning, "contact_groups", 0, 1024);

@@ -59,6 +59,12 @@ TEST_F(Bytes, OfEveryStageAtManySizes) {
   }
 }
 
+TEST_F(Bytes, OfCoupledFamilies) {
+  expect_equal("xpbd", with_pins(sheet(7, 5)), {{"substeps", 2}, {"tuning", {{"coupling", "always"}}}});
+  expect_equal("xpbd", with_pins(sheet(6, 9)),
+               {{"substeps", 2}, {"one_dispatch", false}, {"tuning", {{"coupling", "always"}}}});
+}
+
 TEST_F(Bytes, OfChains) {
   expect_equal("xpbd", mesh_sheet(20), {{"substeps", 2}});
   expect_equal("xpbd", with_damping(mesh_tube(12, 9)), {{"substeps", 3}});

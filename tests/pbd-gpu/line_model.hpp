@@ -42,19 +42,26 @@ inline std::vector<V> solved(std::vector<std::vector<double>> a, std::vector<V> 
 inline double dot(V a, V b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 struct Method {
-  bool tethered, predicts, tension;
+  bool tethered, predicts, tension, couples = false;
 };
 
 /// XPBD on whole lines in double: both diagonals, columns with bending before stretch, rows likewise.
 class LineModel {
  public:
   LineModel(const Scene& s, Model& m, Method method)
-      : s_(s), m_(m), predicts_(method.predicts), tension_(method.tension), taut_(taut_chains(s)) {
+      : s_(s),
+        m_(m),
+        predicts_(method.predicts),
+        tension_(method.tension),
+        couples_(method.couples),
+        taut_(taut_chains(s)),
+        shift_(m.x.size()) {
     if (method.tethered) tethers_ = tethers_of(s);
   }
 
   void frame(int substeps, int iterations) {
     const int families = s_.needs.has(Feature::Shear) ? 4 : 2;
+    rate_ = std::min(0.04, 0.2 / substeps);
     for (int n = 0; n < substeps; ++n) {
       begin(s_.time.dt() / substeps);
       integrate();
@@ -133,6 +140,44 @@ class LineModel {
                                              : Y * across / along);
   }
 
+  /// Share of the compliance that acts at once: 1 / (1 + K/3 / (K + s^2/21)), K = h^2 Y/m, over s links.
+  double at_once() const {
+    if (!couples_) return 1;
+    const double mass = s_.cloth.areal_density_kg_per_m2 * s_.cloth.du() * s_.cloth.dv(),
+                 waves = 4.0 / 3 / (mass * compliance(0) / (h_ * h_ * keep_)),
+                 links = std::min(s_.cloth.columns, s_.cloth.rows) - 1;
+    return 1 / (1 + waves / 3 / (waves + links * links / 21));
+  }
+
+  /// By how much what columns and rows will do lengthens a diagonal from vertex a to b, by smoothed displacements.
+  double foreseen(int f, std::size_t a, std::size_t b) const {
+    if (f < 2 || !couples_) return 0;
+    const double du = s_.cloth.du(), dv = s_.cloth.dv();
+    const auto along = [&](std::size_t i) {
+      return m_.w[i] > 0
+                 ? 0.995 * h_ * h_ * ((f == 2 ? du : -du) * shift_[i][0] + dv * shift_[i][1]) / std::hypot(du, dv)
+                 : 0;
+    };
+    return along(b) - along(a);
+  }
+
+  /// `lambda`: the multipliers of all links of a line in this substep.
+  void remember(int f, const std::vector<std::size_t>& line, double alpha, const std::vector<double>& lambda) {
+    for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+      double& creep = creep_[{f, line[k]}];
+      creep += rate_ * ((1 - at_once()) * alpha * lambda[k] - creep);
+    }
+    for (std::size_t k = 0; k < line.size() && f < 2; ++k) {
+      const double before = k > 0 ? lambda[k - 1] : 0, after = k + 1 < line.size() ? lambda[k] : 0,
+                   moved = m_.w[line[k]] * (before - after) / (h_ * h_),
+                   most = 0.25 * (f == 0 ? s_.cloth.du() : s_.cloth.dv()) / (h_ * h_);
+      double &second = shift_[line[k]][static_cast<std::size_t>(f)],
+             &first = shift_[line[k]][2 + static_cast<std::size_t>(f)];
+      second = std::clamp(second + rate_ * (first - second), -most, most);
+      first += rate_ * (moved - first);
+    }
+  }
+
   struct Links {
     std::vector<V> along;                ///< unit vectors
     std::vector<double> length, lambda;  ///< lambda: multipliers that solve them
@@ -159,6 +204,7 @@ class LineModel {
       a[k][k] = w(k) + w(k + 1) + soft;
       b[k][0] = rest - length(e) + soft * pull[k] * length(e);
       b[k][0] -= (strip ? soft : alpha) * multipliers_[{f, line[k]}][0];
+      b[k][0] -= creep_[{f, line[k]}] + foreseen(f, line[k], line[k + 1]);
     }
     for (std::size_t k = 0; k + 1 < n; ++k) a[k][k + 1] = a[k + 1][k] = -w(k + 1) * dot(out.along[k], out.along[k + 1]);
     const std::vector<V> lambda = solved(a, b);
@@ -191,10 +237,13 @@ class LineModel {
 
   void stretch(int f, const std::vector<std::size_t>& line, bool border, bool taut) {
     if (line.size() < 2) return;
-    const double alpha = (border ? 2 : 1) * compliance(f) / (h_ * h_ * keep_);
+    const double whole = (border ? 2 : 1) * compliance(f) / (h_ * h_ * keep_), alpha = at_once() * whole;
     const std::vector<double> none(line.size() - 1, 0);
     const auto carried = tension_ ? turn(line, solved_links(f, line, alpha, taut, none)) : none;
     const Links links = solved_links(f, line, alpha, taut, carried);
+    std::vector<double> all = links.lambda;
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] -= carried[k] * links.length[k];
+    if (couples_) remember(f, line, whole, all);
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
       multipliers_[{f, line[k]}][0] += links.lambda[k];
       move(line[k], (-m_.w[line[k]] * links.lambda[k]) * links.along[k]);
@@ -231,10 +280,12 @@ class LineModel {
 
   const Scene& s_;
   Model &m_, last_{}, before_{};  ///< now; before the last substep; before this one
-  const bool predicts_, tension_;
+  const bool predicts_, tension_, couples_;
   const std::vector<std::uint8_t> taut_;
   Tethers tethers_;
-  double h_ = 0, carry_ = 0, keep_ = 1, loss_ = 0;
+  std::vector<std::array<double, 4>> shift_;  ///< over h^2: along rows, along columns, and the filter's first stage
+  std::map<std::pair<int, std::size_t>, double> creep_;
+  double h_ = 0, carry_ = 0, keep_ = 1, loss_ = 0, rate_ = 0;
   std::map<std::pair<int, std::size_t>, V> multipliers_;
 };
 

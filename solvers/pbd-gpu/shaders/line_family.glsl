@@ -7,6 +7,9 @@ void pass(uint substep, bool first, bool last) {
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
     pos[k] = vel[k] = vec3(0.0);
+#ifdef COUPLE
+    shift[k] = vec4(0.0);
+#endif
     w[k] = 0.0;
     at[k] = 0u;
     if (!(EXACT || on_chain(i))) continue;
@@ -16,6 +19,10 @@ void pass(uint substep, bool first, bool last) {
     pos[k] = here.xyz;
     w[k] = here.w;
     vel[k] = v[at[k]].xyz;
+#ifdef COUPLE
+    vec4 by_lines = LOAD16(shifts, at[k]);
+    if (w[k] > 0.0) shift[k] = p.h * p.h * by_lines;
+#endif
     if (fetches) {
       rest_pos[k] = rx[at[k]].xyz;
       rest_vel[k] = rv[at[k]].xyz;
@@ -50,5 +57,8 @@ void pass(uint substep, bool first, bool last) {
     if (w[k] == 0.0) continue;
     STORE16(x, at[k], vec4(pos[k], w[k]));
     STORE16(v, at[k], vec4(vel[k], 0.0));
+#ifdef COUPLE
+    if (family < 2u) STORE16(shifts, at[k], p.per_h * p.per_h * shift[k]);
+#endif
   }
 }

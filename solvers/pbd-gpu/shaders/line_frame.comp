@@ -19,6 +19,10 @@ layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[];
 layout(std430, binding = BIND_LINK_MULTIPLIERS) buffer LinkMultipliers { float link_multipliers[]; };
 layout(std430, binding = BIND_HINGE_MULTIPLIERS) buffer HingeMultipliers { vec4 hinge_multipliers[]; };
 #endif
+#ifdef COUPLE
+layout(std430, binding = BIND_SHIFTS) buffer Shifts { vec4 shifts[]; };  // over h^2
+layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
+#endif
 #include "lines.glsl"
 
 // 34 words a row: threads of 4 vertices on rows, columns and both diagonals meet in a bank at most two at a time.
@@ -26,6 +30,18 @@ const uint kStride = 34u;
 shared float px[kStride * ROWS], py[kStride * ROWS], pz[kStride * ROWS];
 shared float vx[kStride * ROWS], vy[kStride * ROWS], vz[kStride * ROWS];
 shared uint held[32];  // a bit a vertex, a word a row
+#ifdef COUPLE
+// Shifts over h^2. The filters' first stages are of one family alone.
+shared float su[kStride * ROWS], sv[kStride * ROWS], filter_u[kStride * ROWS], filter_v[kStride * ROWS];
+
+void put_shift(uvec2 at, vec4 value) {
+  uint o = at.y * kStride + at.x;
+  su[o] = value.x;
+  sv[o] = value.y;
+  filter_u[o] = value.z;
+  filter_v[o] = value.w;
+}
+#endif
 
 vec3 anchor(uvec2 at, uint k) {
   uint o = at.y * kStride + at.x;
@@ -58,12 +74,19 @@ void take() {
     pos[k] = vec3(px[o], py[o], pz[o]);
     vel[k] = vec3(vx[o], vy[o], vz[o]);
     w[k] = on_chain(i) ? inverse_mass(at) : 0.0;
+#ifdef COUPLE
+    shift[k] = w[k] > 0.0 ? p.h * p.h * vec4(su[o], sv[o], filter_u[o], filter_v[o]) : vec4(0.0);
+#endif
   }
 }
 
 void give() {
   [[unroll]] for (uint k = 0u; k < K; ++k)
     if (w[k] > 0.0) put(vertex(lane * K + k), pos[k], vel[k]);
+#ifdef COUPLE
+  [[unroll]] for (uint k = 0u; k < K; ++k)
+    if (w[k] > 0.0 && family < 2u) put_shift(vertex(lane * K + k), p.per_h * p.per_h * shift[k]);
+#endif
 }
 
 void load() {
@@ -75,6 +98,9 @@ void load() {
     uint o = index_of(vertex(i));
     vec4 here = LOAD16(x, o);
     put(vertex(i), here.xyz, LOAD16(v, o).xyz);
+#ifdef COUPLE
+    put_shift(vertex(i), LOAD16(shifts, o));
+#endif
     rest_pos[k] = LOAD16(rx, o).xyz;
     rest_vel[k] = LOAD16(rv, o).xyz;
     if (kPredicts) {
@@ -99,6 +125,10 @@ void store() {
     uint o = index_of(vertex(i));
     STORE16(x, o, vec4(pos[k], w[k]));
     STORE16(v, o, vec4(vel[k], 0.0));
+#ifdef COUPLE
+    uint at = vertex(i).y * kStride + vertex(i).x;  // as it is there, so that no bit depends on where dispatches end
+    STORE16(shifts, o, vec4(su[at], sv[at], filter_u[at], filter_v[at]));
+#endif
     STORE16(rx, o, vec4(rest_pos[k], 0.0));
     STORE16(rv, o, vec4(rest_vel[k], 0.0));
     if (!kPredicts) continue;

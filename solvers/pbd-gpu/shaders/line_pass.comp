@@ -21,6 +21,10 @@ layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { f
 layout(std430, binding = BIND_LINK_MULTIPLIERS) buffer LinkMultipliers { float link_multipliers[]; };
 layout(std430, binding = BIND_HINGE_MULTIPLIERS) buffer HingeMultipliers { vec4 hinge_multipliers[]; };
 #endif
+#ifdef COUPLE
+layout(std430, binding = BIND_SHIFTS) coherent buffer Shifts { vec4 shifts[]; };  // over h^2
+layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
+#endif
 #include "lines.glsl"
 
 /// Pinned vertices are never written, so reading them here races with nothing.

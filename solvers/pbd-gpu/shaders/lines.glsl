@@ -192,11 +192,18 @@ void move(uint k, vec3 step) {
   vel[k] += step * p.per_h;
 }
 
+#ifdef COUPLE
+#include "coupling.glsl"
+#endif
+
 vec3 direction[K], direction_below;  // of links; 0 where there is none
 float w_above;                       // inverse mass of the vertex after the thread's
 #ifdef TENSION
 float link_length[K], pull[K];  // tension over length that links carry already
 #endif
+
+/// Of the chain's links, over h^2.
+float compliance() { return (family == 0u ? p.alpha_u : family == 1u ? p.alpha_v : p.alpha_d) * border(); }
 
 /// Distance constraints of all links of the chain (Macklin, Mueller & Chentanez 2016, eq. 18, for all at once):
 /// (G M^-1 G^T + alpha) dlambda = -C - alpha lambda. `least` is a share of the inverse mass that alpha is at least.
@@ -204,7 +211,10 @@ void link_equations(float least) {
   vec4 below, above, none;
   exchange(vec4(pos[0], w[0]), 1u, none, above);
   w_above = above.w;
-  float alpha = (family == 0u ? p.alpha_u : family == 1u ? p.alpha_v : p.alpha_d) * border();
+  float alpha = compliance();
+#ifdef COUPLE
+  alpha *= at_once();
+#endif
   float rest = family == 0u ? p.rest_u : family == 1u ? p.rest_v : p.rest_d;
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     vec4 next = above;
@@ -235,7 +245,16 @@ void link_equations(float least) {
 #endif
   }
   exchange(vec4(direction[K - 1u], 0.0), 1u, below, none);
+#ifdef COUPLE
+  exchange(vec4(direction[0], along_diagonal(0u)), 1u, none, above);
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    float next = above.w;
+    if (k + 1u < K) next = along_diagonal(k + 1u);
+    if (direction[k] != vec3(0.0)) link_right[k] -= creep[k] + next - along_diagonal(k);
+  }
+#else
   exchange(vec4(direction[0], 0.0), 1u, none, above);
+#endif
   direction_below = lane > 0u ? below.xyz : vec3(0.0);
   vec3 direction_above = lane + 1u < LANES ? above.xyz : vec3(0.0);
   [[unroll]] for (uint k = 0u; k < K; ++k) {
@@ -252,13 +271,36 @@ void link_equations(float least) {
 #include "tension.glsl"
 #endif
 
+#ifdef COUPLE
+/// Of the thread's links and the one before them, in all: of implicit tension too.
+void remember_multipliers(float lambda_below) {
+  float lambda[K];
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    lambda[k] = link_right[k];
+    if (kTension) lambda[k] -= pull[k] * link_length[k];
+  }
+  if (kTension) {
+    vec4 below, none;
+    exchange(vec4(lambda[K - 1u], 0.0, 0.0, 0.0), 1u, below, none);
+    lambda_below = lane > 0u ? below.x : 0.0;
+  }
+  remember(compliance(), lambda, lambda_below);
+}
+#endif
+
 void stretch(float least) {
+#ifdef COUPLE
+  load_creep();
+#endif
 #ifdef TENSION
   if (kTension) turn_by_tension(least);
 #endif
   link_equations(least);
   float lambda_below;
   solve_links(32u, lambda_below);
+#ifdef COUPLE
+  remember_multipliers(lambda_below);
+#endif
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     vec3 step = lambda_below * direction_below;
     if (k > 0u) step = link_right[k - 1u] * direction[k - 1u];

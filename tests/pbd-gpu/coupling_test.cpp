@@ -1,0 +1,83 @@
+// Coupling of families (INTEGRATION.md): where it is off, why, and that it costs nothing there; what forgets its state.
+#include <cmath>
+
+#include "contact_scenes.hpp"
+#include "gpu_fixture.hpp"
+#include "mesh_scene.hpp"
+#include "prediction.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+class Coupled : public Gpu {
+ protected:
+  /// Why the plan has none ("" where it has), and that its buffers are there if and only if it is on.
+  static std::string why_not(const Scene& s, const nlohmann::json& given = nlohmann::json::object()) {
+    const auto solver = make("xpbd", given);
+    solver->load(s);
+    std::string why;
+    for (const LeftOut& l : solver->plan().left_out)
+      if (l.what == "coupling of families") why = l.why;
+    int buffers = 0;
+    for (const auto& b : solver->plan().buffers)
+      buffers += b.name == "creep of links" || b.name == "shifts by columns and rows";
+    EXPECT_EQ(buffers, why.empty() ? 2 : 0) << why;
+    return why;
+  }
+};
+
+Scene square(int columns = 9, int rows = 9) {
+  Scene s = with_pins(sheet(columns, rows, (columns - 1) / 16.0, (rows - 1) / 16.0));
+  s.material.membrane_stiffness_N_per_m = 300;
+  return s;
+}
+
+TEST_F(Coupled, IsOnlyWhereASheetNeedsItAndThePlanSaysWhy) {
+  EXPECT_EQ(why_not(square()), "");
+  Scene s = square();
+  s.material.membrane_stiffness_N_per_m.reset();
+  EXPECT_EQ(why_not(s), "the cloth is inextensible");
+  s = square();
+  s.needs = s.needs - FeatureSet{Feature::Shear};
+  EXPECT_EQ(why_not(s), "the scene has no shear stiffness");
+  s = square();
+  s.pins.vertices.clear();
+  EXPECT_EQ(why_not(s), "nothing holds the cloth: no tension lasts");
+  EXPECT_EQ(why_not(square(5, 4)), "fewer than four links across the cloth");
+  EXPECT_EQ(why_not(with_pins(sheet(9, 9, 1, 0.5))), "cells are not square");
+  EXPECT_EQ(why_not(with_collider(square(), sphere({0, 0, 0}, 0.1))), "the cloth touches");
+  EXPECT_EQ(why_not(with_pins(uneven(square(), 3, 0.2))), "links or masses are not all alike");
+  EXPECT_EQ(why_not(square(), {{"time_order", 1}}), "setting time_order=1");
+  EXPECT_EQ(why_not(square(), {{"iterations", 2}}), "setting iterations: multipliers start from the last ones");
+  s = square(33, 33);
+  s.material.membrane_stiffness_N_per_m = 1000;
+  EXPECT_EQ(why_not(s, {{"substeps", 1}}),
+            "a wave crosses too many cells in a substep: the modulus of the sheet is below Y");
+  EXPECT_EQ(why_not(square(), {{"tuning", {{"coupling", "never"}}}}), "setting tuning.coupling=never");
+}
+
+TEST_F(Coupled, ResetForgetsAndReleasedVerticesFlyOn) {
+  const Scene s = moving(square(), {0, 8}, 6);
+  const auto solver = make("xpbd");
+  solver->load(s);
+  const ClothState once = after(*solver, s, 14);
+  solver->reset();
+  EXPECT_EQ(after(*solver, s, 14).position, once.position) << "bit for bit";
+  for (const double x : once.position) EXPECT_TRUE(std::isfinite(x) && std::abs(x) < 3);
+}
+
+TEST_F(Coupled, SheetsGetTheSubstepsForItUpToALimit) {
+  const nlohmann::json fast = {{"quality", "fast"}};
+  Scene s = with_pins(sheet(33, 33));
+  s.material.membrane_stiffness_N_per_m = 1000;
+  s.cloth.areal_density_kg_per_m2 = 0.2;
+  const int substeps = xpbd_substeps(s, fast);
+  EXPECT_LE(substeps_to_couple(s), substeps);
+  EXPECT_GT(substeps_to_couple(s), substeps - 1);
+  s.material.membrane_stiffness_N_per_m = 9000;
+  EXPECT_GT(substeps_to_couple(s), xpbd_substeps(s, fast)) << "dearer than a sixth of its links";
+  EXPECT_EQ(xpbd_substeps(s, fast), 3);
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu
