@@ -97,7 +97,8 @@ TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
     s.motion[f].colliders[0].capsules = s.colliders[0].capsules;
     if (f >= 2) s.motion[f].colliders[0].capsules[0].a_m[0] += 1;
   }
-  EXPECT_EQ(xpbd_substeps(s, {{"quality", "default"}, {kTuning, {{"contact", "samples"}}}}), 16) << "a jump is no motion";
+  EXPECT_EQ(xpbd_substeps(s, {{"quality", "default"}, {kTuning, {{"contact", "samples"}}}}), 16)
+      << "a jump is no motion";
 }
 
 TEST(Shapes, FitDevices) {

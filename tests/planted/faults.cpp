@@ -119,7 +119,8 @@ void add_planes(std::vector<Fault>& f) {
          "if (proposed.w > 0.0 && !(least >= 0.0)) at = placed(at, from.w);", "");
   kernel("a lane's triangles left out of a vertex' sum", "wrapped", "plane_gather.glsl", "if (live) gather_part(",
          "if (live && k + team_lane() != 2u) gather_part(");
-  kernel("near pairs without their bit", "struck", "plane_near.glsl", "atomicOr(near_bits[k / 32u], 1u << k % 32u);", "");
+  kernel("near pairs without their bit", "struck", "plane_near.glsl", "atomicOr(near_bits[k / 32u], 1u << k % 32u);",
+         "");
   kernel("projected onto all planes but those of the last triangle", "struck", "plane_project.glsl",
          "any_planes && f < end_fan;", "any_planes && f + 1u < end_fan;");
 }
