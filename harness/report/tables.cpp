@@ -41,7 +41,8 @@ std::vector<PaperRow> paper_rows(const Family& family, const nlohmann::json& pub
   };
   for (const nlohmann::json& column : published.at("columns")) {
     out.push_back({&column});
-    const auto wraps = [&](const Series& s) { return column.contains("engine") && engine(s) == column["engine"]; };
+    const std::string wrapped = column.value("engine", "");
+    const auto wraps = [&](const Series& s) { return !wrapped.empty() && engine(s) == wrapped; };
     for (const Series& s : ours)
       if (wraps(s)) out.push_back({nullptr, s});
     if (out.back().published == nullptr)

@@ -204,7 +204,9 @@ bool contact_by_planes(const Scene& scene, const nlohmann::json& settings) {
   if ((scene.needs & (kColliderFeatures | FeatureSet{Feature::SelfCollision})).empty()) return false;
   const std::string wanted = settings.value(kTuning, nlohmann::json::object()).value("contact", "auto");
   if (wanted != "auto") return wanted == "planes";
-  const bool moving = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
+  // The list of pairs is for vertices that keep to their reach in the frame; what hands let go springs farther.
+  const bool moving =
+      scene.grips.vertices.empty() && !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   return (moving || scene.cloth.mesh) && settings.value("batch", 1) == 1 && settings.value("contact_samples", -1) < 0;
 }
 

@@ -270,7 +270,8 @@ SolverInfo xpbd_info() {
   info.tuning = {
       {"contact", "\"auto\"",
        "samples or planes: points on edges that search their way, or a separating plane for every pair of a triangle "
-       "and a convex piece; auto: planes where a collider moves or the cloth is a triangle mesh"},
+       "and a convex piece; auto: planes where a collider moves and no hand holds the cloth, or "
+       "the cloth is a triangle mesh"},
       {"contact_frame", "\"auto\"",
        "with contact by planes, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, "
        "never"},
