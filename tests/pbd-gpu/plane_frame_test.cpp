@@ -117,7 +117,7 @@ TEST_F(PlaneFrames, OfManyWorkgroupsThatWaitForOneAnother) {
   };
   int agreed = 0;
   // 1 and 3 workgroups, and 2 of which one has a square cloth's lines
-  for (const Shape& w : {Shape{33, 31, 512, 8, 0}, {33, 31, 512, 2, 0}, {16, 16, 512, 8, 2}}) {
+  for (const Shape& w : {Shape{33, 31, 512, 8, 1}, {33, 31, 512, 2, 1}, {16, 16, 512, 8, 2}}) {
     const Scene s = falling(w.columns, w.rows, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
     nlohmann::json tuning = {{"device_barrier", "always"},
                              {"threads_a_group", w.threads},

@@ -109,16 +109,16 @@ void add_planes(std::vector<Fault>& f) {
          "by -= min(1.0, 0.5 * piece.friction");
   kernel("responses taken from the velocity, not given to it", "wrapped", "plane_gather.glsl",
          "sum_moving += l * moving;", "sum_moving -= l * moving;");
-  kernel("no responses of vertices", "wrapped", "plane_gather.glsl", "from_pairs(TRIANGLES + i, 0u, at.w);", "");
+  kernel("no responses of vertices", "wrapped", "plane_gather.glsl",
+         "if (any_pairs) from_pairs(TRIANGLES + i, 0u, at.w);", "");
   kernel("what was struck no heavier in the lines", "struck", "plane_gather.glsl", "at.w / (1.0 + held)", "at.w");
   kernel("a hull that misses a corner", "struck", "plane_geometry.glsl", "uint j = 0u; j < piece.count; ++j) high",
          "uint j = 1u; j < piece.count; ++j) high");
-  kernel("planes a millimetre inside the piece", "struck", "plane_choose.glsl", "dot(n, around) + least;",
-         "dot(n, around) + least - 1e-3;");
+  kernel("planes a millimetre inside the piece", "struck", "plane_choose.glsl", "dot(n, around) + least);",
+         "dot(n, around) + least - 1e-3);");
   kernel("planes forgotten", "struck", "plane_project.glsl",
          "if (proposed.w > 0.0 && !(least >= 0.0)) at = placed(at, from.w);", "");
-  kernel("a lane's triangles left out of a vertex' sum", "wrapped", "plane_gather.glsl", "if (live) gather_part(",
-         "if (live && k + team_lane() != 2u) gather_part(");
+  kernel("planes of one lane's triangles alone", "struck", "plane_project.glsl", "least = least_of_team(least);", "");
   kernel("near pairs without their bit", "struck", "plane_near.glsl", "atomicOr(near_bits[k / 32u], 1u << k % 32u);",
          "");
   kernel("projected onto all planes but those of the last triangle", "struck", "plane_project.glsl",
@@ -136,8 +136,8 @@ void add_self_planes(std::vector<Fault>& f) {
          "return 0.9 * b.high_0.xyz + 0.1 * b.low_0.xyz +");
   kernel("triangles whose numbers differ by few not paired", "plane_self_list.glsl", "if (a[c] == b.x ",
          "if (abs(int(a[c]) - int(b.x)) < 60 ");
-  kernel("half of each triangle's pairs lost", "plane_self_near.glsl", "k < range.x + range.y; ++k)\n    if",
-         "k < range.x + range.y / 2u; ++k)\n    if");
+  kernel("half of each triangle's pairs lost", "plane_self_near.glsl", "end = range.x + range.y;",
+         "end = range.x + range.y / 2u;");
   kernel("bounds of distances grow", "plane_self_near.glsl", "bound -= own.x + other.x;",
          "bound += 10.0 * (own.x + other.x);");
   kernel("contacts drawn together", "plane_self_push.glsl", "vec3 by = moving * n;", "vec3 by = -moving * n;");
