@@ -6,7 +6,7 @@
 namespace clothbench::pbd_gpu {
 
 /// The convex pieces of a scene's colliders but for planes: of a capsule, a segment and its radius; of a sphere, a
-/// point and its radius; of a box, the hull of its corners; of a mesh that stands, each triangle; of one that moves,
+/// point and its radius; of a box or a mesh that stands, each triangle; of one that moves,
 /// hulls of clusters of at most Clusters::kClusterSize neighbouring triangles.
 struct ContactPieces {
   std::vector<ContactPiece> pieces;

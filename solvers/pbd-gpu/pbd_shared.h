@@ -59,7 +59,7 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 // Plane contact of `xpbd`. PLANES: half-spaces. GRIPS: vertices that hands may hold. MOST_POINTS: of a piece. MOVING: 1
 // if any piece moves. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, NEAR_CAPACITY, TOUCHING_CAPACITY:
 // pairs, near pairs and those with contacts that its lists have place for; THICKNESS_BITS, SELF_FRICTION_BITS: floats.
-// TEAM: lanes that share an element or a vertex.
+// TEAM: lanes that share a vertex.
 #define PLANE_CONTACT_CONSTANTS(C) \
   C(1, uint, PLANES, 0u) C(2, uint, GRIPS, 0u) C(3, uint, MOST_POINTS, 3u) C(4, uint, MOVING, 0u) C(5, uint, SELF, 0u) \
   C(6, uint, SELF_CAPACITY, 0u) C(7, uint, NEAR_CAPACITY, 0u) C(8, uint, TOUCHING_CAPACITY, 0u) \

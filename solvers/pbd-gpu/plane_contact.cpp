@@ -12,7 +12,7 @@ namespace {
 /// vertices' reach is cut.
 constexpr std::uint32_t kPairsAnElement = 64, kLeastPairs = 1u << 16, kMostPairs = 1u << 20;
 constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9, kScanThreads = 256;
-/// Lanes that share an element's pairs or a vertex: the parts of the sum in plane_gather.glsl.
+/// Lanes that share a vertex: the parts of the sum in plane_gather.glsl.
 constexpr std::uint32_t kMostTeam = 8;
 /// Responses before and after the constraints.
 constexpr std::uint32_t kRoundsAfter = 2;

@@ -54,7 +54,7 @@ class PlaneContact {
   const Scene& scene_;
   const std::uint32_t half_spaces_;
   std::unique_ptr<PlaneSelf> self_;  ///< if the cloth touches itself
-  std::uint32_t team_ = 1;           ///< lanes that share an element's pairs or a vertex
+  std::uint32_t team_ = 1;           ///< lanes that share a vertex
   std::uint32_t triangles_ = 0, pieces_ = 0, groups_ = 0, moving_points_ = 0, capacity_ = 0, most_points_ = 1;
   double most_margin_m_ = 0;
   int stage_pairs_ = -1, stage_ = -1;

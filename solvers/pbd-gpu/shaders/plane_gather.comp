@@ -18,7 +18,7 @@ layout(std430, binding = BIND_TOUCHED) readonly buffer Touched { uint touched[];
 layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_NEAR_BITS) readonly buffer NearBits { uint near_bits[]; };
 layout(std430, binding = BIND_PAIR_STATES) readonly buffer States { PairState states[]; };
-layout(std430, binding = BIND_SELF_RANGES) readonly buffer SelfRanges { uvec4 self_ranges[]; };  // x: first pair, y: pairs
+layout(std430, binding = BIND_SELF_RANGES) readonly buffer SelfRanges { uvec4 self_ranges[]; };  // z: first near pair, w: near pairs
 layout(std430, binding = BIND_SELF_NEAR) readonly buffer SelfNears { SelfNear self_near[]; };
 layout(std430, binding = BIND_SELF_PUSHES) readonly buffer SelfPushes { SelfPush self_pushes[]; };
 #include "plane_team.glsl"
