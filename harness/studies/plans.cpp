@@ -77,7 +77,7 @@ std::string plan_text(const nlohmann::json& p) {
   if (!p["left_out"].empty()) out += "\n  left out\n";
   for (const auto& l : p["left_out"])
     out += fmt::format("  {:<28} {}{}\n", text(l["what"]), text(l["why"]),
-                       l.contains("no_parameter") ? "; not ranked by " + text(l["no_parameter"]) : "");
+                       l.contains("no_parameter") ? "; no parameter: " + text(l["no_parameter"]) : "");
   return out + "\n";
 }
 
