@@ -1,11 +1,5 @@
 #version 450
 // Cloths of at most 32 x 32 vertices: one workgroup takes each through `substeps` substeps, its state in shared memory.
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
-#ifdef SHUFFLES
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
-#endif
 #include "common.glsl"
 #define SINGLE_BUFFERED_EXCHANGE  // shared memory is for the state
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };

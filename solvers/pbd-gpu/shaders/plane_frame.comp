@@ -2,12 +2,6 @@
 // A frame of cloth with contact by planes in one dispatch: the list of pairs, then every substep with its lines, phase for phase as
 // the kernels of the phases have it and with the same bits. One workgroup takes a cloth of at most 32 x 32 vertices; with
 // MANY_GROUPS any number of workgroups that run at once wait for one another (device_barrier.glsl).
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
-#ifdef SHUFFLES
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
-#endif
 #include "common.glsl"
 #define PLANE_FRAME
 #ifdef MANY_GROUPS

@@ -1,11 +1,5 @@
 #version 450
 // A round's end, a thread a vertex; SHUFFLES: a team of lanes.
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
-#ifdef SHUFFLES
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
-#endif
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };

@@ -1,10 +1,5 @@
 #version 450
 // A substep's end, a thread a vertex; SHUFFLES: a team of lanes.
-#extension GL_GOOGLE_include_directive : require
-#ifdef SHUFFLES
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
-#endif
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_POSITIONS) writeonly buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
