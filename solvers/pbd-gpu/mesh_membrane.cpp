@@ -19,7 +19,7 @@ namespace {
 constexpr double kMostTrace = 1.25, kRoom = 1.75;
 
 /// Most iterations a substep. A mesh that needs more is solved by chains.
-constexpr std::uint32_t kMostIterations = 256;
+constexpr std::uint32_t kMostIterations = 600;
 
 /// Unit vectors along the edges of a triangle at rest, in its plane.
 std::array<std::array<double, 2>, 3> directions(const std::array<Vec3, 3>& p) {

@@ -297,7 +297,7 @@ SolverInfo xpbd_info() {
        "always (in every elastic sheet without contact), never"},
       {"membrane", "\"auto\"",
        "where triangles of constant strain make an elastic mesh, in place of springs along its edges: auto (where "
-       "nothing is touched and 256 iterations a substep are enough), always, never"},
+       "nothing is touched and 600 iterations a substep are enough), always, never"},
       {"shuffles", "true", "threads of a line exchange by subgroup shuffles where lines fit a subgroup"},
       {"vertices_a_thread", "0", "of a line: 2, 4, 8, 16 or 32; 0: by line and device"},
       {"threads_a_group", "0", "of one family's workgroups: 32 to 1024; 0: by line and device"},
