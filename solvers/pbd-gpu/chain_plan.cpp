@@ -103,8 +103,20 @@ std::vector<Strand> mesh_strands(const ClothMesh& m) {
   for (const std::size_t end : {0u, 1u})
     for (std::uint32_t e = 0; e < count; ++e)
       if (done[e] == 0 && next[e][end] == kNone) follow(e, end == 0 ? m.edges[e].a : m.edges[e].b);
-  for (std::uint32_t e = 0; e < count; ++e)
-    if (done[e] == 0) follow(e, m.edges[e].a);
+  // What is left are rings. A ring is cut where it begins, and the link there stretches by far the most. If the cuts of
+  // neighbouring rings lie apart, what is between them holds it.
+  constexpr double kGolden = 0.6180339887498949;
+  double begin = 0;
+  for (std::uint32_t e = 0; e < count; ++e) {
+    if (done[e] != 0) continue;
+    follow(e, m.edges[e].a);
+    std::vector<std::uint32_t>& ring = out.back().vertices;
+    ring.pop_back();
+    std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(begin * static_cast<double>(ring.size())),
+                ring.end());
+    ring.push_back(ring.front());
+    begin = std::fmod(begin + kGolden, 1.0);
+  }
   return out;
 }
 

@@ -89,6 +89,21 @@ TEST(ChainPlan, PacksChainsIntoBlocksAndFillsThemUp) {
   }
 }
 
+/// A ring stretches where it is cut, so neighbours hold it there.
+TEST(ChainPlan, CutsNeighbouringRingsInOtherPlaces) {
+  constexpr int kAround = 24, kAlong = 9;
+  const Scene s = mesh_tube(kAround, kAlong);
+  std::vector<int> cut(kAlong, -1);
+  for (const Strand& strand : strands(s, chain_cloth(s)))
+    if (strand.vertices.front() == strand.vertices.back())
+      cut[strand.vertices.front() / kAround] = static_cast<int>(strand.vertices.front() % kAround);
+  for (std::size_t j = 0; j < kAlong; ++j) ASSERT_GE(cut[j], 0) << "ring " << j << " is no strand";
+  for (std::size_t j = 1; j < kAlong; ++j) {
+    const int apart = std::abs(cut[j] - cut[j - 1]);
+    EXPECT_GE(std::min(apart, kAround - apart), kAround / 4) << j;
+  }
+}
+
 TEST(TetherTable, ReachesAsFarAsTheClothIsWide) {
   Scene s = mesh_sheet(9);
   s.material.membrane_stiffness_N_per_m.reset();
