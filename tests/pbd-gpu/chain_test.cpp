@@ -92,7 +92,8 @@ TEST(ChainPlan, PacksChainsIntoBlocksAndFillsThemUp) {
 /// A ring stretches where it is cut, so neighbours hold it there.
 TEST(ChainPlan, CutsNeighbouringRingsInOtherPlaces) {
   constexpr int kAround = 24, kAlong = 9;
-  const Scene s = mesh_tube(kAround, kAlong);
+  Scene s = mesh_tube(kAround, kAlong);
+  s.material.membrane_stiffness_N_per_m.reset();
   std::vector<int> cut(kAlong, -1);
   for (const Strand& strand : strands(s, chain_cloth(s)))
     if (strand.vertices.front() == strand.vertices.back())
@@ -102,6 +103,28 @@ TEST(ChainPlan, CutsNeighbouringRingsInOtherPlaces) {
     const int apart = std::abs(cut[j] - cut[j - 1]);
     EXPECT_GE(std::min(apart, kAround - apart), kAround / 4) << j;
   }
+}
+
+/// A long ring of elastic links is two chains that share the stiffness round its cut, without a jump.
+TEST(ChainPlan, OverlapsWhereItCutsLongRings) {
+  const Scene s = mesh_tube(40, 4);
+  const ChainCloth cloth = chain_cloth(s);
+  std::map<Ends, double> whole;
+  int shared = 0;
+  for (const ChainFamily& f : plan_of(s, cloth, 256))
+    for (const ChainEntry& e : entries_of(f, s, cloth, 256, false)) {
+      if (e.vertex == CHAIN_NO_VERTEX || e.rest < 0) continue;
+      const ChainEntry& next = *(&e + 1);
+      const double share = cloth.link(e.vertex, next.vertex).compliance_m_per_N / e.compliance;
+      whole[std::minmax(e.vertex, next.vertex)] += share;
+      shared += share < 1 - 1e-6 ? 1 : 0;
+    }
+  EXPECT_EQ(whole.size(), cloth.links.size());
+  for (const auto& [ends, sum] : whole) EXPECT_NEAR(sum, 1, 1e-5) << ends.first << " " << ends.second;
+  EXPECT_EQ(shared, 4 * 2 * 16) << "16 links of each ring, twice";
+  Scene rigid = s;
+  rigid.material.membrane_stiffness_N_per_m.reset();
+  for (const Strand& strand : strands(rigid, chain_cloth(rigid))) EXPECT_TRUE(strand.share.empty());
 }
 
 TEST(TetherTable, ReachesAsFarAsTheClothIsWide) {
