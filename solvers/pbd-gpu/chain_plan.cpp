@@ -50,8 +50,32 @@ std::vector<Strand> grid_strands(const Scene& s) {
   return out;
 }
 
+/// Cuts a ring of elastic links (its first vertex is its last one too) into two strands that overlap, and adds them. A
+/// chain's end stretches, for what is solved after it pulls at the end with all its tension; where one strand's share
+/// falls link by link as the other's rises, tension changes by a small part from link to link.
+void add_ring(Strand ring, std::vector<Strand>& out) {
+  constexpr std::size_t kOverlap = 8;  // links on either side of the cut
+  const std::size_t n = ring.vertices.size() - 1;
+  if (n < 4 * kOverlap) {
+    out.push_back(std::move(ring));
+    return;
+  }
+  Strand over;
+  for (std::size_t k = 0; k < 2 * kOverlap + 2; ++k) over.vertices.push_back(ring.vertices[(n - 1 - kOverlap + k) % n]);
+  ring.vertices.pop_back();
+  ring.share.assign(n - 1, 1);
+  over.share.assign(2 * kOverlap + 1, 1);
+  for (std::size_t k = 0; k < kOverlap; ++k) {
+    const float share = static_cast<float>(k + 1) / (kOverlap + 1);
+    ring.share[k] = ring.share[n - 2 - k] = share;
+    over.share[kOverlap + 1 + k] = over.share[kOverlap - 1 - k] = 1 - share;
+  }
+  out.push_back(std::move(ring));
+  out.push_back(std::move(over));
+}
+
 /// Pairs, at every vertex, the edges that continue each other straightest. A sequence of paired edges is a strand.
-std::vector<Strand> mesh_strands(const ClothMesh& m) {
+std::vector<Strand> mesh_strands(const ClothMesh& m, bool rings_overlap) {
   constexpr double kStraight = -0.5;  // a turn of less than 60 degrees
   const std::size_t n = m.vertices.size(), count = m.edges.size();
   std::vector<std::vector<std::uint32_t>> at(n);
@@ -103,8 +127,26 @@ std::vector<Strand> mesh_strands(const ClothMesh& m) {
   for (const std::size_t end : {0u, 1u})
     for (std::uint32_t e = 0; e < count; ++e)
       if (done[e] == 0 && next[e][end] == kNone) follow(e, end == 0 ? m.edges[e].a : m.edges[e].b);
-  for (std::uint32_t e = 0; e < count; ++e)
-    if (done[e] == 0) follow(e, m.edges[e].a);
+  // What is left are rings. A ring is cut where it begins, and the link there stretches by far the most. If the cuts of
+  // neighbouring rings lie apart, what is between them holds it.
+  constexpr double kGolden = 0.6180339887498949;
+  double begin = 0;
+  for (std::uint32_t e = 0; e < count; ++e) {
+    if (done[e] != 0) continue;
+    follow(e, m.edges[e].a);
+    Strand whole = std::move(out.back());
+    out.pop_back();
+    std::vector<std::uint32_t>& ring = whole.vertices;
+    ring.pop_back();
+    std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(begin * static_cast<double>(ring.size())),
+                ring.end());
+    ring.push_back(ring.front());
+    if (rings_overlap)
+      add_ring(std::move(whole), out);
+    else
+      out.push_back(std::move(whole));
+    begin = std::fmod(begin + kGolden, 1.0);
+  }
   return out;
 }
 
@@ -181,7 +223,9 @@ const ChainCloth::Link& ChainCloth::link(std::uint32_t a, std::uint32_t b) const
 }
 
 std::vector<Strand> strands(const Scene& s, const ChainCloth& cloth) {
-  std::vector<Strand> all = s.cloth.mesh ? mesh_strands(*s.cloth.mesh) : grid_strands(s);
+  std::vector<Strand> all =
+      s.cloth.mesh ? mesh_strands(*s.cloth.mesh, s.material.membrane_stiffness_N_per_m && cloth.welded.empty())
+                   : grid_strands(s);
   if (cloth.welded.empty()) return all;
   std::vector<std::uint8_t> seen(cloth.links.size(), 0);
   std::vector<Strand> out;
@@ -254,6 +298,11 @@ std::vector<ChainFamily> families_of(std::vector<Strand> all, std::size_t vertic
       }
       const auto first = s.vertices.begin() + static_cast<std::ptrdiff_t>(from);
       families[best].chains.emplace_back(first, first + static_cast<std::ptrdiff_t>(most + 1));
+      families[best].shares.emplace_back();
+      if (!s.share.empty()) {
+        const auto share = s.share.begin() + static_cast<std::ptrdiff_t>(from);
+        families[best].shares.back().assign(share, share + static_cast<std::ptrdiff_t>(most));
+      }
       for (std::size_t k = from; k <= from + most; ++k) used[best][s.vertices[k]] = 1;
       from += most;
     }
@@ -292,10 +341,12 @@ std::vector<ChainEntry> entries_of(const ChainFamily& family, const Scene& scene
   };
   for (const auto* chain : longest_first) {
     const auto held_ones = std::count_if(chain->begin(), chain->end(), [&](std::uint32_t v) { return held[v] != 0; });
+    const std::vector<float>& share = family.shares[static_cast<std::size_t>(chain - family.chains.data())];
     std::vector<ChainEntry> entries;
     for (std::size_t k = 0; k < chain->size(); ++k) {
       const bool goes_on = k + 1 < chain->size();
-      const ChainCloth::Link l = goes_on ? cloth.link((*chain)[k], (*chain)[k + 1]) : ChainCloth::Link{0, 0, -1, 0};
+      ChainCloth::Link l = goes_on ? cloth.link((*chain)[k], (*chain)[k + 1]) : ChainCloth::Link{0, 0, -1, 0};
+      if (goes_on && !share.empty()) l.compliance_m_per_N /= share[k];
       entries.push_back({(*chain)[k], l.rest_m, l.compliance_m_per_N, held_ones > 1 ? kLeastRegularisation : 0.0f});
       seen[(*chain)[k]] = 1;
     }

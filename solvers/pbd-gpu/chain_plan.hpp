@@ -35,14 +35,16 @@ ChainCloth chain_cloth(const Scene&);
 struct Strand {
   std::vector<std::uint32_t> vertices;  ///< particles; a closed strand ends with its first
   int family = -1;                      ///< wanted family; -1: any
+  std::vector<float> share = {};        ///< of each link's stiffness; empty: 1
 };
-/// Strands of a cloth; every link is on exactly one. The strands of a grid are its rows, columns and (with shear) both
-/// diagonals.
+/// Strands of a cloth; every link is on exactly one, or on two that share its stiffness. The strands of a grid are its
+/// rows, columns and (with shear) both diagonals.
 std::vector<Strand> strands(const Scene&, const ChainCloth&);
 
 /// One family: chains that share no vertex.
 struct ChainFamily {
   std::vector<std::vector<std::uint32_t>> chains;  ///< each of at least two vertices and at most a block
+  std::vector<std::vector<float>> shares;          ///< of each chain's links, as in a strand
   std::uint32_t longest() const;                   ///< links of the longest chain
 };
 /// Cuts strands into chains and spreads them over few families, without cutting much. Families are in the order in

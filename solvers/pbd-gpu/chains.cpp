@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mesh_bending.hpp"
+#include "mesh_membrane.hpp"
 #include "persistent.hpp"
 
 namespace clothbench::pbd_gpu {
@@ -13,13 +14,15 @@ constexpr std::uint32_t kBlock = 256;
 
 }  // namespace
 
-Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool predicts, bool tension)
+Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool predicts, bool tension,
+               bool membrane)
     : frame_(frame),
       scene_(scene),
       block_(std::min({kBlock, frame.device()->limits().maxComputeWorkGroupInvocations,
                        frame.device()->limits().maxComputeWorkGroupSize[0]})),
       predicts_(predicts),
-      tension_(tension) {
+      tension_(tension),
+      membrane_(membrane) {
   const FeatureSet needs = scene.needs;
   const FeatureSet serves{Feature::Stretch,   Feature::Shear,      Feature::Damping, Feature::Pins,
                           Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions, Feature::Bend};
@@ -32,29 +35,19 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
   tethers_ = tethers.a_vertex;
   if (tethers_ == 0) frame.leave_out("tethers", tethers.why_not);
   if (!needs.has(Feature::Damping)) frame.leave_out("damping", "the scene has none");
-  const std::vector<ChainFamily> families = families_of(strands(scene, cloth), scene.cloth.vertex_count(), block_);
-  for (std::size_t f = 0; f < families.size(); ++f) {
-    const std::vector<ChainEntry> more = entries_of(families[f], scene, cloth, block_, f == 0);
-    const auto rounds = static_cast<std::uint32_t>(std::bit_width(families[f].longest() - 1));
-    families_.push_back(
-        {static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds, 0, 0});
-    entries_.insert(entries_.end(), more.begin(), more.end());
-  }
+  add_families(cloth);
   add_bending();
+  add_membrane();
+  if (bends_ || membrane_)
+    frame.add_buffer(BIND_BENDING_STEPS, "bending steps",
+                     (membrane_ ? 4 : 3) * scene.cloth.vertex_count() * sizeof(vec4));
   frame.add_buffer(BIND_CHAIN_ENTRIES, "chain entries", entries_);
   if (tethers_ > 0) frame.add_buffer(BIND_TETHER_ENDS, "tether ends", tethers.ends);
-  ChainSpecialization s;
-  s.THREADS = block_;
-  s.TETHERS = tethers_;
-  if (needs.has(Feature::Damping)) s.FEATURES |= LINES_DAMPING;
-  if (needs.has(Feature::Shear) || needs.has(Feature::ClothMesh)) s.FEATURES |= LINES_SHEAR;
-  if (limits_speed(scene, tethers_ > 0)) s.FEATURES |= LINES_LIMIT_SPEED;
-  if (bends_) s.FEATURES |= LINES_BEND;
-  if (predicts_) s.FEATURES |= LINES_PREDICT;
-  if (tension_) s.FEATURES |= LINES_TENSION;
+  const char* kernel = membrane_ ? "chain_pass_membrane" : "chain_pass";
+  ChainSpecialization s = specialization();
   s.PERSISTENT = 1;
   persistent_ =
-      cloth.welded.empty() && runs_at_once<ChainConstants>(frame, "chain_pass", s.by_number(), block_, all_groups());
+      cloth.welded.empty() && runs_at_once<ChainConstants>(frame, kernel, s.by_number(), block_, all_groups());
   if (persistent_) {
     std::vector<ChainRange> ranges;
     for (const Family& f : families_) ranges.push_back({f.first_entry, f.entries / block_, f.rounds, 0});
@@ -62,7 +55,7 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
     add_meeting(frame);
   }
   s.PERSISTENT = persistent_ ? 1 : 0;
-  kernel_ = frame.add_kernel(stage, "chain_pass", sizeof(ChainConstants), s.by_number(), block_);
+  kernel_ = frame.add_kernel(stage, kernel, sizeof(ChainConstants), s.by_number(), block_);
   if (cloth.welded.empty()) return;
   std::vector<std::uint32_t> welds;
   for (const std::uint32_t vertex : cloth.welded) {
@@ -72,6 +65,32 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
   welds_ = static_cast<std::uint32_t>(cloth.welded.size());
   frame.add_buffer(BIND_WELDS, "welds", welds);
   weld_ = frame.add_kernel(stage, "weld", 4);
+}
+
+void Chains::add_families(const ChainCloth& cloth) {
+  const std::size_t n = scene_.cloth.vertex_count();
+  const std::vector<ChainFamily> families =
+      membrane_ ? std::vector<ChainFamily>(1) : families_of(strands(scene_, cloth), n, block_);
+  for (std::size_t f = 0; f < families.size(); ++f) {
+    const std::vector<ChainEntry> more = entries_of(families[f], scene_, cloth, block_, f == 0);
+    const auto rounds = membrane_ ? 0u : static_cast<std::uint32_t>(std::bit_width(families[f].longest() - 1));
+    families_.push_back(
+        {static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds, 0, 0});
+    entries_.insert(entries_.end(), more.begin(), more.end());
+  }
+}
+
+ChainSpecialization Chains::specialization() const {
+  ChainSpecialization s;
+  s.THREADS = block_;
+  s.TETHERS = tethers_;
+  if (scene_.needs.has(Feature::Damping)) s.FEATURES |= LINES_DAMPING;
+  if (scene_.needs.has(Feature::Shear) || scene_.needs.has(Feature::ClothMesh)) s.FEATURES |= LINES_SHEAR;
+  if (limits_speed(scene_, tethers_ > 0)) s.FEATURES |= LINES_LIMIT_SPEED;
+  if (bends_) s.FEATURES |= LINES_BEND;
+  if (predicts_) s.FEATURES |= LINES_PREDICT;
+  if (tension_) s.FEATURES |= LINES_TENSION;
+  return s;
 }
 
 void Chains::add_bending() {
@@ -86,7 +105,18 @@ void Chains::add_bending() {
   slices_ = table.slices;
   frame_.add_buffer(BIND_BENDING_SLICES, "bending slices", table.slices);
   frame_.add_buffer(BIND_BENDING_ENTRIES, "bending entries", table.entries);
-  frame_.add_buffer(BIND_BENDING_STEPS, "bending steps", 3 * scene_.cloth.vertex_count() * sizeof(vec4));
+}
+
+void Chains::add_membrane() {
+  if (!membrane_) return;
+  most_per_s2_ += membrane_bound(scene_);
+  const MembraneTable table = membrane_table(scene_);
+  corner_slices_ = table.slices;
+  triangles_.assign(scene_.cloth.vertex_count(), 0);
+  for (const auto& triangle : scene_.cloth.mesh->triangles)
+    for (const std::uint32_t v : triangle) ++triangles_[v];
+  frame_.add_buffer(BIND_MEMBRANE_SLICES, "triangle slices", table.slices);
+  frame_.add_buffer(BIND_MEMBRANE_CORNERS, "triangle corners", table.corners);
 }
 
 /// As many workgroups as the family with the most blocks needs.
@@ -107,12 +137,15 @@ void Chains::count_vertices() {
       f.free += w[entries_[k].vertex] > 0 ? 1 : 0;
     }
   }
-  free_ = free_entries_ = 0;
-  for (std::size_t i = 0; bends_ && i < w.size(); ++i)
-    if (w[i] > 0) {
-      free_ += 1;
-      free_entries_ += slices_[i / BENDING_ROWS].width;
-    }
+  free_ = free_entries_ = free_corners_ = free_triangles_ = 0;
+  for (std::size_t i = 0; (bends_ || membrane_) && i < w.size(); ++i) {
+    if (!(w[i] > 0)) continue;
+    free_ += 1;
+    if (bends_) free_entries_ += slices_[i / BENDING_ROWS].width;
+    if (!membrane_) continue;
+    free_corners_ += corner_slices_[i / BENDING_ROWS].width;
+    free_triangles_ += triangles_[i];
+  }
 }
 
 Traffic Chains::traffic(std::size_t family, bool integrates) const {
@@ -122,20 +155,24 @@ Traffic Chains::traffic(std::size_t family, bool integrates) const {
           (32 + of_start) * f.free};
 }
 
-/// The first iteration reads positions and no steps, and writes the right side; the last writes the state.
+/// The first iteration reads positions and no steps, and writes the right side, with triangles also positions; the last
+/// writes the state.
 Traffic Chains::bending_traffic(std::uint32_t iteration, std::uint32_t iterations) const {
   const auto n = static_cast<double>(scene_.cloth.vertex_count());
   const bool last = iteration == iterations;
   const double steps = iteration == 1 ? 0 : iteration == 2 ? 2 : 3;
-  return {16 * n + (8 + 16 * steps + (last ? 16 : 0)) * free_ + 24 * free_entries_,
-          last ? 32 * free_ : 16 * n + (iteration == 1 ? 16 * free_ : 0)};
+  const double slices = (bends_ ? 8 : 0) + (membrane_ ? 8 : 0);
+  const double read = 16 * n + (slices + 16 * steps + (last ? 16 : 0)) * free_ + 24 * free_entries_ +
+                      48 * free_corners_ + (iteration == 1 ? 32 : 64) * free_triangles_;
+  const double found = membrane_ && iteration == 1 ? 16 * n : 0;
+  return {read, last ? 32 * free_ : 16 * n + found + (iteration == 1 ? 16 * free_ : 0)};
 }
 
 std::vector<Traffic> Chains::passes(std::uint32_t bending_iterations) const {
   std::vector<Traffic> all;
-  if (bends_) all.push_back(traffic(0, true));
+  if (bends_ || membrane_) all.push_back(traffic(0, true));
   for (std::uint32_t k = 1; k <= bending_iterations; ++k) all.push_back(bending_traffic(k, bending_iterations));
-  for (std::size_t f = 0; f < families_.size(); ++f) all.push_back(traffic(f, f == 0 && !bends_));
+  for (std::size_t f = 0; !membrane_ && f < families_.size(); ++f) all.push_back(traffic(f, f == 0 && !bends_));
   return all;
 }
 
@@ -143,8 +180,8 @@ void Chains::record(int count, const TimeStep& step) {
   count_vertices();
   auto c = step_constants<ChainConstants>(frame_, step);
   c.per_keep = static_cast<float>(1 / step.keep);
-  c.families = static_cast<std::uint32_t>(families_.size());
-  if (bends_) {
+  c.families = membrane_ ? 0 : static_cast<std::uint32_t>(families_.size());
+  if (bends_ || membrane_) {
     const double square = step.implicit_h_s * step.implicit_h_s * step.keep, most = square * most_per_s2_;
     c.bending_iterations = bending_iterations(most);
     c.vertices = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
@@ -153,7 +190,7 @@ void Chains::record(int count, const TimeStep& step) {
     c.bending_spread = static_cast<float>(most / (2 + most) * (most / (2 + most)) / 4);
   }
   const std::vector<Traffic> all = passes(c.bending_iterations);
-  const std::size_t first_family = all.size() - families_.size();
+  const std::size_t first_family = all.size() - c.families;
   if (persistent_) {
     const vulkan::Groups groups = all_groups();
     const double ranges = 16.0 * groups.x * groups.y * block_;

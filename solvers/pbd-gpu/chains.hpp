@@ -9,11 +9,12 @@ namespace clothbench::pbd_gpu {
 
 /// The constraints of `xpbd` where links are not all alike (triangle meshes, uneven grids, regions); even grids have
 /// Lines. It takes one dispatch a family and substep, or one in all where the device runs all workgroups at once. One
-/// iteration a substep. Bending of meshes is solved before the links of a substep, all at once.
+/// iteration a substep. Bending of meshes is solved before the links of a substep, all at once; so are triangles of an
+/// elastic mesh, in place of its links.
 class Chains {
  public:
   /// Adds its stages, buffers and kernels. The buffers of the state must exist.
-  Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool predicts, bool tension);
+  Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool predicts, bool tension, bool membrane);
 
   /// Records `count` substeps, each a TimeStep.
   void record(int count, const TimeStep&);
@@ -24,9 +25,12 @@ class Chains {
  private:
   struct Family {
     std::uint32_t first_entry, entries, rounds;
-    double vertices, free;  ///< on its chains; the first family has all vertices
+    double vertices, free;  ///< on its chains; the first family has all vertices, with triangles it is the only one
   };
+  void add_families(const ChainCloth&);
   void add_bending();
+  void add_membrane();
+  ChainSpecialization specialization() const;
   void count_vertices();
   Traffic traffic(std::size_t family, bool integrates) const;
   Traffic bending_traffic(std::uint32_t iteration, std::uint32_t iterations) const;
@@ -38,7 +42,7 @@ class Chains {
   FrameBuilder& frame_;
   const Scene& scene_;
   const std::uint32_t block_;
-  const bool predicts_, tension_;
+  const bool predicts_, tension_, membrane_;
   std::uint32_t tethers_ = 0;
   std::vector<Family> families_;
   std::vector<ChainEntry> entries_;
@@ -46,9 +50,11 @@ class Chains {
   const FrameKernel *kernel_ = nullptr, *weld_ = nullptr;
   std::uint32_t welds_ = 0;
   bool bends_ = false;
-  double most_per_s2_ = 0;  ///< at least the greatest eigenvalue of bending
-  std::vector<BendingSlice> slices_;
-  double free_ = 0, free_entries_ = 0;  ///< vertices that nothing holds in this frame, and entries of their rows
+  double most_per_s2_ = 0;  ///< at least the greatest eigenvalue of bending and triangles
+  std::vector<BendingSlice> slices_, corner_slices_;
+  std::vector<std::uint32_t> triangles_;  ///< round each vertex
+  /// Vertices that nothing holds in this frame, entries of their rows and of those of triangles, and their triangles.
+  double free_ = 0, free_entries_ = 0, free_corners_ = 0, free_triangles_ = 0;
 };
 
 }  // namespace clothbench::pbd_gpu

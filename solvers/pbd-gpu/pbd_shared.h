@@ -29,7 +29,7 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
           BIND_SELF_ORDER = 54, BIND_SELF_BOXES = 55, BIND_SELF_RANGES = 56, BIND_SELF_PAIRS = 57, BIND_SELF_WAYS = 58,
           BIND_SELF_NEAR = 59, BIND_SELF_CONTACTS = 60, BIND_SELF_PUSHES = 61, BIND_TOUCHED = 62, BIND_NEAR_BITS = 63,
           BIND_BENDING_SLICES = 64, BIND_BENDING_ENTRIES = 65, BIND_BENDING_STEPS = 66, BIND_SHIFTS = 67,
-          BIND_LINK_CREEP = 68, BIND_COUNT = 69;
+          BIND_LINK_CREEP = 68, BIND_MEMBRANE_SLICES = 69, BIND_MEMBRANE_CORNERS = 70, BIND_COUNT = 71;
 
 // Specialization constants: C(number, type, name, default); number 0 is local_size_x.
 
@@ -193,6 +193,17 @@ struct BendingSlice {
   uint first, width;
 };
 
+/// A triangle at one of its corners, from which edge 0 goes to `a`, 1 on to `b` and 2 back. Its energy is
+/// 1/2 sum K_jk d_j d_k in the elongations d of its edges. Entries lie as those of bending do; `a` is CHAIN_NO_VERTEX
+/// in padding.
+struct MembraneCorner {
+  uint a, b;
+  float rest_0, rest_1, rest_2;        // lengths [m]
+  float along_0, along_1, along_2;     // K_00, K_11, K_22 [N/m]
+  float cross_01, cross_12, cross_20;  // K_01, K_12, K_20 [N/m]
+  float most;                          // of the trace of the triangle's matrix [N/m]
+};
+
 /// Push constants of the chain kernel of `xpbd`.
 struct ChainConstants {
   vec4 gravity_h;      // g h keep [m/s]
@@ -336,6 +347,7 @@ static_assert(sizeof(LineConstants) == 128);
 static_assert(sizeof(ChainEntry) == 16);
 static_assert(sizeof(TetherEnd) == 8);
 static_assert(sizeof(ChainRange) == 16);
+static_assert(sizeof(MembraneCorner) == 48);
 static_assert(sizeof(ChainConstants) == 84);
 }  // namespace clothbench::pbd_gpu
 #endif

@@ -8,6 +8,7 @@
 #include "gpu_solver.hpp"
 #include "line_plan.hpp"
 #include "lines.hpp"
+#include "mesh_membrane.hpp"
 #include "plane_contact.hpp"
 #include "plane_frame.hpp"
 #include "prediction.hpp"
@@ -86,6 +87,9 @@ class Xpbd final : public GpuSolver {
     add_history(position.size());
     const Choice tension = tension_of(scene(), settings());
     if (!tension.on) leave_out("implicit tension", tension.why_not);
+    const Choice membrane = membrane_of(scene(), settings());
+    if (!membrane.on && scene().cloth.mesh && scene().material.membrane_stiffness_N_per_m)
+      leave_out("triangles of constant strain", membrane.why_not + ": springs along edges take their place");
     const Choice coupling = coupling_of(scene(), settings());
     const bool soft = scene().material.membrane_stiffness_N_per_m && scene().needs.has(Feature::Shear);
     if (!coupling.on) leave_out("coupling of families", coupling.why_not, soft ? "sheet_Y" : "");
@@ -94,7 +98,7 @@ class Xpbd final : public GpuSolver {
                 "gravity takes the cloth far in a frame: " + std::to_string(xpbd_substeps(scene(), settings())));
     if (planes) plane_contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, colliders(), cloth.particle);
     if (chained)
-      chains_ = std::make_unique<Chains>(frame(), scene(), cloth, predicts(), tension.on);
+      chains_ = std::make_unique<Chains>(frame(), scene(), cloth, predicts(), tension.on, membrane.on);
     else
       lines_ = std::make_unique<Lines>(frame(), scene(), predicts(), tension.on, coupling.on);
     if (planes && lines_) plane_frame_ = PlaneFrame::make(frame(), *lines_, *plane_contact_);
@@ -292,6 +296,9 @@ SolverInfo xpbd_info() {
       {"coupling", "\"auto\"",
        "where diagonals are solved where columns and rows will put the vertices: auto (sheets whose modulus needs it), "
        "always (in every elastic sheet without contact), never"},
+      {"membrane", "\"auto\"",
+       "where triangles of constant strain make an elastic mesh, in place of springs along its edges: auto (where "
+       "nothing is touched and 600 iterations a substep are enough), always, never"},
       {"shuffles", "true", "threads of a line exchange by subgroup shuffles where lines fit a subgroup"},
       {"vertices_a_thread", "0", "of a line: 2, 4, 8, 16 or 32; 0: by line and device"},
       {"threads_a_group", "0", "of one family's workgroups: 32 to 1024; 0: by line and device"},
@@ -315,6 +322,7 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", tuning, "prediction", {"auto", "always"});
   require_one_of("xpbd", tuning, "tension", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "coupling", {"auto", "always", "never"});
+  require_one_of("xpbd", tuning, "membrane", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "contact", {"auto", "samples", "planes"});
   require_one_of("xpbd", tuning, "contact_frame", {"auto", "always", "never"});
   require_between("xpbd", tuning, "contact_groups", 0, 1024);

@@ -33,15 +33,6 @@ void add_mass(const Model& m, double scale, Triplets& out) {
       for (int k = 0; k < 3; ++k) out.emplace_back(m.dof(v) + k, m.dof(v) + k, scale * m.mass()[v]);
 }
 
-void add_compliance(const Model& m, double scale, int first, Triplets& out) {
-  for (std::size_t s = 0; s < m.springs(); ++s) {
-    const int row = first + static_cast<int>(s);
-    const Spring& k = m.spring_list()[s];
-    // A spring between two held vertices takes no part: its row says lambda = 0.
-    out.emplace_back(row, row, m.held(k.a) && m.held(k.b) ? -1 : -scale * k.compliance);
-  }
-}
-
 double largest(const Vector& v) {
   double most = 0;
   for (double x : v) most = std::abs(x) <= most ? most : std::abs(x);  // NaN stays
@@ -55,15 +46,12 @@ StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolera
                           const Vector& base, Vector& y, Vector& lambda) {
   const int n = m.free_dofs(), all = n + static_cast<int>(m.springs());
   const Vector mass = masses3(m);
-  Vector compliance(lambda.size());
-  for (std::size_t s = 0; s < m.springs(); ++s)
-    compliance[static_cast<Eigen::Index>(s)] = m.spring_list()[s].compliance;
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMostIterations; ++i) {
     Vector f = m.force(y);
     m.add_tension(y, lambda, f);
     const Vector r = f - mass_scale * mass.cwiseProduct(y - base);
-    const Vector c = compliance.cwiseProduct(lambda) - m.constraints(y);
+    const Vector c = m.elongations(lambda) - m.constraints(y);
     Vector rhs(all), acceleration = Vector::Zero(std::max(n, 1));
     Vector free_part = Vector::Zero(n);
     gather(m, r, free_part);
@@ -75,7 +63,7 @@ StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolera
     add_mass(m, mass_scale, lower);
     m.add_stiffness(y, lambda, 1, lower);
     m.add_gradient(y, 1, n, lower);
-    add_compliance(m, 1, n, lower);
+    m.add_compliance(1, n, lower);
     system.solve(all, lower, rhs);
     if (!system.ok() || !rhs.allFinite()) return StepStatus::NotFinite;
     for (std::size_t v = 0; v < m.vertices(); ++v)
@@ -219,7 +207,7 @@ class Rattle final : public Integrator {
     Triplets lower;
     add_mass(model_, 1, lower);
     model_.add_gradient(x, 1, n, lower);
-    add_compliance(model_, 0, n, lower);
+    model_.add_compliance(0, n, lower);
     Vector rhs(all);
     rhs.head(n) = top;
     rhs.tail(all - n) = -c;

@@ -1,10 +1,12 @@
 #include "model.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "clothbench/error.hpp"
 #include "mesh_bending.hpp"
+#include "mesh_membrane.hpp"
 
 namespace clothbench::reference {
 namespace {
@@ -54,6 +56,7 @@ Model::Model(const Scene& scene) : mass_(vertex_masses(scene)) {
   for (const StiffnessRegion& r : scene.material.regions)
     if (inextensible_ != !r.membrane_stiffness_N_per_m)
       throw Error("solver reference: /material/regions: expected all regions inextensible, or none");
+  if (c.mesh && !inextensible_) add_triangles(scene);
   const auto add = [&](EdgeKind kind) {
     for (const Edge& e : edges(c, kind)) {
       double of_edge = inextensible_ ? 1 : stiffness(scene, e);
@@ -62,7 +65,7 @@ Model::Model(const Scene& scene) : mass_(vertex_masses(scene)) {
       springs_.push_back({e.a, e.b, e.rest_m, inextensible_ ? 0 : 1 / of_edge});
     }
   };
-  add(EdgeKind::Structural);
+  if (triangles_.empty()) add(EdgeKind::Structural);
   if (scene.needs.has(Feature::Shear)) add(EdgeKind::Shear);
   const double B = scene.material.bending_rigidity_N_m;
   if (scene.needs.has(Feature::Bend) && c.mesh) {
@@ -83,6 +86,20 @@ Model::Model(const Scene& scene) : mass_(vertex_masses(scene)) {
   hold(held);
 }
 
+void Model::add_triangles(const Scene& scene) {
+  const ClothMesh& mesh = *scene.cloth.mesh;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::array<Vec3, 3> rest = rest_corners(mesh, t);
+    triangles_.push_back(triangle_compliance(rest, *scene.material.membrane_stiffness_N_per_m));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      const double length = (Eigen::Vector3d::Map(rest[next].data()) - Eigen::Vector3d::Map(rest[k].data())).norm();
+      const auto at = static_cast<Eigen::Index>(k);
+      springs_.push_back({mesh.triangles[t][k], mesh.triangles[t][next], length, triangles_[t](at, at)});
+    }
+  }
+}
+
 void Model::hold(const std::vector<std::uint8_t>& held) {
   dof_.assign(mass_.size(), -1);
   free_dofs_ = 0;
@@ -96,11 +113,35 @@ void Model::hold(const std::vector<std::uint8_t>& held) {
 Vector Model::constraints(const Vector& x) const {
   Vector C(static_cast<Eigen::Index>(springs_.size()));
   for (std::size_t s = 0; s < springs_.size(); ++s) {
-    const bool rigid = held(springs_[s].a) && held(springs_[s].b);  // nothing can change it
+    // Nothing can change it; in a triangle it counts, for the other edges feel it.
+    const bool rigid = triangles_.empty() && held(springs_[s].a) && held(springs_[s].b);
     C[static_cast<Eigen::Index>(s)] =
         rigid ? 0 : (at(x, springs_[s].b) - at(x, springs_[s].a)).norm() - springs_[s].rest_m;
   }
   return C;
+}
+
+Vector Model::elongations(const Vector& lambda) const {
+  Vector out(lambda.size());
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const auto first = static_cast<Eigen::Index>(3 * t);
+    out.segment<3>(first) = triangles_[t] * lambda.segment<3>(first);
+  }
+  if (triangles_.empty())
+    for (std::size_t s = 0; s < springs_.size(); ++s)
+      out[static_cast<Eigen::Index>(s)] = springs_[s].compliance * lambda[static_cast<Eigen::Index>(s)];
+  return out;
+}
+
+void Model::add_compliance(double scale, int first, Triplets& out) const {
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    add_block(-scale * triangles_[t], first + static_cast<int>(3 * t), first + static_cast<int>(3 * t), out);
+  for (std::size_t s = 0; triangles_.empty() && s < springs_.size(); ++s) {
+    const int row = first + static_cast<int>(s);
+    const Spring& k = springs_[s];
+    // A spring between two held vertices takes no part: its row says lambda = 0.
+    out.emplace_back(row, row, held(k.a) && held(k.b) ? -1 : -scale * k.compliance);
+  }
 }
 
 Vector Model::force(const Vector& x) const {
@@ -168,7 +209,11 @@ double Model::energy(const Vector& x, const Vector& v) const {
     e += mass_[i] * (0.5 * at(v, k).squaredNorm() - gravity_.dot(at(x, k)));
   }
   const Vector C = constraints(x);
-  for (std::size_t s = 0; s < springs_.size(); ++s)
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const Eigen::Vector3d d = C.segment<3>(static_cast<Eigen::Index>(3 * t));
+    e += 0.5 * d.dot(triangles_[t].inverse() * d);
+  }
+  for (std::size_t s = 0; triangles_.empty() && s < springs_.size(); ++s)
     if (springs_[s].compliance > 0)
       e += 0.5 * C[static_cast<Eigen::Index>(s)] * C[static_cast<Eigen::Index>(s)] / springs_[s].compliance;
   for (const BendLine& l : lines_) e += 0.5 * l.stiffness * (at(x, l.a) - 2 * at(x, l.b) + at(x, l.c)).squaredNorm();

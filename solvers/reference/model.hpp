@@ -12,7 +12,8 @@ using Vector = Eigen::VectorXd;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
 /// C(x) = |x_b - x_a| - rest, with a multiplier: C = compliance * lambda, so that compliance 0 is a constraint and not
-/// a large stiffness. lambda [N] is the tension.
+/// a large stiffness. lambda [N] is the tension. The springs of an elastic mesh are three a triangle, along its edges,
+/// and their compliance is the triangle's matrix (mesh_membrane.hpp).
 struct Spring {
   std::uint32_t a, b;
   double rest_m, compliance;
@@ -46,6 +47,10 @@ class Model {
 
   /// C of every spring at x (3 * vertices).
   Vector constraints(const Vector& x) const;
+  /// Elongation of every spring [m] under the tensions lambda.
+  Vector elongations(const Vector& lambda) const;
+  /// Appends the compliance times -scale at rows and columns `first`..., lower triangle.
+  void add_compliance(double scale, int first, Triplets& out) const;
   /// Gravity and bending force [N] at x, 3 * vertices.
   Vector force(const Vector& x) const;
   /// Adds -G(x)^T lambda [N] to `out`, 3 * vertices.
@@ -61,8 +66,11 @@ class Model {
   double highest_bending_frequency() const;
 
  private:
+  void add_triangles(const Scene&);
+
   std::vector<double> mass_;
   std::vector<Spring> springs_;
+  std::vector<Eigen::Matrix3d> triangles_;  // compliance of three springs each, of an elastic mesh, else empty
   std::vector<BendLine> lines_;
   Eigen::SparseMatrix<double> bending_;  // of a mesh, else empty
   std::vector<int> dof_;

@@ -30,6 +30,8 @@ std::vector<SolverRun> runs() {
           {"xpbd", {{"substeps", 2}, {"contact_samples", 0}}, everything(full)},
           {"xpbd", {{"substeps", 2}, {"tuning", {{"contact", "planes"}}}}, everything(full)},
           {"xpbd", {{"substeps", 2}, {"tuning", {{"contact", "planes"}}}}, folded(full, 0.1, kContactFriction)},
+          {"xpbd", {{"substeps", 2}}, mesh_sheet(7)},
+          {"xpbd", {{"substeps", 2}}, with_bending(mesh_sheet(7))},
           {"xpbd", {{"substeps", 2}}, everything(mesh_sheet(7))},
           {"xpbd", {{"substeps", 2}}, everything(with_bending(mesh_sheet(7)))},
           {"xpbd", {{"substeps", 2}}, folded(with_pins(sheet(9, 7)), 0.1, 0.3)},

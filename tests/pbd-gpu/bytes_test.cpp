@@ -66,11 +66,13 @@ TEST_F(Bytes, OfCoupledFamilies) {
 }
 
 TEST_F(Bytes, OfChains) {
-  expect_equal("xpbd", mesh_sheet(20), {{"substeps", 2}});
+  const nlohmann::json springs = {{"membrane", "never"}};
+  expect_equal("xpbd", mesh_sheet(20), {{"substeps", 2}, {"tuning", springs}});
   expect_equal("xpbd", with_damping(mesh_tube(12, 9)), {{"substeps", 3}});
   expect_equal("xpbd", mesh_sheet(12), {{"substeps", 3}, {"tuning", {{"device_barrier", "always"}}}});
   const Scene bends = with_damping(with_bending(mesh_sheet(12)));
   expect_equal("xpbd", bends, {{"substeps", 2}});
+  expect_equal("xpbd", bends, {{"substeps", 2}, {"tuning", springs}});
   expect_equal("xpbd", bends, {{"substeps", 2}, {"tuning", {{"device_barrier", "always"}}}});
   Scene stiff = bends;
   stiff.material.bending_rigidity_N_m = 0.1;

@@ -4,7 +4,8 @@
 // entry, a workgroup a block of whole chains. The links of a chain are a tridiagonal system in their multipliers (Macklin, Mueller &
 // Chentanez 2016, eq. 18, for all at once), solved by parallel cyclic reduction. The first family of a substep has every vertex
 // and integrates what it loads. A mesh that bends has passes before the first family: one that integrates, then the iterations
-// of its bending, a thread a vertex. A dispatch is one pass, or with PERSISTENT any number of them: then all its workgroups run
+// of its bending, a thread a vertex. With MEMBRANE triangles of constant strain take part in these, and there are no families.
+// A dispatch is one pass, or with PERSISTENT any number of them: then all its workgroups run
 // at once, and wait for one another after each.
 #include "common.glsl"
 CHAIN_CONSTANTS(SPECIALIZE)
@@ -19,10 +20,13 @@ layout(std430, binding = BIND_TETHER_ENDS) readonly buffer TetherEnds { TetherEn
 layout(std430, binding = BIND_CHAIN_FAMILIES) readonly buffer Ranges { ChainRange ranges[]; };
 layout(std430, binding = BIND_BENDING_SLICES) readonly buffer Slices { BendingSlice slices[]; };
 layout(std430, binding = BIND_BENDING_ENTRIES) readonly buffer BendingEntries { BendingEntry bending[]; };
-layout(std430, binding = BIND_BENDING_STEPS) coherent buffer BendingSteps { vec4 bent[]; };  // right sides, odd steps, even steps
+layout(std430, binding = BIND_BENDING_STEPS) coherent buffer BendingSteps { vec4 bent[]; };  // right sides, odd steps, even steps; positions with MEMBRANE
 layout(push_constant) uniform Push { ChainConstants p; };
 #include "substep.glsl"
 #include "device_barrier.glsl"
+#ifdef MEMBRANE
+#include "membrane.glsl"
+#endif
 
 vec3 pos, vel, rest_pos, rest_vel, last_pos, last_vel;
 float w;
@@ -162,6 +166,11 @@ void pass(uint number, bool first, bool links, uint rounds) {
 }
 
 const bool kBends = (FEATURES & LINES_BEND) != 0u;
+#ifdef MEMBRANE
+const bool kSolves = true;
+#else
+const bool kSolves = kBends;
+#endif
 float weight = 2.0;     // of iteration `weight_of` of bending
 uint weight_of = 1u;
 
@@ -175,17 +184,9 @@ float weight_at(uint k) {
   return weight;
 }
 
-/// An iteration for the way d of x + d, where bending is in balance: (1 + c M^-1 K) d = -c M^-1 K x, c = h^2 keep, whose
-/// eigenvalues lie in [1, 1 + m] (Chebyshev's semi-iteration; Golub & Varga 1961). Rows of K sum to 0, and differences of
-/// neighbours lose no digits.
-void bend(uint i, uint k) {
-  uint odd = p.vertices, even = 2u * p.vertices, now = k % 2u != 0u ? odd : even, before = odd + even - now;
-  vec4 here = LOAD16(x, i);
-  if (here.w == 0.0) {  // held vertices do not move; one may have moved in the last frame
-    if (k < p.bending_iterations) STORE16(bent, now + i, vec4(0.0));
-    return;
-  }
-  vec3 mine = k > 1u ? LOAD16(bent, before + i).xyz : here.xyz, force = vec3(0.0);
+/// K times steps, or with k == 1 times positions: rows of K sum to 0, and differences of neighbours lose no digits.
+vec3 bending_force(uint i, uint k, uint before, vec3 mine) {
+  vec3 force = vec3(0.0);
   BendingSlice slice = LOAD(8u, slices, i / BENDING_ROWS);
   uint at = slice.first + i % BENDING_ROWS;
   for (uint j = 0u; j < slice.width; ++j) {
@@ -193,6 +194,46 @@ void bend(uint i, uint k) {
     vec3 other = k > 1u ? LOAD16(bent, before + entry.column).xyz : LOAD16(x, entry.column).xyz;
     force += entry.stiffness * (other - mine);
   }
+  return force;
+}
+
+#ifdef MEMBRANE
+/// The same of triangles, linear in the steps; with k == 1 as their elongations are. Positions are those that the first
+/// iteration found, since the last writes its own.
+vec3 triangle_force(uint i, uint k, uint before, vec3 here, vec3 mine) {
+  vec3 pull = vec3(0.0);
+  BendingSlice slice = LOAD(8u, membrane_slices, i / BENDING_ROWS);
+  uint at = slice.first + i % BENDING_ROWS, found = 3u * p.vertices;
+  for (uint j = 0u; j < slice.width; ++j) {
+    MembraneCorner c = LOAD(48u, corners, at + BENDING_ROWS * j);
+    if (c.a == CHAIN_NO_VERTEX) continue;
+    if (k == 1u)
+      pull += membrane_force(c, here, LOAD16(x, c.a).xyz, LOAD16(x, c.b).xyz);
+    else
+      pull += membrane_change(c, here, LOAD16(bent, found + c.a).xyz, LOAD16(bent, found + c.b).xyz, mine,
+                              LOAD16(bent, before + c.a).xyz, LOAD16(bent, before + c.b).xyz);
+  }
+  return -pull;
+}
+#endif
+
+/// An iteration for the way d of x + d, where bending is in balance: (1 + c M^-1 K) d = -c M^-1 K x, c = h^2 keep, whose
+/// eigenvalues lie in [1, 1 + m] (Chebyshev's semi-iteration; Golub & Varga 1961).
+void bend(uint i, uint k) {
+  uint odd = p.vertices, even = 2u * p.vertices, now = k % 2u != 0u ? odd : even, before = odd + even - now;
+  vec4 here = LOAD16(x, i);
+#ifdef MEMBRANE
+  if (k == 1u) STORE16(bent, 3u * p.vertices + i, here);
+#endif
+  if (here.w == 0.0) {  // held vertices do not move; one may have moved in the last frame
+    if (k < p.bending_iterations) STORE16(bent, now + i, vec4(0.0));
+    return;
+  }
+  vec3 mine = k > 1u ? LOAD16(bent, before + i).xyz : here.xyz, force = vec3(0.0);
+  if (kBends) force = bending_force(i, k, before, mine);
+#ifdef MEMBRANE
+  force += triangle_force(i, k, before, here.xyz, mine);
+#endif
   vec3 step = -p.bending_step * here.w * force;
   if (k == 1u) {
     if (k < p.bending_iterations) STORE16(bent, i, vec4(step, 0.0));
@@ -218,8 +259,8 @@ void main() {
   uint block = item() / THREADS;
   for (uint n = p.first_pass; n < p.first_pass + p.passes; ++n) {
     if (PERSISTENT && n > p.first_pass && !grid_barrier()) return;
-    uint bends = kBends ? 1u + p.bending_iterations : 0u, number = n % (p.families + bends);
-    if (kBends && number > 0u && number < bends) {
+    uint bends = kSolves ? 1u + p.bending_iterations : 0u, number = n % (p.families + bends);
+    if (kSolves && number > 0u && number < bends) {
       if (item() < p.vertices) bend(item(), number);
       continue;
     }

@@ -1,0 +1,161 @@
+#include "mesh_membrane.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "chain_plan.hpp"
+#include "clothbench/solver.hpp"
+#include "clothbench/vector.hpp"
+#include "mesh_bending.hpp"
+#include "prediction.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// How far the trace of a deformed triangle's matrix may exceed that at rest, and the factor on the bound that covers
+/// any triangle within it, with the part of its tension that turns its edges.
+constexpr double kMostTrace = 1.25, kRoom = 1.75;
+
+/// Most iterations a substep. A mesh that needs more is solved by chains.
+constexpr std::uint32_t kMostIterations = 600;
+
+/// Unit vectors along the edges of a triangle at rest, in its plane.
+std::array<std::array<double, 2>, 3> directions(const std::array<Vec3, 3>& p) {
+  const Vec3 e = minus(p[1], p[0]), f = minus(p[2], p[0]);
+  const double l = norm(e), x = dot(e, f) / l, y = norm(cross(e, f)) / l;
+  const double second = std::hypot(x - l, y), third = std::hypot(x, y);
+  return {{{1, 0}, {(x - l) / second, y / second}, {-x / third, -y / third}}};
+}
+
+/// Norms of the 2 x 2 blocks that couple the corners of a triangle at rest.
+std::array<std::array<double, 3>, 3> block_norms(const TriangleStiffness& k, const std::array<Vec3, 3>& rest) {
+  const auto g = directions(rest);
+  // The edges at corner c: number c leaves it, and number c + 2 arrives.
+  const auto stiffness = [&](std::size_t i, std::size_t j) {
+    return i == j ? k.along_N_m[i] : k.cross_N_m[(i + 1) % 3 == j ? i : j];
+  };
+  std::array<std::array<double, 3>, 3> out{};
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < 3; ++b) {
+      double block[2][2] = {};
+      for (const auto& [i, sign_i] : {std::pair{a, -1}, {(a + 2) % 3, 1}})
+        for (const auto& [j, sign_j] : {std::pair{b, -1}, {(b + 2) % 3, 1}})
+          for (std::size_t r = 0; r < 2; ++r)
+            for (std::size_t c = 0; c < 2; ++c) block[r][c] += sign_i * sign_j * stiffness(i, j) * g[i][r] * g[j][c];
+      const double sum = block[0][0] * block[0][0] + block[0][1] * block[0][1] + block[1][0] * block[1][0] +
+                         block[1][1] * block[1][1],
+                   det = block[0][0] * block[1][1] - block[0][1] * block[1][0];
+      out[a][b] = std::sqrt((sum + std::sqrt(std::max(0.0, sum * sum - 4 * det * det))) / 2);
+    }
+  return out;
+}
+
+/// Trace of the triangle's matrix at rest: what the kernel keeps deformed ones near.
+double trace(const TriangleStiffness& k, const std::array<Vec3, 3>& rest) {
+  const auto g = directions(rest);
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    sum += 2 * k.along_N_m[i] - 2 * k.cross_N_m[i] * (g[i][0] * g[j][0] + g[i][1] * g[j][1]);
+  }
+  return sum;
+}
+
+}  // namespace
+
+TriangleStiffness triangle_stiffness(const Scene& scene, std::size_t triangle) {
+  const std::array<Vec3, 3> p = rest_corners(*scene.cloth.mesh, triangle);
+  const double twice_area = norm(cross(minus(p[1], p[0]), minus(p[2], p[0])));
+  const double scale = 3.0 / 16 * *scene.material.membrane_stiffness_N_per_m / twice_area;
+  TriangleStiffness out{};
+  double cotangent[3];  // of the angle opposite the edge
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &from = p[(k + 2) % 3], a = minus(p[k], from), b = minus(p[(k + 1) % 3], from);
+    cotangent[k] = dot(a, b) / twice_area;
+    out.rest_m[k] = norm(minus(p[(k + 1) % 3], p[k]));
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    out.along_N_m[k] = scale * out.rest_m[k] * out.rest_m[k] * (3 * cotangent[k] * cotangent[k] + 1);
+    out.cross_N_m[k] = scale * out.rest_m[k] * out.rest_m[next] * (3 * cotangent[k] * cotangent[next] - 1);
+  }
+  return out;
+}
+
+double membrane_bound(const Scene& scene) {
+  constexpr int kSteps = 20;
+  const ClothMesh& mesh = *scene.cloth.mesh;
+  const std::vector<double> mass = vertex_masses(scene);
+  std::vector<std::array<std::array<double, 3>, 3>> norms;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    norms.push_back(block_norms(triangle_stiffness(scene, t), rest_corners(mesh, t)));
+  // The greatest of (A v)_i / v_i bounds the eigenvalues of A >= 0 for any positive v (Collatz 1942; Wielandt 1950).
+  std::vector<double> v(mass.size(), 1), next(mass.size());
+  double most = 0;
+  for (int step = 0; step < kSteps; ++step) {
+    std::fill(next.begin(), next.end(), 0.0);
+    for (std::size_t t = 0; t < norms.size(); ++t)
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b) next[mesh.triangles[t][a]] += norms[t][a][b] * v[mesh.triangles[t][b]];
+    most = 0;
+    double greatest = 0;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      next[i] /= mass[i];
+      most = std::max(most, next[i] / v[i]);
+      greatest = std::max(greatest, next[i]);
+    }
+    if (!(greatest > 0)) return 0;
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = std::max(next[i] / greatest, 1e-3);
+  }
+  return kRoom * most;
+}
+
+Choice membrane_of(const Scene& scene, const nlohmann::json& settings) {
+  const std::string wanted = settings.value(kTuning, nlohmann::json::object()).value("membrane", "auto");
+  if (!scene.cloth.mesh) return {false, "the cloth is a grid"};
+  if (!scene.material.membrane_stiffness_N_per_m) return {false, "the cloth is inextensible"};
+  if (wanted == "never") return {false, "setting tuning.membrane=never"};
+  if (!chain_cloth(scene).welded.empty()) return {false, "edges are so short that they are welded"};
+  if (wanted == "always") return {true, ""};
+  if (!touches_nothing(scene) || contact_by_planes(scene, settings)) return {false, "the cloth touches"};
+  const double h = scene.time.dt() / xpbd_substeps(scene, settings);
+  const std::uint32_t wants = bending_iterations(h * h * membrane_bound(scene));
+  if (wants > kMostIterations)
+    return {false, "a substep would take " + std::to_string(wants) + " iterations; at most " +
+                       std::to_string(kMostIterations) + " are taken"};
+  return {true, ""};
+}
+
+MembraneTable membrane_table(const Scene& scene) {
+  constexpr std::uint32_t kRows = BENDING_ROWS;
+  const ClothMesh& mesh = *scene.cloth.mesh;
+  const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+  std::vector<std::vector<MembraneCorner>> at(n);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const TriangleStiffness k = triangle_stiffness(scene, t);
+    const auto most = static_cast<float>(kMostTrace * trace(k, rest_corners(mesh, t)));
+    for (std::size_t r = 0; r < 3; ++r) {
+      const auto of = [r](const double(&values)[3], std::size_t i) { return static_cast<float>(values[(r + i) % 3]); };
+      at[mesh.triangles[t][r]].push_back({mesh.triangles[t][(r + 1) % 3], mesh.triangles[t][(r + 2) % 3],
+                                          of(k.rest_m, 0), of(k.rest_m, 1), of(k.rest_m, 2), of(k.along_N_m, 0),
+                                          of(k.along_N_m, 1), of(k.along_N_m, 2), of(k.cross_N_m, 0),
+                                          of(k.cross_N_m, 1), of(k.cross_N_m, 2), most});
+    }
+  }
+  MembraneTable out;
+  for (std::uint32_t begin = 0; begin < n; begin += kRows) {
+    std::size_t width = 0;
+    for (std::uint32_t i = begin; i < std::min(n, begin + kRows); ++i) width = std::max(width, at[i].size());
+    out.slices.push_back({static_cast<std::uint32_t>(out.corners.size()), static_cast<std::uint32_t>(width)});
+    for (std::size_t j = 0; j < width; ++j)
+      for (std::uint32_t i = begin; i < begin + kRows; ++i) {
+        const bool is = i < n && j < at[i].size();
+        out.corners.push_back(is ? at[i][j] : MembraneCorner{CHAIN_NO_VERTEX, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+      }
+  }
+  return out;
+}
+
+}  // namespace clothbench::pbd_gpu

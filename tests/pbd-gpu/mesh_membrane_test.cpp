@@ -1,0 +1,209 @@
+// Elastic triangle meshes are isotropic sheets: triangles of constant strain, in `xpbd` and in `reference`.
+#include "mesh_membrane.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "drawn_sheet.hpp"
+#include "prediction.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+Eigen::Matrix3d matrix_of(const TriangleStiffness& k) {
+  Eigen::Matrix3d K;
+  K << k.along_N_m[0], k.cross_N_m[0], k.cross_N_m[2], k.cross_N_m[0], k.along_N_m[1], k.cross_N_m[1], k.cross_N_m[2],
+      k.cross_N_m[1], k.along_N_m[2];
+  return K;
+}
+
+/// Energy of a triangle under a strain (xx, yy, xy), over its area: plane stress, Poisson's ratio 1/3.
+double of_material(double Y, const Eigen::Vector3d& e) {
+  const double nu = 1.0 / 3, trace = e[0] + e[1];
+  return Y / (2 * (1 - nu * nu)) * (nu * trace * trace + (1 - nu) * (e[0] * e[0] + e[1] * e[1] + 2 * e[2] * e[2]));
+}
+
+TEST(MeshMembrane, TrianglesHaveTheEnergyOfAnIsotropicSheet) {
+  const Scene s = drawn_sheet(1, 0.5, 6, 0.4, 0.3, 1);
+  const ClothMesh& mesh = *s.cloth.mesh;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Eigen::Matrix3d K = matrix_of(triangle_stiffness(s, t));
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(K).eigenvalues()[0], 0);
+    double area = 0;
+    for (const Eigen::Vector3d& e : {Eigen::Vector3d(1, 0, 0), {0, 1, 0}, {0, 0, 1}, {1, -0.4, 0.3}}) {
+      Eigen::Vector3d d;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 &a = mesh.vertices[mesh.triangles[t][k]], &b = mesh.vertices[mesh.triangles[t][(k + 1) % 3]];
+        const double x = b[0] - a[0], y = b[1] - a[1];
+        d[static_cast<Eigen::Index>(k)] = (e[0] * x * x + e[1] * y * y + 2 * e[2] * x * y) / std::hypot(x, y);
+      }
+      const Vec3 &p = mesh.vertices[mesh.triangles[t][0]], &q = mesh.vertices[mesh.triangles[t][1]],
+                 &r = mesh.vertices[mesh.triangles[t][2]];
+      area = std::abs((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])) / 2;
+      EXPECT_NEAR(0.5 * d.dot(K * d) / (area * of_material(1000, e)), 1, 1e-9) << "triangle " << t;
+    }
+  }
+}
+
+/// At rest the bound is above the greatest eigenvalue, however the triangles are turned, with room to spare.
+TEST(MeshMembrane, ItsBoundIsAboveTheGreatestEigenvalue) {
+  for (const double share : {0.0, 0.2, 0.35}) {
+    const Scene s = drawn_sheet(1, 0.5, 8, 0.7, share, 3);
+    const ClothMesh& mesh = *s.cloth.mesh;
+    const auto n = static_cast<Eigen::Index>(mesh.vertices.size());
+    const std::vector<double> mass = vertex_masses(s);
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      Eigen::MatrixXd G = Eigen::MatrixXd::Zero(3, 2 * n);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+        const Eigen::Vector2d d =
+            Eigen::Vector2d(mesh.vertices[b][0] - mesh.vertices[a][0], mesh.vertices[b][1] - mesh.vertices[a][1])
+                .normalized();
+        G.block<1, 2>(static_cast<Eigen::Index>(k), 2 * a) = -d.transpose() / std::sqrt(mass[a]);
+        G.block<1, 2>(static_cast<Eigen::Index>(k), 2 * b) = d.transpose() / std::sqrt(mass[b]);
+      }
+      A += G.transpose() * matrix_of(triangle_stiffness(s, t)) * G;
+    }
+    const double most = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A).eigenvalues()[2 * n - 1];
+    EXPECT_GE(membrane_bound(s), 1.75 * most);
+    EXPECT_LE(membrane_bound(s), 3.5 * most) << "iterations grow with its square root";
+  }
+}
+
+struct Modulus {
+  double E, nu;  // E over the stated one
+};
+
+/// Fits the exact displacement of a strip that hangs by x = 0 to that of vertices in its lower half: along x
+/// (p/Y) (L x - x^2/2 - nu y^2/2), across -nu (p/Y) (L - x) y, with p = density times gravity and y from the middle.
+Modulus fitted(const Scene& s, const std::vector<double>& position) {
+  const std::vector<double> start = initial_positions(s);
+  const double L = s.cloth.width_m, p = s.cloth.areal_density_kg_per_m2 * s.gravity_m_per_s2[0],
+               Y = *s.material.membrane_stiffness_N_per_m;
+  const auto n = static_cast<Eigen::Index>(s.cloth.vertex_count());
+  Eigen::MatrixXd along = Eigen::MatrixXd::Zero(n, 4), across = Eigen::MatrixXd::Zero(n, 3);
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(n), v = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double x = s.cloth.mesh->vertices[k][0], y = s.cloth.mesh->vertices[k][1] - s.cloth.height_m / 2;
+    if (x < 0.4 * L || x > 0.9 * L) continue;
+    along.row(i) << 1, y, y * y, p / Y * (L * x - x * x / 2);
+    across.row(i) << 1, x, -p / Y * (L - x) * y;
+    u[i] = position[3 * k] - start[3 * k];
+    v[i] = position[3 * k + 2] - start[3 * k + 2];  // axis_v is z
+  }
+  const double per_E = along.colPivHouseholderQr().solve(u)[3], nu = across.colPivHouseholderQr().solve(v)[2];
+  return {1 / per_E, nu / per_E};
+}
+
+class MembraneOf : public Gpu {
+ protected:
+  /// A strip 4 : 1 that hangs along the direction of its lattice turned by an angle, 1 % strain at its top, to rest.
+  static Scene hanging(int cells, double angle, double share, unsigned seed) {
+    Scene s = with_damping(drawn_sheet(1, 0.25, cells, angle, share, seed));
+    s.gravity_m_per_s2 = {50, 0, 0};
+    s.material.damping_per_s = 20;
+    s.time = {60, 0.8};
+    return s;
+  }
+  static std::vector<double> end_of(const Scene& s, const std::string& solver, const nlohmann::json& settings) {
+    const SolverEntry& e = find_solver(solver);
+    const auto made = e.make(complete_settings(e.info, settings), solver == "xpbd" ? options() : DeviceOptions{});
+    made->load(s);
+    return after(*made, s, s.time.frames()).position;
+  }
+};
+
+TEST_F(MembraneOf, DrawnMeshesIsTheStatedOne) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    const auto seed = static_cast<unsigned>(k + 1);
+    if (!in_turn(k == 1 ? 0 : 1)) continue;
+    const double angle = std::numbers::pi / 4 * static_cast<double>(k % 3), share = k < 3 ? 0.3 : 0.15;
+    const Scene s = hanging(12, angle, share, seed);
+    ASSERT_TRUE(membrane_of(s, nlohmann::json::object()).on);
+    for (const auto& [solver, settings] : {std::pair<std::string, nlohmann::json>{"xpbd", nlohmann::json::object()},
+                                           {"xpbd", {{"quality", "fast"}}},
+                                           {"reference", {{"substeps", 1}}}}) {
+      const Modulus m = fitted(s, end_of(s, solver, settings));
+      EXPECT_NEAR(m.E, 1, 0.02) << solver << settings << ", seed " << seed;
+      EXPECT_NEAR(m.nu, 1.0 / 3, 0.02) << solver << settings << ", seed " << seed;
+    }
+  }
+}
+
+/// Pulled to twice its length, with few substeps: the sheet comes to rest where the reference does.
+TEST_F(MembraneOf, FarStretchedSheetsComeToRest) {
+  std::size_t number = 0;
+  for (const Vec3& g : {Vec3{100, 0, 0}, {0, -100, 0}, {-60, -60, 30}}) {
+    Scene s = with_damping(drawn_sheet(1, 0.25, 8, 0.5, 0.3, 8));
+    s.material.membrane_stiffness_N_per_m = 20;
+    s.material.damping_per_s = 8;
+    s.gravity_m_per_s2 = g;
+    s.time = {60, 3};
+    if (!in_turn(number++)) continue;
+    const std::vector<double> right = end_of(s, "reference", {{"substeps", 4}});
+    for (const int order : {1, 2}) {
+      const std::vector<double> found = end_of(s, "xpbd", {{"quality", "fast"}, {"time_order", order}});
+      double most = 0, longest = 0;
+      for (std::size_t k = 0; k < right.size(); ++k) {
+        const double d = std::abs(found[k] - right[k]);
+        most = d <= most ? most : d;
+      }
+      for (const Edge& e : s.cloth.mesh->edges) {
+        double square = 0;
+        for (std::size_t k = 0; k < 3; ++k) square += std::pow(found[3 * e.a + k] - found[3 * e.b + k], 2);
+        longest = std::max(longest, std::sqrt(square) / e.rest_m);
+      }
+      EXPECT_LE(most, 1e-3) << g[0] << " " << g[1] << ", order " << order;
+      EXPECT_GE(longest, 1.8) << "the test stretches little";
+    }
+  }
+}
+
+/// Bit for bit, momentum kept: a sheet that turns and falls.
+TEST_F(MembraneOf, FreeSheetsRepeatAndFallFreely) {
+  Scene s = drawn_sheet(1, 0.5, 8, 0.5, 0.3, 5);
+  s.pins.vertices.clear();
+  s.needs = s.needs - FeatureSet{Feature::Pins};
+  s.cloth.spin_rad_per_s = {3, 0, 1};
+  s.needs.add(Feature::Spin);
+  const auto solver = make("xpbd");
+  solver->load(s);
+  const ClothState once = after(*solver, s, 6);
+  solver->reset();
+  EXPECT_EQ(after(*solver, s, 6).position, once.position);
+  const std::vector<double> m = vertex_masses(s), start = initial_positions(s), thrown = initial_velocities(s);
+  double fall = 0, mass = 0;
+  for (std::size_t v = 0; v < m.size(); ++v) {
+    fall += m[v] * (once.position[3 * v + 1] - start[3 * v + 1] - 6 * s.time.dt() * thrown[3 * v + 1]);
+    mass += m[v];
+  }
+  const double free = xpbd_free_fall_m(s, complete_settings(xpbd_info(), {}), 6);
+  EXPECT_NEAR(fall / mass, free, 3e-5 * std::abs(free));
+}
+
+/// What the plan says of meshes that springs along edges solve.
+TEST_F(MembraneOf, OtherSheetsIsNotAndThePlanSaysWhy) {
+  const auto why = [](const Scene& s, const nlohmann::json& settings) { return membrane_of(s, settings).why_not; };
+  Scene s = drawn_sheet(1, 0.5, 8, 0.5, 0.3, 5);
+  const nlohmann::json none = nlohmann::json::object();
+  EXPECT_EQ(why(s, none), "");
+  EXPECT_EQ(why(s, {{"tuning", {{"membrane", "never"}}}}), "setting tuning.membrane=never");
+  EXPECT_EQ(why(sheet(5, 5), none), "the cloth is a grid");
+  s.material.membrane_stiffness_N_per_m = 1e7;
+  EXPECT_NE(why(s, none).find("iterations"), std::string::npos);
+  EXPECT_EQ(why(s, {{"tuning", {{"membrane", "always"}}}}), "");
+  const auto solver = make("xpbd");
+  solver->load(s);
+  const auto& left = solver->plan().left_out;
+  EXPECT_TRUE(std::any_of(left.begin(), left.end(),
+                          [](const auto& part) { return part.what == "triangles of constant strain"; }));
+  s.material.membrane_stiffness_N_per_m.reset();
+  EXPECT_EQ(why(s, none), "the cloth is inextensible");
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu
