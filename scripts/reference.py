@@ -1,0 +1,378 @@
+#!/usr/bin/env python3
+"""Publishes the results of scripts/reference.sh, and checks what is published.
+
+    scripts/reference.sh --report OUT… [--to FOLDER] [--work FOLDER]
+    scripts/reference.sh --check [OUT…] [--to FOLDER]
+    scripts/reference.sh --pack OUT TO
+
+--report: makes tables of each study and one page of all (index.html) from the folders OUT, which must be of one commit, into FOLDER (default:
+results/reference/h200), and ../README.md of FOLDER. reference.json has the SHA-256 of all of these and of every result file they were made from.
+Raw results are not published: they are some hundred megabytes, and the tables hold every summary value of every run.
+
+--check: exit status 1 and a line for each fault if what is published is not what --report wrote, if the runs are of two commits or of a tree
+with local changes, or if a result file below OUT has changed; 4 if nothing is wrong but what the figures depend on has changed since ("measured
+before this change"), or this tree does not know the commit; else 0.
+
+--pack: a copy of OUT for the way to another machine, in TO/part-<n>.tar.gz of at most 15 MB; unpack them all in one folder. Motions that no
+table and no part of the page shows are left out. Needs h5py.
+"""
+import argparse
+import csv
+import hashlib
+import io
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "reference"))
+from figures import Tables, claims_table, markdown, statement  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+DATA = ROOT / "scripts/reference"
+PUBLISHED = ROOT / "results/reference/h200"
+LIST = "reference.json"
+# What may change a figure: solvers, scenes and their loading, assets, runner, metrics, exact solutions, what they share.
+MEASURED = ["solvers", "scenarios", *(f"harness/{room}" for room in ("assets", "base", "include", "metrics", "runner", "scenario", "studies", "truth"))]
+# The four set-ups of the paper, whose motions the page shows.
+SET_UPS = re.compile(r"^(gravity-32-single|desk-flat-low|desk-corner-low|capsule-sweep|hand-push|two-hand-stretch-2mps|sleeve|t-shirt|skirt|tablecloth)__[^_]+__(default|whole-room)\.h5$")
+PAGE_LIMIT_B = 20_000_000
+# Files of a report that are not published: the page is one for all studies, and what else is left out is in runs.csv.
+UNPUBLISHED = {"index.html", "runs.json", "tables.tex", "bandwidth.csv", "memory.csv", "report-pictures.json", "penetration-series.csv", "work-precision.json", "penetration.csv", "contact-runs.csv"}
+FIGURES_OF = {"penetration": ("penetration", "meshes"), "work": ("work-precision",), "maps": ("stability",), "cases": ("stability",)}
+
+
+def sha256(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def data(name):
+    return json.loads((DATA / name).read_text(encoding="utf-8"))
+
+
+def parts_of(folders):
+    """Finished parts of all folders: {group: [(part folder, how, seconds, command)]}, in the order of the studies."""
+    out = {s["group"]: [] for s in data("studies.json")}
+    for folder in folders:
+        for done in sorted(folder.glob("*.done")):
+            name, how, seconds, command = done.read_text(encoding="utf-8").rstrip("\n").split("\t")
+            out.setdefault(name.split("+")[0], []).append((folder / name, how, int(seconds), command))
+    return {group: parts for group, parts in out.items() if parts}
+
+
+def without_unplanned(part, to):
+    """A folder like `part` whose study.json names the runs that the part was to do; links to its files. A part of chosen runs has no others."""
+    to.mkdir(parents=True)
+    for file in part.iterdir():
+        if file.name != "study.json":
+            (to / file.name).symlink_to(file)
+        else:
+            study = json.loads(file.read_text(encoding="utf-8"))
+            study["runs"] = [r for r in study["runs"] if (part / f"{r}.h5").exists() or (part / f"{r}.part").exists()]
+            (to / file.name).write_text(json.dumps(study), encoding="utf-8")
+    return to
+
+
+def report(bench, inputs, out):
+    """The report of the inputs in `out`; the document of its page."""
+    done = subprocess.run([bench, "report", *map(str, inputs), "-o", str(out)], capture_output=True, text=True, check=False)
+    if done.returncode != 0 or not (out / "index.html").exists():
+        sys.exit(f"clothbench report of {inputs[0]}: {done.stderr or done.stdout}")
+    return (out / "index.html").read_text(encoding="utf-8")
+
+
+DOCUMENT = re.compile(r'(<script type="application/json" id="clothbench-data">)(.*?)(</script>)', re.S)
+
+
+def document_of(page):
+    return json.loads(DOCUMENT.search(page)[2])
+
+
+def section(name, title, table, note=""):
+    return {"id": name, "title": title, "tables": [{"title": title, "note": note, "rows": table}]}
+
+
+def merged(documents, motions, extra):
+    """One document of those of all studies, by group; motions are those of `motions`."""
+    out = dict(motions)
+    lines, sections = [], []
+    titles = {s["group"]: s["title"] for s in data("studies.json")}
+    for group, d in documents.items():
+        lines += [line for line in d["headline"].split("\n") if line and line not in lines]
+        for s in d["sections"]:
+            if s["id"] == "features" and group != "penetration":
+                continue
+            title = titles.get(group, group)
+            sections.append({**s, "title": title if s["title"] == title else f"{title}: {s['title']}"})
+    out["headline"] = "\n\n".join(lines)
+    out["sections"] = extra + sections
+    out["runs"] = sum(d["runs"] for d in documents.values())
+    out["rates"] = [r for d in documents.values() for r in d["rates"]]
+    out["commands"] = ["scripts/reference.sh"]
+    for key, groups in FIGURES_OF.items():
+        out[key] = [x for group in groups if group in documents for x in documents[group][key]]
+    return out
+
+
+def write_page(path, template, document):
+    # "<" never stands in the data of a page.
+    text = json.dumps(document, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")
+    page = DOCUMENT.sub(lambda m: m[1] + text + m[3], template)
+    if len(page) > PAGE_LIMIT_B:
+        sys.exit(f"{path}: {len(page)} bytes; a page has at most {PAGE_LIMIT_B}")
+    path.write_text(page, encoding="utf-8")
+
+
+def runs_of(folder, group):
+    with open(folder / group / "runs.csv", encoding="utf-8", newline="") as f:
+        return list(csv.DictReader(f))
+
+
+def facts_of(folder, groups):
+    """Commits, trees with local changes, devices and days of the runs, by group."""
+    out = {}
+    for group in groups:
+        runs = [r for r in runs_of(folder, group) if r["git_commit"]]
+        out[group] = {"runs": len(runs), "commits": sorted({r["git_commit"] for r in runs}), "dirty": sum(r["git_dirty"] != "false" for r in runs),
+                      "devices": sorted({r["gpu"] for r in runs} - {"", "CPU", "–"}), "cpus": sorted({r["cpu"] for r in runs} - {""}),
+                      "days": sorted({r["created"][:10] for r in runs})}
+    return out
+
+
+ORDERED_BY = {"table3": "free_fall_error", "hang": "stretch_mean_last_second", "penetration": "expect"}
+
+
+def devices_table(folder):
+    """Which solver is first on each of two devices, by error or verdict: rows of text."""
+    rows = [["study", "scene", "by", "first device", "software device", "same"]]
+    for group, column in ORDERED_BY.items():
+        both = [{}, {}]
+        for k, name in enumerate((group, "software-" + group)):
+            if not (folder / name / "runs.csv").exists():
+                break
+            for r in runs_of(folder, name):
+                if r["status"] == "ok" and r.get(column):
+                    both[k].setdefault(r["scene"], {})[f"{r['solver']} {r['setting']}"] = r[column]
+        for scene in both[1]:
+            common = sorted(set(both[0].get(scene, {})) & set(both[1][scene]))
+            if len(common) < 2:
+                continue
+            if column == "expect":
+                texts = [", ".join(f"{c.split()[0]} {b[scene][c].split(':')[0]}" for c in common) for b in both]
+            else:
+                texts = [" < ".join(sorted(common, key=lambda c, b=b: float(b[scene][c]))) for b in both]
+            rows.append([group, scene, column, *texts, "yes" if texts[0] == texts[1] else "no"])
+    return rows
+
+
+def devices_sentence(rows):
+    same = sum(r[-1] == "yes" for r in rows[1:])
+    return f"In {same} of {len(rows) - 1} scenes that ran on both devices the order of the solvers or their verdicts are the same." if len(rows) > 1 else ""
+
+
+def readme(folder, listing):
+    """results/reference/README.md, from the stored tables."""
+    tables = Tables(folder)
+    at = folder.name
+    text = ["# The reference study", "",
+            f"All published figures: one commit ({listing['commit'][:12]}), one command, one [page]({at}/index.html) that opens from disk. "
+            "Times were taken alone, in one process, contenders in turns; what is called untimed ran side by side and has no times. "
+            f"[reference.json]({at}/reference.json) has the SHA-256 of every file; `scripts/reference.sh --check` verifies them.", "",
+            "<!-- needs hardware: a GPU -->", "```sh",
+            "scripts/reference.sh OUT --table h200         # call again while its exit status is 75",
+            "scripts/reference.sh SOFT --table software    # parts without times, on any machine",
+            "scripts/reference.sh --report OUT SOFT", "```", "", "## Claims of the paper", "",
+            markdown(claims_table(tables, data("claims.json"))), ""]
+    devices = devices_table(folder)
+    if len(devices) > 1:
+        text += ["## Devices", "", devices_sentence(devices), "", markdown(devices), ""]
+    for s in data("studies.json"):
+        group = s["group"]
+        if group not in listing["studies"]:
+            continue
+        facts = listing["studies"][group]
+        answer, _ = statement(tables, s)
+        text += [f"## {s['title']}: [{group}]({at}/{group}/report.md)", "", f"*{s['question']}* {answer or 'The tables lack a figure of the answer.'}", ""]
+        if s.get("picture") and (folder / group / s["picture"]).exists():
+            text += [f"![{s['question']}]({at}/{group}/{s['picture']})", ""]
+        how = "timed" if facts["how"] == ["timed"] else "untimed" if "timed" not in facts["how"] else "timed, in part untimed"
+        text += [" · ".join([*(f"`clothbench {c}`" for c in facts["commands"]), ", ".join(facts["devices"] + facts["cpus"]), ", ".join(facts["days"]), how]), ""]
+    return "\n".join(text).rstrip("\n") + "\n"
+
+
+def publish(folders, to, work):
+    bench = os.environ.get("CLOTHBENCH", str(ROOT / "build/release/clothbench"))
+    parts = parts_of(folders)
+    if not parts:
+        sys.exit(f"{folders[0]}: no finished part; scripts/reference.sh {folders[0]} makes them")
+    if len({(f / "version").read_text() for f in folders}) > 1:
+        sys.exit("the folders hold results of different programs; a reference study has one commit")
+    shutil.rmtree(to, ignore_errors=True)
+    to.mkdir(parents=True)
+    documents, files = {}, {}
+    for group, list_of in parts.items():
+        inputs = [without_unplanned(p[0], work / "in" / p[0].name) for p in list_of]
+        documents[group] = document_of(report(bench, inputs, work / group))
+        (to / group).mkdir()
+        for file in sorted((work / group).iterdir()):
+            if file.name not in UNPUBLISHED and file.suffix != ".svg":
+                shutil.copy(file, to / group)
+        for part, *_ in list_of:
+            files.update({f"{part.name}/{h5.name}": sha256(h5) for h5 in sorted(part.glob("*.h5"))})
+    facts = facts_of(to, parts)
+    for group, list_of in parts.items():
+        facts[group] |= {"how": sorted({p[1].replace("spread", "untimed") for p in list_of}), "seconds": sum(p[2] for p in list_of), "commands": [p[3] for p in list_of]}
+    commits = {c for f in facts.values() for c in f["commits"]}
+    listing = {"format": "clothbench-reference", "format_version": 1, "commit": sorted(commits)[0], "studies": facts, "results": files}
+    shown = [h5 for group in ("table3", "penetration", "meshes") for p in parts.get(group, []) for h5 in sorted(p[0].glob("*.h5")) if SET_UPS.match(h5.name)]
+    template = report(bench, shown or inputs, work / "motions")
+    studies = [["study", "question", "answer", "how"]]
+    for s in data("studies.json"):
+        if s["group"] in parts:
+            studies.append([s["title"], s["question"], statement(Tables(to), s)[0] or "–", ", ".join(facts[s["group"]]["how"])])
+    extra = [section("claims", "Claims of the paper", claims_table(Tables(to), data("claims.json"))), section("studies", "Studies", studies)]
+    devices = devices_table(to)
+    if len(devices) > 1:
+        extra.append(section("devices", "Devices", devices, devices_sentence(devices)))
+    write_page(to / "index.html", template, merged({g: d for g, d in documents.items() if not g.startswith("software-")}, document_of(template), extra))
+    seal(to, listing)
+    print(f"{to}: {len(parts)} studies, {len(files)} result files, page of {(to / 'index.html').stat().st_size / 1e6:.1f} MB")
+
+
+def seal(to, listing):
+    """Writes README.md beside the folder, and the list with the hashes of all that is published."""
+    (to.parent / "README.md").write_text(readme(to, listing), encoding="utf-8")
+    listing["published"] = {f.relative_to(to).as_posix(): sha256(f) for f in sorted(to.rglob("*")) if f.is_file() and f.name != LIST}
+    (to / LIST).write_text(json.dumps(listing, indent=1, sort_keys=True, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def faults_of(to, folders):
+    """What is wrong with what is published: a line each."""
+    listing = json.loads((to / LIST).read_text(encoding="utf-8"))
+    out = []
+    here = {f.relative_to(to).as_posix() for f in to.rglob("*") if f.is_file() and f.name != LIST}
+    for name, hashed in listing["published"].items():
+        if name not in here:
+            out.append(f"{to / name}: is missing; --report wrote it")
+        elif sha256(to / name) != hashed:
+            out.append(f"{to / name}: is not as --report wrote it")
+    out += [f"{to / name}: was not written by --report" for name in sorted(here - set(listing["published"]))]
+    if out:
+        return out
+    facts = facts_of(to, listing["studies"])
+    commits = {c for f in facts.values() for c in f["commits"]}
+    if commits != {listing["commit"]}:
+        out.append(f"{to}: results of the commits {', '.join(sorted(commits))}; expected one, {listing['commit']}")
+    out += [f"{to / g}: {f['dirty']} runs are of a tree with local changes" for g, f in facts.items() if f["dirty"]]
+    if (to.parent / "README.md").read_text(encoding="utf-8") != readme(to, listing):
+        out.append(f"{to.parent / 'README.md'}: not what the tables say; scripts/reference.sh --report writes it")
+    for folder in folders:
+        for h5 in sorted(folder.glob("*/*.h5")):
+            if listing["results"].get(h5.relative_to(folder).as_posix()) != sha256(h5):
+                out.append(f"{h5}: is not the result that is published")
+    return out
+
+
+def changed_since(commit):
+    """Files that may change a figure and differ between the commit and HEAD; None if this tree does not know the commit."""
+    git = lambda *words: subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True, check=False)
+    if git("cat-file", "-e", commit + "^{commit}").returncode != 0:
+        return None
+    done = git("diff", "--name-only", commit, "HEAD", "--", *MEASURED, ":(exclude)*.md")
+    return done.stdout.split() if done.returncode == 0 else None
+
+
+def check(to, folders):
+    if not (to / LIST).exists():
+        sys.exit(f"{to / LIST}: no such file; scripts/reference.sh --report OUT writes it")
+    faults = faults_of(to, folders)
+    if faults:
+        print("\n".join(faults), file=sys.stderr)
+        return 1
+    commit = json.loads((to / LIST).read_text(encoding="utf-8"))["commit"]
+    changed = changed_since(commit)
+    if changed == []:
+        print(f"{to}: as published, measured at {commit[:12]}; nothing that may change a figure has changed since")
+        return 0
+    what = "the commit is not known here" if changed is None else f"{len(changed)} files have changed since, such as {changed[0]}"
+    print(f"{to}: as published, measured before this change ({commit[:12]}; {what})")
+    return 4
+
+
+def slim(source, to, whole):
+    """A copy of a result file; without its motion unless `whole`."""
+    import h5py
+    if whole:
+        shutil.copy(source, to)
+        return
+    with h5py.File(source) as a, h5py.File(to, "w", libver=("earliest", "v110")) as b:
+        b.attrs.update(a.attrs)
+        for name in a:
+            if name == "trajectory":
+                a.copy("trajectory/time_s", b.create_group(name))
+            elif name not in ("VTKHDF", "frames"):
+                a.copy(name, b)
+
+
+def pack(out, to):
+    to.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        scratch = pathlib.Path(scratch)
+        for file in sorted(p for p in out.rglob("*") if p.is_file() and p.suffix != ".xdmf" and ".part" not in str(p)):
+            copy = scratch / file.relative_to(out)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            if file.suffix != ".h5":
+                shutil.copy(file, copy)
+                continue
+            study = json.loads((file.parent / "study.json").read_text(encoding="utf-8"))
+            paired = file.name.split("__")[0] in json.dumps((study.get("definition") or {}).get("pairs", []))
+            slim(file, copy, paired or bool(SET_UPS.match(file.name)) or file.parent.name.split("+")[0] not in ("contact", "penetration", "stability"))
+        volumes, size = [], 0
+        for file in sorted(p for p in scratch.rglob("*") if p.is_file()):
+            packed = io.BytesIO()
+            if not volumes or size + file.stat().st_size > 15_000_000:
+                volumes.append([])
+                size = 0
+            volumes[-1].append(file)
+            size += file.stat().st_size
+        for n, volume in enumerate(volumes):
+            with tarfile.open(to / f"part-{n}.tar.gz", "w:gz", compresslevel=6) as tar:
+                for file in volume:
+                    tar.add(file, file.relative_to(scratch))
+    print(f"{to}: {len(volumes)} files of at most 15 MB")
+    return 0
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    what = arguments.add_mutually_exclusive_group(required=True)
+    for name in ("report", "check", "pack"):
+        what.add_argument(f"--{name}", action="store_true")
+    arguments.add_argument("folder", nargs="*", type=pathlib.Path)
+    arguments.add_argument("--to", type=pathlib.Path, default=PUBLISHED)
+    arguments.add_argument("--work", type=pathlib.Path, help="keep the reports of the studies there")
+    a = arguments.parse_args()
+    folders = [f.resolve() for f in a.folder]
+    for f in folders if not a.pack else folders[:1]:
+        if not f.is_dir():
+            arguments.error(f"{f}: no such folder")
+    if a.pack:
+        if len(folders) != 2:
+            arguments.error("--pack: expected OUT and TO")
+        return pack(*folders)
+    if a.check:
+        return check(a.to, folders)
+    if not folders:
+        arguments.error("--report: expected a folder of results")
+    with tempfile.TemporaryDirectory() as scratch:
+        publish(folders, a.to.resolve(), a.work or pathlib.Path(scratch))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
