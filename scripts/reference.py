@@ -3,7 +3,6 @@
 
     scripts/reference.sh --report OUT… [--to FOLDER] [--work FOLDER]
     scripts/reference.sh --check [OUT…] [--to FOLDER]
-    scripts/reference.sh --pack OUT TO
 
 --report: makes tables of each study and one page of all (index.html) from the folders OUT, which must be of one commit, into FOLDER (default:
 results/reference/h200), and ../README.md of FOLDER. reference.json has the SHA-256 of all of these and of every result file they were made from.
@@ -12,14 +11,10 @@ Raw results are not published: they are some hundred megabytes, and the tables h
 --check: exit status 1 and a line for each fault if what is published is not what --report wrote, if the runs are of two commits or of a tree
 with local changes, or if a result file below OUT has changed; 4 if nothing is wrong but what the figures depend on has changed since ("measured
 before this change"), or this tree does not know the commit; else 0.
-
---pack: a copy of OUT for the way to another machine, in TO/part-<n>.tar.gz of at most 15 MB; unpack them all in one folder. Motions that no
-table and no part of the page shows are left out. Needs h5py.
 """
 import argparse
 import csv
 import hashlib
-import io
 import json
 import os
 import pathlib
@@ -27,11 +22,10 @@ import re
 import shutil
 import subprocess
 import sys
-import tarfile
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "reference"))
-from figures import Tables, claims_table, markdown, statement  # noqa: E402
+from figures import SET_UPS, Tables, claims_table, markdown, statement  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DATA = ROOT / "scripts/reference"
@@ -39,8 +33,6 @@ PUBLISHED = ROOT / "results/reference/h200"
 LIST = "reference.json"
 # What may change a figure: solvers, scenes and their loading, assets, runner, metrics, exact solutions, what they share.
 MEASURED = ["solvers", "scenarios", *(f"harness/{room}" for room in ("assets", "base", "include", "metrics", "runner", "scenario", "studies", "truth"))]
-# The four set-ups of the paper, whose motions the page shows.
-SET_UPS = re.compile(r"^(gravity-32-single|desk-flat-low|desk-corner-low|capsule-sweep|hand-push|two-hand-stretch-2mps|sleeve|t-shirt|skirt|tablecloth)__[^_]+__(default|whole-room)\.h5$")
 PAGE_LIMIT_B = 20_000_000
 # Files of a report that are not published: the page is one for all studies, and what else is left out is in runs.csv.
 UNPUBLISHED = {"index.html", "runs.json", "tables.tex", "bandwidth.csv", "memory.csv", "report-pictures.json", "penetration-series.csv", "work-precision.json", "penetration.csv", "contact-runs.csv"}
@@ -97,19 +89,19 @@ def section(name, title, table, note=""):
     return {"id": name, "title": title, "tables": [{"title": title, "note": note, "rows": table}]}
 
 
-def merged(documents, motions, extra):
-    """One document of those of all studies, by group; motions are those of `motions`."""
+def merged(documents, motions, extra, head):
+    """One document of those of all studies, by group, under the line `head`; motions are those of `motions`."""
     out = dict(motions)
-    lines, sections = [], []
+    sections = []
     titles = {s["group"]: s["title"] for s in data("studies.json")}
     for group, d in documents.items():
-        lines += [line for line in d["headline"].split("\n") if line and line not in lines]
         for s in d["sections"]:
             if s["id"] == "features" and group != "penetration":
                 continue
             title = titles.get(group, group)
             sections.append({**s, "title": title if s["title"] == title else f"{title}: {s['title']}"})
-    out["headline"] = "\n\n".join(lines)
+    warnings = [line for d in documents.values() for line in d["headline"].split("\n") if line.startswith("**Software")]
+    out["headline"] = "\n\n".join([*dict.fromkeys(warnings), head])
     out["sections"] = extra + sections
     out["runs"] = sum(d["runs"] for d in documents.values())
     out["rates"] = [r for d in documents.values() for r in d["rates"]]
@@ -205,6 +197,28 @@ def readme(folder, listing):
     return "\n".join(text).rstrip("\n") + "\n"
 
 
+def repeated(bench, a, b, to):
+    """compare.csv: what a study and its repetition differ in, run by run."""
+    done = subprocess.run([bench, "--json", "compare", str(a), str(b)], capture_output=True, text=True, check=True)
+    with open(to / "compare.csv", "w", encoding="utf-8", newline="") as f:
+        out = csv.writer(f, lineterminator="\n")
+        out.writerow(["run", "verdict", "ratio", "low", "high", "outcome", "values_that_differ"])
+        out.writerows([[r["run"], r["verdict"], r["ratio"], r["low"], r["high"], r["outcome"], len(r["metrics"])] for r in json.loads(done.stdout)])
+
+
+def texts_of(to):
+    """Documents with what stands between marks such as <!-- reference limits begin --> and <!-- reference limits end --> as the tables have it."""
+    out = {}
+    for name, texts in data("texts.json").items():
+        out[ROOT / name] = before = (ROOT / name).read_text(encoding="utf-8")
+        for mark, entry in texts.items():
+            text, _ = statement(Tables(to), entry)
+            pattern = rf"(<!-- reference {mark} begin -->\n).*?(<!-- reference {mark} end -->)"
+            if text and re.search(pattern, before, re.S):
+                out[ROOT / name] = re.sub(pattern, lambda m, t=text: m[1] + t + "\n" + m[2], out[ROOT / name], flags=re.S)
+    return out
+
+
 def publish(folders, to, work):
     bench = os.environ.get("CLOTHBENCH", str(ROOT / "build/release/clothbench"))
     parts = parts_of(folders)
@@ -224,6 +238,8 @@ def publish(folders, to, work):
                 shutil.copy(file, to / group)
         for part, *_ in list_of:
             files.update({f"{part.name}/{h5.name}": sha256(h5) for h5 in sorted(part.glob("*.h5"))})
+    if "repeat" in parts and "repeat-again" in parts:
+        repeated(bench, work / "in/repeat", work / "in/repeat-again", to / "repeat")
     facts = facts_of(to, parts)
     for group, list_of in parts.items():
         facts[group] |= {"how": sorted({p[1].replace("spread", "untimed") for p in list_of}), "seconds": sum(p[2] for p in list_of), "commands": [p[3] for p in list_of]}
@@ -231,15 +247,16 @@ def publish(folders, to, work):
     listing = {"format": "clothbench-reference", "format_version": 1, "commit": sorted(commits)[0], "studies": facts, "results": files}
     shown = [h5 for group in ("table3", "penetration", "meshes") for p in parts.get(group, []) for h5 in sorted(p[0].glob("*.h5")) if SET_UPS.match(h5.name)]
     template = report(bench, shown or inputs, work / "motions")
-    studies = [["study", "question", "answer", "how"]]
+    studies = [["study", "question", "answer", "machine", "day", "how"]]
     for s in data("studies.json"):
         if s["group"] in parts:
-            studies.append([s["title"], s["question"], statement(Tables(to), s)[0] or "–", ", ".join(facts[s["group"]]["how"])])
+            f = facts[s["group"]]
+            studies.append([s["title"], s["question"], statement(Tables(to), s)[0] or "–", ", ".join(f["devices"] + f["cpus"]), ", ".join(f["days"]), ", ".join(f["how"])])
     extra = [section("claims", "Claims of the paper", claims_table(Tables(to), data("claims.json"))), section("studies", "Studies", studies)]
     devices = devices_table(to)
     if len(devices) > 1:
         extra.append(section("devices", "Devices", devices, devices_sentence(devices)))
-    write_page(to / "index.html", template, merged({g: d for g, d in documents.items() if not g.startswith("software-")}, document_of(template), extra))
+    write_page(to / "index.html", template, merged({g: d for g, d in documents.items() if not g.startswith(("software-", "repeat"))}, document_of(template), extra, f"The reference study, measured at commit {listing['commit'][:12]}."))
     seal(to, listing)
     print(f"{to}: {len(parts)} studies, {len(files)} result files, page of {(to / 'index.html').stat().st_size / 1e6:.1f} MB")
 
@@ -247,6 +264,9 @@ def publish(folders, to, work):
 def seal(to, listing):
     """Writes README.md beside the folder, and the list with the hashes of all that is published."""
     (to.parent / "README.md").write_text(readme(to, listing), encoding="utf-8")
+    if to == PUBLISHED:
+        for document, text in texts_of(to).items():
+            document.write_text(text, encoding="utf-8")
     listing["published"] = {f.relative_to(to).as_posix(): sha256(f) for f in sorted(to.rglob("*")) if f.is_file() and f.name != LIST}
     (to / LIST).write_text(json.dumps(listing, indent=1, sort_keys=True, ensure_ascii=False) + "\n", encoding="utf-8")
 
@@ -271,6 +291,8 @@ def faults_of(to, folders):
     out += [f"{to / g}: {f['dirty']} runs are of a tree with local changes" for g, f in facts.items() if f["dirty"]]
     if (to.parent / "README.md").read_text(encoding="utf-8") != readme(to, listing):
         out.append(f"{to.parent / 'README.md'}: not what the tables say; scripts/reference.sh --report writes it")
+    if to == PUBLISHED:
+        out += [f"{d}: a text between its marks is not what the tables say" for d, text in texts_of(to).items() if text != d.read_text(encoding="utf-8")]
     for folder in folders:
         for h5 in sorted(folder.glob("*/*.h5")):
             if listing["results"].get(h5.relative_to(folder).as_posix()) != sha256(h5):
@@ -304,67 +326,19 @@ def check(to, folders):
     return 4
 
 
-def slim(source, to, whole):
-    """A copy of a result file; without its motion unless `whole`."""
-    import h5py
-    if whole:
-        shutil.copy(source, to)
-        return
-    with h5py.File(source) as a, h5py.File(to, "w", libver=("earliest", "v110")) as b:
-        b.attrs.update(a.attrs)
-        for name in a:
-            if name == "trajectory":
-                a.copy("trajectory/time_s", b.create_group(name))
-            elif name not in ("VTKHDF", "frames"):
-                a.copy(name, b)
-
-
-def pack(out, to):
-    to.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as scratch:
-        scratch = pathlib.Path(scratch)
-        for file in sorted(p for p in out.rglob("*") if p.is_file() and p.suffix != ".xdmf" and ".part" not in str(p)):
-            copy = scratch / file.relative_to(out)
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            if file.suffix != ".h5":
-                shutil.copy(file, copy)
-                continue
-            study = json.loads((file.parent / "study.json").read_text(encoding="utf-8"))
-            paired = file.name.split("__")[0] in json.dumps((study.get("definition") or {}).get("pairs", []))
-            slim(file, copy, paired or bool(SET_UPS.match(file.name)) or file.parent.name.split("+")[0] not in ("contact", "penetration", "stability"))
-        volumes, size = [], 0
-        for file in sorted(p for p in scratch.rglob("*") if p.is_file()):
-            packed = io.BytesIO()
-            if not volumes or size + file.stat().st_size > 15_000_000:
-                volumes.append([])
-                size = 0
-            volumes[-1].append(file)
-            size += file.stat().st_size
-        for n, volume in enumerate(volumes):
-            with tarfile.open(to / f"part-{n}.tar.gz", "w:gz", compresslevel=6) as tar:
-                for file in volume:
-                    tar.add(file, file.relative_to(scratch))
-    print(f"{to}: {len(volumes)} files of at most 15 MB")
-    return 0
-
-
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     what = arguments.add_mutually_exclusive_group(required=True)
-    for name in ("report", "check", "pack"):
+    for name in ("report", "check"):
         what.add_argument(f"--{name}", action="store_true")
     arguments.add_argument("folder", nargs="*", type=pathlib.Path)
     arguments.add_argument("--to", type=pathlib.Path, default=PUBLISHED)
     arguments.add_argument("--work", type=pathlib.Path, help="keep the reports of the studies there")
     a = arguments.parse_args()
     folders = [f.resolve() for f in a.folder]
-    for f in folders if not a.pack else folders[:1]:
+    for f in folders:
         if not f.is_dir():
             arguments.error(f"{f}: no such folder")
-    if a.pack:
-        if len(folders) != 2:
-            arguments.error("--pack: expected OUT and TO")
-        return pack(*folders)
     if a.check:
         return check(a.to, folders)
     if not folders:

@@ -8,7 +8,11 @@
 # (default: build/release/clothbench, else the one on PATH). Libraries of NvCloth and Jolt in build/peers or CLOTHBENCH_PLUGINS take part.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
-case ${1:-} in --pack | --report | --check) exec "${PYTHON:-/usr/bin/python3}" "$here/scripts/reference.py" "$@" ;; esac
+python=${PYTHON:-/usr/bin/python3}
+case ${1:-} in
+  --report | --check) exec "$python" "$here/scripts/reference.py" "$@" ;;
+  --pack) exec "$python" "$here/scripts/reference/pack.py" "${@:2}" ;;
+esac
 fail() { echo "scripts/reference.sh: $*" >&2; exit 2; }
 out= table=h200 limit=570 jobs=$(nproc) list=0 only=" "
 while [ $# -gt 0 ]; do
@@ -28,8 +32,8 @@ done
 for number in "$limit" "$jobs"; do [[ $number =~ ^[1-9][0-9]*$ ]] || fail "$number: expected a positive whole number"; done
 bench=${CLOTHBENCH:-$here/build/release/clothbench}
 [ -x "$bench" ] || bench=$(command -v clothbench) || fail "no program; CLOTHBENCH names it"
-mkdir -p "$out"
-out=$(cd "$out" && pwd)
+[ $list = 1 ] || mkdir -p "$out"
+out=$(realpath -m "$out")
 cd "$here"
 version=$("$bench" --version)
 [ ! -f "$out/version" ] || [ "$(cat "$out/version")" = "$version" ] ||
