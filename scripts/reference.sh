@@ -67,7 +67,7 @@ chosen() { "$bench" "${command[@]}" --list-runs >"$out/.runs"; cut -f2 "$out/.ru
 
 deadline=$((SECONDS + limit))
 # run SECONDS-LEFT COMMAND…: interrupted at the limit, after which clothbench keeps what is finished.
-one_run() { local left=$(($1 - $(date +%s))); shift; [ $left -gt 0 ] || exit 124; timeout --foreground -s INT -k 30 "$left" "$@"; }
+one_run() { local left=$(($1 - $(date +%s))); shift; [ $left -gt 0 ] || return 124; timeout --foreground -s INT -k 30 "$left" "$@"; }
 export -f one_run
 part() {
   local name=$1 how=$2 status=0 start=$SECONDS until runs=()
@@ -80,10 +80,9 @@ part() {
   fi
   command+=(--out "$out/$name")
   if [ "$how" = spread ]; then
-    # A run that ends in a failure has a result; 123: of some run the exit status was not 0.
-    printf '%s\n' "${runs[@]}" | xargs -P "$jobs" -I N bash -c 'one_run "$@"; s=$?; [ $s -le 1 ] || exit 255' - "$until" "$bench" "${command[@]}" --run N \
+    # A run that ends in a failure has a result. xargs ends at once, with 124, where one exits with 255, and with 123 where one failed.
+    printf '%s\n' "${runs[@]}" | xargs -P "$jobs" -I N bash -c 'one_run "$@"; case $? in 0 | 1) ;; 124 | 130 | 137) exit 255 ;; *) exit 3 ;; esac' - "$until" "$bench" "${command[@]}" --run N \
       >>"$out/$name.log" 2>&1 || status=$?
-    [ "$(date +%s)" -lt "$until" ] || status=124
   else
     [ ${#runs[@]} -eq 0 ] || command+=(--run "$(IFS=,; echo "${runs[*]}")")
     [ ${#runs[@]} -gt 0 ] || [ ! -d "$out/$name" ] || command+=(--resume)
@@ -99,6 +98,8 @@ part() {
   esac
 }
 
+grep -q "^$table " scripts/reference/parts.conf || fail "--table $table: expected h200, software or quick"
+for name in $only; do awk -v t="$table" -v n="$name" '$1 == t && $2 == n { found = 1 } END { exit !found }' scripts/reference/parts.conf || fail "--part $name: the table $table has no such part"; done
 left=0 parts=()
 while read -r in name expected how line; do
   [ "$in" = "$table" ] && [[ $only == " " || $only == *" $name "* ]] || continue

@@ -48,7 +48,7 @@ def changes():
             f"The reference study replaces {len(OLD['folders'])} folders that were measured at several commits. The last column says what has changed "
             f"between the two for each figure that differs by more than noise ({same} of {len(rows) - 1} do not). It is no proof of a cause. Times are in seconds.", "",
             "The old folders are in the history of this repository, up to the commit before this file came.", ""]
-    return "\n".join(head) + markdown(rows) + "\n"
+    return "\n".join([*head, ""]) + markdown(rows) + "\n"
 
 
 def change_text(path, pairs):

@@ -104,8 +104,9 @@ with tempfile.TemporaryDirectory() as scratch:
     assert rows[1][3:] == ["xpbd default < paper default", "paper default < xpbd default", "no"], rows
 
 # The table of parts can be read, and every study and claim has its data.
-listed = subprocess.run([str(root / "scripts/reference.sh"), "--list", tempfile.gettempdir() + "/none", "--limit", "x"], text=True, capture_output=True)
-assert listed.returncode == 2 and "expected a positive whole number" in listed.stderr, listed.stderr
+for words, why in ((["--limit", "x"], "expected a positive whole number"), (["--table", "none"], "expected h200, software or quick"), (["--part", "none"], "has no such part"), (["--part"], "expected a value")):
+    done = subprocess.run([str(root / "scripts/reference.sh"), tempfile.gettempdir() + "/none", "--list", *words], text=True, capture_output=True, env={**os.environ, "CLOTHBENCH": "/bin/true"})
+    assert done.returncode == 2 and why in done.stderr, (words, done)
 parts = [line.split() for line in (root / "scripts/reference/parts.conf").read_text(encoding="utf-8").splitlines() if line and line[0] != "#"]
 assert all(p[0] in ("h200", "software", "quick") and p[2].isdigit() and p[3] in ("timed", "untimed", "spread") for p in parts), parts
 assert not any(p[3] == "timed" for p in parts if p[0] == "software")
