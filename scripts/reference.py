@@ -189,11 +189,16 @@ def readme(folder, listing):
             continue
         facts = listing["studies"][group]
         answer, _ = statement(tables, s)
+        answer = answer and answer.replace("](h200/", f"]({at}/")
         text += [f"## {s['title']}: [{group}]({at}/{group}/report.md)", "", f"*{s['question']}* {answer or 'The tables lack a figure of the answer.'}", ""]
         if s.get("picture") and (folder / group / s["picture"]).exists():
             text += [f"![{s['question']}]({at}/{group}/{s['picture']})", ""]
         how = "timed" if facts["how"] == ["timed"] else "untimed" if "timed" not in facts["how"] else "timed, in part untimed"
         text += [" · ".join([*(f"`clothbench {c}`" for c in facts["commands"]), ", ".join(facts["devices"] + facts["cpus"]), ", ".join(facts["days"]), how]), ""]
+    if (folder.parent / "CHANGES.md").exists():
+        text += ["## Before", "", "[CHANGES.md](CHANGES.md) has the figures of earlier studies beside these.", ""]
+    if (folder.parent / "pictures").exists():
+        text += ["## Pictures", "", "[pictures](pictures) are made by `clothbench render`, [page](page) shows the interactive page, both on a software device.", ""]
     return "\n".join(text).rstrip("\n") + "\n"
 
 
@@ -251,7 +256,8 @@ def publish(folders, to, work):
     for s in data("studies.json"):
         if s["group"] in parts:
             f = facts[s["group"]]
-            studies.append([s["title"], s["question"], statement(Tables(to), s)[0] or "–", ", ".join(f["devices"] + f["cpus"]), ", ".join(f["days"]), ", ".join(f["how"])])
+            answer = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", statement(Tables(to), s)[0] or "–")  # a page on its own has no links to files
+            studies.append([s["title"], s["question"], answer, ", ".join(f["devices"] + f["cpus"]), ", ".join(f["days"]), ", ".join(f["how"])])
     extra = [section("claims", "Claims of the paper", claims_table(Tables(to), data("claims.json"))), section("studies", "Studies", studies)]
     devices = devices_table(to)
     if len(devices) > 1:

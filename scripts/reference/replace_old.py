@@ -93,9 +93,13 @@ def main():
         change_text(path, pairs)
     cmake = ROOT / "tests/results/CMakeLists.txt"
     cmake.write_text(re.sub(r"if\(EXISTS [^\n]*contact-h200\).*?endif\(\)\n", "", cmake.read_text(encoding="utf-8"), flags=re.S), encoding="utf-8")
-    for script in ("scripts/update_readme.py",):
-        subprocess.run([sys.executable, str(ROOT / script)], check=True)
+    subprocess.run([sys.executable, str(ROOT / "scripts/update_readme.py")], check=True)
+    subprocess.run([sys.executable, str(ROOT / "scripts/peers_tables.py"), str(REFERENCE / "h200"), str(ROOT / "solvers/plugin/PEERS.md")], check=True)
     drop_unused_commands()
+    # The index names CHANGES.md, which is there now.
+    sys.path.insert(0, str(HERE.parent))
+    import reference
+    reference.seal(reference.PUBLISHED, json.loads((reference.PUBLISHED / reference.LIST).read_text(encoding="utf-8")))
     for own in (HERE / "old.json", pathlib.Path(__file__)):
         own.unlink()
     print("replaced; look at git status, run the tests of results and documents, and commit")
