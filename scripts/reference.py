@@ -54,6 +54,9 @@ def parts_of(folders):
         for done in sorted(folder.glob("*.done")):
             name, how, seconds, command = done.read_text(encoding="utf-8").rstrip("\n").split("\t")
             out.setdefault(name.split("+")[0], []).append((folder / name, how, int(seconds), command))
+    names = [p[0].name for parts in out.values() for p in parts]
+    for name in sorted({n for n in names if names.count(n) > 1}):
+        sys.exit(f"{' and '.join(str(f / name) for f in folders if (f / name).is_dir())}: the same part twice; expected each in one of the folders")
     return {group: parts for group, parts in out.items() if parts}
 
 

@@ -4,7 +4,7 @@
     scripts/reference/replace_old.py [--dry-run]
 
 Writes results/reference/CHANGES.md (old and new figures), removes the old folders with what serves them alone, and changes the documents'
-links and pictures. Removes itself and its data (old.json).
+links and pictures. Removes itself and its data (results/reference/old.json).
 """
 import json
 import pathlib
@@ -19,7 +19,7 @@ from figures import Tables, markdown  # noqa: E402
 
 ROOT = HERE.parent.parent
 REFERENCE = ROOT / "results/reference"
-OLD = json.loads((HERE / "old.json").read_text(encoding="utf-8"))
+OLD = json.loads((REFERENCE / "old.json").read_text(encoding="utf-8"))
 
 
 def expanded(entry):
@@ -100,7 +100,7 @@ def main():
     sys.path.insert(0, str(HERE.parent))
     import reference
     reference.seal(reference.PUBLISHED, json.loads((reference.PUBLISHED / reference.LIST).read_text(encoding="utf-8")))
-    for own in (HERE / "old.json", pathlib.Path(__file__)):
+    for own in (REFERENCE / "old.json", pathlib.Path(__file__)):
         own.unlink()
     print("replaced; look at git status, run the tests of results and documents, and commit")
 
