@@ -95,17 +95,20 @@ def section(name, title, table, note=""):
 def merged(documents, motions, extra, head):
     """One document of those of all studies, by group, under the line `head`; motions are those of `motions`."""
     out = dict(motions)
-    sections = []
+    sections, shared = [], {}
     titles = {s["group"]: s["title"] for s in data("studies.json")}
     for group, d in documents.items():
         for s in d["sections"]:
             if s["id"] == "features" and group != "penetration":
                 continue
             title = titles.get(group, group)
+            if s["id"] in ("environment", "failed", "expect"):  # one section of all studies
+                one = shared.setdefault(s["id"], {**s, "tables": []})
+                one["tables"] += [{**t, "title": f"{title}: {t['title']}"} for t in s["tables"]]
+                continue
             sections.append({**s, "title": title if s["title"] == title else f"{title}: {s['title']}"})
-    warnings = [line for d in documents.values() for line in d["headline"].split("\n") if line.startswith("**Software")]
-    out["headline"] = "\n\n".join([*dict.fromkeys(warnings), head])
-    out["sections"] = extra + sections
+    out["headline"] = head
+    out["sections"] = extra + sections + list(shared.values())
     out["runs"] = sum(d["runs"] for d in documents.values())
     out["rates"] = [r for d in documents.values() for r in d["rates"]]
     out["commands"] = ["scripts/reference.sh"]
@@ -137,6 +140,14 @@ def facts_of(folder, groups):
                       "devices": sorted({r["gpu"] for r in runs} - {"", "CPU", "–"}), "cpus": sorted({r["cpu"] for r in runs} - {""}),
                       "days": sorted({r["created"][:10] for r in runs})}
     return out
+
+
+def head_of(listing):
+    """The page's first lines: the commit, and a warning where all that ran on a Vulkan device ran on a software one."""
+    devices = {d for f in listing["studies"].values() for d in f["devices"]}
+    software = all(re.search("llvmpipe|lavapipe|SwiftShader", d) for d in devices)
+    return ("**Software Vulkan device: it shows correctness; its times say nothing of a GPU.**\n\n" if devices and software else "") + \
+        f"The reference study, measured at commit {listing['commit'][:12]}. Devices: {', '.join(sorted(devices)) or 'none'}; the table of studies says where each ran."
 
 
 ORDERED_BY = {"table3": "free_fall_error", "hang": "stretch_mean_last_second", "penetration": "expect"}
@@ -265,7 +276,7 @@ def publish(folders, to, work):
     devices = devices_table(to)
     if len(devices) > 1:
         extra.append(section("devices", "Devices", devices, devices_sentence(devices)))
-    write_page(to / "index.html", template, merged({g: d for g, d in documents.items() if not g.startswith(("software-", "repeat"))}, document_of(template), extra, f"The reference study, measured at commit {listing['commit'][:12]}."))
+    write_page(to / "index.html", template, merged({g: d for g, d in documents.items() if not g.startswith(("software-", "repeat"))}, document_of(template), extra, head_of(listing)))
     seal(to, listing)
     print(f"{to}: {len(parts)} studies, {len(files)} result files, page of {(to / 'index.html').stat().st_size / 1e6:.1f} MB")
 

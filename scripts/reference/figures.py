@@ -1,6 +1,6 @@
 """Figures that texts and verdicts take from the stored tables of a reference study.
 
-A figure is written as one line, `TAKE TABLE CONDITION… [: COLUMN]`:
+A figure is written as one line, `TAKE TABLE CONDITION… [: COLUMN [* FACTOR]]`:
 
     one table3/runs.csv scene=gravity-128-single solver=xpbd setting=default : fps_median
 
@@ -42,7 +42,7 @@ class Tables:
         """The number that `line` names, or None."""
         head, _, column = line.partition(" : ")
         take, table, *conditions = head.split()
-        column = column.strip()
+        column, _, factor = (part.strip() for part in column.partition("*"))
         tests = []
         for c in conditions:
             key, sign, value = re.fullmatch(r"([\w.]+)([=~])(.*)", c).groups()
@@ -56,7 +56,7 @@ class Tables:
             return None
         if take == "count":
             return len(rows)
-        values = [float(r[column]) for r in rows if r[column] not in ("", "–")]
+        values = [float(factor or 1) * float(r[column]) for r in rows if r[column] not in ("", "–")]
         if not values or (take == "one" and (len(rows) != 1 or len(values) != 1)):
             return None
         return {"one": lambda v: v[0], "min": min, "max": max, "median": statistics.median}[take](values)
