@@ -176,9 +176,17 @@ def devices_table(folder):
     return rows
 
 
-def devices_sentence(rows):
+def devices_sentence(folder, rows):
+    """Which conclusions hold on both devices: orders and verdicts of scenes, and the claims that rest on untimed scenes alone."""
     same = sum(r[-1] == "yes" for r in rows[1:])
-    return f"In {same} of {len(rows) - 1} scenes that ran on both devices the order of the solvers or their verdicts are the same." if len(rows) > 1 else ""
+    text = f"In {same} of {len(rows) - 1} scenes that ran on both devices the order of the solvers or their verdicts are the same."
+    untimed = [c for c in data("claims.json") if "figures" in c and all("penetration/runs.csv" in line for line in c["figures"].values())]
+    on_both = [(c["id"], *(statement(Tables(folder, prefix), c)[1] for prefix in ("", "software-"))) for c in untimed]
+    known = [(name, a == b) for name, a, b in on_both if a is not None and b is not None]
+    for holds, words in ((True, "The same verdict on both devices"), (False, "Another verdict")):
+        if names := [name for name, agrees in known if agrees == holds]:
+            text += f" {words}: {', '.join(names)}."
+    return text
 
 
 def readme(folder, listing):
@@ -196,7 +204,7 @@ def readme(folder, listing):
             markdown(claims_table(tables, data("claims.json"))), ""]
     devices = devices_table(folder)
     if len(devices) > 1:
-        text += ["## Devices", "", devices_sentence(devices), "", markdown(devices), ""]
+        text += ["## Devices", "", devices_sentence(folder, devices), "", markdown(devices), ""]
     for s in data("studies.json"):
         group = s["group"]
         if group not in listing["studies"]:
@@ -275,7 +283,7 @@ def publish(folders, to, work):
     extra = [section("claims", "Claims of the paper", claims_table(Tables(to), data("claims.json"))), section("studies", "Studies", studies)]
     devices = devices_table(to)
     if len(devices) > 1:
-        extra.append(section("devices", "Devices", devices, devices_sentence(devices)))
+        extra.append(section("devices", "Devices", devices, devices_sentence(to, devices)))
     write_page(to / "index.html", template, merged({g: d for g, d in documents.items() if not g.startswith(("software-", "repeat"))}, document_of(template), extra, head_of(listing)))
     seal(to, listing)
     print(f"{to}: {len(parts)} studies, {len(files)} result files, page of {(to / 'index.html').stat().st_size / 1e6:.1f} MB")

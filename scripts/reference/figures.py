@@ -18,16 +18,17 @@ SET_UPS = re.compile(r"^(gravity-32-single|desk-flat-low|desk-corner-low|capsule
 
 
 class Tables:
-    """The tables below a folder, read once each."""
+    """The tables below a folder, read once each; with a prefix, those of the studies whose names begin with it."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, prefix=""):
         self.folder = folder
+        self.prefix = prefix
         self.read = {}
 
     def rows(self, name):
         """Rows of a table as dictionaries of text; none if the file is missing."""
         if name not in self.read:
-            path = self.folder / name
+            path = self.folder / (self.prefix + name)
             if not path.exists():
                 self.read[name] = []
             elif path.suffix == ".json":

@@ -4,7 +4,7 @@
     scripts/reference.sh --pack OUT TO
 
 Writes TO/part-00, part-01, … of at most 15 MB each; `cat part-* | tar xz` unpacks them. Motions that no table and no part of the page shows are left out.
-Needs h5py.
+Needs h5py; PYTHON names the Python that has it.
 """
 import json
 import pathlib
@@ -45,7 +45,8 @@ def pack(out, to):
             if file.suffix != ".h5":
                 shutil.copy(file, copy)
                 continue
-            study = json.loads((file.parent / "study.json").read_text(encoding="utf-8"))
+            manifest = file.parent / "study.json"
+            study = json.loads(manifest.read_text(encoding="utf-8")) if manifest.exists() else {}
             paired = file.name.split("__")[0] in json.dumps((study.get("definition") or {}).get("pairs", []))
             slim(file, copy, paired or bool(SET_UPS.match(file.name)) or file.parent.name in COMPARED)
         whole = to / "all.tar.gz"
