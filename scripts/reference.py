@@ -204,7 +204,9 @@ def readme(folder, listing):
             markdown(claims_table(tables, data("claims.json"))), ""]
     devices = devices_table(folder)
     if len(devices) > 1:
-        text += ["## Devices", "", devices_sentence(folder, devices), "", markdown(devices), ""]
+        text += ["## Devices", "", devices_sentence(folder, devices), ""]
+        if other := [r for r in devices[1:] if r[-1] == "no"]:
+            text += [markdown([devices[0], *other]), ""]
     for s in data("studies.json"):
         group = s["group"]
         if group not in listing["studies"]:
