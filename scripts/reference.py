@@ -99,7 +99,7 @@ def merged(documents, motions, extra, head):
     titles = {s["group"]: s["title"] for s in data("studies.json")}
     for group, d in documents.items():
         for s in d["sections"]:
-            if s["id"] == "features" and group != "penetration":
+            if (s["id"] == "features" and group != "penetration") or (s["id"] == "material" and group != "moduli"):
                 continue
             title = titles.get(group, group)
             if s["id"] in ("environment", "failed", "expect"):  # one section of all studies
@@ -135,7 +135,7 @@ def facts_of(folder, groups):
     """Commits, trees with local changes, devices and days of the runs, by group."""
     out = {}
     for group in groups:
-        runs = [r for r in runs_of(folder, group) if r["git_commit"]]
+        runs = [r for r in runs_of(folder, group) if r["git_commit"] and (r["scene"] != "effective-moduli" or group == "moduli")]
         out[group] = {"runs": len(runs), "commits": sorted({r["git_commit"] for r in runs}), "dirty": sum(r["git_dirty"] != "false" for r in runs),
                       "devices": sorted({r["gpu"] for r in runs} - {"", "CPU", "–"}), "cpus": sorted({r["cpu"] for r in runs} - {""}),
                       "days": sorted({r["created"][:10] for r in runs})}
@@ -260,6 +260,8 @@ def publish(folders, to, work):
     documents, files = {}, {}
     for group, list_of in parts.items():
         inputs = [without_unplanned(p[0], work / "in" / p[0].name) for p in list_of]
+        if group == "work-precision":  # whether stiffness is a parameter of a solver decides where it is ranked
+            inputs += [p[0] for p in parts.get("moduli", [])]
         documents[group] = document_of(report(bench, inputs, work / group))
         (to / group).mkdir()
         for file in sorted((work / group).iterdir()):
