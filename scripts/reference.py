@@ -218,7 +218,7 @@ def readme(folder, listing):
         if s.get("picture") and (folder / group / s["picture"]).exists():
             text += [f"![{s['question']}]({at}/{group}/{s['picture']})", ""]
         how = "timed" if facts["how"] == ["timed"] else "untimed" if "timed" not in facts["how"] else "timed, in part untimed"
-        text += [" · ".join([*(f"`clothbench {c}`" for c in facts["commands"]), ", ".join(facts["devices"] + facts["cpus"]), ", ".join(facts["days"]), how]), ""]
+        text += [" · ".join([*(re.sub(r" RUNS=(.*)`$", r"` (runs `\1`)", f"`clothbench {c}`") for c in facts["commands"]), ", ".join(facts["devices"] + facts["cpus"]), ", ".join(facts["days"]), how]), ""]
     if (folder.parent / "CHANGES.md").exists():
         text += ["## Before", "", "[CHANGES.md](CHANGES.md) has the figures of earlier studies beside these.", ""]
     if (folder.parent / "pictures").exists():

@@ -78,6 +78,7 @@ part() {
     mapfile -t runs < <(chosen)
     [ ${#runs[@]} -gt 0 ] || fail "part $name: no run matches $pattern"
   fi
+  local shown="${command[*]}${pattern:+ RUNS=$pattern}"
   command+=(--out "$out/$name")
   if [ "$how" = spread ]; then
     # A run that ends in a failure has a result. xargs ends at once, with 124, where one exits with 255, and with 123 where one failed.
@@ -92,7 +93,7 @@ part() {
   echo "$seconds" >"$out/$name.seconds"
   # Exit status 1: rows crashed, diverged or timed out, which are results.
   case $status in
-    0 | 1) printf '%s\t%s\t%s\t%s\n' "$name" "$how" "$seconds" "$line" >"$out/$name.done"; rm "$out/$name.seconds"; echo "$name: $seconds s" ;;
+    0 | 1) printf '%s\t%s\t%s\t%s\n' "$name" "$how" "$seconds" "$shown" >"$out/$name.done"; rm "$out/$name.seconds"; echo "$name: $seconds s" ;;
     124 | 130 | 137) echo "$name: stopped at the limit after $seconds s"; return 75 ;;
     *) tail -5 "$out/$name.log" >&2; echo "$name: exit status $status; all it wrote is in $out/$name.log" >&2; return "$status" ;;
   esac
