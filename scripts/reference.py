@@ -290,6 +290,8 @@ def publish(folders, to, work):
         extra.append(section("devices", "Devices", devices, devices_sentence(to, devices)))
     write_page(to / "index.html", template, merged({g: d for g, d in documents.items() if not g.startswith(("software-", "repeat"))}, document_of(template), extra, head_of(listing)))
     seal(to, listing)
+    for fault in faults_of(to, []):
+        print(f"warning: {fault}; --check will refuse it", file=sys.stderr)
     print(f"{to}: {len(parts)} studies, {len(files)} result files, page of {(to / 'index.html').stat().st_size / 1e6:.1f} MB")
 
 
