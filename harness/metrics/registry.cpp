@@ -80,10 +80,22 @@ int metric_version(const std::string& name) {
   return 0;
 }
 
+namespace {
+
+const Scalar* scalar_behind(const std::string& summary_name) {
+  return find_scalar(summary_name.starts_with(kExpect) ? summary_name.substr(kExpect.size()) : summary_name);
+}
+
+}  // namespace
+
 std::vector<std::string> metrics_behind(const std::string& summary_name) {
-  if (summary_name.starts_with(kExpect)) return metrics_behind(summary_name.substr(kExpect.size()));
-  const Scalar* s = find_scalar(summary_name);
+  const Scalar* s = scalar_behind(summary_name);
   return s == nullptr ? std::vector<std::string>() : s->from.series;
+}
+
+bool is_of_machine(const std::string& summary_name) {
+  const Scalar* s = scalar_behind(summary_name);
+  return s != nullptr && s->of_machine;
 }
 
 }  // namespace clothbench

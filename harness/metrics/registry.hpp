@@ -74,6 +74,7 @@ struct Scalar {
   int column = 0;                             ///< position among the columns of penetration.csv; 0: none
   bool (*present)(const RunView&) = nullptr;  ///< null: in every summary, NaN if it has no value
   std::string units = "", doc = "";           ///< a plain phrase; both set by the registry
+  bool of_machine = false;  ///< a time or what depends on times: the machine's, not the solver's alone
 };
 
 /// The metrics that one file of this folder defines; the file is listed in CMakeLists.txt.
@@ -91,6 +92,9 @@ const std::vector<Scalar>& scalars();
 
 /// Null if there is none of that name.
 const Scalar* find_scalar(const std::string& name);
+
+/// Whether a value of a result's summary, or the outcome of a bound on it, depends on the machine and its load.
+bool is_of_machine(const std::string& summary_name);
 
 /// Names of the columns of penetration-series.csv and of penetration.csv, in their order.
 std::vector<std::string> series_columns();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "metrics/reduction.hpp"
 
@@ -148,6 +149,28 @@ Scalar bandwidth_scalar(const char* name, const char* doc, Values TimedTrial::*b
   });
 }
 
+/// Adds what the code that runs a study and reads the device stores, and says which values are the machine's.
+void add_readings(std::vector<Scalar>& scalars) {
+  static constexpr Gate kCount{0, SlackUnit::One, 0, false, "a count, the same everywhere"};
+  // What the solver's own buffers and kernels give on any machine.
+  static const std::set<std::string> kOfSolver = {"read_B_per_frame", "write_B_per_frame", "device_memory_B",
+                                                  "dispatches"};
+  const std::vector<Scalar> readings = {
+      {"untimed_s", own({}, "wall time of loading and of the untimed pass", nullptr, "s")},
+      {"cpu_clock_*", own({}, "greatest clock of a processor's core, before and after", nullptr, "Hz")},
+      {"gpu_clock_*", own({}, "clock of the GPU, before and after", nullptr, "Hz")},
+      {"temperature_*", own({}, "hottest sensor, before and after", nullptr, "degC")},
+      {"sampled_*", own({}, "what another program read from the device during the trials", nullptr, "1")},
+  };
+  scalars.insert(scalars.end(), readings.begin(), readings.end());
+  for (Scalar& s : scalars) {
+    s.of_machine = !kOfSolver.contains(s.name);
+    if (s.name == "dispatches") s.gate = &kCount;
+    if (s.name.find("rendered") != std::string::npos) s.present = rendered;
+    if (s.name == "frame_cpu_median_s") s.present = on_host;
+  }
+}
+
 }  // namespace
 
 std::map<std::string, double> stage_scalars(const RunView& r) {
@@ -165,7 +188,6 @@ std::map<std::string, double> stage_scalars(const RunView& r) {
 MetricGroup timing_metrics() {
   using T = TimedTrial;
   using B = Bandwidth;
-  static constexpr Gate kCount{0, SlackUnit::One, 0, false, "a count, the same everywhere"};
   MetricGroup g;
   g.scalars = {
       reported("jobs", "1", "the most clothbench jobs that ran side by side while the run was loaded and timed",
@@ -213,11 +235,7 @@ MetricGroup timing_metrics() {
        own({}, "time of a stage on the GPU, median; from the frames run again for it", nullptr, "s")},
       reported("load_s", "s", "wall time of loading", [](const RunView& r) { return r.run->header.load_s; }),
   };
-  for (Scalar& s : g.scalars) {
-    if (s.name == "dispatches") s.gate = &kCount;
-    if (s.name.find("rendered") != std::string::npos) s.present = rendered;
-    if (s.name == "frame_cpu_median_s") s.present = on_host;
-  }
+  add_readings(g.scalars);
   return g;
 }
 

@@ -46,7 +46,7 @@ std::string beaten_by(const WorkDiagram& d, const std::string& solver) {
     out = std::isinf(factor)
               ? fmt::format("{}: {:.2g} at {:.3g} ms, where this solver has no result", p.solver, theirs, budget)
               : fmt::format("{}: {:.3g} times at {:.3g} ms", p.solver, factor, budget);
-    if (d.flagged.contains(p.solver)) out += " (not ranked)";
+    if (!p.not_ranked.empty()) out += " (not ranked)";
   }
   return out;
 }

@@ -59,6 +59,10 @@ void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
         if (RunHeader& h = runs[k].header;
             pair.at("scene") == h.scene && pair.at("solver") == h.solver && pair.at("setting") == h.setting)
           h.environment["pairs"].push_back(pair);
+  if (manifest.definition.is_object() && manifest.definition.contains("set_ups"))
+    for (std::size_t k = first; k < runs.size(); ++k)
+      if (const auto& all = manifest.definition["set_ups"]; all.contains(runs[k].header.scene))
+        runs[k].header.environment["set_up"] = all[runs[k].header.scene];
   // A missing run gets the scenario of its scene from a run of another solver, so that tables can place it.
   for (std::size_t k = first; k < runs.size(); ++k) {
     if (runs[k].outcome.status != "missing") continue;

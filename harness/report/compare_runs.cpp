@@ -38,14 +38,6 @@ std::vector<double> u_distribution(std::size_t m, std::size_t n) {
   return count[m][n];
 }
 
-/// Times, clocks and values derived from them depend on the machine; the rest depends on the solver.
-bool of_the_machine(const std::string& name) {
-  for (const char* part : {"fps", "wall", "device_median", "pipelined", "bandwidth", "clock", "temperature", "sampled",
-                           "load_s", "untimed", "trial", "jobs"})
-    if (name.find(part) != std::string::npos) return true;
-  return false;
-}
-
 bool differ(double a, double b) {
   if (std::isnan(a) || std::isnan(b)) return std::isnan(a) != std::isnan(b);
   return !(std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)));
@@ -75,7 +67,7 @@ void compare_run(ComparedRun& c) {
   std::set<std::string> names;
   for (const RunRecord* r : {c.a, c.b})
     for (const auto& [name, unused] : r->summary)
-      if (!of_the_machine(name) && !hangs_on(name, c.versions)) names.insert(name);
+      if (!is_of_machine(name) && !hangs_on(name, c.versions)) names.insert(name);
   for (const std::string& name : names) {
     const double a = summary_value(*c.a, name), b = summary_value(*c.b, name);
     if (differ(a, b)) c.metrics.push_back({name, a, b});

@@ -23,6 +23,18 @@ constexpr Modulus kModuli[] = {
     {"G", "G"},     {"E_strip", "strip"}, {"strip_border", "border"}, {"E_stiffer", "E ×2", "E_0"},
     {"B_0", "B 0"}, {"B_45", "B 45"},     {"B_90", "B 90"},           {"B_stiffer", "B ×2", "B_0"}};
 
+/// A stiffness as the scene states it: its name in plans and JSON, its modulus, the modulus that a sheet of twice the
+/// stiffness is compared with, and that sheet's.
+struct Stiffness {
+  const char *name, *modulus, *like, *stiffer;
+  std::string MaterialVerdict::*verdict;
+  bool StiffnessNeed::*need;
+};
+constexpr Stiffness kStiffnesses[] = {
+    {"strip_Y", "E_strip", "E_0", "E_stiffer", &MaterialVerdict::strip, &StiffnessNeed::strip},
+    {"sheet_Y", "E_0", "E_0", "E_stiffer", &MaterialVerdict::sheet, &StiffnessNeed::sheet},
+    {"B", "B_0", "B_0", "B_stiffer", &MaterialVerdict::bending, &StiffnessNeed::bending}};
+
 bool is_full(const RunRecord& c) {
   const json s = scenario_of(c);
   return s.is_object() && s.value("effective_moduli", "") == "full";
@@ -30,26 +42,45 @@ bool is_full(const RunRecord& c) {
 
 double modulus(const RunRecord& c, const char* name) { return summary_value(c, std::string("material_") + name); }
 
-/// `stiffer`: name of the modulus of a sheet with twice the stiffness, relative to that stiffness.
-std::string verdict(const SolverMaterial& m, const char* name, const char* like, const char* stiffer) {
-  const RunRecord* standard = nullptr;
-  for (const RunRecord* c : m.moduli)
-    if (standard == nullptr && is_full(*c)) standard = c;
-  if (standard == nullptr || standard->outcome.status == "unsupported") return kNotMeasured;
-  const double value = modulus(*standard, name);
+/// Of a solver's moduli, the full measurement at its default setting; null without one.
+const RunRecord* standard_of(const SolverMaterial& m) {
+  const auto at = std::find_if(m.moduli.begin(), m.moduli.end(), [](const RunRecord* c) { return is_full(*c); });
+  return at == m.moduli.end() || (*at)->outcome.status == "unsupported" ? nullptr : *at;
+}
+
+/// Why the modulus is not proportional to the stiffness at the default setting.
+std::string verdict_at_default(const SolverMaterial& m, const Stiffness& s) {
+  const RunRecord* standard = standard_of(m);
+  if (standard == nullptr) return kNotMeasured;
+  const double value = modulus(*standard, s.modulus);
   if (!std::isfinite(value)) return "no value at rest";
   if (!(value > kHeldModulus)) return fmt::format("none: {:.2g} of the requested stiffness", value);
-  const double answer = 2 * modulus(*standard, stiffer) / modulus(*standard, like);
+  const double answer = 2 * modulus(*standard, s.stiffer) / modulus(*standard, s.like);
   if (!(std::abs(answer / 2 - 1) <= kHeldModulus))
     return fmt::format("not proportional: twice the stiffness gives {:.3g} times the modulus", answer);
+  return "";
+}
+
+std::string verdict(const SolverMaterial& m, const Stiffness& s) {
+  if (std::string why = verdict_at_default(m, s); !why.empty()) return why;
+  const RunRecord& standard = *standard_of(m);
+  const double value = modulus(standard, s.modulus);
   for (const RunRecord* c : m.moduli) {
-    const double here = modulus(*c, name);
+    const double here = modulus(*c, s.modulus);
     if (!(std::abs(here / value - 1) <= kHeldModulus))
       return std::isfinite(here) ? fmt::format("depends on settings: {:.3g} at {}, {:.3g} at {}", value,
-                                               standard->header.setting, here, c->header.setting)
+                                               standard.header.setting, here, c->header.setting)
                                  : fmt::format("no value at {}", c->header.setting);
   }
   return "";
+}
+
+/// The verdict for one setting: where the modulus depends on settings, that setting's own measurement decides.
+std::string verdict_at(const SolverMaterial& m, const Stiffness& s, const std::string& setting) {
+  if (std::string why = verdict_at_default(m, s); !why.empty()) return why == kNotMeasured ? "" : why;
+  for (const RunRecord* c : m.moduli)
+    if (c->header.setting == setting && std::abs(modulus(*c, s.modulus) - 1) <= kHeldModulus) return "";
+  return m.verdict.*s.verdict;
 }
 
 std::string ratio(double v) {
@@ -72,32 +103,39 @@ std::vector<SolverMaterial> solver_materials(const std::vector<RunRecord>& runs)
   }
   for (SolverMaterial& m : out) {
     std::stable_partition(m.moduli.begin(), m.moduli.end(), [](const RunRecord* c) { return is_full(*c); });
-    m.verdict = {verdict(m, "E_strip", "E_0", "E_stiffer"), verdict(m, "E_0", "E_0", "E_stiffer"),
-                 verdict(m, "B_0", "B_0", "B_stiffer")};
+    for (const Stiffness& s : kStiffnesses) m.verdict.*s.verdict = verdict(m, s);
   }
   return out;
 }
 
 StiffnessNeed stiffness_need(const RunRecord& c) {
-  constexpr double kDepends = 0.01;
+  constexpr double kLeast = 0.01;
   StiffnessNeed need;
   const json scenario = scenario_of(c);
   if (!scenario.is_object()) return need;
   const bool shear = scenario.value(json::json_pointer("/material/shear"), true);
-  (shear ? need.sheet : need.strip) = summary_value(c, "truth_dependence_Y") >= kDepends;
-  need.bending = summary_value(c, "truth_dependence_B") >= kDepends;
+  (shear ? need.sheet : need.strip) = summary_value(c, "truth_dependence_Y") >= kLeast;
+  need.bending = summary_value(c, "truth_dependence_B") >= kLeast;
   return need;
 }
 
 std::string stiffness_flag(const std::vector<SolverMaterial>& all, const std::string& solver,
-                           const StiffnessNeed& need) {
-  for (const SolverMaterial& m : all) {
-    if (m.solver != solver) continue;
-    for (const auto& [needed, why] : {std::pair{need.strip, &m.verdict.strip}, std::pair{need.sheet, &m.verdict.sheet},
-                                      std::pair{need.bending, &m.verdict.bending}})
-      if (needed && !why->empty() && *why != kNotMeasured) return *why;
-  }
+                           const std::string& setting, const StiffnessNeed& need) {
+  for (const SolverMaterial& m : all)
+    for (const Stiffness& s : kStiffnesses)
+      if (m.solver == solver && need.*s.need)
+        if (std::string why = verdict_at(m, s, setting); !why.empty()) return why;
   return "";
+}
+
+std::string stiffness_flag(const std::vector<SolverMaterial>& all, const RunRecord& c) {
+  const StiffnessNeed need = stiffness_need(c);
+  const json& plan = c.header.plan;
+  for (const json& l : plan.is_object() ? plan.value("left_out", json::array()) : json::array())
+    for (const Stiffness& s : kStiffnesses)
+      if (need.*s.need && l.value("no_parameter", "") == s.name)
+        return "the run has no " + l.value("what", "") + ": " + l.value("why", "");
+  return stiffness_flag(all, c.header.solver, c.header.setting, need);
 }
 
 Table material_table(const std::vector<SolverMaterial>& all) {
@@ -130,7 +168,8 @@ Table material_verdicts(const std::vector<SolverMaterial>& all) {
                                  {"", "B", [](auto& m) { return yes_or(m.verdict.bending); }}}
       .table({"Is stiffness a parameter?",
               "Yes: the effective modulus is within 5 % of the requested one, also for twice the stiffness and at "
-              "other settings. NO: the solver is not ranked on scenes that depend on this stiffness.",
+              "other settings. NO: on scenes that depend on this stiffness the solver is ranked only at settings with "
+              "a measured modulus within 5 % of the requested one, and not at all unless the modulus is proportional.",
               {}},
              all);
 }
@@ -149,11 +188,8 @@ json material_json(const std::vector<SolverMaterial>& all) {
         if (name.starts_with("material_")) measured[name.substr(9)] = std::isfinite(value) ? json(value) : json();
       moduli.push_back(std::move(measured));
     }
-    out.push_back({{"solver", m.solver},
-                   {"strip_Y", m.verdict.strip},
-                   {"sheet_Y", m.verdict.sheet},
-                   {"B", m.verdict.bending},
-                   {"moduli", std::move(moduli)}});
+    out.push_back({{"solver", m.solver}, {"moduli", std::move(moduli)}});
+    for (const Stiffness& s : kStiffnesses) out.back()[s.name] = m.verdict.*s.verdict;
   }
   return out;
 }

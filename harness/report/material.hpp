@@ -15,9 +15,9 @@ inline constexpr double kHeldModulus = 0.05;
 /// True for a run that measured effective moduli (harness/runner/effective_moduli.hpp).
 bool is_moduli_run(const RunRecord&);
 
-/// Whether each stiffness of a scene is a parameter of the solver: "" if so, otherwise why not. It is one if doubling
-/// it doubles the measured modulus, and if every measured setting gives the modulus of the default setting, both within
-/// kHeldModulus. "not measured" if the default setting has no measurement.
+/// Whether each stiffness of a scene is a parameter of the solver at all settings: "" if so, otherwise why not. It is
+/// one if doubling it doubles the measured modulus, and if every measured setting gives the modulus of the default
+/// setting, both within kHeldModulus. "not measured" if the default setting has no measurement.
 struct MaterialVerdict {
   std::string strip;    ///< Y of scenes with `shear: false`
   std::string sheet;    ///< Y of the others
@@ -44,9 +44,14 @@ struct StiffnessNeed {
 /// for which a change of 1 % changes the ranked quantity by 1e-4 or more. None if nothing is stored.
 StiffnessNeed stiffness_need(const RunRecord&);
 
-/// Why this solver cannot be ranked on a scene that depends on these stiffnesses: "" if it can be, or if no measurement
-/// shows otherwise.
-std::string stiffness_flag(const std::vector<SolverMaterial>&, const std::string& solver, const StiffnessNeed&);
+/// Why a solver at this setting cannot be ranked on a scene that depends on these stiffnesses: "" if it can be, or if
+/// no measurement shows otherwise. Where the modulus depends on settings, those whose own measured modulus is within
+/// kHeldModulus of the requested one can be.
+std::string stiffness_flag(const std::vector<SolverMaterial>&, const std::string& solver, const std::string& setting,
+                           const StiffnessNeed&);
+
+/// The same for a run and its scene. What its solver's plan says of this scene (LeftOut::no_parameter) comes first.
+std::string stiffness_flag(const std::vector<SolverMaterial>&, const RunRecord&);
 
 /// Rows: solvers and settings; columns: moduli, relative to those that the scenes state.
 Table material_table(const std::vector<SolverMaterial>&);

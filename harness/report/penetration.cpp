@@ -22,16 +22,13 @@ bool filled(const json& j, const char* key) {
   return j.is_object() && j.contains(key) && j[key].is_array() && !j[key].empty();
 }
 
-bool is_pulled_strip(const json& scenario) {
-  return scenario.is_object() && scenario.value(json::json_pointer("/truth/case"), json()) == "two-hand-pull";
-}
-
-/// Kind of set-up, from the types of colliders; tests the rarest types first.
-std::string kind_of(const json& scenario) {
-  if (is_pulled_strip(scenario)) return "wave";
+/// Kind of set-up of runs whose study states none, and of older files: from what touches, the rarest types first.
+std::string formerly(const json& scenario) {
+  if (!scenario.is_object()) return "";
+  if (scenario.value(json::json_pointer("/truth/case"), json()) == "two-hand-pull") return "wave";
   if (filled(scenario, "grips")) return "grip";
   std::set<std::string> types;
-  for (const json& c : scenario["colliders"])
+  for (const json& c : scenario.value("colliders", json::array()))
     if (c.is_object()) types.insert(c.value("type", ""));
   if (types.contains("hand_mesh")) return "hand";
   if (types.contains("hand_capsules")) return "capsules";
@@ -147,7 +144,10 @@ bool has_contact(const RunRecord& c) {
   return filled(s, "colliders") || filled(s, "grips");
 }
 
-bool pulls_strip(const RunRecord& c) { return is_pulled_strip(scenario_of(c)); }
+std::string set_up_of(const RunRecord& c) {
+  const json& e = c.header.environment;
+  return e.is_object() && e.contains("set_up") ? e["set_up"].get<std::string>() : formerly(scenario_of(c));
+}
 
 std::vector<ContactSetUp> set_ups(const std::vector<RunRecord>& runs) {
   std::vector<ContactSetUp> all;
@@ -155,8 +155,8 @@ std::vector<ContactSetUp> set_ups(const std::vector<RunRecord>& runs) {
   for (const RunRecord& c : runs) {
     if (!has_contact(c)) continue;
     const json scenario = scenario_of(c);
-    ContactSetUp& up = *std::find_if(all.begin(), all.end(),
-                                     [kind = kind_of(scenario)](const ContactSetUp& u) { return u.kind == kind; });
+    const std::string kind = set_up_of(c);
+    ContactSetUp& up = find_or_add(all, [&](const ContactSetUp& u) { return u.kind == kind; }, {kind, kind, {}});
     if (up.title.back() != ')') up.title += paper_place(scenario);
     auto scene =
         std::find_if(up.scenes.begin(), up.scenes.end(), [&](const auto& s) { return s.name == c.header.scene; });

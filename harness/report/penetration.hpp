@@ -14,8 +14,8 @@ namespace clothbench {
 /// those of frames per second.
 bool has_contact(const RunRecord&);
 
-/// True if the run's scene is the strip pulled at both ends (reference case two-hand-pull).
-bool pulls_strip(const RunRecord&);
+/// Kind of the run's set-up (ContactSetUp), as its study states it ("set_up"). If none does: by what touches.
+std::string set_up_of(const RunRecord&);
 
 /// A run in these tables. Points into the vector it was made from.
 struct ContactRow {

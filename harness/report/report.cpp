@@ -71,7 +71,7 @@ Parts parts_of(const std::vector<RunRecord>& runs, const std::vector<RunPair>& c
     // Of a scene that has not been run only the name is known; the table of runs without a result lists it.
     if (c.outcome.status == "missing" && c.header.scenario_json.empty()) continue;
     // Where no solver was timed on a pulled strip, its errors are tabulated by speed instead of by time.
-    const bool by_time = has_truth(c) && !(pulls_strip(c) && !timed.contains(c.header.scenario_json));
+    const bool by_time = has_truth(c) && !(set_up_of(c) == "wave" && !timed.contains(c.header.scenario_json));
     (is_stability(c)       ? out.stability
      : is_drawn_contact(c) ? out.drawn
      : by_time             ? out.truth

@@ -81,9 +81,10 @@ std::string error_text(const WorkDiagram& d, const WorkPoint* p) {
   return fmt::format("{}{:.2g} ({})", below ? "≤ " : "", below ? d.rank_floor() : p->error, short_setting(*p));
 }
 
-/// Settings of a solver on a scene: those without a result, those whose time was used up, and all.
+/// Settings of a solver on a scene: those without a result, those whose time was used up, all, all that take part, and
+/// the ranked of these.
 struct Counted {
-  std::size_t failed = 0, all = 0, able = 0, over_budget = 0;
+  std::size_t failed = 0, all = 0, able = 0, over_budget = 0, ranked = 0;
   explicit Counted(const SolverOfScene& s) {
     for (const WorkPoint& p : s.diagram->points) {
       if (p.solver != s.solver) continue;
@@ -93,7 +94,8 @@ struct Counted {
         ++over_budget;
       else if (!p.counts() && !p.run->withheld.contains("frame_wall_median_s"))
         ++failed;
-      if (status != "unsupported" && status != "missing") ++able;
+      if (p.took_part()) ++able;
+      if (p.took_part() && p.not_ranked.empty()) ++ranked;
     }
   }
 };
@@ -107,7 +109,9 @@ std::string failed_text(const SolverOfScene& s) {
 
 std::string ranked_text(const SolverOfScene& s) {
   if (s.diagram->flagged.contains(s.solver)) return "NO: stiffness is not a parameter";
-  if (Counted(s).able == 0 || !s.diagram->refused().empty()) return "no";
+  const Counted n(s);
+  if (n.able == 0 || !s.diagram->refused().empty()) return "no";
+  if (n.ranked < n.able) return fmt::format("at {} of {} settings", n.ranked, n.able);
   return is_baseline(s.solver) ? "baseline" : "yes";
 }
 
@@ -160,7 +164,7 @@ bool in_real_time(const WorkPoint& p) { return p.wall_ms_per_s <= kRealTime_ms_p
 double WorkDiagram::best_error() const {
   double least = kMissing;
   for (const WorkPoint& p : points)
-    if (p.counts() && !is_baseline(p.solver) && !flagged.contains(p.solver) && !(least <= p.error)) least = p.error;
+    if (p.ranks() && !is_baseline(p.solver) && !(least <= p.error)) least = p.error;
   return least;
 }
 
@@ -196,9 +200,8 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<RunRecord>& runs,
       out.push_back({c.header.scene, known, truth::ranking_of(known), {}});
       at = out.end() - 1;
     }
-    if (std::string why = stiffness_flag(materials, c.header.solver, stiffness_need(c)); !why.empty())
-      at->flagged[c.header.solver] = std::move(why);
     at->points.push_back(point_of(c, scenario));
+    at->points.back().not_ranked = stiffness_flag(materials, c);
     if (!at->need.any()) at->need = stiffness_need(c);
     const auto take = [&](double& to, const char* name) {
       if (!std::isfinite(to)) to = summary_value(c, name);
@@ -211,6 +214,10 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<RunRecord>& runs,
   }
   for (WorkDiagram& d : out) {
     mark_front(d.points);
+    for (const WorkPoint& p : d.points)
+      if (!p.not_ranked.empty()) d.flagged.insert({p.solver, p.not_ranked});
+    for (const WorkPoint& p : d.points)
+      if (p.not_ranked.empty() && p.took_part()) d.flagged.erase(p.solver);
     std::stable_sort(d.points.begin(), d.points.end(), [](const WorkPoint& a, const WorkPoint& b) {
       if (a.solver != b.solver) return a.solver < b.solver;
       return a.wall_ms_per_s < b.wall_ms_per_s;
@@ -262,7 +269,7 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
                   "Failed: runs without a finite error. Not run: settings that need more work than the solver's time "
                   "on the scene allowed; each result file has the reason. A refused scene ranks no solver; the next "
                   "table has the reason. Not ranked: the scene depends on a stiffness that is not a parameter of the "
-                  "solver; see the effective moduli.",
+                  "solver at this setting; see the effective moduli.",
                   runs_of(work_rows(diagrams), &WorkRow::run), {"frame_wall_median_s", "truth_error"}),
               {}},
              solvers_of(diagrams));
@@ -295,11 +302,7 @@ std::string work_csv(const std::vector<WorkDiagram>& diagrams) {
             {"gpu_is_software", In::Both, [](auto& r) { return of_environment(r, "gpu_is_software") == json(true); }},
             {"on_gpu", In::Both, &WorkRow::on_gpu}})
       .add(result_columns<WorkRow>())
-      .add({{"not_ranked", In::Both,
-             [](auto& r) {
-               const auto flag = r.diagram->flagged.find(r.solver);
-               return flag == r.diagram->flagged.end() ? "" : flag->second;
-             }}})
+      .add({{"not_ranked", In::Both, &WorkRow::not_ranked}})
       .csv(work_rows(diagrams));
 }
 
@@ -308,7 +311,9 @@ json work_json(const std::vector<WorkDiagram>& diagrams) {
       run_columns<WorkPoint>()
           .add({{"settings", In::Both, [](auto& p) { return p.run->header.settings; }},
                 {"gpu", In::Both, [](auto& p) { return p.on_gpu ? gpu_of(*p.run) : ""; }}})
-          .add(result_columns<WorkPoint>());
+          .add(result_columns<WorkPoint>())
+          .add({{"not_ranked", In::Json,
+                 [](auto& p) { return p.not_ranked.empty() ? absent() : Value(p.not_ranked); }}});
   return diagram_columns<WorkDiagram>([](const WorkDiagram& d) -> auto& { return d; })
       .add({{"reference_uncertainty", In::Both, &WorkDiagram::uncertainty},
             {"reference_truth_distance", In::Both, &WorkDiagram::truth_distance},

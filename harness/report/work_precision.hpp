@@ -22,8 +22,12 @@ struct WorkPoint {
   double frame_ms = kMissing;         ///< wall_ms_per_s for one frame of the scene [ms]
   double error = kMissing;            ///< the measured error that ranks (as the reference case defines it)
   double energy_gain = kMissing;      ///< over M g L; NaN if the scene does not conserve energy
+  std::string not_ranked = {};        ///< why this run is shown but not ranked (stiffness_flag); "" if it is ranked
   /// The run ended well and has an error and a time.
   bool counts() const { return ok && std::isfinite(error) && std::isfinite(wall_ms_per_s); }
+  /// The solver took part in the scene.
+  bool took_part() const { return run->outcome.status != "unsupported" && run->outcome.status != "missing"; }
+  bool ranks() const { return counts() && not_ranked.empty(); }
   bool on_front = false;  ///< Pareto front: no point of its solver is better in time or error and as good in the other
 };
 
@@ -35,7 +39,7 @@ struct WorkDiagram {
   double uncertainty = kMissing;               ///< U_ref over the quantity's scale
   double truth_distance = kMissing, order_bdf2 = kMissing, order_conservative = kMissing;  ///< of the reference
   StiffnessNeed need = {};                          ///< stiffnesses that the exact solution depends on
-  std::map<std::string, std::string> flagged = {};  ///< solvers shown but not ranked, and why (stiffness_flag)
+  std::map<std::string, std::string> flagged = {};  ///< solvers without a ranked setting, and why
   double floor() const { return 3 * uncertainty; }  ///< uncertainty floor, 3 U_ref; NaN if unknown
   /// Errors below it are not distinguished: the greater of floor() and space_error, of those known; 0 if neither is.
   double rank_floor() const;

@@ -15,11 +15,8 @@ namespace {
 std::set<std::string> ranked(const WorkDiagram& d) {
   std::set<std::string> out;
   if (!d.refused().empty()) return out;
-  for (const WorkPoint& p : d.points) {
-    const std::string& status = p.run->outcome.status;
-    if (!is_baseline(p.solver) && !d.flagged.contains(p.solver) && status != "unsupported" && status != "missing")
-      out.insert(p.solver);
-  }
+  for (const WorkPoint& p : d.points)
+    if (!is_baseline(p.solver) && p.not_ranked.empty() && p.took_part()) out.insert(p.solver);
   return out;
 }
 
@@ -46,7 +43,7 @@ const std::vector<Criterion>& criteria() {
 double least(const WorkDiagram& d, const std::string& solver, const Criterion& c) {
   double out = INFINITY;
   for (const WorkPoint& p : d.points)
-    if (p.solver == solver && p.counts()) out = std::min(out, c.value(d, p));
+    if (p.solver == solver && p.ranks()) out = std::min(out, c.value(d, p));
   return out;
 }
 

@@ -46,7 +46,10 @@ nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
   nlohmann::json j;
   for (const BufferPlan& b : plan.buffers)
     j["buffers"].push_back({{"name", b.name}, {"bytes", b.bytes}, {"device_local", b.device_local}});
-  for (const LeftOut& l : plan.left_out) j["left_out"].push_back({{"what", l.what}, {"why", l.why}});
+  for (const LeftOut& l : plan.left_out) {
+    j["left_out"].push_back({{"what", l.what}, {"why", l.why}});
+    if (!l.no_parameter.empty()) j["left_out"].back()["no_parameter"] = l.no_parameter;
+  }
   for (std::size_t k = 0; k < std::min(plan.contact_margins_m.size(), scene.colliders.size()); ++k)
     if (std::isfinite(plan.contact_margins_m[k]))
       j["contact_margins"].push_back({{"collider", scene.colliders[k].name}, {"margin_m", plan.contact_margins_m[k]}});

@@ -12,7 +12,7 @@
 namespace clothbench {
 namespace {
 
-truth::ReferenceCase card_with_threshold(const Scene& scene) {
+truth::ReferenceCase case_with_threshold(const Scene& scene) {
   const auto known = truth::reference_case_of(scene);
   if (!known || !known->threshold)
     throw Error(scene.source +
@@ -33,7 +33,7 @@ Scene tried(const Scene& scene, const truth::Threshold& t, double friction) {
 
 FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, const nlohmann::json& settings,
                               StudyRuns& runs, const std::string& setting, std::vector<RunRecord>* reported) {
-  const truth::ReferenceCase known = card_with_threshold(scene);
+  const truth::ReferenceCase known = case_with_threshold(scene);
   if (const std::string why = missing_features(entry.info, scene.needs); !why.empty())
     throw Error(scene.name + ": " + why);
   const truth::Threshold& t = *known.threshold;
@@ -54,7 +54,7 @@ FoundThreshold find_threshold(const Scene& scene, const SolverEntry& entry, cons
 
 std::vector<RunRecord> threshold_runs(Guard& guard, StudyRuns& runs, const Scene& scene, const SolverEntry& entry,
                                       const nlohmann::json& settings, const std::string& setting) {
-  card_with_threshold(scene);
+  case_with_threshold(scene);
   const RunHeader header = bare_header({&scene, &entry, settings, setting}, kThresholdProtocol);
   if (std::string why = missing_features(entry.info, scene.needs); !why.empty()) {
     RunRecord refused;

@@ -237,6 +237,7 @@ class Builder {
       v.labels.push_back(name + v.suffix);
       v.timed = item["timed"].get<bool>();
       v.pair = item.value("pair", json());
+      v.set_up = item.value("set_up", "");
       labels_.insert(v.labels.begin(), v.labels.end());  // labels of the study, even if this form leaves it out
       if (item["only_full"].get<bool>() && study_.length != StudyLength::Full) continue;
       if (!quick_.is_null() && !chosen(quick_["scenes"].get<Words>(), v.labels)) continue;
@@ -270,6 +271,7 @@ class Builder {
           scene = scene_from_json(std::move(form), path, {}, options_.assets);
         }
         scene.name += v.suffix;
+        if (!v.set_up.empty()) j_["set_ups"][scene.name] = v.set_up;
         const int group = group_of(scene);
         study_.scenes.push_back({std::move(scene), group, v.timed, {}, v.pair});
       }

@@ -70,7 +70,8 @@ struct Study {
   bool stage_times = true, pipelined = false;
   StudyRules rules;  ///< of `length`
   /// Completed study file. If scenes or solvers have a "pair", its key "pairs" has one row for each such run: scene,
-  /// solver, setting, relation, and the scenes and settings of the same solver that it is compared with.
+  /// solver, setting, relation, and the scenes and settings of the same solver that it is compared with. Its key
+  /// "set_ups" has the set-up of each scene that states one, by name.
   nlohmann::json definition;
 };
 

@@ -12,6 +12,7 @@ struct Variant {
   bool timed = true;
   bool merged = false;  ///< an override fixes the value on an axis, for all that differed in it
   nlohmann::json pair = {};
+  std::string set_up = {};
 };
 
 /// Cartesian product of a scene's axes; the first varies slowest. Where one of `set` (`key=value`, as in `--set`) fixes

@@ -62,11 +62,11 @@ std::vector<Wanted> front_moduli(const RunPlan& plan, const std::filesystem::pat
   const std::vector<WorkDiagram> diagrams = work_diagrams(runs, materials);
   for (const SolverEntry* e : solvers_of(plan)) {
     if (e->info.ignores.has(Feature::Stretch) || is_baseline(e->info.name)) continue;
-    const bool bends = stiffness_flag(materials, e->info.name, {false, false, true}).empty();
+    const bool bends = stiffness_flag(materials, e->info.name, "default", {false, false, true}).empty();
     for (const WorkDiagram& d : diagrams)
       for (const WorkPoint& p : d.points) {
         if (p.solver != e->info.name || !p.on_front || p.setting == "default") continue;
-        const bool matters = whole || (d.need.any() && !d.flagged.contains(p.solver));
+        const bool matters = whole || (d.need.any() && p.not_ranked.empty());
         std::vector<Wanted>& list = matters ? all : without;
         if (!listed(list, e, p.setting)) list.push_back({e, p.run->header.settings, p.setting, false, whole || bends});
       }

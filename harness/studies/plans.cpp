@@ -75,7 +75,9 @@ std::string plan_text(const nlohmann::json& p) {
   for (const auto& m : p["contact_margins"])
     out += fmt::format("  {:<28} {:>14g}\n", text(m["collider"]), m["margin_m"].get<double>());
   if (!p["left_out"].empty()) out += "\n  left out\n";
-  for (const auto& l : p["left_out"]) out += fmt::format("  {:<28} {}\n", text(l["what"]), text(l["why"]));
+  for (const auto& l : p["left_out"])
+    out += fmt::format("  {:<28} {}{}\n", text(l["what"]), text(l["why"]),
+                       l.contains("no_parameter") ? "; no parameter: " + text(l["no_parameter"]) : "");
   return out + "\n";
 }
 

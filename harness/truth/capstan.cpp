@@ -34,11 +34,6 @@ double capstan_ratio(double friction, double wrap) {
   return std::exp(non_negative(friction, "friction") * non_negative(wrap, "wrap_rad"));
 }
 
-double polygonal_capstan_ratio(double friction, double wrap, int turns) {
-  const double grip = friction * std::tan(half_turn(friction, wrap, turns));
-  return std::exp(turns * 2 * std::atanh(grip));
-}
-
 double slip_tension_N_per_m(const HeavyCapstan& c, double light, double phi) {
   const double weight = check(c) * c.radius_m, mu = c.friction;
   non_negative(light, "light_tension_N_per_m");

@@ -9,12 +9,6 @@ namespace clothbench::truth {
 /// Without weight, at wrap angle beta, it holds up to T2/T1 = e^{mu beta}. Source: Euler 1769, Eytelwein 1808.
 double capstan_ratio(double friction, double wrap_rad);
 
-/// The same with contact at vertices only, over m equal turns d = beta/m (a polygon of cloth edges on a round
-/// cylinder):
-///   T2/T1 = [(1 + mu tan(d/2)) / (1 - mu tan(d/2))]^m, order 2 in 1/m.
-/// Source: friction cone at each vertex. Needs m >= 1 and mu tan(d/2) < 1 (beyond, it never slips), else throws Error.
-double polygonal_capstan_ratio(double friction, double wrap_rad, int turns);
-
 /// A strip over a horizontal cylinder with both ends hanging straight down (wrap pi) and its own weight:
 ///   dT/dphi = mu (T + rho g R sin phi) + rho g R cos phi,  phi from the light side, so at slip
 ///   T2 = e^{mu pi} T1 + (2 mu rho g R/(1 + mu^2)) (1 + e^{mu pi}).

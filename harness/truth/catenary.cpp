@@ -31,10 +31,6 @@ double Catenary::sag_m() const {
   return 2 * a_ * half * half;
 }
 
-double Catenary::end_angle_rad() const { return std::atan2(length_ / 2, a_); }
-
-double Catenary::greatest_tension() const { return std::hypot(a_ / length_, 0.5); }
-
 std::array<double, 2> Catenary::position_m(double s) const {
   within(s, 0, length_, "rest_m");
   const double from_middle = s - length_ / 2, below = s * (length_ - s);  // (L/2)^2 - (s - L/2)^2

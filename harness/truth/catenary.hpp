@@ -14,10 +14,8 @@ class Catenary {
   Catenary(double length_m, double span_m);
   double parameter_m() const { return a_; }  ///< a = horizontal tension over weight per length
   double sag_m() const;
-  double end_angle_rad() const;  ///< below the horizontal
   /// Tensions over the strip's whole weight.
   double horizontal_tension() const { return a_ / length_; }
-  double greatest_tension() const;
   /// x from the left end, z upwards from the ends, of the point at rest length s from the left end.
   std::array<double, 2> position_m(double rest_m) const;
 

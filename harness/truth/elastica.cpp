@@ -111,9 +111,4 @@ double Elastica::chord_angle_rad() const {
   return std::atan2(tip[1], tip[0]);
 }
 
-double peirce_own_weight(double chord) {
-  between(chord, 0, std::numbers::pi / 2, "chord_angle_rad");
-  return 8 * std::tan(chord) / std::cos(chord / 2);
-}
-
 }  // namespace clothbench::truth

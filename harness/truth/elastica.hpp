@@ -41,9 +41,4 @@ class Elastica {
   double residual_ = 0;
 };
 
-/// Gamma that Peirce's formula gives for a chord angle c, 8 tan(c)/cos(c/2), i.e. B = rho g L^3 cos(c/2)/(8 tan c). It
-/// is an approximation: at 41.5 degrees its B is 5.75 % above the elastica's. Source: Peirce, J. Textile Inst. 21
-/// (1930) T377. Needs 0 < chord < pi/2, else throws Error.
-double peirce_own_weight(double chord_angle_rad);
-
 }  // namespace clothbench::truth

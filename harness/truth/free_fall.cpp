@@ -43,14 +43,4 @@ double fall_speed_m_per_s(const FreeFall& f, double t) {
   return f.speed_m_per_s * std::exp(-x) - f.gravity_m_per_s2 * t * p1(x);
 }
 
-double semi_implicit_fall_height_m(const FreeFall& f, double t, double step) {
-  check(f, t);
-  positive(step, "step_s");
-  if (f.damping_per_s > 0) throw Error("argument damping_per_s: integrators differ on damping; expected 0 here");
-  const double steps = t / step;
-  if (!(std::abs(steps - std::round(steps)) <= 1e-9 * (1 + steps)))
-    throw Error("argument time_s: expected a multiple of step_s");
-  return f.height_m + f.speed_m_per_s * t - 0.5 * f.gravity_m_per_s2 * t * (t + step);
-}
-
 }  // namespace clothbench::truth

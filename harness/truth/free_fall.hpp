@@ -18,9 +18,4 @@ struct FreeFall {
 double fall_height_m(const FreeFall&, double time_s);
 double fall_speed_m_per_s(const FreeFall&, double time_s);  ///< upwards
 
-/// Height given by semi-implicit (symplectic) Euler with step dt at a time t = k dt, exactly: z0 + v0 t - g t (t +
-/// dt)/2. Order 1; also holds for PBD and XPBD without damping. Throws Error if there is damping or t is not a multiple
-/// of the step to 1e-9.
-double semi_implicit_fall_height_m(const FreeFall&, double time_s, double step_s);
-
 }  // namespace clothbench::truth

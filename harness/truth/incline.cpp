@@ -24,8 +24,6 @@ bool moves_at(const Incline& i, double t) {
 
 }  // namespace
 
-double critical_angle_rad(double friction) { return std::atan(non_negative(friction, "friction")); }
-
 bool sticks(const Incline& i) {
   check(i);
   return std::tan(i.angle_rad) <= i.friction;

@@ -14,7 +14,6 @@ struct Incline {
   double gravity_m_per_s2 = 9.81;
 };
 
-double critical_angle_rad(double friction);
 bool sticks(const Incline&);                           ///< once at rest
 double sliding_acceleration_m_per_s2(const Incline&);  ///< downhill, while sliding; negative if it slows down
 

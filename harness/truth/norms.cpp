@@ -69,8 +69,6 @@ double time_rms(std::span<const double> times, std::span<const double> errors) {
   return finite_or_nan(std::sqrt(sum / (times.back() - times.front())));
 }
 
-double correct_digits(double error) { return error < 0 ? kNan : -std::log10(error); }
-
 double quantity_error(double value, double truth, double scale) {
   return finite_or_nan(std::abs(value - truth) / positive(scale, "scale"));
 }
@@ -88,19 +86,6 @@ StretchError stretch_error(std::span<const double> strains, std::span<const doub
   std::sort(excess.begin(), excess.end());
   const auto rank = static_cast<std::size_t>(std::ceil(0.99 * static_cast<double>(excess.size())));
   return {std::sqrt(squares / static_cast<double>(excess.size())), excess[rank - 1], excess.back()};
-}
-
-EnergyError energy_error(std::span<const double> energies, std::span<const double> pin_work, double scale) {
-  if (energies.empty()) throw Error("argument energies: expected 1 or more");
-  if (!pin_work.empty()) same_size(pin_work.size(), energies.size(), "pin_work");
-  positive(scale, "scale");
-  EnergyError out{0, (energies.back() - energies.front()) / scale, 0};
-  for (std::size_t i = 0; i < energies.size(); ++i) {
-    const double rise = (energies[i] - energies.front()) / scale;
-    out.drift = max_or_nan(out.drift, std::abs(rise));
-    out.gain = max_or_nan(out.gain, rise - (pin_work.empty() ? 0 : pin_work[i] / scale));
-  }
-  return {finite_or_nan(out.drift), finite_or_nan(out.end), finite_or_nan(out.gain)};
 }
 
 }  // namespace clothbench::truth

@@ -20,9 +20,6 @@ double lattice_greatest_error(const MaterialLattice&, std::span<const double> va
 /// E2 over a run: sqrt of the mean square over time, e2^2 linear between the times (ascending, 2 or more).
 double time_rms(std::span<const double> times_s, std::span<const double> errors);
 
-/// Significant correct digits, -log10(error). Source: Hairer & Wanner, Solving Ordinary Differential Equations II.
-double correct_digits(double error);
-
 /// Error of one quantity over the scale that its reference case states.
 double quantity_error(double value, double truth, double scale);
 
@@ -32,13 +29,5 @@ struct StretchError {
   double rms, p99, greatest;
 };
 StretchError stretch_error(std::span<const double> strains, std::span<const double> truth);
-
-/// Statistics of a run's energies over `scale` = weight * length. drift: greatest distance from the first. end: last
-/// minus first. gain: greatest rise above the sum of the first and the work done by moving pins (`pin_work`, as many
-/// values, or none for static pins).
-struct EnergyError {
-  double drift, end, gain;
-};
-EnergyError energy_error(std::span<const double> energies, std::span<const double> pin_work, double scale);
 
 }  // namespace clothbench::truth

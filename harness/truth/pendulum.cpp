@@ -36,6 +36,4 @@ double pendulum_angular_speed_rad_per_s(const Pendulum& p, double t) {
   return -2 * k * std::cos(p.amplitude_rad / 2) * rate * boost::math::jacobi_sd(k, rate * t);
 }
 
-double rigid_sheet_pendulum_length_m(double length_m) { return 2 * positive(length_m, "length_m") / 3; }
-
 }  // namespace clothbench::truth

@@ -17,7 +17,4 @@ double pendulum_period_s(const Pendulum&);
 double pendulum_angle_rad(const Pendulum&, double time_s);
 double pendulum_angular_speed_rad_per_s(const Pendulum&, double time_s);
 
-/// A rigid sheet (or link) of length L hinged along its upper edge swings as a point pendulum of length 2L/3.
-double rigid_sheet_pendulum_length_m(double length_m);
-
 }  // namespace clothbench::truth

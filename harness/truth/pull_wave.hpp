@@ -8,8 +8,8 @@ namespace clothbench::truth {
 ///   strain = (1/c) sum_{k>=0} [ v(t - ((2k+1)l - x)/c) + v(t - ((2k+1)l + x)/c) ],  speed = sum of differences.
 /// Source: wave equation (e.g. Graff, Wave Motion in Elastic Solids, ch. 2). Exact in the continuum; the wave from each
 /// end adds a strain of v0/c. A step (Tr = 0) is allowed, but is not a truth for a lattice, which overshoots it by
-/// about a quarter at any resolution: use pull_ramp_s(). Valid for any t >= 0 and |x| <= l; errors of rounding. Throws
-/// Error for other arguments. A strip of infinite stiffness has the mean strain everywhere.
+/// about a quarter at any resolution: use a ramp of 2 l/c or longer. Valid for any t >= 0 and |x| <= l; errors of
+/// rounding. Throws Error for other arguments. A strip of infinite stiffness has the mean strain everywhere.
 struct TwoHandPull {
   double length_m = 1;
   double areal_density_kg_per_m2 = 0.2;
@@ -19,21 +19,7 @@ struct TwoHandPull {
 };
 
 double wave_speed_m_per_s(const TwoHandPull&);
-double pull_ramp_s(const TwoHandPull&);  ///< 2 l/c: long enough for 31 cells to follow within 1 %
-
-double hand_speed_m_per_s(const TwoHandPull&, double time_s);
 double hand_way_m(const TwoHandPull&, double time_s);
-int reflections(const TwoHandPull&, double time_s);  ///< arrivals at the middle or an end so far: floor(c t/l)
-
-double pull_strain(const TwoHandPull&, double rest_x_m, double time_s);
 double pull_displacement_m(const TwoHandPull&, double rest_x_m, double time_s);
-double pull_speed_m_per_s(const TwoHandPull&, double rest_x_m, double time_s);
-double mean_pull_strain(const TwoHandPull&, double time_s);  ///< hand displacement / l
-/// Greatest strain along the strip. With a ramp, by search on a grid of 2048 points and Brent's method: 1e-9 relative.
-double greatest_pull_strain(const TwoHandPull&, double time_s);
-
-/// Speed of the material behind the wave front if one end of a uniformly strained strip is released: strain * c, the
-/// greatest possible. Source as above.
-double release_speed_m_per_s(double strain, double areal_density_kg_per_m2, double membrane_stiffness_N_per_m);
 
 }  // namespace clothbench::truth

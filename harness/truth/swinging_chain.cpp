@@ -116,23 +116,4 @@ std::vector<ChainState> swing(const SwingingChain& c, std::span<const double> ti
 
 std::array<double, 2> chain_position_m(const ChainState& s, double share) { return along(s.x_m, s.z_m, share); }
 
-std::array<double, 2> chain_speed_m_per_s(const ChainState& s, double share) {
-  return along(s.x_speed_m_per_s, s.z_speed_m_per_s, share);
-}
-
-double chain_energy(const SwingingChain& c, const ChainState& s) {
-  check(c);
-  const auto nodes = static_cast<std::size_t>(c.links) + 1;
-  if (s.x_m.size() != nodes || s.z_m.size() != nodes || s.x_speed_m_per_s.size() != nodes ||
-      s.z_speed_m_per_s.size() != nodes)
-    throw Error("argument state: expected links + 1 nodes");
-  double energy = 0;
-  for (std::size_t j = 1; j < nodes; ++j) {
-    const double mass = (j + 1 < nodes ? 1 : c.end_mass_ratio) / c.links;
-    const double v2 = s.x_speed_m_per_s[j] * s.x_speed_m_per_s[j] + s.z_speed_m_per_s[j] * s.z_speed_m_per_s[j];
-    energy += mass * (0.5 * v2 / (c.gravity_m_per_s2 * c.length_m) + s.z_m[j] / c.length_m);
-  }
-  return energy;
-}
-
 }  // namespace clothbench::truth

@@ -39,11 +39,7 @@ struct ChainState {
 std::vector<ChainState> swing(const SwingingChain&, std::span<const double> times_s, double tolerance = 1e-13);
 
 /// Linear interpolation between the nodes, at a share 0 .. 1 of the strip's length from the held end: position {x, z}
-/// and speed of the material point. Throws Error for another share.
+/// of the material point. Throws Error for another share.
 std::array<double, 2> chain_position_m(const ChainState&, double share);
-std::array<double, 2> chain_speed_m_per_s(const ChainState&, double share);
-
-/// Kinetic and potential energy, over (strip mass * g * L); 0 height at the held end. Constant, which tests use.
-double chain_energy(const SwingingChain&, const ChainState&);
 
 }  // namespace clothbench::truth

@@ -67,7 +67,9 @@ class FrameBuilder {
                                 std::vector<std::uint32_t> constants = {}, std::uint32_t group_size = kGroupSize,
                                 const vulkan::Buffers& own = {});
   vulkan::Buffers buffers_with(vulkan::Buffers own) const;
-  void leave_out(const std::string& what, const std::string& why) { plan_.left_out.push_back({what, why}); }
+  void leave_out(const std::string& what, const std::string& why, const std::string& no_parameter = "") {
+    plan_.left_out.push_back({what, why, no_parameter});
+  }
   void set_contact_margins(std::vector<double> margins_m) { plan_.contact_margins_m = std::move(margins_m); }
   /// A word in host memory that a kernel sets if a barrier over all workgroups times out. The frame is then TimedOut.
   void set_timed_out(const vulkan::Buffer& word) { timed_out_ = &word; }

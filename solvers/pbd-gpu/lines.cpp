@@ -11,6 +11,9 @@ namespace {
 /// Least ratio of alpha to inverse mass in chains pulled taut between held vertices: with 0 their system is singular in
 /// single precision. Ten times as much visibly lengthens the cloth; with a tenth, links of some cloths blow up.
 constexpr double kRegularisation = 1e-3;
+/// Of a workgroup where many share lines and contact: a line needs 32, and pairs and vertices take as many as there
+/// are. A desk takes 3.4 times as long with 32, and 256 win nothing (H200).
+constexpr std::uint32_t kThreadsWithContact = 128;
 
 /// Springs whose homogenised sheet is isotropic with uniaxial stiffness Y and Poisson ratio 1/3, the only ratio central
 /// springs allow (C12 = C66): for square cells 3/4 Y along the grid and 3/8 Y on each diagonal. On du x dv cells the
@@ -145,10 +148,7 @@ std::string Lines::kernel(const char* name, bool shuffles) const {
   return std::string(name) + (shuffles ? "_shuffle" : "") + (keep_ ? "_keep" : couples_ ? "_couple" : "");
 }
 
-void Lines::add_whole(const LineShape& shape) {
-  const FeatureSet serves{Feature::Stretch, Feature::Shear,      Feature::Bend,
-                          Feature::Damping, Feature::MovingPins, Feature::Pins};
-  shape_[0] = shape_[1] = shape_[2] = shape;
+LineSpecialization Lines::whole_specialization(const LineShape& shape) const {
   LineSpecialization s = specialization(shape);
   s.GRIPS = static_cast<std::uint32_t>(scene_.grips.vertices.size());
   const auto most = static_cast<std::size_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
@@ -156,6 +156,14 @@ void Lines::add_whole(const LineShape& shape) {
   for (std::size_t family = 0; family < 4; ++family)
     for (std::size_t chain = 0; chain < most; ++chain)
       *firm[family] |= std::uint32_t{taut_[family * most + chain]} << chain;
+  return s;
+}
+
+void Lines::add_whole(const LineShape& shape) {
+  const FeatureSet serves{Feature::Stretch, Feature::Shear,      Feature::Bend,
+                          Feature::Damping, Feature::MovingPins, Feature::Pins};
+  shape_[0] = shape_[1] = shape_[2] = shape;
+  const LineSpecialization s = whole_specialization(shape);
   whole_ = frame_.add_kernel(frame_.add_stage("Lines", scene_.needs & serves), kernel("line_frame", shape.shuffles),
                              sizeof(LineConstants), s.by_number(), shape.threads);
 }
@@ -176,8 +184,10 @@ vulkan::Groups Lines::groups_of(const LineShape& shape) const {
 LineShape Lines::frame_shape_with_contact(bool many) const {
   const Cloth& c = scene_.cloth;
   if (keep_ || (many && device().subgroup == 0)) return {};
-  return many ? pass_shape(std::max(c.columns, c.rows), request(), device())
-              : frame_shape(c.columns, c.rows, request(), device());
+  if (!many) return frame_shape(c.columns, c.rows, request(), device());
+  LineRequest wanted = request();
+  if (wanted.threads == 0 && device().wide) wanted.threads = kThreadsWithContact;
+  return pass_shape(std::max(c.columns, c.rows), wanted, device());
 }
 
 LineSpecialization Lines::specialization_with_contact(const LineShape& shape, bool many) {

@@ -23,6 +23,9 @@ class Lines {
   /// not fit it) of one workgroup or of many that run at once, and what it is specialized to.
   LineShape frame_shape_with_contact(bool many) const;
   LineSpecialization specialization_with_contact(const LineShape&, bool many);
+  /// What the kernel of a whole frame in one workgroup is specialized to; its shape is that of
+  /// frame_shape_with_contact.
+  LineSpecialization whole_specialization(const LineShape&) const;
   vulkan::Groups groups_of(const LineShape&) const;
   LineConstants constants(double dt_s, int substeps, const TimeStep&) const;
   void add_regularisation();        ///< of kernels that have lines in memory

@@ -74,8 +74,8 @@ void PlaneContact::add_elements(const std::vector<std::uint32_t>& particle) {
   frame_.add_buffer(BIND_ELEMENTS, "contact elements", elements);
   frame_.add_buffer(BIND_FANS, "contact fans", all);
   frame_.add_buffer(BIND_RANGES, "contact ranges", count * sizeof(uvec4));
-  frame_.add_buffer(BIND_TOUCHED, "contact touched", 2 * std::uint64_t{n} * sizeof(uint));
-  frame_.add_buffer(BIND_NEAR_BITS, "contact near pairs", (capacity_ / 32 + 1) * sizeof(uint));
+  frame_.add_buffer(BIND_TOUCHED, "contact touched", 4 * std::uint64_t{n} * sizeof(uint));
+  frame_.add_buffer(BIND_NEAR_BITS, "contact near pairs", 2 * std::uint64_t{capacity_ / 32 + 1} * sizeof(uint));
   frame_.add_buffer(BIND_PAIRS, "contact pairs", std::uint64_t{capacity_} * sizeof(uvec4));
   frame_.add_buffer(BIND_PAIR_STATES, "contact pair states", std::uint64_t{capacity_} * sizeof(PairState));
   ContactLedger ledger{};

@@ -10,9 +10,20 @@ namespace {
 
 /// Threads whose sums plane_scan.glsl adds up together.
 constexpr std::uint32_t kScanBlock = 32;
-/// Workgroups where more than capsules touches: one takes a third longer for a hand mesh that pushes, twice as many win
-/// a twentieth (H200). Capsules have too few pairs to share.
+/// Workgroups: those beyond the lines' have pairs and vertices alone. One takes a sixth longer where capsules sweep,
+/// and three times as long on a desk; half as many win nothing for hands and lose a fifth on desks (H200).
 constexpr std::uint32_t kWorkgroups = 64;
+
+/// The two have no number in common.
+std::vector<std::uint32_t> both(const LineSpecialization& lines, const PlaneFrameSpecialization& planes) {
+  std::vector<std::uint32_t> all = lines.by_number();
+  const std::vector<std::uint32_t> more = planes.by_number();
+  std::transform(more.begin(), more.end(), all.begin(), all.begin(), std::bit_or<>());
+  return all;
+}
+
+constexpr FeatureSet kOfLines{Feature::Stretch, Feature::Shear, Feature::Bend,
+                              Feature::Damping, Feature::Pins,  Feature::MovingPins};
 
 }  // namespace
 
@@ -25,10 +36,13 @@ std::unique_ptr<PlaneFrame> PlaneFrame::make(FrameBuilder& frame, Lines& lines, 
   if (wanted == "auto" && device.is_software() && device.profile() == nullptr) return nullptr;
   std::unique_ptr<PlaneFrame> made(new PlaneFrame(frame, lines, contact));
   auto groups = frame.tuning()["contact_groups"].get<std::uint32_t>();
+  // A phone's few cores gain nothing from many workgroups of a sweep's few pairs.
   const bool capsules_alone = (frame.scene().needs & kColliderFeatures) == FeatureSet{Feature::Capsules};
-  if (groups == 0 && !capsules_alone) groups = kWorkgroups;
-  if ((groups > 0 && made->add_kernel(true, groups)) || made->add_kernel(false, 1) || made->add_kernel(true, 1))
+  if (groups == 0 && (device.is_discrete() || !capsules_alone)) groups = kWorkgroups;
+  if ((groups > 0 && made->add_kernel(true, groups)) || made->add_kernel(false, 1) || made->add_kernel(true, 1)) {
+    made->add_far();
     return made;
+  }
   if (wanted == "always")
     throw Error(
         "solver xpbd: setting tuning.contact_frame=always: expected an even grid of at most 32 x 32 vertices, or a "
@@ -46,23 +60,30 @@ bool PlaneFrame::add_kernel(bool many, std::uint32_t least_groups) {
     groups_ = vulkan::groups_for(least_groups, 1);
     lines.EXACT = 0;
   }
-  std::vector<std::uint32_t> constants = lines.by_number();
   PlaneFrameSpecialization planes = contact_.frame_specialization();
   // One workgroup has too few threads to spare several for a vertex.
   if (!shape.shuffles || !many) planes.TEAM = 1;
-  const std::vector<std::uint32_t> contact = planes.by_number();
-  std::transform(contact.begin(), contact.end(), constants.begin(), constants.begin(), std::bit_or<>());
+  const std::vector<std::uint32_t> constants = both(lines, planes);
   const std::string name = std::string("plane_frame") + (many ? "_many" : "") + (shape.shuffles ? "_shuffle" : "");
   lines_.add_regularisation();
   if (many) {
     if (!runs_at_once<LineConstants>(frame_, name, constants, shape.threads, groups_)) return false;
     add_meeting(frame_);
   }
-  const FeatureSet of_lines{Feature::Stretch, Feature::Shear, Feature::Bend,
-                            Feature::Damping, Feature::Pins,  Feature::MovingPins};
-  const int stage = frame_.add_stage("LinesAndContact", (frame_.scene().needs & of_lines) | contact_.serves(), true);
+  const int stage = frame_.add_stage("LinesAndContact", (frame_.scene().needs & kOfLines) | contact_.serves(), true);
   kernel_ = frame_.add_kernel(stage, name, sizeof(LineConstants), constants, shape.threads);
   return true;
+}
+
+void PlaneFrame::add_far() {
+  const LineShape shape = lines_.frame_shape_with_contact(false);
+  const PlaneFrameSpecialization planes = contact_.frame_specialization();
+  if (shape.threads == 0 || planes.PIECES == 0 || planes.PLANES > 0) return;
+  LineSpecialization lines = lines_.whole_specialization(shape);
+  lines.GRIPS = static_cast<std::uint32_t>(frame_.scene().grips.vertices.size());
+  const int stage = frame_.add_stage("LinesFarFromColliders", frame_.scene().needs & kOfLines, true);
+  far_ = frame_.add_kernel(stage, shape.shuffles ? "line_frame_shuffle_far" : "line_frame_far", sizeof(LineConstants),
+                           both(lines, planes), shape.threads);
 }
 
 void PlaneFrame::record(int substeps, double dt_s, const TimeStep& step) {
@@ -73,6 +94,7 @@ void PlaneFrame::record(int substeps, double dt_s, const TimeStep& step) {
   c.frame_s = contact.frame_s;
   c.reach_m = contact.reach_m;
   const auto n = static_cast<double>(frame_.scene().cloth.vertex_count());
+  if (far_ != nullptr) frame_.dispatch_groups(*far_, {1, 1}, c, {64 * n, 64 * n});
   frame_.dispatch_groups(*kernel_, groups_, c, lines_.substep_traffic() * substeps + Traffic{32 * n, 36 * n});
 }
 

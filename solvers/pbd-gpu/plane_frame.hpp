@@ -21,12 +21,15 @@ class PlaneFrame {
   PlaneFrame(FrameBuilder& frame, Lines& lines, PlaneContact& contact)
       : frame_(frame), lines_(lines), contact_(contact) {}
   bool add_kernel(bool many, std::uint32_t least_groups);
+  /// The kernel of frames in which no collider can be near (shaders/plane_far.glsl), where one workgroup holds the
+  /// cloth.
+  void add_far();
 
   FrameBuilder& frame_;
   Lines& lines_;
   PlaneContact& contact_;
   vulkan::Groups groups_{1, 1};
-  const FrameKernel* kernel_ = nullptr;
+  const FrameKernel *kernel_ = nullptr, *far_ = nullptr;
 };
 
 }  // namespace clothbench::pbd_gpu

@@ -47,7 +47,8 @@ struct ContactLedger {
   uint self_near[2];                 // its pairs near in this substep, before and after the lines
   uint self_touching[2];             // those of them that have contacts
   uint touched_vertices;             // vertices with pairs of their own or of their triangles
-  uint unused0[3];
+  uint far;                          // 1: the frame was done without contact (plane_far.glsl)
+  uint unused0[2];
 };
 
 /// Of a triangle of the cloth, by half of the thickness larger: at rest, and grown by its vertices' reaches.

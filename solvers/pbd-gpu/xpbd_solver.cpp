@@ -87,7 +87,8 @@ class Xpbd final : public GpuSolver {
     const Choice tension = tension_of(scene(), settings());
     if (!tension.on) leave_out("implicit tension", tension.why_not);
     const Choice coupling = coupling_of(scene(), settings());
-    if (!coupling.on) leave_out("coupling of families", coupling.why_not);
+    const bool soft = scene().material.membrane_stiffness_N_per_m && scene().needs.has(Feature::Shear);
+    if (!coupling.on) leave_out("coupling of families", coupling.why_not, soft ? "sheet_Y" : "");
     if (const int calm = substeps_without_gravity(scene(), settings()); calm > 0)
       leave_out(std::to_string(calm) + " substeps",
                 "gravity takes the cloth far in a frame: " + std::to_string(xpbd_substeps(scene(), settings())));

@@ -52,9 +52,10 @@ TEST(Verdict, AParameterIsHeardAndHeld) {
 TEST(Verdict, WithoutModuliNoSolverIsFlagged) {
   const auto full = solver_materials({});
   const StiffnessNeed strip{true, false, false};
-  EXPECT_EQ(stiffness_flag(full, "a", strip), "");
+  EXPECT_EQ(stiffness_flag(full, "a", "default", strip), "");
   const std::vector<RunRecord> runs = {measured("a", "substeps=2", false, right())};
-  EXPECT_EQ(stiffness_flag(solver_materials(runs), "a", strip), "") << "no measured at the default setting";
+  EXPECT_EQ(stiffness_flag(solver_materials(runs), "a", "substeps=2", strip), "")
+      << "no measured at the default setting";
 }
 
 /// Scenes are not listed by hand: which stiffness a truth depends on is found by changing it.
@@ -127,6 +128,42 @@ TEST(Verdict, UnrankedSolversAreShownButNeverFirst) {
   EXPECT_EQ(ranks.rows[1], (std::vector<std::string>{"deaf", "1", "1.00", "1.00", "1.00"}));
   EXPECT_EQ(ranks.rows[2], (std::vector<std::string>{"good", "2", "1.41", "1.41", "1.41"}))
       << "first of one, then second of two";
+}
+
+std::string strip_scene() {
+  return json{{"name", "hang"},
+              {"truth", {{"case", "heavy-strip"}}},
+              {"material", {{"shear", false}}},
+              {"time", {{"frame_rate_hz", 60}}}}
+      .dump();
+}
+
+TEST(Verdict, EachSettingIsRankedByItsOwnModulus) {
+  auto soft = right();
+  soft["E_strip"] = 0.8;
+  const std::vector<RunRecord> moduli = {measured("a", "default", true, right()), measured("a", "fast", false, soft)};
+  std::vector<RunRecord> runs(3, run("hang", "heavy-strip", "a", 1e-3, 1e-5));
+  runs[1].header.setting = "fast";  // quicker, and not ranked
+  runs[1].summary["frame_wall_median_s"] = 1e-4;
+  runs[2].header.setting = "unmeasured";
+  for (RunRecord& r : runs) r.header.scenario_json = strip_scene();
+  const auto materials = solver_materials(moduli);
+  const auto diagrams = work_diagrams(runs, materials);
+  EXPECT_TRUE(diagrams[0].flagged.empty()) << "one setting is ranked";
+  EXPECT_EQ(work_table(diagrams).rows[1][11], "at 1 of 3 settings");
+  EXPECT_EQ(winners_table(diagrams).rows[1][2], "a (60)") << "by the ranked setting";
+  for (const WorkPoint& p : diagrams[0].points)
+    EXPECT_EQ(p.not_ranked, p.setting == "default" ? "" : "depends on settings: 1.01 at default, 0.8 at fast");
+}
+
+TEST(Verdict, ThePlanOfARunComesFirst) {
+  RunRecord r = run("hang", "heavy-strip", "a", 1e-3, 1e-5);
+  const auto materials = solver_materials({});
+  r.header.plan = {{"left_out", {{{"what", "threads"}, {"why", "too few"}, {"no_parameter", "sheet_Y"}}}}};
+  r.header.scenario_json = strip_scene();
+  EXPECT_EQ(stiffness_flag(materials, r), "") << "another stiffness";
+  r.header.plan["left_out"][0]["no_parameter"] = "strip_Y";
+  EXPECT_EQ(stiffness_flag(materials, r), "the run has no threads: too few");
 }
 
 TEST(Floors, ErrorsBelowTheMeshsOwnShareARank) {

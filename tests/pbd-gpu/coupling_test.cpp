@@ -17,7 +17,11 @@ class Coupled : public Gpu {
     solver->load(s);
     std::string why;
     for (const LeftOut& l : solver->plan().left_out)
-      if (l.what == "coupling of families") why = l.why;
+      if (l.what == "coupling of families") {
+        why = l.why;
+        const bool sheet = s.material.membrane_stiffness_N_per_m && s.needs.has(Feature::Shear);
+        EXPECT_EQ(l.no_parameter, sheet ? "sheet_Y" : "") << "the modulus of an elastic sheet is below Y without it";
+      }
     int buffers = 0;
     for (const auto& b : solver->plan().buffers)
       buffers += b.name == "creep of links" || b.name == "shifts by columns and rows";

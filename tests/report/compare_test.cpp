@@ -74,6 +74,10 @@ TEST(CompareRuns, TellsTimesResultsAndOutcomesApart) {
                               run("new", 1e-3, 0.5)};
   b[2].outcome.status = "diverged";
   b[2].outcome.klass = "F1";
+  const char* kOfMachine[] = {"frame_cpu_median_s", "frame_rendered_median_s",   "stage_device_median_s.Lines",
+                              "untimed_s",          "cpu_clock_end_Hz",          "temperature_start_C",
+                              "sampled_fps_mean",   "expect.frame_wall_median_s"};
+  for (const char* name : kOfMachine) b[1].summary[name] = 7;
   const auto runs = compare_runs(a, b);
   ASSERT_EQ(runs.size(), 5u);
   EXPECT_TRUE(runs[0].time.noise() && runs[0].metrics.empty() && runs[0].outcome.empty());

@@ -83,6 +83,14 @@ TEST(Penetration, SetUpsAreToldByWhatTouches) {
       for (const auto& row : t.rows) EXPECT_EQ(row.size(), t.rows[0].size()) << t.title;
 }
 
+TEST(Penetration, AStudySaysTheSetUp) {
+  RunRecord c = desk_run("xpbd", "default", "any_vertex_inside");
+  c.header.environment["set_up"] = "hand";
+  const std::vector<RunRecord> runs = {c};
+  EXPECT_EQ(set_ups(runs).at(0).kind, "hand") << "not of the room that it touches";
+  EXPECT_EQ(set_ups(runs).size(), 1u);
+}
+
 TEST(Penetration, TableShowsNumbersInTheirUnits) {
   std::vector<RunRecord> runs = {desk_run("xpbd", "default", "any_vertex_inside"),
                                  desk_run("paper", "default", "any_vertex_inside")};

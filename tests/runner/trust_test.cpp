@@ -11,6 +11,7 @@
 #include "clothbench/record.hpp"
 #include "runner/effective_moduli.hpp"
 #include "runner/metamorphic.hpp"
+#include "runner/solver_run.hpp"
 #include "runner/study_runner.hpp"
 #include "runner/threshold.hpp"
 #include "scenario/load.hpp"
@@ -36,7 +37,9 @@ class Doomed final : public ClothSolver {
   StepStatus step(const FrameInput&) override { return fate_(*scene_, state_); }
   void read_state(ClothState& out) const override { out = state_; }
   FrameCost last_cost() const override { return {kMissing, {kMissing}, {kMissing}, {kMissing}}; }
-  Plan plan() const override { return {{{"stand", scene_->needs, 0, kMissing, kMissing}}, {}, {}}; }
+  Plan plan() const override {
+    return {{{"stand", scene_->needs, 0, kMissing, kMissing}}, {}, {{"threads", "none here", "sheet_Y"}, {"air", "-"}}};
+  }
 
  private:
   SolverInfo info_;
@@ -59,6 +62,15 @@ SolverEntry doomed(const Fate& fate) {
 
 const nlohmann::json kNone = nlohmann::json::object();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Record, HasWhatIsNoParameterOfTheRun) {
+  const Scene scene = load_scene("metamorphic/sheet");
+  const SolverEntry entry = doomed([](const Scene&, ClothState&) { return StepStatus::Ok; });
+  const SolverRun run({&scene, &entry, kNone, "default"}, {}, "run");
+  const nlohmann::json& left_out = run.header().plan.at("left_out");
+  EXPECT_EQ(left_out[0], (nlohmann::json{{"what", "threads"}, {"why", "none here"}, {"no_parameter", "sheet_Y"}}));
+  EXPECT_FALSE(left_out[1].contains("no_parameter"));
+}
 
 TEST(Metamorphic, ANanAtOneVertexIsNotLostAmongTheOthers) {
   // Wherever the scene has a collider the first vertex is nowhere; all others are right.

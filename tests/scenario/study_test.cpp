@@ -149,6 +149,14 @@ TEST(Study, NamesWhatItsRunsAreComparedWith) {
   EXPECT_FALSE(study_of(study_text(R"([{"solver":"a"}])")).definition.contains("pairs"));
 }
 
+TEST(Study, NamesTheSetUpsOfItsScenes) {
+  std::string text = study_text(R"([{"solver":"a"}])");
+  EXPECT_FALSE(study_of(text).definition.contains("set_ups"));
+  const std::string shape = R"("labels":["shape"])";
+  text.replace(text.find(shape), shape.size(), shape + R"(,"set_up":"hand")");
+  EXPECT_EQ(study_of(text).definition.at("set_ups"), (nlohmann::json{{"sphere-drop", "hand"}}));
+}
+
 TEST(Study, SceneFilesMayBeLeftUntimed) {
   std::string text = study_text(R"([{"solver":"a"}])");
   EXPECT_TRUE(study_of(text).scenes[0].timed);

@@ -103,6 +103,19 @@ def long_scripts():
                 first = 0
 
 
+def long_shader_functions():
+    """Functions of GLSL, whose first and last line begin in the first column."""
+    for path in files("harness/*.comp", "harness/*.frag", "harness/*.vert", "harness/*.glsl", "solvers/*.comp", "solvers/*.glsl"):
+        first = 0
+        for k, line in enumerate((ROOT / path).read_text().splitlines(), 1):
+            if match := re.match(r"\w+ (\w+)\(", line):
+                first, name = k, match[1]
+            if line.startswith("}") and first:
+                if k - first >= MOST_LINES_OF_A_FUNCTION:
+                    yield f"{path}({first}): {name}: {k - first + 1} lines; at most {MOST_LINES_OF_A_FUNCTION}"
+                first = 0
+
+
 def unformatted():
     sources = files("*.cpp", "*.hpp", "*.h")
     out = subprocess.run(["clang-format-14", "--dry-run", *sources], cwd=ROOT, capture_output=True, text=True).stderr
@@ -114,7 +127,7 @@ def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--list", action="store_true")
     show = arguments.parse_args().list
-    faults = wrong_includes(show) + list(long_files()) + list(long_scripts())
+    faults = wrong_includes(show) + list(long_files()) + list(long_scripts()) + list(long_shader_functions())
     missing = [program for program in ("pmccabe", "clang-format-14") if not shutil.which(program)]
     if "pmccabe" not in missing:
         faults += long_functions()

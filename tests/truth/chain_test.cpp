@@ -8,6 +8,17 @@
 namespace clothbench::truth {
 namespace {
 
+/// Kinetic and potential energy, over (strip mass * g * L); 0 height at the held end.
+double chain_energy(const SwingingChain& c, const ChainState& s) {
+  double energy = 0;
+  for (std::size_t j = 1; j < s.x_m.size(); ++j) {
+    const double mass = (j + 1 < s.x_m.size() ? 1 : c.end_mass_ratio) / c.links;
+    const double v2 = s.x_speed_m_per_s[j] * s.x_speed_m_per_s[j] + s.z_speed_m_per_s[j] * s.z_speed_m_per_s[j];
+    energy += mass * (0.5 * v2 / (c.gravity_m_per_s2 * c.length_m) + s.z_m[j] / c.length_m);
+  }
+  return energy;
+}
+
 TEST(SwingingChain, PublishedRows) {
   const PrintedTable table("swinging_chain.csv");
   std::map<std::pair<int, double>, std::vector<PrintedTable::Row>> cases;
@@ -73,7 +84,6 @@ TEST(SwingingChain, PointsBetweenNodes) {
   EXPECT_EQ(chain_position_m(s, 0.25), (std::array<double, 2>{0.5, -1}));
   EXPECT_EQ(chain_position_m(s, 0.75), (std::array<double, 2>{2, -2}));
   EXPECT_EQ(chain_position_m(s, 1), (std::array<double, 2>{3, -2}));
-  EXPECT_EQ(chain_speed_m_per_s(s, 0.75), (std::array<double, 2>{4.5, 4}));
 }
 
 TEST(SwingingChain, TipFallsFreelyAtFirst) {

@@ -9,6 +9,14 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+/// capstan_ratio with contact at vertices only, over m equal turns d = beta/m (a polygon of cloth edges on a round
+/// cylinder):
+///   T2/T1 = [(1 + mu tan(d/2)) / (1 - mu tan(d/2))]^m, order 2 in 1/m.
+/// Source: friction cone at each vertex.
+double polygonal_capstan_ratio(double friction, double wrap, int turns) {
+  return std::exp(turns * 2 * std::atanh(friction * std::tan(wrap / (2 * turns))));
+}
+
 TEST(Capstan, PublishedRatios) {
   const PrintedTable table("capstan.csv");
   for (const auto& row : table.rows()) {

@@ -33,16 +33,6 @@ TEST(FreeFall, DampedSolvesItsEquation) {
   EXPECT_NEAR(fall_speed_m_per_s({0, 0, 9.81, 4}, 100), -9.81 / 4, 1e-12);
 }
 
-TEST(FreeFall, SemiImplicitEulerIsReproducedStepByStep) {
-  const double dt = 1.0 / 72;
-  double z = 1, v = 0.3;
-  for (int k = 0; k < 36; ++k) {
-    v -= 9.81 * dt;
-    z += v * dt;
-  }
-  EXPECT_NEAR(semi_implicit_fall_height_m({1, 0.3, 9.81, 0}, 36 * dt, dt), z, 1e-14);
-}
-
 TEST(Spin, PublishedTipRadii) {
   // tan(k l)/k, l = 0.5 m, Y = 1000 N/m, rho = 0.2 kg/m2.
   const Pair printed[] = {{5, 0.50020844}, {10, 0.50083500}, {20, 0.50336022}, {40, 0.51377428}};
@@ -76,7 +66,6 @@ TEST(Pendulum, PublishedAngles) {
   const Pendulum p{1, 9.81, std::numbers::pi / 2};
   const Pair printed[] = {{0.1, 1.5217503}, {0.2, 1.3748476}, {0.3, 1.1321863}, {0.4, 0.8016301}, {0.5, 0.4017708}};
   for (const auto& [t, angle] : printed) EXPECT_NEAR(pendulum_angle_rad(p, t), angle, 5e-8) << t;
-  EXPECT_NEAR(2 * std::numbers::pi * std::sqrt(rigid_sheet_pendulum_length_m(1) / 9.81), 1.637947, 1e-6);  // rounded up
 }
 
 TEST(Pendulum, SolvesItsEquation) {
@@ -102,7 +91,8 @@ TEST(Incline, PublishedRows) {
     table.expect(stop(i).distance_m, row.at("stop_distance"), row_text(row));
     table.expect(stop(i).time_s, row.at("stop_time"), row_text(row));
   }
-  EXPECT_NEAR(critical_angle_rad(0.3) / kDegree, 16.6992, 5e-5);
+  EXPECT_TRUE(sticks({16.6991 * kDegree, 0.3, 0, 9.81}));
+  EXPECT_FALSE(sticks({16.6993 * kDegree, 0.3, 0, 9.81}));
 }
 
 TEST(Incline, MotionIsThatOfTheStop) {

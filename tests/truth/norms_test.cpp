@@ -127,8 +127,6 @@ TEST(Norms, OverTime) {
   EXPECT_NEAR(time_rms(times, errors), std::sqrt((2 + 8) / 3.0), 1e-15);
   EXPECT_TRUE(std::isnan(time_rms(times, bad)));
   EXPECT_THROW(time_rms(back, errors), Error);
-  EXPECT_NEAR(correct_digits(1e-4), 4, 1e-14);
-  EXPECT_TRUE(std::isnan(correct_digits(kNan)));
   EXPECT_NEAR(quantity_error(1.1, 1, 0.5), 0.2, 1e-14);
   EXPECT_TRUE(std::isnan(quantity_error(kNan, 1, 0.5)));
 }
@@ -146,17 +144,6 @@ TEST(Norms, Stretch) {
   strains[7] = kNan;
   EXPECT_TRUE(std::isnan(stretch_error(strains, truth).p99));
   EXPECT_THROW(stretch_error({}, {}), Error);
-}
-
-TEST(Norms, Energy) {
-  const std::vector<double> energies{5, 4, 7, 4.5}, work{0, 0, 1.5, 0}, bad{5, kNan, 5};
-  const EnergyError e = energy_error(energies, {}, 2);
-  EXPECT_EQ(e.drift, 1);
-  EXPECT_EQ(e.end, -0.25);
-  EXPECT_EQ(e.gain, 1);
-  EXPECT_EQ(energy_error(energies, work, 2).gain, 0.25);
-  EXPECT_TRUE(std::isnan(energy_error(bad, {}, 1).drift));
-  EXPECT_TRUE(std::isnan(energy_error(bad, {}, 1).gain));
 }
 
 // The whole way of a reference case: a strip's truth on the lattice, and a coarse chain's error against a fine one's,

@@ -72,6 +72,9 @@ struct BufferPlan {
 
 struct LeftOut {
   std::string what, why;
+  /// Stiffness that is no parameter of this cloth without it: "strip_Y" (Y of cloth without shear), "sheet_Y" or "B".
+  /// Empty if none. The report does not rank the run by an answer that depends on it.
+  std::string no_parameter = {};
 };
 
 /// Everything `load` set up for this scene and nothing else.

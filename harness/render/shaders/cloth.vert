@@ -1,5 +1,4 @@
 #version 450
-#extension GL_GOOGLE_include_directive : require
 #include "../render_shared.h"
 // Draws 6 vertices a cell of the grid, or 3 a triangle of a mesh, which pull their positions from the solver's own buffer (or one like it). There are no
 // indices, so that every vertex knows its triangle and one with a corner that is not finite can be left out whole.

@@ -1,5 +1,4 @@
 #version 450
-#extension GL_GOOGLE_include_directive : require
 #include "../render_shared.h"
 layout(push_constant) uniform Constants { Drawn d; };
 // Two vec4 a vertex: position from the picture's origin [m] and look; normal, unit.

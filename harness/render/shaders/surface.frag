@@ -1,5 +1,4 @@
 #version 450
-#extension GL_GOOGLE_include_directive : require
 #include "../render_shared.h"
 layout(constant_id = 0) const bool kCloth = true;
 layout(push_constant) uniform Constants { Drawn d; };

@@ -1,6 +1,5 @@
 #version 450
 // Kim, Ma & Hong 2025, 3.2.3: predicted position. P.w = inverse mass.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) readonly buffer Velocities { vec4 v[]; };

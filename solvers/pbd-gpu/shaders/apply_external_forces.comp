@@ -1,6 +1,5 @@
 #version 450
 // Kim, Ma & Hong 2025, 3.2.3: gravity onto the velocities. V.w = inverse mass, 0 where pinned.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
 layout(push_constant) uniform Push { PaperConstants p; };

@@ -1,6 +1,5 @@
 #version 450
 // Kim, Ma & Hong 2025, 3.2.3: mean of a particle's corrections onto its predicted position; clears the sums.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_DELTAS) buffer Deltas { uvec4 d[]; };
 layout(std430, binding = BIND_PREDICTED) buffer Predicted { vec4 q[]; };

@@ -6,7 +6,6 @@
 // and integrates what it loads. A mesh that bends has passes before the first family: one that integrates, then the iterations
 // of its bending, a thread a vertex. A dispatch is one pass, or with PERSISTENT any number of them: then all its workgroups run
 // at once, and wait for one another after each.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 CHAIN_CONSTANTS(SPECIALIZE)
 layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };  // w: inverse mass

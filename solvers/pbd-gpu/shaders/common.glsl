@@ -1,6 +1,10 @@
 // Included by every kernel. LOAD/STORE count bytes in the instrumented build, which the
 // test of the byte table runs; in the normal build they are plain accesses.
-#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#ifdef SHUFFLES
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#endif
 #include "../pbd_shared.h"
 
 layout(local_size_x_id = 0) in;

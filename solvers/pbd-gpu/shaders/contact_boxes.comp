@@ -1,6 +1,5 @@
 #version 450
 // Boxes of the clusters of moving meshes, round their paths through the frame: corners move in straight lines.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_CLUSTERS) readonly buffer Clusters { MeshCluster clusters[]; };
 layout(std430, binding = BIND_CLUSTER_BOXES) writeonly buffer ClusterBoxes { ClusterBox cluster_boxes[]; };

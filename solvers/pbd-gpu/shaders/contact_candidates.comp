@@ -3,7 +3,6 @@
 // edge that begins with it, can meet on its path. A bound that is kept (contact_vertices) and not a guess, and a list that
 // cannot overflow. Before the words of a vertex' bits come blocks, a bit for each word that is not 0: of a whole room's hundreds
 // of words few are looked at.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) readonly buffer Velocities { vec4 v[]; };

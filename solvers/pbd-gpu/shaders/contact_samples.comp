@@ -4,7 +4,6 @@
 // its side as vertices do, follows its edge as far as contact lets it, and asks the two vertices for the
 // rest. Edges are named by their first vertex: towards the next column, the next row, and both.
 #define SAMPLE
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) readonly buffer Velocities { vec4 v[]; };

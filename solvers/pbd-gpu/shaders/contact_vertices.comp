@@ -1,7 +1,6 @@
 #version 450
 // End of a substep: every vertex goes from where it was at the substep's start as far towards where it now is as contact
 // lets it, after taking its share of what the samples on its edges need. X.w = inverse mass, 0 where pinned or held.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };

@@ -1,6 +1,19 @@
 // One family of lines, its state in memory: the buffers x, v, rx, rv, lx, lv and regularisation. A frame with
 // contact (PLANE_FRAME) predicts nothing.
 // Compensation terms are of the first family's chains, so threads that stay with them keep them from substep to substep.
+void store_history(uint at[K]) {
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    if (w[k] == 0.0) continue;
+    STORE16(rx, at[k], vec4(rest_pos[k], 0.0));
+    STORE16(rv, at[k], vec4(rest_vel[k], 0.0));
+#ifndef PLANE_FRAME
+    if (!kPredicts) continue;
+    STORE16(lx, at[k], vec4(last_pos[k], 0.0));
+    STORE16(lv, at[k], vec4(last_vel[k], 0.0));
+#endif
+  }
+}
+
 void pass(uint substep, bool first, bool last) {
   uint at[K];
   bool fetches = first && substep == 0u;
@@ -39,16 +52,7 @@ void pass(uint substep, bool first, bool last) {
     least = LOAD4(regularisation, family * max(COLUMNS, ROWS) + chain);
   if (first) {
     integrate();
-    [[unroll]] for (uint k = 0u; k < K; ++k) {
-      if (substep + 1u < p.substeps || w[k] == 0.0) continue;
-      STORE16(rx, at[k], vec4(rest_pos[k], 0.0));
-      STORE16(rv, at[k], vec4(rest_vel[k], 0.0));
-#ifndef PLANE_FRAME
-      if (!kPredicts) continue;
-      STORE16(lx, at[k], vec4(last_pos[k], 0.0));
-      STORE16(lv, at[k], vec4(last_vel[k], 0.0));
-#endif
-    }
+    if (substep + 1u >= p.substeps) store_history(at);
   }
   if (kBends && family < 2u) bend();
   stretch(least);

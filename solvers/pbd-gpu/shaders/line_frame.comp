@@ -1,11 +1,5 @@
 #version 450
 // Cloths of at most 32 x 32 vertices: one workgroup takes each through `substeps` substeps, its state in shared memory.
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
-#ifdef SHUFFLES
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
-#endif
 #include "common.glsl"
 #define SINGLE_BUFFERED_EXCHANGE  // shared memory is for the state
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
@@ -22,6 +16,11 @@ layout(std430, binding = BIND_HINGE_MULTIPLIERS) buffer HingeMultipliers { vec4 
 #ifdef COUPLE
 layout(std430, binding = BIND_SHIFTS) buffer Shifts { vec4 shifts[]; };  // over h^2
 layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
+#endif
+#ifdef FAR
+layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_PIECE_BOXES) readonly buffer PieceBoxes { ClusterBox boxes[]; };  // groups' after pieces'
+PLANE_FRAME_CONSTANTS(SPECIALIZE)
 #endif
 #include "lines.glsl"
 
@@ -41,6 +40,15 @@ void put_shift(uvec2 at, vec4 value) {
   filter_u[o] = value.z;
   filter_v[o] = value.w;
 }
+#endif
+
+#ifdef FAR
+#define CLOTH_LOW cloth_low
+#define CLOTH_HIGH cloth_high
+shared uint near_any;
+#include "plane_cloth_box.glsl"
+#include "plane_reach.glsl"
+#include "plane_far.glsl"
 #endif
 
 vec3 anchor(uvec2 at, uint k) {
@@ -160,6 +168,9 @@ void main() {
   const uint families = kShears ? 4u : 2u;
   family = families - 1u;
   [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
+#ifdef FAR
+  if (!is_far()) return;
+#endif
   load();
   barrier();  // what load() wrote before all read it
   for (uint s = 0u; s < p.substeps; ++s) {
@@ -174,9 +185,16 @@ void main() {
         stretch(chain < 32u && (firm >> chain & 1u) != 0u ? p.regularisation : 0.0);
         if (turn + 1u == families && iteration + 1u == p.iterations) limit_speed();
         give();
+#ifdef FAR
+        if (turn + 1u == families) look_out();
+#endif
         barrier();  // this family's writes before the next one's reads
       }
   }
+#ifdef FAR
+  if (thread == 0u) ledger.far = near_any == 0u ? 1u : 0u;
+  if (near_any != 0u) return;
+#endif
   family = families - 1u;  // whose chains a thread's compensation are of
   take();
   store();

@@ -3,12 +3,6 @@
 // the last limits what it stores; every family has every vertex exactly once, so in place is in order.
 // A dispatch is one family, or with PERSISTENT any number of them: then all its workgroups run at once, and wait for one
 // another after each.
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
-#ifdef SHUFFLES
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
-#endif
 #include "common.glsl"
 layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) coherent buffer Velocities { vec4 v[]; };

@@ -316,17 +316,17 @@ void stretch(float least) {
   }
 }
 
+#ifdef KEEP_MULTIPLIERS
+bool is_hinge[K];
+#endif
 /// Bending along rows and columns: vector constraints C = x[i-1] - 2 x[i] + x[i+1] of the quadratic energy
 /// (B w / 2 a^3) |C|^2 (Bergou et al. 2006 on a line), compliance a^3 / (B w), gradients 1, -2, 1.
-void bend() {
+void hinge_equations() {
   vec4 below, above, none;
   exchange(vec4(pos[K - 1u], w[K - 1u]), 1u, below, none);
   exchange(vec4(pos[0], w[0]), 1u, none, above);
   float alpha = (family == 0u ? p.bend_u : p.bend_v) * border();
   uint n = chain_length(), first = lane * K;
-#ifdef KEEP_MULTIPLIERS
-  bool is_hinge[K];
-#endif
   [[unroll]] for (uint r = 0u; r < BLOCKS; ++r) {
     vec2 diagonal, near_below, far_below, near_above, far_above;
     vec3 right[2];
@@ -356,9 +356,15 @@ void bend() {
     hinge_right[r] =
         mat3x2(right[0].x, right[1].x, right[0].y, right[1].y, right[0].z, right[1].z);
   }
+}
+
+/// Solves the hinges of a row or column, and moves the vertices by it.
+void bend() {
+  hinge_equations();
   mat3x2 block_below;
   solve_hinges(family == 0u ? p.bend_rounds_u : p.bend_rounds_v, block_below);
   vec3 lambda[K];
+  vec4 none, above;
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint r = k / 2u, h = k % 2u;
     lambda[k] = vec3(hinge_right[r][0][h], hinge_right[r][1][h], hinge_right[r][2][h]);
@@ -373,7 +379,7 @@ void bend() {
     move(k, w[k] * (last - 2.0 * lambda[k] + next));
 #ifdef KEEP_MULTIPLIERS
     if (is_hinge[k]) {
-      uint at = family * COLUMNS * ROWS + index_of(vertex(first + k));
+      uint at = family * COLUMNS * ROWS + index_of(vertex(lane * K + k));
       vec3 sum = lambda[k];
       if (iteration > 0u) sum += LOAD16(hinge_multipliers, at).xyz;
       STORE16(hinge_multipliers, at, vec4(sum, 0.0));

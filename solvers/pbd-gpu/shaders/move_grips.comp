@@ -1,5 +1,4 @@
 #version 450
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };

@@ -27,11 +27,14 @@ const float kHold_m = 1e-3;     // a push before the lines of so much doubles a 
 const float kRounding_m = 2e-7;  // of positions
 const float kTiny = 1e-6;       // a weight below is none
 
-/// Of a range of pairs those that are near, `k`, in the list's order.
-#define EACH_NEAR_PAIR(RANGE, BODY)                                                                                          \
+// A bit a pair: whether it is near in this substep, and whether its contact proposes a correction in this turn.
+#define NEAR_BITS 0u
+#define PUSH_BITS (CAPACITY / 32u + 1u)
+/// Of a range of pairs those that have a bit, `k`, in the list's order.
+#define EACH_PAIR_OF(BITS, RANGE, BODY)                                                                                      \
   uvec2 of = (RANGE).xy;                                                                                                     \
   for (uint word = of.x / 32u, last = of.x + of.y; 32u * word < last; ++word) {                                              \
-    uint bits = LOAD4(near_bits, word);                                                                                      \
+    uint bits = LOAD4(near_bits, (BITS) + word);                                                                             \
     if (32u * word < of.x) bits &= ~0u << of.x % 32u;                                                                        \
     if (last - 32u * word < 32u) bits &= (1u << last % 32u) - 1u;                                                            \
     for (; bits != 0u; bits &= bits - 1u) {                                                                                  \
@@ -39,6 +42,11 @@ const float kTiny = 1e-6;       // a weight below is none
       BODY                                                                                                                   \
     }                                                                                                                        \
   }
+
+// In `touched`, after the list of vertices that pairs may move: marks of a vertex.
+#define OF_PAIRS(i) (VERTICES + (i))             // number of its pairs and its triangles' in this frame
+#define PUSHED(i) (2u * VERTICES + (i))          // a contact proposes a correction in this turn
+#define BEFORE_A_PLANE(i) (3u * VERTICES + (i))  // or so near that rounding cannot tell: it may be behind a plane
 
 uint turn = 0u;  // 0: before the lines, with the predicted positions; 1 and on: rounds of responses after them
 float t_begin = 0.0, t_end = 1.0;  // of the substep, as fractions of the frame

@@ -1,5 +1,6 @@
 // A plane for a pair that was looked at: across its start's normal where the proposed end is before it, else across any that
 // parts both ends of the way. Vertices go straight, so what a plane parts at both ends it parts in between.
+const float kUnsure_m = 1e-6;  // distances that rounding decides
 vec3 starting[3], proposed[3];
 
 float farthest_point(vec3 n) {
@@ -46,4 +47,6 @@ void choose(uint k) {
   }
   states[k].way = vec4(n, farthest_point(n) + dot(n, around) + least);
   states[k].push = vec4(0.0);  // multipliers of plane_project
+  for (uint c = 0u; c < 3u; ++c)
+    if (!(dot(n, y[e[c]].xyz) - states[k].way.w > kUnsure_m)) touched[BEFORE_A_PLANE(e[c])] = 1u;
 }

@@ -2,12 +2,6 @@
 // A frame of cloth with contact by planes in one dispatch: the list of pairs, then every substep with its lines, phase for phase as
 // the kernels of the phases have it and with the same bits. One workgroup takes a cloth of at most 32 x 32 vertices; with
 // MANY_GROUPS any number of workgroups that run at once wait for one another (device_barrier.glsl).
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
-#ifdef SHUFFLES
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
-#endif
 #include "common.glsl"
 #define PLANE_FRAME
 #ifdef MANY_GROUPS
@@ -60,7 +54,6 @@ vec3 anchor(uvec2 at, uint k) {
 #include "plane_gather.glsl"
 #include "plane_choose.glsl"
 #include "plane_project.glsl"
-#include "box_bits.glsl"
 const uint kThreads = THREADS;
 #define SCAN_RANGES ranges
 #define SCAN_COUNT (TRIANGLES + VERTICES)
@@ -82,7 +75,8 @@ shared uint asked[2];
 #define CLOTH_LOW cloth_low
 #define CLOTH_HIGH cloth_high
 #endif
-shared uint any_near, cloth_low[3], cloth_high[3];
+shared uint any_near;
+#include "plane_cloth_box.glsl"
 #define NEAR_COUNT COUNTED(min(turn, 1u))
 #include "plane_near.glsl"
 
@@ -90,31 +84,11 @@ const uint kTurns = 3u;
 uint me, all_threads;  // this thread among those of all workgroups
 #define EACH(i, count) for (uint i = me; i < (count); i += all_threads)
 
-/// Reaches of all vertices, and the box of everywhere that the cloth may go in the frame: first of a thread's vertices, then of a
-/// subgroup, a workgroup, all of them, so that few threads wait for one another's sums.
+/// Reaches of all vertices, and the box of everywhere that the cloth may go in the frame.
 void reach_and_widen(float carried) {
   uvec3 from = uvec3(kLowNone), to = uvec3(kHighNone);
-  EACH(i, VERTICES) {
-    vec4 reach = reach_of_vertex(i, carried);
-    for (uint c = 0u; c < 3u; ++c) {
-      from[c] = min(from[c], ordered(reach[c] - reach.w));
-      to[c] = max(to[c], ordered(reach[c] + reach.w));
-    }
-  }
-  barrier();  // all lanes have theirs
-#ifdef SHUFFLES
-  for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) {
-    from = min(from, subgroupShuffleXor(from, n));
-    to = max(to, subgroupShuffleXor(to, n));
-  }
-  bool speaks = gl_SubgroupInvocationID == 0u;
-#else
-  const bool speaks = true;
-#endif
-  for (uint c = 0u; speaks && c < 3u; ++c) {
-    atomicMin(cloth_low[c], from[c]);
-    atomicMax(cloth_high[c], to[c]);
-  }
+  EACH(i, VERTICES) widen(from, to, reach_of_vertex(i, carried));
+  widen_box(from, to);
 #ifdef MANY_GROUPS
   barrier();  // the workgroup's box before that of all
   if (thread < 3u) {
@@ -123,19 +97,11 @@ void reach_and_widen(float carried) {
   }
 #endif
 }
-bool meets_cloth(ClusterBox b) {
-  for (uint c = 0u; c < 3u; ++c)
-    if (CLOTH_LOW[c] > ordered(b.high[c]) || ordered(b.low[c]) > CLOTH_HIGH[c]) return false;
-  return true;
-}
 
 /// The frame's list of pairs. Where no piece comes near the cloth there is none, and it costs a look at the groups' boxes.
 bool list_pairs() {
   if (thread == 0u) any_near = 0u;
-  if (thread < 3u) {
-    cloth_low[thread] = kLowNone;
-    cloth_high[thread] = kHighNone;
-  }
+  empty_box();
 #ifndef MANY_GROUPS
   if (thread < 2u) COUNTED(thread) = 0u;
 #endif
@@ -162,14 +128,29 @@ bool list_pairs() {
   return true;
 }
 
-/// Threads of one workgroup share the near pairs out once all are known; workgroups ask them at once, for waiting costs them more.
+// A workgroup looks through its share of the pairs a few rounds at a time. Its threads share out those that remain after each question,
+// so that no thread waits for its neighbour's answer.
+const uint kRounds = 4u;
+shared uint looked_at[kRounds * THREADS], found[kRounds * THREADS], looked, near_ones, place;
 void look_for_near() {
-  EACH(k, ledger.pairs) {
-    if (!is_near(k)) continue;
-    list_near(k);
-#ifdef MANY_GROUPS
-    ask(k);
-#endif
+  for (uint base = me - thread; base < ledger.pairs; base += kRounds * all_threads) {
+    if (thread == 0u) looked = near_ones = 0u;
+    barrier();  // before they are counted
+    for (uint r = 0u; r < kRounds; ++r) {
+      uint k = base + r * all_threads + thread;
+      if (k < ledger.pairs && may_be_near(k)) looked_at[atomicAdd(looked, 1u)] = k;
+    }
+    barrier();  // all that may be near are known
+    for (uint n = thread; n < looked; n += THREADS)
+      if (is_near(looked_at[n])) found[atomicAdd(near_ones, 1u)] = looked_at[n];
+    barrier();  // all that are near are known
+    if (thread == 0u) place = atomicAdd(NEAR_COUNT, near_ones);
+    barrier();  // where they are listed
+    for (uint n = thread; n < near_ones; n += THREADS) {
+      list_near(found[n], place + n);
+      ask(found[n]);
+    }
+    barrier();  // before the next rounds
   }
 }
 
@@ -197,22 +178,15 @@ bool respond_to_contact(out uint near) {
     forget_near(me, all_threads);
     MEET_OR_FAIL;  // proposals before pairs read them
     look_for_near();
-    MEET_OR_FAIL;  // the near pairs before they are shared out
+    MEET_OR_FAIL;  // what contacts propose before vertices take it
   }
   near = COUNTED(min(turn, 1u));
-  if (near > 0u) {
-    EACH(n, near) {
-      uint k = pairs[n].w;
-      if (turn == 2u) respond(k);
-#ifndef MANY_GROUPS
-      else ask(k);
-#endif
-    }
-    MEET_OR_FAIL;  // what contacts propose before vertices take it
+  if (turn == 2u && near > 0u) {
+    EACH(n, near) respond(pairs[n].w);
+    MEET_OR_FAIL;  // as above
   }
   if (me == 0u) COUNTED(turn == 0u ? 1u : 0u) = 0u;
   if (near == 0u && PLANES == 0u) return true;
-  any_pairs = near > 0u;
   gather_all(me, all_threads);
   MEET_OR_FAIL;  // vertices before what reads them
   return true;
@@ -247,7 +221,6 @@ bool substep_with(uint s, bool touches) {
     EACH(n, near) choose(pairs[n].w);
     MEET_OR_FAIL;  // planes before vertices are put before them
   }
-  any_planes = near > 0u;
   project_all(me, all_threads);
   MEET_OR_FAIL;  // the substep's end before the next one
   return true;
@@ -268,6 +241,7 @@ void main() {
     return;
   }
 #endif
+  if (ledger.far != 0u) return;  // the frame is done
   if (!list_pairs()) return;
   bool touches = ledger.pairs > 0u || PLANES > 0u;
   for (uint s = 0u; s < p.substeps; ++s)

@@ -1,11 +1,5 @@
 #version 450
 // A round's end, a thread a vertex; SHUFFLES: a team of lanes.
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
-#ifdef SHUFFLES
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
-#endif
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
@@ -14,7 +8,7 @@ layout(std430, binding = BIND_PREDICTED) buffer Proposed { vec4 y[]; };
 layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
 layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };  // first entry a vertex; 4 triangle + corner
 layout(std430, binding = BIND_RANGES) readonly buffer Ranges { uvec4 ranges[]; };  // x: first pair, y: pairs
-layout(std430, binding = BIND_TOUCHED) readonly buffer Touched { uint touched[]; };
+layout(std430, binding = BIND_TOUCHED) buffer Touched { uint touched[]; };
 layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_NEAR_BITS) readonly buffer NearBits { uint near_bits[]; };
 layout(std430, binding = BIND_PAIR_STATES) readonly buffer States { PairState states[]; };

@@ -3,7 +3,7 @@
 // The sum has a fixed order, whatever the number of lanes that share it: SHARES of it, of a vertex' own pairs and of every SHARES-th
 // triangle, one after another.
 const uint SHARES = 8u;
-bool any_pairs = true;  // in this frame's list of near pairs
+bool any_pairs = true;  // that push the vertex
 vec3 sum, sum_moving;
 float lengths;
 
@@ -32,12 +32,10 @@ void from_half_spaces(vec4 at, vec3 start) {
 }
 
 void from_pairs(uint element, uint corner, float w) {
-  EACH_NEAR_PAIR(LOAD16(ranges, element), {
+  EACH_PAIR_OF(PUSH_BITS, LOAD16(ranges, element), {
     vec4 push = LOAD16_OF(states[k].push);
-    if (push != vec4(0.0)) {
-      float share = w * states[k].weights[corner];
-      propose(share * push.xyz, share * push.w * states[k].normal.xyz);
-    }
+    float share = w * states[k].weights[corner];
+    propose(share * push.xyz, share * push.w * states[k].normal.xyz);
   })
 }
 
@@ -89,8 +87,11 @@ void gather_parts(uint i, vec4 at, bool live) {
 
 void gather(uint i, bool valid) {
   vec4 at = valid ? LOAD16(y, i) : vec4(0.0);
-  gather_parts(i, at, at.w != 0.0);
-  if (team_lane() != 0u || !(lengths > 0.0)) return;
+  any_pairs = valid && PIECES > 0u && LOAD4(touched, PUSHED(i)) != 0u;
+  gather_parts(i, at, at.w != 0.0 && (any_pairs || PLANES > 0u || SELF != 0u));
+  if (team_lane() != 0u) return;
+  if (any_pairs) STORE4(touched, PUSHED(i), 0u);
+  if (!(lengths > 0.0)) return;
   vec3 by = sum / lengths, moving = sum_moving / lengths;
   STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * moving, 0.0));
   if (turn > 0u) {

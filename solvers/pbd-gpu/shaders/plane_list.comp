@@ -1,6 +1,5 @@
 #version 450
 // Start of a frame, a thread an element: counts its pairs; FILL writes them, and what they touch.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_REACHES) readonly buffer Reaches { vec4 reaches[]; };

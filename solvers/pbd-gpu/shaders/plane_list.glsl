@@ -35,7 +35,7 @@ void fill_pairs_of(uint k) {
 void list_touched(uint i) {
   uint pairs_of = LOAD16(ranges, TRIANGLES + i).y;
   for (uint f = LOAD4(fans, i), end = LOAD4(fans, i + 1u); f < end; ++f) pairs_of += LOAD16(ranges, LOAD4(fans, f) / 4u).y;
-  STORE4(touched, VERTICES + i, pairs_of);
+  STORE4(touched, OF_PAIRS(i), pairs_of);
   if (pairs_of > 0u) STORE4(touched, atomicAdd(ledger.touched_vertices, 1u), i);
 }
 #endif

@@ -1,6 +1,5 @@
 #version 450
 // Twice a substep, a thread a pair.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
@@ -9,12 +8,14 @@ layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_PAIRS) buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_NEAR_BITS) buffer NearBits { uint near_bits[]; };
 layout(std430, binding = BIND_PAIR_STATES) buffer States { PairState states[]; };
+#include "plane_geometry.glsl"
 #define NEAR_COUNT ledger.asked[min(turn, 1u)]
 #include "plane_near.glsl"
 
 void main() {
   turn = p.turn;
+  begin_substep(p.first_substep);
   if (item() == 0u) ledger.asked[turn == 0u ? 1u : 0u] = 0u;
   for (uint k = item(); k < ledger.pairs; k += stride())
-    if (is_near(k)) list_near(k);
+    if (may_be_near(k) && is_near(k)) list_near(k, atomicAdd(NEAR_COUNT, 1u));
 }

@@ -9,20 +9,47 @@ float most_of(uvec4 e, bool of_ways) {
   return most;
 }
 
-/// Whether a pair is near enough to be asked in this substep, or has been. Before the lines its bound loses the ways of the last one.
-bool is_near(uint k) {
+/// Most by which a pair may approach in this substep.
+float approach_of(uvec4 e, uint k) { return most_of(e, false) + piece_way(k); }
+
+/// Whether the bound of a pair's distance lets it be near in this substep, or whether it has been. Before the lines the bound loses the
+/// ways of the last one.
+bool may_be_near(uint k) {
   uvec4 pair = LOAD16(pairs, k);
   uvec4 e = LOAD16(elements, pair.x);
-  float moved = piece_way(pair.y), bound = states[k].normal.w;
+  float bound = states[k].normal.w;
   if (turn == 0u) {
-    bound -= most_of(e, true) + moved;
+    bound -= most_of(e, true) + piece_way(pair.y);
     states[k].normal.w = bound;
     if (pair.z != 0u) pairs[k].z = pair.z = 0u;
   }
-  return bound <= most_of(e, false) + moved || pair.z != 0u;
+  return bound <= approach_of(e, pair.y) || pair.z != 0u;
 }
 
-void list_near(uint k) {
-  atomicOr(near_bits[k / 32u], 1u << k % 32u);
-  pairs[atomicAdd(NEAR_COUNT, 1u)].w = k;
+/// Whether it is: not if the gap along the last normal, or from middle to middle, is too wide. That is a bound like any other, and costs
+/// less than nearest points.
+bool is_near(uint k) {
+  uvec4 pair = LOAD16(pairs, k);
+  if (pair.z != 0u) return true;
+  uvec4 e = LOAD16(elements, pair.x);
+  piece = pieces[pair.y];
+  around = starts[e.x].xyz;
+  for (uint c = 0u; c < 3u; ++c) cloth[c] = starts[e[min(c, e.w - 1u)]].xyz - around;
+  vec3 n = states[k].normal.xyz;
+  if (n == vec3(0.0)) {
+    for (uint c = 0u; c < 3u; ++c) n += cloth[c] / 3.0;
+    for (uint j = 0u; j < piece.count; ++j) n -= point_at(j, t_begin) / float(piece.count);
+  }
+  float l = length(n);
+  if (!(l > 0.0)) return true;
+  n /= l;
+  float gap = gap_now(n, t_begin) - piece.radius;
+  if (!(gap > approach_of(e, pair.y))) return true;
+  states[k].normal = vec4(n, gap);
+  return false;
+}
+
+void list_near(uint k, uint place) {
+  atomicOr(near_bits[NEAR_BITS + k / 32u], 1u << k % 32u);
+  pairs[place].w = k;
 }

@@ -1,7 +1,6 @@
 #version 450
 // Start of a frame, a workgroup a group of neighbouring pieces: where the points of those that move are at its start and end, their
 // boxes round their ways, radii and margins, and the group's box. low.w: greatest displacement of any of their points.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "box_bits.glsl"
 layout(std430, binding = BIND_POINT_SOURCES) readonly buffer Sources { PointSource sources[]; };

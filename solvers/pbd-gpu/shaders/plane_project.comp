@@ -1,10 +1,5 @@
 #version 450
 // A substep's end, a thread a vertex; SHUFFLES: a team of lanes.
-#extension GL_GOOGLE_include_directive : require
-#ifdef SHUFFLES
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
-#endif
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_POSITIONS) writeonly buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
@@ -14,7 +9,7 @@ layout(std430, binding = BIND_STARTS) buffer Starts { vec4 starts[]; };  // at t
 layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };
 layout(std430, binding = BIND_RANGES) readonly buffer Ranges { uvec4 ranges[]; };
 layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
-layout(std430, binding = BIND_TOUCHED) readonly buffer Touched { uint touched[]; };
+layout(std430, binding = BIND_TOUCHED) buffer Touched { uint touched[]; };
 layout(std430, binding = BIND_NEAR_BITS) readonly buffer NearBits { uint near_bits[]; };
 layout(std430, binding = BIND_PAIRS) readonly buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_PAIR_STATES) buffer States { PairState states[]; };

@@ -4,7 +4,6 @@
 const uint kSweeps = 30u;
 const float kNoPlace_m = 2e-6;  // that a vertex may lack before its planes, by rounding
 uint first_fan, end_fan, fan_step = 1u;
-bool any_planes = true;  // of pairs
 vec3 start;
 
 /// Offset of a half-space of the scene in this substep; what starts behind it goes no deeper.
@@ -14,9 +13,9 @@ float half_space(PlaneShape s) {
 
 // Every plane of the vertex: `n`, `s` and `k`, its pair.
 #define EACH_PLANE(BODY)                                                     \
-  for (uint f = first_fan; any_planes && f < end_fan; f += fan_step) {       \
+  for (uint f = first_fan; f < end_fan; f += fan_step) {       \
     uint fan = fans[f], corner = fan % 4u;                                   \
-    EACH_NEAR_PAIR(ranges[fan / 4u],                                         \
+    EACH_PAIR_OF(NEAR_BITS, ranges[fan / 4u],                                \
       if ((pairs[k].z & PAIR_PLANE) == 0u) continue;                         \
       vec4 plane = states[k].way;                                            \
       vec3 n = plane.xyz;                                                    \
@@ -178,6 +177,9 @@ void project(uint i, bool valid) {
   vec3 at = proposed.xyz;
   if (proposed.w > 0.0) {
     at = within(at, from.w);
+  }
+  bool behind = PLANES > 0u || SELF != 0u || (PIECES > 0u && valid && LOAD4(touched, BEFORE_A_PLANE(i)) != 0u);
+  if (proposed.w > 0.0 && (behind || at != proposed.xyz)) {
     uint first = LOAD4(fans, i);
     end_fan = LOAD4(fans, i + 1u);
     first_fan = first + team_lane();
@@ -188,6 +190,7 @@ void project(uint i, bool valid) {
   }
   least = least_of_team(least);
   if (!valid || team_lane() != 0u) return;
+  if (behind && PIECES > 0u) STORE4(touched, BEFORE_A_PLANE(i), 0u);
   if (proposed.w > 0.0 && !(least >= 0.0)) at = placed(at, from.w);
   end_substep(i, proposed, at);
 }
@@ -196,7 +199,7 @@ void project(uint i, bool valid) {
 void project_all(uint first, uint at_once) {
   bool all_of_them = PLANES > 0u || SELF != 0u;
   for (uint i = first; !all_of_them && i < VERTICES; i += at_once)
-    if (PIECES == 0u || LOAD4(touched, VERTICES + i) == 0u) project_free(i);
+    if (PIECES == 0u || LOAD4(touched, OF_PAIRS(i)) == 0u) project_free(i);
   uint count = all_of_them ? VERTICES : PIECES == 0u ? 0u : ledger.touched_vertices;
   for (uint n = first / TEAM; most_of_subgroup(n < count ? 1u : 0u) != 0u; n += at_once / TEAM) {
     bool valid = n < count;

@@ -29,3 +29,13 @@ vec4 push_of(uvec4 e, PairState s) {
   if (l > 0.0 && moving > 0.0) by -= min(1.0, piece.friction * moving / l) * slip;
   return vec4(by, push + out_by - moving) / mass;
 }
+
+/// Marks a pair whose contact proposes something, and its vertices, so that others need not be read.
+void mark_push(uint k, uvec4 e, bool proposes, bool proposed) {
+  if (proposes) {
+    for (uint c = 0u; c < e.w; ++c) touched[PUSHED(e[c])] = 1u;
+    if (!proposed) atomicOr(near_bits[PUSH_BITS + k / 32u], 1u << k % 32u);
+  } else if (proposed) {
+    atomicAnd(near_bits[PUSH_BITS + k / 32u], ~(1u << k % 32u));
+  }
+}

@@ -54,6 +54,7 @@ void ask(uint k) {
     pair.z = look(e, s);
     pairs[k].z = pair.z;
   }
-  if ((pair.z & PAIR_NEAREST) != 0u) s.push = push_of(e, s);
+  s.push = (pair.z & PAIR_NEAREST) != 0u ? push_of(e, s) : vec4(0.0);
+  mark_push(k, e, s.push != vec4(0.0), false);
   states[k] = s;
 }

@@ -7,17 +7,24 @@ float greatest_displacement() {
   return carried;
 }
 
-/// The reach of vertex i, in .w of its place.
-vec4 reach_of_vertex(uint i, float carried) {
-  vec4 at = LOAD16(x, i);
+/// The reach of vertex i at `at`.
+float reach_from(uint i, vec4 at, float carried) {
   float pulled = 0.0;  // by the hand that goes farthest: it may take any vertex along
   for (uint k = 0u; k < GRIPS; ++k) {
     GripVertex grip = LOAD(48u, grips, k);
     if (grip.held != 0u) pulled = max(pulled, distance(LOAD16(x, grip.vertex).xyz, grip.to.xyz));
   }
-  float reach = p.reach_m + 1.5 * length(LOAD16(v, i).xyz) * p.frame_s + carried + pulled;
+  return p.reach_m + 1.5 * length(LOAD16(v, i).xyz) * p.frame_s + carried + pulled;
+}
+
+#ifndef FAR
+/// The same in .w of its place, and kept for the frame.
+vec4 reach_of_vertex(uint i, float carried) {
+  vec4 at = LOAD16(x, i);
+  float reach = reach_from(i, at, carried);
   STORE16(starts, i, vec4(at.xyz, 0.0));
   STORE16(reaches, i, vec4(at.xyz, reach));
   STORE4(ways, i, 0.0);
   return vec4(at.xyz, reach);
 }
+#endif

@@ -3,5 +3,9 @@ void respond(uint k) {
   uvec4 pair = LOAD16(pairs, k);
   if ((pair.z & PAIR_NEAREST) == 0u) return;
   piece = pieces[pair.y];
-  states[k].push = push_of(LOAD16(elements, pair.x), states[k]);
+  uvec4 e = LOAD16(elements, pair.x);
+  PairState s = states[k];
+  vec4 push = push_of(e, s);
+  mark_push(k, e, push != vec4(0.0), s.push != vec4(0.0));
+  states[k].push = push;
 }

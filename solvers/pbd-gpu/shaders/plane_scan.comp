@@ -1,6 +1,5 @@
 #version 450
 // Start of a frame, one workgroup.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
 #ifdef SCAN_SELF

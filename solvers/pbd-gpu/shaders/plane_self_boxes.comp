@@ -1,7 +1,6 @@
 #version 450
 // Start of a frame, a thread a group of neighbouring triangles: boxes of the triangles at rest (share 0) and grown by their vertices'
 // reaches (share 1), each by half of the thickness, and the group's at share 1.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_REACHES) readonly buffer Reaches { vec4 reaches[]; };

@@ -1,6 +1,5 @@
 #version 450
 // Start of a frame, a thread a triangle: counts its pairs with others of the cloth; FILL writes them.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_SELF_ORDER) readonly buffer SelfOrder { uint self_order[]; };

@@ -1,10 +1,5 @@
 #version 450
 // Twice a substep, a thread a triangle; SHUFFLES: a subgroup a triangle.
-#extension GL_GOOGLE_include_directive : require
-#ifdef SHUFFLES
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
-#endif
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_SELF_WAYS) readonly buffer SelfWays { vec4 self_ways[]; };

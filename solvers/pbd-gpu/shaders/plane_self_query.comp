@@ -1,6 +1,5 @@
 #version 450
 // Twice a substep, a thread a near pair: nearest points at the substep's start, and what contacts there propose.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };

@@ -1,6 +1,5 @@
 #version 450
 // A further round of responses, a thread a near pair of triangles of the cloth.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };

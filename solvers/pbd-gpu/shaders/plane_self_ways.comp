@@ -1,6 +1,5 @@
 #version 450
 // Twice a substep, a thread a triangle.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };

@@ -1,6 +1,5 @@
 #version 450
 // After the lines, a thread a vertex.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };

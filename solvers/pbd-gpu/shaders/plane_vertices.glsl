@@ -7,7 +7,7 @@ float farthest(uint i, vec3 to) {
 
 /// Before pairs are asked whether they are near. Thread `first` of `at_once` takes its share.
 void forget_near(uint first, uint at_once) {
-  for (uint k = first; k < (ledger.pairs + 31u) / 32u; k += at_once) near_bits[k] = 0u;
+  for (uint k = first; k < (ledger.pairs + 31u) / 32u; k += at_once) near_bits[NEAR_BITS + k] = near_bits[PUSH_BITS + k] = 0u;
 }
 
 #ifndef SETTLE_ALONE

@@ -2,7 +2,6 @@
 // Kim, Ma & Hong 2025, 3.2.3, after Müller et al. 2007, eqs. 10-11: one thread a constraint; corrections of both ends are added
 // up atomically, since neighbours share particles. Compute shaders of their kind have no float atomics: integer
 // compare-and-swap on the bits, until it holds.
-#extension GL_GOOGLE_include_directive : require
 #ifdef NATIVE_ATOMICS
 #extension GL_EXT_shader_atomic_float : require
 #endif

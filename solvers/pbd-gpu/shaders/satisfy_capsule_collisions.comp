@@ -1,7 +1,6 @@
 #version 450
 // Kim, Ma & Hong 2025, 3.2.5, Algorithm 3: every particle against every capsule of a hand, where the frame ends: the
 // point of the segment that is nearest, and out to the radius.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "contact.glsl"
 layout(std430, binding = BIND_CAPSULES) readonly buffer Capsules { CapsuleShape capsules[]; };

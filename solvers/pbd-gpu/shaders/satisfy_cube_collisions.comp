@@ -1,7 +1,6 @@
 #version 450
 // Kim, Ma & Hong 2025, 3.2.3: every particle against every box; out through the nearest face of the box grown by the
 // margin.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "contact.glsl"
 layout(std430, binding = BIND_BOXES) readonly buffer Boxes { BoxShape boxes[]; };

@@ -2,7 +2,6 @@
 // Kim, Ma & Hong 2025, 3.2.4 (room) and 3.2.6, Algorithm 4 (hand): every particle against every triangle, no broad
 // phase. A particle whose projection is in the triangle, nearer than the margin in front or than the depth behind,
 // is put at the margin along the triangle's normal.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "contact.glsl"
 layout(std430, binding = BIND_TRIANGLES) readonly buffer Triangles { uvec4 triangles[]; };

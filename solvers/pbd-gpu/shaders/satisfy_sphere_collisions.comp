@@ -1,6 +1,5 @@
 #version 450
 // Kim, Ma & Hong 2025, 3.2.3: every particle against every ball.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "contact.glsl"
 layout(std430, binding = BIND_SPHERES) readonly buffer Spheres { SphereShape spheres[]; };

@@ -1,6 +1,5 @@
 #version 450
 // Every vertex takes the mean of what it, its triangles and its edges correction, weighted by how much each asks, in a fixed order.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };

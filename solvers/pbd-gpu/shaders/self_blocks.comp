@@ -1,7 +1,6 @@
 #version 450
 // Before pieces look for each other: of every block of vertices, and of the edges and triangles that begin with them, the
 // box at the substep's start, and the middle and radius of the ways that its vertices would go.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
 layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };

@@ -2,7 +2,6 @@
 // The part of their displacement that all vertices may move at once so that nothing crosses: wherever a vertex and a triangle, or two edges,
 // are apart by a plane at the substep's start and at its end across the same direction, they were apart all along, since vertices go
 // in straight lines. The least part of all pairs, whatever order they come in.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
 layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };

@@ -2,7 +2,6 @@
 // What every vertex, triangle and edge of the cloth corrections of its own vertices, so that no other piece is nearer than the
 // thickness at the substep's end and nothing comes nearer: by gathering, each pair seen from both its sides, with sums in a fixed
 // order. Corrections of ways and of velocities are apart: a push is no velocity, or layers would pop.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
 layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };

@@ -1,6 +1,5 @@
 #version 450
 // End of self-contact in a substep: every free vertex moves by the certified part of its displacement.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_STARTS) buffer Starts { vec4 starts[]; };
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };

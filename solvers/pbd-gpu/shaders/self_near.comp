@@ -1,6 +1,5 @@
 #version 450
 // Which blocks may touch which in this substep, a bit each: a list that cannot overflow.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_BLOCKS) readonly buffer Blocks { vec4 blocks[]; };
 layout(std430, binding = BIND_NEAR) writeonly buffer Near { uint near[]; };  // words a block

@@ -5,6 +5,43 @@
 // Each thread eliminates its own rows, until one a thread is left that knows its neighbours' (Wang 1981, "A parallel
 // method for tridiagonal equations"); those are solved by parallel cyclic reduction (Hockney & Jesshope 1981), in
 // `rounds` rounds, log2(LANES) of them exactly; over several subgroups until each has a system of its own, then by shuffles. RIGHT becomes the solution; `before` the row before the thread's first.
+
+/// The reduction of a row a thread, a u[i-1] + u[i] + c u[i+1] = d: d becomes the solution, d_below the row before.
+void reduce_rows(uint rounds, MATRIX a, MATRIX c, inout VECTOR d, out VECTOR d_below) {
+  MATRIX f, a_below, c_below, a_above, c_above;
+  VECTOR d_above;
+  // Past a chain's ends a and c are 0, so what a missing neighbour would say is not heard.
+#define REDUCE(n) \
+    EXCHANGE_WITH(n, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above); \
+    f = INVERSE(UNIT - a * c_below - c * a_above); \
+    d = f * (d - a * d_below - c * d_above); \
+    a = -(f * (a * a_below)); \
+    c = -(f * (c * c_above));
+#ifdef SHUFFLES
+  if (PARTS > 1u) {
+    [[unroll]] for (uint n = 1u; n < PARTS; n <<= 1u) {
+      if (rounds == 0u) break;
+      REDUCE(n)
+      --rounds;
+    }
+    TO_PART(a, c, d);
+    apart = true;
+    [[unroll]] for (uint n = 1u; n < PART; n <<= 1u) {
+      if (rounds == 0u) break;
+      REDUCE(n)
+      --rounds;
+    }
+    apart = false;
+    FROM_PART(d, d_below);
+  } else
+#endif
+  {
+    for (uint n = 1u; n < LANES && rounds > 0u; n <<= 1u, --rounds) { REDUCE(n) }
+    EXCHANGE_WITH(1u, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above);
+  }
+#undef REDUCE
+}
+
 void SOLVE(uint rounds, out VECTOR before) {
   MATRIX f = INVERSE(DIAGONAL[0]);
   LOWER[0] = f * LOWER[0];
@@ -36,36 +73,7 @@ void SOLVE(uint rounds, out VECTOR before) {
   a = f * LOWER[last];
   c = -(f * (UPPER[last] * c_above));
   d = f * (RIGHT[last] - UPPER[last] * d_above);
-  // Past a chain's ends a and c are 0, so what a missing neighbour would say is not heard.
-#define REDUCE(n) \
-    EXCHANGE_WITH(n, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above); \
-    f = INVERSE(UNIT - a * c_below - c * a_above); \
-    d = f * (d - a * d_below - c * d_above); \
-    a = -(f * (a * a_below)); \
-    c = -(f * (c * c_above));
-#ifdef SHUFFLES
-  if (PARTS > 1u) {
-    [[unroll]] for (uint n = 1u; n < PARTS; n <<= 1u) {
-      if (rounds == 0u) break;
-      REDUCE(n)
-      --rounds;
-    }
-    TO_PART(a, c, d);
-    apart = true;
-    [[unroll]] for (uint n = 1u; n < PART; n <<= 1u) {
-      if (rounds == 0u) break;
-      REDUCE(n)
-      --rounds;
-    }
-    apart = false;
-    FROM_PART(d, d_below);
-  } else
-#endif
-  {
-    for (uint n = 1u; n < LANES && rounds > 0u; n <<= 1u, --rounds) { REDUCE(n) }
-    EXCHANGE_WITH(1u, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above);
-  }
-#undef REDUCE
+  reduce_rows(rounds, a, c, d, d_below);
   before = lane > 0u ? d_below : d - d;
   RIGHT[last] = d;
   [[unroll]] for (uint k = 0u; k < last; ++k) RIGHT[k] -= LOWER[k] * before + UPPER[k] * d;

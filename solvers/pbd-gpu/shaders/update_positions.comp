@@ -1,6 +1,5 @@
 #version 450
 // Kim, Ma & Hong 2025, 3.2.3: v = (q - x) / h, x = q.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) writeonly buffer Velocities { vec4 v[]; };

@@ -1,6 +1,5 @@
 #version 450
 // Vertices that are welded to another go where it goes.
-#extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };

@@ -11,7 +11,7 @@ function data_of(diagram, clock) {
                                     wall: p.wall_ms_per_s,
                                     device: p.device_ms_per_s,
                                     error: p.error,
-                                    ranked: !(p.solver in diagram.not_ranked),
+                                    ranked: !p.not_ranked,
                                     stored_front: p.on_front,
                                     // A CPU solver has one clock.
                                     time: clock === 'wall' ? p.wall_ms_per_s : p.device_ms_per_s ?? p.wall_ms_per_s
