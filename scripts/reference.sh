@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The reference study: every published study by one program, part by part, into one folder; and the page that is published of it.
 #   scripts/reference.sh OUT [--table h200 | software | quick] [--part NAME]... [--limit SECONDS] [--jobs N] [--resume] [--list]
-#   scripts/reference.sh --pack OUT TO | --report OUT... [--to FOLDER] | --check [--to FOLDER]      see scripts/reference.py
+#   scripts/reference.sh --pack OUT TO [PART…] | --report OUT... [--to FOLDER] | --check [--to FOLDER]      see scripts/reference.py
 # Parts, their expected seconds and what each runs: scripts/reference/parts.conf. Exit status 0: all parts are complete. 75: the limit
 # (default 570 s) has come; the same call again continues, for finished runs and parts stay. 2: bad input. Else that of the part that failed.
 # Needs bash, coreutils, grep and clothbench with its scenarios and assets; no compiler, git or Python. CLOTHBENCH names the program

@@ -14,7 +14,7 @@ import re
 import statistics
 
 # Result files of the four set-ups of the paper and of the garments, whose motions the page shows.
-SET_UPS = re.compile(r"^(gravity-32-single|desk-flat-low|desk-corner-low|capsule-sweep|hand-push|two-hand-stretch-2mps|sleeve|t-shirt|skirt|tablecloth)__[^_]+__(default|whole-room)\.h5$")
+SET_UPS = re.compile(r"^(gravity-32-single|desk-flat-low|desk-corner-low|capsule-sweep|hand-push|two-hand-stretch-2mps|sleeve|t-shirt|skirt|tablecloth)__(?!ballistic)[^_]+__(default|whole-room)\.h5$")
 
 
 class Tables:
