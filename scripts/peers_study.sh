@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Every study that the plugins of NvCloth and Jolt can run, with Bullet's soft body beside them, into OUT.
-#   scripts/peers.sh --study OUT [timed | untimed | publish] [--quick]
+#   scripts/peers.sh --study OUT [timed | untimed] [--quick]
 # timed: run it alone on the machine. untimed: its times are not used, so it may run beside other work. Without either, both.
-# publish: copies what results/reference/peers shows of the reports that are there, and fills its tables.
+# What is published of them comes from scripts/reference.sh.
 # --quick: a few scenes, to see that all of it works. What is finished stays: call it again to continue. Each study prints
 # the seconds that it took. Reports: OUT/report-<study>. Needs build/release/clothbench (or CLOTHBENCH) and build/peers (scripts/peers.sh DIR).
 set -euo pipefail
@@ -10,19 +10,19 @@ out= quick= parts=
 for word in "$@"; do
   case $word in
     --quick) quick=--quick ;;
-    timed | untimed | publish) parts="$parts $word" ;;
-    -*) echo "scripts/peers.sh --study: $word: expected OUT, timed, untimed, publish or --quick" >&2; exit 2 ;;
+    timed | untimed) parts="$parts $word" ;;
+    -*) echo "scripts/peers.sh --study: $word: expected OUT, timed, untimed or --quick" >&2; exit 2 ;;
     *) out=$word ;;
   esac
 done
-[ -n "$out" ] || { echo "usage: scripts/peers.sh --study OUT [timed | untimed | publish] [--quick]" >&2; exit 2; }
+[ -n "$out" ] || { echo "usage: scripts/peers.sh --study OUT [timed | untimed] [--quick]" >&2; exit 2; }
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
 cd "$(dirname "$0")/.."
 bench=${CLOTHBENCH:-build/release/clothbench}
 for engine in nvcloth jolt; do
   plugin=$PWD/build/peers/$engine/libclothbench_$engine.so
-  [[ $parts == " publish" ]] || [ -e "$plugin" ] ||
+  [ -e "$plugin" ] ||
     { echo "scripts/peers.sh --study: $plugin: not built; scripts/peers.sh DIR builds it" >&2; exit 1; }
   CLOTHBENCH_PLUGINS=${CLOTHBENCH_PLUGINS:+$CLOTHBENCH_PLUGINS:}$plugin
 done
@@ -57,34 +57,4 @@ if [[ -z $parts || $parts == *untimed* ]]; then
   part stability study stability ${quick:-"--short"} --jobs 2 "${three[@]}"
   part penetration study penetration ${quick:-"--short"} --trials 1 "${three[@]}"
   part contact study contact $quick --seed 1 --count "$([ -n "$quick" ] && echo 2 || echo 108)" --jobs 2 "${three[@]}"
-fi
-# take STUDY FILE NAME: a report's file as NAME; paths of plugins are those in this tree.
-take() {
-  [ -e "$out/$1.done" ] || return 0
-  if [[ $2 == *.png ]]; then cp "$out/report-$1/$2" "$shown/$3"; return; fi
-  sed -E "s#[^ \",]*/libclothbench_(nvcloth|jolt)\.so#build/peers/\1/libclothbench_\1.so#g; s#$PWD/##g" "$out/report-$1/$2" >"$shown/$3"
-}
-if [[ $parts == *publish* ]]; then
-  shown=$PWD/results/reference/peers
-  take table3 table3.md table3.md
-  take table3 table3.csv table3.csv
-  take table3 fig4.png fig4.png
-  take hang report.md hang.md
-  take hang runs.csv hang.csv
-  take work-precision work-precision-swing-strip-32.png work-precision-swing-strip-32.png
-  take work-precision work-precision.md work-precision.md
-  take work-precision work-precision.csv work-precision.csv
-  take work-precision summary.md summary.md
-  take moduli material.md material.md
-  take friction friction.md friction.md
-  take penetration penetration.md penetration.md
-  take penetration penetration.json penetration.json
-  take margins penetration.md margins.md
-  take margins penetration.json margins.json
-  take contact contact-rates.md contact-rates.md
-  take contact contact-rates.csv contact.csv
-  take contact contact-runs.csv contact-runs.csv
-  take stability stability.md stability.md
-  take stability stability.csv stability.csv
-  scripts/peers_tables.py "$shown" "$shown/README.md" solvers/plugin/PEERS.md
 fi

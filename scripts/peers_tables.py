@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The tables of the peers' studies (scripts/peers.sh --study), in Markdown.
+"""The tables of the peers' studies, in Markdown.
 
     scripts/peers_tables.py FOLDER [--check] DOCUMENT…
 
 Fills the DOCUMENTs between marks such as <!-- peers hang begin --> and <!-- peers hang end -->; --check only compares. FOLDER
-holds what it reads, results/reference/peers:
+holds what it reads, results/reference/h200 (or results/reference/peers, with the names in brackets):
 
 hang (hang.csv): CPU time of a frame [ms] and greatest stretch of the last second [%], medians over the sheets of peers-hang,
 with the lowest and the highest in brackets.
@@ -56,7 +56,7 @@ def spread(values):
 
 
 def hang(folder):
-    rows = [r for r in rows_of(folder / "hang.csv") if r["status"] == "ok"]
+    rows = [r for r in rows_of(source(folder, "hang")) if r["status"] == "ok"]
     sizes = sorted({int(r["grid_x"]) for r in rows})
     leading = lambda setting: float(setting.split()[0]) if setting[:1].isdigit() else 0  # "300 Hz" before "1200 Hz"
     order = sorted(distinct((r["solver"], r["setting"]) for r in rows), key=lambda k: (k[0], leading(k[1])))
@@ -73,7 +73,7 @@ def hang(folder):
 
 
 def margins(folder):
-    rows = json.loads((folder / "margins.json").read_text(encoding="utf-8"))["runs"]
+    rows = json.loads(source(folder, "margins").read_text(encoding="utf-8"))["runs"]
     scenes = distinct(r["scene"] for r in rows)
     out = []
     for name in sorted(distinct(label(r) for r in rows)):
@@ -92,9 +92,9 @@ def margins(folder):
 
 
 def contact(folder):
-    rows = [r for r in rows_of(folder / "contact.csv") if r["speed_m_per_s"] == "all"]
+    rows = [r for r in rows_of(source(folder, "contact")) if r["speed_m_per_s"] == "all"]
     elsewhere = folder.parent / "contact-h200" / "contact-runs.csv"
-    if "bullet-soft" not in {r["solver"] for r in rows} and elsewhere.exists():
+    if "bullet-soft" not in {r["solver"] for r in rows} and (folder / "contact-runs.csv").exists() and elsewhere.exists():
         seeds = {r["scene"] for r in rows_of(folder / "contact-runs.csv")}
         held = [r["held_at_most_m"] for r in json.loads((folder / "penetration.json").read_text(encoding="utf-8"))["runs"]
                 if label(r) == "bullet-soft" and r["held_at_most_m"] is not None]
@@ -115,7 +115,7 @@ def contact(folder):
 
 
 def stability(folder):
-    rows = rows_of(folder / "stability.csv")
+    rows = rows_of(source(folder, "stability"))
     grades = ("stable", "degraded", "failed")
     out = []
     for name in sorted(distinct(label(r) for r in rows)):
@@ -127,14 +127,22 @@ def stability(folder):
     return markdown(["solver", "runs", *grades, "classes of failed", "unsupported"], out)
 
 
+# A table's file in results/reference/h200, and in results/reference/peers.
+SOURCES = {"hang": ("peers-hang/runs.csv", "hang.csv"), "margins": ("peers-margins/penetration.json", "margins.json"),
+           "contact": ("contact/contact-rates.csv", "contact.csv"), "stability": ("peers-stability/stability.csv", "stability.csv")}
+
+
+def source(folder, name):
+    return next((folder / f for f in SOURCES[name] if (folder / f).exists()), folder / SOURCES[name][0])
+
+
 TABLES = {"hang": hang, "margins": margins, "contact": contact, "stability": stability}
-SOURCES = {"hang": "hang.csv", "margins": "margins.json", "contact": "contact.csv", "stability": "stability.csv"}
 
 
 def filled(text, folder):
     for name, make in TABLES.items():
         begin, end = f"<!-- peers {name} begin -->\n", f"<!-- peers {name} end -->"
-        if begin in text and (folder / SOURCES[name]).exists():
+        if begin in text and source(folder, name).exists():
             before, rest = text.split(begin, 1)
             text = before + begin + "\n" + make(folder) + "\n\n" + end + rest.split(end, 1)[1]
     return text

@@ -6,8 +6,8 @@ import {start_theme} from './theme.js';
 import {start_viewer} from './viewer.js';
 
 const kOrder = [
-  'summary', 'rates', 'work-precision', 'penetration', 'stability', 'material', 'feature-cost', 'features', 'failed',
-  'expect', 'environment'
+  'studies', 'claims', 'devices', 'summary', 'rates', 'work-precision', 'penetration', 'stability', 'material',
+  'feature-cost', 'features', 'failed', 'expect', 'environment'
 ];
 const kAfterViewer = ['material', 'feature-cost', 'features', 'failed', 'expect', 'environment'];
 const rank = id => kOrder.includes(id) ? kOrder.indexOf(id) : kOrder.length;

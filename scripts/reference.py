@@ -1,0 +1,386 @@
+#!/usr/bin/env python3
+"""Publishes the results of scripts/reference.sh, and checks what is published.
+
+    scripts/reference.sh --report OUT… [--to FOLDER] [--work FOLDER]
+    scripts/reference.sh --check [OUT…] [--to FOLDER]
+
+--report: makes tables of each study and one page of all (index.html) from the folders OUT, which must be of one commit, into FOLDER (default:
+results/reference/h200), and ../README.md of FOLDER. reference.json has the SHA-256 of all of these and of every result file they were made from.
+Raw results are not published: they are some hundred megabytes, and the tables hold every summary value of every run.
+
+--check: exit status 1 and a line for each fault if what is published is not what --report wrote, if the runs are of two commits or of a tree
+with local changes, or if a result file below OUT has changed; 4 if nothing is wrong but what the figures depend on has changed since ("measured
+before this change"), or this tree does not know the commit; else 0.
+"""
+import argparse
+import csv
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "reference"))
+from figures import SET_UPS, Tables, claims_table, markdown, statement  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+DATA = ROOT / "scripts/reference"
+PUBLISHED = ROOT / "results/reference/h200"
+LIST = "reference.json"
+# What may change a figure: solvers, scenes and their loading, assets, runner, metrics, exact solutions, what they share.
+MEASURED = ["solvers", "scenarios", *(f"harness/{room}" for room in ("assets", "base", "include", "metrics", "runner", "scenario", "studies", "truth"))]
+PAGE_LIMIT_B = 20_000_000
+# Files of a report that are not published: the page is one for all studies, and what else is left out is in runs.csv.
+UNPUBLISHED = {"index.html", "runs.json", "tables.tex", "bandwidth.csv", "memory.csv", "report-pictures.json", "penetration-series.csv", "work-precision.json", "penetration.csv", "contact-runs.csv"}
+FIGURES_OF = {"penetration": ("penetration", "meshes"), "work": ("work-precision",), "maps": ("stability",), "cases": ("stability",)}
+
+
+def sha256(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def data(name):
+    return json.loads((DATA / name).read_text(encoding="utf-8"))
+
+
+def parts_of(folders):
+    """Finished parts of all folders: {group: [(part folder, how, seconds, command)]}, in the order of the studies."""
+    out = {s["group"]: [] for s in data("studies.json")}
+    for folder in folders:
+        for done in sorted(folder.glob("*.done")):
+            name, how, seconds, command = done.read_text(encoding="utf-8").rstrip("\n").split("\t")
+            out.setdefault(name.split("+")[0], []).append((folder / name, how, int(seconds), command))
+    names = [p[0].name for parts in out.values() for p in parts]
+    for name in sorted({n for n in names if names.count(n) > 1}):
+        sys.exit(f"{' and '.join(str(f / name) for f in folders if (f / name).is_dir())}: the same part twice; expected each in one of the folders")
+    return {group: parts for group, parts in out.items() if parts}
+
+
+def without_unplanned(part, to):
+    """A folder like `part` whose study.json names the runs that the part was to do; links to its files. A part of chosen runs has no others."""
+    to.mkdir(parents=True)
+    for file in part.iterdir():
+        if file.name != "study.json":
+            (to / file.name).symlink_to(file)
+        else:
+            study = json.loads(file.read_text(encoding="utf-8"))
+            study["runs"] = [r for r in study["runs"] if (part / f"{r}.h5").exists() or (part / f"{r}.part").exists()]
+            (to / file.name).write_text(json.dumps(study), encoding="utf-8")
+    return to
+
+
+def report(bench, inputs, out):
+    """The report of the inputs in `out`; the document of its page."""
+    done = subprocess.run([bench, "report", *map(str, inputs), "-o", str(out)], capture_output=True, text=True, check=False)
+    if done.returncode != 0 or not (out / "index.html").exists():
+        sys.exit(f"clothbench report of {inputs[0]}: {done.stderr or done.stdout}")
+    return (out / "index.html").read_text(encoding="utf-8")
+
+
+DOCUMENT = re.compile(r'(<script type="application/json" id="clothbench-data">)(.*?)(</script>)', re.S)
+
+
+def document_of(page):
+    return json.loads(DOCUMENT.search(page)[2])
+
+
+def section(name, title, table, note=""):
+    return {"id": name, "title": title, "tables": [{"title": title, "note": note, "rows": table}]}
+
+
+def merged(documents, motions, extra, head):
+    """One document of those of all studies, by group, under the line `head`; motions are those of `motions`."""
+    out = dict(motions)
+    sections, shared = [], {}
+    titles = {s["group"]: s["title"] for s in data("studies.json")}
+    for group, d in documents.items():
+        for s in d["sections"]:
+            if (s["id"] == "features" and group != "penetration") or (s["id"] == "material" and group != "moduli"):
+                continue
+            title = titles.get(group, group)
+            if s["id"] in ("environment", "failed", "expect"):  # one section of all studies
+                one = shared.setdefault(s["id"], {**s, "tables": []})
+                one["tables"] += [{**t, "title": f"{title}: {t['title']}"} for t in s["tables"]]
+                continue
+            sections.append({**s, "title": title if s["title"] == title else f"{title}: {s['title']}"})
+    out["headline"] = head
+    out["sections"] = extra + sections + list(shared.values())
+    out["runs"] = sum(d["runs"] for d in documents.values())
+    out["rates"] = [r for d in documents.values() for r in d["rates"]]
+    out["commands"] = ["scripts/reference.sh"]
+    for key, groups in FIGURES_OF.items():
+        out[key] = [x for group in groups if group in documents for x in documents[group][key]]
+    return out
+
+
+def write_page(path, template, document):
+    # "<" never stands in the data of a page.
+    text = json.dumps(document, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")
+    page = DOCUMENT.sub(lambda m: m[1] + text + m[3], template)
+    if len(page) > PAGE_LIMIT_B:
+        sys.exit(f"{path}: {len(page)} bytes; a page has at most {PAGE_LIMIT_B}")
+    path.write_text(page, encoding="utf-8")
+
+
+def runs_of(folder, group):
+    with open(folder / group / "runs.csv", encoding="utf-8", newline="") as f:
+        return list(csv.DictReader(f))
+
+
+def facts_of(folder, groups):
+    """Commits, trees with local changes, devices and days of the runs, by group."""
+    out = {}
+    for group in groups:
+        runs = [r for r in runs_of(folder, group) if r["git_commit"] and (r["scene"] != "effective-moduli" or group == "moduli")]
+        out[group] = {"runs": len(runs), "commits": sorted({r["git_commit"] for r in runs}), "dirty": sum(r["git_dirty"] != "false" for r in runs),
+                      "devices": sorted({r["gpu"] for r in runs} - {"", "CPU", "–"}), "cpus": sorted({r["cpu"] for r in runs} - {""}),
+                      "days": sorted({r["created"][:10] for r in runs})}
+    return out
+
+
+def head_of(listing):
+    """The page's first lines: the commit, and a warning where all that ran on a Vulkan device ran on a software one."""
+    devices = {d for f in listing["studies"].values() for d in f["devices"]}
+    software = all(re.search("llvmpipe|lavapipe|SwiftShader", d) for d in devices)
+    return ("**Software Vulkan device: it shows correctness; its times say nothing of a GPU.**\n\n" if devices and software else "") + \
+        f"The reference study, measured at commit {listing['commit'][:12]}. Devices: {', '.join(sorted(devices)) or 'none'}; the table of studies says where each ran."
+
+
+ORDERED_BY = {"table3": "free_fall_error", "hang": "stretch_mean_last_second", "penetration": "expect"}
+
+
+def devices_table(folder):
+    """Which solver is first on each of two devices, by error or verdict: rows of text."""
+    rows = [["study", "scene", "by", "first device", "software device", "same"]]
+    for group, column in ORDERED_BY.items():
+        both = [{}, {}]
+        for k, name in enumerate((group, "software-" + group)):
+            if not (folder / name / "runs.csv").exists():
+                break
+            for r in runs_of(folder, name):
+                if r["status"] == "ok" and r.get(column):
+                    both[k].setdefault(r["scene"], {})[f"{r['solver']} {r['setting']}"] = r[column]
+        for scene in both[1]:
+            common = sorted(set(both[0].get(scene, {})) & set(both[1][scene]))
+            if len(common) < 2:
+                continue
+            if column == "expect":
+                texts = [", ".join(f"{c.split()[0]} {b[scene][c].split(':')[0]}" for c in common) for b in both]
+            else:
+                texts = [" < ".join(sorted(common, key=lambda c, b=b: float(b[scene][c]))) for b in both]
+            rows.append([group, scene, column, *texts, "yes" if texts[0] == texts[1] else "no"])
+    return rows
+
+
+def devices_sentence(folder, rows):
+    """Which conclusions hold on both devices: orders and verdicts of scenes, and the claims that rest on untimed scenes alone."""
+    same = sum(r[-1] == "yes" for r in rows[1:])
+    text = f"In {same} of {len(rows) - 1} scenes that ran on both devices the order of the solvers or their verdicts are the same."
+    untimed = [c for c in data("claims.json") if "figures" in c and all("penetration/runs.csv" in line for line in c["figures"].values())]
+    on_both = [(c["id"], *(statement(Tables(folder, prefix), c)[1] for prefix in ("", "software-"))) for c in untimed]
+    known = [(name, a == b) for name, a, b in on_both if a is not None and b is not None]
+    for holds, words in ((True, "The same verdict on both devices"), (False, "Another verdict")):
+        if names := [name for name, agrees in known if agrees == holds]:
+            text += f" {words}: {', '.join(names)}."
+    return text
+
+
+def readme(folder, listing):
+    """results/reference/README.md, from the stored tables."""
+    tables = Tables(folder)
+    at = folder.name
+    text = ["# The reference study", "",
+            f"All published figures: one commit ({listing['commit'][:12]}), one command, one [page]({at}/index.html) that opens from disk. "
+            "Times were taken alone, in one process, contenders in turns; what is called untimed ran side by side and has no times. "
+            f"[reference.json]({at}/reference.json) has the SHA-256 of every file; `scripts/reference.sh --check` verifies them.", "",
+            "<!-- needs hardware: a GPU -->", "```sh",
+            "scripts/reference.sh OUT --table h200         # call again while its exit status is 75",
+            "scripts/reference.sh SOFT --table software    # parts without times, on any machine",
+            "scripts/reference.sh --report OUT SOFT", "```", "", "## Claims of the paper", "",
+            markdown(claims_table(tables, data("claims.json"))), ""]
+    devices = devices_table(folder)
+    if len(devices) > 1:
+        text += ["## Devices", "", devices_sentence(folder, devices), ""]
+        if other := [r for r in devices[1:] if r[-1] == "no"]:
+            text += [markdown([devices[0], *other]), ""]
+    for s in data("studies.json"):
+        group = s["group"]
+        if group not in listing["studies"]:
+            continue
+        facts = listing["studies"][group]
+        answer, _ = statement(tables, s)
+        answer = answer and answer.replace("](h200/", f"]({at}/")
+        text += [f"## {s['title']}: [{group}]({at}/{group}/report.md)", "", f"*{s['question']}* {answer or 'The tables lack a figure of the answer.'}", ""]
+        if s.get("picture") and (folder / group / s["picture"]).exists():
+            text += [f"![{s['question']}]({at}/{group}/{s['picture']})", ""]
+        how = "timed" if facts["how"] == ["timed"] else "untimed" if "timed" not in facts["how"] else "timed, in part untimed"
+        text += [" · ".join([*(re.sub(r" RUNS=(.*)`$", r"` (runs `\1`)", f"`clothbench {c}`") for c in facts["commands"]), ", ".join(facts["devices"] + facts["cpus"]), ", ".join(facts["days"]), how]), ""]
+    if (folder.parent / "CHANGES.md").exists():
+        text += ["## Before", "", "[CHANGES.md](CHANGES.md) has the figures of earlier studies beside these.", ""]
+    if (folder.parent / "pictures").exists():
+        text += ["## Pictures", "", "[pictures](pictures) are made by `clothbench render`, [page](page) shows the interactive page, both on a software device.", ""]
+    return "\n".join(text).rstrip("\n") + "\n"
+
+
+def repeated(bench, a, b, to):
+    """compare.csv: what a study and its repetition differ in, run by run."""
+    done = subprocess.run([bench, "--json", "compare", str(a), str(b)], capture_output=True, text=True, check=True)
+    with open(to / "compare.csv", "w", encoding="utf-8", newline="") as f:
+        out = csv.writer(f, lineterminator="\n")
+        out.writerow(["run", "verdict", "ratio", "low", "high", "outcome", "values_that_differ"])
+        out.writerows([[r["run"], r["verdict"], r["ratio"], r["low"], r["high"], r["outcome"], len(r["metrics"])] for r in json.loads(done.stdout)])
+
+
+def texts_of(to):
+    """Documents with what stands between marks such as <!-- reference limits begin --> and <!-- reference limits end --> as the tables have it."""
+    out = {}
+    for name, texts in data("texts.json").items():
+        out[ROOT / name] = before = (ROOT / name).read_text(encoding="utf-8")
+        for mark, entry in texts.items():
+            text, _ = statement(Tables(to), entry)
+            pattern = rf"(<!-- reference {mark} begin -->\n).*?(<!-- reference {mark} end -->)"
+            if text and re.search(pattern, before, re.S):
+                out[ROOT / name] = re.sub(pattern, lambda m, t=text: m[1] + t + "\n" + m[2], out[ROOT / name], flags=re.S)
+    return out
+
+
+def publish(folders, to, work):
+    bench = os.environ.get("CLOTHBENCH", str(ROOT / "build/release/clothbench"))
+    parts = parts_of(folders)
+    if not parts:
+        sys.exit(f"{folders[0]}: no finished part; scripts/reference.sh {folders[0]} makes them")
+    if len({(f / "version").read_text() for f in folders}) > 1:
+        sys.exit("the folders hold results of different programs; a reference study has one commit")
+    shutil.rmtree(to, ignore_errors=True)
+    to.mkdir(parents=True)
+    documents, files = {}, {}
+    for group, list_of in parts.items():
+        inputs = [without_unplanned(p[0], work / "in" / p[0].name) for p in list_of]
+        if group == "work-precision":  # whether stiffness is a parameter of a solver decides where it is ranked
+            inputs += [p[0] for p in parts.get("moduli", [])]
+        documents[group] = document_of(report(bench, inputs, work / group))
+        (to / group).mkdir()
+        for file in sorted((work / group).iterdir()):
+            if file.name not in UNPUBLISHED and file.suffix != ".svg":
+                shutil.copy(file, to / group)
+        for part, *_ in list_of:
+            files.update({f"{part.name}/{h5.name}": sha256(h5) for h5 in sorted(part.glob("*.h5"))})
+    if "repeat" in parts and "repeat-again" in parts:
+        repeated(bench, work / "in/repeat", work / "in/repeat-again", to / "repeat")
+    facts = facts_of(to, parts)
+    for group, list_of in parts.items():
+        facts[group] |= {"how": sorted({p[1].replace("spread", "untimed") for p in list_of}), "seconds": sum(p[2] for p in list_of), "commands": [p[3] for p in list_of]}
+    commits = {c for f in facts.values() for c in f["commits"]}
+    listing = {"format": "clothbench-reference", "format_version": 1, "commit": sorted(commits)[0], "studies": facts, "results": files}
+    shown = [h5 for group in ("table3", "penetration", "meshes") for p in parts.get(group, []) for h5 in sorted(p[0].glob("*.h5")) if SET_UPS.match(h5.name)]
+    template = report(bench, shown or inputs, work / "motions")
+    studies = [["study", "question", "answer", "machine", "day", "how"]]
+    for s in data("studies.json"):
+        if s["group"] in parts:
+            f = facts[s["group"]]
+            answer = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", statement(Tables(to), s)[0] or "–")  # a page on its own has no links to files
+            studies.append([s["title"], s["question"], answer, ", ".join(f["devices"] + f["cpus"]), ", ".join(f["days"]), ", ".join(f["how"])])
+    extra = [section("claims", "Claims of the paper", claims_table(Tables(to), data("claims.json"))), section("studies", "Studies", studies)]
+    devices = devices_table(to)
+    if len(devices) > 1:
+        extra.append(section("devices", "Devices", devices, devices_sentence(to, devices)))
+    write_page(to / "index.html", template, merged({g: d for g, d in documents.items() if not g.startswith(("software-", "repeat"))}, document_of(template), extra, head_of(listing)))
+    seal(to, listing)
+    for fault in faults_of(to, []):
+        print(f"warning: {fault}; --check will refuse it", file=sys.stderr)
+    print(f"{to}: {len(parts)} studies, {len(files)} result files, page of {(to / 'index.html').stat().st_size / 1e6:.1f} MB")
+
+
+def seal(to, listing):
+    """Writes README.md beside the folder, and the list with the hashes of all that is published."""
+    (to.parent / "README.md").write_text(readme(to, listing), encoding="utf-8")
+    if to == PUBLISHED:
+        for document, text in texts_of(to).items():
+            document.write_text(text, encoding="utf-8")
+    listing["published"] = {f.relative_to(to).as_posix(): sha256(f) for f in sorted(to.rglob("*")) if f.is_file() and f.name != LIST}
+    (to / LIST).write_text(json.dumps(listing, indent=1, sort_keys=True, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def faults_of(to, folders):
+    """What is wrong with what is published: a line each."""
+    listing = json.loads((to / LIST).read_text(encoding="utf-8"))
+    out = []
+    here = {f.relative_to(to).as_posix() for f in to.rglob("*") if f.is_file() and f.name != LIST}
+    for name, hashed in listing["published"].items():
+        if name not in here:
+            out.append(f"{to / name}: is missing; --report wrote it")
+        elif sha256(to / name) != hashed:
+            out.append(f"{to / name}: is not as --report wrote it")
+    out += [f"{to / name}: was not written by --report" for name in sorted(here - set(listing["published"]))]
+    if out:
+        return out
+    facts = facts_of(to, listing["studies"])
+    commits = {c for f in facts.values() for c in f["commits"]}
+    if commits != {listing["commit"]}:
+        out.append(f"{to}: results of the commits {', '.join(sorted(commits))}; expected one, {listing['commit']}")
+    out += [f"{to / g}: {f['dirty']} runs are of a tree with local changes" for g, f in facts.items() if f["dirty"]]
+    if (to.parent / "README.md").read_text(encoding="utf-8") != readme(to, listing):
+        out.append(f"{to.parent / 'README.md'}: not what the tables say; scripts/reference.sh --report writes it")
+    if to == PUBLISHED:
+        out += [f"{d}: a text between its marks is not what the tables say" for d, text in texts_of(to).items() if text != d.read_text(encoding="utf-8")]
+    for folder in folders:
+        for h5 in sorted(folder.glob("*/*.h5")):
+            if listing["results"].get(h5.relative_to(folder).as_posix()) != sha256(h5):
+                out.append(f"{h5}: is not the result that is published")
+    return out
+
+
+def changed_since(commit):
+    """Files that may change a figure and differ between the commit and HEAD; None if this tree does not know the commit."""
+    git = lambda *words: subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True, check=False)
+    if git("cat-file", "-e", commit + "^{commit}").returncode != 0:
+        return None
+    done = git("diff", "--name-only", commit, "HEAD", "--", *MEASURED, ":(exclude)*.md")
+    return done.stdout.split() if done.returncode == 0 else None
+
+
+def check(to, folders):
+    if not (to / LIST).exists():
+        sys.exit(f"{to / LIST}: no such file; scripts/reference.sh --report OUT writes it")
+    faults = faults_of(to, folders)
+    if faults:
+        print("\n".join(faults), file=sys.stderr)
+        return 1
+    commit = json.loads((to / LIST).read_text(encoding="utf-8"))["commit"]
+    changed = changed_since(commit)
+    if changed == []:
+        print(f"{to}: as published, measured at {commit[:12]}; nothing that may change a figure has changed since")
+        return 0
+    what = "the commit is not known here" if changed is None else f"{len(changed)} files have changed since, such as {changed[0]}"
+    print(f"{to}: as published, measured before this change ({commit[:12]}; {what})")
+    return 4
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    what = arguments.add_mutually_exclusive_group(required=True)
+    for name in ("report", "check"):
+        what.add_argument(f"--{name}", action="store_true")
+    arguments.add_argument("folder", nargs="*", type=pathlib.Path)
+    arguments.add_argument("--to", type=pathlib.Path, default=PUBLISHED)
+    arguments.add_argument("--work", type=pathlib.Path, help="keep the reports of the studies there")
+    a = arguments.parse_args()
+    folders = [f.resolve() for f in a.folder]
+    for f in folders:
+        if not f.is_dir():
+            arguments.error(f"{f}: no such folder")
+    if a.check:
+        return check(a.to, folders)
+    if not folders:
+        arguments.error("--report: expected a folder of results")
+    with tempfile.TemporaryDirectory() as scratch:
+        publish(folders, a.to.resolve(), a.work or pathlib.Path(scratch))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,121 @@
+"""What scripts/reference.sh refuses: a table that was changed, a second commit, a result of a changed tree, a file too many, bad arguments.
+
+    check_published.py ROOT
+"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+root = pathlib.Path(sys.argv[1])
+sys.path[:0] = [str(root / "scripts"), str(root / "scripts/reference")]
+import figures  # noqa: E402
+import reference  # noqa: E402
+
+HEAD = "scene,solver,setting,status,expect,gpu,cpu,git_commit,git_dirty,created,fps_median,free_fall_error"
+
+
+def table(rows):
+    return "\n".join([HEAD, *rows]) + "\n"
+
+
+def row(scene, solver, fps, commit, dirty="false", error="0.1"):
+    return f"{scene},{solver},default,ok,pass,GPU,CPU,{commit},{dirty},2026-01-02T00:00:00Z,{fps},{error}"
+
+
+def made(folder, commit, rows=None):
+    """A published folder of two studies, sealed."""
+    to = folder / "results/device"
+    rows = rows or [row("gravity-64-single", "paper", 310, commit), row("gravity-128-single", "paper", 200, commit)]
+    for study in ("table3", "software-table3"):
+        (to / study).mkdir(parents=True)
+        (to / study / "runs.csv").write_text(table(rows), encoding="utf-8")
+    facts = {g: {**f, "how": ["timed"], "seconds": 1, "commands": ["study table3"]} for g, f in reference.facts_of(to, ["table3", "software-table3"]).items()}
+    reference.seal(to, {"commit": commit, "studies": facts, "results": {}})
+    return to
+
+
+def checked(to, *words):
+    done = subprocess.run([str(root / "scripts/reference.sh"), "--check", "--to", str(to), *words], text=True, capture_output=True, env={**os.environ, "PYTHON": sys.executable})
+    return done.returncode, done.stdout + done.stderr
+
+
+def refused(commit, change, why):
+    with tempfile.TemporaryDirectory() as scratch:
+        to = made(pathlib.Path(scratch), commit)
+        change(to)
+        code, said = checked(to)
+        assert code == 1 and re.search(why, said), (why, code, said)
+
+
+def replace(name, old, new, sealed=False):
+    def change(to):
+        text = (to / name).read_text(encoding="utf-8")
+        assert old in text
+        (to / name).write_text(text.replace(old, new, 1), encoding="utf-8")
+        if sealed:
+            reference.seal(to, json.loads((to / reference.LIST).read_text(encoding="utf-8")))
+    return change
+
+
+git = subprocess.run(["git", "-C", str(root), "rev-parse", "HEAD"], text=True, capture_output=True)
+head = git.stdout.strip() if git.returncode == 0 else ""
+commit = head or "0" * 40
+with tempfile.TemporaryDirectory() as scratch:
+    to = made(pathlib.Path(scratch), commit)
+    code, said = checked(to)
+    assert (code, "nothing that may change" in said) == (0, True) if head else (code == 4), (code, said)
+    page = (to.parent / "README.md").read_text(encoding="utf-8")
+    assert "| C2 | " in page and "reproduced | `paper`: 310 and 200 frames a second" in page, page
+    (pathlib.Path(scratch) / "out/table3").mkdir(parents=True)
+    (pathlib.Path(scratch) / "out/table3/x.h5").write_bytes(b"other")
+    code, said = checked(to, str(pathlib.Path(scratch) / "out"))
+    assert code == 1 and "is not the result that is published" in said, said
+with tempfile.TemporaryDirectory() as scratch:
+    code, said = checked(made(pathlib.Path(scratch), "1" * 40))
+    assert code == 4 and "measured before this change" in said, (code, said)
+
+refused(commit, replace("table3/runs.csv", ",310,", ",400,"), r"runs\.csv: is not as --report wrote it")
+refused(commit, replace("table3/runs.csv", commit, "2" * 40, sealed=True), "results of the commits .*expected one")
+refused(commit, replace("table3/runs.csv", "false", "true", sealed=True), "1 runs are of a tree with local changes")
+refused(commit, lambda to: (to / "table3/runs.csv").unlink(), "is missing")
+refused(commit, lambda to: (to / "table3/more.md").write_text("x"), "was not written by --report")
+refused(commit, lambda to: (to.parent / "README.md").write_text("C2 is reproduced\n"), "not what the tables say")
+
+# Figures: exactly one row, no number where there is none, rules that fail with NaN, an order of solvers by device.
+with tempfile.TemporaryDirectory() as scratch:
+    folder = pathlib.Path(scratch)
+    (folder / "table3").mkdir()
+    (folder / "software-table3").mkdir()
+    rows = [row("a", "paper", 1, commit, error="0.2"), row("a", "xpbd", 2, commit, error="0.1")]
+    (folder / "table3/runs.csv").write_text(table([*rows, row("b", "xpbd", "nan", commit)]), encoding="utf-8")
+    (folder / "software-table3/runs.csv").write_text(table([r.replace("0.2", "0.05") for r in rows]), encoding="utf-8")
+    of = figures.Tables(folder).figure
+    assert of("one table3/runs.csv scene=a solver=xpbd : fps_median") == 2 and of("count table3/runs.csv scene~^a") == 2
+    for missing in ("one table3/runs.csv scene=a : fps_median", "one none.csv : x", "one table3/runs.csv scene=a solver=xpbd : none", "max table3/runs.csv scene=z : fps_median"):
+        assert of(missing) is None, missing
+    entry = {"figures": {"n": "one table3/runs.csv scene=b : fps_median"}, "rule": "n >= 72", "text": "{n}"}
+    assert figures.statement(figures.Tables(folder), entry) == ("nan", False)
+    assert figures.statement(figures.Tables(folder), {**entry, "needs": "n > 0"}) == (None, None)
+    rows = reference.devices_table(folder)
+    assert rows[1][3:] == ["xpbd default < paper default", "paper default < xpbd default", "no"], rows
+
+# The table of parts can be read, and every study and claim has its data.
+for words, why in ((["--limit", "x"], "expected a positive whole number"), (["--table", "none"], "expected h200, software or quick"), (["--part", "none"], "has no such part"), (["--part"], "expected a value")):
+    done = subprocess.run([str(root / "scripts/reference.sh"), tempfile.gettempdir() + "/none", "--list", *words], text=True, capture_output=True, env={**os.environ, "CLOTHBENCH": "/bin/true"})
+    assert done.returncode == 2 and why in done.stderr, (words, done)
+parts = [line.split() for line in (root / "scripts/reference/parts.conf").read_text(encoding="utf-8").splitlines() if line and line[0] != "#"]
+assert all(p[0] in ("h200", "software", "quick") and p[2].isdigit() and p[3] in ("timed", "untimed", "spread") for p in parts), parts
+assert not any(p[3] == "timed" for p in parts if p[0] == "software")
+named = {s["group"] for s in reference.data("studies.json")} | {"repeat-again"}
+assert {p[1].split("+")[0] for p in parts if not p[1].startswith("software-")} <= named, named
+assert [c["id"] for c in reference.data("claims.json")] == [f"C{n}" for n in range(1, 16)]
+
+# What is published.
+if reference.PUBLISHED.exists():
+    code, said = checked(reference.PUBLISHED)
+    assert code in (0, 4), (code, said)
+print("ok")
