@@ -57,6 +57,9 @@ def parts_of(folders):
     names = [p[0].name for parts in out.values() for p in parts]
     for name in sorted({n for n in names if names.count(n) > 1}):
         sys.exit(f"{' and '.join(str(f / name) for f in folders if (f / name).is_dir())}: the same part twice; expected each in one of the folders")
+    # Verdicts without times may come from any device.
+    if not out.get("penetration"):
+        out["penetration"] = out.pop("software-penetration", [])
     return {group: parts for group, parts in out.items() if parts}
 
 
@@ -202,6 +205,8 @@ def readme(folder, listing):
             "scripts/reference.sh SOFT --table software    # parts without times, on any machine",
             "scripts/reference.sh --report OUT SOFT", "```", "", "## Claims of the paper", "",
             markdown(claims_table(tables, data("claims.json"))), ""]
+    if "penetration" in listing["studies"]:
+        text += [f"C6 and C8 to C13 are of the study *Penetration*, on {', '.join(listing['studies']['penetration']['devices'])}.", ""]
     devices = devices_table(folder)
     if len(devices) > 1:
         text += ["## Devices", "", devices_sentence(folder, devices), ""]
@@ -219,6 +224,8 @@ def readme(folder, listing):
             text += [f"![{s['question']}]({at}/{group}/{s['picture']})", ""]
         how = "timed" if facts["how"] == ["timed"] else "untimed" if "timed" not in facts["how"] else "timed, in part untimed"
         text += [" · ".join([*(re.sub(r" RUNS=(.*)`$", r"` (runs `\1`)", f"`clothbench {c}`") for c in facts["commands"]), ", ".join(facts["devices"] + facts["cpus"]), ", ".join(facts["days"]), how]), ""]
+    if (folder.parent / "EARLIER.md").exists():
+        text += ["## Earlier studies", "", "[EARLIER.md](EARLIER.md) has what is not measured again yet, at other commits.", ""]
     if (folder.parent / "CHANGES.md").exists():
         text += ["## Before", "", "[CHANGES.md](CHANGES.md) has the figures of earlier studies beside these.", ""]
     if (folder.parent / "pictures").exists():

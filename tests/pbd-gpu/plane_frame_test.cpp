@@ -89,7 +89,9 @@ TEST_F(PlaneFrames, MoveTheClothBitForBitAsADispatchAPhaseDoes) {
       s = moving(s);
     const FrameRun one = run(s, "always", 10), many = run(s, "never", 10);
     expect_same(one, many);
-    EXPECT_LE(one.dispatches, collider.mesh && collider.moves() ? 3 : collider.moves() ? 2 : 1);
+    // A half-space is never far: no kernel is there for frames without contact.
+    const int far = name == "half-space" ? 0 : 1;
+    EXPECT_LE(one.dispatches, far + (collider.mesh && collider.moves() ? 3 : collider.moves() ? 2 : 1));
     EXPECT_GT(many.dispatches, kSubsteps * 8);
   }
 }
@@ -97,7 +99,7 @@ TEST_F(PlaneFrames, MoveTheClothBitForBitAsADispatchAPhaseDoes) {
 TEST_F(PlaneFrames, OfTheLargestClothOfOneWorkgroup) {
   const Scene s = falling(32, 32, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
   const FrameRun one = run(s, "always", 6);
-  EXPECT_EQ(one.dispatches, 1);
+  EXPECT_EQ(one.dispatches, 2);
   expect_same(one, run(s, "never", 6));
 }
 
@@ -153,7 +155,7 @@ TEST_F(PlaneFrames, DoWithBuffersWhatTheirQualifiersSay) {
       EXPECT_EQ(u.declared_writeonly, !u.read) << where;
     }
   }
-  EXPECT_EQ(kernels, 2) << "pieces and the frame";
+  EXPECT_EQ(kernels, 3) << "pieces, the frame far from them, the frame";
 }
 
 TEST_F(PlaneFrames, WhereNoColliderIsNear) {

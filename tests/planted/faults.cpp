@@ -99,8 +99,9 @@ void add_planes(std::vector<Fault>& f) {
          "min(count, room) / 2u, 0u");
   kernel("start of the substep not what it was", "wrapped", "plane_vertices.glsl", "at.xyz += p.h * (vel ",
          "at.xyz += -9.0 * p.h * (vel ");
-  kernel("bounds of distances do not lose the ways", "struck", "plane_near.glsl", "bound -= most_of(e, true) + moved;",
-         "bound -= 0.0;");
+  kernel("bounds of distances do not lose the ways", "struck", "plane_near.glsl",
+         "bound -= most_of(e, true) + piece_way(pair.y);", "bound -= 0.0;");
+  kernel("whatever is apart taken for far", "struck", "plane_near.glsl", "gap > approach_of(e, pair.y)", "gap > 0.0");
   kernel("normal of the nearest points flipped", "struck", "plane_query.glsl", "s.normal = vec4(r.n, gap);",
          "s.normal = vec4(-r.n, gap);");
   kernel("friction along the slip", "wrapped", "plane_push.glsl", "by -= min(1.0, piece.friction",
@@ -119,10 +120,13 @@ void add_planes(std::vector<Fault>& f) {
   kernel("planes forgotten", "struck", "plane_project.glsl",
          "if (proposed.w > 0.0 && !(least >= 0.0)) at = placed(at, from.w);", "");
   kernel("planes of one lane's triangles alone", "struck", "plane_project.glsl", "least = least_of_team(least);", "");
-  kernel("near pairs without their bit", "struck", "plane_near.glsl", "atomicOr(near_bits[k / 32u], 1u << k % 32u);",
-         "");
+  kernel("near pairs without their bit", "struck", "plane_near.glsl",
+         "atomicOr(near_bits[NEAR_BITS + k / 32u], 1u << k % 32u);", "");
+  kernel("what a contact pushes not marked", "wrapped", "plane_push.glsl", "touched[PUSHED(e[c])] = 1u;", ";");
+  kernel("what is behind a plane not marked", "struck", "plane_choose.glsl", "touched[BEFORE_A_PLANE(e[c])] = 1u;",
+         ";");
   kernel("projected onto all planes but those of the last triangle", "struck", "plane_project.glsl",
-         "any_planes && f < end_fan;", "any_planes && f + 1u < end_fan;");
+         "first_fan; f < end_fan;", "first_fan; f + 1u < end_fan;");
 }
 
 /// The same of the cloth's contact with itself.

@@ -51,7 +51,7 @@ def passed(solver, setting, kind):
     return rates[solver, setting, kind]["passed"] + " of " + rates[solver, setting, kind]["drawn"]
 
 
-limits, index, study = ((root / name).read_text(encoding="utf-8") for name in ("README.md", "results/reference/README.md", "results/reference/contact-h200/README.md"))
+limits, index, study = ((root / name).read_text(encoding="utf-8") for name in ("README.md", "results/reference/EARLIER.md", "results/reference/contact-h200/README.md"))
 total = rates["xpbd", "default", "all"]
 interval = f"({100 * float(total['rate_low']):.0f} to {100 * float(total['rate_high']):.0f} %)"
 for text in (limits, index):

@@ -18,7 +18,7 @@ layout(std430, binding = BIND_SHIFTS) buffer Shifts { vec4 shifts[]; };  // over
 layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
 #endif
 #ifdef FAR
-layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_LEDGER) writeonly buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_PIECE_BOXES) readonly buffer PieceBoxes { ClusterBox boxes[]; };  // groups' after pieces'
 PLANE_FRAME_CONSTANTS(SPECIALIZE)
 #endif

@@ -130,7 +130,7 @@ bool list_pairs() {
 
 // A workgroup looks through its share of the pairs a few rounds at a time. Its threads share out those that remain after each question,
 // so that no thread waits for its neighbour's answer.
-const uint kRounds = 4u;
+const uint kRounds = THREADS < 512u ? 512u / THREADS : 1u;
 shared uint looked_at[kRounds * THREADS], found[kRounds * THREADS], looked, near_ones, place;
 void look_for_near() {
   for (uint base = me - thread; base < ledger.pairs; base += kRounds * all_threads) {
