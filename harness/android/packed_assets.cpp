@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <sstream>
 #include <vector>
 
+#include "base/files.hpp"
 #include "base/sha256.hpp"
 #include "clothbench/error.hpp"
-#include "results/store.hpp"
 
 namespace clothbench::android {
 namespace {
@@ -53,12 +52,7 @@ std::vector<Entry> parse_index(const std::string& text) {
 void unpack_assets(const AssetReader& read, const fs::path& to) {
   const auto index = read(kIndex);
   if (!index) throw Error(fmt::format("assets: {}: expected this file in the package", kIndex));
-  {
-    std::ifstream in(to / kIndex, std::ios::binary);
-    std::ostringstream before;
-    before << in.rdbuf();
-    if (in && before.str() == *index) return;
-  }
+  if (!index->empty() && content_of(to / kIndex) == *index) return;
   const std::vector<Entry> entries = parse_index(*index);
   fs::remove_all(to);
   for (const Entry& e : entries) {

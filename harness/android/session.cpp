@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
+#include "base/files.hpp"
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
 #include "runner/environment.hpp"
@@ -20,13 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 /// One session runs at a time, in the order they were made: the log and the interrupt are the process's.
 class Turns {
@@ -91,7 +84,7 @@ class Ledger {
  public:
   /// Goes on with the file's list if it is of the same commands and not at its end.
   Ledger(fs::path file, const std::vector<std::string>& lines) : file_(std::move(file)) {
-    const json before = json::parse(text_of(file_), nullptr, false);
+    const json before = json::parse(content_of(file_), nullptr, false);
     const auto state_is = [](const json& c, const char* state) { return c.value("state", "") == state; };
     if (before.is_object() && before.contains("commands") && before["commands"].is_array() &&
         before["commands"].size() == lines.size()) {
@@ -174,7 +167,7 @@ struct Session::Shared {
 
   std::vector<std::string> lines() const {
     std::vector<std::string> all = command_lines(launch.extra);
-    if (all.empty()) all = command_lines(text_of(launch.files / "args.txt"));
+    if (all.empty()) all = command_lines(content_of(launch.files / "args.txt"));
     if (all.empty()) all = {"study table3"};
     return all;
   }

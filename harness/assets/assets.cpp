@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cstdlib>
 
 #include "assets/json_at.hpp"
 #include "assets/procedural.hpp"
 #include "base/data_folder.hpp"
 #include "base/json_text.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 
@@ -41,14 +41,12 @@ fs::path first_missing(const fs::path& root) {
 }
 
 std::string versions(const fs::path& root) {
-  std::string out;
-  for (const char* package : {"@iwer/sem", "iwer", "@webxr-input-profiles/assets"}) {
+  constexpr const char* kPackages[] = {"@iwer/sem", "iwer", "@webxr-input-profiles/assets"};
+  return joined(kPackages, ", ", [&](const char* package) {
     const fs::path file = root / package / "package.json";
     const nlohmann::json document = parse_json(read_text(file), file.string());
-    out +=
-        fmt::format("{}{} {}", out.empty() ? "" : ", ", package, JsonAt(document, file.string()).key("version").text());
-  }
-  return out;
+    return fmt::format("{} {}", package, JsonAt(document, file.string()).key("version").text());
+  });
 }
 
 /// Where a user's own data lie (XDG base directories); empty if there is no home.
@@ -111,11 +109,9 @@ ProceduralAssets::~ProceduralAssets() {
 
 Room open_room(const AssetSource& source, const std::string& name) {
   if (name.ends_with(".json")) return load_room(name);
-  if (std::find(kRoomNames.begin(), kRoomNames.end(), name) == kRoomNames.end()) {
-    const std::string near = nearest(name, {kRoomNames.begin(), kRoomNames.end()});
+  if (!contains(kRoomNames, name))
     throw Error(fmt::format("room \"{}\": expected a .json capture or one of {}{}", name, fmt::join(kRoomNames, ", "),
-                            near.empty() ? "" : "; did you mean \"" + near + "\"?"));
-  }
+                            nearest_known(name, {kRoomNames.begin(), kRoomNames.end()})));
   return source.npm ? load_room(room_file(source.root, name)) : procedural_room();
 }
 

@@ -9,6 +9,7 @@
 #include <tiny_gltf.h>
 #undef TINYGLTF_IMPLEMENTATION
 
+#include "assets/mesh.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 

@@ -1,5 +1,6 @@
 #include "assets/hand.hpp"
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 
@@ -24,8 +25,7 @@ const HandPose& Hand::pose(const std::string& name) const {
   if (found != poses.end()) return found->second;
   std::vector<std::string> known;
   for (const auto& [n, unused] : poses) known.push_back(n);
-  const std::string near = nearest(name, known);
-  throw Error("hand: no pose \"" + name + "\"" + (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+  throw Error("hand: no pose \"" + name + "\"" + nearest_known(name, known));
 }
 
 }  // namespace clothbench::assets

@@ -1,10 +1,8 @@
 #pragma once
 #include <array>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "assets/mesh.hpp"
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cctype>
-#include <cmath>
 
 #include "assets/hand_pose.hpp"
 #include "assets/json_at.hpp"

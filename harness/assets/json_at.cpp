@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 
@@ -97,20 +98,15 @@ Eigen::VectorXd JsonAt::numbers(std::size_t n) const {
 void JsonAt::only(const std::vector<std::string>& known) const {
   if (!value_->is_object()) fail("expected an object, not " + what_is(*value_));
   for (const auto& [name, unused] : value_->items()) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string near = nearest(name, known);
-    fail(fmt::format(
-        "unknown key \"{}\"; {}", name,
-        near.empty() ? fmt::format("known: {}", fmt::join(known, ", ")) : "did you mean \"" + near + "\"?"));
+    if (contains(known, name)) continue;
+    fail(fmt::format("unknown key \"{}\"; known: {}{}", name, joined(known), nearest_known(name, known)));
   }
 }
 
 std::string JsonAt::word(const std::vector<std::string>& known) const {
   const std::string given = text();
-  if (std::find(known.begin(), known.end(), given) != known.end()) return given;
-  const std::string near = nearest(given, known);
-  fail(fmt::format("\"{}\" is not one of {}{}", given, fmt::join(known, ", "),
-                   near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+  if (contains(known, given)) return given;
+  fail(fmt::format("\"{}\" is not one of {}{}", given, joined(known), nearest_known(given, known)));
 }
 
 }  // namespace clothbench::assets

@@ -1,6 +1,5 @@
 #pragma once
 #include <Eigen/Geometry>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>

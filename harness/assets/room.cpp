@@ -9,6 +9,7 @@
 #include "assets/base64.hpp"
 #include "assets/json_at.hpp"
 #include "base/json_text.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench::assets {
@@ -184,10 +185,8 @@ Room load_room(const std::filesystem::path& path) {
 
 const Table& find_table(const Room& room, const std::string& prefix) {
   const Table* found = nullptr;
-  std::string known;
   int matches = 0;
   for (const Table& table : room.tables) {
-    known += (known.empty() ? "" : ", ") + table.uuid;
     const bool stands =
         !table.stands_for.empty() && (table.stands_for.starts_with(prefix) || prefix.starts_with(table.stands_for));
     if (prefix.empty() || !(table.uuid.starts_with(prefix) || stands)) continue;
@@ -196,7 +195,7 @@ const Table& find_table(const Room& room, const std::string& prefix) {
   }
   if (matches == 1) return *found;
   throw Error(fmt::format("room {}: {} tables have a uuid that starts with \"{}\"; there are: {}", room.name, matches,
-                          prefix, known.empty() ? "none" : known));
+                          prefix, room.tables.empty() ? "none" : joined(room.tables, ", ", &Table::uuid)));
 }
 
 }  // namespace clothbench::assets

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "base/words.hpp"
+
 namespace clothbench {
 
 Value absent() { return Value::value_t::discarded; }
@@ -26,9 +28,7 @@ std::string csv_value(const Value& v) {
   if (v.is_number_float()) return csv_number(v.get<double>());
   if (v.is_null() || v.is_discarded()) return "";
   if (!v.is_array()) return v.dump();
-  std::string out;
-  for (const Value& item : v) out += (out.empty() ? "" : ", ") + csv_value(item);
-  return out;
+  return joined(v, ", ", csv_value);
 }
 
 Value json_value(Value v) { return v.is_number_float() && !std::isfinite(v.get<double>()) ? Value() : v; }

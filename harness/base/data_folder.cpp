@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "base/paths.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench {
@@ -13,9 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string listed(const std::vector<fs::path>& places) {
-  std::string out;
-  for (const fs::path& place : places) out += (out.empty() ? "" : ", then ") + place.string();
-  return out;
+  return joined(places, ", then ", [](const fs::path& place) { return place.string(); });
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
@@ -33,6 +34,11 @@ class Descriptor {
 };
 
 }  // namespace
+
+std::string content_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 std::filesystem::path temporary_name(const std::filesystem::path& path) {
   return path.string() + fmt::format("{}{}", kTemporaryMark, getpid());

@@ -10,6 +10,9 @@ inline constexpr char kTemporaryMark[] = ".tmp.";
 /// `<path>.tmp.<pid>`: the name of a file until it is complete.
 std::filesystem::path temporary_name(const std::filesystem::path& path);
 
+/// The whole file; empty if it cannot be read.
+std::string content_of(const std::filesystem::path&);
+
 /// Calls fsync on the temporary file, renames it to `path`, calls fsync on the folder. Throws Error naming the file.
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& path);
 

@@ -9,6 +9,7 @@
 #include <valijson/validator.hpp>
 
 #include "base/json_text.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 
@@ -62,9 +63,7 @@ std::string expectation(const json& s) {
     parts.push_back("at most " + s["maxItems"].dump() + " items");
   if (s.contains("minLength")) parts.push_back("at least " + s["minLength"].dump() + " characters");
   if (s.contains("pattern")) parts.push_back("matching " + s["pattern"].get<std::string>());
-  std::string text;
-  for (const std::string& p : parts) text += (text.empty() ? "" : ", ") + p;
-  return text;
+  return joined(parts);
 }
 
 /// First key of an object that its schema does not know, with the nearest known one; searched depth first, because
@@ -79,8 +78,7 @@ std::string unknown_key(const json& value, const json& schema, const json& root,
       } else if (s.value("additionalProperties", json(true)) == json(false)) {
         std::vector<std::string> names;
         for (const auto& [name, unused] : known.items()) names.push_back(name);
-        const std::string near = nearest(key, names);
-        return fmt::format("{}/{}: unknown key{}", pointer, key, near.empty() ? "" : "; nearest known: " + near);
+        return fmt::format("{}/{}: unknown key{}", pointer, key, nearest_known(key, names));
       }
     }
   }

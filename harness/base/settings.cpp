@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <set>
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 
@@ -13,22 +12,6 @@ namespace clothbench {
 namespace {
 
 using nlohmann::json;
-
-/// Levenshtein distance.
-std::size_t distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row.back();
-}
 
 const char* kind(const json& v) {
   return v.is_number_integer() ? "an integer"
@@ -56,17 +39,6 @@ bool fits(const json& given, const json& standard) {
 
 }  // namespace
 
-std::string nearest(const std::string& word, const std::vector<std::string>& known) {
-  std::string best;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
-  for (const std::string& k : known)
-    if (const std::size_t d = distance(word, k); d < least) {
-      least = d;
-      best = k;
-    }
-  return best;
-}
-
 json flat_settings(json settings) {
   if (!settings.is_object()) return settings;
   const json tuning = settings.value(kTuning, json());
@@ -89,11 +61,9 @@ json complete_settings(const SolverInfo& info, const json& given) {
   }
   if (!tuning.empty()) all[kTuning] = json::object();
   const auto put = [&](json& of, const std::string& key, const json& value, const std::string& path) {
-    if (!of.contains(key)) {
-      const std::string near = nearest(path, names);
+    if (!of.contains(key))
       throw Error(fmt::format("solver {}: no setting \"{}\"{}", info.name, path,
-                              near.empty() ? names.empty() ? "; it has none" : "" : "; nearest known: " + near));
-    }
+                              names.empty() ? "; it has none" : nearest_known(path, names)));
     if (!fits(value, of[key]))
       throw Error(
           fmt::format("solver {}: setting {}: expected {}; found {}", info.name, path, kind(of[key]), value.dump()));
@@ -102,15 +72,15 @@ json complete_settings(const SolverInfo& info, const json& given) {
           fmt::format("solver {}: setting {}: given twice with different values; expected one value", info.name, path));
     of[key] = value;
   };
-  std::string moved;
+  std::vector<std::string> moved;
   for (const auto& [key, value] : given.items()) {
     const bool was_here = tuning.contains(key);
-    if (was_here) moved += (moved.empty() ? "" : ", ") + key;
+    if (was_here) moved.push_back(key);
     put(was_here ? tuning : all, key, value, key);
     if (key != kTuning) continue;
     for (const auto& [member, own] : value.items()) put(tuning, member, own, fmt::format("{}.{}", key, member));
   }
-  if (!moved.empty()) tell_moved(info.name, moved);
+  if (!moved.empty()) tell_moved(info.name, joined(moved));
   if (!tuning.empty()) all[kTuning] = std::move(tuning);
   return all;
 }

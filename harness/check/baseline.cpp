@@ -8,6 +8,7 @@
 
 #include "base/former_names.hpp"
 #include "base/json_text.hpp"
+#include "base/words.hpp"
 #include "check/gates.hpp"
 #include "check/schema.hpp"
 #include "clothbench/error.hpp"
@@ -29,17 +30,13 @@ std::string assets_of(const RunRecord& c) {
 }
 
 std::string stage_text(const StageRecord& s) {
-  std::string features;
-  for (const std::string& f : s.serves) features += (features.empty() ? "" : ", ") + f;
-  return features.empty() ? s.name : s.name + " (" + features + ")";
+  return s.serves.empty() ? s.name : s.name + " (" + joined(s.serves) + ")";
 }
 
 double number_at(const json& value, const std::string& name, const std::string& where) {
-  if (find_gate(name) == nullptr) {
-    const std::string near = nearest(name, gated_names());
+  if (find_gate(name) == nullptr)
     throw Error(fmt::format("{}: not a scalar that is checked{} (the table is in results/baselines/README.md)", where,
-                            near.empty() ? "" : "; nearest known: " + near));
-  }
+                            nearest_known(name, gated_names())));
   if (value.is_null()) return kMissing;
   if (!value.is_number())
     throw Error(fmt::format("{}: expected number, or null for not measured; found {}", where, value.dump()));

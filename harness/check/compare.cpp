@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench {
@@ -134,7 +135,7 @@ class Check {
 /// Adds what `from` has and `to` lacks.
 void merge(std::vector<std::string>& to, const std::vector<std::string>& from) {
   for (const std::string& text : from)
-    if (std::find(to.begin(), to.end(), text) == to.end()) to.push_back(text);
+    if (!contains(to, text)) to.push_back(text);
   std::sort(to.begin(), to.end());
 }
 
@@ -187,6 +188,12 @@ Verdict CheckedRun::verdict() const {
   Verdict worst = Verdict::Same;
   for (const Finding& f : findings) worst = std::max(worst, f.verdict);
   return worst;
+}
+
+std::string CheckedRun::sentences(const std::function<bool(Verdict)>& is) const {
+  std::vector<Finding> chosen = findings;
+  std::erase_if(chosen, [&](const Finding& f) { return !is(f.verdict); });
+  return joined(chosen, "\n", &Finding::sentence);
 }
 
 std::size_t Checked::count(Verdict v) const {

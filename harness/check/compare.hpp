@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct CheckedRun {
   std::vector<Finding> findings;
 
   Verdict verdict() const;
+  /// A line for each finding whose verdict `is` accepts.
+  std::string sentences(const std::function<bool(Verdict)>& is) const;
 };
 
 struct Checked {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/words.hpp"
 #include "check/compare.hpp"
 #include "check/gates.hpp"
 #include "clothbench/error.hpp"
@@ -54,11 +55,9 @@ std::vector<Finding> compare_outcome(const BaselineRun& was, const BaselineRun& 
 
 std::vector<Finding> compare_stages(const BaselineRun& was, const BaselineRun& is) {
   if (was.stages == is.stages) return {};
-  const auto without = [](const std::vector<std::string>& a, const std::vector<std::string>& b) {
-    std::string text;
-    for (const std::string& s : a)
-      if (std::find(b.begin(), b.end(), s) == b.end()) text += (text.empty() ? "" : ", ") + s;
-    return text;
+  const auto without = [](std::vector<std::string> a, const std::vector<std::string>& b) {
+    std::erase_if(a, [&](const std::string& s) { return contains(b, s); });
+    return joined(a);
   };
   const std::string added = without(is.stages, was.stages), gone = without(was.stages, is.stages);
   std::string message;
@@ -103,8 +102,7 @@ int version_in(const BaselineRun& c, const std::string& metric) {
 
 bool hangs_on(const std::string& scalar, const std::vector<VersionDifference>& versions) {
   const std::vector<std::string> behind = metrics_behind(scalar);
-  return std::any_of(versions.begin(), versions.end(),
-                     [&](const auto& v) { return std::find(behind.begin(), behind.end(), v.metric) != behind.end(); });
+  return std::any_of(versions.begin(), versions.end(), [&](const auto& v) { return contains(behind, v.metric); });
 }
 
 std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& is, const RunRecord& record) {

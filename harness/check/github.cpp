@@ -30,11 +30,8 @@ std::string command(const char* kind, const std::string& file, const std::string
                      escaped(message, false));
 }
 
-std::string sentences(const CheckedRun& run, Verdict verdict) {
-  std::string text;
-  for (const Finding& f : run.findings)
-    if (f.verdict == verdict) text += (text.empty() ? "" : "\n") + f.sentence();
-  return text;
+auto is(Verdict verdict) {
+  return [verdict](Verdict of_finding) { return of_finding == verdict; };
 }
 
 }  // namespace
@@ -43,9 +40,9 @@ std::string github_commands(const Checked& checked, const std::string& file) {
   std::string out, improved, fresh;
   for (const CheckedRun& run : checked.runs) {
     if (run.verdict() == Verdict::Failed)
-      out += command("error", file, run.key.text(), sentences(run, Verdict::Failed));
+      out += command("error", file, run.key.text(), run.sentences(is(Verdict::Failed)));
     const auto append = [&](std::string& to, Verdict verdict) {
-      if (const std::string text = sentences(run, verdict); !text.empty())
+      if (const std::string text = run.sentences(is(verdict)); !text.empty())
         to += (to.empty() ? "" : "\n") + run.key.text() + ": " + text;
     };
     append(improved, Verdict::Improved);

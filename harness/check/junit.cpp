@@ -47,13 +47,6 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string sentences(const CheckedRun& run, bool failures) {
-  std::string text;
-  for (const Finding& f : run.findings)
-    if ((f.verdict == Verdict::Failed) == failures) text += (text.empty() ? "" : "\n") + f.sentence();
-  return text;
-}
-
 std::string test_case(const CheckedRun& run) {
   std::string name = run.key.solver;
   if (!run.key.setting.empty()) name += " " + run.key.setting;
@@ -61,12 +54,12 @@ std::string test_case(const CheckedRun& run) {
   std::string out = fmt::format("    <testcase classname=\"{}\" name=\"{}\"", escaped(run.key.scene), escaped(name));
   if (run.verdict() == Verdict::Same) return out + "/>\n";
   out += ">\n";
-  if (const std::string text = sentences(run, true); !text.empty()) {
+  if (const std::string text = run.sentences([](Verdict v) { return v == Verdict::Failed; }); !text.empty()) {
     const std::string first = text.substr(0, text.find('\n'));
     out +=
         fmt::format("      <failure type=\"regression\" message=\"{}\">{}</failure>\n", escaped(first), escaped(text));
   }
-  if (const std::string text = sentences(run, false); !text.empty())
+  if (const std::string text = run.sentences([](Verdict v) { return v != Verdict::Failed; }); !text.empty())
     out += fmt::format("      <system-out>{}</system-out>\n", escaped(text));
   return out + "    </testcase>\n";
 }

@@ -7,17 +7,12 @@
 #include "base/former_names.hpp"
 #include "base/plugin_environment.hpp"
 #include "base/tint.hpp"
+#include "base/words.hpp"
 #include "cli/command.hpp"
 #include "runner/build_info.hpp"
 
 namespace clothbench {
 namespace {
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string line = "clothbench";
-  for (const std::string& word : words) line += " " + word;
-  return line;
-}
 
 /// Says why the command failed, to people and, with --json, to machines.
 int report_error(const Console& console, const std::string& why, ExitCode code) {
@@ -71,7 +66,7 @@ int run_command_line(const std::vector<std::string>& given) {
       "check failed, 2 bad input, 3 no device, 130 interrupted.");
   Console console;
   colour_output(takes_colour(STDOUT_FILENO));
-  console.command_line = joined(words);
+  console.command_line = "clothbench " + joined(words, " ");
   console.words = words;
   app.add_flag("--json", console.json, "Print a machine-readable summary");
   app.add_flag("--in-process", console.arguments<bool>(),

@@ -2,6 +2,7 @@
 // and files there are, so it cannot grow old.
 #include <algorithm>
 
+#include "base/words.hpp"
 #include "cli/command.hpp"
 #include "cli/texts.hpp"
 #include "studies/lists.hpp"
@@ -15,9 +16,7 @@ using Words = std::vector<std::string>;
 Words setting_names(const Words& before) {
   Words names;
   for (const SolverEntry& e : solvers()) {
-    const bool named = std::find(before.begin(), before.end(), "--solver") == before.end() ||
-                       std::find(before.begin(), before.end(), e.info.name) != before.end();
-    if (named)
+    if (!contains(before, "--solver") || contains(before, e.info.name))
       for (const SettingSpec& s : e.info.settings) names.push_back("solver." + s.name + "=");
   }
   return names;

@@ -92,8 +92,8 @@ void add_moduli(CLI::App& app, Console& console) {
   ModuliArguments& a = console.arguments<ModuliArguments>();
   CLI::App* cmd = app.add_subcommand(
       "moduli",
-      "Measure the effective stiffness of solvers: moduli at 0, 45 and 90 degrees, bending, and their "
-      "dependence on settings");
+      "Measure the effective stiffness of solvers: moduli at 0, 45 and 90 degrees, bending, of grids and of "
+      "irregular triangle meshes, and their dependence on settings");
   a.add_to(*cmd, "solver", "Solvers; default: all", "Setting of the solver: solver.substeps=20");
   cmd->add_flag("--no-sweep", a.no_sweep,
                 "Measure at the given settings only, not also with four times the substeps and iterations");

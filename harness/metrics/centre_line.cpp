@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "metrics/collider_passage.hpp"
+#include "scenario/strict_contact.hpp"
 
 namespace clothbench {
 namespace {

@@ -1,5 +1,4 @@
 // Where the cloth ends up: how low it hangs, and whether it touches what it should lie on.
-#include <algorithm>
 #include <limits>
 
 #include "metrics/collider_contact.hpp"

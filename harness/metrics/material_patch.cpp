@@ -4,6 +4,7 @@
 
 #include "clothbench/record.hpp"
 #include "clothbench/vector.hpp"
+#include "metrics/mesh_patch.hpp"
 #include "truth/elastica.hpp"
 
 namespace clothbench {
@@ -111,9 +112,17 @@ double diagonal_modulus(const Scene& scene, const std::vector<double>& x) {
          scene.material.bending_rigidity_N_m;
 }
 
+std::map<std::string, double> mesh_moduli(Patch patch, const Scene& scene, const std::vector<double>& position) {
+  const IsotropicModuli m = hanging_moduli(scene, position);
+  if (patch == Patch::Mesh45) return {{"mesh_E_45", m.E}};
+  if (patch == Patch::Mesh90) return {{"mesh_E_90", m.E}};
+  return {{"mesh_E_0", m.E}, {"mesh_nu", m.nu}};
+}
+
 }  // namespace
 
 std::map<std::string, double> patch_moduli(Patch patch, const Scene& scene, const std::vector<double>& position) {
+  if (scene.cloth.mesh) return mesh_moduli(patch, scene, position);
   const Sheet p(scene, position);
   switch (patch) {
     case Patch::HangU:
@@ -133,10 +142,9 @@ std::map<std::string, double> patch_moduli(Patch patch, const Scene& scene, cons
       return {{"B_90", bend_modulus(p)}};
     case Patch::BendStiffer:
       return {{"B_stiffer", bend_modulus(p)}};
-    case Patch::BendDiagonal:
-      break;
+    default:
+      return {{"B_45", diagonal_modulus(scene, position)}};
   }
-  return {{"B_45", diagonal_modulus(scene, position)}};
 }
 
 double modulus_at_45(const std::map<std::string, double>& m) {

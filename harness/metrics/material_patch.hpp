@@ -18,6 +18,7 @@ namespace clothbench {
 ///   Shear       G                      over Y: rho g s^2 over the second difference of the middle line
 ///   BendU, BendV  B_0, B_90            from the free end's drop by the elastica (harness/truth)
 ///   BendStiffer B_stiffer              BendDiagonal  B_45: rho g s^4 over the fourth difference across the band
+///   Mesh0, 45, 90   mesh_E_0, mesh_E_45, mesh_E_90, mesh_nu   by least squares (mesh_patch.hpp); mesh_nu of Mesh0
 /// `position` [m], xyz interleaved.
 std::map<std::string, double> patch_moduli(Patch, const Scene&, const std::vector<double>& position);
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "metrics/collider_contact.hpp"
-#include "metrics/collider_passage.hpp"
 #include "metrics/reduction.hpp"
 
 namespace clothbench {

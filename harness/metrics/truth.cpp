@@ -1,7 +1,6 @@
 // Distance of a run from its scene's truth, per frame and as a whole; energy of scenes that conserve it.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "metrics/reduction.hpp"
 #include "metrics/truth_errors.hpp"

@@ -1,8 +1,5 @@
 #include "metrics/truth_errors.hpp"
 
-#include <cmath>
-#include <limits>
-
 #include "clothbench/error.hpp"
 #include "metrics/metric.hpp"
 

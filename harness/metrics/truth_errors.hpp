@@ -1,5 +1,4 @@
 #pragma once
-#include <string>
 
 #include "clothbench/record.hpp"
 #include "clothbench/scene.hpp"

@@ -11,8 +11,6 @@ namespace {
 constexpr double kSeenBeside = 0.12;  // of the sheet's size: so near the cloth colliders are in the picture,
 constexpr double kDrawnBeside = 0.5;  // and so far are drawn
 
-Vec3 vertex(std::span<const double> x, std::size_t v) { return {x[3 * v], x[3 * v + 1], x[3 * v + 2]}; }
-
 double largest(const Vec3& v) { return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}); }
 
 void append(std::vector<double>& points, const Vec3& p) { points.insert(points.end(), p.begin(), p.end()); }
@@ -20,7 +18,7 @@ void append(std::vector<double>& points, const Vec3& p) { points.insert(points.e
 Bounds bounds_of(std::span<const double> x) {
   Bounds b = Bounds::none();
   for (std::size_t v = 0; v < x.size() / 3; ++v)
-    if (const Vec3 p = vertex(x, v); std::isfinite(p[0] + p[1] + p[2])) b.add(p);
+    if (const Vec3 p = vertex_at(x, v); std::isfinite(p[0] + p[1] + p[2])) b.add(p);
   return b;
 }
 
@@ -44,14 +42,14 @@ Framing framing_of(const Motion& m, std::span<const std::size_t> frames) {
   const auto middle = static_cast<std::uint32_t>((cloth.rows / 2) * cloth.columns + cloth.columns / 2);
   if (!m.held)
     for (const std::size_t k : frames)
-      if (largest(minus(vertex(m.at(k), middle), vertex(start, middle))) > size) f.followed = middle;
+      if (largest(minus(vertex_at(m.at(k), middle), vertex_at(start, middle))) > size) f.followed = middle;
 
   Bounds seen = Bounds::none();
   for (const std::size_t k : frames) {
     const std::vector<double> x = m.at(k);
-    const Vec3 moved = f.followed ? minus(vertex(x, middle), vertex(start, middle)) : Vec3{};
+    const Vec3 moved = f.followed ? minus(vertex_at(x, middle), vertex_at(start, middle)) : Vec3{};
     for (std::size_t v = 0; v < cloth.vertex_count(); ++v) {
-      const Vec3 p = minus(vertex(x, v), moved);
+      const Vec3 p = minus(vertex_at(x, v), moved);
       if (!zone.holds(p)) continue;
       append(f.points, p);
       seen.add(p);
@@ -63,7 +61,7 @@ Framing framing_of(const Motion& m, std::span<const std::size_t> frames) {
   }
   f.near = seen;
   f.near.grow(kDrawnBeside * size);
-  for (std::size_t k = 0; k < 3; ++k) f.origin_m[k] = (seen.low[k] + seen.high[k]) / 2;
+  f.origin_m = scaled(0.5, plus(seen.low, seen.high));
   Bounds beside = seen;
   beside.grow(kSeenBeside * size);
   // Static objects are the same in every frame.

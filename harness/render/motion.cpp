@@ -13,14 +13,13 @@ namespace {
 
 using nlohmann::json;
 
-/// The scene's mesh: from its file if that is still there, else from the triangles of the result and its first frame,
-/// where that is the shape at rest.
+/// The scene's mesh: drawn again, or from its file if that is still there, else from the triangles of the result and
+/// its first frame, where that is the shape at rest.
 std::shared_ptr<const ClothMesh> mesh_of(const json& scenario, const RunHeader& header, const Replay& replay) {
   const json& c = scenario.at("cloth");
   json named = c.at("mesh");
-  if (file_of_scene(named.at("file").get<std::string>(), "")) {
+  if (named.contains("drawn") || file_of_scene(named.at("file").get<std::string>(), ""))
     return read_cloth_mesh(named, "/scenario_json");
-  }
   if (c.contains("start") || named.value("rest", "vertices") != "vertices")
     throw Error("/cloth/mesh/file: " + named.at("file").dump() +
                 ": no such file; expected it in the scenario folder, for the cloth starts in another shape than it has "

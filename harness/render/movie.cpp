@@ -4,10 +4,10 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <sstream>
 #include <vector>
 
+#include "base/files.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench::render {
@@ -61,12 +61,11 @@ void Movie::add(const Picture& picture) {
 
 void Movie::finish() {
   const ChildEnd how = end();
-  std::stringstream said;
-  said << std::ifstream(log_).rdbuf();
+  const std::string said = content_of(log_);
   std::error_code ignored;
   std::filesystem::remove(log_, ignored);
   if (how.how == ChildEnd::How::Exited && how.code == 0) return;
-  throw Error(file_.string() + ": ffmpeg failed: " + said.str());
+  throw Error(file_.string() + ": ffmpeg failed: " + said);
 }
 
 }  // namespace clothbench::render

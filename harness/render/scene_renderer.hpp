@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "render/camera.hpp"
 #include "render/pipelines.hpp"

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
+#include "clothbench/vector.hpp"
 #include "gpu_solver.hpp"
 #include "render/offscreen.hpp"
 
@@ -20,8 +20,7 @@ class StereoDrawer : public FrameDrawer {
         images_(vulkan::Device::get(options), eye, 2) {
     near_ = Bounds::none();
     const std::vector<double> start = initial_positions(scene);
-    for (std::size_t v = 0; v < scene.cloth.vertex_count(); ++v)
-      near_.add({start[3 * v], start[3 * v + 1], start[3 * v + 2]});
+    for (std::size_t v = 0; v < scene.cloth.vertex_count(); ++v) near_.add(vertex_at(start, v));
     Vec3 middle{};
     for (std::size_t k = 0; k < 3; ++k) middle[k] = (near_.low[k] + near_.high[k]) / 2;
     const double size = std::max({scene.cloth.width_m, scene.cloth.height_m, near_.diagonal()});
@@ -38,7 +37,7 @@ class StereoDrawer : public FrameDrawer {
     // What nothing holds falls out of sight; the eyes fall with it, on the device.
     if (scene.pins.vertices.empty() && scene.grips.vertices.empty() && scene.colliders.empty()) {
       const auto v = static_cast<std::uint32_t>((scene.cloth.rows / 2) * scene.cloth.columns + scene.cloth.columns / 2);
-      renderer_.follow(v, {start[3 * v], start[3 * v + 1], start[3 * v + 2]});
+      renderer_.follow(v, vertex_at(start, v));
     }
     renderer_.set_surfaces(surfaces(scene, 0, near_));
   }

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <optional>
 
-#include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/collider_surface.hpp"
 #include "metrics/contact/contour.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "report/grid.hpp"
 #include "report/work_precision.hpp"

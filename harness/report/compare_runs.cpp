@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/json_number.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "metrics/registry.hpp"
 #include "report/grid.hpp"
@@ -56,8 +57,7 @@ std::vector<ComparedRun::Versions> differing_versions(const RunRecord& a, const 
 
 bool hangs_on(const std::string& name, const std::vector<ComparedRun::Versions>& versions) {
   const std::vector<std::string> behind = metrics_behind(name);
-  return std::any_of(versions.begin(), versions.end(),
-                     [&](const auto& v) { return std::find(behind.begin(), behind.end(), v.metric) != behind.end(); });
+  return std::any_of(versions.begin(), versions.end(), [&](const auto& v) { return contains(behind, v.metric); });
 }
 
 void compare_run(ComparedRun& c) {

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/json_number.hpp"
+#include "base/words.hpp"
 #include "report/bytes.hpp"
 #include "report/leak.hpp"
 #include "report/roles.hpp"
@@ -90,7 +90,7 @@ const Columns<RunPair>& popping_columns() {
 double mesh_stages_s(const RunRecord& c) {
   double sum = kMissing;
   for (const StageRecord& s : c.header.stages)
-    if (std::find(s.serves.begin(), s.serves.end(), "static_mesh") != s.serves.end()) {
+    if (contains(s.serves, "static_mesh")) {
       const double t = summary_value(c, "stage_device_median_s." + s.name);
       sum = std::isnan(sum) ? t : sum + t;
     }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "base/columns.hpp"
@@ -77,8 +76,7 @@ std::size_t broken_bounds(const RunRecord& c) {
 }
 
 std::string command_of(const DrawnRun& d) {
-  const json& about = d.run->header.environment;
-  const bool quick = about.is_object() && about.value("protocol", "") == "quick";
+  const bool quick = environment_of(*d.run, "protocol") == "quick";
   return fmt::format("clothbench study {} --seed {} --count 1 --solver {}{}{}", d.study, d.seed, d.run->header.solver,
                      quick ? " --quick" : "", d.assets == "procedural" ? " --procedural" : "");
 }

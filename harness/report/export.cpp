@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-
-#include <map>
 #include <set>
 
 #include "base/json_number.hpp"
@@ -75,10 +72,7 @@ std::string summary_csv(const std::vector<RunRecord>& runs, const std::vector<st
             {"expect", In::Both, [](auto& r) { return r.run->outcome.expect; }}});
   for (const char* key : {"gpu", "driver", "gpu_is_software", "cpu", "protocol", "git_commit", "git_dirty",
                           "build_type", "clock_policy", "created"})
-    columns.push_back({key, In::Both, [key](auto& r) {
-                         const nlohmann::json& e = r.run->header.environment;
-                         return e.is_object() ? e.value(key, Value()) : Value();
-                       }});
+    columns.push_back({key, In::Both, [key](auto& r) { return environment_of(*r.run, key); }});
   const std::vector<Family> all = families(runs);
   std::vector<Exported> rows;
   for (const Family& f : all)

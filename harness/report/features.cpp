@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/words.hpp"
 #include "report/grid.hpp"
 
 namespace clothbench {
@@ -32,8 +33,7 @@ std::string words(std::string_view name) {
 }
 
 void add_run(SolverFeatures& s, const RunRecord& c) {
-  const json declared =
-      c.header.environment.is_object() ? c.header.environment.value("solver_features", json()) : json();
+  const json declared = environment_of(c, "solver_features");
   if (declared.is_object()) {
     s.known = true;
     s.supports |= feature_set(declared.value("supports", json()));
@@ -41,8 +41,7 @@ void add_run(SolverFeatures& s, const RunRecord& c) {
     for (const json& pair : declared.value("only_with", json::array())) {
       if (!pair.is_array() || pair.size() != 2) continue;
       const auto f = feature(pair[0]), beside = feature(pair[1]);
-      if (f && beside && std::find(s.only_with.begin(), s.only_with.end(), std::pair{*f, *beside}) == s.only_with.end())
-        s.only_with.emplace_back(*f, *beside);
+      if (f && beside && !contains(s.only_with, std::pair{*f, *beside})) s.only_with.emplace_back(*f, *beside);
     }
   }
   if (c.outcome.status != "ok") return;

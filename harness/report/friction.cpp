@@ -18,11 +18,7 @@ constexpr const char kItsProcess[] = "its process: ";  // prefix of a crash mess
 
 using RunPointers = std::vector<const RunRecord*>;
 
-std::string protocol_of(const RunRecord& c) {
-  return c.header.environment.is_object() ? c.header.environment.value("protocol", "") : "";
-}
-
-bool is_try(const RunRecord& c) { return protocol_of(c) == kThresholdProtocol; }
+bool is_try(const RunRecord& c) { return environment_of(c, "protocol") == kThresholdProtocol; }
 
 /// Scene name from the scene's file. The header's name differs between the runs of a search.
 Scene scene_of(const RunRecord& c) { return scene_from_json(scenario_of(c), c.file.empty() ? c.header.scene : c.file); }
@@ -123,7 +119,7 @@ Table threshold_table(const std::vector<ThresholdRow>& rows) {
 
 }  // namespace
 
-bool is_friction(const RunRecord& c) { return is_try(c) || protocol_of(c) == kFrictionProtocol; }
+bool is_friction(const RunRecord& c) { return is_try(c) || environment_of(c, "protocol") == kFrictionProtocol; }
 
 std::vector<ThresholdRow> threshold_rows(const std::vector<RunRecord>& runs) {
   std::vector<ThresholdRow> out;

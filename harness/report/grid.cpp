@@ -54,6 +54,11 @@ double summary_value(const RunRecord& c, const std::string& name) {
 
 nlohmann::json scenario_of(const RunRecord& c) { return nlohmann::json::parse(c.header.scenario_json, nullptr, false); }
 
+nlohmann::json environment_of(const RunRecord& c, const char* key) {
+  const nlohmann::json& e = c.header.environment;
+  return e.is_object() ? e.value(key, nlohmann::json()) : nlohmann::json();
+}
+
 bool has_block(const RunRecord& c, const char* name) {
   const nlohmann::json s = scenario_of(c);
   return s.is_object() && s.contains(name);

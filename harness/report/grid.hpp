@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/columns.hpp"
+#include "base/words.hpp"
 #include "clothbench/record.hpp"
 
 namespace clothbench {
@@ -18,6 +19,9 @@ double summary_value(const RunRecord&, const std::string& name);
 
 /// The scenario of a run; a discarded value if the stored text is not JSON.
 nlohmann::json scenario_of(const RunRecord&);
+
+/// What the environment says of `key`; null if it says nothing.
+nlohmann::json environment_of(const RunRecord&, const char* key);
 
 /// Whether the scenario has this block, as the protocol that made the run writes it: "stability", "drawn",
 /// "metamorphic", "effective_moduli", "irrelevant".
@@ -31,8 +35,7 @@ template <class Items, class Of>
 auto distinct(const Items& items, Of of) {
   std::vector<std::decay_t<std::invoke_result_t<Of, decltype(*std::begin(items))>>> out;
   for (const auto& item : items)
-    if (auto value = std::invoke(of, item); std::find(out.begin(), out.end(), value) == out.end())
-      out.push_back(std::move(value));
+    if (auto value = std::invoke(of, item); !contains(out, value)) out.push_back(std::move(value));
   return out;
 }
 

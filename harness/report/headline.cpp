@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "base/words.hpp"
 #include "report/report.hpp"
 #include "report/roles.hpp"
 #include "report/withheld.hpp"
@@ -30,6 +30,10 @@ std::string host_line(const nlohmann::json& e) {
                      text(e, "build_type"));
 }
 
+void add(std::vector<std::string>& lines, const std::string& line) {
+  if (!contains(lines, line)) lines.push_back(line);
+}
+
 struct Span {
   std::string first, last;
   void add(const std::string& t) {
@@ -50,7 +54,7 @@ std::vector<std::string> plugin_lines(const std::vector<RunRecord>& runs) {
     const std::string line =
         fmt::format("{}† is a plugin, version {}: {}. Library {}, SHA-256 {}.", c.header.solver,
                     text(e, "solver_version"), text(p, "summary"), text(p, "path"), text(p, "sha256").substr(0, 16));
-    if (std::find(out.begin(), out.end(), line) == out.end()) out.push_back(line);
+    add(out, line);
   }
   return out;
 }
@@ -96,9 +100,6 @@ std::string headline(const std::vector<RunRecord>& runs, Format format) {
   std::vector<std::string> software, invalid, lines, hosts;
   std::map<std::string, Span> created;
   std::map<std::string, bool> on_gpu;  // by host: whether it has a line with a GPU
-  const auto add = [](std::vector<std::string>& v, const std::string& s) {
-    if (std::find(v.begin(), v.end(), s) == v.end()) v.push_back(s);
-  };
   for (const RunRecord& c : runs) {
     const nlohmann::json& e = c.header.environment;
     if (!e.is_object() || e.empty()) continue;

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <set>
 #include <tuple>
 
+#include "base/words.hpp"
 #include "clothbench/feature.hpp"
 #include "metrics/registry.hpp"
 #include "report/bytes.hpp"
@@ -117,13 +117,11 @@ Columns<ContactRow> place_columns() {
 
 /// True if the solver declares to ignore all contact and grips: a bound that holds then proves nothing.
 bool touches_nothing(const RunRecord& c) {
-  const json features =
-      c.header.environment.is_object() ? c.header.environment.value("solver_features", json()) : json();
-  if (!features.is_object() || !filled(features, "ignores")) return false;
+  const json features = environment_of(c, "solver_features");
+  if (!filled(features, "ignores")) return false;
   const json& ignored = features["ignores"];
-  bool all = std::find(ignored.begin(), ignored.end(), name_of(Feature::MovingPins)) != ignored.end();
-  kColliderFeatures.for_each(
-      [&](Feature f) { all = all && std::find(ignored.begin(), ignored.end(), name_of(f)) != ignored.end(); });
+  bool all = contains(ignored, name_of(Feature::MovingPins));
+  kColliderFeatures.for_each([&](Feature f) { all = all && contains(ignored, name_of(f)); });
   return all;
 }
 
@@ -145,8 +143,8 @@ bool has_contact(const RunRecord& c) {
 }
 
 std::string set_up_of(const RunRecord& c) {
-  const json& e = c.header.environment;
-  return e.is_object() && e.contains("set_up") ? e["set_up"].get<std::string>() : formerly(scenario_of(c));
+  const json set_up = environment_of(c, "set_up");
+  return set_up.is_null() ? formerly(scenario_of(c)) : set_up.get<std::string>();
 }
 
 std::vector<ContactSetUp> set_ups(const std::vector<RunRecord>& runs) {

@@ -1,7 +1,6 @@
 // CSV and JSON export of the penetration tables, and of the series in their figures.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "metrics/registry.hpp"

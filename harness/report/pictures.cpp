@@ -9,7 +9,6 @@
 #include <regex>
 #include <set>
 
-#include "base/data_folder.hpp"
 #include "base/files.hpp"
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
@@ -55,11 +54,6 @@ class Scratch {
   fs::path path_;
 };
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 bool is_file_name(const std::string& name) {
   return !name.empty() && fs::path(name).filename() == name && name != "." && name != "..";
 }
@@ -72,7 +66,7 @@ std::set<std::string> listed_pictures(const fs::path& out) {
     if (is_file_name(name)) names.insert(name);
   };
   if (fs::exists(out / kPicturesList)) {
-    const json j = json::parse(text_of(out / kPicturesList), nullptr, false);
+    const json j = json::parse(content_of(out / kPicturesList), nullptr, false);
     if (!j.is_object() || j.value("format", "") != "clothbench-report-pictures" || !j.contains("pictures") ||
         !j["pictures"].is_array())
       throw Error((out / kPicturesList).string() +
@@ -81,7 +75,7 @@ std::set<std::string> listed_pictures(const fs::path& out) {
       if (name.is_string()) add(name.get<std::string>());
     return names;
   }
-  const std::string report = text_of(out / "report.md");
+  const std::string report = content_of(out / "report.md");
   if (!report.starts_with("# clothbench report\n")) return names;
   static const std::regex picture(R"(!\[[^\]\n]*\]\(([A-Za-z0-9._=-]+)\.svg\))");
   for (std::sregex_iterator at(report.begin(), report.end(), picture), end; at != end; ++at)
@@ -148,7 +142,7 @@ Drawn draw_pictures(const fs::path& out, const PageTemplate& page) {
   if (!runs(fmt::format("{} {} {} {}", node, quoted(script), quoted(fs::absolute(out) / "index.html"),
                         quoted(scratch.path()))))
     return without("Node could not draw them; 18 or later is needed (Debian: nodejs)");
-  Drawn drawn{"", text_of(scratch.path() / "figures.md")};
+  Drawn drawn{"", content_of(scratch.path() / "figures.md")};
   if (!draw_png(scratch.path()))
     drawn.fault = "PNG pictures were left out: rsvg-convert was not found (Debian: librsvg2-bin).";
   put_in_place(out, scratch.path());

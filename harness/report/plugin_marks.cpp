@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "report/grid.hpp"
+
 namespace clothbench {
 namespace {
 
@@ -16,11 +18,6 @@ bool in_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-' || c == '/';
 }
 
-json plugin_of(const RunRecord& c) {
-  const json& e = c.header.environment;
-  return e.is_object() ? e.value("plugin", json()) : json();
-}
-
 bool names_solvers(const std::string& head) {
   static const std::set<std::string> others = {"scene", "scenes", "setting", "message", "runs it again", "map", "case"};
   return !others.contains(head);
@@ -30,7 +27,7 @@ bool names_solvers(const std::string& head) {
 
 PluginMarks::PluginMarks(const std::vector<RunRecord>& runs) {
   for (const RunRecord& c : runs)
-    if (plugin_of(c).is_object()) names_.insert(c.header.solver);
+    if (environment_of(c, "plugin").is_object()) names_.insert(c.header.solver);
 }
 
 std::string PluginMarks::text(const std::string& text) const {
@@ -92,7 +89,7 @@ json PluginMarks::data(const json& value) const {
 }
 
 std::string engine_of(const RunRecord& c) {
-  const json plugin = plugin_of(c);
+  const json plugin = environment_of(c, "plugin");
   return plugin.is_object() ? plugin.value("engine", std::string()) : "";
 }
 

@@ -8,7 +8,6 @@
 #include <set>
 #include <utility>
 
-#include "base/data_folder.hpp"
 #include "clothbench/error.hpp"
 #include "metrics/registry.hpp"
 #include "report/across_runs.hpp"

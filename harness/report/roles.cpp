@@ -1,16 +1,12 @@
 #include "report/roles.hpp"
 
-#include <algorithm>
-
+#include "base/words.hpp"
 #include "report/paths.hpp"
 
 namespace clothbench {
 namespace {
 
-bool has_role(const std::string& solver, const char* role) {
-  const nlohmann::json& names = solver_roles().at(role);
-  return std::find(names.begin(), names.end(), solver) != names.end();
-}
+bool has_role(const std::string& solver, const char* role) { return contains(solver_roles().at(role), solver); }
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "base/words.hpp"
 #include "metrics/registry.hpp"
 #include "report/grid.hpp"
 
@@ -74,8 +75,8 @@ bool is_time(const std::string& name) {
 
 double jobs_of(const RunRecord& c) {
   if (const double stored = summary_value(c, "jobs"); std::isfinite(stored)) return stored;
-  const nlohmann::json& e = c.header.environment;
-  return e.is_object() && e.contains("jobs") && e["jobs"].is_number() ? e["jobs"].get<double>() : kMissing;
+  const nlohmann::json jobs = environment_of(c, "jobs");
+  return jobs.is_number() ? jobs.get<double>() : kMissing;
 }
 
 void withhold_times(std::vector<RunRecord>& runs) {
@@ -107,9 +108,7 @@ std::string withheld_note(const std::vector<const RunRecord*>& runs, const std::
   for (const RunRecord* c : runs)
     for (const std::string& name : names)
       if (const auto at = c->withheld.find(name); at != c->withheld.end()) reasons.insert(at->second);
-  std::string out;
-  for (const std::string& r : reasons) out += (out.empty() ? "Not printed (–): " : "; ") + r;
-  return out.empty() ? "" : out + ".";
+  return reasons.empty() ? "" : "Not printed (–): " + joined(reasons, "; ") + ".";
 }
 
 std::string with_withheld(const std::string& note, const std::vector<const RunRecord*>& runs,
@@ -122,9 +121,7 @@ std::string withheld_of(const RunRecord& c, const std::vector<std::string>& name
   std::set<std::string> reasons;
   for (const std::string& name : names)
     if (const auto at = c.withheld.find(name); at != c.withheld.end()) reasons.insert(at->second);
-  std::string out;
-  for (const std::string& r : reasons) out += (out.empty() ? "" : "; ") + r;
-  return out;
+  return joined(reasons, "; ");
 }
 
 std::vector<std::string> withheld_lines(const std::vector<RunRecord>& runs) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <set>
 
 #include "report/grid.hpp"
 #include "report/report.hpp"
@@ -125,11 +124,6 @@ std::vector<WorkRow> work_rows(const std::vector<WorkDiagram>& diagrams) {
   for (const WorkDiagram& d : diagrams)
     for (const WorkPoint& p : d.points) out.push_back({p, &d});
   return out;
-}
-
-Value of_environment(const WorkRow& r, const char* key) {
-  const json& e = r.run->header.environment;
-  return e.is_object() ? e.value(key, json()) : json();
 }
 
 /// Columns of diagrams and of points common to CSV and JSON. R: WorkDiagram or WorkRow; WorkPoint or WorkRow.
@@ -298,8 +292,9 @@ Table truth_table(const std::vector<WorkDiagram>& diagrams) {
 std::string work_csv(const std::vector<WorkDiagram>& diagrams) {
   return diagram_columns<WorkRow>([](const WorkRow& r) -> auto& { return *r.diagram; })
       .add(run_columns<WorkRow>())
-      .add({{"gpu", In::Both, [](auto& r) { return of_environment(r, "gpu"); }},
-            {"gpu_is_software", In::Both, [](auto& r) { return of_environment(r, "gpu_is_software") == json(true); }},
+      .add({{"gpu", In::Both, [](auto& r) { return environment_of(*r.run, "gpu"); }},
+            {"gpu_is_software", In::Both,
+             [](auto& r) { return environment_of(*r.run, "gpu_is_software") == json(true); }},
             {"on_gpu", In::Both, &WorkRow::on_gpu}})
       .add(result_columns<WorkRow>())
       .add({{"not_ranked", In::Both, &WorkRow::not_ranked}})

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <set>
 
+#include "base/words.hpp"
+#include "report/grid.hpp"
 #include "report/roles.hpp"
 #include "report/work_precision.hpp"
 
@@ -76,11 +77,7 @@ Table winners_table(const std::vector<WorkDiagram>& diagrams) {
     columns.push_back({"", c.name, [&c](auto& d) { return or_dash(winners(d, c)); }});
   return columns
       .add({{"", "not ranked",
-             [](auto& d) {
-               std::string flagged;
-               for (const auto& [solver, why] : d.flagged) flagged += (flagged.empty() ? "" : ", ") + solver;
-               return or_dash(flagged);
-             }}})
+             [](auto& d) { return or_dash(joined(d.flagged, ", ", [](auto& flag) { return flag.first; })); }}})
       .table({"Best solver by scene",
               "Best of the ranked solvers; several names where they are not distinguished. Times: ms of wall time "
               "per simulated second. ≤: at the floor.",

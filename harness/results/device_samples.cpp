@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench {
@@ -161,12 +162,6 @@ StoredGroup store_group(const json& group, const RunRecord& r, std::map<std::str
   return out;
 }
 
-std::string joined(const json& texts) {
-  std::string out;
-  for (const json& t : texts) out += (out.empty() ? "" : "; ") + t.get<std::string>();
-  return out;
-}
-
 }  // namespace
 
 DeviceSamples::DeviceSamples(const std::filesystem::path& path) {
@@ -195,7 +190,7 @@ void DeviceSamples::attach_to(RunRecord& r) const {
   StoredGroup top;
   top.path = "device_samples";
   top.attributes = {{"valid", all_.at("valid").get<bool>() ? 1 : 0},
-                    {"reasons", joined(all_.at("reasons"))},
+                    {"reasons", joined(all_.at("reasons").get<std::vector<std::string>>(), "; ")},
                     {"device_json", all_.at("device").dump()}};
   r.samples = {std::move(top)};
   for (const json& group : all_.at("groups")) r.samples.push_back(store_group(group, r, r.summary));

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "results/hdf5_file.hpp"
 #include "results/hdf5_handle.hpp"
 #include "results/hdf5_values.hpp"

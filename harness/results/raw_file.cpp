@@ -1,7 +1,5 @@
 #include "results/raw_file.hpp"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <bit>
 #include <cstring>
@@ -66,6 +64,21 @@ auto naming(const std::filesystem::path& path, Fn fn) {
   } catch (const Error& e) {
     throw Error(path.string() + ": " + e.what());
   }
+}
+
+/// Calls `with(key, member)` for each member of a header that is stored as it is. Header: RunHeader, const or not.
+template <class Header, class With>
+void each_member(Header& h, With with) {
+  with("scene", h.scene);
+  with("solver", h.solver);
+  with("setting", h.setting);
+  with("settings", h.settings);
+  with("scenario_json", h.scenario_json);
+  with("scenario_sha256", h.scenario_sha256);
+  with("plan", h.plan);
+  with("environment", h.environment);
+  with("vertices", h.vertices);
+  with("triangles", h.triangles);
 }
 
 }  // namespace
@@ -135,39 +148,32 @@ RawFile read_raw(const std::filesystem::path& path) {
   return file;
 }
 
+nlohmann::json outcome_to_json(const Outcome& o, const std::map<std::string, double>& summary) {
+  return {{"status", o.status},   {"class", o.klass},   {"failed_frame", o.failed_frame},
+          {"message", o.message}, {"expect", o.expect}, {"summary", numbers_to_json(summary)}};
+}
+
+void outcome_from_json(const nlohmann::json& j, RunRecord& r) {
+  r.outcome = {j.at("status"), j.at("class"), j.at("failed_frame"), j.at("message"),
+               current_verdict(j.value("expect", ""))};
+  r.summary = numbers_from_json(j.at("summary"));
+}
+
 nlohmann::json header_to_json(const RunHeader& h) {
-  nlohmann::json stages = nlohmann::json::array();
+  nlohmann::json j = {{"load_s", number_to_json(h.load_s)}, {"stages", nlohmann::json::array()}};
+  each_member(h, [&](const char* key, const auto& value) { j[key] = value; });
   for (const StageRecord& s : h.stages)
-    stages.push_back({{"name", s.name}, {"serves", s.serves}, {"dispatches", s.dispatches}, {"bytes", s.bytes}});
-  return {{"scene", h.scene},
-          {"solver", h.solver},
-          {"setting", h.setting},
-          {"settings", h.settings},
-          {"scenario_json", h.scenario_json},
-          {"scenario_sha256", h.scenario_sha256},
-          {"stages", stages},
-          {"plan", h.plan},
-          {"environment", h.environment},
-          {"vertices", h.vertices},
-          {"triangles", h.triangles},
-          {"load_s", number_to_json(h.load_s)}};
+    j["stages"].push_back({{"name", s.name}, {"serves", s.serves}, {"dispatches", s.dispatches}, {"bytes", s.bytes}});
+  return j;
 }
 
 RunHeader header_from_json(const nlohmann::json& j) {
   RunHeader h;
-  h.scene = j.at("scene").get<std::string>();
-  h.solver = j.at("solver").get<std::string>();
-  h.setting = j.at("setting").get<std::string>();
-  h.settings = j.at("settings");
-  h.scenario_json = current_scenario(j.at("scenario_json").get<std::string>());
-  h.scenario_sha256 = j.at("scenario_sha256").get<std::string>();
+  each_member(h, [&](const char* key, auto& value) { j.at(key).get_to(value); });
+  h.scenario_json = current_scenario(std::move(h.scenario_json));
   for (const auto& s : j.at("stages"))
     h.stages.push_back({s.at("name").get<std::string>(), s.at("serves").get<std::vector<std::string>>(),
                         s.at("dispatches").get<int>(), s.value("bytes", "")});
-  h.plan = j.at("plan");
-  h.environment = j.at("environment");
-  h.vertices = j.at("vertices").get<std::uint32_t>();
-  h.triangles = j.at("triangles").get<std::vector<std::uint32_t>>();
   h.load_s = number_from_json(j.at("load_s"), "load_s");
   return h;
 }

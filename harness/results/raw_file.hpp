@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -28,6 +29,10 @@ void write_raw(const std::filesystem::path&, nlohmann::json header,
 
 /// Throws Error naming the file if its header is not readable.
 RawFile read_raw(const std::filesystem::path&);
+
+/// How a run ended and its summary: `outcome.raw`, and what a child answers.
+nlohmann::json outcome_to_json(const Outcome&, const std::map<std::string, double>& summary);
+void outcome_from_json(const nlohmann::json&, RunRecord&);
 
 nlohmann::json header_to_json(const RunHeader&);
 RunHeader header_from_json(const nlohmann::json&);

@@ -8,7 +8,6 @@
 
 #include "base/files.hpp"
 #include "base/former_names.hpp"
-#include "base/json_number.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 #include "results/device_samples.hpp"
@@ -23,16 +22,6 @@ namespace fs = std::filesystem;
 
 fs::path part_folder(const fs::path& dir, const std::string& run) { return dir / (run + ".part"); }
 fs::path trial_file(const fs::path& part, int k) { return part / fmt::format("trial-{}.raw", k); }
-
-nlohmann::json outcome_json(const Outcome& o, const std::map<std::string, double>& summary) {
-  return {{"kind", "outcome"},
-          {"status", o.status},
-          {"class", o.klass},
-          {"failed_frame", o.failed_frame},
-          {"message", o.message},
-          {"expect", o.expect},
-          {"summary", numbers_to_json(summary)}};
-}
 
 /// Everything in a part folder. Damaged or foreign trial files count as not there.
 RunRecord read_part(const fs::path& part) {
@@ -51,12 +40,7 @@ RunRecord read_part(const fs::path& part) {
   std::sort(record.trials.begin(), record.trials.end(), [](const auto& a, const auto& b) { return a.index < b.index; });
   if (fs::exists(part / "accuracy.raw")) record.accuracy = read_accuracy_file(part / "accuracy.raw");
   if (fs::exists(part / "replay.raw")) record.replay = read_replay_file(part / "replay.raw");
-  if (fs::exists(part / "outcome.raw")) {
-    const nlohmann::json o = read_raw(part / "outcome.raw").header;
-    record.outcome = {o.at("status"), o.at("class"), o.at("failed_frame"), o.at("message"),
-                      current_verdict(o.value("expect", ""))};
-    record.summary = numbers_from_json(o.at("summary"));
-  }
+  if (fs::exists(part / "outcome.raw")) outcome_from_json(read_raw(part / "outcome.raw").header, record);
   return record;
 }
 
@@ -115,7 +99,9 @@ void RunWriter::write_replay(const std::vector<StoredGroup>& groups) {
 
 fs::path RunWriter::finish(const Outcome& outcome, const std::map<std::string, double>& summary) {
   const fs::path part = part_folder(dir_, run_name(header_));
-  write_raw(part / "outcome.raw", outcome_json(outcome, summary), {});
+  nlohmann::json end = outcome_to_json(outcome, summary);
+  end["kind"] = "outcome";
+  write_raw(part / "outcome.raw", std::move(end), {});
   if (finish_ == Finish::Raw) return part;
   const fs::path file = write_finished(dir_, read_part(part));
   fs::remove_all(part);

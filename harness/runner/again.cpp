@@ -11,10 +11,10 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "base/files.hpp"
 #include "base/json_text.hpp"
 #include "base/plugin_environment.hpp"
 #include "clothbench/error.hpp"
-#include "results/store.hpp"
 #include "runner/child.hpp"
 #include "runner/interrupt.hpp"
 #include "runner/solver_run.hpp"

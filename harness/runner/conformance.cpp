@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/tint.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/unsupported_scene.hpp"
 #include "runner/frame_loop.hpp"
@@ -249,10 +249,7 @@ json conformance_json(const ConformanceRow& r) {
 std::vector<std::string> conformance_scenes(const std::vector<std::string>& chosen) {
   const std::vector<std::string> all = scene_names({"paper", "contact", "validation", "metamorphic"});
   for (const std::string& name : chosen)
-    if (std::find(all.begin(), all.end(), name) == all.end()) {
-      const std::string near = nearest(name, all);
-      throw Error("--scene " + name + ": no such scene" + (near.empty() ? "" : "; nearest known: " + near));
-    }
+    if (!contains(all, name)) throw Error("--scene " + name + ": no such scene" + nearest_known(name, all));
   return chosen.empty() ? all : chosen;
 }
 

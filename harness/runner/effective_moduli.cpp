@@ -79,10 +79,14 @@ std::unique_ptr<ClothSolver> loaded(const SolverEntry& entry, const json& settin
 
 using PatchScenes = std::vector<std::pair<Patch, Scene>>;
 
-PatchScenes patch_scenes(bool full, bool bending) {
+PatchScenes patch_scenes(bool full, PatchChoice choice) {
+  std::vector<Patch> all = patches(full);
+  if (choice == PatchChoice::GridsAndMeshes)
+    for (const Patch p : mesh_patches()) all.push_back(p);
   PatchScenes out;
-  for (const Patch p : patches(full))
-    if (Scene scene = patch_scene(p); bending || !scene.needs.has(Feature::Bend)) out.emplace_back(p, std::move(scene));
+  for (const Patch p : all)
+    if (Scene scene = patch_scene(p); choice != PatchChoice::Stretch || !scene.needs.has(Feature::Bend))
+      out.emplace_back(p, std::move(scene));
   return out;
 }
 
@@ -106,8 +110,9 @@ RunHeader moduli_header(const SolverEntry& entry, const std::string& setting, co
 }  // namespace
 
 RunRecord measure_material(const SolverEntry& entry, const json& settings, const std::string& setting, bool full,
-                           const DeviceOptions& device, const std::string& protocol, double limit_s, bool bending) {
-  const PatchScenes scenes = patch_scenes(full, bending);
+                           const DeviceOptions& device, const std::string& protocol, double limit_s,
+                           PatchChoice choice) {
+  const PatchScenes scenes = patch_scenes(full, choice);
   RunRecord c;
   c.header = moduli_header(entry, setting, settings, full, scenes, protocol);
   if (!entry.make || entry.info.ignores.has(Feature::Stretch)) {
@@ -148,13 +153,16 @@ RunRecord failed_material(const SolverEntry& entry, const std::string& setting, 
 RunRecord ask_material(Guard& guard, StudyRuns& runs, const SolverEntry& entry, const json& settings,
                        const std::string& setting, bool full) {
   constexpr char kProtocol[] = "moduli";
-  const RunHeader header = moduli_header(entry, setting, settings, full, patch_scenes(full, true), kProtocol);
+  constexpr double kLimit_s = 20;
+  const PatchChoice choice = full ? PatchChoice::GridsAndMeshes : PatchChoice::Grids;
+  const RunHeader header = moduli_header(entry, setting, settings, full, patch_scenes(full, choice), kProtocol);
   const PlannedRun planned{run_name(header), header.scenario_sha256, settings, entry.make ? &entry.info : nullptr};
   return runs
       .ask(guard, header, entry,
            [&] {
-             return std::vector{runs.made(
-                 planned, [&] { return measure_material(entry, settings, setting, full, runs.device(), kProtocol); })};
+             return std::vector{runs.made(planned, [&] {
+               return measure_material(entry, settings, setting, full, runs.device(), kProtocol, kLimit_s, choice);
+             })};
            })
       .front();
 }

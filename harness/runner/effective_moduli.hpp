@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <map>
 #include <string>
 
@@ -12,21 +11,24 @@ namespace clothbench {
 /// Scene name under which effective moduli are stored in a study's folder.
 inline constexpr const char* kModuliScene = "effective-moduli";
 
+/// Which patches are measured: those of grids that stretch alone, all of grids, or all with those of triangle meshes.
+enum class PatchChoice { Stretch, Grids, GridsAndMeshes };
+
 /// The effective Y and B of a solver at one setting, measured on patch scenes (scenario/material_patches.hpp) through
 /// ClothSolver alone. Returns a run like any other, without trials and positions. Its `summary` has the moduli over
 /// those that the scenes state, as material_E_0, material_B_45, ..., and material_unrest, the greatest change of any of
 /// them over the last quarter of a second; header.scenario_json has the patches' scenes. Each patch runs until its
 /// modulus is steady to 1e-4 or its scene ends (3 s). A patch that takes more than `limit_s` of wall time, or fails,
 /// leaves its moduli missing and is named in the outcome's message. Solvers that ignore stretch are `unsupported`.
-/// `bending` false: without the patches of B.
 RunRecord measure_material(const SolverEntry&, const nlohmann::json& settings, const std::string& setting, bool full,
-                           const DeviceOptions&, const std::string& protocol, double limit_s = 20, bool bending = true);
+                           const DeviceOptions&, const std::string& protocol, double limit_s = 20,
+                           PatchChoice = PatchChoice::Grids);
 
 /// The record of a measurement that failed, for example because its process crashed.
 RunRecord failed_material(const SolverEntry&, const std::string& setting, const Outcome&, const std::string& protocol);
 
-/// The measurement of `clothbench moduli`, in a child for a plugin. If the child crashes, the result is a failed
-/// measurement.
+/// The measurement of `clothbench moduli`, in a child for a plugin; a full one has meshes too. If the child crashes,
+/// the result is a failed measurement.
 RunRecord ask_material(Guard&, StudyRuns&, const SolverEntry&, const nlohmann::json& settings,
                        const std::string& setting, bool full);
 

@@ -1,6 +1,5 @@
 #include "runner/frame_loop.hpp"
 
-#include <algorithm>
 #include <vector>
 
 #include "runner/interrupt.hpp"

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/sha256.hpp"
-#include "clothbench/error.hpp"
 #include "clothbench/restart_after.hpp"
 #include "clothbench/unsupported_scene.hpp"
 #include "metrics/metric.hpp"

@@ -4,10 +4,10 @@
 
 #include <fstream>
 
+#include "base/files.hpp"
 #include "base/sha256.hpp"
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
-#include "results/store.hpp"
 
 namespace clothbench {
 namespace {

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <mutex>
 
-#include "base/json_number.hpp"
 #include "base/json_text.hpp"
 #include "metrics/registry.hpp"
 #include "results/raw_file.hpp"
@@ -24,6 +23,23 @@ Scene scene_of(const RunRequest& r) {
   Scene scene = scene_from_json(r.scenario, r.source, r.set);
   scene.name = r.name;
   return scene;
+}
+
+/// Calls `with(key, member)` for each member of a request but its folder. Request: RunRequest, const or not.
+template <class Request, class With>
+void each_member(Request& r, With with) {
+  with("scenario", r.scenario);
+  with("source", r.source);
+  with("set", r.set);
+  with("name", r.name);
+  with("solver", r.solver);
+  with("setting", r.setting);
+  with("settings", r.settings);
+  with("device", r.rules.device.index);
+  with("validate", r.rules.device.validation);
+  with("profile", r.rules.device.profile);
+  with("protocol", r.rules.protocol);
+  with("limit_s", r.rules.limit_s);
 }
 
 /// The last line that a child wrote past the first `from` bytes, shortened: mostly why it ended.
@@ -48,50 +64,27 @@ void write_failure(const RunRequest& r, const RunRecord& answer) {
 }  // namespace
 
 json to_json(const RunRequest& r) {
-  return {{"scenario", r.scenario},
-          {"source", r.source},
-          {"set", r.set},
-          {"name", r.name},
-          {"solver", r.solver},
-          {"setting", r.setting},
-          {"settings", r.settings},
-          {"device", r.rules.device.index},
-          {"validate", r.rules.device.validation},
-          {"profile", r.rules.device.profile},
-          {"protocol", r.rules.protocol},
-          {"limit_s", r.rules.limit_s},
-          {"out", r.rules.out.string()}};
+  json j = {{"out", r.rules.out.string()}};
+  each_member(r, [&](const char* key, const auto& value) { j[key] = value; });
+  return j;
 }
 
 RunRequest request_from_json(const json& j) {
   RunRequest r;
-  r.scenario = j.at("scenario");
-  r.source = j.at("source");
-  r.set = j.at("set").get<std::vector<std::string>>();
-  r.name = j.at("name");
-  r.solver = j.at("solver");
-  r.setting = j.at("setting");
-  r.settings = j.at("settings");
-  r.rules.device.index = j.at("device");
-  r.rules.device.validation = j.at("validate");
-  r.rules.device.profile = j.at("profile");
-  r.rules.protocol = j.at("protocol");
-  r.rules.limit_s = j.at("limit_s");
+  each_member(r, [&](const char* key, auto& value) { j.at(key).get_to(value); });
   r.rules.out = j.at("out").get<std::string>();
   return r;
 }
 
 json answer_to_json(const RunRecord& c, bool with_header) {
-  json j = {{"status", c.outcome.status},   {"class", c.outcome.klass},   {"failed_frame", c.outcome.failed_frame},
-            {"message", c.outcome.message}, {"expect", c.outcome.expect}, {"summary", numbers_to_json(c.summary)}};
+  json j = outcome_to_json(c.outcome, c.summary);
   if (with_header) j["header"] = header_to_json(c.header);
   return j;
 }
 
 RunRecord answer_from_json(const json& j) {
   RunRecord c;
-  c.outcome = {j.at("status"), j.at("class"), j.at("failed_frame"), j.at("message"), j.value("expect", "")};
-  c.summary = numbers_from_json(j.at("summary"));
+  outcome_from_json(j, c);
   if (j.contains("header")) c.header = header_from_json(j.at("header"));
   return c;
 }

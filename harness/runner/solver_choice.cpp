@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "base/plugin_environment.hpp"
+#include "base/words.hpp"
 #include "runner/environment.hpp"
 
 namespace clothbench {
@@ -112,9 +113,7 @@ nlohmann::json settle_device(Study& study, const DeviceChoice& choice, std::vect
                                        : all.front();
   } else if (gpu != nullptr) {
     const std::vector<std::string> gone = solver_names(on_gpu);
-    const auto is_gone = [&](const std::string& name) {
-      return std::find(gone.begin(), gone.end(), name) != gone.end();
-    };
+    const auto is_gone = [&](const std::string& name) { return contains(gone, name); };
     for (Study::Item& item : study.scenes)
       std::erase_if(item.solvers, [&](std::size_t k) { return is_gone(study.solvers[k].solver); });
     if (only.empty()) only = solver_names();

@@ -1,9 +1,6 @@
 #pragma once
-#include <functional>
 #include <memory>
-#include <optional>
 
-#include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
 #include "runner/frame_drawer.hpp"

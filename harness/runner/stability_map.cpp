@@ -10,6 +10,7 @@
 #include "base/json_number.hpp"
 #include "base/json_text.hpp"
 #include "base/sha256.hpp"
+#include "base/words.hpp"
 #include "results/store.hpp"
 #include "runner/boundary.hpp"
 #include "runner/interrupt.hpp"
@@ -101,9 +102,7 @@ class Map {
   }
 
  private:
-  bool asked_for(const std::string& solver) const {
-    return o_.solvers.empty() || std::find(o_.solvers.begin(), o_.solvers.end(), solver) != o_.solvers.end();
-  }
+  bool asked_for(const std::string& solver) const { return o_.solvers.empty() || contains(o_.solvers, solver); }
 
   json solver_json(std::size_t k) const {
     const json& solver = *solvers_[k];

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <mutex>
 
-#include "base/json_number.hpp"
-#include "base/json_text.hpp"
 #include "base/sha256.hpp"
 #include "results/store.hpp"
 #include "runner/interrupt.hpp"
@@ -13,7 +11,6 @@
 #include "runner/stability_map.hpp"
 #include "runner/study_plan.hpp"
 #include "runner/worker_pool.hpp"
-#include "scenario/load.hpp"
 
 namespace clothbench {
 namespace {

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "clothbench/error.hpp"
-#include "clothbench/record.hpp"
 
 namespace clothbench {
 

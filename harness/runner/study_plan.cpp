@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/plugin_environment.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver_names.hpp"
 #include "runner/solver_choice.hpp"
@@ -14,9 +15,8 @@ namespace {
 [[noreturn]] void refuse_name(const std::string& name) {
   std::vector<std::string> known = solver_names_of_tree();
   for (const SolverEntry* e : all_solvers()) known.push_back(e->info.name);
-  const std::string near = nearest(name, known);
   throw Error("the study names a solver \"" + name + "\", which is neither of clothbench nor a plugin in $" +
-              kPluginsVariable + (near.empty() ? "" : "; nearest known: " + near));
+              kPluginsVariable + nearest_known(name, known));
 }
 
 }  // namespace
@@ -66,8 +66,7 @@ RunPlan plan_study(const Study& study) {
     for (const std::size_t k : item.solvers) {
       const StudySolver& s = study.solvers[k];
       if (entries[k] == nullptr) {
-        const std::vector<std::string>& names = solver_names_of_tree();
-        if (std::find(names.begin(), names.end(), s.solver) == names.end()) refuse_name(s.solver);
+        if (!contains(solver_names_of_tree(), s.solver)) refuse_name(s.solver);
         auto absent = std::make_shared<SolverEntry>();
         absent->info.name = s.solver;
         entries[k] = absent.get();

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <set>
 
+#include "clothbench/error.hpp"
 #include "metrics/truth_dependence.hpp"
 #include "results/replay.hpp"
 #include "runner/expect.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "results/raw_file.hpp"
 #include "runner/environment.hpp"
@@ -31,7 +32,7 @@ StudyRuns::StudyRuns(DeviceOptions device, fs::path out, bool resume, StudyManif
 
 void StudyRuns::plan(const std::string& run) const {
   StudyManifest m = read_manifest(out_);
-  if (std::find(m.runs.begin(), m.runs.end(), run) != m.runs.end()) return;
+  if (contains(m.runs, run)) return;
   m.runs.push_back(run);
   write_manifest(out_, m);
 }

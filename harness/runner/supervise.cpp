@@ -6,13 +6,11 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 
-#include "base/json_text.hpp"
+#include "base/files.hpp"
 #include "base/plugin_environment.hpp"
 #include "runner/again.hpp"
 #include "runner/effective_moduli.hpp"
-#include "runner/environment.hpp"
 #include "runner/run_process.hpp"
 
 namespace clothbench {
@@ -23,12 +21,6 @@ namespace fs = std::filesystem;
 constexpr char kVariable[] = "CLOTHBENCH_SUPERVISED";  // "new:<folder>" or "again:<folder>"
 
 fs::path note_file(const fs::path& out) { return out / "running.txt"; }
-
-/// Empty if there is none: the child may remove it at any time, after a check that it exists too.
-std::string text_of_note(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// What a child was at: a run of the plan, or effective moduli of one of its solvers.
 struct Doing {
@@ -56,7 +48,7 @@ ChildEnd run_watched(const std::vector<std::string>& words, const std::string& v
   std::string doing;
   auto since = Clock::now();
   return run_again(words, variable, false, [&] {
-    std::string now = text_of_note(note);
+    std::string now = content_of(note);
     if (now != doing) {
       doing = std::move(now);
       since = Clock::now();
@@ -101,7 +93,7 @@ ExitCode supervise(const RunPlan& plan, const fs::path& out, bool resume, const 
         run_watched(words, fmt::format("{}={}:{}", kVariable, again ? "again" : "new", out.string()), plan, note);
     if (!fs::exists(note, ignored))  // it came to its end, good or bad
       return static_cast<ExitCode>(end.how == ChildEnd::How::Exited ? end.code : 1);
-    const std::string doing = text_of_note(note);
+    const std::string doing = content_of(note);
     const std::optional<Doing> at = doing_of(plan, doing);
     fs::remove(note, ignored);
     if (!at) throw Error(fmt::format("{}: the study's process: {}", doing, end.text()), ExitCode::CheckFailed);

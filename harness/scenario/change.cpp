@@ -2,10 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "clothbench/error.hpp"
+#include "clothbench/vector.hpp"
 #include "scenario/vec3.hpp"
 
 namespace clothbench {
@@ -15,8 +15,6 @@ using nlohmann::json;
 using Matrix = Eigen::Matrix3d;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-
-Vec3 scaled(double k, const Vec3& v) { return {k * v[0], k * v[1], k * v[2]}; }
 
 void scale(json& object, const char* key, double by) {
   if (object.contains(key)) object[key] = by * object[key].get<double>();
@@ -73,11 +71,7 @@ class Changer {
     throw Error(source_ + ": " + what + " cannot be moved or scaled with its scene");
   }
 
-  Vec3 place(const json& j) const {
-    Vec3 x = c_.turned(scaled(c_.length, vec3(j)));
-    for (std::size_t k = 0; k < 3; ++k) x[k] += c_.offset_m[k];
-    return x;
-  }
+  Vec3 place(const json& j) const { return plus(c_.turned(scaled(c_.length, vec3(j))), c_.offset_m); }
   Vec3 velocity(const json& j) const { return c_.turned(scaled(c_.length / c_.time, vec3(j))); }
 
   void cloth(json& j) const {

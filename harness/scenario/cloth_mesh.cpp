@@ -14,6 +14,7 @@
 #include "base/sha256.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
+#include "scenario/drawn_mesh.hpp"
 #include "scenario/load.hpp"
 #include "scenario/recorded_hand.hpp"
 #include "scenario/weld.hpp"
@@ -31,10 +32,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 double edge_length(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 
-double area_of(const std::array<Vec3, 3>& x) {
-  const Vec3 p = minus(x[1], x[0]), q = minus(x[2], x[0]);
-  return 0.5 * std::hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]);
-}
+double area_of(const std::array<Vec3, 3>& x) { return 0.5 * edge_length(cross(minus(x[1], x[0]), minus(x[2], x[0]))); }
 
 bool has_area(const std::array<Vec3, 3>& x) {
   const double longest =
@@ -216,6 +214,13 @@ ClothMesh parse_obj(const std::string& text, const std::string& source) {
 }
 
 std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::string& source) {
+  if (j.contains("drawn") == j.contains("file")) refuse(source, "/cloth/mesh", "expected either \"file\" or \"drawn\"");
+  if (j.contains("drawn")) {
+    for (const char* of_files : {"rest", "texture_unit_m", "weld_m", "sha256"})
+      if (j.contains(of_files))
+        refuse(source, std::string("/cloth/mesh/") + of_files, "expected a mesh of a file, not one that is drawn");
+    return std::make_shared<const ClothMesh>(read_drawn_mesh(j["drawn"], source));
+  }
   const fs::path file = file_of(j["file"].get<std::string>(), source);
   const std::string text = read_text(file, kMostBytes), hash = sha256(text);
   if (j.contains("sha256") && j["sha256"] != hash)

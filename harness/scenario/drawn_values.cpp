@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 
@@ -60,11 +61,9 @@ int DrawnValues::whole(const std::string& name) {
 
 void DrawnValues::check_all_used() const {
   for (const auto& [name, unused] : ranges_.items())
-    if (!used_.contains(name)) {
-      const std::string near = nearest(name, {used_.begin(), used_.end()});
-      throw Error(
-          fmt::format("{}/{}: nothing is drawn from it{}", at_, name, near.empty() ? "" : "; nearest known: " + near));
-    }
+    if (!used_.contains(name))
+      throw Error(fmt::format("{}/{}: nothing is drawn from it{}", at_, name,
+                              nearest_known(name, {used_.begin(), used_.end()})));
 }
 
 }  // namespace clothbench

@@ -1,5 +1,4 @@
-#include <cctype>
-
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 
@@ -12,10 +11,8 @@ const SolverEntry& find_solver(const std::string& name) {
     names.push_back(e.info.name);
   }
   if (const SolverEntry* external = external_solver(name)) return *external;
-  std::string known, near = nearest(name, names);
-  for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
-  throw Error("no solver \"" + name + "\" in this build" + (near.empty() ? "" : "; nearest known: " + near) +
-              " (built in: " + known + "; others may have been left out with -DCLOTHBENCH_WITH_…=OFF)");
+  throw Error("no solver \"" + name + "\" in this build" + nearest_known(name, names) + " (built in: " + joined(names) +
+              "; others may have been left out with -DCLOTHBENCH_WITH_…=OFF)");
 }
 
 }  // namespace clothbench

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "clothbench/scene.hpp"
+#include "clothbench/vector.hpp"
 
 namespace clothbench {
 namespace {
@@ -31,23 +32,16 @@ std::array<double, 2> on_arc(const Cloth& c, int i) {
   return {radius * std::sin((i - n / 2.0) * d), radius * (std::cos((i - n / 2.0) * d) - std::cos(n * d / 2))};
 }
 
-Vec3 normal_of(const Cloth& c) {
-  const Vec3 &a = c.axis_u, &b = c.axis_v;
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+Vec3 normal_of(const Cloth& c) { return cross(c.axis_u, c.axis_v); }
+
+double hypot_of(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 
 std::vector<double> mesh_masses(const Cloth& c) {
   std::vector<double> mass(c.vertex_count(), 0);
   for (std::size_t n = 0; n < c.mesh->triangles.size(); ++n) {
     const auto& t = c.mesh->triangles[n];
     const std::array<Vec3, 3> x = rest_corners(*c.mesh, n);
-    Vec3 p{}, q{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      p[k] = x[1][k] - x[0][k];
-      q[k] = x[2][k] - x[0][k];
-    }
-    const double area =
-        0.5 * std::hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]);
+    const double area = 0.5 * hypot_of(cross(minus(x[1], x[0]), minus(x[2], x[0])));
     for (const std::uint32_t v : t) mass[v] += c.areal_density_kg_per_m2 * area / 3;
   }
   for (std::size_t v = 0; v < c.mass_factors.size(); ++v) mass[v] *= c.mass_factors[v];
@@ -88,12 +82,8 @@ Vec3 Scene::rest_position(int i, int j) const {
   if (cloth.span_m > 0) at = on_arc(cloth, i);
   const double v = j * cloth.dv() - cloth.height_m / 2;
   const Vec3 &a = cloth.axis_u, &b = cloth.axis_v, normal = normal_of(cloth);
+  if (cloth.drape_radius_m > 0) return plus(draped_row(cloth, i, cloth.drape_offset_m), scaled(v, b));
   Vec3 p{};
-  if (cloth.drape_radius_m > 0) {
-    p = draped_row(cloth, i, cloth.drape_offset_m);
-    for (std::size_t k = 0; k < 3; ++k) p[k] += v * b[k];
-    return p;
-  }
   for (std::size_t k = 0; k < 3; ++k) {
     p[k] = cloth.center_m[k] + at[0] * a[k] + v * b[k];
     if (cloth.span_m > 0) p[k] += at[1] * normal[k];
@@ -161,12 +151,8 @@ double Cloth::least_height_m() const {
   if (mesh)
     for (std::size_t k = 0; k < mesh->triangles.size(); ++k) {
       const auto [a, b, p] = rest_corners(*mesh, k);
-      const Vec3 u = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-      const double twice_area =
-          std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
-      const double longest = std::max({std::hypot(u[0], u[1], u[2]), std::hypot(v[0], v[1], v[2]),
-                                       std::hypot(v[0] - u[0], v[1] - u[1], v[2] - u[2])});
-      least = std::min(least, twice_area / longest);
+      const Vec3 u = minus(b, a), v = minus(p, a);
+      least = std::min(least, hypot_of(cross(u, v)) / std::max({hypot_of(u), hypot_of(v), hypot_of(minus(v, u))}));
     }
   else
     for (int i = 0; i + 1 < columns; ++i) {

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "clothbench/error.hpp"
+#include "base/json_text.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/vec3.hpp"
 

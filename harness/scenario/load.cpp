@@ -11,6 +11,7 @@
 #include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "base/sha256.hpp"
+#include "base/words.hpp"
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"
 #include "scenario/cloth_mesh.hpp"
@@ -203,9 +204,8 @@ std::filesystem::path find_scenario(const std::string& name_or_path) {
     if (std::filesystem::is_regular_file(named, ec)) return named;
   }
   if (std::filesystem::exists(name_or_path, ec)) return name_or_path;
-  const std::string near = nearest(name_or_path, scenario_names());
   throw Error(fmt::format("{}: no such file, nor a scene or study of that name in {}{}", name_or_path,
-                          scenario_root().string(), near.empty() ? "" : "; nearest known: " + near));
+                          scenario_root().string(), nearest_known(name_or_path, scenario_names())));
 }
 
 namespace {

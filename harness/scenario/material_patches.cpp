@@ -84,6 +84,17 @@ json bend_diagonal() {
                   json::array({{{"vertices", held}}}), {0, -kBendGravity, 0});
 }
 
+/// HangU's sheet as triangles.
+json hang_mesh(Patch patch, double turned_deg, int seed) {
+  json cloth = {
+      {"mesh",
+       {{"drawn",
+         {{"size_m", {1.0, 0.25}}, {"cells", 12}, {"turned_deg", turned_deg}, {"share", 0.3}, {"seed", seed}}}}},
+      {"pose", {{"center_m", {0, -0.5, 0}}, {"axis_u", {0, -1, 0}}, {"axis_v", {0, 0, 1}}}}};
+  return scenario(patch, std::move(cloth), material(kStiffness_N_per_m, 0, true), json::array({{{"group", "u0"}}}),
+                  {0, -kHangGravity, 0});
+}
+
 json scenario_of(Patch patch) {
   switch (patch) {
     case Patch::HangU:
@@ -102,6 +113,12 @@ json scenario_of(Patch patch) {
       return bend(patch, 1, true);
     case Patch::BendStiffer:
       return bend(patch, 2, false);
+    case Patch::Mesh0:
+      return hang_mesh(patch, 0, 1);
+    case Patch::Mesh45:
+      return hang_mesh(patch, 45, 2);
+    case Patch::Mesh90:
+      return hang_mesh(patch, 90, 3);
     case Patch::BendDiagonal:
       break;
   }
@@ -111,8 +128,8 @@ json scenario_of(Patch patch) {
 }  // namespace
 
 const char* patch_name(Patch patch) {
-  constexpr const char* kNames[] = {"hang-u", "hang-v", "hang-stiffer", "hang-strip",   "shear",
-                                    "bend-u", "bend-v", "bend-stiffer", "bend-diagonal"};
+  constexpr const char* kNames[] = {"hang-u", "hang-v",       "hang-stiffer",  "hang-strip", "shear",   "bend-u",
+                                    "bend-v", "bend-stiffer", "bend-diagonal", "mesh-0",     "mesh-45", "mesh-90"};
   return kNames[static_cast<std::size_t>(patch)];
 }
 
@@ -125,5 +142,7 @@ std::vector<Patch> patches(bool full) {
   return {Patch::HangU, Patch::HangV, Patch::HangStiffer, Patch::HangStrip,   Patch::Shear,
           Patch::BendU, Patch::BendV, Patch::BendStiffer, Patch::BendDiagonal};
 }
+
+std::vector<Patch> mesh_patches() { return {Patch::Mesh0, Patch::Mesh45, Patch::Mesh90}; }
 
 }  // namespace clothbench

@@ -1,5 +1,4 @@
 #pragma once
-#include <string>
 #include <vector>
 
 #include "clothbench/scene.hpp"
@@ -21,7 +20,22 @@ namespace clothbench {
 /// BendStiffer    BendU with twice the B
 /// BendDiagonal   all vertices are held except a band along the diagonal; gravity is normal to the sheet. The middle of
 ///                the band bends to a cylinder at 45 degrees, w'''' = rho g/B_45, whatever the conditions at its edges
-enum class Patch { HangU, HangV, HangStiffer, HangStrip, Shear, BendU, BendV, BendStiffer, BendDiagonal };
+/// Mesh0, Mesh45, Mesh90   the sheet of HangU as irregular triangles (drawn_mesh.hpp), whose lattice lies at that angle
+///                to the pull: Y and Poisson's ratio
+enum class Patch {
+  HangU,
+  HangV,
+  HangStiffer,
+  HangStrip,
+  Shear,
+  BendU,
+  BendV,
+  BendStiffer,
+  BendDiagonal,
+  Mesh0,
+  Mesh45,
+  Mesh90
+};
 
 inline constexpr double kPatchDamping_per_s = 20;
 
@@ -30,7 +44,10 @@ const char* patch_name(Patch);
 /// The scene of a patch. It throws nothing, since these scenes are built in.
 Scene patch_scene(Patch);
 
-/// All patches, in the order in which they run, or those of the short form: HangU, HangStrip, BendU.
+/// All patches of grids, in the order in which they run, or those of the short form: HangU, HangStrip, BendU.
 std::vector<Patch> patches(bool full);
+
+/// The patches of triangle meshes.
+std::vector<Patch> mesh_patches();
 
 }  // namespace clothbench

@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "scenario/cloth_mesh.hpp"
 
@@ -67,7 +68,7 @@ ObjLines geometry_of(const std::string& text, const std::string& source) {
       object = fmt::format("{}", fmt::join(rest, " "));
     out.text += fmt::format("g {}\n", out.names.size());
     std::vector<std::string>& names = out.names.emplace_back(groups);
-    if (!object.empty() && std::find(names.begin(), names.end(), object) == names.end()) names.push_back(object);
+    if (!object.empty() && !contains(names, object)) names.push_back(object);
   }
   return out;
 }

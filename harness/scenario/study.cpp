@@ -9,6 +9,7 @@
 
 #include "base/former_names.hpp"
 #include "base/json_text.hpp"
+#include "base/words.hpp"
 #include "clothbench/solver.hpp"
 #include "scenario/draw_contact.hpp"
 #include "scenario/irrelevant.hpp"
@@ -48,10 +49,6 @@ Words assignments(const json& set) {
   Words out;
   for (const auto& [key, value] : set.items()) out.push_back(key + "=" + value.dump());
   return out;
-}
-
-bool contains(const Words& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 /// Whether the choice has one of the labels. An empty choice accepts all.
@@ -319,9 +316,8 @@ class Builder {
       for (std::size_t k = 0; k < words.size(); ++k) {
         const auto word = words[k].get<std::string>();
         if (contains(known, word)) continue;
-        const std::string near = nearest(word, known);
-        throw Error(fmt::format("{}: {}/{}: \"{}\" names none{}", source_, pointer, k, word,
-                                near.empty() ? "" : "; nearest known: " + near));
+        throw Error(
+            fmt::format("{}: {}/{}: \"{}\" names none{}", source_, pointer, k, word, nearest_known(word, known)));
       }
     };
     const Words labels(labels_.begin(), labels_.end());

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <memory>
 
 #include "runner/environment.hpp"
 #include "runner/frame_loop.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/tint.hpp"
+#include "base/words.hpp"
 #include "report/in_short.hpp"
 #include "report/report.hpp"
 #include "report/withheld.hpp"
@@ -26,9 +27,7 @@ nlohmann::json seconds_json(const RunResult& r) {
 /// Of all runs of a command those of its plan, as they are stored.
 std::vector<RunRecord> stored_runs(const std::vector<std::string>& names, const std::filesystem::path& out) {
   std::vector<RunRecord> runs = collect({out});
-  std::erase_if(runs, [&](const RunRecord& c) {
-    return std::find(names.begin(), names.end(), run_name(c.header)) == names.end();
-  });
+  std::erase_if(runs, [&](const RunRecord& c) { return !contains(names, run_name(c.header)); });
   withhold_times(runs);
   return runs;
 }

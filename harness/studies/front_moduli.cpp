@@ -4,7 +4,6 @@
 #include <chrono>
 #include <iterator>
 
-#include "clothbench/error.hpp"
 #include "report/report.hpp"
 #include "report/roles.hpp"
 #include "report/work_precision.hpp"
@@ -92,7 +91,7 @@ void add_moduli_runs(const RunPlan& plan, const RunOptions& options, StudyManife
                            !w.full ? kShortLimit_s
                            : whole ? kFullLimit_s
                                    : kDefaultLimit_s,
-                           w.bending);
+                           w.bending ? PatchChoice::Grids : PatchChoice::Stretch);
       RunWriter(options.out, measured.header).finish(measured.outcome, measured.summary);
       result.moduli_seconds[w.entry->info.name] +=
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -4,6 +4,7 @@
 
 #include "base/json_number.hpp"
 #include "base/tint.hpp"
+#include "base/words.hpp"
 #include "runner/solver_run.hpp"
 
 namespace clothbench {
@@ -39,13 +40,9 @@ nlohmann::json plan_of(const Scene& scene, const SolverEntry& entry, const Solve
   return j;
 }
 
-std::string bytes(const nlohmann::json& b) { return b.is_null() ? "–" : fmt::format("{:.0f}", b.get<double>()); }
+std::vector<std::string> words(const nlohmann::json& list) { return list; }
 
-std::string joined(const nlohmann::json& words) {
-  std::string text;
-  for (const auto& w : words) text += (text.empty() ? "" : ", ") + w.get<std::string>();
-  return text;
-}
+std::string bytes(const nlohmann::json& b) { return b.is_null() ? "–" : fmt::format("{:.0f}", b.get<double>()); }
 
 }  // namespace
 
@@ -58,7 +55,8 @@ nlohmann::json ask_plan(Guard& guard, const Scene& scene, const ChosenSolver& s,
 
 std::string plan_text(const nlohmann::json& p) {
   const auto text = [](const nlohmann::json& j) { return j.get<std::string>(); };
-  std::string out = fmt::format("{} on {}\n  needs: {}\n", text(p["solver"]), text(p["scene"]), joined(p["needs"]));
+  std::string out =
+      fmt::format("{} on {}\n  needs: {}\n", text(p["solver"]), text(p["scene"]), joined(words(p["needs"])));
   if (p["status"] != "ok")
     out += fmt::format("  {}: {}\n", tinted(tone_of(text(p["status"])), text(p["status"])), text(p["message"]));
   if (!p["stages"].empty())
@@ -66,7 +64,7 @@ std::string plan_text(const nlohmann::json& p) {
                        "written B", "serves");
   for (const auto& s : p["stages"])
     out += fmt::format("  {:<28} {:>10} {:>14} {:>14}  {}\n", text(s["name"]), s["dispatches"].get<int>(),
-                       bytes(s["read_B"]), bytes(s["write_B"]), joined(s["serves"]));
+                       bytes(s["read_B"]), bytes(s["write_B"]), joined(words(s["serves"])));
   if (!p["buffers"].empty()) out += fmt::format("\n  {:<28} {:>14}\n", "buffer", "bytes");
   for (const auto& b : p["buffers"])
     out += fmt::format("  {:<28} {:>14}  {}\n", text(b["name"]), b["bytes"].get<std::uint64_t>(),

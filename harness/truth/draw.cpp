@@ -6,6 +6,7 @@
 
 #include "base/dice.hpp"
 #include "clothbench/error.hpp"
+#include "clothbench/vector.hpp"
 #include "scenario/change.hpp"
 #include "scenario/load.hpp"
 #include "truth/atwood.hpp"
@@ -65,7 +66,6 @@ class Drawing {
 
  private:
   static double norm(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-  static Vec3 scaled(double k, const Vec3& v) { return {k * v[0], k * v[1], k * v[2]}; }
   void note(const std::string& name, double value) { values_.emplace_back(name, value); }
   void set_gravity(const Vec3& g) { j_["gravity_m_per_s2"] = g; }
   double stretch_time() const { return length_ / std::sqrt(stiffness_ / density_); }

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "clothbench/error.hpp"
 #include "truth/checks.hpp"
 
 namespace clothbench::truth {

@@ -1,6 +1,5 @@
 #pragma once
 #include <boost/math/tools/roots.hpp>
-#include <cmath>
 #include <cstdint>
 #include <string>
 

@@ -1,7 +1,6 @@
 // Reference cases of sheets whose rows feel one another: the answer is a position for every vertex.
 #include <memory>
 
-#include "clothbench/motion.hpp"
 #include "truth/case_strip.hpp"
 #include "truth/pull_wave.hpp"
 #include "truth/spring_sheet.hpp"

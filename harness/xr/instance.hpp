@@ -1,7 +1,6 @@
 #pragma once
 #include <set>
 #include <string>
-#include <vector>
 
 #include "vulkan/device.hpp"
 #include "xr/openxr.hpp"

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <thread>
 
+#include "clothbench/vector.hpp"
 #include "gpu_solver.hpp"
 #include "results/replay.hpp"
 #include "results/store.hpp"
-#include "runner/environment.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"
 #include "runner/solver_run.hpp"
@@ -233,7 +233,7 @@ class Loop {
     if (picking_ && session_.passthrough() != std::string_view("none")) shown_.colliders.clear();
     near_ = render::Bounds::none();
     const std::vector<double> x = initial_positions(s);
-    for (std::size_t v = 0; v < s.cloth.vertex_count(); ++v) near_.add({x[3 * v], x[3 * v + 1], x[3 * v + 2]});
+    for (std::size_t v = 0; v < s.cloth.vertex_count(); ++v) near_.add(vertex_at(x, v));
     near_.grow(std::max({s.cloth.width_m, s.cloth.height_m}));
     stale_ = true;
   }

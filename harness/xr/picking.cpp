@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "clothbench/error.hpp"
 #include "scenario/recorded_hand.hpp"
 
 namespace clothbench::xr {

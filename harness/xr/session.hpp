@@ -2,8 +2,6 @@
 #include <array>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "clothbench/collider.hpp"

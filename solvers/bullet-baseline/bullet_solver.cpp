@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "clothbench/unsupported_scene.hpp"
+#include "clothbench/vector.hpp"
 
 namespace clothbench::bullet_baseline {
 namespace {
@@ -121,7 +122,7 @@ std::unique_ptr<btSoftBody> BulletSolver::new_body(btSoftBodyWorldInfo& info) {
   std::vector<btVector3> x;
   free_mass_.clear();
   for (std::size_t v = 0; v < mass.size(); ++v) {
-    x.push_back(to_bullet({start[3 * v], start[3 * v + 1], start[3 * v + 2]}));
+    x.push_back(to_bullet(vertex_at(start, v)));
     free_mass_.push_back(static_cast<btScalar>(mass[v]));
   }
   for (std::uint32_t v : scene_->pins.vertices) free_mass_[v] = 0;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bullet-baseline/collider_bodies.hpp"
-#include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
 

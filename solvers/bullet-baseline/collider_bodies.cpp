@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "clothbench/error.hpp"
+#include "clothbench/vector.hpp"
 
 namespace clothbench::bullet_baseline {
 namespace {
@@ -54,7 +55,7 @@ Corners corners_of(const ColliderMesh& mesh, std::size_t triangle, const std::ve
   Corners out;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t v = mesh.triangles[triangle][k];
-    out[k] = to_bullet({x[3 * v], x[3 * v + 1], x[3 * v + 2]});
+    out[k] = to_bullet(vertex_at(x, v));
   }
   return out;
 }

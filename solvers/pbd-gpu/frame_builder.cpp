@@ -1,5 +1,7 @@
 #include "frame_builder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "clothbench/error.hpp"
@@ -14,6 +16,29 @@ std::vector<float> inverse_masses(const Scene& scene) {
   for (std::uint32_t v : scene.pins.vertices) w[v] = 0;
   for (std::uint32_t v : scene.grips.vertices) w[v] = 0;
   return w;
+}
+
+std::string breach(const std::vector<BufferNeed>& needs, std::uint64_t largest_B, std::uint64_t memory_B) {
+  constexpr double kMiB = 1024.0 * 1024;
+  std::uint64_t all = 0;
+  for (const BufferNeed& n : needs) {
+    if (n.bytes > largest_B)
+      return fmt::format("buffer \"{}\" of at least {:.1f} MiB, and its largest has {:.1f} MiB", n.name, n.bytes / kMiB,
+                         largest_B / kMiB);
+    all += n.bytes;
+  }
+  if (all <= memory_B) return "";
+  return fmt::format("buffers of at least {:.1f} MiB, and it has {:.1f} MiB", all / kMiB, memory_B / kMiB);
+}
+
+void FrameBuilder::require_room(const std::vector<BufferNeed>& needs) const {
+  const std::string why = breach(needs, device_->limits().maxStorageBufferRange, device_->memory_B());
+  if (why.empty()) return;
+  const Cloth& c = scene_->cloth;
+  throw Error(fmt::format("{}: {}: {} vertices{} do not fit {}: they need {}", scene_->source,
+                          c.mesh ? "/cloth/mesh" : "/cloth/grid", c.vertex_count(),
+                          c.mesh ? fmt::format(" and {} triangles", c.mesh->triangles.size()) : std::string(),
+                          device_->info().name, why));
 }
 
 FrameBuilder::FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)
@@ -34,6 +59,7 @@ void FrameBuilder::override_setting(const char* name, const nlohmann::json& valu
 
 const Buffer& FrameBuilder::add_buffer(int binding, const std::string& name, std::uint64_t bytes, const void* initial,
                                        std::size_t initial_bytes) {
+  require_room({{name, bytes}});
   buffers_.push_back(std::make_unique<Buffer>(device_, name, bytes, Buffer::Place::Device));
   const Buffer& buffer = *buffers_.back();
   if (binding != kUnbound) bound_[static_cast<std::uint32_t>(binding)] = &buffer;

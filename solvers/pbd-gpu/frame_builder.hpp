@@ -29,6 +29,15 @@ struct FrameKernel {
   vulkan::Kernel kernel;
 };
 
+/// A buffer that a scene needs at least.
+struct BufferNeed {
+  std::string name;
+  std::uint64_t bytes;
+};
+/// Why buffers do not fit a device: one is larger than the largest that it binds, or all together are larger than its
+/// memory. Empty if they fit.
+std::string breach(const std::vector<BufferNeed>&, std::uint64_t largest_B, std::uint64_t memory_B);
+
 /// What a method and its parts build for a scene: buffers, stages, kernels, and the frame that is submitted repeatedly,
 /// with its plan and its traffic.
 class FrameBuilder {
@@ -44,6 +53,9 @@ class FrameBuilder {
   void override_setting(const char* name, const nlohmann::json& value, const std::string& why);
   const std::shared_ptr<vulkan::Device>& device() const { return device_; }
   bool counts_bytes() const { return count_bytes_; }
+
+  /// Throws Error naming the scene, what is needed and what the device has, unless the buffers fit it.
+  void require_room(const std::vector<BufferNeed>&) const;
 
   static constexpr int kUnbound = -1;
   /// A device buffer that `reset` fills with `initial` and zeros after it. Kernels refer to it by its number (BIND_...,

@@ -204,10 +204,11 @@ bool contact_by_planes(const Scene& scene, const nlohmann::json& settings) {
   if ((scene.needs & (kColliderFeatures | FeatureSet{Feature::SelfCollision})).empty()) return false;
   const std::string wanted = settings.value(kTuning, nlohmann::json::object()).value("contact", "auto");
   if (wanted != "auto") return wanted == "planes";
-  // The list of pairs is for vertices that keep to their reach in the frame; what hands let go springs farther.
-  const bool moving =
-      scene.grips.vertices.empty() && !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
-  return (moving || scene.cloth.mesh) && settings.value("batch", 1) == 1 && settings.value("contact_samples", -1) < 0;
+  // The list of pairs is for vertices that keep to their reach in the frame; what hands let go springs farther. Of what
+  // stands, the corners of boxes come through cells between points on edges.
+  constexpr FeatureSet kByPlanes{Feature::Capsules, Feature::MovingMesh, Feature::Box};
+  const bool chosen = scene.grips.vertices.empty() && !(scene.needs & kByPlanes).empty();
+  return (chosen || scene.cloth.mesh) && settings.value("batch", 1) == 1 && settings.value("contact_samples", -1) < 0;
 }
 
 int substeps_over_budget(const Scene& scene, const nlohmann::json& settings) {
@@ -246,7 +247,7 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
                  kDriven[] = {{8, 4}, {16, 2}, {32, 1}}, kDrivenByPlanes[] = {{5, 6}, {8, 4}, {20, 1.5}},
-                 kLaid[] = {{8, 4}, {16, 2}, {32, 1}}, kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}},
+                 kLaid[] = {{8, 4}, {13, 2.4}, {26, 1.2}}, kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}},
                  kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
   const auto& grips = scene.grips.vertices;
   // A hand pushes a cloth in directions that tethers do not limit.

@@ -44,7 +44,6 @@ class FlatMesh {
   std::uint32_t edge_of(std::uint32_t t, int k) const {
     return edges_[3 * std::size_t{t} + static_cast<std::size_t>(k)];
   }
-  const std::array<std::uint32_t, 2>& at_edge(std::uint32_t edge) const { return at_edge_[edge]; }
   double area(std::uint32_t t) const { return cross2(flat_[t][1], flat_[t][2]) / 2; }
   std::uint32_t other(std::uint32_t edge, std::uint32_t t) const {
     return at_edge_[edge][0] == t ? at_edge_[edge][1] : at_edge_[edge][0];

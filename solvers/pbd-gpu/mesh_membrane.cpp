@@ -119,13 +119,41 @@ Choice membrane_of(const Scene& scene, const nlohmann::json& settings) {
   if (wanted == "never") return {false, "setting tuning.membrane=never"};
   if (!chain_cloth(scene).welded.empty()) return {false, "edges are so short that they are welded"};
   if (wanted == "always") return {true, ""};
-  if (!touches_nothing(scene) || contact_by_planes(scene, settings)) return {false, "the cloth touches"};
-  const double h = scene.time.dt() / xpbd_substeps(scene, settings);
+  const int substeps = xpbd_substeps(scene, settings);
+  const double h = scene.time.dt() / substeps;
   const std::uint32_t wants = bending_iterations(h * h * membrane_bound(scene));
+  if (!touches_nothing(scene) || contact_by_planes(scene, settings))
+    return {false, "the cloth touches, and a frame would take " +
+                       std::to_string(wants * static_cast<std::uint32_t>(substeps)) + " iterations"};
   if (wants > kMostIterations)
     return {false, "a substep would take " + std::to_string(wants) + " iterations; at most " +
                        std::to_string(kMostIterations) + " are taken"};
   return {true, ""};
+}
+
+std::vector<BufferNeed> mesh_needs(const Scene& scene, bool membrane) {
+  const ClothMesh& mesh = *scene.cloth.mesh;
+  const std::uint64_t n = mesh.vertices.size(), state = n * sizeof(vec4);
+  std::vector<BufferNeed> out;
+  for (const char* name : {"positions", "velocities", "position compensation", "velocity compensation"})
+    out.push_back({name, state});
+  out.push_back({"chain entries", (membrane ? n : std::max<std::uint64_t>(n, mesh.edges.size())) * sizeof(ChainEntry)});
+  const bool bends = scene.needs.has(Feature::Bend);
+  if (bends || membrane) out.push_back({"bending steps", (membrane ? 4 : 3) * state});
+  constexpr std::uint64_t kRow = 18;
+  if (bends) out.push_back({"bending entries", kRow * n * sizeof(BendingEntry)});
+  if (!membrane) return out;
+  std::vector<std::uint64_t> at(n, 0);
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t v : triangle) ++at[v];
+  std::uint64_t corners = 0;
+  for (std::size_t begin = 0; begin < n; begin += BENDING_ROWS) {
+    const auto first = at.begin() + static_cast<std::ptrdiff_t>(begin);
+    corners +=
+        BENDING_ROWS * *std::max_element(first, first + std::min<std::ptrdiff_t>(BENDING_ROWS, at.end() - first));
+  }
+  out.push_back({"triangle corners", corners * sizeof(MembraneCorner)});
+  return out;
 }
 
 MembraneTable membrane_table(const Scene& scene) {

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "frame_builder.hpp"
 #include "line_plan.hpp"
 #include "pbd_shared.h"
 
@@ -32,5 +33,9 @@ struct MembraneTable {
   std::vector<MembraneCorner> corners;
 };
 MembraneTable membrane_table(const Scene&);
+
+/// Buffers that a mesh needs at least, found before any is made: its state; the corners of triangles, or its links; of
+/// bending, in every row the 18 vertices that are within two edges in regular triangles.
+std::vector<BufferNeed> mesh_needs(const Scene&, bool membrane);
 
 }  // namespace clothbench::pbd_gpu

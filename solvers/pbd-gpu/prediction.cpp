@@ -131,10 +131,11 @@ bool touches_nothing(const Scene& scene) {
 
 Choice tension_of(const Scene& scene, const nlohmann::json& settings) {
   const std::string wanted = tuned(settings, "tension");
+  if (membrane_of(scene, settings).on) return {true, ""};  // triangles are solved with theirs, whatever the setting
   if (wanted == "never") return {false, "setting tuning.tension=never"};
   if (settings.value("iterations", 1) > 1) return {false, "setting iterations: multipliers start from the last ones"};
   if (!touches_nothing(scene) || contact_by_planes(scene, settings)) return {false, "the cloth touches"};
-  if (wanted == "always" || membrane_of(scene, settings).on) return {true, ""};
+  if (wanted == "always") return {true, ""};
   if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};
   if (!is_held(scene)) return {false, "nothing holds the cloth"};
   if (is_tethered(scene, settings) && scene.cloth.mass_factors.empty())

@@ -47,6 +47,8 @@ class Xpbd final : public GpuSolver {
     if (!scene().cloth.mass_factors.empty() && scene().material.membrane_stiffness_N_per_m)
       override_setting("tethers", false, "masses are scaled");
     if (wants_chains(scene())) restrict_to_chains();
+    const Choice membrane = membrane_of(scene(), settings());
+    if (scene().cloth.mesh) require_room(mesh_needs(scene(), membrane.on));
     crumpled_ = starts_crumpled(scene());
     std::vector<double> start = initial_positions(scene());
     const bool chained = wants_chains(scene());
@@ -87,9 +89,9 @@ class Xpbd final : public GpuSolver {
     add_history(position.size());
     const Choice tension = tension_of(scene(), settings());
     if (!tension.on) leave_out("implicit tension", tension.why_not);
-    const Choice membrane = membrane_of(scene(), settings());
     if (!membrane.on && scene().cloth.mesh && scene().material.membrane_stiffness_N_per_m)
-      leave_out("triangles of constant strain", membrane.why_not + ": springs along edges take their place");
+      leave_out("triangles of constant strain",
+                membrane.why_not + ": springs along edges take their place, and the sheet is softer than Y", "sheet_Y");
     const Choice coupling = coupling_of(scene(), settings());
     const bool soft = scene().material.membrane_stiffness_N_per_m && scene().needs.has(Feature::Shear);
     if (!coupling.on) leave_out("coupling of families", coupling.why_not, soft ? "sheet_Y" : "");
@@ -266,8 +268,7 @@ SolverInfo xpbd_info() {
       {"batch", "1", "number of copies of the cloth in one dispatch, to measure throughput; metrics are of the first"},
       {"contact_samples", "-1",
        "points on each edge that take part in contact beside its two vertices, 0 to 16; -1: as colliders ask, and "
-       "planes "
-       "in their place where a collider moves or the cloth is a triangle mesh"},
+       "planes in their place where a collider moves, a box stands or the cloth is a triangle mesh"},
       {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
       {"one_dispatch", "true",
        "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
@@ -275,8 +276,8 @@ SolverInfo xpbd_info() {
   info.tuning = {
       {"contact", "\"auto\"",
        "samples or planes: points on edges that search their way, or a separating plane for every pair of a triangle "
-       "and a convex piece; auto: planes where a collider moves and no hand holds the cloth, or "
-       "the cloth is a triangle mesh"},
+       "and a convex piece; auto: planes where a collider moves or a box stands and no hand holds the "
+       "cloth, or the cloth is a triangle mesh"},
       {"contact_frame", "\"auto\"",
        "with contact by planes, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, "
        "never"},

@@ -1,7 +1,6 @@
 #pragma once
 #include <Eigen/SparseCholesky>
 #include <memory>
-#include <string>
 
 #include "clothbench/solver.hpp"
 #include "model.hpp"

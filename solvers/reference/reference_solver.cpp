@@ -4,6 +4,7 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
+#include "clothbench/vector.hpp"
 #include "integrator.hpp"
 
 namespace clothbench {
@@ -67,7 +68,7 @@ class Reference final : public ClothSolver {
     }
     state_.lambda = Vector::Zero(static_cast<Eigen::Index>(model_->springs()));
     grips_from_.clear();
-    for (std::uint32_t v : s.grips.vertices) grips_from_.push_back({start[3 * v], start[3 * v + 1], start[3 * v + 2]});
+    for (std::uint32_t v : s.grips.vertices) grips_from_.push_back(vertex_at(start, v));
     grip_held_.assign(s.grips.vertices.size(), 1);
   }
 

@@ -144,7 +144,7 @@ TEST(Pose, BlendIsHalfWay) {
     EXPECT_NEAR(qa.angularDistance(qh), qa.angularDistance(qb) / 2, 1e-7);
     EXPECT_NEAR(qb.angularDistance(qh), qa.angularDistance(qb) / 2, 1e-7);
   }
-  EXPECT_NE(error_of([&] { hand.pose("relaxd"); }).find("did you mean \"relaxed\""), std::string::npos);
+  EXPECT_NE(error_of([&] { hand.pose("relaxd"); }).find("nearest known: relaxed"), std::string::npos);
 }
 
 TEST(Pose, ModuleTextMayBeWrittenInManyWays) {

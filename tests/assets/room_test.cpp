@@ -98,7 +98,7 @@ TEST(Room, FindTableSaysWhatThereIs) {
 
 TEST(Room, UnknownNameSuggestsTheNearest) {
   const std::string message = error_of([] { open_room(AssetSource{}, "livin_room"); });
-  EXPECT_NE(message.find("did you mean \"living_room\""), std::string::npos) << message;
+  EXPECT_NE(message.find("nearest known: living_room"), std::string::npos) << message;
 }
 
 }  // namespace

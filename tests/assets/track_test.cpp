@@ -85,10 +85,10 @@ TEST_P(BadTracks, SayWhere) {
 
 INSTANTIATE_TEST_SUITE_P(
     Table, BadTracks,
-    testing::Values(Bad{"unknown_key", "\"grip\"", "\"gripp\"", "/keys/0", "did you mean \"grip\""},
+    testing::Values(Bad{"unknown_key", "\"grip\"", "\"gripp\"", "/keys/0", "nearest known: grip"},
                     Bad{"unit", "\"position_m\"", "\"position_cm\"", "/keys/0", "position_m"},
                     Bad{"no_pose", "\"pose\": \"relaxed\", ", "", "/keys/0", "first key"},
-                    Bad{"pose_name", "\"relaxed\"", "\"relaxt\"", "/keys/0/pose", "did you mean \"relaxed\""},
+                    Bad{"pose_name", "\"relaxed\"", "\"relaxt\"", "/keys/0/pose", "nearest known: relaxed"},
                     Bad{"hand", "\"right\"", "\"both\"", "/hand", "left, right"},
                     Bad{"time_order", "\"time_s\": 3", "\"time_s\": 1", "/keys/1/time_s", "later"},
                     Bad{"time_negative", "\"time_s\": 1", "\"time_s\": -1", "/keys/0/time_s", "expected 0"},

@@ -12,8 +12,8 @@ namespace {
 
 TEST(EffectiveModuli, TheReferenceIsTheIsotropicSheetItDeclares) {
   const SolverEntry& entry = find_solver("reference");
-  const RunRecord c =
-      measure_material(entry, complete_settings(entry.info, {{"substeps", 4}}), "default", true, {}, "test", 300);
+  const RunRecord c = measure_material(entry, complete_settings(entry.info, {{"substeps", 4}}), "default", true, {},
+                                       "test", 300, PatchChoice::GridsAndMeshes);
   EXPECT_EQ(c.outcome.status + c.outcome.message, "ok");
   const auto value = [&](const char* name) { return c.summary.at(std::string("material_") + name); };
   for (const char* name : {"E_0", "E_45", "E_90", "E_strip", "E_stiffer", "strip_border"})
@@ -22,6 +22,8 @@ TEST(EffectiveModuli, TheReferenceIsTheIsotropicSheetItDeclares) {
   EXPECT_NEAR(value("G"), 0.375, 2e-3);
   for (const char* name : {"B_0", "B_90", "B_stiffer"}) EXPECT_NEAR(value(name), 1, 5e-3) << name;
   EXPECT_NEAR(value("B_45"), 0.5, 0.015) << "lines along the grid resist no twist";
+  for (const char* name : {"mesh_E_0", "mesh_E_45", "mesh_E_90"}) EXPECT_NEAR(value(name), 1, 0.01) << name;
+  EXPECT_NEAR(value("mesh_nu"), 1.0 / 3, 0.01);
   EXPECT_LE(value("unrest"), 2e-4);
 }
 

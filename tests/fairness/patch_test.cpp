@@ -85,6 +85,35 @@ TEST(Patches, ReadRigidities) {
   EXPECT_NEAR(patch_moduli(Patch::BendDiagonal, s, bowl).at("B_45"), 0.3, 1e-9);
 }
 
+/// Positions of a mesh's vertices after a displacement, of u from its least and v from the middle.
+template <class Fn>
+std::vector<double> moved_mesh(const Scene& s, Fn displacement) {
+  std::vector<double> x = initial_positions(s);
+  for (std::size_t v = 0; v < s.cloth.vertex_count(); ++v) {
+    const Vec3& at = s.cloth.mesh->vertices[v];
+    const Vec3 by = displacement(at[0] + s.cloth.width_m / 2, at[1]);
+    for (std::size_t k = 0; k < 3; ++k) x[3 * v + k] += by[k];
+  }
+  return x;
+}
+
+TEST(Patches, ReadTheModuliOfMeshes) {
+  const std::vector<Patch> all = mesh_patches();
+  const char* names[] = {"mesh_E_0", "mesh_E_45", "mesh_E_90"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Scene s = patch_scene(all[k]);
+    ASSERT_TRUE(s.cloth.mesh);
+    const auto x =
+        moved_mesh(s, [&](double u, double v) { return hang(s, 700, 0.2, 0, u, v + s.cloth.height_m / 2, false); });
+    const auto m = patch_moduli(all[k], s, x);
+    EXPECT_NEAR(m.at(names[k]), 0.7, 1e-9);
+    if (k == 0) {
+      EXPECT_NEAR(m.at("mesh_nu"), 0.2, 1e-9);
+    }
+    EXPECT_TRUE(std::isnan(patch_moduli(all[k], s, initial_positions(s)).at(names[k]))) << "nothing stretched";
+  }
+}
+
 /// Homogenised lattices of springs; columns E_0, nu, G and E_45 as 2 x 2 stiffness matrices give them.
 TEST(Patches, TurnModuliBy45Degrees) {
   const auto at_45 = [](double E, double nu, double G, double skew = 0) {

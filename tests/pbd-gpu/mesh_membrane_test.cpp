@@ -6,7 +6,9 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "contact_scenes.hpp"
 #include "drawn_sheet.hpp"
+#include "metrics/mesh_patch.hpp"
 #include "prediction.hpp"
 
 namespace clothbench::pbd_gpu {
@@ -73,32 +75,6 @@ TEST(MeshMembrane, ItsBoundIsAboveTheGreatestEigenvalue) {
   }
 }
 
-struct Modulus {
-  double E, nu;  // E over the stated one
-};
-
-/// Fits the exact displacement of a strip that hangs by x = 0 to that of vertices in its lower half: along x
-/// (p/Y) (L x - x^2/2 - nu y^2/2), across -nu (p/Y) (L - x) y, with p = density times gravity and y from the middle.
-Modulus fitted(const Scene& s, const std::vector<double>& position) {
-  const std::vector<double> start = initial_positions(s);
-  const double L = s.cloth.width_m, p = s.cloth.areal_density_kg_per_m2 * s.gravity_m_per_s2[0],
-               Y = *s.material.membrane_stiffness_N_per_m;
-  const auto n = static_cast<Eigen::Index>(s.cloth.vertex_count());
-  Eigen::MatrixXd along = Eigen::MatrixXd::Zero(n, 4), across = Eigen::MatrixXd::Zero(n, 3);
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(n), v = Eigen::VectorXd::Zero(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double x = s.cloth.mesh->vertices[k][0], y = s.cloth.mesh->vertices[k][1] - s.cloth.height_m / 2;
-    if (x < 0.4 * L || x > 0.9 * L) continue;
-    along.row(i) << 1, y, y * y, p / Y * (L * x - x * x / 2);
-    across.row(i) << 1, x, -p / Y * (L - x) * y;
-    u[i] = position[3 * k] - start[3 * k];
-    v[i] = position[3 * k + 2] - start[3 * k + 2];  // axis_v is z
-  }
-  const double per_E = along.colPivHouseholderQr().solve(u)[3], nu = across.colPivHouseholderQr().solve(v)[2];
-  return {1 / per_E, nu / per_E};
-}
-
 class MembraneOf : public Gpu {
  protected:
   /// A strip 4 : 1 that hangs along the direction of its lattice turned by an angle, 1 % strain at its top, to rest.
@@ -127,11 +103,44 @@ TEST_F(MembraneOf, DrawnMeshesIsTheStatedOne) {
     for (const auto& [solver, settings] : {std::pair<std::string, nlohmann::json>{"xpbd", nlohmann::json::object()},
                                            {"xpbd", {{"quality", "fast"}}},
                                            {"reference", {{"substeps", 1}}}}) {
-      const Modulus m = fitted(s, end_of(s, solver, settings));
+      const IsotropicModuli m = hanging_moduli(s, end_of(s, solver, settings));
       EXPECT_NEAR(m.E, 1, 0.02) << solver << settings << ", seed " << seed;
       EXPECT_NEAR(m.nu, 1.0 / 3, 0.02) << solver << settings << ", seed " << seed;
     }
   }
+}
+
+/// Springs along edges are softer than stated, by how many substeps solve them: CHAINS.md says how much.
+TEST_F(MembraneOf, DrawnMeshesWithSpringsIsSofter) {
+  const Scene s = hanging(12, std::numbers::pi / 4, 0.3, 2);
+  const nlohmann::json settings = {{"substeps", 16}, {"tuning", {{"membrane", "never"}}}};
+  const IsotropicModuli m = hanging_moduli(s, end_of(s, "xpbd", settings));
+  EXPECT_GE(m.E, 0.7);
+  EXPECT_LE(m.E, 0.95) << "springs are near Y: touching cloth may be said to have it";
+}
+
+/// Where the setting asks for it, triangles make cloth that touches: over a ball, whose surface no vertex passes.
+TEST_F(MembraneOf, TouchingSheetsRestsOnABall) {
+  constexpr double kRadius = 0.15;
+  Scene s = drawn_sheet(0.6, 0.4, 5, 0.5, 0.3, 5);
+  s.pins.vertices.clear();
+  s.needs = s.needs - FeatureSet{Feature::Pins};
+  s.time = {60, 0.25};
+  Vec3 ball = s.cloth.center_m;
+  for (std::size_t k = 0; k < 3; ++k) ball[k] += 0.3 * s.cloth.axis_u[k] + 0.2 * s.cloth.axis_v[k];
+  ball[1] -= kRadius + 0.03;
+  s = with_collider(s, sphere(ball, kRadius, kContactFriction));
+  const auto solver = make("xpbd", {{"quality", "fast"}, {"tuning", {{"membrane", "always"}}}});
+  solver->load(s);
+  const std::vector<double> x = after(*solver, s, s.time.frames()).position;
+  double lowest = 0;
+  for (std::size_t v = 0; v < x.size(); v += 3) {
+    const double d = std::hypot(x[v] - ball[0], x[v + 1] - ball[1], x[v + 2] - ball[2]);
+    if (!(d >= kRadius)) ADD_FAILURE() << "vertex " << v / 3 << " is " << d << " m from the middle";
+    lowest = std::min(lowest, x[v + 1] - ball[1]);
+  }
+  EXPECT_LT(lowest, 0) << "the sheet hangs down beside the ball";
+  EXPECT_GT(lowest, -2 * kRadius) << "it fell off, or through";
 }
 
 /// Pulled to twice its length, with few substeps: the sheet comes to rest where the reference does.
@@ -183,6 +192,18 @@ TEST_F(MembraneOf, FreeSheetsRepeatAndFallFreely) {
   }
   const double free = xpbd_free_fall_m(s, complete_settings(xpbd_info(), {}), 6);
   EXPECT_NEAR(fall / mass, free, 3e-5 * std::abs(free));
+}
+
+/// Triangles have their tension in their own solve: no setting leaves it out, and a prediction may build on it.
+TEST_F(MembraneOf, DrawnSheetsHaveTensionWhateverTheSetting) {
+  const Scene s = drawn_sheet(1, 0.5, 8, 0.5, 0.3, 5);
+  for (const nlohmann::json& settings : {nlohmann::json{{"tuning", {{"tension", "never"}}}}, {{"iterations", 4}}}) {
+    EXPECT_EQ(tension_of(s, settings).why_not, "");
+    const auto solver = make("xpbd", settings);
+    solver->load(s);
+    for (const auto& part : solver->plan().left_out) EXPECT_NE(part.what, "implicit tension") << part.why;
+    EXPECT_EQ(prediction_of(s, settings).on, prediction_of(s, nlohmann::json::object()).on);
+  }
 }
 
 /// What the plan says of meshes that springs along edges solve.

@@ -156,6 +156,7 @@ std::vector<Stage> stages() {
   out.push_back(solved("cantilever", load_scene("validation/cantilever-10", {"time.duration_s=2"})));
   out.push_back(solved("heavy", load_scene("validation/heavy-strip", {"time.duration_s=2"})));
   out.push_back(solved("slope", load_scene("validation/incline-slip")));
+  out.back().settings = {{kTuning, {{"contact", "samples"}}}};
   out.push_back(solved("ball", load_scene("contact/sphere", {"cloth.grid=[17,17]", "time.duration_s=1",
                                                              "cloth.pose.center_m=[0,0.2,0]"})));
   out.push_back(solved("tiles", over_tiles()));

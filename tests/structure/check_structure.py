@@ -20,6 +20,12 @@ ROOMS = ["base", "assets", "scenario", "truth", "metrics", "results", "runner", 
 # A solver may include the public interface and base.
 SOLVERS_MAY_INCLUDE = {"base", "clothbench"}
 
+# Rooms that stand on one another below the command line and the apps.
+APPS = {"cli", "render", "xr", "android"}
+MOST_FLOORS = 7
+# What the README of a room says of it: what belongs there, what it may include, how to add the thing that people add.
+OF_A_ROOM = {"what belongs there": r"\*\*Belongs here:\*\*", "what it may include": r"\*\*May include:\*\*", "how to add to it": r"(\*\*Add |\*\*To (add|store|change) |## (How to add|Adding))"}
+
 MOST_LINES_OF_A_FILE = 400
 MOST_LINES_OF_A_FUNCTION = 60
 # A table, row after row, and a macro that pmccabe takes for a function's head.
@@ -54,10 +60,25 @@ def wrong_includes(show):
         for other in includes(path):
             if other in ROOMS and other not in SOLVERS_MAY_INCLUDE:
                 faults.append(f"{path}: a solver may include the public interface and base, not {other}")
+    floor = {}
+    for room in ROOMS:
+        floor[room] = 1 + max((floor[other] for other in floor if (room, other) in seen), default=0)
+        if room not in APPS and floor[room] > MOST_FLOORS:
+            faults.append(f"harness/{room}: stands on floor {floor[room]}; at most {MOST_FLOORS} below the command line and the apps")
     if show:
+        print("floors: " + ", ".join(f"{room} {n}" for room, n in floor.items()))
         for (room, other), path in sorted(seen.items()):
             print(f"{room} -> {other}   {path}")
     return faults
+
+
+def silent_readmes():
+    for room in ROOMS:
+        path = f"harness/{room}/README.md"
+        text = (ROOT / path).read_text()
+        for what, words in OF_A_ROOM.items():
+            if not re.search(words, text):
+                yield f"{path}: does not say {what} ({words})"
 
 
 def long_files():
@@ -127,7 +148,7 @@ def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--list", action="store_true")
     show = arguments.parse_args().list
-    faults = wrong_includes(show) + list(long_files()) + list(long_scripts()) + list(long_shader_functions())
+    faults = wrong_includes(show) + list(silent_readmes()) + list(long_files()) + list(long_scripts()) + list(long_shader_functions())
     missing = [program for program in ("pmccabe", "clang-format-14") if not shutil.which(program)]
     if "pmccabe" not in missing:
         faults += long_functions()

@@ -5,6 +5,13 @@
 
 namespace clothbench {
 
+/// Vertex `v` of a list of coordinates (x, y, z of the first, of the second, …).
+template <class Numbers>
+Vec3 vertex_at(const Numbers& x, std::size_t v) {
+  return {x[3 * v], x[3 * v + 1], x[3 * v + 2]};
+}
+inline Vec3 scaled(double s, const Vec3& a) { return {s * a[0], s * a[1], s * a[2]}; }
+inline Vec3 plus(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 inline Vec3 cross(const Vec3& a, const Vec3& b) {

@@ -1,7 +1,6 @@
 #pragma once
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "metrics/contact/shapes.hpp"
 #include "metrics/contact/triangle_mesh.hpp"

@@ -1,7 +1,6 @@
 #include "metrics/contact/touch.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace clothbench::contact {
 

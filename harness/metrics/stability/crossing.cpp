@@ -12,9 +12,7 @@ namespace {
 Vec3 mix(const Vec3& a, const Vec3& b, double t) {
   return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
 }
-double volume(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
+double volume(const Vec3& a, const Vec3& b, const Vec3& c) { return dot(a, cross(b, c)); }
 
 struct Instant {
   Vec3 p, a, b, c;
@@ -30,8 +28,7 @@ double side(const Instant& i) { return volume(minus(i.b, i.a), minus(i.c, i.a), 
 /// Whether a point in the triangle's plane lies in it.
 bool inside(const Instant& i) {
   const Vec3 a = minus(i.a, i.p), b = minus(i.b, i.p), c = minus(i.c, i.p);
-  const Vec3 u = minus(i.b, i.a), v = minus(i.c, i.a);
-  const Vec3 n = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  const Vec3 n = cross(minus(i.b, i.a), minus(i.c, i.a));
   return volume(n, a, b) >= 0 && volume(n, b, c) >= 0 && volume(n, c, a) >= 0;
 }
 
@@ -87,9 +84,7 @@ int CapsuleCrossing::add(int frame, const std::vector<double>& x) {
           scene_.motion[static_cast<std::size_t>(frame)].colliders[colliders_[n]].capsules[0].radius_m;
       for (const auto& t : triangles_) {
         const auto corners = [&](const std::vector<double>& at) {
-          std::array<Vec3, 3> out;
-          for (std::size_t k = 0; k < 3; ++k) out[k] = {at[3 * t[k]], at[3 * t[k] + 1], at[3 * t[k] + 2]};
-          return out;
+          return std::array{vertex_at(at, t[0]), vertex_at(at, t[1]), vertex_at(at, t[2])};
         };
         const std::array<Vec3, 3> from = corners(before_), to = corners(x);
         if (!whips(p0, p1, from, to, radius)) count_[n] += passes(p0, p1, from, to);

@@ -39,7 +39,7 @@ class Holders {
   }
 
  private:
-  Vec3 at(std::uint32_t v) const { return {start_[3 * v], start_[3 * v + 1], start_[3 * v + 2]}; }
+  Vec3 at(std::uint32_t v) const { return vertex_at(start_, v); }
   double strain(std::uint32_t a, const Vec3& xa, std::uint32_t b, const Vec3& xb) const {
     const double rest = rest_distance(s_.cloth, a, b);
     return rest > 0 ? distance(xa, xb) / rest - 1 : 0;
@@ -73,7 +73,7 @@ std::pair<double, double> start_of(const Scene& s) {
   for (int j = 0; j < s.cloth.rows; ++j)
     for (int i = 0; i < s.cloth.columns; ++i) {
       const auto v = static_cast<std::size_t>(j * s.cloth.columns + i);
-      far = std::max(far, distance({x[3 * v], x[3 * v + 1], x[3 * v + 2]}, s.rest_position(i, j)));
+      far = std::max(far, distance(vertex_at(x, v), s.rest_position(i, j)));
     }
   for (const Edge& e : edges(s.cloth, EdgeKind::Structural))
     if (e.rest_m > 0)

@@ -15,12 +15,9 @@ namespace {
 
 using namespace stability;
 
-Vec3 at(const std::vector<double>& x, std::uint32_t v) { return {x[3 * v], x[3 * v + 1], x[3 * v + 2]}; }
-
 /// Twice the triangle's area, as a vector along its normal.
 Vec3 area_vector(const std::vector<double>& x, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  const Vec3 u = minus(at(x, b), at(x, a)), v = minus(at(x, c), at(x, a));
-  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  return cross(minus(vertex_at(x, b), vertex_at(x, a)), minus(vertex_at(x, c), vertex_at(x, a)));
 }
 
 /// Inner edges: both corners of the edge in the first triangle's winding order, then the two opposite corners.
@@ -54,7 +51,7 @@ double shear_square(const Scene& scene, const std::vector<double>& x) {
   if (!scene.needs.has(Feature::Shear)) return 0;
   double squares = 0;
   const std::vector<Edge> all = edges(scene.cloth, EdgeKind::Shear);
-  for (const Edge& e : all) squares += std::pow(length(minus(at(x, e.b), at(x, e.a))) / e.rest_m - 1, 2);
+  for (const Edge& e : all) squares += std::pow(length(minus(vertex_at(x, e.b), vertex_at(x, e.a))) / e.rest_m - 1, 2);
   return 1.5 * squares / static_cast<double>(all.size());
 }
 
@@ -101,7 +98,7 @@ StabilityJudge::Strain StabilityJudge::strain_of(const std::vector<double>& x) c
   std::vector<double> all;
   double sum = 0, squares = 0;
   for (const Edge& e : edges_) {
-    all.push_back(length(minus(at(x, e.b), at(x, e.a))) / e.rest_m - 1);
+    all.push_back(length(minus(vertex_at(x, e.b), vertex_at(x, e.a))) / e.rest_m - 1);
     sum += std::abs(all.back());
     squares += all.back() * all.back();
   }

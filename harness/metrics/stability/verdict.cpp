@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cmath>
-
 #include "metrics/stability/judge.hpp"
 
 namespace clothbench {

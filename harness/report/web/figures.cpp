@@ -7,7 +7,9 @@
 #include <set>
 
 #include "base/json_number.hpp"
+#include "base/words.hpp"
 #include "metrics/registry.hpp"
+#include "report/grid.hpp"
 #include "report/report.hpp"
 #include "report/web/page.hpp"
 #include "results/store.hpp"
@@ -122,8 +124,7 @@ Table environment_table(const std::vector<RunRecord>& runs) {
                                                                   {"git_dirty", "local changes"},
                                                                   {"build_type", "build"},
                                                                   {"assets", "assets"}};
-  const auto text = [](const json& e, const char* key) -> std::string {
-    const json v = e.is_object() ? e.value(key, json()) : json();
+  const auto text = [](const json& v) -> std::string {
     if (v.is_boolean()) return v.get<bool>() ? "Yes" : "No";  // facts, not verdicts: the page colours yes and no
     return v.is_string() && !v.get<std::string>().empty() ? v.get<std::string>()
            : v.is_null() || v.is_string()                 ? "–"
@@ -138,7 +139,7 @@ Table environment_table(const std::vector<RunRecord>& runs) {
   for (const RunRecord& c : runs) {
     if (!c.header.environment.is_object() || c.header.environment.empty()) continue;
     std::vector<std::string> place;
-    for (const auto& [key, label] : kKeys) place.push_back(text(c.header.environment, key));
+    for (const auto& [key, label] : kKeys) place.push_back(text(environment_of(c, key)));
     const auto same = std::find_if(places.begin(), places.end(), [&](const Place& p) { return p.what == place; });
     Place& here = same == places.end() ? places.emplace_back(Place{place, 0, {}}) : *same;
     ++here.runs;
@@ -161,7 +162,7 @@ std::vector<std::string> commands_of(const std::vector<fs::path>& results) {
   for (const fs::path& result : results) {
     if (!fs::exists(result / "study.json")) continue;
     std::string line = read_manifest(result).command_line;
-    if (!line.empty() && std::find(out.begin(), out.end(), line) == out.end()) out.push_back(std::move(line));
+    if (!line.empty() && !contains(out, line)) out.push_back(std::move(line));
   }
   return out;
 }

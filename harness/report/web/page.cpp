@@ -1,7 +1,5 @@
 #include "report/web/page.hpp"
 
-#include <cmath>
-
 #include "clothbench/error.hpp"
 #include "report/plugin_marks.hpp"
 #include "report/roles.hpp"

@@ -1,6 +1,6 @@
 // Nearest points of an element of the cloth (a triangle or a vertex) and a convex piece. Every distance that is used is
 // certified: the gap between the two along a direction, which is at most their distance whatever rounding did to the
-// direction, and equal to it for the best one. Coordinates are relative to the element's first vertex.
+// direction, and equal to it for the best one. Coordinates are relative to a point near the element.
 vec3 cloth[3];     // the element's vertices
 uint corners;      // how many: 1 or 3
 vec3 piece_at[3];  // a piece of at most three points
@@ -112,9 +112,14 @@ Nearest nearest_of_few(float begin, float end) {
   Feature f = nearest_feature();
   Nearest r = Nearest(vec3(0.0), -1e30, f.on_cloth, f.on_piece, vec3(0.0), vec3(0.0));
   try_normal(r, f.apart, begin);
-  // Of what nearly touches the difference of the nearest points has lost its digits; across the features it has not.
-  float across = dot(f.normal, f.apart);
-  if (f.square < 1e-6) try_normal(r, across < 0.0 ? -f.normal : f.normal, begin);
+  // The difference of the nearest points loses digits where they nearly touch or the piece is large: what turns it by a
+  // rounding moves the piece's far corners. Across the features it does not.
+  try_normal(r, dot(f.normal, f.apart) < 0.0 ? -f.normal : f.normal, begin);
+  // Above a face its edges are often as near, up to rounding.
+  if (piece.count == 3u) {
+    vec3 face = cross(piece_at[1] - piece_at[0], piece_at[2] - piece_at[0]);
+    try_normal(r, dot(face, f.apart) < 0.0 ? -face : face, begin);
+  }
   for (uint j = 0u; j < piece.count; ++j) {
     r.witness += f.on_piece[j] * point_at(j, end);
     r.way += f.on_piece[j] * piece_at[j];

@@ -39,7 +39,10 @@ uint look(uvec4 e, inout PairState s) {
   }
   float gap = r.gap - piece.radius;
   s.normal = vec4(r.n, gap);
-  s.weights = vec4(r.on_cloth, dot(r.n, r.witness + around) + piece.radius);
+  // From the cloth's point and the gap, not from the piece's point: on a large face that has lost digits, and the share of a
+  // substep's fall that they are would be missing from the normal force.
+  vec3 on_cloth = r.on_cloth.x * cloth[0] + r.on_cloth.y * cloth[1] + r.on_cloth.z * cloth[2];
+  s.weights = vec4(r.on_cloth, dot(r.n, on_cloth + r.way + around) - gap);
   s.way = vec4(r.way, min(kept_margin(e, s.weights.xyz), gap));
   return PAIR_LOOKED | PAIR_NEAREST | (e.w == 3u ? PAIR_PLANE : 0u);
 }

@@ -324,6 +324,14 @@ DeviceInfo Device::info() const {
   return info;
 }
 
+std::uint64_t Device::memory_B() const {
+  std::uint64_t most = 0;
+  for (std::uint32_t i = 0; i < memory_.memoryHeapCount; ++i)
+    if ((memory_.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0)
+      most = std::max<std::uint64_t>(most, memory_.memoryHeaps[i].size);
+  return most;
+}
+
 std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const {
   for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
     if ((allowed >> i & 1u) != 0 && (memory_.memoryTypes[i].propertyFlags & wanted) == wanted) return i;

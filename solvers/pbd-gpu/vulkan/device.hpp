@@ -76,6 +76,8 @@ class Device {
   static constexpr std::uint32_t kNoMemory = ~0u;
   std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
 
+  std::uint64_t memory_B() const;  ///< of its largest heap of its own
+
   /// Seconds between two raw timestamps; NaN where the queue has none.
   double seconds(std::uint64_t from, std::uint64_t to) const;
   bool has_timestamps() const { return timestamp_bits_ > 0; }

@@ -1,8 +1,6 @@
 /// A scene in NvCloth.
 #pragma once
 
-#include <memory>
-
 #include "nvcloth/colliders.hpp"
 #include "nvcloth/fabric.hpp"
 

@@ -2,6 +2,12 @@
 import * as THREE from 'three';
 import {MeshBVH} from 'three-mesh-bvh';
 
+/// The frames f and g around a time, and how far it is from f to g; `rate`: frames per second.
+function around(time, rate, frames) {
+  const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at);
+  return {f, g: Math.min(f + 1, frames - 1), w: at - f};
+}
+
 /// Ends a and b and radius of each capsule at a time; `rate`: frames per second.
 function capsules(array, rate) {
   const [frames, count] = array.shape, group = new THREE.Group(), parts = [];
@@ -13,8 +19,7 @@ function capsules(array, rate) {
   }
   const up = new THREE.Vector3(0, 1, 0), line = new THREE.Line3(), nearest = new THREE.Vector3();
   const move = time => {
-    const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), g = Math.min(f + 1, frames - 1),
-          w = at - f;
+    const {f, g, w} = around(time, rate, frames);
     parts.forEach((p, k) => {
       const value = j => array.values[(f * count + k) * 7 + j] * (1 - w) + array.values[(g * count + k) * 7 + j] * w;
       p.a.set(value(0), value(1), value(2));
@@ -64,8 +69,7 @@ function triangle_mesh(arrays, rate, convex) {
     const [frames, joints] = arrays.joint_matrix.shape, m = arrays.joint_matrix.values,
                    index = arrays.joint_index.values, weight = arrays.joint_weight.values;
     move = time => {
-      const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), g = Math.min(f + 1, frames - 1),
-            w = at - f;
+      const {f, g, w} = around(time, rate, frames);
       for (let v = 0; v < position.length / 3; ++v)
         for (let r = 0; r < 3; ++r) {
           let sum = 0;
@@ -112,8 +116,7 @@ function grips(arrays, rate) {
   return {
     object: group,
     move: time => {
-      const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), g = Math.min(f + 1, frames - 1),
-            w = at - f;
+      const {f, g, w} = around(time, rate, frames);
       balls.forEach((b, k) => {
         const value = a => x[3 * (f * count + k) + a] * (1 - w) + x[3 * (g * count + k) + a] * w;
         b.position.set(value(0), value(1), value(2));

@@ -3,8 +3,10 @@ export function element(tag, attributes = {}, ...children) {
   const e = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) continue;
-    if (name.startsWith('on')) e.addEventListener(name.slice(2), value);
-    else e.setAttribute(name, value === true ? '' : value);
+    if (name.startsWith('on'))
+      e.addEventListener(name.slice(2), value);
+    else
+      e.setAttribute(name, value === true ? '' : value);
   }
   e.append(...children.flat().filter(c => c !== null && c !== undefined));
   return e;
@@ -25,6 +27,13 @@ export function download(name, type, content) {
   link.remove();
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
+
+/// A bar of buttons that download a figure or table: `makers` by the label of each.
+export const downloads = (title, makers) => element(
+    'div', {class: 'bar small', role: 'group', 'aria-label': `Downloads of ${title}`},
+    Object.entries(makers).map(
+        ([label, onclick]) =>
+            element('button', {type: 'button', 'aria-label': `${title}: download as ${label}`, onclick}, label)));
 
 /// "Table 3: frames…" -> "table-3-frames"
 export const file_name = title => title.toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-|-$/g, '').slice(0, 60);

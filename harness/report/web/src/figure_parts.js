@@ -59,8 +59,17 @@ export function across_of(panels, most) {
   return Math.max(1, Math.min(most, panels));
 }
 
+/// A logarithmic axis with ticks at the decades of `values`. `scale` and `axis`: more than that.
+export const log_axis = (field, title, values, {scale = {}, axis = {}} = {}) => ({
+  field,
+  type: 'quantitative',
+  title,
+  scale: {type: 'log', ...scale},
+  axis: {format: '~g', values: decades(values), ...axis}
+});
+
 /// Ticks of a logarithmic axis: powers of ten; also 2 and 5 times them on short axes; every other one on long axes.
-export function decades(values) {
+function decades(values) {
   const first = Math.floor(Math.log10(Math.min(...values))), last = Math.ceil(Math.log10(Math.max(...values))),
         out = [];
   for (let e = first; e <= last; e += last - first > 8 ? 2 : 1)

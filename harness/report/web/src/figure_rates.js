@@ -1,5 +1,5 @@
 // Figs. 4 and 5, as Vega-Lite specifications.
-import {beside, colour, decades, device_note, fade, is_floor, kCross, kFailed, picked, unique, without_floor} from './figure_parts.js';
+import {beside, colour, device_note, fade, is_floor, kCross, kFailed, log_axis, picked, unique, without_floor} from './figure_parts.js';
 
 const kSides = {
   domain: ['single', 'double-duplicated', 'double', 'not stated'],
@@ -95,13 +95,8 @@ function rates_spec(all, labels, theme, width) {
   ];
   const x = width_axis(all), color = colour(labels, theme), opacity = fade(theme),
         height = theme === 'paper' ? 300 : 360;
-  const y = {
-    field: 'fps',
-    type: 'quantitative',
-    title: 'frames per second, uncapped',
-    scale: {type: 'log', nice: true},
-    axis: {format: '~s', values: decades([...good.map(r => r.fps), 72])}
-  };
+  const y = log_axis(
+      'fps', 'frames per second, uncapped', [...good.map(r => r.fps), 72], {scale: {nice: true}, axis: {format: '~s'}});
   return {
     width: beside(theme, width, 270),
     height,
@@ -167,13 +162,7 @@ function bandwidth_spec(rows, failed, labels, theme, width) {
   const sides = side_encoding([...rows, ...failed]);
   const x = width_axis([...rows, ...failed]), color = colour(labels, theme), opacity = fade(theme),
         height = theme === 'paper' ? 220 : 280;
-  const y = {
-    field: 'GB_per_s',
-    type: 'quantitative',
-    title: 'peak bandwidth [GB/s]',
-    scale: {type: 'log'},
-    axis: {format: '~g', values: decades(rows.map(r => r.GB_per_s))}
-  };
+  const y = log_axis('GB_per_s', 'peak bandwidth [GB/s]', rows.map(r => r.GB_per_s));
   return {
     data: {values: [...rows, ...failed.flatMap(r => [{...r, way: 'read'}, {...r, way: 'written'}])]},
     facet: {column: {field: 'way', title: null}},

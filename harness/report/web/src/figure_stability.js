@@ -1,5 +1,5 @@
 // Stability maps: every probe by its outcome class in colour and symbol, the boundary of stability, and the theory.
-import {across_of, beside, decades, still_name, unique} from './figure_parts.js';
+import {across_of, beside, log_axis, still_name, unique} from './figure_parts.js';
 
 /// A polygon through `radii` in turn, evenly round, within -1..1.
 function polygon(corners, ...radii) {
@@ -128,13 +128,9 @@ function points_layer(map, probes, x, y, ink, theme) {
 
 function panels(map, rows, theme, width) {
   const probes = rows.filter(r => r.kind === 'probe');
-  const axis = key => ({
-    field: key,
-    type: 'quantitative',
-    title: label_of(map[key]),
-    scale: {type: 'log', domain: ends(probes, key), nice: false},
-    axis: {format: '~g', labelOverlap: true, values: decades(ends(probes, key))}
-  });
+  const axis = key => log_axis(
+      key, label_of(map[key]), ends(probes, key),
+      {scale: {domain: ends(probes, key), nice: false}, axis: {labelOverlap: true}});
   const x = axis('x'), y = axis('y'), ink = theme === 'dark' ? '#e3e8ee' : theme === 'light' ? '#1b1f24' : '#000000';
   const room = beside(theme, width, 240),
         across = across_of(drawn(map).length, Math.max(1, Math.min(3, Math.floor(room / 150))));

@@ -1,5 +1,5 @@
 // Stretch against time, a panel a resolution.
-import {across_of, beside, colour, decades, device_note, fade, on_front, picked, still_name, symbols, unique, without_floor} from './figure_parts.js';
+import {across_of, beside, colour, device_note, fade, log_axis, on_front, picked, still_name, symbols, unique, without_floor} from './figure_parts.js';
 
 const dash_of = {
   field: 'of',
@@ -35,20 +35,9 @@ function stretch_spec(points, labels, theme, width) {
     return here.map(r => ({...r, of, stretch: r[of], front: front.includes(r)}));
   }));
   const color = colour(labels, theme), opacity = fade(theme), across = across_of(panels.length, 3);
-  const x = {
-    field: 'ms',
-    type: 'quantitative',
-    title: 'GPU time a frame [ms]',
-    scale: {type: 'log', padding: 12},
-    axis: {format: '~g', values: decades(rows.map(r => r.ms)), labelOverlap: true, labelSeparation: 4}
-  };
-  const y = {
-    field: 'stretch',
-    type: 'quantitative',
-    title: 'stretch, last second [%]',
-    scale: {type: 'log', padding: 12},
-    axis: {format: '~g', values: decades(rows.map(r => r.stretch))}
-  };
+  const scale = {padding: 12}, axis = {labelOverlap: true, labelSeparation: 4};
+  const x = log_axis('ms', 'GPU time a frame [ms]', rows.map(r => r.ms), {scale, axis});
+  const y = log_axis('stretch', 'stretch, last second [%]', rows.map(r => r.stretch), {scale});
   const tip = [
     {field: 'label', title: 'solver'}, {field: 'setting'}, {field: 'sides'}, {field: 'ms', format: '.4~g', title: 'ms'},
     {field: 'of', title: 'stretch'}, {field: 'stretch', format: '.4~g', title: '%'}

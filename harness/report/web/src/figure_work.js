@@ -1,5 +1,5 @@
 // Error against run time.
-import {beside, colour, decades, device_note, fade, kCross, on_front, picked, still_name, symbols, unique} from './figure_parts.js';
+import {beside, colour, device_note, fade, kCross, log_axis, on_front, picked, still_name, symbols, unique} from './figure_parts.js';
 
 const kNoResult = ['unsupported', 'missing', 'over_budget'];
 
@@ -68,22 +68,13 @@ const background = (floors, x, y, height) =>
      }];
 
 function axes_of(diagram, clock, theme, good, floors) {
-  const x = {
-    field: 'time',
-    type: 'quantitative',
-    title: clock === 'wall' ? 'wall time, pipelined where the solver can [ms per simulated second]' :
-                              'GPU time; wall time for CPU solvers [ms per simulated second]',
-    scale: {type: 'log', padding: 10},
-    axis: {format: '~g', values: decades(good.map(r => r.time).concat(1000))}
+  const time = clock === 'wall' ? 'wall time, pipelined where the solver can [ms per simulated second]' :
+                                  'GPU time; wall time for CPU solvers [ms per simulated second]';
+  const error = lines_of(`error: ${diagram.ranking}`, theme === 'paper' ? 48 : 70), scale = {padding: 10};
+  return {
+    x: log_axis('time', time, good.map(r => r.time).concat(1000), {scale}),
+    y: log_axis('error', error, good.map(r => r.error).concat(floors.map(f => f.error)), {scale, axis: {format: '.0e'}})
   };
-  const y = {
-    field: 'error',
-    type: 'quantitative',
-    title: lines_of(`error: ${diagram.ranking}`, theme === 'paper' ? 48 : 70),
-    scale: {type: 'log', padding: 10},
-    axis: {format: '.0e', values: decades(good.map(r => r.error).concat(floors.map(f => f.error)))}
-  };
-  return {x, y};
 }
 
 function work_spec(diagram, clock, theme, width) {

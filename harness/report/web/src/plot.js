@@ -2,7 +2,7 @@ import * as vega from 'vega';
 import {compile} from 'vega-lite';
 import {Handler} from 'vega-tooltip';
 
-import {download, element, file_name, select} from './dom.js';
+import {download, downloads, element, file_name, select} from './dom.js';
 import {config} from './plot_config.js';
 import {to_csv} from './tables.js';
 import {on_theme, theme} from './theme.js';
@@ -50,23 +50,14 @@ export function plot_figure(
   const paper = () =>
       make_view({...spec('light', 760, state), description: title, background: '#ffffff', padding: 10}, 'light', null);
   const name = file_name(title);
-  const save = (label, make) =>
-      element('button', {type: 'button', 'aria-label': `${title}: download as ${label}`, onclick: make}, label);
   const block = element(
       'figure', {}, element('h3', {}, title), controls.length ? element('div', {class: 'bar'}, controls) : null, plot,
-      remark ? remarks : null, element('figcaption', {}, [caption, hint].filter(Boolean).join(' ')),
-      element(
-          'div', {class: 'bar small', role: 'group', 'aria-label': `Downloads of ${title}`},
-          save('SVG', async () => download(`${name}.svg`, 'image/svg+xml', await paper().toSVG())),
-          save(
-              'PNG',
-              async () =>
-                  download(`${name}.png`, 'image/png', await (await fetch(await paper().toImageURL('png', 3))).blob())),
-          save(
-              'CSV',
-              () => download(
-                  `${name}.csv`, 'text/csv',
-                  to_csv(rows(state).map(r => r.map(v => v === null || v === undefined ? '' : String(v))))))));
+      remark ? remarks : null, element('figcaption', {}, [caption, hint].filter(Boolean).join(' ')), downloads(title, {
+        SVG: async () => download(`${name}.svg`, 'image/svg+xml', await paper().toSVG()),
+        PNG: async () =>
+            download(`${name}.png`, 'image/png', await (await fetch(await paper().toImageURL('png', 3))).blob()),
+        CSV: () => download(`${name}.csv`, 'text/csv', to_csv(rows(state).map(r => r.map(v => String(v ?? '')))))
+      }));
   figures.push({redraw, width, drawn: 0});
   return block;
 }

@@ -1,4 +1,4 @@
-import {download, element, file_name} from './dom.js';
+import {download, downloads, element, file_name} from './dom.js';
 
 const csv_field = text => /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 export const to_csv = rows => rows.map(row => row.map(csv_field).join(',') + '\n').join('');
@@ -92,19 +92,12 @@ export function table_block(t) {
                   'tr', {class: row[0].startsWith('published') ? 'published' : null},
                   row.map((text, k) => body_cell(text, k === 0, numeric[k]))))));
   const name = file_name(t.title);
-  const save = (label, ending, type, make) => element(
-      'button', {
-        type: 'button',
-        'aria-label': `${t.title}: download as ${label}`,
-        onclick: () => download(`${name}.${ending}`, type, make(t))
-      },
-      label);
   return element(
       'div', {class: 'table'}, element('h3', {}, t.title),
       element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': t.title}, table),
-      t.note ? element('p', {class: 'note'}, t.note.replaceAll('`', '')) : null,
-      element(
-          'div', {class: 'bar small', role: 'group', 'aria-label': `Downloads of ${t.title}`},
-          save('CSV', 'csv', 'text/csv', x => to_csv(x.rows)), save('Markdown', 'md', 'text/markdown', to_markdown),
-          save('LaTeX', 'tex', 'application/x-tex', to_latex)));
+      t.note ? element('p', {class: 'note'}, t.note.replaceAll('`', '')) : null, downloads(t.title, {
+        CSV: () => download(`${name}.csv`, 'text/csv', to_csv(t.rows)),
+        Markdown: () => download(`${name}.md`, 'text/markdown', to_markdown(t)),
+        LaTeX: () => download(`${name}.tex`, 'application/x-tex', to_latex(t))
+      }));
 }

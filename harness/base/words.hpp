@@ -1,0 +1,28 @@
+#pragma once
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace clothbench {
+
+/// The items one after another, separated by `between`. `text(item)`: the text of an item.
+template <class Items, class Text = std::identity>
+std::string joined(const Items& items, const std::string& between = ", ", Text text = {}) {
+  std::string out;
+  for (const auto& item : items) {
+    if (!out.empty()) out += between;
+    out += std::invoke(text, item);
+  }
+  return out;
+}
+
+template <class Items, class Item>
+bool contains(const Items& items, const Item& item) {
+  return std::find(std::begin(items), std::end(items), item) != std::end(items);
+}
+
+/// "; nearest known: …", the end of a sentence about an unknown word; empty if none is near (clothbench/solver.hpp).
+std::string nearest_known(const std::string& word, const std::vector<std::string>& known);
+
+}  // namespace clothbench

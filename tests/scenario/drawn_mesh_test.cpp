@@ -1,0 +1,75 @@
+// Sheets of irregular triangles that are drawn by number.
+#include "scenario/drawn_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "clothbench/error.hpp"
+#include "scenario/load.hpp"
+#include "scratch_folder.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+TEST(DrawnMesh, FillsItsRectangleAtAnyAngle) {
+  for (const double angle : {0.0, 0.4, 0.8, 1.6})
+    for (const double height : {0.25, 0.5, 2.0}) {
+      const ClothMesh m = drawn_mesh({1, height, 12, angle, 0.3, 7});
+      const double corners = std::accumulate(m.areas_m2.begin(), m.areas_m2.end(), 0.0);
+      EXPECT_NEAR(corners / 3, height, 1e-3 * height) << "each triangle at three edges; angle " << angle;
+      for (const Edge& e : m.edges) EXPECT_LE(e.rest_m, 2.5 / 12) << angle << " " << height;
+      const std::size_t rows = m.groups.at("u0").size();
+      EXPECT_EQ(rows, static_cast<std::size_t>(12 * height) + 1);
+      EXPECT_EQ(m.groups.at("u1").size(), rows);
+      EXPECT_EQ(m.groups.at("v0").size(), 13u);
+      EXPECT_EQ(m.groups.at("v1").size(), 13u);
+    }
+}
+
+TEST(DrawnMesh, IsTheSameForTheSameNumbers) {
+  const DrawnSheet one{1, 0.25, 8, 0.5, 0.2, 3};
+  DrawnSheet other = one;
+  EXPECT_EQ(drawn_mesh(one).vertices, drawn_mesh(other).vertices);
+  EXPECT_EQ(drawn_mesh(one).triangles, drawn_mesh(other).triangles);
+  other.seed = 4;
+  EXPECT_NE(drawn_mesh(one).vertices, drawn_mesh(other).vertices);
+}
+
+json scenario(json mesh) {
+  return {{"name", "drawn"},
+          {"why", "a drawn mesh for the tests"},
+          {"cloth", {{"mesh", std::move(mesh)}, {"areal_density_kg_per_m2", 0.3}, {"sides", "single"}}},
+          {"material", {{"membrane_stiffness_N_per_m", 1000}}},
+          {"pins", {{{"group", "u0"}}}},
+          {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}}};
+}
+
+TEST(DrawnMesh, IsAScenesCloth) {
+  const json drawn = {{"size_m", {1, 0.5}}, {"cells", 8}, {"turned_deg", 30}, {"share", 0.2}};
+  const Scene s = scene_from_json(scenario({{"drawn", drawn}}), "a test");
+  EXPECT_TRUE(s.needs.has(Feature::ClothMesh));
+  EXPECT_DOUBLE_EQ(s.cloth.width_m, 1);
+  EXPECT_DOUBLE_EQ(s.cloth.height_m, 0.5);
+  ASSERT_EQ(s.pins.vertices.size(), 5u);
+  for (const std::uint32_t v : s.pins.vertices) EXPECT_EQ(s.cloth.mesh->vertices[v][0], -0.5) << "round center_m";
+  EXPECT_EQ(scene_from_json(json::parse(s.json), "again").cloth.mesh->vertices, s.cloth.mesh->vertices);
+}
+
+TEST(DrawnMesh, RefusesOtherKeysBesideIt) {
+  const json drawn = {{"size_m", {1, 0.5}}, {"cells", 8}};
+  const auto message = [](const json& mesh) { return refusal([&] { scene_from_json(scenario(mesh), "a test"); }); };
+  for (const json& mesh : {json{{"weld_m", 0.1}}, json{{"drawn", drawn}, {"file", "sheet.obj"}}})
+    EXPECT_NE(message(mesh).find("/cloth/mesh: expected either \"file\" or \"drawn\""), std::string::npos);
+  EXPECT_NE(message({{"drawn", drawn}, {"weld_m", 0.1}}).find("/cloth/mesh/weld_m"), std::string::npos);
+  EXPECT_NE(message({{"drawn", {{"size_m", {1, 1}}, {"cells", 1000}}}}).find("at most 20000 vertices"),
+            std::string::npos);
+  EXPECT_NE(message({{"drawn", {{"size_m", {1, 1}}, {"cells", 8}, {"share", 0.6}}}}).find("/cloth/mesh/drawn/share"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace clothbench
