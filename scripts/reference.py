@@ -4,11 +4,11 @@
     scripts/reference.sh --report OUT… [--to FOLDER] [--work FOLDER]
     scripts/reference.sh --check [OUT…] [--to FOLDER]
 
---report: makes tables of each study and one page of all (index.html) from the folders OUT, which must be of one commit, into FOLDER (default:
+--report: makes tables of each study and one page of all (index.html) from the folders OUT, which must be of one state of the sources, into FOLDER (default:
 results/reference/h200), and ../README.md of FOLDER. reference.json has the SHA-256 of all of these and of every result file they were made from.
 Raw results are not published: they are some hundred megabytes, and the tables hold every summary value of every run.
 
---check: exit status 1 and a line for each fault if what is published is not what --report wrote, if the runs are of two commits or of a tree
+--check: exit status 1 and a line for each fault if what is published is not what --report wrote, if the runs are of two states of the sources or of a tree
 with local changes, or if a result file below OUT has changed; 4 if nothing is wrong but what the figures depend on has changed since ("measured
 before this change"), or this tree does not know the commit; else 0.
 """
@@ -31,8 +31,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 DATA = ROOT / "scripts/reference"
 PUBLISHED = ROOT / "results/reference/h200"
 LIST = "reference.json"
-# What may change a figure: solvers, scenes and their loading, assets, runner, metrics, exact solutions, what they share.
-MEASURED = ["solvers", "scenarios", *(f"harness/{room}" for room in ("assets", "base", "include", "metrics", "runner", "scenario", "studies", "truth"))]
+# Folders with what may change a figure.
+MEASURED = [line for line in (DATA / "measured_paths.txt").read_text(encoding="utf-8").split("\n") if line and not line.startswith("#")]
 PAGE_LIMIT_B = 20_000_000
 # Files of a report that are not published: the page is one for all studies, and what else is left out is in runs.csv.
 UNPUBLISHED = {"index.html", "runs.json", "tables.tex", "bandwidth.csv", "memory.csv", "report-pictures.json", "penetration-series.csv", "work-precision.json", "penetration.csv", "contact-runs.csv"}
@@ -135,11 +135,11 @@ def runs_of(folder, group):
 
 
 def facts_of(folder, groups):
-    """Commits, trees with local changes, devices and days of the runs, by group."""
+    """Commits, sources, trees with local changes, devices and days of the runs, by group."""
     out = {}
     for group in groups:
         runs = [r for r in runs_of(folder, group) if r["git_commit"] and (r["scene"] != "effective-moduli" or group == "moduli")]
-        out[group] = {"runs": len(runs), "commits": sorted({r["git_commit"] for r in runs}), "dirty": sum(r["git_dirty"] != "false" for r in runs),
+        out[group] = {"runs": len(runs), "commits": sorted({r["git_commit"] for r in runs}), "sources": sorted({r.get("source_sha256", "") for r in runs} - {"", "–", "unknown"}), "dirty": sum(r["git_dirty"] != "false" for r in runs),
                       "devices": sorted({r["gpu"] for r in runs} - {"", "CPU", "–"}), "cpus": sorted({r["cpu"] for r in runs} - {""}),
                       "days": sorted({r["created"][:10] for r in runs})}
     return out
@@ -200,6 +200,7 @@ def readme(folder, listing):
             f"All published figures: one commit ({listing['commit'][:12]}), one command, one [page]({at}/index.html) that opens from disk. "
             "Times were taken alone, in one process, contenders in turns; what is called untimed ran side by side and has no times. "
             f"[reference.json]({at}/reference.json) has the SHA-256 of every file; `scripts/reference.sh --check` verifies them.", "",
+            *([listing["note"], ""] if listing.get("note") else []),
             "<!-- needs hardware: a GPU -->", "```sh",
             "scripts/reference.sh OUT --table h200         # call again while its exit status is 75",
             "scripts/reference.sh SOFT --table software    # parts without times, on any machine",
@@ -260,8 +261,6 @@ def publish(folders, to, work):
     parts = parts_of(folders)
     if not parts:
         sys.exit(f"{folders[0]}: no finished part; scripts/reference.sh {folders[0]} makes them")
-    if len({(f / "version").read_text() for f in folders}) > 1:
-        sys.exit("the folders hold results of different programs; a reference study has one commit")
     shutil.rmtree(to, ignore_errors=True)
     to.mkdir(parents=True)
     documents, files = {}, {}
@@ -282,7 +281,10 @@ def publish(folders, to, work):
     for group, list_of in parts.items():
         facts[group] |= {"how": sorted({p[1].replace("spread", "untimed") for p in list_of}), "seconds": sum(p[2] for p in list_of), "commands": [p[3] for p in list_of]}
     commits = {c for f in facts.values() for c in f["commits"]}
-    listing = {"format": "clothbench-reference", "format_version": 1, "commit": sorted(commits)[0], "studies": facts, "results": files}
+    sources = {s for f in facts.values() for s in f["sources"]}
+    if len(sources) > 1 or (len(commits) > 1 and not all(f["sources"] for f in facts.values())):
+        sys.exit("the folders hold results of different sources; a reference study has one state of what may change a figure")
+    listing = {"format": "clothbench-reference", "format_version": 1, "commit": sorted(commits)[0], "source_sha256": "".join(sources), "studies": facts, "results": files}
     shown = [h5 for group in ("table3", "penetration", "meshes") for p in parts.get(group, []) for h5 in sorted(p[0].glob("*.h5")) if SET_UPS.match(h5.name)]
     template = report(bench, shown or inputs, work / "motions")
     studies = [["study", "question", "answer", "machine", "day", "how"]]
@@ -326,9 +328,10 @@ def faults_of(to, folders):
     if out:
         return out
     facts = facts_of(to, listing["studies"])
-    commits = {c for f in facts.values() for c in f["commits"]}
-    if commits != {listing["commit"]}:
-        out.append(f"{to}: results of the commits {', '.join(sorted(commits))}; expected one, {listing['commit']}")
+    commits, sources = ({x for f in facts.values() for x in f[key]} for key in ("commits", "sources"))
+    one_state = bool(listing.get("source_sha256")) and sources == {listing["source_sha256"]} and all(f["sources"] for f in facts.values())
+    if commits != {listing["commit"]} and not one_state:
+        out.append(f"{to}: results of the commits {', '.join(sorted(commits))}; expected one, {listing['commit']}, or one source_sha256")
     out += [f"{to / g}: {f['dirty']} runs are of a tree with local changes" for g, f in facts.items() if f["dirty"]]
     if (to.parent / "README.md").read_text(encoding="utf-8") != readme(to, listing):
         out.append(f"{to.parent / 'README.md'}: not what the tables say; scripts/reference.sh --report writes it")
@@ -341,9 +344,21 @@ def faults_of(to, folders):
     return out
 
 
-def changed_since(commit):
-    """Files that may change a figure and differ between the commit and HEAD; None if this tree does not know the commit."""
-    git = lambda *words: subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True, check=False)
+def git(*words):
+    return subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True, check=False)
+
+
+def source_sha256():
+    """Of what may change a figure at HEAD, as harness/runner/build_info.cmake computes it."""
+    listing = git("ls-tree", "-r", "HEAD", "--", *MEASURED).stdout.splitlines(keepends=True)
+    return hashlib.sha256("".join(line for line in listing if not line.endswith(".md\n")).encode()).hexdigest()
+
+
+def changed_since(commit, sources):
+    """Files that may change a figure and differ between the commit and HEAD; None if this tree does not know the commit and its sources are
+    others."""
+    if sources and sources == source_sha256():
+        return []
     if git("cat-file", "-e", commit + "^{commit}").returncode != 0:
         return None
     done = git("diff", "--name-only", commit, "HEAD", "--", *MEASURED, ":(exclude)*.md")
@@ -357,8 +372,9 @@ def check(to, folders):
     if faults:
         print("\n".join(faults), file=sys.stderr)
         return 1
-    commit = json.loads((to / LIST).read_text(encoding="utf-8"))["commit"]
-    changed = changed_since(commit)
+    listing = json.loads((to / LIST).read_text(encoding="utf-8"))
+    commit = listing["commit"]
+    changed = changed_since(commit, listing.get("source_sha256"))
     if changed == []:
         print(f"{to}: as published, measured at {commit[:12]}; nothing that may change a figure has changed since")
         return 0

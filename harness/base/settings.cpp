@@ -21,14 +21,21 @@ const char* kind(const json& v) {
                                : "a string";
 }
 
-/// Once a process and solver: what is stored is read again and again.
-void tell_moved(const std::string& solver, const std::string& names) {
+/// Once a process and text: what is stored is read again and again.
+void notice(const std::string& solver, const std::string& text) {
   static std::mutex mutex;
   static std::set<std::string> reported;
   const std::lock_guard lock(mutex);
-  if (reported.insert(solver).second)
-    fmt::print(stderr, "notice: solver {}: {}: now in the setting \"{}\", as {}.<name> on the command line\n", solver,
-               names, kTuning, kTuning);
+  const std::string line = fmt::format("notice: solver {}: {}\n", solver, text);
+  if (reported.insert(line).second) fmt::print(stderr, "{}", line);
+}
+
+/// Takes members named in `retired` out of an object; returns their names.
+std::vector<std::string> take_retired(json& settings, const std::vector<std::string>& retired) {
+  std::vector<std::string> found;
+  for (const std::string& name : retired)
+    if (settings.is_object() && settings.erase(name) > 0) found.push_back(name);
+  return found;
 }
 
 bool fits(const json& given, const json& standard) {
@@ -48,7 +55,12 @@ json flat_settings(json settings) {
   return settings;
 }
 
-json complete_settings(const SolverInfo& info, const json& given) {
+json complete_settings(const SolverInfo& info, const json& as_given) {
+  json given = as_given;
+  std::vector<std::string> retired = take_retired(given, info.retired);
+  if (given.contains(kTuning))
+    for (std::string& name : take_retired(given[kTuning], info.retired)) retired.push_back(std::move(name));
+  if (!retired.empty()) notice(info.name, joined(retired) + ": no longer a setting; without effect");
   json all = json::object(), tuning = json::object(), seen = json::object();
   std::vector<std::string> names;
   for (const SettingSpec& s : info.settings) {
@@ -80,7 +92,9 @@ json complete_settings(const SolverInfo& info, const json& given) {
     if (key != kTuning) continue;
     for (const auto& [member, own] : value.items()) put(tuning, member, own, fmt::format("{}.{}", key, member));
   }
-  if (!moved.empty()) tell_moved(info.name, joined(moved));
+  if (!moved.empty())
+    notice(info.name, fmt::format("{}: now in the setting \"{}\", as {}.<name> on the command line", joined(moved),
+                                  kTuning, kTuning));
   if (!tuning.empty()) all[kTuning] = std::move(tuning);
   return all;
 }

@@ -57,8 +57,8 @@ int run_command_line(const std::vector<std::string>& given) {
       "robustness",
       "clothbench"};
   app.require_subcommand(1);
-  app.set_version_flag("--version",
-                       std::string("clothbench ") + build_info::kVersion + " (" + build_info::kGitCommit + ")");
+  app.set_version_flag("--version", std::string("clothbench ") + build_info::kVersion + " (" + build_info::kGitCommit +
+                                        "), sources " + build_info::kSourceSha256);
   app.footer(
       "Examples: clothbench run paper/desk-flat-low --solver xpbd --solver bullet-soft\n          "
       "clothbench study table3 --quick --out results/runs/mine\n          clothbench report "

@@ -112,7 +112,7 @@ void add_friction(CLI::App& app, Console& console) {
   add_solvers(*cmd, "solver", a.solvers, "Solvers; default: all that handle contact");
   cmd->add_option("--substeps", a.substeps,
                   "Also run with these numbers of substeps per frame, for solvers with that setting");
-  cmd->add_option("--set", a.set, "Override in every run: solver.contact_samples=0");
+  cmd->add_option("--set", a.set, "Override in every run: solver.substeps=20");
   a.add_readme_to(*cmd, "friction", "table");
   a.add_storage_to(*cmd);
   cmd->footer("Example: clothbench friction xpbd bullet-soft --substeps 8 32");

@@ -71,7 +71,7 @@ std::string summary_csv(const std::vector<RunRecord>& runs, const std::vector<st
             {"message", In::Both, [](auto& r) { return r.run->outcome.message; }},
             {"expect", In::Both, [](auto& r) { return r.run->outcome.expect; }}});
   for (const char* key : {"gpu", "driver", "gpu_is_software", "cpu", "protocol", "git_commit", "git_dirty",
-                          "build_type", "clock_policy", "created"})
+                          "source_sha256", "build_type", "clock_policy", "created"})
     columns.push_back({key, In::Both, [key](auto& r) { return environment_of(*r.run, key); }});
   const std::vector<Family> all = families(runs);
   std::vector<Exported> rows;

@@ -186,8 +186,8 @@ class Writer {
     text_attribute(file_, "settings_json", h.settings.dump());
     text_attribute(file_, "scenario_json", h.scenario_json);
     text_attribute(file_, "scenario_sha256", h.scenario_sha256);
-    for (const char* key : {"created", "git_commit", "git_dirty", "build_type", "gpu", "driver", "gpu_is_software",
-                            "cpu", "shader_compiler", "clock_policy", "protocol", "assets", "seed"})
+    for (const char* key : {"created", "git_commit", "git_dirty", "source_sha256", "build_type", "gpu", "driver",
+                            "gpu_is_software", "cpu", "shader_compiler", "clock_policy", "protocol", "assets", "seed"})
       text_attribute(file_, key, from_environment(key));
   }
 

@@ -4,6 +4,15 @@ execute_process(COMMAND git rev-parse HEAD WORKING_DIRECTORY ${SOURCE_DIR}
   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 execute_process(COMMAND git status --porcelain --untracked-files=no WORKING_DIRECTORY ${SOURCE_DIR}
   OUTPUT_VARIABLE changes OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+# What may change a figure, in one hash: results of two commits can be compared if it is the same.
+file(STRINGS ${SOURCE_DIR}/scripts/reference/measured_paths.txt measured REGEX "^[^#]")
+execute_process(COMMAND git ls-tree -r HEAD -- ${measured} WORKING_DIRECTORY ${SOURCE_DIR}
+  OUTPUT_VARIABLE listing ERROR_QUIET)
+string(REGEX REPLACE "[^\n]*\\.md\n" "" listing "${listing}")
+set(sources unknown)
+if(listing)
+  string(SHA256 sources "${listing}")
+endif()
 set(glslc "")
 if(GLSLC)
   # Three lines: shaderc, its SPIRV-Tools and its glslang. Each shapes the code.
@@ -31,6 +40,7 @@ const char* const kShaderCompiler = "@glslc@";
 const char* const kBuildType = "@BUILD_TYPE@";
 const char* const kVersion = "@VERSION@";
 const char* const kGitCommit = "@commit@";
+const char* const kSourceSha256 = "@sources@";
 const bool kGitDirty = @dirty@;
 }  // namespace clothbench::build_info
 ]])

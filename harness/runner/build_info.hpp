@@ -7,5 +7,7 @@ extern const char* const kShaderCompiler;
 extern const char* const kBuildType;
 extern const char* const kVersion;
 extern const char* const kGitCommit;
+extern const char* const
+    kSourceSha256;  ///< of what may change a figure (scripts/reference/measured_paths.txt); else "unknown"
 extern const bool kGitDirty;
 }  // namespace clothbench::build_info

@@ -82,6 +82,7 @@ nlohmann::json describe_environment(const DeviceInfo& device, const std::string&
   e["version"] = build_info::kVersion;
   e["git_commit"] = build_info::kGitCommit;
   e["git_dirty"] = build_info::kGitDirty;
+  e["source_sha256"] = build_info::kSourceSha256;
   e["created"] = utc_now();
   e["sensors"] = read_sensors();
   e["clock_policy"] = clock_policy(e["sensors"]);

@@ -27,14 +27,28 @@ vec4 direction(const Vec3& d, double w) {
 
 }  // namespace
 
-ColliderBuffers::ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, bool keep_start)
-    : frame_(frame), scene_(scene), origin_m_(origin_m), keep_start_(keep_start) {
+ColliderBuffers::ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, bool as_pieces)
+    : frame_(frame), scene_(scene), origin_m_(origin_m), as_pieces_(as_pieces) {
   const auto number = [](double v) { return static_cast<float>(v); };
   planes = add_shapes<PlaneShape>(Collider::Shape::Plane, BIND_PLANES, "collider planes", [&](const Collider& c) {
     double offset = 0;
     for (std::size_t k = 0; k < 3; ++k) offset += c.normal[k] * (c.center_m[k] - origin_m_[k]);
     return PlaneShape{direction(c.normal, offset), number(c.margin_m), number(c.friction), 0, 0};
   });
+  if (!as_pieces) add_standing();
+  const FeatureSet moving_kinds = scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh};
+  if (moving_kinds.empty()) return;
+  at_ = scene.motion.at(0);
+  stage_upload_ = frame_.add_stage("UploadColliders", moving_kinds);
+  if (moving_kinds.has(Feature::Capsules)) add_capsules();
+  if (moving_kinds.has(Feature::MovingMesh)) {
+    moving = add_meshes("moving collider mesh", true);
+    add_skinning();
+  }
+}
+
+void ColliderBuffers::add_standing() {
+  const auto number = [](double v) { return static_cast<float>(v); };
   spheres = add_shapes<SphereShape>(Collider::Shape::Sphere, BIND_SPHERES, "collider spheres", [&](const Collider& c) {
     return SphereShape{relative(c.center_m, origin_m_, 0), number(c.radius_m), number(c.margin_m), number(c.friction),
                        0};
@@ -50,15 +64,6 @@ ColliderBuffers::ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 o
                     0};
   });
   standing = add_meshes("collider mesh", false);
-  const FeatureSet moving_kinds = scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh};
-  if (moving_kinds.empty()) return;
-  at_ = scene.motion.at(0);
-  stage_upload_ = frame_.add_stage("UploadColliders", moving_kinds);
-  if (moving_kinds.has(Feature::Capsules)) add_capsules();
-  if (moving_kinds.has(Feature::MovingMesh)) {
-    moving = add_meshes("moving collider mesh", true);
-    add_skinning(keep_start);
-  }
 }
 
 template <class Shape, class Fill>
@@ -96,9 +101,10 @@ MeshBuffers ColliderBuffers::add_meshes(const std::string& kind, bool moving_one
   }
   if (result.ranges.empty()) return result;
   result.positions = &frame_.add_buffer(moving_ones ? BIND_MOVING_END : BIND_STANDING, kind + " positions", positions);
-  if (moving_ones && keep_start_)
-    result.start_positions = &frame_.add_buffer(BIND_MOVING_START, kind + " start positions", positions);
-  if (!keep_start_) result.triangles = &frame_.add_buffer(FrameBuilder::kUnbound, kind + " triangles", triangles);
+  if (as_pieces_)
+    frame_.add_buffer(BIND_MOVING_START, kind + " start positions", positions);
+  else
+    result.triangles = &frame_.add_buffer(FrameBuilder::kUnbound, kind + " triangles", triangles);
   return result;
 }
 
@@ -145,7 +151,7 @@ std::vector<JointMatrix> ColliderBuffers::matrices(const FrameMotion& motion) co
   return all;
 }
 
-void ColliderBuffers::add_skinning(bool keep_start) {
+void ColliderBuffers::add_skinning() {
   std::vector<SkinVertex> vertices;
   std::uint32_t first_joint = 0;
   for (const MeshRange& range : moving.ranges) {
@@ -166,14 +172,14 @@ void ColliderBuffers::add_skinning(bool keep_start) {
   joints_ = &frame_.add_buffer(BIND_JOINTS, "collider joints", bytes);
   joints_host_ = &frame_.add_host_buffer("collider joints (upload)", bytes);
   stage_skin_ = frame_.add_stage("SkinHand", {Feature::MovingMesh});
-  skin_ = frame_.add_kernel(stage_skin_, keep_start ? "skin_mesh_keep_start" : "skin_mesh", sizeof(SkinConstants));
+  skin_ = frame_.add_kernel(stage_skin_, as_pieces_ ? "skin_mesh_keep_start" : "skin_mesh", sizeof(SkinConstants));
 }
 
 void ColliderBuffers::record() {
   if (capsules_host_ != nullptr) frame_.copy(stage_upload_, *capsules_host_, *capsules.buffer);
   if (joints_host_ == nullptr) return;
   frame_.copy(stage_upload_, *joints_host_, *joints_);
-  const double n = skinned_vertices_, start = keep_start_ ? 16 : 0;
+  const double n = skinned_vertices_, start = as_pieces_ ? 16 : 0;
   frame_.dispatch(*skin_, skinned_vertices_, SkinConstants{skinned_vertices_},
                   {n * (sizeof(SkinVertex) + 4 * sizeof(JointMatrix) + start), n * (16 + start)});
 }

@@ -18,9 +18,8 @@ struct MeshRange {
 /// where the scene has none.
 struct MeshBuffers {
   std::vector<MeshRange> ranges;
-  const vulkan::Buffer* triangles = nullptr;        ///< uvec4 each: corners, collider's index; not with keep_start
-  const vulkan::Buffer* positions = nullptr;        ///< vec4 each; of moving meshes, at the frame's end
-  const vulkan::Buffer* start_positions = nullptr;  ///< of moving meshes, at the frame's start; with keep_start
+  const vulkan::Buffer* triangles = nullptr;  ///< uvec4 each: corners, collider's index; not as pieces
+  const vulkan::Buffer* positions = nullptr;  ///< vec4 each; of moving meshes, at the frame's end
 };
 
 /// Shapes of one kind: `count` structs of pbd_shared.h.
@@ -39,9 +38,10 @@ struct ShapeBuffer {
 class ColliderBuffers {
  public:
   /// Adds buffers, the stages the scene needs and their kernels to `frame`. Positions are relative to `origin_m`,
-  /// subtracted in double. With `keep_start`, positions of moving meshes at the frame's start are kept as well
-  /// (capsules always have both), and the method adds the triangles itself, in a different order.
-  ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, bool keep_start);
+  /// subtracted in double. `as_pieces`: the method takes them as pieces (contact_pieces.hpp), which it adds itself.
+  /// Then what stands has no buffer but for planes, and positions of moving meshes at the frame's start are kept as
+  /// well (capsules always have both).
+  ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, bool as_pieces);
 
   ShapeBuffer planes, spheres, boxes, capsules;
   MeshBuffers standing, moving;
@@ -61,8 +61,9 @@ class ColliderBuffers {
   template <class Shape, class Fill>
   ShapeBuffer add_shapes(Collider::Shape kind, int binding, const char* name, Fill fill);
   MeshBuffers add_meshes(const std::string& kind, bool moving_ones);
+  void add_standing();
   void add_capsules();
-  void add_skinning(bool keep_start);
+  void add_skinning();
   std::vector<CapsuleShape> capsules_between(const FrameMotion& start, const FrameMotion& end) const;
   std::vector<JointMatrix> matrices(const FrameMotion&) const;
 
@@ -72,7 +73,7 @@ class ColliderBuffers {
   FrameMotion at_;  ///< end of the last frame
   int stage_upload_ = -1, stage_skin_ = -1;
   std::uint32_t skinned_vertices_ = 0;
-  bool keep_start_ = false;
+  bool as_pieces_ = false;
   const vulkan::Buffer *capsules_host_ = nullptr, *joints_host_ = nullptr, *joints_ = nullptr;
   const FrameKernel* skin_ = nullptr;
 };

@@ -2,14 +2,40 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "xpbd_contact.hpp"
+#include <numeric>
 
 namespace clothbench::pbd_gpu {
 namespace {
 
 /// Least margin as a share of the cells' size: 0.16 mm for a cloth of 0.5 m and 32 vertices.
 constexpr double kLeastMargin = 0.01;
+
+void split(const std::vector<Vec3>& centroids, std::vector<std::uint32_t>::iterator first,
+           std::vector<std::uint32_t>::iterator last, std::vector<std::uint32_t>& sizes) {
+  const auto count = static_cast<std::size_t>(last - first);
+  if (count <= Clusters::kClusterSize) {
+    if (count > 0) sizes.push_back(static_cast<std::uint32_t>(count));
+    return;
+  }
+  Vec3 low = centroids[*first], high = low;
+  for (auto t = first; t != last; ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], centroids[*t][k]);
+      high[k] = std::max(high[k], centroids[*t][k]);
+    }
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+  // Ties are broken by index, so that clusters are the same on every machine.
+  const auto middle = first + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(first, middle, last, [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(centroids[a][axis], a) < std::pair(centroids[b][axis], b);
+  });
+  std::sort(first, middle);
+  std::sort(middle, last);
+  split(centroids, first, middle, sizes);
+  split(centroids, middle, last, sizes);
+}
 
 class Maker {
  public:
@@ -119,17 +145,17 @@ class Maker {
   }
 
   void add_boxes() {
-    const auto around = [](ClusterBox& box, const vec4& low, const vec4& high) {
+    const auto around = [](PieceBox& box, const vec4& low, const vec4& high) {
       box.low = {std::min(box.low.x, low.x), std::min(box.low.y, low.y), std::min(box.low.z, low.z), 0};
       box.high = {std::max(box.high.x, high.x), std::max(box.high.y, high.y), std::max(box.high.z, high.z), 0};
     };
     constexpr float kFar = 1e30f;
-    const ClusterBox none{{kFar, kFar, kFar, 0}, {-kFar, -kFar, -kFar, 0}};
-    std::vector<ClusterBox> groups;
+    const PieceBox none{{kFar, kFar, kFar, 0}, {-kFar, -kFar, -kFar, 0}};
+    std::vector<PieceBox> groups;
     for (std::size_t k = 0; k < made_.pieces.size(); ++k) {
       const ContactPiece& piece = made_.pieces[k];
       const float more = piece.radius + piece.margin;
-      ClusterBox box = none;
+      PieceBox box = none;
       for (std::size_t j = piece.first; j < piece.first + piece.count; ++j) {
         const vec4& at = made_.points[j].start;
         around(box, {at.x - more, at.y - more, at.z - more, 0}, {at.x + more, at.y + more, at.z + more, 0});
@@ -149,6 +175,20 @@ class Maker {
 };
 
 }  // namespace
+
+Clusters cluster(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  std::vector<Vec3> centroids;
+  for (const auto& t : triangles) {
+    Vec3& c = centroids.emplace_back(Vec3{});
+    for (const std::uint32_t v : t)
+      for (std::size_t k = 0; k < 3; ++k) c[k] += positions[3 * v + k] / 3;
+  }
+  Clusters result;
+  result.triangles.resize(triangles.size());
+  std::iota(result.triangles.begin(), result.triangles.end(), 0u);
+  split(centroids, result.triangles.begin(), result.triangles.end(), result.sizes);
+  return result;
+}
 
 ContactPieces contact_pieces(const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders) {
   return Maker(scene, origin_m, colliders).all();

@@ -46,9 +46,8 @@ void GpuSolver::set_state(const vulkan::Buffer& position, const vulkan::Buffer& 
   download_->copy(0, velocity, *read_velocity_);
 }
 
-void GpuSolver::add_colliders(Vec3 origin_m, bool keep_start) {
-  if (!scene_->colliders.empty())
-    colliders_ = std::make_unique<ColliderBuffers>(frame(), *scene_, origin_m, keep_start);
+void GpuSolver::add_colliders(Vec3 origin_m, bool as_pieces) {
+  if (!scene_->colliders.empty()) colliders_ = std::make_unique<ColliderBuffers>(frame(), *scene_, origin_m, as_pieces);
 }
 
 void GpuSolver::add_grips(Vec3 origin_m, std::uint32_t layers) {

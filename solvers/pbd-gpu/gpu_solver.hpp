@@ -59,7 +59,7 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   /// Sets what read_state reads back: the first `vertex_count` vec4 of each buffer.
   void set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m);
   /// Add the scene's colliders and grips, if any, relative to `origin_m`. Their stages come after those already added.
-  void add_colliders(Vec3 origin_m, bool keep_start);
+  void add_colliders(Vec3 origin_m, bool as_pieces);
   void add_grips(Vec3 origin_m, std::uint32_t layers);
   ColliderBuffers* colliders() { return colliders_.get(); }  ///< null where the scene has none
   GripBuffer* grips() { return grips_.get(); }               ///< null where the scene has none

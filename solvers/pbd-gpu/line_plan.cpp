@@ -147,18 +147,11 @@ double substeps_by_margins(const Scene& scene, double margins) {
   return std::ceil(speed * scene.time.dt() / (margins * margin));
 }
 
-/// Points on edges: half a margin a substep (fast: a whole one, accurate: a quarter).
+/// Nothing is passed with any number (PLANES.md), so that this is a matter of quality, and may be capped by what a
+/// frame may cost. A margin a substep (fast: two, accurate: a half), at a margin of 4 mm up to 9.2 m/s.
+constexpr double kMargins[] = {2, 1, 0.5}, kBudget[] = {16, 32, 64};
 double substeps_for_speed(const Scene& scene, int quality) {
-  constexpr double kMargins[] = {1, 0.5, 0.25};
-  constexpr double kMost = 160;  // 20 m/s at a margin of 4 mm; above, leaks are preferred to endless runs
-  return std::min(kMost, substeps_by_margins(scene, kMargins[quality]));
-}
-
-/// Planes: nothing is passed with any number, so that this is a matter of quality, and may be capped by what a frame
-/// may cost. A margin a substep (fast: two, accurate: a half), at a margin of 4 mm up to 9.2 m/s.
-constexpr double kPlaneMargins[] = {2, 1, 0.5}, kPlaneBudget[] = {16, 32, 64};
-double substeps_for_planes(const Scene& scene, int quality) {
-  return std::min(kPlaneBudget[quality], substeps_by_margins(scene, kPlaneMargins[quality]));
+  return std::min(kBudget[quality], substeps_by_margins(scene, kMargins[quality]));
 }
 
 /// A frame in which gravity takes the cloth far stands for several: what it swings through in a substep grows with
@@ -180,9 +173,9 @@ int quality_of(const nlohmann::json& settings) {
 
 double length(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }
 
-/// If layers approach by more than kMostWay of their thickness in a substep, corrections cannot separate them and the
-/// cloth is slowed down (README, "Self-collision in xpbd"). The assumed speed is the sum of the scene's initial speed,
-/// that of a fall by the cloth's length, and that of the fastest grip or collider.
+/// If layers approach by more than kMostWay of their thickness in a substep, responses cannot part them and planes cut
+/// the ways of vertices (PLANES.md, "The cloth with itself"). The assumed speed is the sum of the scene's initial
+/// speed, that of a fall by the cloth's length, and that of the fastest grip or collider.
 double substeps_for_layers(const Scene& scene) {
   constexpr double kMostWay = 2.0 / 3;
   const Cloth& c = scene.cloth;
@@ -200,20 +193,9 @@ bool is_tethered(const Scene& scene, const nlohmann::json& settings) {
          (wants_chains(scene) ? tether_table(scene).a_vertex > 0 : !tethers_of(scene).to.empty());
 }
 
-bool contact_by_planes(const Scene& scene, const nlohmann::json& settings) {
-  if ((scene.needs & (kColliderFeatures | FeatureSet{Feature::SelfCollision})).empty()) return false;
-  const std::string wanted = settings.value(kTuning, nlohmann::json::object()).value("contact", "auto");
-  if (wanted != "auto") return wanted == "planes";
-  // The list of pairs is for vertices that keep to their reach in the frame; what hands let go springs farther. Of what
-  // stands, the corners of boxes come through cells between points on edges.
-  constexpr FeatureSet kByPlanes{Feature::Capsules, Feature::MovingMesh, Feature::Box};
-  const bool chosen = scene.grips.vertices.empty() && !(scene.needs & kByPlanes).empty();
-  return (chosen || scene.cloth.mesh) && settings.value("batch", 1) == 1 && settings.value("contact_samples", -1) < 0;
-}
-
 int substeps_over_budget(const Scene& scene, const nlohmann::json& settings) {
-  if (settings.value("substeps", 0) > 0 || !contact_by_planes(scene, settings)) return 0;
-  const double wanted = substeps_by_margins(scene, kPlaneMargins[quality_of(settings)]);
+  if (settings.value("substeps", 0) > 0 || touches_nothing(scene)) return 0;
+  const double wanted = substeps_by_margins(scene, kMargins[quality_of(settings)]);
   return wanted > xpbd_substeps(scene, settings) ? static_cast<int>(std::min(wanted, 1e6)) : 0;
 }
 
@@ -235,10 +217,8 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
     double least, links_a_substep;
   };
   const int k = quality_of(settings);
-  const bool planes = contact_by_planes(scene, settings);
   const bool touched =
-      !(scene.needs & (kColliderFeatures | FeatureSet{Feature::Pins, Feature::MovingPins, Feature::SelfCollision}))
-           .empty();
+      !touches_nothing(scene) || !(scene.needs & FeatureSet{Feature::Pins, Feature::MovingPins}).empty();
   const bool tethered = is_tethered(scene, settings);
   const auto Y = scene.material.membrane_stiffness_N_per_m;
   const bool stiff = !Y || *Y >= 1e4;
@@ -246,19 +226,18 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   // scene. A link must not turn by more than about half a radian a substep.
   constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
-                 kDriven[] = {{8, 4}, {16, 2}, {32, 1}}, kDrivenByPlanes[] = {{5, 6}, {8, 4}, {20, 1.5}},
-                 kLaid[] = {{8, 4}, {13, 2.4}, {26, 1.2}}, kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}},
-                 kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
+                 kDriven[] = {{5, 6}, {8, 4}, {20, 1.5}}, kLaid[] = {{8, 4}, {13, 2.4}, {26, 1.2}},
+                 kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}}, kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
   const auto& grips = scene.grips.vertices;
   // A hand pushes a cloth in directions that tethers do not limit.
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
-  const Rule rule = !touched                           ? kUntouched[k]
-                    : driven                           ? (planes ? kDrivenByPlanes[k] : kDriven[k])
-                    : tethered                         ? (stiff ? kStiff[k] : kTethered[k])
-                    : planes && grips.empty()          ? kLaid[k]
-                    : !scene.needs.has(Feature::Shear) ? kStrips[k]
-                    : grips.empty()                    ? kSheet[k]
-                                                       : kPulled[k];
+  const Rule rule = !touched                                   ? kUntouched[k]
+                    : driven                                   ? kDriven[k]
+                    : tethered                                 ? (stiff ? kStiff[k] : kTethered[k])
+                    : !touches_nothing(scene) && grips.empty() ? kLaid[k]
+                    : !scene.needs.has(Feature::Shear)         ? kStrips[k]
+                    : grips.empty()                            ? kSheet[k]
+                                                               : kPulled[k];
   // With few substeps the error is largest in the links at the pins, which carry more the finer the cloth is.
   const double fine = k == 0 && rule.links_a_substep == kStiff[0].links_a_substep && links > 300 ? 1.2 : 1;
   const double short_links = wants_chains(scene) ? substeps_for_short_links(scene) : 1;
@@ -267,7 +246,7 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   if (scene.needs.has(Feature::SelfCollision)) per_frame = std::max(per_frame, substeps_for_layers(scene));
   if (const double needed = std::ceil(substeps_to_couple(scene)); needed <= most_to_couple(links) && needed > per_frame)
     if (may_couple(scene, settings).on) per_frame = needed;
-  const double for_speed = planes ? substeps_for_planes(scene, k) : substeps_for_speed(scene, k);
+  const double for_speed = substeps_for_speed(scene, k);
   return static_cast<int>(std::clamp(std::max(std::lround(per_frame), std::lround(for_speed)), 1L, 4096L));
 }
 

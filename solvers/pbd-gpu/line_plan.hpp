@@ -62,12 +62,8 @@ double substeps_to_couple(const Scene&);
 /// Substeps of the same scene without gravity where gravity asks for more, else 0.
 int substeps_without_gravity(const Scene&, const nlohmann::json& settings);
 
-/// Whether planes hold colliders off the cloth (PLANES.md): setting `tuning.contact`, in a scene with colliders whose
-/// cloth does not touch itself. Self-contact moves vertices after the planes, across them.
-bool contact_by_planes(const Scene&, const nlohmann::json& settings);
-
-/// Substeps that the speed of colliders asks for with contact by planes, where that is more than they get: beyond, the
-/// cloth is overstretched for some frames, and nothing is passed. 0 where it is not.
+/// Substeps that the speed of colliders asks for, where that is more than they get: beyond, the cloth is overstretched
+/// for some frames, and nothing is passed. 0 where it is not.
 int substeps_over_budget(const Scene&, const nlohmann::json& settings);
 
 /// Properties of a device that decide how lines are spread over threads.

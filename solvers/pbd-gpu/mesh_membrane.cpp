@@ -122,7 +122,7 @@ Choice membrane_of(const Scene& scene, const nlohmann::json& settings) {
   const int substeps = xpbd_substeps(scene, settings);
   const double h = scene.time.dt() / substeps;
   const std::uint32_t wants = bending_iterations(h * h * membrane_bound(scene));
-  if (!touches_nothing(scene) || contact_by_planes(scene, settings))
+  if (!touches_nothing(scene))
     return {false, "the cloth touches, and a frame would take " +
                        std::to_string(wants * static_cast<std::uint32_t>(substeps)) + " iterations"};
   if (wants > kMostIterations)

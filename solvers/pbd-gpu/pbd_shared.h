@@ -19,17 +19,16 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
           BIND_REGULARISATION = 4, BIND_LINK_MULTIPLIERS = 5, BIND_HINGE_MULTIPLIERS = 6, BIND_BARRIER = 7,
           BIND_TIMED_OUT = 8, BIND_CHAIN_ENTRIES = 9, BIND_CHAIN_FAMILIES = 10, BIND_TETHER_ENDS = 11, BIND_WELDS = 12,
           BIND_GRIPS = 13, BIND_SKIN = 14, BIND_JOINTS = 15, BIND_PLANES = 16, BIND_SPHERES = 17, BIND_BOXES = 18,
-          BIND_CAPSULES = 19, BIND_STANDING = 20, BIND_MOVING_START = 21, BIND_MOVING_END = 22, BIND_CLUSTERS = 23,
-          BIND_CLUSTER_BOXES = 24, BIND_TRIANGLES = 25, BIND_MESH_VERTICES = 26, BIND_CANDIDATES = 27,
-          BIND_REACHES = 28, BIND_SIDES = 29, BIND_SAMPLE_SIDES = 30, BIND_CORRECTIONS = 31, BIND_STARTS = 32,
-          BIND_BLOCKS = 33, BIND_NEAR = 34, BIND_PROPOSED = 35, BIND_PART = 36, BIND_PREDICTED = 37, BIND_DELTAS = 38,
-          BIND_CONSTRAINTS = 39, BIND_POINT_SOURCES = 40, BIND_POINTS = 41, BIND_PIECES = 42, BIND_PIECE_BOXES = 43,
-          BIND_ELEMENTS = 44, BIND_FANS = 45, BIND_RANGES = 46, BIND_PAIRS = 47, BIND_PAIR_STATES = 48,
-          BIND_LEDGER = 49, BIND_FAULTS = 50, BIND_COUNTER = 51, BIND_LAST_POSITIONS = 52, BIND_LAST_VELOCITIES = 53,
-          BIND_SELF_ORDER = 54, BIND_SELF_BOXES = 55, BIND_SELF_RANGES = 56, BIND_SELF_PAIRS = 57, BIND_SELF_WAYS = 58,
-          BIND_SELF_NEAR = 59, BIND_SELF_CONTACTS = 60, BIND_SELF_PUSHES = 61, BIND_TOUCHED = 62, BIND_NEAR_BITS = 63,
-          BIND_BENDING_SLICES = 64, BIND_BENDING_ENTRIES = 65, BIND_BENDING_STEPS = 66, BIND_SHIFTS = 67,
-          BIND_LINK_CREEP = 68, BIND_MEMBRANE_SLICES = 69, BIND_MEMBRANE_CORNERS = 70, BIND_COUNT = 71;
+          BIND_CAPSULES = 19, BIND_STANDING = 20, BIND_MOVING_START = 21, BIND_MOVING_END = 22, BIND_TRIANGLES = 23,
+          BIND_MESH_VERTICES = 24, BIND_REACHES = 25, BIND_WAYS = 26, BIND_STARTS = 27, BIND_PREDICTED = 28,
+          BIND_DELTAS = 29, BIND_CONSTRAINTS = 30, BIND_POINT_SOURCES = 31, BIND_POINTS = 32, BIND_PIECES = 33,
+          BIND_PIECE_BOXES = 34, BIND_ELEMENTS = 35, BIND_FANS = 36, BIND_RANGES = 37, BIND_PAIRS = 38,
+          BIND_PAIR_STATES = 39, BIND_LEDGER = 40, BIND_FAULTS = 41, BIND_COUNTER = 42, BIND_LAST_POSITIONS = 43,
+          BIND_LAST_VELOCITIES = 44, BIND_SELF_ORDER = 45, BIND_SELF_BOXES = 46, BIND_SELF_RANGES = 47,
+          BIND_SELF_PAIRS = 48, BIND_SELF_WAYS = 49, BIND_SELF_NEAR = 50, BIND_SELF_CONTACTS = 51,
+          BIND_SELF_PUSHES = 52, BIND_TOUCHED = 53, BIND_NEAR_BITS = 54, BIND_BENDING_SLICES = 55,
+          BIND_BENDING_ENTRIES = 56, BIND_BENDING_STEPS = 57, BIND_SHIFTS = 58, BIND_LINK_CREEP = 59,
+          BIND_MEMBRANE_SLICES = 60, BIND_MEMBRANE_CORNERS = 61, BIND_COUNT = 62;
 
 // Specialization constants: C(number, type, name, default); number 0 is local_size_x.
 
@@ -50,12 +49,6 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 // Chain kernel of `xpbd`. TETHERS: entries a vertex.
 #define CHAIN_CONSTANTS(C) \
   C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, PERSISTENT, false)
-// Contact kernels of `xpbd`. SAMPLES: on an edge. MOVING: 1 if any collider moves. LANES: neighbouring threads of a
-// subgroup that share a point, a power of two, at most 16.
-#define CONTACT_CONSTANTS(C) \
-  C(1, uint, PLANES, 0u) C(2, uint, SPHERES, 0u) C(3, uint, BOXES, 0u) C(4, uint, CAPSULES, 0u) \
-  C(5, uint, FRICTION, 0u) C(6, uint, STANDING_CLUSTERS, 0u) C(7, uint, MOVING_CLUSTERS, 0u) C(8, uint, SAMPLES, 0u) \
-  C(9, uint, MOVING, 0u) C(10, uint, LANES, 1u)
 // Plane contact of `xpbd`. PLANES: half-spaces. GRIPS: vertices that hands may hold. MOST_POINTS: of a piece. MOVING: 1
 // if any piece moves. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, NEAR_CAPACITY, TOUCHING_CAPACITY:
 // pairs, near pairs and those with contacts that its lists have place for; THICKNESS_BITS, SELF_FRICTION_BITS: floats.
@@ -87,7 +80,6 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   };
 CLOTHBENCH_SPECIALIZATION(LineSpecialization, LINE_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(ChainSpecialization, CHAIN_CONSTANTS)
-CLOTHBENCH_SPECIALIZATION(ContactSpecialization, CONTACT_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(PlaneContactSpecialization, PLANE_CONTACT_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(PlaneFrameSpecialization, PLANE_FRAME_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(PaperSpecialization, PAPER_CONSTANTS)
@@ -283,57 +275,9 @@ struct GripConstants {
   uint unused0;
 };
 
-/// Contact of `xpbd`: at most 16 neighbouring triangles of one mesh. ClusterBox
-/// bounds their path through the frame.
-struct MeshCluster {
-  uint first, count;
-  float margin, friction;
-};
-
-struct ClusterBox {
-  vec4 low;  // w: greatest displacement of any of their corners in the frame
-  vec4 high;
-};
-
-struct BoxConstants {
-  uint first, count;
-};
-
-/// Push constants of the contact kernels of `xpbd`.
-struct ContactConstants {
-  uint columns, rows;
-  uint words;         // 32-bit words of the mask of clusters a vertex may touch
-  float begin, part;  // start and length of the substep, as fractions of the
-                      // frame
-  float frames_per_s;
-  float least_margin_m;   // least margin
-  float border_margin_m;  // least margin round an open border
-  float reach_m;          // added to the path length of a vertex in the frame
-  float sample_reach_m;   // farthest a sample lies from its first vertex
-};
-
-/// Push constants of the self-contact kernels of `xpbd`.
-struct SelfConstants {
-  uint columns, rows;
-  uint side;  // of a block, in vertices
-  uint block_columns, blocks;
-  uint words;  // 32-bit words of the mask of blocks that a block may touch
-  float thickness_m, friction;
-  float h;        // substep [s]
-  float reach_m;  // two pieces are tested if they are within this distance
-                  // plus the distance by which they may approach
-  float most_m;   // most that one round of corrections moves a vertex
-  uint unused0;
-};
-
 #include "plane_shared.h"
 
 #ifdef __cplusplus
-static_assert(sizeof(SelfConstants) == 48);
-static_assert(sizeof(MeshCluster) == 16);
-static_assert(sizeof(ClusterBox) == 32);
-static_assert(sizeof(BoxConstants) == 8);
-static_assert(sizeof(ContactConstants) == 40);
 static_assert(sizeof(PlaneShape) == 32);
 static_assert(sizeof(SphereShape) == 32);
 static_assert(sizeof(BoxShape) == 80);

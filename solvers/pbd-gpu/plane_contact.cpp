@@ -84,7 +84,7 @@ void PlaneContact::add_elements(const std::vector<std::uint32_t>& particle) {
   frame_.add_buffer(BIND_PREDICTED, "contact proposals", n * sizeof(vec4));
   frame_.add_buffer(BIND_STARTS, "contact starts", n * sizeof(vec4));
   frame_.add_buffer(BIND_REACHES, "contact reaches", n * sizeof(vec4));
-  frame_.add_buffer(BIND_SIDES, "contact ways", n * sizeof(float));
+  frame_.add_buffer(BIND_WAYS, "contact ways", n * sizeof(float));
   faults_ = &frame_.add_host_buffer("contact faults", sizeof(ContactFaults), BIND_FAULTS);
 }
 

@@ -4,7 +4,7 @@
 #include <bit>
 
 #include "clothbench/error.hpp"
-#include "xpbd_contact.hpp"
+#include "contact_pieces.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -19,8 +19,6 @@ constexpr std::uint32_t kNearThreads = 1u << 14, kSoftwareNearThreads = 1u << 9,
 
 PlaneSelf::PlaneSelf(FrameBuilder& frame, const Scene& scene, const std::vector<std::uint32_t>& particle)
     : frame_(frame) {
-  if (frame.settings()["batch"] != 1)
-    throw Error("solver xpbd: setting batch: expected a scene without self-collision");
   auto all = triangles(scene.cloth);
   for (auto& t : all)
     for (auto& v : t) v = particle.empty() ? v : particle[v];

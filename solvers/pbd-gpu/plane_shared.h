@@ -16,6 +16,12 @@ struct PiecePoint {
   vec4 start, end;
 };
 
+/// Of a piece, round its way through the frame, its radius and its margin; or of a group of pieces.
+struct PieceBox {
+  vec4 low;  // w: greatest displacement of any of their points in the frame
+  vec4 high;
+};
+
 /// Where a point of a moving piece comes from: vertex `index` of the moving meshes, or end `index` % 2 of capsule
 /// `index` / 2 if `capsule` is 1.
 struct PointSource {
@@ -34,7 +40,7 @@ struct PairState {
 #define PAIR_LOOKED 1u   // near enough to be asked in this substep
 #define PAIR_NEAREST 2u  // has a contact at its nearest points
 #define PAIR_PLANE 4u    // has a plane
-#define PAIR_LEVELS 4u   // reaches tried: each half of the one before
+#define PAIR_LEVELS 4u   // reaches tried: each half (with grips a quarter) of the one before
 
 /// Of the frame, on the device.
 struct ContactLedger {
@@ -115,6 +121,7 @@ struct PlaneContactConstants {
 #ifdef __cplusplus
 static_assert(sizeof(ContactPiece) == 32);
 static_assert(sizeof(PiecePoint) == 32);
+static_assert(sizeof(PieceBox) == 32);
 static_assert(sizeof(PointSource) == 16);
 static_assert(sizeof(PairState) == 64);
 static_assert(sizeof(ContactLedger) == 80);

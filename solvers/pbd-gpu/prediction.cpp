@@ -134,7 +134,7 @@ Choice tension_of(const Scene& scene, const nlohmann::json& settings) {
   if (membrane_of(scene, settings).on) return {true, ""};  // triangles are solved with theirs, whatever the setting
   if (wanted == "never") return {false, "setting tuning.tension=never"};
   if (settings.value("iterations", 1) > 1) return {false, "setting iterations: multipliers start from the last ones"};
-  if (!touches_nothing(scene) || contact_by_planes(scene, settings)) return {false, "the cloth touches"};
+  if (!touches_nothing(scene)) return {false, "the cloth touches"};
   if (wanted == "always") return {true, ""};
   if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};
   if (!is_held(scene)) return {false, "nothing holds the cloth"};
@@ -151,8 +151,7 @@ Choice tension_of(const Scene& scene, const nlohmann::json& settings) {
 Choice prediction_of(const Scene& scene, const nlohmann::json& settings) {
   const std::string wanted = tuned(settings, "prediction");
   if (settings.value("time_order", 2) < 2 && wanted != "always") return {false, "setting time_order=1"};
-  if (!touches_nothing(scene) || contact_by_planes(scene, settings))
-    return {false, "the cloth touches: a contact would rebound"};
+  if (!touches_nothing(scene)) return {false, "the cloth touches: a contact would rebound"};
   if (wanted == "always") return {true, ""};
   if (starts_crumpled(scene)) return {false, "the cloth starts crumpled"};
   if (!is_held(scene)) return {true, ""};
@@ -195,7 +194,7 @@ Choice may_couple(const Scene& scene, const nlohmann::json& settings) {
   if (!scene.needs.has(Feature::Shear)) return {false, "the scene has no shear stiffness"};
   if (wants_chains(scene) || !c.mass_factors.empty()) return {false, "links or masses are not all alike"};
   if (settings.value("iterations", 1) > 1) return {false, "setting iterations: multipliers start from the last ones"};
-  if (!touches_nothing(scene) || contact_by_planes(scene, settings)) return {false, "the cloth touches"};
+  if (!touches_nothing(scene)) return {false, "the cloth touches"};
   if (wanted == "always") return {true, ""};
   if (!is_held(scene)) return {false, "nothing holds the cloth: no tension lasts"};
   if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};

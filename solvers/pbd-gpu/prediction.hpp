@@ -29,8 +29,9 @@ Choice coupling_of(const Scene&, const nlohmann::json& settings);
 
 /// True if pins or hands hold it.
 bool is_held(const Scene&);
-/// True if the cloth meets neither itself nor a collider in the scene's time. Colliders that stand, and are farther
-/// away than a fall from its start takes it, count as none: the motion is the same with and without them.
+/// True if the cloth meets neither itself nor a collider in the scene's time: colliders that stand, and are farther
+/// away than a fall from its start takes it, count as none. Such a scene has no contact, and the motion is the same
+/// with and without those colliders.
 bool touches_nothing(const Scene&);
 
 }  // namespace clothbench::pbd_gpu

@@ -12,8 +12,6 @@
 #include "plane_contact.hpp"
 #include "plane_frame.hpp"
 #include "prediction.hpp"
-#include "xpbd_contact.hpp"
-#include "xpbd_self_contact.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -22,11 +20,11 @@ class Xpbd final : public GpuSolver {
  public:
   using GpuSolver::GpuSolver;
 
-  ContactFaults contact_faults() const override { return plane_contact_ ? plane_contact_->faults() : ContactFaults{}; }
+  ContactFaults contact_faults() const override { return contact_ ? contact_->faults() : ContactFaults{}; }
 
   std::vector<SolverCount> counts() const override {
-    if (!plane_contact_) return {};
-    const ContactFaults f = plane_contact_->faults();
+    if (!contact_) return {};
+    const ContactFaults f = contact_->faults();
     return {{"contact_squeezed", "vertices that were put at the nearest place, for none was before all their planes",
              static_cast<double>(f.without_place)},
             {"contact_inside", "pairs that met at a substep's start", static_cast<double>(f.inside)},
@@ -36,7 +34,7 @@ class Xpbd final : public GpuSolver {
 
   void reset() override {
     GpuSolver::reset();
-    if (plane_contact_) plane_contact_->clear_faults();
+    if (contact_) contact_->clear_faults();
   }
 
  private:
@@ -52,7 +50,14 @@ class Xpbd final : public GpuSolver {
     crumpled_ = starts_crumpled(scene());
     std::vector<double> start = initial_positions(scene());
     const bool chained = wants_chains(scene());
-    const bool planes = by_planes();
+    const bool touches = !touches_nothing(scene());
+    if (touches && settings()["batch"] != 1)
+      throw Error("solver xpbd: setting batch: expected a scene in which the cloth touches nothing");
+    if (const int wanted = substeps_over_budget(scene(), settings()); wanted > 0)
+      leave_out(
+          std::to_string(wanted) + " substeps",
+          "the colliders are fast: " + std::to_string(xpbd_substeps(scene(), settings())) +
+              " are the most a frame may cost; the cloth is overstretched for some frames, and nothing is passed");
     const ChainCloth cloth = chained ? chain_cloth(scene()) : ChainCloth{};
     if (!cloth.welded.empty() && scene().needs.has(Feature::Bend))
       throw Error(fmt::format(
@@ -84,7 +89,7 @@ class Xpbd final : public GpuSolver {
     add_buffer(BIND_POSITION_COMPENSATION, "position compensation", x.bytes());
     add_buffer(BIND_VELOCITY_COMPENSATION, "velocity compensation", v.bytes());
     set_state(x, v, origin);
-    add_colliders(origin, true);
+    if (touches) add_colliders(origin, true);
     add_grips(origin, 1);
     add_history(position.size());
     const Choice tension = tension_of(scene(), settings());
@@ -98,23 +103,24 @@ class Xpbd final : public GpuSolver {
     if (const int calm = substeps_without_gravity(scene(), settings()); calm > 0)
       leave_out(std::to_string(calm) + " substeps",
                 "gravity takes the cloth far in a frame: " + std::to_string(xpbd_substeps(scene(), settings())));
-    if (planes) plane_contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, colliders(), cloth.particle);
+    if (touches) contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, colliders(), cloth.particle);
     if (chained)
       chains_ = std::make_unique<Chains>(frame(), scene(), cloth, predicts(), tension.on, membrane.on);
     else
       lines_ = std::make_unique<Lines>(frame(), scene(), predicts(), tension.on, coupling.on);
-    if (planes && lines_) plane_frame_ = PlaneFrame::make(frame(), *lines_, *plane_contact_);
-    if (lines_ && !plane_frame_) lines_->add_kernels(planes);
-    if (planes && !plane_frame_) plane_contact_->add_kernels();
-    if (grips() != nullptr && !plane_frame_ && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
-    if ((scene().needs & kColliderFeatures).empty())
+    if (touches && lines_) whole_frame_ = PlaneFrame::make(frame(), *lines_, *contact_);
+    if (lines_ && !whole_frame_) lines_->add_kernels(touches);
+    if (touches && !whole_frame_) contact_->add_kernels();
+    if (grips() != nullptr && !whole_frame_ && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
+    const FeatureSet of_contact =
+        scene().needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided});
+    if ((scene().needs & kColliderFeatures).empty()) {
       leave_out("contact", "the scene has no collider");
-    else if (!planes)
-      contact_ = std::make_unique<XpbdContact>(frame(), scene(), origin, *colliders(),
-                                               settings()["contact_samples"].get<int>());
-    if (scene().needs.has(Feature::SelfCollision) && !planes)
-      self_contact_ = std::make_unique<XpbdSelfContact>(frame(), scene(), x);
-    else if (!scene().needs.has(Feature::SelfCollision))
+    } else if (!touches) {
+      add_stage("PlaneContact", of_contact);
+      leave_out("contact", "no collider is where the cloth can get in the scene's time");
+    }
+    if (!scene().needs.has(Feature::SelfCollision))
       leave_out("self-contact", "the cloth of the scene does not touch itself");
   }
 
@@ -130,19 +136,8 @@ class Xpbd final : public GpuSolver {
     add_buffer(BIND_LAST_VELOCITIES, "last velocities", particles * sizeof(vec4));
   }
 
-  /// Whether planes hold colliders off.
-  bool by_planes() {
-    const bool planes = contact_by_planes(scene(), settings());
-    if (const int wanted = substeps_over_budget(scene(), settings()); wanted > 0)
-      leave_out(
-          std::to_string(wanted) + " substeps",
-          "the colliders are fast: " + std::to_string(xpbd_substeps(scene(), settings())) +
-              " are the most a frame may cost; the cloth is overstretched for some frames, and nothing is passed");
-    return planes;
-  }
-
   /// Rejects or overrides what chains do not support: several iterations with kept multipliers, batches, bending of
-  /// anything but meshes whose edges all are links, contact between the vertices of a mesh.
+  /// anything but meshes whose edges all are links.
   void restrict_to_chains() {
     if (scene().needs.has(Feature::Bend) && !scene().cloth.mesh)
       throw Error(
@@ -150,8 +145,6 @@ class Xpbd final : public GpuSolver {
           "bending_rigidity_N_m 0");
     if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid");
     override_setting("iterations", 1, "its links are not all alike: chains take one iteration");
-    if (scene().cloth.mesh && !scene().colliders.empty() && !contact_by_planes(scene(), settings()))
-      override_setting("contact_samples", 0, "points on edges are those of grids: vertices alone take part in contact");
   }
 
   /// Inverse masses of particles: welded vertices share one, and are held if any of them is.
@@ -189,16 +182,13 @@ class Xpbd final : public GpuSolver {
     const TimeStep start = time_step_of(dt_s, last_dt_s), step = time_step_of(dt_s, dt_s);
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
-    if (contact_) contact_->record_frame(dt_s, substeps);
-    if (plane_contact_) plane_contact_->record_pieces(dt_s, substeps);
-    if (plane_frame_) {
-      plane_frame_->record(substeps, dt_s, step);
+    if (contact_) contact_->record_pieces(dt_s, substeps);
+    if (whole_frame_) {
+      whole_frame_->record(substeps, dt_s, step);
       return;
     }
-    if (plane_contact_) plane_contact_->record_list(dt_s, substeps);
-    if (self_contact_) self_contact_->record_frame();
-    const bool touches = contact_ || plane_contact_ || self_contact_;
-    if ((lines_ ? lines_->whole_frame() : chains_->whole_frame()) && !touches) {
+    if (contact_) contact_->record_list(dt_s, substeps);
+    if ((lines_ ? lines_->whole_frame() : chains_->whole_frame()) && !contact_) {
       const int apart = predicts() && last_dt_s != dt_s ? 1 : 0;
       record_lines(0, apart, substeps, dt_s, start);
       record_lines(apart, substeps - apart, substeps, dt_s, step);
@@ -207,18 +197,16 @@ class Xpbd final : public GpuSolver {
     for (int s = 0; s < substeps; ++s) {
       // First, so that a released vertex is free in the whole frame.
       if (move_grips_ != nullptr) grips()->record_move(*move_grips_, fraction_after(s, substeps), dt_s);
-      if (plane_contact_) plane_contact_->record_before(s, substeps, dt_s);
+      if (contact_) contact_->record_before(s, substeps, dt_s);
       record_lines(s, 1, substeps, dt_s, s == 0 ? start : step);
-      if (contact_) contact_->record_substep(s, substeps, dt_s);
-      if (plane_contact_) plane_contact_->record_after(s, substeps, dt_s);
-      if (plane_contact_ && chains_) chains_->record_welds();
-      if (self_contact_) self_contact_->record_substep(dt_s / substeps);
+      if (contact_) contact_->record_after(s, substeps, dt_s);
+      if (contact_ && chains_) chains_->record_welds();
     }
   }
 
-  /// Where a substep ends, as a fraction of the frame; with planes as time_of() of their kernels has it.
+  /// Where a substep ends, as a fraction of the frame; with contact as time_of() of its kernels has it.
   double fraction_after(int s, int substeps) const {
-    if (!plane_contact_ || s + 1 == substeps) return (s + 1.0) / substeps;
+    if (!contact_ || s + 1 == substeps) return (s + 1.0) / substeps;
     return static_cast<double>(static_cast<float>(s + 1) * static_cast<float>(1.0 / substeps));
   }
 
@@ -236,10 +224,8 @@ class Xpbd final : public GpuSolver {
   bool crumpled_ = false;
   std::unique_ptr<Lines> lines_;    ///< if links are all alike
   std::unique_ptr<Chains> chains_;  ///< else
-  std::unique_ptr<XpbdContact> contact_;
-  std::unique_ptr<PlaneContact> plane_contact_;
-  std::unique_ptr<PlaneFrame> plane_frame_;  ///< lines and contact by planes in one kernel, where it fits
-  std::unique_ptr<XpbdSelfContact> self_contact_;
+  std::unique_ptr<PlaneContact> contact_;
+  std::unique_ptr<PlaneFrame> whole_frame_;  ///< lines and contact in one kernel, where it fits
   const FrameKernel* move_grips_ = nullptr;
 };
 
@@ -266,27 +252,18 @@ SolverInfo xpbd_info() {
       {"time_order", "2", "2: BDF2 in scenes without contact where that is safe; 1: backward Euler"},
       {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
       {"batch", "1", "number of copies of the cloth in one dispatch, to measure throughput; metrics are of the first"},
-      {"contact_samples", "-1",
-       "points on each edge that take part in contact beside its two vertices, 0 to 16; -1: as colliders ask, and "
-       "planes in their place where a collider moves, a box stands or the cloth is a triangle mesh"},
       {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
       {"one_dispatch", "true",
        "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   info.tuning = {
-      {"contact", "\"auto\"",
-       "samples or planes: points on edges that search their way, or a separating plane for every pair of a triangle "
-       "and a convex piece; auto: planes where a collider moves or a box stands and no hand holds the "
-       "cloth, or the cloth is a triangle mesh"},
       {"contact_frame", "\"auto\"",
-       "with contact by planes, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, "
+       "with contact, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, "
        "never"},
       {"contact_groups", "0",
-       "with contact by planes, least workgroups of a frame in one dispatch, which must all run at once; 0: one for at "
-       "most 32 x 32 vertices that only capsules touch, else 64 or those of the lines"},
-      {"contact_pairs", "0", "with contact by planes, pairs that the list has place for; 0: by the cloth's elements"},
-      {"contact_lanes", "0",
-       "threads of the proximity query of one point of the cloth: 1, 2, 4, 8 or 16; 0: by device and colliders"},
+       "with contact, least workgroups of a frame in one dispatch, which must all run at once; 0: 64 or "
+       "those of the lines; one where only capsules touch and the device is no discrete GPU"},
+      {"contact_pairs", "0", "with contact, pairs that the list has place for; 0: by the cloth's elements"},
       {"device_barrier", "\"auto\"",
        "one dispatch of many workgroups that wait for one another: auto (discrete GPUs that run them all at once), "
        "always, never"},
@@ -306,6 +283,7 @@ SolverInfo xpbd_info() {
       {"lines_beside", "0",
        "neighbouring lines whose threads take turns, so that memory is read by whole sectors: 1, 2 or 4; 0: by line "
        "and device"}};
+  info.retired = {"contact", "contact_samples", "contact_lanes"};
   return info;
 }
 
@@ -315,7 +293,6 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_between("xpbd", settings, "time_order", 1, 2);
   require_between("xpbd", settings, "batch", 1, 262144);
   require_between("xpbd", settings, "iterations", 1, 4096);
-  require_between("xpbd", settings, "contact_samples", -1, 16);
   const nlohmann::json& tuning = settings[kTuning];
   require_one_of("xpbd", tuning, "vertices_a_thread", {0, 2, 4, 8, 16, 32});
   require_one_of("xpbd", tuning, "threads_a_group", {0, 32, 64, 128, 256, 512, 1024});
@@ -324,11 +301,9 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", tuning, "tension", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "coupling", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "membrane", {"auto", "always", "never"});
-  require_one_of("xpbd", tuning, "contact", {"auto", "samples", "planes"});
   require_one_of("xpbd", tuning, "contact_frame", {"auto", "always", "never"});
   require_between("xpbd", tuning, "contact_groups", 0, 1024);
   require_between("xpbd", tuning, "contact_pairs", 0, 1 << 24);
-  require_one_of("xpbd", tuning, "contact_lanes", {0, 1, 2, 4, 8, 16});
   return std::make_unique<Xpbd>(xpbd_info(), settings, device, count_bytes);
 }
 

@@ -85,20 +85,20 @@ TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
         c.a_m[0] += speed * static_cast<double>(f) * s.time.dt();
         c.b_m[0] += speed * static_cast<double>(f) * s.time.dt();
       }
-    return xpbd_substeps(changed, {{"quality", quality}, {kTuning, {{"contact", "samples"}}}});
+    return xpbd_substeps(changed, {{"quality", quality}});
   };
-  EXPECT_EQ(of(0.8, "default"), 16) << "31 links over 2: it goes 11 mm, by less than 2 mm in each";
-  EXPECT_EQ(of(5, "default"), 35);
-  EXPECT_EQ(of(10, "default"), 69) << "or half an eighth of a cell, which is more";
-  EXPECT_EQ(of(10, "fast"), 35);
-  EXPECT_EQ(of(100, "default"), 160) << "the most";
+  EXPECT_EQ(of(0.8, "default"), 8) << "31 links over 4: it goes 11 mm, by less than 4 mm in each";
+  EXPECT_EQ(of(5, "default"), 18);
+  EXPECT_EQ(of(7.5, "default"), 26) << "an eighth of a cell, which is more than a margin";
+  EXPECT_EQ(of(5, "fast"), 9);
+  EXPECT_EQ(of(100, "fast"), 16) << "the most";
+  EXPECT_EQ(of(100, "default"), 32) << "the most";
   s.jumps = {{2, 1.0}};
   for (std::size_t f = 0; f < s.motion.size(); ++f) {
     s.motion[f].colliders[0].capsules = s.colliders[0].capsules;
     if (f >= 2) s.motion[f].colliders[0].capsules[0].a_m[0] += 1;
   }
-  EXPECT_EQ(xpbd_substeps(s, {{"quality", "default"}, {kTuning, {{"contact", "samples"}}}}), 16)
-      << "a jump is no motion";
+  EXPECT_EQ(xpbd_substeps(s, {{"quality", "default"}}), 8) << "a jump is no motion";
 }
 
 TEST(Shapes, FitDevices) {

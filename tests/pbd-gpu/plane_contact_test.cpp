@@ -16,11 +16,6 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-nlohmann::json by_planes(nlohmann::json settings = nlohmann::json::object()) {
-  settings[kTuning]["contact"] = "planes";
-  return settings;
-}
-
 Collider half_space(Vec3 point, Vec3 normal, double friction) {
   Collider c = touching(Collider::Shape::Plane, friction);
   c.center_m = point;
@@ -84,7 +79,7 @@ TEST_F(PlaneContacts, PartEveryPairAtEveryStep) {
   for (const double steps_per_s : {500.0, 1200.0})
     for (const auto& [name, collider] : kinds) {
       if (!collider.moves() && steps_per_s > 500) continue;
-      expect_all_parted(make("xpbd", by_planes({{"substeps", 1}})), falling_in_steps(collider, steps_per_s),
+      expect_all_parted(make("xpbd", {{"substeps", 1}}), falling_in_steps(collider, steps_per_s),
                         name + " at " + std::to_string(steps_per_s));
     }
 }
@@ -97,7 +92,7 @@ TEST_F(PlaneContacts, PartEveryPairOfATriangleMesh) {
   s.needs.add(Feature::DoubleSided);
   s.cloth.initial_velocity_m_per_s = {0.1, -3, 0.2};
   s.time = {400, 0.3};
-  expect_all_parted(make("xpbd", by_planes({{"substeps", 1}})), s, "mesh");
+  expect_all_parted(make("xpbd", {{"substeps", 1}}), s, "mesh");
 }
 
 TEST_F(PlaneContacts, AgreeWithDoublePrecisionOver100Substeps) {
@@ -116,7 +111,7 @@ TEST_F(PlaneContacts, AgreeWithDoublePrecisionOver100Substeps) {
     s.cloth.initial_velocity_m_per_s = {0.4, -3, 0.3};
     s = moving(s);
     PlaneContactReference reference(s, 10);
-    const auto solver = make("xpbd", by_planes({{"substeps", 10}}));
+    const auto solver = make("xpbd", {{"substeps", 10}});
     solver->load(s);
     double most = 0;
     for (int f = 0; f < 10; ++f) {
@@ -138,7 +133,7 @@ TEST_F(PlaneContacts, AgreeWithDoublePrecisionOver100Substeps) {
 TEST_F(PlaneContacts, StopAFallOnAHalfSpace) {
   Scene s = with_collider(sheet(9, 7), half_space({0, 0, 0}, {0.6, 0.8, 0}, kContactFriction));
   s.cloth.center_m = {0, 0.5, 0};
-  const auto solver = make("xpbd", by_planes());
+  const auto solver = make("xpbd");
   solver->load(s);
   for (int f = 0; f < 60; ++f) {
     const ClothState state = after_frame(*solver, s, f);
@@ -171,7 +166,7 @@ void expect_coulomb_friction(Make make, const std::function<Collider(double angl
 }
 
 TEST_F(PlaneContacts, HoldOnAnInclineUpToTheAngleOfFrictionAndSlideBeyond) {
-  expect_coulomb_friction([] { return make("xpbd", by_planes()); },
+  expect_coulomb_friction([] { return make("xpbd"); },
                           [](double angle) {
                             return half_space({0, 0, 0}, {std::sin(angle), std::cos(angle), 0}, 0);
                           });
@@ -179,7 +174,7 @@ TEST_F(PlaneContacts, HoldOnAnInclineUpToTheAngleOfFrictionAndSlideBeyond) {
 
 // The nearest points of a large face have lost the digits that tell its normal.
 TEST_F(PlaneContacts, HaveTheSameFrictionOnALargeBox) {
-  expect_coulomb_friction([] { return make("xpbd", by_planes()); },
+  expect_coulomb_friction([] { return make("xpbd"); },
                           [](double angle) {
                             Collider box = touching(Collider::Shape::Box, 0);
                             const double sine = std::sin(angle), cosine = std::cos(angle);
@@ -202,7 +197,7 @@ Scene of_every_kind() {
 
 TEST_F(PlaneContacts, RepeatBitForBit) {
   const Scene s = of_every_kind();
-  const auto one = make("xpbd", by_planes()), two = make("xpbd", by_planes());
+  const auto one = make("xpbd"), two = make("xpbd");
   one->load(s);
   two->load(s);
   EXPECT_EQ(check_stages(s, one->info(), one->plan()), "");
@@ -219,7 +214,7 @@ TEST_F(PlaneContacts, DropNoPairInSilence) {
   Scene s = falling_in_steps(sphere({0.02, 0.2, 0.03}, 0.09, kContactFriction), 100);
   const SolverEntry& entry = find_solver("xpbd");
   for (const auto& [places, dropped] : {std::pair{0, false}, {3, true}}) {
-    nlohmann::json settings = by_planes({{"substeps", 2}});
+    nlohmann::json settings = {{"substeps", 2}};
     settings[kTuning]["contact_pairs"] = places;
     RunSpec spec{&s, &entry, complete_settings(xpbd_info(), settings)};
     const RunRecord run = whole_run(spec, {});
@@ -240,10 +235,10 @@ TEST_F(PlaneContacts, SayWhereTheirSubstepsAreCapped) {
   for (const auto& [speed, substeps, wanted] : {std::tuple{10.0, 13, 0}, {40.0, 28, 0}, {60.0, 32, 42}}) {
     Scene s = with_collider(sheet(9, 7), sphere({0, -0.3, 0}, 0.1));
     s.cloth.initial_velocity_m_per_s = {0, -speed, 0};
-    const nlohmann::json settings = complete_settings(xpbd_info(), by_planes());
+    const nlohmann::json settings = complete_settings(xpbd_info(), nlohmann::json::object());
     EXPECT_EQ(xpbd_substeps(s, settings), substeps) << "a margin of 20 mm a substep, at most 32";
     EXPECT_EQ(substeps_over_budget(s, settings), wanted);
-    const auto solver = make("xpbd", by_planes());
+    const auto solver = make("xpbd");
     solver->load(s);
     bool said = false;
     for (const LeftOut& l : solver->plan().left_out) said = said || l.what == std::to_string(wanted) + " substeps";
@@ -257,7 +252,7 @@ TEST_F(PlaneContacts, HaveTheSameBitsInOneDispatch) {
   Scene s = with_damping(with_collider(sheet(9, 7), half_space({0, 0, 0}, {0.6, 0.8, 0}, kContactFriction)));
   s.cloth.center_m = {0, 0.4, 0};
   const auto run = [&](const char* in_one, int dispatches) {
-    nlohmann::json settings = by_planes({{"substeps", 6}});
+    nlohmann::json settings = {{"substeps", 6}};
     settings[kTuning]["contact_frame"] = in_one;
     const auto solver = make("xpbd", settings);
     solver->load(s);
@@ -289,7 +284,7 @@ TEST_F(PlaneContacts, AreLeftOutPieceByPiece) {
       {with_collider(plain, sphere({0, -0.2, 0}, 0.1)), together(vertices, pairs)},
       {moving(with_collider(plain, capsules({0, -0.2, 0}))), together(together(vertices, pairs), motion)}};
   for (const auto& [scene, expected] : cases) {
-    const auto solver = make("xpbd", by_planes());
+    const auto solver = make("xpbd");
     solver->load(scene);
     std::set<std::string> kernels;
     for (const auto& r : solver->frame_program().recorded())
@@ -310,7 +305,7 @@ TEST_F(PlaneContacts, LetHeldVerticesPassAndNoFreeOnes) {
   s.cloth.sides = Sides::Double;
   s.needs.add(Feature::DoubleSided);
   s = moving(s, {0, 8}, 4);
-  const auto solver = make("xpbd", by_planes());
+  const auto solver = make("xpbd");
   solver->load(s);
   EXPECT_EQ(check_stages(s, solver->info(), solver->plan()), "");
   for (int f = 0; f < 20; ++f) {

@@ -126,7 +126,7 @@ void PlaneDraws::expect_to_pass(Scene (*scene_of)(unsigned), int usual, long lea
   std::string failed;
   for (int k = 0; k < count; ++k) {
     const Scene s = scene_of(static_cast<unsigned>(first + k));
-    const auto solver = make("xpbd", {{"substeps", 1}, {kTuning, {{"contact", "planes"}}}});
+    const auto solver = make("xpbd", {{"substeps", 1}});
     const std::string fault = fault_of(*solver, s, pairs, own_pairs);
     passed += fault.empty();
     if (!fault.empty()) failed += fmt::format("\n  {}: {}", s.name, fault);

@@ -25,7 +25,6 @@ class PlaneFrames : public Gpu {
   static FrameRun run(const Scene& s, const char* in_one, int frames, nlohmann::json tuning = nlohmann::json::object(),
                       const DeviceOptions& device = options()) {
     nlohmann::json settings = {{"substeps", kSubsteps}};
-    tuning["contact"] = "planes";
     tuning["contact_frame"] = in_one;
     settings[kTuning] = tuning;
     const auto solver = make_xpbd(complete_settings(xpbd_info(), settings), device);
@@ -143,7 +142,7 @@ TEST_F(PlaneFrames, OfManyWorkgroupsThatWaitForOneAnother) {
 }
 
 TEST_F(PlaneFrames, DoWithBuffersWhatTheirQualifiersSay) {
-  const auto solver = make("xpbd", {{"tuning", {{"contact", "planes"}, {"contact_frame", "always"}}}});
+  const auto solver = make("xpbd", {{"tuning", {{"contact_frame", "always"}}}});
   solver->load(moving(falling(9, 7, capsules({-0.1, 0.04, 0}, kContactFriction)), {0}, 4));
   int kernels = 0;
   for (const auto& r : solver->frame_program().recorded()) {

@@ -1,7 +1,5 @@
 // Contact of the cloth with itself by planes: against double precision over all pairs, certified at every step, the
 // same bits again, with a collider and without one.
-#include <set>
-
 #include "contact_scenes.hpp"
 #include "mesh_scene.hpp"
 #include "plane_contact_check.hpp"
@@ -12,11 +10,7 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-nlohmann::json by_planes(int substeps = 0) {
-  nlohmann::json settings = {{"substeps", substeps}};
-  settings[kTuning]["contact"] = "planes";
-  return settings;
-}
+nlohmann::json with(int substeps) { return {{"substeps", substeps}}; }
 
 Collider floor_below(double friction = kContactFriction) {
   Collider c = touching(Collider::Shape::Plane, friction);
@@ -47,7 +41,7 @@ TEST_F(PlaneSelfContacts, AgreeWithDoublePrecisionOver100Substeps) {
   s.cloth.initial_velocity_m_per_s = {0.3, -9, 0.2};  // so fast that planes must cut
   s.material.membrane_stiffness_N_per_m = 1e-12;      // nothing but contact moves a vertex
   PlaneContactReference reference(s, 50);
-  const auto solver = make("xpbd", by_planes(50));
+  const auto solver = make("xpbd", with(50));
   solver->load(s);
   double most = 0;
   for (int f = 0; f < 2; ++f) {
@@ -88,13 +82,13 @@ void expect_all_parted(GpuSolver& solver, const Scene& s) {
 TEST_F(PlaneSelfContacts, PartEveryPairAtEveryStep) {
   Scene s = fold_on_floor();
   s.time = {500, 0.2};
-  expect_all_parted(*make("xpbd", by_planes(1)), s);
+  expect_all_parted(*make("xpbd", with(1)), s);
 }
 
 TEST_F(PlaneSelfContacts, PartEveryPairWithMovingCapsules) {
   Scene s = with_collider(fold_on_floor(), capsules({-0.5, -0.1, 0}, kContactFriction));
   s.time = {500, 0.2};
-  expect_all_parted(*make("xpbd", by_planes(1)), moving(s));
+  expect_all_parted(*make("xpbd", with(1)), moving(s));
 }
 
 TEST_F(PlaneSelfContacts, PartEveryPairOfATriangleMesh) {
@@ -107,13 +101,11 @@ TEST_F(PlaneSelfContacts, PartEveryPairOfATriangleMesh) {
   s.needs.add(Feature::SelfCollision);
   s.cloth.initial_velocity_m_per_s = {0.1, -4, 0.2};
   s.time = {400, 0.25};
-  expect_all_parted(*make("xpbd", by_planes(1)), s);
+  expect_all_parted(*make("xpbd", with(1)), s);
 }
 
 TEST_F(PlaneSelfContacts, AreOfOneClothAlone) {
-  nlohmann::json settings = by_planes();
-  settings["batch"] = 2;
-  EXPECT_THROW(make("xpbd", settings)->load(fold_on_floor()), Error);
+  EXPECT_THROW(make("xpbd", {{"batch", 2}})->load(fold_on_floor()), Error);
 }
 
 TEST_F(PlaneSelfContacts, WithoutThemTheFoldPassesItself) {
@@ -121,7 +113,7 @@ TEST_F(PlaneSelfContacts, WithoutThemTheFoldPassesItself) {
   s.cloth.self_collision = {};
   s.needs = s.needs - FeatureSet{Feature::SelfCollision};
   s.time = {500, 0.2};
-  const auto solver = make("xpbd", by_planes(1));
+  const auto solver = make("xpbd", with(1));
   solver->load(s);
   std::vector<double> before = initial_positions(s);
   long crossed = 0;
@@ -134,22 +126,18 @@ TEST_F(PlaneSelfContacts, WithoutThemTheFoldPassesItself) {
   EXPECT_GT(crossed, 0);
 }
 
-TEST_F(PlaneSelfContacts, RepeatBitForBitAndTakeNoSamples) {
+TEST_F(PlaneSelfContacts, RepeatBitForBit) {
   const Scene s = fold_on_floor();
-  const auto one = make("xpbd", by_planes()), two = make("xpbd", by_planes());
+  const auto one = make("xpbd"), two = make("xpbd");
   one->load(s);
   two->load(s);
-  std::set<std::string> stages;
-  for (const StagePlan& stage : one->plan().stages) stages.insert(stage.name);
-  EXPECT_FALSE(stages.contains("SelfContact") || stages.contains("Contact"));
   const ClothState a = after(*one, s, 8), b = after(*two, s, 8);
   EXPECT_EQ(a.position, b.position);
   EXPECT_EQ(a.velocity, b.velocity);
   one->reset();
   EXPECT_EQ(after(*one, s, 8).position, a.position);
-  nlohmann::json settings = by_planes();
-  settings[kTuning]["shuffles"] = false;  // a thread a list in place of a subgroup
-  const auto alone = make("xpbd", settings);
+  // A thread a list in place of a subgroup.
+  const auto alone = make("xpbd", {{kTuning, {{"shuffles", false}}}});
   alone->load(s);
   EXPECT_EQ(after(*alone, s, 8).position, a.position);
 }
@@ -157,13 +145,12 @@ TEST_F(PlaneSelfContacts, RepeatBitForBitAndTakeNoSamples) {
 TEST_F(PlaneSelfContacts, WorkWithoutACollider) {
   Scene s = folded(sheet(13, 7), 0.12, kContactFriction);
   s.time = {500, 0.1};
-  const auto solver = make("xpbd", by_planes(1));
+  const auto solver = make("xpbd", with(1));
   solver->load(s);
   EXPECT_EQ(check_stages(s, solver->info(), solver->plan()), "");
   const ClothState state = after(*solver, s, 10);
   EXPECT_EQ(check_self_pairs(s, initial_positions(s), state.position).pairs,
             check_self_pairs(s, initial_positions(s), state.position).parted);
-  for (const StagePlan& stage : solver->plan().stages) EXPECT_NE(stage.name, "SelfContact");
 }
 
 }  // namespace

@@ -46,22 +46,6 @@ void add_kernels(std::vector<Fault>& f) {
     fault.shader = ShaderFault{file, is, is_to_be};
     f.push_back(std::move(fault));
   };
-  kernel("contact normal flipped", "ball", "contact_colliders.glsl",
-         "direction(d, l, vec3(0.0, 1.0, 0.0)), vec3(0.0), s.margin",
-         "-direction(d, l, vec3(0.0, 1.0, 0.0)), vec3(0.0), s.margin");
-  kernel("margin of no collider kept by the kernel", "ball", "contact_colliders.glsl",
-         "float m = max(margin, p.least_margin_m);", "float m = 0.1 * max(margin, p.least_margin_m);");
-  kernel("friction skipped in the kernel", "slope", "contact_advance.glsl", "if (FRICTION == 1u)",
-         "if (FRICTION == 7u)");
-  kernel("approach kept in the velocity", "ball", "contact_advance.glsl", "relative += approach * t.n;",
-         "relative -= 0.5 * approach * t.n;");
-  kernel("capsules stand still within the frame", "pushed", "contact_colliders.glsl", "mix(s.a0.xyz, s.a1.xyz, now)",
-         "s.a0.xyz");
-  kernel("clusters of triangles not found", "tiles", "contact_candidates.comp", "<= range * range", "<= 1e-6 * range");
-  kernel("weights of a triangle's corners swapped", "tiles", "triangle.glsl", "return vec3(wa, wb, wc) / all;",
-         "return vec3(wb, wc, wa) / all;");
-  kernel("layers of the cloth not found", "layers", "self_near.comp", "bits |= 1u << (other - first);",
-         "bits |= 0u << (other - first);");
   kernel("one family of lines skipped", "pulled", "line_frame.comp", "family = families - 1u - turn;",
          "family = max(families - 1u - turn, 1u);");
   kernel("last link of every chain missing", "swing", "lines.glsl", "if (!on_chain(i + 1u)) return false;",
@@ -81,7 +65,7 @@ void add_kernels(std::vector<Fault>& f) {
          "if (GRIPS > 999999u) move_held(s);");
 }
 
-/// A fault in every phase of contact by planes. Where planes hold ("struck") responses may be wrong and nothing is
+/// A fault in every phase of contact. Where planes hold ("struck") responses may be wrong and nothing is
 /// passed; what a rope's friction on a drum is ("wrapped") they alone decide.
 void add_planes(std::vector<Fault>& f) {
   const auto kernel = [&](const char* name, const char* stage, const char* file, const char* is, const char* is_to_be) {
@@ -101,6 +85,13 @@ void add_planes(std::vector<Fault>& f) {
          "at.xyz += -9.0 * p.h * (vel ");
   kernel("bounds of distances do not lose the ways", "struck", "plane_near.glsl",
          "bound -= most_of(e, true) + piece_way(pair.y);", "bound -= 0.0;");
+  kernel("a tenth of the margin kept", "ball", "plane_push.glsl", "return piece.margin * (inner",
+         "return 0.1 * piece.margin * (inner");
+  kernel("approach to a half-space kept in the velocity", "slope", "plane_gather.glsl",
+         "propose(m, (push + out_by - moving) * s.normal.xyz);",
+         "propose(vec3(0.0), m + (push + out_by - moving) * s.normal.xyz);");
+  kernel("no friction on half-spaces", "slope", "plane_gather.glsl", "m -= min(1.0, s.friction * moving / l) * slip;",
+         "m -= 0.0 * slip;");
   kernel("whatever is apart taken for far", "struck", "plane_near.glsl", "gap > approach_of(e, pair.y)", "gap > 0.0");
   kernel("normal of the nearest points flipped", "struck", "plane_query.glsl", "s.normal = vec4(r.n, gap);",
          "s.normal = vec4(-r.n, gap);");

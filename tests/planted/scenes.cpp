@@ -52,7 +52,7 @@ const char* const kPushed = R"({"name":"pushed","why":"A capsule pushes a hangin
   "time":{"frame_rate_hz":72,"duration_s":0.4},
   "expect":{"outcome":"ok","depth_vertex_max_m":{"at_most":0.001},"wrong_side_samples_max":{"at_most":0}}})";
 
-// Contact by planes, in so few substeps that responses do not suffice and planes have to hold: a corner of a box and a
+// Contact in so few substeps that responses do not suffice and planes have to hold: a corner of a box and a
 // fingertip that comes up through the inside of a cell.
 const char* const kStruck = R"({"name":"struck","why":"A sheet is thrown onto a box and a fingertip that comes up.",
   "cloth":{"grid":[17,17],"size_m":[0.5,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0.9,-4,0.3],"pose":{"center_m":[0.003,0.14,0.002]}},
@@ -117,19 +117,6 @@ const char* const kThrough = R"({"name":"through","why":"A finger goes through a
   "time":{"frame_rate_hz":20,"duration_s":0.5},
   "expect":{"outcome":"ok","wrong_side_fraction_max":{"at_least":0.055,"at_most":0.065}}})";
 
-/// The half of a folded cloth that is free comes at 1 m/s at the half that is held.
-Scene layers() {
-  std::string held;
-  for (int v = 0; v < 17 * 9; ++v)
-    if (v % 17 >= 8) held += fmt::format("{}{}", held.empty() ? "" : ",", v);
-  return scene(fmt::format(R"({{"name":"layers","why":"One half of a folded cloth comes at the other.",
-    "cloth":{{"grid":[17,9],"size_m":[0.5,0.25],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0,1,0],
-             "pose":{{"axis_u":[0,1,0],"axis_v":[0,0,1],"drape":{{"radius_m":0.03}}}},"self_collision":{{"thickness_m":0.01}}}},
-    "material":{{"membrane_stiffness_N_per_m":1000}},"gravity_m_per_s2":[0,0,0],"pins":[{{"vertices":[{}]}}],
-    "time":{{"frame_rate_hz":72,"duration_s":0.2}},"expect":{{"outcome":"ok","self_contact_pairs_max":{{"at_most":0}}}}}})",
-                           held));
-}
-
 // The right half laid over the left, in the last frame through it along one line as long as the sheet is wide.
 const char* const kCrossed = R"({"name":"crossed","why":"A sheet laid over itself and through.",
   "cloth":{"grid":[17,9],"size_m":[1,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{},"self_collision":{"thickness_m":0.002}},
@@ -156,20 +143,17 @@ std::vector<Stage> stages() {
   out.push_back(solved("cantilever", load_scene("validation/cantilever-10", {"time.duration_s=2"})));
   out.push_back(solved("heavy", load_scene("validation/heavy-strip", {"time.duration_s=2"})));
   out.push_back(solved("slope", load_scene("validation/incline-slip")));
-  out.back().settings = {{kTuning, {{"contact", "samples"}}}};
   out.push_back(solved("ball", load_scene("contact/sphere", {"cloth.grid=[17,17]", "time.duration_s=1",
                                                              "cloth.pose.center_m=[0,0.2,0]"})));
   out.push_back(solved("tiles", over_tiles()));
   out.push_back(solved("pushed", scene(kPushed)));
-  out.back().settings = {{kTuning, {{"contact", "samples"}}}};
   out.push_back(solved("struck", scene(kStruck)));
-  out.back().settings = {{"substeps", 3}, {kTuning, {{"contact", "planes"}}}};
+  out.back().settings = {{"substeps", 3}};
   out.push_back(solved("heaped", scene(kHeaped)));
-  out.back().settings = {{"substeps", 2}, {kTuning, {{"contact", "planes"}}}};
+  out.back().settings = {{"substeps", 2}};
   out.push_back(solved("wrapped", load_scene("validation/capstan-slip", kCoarseCapstan)));
-  out.back().settings = {{"substeps", 16}, {kTuning, {{"contact", "planes"}}}};
+  out.back().settings = {{"substeps", 16}};
   out.push_back(solved("pulled", scene(kPulled)));
-  out.push_back(solved("layers", layers()));
   out.push_back(stage_of("crossed", kCrossed, lay_over));
   out.push_back(stage_of("pressed", kPressed, lifted([](int f) { return down(f, 0, 0.11, 20); })));
   out.push_back(stage_of("rolled", kRolled, lifted([](int f) { return down(f, 0, 0.11, 20); })));

@@ -15,18 +15,18 @@ sys.path[:0] = [str(root / "scripts"), str(root / "scripts/reference")]
 import figures  # noqa: E402
 import reference  # noqa: E402
 
-HEAD = "scene,solver,setting,status,expect,gpu,cpu,git_commit,git_dirty,created,fps_median,free_fall_error"
+HEAD = "scene,solver,setting,status,expect,gpu,cpu,git_commit,git_dirty,source_sha256,created,fps_median,free_fall_error"
 
 
 def table(rows):
     return "\n".join([HEAD, *rows]) + "\n"
 
 
-def row(scene, solver, fps, commit, dirty="false", error="0.1"):
-    return f"{scene},{solver},default,ok,pass,GPU,CPU,{commit},{dirty},2026-01-02T00:00:00Z,{fps},{error}"
+def row(scene, solver, fps, commit, dirty="false", error="0.1", sources=""):
+    return f"{scene},{solver},default,ok,pass,GPU,CPU,{commit},{dirty},{sources},2026-01-02T00:00:00Z,{fps},{error}"
 
 
-def made(folder, commit, rows=None):
+def made(folder, commit, rows=None, sources=""):
     """A published folder of two studies, sealed."""
     to = folder / "results/device"
     rows = rows or [row("gravity-64-single", "paper", 310, commit), row("gravity-128-single", "paper", 200, commit)]
@@ -34,7 +34,7 @@ def made(folder, commit, rows=None):
         (to / study).mkdir(parents=True)
         (to / study / "runs.csv").write_text(table(rows), encoding="utf-8")
     facts = {g: {**f, "how": ["timed"], "seconds": 1, "commands": ["study table3"]} for g, f in reference.facts_of(to, ["table3", "software-table3"]).items()}
-    reference.seal(to, {"commit": commit, "studies": facts, "results": {}})
+    reference.seal(to, {"commit": commit, "source_sha256": sources, "studies": facts, "results": {}})
     return to
 
 
@@ -77,6 +77,18 @@ with tempfile.TemporaryDirectory() as scratch:
 with tempfile.TemporaryDirectory() as scratch:
     code, said = checked(made(pathlib.Path(scratch), "1" * 40))
     assert code == 4 and "measured before this change" in said, (code, said)
+
+# Two commits are one study if what may change a figure is the same in both, also where this tree knows neither of them.
+if head:
+    sources = reference.source_sha256()
+    two = [row("gravity-64-single", "paper", 310, "1" * 40, sources=sources), row("gravity-128-single", "paper", 200, "2" * 40, sources=sources)]
+    with tempfile.TemporaryDirectory() as scratch:
+        code, said = checked(made(pathlib.Path(scratch), "1" * 40, two, sources))
+        assert code == 0 and "nothing that may change" in said, (code, said)
+    with tempfile.TemporaryDirectory() as scratch:
+        other = [two[0], two[1].replace(sources, "3" * 64)]
+        code, said = checked(made(pathlib.Path(scratch), "1" * 40, other, sources))
+        assert code == 1 and "or one source_sha256" in said, (code, said)
 
 refused(commit, replace("table3/runs.csv", ",310,", ",400,"), r"runs\.csv: is not as --report wrote it")
 refused(commit, replace("table3/runs.csv", commit, "2" * 40, sealed=True), "results of the commits .*expected one")

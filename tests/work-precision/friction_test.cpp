@@ -72,9 +72,8 @@ TEST_F(Friction, CapstanHoldsWithinThreePerCent) {
   EXPECT_FALSE(standard.holds_at_least || standard.slips_at_most);
   EXPECT_LE(std::abs(standard.error), 0.03);
   settings_["substeps"] = 64;
-  settings_["contact_samples"] = 0;
   const FoundThreshold rows = find_threshold(s, *entry_, settings_, {});
-  std::printf("capstan, 64 substeps, rows alone: overhang off by %.4f after %d runs\n", rows.error, rows.runs);
+  std::printf("capstan, 64 substeps: overhang off by %.4f after %d runs\n", rows.error, rows.runs);
   EXPECT_LE(std::abs(rows.error), 0.03);
 }
 
@@ -83,8 +82,6 @@ TEST_F(Friction, CapstanSlidesWithinFivePerCent) { EXPECT_LE(end_error("capstan-
 
 TEST_F(Friction, AtwoodRunsOffAsItShould) {
   settings_["substeps"] = 128;
-  settings_["contact_samples"] =
-      0;  // edges between rows cut the polygon's corners, and their contact pushes rows outwards
   EXPECT_LE(end_error("atwood"), 0.02) << "of the way";
 }
 

@@ -35,6 +35,9 @@ struct SolverInfo {
   /// Settings for tests and measurements alone, members of one object setting: "tuning": {"shuffles": false}. They
   /// appear in no list.
   std::vector<SettingSpec> tuning = {};
+  /// Settings of earlier versions, of tuning too: accepted with a notice and without effect, for older studies and
+  /// commands.
+  std::vector<std::string> retired = {};
   std::string engine = {};  ///< that a plugin wraps, as clothbench_plugin.h states it; empty for other solvers
 };
 

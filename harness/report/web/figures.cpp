@@ -122,6 +122,7 @@ Table environment_table(const std::vector<RunRecord>& runs) {
                                                                   {"protocol", "protocol"},
                                                                   {"git_commit", "commit"},
                                                                   {"git_dirty", "local changes"},
+                                                                  {"source_sha256", "sources"},
                                                                   {"build_type", "build"},
                                                                   {"assets", "assets"}};
   const auto text = [](const json& v) -> std::string {

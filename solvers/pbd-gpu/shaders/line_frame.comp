@@ -19,7 +19,7 @@ layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[];
 #endif
 #ifdef FAR
 layout(std430, binding = BIND_LEDGER) writeonly buffer Ledger { ContactLedger ledger; };
-layout(std430, binding = BIND_PIECE_BOXES) readonly buffer PieceBoxes { ClusterBox boxes[]; };  // groups' after pieces'
+layout(std430, binding = BIND_PIECE_BOXES) readonly buffer PieceBoxes { PieceBox boxes[]; };  // groups' after pieces'
 PLANE_FRAME_CONSTANTS(SPECIALIZE)
 #endif
 #include "lines.glsl"

@@ -14,12 +14,16 @@ PLANE_CONTACT_CONSTANTS(SPECIALIZE)
 
 layout(std430, binding = BIND_PIECES) readonly buffer Pieces { ContactPiece pieces[]; };
 layout(std430, binding = BIND_POINTS) readonly buffer Points { PiecePoint points[]; };
-layout(std430, binding = BIND_PIECE_BOXES) readonly buffer PieceBoxes { ClusterBox boxes[]; };  // groups' after pieces'
+layout(std430, binding = BIND_PIECE_BOXES) readonly buffer PieceBoxes { PieceBox boxes[]; };  // groups' after pieces'
 layout(std430, binding = BIND_PLANES) readonly buffer Planes { PlaneShape half_spaces[]; };
 #define THICKNESS_M uintBitsToFloat(THICKNESS_BITS)
 #define SELF_FRICTION uintBitsToFloat(SELF_FRICTION_BITS)
 layout(std430, binding = BIND_ELEMENTS) readonly buffer Elements { uvec4 elements[]; };  // vertices, number of them
 
+// What hands let go of springs back farther than it moved in the frame before. So the reach of cloth with grips is this
+// many times as great, and where the list has no place for it, it is cut in larger steps.
+#define HELD_REACH (GRIPS > 0u ? 8.0 : 1.0)
+#define CUT_BITS (GRIPS > 0u ? 2u : 1u)  // a cut divides the reach by two to the power of it
 const float kGuard_m = 2e-4;    // distance of planes from pieces
 const float kRecovered = 0.1;   // share of the margin by which what is too near is let out a substep
 const float kStandingShare = 0.75;  // of the margin: what edges and faces keep from what stands

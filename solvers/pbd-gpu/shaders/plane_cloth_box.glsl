@@ -35,7 +35,7 @@ void widen_box(uvec3 from, uvec3 to) {
   }
 }
 
-bool meets_cloth(ClusterBox b) {
+bool meets_cloth(PieceBox b) {
   for (uint c = 0u; c < 3u; ++c)
     if (CLOTH_LOW[c] > ordered(b.high[c]) || ordered(b.low[c]) > CLOTH_HIGH[c]) return false;
   return true;

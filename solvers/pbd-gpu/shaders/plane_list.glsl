@@ -10,7 +10,7 @@ void box_for(uvec4 e, float share) {
     high = max(high, r.xyz + share * r.w);
   }
 }
-bool meets(ClusterBox b) {
+bool meets(PieceBox b) {
   return all(lessThanEqual(low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, high));
 }
 
@@ -45,7 +45,7 @@ void count_pairs_of(uint k) {
   uvec4 e = LOAD16(elements, k), n = uvec4(0u);
   vec3 lows[PAIR_LEVELS], highs[PAIR_LEVELS];
   float share = 1.0;
-  for (uint l = 0u; l < PAIR_LEVELS; ++l, share *= 0.5) {
+  for (uint l = 0u; l < PAIR_LEVELS; ++l, share /= float(1u << CUT_BITS)) {
     box_for(e, share);
     lows[l] = low;
     highs[l] = high;
@@ -55,7 +55,7 @@ void count_pairs_of(uint k) {
     high = highs[0];
     if (!meets(LOAD(32u, boxes, PIECES + g))) continue;
     for (uint q = PIECES_A_GROUP * g; q < min(PIECES_A_GROUP * (g + 1u), PIECES); ++q) {
-      ClusterBox box = LOAD(32u, boxes, q);
+      PieceBox box = LOAD(32u, boxes, q);
       for (uint l = 0u; l < PAIR_LEVELS; ++l) {
         low = lows[l];
         high = highs[l];

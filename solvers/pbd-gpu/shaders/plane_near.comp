@@ -3,7 +3,7 @@
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
-layout(std430, binding = BIND_SIDES) readonly buffer Ways { float ways[]; };
+layout(std430, binding = BIND_WAYS) readonly buffer Ways { float ways[]; };
 layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_PAIRS) buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_NEAR_BITS) buffer NearBits { uint near_bits[]; };

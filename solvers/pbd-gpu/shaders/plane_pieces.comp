@@ -9,7 +9,7 @@ layout(std430, binding = BIND_MOVING_START) readonly buffer MovingStart { vec4 m
 layout(std430, binding = BIND_MOVING_END) readonly buffer MovingEnd { vec4 moving_end[]; };
 layout(std430, binding = BIND_PIECES) readonly buffer Pieces { ContactPiece pieces[]; };
 layout(std430, binding = BIND_POINTS) writeonly buffer Points { PiecePoint points[]; };
-layout(std430, binding = BIND_PIECE_BOXES) buffer PieceBoxes { ClusterBox boxes[]; };
+layout(std430, binding = BIND_PIECE_BOXES) buffer PieceBoxes { PieceBox boxes[]; };
 layout(push_constant) uniform Push { PlaneContactConstants p; };
 
 shared uint lows[3u * PIECES_A_GROUP], highs[3u * PIECES_A_GROUP], displacements[PIECES_A_GROUP];
@@ -20,11 +20,11 @@ PiecePoint point_of(PointSource s) {
   return s.index % 2u == 1u ? PiecePoint(c.b0, c.b1) : PiecePoint(c.a0, c.a1);
 }
 
-ClusterBox box_of(uint k, uint t) {
+PieceBox box_of(uint k, uint t) {
   ContactPiece piece = LOAD(32u, pieces, k);
   if (piece.moves == 0u) return LOAD(32u, boxes, k);
   float more = piece.radius + piece.margin;
-  ClusterBox b = ClusterBox(vec4(0.0, 0.0, 0.0, uintBitsToFloat(displacements[t])), vec4(0.0));
+  PieceBox b = PieceBox(vec4(0.0, 0.0, 0.0, uintBitsToFloat(displacements[t])), vec4(0.0));
   for (uint c = 0u; c < 3u; ++c) {
     b.low[c] = of_ordered(lows[3u * t + c]) - more;
     b.high[c] = of_ordered(highs[3u * t + c]) + more;
@@ -58,7 +58,7 @@ void main() {
     atomicMax(displacements[o], floatBitsToUint(distance(q.start.xyz, q.end.xyz)));
   }
   barrier();  // boxes of points before those of pieces
-  ClusterBox b = ClusterBox(vec4(1e30, 1e30, 1e30, 0.0), vec4(-1e30));
+  PieceBox b = PieceBox(vec4(1e30, 1e30, 1e30, 0.0), vec4(-1e30));
   if (t < n) {
     b = box_of(first + t, t);
     STORE32(boxes, first + t, b);

@@ -14,7 +14,7 @@ float reach_from(uint i, vec4 at, float carried) {
     GripVertex grip = LOAD(48u, grips, k);
     if (grip.held != 0u) pulled = max(pulled, distance(LOAD16(x, grip.vertex).xyz, grip.to.xyz));
   }
-  return p.reach_m + 1.5 * length(LOAD16(v, i).xyz) * p.frame_s + carried + pulled;
+  return HELD_REACH * (p.reach_m + 1.5 * length(LOAD16(v, i).xyz) * p.frame_s) + carried + pulled;
 }
 
 #ifndef FAR

@@ -33,7 +33,7 @@ void scan_ranges(uint t) {
     first += count;
   }
   if (t > 0u) return;
-  float share = uintBitsToFloat((127u - level) << 23u);  // 2^-level exactly
+  float share = uintBitsToFloat((127u - CUT_BITS * level) << 23u);  // a power of two exactly
 #ifdef SCAN_SELF
   ledger.self_reach = share;
 #else

@@ -47,7 +47,7 @@ void count_self_pairs_of(uint place) {
       SelfBox other = LOAD(64u, self_boxes, q);
       if (!boxes_meet(box, other, 1.0) || share_vertex(e, LOAD16(elements, LOAD4(self_order, q)))) continue;
       float share = 1.0;
-      for (uint l = 0u; l < PAIR_LEVELS && boxes_meet(box, other, share); ++l, share *= 0.5) ++n[l];
+      for (uint l = 0u; l < PAIR_LEVELS && boxes_meet(box, other, share); ++l, share /= float(1u << CUT_BITS)) ++n[l];
     }
   }
   STORE16(self_ranges, own, n);

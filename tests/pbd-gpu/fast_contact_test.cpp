@@ -1,0 +1,94 @@
+// Contact of `xpbd` at any speed: nothing passes a thin sheet, from either side. And the clusters that pieces are made
+// of.
+#include <cmath>
+#include <set>
+
+#include "contact_pieces.hpp"
+#include "contact_scenes.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+Scene two_sided(Scene s) {
+  s.cloth.sides = Sides::Double;
+  s.needs = s.needs - FeatureSet{Feature::DuplicatedLayer};
+  s.needs.add(Feature::DoubleSided);
+  return s;
+}
+
+/// Two triangles in the plane z = `at`, 4 m wide, that a single joint carries along z.
+Collider carried_wall(double at) {
+  Collider c = touching(Collider::Shape::Mesh, 0);
+  auto mesh = std::make_shared<ColliderMesh>();
+  mesh->positions = {-2, -2, at, 2, -2, at, 2, 2, at, -2, 2, at};
+  mesh->triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh->joint_count = 1;
+  for (int k = 0; k < 4; ++k) {
+    mesh->joints.push_back({0, 0, 0, 0});
+    mesh->weights.push_back({1, 0, 0, 0});
+  }
+  c.mesh = mesh;
+  return c;
+}
+
+TEST_F(Gpu, NothingPassesAThinSheetHoweverFastItComes) {
+  for (double metres_per_frame : {0.02, 0.3, 1.0}) {
+    Scene s = two_sided(with_collider(sheet(9, 7), carried_wall(-0.11)));
+    s.cloth.axis_v = {0, -1, 0};
+    s.gravity_m_per_s2 = {};
+    for (int k = 0; k <= 6; ++k) {
+      FrameMotion& m = s.motion.emplace_back();
+      m.colliders = {{{}, {{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, k * metres_per_frame}}}}}};
+    }
+    const auto solver = make("xpbd");
+    solver->load(s);
+    bool pushed = false;
+    for (int f = 0; f < 6; ++f) {
+      const ClothState state = after_frame(*solver, s, f);
+      const double wall = -0.11 + (f + 1) * metres_per_frame;
+      for (std::size_t i = 2; i < state.position.size(); i += 3) {
+        ASSERT_GT(state.position[i], wall) << metres_per_frame << " m a frame, frame " << f;
+        pushed = pushed || state.position[i] > 0.01;
+      }
+    }
+    EXPECT_TRUE(pushed);
+  }
+}
+
+TEST_F(Gpu, AFastSheetStopsAtAThinMeshFromEitherSide) {
+  for (double direction : {-1.0, 1.0}) {
+    Scene s = two_sided(with_collider(sheet(9, 7), open_sheet({0, 0, 0}, 1.5)));
+    s.cloth.center_m = {0, -0.1 * direction, 0};
+    s.cloth.initial_velocity_m_per_s = {0, 60 * direction, 0};
+    const auto solver = make("xpbd");
+    solver->load(s);
+    for (int f = 0; f < 10; ++f) {
+      const ClothState state = after_frame(*solver, s, f);
+      // The mesh rises by 1 cm from one corner to the other.
+      for (std::size_t i = 0; i < state.position.size(); i += 3) ASSERT_LT(direction * state.position[i + 1], 0.011);
+    }
+  }
+}
+
+TEST(Clusters, HoldEveryTriangleOnceAndFewAtATime) {
+  std::vector<double> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::uint32_t k = 0; k < 517; ++k) {
+    for (int c = 0; c < 3; ++c)
+      for (int axis = 0; axis < 3; ++axis) positions.push_back(std::sin(1.7 * k + 0.9 * axis) + 0.01 * c);
+    triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  const Clusters c = cluster(positions, triangles);
+  std::size_t all = 0;
+  for (std::uint32_t size : c.sizes) {
+    EXPECT_GT(size, 0u);
+    EXPECT_LE(size, Clusters::kClusterSize);
+    all += size;
+  }
+  EXPECT_EQ(all, 517u);
+  EXPECT_EQ(std::set<std::uint32_t>(c.triangles.begin(), c.triangles.end()).size(), 517u);
+  EXPECT_TRUE(cluster({}, {}).sizes.empty());
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu
