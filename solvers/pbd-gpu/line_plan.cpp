@@ -226,7 +226,7 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   // scene. A link must not turn by more than about half a radian a substep.
   constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
-                 kDriven[] = {{5, 6}, {8, 4}, {20, 1.5}}, kLaid[] = {{8, 4}, {13, 2.4}, {26, 1.2}},
+                 kDriven[] = {{5, 6}, {8, 4}, {20, 1.5}}, kLaid[] = {{8, 4}, {16, 2}, {32, 1}},
                  kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}}, kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
   const auto& grips = scene.grips.vertices;
   // A hand pushes a cloth in directions that tethers do not limit.

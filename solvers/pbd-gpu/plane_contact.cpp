@@ -137,7 +137,7 @@ void PlaneContact::add_kernels() {
     choose_ = add(stage_, "plane_choose");
   }
   if (self_) self_->add_kernels(stage_pairs_, stage_, specialization().by_number());
-  predict_ = add(stage_, "plane_predict");
+  if (moving_points_ > 0) predict_ = add(stage_, "plane_predict");
   gather_ = add(stage_, team_ > 1 ? "plane_gather_shuffle" : "plane_gather");
   settle_ = add(stage_, "plane_settle");
   project_ = add(stage_, team_ > 1 ? "plane_project_shuffle" : "plane_project");
@@ -198,11 +198,11 @@ void PlaneContact::record_list(double dt_s, int substeps) {
 }
 
 void PlaneContact::record_before(int s, int substeps, double dt_s) {
+  if (moving_points_ == 0) return;
   const PlaneContactConstants c = constants(s, substeps, dt_s);
   vertices(predict_, c);
   pairs(near_, c);
   pairs(query_, c);
-  if (self_) self_->record_query(c);
   shared_vertices(gather_, c);
 }
 

@@ -50,11 +50,11 @@ struct ContactLedger {
   uint asked[2];                     // pairs near in this substep, before and after the lines
   uint cloth_low[3], cloth_high[3];  // box that the cloth may be in, in the order of box_bits.glsl
   float self_reach;                  // as reach, of the list of the cloth with itself
-  uint self_near[2];                 // its pairs near in this substep, before and after the lines
-  uint self_touching[2];             // those of them that have contacts
+  uint self_near;                    // its pairs near in this substep
+  uint self_touching;                // those of them that have contacts
   uint touched_vertices;             // vertices with pairs of their own or of their triangles
   uint far;                          // 1: the frame was done without contact (plane_far.glsl)
-  uint unused0[2];
+  uint unused0[4];
 };
 
 /// Of a triangle of the cloth, by half of the thickness larger: at rest, and grown by its vertices' reaches.

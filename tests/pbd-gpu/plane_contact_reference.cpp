@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact_pieces.hpp"
 #include "plane_contact_features.hpp"
-#include "xpbd_contact.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -164,7 +164,6 @@ void PlaneContactReference::substep(int s) {
     return room;
   };
   for (Element& e : elements_) query(e);
-  query_self(rooms());
   respond(true, 0);
   for (std::size_t i = 0; i < x.size(); ++i) {
     v[i] += g;
@@ -264,8 +263,6 @@ void PlaneContactReference::push_of(const Element& e, Pair& pair, int round) con
     slip += b * (y_[i] - x0_[i]);
     mass += w_[i] * b * b;
   }
-  pair.push = V::Zero();
-  pair.out_by = 0;
   const double push = pair.target - gap;
   const double out_by = round == 0 ? std::clamp(kept_margin(e, pair) - pair.target, 0.0, kRecovered * p.margin) : 0;
   if (!(push + out_by > 0)) return;
@@ -280,8 +277,13 @@ void PlaneContactReference::push_of(const Element& e, Pair& pair, int round) con
 void PlaneContactReference::respond(bool before, int round) {
   for (Element& e : elements_)
     for (Pair& pair : e.pairs)
-      if (pair.contact) push_of(e, pair, round);
-  wish_self(before ? 0 : round);
+      if (pair.contact) {
+        pair.push = V::Zero();
+        pair.out_by = 0;
+        if (!before || pieces_[pair.piece].moves) push_of(e, pair, round);
+      }
+  for (auto& all : self_wishes_) all.clear();
+  if (!before) wish_self(round);
   std::vector<V> by(x.size(), V::Zero()), moving(x.size(), V::Zero());
   for (std::size_t i = 0; i < x.size(); ++i) {
     double lengths = 0;
@@ -292,6 +294,7 @@ void PlaneContactReference::respond(bool before, int round) {
       lengths += l;
     };
     for (const Half& half : halves_) {
+      if (before) break;
       const double gap0 = half.n.dot(x0_[i]) - half.offset, gap = half.n.dot(y_[i]) - half.offset;
       const double push = std::min(half.margin, gap0) - gap;
       const double out = round == 0 ? std::clamp(half.margin - gap0, 0.0, kRecovered * half.margin) : 0;

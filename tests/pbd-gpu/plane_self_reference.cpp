@@ -88,7 +88,6 @@ void PlaneContactReference::wish_of(const SelfContact& s, int round) {
 }
 
 void PlaneContactReference::wish_self(int round) {
-  for (auto& all : self_wishes_) all.clear();
   for (const SelfContact& s : self_)
     if (s.near) wish_of(s, round);
 }

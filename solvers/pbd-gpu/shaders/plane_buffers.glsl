@@ -20,10 +20,7 @@ layout(std430, binding = BIND_PLANES) readonly buffer Planes { PlaneShape half_s
 #define SELF_FRICTION uintBitsToFloat(SELF_FRICTION_BITS)
 layout(std430, binding = BIND_ELEMENTS) readonly buffer Elements { uvec4 elements[]; };  // vertices, number of them
 
-// What hands let go of springs back farther than it moved in the frame before. So the reach of cloth with grips is this
-// many times as great, and where the list has no place for it, it is cut in larger steps.
-#define HELD_REACH (GRIPS > 0u ? 8.0 : 1.0)
-#define CUT_BITS (GRIPS > 0u ? 2u : 1u)  // a cut divides the reach by two to the power of it
+#define CUT_BITS (GRIPS > 0u ? 2u : 1u)  // a cut divides the reach by two to the power of it: a greater reach, larger steps
 const float kGuard_m = 2e-4;    // distance of planes from pieces
 const float kRecovered = 0.1;   // share of the margin by which what is too near is let out a substep
 const float kStandingShare = 0.75;  // of the margin: what edges and faces keep from what stands
@@ -53,6 +50,9 @@ const float kTiny = 1e-6;       // a weight below is none
 #define BEFORE_A_PLANE(i) (3u * VERTICES + (i))  // or so near that rounding cannot tell: it may be behind a plane
 
 uint turn = 0u;  // 0: before the lines, with the predicted positions; 1 and on: rounds of responses after them
+// Only what moves is responded to before the lines. What stands would take its friction from a way without the lines' pull: a strip
+// that hangs over a cylinder slips at 5 % less overhang than friction holds (capstan-hold), and at 0.7 % less with one response.
+#define FIRST_TURN (MOVING != 0u ? 0u : 1u)
 float t_begin = 0.0, t_end = 1.0;  // of the substep, as fractions of the frame
 
 /// Exact at the frame's end: there the next frame begins.

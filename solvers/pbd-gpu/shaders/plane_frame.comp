@@ -185,7 +185,7 @@ bool respond_to_contact(out uint near) {
     EACH(n, near) respond(pairs[n].w);
     MEET_OR_FAIL;  // as above
   }
-  if (me == 0u) COUNTED(turn == 0u ? 1u : 0u) = 0u;
+  if (me == 0u && turn > 0u) COUNTED(0u) = 0u;
   if (near == 0u && PLANES == 0u) return true;
   gather_all(me, all_threads);
   MEET_OR_FAIL;  // vertices before what reads them
@@ -208,20 +208,22 @@ bool substep_with(uint s, bool touches) {
     MEET_OR_FAIL;  // held vertices before all read them
   }
   uint near = 0u;
-  for (turn = 0u; turn < (touches ? kTurns : 1u); ++turn) {
-    if (touches && !respond_to_contact(near)) return false;
-    if (turn == 0u && !solve_lines(s)) return false;
-  }
+  turn = 0u;
+  if (touches && MOVING != 0u && !respond_to_contact(near)) return false;
+  if (!solve_lines(s)) return false;
   if (!touches) {
     keep_reach();
     MEET_OR_FAIL;  // before the next substep's lines
     return true;
   }
+  for (turn = 1u; turn < kTurns; ++turn)
+    if (!respond_to_contact(near)) return false;
   if (near > 0u) {
     EACH(n, near) choose(pairs[n].w);
     MEET_OR_FAIL;  // planes before vertices are put before them
   }
   project_all(me, all_threads);
+  if (me == 0u) COUNTED(1u) = 0u;
   MEET_OR_FAIL;  // the substep's end before the next one
   return true;
 }

@@ -16,6 +16,7 @@ void propose(vec3 moving, vec3 out_by) {
 }
 
 void from_half_spaces(vec4 at, vec3 start) {
+  if (turn == 0u) return;
   for (uint k = 0u; k < PLANES; ++k) {
     PlaneShape s = LOAD(32u, half_spaces, k);
     float before = dot(start, s.normal.xyz) - s.normal.w, gap = dot(at.xyz, s.normal.xyz) - s.normal.w;
@@ -62,7 +63,7 @@ void gather_part(uint i, vec4 at, uint part) {
   for (uint k = first; k < end; k += SHARES) {
     uint fan = LOAD4(fans, k);
     if (any_pairs) from_pairs(fan / 4u, fan % 4u, at.w);
-    if (SELF != 0u) from_self(fan / 4u, fan % 4u);
+    if (SELF != 0u && turn > 0u) from_self(fan / 4u, fan % 4u);
   }
 }
 

@@ -1,5 +1,5 @@
 #version 450
-// Twice a substep, a thread a pair.
+// Once a substep, with what moves twice; a thread a pair.
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
@@ -15,7 +15,7 @@ layout(std430, binding = BIND_PAIR_STATES) buffer States { PairState states[]; }
 void main() {
   turn = p.turn;
   begin_substep(p.first_substep);
-  if (item() == 0u) ledger.asked[turn == 0u ? 1u : 0u] = 0u;
+  if (item() == 0u && turn > 0u) ledger.asked[0] = 0u;
   for (uint k = item(); k < ledger.pairs; k += stride())
     if (may_be_near(k) && is_near(k)) list_near(k, atomicAdd(NEAR_COUNT, 1u));
 }

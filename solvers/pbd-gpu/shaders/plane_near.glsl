@@ -12,13 +12,13 @@ float most_of(uvec4 e, bool of_ways) {
 /// Most by which a pair may approach in this substep.
 float approach_of(uvec4 e, uint k) { return most_of(e, false) + piece_way(k); }
 
-/// Whether the bound of a pair's distance lets it be near in this substep, or whether it has been. Before the lines the bound loses the
-/// ways of the last one.
+/// Whether the bound of a pair's distance lets it be near in this substep, or whether it has been. First the bound loses the ways of the
+/// last one.
 bool may_be_near(uint k) {
   uvec4 pair = LOAD16(pairs, k);
   uvec4 e = LOAD16(elements, pair.x);
   float bound = states[k].normal.w;
-  if (turn == 0u) {
+  if (turn == FIRST_TURN) {
     bound -= most_of(e, true) + piece_way(pair.y);
     states[k].normal.w = bound;
     if (pair.z != 0u) pairs[k].z = pair.z = 0u;

@@ -8,7 +8,7 @@ layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };
 layout(std430, binding = BIND_STARTS) buffer Starts { vec4 starts[]; };  // at the substep's start; w: farthest it may go
 layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };
 layout(std430, binding = BIND_RANGES) readonly buffer Ranges { uvec4 ranges[]; };
-layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_TOUCHED) buffer Touched { uint touched[]; };
 layout(std430, binding = BIND_NEAR_BITS) readonly buffer NearBits { uint near_bits[]; };
 layout(std430, binding = BIND_PAIRS) readonly buffer Pairs { uvec4 pairs[]; };
@@ -20,4 +20,7 @@ layout(std430, binding = BIND_SELF_NEAR) buffer SelfNears { SelfNear self_near[]
 #include "plane_team.glsl"
 #include "plane_project.glsl"
 
-void main() { project_all(item(), stride()); }
+void main() {
+  project_all(item(), stride());
+  if (item() == 0u) ledger.asked[1] = ledger.self_near = ledger.self_touching = 0u;  // for the next substep
+}

@@ -9,6 +9,7 @@ float kept_margin(uvec4 e, vec3 weights) {
 
 /// Proposed correction of a contact over the inverse mass of its point; w: its part along the normal that is no velocity.
 vec4 push_of(uvec4 e, PairState s) {
+  if (turn == 0u && piece.moves == 0u) return vec4(0.0);
   float gap = -s.weights.w, mass = 0.0;
   vec3 slip = -s.way.xyz;
   for (uint c = 0u; c < e.w; ++c) {

@@ -33,7 +33,7 @@ uint look(uvec4 e, inout PairState s) {
   if (parted_by_face(e, s)) return PAIR_LOOKED | PAIR_PLANE;
   Nearest r = nearest_at(t_begin, t_end, s.normal.xyz);
   if (!(r.gap > 0.0)) {
-    if (turn == 0u) atomicAdd(faults.inside, 1u);
+    if (turn == FIRST_TURN) atomicAdd(faults.inside, 1u);
     s.normal.w = 0.0;
     return PAIR_LOOKED;
   }

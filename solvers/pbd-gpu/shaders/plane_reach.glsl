@@ -1,5 +1,8 @@
 // Start of a frame: how far each vertex may go in it. The list of pairs is made for that, and vertices keep to it.
 
+// What hands let go of springs back farther than it moved in the frame before.
+#define HELD_REACH (GRIPS > 0u ? 8.0 : 1.0)
+
 /// Greatest displacement of a point of any piece in the frame.
 float greatest_displacement() {
   float carried = 0.0;

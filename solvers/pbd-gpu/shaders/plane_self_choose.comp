@@ -9,6 +9,6 @@ layout(std430, binding = BIND_SELF_NEAR) buffer SelfNears { SelfNear self_near[]
 #include "plane_self_choose.glsl"
 
 void main() {
-  uint count = min(ledger.self_near[1], NEAR_CAPACITY);
+  uint count = min(ledger.self_near, NEAR_CAPACITY);
   for (uint k = item(); k < count; k += stride()) choose_self(k);
 }

@@ -1,5 +1,5 @@
 #version 450
-// Twice a substep, a thread a triangle; SHUFFLES: a subgroup a triangle.
+// After the lines, a thread a triangle; SHUFFLES: a subgroup a triangle.
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_SELF_WAYS) readonly buffer SelfWays { vec4 self_ways[]; };
@@ -11,8 +11,6 @@ layout(std430, binding = BIND_FAULTS) buffer Faults { ContactFaults faults; };
 #include "plane_self_near.glsl"
 
 void main() {
-  turn = p.turn;
-  if (item() == 0u) ledger.self_near[turn == 0u ? 1u : 0u] = ledger.self_touching[turn == 0u ? 1u : 0u] = 0u;
 #ifdef SHUFFLES
   uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
   uint subgroups = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_NumSubgroups;

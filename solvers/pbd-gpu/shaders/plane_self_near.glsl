@@ -1,14 +1,11 @@
 // Pairs of a triangle that are near in this substep. Where a triangle's begin is in no fixed order, and nothing depends on it; those of
 // one triangle are in the order of its list.
 
-/// Before the lines a pair's bound loses the ways of the last substep.
+/// A pair's bound loses the ways of the last substep.
 bool is_near_self(uint k, vec4 own) {
   vec4 other = LOAD16(self_ways, self_pairs[k].other);
-  float bound = self_pairs[k].bound;
-  if (turn == 0u) {
-    bound -= own.x + other.x;
-    self_pairs[k].bound = bound;
-  }
+  float bound = self_pairs[k].bound - own.x - other.x;
+  self_pairs[k].bound = bound;
   return bound <= own.y + other.y;
 }
 
@@ -32,7 +29,7 @@ uint from_first(uint value) { return value; }
 
 /// Where a triangle's near pairs begin, and how many there is place for.
 uvec2 reserve(uint count) {
-  uint first = count > 0u ? atomicAdd(ledger.self_near[min(turn, 1u)], count) : 0u;
+  uint first = count > 0u ? atomicAdd(ledger.self_near, count) : 0u;
   uint room = first < NEAR_CAPACITY ? NEAR_CAPACITY - first : 0u;
   if (count > room) atomicAdd(faults.dropped, count - room);
   return uvec2(first, min(count, room));

@@ -1,5 +1,5 @@
 #version 450
-// Twice a substep, a thread a near pair: nearest points at the substep's start, and what contacts there propose.
+// After the lines, a thread a near pair: nearest points at the substep's start, and what contacts there propose.
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };
@@ -17,7 +17,7 @@ layout(std430, binding = BIND_FAULTS) buffer Faults { ContactFaults faults; };
 
 void main() {
   turn = p.turn;
-  uint count = min(ledger.self_near[min(turn, 1u)], NEAR_CAPACITY);
+  uint count = min(ledger.self_near, NEAR_CAPACITY);
   for (uint k = item(); k < count; k += stride()) {
     query_self(k);
     push_self(k);

@@ -86,7 +86,7 @@ float approach(uvec4 a, uvec4 b, vec3 origin) {
 
 /// Keeps what was found. Where it lies is in no fixed order, and nothing depends on it.
 void store_contacts(uint k) {
-  uint at = atomicAdd(ledger.self_touching[min(turn, 1u)], 1u);
+  uint at = atomicAdd(ledger.self_touching, 1u);
   if (at >= TOUCHING_CAPACITY) {
     atomicAdd(faults.dropped, 1u);
     contacts = 0u;
@@ -125,6 +125,6 @@ void query_self(uint k) {
     vertex_contacts(second, b, a, reach, false);
     store_contacts(k);
   }
-  if (!(normal.w > 0.0) && turn == 0u && self_near[k].own == first) atomicAdd(faults.inside, 1u);
+  if (!(normal.w > 0.0) && self_near[k].own == first) atomicAdd(faults.inside, 1u);
   self_near[k].marks = contacts | (parted ? SELF_PLANE : 0u);
 }

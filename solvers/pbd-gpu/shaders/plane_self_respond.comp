@@ -12,6 +12,6 @@ layout(std430, binding = BIND_SELF_PUSHES) writeonly buffer SelfPushes { SelfPus
 
 void main() {
   turn = p.turn;
-  uint count = min(ledger.self_near[1], NEAR_CAPACITY);
+  uint count = min(ledger.self_near, NEAR_CAPACITY);
   for (uint k = item(); k < count; k += stride()) push_self(k);
 }

@@ -34,8 +34,10 @@ vec3 within_reach(uint i, vec3 to, float w) {
 }
 
 void settle(uint i) {
-  float w = LOAD16(y, i).w;
-  vec3 to = within_reach(i, LOAD16(x, i).xyz, w);
+  vec4 at = LOAD16(x, i);
+  // Of x after a response before the lines it is that in the lines.
+  float w = MOVING != 0u ? LOAD16(y, i).w : at.w;
+  vec3 to = within_reach(i, at.xyz, w);
   STORE16(y, i, vec4(to, w));
   starts[i].w = farthest(i, to);
 }
