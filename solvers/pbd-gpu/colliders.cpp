@@ -102,7 +102,7 @@ MeshBuffers ColliderBuffers::add_meshes(const std::string& kind, bool moving_one
   if (result.ranges.empty()) return result;
   result.positions = &frame_.add_buffer(moving_ones ? BIND_MOVING_END : BIND_STANDING, kind + " positions", positions);
   if (as_pieces_)
-    frame_.add_buffer(BIND_MOVING_START, kind + " start positions", positions);
+    result.start_positions = &frame_.add_buffer(BIND_MOVING_START, kind + " start positions", positions);
   else
     result.triangles = &frame_.add_buffer(FrameBuilder::kUnbound, kind + " triangles", triangles);
   return result;

@@ -18,8 +18,9 @@ struct MeshRange {
 /// where the scene has none.
 struct MeshBuffers {
   std::vector<MeshRange> ranges;
-  const vulkan::Buffer* triangles = nullptr;  ///< uvec4 each: corners, collider's index; not as pieces
-  const vulkan::Buffer* positions = nullptr;  ///< vec4 each; of moving meshes, at the frame's end
+  const vulkan::Buffer* triangles = nullptr;        ///< uvec4 each: corners, collider's index; not as pieces
+  const vulkan::Buffer* positions = nullptr;        ///< vec4 each; of moving meshes, at the frame's end
+  const vulkan::Buffer* start_positions = nullptr;  ///< of moving meshes, at the frame's start; as pieces
 };
 
 /// Shapes of one kind: `count` structs of pbd_shared.h.
