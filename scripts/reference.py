@@ -26,13 +26,12 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "reference"))
 from figures import SET_UPS, Tables, claims_table, markdown, statement  # noqa: E402
+from sources import changed_since  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DATA = ROOT / "scripts/reference"
 PUBLISHED = ROOT / "results/reference/h200"
 LIST = "reference.json"
-# Folders with what may change a figure.
-MEASURED = [line for line in (DATA / "measured_paths.txt").read_text(encoding="utf-8").split("\n") if line and not line.startswith("#")]
 PAGE_LIMIT_B = 20_000_000
 # Files of a report that are not published: the page is one for all studies, and what else is left out is in runs.csv.
 UNPUBLISHED = {"index.html", "runs.json", "tables.tex", "bandwidth.csv", "memory.csv", "report-pictures.json", "penetration-series.csv", "work-precision.json", "penetration.csv", "contact-runs.csv"}
@@ -342,27 +341,6 @@ def faults_of(to, folders):
             if listing["results"].get(h5.relative_to(folder).as_posix()) != sha256(h5):
                 out.append(f"{h5}: is not the result that is published")
     return out
-
-
-def git(*words):
-    return subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True, check=False)
-
-
-def source_sha256():
-    """Of what may change a figure at HEAD, as harness/runner/build_info.cmake computes it."""
-    listing = git("ls-tree", "-r", "HEAD", "--", *MEASURED).stdout.splitlines(keepends=True)
-    return hashlib.sha256("".join(line for line in listing if not line.endswith(".md\n")).encode()).hexdigest()
-
-
-def changed_since(commit, sources):
-    """Files that may change a figure and differ between the commit and HEAD; None if this tree does not know the commit and its sources are
-    others."""
-    if sources and sources == source_sha256():
-        return []
-    if git("cat-file", "-e", commit + "^{commit}").returncode != 0:
-        return None
-    done = git("diff", "--name-only", commit, "HEAD", "--", *MEASURED, ":(exclude)*.md")
-    return done.stdout.split() if done.returncode == 0 else None
 
 
 def check(to, folders):

@@ -21,13 +21,12 @@ const char* kind(const json& v) {
                                : "a string";
 }
 
-/// Once a process and text: what is stored is read again and again.
-void notice(const std::string& solver, const std::string& text) {
+/// Once a process, solver and subject: what is stored is read again and again.
+void notice(const std::string& solver, const std::string& subject, const std::string& text) {
   static std::mutex mutex;
   static std::set<std::string> reported;
   const std::lock_guard lock(mutex);
-  const std::string line = fmt::format("notice: solver {}: {}\n", solver, text);
-  if (reported.insert(line).second) fmt::print(stderr, "{}", line);
+  if (reported.insert(solver + subject).second) fmt::print(stderr, "notice: solver {}: {}\n", solver, text);
 }
 
 /// Takes members named in `retired` out of an object; returns their names.
@@ -60,7 +59,7 @@ json complete_settings(const SolverInfo& info, const json& as_given) {
   std::vector<std::string> retired = take_retired(given, info.retired);
   if (given.contains(kTuning))
     for (std::string& name : take_retired(given[kTuning], info.retired)) retired.push_back(std::move(name));
-  if (!retired.empty()) notice(info.name, joined(retired) + ": no longer a setting; without effect");
+  if (!retired.empty()) notice(info.name, "retired", joined(retired) + ": no longer a setting; without effect");
   json all = json::object(), tuning = json::object(), seen = json::object();
   std::vector<std::string> names;
   for (const SettingSpec& s : info.settings) {
@@ -93,8 +92,9 @@ json complete_settings(const SolverInfo& info, const json& as_given) {
     for (const auto& [member, own] : value.items()) put(tuning, member, own, fmt::format("{}.{}", key, member));
   }
   if (!moved.empty())
-    notice(info.name, fmt::format("{}: now in the setting \"{}\", as {}.<name> on the command line", joined(moved),
-                                  kTuning, kTuning));
+    notice(info.name, "moved",
+           fmt::format("{}: now in the setting \"{}\", as {}.<name> on the command line", joined(moved), kTuning,
+                       kTuning));
   if (!tuning.empty()) all[kTuning] = std::move(tuning);
   return all;
 }

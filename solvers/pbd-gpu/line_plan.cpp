@@ -227,17 +227,19 @@ int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
                  kDriven[] = {{5, 6}, {8, 4}, {20, 1.5}}, kLaid[] = {{8, 4}, {16, 2}, {32, 1}},
-                 kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}}, kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
+                 kLaidStrips[] = {{8, 12}, {14, 6}, {28, 3}}, kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}},
+                 kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
   const auto& grips = scene.grips.vertices;
   // A hand pushes a cloth in directions that tethers do not limit.
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
-  const Rule rule = !touched                                   ? kUntouched[k]
-                    : driven                                   ? kDriven[k]
-                    : tethered                                 ? (stiff ? kStiff[k] : kTethered[k])
-                    : !touches_nothing(scene) && grips.empty() ? kLaid[k]
-                    : !scene.needs.has(Feature::Shear)         ? kStrips[k]
-                    : grips.empty()                            ? kSheet[k]
-                                                               : kPulled[k];
+  const bool shears = scene.needs.has(Feature::Shear), laid = !touches_nothing(scene) && grips.empty();
+  const Rule rule = !touched        ? kUntouched[k]
+                    : driven        ? kDriven[k]
+                    : tethered      ? (stiff ? kStiff[k] : kTethered[k])
+                    : laid          ? (shears ? kLaid[k] : kLaidStrips[k])
+                    : !shears       ? kStrips[k]
+                    : grips.empty() ? kSheet[k]
+                                    : kPulled[k];
   // With few substeps the error is largest in the links at the pins, which carry more the finer the cloth is.
   const double fine = k == 0 && rule.links_a_substep == kStiff[0].links_a_substep && links > 300 ? 1.2 : 1;
   const double short_links = wants_chains(scene) ? substeps_for_short_links(scene) : 1;

@@ -172,7 +172,8 @@ void PlaneContact::vertices(const FrameKernel* kernel, const PlaneContactConstan
 }
 
 void PlaneContact::shared_vertices(const FrameKernel* kernel, const PlaneContactConstants& c) {
-  frame_.dispatch(*kernel, std::uint64_t{team_} * c.vertices, c, {16.0 * c.vertices, 16.0 * c.vertices});
+  // What no contact moves is read and not written.
+  frame_.dispatch(*kernel, std::uint64_t{team_} * c.vertices, c, {16.0 * c.vertices, 0});
 }
 
 void PlaneContact::pairs(const FrameKernel* kernel, const PlaneContactConstants& c) {

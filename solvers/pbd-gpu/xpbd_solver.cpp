@@ -204,9 +204,9 @@ class Xpbd final : public GpuSolver {
     }
   }
 
-  /// Where a substep ends, as a fraction of the frame; with contact as time_of() of its kernels has it.
-  double fraction_after(int s, int substeps) const {
-    if (!contact_ || s + 1 == substeps) return (s + 1.0) / substeps;
+  /// Where a substep ends, as a fraction of the frame, as time_of() of the kernels of contact has it.
+  static double fraction_after(int s, int substeps) {
+    if (s + 1 == substeps) return 1;
     return static_cast<double>(static_cast<float>(s + 1) * static_cast<float>(1.0 / substeps));
   }
 

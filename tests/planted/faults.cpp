@@ -85,12 +85,10 @@ void add_planes(std::vector<Fault>& f) {
          "at.xyz += -9.0 * p.h * (vel ");
   kernel("bounds of distances do not lose the ways", "struck", "plane_near.glsl",
          "bound -= most_of(e, true) + piece_way(pair.y);", "bound -= 0.0;");
-  kernel("a tenth of the margin kept", "ball", "plane_push.glsl", "return piece.margin * (inner",
-         "return 0.1 * piece.margin * (inner");
-  kernel("approach to a half-space kept in the velocity", "slope", "plane_gather.glsl",
+  kernel("approach to a half-space kept in the velocity", "ramp", "plane_gather.glsl",
          "propose(m, (push + out_by - moving) * s.normal.xyz);",
          "propose(vec3(0.0), m + (push + out_by - moving) * s.normal.xyz);");
-  kernel("no friction on half-spaces", "slope", "plane_gather.glsl", "m -= min(1.0, s.friction * moving / l) * slip;",
+  kernel("no friction on half-spaces", "ramp", "plane_gather.glsl", "m -= min(1.0, s.friction * moving / l) * slip;",
          "m -= 0.0 * slip;");
   kernel("whatever is apart taken for far", "struck", "plane_near.glsl", "gap > approach_of(e, pair.y)", "gap > 0.0");
   kernel("normal of the nearest points flipped", "struck", "plane_query.glsl", "s.normal = vec4(r.n, gap);",
@@ -158,7 +156,6 @@ void add_inputs(std::vector<Fault>& f) {
     f.push_back(std::move(fault));
   };
   scene("gravity 9.7", "swing", [](Scene& s) { s.gravity_m_per_s2 = {0, -9.7, 0}; });
-  scene("margin dropped", "ball", colliders([](Collider& c) { c.margin_m = 0; }));
   scene("friction skipped", "slope", colliders([](Collider& c) { c.friction = 0; }));
   scene("friction a tenth too great", "slope", colliders([](Collider& c) { c.friction *= 1.1; }));
   scene("every 100th triangle ignored", "tiles", mesh(without_every_100th));

@@ -143,6 +143,11 @@ std::vector<Stage> stages() {
   out.push_back(solved("cantilever", load_scene("validation/cantilever-10", {"time.duration_s=2"})));
   out.push_back(solved("heavy", load_scene("validation/heavy-strip", {"time.duration_s=2"})));
   out.push_back(solved("slope", load_scene("validation/incline-slip")));
+  out.push_back(solved(
+      "ramp",
+      load_scene(
+          "validation/incline-slip",
+          {R"(colliders=[{"type":"plane","point_m":[0,0,0],"normal":[0.3007057995042731,0.9537169507482269,0],"margin_m":0.004,"friction":0.3}])"})));
   out.push_back(solved("ball", load_scene("contact/sphere", {"cloth.grid=[17,17]", "time.duration_s=1",
                                                              "cloth.pose.center_m=[0,0.2,0]"})));
   out.push_back(solved("tiles", over_tiles()));

@@ -14,6 +14,7 @@ root = pathlib.Path(sys.argv[1])
 sys.path[:0] = [str(root / "scripts"), str(root / "scripts/reference")]
 import figures  # noqa: E402
 import reference  # noqa: E402
+import sources as measured  # noqa: E402
 
 HEAD = "scene,solver,setting,status,expect,gpu,cpu,git_commit,git_dirty,source_sha256,created,fps_median,free_fall_error"
 
@@ -80,7 +81,7 @@ with tempfile.TemporaryDirectory() as scratch:
 
 # Two commits are one study if what may change a figure is the same in both, also where this tree knows neither of them.
 if head:
-    sources = reference.source_sha256()
+    sources = measured.source_sha256()
     two = [row("gravity-64-single", "paper", 310, "1" * 40, sources=sources), row("gravity-128-single", "paper", 200, "2" * 40, sources=sources)]
     with tempfile.TemporaryDirectory() as scratch:
         code, said = checked(made(pathlib.Path(scratch), "1" * 40, two, sources))
