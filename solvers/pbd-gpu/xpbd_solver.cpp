@@ -196,18 +196,12 @@ class Xpbd final : public GpuSolver {
     }
     for (int s = 0; s < substeps; ++s) {
       // First, so that a released vertex is free in the whole frame.
-      if (move_grips_ != nullptr) grips()->record_move(*move_grips_, fraction_after(s, substeps), dt_s);
+      if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
       if (contact_) contact_->record_before(s, substeps, dt_s);
       record_lines(s, 1, substeps, dt_s, s == 0 ? start : step);
       if (contact_) contact_->record_after(s, substeps, dt_s);
       if (contact_ && chains_) chains_->record_welds();
     }
-  }
-
-  /// Where a substep ends, as a fraction of the frame, as time_of() of the kernels of contact has it.
-  static double fraction_after(int s, int substeps) {
-    if (s + 1 == substeps) return 1;
-    return static_cast<double>(static_cast<float>(s + 1) * static_cast<float>(1.0 / substeps));
   }
 
   /// A frame as long as several (a hitch) takes the substeps of several: a link turns no farther in a substep, and no

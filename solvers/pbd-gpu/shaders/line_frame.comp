@@ -148,7 +148,8 @@ void store() {
 /// Held vertices go where hands take them, on a straight line through the frame.
 void move_held(uint substep) {
   barrier();  // reads of the last substep before held vertices move
-  float fraction = float(p.first_substep + substep + 1u) * p.substep_part;
+  // As the host has it for move_grips: the quotient, not a multiple of a rounded part.
+  float fraction = float(p.first_substep + substep + 1u) / floor(1.0 / p.substep_part + 0.5);
   for (uint g = thread; g < GRIPS; g += THREADS) {
     GripVertex grip = LOAD(48u, grips, g);
     if (grip.held == 0u) continue;

@@ -204,7 +204,7 @@ void keep_reach() {
 bool substep_with(uint s, bool touches) {
   begin_substep(s);
   if (GRIPS > 0u) {
-    EACH(g, GRIPS) move_grip(g, t_end, p.frames_per_s);
+    EACH(g, GRIPS) move_grip(g, float(s + 1u) / float(p.substeps), p.frames_per_s);
     MEET_OR_FAIL;  // held vertices before all read them
   }
   uint near = 0u;
