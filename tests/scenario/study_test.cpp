@@ -343,6 +343,21 @@ TEST(Settings, TuningIsOneObjectAndItsMembersAreTakenWhereTheyWereOnce) {
   EXPECT_THROW(complete_settings(info, now), Error) << "another solver has none";
 }
 
+TEST(Settings, RetiredOnesDoNothingWithOneNotice) {
+  SolverInfo info;
+  info.name = "older";
+  info.settings = {{"iterations", "5", ""}};
+  info.tuning = {{"lanes", "0", ""}};
+  info.retired = {"samples", "mode"};
+  ::testing::internal::CaptureStderr();
+  const nlohmann::json all = complete_settings(info, {{"samples", 3}, {"tuning", {{"mode", "x"}, {"lanes", 2}}}});
+  EXPECT_EQ(all, (nlohmann::json{{"iterations", 5}, {"tuning", {{"lanes", 2}}}}));
+  EXPECT_EQ(complete_settings(info, {{"samples", 4}})["iterations"], 5);
+  const std::string notice = ::testing::internal::GetCapturedStderr();
+  EXPECT_EQ(notice, "notice: solver older: samples, mode: no longer a setting; without effect\n");
+  EXPECT_THROW(complete_settings(info, {{"sample", 3}}), Error);
+}
+
 TEST(Solvers, NearestNameIsNamed) {
   try {
     find_solver("balistic");
