@@ -100,8 +100,13 @@ double draw_shape(json& scene, DrawnValues& draw) {
 }
 
 void draw_start(json& scene, DrawnValues& draw) {
+  // More than this share of a link would stretch some at the start by more than the bound of the run allows.
+  constexpr double kMostNoise = 0.05;
+  const json& cloth = scene["cloth"];
+  const double link = cloth["size_m"][0].get<double>() / (cloth["grid"][0].get<int>() - 1);
   const int seed = draw.dice().whole(0, 1000000000);
-  scene["cloth"]["start"] = {{"shape", "rest"}, {"noise_m", draw.between("noise_m")}, {"seed", seed}};
+  const double noise = rounded(std::min(draw.between("noise_m"), kMostNoise * link));
+  scene["cloth"]["start"] = {{"shape", "rest"}, {"noise_m", noise}, {"seed", seed}};
   scene["cloth"]["self_collision"]["thickness_m"] = draw.between("thickness_m");
   draw.note("start_seed", seed);
 }

@@ -31,6 +31,24 @@ std::string tuned(const nlohmann::json& settings, const char* member) {
   return settings.value(kTuning, nlohmann::json::object()).value(member, "auto");
 }
 
+double distance_to_box(const Collider& c, const Vec3& from) {
+  Vec3 beyond{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    double along = 0;
+    for (std::size_t i = 0; i < 3; ++i) along += c.axes[k][i] * (from[i] - c.center_m[i]);
+    beyond[k] = std::max(0.0, std::abs(along) - c.half_extent_m[k]);
+  }
+  return norm(beyond);
+}
+
+double distance_to_vertices(const ColliderMesh& mesh, const Vec3& from) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i + 2 < mesh.positions.size(); i += 3)
+    least = std::min(least, norm(Vec3{mesh.positions[i] - from[0], mesh.positions[i + 1] - from[1],
+                                      mesh.positions[i + 2] - from[2]}));
+  return least;
+}
+
 /// Lower bound of the distance [m] from a point to a collider that stands.
 double distance_to(const Collider& c, const Vec3& from) {
   const auto to = [&](const Vec3& p) { return norm(Vec3{p[0] - from[0], p[1] - from[1], p[2] - from[2]}); };
@@ -41,7 +59,7 @@ double distance_to(const Collider& c, const Vec3& from) {
     case Collider::Shape::Sphere:
       return to(c.center_m) - c.radius_m;
     case Collider::Shape::Box:
-      return to(c.center_m) - norm(c.half_extent_m);
+      return distance_to_box(c, from);
     case Collider::Shape::Mesh: {
       // Every point of a triangle is nearer to its first corner than the triangle's longest side.
       double least = std::numeric_limits<double>::infinity();
@@ -127,6 +145,17 @@ bool touches_nothing(const Scene& scene) {
   return std::all_of(scene.colliders.begin(), scene.colliders.end(), [&](const Collider& c) {
     return !c.moves() && distance_to(c, scene.cloth.center_m) > reach + c.margin_m;
   });
+}
+
+double impact_speed_m_per_s(const Scene& scene) {
+  if (is_held(scene) || scene.colliders.empty() || touches_nothing(scene)) return 0;
+  double fall_m = std::numeric_limits<double>::infinity();
+  for (const Collider& c : scene.colliders) {
+    if (c.moves()) return 0;
+    const Vec3& from = scene.cloth.center_m;
+    fall_m = std::min(fall_m, c.mesh ? distance_to_vertices(*c.mesh, from) : std::max(0.0, distance_to(c, from)));
+  }
+  return norm(scene.cloth.initial_velocity_m_per_s) + std::sqrt(2 * norm(scene.gravity_m_per_s2) * fall_m);
 }
 
 Choice tension_of(const Scene& scene, const nlohmann::json& settings) {

@@ -33,5 +33,8 @@ bool is_held(const Scene&);
 /// away than a fall from its start takes it, count as none. Such a scene has no contact, and the motion is the same
 /// with and without those colliders.
 bool touches_nothing(const Scene&);
+/// Speed [m/s] at which a cloth that nothing holds meets colliders that stand: its first speed, and that of a fall by
+/// the distance from its centre to the nearest of them. 0 if it is held or has none, or one that moves.
+double impact_speed_m_per_s(const Scene&);
 
 }  // namespace clothbench::pbd_gpu

@@ -25,6 +25,7 @@ const float kGuard_m = 2e-4;    // distance of planes from pieces
 const float kRecovered = 0.1;   // share of the margin by which what is too near is let out a substep
 const float kStandingShare = 0.75;  // of the margin: what edges and faces keep from what stands
 const float kHold_m = 1e-3;     // a push before the lines of so much doubles a vertex' mass in them
+const float kStruck_m_per_s = 0.2, kMostStruck = 4.0;  // how much heavier a vertex is in the lines after contact has moved it
 const float kRounding_m = 2e-7;  // of positions
 const float kTiny = 1e-6;       // a weight below is none
 
@@ -53,11 +54,13 @@ uint turn = 0u;  // 0: before the lines, with the predicted positions; 1 and on:
 // Only what moves is responded to before the lines. What stands would take its friction from a way without the lines' pull: a strip
 // that hangs over a cylinder slips at 5 % less overhang than friction holds (capstan-hold), and at 0.7 % less with one response.
 #define FIRST_TURN (MOVING != 0u ? 0u : 1u)
+uint substep_now = 0u;
 float t_begin = 0.0, t_end = 1.0;  // of the substep, as fractions of the frame
 
 /// Exact at the frame's end: there the next frame begins.
 float time_of(uint substep) { return substep >= p.substeps ? 1.0 : float(substep) * p.substep_part; }
 void begin_substep(uint substep) {
+  substep_now = substep;
   t_begin = time_of(substep);
   t_end = time_of(substep + 1u);
 }

@@ -36,7 +36,10 @@ void list_touched(uint i) {
   uint pairs_of = LOAD16(ranges, TRIANGLES + i).y;
   for (uint f = LOAD4(fans, i), end = LOAD4(fans, i + 1u); f < end; ++f) pairs_of += LOAD16(ranges, LOAD4(fans, f) / 4u).y;
   STORE4(touched, OF_PAIRS(i), pairs_of);
-  if (pairs_of > 0u) STORE4(touched, atomicAdd(ledger.touched_vertices, 1u), i);
+  if (pairs_of == 0u) return;
+  STORE4(touched, atomicAdd(ledger.touched_vertices, 1u), i);
+  vec4 at = LOAD16(x, i);
+  STORE16(x, i, vec4(at.xyz, at.w / (1.0 + LOAD16(v, i).w)));  // plane_project.glsl
 }
 #endif
 

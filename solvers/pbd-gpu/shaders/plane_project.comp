@@ -2,7 +2,7 @@
 // A substep's end, a thread a vertex; SHUFFLES: a team of lanes.
 #include "common.glsl"
 #include "plane_buffers.glsl"
-layout(std430, binding = BIND_POSITIONS) writeonly buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
+layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };  // w: inverse mass
 layout(std430, binding = BIND_STARTS) buffer Starts { vec4 starts[]; };  // at the substep's start; w: farthest it may go
@@ -21,6 +21,7 @@ layout(std430, binding = BIND_SELF_NEAR) buffer SelfNears { SelfNear self_near[]
 #include "plane_project.glsl"
 
 void main() {
+  begin_substep(p.first_substep);
   project_all(item(), stride());
   if (item() == 0u) ledger.asked[1] = ledger.self_near = ledger.self_touching = 0u;  // for the next substep
 }

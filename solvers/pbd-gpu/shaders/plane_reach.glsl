@@ -26,6 +26,7 @@ vec4 reach_of_vertex(uint i, float carried) {
   vec4 at = LOAD16(x, i);
   float reach = reach_from(i, at, carried);
   STORE16(starts, i, vec4(at.xyz, 0.0));
+  STORE16(y, i, at);
   STORE16(reaches, i, vec4(at.xyz, reach));
   STORE4(ways, i, 0.0);
   return vec4(at.xyz, reach);

@@ -10,11 +10,18 @@ void forget_near(uint first, uint at_once) {
   for (uint k = first; k < (ledger.pairs + 31u) / 32u; k += at_once) near_bits[NEAR_BITS + k] = near_bits[PUSH_BITS + k] = 0u;
 }
 
+/// Inverse mass of a vertex that has `in_lines` there. Hands hold and let go between the two.
+float mass_of(uint i, float in_lines) {
+  float w = LOAD16(y, i).w;
+  return in_lines == 0.0 || w == 0.0 ? in_lines : w;
+}
+
 #ifndef SETTLE_ALONE
 /// Where a vertex would be without links and contact. Tethers come with the lines.
 void predict(uint i) {
   vec4 at = LOAD16(x, i);
   vec3 vel = LOAD16(v, i).xyz;
+  at.w = mass_of(i, at.w);
   if (at.w > 0.0) at.xyz += p.h * (vel + p.gravity_h.xyz - p.loss * vel);
   STORE16(y, i, at);
   starts[i].w = farthest(i, at.xyz);
@@ -35,8 +42,7 @@ vec3 within_reach(uint i, vec3 to, float w) {
 
 void settle(uint i) {
   vec4 at = LOAD16(x, i);
-  // Of x after a response before the lines it is that in the lines.
-  float w = MOVING != 0u ? LOAD16(y, i).w : at.w;
+  float w = mass_of(i, at.w);
   vec3 to = within_reach(i, at.xyz, w);
   STORE16(y, i, vec4(to, w));
   starts[i].w = farthest(i, to);
