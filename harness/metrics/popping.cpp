@@ -57,7 +57,7 @@ Popping popping(const RunView& r) {
       out.way_m = max_or_nan(out.way_m, moved(r.pass, vertices, v, from - 1, f));
   out.speed_m_per_s = 0;
   for (std::size_t f = from; !never_touched && f < std::min(speed->size(), r.pass.time_s.size()); ++f)
-    if (r.pass.time_s[f] - r.pass.time_s[from - 1] <= kPopSeconds + 1e-9)
+    if (f == from || r.pass.time_s[f] - r.pass.time_s[from - 1] <= kPopSeconds + 1e-9)
       out.speed_m_per_s = max_or_nan(out.speed_m_per_s, (*speed)[f]);
   // Cloth that is hit moves at up to twice the collider's speed (as off a bat); falling cloth falls at most its own
   // length.
@@ -127,8 +127,7 @@ MetricGroup popping_metrics() {
        {"pop_speed_ratio",
         own({"touching_fraction", "speed_max"},
             "greatest speed within 0.1 s after the last contact with a collider that moves, over twice the collider's "
-            "or "
-            "that of a fall of the cloth's length, whichever is more",
+            "or that of a fall of the cloth's length, whichever is more",
             pop_speed_ratio, "1"),
         Yes, &kFastest, 240},
        {"rest_jitter_m",

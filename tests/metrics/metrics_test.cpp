@@ -140,7 +140,8 @@ TEST_F(Metrics, ASceneOnlyGetsWhatAppliesToIt) {
 }
 
 TEST(MetricVersions, AreOneUnlessARuleHasChanged) {
-  const std::set<std::string> kSecond = {"tunnelled_fraction", "tunnelled_depth_m", "touching_fraction", "depth_m"},
+  const std::set<std::string> kSecond = {"tunnelled_fraction", "tunnelled_depth_m", "touching_fraction", "depth_m",
+                                         "speed_max"},
                               kThird = {"contact_length_m",   "contact_pairs",      "contact_cloth_fraction",
                                         "depth_p99_m",        "depth_mean_m",       "penetrating_area_m2",
                                         "wrong_side_samples", "wrong_side_fraction"};

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "metrics/collider_passage.hpp"
@@ -203,6 +204,19 @@ TEST(Passage, PoppingIsWhatComesAfterTheLastContact) {
   EXPECT_NEAR(s.at("pop_speed_m_per_s"), 1.5, 1e-12);
   EXPECT_NEAR(s.at("pop_speed_ratio"), 1.5 / 6, 1e-9)
       << "twice the collider's 3 m/s is more than a fall of the cloth's length";
+}
+
+TEST(Passage, TheFirstFrameAfterContactCountsHoweverLong) {
+  const Scene scene = load_scene(
+      "contact/plane",
+      {"cloth.grid=[9,9]", "time.duration_s=1", "time.frame_rate_hz=4",
+       R"(colliders=[{"type":"capsule","center_m":[0,0,0],"radius_m":0.1,"length_m":0.4,"axis":[0,0,1],"velocity_m_per_s":[0,-3,0]}])"});
+  const double down = scene.cloth.center_m[1] - 0.1 - scene.colliders[0].margin_m;
+  const Path path = [&](int, std::vector<double>& x) {
+    for (std::size_t k = 1; k < x.size(); k += 3) x[k] -= down;
+  };
+  const auto s = summary_of(scene, passed(scene, path, [](int frame) { return frame == 1 ? 7.0 : 1.0; }));
+  EXPECT_NEAR(s.at("pop_speed_m_per_s"), 7, 1e-12);
 }
 
 TEST(Passage, WhatSwingsBackOntoAHandAtRestIsNoPopping) {
