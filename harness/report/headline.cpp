@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include "base/words.hpp"
@@ -53,7 +54,8 @@ std::vector<std::string> plugin_lines(const std::vector<RunRecord>& runs) {
     const nlohmann::json& p = e["plugin"];
     const std::string line =
         fmt::format("{}† is a plugin, version {}: {}. Library {}, SHA-256 {}.", c.header.solver,
-                    text(e, "solver_version"), text(p, "summary"), text(p, "path"), text(p, "sha256").substr(0, 16));
+                    text(e, "solver_version"), text(p, "summary"),
+                    std::filesystem::path(text(p, "path")).filename().string(), text(p, "sha256").substr(0, 16));
     add(out, line);
   }
   return out;

@@ -285,6 +285,7 @@ TEST(Tables, PluginsAreMarkedInTablesAndDataAlike) {
   const PluginMarks none(study());
   EXPECT_EQ(none.text("jolt"), "jolt");
   EXPECT_NE(headline(runs, Format::Markdown).find("jolt† is a plugin"), std::string::npos);
+  EXPECT_NE(headline(runs, Format::Markdown).find("Library p.so,"), std::string::npos) << "no path of a machine";
 }
 
 }  // namespace

@@ -72,6 +72,15 @@ with open(reference / "contact-h200/planes-rates.csv", encoding="utf-8", newline
 plain, limits = (re.sub(r"\s+", " ", text) for text in (study, (root / "README.md").read_text(encoding="utf-8")))
 
 
+with open(reference / "contact-h200/planes-earlier-bounds.csv", encoding="utf-8", newline="") as f:
+    earlier = {(r["scene"], r["setting"]): r for r in csv.DictReader(f)}
+
+
+def shapes(setting):
+    drops = [r["expect"] for k, r in now.items() if k[1] == setting and re.search("-(sphere|box)$", k[0])]
+    return f"{sum(e != 'pass' for e in drops)} of {len(drops)}"
+
+
 def counts(runs, setting):
     return sum(runs[k]["expect"].startswith("pass") for k in now if k[1] == setting)
 
@@ -85,19 +94,26 @@ low, high = (round(100 * float(planes["default", "all"][k])) for k in ("rate_low
 leaks = sorted(k[1] for k in now if re.search("contact_length|tunnelled|wrong_side|hooked|depth_max", now[k]["expect"]))
 assert leaks == ["default", "fast"] and all("-191-" in k[0] for k in now if "wrong_side" in now[k]["expect"]), leaks
 assert all(float(r["self_contact_length_max_m"] or 0) == 0 for r in now.values())
-assert of("default", "0–2") == "67 of 67"
+assert of("default", "0–2") == "67 of 67" and shapes("accurate").startswith("0 of") and "in all 67 below 2 m/s" in limits
+assert len(earlier) == 400 and {r["git_dirty"] for r in earlier.values()} == {"false"}
 for setting in ("default", "accurate", "fast"):
     assert of(setting) == f"{counts(now, setting)} of {sum(k[1] == setting for k in now)}", setting
 for words in (
     f"Of 600 runs {len(now)} ended",
-    f"At default {of('default')} scenes pass** ({low} to {high} %), {counts(before, 'default')} of the same before",
-    f"At `accurate` {of('accurate')}, {counts(before, 'accurate')} before. At `fast` {of('fast')}.",
+    f"At default {of('default')} scenes pass** ({low} to {high} %)",
+    *(
+        f"| {s} | {of(s)} | {counts(earlier, s)} | {counts(before, s)} | {sum(r['expect'] == 'pass' for k, r in earlier.items() if k[1] == s)} |"
+        for s in ("default", "accurate")
+    ),
+    f"| fast | {of('fast')} | – |",
+    f"All {planes['default', '0–2']['drawn']} scenes below 2 m/s pass",
+    f"{shapes('default')} at default, none of {shapes('accurate').split()[-1]} at `accurate`",
     f"and {of('default', '≥ 10')} above 10 m/s",
 ):
     assert words in plain, words
 for words in (f"holds in {of('default')} [", f"({low} to {high} %)", f"`accurate` in {of('accurate')}, at `fast` in {planes['fast', 'all']['passed']}"):
     assert words in limits, words
-assert f"{of('default').replace('of', 'of the')} that were run again ({counts(before, 'default')} before" in re.sub(r"\s+", " ", index)
+assert f"{of('default').replace('of', 'of the')} that were run again, {counts(earlier, 'default')} of them by the bounds of before ({counts(before, 'default')} before" in re.sub(r"\s+", " ", index)
 
 # And what it says of cost, in milliseconds of GPU time.
 cost = {}
@@ -119,6 +135,12 @@ for words in (
 ):
     assert words in limits, words
 assert cost["desk-flat-low-desk", "default"] == cost["hand-push", "default"]
+falls = sorted(float(cost[k, "default"]) for k in ("self-fold", "self-crumple"))
+for words in (
+    f"takes {min(sweeps):.2f} to {max(sweeps):.2f} ms of GPU time",
+    f"take {cost['hand-push', 'default']} ms, a cloth that falls onto itself {falls[0]:.1f} to {falls[1]:.1f} ms, and a cloth without contact {cost['gravity-none', 'default']} ms",
+):
+    assert words in re.sub(r"\s+", " ", (root / "solvers/pbd-gpu/PLANES.md").read_text(encoding="utf-8")), words
 
 # And of the published ones.
 with open(reference / "penetration/penetration.csv", encoding="utf-8", newline="") as f:
