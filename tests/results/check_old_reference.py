@@ -142,6 +142,16 @@ for words in (
 ):
     assert words in re.sub(r"\s+", " ", (root / "solvers/pbd-gpu/PLANES.md").read_text(encoding="utf-8")), words
 
+# The bounds of drawn pulls are the converged solutions plus 10 %.
+with open(reference / "contact-h200/pulls.csv", encoding="utf-8", newline="") as f:
+    pulls = list(csv.DictReader(f))
+contact = json.loads((root / "scenarios/studies/contact.json").read_text(encoding="utf-8"))
+(bounds,) = (s["draw"]["set"]["expect"] for s in contact["scenes"] if s["draw"]["kind"] == "stretch")
+assert len(pulls) == 10 and {r["git_dirty"] for r in pulls} == {"false"}
+for scalar in ("grip_edge_ratio_max", "stretch_max"):
+    greatest = max(float(r[scalar]) for r in pulls)
+    assert abs(bounds[scalar]["at_most"] - 1.1 * greatest) <= 0.001 and f"{greatest:.3f}" in bounds[scalar]["why"], (scalar, greatest)
+
 # And of the published ones.
 with open(reference / "penetration/penetration.csv", encoding="utf-8", newline="") as f:
     verdicts = [(r["solver"], r["expect"].split(":")[0]) for r in csv.DictReader(f) if r["setting"] == "default"]
