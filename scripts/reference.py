@@ -202,7 +202,7 @@ def readme(folder, listing):
             *([listing["note"], ""] if listing.get("note") else []),
             "<!-- needs hardware: a GPU -->", "```sh",
             "scripts/reference.sh OUT --table h200         # call again while its exit status is 75",
-            "scripts/reference.sh SOFT --table software    # parts without times, on any machine",
+            "scripts/reference.sh SOFT --table software    # parts that need no GPU, on any machine",
             "scripts/reference.sh --report OUT SOFT", "```", "", "## Claims of the paper", "",
             markdown(claims_table(tables, data("claims.json"))), ""]
     if "penetration" in listing["studies"]:
@@ -225,7 +225,7 @@ def readme(folder, listing):
         how = "timed" if facts["how"] == ["timed"] else "untimed" if "timed" not in facts["how"] else "timed, in part untimed"
         text += [" · ".join([*(re.sub(r" RUNS=(.*)`$", r"` (runs `\1`)", f"`clothbench {c}`") for c in facts["commands"]), ", ".join(facts["devices"] + facts["cpus"]), ", ".join(facts["days"]), how]), ""]
     if (folder.parent / "EARLIER.md").exists():
-        text += ["## Earlier studies", "", "[EARLIER.md](EARLIER.md) has what is not measured again yet, at other commits.", ""]
+        text += ["## Beside this study", "", "[EARLIER.md](EARLIER.md) has 200 drawn contact scenes, measured at other commits.", ""]
     if (folder.parent / "CHANGES.md").exists():
         text += ["## Before", "", "[CHANGES.md](CHANGES.md) has the figures of earlier studies beside these.", ""]
     if (folder.parent / "pictures").exists():
@@ -253,6 +253,18 @@ def texts_of(to):
             if text and re.search(pattern, before, re.S):
                 out[ROOT / name] = re.sub(pattern, lambda m, t=text: m[1] + t + "\n" + m[2], out[ROOT / name], flags=re.S)
     return out
+
+
+def motions_of(parts):
+    """Result files whose motions the page shows: of each set-up and solver the first that has one. Packed results may have none (pack.py)."""
+    import h5py
+    shown = {}
+    for group in ("table3", "penetration", "software-penetration", "meshes"):
+        for h5 in (h5 for p in parts.get(group, []) for h5 in sorted(p[0].glob("*.h5")) if SET_UPS.match(h5.name)):
+            with h5py.File(h5) as file:
+                if h5.name not in shown and "trajectory/position" in file:
+                    shown[h5.name] = h5
+    return [shown[name] for name in sorted(shown)]
 
 
 def publish(folders, to, work):
@@ -284,8 +296,7 @@ def publish(folders, to, work):
     if len(sources) > 1 or (len(commits) > 1 and not all(f["sources"] for f in facts.values())):
         sys.exit("the folders hold results of different sources; a reference study has one state of what may change a figure")
     listing = {"format": "clothbench-reference", "format_version": 1, "commit": sorted(commits)[0], "source_sha256": "".join(sources), "studies": facts, "results": files}
-    shown = [h5 for group in ("table3", "penetration", "meshes") for p in parts.get(group, []) for h5 in sorted(p[0].glob("*.h5")) if SET_UPS.match(h5.name)]
-    template = report(bench, shown or inputs, work / "motions")
+    template = report(bench, motions_of(parts) or inputs, work / "motions")
     studies = [["study", "question", "answer", "machine", "day", "how"]]
     for s in data("studies.json"):
         if s["group"] in parts:

@@ -9,16 +9,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 REFERENCE = ROOT / "results/reference/h200"
-PUBLISHED_BEFORE = {"table3": "table3-h200", "hang": "hang-h200"}  # until the reference study replaces them
-
-
-def report_of(study):
-    new = REFERENCE / study / "report.md"
-    return new if new.exists() else REFERENCE.parent / PUBLISHED_BEFORE[study] / "report.md"
-
-
-SPEED = report_of("table3")
-STRETCH = report_of("hang")
+SPEED = REFERENCE / "table3/report.md"
+STRETCH = REFERENCE / "hang/report.md"
 # Rows of the reports: solver and sides, as printed there.
 SOLVERS = [("bullet-soft", "single"), ("paper", "single"), ("paper", "double-duplicated"), ("xpbd", "single")]
 PUBLISHED = ["published: Unity Cloth", "published: PBD single-sided", "published: PBD double-sided"]

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """A copy of the results of scripts/reference.sh for the way to another machine.
 
-    scripts/reference.sh --pack OUT TO [PART…]
+    scripts/reference.sh --pack OUT TO [--no-motions] [PART…]
 
 Writes TO/part-00, part-01, … of at most 15 MB each; `cat part-* | tar xz` unpacks them. With PARTs, only those. Motions that no table and no part of the page shows are left out, and comparisons of
-motions of more than 6 MB.
+motions of more than 6 MB. --no-motions leaves out all motions but those that tables compare: the page then shows those of the parts software-….
 Needs h5py; PYTHON names the Python that has it.
 """
 import json
@@ -39,7 +39,7 @@ def study_of(folder):
     return json.loads(manifest.read_text(encoding="utf-8")) if manifest.exists() else {}
 
 
-def copy_part(part, to):
+def copy_part(part, to, motions):
     """The part's files; comparisons with a motion that is too large leave its study.json."""
     to.mkdir(parents=True)
     study = study_of(part)
@@ -51,7 +51,7 @@ def copy_part(part, to):
     paired = set().union(*(scenes(p) for p in kept)) if kept else set()
     for file in files:
         scene = file.name.split("__")[0]
-        slim(file, to / file.name, scene in paired or bool(SET_UPS.match(file.name)) or part.name in COMPARED)
+        slim(file, to / file.name, scene in paired or (motions and bool(SET_UPS.match(file.name))) or part.name in COMPARED)
     if pairs:
         study["definition"]["pairs"] = kept
     if study:
@@ -60,7 +60,7 @@ def copy_part(part, to):
         shutil.copy(file, to)
 
 
-def pack(out, to, only):
+def pack(out, to, only, motions):
     to.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
         scratch = pathlib.Path(scratch)
@@ -68,7 +68,7 @@ def pack(out, to, only):
         copies.mkdir()
         for path in sorted(out.iterdir()):
             if path.is_dir() and (not only or path.name in only):
-                copy_part(path, copies / path.name)
+                copy_part(path, copies / path.name, motions)
             elif path.is_file() and (not only or path.stem in only or path.name == "version"):
                 shutil.copy(path, copies)
         whole = scratch / "all.tar.gz"
@@ -85,4 +85,5 @@ def pack(out, to, only):
 if __name__ == "__main__":
     if len(sys.argv) < 3 or not pathlib.Path(sys.argv[1]).is_dir():
         sys.exit(__doc__)
-    pack(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3:])
+    names = sys.argv[3:]
+    pack(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), [n for n in names if n != "--no-motions"], "--no-motions" not in names)

@@ -1,0 +1,115 @@
+"""What the documents say of the study of 200 drawn contact scenes is what its tables have, and the bounds of drawn pulls are those measured."""
+import csv
+import json
+import pathlib
+import re
+import sys
+
+root = pathlib.Path(sys.argv[1])
+reference = root / "results/reference"
+
+# What the documents say of drawn contact scenes is what the table has.
+with open(reference / "contact-h200/contact-rates.csv", encoding="utf-8", newline="") as f:
+    rates = {(r["solver"], r["setting"], r["kind"]): r for r in csv.DictReader(f) if r["speed_m_per_s"] == "all"}
+
+
+def passed(solver, setting, kind):
+    return rates[solver, setting, kind]["passed"] + " of " + rates[solver, setting, kind]["drawn"]
+
+
+index, study = ((root / name).read_text(encoding="utf-8") for name in ("results/reference/EARLIER.md", "results/reference/contact-h200/README.md"))
+total = rates["xpbd", "default", "all"]
+interval = f"({100 * float(total['rate_low']):.0f} to {100 * float(total['rate_high']):.0f} %)"
+assert passed("xpbd", "default", "all") in index and interval in index, interval
+for kind, words in (("push", "pushes"), ("sweep-mesh", "sweeps of a hand mesh"), ("sweep-capsules", "sweeps of capsules")):
+    assert f"{passed('xpbd', 'default', kind)} {words}" in re.sub(r"\s+", " ", index), kind
+for solver, setting in (("xpbd", "default"), ("bullet-soft", "default"), ("paper", "default")):
+    count, drawn = (rates[solver, setting, "all"][k] for k in ("passed", "drawn"))
+    assert f"`{solver}` passes {count} of {drawn}" in study or f"`{solver}` {count}" in study, solver
+assert f"{rates['xpbd', 'accurate', 'all']['passed']} at `accurate`" in study
+
+# What they say of the same scenes since planes hold every collider off.
+with open(reference / "contact-h200/contact-runs.csv", encoding="utf-8", newline="") as f:
+    before = {(r["scene"], r["setting"]): r for r in csv.DictReader(f) if r["solver"] == "xpbd"}
+with open(reference / "contact-h200/planes-runs.csv", encoding="utf-8", newline="") as f:
+    now = {(r["scene"], r["setting"]): r for r in csv.DictReader(f) if r["status"] == "ok"}
+with open(reference / "contact-h200/planes-rates.csv", encoding="utf-8", newline="") as f:
+    planes = {(r["setting"], r["speed_m_per_s"]): r for r in csv.DictReader(f) if r["kind"] == "all"}
+plain, limits = (re.sub(r"\s+", " ", text) for text in (study, (root / "README.md").read_text(encoding="utf-8")))
+
+
+with open(reference / "contact-h200/planes-earlier-bounds.csv", encoding="utf-8", newline="") as f:
+    earlier = {(r["scene"], r["setting"]): r for r in csv.DictReader(f)}
+
+
+def shapes(setting):
+    drops = [r["expect"] for k, r in now.items() if k[1] == setting and re.search("-(sphere|box)$", k[0])]
+    return f"{sum(e != 'pass' for e in drops)} of {len(drops)}"
+
+
+def counts(runs, setting):
+    return sum(runs[k]["expect"].startswith("pass") for k in now if k[1] == setting)
+
+
+def of(setting, speed="all"):
+    r = planes[setting, speed]
+    return f"{r['passed']} of {r['drawn']}"
+
+
+low, high = (round(100 * float(planes["default", "all"][k])) for k in ("rate_low", "rate_high"))
+leaks = sorted(k[1] for k in now if re.search("contact_length|tunnelled|wrong_side|hooked|depth_max", now[k]["expect"]))
+assert leaks == ["default", "fast"] and all("-191-" in k[0] for k in now if "wrong_side" in now[k]["expect"]), leaks
+assert all(float(r["self_contact_length_max_m"] or 0) == 0 for r in now.values())
+assert of("default", "0–2") == "67 of 67" and shapes("accurate").startswith("0 of")
+assert len(earlier) == 400 and {r["git_dirty"] for r in earlier.values()} == {"false"}
+for setting in ("default", "accurate", "fast"):
+    assert of(setting) == f"{counts(now, setting)} of {sum(k[1] == setting for k in now)}", setting
+for words in (
+    f"Of 600 runs {len(now)} ended",
+    f"At default {of('default')} scenes pass** ({low} to {high} %)",
+    *(
+        f"| {s} | {of(s)} | {counts(earlier, s)} | {counts(before, s)} | {sum(r['expect'] == 'pass' for k, r in earlier.items() if k[1] == s)} |"
+        for s in ("default", "accurate")
+    ),
+    f"| fast | {of('fast')} | – |",
+    f"All {planes['default', '0–2']['drawn']} scenes below 2 m/s pass",
+    f"{shapes('default')} at default, none of {shapes('accurate').split()[-1]} at `accurate`",
+    f"and {of('default', '≥ 10')} above 10 m/s",
+):
+    assert words in plain, words
+for words in (f"holds in {of('default')} ({low} to {high} %)", f"`accurate` in {of('accurate')}, at `fast` in {planes['fast', 'all']['passed']}"):
+    assert words in limits, words
+assert f"{of('default').replace('of', 'of the')} that were run again, {counts(earlier, 'default')} of them by the bounds of before ({counts(before, 'default')} before" in re.sub(r"\s+", " ", index)
+
+# And what it says of cost, in milliseconds of GPU time.
+cost = {}
+for name in ("planes-cost", "cost"):
+    with open(reference / f"contact-h200/{name}.csv", encoding="utf-8", newline="") as f:
+        for r in csv.DictReader(f):
+            if r["frame_device_median_s"] and r["setting"] in ("default", "points"):
+                cost[r["scene"], r["setting"]] = f"{1e3 * float(r['frame_device_median_s']):.2f}"
+table = [row for row in study.splitlines() if re.match(r"\| [a-z0-9-]+ \| [0-9.]+ \|", row)]
+for row in table:
+    scene, now_ms, before_ms = (c.strip() for c in row.strip("|").split("|")[:3])
+    assert now_ms == cost[scene, "default"] and before_ms == cost.get((scene, "points"), "–"), row
+assert len(table) == sum(k[1] == "default" for k in cost), len(table)
+sweeps = [float(cost[f"capsule-sweep-{v}mps", "default"]) for v in ("0p8", "3p3", "7p7", "13")]
+assert cost["desk-flat-low-desk", "default"] == cost["hand-push", "default"]
+falls = sorted(float(cost[k, "default"]) for k in ("self-fold", "self-crumple"))
+for words in (
+    f"takes {min(sweeps):.2f} to {max(sweeps):.2f} ms of GPU time",
+    f"take {cost['hand-push', 'default']} ms, a cloth that falls onto itself {falls[0]:.1f} to {falls[1]:.1f} ms, and a cloth without contact {cost['gravity-none', 'default']} ms",
+):
+    assert words in re.sub(r"\s+", " ", (root / "solvers/pbd-gpu/PLANES.md").read_text(encoding="utf-8")), words
+
+# The bounds of drawn pulls are the converged solutions plus 10 %.
+with open(reference / "contact-h200/pulls.csv", encoding="utf-8", newline="") as f:
+    pulls = list(csv.DictReader(f))
+contact = json.loads((root / "scenarios/studies/contact.json").read_text(encoding="utf-8"))
+(bounds,) = (s["draw"]["set"]["expect"] for s in contact["scenes"] if s["draw"]["kind"] == "stretch")
+assert len(pulls) == 10 and {r["git_dirty"] for r in pulls} == {"false"}
+for scalar in ("grip_edge_ratio_max", "stretch_max"):
+    greatest = max(float(r[scalar]) for r in pulls)
+    assert abs(bounds[scalar]["at_most"] - 1.1 * greatest) <= 0.001 and f"{greatest:.3f}" in bounds[scalar]["why"], (scalar, greatest)
+
+print("ok")
