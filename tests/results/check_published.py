@@ -114,7 +114,7 @@ with tempfile.TemporaryDirectory() as scratch:
     assert figures.statement(figures.Tables(folder), entry) == ("nan", False)
     assert figures.statement(figures.Tables(folder), {**entry, "needs": "n > 0"}) == (None, None)
     rows = reference.devices_table(folder)
-    assert rows[1][3:] == ["xpbd default < paper default", "paper default < xpbd default", "no"], rows
+    assert rows[1][4:] == ["xpbd default < paper default", "paper default < xpbd default", "no"], rows
 
 # The table of parts can be read, and every study and claim has its data.
 for words, why in ((["--limit", "x"], "expected a positive whole number"), (["--table", "none"], "expected h200, software or quick"), (["--part", "none"], "has no such part"), (["--part"], "expected a value")):
