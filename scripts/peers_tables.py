@@ -4,20 +4,14 @@
     scripts/peers_tables.py FOLDER [--check] DOCUMENT…
 
 Fills the DOCUMENTs between marks such as <!-- peers hang begin --> and <!-- peers hang end -->; --check only compares. FOLDER
-holds what it reads, results/reference/h200 (or results/reference/peers, with the names in brackets):
+holds the reports of the peers' studies, as results/reference/h200 does:
 
-hang (hang.csv): CPU time of a frame [ms] and greatest stretch of the last second [%], medians over the sheets of peers-hang,
+hang: CPU time of a frame [ms] and greatest stretch of the last second [%], medians over the sheets of peers-hang,
 with the lowest and the highest in brackets.
 
-margins (margins.json): for each solver and scene of peers-margins the greatest length of the contour along which the cloth
+margins: for each solver and scene of peers-margins the greatest length of the contour along which the cloth
 passes through colliders [m], the greatest depth [mm] and the share of vertices that went through [%], by the distance [mm] at
 which the solver holds the cloth.
-
-contact (contact.csv): scenes of `study contact` that a solver passes, of those drawn, by kind; kinds that it does not support.
-Where contact.csv has no `bullet-soft`, its row is that of the same scenes in contact-h200, beside FOLDER, and the distance at
-which it holds the cloth is that of penetration.json.
-
-stability (stability.csv): runs of `study stability --short` by grade, and the classes of those that failed.
 """
 import argparse
 import csv
@@ -56,7 +50,7 @@ def spread(values):
 
 
 def hang(folder):
-    rows = [r for r in rows_of(source(folder, "hang")) if r["status"] == "ok"]
+    rows = [r for r in rows_of(folder / SOURCES["hang"]) if r["status"] == "ok"]
     sizes = sorted({int(r["grid_x"]) for r in rows})
     leading = lambda setting: float(setting.split()[0]) if setting[:1].isdigit() else 0  # "300 Hz" before "1200 Hz"
     order = sorted(distinct((r["solver"], r["setting"]) for r in rows), key=lambda k: (k[0], leading(k[1])))
@@ -73,7 +67,7 @@ def hang(folder):
 
 
 def margins(folder):
-    rows = json.loads(source(folder, "margins").read_text(encoding="utf-8"))["runs"]
+    rows = json.loads((folder / SOURCES["margins"]).read_text(encoding="utf-8"))["runs"]
     scenes = distinct(r["scene"] for r in rows)
     out = []
     for name in sorted(distinct(label(r) for r in rows)):
@@ -91,58 +85,15 @@ def margins(folder):
     return markdown(["solver", "holds at", *scenes], out)
 
 
-def contact(folder):
-    rows = [r for r in rows_of(source(folder, "contact")) if r["speed_m_per_s"] == "all"]
-    elsewhere = folder.parent / "contact-h200" / "contact-runs.csv"
-    if "bullet-soft" not in {r["solver"] for r in rows} and (folder / "contact-runs.csv").exists() and elsewhere.exists():
-        seeds = {r["scene"] for r in rows_of(folder / "contact-runs.csv")}
-        held = [r["held_at_most_m"] for r in json.loads((folder / "penetration.json").read_text(encoding="utf-8"))["runs"]
-                if label(r) == "bullet-soft" and r["held_at_most_m"] is not None]
-        bullet = [r for r in rows_of(elsewhere) if r["solver"] == "bullet-soft" and r["scene"] in seeds]
-        for kind in ["all", *distinct(r["kind"] for r in rows if r["kind"] != "all")]:
-            drawn = [r for r in bullet if kind == "all" or r["scene"].split("-", 2)[2] == kind]
-            rows.append({"solver": "bullet-soft (contact-h200)", "setting": "default", "kind": kind, "held_at_mm": f"{1e3 * max(held):g}",
-                         "drawn": str(len(drawn)), "passed": str(sum(r["expect"] == "pass" for r in drawn)),
-                         "unsupported": str(sum(r["status"] == "unsupported" for r in drawn))})
-    kinds = distinct(r["kind"] for r in rows)
-    out = []
-    for name in sorted(distinct(label(r) for r in rows)):
-        mine = {r["kind"]: r for r in rows if label(r) == name}
-        held = next((r["held_at_mm"] for r in mine.values() if r["held_at_mm"]), "–")
-        cell = lambda r: "–" if r["unsupported"] == r["drawn"] else f"{r['passed']}/{r['drawn']}"
-        out.append([name, held, *(cell(mine[k]) if k in mine else "–" for k in kinds)])
-    return markdown(["solver", "holds at [mm]", *kinds], out)
-
-
-def stability(folder):
-    rows = rows_of(source(folder, "stability"))
-    grades = ("stable", "degraded", "failed")
-    out = []
-    for name in sorted(distinct(label(r) for r in rows)):
-        mine = [r for r in rows if label(r) == name]
-        unsupported = sum(r["status"] == "unsupported" for r in mine)
-        why = [r["class"] for r in mine if r["grade"] == "failed"]
-        classes = ", ".join(f"{c} {why.count(c)}" for c in sorted(set(why))) or "–"
-        out.append([name, str(len(mine)), *(str(sum(r["grade"] == g for r in mine)) for g in grades), classes, str(unsupported)])
-    return markdown(["solver", "runs", *grades, "classes of failed", "unsupported"], out)
-
-
-# A table's file in results/reference/h200, and in results/reference/peers.
-SOURCES = {"hang": ("peers-hang/runs.csv", "hang.csv"), "margins": ("peers-margins/penetration.json", "margins.json"),
-           "contact": ("contact/contact-rates.csv", "contact.csv"), "stability": ("peers-stability/stability.csv", "stability.csv")}
-
-
-def source(folder, name):
-    return next((folder / f for f in SOURCES[name] if (folder / f).exists()), folder / SOURCES[name][0])
-
-
-TABLES = {"hang": hang, "margins": margins, "contact": contact, "stability": stability}
+# What each table is made of, below FOLDER.
+SOURCES = {"hang": "peers-hang/runs.csv", "margins": "peers-margins/penetration.json"}
+TABLES = {"hang": hang, "margins": margins}
 
 
 def filled(text, folder):
     for name, make in TABLES.items():
         begin, end = f"<!-- peers {name} begin -->\n", f"<!-- peers {name} end -->"
-        if begin in text and source(folder, name).exists():
+        if begin in text and (folder / SOURCES[name]).exists():
             before, rest = text.split(begin, 1)
             text = before + begin + "\n" + make(folder) + "\n\n" + end + rest.split(end, 1)[1]
     return text
