@@ -25,6 +25,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "reference"))
+from devices import OTHERS, devices_sentence, devices_table  # noqa: E402
 from figures import SET_UPS, Tables, claims_table, markdown, statement  # noqa: E402
 from sources import changed_since  # noqa: E402
 
@@ -91,7 +92,8 @@ def document_of(page):
 
 
 def section(name, title, table, note=""):
-    return {"id": name, "title": title, "tables": [{"title": title, "note": note, "rows": table}]}
+    plain = [[cell.replace("`", "") for cell in row] for row in table]  # the page's cells are text, not Markdown
+    return {"id": name, "title": title, "tables": [{"title": title, "note": note, "rows": plain}]}
 
 
 def merged(documents, motions, extra, head):
@@ -152,83 +154,6 @@ def head_of(listing):
         f"The reference study, measured at commit {listing['commit'][:12]}. Devices: {', '.join(sorted(devices)) or 'none'}; the table of studies says where each ran."
 
 
-# Parts whose names begin with a prefix ran on another device than the study of the rest of the name (scripts/reference.sh --prefix).
-OTHERS = {"software-": "software device", "h100-": "NVIDIA H100"}
-# By what the solvers of a scene are ordered, in which table, and below which value two are equal (single precision). Times are not of a software device.
-ORDERS = {"table3": [("runs.csv", "free_fall_error", 1e-6), ("runs.csv", "frame_wall_median_s", 0)],
-          "hang": [("runs.csv", "stretch_mean_last_second", 1e-6), ("runs.csv", "frame_device_median_s", 0)],
-          "work-precision": [("work-precision.csv", "least time to an error of 1 %", 0)],
-          "contact-cost": [("runs.csv", "frame_device_median_s", 0)],
-          "penetration": [("runs.csv", "expect", 0)]}
-TIMES = {"frame_wall_median_s", "frame_device_median_s", "least time to an error of 1 %"}
-SAME_WITHIN = 1.05  # two figures of an order
-
-
-def figures_of(tables, name, column):
-    """The figure of each solver and setting, by scene."""
-    out = {}
-    for r in tables.rows(name):
-        if r["status"] != "ok":
-            continue
-        of_scene = out.setdefault(r["scene"], {})
-        if column == "least time to an error of 1 %":
-            if not r["refused"] and r["error"] and float(r["error"]) <= 0.01:
-                of_scene[r["solver"]] = min(float(r["wall_ms_per_s"]), of_scene.get(r["solver"], float("inf")))
-        elif r.get(column) and r[column] != "–":
-            of_scene[f"{r['solver']} {r['setting']}"] = r[column] if column == "expect" else float(r[column])
-    return out
-
-
-def same_order(a, b, floor):
-    """Whether no two figures that differ are the other way round."""
-    less = lambda x, y: x * SAME_WITHIN < y and y > floor
-    return not any(less(a[x], a[y]) and less(b[y], b[x]) for x in a for y in a)
-
-
-def devices_table(folder):
-    """How the solvers of a scene are ordered on the first device and on another one, by error, time or verdict: rows of text."""
-    rows = [["other device", "study", "scene", "by", "first device", "other device", "same"]]
-    for prefix, device in OTHERS.items():
-        here, there = Tables(folder), Tables(folder, prefix)
-        for group, orders in ORDERS.items():
-            for name, column, floor in orders:
-                if prefix == "software-" and column in TIMES:
-                    continue
-                a, b = (figures_of(t, f"{group}/{name}", column) for t in (here, there))
-                for scene in b:
-                    common = sorted(set(a.get(scene, {})) & set(b[scene]))
-                    if len(common) < 2:
-                        continue
-                    both = [{c: of[scene][c] for c in common} for of in (a, b)]
-                    if column == "expect":
-                        texts = [", ".join(f"{c.split()[0]} {of[c].split(':')[0]}" for c in common) for of in both]
-                        same = texts[0] == texts[1]
-                    else:
-                        texts = [" < ".join(sorted(common, key=lambda c, of=of: of[c])) for of in both]
-                        same = same_order(*both, floor)
-                    rows.append([device, group, scene, column, *texts, "yes" if same else "no"])
-    return rows
-
-
-def devices_sentence(folder, rows):
-    """Which conclusions hold on other devices: orders and verdicts of scenes, and the claims that rest on untimed scenes alone."""
-    out = []
-    for prefix, device in OTHERS.items():
-        of_device = [r for r in rows[1:] if r[0] == device]
-        if not of_device:
-            continue
-        same = sum(r[-1] == "yes" for r in of_device)
-        text = f"On the {device} {same} of {len(of_device)} orders and verdicts are those of the first device; figures within {SAME_WITHIN - 1:.0%} count as equal."
-        claims = [c for c in data("claims.json") if "figures" in c and (prefix != "software-" or all("penetration/runs.csv" in line for line in c["figures"].values()))]
-        on_both = [(c["id"], *(statement(Tables(folder, of), c)[1] for of in ("", prefix))) for c in claims]
-        known = [(name, a == b) for name, a, b in on_both if a is not None and b is not None]
-        for holds, words in ((True, "The same verdict on both devices"), (False, "Another verdict")):
-            if names := [name for name, agrees in known if agrees == holds]:
-                text += f" {words}: {', '.join(names)}."
-        out.append(text)
-    return " ".join(out)
-
-
 def readme(folder, listing):
     """results/reference/README.md, from the stored tables."""
     tables = Tables(folder)
@@ -241,7 +166,8 @@ def readme(folder, listing):
             "<!-- needs hardware: a GPU -->", "```sh",
             "scripts/reference.sh OUT --table h200         # call again while its exit status is 75",
             "scripts/reference.sh SOFT --table software    # parts that need no GPU, on any machine",
-            "scripts/reference.sh --report OUT SOFT", "```", "", "## Claims of the paper", "",
+            "scripts/reference.sh OUT2 --table h200 --prefix h100-    # the same on a second device, if there is one",
+            "scripts/reference.sh --report OUT SOFT OUT2", "```", "", "## Claims of the paper", "",
             markdown(claims_table(tables, data("claims.json"))), ""]
     if "penetration" in listing["studies"]:
         text += [f"C6 and C8 to C13 are of the study *Penetration*, on {', '.join(listing['studies']['penetration']['devices'])}.", ""]

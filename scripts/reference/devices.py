@@ -1,0 +1,82 @@
+"""Which solver is first on each of two devices, and which verdicts are the same."""
+import json
+import pathlib
+
+from figures import Tables, statement
+
+CLAIMS = json.loads((pathlib.Path(__file__).resolve().parent / "claims.json").read_text(encoding="utf-8"))
+# Parts whose names begin with a prefix ran on another device than the study of the rest of the name (scripts/reference.sh --prefix).
+OTHERS = {"software-": "software device", "h100-": "NVIDIA H100"}
+# By what the solvers of a scene are ordered, in which table, and below which value two are equal (single precision). Times are not of a software device.
+ORDERS = {"table3": [("runs.csv", "free_fall_error", 1e-6), ("runs.csv", "frame_wall_median_s", 0)],
+          "hang": [("runs.csv", "stretch_mean_last_second", 1e-6), ("runs.csv", "frame_device_median_s", 0)],
+          "work-precision": [("work-precision.csv", "least time to an error of 1 %", 0)],
+          "contact-cost": [("runs.csv", "frame_device_median_s", 0)],
+          "penetration": [("runs.csv", "expect", 0)]}
+TIMES = {"frame_wall_median_s", "frame_device_median_s", "least time to an error of 1 %"}
+SAME_WITHIN = 1.05  # two figures of an order
+
+
+def figures_of(tables, name, column):
+    """The figure of each solver and setting, by scene."""
+    out = {}
+    for r in tables.rows(name):
+        if r["status"] != "ok":
+            continue
+        of_scene = out.setdefault(r["scene"], {})
+        if column == "least time to an error of 1 %":
+            if not r["refused"] and r["error"] and float(r["error"]) <= 0.01:
+                of_scene[r["solver"]] = min(float(r["wall_ms_per_s"]), of_scene.get(r["solver"], float("inf")))
+        elif r.get(column) and r[column] != "–":
+            of_scene[f"{r['solver']} {r['setting']}"] = r[column] if column == "expect" else float(r[column])
+    return out
+
+
+def same_order(a, b, floor):
+    """Whether no two figures that differ are the other way round."""
+    less = lambda x, y: x * SAME_WITHIN < y and y > floor
+    return not any(less(a[x], a[y]) and less(b[y], b[x]) for x in a for y in a)
+
+
+def devices_table(folder):
+    """How the solvers of a scene are ordered on the first device and on another one, by error, time or verdict: rows of text."""
+    rows = [["other device", "study", "scene", "by", "first device", "other device", "same"]]
+    for prefix, device in OTHERS.items():
+        here, there = Tables(folder), Tables(folder, prefix)
+        for group, orders in ORDERS.items():
+            for name, column, floor in orders:
+                if prefix == "software-" and column in TIMES:
+                    continue
+                a, b = (figures_of(t, f"{group}/{name}", column) for t in (here, there))
+                for scene in b:
+                    common = sorted(set(a.get(scene, {})) & set(b[scene]))
+                    if len(common) < 2:
+                        continue
+                    both = [{c: of[scene][c] for c in common} for of in (a, b)]
+                    if column == "expect":
+                        texts = [", ".join(f"{c.split()[0]} {of[c].split(':')[0]}" for c in common) for of in both]
+                        same = texts[0] == texts[1]
+                    else:
+                        texts = [" < ".join(sorted(common, key=lambda c, of=of: of[c])) for of in both]
+                        same = same_order(*both, floor)
+                    rows.append([device, group, scene, column, *texts, "yes" if same else "no"])
+    return rows
+
+
+def devices_sentence(folder, rows):
+    """Which conclusions hold on other devices: orders and verdicts of scenes, and the claims that rest on untimed scenes alone."""
+    out = []
+    for prefix, device in OTHERS.items():
+        of_device = [r for r in rows[1:] if r[0] == device]
+        if not of_device:
+            continue
+        same = sum(r[-1] == "yes" for r in of_device)
+        text = f"On the {device} {same} of {len(of_device)} orders and verdicts are those of the first device; figures within {SAME_WITHIN - 1:.0%}, and errors below 1e-6, count as equal."
+        claims = [c for c in CLAIMS if "figures" in c and (prefix != "software-" or all("penetration/runs.csv" in line for line in c["figures"].values()))]
+        on_both = [(c["id"], *(statement(Tables(folder, of), c)[1] for of in ("", prefix))) for c in claims]
+        known = [(name, a == b) for name, a, b in on_both if a is not None and b is not None]
+        for holds, words in ((True, "The same verdict on both devices"), (False, "Another verdict")):
+            if names := [name for name, agrees in known if agrees == holds]:
+                text += f" {words}: {', '.join(names)}."
+        out.append(text)
+    return " ".join(out)
