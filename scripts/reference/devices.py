@@ -6,7 +6,7 @@ from figures import Tables, statement
 
 CLAIMS = json.loads((pathlib.Path(__file__).resolve().parent / "claims.json").read_text(encoding="utf-8"))
 # Parts whose names begin with a prefix ran on another device than the study of the rest of the name (scripts/reference.sh --prefix).
-OTHERS = {"software-": "software device", "h100-": "NVIDIA H100"}
+OTHERS = ("software-", "h100-")
 # By what the solvers of a scene are ordered, in which table, and below which value two are equal (single precision). Times are not of a software device.
 ORDERS = {"table3": [("runs.csv", "free_fall_error", 1e-6), ("runs.csv", "frame_wall_median_s", 0)],
           "hang": [("runs.csv", "stretch_mean_last_second", 1e-6), ("runs.csv", "frame_device_median_s", 0)],
@@ -15,6 +15,14 @@ ORDERS = {"table3": [("runs.csv", "free_fall_error", 1e-6), ("runs.csv", "frame_
           "penetration": [("runs.csv", "expect", 0)]}
 TIMES = {"frame_wall_median_s", "frame_device_median_s", "least time to an error of 1 %"}
 SAME_WITHIN = 1.05  # two figures of an order
+
+
+def device_of(folder, prefix):
+    """What the documents call the device of these parts: its own name, if it is a GPU."""
+    if prefix == "software-":
+        return "software device"
+    rows = (r for group in ORDERS for r in Tables(folder, prefix).rows(f"{group}/runs.csv"))
+    return next((r["gpu"] for r in rows if r["gpu"] not in ("", "CPU", "–")), "second device")
 
 
 def figures_of(tables, name, column):
@@ -41,7 +49,8 @@ def same_order(a, b, floor):
 def devices_table(folder):
     """How the solvers of a scene are ordered on the first device and on another one, by error, time or verdict: rows of text."""
     rows = [["other device", "study", "scene", "by", "first device", "other device", "same"]]
-    for prefix, device in OTHERS.items():
+    for prefix in OTHERS:
+        device = device_of(folder, prefix)
         here, there = Tables(folder), Tables(folder, prefix)
         for group, orders in ORDERS.items():
             for name, column, floor in orders:
@@ -66,7 +75,8 @@ def devices_table(folder):
 def devices_sentence(folder, rows):
     """Which conclusions hold on other devices: orders and verdicts of scenes, and the claims that rest on untimed scenes alone."""
     out = []
-    for prefix, device in OTHERS.items():
+    for prefix in OTHERS:
+        device = device_of(folder, prefix)
         of_device = [r for r in rows[1:] if r[0] == device]
         if not of_device:
             continue
