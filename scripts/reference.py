@@ -159,14 +159,14 @@ def readme(folder, listing):
     tables = Tables(folder)
     at = folder.name
     text = ["# The reference study", "",
-            f"All published figures: one commit ({listing['commit'][:12]}), one command, one [page]({at}/index.html) that opens from disk. "
+            f"All figures of the study: one commit ({listing['commit'][:12]}), one command, one [page]({at}/index.html) that opens from disk. "
             "Times were taken alone, in one process, contenders in turns; what is called untimed ran side by side and has no times. "
             f"[reference.json]({at}/reference.json) has the SHA-256 of every file; `scripts/reference.sh --check` verifies them.", "",
             *([listing["note"], ""] if listing.get("note") else []),
             "<!-- needs hardware: a GPU -->", "```sh",
             "scripts/reference.sh OUT --table h200         # call again while its exit status is 75",
             "scripts/reference.sh SOFT --table software    # parts that need no GPU, on any machine",
-            "scripts/reference.sh OUT2 --table h200 --prefix h100-    # the same on a second device, if there is one",
+            "scripts/reference.sh OUT2 --table h200 --second    # the same on another GPU, if there is one",
             "scripts/reference.sh --report OUT SOFT OUT2", "```", "", "## Claims of the paper", "",
             markdown(claims_table(tables, data("claims.json"))), ""]
     if "penetration" in listing["studies"]:

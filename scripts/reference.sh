@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # The reference study: every published study by one program, part by part, into one folder; and the page that is published of it.
-#   scripts/reference.sh OUT [--table h200 | software | quick] [--part NAME]... [--limit SECONDS] [--jobs N] [--prefix NAME] [--resume] [--list]
+#   scripts/reference.sh OUT [--table h200 | software | quick] [--part NAME]... [--limit SECONDS] [--jobs N] [--second] [--resume] [--list]
 #   scripts/reference.sh --pack OUT TO [PART…] | --report OUT... [--to FOLDER] | --check [--to FOLDER]      see scripts/reference.py
 # Parts, their expected seconds and what each runs: scripts/reference/parts.conf. Exit status 0: all parts are complete. 75: the limit
 # (default 570 s) has come; the same call again continues, for finished runs and parts stay. 2: bad input. Else that of the part that failed.
-# --prefix: of the parts' names, for a second device: with h100-, the page compares table3 with h100-table3.
+# --second: names the parts second-table3 and so on, for another GPU: the page compares them with table3 and so on.
 # Needs bash, coreutils, grep and clothbench with its scenarios and assets; no compiler, git or Python. CLOTHBENCH names the program
 # (default: build/release/clothbench, else the one on PATH). Libraries of NvCloth and Jolt in build/peers or CLOTHBENCH_PLUGINS take part.
 set -euo pipefail
@@ -18,13 +18,14 @@ fail() { echo "scripts/reference.sh: $*" >&2; exit 2; }
 out= table=h200 limit=570 jobs=$(nproc) list=0 only=" " prefix=
 while [ $# -gt 0 ]; do
   case $1 in
-    --table | --part | --limit | --jobs | --prefix)
+    --table | --part | --limit | --jobs)
       [ $# -gt 1 ] || fail "$1: expected a value"
-      case $1 in --table) table=$2 ;; --part) only+="$2 " ;; --limit) limit=$2 ;; --jobs) jobs=$2 ;; --prefix) prefix=$2 ;; esac
+      case $1 in --table) table=$2 ;; --part) only+="$2 " ;; --limit) limit=$2 ;; --jobs) jobs=$2 ;; esac
       shift ;;
     --resume) ;;  # what is there is always continued
     --list) list=1 ;;
-    -*) fail "$1: expected --table, --part, --limit, --jobs, --prefix, --resume, --list, --pack, --report or --check" ;;
+    --second) prefix=second- ;;
+    -*) fail "$1: expected --table, --part, --limit, --jobs, --second, --resume, --list, --pack, --report or --check" ;;
     *) [ -z "$out" ] || fail "$1: expected one folder"; out=$1 ;;
   esac
   shift

@@ -5,8 +5,8 @@ import pathlib
 from figures import Tables, statement
 
 CLAIMS = json.loads((pathlib.Path(__file__).resolve().parent / "claims.json").read_text(encoding="utf-8"))
-# Parts whose names begin with a prefix ran on another device than the study of the rest of the name (scripts/reference.sh --prefix).
-OTHERS = ("software-", "h100-")
+# Parts whose names begin so ran on another device than the study of the rest of the name: those of the software table, and of scripts/reference.sh --second.
+OTHERS = ("software-", "second-")
 # By what the solvers of a scene are ordered, in which table, and below which value two are equal (single precision). Times are not of a software device.
 ORDERS = {"table3": [("runs.csv", "free_fall_error", 1e-6), ("runs.csv", "frame_wall_median_s", 0)],
           "hang": [("runs.csv", "stretch_mean_last_second", 1e-6), ("runs.csv", "frame_device_median_s", 0)],
@@ -41,7 +41,9 @@ def figures_of(tables, name, column):
 
 
 def same_order(a, b, floor):
-    """Whether no two figures that differ are the other way round."""
+    """Whether no two figures that differ are the other way round, and all are numbers."""
+    if any(v != v for of in (a, b) for v in of.values()):
+        return False
     less = lambda x, y: x * SAME_WITHIN < y and y > floor
     return not any(less(a[x], a[y]) and less(b[y], b[x]) for x in a for y in a)
 

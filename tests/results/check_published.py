@@ -12,6 +12,7 @@ import tempfile
 
 root = pathlib.Path(sys.argv[1])
 sys.path[:0] = [str(root / "scripts"), str(root / "scripts/reference")]
+import devices  # noqa: E402
 import figures  # noqa: E402
 import reference  # noqa: E402
 import sources as measured  # noqa: E402
@@ -115,6 +116,10 @@ with tempfile.TemporaryDirectory() as scratch:
     assert figures.statement(figures.Tables(folder), {**entry, "needs": "n > 0"}) == (None, None)
     rows = reference.devices_table(folder)
     assert rows[1][4:] == ["xpbd default < paper default", "paper default < xpbd default", "no"], rows
+
+# Orders of two devices: within 5 %, below the floor, not a number.
+for a, b, floor, same in ((1, 2), (1.04, 1), 0, True), ((1, 2), (1.2, 1), 0, False), ((1, 2), (1.2, 1), 3, True), ((1, 2), (float("nan"), 3), 0, False):
+    assert devices.same_order(dict(enumerate(a)), dict(enumerate(b)), floor) == same, (a, b, floor)
 
 # The table of parts can be read, and every study and claim has its data.
 for words, why in ((["--limit", "x"], "expected a positive whole number"), (["--table", "none"], "expected h200, software or quick"), (["--part", "none"], "has no such part"), (["--part"], "expected a value")):
