@@ -2,10 +2,12 @@
 """Publishes the results of scripts/reference.sh, and checks what is published.
 
     scripts/reference.sh --report OUT… [--to FOLDER] [--work FOLDER]
+    scripts/reference.sh --add OUT… [--to FOLDER] [--work FOLDER]
     scripts/reference.sh --check [OUT…] [--to FOLDER]
 
 --report: makes tables of each study and one page of all (index.html) from the folders OUT, which must be of one state of the sources, into FOLDER (default:
 results/reference/h200), and ../README.md of FOLDER. reference.json has the SHA-256 of all of these and of every result file they were made from.
+--add: adds parts of another device (scripts/reference.sh --second) to what is published; their sources must be those of what is there, which stays as it is.
 Raw results are not published: they are some hundred megabytes, and the tables hold every summary value of every run.
 
 --check: exit status 1 and a line for each fault if what is published is not what --report wrote, if the runs are of two states of the sources or of a tree
@@ -27,16 +29,15 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "reference"))
 from devices import OTHERS, devices_sentence, devices_table  # noqa: E402
 from figures import SET_UPS, Tables, claims_table, markdown, statement  # noqa: E402
+from page import document_of, merged, section, write_page  # noqa: E402
 from sources import changed_since  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DATA = ROOT / "scripts/reference"
 PUBLISHED = ROOT / "results/reference/h200"
 LIST = "reference.json"
-PAGE_LIMIT_B = 20_000_000
 # Files of a report that are not published: the page is one for all studies, and what else is left out is in runs.csv.
 UNPUBLISHED = {"index.html", "runs.json", "tables.tex", "bandwidth.csv", "memory.csv", "report-pictures.json", "penetration-series.csv", "work-precision.json", "penetration.csv", "contact-runs.csv"}
-FIGURES_OF = {"penetration": ("penetration", "meshes"), "work": ("work-precision",), "maps": ("stability",), "cases": ("stability",)}
 
 
 def sha256(path):
@@ -57,9 +58,6 @@ def parts_of(folders):
     names = [p[0].name for parts in out.values() for p in parts]
     for name in sorted({n for n in names if names.count(n) > 1}):
         sys.exit(f"{' and '.join(str(f / name) for f in folders if (f / name).is_dir())}: the same part twice; expected each in one of the folders")
-    # Verdicts without times may come from any device.
-    if not out.get("penetration"):
-        out["penetration"] = out.pop("software-penetration", [])
     return {group: parts for group, parts in out.items() if parts}
 
 
@@ -76,58 +74,16 @@ def without_unplanned(part, to):
     return to
 
 
-def report(bench, inputs, out):
-    """The report of the inputs in `out`; the document of its page."""
-    done = subprocess.run([bench, "report", *map(str, inputs), "-o", str(out)], capture_output=True, text=True, check=False)
+def bench():
+    return os.environ.get("CLOTHBENCH", str(ROOT / "build/release/clothbench"))
+
+
+def report(inputs, out):
+    """The report of the inputs in `out`; the text of its page."""
+    done = subprocess.run([bench(), "report", *map(str, inputs), "-o", str(out)], capture_output=True, text=True, check=False)
     if done.returncode != 0 or not (out / "index.html").exists():
         sys.exit(f"clothbench report of {inputs[0]}: {done.stderr or done.stdout}")
     return (out / "index.html").read_text(encoding="utf-8")
-
-
-DOCUMENT = re.compile(r'(<script type="application/json" id="clothbench-data">)(.*?)(</script>)', re.S)
-
-
-def document_of(page):
-    return json.loads(DOCUMENT.search(page)[2])
-
-
-def section(name, title, table, note=""):
-    plain = [[cell.replace("`", "") for cell in row] for row in table]  # the page's cells are text, not Markdown
-    return {"id": name, "title": title, "tables": [{"title": title, "note": note, "rows": plain}]}
-
-
-def merged(documents, motions, extra, head):
-    """One document of those of all studies, by group, under the line `head`; motions are those of `motions`."""
-    out = dict(motions)
-    sections, shared = [], {}
-    titles = {s["group"]: s["title"] for s in data("studies.json")}
-    for group, d in documents.items():
-        for s in d["sections"]:
-            if (s["id"] == "features" and group != "penetration") or (s["id"] == "material" and group != "moduli"):
-                continue
-            title = titles.get(group, group)
-            if s["id"] in ("environment", "failed", "expect"):  # one section of all studies
-                one = shared.setdefault(s["id"], {**s, "tables": []})
-                one["tables"] += [{**t, "title": f"{title}: {t['title']}"} for t in s["tables"]]
-                continue
-            sections.append({**s, "title": title if s["title"] == title else f"{title}: {s['title']}"})
-    out["headline"] = head
-    out["sections"] = extra + sections + list(shared.values())
-    out["runs"] = sum(d["runs"] for d in documents.values())
-    out["rates"] = [r for d in documents.values() for r in d["rates"]]
-    out["commands"] = ["scripts/reference.sh"]
-    for key, groups in FIGURES_OF.items():
-        out[key] = [x for group in groups if group in documents for x in documents[group][key]]
-    return out
-
-
-def write_page(path, template, document):
-    # "<" never stands in the data of a page.
-    text = json.dumps(document, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")
-    page = DOCUMENT.sub(lambda m: m[1] + text + m[3], template)
-    if len(page) > PAGE_LIMIT_B:
-        sys.exit(f"{path}: {len(page)} bytes; a page has at most {PAGE_LIMIT_B}")
-    path.write_text(page, encoding="utf-8")
 
 
 def runs_of(folder, group):
@@ -167,7 +123,8 @@ def readme(folder, listing):
             "scripts/reference.sh OUT --table h200         # call again while its exit status is 75",
             "scripts/reference.sh SOFT --table software    # parts that need no GPU, on any machine",
             "scripts/reference.sh OUT2 --table h200 --second    # the same on another GPU, if there is one",
-            "scripts/reference.sh --report OUT SOFT OUT2", "```", "", "## Claims of the paper", "",
+            "scripts/reference.sh --report OUT SOFT OUT2",
+            "scripts/reference.sh --add OUT2               # the other GPU alone, to what is published", "```", "", "## Claims of the paper", "",
             markdown(claims_table(tables, data("claims.json"))), ""]
     if "penetration" in listing["studies"]:
         text += [f"C6 and C8 to C13 are of the study *Penetration*, on {', '.join(listing['studies']['penetration']['devices'])}.", ""]
@@ -176,6 +133,9 @@ def readme(folder, listing):
         text += ["## Devices", "", devices_sentence(folder, devices), ""]
         if other := [r for r in devices[1:] if r[-1] == "no"]:
             text += [markdown([devices[0], *other]), ""]
+        if second := [f for g, f in listing["studies"].items() if g.startswith("second-")]:
+            machine, days = (", ".join(sorted({x for f in second for x in f[key]})) for key in ("devices", "days"))
+            text += [f"The second device, with `--second`: {machine}, {days}, {len(second)} studies in {sum(f['seconds'] for f in second)} s.", ""]
     for s in data("studies.json"):
         group = s["group"]
         if group not in listing["studies"]:
@@ -197,9 +157,9 @@ def readme(folder, listing):
     return "\n".join(text).rstrip("\n") + "\n"
 
 
-def repeated(bench, a, b, to):
+def repeated(a, b, to):
     """compare.csv: what a study and its repetition differ in, run by run."""
-    done = subprocess.run([bench, "--json", "compare", str(a), str(b)], capture_output=True, text=True, check=True)
+    done = subprocess.run([bench(), "--json", "compare", str(a), str(b)], capture_output=True, text=True, check=True)
     with open(to / "compare.csv", "w", encoding="utf-8", newline="") as f:
         out = csv.writer(f, lineterminator="\n")
         out.writerow(["run", "verdict", "ratio", "low", "high", "outcome", "values_that_differ"])
@@ -231,51 +191,98 @@ def motions_of(parts):
     return [shown[name] for name in sorted(shown)]
 
 
-def publish(folders, to, work):
-    bench = os.environ.get("CLOTHBENCH", str(ROOT / "build/release/clothbench"))
-    parts = parts_of(folders)
-    if not parts:
-        sys.exit(f"{folders[0]}: no finished part; scripts/reference.sh {folders[0]} makes them")
-    shutil.rmtree(to, ignore_errors=True)
-    to.mkdir(parents=True)
+def tables_of(parts, to, work):
+    """Writes the tables of each study below `to`; the documents of their pages and the SHA-256 of the result files."""
     documents, files = {}, {}
     for group, list_of in parts.items():
         inputs = [without_unplanned(p[0], work / "in" / p[0].name) for p in list_of]
         if group.endswith("work-precision"):  # whether stiffness is a parameter of a solver decides where it is ranked
-            inputs += [p[0] for p in parts.get("moduli", [])]
-        documents[group] = document_of(report(bench, inputs, work / group))
+            inputs += [p[0] for p in parts.get(group.replace("work-precision", "moduli"), [])]
+        documents[group] = document_of(report(inputs, work / group))
         (to / group).mkdir()
         for file in sorted((work / group).iterdir()):
             if file.name not in UNPUBLISHED and file.suffix != ".svg":
                 shutil.copy(file, to / group)
         for part, *_ in list_of:
             files.update({f"{part.name}/{h5.name}": sha256(h5) for h5 in sorted(part.glob("*.h5"))})
-    if "repeat" in parts and "repeat-again" in parts:
-        repeated(bench, work / "in/repeat", work / "in/repeat-again", to / "repeat")
+    return documents, files
+
+
+def listing_of(parts, to, files, before=None):
+    """The list of what is published: of the studies of `before`, if there are any, and of `parts`."""
     facts = facts_of(to, parts)
     for group, list_of in parts.items():
         facts[group] |= {"how": sorted({p[1].replace("spread", "untimed") for p in list_of}), "seconds": sum(p[2] for p in list_of), "commands": [p[3] for p in list_of]}
+    before = before or {"studies": {}, "results": {}}
+    facts = before["studies"] | facts
     commits = {c for f in facts.values() for c in f["commits"]}
     sources = {s for f in facts.values() for s in f["sources"]}
     if len(sources) > 1 or (len(commits) > 1 and not all(f["sources"] for f in facts.values())):
         sys.exit("the folders hold results of different sources; a reference study has one state of what may change a figure")
-    listing = {"format": "clothbench-reference", "format_version": 1, "commit": sorted(commits)[0], "source_sha256": "".join(sources), "studies": facts, "results": files}
-    template = report(bench, motions_of(parts) or inputs, work / "motions")
+    commit = before.get("commit", sorted(commits)[0])
+    return before | {"format": "clothbench-reference", "format_version": 1, "commit": commit, "source_sha256": "".join(sources), "studies": facts, "results": before["results"] | files}
+
+
+def sections_of(to, listing):
+    """The sections of the page that are of all studies: claims, studies, devices."""
     studies = [["study", "question", "answer", "machine", "day", "how"]]
     for s in data("studies.json"):
-        if s["group"] in parts:
-            f = facts[s["group"]]
+        if f := listing["studies"].get(s["group"]):
             answer = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", statement(Tables(to), s)[0] or "–")  # a page on its own has no links to files
             studies.append([s["title"], s["question"], answer, ", ".join(f["devices"] + f["cpus"]), ", ".join(f["days"]), ", ".join(f["how"])])
-    extra = [section("claims", "Claims of the paper", claims_table(Tables(to), data("claims.json"))), section("studies", "Studies", studies)]
+    out = [section("claims", "Claims of the paper", claims_table(Tables(to), data("claims.json"))), section("studies", "Studies", studies)]
     devices = devices_table(to)
-    if len(devices) > 1:
-        extra.append(section("devices", "Devices", devices, devices_sentence(to, devices)))
-    write_page(to / "index.html", template, merged({g: d for g, d in documents.items() if not g.startswith((*OTHERS, "repeat"))}, document_of(template), extra, head_of(listing)))
+    return out + ([section("devices", "Devices", devices, devices_sentence(to, devices))] if len(devices) > 1 else [])
+
+
+def finish(to, listing, template, document):
+    """Writes page, list and documents; says what a check will refuse."""
+    write_page(to / "index.html", template, document)
     seal(to, listing)
     for fault in faults_of(to, []):
         print(f"warning: {fault}; --check will refuse it", file=sys.stderr)
-    print(f"{to}: {len(parts)} studies, {len(files)} result files, page of {(to / 'index.html').stat().st_size / 1e6:.1f} MB")
+    print(f"{to}: {len(listing['studies'])} studies, {len(listing['results'])} result files, page of {(to / 'index.html').stat().st_size / 1e6:.1f} MB")
+
+
+def publish(folders, to, work):
+    parts = parts_of(folders)
+    if "penetration" not in parts and "software-penetration" in parts:  # verdicts without times may come from any device
+        parts["penetration"] = parts.pop("software-penetration")
+    if not parts:
+        sys.exit(f"{folders[0]}: no finished part; scripts/reference.sh {folders[0]} makes them")
+    shutil.rmtree(to, ignore_errors=True)
+    to.mkdir(parents=True)
+    documents, files = tables_of(parts, to, work)
+    if "repeat" in parts and "repeat-again" in parts:
+        repeated(work / "in/repeat", work / "in/repeat-again", to / "repeat")
+    listing = listing_of(parts, to, files)
+    template = report(motions_of(parts) or [p[0] for p in list(parts.values())[-1]], work / "motions")
+    shown = {g: d for g, d in documents.items() if not g.startswith((*OTHERS, "repeat"))}
+    finish(to, listing, template, merged(shown, document_of(template), sections_of(to, listing), head_of(listing), {s["group"]: s["title"] for s in data("studies.json")}))
+
+
+def add(folders, to, work):
+    """Adds the parts of another device to what is published; of the page only the sections of all studies change."""
+    before = listing_at(to)
+    if faults := changed_files(to, before):
+        sys.exit("\n".join(faults))
+    parts = parts_of(folders)
+    for group in parts:
+        if not group.startswith(OTHERS):
+            sys.exit(f"{group}: expected parts of another device, made with --second; --report makes a study anew")
+        if group in before["studies"]:
+            sys.exit(f"{to / group}: is published already; --report makes a study anew")
+    try:
+        listing = listing_of(parts, to, tables_of(parts, to, work)[1], before)
+    except SystemExit:
+        for group in parts:
+            shutil.rmtree(to / group, ignore_errors=True)
+        raise
+    template = (to / "index.html").read_text(encoding="utf-8")
+    document = document_of(template)
+    document["headline"] = head_of(listing)
+    document["sections"] = sections_of(to, listing) + [s for s in document["sections"] if s["id"] not in ("claims", "studies", "devices")]
+    finish(to, listing, template, document)
 
 
 def seal(to, listing):
@@ -288,18 +295,28 @@ def seal(to, listing):
     (to / LIST).write_text(json.dumps(listing, indent=1, sort_keys=True, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
-def faults_of(to, folders):
-    """What is wrong with what is published: a line each."""
-    listing = json.loads((to / LIST).read_text(encoding="utf-8"))
-    out = []
+def listing_at(to):
+    if not (to / LIST).exists():
+        sys.exit(f"{to / LIST}: no such file; scripts/reference.sh --report OUT writes it")
+    return json.loads((to / LIST).read_text(encoding="utf-8"))
+
+
+def changed_files(to, listing):
+    """What is not as it was written: a line for each file."""
     here = {f.relative_to(to).as_posix() for f in to.rglob("*") if f.is_file() and f.name != LIST}
+    out = []
     for name, hashed in listing["published"].items():
         if name not in here:
             out.append(f"{to / name}: is missing; --report wrote it")
         elif sha256(to / name) != hashed:
             out.append(f"{to / name}: is not as --report wrote it")
-    out += [f"{to / name}: was not written by --report" for name in sorted(here - set(listing["published"]))]
-    if out:
+    return out + [f"{to / name}: was not written by --report" for name in sorted(here - set(listing["published"]))]
+
+
+def faults_of(to, folders):
+    """What is wrong with what is published: a line each."""
+    listing = json.loads((to / LIST).read_text(encoding="utf-8"))
+    if out := changed_files(to, listing):
         return out
     facts = facts_of(to, listing["studies"])
     commits, sources = ({x for f in facts.values() for x in f[key]} for key in ("commits", "sources"))
@@ -319,13 +336,11 @@ def faults_of(to, folders):
 
 
 def check(to, folders):
-    if not (to / LIST).exists():
-        sys.exit(f"{to / LIST}: no such file; scripts/reference.sh --report OUT writes it")
+    listing = listing_at(to)
     faults = faults_of(to, folders)
     if faults:
         print("\n".join(faults), file=sys.stderr)
         return 1
-    listing = json.loads((to / LIST).read_text(encoding="utf-8"))
     commit = listing["commit"]
     changed = changed_since(commit, listing.get("source_sha256"))
     if changed == []:
@@ -339,7 +354,7 @@ def check(to, folders):
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     what = arguments.add_mutually_exclusive_group(required=True)
-    for name in ("report", "check"):
+    for name in ("report", "add", "check"):
         what.add_argument(f"--{name}", action="store_true")
     arguments.add_argument("folder", nargs="*", type=pathlib.Path)
     arguments.add_argument("--to", type=pathlib.Path, default=PUBLISHED)
@@ -352,9 +367,9 @@ def main():
     if a.check:
         return check(a.to, folders)
     if not folders:
-        arguments.error("--report: expected a folder of results")
+        arguments.error("--report and --add: expected a folder of results")
     with tempfile.TemporaryDirectory() as scratch:
-        publish(folders, a.to.resolve(), a.work or pathlib.Path(scratch))
+        (add if a.add else publish)(folders, a.to.resolve(), a.work or pathlib.Path(scratch))
     return 0
 
 

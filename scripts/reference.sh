@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The reference study: every published study by one program, part by part, into one folder; and the page that is published of it.
 #   scripts/reference.sh OUT [--table h200 | software | quick] [--part NAME]... [--limit SECONDS] [--jobs N] [--second] [--resume] [--list]
-#   scripts/reference.sh --pack OUT TO [PART…] | --report OUT... [--to FOLDER] | --check [--to FOLDER]      see scripts/reference.py
+#   scripts/reference.sh --pack OUT TO [PART…] | --report OUT... [--to FOLDER] | --add OUT... | --check [--to FOLDER]      see scripts/reference.py
 # Parts, their expected seconds and what each runs: scripts/reference/parts.conf. Exit status 0: all parts are complete. 75: the limit
 # (default 570 s) has come; the same call again continues, for finished runs and parts stay. 2: bad input. Else that of the part that failed.
 # --second: names the parts second-table3 and so on, for another GPU: the page compares them with table3 and so on.
@@ -11,7 +11,7 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 python=${PYTHON:-/usr/bin/python3}
 case ${1:-} in
-  --report | --check) exec "$python" "$here/scripts/reference.py" "$@" ;;
+  --report | --add | --check) exec "$python" "$here/scripts/reference.py" "$@" ;;
   --pack) exec "$python" "$here/scripts/reference/pack.py" "${@:2}" ;;
 esac
 fail() { echo "scripts/reference.sh: $*" >&2; exit 2; }
@@ -25,7 +25,7 @@ while [ $# -gt 0 ]; do
     --resume) ;;  # what is there is always continued
     --list) list=1 ;;
     --second) prefix=second- ;;
-    -*) fail "$1: expected --table, --part, --limit, --jobs, --second, --resume, --list, --pack, --report or --check" ;;
+    -*) fail "$1: expected --table, --part, --limit, --jobs, --second, --resume, --list, --pack, --report, --add or --check" ;;
     *) [ -z "$out" ] || fail "$1: expected one folder"; out=$1 ;;
   esac
   shift

@@ -31,6 +31,18 @@ with tempfile.TemporaryDirectory() as scratch:
     checked = call("--check", out, "--to", to)
     # A developer's tree may have local changes; nothing else is wrong.
     assert checked.returncode in (0, 4) or all("local changes" in line for line in checked.stderr.splitlines()), checked
+    # Another device's parts join what is published, once; the rest stays as it is.
+    other, before = pathlib.Path(scratch) / "second", (to / "table3/runs.csv").read_bytes()
+    refused = call("--add", out, "--to", to)
+    assert refused.returncode == 1 and "expected parts of another device" in refused.stderr, refused
+    assert call(other, "--table", "quick", "--part", "hang", "--second").returncode == 0
+    added = call("--add", other, "--to", to)
+    assert added.returncode == 0 and (to / "second-hang/runs.csv").exists() and (to / "table3/runs.csv").read_bytes() == before, added
+    assert '"id":"devices"' in (to / "index.html").read_text(encoding="utf-8") and "## Devices" in (to.parent / "README.md").read_text(encoding="utf-8")
+    twice = call("--add", other, "--to", to)
+    assert twice.returncode == 1 and "is published already" in twice.stderr, twice
+    checked = call("--check", out, other, "--to", to)
+    assert checked.returncode in (0, 4) or all("local changes" in line for line in checked.stderr.splitlines()), checked
     readme = (to.parent / "README.md").read_text(encoding="utf-8")
     assert "## Hanging sheets: [hang](device/hang/report.md)" in readme and "## Repeated" in readme, readme
     assert call("--pack", out, pathlib.Path(scratch) / "packed").returncode == 0

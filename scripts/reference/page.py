@@ -1,0 +1,50 @@
+"""The page of a reference study: the documents of all studies' pages in one."""
+import json
+import re
+import sys
+
+PAGE_LIMIT_B = 20_000_000
+FIGURES_OF = {"penetration": ("penetration", "meshes"), "work": ("work-precision",), "maps": ("stability",), "cases": ("stability",)}
+DOCUMENT = re.compile(r'(<script type="application/json" id="clothbench-data">)(.*?)(</script>)', re.S)
+
+
+def document_of(page):
+    return json.loads(DOCUMENT.search(page)[2])
+
+
+def section(name, title, table, note=""):
+    plain = [[cell.replace("`", "") for cell in row] for row in table]  # the page's cells are text, not Markdown
+    return {"id": name, "title": title, "tables": [{"title": title, "note": note, "rows": plain}]}
+
+
+def merged(documents, motions, extra, head, titles):
+    """One document of those of all studies, by group, under the line `head`; motions are those of `motions`, titles those of the groups."""
+    out = dict(motions)
+    sections, shared = [], {}
+    for group, d in documents.items():
+        for s in d["sections"]:
+            if (s["id"] == "features" and group != "penetration") or (s["id"] == "material" and group != "moduli"):
+                continue
+            title = titles.get(group, group)
+            if s["id"] in ("environment", "failed", "expect"):  # one section of all studies
+                one = shared.setdefault(s["id"], {**s, "tables": []})
+                one["tables"] += [{**t, "title": f"{title}: {t['title']}"} for t in s["tables"]]
+                continue
+            sections.append({**s, "title": title if s["title"] == title else f"{title}: {s['title']}"})
+    out["headline"] = head
+    out["sections"] = extra + sections + list(shared.values())
+    out["runs"] = sum(d["runs"] for d in documents.values())
+    out["rates"] = [r for d in documents.values() for r in d["rates"]]
+    out["commands"] = ["scripts/reference.sh"]
+    for key, groups in FIGURES_OF.items():
+        out[key] = [x for group in groups if group in documents for x in documents[group][key]]
+    return out
+
+
+def write_page(path, template, document):
+    # "<" never stands in the data of a page.
+    text = json.dumps(document, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")
+    page = DOCUMENT.sub(lambda m: m[1] + text + m[3], template)
+    if len(page) > PAGE_LIMIT_B:
+        sys.exit(f"{path}: {len(page)} bytes; a page has at most {PAGE_LIMIT_B}")
+    path.write_text(page, encoding="utf-8")
