@@ -51,7 +51,7 @@ def copy_part(part, to, motions):
     paired = set().union(*(scenes(p) for p in kept)) if kept else set()
     for file in files:
         scene = file.name.split("__")[0]
-        slim(file, to / file.name, scene in paired or (motions and bool(SET_UPS.match(file.name))) or part.name in COMPARED)
+        slim(file, to / file.name, scene in paired or (motions and bool(SET_UPS.match(file.name))) or part.name.removeprefix("second-") in COMPARED)
     if pairs:
         study["definition"]["pairs"] = kept
     if study:
