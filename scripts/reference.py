@@ -95,7 +95,7 @@ def facts_of(folder, groups):
     """Commits, sources, trees with local changes, devices and days of the runs, by group."""
     out = {}
     for group in groups:
-        runs = [r for r in runs_of(folder, group) if r["git_commit"] and (r["scene"] != "effective-moduli" or group == "moduli")]
+        runs = [r for r in runs_of(folder, group) if r["git_commit"] and (r["scene"] != "effective-moduli" or group.endswith("moduli"))]
         out[group] = {"runs": len(runs), "commits": sorted({r["git_commit"] for r in runs}), "sources": sorted({r.get("source_sha256", "") for r in runs} - {"", "–", "unknown"}), "dirty": sum(r["git_dirty"] != "false" for r in runs),
                       "devices": sorted({r["gpu"] for r in runs} - {"", "CPU", "–"}), "cpus": sorted({r["cpu"] for r in runs} - {""}),
                       "days": sorted({r["created"][:10] for r in runs})}
@@ -134,8 +134,11 @@ def readme(folder, listing):
         if other := [r for r in devices[1:] if r[-1] == "no"]:
             text += [markdown([devices[0], *other]), ""]
         if second := [f for g, f in listing["studies"].items() if g.startswith("second-")]:
-            machine, days = (", ".join(sorted({x for f in second for x in f[key]})) for key in ("devices", "days"))
-            text += [f"The second device, with `--second`: {machine}, {days}, {len(second)} studies in {sum(f['seconds'] for f in second)} s.", ""]
+            machine, days, commits = (", ".join(sorted({x for f in second for x in f[key]})) for key in ("devices", "days", "commits"))
+            text += [f"The second device, with `--second`: {machine}, {days}, {len(second)} studies in {sum(f['seconds'] for f in second)} s, at commit {commits[:12]}; the sources are the same.", ""]
+            if again := Tables(folder, "second-").rows("repeat/compare.csv"):
+                same = sum(r["verdict"] == "noise" and r["values_that_differ"] == "0" for r in again)
+                text += [f"Repeated there, {same} of {len(again)} runs have the same values and times within noise.", ""]
     for s in data("studies.json"):
         group = s["group"]
         if group not in listing["studies"]:
@@ -205,6 +208,10 @@ def tables_of(parts, to, work):
                 shutil.copy(file, to / group)
         for part, *_ in list_of:
             files.update({f"{part.name}/{h5.name}": sha256(h5) for h5 in sorted(part.glob("*.h5"))})
+    for again in (g for g in parts if g.endswith("repeat-again")):
+        first = again.removesuffix("-again")
+        if first in parts:
+            repeated(work / "in" / first, work / "in" / again, to / first)
     return documents, files
 
 
@@ -253,8 +260,6 @@ def publish(folders, to, work):
     shutil.rmtree(to, ignore_errors=True)
     to.mkdir(parents=True)
     documents, files = tables_of(parts, to, work)
-    if "repeat" in parts and "repeat-again" in parts:
-        repeated(work / "in/repeat", work / "in/repeat-again", to / "repeat")
     listing = listing_of(parts, to, files)
     template = report(motions_of(parts) or [p[0] for p in list(parts.values())[-1]], work / "motions")
     shown = {g: d for g, d in documents.items() if not g.startswith((*OTHERS, "repeat"))}
