@@ -1,7 +1,7 @@
 // Pictures of a report's page, for the README.
 //   node scripts/picture_report.mjs build/release/web/node_modules REPORT/index.html SCENE SHARE OUT
 // Writes OUT/page-light.png (the viewer on SCENE, SHARE of the way through, coloured by strain) and OUT/page-dark.png
-// (penetration: verdicts and series). Needs Chromium (Debian: chromium) and the packages that the build gets.
+// (contour of SCENE over time). Needs Chromium (Debian: chromium) and the packages that the build gets.
 import {createRequire} from 'node:module';
 import {join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
@@ -43,14 +43,19 @@ await page.screenshot({
 });
 
 await open('dark', 1000, 900);
-const section = await box_of('#penetration'), figure = await box_of('#penetration-series');
+await page.$eval('#penetration-series', (plot, wanted) => {
+  const figure = plot.closest('figure');
+  figure.id = 'pictured';
+  for (const choice of figure.querySelectorAll('select')) {
+    const option = [...choice.options].find(o => wanted.includes(o.text));
+    if (option) choice.value = option.value;
+    choice.dispatchEvent(new Event('change', {bubbles: true}));
+  }
+}, [scene, 'contour [mm]']);
+await page.waitForNetworkIdle();
+const figure = await box_of('#pictured'), plot = await box_of('#penetration-series');
 await page.screenshot({
   path: join(out, 'page-dark.png'),
-  clip: {
-    x: section.x - 10,
-    y: section.y - 6,
-    width: section.width + 20,
-    height: figure.y + figure.height - section.y + 14
-  }
+  clip: {x: figure.x - 10, y: figure.y - 6, width: figure.width + 20, height: plot.y + plot.height - figure.y + 14}
 });
 await browser.close();

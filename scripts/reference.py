@@ -156,7 +156,7 @@ def readme(folder, listing):
     if (folder.parent / "CHANGES.md").exists():
         text += ["## Before", "", "[CHANGES.md](CHANGES.md) has the figures of earlier studies beside these.", ""]
     if (folder.parent / "pictures").exists():
-        text += ["## Pictures", "", "[pictures](pictures) are made by `clothbench render`, [page](page) shows the interactive page, both on a software device.", ""]
+        text += ["## Pictures", "", "[pictures](pictures) are made by `clothbench render` on a software device, [page](page) has pictures of this study's page.", ""]
     return "\n".join(text).rstrip("\n") + "\n"
 
 

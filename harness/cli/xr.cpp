@@ -33,8 +33,8 @@ void add_xr(CLI::App& app, Console& console) {
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   cmd->add_option("--place", a.place,
-                  "Position of the scene's origin, x y z [m] from the head at the start (default 0 -0.1 -0.6), or from "
-                  "the floor with a room (default 0 0 0)")
+                  "Position of the scene's origin, x y z [m] from the head at the start (default: the middle of the "
+                  "cloth is at 0 -0.1 -0.6), or from the floor with a room (default 0 0 0)")
       ->expected(3);
   cmd->add_flag("--no-passthrough", a.opaque, "White background instead of the camera picture");
   cmd->add_option("--timeout", a.timeout, "The session ends after this time without tracked hands or picked points [s]")

@@ -8,6 +8,7 @@
 #include "assets/hand_track.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
+#include "clothbench/vector.hpp"
 #include "results/store.hpp"
 #include "scenario/load.hpp"
 #include "scenario/recorded_hand.hpp"
@@ -36,8 +37,6 @@ LiveScene::LiveScene(const std::string& scenario, const std::vector<std::string>
     : folder_(std::move(folder)) {
   const fs::path source = find_scenario(scenario);
   written_ = load_scene(scenario, overrides);
-  if (written_.cloth.mesh)
-    throw Error(source.string() + ": /cloth/mesh: pictures are of grids alone; expected a \"grid\"");
   document_ = parse_json(read_text(source), source.string());
   for (const std::string& o : overrides) apply_override(document_, o, source.string());
   // These say what comes of the script's motion, not of the user's.
@@ -46,6 +45,7 @@ LiveScene::LiveScene(const std::string& scenario, const std::vector<std::string>
   document_["why"] = "Recorded from a headset. " + document_["why"].get<std::string>();
   fs::create_directories(folder_);
   find_live(source.string(), live);
+  keep_mesh(source.string());
   keep_tracks(source.string());
 }
 
@@ -74,6 +74,15 @@ void LiveScene::find_live(const std::string& source, Live live) {
   }
 }
 
+/// The file of a mesh travels with the scenario.
+void LiveScene::keep_mesh(const std::string& source) {
+  json& cloth = document_["cloth"];
+  if (!cloth.contains("mesh") || !cloth["mesh"].contains("file")) return;
+  const fs::path from = file_of_scene(cloth["mesh"]["file"].get<std::string>(), source).value();
+  write_file_atomically(folder_ / from.filename(), read_text(from));
+  cloth["mesh"]["file"] = from.filename().string();
+}
+
 /// Tracks that stay scripted travel with the scenario.
 void LiveScene::keep_tracks(const std::string& source) {
   for (const char* kind : {"colliders", "grips"}) {
@@ -92,6 +101,17 @@ void LiveScene::keep_tracks(const std::string& source) {
 
 bool LiveScene::wants(Side side) const {
   return std::any_of(hands_.begin(), hands_.end(), [&](const LiveHand& h) { return h.side == side; });
+}
+
+Vec3 LiveScene::place_m() const {
+  if (wants_room()) return {};
+  const std::vector<double> x = initial_positions(written_);
+  Vec3 low = vertex_at(x, 0), high = low;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    low[k % 3] = std::min(low[k % 3], x[k]);
+    high[k % 3] = std::max(high[k % 3], x[k]);
+  }
+  return minus({0, -0.1, -0.6}, scaled(0.5, plus(low, high)));
 }
 
 const Scene& LiveScene::begin(const Begin& b) {

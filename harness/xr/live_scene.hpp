@@ -36,6 +36,9 @@ class LiveScene {
   const Scene& written() const { return written_; }
   bool wants(assets::Side) const;
   bool wants_room() const { return room_.has_value(); }
+  /// Where the scene's origin is in the user's space [m]: on the floor with a live room; else so that the middle of the
+  /// cloth at its start is 60 cm before the eyes and 10 cm below.
+  Vec3 place_m() const;
 
   struct Begin {
     double frame_rate_hz = 0;
@@ -68,6 +71,7 @@ class LiveScene {
     std::optional<assets::Hand> stand_in;  ///< used if the runtime has no mesh
   };
   void find_live(const std::string& source, Live live);
+  void keep_mesh(const std::string& source);
   void keep_tracks(const std::string& source);
   void write_hand(const LiveHand&) const;
   ColliderPose pose(const LiveHand&, const assets::RecordedHand&) const;

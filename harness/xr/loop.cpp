@@ -25,8 +25,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using assets::Side;
 
-constexpr Vec3 kBeforeTheEyes_m = {0, -0.1, -0.6};
-
 double seconds(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
@@ -387,7 +385,7 @@ LoopResult run_loop(const LoopOptions& options) {
   SessionOptions s;
   s.rate_hz = options.rate_hz;
   s.on_floor = live.wants_room();
-  s.origin_m = options.place_m.value_or(live.wants_room() ? Vec3{} : kBeforeTheEyes_m);
+  s.origin_m = options.place_m.value_or(live.place_m());
   s.passthrough = options.passthrough;
   Session session(xr, device, s);
   return Loop(options, xr, live, session, device).run();

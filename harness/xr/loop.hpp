@@ -24,8 +24,8 @@ struct LoopOptions {
   std::string runtime;   ///< argument of Instance
   double rate_hz = 72;   ///< requested refresh rate of the display
   int frames = 0;        ///< 0: as many as the scenario lasts
-  /// The scene's origin in the user's space. Default: 60 cm in front of and 10 cm below the eyes; on the floor with a
-  /// live room.
+  /// The scene's origin in the user's space. Default: the middle of the cloth at its start is 60 cm in front of the
+  /// eyes and 10 cm below; with a live room the origin is on the floor.
   std::optional<Vec3> place_m;
   bool passthrough = true;
   double timeout_s = 120;  ///< for hands to be tracked and points to be picked

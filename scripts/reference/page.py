@@ -17,6 +17,12 @@ def section(name, title, table, note=""):
     return {"id": name, "title": title, "tables": [{"title": title, "note": note, "rows": plain}]}
 
 
+def in_order(sections, titles):
+    """The sections, those of the studies of FIGURES_OF first: the page puts its figures into the first section of their kind."""
+    leading = {titles[groups[0]] for groups in FIGURES_OF.values()}
+    return sorted(sections, key=lambda s: s["title"] not in leading)
+
+
 def merged(documents, motions, extra, head, titles):
     """One document of those of all studies, by group, under the line `head`; motions are those of `motions`, titles those of the groups."""
     out = dict(motions)
@@ -32,7 +38,7 @@ def merged(documents, motions, extra, head, titles):
                 continue
             sections.append({**s, "title": title if s["title"] == title else f"{title}: {s['title']}"})
     out["headline"] = head
-    out["sections"] = extra + sections + list(shared.values())
+    out["sections"] = extra + in_order(sections, titles) + list(shared.values())
     out["runs"] = sum(d["runs"] for d in documents.values())
     out["rates"] = [r for d in documents.values() for r in d["rates"]]
     out["commands"] = ["scripts/reference.sh"]

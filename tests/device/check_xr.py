@@ -12,6 +12,7 @@ if not HOST_COMMAND.exists():
     skip(f"{HOST_COMMAND} is not built (set CLOTHBENCH_HOST_COMMAND)")
 RUNTIME = sys.argv[4]
 WORDS = ["xr", "paper/capsule-sweep", "--frames", "24", "--set", "cloth.grid=[9,7]", "--runtime", RUNTIME]
+MESH = ["xr", "validation/hang-mesh", "--frames", "6", "--set", 'cloth.mesh={"drawn":{"size_m":[1,1],"cells":6}}', "--runtime", RUNTIME]
 TOLERANCE = 1e-6  # of the cloth's width, as for positions (check_positions.py)
 
 
@@ -44,12 +45,13 @@ def replays(live, folder):
 
 
 with Folder() as top:
-    folder = top / "command"
-    folder.mkdir()
-    text = must(qemu(BUILD / "clothbench", *WORDS, "--out", folder / "live"), env=environment(folder))
-    assert "24 frames: ok" in text, text
-    told(folder, rate_hz=72, android=False)
-    print(f"ok: the command; replayed here to {replays(folder / 'live', folder):.1e} of the width")
+    for name, words, frames in (("command", WORDS, 24), ("mesh", MESH, 6)):
+        folder = top / name
+        folder.mkdir()
+        text = must(qemu(BUILD / "clothbench", *words, "--out", folder / "live"), env=environment(folder))
+        assert f"{frames} frames: ok" in text, text
+        told(folder, rate_hz=72, android=False)
+        print(f"ok: the command, {words[1]}; replayed here to {replays(folder / 'live', folder):.1e} of the width")
 
     folder = top / "activity"
     (folder / "files").mkdir(parents=True)
