@@ -27,7 +27,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "reference"))
-from devices import OTHERS, devices_sentence, devices_table  # noqa: E402
+from devices import OTHERS, devices_sentence, devices_summary, devices_table  # noqa: E402
 from figures import SET_UPS, Tables, claims_table, markdown, statement  # noqa: E402
 from page import document_of, merged, section, write_page  # noqa: E402
 from sources import changed_since  # noqa: E402
@@ -36,6 +36,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 DATA = ROOT / "scripts/reference"
 PUBLISHED = ROOT / "results/reference/h200"
 LIST = "reference.json"
+DEVICES = "devices.csv"
 # Files of a report that are not published: the page is one for all studies, and what else is left out is in runs.csv.
 UNPUBLISHED = {"index.html", "runs.json", "tables.tex", "bandwidth.csv", "memory.csv", "report-pictures.json", "penetration-series.csv", "work-precision.json", "penetration.csv", "contact-runs.csv"}
 
@@ -133,6 +134,7 @@ def readme(folder, listing):
         text += ["## Devices", "", devices_sentence(folder, devices), ""]
         if other := [r for r in devices[1:] if r[-1] == "no"]:
             text += [markdown([devices[0], *other]), ""]
+        text += [f"[{DEVICES}]({at}/{DEVICES}) has all of them, and which solver is first in each.", ""]
         if second := [f for g, f in listing["studies"].items() if g.startswith("second-")]:
             machine, days, commits = (", ".join(sorted({x for f in second for x in f[key]})) for key in ("devices", "days", "commits"))
             text += [f"The second device, with `--second`: {machine}, {days}, {len(second)} studies in {sum(f['seconds'] for f in second)} s, at commit {commits[:12]}; the sources are the same.", ""]
@@ -237,14 +239,22 @@ def sections_of(to, listing):
         if f := listing["studies"].get(s["group"]):
             answer = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", statement(Tables(to), s)[0] or "–")  # a page on its own has no links to files
             studies.append([s["title"], s["question"], answer, ", ".join(f["devices"] + f["cpus"]), ", ".join(f["days"]), ", ".join(f["how"])])
-    out = [section("claims", "Claims of the paper", claims_table(Tables(to), data("claims.json"))), section("studies", "Studies", studies)]
-    devices = devices_table(to)
-    return out + ([section("devices", "Devices", devices, devices_sentence(to, devices))] if len(devices) > 1 else [])
+    out = [section("claims", "Claims of the paper", ("Claims of the paper", "", claims_table(Tables(to), data("claims.json")))), section("studies", "Studies", ("Studies", "", studies))]
+    rows = devices_table(to)
+    if len(rows) > 1:
+        other = [r for r in rows if r[-1] != "yes"]  # and the head
+        text = f"{DEVICES} has all {len(rows) - 1}, and which solver is first in each."
+        out.append(section("devices", "Devices", ("Orders and verdicts that are the same", devices_sentence(to, rows), devices_summary(rows)), ("Orders and verdicts that differ", text, other)))
+    return out
 
 
 def finish(to, listing, template, document):
     """Writes page, list and documents; says what a check will refuse."""
     write_page(to / "index.html", template, document)
+    rows = devices_table(to)
+    if len(rows) > 1:
+        with open(to / DEVICES, "w", encoding="utf-8", newline="") as f:
+            csv.writer(f, lineterminator="\n").writerows(rows)
     seal(to, listing)
     for fault in faults_of(to, []):
         print(f"warning: {fault}; --check will refuse it", file=sys.stderr)

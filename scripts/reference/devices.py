@@ -13,6 +13,7 @@ ORDERS = {"table3": [("runs.csv", "free_fall_error", 1e-6), ("runs.csv", "frame_
           "work-precision": [("work-precision.csv", "least time to an error of 1 %", 0)],
           "contact-cost": [("runs.csv", "frame_device_median_s", 0)],
           "penetration": [("runs.csv", "expect", 0)]}
+WORDS = {"free_fall_error": "error of free fall", "frame_wall_median_s": "wall time of a frame", "stretch_mean_last_second": "mean stretch", "frame_device_median_s": "GPU time of a frame", "expect": "verdict"}
 TIMES = {"frame_wall_median_s", "frame_device_median_s", "least time to an error of 1 %"}
 SAME_WITHIN = 1.05  # two figures of an order
 
@@ -36,7 +37,7 @@ def figures_of(tables, name, column):
             if not r["refused"] and r["error"] and float(r["error"]) <= 0.01:
                 of_scene[r["solver"]] = min(float(r["wall_ms_per_s"]), of_scene.get(r["solver"], float("inf")))
         elif r.get(column) and r[column] != "–":
-            of_scene[f"{r['solver']} {r['setting']}"] = r[column] if column == "expect" else float(r[column])
+            of_scene[f"{r['solver']} {r['setting']}".removesuffix(" default")] = r[column] if column == "expect" else float(r[column])
     return out
 
 
@@ -70,8 +71,18 @@ def devices_table(folder):
                     else:
                         texts = [" < ".join(sorted(common, key=lambda c, of=of: of[c])) for of in both]
                         same = same_order(*both, floor)
-                    rows.append([device, group, scene, column, *texts, "yes" if same else "no"])
+                    rows.append([device, group, scene, WORDS.get(column, column), *texts, "yes" if same else "no"])
     return rows
+
+
+def devices_summary(rows):
+    """How many orders and verdicts of each study are the same, of the rows of devices_table: rows of text."""
+    counts = {}
+    for device, study, _, by, *_, same in rows[1:]:
+        of = counts.setdefault((device, study, by), [0, 0])
+        of[0] += same == "yes"
+        of[1] += 1
+    return [["other device", "study", "by", "same", "of"]] + [[*key, str(same), str(of)] for key, (same, of) in counts.items()]
 
 
 def devices_sentence(folder, rows):

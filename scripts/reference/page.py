@@ -5,6 +5,7 @@ import sys
 
 PAGE_LIMIT_B = 20_000_000
 FIGURES_OF = {"penetration": ("penetration", "meshes"), "work": ("work-precision",), "maps": ("stability",), "cases": ("stability",)}
+SHARED = ("environment", "failed", "expect")  # one section of all studies
 DOCUMENT = re.compile(r'(<script type="application/json" id="clothbench-data">)(.*?)(</script>)', re.S)
 
 
@@ -12,9 +13,15 @@ def document_of(page):
     return json.loads(DOCUMENT.search(page)[2])
 
 
-def section(name, title, table, note=""):
-    plain = [[cell.replace("`", "") for cell in row] for row in table]  # the page's cells are text, not Markdown
-    return {"id": name, "title": title, "tables": [{"title": title, "note": note, "rows": plain}]}
+def section(name, title, *tables):
+    """A section of tables, each (title, note, rows of text)."""
+    plain = lambda rows: [[cell.replace("`", "") for cell in row] for row in rows]  # the page's cells are text, not Markdown
+    return {"id": name, "title": title, "tables": [{"title": t, "note": note, "rows": plain(rows)} for t, note, rows in tables]}
+
+
+def title_of(study, title, alone):
+    """The title of a section of a study; `alone`: it is the study's only one."""
+    return study if alone or title == study else f"{study}: {title.removeprefix('Rates: ')}"
 
 
 def in_order(sections, titles):
@@ -28,15 +35,12 @@ def merged(documents, motions, extra, head, titles):
     out = dict(motions)
     sections, shared = [], {}
     for group, d in documents.items():
-        for s in d["sections"]:
-            if (s["id"] == "features" and group != "penetration") or (s["id"] == "material" and group != "moduli"):
-                continue
-            title = titles.get(group, group)
-            if s["id"] in ("environment", "failed", "expect"):  # one section of all studies
-                one = shared.setdefault(s["id"], {**s, "tables": []})
-                one["tables"] += [{**t, "title": f"{title}: {t['title']}"} for t in s["tables"]]
-                continue
-            sections.append({**s, "title": title if s["title"] == title else f"{title}: {s['title']}"})
+        study = titles.get(group, group)
+        own = [s for s in d["sections"] if s["id"] not in SHARED and (s["id"] != "features" or group == "penetration") and (s["id"] != "material" or group == "moduli")]
+        sections += [{**s, "title": title_of(study, s["title"], len(own) == 1)} for s in own]
+        for s in (s for s in d["sections"] if s["id"] in SHARED):
+            one = shared.setdefault(s["id"], {**s, "tables": []})
+            one["tables"] += [{**t, "title": f"{study}: {t['title']}"} for t in s["tables"]]
     out["headline"] = head
     out["sections"] = extra + in_order(sections, titles) + list(shared.values())
     out["runs"] = sum(d["runs"] for d in documents.values())
