@@ -13,7 +13,7 @@ ORDERS = {"table3": [("runs.csv", "free_fall_error", 1e-6), ("runs.csv", "frame_
           "work-precision": [("work-precision.csv", "least time to an error of 1 %", 0)],
           "contact-cost": [("runs.csv", "frame_device_median_s", 0)],
           "penetration": [("runs.csv", "expect", 0)]}
-WORDS = {"free_fall_error": "error of free fall", "frame_wall_median_s": "wall time of a frame", "stretch_mean_last_second": "mean stretch", "frame_device_median_s": "GPU time of a frame", "expect": "verdict"}
+WORDS = {"free_fall_error": "free-fall error", "frame_wall_median_s": "wall time of a frame", "stretch_mean_last_second": "mean stretch", "frame_device_median_s": "GPU time of a frame", "expect": "verdict"}
 TIMES = {"frame_wall_median_s", "frame_device_median_s", "least time to an error of 1 %"}
 SAME_WITHIN = 1.05  # two figures of an order
 

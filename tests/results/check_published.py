@@ -115,8 +115,8 @@ with tempfile.TemporaryDirectory() as scratch:
     assert figures.statement(figures.Tables(folder), entry) == ("nan", False)
     assert figures.statement(figures.Tables(folder), {**entry, "needs": "n > 0"}) == (None, None)
     rows = reference.devices_table(folder)
-    assert rows[1][2:] == ["a", "error of free fall", "xpbd < paper", "paper < xpbd", "no"], rows
-    assert devices.devices_summary(rows)[1:] == [["software device", "table3", "error of free fall", "0", "1"]], devices.devices_summary(rows)
+    assert rows[1][2:] == ["a", "free-fall error", "xpbd < paper", "paper < xpbd", "no"], rows
+    assert devices.devices_summary(rows)[1:] == [["software device", "table3", "free-fall error", "0", "1"]], devices.devices_summary(rows)
 
 # Orders of two devices: within 5 %, below the floor, not a number.
 for a, b, floor, same in ((1, 2), (1.04, 1), 0, True), ((1, 2), (1.2, 1), 0, False), ((1, 2), (1.2, 1), 3, True), ((1, 2), (float("nan"), 3), 0, False):
