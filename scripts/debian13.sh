@@ -2,25 +2,41 @@
 # Both README commands on a bare Debian 13, as a newcomer would type them: a chroot made by debootstrap, a clone of the committed HEAD,
 # one build by clang with warnings as errors, the quick study, a short set of tests, a live session on Monado's OpenXR runtime, the
 # Debian package, and that package installed in a second bare Debian 13.
-#   scripts/debian13.sh [--keep] [FOLDER]     default: build/debian13; everything in it is made anew but the bare system and downloads
+#   scripts/debian13.sh [--keep] [--suite trixie | bookworm] [FOLDER]     default: build/debian13; all in it is made anew but the bare
+#                                                                         system and downloads
 # --keep: go on with the system of the last call, at today's HEAD; to find a fault sooner.
+# --suite bookworm: the same on a bare Debian 12, with its own compiler and without Monado, which it does not have; FOLDER: build/bookworm.
 # Needs root (chroot). Without it the stage is skipped and says so, unless CLOTHBENCH_REQUIRE_DEBIAN13=1.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+keep= suite=trixie name=debian13
+while [ $# -gt 0 ]; do
+  case $1 in
+    --keep) keep=1 ;;
+    --suite)
+      case ${2:-} in
+        trixie) ;;
+        bookworm) suite=bookworm name=bookworm ;;
+        *) echo "usage: scripts/debian13.sh [--keep] [--suite trixie | bookworm] [FOLDER]" >&2; exit 2 ;;
+      esac
+      shift ;;
+    -*) echo "usage: scripts/debian13.sh [--keep] [--suite trixie | bookworm] [FOLDER]" >&2; exit 2 ;;
+    *) break ;;
+  esac
+  shift
+done
+folder=$(realpath -m "${1:-build/$name}")
 # Inside the other stages' names: logs of their own.
-CLOTHBENCH_LOGS=${CLOTHBENCH_LOGS:-build/log}/debian13
+CLOTHBENCH_LOGS=${CLOTHBENCH_LOGS:-build/log}/$name
 source scripts/common.sh
 here=$PWD
-keep=
-if [ "${1:-}" = --keep ]; then keep=1; shift; fi
-folder=$(realpath -m "${1:-build/debian13}")
 
 skip() {
   if [ "${CLOTHBENCH_REQUIRE_DEBIAN13:-}" = 1 ]; then
-    echo "debian13: $1, and CLOTHBENCH_REQUIRE_DEBIAN13=1" >&2
+    echo "$name: $1, and CLOTHBENCH_REQUIRE_DEBIAN13=1" >&2
     exit 1
   fi
-  echo "debian13: SKIPPED: $1"
+  echo "$name: SKIPPED: $1"
   echo "0 passed, 0 failed, 1 skipped"
   exit 0
 }
@@ -38,7 +54,7 @@ bare() {
     mirror=$(apt-get indextargets --format '$(REPO_URI) $(RELEASE)' 'Created-By: Packages' 'Origin: Debian' 'Label: Debian' |
       grep -v -- '-security$' | cut -d' ' -f1 | sort -u | head -1)
     [ -n "$mirror" ] || { echo "apt knows no Debian mirror (run apt-get update once)"; return 1; }
-    debootstrap --variant=minbase trixie "$folder/base" "$mirror" || return 1
+    debootstrap --variant=minbase "$suite" "$folder/base" "$mirror" || return 1
     rm -f "$folder/base"/var/cache/apt/archives/*.deb
     # Nothing in here outlives the test: no need to wait for the disk.
     echo force-unsafe-io >"$folder/base/etc/dpkg/dpkg.cfg.d/unsafe-io"
@@ -84,7 +100,8 @@ set_up() {
             git config --global --add safe.directory "*"'
 }
 # Words are split on purpose: arguments of cmake.
-clang='export CLOTHBENCH_CMAKE="-DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCLOTHBENCH_WERROR=ON"'
+compiler='export CLOTHBENCH_CMAKE="-DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCLOTHBENCH_WERROR=ON"'
+[ "$suite" = trixie ] || compiler=:
 monado() {
   newcomer 'apt-get install -y --no-install-recommends monado-service libopenxr1-monado openxr-layer-corevalidation
             /usr/bin/python3 tests/xr/check_monado.py build/release/clothbench'
@@ -102,9 +119,9 @@ installed() {
 
 stage bare 3 bare
 stage set-up 2 set_up
-stage --show run.sh 12 newcomer "$clang; scripts/run.sh --quick"
+stage --show run.sh 12 newcomer "$compiler; scripts/run.sh --quick"
 stage package 2 package
-stage --show test.sh 8 newcomer "$clang; scripts/test.sh --short"
-stage --show monado 2 monado
+stage --show test.sh 8 newcomer "$compiler; scripts/test.sh --short"
+[ "$suite" != trixie ] || stage --show monado 2 monado
 stage --show installed 3 installed
 print_budget enforce
