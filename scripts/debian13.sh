@@ -66,6 +66,7 @@ bare() {
   if [ -n "$keep" ] && [ -d "$folder/build/root/clothbench" ]; then
     git -C "$folder/build/root/clothbench" fetch -q origin
     git -C "$folder/build/root/clothbench" checkout -q --detach "$(git rev-parse HEAD)"
+    rm -rf "$folder/installed"
     return
   fi
   # Copies of earlier runs hold no mounts: those live in a namespace of their own.
