@@ -116,7 +116,7 @@ def readme(folder, listing):
     tables = Tables(folder)
     at = folder.name
     text = ["# The reference study", "",
-            f"All figures of the study: one commit ({listing['commit'][:12]}), one command, one [page]({at}/index.html) that opens from disk. "
+            f"All figures of the study: one state of the sources (commit {listing['commit'][:12]}), one command, one [page]({at}/index.html) that opens from disk. "
             "Times were taken alone, in one process, contenders in turns; what is called untimed ran side by side and has no times. "
             f"[reference.json]({at}/reference.json) has the SHA-256 of every file; `scripts/reference.sh --check` verifies them.", "",
             *([listing["note"], ""] if listing.get("note") else []),

@@ -87,7 +87,7 @@ def devices_summary(rows):
 
 def devices_sentence(folder, rows):
     """Which conclusions hold on other devices: orders and verdicts of scenes, and the claims that rest on untimed scenes alone."""
-    out = []
+    out, agreed = [], []
     for prefix in OTHERS:
         device = device_of(folder, prefix)
         of_device = [r for r in rows[1:] if r[0] == device]
@@ -102,4 +102,7 @@ def devices_sentence(folder, rows):
             if names := [name for name, agrees in known if agrees == holds]:
                 text += f" {words}: {', '.join(names)}."
         out.append(text)
+        agreed.append([name for name, agrees in known if agrees])
+    if len(agreed) > 1 and (names := [name for name in agreed[0] if all(name in of for of in agreed)]):
+        out.append(f"The same verdict on all devices: {', '.join(names)}.")
     return " ".join(out)
