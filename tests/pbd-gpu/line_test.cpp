@@ -230,8 +230,9 @@ TEST_F(LineScenes, OneDispatchAFrameOrFourASubstep) {
   Scene strips = sheet(33, 32);
   strips.needs = strips.needs - FeatureSet{Feature::Shear};
   EXPECT_EQ(dispatches(strips, {{"substeps", 7}}), 14);
-  EXPECT_EQ(dispatches(with_collider(sheet(32, 32), box({0, 0, 0}, {0.1, 0.1, 0.1})), {{"substeps", 7}}), 3 * 7)
-      << "lines, samples, vertices";
+  EXPECT_EQ(dispatches(with_collider(sheet(32, 32), box({0, 0, 0}, {0.1, 0.1, 0.1})), {{"substeps", 7}}),
+            4 + 7 * (4 + 8))
+      << "the list of pairs; the lines and the phases of contact";
 }
 
 }  // namespace

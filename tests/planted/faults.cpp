@@ -81,7 +81,7 @@ void add_planes(std::vector<Fault>& f) {
          "        n[l] += k % 3u == 1u ? 0u : 1u;");
   kernel("half of each element's pairs not found again", "struck", "plane_scan.glsl", "min(count, room), 0u",
          "min(count, room) / 2u, 0u");
-  kernel("start of the substep not what it was", "wrapped", "plane_vertices.glsl", "at.xyz += p.h * (vel ",
+  kernel("start of the substep not what it was", "struck", "plane_vertices.glsl", "at.xyz += p.h * (vel ",
          "at.xyz += -9.0 * p.h * (vel ");
   kernel("bounds of distances do not lose the ways", "struck", "plane_near.glsl",
          "bound -= most_of(e, true) + piece_way(pair.y);", "bound -= 0.0;");
