@@ -9,6 +9,7 @@
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
+#include "render/surfaces.hpp"
 #include "results/store.hpp"
 #include "scenario/load.hpp"
 #include "scenario/recorded_hand.hpp"
@@ -106,12 +107,9 @@ bool LiveScene::wants(Side side) const {
 Vec3 LiveScene::place_m() const {
   if (wants_room()) return {};
   const std::vector<double> x = initial_positions(written_);
-  Vec3 low = vertex_at(x, 0), high = low;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    low[k % 3] = std::min(low[k % 3], x[k]);
-    high[k % 3] = std::max(high[k % 3], x[k]);
-  }
-  return minus({0, -0.1, -0.6}, scaled(0.5, plus(low, high)));
+  render::Bounds cloth = render::Bounds::none();
+  for (std::size_t v = 0; v < written_.cloth.vertex_count(); ++v) cloth.add(vertex_at(x, v));
+  return minus({0, -0.1, -0.6}, scaled(0.5, plus(cloth.low, cloth.high)));
 }
 
 const Scene& LiveScene::begin(const Begin& b) {

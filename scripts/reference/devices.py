@@ -30,15 +30,23 @@ def figures_of(tables, name, column):
     """The figure of each solver and setting, by scene."""
     out = {}
     for r in tables.rows(name):
-        if r["status"] != "ok":
-            continue
         of_scene = out.setdefault(r["scene"], {})
+        if r["status"] != "ok":
+            # Of error against run time a setting that fails is none; elsewhere the run has no figure.
+            if column in r:
+                of_scene[f"{r['solver']} {r['setting']}".removesuffix(" default")] = r["status"] if column == "expect" else float("nan")
+            continue
         if column == "least time to an error of 1 %":
             if not r["refused"] and r["error"] and float(r["error"]) <= 0.01:
                 of_scene[r["solver"]] = min(float(r["wall_ms_per_s"]), of_scene.get(r["solver"], float("inf")))
         elif r.get(column) and r[column] != "–":
             of_scene[f"{r['solver']} {r['setting']}".removesuffix(" default")] = r[column] if column == "expect" else float(r[column])
     return out
+
+
+def failed(figure):
+    """Whether a figure of figures_of is that of a run that ended badly."""
+    return figure != figure or (isinstance(figure, str) and figure != "pass" and not figure.startswith("fail"))
 
 
 def same_order(a, b, floor):
@@ -61,7 +69,8 @@ def devices_table(folder):
                     continue
                 a, b = (figures_of(t, f"{group}/{name}", column) for t in (here, there))
                 for scene in b:
-                    common = sorted(set(a.get(scene, {})) & set(b[scene]))
+                    # What ended badly on both is no difference; on one alone it is.
+                    common = sorted(c for c in set(a.get(scene, {})) & set(b[scene]) if not (failed(a[scene][c]) and failed(b[scene][c])))
                     if len(common) < 2:
                         continue
                     both = [{c: of[scene][c] for c in common} for of in (a, b)]
@@ -69,7 +78,7 @@ def devices_table(folder):
                         texts = [", ".join(f"{c.split()[0]} {of[c].split(':')[0]}" for c in common) for of in both]
                         same = texts[0] == texts[1]
                     else:
-                        texts = [" < ".join(sorted(common, key=lambda c, of=of: of[c])) for of in both]
+                        texts = [" < ".join(sorted(common, key=lambda c, of=of: (failed(of[c]), of[c]))) for of in both]
                         same = same_order(*both, floor)
                     rows.append([device, group, scene, WORDS.get(column, column), *texts, "yes" if same else "no"])
     return rows

@@ -14,6 +14,7 @@ root = pathlib.Path(sys.argv[1])
 sys.path[:0] = [str(root / "scripts"), str(root / "scripts/reference")]
 import devices  # noqa: E402
 import figures  # noqa: E402
+import page  # noqa: E402
 import reference  # noqa: E402
 import sources as measured  # noqa: E402
 
@@ -70,8 +71,8 @@ with tempfile.TemporaryDirectory() as scratch:
     to = made(pathlib.Path(scratch), commit)
     code, said = checked(to)
     assert (code, "nothing that may change" in said) == (0, True) if head else (code == 4), (code, said)
-    page = (to.parent / "README.md").read_text(encoding="utf-8")
-    assert "| C2 | " in page and "reproduced | `paper`: 310 and 200 frames a second" in page, page
+    text = (to.parent / "README.md").read_text(encoding="utf-8")
+    assert "| C2 | " in text and "reproduced | `paper`: 310 and 200 frames a second" in text, text
     (pathlib.Path(scratch) / "out/table3").mkdir(parents=True)
     (pathlib.Path(scratch) / "out/table3/x.h5").write_bytes(b"other")
     code, said = checked(to, str(pathlib.Path(scratch) / "out"))
@@ -117,6 +118,19 @@ with tempfile.TemporaryDirectory() as scratch:
     rows = reference.devices_table(folder)
     assert rows[1][2:] == ["a", "free-fall error", "xpbd < paper", "paper < xpbd", "no"], rows
     assert devices.devices_summary(rows)[1:] == [["software device", "table3", "free-fall error", "0", "1"]], devices.devices_summary(rows)
+
+    # A run that ends badly on one device alone is a difference; on both it is none.
+    for fails, same in ((["software-table3"], ["no"]), (["table3", "software-table3"], [])):
+        for study in ("table3", "software-table3"):
+            lines = [row("a", "paper", 1, commit, error="0.2"), row("a", "xpbd", 2, commit, error="0.1")]
+            (folder / study / "runs.csv").write_text(table([lines[0].replace(",ok,", ",crashed,") if study in fails else lines[0], lines[1]]), encoding="utf-8")
+        assert [r[-1] for r in reference.devices_table(folder)[1:]] == same, (fails, reference.devices_table(folder))
+
+# The page: titles without repeats; the sections that figures belong to first.
+assert [page.title_of("Garments", "Penetration", alone) for alone in (True, False)] == ["Garments", "Garments: Penetration"]
+assert page.title_of("Hanging sheets", "Rates: hang", False) == "Hanging sheets: hang" and page.title_of("Penetration", "Penetration", False) == "Penetration"
+titles = {s["group"]: s["title"] for s in reference.data("studies.json")}
+assert [s["title"] for s in page.in_order([{"title": "Hanging sheets: Penetration"}, {"title": "Penetration"}], titles)] == ["Penetration", "Hanging sheets: Penetration"]
 
 # Orders of two devices: within 5 %, below the floor, not a number.
 for a, b, floor, same in ((1, 2), (1.04, 1), 0, True), ((1, 2), (1.2, 1), 0, False), ((1, 2), (1.2, 1), 3, True), ((1, 2), (float("nan"), 3), 0, False):
