@@ -9,7 +9,11 @@
 # Needs root (chroot). Without it the stage is skipped and says so, unless CLOTHBENCH_REQUIRE_DEBIAN13=1.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-keep= suite=trixie name=debian13
+usage() {
+  echo "usage: scripts/debian13.sh [--keep] [--suite trixie | bookworm] [FOLDER]" >&2
+  exit 2
+}
+keep='' suite=trixie name=debian13
 while [ $# -gt 0 ]; do
   case $1 in
     --keep) keep=1 ;;
@@ -17,10 +21,10 @@ while [ $# -gt 0 ]; do
       case ${2:-} in
         trixie) ;;
         bookworm) suite=bookworm name=bookworm ;;
-        *) echo "usage: scripts/debian13.sh [--keep] [--suite trixie | bookworm] [FOLDER]" >&2; exit 2 ;;
+        *) usage ;;
       esac
       shift ;;
-    -*) echo "usage: scripts/debian13.sh [--keep] [--suite trixie | bookworm] [FOLDER]" >&2; exit 2 ;;
+    -*) usage ;;
     *) break ;;
   esac
   shift
