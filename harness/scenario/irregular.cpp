@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/json_text.hpp"
@@ -92,13 +93,40 @@ class IrregularReader {
       s.moved.push_back({vertices(j["move"][k], fmt::format("/cloth/start/move/{}", k)), vec3(j["move"][k]["by_m"])});
   }
 
+  StiffnessRegion region_of_grid(const json& r, const std::string& pointer) const {
+    if (r.contains("group"))
+      refuse(source_, pointer + "/group", "expected a cloth that is a mesh; a grid has \"columns\"");
+    if (!r.contains("columns")) refuse(source_, pointer, "expected \"columns\"");
+    StiffnessRegion region{r["columns"][0].get<int>(), r["columns"][1].get<int>(), {}};
+    if (region.last < region.first || region.last > s_.cloth.columns - 2)
+      refuse(source_, pointer + "/columns",
+             fmt::format("expected the first and the last cell, 0 to {}, in this order", s_.cloth.columns - 2));
+    return region;
+  }
+
+  StiffnessRegion region_of_mesh(const json& r, const std::string& pointer) const {
+    if (r.contains("columns"))
+      refuse(source_, pointer + "/columns", "expected a cloth that is a grid; a mesh has \"group\"");
+    if (!r.contains("group")) refuse(source_, pointer, "expected \"group\"");
+    const auto group = r["group"].get<std::string>();
+    const std::vector<std::uint32_t>& in = group_vertices(s_.cloth, group, source_, pointer + "/group");
+    const auto has = [&](std::uint32_t v) { return std::binary_search(in.begin(), in.end(), v); };
+    StiffnessRegion region;
+    const auto& triangles = s_.cloth.mesh->triangles;
+    for (std::uint32_t t = 0; t < triangles.size(); ++t)
+      if (std::all_of(triangles[t].begin(), triangles[t].end(), has)) region.triangles.push_back(t);
+    if (region.triangles.empty())
+      refuse(
+          source_, pointer + "/group",
+          fmt::format("no triangle has all its vertices in the group \"{}\"; expected one that has triangles", group));
+    return region;
+  }
+
   void regions(const json& list) {
     for (std::size_t k = 0; k < list.size(); ++k) {
       const json& r = list[k];
-      StiffnessRegion region{r["columns"][0].get<int>(), r["columns"][1].get<int>(), {}};
-      if (region.last < region.first || region.last > s_.cloth.columns - 2)
-        refuse(source_, fmt::format("/material/regions/{}/columns", k),
-               fmt::format("expected the first and the last cell, 0 to {}, in this order", s_.cloth.columns - 2));
+      const std::string pointer = fmt::format("/material/regions/{}", k);
+      StiffnessRegion region = s_.cloth.mesh ? region_of_mesh(r, pointer) : region_of_grid(r, pointer);
       if (r["membrane_stiffness_N_per_m"].is_number())
         region.membrane_stiffness_N_per_m = r["membrane_stiffness_N_per_m"].get<double>();
       s_.material.regions.push_back(region);

@@ -287,8 +287,12 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   s.material.bending_rigidity_N_m = material["bending_rigidity_N_m"].get<double>();
   s.material.damping_per_s = material["damping_per_s"].get<double>();
   s.material.shear = material["shear"].get<bool>();
-  if (s.cloth.mesh && scenario["material"].contains("regions"))
-    refuse(source, "/material/regions", "columns are of grids alone; a mesh has one stiffness");
+  if (material.contains("strain_limit")) {
+    if (!s.material.membrane_stiffness_N_per_m)
+      refuse(source, "/material/strain_limit",
+             "expected a cloth with a membrane_stiffness_N_per_m; an inextensible one has a limit of 0");
+    s.material.strain_limit = material["strain_limit"].get<double>();
+  }
   if (s.cloth.mesh && scenario.contains("truth"))
     refuse(source, "/truth", "expected a cloth that is a grid; reference cases are defined for grids only");
   read_irregular(scenario, s, source);

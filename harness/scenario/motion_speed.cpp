@@ -11,14 +11,12 @@ bool jumps_at(const Scene& scene, std::size_t frame) {
                      [&](const Jump& j) { return static_cast<std::size_t>(j.frame) == frame; });
 }
 
-}  // namespace
-
-std::vector<double> collider_speeds_m_per_s(const Scene& scene) {
+std::vector<double> speeds_of(const Scene& scene, bool with_recorded) {
   constexpr std::size_t kLooked = 64;
   std::vector<double> most(scene.motion.size(), 0);
   for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
     const Collider& c = scene.colliders[k];
-    if (!c.moves()) continue;
+    if (!c.moves() || (c.recorded && !with_recorded)) continue;
     ColliderMesh some;
     if (c.mesh)
       for (std::size_t v = 0; v < c.mesh->vertex_count();
@@ -47,10 +45,17 @@ std::vector<double> collider_speeds_m_per_s(const Scene& scene) {
   return most;
 }
 
-double collider_speed_m_per_s(const Scene& scene) {
-  const std::vector<double> speeds = collider_speeds_m_per_s(scene);
+double greatest(const std::vector<double>& speeds) {
   return speeds.empty() ? 0 : *std::max_element(speeds.begin(), speeds.end());
 }
+
+}  // namespace
+
+std::vector<double> collider_speeds_m_per_s(const Scene& scene) { return speeds_of(scene, true); }
+
+double collider_speed_m_per_s(const Scene& scene) { return greatest(speeds_of(scene, true)); }
+
+double scripted_collider_speed_m_per_s(const Scene& scene) { return greatest(speeds_of(scene, false)); }
 
 double grip_speed_m_per_s(const Scene& scene) {
   double most = 0;

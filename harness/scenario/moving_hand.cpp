@@ -72,6 +72,7 @@ void read_hand(const nlohmann::json& j, ColliderReader& reader, Collider& c, boo
   c.shape = as_mesh ? Collider::Shape::Mesh : Collider::Shape::Capsules;
   if (as_mesh)
     c.mesh = m.recording && m.recording->mesh ? collider_mesh(*m.recording->mesh) : collider_mesh(m.hand->mesh);
+  c.recorded = m.recording.has_value();
   reader.pose = [m = std::move(m), as_mesh](double time_s) { return pose_at(m, as_mesh, time_s); };
   if (!as_mesh) c.capsules = reader.pose(0).capsules;
 }

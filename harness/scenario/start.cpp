@@ -146,12 +146,53 @@ std::vector<double> initial_velocities(const Scene& scene) {
   return v;
 }
 
-EdgeCell edge_cell(const Cloth& c, const Edge& e) {
-  if (c.mesh) {
-    const auto before = [](const Edge& p, const Edge& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; };
-    const auto at = std::lower_bound(c.mesh->edges.begin(), c.mesh->edges.end(), e, before);
-    return {e.rest_m, c.mesh->areas_m2[static_cast<std::size_t>(at - c.mesh->edges.begin())] / e.rest_m};
+namespace {
+
+std::size_t edge_number(const ClothMesh& mesh, const Edge& e) {
+  const auto before = [](const Edge& p, const Edge& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; };
+  return static_cast<std::size_t>(std::lower_bound(mesh.edges.begin(), mesh.edges.end(), e, before) -
+                                  mesh.edges.begin());
+}
+
+}  // namespace
+
+std::vector<std::optional<double>> triangle_stiffnesses(const Scene& s) {
+  std::vector<std::optional<double>> out(s.cloth.mesh->triangles.size(), s.material.membrane_stiffness_N_per_m);
+  for (const StiffnessRegion& r : s.material.regions)
+    for (const std::uint32_t t : r.triangles) out[t] = r.membrane_stiffness_N_per_m;
+  return out;
+}
+
+std::vector<std::optional<double>> edge_stiffnesses(const Scene& s) {
+  std::vector<std::optional<double>> out;
+  if (!s.cloth.mesh || s.material.regions.empty()) {
+    for (const Edge& e : edges(s.cloth, EdgeKind::Structural)) out.push_back(membrane_stiffness(s, e));
+    return out;
   }
+  const ClothMesh& mesh = *s.cloth.mesh;
+  const std::vector<std::optional<double>> of_triangle = triangle_stiffnesses(s);
+  std::vector<double> area(mesh.edges.size(), 0);
+  out.assign(mesh.edges.size(), 0.0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::array<Vec3, 3> x = rest_corners(mesh, t);
+    const double own = length(cross(minus(x[1], x[0]), minus(x[2], x[0])));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
+      const std::size_t e = edge_number(mesh, {a, b, 0, EdgeKind::Structural});
+      if (!out[e] || !of_triangle[t])
+        out[e] = std::nullopt;
+      else
+        *out[e] += own * *of_triangle[t];
+      area[e] += own;
+    }
+  }
+  for (std::size_t e = 0; e < out.size(); ++e)
+    if (out[e]) *out[e] /= area[e];
+  return out;
+}
+
+EdgeCell edge_cell(const Cloth& c, const Edge& e) {
+  if (c.mesh) return {e.rest_m, c.mesh->areas_m2[edge_number(*c.mesh, e)] / e.rest_m};
   const int a = static_cast<int>(e.a) % c.columns, b = static_cast<int>(e.b) % c.columns;
   const bool down = e.a / static_cast<std::uint32_t>(c.columns) != e.b / static_cast<std::uint32_t>(c.columns);
   const auto width = [&](int column) {
@@ -172,7 +213,10 @@ bool on_border(const Cloth& c, const Edge& e) {
 
 std::optional<double> membrane_stiffness(const Scene& scene, const Edge& e) {
   const Material& m = scene.material;
-  if (scene.cloth.mesh) return m.membrane_stiffness_N_per_m;
+  if (const auto& mesh = scene.cloth.mesh) {
+    if (m.regions.empty()) return m.membrane_stiffness_N_per_m;
+    return edge_stiffnesses(scene).at(edge_number(*mesh, e));
+  }
   const auto of_cell = [&](int column) {
     std::optional<double> Y = m.membrane_stiffness_N_per_m;
     for (const StiffnessRegion& r : m.regions)

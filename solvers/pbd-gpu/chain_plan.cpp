@@ -5,10 +5,12 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "clothbench/vector.hpp"
 #include "line_plan.hpp"
+#include "substeps.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -151,8 +153,7 @@ std::vector<Strand> mesh_strands(const ClothMesh& m, bool rings_overlap) {
 }
 
 /// 1/k of a link [m/N]: the springs of lines.cpp, cell by cell.
-double compliance_of(const Scene& s, const Edge& e) {
-  const auto Y = membrane_stiffness(s, e);
+double compliance_of(const Scene& s, const Edge& e, const std::optional<double>& Y) {
   if (!Y) return 0;
   const auto [a, b] = edge_cell(s.cloth, e);
   double k = *Y * b / a;
@@ -166,7 +167,8 @@ double compliance_of(const Scene& s, const Edge& e) {
 }  // namespace
 
 bool wants_chains(const Scene& s) {
-  return !(s.needs & FeatureSet{Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions}).empty();
+  return !(s.needs & FeatureSet{Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions, Feature::StrainLimit})
+              .empty();
 }
 
 double substeps_for_short_links(const Scene& s) {
@@ -198,18 +200,21 @@ ChainCloth chain_cloth(const Scene& s) {
     c.particle[v] = root(v);
     if (c.particle[v] != v) c.welded.push_back(v);
   }
-  if (s.needs.has(Feature::Shear)) {
-    const std::vector<Edge> diagonals = edges(s.cloth, EdgeKind::Shear);
-    all.insert(all.end(), diagonals.begin(), diagonals.end());
-  }
+  std::vector<std::optional<double>> stiffness = edge_stiffnesses(s);
+  if (s.needs.has(Feature::Shear))
+    for (const Edge& e : edges(s.cloth, EdgeKind::Shear)) {
+      all.push_back(e);
+      stiffness.push_back(membrane_stiffness(s, e));
+    }
   // Links that welding made parallel add their stiffnesses.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<double, double>> links;  // rest, stiffness
-  for (const Edge& e : all) {
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Edge& e = all[k];
     const auto ends = std::minmax(c.particle[e.a], c.particle[e.b]);
     if (ends.first == ends.second) continue;
-    const double compliance = compliance_of(s, e), stiffness = compliance > 0 ? 1 / compliance : INFINITY;
-    const auto [at, fresh] = links.emplace(ends, std::pair(e.rest_m, stiffness));
-    if (!fresh) at->second.second += stiffness;
+    const double compliance = compliance_of(s, e, stiffness[k]), spring = compliance > 0 ? 1 / compliance : INFINITY;
+    const auto [at, fresh] = links.emplace(ends, std::pair(e.rest_m, spring));
+    if (!fresh) at->second.second += spring;
   }
   for (const auto& [ends, link] : links)
     c.links.push_back({ends.first, ends.second, static_cast<float>(link.first), static_cast<float>(1 / link.second)});

@@ -24,8 +24,9 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
       tension_(tension),
       membrane_(membrane) {
   const FeatureSet needs = scene.needs;
-  const FeatureSet serves{Feature::Stretch,   Feature::Shear,      Feature::Damping, Feature::Pins,
-                          Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions, Feature::Bend};
+  const FeatureSet serves{Feature::Stretch, Feature::Shear,     Feature::Damping,
+                          Feature::Pins,    Feature::ClothMesh, Feature::UnevenGrid,
+                          Feature::Regions, Feature::Bend,      Feature::StrainLimit};
   const int stage = frame.add_stage("Chains", needs & serves);
   TetherTable tethers;
   if (frame.settings()["tethers"].get<bool>())
@@ -70,10 +71,10 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
 void Chains::add_families(const ChainCloth& cloth) {
   const std::size_t n = scene_.cloth.vertex_count();
   const std::vector<ChainFamily> families =
-      membrane_ ? std::vector<ChainFamily>(1) : families_of(strands(scene_, cloth), n, block_);
+      !has_links() ? std::vector<ChainFamily>(1) : families_of(strands(scene_, cloth), n, block_);
   for (std::size_t f = 0; f < families.size(); ++f) {
     const std::vector<ChainEntry> more = entries_of(families[f], scene_, cloth, block_, f == 0);
-    const auto rounds = membrane_ ? 0u : static_cast<std::uint32_t>(std::bit_width(families[f].longest() - 1));
+    const auto rounds = !has_links() ? 0u : static_cast<std::uint32_t>(std::bit_width(families[f].longest() - 1));
     families_.push_back(
         {static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds, 0, 0});
     entries_.insert(entries_.end(), more.begin(), more.end());
@@ -90,6 +91,8 @@ ChainSpecialization Chains::specialization() const {
   if (bends_) s.FEATURES |= LINES_BEND;
   if (predicts_) s.FEATURES |= LINES_PREDICT;
   if (tension_) s.FEATURES |= LINES_TENSION;
+  if (const auto limit = scene_.material.strain_limit)
+    s.LIMIT_BITS = std::bit_cast<std::uint32_t>(static_cast<float>(*limit));
   return s;
 }
 
@@ -172,7 +175,8 @@ std::vector<Traffic> Chains::passes(std::uint32_t bending_iterations) const {
   std::vector<Traffic> all;
   if (bends_ || membrane_) all.push_back(traffic(0, true));
   for (std::uint32_t k = 1; k <= bending_iterations; ++k) all.push_back(bending_traffic(k, bending_iterations));
-  for (std::size_t f = 0; !membrane_ && f < families_.size(); ++f) all.push_back(traffic(f, f == 0 && !bends_));
+  for (std::size_t f = 0; has_links() && f < families_.size(); ++f)
+    all.push_back(traffic(f, f == 0 && !bends_ && !membrane_));
   return all;
 }
 
@@ -180,10 +184,10 @@ void Chains::record(int count, const TimeStep& step) {
   count_vertices();
   auto c = step_constants<ChainConstants>(frame_, step);
   c.per_keep = static_cast<float>(1 / step.keep);
-  c.families = membrane_ ? 0 : static_cast<std::uint32_t>(families_.size());
+  c.families = !has_links() ? 0 : static_cast<std::uint32_t>(families_.size());
   if (bends_ || membrane_) {
     const double square = step.implicit_h_s * step.implicit_h_s * step.keep, most = square * most_per_s2_;
-    c.bending_iterations = bending_iterations(most);
+    c.bending_iterations = bending_iterations_now_ = bending_iterations(most);
     c.vertices = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
     c.bending_step = static_cast<float>(square);
     c.bending_gain = static_cast<float>(2 / (2 + most));
@@ -212,6 +216,33 @@ void Chains::record(int count, const TimeStep& step) {
     }
     record_welds();
   }
+}
+
+void Chains::record_again(const TimeStep& step) {
+  auto c = step_constants<ChainConstants>(frame_, step);
+  c.per_keep = static_cast<float>(1 / step.keep);
+  c.families = static_cast<std::uint32_t>(families_.size());
+  c.again = 1;
+  c.bending_iterations = bending_iterations_now_;
+  const std::uint32_t before = bends_ || membrane_ ? 1 + bending_iterations_now_ : 0;
+  if (persistent_) {
+    Traffic sum;
+    const vulkan::Groups groups = all_groups();
+    for (std::size_t f = 0; f < families_.size(); ++f)
+      sum = sum + traffic(f, false) + Traffic{16.0 * groups.x * groups.y * block_, 0};
+    c.first_pass = before;
+    c.passes = c.families;
+    frame_.dispatch_groups(*kernel_, groups, c, sum);
+    return;
+  }
+  c.passes = 1;
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    c.first_pass = before + static_cast<std::uint32_t>(f);
+    c.first_entry = families_[f].first_entry;
+    c.rounds = families_[f].rounds;
+    frame_.dispatch(*kernel_, families_[f].entries, c, traffic(f, false));
+  }
+  record_welds();
 }
 
 void Chains::record_welds() {

@@ -18,6 +18,9 @@ class Chains {
 
   /// Records `count` substeps, each a TimeStep.
   void record(int count, const TimeStep&);
+  /// Records the families once more after a substep's `record`, from where the vertices are.
+  void record_again(const TimeStep&);
+
   /// Puts welded vertices where those are that they are welded to; `record` ends with it.
   void record_welds();
   bool whole_frame() const { return persistent_ && scene_.grips.vertices.empty(); }
@@ -31,6 +34,8 @@ class Chains {
   void add_bending();
   void add_membrane();
   ChainSpecialization specialization() const;
+  /// Triangles take the place of links, unless those have a limit of strain.
+  bool has_links() const { return !membrane_ || scene_.material.strain_limit.has_value(); }
   void count_vertices();
   Traffic traffic(std::size_t family, bool integrates) const;
   Traffic bending_traffic(std::uint32_t iteration, std::uint32_t iterations) const;
@@ -50,7 +55,8 @@ class Chains {
   const FrameKernel *kernel_ = nullptr, *weld_ = nullptr;
   std::uint32_t welds_ = 0;
   bool bends_ = false;
-  double most_per_s2_ = 0;  ///< at least the greatest eigenvalue of bending and triangles
+  std::uint32_t bending_iterations_now_ = 0;  ///< of the last recorded substep
+  double most_per_s2_ = 0;                    ///< at least the greatest eigenvalue of bending and triangles
   std::vector<BendingSlice> slices_, corner_slices_;
   std::vector<std::uint32_t> triangles_;  ///< round each vertex
   /// Vertices that nothing holds in this frame, entries of their rows and of those of triangles, and their triangles.

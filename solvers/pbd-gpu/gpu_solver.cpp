@@ -78,7 +78,8 @@ void GpuSolver::record(double dt_s, double last_dt_s) {
 /// Records the next frame unless what is recorded serves.
 void GpuSolver::prepare(double dt_s) {
   const double last_dt_s = predicts_ ? done_dt_s_ : dt_s;
-  if (dt_s != dt_s_ || last_dt_s != last_dt_s_) record(dt_s, last_dt_s);
+  const bool anew = repaced(dt_s);
+  if (anew || dt_s != dt_s_ || last_dt_s != last_dt_s_) record(dt_s, last_dt_s);
 }
 
 void GpuSolver::count_all() {
@@ -156,7 +157,8 @@ StepStatus GpuSolver::unless_timed_out(StepStatus status) const {
 
 /// Data that the host writes or reads every frame has a single buffer, so the previous frame must have finished.
 int GpuSolver::frames_in_flight() const {
-  const bool host_takes_part = grips_ != nullptr || (colliders_ != nullptr && colliders_->written_each_frame()) ||
+  const bool host_takes_part = grips_ != nullptr || paced_ ||
+                               (colliders_ != nullptr && colliders_->written_each_frame()) ||
                                settings_.value("readback", "none") != "none";
   return host_takes_part ? 1 : kFramesInFlight;
 }

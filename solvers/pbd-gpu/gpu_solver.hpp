@@ -52,6 +52,10 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   /// Records the dispatches and copies of a frame of `dt_s` after one of `last_dt_s`; 0: after none, or after one that
   /// ended with another cloth or other held vertices. `last_dt_s` is `dt_s` unless the method predicts.
   virtual void record_frame(double dt_s, double last_dt_s) = 0;
+  /// Whether the next frame is to be recorded anew though its duration is the last one's. Asked once before each frame.
+  virtual bool repaced(double /*dt_s*/) { return false; }
+  /// For a method whose frames depend on what the host reads of the frame before: one frame in flight.
+  void set_paced() { paced_ = true; }
   /// For a method that predicts from the last substep: its frames depend on the frame before.
   void set_predicts(bool predicts) { predicts_ = predicts; }
   bool predicts() const { return predicts_; }
@@ -82,7 +86,7 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
 
   const SolverInfo info_;
   const std::shared_ptr<std::atomic<int>> messages_ = std::make_shared<std::atomic<int>>(0);
-  bool predicts_ = false;
+  bool predicts_ = false, paced_ = false;
   double dt_s_ = 0, last_dt_s_ = 0;    ///< of the recorded frame, and of the one that it follows
   double done_dt_s_ = 0;               ///< of the last frame done; 0: none that a prediction may go on from
   StepStatus ready_ = StepStatus::Ok;  ///< of the last reset

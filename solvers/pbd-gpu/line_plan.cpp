@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,7 @@
 #include "clothbench/motion.hpp"
 #include "clothbench/solver.hpp"
 #include "prediction.hpp"
+#include "substeps.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -72,8 +74,9 @@ double tether_stretch(const Scene& scene) {
   const auto Y = scene.material.membrane_stiffness_N_per_m;
   if (!Y) return 1;
   const double rho = c.areal_density_kg_per_m2, length = std::hypot(c.width_m, c.height_m);
-  return 1 + 5 * rho * norm(scene.gravity_m_per_s2) * length / *Y +
-         2 * norm(c.initial_velocity_m_per_s) * std::sqrt(rho / *Y);
+  const double slack =
+      5 * rho * norm(scene.gravity_m_per_s2) * length / *Y + 2 * norm(c.initial_velocity_m_per_s) * std::sqrt(rho / *Y);
+  return 1 + std::min(slack, scene.material.strain_limit.value_or(slack));
 }
 
 Tethers tethers_of(const Scene& scene) {
@@ -132,126 +135,9 @@ std::vector<std::uint8_t> taut_chains(const Scene& scene) {
   return taut;
 }
 
-namespace {
-
-/// Substeps in which a moving collider, or a cloth that falls or is thrown on what stands, moves by so many margins. A
-/// struck vertex then pulls its neighbours along before the links between are overstretched. On what stands much of the
-/// cloth is struck at once, so that the way is also at most so many quarters of a cell.
-double substeps_by_margins(const Scene& scene, double margins) {
-  constexpr double kLeast = 0.125, kMostOnImpact = 0.25;  // of a cell
-  const double cell = std::min(scene.cloth.du(), scene.cloth.dv()), impact = impact_speed_m_per_s(scene);
-  double margin = std::numeric_limits<double>::infinity();
-  for (const Collider& c : scene.colliders) margin = std::min(margin, std::max(c.margin_m, kLeast * cell));
-  if (!(margin < std::numeric_limits<double>::infinity())) return 1;
-  if (impact > 0) margin = std::min(margin, kMostOnImpact * cell);
-  const double speed = collider_speed_m_per_s(scene) + norm(scene.cloth.initial_velocity_m_per_s);
-  return std::ceil(std::max(speed, impact) * scene.time.dt() / (margins * margin));
-}
-
-/// Nothing is passed with any number (PLANES.md), so that this is a matter of quality, and may be capped by what a
-/// frame may cost. A margin a substep (fast: two, accurate: a half), at a margin of 4 mm up to 9.2 m/s.
-constexpr double kMargins[] = {2, 1, 0.5}, kBudget[] = {16, 32, 64}, kBudgetOnImpact[] = {32, 64, 96};
-double substeps_for_speed(const Scene& scene, int quality) {
-  const double* budget = impact_speed_m_per_s(scene) > 0 ? kBudgetOnImpact : kBudget;
-  return std::min(budget[quality], substeps_by_margins(scene, kMargins[quality]));
-}
-
-/// A frame in which gravity takes the cloth far stands for several: what it swings through in a substep grows with
-/// dt sqrt(g / L), so that above kMost of it substeps grow with the square root of gravity.
-double frames_for_gravity(const Scene& scene) {
-  constexpr double kMost = 0.15;
-  const double longer = std::max(scene.cloth.width_m, scene.cloth.height_m);
-  const double swing = scene.time.dt() * std::sqrt(norm(scene.gravity_m_per_s2) / longer);
-  return swing > kMost && is_held(scene) && touches_nothing(scene) ? swing / kMost : 1;
-}
-
-/// Most substeps that a sheet takes so that its modulus is Y: up to Y dt^2/(rho L^2) of about 0.0028, 2000 N/m on 1 m.
-double most_to_couple(double links) { return std::max(6.0, links / 6); }
-
-int quality_of(const nlohmann::json& settings) {
-  const std::string quality = settings.value("quality", "default");
-  return quality == "fast" ? 0 : quality == "default" ? 1 : 2;
-}
-
-double length(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }
-
-/// If layers approach by more than kMostWay of their thickness in a substep, responses cannot part them and planes cut
-/// the ways of vertices (PLANES.md, "The cloth with itself"). The assumed speed is the sum of the scene's initial
-/// speed, that of a fall by the cloth's length, and that of the fastest grip or collider.
-double substeps_for_layers(const Scene& scene) {
-  constexpr double kMostWay = 2.0 / 3;
-  const Cloth& c = scene.cloth;
-  const double longer = std::max(c.width_m, c.height_m);
-  const double speed = length(c.initial_velocity_m_per_s) + length(c.spin_rad_per_s) * longer +
-                       std::sqrt(2 * length(scene.gravity_m_per_s2) * longer) +
-                       std::max(grip_speed_m_per_s(scene), collider_speed_m_per_s(scene));
-  return std::ceil(speed * scene.time.dt() / (kMostWay * c.self_collision.thickness_m) - 1e-9);
-}
-
-}  // namespace
-
 bool is_tethered(const Scene& scene, const nlohmann::json& settings) {
   return settings.value("tethers", true) &&
          (wants_chains(scene) ? tether_table(scene).a_vertex > 0 : !tethers_of(scene).to.empty());
-}
-
-int substeps_over_budget(const Scene& scene, const nlohmann::json& settings) {
-  if (settings.value("substeps", 0) > 0 || touches_nothing(scene)) return 0;
-  const double wanted = substeps_by_margins(scene, kMargins[quality_of(settings)]);
-  return wanted > xpbd_substeps(scene, settings) ? static_cast<int>(std::min(wanted, 1e6)) : 0;
-}
-
-int substeps_without_gravity(const Scene& scene, const nlohmann::json& settings) {
-  Scene calm = scene;
-  calm.gravity_m_per_s2 = {};
-  const int substeps = xpbd_substeps(calm, settings);
-  return substeps < xpbd_substeps(scene, settings) ? substeps : 0;
-}
-
-double links_of_longer_side(const Cloth& c) {
-  return c.mesh ? std::max(1.0, c.width_m / c.mesh->edge_m) : std::max(c.columns, c.rows) - 1;
-}
-
-int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
-  if (const int given = settings.value("substeps", 0); given > 0) return given;
-  const double links = links_of_longer_side(scene.cloth);
-  struct Rule {
-    double least, links_a_substep;
-  };
-  const int k = quality_of(settings);
-  const bool touched =
-      !touches_nothing(scene) || !(scene.needs & FeatureSet{Feature::Pins, Feature::MovingPins}).empty();
-  const bool tethered = is_tethered(scene, settings);
-  const auto Y = scene.material.membrane_stiffness_N_per_m;
-  const bool stiff = !Y || *Y >= 1e4;
-  // Substeps are counted a frame, whatever its duration: a constant in seconds would differ between scaled copies of a
-  // scene. A link must not turn by more than about half a radian a substep.
-  constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
-                 kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
-                 kDriven[] = {{5, 6}, {8, 4}, {20, 1.5}}, kLaid[] = {{8, 4}, {16, 2}, {32, 1}},
-                 kLaidStrips[] = {{8, 12}, {14, 6}, {28, 3}}, kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}},
-                 kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
-  const auto& grips = scene.grips.vertices;
-  // A hand pushes a cloth in directions that tethers do not limit.
-  const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
-  const bool shears = scene.needs.has(Feature::Shear), laid = !touches_nothing(scene) && grips.empty();
-  const Rule rule = !touched        ? kUntouched[k]
-                    : driven        ? kDriven[k]
-                    : tethered      ? (stiff ? kStiff[k] : kTethered[k])
-                    : laid          ? (shears ? kLaid[k] : kLaidStrips[k])
-                    : !shears       ? kStrips[k]
-                    : grips.empty() ? kSheet[k]
-                                    : kPulled[k];
-  // With few substeps the error is largest in the links at the pins, which carry more the finer the cloth is.
-  const double fine = k == 0 && rule.links_a_substep == kStiff[0].links_a_substep && links > 300 ? 1.2 : 1;
-  const double short_links = wants_chains(scene) ? substeps_for_short_links(scene) : 1;
-  double per_frame =
-      short_links * frames_for_gravity(scene) * std::max(rule.least, fine * links / rule.links_a_substep);
-  if (scene.needs.has(Feature::SelfCollision)) per_frame = std::max(per_frame, substeps_for_layers(scene));
-  if (const double needed = std::ceil(substeps_to_couple(scene)); needed <= most_to_couple(links) && needed > per_frame)
-    if (may_couple(scene, settings).on) per_frame = needed;
-  const double for_speed = substeps_for_speed(scene, k);
-  return static_cast<int>(std::clamp(std::max(std::lround(per_frame), std::lround(for_speed)), 1L, 4096L));
 }
 
 LineShape frame_shape(int columns, int rows, const LineRequest& request, const LineDevice& device) {

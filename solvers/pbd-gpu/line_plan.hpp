@@ -47,24 +47,11 @@ std::vector<std::uint8_t> taut_chains(const Scene&);
 /// True if tethers keep every vertex within reach of pinned ones.
 bool is_tethered(const Scene&, const nlohmann::json& settings);
 
-/// Links along the longer side; of a mesh as many as edges of its length fit.
-double links_of_longer_side(const Cloth&);
-
-/// Substeps of a frame: setting `substeps`, or if that is 0 the rule of setting `quality` (README, "Substeps").
-int xpbd_substeps(const Scene&, const nlohmann::json& settings);
-
 /// Whether links and masses are all alike in an elastic sheet that is held and touches nothing, so that its families
 /// may be coupled (INTEGRATION.md); else why not.
 Choice may_couple(const Scene&, const nlohmann::json& settings);
 /// Implicit substeps of BDF2 in a frame that a stretch wave takes across as many cells as coupled families bear.
 double substeps_to_couple(const Scene&);
-
-/// Substeps of the same scene without gravity where gravity asks for more, else 0.
-int substeps_without_gravity(const Scene&, const nlohmann::json& settings);
-
-/// Substeps that the speed of colliders asks for, where that is more than they get: beyond, the cloth is overstretched
-/// for some frames, and nothing is passed. 0 where it is not.
-int substeps_over_budget(const Scene&, const nlohmann::json& settings);
 
 /// Properties of a device that decide how lines are spread over threads.
 struct LineDevice {

@@ -10,6 +10,7 @@
 #include "clothbench/vector.hpp"
 #include "mesh_bending.hpp"
 #include "prediction.hpp"
+#include "substeps.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -65,10 +66,10 @@ double trace(const TriangleStiffness& k, const std::array<Vec3, 3>& rest) {
 
 }  // namespace
 
-TriangleStiffness triangle_stiffness(const Scene& scene, std::size_t triangle) {
-  const std::array<Vec3, 3> p = rest_corners(*scene.cloth.mesh, triangle);
+TriangleStiffness triangle_stiffness(const ClothMesh& mesh, std::size_t triangle, double Y_N_per_m) {
+  const std::array<Vec3, 3> p = rest_corners(mesh, triangle);
   const double twice_area = norm(cross(minus(p[1], p[0]), minus(p[2], p[0])));
-  const double scale = 3.0 / 16 * *scene.material.membrane_stiffness_N_per_m / twice_area;
+  const double scale = 3.0 / 16 * Y_N_per_m / twice_area;
   TriangleStiffness out{};
   double cotangent[3];  // of the angle opposite the edge
   for (std::size_t k = 0; k < 3; ++k) {
@@ -89,8 +90,9 @@ double membrane_bound(const Scene& scene) {
   const ClothMesh& mesh = *scene.cloth.mesh;
   const std::vector<double> mass = vertex_masses(scene);
   std::vector<std::array<std::array<double, 3>, 3>> norms;
+  const std::vector<std::optional<double>> Y = triangle_stiffnesses(scene);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    norms.push_back(block_norms(triangle_stiffness(scene, t), rest_corners(mesh, t)));
+    norms.push_back(block_norms(triangle_stiffness(mesh, t, Y[t].value()), rest_corners(mesh, t)));
   // The greatest of (A v)_i / v_i bounds the eigenvalues of A >= 0 for any positive v (Collatz 1942; Wielandt 1950).
   std::vector<double> v(mass.size(), 1), next(mass.size());
   double most = 0;
@@ -116,6 +118,9 @@ Choice membrane_of(const Scene& scene, const nlohmann::json& settings) {
   const std::string wanted = settings.value(kTuning, nlohmann::json::object()).value("membrane", "auto");
   if (!scene.cloth.mesh) return {false, "the cloth is a grid"};
   if (!scene.material.membrane_stiffness_N_per_m) return {false, "the cloth is inextensible"};
+  if (std::any_of(scene.material.regions.begin(), scene.material.regions.end(),
+                  [](const StiffnessRegion& r) { return !r.membrane_stiffness_N_per_m; }))
+    return {false, "a region of the cloth is inextensible"};
   if (wanted == "never") return {false, "setting tuning.membrane=never"};
   if (!chain_cloth(scene).welded.empty()) return {false, "edges are so short that they are welded"};
   if (wanted == "always") return {true, ""};
@@ -160,9 +165,10 @@ MembraneTable membrane_table(const Scene& scene) {
   constexpr std::uint32_t kRows = BENDING_ROWS;
   const ClothMesh& mesh = *scene.cloth.mesh;
   const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+  const std::vector<std::optional<double>> Y = triangle_stiffnesses(scene);
   std::vector<std::vector<MembraneCorner>> at(n);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const TriangleStiffness k = triangle_stiffness(scene, t);
+    const TriangleStiffness k = triangle_stiffness(mesh, t, Y[t].value());
     const auto most = static_cast<float>(kMostTrace * trace(k, rest_corners(mesh, t)));
     for (std::size_t r = 0; r < 3; ++r) {
       const auto of = [r](const double(&values)[3], std::size_t i) { return static_cast<float>(values[(r + i) % 3]); };

@@ -16,7 +16,7 @@ struct TriangleStiffness {
   double cross_N_m[3];  ///< K_01, K_12, K_20
 };
 /// Delingette (2008), "Triangular springs for modeling nonlinear membranes", with lengths in place of their squares.
-TriangleStiffness triangle_stiffness(const Scene&, std::size_t triangle);
+TriangleStiffness triangle_stiffness(const ClothMesh&, std::size_t triangle, double Y_N_per_m);
 
 /// At least the greatest eigenvalue [1/s^2] of (diagonal of masses)^-1 K, K the matrix of all triangles at rest,
 /// however they are turned, times a factor that leaves room for their deformation. The kernel keeps each triangle's

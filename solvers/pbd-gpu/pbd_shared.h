@@ -46,9 +46,10 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(14, uint, TETHER_3, 0u) C(15, uint, TETHER_3_LAST, 0u) C(16, uint, SUBGROUP, 1u) C(17, uint, BESIDE, 1u) \
   C(18, bool, EXACT, false) C(19, uint, GRIPS, 0u) C(20, uint, REGULAR_0, 0u) C(21, uint, REGULAR_1, 0u) \
   C(22, uint, REGULAR_2, 0u) C(23, uint, REGULAR_3, 0u) C(24, bool, PERSISTENT, false)
-// Chain kernel of `xpbd`. TETHERS: entries a vertex.
+// Chain kernel of `xpbd`. TETHERS: entries a vertex. LIMIT_BITS: strain beyond which links do not stretch, a float; 0: none.
 #define CHAIN_CONSTANTS(C) \
-  C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, PERSISTENT, false)
+  C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, PERSISTENT, false) \
+  C(5, uint, LIMIT_BITS, 0u)
 // Plane contact of `xpbd`. PLANES: half-spaces. GRIPS: vertices that hands may hold. MOST_POINTS: of a piece. MOVING: 1
 // if any piece moves. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, NEAR_CAPACITY, TOUCHING_CAPACITY:
 // pairs, near pairs and those with contacts that its lists have place for; THICKNESS_BITS, SELF_FRICTION_BITS: floats.
@@ -56,7 +57,7 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 #define PLANE_CONTACT_CONSTANTS(C) \
   C(1, uint, PLANES, 0u) C(2, uint, GRIPS, 0u) C(3, uint, MOST_POINTS, 3u) C(4, uint, MOVING, 0u) C(5, uint, SELF, 0u) \
   C(6, uint, SELF_CAPACITY, 0u) C(7, uint, NEAR_CAPACITY, 0u) C(8, uint, TOUCHING_CAPACITY, 0u) \
-  C(9, uint, THICKNESS_BITS, 0u) C(10, uint, SELF_FRICTION_BITS, 0u) C(11, uint, TEAM, 1u)
+  C(9, uint, THICKNESS_BITS, 0u) C(10, uint, SELF_FRICTION_BITS, 0u) C(11, uint, TEAM, 1u) C(12, bool, AGAIN, false)
 // The same, for the kernel of a whole frame, beside LINE_CONSTANTS. MARGIN_BITS: of the greatest margin, a float.
 #define PLANE_FRAME_CONSTANTS(C) \
   C(25, uint, PLANES, 0u) C(26, uint, MOST_POINTS, 3u) C(27, uint, MOVING, 0u) C(28, uint, VERTICES, 4u) \
@@ -216,6 +217,7 @@ struct ChainConstants {
   float bending_step;    // h^2 keep [s^2]
   float bending_gain;    // of the first iteration, 2 / (2 + m), m the greatest eigenvalue of h^2 keep M^-1 K
   float bending_spread;  // (m / (2 + m))^2 / 4
+  uint again;            // 1: families once more, from where they are
 };
 
 // Colliders. Lengths in metres, positions relative to the method's origin.
@@ -292,6 +294,6 @@ static_assert(sizeof(ChainEntry) == 16);
 static_assert(sizeof(TetherEnd) == 8);
 static_assert(sizeof(ChainRange) == 16);
 static_assert(sizeof(MembraneCorner) == 48);
-static_assert(sizeof(ChainConstants) == 84);
+static_assert(sizeof(ChainConstants) == 88);
 }  // namespace clothbench::pbd_gpu
 #endif

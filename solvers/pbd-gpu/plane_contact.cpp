@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -20,8 +21,8 @@ constexpr std::uint32_t kRoundsAfter = 2;
 }  // namespace
 
 PlaneContact::PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
-                           const std::vector<std::uint32_t>& particle)
-    : frame_(frame), scene_(scene), half_spaces_(colliders != nullptr ? colliders->planes.count : 0) {
+                           const std::vector<std::uint32_t>& particle, bool again)
+    : frame_(frame), scene_(scene), again_(again), half_spaces_(colliders != nullptr ? colliders->planes.count : 0) {
   const ContactPieces all = contact_pieces(scene, origin_m, colliders);
   frame_.set_contact_margins(all.margins_m);
   most_margin_m_ = all.most_margin_m;
@@ -95,6 +96,7 @@ PlaneContactSpecialization PlaneContact::specialization() const {
   s.MOST_POINTS = most_points_;
   s.MOVING = moving_points_ > 0 ? 1 : 0;
   s.TEAM = team_;
+  s.AGAIN = again_ ? 1 : 0;
   if (self_) self_->specialize(s);
   return s;
 }
@@ -207,7 +209,7 @@ void PlaneContact::record_before(int s, int substeps, double dt_s) {
   shared_vertices(gather_, c);
 }
 
-void PlaneContact::record_after(int s, int substeps, double dt_s) {
+void PlaneContact::record_after(int s, int substeps, double dt_s, const std::function<void()>& constraints) {
   PlaneContactConstants c = constants(s, substeps, dt_s);
   c.turn = 1;
   vertices(settle_, c);
@@ -216,6 +218,10 @@ void PlaneContact::record_after(int s, int substeps, double dt_s) {
   if (self_) self_->record_query(c);
   shared_vertices(gather_, c);
   for (c.turn = 2; c.turn <= kRoundsAfter; ++c.turn) {
+    if (again_) {
+      constraints();
+      vertices(settle_, c);
+    }
     pairs(respond_, c);
     if (self_) self_->record_response(c);
     shared_vertices(gather_, c);
@@ -229,6 +235,13 @@ ContactFaults PlaneContact::faults() const {
   ContactFaults f{};
   std::memcpy(&f, faults_->mapped(), sizeof f);
   return f;
+}
+
+double PlaneContact::take_farthest_m(bool whole_frame) {
+  auto* f = static_cast<ContactFaults*>(faults_->mapped());
+  const double farthest = static_cast<double>(std::bit_cast<float>(f->farthest));
+  f->farthest = whole_frame ? std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity()) : 0;
+  return farthest;
 }
 
 void PlaneContact::clear_faults() { std::memset(faults_->mapped(), 0, sizeof(ContactFaults)); }

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -17,9 +18,9 @@ class PlaneContact {
  public:
   /// Adds buffers, and what moving pieces need. `particle`: of each vertex, the vertex that it is welded to (or
   /// itself).
-  /// `colliders`: null if the scene has none.
+  /// `colliders`: null if the scene has none. `again`: the constraints are solved once more between the responses.
   PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
-               const std::vector<std::uint32_t>& particle);
+               const std::vector<std::uint32_t>& particle, bool again);
   /// Adds the stages PlanePairs and PlaneContact with a kernel a phase, for record_list, record_before and
   /// record_after.
   void add_kernels();
@@ -30,8 +31,9 @@ class PlaneContact {
   void record_list(double dt_s, int substeps);
   /// Call in substep s after held vertices have moved and before the constraints are solved.
   void record_before(int s, int substeps, double dt_s);
-  /// Call at the end of substep s.
-  void record_after(int s, int substeps, double dt_s);
+  /// Call at the end of substep s. Calls `constraints` to record them once more between the responses, if they are to
+  /// be solved again.
+  void record_after(int s, int substeps, double dt_s, const std::function<void()>& constraints);
 
   FeatureSet serves() const;
   bool with_itself() const { return self_ != nullptr; }
@@ -42,6 +44,10 @@ class PlaneContact {
   /// What went wrong since loading or clear_faults(); PLANES.md says what each count means.
   ContactFaults faults() const;
   void clear_faults();
+  /// Greatest displacement of a vertex in the last frame [m]; infinite if it had no contact. Call before each
+  /// frame.
+  double take_farthest_m(bool whole_frame);
+  bool moves() const { return moving_points_ > 0; }
 
  private:
   void add_elements(const std::vector<std::uint32_t>& particle);
@@ -52,6 +58,7 @@ class PlaneContact {
 
   FrameBuilder& frame_;
   const Scene& scene_;
+  const bool again_;
   const std::uint32_t half_spaces_;
   std::unique_ptr<PlaneSelf> self_;  ///< if the cloth touches itself
   std::uint32_t team_ = 1;           ///< lanes that share a vertex

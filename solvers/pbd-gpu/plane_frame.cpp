@@ -11,8 +11,8 @@ namespace {
 /// Threads whose sums plane_scan.glsl adds up together.
 constexpr std::uint32_t kScanBlock = 32;
 /// Workgroups: those beyond the lines' have pairs and vertices alone. One takes a sixth longer where capsules sweep,
-/// and three times as long on a desk; half as many win nothing for hands and lose a fifth on desks (H200).
-constexpr std::uint32_t kWorkgroups = 64;
+/// and three times as long on a desk; 64 lose 6 % on a desk and 9 % in a whole room, and 256 lose 5 % in sweeps (H100).
+constexpr std::uint32_t kWorkgroups = 96;
 
 /// The two have no number in common.
 std::vector<std::uint32_t> both(const LineSpecialization& lines, const PlaneFrameSpecialization& planes) {
@@ -86,16 +86,21 @@ void PlaneFrame::add_far() {
                            both(lines, planes), shape.threads);
 }
 
-void PlaneFrame::record(int substeps, double dt_s, const TimeStep& step) {
-  LineConstants c = lines_.constants(dt_s, substeps, step);
-  const PlaneContactConstants contact = contact_.constants(0, substeps, dt_s);
-  c.substeps = static_cast<std::uint32_t>(substeps);
+LineConstants PlaneFrame::constants(double dt_s, const Steps& steps) const {
+  LineConstants c = lines_.constants(dt_s, steps.substeps, steps.step);
+  const PlaneContactConstants contact = contact_.constants(0, steps.substeps, dt_s);
+  c.substeps = static_cast<std::uint32_t>(steps.substeps);
   c.passes = c.substeps * lines_.passes();
   c.frame_s = contact.frame_s;
   c.reach_m = contact.reach_m;
+  return c;
+}
+
+void PlaneFrame::record(double dt_s, const Steps& near, const Steps& far) {
   const auto n = static_cast<double>(frame_.scene().cloth.vertex_count());
-  if (far_ != nullptr) frame_.dispatch_groups(*far_, {1, 1}, c, {64 * n, 64 * n});
-  frame_.dispatch_groups(*kernel_, groups_, c, lines_.substep_traffic() * substeps + Traffic{32 * n, 36 * n});
+  if (far_ != nullptr) frame_.dispatch_groups(*far_, {1, 1}, constants(dt_s, far), {64 * n, 64 * n});
+  frame_.dispatch_groups(*kernel_, groups_, constants(dt_s, near),
+                         lines_.substep_traffic() * near.substeps + Traffic{32 * n, 36 * n});
 }
 
 }  // namespace clothbench::pbd_gpu

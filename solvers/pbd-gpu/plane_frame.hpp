@@ -14,8 +14,12 @@ class PlaneFrame {
   /// larger one takes a device that runs all its workgroups at once.
   static std::unique_ptr<PlaneFrame> make(FrameBuilder& frame, Lines& lines, PlaneContact& contact);
 
-  /// Call after PlaneContact::record_pieces.
-  void record(int substeps, double dt_s, const TimeStep&);
+  struct Steps {
+    int substeps;
+    TimeStep step;
+  };
+  /// Call after PlaneContact::record_pieces. `far`: of a frame in which no collider can be near.
+  void record(double dt_s, const Steps& near, const Steps& far);
 
  private:
   PlaneFrame(FrameBuilder& frame, Lines& lines, PlaneContact& contact)
@@ -24,6 +28,8 @@ class PlaneFrame {
   /// The kernel of frames in which no collider can be near (shaders/plane_far.glsl), where one workgroup holds the
   /// cloth.
   void add_far();
+
+  LineConstants constants(double dt_s, const Steps&) const;
 
   FrameBuilder& frame_;
   Lines& lines_;

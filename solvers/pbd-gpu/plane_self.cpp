@@ -47,14 +47,14 @@ void PlaneSelf::add_kernels(int stage_pairs, int stage, const std::vector<std::u
   const auto add = [&](int of, const char* name, std::uint32_t threads = kGroupSize) {
     return frame_.add_kernel(of, name, kPush, constants, threads);
   };
-  boxes_ = add(stage_pairs, "plane_self_boxes");
-  count_ = add(stage_pairs, "plane_self_list");
-  scan_ = add(stage_pairs, "plane_scan_self", kSelfScanThreads);
-  fill_ = add(stage_pairs, "plane_self_list_fill");
-  ways_ = add(stage, "plane_self_ways");
   const bool shuffles = !frame_.counts_bytes() && frame_.tuning()["shuffles"].get<bool>();
   sharers_ = shuffles ? std::max(1u, frame_.device()->shuffled_lanes()) : 1;
   if (sharers_ > kGroupSize) sharers_ = 1;
+  boxes_ = add(stage_pairs, "plane_self_boxes");
+  count_ = add(stage_pairs, sharers_ > 1 ? "plane_self_list_shuffle" : "plane_self_list");
+  scan_ = add(stage_pairs, "plane_scan_self", kSelfScanThreads);
+  fill_ = add(stage_pairs, sharers_ > 1 ? "plane_self_list_fill_shuffle" : "plane_self_list_fill");
+  ways_ = add(stage, "plane_self_ways");
   near_ = add(stage, sharers_ > 1 ? "plane_self_near_shuffle" : "plane_self_near");
   query_ = add(stage, "plane_self_query");
   respond_ = add(stage, "plane_self_respond");
@@ -68,9 +68,9 @@ void PlaneSelf::near_pairs(const FrameKernel* kernel, const PlaneContactConstant
 void PlaneSelf::record_list(const PlaneContactConstants& c) {
   const double t = triangles_;
   frame_.dispatch(*boxes_, triangles_ / PIECES_A_GROUP + 1, c, {68 * t, 64 * t});
-  frame_.dispatch(*count_, triangles_, c, {84 * t, 16 * t});
+  frame_.dispatch(*count_, std::uint64_t{sharers_} * triangles_, c, {84 * t, 16 * t});
   frame_.dispatch_groups(*scan_, {1, 1}, c, {16 * t, 16 * t});
-  frame_.dispatch(*fill_, triangles_, c, {100 * t, 0});
+  frame_.dispatch(*fill_, std::uint64_t{sharers_} * triangles_, c, {100 * t, 0});
 }
 
 void PlaneSelf::record_query(const PlaneContactConstants& c) {

@@ -54,7 +54,9 @@ struct ContactLedger {
   uint self_touching;                // those of them that have contacts
   uint touched_vertices;             // vertices with pairs of their own or of their triangles
   uint far;                          // 1: the frame was done without contact (plane_far.glsl)
-  uint unused0[4];
+  uint farthest;                     // greatest displacement of a vertex in the frame [m], the bits of a float
+  uint counted[PAIR_LEVELS];         // pairs at each share of the reaches
+  uint unused0[3];
 };
 
 /// Of a triangle of the cloth, by half of the thickness larger: at rest, and grown by its vertices' reaches.
@@ -92,12 +94,14 @@ struct SelfPush {
   vec4 moving;  // its part that is velocity
 };
 
-/// Counts since loading or reset; all are 0 unless contact failed.
+/// Counts since loading or reset; all are 0 unless contact failed. And what the next frame's substeps depend on.
 struct ContactFaults {
   uint without_place;  // vertices that were not before all their planes at a substep's end
   uint inside;         // pairs that touch at a substep's start
   uint dropped;        // pairs that the list had no place for
   uint returned;       // no fault: vertices that went back to a free place, for no nearer one was found
+  uint farthest;       // greatest displacement of a vertex in the last frame [m], the bits of a float
+  uint unused0[3];
 };
 
 /// Push constants of the kernels of plane contact.
@@ -124,12 +128,12 @@ static_assert(sizeof(PiecePoint) == 32);
 static_assert(sizeof(PieceBox) == 32);
 static_assert(sizeof(PointSource) == 16);
 static_assert(sizeof(PairState) == 64);
-static_assert(sizeof(ContactLedger) == 80);
+static_assert(sizeof(ContactLedger) == 96);
 static_assert(sizeof(SelfBox) == 64);
 static_assert(sizeof(SelfPair) == 8);
 static_assert(sizeof(SelfNear) == 48);
 static_assert(sizeof(SelfContact) == 48);
 static_assert(sizeof(SelfPush) == 32);
-static_assert(sizeof(ContactFaults) == 16);
+static_assert(sizeof(ContactFaults) == 32);
 static_assert(sizeof(PlaneContactConstants) == 80);
 #endif

@@ -7,6 +7,7 @@
 
 #include "chain_plan.hpp"
 #include "line_plan.hpp"
+#include "substeps.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {

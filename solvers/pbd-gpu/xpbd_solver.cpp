@@ -12,6 +12,7 @@
 #include "plane_contact.hpp"
 #include "plane_frame.hpp"
 #include "prediction.hpp"
+#include "substeps.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -35,6 +36,8 @@ class Xpbd final : public GpuSolver {
   void reset() override {
     GpuSolver::reset();
     if (contact_) contact_->clear_faults();
+    last_dt_s_ = 0;
+    pace_.reset();
   }
 
  private:
@@ -103,7 +106,10 @@ class Xpbd final : public GpuSolver {
     if (const int calm = substeps_without_gravity(scene(), settings()); calm > 0)
       leave_out(std::to_string(calm) + " substeps",
                 "gravity takes the cloth far in a frame: " + std::to_string(xpbd_substeps(scene(), settings())));
-    if (touches) contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, colliders(), cloth.particle);
+    const bool chained_links = !membrane.on || scene().material.strain_limit;
+    solves_again_ = touches && chained && chained_links && frame().tuning()["solves_again"] == "auto";
+    if (touches)
+      contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, colliders(), cloth.particle, solves_again_);
     if (chained)
       chains_ = std::make_unique<Chains>(frame(), scene(), cloth, predicts(), tension.on, membrane.on);
     else
@@ -111,6 +117,12 @@ class Xpbd final : public GpuSolver {
     if (touches && lines_) whole_frame_ = PlaneFrame::make(frame(), *lines_, *contact_);
     if (lines_ && !whole_frame_) lines_->add_kernels(touches);
     if (touches && !whole_frame_) contact_->add_kernels();
+    // Friction of strips on edges needs all substeps even where they hardly move; so does a tangle, to come to rest.
+    // Where hands let go of the cloth, substeps that change make it snap.
+    const bool adapts = touches && !contact_->moves() && grips() == nullptr && scene().needs.has(Feature::Shear) &&
+                        !crumpled_ && settings()["substeps"] == 0;
+    pace_ = Pace(scene(), settings(), adapts);
+    if (adapts) set_paced();
     if (grips() != nullptr && !whole_frame_ && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
     const FeatureSet of_contact =
         scene().needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided});
@@ -141,9 +153,10 @@ class Xpbd final : public GpuSolver {
   void restrict_to_chains() {
     if (scene().needs.has(Feature::Bend) && !scene().cloth.mesh)
       throw Error(
-          "solver xpbd: bending is of even grids and triangle meshes, and this cloth is neither; expected "
-          "bending_rigidity_N_m 0");
-    if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid");
+          "solver xpbd: bending is of triangle meshes and of even grids without strain_limit, and this cloth is "
+          "neither; "
+          "expected bending_rigidity_N_m 0");
+    if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid without strain_limit");
     override_setting("iterations", 1, "its links are not all alike: chains take one iteration");
   }
 
@@ -157,9 +170,25 @@ class Xpbd final : public GpuSolver {
     return w;
   }
 
-  int substeps_in(double dt_s) const {
-    return xpbd_substeps(scene(), settings()) * frames_in(dt_s) *
-           (crumpled_ && settings()["substeps"] == 0 ? kCrumpledSubsteps : 1);
+  int substeps_in(double dt_s) const { return in_frames(pace_.substeps(), dt_s); }
+
+  /// Of a frame that takes `by_rule` of them if it is as long as the scene's.
+  int in_frames(int by_rule, double dt_s) const {
+    return by_rule * frames_in(dt_s) * (crumpled_ && settings()["substeps"] == 0 ? kCrumpledSubsteps : 1);
+  }
+
+  PlaneFrame::Steps far_steps(double dt_s) const {
+    const int substeps = std::min(substeps_in(dt_s), in_frames(xpbd_substeps_far(scene(), settings()), dt_s));
+    return {substeps, time_step(predicts(), dt_s / substeps, 0, scene().material.damping_per_s)};
+  }
+
+  bool repaced(double dt_s) override {
+    if (!pace_.adapts()) return false;
+    const double farthest_m = contact_->take_farthest_m(whole_frame_ != nullptr), frame_s = scene().time.dt();
+    // The first frame has none before it.
+    const double cloth_m = last_dt_s_ > 0 ? farthest_m * frame_s / last_dt_s_ : std::numeric_limits<double>::infinity();
+    last_dt_s_ = dt_s;
+    return pace_.next(cloth_m);
   }
 
   TimeStep time_step_of(double dt_s, double last_dt_s) const {
@@ -184,7 +213,7 @@ class Xpbd final : public GpuSolver {
     if (grips() != nullptr) grips()->record_upload();
     if (contact_) contact_->record_pieces(dt_s, substeps);
     if (whole_frame_) {
-      whole_frame_->record(substeps, dt_s, step);
+      whole_frame_->record(dt_s, {substeps, step}, far_steps(dt_s));
       return;
     }
     if (contact_) contact_->record_list(dt_s, substeps);
@@ -199,7 +228,10 @@ class Xpbd final : public GpuSolver {
       if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
       if (contact_) contact_->record_before(s, substeps, dt_s);
       record_lines(s, 1, substeps, dt_s, s == 0 ? start : step);
-      if (contact_) contact_->record_after(s, substeps, dt_s);
+      if (contact_)
+        contact_->record_after(s, substeps, dt_s, [&] {
+          if (solves_again_) chains_->record_again(step);
+        });
       if (contact_ && chains_) chains_->record_welds();
     }
   }
@@ -213,9 +245,12 @@ class Xpbd final : public GpuSolver {
     return static_cast<int>(std::ceil(std::min(dt_s, std::max(kMost_s, frame)) / frame - 1e-9));
   }
 
+  Pace pace_;
+  double last_dt_s_ = 0;                       ///< of the last frame; 0: none
   static constexpr int kCrumpledSubsteps = 4;  ///< factor; with less a tangle takes longer than 1 s
 
   bool crumpled_ = false;
+  bool solves_again_ = false;       ///< chains, between the responses of contact
   std::unique_ptr<Lines> lines_;    ///< if links are all alike
   std::unique_ptr<Chains> chains_;  ///< else
   std::unique_ptr<PlaneContact> contact_;
@@ -234,11 +269,11 @@ SolverInfo xpbd_info() {
   info.precision = "float32";
   info.time_order = 2;
   info.on_gpu = true;
-  info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,         Feature::Damping,
-                   Feature::Pins,     Feature::MovingPins,  Feature::Sphere,       Feature::Box,
-                   Feature::Plane,    Feature::Capsules,    Feature::StaticMesh,   Feature::MovingMesh,
-                   Feature::Friction, Feature::DoubleSided, Feature::Spin,         Feature::UnevenGrid,
-                   Feature::Regions,  Feature::ClothMesh,   Feature::SelfCollision};
+  info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,          Feature::Damping,
+                   Feature::Pins,     Feature::MovingPins,  Feature::Sphere,        Feature::Box,
+                   Feature::Plane,    Feature::Capsules,    Feature::StaticMesh,    Feature::MovingMesh,
+                   Feature::Friction, Feature::DoubleSided, Feature::Spin,          Feature::UnevenGrid,
+                   Feature::Regions,  Feature::ClothMesh,   Feature::SelfCollision, Feature::StrainLimit};
   info.settings = {
       {"quality", "\"default\"",
        "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
@@ -271,6 +306,8 @@ SolverInfo xpbd_info() {
       {"membrane", "\"auto\"",
        "where triangles of constant strain make an elastic mesh, in place of springs along its edges: auto (where "
        "nothing is touched and 600 iterations a substep are enough), always, never"},
+      {"solves_again", "\"auto\"",
+       "with contact, whether chains are solved once more between the responses of a substep: auto (yes), never"},
       {"shuffles", "true", "threads of a line exchange by subgroup shuffles where lines fit a subgroup"},
       {"vertices_a_thread", "0", "of a line: 2, 4, 8, 16 or 32; 0: by line and device"},
       {"threads_a_group", "0", "of one family's workgroups: 32 to 1024; 0: by line and device"},
@@ -295,6 +332,7 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", tuning, "tension", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "coupling", {"auto", "always", "never"});
   require_one_of("xpbd", tuning, "membrane", {"auto", "always", "never"});
+  require_one_of("xpbd", tuning, "solves_again", {"auto", "never"});
   require_one_of("xpbd", tuning, "contact_frame", {"auto", "always", "never"});
   require_between("xpbd", tuning, "contact_groups", 0, 1024);
   require_between("xpbd", tuning, "contact_pairs", 0, 1 << 24);

@@ -80,9 +80,14 @@ SceneView::SceneView(const Scene& s, std::uint32_t version)
 
 void SceneView::add_edges(EdgeKind kind, std::vector<ClothbenchEdge>& out) {
   const bool skip = kind == EdgeKind::SkipOne;
-  for (const Edge& e : edges(scene_.cloth, kind)) {
+  const std::vector<Edge> all = edges(scene_.cloth, kind);
+  std::vector<std::optional<double>> stiffnesses(all.size(), 0.0);
+  if (kind == EdgeKind::Structural) stiffnesses = edge_stiffnesses(scene_);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Edge& e = all[k];
     const EdgeCell cell = skip ? skip_cell(scene_.cloth, e) : edge_cell(scene_.cloth, e);
-    const double stiffness = skip ? 0 : membrane_stiffness(scene_, e).value_or(std::numeric_limits<double>::infinity());
+    if (kind == EdgeKind::Shear) stiffnesses[k] = membrane_stiffness(scene_, e);
+    const double stiffness = stiffnesses[k].value_or(std::numeric_limits<double>::infinity());
     const double share = kind != EdgeKind::Shear && on_border(scene_.cloth, e) ? 0.5 : 1;
     out.push_back({e.a, e.b, e.rest_m, stiffness, cell.along_m, share * cell.across_m});
   }

@@ -88,9 +88,10 @@ Model::Model(const Scene& scene) : mass_(vertex_masses(scene)) {
 
 void Model::add_triangles(const Scene& scene) {
   const ClothMesh& mesh = *scene.cloth.mesh;
+  const std::vector<std::optional<double>> stiffness = triangle_stiffnesses(scene);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::array<Vec3, 3> rest = rest_corners(mesh, t);
-    triangles_.push_back(triangle_compliance(rest, *scene.material.membrane_stiffness_N_per_m));
+    triangles_.push_back(triangle_compliance(rest, stiffness[t].value()));
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3;
       const double length = (Eigen::Vector3d::Map(rest[next].data()) - Eigen::Vector3d::Map(rest[k].data())).norm();

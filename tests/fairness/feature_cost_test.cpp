@@ -45,7 +45,7 @@ TEST(Irrelevant, AddsWhatTheSceneLacksFarAway) {
   // cloth itself.
   EXPECT_EQ(info.supports - all.needs,
             (FeatureSet{Feature::Shear, Feature::MovingPins, Feature::Spin, Feature::UnevenGrid, Feature::Regions,
-                        Feature::ClothMesh, Feature::SelfCollision}));
+                        Feature::ClothMesh, Feature::SelfCollision, Feature::StrainLimit}));
   EXPECT_TRUE((plain.needs - all.needs).empty());
   EXPECT_EQ(all.reference_case, "");
   for (const FrameMotion& m : all.motion)

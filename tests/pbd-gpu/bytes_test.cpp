@@ -82,6 +82,17 @@ TEST_F(Bytes, OfChains) {
   expect_equal("xpbd", with_pins(uneven(sheet(17, 9), 3, 1e-3)), {{"substeps", 2}});
 }
 
+TEST_F(Bytes, OfChainsThatAreSolvedAgain) {
+  Scene limited = with_damping(with_bending(mesh_sheet(9)));
+  limited.material.strain_limit = 0.05;
+  limited.needs.add(Feature::StrainLimit);
+  for (const char* barrier : {"never", "always"}) {
+    expect_equal("xpbd", limited, {{"substeps", 2}, {"tuning", {{"device_barrier", barrier}}}});
+    const Scene touching = with_collider(mesh_sheet(9), sphere({0, -0.1, 0}, 0.08, kContactFriction));
+    expect_equal("xpbd", touching, {{"substeps", 2}, {"tuning", {{"device_barrier", barrier}}}}, 2);
+  }
+}
+
 TEST_F(Bytes, OfContactWithAndWithoutFriction) {
   for (const auto& [columns, rows] : {std::pair{2, 2}, {9, 7}, {33, 17}})
     for (double friction : {0.0, kContactFriction})

@@ -5,6 +5,7 @@
 #include "gpu_fixture.hpp"
 #include "mesh_scene.hpp"
 #include "prediction.hpp"
+#include "substeps.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {

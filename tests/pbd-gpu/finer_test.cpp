@@ -5,6 +5,7 @@
 #include "clothbench/solver.hpp"
 #include "line_plan.hpp"
 #include "scenario/study.hpp"
+#include "substeps.hpp"
 
 namespace clothbench {
 namespace {

@@ -3,6 +3,7 @@
 
 #include "gpu_fixture.hpp"
 #include "scenario/load.hpp"
+#include "substeps.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -74,6 +75,46 @@ TEST(Substeps, FollowTheRule) {
   EXPECT_EQ(of(sheet(128, 128), "default"), 5) << "nothing touches it";
 }
 
+TEST(Substeps, OfAFrameGoByWhatTheLastOneHad) {
+  const Scene fold = load_scene("contact/self-fold");
+  const nlohmann::json settings = nlohmann::json::object();
+  const int most = xpbd_substeps(fold, settings);
+  const double cell_m = fold.cloth.du();
+  Pace pace(fold, settings, true);
+  EXPECT_EQ(pace.substeps(), most) << "nothing is known of the first frame";
+  EXPECT_FALSE(pace.next(std::numeric_limits<double>::infinity()));
+  EXPECT_FALSE(pace.next(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_EQ(pace.substeps(), most) << "nor where that is NaN";
+  std::vector<int> calm;
+  for (int f = 0; f < 24; ++f) {
+    pace.next(cell_m / 25);
+    calm.push_back(pace.substeps());
+  }
+  EXPECT_TRUE(std::is_sorted(calm.rbegin(), calm.rend()));
+  EXPECT_GE(calm.front(), std::lround(0.75 * most));
+  EXPECT_EQ(calm.back(), 6) << "a quarter of 24";
+  EXPECT_FALSE(pace.next(cell_m / 7)) << "not calm, and not yet fast";
+  EXPECT_TRUE(pace.next(cell_m / 5));
+  EXPECT_EQ(pace.substeps(), 24);
+  pace.next(100 * cell_m);
+  EXPECT_EQ(pace.substeps(), most);
+  pace.next(0);
+  pace.reset();
+  EXPECT_EQ(pace.substeps(), most);
+  EXPECT_FALSE(Pace(fold, settings, false).adapts());
+  EXPECT_EQ(Pace(fold, {{"substeps", 7}}, false).substeps(), 7);
+}
+
+TEST(Substeps, FarFromCollidersAreThoseOfTheClothAlone) {
+  const Scene sweep = load_scene("paper/capsule-sweep", {"colliders.0.speed_m_per_s=7.7"});
+  EXPECT_EQ(xpbd_substeps_far(sweep, nlohmann::json::object()), 5);
+  EXPECT_GT(xpbd_substeps(sweep, nlohmann::json::object()), 20);
+  EXPECT_EQ(xpbd_substeps_far(sweep, {{"substeps", 9}}), 9);
+  const Scene desk = load_scene("paper/desk-flat-low");
+  EXPECT_EQ(xpbd_substeps_far(desk, nlohmann::json::object()), 5);
+  EXPECT_EQ(xpbd_substeps(desk, nlohmann::json::object()), 16);
+}
+
 TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
   Scene s = load_scene("paper/capsule-sweep");
   const auto of = [&](double speed, const char* quality) {
@@ -87,7 +128,7 @@ TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
       }
     return xpbd_substeps(changed, {{"quality", quality}});
   };
-  EXPECT_EQ(of(0.8, "default"), 8) << "31 links over 4: it goes 11 mm, by less than 4 mm in each";
+  EXPECT_EQ(of(0.8, "default"), 5) << "31 links over 6: it goes 11 mm, by less than 4 mm in each";
   EXPECT_EQ(of(5, "default"), 18);
   EXPECT_EQ(of(7.5, "default"), 26) << "an eighth of a cell, which is more than a margin";
   EXPECT_EQ(of(5, "fast"), 9);
@@ -98,7 +139,7 @@ TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
     s.motion[f].colliders[0].capsules = s.colliders[0].capsules;
     if (f >= 2) s.motion[f].colliders[0].capsules[0].a_m[0] += 1;
   }
-  EXPECT_EQ(xpbd_substeps(s, {{"quality", "default"}}), 8) << "a jump is no motion";
+  EXPECT_EQ(xpbd_substeps(s, {{"quality", "default"}}), 5) << "a jump is no motion";
 }
 
 TEST(Shapes, FitDevices) {

@@ -2,6 +2,7 @@
 #include "mesh_membrane.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -31,7 +32,7 @@ TEST(MeshMembrane, TrianglesHaveTheEnergyOfAnIsotropicSheet) {
   const Scene s = drawn_sheet(1, 0.5, 6, 0.4, 0.3, 1);
   const ClothMesh& mesh = *s.cloth.mesh;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Eigen::Matrix3d K = matrix_of(triangle_stiffness(s, t));
+    const Eigen::Matrix3d K = matrix_of(triangle_stiffness(mesh, t, *s.material.membrane_stiffness_N_per_m));
     EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(K).eigenvalues()[0], 0);
     double area = 0;
     for (const Eigen::Vector3d& e : {Eigen::Vector3d(1, 0, 0), {0, 1, 0}, {0, 0, 1}, {1, -0.4, 0.3}}) {
@@ -67,7 +68,7 @@ TEST(MeshMembrane, ItsBoundIsAboveTheGreatestEigenvalue) {
         G.block<1, 2>(static_cast<Eigen::Index>(k), 2 * a) = -d.transpose() / std::sqrt(mass[a]);
         G.block<1, 2>(static_cast<Eigen::Index>(k), 2 * b) = d.transpose() / std::sqrt(mass[b]);
       }
-      A += G.transpose() * matrix_of(triangle_stiffness(s, t)) * G;
+      A += G.transpose() * matrix_of(triangle_stiffness(mesh, t, *s.material.membrane_stiffness_N_per_m)) * G;
     }
     const double most = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A).eigenvalues()[2 * n - 1];
     EXPECT_GE(membrane_bound(s), 1.75 * most);
@@ -117,6 +118,32 @@ TEST_F(MembraneOf, DrawnMeshesWithSpringsIsSofter) {
   const IsotropicModuli m = hanging_moduli(s, end_of(s, "xpbd", settings));
   EXPECT_GE(m.E, 0.7);
   EXPECT_LE(m.E, 0.95) << "springs are near Y: touching cloth may be said to have it";
+}
+
+/// The lower half of a strip is a quarter as stiff: material.regions of a mesh.
+TEST_F(MembraneOf, RegionsIsTheirOwn) {
+  const Scene even = hanging(8, 0.5, 0.3, 4);
+  Scene s = even;
+  StiffnessRegion lower;
+  lower.membrane_stiffness_N_per_m = 250;
+  const ClothMesh& mesh = *s.cloth.mesh;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    if (std::all_of(mesh.triangles[t].begin(), mesh.triangles[t].end(),
+                    [&](std::uint32_t v) { return mesh.vertices[v][0] >= 0.5; }))
+      lower.triangles.push_back(t);
+  s.material.regions = {lower};
+  s.needs.add(Feature::Regions);
+  const auto lowest = [](const std::vector<double>& x) {
+    double most = -1;
+    for (std::size_t k = 0; k < x.size(); k += 3) most = std::max(most, x[k]);
+    return most - 1;
+  };
+  const double right = lowest(end_of(s, "reference", {{"substeps", 1}})),
+               found = lowest(end_of(s, "xpbd", nlohmann::json::object()));
+  EXPECT_NEAR(found / right, 1, 0.02);
+  EXPECT_GE(right / lowest(end_of(even, "reference", {{"substeps", 1}})), 1.5) << "the region changes little";
+  const double springs = lowest(end_of(s, "xpbd", {{"substeps", 32}, {"tuning", {{"membrane", "never"}}}}));
+  EXPECT_NEAR(springs / right, 1, 0.15) << "springs are softer by what CHAINS.md says";
 }
 
 /// Where the setting asks for it, triangles make cloth that touches: over a ball, whose surface no vertex passes.

@@ -11,6 +11,7 @@
 #include "line_plan.hpp"
 #include "mesh_scene.hpp"
 #include "scenario/load.hpp"
+#include "substeps.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {

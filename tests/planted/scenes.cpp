@@ -40,7 +40,7 @@ Scene over_tiles() {
   return scene(fmt::format(R"({{"name":"tiles","why":"Falls flat onto an open sheet of 200 triangles.",
     "cloth":{{"grid":[31,31],"size_m":[0.5,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0,-2,0],"pose":{{"center_m":[0.003,0.05,0.002]}}}},
     "material":{{"membrane_stiffness_N_per_m":1000,"bending_rigidity_N_m":1e-5,"damping_per_s":0.1}},
-    "colliders":[{{"type":"mesh","positions_m":[{}],"triangles":[{}],"margin_m":0.004,"friction":0.3}}],
+    "colliders":[{{"type":"mesh","positions_m":[{}],"triangles":[{}],"margin_m":0.001,"friction":0.3}}],
     "time":{{"frame_rate_hz":72,"duration_s":0.4}},"expect":{{"outcome":"ok","tunnelled_fraction_max":{{"at_most":0}}}}}})",
                            positions, corners));
 }

@@ -234,5 +234,65 @@ TEST(MeshInput, FilesThatAreTooLargeAreNotRead) {
             std::string::npos);
 }
 
+TEST(MeshInput, RegionsAreTheTrianglesOfAGroup) {
+  const ScratchFolder folder;
+  folder.file("panels.obj", kPanels);
+  const auto regions = [&](const json& list) { return scene_of(folder, "panels.obj", "/material/regions", list); };
+  const Scene s = regions({{{"group", "waist"}, {"membrane_stiffness_N_per_m", 100}}});
+  EXPECT_TRUE(s.needs.has(Feature::Regions));
+  EXPECT_EQ(triangle_stiffnesses(s), (std::vector<std::optional<double>>{100, 1000}));
+  // The seam is the longest edge, and both triangles have half of it.
+  const ClothMesh& mesh = *s.cloth.mesh;
+  const std::vector<std::optional<double>> of_edges = edge_stiffnesses(s);
+  ASSERT_EQ(of_edges.size(), mesh.edges.size());
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+    const bool seam = mesh.edges[e].rest_m > 1.2, back = !seam && mesh.edges[e].b == 3;
+    EXPECT_DOUBLE_EQ(of_edges[e].value(), seam ? 550 : back ? 1000 : 100) << e;
+    EXPECT_EQ(membrane_stiffness(s, mesh.edges[e]), of_edges[e]) << e;
+  }
+  const Scene later = regions({{{"group", "back"}, {"membrane_stiffness_N_per_m", 100}},
+                               {{"group", "back"}, {"membrane_stiffness_N_per_m", "inextensible"}}});
+  EXPECT_FALSE(triangle_stiffnesses(later)[1].has_value());
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    EXPECT_EQ(edge_stiffnesses(later)[e].has_value(), mesh.edges[e].a == 0) << "one inextensible triangle is enough";
+}
+
+TEST(MeshInput, RegionsThatAMeshOrAGridDoesNotHaveAreRefused) {
+  const ScratchFolder folder;
+  folder.file("panels.obj", kPanels);
+  const auto complaint = [&](const json& region) {
+    json list = json::array({region});
+    list[0]["membrane_stiffness_N_per_m"] = 100;
+    return refusal([&] { scene_of(folder, "panels.obj", "/material/regions", list); });
+  };
+  const std::string unknown = complaint({{"group", "cuff"}});
+  EXPECT_NE(unknown.find("panels.json: /material/regions/0/group"), std::string::npos) << unknown;
+  EXPECT_NE(unknown.find("one of: "), std::string::npos) << unknown;
+  const std::string columns = complaint({{"columns", {0, 1}}});
+  EXPECT_NE(columns.find("/material/regions/0/columns: expected a cloth that is a grid"), std::string::npos) << columns;
+  const std::string none = complaint(json::object());
+  EXPECT_NE(none.find("/material/regions/0: expected \"group\""), std::string::npos) << none;
+
+  json grid = scenario("panels.obj");
+  grid["cloth"].erase("mesh");
+  grid["cloth"]["grid"] = {4, 3};
+  grid["cloth"]["size_m"] = {1, 1};
+  const auto of_grid = [&](const json& region) {
+    grid["material"]["regions"] = json::array({region});
+    grid["material"]["regions"][0]["membrane_stiffness_N_per_m"] = 100;
+    return refusal([&] { scene_from_json(grid, "grid.json"); });
+  };
+  const std::string group = of_grid({{"group", "cuff"}});
+  EXPECT_NE(group.find("/material/regions/0/group: expected a cloth that is a mesh"), std::string::npos) << group;
+  EXPECT_NE(of_grid(json::object()).find("/material/regions/0: expected \"columns\""), std::string::npos);
+
+  // The group of a border has no triangle for itself.
+  json drawn = scenario("panels.obj");
+  drawn["cloth"]["mesh"] = {{"drawn", {{"size_m", {1, 0.5}}, {"cells", 8}}}};
+  drawn["material"]["regions"] = {{{"group", "u0"}, {"membrane_stiffness_N_per_m", 100}}};
+  const std::string line = refusal([&] { scene_from_json(drawn, "drawn.json"); });
+  EXPECT_NE(line.find("drawn.json: /material/regions/0/group: no triangle"), std::string::npos) << line;
+}
+
 }  // namespace
 }  // namespace clothbench

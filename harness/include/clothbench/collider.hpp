@@ -53,6 +53,7 @@ struct Collider {
   std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< box: orthonormal, in world coordinates
   std::vector<Capsule> capsules;                                ///< their number never changes
   std::shared_ptr<const ColliderMesh> mesh;
+  bool recorded = false;  ///< a user's hand, recorded or in a live session: its speed is not known beforehand
 
   /// The feature that a solver must support to collide with it.
   Feature feature() const;

@@ -28,9 +28,13 @@ FEATURE(SelfCollision, self_collision, SELF_COLLISION, Cloth, "contact of the cl
 FEATURE(Render, render, RENDER, Cloth, "pictures within the clock", false)
 FEATURE(UnevenGrid, uneven_grid, UNEVEN_GRID, Data, "cells of different widths (cloth.column_factors)",
         !scene.cloth.column_factors.empty())
-FEATURE(Regions, regions, REGIONS, Data, "a membrane stiffness that changes from column to column (material.regions)",
+FEATURE(Regions, regions, REGIONS, Data,
+        "a membrane stiffness that differs between columns of a grid or groups of a mesh (material.regions)",
         !scene.material.regions.empty())
 FEATURE(Spin, spin, SPIN, Data, "a start that turns: another velocity at every vertex",
         scene.cloth.spin_rad_per_s != Vec3{})
 FEATURE(ClothMesh, cloth_mesh, CLOTH_MESH, Data, "a triangle mesh instead of a grid (cloth.mesh)",
         scene.cloth.mesh != nullptr)
+FEATURE(StrainLimit, strain_limit, STRAIN_LIMIT, Cloth,
+        "links that stretch elastically up to a limit and no further (material.strain_limit)",
+        scene.material.strain_limit.has_value())

@@ -9,6 +9,9 @@ namespace clothbench {
 /// of the vertices of a skinned mesh. Jumps do not count. 0 if all colliders are static.
 double collider_speed_m_per_s(const Scene&);
 
+/// The same without the hands of users, whose speed a live session does not know beforehand.
+double scripted_collider_speed_m_per_s(const Scene&);
+
 /// The same for each frame: the speed since the frame before, one value per `scene.motion`. The first is 0.
 std::vector<double> collider_speeds_m_per_s(const Scene&);
 

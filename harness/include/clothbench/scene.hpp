@@ -98,10 +98,12 @@ struct Cloth {
   double least_height_m() const;
 };
 
-/// A membrane stiffness that replaces the sheet's in the cells of columns `first` to `last` (the first cell is 0).
+/// A membrane stiffness that replaces the sheet's in the cells of columns `first` to `last` of a grid (the first cell
+/// is 0), or in some triangles of a mesh.
 struct StiffnessRegion {
   int first = 0, last = 0;
   std::optional<double> membrane_stiffness_N_per_m;
+  std::vector<std::uint32_t> triangles = {};  ///< of a mesh, ascending: those with all their vertices in the group
 };
 
 /// Continuum parameters only. Every solver maps them onto its own model; its README says how.
@@ -111,6 +113,8 @@ struct Material {
   bool shear = true;                                 ///< false: no diagonals; the sheet acts as independent strips
   double damping_per_s = 0;                          ///< mass-proportional: dv/dt = -c v
   std::vector<StiffnessRegion> regions;              ///< a later region overrides an earlier one
+  /// Strain beyond which links do not stretch, however they are pulled; shorter, they are elastic. Empty = no limit.
+  std::optional<double> strain_limit = {};
 };
 
 /// Vertices held at their initial position for the whole run.
@@ -199,9 +203,13 @@ std::vector<double> initial_positions(const Scene&);
 /// vertices have one too, but a solver still holds them.
 std::vector<double> initial_velocities(const Scene&);
 
-/// Y [N/m] of a structural or shear edge: that of its cell, or the mean of its two cells for an edge along v. Empty =
-/// inextensible.
+/// Y [N/m] of a structural or shear edge: that of its cell, or the mean of its two cells for an edge along v. Of a
+/// mesh: the mean of its triangles, by area. Empty = inextensible.
 std::optional<double> membrane_stiffness(const Scene&, const struct Edge&);
+/// Y [N/m] of each triangle of a mesh; empty = inextensible.
+std::vector<std::optional<double>> triangle_stiffnesses(const Scene&);
+/// `membrane_stiffness` of each of the structural edges of a grid or mesh, in their order.
+std::vector<std::optional<double>> edge_stiffnesses(const Scene&);
 
 /// Sides [m] of the cell that a structural or shear edge stands for: the side along the edge (along u for a diagonal)
 /// and the side across it. For an edge along v the latter is the mean of the two columns. An edge on the border of a

@@ -62,7 +62,13 @@ void integrate(uint i) {
   }
 }
 
-const bool kTension = (FEATURES & LINES_TENSION) != 0u;
+#ifdef MEMBRANE
+const bool kSprings = false, kTension = false;  // links are there for the limit of strain alone
+#else
+const bool kSprings = true, kTension = (FEATURES & LINES_TENSION) != 0u;
+#endif
+const bool kLimits = LIMIT_BITS != 0u;
+bool at_limit = false;  // the thread's link is held at the limit of strain
 vec3 direction, direction_below;  // of the thread's link and of the one before; 0 where there is none
 float link_length;
 
@@ -73,9 +79,13 @@ vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   exchange(vec4(pos, w), 1u, none, next);
   vec3 e = next.xyz - pos;
   float square = dot(e, e), sum = w + next.w;
-  bool is = entry.rest >= 0.0 && sum > 0.0 && square > 0.0;
+  bool is = entry.rest >= 0.0 && sum > 0.0 && square > 0.0 && (kSprings || at_limit);
   float per_l = inversesqrt(square), l = square * per_l;
   vec3 g = is ? e * per_l : vec3(0.0);
+  if (kLimits && at_limit) {
+    entry.rest *= 1.0 + uintBitsToFloat(LIMIT_BITS);
+    entry.compliance = 0.0;
+  }
   // As in lines.glsl: what is pulled taut between held vertices yields, by what keeps it regular and its tension from
   // turning links farther than a substep resolves.
   float firm = entry.regularisation;
@@ -121,14 +131,18 @@ void turn(float pull, uint rounds) {
   if (w > 0.0) move(right);
 }
 
+#include "chain_limit.glsl"
+
 void stretch(ChainEntry entry, uint rounds) {
   float pull = 0.0;
+  if (kLimits && !kSprings) find_beyond_limit(entry);
   if (kTension) {
     float lambda = solve_links(entry, rounds, 0.0).y;
     pull = direction != vec3(0.0) ? max(-lambda, 0.0) / link_length : 0.0;
     turn(pull, rounds);
   }
   vec2 lambda = solve_links(entry, rounds, pull);
+  if (kLimits) lambda = hold_at_limit(entry, rounds, pull, lambda);
   move(w * (lambda.x * direction_below - lambda.y * direction));
 }
 
@@ -267,7 +281,7 @@ void main() {
     uint f = number < bends ? 0u : number - bends;
     ChainRange range = ChainRange(p.first_entry, block + 1u, p.rounds, 0u);
     if (PERSISTENT) range = LOAD(16u, ranges, f);
-    if (block < range.blocks) pass(range.first_entry + item(), number == 0u, number >= bends, range.rounds);
+    if (block < range.blocks) pass(range.first_entry + item(), number == 0u && p.again == 0u, number >= bends, range.rounds);
   }
   if (PERSISTENT) leave_grid_barrier();
 }

@@ -3,17 +3,13 @@
 const float kUnsure_m = 1e-6;  // distances that rounding decides
 vec3 starting[3], proposed[3];
 
-float farthest_point(vec3 n) {
-  float high = -1e30;
-  for (uint j = 0u; j < piece.count; ++j) high = max(high, dot(n, point_at(j, t_end)));
-  return high + piece.radius;
-}
+float farthest_point(vec3 n) { return highest_point(n, t_end) + piece.radius; }
 float gap_at_start(vec3 n) { return gap_along(n, starting[0], starting[1], starting[2], t_begin) - piece.radius; }
 float gap_at_end(vec3 n) { return gap_along(n, proposed[0], proposed[1], proposed[2], t_end) - piece.radius; }
 
 /// The normal at the end, or half-way to it.
 bool another(vec3 old, float least, out vec3 n) {
-  for (uint c = 0u; c < 3u; ++c) cloth[c] = proposed[c];
+  [[unroll]] for (uint c = 0u; c < 3u; ++c) cloth[c] = proposed[c];
   corners = 3u;
   Nearest r = nearest_at(t_end, t_end, vec3(0.0));
   if (!(r.gap > piece.radius)) return false;
@@ -35,7 +31,7 @@ void choose(uint k) {
   piece = pieces[pair.y];
   vec4 normal = states[k].normal;
   around = starts[e.x].xyz;
-  for (uint c = 0u; c < 3u; ++c) {
+  [[unroll]] for (uint c = 0u; c < 3u; ++c) {
     starting[c] = starts[e[c]].xyz - around;
     proposed[c] = y[e[c]].xyz - around;
   }
@@ -47,6 +43,6 @@ void choose(uint k) {
   }
   states[k].way = vec4(n, farthest_point(n) + dot(n, around) + least);
   states[k].push = vec4(0.0);  // multipliers of plane_project
-  for (uint c = 0u; c < 3u; ++c)
+  [[unroll]] for (uint c = 0u; c < 3u; ++c)
     if (!(dot(n, y[e[c]].xyz) - states[k].way.w > kUnsure_m)) touched[BEFORE_A_PLANE(e[c])] = 1u;
 }

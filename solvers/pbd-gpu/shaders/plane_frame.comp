@@ -43,7 +43,10 @@ vec3 anchor(uvec2 at, uint k) {
 #include "line_family.glsl"
 #include "grip.glsl"
 #include "plane_buffers.glsl"
+const bool AGAIN = false;  // of chains alone
 #include "plane_vertices.glsl"
+// The next substep's prediction, at this one's end. What hands hold is moved between the two.
+const bool kPredictsEarly = MOVING != 0u && GRIPS == 0u;
 #include "plane_reach.glsl"
 #include "plane_list.glsl"
 #include "plane_geometry.glsl"
@@ -54,11 +57,6 @@ vec3 anchor(uvec2 at, uint k) {
 #include "plane_gather.glsl"
 #include "plane_choose.glsl"
 #include "plane_project.glsl"
-const uint kThreads = THREADS;
-#define SCAN_RANGES ranges
-#define SCAN_COUNT (TRIANGLES + VERTICES)
-#define SCAN_CAPACITY CAPACITY
-#include "plane_scan.glsl"
 
 #ifdef MANY_GROUPS
 #include "device_barrier.glsl"
@@ -68,13 +66,15 @@ const uint kThreads = THREADS;
 #define CLOTH_LOW ledger.cloth_low
 #define CLOTH_HIGH ledger.cloth_high
 #else
-#define MEET { memoryBarrierBuffer(); barrier(); }
+#define MEET { groupMemoryBarrier(); barrier(); }
 #define MEET_OR_FAIL MEET
 shared uint asked[2];
 #define COUNTED(t) asked[t]
 #define CLOTH_LOW cloth_low
 #define CLOTH_HIGH cloth_high
 #endif
+// Within a workgroup, also for what its threads write to buffers.
+#define GROUP_MEET { groupMemoryBarrier(); barrier(); }
 shared uint any_near;
 #include "plane_cloth_box.glsl"
 #define NEAR_COUNT COUNTED(min(turn, 1u))
@@ -98,9 +98,50 @@ void reach_and_widen(float carried) {
 #endif
 }
 
+shared uint listed, first_listed;  // of the workgroup
+const uint kKept = 16u;
+/// Lists the pairs of all elements at a share of the reaches. Elements have their places in no fixed order; the order within an element's
+/// is that of pieces. What the list has no place for is counted alone.
+void list_at(float share, uint level) {
+  for (uint base = me - thread; base < TRIANGLES + VERTICES; base += all_threads) {
+    uint k = base + thread, n = 0u, kept[kKept];
+    if (thread == 0u) listed = 0u;
+    if (k < TRIANGLES + VERTICES) {
+      box_for(LOAD16(elements, k), share);
+      EACH_PIECES_MET(
+        for (; met != 0u; met &= met - 1u) {
+          if (n < kKept) kept[n] = q + uint(findLSB(met));
+          ++n;
+        }
+      )
+    }
+    barrier();  // before places in the workgroup's part are given
+    uint at = n > 0u ? atomicAdd(listed, n) : 0u;
+    barrier();  // all places of the workgroup before its part is taken
+    if (thread == 0u && listed > 0u) first_listed = atomicAdd(ledger.counted[level], listed);
+    barrier();  // the part's beginning before it is filled
+    if (k >= TRIANGLES + VERTICES) continue;
+    at = min(first_listed + at, CAPACITY);
+    uint room = min(n, CAPACITY - at);
+    STORE16(ranges, k, uvec4(n > 0u ? at : 0u, room, 0u, 0u));
+    if (n > kKept)
+      fill_pairs(k, share, at, room);
+    else
+      for (uint m = 0u; m < room; ++m) write_pair(at + m, k, kept[m]);
+  }
+}
+
+void note_list(uint level) {
+  uint all = ledger.counted[level];
+  ledger.pairs = min(all, CAPACITY);
+  ledger.reach = 1.0 / float(1u << CUT_BITS * level);
+  if (all > CAPACITY) faults.dropped += all - CAPACITY;
+}
+
 /// The frame's list of pairs. Where no piece comes near the cloth there is none, and it costs a look at the groups' boxes.
 bool list_pairs() {
   if (thread == 0u) any_near = 0u;
+  for (uint word = thread; word < GROUP_WORDS; word += THREADS) near_groups[word] = 0u;
   empty_box();
 #ifndef MANY_GROUPS
   if (thread < 2u) COUNTED(thread) = 0u;
@@ -110,19 +151,26 @@ bool list_pairs() {
     ledger.carried = carried;
     ledger.reach = 1.0;
     ledger.pairs = ledger.touched_vertices = 0u;
+    for (uint l = 0u; l < PAIR_LEVELS; ++l) ledger.counted[l] = 0u;
   }
   MEET_OR_FAIL;  // empty boxes before they are widened
   reach_and_widen(carried);
   MEET_OR_FAIL;  // reaches before the list
   for (uint g = thread; g < GROUPS; g += THREADS)
-    if (meets_cloth(LOAD(32u, boxes, PIECES + g))) any_near = 1u;
+    if (meets_cloth(LOAD(32u, boxes, PIECES + g))) {
+      uint bit = g / GROUPS_A_BIT;
+      atomicOr(near_groups[bit / 32u], 1u << bit % 32u);
+      any_near = 1u;
+    }
   barrier();  // every thread's look before the answer
   if (any_near == 0u) return true;
-  EACH(k, TRIANGLES + VERTICES) count_pairs_of(k);
-  MEET_OR_FAIL;  // counts before their sums
-  if (me == thread) scan_ranges(thread);
-  MEET_OR_FAIL;  // where the pairs begin before they are written
-  EACH(k, TRIANGLES + VERTICES) fill_pairs_of(k);
+  uint level = 0u;
+  for (;; ++level) {
+    list_at(1.0 / float(1u << CUT_BITS * level), level);
+    MEET_OR_FAIL;  // pairs before they are read, and their number
+    if (level + 1u == PAIR_LEVELS || ledger.counted[level] <= CAPACITY) break;
+  }
+  if (me == 0u) note_list(level);
   EACH(i, VERTICES) list_touched(i);
   MEET_OR_FAIL;  // the list before it is read
   return true;
@@ -133,18 +181,19 @@ bool list_pairs() {
 const uint kRounds = THREADS < 512u ? 512u / THREADS : 1u;
 shared uint looked_at[kRounds * THREADS], found[kRounds * THREADS], looked, near_ones, place;
 void look_for_near() {
-  for (uint base = me - thread; base < ledger.pairs; base += kRounds * all_threads) {
+  uint count = ledger.pairs;  // read once, for a coherent read goes to the second-level cache
+  for (uint base = me - thread; base < count; base += kRounds * all_threads) {
     if (thread == 0u) looked = near_ones = 0u;
     barrier();  // before they are counted
     for (uint r = 0u; r < kRounds; ++r) {
       uint k = base + r * all_threads + thread;
-      if (k < ledger.pairs && may_be_near(k)) looked_at[atomicAdd(looked, 1u)] = k;
+      if (k < count && may_be_near(k)) looked_at[atomicAdd(looked, 1u)] = k;
     }
-    barrier();  // all that may be near are known
+    GROUP_MEET;  // all that may be near are known, and their bounds
     for (uint n = thread; n < looked; n += THREADS)
       if (is_near(looked_at[n])) found[atomicAdd(near_ones, 1u)] = looked_at[n];
-    barrier();  // all that are near are known
-    if (thread == 0u) place = atomicAdd(NEAR_COUNT, near_ones);
+    GROUP_MEET;  // all that are near are known, and their normals
+    if (thread == 0u && near_ones > 0u) place = atomicAdd(NEAR_COUNT, near_ones);
     barrier();  // where they are listed
     for (uint n = thread; n < near_ones; n += THREADS) {
       list_near(found[n], place + n);
@@ -154,29 +203,40 @@ void look_for_near() {
   }
 }
 
-bool solve_lines(uint substep) {
+// Where one workgroup holds all lines, families wait for their own workgroup alone.
+bool lines_in_a_group() { return THREADS / LANES >= COLUMNS && THREADS / LANES >= ROWS; }
+
+/// `touches`: the last family's vertices are settled.
+bool solve_lines(uint substep, bool touches) {
   const uint families = kShears ? 4u : 2u;
   uint passes = families * p.iterations;
-  for (uint n = 0u; n < passes; ++n) {
+  if (touches) forget_near(me, all_threads);
+  for (uint n = 0u; n < passes && (!lines_in_a_group() || me == thread); ++n) {
     uint which = n % families;
     family = families - 1u - which;
     iteration = n / families;
     pass(substep, which == 0u && iteration == 0u, which + 1u == families && iteration + 1u == p.iterations);
-    MEET_OR_FAIL;  // this family's writes before the next one's reads
+    if (n + 1u == passes) break;
+    if (lines_in_a_group()) GROUP_MEET
+    else MEET_OR_FAIL;  // this family's writes before the next one's reads
   }
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uint i = lane * K + k;
+    if (touches && (!lines_in_a_group() || me == thread) && on_chain(i)) settle(index_of(vertex(i)), vec4(pos[k], w[k]));
+  }
+  MEET_OR_FAIL;  // proposals before pairs read them
   return true;
 }
 
 /// Responses before (turn 0) and after the lines.
 bool respond_to_contact(out uint near) {
   near = 0u;
-  if (turn < 2u) {
-    EACH(i, VERTICES) {
-      if (turn == 0u) predict(i);
-      else settle(i);
-    }
+  if (turn == 0u && (substep_now == 0u || !kPredictsEarly)) {
+    EACH(i, VERTICES) predict(i);
     forget_near(me, all_threads);
     MEET_OR_FAIL;  // proposals before pairs read them
+  }
+  if (turn < 2u) {
     look_for_near();
     MEET_OR_FAIL;  // what contacts propose before vertices take it
   }
@@ -198,6 +258,7 @@ void keep_reach() {
     vec4 at = LOAD16(x, i);
     vec3 to = within_reach(i, at.xyz, at.w);
     if (to != at.xyz) STORE16(x, i, vec4(to, at.w));
+    if (substep_now + 1u == p.substeps) note_way(i, to);
   }
 }
 
@@ -210,7 +271,7 @@ bool substep_with(uint s, bool touches) {
   uint near = 0u;
   turn = 0u;
   if (touches && MOVING != 0u && !respond_to_contact(near)) return false;
-  if (!solve_lines(s)) return false;
+  if (!solve_lines(s, touches)) return false;
   if (!touches) {
     keep_reach();
     MEET_OR_FAIL;  // before the next substep's lines
@@ -223,6 +284,7 @@ bool substep_with(uint s, bool touches) {
     MEET_OR_FAIL;  // planes before vertices are put before them
   }
   project_all(me, all_threads);
+  forget_pushes(me, all_threads);
   if (me == 0u) COUNTED(1u) = 0u;
   MEET_OR_FAIL;  // the substep's end before the next one
   return true;
@@ -248,6 +310,10 @@ void main() {
   bool touches = ledger.pairs > 0u || PLANES > 0u;
   for (uint s = 0u; s < p.substeps; ++s)
     if (!substep_with(s, touches)) return;
+  if (me == 0u) {
+    faults.farthest = ledger.farthest;
+    ledger.farthest = 0u;
+  }
 #ifdef MANY_GROUPS
   if (me < 3u) {
     ledger.cloth_low[me] = kLowNone;

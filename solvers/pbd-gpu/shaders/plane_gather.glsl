@@ -97,9 +97,10 @@ void gather(uint i, bool valid) {
   STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * moving, 0.0));
   if (turn > 0u) {
     STORE16(y, i, vec4(at.xyz + by, at.w));
+    if (AGAIN && turn == 1u) STORE16(x, i, vec4(at.xyz + by, at.w / (1.0 + struck_by(by))));
     return;
   }
-  float held = dot(by, by) / (kHold_m * kHold_m);
+  float held = dot(by, by) / (kHold * MARGIN_M * kHold * MARGIN_M);
   STORE16(x, i, vec4(LOAD16(x, i).xyz + by - moving, at.w / (1.0 + held)));
 }
 

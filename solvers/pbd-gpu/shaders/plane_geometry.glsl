@@ -20,11 +20,20 @@ vec3 point_at(uint j, float t) {
   return (t == 1.0 ? q.end.xyz : q.start.xyz + t * (q.end.xyz - q.start.xyz)) - around;
 }
 
+// Points are read a few at a time: their loads do not wait for one another.
+const uint kPointsAtOnce = MOST_POINTS < 4u ? MOST_POINTS : 4u;
+
+/// The farthest along n that the piece's points go at time t.
+float highest_point(vec3 n, float t) {
+  float high = -1e30;
+  for (uint first = 0u; first < piece.count; first += kPointsAtOnce)
+    [[unroll]] for (uint k = 0u; k < kPointsAtOnce; ++k) high = max(high, dot(n, point_at(min(first + k, piece.count - 1u), t)));
+  return high;
+}
+
 /// Gap along n between points of the cloth and the piece at time t.
 float gap_along(vec3 n, vec3 a, vec3 b, vec3 c, float t) {
-  float low = min(dot(n, a), min(dot(n, b), dot(n, c))), high = -1e30;
-  for (uint j = 0u; j < piece.count; ++j) high = max(high, dot(n, point_at(j, t)));
-  return low - high;
+  return min(dot(n, a), min(dot(n, b), dot(n, c))) - highest_point(n, t);
 }
 float gap_now(vec3 n, float t) { return gap_along(n, cloth[0], cloth[1], cloth[2], t); }
 
@@ -55,17 +64,19 @@ void take(inout Feature best, vec3 on_cloth, vec3 on_piece, vec3 normal) {
 
 /// Edge i of the element with edge j of the piece; a point is an edge without length.
 void edges(inout Feature best, uint i, uint j) {
-  uint i2 = corners == 3u ? (i + 1u) % 3u : i, j2 = piece.count == 1u ? j : (j + 1u) % piece.count;
-  vec3 e = cloth[i2] - cloth[i], f = piece_at[j2] - piece_at[j], g = cloth[i] - piece_at[j];
+  const uint next_i = (i + 1u) % 3u, next_j = (j + 1u) % 3u;
+  bool one_i = corners == 1u, one_j = piece.count == 1u;
+  vec3 e = (one_i ? cloth[i] : cloth[next_i]) - cloth[i], f = (one_j ? piece_at[j] : piece_at[next_j]) - piece_at[j];
+  vec3 g = cloth[i] - piece_at[j];
   float ee = dot(e, e), ff = dot(f, f), ef = dot(e, f), eg = dot(e, g), fg = dot(f, g), all = ee * ff - ef * ef;
   float s = all > 0.0 ? clamp((ef * fg - ff * eg) / all, 0.0, 1.0) : 0.0;
   float t = ff > 0.0 ? clamp((ef * s + fg) / ff, 0.0, 1.0) : 0.0;
   s = ee > 0.0 ? clamp((ef * t - eg) / ee, 0.0, 1.0) : 0.0;
   vec3 on_cloth = vec3(0.0), on_piece = vec3(0.0);
-  on_cloth[i] = 1.0 - s;
-  on_piece[j] = 1.0 - t;
-  on_cloth[i2] += s;
-  on_piece[j2] += t;
+  on_cloth[i] = one_i ? 1.0 - s + s : 1.0 - s;
+  on_piece[j] = one_j ? 1.0 - t + t : 1.0 - t;
+  if (!one_i) on_cloth[next_i] = s;
+  if (!one_j) on_piece[next_j] = t;
   take(best, on_cloth, on_piece, cross(e, f));
 }
 
@@ -82,19 +93,21 @@ bool foot(vec3 p, vec3 a, vec3 b, vec3 c, out vec3 weights, out vec3 n) {
 Feature nearest_feature() {
   Feature best = Feature(1e30, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
   uint sides = piece.count == 3u ? 3u : 1u;
-  for (uint i = 0u; i < corners; ++i)
-    for (uint j = 0u; j < sides; ++j) edges(best, i, j);
+  // Unrolled, so that numbers of corners are known and nothing is indexed in memory.
+  [[unroll]] for (uint i = 0u; i < 3u; ++i)
+    [[unroll]] for (uint j = 0u; j < 3u; ++j)
+      if (i < corners && j < sides) edges(best, i, j);
   vec3 weights, n;
   if (corners == 3u)
-    for (uint j = 0u; j < piece.count; ++j)
-      if (foot(piece_at[j], cloth[0], cloth[1], cloth[2], weights, n)) {
+    [[unroll]] for (uint j = 0u; j < 3u; ++j)
+      if (j < piece.count && foot(piece_at[j], cloth[0], cloth[1], cloth[2], weights, n)) {
         vec3 one = vec3(0.0);
         one[j] = 1.0;
         take(best, weights, one, n);
       }
   if (piece.count == 3u)
-    for (uint i = 0u; i < corners; ++i)
-      if (foot(cloth[i], piece_at[0], piece_at[1], piece_at[2], weights, n)) {
+    [[unroll]] for (uint i = 0u; i < 3u; ++i)
+      if (i < corners && foot(cloth[i], piece_at[0], piece_at[1], piece_at[2], weights, n)) {
         vec3 one = vec3(0.0);
         one[i] = 1.0;
         take(best, one, weights, n);
@@ -103,7 +116,7 @@ Feature nearest_feature() {
 }
 
 void load_piece(float t) {
-  for (uint j = 0u; j < 3u; ++j) piece_at[j] = j < piece.count ? point_at(j, t) : vec3(0.0);
+  [[unroll]] for (uint j = 0u; j < 3u; ++j) piece_at[j] = j < piece.count ? point_at(j, t) : vec3(0.0);
 }
 
 /// The element at `cloth` and the piece at time `begin`; its ways are those until `end`.
@@ -120,7 +133,8 @@ Nearest nearest_of_few(float begin, float end) {
     vec3 face = cross(piece_at[1] - piece_at[0], piece_at[2] - piece_at[0]);
     try_normal(r, dot(face, f.apart) < 0.0 ? -face : face, begin);
   }
-  for (uint j = 0u; j < piece.count; ++j) {
+  [[unroll]] for (uint j = 0u; j < 3u; ++j) {
+    if (j >= piece.count) continue;
     r.witness += f.on_piece[j] * point_at(j, end);
     r.way += f.on_piece[j] * piece_at[j];
   }

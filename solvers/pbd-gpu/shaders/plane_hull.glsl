@@ -90,15 +90,17 @@ Corner support(vec3 v, float t) {
       c.a = i;
     }
   }
-  for (uint j = 0u; j < piece.count; ++j) {
-    vec3 at = point_at(j, t);
-    float d = dot(v, at);
-    if (d > high) {
-      high = d;
-      c.b = j;
-      b = at;
+  for (uint first = 0u; first < piece.count; first += kPointsAtOnce)
+    [[unroll]] for (uint k = 0u; k < kPointsAtOnce; ++k) {
+      uint j = min(first + k, piece.count - 1u);
+      vec3 at = point_at(j, t);
+      float d = dot(v, at);
+      if (d > high) {
+        high = d;
+        c.b = j;
+        b = at;
+      }
     }
-  }
   c.at = cloth[c.a] - b;
   return c;
 }
@@ -139,7 +141,8 @@ Nearest nearest_of_hull(float begin, float end, vec3 guess) {
     }
     vec3 to = vec3(0.0);
     for (uint m = 0u; m < simplex_size; ++m) to += share_of[m] * simplex[m].at;
-    if (!(dot(to, to) > 1e-14)) break;
+    // No nearer: rounding goes round in a circle.
+    if (!(dot(to, to) > 1e-14 && (k == 0u || dot(to, to) < square))) break;
     v = to;
     if (simplex_size == 4u) break;
   }

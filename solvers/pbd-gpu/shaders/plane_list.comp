@@ -22,9 +22,13 @@ layout(std430, binding = BIND_RANGES) writeonly buffer Ranges { uvec4 ranges[]; 
 void main() {
   for (uint k = item(); k < TRIANGLES + VERTICES; k += stride()) {
 #ifdef FILL
-    fill_pairs_of(k);
+    uvec4 range = LOAD16(ranges, k);
+    fill_pairs(k, ledger.reach, range.x, range.y);
 #else
-    count_pairs_of(k);
+    uvec4 n = uvec4(pairs_at(k, 1.0), 0u, 0u, 0u);
+    [[unroll]] for (uint l = 1u; l < PAIR_LEVELS; ++l)
+      if (n[l - 1u] != 0u) n[l] = pairs_at(k, 1.0 / float(1u << CUT_BITS * l));
+    STORE16(ranges, k, n);
 #endif
   }
 #ifdef FILL

@@ -1,5 +1,5 @@
-// Pairs of an element and a piece whose boxes meet, the element's grown by its vertices' reaches. First they are counted for several
-// shares of the reaches (the greatest one that the list has place for is taken), then written.
+// Pairs of an element and a piece whose boxes meet, the element's grown by its vertices' reaches. First they are counted, for the greatest
+// share of the reaches that the list has place for, then written.
 vec3 low, high;
 void box_for(uvec4 e, float share) {
   low = vec3(1e30);
@@ -14,21 +14,67 @@ bool meets(PieceBox b) {
   return all(lessThanEqual(low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, high));
 }
 
+// Boxes are looked at a few at a time: their loads do not wait for one another.
+const uint kBoxesAtOnce = 4u;
+/// A bit for each of the pieces from `first` on, and before `end`, whose box meets the element's.
+uint pieces_met(uint first, uint end) {
+  uint met = 0u;
+  [[unroll]] for (uint n = 0u; n < kBoxesAtOnce; ++n)
+    if (meets(LOAD(32u, boxes, min(first + n, end - 1u))) && first + n < end) met |= 1u << n;
+  return met;
+}
+
+// A bit stands for one group, and for several of them where there are very many.
+#define MOST_GROUP_WORDS 1024u
+#define GROUPS_A_BIT ((GROUPS + 32u * MOST_GROUP_WORDS - 1u) / (32u * MOST_GROUP_WORDS))
+#define GROUP_WORDS ((GROUPS + 31u) / 32u < MOST_GROUP_WORDS ? (GROUPS + 31u) / 32u : MOST_GROUP_WORDS)
+#ifdef PLANE_FRAME
+shared uint near_groups[GROUP_WORDS + 1u];
+#define NEAR_GROUPS(word) near_groups[word]
+#else
+#define NEAR_GROUPS(word) ~0u
+#endif
+/// The next few of the groups with a bit that meet the element; the bits looked at are cleared.
+uint groups_met(inout uint bits, uint word, uint part) {
+  uint met = 0u;
+  [[unroll]] for (uint n = 0u; n < kBoxesAtOnce; ++n) {
+    uint g = GROUPS_A_BIT * (32u * word + uint(findLSB(bits))) + part;
+    if (bits != 0u && g < GROUPS && meets(LOAD(32u, boxes, PIECES + g))) met |= bits & -bits;
+    bits &= bits - 1u;
+  }
+  return met;
+}
+// Pieces of all groups that meet the element: `q`, and `met`, a bit for each of the few pieces from there on.
+#define EACH_PIECES_MET(BODY)                                                                            \
+  for (uint part = 0u; part < GROUPS_A_BIT; ++part)                                                       \
+    for (uint word = 0u; word < GROUP_WORDS; ++word)                                                     \
+      for (uint bits = NEAR_GROUPS(word); bits != 0u;)                                                   \
+        for (uint groups = groups_met(bits, word, part); groups != 0u; groups &= groups - 1u) {          \
+          uint first = PIECES_A_GROUP * (GROUPS_A_BIT * (32u * word + uint(findLSB(groups))) + part);     \
+          uint last = min(first + PIECES_A_GROUP, PIECES);                                               \
+          for (uint q = first; q < last; q += kBoxesAtOnce) {                                            \
+            uint met = pieces_met(q, last);                                                              \
+            BODY                                                                                         \
+          }                                                                                              \
+        }
+
 #ifndef COUNT_ALONE
-void fill_pairs_of(uint k) {
-  uvec4 range = LOAD16(ranges, k);
-  box_for(LOAD16(elements, k), ledger.reach);
-  uint at = range.x, end = range.x + range.y;
-  for (uint g = 0u; g < GROUPS && at < end; ++g) {
-    if (!meets(LOAD(32u, boxes, PIECES + g))) continue;
-    for (uint q = PIECES_A_GROUP * g; q < min(PIECES_A_GROUP * (g + 1u), PIECES) && at < end; ++q) {
-      if (!meets(LOAD(32u, boxes, q))) continue;
-      STORE16(pairs, at, uvec4(k, q, 0u, 0u));
-      states[at].normal = vec4(0.0);
-      states[at].push = vec4(0.0);
+void write_pair(uint at, uint element, uint of_piece) {
+  STORE16(pairs, at, uvec4(element, of_piece, 0u, 0u))
+  states[at].normal = vec4(0.0);
+  states[at].push = vec4(0.0);
+}
+
+/// Writes the `count` first pairs of element k, from place `at` on.
+void fill_pairs(uint k, float share, uint at, uint count) {
+  box_for(LOAD16(elements, k), share);
+  uint end = at + count;
+  EACH_PIECES_MET(
+    for (; met != 0u && at < end; met &= met - 1u) {
+      write_pair(at, k, q + uint(findLSB(met)));
       ++at;
     }
-  }
+  )
 }
 
 /// Lists the vertices that pairs of their own or of their triangles may move, in no fixed order, and marks them.
@@ -44,29 +90,11 @@ void list_touched(uint i) {
 #endif
 
 #ifndef FILL_ALONE
-void count_pairs_of(uint k) {
-  uvec4 e = LOAD16(elements, k), n = uvec4(0u);
-  vec3 lows[PAIR_LEVELS], highs[PAIR_LEVELS];
-  float share = 1.0;
-  for (uint l = 0u; l < PAIR_LEVELS; ++l, share /= float(1u << CUT_BITS)) {
-    box_for(e, share);
-    lows[l] = low;
-    highs[l] = high;
-  }
-  for (uint g = 0u; g < GROUPS; ++g) {
-    low = lows[0];
-    high = highs[0];
-    if (!meets(LOAD(32u, boxes, PIECES + g))) continue;
-    for (uint q = PIECES_A_GROUP * g; q < min(PIECES_A_GROUP * (g + 1u), PIECES); ++q) {
-      PieceBox box = LOAD(32u, boxes, q);
-      for (uint l = 0u; l < PAIR_LEVELS; ++l) {
-        low = lows[l];
-        high = highs[l];
-        if (!meets(box)) break;
-        ++n[l];
-      }
-    }
-  }
-  STORE16(ranges, k, n);
+/// Pairs of element k where its vertices go no farther than a share of their reaches.
+uint pairs_at(uint k, float share) {
+  box_for(LOAD16(elements, k), share);
+  uint n = 0u;
+  EACH_PIECES_MET(n += uint(bitCount(met));)
+  return n;
 }
 #endif

@@ -5,7 +5,10 @@
 float piece_way(uint k) { return p.substep_part * LOAD16_OF(boxes[k].low).w; }
 float most_of(uvec4 e, bool of_ways) {
   float most = 0.0;
-  for (uint c = 0u; c < e.w; ++c) most = max(most, of_ways ? LOAD4(ways, e[c]) : starts[e[c]].w);
+  [[unroll]] for (uint c = 0u; c < 3u; ++c) {
+    uint i = e[min(c, e.w - 1u)];
+    most = max(most, of_ways ? LOAD4(ways, i) : starts[i].w);
+  }
   return most;
 }
 
@@ -34,11 +37,11 @@ bool is_near(uint k) {
   uvec4 e = LOAD16(elements, pair.x);
   piece = pieces[pair.y];
   around = starts[e.x].xyz;
-  for (uint c = 0u; c < 3u; ++c) cloth[c] = starts[e[min(c, e.w - 1u)]].xyz - around;
+  [[unroll]] for (uint c = 0u; c < 3u; ++c) cloth[c] = starts[e[min(c, e.w - 1u)]].xyz - around;
   vec3 n = states[k].normal.xyz;
   if (n == vec3(0.0)) {
-    for (uint c = 0u; c < 3u; ++c) n += cloth[c] / 3.0;
-    for (uint j = 0u; j < piece.count; ++j) n -= point_at(j, t_begin) / float(piece.count);
+    PieceBox box = LOAD(32u, boxes, pair.y);
+    n = (cloth[0] + cloth[1] + cloth[2]) / 3.0 - (0.5 * (box.low.xyz + box.high.xyz) - around);
   }
   float l = length(n);
   if (!(l > 0.0)) return true;

@@ -5,6 +5,7 @@
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };  // w: inverse mass
+layout(std430, binding = BIND_REACHES) readonly buffer Reaches { vec4 reaches[]; };
 layout(std430, binding = BIND_STARTS) buffer Starts { vec4 starts[]; };  // at the substep's start; w: farthest it may go
 layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };
 layout(std430, binding = BIND_RANGES) readonly buffer Ranges { uvec4 ranges[]; };

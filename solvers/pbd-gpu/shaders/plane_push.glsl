@@ -12,7 +12,8 @@ vec4 push_of(uvec4 e, PairState s) {
   if (turn == 0u && piece.moves == 0u) return vec4(0.0);
   float gap = -s.weights.w, mass = 0.0;
   vec3 slip = -s.way.xyz;
-  for (uint c = 0u; c < e.w; ++c) {
+  [[unroll]] for (uint c = 0u; c < 3u; ++c) {
+    if (c >= e.w) continue;
     vec4 at = y[e[c]];
     float b = s.weights[c];
     gap += b * dot(s.normal.xyz, at.xyz);
@@ -34,7 +35,7 @@ vec4 push_of(uvec4 e, PairState s) {
 /// Marks a pair whose contact proposes something, and its vertices, so that others need not be read.
 void mark_push(uint k, uvec4 e, bool proposes, bool proposed) {
   if (proposes) {
-    for (uint c = 0u; c < e.w; ++c) touched[PUSHED(e[c])] = 1u;
+    [[unroll]] for (uint c = 0u; c < 3u; ++c) touched[PUSHED(e[min(c, e.w - 1u)])] = 1u;
     if (!proposed) atomicOr(near_bits[PUSH_BITS + k / 32u], 1u << k % 32u);
   } else if (proposed) {
     atomicAnd(near_bits[PUSH_BITS + k / 32u], ~(1u << k % 32u));

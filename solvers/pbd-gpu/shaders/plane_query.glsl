@@ -10,7 +10,7 @@ bool parted_by_face(uvec4 e, inout PairState s) {
   if (!(l > 0.0)) return false;
   n /= l;
   vec3 start = vec3(0.0), end = vec3(0.0);
-  for (uint c = 0u; c < 3u; ++c) {
+  [[unroll]] for (uint c = 0u; c < 3u; ++c) {
     start[c] = dot(n, cloth[c] - piece_at[0]);
     end[c] = dot(n, y[e[c]].xyz - around - piece_at[0]);
   }
@@ -28,7 +28,7 @@ bool parted_by_face(uvec4 e, inout PairState s) {
 uint look(uvec4 e, inout PairState s) {
   s.push = vec4(0.0);
   around = starts[e.x].xyz;
-  for (uint c = 0u; c < 3u; ++c) cloth[c] = starts[e[min(c, e.w - 1u)]].xyz - around;
+  [[unroll]] for (uint c = 0u; c < 3u; ++c) cloth[c] = starts[e[min(c, e.w - 1u)]].xyz - around;
   corners = e.w;
   if (parted_by_face(e, s)) return PAIR_LOOKED | PAIR_PLANE;
   Nearest r = nearest_at(t_begin, t_end, s.normal.xyz);

@@ -1,5 +1,5 @@
 #version 450
-// Start of a frame, a thread a triangle: counts its pairs with others of the cloth; FILL writes them.
+// Start of a frame, a thread a triangle (SHUFFLES: a subgroup): counts its pairs with others of the cloth; FILL writes them.
 #include "common.glsl"
 #include "plane_buffers.glsl"
 layout(std430, binding = BIND_SELF_ORDER) readonly buffer SelfOrder { uint self_order[]; };
@@ -16,11 +16,9 @@ layout(std430, binding = BIND_SELF_RANGES) writeonly buffer SelfRanges { uvec4 s
 #include "plane_self_list.glsl"
 
 void main() {
-  for (uint q = item(); q < TRIANGLES; q += stride()) {
 #ifdef FILL
-    fill_self_pairs_of(q);
+  EACH_SHARED(q, TRIANGLES, fill_self_pairs_of(q);)
 #else
-    count_self_pairs_of(q);
+  EACH_SHARED(q, TRIANGLES, count_self_pairs_of(q);)
 #endif
-  }
 }

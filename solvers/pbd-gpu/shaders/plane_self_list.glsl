@@ -12,6 +12,25 @@ bool boxes_meet(SelfBox a, SelfBox b, float share) {
   return all(lessThanEqual(low_at(a, share), high_at(b, share))) && all(lessThanEqual(low_at(b, share), high_at(a, share)));
 }
 
+#include "self_share.glsl"
+// Triangles in groups that meet the box, a few at a time: `q` is this thread's, and `mine` says whether its box meets the other at the
+// share. All threads that share a triangle come along.
+#define EACH_NEIGHBOURS(BOX, SHARE, BODY)                                                                                     \
+  for (uint begin = 0u; begin * PIECES_A_GROUP < TRIANGLES; begin += sharers()) {                                             \
+    uint g = begin + sharer();                                                                                                \
+    bool meets_group = sharer() < sharers() && g * PIECES_A_GROUP < TRIANGLES;                                                \
+    if (meets_group) meets_group = boxes_meet(BOX, LOAD(64u, self_boxes, TRIANGLES + g), 1.0);                                \
+    for (uint groups = votes(meets_group); groups != 0u; groups &= groups - 1u) {                                             \
+      uint first = PIECES_A_GROUP * (begin + uint(findLSB(groups))), last = min(first + PIECES_A_GROUP, TRIANGLES);           \
+      for (uint part = first; part < last; part += sharers()) {                                                               \
+        uint q = part + sharer();                                                                                             \
+        bool mine = sharer() < sharers() && q < last;                                                                         \
+        if (mine) mine = boxes_meet(BOX, LOAD(64u, self_boxes, q), SHARE);                                                    \
+        BODY                                                                                                                  \
+      }                                                                                                                       \
+    }                                                                                                                         \
+  }
+
 #ifndef COUNT_ALONE
 /// Of two triangles from their boxes at the frame's start.
 float least_distance(SelfBox a, SelfBox b) {
@@ -24,15 +43,14 @@ void fill_self_pairs_of(uint place) {
   uvec4 range = LOAD16(self_ranges, own), e = LOAD16(elements, own);
   SelfBox box = LOAD(64u, self_boxes, place);
   uint at = range.x, end = range.x + range.y;
-  for (uint g = 0u; g * PIECES_A_GROUP < TRIANGLES && at < end; ++g) {
-    if (!boxes_meet(box, LOAD(64u, self_boxes, TRIANGLES + g), 1.0)) continue;
-    for (uint q = PIECES_A_GROUP * g; q < min(PIECES_A_GROUP * (g + 1u), TRIANGLES) && at < end; ++q) {
-      if (!boxes_meet(box, LOAD(64u, self_boxes, q), ledger.self_reach)) continue;
-      uint other = LOAD4(self_order, q);
-      if (share_vertex(e, LOAD16(elements, other))) continue;
-      self_pairs[at++] = SelfPair(other, least_distance(box, LOAD(64u, self_boxes, q)));
-    }
-  }
+  EACH_NEIGHBOURS(box, ledger.self_reach,
+    uint other = mine ? LOAD4(self_order, q) : 0u;
+    mine = mine && !share_vertex(e, LOAD16(elements, other));
+    uint bits = votes(mine);
+    uint to = at + uint(bitCount(bits & ((1u << sharer()) - 1u)));
+    if (mine && to < end) self_pairs[to] = SelfPair(other, least_distance(box, LOAD(64u, self_boxes, q)));
+    at += uint(bitCount(bits));
+  )
 }
 #endif
 
@@ -41,15 +59,17 @@ void count_self_pairs_of(uint place) {
   uint own = LOAD4(self_order, place);
   uvec4 e = LOAD16(elements, own), n = uvec4(0u);
   SelfBox box = LOAD(64u, self_boxes, place);
-  for (uint g = 0u; g * PIECES_A_GROUP < TRIANGLES; ++g) {
-    if (!boxes_meet(box, LOAD(64u, self_boxes, TRIANGLES + g), 1.0)) continue;
-    for (uint q = PIECES_A_GROUP * g; q < min(PIECES_A_GROUP * (g + 1u), TRIANGLES); ++q) {
+  EACH_NEIGHBOURS(box, 1.0,
+    if (mine && !share_vertex(e, LOAD16(elements, LOAD4(self_order, q)))) {
       SelfBox other = LOAD(64u, self_boxes, q);
-      if (!boxes_meet(box, other, 1.0) || share_vertex(e, LOAD16(elements, LOAD4(self_order, q)))) continue;
       float share = 1.0;
-      for (uint l = 0u; l < PAIR_LEVELS && boxes_meet(box, other, share); ++l, share /= float(1u << CUT_BITS)) ++n[l];
+      for (uint l = 0u; l < PAIR_LEVELS && boxes_meet(box, other, share); ++l) {
+        ++n[l];
+        share /= float(1u << CUT_BITS);
+      }
     }
-  }
-  STORE16(self_ranges, own, n);
+  )
+  n = sum_of_sharers(n);
+  if (sharer() == 0u) STORE16(self_ranges, own, n);
 }
 #endif

@@ -11,11 +11,5 @@ layout(std430, binding = BIND_FAULTS) buffer Faults { ContactFaults faults; };
 #include "plane_self_near.glsl"
 
 void main() {
-#ifdef SHUFFLES
-  uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  uint subgroups = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_NumSubgroups;
-  for (uint t = group * gl_NumSubgroups + gl_SubgroupID; t < TRIANGLES; t += subgroups) collect_near(t);
-#else
-  for (uint t = item(); t < TRIANGLES; t += stride()) collect_near(t);
-#endif
+  EACH_SHARED(t, TRIANGLES, collect_near(t);)
 }

@@ -1,5 +1,6 @@
 // Pairs of a triangle that are near in this substep. Where a triangle's begin is in no fixed order, and nothing depends on it; those of
 // one triangle are in the order of its list.
+#include "self_share.glsl"
 
 /// A pair's bound loses the ways of the last substep.
 bool is_near_self(uint k, vec4 own) {
@@ -8,24 +9,6 @@ bool is_near_self(uint k, vec4 own) {
   self_pairs[k].bound = bound;
   return bound <= own.y + other.y;
 }
-
-// The threads that share a triangle's list take a pair each in turn.
-#ifdef SHUFFLES
-uint sharers() { return min(gl_SubgroupSize, 32u); }
-uint sharer() { return gl_SubgroupInvocationID; }
-/// Of all sharers, a bit each.
-uint votes(bool mine) {
-  uint bits = mine ? 1u << sharer() : 0u;
-  for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) bits |= subgroupShuffleXor(bits, n);
-  return bits;
-}
-uint from_first(uint value) { return subgroupShuffle(value, 0u); }
-#else
-uint sharers() { return 1u; }
-uint sharer() { return 0u; }
-uint votes(bool mine) { return mine ? 1u : 0u; }
-uint from_first(uint value) { return value; }
-#endif
 
 /// Where a triangle's near pairs begin, and how many there is place for.
 uvec2 reserve(uint count) {

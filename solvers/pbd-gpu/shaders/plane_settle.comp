@@ -14,6 +14,7 @@ layout(std430, binding = BIND_NEAR_BITS) writeonly buffer NearBits { uint near_b
 
 void main() {
   uint i = item();
-  if (i < VERTICES) settle(i);
-  if (PIECES > 0u) forget_near(i, stride());
+  turn = p.turn;
+  if (i < VERTICES) settle(i, LOAD16(x, i));
+  if (PIECES > 0u && (!AGAIN || turn < 2u)) forget_near(i, stride());
 }

@@ -7,7 +7,12 @@ float farthest(uint i, vec3 to) {
 
 /// Before pairs are asked whether they are near. Thread `first` of `at_once` takes its share.
 void forget_near(uint first, uint at_once) {
-  for (uint k = first; k < (ledger.pairs + 31u) / 32u; k += at_once) near_bits[NEAR_BITS + k] = near_bits[PUSH_BITS + k] = 0u;
+  for (uint k = first, words = (ledger.pairs + 31u) / 32u; k < words; k += at_once) near_bits[NEAR_BITS + k] = near_bits[PUSH_BITS + k] = 0u;
+}
+
+/// The same of what contacts propose alone, once vertices have taken it.
+void forget_pushes(uint first, uint at_once) {
+  for (uint k = first, words = (ledger.pairs + 31u) / 32u; k < words; k += at_once) near_bits[PUSH_BITS + k] = 0u;
 }
 
 /// Inverse mass of a vertex that has `in_lines` there. Hands hold and let go between the two.
@@ -40,11 +45,10 @@ vec3 within_reach(uint i, vec3 to, float w) {
   return kept;
 }
 
-void settle(uint i) {
-  vec4 at = LOAD16(x, i);
+void settle(uint i, vec4 at) {
   float w = mass_of(i, at.w);
   vec3 to = within_reach(i, at.xyz, w);
   STORE16(y, i, vec4(to, w));
-  starts[i].w = farthest(i, to);
+  if (!AGAIN || turn < 2u) starts[i].w = farthest(i, to);
 }
 #endif
