@@ -4,7 +4,7 @@
     scripts/peers_tables.py FOLDER [--check] DOCUMENT…
 
 Fills the DOCUMENTs between marks such as <!-- peers hang begin --> and <!-- peers hang end -->; --check only compares. FOLDER
-holds the reports of the peers' studies, as results/reference/h200 does:
+holds the reports of the peers' studies, as results/reference/gpu does:
 
 hang: CPU time of a frame [ms] and greatest stretch of the last second [%], medians over the sheets of peers-hang,
 with the lowest and the highest in brackets.

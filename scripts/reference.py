@@ -6,7 +6,7 @@
     scripts/reference.sh --check [OUT…] [--to FOLDER]
 
 --report: makes tables of each study and one page of all (index.html) from the folders OUT, which must be of one state of the sources, into FOLDER (default:
-results/reference/h200), and ../README.md of FOLDER. reference.json has the SHA-256 of all of these and of every result file they were made from.
+results/reference/gpu), and ../README.md of FOLDER. reference.json has the SHA-256 of all of these and of every result file they were made from.
 --add: adds parts of another device (scripts/reference.sh --second) to what is published; their sources must be those of what is there, which stays as it is.
 Raw results are not published: they are some hundred megabytes, and the tables hold every summary value of every run.
 
@@ -34,7 +34,7 @@ from sources import changed_since  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DATA = ROOT / "scripts/reference"
-PUBLISHED = ROOT / "results/reference/h200"
+PUBLISHED = ROOT / "results/reference/gpu"
 LIST = "reference.json"
 DEVICES = "devices.csv"
 # Files of a report that are not published: the page is one for all studies, and what else is left out is in runs.csv.
@@ -121,9 +121,9 @@ def readme(folder, listing):
             f"[reference.json]({at}/reference.json) has the SHA-256 of every file; `scripts/reference.sh --check` verifies them.", "",
             *([listing["note"], ""] if listing.get("note") else []),
             "<!-- needs hardware: a GPU -->", "```sh",
-            "scripts/reference.sh OUT --table h200         # call again while its exit status is 75",
+            "scripts/reference.sh OUT --table gpu          # call again while its exit status is 75",
             "scripts/reference.sh SOFT --table software    # parts that need no GPU, on any machine",
-            "scripts/reference.sh OUT2 --table h200 --second    # the same on another GPU, if there is one",
+            "scripts/reference.sh OUT2 --table gpu --second    # the same on another GPU, if there is one",
             "scripts/reference.sh --report OUT SOFT OUT2",
             "scripts/reference.sh --add OUT2               # the other GPU alone, to what is published", "```", "", "## Claims of the paper", "",
             markdown(claims_table(tables, data("claims.json"))), ""]
@@ -147,7 +147,7 @@ def readme(folder, listing):
             continue
         facts = listing["studies"][group]
         answer, _ = statement(tables, s)
-        answer = answer and answer.replace("](h200/", f"]({at}/")
+        answer = answer and answer.replace("](gpu/", f"]({at}/")
         text += [f"## {s['title']}: [{group}]({at}/{group}/report.md)", "", f"*{s['question']}* {answer or 'The tables lack a figure of the answer.'}", ""]
         if s.get("picture") and (folder / group / s["picture"]).exists():
             text += [f"![{s['question']}]({at}/{group}/{s['picture']})", ""]

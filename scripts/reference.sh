@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The reference study: every published study by one program, part by part, into one folder; and the page that is published of it.
-#   scripts/reference.sh OUT [--table h200 | software | quick] [--part NAME]... [--limit SECONDS] [--jobs N] [--second] [--resume] [--list]
+#   scripts/reference.sh OUT [--table gpu | software | quick] [--part NAME]... [--limit SECONDS] [--jobs N] [--second] [--resume] [--list]
 #   scripts/reference.sh --pack OUT TO [PART…] | --report OUT... [--to FOLDER] | --add OUT... | --check [--to FOLDER]      see scripts/reference.py
 # Parts, their expected seconds and what each runs: scripts/reference/parts.conf. Exit status 0: all parts are complete. 75: the limit
 # (default 570 s) has come; the same call again continues, for finished runs and parts stay. 2: bad input. Else that of the part that failed.
@@ -15,7 +15,7 @@ case ${1:-} in
   --pack) exec "$python" "$here/scripts/reference/pack.py" "${@:2}" ;;
 esac
 fail() { echo "scripts/reference.sh: $*" >&2; exit 2; }
-out= table=h200 limit=570 jobs=$(nproc) list=0 only=" " prefix=
+out= table=gpu limit=570 jobs=$(nproc) list=0 only=" " prefix=
 while [ $# -gt 0 ]; do
   case $1 in
     --table | --part | --limit | --jobs)
@@ -103,7 +103,7 @@ part() {
   esac
 }
 
-grep -q "^$table " scripts/reference/parts.conf || fail "--table $table: expected h200, software or quick"
+grep -q "^$table " scripts/reference/parts.conf || fail "--table $table: expected gpu, software or quick"
 for name in $only; do awk -v t="$table" -v n="$name" '$1 == t && $2 == n { found = 1 } END { exit !found }' scripts/reference/parts.conf || fail "--part $name: the table $table has no such part"; done
 left=0 parts=()
 while read -r in name expected how line; do

@@ -8,7 +8,7 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-REFERENCE = ROOT / "results/reference/h200"
+REFERENCE = ROOT / "results/reference/gpu"
 SPEED = REFERENCE / "table3/report.md"
 STRETCH = REFERENCE / "hang/report.md"
 # Rows of the reports: solver and sides, as printed there.

@@ -23,7 +23,7 @@ from documents import ROOT, all_commands, tracked
 TABLE = Path(__file__).with_name("commands.txt")
 MOST_SECONDS = 60  # of a command
 # What no command of a document reads, and what is large.
-ASIDE = re.compile(r"^(tests/|results/reference/(?!h200/index\.html$).*\.(?!md$)\w+$)")
+ASIDE = re.compile(r"^(tests/|results/reference/(?!gpu/index\.html$).*\.(?!md$)\w+$)")
 SHELL = """
 shopt -s expand_aliases
 set -o pipefail

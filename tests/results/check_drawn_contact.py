@@ -35,7 +35,7 @@ with open(reference / "contact-h200/planes-runs.csv", encoding="utf-8", newline=
     now = {(r["scene"], r["setting"]): r for r in csv.DictReader(f) if r["status"] == "ok"}
 with open(reference / "contact-h200/planes-rates.csv", encoding="utf-8", newline="") as f:
     planes = {(r["setting"], r["speed_m_per_s"]): r for r in csv.DictReader(f) if r["kind"] == "all"}
-plain, limits = (re.sub(r"\s+", " ", text) for text in (study, (root / "README.md").read_text(encoding="utf-8")))
+plain = re.sub(r"\s+", " ", study)
 
 
 with open(reference / "contact-h200/planes-earlier-bounds.csv", encoding="utf-8", newline="") as f:
@@ -77,8 +77,6 @@ for words in (
     f"and {of('default', '≥ 10')} above 10 m/s",
 ):
     assert words in plain, words
-for words in (f"holds in {of('default')} ({low} to {high} %)", f"`accurate` in {of('accurate')}, at `fast` in {planes['fast', 'all']['passed']}"):
-    assert words in limits, words
 assert f"{of('default').replace('of', 'of the')} that were run again, {counts(earlier, 'default')} of them by the bounds of before ({counts(before, 'default')} before" in re.sub(r"\s+", " ", index)
 
 # And what it says of cost, in milliseconds of GPU time.
@@ -93,15 +91,6 @@ for row in table:
     scene, now_ms, before_ms = (c.strip() for c in row.strip("|").split("|")[:3])
     assert now_ms == cost[scene, "default"] and before_ms == cost.get((scene, "points"), "–"), row
 assert len(table) == sum(k[1] == "default" for k in cost), len(table)
-sweeps = [float(cost[f"capsule-sweep-{v}mps", "default"]) for v in ("0p8", "3p3", "7p7", "13")]
-assert cost["desk-flat-low-desk", "default"] == cost["hand-push", "default"]
-falls = sorted(float(cost[k, "default"]) for k in ("self-fold", "self-crumple"))
-for words in (
-    f"takes {min(sweeps):.2f} to {max(sweeps):.2f} ms of GPU time",
-    f"take {cost['hand-push', 'default']} ms, a cloth that falls onto itself {falls[0]:.1f} to {falls[1]:.1f} ms, and a cloth without contact {cost['gravity-none', 'default']} ms",
-):
-    assert words in re.sub(r"\s+", " ", (root / "solvers/pbd-gpu/PLANES.md").read_text(encoding="utf-8")), words
-
 # The bounds of drawn pulls are the converged solutions plus 10 %.
 with open(reference / "contact-h200/pulls.csv", encoding="utf-8", newline="") as f:
     pulls = list(csv.DictReader(f))

@@ -137,13 +137,13 @@ for a, b, floor, same in ((1, 2), (1.04, 1), 0, True), ((1, 2), (1.2, 1), 0, Fal
     assert devices.same_order(dict(enumerate(a)), dict(enumerate(b)), floor) == same, (a, b, floor)
 
 # The table of parts can be read, and every study and claim has its data.
-for words, why in ((["--limit", "x"], "expected a positive whole number"), (["--table", "none"], "expected h200, software or quick"), (["--part", "none"], "has no such part"), (["--part"], "expected a value")):
+for words, why in ((["--limit", "x"], "expected a positive whole number"), (["--table", "none"], "expected gpu, software or quick"), (["--part", "none"], "has no such part"), (["--part"], "expected a value")):
     done = subprocess.run([str(root / "scripts/reference.sh"), tempfile.gettempdir() + "/none", "--list", *words], text=True, capture_output=True, env={**os.environ, "CLOTHBENCH": "/bin/true"})
     assert done.returncode == 2 and why in done.stderr, (words, done)
 parts = [line.split() for line in (root / "scripts/reference/parts.conf").read_text(encoding="utf-8").splitlines() if line and line[0] != "#"]
-assert all(p[0] in ("h200", "software", "quick") and p[2].isdigit() and p[3] in ("timed", "untimed", "spread") for p in parts), parts
+assert all(p[0] in ("gpu", "software", "quick") and p[2].isdigit() and p[3] in ("timed", "untimed", "spread") for p in parts), parts
 assert {p[1] for p in parts if p[0] == "software" and p[3] == "timed"} == {"peers-hang"}  # engines on one CPU core
-assert sum(int(p[2]) for p in parts if p[0] == "h200" and p[3] == "timed") <= 3600
+assert sum(int(p[2]) for p in parts if p[0] == "gpu" and p[3] == "timed") <= 3600
 named = {s["group"] for s in reference.data("studies.json")} | {"repeat-again"}
 assert {p[1].split("+")[0] for p in parts if not p[1].startswith("software-")} <= named, named
 assert [c["id"] for c in reference.data("claims.json")] == [f"C{n}" for n in range(1, 16)]
