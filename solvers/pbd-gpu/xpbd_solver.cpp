@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "chains.hpp"
 #include "crumpled.hpp"
@@ -122,6 +123,7 @@ class Xpbd final : public GpuSolver {
     const bool adapts = touches && !contact_->moves() && grips() == nullptr && scene().needs.has(Feature::Shear) &&
                         !crumpled_ && settings()["substeps"] == 0;
     pace_ = Pace(scene(), settings(), adapts);
+    recorded_substeps_ = pace_.substeps();
     if (adapts) set_paced();
     if (grips() != nullptr && !whole_frame_ && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
     const FeatureSet of_contact =
@@ -188,7 +190,9 @@ class Xpbd final : public GpuSolver {
     // The first frame has none before it.
     const double cloth_m = last_dt_s_ > 0 ? farthest_m * frame_s / last_dt_s_ : std::numeric_limits<double>::infinity();
     last_dt_s_ = dt_s;
-    return pace_.next(cloth_m);
+    pace_.next(cloth_m);
+    // After a reset too what was recorded has the last frame's substeps.
+    return std::exchange(recorded_substeps_, pace_.substeps()) != pace_.substeps();
   }
 
   TimeStep time_step_of(double dt_s, double last_dt_s) const {
@@ -246,6 +250,7 @@ class Xpbd final : public GpuSolver {
   }
 
   Pace pace_;
+  int recorded_substeps_ = 0;
   double last_dt_s_ = 0;                       ///< of the last frame; 0: none
   static constexpr int kCrumpledSubsteps = 4;  ///< factor; with less a tangle takes longer than 1 s
 

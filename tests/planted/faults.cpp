@@ -77,8 +77,7 @@ void add_planes(std::vector<Fault>& f) {
          "PiecePoint(c.b0, c.b0)");
   kernel("a tenth of the reach", "struck", "plane_reach.glsl", "STORE16(reaches, i, vec4(at.xyz, reach));",
          "STORE16(reaches, i, vec4(at.xyz, 0.1 * reach));");
-  kernel("one pair in three not listed", "struck", "plane_list.glsl", "        ++n[l];",
-         "        n[l] += k % 3u == 1u ? 0u : 1u;");
+  kernel("one pair in three not listed", "struck", "plane_list.glsl", "return n;", "return n - n / 3u;");
   kernel("half of each element's pairs not found again", "struck", "plane_scan.glsl", "min(count, room), 0u",
          "min(count, room) / 2u, 0u");
   kernel("start of the substep not what it was", "struck", "plane_vertices.glsl", "at.xyz += p.h * (vel ",
@@ -101,9 +100,9 @@ void add_planes(std::vector<Fault>& f) {
          "sum_moving += l * moving;", "sum_moving -= l * moving;");
   kernel("no responses of vertices", "wrapped", "plane_gather.glsl",
          "if (any_pairs) from_pairs(TRIANGLES + i, 0u, at.w);", "");
-  kernel("what was struck no heavier in the lines", "struck", "plane_gather.glsl", "at.w / (1.0 + held)", "at.w");
-  kernel("a hull that misses a corner", "struck", "plane_geometry.glsl", "uint j = 0u; j < piece.count; ++j) high",
-         "uint j = 1u; j < piece.count; ++j) high");
+  kernel("what was struck fixed in the lines", "struck", "plane_gather.glsl", "at.w / (1.0 + held)", "0.0");
+  kernel("a hull that misses a corner", "struck", "plane_geometry.glsl", "uint first = 0u; first < piece.count;",
+         "uint first = 1u; first < piece.count;");
   kernel("planes a millimetre inside the piece", "struck", "plane_choose.glsl", "dot(n, around) + least);",
          "dot(n, around) + least - 1e-3);");
   kernel("planes forgotten", "struck", "plane_project.glsl",
@@ -111,7 +110,8 @@ void add_planes(std::vector<Fault>& f) {
   kernel("planes of one lane's triangles alone", "struck", "plane_project.glsl", "least = least_of_team(least);", "");
   kernel("near pairs without their bit", "struck", "plane_near.glsl",
          "atomicOr(near_bits[NEAR_BITS + k / 32u], 1u << k % 32u);", "");
-  kernel("what a contact pushes not marked", "wrapped", "plane_push.glsl", "touched[PUSHED(e[c])] = 1u;", ";");
+  kernel("what a contact pushes not marked", "wrapped", "plane_push.glsl", "touched[PUSHED(e[min(c, e.w - 1u)])] = 1u;",
+         ";");
   kernel("what is behind a plane not marked", "struck", "plane_choose.glsl", "touched[BEFORE_A_PLANE(e[c])] = 1u;",
          ";");
   kernel("projected onto all planes but those of the last triangle", "struck", "plane_project.glsl",
@@ -131,9 +131,10 @@ void add_self_planes(std::vector<Fault>& f) {
          "if (abs(int(a[c]) - int(b.x)) < 60 ");
   kernel("half of each triangle's pairs lost", "plane_self_near.glsl", "end = range.x + range.y;",
          "end = range.x + range.y / 2u;");
-  kernel("bounds of distances grow", "plane_self_near.glsl", "bound -= own.x + other.x;",
-         "bound += 10.0 * (own.x + other.x);");
-  kernel("contacts drawn together", "plane_self_push.glsl", "vec3 by = moving * n;", "vec3 by = -moving * n;");
+  kernel("bounds of distances grow", "plane_self_near.glsl", "self_pairs[k].bound - own.x - other.x;",
+         "self_pairs[k].bound + 10.0 * (own.x + other.x);");
+  kernel("contacts pushed a centimetre too far", "plane_self_push.glsl", "s.normal.w - dot(n, apart)",
+         "s.normal.w + 0.01 - dot(n, apart)");
   kernel("normal of the nearest points flipped", "plane_self_query.glsl", "self_near[k].plane = normal;",
          "self_near[k].plane = vec4(-normal.xyz, normal.w);");
   kernel("planes of the second triangle on its wrong side", "plane_self_choose.glsl", "vec4(-n, half_m - offset)",
