@@ -56,7 +56,8 @@ TEST_F(Friction, StickSlipStop) {
   settings_["substeps"] = 64;
   EXPECT_LE(end_error("incline-stick"), 1e-4);
   settings_["substeps"] = 256;
-  EXPECT_LE(end_error("incline-stick"), 1e-3) << "what a substep falls, 3e-8 m, is less than the rounding of a position";
+  EXPECT_LE(end_error("incline-stick"), 1e-3)
+      << "what a substep falls, 3e-8 m, is less than the rounding of a position";
   EXPECT_LE(end_error("incline-slip"), 0.02);
 }
 
