@@ -8,8 +8,8 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Threads whose sums plane_scan.glsl adds up together.
-constexpr std::uint32_t kScanBlock = 32;
+/// Workgroups are of so many threads or a multiple, so that lanes that share a vertex are all there.
+constexpr std::uint32_t kThreadsTogether = 32;
 /// Workgroups: those beyond the lines' have pairs and vertices alone. One takes a sixth longer where capsules sweep,
 /// and three times as long on a desk; 64 lose 6 % on a desk and 9 % in a whole room, and 256 lose 5 % in sweeps (H100).
 constexpr std::uint32_t kWorkgroups = 96;
@@ -52,7 +52,7 @@ std::unique_ptr<PlaneFrame> PlaneFrame::make(FrameBuilder& frame, Lines& lines, 
 
 bool PlaneFrame::add_kernel(bool many, std::uint32_t least_groups) {
   const LineShape shape = lines_.frame_shape_with_contact(many);
-  if (shape.threads == 0 || shape.threads % kScanBlock != 0) return false;
+  if (shape.threads == 0 || shape.threads % kThreadsTogether != 0) return false;
   LineSpecialization lines = lines_.specialization_with_contact(shape, many);
   groups_ = many ? lines_.groups_of(shape) : vulkan::Groups{1, 1};
   // Workgroups beyond those of the lines have pairs and vertices alone, and so threads without a line.

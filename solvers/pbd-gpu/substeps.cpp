@@ -195,7 +195,7 @@ void Pace::reset() {
   halvings_ = calm_frames_ = 0;
 }
 
-bool Pace::next(double cloth_m) {
+void Pace::next(double cloth_m) {
   const int before = now_;
   halve_if_calm(cloth_m);
   const int least = std::max(1, (base_ + (1 << halvings_) - 1) >> halvings_);
@@ -205,7 +205,6 @@ bool Pace::next(double cloth_m) {
   // By fours, so that a frame is not recorded anew each time.
   now_ = wanted < most_ ? std::clamp(static_cast<int>(4 * std::ceil(wanted / 4)), least, most_) : most_;
   if (wanted <= base_) now_ = least;
-  return now_ != before;
 }
 
 /// Cloth that lies takes half of the base, and later a quarter: after some frames in which no vertex went farther than

@@ -43,8 +43,8 @@ class Pace {
   /// Of a frame as long as the scene's.
   int substeps() const { return now_; }
   /// Before a frame. `cloth_m`: the farthest way of a vertex in the last frame, in the time of a frame of the scene;
-  /// infinity: unknown. Whether substeps() has changed.
-  bool next(double cloth_m);
+  /// infinity: unknown.
+  void next(double cloth_m);
 
  private:
   void halve_if_calm(double cloth_m);

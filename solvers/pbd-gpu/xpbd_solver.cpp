@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "chains.hpp"
@@ -156,8 +157,7 @@ class Xpbd final : public GpuSolver {
     if (scene().needs.has(Feature::Bend) && !scene().cloth.mesh)
       throw Error(
           "solver xpbd: bending is of triangle meshes and of even grids without strain_limit, and this cloth is "
-          "neither; "
-          "expected bending_rigidity_N_m 0");
+          "neither; expected bending_rigidity_N_m 0");
     if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid without strain_limit");
     override_setting("iterations", 1, "its links are not all alike: chains take one iteration");
   }
