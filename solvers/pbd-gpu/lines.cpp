@@ -71,9 +71,9 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts, bool tensio
 }
 
 void Lines::add_kernels(bool any_masses) {
-  const bool one = frame_.settings()["one_dispatch"].get<bool>() && !any_masses;
+  const bool one = frame_.settings()["one_dispatch"].get<bool>();
   const LineShape whole = frame_shape(scene_.cloth.columns, scene_.cloth.rows, request(), device());
-  if (whole.threads > 0 && one)
+  if (whole.threads > 0 && one && !any_masses)
     add_whole(whole);
   else if (batch_ > 1)
     throw Error(

@@ -17,7 +17,7 @@ class Lines {
   /// inverse mass), velocities, and the rounding errors of both (compensated sums).
   Lines(FrameBuilder& frame, const Scene& scene, bool predicts, bool tension, bool couples);
   /// Adds its stages and kernels. With contact by planes vertices have any inverse mass while they are solved, which
-  /// the kernels of a dispatch a family alone can do.
+  /// the kernel of a frame in one workgroup cannot do.
   void add_kernels(bool any_masses);
   /// The kernel of lines and contact in one, where the cloth is to have one: its shape (threads 0 if cloth or device do
   /// not fit it) of one workgroup or of many that run at once, and what it is specialized to.

@@ -144,7 +144,7 @@ struct LineConstants {
   float frames_per_s;
   uint iterations;
   uint first_pass, passes;  // of this dispatch; each substep has a pass an
-                            // iteration and family
+                            // iteration and family. Of plane_frame: PLANE_FRAME_LISTED, or 0
   uint timeout_polls;       // polls of a barrier over the whole dispatch before it times out
   float per_h;              // 1/h
   float carry;              // share of the last substep's change that is predicted

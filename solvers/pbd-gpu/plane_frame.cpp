@@ -39,10 +39,8 @@ std::unique_ptr<PlaneFrame> PlaneFrame::make(FrameBuilder& frame, Lines& lines, 
   // A phone's few cores gain nothing from many workgroups of a sweep's few pairs.
   const bool capsules_alone = (frame.scene().needs & kColliderFeatures) == FeatureSet{Feature::Capsules};
   if (groups == 0 && (device.is_discrete() || !capsules_alone)) groups = kWorkgroups;
-  if ((groups > 0 && made->add_kernel(true, groups)) || made->add_kernel(false, 1) || made->add_kernel(true, 1)) {
-    made->add_far();
+  if ((groups > 0 && made->add_kernel(true, groups)) || made->add_kernel(false, 1) || made->add_kernel(true, 1))
     return made;
-  }
   if (wanted == "always")
     throw Error(
         "solver xpbd: setting tuning.contact_frame=always: expected an even grid of at most 32 x 32 vertices, or a "
@@ -72,24 +70,36 @@ bool PlaneFrame::add_kernel(bool many, std::uint32_t least_groups) {
   }
   const int stage = frame_.add_stage("LinesAndContact", (frame_.scene().needs & kOfLines) | contact_.serves(), true);
   kernel_ = frame_.add_kernel(stage, name, sizeof(LineConstants), constants, shape.threads);
+  add_far(name, constants, shape.threads);
   return true;
 }
 
-void PlaneFrame::add_far() {
-  const LineShape shape = lines_.frame_shape_with_contact(false);
+void PlaneFrame::add_far(const std::string& name, const std::vector<std::uint32_t>& constants, std::uint32_t threads) {
   const PlaneFrameSpecialization planes = contact_.frame_specialization();
-  if (shape.threads == 0 || planes.PIECES == 0 || planes.PLANES > 0) return;
-  LineSpecialization lines = lines_.whole_specialization(shape);
-  lines.GRIPS = static_cast<std::uint32_t>(frame_.scene().grips.vertices.size());
+  if (planes.PIECES == 0 || planes.PLANES > 0) return;
+  const LineShape one = lines_.frame_shape_with_contact(false);
+  const bool in_one_group = one.threads > 0;
+  if (!in_one_group && !runs_at_once<LineConstants>(frame_, name + "_far", constants, threads, groups_)) return;
   const int stage = frame_.add_stage("LinesFarFromColliders", frame_.scene().needs & kOfLines, true);
-  far_ = frame_.add_kernel(stage, shape.shuffles ? "line_frame_shuffle_far" : "line_frame_far", sizeof(LineConstants),
-                           both(lines, planes), shape.threads);
+  const auto add = [&](const std::string& of, const std::vector<std::uint32_t>& with, std::uint32_t of_threads) {
+    far_ = frame_.add_kernel(stage, of, sizeof(LineConstants), with, of_threads);
+  };
+  if (in_one_group) {
+    LineSpecialization lines = lines_.whole_specialization(one);
+    lines.GRIPS = static_cast<std::uint32_t>(frame_.scene().grips.vertices.size());
+    add(one.shuffles ? "line_frame_shuffle_far" : "line_frame_far", both(lines, planes), one.threads);
+  } else {
+    add(name + "_far", constants, threads);
+    far_groups_ = groups_;
+    far_lists_ = true;
+  }
 }
 
-LineConstants PlaneFrame::constants(double dt_s, const Steps& steps) const {
+LineConstants PlaneFrame::constants(double dt_s, const Steps& steps, bool listed) const {
   LineConstants c = lines_.constants(dt_s, steps.substeps, steps.step);
   const PlaneContactConstants contact = contact_.constants(0, steps.substeps, dt_s);
   c.substeps = static_cast<std::uint32_t>(steps.substeps);
+  c.first_pass = listed ? PLANE_FRAME_LISTED : 0;
   c.passes = c.substeps * lines_.passes();
   c.frame_s = contact.frame_s;
   c.reach_m = contact.reach_m;
@@ -98,8 +108,8 @@ LineConstants PlaneFrame::constants(double dt_s, const Steps& steps) const {
 
 void PlaneFrame::record(double dt_s, const Steps& near, const Steps& far) {
   const auto n = static_cast<double>(frame_.scene().cloth.vertex_count());
-  if (far_ != nullptr) frame_.dispatch_groups(*far_, {1, 1}, constants(dt_s, far), {64 * n, 64 * n});
-  frame_.dispatch_groups(*kernel_, groups_, constants(dt_s, near),
+  if (far_ != nullptr) frame_.dispatch_groups(*far_, far_groups_, constants(dt_s, far, false), {64 * n, 64 * n});
+  frame_.dispatch_groups(*kernel_, groups_, constants(dt_s, near, far_lists_),
                          lines_.substep_traffic() * near.substeps + Traffic{32 * n, 36 * n});
 }
 

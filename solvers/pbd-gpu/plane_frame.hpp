@@ -25,16 +25,18 @@ class PlaneFrame {
   PlaneFrame(FrameBuilder& frame, Lines& lines, PlaneContact& contact)
       : frame_(frame), lines_(lines), contact_(contact) {}
   bool add_kernel(bool many, std::uint32_t least_groups);
-  /// The kernel of frames in which no collider can be near (shaders/plane_far.glsl), where one workgroup holds the
-  /// cloth.
-  void add_far();
+  /// The kernel of frames in which no collider can be near: of one workgroup where that holds the cloth
+  /// (shaders/plane_far.glsl), else the kernel of this name, constants and threads without contact, which lists the
+  /// pairs too.
+  void add_far(const std::string& name, const std::vector<std::uint32_t>& constants, std::uint32_t threads);
 
-  LineConstants constants(double dt_s, const Steps&) const;
+  LineConstants constants(double dt_s, const Steps&, bool listed) const;
 
   FrameBuilder& frame_;
   Lines& lines_;
   PlaneContact& contact_;
-  vulkan::Groups groups_{1, 1};
+  vulkan::Groups groups_{1, 1}, far_groups_{1, 1};
+  bool far_lists_ = false;  ///< the kernel of frames without contact makes the list
   const FrameKernel *kernel_ = nullptr, *far_ = nullptr;
 };
 

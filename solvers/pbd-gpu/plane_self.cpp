@@ -67,7 +67,7 @@ void PlaneSelf::near_pairs(const FrameKernel* kernel, const PlaneContactConstant
 
 void PlaneSelf::record_list(const PlaneContactConstants& c) {
   const double t = triangles_;
-  frame_.dispatch(*boxes_, triangles_ / PIECES_A_GROUP + 1, c, {68 * t, 64 * t});
+  frame_.dispatch(*boxes_, triangles_, c, {68 * t, 64 * t});
   frame_.dispatch(*count_, std::uint64_t{sharers_} * triangles_, c, {84 * t, 16 * t});
   frame_.dispatch_groups(*scan_, {1, 1}, c, {16 * t, 16 * t});
   frame_.dispatch(*fill_, std::uint64_t{sharers_} * triangles_, c, {100 * t, 0});

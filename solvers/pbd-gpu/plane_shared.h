@@ -53,11 +53,14 @@ struct ContactLedger {
   uint self_near;                    // its pairs near in this substep
   uint self_touching;                // those of them that have contacts
   uint touched_vertices;             // vertices with pairs of their own or of their triangles
-  uint far;                          // 1: the frame was done without contact (plane_far.glsl)
+  uint far;                          // 1: the frame was done without contact (plane_far.glsl, plane_frame.comp)
+  uint meets;                        // 1: the cloth meets a piece in this frame, or might if it had no contact
   uint farthest;                     // greatest displacement of a vertex in the frame [m], the bits of a float
   uint counted[PAIR_LEVELS];         // pairs at each share of the reaches
-  uint unused0[3];
+  uint unused0[2];
 };
+
+#define PLANE_FRAME_LISTED 1u  // LineConstants::first_pass where a dispatch before has made the frame's list; else 0
 
 /// Of a triangle of the cloth, by half of the thickness larger: at rest, and grown by its vertices' reaches.
 struct SelfBox {

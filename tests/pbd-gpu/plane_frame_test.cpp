@@ -133,7 +133,7 @@ TEST_F(PlaneFrames, OfManyWorkgroupsThatWaitForOneAnother) {
     }
     if (one.timed_out) continue;
     EXPECT_TRUE(one.kernels.contains("plane_frame_many_shuffle"));
-    EXPECT_EQ(one.dispatches, 1);
+    EXPECT_EQ(one.dispatches, 2);  // one of them for frames without contact
     tuning["device_barrier"] = "never";
     expect_same(one, run(s, "never", 6, tuning));
     ++agreed;

@@ -18,7 +18,8 @@ layout(std430, binding = BIND_SHIFTS) buffer Shifts { vec4 shifts[]; };  // over
 layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
 #endif
 #ifdef FAR
-layout(std430, binding = BIND_LEDGER) writeonly buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_FAULTS) writeonly buffer Faults { ContactFaults faults; };
 layout(std430, binding = BIND_PIECE_BOXES) readonly buffer PieceBoxes { PieceBox boxes[]; };  // groups' after pieces'
 PLANE_FRAME_CONSTANTS(SPECIALIZE)
 #endif
@@ -193,10 +194,16 @@ void main() {
       }
   }
 #ifdef FAR
-  if (thread == 0u) ledger.far = near_any == 0u ? 1u : 0u;
   if (near_any != 0u) return;
+  if (thread == 0u) {
+    ledger.far = 1u;
+    ledger.meets = 0u;
+  }
 #endif
   family = families - 1u;  // whose chains a thread's compensation are of
   take();
+#ifdef FAR
+  note_farthest();
+#endif
   store();
 }

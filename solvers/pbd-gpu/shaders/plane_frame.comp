@@ -2,6 +2,7 @@
 // A frame of cloth with contact by planes in one dispatch: the list of pairs, then every substep with its lines, phase for phase as
 // the kernels of the phases have it and with the same bits. One workgroup takes a cloth of at most 32 x 32 vertices; with
 // MANY_GROUPS any number of workgroups that run at once wait for one another (device_barrier.glsl).
+// FAR: the list, and the frame if the cloth meets no collider. It needs the lines alone.
 #include "common.glsl"
 #define PLANE_FRAME
 #ifdef MANY_GROUPS
@@ -49,6 +50,9 @@ const bool AGAIN = false;  // of chains alone
 const bool kPredictsEarly = MOVING != 0u && GRIPS == 0u;
 #include "plane_reach.glsl"
 #include "plane_list.glsl"
+#ifdef FAR
+#include "plane_way.glsl"
+#else
 #include "plane_geometry.glsl"
 #include "plane_push.glsl"
 #include "plane_query.glsl"
@@ -57,6 +61,7 @@ const bool kPredictsEarly = MOVING != 0u && GRIPS == 0u;
 #include "plane_gather.glsl"
 #include "plane_choose.glsl"
 #include "plane_project.glsl"
+#endif
 
 #ifdef MANY_GROUPS
 #include "device_barrier.glsl"
@@ -75,106 +80,18 @@ shared uint asked[2];
 #endif
 // Within a workgroup, also for what its threads write to buffers.
 #define GROUP_MEET { groupMemoryBarrier(); barrier(); }
-shared uint any_near;
 #include "plane_cloth_box.glsl"
+#ifndef FAR
 #define NEAR_COUNT COUNTED(min(turn, 1u))
 #include "plane_near.glsl"
+#endif
 
 const uint kTurns = 3u;
 uint me, all_threads;  // this thread among those of all workgroups
 #define EACH(i, count) for (uint i = me; i < (count); i += all_threads)
 
-/// Reaches of all vertices, and the box of everywhere that the cloth may go in the frame.
-void reach_and_widen(float carried) {
-  uvec3 from = uvec3(kLowNone), to = uvec3(kHighNone);
-  EACH(i, VERTICES) widen(from, to, reach_of_vertex(i, carried));
-  widen_box(from, to);
-#ifdef MANY_GROUPS
-  barrier();  // the workgroup's box before that of all
-  if (thread < 3u) {
-    atomicMin(ledger.cloth_low[thread], cloth_low[thread]);
-    atomicMax(ledger.cloth_high[thread], cloth_high[thread]);
-  }
-#endif
-}
-
-shared uint listed, first_listed;  // of the workgroup
-const uint kKept = 16u;
-/// Lists the pairs of all elements at a share of the reaches. Elements have their places in no fixed order; the order within an element's
-/// is that of pieces. What the list has no place for is counted alone.
-void list_at(float share, uint level) {
-  for (uint base = me - thread; base < TRIANGLES + VERTICES; base += all_threads) {
-    uint k = base + thread, n = 0u, kept[kKept];
-    if (thread == 0u) listed = 0u;
-    if (k < TRIANGLES + VERTICES) {
-      box_for(LOAD16(elements, k), share);
-      EACH_PIECES_MET(
-        for (; met != 0u; met &= met - 1u) {
-          if (n < kKept) kept[n] = q + uint(findLSB(met));
-          ++n;
-        }
-      )
-    }
-    barrier();  // before places in the workgroup's part are given
-    uint at = n > 0u ? atomicAdd(listed, n) : 0u;
-    barrier();  // all places of the workgroup before its part is taken
-    if (thread == 0u && listed > 0u) first_listed = atomicAdd(ledger.counted[level], listed);
-    barrier();  // the part's beginning before it is filled
-    if (k >= TRIANGLES + VERTICES) continue;
-    at = min(first_listed + at, CAPACITY);
-    uint room = min(n, CAPACITY - at);
-    STORE16(ranges, k, uvec4(n > 0u ? at : 0u, room, 0u, 0u));
-    if (n > kKept)
-      fill_pairs(k, share, at, room);
-    else
-      for (uint m = 0u; m < room; ++m) write_pair(at + m, k, kept[m]);
-  }
-}
-
-void note_list(uint level) {
-  uint all = ledger.counted[level];
-  ledger.pairs = min(all, CAPACITY);
-  ledger.reach = 1.0 / float(1u << CUT_BITS * level);
-  if (all > CAPACITY) faults.dropped += all - CAPACITY;
-}
-
-/// The frame's list of pairs. Where no piece comes near the cloth there is none, and it costs a look at the groups' boxes.
-bool list_pairs() {
-  if (thread == 0u) any_near = 0u;
-  for (uint word = thread; word < GROUP_WORDS; word += THREADS) near_groups[word] = 0u;
-  empty_box();
-#ifndef MANY_GROUPS
-  if (thread < 2u) COUNTED(thread) = 0u;
-#endif
-  float carried = greatest_displacement();
-  if (me == 0u) {
-    ledger.carried = carried;
-    ledger.reach = 1.0;
-    ledger.pairs = ledger.touched_vertices = 0u;
-    for (uint l = 0u; l < PAIR_LEVELS; ++l) ledger.counted[l] = 0u;
-  }
-  MEET_OR_FAIL;  // empty boxes before they are widened
-  reach_and_widen(carried);
-  MEET_OR_FAIL;  // reaches before the list
-  for (uint g = thread; g < GROUPS; g += THREADS)
-    if (meets_cloth(LOAD(32u, boxes, PIECES + g))) {
-      uint bit = g / GROUPS_A_BIT;
-      atomicOr(near_groups[bit / 32u], 1u << bit % 32u);
-      any_near = 1u;
-    }
-  barrier();  // every thread's look before the answer
-  if (any_near == 0u) return true;
-  uint level = 0u;
-  for (;; ++level) {
-    list_at(1.0 / float(1u << CUT_BITS * level), level);
-    MEET_OR_FAIL;  // pairs before they are read, and their number
-    if (level + 1u == PAIR_LEVELS || ledger.counted[level] <= CAPACITY) break;
-  }
-  if (me == 0u) note_list(level);
-  EACH(i, VERTICES) list_touched(i);
-  MEET_OR_FAIL;  // the list before it is read
-  return true;
-}
+#include "plane_frame_list.glsl"
+#ifndef FAR
 
 // A workgroup looks through its share of the pairs a few rounds at a time. Its threads share out those that remain after each question,
 // so that no thread waits for its neighbour's answer.
@@ -203,14 +120,28 @@ void look_for_near() {
   }
 }
 
+#endif
 // Where one workgroup holds all lines, families wait for their own workgroup alone.
 bool lines_in_a_group() { return THREADS / LANES >= COLUMNS && THREADS / LANES >= ROWS; }
 
-/// `touches`: the last family's vertices are settled.
-bool solve_lines(uint substep, bool touches) {
+#ifdef FAR
+/// All that is left of contact in a substep: how far a vertex may go in the frame.
+void end_lines(uint i, vec4 at) {
+  vec4 free = LOAD16(starts, i);
+  vec3 to = any_near != kFar ? within_most(i, at.xyz, at.w, free.xyz, free.w) : within_reach(i, at.xyz, at.w);
+  if (to != at.xyz) STORE16(x, i, vec4(to, at.w));
+  if (substep_now + 1u == p.substeps) note_way(i, to);
+}
+#else
+void end_lines(uint i, vec4 at) { settle(i, at); }
+#endif
+
+bool solve_lines(uint substep) {
   const uint families = kShears ? 4u : 2u;
   uint passes = families * p.iterations;
-  if (touches) forget_near(me, all_threads);
+#ifndef FAR
+  forget_near(me, all_threads);
+#endif
   for (uint n = 0u; n < passes && (!lines_in_a_group() || me == thread); ++n) {
     uint which = n % families;
     family = families - 1u - which;
@@ -222,12 +153,35 @@ bool solve_lines(uint substep, bool touches) {
   }
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
-    if (touches && (!lines_in_a_group() || me == thread) && on_chain(i)) settle(index_of(vertex(i)), vec4(pos[k], w[k]));
+    if ((!lines_in_a_group() || me == thread) && on_chain(i)) end_lines(index_of(vertex(i)), vec4(pos[k], w[k]));
   }
-  MEET_OR_FAIL;  // proposals before pairs read them
+  MEET_OR_FAIL;  // proposals before pairs read them, or vertices before the next substep
   return true;
 }
 
+bool move_grips(uint s) {
+  if (GRIPS == 0u) return true;
+  EACH(g, GRIPS) move_grip(g, float(s + 1u) / float(p.substeps), p.frames_per_s);
+  MEET_OR_FAIL;  // held vertices before all read them
+  return true;
+}
+
+#ifdef FAR
+bool substep_with(uint s) {
+  begin_substep(s);
+  return move_grips(s) && solve_lines(s);
+}
+
+/// The list, and the whole frame if the cloth meets no collider.
+bool frame() {
+  if (!list_pairs()) return false;
+  bool far = ledger.pairs == 0u;
+  if (me == 0u) ledger.far = far ? 1u : 0u;
+  for (uint s = 0u; far && s < p.substeps; ++s)
+    if (!substep_with(s)) return false;
+  return true;
+}
+#else
 /// Responses before (turn 0) and after the lines.
 bool respond_to_contact(out uint near) {
   near = 0u;
@@ -241,6 +195,7 @@ bool respond_to_contact(out uint near) {
     MEET_OR_FAIL;  // what contacts propose before vertices take it
   }
   near = COUNTED(min(turn, 1u));
+  if (me == 0u && near > 0u) ledger.meets = 1u;
   if (turn == 2u && near > 0u) {
     EACH(n, near) respond(pairs[n].w);
     MEET_OR_FAIL;  // as above
@@ -252,31 +207,13 @@ bool respond_to_contact(out uint near) {
   return true;
 }
 
-/// What is left of a substep where no collider is near: the reach of the frame.
-void keep_reach() {
-  EACH(i, VERTICES) {
-    vec4 at = LOAD16(x, i);
-    vec3 to = within_reach(i, at.xyz, at.w);
-    if (to != at.xyz) STORE16(x, i, vec4(to, at.w));
-    if (substep_now + 1u == p.substeps) note_way(i, to);
-  }
-}
-
-bool substep_with(uint s, bool touches) {
+bool substep_with(uint s) {
   begin_substep(s);
-  if (GRIPS > 0u) {
-    EACH(g, GRIPS) move_grip(g, float(s + 1u) / float(p.substeps), p.frames_per_s);
-    MEET_OR_FAIL;  // held vertices before all read them
-  }
+  if (!move_grips(s)) return false;
   uint near = 0u;
   turn = 0u;
-  if (touches && MOVING != 0u && !respond_to_contact(near)) return false;
-  if (!solve_lines(s, touches)) return false;
-  if (!touches) {
-    keep_reach();
-    MEET_OR_FAIL;  // before the next substep's lines
-    return true;
-  }
+  if (MOVING != 0u && !respond_to_contact(near)) return false;
+  if (!solve_lines(s)) return false;
   for (turn = 1u; turn < kTurns; ++turn)
     if (!respond_to_contact(near)) return false;
   if (near > 0u) {
@@ -289,6 +226,15 @@ bool substep_with(uint s, bool touches) {
   MEET_OR_FAIL;  // the substep's end before the next one
   return true;
 }
+
+/// The frame, unless it is done without contact. In two dispatches the first has made the list.
+bool frame() {
+  if (p.first_pass != PLANE_FRAME_LISTED && !list_pairs()) return false;
+  for (uint s = 0u; s < p.substeps; ++s)
+    if (!substep_with(s)) return false;
+  return true;
+}
+#endif
 
 void main() {
   set_thread();
@@ -305,11 +251,10 @@ void main() {
     return;
   }
 #endif
+#ifndef FAR
   if (ledger.far != 0u) return;  // the frame is done
-  if (!list_pairs()) return;
-  bool touches = ledger.pairs > 0u || PLANES > 0u;
-  for (uint s = 0u; s < p.substeps; ++s)
-    if (!substep_with(s, touches)) return;
+#endif
+  if (!frame()) return;
   if (me == 0u) {
     faults.farthest = ledger.farthest;
     ledger.farthest = 0u;

@@ -40,17 +40,30 @@ void from_pairs(uint element, uint corner, float w) {
   })
 }
 
+// Pairs of a triangle are looked at a few at a time: their loads do not wait for one another.
+const uint kSelfAtOnce = 4u, kNoPush = ~0u;
 /// From the pairs of the vertex' triangles with others of the cloth.
 void from_self(uint element, uint corner) {
   uvec4 range = LOAD16(self_ranges, element);
-  for (uint k = range.z; k < range.z + range.w; ++k) {
-    uint at = 3u * self_near[k].link + corner;
-    if ((self_near[k].marks & ~SELF_PLANE) == 0u) continue;
-    vec4 all = LOAD16_OF(self_pushes[at].all);
-    if (all.w == 0.0) continue;
-    sum += all.xyz;
-    sum_moving += LOAD16_OF(self_pushes[at].moving).xyz;
-    lengths += all.w;
+  for (uint first = range.z, end = range.z + range.w; first < end; first += kSelfAtOnce) {
+    uint at[kSelfAtOnce];
+    vec4 all[kSelfAtOnce], moving[kSelfAtOnce];
+    [[unroll]] for (uint n = 0u; n < kSelfAtOnce; ++n) {
+      uint k = min(first + n, end - 1u);
+      bool has = first + n < end && (self_near[k].marks & ~SELF_PLANE) != 0u;
+      at[n] = has ? 3u * self_near[k].link + corner : kNoPush;
+    }
+    [[unroll]] for (uint n = 0u; n < kSelfAtOnce; ++n) {
+      uint from = at[n] == kNoPush ? 0u : at[n];
+      all[n] = LOAD16_OF(self_pushes[from].all);
+      moving[n] = LOAD16_OF(self_pushes[from].moving);
+    }
+    [[unroll]] for (uint n = 0u; n < kSelfAtOnce; ++n) {
+      if (at[n] == kNoPush || all[n].w == 0.0) continue;
+      sum += all[n].xyz;
+      sum_moving += moving[n].xyz;
+      lengths += all[n].w;
+    }
   }
 }
 

@@ -10,6 +10,21 @@ void box_for(uvec4 e, float share) {
     high = max(high, r.xyz + share * r.w);
   }
 }
+#ifdef PLANE_FRAME
+vec3 free_low, free_high;  // in a frame in which the cloth meets no collider
+void free_box_for(uvec4 e) {
+  free_low = vec3(1e30);
+  free_high = vec3(-1e30);
+  for (uint c = 0u; c < e.w; ++c) {
+    vec4 r = starts[e[c]];
+    free_low = min(free_low, r.xyz - r.w);
+    free_high = max(free_high, r.xyz + r.w);
+  }
+}
+bool meets_freely(PieceBox b) {
+  return all(lessThanEqual(free_low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, free_high));
+}
+#endif
 bool meets(PieceBox b) {
   return all(lessThanEqual(low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, high));
 }

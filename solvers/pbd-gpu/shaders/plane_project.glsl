@@ -24,16 +24,28 @@ float half_space(PlaneShape s) {
     )                                                                        \
   }
 
-// The same of the planes between its triangles and others of the cloth; `k`: the near pair.
+// The same of the planes between its triangles and others of the cloth; `k`: the near pair. They are looked at a few at a time: their
+// loads do not wait for one another.
+const uint kSelfPlanesAtOnce = 4u;
 #define EACH_SELF_PLANE(BODY)                                                \
-  for (uint f = first_fan; SELF != 0u && f < end_fan; f += fan_step) {               \
+  for (uint f = first_fan; SELF != 0u && f < end_fan; f += fan_step) {       \
     uint fan = fans[f], corner = fan % 4u;                                   \
     uvec2 range = self_ranges[fan / 4u].zw;                                  \
-    for (uint k = range.x; k < range.x + range.y; ++k) {                     \
-      if ((self_near[k].marks & SELF_PLANE) == 0u) continue;                 \
-      vec3 n = self_near[k].plane.xyz;                                       \
-      float s = self_near[k].plane.w;                                        \
-      BODY                                                                   \
+    for (uint begin = range.x, end = begin + range.y; begin < end; begin += kSelfPlanesAtOnce) { \
+      vec4 planes[kSelfPlanesAtOnce];                                        \
+      bool parts[kSelfPlanesAtOnce];                                         \
+      [[unroll]] for (uint m = 0u; m < kSelfPlanesAtOnce; ++m) {             \
+        uint of = min(begin + m, end - 1u);                                  \
+        planes[m] = self_near[of].plane;                                     \
+        parts[m] = (self_near[of].marks & SELF_PLANE) != 0u && begin + m < end; \
+      }                                                                      \
+      [[unroll]] for (uint m = 0u; m < kSelfPlanesAtOnce; ++m) {             \
+        if (!parts[m]) continue;                                             \
+        uint k = begin + m;                                                  \
+        vec3 n = planes[m].xyz;                                              \
+        float s = planes[m].w;                                               \
+        BODY                                                                 \
+      }                                                                      \
     }                                                                        \
   }
 
@@ -149,15 +161,7 @@ vec3 within(vec3 to, float room) {
   return l > room ? start + (room / l) * way : to;
 }
 
-#ifdef PLANE_FRAME
-#define FARTHEST ledger.farthest
-#else
-#define FARTHEST faults.farthest
-#endif
-/// At the frame's end.
-void note_way(uint i, vec3 at) {
-  atomicMax(FARTHEST, floatBitsToUint(distance(at, LOAD16(reaches, i).xyz)));
-}
+#include "plane_way.glsl"
 
 /// What contact has moved is heavier in the next substep's lines, else they would pull it back in place of the cloth behind it. What lies
 /// is moved by gravity's share alone, and is not. The frame's last substep leaves the mass as it is, and the rest in v.w.

@@ -10,22 +10,35 @@ float greatest_displacement() {
   return carried;
 }
 
-/// The reach of vertex i at `at`.
-float reach_from(uint i, vec4 at, float carried) {
-  float pulled = 0.0;  // by the hand that goes farthest: it may take any vertex along
+/// By the hand that goes farthest: it may take any vertex along.
+float pulled() {
+  float most = 0.0;
   for (uint k = 0u; k < GRIPS; ++k) {
     GripVertex grip = LOAD(48u, grips, k);
-    if (grip.held != 0u) pulled = max(pulled, distance(LOAD16(x, grip.vertex).xyz, grip.to.xyz));
+    if (grip.held != 0u) most = max(most, distance(LOAD16(x, grip.vertex).xyz, grip.to.xyz));
   }
-  return HELD_REACH * (p.reach_m + 1.5 * length(LOAD16(v, i).xyz) * p.frame_s) + carried + pulled;
+  return most;
 }
 
-#ifndef FAR
+/// The reach of a vertex by its speed.
+float reach_at(float speed, float carried, float by_hands) {
+  return HELD_REACH * (p.reach_m + 1.5 * speed * p.frame_s) + carried + by_hands;
+}
+/// The same in a frame in which it meets no collider.
+float free_reach_at(float speed, float by_hands) {
+  return HELD_REACH * (0.5 * p.reach_m + 1.25 * speed * p.frame_s) + by_hands;
+}
+
+#if !defined(FAR) || defined(PLANE_FRAME)
 /// The same in .w of its place, and kept for the frame.
 vec4 reach_of_vertex(uint i, float carried) {
   vec4 at = LOAD16(x, i);
-  float reach = reach_from(i, at, carried);
+  float speed = length(LOAD16(v, i).xyz), by_hands = pulled(), reach = reach_at(speed, carried, by_hands);
+#ifdef PLANE_FRAME
+  STORE16(starts, i, vec4(at.xyz, free_reach_at(speed, by_hands)));
+#else
   STORE16(starts, i, vec4(at.xyz, 0.0));
+#endif
   STORE16(y, i, at);
   STORE16(reaches, i, vec4(at.xyz, reach));
   STORE4(ways, i, 0.0);

@@ -1,5 +1,5 @@
 #version 450
-// Start of a frame, a thread a group of neighbouring triangles: boxes of the triangles at rest (share 0) and grown by their vertices'
+// Start of a frame, a thread a triangle: boxes of the triangles at rest (share 0) and grown by their vertices'
 // reaches (share 1), each by half of the thickness, and the group's at share 1.
 #include "common.glsl"
 #include "plane_buffers.glsl"
@@ -8,6 +8,4 @@ layout(std430, binding = BIND_SELF_ORDER) readonly buffer SelfOrder { uint self_
 layout(std430, binding = BIND_SELF_BOXES) writeonly buffer SelfBoxes { SelfBox self_boxes[]; };
 #include "plane_self_boxes.glsl"
 
-void main() {
-  for (uint g = item(); g < self_groups(); g += stride()) boxes_of_group(g);
-}
+void main() { write_boxes(item()); }

@@ -34,15 +34,19 @@ void predict(uint i) {
 #endif
 
 #ifndef PREDICT_ALONE
-/// Where the lines have put a vertex, within the frame's reach.
-vec3 within_reach(uint i, vec3 to, float w) {
-  vec4 reach = LOAD16(reaches, i);
-  vec3 way = to - reach.xyz;
-  float l = length(way), most = reach.w * (SELF != 0u ? min(ledger.reach, ledger.self_reach) : ledger.reach);
+/// Where the lines have put a vertex, but no farther than `most` from where it began.
+vec3 within_most(uint i, vec3 to, float w, vec3 from, float most) {
+  vec3 way = to - from;
+  float l = length(way);
   if (!(w > 0.0 && l > most)) return to;
-  vec3 kept = reach.xyz + (most / l) * way;
+  vec3 kept = from + (most / l) * way;
   STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * (kept - to), 0.0));
   return kept;
+}
+/// The same within the frame's reach.
+vec3 within_reach(uint i, vec3 to, float w) {
+  vec4 reach = LOAD16(reaches, i);
+  return within_most(i, to, w, reach.xyz, reach.w * (SELF != 0u ? min(ledger.reach, ledger.self_reach) : ledger.reach));
 }
 
 void settle(uint i, vec4 at) {
