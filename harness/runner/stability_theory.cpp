@@ -13,14 +13,9 @@ double highest_frequency_rad_per_s(const Scene& s) {
   if (!Y) return std::numeric_limits<double>::infinity();
   const double a = s.cloth.du(), b = s.cloth.dv(), rho = s.cloth.areal_density_kg_per_m2;
   if (!s.needs.has(Feature::Shear)) return 2 * std::sqrt(*Y / rho) / std::min(a, b);
-  // The isotropic sheet of springs (Poisson's ratio 1/3); a long cell's spring is held at a tenth of its strip's
-  // stiffness.
-  const auto along = [&](double length, double width) {
-    return *Y * std::max(9.0 / 8 * width / length - 3.0 / 8 * length / width, 0.1 * width / length);
-  };
-  const double diagonal = 3.0 / 16 * *Y * (a * a + b * b) / (a * b), squared = a * a + b * b;
-  const double u = 2 * along(a, b) + 4 * diagonal * a * a / squared,
-               v = 2 * along(b, a) + 4 * diagonal * b * b / squared;
+  const double diagonal = diagonal_spring_N_per_m(*Y, {a, b}), squared = a * a + b * b;
+  const double u = 2 * grid_spring_N_per_m(*Y, {a, b}, true) + 4 * diagonal * a * a / squared,
+               v = 2 * grid_spring_N_per_m(*Y, {b, a}, true) + 4 * diagonal * b * b / squared;
   return std::sqrt(2 * std::max(u, v) / (rho * a * b));
 }
 

@@ -211,6 +211,22 @@ bool on_border(const Cloth& c, const Edge& e) {
   return ia == ib && (ia == 0 || ia == columns - 1);
 }
 
+double grid_spring_N_per_m(double Y, const EdgeCell& cell, bool shears) {
+  const auto [a, b] = cell;
+  return shears ? Y * std::max(9.0 / 8 * b / a - 3.0 / 8 * a / b, 0.1 * b / a) : Y * b / a;
+}
+
+double diagonal_spring_N_per_m(double Y, const EdgeCell& cell) {
+  const auto [a, b] = cell;
+  return 3.0 / 16 * Y * (a * a + b * b) / (a * b);
+}
+
+double spring_N_per_m(const Scene& s, const Edge& e, double Y) {
+  const EdgeCell cell = edge_cell(s.cloth, e);
+  if (e.kind == EdgeKind::Shear) return diagonal_spring_N_per_m(Y, cell);
+  return (on_border(s.cloth, e) ? 0.5 : 1) * grid_spring_N_per_m(Y, cell, !s.cloth.mesh && s.needs.has(Feature::Shear));
+}
+
 std::optional<double> membrane_stiffness(const Scene& scene, const Edge& e) {
   const Material& m = scene.material;
   if (const auto& mesh = scene.cloth.mesh) {

@@ -19,6 +19,7 @@ struct SheetSpring {
   double stiffness, rest_m;
 };
 
+// Written anew, apart from the springs of the solvers that it judges.
 double along(double Y, double a, double b) { return Y * std::max(9.0 / 8 * b / a - 3.0 / 8 * a / b, 0.1 * b / a); }
 
 std::vector<SheetSpring> springs_of(const SpringSheet& s) {

@@ -41,34 +41,15 @@ struct DeformableWorld {
   DeformableWorld() { contact_solver.setDeformableSolver(&cloth_solver); }
 };
 
-/// Stiffness of every link, in the order in which they are added [N/m].
-///
-/// On cells a x b an isotropic sheet of Poisson ratio 1/3 takes, along a, Y (9/8 b/a - 3/8 a/b), half on border lines,
-/// and on each diagonal 3/16 Y (a^2 + b^2)/(a b); on square cells 3/4 Y and 3/8 Y. Without shear: strips of Y b/a.
-class LinkStiffness {
- public:
-  explicit LinkStiffness(const Scene& s) : s_(s) {}
-
-  double of(const Edge& e) const {
-    const Cloth& c = s_.cloth;
-    const auto [own, other] = edge_cell(c, e);
-    const double y = membrane_stiffness(s_, e).value_or(kStiff_N_per_m);
-    if (e.kind == EdgeKind::Shear) return 3.0 / 16 * y * (own * own + other * other) / (own * other);
-    const double share = on_border(c, e) ? 0.5 : 1;
-    if (e.kind == EdgeKind::SkipOne) {
-      const double cell = own / 2;
-      return s_.material.bending_rigidity_N_m * other / (cell * cell * cell) * share;
-    }
-    if (!s_.needs.has(Feature::Shear)) return y * other / own * share;
-    return std::max(y * (9.0 / 8 * other / own - 3.0 / 8 * own / other), 0.1 * y * other / own) * share;
-  }
-
- private:
-  /// For scenes whose cloth does not stretch: a spring can only come near, and explicit substeps grow with its root.
-  static constexpr double kStiff_N_per_m = 1e4;
-
-  const Scene& s_;
-};
+/// Stiffness of a link [N/m].
+double link_stiffness(const Scene& s, const Edge& e) {
+  // For scenes whose cloth does not stretch: a spring can only come near, and explicit substeps grow with its root.
+  constexpr double kStiff_N_per_m = 1e4;
+  if (e.kind != EdgeKind::SkipOne) return spring_N_per_m(s, e, membrane_stiffness(s, e).value_or(kStiff_N_per_m));
+  const auto [own, other] = edge_cell(s.cloth, e);
+  const double cell = own / 2;
+  return s.material.bending_rigidity_N_m * other / (cell * cell * cell) * (on_border(s.cloth, e) ? 0.5 : 1);
+}
 
 constexpr EdgeKind kKinds[] = {EdgeKind::Structural, EdgeKind::Shear, EdgeKind::SkipOne};
 
@@ -81,11 +62,10 @@ bool linked(const Scene& scene, EdgeKind kind) {
 double stiffest_of_mesh_rad_per_s(const Scene& scene) {
   const std::vector<double> mass = vertex_masses(scene);
   const std::vector<Vec3>& x = scene.cloth.mesh->vertices;
-  const LinkStiffness stiffness(scene);
   std::vector<std::array<double, 9>> sums(mass.size(), std::array<double, 9>{});
   for (const Edge& e : edges(scene.cloth, EdgeKind::Structural)) {
     const Vec3 along = minus(x[e.b], x[e.a]);
-    const double k = stiffness.of(e) / dot(along, along);
+    const double k = link_stiffness(scene, e) / dot(along, along);
     for (std::uint32_t i : {e.a, e.b})
       for (std::size_t r = 0; r < 3; ++r)
         for (std::size_t c = 0; c < 3; ++c) sums[i][3 * r + c] += k * along[r] * along[c];
@@ -106,7 +86,6 @@ double stiffest_of_mesh_rad_per_s(const Scene& scene) {
 double stiffest_rad_per_s(const Scene& scene) {
   if (scene.cloth.mesh) return stiffest_of_mesh_rad_per_s(scene);
   const std::vector<double> mass = vertex_masses(scene);
-  const LinkStiffness stiffness(scene);
   const double b = scene.cloth.dv();
   const auto columns = static_cast<std::uint32_t>(scene.cloth.columns);
   const auto line_u = [&](std::uint32_t v) { return scene.cloth.line_u_m(static_cast<int>(v % columns)); };
@@ -116,7 +95,7 @@ double stiffest_rad_per_s(const Scene& scene) {
     for (const Edge& e : edges(scene.cloth, kind)) {
       const double u = line_u(e.b) - line_u(e.a);
       const double v = b * (static_cast<double>(e.b / columns) - static_cast<double>(e.a / columns));
-      const double k = stiffness.of(e) / (u * u + v * v);
+      const double k = link_stiffness(scene, e) / (u * u + v * v);
       for (std::uint32_t i : {e.a, e.b}) {
         sums[i][0] += k * u * u;
         sums[i][1] += k * u * v;
@@ -166,7 +145,7 @@ class BulletDeformable final : public BulletSolver {
       if (!linked(scene(), kind)) continue;
       add_links(*body_, scene().cloth, kind);
       for (const Edge& e : edges(scene().cloth, kind))
-        stiffness.push_back(static_cast<btScalar>(LinkStiffness(scene()).of(e)));
+        stiffness.push_back(static_cast<btScalar>(link_stiffness(scene(), e)));
     }
     // Nodes meet rigid bodies, faces do not: PyBullet's face contacts make this cloth jump, at three times the cost.
     if (touches()) body_->m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;

@@ -152,18 +152,6 @@ std::vector<Strand> mesh_strands(const ClothMesh& m, bool rings_overlap) {
   return out;
 }
 
-/// 1/k of a link [m/N]: the springs of lines.cpp, cell by cell.
-double compliance_of(const Scene& s, const Edge& e, const std::optional<double>& Y) {
-  if (!Y) return 0;
-  const auto [a, b] = edge_cell(s.cloth, e);
-  double k = *Y * b / a;
-  if (e.kind == EdgeKind::Shear)
-    k = 3.0 / 16 * *Y * (a * a + b * b) / (a * b);
-  else if (s.needs.has(Feature::Shear))
-    k = *Y * std::max(9.0 / 8 * b / a - 3.0 / 8 * a / b, 0.1 * b / a);
-  return 1 / (on_border(s.cloth, e) ? k / 2 : k);
-}
-
 }  // namespace
 
 bool wants_chains(const Scene& s) {
@@ -212,7 +200,7 @@ ChainCloth chain_cloth(const Scene& s) {
     const Edge& e = all[k];
     const auto ends = std::minmax(c.particle[e.a], c.particle[e.b]);
     if (ends.first == ends.second) continue;
-    const double compliance = compliance_of(s, e, stiffness[k]), spring = compliance > 0 ? 1 / compliance : INFINITY;
+    const double spring = stiffness[k] ? spring_N_per_m(s, e, *stiffness[k]) : INFINITY;
     const auto [at, fresh] = links.emplace(ends, std::pair(e.rest_m, spring));
     if (!fresh) at->second.second += spring;
   }

@@ -15,23 +15,6 @@ constexpr double kRegularisation = 1e-3;
 /// are. A desk takes 3.4 times as long with 32, and 256 win nothing (H200).
 constexpr std::uint32_t kThreadsWithContact = 128;
 
-/// Springs whose homogenised sheet is isotropic with uniaxial stiffness Y and Poisson ratio 1/3, the only ratio central
-/// springs allow (C12 = C66): for square cells 3/4 Y along the grid and 3/8 Y on each diagonal. On du x dv cells the
-/// same conditions give the values below. Beyond an aspect ratio of about 1.6 the grid spring would be below a tenth of
-/// its strip's stiffness; it is clamped there, so the sheet is stiffer than Y. Without shear: strips of stiffness Y.
-struct Springs {
-  double along_u, along_v, diagonal;  // N/m
-};
-
-Springs springs(double Y, double du, double dv, bool shear) {
-  if (!shear) return {Y * dv / du, Y * du / dv, 0};
-  const double diagonal = 3.0 / 16 * Y * (du * du + dv * dv) / (du * dv);
-  const auto along = [Y](double length, double width) {
-    return Y * std::max(9.0 / 8 * width / length - 3.0 / 8 * length / width, 0.1 * width / length);
-  };
-  return {along(du, dv), along(dv, du), diagonal};
-}
-
 Tethers tethers_if(bool wanted, const Scene& scene) {
   if (wanted) return tethers_of(scene);
   Tethers none;
@@ -239,10 +222,10 @@ LineConstants Lines::constants(double dt_s, int substeps, const TimeStep& step) 
   c.rest_v = f(dv);
   c.rest_d = f(std::hypot(du, dv));
   if (const auto Y = scene_.material.membrane_stiffness_N_per_m) {
-    const Springs k = springs(*Y, du, dv, scene_.needs.has(Feature::Shear));
-    c.alpha_u = f(1 / (k.along_u * h * h * step.keep));
-    c.alpha_v = f(1 / (k.along_v * h * h * step.keep));
-    if (k.diagonal > 0) c.alpha_d = f(1 / (k.diagonal * h * h * step.keep));
+    const bool shears = scene_.needs.has(Feature::Shear);
+    c.alpha_u = f(1 / (grid_spring_N_per_m(*Y, {du, dv}, shears) * h * h * step.keep));
+    c.alpha_v = f(1 / (grid_spring_N_per_m(*Y, {dv, du}, shears) * h * h * step.keep));
+    if (shears) c.alpha_d = f(1 / (diagonal_spring_N_per_m(*Y, {du, dv}) * h * h * step.keep));
   }
   const double mass = cloth.areal_density_kg_per_m2 * du * dv;
   if (scene_.needs.has(Feature::Bend)) {

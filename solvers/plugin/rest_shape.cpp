@@ -10,20 +10,13 @@
 namespace clothbench::plugin {
 namespace {
 
-/// Spring constant [N/m] of an edge in the sheet that clothbench_plugin.h describes at ClothbenchEdge.
-double spring_N_per_m(const Scene& s, const Edge& e) {
-  const auto Y = membrane_stiffness(s, e);
-  if (!Y) return std::numeric_limits<double>::infinity();
-  const auto [a, b] = edge_cell(s.cloth, e);
-  if (e.kind == EdgeKind::Shear) return 3.0 / 16 * *Y * (a * a + b * b) / (a * b);
-  const double share = on_border(s.cloth, e) ? 0.5 : 1;
-  if (s.cloth.mesh || !s.needs.has(Feature::Shear)) return share * *Y * b / a;
-  return share * *Y * std::max(9.0 / 8 * b / a - 3.0 / 8 * a / b, 0.1 * b / a);
-}
-
+/// Spring constants [N/m] in the sheet that clothbench_plugin.h describes at ClothbenchEdge.
 std::vector<double> springs_of(const Scene& s, EdgeKind kind) {
   std::vector<double> out;
-  for (const Edge& e : edges(s.cloth, kind)) out.push_back(spring_N_per_m(s, e));
+  for (const Edge& e : edges(s.cloth, kind)) {
+    const auto Y = membrane_stiffness(s, e);
+    out.push_back(Y ? spring_N_per_m(s, e, *Y) : std::numeric_limits<double>::infinity());
+  }
   return out;
 }
 

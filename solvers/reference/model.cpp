@@ -11,19 +11,6 @@
 namespace clothbench::reference {
 namespace {
 
-/// Stiffness [N/m] of an inner spring of those whose homogenised sheet has uniaxial stiffness Y: isotropic with Poisson
-/// ratio 1/3 where the scene shears (Y (9/8 b/a - 3/8 a/b) along a x b cells, 3/16 Y (a^2 + b^2)/(a b) on the
-/// diagonals; the only ratio central springs allow), plain strips Y b/a without interaction where it does not. Beyond
-/// an aspect of about 1.6 the long spring would fall under a tenth of its strip's stiffness and is held there: the
-/// sheet is then stiffer than Y.
-double stiffness(const Scene& s, const Edge& e) {
-  const auto [a, b] = edge_cell(s.cloth, e);
-  const double Y = *membrane_stiffness(s, e);
-  if (e.kind == EdgeKind::Shear) return 3.0 / 16 * Y * (a * a + b * b) / (a * b);
-  if (!s.needs.has(Feature::Shear)) return Y * b / a;
-  return Y * std::max(9.0 / 8 * b / a - 3.0 / 8 * a / b, 0.1 * b / a);
-}
-
 bool pinned(std::uint32_t v, const Scene& s) {
   return std::binary_search(s.pins.vertices.begin(), s.pins.vertices.end(), v);
 }
@@ -58,12 +45,9 @@ Model::Model(const Scene& scene) : mass_(vertex_masses(scene)) {
       throw Error("solver reference: /material/regions: expected all regions inextensible, or none");
   if (c.mesh && !inextensible_) add_triangles(scene);
   const auto add = [&](EdgeKind kind) {
-    for (const Edge& e : edges(c, kind)) {
-      double of_edge = inextensible_ ? 1 : stiffness(scene, e);
-      // The border carries half the width.
-      if (kind == EdgeKind::Structural && on_border(c, e)) of_edge /= 2;
-      springs_.push_back({e.a, e.b, e.rest_m, inextensible_ ? 0 : 1 / of_edge});
-    }
+    for (const Edge& e : edges(c, kind))
+      springs_.push_back(
+          {e.a, e.b, e.rest_m, inextensible_ ? 0 : 1 / spring_N_per_m(scene, e, membrane_stiffness(scene, e).value())});
   };
   if (triangles_.empty()) add(EdgeKind::Structural);
   if (scene.needs.has(Feature::Shear)) add(EdgeKind::Shear);

@@ -225,6 +225,17 @@ EdgeCell edge_cell(const Cloth&, const struct Edge&);
 /// and for every edge of a mesh, whose areas already account for the border (see EdgeCell).
 bool on_border(const Cloth&, const struct Edge&);
 
+/// Springs [N/m] in a sheet of uniaxial stiffness Y [N/m]. Where it shears, the homogenised sheet is isotropic with
+/// Poisson ratio 1/3, the only one that central springs allow (C12 = C66): of cells along x across, Y (9/8 across/along
+/// - 3/8 along/across) inside it and 3/16 Y (along^2 + across^2)/(along across) on each diagonal; of square cells 3/4 Y
+/// and 3/8 Y. From an aspect of about 1.6 the former would fall under a tenth of its strip's stiffness and is held
+/// there: the sheet is then stiffer than Y. Without shear: strips of Y across/along.
+double grid_spring_N_per_m(double Y_N_per_m, const EdgeCell&, bool shears);
+double diagonal_spring_N_per_m(double Y_N_per_m, const EdgeCell&);
+/// The spring of a structural or shear edge in a sheet of stiffness Y: of a grid half on the border, which carries half
+/// the width; of a mesh Van Gelder's (see EdgeCell).
+double spring_N_per_m(const Scene&, const struct Edge&, double Y_N_per_m);
+
 /// Angle [rad] between neighbouring rows on the cylinder of a draped sheet. Requires drape_radius_m > du/2.
 double drape_turn_rad(const Cloth&);
 /// Position [m] of row `i`, on the sheet's middle line, of a draped sheet that has slid by `offset_m` towards u1.
