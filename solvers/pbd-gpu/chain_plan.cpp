@@ -9,14 +9,10 @@
 #include <utility>
 
 #include "clothbench/vector.hpp"
-#include "line_plan.hpp"
-#include "substeps.hpp"
+#include "constraints.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
-
-/// Regularisation of chains with two or more held vertices: see lines.cpp.
-constexpr float kLeastRegularisation = 1e-3f;
 
 /// Edges below this share of the mean are welded.
 constexpr double kSliver = 0.02;
@@ -340,7 +336,8 @@ std::vector<ChainEntry> entries_of(const ChainFamily& family, const Scene& scene
       const bool goes_on = k + 1 < chain->size();
       ChainCloth::Link l = goes_on ? cloth.link((*chain)[k], (*chain)[k + 1]) : ChainCloth::Link{0, 0, -1, 0};
       if (goes_on && !share.empty()) l.compliance_m_per_N /= share[k];
-      entries.push_back({(*chain)[k], l.rest_m, l.compliance_m_per_N, held_ones > 1 ? kLeastRegularisation : 0.0f});
+      entries.push_back(
+          {(*chain)[k], l.rest_m, l.compliance_m_per_N, held_ones > 1 ? static_cast<float>(kRegularisation) : 0.0f});
       seen[(*chain)[k]] = 1;
     }
     put(entries);

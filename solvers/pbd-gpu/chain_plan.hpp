@@ -56,15 +56,4 @@ std::vector<ChainFamily> families_of(std::vector<Strand> strands, std::size_t ve
 std::vector<ChainEntry> entries_of(const ChainFamily&, const Scene&, const ChainCloth&, std::uint32_t block,
                                    bool with_others);
 
-/// Tethers (Kim, Chentanez & Müller 2012) vertex by vertex. Each leads to the nearest vertex of a connected group of
-/// pinned vertices.
-struct TetherTable {
-  std::uint32_t a_vertex = 0;  ///< entries a vertex, 0 to 4
-  std::vector<TetherEnd> ends;
-  std::string why_not;  ///< reason if there are no tethers
-};
-/// In a grid or a flat mesh with a convex border, reach is the distance at rest. Else it is the path length along
-/// edges, which is longer than that through triangles, so these tethers are a little looser. Slack as in tethers_of.
-TetherTable tether_table(const Scene&);
-
 }  // namespace clothbench::pbd_gpu

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 
+#include "constraints.hpp"
 #include "mesh_bending.hpp"
 #include "mesh_membrane.hpp"
 #include "persistent.hpp"
@@ -104,7 +105,7 @@ void Chains::add_bending() {
   }
   const BendingMatrix K = bending_matrix(scene_);
   most_per_s2_ = K.most_per_s2;
-  const BendingTable table = bending_table(K);
+  const SlicedRows<BendingEntry> table = bending_table(K);
   slices_ = table.slices;
   frame_.add_buffer(BIND_BENDING_SLICES, "bending slices", table.slices);
   frame_.add_buffer(BIND_BENDING_ENTRIES, "bending entries", table.entries);
@@ -113,13 +114,13 @@ void Chains::add_bending() {
 void Chains::add_membrane() {
   if (!membrane_) return;
   most_per_s2_ += membrane_bound(scene_);
-  const MembraneTable table = membrane_table(scene_);
+  const SlicedRows<MembraneCorner> table = membrane_table(scene_);
   corner_slices_ = table.slices;
   triangles_.assign(scene_.cloth.vertex_count(), 0);
   for (const auto& triangle : scene_.cloth.mesh->triangles)
     for (const std::uint32_t v : triangle) ++triangles_[v];
   frame_.add_buffer(BIND_MEMBRANE_SLICES, "triangle slices", table.slices);
-  frame_.add_buffer(BIND_MEMBRANE_CORNERS, "triangle corners", table.corners);
+  frame_.add_buffer(BIND_MEMBRANE_CORNERS, "triangle corners", table.entries);
 }
 
 /// As many workgroups as the family with the most blocks needs.

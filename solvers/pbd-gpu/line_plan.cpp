@@ -5,100 +5,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <nlohmann/json.hpp>
 
-#include "chain_plan.hpp"
 #include "clothbench/error.hpp"
-#include "clothbench/motion.hpp"
-#include "clothbench/solver.hpp"
-#include "prediction.hpp"
-#include "substeps.hpp"
+#include "clothbench/vector.hpp"
 
 namespace clothbench::pbd_gpu {
-namespace {
-
-/// Each connected group of pinned vertices as the rectangle that it fills, or its first vertex if it fills none.
-std::vector<PinnedRectangle> rectangles(const Cloth& c, const std::vector<std::uint32_t>& pinned) {
-  const auto columns = static_cast<std::uint32_t>(c.columns), rows = static_cast<std::uint32_t>(c.rows);
-  std::vector<std::uint8_t> left(c.vertex_count(), 0);
-  for (const std::uint32_t v : pinned) left[v] = 1;
-  std::vector<PinnedRectangle> found;
-  for (std::uint32_t v = 0; v < left.size(); ++v) {
-    if (left[v] == 0) continue;
-    PinnedRectangle r{v % columns, v / columns, v % columns, v / columns};
-    std::size_t count = 0;
-    std::vector<std::uint32_t> next = {v};
-    left[v] = 0;
-    while (!next.empty()) {
-      const std::uint32_t i = next.back() % columns, j = next.back() / columns;
-      next.pop_back();
-      ++count;
-      r = {std::min(r.first_column, i), std::min(r.first_row, j), std::max(r.last_column, i), std::max(r.last_row, j)};
-      for (const auto& [a, b] : {std::pair{i + 1, j}, {i - 1, j}, {i, j + 1}, {i, j - 1}}) {
-        if (a >= columns || b >= rows || left[b * columns + a] == 0) continue;
-        left[b * columns + a] = 0;
-        next.push_back(b * columns + a);
-      }
-    }
-    const bool full = count == std::size_t{r.last_column - r.first_column + 1} * (r.last_row - r.first_row + 1);
-    found.push_back(full ? r : PinnedRectangle{v % columns, v / columns, v % columns, v / columns});
-  }
-  return found;
-}
-
-/// True if the cloth starts within its tethers. Else its pins are too far apart for its length, or it starts stretched.
-bool start_within(const Scene& s, const Tethers& t) {
-  const Cloth& c = s.cloth;
-  const std::vector<double> x = initial_positions(s);
-  for (int j = 0; j < c.rows; ++j)
-    for (int i = 0; i < c.columns; ++i)
-      for (const PinnedRectangle& r : t.to) {
-        const int a = std::clamp(i, static_cast<int>(r.first_column), static_cast<int>(r.last_column)),
-                  b = std::clamp(j, static_cast<int>(r.first_row), static_cast<int>(r.last_row));
-        const double u = std::abs(i - a) * c.du(), v = std::abs(j - b) * c.dv();
-        const double reach = s.needs.has(Feature::Shear) ? std::hypot(u, v) : u + v;
-        const auto at = [&](int column, int row, std::size_t k) {
-          return x[3 * static_cast<std::size_t>(row * c.columns + column) + k];
-        };
-        Vec3 e{};
-        for (std::size_t k = 0; k < 3; ++k) e[k] = at(i, j, k) - at(a, b, k);
-        if (!(norm(e) <= t.stretch * reach + 1e-6 * c.width_m)) return false;
-      }
-  return true;
-}
-
-}  // namespace
-
-double tether_stretch(const Scene& scene) {
-  const Cloth& c = scene.cloth;
-  const auto Y = scene.material.membrane_stiffness_N_per_m;
-  if (!Y) return 1;
-  const double rho = c.areal_density_kg_per_m2, length = std::hypot(c.width_m, c.height_m);
-  const double slack =
-      5 * rho * norm(scene.gravity_m_per_s2) * length / *Y + 2 * norm(c.initial_velocity_m_per_s) * std::sqrt(rho / *Y);
-  return 1 + std::min(slack, scene.material.strain_limit.value_or(slack));
-}
-
-Tethers tethers_of(const Scene& scene) {
-  Tethers t;
-  const Cloth& c = scene.cloth;
-  if (!scene.grips.vertices.empty()) {
-    t.why_not = "hands move what holds the cloth";
-    return t;
-  }
-  if (scene.pins.vertices.empty()) {
-    t.why_not = "nothing is pinned";
-    return t;
-  }
-  t.to = rectangles(c, scene.pins.vertices);
-  if (t.to.size() > Tethers::kMost) t.to.resize(Tethers::kMost);
-  t.stretch = tether_stretch(scene);
-  if (!start_within(scene, t)) {
-    t.to.clear();
-    t.why_not = "the cloth starts stretched";
-  }
-  return t;
-}
 
 std::vector<std::uint8_t> taut_chains(const Scene& scene) {
   const Cloth& c = scene.cloth;
@@ -120,24 +31,18 @@ std::vector<std::uint8_t> taut_chains(const Scene& scene) {
       for (int n = 1, a = i + di, b = j + dj; a >= 0 && a < c.columns && b < c.rows; ++n, a += di, b += dj) {
         const auto other = static_cast<std::size_t>(b * c.columns + a);
         if (held[other] == 0) continue;
-        Vec3 e{};
-        for (std::size_t k = 0; k < 3; ++k) e[k] = x[3 * other + k] - x[3 * v + k];
         const int chain = family == 0   ? j
                           : family == 1 ? i
                           : family == 2 ? (i - j % c.columns + c.columns) % c.columns
                                         : (i + j) % c.columns;
-        if (n > 1 && (!scene.grips.vertices.empty() || norm(e) > kTaut * n * link))
+        if (n > 1 &&
+            (!scene.grips.vertices.empty() || norm(minus(vertex_at(x, other), vertex_at(x, v))) > kTaut * n * link))
           taut[static_cast<std::size_t>(family * most + chain)] = 1;
         break;
       }
     }
   }
   return taut;
-}
-
-bool is_tethered(const Scene& scene, const nlohmann::json& settings) {
-  return settings.value("tethers", true) &&
-         (wants_chains(scene) ? tether_table(scene).a_vertex > 0 : !tethers_of(scene).to.empty());
 }
 
 LineShape frame_shape(int columns, int rows, const LineRequest& request, const LineDevice& device) {

@@ -1,11 +1,10 @@
 #pragma once
-#include <cmath>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "clothbench/scene.hpp"
+#include "constraints.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -15,37 +14,9 @@ struct Choice {
   std::string why_not;
 };
 
-/// Length of a vector.
-inline double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
-
-/// Pinned vertices that fill a rectangle of the grid, first and last included: a corner, an edge, a clamp.
-struct PinnedRectangle {
-  std::uint32_t first_column, first_row, last_column, last_row;
-  bool operator==(const PinnedRectangle&) const = default;
-};
-
-/// Tethers of a scene (Kim, Chentanez & Müller 2012): the distance of a vertex from the nearest pinned vertex of each
-/// rectangle is at most `stretch` times their distance through the cloth at rest.
-struct Tethers {
-  static constexpr std::size_t kMost = 4;
-  std::vector<PinnedRectangle> to;  ///< at most kMost
-  double stretch = 1;
-  std::string why_not;  ///< reason if `to` is empty
-};
-/// Tethers are valid where everything that holds the cloth is static and the exact solution stretches less: an
-/// inextensible cloth, or one whose springs stretch far less than the slack, 5 rho g L / Y for its own weight and
-/// 2 v0 / c for its speed.
-Tethers tethers_of(const Scene&);
-
-/// 1 + slack.
-double tether_stretch(const Scene&);
-
 /// One flag for each chain of the four families (rows, columns, both diagonals; max(columns, rows) each): 1 if two held
 /// vertices may pull it taut, so that its inextensible links are one more than its degrees of freedom, else 0.
 std::vector<std::uint8_t> taut_chains(const Scene&);
-
-/// True if tethers keep every vertex within reach of pinned ones.
-bool is_tethered(const Scene&, const nlohmann::json& settings);
 
 /// Whether links and masses are all alike in an elastic sheet that is held and touches nothing, so that its families
 /// may be coupled (INTEGRATION.md); else why not.

@@ -8,9 +8,6 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Least ratio of alpha to inverse mass in chains pulled taut between held vertices: with 0 their system is singular in
-/// single precision. Ten times as much visibly lengthens the cloth; with a tenth, links of some cloths blow up.
-constexpr double kRegularisation = 1e-3;
 /// Of a workgroup where many share lines and contact: a line needs 32, and pairs and vertices take as many as there
 /// are. A desk takes 3.4 times as long with 32, and 256 win nothing (H200).
 constexpr std::uint32_t kThreadsWithContact = 128;

@@ -268,31 +268,6 @@ class Curvatures {
   std::vector<std::uint32_t> owner_;  // by edge: a triangle
 };
 
-/// At least the greatest eigenvalue of M^-1 K: the greatest of (A v)_i / v_i for any positive v, A the matrix of
-/// absolute values (Collatz 1942; Wielandt 1950), here after some steps of the power iteration.
-double eigenvalue_bound(const BendingMatrix& K, const std::vector<double>& mass) {
-  constexpr int kSteps = 20;
-  std::vector<double> v(mass.size(), 1), next(mass.size(), 0);
-  double most = 0;
-  for (int step = 0; step < kSteps; ++step) {
-    most = 0;
-    double greatest = 0;
-    for (std::size_t i = 0; i < mass.size(); ++i) {
-      double diagonal = 0, sum = 0;
-      for (std::uint32_t e = K.first[i]; e < K.first[i + 1]; ++e) {
-        diagonal -= K.stiffness[e];
-        sum += std::abs(K.stiffness[e]) * v[K.columns[e]];
-      }
-      next[i] = (sum + std::abs(diagonal) * v[i]) / mass[i];
-      most = std::max(most, next[i] / v[i]);
-      greatest = std::max(greatest, next[i]);
-    }
-    if (!(greatest > 0)) return 0;
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = std::max(next[i] / greatest, 1e-3);
-  }
-  return most;
-}
-
 }  // namespace
 
 BendingMatrix bending_matrix(const Scene& scene) {
@@ -322,7 +297,17 @@ BendingMatrix bending_matrix(const Scene& scene) {
     }
     out.first.push_back(static_cast<std::uint32_t>(out.columns.size()));
   }
-  out.most_per_s2 = eigenvalue_bound(out, vertex_masses(scene));
+  // A is the matrix of absolute values.
+  out.most_per_s2 = eigenvalue_bound(vertex_masses(scene), [&](const auto& v, auto& to) {
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      double diagonal = 0, sum = 0;
+      for (std::uint32_t e = out.first[i]; e < out.first[i + 1]; ++e) {
+        diagonal -= out.stiffness[e];
+        sum += std::abs(out.stiffness[e]) * v[out.columns[e]];
+      }
+      to[i] = sum + std::abs(diagonal) * v[i];
+    }
+  });
   return out;
 }
 
@@ -334,24 +319,13 @@ std::uint32_t bending_iterations(double most) {
   return static_cast<std::uint32_t>(std::clamp(std::ceil(std::log(kLeft / 2) / std::log(rate)), 2.0, double{kMost}));
 }
 
-BendingTable bending_table(const BendingMatrix& K) {
-  constexpr std::uint32_t kRows = BENDING_ROWS;
-  BendingTable out;
+SlicedRows<BendingEntry> bending_table(const BendingMatrix& K) {
   const auto n = static_cast<std::uint32_t>(K.first.size() - 1);
-  for (std::uint32_t begin = 0; begin < n; begin += kRows) {
-    std::uint32_t width = 0;
-    for (std::uint32_t i = begin; i < std::min(n, begin + kRows); ++i)
-      width = std::max(width, K.first[i + 1] - K.first[i]);
-    out.slices.push_back({static_cast<std::uint32_t>(out.entries.size()), width});
-    for (std::uint32_t j = 0; j < width; ++j)
-      for (std::uint32_t i = begin; i < begin + kRows; ++i) {
-        const bool is = i < n && j < K.first[i + 1] - K.first[i];
-        const std::uint32_t e = is ? K.first[i] + j : 0;
-        out.entries.push_back(is ? BendingEntry{K.columns[e], static_cast<float>(K.stiffness[e])}
-                                 : BendingEntry{std::min(i, n - 1), 0});
-      }
-  }
-  return out;
+  const auto length = [&](std::uint32_t i) { return K.first[i + 1] - K.first[i]; };
+  return sliced<BendingEntry>(n, length, [&](std::uint32_t i, std::uint32_t j) {
+    if (i >= n || j >= length(i)) return BendingEntry{std::min(i, n - 1), 0};
+    return BendingEntry{K.columns[K.first[i] + j], static_cast<float>(K.stiffness[K.first[i] + j])};
+  });
 }
 
 }  // namespace clothbench::pbd_gpu

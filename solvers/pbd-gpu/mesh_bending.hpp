@@ -2,8 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "clothbench/scene.hpp"
-#include "pbd_shared.h"
+#include "constraints.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -28,10 +27,6 @@ BendingMatrix bending_matrix(const Scene&);
 std::uint32_t bending_iterations(double most);
 
 /// What the kernel reads. Rows shorter than the slice's longest are padded with entries of stiffness 0 to themselves.
-struct BendingTable {
-  std::vector<BendingSlice> slices;
-  std::vector<BendingEntry> entries;
-};
-BendingTable bending_table(const BendingMatrix&);
+SlicedRows<BendingEntry> bending_table(const BendingMatrix&);
 
 }  // namespace clothbench::pbd_gpu

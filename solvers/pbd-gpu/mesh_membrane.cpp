@@ -86,32 +86,17 @@ TriangleStiffness triangle_stiffness(const ClothMesh& mesh, std::size_t triangle
 }
 
 double membrane_bound(const Scene& scene) {
-  constexpr int kSteps = 20;
   const ClothMesh& mesh = *scene.cloth.mesh;
-  const std::vector<double> mass = vertex_masses(scene);
   std::vector<std::array<std::array<double, 3>, 3>> norms;
   const std::vector<std::optional<double>> Y = triangle_stiffnesses(scene);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     norms.push_back(block_norms(triangle_stiffness(mesh, t, Y[t].value()), rest_corners(mesh, t)));
-  // The greatest of (A v)_i / v_i bounds the eigenvalues of A >= 0 for any positive v (Collatz 1942; Wielandt 1950).
-  std::vector<double> v(mass.size(), 1), next(mass.size());
-  double most = 0;
-  for (int step = 0; step < kSteps; ++step) {
-    std::fill(next.begin(), next.end(), 0.0);
-    for (std::size_t t = 0; t < norms.size(); ++t)
-      for (std::size_t a = 0; a < 3; ++a)
-        for (std::size_t b = 0; b < 3; ++b) next[mesh.triangles[t][a]] += norms[t][a][b] * v[mesh.triangles[t][b]];
-    most = 0;
-    double greatest = 0;
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      next[i] /= mass[i];
-      most = std::max(most, next[i] / v[i]);
-      greatest = std::max(greatest, next[i]);
-    }
-    if (!(greatest > 0)) return 0;
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = std::max(next[i] / greatest, 1e-3);
-  }
-  return kRoom * most;
+  return kRoom * eigenvalue_bound(vertex_masses(scene), [&](const auto& v, auto& to) {
+           std::fill(to.begin(), to.end(), 0.0);
+           for (std::size_t t = 0; t < norms.size(); ++t)
+             for (std::size_t a = 0; a < 3; ++a)
+               for (std::size_t b = 0; b < 3; ++b) to[mesh.triangles[t][a]] += norms[t][a][b] * v[mesh.triangles[t][b]];
+         });
 }
 
 Choice membrane_of(const Scene& scene, const nlohmann::json& settings) {
@@ -161,8 +146,7 @@ std::vector<BufferNeed> mesh_needs(const Scene& scene, bool membrane) {
   return out;
 }
 
-MembraneTable membrane_table(const Scene& scene) {
-  constexpr std::uint32_t kRows = BENDING_ROWS;
+SlicedRows<MembraneCorner> membrane_table(const Scene& scene) {
   const ClothMesh& mesh = *scene.cloth.mesh;
   const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
   const std::vector<std::optional<double>> Y = triangle_stiffnesses(scene);
@@ -178,18 +162,11 @@ MembraneTable membrane_table(const Scene& scene) {
                                           of(k.cross_N_m, 1), of(k.cross_N_m, 2), most});
     }
   }
-  MembraneTable out;
-  for (std::uint32_t begin = 0; begin < n; begin += kRows) {
-    std::size_t width = 0;
-    for (std::uint32_t i = begin; i < std::min(n, begin + kRows); ++i) width = std::max(width, at[i].size());
-    out.slices.push_back({static_cast<std::uint32_t>(out.corners.size()), static_cast<std::uint32_t>(width)});
-    for (std::size_t j = 0; j < width; ++j)
-      for (std::uint32_t i = begin; i < begin + kRows; ++i) {
-        const bool is = i < n && j < at[i].size();
-        out.corners.push_back(is ? at[i][j] : MembraneCorner{CHAIN_NO_VERTEX, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
-      }
-  }
-  return out;
+  return sliced<MembraneCorner>(
+      n, [&](std::uint32_t i) { return at[i].size(); },
+      [&](std::uint32_t i, std::uint32_t j) {
+        return i < n && j < at[i].size() ? at[i][j] : MembraneCorner{CHAIN_NO_VERTEX, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+      });
 }
 
 }  // namespace clothbench::pbd_gpu

@@ -28,11 +28,7 @@ Choice membrane_of(const Scene&, const nlohmann::json& settings);
 
 /// What the kernel reads: the triangles round each vertex, turned so that it comes first. Rows shorter than the slice's
 /// longest are padded with entries whose `a` is CHAIN_NO_VERTEX.
-struct MembraneTable {
-  std::vector<BendingSlice> slices;
-  std::vector<MembraneCorner> corners;
-};
-MembraneTable membrane_table(const Scene&);
+SlicedRows<MembraneCorner> membrane_table(const Scene&);
 
 /// Buffers that a mesh needs at least, found before any is made: its state; the corners of triangles, or its links; of
 /// bending, in every row the 18 vertices that are within two edges in regular triangles.

@@ -8,6 +8,7 @@
 #include "chain_plan.hpp"
 #include "clothbench/motion.hpp"
 #include "clothbench/solver.hpp"
+#include "clothbench/vector.hpp"
 #include "crumpled.hpp"
 #include "line_plan.hpp"
 #include "mesh_membrane.hpp"
@@ -44,15 +45,14 @@ double distance_to_box(const Collider& c, const Vec3& from) {
 
 double distance_to_vertices(const ColliderMesh& mesh, const Vec3& from) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i + 2 < mesh.positions.size(); i += 3)
-    least = std::min(least, norm(Vec3{mesh.positions[i] - from[0], mesh.positions[i + 1] - from[1],
-                                      mesh.positions[i + 2] - from[2]}));
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+    least = std::min(least, norm(minus(vertex_at(mesh.positions, v), from)));
   return least;
 }
 
 /// Lower bound of the distance [m] from a point to a collider that stands.
 double distance_to(const Collider& c, const Vec3& from) {
-  const auto to = [&](const Vec3& p) { return norm(Vec3{p[0] - from[0], p[1] - from[1], p[2] - from[2]}); };
+  const auto to = [&](const Vec3& p) { return norm(minus(p, from)); };
   switch (c.shape) {
     case Collider::Shape::Plane:
       return (from[0] - c.center_m[0]) * c.normal[0] + (from[1] - c.center_m[1]) * c.normal[1] +
@@ -65,16 +65,10 @@ double distance_to(const Collider& c, const Vec3& from) {
       // Every point of a triangle is nearer to its first corner than the triangle's longest side.
       double least = std::numeric_limits<double>::infinity();
       for (const auto& t : c.mesh->triangles) {
-        const auto corner = [&](std::size_t k) {
-          const double* p = &c.mesh->positions[3 * std::size_t{t[k]}];
-          return Vec3{p[0], p[1], p[2]};
-        };
+        const auto corner = [&](std::size_t k) { return vertex_at(c.mesh->positions, t[k]); };
         const Vec3 a = corner(0);
         double side = 0;
-        for (const std::size_t k : {1u, 2u}) {
-          const Vec3 b = corner(k);
-          side = std::max(side, norm(Vec3{b[0] - a[0], b[1] - a[1], b[2] - a[2]}));
-        }
+        for (const std::size_t k : {1u, 2u}) side = std::max(side, norm(minus(corner(k), a)));
         least = std::min(least, to(a) - side);
       }
       return least;
@@ -91,8 +85,8 @@ double reach_m(const Scene& s) {
   const Cloth& c = s.cloth;
   const std::vector<double> x = initial_positions(s);
   double start = 0;
-  for (std::size_t i = 0; i + 2 < x.size(); i += 3)
-    start = std::max(start, norm(Vec3{x[i] - c.center_m[0], x[i + 1] - c.center_m[1], x[i + 2] - c.center_m[2]}));
+  for (std::size_t v = 0; v < c.vertex_count(); ++v)
+    start = std::max(start, norm(minus(vertex_at(x, v), c.center_m)));
   const double across = std::hypot(c.width_m, c.height_m), t = s.time.duration_s;
   const double speed = norm(c.initial_velocity_m_per_s) + norm(c.spin_rad_per_s) * across + grip_speed_m_per_s(s);
   return start + 2 * across + speed * t + 0.5 * norm(s.gravity_m_per_s2) * t * t;

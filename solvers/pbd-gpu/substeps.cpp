@@ -84,15 +84,13 @@ double frames_for_gravity(const Scene& scene) {
 /// Most substeps that a sheet takes so that its modulus is Y: up to Y dt^2/(rho L^2) of about 0.0028, 2000 N/m on 1 m.
 double most_to_couple(double links) { return std::max(6.0, links / 6); }
 
-double length(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }
-
 /// The assumed speed is the sum of the scene's initial speed, that of a fall by the cloth's length, and that of the
 /// fastest grip or collider.
 double substeps_for_layers(const Scene& scene) {
   const Cloth& c = scene.cloth;
   const double longer = std::max(c.width_m, c.height_m);
-  const double speed = length(c.initial_velocity_m_per_s) + length(c.spin_rad_per_s) * longer +
-                       std::sqrt(2 * length(scene.gravity_m_per_s2) * longer) +
+  const double speed = norm(c.initial_velocity_m_per_s) + norm(c.spin_rad_per_s) * longer +
+                       std::sqrt(2 * norm(scene.gravity_m_per_s2) * longer) +
                        std::max(grip_speed_m_per_s(scene), speed_m_per_s(scene));
   return std::ceil(speed * scene.time.dt() / (kMostWayOfLayers * c.self_collision.thickness_m) - 1e-9);
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "chain_plan.hpp"
+#include "constraints.hpp"
 #include "gpu_fixture.hpp"
 #include "mesh_scene.hpp"
 
