@@ -149,9 +149,10 @@ TEST_F(PlaneFrames, DoWithBuffersWhatTheirQualifiersSay) {
     if (r.kernel == nullptr) continue;
     ++kernels;
     for (const BufferUse& u : uses_of(r.kernel->code())) {
+      const vulkan::Access declared = binding_of(*r.kernel, u.binding).access;
       const std::string where = r.kernel->name() + " binding " + std::to_string(u.binding);
-      EXPECT_EQ(u.declared_readonly, !u.written) << where;
-      EXPECT_EQ(u.declared_writeonly, !u.read) << where;
+      EXPECT_EQ(u.read, declared != vulkan::Access::Write) << where;
+      EXPECT_EQ(u.written, declared != vulkan::Access::Read) << where;
     }
   }
   EXPECT_EQ(kernels, 3) << "pieces, the frame far from them, the frame";

@@ -5,22 +5,16 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <spirv/unified1/spirv.hpp>
 
 namespace clothbench::pbd_gpu {
 namespace {
 
-// Numbers of the SPIR-V specification, sections 3.20 (decorations) and 3.52 (instructions).
-constexpr std::uint32_t kBinding = 33, kNonWritable = 24, kNonReadable = 25;
-constexpr std::uint32_t kTypePointer = 32, kVariable = 59, kLoad = 61, kStore = 62, kAccessChain = 65,
-                        kInBoundsAccessChain = 66, kDecorate = 71, kMemberDecorate = 72, kCopyObject = 83,
-                        kAtomicLoad = 227, kAtomicStore = 228, kAtomicFirst = 229, kAtomicLast = 242,
-                        kAtomicFAdd = 6035;
-
 constexpr VkAccessFlags kAnyAccess = ~VkAccessFlags{0};
 
 struct Module {
-  std::map<std::uint32_t, std::uint32_t> binding_of, pointee, variable_type, base;
-  std::set<std::uint32_t> non_writable, non_readable, read, written;
+  std::map<std::uint32_t, std::uint32_t> binding_of, base;
+  std::set<std::uint32_t> read, written;
 
   std::uint32_t variable(std::uint32_t pointer) const {
     for (auto b = base.find(pointer); b != base.end(); b = base.find(pointer)) pointer = b->second;
@@ -28,17 +22,11 @@ struct Module {
   }
 
   void take(std::uint32_t op, const std::uint32_t* w) {
-    if (op == kDecorate && w[2] == kBinding) binding_of[w[1]] = w[3];
-    if (op == kDecorate && w[2] == kNonWritable) non_writable.insert(w[1]);
-    if (op == kDecorate && w[2] == kNonReadable) non_readable.insert(w[1]);
-    if (op == kMemberDecorate && w[3] == kNonWritable) non_writable.insert(w[1]);
-    if (op == kMemberDecorate && w[3] == kNonReadable) non_readable.insert(w[1]);
-    if (op == kTypePointer) pointee[w[1]] = w[3];
-    if (op == kVariable) variable_type[w[2]] = w[1];
-    if (op == kAccessChain || op == kInBoundsAccessChain || op == kCopyObject) base[w[2]] = w[3];
-    if (op == kLoad || op == kAtomicLoad) read.insert(variable(w[3]));
-    if (op == kStore || op == kAtomicStore) written.insert(variable(w[1]));
-    if ((op >= kAtomicFirst && op <= kAtomicLast) || op == kAtomicFAdd) {
+    if (op == spv::OpDecorate && w[2] == spv::DecorationBinding) binding_of[w[1]] = w[3];
+    if (op == spv::OpAccessChain || op == spv::OpInBoundsAccessChain || op == spv::OpCopyObject) base[w[2]] = w[3];
+    if (op == spv::OpLoad || op == spv::OpAtomicLoad) read.insert(variable(w[3]));
+    if (op == spv::OpStore || op == spv::OpAtomicStore) written.insert(variable(w[1]));
+    if ((op >= spv::OpAtomicExchange && op <= spv::OpAtomicXor) || op == spv::OpAtomicFAddEXT) {
       read.insert(variable(w[3]));
       written.insert(variable(w[3]));
     }
@@ -109,12 +97,8 @@ std::vector<BufferUse> uses_of(vulkan::SpirV code) {
   for (std::size_t k = kHeader; k < code.bytes / 4; k += code.words[k] >> 16)
     m.take(code.words[k] & 0xffff, code.words + k);
   std::vector<BufferUse> uses;
-  for (const auto& [variable, binding] : m.binding_of) {
-    const std::uint32_t block = m.pointee.at(m.variable_type.at(variable));
-    uses.push_back({binding, m.read.count(variable) != 0, m.written.count(variable) != 0,
-                    m.non_writable.count(variable) + m.non_writable.count(block) != 0,
-                    m.non_readable.count(variable) + m.non_readable.count(block) != 0});
-  }
+  for (const auto& [variable, binding] : m.binding_of)
+    uses.push_back({binding, m.read.count(variable) != 0, m.written.count(variable) != 0});
   return uses;
 }
 

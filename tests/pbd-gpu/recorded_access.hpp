@@ -8,11 +8,10 @@
 namespace clothbench::pbd_gpu {
 
 /// What a kernel's SPIR-V does with each storage buffer, by binding: found in the code (loads, stores and atomics
-/// through every pointer), not in what the host declares.
+/// through every pointer), not in what its qualifiers declare.
 struct BufferUse {
   std::uint32_t binding = 0;
   bool read = false, written = false;
-  bool declared_readonly = false, declared_writeonly = false;
 };
 std::vector<BufferUse> uses_of(vulkan::SpirV code);
 /// The kernel's binding of this number, which it has.

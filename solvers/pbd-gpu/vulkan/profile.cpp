@@ -4,22 +4,17 @@
 
 #include <map>
 #include <set>
+#include <spirv/unified1/spirv.hpp>
 
 #include "clothbench/error.hpp"
 
 namespace clothbench::vulkan {
 namespace {
 
-// Numbers of the SPIR-V specification, sections 3.6, 3.20, 3.21, 3.31 and 3.52.
-constexpr std::uint32_t kOpExecutionMode = 16, kOpCapability = 17, kOpTypeInt = 21, kOpTypeFloat = 22,
-                        kOpTypeVector = 23, kOpTypeMatrix = 24, kOpTypeArray = 28, kOpTypeStruct = 30,
-                        kOpTypePointer = 32, kOpConstant = 43, kOpConstantComposite = 44, kOpSpecConstant = 50,
-                        kOpSpecConstantComposite = 51, kOpSpecConstantOp = 52, kOpVariable = 59, kOpDecorate = 71,
-                        kOpMemberDecorate = 72, kIMul = 132;
-constexpr std::uint32_t kModeLocalSize = 17, kDecorationSpecId = 1, kDecorationBuiltIn = 11,
-                        kDecorationNonWritable = 24, kDecorationNonReadable = 25, kDecorationBinding = 33,
-                        kBuiltInWorkgroupSize = 25, kClassWorkgroup = 4;
-const std::set<std::uint32_t> kAtomicFloat = {5612, 5613, 5616, 6033, 6034, 6095};
+const std::set<std::uint32_t> kAtomicFloat = {
+    spv::CapabilityAtomicFloat16AddEXT,    spv::CapabilityAtomicFloat32AddEXT,
+    spv::CapabilityAtomicFloat64AddEXT,    spv::CapabilityAtomicFloat16MinMaxEXT,
+    spv::CapabilityAtomicFloat32MinMaxEXT, spv::CapabilityAtomicFloat64MinMaxEXT};
 
 /// Reads a module's types and constants by id. One pass in order is enough, because ids are defined before their uses.
 class Reader {
@@ -28,57 +23,57 @@ class Reader {
 
   void take(std::uint32_t op, std::uint32_t length, const std::uint32_t* w) {
     switch (op) {
-      case kOpCapability:
+      case spv::OpCapability:
         needs_.float_atomics |= kAtomicFloat.count(w[1]) != 0;
         break;
-      case kOpExecutionMode:
-        if (w[2] == kModeLocalSize)
+      case spv::OpExecutionMode:
+        if (w[2] == spv::ExecutionModeLocalSize)
           for (int k = 0; k < 3; ++k) needs_.group[k] = w[3 + k];
         break;
-      case kOpDecorate:
-        if (w[2] == kDecorationSpecId) spec_id_[w[1]] = w[3];
-        if (w[2] == kDecorationBinding) binding_[w[1]] = w[3];
+      case spv::OpDecorate:
+        if (w[2] == spv::DecorationSpecId) spec_id_[w[1]] = w[3];
+        if (w[2] == spv::DecorationBinding) binding_[w[1]] = w[3];
         restrict(w[1], w[2]);
-        if (w[2] == kDecorationBuiltIn && w[3] == kBuiltInWorkgroupSize) group_id_ = w[1];
+        if (w[2] == spv::DecorationBuiltIn && w[3] == spv::BuiltInWorkgroupSize) group_id_ = w[1];
         break;
-      case kOpMemberDecorate:
+      case spv::OpMemberDecorate:
         restrict(w[1], w[3]);
         break;
-      case kOpTypeInt:
-      case kOpTypeFloat:
+      case spv::OpTypeInt:
+      case spv::OpTypeFloat:
         size_[w[1]] = w[2] / 8;
         break;
-      case kOpTypeVector:
-      case kOpTypeMatrix:
+      case spv::OpTypeVector:
+      case spv::OpTypeMatrix:
         size_[w[1]] = size_[w[2]] * w[3];
         break;
-      case kOpTypeArray:
+      case spv::OpTypeArray:
         size_[w[1]] = size_[w[2]] * value_[w[3]];
         break;
-      case kOpTypeStruct:
+      case spv::OpTypeStruct:
         for (std::uint32_t k = 2; k < length; ++k) size_[w[1]] += size_[w[k]];
         break;
-      case kOpTypePointer:
+      case spv::OpTypePointer:
         size_[w[1]] = size_[w[3]];
         pointee_[w[1]] = w[3];
         break;
-      case kOpConstant:
+      case spv::OpConstant:
         value_[w[2]] = w[3];
         break;
-      case kOpSpecConstant:
+      case spv::OpSpecConstant:
         value_[w[2]] = specialized(w[2], w[3]);
         break;
-      case kOpSpecConstantOp:
-        if (w[3] == kIMul) value_[w[2]] = value_[w[4]] * value_[w[5]];
+      case spv::OpSpecConstantOp:
+        if (w[3] == spv::OpIMul) value_[w[2]] = value_[w[4]] * value_[w[5]];
         break;
-      case kOpConstantComposite:
-      case kOpSpecConstantComposite:
+      case spv::OpConstantComposite:
+      case spv::OpSpecConstantComposite:
         // The built-in overrides the execution mode (section 3.21, WorkgroupSize).
         if (w[2] == group_id_)
           for (int k = 0; k < 3; ++k) needs_.group[k] = static_cast<std::uint32_t>(value_[w[3 + k]]);
         break;
-      case kOpVariable:
-        if (w[3] == kClassWorkgroup) needs_.shared_memory_B += size_[w[1]];
+      case spv::OpVariable:
+        if (w[3] == spv::StorageClassWorkgroup) needs_.shared_memory_B += size_[w[1]];
         if (const auto b = binding_.find(w[2]); b != binding_.end()) {
           const auto is = [&](const std::set<std::uint32_t>& ids) {
             return ids.count(w[2]) + ids.count(pointee_[w[1]]) > 0;
@@ -102,8 +97,8 @@ class Reader {
 
   /// Marks a block or a variable as readonly or writeonly.
   void restrict(std::uint32_t id, std::uint32_t decoration) {
-    if (decoration == kDecorationNonWritable) readonly_.insert(id);
-    if (decoration == kDecorationNonReadable) writeonly_.insert(id);
+    if (decoration == spv::DecorationNonWritable) readonly_.insert(id);
+    if (decoration == spv::DecorationNonReadable) writeonly_.insert(id);
   }
 
   const std::vector<std::uint32_t>& specialization_;
