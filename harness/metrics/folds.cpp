@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "clothbench/vector.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/reduction.hpp"
 
@@ -23,16 +24,11 @@ struct Angles {
 };
 
 std::array<double, 3> cell_normal(const Cloth& c, const std::vector<double>& x, int i, int j) {
-  const auto at = [&](int a, int b, std::size_t k) { return x[3 * static_cast<std::size_t>(b * c.columns + a) + k]; };
-  std::array<double, 3> p{}, q{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    p[k] = at(i + 1, j + 1, k) - at(i, j, k);
-    q[k] = at(i, j + 1, k) - at(i + 1, j, k);
-  }
-  std::array<double, 3> n{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-  const double length = norm(n[0], n[1], n[2]);
+  const auto at = [&](int a, int b) { return vertex_at(x, static_cast<std::size_t>(b * c.columns + a)); };
+  Vec3 n = cross(minus(at(i + 1, j + 1), at(i, j)), minus(at(i, j + 1), at(i + 1, j)));
+  const double area = length(n);
   // A cell without area has no normal; it counts as folded, not as flat.
-  for (double& v : n) v = length == 0 ? 0 : v / length;
+  for (double& v : n) v = area == 0 ? 0 : v / area;
   return n;
 }
 
@@ -41,10 +37,8 @@ std::array<double, 3> cell_normal(const Cloth& c, const std::vector<double>& x, 
 /// 1)/16 pass a zigzag of two cells fully, 1/4 of a wavelength of 4 cells and 2 % of one of 8.
 void add_line(const std::vector<std::array<double, 3>>& normals, Angles& sum) {
   std::vector<std::array<double, 3>> steps;
-  for (std::size_t k = 1; k < normals.size(); ++k)
-    steps.push_back(
-        {normals[k][0] - normals[k - 1][0], normals[k][1] - normals[k - 1][1], normals[k][2] - normals[k - 1][2]});
-  for (const auto& s : steps) sum.everywhere += s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+  for (std::size_t k = 1; k < normals.size(); ++k) steps.push_back(minus(normals[k], normals[k - 1]));
+  for (const auto& s : steps) sum.everywhere += dot(s, s);
   sum.steps += static_cast<long>(steps.size());
   for (std::size_t k = 2; k + 2 < steps.size(); ++k) {
     for (std::size_t a = 0; a < 3; ++a) {

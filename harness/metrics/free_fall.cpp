@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "clothbench/vector.hpp"
 #include "metrics/reduction.hpp"
 
 namespace clothbench {
@@ -32,7 +33,7 @@ double fold_errors(const MetricFrame& f, Fold fold) {
   const Scene& s = f.context.scene;
   const double t = s.time.at(f.index);
   const Vec3 g = s.gravity_m_per_s2, way = fall(f.context, f.index);
-  const double scale = 0.5 * norm(g[0], g[1], g[2]) * t * t;
+  const double scale = 0.5 * length(g) * t * t;
   const std::vector<double> start = initial_positions(s);
   double result = 0;
   for (std::size_t v = 0; v < start.size(); v += 3) {

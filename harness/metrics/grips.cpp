@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clothbench/motion.hpp"
+#include "clothbench/vector.hpp"
 #include "metrics/reduction.hpp"
 
 namespace clothbench {
@@ -16,9 +17,8 @@ double grip_error(const MetricFrame& f) {
   for (const double x : f.state.position) most += 0 * x;
   for (std::size_t k = 0; motion != nullptr && k < scene.grips.vertices.size(); ++k) {
     if (motion->grip_held[k] == 0) continue;
-    const double* x = &f.state.position[3 * scene.grips.vertices[k]];
-    const Vec3& at = motion->grip_position_m[k];
-    most = max_or_nan(most, norm(x[0] - at[0], x[1] - at[1], x[2] - at[2]));
+    const Vec3 x = vertex_at(f.state.position, scene.grips.vertices[k]);
+    most = max_or_nan(most, length(minus(x, motion->grip_position_m[k])));
   }
   return most;
 }
@@ -32,10 +32,9 @@ double pulled(const Scene& scene, const std::vector<double>& start, std::size_t 
   for (std::size_t i = 0; i < scene.grips.vertices.size(); ++i)
     for (std::size_t k = i + 1; k < scene.grips.vertices.size(); ++k) {
       if (m.grip_held[i] == 0 || m.grip_held[k] == 0) continue;
-      const double *a = &start[3 * scene.grips.vertices[i]], *b = &start[3 * scene.grips.vertices[k]];
-      const double rest = norm(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-      const Vec3 &p = m.grip_position_m[i], &q = m.grip_position_m[k];
-      if (rest >= apart) most = std::max(most, norm(q[0] - p[0], q[1] - p[1], q[2] - p[2]) / rest);
+      const Vec3 a = vertex_at(start, scene.grips.vertices[i]), b = vertex_at(start, scene.grips.vertices[k]);
+      const double rest = length(minus(b, a));
+      if (rest >= apart) most = std::max(most, length(minus(m.grip_position_m[k], m.grip_position_m[i])) / rest);
     }
   return most;
 }
@@ -113,8 +112,7 @@ double imposed_speed(const RunView& r) {
         if (item.is_object()) reported = std::max(reported, item.value("speed_m_per_s", 0.0));
   if (reported > 0) return reported;
   const double seen = std::max(collider_speed_m_per_s(scene), grip_speed_m_per_s(scene));
-  const Vec3& v = scene.cloth.initial_velocity_m_per_s;
-  return seen > 0 ? seen : norm(v[0], v[1], v[2]);
+  return seen > 0 ? seen : length(scene.cloth.initial_velocity_m_per_s);
 }
 
 }  // namespace

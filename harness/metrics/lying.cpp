@@ -1,6 +1,7 @@
 // Where the cloth ends up: how low it hangs, and whether it touches what it should lie on.
 #include <limits>
 
+#include "clothbench/vector.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/reduction.hpp"
 
@@ -11,13 +12,10 @@ bool can_lie(const Scene& s) { return kGravity.met(s) && !s.colliders.empty(); }
 
 double lowest_height(const MetricFrame& f) {
   const Vec3& g = f.context.scene.gravity_m_per_s2;
-  const double strength = norm(g[0], g[1], g[2]);
+  const double strength = length(g);
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k + 2 < f.state.position.size(); k += 3) {
-    const double* x = &f.state.position[k];
-    const double height = -(x[0] * g[0] + x[1] * g[1] + x[2] * g[2]) / strength;
-    least = -max_or_nan(-least, -height);
-  }
+  for (std::size_t v = 0; v < f.state.position.size() / 3; ++v)
+    least = -max_or_nan(-least, dot(vertex_at(f.state.position, v), g) / strength);
   return least;
 }
 

@@ -103,7 +103,4 @@ inline bool finite(const std::vector<double>& values) {
   return true;
 }
 
-/// Length of a vector. Not std::hypot(x, y, z): libstdc++'s gives 0 for (0, NaN, 0).
-inline double norm(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
-
 }  // namespace clothbench

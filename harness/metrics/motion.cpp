@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clothbench/vector.hpp"
 #include "metrics/registry.hpp"
 
 namespace clothbench {
@@ -23,17 +24,14 @@ double momentum_error(const MetricFrame& f) {
     total += mass[v];
     for (std::size_t k = 0; k < 3; ++k) excess[k] += mass[v] * (f.state.velocity[3 * v + k] - v0[k] - g[k] * t);
   }
-  const double length = std::max(s.cloth.width_m, s.cloth.height_m);
-  const double speed = std::sqrt(norm(g[0], g[1], g[2]) * length) + norm(v0[0], v0[1], v0[2]);
-  return norm(excess[0], excess[1], excess[2]) / (total * speed);
+  const double speed = std::sqrt(length(g) * std::max(s.cloth.width_m, s.cloth.height_m)) + length(v0);
+  return length(excess) / (total * speed);
 }
 
 double speed_max(const MetricFrame& f) {
   double most = 0;
-  for (std::size_t v = 0; v < f.state.velocity.size(); v += 3) {
-    const double speed = norm(f.state.velocity[v], f.state.velocity[v + 1], f.state.velocity[v + 2]);
-    most = max_or_nan(most, speed);
-  }
+  for (std::size_t v = 0; v < f.state.velocity.size() / 3; ++v)
+    most = max_or_nan(most, length(vertex_at(f.state.velocity, v)));
   return most;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "clothbench/motion.hpp"
+#include "clothbench/vector.hpp"
 #include "metrics/reduction.hpp"
 
 namespace clothbench {
@@ -10,10 +11,7 @@ namespace {
 
 /// Distance [m] of vertex v between two stored frames.
 double moved(const AccuracyPass& pass, std::size_t vertices, std::size_t v, std::size_t from, std::size_t to) {
-  const float *a = &pass.position[3 * (from * vertices + v)], *b = &pass.position[3 * (to * vertices + v)];
-  return norm(static_cast<double>(b[0]) - static_cast<double>(a[0]),
-              static_cast<double>(b[1]) - static_cast<double>(a[1]),
-              static_cast<double>(b[2]) - static_cast<double>(a[2]));
+  return length(minus(vertex_at(pass.position, to * vertices + v), vertex_at(pass.position, from * vertices + v)));
 }
 
 /// Displacement and speed of the cloth after a moving collider has left it (the paper's Fig. 8).
@@ -61,8 +59,8 @@ Popping popping(const RunView& r) {
       out.speed_m_per_s = max_or_nan(out.speed_m_per_s, (*speed)[f]);
   // Cloth that is hit moves at up to twice the collider's speed (as off a bat); falling cloth falls at most its own
   // length.
-  const Vec3& g = scene.gravity_m_per_s2;
-  const double fall = std::sqrt(2 * norm(g[0], g[1], g[2]) * std::max(scene.cloth.width_m, scene.cloth.height_m));
+  const double fall =
+      std::sqrt(2 * length(scene.gravity_m_per_s2) * std::max(scene.cloth.width_m, scene.cloth.height_m));
   out.limit_m_per_s = std::max(2 * fastest, fall);
   return out;
 }

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "clothbench/vector.hpp"
 #include "metrics/reduction.hpp"
 
 namespace clothbench {
@@ -12,9 +13,7 @@ double for_each_strain(const Cloth& c, const ClothState& state, Fn fn) {
   const auto strain = [&](std::size_t a, std::size_t b, double rest) {
     if (!(rest > 0)) return;
     ++count;
-    const double* p = &state.position[3 * a];
-    const double* q = &state.position[3 * b];
-    fn(norm(q[0] - p[0], q[1] - p[1], q[2] - p[2]) / rest - 1);
+    fn(length(minus(vertex_at(state.position, b), vertex_at(state.position, a))) / rest - 1);
   };
   if (c.mesh) {
     for (const Edge& e : c.mesh->edges) strain(e.a, e.b, e.rest_m);

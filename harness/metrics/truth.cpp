@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clothbench/vector.hpp"
 #include "metrics/reduction.hpp"
 #include "metrics/truth_errors.hpp"
 
@@ -34,20 +35,12 @@ double energy_rise(const MetricFrame& f) {
     }
   }
   if (const auto Y = s.material.membrane_stiffness_N_per_m) {
-    const auto border = [](int i, int n) { return i == 0 || i == n - 1 ? 0.5 : 1.0; };  // half the width
     for (const Edge& e : edges(c, EdgeKind::Structural)) {
-      const bool along_u = e.b == e.a + 1;
-      const int line = static_cast<int>(e.a) / c.columns, column = static_cast<int>(e.a) % c.columns;
-      const double k =
-          *Y * (along_u ? c.dv() / c.du() * border(line, c.rows) : c.du() / c.dv() * border(column, c.columns));
-      const double* a = &state.position[3 * e.a];
-      const double* b = &state.position[3 * e.b];
-      const double longer = norm(b[0] - a[0], b[1] - a[1], b[2] - a[2]) - e.rest_m;
-      energy += 0.5 * k * longer * longer;
+      const double longer = length(minus(vertex_at(state.position, e.b), vertex_at(state.position, e.a))) - e.rest_m;
+      energy += 0.5 * spring_N_per_m(s, e, *Y) * longer * longer;
     }
   }
-  const Vec3 g = s.gravity_m_per_s2;
-  return energy / (total * norm(g[0], g[1], g[2]) * std::max(c.width_m, c.height_m));
+  return energy / (total * length(s.gravity_m_per_s2) * std::max(c.width_m, c.height_m));
 }
 
 /// Only for a run that reaches its end: a pass that was cut short has no error.

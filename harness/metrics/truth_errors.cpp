@@ -1,6 +1,7 @@
 #include "metrics/truth_errors.hpp"
 
 #include "clothbench/error.hpp"
+#include "clothbench/vector.hpp"
 #include "metrics/metric.hpp"
 
 namespace clothbench {
@@ -31,8 +32,8 @@ std::vector<double> strains(const Cloth& c, const std::vector<double>& x) {
   std::vector<double> out;
   for (int j = 0; j < c.rows; ++j)
     for (int i = 0; i + 1 < c.columns; ++i) {
-      const auto a = 3 * static_cast<std::size_t>(j * c.columns + i);
-      out.push_back(norm(x[a + 3] - x[a], x[a + 4] - x[a + 1], x[a + 5] - x[a + 2]) / c.du() - 1);
+      const auto a = static_cast<std::size_t>(j * c.columns + i);
+      out.push_back(length(minus(vertex_at(x, a + 1), vertex_at(x, a))) / c.du() - 1);
     }
   return out;
 }

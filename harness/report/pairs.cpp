@@ -7,6 +7,7 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
+#include "metrics/metric.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -14,9 +15,6 @@ namespace {
 
 using nlohmann::json;
 using Map = PairRelation::Map;
-
-/// The greater of two values; NaN if either is NaN.
-double greater(double a, double b) { return b <= a || std::isnan(a) ? a : b; }
 
 /// Positions of all frames, about `centre`, over `unit`.
 struct Path {
@@ -66,13 +64,13 @@ Apart measure(const RunPair& p) {
       for (std::size_t k = 0; k < 3; ++k) {
         const double off = a.at(first + 3 * v + k) - b.at(first + 3 * there + k);
         squared += off * off;
-        out.coordinate = greater(out.coordinate, std::abs(off));
+        out.coordinate = max_or_nan(out.coordinate, std::abs(off));
       }
       sum += squared;
-      out.end = greater(out.end, std::sqrt(squared));
+      out.end = max_or_nan(out.end, std::sqrt(squared));
     }
     out.rms.push_back(std::sqrt(sum / static_cast<double>(vertices)));
-    out.most = greater(out.most, out.end);
+    out.most = max_or_nan(out.most, out.end);
   }
   return out;
 }
@@ -88,7 +86,7 @@ double until_contact(const RunPair& p) {
     if (first == m.values.end()) return kMissing;
     const double end_s = pass.time_s[static_cast<std::size_t>(first - m.values.begin())] + kAtContact_s;
     double most = 0;
-    for (std::size_t f = 0; f < rms.size() && pass.time_s[f] <= end_s; ++f) most = rms[f] <= most ? most : rms[f];
+    for (std::size_t f = 0; f < rms.size() && pass.time_s[f] <= end_s; ++f) most = max_or_nan(most, rms[f]);
     return most / longer_side(*p.run);
   }
   return kMissing;

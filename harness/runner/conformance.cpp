@@ -10,6 +10,8 @@
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/unsupported_scene.hpp"
+#include "clothbench/vector.hpp"
+#include "metrics/metric.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/stage_check.hpp"
 #include "scenario/as_mesh.hpp"
@@ -62,7 +64,7 @@ class Conformer {
       return fault(fmt::format("read_state: expected {} positions and velocities; found {} and {}", rest_.size(),
                                start_.position.size(), start_.velocity.size()));
     double off = 0;
-    for (std::size_t k = 0; k < rest_.size(); ++k) off = worse(off, std::abs(start_.position[k] - rest_[k]));
+    for (std::size_t k = 0; k < rest_.size(); ++k) off = max_or_nan(off, std::abs(start_.position[k] - rest_[k]));
     if (!(off <= kStill * scene_.cloth.width_m))
       fault(fmt::format("start: a vertex is {:.3g} m from where the scene puts it", off));
   }
@@ -95,16 +97,16 @@ class Conformer {
         return false;
       }
     for (std::uint32_t v : scene_.pins.vertices)
-      for (std::size_t k = 0; k < 3; ++k) pins = worse(pins, std::abs(now_.position[3 * v + k] - rest_[3 * v + k]));
+      for (std::size_t k = 0; k < 3; ++k)
+        pins = max_or_nan(pins, std::abs(now_.position[3 * v + k] - rest_[3 * v + k]));
     if (!info_.ignores.has(Feature::Pins) && !(pins <= kStill * scene_.cloth.width_m)) {
       fault(fmt::format("frame {}: a pinned vertex has moved by {:.3g} m", frame, pins));
       return false;
     }
     if (const FrameMotion* motion = scene_.motion_after(frame); motion != nullptr)
       for (std::size_t g = 0; g < motion->grip_position_m.size(); ++g) {
-        const Vec3& held = motion->grip_position_m[g];
-        const double* x = &now_.position[3 * std::size_t{scene_.grips.vertices[g]}];
-        if (motion->grip_held[g] != 0) grips = worse(grips, std::hypot(x[0] - held[0], x[1] - held[1], x[2] - held[2]));
+        const Vec3 x = vertex_at(now_.position, scene_.grips.vertices[g]);
+        if (motion->grip_held[g] != 0) grips = max_or_nan(grips, length(minus(x, motion->grip_position_m[g])));
       }
     if (info_.ignores.has(Feature::MovingPins) || grips <= kHeld_m) return true;
     fault(fmt::format("frame {}: a held vertex is {:.3g} m from its hand", frame, grips));
@@ -129,8 +131,6 @@ class Conformer {
     if (again.position != start_.position || again.velocity != start_.velocity)
       fault("reset: expected the start bit for bit");
   }
-
-  static double worse(double a, double b) { return b <= a ? a : b; }  // NaN stays
 
   const SolverInfo& info_;
   const Scene& scene_;

@@ -17,6 +17,7 @@ inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[
 inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
+/// Not std::hypot(x, y, z): libstdc++'s gives 0 for (0, NaN, 0).
 inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 
 }  // namespace clothbench

@@ -10,7 +10,7 @@
 namespace clothbench::stability {
 namespace {
 
-double distance(const Vec3& a, const Vec3& b) { return norm(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+double distance(const Vec3& a, const Vec3& b) { return length(minus(a, b)); }
 
 /// Held vertices, frame by frame.
 class Holders {
@@ -76,11 +76,7 @@ std::pair<double, double> start_of(const Scene& s) {
       far = std::max(far, distance(vertex_at(x, v), s.rest_position(i, j)));
     }
   for (const Edge& e : edges(s.cloth, EdgeKind::Structural))
-    if (e.rest_m > 0)
-      strain = std::max(
-          strain, distance({x[3 * e.a], x[3 * e.a + 1], x[3 * e.a + 2]}, {x[3 * e.b], x[3 * e.b + 1], x[3 * e.b + 2]}) /
-                          e.rest_m -
-                      1);
+    if (e.rest_m > 0) strain = std::max(strain, distance(vertex_at(x, e.a), vertex_at(x, e.b)) / e.rest_m - 1);
   return {far, strain};
 }
 

@@ -144,7 +144,7 @@ void StabilityJudge::judge_motion(int frame, const ClothState& state, const Stra
   }
   double speed = 0;
   for (std::size_t v = 0; v < state.velocity.size(); v += 3)
-    speed = std::max(speed, norm(state.velocity[v], state.velocity[v + 1], state.velocity[v + 2]));
+    speed = std::max(speed, length(vertex_at(state.velocity, v / 3)));
   const double allowed = relaxed_ ? b.speed_m_per_s : std::max(b.speed_m_per_s, b.jump_speed_m_per_s);
   out.speed = allowed > 0 ? speed / allowed : speed > 0 ? std::numeric_limits<double>::infinity() : 0;
   if (!(out.speed <= kSpeed)) out.classes |= bit(1);
