@@ -63,7 +63,7 @@ View view_from(const std::string& name) {
 const char* name_of(View view) { return view == View::Front ? "front" : view == View::Top ? "top" : "corner"; }
 
 Mat4 Camera::view(const Vec3& origin_m) const {
-  const Vec3 eye = {eye_m[0] - origin_m[0], eye_m[1] - origin_m[1], eye_m[2] - origin_m[2]};
+  const Vec3 eye = minus(eye_m, origin_m);
   Mat4 m{};
   const std::array<Vec3, 3> axes = {right, up, back};
   for (std::size_t r = 0; r < 3; ++r) {
@@ -85,7 +85,7 @@ Mat4 Camera::projection() const {
 }
 
 std::optional<std::array<double, 2>> seen_at(const Camera& c, const Vec3& p) {
-  const Vec3 d = {p[0] - c.eye_m[0], p[1] - c.eye_m[1], p[2] - c.eye_m[2]};
+  const Vec3 d = minus(p, c.eye_m);
   const double depth = -dot(d, c.back);
   if (!(depth > 0)) return std::nullopt;
   return std::array<double, 2>{0.5 + 0.5 * dot(d, c.right) / depth / c.tan_half_width,

@@ -1,23 +1,19 @@
 #include "xr/controllers.hpp"
 
-#include <cmath>
 #include <cstring>
+
+#include "clothbench/vector.hpp"
+#include "xr/pose.hpp"
 
 namespace clothbench::xr {
 namespace {
 
 constexpr float kPulled = 0.5f;  // half of the trigger's travel
 
+/// The aim pose points along its -z.
 Ray ray_of(const XrPosef& p) {
-  const XrQuaternionf& q = p.orientation;
-  const double x = static_cast<double>(q.x), y = static_cast<double>(q.y), z = static_cast<double>(q.z),
-               w = static_cast<double>(q.w);
-  // The aim pose points along its -z: minus the third column of its rotation.
-  Vec3 along = {-2 * (x * z + w * y), -2 * (y * z - w * x), -(1 - 2 * (x * x + y * y))};
-  const double length = std::sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
-  for (double& c : along) c /= length;
-  return {{static_cast<double>(p.position.x), static_cast<double>(p.position.y), static_cast<double>(p.position.z)},
-          along};
+  const Vec3 back = axes_of(p.orientation)[2];
+  return {vector_of(p.position), scaled(-1 / length(back), back)};
 }
 
 }  // namespace
@@ -25,8 +21,7 @@ Ray ray_of(const XrPosef& p) {
 Controllers::Controllers(const Session& session) : session_(session) {
   const Instance& xr = session.instance();
   hands_ = {xr.path("/user/hand/left"), xr.path("/user/hand/right")};
-  XrActionSetCreateInfo info{};
-  info.type = XR_TYPE_ACTION_SET_CREATE_INFO;
+  auto info = blank<XrActionSetCreateInfo>(XR_TYPE_ACTION_SET_CREATE_INFO);
   std::strcpy(info.actionSetName, "room");
   std::strcpy(info.localizedActionSetName, "Room");
   xr.check(xr.xr().xrCreateActionSet(xr.handle(), &info, &set_), "xrCreateActionSet");
@@ -34,14 +29,12 @@ Controllers::Controllers(const Session& session) : session_(session) {
   pick_ = action("pick_point", "Pick a point", XR_ACTION_TYPE_FLOAT_INPUT, true);
   aim_ = action("aim", "Aim", XR_ACTION_TYPE_POSE_INPUT, true);
   bind();
-  XrSessionActionSetsAttachInfo attach{};
-  attach.type = XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO;
+  auto attach = blank<XrSessionActionSetsAttachInfo>(XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO);
   attach.countActionSets = 1;
   attach.actionSets = &set_;
   xr.check(xr.xr().xrAttachSessionActionSets(session.handle(), &attach), "xrAttachSessionActionSets");
   for (std::size_t hand = 0; hand < 2; ++hand) {
-    XrActionSpaceCreateInfo space{};
-    space.type = XR_TYPE_ACTION_SPACE_CREATE_INFO;
+    auto space = blank<XrActionSpaceCreateInfo>(XR_TYPE_ACTION_SPACE_CREATE_INFO);
     space.action = aim_;
     space.subactionPath = hands_[hand];
     space.poseInActionSpace.orientation.w = 1;
@@ -56,8 +49,7 @@ Controllers::~Controllers() {
 }
 
 XrAction Controllers::action(const char* name, const char* title, XrActionType type, bool by_hand) const {
-  XrActionCreateInfo info{};
-  info.type = XR_TYPE_ACTION_CREATE_INFO;
+  auto info = blank<XrActionCreateInfo>(XR_TYPE_ACTION_CREATE_INFO);
   info.actionType = type;
   std::strcpy(info.actionName, name);
   std::strcpy(info.localizedActionName, title);
@@ -73,8 +65,7 @@ void Controllers::bind() const {
   const auto suggest = [&](const char* profile, std::vector<std::pair<XrAction, const char*>> bindings) {
     std::vector<XrActionSuggestedBinding> all;
     for (const auto& [to, source] : bindings) all.push_back({to, xr.path(source)});
-    XrInteractionProfileSuggestedBinding info{};
-    info.type = XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING;
+    auto info = blank<XrInteractionProfileSuggestedBinding>(XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
     info.interactionProfile = xr.path(profile);
     info.countSuggestedBindings = static_cast<std::uint32_t>(all.size());
     info.suggestedBindings = all.data();
@@ -95,43 +86,32 @@ void Controllers::bind() const {
 }
 
 bool Controllers::is_pressed(XrAction which) const {
-  XrActionStateGetInfo info{};
-  info.type = XR_TYPE_ACTION_STATE_GET_INFO;
+  auto info = blank<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
   info.action = which;
-  XrActionStateBoolean state{};
-  state.type = XR_TYPE_ACTION_STATE_BOOLEAN;
+  auto state = blank<XrActionStateBoolean>(XR_TYPE_ACTION_STATE_BOOLEAN);
   session_.instance().check(session_.instance().xr().xrGetActionStateBoolean(session_.handle(), &info, &state),
                             "xrGetActionStateBoolean");
   return state.isActive == XR_TRUE && state.currentState == XR_TRUE;
 }
 
 bool Controllers::is_pulled(std::size_t hand) const {
-  XrActionStateGetInfo info{};
-  info.type = XR_TYPE_ACTION_STATE_GET_INFO;
+  auto info = blank<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
   info.action = pick_;
   info.subactionPath = hands_[hand];
-  XrActionStateFloat state{};
-  state.type = XR_TYPE_ACTION_STATE_FLOAT;
+  auto state = blank<XrActionStateFloat>(XR_TYPE_ACTION_STATE_FLOAT);
   session_.instance().check(session_.instance().xr().xrGetActionStateFloat(session_.handle(), &info, &state),
                             "xrGetActionStateFloat");
   return state.isActive == XR_TRUE && state.currentState >= kPulled;
 }
 
 std::optional<Ray> Controllers::aim(std::size_t hand, XrTime time) const {
-  XrSpaceLocation where{};
-  where.type = XR_TYPE_SPACE_LOCATION;
-  session_.instance().check(session_.instance().xr().xrLocateSpace(aims_[hand], session_.space(), time, &where),
-                            "xrLocateSpace");
-  constexpr XrSpaceLocationFlags kKnown =
-      XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
-  if ((where.locationFlags & kKnown) != kKnown) return std::nullopt;
-  return ray_of(where.pose);
+  const auto pose = session_.locate(aims_[hand], time);
+  return pose ? std::optional(ray_of(*pose)) : std::nullopt;
 }
 
 Pressed Controllers::read(XrTime time) {
   const XrActiveActionSet active{set_, XR_NULL_PATH};
-  XrActionsSyncInfo sync{};
-  sync.type = XR_TYPE_ACTIONS_SYNC_INFO;
+  auto sync = blank<XrActionsSyncInfo>(XR_TYPE_ACTIONS_SYNC_INFO);
   sync.countActiveActionSets = 1;
   sync.activeActionSets = &active;
   session_.instance().check(session_.instance().xr().xrSyncActions(session_.handle(), &sync), "xrSyncActions");

@@ -56,8 +56,7 @@ Hands::Hands(const Session& session) : session_(session) {
   locate_ = xr.function<PFN_xrLocateHandJointsEXT>("xrLocateHandJointsEXT");
   const auto create = xr.function<PFN_xrCreateHandTrackerEXT>("xrCreateHandTrackerEXT");
   for (const Side side : {Side::Left, Side::Right}) {
-    XrHandTrackerCreateInfoEXT info{};
-    info.type = XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT;
+    auto info = blank<XrHandTrackerCreateInfoEXT>(XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
     info.hand = side == Side::Left ? XR_HAND_LEFT_EXT : XR_HAND_RIGHT_EXT;
     info.handJointSet = XR_HAND_JOINT_SET_DEFAULT_EXT;
     xr.check(create(session.handle(), &info, &trackers_[static_cast<std::size_t>(side)]), "xrCreateHandTrackerEXT");
@@ -71,26 +70,21 @@ Hands::~Hands() {
 }
 
 std::optional<assets::RecordedHand> Hands::at(Side side, XrTime time) const {
-  XrHandJointsLocateInfoEXT info{};
-  info.type = XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT;
+  auto info = blank<XrHandJointsLocateInfoEXT>(XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT);
   info.baseSpace = session_.space();
   info.time = time;
-  XrHandTrackingCapsulesStateFB shapes{};
-  shapes.type = XR_TYPE_HAND_TRACKING_CAPSULES_STATE_FB;
+  auto shapes = blank<XrHandTrackingCapsulesStateFB>(XR_TYPE_HAND_TRACKING_CAPSULES_STATE_FB);
   std::array<XrHandJointLocationEXT, XR_HAND_JOINT_COUNT_EXT> joints{};
-  XrHandJointLocationsEXT found{};
-  found.type = XR_TYPE_HAND_JOINT_LOCATIONS_EXT;
+  auto found = blank<XrHandJointLocationsEXT>(XR_TYPE_HAND_JOINT_LOCATIONS_EXT);
   // Though the headers of 1.0.20 say that it extends the question, the specification has it with the answer.
   found.next = capsules_ ? &shapes : nullptr;
   found.jointCount = static_cast<std::uint32_t>(joints.size());
   found.jointLocations = joints.data();
   session_.instance().check(locate_(trackers_[static_cast<std::size_t>(side)], &info, &found), "xrLocateHandJointsEXT");
   if (found.isActive != XR_TRUE) return std::nullopt;
-  constexpr XrSpaceLocationFlags kKnown =
-      XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
   assets::RecordedHand hand;
   for (std::size_t k = 0; k < joints.size(); ++k) {
-    if ((joints[k].locationFlags & kKnown) != kKnown) return std::nullopt;
+    if (!is_known(joints[k].locationFlags)) return std::nullopt;
     hand.joints[k] = joint(joints[k].pose, joints[k].radius);
   }
   if (capsules_)
@@ -106,8 +100,7 @@ std::optional<assets::RecordedMesh> Hands::mesh(Side side) const {
   if (!xr.has(XR_FB_HAND_TRACKING_MESH_EXTENSION_NAME)) return std::nullopt;
   const auto get = xr.function<PFN_xrGetHandMeshFB>("xrGetHandMeshFB");
   const XrHandTrackerEXT tracker = trackers_[static_cast<std::size_t>(side)];
-  XrHandTrackingMeshFB m{};
-  m.type = XR_TYPE_HAND_TRACKING_MESH_FB;
+  auto m = blank<XrHandTrackingMeshFB>(XR_TYPE_HAND_TRACKING_MESH_FB);
   xr.check(get(tracker, &m), "xrGetHandMeshFB");
   MeshArrays arrays;
   arrays.attach(m);

@@ -52,8 +52,7 @@ class RuntimeMaker : public vulkan::Maker {
   explicit RuntimeMaker(const Instance& xr) : xr_(xr) {}
 
   VkResult create_instance(const VkInstanceCreateInfo& wanted, VkInstance* made) override {
-    XrVulkanInstanceCreateInfoKHR info{};
-    info.type = XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR;
+    auto info = blank<XrVulkanInstanceCreateInfoKHR>(XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR);
     info.systemId = xr_.system();
     info.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
     info.vulkanCreateInfo = &wanted;
@@ -63,8 +62,7 @@ class RuntimeMaker : public vulkan::Maker {
   }
 
   VkPhysicalDevice physical_device(VkInstance instance) override {
-    XrVulkanGraphicsDeviceGetInfoKHR info{};
-    info.type = XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR;
+    auto info = blank<XrVulkanGraphicsDeviceGetInfoKHR>(XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR);
     info.systemId = xr_.system();
     info.vulkanInstance = instance;
     VkPhysicalDevice found = VK_NULL_HANDLE;
@@ -73,8 +71,7 @@ class RuntimeMaker : public vulkan::Maker {
   }
 
   VkResult create_device(VkPhysicalDevice physical, const VkDeviceCreateInfo& wanted, VkDevice* made) override {
-    XrVulkanDeviceCreateInfoKHR info{};
-    info.type = XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR;
+    auto info = blank<XrVulkanDeviceCreateInfoKHR>(XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR);
     info.systemId = xr_.system();
     info.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
     info.vulkanPhysicalDevice = physical;
@@ -151,9 +148,7 @@ void Instance::create() {
   if (enumerate == nullptr || create == nullptr || XR_FAILED(enumerate(nullptr, 0, &count, nullptr)))
     throw Error("no OpenXR runtime is active; start one, set XR_RUNTIME_JSON, or name one with --runtime",
                 ExitCode::NoDevice);
-  XrExtensionProperties blank{};
-  blank.type = XR_TYPE_EXTENSION_PROPERTIES;
-  std::vector<XrExtensionProperties> properties(count, blank);
+  std::vector<XrExtensionProperties> properties(count, blank<XrExtensionProperties>(XR_TYPE_EXTENSION_PROPERTIES));
   if (XR_FAILED(enumerate(nullptr, count, &count, properties.data())))
     throw Error("xrEnumerateInstanceExtensionProperties failed", ExitCode::NoDevice);
   std::set<std::string> there;
@@ -167,8 +162,7 @@ void Instance::create() {
   std::vector<const char*> names;
   for (const std::string& name : enabled_) names.push_back(name.c_str());
   const AndroidInfo android{kTypeInstanceCreateAndroid, nullptr, context().vm, context().activity};
-  XrInstanceCreateInfo info{};
-  info.type = XR_TYPE_INSTANCE_CREATE_INFO;
+  auto info = blank<XrInstanceCreateInfo>(XR_TYPE_INSTANCE_CREATE_INFO);
   info.next = context().vm != nullptr ? &android : nullptr;
   std::strcpy(info.applicationInfo.applicationName, "clothbench");
   info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 0);
@@ -187,27 +181,22 @@ void Instance::create() {
 }
 
 void Instance::find_system() {
-  XrInstanceProperties runtime{};
-  runtime.type = XR_TYPE_INSTANCE_PROPERTIES;
+  auto runtime = blank<XrInstanceProperties>(XR_TYPE_INSTANCE_PROPERTIES);
   check(functions_.xrGetInstanceProperties(instance_, &runtime), "xrGetInstanceProperties");
   const XrVersion v = runtime.runtimeVersion;
   runtime_name_ =
       fmt::format("{} {}.{}.{}", runtime.runtimeName, XR_VERSION_MAJOR(v), XR_VERSION_MINOR(v), XR_VERSION_PATCH(v));
-  XrSystemGetInfo get{};
-  get.type = XR_TYPE_SYSTEM_GET_INFO;
+  auto get = blank<XrSystemGetInfo>(XR_TYPE_SYSTEM_GET_INFO);
   get.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
   if (XR_FAILED(functions_.xrGetSystem(instance_, &get, &system_)))
     throw Error(runtime_name_ + ": no headset is connected (xrGetSystem)", ExitCode::NoDevice);
-  XrSystemHandTrackingPropertiesEXT hands{};
-  hands.type = XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT;
-  XrSystemProperties properties{};
-  properties.type = XR_TYPE_SYSTEM_PROPERTIES;
+  auto hands = blank<XrSystemHandTrackingPropertiesEXT>(XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT);
+  auto properties = blank<XrSystemProperties>(XR_TYPE_SYSTEM_PROPERTIES);
   if (has(XR_EXT_HAND_TRACKING_EXTENSION_NAME)) properties.next = &hands;
   check(functions_.xrGetSystemProperties(instance_, system_, &properties), "xrGetSystemProperties");
   system_name_ = properties.systemName;
   tracks_hands_ = hands.supportsHandTracking == XR_TRUE;
-  XrGraphicsRequirementsVulkan2KHR needs{};
-  needs.type = XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR;
+  auto needs = blank<XrGraphicsRequirementsVulkan2KHR>(XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR);
   check(functions_.xrGetVulkanGraphicsRequirements2KHR(instance_, system_, &needs),
         "xrGetVulkanGraphicsRequirements2KHR");
   if (needs.minApiVersionSupported > XR_MAKE_VERSION(1, 1, 0xffff))

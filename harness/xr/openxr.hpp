@@ -13,6 +13,21 @@
 /// Numbers and layouts are the specification's; names are ours, to avoid clashes with newer headers.
 namespace clothbench::xr {
 
+/// A structure of this type, all else 0.
+template <class T>
+T blank(XrStructureType type) {
+  T t{};
+  t.type = type;
+  return t;
+}
+
+/// Whether a place is known whole; flags of a space's location.
+inline bool is_known(XrSpaceLocationFlags flags) {
+  constexpr XrSpaceLocationFlags kKnown =
+      XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
+  return (flags & kKnown) == kKnown;
+}
+
 /// XR_KHR_loader_init_android and XR_KHR_android_create_instance: the same layout with different types.
 inline constexpr auto kTypeLoaderInitAndroid = static_cast<XrStructureType>(1000089000);
 inline constexpr auto kTypeInstanceCreateAndroid = static_cast<XrStructureType>(1000008000);

@@ -4,6 +4,7 @@
 
 #include "clothbench/record.hpp"
 #include "vulkan/make.hpp"
+#include "xr/pose.hpp"
 
 namespace clothbench::xr {
 namespace {
@@ -16,24 +17,8 @@ constexpr std::uint64_t kTimeout_ns = 10'000'000'000;
 }  // namespace
 
 render::Mat4 view_of(const XrPosef& pose, const Vec3& origin_m) {
-  const double x = static_cast<double>(pose.orientation.x), y = static_cast<double>(pose.orientation.y),
-               z = static_cast<double>(pose.orientation.z), w = static_cast<double>(pose.orientation.w);
-  // Columns are the eye's own axes in the scene.
-  const std::array<Vec3, 3> axis = {{{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-                                     {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-                                     {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}}};
-  const Vec3 eye = {static_cast<double>(pose.position.x) - origin_m[0],
-                    static_cast<double>(pose.position.y) - origin_m[1],
-                    static_cast<double>(pose.position.z) - origin_m[2]};
-  render::Mat4 m{};
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 3; ++column) {
-      m[4 * column + row] = axis[row][column];
-      m[12 + row] -= axis[row][column] * eye[column];
-    }
-  }
-  m[15] = 1;
-  return m;
+  const auto [right, up, back] = axes_of(pose.orientation);
+  return render::Camera{vector_of(pose.position), right, up, back}.view(origin_m);
 }
 
 render::Mat4 projection_of(const XrFovf& fov, double near_m, double far_m) {
@@ -92,11 +77,9 @@ void Painter::paint(const std::vector<XrView>& views) {
   std::array<std::uint32_t, 2> index{};
   for (std::size_t k = 0; k < 2; ++k) {
     const XrSwapchain images = session_.eyes()[k].swapchain;
-    XrSwapchainImageAcquireInfo acquire{};
-    acquire.type = XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO;
+    auto acquire = blank<XrSwapchainImageAcquireInfo>(XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO);
     xr.check(xr.xr().xrAcquireSwapchainImage(images, &acquire, &index[k]), "xrAcquireSwapchainImage");
-    XrSwapchainImageWaitInfo wait{};
-    wait.type = XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO;
+    auto wait = blank<XrSwapchainImageWaitInfo>(XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
     wait.timeout = XR_INFINITE_DURATION;
     xr.check(xr.xr().xrWaitSwapchainImage(images, &wait), "xrWaitSwapchainImage");
   }
@@ -108,8 +91,7 @@ void Painter::paint(const std::vector<XrView>& views) {
   check(vkQueueSubmit(device_->queue(), 1, &submit, fence_), "vkQueueSubmit");
   in_flight_ = true;
   for (const Eye& eye : session_.eyes()) {
-    XrSwapchainImageReleaseInfo release{};
-    release.type = XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO;
+    auto release = blank<XrSwapchainImageReleaseInfo>(XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO);
     xr.check(xr.xr().xrReleaseSwapchainImage(eye.swapchain, &release), "xrReleaseSwapchainImage");
   }
 }

@@ -97,16 +97,10 @@ std::optional<assets::RoomScan> RoomScanner::at(XrTime time) {
 }
 
 bool RoomScanner::locate(XrTime time, assets::RoomScan& scan) const {
-  XrSpaceLocation where{};
-  where.type = XR_TYPE_SPACE_LOCATION;
-  session_.instance().check(session_.instance().xr().xrLocateSpace(room_, session_.space(), time, &where),
-                            "xrLocateSpace");
-  constexpr XrSpaceLocationFlags kKnown =
-      XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
-  if ((where.locationFlags & kKnown) != kKnown) return false;
-  const XrPosef& p = where.pose;
-  scan.position_m = {p.position.x, p.position.y, p.position.z};
-  scan.orientation = {p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w};
+  const auto pose = session_.locate(room_, time);
+  if (!pose) return false;
+  scan.position_m = {pose->position.x, pose->position.y, pose->position.z};
+  scan.orientation = {pose->orientation.x, pose->orientation.y, pose->orientation.z, pose->orientation.w};
   return true;
 }
 

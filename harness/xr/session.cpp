@@ -13,13 +13,6 @@ constexpr XrPosef kHere{{0, 0, 0, 1}, {0, 0, 0}};
 /// Those the renderer's colours are right in: what it writes is linear.
 constexpr std::array kFormats = {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB};
 
-template <class T>
-T blank(XrStructureType type) {
-  T t{};
-  t.type = type;
-  return t;
-}
-
 }  // namespace
 
 Session::Session(const Instance& xr, std::shared_ptr<vulkan::Device> device, const SessionOptions& options)
@@ -244,6 +237,12 @@ std::vector<XrView> Session::views(XrTime time) const {
   constexpr XrViewStateFlags kKnown = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT;
   if ((state.viewStateFlags & kKnown) != kKnown || count != views.size()) views.clear();
   return views;
+}
+
+std::optional<XrPosef> Session::locate(XrSpace space, XrTime time) const {
+  auto where = blank<XrSpaceLocation>(XR_TYPE_SPACE_LOCATION);
+  xr_.check(xr_.xr().xrLocateSpace(space, space_, time, &where), "xrLocateSpace");
+  return is_known(where.locationFlags) ? std::optional(where.pose) : std::nullopt;
 }
 
 void Session::end_frame(const XrFrameState& frame, const std::vector<XrView>& views) {

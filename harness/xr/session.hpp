@@ -2,6 +2,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "clothbench/collider.hpp"
@@ -44,6 +45,8 @@ class Session {
   void end_frame(const XrFrameState&, const std::vector<XrView>& views);
   /// Both eyes in the scene's space; empty if they are not located.
   std::vector<XrView> views(XrTime) const;
+  /// A space's pose in the scene's; empty unless it is known.
+  std::optional<XrPosef> locate(XrSpace, XrTime) const;
 
   const Instance& instance() const { return xr_; }
   XrSession handle() const { return session_; }
