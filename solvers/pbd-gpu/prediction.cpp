@@ -85,8 +85,7 @@ double reach_m(const Scene& s) {
   const Cloth& c = s.cloth;
   const std::vector<double> x = initial_positions(s);
   double start = 0;
-  for (std::size_t v = 0; v < c.vertex_count(); ++v)
-    start = std::max(start, norm(minus(vertex_at(x, v), c.center_m)));
+  for (std::size_t v = 0; v < c.vertex_count(); ++v) start = std::max(start, norm(minus(vertex_at(x, v), c.center_m)));
   const double across = std::hypot(c.width_m, c.height_m), t = s.time.duration_s;
   const double speed = norm(c.initial_velocity_m_per_s) + norm(c.spin_rad_per_s) * across + grip_speed_m_per_s(s);
   return start + 2 * across + speed * t + 0.5 * norm(s.gravity_m_per_s2) * t * t;
