@@ -29,11 +29,7 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
                           Feature::Pins,    Feature::ClothMesh, Feature::UnevenGrid,
                           Feature::Regions, Feature::Bend,      Feature::StrainLimit};
   const int stage = frame.add_stage("Chains", needs & serves);
-  TetherTable tethers;
-  if (frame.settings()["tethers"].get<bool>())
-    tethers = tether_table(scene);
-  else
-    tethers.why_not = "setting tethers=false";
+  const TetherTable tethers = tether_table(scene, frame.settings()["tethers"].get<bool>());
   tethers_ = tethers.a_vertex;
   if (tethers_ == 0) frame.leave_out("tethers", tethers.why_not);
   if (!needs.has(Feature::Damping)) frame.leave_out("damping", "the scene has none");

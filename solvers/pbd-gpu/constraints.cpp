@@ -16,7 +16,8 @@ namespace {
 constexpr double kFlat = 1e-6;  // of the longest side
 
 /// Why a scene has no tethers, whatever its shape; empty: it may have some.
-std::string why_no_tethers(const Scene& scene) {
+std::string why_no_tethers(const Scene& scene, bool wanted) {
+  if (!wanted) return "setting tethers=false";
   if (!scene.grips.vertices.empty()) return "hands move what holds the cloth";
   return scene.pins.vertices.empty() ? "nothing is pinned" : "";
 }
@@ -222,9 +223,9 @@ double eigenvalue_bound(const std::vector<double>& mass,
   return most;
 }
 
-Tethers tethers_of(const Scene& scene) {
+Tethers tethers_of(const Scene& scene, bool wanted) {
   Tethers t;
-  t.why_not = why_no_tethers(scene);
+  t.why_not = why_no_tethers(scene, wanted);
   if (!t.why_not.empty()) return t;
   t.to = rectangles(scene);
   if (t.to.size() > Tethers::kMost) t.to.resize(Tethers::kMost);
@@ -235,9 +236,9 @@ Tethers tethers_of(const Scene& scene) {
   return t;
 }
 
-TetherTable tether_table(const Scene& scene) {
+TetherTable tether_table(const Scene& scene, bool wanted) {
   TetherTable t;
-  t.why_not = why_no_tethers(scene);
+  t.why_not = why_no_tethers(scene, wanted);
   if (t.why_not.empty() && !scene.material.regions.empty()) t.why_not = "its stiffness is not the same everywhere";
   if (t.why_not.empty() && !scene.cloth.mass_factors.empty() && scene.material.membrane_stiffness_N_per_m)
     t.why_not = "masses are scaled";

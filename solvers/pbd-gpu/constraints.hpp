@@ -65,8 +65,8 @@ struct Tethers {
 };
 /// Tethers are valid where everything that holds the cloth is static and the exact solution stretches less: an
 /// inextensible cloth, or one whose springs stretch far less than the slack, 5 rho g L / Y for its own weight and
-/// 2 v0 / c for its speed.
-Tethers tethers_of(const Scene&);
+/// 2 v0 / c for its speed. `wanted`: by the settings.
+Tethers tethers_of(const Scene&, bool wanted = true);
 
 /// The same vertex by vertex, for chains. Each leads to the nearest vertex of a connected group of pinned vertices.
 struct TetherTable {
@@ -76,7 +76,7 @@ struct TetherTable {
 };
 /// In a grid or a flat mesh with a convex border, reach is the distance at rest. Else it is the path length along
 /// edges, which is longer than that through triangles, so these tethers are a little looser.
-TetherTable tether_table(const Scene&);
+TetherTable tether_table(const Scene&, bool wanted = true);
 
 /// True if tethers keep every vertex within reach of pinned ones.
 bool is_tethered(const Scene&, const nlohmann::json& settings);

@@ -1,8 +1,10 @@
 #include "crumpled.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
+
+#include "clothbench/vector.hpp"
+#include "constraints.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -25,8 +27,7 @@ bool starts_crumpled(const Scene& scene) {
   const std::vector<double> x = initial_positions(scene);
   const std::vector<Edge> links = edges(scene.cloth, EdgeKind::Structural);
   return std::any_of(links.begin(), links.end(), [&](const Edge& e) {
-    const double l =
-        std::hypot(x[3 * e.a] - x[3 * e.b], x[3 * e.a + 1] - x[3 * e.b + 1], x[3 * e.a + 2] - x[3 * e.b + 2]);
+    const double l = norm(minus(vertex_at(x, e.a), vertex_at(x, e.b)));
     return l < kShort * e.rest_m || l > kLong * e.rest_m;
   });
 }

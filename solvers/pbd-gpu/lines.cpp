@@ -12,19 +12,12 @@ namespace {
 /// are. A desk takes 3.4 times as long with 32, and 256 win nothing (H200).
 constexpr std::uint32_t kThreadsWithContact = 128;
 
-Tethers tethers_if(bool wanted, const Scene& scene) {
-  if (wanted) return tethers_of(scene);
-  Tethers none;
-  none.why_not = "setting tethers=false";
-  return none;
-}
-
 }  // namespace
 
 Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts, bool tension, bool couples)
     : frame_(frame),
       scene_(scene),
-      tethers_(tethers_if(frame.settings()["tethers"].get<bool>(), scene)),
+      tethers_(tethers_of(scene, frame.settings()["tethers"].get<bool>())),
       taut_(taut_chains(scene)),
       iterations_(frame.settings()["iterations"].get<std::uint32_t>()),
       batch_(frame.settings()["batch"].get<std::uint32_t>()),

@@ -6,6 +6,7 @@
 #include <set>
 #include <spirv/unified1/spirv.hpp>
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench::vulkan {
@@ -118,12 +119,9 @@ const std::vector<Profile>& profiles() {
 }  // namespace
 
 const Profile& find_profile(const std::string& name) {
-  std::string known;
-  for (const Profile& p : profiles()) {
+  for (const Profile& p : profiles())
     if (p.name == name) return p;
-    known += (known.empty() ? "" : ", ") + p.name;
-  }
-  throw Error("device profile \"" + name + "\": expected one of " + known);
+  throw Error("device profile \"" + name + "\": expected one of " + joined(profile_names()));
 }
 
 std::vector<std::string> profile_names() {
