@@ -3,6 +3,7 @@
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
 #include "metrics/metric.hpp"
+#include "truth/mesh_case.hpp"
 
 namespace clothbench {
 namespace {
@@ -13,27 +14,20 @@ truth::ReferenceCase required_case(const Scene& scene) {
   return *known;
 }
 
-truth::LatticeSampler sampler_of(const Scene& scene, const truth::MaterialLattice& lattice) {
-  const Cloth& c = scene.cloth;
-  std::vector<double> rest;
-  for (int j = 0; j < c.rows; ++j)
-    for (int i = 0; i < c.columns; ++i) {
-      // Puts the border exactly on the border, regardless of rounding.
-      rest.push_back(i + 1 == c.columns ? c.width_m : i * c.du());
-      rest.push_back(j + 1 == c.rows ? c.height_m : j * c.dv());
-    }
-  std::vector<std::uint32_t> corners;
-  for (const auto& t : triangles(c)) corners.insert(corners.end(), t.begin(), t.end());
-  return {lattice, rest, corners};
-}
-
-/// Strain of every edge along u, row by row.
+/// Strain of every edge along u, row by row; of every edge of a mesh.
 std::vector<double> strains(const Cloth& c, const std::vector<double>& x) {
   std::vector<double> out;
+  const auto strain = [&](std::size_t a, std::size_t b, double rest_m) {
+    return length(minus(vertex_at(x, b), vertex_at(x, a))) / rest_m - 1;
+  };
+  if (c.mesh) {
+    for (const Edge& e : c.mesh->edges) out.push_back(strain(e.a, e.b, e.rest_m));
+    return out;
+  }
   for (int j = 0; j < c.rows; ++j)
     for (int i = 0; i + 1 < c.columns; ++i) {
       const auto a = static_cast<std::size_t>(j * c.columns + i);
-      out.push_back(length(minus(vertex_at(x, a + 1), vertex_at(x, a))) / c.du() - 1);
+      out.push_back(strain(a, a + 1, c.du()));
     }
   return out;
 }
@@ -44,7 +38,7 @@ TruthJudge::TruthJudge(const Scene& scene)
     : scene_(scene),
       case_(required_case(scene)),
       lattice_(scene.cloth.width_m, scene.cloth.height_m),
-      sampler_(sampler_of(scene, lattice_)) {}
+      sampler_(truth::sampler_of(scene.cloth)) {}
 
 double TruthJudge::lattice_e2(const std::vector<double>& a, const std::vector<double>& b) const {
   return truth::lattice_rms_error(lattice_, a, b, lattice_.longer_side_m());
@@ -70,6 +64,12 @@ TruthErrors TruthJudge::judge(int frame, const ClothState& state) const {
   out.stretch_p99 = stretch.p99;
   out.stretch_max = stretch.greatest;
   return out;
+}
+
+double TruthJudge::ranking_error(const std::vector<double>& times_s, const std::vector<TruthErrors>& errors) const {
+  std::vector<double> by;
+  for (const TruthErrors& e : errors) by.push_back(case_.by_quantity ? e.quantity_error : e.e2);
+  return case_.settles || by.size() < 2 ? by.back() : truth::time_rms(times_s, by);
 }
 
 double TruthJudge::space_error(int frame) const {
@@ -104,7 +104,8 @@ double TruthJudge::space_error() const {
 
 bool keeps_energy(const Scene& s) {
   const FeatureSet loses =
-      FeatureSet{Feature::Damping, Feature::Shear, Feature::Bend, Feature::MovingPins} | kColliderFeatures;
+      FeatureSet{Feature::Damping, Feature::Shear, Feature::Bend, Feature::MovingPins, Feature::ClothMesh} |
+      kColliderFeatures;
   return (s.needs & loses).empty() && s.gravity_m_per_s2 != Vec3{} && s.cloth.span_m == 0 &&
          s.cloth.drape_radius_m == 0;
 }

@@ -26,8 +26,11 @@ class TruthJudge {
   explicit TruthJudge(const Scene&);
   const truth::ReferenceCase& reference_case() const { return case_; }
   TruthErrors judge(int frame, const ClothState&) const;
+  /// The ranking error of frames judged at these times, as a run's `truth_error`: RMS over time, at rest the last.
+  double ranking_error(const std::vector<double>& times_s, const std::vector<TruthErrors>&) const;
   /// The ranking error (see ReferenceCase) of the mesh's own truth against the continuum: a lower bound that no smaller
-  /// time step removes. NaN for a sheet that shears, whose continuum has no known answer.
+  /// time step removes. NaN for a sheet that shears, whose continuum has no known answer, and for a mesh, which has no
+  /// truth of its own (see compute_reference).
   double space_error() const;
 
  private:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string_view>
 
 #include "report/grid.hpp"
 #include "report/report.hpp"
@@ -21,6 +22,14 @@ constexpr double kRealTime_ms_per_s = 1000;  // a 72 Hz frame simulates 1/72 s i
 
 std::string reference_case_of(const json& scenario) {
   return scenario.is_object() ? scenario.value(json::json_pointer("/truth/case"), std::string()) : "";
+}
+
+/// "swing-strip-32" of the mesh "swing-strip-mesh-32".
+std::string grid_scene_of(std::string scene, const json& scenario) {
+  constexpr std::string_view kMesh = "-mesh";
+  const std::size_t at = scene.find(kMesh);
+  if (at == std::string::npos || !scenario.contains(json::json_pointer("/cloth/mesh"))) return "";
+  return scene.erase(at, kMesh.size());
 }
 
 WorkPoint point_of(const RunRecord& c, const json& scenario) {
@@ -193,6 +202,7 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<RunRecord>& runs,
     if (at == out.end()) {
       out.push_back({c.header.scene, known, truth::ranking_of(known), {}});
       at = out.end() - 1;
+      at->grid_scene = grid_scene_of(c.header.scene, scenario);
     }
     at->points.push_back(point_of(c, scenario));
     at->points.back().not_ranked = stiffness_flag(materials, c);
@@ -258,7 +268,8 @@ Table work_table(const std::vector<WorkDiagram>& diagrams) {
                   "Times: ms of wall time per simulated second, with pipelined frames (two in flight) where the solver "
                   "can; in brackets substeps × iterations. Fenced: each frame from submission to fence; the next "
                   "starts after it. GPU: by the device's own clock. Errors: against the exact solution of the same "
-                  "mesh. In real time: a frame of 1/72 s takes at most 1/72 s. ≤: at the floor below which solvers are "
+                  "grid; of triangle meshes, against the continuum's. In real time: a frame of 1/72 s takes at most "
+                  "1/72 s. ≤: at the floor below which solvers are "
                   "not distinguished, which is three times the reference's uncertainty or the error of the mesh. "
                   "Failed: runs without a finite error. Not run: settings that need more work than the solver's time "
                   "on the scene allowed; each result file has the reason. A refused scene ranks no solver; the next "
@@ -281,10 +292,11 @@ Table truth_table(const std::vector<WorkDiagram>& diagrams) {
       {"", "order conservative", &WorkDiagram::order_conservative, order},
       {"", "ranks", [](auto& d) { return d.refused().empty() ? "yes" : "REFUSED: " + d.refused(); }}}
       .table({"Reference cases and their reference solutions",
-              "Space: distance of the same mesh's exact solution from the continuum's. U_ref: uncertainty of the "
-              "reference solution (two integrators, three time steps) in the reference case's quantity, over its "
-              "scale. The distance of the reference solution from the exact one must be below U_ref. Order: "
-              "observed; 2 is declared. –: all time steps agree.",
+              "Space: distance of the same grid's exact solution, or of the same triangle mesh's reference solution, "
+              "from the continuum's. U_ref: uncertainty of the reference solution (two integrators, three time steps) "
+              "in the reference case's quantity, over its scale. On a grid, the distance of the reference solution "
+              "from the exact one must be below U_ref; on a mesh it is an error of the mesh. Order: observed; 2 is "
+              "declared. –: all time steps agree.",
               {}},
              diagrams);
 }
@@ -316,6 +328,7 @@ json work_json(const std::vector<WorkDiagram>& diagrams) {
             {"reference_order_conservative", In::Both, &WorkDiagram::order_conservative},
             {"rank_floor", In::Both, &WorkDiagram::rank_floor},
             {"not_ranked", In::Both, &WorkDiagram::flagged},
+            {"grid_scene", In::Json, [](auto& d) { return d.grid_scene.empty() ? absent() : Value(d.grid_scene); }},
             {"points", In::Both, [&](auto& d) { return points.json(d.points); }}})
       .json(diagrams);
 }

@@ -40,6 +40,7 @@ struct WorkDiagram {
   double truth_distance = kMissing, order_bdf2 = kMissing, order_conservative = kMissing;  ///< of the reference
   StiffnessNeed need = {};                          ///< stiffnesses that the exact solution depends on
   std::map<std::string, std::string> flagged = {};  ///< solvers without a ranked setting, and why
+  std::string grid_scene = {};  ///< of a triangle mesh: name of the same scene as a grid; "" for a grid
   double floor() const { return 3 * uncertainty; }  ///< uncertainty floor, 3 U_ref; NaN if unknown
   /// Errors below it are not distinguished: the greater of floor() and space_error, of those known; 0 if neither is.
   double rank_floor() const;

@@ -11,13 +11,14 @@ namespace clothbench {
 /// The quantity of a scene's reference case as computed by the solver `reference`, with its uncertainty, beside the
 /// truth.
 struct ReferenceResult {
-  double truth = 0;                               ///< from the reference case, same mesh
+  double truth = 0;                               ///< from the reference case, same grid; of a mesh, the continuum's
   double scale = 1;                               ///< of the quantity: errors below are over it
   double value = 0;                               ///< extrapolated, mean of both integrators
   double uncertainty = 0;                         ///< U_ref / scale
   double order_bdf2 = 0, order_conservative = 0;  ///< observed; NaN where there is none
   double truth_distance = 0;                      ///< |value - truth| / scale
-  double space_error = 0;  ///< of the truth: this mesh against the continuum, in the ranking error
+  double space_error =
+      0;  ///< this grid's truth, or the finest run of this mesh, against the continuum, in the ranking error
   int least_substeps = 0;  ///< on the coarsest of three levels, each with twice as many as the one before
 
   /// Names as in a run's summary: reference_value, reference_uncertainty, ... truth_space_error.
@@ -39,8 +40,9 @@ struct ReferenceRules {
 ///   U = max(Fs |f1 - f2|/(2^p - 1), |f*_A - f*_B|, |f(tol) - f(tol/10)|),
 /// where f1 is the finest, and Fs = 1.25, or Fs = 3 with p = 2 if the observed p is off by more than 0.5. A shape at
 /// rest does not depend on the step: f* = f1, U = max(|f1 - f2|, |f1_A - f1_B|, tolerance, change of f1 in the last
-/// tenth of the run), and no order is observed. The scene's rows move alike, so only two of them are run. Throws Error
-/// if the scene has no reference case, if the build has no solver `reference`, or if a run of it fails.
+/// tenth of the run), and no order is observed. The rows of a grid move alike, so only two of them are run. A triangle
+/// mesh has no truth of its own. Its space_error is that of the finest runs, the greater of both integrators. Throws
+/// Error if the scene has no reference case, if the build has no solver `reference`, or if a run of it fails.
 ReferenceResult compute_reference(const Scene&, const ReferenceRules& = {});
 
 /// Results for these scenes by their SHA-256. Those missing from `cache` are computed on all cores and added to it (one

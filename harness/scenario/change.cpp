@@ -79,7 +79,8 @@ class Changer {
     if (pose.contains("over_table")) refuse("a sheet over a table");
     if (c_.mirrors() && (pose.contains("drape") || pose.contains("span_m")))
       refuse("a sheet that does not start flat, by a reflection,");
-    scale_list(j["size_m"], c_.length);
+    if (j.contains("mesh") && !j["mesh"].contains("drawn")) refuse("a mesh of a file");
+    scale_list(j.contains("mesh") ? j["mesh"]["drawn"]["size_m"] : j["size_m"], c_.length);
     scale(j, "areal_density_kg_per_m2", c_.mass / (c_.length * c_.length));
     pose["center_m"] = place(pose["center_m"]);
     for (const char* axis : {"axis_u", "axis_v"}) pose[axis] = c_.turned(vec3(pose[axis]));

@@ -84,6 +84,8 @@ std::vector<Point> drawn_points(const DrawnSheet& d) {
     for (int j = 0; j <= rows; ++j)
       if (i == 0 || j == 0 || i == d.cells || j == rows)
         p.push_back({i == d.cells ? d.width_m : i * cell, d.height_m * j / rows});
+  for (int j = 0; d.clamp && j < rows; ++j) p.push_back({cell, d.height_m * (j + 0.5) / rows});
+  const double first = d.clamp ? cell : 0;
   const int far = 2 * std::max(d.cells, rows);
   const double c = std::cos(d.angle_rad), s = std::sin(d.angle_rad);
   for (int i = -far; i <= far; ++i)
@@ -91,7 +93,7 @@ std::vector<Point> drawn_points(const DrawnSheet& d) {
       const double u = (i + 0.3) * cell, v = (j + 0.4) * cell;
       const double x = d.width_m / 2 + c * u - s * v + d.share * cell * draw(),
                    y = d.height_m / 2 + s * u + c * v + d.share * cell * draw();
-      if (std::min({x, y, d.width_m - x, d.height_m - y}) > 0.45 * cell) p.push_back({x, y});
+      if (std::min({x - first, y, d.width_m - x, d.height_m - y}) > 0.45 * cell) p.push_back({x, y});
     }
   return p;
 }
@@ -106,6 +108,7 @@ ClothMesh drawn_mesh(const DrawnSheet& d) {
   ClothMesh mesh = cloth_mesh(std::move(at), delaunay(p, cell), "a drawn sheet");
   for (std::uint32_t v = 0; v < p.size(); ++v) {
     const auto& [x, y] = p[v];
+    if (d.clamp && x <= cell) mesh.groups["clamp"].push_back(v);
     if (x == 0) mesh.groups["u0"].push_back(v);
     if (x == d.width_m) mesh.groups["u1"].push_back(v);
     if (y == 0) mesh.groups["v0"].push_back(v);
@@ -123,6 +126,7 @@ ClothMesh read_drawn_mesh(const nlohmann::json& j, const std::string& source) {
   d.angle_rad = j.value("turned_deg", 0.0) * std::numbers::pi / 180;
   d.share = j.value("share", 0.0);
   d.seed = j.value("seed", 1u);
+  d.clamp = j.value("clamp", false);
   const double vertices = (d.cells + 1.0) * (d.height_m / d.width_m * d.cells + 1);
   if (!(vertices <= kMost))
     refuse(source, "/cloth/mesh/drawn/cells",

@@ -14,10 +14,12 @@ struct DrawnSheet {
   double angle_rad = 0;    ///< of the lattice that inner vertices are of
   double share = 0;        ///< of a cell by which each of them is moved at most, 0 to 0.4
   std::uint32_t seed = 1;  ///< of those moves
+  bool clamp = false;      ///< a second line of vertices, a cell from x = 0: held with those of x = 0, it is a clamp
 };
 
 /// Delaunay triangles (Bowyer 1981; Watson 1981) of a sheet in the plane z = 0, x from 0 to width_m and y from 0 to
-/// height_m. Groups: its borders "u0" (x = 0), "u1", "v0" (y = 0) and "v1". The same sheet has the same mesh.
+/// height_m. Groups: its borders "u0" (x = 0), "u1", "v0" (y = 0) and "v1", and the two lines "clamp". The same sheet
+/// has the same mesh.
 ClothMesh drawn_mesh(const DrawnSheet&);
 
 /// Reads `cloth.mesh.drawn`: the same sheet with its middle in the origin. Throws Error with the JSON pointer where it

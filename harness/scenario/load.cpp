@@ -293,8 +293,6 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
              "expected a cloth with a membrane_stiffness_N_per_m; an inextensible one has a limit of 0");
     s.material.strain_limit = material["strain_limit"].get<double>();
   }
-  if (s.cloth.mesh && scenario.contains("truth"))
-    refuse(source, "/truth", "expected a cloth that is a grid; reference cases are defined for grids only");
   read_irregular(scenario, s, source);
   read_self_collision(scenario["cloth"], s.cloth, source);
   s.pins = read_pins(scenario["pins"], s.cloth, source);

@@ -6,6 +6,8 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
+#include "truth/lattice.hpp"
+#include "truth/mesh_case.hpp"
 #include "truth/pull_wave.hpp"
 #include "truth/reference_case.hpp"
 
@@ -29,7 +31,10 @@ struct Strip {
   Vec3 start{}, along{}, up{};  // middle of edge u0; axis_u; against gravity
 
   explicit Strip(const Scene& s)
-      : scene(s), links(s.cloth.columns - 1), length_m(s.cloth.width_m), g(length(s.gravity_m_per_s2)) {
+      : scene(s),
+        links(s.cloth.mesh ? MaterialLattice::kSide - 1 : s.cloth.columns - 1),
+        length_m(s.cloth.width_m),
+        g(length(s.gravity_m_per_s2)) {
     along = s.cloth.axis_u;
     start = s.cloth.center_m - (s.cloth.span_m > 0 ? s.cloth.span_m : length_m) / 2 * along;
     if (g > 0) up = (-1 / g) * s.gravity_m_per_s2;
@@ -68,6 +73,12 @@ struct Strip {
     need(scene.pins.vertices == expected && scene.grips.vertices.empty(), what);
   }
   void need_inextensible() const { need(!scene.material.membrane_stiffness_N_per_m, "an inextensible material"); }
+  /// Of the membrane: at most this share of the length by the strip's own weight.
+  void need_stiff(double strain, const std::string& text) const {
+    const auto Y = scene.material.membrane_stiffness_N_per_m;
+    need(!Y || scene.cloth.areal_density_kg_per_m2 * g * length_m / *Y <= strain,
+         "a membrane that its own weight stretches by " + text + " at most");
+  }
   double need_stiffness() const {
     need(scene.material.membrane_stiffness_N_per_m.has_value(), "a membrane stiffness in N/m");
     return *scene.material.membrane_stiffness_N_per_m;
@@ -76,7 +87,10 @@ struct Strip {
   void need_damping(bool damped) const {
     need(scene.needs.has(Feature::Damping) == damped, damped ? "damping, to come to rest" : "no damping");
   }
-  std::vector<std::uint32_t> edge(const char* name) const { return edge_vertices(scene.cloth, name); }
+  bool mesh() const { return scene.cloth.mesh != nullptr; }
+  std::vector<std::uint32_t> edge(const char* name) const {
+    return mesh() ? vertices_up_to(scene.cloth, 0) : edge_vertices(scene.cloth, name);
+  }
   Vec3 at(double x, double z) const { return start + x * along + z * up; }
   double time_s(int frame) const { return scene.time.at(frame); }
   std::vector<double> times_s() const {

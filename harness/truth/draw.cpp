@@ -41,12 +41,14 @@ class Drawing {
     sized.length = length_ / old;
     sized.time = old_g > 0 && known != "free-fall" ? std::sqrt(sized.length * old_g / g_) : 1;
     j_ = change_scene(std::move(j_), sized, scene_.source);
+    if (scene_.cloth.mesh) mesh();
     if (old_g > 0) set_gravity(scaled(g_ / old_g, scene_.gravity_m_per_s2));
     j_["cloth"]["areal_density_kg_per_m2"] = density_;
     const bool keeps_rate = known != "two-hand-pull" && known != "pulled-sheet";
     if (known == "free-fall") draw_stiffness(100);
     if (known == "heavy-strip")
       draw_stiffness(std::max(100.0, 100 * density_ * g_ * length_));  // strains of 1 % at most
+    if (known == "swing-strip") as_stiff();
     if (known == "catenary") span();
     if (known == "cantilever") bending();
     if (!keeps_rate) pull();
@@ -78,6 +80,16 @@ class Drawing {
   /// Within a factor of about two of the scene's: softer sheets fold, and stiffer ones take long to integrate.
   void weight_over_stiffness() { draw_stiffness(250 * density_ * g_ * length_, 1000 * density_ * g_ * length_); }
 
+  void mesh() {
+    json& drawn = j_["cloth"]["mesh"]["drawn"];
+    const double turned_deg = dice_.between(0, 90);
+    const int seed = dice_.whole(1, 1000);
+    note("turned_deg", turned_deg);
+    note("mesh_seed", seed);
+    drawn["turned_deg"] = turned_deg;
+    drawn["seed"] = seed;
+  }
+
   void span() {
     const double share = dice_.between(0.5, 0.95);
     note("span_over_length", share);
@@ -85,10 +97,16 @@ class Drawing {
   }
 
   void bending() {
-    const double free_m = length_ * (1 - 1.0 / (scene_.cloth.columns - 1)), gamma = dice_.log_between(1, 1000);
+    const bool mesh = scene_.cloth.mesh != nullptr;
+    const int cells = mesh ? j_["cloth"]["mesh"]["drawn"]["cells"].get<int>() : scene_.cloth.columns - 1;
+    const double free_m = length_ * (1 - 1.0 / cells), gamma = dice_.log_between(1, 1000);
     note("weight_over_bending", gamma);
     j_["material"]["bending_rigidity_N_m"] = density_ * g_ * free_m * free_m * free_m / gamma;
-    // As stiff against its weight as it was: a strip that the reference case takes for inextensible.
+    as_stiff();
+  }
+
+  /// As stiff against its weight as it was: a strip that the reference case takes for inextensible.
+  void as_stiff() {
     const double weight = density_ * g_ * length_,
                  before = scene_.cloth.areal_density_kg_per_m2 * norm(scene_.gravity_m_per_s2) * scene_.cloth.width_m;
     if (const auto Y = scene_.material.membrane_stiffness_N_per_m)

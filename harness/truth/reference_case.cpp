@@ -22,6 +22,10 @@
 namespace clothbench::truth {
 namespace {
 
+// Inextensible triangles lock: a mesh is elastic, and so stiff that its stretch is small beside its own error.
+constexpr double kMeshStrain = 1e-3;
+constexpr const char* kMeshStrainText = "1e-3";
+
 /// Distance of the last column from the middle of edge u0 along `direction`.
 std::function<double(const Columns&)> tip(const Vec3& start, const Vec3& direction) {
   return [=](const Columns& c) { return dot(c.back() - start, direction); };
@@ -94,7 +98,10 @@ ReferenceCase swing_strip(const Strip& s) {
   s.need_flat();
   s.need_rest();
   s.need_pins(s.edge("u0"), "edge u0 pinned and nothing else held");
-  s.need_inextensible();
+  if (s.mesh())
+    s.need_stiff(kMeshStrain, kMeshStrainText);
+  else
+    s.need_inextensible();
   s.need_no_bending();
   s.need_damping(false);
   s.need_even_masses();
@@ -122,7 +129,8 @@ ReferenceCase swing_strip(const Strip& s) {
   // Four times as many links are nearer to the continuum by 16; made only if asked for.
   const auto fine = std::make_shared<States>();
   known.continuum = [s, fine](double share, int frame) {
-    if (fine->empty()) *fine = swing({std::min(4 * s.links, 512), s.length_m, s.g, 0.5, 0}, s.times_s(), 1e-9);
+    if (fine->empty())
+      *fine = swing({std::min((s.mesh() ? 8 : 4) * s.links, 512), s.length_m, s.g, 0.5, 0}, s.times_s(), 1e-9);
     const auto [x, z] = chain_position_m(fine->at(static_cast<std::size_t>(frame)), share);
     return s.at(x, z);
   };
@@ -143,6 +151,12 @@ ReferenceCase heavy_strip(const Strip& s) {
   known.quantity_name = "stretch of the strip";
   known.quantity_scale = hang_displacement_m(strip, s.length_m);
   known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, s.along) - s.length_m; };
+  if (s.mesh()) {
+    // The pinned edge keeps its width. The half at it is therefore stiffer than a strip, the other one is not.
+    known.quantity_name = "stretch of the lower half";
+    known.quantity_scale -= hang_displacement_m(strip, s.length_m / 2);
+    known.quantity = [s](const Columns& c) { return dot(c.back() - c[c.size() / 2], s.along) - s.length_m / 2; };
+  }
   known.columns = [s, strip](int) {
     Columns out;
     for (int i = 0; i <= s.links; ++i)
@@ -186,18 +200,16 @@ ReferenceCase catenary(const Strip& s) {
 }
 
 ReferenceCase cantilever(const Strip& s) {
-  constexpr double kMostStrain = 1e-7;
   s.need_level();
   s.need_flat();
   s.need(s.links >= 2, "3 columns or more");
-  s.need_pins(clamp_vertices(s.scene.cloth, "u0"), "edge u0 clamped and nothing else held");
+  if (!s.mesh()) s.need_pins(clamp_vertices(s.scene.cloth, "u0"), "edge u0 clamped and nothing else held");
   s.need_damping(true);
   s.need(s.scene.needs.has(Feature::Bend), "a bending rigidity");
   s.need_even_masses();
-  const double cell = s.scene.cloth.du(), free_m = s.length_m - cell,
+  s.mesh() ? s.need_stiff(kMeshStrain, kMeshStrainText) : s.need_stiff(1e-7, "1e-7");
+  const double cell = s.mesh() ? need_mesh_clamp(s) : s.scene.cloth.du(), free_m = s.length_m - cell,
                weight = s.scene.cloth.areal_density_kg_per_m2 * s.g;
-  const auto Y = s.scene.material.membrane_stiffness_N_per_m;
-  s.need(!Y || weight * free_m / *Y <= kMostStrain, "a membrane that its own weight stretches by 1e-7 at most");
   const double gamma = weight * free_m * free_m * free_m / s.scene.material.bending_rigidity_N_m;
   ReferenceCase known = s.reference_case();
   known.settles = true;
@@ -299,6 +311,18 @@ ReferenceCase two_hand_pull(const Strip& s) {
 
 }  // namespace
 
+namespace {
+
+ReferenceCase mesh_case(const Strip& s) {
+  need_rectangle(s);
+  if (s.scene.reference_case == "swing-strip") return on_mesh(s, swing_strip(s));
+  if (s.scene.reference_case == "heavy-strip") return on_mesh(s, heavy_strip(s));
+  s.need(s.scene.reference_case == "cantilever", "a cloth that is a grid");
+  return on_mesh(s, cantilever(s));
+}
+
+}  // namespace
+
 std::optional<ReferenceCase> reference_case_of(const Scene& scene) {
   if (scene.reference_case.empty()) return std::nullopt;
   const Strip s(scene);
@@ -309,6 +333,7 @@ std::optional<ReferenceCase> reference_case_of(const Scene& scene) {
   if (scene.reference_case == "capstan") return capstan(s);
   if (scene.reference_case == "atwood") return atwood(s);
   s.need((scene.needs & kColliderFeatures).empty(), "no collider");
+  if (scene.cloth.mesh) return mesh_case(s);
   if (scene.reference_case == "free-fall") return free_fall(s);
   if (scene.reference_case == "pendulum") return pendulum(s);
   if (scene.reference_case == "swing-strip") return swing_strip(s);
@@ -331,9 +356,12 @@ std::string ranking_of(const std::string& known) {
 
 std::vector<Vec3> column_means(const Cloth& c, const std::vector<double>& values) {
   if (values.size() != 3 * c.vertex_count()) throw Error("argument values: expected 3 for each vertex");
-  Columns out(static_cast<std::size_t>(c.columns));
-  for (std::size_t v = 0; v < c.vertex_count(); ++v)
-    for (std::size_t k = 0; k < 3; ++k) out[v % out.size()][k] += values[3 * v + k] / c.rows;
+  const std::vector<double> on_lattice = c.mesh ? sampler_of(c).sample(values) : std::vector<double>();
+  const std::vector<double>& of = c.mesh ? on_lattice : values;
+  Columns out(static_cast<std::size_t>(c.mesh ? MaterialLattice::kSide : c.columns));
+  const double rows = c.mesh ? MaterialLattice::kSide : c.rows;
+  for (std::size_t v = 0; v < of.size() / 3; ++v)
+    for (std::size_t k = 0; k < 3; ++k) out[v % out.size()][k] += of[3 * v + k] / rows;
   return out;
 }
 

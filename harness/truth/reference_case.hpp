@@ -21,7 +21,8 @@ struct Threshold {
 /// The exact solution of one scene with a `truth` block; all parameters are the scene's. Most reference cases are
 /// strips along u (or sheets) whose rows move alike. So a solution is one position for each column of the grid, on the
 /// middle line of the sheet; a vertex lies at its column's position plus its offset along axis_v. Sheets that shear
-/// have a position for each vertex, and `columns` are the means over the rows.
+/// have a position for each vertex, and `columns` are the means over the rows. A triangle mesh has the continuum's
+/// (mesh_case.hpp).
 ///
 /// `columns` is the solution for the same mesh where there is one (a chain of as many links, springs, hinges), so that
 /// a run's distance from it has no spatial discretisation error; `continuum` is the solution without a mesh.
@@ -48,7 +49,7 @@ std::optional<ReferenceCase> reference_case_of(const Scene&);
 /// Definition of the error that ranks the runs of a reference case of this name, as text.
 std::string ranking_of(const std::string& reference_case);
 
-/// Means over the rows of `values` (3 per vertex), one per column.
+/// Means over the rows of `values` (3 per vertex), one per column. Of a mesh: over the rows of the material lattice.
 std::vector<Vec3> column_means(const Cloth&, const std::vector<double>& values);
 
 /// Positions of all vertices (3 each) of a reference case in a frame [m].

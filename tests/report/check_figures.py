@@ -159,6 +159,14 @@ class Work(unittest.TestCase):
                      "reference: unsupported.", "paper is shown but not ranked: softer than asked.", "uncertainty 3.0e-9", "Fake GPU"):
             self.assertIn(part, words(one))
         self.assertIn("No run of this scene", words(svg["work-precision-none"]))
+        mesh = diagram | {"scene": "a-scene-mesh", "grid_scene": "a-scene", "space_error": 2e-3, "points": points[:3]}
+        drawn = draw(work=[diagram, mesh, mesh | {"scene": "alone-mesh", "grid_scene": "alone"}])[0]
+        self.assertEqual(sorted(n for n in drawn if "beside" in n), ["work-precision-a-scene-beside-mesh"])
+        both = drawn["work-precision-a-scene-beside-mesh"]
+        for layer, count in {"points": 5 + 3, "front_points": 4 + 3, "floors": 2}.items():
+            self.assertEqual(marks(both, layer), count, layer)
+        for part in ("grid: a-scene", "mesh: a-scene-mesh", "error of the mesh 2.0e-3", "[ms per simulated second]", "those of a mesh against"):
+            self.assertIn(part, words(both))
 
 
 class Penetration(unittest.TestCase):

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -37,6 +38,25 @@ TEST(DrawnMesh, IsTheSameForTheSameNumbers) {
   EXPECT_EQ(drawn_mesh(one).triangles, drawn_mesh(other).triangles);
   other.seed = 4;
   EXPECT_NE(drawn_mesh(one).vertices, drawn_mesh(other).vertices);
+}
+
+TEST(DrawnMesh, HasAClampOfTwoStraightLinesIfAsked) {
+  DrawnSheet sheet{1, 0.25, 16, 0.5, 0.3, 3};
+  EXPECT_EQ(drawn_mesh(sheet).groups.count("clamp"), 0u);
+  sheet.clamp = true;
+  const ClothMesh m = drawn_mesh(sheet);
+  EXPECT_NEAR(std::accumulate(m.areas_m2.begin(), m.areas_m2.end(), 0.0) / 3, 0.25, 2.5e-4);
+  const auto& held = m.groups.at("clamp");
+  EXPECT_EQ(held.size(), 5u + 2u + 4u) << "edge u0, two on the borders, a line between";
+  for (std::uint32_t v = 0; v < m.vertices.size(); ++v) {
+    const double x = m.vertices[v][0];
+    EXPECT_TRUE(x == 0 || x >= 1.0 / 16) << x;
+    EXPECT_EQ(std::count(held.begin(), held.end(), v), x <= 1.0 / 16);
+  }
+  for (const auto& t : m.triangles) {
+    const auto [first, last] = std::minmax({m.vertices[t[0]][0], m.vertices[t[1]][0], m.vertices[t[2]][0]});
+    EXPECT_TRUE(first > 0 || last <= 1.0 / 16) << "no triangle reaches across the clamp";
+  }
 }
 
 json scenario(json mesh) {

@@ -37,6 +37,27 @@ TEST_P(ReferenceAgrees, AgreeWithTheTruth) {
               r.uncertainty, r.order_bdf2, r.order_conservative, r.space_error);
 }
 
+/// What a mesh itself leaves falls with its cells, is known better than it is large, and is not below the continuum.
+TEST(MeshReferences, StateTheErrorOfTheMesh) {
+  const std::vector<std::string> short_ones[] = {{}, {"time.duration_s=1", "material.damping_per_s=30"}, {}};
+  const char* const names[] = {"swing-strip-mesh", "heavy-strip-mesh", "cantilever-10-mesh"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    double space[2] = {};
+    for (int fine = 0; fine < 2; ++fine) {
+      std::vector<std::string> set = short_ones[k];
+      set.push_back(fine ? "cloth.mesh.drawn.cells=20" : "cloth.mesh.drawn.cells=8");
+      const ReferenceResult r =
+          compute_reference(load_scene("validation/" + std::string(names[k]), set), {.settling_substeps = 2});
+      space[fine] = r.space_error;
+      EXPECT_LT(3 * r.uncertainty, r.space_error) << names[k];
+      EXPECT_LT(r.space_error, 0.02) << names[k];
+      std::printf("%s: distance %.2e, U_ref %.2e, orders %.2f %.2f, space %.2e\n", names[k], r.truth_distance,
+                  r.uncertainty, r.order_bdf2, r.order_conservative, r.space_error);
+    }
+    EXPECT_LT(space[1], 0.6 * space[0]) << names[k];
+  }
+}
+
 TEST(References, AreComputedOnceAndCached) {
   const auto cache = std::filesystem::temp_directory_path() / ("clothbench-references-" + std::to_string(getpid()));
   const Scene s = load_scene("validation/pendulum");

@@ -20,10 +20,11 @@
 namespace clothbench {
 namespace {
 
-const char* const kScenes[] = {"free-fall",    "pendulum",      "swing-strip",    "heavy-strip",   "catenary",
-                               "cantilever-1", "cantilever-10", "cantilever-100", "two-hand-pull", "incline-stick",
-                               "incline-slip", "incline-stop",  "capstan-hold",   "capstan-slip",  "atwood",
-                               "swing-sheet",  "pulled-sheet"};
+const char* const kScenes[] = {"free-fall",     "pendulum",         "swing-strip",      "heavy-strip",
+                               "catenary",      "cantilever-1",     "cantilever-10",    "cantilever-100",
+                               "two-hand-pull", "incline-stick",    "incline-slip",     "incline-stop",
+                               "capstan-hold",  "capstan-slip",     "atwood",           "swing-sheet",
+                               "pulled-sheet",  "swing-strip-mesh", "heavy-strip-mesh", "cantilever-10-mesh"};
 
 Scene scene(const std::string& name, const std::vector<std::string>& set = {}) {
   return load_scene("validation/" + name, set);
@@ -92,6 +93,22 @@ TEST(SpaceError, FallsWithTheRun) {
   const Scene heavy = scene("heavy-strip"), fall = scene("free-fall");
   EXPECT_LT(TruthJudge(heavy).space_error(), 1e-12) << "rows of springs are exact at the rows";
   EXPECT_EQ(TruthJudge(fall).space_error(), 0);
+}
+
+/// Any triangulation of the rectangle has the same answer, and columns that are those of the continuum.
+TEST(MeshCases, DoNotDependOnTheTriangles) {
+  for (const char* name : {"swing-strip-mesh", "heavy-strip-mesh", "cantilever-10-mesh"}) {
+    const Scene coarse = scene(name, {"cloth.mesh.drawn.cells=9"}),
+                fine = scene(name, {"cloth.mesh.drawn.cells=66", "cloth.mesh.drawn.turned_deg=70"});
+    const int last = fine.time.frames();
+    const auto a = truth::reference_case_of(coarse), b = truth::reference_case_of(fine);
+    const Vec3 there = a->continuum(1, last);
+    const Vec3 end = a->columns(last).back();
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(end[k], there[k], 1e-12) << name << ": vertices lie on edge u1";
+    if (coarse.reference_case == "cantilever") continue;  // its clamp is a cell wide
+    EXPECT_NEAR(a->quantity(a->columns(last)), b->quantity(b->columns(last)), 0.02 * b->quantity_scale) << name;
+    EXPECT_TRUE(std::isnan(TruthJudge(coarse).space_error())) << "a mesh has no truth of its own";
+  }
 }
 
 TEST(PulledChain, FollowsTheWaveWithinAHundredth) {
@@ -170,6 +187,15 @@ TEST(ReferenceCases, RefuseScenesTheyDoNotAnswer) {
   EXPECT_NE(message("cantilever-10", {"material.membrane_stiffness_N_per_m=1000"}).find("1e-7"), std::string::npos);
   EXPECT_NE(message("two-hand-pull", {"grips.0.ramp_s=0.01"}).find("one ramp_s"), std::string::npos);
   EXPECT_NE(message("free-fall", {"pins=[{\"edge\":\"u0\"}]"}).find("nothing that is held"), std::string::npos);
+  EXPECT_NE(message("swing-strip-mesh", {"material.membrane_stiffness_N_per_m=1000"}).find("1e-3"), std::string::npos);
+  EXPECT_NE(message("swing-strip-mesh", {"truth.case=catenary"}).find("a cloth that is a grid"), std::string::npos);
+  EXPECT_NE(message("swing-strip-mesh", {"cloth.mesh.drawn.size_m=[0.125,1]"}).find("longer side along x"),
+            std::string::npos);
+  EXPECT_NE(message("swing-strip-mesh", {"pins=[{\"group\":\"v0\"}]"}).find("edge u0 pinned"), std::string::npos);
+  EXPECT_NE(message("cantilever-10-mesh", {"pins=[{\"group\":\"u0\"}]"}).find("a line beside it"), std::string::npos);
+  EXPECT_NE(message("cantilever-10-mesh", {"pins=[{\"group\":\"u0\"},{\"nearest_m\":[[-0.08,0,0]]}]"})
+                .find("end of the clamp"),
+            std::string::npos);
   EXPECT_EQ(message("swing-strip", {"gravity_m_per_s2=[0,-4.905,0]", "cloth.size_m=[0.5,0.0625]"}), "")
       << "any parameter will do";
 }

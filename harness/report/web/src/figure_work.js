@@ -77,9 +77,9 @@ function axes_of(diagram, clock, theme, good, floors) {
   };
 }
 
-function work_spec(diagram, clock, theme, width) {
-  const {rows, good, front, device, failed, untimed} = data_of(diagram, clock);
-  const labels = unique(rows.map(r => r.label)), color = colour(labels, theme), shape = symbols(labels);
+function work_spec(diagram, clock, theme, width, labels = unique(diagram.points.map(p => p.solver))) {
+  const {good, front, device, failed, untimed} = data_of(diagram, clock);
+  const color = colour(labels, theme), shape = symbols(labels);
   const opacity = fade(theme), floors = floors_of(diagram, good).filter(f => !f.far);
   const height = theme === 'paper' ? 300 : 400;
   const {x, y} = axes_of(diagram, clock, theme, good, floors);
@@ -134,6 +134,22 @@ function work_spec(diagram, clock, theme, width) {
   };
 }
 
+/// A grid's diagram and that of the same scene as a mesh, on common axes.
+function pair_spec(pair, labels, width) {
+  const panel = (diagram, k) => {
+    const {layer, ...spec} = work_spec(diagram, 'wall', 'paper', width / 2 - 30, labels);
+    for (const one of layer) {
+      one.name += `_${k}`;  // names must be unique
+      const {x, y} = one.encoding;
+      if (x?.title) one.encoding.x = {...x, title: lines_of(x.title, 36)};
+      if (k && y?.title) one.encoding.y = {...y, title: null};
+    }
+    const title = {text: `${k ? 'mesh' : 'grid'}: ${diagram.scene}`, anchor: 'start', fontWeight: 'bold'};
+    return {...spec, layer, title};
+  };
+  return {hconcat: pair.map(panel), resolve: {scale: {x: 'shared', y: 'shared'}}};
+}
+
 /// Sentences on what the picture does not show.
 function notes_of(diagram) {
   const {rows, good, failed, untimed} = data_of(diagram, 'wall'), bad = [...failed, ...untimed];
@@ -167,6 +183,23 @@ export function work_figure(diagrams) {
     ],
     make: w => work_spec(d, 'wall', 'paper', w)
   });
+  const pairs = diagrams.filter(d => d.grid_scene in named).map(d => [named[d.grid_scene], d]);
+  const pair_still = pair => {
+    const points = pair.flatMap(d => d.points), labels = unique(points.map(p => p.solver));
+    const [grid, mesh] = pair;
+    return {
+      file: still_name(`work-precision-${grid.scene}-beside-mesh`),
+      title: `${grid.scene} as a grid and as a triangle mesh: error against run time`,
+      labels,
+      empty: pair.every(d => data_of(d, 'wall').good.length) ? '' : 'One of the two has no run with an error and a time.',
+      notes: [
+        'Thick: fronts. Dashed: fronts by GPU time. Shaded: solvers are not distinguished. ×: failed. Errors of a grid ' +
+            'are against the exact solution of the same grid, those of a mesh against the continuum’s.',
+        ...pair.flatMap(d => notes_of(d).map(n => `${d.scene}: ${n}`)), device_note(points)
+      ],
+      make: w => pair_spec([grid, mesh], labels, w)
+    };
+  };
   return {
     id: 'work',
     title: 'Error against run time: every setting',
@@ -189,6 +222,6 @@ export function work_figure(diagrams) {
         ['scene', 'solver', 'setting', 'status', 'ms_per_s', 'error', 'on_front'],
         ...data_of(at(state), state.Clock)
             .rows.map(r => [state.Scene, r.label, r.setting, r.status, r.time, r.error, r.stored_front])],
-    stills: diagrams.map(still)
+    stills: [...diagrams.map(still), ...pairs.map(pair_still)]
   };
 }
