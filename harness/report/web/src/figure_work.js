@@ -1,6 +1,7 @@
 // Error against run time.
 import {beside, colour, device_note, fade, kCross, log_axis, on_front, picked, still_name, symbols, unique} from './figure_parts.js';
 
+const kUncertainty = 'the reference’s uncertainty';
 const kNoResult = ['unsupported', 'missing', 'over_budget'];
 
 function data_of(diagram, clock) {
@@ -35,7 +36,7 @@ function floors_of(diagram, good) {
   const least = Math.min(...good.map(r => r.error));
   return [
     {error: diagram.space_error, what: 'error of the mesh'},
-    {error: 3 * (diagram.reference_uncertainty ?? 0), what: '3 × the reference’s uncertainty'}
+    {error: 3 * (diagram.reference_uncertainty ?? 0), what: `3 × ${kUncertainty}`}
   ].filter(f => f.error > 0)
       .map(f => ({...f, what: `${f.what} ${f.error.toExponential(1)}`, far: f.error < 1e-3 * least}));
 }
@@ -77,12 +78,16 @@ function axes_of(diagram, clock, theme, good, floors) {
   };
 }
 
-function work_spec(diagram, clock, theme, width, labels = unique(diagram.points.map(p => p.solver))) {
+/// `together`: the diagrams whose solvers and ticks it shares.
+function work_spec(diagram, clock, theme, width, together = [diagram]) {
   const {good, front, device, failed, untimed} = data_of(diagram, clock);
+  const labels = unique(together.flatMap(d => d.points.map(p => p.solver)));
   const color = colour(labels, theme), shape = symbols(labels);
   const opacity = fade(theme), floors = floors_of(diagram, good).filter(f => !f.far);
   const height = theme === 'paper' ? 300 : 400;
-  const {x, y} = axes_of(diagram, clock, theme, good, floors);
+  const shared = together.map(d => data_of(d, clock).good);
+  const near = together.flatMap((d, k) => floors_of(d, shared[k]).filter(f => !f.far));
+  const {x, y} = axes_of(diagram, clock, theme, shared.flat(), near);
   const tip = [
     {field: 'label', title: 'solver'}, {field: 'setting'}, {field: 'time', format: '.4~r', title: 'ms/s'},
     {field: 'error', format: '.3~e'}, {field: 'status'}
@@ -135,10 +140,12 @@ function work_spec(diagram, clock, theme, width, labels = unique(diagram.points.
 }
 
 /// A grid's diagram and that of the same scene as a mesh, on common axes.
-function pair_spec(pair, labels, width) {
+function pair_spec(pair, width) {
   const panel = (diagram, k) => {
-    const {layer, ...spec} = work_spec(diagram, 'wall', 'paper', width / 2 - 30, labels);
+    const {layer, ...spec} = work_spec(diagram, 'wall', 'paper', width / 2 - 30, pair);
     for (const one of layer) {
+      if (one.name === 'floor_text')
+        one.data = {values: one.data.values.map(f => ({...f, what: f.what.replace(kUncertainty, 'U_ref')}))};
       one.name += `_${k}`;  // names must be unique
       const {x, y} = one.encoding;
       if (x?.title) one.encoding.x = {...x, title: lines_of(x.title, 36)};
@@ -186,18 +193,19 @@ export function work_figure(diagrams) {
   const pairs = diagrams.filter(d => d.grid_scene in named).map(d => [named[d.grid_scene], d]);
   const pair_still = pair => {
     const points = pair.flatMap(d => d.points), labels = unique(points.map(p => p.solver));
-    const [grid, mesh] = pair;
     return {
-      file: still_name(`work-precision-${grid.scene}-beside-mesh`),
-      title: `${grid.scene} as a grid and as a triangle mesh: error against run time`,
+      file: still_name(`work-precision-${pair[0].scene}-beside-mesh`),
+      title: `${pair[0].scene} as a grid and as a triangle mesh: error against run time`,
       labels,
-      empty: pair.every(d => data_of(d, 'wall').good.length) ? '' : 'One of the two has no run with an error and a time.',
+      empty: pair.every(d => data_of(d, 'wall').good.length) ? '' :
+                                                               'One of the two has no run with an error and a time.',
       notes: [
-        'Thick: fronts. Dashed: fronts by GPU time. Shaded: solvers are not distinguished. ×: failed. Errors of a grid ' +
-            'are against the exact solution of the same grid, those of a mesh against the continuum’s.',
+        'Thick: fronts. Dashed: fronts by GPU time. Shaded: solvers are not distinguished. ×: failed. Errors of a ' +
+            'grid are against the exact solution of the same grid, those of a mesh against the continuum’s. U_ref: ' +
+            `${kUncertainty}.`,
         ...pair.flatMap(d => notes_of(d).map(n => `${d.scene}: ${n}`)), device_note(points)
       ],
-      make: w => pair_spec([grid, mesh], labels, w)
+      make: w => pair_spec(pair, w)
     };
   };
   return {
