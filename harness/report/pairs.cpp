@@ -189,6 +189,13 @@ double formerly_repeat(const ContactRow& o, const json& its, const ContactRow& r
   return pair_if(both_of("S26", o, its, r, scenario) && seed_of(its) == seed_of(scenario));
 }
 
+/// A mesh against the grid of as many vertices and the same material, at one setting.
+double formerly_grid(const ContactRow& o, const json& its, const ContactRow& r, const json& scenario) {
+  const auto has = [](const json& s, const char* key) { return s.is_object() && s["cloth"].contains(key); };
+  return pair_if(has(its, "mesh") && has(scenario, "grid") && its["material"] == scenario["material"] &&
+                 o.run->header.vertices == r.run->header.vertices && o.run->header.vertices > 0 && same_settings(o, r));
+}
+
 /// Never of one study.
 double formerly_none(const ContactRow&, const json&, const ContactRow&, const json&) { return INFINITY; }
 
@@ -212,6 +219,8 @@ const PairRelation kRelations[] = {
      kMissing, formerly_coarser},
     {"repeat", Map::Shape, coordinate, 0, formerly_repeat},
     {"seed", Map::Shape, coordinate, kMissing, formerly_seed},
+    {"grid", Map::None, [](const RunPair& p) { return ratio(*p.other, *p.run, "frame_device_median_s"); }, kMissing,
+     formerly_grid},
     {"before", Map::Same, most_over_side, 0, formerly_none}};
 
 const PairRelation& relation_of(const std::string& name) {

@@ -39,6 +39,7 @@ struct RunPair : ContactRow {
 ///   resolution   finer cells: greatest strain of the last second, `other` over `run`
 ///   repeat       the same run in another process: greatest difference over the width, 0
 ///   seed         another seed: greatest difference over the width
+///   grid         a triangle mesh against a grid of about as many vertices: GPU time, `other` over `run`
 ///   before       the same run in another result (`clothbench compare`): greatest distance over the longer side, 0
 struct PairRelation {
   enum class Map { None, Same, Transposed, Shape };  ///< Shape: relative to the cloth's centre, in widths

@@ -18,6 +18,7 @@
 #include "report/friction.hpp"
 #include "report/leak.hpp"
 #include "report/material.hpp"
+#include "report/mesh_grid.hpp"
 #include "report/metamorphic.hpp"
 #include "report/paths.hpp"
 #include "report/penetration.hpp"
@@ -135,6 +136,14 @@ Sections rates_sections(const Facts& f) {
                         {"table3.json", [&] { return text_of(table3_json(family, f.published)); }}};
   }
   return out;
+}
+
+Sections mesh_section(const Facts& f) {
+  const auto rows = meshes_beside_grids(f.parts.rest);
+  if (rows.empty()) return {};
+  return {{{"rates", "Meshes beside grids", {mesh_grid_table(rows)}}, "", {{"mesh-grid.csv", [rows] {
+                                                                              return mesh_grid_csv(rows);
+                                                                            }}}}};
 }
 
 Sections sampled_section(const Facts& f) {
@@ -270,11 +279,13 @@ Sections failed_section(const Facts& f) {
 
 /// Sections in the order of report.md and the page, and of the terminal.
 constexpr Sections (*kInReport[])(const Facts&) = {
-    rates_sections,   sampled_section,  penetration_section, drawn_section, work_section,     stability_section,
-    material_section, friction_section, metamorphic_section, cost_section,  features_section, failed_section};
+    rates_sections, mesh_section,      sampled_section,  penetration_section, drawn_section,
+    work_section,   stability_section, material_section, friction_section,    metamorphic_section,
+    cost_section,   features_section,  failed_section};
 constexpr Sections (*kOnTerminal[])(const Facts&) = {
-    rates_sections,   sampled_section,  penetration_section, drawn_section, work_section,     winners_section,
-    material_section, friction_section, metamorphic_section, cost_section,  features_section, stability_section};
+    rates_sections, mesh_section,     sampled_section,  penetration_section, drawn_section,
+    work_section,   winners_section,  material_section, friction_section,    metamorphic_section,
+    cost_section,   features_section, stability_section};
 
 /// One page: ranks, best solvers, whether stiffness is a parameter of each solver, irrelevant features with an effect.
 std::string summary_page(const Facts& f) {
