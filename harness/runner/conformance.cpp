@@ -213,6 +213,8 @@ std::string conformance_skip(const SolverInfo& info, const Scene& s) {
     return "reference diverges: over-determined";
   if (info.name == "xpbd" && s.cloth.mesh && s.needs.has(Feature::SelfCollision))
     return "xpbd has self_collision for grids alone";
+  if (s.cloth.mesh && s.needs.has(Feature::Bend) && (info.name == "paper" || info.name.starts_with("bullet-")))
+    return info.name + " has no resistance to bending for triangle meshes";
   return missing_features(info, s.needs);
 }
 
