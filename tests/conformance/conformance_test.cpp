@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <ostream>
+#include <set>
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
@@ -156,7 +157,9 @@ const std::vector<Lacks> kLacks = {
 bool may_skip(const Lacks& lacks, const Scene& s) {
   bool alone = false;
   for (const auto& [feature, beside] : lacks.only_with) alone = alone || (s.needs.has(feature) && !s.needs.has(beside));
-  return alone || !(s.needs & lacks.features).empty() || over_determined(lacks.solver, s);
+  const std::set<std::string> of_grids_alone = {"paper", "bullet-soft", "bullet-deformable"};
+  const bool bends = s.cloth.mesh && s.needs.has(Feature::Bend) && of_grids_alone.contains(lacks.solver);
+  return alone || bends || !(s.needs & lacks.features).empty() || over_determined(lacks.solver, s);
 }
 
 TEST(ConformanceSkips, AreThoseOfDeclaredFeaturesAndNoMore) {
