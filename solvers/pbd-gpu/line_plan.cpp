@@ -54,7 +54,6 @@ LineShape frame_shape(int columns, int rows, const LineRequest& request, const L
     if (vertices != 0 && k != vertices) continue;
     LineShape s{std::bit_ceil((longest + k - 1) / k), k, 0, false};
     s.shuffles = s.lanes <= device.subgroup;
-    if (s.shuffles) s.beside = request.beside != 0 ? request.beside : 1;
     // Whole subgroups, so that thread and lane numbers agree, and at least one thread for each row of held vertices.
     const std::uint32_t whole = std::max(device.subgroup, 32u);
     s.threads = (s.lanes * longest + whole - 1) / whole * whole;

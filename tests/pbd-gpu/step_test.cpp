@@ -83,6 +83,7 @@ std::vector<nlohmann::json> variants() {
       {{"one_dispatch", false}},
       {{"one_dispatch", false}, {"tuning", {{"shuffles", false}}}},
       {{"tuning", {{"vertices_a_thread", 2}}}},
+      {{"tuning", {{"vertices_a_thread", 2}, {"lines_beside", 2}}}},
       {{"one_dispatch", false}, {"tuning", {{"vertices_a_thread", 8}}}},
       {{"one_dispatch", false}, {"tuning", {{"vertices_a_thread", 2}, {"lines_beside", 2}}}},
       {{"one_dispatch", false}, {"tuning", {{"vertices_a_thread", 2}, {"lines_beside", 4}, {"threads_a_group", 128}}}}};
