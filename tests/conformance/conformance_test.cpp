@@ -150,7 +150,7 @@ const std::vector<Lacks> kLacks = {
                             Feature::UnevenGrid, Feature::Regions, Feature::Spin, Feature::ClothMesh,
                             Feature::StrainLimit},
      {},
-     0.8},
+     0.82},
 };
 
 /// Whether the table says that the case is skipped.
