@@ -96,7 +96,10 @@ std::string text_of(const RunResult& r, const std::vector<std::string>& names, c
 std::filesystem::path default_folder(const std::string& study) {
   std::string stamp = utc_now();
   std::erase_if(stamp, [](char c) { return c == '-' || c == ':'; });
-  return std::filesystem::path("results/runs") / (study + "-" + stamp);
+  const std::string first = (std::filesystem::path("results/runs") / (study + "-" + stamp)).string();
+  std::filesystem::path folder = first;
+  for (int n = 2; std::filesystem::exists(folder); ++n) folder = first + "-" + std::to_string(n);
+  return folder;
 }
 
 StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& call) {

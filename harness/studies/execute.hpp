@@ -33,7 +33,7 @@ struct StudyEnd {
   std::function<std::string()> text;
 };
 
-/// results/runs/<study>-<UTC>
+/// results/runs/<study>-<UTC>, and a number where two began in the same second.
 std::filesystem::path default_folder(const std::string& study);
 
 /// Executes a plan with timed trials; measures effective moduli after it where the plan says so. A plan with a plugin
