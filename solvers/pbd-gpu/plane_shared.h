@@ -57,7 +57,8 @@ struct ContactLedger {
   uint meets;                        // 1: the cloth meets a piece in this frame, or might if it had no contact
   uint farthest;                     // greatest displacement of a vertex in the frame [m], the bits of a float
   uint counted[PAIR_LEVELS];         // pairs at each share of the reaches
-  uint unused0[2];
+  float last_way;                    // greatest displacement of a vertex in the last frame [m]
+  uint unused0;
 };
 
 #define PLANE_FRAME_LISTED 1u  // LineConstants::first_pass where a dispatch before has made the frame's list; else 0

@@ -40,7 +40,7 @@ bool cell_meets(uint cell) {
 /// For all threads alike. Whether the frame is to be done with contact is in the ledger. Where the last one had contact, this one has it if
 /// a group of pieces is in reach: to look closer would cost a tenth of a frame on a desk.
 bool is_far() {
-  bool met = ledger.meets != 0u;
+  bool looks_closer = ledger.meets == 0u && is_slow(ledger.last_way);
   if (thread == 0u) near_any = near_group_count = farthest = 0u;
   empty_box();
   barrier();  // an empty box before it is widened
@@ -57,7 +57,7 @@ bool is_far() {
     if (!meets_cloth(LOAD(32u, boxes, PIECES + g))) continue;
     uint n = atomicAdd(near_group_count, 1u);
     if (n < kMostNearGroups) near_groups[n] = g;
-    if (n >= kMostNearGroups || met) near_any = 1u;
+    if (n >= kMostNearGroups || !looks_closer) near_any = 1u;
   }
   box_low = vec3(of_ordered(cloth_low[0]), of_ordered(cloth_low[1]), of_ordered(cloth_low[2]));
   box_high = vec3(of_ordered(cloth_high[0]), of_ordered(cloth_high[1]), of_ordered(cloth_high[2]));
@@ -83,13 +83,14 @@ void look_out() {
   }
 }
 
-/// By which the next frame's substeps go, unless something moves.
+/// What the next frame goes by.
 void note_farthest() {
-  if (MOVING != 0u) return;
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
     if (on_chain(i)) atomicMax(farthest, floatBitsToUint(distance(pos[k], LOAD16(x, index_of(vertex(i))).xyz)));
   }
   barrier();  // all ways before the farthest is read
-  if (thread == 0u) faults.farthest = farthest;
+  if (thread != 0u) return;
+  faults.farthest = farthest;
+  ledger.last_way = uintBitsToFloat(farthest);
 }

@@ -166,6 +166,13 @@ bool move_grips(uint s) {
   return true;
 }
 
+/// By one thread: what the next frame goes by.
+void end_frame() {
+  faults.farthest = ledger.farthest;
+  ledger.last_way = uintBitsToFloat(ledger.farthest);
+  ledger.farthest = 0u;
+}
+
 #ifdef FAR
 bool substep_with(uint s) {
   begin_substep(s);
@@ -174,11 +181,13 @@ bool substep_with(uint s) {
 
 /// The list, and the whole frame if the cloth meets no collider.
 bool frame() {
+  bool may_be_far = is_slow(ledger.last_way);
   if (!list_pairs()) return false;
-  bool far = ledger.pairs == 0u;
+  bool far = may_be_far && ledger.pairs == 0u;
   if (me == 0u) ledger.far = far ? 1u : 0u;
   for (uint s = 0u; far && s < p.substeps; ++s)
     if (!substep_with(s)) return false;
+  if (far && me == 0u) end_frame();
   return true;
 }
 #else
@@ -232,6 +241,7 @@ bool frame() {
   if (p.first_pass != PLANE_FRAME_LISTED && !list_pairs()) return false;
   for (uint s = 0u; s < p.substeps; ++s)
     if (!substep_with(s)) return false;
+  if (me == 0u) end_frame();
   return true;
 }
 #endif
@@ -255,10 +265,6 @@ void main() {
   if (ledger.far != 0u) return;  // the frame is done
 #endif
   if (!frame()) return;
-  if (me == 0u) {
-    faults.farthest = ledger.farthest;
-    ledger.farthest = 0u;
-  }
 #ifdef MANY_GROUPS
   if (me < 3u) {
     ledger.cloth_low[me] = kLowNone;

@@ -68,8 +68,9 @@ void note_list(uint level) {
   if (all > CAPACITY) faults.dropped += all - CAPACITY;
 }
 
-/// The frame's list of pairs. With kLooksForFar there is none where the cloth meets no piece.
+/// The frame's list of pairs. With kLooksForFar there is none where a slow cloth meets no piece.
 bool list_pairs() {
+  bool may_be_far = kLooksForFar && is_slow(ledger.last_way);
   if (thread == 0u) any_near = kFar;
   for (uint word = thread; word < GROUP_WORDS; word += THREADS) near_groups[word] = 0u;
   empty_box();
@@ -93,13 +94,13 @@ bool list_pairs() {
       any_near = kListed;
     }
   barrier();  // every thread's look before the answer
-  if (any_near == kFar && (kLooksForFar || PLANES > 0u)) return true;
+  if (any_near == kFar && (may_be_far || PLANES > 0u)) return true;
   uint level = 0u;
   for (;; ++level) {
     list_at(1.0 / float(1u << CUT_BITS * level), level);
     if (thread == 0u && any_near == kMeets) ledger.meets = 1u;
     MEET_OR_FAIL;  // pairs before they are read, and their number
-    if (kLooksForFar && ledger.meets == 0u) return true;
+    if (may_be_far && ledger.meets == 0u) return true;
     if (level + 1u == PAIR_LEVELS || ledger.counted[level] <= CAPACITY) break;
   }
   if (me == 0u) note_list(level);

@@ -10,6 +10,10 @@ float greatest_displacement() {
   return carried;
 }
 
+/// Whether the cloth goes no farther in a frame than about a cell. What is faster takes the substeps of contact in each frame that is near a
+/// collider: an impact strains it, and that grows with fewer.
+bool is_slow(float last_way) { return last_way <= 2.0 * p.reach_m; }
+
 /// By the hand that goes farthest: it may take any vertex along.
 float pulled() {
   float most = 0.0;
