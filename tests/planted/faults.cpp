@@ -131,16 +131,16 @@ void add_self_planes(std::vector<Fault>& f) {
          "if (abs(int(a[c]) - int(b.x)) < 60 ");
   kernel("half of each triangle's pairs lost", "plane_self_near.glsl", "end = range.x + range.y;",
          "end = range.x + range.y / 2u;");
-  kernel("bounds of distances grow", "plane_self_near.glsl", "self_pairs[k].bound - own.x - other.x;",
-         "self_pairs[k].bound + 10.0 * (own.x + other.x);");
+  kernel("bounds of distances grow", "plane_self_near.glsl", "pair[n].bound - own.x - way[n].x;",
+         "pair[n].bound + 10.0 * (own.x + way[n].x);");
   kernel("contacts pushed a centimetre too far", "plane_self_push.glsl", "s.normal.w - dot(n, apart)",
          "s.normal.w + 0.01 - dot(n, apart)");
   kernel("normal of the nearest points flipped", "plane_self_query.glsl", "self_near[k].plane = normal;",
          "self_near[k].plane = vec4(-normal.xyz, normal.w);");
   kernel("planes of the second triangle on its wrong side", "plane_self_choose.glsl", "vec4(-n, half_m - offset)",
          "vec4(-n, half_m - offset - 0.01)");
-  kernel("planes of the cloth with itself forgotten", "plane_project.glsl",
-         "if ((self_near[k].marks & SELF_PLANE) == 0u) continue;", "if (true) continue;");
+  kernel("planes of the cloth with itself forgotten", "plane_project.glsl", "if (!parts[m]) continue;",
+         "if (true) continue;");
   kernel("projected onto the cloth's planes of all but three triangles", "plane_project.glsl",
          "SELF != 0u && f < end_fan;", "SELF != 0u && f + 3u < end_fan;");
 }
