@@ -164,6 +164,26 @@ TEST_F(PlaneFrames, WhereNoColliderIsNear) {
   expect_same(one, many);
 }
 
+/// Frames in which pieces are near and a slow cloth meets none, then contact: by one workgroup and by many.
+TEST_F(PlaneFrames, OfASlowClothThatMeetsAColliderLate) {
+  Scene s = falling(17, 13, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
+  s.cloth.center_m = {0, 0.24, 0};
+  s.cloth.initial_velocity_m_per_s = {0, 0, 0};
+  const FrameRun phases = run(s, "never", 14);
+  expect_same(run(s, "always", 14), phases);
+  // It is held up, so that a frame that missed the collider would show.
+  Scene without = s;
+  without.colliders[0].center_m = {0, -9, 0};
+  EXPECT_NE(run(without, "never", 14).end.position, phases.end.position);
+  s.cloth.columns = 33;
+  nlohmann::json tuning = {
+      {"device_barrier", "always"}, {"threads_a_group", 512}, {"vertices_a_thread", 8}, {"contact_groups", 1}};
+  const FrameRun many = run(s, "always", 14, tuning);
+  EXPECT_TRUE(many.kernels.contains("plane_frame_many_shuffle_far"));
+  tuning["device_barrier"] = "never";
+  expect_same(many, run(s, "never", 14, tuning));
+}
+
 TEST_F(PlaneFrames, AreRefusedWhereTheyCannotBe) {
   const Scene s = falling(33, 31, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
   EXPECT_THROW(run(s, "always", 1, {{"device_barrier", "never"}}), Error);
