@@ -113,6 +113,7 @@ PlaneFrameSpecialization PlaneContact::frame_specialization() const {
   s.PIECES = pieces_;
   s.GROUPS = groups_;
   s.MARGIN_BITS = std::bit_cast<uint>(static_cast<float>(most_margin_m_));
+  if (self_) self_->specialize(s);
   return s;
 }
 
@@ -121,14 +122,20 @@ FeatureSet PlaneContact::serves() const {
          (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::SelfCollision});
 }
 
-void PlaneContact::add_kernels() {
+const FrameKernel* PlaneContact::add(int stage, const char* name, std::uint32_t threads) {
+  return frame_.add_kernel(stage, name, static_cast<std::uint32_t>(sizeof(PlaneContactConstants)),
+                           specialization().by_number(), threads);
+}
+
+void PlaneContact::add_self_list_kernels() {
   if (stage_pairs_ < 0) stage_pairs_ = frame_.add_stage("PlanePairs", serves(), true);
-  stage_ = frame_.add_stage("PlaneContact", serves(), true);
-  constexpr auto kPush = static_cast<std::uint32_t>(sizeof(PlaneContactConstants));
-  const auto add = [&](int stage, const char* name, std::uint32_t threads = kGroupSize) {
-    return frame_.add_kernel(stage, name, kPush, specialization().by_number(), threads);
-  };
   reach_ = add(stage_pairs_, "plane_reach");
+  if (self_) self_->add_list_kernels(stage_pairs_, specialization().by_number());
+}
+
+void PlaneContact::add_kernels() {
+  add_self_list_kernels();
+  stage_ = frame_.add_stage("PlaneContact", serves(), true);
   if (pieces_ > 0) {
     count_ = add(stage_pairs_, "plane_list");
     scan_ = add(stage_pairs_, "plane_scan", kScanThreads);
@@ -138,7 +145,7 @@ void PlaneContact::add_kernels() {
     respond_ = add(stage_, "plane_respond");
     choose_ = add(stage_, "plane_choose");
   }
-  if (self_) self_->add_kernels(stage_pairs_, stage_, specialization().by_number());
+  if (self_) self_->add_kernels(stage_, specialization().by_number());
   if (moving_points_ > 0) predict_ = add(stage_, "plane_predict");
   gather_ = add(stage_, team_ > 1 ? "plane_gather_shuffle" : "plane_gather");
   settle_ = add(stage_, "plane_settle");
@@ -189,11 +196,16 @@ void PlaneContact::record_pieces(double dt_s, int substeps) {
                          {48.0 * moving_points_, 32.0 * moving_points_ + 32.0 * groups_});
 }
 
-void PlaneContact::record_list(double dt_s, int substeps) {
+void PlaneContact::record_self_list(double dt_s, int substeps) {
   const PlaneContactConstants c = constants(0, substeps, dt_s);
   vertices(reach_, c);
   if (self_) self_->record_list(c);
+}
+
+void PlaneContact::record_list(double dt_s, int substeps) {
+  record_self_list(dt_s, substeps);
   if (pieces_ == 0) return;
+  const PlaneContactConstants c = constants(0, substeps, dt_s);
   const std::uint32_t elements = c.triangles + c.vertices;
   frame_.dispatch(*count_, std::min(elements, kPairThreads), c, {32.0 * elements, 16.0 * elements});
   frame_.dispatch_groups(*scan_, {1, 1}, c, {16.0 * elements, 16.0 * elements});

@@ -13,7 +13,8 @@ namespace clothbench::pbd_gpu {
 /// piece of a collider that may meet in a substep has a plane that parts both ends of the straight way, and no vertex
 /// ends a substep behind a plane of one of its triangles. Works on positions and velocities alone; what solves the
 /// constraints comes between `record_before` and `record_after` and reads inverse masses in .w of the positions. Where
-/// PlaneFrame has the whole frame in one kernel, `record_pieces` alone is called.
+/// PlaneFrame has the whole frame in one kernel, `record_pieces` and, for a cloth that touches itself,
+/// `record_self_list` alone are called.
 class PlaneContact {
  public:
   /// Adds buffers, and what moving pieces need. `particle`: of each vertex, the vertex that it is welded to (or
@@ -24,11 +25,15 @@ class PlaneContact {
   /// Adds the stages PlanePairs and PlaneContact with a kernel a phase, for record_list, record_before and
   /// record_after.
   void add_kernels();
+  /// Adds the kernels that list pairs of the cloth with itself, for record_self_list. add_kernels adds them too.
+  void add_self_list_kernels();
 
   /// Where moving pieces are in this frame. Call at the start of a frame, after the colliders' record().
   void record_pieces(double dt_s, int substeps);
   /// The list of pairs. Call after record_pieces.
   void record_list(double dt_s, int substeps);
+  /// The list of pairs of the cloth with itself alone.
+  void record_self_list(double dt_s, int substeps);
   /// Call in substep s after held vertices have moved and before the constraints are solved.
   void record_before(int s, int substeps, double dt_s);
   /// Call at the end of substep s. Calls `constraints` to record them once more between the responses, if they are to
@@ -50,6 +55,7 @@ class PlaneContact {
   bool moves() const { return moving_points_ > 0; }
 
  private:
+  const FrameKernel* add(int stage, const char* name, std::uint32_t threads = kGroupSize);
   void add_elements(const std::vector<std::uint32_t>& particle);
   PlaneContactSpecialization specialization() const;
   void vertices(const FrameKernel* kernel, const PlaneContactConstants& c);

@@ -13,6 +13,9 @@ constexpr std::uint32_t kThreadsTogether = 32;
 /// Workgroups: those beyond the lines' have pairs and vertices alone. One takes a sixth longer where capsules sweep,
 /// and three times as long on a desk; 64 lose 6 % on a desk and 9 % in a whole room, and 256 lose 5 % in sweeps (H100).
 constexpr std::uint32_t kWorkgroups = 96;
+/// The same of cloth that touches itself, which has more pairs: a fold takes 668 us with 96, 565 with 264, 563 with
+/// 396, and 612 a dispatch a phase; at 48 x 48 vertices 6358, 3829, 3882 and 4439 (H200).
+constexpr std::uint32_t kWorkgroupsWithItself = 264;
 
 /// The two have no number in common.
 std::vector<std::uint32_t> both(const LineSpecialization& lines, const PlaneFrameSpecialization& planes) {
@@ -29,7 +32,6 @@ constexpr FeatureSet kOfLines{Feature::Stretch, Feature::Shear, Feature::Bend,
 
 std::unique_ptr<PlaneFrame> PlaneFrame::make(FrameBuilder& frame, Lines& lines, PlaneContact& contact) {
   const std::string wanted = frame.tuning()["contact_frame"];
-  if (contact.with_itself()) return nullptr;
   if (!frame.settings()["one_dispatch"].get<bool>() || wanted == "never") return nullptr;
   // A CPU takes seconds to compile it, and runs a workgroup on one of its cores.
   const vulkan::Device& device = *frame.device();
@@ -38,7 +40,10 @@ std::unique_ptr<PlaneFrame> PlaneFrame::make(FrameBuilder& frame, Lines& lines, 
   auto groups = frame.tuning()["contact_groups"].get<std::uint32_t>();
   // A phone's few cores gain nothing from many workgroups of a sweep's few pairs.
   const bool capsules_alone = (frame.scene().needs & kColliderFeatures) == FeatureSet{Feature::Capsules};
-  if (groups == 0 && (device.is_discrete() || !capsules_alone)) groups = kWorkgroups;
+  if (groups == 0 && (device.is_discrete() || !capsules_alone))
+    groups = contact.with_itself() ? kWorkgroupsWithItself : kWorkgroups;
+  // Pairs of the cloth with itself are too many for one workgroup.
+  if (contact.with_itself()) return made->add_kernel(true, std::max(groups, 1u)) ? std::move(made) : nullptr;
   if ((groups > 0 && made->add_kernel(true, groups)) || made->add_kernel(false, 1) || made->add_kernel(true, 1))
     return made;
   if (wanted == "always")
@@ -62,12 +67,16 @@ bool PlaneFrame::add_kernel(bool many, std::uint32_t least_groups) {
   // One workgroup has too few threads to spare several for a vertex.
   if (!shape.shuffles || !many) planes.TEAM = 1;
   const std::vector<std::uint32_t> constants = both(lines, planes);
-  const std::string name = std::string("plane_frame") + (many ? "_many" : "") + (shape.shuffles ? "_shuffle" : "");
+  const bool with_itself = contact_.with_itself();
+  if (with_itself && !shape.shuffles) return false;
+  const std::string name = std::string("plane_frame") + (many ? "_many" : "") + (shape.shuffles ? "_shuffle" : "") +
+                           (with_itself ? "_self" : "");
   lines_.add_regularisation();
   if (many) {
     if (!runs_at_once<LineConstants>(frame_, name, constants, shape.threads, groups_)) return false;
     add_meeting(frame_);
   }
+  if (with_itself) contact_.add_self_list_kernels();
   const int stage = frame_.add_stage("LinesAndContact", (frame_.scene().needs & kOfLines) | contact_.serves(), true);
   kernel_ = frame_.add_kernel(stage, name, sizeof(LineConstants), constants, shape.threads);
   add_far(name, constants, shape.threads);
@@ -76,7 +85,7 @@ bool PlaneFrame::add_kernel(bool many, std::uint32_t least_groups) {
 
 void PlaneFrame::add_far(const std::string& name, const std::vector<std::uint32_t>& constants, std::uint32_t threads) {
   const PlaneFrameSpecialization planes = contact_.frame_specialization();
-  if (planes.PIECES == 0 || planes.PLANES > 0) return;
+  if (planes.PIECES == 0 || planes.PLANES > 0 || contact_.with_itself()) return;
   const LineShape one = lines_.frame_shape_with_contact(false);
   const bool in_one_group = one.threads > 0;
   if (!in_one_group && !runs_at_once<LineConstants>(frame_, name + "_far", constants, threads, groups_)) return;
@@ -108,6 +117,7 @@ LineConstants PlaneFrame::constants(double dt_s, const Steps& steps, bool listed
 
 void PlaneFrame::record(double dt_s, const Steps& near, const Steps& far) {
   const auto n = static_cast<double>(frame_.scene().cloth.vertex_count());
+  if (contact_.with_itself()) contact_.record_self_list(dt_s, near.substeps);
   if (far_ != nullptr) frame_.dispatch_groups(*far_, far_groups_, constants(dt_s, far, false), {64 * n, 64 * n});
   frame_.dispatch_groups(*kernel_, groups_, constants(dt_s, near, far_lists_),
                          lines_.substep_traffic() * near.substeps + Traffic{32 * n, 36 * n});

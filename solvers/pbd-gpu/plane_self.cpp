@@ -42,23 +42,27 @@ PlaneSelf::PlaneSelf(FrameBuilder& frame, const Scene& scene, const std::vector<
   frame_.add_buffer(BIND_SELF_PUSHES, "self-contact pushes", std::uint64_t{touching_capacity_} * 3 * sizeof(SelfPush));
 }
 
-void PlaneSelf::add_kernels(int stage_pairs, int stage, const std::vector<std::uint32_t>& constants) {
-  constexpr auto kPush = static_cast<std::uint32_t>(sizeof(PlaneContactConstants));
-  const auto add = [&](int of, const char* name, std::uint32_t threads = kGroupSize) {
-    return frame_.add_kernel(of, name, kPush, constants, threads);
-  };
+const FrameKernel* PlaneSelf::add(int stage, const char* name, const std::vector<std::uint32_t>& constants,
+                                  std::uint32_t threads) {
+  return frame_.add_kernel(stage, name, static_cast<std::uint32_t>(sizeof(PlaneContactConstants)), constants, threads);
+}
+
+void PlaneSelf::add_list_kernels(int stage, const std::vector<std::uint32_t>& constants) {
   const bool shuffles = !frame_.counts_bytes() && frame_.tuning()["shuffles"].get<bool>();
   sharers_ = shuffles ? std::max(1u, frame_.device()->shuffled_lanes()) : 1;
   if (sharers_ > kGroupSize) sharers_ = 1;
-  boxes_ = add(stage_pairs, "plane_self_boxes");
-  count_ = add(stage_pairs, sharers_ > 1 ? "plane_self_list_shuffle" : "plane_self_list");
-  scan_ = add(stage_pairs, "plane_scan_self", kSelfScanThreads);
-  fill_ = add(stage_pairs, sharers_ > 1 ? "plane_self_list_fill_shuffle" : "plane_self_list_fill");
-  ways_ = add(stage, "plane_self_ways");
-  near_ = add(stage, sharers_ > 1 ? "plane_self_near_shuffle" : "plane_self_near");
-  query_ = add(stage, "plane_self_query");
-  respond_ = add(stage, "plane_self_respond");
-  choose_ = add(stage, "plane_self_choose");
+  boxes_ = add(stage, "plane_self_boxes", constants);
+  count_ = add(stage, sharers_ > 1 ? "plane_self_list_shuffle" : "plane_self_list", constants);
+  scan_ = add(stage, "plane_scan_self", constants, kSelfScanThreads);
+  fill_ = add(stage, sharers_ > 1 ? "plane_self_list_fill_shuffle" : "plane_self_list_fill", constants);
+}
+
+void PlaneSelf::add_kernels(int stage, const std::vector<std::uint32_t>& constants) {
+  ways_ = add(stage, "plane_self_ways", constants);
+  near_ = add(stage, sharers_ > 1 ? "plane_self_near_shuffle" : "plane_self_near", constants);
+  query_ = add(stage, "plane_self_query", constants);
+  respond_ = add(stage, "plane_self_respond", constants);
+  choose_ = add(stage, "plane_self_choose", constants);
 }
 
 void PlaneSelf::near_pairs(const FrameKernel* kernel, const PlaneContactConstants& c) {

@@ -9,7 +9,9 @@ class PlaneSelf {
  public:
   /// Adds buffers. `particle`: of each vertex, the vertex that it is welded to; empty: itself.
   PlaneSelf(FrameBuilder& frame, const Scene& scene, const std::vector<std::uint32_t>& particle);
-  void add_kernels(int stage_pairs, int stage, const std::vector<std::uint32_t>& constants);
+  void add_list_kernels(int stage, const std::vector<std::uint32_t>& constants);
+  /// Of a substep, where no kernel has the whole frame.
+  void add_kernels(int stage, const std::vector<std::uint32_t>& constants);
 
   /// Specialization constants of all kernels of contact by planes: PlaneContactSpecialization,
   /// PlaneFrameSpecialization.
@@ -30,6 +32,8 @@ class PlaneSelf {
   void record_planes(const PlaneContactConstants&);
 
  private:
+  const FrameKernel* add(int stage, const char* name, const std::vector<std::uint32_t>& constants,
+                         std::uint32_t threads = kGroupSize);
   void near_pairs(const FrameKernel* kernel, const PlaneContactConstants&);
 
   FrameBuilder& frame_;

@@ -55,10 +55,10 @@ struct ContactLedger {
   uint touched_vertices;             // vertices with pairs of their own or of their triangles
   uint far;                          // 1: the frame was done without contact (plane_far.glsl, plane_frame.comp)
   uint meets;                        // 1: the cloth meets a piece in this frame, or might if it had no contact
-  uint farthest;                     // greatest displacement of a vertex in the frame [m], the bits of a float
+  uint farthest;                     // greatest displacement of a vertex in a frame [m], the bits of a float: this one
+                                     // at its end; until its list is made, the last one; 0: there was none
   uint counted[PAIR_LEVELS];         // pairs at each share of the reaches
-  float last_way;                    // greatest displacement of a vertex in the last frame [m]
-  uint unused0;
+  uint unused0[2];
 };
 
 #define PLANE_FRAME_LISTED 1u  // LineConstants::first_pass where a dispatch before has made the frame's list; else 0

@@ -140,7 +140,7 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
   constexpr double kLayers = 1.5;
   const auto& grips = scene.grips.vertices;
   // A hand pushes a cloth in directions that tethers do not limit.
-  const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
+  const bool driven = touches && !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   const bool shears = scene.needs.has(Feature::Shear), laid = touches && grips.empty();
   const Rule rule = !touched        ? kUntouched[k]
                     : driven        ? (wants_chains(scene) ? kDrivenChains : kDriven)[k]

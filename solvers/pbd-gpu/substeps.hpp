@@ -12,8 +12,7 @@ double links_of_longer_side(const Cloth&);
 /// scene with contact the most that a frame takes.
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 
-/// Of a frame in which no collider can be near: colliders ask for no more of them, except that what pushes the cloth
-/// may have left it in directions that tethers do not limit.
+/// Of a frame in which no collider can be near: those of the scene without colliders.
 int xpbd_substeps_far(const Scene&, const nlohmann::json& settings);
 
 /// Substeps of the same scene without gravity where gravity asks for more, else 0.

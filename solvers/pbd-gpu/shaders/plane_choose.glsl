@@ -39,10 +39,12 @@ void choose(uint k) {
   float least = min(normal.w, kGuard_m);  // below 0: inside a radius, and no deeper
   if (gap_at_end(n) < least && another(n, least, other)) {
     n = other;
-    states[k].normal.xyz = n;
+    if (writes_pair()) states[k].normal.xyz = n;
   }
-  states[k].way = vec4(n, farthest_point(n) + dot(n, around) + least);
+  vec4 plane = vec4(n, farthest_point(n) + dot(n, around) + least);
+  if (!writes_pair()) return;
+  states[k].way = plane;
   states[k].push = vec4(0.0);  // multipliers of plane_project
   [[unroll]] for (uint c = 0u; c < 3u; ++c)
-    if (!(dot(n, y[e[c]].xyz) - states[k].way.w > kUnsure_m)) touched[BEFORE_A_PLANE(e[c])] = 1u;
+    if (!(dot(n, y[e[c]].xyz) - plane.w > kUnsure_m)) touched[BEFORE_A_PLANE(e[c])] = 1u;
 }

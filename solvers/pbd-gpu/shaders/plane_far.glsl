@@ -4,12 +4,12 @@
 const uint kMostNearGroups = 32u;  // of pieces; where more are near, some meet the cloth
 shared uint near_groups[kMostNearGroups], near_group_count, farthest;
 vec3 box_low, box_high;
-float by_hands;
+float rest, by_hands;
 
 /// How far a vertex may go, in .w of where it is.
 vec4 freely(uint i) {
   vec4 at = LOAD16(x, i);
-  return vec4(at.xyz, free_reach_at(length(LOAD16(v, i).xyz), by_hands));
+  return vec4(at.xyz, free_reach_at(length(LOAD16(v, i).xyz), rest, by_hands));
 }
 
 bool meets_pieces(uint group, vec3 low, vec3 high) {
@@ -40,16 +40,17 @@ bool cell_meets(uint cell) {
 /// For all threads alike. Whether the frame is to be done with contact is in the ledger. Where the last one had contact, this one has it if
 /// a group of pieces is in reach: to look closer would cost a tenth of a frame on a desk.
 bool is_far() {
-  bool looks_closer = ledger.meets == 0u && is_slow(ledger.last_way);
+  bool looks_closer = ledger.meets == 0u && is_slow();
   if (thread == 0u) near_any = near_group_count = farthest = 0u;
   empty_box();
   barrier();  // an empty box before it is widened
   float carried = greatest_displacement();
+  rest = reach_at_rest();
   by_hands = pulled();
   uvec3 from = uvec3(kLowNone), to = uvec3(kHighNone);
   for (uint i = thread; i < COLUMNS * ROWS; i += THREADS) {
     vec4 at = LOAD16(x, i);
-    widen(from, to, vec4(at.xyz, reach_at(length(LOAD16(v, i).xyz), carried, by_hands)));
+    widen(from, to, vec4(at.xyz, reach_at(length(LOAD16(v, i).xyz), rest, carried, by_hands)));
   }
   widen_box(from, to);
   barrier();  // the box before pieces are looked for in it
@@ -92,5 +93,5 @@ void note_farthest() {
   barrier();  // all ways before the farthest is read
   if (thread != 0u) return;
   faults.farthest = farthest;
-  ledger.last_way = uintBitsToFloat(farthest);
+  ledger.farthest = farthest;
 }

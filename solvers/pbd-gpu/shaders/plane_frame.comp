@@ -3,6 +3,7 @@
 // the kernels of the phases have it and with the same bits. One workgroup takes a cloth of at most 32 x 32 vertices; with
 // MANY_GROUPS any number of workgroups that run at once wait for one another (device_barrier.glsl).
 // FAR: the list, and the frame if the cloth meets no collider. It needs the lines alone.
+// WITH_ITSELF: also contact of the cloth with itself; dispatches before have made the list of its pairs.
 #include "common.glsl"
 #define PLANE_FRAME
 #ifdef MANY_GROUPS
@@ -29,9 +30,18 @@ layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // 
 layout(std430, binding = BIND_PAIR_STATES) STATE buffer States { PairState states[]; };
 layout(std430, binding = BIND_LEDGER) STATE buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_FAULTS) STATE buffer Faults { ContactFaults faults; };
+#ifdef WITH_ITSELF
+layout(std430, binding = BIND_SELF_RANGES) STATE buffer SelfRanges { uvec4 self_ranges[]; };
+layout(std430, binding = BIND_SELF_NEAR) STATE buffer SelfNears { SelfNear self_near[]; };
+layout(std430, binding = BIND_SELF_PUSHES) STATE buffer SelfPushes { SelfPush self_pushes[]; };
+layout(std430, binding = BIND_SELF_PAIRS) STATE buffer SelfPairs { SelfPair self_pairs[]; };
+layout(std430, binding = BIND_SELF_WAYS) STATE buffer SelfWays { vec4 self_ways[]; };
+layout(std430, binding = BIND_SELF_CONTACTS) STATE buffer SelfContacts { SelfContact self_contacts[]; };
+#else
 layout(std430, binding = BIND_SELF_RANGES) readonly buffer SelfRanges { uvec4 self_ranges[]; };
 layout(std430, binding = BIND_SELF_NEAR) STATE buffer SelfNears { SelfNear self_near[]; };
 layout(std430, binding = BIND_SELF_PUSHES) readonly buffer SelfPushes { SelfPush self_pushes[]; };
+#endif
 
 PLANE_FRAME_CONSTANTS(SPECIALIZE)
 #define MARGIN_M uintBitsToFloat(MARGIN_BITS)
@@ -49,6 +59,7 @@ const bool AGAIN = false;  // of chains alone
 // The next substep's prediction, at this one's end. What hands hold is moved between the two.
 const bool kPredictsEarly = MOVING != 0u && GRIPS == 0u;
 #include "plane_reach.glsl"
+#include "plane_team.glsl"
 #include "plane_list.glsl"
 #ifdef FAR
 #include "plane_way.glsl"
@@ -56,11 +67,17 @@ const bool kPredictsEarly = MOVING != 0u && GRIPS == 0u;
 #include "plane_geometry.glsl"
 #include "plane_push.glsl"
 #include "plane_query.glsl"
-#include "plane_team.glsl"
 #include "plane_respond.glsl"
 #include "plane_gather.glsl"
 #include "plane_choose.glsl"
 #include "plane_project.glsl"
+#endif
+#ifdef WITH_ITSELF
+#include "plane_self_ways.glsl"
+#include "plane_self_near.glsl"
+#include "plane_self_push.glsl"
+#include "plane_self_query.glsl"
+#include "plane_self_choose.glsl"
 #endif
 
 #ifdef MANY_GROUPS
@@ -93,10 +110,20 @@ uint me, all_threads;  // this thread among those of all workgroups
 #include "plane_frame_list.glsl"
 #ifndef FAR
 
+// All near pairs, a thread or a subgroup each.
+#ifdef MANY_GROUPS
+#define EACH_NEAR_PAIR(n, count)                                                                                       \
+  by_subgroup = kPairsOfSubgroups;                                                                                     \
+  for (uint n = by_subgroup ? me / THREADS * gl_NumSubgroups + gl_SubgroupID : me, end = count; n < end;               \
+       n += by_subgroup ? all_threads / THREADS * gl_NumSubgroups : all_threads)
+#else
+#define EACH_NEAR_PAIR(n, count) EACH(n, count)
+#endif
+
 // A workgroup looks through its share of the pairs a few rounds at a time. Its threads share out those that remain after each question,
 // so that no thread waits for its neighbour's answer.
 const uint kRounds = THREADS < 512u ? 512u / THREADS : 1u;
-shared uint looked_at[kRounds * THREADS], found[kRounds * THREADS], looked, near_ones, place;
+shared uint looked_at[kRounds * THREADS], near_found[kRounds * THREADS], looked, near_ones, place;
 void look_for_near() {
   uint count = ledger.pairs;  // read once, for a coherent read goes to the second-level cache
   for (uint base = me - thread; base < count; base += kRounds * all_threads) {
@@ -108,13 +135,13 @@ void look_for_near() {
     }
     GROUP_MEET;  // all that may be near are known, and their bounds
     for (uint n = thread; n < looked; n += THREADS)
-      if (is_near(looked_at[n])) found[atomicAdd(near_ones, 1u)] = looked_at[n];
+      if (is_near(looked_at[n])) near_found[atomicAdd(near_ones, 1u)] = looked_at[n];
     GROUP_MEET;  // all that are near are known, and their normals
     if (thread == 0u && near_ones > 0u) place = atomicAdd(NEAR_COUNT, near_ones);
     barrier();  // where they are listed
     for (uint n = thread; n < near_ones; n += THREADS) {
-      list_near(found[n], place + n);
-      ask(found[n]);
+      list_near(near_found[n], place + n);
+      if (!kPairsOfSubgroups) ask(near_found[n]);
     }
     barrier();  // before the next rounds
   }
@@ -166,12 +193,8 @@ bool move_grips(uint s) {
   return true;
 }
 
-/// By one thread: what the next frame goes by.
-void end_frame() {
-  faults.farthest = ledger.farthest;
-  ledger.last_way = uintBitsToFloat(ledger.farthest);
-  ledger.farthest = 0u;
-}
+/// By one thread: what the host goes by.
+void end_frame() { faults.farthest = ledger.farthest; }
 
 #ifdef FAR
 bool substep_with(uint s) {
@@ -181,7 +204,7 @@ bool substep_with(uint s) {
 
 /// The list, and the whole frame if the cloth meets no collider.
 bool frame() {
-  bool may_be_far = is_slow(ledger.last_way);
+  bool may_be_far = is_slow();
   if (!list_pairs()) return false;
   bool far = may_be_far && ledger.pairs == 0u;
   if (me == 0u) ledger.far = far ? 1u : 0u;
@@ -191,6 +214,34 @@ bool frame() {
   return true;
 }
 #else
+/// Pairs that are near, and what their contacts propose.
+bool ask_near() {
+#ifdef MANY_GROUPS
+  by_subgroup = false;
+#endif
+  look_for_near();
+  if (!kPairsOfSubgroups) return true;
+  MEET_OR_FAIL;  // near pairs before they are shared out: neighbours in the list are near together
+  EACH_NEAR_PAIR(n, COUNTED(min(turn, 1u))) ask(pairs[n].w);
+  return true;
+}
+
+#ifdef WITH_ITSELF
+#define EACH_SELF_NEAR(k) for (uint k = me, count = min(ledger.self_near, NEAR_CAPACITY); k < count; k += all_threads)
+/// Nearest points of pairs of the cloth, and what contacts there propose.
+bool look_at_itself() {
+  EACH(t, TRIANGLES) ways_of_triangle(t);
+  MEET_OR_FAIL;  // ways before pairs are held against them
+  EACH_SHARED(t, TRIANGLES, collect_near(t);)
+  MEET_OR_FAIL;  // near pairs before they are asked
+  EACH_SELF_NEAR(k) {
+    query_self(k);
+    push_self(k);
+  }
+  return true;
+}
+#endif
+
 /// Responses before (turn 0) and after the lines.
 bool respond_to_contact(out uint near) {
   near = 0u;
@@ -200,17 +251,23 @@ bool respond_to_contact(out uint near) {
     MEET_OR_FAIL;  // proposals before pairs read them
   }
   if (turn < 2u) {
-    look_for_near();
+    if (PIECES > 0u && !ask_near()) return false;
+#ifdef WITH_ITSELF
+    if (turn == 1u && !look_at_itself()) return false;
+#endif
     MEET_OR_FAIL;  // what contacts propose before vertices take it
   }
   near = COUNTED(min(turn, 1u));
   if (me == 0u && near > 0u) ledger.meets = 1u;
-  if (turn == 2u && near > 0u) {
+  if (turn == 2u && (near > 0u || SELF != 0u)) {
     EACH(n, near) respond(pairs[n].w);
+#ifdef WITH_ITSELF
+    EACH_SELF_NEAR(k) push_self(k);
+#endif
     MEET_OR_FAIL;  // as above
   }
   if (me == 0u && turn > 0u) COUNTED(0u) = 0u;
-  if (near == 0u && PLANES == 0u) return true;
+  if (near == 0u && PLANES == 0u && SELF == 0u) return true;
   gather_all(me, all_threads);
   MEET_OR_FAIL;  // vertices before what reads them
   return true;
@@ -225,13 +282,17 @@ bool substep_with(uint s) {
   if (!solve_lines(s)) return false;
   for (turn = 1u; turn < kTurns; ++turn)
     if (!respond_to_contact(near)) return false;
-  if (near > 0u) {
-    EACH(n, near) choose(pairs[n].w);
+  if (near > 0u || SELF != 0u) {
+    EACH_NEAR_PAIR(n, near) choose(pairs[n].w);
+#ifdef WITH_ITSELF
+    EACH_SELF_NEAR(k) choose_self(k);
+#endif
     MEET_OR_FAIL;  // planes before vertices are put before them
   }
   project_all(me, all_threads);
   forget_pushes(me, all_threads);
   if (me == 0u) COUNTED(1u) = 0u;
+  if (SELF != 0u && me == 0u) ledger.self_near = ledger.self_touching = 0u;
   MEET_OR_FAIL;  // the substep's end before the next one
   return true;
 }

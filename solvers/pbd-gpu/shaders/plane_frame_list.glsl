@@ -24,40 +24,46 @@ void reach_and_widen(float carried) {
 
 shared uint listed, first_listed;  // of the workgroup
 const uint kKept = 16u;
-/// Lists the pairs of all elements at a share of the reaches. Elements have their places in no fixed order; the order within an element's
-/// is that of pieces. What the list has no place for is counted alone.
+/// Lists the pairs of all elements at a share of the reaches, a team an element. Elements have their places in no fixed order; the order
+/// within an element's is that of pieces. What the list has no place for is counted alone.
 void list_at(float share, uint level) {
-  for (uint base = me - thread; base < TRIANGLES + VERTICES; base += all_threads) {
-    uint k = base + thread, n = 0u, kept[kKept];
+  for (uint base = (me - thread) / LIST_TEAM; base < TRIANGLES + VERTICES; base += all_threads / LIST_TEAM) {
+    uint k = base + thread / LIST_TEAM, n = 0u, mine = 0u;
+    uvec2 kept[kKept];  // of this lane: piece, place among the element's
+    bool valid = k < TRIANGLES + VERTICES, meets_it = false;
     if (thread == 0u) listed = 0u;
-    if (k < TRIANGLES + VERTICES) {
+    low = vec3(1e30);
+    high = vec3(-1e30);
+    if (valid) {
       uvec4 e = LOAD16(elements, k);
       box_for(e, share);
-      bool meets_it = false;
       if (kLooksForFar) free_box_for(e);
-      EACH_PIECES_MET(
-        for (; met != 0u; met &= met - 1u) {
-          uint of = q + uint(findLSB(met));
-          if (n < kKept) kept[n] = of;
-          ++n;
-          if (kLooksForFar && !meets_it) meets_it = meets_freely(LOAD(32u, boxes, of));
-        }
-      )
-      if (meets_it) any_near = kMeets;
     }
+    EACH_PIECES_MET(
+      for (; own != 0u; own &= own - 1u) {
+        uint bit = uint(findLSB(own));
+        if (mine < kKept) kept[mine] = uvec2(q + bit, n + place_in(met, bit));
+        ++mine;
+        if (kLooksForFar && !meets_it) meets_it = meets_freely(LOAD(32u, boxes, q + bit));
+      }
+      n += uint(bitCount(met));
+    )
+    if (meets_it) any_near = kMeets;
     barrier();  // before places in the workgroup's part are given
-    uint at = n > 0u ? atomicAdd(listed, n) : 0u;
+    uint at = 0u;
+    if (n > 0u && LIST_LANE == 0u) at = atomicAdd(listed, n);
+    at = FROM_LANE(at, 0u);
     barrier();  // all places of the workgroup before its part is taken
     if (thread == 0u && listed > 0u) first_listed = atomicAdd(ledger.counted[level], listed);
     barrier();  // the part's beginning before it is filled
-    if (k >= TRIANGLES + VERTICES) continue;
     at = min(first_listed + at, CAPACITY);
     uint room = min(n, CAPACITY - at);
-    STORE16(ranges, k, uvec4(n > 0u ? at : 0u, room, 0u, 0u));
-    if (n > kKept)
-      fill_pairs(k, share, at, room);
+    if (valid && LIST_LANE == 0u) STORE16(ranges, k, uvec4(n > 0u ? at : 0u, room, 0u, 0u))
+    if (ANY_IN_SUBGROUP(mine > kKept ? 1u : 0u))
+      fill_pairs(min(k, TRIANGLES + VERTICES - 1u), share, at, room);
     else
-      for (uint m = 0u; m < room; ++m) write_pair(at + m, k, kept[m]);
+      for (uint m = 0u; m < mine; ++m)
+        if (kept[m].y < room) write_pair(at + kept[m].y, k, kept[m].x);
   }
 }
 
@@ -70,7 +76,7 @@ void note_list(uint level) {
 
 /// The frame's list of pairs. With kLooksForFar there is none where a slow cloth meets no piece.
 bool list_pairs() {
-  bool may_be_far = kLooksForFar && is_slow(ledger.last_way);
+  bool may_be_far = kLooksForFar && is_slow();
   if (thread == 0u) any_near = kFar;
   for (uint word = thread; word < GROUP_WORDS; word += THREADS) near_groups[word] = 0u;
   empty_box();
@@ -87,6 +93,7 @@ bool list_pairs() {
   MEET_OR_FAIL;  // empty boxes before they are widened
   reach_and_widen(carried);
   MEET_OR_FAIL;  // reaches before the list
+  if (me == 0u) ledger.farthest = 0u;  // until here of the last frame
   for (uint g = thread; g < GROUPS; g += THREADS)
     if (meets_cloth(LOAD(32u, boxes, PIECES + g))) {
       uint bit = g / GROUPS_A_BIT;
@@ -94,7 +101,7 @@ bool list_pairs() {
       any_near = kListed;
     }
   barrier();  // every thread's look before the answer
-  if (any_near == kFar && (may_be_far || PLANES > 0u)) return true;
+  if (PIECES == 0u || (any_near == kFar && may_be_far)) return true;
   uint level = 0u;
   for (;; ++level) {
     list_at(1.0 / float(1u << CUT_BITS * level), level);

@@ -1,5 +1,5 @@
 // Nearest points of an element and the hull of more than three points (Gilbert, Johnson & Keerthi 1988). A simplex of
-// differences is brought ever nearer to the origin.
+// differences is brought ever nearer to the origin. Its corners are indexed by constants alone, so that they stay in registers.
 struct Corner {
   vec3 at;     // cloth[a] - point b of the piece
   uint a, b;
@@ -43,8 +43,8 @@ bool on_tetrahedron(out vec4 weights) {
   const float kFlat = 1e-4;
   float best = 1e30;
   weights = vec4(0.0);
-  for (uint k = 0u; k < 4u; ++k) {
-    uvec4 f = kFaces[k];
+  [[unroll]] for (uint k = 0u; k < 4u; ++k) {
+    const uvec4 f = kFaces[k];
     vec3 a = simplex[f.x].at, b = simplex[f.y].at, c = simplex[f.z].at, n = cross(b - a, c - a);
     float inner = dot(n, simplex[f.w].at - a), origin = -dot(n, a);
     // On the inner side. Of a flat tetrahedron every face is asked: rounding decides on which side its last corner lies.
@@ -62,6 +62,11 @@ bool on_tetrahedron(out vec4 weights) {
   return best < 1e30;
 }
 
+void put(uint place, Corner c) {
+  [[unroll]] for (uint m = 0u; m < 4u; ++m)
+    if (m == place) simplex[m] = c;
+}
+
 /// Nearest point of the simplex, which keeps only the corners that carry it. False if the origin is inside.
 bool reduce() {
   vec4 weights = vec4(1.0, 0.0, 0.0, 0.0);
@@ -69,26 +74,61 @@ bool reduce() {
   if (simplex_size == 3u) weights = vec4(on_face(simplex[0].at, simplex[1].at, simplex[2].at), 0.0);
   if (simplex_size == 4u && !on_tetrahedron(weights)) return false;
   uint kept = 0u;
-  for (uint k = 0u; k < simplex_size; ++k) {
-    if (!(weights[k] > 0.0)) continue;
-    simplex[kept] = simplex[k];
-    share_of[kept++] = weights[k];
+  [[unroll]] for (uint k = 0u; k < 4u; ++k) {
+    if (!(k < simplex_size && weights[k] > 0.0)) continue;
+    put(kept, simplex[k]);
+    [[unroll]] for (uint m = 0u; m < 4u; ++m)
+      if (m == kept) share_of[m] = weights[k];
+    ++kept;
   }
   simplex_size = kept;
   return true;
 }
+
+#if defined(MANY_GROUPS) && defined(SHUFFLES)
+/// The first of the piece's points that lie farthest along v.
+uint farthest_of_subgroup(vec3 v, float t) {
+  float high = -1e30;
+  uint best = 0u;
+  for (uint j = gl_SubgroupInvocationID; j < piece.count; j += gl_SubgroupSize) {
+    float d = dot(v, point_at(j, t));
+    if (d > high) {
+      high = d;
+      best = j;
+    }
+  }
+  for (uint k = gl_SubgroupSize >> 1u; k > 0u; k >>= 1u) {
+    float other = subgroupShuffleXor(high, k);
+    uint of_other = subgroupShuffleXor(best, k);
+    if (other > high || (other == high && of_other < best)) {
+      high = other;
+      best = of_other;
+    }
+  }
+  return best;
+}
+#else
+uint farthest_of_subgroup(vec3 v, float t) { return 0u; }
+#endif
 
 /// The corner of the difference that lies farthest against v.
 Corner support(vec3 v, float t) {
   Corner c = Corner(vec3(0.0), 0u, 0u);
   float low = 1e30, high = -1e30;
   vec3 b = vec3(0.0);
-  for (uint i = 0u; i < corners; ++i) {
+  vec3 a = vec3(0.0);
+  [[unroll]] for (uint i = 0u; i < 3u; ++i) {
     float d = dot(v, cloth[i]);
-    if (d < low) {
+    if (i < corners && d < low) {
       low = d;
       c.a = i;
+      a = cloth[i];
     }
+  }
+  if (by_subgroup) {
+    c.b = farthest_of_subgroup(v, t);
+    c.at = a - point_at(c.b, t);
+    return c;
   }
   for (uint first = 0u; first < piece.count; first += kPointsAtOnce)
     [[unroll]] for (uint k = 0u; k < kPointsAtOnce; ++k) {
@@ -101,7 +141,7 @@ Corner support(vec3 v, float t) {
         b = at;
       }
     }
-  c.at = cloth[c.a] - b;
+  c.at = a - b;
   return c;
 }
 
@@ -130,17 +170,18 @@ Nearest nearest_of_hull(float begin, float end, vec3 guess) {
   for (uint k = 0u; k < kMost; ++k) {
     Corner c = support(v, begin);
     bool old = false;
-    for (uint m = 0u; m < simplex_size; ++m) old = old || (simplex[m].a == c.a && simplex[m].b == c.b);
+    [[unroll]] for (uint m = 0u; m < 4u; ++m) old = old || (m < simplex_size && simplex[m].a == c.a && simplex[m].b == c.b);
     float square = dot(v, v);
     if (k > 0u && (old || square - dot(v, c.at) <= kClose * square)) break;
-    simplex[simplex_size++] = c;
+    put(simplex_size++, c);
     if (!reduce()) {  // inside, or so nearly that rounding cannot tell
       simplex_size = 1u;
       share_of[0] = 1.0;
       break;
     }
     vec3 to = vec3(0.0);
-    for (uint m = 0u; m < simplex_size; ++m) to += share_of[m] * simplex[m].at;
+    [[unroll]] for (uint m = 0u; m < 4u; ++m)
+      if (m < simplex_size) to += share_of[m] * simplex[m].at;
     // No nearer: rounding goes round in a circle.
     if (!(dot(to, to) > 1e-14 && (k == 0u || dot(to, to) < square))) break;
     v = to;
@@ -153,8 +194,10 @@ Nearest nearest_of_hull(float begin, float end, vec3 guess) {
     try_normal(r, n, begin);
     try_normal(r, -n, begin);
   }
-  for (uint m = 0u; m < simplex_size; ++m) {
-    r.on_cloth[simplex[m].a] += share_of[m];
+  [[unroll]] for (uint m = 0u; m < 4u; ++m) {
+    if (m >= simplex_size) continue;
+    [[unroll]] for (uint c = 0u; c < 3u; ++c)
+      if (c == simplex[m].a) r.on_cloth[c] += share_of[m];
     vec3 last = point_at(simplex[m].b, end);
     r.witness += share_of[m] * last;
     r.way += share_of[m] * (last - point_at(simplex[m].b, begin));

@@ -29,14 +29,31 @@ bool meets(PieceBox b) {
   return all(lessThanEqual(low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, high));
 }
 
-// Boxes are looked at a few at a time: their loads do not wait for one another.
-const uint kBoxesAtOnce = 4u;
-/// A bit for each of the pieces from `first` on, and before `end`, whose box meets the element's.
-uint pieces_met(uint first, uint end) {
-  uint met = 0u;
-  [[unroll]] for (uint n = 0u; n < kBoxesAtOnce; ++n)
-    if (meets(LOAD(32u, boxes, min(first + n, end - 1u))) && first + n < end) met |= 1u << n;
-  return met;
+// Lanes of a team, where there is one, look at boxes for the same element. Each looks at a few at a time: their loads do not wait for one
+// another. All lanes of a subgroup come along.
+#if defined(PLANE_FRAME) && defined(SHUFFLES)
+#define LIST_TEAM TEAM
+#define LIST_LANE team_lane()
+uint of_team(uint bits) {
+  for (uint n = TEAM >> 1u; n > 0u; n >>= 1u) bits |= subgroupShuffleXor(bits, n);
+  return bits;
+}
+#define ANY_IN_SUBGROUP(bits) (TEAM > 1u ? most_of_subgroup(bits) != 0u : (bits) != 0u)
+#else
+#define LIST_TEAM 1u
+#define LIST_LANE 0u
+uint of_team(uint bits) { return bits; }
+#define ANY_IN_SUBGROUP(bits) ((bits) != 0u)
+#endif
+const uint kBoxesAtOnce = 4u, kBoxesATurn = kBoxesAtOnce * LIST_TEAM;
+/// A bit for each of the pieces from `first` on, and before `end`, whose box meets the element's; `own`: of those that this lane looked at.
+uint pieces_met(uint first, uint end, out uint own) {
+  own = 0u;
+  [[unroll]] for (uint n = 0u; n < kBoxesAtOnce; ++n) {
+    uint of = n * LIST_TEAM + LIST_LANE;
+    if (meets(LOAD(32u, boxes, min(first + of, PIECES - 1u))) && first + of < end) own |= 1u << of;
+  }
+  return of_team(own);
 }
 
 // A bit stands for one group, and for several of them where there are very many.
@@ -51,24 +68,28 @@ shared uint near_groups[GROUP_WORDS + 1u];
 #endif
 /// The next few of the groups with a bit that meet the element; the bits looked at are cleared.
 uint groups_met(inout uint bits, uint word, uint part) {
-  uint met = 0u;
+  uint met = 0u, last = bits;
+  for (uint n = 0u; n < kBoxesATurn && last != 0u; ++n) last &= last - 1u;
+  uint turn_bits = bits ^ last;
+  bits = last;
+  for (uint n = 0u; n < LIST_LANE; ++n) turn_bits &= turn_bits - 1u;
   [[unroll]] for (uint n = 0u; n < kBoxesAtOnce; ++n) {
-    uint g = GROUPS_A_BIT * (32u * word + uint(findLSB(bits))) + part;
-    if (bits != 0u && g < GROUPS && meets(LOAD(32u, boxes, PIECES + g))) met |= bits & -bits;
-    bits &= bits - 1u;
+    uint g = GROUPS_A_BIT * (32u * word + uint(findLSB(turn_bits))) + part;
+    if (turn_bits != 0u && g < GROUPS && meets(LOAD(32u, boxes, PIECES + g))) met |= turn_bits & -turn_bits;
+    for (uint k = 0u; k < LIST_TEAM; ++k) turn_bits &= turn_bits - 1u;
   }
-  return met;
+  return of_team(met);
 }
-// Pieces of all groups that meet the element: `q`, and `met`, a bit for each of the few pieces from there on.
-#define EACH_PIECES_MET(BODY)                                                                            \
+// Pieces of all groups that meet the element: `q`, and `met`, a bit for each of the few pieces from there on; `own`: those of this lane.
+#define EACH_PIECES_MET(BODY)                                                                              \
   for (uint part = 0u; part < GROUPS_A_BIT; ++part)                                                       \
     for (uint word = 0u; word < GROUP_WORDS; ++word)                                                     \
       for (uint bits = NEAR_GROUPS(word); bits != 0u;)                                                   \
-        for (uint groups = groups_met(bits, word, part); groups != 0u; groups &= groups - 1u) {          \
-          uint first = PIECES_A_GROUP * (GROUPS_A_BIT * (32u * word + uint(findLSB(groups))) + part);     \
-          uint last = min(first + PIECES_A_GROUP, PIECES);                                               \
-          for (uint q = first; q < last; q += kBoxesAtOnce) {                                            \
-            uint met = pieces_met(q, last);                                                              \
+        for (uint groups = groups_met(bits, word, part); ANY_IN_SUBGROUP(groups); groups &= groups - 1u) { \
+          uint first = PIECES_A_GROUP * (GROUPS_A_BIT * (32u * word + uint(max(findLSB(groups), 0))) + part); \
+          uint last = groups != 0u ? min(first + PIECES_A_GROUP, PIECES) : 0u;                           \
+          for (uint step = 0u; step < PIECES_A_GROUP; step += kBoxesATurn) {                             \
+            uint q = first + step, own, met = pieces_met(q, last, own);                                  \
             BODY                                                                                         \
           }                                                                                              \
         }
@@ -80,15 +101,20 @@ void write_pair(uint at, uint element, uint of_piece) {
   states[at].push = vec4(0.0);
 }
 
+/// Place of a piece among those of a turn.
+uint place_in(uint met, uint bit) { return uint(bitCount(met & ((1u << bit) - 1u))); }
+
 /// Writes the `count` first pairs of element k, from place `at` on.
 void fill_pairs(uint k, float share, uint at, uint count) {
   box_for(LOAD16(elements, k), share);
   uint end = at + count;
   EACH_PIECES_MET(
-    for (; met != 0u && at < end; met &= met - 1u) {
-      write_pair(at, k, q + uint(findLSB(met)));
-      ++at;
+    for (; own != 0u; own &= own - 1u) {
+      uint bit = uint(findLSB(own));
+      uint to = at + place_in(met, bit);
+      if (to < end) write_pair(to, k, q + bit);
     }
+    at += uint(bitCount(met));
   )
 }
 

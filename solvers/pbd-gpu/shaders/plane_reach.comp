@@ -9,7 +9,7 @@ layout(std430, binding = BIND_PREDICTED) writeonly buffer Proposed { vec4 y[]; }
 layout(std430, binding = BIND_STARTS) writeonly buffer Starts { vec4 starts[]; };
 layout(std430, binding = BIND_REACHES) writeonly buffer Reaches { vec4 reaches[]; };
 layout(std430, binding = BIND_WAYS) writeonly buffer Ways { float ways[]; };
-layout(std430, binding = BIND_LEDGER) writeonly buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
 #include "plane_reach.glsl"
 
 void main() {

@@ -12,7 +12,15 @@ float greatest_displacement() {
 
 /// Whether the cloth goes no farther in a frame than about a cell. What is faster takes the substeps of contact in each frame that is near a
 /// collider: an impact strains it, and that grows with fewer.
-bool is_slow(float last_way) { return last_way <= 2.0 * p.reach_m; }
+bool is_slow() { return uintBitsToFloat(ledger.farthest) <= 2.0 * p.reach_m; }
+
+/// Reach of a vertex at rest: what may pull it along moves itself. Where nothing went far in the last frame, lists are short. Without a
+/// frame before, it is the greatest.
+float reach_at_rest() {
+  const float kShare = 0.2, kWays = 2.0;
+  float fall = length(p.gravity_h.xyz) * float(p.substeps) * p.frame_s, last = uintBitsToFloat(ledger.farthest);
+  return last > 0.0 ? min(p.reach_m, kShare * p.reach_m + (1.0 - kShare) * fall + kWays * last) : p.reach_m;
+}
 
 /// By the hand that goes farthest: it may take any vertex along.
 float pulled() {
@@ -25,21 +33,22 @@ float pulled() {
 }
 
 /// The reach of a vertex by its speed.
-float reach_at(float speed, float carried, float by_hands) {
-  return HELD_REACH * (p.reach_m + 1.5 * speed * p.frame_s) + carried + by_hands;
+float reach_at(float speed, float rest, float carried, float by_hands) {
+  return HELD_REACH * (rest + 1.5 * speed * p.frame_s) + carried + by_hands;
 }
 /// The same in a frame in which it meets no collider.
-float free_reach_at(float speed, float by_hands) {
-  return HELD_REACH * (0.5 * p.reach_m + 1.25 * speed * p.frame_s) + by_hands;
+float free_reach_at(float speed, float rest, float by_hands) {
+  return HELD_REACH * (min(rest, 0.5 * p.reach_m) + 1.25 * speed * p.frame_s) + by_hands;
 }
 
 #if !defined(FAR) || defined(PLANE_FRAME)
 /// The same in .w of its place, and kept for the frame.
 vec4 reach_of_vertex(uint i, float carried) {
   vec4 at = LOAD16(x, i);
-  float speed = length(LOAD16(v, i).xyz), by_hands = pulled(), reach = reach_at(speed, carried, by_hands);
+  float speed = length(LOAD16(v, i).xyz), rest = reach_at_rest(), by_hands = pulled();
+  float reach = reach_at(speed, rest, carried, by_hands);
 #ifdef PLANE_FRAME
-  STORE16(starts, i, vec4(at.xyz, free_reach_at(speed, by_hands)));
+  STORE16(starts, i, vec4(at.xyz, free_reach_at(speed, rest, by_hands)));
 #else
   STORE16(starts, i, vec4(at.xyz, 0.0));
 #endif

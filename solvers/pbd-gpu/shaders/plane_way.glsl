@@ -1,9 +1,8 @@
-#ifdef PLANE_FRAME
-#define FARTHEST ledger.farthest
-#else
-#define FARTHEST faults.farthest
-#endif
 /// At the frame's end.
 void note_way(uint i, vec3 at) {
-  atomicMax(FARTHEST, floatBitsToUint(distance(at, LOAD16(reaches, i).xyz)));
+  uint way = floatBitsToUint(distance(at, LOAD16(reaches, i).xyz));
+  atomicMax(ledger.farthest, way);
+#ifndef PLANE_FRAME
+  atomicMax(faults.farthest, way);
+#endif
 }
