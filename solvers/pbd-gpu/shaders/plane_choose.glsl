@@ -39,9 +39,10 @@ void choose(uint k) {
   float least = min(normal.w, kGuard_m);  // below 0: inside a radius, and no deeper
   if (gap_at_end(n) < least && another(n, least, other)) {
     n = other;
-    states[k].normal.xyz = n;
+    if (writes_pair()) states[k].normal.xyz = n;
   }
   vec4 plane = vec4(n, farthest_point(n) + dot(n, around) + least);
+  if (!writes_pair()) return;
   states[k].way = plane;
   states[k].push = vec4(0.0);  // multipliers of plane_project
   [[unroll]] for (uint c = 0u; c < 3u; ++c)

@@ -110,6 +110,16 @@ uint me, all_threads;  // this thread among those of all workgroups
 #include "plane_frame_list.glsl"
 #ifndef FAR
 
+// All near pairs, a thread or a subgroup each.
+#ifdef MANY_GROUPS
+#define EACH_NEAR_PAIR(n, count)                                                                                       \
+  by_subgroup = kPairsOfSubgroups;                                                                                     \
+  for (uint n = by_subgroup ? me / THREADS * gl_NumSubgroups + gl_SubgroupID : me, end = count; n < end;               \
+       n += by_subgroup ? all_threads / THREADS * gl_NumSubgroups : all_threads)
+#else
+#define EACH_NEAR_PAIR(n, count) EACH(n, count)
+#endif
+
 // A workgroup looks through its share of the pairs a few rounds at a time. Its threads share out those that remain after each question,
 // so that no thread waits for its neighbour's answer.
 const uint kRounds = THREADS < 512u ? 512u / THREADS : 1u;
@@ -131,7 +141,7 @@ void look_for_near() {
     barrier();  // where they are listed
     for (uint n = thread; n < near_ones; n += THREADS) {
       list_near(near_found[n], place + n);
-      ask(near_found[n]);
+      if (!kPairsOfSubgroups) ask(near_found[n]);
     }
     barrier();  // before the next rounds
   }
@@ -204,6 +214,18 @@ bool frame() {
   return true;
 }
 #else
+/// Pairs that are near, and what their contacts propose.
+bool ask_near() {
+#ifdef MANY_GROUPS
+  by_subgroup = false;
+#endif
+  look_for_near();
+  if (!kPairsOfSubgroups) return true;
+  MEET_OR_FAIL;  // near pairs before they are shared out: neighbours in the list are near together
+  EACH_NEAR_PAIR(n, COUNTED(min(turn, 1u))) ask(pairs[n].w);
+  return true;
+}
+
 #ifdef WITH_ITSELF
 #define EACH_SELF_NEAR(k) for (uint k = me, count = min(ledger.self_near, NEAR_CAPACITY); k < count; k += all_threads)
 /// Nearest points of pairs of the cloth, and what contacts there propose.
@@ -229,7 +251,7 @@ bool respond_to_contact(out uint near) {
     MEET_OR_FAIL;  // proposals before pairs read them
   }
   if (turn < 2u) {
-    if (PIECES > 0u) look_for_near();
+    if (PIECES > 0u && !ask_near()) return false;
 #ifdef WITH_ITSELF
     if (turn == 1u && !look_at_itself()) return false;
 #endif
@@ -261,7 +283,7 @@ bool substep_with(uint s) {
   for (turn = 1u; turn < kTurns; ++turn)
     if (!respond_to_contact(near)) return false;
   if (near > 0u || SELF != 0u) {
-    EACH(n, near) choose(pairs[n].w);
+    EACH_NEAR_PAIR(n, near) choose(pairs[n].w);
 #ifdef WITH_ITSELF
     EACH_SELF_NEAR(k) choose_self(k);
 #endif

@@ -20,11 +20,30 @@ vec3 point_at(uint j, float t) {
   return (t == 1.0 ? q.end.xyz : q.start.xyz + t * (q.end.xyz - q.start.xyz)) - around;
 }
 
+// Where pieces have many points and threads are many, a subgroup has a near pair for itself: its lanes share out the points, and all of
+// them compute the same. One of them writes.
+#if defined(MANY_GROUPS) && defined(SHUFFLES)
+const bool kPairsOfSubgroups = MOST_POINTS > 3u;
+bool by_subgroup = false;  // what the threads do now
+bool writes_pair() { return !by_subgroup || gl_SubgroupInvocationID == 0u; }
+float highest_of_subgroup(vec3 n, float t) {
+  float high = -1e30;
+  for (uint j = gl_SubgroupInvocationID; j < piece.count; j += gl_SubgroupSize) high = max(high, dot(n, point_at(j, t)));
+  for (uint k = gl_SubgroupSize >> 1u; k > 0u; k >>= 1u) high = max(high, subgroupShuffleXor(high, k));
+  return high;
+}
+#else
+const bool kPairsOfSubgroups = false, by_subgroup = false;
+bool writes_pair() { return true; }
+float highest_of_subgroup(vec3 n, float t) { return 0.0; }
+#endif
+
 // Points are read a few at a time: their loads do not wait for one another.
 const uint kPointsAtOnce = MOST_POINTS < 4u ? MOST_POINTS : 4u;
 
 /// The farthest along n that the piece's points go at time t.
 float highest_point(vec3 n, float t) {
+  if (by_subgroup) return highest_of_subgroup(n, t);
   float high = -1e30;
   for (uint first = 0u; first < piece.count; first += kPointsAtOnce)
     [[unroll]] for (uint k = 0u; k < kPointsAtOnce; ++k) high = max(high, dot(n, point_at(min(first + k, piece.count - 1u), t)));

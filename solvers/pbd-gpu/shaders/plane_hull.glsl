@@ -85,6 +85,32 @@ bool reduce() {
   return true;
 }
 
+#if defined(MANY_GROUPS) && defined(SHUFFLES)
+/// The first of the piece's points that lie farthest along v.
+uint farthest_of_subgroup(vec3 v, float t) {
+  float high = -1e30;
+  uint best = 0u;
+  for (uint j = gl_SubgroupInvocationID; j < piece.count; j += gl_SubgroupSize) {
+    float d = dot(v, point_at(j, t));
+    if (d > high) {
+      high = d;
+      best = j;
+    }
+  }
+  for (uint k = gl_SubgroupSize >> 1u; k > 0u; k >>= 1u) {
+    float other = subgroupShuffleXor(high, k);
+    uint of_other = subgroupShuffleXor(best, k);
+    if (other > high || (other == high && of_other < best)) {
+      high = other;
+      best = of_other;
+    }
+  }
+  return best;
+}
+#else
+uint farthest_of_subgroup(vec3 v, float t) { return 0u; }
+#endif
+
 /// The corner of the difference that lies farthest against v.
 Corner support(vec3 v, float t) {
   Corner c = Corner(vec3(0.0), 0u, 0u);
@@ -98,6 +124,11 @@ Corner support(vec3 v, float t) {
       c.a = i;
       a = cloth[i];
     }
+  }
+  if (by_subgroup) {
+    c.b = farthest_of_subgroup(v, t);
+    c.at = a - point_at(c.b, t);
+    return c;
   }
   for (uint first = 0u; first < piece.count; first += kPointsAtOnce)
     [[unroll]] for (uint k = 0u; k < kPointsAtOnce; ++k) {

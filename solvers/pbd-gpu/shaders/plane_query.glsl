@@ -33,7 +33,7 @@ uint look(uvec4 e, inout PairState s) {
   if (parted_by_face(e, s)) return PAIR_LOOKED | PAIR_PLANE;
   Nearest r = nearest_at(t_begin, t_end, s.normal.xyz);
   if (!(r.gap > 0.0)) {
-    if (turn == FIRST_TURN) atomicAdd(faults.inside, 1u);
+    if (turn == FIRST_TURN && writes_pair()) atomicAdd(faults.inside, 1u);
     s.normal.w = 0.0;
     return PAIR_LOOKED;
   }
@@ -55,9 +55,10 @@ void ask(uint k) {
   piece = pieces[pair.y];
   if ((pair.z & PAIR_NEAREST) == 0u) {
     pair.z = look(e, s);
-    pairs[k].z = pair.z;
+    if (writes_pair()) pairs[k].z = pair.z;
   }
   s.push = (pair.z & PAIR_NEAREST) != 0u ? push_of(e, s) : vec4(0.0);
+  if (!writes_pair()) return;
   mark_push(k, e, s.push != vec4(0.0), false);
   states[k] = s;
 }
