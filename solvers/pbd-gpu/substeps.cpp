@@ -133,17 +133,20 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
   // scene. A link must not turn by more than about half a radian a substep.
   constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
-                 kDriven[] = {{4, 8}, {5, 6}, {20, 1.5}}, kDrivenChains[] = {{5, 6}, {8, 4}, {20, 1.5}},
-                 kLaid[] = {{8, 4}, {16, 2}, {32, 1}}, kLaidStrips[] = {{8, 12}, {14, 6}, {28, 3}},
-                 kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}}, kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
+                 kDriven[] = {{4, 8}, {5, 6}, {20, 1.5}}, kLeft[] = {{4, 8}, {5, 8}, {20, 6}},
+                 kDrivenChains[] = {{5, 6}, {8, 4}, {20, 1.5}}, kLaid[] = {{8, 4}, {16, 2}, {32, 1}},
+                 kLaidStrips[] = {{8, 12}, {14, 6}, {28, 3}}, kPulled[] = {{10, 6}, {20, 3}, {40, 1.5}},
+                 kUntouched[] = {{3, 1e9}, {5, 1e9}, {20, 1e9}};
   // A heap of the cloth's own layers slides on for long with as few as one layer takes.
   constexpr double kLayers = 1.5;
   const auto& grips = scene.grips.vertices;
   // A hand pushes a cloth in directions that tethers do not limit.
-  const bool driven = touches && !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
+  const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   const bool shears = scene.needs.has(Feature::Shear), laid = touches && grips.empty();
   const Rule rule = !touched        ? kUntouched[k]
-                    : driven        ? (wants_chains(scene) ? kDrivenChains : kDriven)[k]
+                    : driven        ? (wants_chains(scene) ? kDrivenChains
+                                       : touches           ? kDriven
+                                                           : kLeft)[k]
                     : tethered      ? (stiff ? kStiff[k] : kTethered[k])
                     : laid          ? (shears ? kLaid[k] : kLaidStrips[k])
                     : !shears       ? kStrips[k]

@@ -12,7 +12,8 @@ double links_of_longer_side(const Cloth&);
 /// scene with contact the most that a frame takes.
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 
-/// Of a frame in which no collider can be near: those of the scene without colliders.
+/// Of a frame in which no collider can be near: those of the scene without colliders, and more where something moving
+/// may have left the cloth strained in directions that tethers do not limit.
 int xpbd_substeps_far(const Scene&, const nlohmann::json& settings);
 
 /// Substeps of the same scene without gravity where gravity asks for more, else 0.
