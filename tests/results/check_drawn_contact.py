@@ -79,6 +79,48 @@ for words in (
     assert words in plain, words
 assert f"{of('default').replace('of', 'of the')} that were run again, {counts(earlier, 'default')} of them by the bounds of before ({counts(before, 'default')} before" in re.sub(r"\s+", " ", index)
 
+# What it says of them since frames without contact take lines alone.
+with open(reference / "contact-h200/frames-runs.csv", encoding="utf-8", newline="") as f:
+    frames = {(r["scene"], r["setting"]): r for r in csv.DictReader(f) if r["status"] == "ok"}
+with open(reference / "contact-h200/frames-rates.csv", encoding="utf-8", newline="") as f:
+    rates = {r["setting"]: r for r in csv.DictReader(f) if r["kind"] == "all" and r["speed_m_per_s"] == "all"}
+assert {(r["git_commit"][:12], r["git_dirty"]) for r in frames.values()} == {("b4f7ed1c50a8", "false")}
+
+
+def values(scalar):
+    return [float(r[scalar]) for r in frames.values() if r[scalar]]
+
+
+leaks = [k for k, r in frames.items() if float(r["wrong_side_samples_max"] or 0) > 0]
+wrong = sorted({int(re.search("[0-9]+", scene).group()) for scene, _ in leaks})
+assert {setting for _, setting in leaks} == {"fast"}
+assert not any(values("contact_length_max_m")) and not any(values("self_contact_length_max_m"))
+with open(reference / "gpu/contact-long/runs.csv", encoding="utf-8", newline="") as f:
+    hundred = {(r["scene"], r["setting"]): r for r in csv.DictReader(f) if r["status"] == "ok"}
+of_the_hundred = {r["git_commit"][:7] for r in hundred.values()} == {"e7c6b92"}
+
+
+def shared(setting):
+    """The row's end: scenes of both studies, and those that passed. Once the hundred are measured again, it says what was before."""
+    both = [k for k in frames if k in hundred and k[1] == setting]
+    then, now_passed = (sum(runs[k]["expect"].startswith("pass") for k in both) for runs in (hundred, frames))
+    return f"%) | {len(both)} | {then} | {now_passed} |" if of_the_hundred else ""
+
+
+section = plain.split("## Since frames without")[1].split("## What contact costs")[0]
+for words in (
+    f"Of 600 runs {len(frames)} ended",
+    *(
+        f"| {s} | {r['passed']} of {r['drawn']} ({100 * float(r['rate_low']):.0f} to {100 * float(r['rate_high']):.0f} %)"
+        for s, r in rates.items()
+    ),
+    f"none of {len(values('contact_length_max_m'))} runs with colliders has a contour",
+    f"none of {len(values('self_contact_length_max_m'))} with self-contact a crossing",
+    "seeds {}, {} and {}".format(*wrong),
+    *(shared(s) for s in rates),
+):
+    assert words in section, words
+
 # And what it says of cost, in milliseconds of GPU time.
 cost = {}
 for name in ("planes-cost", "cost"):
