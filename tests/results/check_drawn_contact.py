@@ -107,6 +107,9 @@ def shared(setting):
     return f"%) | {len(both)} | {then} | {now_passed} |" if of_the_hundred else ""
 
 
+pushes = [r for (scene, _), r in frames.items() if scene.endswith("-push")]
+slow = [r for (scene, _), r in frames.items() if "-sweep-" in scene and float(r["imposed_speed_m_per_s"]) <= 3.3]
+assert not any(float(r["hooked_end"] or 0) for r in pushes) and all(float(r["laid_over_samples_end"] or 0) <= 4 for r in slow)
 section = plain.split("## Since frames without")[1].split("## What contact costs")[0]
 for words in (
     f"Of 600 runs {len(frames)} ended",
@@ -117,6 +120,8 @@ for words in (
     f"none of {len(values('contact_length_max_m'))} runs with colliders has a contour",
     f"none of {len(values('self_contact_length_max_m'))} with self-contact a crossing",
     "seeds {}, {} and {}".format(*wrong),
+    f"none of the {len(pushes)} pushes ends so",
+    f"None of the {len(slow)} sweeps up to 3.3 m/s",
     *(shared(s) for s in rates),
 ):
     assert words in section, words
