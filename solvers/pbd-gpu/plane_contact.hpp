@@ -32,7 +32,7 @@ class PlaneContact {
   void record_pieces(double dt_s, int substeps);
   /// The list of pairs. Call after record_pieces.
   void record_list(double dt_s, int substeps);
-  /// The list of pairs of the cloth with itself alone.
+  /// Reaches, and the list of pairs of the cloth with itself; a part of record_list.
   void record_self_list(double dt_s, int substeps);
   /// Call in substep s after held vertices have moved and before the constraints are solved.
   void record_before(int s, int substeps, double dt_s);

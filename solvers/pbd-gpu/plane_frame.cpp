@@ -14,7 +14,8 @@ constexpr std::uint32_t kThreadsTogether = 32;
 /// and three times as long on a desk; 64 lose 6 % on a desk and 9 % in a whole room, and 256 lose 5 % in sweeps (H100).
 constexpr std::uint32_t kWorkgroups = 96;
 /// The same of cloth that touches itself, which has more pairs: a fold takes 668 us with 96, 565 with 264, 563 with
-/// 396, and 612 a dispatch a phase; at 48 x 48 vertices 6358, 3829, 3882 and 4439 (H200).
+/// 396, and 612 a dispatch a phase; at 48 x 48 vertices 6358, 3829, 3882 and 4439 (H200,
+/// `clothbench run contact/self-fold --set solver.tuning.contact_groups=264`).
 constexpr std::uint32_t kWorkgroupsWithItself = 264;
 
 /// The two have no number in common.

@@ -295,8 +295,8 @@ SolverInfo xpbd_info() {
        "with contact, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, "
        "never"},
       {"contact_groups", "0",
-       "with contact, least workgroups of a frame in one dispatch, which must all run at once; 0: 64 or "
-       "those of the lines; one where only capsules touch and the device is no discrete GPU"},
+       "with contact, least workgroups of a frame in one dispatch, which must all run at once; 0: 96 (264 "
+       "with self-collision) or those of the lines; one where only capsules touch and the device is no discrete GPU"},
       {"contact_pairs", "0", "with contact, pairs that the list has place for; 0: by the cloth's elements"},
       {"device_barrier", "\"auto\"",
        "one dispatch of many workgroups that wait for one another: auto (discrete GPUs that run them all at once), "
