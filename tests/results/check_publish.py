@@ -66,6 +66,8 @@ with tempfile.TemporaryDirectory() as scratch:
     verified(real, to / "RESULTS.SHA256")
     assert re.fullmatch(r"study\tseconds\tcommand\nhang\t\d+\tclothbench study hang .*\n", (to / "commands.tsv").read_text())
     assert "hang-32" in (to / "hang/runs.csv").read_text() and "<html" in (to / "index.html").read_text(encoding="utf-8")
+    pictures = re.findall(r"!\[.*\]\((.+)\)", (to / "hang/report.md").read_text(encoding="utf-8"))
+    assert pictures and all((to / "hang" / name).exists() for name in pictures), pictures
     (to / "hang/report.md").write_text("changed")
     assert subprocess.run(["sha256sum", "--status", "-c", "SHA256SUMS"], cwd=to, capture_output=True, check=False).returncode == 1
 
