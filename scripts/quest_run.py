@@ -27,7 +27,6 @@ PROPERTIES = ("debug.oculus.cpuLevel", "debug.oculus.gpuLevel", "debug.oculus.re
 LOG = ("logcat", "-v", "epoch", "-T", "1", "-s", "clothbench", "VrApi", "XrPerformanceManager")
 # What adb says when the headset is missing, not when the command fails.
 NO_ANSWER = re.compile("no devices|device offline|device ('.*' )?not found|error: closed|protocol fault|connection reset|cannot connect")
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Problem(Exception):
@@ -90,8 +89,10 @@ class Adb:
     def shell(self, command, timeout=30, check=True):
         return self.call("shell", command, timeout=timeout, check=check)
 
-    def stream(self, *words):
-        return Stream(self.words(*words))
+
+def listen(handler):
+    for s in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(s, handler)
 
 
 def set_properties(adb, values):
@@ -116,13 +117,13 @@ def fixed_settings(adb, a):
         adb.shell("am broadcast -a com.oculus.vrpowermanager.prox_close")
         yield
     finally:
-        for s in SIGNALS:
-            signal.signal(s, signal.SIG_IGN)  # each step below has a time limit
+        listen(signal.SIG_IGN)  # each step below has a time limit
         try:
             adb.shell(f"am force-stop {PACKAGE}", check=False)
             restore(adb, before)
         except Problem as e:
             print(f"quest_run: the headset's settings are not restored ({e}); `quest_run.py restore` or a reboot of the headset resets them", file=sys.stderr)
+        listen(signal.default_int_handler)
 
 
 class Run:
@@ -143,9 +144,9 @@ class Run:
         ids = samples.counter_ids(self.adb.shell("ovrgpuprofiler -m", check=False))
         chosen = ",".join(str(ids[name]) for name in samples.WANTED if name in ids)
         self.adb.shell(f"am force-stop {PACKAGE}")
-        log = self.adb.stream(*LOG)
+        log = Stream(self.adb.words(*LOG))
         # On a terminal, so that the profiler ends when the connection does.
-        profiler = self.adb.stream("shell", "-tt", f'ovrgpuprofiler -r"{chosen}"') if chosen else None
+        profiler = Stream(self.adb.words("shell", "-tt", f'ovrgpuprofiler -r"{chosen}"')) if chosen else None
         try:
             self.started = time.time() + self.offset_s
             said = self.adb.shell(f"am start -W -n {PACKAGE}/android.app.NativeActivity -a android.intent.action.MAIN --es args {shlex.quote(self.command)}", timeout=60)
@@ -185,12 +186,12 @@ class Run:
             self.counters.feed(time.time() + self.offset_s, line)
 
 
-def pull(adb, a, source):
-    """Fetches result folders and imports them as HDF5 files."""
+def pull(adb, a, source, several=False):
+    """Fetches a result folder, or a folder of `several`, and imports them as HDF5 files."""
     os.makedirs(a.out, exist_ok=True)
     adb.call("pull", source, a.out, timeout=1800)
     fetched = os.path.join(a.out, os.path.basename(source.rstrip("/")))
-    folders = [e.path for e in os.scandir(fetched) if e.is_dir() and not e.name.endswith(".part")] or [fetched]
+    folders = [entry.path for entry in os.scandir(fetched)] if several else [fetched]
     readings = os.path.join(a.out, "samples.json")
     options = ["--samples", readings] if os.path.exists(readings) else []
     if subprocess.run([a.clothbench, "import", *folders, *options], check=False).returncode != 0:
@@ -242,14 +243,13 @@ def arguments():
 
 def main():
     a = arguments()
-    for s in SIGNALS:
-        signal.signal(s, signal.default_int_handler)
+    listen(signal.default_int_handler)
     try:
         adb = Adb(a.serial)
         return {
             "install": lambda: print(adb.call("install", "-r", a.file, timeout=300)),
             "push": lambda: print(adb.call("push", *a.file, FILES + "/", timeout=1800)),
-            "pull": lambda: pull(adb, a, FILES + "/runs"),
+            "pull": lambda: pull(adb, a, FILES + "/runs", several=True),
             "logs": lambda: subprocess.call(adb.words(*LOG)),
             "restore": lambda: restore(adb, dict.fromkeys(PROPERTIES, "")),
             "run": lambda: run(adb, a),

@@ -156,7 +156,7 @@ class Driver(unittest.TestCase):
         self.assertEqual(self.drive("restore"), 0, self.text)
         self.assertEqual((self.world()["props"], self.world()["worn"]), (RESET, False))
         self.assertEqual(self.drive("pull", "--out", os.path.join(self.home, "later")), 0, self.text)
-        self.assertTrue(os.path.exists(os.path.join(self.home, "later/runs/sample__none__readback=blocking.h5")), self.text)
+        self.assertTrue(os.path.exists(os.path.join(self.home, "later/runs/one/sample__none__readback=blocking.h5")), self.text)
 
     def test_interrupted(self):
         for number in (signal.SIGINT, signal.SIGTERM):
