@@ -2,21 +2,23 @@
 # Both README commands on a bare Debian 13, as a newcomer would type them: a chroot made by debootstrap, a clone of the committed HEAD,
 # one build by clang with warnings as errors, the quick study, a short set of tests, a live session on Monado's OpenXR runtime, the
 # Debian package, and that package installed in a second bare Debian 13.
-#   scripts/debian13.sh [--keep] [--suite trixie | bookworm] [FOLDER]     default: build/debian13; all in it is made anew but the bare
-#                                                                         system and downloads
-# --keep: go on with the system of the last call, at today's HEAD; to find a fault sooner.
+#   scripts/debian13.sh [--prepare | --keep] [--suite trixie | bookworm] [FOLDER]     default: build/debian13; all in it is made anew but the
+#                                                                                     bare system and downloads
+# --prepare: only make the system and install the compiler; it waits for the network and the disk more than it computes.
+# --keep: go on with the system of the last call, at today's HEAD.
 # --suite bookworm: the same on a bare Debian 12, with its own compiler and without Monado, which it does not have; FOLDER: build/bookworm.
 # Needs root (chroot). Without it the stage is skipped and says so, unless CLOTHBENCH_REQUIRE_DEBIAN13=1.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 usage() {
-  echo "usage: scripts/debian13.sh [--keep] [--suite trixie | bookworm] [FOLDER]" >&2
+  echo "usage: scripts/debian13.sh [--prepare | --keep] [--suite trixie | bookworm] [FOLDER]" >&2
   exit 2
 }
-keep='' suite=trixie name=debian13
+keep='' prepare='' suite=trixie name=debian13
 while [ $# -gt 0 ]; do
   case $1 in
     --keep) keep=1 ;;
+    --prepare) prepare=1 ;;
     --suite)
       case ${2:-} in
         trixie) ;;
@@ -124,6 +126,7 @@ installed() {
 
 stage bare 3 bare
 stage set-up 2 set_up
+[ -z "$prepare" ] || exit 0
 stage --show run.sh 12 newcomer "$compiler; scripts/run.sh --quick"
 stage package 2 package
 stage --show test.sh 8 newcomer "$compiler; scripts/test.sh --short"

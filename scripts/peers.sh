@@ -1,15 +1,10 @@
 #!/usr/bin/env bash
 # Builds the plugins of NvCloth and Jolt from checkouts below DIR and holds them to clothbench's conformance.
 #   scripts/peers.sh DIR [nvcloth | jolt]
-#   scripts/peers.sh --study OUT [timed | untimed] [--quick]     their studies, see scripts/peers_study.sh
 # DIR/NvCloth and DIR/JoltPhysics are used as they are, and a line says if one is not at the commit named here; a missing
 # one is cloned at that commit from NVCLOTH_URL or JOLT_URL (default: GitHub). Plugins: build/peers. Needs git, CMake and, for
 # conformance, build/release/clothbench (scripts/run.sh builds it). JOBS: see scripts/common.sh.
 set -euo pipefail
-if [ "${1:-}" = --study ]; then
-  shift
-  exec "$(dirname "$0")/peers_study.sh" "$@"
-fi
 case "${1:-}" in
   '' | -*) echo "usage: scripts/peers.sh DIR [nvcloth | jolt]" >&2; exit 2 ;;
 esac

@@ -8,7 +8,6 @@
 #include <cstring>
 #include <fstream>
 
-#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench {
@@ -74,16 +73,6 @@ void write_file_atomically(const std::filesystem::path& path, const std::string&
     throw;
   }
   publish(temporary, path);
-}
-
-void write_between_marks(const std::string& file, const std::string& name, const std::string& text) {
-  const std::string begin = "<!-- " + name + " begin -->\n", end = "<!-- " + name + " end -->";
-  std::string all = read_text(file);
-  const std::size_t from = all.find(begin), to = all.find(end);
-  if (from == std::string::npos || to == std::string::npos || to < from)
-    throw Error(file + ": expected the lines " + begin.substr(0, begin.size() - 1) + " and " + end);
-  all.replace(from + begin.size(), to - from - begin.size(), text);
-  write_file_atomically(file, all);
 }
 
 }  // namespace clothbench

@@ -19,8 +19,4 @@ void publish(const std::filesystem::path& temporary, const std::filesystem::path
 /// Writes a temporary file and publishes it, so that readers see the old or the new file, never a part.
 void write_file_atomically(const std::filesystem::path&, const std::string& content);
 
-/// Replaces the text between the lines "<!-- NAME begin -->" and "<!-- NAME end -->" of a README. Throws Error
-/// naming the file and the lines if they are missing.
-void write_between_marks(const std::string& file, const std::string& name, const std::string& text);
-
 }  // namespace clothbench

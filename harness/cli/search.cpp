@@ -1,5 +1,4 @@
 // Studies in which each result decides the next run: moduli, friction, threshold, metamorphic.
-#include "base/files.hpp"
 #include "cli/command.hpp"
 #include "report/friction.hpp"
 #include "report/material.hpp"
@@ -9,14 +8,9 @@ namespace clothbench {
 namespace {
 
 struct SearchFlags : SolverFlags {
-  std::string out, readme;
+  std::string out;
   bool resume = false;
 
-  /// --readme; `what`: "table", "tables".
-  void add_readme_to(CLI::App& app, const std::string& name, const std::string& what) {
-    app.add_option("--readme", readme,
-                   fmt::format("Also write the {} between the marks <!-- {} begin/end --> of this file", what, name));
-  }
   void add_storage_to(CLI::App& app) {
     CLI::Option* folder = app.add_option("--out", out, "Also store every run in this folder, for `clothbench report`");
     app.add_flag("--resume", resume, "Continue with the runs stored in that folder")->needs(folder);
@@ -39,12 +33,6 @@ std::string printed(const std::vector<Table>& tables, const char* after = "") {
   return text;
 }
 
-std::string markdown(const std::vector<Table>& tables) {
-  std::string text;
-  for (const Table& t : tables) text += t.markdown() + "\n";
-  return text;
-}
-
 struct ModuliArguments : SearchFlags {
   bool no_sweep = false;
 };
@@ -62,13 +50,12 @@ struct FrictionArguments : SearchFlags {
   std::vector<int> substeps;
 };
 
-void tell_friction(const FrictionArguments& a, const std::vector<RunRecord>& runs, Console& console) {
+void tell_friction(const std::vector<RunRecord>& runs, Console& console) {
   console.print([&] { return friction_json(runs); }, [&] { return friction_table(runs).console() + "\n"; });
   for (const std::string& crash : friction_crashes(runs)) {
     fmt::print(stderr, "{}\n", crash);
     console.exit_code = ExitCode::CheckFailed;
   }
-  if (!a.readme.empty()) write_between_marks(a.readme, "friction", friction_table(runs).markdown());
 }
 
 struct ThresholdArguments : SearchFlags {
@@ -113,12 +100,11 @@ void add_friction(CLI::App& app, Console& console) {
   cmd->add_option("--substeps", a.substeps,
                   "Also run with these numbers of substeps per frame, for solvers with that setting");
   cmd->add_option("--set", a.set, "Override in every run: solver.substeps=20");
-  a.add_readme_to(*cmd, "friction", "table");
   a.add_storage_to(*cmd);
   cmd->footer("Example: clothbench friction xpbd bullet-soft --substeps 8 32");
   cmd->callback([&] {
     const auto runs = a.runs(console, [&](const SearchCall& call) { return search_friction(call, a.substeps); });
-    tell_friction(a, runs, console);
+    tell_friction(runs, console);
   });
 }
 
@@ -144,13 +130,11 @@ void add_metamorphic(CLI::App& app, Console& console) {
                          "Test properties of a solver that need no reference solution: similarity, mirror, rotation, "
                          "renumbering, flip, repeat, no-op, restart");
   a.add_to(*cmd, "solver", "Solvers; default: all", "Setting of the solver: solver.substeps=20");
-  a.add_readme_to(*cmd, "metamorphic", "tables");
   a.add_storage_to(*cmd);
   cmd->footer("Example: clothbench metamorphic xpbd --set solver.substeps=8 --out results/runs/relations");
   cmd->callback([&] {
     const auto runs = a.runs(console, search_metamorphic);
     console.print([&] { return metamorphic_json(runs); }, [&] { return printed(metamorphic_tables(runs), "\n"); });
-    if (!a.readme.empty()) write_between_marks(a.readme, "metamorphic", markdown(metamorphic_tables(runs)));
   });
 }
 

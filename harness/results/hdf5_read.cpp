@@ -93,7 +93,7 @@ void read_trials(hid_t file, RunRecord& r) {
 void read_accuracy(hid_t file, RunRecord& r, bool with_trajectory) {
   const Id metrics = open_group(file, "metrics");
   r.accuracy.time_s = numbers<double>(metrics, "time_s", H5T_NATIVE_DOUBLE);
-  // A copy for another machine may lack the motion (scripts/reference/pack.py).
+  // A copy for another machine may lack the motion.
   if (with_trajectory && h5::exists(file, "VTKHDF"))
     r.accuracy.position = numbers<float>(file, "VTKHDF/Points", H5T_NATIVE_FLOAT);
   // A grid's follow from its size; a summary has those of a mesh.

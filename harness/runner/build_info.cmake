@@ -5,7 +5,7 @@ execute_process(COMMAND git rev-parse HEAD WORKING_DIRECTORY ${SOURCE_DIR}
 execute_process(COMMAND git status --porcelain --untracked-files=no WORKING_DIRECTORY ${SOURCE_DIR}
   OUTPUT_VARIABLE changes OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 # What may change a figure, in one hash: results of two commits can be compared if it is the same.
-file(STRINGS ${SOURCE_DIR}/scripts/reference/measured_paths.txt measured REGEX "^[^#]")
+file(STRINGS ${SOURCE_DIR}/harness/runner/measured_paths.txt measured REGEX "^[^#]")
 execute_process(COMMAND git ls-tree -r HEAD -- ${measured} WORKING_DIRECTORY ${SOURCE_DIR}
   OUTPUT_VARIABLE listing ERROR_QUIET)
 string(REGEX REPLACE "[^\n]*\\.md\n" "" listing "${listing}")

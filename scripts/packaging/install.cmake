@@ -12,7 +12,7 @@ install(TARGETS clothbench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY scenarios DESTINATION ${data})
 install(DIRECTORY results/baselines DESTINATION ${data}/results)
 install(FILES results/paper-table3.json DESTINATION ${data}/results)
-install(PROGRAMS scripts/fetch-assets.sh scripts/make_cloth_mesh.py scripts/slurm_study.sh DESTINATION ${data}/scripts)
+install(PROGRAMS scripts/fetch-assets.sh scripts/slurm_study.sh DESTINATION ${data}/scripts)
 # The program holds both too; where there was no Node to bundle them, there are none.
 install(FILES ${CMAKE_BINARY_DIR}/web/template.html ${CMAKE_BINARY_DIR}/web/figures.cjs DESTINATION ${data}/page OPTIONAL)
 install(FILES scripts/assets-package.json scripts/assets-package-lock.json DESTINATION ${data}/scripts)

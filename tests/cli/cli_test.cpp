@@ -302,7 +302,6 @@ TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
     EXPECT_EQ(answer["text"].get<std::string>().find("✓"), std::string::npos)
         << answer << ": it falls through everything";
   EXPECT_EQ(friction[0]["answers"][0]["text"], "slips at 1.5 of it");
-  EXPECT_EQ(command("friction ballistic --readme " CLOTHBENCH_SOURCE_DIR "/LICENSE").code, 2) << "no marks there";
 }
 
 /// One row, whether its runs are stored or not, found now or read again; and a report has it too.

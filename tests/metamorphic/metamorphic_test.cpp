@@ -150,9 +150,8 @@ TEST(Renumbering, KeepsPlacesAndPins) {
   EXPECT_THROW(renumber_scene(json::parse(draped.json), Renumbering::FlipU, "x", unused), Error);
 }
 
-/// The gate of ours. What other solvers break is in their READMEs, written by `clothbench metamorphic SOLVER --readme
-/// FILE`. In contact rounding decides which of equally near points is taken, and friction keeps the difference
-/// (solvers/pbd-gpu/METAMORPHIC.md): four relations are known to fail there, by less than kInContact.
+/// The gate of xpbd. In contact rounding decides which of equally near points is taken, and friction keeps the
+/// difference: four relations are known to fail there, by less than kInContact.
 TEST(Metamorphic, XpbdKeepsAllButFourInContact) {
   constexpr double kInContact = 1e-3;
   const std::set<std::string> touching = {"incline-stop", "metamorphic-drop"},

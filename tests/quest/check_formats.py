@@ -1,142 +1,75 @@
-"""The parsers of scripts/quest, on texts as the tools print them."""
+"""The parsers of scripts/quest/samples.py, on texts as the tools print them."""
 import os
 import sys
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts"))
-from quest import formats, judge, samples  # noqa: E402
+from quest import samples  # noqa: E402
+
+QUEST3 = ("FPS=72/72,Prd=38ms,Tear=0,Early=0,Stale=0,Stale2/5/10/max=0/0/0/0,VSnc=1,Lat=-1,Fov=0,CPU4/GPU=2/3,1171/441MHz,"
+          "OC=FF,TA=0/0/0,SP=N/N/N,Mem=2092MHz,Free=2975MB,PLS=1,Temp=32.2C/0.0C,TW=1.25ms,App=4.49ms,GD=0.00ms")
 
 
 class Formats(unittest.TestCase):
-    def test_metrics_are_found_by_name_whatever_their_numbers(self):
-        ids = formats.metric_ids(
-            formats.plain("47 metrics supported:\r\n1\tClocks / Second\r\n31\tRead Total (Bytes/sec)\r\n")
-        )
-        self.assertEqual(ids, {"Clocks / Second": 1, "Read Total (Bytes/sec)": 31})
-        self.assertEqual(formats.metric_ids("ovrgpuprofiler: not found"), {})
+    def test_devices(self):
+        self.assertEqual(samples.devices("List of devices attached\n1W device usb:1-2 model:Quest_3\n* daemon started\n2X unauthorized\n\n"), [("1W", "device"), ("2X", "unauthorized")])
 
-    def test_blocks_end_at_an_empty_line_or_where_a_name_comes_again(self):
-        blocks = formats.GpuBlocks()
-        lines = [
-            "Clocks / Second                            :   427468384.000\r\r",
-            "% Vertex Fetch Stall   :   0.25",
-            "",
-            "Clocks / Second  :  1.000",
-            "Clocks / Second  :  2.000",
-            "",
-            "",
-            "unrelated",
-        ]
-        for k, line in enumerate(lines):
-            blocks.feed(float(k), formats.plain(line))
-        self.assertEqual(
-            blocks.samples,
-            [
-                (2.0, {"Clocks / Second": 427468384.0, "% Vertex Fetch Stall": 0.25}),
-                (4.0, {"Clocks / Second": 1.0}),
-                (5.0, {"Clocks / Second": 2.0}),
-            ],
-        )
+    def test_counters_are_found_by_name(self):
+        self.assertEqual(samples.counter_ids("47 metrics supported:\n1\tClocks / Second\n31\tRead Total (Bytes/sec)\n"), {"Clocks / Second": 1, "Read Total (Bytes/sec)": 31})
+        self.assertEqual(samples.counter_ids("ovrgpuprofiler: not found"), {})
 
-    def test_vrapi_of_two_headsets(self):
-        quest3 = formats.vrapi(
-            "FPS=72/72,Prd=38ms,Tear=0,Early=0,Stale=0,Stale2/5/10/max=0/0/0/0,VSnc=1,Lat=-1,Fov=0,CPU4/GPU=2/3,1171/441MHz,"
-            "OC=FF,TA=0/0/0,SP=N/N/N,Mem=2092MHz,Free=2975MB,PLS=1,Temp=32.2C/0.0C,TW=1.25ms,App=4.49ms,GD=0.00ms"
-        )
-        self.assertEqual(
-            [
-                quest3[k]
-                for k in (
-                    "fps",
-                    "refresh_rate",
-                    "cpu_level",
-                    "gpu_level",
-                    "cpu_clock_MHz",
-                    "gpu_clock_MHz",
-                    "power_level_state",
-                    "temperature_C",
-                    "memory_clock_MHz",
-                )
-            ],
-            [72, 72, 2, 3, 1171, 441, 1, 32.2, 2092],
-        )
-        start = formats.vrapi("FPS=1/72,Prd=0ms,CPU4/GPU=4/4,1478/525MHz,App=-110.70ms")
+    def test_a_block_ends_at_an_empty_line_or_where_a_name_repeats(self):
+        counters = samples.Counters()
+        for k, line in enumerate(["Clocks / Second                            :   427468384.000", "% Vertex Fetch Stall   :   0.25", "",
+                                  "Clocks / Second  :  1.000", "Clocks / Second  :  2.000", "", "", "unrelated"]):
+            counters.feed(float(k), line)
+        self.assertEqual(counters.samples, [(2.0, {"Clocks / Second": 427468384.0, "% Vertex Fetch Stall": 0.25}), (4.0, {"Clocks / Second": 1.0}), (5.0, {"Clocks / Second": 2.0})])
+
+    def test_vrapi(self):
+        names = ("fps", "refresh_rate", "cpu_level", "gpu_level", "cpu_clock_MHz", "gpu_clock_MHz", "power_level_state", "temperature_C", "memory_clock_MHz", "app_gpu_time_ms")
+        self.assertEqual([samples.vrapi(QUEST3)[k] for k in names], [72, 72, 2, 3, 1171, 441, 1, 32.2, 2092, 4.49])
+        start = samples.vrapi("FPS=1/72,Prd=0ms,CPU4/GPU=4/4,1478/525MHz,App=-110.70ms")
         self.assertEqual((start["app_gpu_time_ms"], start["power_level_state"]), (-110.7, None))
-        self.assertIsNone(formats.vrapi("VrApi::isWifiConnected exception"))
+        self.assertIsNone(samples.vrapi("VrApi::isWifiConnected exception"))
 
     def test_log_lines(self):
-        self.assertEqual(
-            formats.logcat("     1700000000.123  4242  4250 I VrApi   : FPS=72/72,x: y"),
-            (1700000000.123, "VrApi", "FPS=72/72,x: y"),
-        )
-        self.assertIsNone(formats.logcat("--------- beginning of main"))
-        self.assertEqual(formats.result("RESULT PASS /sdcard/a b"), (True, "/sdcard/a b"))
-        self.assertIsNone(formats.result("running study table3: results in /sdcard"))
+        self.assertEqual(samples.logcat("     1700000000.123  4242  4250 I VrApi   : FPS=72/72,x: y"), (1700000000.123, "VrApi", "FPS=72/72,x: y"))
+        self.assertIsNone(samples.logcat("--------- beginning of main"))
+        self.assertEqual(samples.result("RESULT PASS /sdcard/a b"), (True, "/sdcard/a b"))
+        self.assertEqual(samples.result("RESULT FAIL /sdcard/a"), (False, "/sdcard/a"))
+        self.assertIsNone(samples.result("running study table3: results in /sdcard"))
 
-    def test_ovr_metrics_by_header_with_extra_fields_crlf_and_a_torn_row(self):
-        text = "Time Stamp,gpu_level,new_column,average_frame_rate\r\n1000,4,,72\r\n2000,4,,71.5,a text of the app\r\n3000,4\r\n"
-        times, columns, left_out = formats.ovr_csv(text)
-        self.assertEqual(
-            (times, columns, left_out), ([1.0, 2.0], {"gpu_level": [4.0, 4.0], "average_frame_rate": [72.0, 71.5]}, 1)
-        )
-        self.assertEqual(formats.ovr_csv("no header\n1,2\n"), ([], {}, 2))
-        self.assertEqual(formats.ovr_csv(""), ([], {}, 0))
+    def test_numbers_and_names(self):
+        self.assertEqual([samples.number(t) for t in ("1.5", "nan", "inf", "x", None)], [1.5, None, None, None, None])
+        self.assertEqual([samples.dataset_name(n) for n in ("Read Total (Bytes/sec)", "GPU % Bus Busy")], ["Read_Total_Bytes_per_sec", "GPU_percent_Bus_Busy"])
 
-    def test_battery_heat_and_storage(self):
-        self.assertEqual(
-            formats.battery(
-                "  AC powered: false\r\n  USB powered: true\r\n  level: 84\r\n  temperature: 312\r\n".replace("\r", "")
-            ),
-            {"level": 84, "temperature_C": 31.2, "powered": True},
-        )
-        self.assertEqual(formats.battery("Can't find service"), {"level": None, "temperature_C": None, "powered": None})
-        self.assertEqual(formats.thermal_status("IsStatusOverride: false\nThermal Status: 3\n"), 3)
-        self.assertEqual(
-            formats.free_B("Filesystem 1K-blocks Used Available Use% Mounted on\n/dev/fuse 10 3 7 9% /storage"),
-            7 * 1024,
-        )
-        self.assertIsNone(formats.free_B("df: /sdcard: No such file"))
-
-    def test_names_of_datasets(self):
-        self.assertEqual(formats.slug("Read Total (Bytes/sec)"), "Read_Total_Bytes_per_sec")
-        self.assertEqual(formats.slug("GPU % Bus Busy"), "GPU_percent_Bus_Busy")
+    def test_groups_have_ascending_times_and_only_reported_series(self):
+        rows = [(2.0, {"fps": 71.0, "gpu_level": None}), (1.0, {"fps": 72.0, "gpu_level": None}), (2.0, {"fps": 70.0, "gpu_level": None})]
+        (vrapi,) = samples.groups(rows, [])
+        self.assertEqual((vrapi["name"], vrapi["time_unix_s"], vrapi["period_s"]), ("vrapi", [1.0, 2.0], 1.0))
+        self.assertEqual([(s["name"], s["values"], s["role"]) for s in vrapi["series"]], [("fps", [72.0, 70.0], "fps")])
 
 
-class Judge(unittest.TestCase):
-    ASKED = {"cpu_level": 4, "gpu_level": 4, "refresh_hz": 72}
-    LINE = {
-        "refresh_rate": 72.0,
-        "cpu_level": 4.0,
-        "gpu_level": 4.0,
-        "cpu_clock_MHz": 1920.0,
-        "gpu_clock_MHz": 545.0,
-        "power_level_state": 0.0,
-    }
+class Validity(unittest.TestCase):
+    REQUESTED = {"cpu_level": 4, "gpu_level": 4, "refresh_rate": 72}
+    ROW = {"refresh_rate": 72.0, "cpu_level": 4.0, "gpu_level": 4.0, "cpu_clock_MHz": 1920.0, "gpu_clock_MHz": 545.0, "power_level_state": 0.0}
 
-    def reasons(self, seconds, since=3, **changed):
-        rows = [(k, dict(self.LINE, **{name: v[k] for name, v in changed.items()})) for k in range(seconds)]
-        return judge.judge([samples.vrapi_group(rows)], self.ASKED, since, seconds, [])
+    def reasons(self, **changed):
+        rows = [(k, {**self.ROW, **{name: v[k] for name, v in changed.items()}}) for k in range(8)]
+        return samples.reasons_against(rows, self.REQUESTED, 3, 8)
 
     def test_steady_is_valid(self):
-        self.assertEqual(self.reasons(8), [])
+        self.assertEqual(self.reasons(), [])
 
-    def test_what_moves_is_named_but_not_before_it_settled(self):
-        for name, usual, other, word in (
-            ("gpu_clock_MHz", 545, 492, "GPU clock"),
-            ("cpu_clock_MHz", 1920, 1650, "CPU clock"),
-            ("gpu_level", 4, 3, "GPU level"),
-            ("refresh_rate", 72, 90, "refresh rate"),
-            ("power_level_state", 0, 2, "power level state"),
-        ):
-            late, early = [usual] * 7 + [other], [other] + [usual] * 7
-            self.assertTrue(any(word in r for r in self.reasons(8, **{name: late})), name)
-            self.assertEqual(self.reasons(8, **{name: early}), [], name)
+    def test_a_change_is_named_once_clocks_have_settled(self):
+        for name, usual, other in (("gpu_clock_MHz", 545, 492), ("cpu_clock_MHz", 1920, 1650), ("gpu_level", 4, 3), ("refresh_rate", 72, 90), ("power_level_state", 0, 2)):
+            late, early = self.reasons(**{name: [usual] * 7 + [other]}), self.reasons(**{name: [other] + [usual] * 7})
+            self.assertEqual((len(late), early), (1, []))
+            self.assertTrue(late[0].startswith(name.replace("_", " ")), late)
 
-    def test_nothing_told_is_not_valid(self):
-        self.assertEqual(len(judge.judge([], self.ASKED, 0, 9, [])), 3)
-
-    def test_a_level_that_was_not_granted(self):
-        self.assertTrue(any("4 was asked for" in r for r in self.reasons(8, gpu_level=[2] * 8)))
+    def test_a_level_that_was_not_granted_or_not_reported(self):
+        self.assertEqual(self.reasons(gpu_level=[2] * 8), ["gpu level: 2; 4 was requested"])
+        self.assertEqual(len(samples.reasons_against([], self.REQUESTED, 0, 9)), 4)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""Copies tables of reports and of the program's registry into the documents that show them, and the registry's scalars into the scene schema.
+
+usage: embed_tables.py [--check] [CLOTHBENCH]     default program: build/release/clothbench; --check: write nothing, fail if a file would change
+
+A document marks such a table by a line of one of these forms before it and `<!-- end of table -->` after it:
+
+    <!-- table of FILE: HEADING -->                      the Markdown table below the heading of FILE that starts so
+    <!-- table of FILE: HEADING: ROW, ROW -->            only its rows whose first cell is ROW or starts with `ROW:`
+    <!-- table of `clothbench list metrics`: KEY, KEY -->   one row per object that has all these keys; `a.b` is key b of object a
+"""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+TABLE = re.compile(r"(<!-- table of (?:`clothbench (?P<command>[^`]+)`|(?P<file>[^:`]+)): (?P<what>.+?) -->\n).*?(<!-- end of table -->)", re.S)
+SCHEMA = "scenarios/schema/scene.schema.json"
+program = ROOT / "build/release/clothbench"
+
+
+def objects(command):
+    return json.loads(subprocess.run([program, *command.split(), "--json"], check=True, capture_output=True).stdout)
+
+
+def cell(value):
+    text = "yes" if value is True else "" if value is False else ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+    return text.replace("|", "\\|")
+
+
+def table_of_objects(command, keys):
+    rows = []
+    for one in objects(command):
+        values = [one]
+        for key in keys:
+            value = one
+            for part in key.split("."):
+                value = value.get(part) if isinstance(value, dict) else None
+            values.append(value)
+        if None not in values:
+            rows.append([f"`{values[1]}`", *map(cell, values[2:])])
+    return "".join("| " + " | ".join(row) + " |\n" for row in [keys, ["---"] * len(keys), *rows])
+
+
+def table_of_report(file, heading, rows):
+    text = (ROOT / file).read_text(encoding="utf-8")
+    found = re.search(rf"^#+ {re.escape(heading)}.*\n\n((?:\|.*\n)+)", text, flags=re.M)
+    if not found:
+        sys.exit(f"{file}: no table below a heading that starts with \"{heading}\"")
+    head, rule, *lines = found[1].splitlines(keepends=True)
+    first = lambda line: line.split("|")[1].strip()
+    return head + rule + "".join(line for line in lines if not rows or any(first(line) == row or first(line).startswith(row + ":") for row in rows))
+
+
+def table(match):
+    what = match["what"].split(": ")
+    if match["command"]:
+        new = table_of_objects(match["command"], what[0].split(", "))
+    else:
+        new = table_of_report(match["file"], what[0], what[1].split(", ") if len(what) > 1 else [])
+    return match[1] + "\n" + new + "\n" + match[5]
+
+
+def bounds(match):
+    """The names that a scene's `expect` may bound, with their descriptions."""
+    row = '        {}: {{"$ref": "#/definitions/bounds", "description": {}}}'
+    return match[1] + ",\n".join(row.format(json.dumps(s["name"]), json.dumps(s["long_name"], ensure_ascii=False)) for s in objects("list scalars") if s["expect"]) + "\n" + match[2]
+
+
+def embedded(name, text):
+    return re.sub(r'("expect": \{.*?"outcome": [^\n]*\n).*?(      \}\n)', bounds, text, count=1, flags=re.S) if name == SCHEMA else TABLE.sub(table, text)
+
+
+def main():
+    global program
+    check = "--check" in sys.argv
+    program = next((a for a in sys.argv[1:] if a != "--check"), program)
+    names = subprocess.run(["git", "-C", ROOT, "ls-files", "-z", "--", "*.md", SCHEMA], check=True, capture_output=True, text=True).stdout.split("\0")
+    stale = []
+    for path in (ROOT / name for name in names if name and (ROOT / name).exists()):
+        before = path.read_text(encoding="utf-8")
+        after = embedded(str(path.relative_to(ROOT)), before)
+        if after != before:
+            stale.append(str(path.relative_to(ROOT)))
+            if not check:
+                path.write_text(after, encoding="utf-8")
+    if check and stale:
+        sys.exit(f"{', '.join(stale)}: not what scripts/embed_tables.py writes; run it with this build's clothbench")
+    print("; ".join(stale) or "all tables are those of their sources")
+
+
+if __name__ == "__main__":
+    main()

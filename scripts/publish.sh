@@ -1,0 +1,137 @@
+#!/usr/bin/env bash
+# Runs the published studies one after another into OUT, and makes what is published of them.
+#   scripts/publish.sh OUT [--table gpu | software | peers | quick] [--only STUDY]... [--limit SECONDS] [--jobs N]
+#   scripts/publish.sh --report OUT... [--to FOLDER]
+# First form: exit status 0: all studies of the table are complete. 75: the limit (default 570 s) was reached; the same call continues: complete
+# studies are skipped, finished runs stay. 2: bad input. Else the status of the study that failed.
+# Second form: one report per study, one page of all and SHA256SUMS into FOLDER (default results/reference/gpu), from folders of one state of the sources.
+# Needs clothbench with its scenarios and assets, bash and coreutils; no compiler, git or Python. CLOTHBENCH names the program (default:
+# build/release/clothbench, else the one on PATH). Libraries in build/peers or CLOTHBENCH_PLUGINS take part.
+set -euo pipefail
+here=$(cd "$(dirname "$0")/.." && pwd)
+
+# Columns: table (where the study runs), name (names that are equal up to a "+" are reported together), command of clothbench without --out.
+# PEERS: --solver for each engine of build/peers. NAMES: their names. JOBS: the number of --jobs.
+studies() {
+  cat <<'END'
+gpu       table3            study table3 --full --trials 5 --solver paper --solver xpbd --solver bullet-soft --solver ballistic
+gpu       hang              study hang --short --trials 3
+gpu       work-precision    study work-precision --short --trials 1 --no-moduli
+gpu       penetration       study penetration --full --trials 1 --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic
+gpu       contact           study contact --seed 1 --count 200 --solver xpbd --jobs JOBS
+gpu       contact-cost      study contact-cost --short --trials 1
+gpu       meshes            run garments/sleeve garments/t-shirt garments/skirt garments/tablecloth --solver xpbd --trials 1
+software  friction          friction xpbd paper bullet-soft NAMES
+software  moduli            moduli xpbd paper bullet-soft bullet-deformable NAMES --no-sweep
+software  metamorphic       metamorphic xpbd paper
+software  contact+others    study contact --seed 1 --count 27 --solver paper --solver bullet-soft PEERS --jobs JOBS
+software  stability         study stability --short --solver xpbd --solver paper --jobs JOBS
+peers     table3+peers      study table3 --full --trials 5 PEERS
+peers     work-precision+peers study work-precision --short --trials 1 --no-moduli PEERS
+peers     penetration+peers study penetration --full --trials 1 --require-assets PEERS
+peers     peers-hang        study solvers/plugin/studies/peers-hang.json
+peers     peers-margins     study solvers/plugin/studies/peers-margins.json
+peers     peers-stability   study stability --short --jobs JOBS PEERS
+quick     table3            study table3 --quick --trials 2
+quick     hang              study hang --quick --trials 1
+quick     penetration       study penetration --quick --trials 1 --solver xpbd --solver ballistic
+quick     contact           study contact --quick --procedural --seed 1 --count 2 --jobs JOBS
+quick     friction          friction xpbd
+END
+}
+
+fail() { echo "scripts/publish.sh: $*" >&2; exit 2; }
+bench=${CLOTHBENCH:-$here/build/release/clothbench}
+[ -x "$bench" ] || bench=$(command -v clothbench) || fail "no program; CLOTHBENCH names it"
+folders=() to=$here/results/reference/gpu table=gpu only=' ' limit=570 jobs=$(nproc) report=
+while [ $# -gt 0 ]; do
+  case $1 in
+    --report) report=1 ;;
+    --to | --table | --only | --limit | --jobs)
+      [ $# -gt 1 ] || fail "$1: expected a value"
+      case $1 in --to) to=$2 ;; --table) table=$2 ;; --only) only+="$2 " ;; --limit) limit=$2 ;; --jobs) jobs=$2 ;; esac
+      shift ;;
+    -*) fail "$1: expected --table, --only, --limit, --jobs, --report or --to" ;;
+    *) folders+=("$(realpath -m "$1")") ;;
+  esac
+  shift
+done
+[ ${#folders[@]} -gt 0 ] || { sed -n '2,9s/^# //p' "$0" >&2; exit 2; }
+for number in "$limit" "$jobs"; do [[ $number =~ ^[1-9][0-9]*$ ]] || fail "$number: expected a positive whole number"; done
+to=$(realpath -m "$to") out=${folders[0]}
+cd "$here"
+sources() { sed 's/.*, sources //' "$1"; }
+
+if [ -n "$report" ]; then
+  for folder in "${folders[@]}"; do
+    [ -f "$folder/version" ] || fail "$folder: no file \"version\" in it; scripts/publish.sh OUT makes such folders"
+    [ "$(sources "$folder/version")" = "$(sources "$out/version")" ] || fail "$folder and $out are of different sources"
+  done
+  mapfile -t complete < <(find "${folders[@]}" -maxdepth 1 -name '*.done' | sort)
+  [ ${#complete[@]} -gt 0 ] || fail "$out: no complete study"
+  mapfile -t names < <(basename -a "${complete[@]%.done}" | sed 's/+.*//' | sort -u)
+  rm -rf "$to" && mkdir -p "$to"
+  scratch=$(mktemp -d)
+  trap 'rm -rf "$scratch"' EXIT
+  for name in "${names[@]}"; do
+    parts=()
+    for file in "${complete[@]}"; do [ "$(basename "${file%.done}" | sed 's/+.*//')" != "$name" ] || parts+=("${file%.done}"); done
+    "$bench" report "${parts[@]}" -o "$scratch/$name" >"$scratch/$name.log" || { tail -5 "$scratch/$name.log" >&2; exit 1; }
+    mkdir "$to/$name"
+    sed 's/^\(!\[.*\)\.svg)$/\1.png)/' "$scratch/$name/report.md" >"$to/$name/report.md"
+    cp "$scratch/$name/runs.csv" "$to/$name"
+    find "$scratch/$name" -name '*.png' -exec cp {} "$to/$name" \;
+  done
+  "$bench" report "${complete[@]%.done}" -o "$scratch/all" >/dev/null
+  cp "$scratch/all/index.html" "$to"
+  # What was run, in how many seconds, and the hashes of all raw results and of all that is published.
+  { printf 'study\tseconds\tcommand\n'; cat "${complete[@]}"; } >"$to/commands.tsv"
+  for file in "${complete[@]%.done}"; do (cd "$(dirname "$file")" && find "$(basename "$file")" -name '*.h5' -exec sha256sum {} +); done | sort -k2 >"$to/RESULTS.SHA256"
+  (cd "$to" && find . -type f ! -name SHA256SUMS -printf '%P\n' | sort | xargs -d '\n' sha256sum >"$scratch/sums" && cp "$scratch/sums" SHA256SUMS)
+  echo "$to: ${#names[@]} studies; $(wc -l <"$to/RESULTS.SHA256") result files"
+  exit
+fi
+
+[ ${#folders[@]} -eq 1 ] || fail "expected one folder"
+studies | grep -q "^$table " || fail "--table $table: expected gpu, software, peers or quick"
+for name in $only; do studies | sed 's/  */ /g' | grep -qF "$table $name " || fail "--only $name: the table $table has no such study"; done
+mkdir -p "$out"
+"$bench" --version >"$out/version.now"
+[ ! -f "$out/version" ] || [ "$(sources "$out/version")" = "$(sources "$out/version.now")" ] ||
+  fail "$out has results of $(cat "$out/version"), this program is $(cat "$out/version.now"); publish results of one state of the sources"
+mv "$out/version.now" "$out/version"
+names=()
+for library in build/peers/*/libclothbench_*.so; do
+  [ -e "$library" ] || continue
+  names+=("$(basename "$library" .so | sed 's/libclothbench_//')")
+  CLOTHBENCH_PLUGINS=${CLOTHBENCH_PLUGINS:+$CLOTHBENCH_PLUGINS:}$here/$library
+done
+export CLOTHBENCH_PLUGINS=${CLOTHBENCH_PLUGINS:-}
+[ "$table" != peers ] || [ ${#names[@]} -gt 0 ] || fail "--table peers: build/peers has no library"
+
+deadline=$((SECONDS + limit))
+while read -r in name line; do
+  if [ "$in" != "$table" ] || [[ $only != ' ' && $only != *" $name "* ]] || [ -f "$out/$name.done" ]; then continue; fi
+  read -ra words <<<"${line//JOBS/$jobs}"
+  command=()
+  for word in "${words[@]}"; do
+    case $word in
+      PEERS) for peer in "${names[@]}"; do command+=(--solver "$peer"); done ;;
+      NAMES) command+=("${names[@]}") ;;
+      *) command+=("$word") ;;
+    esac
+  done
+  resume=() status=124 start=$SECONDS
+  [ ! -d "$out/$name" ] || resume=(--resume)
+  # Interrupted at the limit, after which clothbench keeps what is finished. Exit status 1: rows crashed, diverged or timed out, which are results.
+  left=$((deadline - SECONDS))
+  [ $left -le 0 ] || { status=0; timeout --foreground -s INT -k 30 "$left" "$bench" "${command[@]}" --out "$out/$name" "${resume[@]}" </dev/null >>"$out/$name.log" 2>&1 || status=$?; }
+  seconds=$((SECONDS - start + $(cat "$out/$name.seconds" 2>/dev/null || echo 0)))
+  echo $seconds >"$out/$name.seconds"
+  case $status in
+    0 | 1) printf '%s\t%s\t%s\n' "$name" $seconds "clothbench ${command[*]}" >"$out/$name.done"; echo "$name: $seconds s" ;;
+    124 | 130 | 137) echo "$name: stopped at the limit after $seconds s; call again to continue"; exit 75 ;;
+    *) tail -5 "$out/$name.log" >&2; echo "$name: exit status $status; its whole output: $out/$name.log" >&2; exit $status ;;
+  esac
+done < <(studies)
+echo "$out: all studies of the table $table are complete"

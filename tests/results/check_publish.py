@@ -1,0 +1,82 @@
+"""scripts/publish.sh: it resumes, skips what is complete and refuses mixed sources; and what is published has one commit and the hashes it names.
+
+usage: check_publish.py ROOT CLOTHBENCH
+"""
+import csv
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+root, bench = pathlib.Path(sys.argv[1]), sys.argv[2]
+# A program in place of clothbench, for what takes long or fails: the first call of a study is interrupted by the limit.
+STUB = """#!/bin/bash
+[ "$1" != --version ] || { echo "clothbench 0 (c), sources $SOURCES"; exit; }
+echo "$*" >>"$CALLS"
+[ "$1 $2" != 'study hang' ] || exit 5
+while [ $# -gt 1 ]; do [ "$1" != --out ] || out=$2; shift; done
+if [ ! -d "$out" ]; then mkdir "$out"; trap 'exit 130' INT; sleep 60 & wait; fi
+echo data >"$out/a.h5"
+exit 1
+"""
+
+
+def call(*words, program=bench, **environment):
+    done = subprocess.run([str(root / "scripts/publish.sh"), *map(str, words)], text=True, capture_output=True, env={**os.environ, "CLOTHBENCH": str(program), **environment}, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+def verified(folder, list_name):
+    done = subprocess.run(["sha256sum", "--quiet", "-c", list_name], cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+with tempfile.TemporaryDirectory() as scratch:
+    scratch = pathlib.Path(scratch)
+    stub, calls, out = scratch / "stub", scratch / "calls", scratch / "out"
+    stub.write_text(STUB)
+    stub.chmod(0o755)
+    table3 = (out, "--table", "quick", "--only", "table3")
+    with_stub = {"program": stub, "CALLS": str(calls), "SOURCES": "1"}
+    code, said = call(*table3, "--limit", 1, **with_stub)
+    assert code == 75 and "call again to continue" in said, (code, said)
+    code, said = call(*table3, **with_stub)  # rows that crashed (status 1) are results
+    assert code == 0 and calls.read_text().splitlines()[-1].endswith("--resume"), (code, said)
+    n = len(calls.read_text().splitlines())
+    assert call(*table3, **with_stub)[0] == 0 and len(calls.read_text().splitlines()) == n, "a complete study was run again"
+    code, said = call(*table3, **{**with_stub, "SOURCES": "2"})
+    assert code == 2 and "one state of the sources" in said, (code, said)
+    code, said = call(out, "--table", "quick", "--only", "hang", **with_stub)
+    assert code == 5 and "hang: exit status 5" in said, (code, said)
+    for words, why in ((["--limit", "x"], "positive whole number"), (["--table", "none"], "expected gpu, software, peers or quick"), (["--only", "none"], "has no such study"), (["--only"], "expected a value"), (["--x"], "expected --table")):
+        code, said = call(out, *words, **with_stub)
+        assert code == 2 and why in said, (words, code, said)
+
+    # The program itself: one study, and what is published of it.
+    real, to = scratch / "real", scratch / "to"
+    code, said = call("--report", real, "--to", to)
+    assert code == 2 and "no file \"version\"" in said, (code, said)
+    code, said = call(real, "--table", "quick", "--only", "hang")
+    assert code == 0, said
+    code, said = call("--report", real, "--to", to)
+    assert code == 0, said
+    verified(to, "SHA256SUMS")
+    verified(real, to / "RESULTS.SHA256")
+    assert re.fullmatch(r"study\tseconds\tcommand\nhang\t\d+\tclothbench study hang .*\n", (to / "commands.tsv").read_text())
+    assert "hang-32" in (to / "hang/runs.csv").read_text() and "<html" in (to / "index.html").read_text(encoding="utf-8")
+    pictures = re.findall(r"!\[.*\]\((.+)\)", (to / "hang/report.md").read_text(encoding="utf-8"))
+    assert pictures and all((to / "hang" / name).exists() for name in pictures), pictures
+    (to / "hang/report.md").write_text("changed")
+    assert subprocess.run(["sha256sum", "--status", "-c", "SHA256SUMS"], cwd=to, capture_output=True, check=False).returncode == 1
+
+published = root / "results/reference/gpu"
+verified(published, "SHA256SUMS")
+listed = {line.split(maxsplit=1)[1] for line in (published / "SHA256SUMS").read_text().splitlines()}
+here = {p.relative_to(published).as_posix() for p in published.rglob("*") if p.is_file()} - {"SHA256SUMS"}
+assert listed == here, listed ^ here
+rows = [row for path in published.glob("*/runs.csv") for row in csv.DictReader(path.open(encoding="utf-8", newline=""))]
+states = {(row["git_commit"], row["source_sha256"], row["git_dirty"]) for row in rows}
+assert len(rows) > 1000 and len(states) == 1 and states.pop()[2] == "false", "expected runs of one commit, without local changes"
+print("ok")
