@@ -1,4 +1,4 @@
-#include "metrics/verdict/bodies.hpp"
+#include "metrics/motion_check/bodies.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 #include "metrics/contact/tunnel.hpp"
 #include "scenario/collider_kinds.hpp"
 
-namespace clothbench::verdict {
+namespace clothbench::motion_check {
 namespace {
 
 using contact::Box;
@@ -554,4 +554,4 @@ int Bodies::passages(std::size_t frame) const {
   return count;
 }
 
-}  // namespace clothbench::verdict
+}  // namespace clothbench::motion_check
