@@ -36,6 +36,7 @@ struct Pose {
   std::vector<double> positions;
   std::unique_ptr<contact::NearSurface> surface;
   std::unique_ptr<contact::BoxTree> tree;
+  std::vector<bool> noted;  ///< triangles that are contacts of the frame already
 };
 
 struct Body {
@@ -266,7 +267,9 @@ void Bodies::State::touch_capsules(Body& b, std::size_t frame, const std::vector
   }
 }
 
-/// Corners of the surface under a triangle of the cloth; where there are none, edges that cross over edges.
+/// Every triangle of the surface within reach of a triangle of the cloth may push along its own normal, and along the
+/// shortest way between the two: a frame does not say where in it they met. Where the cloth moves by more than half a
+/// cell, the overlap of boxes decides.
 void Bodies::State::touch_triangle(Body& b, Pose& p, const Corners& corners, const std::vector<V3>& x, double reach,
                                    bool any) {
   const Simplex<3> t{x[corners[0]], x[corners[1]], x[corners[2]]};
@@ -274,28 +277,38 @@ void Bodies::State::touch_triangle(Body& b, Pose& p, const Corners& corners, con
   for (const V3& corner : t) box.extend(corner);
   box.extend(V3(box.min() - V3::Constant(reach)));
   box.extend(V3(box.max() + V3::Constant(reach)));
-  const auto vertex = [&](std::uint32_t v) { return V3(V3::Map(p.positions.data() + 3 * v)); };
-  std::vector<const Corners*> below;
-  bool some = (*flags)[corners[0]] || (*flags)[corners[1]] || (*flags)[corners[2]];
-  p.tree->for_each_overlapping(box, [&](int i) { below.push_back(&b.triangles[static_cast<std::size_t>(i)]); });
-  for (const Corners* s : below)
-    for (const std::uint32_t v : *s) {
-      const V3 on = vertex(v);
-      if (!box.contains(on)) continue;
-      const V3 out = point_of(t, contact::nearest_weights(on, t)) - on;
-      const double d = out.norm();
-      if (!(d < reach)) continue;
-      note(on, d > 0 ? V3(out / d) : V3(V3::Zero()), b, any);
-      some = true;
+  const bool coarse = reach > m.cell_m / 2;
+  p.tree->for_each_overlapping(box, [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    if (coarse && p.noted[index]) return;
+    const Corners& c = b.triangles[index];
+    Simplex<3> s;
+    for (std::size_t k = 0; k < 3; ++k) s[k] = V3::Map(p.positions.data() + 3 * c[k]);
+    const V3 normal = (s[1] - s[0]).cross(s[2] - s[0]).normalized();
+    if (!normal.allFinite()) return;
+    if (coarse) {
+      p.noted[index] = true;
+      const V3 middle = (t[0] + t[1] + t[2]) / 3;
+      note(point_of(s, contact::nearest_weights(middle, s)), normal, b, any);
+      return;
     }
-  if (some) return;
-  for (const Corners* s : below)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [on_cloth, on] = nearest_of(t, vertex((*s)[i]), vertex((*s)[(i + 1) % 3]));
-      const V3 out = on_cloth - on;
-      const double d = out.norm();
-      if (d < reach) note(on, d > 0 ? V3(out / d) : V3(V3::Zero()), b, any);
+    double least = kInfinite;
+    std::array<V3, 2> best;
+    const auto keep = [&](const V3& on_cloth, const V3& on) {
+      const double d = (on_cloth - on).squaredNorm();
+      if (d < least) least = d, best = {on_cloth, on};
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+      keep(t[k], point_of(s, contact::nearest_weights(t[k], s)));
+      const auto [on_cloth, on] = nearest_of(t, s[k], s[(k + 1) % 3]);
+      keep(on_cloth, on);
     }
+    const double d = std::sqrt(least);
+    if (!(d < reach)) return;
+    const V3 way = d > 0 ? V3((best[0] - best[1]) / d) : normal;
+    note(best[1], way, b, any);
+    if (way.dot(normal) < 0.99) note(best[1], normal, b, any);
+  });
 }
 
 void Bodies::State::touch_surface(Body& b, std::size_t frame, const std::vector<V3>& x,
@@ -318,6 +331,7 @@ void Bodies::State::touch_surface(Body& b, std::size_t frame, const std::vector<
     }
     p.tree = std::make_unique<contact::BoxTree>(std::move(boxes));
   }
+  p.noted.assign(b.triangles.size(), false);
   for (std::size_t v = 0; v < x.size(); ++v)
     if (const auto n = (*p.surface)(x[v], reach[v]); n && n->distance_m < reach[v]) {
       (*flags)[v] = true;

@@ -30,6 +30,10 @@ class Limits {
   void energy(std::size_t k);
   void strain(std::size_t k);
   double height(std::size_t k, std::size_t v) const { return -m_.at(k, v).dot(m_.gravity) / m_.weight_unit; }
+  /// Of a membrane wave [m/s].
+  double wave_speed() const {
+    return std::sqrt(stiffness_.value_or(kInextensible) / m_.scene.cloth.areal_density_kg_per_m2);
+  }
   double elastic(double mean_square) const { return area_m2_ * mean_square; }
 
   const Motion& m_;
@@ -39,6 +43,7 @@ class Limits {
   std::optional<double> stiffness_;
   double top_ = -1e300, lowest_ = 1e300, budget_ = 0, tensile_ = 0;
   double start_energy_ = 0, kinetic_most_ = 0, elastic_start_ = 0, charged_start_ = 0, compressed_start_ = 0;
+  double imposed_ = 0;  ///< largest strain next to an attachment so far
 };
 
 void Limits::frame(std::size_t k) {
@@ -60,8 +65,7 @@ void Limits::frame(std::size_t k) {
 }
 
 void Limits::velocities(std::size_t k) {
-  const double recoil =
-      std::sqrt(stiffness_.value_or(kInextensible) / m_.scene.cloth.areal_density_kg_per_m2 * tensile_);
+  const double recoil = wave_speed() * std::sqrt(tensile_);
   const double t = m_.dt(k), floor = m_.weight_unit * t + 4 * m_.resolution_m / t;
   double fastest = 0, change = 0;
   for (std::size_t v = 0; v < m_.vertices; ++v) {
@@ -71,8 +75,9 @@ void Limits::velocities(std::size_t k) {
   }
   found_.add("speed", fastest / (3 * (budget_ + recoil + floor)), k);
   if (k > 1)
-    found_.add("speed_change",
-               std::sqrt(change / static_cast<double>(m_.vertices)) / (1.25 * (budget_ + 2 * scripted_) + floor), k);
+    found_.add(
+        "speed_change",
+        std::sqrt(change / static_cast<double>(m_.vertices)) / (1.25 * (budget_ + 2 * scripted_ + recoil) + floor), k);
 }
 
 /// The kinetic energy of a frame's chord is a lower bound of the mean within the frame (Jensen's inequality).
@@ -102,8 +107,7 @@ void Limits::energy(std::size_t k) {
 }
 
 void Limits::strain(std::size_t k) {
-  double charged = 0, compressed = 0, imposed = 0,
-         count = static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1));
+  double charged = 0, compressed = 0, count = static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1));
   std::vector<bool> held(m_.vertices, false);
   if (!m_.scene.grips.vertices.empty())
     for (const std::uint32_t v : m_.held(k)) held[v] = true;
@@ -112,15 +116,17 @@ void Limits::strain(std::size_t k) {
     const double s = m_.strain(k, e);
     charged += std::pow(std::max(std::abs(s) - 3 * m_.resolution_m / e.rest_m, 0.0), 2) / count;
     compressed += std::max(-s, 0.0) / count;
-    if (held[e.a] || held[e.b]) imposed = std::max(imposed, std::abs(s));
+    if (held[e.a] || held[e.b]) imposed_ = std::max(imposed_, std::abs(s));
   }
   if (k == 0) charged_start_ = charged, compressed_start_ = compressed;
   const double weight = m_.mass_kg * m_.weight_unit, Y = stiffness_.value_or(kInextensible);
-  found_.add("compression", (compressed - compressed_start_) / (0.02 + 2 * weight / (m_.length_m * Y)), k);
+  // A recoil compresses by as much as was stretched, an impact by its speed over that of a wave.
+  const double sudden = std::sqrt(tensile_) + scripted_ / wave_speed();
+  found_.add("compression", (compressed - compressed_start_) / (0.02 + 2 * weight / (m_.length_m * Y) + sudden), k);
   // The stiffness of links that should not stretch at all is the solver's own.
   if (!stiffness_) return;
   const double pays = m_.mass_kg * (m_.weight_unit * std::max(top_ - lowest_, m_.length_m) + 2 * driven_ * driven_) +
-                      Y * area_m2_ * imposed * imposed;
+                      Y * area_m2_ * imposed_ * imposed_;
   const double stored = std::min(Y, kStiffest) * elastic(charged - charged_start_);
   found_.add("strain", stored / pays / (scripted_ > 0 ? 3 : 1), k);
 }
