@@ -18,6 +18,7 @@ std::span<const Statistic> statistics() {
       {"first_step", Dynamic, "force of the first interval that nothing in reach can exert, in weights"},
       {"impulse", Dynamic, "force of one interval that nothing in reach can exert, in weights"},
       {"force", Dynamic, "the same, held for two of three intervals"},
+      {"friction", Dynamic, "contact force outside Coulomb's cone, held for two of three intervals, in weights"},
       {"mean_force", Dynamic, "mean force of intervals without contact that no attachment can exert, in weights"},
       {"energy", Dynamic, "energy above the energy at the start, where nothing but cloth moves"},
       {"speed", Dynamic, "speed of a vertex over the speed that falls, colliders and strain can cause"},
