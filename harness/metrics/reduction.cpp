@@ -4,6 +4,8 @@
 #include <limits>
 #include <numeric>
 
+#include "metrics/collider_contact.hpp"
+
 namespace clothbench {
 namespace {
 
@@ -48,6 +50,17 @@ RunView::RunView(const Scene& s, const RunRecord& c, const Plan& its_plan, bool 
 const truth::ReferenceCase& RunView::reference_case() const {
   if (!case_) case_ = truth::reference_case_of(scene);
   return case_.value();
+}
+
+std::span<const motion_check::Finding> RunView::findings() const {
+  if (!findings_) {
+    findings_.emplace();
+    const bool known = kWithContactMetrics || scene.colliders.empty();
+    if (known && !pass.time_s.empty() && pass.position.size() == 3 * scene.cloth.vertex_count() * pass.time_s.size())
+      findings_ = motion_check::verify(scene, {pass.time_s, pass.position},
+                                  plan == nullptr ? std::vector<double>() : plan->contact_margins_m);
+  }
+  return *findings_;
 }
 
 bool RunView::whole() const { return pass.time_s.size() == static_cast<std::size_t>(scene.time.frames()) + 1; }

@@ -24,12 +24,23 @@ std::string fault(const Expectation& e, double value) {
   return "";
 }
 
+/// The checks that hold for every scene; a NaN fails.
+std::string fault_of_motion(const std::map<std::string, double>& summary) {
+  std::string wrong;
+  for (const motion_check::Statistic& s : motion_check::statistics()) {
+    const auto at = summary.find(kMotionCheck + s.name);
+    if (at == summary.end() || at->second <= 1) continue;
+    wrong += (wrong.empty() ? "" : "; ") +
+             fmt::format("{} ({}) {:.3g} times its tolerance", s.name, motion_check::name_of(s.check), at->second);
+  }
+  return wrong;
+}
+
 }  // namespace
 
 Verdict judge(const Scene& scene, const Outcome& outcome, const AccuracyPass& pass,
               const std::map<std::string, double>& summary) {
   Verdict v;
-  if (scene.expected_outcome.empty() && scene.expect.empty()) return v;
   const bool known = measured(scene, outcome, pass);
   const auto note = [&](const std::string& name, const std::string& wrong) {
     v.scalars[kExpect + name] = !known ? kMissing : wrong.empty() ? 1 : 0;
@@ -39,11 +50,14 @@ Verdict judge(const Scene& scene, const Outcome& outcome, const AccuracyPass& pa
     note("outcome", outcome.status == scene.expected_outcome
                         ? ""
                         : "outcome " + outcome.status + ", expected " + scene.expected_outcome);
+  const std::string wrong_motion = fault_of_motion(summary);
+  if (summary.contains(kMotionCheck + "finite")) v.scalars[kExpect + "motion"] = wrong_motion.empty() ? 1 : 0;
+  if (!wrong_motion.empty()) v.text += (v.text.empty() ? "fail: " : "; ") + wrong_motion;
   for (const Expectation& e : scene.expect) {
     const auto at = summary.find(e.name);
     note(e.name, fault(e, at == summary.end() ? kMissing : at->second));
   }
-  if (!known)
+  if (!known && wrong_motion.empty())
     v.text = "not measured";
   else if (v.text.empty())
     v.text = "pass";

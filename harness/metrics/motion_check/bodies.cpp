@@ -1,0 +1,576 @@
+#include "metrics/motion_check/bodies.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "clothbench/motion.hpp"
+#include "metrics/centre_line.hpp"
+#include "metrics/contact/surface.hpp"
+#include "metrics/contact/touch.hpp"
+#include "metrics/contact/tunnel.hpp"
+#include "scenario/collider_kinds.hpp"
+
+namespace clothbench::motion_check {
+namespace {
+
+using contact::Box;
+using contact::Simplex;
+using Corners = std::array<std::uint32_t, 3>;
+
+/// Contact offsets are met to a tenth.
+constexpr double kOffsetFactor = 1.1;
+/// Radius [m] of a finger: what a skinned hand may move in a frame before the direction of its force is unknown.
+constexpr double kFinger_m = 0.01;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+/// Frames whose contacts are kept: those of a window and its neighbours.
+constexpr std::size_t kFramesKept = 16;
+
+/// A collider in one frame.
+struct Pose {
+  std::size_t frame = 0;
+  std::vector<Capsule> capsules;
+  std::vector<double> positions;
+  std::unique_ptr<contact::NearSurface> surface;
+  std::unique_ptr<contact::BoxTree> tree;
+  std::vector<bool> noted;  ///< triangles that are contacts of the frame already
+};
+
+struct Body {
+  const Collider& collider;
+  const ColliderKind& kind;
+  double offset_m;
+  CentreLine line;
+  double radius_m = kInfinite;
+  std::vector<double> lengths_m = {};  ///< of its capsules at the start
+  std::vector<Corners> triangles = {};
+  std::array<std::unique_ptr<Pose>, 4> poses = {};
+  std::unique_ptr<contact::TriangleTree> still = nullptr;   ///< the surface of a static mesh
+  std::unique_ptr<contact::TriangleTree> middle = nullptr;  ///< the middle plane of a box
+  std::vector<double> middle_positions = {};
+  std::vector<Corners> middle_triangles = {};
+
+  bool moves() const { return collider.moves(); }
+};
+
+V3 point_of(const Simplex<3>& t, const V3& weights) {
+  return weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2];
+}
+
+/// Nearest points of two segments: on the first, on the second (Ericson, Real-Time Collision Detection, 5.1.9).
+std::array<V3, 2> nearest_of_segments(const V3& a, const V3& b, const V3& c, const V3& d) {
+  const V3 u = b - a, v = d - c, w = a - c;
+  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const auto unit = [](double x) { return std::clamp(x, 0.0, 1.0); };
+  const double parallel = uu * vv - uv * uv;
+  double s = parallel > 1e-12 * uu * vv ? unit((uv * vw - uw * vv) / parallel) : 0;
+  double t = vv > 0 ? unit((uv * s + vw) / vv) : 0;
+  s = uu > 0 ? unit((uv * t - uw) / uu) : 0;
+  t = vv > 0 ? unit((uv * s + vw) / vv) : 0;
+  return {a + s * u, c + t * v};
+}
+
+/// Nearest points of a triangle and a segment that do not cross: on the triangle, on the segment.
+std::array<V3, 2> nearest_of(const Simplex<3>& t, const V3& a, const V3& b) {
+  std::array<V3, 2> best;
+  double least = kInfinite;
+  const auto keep = [&](const V3& on_triangle, const V3& on_segment) {
+    const double d = (on_triangle - on_segment).squaredNorm();
+    if (d < least) least = d, best = {on_triangle, on_segment};
+  };
+  keep(point_of(t, contact::nearest_weights(a, t)), a);
+  keep(point_of(t, contact::nearest_weights(b, t)), b);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto [on_edge, on_segment] = nearest_of_segments(t[i], t[(i + 1) % 3], a, b);
+    keep(on_edge, on_segment);
+  }
+  return best;
+}
+
+Box box_of(std::span<const double> positions) {
+  Box box;
+  for (std::size_t v = 0; v < positions.size() / 3; ++v) box.extend(V3(V3::Map(positions.data() + 3 * v)));
+  return box;
+}
+
+/// The middle plane of a plate, as far from its border as from its faces; none in a bar, which is no thinner one way
+/// than another.
+void add_middle(Body& b) {
+  const Vec3& half = b.collider.half_extent_m;
+  const std::size_t thin = static_cast<std::size_t>(std::min_element(half.begin(), half.end()) - half.begin());
+  const std::size_t u = (thin + 1) % 3, v = (thin + 2) % 3;
+  if (!(half[u] > b.radius_m && half[v] > b.radius_m)) return;
+  for (const auto& [i, j] : {std::array{-1, -1}, std::array{1, -1}, std::array{1, 1}, std::array{-1, 1}}) {
+    const V3 at = to_v3(b.collider.center_m) + i * (half[u] - b.radius_m) * to_v3(b.collider.axes[u]) +
+                  j * (half[v] - b.radius_m) * to_v3(b.collider.axes[v]);
+    b.middle_positions.insert(b.middle_positions.end(), {at[0], at[1], at[2]});
+  }
+  b.middle_triangles = {{0, 1, 2}, {0, 2, 3}};
+  b.middle = std::make_unique<contact::TriangleTree>(contact::TriangleMeshView{b.middle_positions, b.middle_triangles});
+}
+
+}  // namespace
+
+struct Bodies::State {
+  State(const Motion& motion, std::span<const double> contact_offsets_m);
+
+  Pose& pose(Body& b, std::size_t frame);
+  double displacement(Body& b, std::size_t frame);
+  void touch(Body& b, std::size_t frame, const std::vector<V3>& x, const std::vector<double>& reach);
+  void touch_plane(const Body& b, const std::vector<V3>& x, const std::vector<double>& reach);
+  void touch_capsules(Body& b, std::size_t frame, const std::vector<V3>& x, const std::vector<double>& reach, bool any);
+  void touch_surface(Body& b, std::size_t frame, const std::vector<V3>& x, const std::vector<double>& reach, bool any);
+  void touch_triangle(Body& b, Pose& p, const Corners& corners, const std::vector<V3>& x, double reach, bool any);
+  void note(const V3& point, const V3& normal, const Body& b, bool any) {
+    found->push_back({point, normal, b.collider.friction, any || !(normal.squaredNorm() > 0.5)});
+  }
+  std::vector<V3> inner_points(Body& b, std::size_t frame);
+  int through_cloth(std::size_t frame, const std::vector<V3>& from, const std::vector<V3>& to);
+  int through_surface(std::size_t frame, const contact::TriangleTree& tree, std::span<const double> positions,
+                      std::span<const Corners> triangles);
+  std::vector<double> cloth(std::size_t frame) const;
+
+  const Motion& m;
+  std::vector<Body> bodies;
+  double speed = 0;
+  std::vector<contact::Link> links;
+  std::vector<std::uint32_t> each;  ///< 0, 1, 2, ...
+  std::map<std::size_t, std::vector<Contact>> contacts;
+  std::vector<Contact>* found = nullptr;
+  std::vector<bool>* flags = nullptr;
+  std::vector<std::vector<bool>> touched;
+  std::vector<double> depth;
+};
+
+Bodies::State::State(const Motion& motion, std::span<const double> contact_offsets_m) : m(motion) {
+  for (std::size_t k = 0; k < m.scene.colliders.size(); ++k) {
+    const Collider& c = m.scene.colliders[k];
+    const double said = k < contact_offsets_m.size() ? contact_offsets_m[k] : c.margin_m;
+    Body& b = bodies.emplace_back(
+        Body{c, kind_of(c), std::isfinite(said) ? std::max(said, c.margin_m) : c.margin_m, CentreLine(c)});
+    if (b.kind.capsules != nullptr) {
+      for (const Capsule& q : b.kind.capsules(c, {})) {
+        b.radius_m = std::min(b.radius_m, q.radius_m);
+        b.lengths_m.push_back((to_v3(q.b_m) - to_v3(q.a_m)).norm());
+      }
+    } else if (c.shape == Collider::Shape::Box) {
+      b.radius_m = std::min({c.half_extent_m[0], c.half_extent_m[1], c.half_extent_m[2]});
+    } else if (c.moves()) {
+      b.radius_m = kFinger_m;
+    }
+    if (c.shape == Collider::Shape::Box) add_middle(b);
+    if (b.kind.surface == nullptr || b.kind.half_space) continue;
+    const ColliderSurface surface = b.kind.surface(c, m.scripted(0) ? m.scripted(0)->colliders[k] : ColliderPose{}, {});
+    b.triangles.assign(surface.triangles.begin(), surface.triangles.end());
+    if (b.moves() || b.triangles.empty()) continue;
+    b.still = std::make_unique<contact::TriangleTree>(contact::TriangleMeshView{surface.positions, b.triangles});
+  }
+  speed = collider_speed_m_per_s(m.scene);
+  for (const Jump& j : m.scene.jumps) speed = std::max(speed, j.distance_m / m.scene.time.dt());
+  links = contact::edges_of(m.triangles);
+  each.resize(m.vertices);
+  std::iota(each.begin(), each.end(), 0u);
+  touched.assign(m.frames, {});
+  depth.assign(m.frames, 0);
+}
+
+std::vector<double> Bodies::State::cloth(std::size_t frame) const {
+  std::vector<double> out;
+  out.reserve(3 * m.vertices);
+  for (std::size_t v = 0; v < m.vertices; ++v) {
+    const V3 x = m.at(frame, v);
+    out.insert(out.end(), {x[0], x[1], x[2]});
+  }
+  return out;
+}
+
+Pose& Bodies::State::pose(Body& b, std::size_t frame) {
+  if (!b.moves()) frame = 0;
+  std::unique_ptr<Pose>& slot = b.poses[frame % b.poses.size()];
+  if (slot && slot->frame == frame) return *slot;
+  slot = std::make_unique<Pose>();
+  slot->frame = frame;
+  const std::size_t index = static_cast<std::size_t>(&b - bodies.data());
+  const FrameMotion* now = m.scripted(frame);
+  const ColliderPose pose = now != nullptr && index < now->colliders.size() ? now->colliders[index] : ColliderPose{};
+  if (b.kind.capsules != nullptr)
+    slot->capsules = b.kind.capsules(b.collider, pose);
+  else if (!b.kind.half_space)
+    slot->positions = b.kind.surface(b.collider, pose, {}).positions;
+  return *slot;
+}
+
+/// Largest displacement [m] of a collider between the frame before and this one.
+double Bodies::State::displacement(Body& b, std::size_t frame) {
+  if (!b.moves() || frame == 0 || frame >= m.frames) return 0;
+  const Pose &was = pose(b, frame - 1), &now = pose(b, frame);
+  double most = 0;
+  for (std::size_t i = 0; i < now.capsules.size(); ++i)
+    most = std::max({most, (to_v3(now.capsules[i].a_m) - to_v3(was.capsules[i].a_m)).norm(),
+                     (to_v3(now.capsules[i].b_m) - to_v3(was.capsules[i].b_m)).norm()});
+  for (std::size_t i = 0; i < now.positions.size(); i += 3)
+    most = std::max(most, (V3::Map(now.positions.data() + i) - V3::Map(was.positions.data() + i)).norm());
+  return most;
+}
+
+void Bodies::State::touch_plane(const Body& b, const std::vector<V3>& x, const std::vector<double>& reach) {
+  const V3 normal = to_v3(b.collider.normal), on = to_v3(b.collider.center_m);
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    const double d = normal.dot(x[v] - on);
+    if (!(d < reach[v])) continue;
+    (*flags)[v] = true;
+    note(x[v] - d * normal, normal, b, false);
+  }
+}
+
+void Bodies::State::touch_capsules(Body& b, std::size_t frame, const std::vector<V3>& x,
+                                   const std::vector<double>& reach, bool any) {
+  const double far = *std::max_element(reach.begin(), reach.end());
+  const double near_cell = std::max(m.cell_m * 1.5, far);
+  for (const Capsule& c : pose(b, frame).capsules) {
+    const V3 a = to_v3(c.a_m), e = to_v3(c.b_m);
+    std::vector<bool> close(x.size(), false);
+    bool some = false;
+    Box box(a.cwiseMin(e), a.cwiseMax(e));
+    const double wide = c.radius_m + far + near_cell;
+    box.extend(V3(box.min() - V3::Constant(wide)));
+    box.extend(V3(box.max() + V3::Constant(wide)));
+    for (std::size_t v = 0; v < x.size(); ++v)
+      if (box.contains(x[v])) close[v] = some = true;
+    if (!some) continue;
+    for (const Corners& t : m.triangles) {
+      if (!(close[t[0]] || close[t[1]] || close[t[2]])) continue;
+      const Simplex<3> corners{x[t[0]], x[t[1]], x[t[2]]};
+      const double allowed = c.radius_m + std::max({reach[t[0]], reach[t[1]], reach[t[2]]});
+      const auto [on_cloth, on_axis] = nearest_of(corners, a, e);
+      const V3 out = on_cloth - on_axis;
+      const double distance = out.norm();
+      if (distance < allowed) {
+        const V3 normal = distance > 0 ? V3(out / distance) : V3(V3::Zero());
+        note(on_axis + c.radius_m * normal, normal, b, any);
+      }
+      for (const std::uint32_t v : t) {
+        const V3 along = e - a;
+        const double share =
+            along.squaredNorm() > 0 ? std::clamp((x[v] - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
+        const V3 from = x[v] - a - share * along;
+        const double d = from.norm();
+        if (!(d < c.radius_m + reach[v]) || (*flags)[v]) continue;
+        (*flags)[v] = true;
+        const V3 normal = d > 0 ? V3(from / d) : V3(V3::Zero());
+        note(x[v] - (d - c.radius_m) * normal, normal, b, any);
+      }
+    }
+  }
+}
+
+/// Every triangle of the surface within reach of a triangle of the cloth may push along its own normal, and along the
+/// shortest way between the two: a frame does not say where in it they met. Where the cloth moves by more than half a
+/// cell, the overlap of boxes decides.
+void Bodies::State::touch_triangle(Body& b, Pose& p, const Corners& corners, const std::vector<V3>& x, double reach,
+                                   bool any) {
+  const Simplex<3> t{x[corners[0]], x[corners[1]], x[corners[2]]};
+  Box box;
+  for (const V3& corner : t) box.extend(corner);
+  box.extend(V3(box.min() - V3::Constant(reach)));
+  box.extend(V3(box.max() + V3::Constant(reach)));
+  const bool coarse = reach > m.cell_m / 2;
+  p.tree->for_each_overlapping(box, [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    if (coarse && p.noted[index]) return;
+    const Corners& c = b.triangles[index];
+    Simplex<3> s;
+    for (std::size_t k = 0; k < 3; ++k) s[k] = V3::Map(p.positions.data() + 3 * c[k]);
+    const V3 normal = (s[1] - s[0]).cross(s[2] - s[0]).normalized();
+    if (!normal.allFinite()) return;
+    if (coarse) {
+      p.noted[index] = true;
+      const V3 middle = (t[0] + t[1] + t[2]) / 3;
+      note(point_of(s, contact::nearest_weights(middle, s)), normal, b, any);
+      return;
+    }
+    double least = kInfinite;
+    std::array<V3, 2> best;
+    const auto keep = [&](const V3& on_cloth, const V3& on) {
+      const double d = (on_cloth - on).squaredNorm();
+      if (d < least) least = d, best = {on_cloth, on};
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+      keep(t[k], point_of(s, contact::nearest_weights(t[k], s)));
+      const auto [on_cloth, on] = nearest_of(t, s[k], s[(k + 1) % 3]);
+      keep(on_cloth, on);
+    }
+    const double d = std::sqrt(least);
+    if (!(d < reach)) return;
+    const V3 way = d > 0 ? V3((best[0] - best[1]) / d) : normal;
+    note(best[1], way, b, any);
+    if (way.dot(normal) < 0.99) note(best[1], normal, b, any);
+  });
+}
+
+void Bodies::State::touch_surface(Body& b, std::size_t frame, const std::vector<V3>& x,
+                                  const std::vector<double>& reach, bool any) {
+  Pose& p = pose(b, frame);
+  if (p.positions.empty() || b.triangles.empty()) return;
+  Box cloth_box;
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    cloth_box.extend(V3(x[v] - V3::Constant(reach[v])));
+    cloth_box.extend(V3(x[v] + V3::Constant(reach[v])));
+  }
+  if (!cloth_box.intersects(box_of(p.positions))) return;
+  if (!p.surface) {
+    p.surface = std::make_unique<contact::NearSurface>(contact::TriangleMeshView{p.positions, b.triangles});
+    std::vector<Box> boxes;
+    for (const Corners& t : b.triangles) {
+      Box box;
+      for (const std::uint32_t v : t) box.extend(V3(V3::Map(p.positions.data() + 3 * v)));
+      boxes.push_back(box);
+    }
+    p.tree = std::make_unique<contact::BoxTree>(std::move(boxes));
+  }
+  p.noted.assign(b.triangles.size(), false);
+  for (std::size_t v = 0; v < x.size(); ++v)
+    if (const auto n = (*p.surface)(x[v], reach[v]); n && n->distance_m < reach[v]) {
+      (*flags)[v] = true;
+      note(x[v] - n->distance_m * n->normal, n->normal, b, any);
+      if (any && m.has_attachments()) return;  // any force at all: the frame is not judged
+    }
+  for (const Corners& t : m.triangles)
+    touch_triangle(b, p, t, x, std::max({reach[t[0]], reach[t[1]], reach[t[2]]}), any);
+}
+
+void Bodies::State::touch(Body& b, std::size_t frame, const std::vector<V3>& x, const std::vector<double>& reach) {
+  const double way = std::max(displacement(b, frame), displacement(b, frame + 1));
+  const bool any = way > b.radius_m / 2;
+  std::vector<double> its_reach(reach);
+  const double fallen = m.weight_unit * m.dt(frame) * m.dt(frame) / 2;
+  for (double& r : its_reach) {
+    const double share = r + way / 2;
+    r = kOffsetFactor * b.offset_m + 4 * m.resolution_m + share + std::min(share, fallen);
+  }
+  if (b.kind.half_space)
+    touch_plane(b, x, its_reach);
+  else if (b.kind.capsules != nullptr)
+    touch_capsules(b, frame, x, its_reach, any);
+  else
+    touch_surface(b, frame, x, its_reach, any);
+  // Depth, where a signed distance is known.
+  const double margin = b.collider.margin_m > 0 ? b.collider.margin_m : kInfinite;
+  const double allowed =
+      std::max(std::isfinite(b.radius_m) ? std::min(margin, b.radius_m / 4) : (std::isfinite(margin) ? margin : 0.0),
+               4 * m.resolution_m);
+  double deepest = 0;
+  for (const V3& p : x) {
+    double d = kInfinite;
+    if (b.kind.nearest != nullptr) {
+      d = b.kind.nearest(b.collider, {p[0], p[1], p[2]}).distance_m;
+    } else if (b.kind.capsules != nullptr) {
+      for (const Capsule& c : pose(b, frame).capsules) {
+        const V3 a = to_v3(c.a_m), along = to_v3(c.b_m) - a;
+        const double share =
+            along.squaredNorm() > 0 ? std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
+        d = std::min(d, (p - a - share * along).norm() - c.radius_m);
+      }
+    }
+    if (std::isfinite(d)) deepest = std::max(deepest, -d);
+  }
+  depth[frame] = std::max(depth[frame], deepest / allowed);
+}
+
+/// Points deep inside a solid: none of them may pass through the cloth. Their spacing is half a cell.
+std::vector<V3> Bodies::State::inner_points(Body& b, std::size_t frame) {
+  std::vector<V3> out;
+  const auto count = [&](double length) {
+    return std::clamp(static_cast<int>(std::ceil(2 * length / m.cell_m)), 1, 32);
+  };
+  if (b.kind.capsules != nullptr) {
+    const std::vector<Capsule>& capsules = pose(b, frame).capsules;
+    for (std::size_t i = 0; i < capsules.size(); ++i) {
+      const V3 a = to_v3(capsules[i].a_m), along = to_v3(capsules[i].b_m) - a;
+      const int n = count(b.lengths_m[i]);
+      for (int j = 0; j <= n; ++j) out.push_back(a + static_cast<double>(j) / n * along);
+    }
+  }
+  if (b.collider.shape == Collider::Shape::Box) {
+    const Vec3& half = b.collider.half_extent_m;
+    std::array<int, 3> n{};
+    for (std::size_t k = 0; k < 3; ++k) n[k] = count(2 * (half[k] - b.radius_m));
+    for (int i = 0; i <= n[0]; ++i)
+      for (int j = 0; j <= n[1]; ++j)
+        for (int k = 0; k <= n[2]; ++k) {
+          V3 at = to_v3(b.collider.center_m);
+          const std::array<int, 3> index{i, j, k};
+          for (std::size_t a = 0; a < 3; ++a)
+            at += (2.0 * index[a] / n[a] - 1) * (half[a] - b.radius_m) * to_v3(b.collider.axes[a]);
+          out.push_back(at);
+        }
+  }
+  if (b.moves() && b.kind.capsules == nullptr) {
+    const std::size_t index = static_cast<std::size_t>(&b - bodies.data());
+    const std::vector<contact::Bone> rest = b.line.at(m.scripted(0)->colliders[index]);
+    const std::vector<contact::Bone> bones = b.line.at(m.scripted(frame)->colliders[index]);
+    for (std::size_t i = 0; i < bones.size(); ++i) {
+      const int n = count((rest[i][1] - rest[i][0]).norm());
+      for (int j = 0; j <= n; ++j)
+        out.push_back(bones[i][0] + static_cast<double>(j) / n * (bones[i][1] - bones[i][0]));
+    }
+  }
+  return out;
+}
+
+/// Points that pass the cloth whether they move first, last or evenly with it: stored frames do not say which.
+int Bodies::State::through_cloth(std::size_t frame, const std::vector<V3>& from, const std::vector<V3>& to) {
+  Box swept, path;
+  for (std::size_t v = 0; v < m.vertices; ++v) {
+    swept.extend(m.at(frame - 1, v));
+    swept.extend(m.at(frame, v));
+  }
+  for (std::size_t i = 0; i < from.size(); ++i) path.extend(from[i]).extend(to[i]);
+  if (from.empty() || !swept.intersects(path)) return 0;
+  const std::vector<double> was = cloth(frame - 1), now = cloth(frame);
+  const contact::TriangleMeshView before{was, m.triangles}, after{now, m.triangles};
+  const contact::SweptMesh mesh(before, after, each);
+  std::unique_ptr<contact::TriangleTree> at_start, at_end;
+  int count = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const int evenly = mesh.signed_crossings(from[i], to[i]);
+    if (evenly == 0) continue;
+    if (!at_start) {
+      at_start = std::make_unique<contact::TriangleTree>(before);
+      at_end = std::make_unique<contact::TriangleTree>(after);
+    }
+    const int first = contact::signed_crossings(from[i], to[i], *at_start) + mesh.signed_crossings(to[i], to[i]);
+    const int last = mesh.signed_crossings(from[i], from[i]) + contact::signed_crossings(from[i], to[i], *at_end);
+    if (first == evenly && last == evenly) ++count;
+  }
+  return count;
+}
+
+/// Vertices that pass a static surface: once, or in and out through faces that look away from each other.
+int Bodies::State::through_surface(std::size_t frame, const contact::TriangleTree& tree,
+                                   std::span<const double> positions, std::span<const Corners> triangles) {
+  const std::vector<double> was = cloth(frame - 1), now = cloth(frame);
+  Box swept;
+  swept.extend(box_of(was)).extend(box_of(now));
+  if (!swept.intersects(tree.tree().box())) return 0;
+  const auto of = [](const std::vector<double>& x, std::size_t v) { return V3(V3::Map(x.data() + 3 * v)); };
+  const auto crossed = [&](const V3& p, const V3& q, auto note) {
+    tree.tree().for_each_overlapping(Box(p).extend(q), [&](int t) {
+      const Simplex<3>& s = tree.triangles()[static_cast<std::size_t>(t)];
+      if (p != q && contact::crossing<3>(p, q, s) != 0) note(V3((s[1] - s[0]).cross(s[2] - s[0]).normalized()));
+    });
+  };
+  int through = 0;
+  bool any = false;
+  for (std::size_t v = 0; v < m.vertices; ++v) {
+    std::vector<V3> normals;
+    crossed(of(was, v), of(now, v), [&](const V3& n) { normals.push_back(n); });
+    any = any || !normals.empty();
+    bool opposed = false;
+    for (const V3& a : normals)
+      for (const V3& b : normals) opposed = opposed || a.dot(b) < -0.5;
+    through += opposed;
+  }
+  if (!any) return 0;
+  std::optional<contact::Border> border;
+  const contact::TriangleMeshView view{positions, triangles};
+  const contact::StepEvidence evidence{[&] {
+                                         for (const contact::Link& l : links)
+                                           for (const std::vector<double>* x : {&was, &now}) {
+                                             bool meets = false;
+                                             crossed(of(*x, l[0]), of(*x, l[1]), [&](const V3&) { meets = true; });
+                                             if (meets) return true;
+                                           }
+                                         return false;
+                                       },
+                                       [&](const contact::Point<3>& p, const contact::Point<3>& q) {
+                                         if (!border) border.emplace(view, contact::welded_vertices(view));
+                                         return border->out_of_reach(p, q, positions, positions);
+                                       }};
+  contact::TunnelHistory step(m.vertices, links);
+  step.advance(was, now, tree, evidence);
+  for (const int n : step.counts()) through += n != 0;
+  return through;
+}
+
+Bodies::Bodies(const Motion& m, std::span<const double> contact_offsets_m)
+    : state_(std::make_unique<State>(m, contact_offsets_m)) {}
+Bodies::~Bodies() = default;
+
+bool Bodies::empty() const { return state_->bodies.empty(); }
+bool Bodies::any_moves() const {
+  return std::any_of(state_->bodies.begin(), state_->bodies.end(), [](const Body& b) { return b.moves(); });
+}
+double Bodies::speed() const { return state_->speed; }
+
+const std::vector<Contact>& Bodies::contacts(std::size_t frame) {
+  State& s = *state_;
+  const auto known = s.contacts.find(frame);
+  if (known != s.contacts.end()) return known->second;
+  while (s.contacts.size() >= kFramesKept) s.contacts.erase(s.contacts.begin());
+  s.found = &s.contacts[frame];
+  s.touched[frame].assign(s.m.vertices, false);
+  s.flags = &s.touched[frame];
+  std::vector<V3> x;
+  std::vector<double> half_way;
+  for (std::size_t v = 0; v < s.m.vertices; ++v) {
+    x.push_back(s.m.at(frame, v));
+    double way = 0;
+    if (frame > 0) way = (x[v] - s.m.at(frame - 1, v)).norm();
+    if (frame + 1 < s.m.frames) way = std::max(way, (s.m.at(frame + 1, v) - x[v]).norm());
+    half_way.push_back(way / 2);
+  }
+  for (Body& b : s.bodies) s.touch(b, frame, x, half_way);
+  return *s.found;
+}
+
+bool Bodies::touched(std::size_t frame, std::size_t vertex) const {
+  const std::vector<bool>& flags = state_->touched[frame];
+  return !flags.empty() && flags[vertex];
+}
+
+double Bodies::depth_ratio(std::size_t frame) const { return state_->depth[frame]; }
+
+bool Bodies::near(std::size_t frame, std::span<const V3> points, double displacement_m) const {
+  State& s = *state_;
+  Box cloth;
+  for (const V3& p : points) cloth.extend(p);
+  for (Body& b : s.bodies) {
+    const double reach = displacement_m + kOffsetFactor * b.offset_m + 4 * s.m.resolution_m + s.displacement(b, frame);
+    if (b.kind.half_space) {
+      for (const V3& p : points)
+        if (to_v3(b.collider.normal).dot(p - to_v3(b.collider.center_m)) < reach) return true;
+      continue;
+    }
+    Box box;
+    const Pose& pose = s.pose(b, frame);
+    for (const Capsule& c : pose.capsules)
+      for (const Vec3& end : {c.a_m, c.b_m}) {
+        box.extend(V3(to_v3(end) - V3::Constant(c.radius_m)));
+        box.extend(V3(to_v3(end) + V3::Constant(c.radius_m)));
+      }
+    if (!pose.positions.empty()) box.extend(box_of(pose.positions));
+    box.extend(V3(box.min() - V3::Constant(reach)));
+    box.extend(V3(box.max() + V3::Constant(reach)));
+    if (box.intersects(cloth)) return true;
+  }
+  return false;
+}
+
+int Bodies::passages(std::size_t frame) const {
+  State& s = *state_;
+  int count = 0;
+  for (Body& b : s.bodies) {
+    if (b.kind.half_space) continue;
+    count += s.through_cloth(frame, s.inner_points(b, frame - 1), s.inner_points(b, frame));
+    if (b.still && b.collider.shape != Collider::Shape::Box)
+      count += s.through_surface(frame, *b.still, s.pose(b, 0).positions, b.triangles);
+    if (b.middle) count += s.through_surface(frame, *b.middle, b.middle_positions, b.middle_triangles);
+  }
+  return count;
+}
+
+}  // namespace clothbench::motion_check

@@ -1,0 +1,138 @@
+// What falls, colliders and attachments can give to the cloth: speed, energy and strain.
+#include <algorithm>
+#include <cmath>
+
+#include "metrics/motion_check/bodies.hpp"
+#include "metrics/motion_check/motion.hpp"
+
+namespace clothbench::motion_check {
+namespace {
+
+/// Membrane stiffness [N/m] above which more is not charged: strain then measures a solver's accuracy.
+constexpr double kStiffest = 1000, kInextensible = 1e4;
+
+class Limits {
+ public:
+  Limits(const Motion& m, const Bodies& b, Findings& f)
+      : m_(m), found_(f), scripted_(std::max(b.speed(), m.grip_speed)), moves_(b.any_moves() || m.grip_speed > 0) {
+    driven_ = std::max(scripted_, m.start_speed);
+    area_m2_ = m.mass_kg / m.scene.cloth.areal_density_kg_per_m2;
+    stiffness_ = m.scene.material.membrane_stiffness_N_per_m;
+  }
+
+  void run() {
+    for (std::size_t k = 0; k < m_.frames; ++k) frame(k);
+  }
+
+ private:
+  void frame(std::size_t k);
+  void velocities(std::size_t k);
+  void energy(std::size_t k);
+  void strain(std::size_t k);
+  double height(std::size_t k, std::size_t v) const { return -m_.at(k, v).dot(m_.gravity) / m_.weight_unit; }
+  /// Of a membrane wave [m/s].
+  double wave_speed() const {
+    return std::sqrt(stiffness_.value_or(kInextensible) / m_.scene.cloth.areal_density_kg_per_m2);
+  }
+  double elastic(double mean_square) const { return area_m2_ * mean_square; }
+
+  const Motion& m_;
+  Findings& found_;
+  double scripted_, driven_ = 0, area_m2_ = 0;
+  bool moves_;
+  std::optional<double> stiffness_;
+  double top_ = -1e300, lowest_ = 1e300, budget_ = 0, tensile_ = 0;
+  double start_energy_ = 0, kinetic_most_ = 0, elastic_start_ = 0, charged_start_ = 0, compressed_start_ = 0;
+  double imposed_ = 0;  ///< largest strain next to an attachment so far
+};
+
+void Limits::frame(std::size_t k) {
+  double low = 1e300;
+  for (std::size_t v = 0; v < m_.vertices; ++v) {
+    low = std::min(low, height(k, v));
+    if (k == 0) top_ = std::max(top_, height(k, v));
+  }
+  lowest_ = std::min(lowest_, low);
+  const bool falls = m_.gravity.norm() > 0;
+  const double fall = std::max(top_ - lowest_, m_.has_attachments() ? m_.length_m : 0.0);
+  budget_ = std::max(budget_, (falls ? std::sqrt(2 * m_.weight_unit * fall) : 0) + 2 * driven_);
+  double tensile = 0;
+  for (const Edge& e : m_.edges) tensile += std::pow(std::max(m_.strain(k, e), 0.0), 2);
+  tensile_ = std::max(tensile_, tensile / static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1)));
+  if (k > 0) velocities(k);
+  if (!moves_) energy(k);
+  strain(k);
+}
+
+void Limits::velocities(std::size_t k) {
+  const double recoil = wave_speed() * std::sqrt(tensile_);
+  const double t = m_.dt(k), floor = m_.weight_unit * t + 4 * m_.resolution_m / t;
+  double fastest = 0, change = 0;
+  for (std::size_t v = 0; v < m_.vertices; ++v) {
+    const V3 now = (m_.at(k, v) - m_.at(k - 1, v)) / t;
+    fastest = std::max(fastest, now.norm());
+    if (k > 1) change += (now - (m_.at(k - 1, v) - m_.at(k - 2, v)) / m_.dt(k - 1)).squaredNorm();
+  }
+  found_.add("speed", fastest / (3 * (budget_ + recoil + floor)), k);
+  if (k > 1)
+    found_.add(
+        "speed_change",
+        std::sqrt(change / static_cast<double>(m_.vertices)) / (1.25 * (budget_ + 2 * scripted_ + recoil) + floor), k);
+}
+
+/// The kinetic energy of a frame's chord is a lower bound of the mean within the frame (Jensen's inequality).
+void Limits::energy(std::size_t k) {
+  double mean_square = 0;
+  for (const Edge& e : m_.edges) mean_square += std::pow(m_.strain(k, e), 2);
+  mean_square /= static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1));
+  if (k == 0) {
+    for (std::size_t v = 0; v < m_.vertices; ++v)
+      start_energy_ += m_.masses_kg[v] * m_.start_velocity_of(v).squaredNorm() / 2;
+    elastic_start_ = stiffness_.value_or(kInextensible) * elastic(mean_square);
+    return;
+  }
+  // Links without a limit of stiffness store any energy at a start that strains them.
+  if (!stiffness_ && mean_square > 0 && !m_.scene.cloth.start.at_rest()) return;
+  const double t = m_.dt(k), g = m_.weight_unit, M = m_.mass_kg;
+  double kinetic = 0, height_gained = 0;
+  for (std::size_t v = 0; v < m_.vertices; ++v) {
+    kinetic += m_.masses_kg[v] * ((m_.at(k, v) - m_.at(k - 1, v)) / t).squaredNorm() / 2;
+    height_gained += m_.masses_kg[v] * ((height(k, v) + height(k - 1, v)) / 2 - height(0, v));
+  }
+  kinetic_most_ = std::max(kinetic_most_, kinetic);
+  const double step = 3 * g * t * std::sqrt(2 * kinetic_most_ * M), noise = 6 * M * std::pow(m_.resolution_m / t, 2);
+  const double allowed = 0.02 * M * g * m_.length_m + 0.05 * start_energy_ + step + noise;
+  found_.add("energy",
+             (kinetic + g * height_gained * (m_.gravity.norm() > 0) - start_energy_ - elastic_start_) / allowed, k);
+}
+
+void Limits::strain(std::size_t k) {
+  double charged = 0, compressed = 0, count = static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1));
+  std::vector<bool> held(m_.vertices, false);
+  if (!m_.scene.grips.vertices.empty())
+    for (const std::uint32_t v : m_.held(k)) held[v] = true;
+  for (const Edge& e : m_.edges) {
+    if (!(e.rest_m > 0)) continue;
+    const double s = m_.strain(k, e);
+    charged += std::pow(std::max(std::abs(s) - 3 * m_.resolution_m / e.rest_m, 0.0), 2) / count;
+    compressed += std::max(-s, 0.0) / count;
+    if (held[e.a] || held[e.b]) imposed_ = std::max(imposed_, std::abs(s));
+  }
+  if (k == 0) charged_start_ = charged, compressed_start_ = compressed;
+  const double weight = m_.mass_kg * m_.weight_unit, Y = stiffness_.value_or(kInextensible);
+  // A recoil compresses by as much as was stretched, an impact by its speed over that of a wave.
+  const double sudden = std::sqrt(tensile_) + scripted_ / wave_speed();
+  found_.add("compression", (compressed - compressed_start_) / (0.02 + 2 * weight / (m_.length_m * Y) + sudden), k);
+  // The stiffness of links that should not stretch at all is the solver's own.
+  if (!stiffness_) return;
+  const double pays = m_.mass_kg * (m_.weight_unit * std::max(top_ - lowest_, m_.length_m) + 2 * driven_ * driven_) +
+                      Y * area_m2_ * imposed_ * imposed_;
+  const double stored = std::min(Y, kStiffest) * elastic(charged - charged_start_);
+  found_.add("strain", stored / pays / (scripted_ > 0 ? 3 : 1), k);
+}
+
+}  // namespace
+
+void check_limits(const Motion& m, const Bodies& bodies, Findings& found) { Limits(m, bodies, found).run(); }
+
+}  // namespace clothbench::motion_check

@@ -1,0 +1,322 @@
+// Momentum and angular momentum of the whole cloth. Forces inside the cloth cancel in both, so that no law of the
+// material is needed: what is left over gravity and damping must be a force that attachments and colliders in reach
+// can exert. The least distance to their cone is found by column generation and non-negative least squares (Lawson &
+// Hanson 1974, chapter 23).
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "metrics/motion_check/bodies.hpp"
+#include "metrics/motion_check/motion.hpp"
+
+namespace clothbench::motion_check {
+namespace {
+
+using V6 = Eigen::Matrix<double, 6, 1>;
+using M6 = Eigen::Matrix<double, 6, 6>;
+
+/// An impulse acts at a third of a frame from the stored one on average (the mean of the hat weights of a second
+/// difference); so far may its lever be wrong.
+constexpr double kChord = 1.0 / 3;
+/// Frames over which mean forces are taken.
+constexpr std::size_t kWindow = 12;
+/// Slack of friction coefficients: a scene's is met to 10 % and 0.02.
+constexpr double kFrictionFactor = 1.1, kFrictionSlack = 0.02;
+
+/// Coefficients of free flight with linear damping c around a stored frame: the displacement before it is
+/// a1 v + b1 g, the displacement after it a2 v + b2 g.
+struct Flight {
+  double a1, b1, a2, b2;
+  Flight(double before_s, double after_s, double c) {
+    if (c * std::max(before_s, after_s) < 1e-6) {
+      a1 = before_s, a2 = after_s;
+      b1 = -before_s * before_s / 2, b2 = after_s * after_s / 2;
+      return;
+    }
+    a1 = std::expm1(c * before_s) / c, a2 = -std::expm1(-c * after_s) / c;
+    b1 = (before_s - a1) / c, b2 = (after_s - a2) / c;
+  }
+};
+
+/// min |w - sum of non-negative multiples of the columns|, with the residual.
+template <class Columns>
+V6 residual_of_cone(const Columns& columns, const V6& w, Eigen::VectorXd& multiples) {
+  const auto n = static_cast<Eigen::Index>(columns.cols());
+  multiples = Eigen::VectorXd::Zero(n);
+  std::vector<Eigen::Index> passive;
+  V6 rest = w;
+  for (int round = 0; round < 3 * n + 10; ++round) {
+    Eigen::Index best = -1;
+    double gain = 1e-9;
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (std::find(passive.begin(), passive.end(), j) == passive.end() && columns.col(j).dot(rest) > gain)
+        gain = columns.col(j).dot(rest), best = j;
+    if (best < 0) break;
+    passive.push_back(best);
+    while (!passive.empty()) {
+      Eigen::MatrixXd a(6, static_cast<Eigen::Index>(passive.size()));
+      for (std::size_t i = 0; i < passive.size(); ++i) a.col(static_cast<Eigen::Index>(i)) = columns.col(passive[i]);
+      const Eigen::VectorXd z = a.completeOrthogonalDecomposition().solve(w);
+      double step = 1;
+      for (std::size_t i = 0; i < passive.size(); ++i) {
+        const double now = multiples[passive[i]], then = z[static_cast<Eigen::Index>(i)];
+        if (then <= 0) step = std::min(step, now - then > 0 ? now / (now - then) : 0);
+      }
+      for (std::size_t i = 0; i < passive.size(); ++i)
+        multiples[passive[i]] += step * (z[static_cast<Eigen::Index>(i)] - multiples[passive[i]]);
+      if (step >= 1) break;
+      std::erase_if(passive, [&](Eigen::Index j) {
+        if (multiples[j] > 1e-12) return false;
+        multiples[j] = 0;
+        return true;
+      });
+    }
+    rest = w - columns * multiples;
+  }
+  return rest;
+}
+
+/// The wrench, in weights and half lengths, of a unit force.
+V6 wrench_of(const V3& force, const V3& arm) {
+  V6 w;
+  w << force, arm.cross(force);
+  return w;
+}
+
+/// The unit force of a contact that does most against a direction; zero if none does anything. `coulomb`: within the
+/// cone of friction; otherwise any force that does not pull.
+V3 best_force(const Contact& c, const V3& h, bool coulomb) {
+  if (c.any_force) return h.normalized();
+  const double along = h.dot(c.normal);
+  const V3 across = h - along * c.normal;
+  const double size = across.norm();
+  if (!coulomb) return along >= 0 ? V3(h.normalized()) : (size > 0 ? V3(across / size) : V3(V3::Zero()));
+  const double slope = kFrictionFactor * (c.friction + kFrictionSlack);
+  const V3 force = size > 0 ? V3(c.normal + slope / size * across) : c.normal;
+  return force.dot(h) > 0 ? V3(force.normalized()) : V3(V3::Zero());
+}
+
+class Momentum {
+ public:
+  Momentum(const Motion& m, Bodies& b, Findings& f) : m_(m), bodies_(b), found_(f), arm_m_(m.length_m / 2) {}
+
+  void run();
+
+ private:
+  struct Interval {
+    V6 wrench = V6::Zero();  ///< without what attachments can exert
+    double hidden = 0;       ///< angular part that chords may hide
+    bool judged = true, contact = false;
+  };
+
+  Interval interval(std::size_t k);
+  M6 free_of_attachments(std::size_t k, const V3& middle) const;
+  std::vector<Contact> contacts_round(std::size_t k);
+  double outside_cone(const V6& w, const std::vector<Contact>& contacts, const M6& keep, const V3& middle,
+                      bool coulomb = false) const;
+  void window(std::size_t k);
+  void free_motion();
+  V3 middle_of(std::size_t k) const;
+  double noise(std::size_t k) const;
+
+  const Motion& m_;
+  Bodies& bodies_;
+  Findings& found_;
+  double arm_m_;
+  std::vector<Interval> all_;
+};
+
+V3 Momentum::middle_of(std::size_t k) const {
+  V3 sum = V3::Zero();
+  for (std::size_t v = 0; v < m_.vertices; ++v) sum += m_.masses_kg[v] * m_.at(k, v);
+  return sum / m_.mass_kg;
+}
+
+/// Wrench [weights] of positions that are off by the resolution.
+double Momentum::noise(std::size_t k) const {
+  const double t = m_.dt(k);
+  return 15 * m_.resolution_m / std::sqrt(static_cast<double>(m_.vertices)) / (t * t * m_.weight_unit);
+}
+
+/// Projection on the wrenches that no attachment can exert. Held vertices of both intervals count.
+M6 Momentum::free_of_attachments(std::size_t k, const V3& middle) const {
+  M6 gram = M6::Zero();
+  int count = 0;
+  for (const std::size_t f : {k == 0 ? k : k - 1, k, std::min(k + 1, m_.frames - 1)})
+    for (const std::uint32_t v : m_.held(f)) {
+      const V3 arm = (m_.at(k, v) - middle) / arm_m_;
+      for (int axis = 0; axis < 3; ++axis) {
+        const V6 w = wrench_of(V3::Unit(axis), arm);
+        gram += w * w.transpose();
+      }
+      ++count;
+    }
+  if (count == 0) return M6::Identity();
+  const Eigen::SelfAdjointEigenSolver<M6> eigen(gram);
+  M6 keep = M6::Zero();
+  for (int i = 0; i < 6; ++i)
+    if (eigen.eigenvalues()[i] < 1e-6 * eigen.eigenvalues()[5])
+      keep += eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose();
+  return keep;
+}
+
+std::vector<Contact> Momentum::contacts_round(std::size_t k) {
+  std::vector<Contact> out;
+  if (bodies_.empty()) return out;
+  for (std::size_t f = k == 0 ? 0 : k - 1; f <= std::min(k + 1, m_.frames - 1); ++f) {
+    const std::vector<Contact>& now = bodies_.contacts(f);
+    out.insert(out.end(), now.begin(), now.end());
+  }
+  return out;
+}
+
+double Momentum::outside_cone(const V6& w, const std::vector<Contact>& contacts, const M6& keep, const V3& middle,
+                              bool coulomb) const {
+  constexpr int kRounds = 60;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> columns(6, 0);
+  Eigen::VectorXd multiples;
+  V6 rest = w;
+  for (int round = 0; round < kRounds && rest.norm() > 1e-3; ++round) {
+    V6 best = V6::Zero();
+    double gain = 1e-4 * std::max(1.0, w.norm());
+    for (const Contact& c : contacts) {
+      const V3 arm = (c.point - middle) / arm_m_;
+      const V3 force = best_force(c, rest.head<3>() + V3(rest.tail<3>()).cross(arm), coulomb);
+      const V6 column = keep * wrench_of(force, arm);
+      const double size = column.norm();
+      if (size < 1e-6 || !(column.dot(rest) / size > gain)) continue;
+      gain = column.dot(rest) / size;
+      best = column / size;
+    }
+    if (best.isZero()) break;
+    Eigen::Index kept = 0;
+    for (Eigen::Index j = 0; j < columns.cols(); ++j)
+      if (multiples[j] > 0) columns.col(kept++) = V6(columns.col(j));
+    columns.conservativeResize(6, kept + 1);
+    columns.col(kept) = best;
+    const V6 next = residual_of_cone(columns, w, multiples);
+    if (!(next.norm() < rest.norm() - 1e-6)) break;
+    rest = next;
+  }
+  return rest.norm();
+}
+
+Momentum::Interval Momentum::interval(std::size_t k) {
+  Interval out;
+  const double after = m_.dt(k + 1), before = m_.dt(k), c = m_.scene.material.damping_per_s;
+  const Flight flight(before, after, c);
+  const double ratio = flight.a2 / flight.a1, unit = k == 0 ? after * after : flight.b2 - ratio * flight.b1;
+  const V3 middle = middle_of(k);
+  const double fastest = std::sqrt(2 * m_.weight_unit * m_.length_m) + 2 * std::max(bodies_.speed(), m_.start_speed);
+  for (std::size_t v = 0; v < m_.vertices; ++v) {
+    const V3 now = m_.at(k, v), ahead = m_.at(k + 1, v) - now;
+    V3 behind = V3::Zero(), impulse;
+    if (k == 0) {
+      impulse = ahead - flight.a2 * m_.start_velocity_of(v) - flight.b2 * m_.gravity;
+    } else {
+      behind = now - m_.at(k - 1, v);
+      impulse = ahead - ratio * behind - unit * m_.gravity;
+      const double speed = std::min((ahead + behind).norm() / (before + after), fastest);
+      out.hidden += m_.masses_kg[v] * speed * ((ahead / after - behind / before) / after - m_.gravity).norm();
+    }
+    out.wrench += m_.masses_kg[v] / unit * wrench_of(impulse, (now - middle) / arm_m_);
+  }
+  const double weight = m_.mass_kg * m_.weight_unit;
+  out.wrench /= weight;
+  out.hidden *= kChord * after / (weight * arm_m_);
+  return out;
+}
+
+void Momentum::run() {
+  found_.define("impulse");
+  std::vector<double> off(m_.frames, 0), slip(m_.frames, 0);
+  // The force alone: where in a frame a sliding contact acts is not known well enough for moments.
+  M6 forces_only = M6::Zero();
+  forces_only.topLeftCorner<3, 3>().setIdentity();
+  all_.resize(m_.frames);
+  for (std::size_t k = 0; k + 1 < m_.frames; ++k) {
+    Interval& now = all_[k];
+    now = interval(k);
+    const V3 middle = middle_of(k);
+    const M6 keep = free_of_attachments(k, middle);
+    now.wrench = keep * now.wrench;
+    const std::vector<Contact> contacts = contacts_round(k);
+    now.contact = !contacts.empty();
+    const bool attached = !keep.isIdentity(1e-9);
+    now.judged =
+        !(attached && std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.any_force; }));
+    window(k);
+    if (!now.judged) continue;
+    off[k] = std::max(
+        0.0, (now.contact ? outside_cone(now.wrench, contacts, keep, middle) : now.wrench.norm()) - now.hidden);
+    if (k == 0)
+      found_.add("first_step", off[0] / (0.55 + noise(0)), 0);
+    else
+      found_.add("impulse", off[k] / (0.5 + noise(k)), k);
+    if (now.contact && !attached && k > 0)
+      slip[k] = outside_cone(forces_only * now.wrench, contacts, forces_only, middle, true);
+    if (k < 3) continue;
+    const auto median = [&](const std::vector<double>& x) {
+      return std::max(std::min(x[k - 2], x[k - 1]), std::min(std::max(x[k - 2], x[k - 1]), x[k]));
+    };
+    found_.add("force", median(off) / (0.05 + noise(k)), k);
+    if (now.contact && !attached) found_.add("friction", median(slip) / (0.05 + noise(k)), k);
+  }
+  if (!bodies_.empty() && !m_.has_attachments()) free_motion();
+}
+
+/// Mean wrench over the last kWindow intervals before k: noise cancels in the sum of second differences.
+void Momentum::window(std::size_t k) {
+  if (k < kWindow + 1) return;
+  V6 mean = V6::Zero();
+  double hidden = 0;
+  bool contact = false;
+  for (std::size_t i = k - kWindow; i < k; ++i) {
+    if (!all_[i].judged) return;
+    mean += all_[i].wrench / kWindow;
+    hidden += all_[i].hidden / kWindow;
+    contact = contact || all_[i].contact;
+  }
+  if (!contact) {
+    found_.add("mean_force", std::max(0.0, mean.norm() - hidden) / (0.05 + noise(k) / kWindow), k);
+    return;
+  }
+  double moved = 0;
+  for (std::size_t v = 0; v < m_.vertices; ++v) moved += (m_.at(k, v) - m_.at(k - kWindow - 1, v)).squaredNorm();
+  if (!(std::sqrt(moved / static_cast<double>(m_.vertices)) < 0.002 * m_.length_m)) return;
+  const std::size_t at = k - kWindow / 2;
+  const V3 middle = middle_of(at);
+  const double off = outside_cone(mean, contacts_round(at), free_of_attachments(at, middle), middle);
+  found_.add("support", off / (0.03 + noise(k) / kWindow), k);
+}
+
+/// Cloth without attachments that starts flat falls freely until a collider is in reach. An integrator of first order
+/// with one step per frame is off by half of gravity times a frame times the time.
+void Momentum::free_motion() {
+  const Scene& s = m_.scene;
+  if (!s.cloth.start.at_rest() || s.cloth.span_m > 0 || s.cloth.drape_radius_m > 0 || s.cloth.spin_rad_per_s != Vec3{})
+    return;
+  found_.define("free_motion");
+  std::vector<V3> fall(m_.vertices);
+  for (std::size_t k = 1; k < m_.frames; ++k) {
+    const Flight flight(m_.dt(k), m_.time_s(k), s.material.damping_per_s);
+    double sum = 0, way = 0;
+    for (std::size_t v = 0; v < m_.vertices; ++v) {
+      const V3 to = m_.at(0, v) + flight.a2 * m_.start_velocity_of(v) + flight.b2 * m_.gravity;
+      fall[v] = to;
+      way = std::max(way, (m_.start_velocity_of(v) + m_.time_s(k) * m_.gravity).norm() * m_.dt(k));
+      sum += (m_.at(k, v) - to).squaredNorm();
+    }
+    if (bodies_.near(k, fall, 2 * way)) return;
+    const double first_order_m = 0.75 * m_.weight_unit * m_.dt(k) * m_.time_s(k);
+    found_.add("free_motion", std::sqrt(sum / static_cast<double>(m_.vertices)) / (4 * m_.resolution_m + first_order_m),
+               k);
+  }
+}
+
+}  // namespace
+
+void check_momentum(const Motion& m, Bodies& bodies, Findings& found) { Momentum(m, bodies, found).run(); }
+
+}  // namespace clothbench::motion_check

@@ -1,0 +1,89 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "metrics/motion_check/motion_check.hpp"
+
+namespace clothbench::motion_check {
+
+using V3 = Eigen::Vector3d;
+
+inline V3 to_v3(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+/// Share of the cloth's longer side below which nothing is judged.
+inline constexpr double kResolution = 1e-4;
+
+/// A stored motion and what the scene says of it.
+class Motion {
+ public:
+  Motion(const Scene& scene, const Frames& frames);
+
+  const Scene& scene;
+  std::size_t vertices, frames;
+  std::vector<double> masses_kg;
+  double mass_kg = 0;       ///< of the cloth
+  double length_m = 0;      ///< its longer side
+  double cell_m = 0;        ///< the longer mean edge
+  double resolution_m = 0;  ///< kResolution of the longer side
+  V3 gravity{};             ///< [m/s2]
+  double weight_unit = 0;   ///< |gravity| [m/s2]; 9.81 where the scene has none
+  std::vector<Edge> edges;  ///< structural
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<double> start_velocity;  ///< [m/s] xyz interleaved
+  double start_speed = 0;              ///< the highest of them [m/s]
+  double grip_speed = 0;               ///< [m/s] the highest of an attachment between two frames, jumps included
+  bool even = true;                    ///< all frames have the same length
+
+  V3 at(std::size_t frame, std::size_t vertex) const {
+    const float* x = position_.data() + 3 * (frame * vertices + vertex);
+    return {x[0], x[1], x[2]};
+  }
+  double time_s(std::size_t frame) const { return time_s_[frame]; }
+  /// Duration [s] of the interval before a frame; for frame 0 of the one after it.
+  double dt(std::size_t frame) const {
+    return frame == 0 ? (frames > 1 ? time_s_[1] - time_s_[0] : scene.time.dt()) : time_s_[frame] - time_s_[frame - 1];
+  }
+  V3 start_velocity_of(std::size_t vertex) const { return V3::Map(start_velocity.data() + 3 * vertex); }
+  /// Strain of a structural edge; 0 for an edge without length at rest.
+  double strain(std::size_t frame, const Edge& e) const {
+    return e.rest_m > 0 ? (at(frame, e.b) - at(frame, e.a)).norm() / e.rest_m - 1 : 0;
+  }
+  /// Pinned vertices, and those that an attachment holds at the end of a frame.
+  std::vector<std::uint32_t> held(std::size_t frame) const;
+  bool has_attachments() const { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
+  /// Of a frame, or the scene's last one after its end; null if nothing moves but cloth.
+  const FrameMotion* scripted(std::size_t frame) const;
+
+ private:
+  std::span<const double> time_s_;
+  std::span<const float> position_;
+};
+
+/// Collects the largest ratio of a statistic.
+class Findings {
+ public:
+  /// The statistic is defined for the run, though no frame may have a value.
+  void define(const char* name);
+  /// A NaN is kept.
+  void add(const char* name, double ratio, std::size_t frame);
+  std::vector<Finding> take() { return std::move(found_); }
+
+ private:
+  Finding& of(const char* name);
+  std::vector<Finding> found_;
+};
+
+class Bodies;
+
+void check_attachments(const Motion&, Findings&);
+/// Momentum: first_step, impulse, force, mean_force, support, and free_motion.
+void check_momentum(const Motion&, Bodies&, Findings&);
+/// energy, speed, speed_change, strain, compression.
+void check_limits(const Motion&, const Bodies&, Findings&);
+/// spike, roughness, freeze, stuck.
+void check_smoothness(const Motion&, const Bodies&, Findings&);
+/// crossing, depth.
+void check_passage(const Motion&, Bodies&, Findings&);
+
+}  // namespace clothbench::motion_check

@@ -1,0 +1,103 @@
+#include "metrics/motion_check/motion_check.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "metrics/motion_check/bodies.hpp"
+#include "metrics/motion_check/motion.hpp"
+
+namespace clothbench::motion_check {
+
+std::span<const Statistic> statistics() {
+  using enum Check;
+  static constexpr std::array kAll = std::to_array<Statistic>({
+      {"finite", Kinematic, "frames whose positions are not finite"},
+      {"start", Kinematic, "distance of a vertex from its initial position"},
+      {"attachment", Kinematic, "distance of a pinned or attached vertex from its prescribed position"},
+      {"first_step", Dynamic, "force of the first interval that nothing in reach can exert, in weights"},
+      {"impulse", Dynamic, "force of one interval that nothing in reach can exert, in weights"},
+      {"force", Dynamic, "the same, held for two of three intervals"},
+      {"friction", Dynamic, "contact force outside Coulomb's cone, held for two of three intervals, in weights"},
+      {"mean_force", Dynamic, "mean force of intervals without contact that no attachment can exert, in weights"},
+      {"energy", Dynamic, "energy above the energy at the start, where nothing but cloth moves"},
+      {"speed", Dynamic, "speed of a vertex over the speed that falls, colliders and strain can cause"},
+      {"speed_change", Dynamic, "change of velocity in one interval over the speed that the scene can cause"},
+      {"strain", Dynamic, "elastic energy over what gravity, colliders and attachments can supply"},
+      {"compression", Dynamic, "mean compression of edges over what the weight can cause"},
+      {"spike", Dynamic, "displacement of a single vertex for a single frame"},
+      {"roughness", Dynamic, "acceleration of a vertex over its neighbours'"},
+      {"freeze", Dynamic, "loss of speed of the whole cloth that the next frame takes back"},
+      {"stuck", Dynamic, "vertices without contact that stand still to the digit while the cloth moves"},
+      {"crossing", Continuous, "points that pass through the cloth or a surface between two frames"},
+      {"depth", Continuous, "depth of a vertex in a collider"},
+      {"free_motion", Present, "distance from free fall before a collider is in reach"},
+      {"support", Present, "force on cloth at rest that nothing in reach can exert, in weights"},
+  });
+  static_assert(kAll.size() == kStatistics);
+  return kAll;
+}
+
+const char* name_of(Check check) {
+  static constexpr std::array kNames = {"kinematic", "dynamic", "continuous", "present"};
+  return kNames[static_cast<std::size_t>(check)];
+}
+
+std::vector<Finding> verify(const Scene& scene, const Frames& frames, std::span<const double> contact_offsets_m) {
+  const Motion motion(scene, frames);
+  Findings found;
+  for (std::size_t k = 0; k < motion.frames; ++k)
+    for (std::size_t v = 0; v < motion.vertices; ++v)
+      if (!motion.at(k, v).allFinite()) {
+        found.add("finite", std::numeric_limits<double>::infinity(), k);
+        return found.take();
+      }
+  found.define("finite");
+  if (motion.frames == 0) return found.take();
+  check_attachments(motion, found);
+  Bodies bodies(motion, contact_offsets_m);
+  check_momentum(motion, bodies, found);
+  check_limits(motion, bodies, found);
+  check_smoothness(motion, bodies, found);
+  if (!bodies.empty()) check_passage(motion, bodies, found);
+  return found.take();
+}
+
+const Finding* worst(std::span<const Finding> findings) {
+  const Finding* out = nullptr;
+  for (const Finding& f : findings)
+    if (out == nullptr || (!(f.ratio <= out->ratio) && !std::isnan(out->ratio))) out = &f;
+  return out;
+}
+
+void check_attachments(const Motion& m, Findings& found) {
+  const double tolerance_m = 4 * m.resolution_m;
+  const std::vector<double> start = initial_positions(m.scene);
+  const auto start_of = [&](std::size_t v) { return V3(V3::Map(start.data() + 3 * v)); };
+  for (std::size_t v = 0; v < m.vertices; ++v) found.add("start", (m.at(0, v) - start_of(v)).norm() / tolerance_m, 0);
+  if (!m.has_attachments()) return;
+  found.define("attachment");
+  for (std::size_t k = 0; k < m.frames; ++k) {
+    for (const std::uint32_t v : m.scene.pins.vertices)
+      found.add("attachment", (m.at(k, v) - start_of(v)).norm() / tolerance_m, k);
+    const FrameMotion* now = m.scripted(k);
+    for (std::size_t g = 0; g < m.scene.grips.vertices.size(); ++g) {
+      const std::uint32_t v = m.scene.grips.vertices[g];
+      if (now == nullptr)
+        found.add("attachment", (m.at(k, v) - start_of(v)).norm() / tolerance_m, k);
+      else if (now->grip_held[g])
+        found.add("attachment", (m.at(k, v) - to_v3(now->grip_position_m[g])).norm() / tolerance_m, k);
+    }
+  }
+}
+
+void check_passage(const Motion& m, Bodies& bodies, Findings& found) {
+  found.define("crossing");
+  found.define("depth");
+  for (std::size_t k = 0; k < m.frames; ++k) {
+    found.add("depth", bodies.depth_ratio(k), k);
+    if (k > 0) found.add("crossing", 2.0 * bodies.passages(k), k);
+  }
+}
+
+}  // namespace clothbench::motion_check
