@@ -32,10 +32,14 @@ const std::vector<std::string>& condition_kinds() {
   return kinds;
 }
 
+std::string kind_of_condition(const std::string& what) {
+  return what == "GPU" ? "device" : what == "precision" ? "precision" : what == "scene SHA-256" ? "scene" : "length";
+}
+
 std::vector<Condition> conditions_of(const RunRecord& r) {
   const auto environment = [&](const char* key) { return text_of(environment_of(r, key)); };
   std::vector<Condition> out = {
-      {"scene", "SHA-256 of the completed scene", text_of(r.header.scenario_sha256)},
+      {"scene", "scene SHA-256", text_of(r.header.scenario_sha256)},
       {"machine", "CPU", environment("cpu")},
       {"machine", "CPU threads", environment("cpu_threads")},
       {"device", "GPU", environment("gpu")},
@@ -49,6 +53,14 @@ std::vector<Condition> conditions_of(const RunRecord& r) {
     out.push_back({"length", "simulated time [s]", time.empty() ? kNotStated : fmt::format("{:.6g}", time.back())});
     if (!r.trials.empty()) out.push_back({"trials", "frames of a trial", trial_frames(r)});
   }
+  return out;
+}
+
+std::vector<Condition> conditions_of_results(const RunRecord& r) {
+  std::vector<Condition> out = conditions_of(r);
+  std::erase_if(out, [](const Condition& c) {
+    return c.kind == "machine" || c.kind == "trials" || (c.kind == "device" && c.what != "GPU");
+  });
   return out;
 }
 
