@@ -46,7 +46,8 @@ double number_at(const json& value, const std::string& name, const std::string& 
 BaselineRun run_from(const json& j, const std::string& where) {
   BaselineRun c;
   c.key = {j.at("scene"), j.at("solver"), j.at("setting"), j.value("assets", "")};
-  c.scenario_sha256 = j.at("scenario_sha256");
+  for (const auto& [what, value] : j.at("conditions").items())
+    c.conditions.push_back({kind_of_condition(what), what, value});
   c.status = j.at("status");
   c.klass = j.at("class");
   c.failed_frame = j.at("failed_frame");
@@ -60,7 +61,8 @@ BaselineRun run_from(const json& j, const std::string& where) {
 ordered_json json_of(const BaselineRun& c) {
   ordered_json j = {{"scene", c.key.scene}, {"solver", c.key.solver}, {"setting", c.key.setting}};
   if (!c.key.assets.empty()) j["assets"] = c.key.assets;
-  j["scenario_sha256"] = c.scenario_sha256;
+  j["conditions"] = ordered_json::object();
+  for (const Condition& condition : c.conditions) j["conditions"][condition.what] = condition.value;
   j["status"] = c.status;
   j["class"] = c.klass;
   j["failed_frame"] = c.failed_frame;
@@ -80,7 +82,7 @@ std::string RunKey::text() const { return file_name() + (assets.empty() ? "" : "
 BaselineRun gated_part(const RunRecord& r) {
   BaselineRun c;
   c.key = {r.header.scene, r.header.solver, r.header.setting, assets_of(r)};
-  c.scenario_sha256 = r.header.scenario_sha256;
+  c.conditions = conditions_of_results(r);
   c.status = r.outcome.status;
   c.klass = r.outcome.klass;
   c.failed_frame = r.outcome.failed_frame;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clothbench/record.hpp"
+#include "report/conditions.hpp"
 
 namespace clothbench {
 
@@ -26,7 +27,7 @@ struct RunKey {
 /// The part of a run that does not depend on the machine.
 struct BaselineRun {
   RunKey key;
-  std::string scenario_sha256;
+  std::vector<Condition> conditions;  ///< under which its values hold, scene included (conditions_of_results)
   std::string status, klass;
   int failed_frame = -1;
   std::vector<std::string> stages;        ///< "<name> (<feature>, <feature>)" in order

@@ -61,14 +61,8 @@ Finding missing(const Found& found) {
 
 std::string kind(const std::string& assets) { return assets.empty() ? "unnamed" : assets; }
 
-/// No verdict is made of two scenes or two rules.
+/// No verdict is made of two rules.
 void refuse_other_versions(const BaselineRun& was, const BaselineRun& is) {
-  if (was.scenario_sha256 != is.scenario_sha256)
-    throw Error(fmt::format(
-        "{}: the baseline has another version of the scene (SHA-256 of the completed scenario: {} in the baseline, {} "
-        "in the result); the two cannot be compared. Accept the result with `clothbench check RUNS --baseline FILE "
-        "--update`, or repeat the run with the scene the baseline was made with",
-        is.key.text(), was.scenario_sha256.substr(0, 12), is.scenario_sha256.substr(0, 12)));
   for (const VersionDifference& v : version_differences(was, is))
     throw Error(fmt::format(
         "{}: metric {}: the baseline has version {} of its definition, the result version {}; the two cannot "
@@ -79,9 +73,14 @@ void refuse_other_versions(const BaselineRun& was, const BaselineRun& is) {
 
 class Check {
  public:
+  explicit Check(const std::vector<std::string>& allowed) { out_.differing = DifferingRuns(allowed); }
+
   Checked run(const Baseline& baseline, const std::vector<RunRecord>& runs) {
     const auto results = by_name(runs);
     const auto entries = by_name(baseline);
+    for (const auto& [name, group] : entries)
+      if (const auto at = results.find(name); at != results.end()) add_differences(group, at->second);
+    out_.differing.refuse("the baseline", "the results");
     for (const auto& [name, group] : entries) {
       const auto at = results.find(name);
       known(group, at == results.end() ? Found{} : at->second);
@@ -93,6 +92,15 @@ class Check {
   }
 
  private:
+  void add_differences(const Entries& entries, const Found& found) {
+    for (const RunRecord* r : found.records) {
+      const BaselineRun is = gated_part(*r);
+      if (const BaselineRun* e = entry_for(entries, is.key); e != nullptr)
+        for (const ConditionDifference& d : differences(e->conditions, is.conditions))
+          out_.differing.add(is.key.text(), d);
+    }
+  }
+
   void known(const Entries& entries, const Found& found) {
     if (found.records.empty()) return add(entries.front()->key, {missing(found)});
     std::size_t compared = 0;
@@ -125,7 +133,9 @@ class Check {
   }
 
   void add_new(const RunKey& key, const RunRecord& r) {
-    add(key, {{Verdict::New, "run", "–", outcome_of(r), "", "not in the baseline; --update adds it"}});
+    std::vector<Finding> findings = motion_findings(r);
+    findings.push_back({Verdict::New, "run", "–", outcome_of(r), "", "not in the baseline; --update adds it"});
+    add(key, std::move(findings));
   }
   void add(const RunKey& key, std::vector<Finding> findings) { out_.runs.push_back({key, std::move(findings)}); }
 
@@ -201,7 +211,10 @@ std::size_t Checked::count(Verdict v) const {
       std::count_if(runs.begin(), runs.end(), [&](const CheckedRun& c) { return c.verdict() == v; }));
 }
 
-Checked check_runs(const Baseline& baseline, const std::vector<RunRecord>& runs) { return Check().run(baseline, runs); }
+Checked check_runs(const Baseline& baseline, const std::vector<RunRecord>& runs,
+                   const std::vector<std::string>& allowed) {
+  return Check(allowed).run(baseline, runs);
+}
 
 Updated update_baseline(const Baseline& old, const std::vector<RunRecord>& runs, BaselineOrigin origin) {
   const auto results = by_name(runs);
@@ -215,6 +228,8 @@ Updated update_baseline(const Baseline& old, const std::vector<RunRecord>& runs,
                               name, found.missing->outcome.message));
     const auto group = entries.find(name);
     for (const RunRecord* r : found.records) {
+      for (const Finding& f : motion_findings(*r))
+        throw Error(fmt::format("--update: {}: {}; repeat the run", name, f.message));
       out.baseline.runs.push_back(gated_part(*r));
       const BaselineRun& now = out.baseline.runs.back();
       const BaselineRun* e = group == entries.end() ? nullptr : entry_for(group->second, now.key);

@@ -34,6 +34,7 @@ struct CheckedRun {
 struct Checked {
   std::vector<CheckedRun> runs;  ///< every run of baseline and results, sorted by key
   std::size_t other_assets = 0;  ///< runs of the baseline left out: the results have them with other assets
+  DifferingRuns differing = DifferingRuns();  ///< conditions that differ from the baseline's and were allowed
 
   std::size_t count(Verdict) const;
   bool passed() const { return count(Verdict::Failed) == 0; }
@@ -45,19 +46,24 @@ struct VersionDifference {
   int baseline, found;
 };
 
+/// What is wrong with the motion in the record's file; empty if nothing is, or if it was not read from a file.
+std::vector<Finding> motion_findings(const RunRecord&);
+
 /// For the metrics behind scalars that both have.
 std::vector<VersionDifference> version_differences(const BaselineRun& was, const BaselineRun& is);
 
-/// Differences of `record` from its baseline: scene, outcome, stages, gated scalars; and whether one of its trials
-/// repeats another. If the scene or the outcome differs, the rest is not compared; nor are scalars of a metric whose
-/// version differs. Throws Error if the record's scene has no cloth size.
+/// Differences of `record` from its baseline: outcome, stages, gated scalars; whether one of its trials repeats
+/// another; and what is wrong with the motion in its file, if it has one (results/trajectory.hpp). If the outcome
+/// differs, the rest is not compared; nor are scalars of a metric whose version differs. Throws Error if the record's
+/// scene has no cloth size.
 std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);
 
 /// Compares results with a baseline. A run of the baseline without a result fails, unless the results have the run with
 /// another kind of assets that is also in the baseline. A planned run without a result fails too. A run that is not in
-/// the baseline is new. Throws Error if a run is twice among the results, or if the version of a metric's rule differs
-/// from the baseline's: values of two rules cannot be compared.
-Checked check_runs(const Baseline&, const std::vector<RunRecord>&);
+/// the baseline is new. Throws Error if a run is twice among the results, if a condition of a kind that is not in
+/// `allowed` differs from the baseline's (report/conditions.hpp), or if the version of a metric's rule does: values of
+/// two rules cannot be compared.
+Checked check_runs(const Baseline&, const std::vector<RunRecord>&, const std::vector<std::string>& allowed = {});
 
 struct Updated {
   Baseline baseline;
@@ -67,7 +73,8 @@ struct Updated {
 };
 
 /// The baseline made from the results: their runs, and the runs of `old` that the results have only with other assets.
-/// Throws Error if there is no result, a run is listed twice, or a planned run has no result.
+/// Throws Error if there is no result, a run is listed twice, a planned run has no result, or something is wrong with
+/// the motion in a file.
 Updated update_baseline(const Baseline& old, const std::vector<RunRecord>&, BaselineOrigin);
 
 }  // namespace clothbench

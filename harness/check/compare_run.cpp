@@ -8,6 +8,7 @@
 #include "check/gates.hpp"
 #include "clothbench/error.hpp"
 #include "metrics/registry.hpp"
+#include "results/trajectory.hpp"
 
 namespace clothbench {
 namespace {
@@ -133,6 +134,13 @@ std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& 
 
 }  // namespace
 
+std::vector<Finding> motion_findings(const RunRecord& r) {
+  if (r.file.empty()) return {};
+  const std::string fault = trajectory_fault(r.file);
+  if (fault.empty()) return {};
+  return {{Verdict::Failed, "positions", "the motion of the outcome", "another or none", "", r.file + ": " + fault}};
+}
+
 std::vector<VersionDifference> version_differences(const BaselineRun& was, const BaselineRun& is) {
   std::map<std::string, VersionDifference> out;
   for (const auto& [name, unused] : was.scalars) {
@@ -147,11 +155,9 @@ std::vector<VersionDifference> version_differences(const BaselineRun& was, const
 
 std::vector<Finding> compare_run(const BaselineRun& was, const RunRecord& record) {
   const BaselineRun is = gated_part(record);
-  if (was.scenario_sha256 != is.scenario_sha256)
-    return {{Verdict::Failed, "scene", was.scenario_sha256.substr(0, 12), is.scenario_sha256.substr(0, 12), "",
-             "the scene changed (SHA-256 of the completed scenario); if this is intended, write the baseline "
-             "again with --update"}};
-  std::vector<Finding> out = compare_outcome(was, is, record.outcome.message);
+  std::vector<Finding> out = motion_findings(record);
+  const std::vector<Finding> of_outcome = compare_outcome(was, is, record.outcome.message);
+  out.insert(out.end(), of_outcome.begin(), of_outcome.end());
   if (was.status != is.status) return out;
   for (const auto& part : {compare_stages(was, is), compare_trials(record), compare_scalars(was, is, record)})
     out.insert(out.end(), part.begin(), part.end());

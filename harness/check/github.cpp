@@ -49,6 +49,8 @@ std::string github_commands(const Checked& checked, const std::string& file) {
     append(fresh, Verdict::New);
   }
   if (!improved.empty()) out += command("notice", file, "better than the baseline; --update accepts it", improved);
+  if (!checked.differing.empty())
+    out += command("warning", file, "other conditions than the baseline's", checked.differing.marks());
   if (!fresh.empty()) out += command("notice", file, "not in the baseline", fresh);
   return out;
 }

@@ -73,6 +73,8 @@ std::string junit_xml(const Checked& checked) {
   out += fmt::format("<testsuites name=\"clothbench check\" {}>\n  <testsuite name=\"clothbench check\" {}>\n", counts,
                      counts);
   for (const CheckedRun& run : checked.runs) out += test_case(run);
+  if (!checked.differing.empty())
+    out += fmt::format("    <system-out>{}</system-out>\n", escaped(checked.differing.marks()));
   return out + "  </testsuite>\n</testsuites>\n";
 }
 

@@ -63,7 +63,8 @@ std::string runs_word(std::size_t n) { return fmt::format("{} run{}", n, n == 1 
 }  // namespace
 
 std::string check_text(const Checked& checked, const std::string& file) {
-  std::string out = findings_text("Different from " + file, checked.runs, word_for(Verdict::Failed));
+  std::string out = checked.differing.marks();
+  out += findings_text("Different from " + file, checked.runs, word_for(Verdict::Failed));
   out += fmt::format("check {}: {}: {} failed, {} improved, {} new, {} as in {}",
                      checked.passed() ? tinted(Tone::Good, "passed") : tinted(Tone::Bad, "FAILED"),
                      runs_word(checked.runs.size()), checked.count(Verdict::Failed), checked.count(Verdict::Improved),
@@ -77,6 +78,7 @@ std::string check_text(const Checked& checked, const std::string& file) {
 json check_json(const Checked& checked, const std::string& file) {
   json j = {{"baseline", file},
             {"passed", checked.passed()},
+            {"overridden", checked.differing.json()},
             {"failed", checked.count(Verdict::Failed)},
             {"improved", checked.count(Verdict::Improved)},
             {"new", checked.count(Verdict::New)},

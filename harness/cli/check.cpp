@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CheckArguments {
-  std::vector<std::string> runs;
+  std::vector<std::string> runs, allowed;
   std::string baseline, junit;
   bool github = false, update = false;
 };
@@ -27,7 +27,7 @@ void update(const CheckArguments& a, const std::vector<fs::path>& folders, const
 }
 
 void check(const CheckArguments& a, const std::vector<RunRecord>& runs, Console& console) {
-  const Checked checked = check_runs(read_baseline(a.baseline), runs);
+  const Checked checked = check_runs(read_baseline(a.baseline), runs, a.allowed);
   if (!a.junit.empty()) write_file_atomically(a.junit, junit_xml(checked));
   console.print([&] { return check_json(checked, a.baseline); }, [&] { return check_text(checked, a.baseline); });
   std::fflush(stdout);
@@ -48,11 +48,18 @@ void add_check(CLI::App& app, Console& console) {
   cmd->add_option("--baseline", a.baseline, "Baseline file, such as results/baselines/penetration.json")->required();
   CLI::Option* rewrite =
       cmd->add_flag("--update", a.update, "Write the baseline again from these results and print what changed");
+  cmd->add_option(
+         "--allow", a.allowed,
+         "Check although these differ from the baseline's (scene, device, precision, length), and mark the output")
+      ->delimiter(',')
+      ->check(CLI::IsMember(condition_kinds()))
+      ->excludes(rewrite);
   cmd->add_option("--junit", a.junit, "Also write JUnit XML with one test case per run")->excludes(rewrite);
   cmd->add_flag("--github", a.github, "Also print annotations for GitHub Actions")->excludes(rewrite);
   cmd->footer(
-      "Exit codes: 0 every run is as in the baseline or better, 1 a run is worse or missing, 2 bad "
-      "input.\nExample: clothbench check results/runs/mine --baseline results/baselines/penetration.json "
+      "Exit codes: 0 every run is as in the baseline or better, 1 a run is worse, missing, or without the positions "
+      "that its outcome is of, 2 bad input, or runs under other conditions than the baseline's.\nExample: clothbench "
+      "check results/runs/mine --baseline results/baselines/penetration.json "
       "--junit check.xml");
   cmd->callback([&console, &a] {
     const std::vector<fs::path> folders(a.runs.begin(), a.runs.end());

@@ -1,4 +1,5 @@
 #include "base/files.hpp"
+#include "base/words.hpp"
 #include "cli/command.hpp"
 #include "report/compare_runs.hpp"
 #include "report/report.hpp"
@@ -6,32 +7,64 @@
 
 namespace clothbench {
 
+namespace {
+
+struct CompareArguments {
+  std::vector<std::string> a, b, allowed;
+  std::string markdown;
+};
+
+Processes read_processes(const std::vector<std::string>& folders) {
+  Processes out;
+  for (const std::string& folder : folders) withhold_times(out.emplace_back(collect({folder})));
+  return out;
+}
+
+void compare(const CompareArguments& given, Console& console) {
+  const Processes a = read_processes(given.a), b = read_processes(given.b);
+  const Comparison comparison = compare_runs(a, b, given.allowed);
+  const std::string marks = comparison.differing.marks();
+  std::string text = marks, page;
+  for (std::size_t at = 0, end; at < marks.size(); at = end + 1) {
+    end = marks.find('\n', at);
+    page += "**" + marks.substr(at, end - at) + "**\n\n";
+  }
+  page += fmt::format("A: `{}`, B: `{}`\n\n", joined(given.a, "`, `"), joined(given.b, "`, `"));
+  for (const Table& t : comparison_tables(comparison)) {
+    const bool any = t.rows.size() > 1;
+    text += any ? t.console() : fmt::format("\n{}: none\n  {}\n", t.title, t.note);
+    page += any ? t.markdown() + "\n" : t.title + ": none. " + t.note + "\n\n";
+  }
+  if (!given.markdown.empty()) write_file_atomically(given.markdown, page);
+  console.print([&] { return comparison_json(comparison); }, [&] { return text; });
+}
+
+}  // namespace
+
 void add_compare(CLI::App& app, Console& console) {
-  auto &a = console.arguments<std::string>(), &b = console.arguments<std::string>(),
-       &markdown = console.arguments<std::string>();
+  auto& given = console.arguments<CompareArguments>();
   CLI::App* cmd = app.add_subcommand(
       "compare",
       "Compare two results of the same study: which runs are faster or slower beyond noise, and which "
       "results differ");
-  cmd->add_option("a", a, "Study folder or result file: before")->required();
-  cmd->add_option("b", b, "Study folder or result file: after")->required();
-  cmd->add_option("--markdown", markdown, "Also write the tables to this file, for a pull request");
-  cmd->footer("Example: clothbench compare results/runs/before results/runs/after --markdown comparison.md");
-  cmd->callback([&console, &a, &b, &markdown] {
-    std::vector<RunRecord> before = collect({a}), after = collect({b});
-    withhold_times(before);
-    withhold_times(after);
-    const std::vector<ComparedRun> runs = compare_runs(before, after);
-    const std::vector<Table> tables = comparison_tables(runs);
-    std::string text, page = fmt::format("A: `{}`, B: `{}`\n\n", a, b);
-    for (const Table& t : tables) {
-      const bool any = t.rows.size() > 1;
-      text += any ? t.console() : fmt::format("\n{}: none\n  {}\n", t.title, t.note);
-      page += any ? t.markdown() + "\n" : t.title + ": none. " + t.note + "\n\n";
-    }
-    if (!markdown.empty()) write_file_atomically(markdown, page);
-    console.print([&] { return comparison_json(runs); }, [&] { return text; });
-  });
+  const std::string several =
+      fmt::format("; for a statement about times at least {} folders of separate processes: 1,2,3,4,5", kMinProcesses);
+  cmd->add_option("a", given.a, "Study folder or result file: before" + several)
+      ->required()
+      ->expected(1)
+      ->delimiter(',');
+  cmd->add_option("b", given.b, "Study folder or result file: after" + several)
+      ->required()
+      ->expected(1)
+      ->delimiter(',');
+  cmd->add_option("--allow", given.allowed, "Compare although these differ, and mark the output")
+      ->delimiter(',')
+      ->check(CLI::IsMember(condition_kinds()));
+  cmd->add_option("--markdown", given.markdown, "Also write the tables to this file, for a pull request");
+  cmd->footer(
+      "Exit codes: 0 compared, 2 bad input, or runs under different conditions.\n"
+      "Example: clothbench compare results/runs/before results/runs/after --markdown comparison.md");
+  cmd->callback([&console, &given] { compare(given, console); });
 }
 
 void add_history(CLI::App& app, Console& console) {

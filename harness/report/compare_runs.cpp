@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "base/json_number.hpp"
@@ -20,23 +21,35 @@ namespace {
 
 constexpr double kLevel = 0.95;
 
-/// Probability of each value of U = #{(i, j): a_i < b_j} for m and n trials under the null hypothesis, where all orders
-/// are equally likely. Recursion over the side that has the greatest trial.
-std::vector<double> u_distribution(std::size_t m, std::size_t n) {
-  std::vector<std::vector<std::vector<double>>> count(m + 1, std::vector<std::vector<double>>(n + 1));
-  for (std::size_t i = 0; i <= m; ++i)
-    for (std::size_t j = 0; j <= n; ++j) {
-      std::vector<double>& now = count[i][j];
-      now.assign(i * j + 1, 0);
-      if (i == 0 || j == 0) {
-        now[0] = 1;
-        continue;
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// For every assignment of the logarithms to two sides of the same sizes but the actual one: the shift of B at which it
+/// has the same difference of means as the actual one. That is the mean of those that change sides, B's minus A's.
+/// Ascending.
+std::vector<double> shifts_of(const std::vector<double>& a, const std::vector<double>& b) {
+  const std::size_t m = a.size(), n = m + b.size();
+  const std::uint32_t actual = (1u << m) - 1, end = 1u << n;
+  std::vector<double> out;
+  // Gosper's hack: the next larger number with as many bits.
+  for (std::uint32_t on_a = actual; on_a < end;) {
+    double moved = 0;
+    int count = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      const bool is_a = (on_a >> k & 1u) != 0;
+      if (k < m && !is_a) moved -= a[k];
+      if (k >= m && is_a) {
+        moved += b[k - m];
+        ++count;
       }
-      const double a = static_cast<double>(i) / static_cast<double>(i + j);  // P(the greatest is one of A's)
-      for (std::size_t u = 0; u < count[i - 1][j].size(); ++u) now[u] += a * count[i - 1][j][u];
-      for (std::size_t u = 0; u < count[i][j - 1].size(); ++u) now[u + i] += (1 - a) * count[i][j - 1][u];
     }
-  return count[m][n];
+    if (on_a != actual) out.push_back(moved / count);
+    const std::uint32_t low = on_a & (0u - on_a), next = on_a + low;
+    on_a = next | (((on_a ^ next) >> 2) / low);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 bool differ(double a, double b) {
@@ -60,88 +73,116 @@ bool hangs_on(const std::string& name, const std::vector<ComparedRun::Versions>&
   return std::any_of(versions.begin(), versions.end(), [&](const auto& v) { return contains(behind, v.metric); });
 }
 
-void compare_run(ComparedRun& c) {
-  c.versions = differing_versions(*c.a, *c.b);
-  c.time = compare_times(trial_means(*c.a), trial_means(*c.b));
-  if (status(*c.a) != status(*c.b)) c.outcome = status(*c.a) + " → " + status(*c.b);
+void compare_results(ComparedRun& c) {
+  const RunRecord &a = *c.a.front(), &b = *c.b.front();
+  c.versions = differing_versions(a, b);
+  if (status(a) != status(b)) c.outcome = status(a) + " → " + status(b);
   std::set<std::string> names;
-  for (const RunRecord* r : {c.a, c.b})
+  for (const RunRecord* r : {&a, &b})
     for (const auto& [name, unused] : r->summary)
       if (!is_of_machine(name) && !hangs_on(name, c.versions)) names.insert(name);
   for (const std::string& name : names) {
-    const double a = summary_value(*c.a, name), b = summary_value(*c.b, name);
-    if (differ(a, b)) c.metrics.push_back({name, a, b});
+    const double x = summary_value(a, name), y = summary_value(b, name);
+    if (differ(x, y)) c.metrics.push_back({name, x, y});
   }
-  if (!c.metrics.empty() && c.outcome.empty()) c.apart = pair_of(*c.a, *c.b, "before").value;
+  if (!c.metrics.empty() && c.outcome.empty()) c.apart = pair_of(a, b, "before").value;
+}
+
+/// Adds what differs between the first run of A and every other one.
+void add_differences(ComparedRun& c, DifferingRuns& differing) {
+  const RunRecord& first = *c.a.front();
+  const std::vector<Condition> conditions = conditions_of(first);
+  std::vector<std::string> kinds;
+  for (const auto* side : {&c.a, &c.b})
+    for (const RunRecord* r : *side)
+      for (ConditionDifference d : differences(conditions, conditions_of(*r))) {
+        if (d.kind == "scene") d.what += " (" + scene_difference(first, *r) + ")";
+        differing.add(c.name, d);
+        if (!contains(kinds, d.kind)) kinds.push_back(d.kind);
+      }
+  c.marks = joined(kinds);
 }
 
 std::string percent(double ratio) { return std::isfinite(ratio) ? fmt::format("{:+.1f} %", 100 * (ratio - 1)) : "–"; }
 
-std::string verdict(const TimeRatio& t) {
-  return !std::isfinite(t.ratio) ? "not timed" : t.noise() ? "noise" : t.ratio < 1 ? "faster" : "slower";
+std::string verdict(const ComparedRun& c) {
+  const TimeRatio& t = c.time;
+  const std::string out = !std::isfinite(t.ratio) ? "not timed"
+                          : !t.enough()           ? fmt::format("too few processes: at least {} a side", kMinProcesses)
+                          : t.noise()             ? "noise"
+                          : t.ratio < 1           ? "faster"
+                                                  : "slower";
+  return c.marks.empty() ? out : out + "; other " + c.marks;
 }
 
-double mean_ms(const RunRecord& c) {
-  const std::vector<double> t = trial_means(c);
+double median_ms(const std::vector<const RunRecord*>& side) {
+  std::vector<double> t = process_times(side);
+  std::sort(t.begin(), t.end());
   return t.empty() ? kMissing : 1e3 * middle(t);
 }
 
 }  // namespace
 
 TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>& b) {
-  constexpr std::size_t kMost = 40;
   TimeRatio out;
+  out.processes_a = a.size();
+  out.processes_b = b.size();
   if (a.empty() || b.empty()) return out;
-  if (a.size() > kMost || b.size() > kMost) throw Error(fmt::format("comparing times: at most {} trials a run", kMost));
-  std::vector<double> logs;
-  double u = 0;
-  for (const double x : a)
-    for (const double y : b) {
-      logs.push_back(std::log(y / x));
-      u += x < y ? 1 : x == y ? 0.5 : 0;
-    }
-  std::sort(logs.begin(), logs.end());
-  out.ratio = std::exp(middle(logs));
-  const std::vector<double> at = u_distribution(a.size(), b.size());
-  const double pairs = static_cast<double>(logs.size()), far = std::max(u, pairs - u);
-  double tail = 0;
-  for (std::size_t k = at.size(); k-- > 0 && static_cast<double>(k) >= far;) tail += at[k];
-  out.p = std::min(1.0, 2 * tail);
-  // The interval from the kth ratio to the kth last has level 1 - 2 P(U < k); takes the greatest k that keeps kLevel.
-  std::size_t k = 1;
-  double outside = at[0];
-  for (; 2 * (k + 1) <= logs.size() && 1 - 2 * (outside + at[k]) >= kLevel; ++k) outside += at[k];
-  out.level = 1 - 2 * outside;
-  out.low = std::exp(logs[k - 1]);
-  out.high = std::exp(logs[logs.size() - k]);
-  return out;
-}
-
-std::vector<ComparedRun> compare_runs(const std::vector<RunRecord>& a, const std::vector<RunRecord>& b) {
-  std::vector<ComparedRun> out;
-  const auto find = [&](const std::string& name) {
-    return std::find_if(out.begin(), out.end(), [&](const ComparedRun& c) { return c.name == name; });
+  if (a.size() > kMaxProcesses || b.size() > kMaxProcesses)
+    throw Error(fmt::format("compare: {} and {} processes; at most {} on each side: leave out some folders", a.size(),
+                            b.size(), kMaxProcesses));
+  std::vector<double> p, q;
+  for (const double t : a) p.push_back(std::log(t));
+  for (const double t : b) q.push_back(std::log(t));
+  out.ratio = std::exp(mean(q) - mean(p));
+  if (!out.enough()) return out;
+  const std::vector<double> shifts = shifts_of(p, q);
+  const double assignments = static_cast<double>(shifts.size()) + 1;
+  const auto tail = [&](auto is) {
+    return (1 + static_cast<double>(std::count_if(shifts.begin(), shifts.end(), is))) / assignments;
   };
-  for (const RunRecord& c : a) {
-    const std::string name = run_name(c.header);
-    if (find(name) != out.end())
-      throw Error("compare: " + name + " occurs twice in the first folder; expected each run once");
-    out.push_back({name, &c});
-  }
-  for (const RunRecord& c : b) {
-    const std::string name = run_name(c.header);
-    auto at = find(name);
-    if (at == out.end()) at = out.insert(out.end(), ComparedRun{name});
-    if (at->b != nullptr)
-      throw Error("compare: " + name + " occurs twice in the second folder; expected each run once");
-    at->b = &c;
-  }
-  for (ComparedRun& c : out)
-    if (c.a != nullptr && c.b != nullptr) compare_run(c);
+  out.p = std::min({1.0, 2 * tail([](double s) { return !(s > 0); }), 2 * tail([](double s) { return !(s < 0); })});
+  const auto rejected = static_cast<std::size_t>((1 - kLevel) / 2 * assignments);
+  out.low = std::exp(shifts[rejected - 1]);
+  out.high = std::exp(shifts[shifts.size() - rejected]);
   return out;
 }
 
-std::vector<Table> comparison_tables(const std::vector<ComparedRun>& runs) {
+std::vector<double> process_times(const std::vector<const RunRecord*>& processes) {
+  std::vector<double> out;
+  for (const RunRecord* r : processes)
+    if (const std::vector<double> t = trial_means(*r); !t.empty()) out.push_back(middle(t));
+  return out;
+}
+
+Comparison compare_runs(const Processes& a, const Processes& b, const std::vector<std::string>& allowed) {
+  Comparison out{{}, DifferingRuns(allowed)};
+  const auto add = [&](const Processes& side, std::vector<const RunRecord*> ComparedRun::*to) {
+    for (const std::vector<RunRecord>& process : side) {
+      std::set<std::string> seen;
+      for (const RunRecord& r : process) {
+        const std::string name = run_name(r.header);
+        if (!seen.insert(name).second)
+          throw Error("compare: " + name + " occurs twice in one folder; expected each run once");
+        const auto is = [&](const ComparedRun& c) { return c.name == name; };
+        (find_or_add(out.runs, is, ComparedRun{name, {}, {}}).*to).push_back(&r);
+      }
+    }
+  };
+  add(a, &ComparedRun::a);
+  add(b, &ComparedRun::b);
+  for (ComparedRun& c : out.runs)
+    if (!c.a.empty() && !c.b.empty()) add_differences(c, out.differing);
+  out.differing.refuse("A", "B");
+  for (ComparedRun& c : out.runs)
+    if (!c.a.empty() && !c.b.empty()) {
+      c.time = compare_times(process_times(c.a), process_times(c.b));
+      compare_results(c);
+    }
+  return out;
+}
+
+std::vector<Table> comparison_tables(const Comparison& comparison) {
   struct Difference {
     std::string run, what, a, b;
   };
@@ -149,15 +190,16 @@ std::vector<Table> comparison_tables(const std::vector<ComparedRun>& runs) {
   std::vector<ComparedRun> timed;
   std::size_t same = 0;
   std::vector<const RunRecord*> both;
-  for (const ComparedRun& c : runs) {
-    for (const RunRecord* r : {c.a, c.b})
-      if (r != nullptr) both.push_back(r);
-    if (c.a == nullptr || c.b == nullptr) {
-      differences.push_back({c.name, "run", c.a != nullptr ? status(*c.a) : "–", c.b != nullptr ? status(*c.b) : "–"});
+  for (const ComparedRun& c : comparison.runs) {
+    both.insert(both.end(), c.a.begin(), c.a.end());
+    both.insert(both.end(), c.b.begin(), c.b.end());
+    const auto ended = [](const auto& side) { return side.empty() ? "–" : status(*side.front()); };
+    if (c.a.empty() || c.b.empty()) {
+      differences.push_back({c.name, "run", ended(c.a), ended(c.b)});
       continue;
     }
     if (std::isfinite(c.time.ratio)) timed.push_back(c);
-    if (!c.outcome.empty()) differences.push_back({c.name, "outcome", status(*c.a), status(*c.b)});
+    if (!c.outcome.empty()) differences.push_back({c.name, "outcome", ended(c.a), ended(c.b)});
     for (const ComparedRun::Change& m : c.metrics)
       differences.push_back({c.name, m.name, significant(m.a, 6), significant(m.b, 6)});
     if (std::isfinite(c.apart))
@@ -169,24 +211,24 @@ std::vector<Table> comparison_tables(const std::vector<ComparedRun>& runs) {
   }
   const Columns<ComparedRun> times = {
       {"", "run", &ComparedRun::name},
-      {"", "A", [](auto& c) { return mean_ms(*c.a); }, digits(4), {"ms"}},
-      {"", "B", [](auto& c) { return mean_ms(*c.b); }, digits(4), {"ms"}},
+      {"", "A", [](auto& c) { return median_ms(c.a); }, digits(4), {"ms"}},
+      {"", "B", [](auto& c) { return median_ms(c.b); }, digits(4), {"ms"}},
       {"", "change", [](auto& c) { return percent(c.time.ratio); }},
+      {"", "processes", [](auto& c) { return fmt::format("{} and {}", c.time.processes_a, c.time.processes_b); }},
       {"", "95 % interval",
-       [](auto& c) {
-         return c.time.level >= kLevel ? percent(c.time.low) + " … " + percent(c.time.high) : "too few trials";
-       }},
+       [](auto& c) { return c.time.enough() ? percent(c.time.low) + " … " + percent(c.time.high) : "–"; }},
       {"", "p", [](auto& c) { return c.time.p; }, digits(2)},
-      {"", "verdict", [](auto& c) { return verdict(c.time); }}};
+      {"", "verdict", [](auto& c) { return verdict(c); }}};
   const Columns<Difference> results = {{"", "run", &Difference::run},
                                        {"", "what", &Difference::what},
                                        {"", "A", &Difference::a},
                                        {"", "B", &Difference::b}};
   const std::string of_times = fmt::format(
-      "Times: median of the trials' means. Change: median of all pairwise ratios. p: Mann and Whitney's U "
-      "test, exact. *noise*: p is above 5 %, the interval holds 0, or there are too few trials. Of {} runs "
-      "without any difference, about {:.0f} would be called faster or slower by chance.",
-      timed.size(), 0.05 * static_cast<double>(timed.size()));
+      "Times: median over the processes. Change: ratio of their geometric means. p: permutation test over the "
+      "processes, "
+      "exact. *noise*: the 95 % interval contains 0. Of {} runs without any difference, about {:.0f} would be called "
+      "faster or slower by chance.",
+      timed.size(), (1 - kLevel) * static_cast<double>(timed.size()));
   const std::string of_results = fmt::format(
       "{} runs have the same outcome and the same results (to 1e-9). Values that depend on the machine are "
       "not compared here.",
@@ -196,24 +238,25 @@ std::vector<Table> comparison_tables(const std::vector<ComparedRun>& runs) {
       results.table({"Results that differ", of_results, {}}, differences)};
 }
 
-nlohmann::json comparison_json(const std::vector<ComparedRun>& runs) {
-  nlohmann::json out = nlohmann::json::array();
-  for (const ComparedRun& c : runs) {
+nlohmann::json comparison_json(const Comparison& comparison) {
+  nlohmann::json out = {{"overridden", comparison.differing.json()}, {"runs", nlohmann::json::array()}};
+  for (const ComparedRun& c : comparison.runs) {
     nlohmann::json row = {{"run", c.name},
-                          {"in_a", c.a != nullptr},
-                          {"in_b", c.b != nullptr},
+                          {"in_a", !c.a.empty()},
+                          {"in_b", !c.b.empty()},
                           {"outcome", c.outcome},
-                          {"verdict", verdict(c.time)},
+                          {"verdict", verdict(c)},
+                          {"overridden", c.marks},
+                          {"processes", {c.time.processes_a, c.time.processes_b}},
                           {"ratio", finite_or_null(c.time.ratio)},
                           {"low", finite_or_null(c.time.low)},
                           {"high", finite_or_null(c.time.high)},
-                          {"level", finite_or_null(c.time.level)},
                           {"p", finite_or_null(c.time.p)},
                           {"apart", finite_or_null(c.apart)},
                           {"metrics", nlohmann::json::object()}};
     for (const ComparedRun::Versions& v : c.versions) row["versions"][v.metric] = {v.a, v.b};
     for (const ComparedRun::Change& m : c.metrics) row["metrics"][m.name] = {finite_or_null(m.a), finite_or_null(m.b)};
-    out.push_back(std::move(row));
+    out["runs"].push_back(std::move(row));
   }
   return out;
 }

@@ -5,27 +5,40 @@
 
 #include "base/table.hpp"
 #include "clothbench/record.hpp"
+#include "report/conditions.hpp"
 
 namespace clothbench {
 
-/// Ratio of the frame times of runs B and A, estimated from their trials. `ratio`: Hodges-Lehmann estimator, the median
-/// of all pairwise ratios B/A. `low`, `high`: its confidence interval at the lowest possible level of at least 95 %.
-/// `p`: two-sided, by the Mann-Whitney U test (exact; ties count half). Hollander, Wolfe, Chicken, Nonparametric
-/// Statistical Methods (3rd ed.), 4.1 to 4.3.
+/// Processes that each side needs for a statement about times. With 5 and 5 the test has a size of 4.8 %.
+inline constexpr std::size_t kMinProcesses = 5;
+inline constexpr std::size_t kMaxProcesses = 12;  ///< of each side; all C(24, 12) assignments are evaluated
+
+/// Ratio of the frame times B/A, estimated from processes. The unit of replication is the process, since the trials of
+/// one process share its memory layout, its clocks and the state of its driver. `ratio`: of the geometric means over
+/// the processes. `p`: exact permutation test of the difference of the mean logarithms over all assignments of the
+/// processes to the two sides, twice the smaller tail. `low`, `high`: the ratios that this test does not reject at 5 %
+/// (equal tails of 2.5 % at most). Source: Good, Permutation, Parametric and Bootstrap Tests of Hypotheses (3rd
+/// ed.), 3.2. It assumes that processes are exchangeable if the builds are equally fast, so run those of A and B in
+/// turns.
 struct TimeRatio {
   double ratio = kMissing, low = kMissing, high = kMissing, p = kMissing;
-  double level = kMissing;  ///< of the interval; below 0.95 if there are too few trials
-  /// True if the difference is not significant: too few trials, p above 5 %, or an interval that contains 1.
-  bool noise() const { return !(p <= 0.05) || !(level >= 0.95) || (low <= 1 && high >= 1); }
+  std::size_t processes_a = 0, processes_b = 0;
+  bool enough() const { return processes_a >= kMinProcesses && processes_b >= kMinProcesses; }
+  /// True if no difference is shown: too few processes, or an interval that contains 1.
+  bool noise() const { return !(low > 1) && !(high < 1); }
 };
 
-/// `a`, `b`: mean frame time of each trial, positive; at most 40 trials each.
+/// `a`, `b`: frame time [s] of each process, positive. Throws Error if a side has more than kMaxProcesses.
 TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>& b);
 
-/// A run that is in both results, or in one (the other pointer is null then).
+/// Frame times [s] of one run in several processes: of each that has trials the median of the trials' means.
+std::vector<double> process_times(const std::vector<const RunRecord*>&);
+
+/// A run that is on both sides, or on one (the other list is empty then).
 struct ComparedRun {
   std::string name;
-  const RunRecord *a = nullptr, *b = nullptr;
+  std::vector<const RunRecord*> a, b;  ///< one per process; results are compared between the first of each side
+  std::string marks = {};              ///< kinds of conditions that differ and were allowed: "scene, machine"
   TimeRatio time = {};
   struct Change {
     std::string name;
@@ -44,11 +57,20 @@ struct ComparedRun {
   double apart = kMissing;
 };
 
-/// Matches runs by name, in the order of A, then those that only B has. The records must outlive the result.
-std::vector<ComparedRun> compare_runs(const std::vector<RunRecord>& a, const std::vector<RunRecord>& b);
+/// One element per process: the runs of its folder.
+using Processes = std::vector<std::vector<RunRecord>>;
 
-std::vector<Table> comparison_tables(const std::vector<ComparedRun>&);
-nlohmann::json comparison_json(const std::vector<ComparedRun>&);
+struct Comparison {
+  std::vector<ComparedRun> runs;  ///< in the order of A, then those that only B has
+  DifferingRuns differing;        ///< conditions that differ and were allowed
+};
+
+/// Pairs runs by name. Throws Error if paired runs, or processes of one side, differ in a condition whose kind is not
+/// in `allowed` (report/conditions.hpp), or if a process has a run twice. The records must outlive the result.
+Comparison compare_runs(const Processes& a, const Processes& b, const std::vector<std::string>& allowed = {});
+
+std::vector<Table> comparison_tables(const Comparison&);
+nlohmann::json comparison_json(const Comparison&);
 
 /// Input of tools that plot results per commit (github-action-benchmark, customSmallerIsBetter): name, unit, value,
 /// range and extra of every time and error.

@@ -121,17 +121,20 @@ std::vector<ContactRate> contact_rates(const std::vector<RunRecord>& runs) {
       for (const std::string& band : band_names()) {
         ContactRate r{solver, setting, kind, band, assets};
         std::set<std::string> held;
+        std::vector<const RunRecord*> judged;
         for (const DrawnRun& d : all) {
           const RunHeader& h = d.run->header;
           if (h.solver != solver || h.setting != setting || d.assets != assets) continue;
           if ((kind != kAll && kind != d.kind) || (band != kAll && band != band_of(d.speed_m_per_s))) continue;
-          ++r.drawn;
+          judged.push_back(d.run);
           if (const std::string at = held_at(*d.run); at != "–") held.insert(at);
           const std::string& status = d.run->outcome.status;
-          r.passed += verdict(*d.run) == "pass" ? 1 : 0;
-          r.unsupported += status == "unsupported" ? 1 : 0;
           r.not_ended += status != "unsupported" && status != "ok" ? 1 : 0;
         }
+        const VerdictCounts counts = count_verdicts(judged);
+        r.passed = counts.passed;
+        r.drawn = counts.runs;
+        r.unsupported = counts.unsupported;
         r.held_at = fmt::format("{}", fmt::join(held, ", "));
         if (r.drawn > 0) out.push_back(std::move(r));
       }

@@ -3,6 +3,7 @@
 #include "base/json_number.hpp"
 #include "report/plugin_marks.hpp"
 #include "report/report.hpp"
+#include "report/verdict.hpp"
 #include "report/withheld.hpp"
 
 namespace clothbench {
@@ -69,7 +70,10 @@ std::string summary_csv(const std::vector<RunRecord>& runs, const std::vector<st
       .add({{"class", In::Both, [](auto& r) { return r.run->outcome.klass; }},
             {"failed_frame", In::Both, failed_frame_of},
             {"message", In::Both, [](auto& r) { return r.run->outcome.message; }},
-            {"expect", In::Both, [](auto& r) { return r.run->outcome.expect; }}});
+            {"expect", In::Both, [](auto& r) { return r.run->outcome.expect; }},
+            {"verdict", In::Both, [](auto& r) { return verdict(*r.run); }},
+            {"bounds", In::Both, [](auto& r) { return bounds_of(*r.run); }},
+            {"probe", In::Both, [](auto& r) { return is_probe(*r.run) ? "yes" : "no"; }}});
   for (const char* key : {"gpu", "driver", "gpu_is_software", "cpu", "protocol", "git_commit", "git_dirty",
                           "source_sha256", "build_type", "clock_policy", "created"})
     columns.push_back({key, In::Both, [key](auto& r) { return environment_of(*r.run, key); }});
@@ -122,6 +126,9 @@ nlohmann::json runs_json(const std::vector<RunRecord>& runs) {
                      {"failed_frame", c.outcome.failed_frame},
                      {"message", c.outcome.message},
                      {"expect", c.outcome.expect}}},
+                   {"verdict", verdict(c)},
+                   {"bounds", bounds_of(c)},
+                   {"probe", is_probe(c)},
                    {"summary", numbers_to_json(c.summary)},
                    {"withheld", c.withheld},
                    {"metric_versions", versions_of(c)},

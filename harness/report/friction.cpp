@@ -8,6 +8,7 @@
 
 #include "base/json_number.hpp"
 #include "report/grid.hpp"
+#include "report/verdict.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -17,8 +18,6 @@ using nlohmann::json;
 constexpr const char kItsProcess[] = "its process: ";  // prefix of a crash message
 
 using RunPointers = std::vector<const RunRecord*>;
-
-bool is_try(const RunRecord& c) { return environment_of(c, "protocol") == kThresholdProtocol; }
 
 /// Scene name from the scene's file. The header's name differs between the runs of a search.
 Scene scene_of(const RunRecord& c) { return scene_from_json(scenario_of(c), c.file.empty() ? c.header.scene : c.file); }
@@ -82,7 +81,7 @@ json answer(const FrictionForm& form, const RunPointers& runs, const std::vector
     for (const ThresholdRow& row : rows)
       if (row.scene == form.scene && row.solver == h.solver && row.setting == h.setting) return answer(form, row);
   for (const RunRecord* c : runs) {
-    if (is_try(*c) || c->header.scene != form.scene) continue;
+    if (is_probe(*c) || c->header.scene != form.scene) continue;
     const std::string& status = c->outcome.status;
     if (status == "unsupported" || status == "crashed") return answer_json(form, nullptr, status);
     if (!form.threshold) return answer_json(form, form.scale * end_error(scene_of(*c), *c));
@@ -119,14 +118,14 @@ Table threshold_table(const std::vector<ThresholdRow>& rows) {
 
 }  // namespace
 
-bool is_friction(const RunRecord& c) { return is_try(c) || environment_of(c, "protocol") == kFrictionProtocol; }
+bool is_friction(const RunRecord& c) { return is_probe(c) || environment_of(c, "protocol") == kFrictionProtocol; }
 
 std::vector<ThresholdRow> threshold_rows(const std::vector<RunRecord>& runs) {
   std::vector<ThresholdRow> out;
   for (const RunPointers& group : grouped(runs, [](const RunRecord& c) {
-         return std::tuple(is_try(c), base_name(c), c.header.solver, c.header.setting);
+         return std::tuple(is_probe(c), base_name(c), c.header.solver, c.header.setting);
        }))
-    if (is_try(*group.front())) out.push_back(row_of(group));
+    if (is_probe(*group.front())) out.push_back(row_of(group));
   return out;
 }
 
@@ -192,7 +191,7 @@ Table friction_table(const std::vector<RunRecord>& runs) {
 
 std::vector<Table> friction_tables(const std::vector<RunRecord>& runs) {
   std::vector<Table> out;
-  if (std::any_of(runs.begin(), runs.end(), [](const RunRecord& c) { return is_friction(c) && !is_try(c); }))
+  if (std::any_of(runs.begin(), runs.end(), [](const RunRecord& c) { return is_friction(c) && !is_probe(c); }))
     out.push_back(friction_table(runs));
   if (const auto rows = threshold_rows(runs); !rows.empty()) out.push_back(threshold_table(rows));
   return out;

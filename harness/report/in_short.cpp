@@ -8,6 +8,7 @@
 
 #include "report/grid.hpp"
 #include "report/plugin_marks.hpp"
+#include "report/verdict.hpp"
 #include "report/withheld.hpp"
 
 namespace clothbench {
@@ -22,8 +23,7 @@ struct Row {
   double fastest_s = kMissing;                     ///< frame_s of its scene's first run
   /// Whether its time may be compared: it ended well, and its cloth is not torn apart.
   bool ranked() const {
-    return std::isfinite(frame_s) && run->outcome.status == "ok" && !run->outcome.expect.starts_with("fail") &&
-           !(stretch > kTornApart);
+    return std::isfinite(frame_s) && run->outcome.status == "ok" && verdict(*run) != "fail" && !(stretch > kTornApart);
   }
 };
 
@@ -34,9 +34,9 @@ Row row_of(const RunRecord& c) {
   return {&c, middle(means), means.size() > 1 ? (means.back() - means.front()) / 2 : kMissing, stretch};
 }
 
-std::string ended(const Outcome& o) {
-  if (o.status != "ok") return o.failed_frame >= 0 ? fmt::format("{} in frame {}", o.status, o.failed_frame) : o.status;
-  return o.expect.empty() ? "ok" : o.expect.substr(0, o.expect.find(':'));
+std::string ended(const RunRecord& c) {
+  const std::string v = verdict(c);
+  return v == "–" ? c.outcome.status : v;
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ Table in_short_table(const std::vector<RunRecord>& runs) {
   const Columns<Row> columns = {{"", "scene", [](auto& r) { return r.run->header.scene; }},
                                 {"", "solver", [](auto& r) { return r.run->header.solver; }},
                                 {"", "setting", [](auto& r) { return r.run->header.setting; }},
-                                {"", "outcome", [](auto& r) { return ended(r.run->outcome); }},
+                                {"", "outcome", [](auto& r) { return ended(*r.run); }},
                                 {"", "stretch", &Row::stretch, digits(3), {"%", 100}},
                                 {"", "frame [ms]", time},
                                 {"", "relative to the fastest", [](auto& r) {
@@ -73,8 +73,9 @@ Table in_short_table(const std::vector<RunRecord>& runs) {
                                                                      : "–";
                                  }}};
   const char* note =
-      "Frame: wall time, median of the trials' means ± half their range. Outcome: how the run ended, and "
-      "whether the scene's expectations passed. Stretch: greatest strain of a structural edge in the last second. "
+      "Frame: wall time, median of the trials' means ± half their range. Outcome: how the run ended, or the "
+      "verdict on the scene's bounds; ignored: they hold, but the solver ignores all contact. Stretch: greatest strain "
+      "of a structural edge in the last second. "
       "Not ranked: runs that failed, and cloths with an edge of more than twice its length.";
   return PluginMarks(runs).table(
       columns.table({"In short", with_withheld(note, beside, {"frame_wall_median_s"}), {}}, all));

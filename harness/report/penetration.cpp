@@ -115,16 +115,6 @@ Columns<ContactRow> place_columns() {
           {"", "sides", [](auto& r) { return or_dash(r.series.sides); }}};
 }
 
-/// True if the solver declares to ignore all contact and grips: a bound that holds then proves nothing.
-bool touches_nothing(const RunRecord& c) {
-  const json features = environment_of(c, "solver_features");
-  if (!filled(features, "ignores")) return false;
-  const json& ignored = features["ignores"];
-  bool all = contains(ignored, name_of(Feature::MovingPins));
-  kColliderFeatures.for_each([&](Feature f) { all = all && contains(ignored, name_of(f)); });
-  return all;
-}
-
 /// The bound a scene puts on a summary value, as text: "at most 0".
 std::string bound(const json& scenario, const std::string& name) {
   const json e = scenario.is_object() ? scenario.value("expect", json::object()).value(name, json()) : json();
@@ -180,27 +170,6 @@ std::vector<ContactRow> contact_rows(const std::vector<ContactSetUp>& ups) {
   for (const ContactSetUp& u : ups)
     for (const ContactScene& s : u.scenes) out.insert(out.end(), s.rows.begin(), s.rows.end());
   return out;
-}
-
-std::vector<BoundResult> bound_results(const RunRecord& c) {
-  std::vector<BoundResult> out;
-  for (const auto& [name, v] : c.summary)
-    if (name.starts_with(kExpect)) out.push_back({name.substr(kExpect.size()), v});
-  return out;
-}
-
-std::string verdict(const RunRecord& c) {
-  if (c.outcome.status != "ok") return ending(c.outcome);
-  bool withheld = false, measured = true;
-  const std::vector<BoundResult> bounds = bound_results(c);
-  for (const BoundResult& b : bounds) {
-    if (b.passed == 0) return "fail";
-    withheld = withheld || c.withheld.contains(kExpect + b.name);
-    measured = measured && b.passed == 1;
-  }
-  if (bounds.empty() || withheld) return "–";
-  if (!measured) return "not measured";
-  return touches_nothing(c) ? "ignored" : "pass";
 }
 
 std::pair<double, double> held_at_m(const RunRecord& c) {

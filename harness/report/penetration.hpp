@@ -7,6 +7,7 @@
 #include "base/table.hpp"
 #include "clothbench/record.hpp"
 #include "report/grid.hpp"
+#include "report/verdict.hpp"
 
 namespace clothbench {
 
@@ -42,20 +43,6 @@ std::vector<ContactSetUp> set_ups(const std::vector<RunRecord>& runs);
 
 /// The rows of all set-ups, in order.
 std::vector<ContactRow> contact_rows(const std::vector<ContactSetUp>&);
-
-/// Result of one bound of a scene's `expect`.
-struct BoundResult {
-  std::string name;  ///< of the summary value, or "outcome"
-  double passed;     ///< 1 pass, 0 fail, NaN not known
-};
-
-/// Results of every bound of the run's scene; the common source of the tables of verdicts and of failure speeds.
-std::vector<BoundResult> bound_results(const RunRecord&);
-
-/// Result of the scene's `expect`: "pass", "fail", "not measured"; "–" if there are no bounds or the result must not be
-/// printed (withheld.hpp); "ignored" if the bounds hold but the solver ignores all contact. If the run did not end
-/// well, its ending.
-std::string verdict(const RunRecord&);
 
 /// Least and greatest distance [m] at which the run's solver holds the cloth off its colliders: what the solver states,
 /// else the scene's margin. NaN if the scene has no collider or the run did not begin.

@@ -10,6 +10,7 @@
 #include "base/files.hpp"
 #include "results/hdf5_handle.hpp"
 #include "results/raw_file.hpp"
+#include "results/trajectory.hpp"
 
 namespace clothbench {
 namespace {
@@ -200,6 +201,7 @@ class Writer {
     integer_attribute(outcome, "failed_frame", r_.outcome.failed_frame);
     text_attribute(outcome, "message", r_.outcome.message);
     text_attribute(outcome, "expect", r_.outcome.expect);
+    text_attribute(outcome, "trajectory_sha256", trajectory_sha256(r_.accuracy));
     for (const auto& [key, value] : r_.header.environment.items())
       if (!value.is_structured())
         text_attribute(environment, key, value.is_string() ? value.get<std::string>() : value.dump());

@@ -12,6 +12,10 @@ RunRecord read_hdf5(const std::filesystem::path& path, bool) {
   throw Error(path.string() + ": this build reads no HDF5");
 }
 
+std::string read_hdf5_trajectory_sha256(const std::filesystem::path& path) {
+  throw Error(path.string() + ": this build reads no HDF5");
+}
+
 Replay read_hdf5_replay(const std::filesystem::path& path, std::size_t) {
   throw Error(path.string() + ": this build reads no HDF5");
 }

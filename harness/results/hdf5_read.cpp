@@ -111,6 +111,17 @@ void read_accuracy(hid_t file, RunRecord& r, bool with_trajectory) {
 
 }  // namespace
 
+std::string read_hdf5_trajectory_sha256(const std::filesystem::path& path) {
+  const h5::Quiet quiet;
+  try {
+    const Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "opening the file");
+    const Id outcome = open_group(file, "outcome");
+    return H5Aexists(outcome, "trajectory_sha256") > 0 ? text_attribute(outcome, "trajectory_sha256") : "";
+  } catch (const Error& e) {
+    throw Error(path.string() + ": " + e.what());
+  }
+}
+
 RunRecord read_hdf5(const std::filesystem::path& path, bool with_trajectory) {
   const h5::Quiet quiet;
   try {

@@ -56,6 +56,7 @@ nlohmann::json describe_features(const SolverInfo& info) {
 void describe_solver(const SolverInfo& info, nlohmann::json& environment) {
   environment["solver_features"] = describe_features(info);
   environment["solver_version"] = info.version;
+  environment["precision"] = info.precision;
   if (!is_external(info)) return;
   static std::map<std::string, std::string> hashes;  // by path; a loaded library stays the one that it was
   const std::string path = info.folder.substr(std::string(kPluginPrefix).size());

@@ -124,7 +124,7 @@ class GroupRun {
   /// Counts a run of an earlier session, and what it took of its ladder's budget.
   void recall(const RunSpec& spec, const std::string& name) {
     const RunRecord before = read_run_summary(stored_run(options_.out, name));
-    count(name, before.outcome);
+    count(before.outcome);
     if (!(spec.work > 0)) return;
     const auto took = before.summary.find("untimed_s");
     if (before.outcome.status != "over_budget" && took != before.summary.end())
@@ -187,13 +187,13 @@ class GroupRun {
     summary["untimed_s"] = r.untimed_s;
     Verdict verdict = judge(*r.run->spec().scene, outcome, r.record.accuracy, summary);
     outcome.expect = std::move(verdict.text);
-    count(r.name(), outcome);
+    count(outcome);
     summary.merge(verdict.scalars);
     result_.files.push_back(r.writer->finish(outcome, summary));
     ++done_;
   }
 
-  void count(const std::string& name, const Outcome& outcome) {
+  void count(const Outcome& outcome) {
     if (outcome.status == "ok")
       ++result_.runs_ok;
     else if (outcome.status == "unsupported")
@@ -202,8 +202,6 @@ class GroupRun {
       ++result_.runs_over_budget;
     else
       ++result_.runs_failed;
-    if (outcome.expect == "pass") ++result_.expect_passed;
-    if (outcome.expect.starts_with("fail")) result_.expect_failed.push_back(name + ": " + outcome.expect);
   }
 
   const RunPlan& plan_;

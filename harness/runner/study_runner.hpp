@@ -39,8 +39,6 @@ struct RunResult {
   /// Wall time by solver for loads, passes, trials and files; "reference solutions" is another entry.
   std::map<std::string, double> seconds, moduli_seconds;  ///< moduli_seconds: of effective moduli
   int moduli = 0, moduli_left_out = 0;
-  int expect_passed = 0;                   ///< runs that meet their scene's expectations
-  std::vector<std::string> expect_failed;  ///< those that do not, and how; a result, not a fault
   int validation_messages = 0;
   std::vector<std::string> faults;  ///< runs that broke a rule of the harness (stages, validation): the run fails
 };

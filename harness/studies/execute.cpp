@@ -8,6 +8,7 @@
 #include "base/words.hpp"
 #include "report/in_short.hpp"
 #include "report/report.hpp"
+#include "report/verdict.hpp"
 #include "report/withheld.hpp"
 #include "runner/environment.hpp"
 #include "runner/run_choice.hpp"
@@ -33,13 +34,17 @@ std::vector<RunRecord> stored_runs(const std::vector<std::string>& names, const 
 }
 
 /// Outcome and every figure of each run.
-nlohmann::json figures_of(const std::vector<std::string>& names, const std::filesystem::path& out) {
-  nlohmann::json all = runs_json(stored_runs(names, out));
+nlohmann::json figures_of(const std::vector<RunRecord>& runs) {
+  nlohmann::json all = runs_json(runs);
   for (nlohmann::json& run : all) run.erase("environment");  // in the result files
   return all;
 }
 
-nlohmann::json summary_of(const RunResult& r, const std::filesystem::path& out, nlohmann::json figures) {
+nlohmann::json summary_of(const RunResult& r, const std::vector<RunRecord>& runs, const std::filesystem::path& out,
+                          nlohmann::json figures) {
+  std::vector<std::string> failed;
+  for (const RunRecord& c : runs)
+    if (verdict(c) == "fail") failed.push_back(run_name(c.header) + ": " + c.outcome.expect);
   return {{"out", out.string()},
           {"ok", r.runs_ok},
           {"unsupported", r.runs_unsupported},
@@ -49,8 +54,9 @@ nlohmann::json summary_of(const RunResult& r, const std::filesystem::path& out, 
           {"moduli", r.moduli},
           {"moduli_left_out", r.moduli_left_out},
           {"faults", r.faults},
-          {"expect_passed", r.expect_passed},
-          {"expect_failed", r.expect_failed},
+          {"with_bound", count_verdicts(runs).runs},
+          {"expect_passed", count_verdicts(runs).passed},
+          {"expect_failed", failed},
           {"runs", std::move(figures)}};
 }
 
@@ -84,10 +90,13 @@ std::string text_of(const RunResult& r, const std::vector<std::string>& names, c
   const auto counted = [](int n, const char* what, Tone tone) {
     return tinted(n > 0 ? tone : Tone::Plain, fmt::format("{} {}", n, what));
   };
-  return (names.empty() || names.size() > kFew ? "" : in_short_table(stored_runs(names, out)).console()) +
-         fmt::format("\n{}, {}, {}; results in {}\n", counted(r.runs_ok, "runs ok", Tone::Good),
+  const std::vector<RunRecord> runs = stored_runs(names, out);
+  const VerdictCounts verdicts = count_verdicts(runs);
+  return (names.empty() || names.size() > kFew ? "" : in_short_table(runs).console()) +
+         fmt::format("\n{}, {}, {}{}; results in {}\n", counted(r.runs_ok, "runs ok", Tone::Good),
                      counted(r.runs_unsupported, "unsupported", Tone::Doubtful),
-                     counted(r.runs_failed, "failed", Tone::Bad), out.string()) +
+                     counted(r.runs_failed, "failed", Tone::Bad),
+                     verdicts.runs > 0 ? "; with a bound: " + verdicts.text() : "", out.string()) +
          spent(r);
 }
 
@@ -132,7 +141,8 @@ StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& ca
   end.faults = result.faults;
   if (!end.faults.empty()) end.exit_code = ExitCode::CheckFailed;
   end.json = [=, out = end.out, part = call.part] {
-    return summary_of(result, out, part ? nlohmann::json::array() : figures_of(names, out));
+    const std::vector<RunRecord> runs = stored_runs(names, out);
+    return summary_of(result, runs, out, part ? nlohmann::json::array() : figures_of(runs));
   };
   end.text = [=, out = end.out] { return text_of(result, names, out); };
   return end;

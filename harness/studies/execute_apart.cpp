@@ -2,6 +2,9 @@
 
 #include <set>
 
+#include "report/report.hpp"
+#include "report/verdict.hpp"
+#include "report/withheld.hpp"
 #include "runner/child.hpp"
 #include "runner/environment.hpp"
 #include "runner/stability_map.hpp"
@@ -52,19 +55,18 @@ StudyEnd execute_drawn(const Study& study, const StudyManifest& manifest, const 
   require_same_runs(study, options);
   write_manifest(options.out, manifest);
   tell_drawn(study, call);
-  int drawn = 0, passed = 0;
-  execute_runs_apart(study, options, [&](const RunRecord& a) {
-    ++drawn;
-    passed += a.outcome.expect == "pass" ? 1 : 0;
-  });
+  execute_runs_apart(study, options, [](const RunRecord&) {});
   const std::string out = options.out.string();
+  std::vector<RunRecord> runs = collect({options.out});
+  withhold_times(runs);
+  const VerdictCounts counts = count_verdicts(runs);
   return {.out = options.out,
           .faults = {},
           .json =
               [=] {
-                return nlohmann::json{{"out", out}, {"passed", passed}, {"runs", drawn}};
+                return nlohmann::json{{"out", out}, {"passed", counts.passed}, {"runs", counts.runs}};
               },
-          .text = [=] { return fmt::format("\n{} of {} runs passed; results in {}\n", passed, drawn, out); }};
+          .text = [=] { return fmt::format("\n{}; results in {}\n", counts.text(), out); }};
 }
 
 StudyEnd execute_stability(const Study& study, const StudyManifest& manifest, const StabilityOptions& options) {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "results.hpp"
@@ -155,6 +156,36 @@ TEST_F(CheckCommand, AnotherVersionOfAMetricIsBadInputUntilUpdated) {
   EXPECT_EQ(check(), 0) << text_;
 }
 
+/// Whatever the summary says: the run of the baseline has the same.
+TEST_F(CheckCommand, PositionsAreLookedAt) {
+  const auto write = [&](const std::vector<float>& position) {
+    RunRecord c = contact_run("sweep");
+    c.header.vertices = 1;
+    fs::remove_all(run());
+    RunWriter writer(run(), c.header);
+    if (!position.empty()) writer.write_accuracy({{0, 0.5}, position, {}});
+    writer.finish(c.outcome, c.summary);
+  };
+  const std::vector<float> whole = {0, 0, 0, 0, -1, 0};
+  write(whole);
+  ASSERT_EQ(check("--update"), 0) << text_;
+  EXPECT_EQ(check(), 0) << text_;
+  for (const std::size_t k : {0, 5}) {
+    std::vector<float> damaged = whole;
+    damaged[k] = std::numeric_limits<float>::quiet_NaN();
+    write(damaged);
+    EXPECT_EQ(check(), 1) << text_;
+    EXPECT_NE(text_.find("is not finite"), std::string::npos) << text_;
+    EXPECT_NE(text_.find("sweep__xpbd__default"), std::string::npos) << text_;
+    EXPECT_EQ(check("--update"), 2) << "no baseline of it";
+  }
+  write({});
+  EXPECT_EQ(check(), 2) << text_;
+  EXPECT_NE(text_.find("length: frames: 1 and 0"), std::string::npos) << text_;
+  EXPECT_EQ(check("--allow length"), 1) << text_;
+  EXPECT_NE(text_.find("has no positions"), std::string::npos) << text_;
+}
+
 TEST_F(CheckCommand, JunitGithubAndJson) {
   ASSERT_EQ(check("--update"), 0);
   write_study({contact_run("desk"), ended(contact_run("sweep"), "diverged", "F2", 3)});
@@ -193,11 +224,14 @@ TEST_F(CheckCommand, HoldsARealStudyOfASolverThatTheStudyDoesNotName) {
   changed["runs"][0]["scalars"]["free_fall_error"] = -1;
   std::ofstream(baseline()) << changed.dump();
   EXPECT_EQ(command(arguments), 1) << text_;
-  changed["runs"][0]["scenario_sha256"] = "0";
+  changed["runs"][0]["scalars"].erase("free_fall_error");
+  changed["runs"][0]["conditions"]["scene SHA-256"] = "0";
   std::ofstream(baseline()) << changed.dump();
   EXPECT_EQ(command(arguments), 2);
-  EXPECT_NE(text_.find("another version of the scene"), std::string::npos) << text_;
-  EXPECT_NE(text_.find("--update"), std::string::npos) << text_;
+  EXPECT_NE(text_.find("scene: scene SHA-256: 0 and "), std::string::npos) << text_;
+  EXPECT_EQ(command(arguments + " --allow device"), 2) << "another kind";
+  EXPECT_EQ(command(arguments + " --allow scene"), 0) << text_;
+  EXPECT_NE(text_.find("Compared although it differs"), std::string::npos) << text_;
   ASSERT_EQ(command(arguments + " --update"), 0) << text_;
   EXPECT_EQ(command(arguments), 0) << text_;
 }

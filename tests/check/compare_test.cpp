@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 
 #include "check/gates.hpp"
+#include "check/github.hpp"
+#include "check/junit.hpp"
+#include "check/print.hpp"
 #include "clothbench/error.hpp"
 #include "results.hpp"
 
@@ -176,14 +180,42 @@ TEST(Compare, Stages) {
   EXPECT_NE(findings(contact_run(), order)[0].message.find("order"), std::string::npos);
 }
 
-TEST(Compare, AChangedSceneIsSaidAndNothingElse) {
-  RunRecord changed = with(contact_run(), "depth_max_m", 99);
-  changed.header.scenario_sha256 = "ffff";
-  const auto f = findings(contact_run(), changed);
-  ASSERT_EQ(f.size(), 1u);
-  EXPECT_EQ(f[0].verdict, Verdict::Failed);
-  EXPECT_NE(f[0].message.find("scene changed"), std::string::npos);
-  EXPECT_NE(f[0].message.find("--update"), std::string::npos);
+TEST(Check, OtherConditionsAreRefusedByNameUnlessAllowed) {
+  struct Other {
+    const char *kind, *found;
+    std::function<void(RunRecord&)> change;
+  };
+  const Other all[] = {{"scene", "ffff", [](RunRecord& r) { r.header.scenario_sha256 = "ffff"; }},
+                       {"device", "Other GPU", [](RunRecord& r) { r.header.environment["gpu"] = "Other GPU"; }},
+                       {"precision", "float64", [](RunRecord& r) { r.header.environment["precision"] = "float64"; }},
+                       {"length", "1", [](RunRecord& r) {
+                          r.accuracy.time_s = {0, 1};
+                        }}};
+  const Baseline baseline = baseline_of({contact_run()});
+  for (const Other& other : all) {
+    RunRecord changed = contact_run();
+    other.change(changed);
+    const std::string refused = error_of([&] { check_runs(baseline, {changed}); });
+    for (const char* word : {other.kind, other.found, "desk__xpbd__default", "--allow"})
+      EXPECT_NE(refused.find(word), std::string::npos) << refused;
+    const Checked allowed = check_runs(baseline, {changed}, {other.kind});
+    EXPECT_TRUE(allowed.passed()) << other.kind;
+    EXPECT_NE(allowed.differing.marks().find(other.found), std::string::npos);
+    EXPECT_NE(check_text(allowed, "b.json").find(other.found), std::string::npos);
+    EXPECT_NE(junit_xml(allowed).find(other.found), std::string::npos);
+    EXPECT_NE(github_commands(allowed, "b.json").find("::warning"), std::string::npos);
+    EXPECT_EQ(check_json(allowed, "b.json")["overridden"][0]["kind"], other.kind);
+  }
+}
+
+/// Values of a result do not hang on the machine that a solver of the CPU ran on, on drivers, or on timed trials.
+TEST(Check, WhatResultsDoNotHangOnIsNoCondition) {
+  RunRecord changed = contact_run();
+  changed.header.environment["cpu"] = "Other CPU";
+  changed.header.environment["driver"] = "other";
+  changed.trials.resize(1);
+  changed.trials[0].frame_wall_s = {1, 2, 3};
+  EXPECT_TRUE(check_runs(baseline_of({contact_run()}), {changed}).passed());
 }
 
 TEST(Compare, ASceneWithoutSizeIsBadInput) {

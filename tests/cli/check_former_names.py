@@ -56,12 +56,6 @@ class FormerNames(unittest.TestCase):
         self.assertNotIn("broken", text)
         self.assertNotIn("kept", text)
 
-    def test_a_baseline_holds_old_and_new_results(self):
-        _, err = self.run_command("check", "results", "--baseline", "baseline.json")
-        self.noticed(err, "cells", "runs")
-        self.run_command("study", "study.json", "--out", "again")
-        self.run_command("check", "again", "--baseline", "baseline.json")
-
     def test_commands_and_options(self):
         _, err = self.run_command("study", "study.json", "--list-cells")
         self.noticed(err, "--list-cells", "--list-runs")

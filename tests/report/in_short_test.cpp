@@ -29,7 +29,7 @@ TEST(InShort, TheFastestFirstAndWhatDidNotRunLast) {
   ASSERT_EQ(t.rows.size(), 4u);
   EXPECT_EQ(t.rows[1], (std::vector<std::string>{"drop", "quick", "default", "ok", "–", "2.00 ± 1.0", "1.00×"}));
   EXPECT_EQ(t.rows[2], (std::vector<std::string>{"drop", "slow", "default", "fail", "–", "4.00 ± 0.0", "not ranked"}));
-  EXPECT_EQ(t.rows[3], (std::vector<std::string>{"drop", "none", "default", "crashed in frame 7", "–", "–", "–"}));
+  EXPECT_EQ(t.rows[3], (std::vector<std::string>{"drop", "none", "default", "crashed at 7", "–", "–", "–"}));
 }
 
 TEST(InShort, AClothThatIsTornApartHasNoRankAndFewerFramesAreTold) {

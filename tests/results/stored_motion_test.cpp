@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cstdlib>
 #include <fstream>
 
@@ -138,7 +139,9 @@ void expect_same_cloth(const Scene& a, const Scene& b) {
   }
   EXPECT_EQ(edge_stiffnesses(a), edge_stiffnesses(b));
   ASSERT_EQ(a.cloth.mesh == nullptr, b.cloth.mesh == nullptr);
-  if (a.cloth.mesh) EXPECT_EQ(a.cloth.mesh->groups, b.cloth.mesh->groups);
+  if (a.cloth.mesh) {
+    EXPECT_EQ(a.cloth.mesh->groups, b.cloth.mesh->groups);
+  }
 }
 
 class StoredMotionOf : public WithFolder, public ::testing::WithParamInterface<std::string> {};

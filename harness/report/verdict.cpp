@@ -1,0 +1,89 @@
+#include "report/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/words.hpp"
+#include "clothbench/feature.hpp"
+#include "metrics/friction_forms.hpp"
+#include "metrics/registry.hpp"
+#include "report/grid.hpp"
+#include "report/penetration.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+/// True if the solver declares to ignore all contact and grips: a bound that holds then proves nothing.
+bool touches_nothing(const RunRecord& c) {
+  const json features = environment_of(c, "solver_features");
+  if (!features.is_object() || !features.contains("ignores")) return false;
+  const json& ignored = features["ignores"];
+  bool all = contains(ignored, name_of(Feature::MovingPins));
+  kColliderFeatures.for_each([&](Feature f) { all = all && contains(ignored, name_of(f)); });
+  return all;
+}
+
+}  // namespace
+
+std::vector<BoundResult> bound_results(const RunRecord& c) {
+  std::vector<BoundResult> out;
+  for (const auto& [name, v] : c.summary)
+    if (name.starts_with(kExpect)) out.push_back({name.substr(kExpect.size()), v});
+  return out;
+}
+
+std::string verdict(const RunRecord& c) {
+  if (c.outcome.status != "ok") return ending(c.outcome);
+  if (c.outcome.expect.starts_with("fail")) return "fail";
+  bool withheld = false, measured = true;
+  const std::vector<BoundResult> bounds = bound_results(c);
+  for (const BoundResult& b : bounds) {
+    if (b.passed == 0) return "fail";
+    withheld = withheld || c.withheld.contains(kExpect + b.name);
+    measured = measured && b.passed == 1;
+  }
+  if (bounds.empty() || withheld) return "–";
+  if (!measured) return "not measured";
+  return has_contact(c) && touches_nothing(c) ? "ignored" : "pass";
+}
+
+std::size_t bounds_of(const RunRecord& c) {
+  const json scenario = scenario_of(c);
+  if (!scenario.is_object() || !scenario.contains("expect") || !scenario["expect"].is_object()) return 0;
+  return scenario["expect"].size() - scenario["expect"].count("outcome");
+}
+
+bool is_probe(const RunRecord& c) { return environment_of(c, "protocol") == kThresholdProtocol; }
+
+std::string VerdictCounts::text() const {
+  std::string out = fmt::format("{} of {} runs passed", passed, runs);
+  for (const auto& [count, what] : {std::pair{failed(), "failed"},
+                                    {ignored, "ignored contact"},
+                                    {unsupported, "unsupported"},
+                                    {not_measured, "not measured"}})
+    if (count > 0) out += fmt::format(", {} {}", count, what);
+  return out;
+}
+
+VerdictCounts count_verdicts(const std::vector<const RunRecord*>& runs) {
+  VerdictCounts out;
+  for (const RunRecord* c : runs) {
+    if (c->outcome.status == "missing" || bounds_of(*c) == 0 || is_probe(*c)) continue;
+    ++out.runs;
+    const std::string v = verdict(*c);
+    out.passed += v == "pass" ? 1 : 0;
+    out.ignored += v == "ignored" ? 1 : 0;
+    out.unsupported += v == "unsupported" ? 1 : 0;
+    out.not_measured += v == "not measured" || v == "–" || v == "over_budget" ? 1 : 0;
+  }
+  return out;
+}
+
+VerdictCounts count_verdicts(const std::vector<RunRecord>& runs) {
+  return count_verdicts(runs_of(runs, [](const RunRecord& c) { return &c; }));
+}
+
+}  // namespace clothbench

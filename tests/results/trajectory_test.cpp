@@ -1,0 +1,132 @@
+// A file whose positions are not the motion that its outcome is of is found, whatever its summary says.
+#include "results/trajectory.hpp"
+
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <limits>
+
+#include "results/hdf5_file.hpp"
+#include "results/store.hpp"
+#include "sample_run.hpp"
+#include "with_folder.hpp"
+
+namespace clothbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Trajectory : public WithFolder {
+ protected:
+  void SetUp() override {
+    WithFolder::SetUp();
+    run_ = sample_run();
+    run_.outcome = {};
+    write();
+  }
+
+  void write() { write_hdf5(file(), run_); }
+  fs::path file() const { return dir_ / "x.h5"; }
+
+  template <class T>
+  void overwrite(const char* dataset, hid_t type, const std::vector<T>& values) const {
+    const hid_t f = H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), d = H5Dopen2(f, dataset, H5P_DEFAULT);
+    ASSERT_GE(H5Dwrite(d, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0) << dataset;
+    H5Dclose(d);
+    H5Fclose(f);
+  }
+
+  /// The same dataset with its first `rows` rows alone.
+  void cut(const char* dataset, hid_t type, hsize_t rows, hsize_t columns) const {
+    const hid_t f = H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    ASSERT_GE(H5Ldelete(f, dataset, H5P_DEFAULT), 0) << dataset;
+    const hsize_t size[2] = {rows, columns};
+    const hid_t space = H5Screate_simple(columns > 1 ? 2 : 1, size, nullptr),
+                d = H5Dcreate2(f, dataset, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const std::vector<double> times = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    if (columns == 1) {
+      ASSERT_GE(H5Dwrite(d, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times.data()), 0);
+    }
+    H5Dclose(d);
+    H5Sclose(space);
+    H5Fclose(f);
+  }
+
+  RunRecord run_;
+};
+
+void expect_named(const std::string& fault, const std::string& what) {
+  EXPECT_NE(fault.find(what), std::string::npos) << "\"" << fault << "\"";
+}
+
+TEST_F(Trajectory, AWholeFileHasNoFault) {
+  EXPECT_EQ(trajectory_fault(file()), "");
+  EXPECT_EQ(read_hdf5_trajectory_sha256(file()), trajectory_sha256(run_.accuracy));
+  EXPECT_EQ(trajectory_sha256(run_.accuracy).size(), 64u);
+}
+
+TEST_F(Trajectory, ANumberThatIsNoneIsFound) {
+  for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    std::vector<float> x = run_.accuracy.position;
+    x[3 * (6 * 2 + 4) + 1] = wrong;
+    overwrite("VTKHDF/Points", H5T_NATIVE_FLOAT, x);
+    expect_named(trajectory_fault(file()), "vertex 4 in frame 2 is not finite");
+  }
+}
+
+/// As a program stores it whose solver gave it: the hash fits.
+TEST_F(Trajectory, ANumberThatIsNoneIsFoundAlsoWithItsHash) {
+  run_.accuracy.position[7] = std::numeric_limits<float>::quiet_NaN();
+  write();
+  expect_named(trajectory_fault(file()), "is not finite");
+  run_.outcome.status = "not_finite";
+  write();
+  EXPECT_EQ(trajectory_fault(file()), "") << "that is what the outcome says";
+}
+
+TEST_F(Trajectory, AnotherMotionIsFound) {
+  std::vector<float> x = run_.accuracy.position;
+  x[5] += 1e-6f;
+  overwrite("VTKHDF/Points", H5T_NATIVE_FLOAT, x);
+  expect_named(trajectory_fault(file()), "not the motion that its outcome is of");
+  run_.outcome.status = "diverged";
+  write();
+  overwrite("VTKHDF/Points", H5T_NATIVE_FLOAT, x);
+  expect_named(trajectory_fault(file()), "not the motion that its outcome is of");
+}
+
+TEST_F(Trajectory, OtherTimesAreFound) {
+  std::vector<double> t = run_.accuracy.time_s;
+  for (double& v : t) v *= 2;
+  overwrite("metrics/time_s", H5T_NATIVE_DOUBLE, t);
+  expect_named(trajectory_fault(file()), "not the motion that its outcome is of");
+  t[3] = t[2];
+  overwrite("metrics/time_s", H5T_NATIVE_DOUBLE, t);
+  expect_named(trajectory_fault(file()), "the time of frame 3");
+}
+
+TEST_F(Trajectory, MissingFramesAreFound) {
+  cut("VTKHDF/Points", H5T_IEEE_F32LE, 2 * 6, 3);
+  expect_named(trajectory_fault(file()), "expected 90 coordinates of 5 frames with 6 vertices; found 36");
+  cut("metrics/time_s", H5T_IEEE_F64LE, 2, 1);
+  expect_named(trajectory_fault(file()), "2 frames have positions, 5 have");
+}
+
+TEST_F(Trajectory, NoMotionAtAllIsFoundWhereThereMustBeOne) {
+  run_.accuracy = {};
+  write();
+  expect_named(trajectory_fault(file()), "no positions");
+  run_.outcome.status = "unsupported";
+  write();
+  EXPECT_EQ(trajectory_fault(file()), "");
+}
+
+TEST_F(Trajectory, APartFolderIsLookedAtToo) {
+  RunWriter writer(dir_, run_.header, Finish::Raw);
+  run_.accuracy.position[7] = std::numeric_limits<float>::quiet_NaN();
+  writer.write_accuracy(run_.accuracy);
+  expect_named(trajectory_fault(writer.finish({}, {})), "is not finite");
+}
+
+}  // namespace
+}  // namespace clothbench
