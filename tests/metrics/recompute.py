@@ -135,13 +135,16 @@ def popping(run):
     near = (linked + linked @ linked > 0) & ~np.eye(count, dtype=bool)
     velocity = np.broadcast_to(run.scene["cloth"].get("initial_velocity_m_per_s", [0, 0, 0]), (count, 3))
     time = np.r_[run.time[0] - 1, run.time]
-    x = np.concatenate([run.x[:1] - velocity, run.x]).reshape(len(time), -1)
+    x = np.concatenate([run.x[:1] - velocity, run.x])
     way = np.r_[0, driven(run)]
     starts = np.r_[run.time, (run.time[1:] + run.time[:-1]) / 2]
     most = 0.0
     for start in starts[starts + 2 * window <= run.time[-1] + 1e-9]:
         at = start + window * np.arange(-1, 3)
-        before, now, after = np.diff([[np.interp(t, time, c) for c in x.T] for t in at], axis=0).reshape(3, -1, 3)
+        frame = np.interp(at, time, np.arange(len(time)))
+        k = np.minimum(frame.astype(int), len(time) - 2)
+        share = (frame - k)[:, None, None]
+        before, now, after = np.diff((1 - share) * x[k] + share * x[k + 1], axis=0)
         beside = np.where(near, np.maximum(norm(before), norm(after))[None], 0).max(1)
         along = np.maximum((now * before).sum(1), (now * after).sum(1)) / np.maximum(norm(now), 1e-300)
         explained = np.maximum(np.maximum(beside, along), np.diff(np.interp(at, time, way)).max())
