@@ -56,7 +56,7 @@ double gravity_energy(const MetricFrame& f) {
 MetricGroup motion_metrics() {
   constexpr Needs kFree{"free cloth without damping", keeps_momentum};
   return {{{"momentum_error", "1", "momentum beside gravity's share, over M (sqrt(g L) + v0)", kFree, momentum_error},
-           {"speed_max", "m s-1", "greatest vertex speed", kAlways, speed_max, 2},
+           {"speed_max", "m s-1", "greatest vertex speed", kAlways, speed_max},
            {"kinetic_energy_J", "J", "kinetic energy", kAlways, kinetic_energy},
            {"gravity_energy_J", "J", "work done against gravity since the start", kGravity, gravity_energy}},
           {}};

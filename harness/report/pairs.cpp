@@ -207,11 +207,13 @@ double formerly_seed(const ContactRow& o, const json& its, const ContactRow& r, 
 
 double most_over_side(const RunPair& p) { return p.apart.most / longer_side(*p.run); }
 
+double popping_m(const RunRecord& c) { return summary_value(c, "pop_max_m"); }
+
 const PairRelation kRelations[] = {
     {"turned-over", Map::Transposed, until_contact, 0.05, formerly_turned},
     {"whole-room", Map::Same, [](const RunPair& p) { return p.apart.most; }, kMissing, formerly_whole},
     {"irrelevant", Map::Same, most_over_side, 1e-6, formerly_irrelevant},
-    {"finer", Map::None, [](const RunPair& p) { return ratio(*p.run, *p.other, "pop_displacement_m"); }, 1.2,
+    {"finer", Map::None, [](const RunPair& p) { return popping_m(*p.run) - popping_m(*p.other); }, 0.01,
      formerly_finer},
     {"even-frames", Map::None, [](const RunPair& p) { return ratio(*p.other, *p.run, "truth_e2"); }, 3, formerly_even},
     {"scale", Map::Shape, coordinate, 0, formerly_scale},

@@ -33,7 +33,7 @@ struct RunPair : ContactRow {
 ///                the longer side, at most 0.05. Later differences are not judged: rounding decides how a cloth folds
 ///   whole-room   a room against the part cut out of it: greatest distance [m]
 ///   irrelevant   features without effect are switched on: greatest distance over the longer side, at most 1e-6
-///   finer        more substeps: displacement of the pop, `run` over `other`, at most 1.2
+///   finer        more substeps: popping of `run` minus that of `other` [m], at most 0.01
 ///   even-frames  a hitch or jitter: error, `other` over `run`, at most 3
 ///   scale        lengths and accelerations by a power of two: greatest difference over the width, 0
 ///   resolution   finer cells: greatest strain of the last second, `other` over `run`

@@ -90,8 +90,7 @@ const std::vector<Shown> kShown = {
      mm,
      kMillimetres},
     {"longest contour [s]", {"contact_violated_longest_s"}, number},
-    {"popping", {"pop_displacement_m"}, mm, kMillimetres},
-    {"popping speed [of limit]", {"pop_speed_ratio"}, number},
+    {"popping", {"pop_max_m"}, mm, kMillimetres},
     {"strain, greatest / end", {"stretch_max", "stretch_max_end"}, share_text, kPercent},
     {"error of greatest strain, greatest / RMS [of v0/c]",
      {"truth_quantity_error_max", "truth_quantity_error"},
@@ -238,9 +237,9 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
                   "Contour: length of the curves in which cloth and colliders cross; settled: the greatest value in "
                   "the last 0.5 s. Depth: how far the cloth is inside a collider, without the margin. Wrong side: "
                   "vertices and cell centres that a moving hand went through. Longest contour: longest time without a "
-                  "break in which cloth and colliders cross. Popping: greatest displacement of a vertex within 3 "
-                  "frames after the last contact, and its speed divided by a limit; the limit is the greater of twice "
-                  "the hand's speed and the speed of a fall over the cloth's length. Strain: strain of the structural "
+                  "break in which cloth and colliders cross. Popping: greatest displacement of a vertex within "
+                  "1/36 s beyond twice what its neighbours, colliders and grips move in that time. Strain: strain of "
+                  "the structural "
                   "edges. Time: median over the timed frames.",
                   runs_of(all, &ContactRow::run), {bounds.begin(), bounds.end()}),
               {}},

@@ -45,30 +45,38 @@ std::vector<double> speeds_of(const Scene& scene, bool with_recorded) {
   return most;
 }
 
+std::vector<double> grip_speeds(const Scene& scene) {
+  std::vector<double> most(scene.motion.size(), 0);
+  for (std::size_t f = 1; f < scene.motion.size(); ++f) {
+    const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
+    for (std::size_t g = 0; g < scene.motion[f].grip_position_m.size(); ++g) {
+      const Vec3 &a = scene.motion[f - 1].grip_position_m[g], &b = scene.motion[f].grip_position_m[g];
+      if (scene.motion[f].grip_held[g] != 0)
+        most[f] = std::max(most[f], std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / dt);
+    }
+  }
+  return most;
+}
+
 double greatest(const std::vector<double>& speeds) {
   return speeds.empty() ? 0 : *std::max_element(speeds.begin(), speeds.end());
 }
 
 }  // namespace
 
-std::vector<double> collider_speeds_m_per_s(const Scene& scene) { return speeds_of(scene, true); }
+std::vector<double> driving_speeds_m_per_s(const Scene& scene) {
+  std::vector<double> most = speeds_of(scene, true);
+  const std::vector<double> held = grip_speeds(scene);
+  std::transform(most.begin(), most.end(), held.begin(), most.begin(),
+                 [](double a, double b) { return std::max(a, b); });
+  return most;
+}
 
 double collider_speed_m_per_s(const Scene& scene) { return greatest(speeds_of(scene, true)); }
 
 double scripted_collider_speed_m_per_s(const Scene& scene) { return greatest(speeds_of(scene, false)); }
 
-double grip_speed_m_per_s(const Scene& scene) {
-  double most = 0;
-  for (std::size_t f = 1; f < scene.motion.size(); ++f) {
-    const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
-    for (std::size_t g = 0; g < scene.motion[f].grip_position_m.size(); ++g) {
-      const Vec3 &a = scene.motion[f - 1].grip_position_m[g], &b = scene.motion[f].grip_position_m[g];
-      if (scene.motion[f].grip_held[g] != 0)
-        most = std::max(most, std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / dt);
-    }
-  }
-  return most;
-}
+double grip_speed_m_per_s(const Scene& scene) { return greatest(grip_speeds(scene)); }
 
 double grip_strain(const Scene& scene) {
   if (scene.motion.empty()) return 0;

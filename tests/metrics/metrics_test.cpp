@@ -140,8 +140,7 @@ TEST_F(Metrics, ASceneOnlyGetsWhatAppliesToIt) {
 }
 
 TEST(MetricVersions, AreOneUnlessARuleHasChanged) {
-  const std::set<std::string> kSecond = {"tunnelled_fraction", "tunnelled_depth_m", "touching_fraction", "depth_m",
-                                         "speed_max"},
+  const std::set<std::string> kSecond = {"tunnelled_fraction", "tunnelled_depth_m", "touching_fraction", "depth_m"},
                               kThird = {"contact_length_m",   "contact_pairs",      "contact_cloth_fraction",
                                         "depth_p99_m",        "depth_mean_m",       "penetrating_area_m2",
                                         "wrong_side_samples", "wrong_side_fraction"};
@@ -180,8 +179,6 @@ TEST(MetricVersions, EveryScalarKnowsTheMetricsBehindIt) {
                            "self_contact_pairs_end",
                            "self_contact_length_settled_m",
                            "contact_length_mean_m",
-                           "pop_displacement_m",
-                           "pop_speed_ratio",
                            "slip_m",
                            "slip_settled_m",
                            "fold_roughness_end",

@@ -54,6 +54,14 @@ Path waves(double height_m, double drop_m_per_frame = 0) {
   };
 }
 
+/// The same, but for one vertex or another that jumps aside in every fourth frame.
+Path jumping(const Path& rest) {
+  return [=](int frame, std::vector<double>& x) {
+    rest(frame, x);
+    if (frame % 4 == 0) x[3 * static_cast<std::size_t>(5 * frame) % x.size()] += 0.3;
+  };
+}
+
 /// Rolled up so that it goes through itself, a little further every frame.
 Path rolled() {
   return [](int frame, std::vector<double>& x) {
@@ -88,10 +96,10 @@ std::vector<Sample> samples() {
       {"contact/sphere", {small, "time.duration_s=0.8"}, soft},
       {"contact/open-sheet", {small, "time.duration_s=0.6"}, soft},
       {"contact/sphere", {small, "time.duration_s=0.7", sphere_on_plane}, prescribed(waves(0.02, 0.02))},
-      {"contact/open-sheet", {small, "time.duration_s=0.7"}, prescribed(waves(0.03, 0.021))},
-      {"paper/capsule-sweep", {small, "time.duration_s=0.8", capsule}, prescribed(waves(0.03))},
+      {"contact/open-sheet", {small, "time.duration_s=0.7"}, prescribed(jumping(waves(0.03, 0.021)))},
+      {"paper/capsule-sweep", {small, "time.duration_s=0.8", capsule}, prescribed(jumping(waves(0.03)))},
       {"paper/capsule-sweep", {small, "time.duration_s=1.45", "time.frame_rate_hz=18"}, prescribed(waves(0.01))},
-      {"paper/two-hand-stretch-2mps", {"cloth.grid=[9,9]", "time.duration_s=3"}, prescribed(waves(0.01))},
+      {"paper/two-hand-stretch-2mps", {"cloth.grid=[9,9]", "time.duration_s=3"}, prescribed(jumping(waves(0.01)))},
       {"paper/hand-push", {"cloth.grid=[9,9]", "time.duration_s=2.4", "time.frame_rate_hz=8"}, prescribed(waves(0.01))},
       {"paper/desk-flat-low", {small, "time.duration_s=0.5"}, prescribed(waves(0.01, 0.03))},
       {"contact/self-fold", {"cloth.grid=[12,12]", few}, prescribed(rolled())}};

@@ -12,8 +12,9 @@ double collider_speed_m_per_s(const Scene&);
 /// The same without the hands of users, whose speed a live session does not know beforehand.
 double scripted_collider_speed_m_per_s(const Scene&);
 
-/// The same for each frame: the speed since the frame before, one value per `scene.motion`. The first is 0.
-std::vector<double> collider_speeds_m_per_s(const Scene&);
+/// Greatest speed [m/s] of colliders and of vertices while they are held, since the frame before, one value per
+/// `scene.motion`. The first is 0.
+std::vector<double> driving_speeds_m_per_s(const Scene&);
 
 /// Greatest frame-to-frame speed [m/s] of the gripped vertices while they are held.
 double grip_speed_m_per_s(const Scene&);

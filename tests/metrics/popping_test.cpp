@@ -1,0 +1,217 @@
+// Popping of motions that are known: a vertex snapped, a spring released, cloth swept, dropped, cracked like a whip.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "metrics/registry.hpp"
+#include "scenario/load.hpp"
+#include "scenario/strict_contact.hpp"
+
+namespace clothbench {
+namespace {
+
+/// Displacement [m] of vertex `v` of a grid of 9 by 9 at a time [s].
+using Motion = std::function<Vec3(std::size_t v, double time_s)>;
+
+constexpr std::size_t kMiddle = 40, kCorner = 80;
+constexpr double kStart_s = 0.25;  ///< a whole frame at 36, 60, 72 and 144 Hz
+
+const std::string kLevelSheet = "contact/plane";
+const std::string kFarBelow = R"(colliders=[{"type":"plane","point_m":[0,-9,0]}])";
+
+Scene scene_of(double rate_hz, const std::string& colliders = kFarBelow) {
+  return load_scene(kLevelSheet, {"cloth.grid=[9,9]", "time.duration_s=0.75",
+                                  fmt::format("time.frame_rate_hz={}", rate_hz), colliders});
+}
+
+AccuracyPass moved(const Scene& scene, const Motion& motion) {
+  AccuracyPass pass;
+  const std::vector<double> start = initial_positions(scene);
+  for (int f = 0; f <= scene.time.frames(); ++f) {
+    pass.time_s.push_back(scene.time.at(f));
+    for (std::size_t v = 0; v < start.size() / 3; ++v) {
+      const Vec3 by = motion(v, scene.time.at(f));
+      for (std::size_t k = 0; k < 3; ++k) pass.position.push_back(static_cast<float>(start[3 * v + k] + by[k]));
+    }
+  }
+  return pass;
+}
+
+double pop_of(const Scene& scene, const AccuracyPass& pass) {
+  return scalars_of({scene, pass}, "pop_").at("pop_max_m");
+}
+double pop_of(const Scene& scene, const Motion& motion) { return pop_of(scene, moved(scene, motion)); }
+
+double bound_m() {
+  for (const StrictBound& b : strict_contact())
+    if (std::string(b.scalar) == "pop_max_m") return b.at_most;
+  return kMissing;
+}
+
+/// 0 until the start, then evenly up to 1.
+double ramp(double time_s, double lasts_s) { return std::clamp((time_s - kStart_s) / lasts_s, 0.0, 1.0); }
+
+Motion snapped(double by_m, double in_s, const std::vector<std::size_t>& vertices = {kMiddle}) {
+  return [=](std::size_t v, double t) {
+    return Vec3{0, std::ranges::count(vertices, v) > 0 ? by_m * ramp(t, in_s) : 0, 0};
+  };
+}
+
+constexpr double kRounding_m = 1e-6;  // of positions in float32
+
+TEST(Popping, OfASnapIsItsWayAndLessTheLongerItTakes) {
+  const Scene scene = scene_of(72);
+  const std::vector<std::size_t> patch = {30, 31, 32, 39, 40, 41, 48, 49, 50};
+  for (const double way_m : {0.01, 0.03, 0.1}) {
+    for (const auto& [frames, share] : {std::pair{1, 1.0}, {2, 1.0}, {3, 1.0 / 3}, {10, 0.0}})
+      for (const auto& vertices : {std::vector{kMiddle}, {kCorner}, patch})
+        EXPECT_NEAR(pop_of(scene, snapped(way_m, frames / 72.0, vertices)), share * way_m, kRounding_m)
+            << way_m << " m in " << frames << " frames";
+    double before = way_m;
+    for (int frames = 1; frames <= 10; ++frames) {
+      const double now = pop_of(scene, snapped(way_m, frames / 72.0));
+      EXPECT_LE(now, before + kRounding_m) << frames;
+      before = now;
+    }
+  }
+  const auto fails = [&](double way_m, int frames) {
+    return !(pop_of(scene, snapped(way_m, frames / 72.0)) <= bound_m());
+  };
+  EXPECT_TRUE(fails(0.03, 1) && fails(0.1, 1) && fails(0.1, 3) && fails(0.012, 1));
+  EXPECT_FALSE(fails(0.009, 1) || fails(0.01, 3) || fails(0.01, 10) || fails(0.03, 10) || fails(0.1, 10));
+}
+
+TEST(Popping, OfAReleasedSpringFollowsFromItsSpeed) {
+  const Scene scene = scene_of(72);
+  constexpr double kStretched_m = 0.05, kWindow_s = 1.0 / 36;
+  for (const double speed : {10.0, 5.0, 2.5, 1.5, 0.5}) {
+    const double time_s = kStretched_m / speed, left = std::exp(-kWindow_s / time_s);
+    const Motion springs_back = [&](std::size_t v, double t) {
+      return Vec3{v == kCorner ? kStretched_m * std::exp(-std::max(0.0, t - kStart_s) / time_s) : 0, 0, 0};
+    };
+    EXPECT_NEAR(pop_of(scene, springs_back), std::max(0.0, kStretched_m * (1 - left) * (1 - 2 * left)), kRounding_m)
+        << speed << " m/s";
+  }
+}
+
+TEST(Popping, IsNoneWhereAHandOrAGripTakesTheClothAlong) {
+  const auto swept = [](std::size_t v, double t) {  // 13 m/s from rest and to rest, wherever the hand has been
+    return Vec3{v % 9 > 2 ? 0.3 * ramp(t, 0.3 / 13) : 0, 0, 0};
+  };
+  const std::string hand =
+      R"(colliders=[{"type":"capsule","center_m":[0,1,0],"radius_m":0.1,"length_m":0.4,"axis":[0,0,1],"velocity_m_per_s":[13,0,0],"start_s":0.25,"stop_s":0.2730769}])";
+  EXPECT_EQ(pop_of(scene_of(72, hand), swept), 0);
+  EXPECT_NEAR(pop_of(scene_of(72), swept), 0.3, kRounding_m) << "nothing moves it";
+  const Scene gripped =
+      load_scene(kLevelSheet, {"cloth.grid=[9,9]", "time.duration_s=0.75", "time.frame_rate_hz=72",
+                               R"(grips=[{"edge":"u1","velocity_m_per_s":[13,0,0],"stop_s":0.023}])"});
+  const auto pulled = [](std::size_t v, double t) { return Vec3{v % 9 > 2 ? std::min(13 * t, 0.3) : 0, 0, 0}; };
+  EXPECT_NEAR(pop_of(gripped, pulled), 0, kRounding_m);
+  EXPECT_GT(pop_of(scene_of(72), pulled), 10 * bound_m());
+}
+
+TEST(Popping, IsNoneInAFallAndWhereASheetStopsOnAPlane) {
+  for (const double rate : {36.0, 60.0, 72.0, 144.0}) {
+    const Scene scene = scene_of(rate);
+    const auto fallen = [](double t) { return -5 * t - 9.81 / 2 * t * t; };
+    EXPECT_NEAR(pop_of(scene, [&](std::size_t, double t) { return Vec3{0, fallen(t), 0}; }), 0, kRounding_m) << rate;
+    EXPECT_NEAR(pop_of(scene,
+                       [&](std::size_t, double t) {
+                         return Vec3{0, std::max(fallen(t), -0.9), 0};
+                       }),
+                0, kRounding_m)
+        << rate;
+  }
+}
+
+/// A wave runs along the sheet to its free edge, which it moves at twice its speed and beyond. That is no popping. The
+/// same motion of the edge alone is.
+TEST(Popping, OfAWhipIsWhatItsWaveDoesNotExplain) {
+  const Scene scene = scene_of(72);
+  const auto cracked = [](double from_column, double doubled) -> Motion {
+    return [=](std::size_t v, double t) {
+      const double column = static_cast<double>(v % 9), speed_m_per_s = 4, gap_s = 0.014;
+      const double since = t - kStart_s - gap_s * column;
+      const double by = speed_m_per_s * std::clamp(since, 0.0, 1.0 / 36);
+      return Vec3{0, column < from_column ? 0 : column == 8 ? doubled * by : by, 0};
+    };
+  };
+  EXPECT_NEAR(pop_of(scene, cracked(0, 2)), 0, kRounding_m);
+  EXPECT_GT(pop_of(scene, cracked(0, 4)), 2 * bound_m());
+  EXPECT_GT(pop_of(scene, cracked(8, 2)), 10 * bound_m());
+}
+
+TEST(Popping, ThereAndBackIsSeen) {
+  for (const double rate : {36.0, 72.0})
+    EXPECT_NEAR(pop_of(scene_of(rate),
+                       [](std::size_t v, double t) {
+                         return Vec3{0, 0, v == kMiddle && std::abs(t - kStart_s) < 1e-6 ? 0.05 : 0};
+                       }),
+                0.05, kRounding_m);
+}
+
+TEST(Popping, IsTheSameAtEveryFrameRate) {
+  for (const double rate : {36.0, 72.0, 144.0, 288.0})
+    EXPECT_NEAR(pop_of(scene_of(rate), snapped(0.05, 1.0 / 36)), 0.05, kRounding_m) << rate;
+  for (const double rate : {8.0, 24.0, 28.0, 60.0, 72.0, 144.0, 960.0})
+    EXPECT_NEAR(pop_of(scene_of(rate), snapped(0.05, 1 / rate)), 0.05, kRounding_m) << rate;
+  // Frames that do not divide the snap see a part of it at the least.
+  for (const double rate : {60.0, 90.0, 120.0}) {
+    EXPECT_GT(pop_of(scene_of(rate), snapped(0.05, 1.0 / 36)), 0.5 * 0.05) << rate;
+    EXPECT_NEAR(pop_of(scene_of(rate), snapped(0.05, 0.2)), 0, kRounding_m) << rate;
+    EXPECT_NEAR(pop_of(scene_of(rate),
+                       [](std::size_t, double t) {
+                         return Vec3{0, 0, 0.3 * std::sin(2 * std::numbers::pi * t)};
+                       }),
+                0, kRounding_m)
+        << rate;
+  }
+}
+
+/// Frames that are added take nothing away, and the last frame decides over what happens in the last 1/12 s alone.
+TEST(Popping, HangsOnNoLastFrame) {
+  const Scene scene = scene_of(72);
+  const AccuracyPass whole = moved(scene, [](std::size_t v, double t) {
+    const auto vertex = static_cast<double>(v);
+    return Vec3{0.02 * std::sin(31 * t + vertex), v == kMiddle ? 0.06 * ramp(t, 1.0 / 72) : 0,
+                0.03 * std::cos(17 * t * vertex)};
+  });
+  const std::size_t numbers = 3 * scene.cloth.vertex_count();
+  double before = 0;
+  std::vector<double> values;
+  for (std::size_t frames = 1; frames <= whole.time_s.size(); ++frames) {
+    AccuracyPass prefix = whole;
+    prefix.time_s.resize(frames);
+    prefix.position.resize(frames * numbers);
+    values.push_back(pop_of(scene, prefix));
+    EXPECT_GE(values.back(), before) << frames;
+    before = values.back();
+  }
+  EXPECT_EQ(values.front(), 0) << "one frame shows no motion, but the value is there";
+  // A snap alone, from frame 18 to 19: seen as soon as the window after it is whole, and in every longer prefix.
+  const AccuracyPass snap = moved(scene, snapped(0.06, 1.0 / 72));
+  for (std::size_t frames = 1; frames <= snap.time_s.size(); ++frames) {
+    AccuracyPass prefix = snap;
+    prefix.time_s.resize(frames);
+    prefix.position.resize(frames * numbers);
+    EXPECT_NEAR(pop_of(scene, prefix), frames > 21 ? 0.06 : 0, kRounding_m) << frames;
+  }
+}
+
+TEST(Popping, OfAPositionThatIsNoNumberIsNotKnown) {
+  for (const double rate : {50.0, 72.0}) {
+    const Scene scene = scene_of(rate);
+    for (const double at : {0.0, 0.5, 1.0}) {
+      AccuracyPass pass = moved(scene, snapped(0, 1));
+      pass.position[static_cast<std::size_t>(at * static_cast<double>(pass.position.size() - 1))] = std::nanf("");
+      EXPECT_TRUE(std::isnan(pop_of(scene, pass))) << at;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clothbench
