@@ -78,7 +78,7 @@ std::string unknown_key(const json& value, const json& schema, const json& root,
       } else if (s.value("additionalProperties", json(true)) == json(false)) {
         std::vector<std::string> names;
         for (const auto& [name, unused] : known.items()) names.push_back(name);
-        return fmt::format("{}/{}: unknown key{}", pointer, key, nearest_known(key, names));
+        return fmt::format("{}/{}: unknown key{}", pointer, shortened(key, 40), nearest_known(key, names));
       }
     }
   }
@@ -121,10 +121,8 @@ void validate_json(const nlohmann::json& value, const std::string& schema_text, 
   const std::string where = base + pointer;
   if (const std::string key = missing_key(found, sub); !key.empty())
     throw Error(fmt::format("{}: {}: \"{}\" is missing", source, where.empty() ? "/" : where, key));
-  std::string shown = found.dump();
-  if (shown.size() > 60) shown = shown.substr(0, 60) + "…";
-  throw Error(
-      fmt::format("{}: {}: expected {}; found {}", source, where.empty() ? "/" : where, expectation(sub), shown));
+  throw Error(fmt::format("{}: {}: expected {}; found {}", source, where.empty() ? "/" : where, expectation(sub),
+                          shortened(found.dump(-1, ' ', false, json::error_handler_t::replace), 60)));
 }
 
 }  // namespace clothbench

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench {
@@ -15,12 +16,23 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kDeepest = 64;
+constexpr std::size_t kShown = 120;  // bytes of the input, or of a library's words about it, in a message
 
 std::string at(const std::string& text, std::size_t byte) {
   byte = std::min(byte, text.size());
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(byte), '\n');
   const std::size_t newline = byte == 0 ? std::string::npos : text.rfind('\n', byte - 1);
   return fmt::format("line {}, column {}", line, newline == std::string::npos ? byte : byte - newline - 1);
+}
+
+/// "…: syntax error while parsing value - invalid literal; last read: '<text>'; expected …": the end, without the text.
+std::string without_text(const std::string& what) {
+  const std::size_t place = what.find("column"), colon = what.find(": ", place), read = what.find("; last read: ");
+  if (colon == std::string::npos) return shortened(what, kShown);
+  const std::size_t expected = what.rfind("; expected ");
+  return shortened(what.substr(colon + 2, read - (read == std::string::npos ? 0 : colon + 2)) +
+                       (read < expected && expected != std::string::npos ? what.substr(expected) : std::string()),
+                   kShown);
 }
 
 /// Rejects what nlohmann's own parser lets pass: repeated keys and bottomless nesting; builds nothing.
@@ -50,17 +62,13 @@ class Strict : public nlohmann::json_sax<json> {
     path_.back() = k;
     if (keys_.back().insert(k).second) return true;
     std::string pointer;
-    for (const std::string& p : path_) pointer += "/" + p;
+    for (const std::string& p : path_) pointer += "/" + shortened(p, kShown);
     throw Error(source_ + ": " + pointer + ": this key occurs twice; expected it once");
   }
   bool parse_error(std::size_t byte, const std::string&, const nlohmann::detail::exception& e) override {
-    const std::string what = e.what();
-    const auto colon = what.find(": ", what.find("column"));
-    const bool range = e.id == 406;
+    constexpr int kOutOfRange = 406;
     throw Error(fmt::format("{}: {}: not valid JSON: {}", source_, at(text_, byte),
-                            range                        ? "a number beyond double range"
-                            : colon == std::string::npos ? what
-                                                         : what.substr(colon + 2)));
+                            e.id == kOutOfRange ? "a number beyond double range" : without_text(e.what())));
   }
 
  private:

@@ -25,6 +25,24 @@ std::size_t distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
+std::string shortened(const std::string& text, std::size_t most) {
+  std::size_t end = std::min(most, text.size());
+  // Not in the middle of a character of UTF-8.
+  while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  std::string out = text.substr(0, end);
+  std::replace_if(
+      out.begin(), out.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }, '?');
+  return end < text.size() ? out + "…" : out;
+}
+
+std::string in_quotes(const std::string& word) { return "\"" + shortened(word, 40) + "\""; }
+
+std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
 std::string nearest(const std::string& word, const std::vector<std::string>& known) {
   std::string best;
   std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;

@@ -7,6 +7,7 @@
 
 #include "clothbench/error.hpp"
 #include "results/raw_file.hpp"
+#include "results/result_folder.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -89,6 +90,7 @@ void refuse_finished_run(const fs::path& folder, const std::string& run) {
 
 void require_same_runs(const fs::path& folder, const std::vector<PlannedRun>& runs, bool resume) {
   for (const PlannedRun& run : runs) {
+    require_short_name(folder, run.name);
     if (!resume && run_finished(folder, run.name)) refuse_finished_run(folder, run.name);
     require_same_run(folder, run);
   }

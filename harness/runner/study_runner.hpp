@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "results/store.hpp"
+#include "runner/solver_ends.hpp"
 #include "runner/solver_run.hpp"
 
 namespace clothbench {
@@ -42,7 +43,9 @@ struct RunResult {
   int expect_passed = 0;                   ///< runs that meet their scene's expectations
   std::vector<std::string> expect_failed;  ///< those that do not, and how; a result, not a fault
   int validation_messages = 0;
-  std::vector<std::string> faults;  ///< runs that broke a rule of the harness (stages, validation): the run fails
+  /// Runs that broke a rule of the harness (stages, counts, validation) and solvers that finished no run: exit code 1.
+  std::vector<std::string> faults;
+  SolverEnds ends;  ///< of all runs of the plan
 };
 
 /// Call before anything is written into a study's folder. Throws Error naming the file if a stored run of the plan,
