@@ -25,16 +25,6 @@ std::string at(const std::string& text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, newline == std::string::npos ? byte : byte - newline - 1);
 }
 
-/// "…: syntax error while parsing value - invalid literal; last read: '<text>'; expected …": the end, without the text.
-std::string without_text(const std::string& what) {
-  const std::size_t place = what.find("column"), colon = what.find(": ", place), read = what.find("; last read: ");
-  if (colon == std::string::npos) return shortened(what, kShown);
-  const std::size_t expected = what.rfind("; expected ");
-  return shortened(what.substr(colon + 2, read - (read == std::string::npos ? 0 : colon + 2)) +
-                       (read < expected && expected != std::string::npos ? what.substr(expected) : std::string()),
-                   kShown);
-}
-
 /// Rejects what nlohmann's own parser lets pass: repeated keys and bottomless nesting; builds nothing.
 class Strict : public nlohmann::json_sax<json> {
  public:
@@ -68,7 +58,7 @@ class Strict : public nlohmann::json_sax<json> {
   bool parse_error(std::size_t byte, const std::string&, const nlohmann::detail::exception& e) override {
     constexpr int kOutOfRange = 406;
     throw Error(fmt::format("{}: {}: not valid JSON: {}", source_, at(text_, byte),
-                            e.id == kOutOfRange ? "a number beyond double range" : without_text(e.what())));
+                            e.id == kOutOfRange ? "a number beyond double range" : what_without_text(e)));
   }
 
  private:
@@ -110,6 +100,17 @@ void fill(json& value, const json& schema, const json& root) {
 }
 
 }  // namespace
+
+// Of a syntax error the library says where, what, "last read:" with the text, and perhaps what it expected.
+std::string what_without_text(const std::exception& e) {
+  const std::string what = e.what();
+  const std::size_t place = what.find("column"), colon = what.find(": ", place), read = what.find("; last read: ");
+  if (colon == std::string::npos) return shortened(what, kShown);
+  const std::size_t expected = what.rfind("; expected ");
+  return shortened(what.substr(colon + 2, read - (read == std::string::npos ? 0 : colon + 2)) +
+                       (read < expected && expected != std::string::npos ? what.substr(expected) : std::string()),
+                   kShown);
+}
 
 const json& sub_schema(const json& schema, const json& root) {
   if (!schema.contains("$ref")) return schema;

@@ -176,7 +176,8 @@ void check_assumed(const json& scenario, const std::string& source) {
     } catch (const json::exception&) {
     }
     if (!found)
-      refuse(source, fmt::format("/assumed/{}", k), in_quotes(entry) + ": expected the pointer of a value of this scene");
+      refuse(source, fmt::format("/assumed/{}", k),
+             in_quotes(entry) + ": expected the pointer of a value of this scene");
   }
 }
 

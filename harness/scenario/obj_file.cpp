@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
@@ -48,12 +49,16 @@ void check_numbers(const Words& words, std::size_t least, std::size_t most, cons
 
 /// Corners are 1, 1/2, 1//3 or 1/2/3. The library would read the start of any other word, or overflow.
 void check_corners(const Words& words, const std::string& source, std::uint32_t line) {
-  constexpr std::size_t kLongest = 3 * 10 + 2;
+  constexpr std::size_t kMostDigits = 9;
   if (words.size() < 4) refuse_line(source, line, "expected at least three corners of a face");
   for (std::size_t k = 1; k < words.size(); ++k) {
-    std::size_t digits = 0, longest = 0;
-    for (const char c : words[k]) longest = std::max(longest, digits = c == '/' ? 0 : digits + 1);
-    if (words[k].find_first_not_of("-0123456789/") != std::string::npos || words[k].size() > kLongest || longest > 9)
+    bool good = std::count(words[k].begin(), words[k].end(), '/') <= 2;
+    std::size_t length = 0;
+    for (const char c : words[k]) {
+      good = good && (c == '/' || (c == '-' && length == 0) || (c >= '0' && c <= '9' && length < kMostDigits));
+      length = c == '/' ? 0 : length + 1;
+    }
+    if (!good)
       refuse_line(source, line,
                   fmt::format("{}: expected the numbers of a vertex, as in 1, 1/2 or 1/2/3", in_quotes(words[k])));
   }

@@ -323,8 +323,8 @@ class Builder {
       for (std::size_t k = 0; k < words.size(); ++k) {
         const auto word = words[k].get<std::string>();
         if (contains(known, word)) continue;
-        throw Error(
-            fmt::format("{}: {}/{}: {} names none{}", source_, pointer, k, in_quotes(word), nearest_known(word, known)));
+        throw Error(fmt::format("{}: {}/{}: {} names none{}", source_, pointer, k, in_quotes(word),
+                                nearest_known(word, known)));
       }
     };
     const Words labels(labels_.begin(), labels_.end());
