@@ -89,6 +89,16 @@ std::string unknown_key(const json& value, const json& schema, const json& root,
   return "";
 }
 
+/// The validator matches patterns by recursion, a step per character: a long string would overflow the stack.
+void refuse_long_strings(const json& value, const std::string& source, const std::string& pointer) {
+  constexpr std::size_t kMost = 4096;
+  if (value.is_string() && value.get_ref<const std::string&>().size() > kMost)
+    throw Error(fmt::format("{}: {}: a string of {} bytes; expected at most {}", source, pointer,
+                            value.get_ref<const std::string&>().size(), kMost));
+  if (value.is_structured())
+    for (const auto& [key, item] : value.items()) refuse_long_strings(item, source, pointer + "/" + shortened(key, 40));
+}
+
 std::string missing_key(const json& value, const json& schema) {
   if (!value.is_object() || !schema.is_object() || !schema.contains("required")) return "";
   for (const auto& key : schema["required"])
@@ -103,6 +113,7 @@ void validate_json(const nlohmann::json& value, const std::string& schema_text, 
   const json schema_json = json::parse(schema_text);
   if (const std::string fault = unknown_key(value, schema_json, schema_json, base); !fault.empty())
     throw Error(source + ": " + fault);
+  refuse_long_strings(value, source, base);
 
   valijson::Schema schema;
   valijson::SchemaParser parser;

@@ -46,11 +46,14 @@ std::string lower_case(std::string text) {
 std::string nearest(const std::string& word, const std::vector<std::string>& known) {
   std::string best;
   std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
-  for (const std::string& k : known)
+  for (const std::string& k : known) {
+    // A word is no nearer than its length says, and one of the input may be long.
+    if (std::max(word.size(), k.size()) - std::min(word.size(), k.size()) >= least) continue;
     if (const std::size_t d = distance(word, k); d < least) {
       least = d;
       best = k;
     }
+  }
   return best;
 }
 

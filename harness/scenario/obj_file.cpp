@@ -97,7 +97,7 @@ Statements statements_of(std::string_view text, const std::string& source) {
     } else if (words[0] != "g" && words[0] != "o") {
       continue;
     }
-    out.text += fmt::format("{}\n", fmt::join(words, " "));
+    out.text += fmt::format("{}{}\n", fmt::join(words, " "), words.size() == 1 ? " " : "");  // as the library needs it
   }
   return out;
 }

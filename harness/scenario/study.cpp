@@ -188,8 +188,10 @@ class Builder {
   std::filesystem::path scene_path(std::size_t k) const {
     const std::string name = j_["scenes"][k]["file"].get<std::string>();
     std::filesystem::path path = name;
-    if (path.is_relative() && std::filesystem::exists(file_.parent_path() / path)) path = file_.parent_path() / path;
-    if (!std::filesystem::exists(path))
+    std::error_code ec;
+    if (path.is_relative() && std::filesystem::exists(file_.parent_path() / path, ec))
+      path = file_.parent_path() / path;
+    if (!std::filesystem::exists(path, ec))
       throw Error(fmt::format("{}: /scenes/{}/file: {}: no such file", source_, k, in_quotes(name)));
     return path;
   }

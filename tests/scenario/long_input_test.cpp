@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kLong = 100000, kMostOfAMessage = 700;
+constexpr std::size_t kLong = 30000, kMostOfAMessage = 700;
 
 const std::string kText(kLong, 'Q');
 
@@ -163,6 +163,9 @@ TEST(LongInput, ANameFitsIntoTheNamesOfFiles) {
   j["name"] = std::string(101, 'a');
   EXPECT_EQ(refusal([&] { scene_from_json(j, "s.json"); }).find("s.json: /name: 101 characters; expected at most 100"),
             0u);
+  j["name"] = std::string(1000000, 'a');
+  EXPECT_EQ(refusal([&] { scene_from_json(j, "s.json"); }),
+            "s.json: /name: a string of 1000000 bytes; expected at most 4096");
 }
 
 TEST(ManyRuns, AreRefusedBeforeAnyIsMade) {
