@@ -153,7 +153,8 @@ std::vector<Eigen::Affine3d> world_transforms(const tinygltf::Model& model, cons
 tinygltf::Model parse_binary(const std::uint8_t* bytes, std::size_t size, const std::string& source) {
   constexpr std::uint32_t kVersion = 2;
   if (size >= 12 && item_at<std::uint32_t>(bytes + 4) != kVersion)
-    fail(source, fmt::format("binary glTF of version {}; expected {}", item_at<std::uint32_t>(bytes + 4), kVersion));
+    fail(source, fmt::format("not a binary glTF file of version {}: its version is {}", kVersion,
+                             item_at<std::uint32_t>(bytes + 4)));
   return loaded(source, "binary glTF file (cut off?)", [&](auto& loader, auto& model, auto& error, auto& warning) {
     if (size >= 12 && size <= kMostBytes)
       return loader.LoadBinaryFromMemory(&model, &error, &warning, bytes, static_cast<unsigned>(size), "");

@@ -254,7 +254,8 @@ TEST(MeshInput, WhatAGltfNeedsIsRefusedByName) {
   EXPECT_NE(why("/asset", json::object()), "");
   std::string old = binary(square_gltf());
   old[4] = 1;
-  EXPECT_EQ(refusal([&] { assets::parse_gltf(old, "m.glb"); }), "m.glb: binary glTF of version 1; expected 2");
+  EXPECT_EQ(refusal([&] { assets::parse_gltf(old, "m.glb"); }),
+            "m.glb: not a binary glTF file of version 2: its version is 1");
 }
 
 TEST(MeshInput, NamesOfFilesMayEndInCapitals) {
