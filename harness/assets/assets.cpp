@@ -108,10 +108,10 @@ ProceduralAssets::~ProceduralAssets() {
 }
 
 Room open_room(const AssetSource& source, const std::string& name) {
-  if (name.ends_with(".json")) return load_room(name);
+  if (lower_case(name).ends_with(".json")) return load_room(name);
   if (!contains(kRoomNames, name))
-    throw Error(fmt::format("room \"{}\": expected a .json capture or one of {}{}", name, fmt::join(kRoomNames, ", "),
-                            nearest_known(name, {kRoomNames.begin(), kRoomNames.end()})));
+    throw Error(fmt::format("room {}: expected a .json capture or one of {}{}", in_quotes(name),
+                            fmt::join(kRoomNames, ", "), nearest_known(name, {kRoomNames.begin(), kRoomNames.end()})));
   return source.npm ? load_room(room_file(source.root, name)) : procedural_room();
 }
 

@@ -6,6 +6,7 @@
 
 #include "assets/gltf_file.hpp"
 #include "assets/hand.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench::assets {
@@ -40,7 +41,8 @@ std::vector<std::uint8_t> read_skin(const tinygltf::Model& model, SkinnedMesh& h
   for (std::size_t j = 0; j < skin.joints.size(); ++j) {
     const auto& node = pick(model.nodes, skin.joints[j], source, "nodes");
     const int known = joint_index(node.name);
-    if (known < 0) fail(source, fmt::format("/skins/0/joints/{}: \"{}\" is not a WebXR hand joint", j, node.name));
+    if (known < 0)
+      fail(source, fmt::format("/skins/0/joints/{}: {} is not a WebXR hand joint", j, in_quotes(node.name)));
     const auto slot = static_cast<std::size_t>(known);
     const Eigen::Affine3d& bind = world[static_cast<std::size_t>(skin.joints[j])];
     hand.inverse_bind[slot].matrix() = Eigen::Map<const Eigen::Matrix4d>(inverse.data() + 16 * j);

@@ -11,6 +11,7 @@
 
 #include "assets/mesh.hpp"
 #include "base/json_text.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench::assets::gltf {
@@ -40,6 +41,27 @@ bool leave_image(tinygltf::Image*, int, std::string*, std::string*, int, int, co
   return true;
 }
 
+/// Extensions that change no position: a file may require them.
+bool is_appearance(const std::string& extension) {
+  static const std::vector<std::string> kNames = {"KHR_lights_punctual", "KHR_texture_basisu", "KHR_texture_transform",
+                                                  "EXT_texture_webp",    "EXT_texture_avif",   "KHR_xmp_json_ld"};
+  return extension.starts_with("KHR_materials_") || contains(kNames, extension);
+}
+
+/// glTF 2.0, sections 3.2 and 3.12: what a reader that is right must not ignore.
+void check_header(const tinygltf::Model& model, const std::string& source) {
+  const tinygltf::Asset& asset = model.asset;
+  if (!asset.minVersion.empty() && asset.minVersion != "2.0")
+    fail(source, fmt::format("/asset/minVersion: {}; expected a file that a reader of \"2.0\" can read",
+                             in_quotes(asset.minVersion)));
+  if (!asset.version.starts_with("2."))
+    fail(source, fmt::format("/asset/version: {}; expected \"2.0\"", in_quotes(asset.version)));
+  for (std::size_t k = 0; k < model.extensionsRequired.size(); ++k)
+    if (!is_appearance(model.extensionsRequired[k]))
+      fail(source, fmt::format("/extensionsRequired/{}: {} is not supported; expected a file that does not need it", k,
+                               in_quotes(model.extensionsRequired[k])));
+}
+
 template <class Load>
 tinygltf::Model loaded(const std::string& source, const char* kind, Load load) {
   tinygltf::TinyGLTF loader;
@@ -53,7 +75,9 @@ tinygltf::Model loaded(const std::string& source, const char* kind, Load load) {
     error = e.what();
   }
   while (!error.empty() && error.back() == '\n') error.pop_back();
-  if (!ok) fail(source, fmt::format("not a {}: {}", kind, error.empty() ? "unreadable" : error));
+  // The library's text may hold the file's.
+  if (!ok) fail(source, fmt::format("not a {}: {}", kind, error.empty() ? "unreadable" : shortened(error, 200)));
+  check_header(model, source);
   return model;
 }
 
@@ -127,6 +151,10 @@ std::vector<Eigen::Affine3d> world_transforms(const tinygltf::Model& model, cons
 }
 
 tinygltf::Model parse_binary(const std::uint8_t* bytes, std::size_t size, const std::string& source) {
+  constexpr std::uint32_t kVersion = 2;
+  if (size >= 12 && item_at<std::uint32_t>(bytes + 4) != kVersion)
+    fail(source, fmt::format("not a binary glTF file of version {}: its version is {}", kVersion,
+                             item_at<std::uint32_t>(bytes + 4)));
   return loaded(source, "binary glTF file (cut off?)", [&](auto& loader, auto& model, auto& error, auto& warning) {
     if (size >= 12 && size <= kMostBytes)
       return loader.LoadBinaryFromMemory(&model, &error, &warning, bytes, static_cast<unsigned>(size), "");

@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <limits>
+#include <map>
+#include <set>
 
 #include "assets/gltf_file.hpp"
 #include "assets/mesh_file.hpp"
@@ -17,28 +20,51 @@ class MeshReader {
 
   MeshFile read() {
     const std::vector<Eigen::Affine3d> world = gltf::world_transforms(model_, source_);
-    for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
+    for (const std::size_t n : active_nodes()) {
       const tinygltf::Node& node = model_.nodes[n];
       if (node.mesh < 0) continue;
       if (node.skin >= 0) fail(source_, fmt::format("/nodes/{}/skin: expected a mesh without a skin", n));
       const tinygltf::Mesh& mesh = gltf::pick(model_.meshes, node.mesh, source_, "meshes");
       for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
         const std::size_t first = out_.triangles.size();
-        primitive(mesh.primitives[p], world[n], fmt::format("/meshes/{}/primitives/{}", node.mesh, p));
+        primitive(mesh.primitives[p], world[n], node.weights.empty() ? mesh.weights : node.weights,
+                  fmt::format("/meshes/{}/primitives/{}", node.mesh, p));
         std::vector<std::string> names = {node.name, mesh.name};
         if (const int m = mesh.primitives[p].material; m >= 0)
           names.push_back(gltf::pick(model_.materials, m, source_, "materials").name);
         add_groups(names, first);
       }
     }
-    if (out_.triangles.empty()) fail(source_, "/nodes: expected a node with a mesh");
+    if (out_.triangles.empty()) fail(source_, "/nodes: expected a node with a mesh in the active scene");
     return std::move(out_);
   }
 
  private:
-  std::vector<double> attribute(const tinygltf::Primitive& p, const char* name, int type) const {
-    const auto found = p.attributes.find(name);
-    if (found == p.attributes.end()) return {};
+  /// Nodes of the active scene, which is the file's only one where none is named; all nodes of a file without scenes.
+  std::set<std::size_t> active_nodes() const {
+    const auto count = static_cast<int>(model_.scenes.size());
+    if (model_.defaultScene < 0 && count > 1)
+      fail(source_, fmt::format("/scene: missing; expected the index of the one of its {} scenes to read", count));
+    std::vector<int> todo;
+    if (count > 0)
+      todo = gltf::pick(model_.scenes, std::max(model_.defaultScene, 0), source_, "scenes").nodes;
+    else
+      for (std::size_t n = 0; n < model_.nodes.size(); ++n) todo.push_back(static_cast<int>(n));
+    std::set<std::size_t> out;
+    while (!todo.empty()) {
+      const int n = todo.back();
+      todo.pop_back();
+      const tinygltf::Node& node = gltf::pick(model_.nodes, n, source_, "nodes");
+      if (out.insert(static_cast<std::size_t>(n)).second)
+        todo.insert(todo.end(), node.children.begin(), node.children.end());
+    }
+    return out;
+  }
+
+  using Attributes = std::map<std::string, int>;
+  std::vector<double> attribute(const Attributes& of, const char* name, int type) const {
+    const auto found = of.find(name);
+    if (found == of.end()) return {};
     return gltf::numbers(model_, found->second, type, {TINYGLTF_COMPONENT_TYPE_FLOAT}, source_, kExpected);
   }
 
@@ -53,14 +79,32 @@ class MeshReader {
     return all;
   }
 
-  void primitive(const tinygltf::Primitive& p, const Eigen::Affine3d& place, const std::string& where) {
+  /// Positions with the displacements of morph targets added.
+  std::vector<double> positions(const tinygltf::Primitive& p, const std::vector<double>& weights,
+                                const std::string& where) const {
+    std::vector<double> x = attribute(p.attributes, "POSITION", TINYGLTF_TYPE_VEC3);
+    if (x.empty()) fail(source_, where + "/attributes: \"POSITION\" is missing");
+    if (!weights.empty() && weights.size() != p.targets.size())
+      fail(source_, fmt::format("{}/targets: {} morph targets, but {} weights; expected as many", where,
+                                p.targets.size(), weights.size()));
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      if (weights[k] == 0) continue;
+      const std::vector<double> d = attribute(p.targets[k], "POSITION", TINYGLTF_TYPE_VEC3);
+      if (!d.empty() && d.size() != x.size())
+        fail(source_, fmt::format("{}/targets/{}: expected as many displacements as positions", where, k));
+      for (std::size_t i = 0; i < d.size(); ++i) x[i] += weights[k] * d[i];
+    }
+    return x;
+  }
+
+  void primitive(const tinygltf::Primitive& p, const Eigen::Affine3d& place, const std::vector<double>& weights,
+                 const std::string& where) {
     if (p.mode != TINYGLTF_MODE_TRIANGLES) fail(source_, where + "/mode: expected triangles");
     for (const char* compressed : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"})
       if (p.extensions.count(compressed) != 0)
         fail(source_, fmt::format("{}: {}: expected a mesh that is not compressed", where, compressed));
-    const std::vector<double> x = attribute(p, "POSITION", TINYGLTF_TYPE_VEC3);
-    if (x.empty()) fail(source_, where + "/attributes: \"POSITION\" is missing");
-    const std::vector<double> texture = attribute(p, "TEXCOORD_0", TINYGLTF_TYPE_VEC2);
+    const std::vector<double> x = positions(p, weights, where);
+    const std::vector<double> texture = attribute(p.attributes, "TEXCOORD_0", TINYGLTF_TYPE_VEC2);
     const std::size_t count = x.size() / 3;
     if (!texture.empty() && texture.size() != 2 * count)
       fail(source_, where + "/attributes: expected as many texture coordinates as positions");

@@ -25,7 +25,7 @@ const HandPose& Hand::pose(const std::string& name) const {
   if (found != poses.end()) return found->second;
   std::vector<std::string> known;
   for (const auto& [n, unused] : poses) known.push_back(n);
-  throw Error("hand: no pose \"" + name + "\"" + nearest_known(name, known));
+  throw Error("hand: no pose " + in_quotes(name) + nearest_known(name, known));
 }
 
 }  // namespace clothbench::assets

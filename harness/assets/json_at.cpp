@@ -27,8 +27,7 @@ std::string escaped(const std::string& name) {
 }
 
 std::string what_is(const nlohmann::json& j) {
-  std::string dump = j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  return dump.size() <= 60 ? dump : std::string(j.type_name());
+  return shortened(j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), 60);
 }
 
 }  // namespace
@@ -99,14 +98,14 @@ void JsonAt::only(const std::vector<std::string>& known) const {
   if (!value_->is_object()) fail("expected an object, not " + what_is(*value_));
   for (const auto& [name, unused] : value_->items()) {
     if (contains(known, name)) continue;
-    fail(fmt::format("unknown key \"{}\"; known: {}{}", name, joined(known), nearest_known(name, known)));
+    fail(fmt::format("unknown key {}; known: {}{}", in_quotes(name), joined(known), nearest_known(name, known)));
   }
 }
 
 std::string JsonAt::word(const std::vector<std::string>& known) const {
   const std::string given = text();
   if (contains(known, given)) return given;
-  fail(fmt::format("\"{}\" is not one of {}{}", given, joined(known), nearest_known(given, known)));
+  fail(fmt::format("{} is not one of {}{}", in_quotes(given), joined(known), nearest_known(given, known)));
 }
 
 }  // namespace clothbench::assets

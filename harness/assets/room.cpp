@@ -139,7 +139,7 @@ Room parse_room(const std::string& text, const std::string& source, const std::s
   const nlohmann::json document = parse_json(text, source);
   const JsonAt root(document, source);
   const JsonAt type = root.key("type"), version = root.key("version");
-  if (type.text() != "scene") type.fail("expected \"scene\", not \"" + type.text() + "\"");
+  if (type.text() != "scene") type.fail("expected \"scene\", not " + in_quotes(type.text()));
   if (version.number() != 1) version.fail("version " + version.json().dump() + "; 1 is understood");
   Room room;
   room.name = name;
@@ -194,8 +194,8 @@ const Table& find_table(const Room& room, const std::string& prefix) {
     found = &table;
   }
   if (matches == 1) return *found;
-  throw Error(fmt::format("room {}: {} tables have a uuid that starts with \"{}\"; there are: {}", room.name, matches,
-                          prefix, room.tables.empty() ? "none" : joined(room.tables, ", ", &Table::uuid)));
+  throw Error(fmt::format("room {}: {} tables have a uuid that starts with {}; there are: {}", room.name, matches,
+                          in_quotes(prefix), room.tables.empty() ? "none" : joined(room.tables, ", ", &Table::uuid)));
 }
 
 }  // namespace clothbench::assets

@@ -37,6 +37,7 @@ int spawn(const std::vector<std::string>& argv, const ChildSetup& setup, int inp
     posix_spawn_file_actions_addopen(&files, descriptor, file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0644);
   };
   if (input >= 0) posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
+  if (setup.output >= 0) posix_spawn_file_actions_adddup2(&files, setup.output, STDOUT_FILENO);
   if (!setup.out.empty()) open(STDOUT_FILENO, setup.out);
   if (!setup.err.empty() && setup.err == setup.out)
     posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);

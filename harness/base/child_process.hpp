@@ -24,6 +24,7 @@ struct ChildEnd {
 struct ChildSetup {
   bool socket = false;                        ///< standard input is a socket, connected to this process
   std::string out = {}, err = {};             ///< files for stdout and stderr, truncated; empty: those of this process
+  int output = -1;                            ///< descriptor for stdout in place of a file; -1: that of this process
   bool own_group = false;                     ///< Ctrl-C on the terminal does not reach the child
   std::vector<std::string> environment = {};  ///< "NAME=value": added to or replacing this process's variables
 };

@@ -22,7 +22,7 @@ double number_from_json(const nlohmann::json& j, const std::string& name) {
   if (j.is_null()) return kMissing;
   if (j == "inf") return kInfinity;
   if (j == "-inf") return -kInfinity;
-  throw Error(name + R"(: expected a number, null, "inf" or "-inf"; found )" + j.dump());
+  throw Error(name + R"(: expected a number, null, "inf" or "-inf"; found )" + shortened(j.dump(), 60));
 }
 
 nlohmann::json numbers_to_json(const std::map<std::string, double>& values) {

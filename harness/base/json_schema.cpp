@@ -78,7 +78,7 @@ std::string unknown_key(const json& value, const json& schema, const json& root,
       } else if (s.value("additionalProperties", json(true)) == json(false)) {
         std::vector<std::string> names;
         for (const auto& [name, unused] : known.items()) names.push_back(name);
-        return fmt::format("{}/{}: unknown key{}", pointer, key, nearest_known(key, names));
+        return fmt::format("{}/{}: unknown key{}", pointer, shortened(key, 40), nearest_known(key, names));
       }
     }
   }
@@ -87,6 +87,16 @@ std::string unknown_key(const json& value, const json& schema, const json& root,
       if (std::string found = unknown_key(value[i], s["items"], root, fmt::format("{}/{}", pointer, i)); !found.empty())
         return found;
   return "";
+}
+
+/// The validator matches patterns by recursion, a step per character: a long string would overflow the stack.
+void refuse_long_strings(const json& value, const std::string& source, const std::string& pointer) {
+  constexpr std::size_t kMost = 4096;
+  if (value.is_string() && value.get_ref<const std::string&>().size() > kMost)
+    throw Error(fmt::format("{}: {}: a string of {} bytes; expected at most {}", source, pointer,
+                            value.get_ref<const std::string&>().size(), kMost));
+  if (value.is_structured())
+    for (const auto& [key, item] : value.items()) refuse_long_strings(item, source, pointer + "/" + shortened(key, 40));
 }
 
 std::string missing_key(const json& value, const json& schema) {
@@ -103,6 +113,7 @@ void validate_json(const nlohmann::json& value, const std::string& schema_text, 
   const json schema_json = json::parse(schema_text);
   if (const std::string fault = unknown_key(value, schema_json, schema_json, base); !fault.empty())
     throw Error(source + ": " + fault);
+  refuse_long_strings(value, source, base);
 
   valijson::Schema schema;
   valijson::SchemaParser parser;
@@ -121,10 +132,8 @@ void validate_json(const nlohmann::json& value, const std::string& schema_text, 
   const std::string where = base + pointer;
   if (const std::string key = missing_key(found, sub); !key.empty())
     throw Error(fmt::format("{}: {}: \"{}\" is missing", source, where.empty() ? "/" : where, key));
-  std::string shown = found.dump();
-  if (shown.size() > 60) shown = shown.substr(0, 60) + "…";
-  throw Error(
-      fmt::format("{}: {}: expected {}; found {}", source, where.empty() ? "/" : where, expectation(sub), shown));
+  throw Error(fmt::format("{}: {}: expected {}; found {}", source, where.empty() ? "/" : where, expectation(sub),
+                          shortened(found.dump(-1, ' ', false, json::error_handler_t::replace), 60)));
 }
 
 }  // namespace clothbench

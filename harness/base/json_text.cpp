@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench {
@@ -15,6 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kDeepest = 64;
+constexpr std::size_t kShown = 120;  // bytes of the input, or of a library's words about it, in a message
 
 std::string at(const std::string& text, std::size_t byte) {
   byte = std::min(byte, text.size());
@@ -50,17 +52,13 @@ class Strict : public nlohmann::json_sax<json> {
     path_.back() = k;
     if (keys_.back().insert(k).second) return true;
     std::string pointer;
-    for (const std::string& p : path_) pointer += "/" + p;
+    for (const std::string& p : path_) pointer += "/" + shortened(p, kShown);
     throw Error(source_ + ": " + pointer + ": this key occurs twice; expected it once");
   }
   bool parse_error(std::size_t byte, const std::string&, const nlohmann::detail::exception& e) override {
-    const std::string what = e.what();
-    const auto colon = what.find(": ", what.find("column"));
-    const bool range = e.id == 406;
+    constexpr int kOutOfRange = 406;
     throw Error(fmt::format("{}: {}: not valid JSON: {}", source_, at(text_, byte),
-                            range                        ? "a number beyond double range"
-                            : colon == std::string::npos ? what
-                                                         : what.substr(colon + 2)));
+                            e.id == kOutOfRange ? "a number beyond double range" : what_without_text(e)));
   }
 
  private:
@@ -102,6 +100,17 @@ void fill(json& value, const json& schema, const json& root) {
 }
 
 }  // namespace
+
+// Of a syntax error the library says where, what, "last read:" with the text, and perhaps what it expected.
+std::string what_without_text(const std::exception& e) {
+  const std::string what = e.what();
+  const std::size_t place = what.find("column"), colon = what.find(": ", place), read = what.find("; last read: ");
+  if (colon == std::string::npos) return shortened(what, kShown);
+  const std::size_t expected = what.rfind("; expected ");
+  return shortened(what.substr(colon + 2, read - (read == std::string::npos ? 0 : colon + 2)) +
+                       (read < expected && expected != std::string::npos ? what.substr(expected) : std::string()),
+                   kShown);
+}
 
 const json& sub_schema(const json& schema, const json& root) {
   if (!schema.contains("$ref")) return schema;

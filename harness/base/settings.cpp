@@ -73,11 +73,11 @@ json complete_settings(const SolverInfo& info, const json& as_given) {
   if (!tuning.empty()) all[kTuning] = json::object();
   const auto put = [&](json& of, const std::string& key, const json& value, const std::string& path) {
     if (!of.contains(key))
-      throw Error(fmt::format("solver {}: no setting \"{}\"{}", info.name, path,
+      throw Error(fmt::format("solver {}: no setting {}{}", info.name, in_quotes(path),
                               names.empty() ? "; it has none" : nearest_known(path, names)));
     if (!fits(value, of[key]))
-      throw Error(
-          fmt::format("solver {}: setting {}: expected {}; found {}", info.name, path, kind(of[key]), value.dump()));
+      throw Error(fmt::format("solver {}: setting {}: expected {}; found {}", info.name, path, kind(of[key]),
+                              shortened(value.dump(), 60)));
     if (seen.emplace(key, value).first.value() != value)
       throw Error(
           fmt::format("solver {}: setting {}: given twice with different values; expected one value", info.name, path));

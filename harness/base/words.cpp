@@ -25,14 +25,35 @@ std::size_t distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
+std::string shortened(const std::string& text, std::size_t most) {
+  std::size_t end = std::min(most, text.size());
+  // Not in the middle of a character of UTF-8.
+  while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  std::string out = text.substr(0, end);
+  std::replace_if(
+      out.begin(), out.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }, '?');
+  return end < text.size() ? out + "…" : out;
+}
+
+std::string in_quotes(const std::string& word) { return "\"" + shortened(word, 40) + "\""; }
+
+std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
 std::string nearest(const std::string& word, const std::vector<std::string>& known) {
   std::string best;
   std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
-  for (const std::string& k : known)
+  for (const std::string& k : known) {
+    // A word is no nearer than its length says, and one of the input may be long.
+    if (std::max(word.size(), k.size()) - std::min(word.size(), k.size()) >= least) continue;
     if (const std::size_t d = distance(word, k); d < least) {
       least = d;
       best = k;
     }
+  }
   return best;
 }
 

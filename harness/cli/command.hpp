@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/status_line.hpp"
+#include "base/summary_output.hpp"
 #include "clothbench/error.hpp"
 #include "runner/again.hpp"
 #include "runner/solver_choice.hpp"
@@ -39,7 +40,7 @@ struct Console {
   }
 
   static void print(const nlohmann::json& j) {
-    fmt::print("{}\n", j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    SummaryOutput::write(j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   }
   /// The form that the user asked for; the other is not made.
   template <class Json, class Text>
@@ -52,6 +53,12 @@ struct Console {
  private:
   std::vector<std::shared_ptr<void>> kept_;
 };
+
+/// A message as it is printed: it may name keys and files of any length.
+inline std::string message_of(const std::string& text) {
+  constexpr std::size_t kMost = 2000;
+  return text.size() > kMost ? text.substr(0, kMost) + "…" : text;
+}
 
 /// Declares the command and its options.
 using AddCommand = void(CLI::App&, Console&);

@@ -15,7 +15,8 @@ namespace clothbench {
 namespace {
 
 /// Says why the command failed, to people and, with --json, to machines.
-int report_error(const Console& console, const std::string& why, ExitCode code) {
+int report_error(const Console& console, const std::string& message, ExitCode code) {
+  const std::string why = message_of(message);
   const bool colour = takes_colour(STDERR_FILENO);
   fmt::print(stderr, "{}clothbench:{} {}\n", colour ? "\x1b[31m" : "", colour ? "\x1b[0m" : "", why);
   if (console.json) Console::print({{"error", why}, {"exit_code", static_cast<int>(code)}});
@@ -72,7 +73,9 @@ int run_command_line(const std::vector<std::string>& given) {
   app.add_flag("--in-process", console.arguments<bool>(),
                "Run plugins in this process, for a debugger; a crash of a plugin then ends the program");
   // Before the words are read: plugins are loaded on the way.
-  if (std::find(words.begin(), words.end(), "--in-process") != words.end()) run_plugins_in_process();
+  if (contains(words, "--in-process")) run_plugins_in_process();
+  std::optional<SummaryOutput> summary_alone;
+  if (contains(words, "--json")) summary_alone.emplace();
   app.fallthrough();
 
   for (AddCommand* add : kCommands) add(app, console);

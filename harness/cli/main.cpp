@@ -1,4 +1,7 @@
+#include <unistd.h>
+
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 
 #include "cli/command_line.hpp"
@@ -17,5 +20,8 @@ void on_signal(int) {
 int main(int argc, char** argv) {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  return clothbench::run_command_line({argv + (argc > 0 ? 1 : 0), argv + argc});
+  const int code = clothbench::run_command_line({argv + (argc > 0 ? 1 : 0), argv + argc});
+  std::fflush(stdout);
+  dup2(STDERR_FILENO, STDOUT_FILENO);  // what a plugin prints when it is unloaded is no part of a summary
+  return code;
 }

@@ -16,13 +16,16 @@ struct SearchFlags : SolverFlags {
     app.add_flag("--resume", resume, "Continue with the runs stored in that folder")->needs(folder);
     device.add_to(app);
   }
-  /// With a status line. A crash of a plugin is a failed check.
+  /// With a status line. The exit code is by the one rule (runner/solver_ends.hpp).
   std::vector<RunRecord> runs(Console& console, const std::function<Searched(const SearchCall&)>& search) const {
     StatusLine line(console.shows_status());
     SearchCall call{solvers, set, out, resume, device, console.command_line, console.words};
     call.progress = [&](const std::string& what, std::size_t done) { line.show(what, done); };
     Searched found = search(call);
-    if (found.crashed) console.exit_code = ExitCode::CheckFailed;
+    SolverEnds ends;
+    for (const RunRecord& r : found.runs) ends.add(r.header.solver, r.outcome);
+    if (found.crashed || !ends.faults().empty()) console.exit_code = ExitCode::CheckFailed;
+    for (const std::string& fault : ends.faults()) fmt::print(stderr, "FAULT {}\n", fault);
     return std::move(found.runs);
   }
 };

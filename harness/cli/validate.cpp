@@ -21,7 +21,7 @@ void add_validate(CLI::App& app, Console& console) {
         else
           load_scene(file);
       } catch (const Error& e) {
-        fault = e.what();
+        fault = message_of(e.what());
         console.exit_code = ExitCode::BadInput;
       }
       rows.push_back({{"file", file}, {"ok", fault.empty()}, {"message", fault}});

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/former_names.hpp"
+#include "base/json_text.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/hdf5_handle.hpp"
 #include "results/hdf5_values.hpp"
@@ -138,7 +139,7 @@ RunRecord read_hdf5(const std::filesystem::path& path, bool with_trajectory) {
     if (exists(file, "metrics")) read_accuracy(file, r, with_trajectory);
     return r;
   } catch (const nlohmann::json::exception& e) {
-    throw Error(path.string() + ": header_json: " + e.what());
+    throw Error(path.string() + ": header_json: " + what_without_text(e));
   } catch (const Error& e) {
     throw Error(path.string() + ": " + e.what());
   }

@@ -1,3 +1,4 @@
+#include "base/json_text.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/hdf5_handle.hpp"
 #include "results/hdf5_values.hpp"
@@ -88,7 +89,7 @@ Replay read_hdf5_replay(const std::filesystem::path& path, std::size_t stride) {
     for (const char* part : {"cloth", "colliders"}) read_part(file, part, r.groups);
     return r;
   } catch (const nlohmann::json::exception& e) {
-    throw Error(path.string() + ": header_json, /cloth or /colliders: " + e.what());
+    throw Error(path.string() + ": header_json, /cloth or /colliders: " + what_without_text(e));
   } catch (const Error& e) {
     throw Error(path.string() + ": " + e.what());
   }

@@ -7,6 +7,7 @@
 
 #include "base/former_names.hpp"
 #include "base/json_number.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
 
@@ -60,7 +61,7 @@ auto naming(const std::filesystem::path& path, Fn fn) {
   try {
     return fn();
   } catch (const nlohmann::json::exception& e) {
-    throw Error(path.string() + ": not a raw run file of this kind: " + e.what());
+    throw Error(path.string() + ": not a raw run file of this kind: " + what_without_text(e));
   } catch (const Error& e) {
     throw Error(path.string() + ": " + e.what());
   }

@@ -8,6 +8,7 @@
 
 #include "base/files.hpp"
 #include "base/former_names.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 #include "results/device_samples.hpp"
@@ -200,7 +201,7 @@ StudyManifest read_manifest(const fs::path& dir) {
     rename_key(j, "cells", "runs", file.string());
     return {j.at("study"), j.at("created"), j.at("command_line"), j.at("definition"), j.at("runs")};
   } catch (const nlohmann::json::exception& e) {
-    throw Error(file.string() + ": not a study manifest: " + e.what());
+    throw Error(file.string() + ": not a study manifest: " + what_without_text(e));
   }
 }
 

@@ -14,6 +14,7 @@
 #include "base/files.hpp"
 #include "base/json_text.hpp"
 #include "base/plugin_environment.hpp"
+#include "base/summary_output.hpp"
 #include "clothbench/error.hpp"
 #include "runner/child.hpp"
 #include "runner/interrupt.hpp"
@@ -33,7 +34,10 @@ ChildEnd run_again(const std::vector<std::string>& words, const std::string& var
   std::vector<std::string> argv = {own_program().string()};
   argv.insert(argv.end(), words.begin(), words.end());
   // A group of its own: Ctrl-C comes to it once, from here, since a second one would cut it off.
-  ChildProcess child(argv, {.out = quiet ? "/dev/null" : "", .own_group = true, .environment = {variable}});
+  ChildProcess child(argv, {.out = quiet ? "/dev/null" : "",
+                            .output = SummaryOutput::descriptor(),
+                            .own_group = true,
+                            .environment = {variable}});
   bool forwarded = false;
   return child.wait([&] {
     if (interrupt_requested() && !forwarded) child.signal(SIGINT);

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "results/raw_file.hpp"
+#include "results/result_folder.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -74,8 +76,8 @@ void require_same_run(const fs::path& folder, const PlannedRun& run) {
     throw Error(fmt::format("{}: stored for another scene (SHA-256 of the completed scenario {}, now {}); {}",
                             file.string(), short_hash(h->scenario_sha256), short_hash(run.scenario_sha256), kWhatToDo));
   if (!same_settings(run, h->settings))
-    throw Error(fmt::format("{}: run with other settings ({}, now {}); {}", file.string(), h->settings.dump(),
-                            run.settings.dump(), kWhatToDo));
+    throw Error(fmt::format("{}: run with other settings ({}, now {}); {}", file.string(),
+                            shortened(h->settings.dump(), 200), shortened(run.settings.dump(), 200), kWhatToDo));
   const std::string version = version_of(*h);  // older files lack it
   if (run.solver != nullptr && !version.empty() && version != run.solver->version)
     throw Error(fmt::format("{}: run with version {} of {}, which is now version {}; {}", file.string(), version,
@@ -89,6 +91,7 @@ void refuse_finished_run(const fs::path& folder, const std::string& run) {
 
 void require_same_runs(const fs::path& folder, const std::vector<PlannedRun>& runs, bool resume) {
   for (const PlannedRun& run : runs) {
+    require_short_name(folder, run.name);
     if (!resume && run_finished(folder, run.name)) refuse_finished_run(folder, run.name);
     require_same_run(folder, run);
   }

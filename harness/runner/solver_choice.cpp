@@ -45,7 +45,7 @@ Overrides split_overrides(const std::vector<std::string>& set) {
       continue;
     }
     const auto eq = item.find('=');
-    if (eq == std::string::npos) throw Error("--set " + item + ": expected solver.<name>=<value>");
+    if (eq == std::string::npos) throw Error("--set " + shortened(item, 200) + ": expected solver.<name>=<value>");
     const std::string key = item.substr(prefix.size(), eq - prefix.size()), text = item.substr(eq + 1);
     nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
     if (value.is_discarded()) value = text;
@@ -58,7 +58,8 @@ Overrides split_overrides(const std::vector<std::string>& set) {
 }
 
 void refuse_scene(const std::vector<std::string>& set, const std::string& expected) {
-  for (const std::string& key : split_overrides(set).scene) throw Error("--set " + key + ": " + expected);
+  for (const std::string& key : split_overrides(set).scene)
+    throw Error("--set " + shortened(key, 200) + ": " + expected);
 }
 
 std::string Overrides::label() const {

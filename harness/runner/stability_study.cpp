@@ -81,12 +81,15 @@ void StabilityCounts::add(const StabilityCounts& more) {
 
 StabilityCounts execute_stability_runs(const Study& study, const StabilityOptions& o) {
   StabilityCounts counts;
-  execute_runs_apart(study, o, [&](const RunRecord& a) { counts.add(a); });
+  execute_runs_apart(study, o, [&](const StudySolver& s, const RunRecord& a) {
+    counts.add(a);
+    counts.ends.add(s.solver, a.outcome);
+  });
   return counts;
 }
 
 void execute_runs_apart(const Study& study, const StabilityOptions& o,
-                        const std::function<void(const RunRecord&)>& ended) {
+                        const std::function<void(const StudySolver&, const RunRecord&)>& ended) {
   struct Todo {
     const Study::Item* item;
     const StudySolver* solver;
@@ -108,7 +111,7 @@ void execute_runs_apart(const Study& study, const StabilityOptions& o,
       if (!o.resume) refuse_finished_run(o.out, run.name);
       require_same_run(o.out, run);
       const RunRecord before = read_run_summary(stored_run(o.out, run.name));
-      ended(before);
+      ended(s, before);
     }
   // The longest first, or the last of them is waited for alone.
   std::stable_sort(todo.begin(), todo.end(), [](const Todo& a, const Todo& b) { return a.work > b.work; });
@@ -120,7 +123,7 @@ void execute_runs_apart(const Study& study, const StabilityOptions& o,
       stop_if_interrupted(kRunsKept);
       const RunRecord a = worker.run(request_of(study, *t.item, *t.solver, o));
       const std::lock_guard lock(mutex);
-      ended(a);
+      ended(*t.solver, a);
       ++done;
       if (o.progress) o.progress(t.item->scene.name + " with " + t.solver->name(), done, all);
     });

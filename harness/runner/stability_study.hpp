@@ -7,6 +7,7 @@
 
 #include "clothbench/solver.hpp"
 #include "runner/run_process.hpp"
+#include "runner/solver_ends.hpp"
 #include "scenario/study.hpp"
 
 namespace clothbench {
@@ -29,6 +30,7 @@ double grade_of(const RunRecord&);
 struct StabilityCounts {
   int stable = 0, degraded = 0, failed = 0, unsupported = 0;
   int crashed = 0;  ///< of the failed ones: processes that crashed or hung
+  SolverEnds ends;  ///< of the study's runs, without the probes
   void add(const RunRecord&);
   void add(const StabilityCounts&);
 };
@@ -43,7 +45,8 @@ void require_same_runs(const Study&, const StabilityOptions&);
 /// Executes every run of the study's scenes, untimed, in processes that are replaced after a fault, with one result
 /// file each. With `resume`, runs that are already stored are skipped. `ended` is called for each, stored or new, one
 /// call at a time.
-void execute_runs_apart(const Study&, const StabilityOptions&, const std::function<void(const RunRecord&)>& ended);
+void execute_runs_apart(const Study&, const StabilityOptions&,
+                        const std::function<void(const StudySolver&, const RunRecord&)>& ended);
 
 /// execute_runs_apart, with the grades counted.
 StabilityCounts execute_stability_runs(const Study&, const StabilityOptions&);

@@ -15,7 +15,7 @@ namespace {
 [[noreturn]] void refuse_name(const std::string& name) {
   std::vector<std::string> known = solver_names_of_tree();
   for (const SolverEntry* e : all_solvers()) known.push_back(e->info.name);
-  throw Error("the study names a solver \"" + name + "\", which is neither of clothbench nor a plugin in $" +
+  throw Error("the study names a solver " + in_quotes(name) + ", which is neither of clothbench nor a plugin in $" +
               kPluginsVariable + nearest_known(name, known));
 }
 

@@ -124,7 +124,7 @@ class GroupRun {
   /// Counts a run of an earlier session, and what it took of its ladder's budget.
   void recall(const RunSpec& spec, const std::string& name) {
     const RunRecord before = read_run_summary(stored_run(options_.out, name));
-    count(before.outcome);
+    count(spec.entry->info.name, before.outcome);
     if (!(spec.work > 0)) return;
     const auto took = before.summary.find("untimed_s");
     if (before.outcome.status != "over_budget" && took != before.summary.end())
@@ -179,7 +179,7 @@ class GroupRun {
       result_.validation_messages += messages;
       result_.faults.push_back(fmt::format("{}: {} validation messages", r.name(), messages));
     }
-    if (outcome.status == "error") result_.faults.push_back(r.name() + ": " + outcome.message);
+    if (outcome.status == "error" && outcome.klass != "F8") result_.faults.push_back(r.name() + ": " + outcome.message);
     r.record.outcome = outcome;
     std::map<std::string, double> summary = summarise(r.run->spec(), r.run->plan(), r.record);
     summarise_sensors(r.record.header.environment.value("sensors", nlohmann::json::object()), "start", summary);
@@ -187,13 +187,14 @@ class GroupRun {
     summary["untimed_s"] = r.untimed_s;
     Verdict verdict = judge(*r.run->spec().scene, outcome, r.record.accuracy, summary);
     outcome.expect = std::move(verdict.text);
-    count(outcome);
+    count(r.run->spec().entry->info.name, outcome);
     summary.merge(verdict.scalars);
     result_.files.push_back(r.writer->finish(outcome, summary));
     ++done_;
   }
 
-  void count(const Outcome& outcome) {
+  void count(const std::string& solver, const Outcome& outcome) {
+    result_.ends.add(solver, outcome);
     if (outcome.status == "ok")
       ++result_.runs_ok;
     else if (outcome.status == "unsupported")
@@ -261,6 +262,7 @@ RunResult execute_runs(const RunPlan& given, const RunOptions& options) {
       }
   }
   for (const auto& group : plan.groups) GroupRun(plan, options, result, done).run(group);
+  for (std::string& fault : result.ends.faults()) result.faults.push_back(std::move(fault));
   if (options.progress) options.progress("", done, plan.size());
   return result;
 }

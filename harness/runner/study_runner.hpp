@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "results/store.hpp"
+#include "runner/solver_ends.hpp"
 #include "runner/solver_run.hpp"
 
 namespace clothbench {
@@ -40,7 +41,9 @@ struct RunResult {
   std::map<std::string, double> seconds, moduli_seconds;  ///< moduli_seconds: of effective moduli
   int moduli = 0, moduli_left_out = 0;
   int validation_messages = 0;
-  std::vector<std::string> faults;  ///< runs that broke a rule of the harness (stages, validation): the run fails
+  /// Runs that broke a rule of the harness (stages, counts, validation) and solvers that finished no run: exit code 1.
+  std::vector<std::string> faults;
+  SolverEnds ends;  ///< of all runs of the plan
 };
 
 /// Call before anything is written into a study's folder. Throws Error naming the file if a stored run of the plan,

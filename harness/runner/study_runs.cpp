@@ -25,7 +25,6 @@ StudyRuns::StudyRuns(DeviceOptions device, fs::path out, bool resume, StudyManif
   if (begun)
     throw Error(out_.string() +
                 ": a study is already there; give another --out, or --resume to continue in this folder");
-  fs::create_directories(out_);
   manifest.created = utc_now();
   write_manifest(out_, manifest);
 }

@@ -12,6 +12,7 @@
 
 #include "base/json_text.hpp"
 #include "base/sha256.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
 #include "scenario/drawn_mesh.hpp"
@@ -40,7 +41,12 @@ bool has_area(const std::array<Vec3, 3>& x) {
   return area_of(x) > kLeastArea * longest * longest;
 }
 
-void check_triangles(const ClothMesh& m, const std::string& source) {
+/// "<source>: line 7": where a file has a vertex or a triangle; the source alone where it has no lines.
+std::string place(const std::string& source, const std::vector<std::uint32_t>& lines, std::size_t k) {
+  return lines.empty() ? source : fmt::format("{}: line {}", source, lines[k]);
+}
+
+void check_triangles(const ClothMesh& m, const assets::MeshFile& file, const std::string& source) {
   if (m.triangles.empty()) throw Error(source + ": expected at least one triangle");
   for (std::size_t v = 0; v < m.vertices.size(); ++v)
     if (!std::isfinite(edge_length(m.vertices[v]))) throw Error(fmt::format("{}: vertex {} is not finite", source, v));
@@ -53,21 +59,25 @@ void check_triangles(const ClothMesh& m, const std::string& source) {
         throw Error(fmt::format("{}: triangle {}: vertex {} of {} (the first is 0)", source, k, v, m.vertices.size()));
       used[v] = 1;
     }
-    if (!has_area({m.vertices[t[0]], m.vertices[t[1]], m.vertices[t[2]]}))
-      throw Error(fmt::format("{}: triangle {} (vertices {}, {}, {}) has no area", source, k, t[0], t[1], t[2]));
-    if (!m.pattern_m.empty() && !has_area(rest_corners(m, k)))
-      throw Error(fmt::format("{}: triangle {} (vertices {}, {}, {}) has no area in texture coordinates", source, k,
-                              t[0], t[1], t[2]));
+    const auto no_area = [&](const char* in) {
+      throw Error(fmt::format("{}: triangle {} (vertices {}, {}, {}) has no area{}",
+                              place(source, file.triangle_lines, k), k, t[0], t[1], t[2], in));
+    };
+    if (!has_area({m.vertices[t[0]], m.vertices[t[1]], m.vertices[t[2]]})) no_area("");
+    if (!m.pattern_m.empty() && !has_area(rest_corners(m, k))) no_area(" in texture coordinates");
     sorted.emplace_back(t, k);
     std::sort(sorted.back().first.begin(), sorted.back().first.end());
   }
   std::sort(sorted.begin(), sorted.end());
   for (std::size_t k = 1; k < sorted.size(); ++k)
     if (sorted[k - 1].first == sorted[k].first)
-      throw Error(fmt::format("{}: triangles {} and {} have the same vertices", source, sorted[k - 1].second,
+      throw Error(fmt::format("{}: triangles {} and {} have the same vertices",
+                              place(source, file.triangle_lines, sorted[k].second), sorted[k - 1].second,
                               sorted[k].second));
   for (std::size_t v = 0; v < used.size(); ++v)
-    if (used[v] == 0) throw Error(fmt::format("{}: vertex {} is in no triangle and would have no mass", source, v));
+    if (used[v] == 0)
+      throw Error(fmt::format("{}: vertex {} (the first is 0) is in no triangle and would have no mass",
+                              place(source, file.vertex_lines, v), v));
 }
 
 /// A side of a triangle, its ends in ascending order.
@@ -90,7 +100,7 @@ std::vector<Side> sides_of(const ClothMesh& m) {
   return out;
 }
 
-void add_edges(ClothMesh& m, const std::string& source) {
+void add_edges(ClothMesh& m, const assets::MeshFile& file, const std::string& source) {
   const std::vector<Side> sides = sides_of(m);
   double all = 0;
   for (std::size_t k = 0; k < sides.size();) {
@@ -104,12 +114,14 @@ void add_edges(ClothMesh& m, const std::string& source) {
       rest += edge_length(minus(x[(t.corner + 1) % 3], x[t.corner]));
     }
     if (count > 2)
-      throw Error(fmt::format("{}: the edge of vertices {} and {} has more than two triangles", source, s.a, s.b));
+      throw Error(fmt::format("{}: the edge of vertices {} and {} has more than two triangles",
+                              place(source, file.triangle_lines, sides[k + 2].triangle), s.a, s.b));
     if (count == 2 && s.forward == sides[k + 1].forward)
       throw Error(
           fmt::format("{}: triangles {} and {} are wound oppositely: both run from vertex {} to {}; expected the "
                       "triangles of a cloth to be wound alike",
-                      source, s.triangle, sides[k + 1].triangle, s.forward ? s.a : s.b, s.forward ? s.b : s.a));
+                      place(source, file.triangle_lines, sides[k + 1].triangle), s.triangle, sides[k + 1].triangle,
+                      s.forward ? s.a : s.b, s.forward ? s.b : s.a));
     // The two sides of a seam may differ in length; the sewn edge has their mean.
     m.edges.push_back({s.a, s.b, rest / static_cast<double>(count), EdgeKind::Structural});
     m.areas_m2.push_back(area);
@@ -143,7 +155,7 @@ void add_groups(ClothMesh& m, const assets::MeshFile& file) {
 
 fs::path file_of(const std::string& name, const std::string& source) {
   if (const auto found = file_of_scene(name, source)) return *found;
-  throw Error(fmt::format("{}: /cloth/mesh/file: \"{}\": no such file beside the scene or in {}", source, name,
+  throw Error(fmt::format("{}: /cloth/mesh/file: {}: no such file beside the scene or in {}", source, in_quotes(name),
                           scenario_root().string()));
 }
 
@@ -196,8 +208,8 @@ ClothMesh cloth_mesh(assets::MeshFile file, const MeshChoices& choices, const st
   m.vertices = std::move(file.vertices);
   m.triangles = std::move(file.triangles);
   if (choices.texture_unit_m > 0) add_pattern(m, file, choices.texture_unit_m, source);
-  check_triangles(m, source);
-  add_edges(m, source);
+  check_triangles(m, file, source);
+  add_edges(m, file, source);
   add_groups(m, file);
   return m;
 }
@@ -227,8 +239,11 @@ std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::s
     throw Error(fmt::format("{}: /cloth/mesh/sha256: {} differs from the file that the scene was made with ({})",
                             source, file.string(), hash));
   j["sha256"] = hash;
-  const bool gltf = file.extension() == ".glb" || file.extension() == ".gltf";
-  const assets::MeshFile read = gltf ? assets::parse_gltf(text, file.string()) : read_obj(text, file.string());
+  const std::string kind = lower_case(file.extension().string());
+  if (kind != ".obj" && kind != ".gltf" && kind != ".glb")
+    refuse(source, "/cloth/mesh/file", "expected a file whose name ends in .obj, .gltf or .glb");
+  const assets::MeshFile read =
+      kind == ".obj" ? read_obj(text, file.string()) : assets::parse_gltf(text, file.string());
   const MeshChoices choices = choices_of(j, read, source);
   auto mesh = std::make_shared<const ClothMesh>(cloth_mesh(read, choices, file.string()));
   notice_welded(*mesh, file.string());
@@ -247,9 +262,10 @@ const std::vector<std::uint32_t>& group_vertices(const Cloth& c, const std::stri
   const std::size_t all = known.size();
   known.resize(std::min(all, kMost));
   refuse(source, pointer,
-         fmt::format("the mesh has no triangles in a group \"{}\"; expected {}", name,
-                     known.empty() ? std::string("a mesh with named groups")
-                                   : fmt::format("one of: {}{}", fmt::join(known, ", "), all > kMost ? ", ..." : "")));
+         fmt::format("the mesh has no triangles in a group {}; expected {}", in_quotes(name),
+                     known.empty()
+                         ? std::string("a mesh with named groups")
+                         : fmt::format("one of: {}{}", shortened(joined(known), 400), all > kMost ? ", ..." : "")));
 }
 
 std::vector<std::uint32_t> named_edge(const Cloth& c, const std::string& edge, const std::string& source,

@@ -11,8 +11,8 @@ const SolverEntry& find_solver(const std::string& name) {
     names.push_back(e.info.name);
   }
   if (const SolverEntry* external = external_solver(name)) return *external;
-  throw Error("no solver \"" + name + "\" in this build" + nearest_known(name, names) + " (built in: " + joined(names) +
-              "; others may have been left out with -DCLOTHBENCH_WITH_…=OFF)");
+  throw Error("no solver " + in_quotes(name) + " in this build" + nearest_known(name, names) +
+              " (built in: " + joined(names) + "; others may have been left out with -DCLOTHBENCH_WITH_…=OFF)");
 }
 
 }  // namespace clothbench

@@ -29,6 +29,8 @@ using nlohmann::json;
 
 constexpr std::size_t kMostVertices = std::size_t{1} << 22;
 constexpr double kMostFrames = 1e7;
+constexpr std::size_t kMostName = 100;
+constexpr std::size_t kShown = 200;  // bytes of an argument in a message
 
 std::uint32_t corner(const Cloth& c, const std::string& name) {
   const int i = name[1] == '1' ? c.columns - 1 : 0, j = name[3] == '1' ? c.rows - 1 : 0;
@@ -175,9 +177,12 @@ void check_assumed(const json& scenario, const std::string& source) {
     } catch (const json::exception&) {
     }
     if (!found)
-      refuse(source, fmt::format("/assumed/{}", k), "\"" + entry + "\": expected the pointer of a value of this scene");
+      refuse(source, fmt::format("/assumed/{}", k),
+             in_quotes(entry) + ": expected the pointer of a value of this scene");
   }
 }
+
+bool is_json(const std::filesystem::path& file) { return lower_case(file.extension().string()) == ".json"; }
 
 /// Names that `find_scenario` accepts, such as "paper/gravity"; studies without their folder.
 std::vector<std::string> scenario_names() {
@@ -185,7 +190,7 @@ std::vector<std::string> scenario_names() {
   std::error_code ec;
   for (std::filesystem::recursive_directory_iterator at(scenario_root(), ec), end; !ec && at != end; at.increment(ec)) {
     std::filesystem::path name = at->path().lexically_relative(scenario_root()).replace_extension();
-    if (at->path().extension() != ".json") continue;
+    if (!is_json(at->path())) continue;
     const std::string folder = name.begin()->string();
     if (folder == "studies") name = name.lexically_relative("studies");
     if (folder != "schema" && folder != "assets") names.push_back(name.string());
@@ -200,13 +205,15 @@ std::filesystem::path scenario_root() { return find_data(kScenarioFolder); }
 std::filesystem::path find_scenario(const std::string& name_or_path) {
   std::error_code ec;
   if (std::filesystem::is_regular_file(name_or_path, ec)) return name_or_path;
-  for (const char* folder : {"", "studies/"}) {
-    const std::filesystem::path named = scenario_root() / (folder + name_or_path + ".json");
-    if (std::filesystem::is_regular_file(named, ec)) return named;
-  }
+  for (const char* folder : {"", "studies/"})
+    for (const char* ending : {".json", ".JSON"}) {
+      const std::filesystem::path named = scenario_root() / (folder + name_or_path + ending);
+      if (std::filesystem::is_regular_file(named, ec)) return named;
+    }
   if (std::filesystem::exists(name_or_path, ec)) return name_or_path;
-  throw Error(fmt::format("{}: no such file, nor a scene or study of that name in {}{}", name_or_path,
-                          scenario_root().string(), nearest_known(name_or_path, scenario_names())));
+  throw Error(fmt::format("{}: no such file, nor a scene or study of that name in {}{}",
+                          shortened(name_or_path, kShown), scenario_root().string(),
+                          nearest_known(name_or_path, scenario_names())));
 }
 
 namespace {
@@ -249,11 +256,12 @@ json& child(json& of, const std::string& key, const std::string& where) {
 void apply_override(json& scenario, const std::string& assignment, const std::string& source) {
   const auto eq = assignment.find('=');
   if (eq == std::string::npos || eq == 0)
-    throw Error("--set " + assignment + ": expected key=value, such as cloth.grid=[64,64]");
+    throw Error("--set " + shortened(assignment, kShown) + ": expected key=value, such as cloth.grid=[64,64]");
   const std::string text = assignment.substr(eq + 1);
   const bool has_nan = text.find("NaN") != std::string::npos;
   json value = json::parse(text, nullptr, false);
-  if (value.is_discarded() && (has_nan || text.empty())) throw Error("--set " + assignment + ": expected a JSON value");
+  if (value.is_discarded() && (has_nan || text.empty()))
+    throw Error("--set " + shortened(assignment, kShown) + ": expected a JSON value");
   if (value.is_discarded()) value = text;
   json* at = &scenario;
   std::string pointer;
@@ -263,7 +271,7 @@ void apply_override(json& scenario, const std::string& assignment, const std::st
     const std::size_t dot_at = std::min(path.find('.', i), path.size());
     const std::string key = path.substr(i, dot_at - i);
     pointer += "/" + key;
-    at = &child(*at, key, source + ": --set " + assignment + ": " + pointer);
+    at = &child(*at, key, source + ": --set " + shortened(assignment, kShown) + ": " + shortened(pointer, kShown));
     i = dot_at + 1;
   }
   *at = std::move(value);
@@ -286,6 +294,10 @@ Scene scene_from_parts(json scenario, const std::string& source, const ScenePart
   Scene s;
   s.source = source;
   s.name = scenario["name"].get<std::string>();
+  if (s.name.size() > kMostName)
+    refuse(source, "/name",
+           fmt::format("{} characters; expected at most {}, since the names of result files hold it", s.name.size(),
+                       kMostName));
   s.why = scenario["why"].get<std::string>();
   s.cloth = read_cloth(scenario["cloth"], source, parts);
   const json& material = scenario["material"];
@@ -336,7 +348,7 @@ std::vector<std::string> scene_names(const std::vector<std::string>& folders) {
     if (!std::filesystem::exists(root / folder)) continue;
     const std::size_t first = names.size();
     for (const auto& file : std::filesystem::recursive_directory_iterator(root / folder))
-      if (file.path().extension() == ".json")
+      if (is_json(file.path()))
         names.push_back(std::filesystem::relative(file.path(), root).replace_extension().string());
     std::sort(names.begin() + static_cast<std::ptrdiff_t>(first), names.end());
   }

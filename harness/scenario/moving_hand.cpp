@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/json_text.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "scenario/vec3.hpp"
 
@@ -29,19 +30,33 @@ ColliderPose pose_at(const MovingHand& m, bool as_mesh, double time_s) {
   return pose;
 }
 
+/// A runtime that does not know a radius reports 0. The pointer leads to the block that the capsules come from.
+void require_radii(const assets::HandRecording& recording, const std::string& file) {
+  for (std::size_t f = 0; f < recording.frames.size(); ++f) {
+    const auto capsules = assets::capsules(recording, recording.frames[f]);
+    for (std::size_t k = 0; k < capsules.size(); ++k)
+      if (!(capsules[k].radius_m > 0))
+        refuse(file, recording.has_capsules ? "/recording/capsules" : "/recording/joints",
+               fmt::format("frame {}: capsule {} of {} has a radius of {} m; expected more than 0, or type hand_mesh, "
+                           "which needs no radii",
+                           f, k, capsules.size(), capsules[k].radius_m));
+  }
+}
+
 /// A track or a recording in a file of its own.
 MovingHand hand_of_file(const nlohmann::json& j, ColliderReader& reader, bool as_mesh) {
   const auto name = j["track"].get<std::string>();
   const auto file = file_of_scene(name, reader.source());
   if (!file)
     reader.refuse("/track",
-                  fmt::format("\"{}\": no such file beside the scene or in {}", name, scenario_root().string()));
+                  fmt::format("{}: no such file beside the scene or in {}", in_quotes(name), scenario_root().string()));
   const std::string text = read_text(*file);
   if (!assets::is_hand_recording(parse_json(text, file->string())))
     return {{}, assets::parse_hand_track(text, file->string()), {}};
   if (j.contains("speed_m_per_s"))
     reader.refuse("/speed_m_per_s", "expected no speed for a recording, which is replayed at its own speed");
   MovingHand m{{}, {}, assets::parse_hand_recording(text, file->string())};
+  if (!as_mesh) require_radii(*m.recording, file->string());
   if (as_mesh && !m.recording->mesh) m.hand = assets::open_hand(reader.assets(), m.recording->side);
   return m;
 }

@@ -188,9 +188,11 @@ class Builder {
   std::filesystem::path scene_path(std::size_t k) const {
     const std::string name = j_["scenes"][k]["file"].get<std::string>();
     std::filesystem::path path = name;
-    if (path.is_relative() && std::filesystem::exists(file_.parent_path() / path)) path = file_.parent_path() / path;
-    if (!std::filesystem::exists(path))
-      throw Error(fmt::format("{}: /scenes/{}/file: \"{}\": no such file", source_, k, name));
+    std::error_code ec;
+    if (path.is_relative() && std::filesystem::exists(file_.parent_path() / path, ec))
+      path = file_.parent_path() / path;
+    if (!std::filesystem::exists(path, ec))
+      throw Error(fmt::format("{}: /scenes/{}/file: {}: no such file", source_, k, in_quotes(name)));
     return path;
   }
 
@@ -208,6 +210,10 @@ class Builder {
     if (!(first <= kGreatestSeed - static_cast<std::uint64_t>(count)))
       throw Error(
           fmt::format("--seed {}: expected at most {}", first, kGreatestSeed - static_cast<std::uint64_t>(count)));
+    if (!(static_cast<double>(count) * static_cast<double>(study_.solvers.size()) <= static_cast<double>(kMostRuns)))
+      throw Error(fmt::format("{}: {} scenes with {} solvers are {:.0f} runs; a study may have at most {}", source_,
+                              count, study_.solvers.size(),
+                              static_cast<double>(count) * static_cast<double>(study_.solvers.size()), kMostRuns));
     ContactDrawer drawer(options_.assets);
     for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
       const std::size_t k = seed % kinds.size();
@@ -274,11 +280,14 @@ class Builder {
       }
       Study::Item& item = study_.scenes[at->second];
       const bool is_first = runs_.insert(item.scene.name + " " + solver.name()).second;
+      if (runs_.size() > kMostRuns)
+        throw Error(fmt::format("{}: {}: more than {} runs; expected fewer scenes, values of axes, rungs or solvers",
+                                source_, pointer, kMostRuns));
       if (!is_first && v.merged) continue;  // another scene of the study has become the same
       item.solvers.push_back(s);
       if (!is_first)
-        throw Error(fmt::format("{}: {}: two runs are named \"{}\" with {}; labels must differ", source_, pointer,
-                                item.scene.name, solver.name()));
+        throw Error(fmt::format("{}: {}: two runs are named {} with {}; labels must differ", source_, pointer,
+                                in_quotes(item.scene.name), in_quotes(solver.name())));
     }
   }
 
@@ -316,8 +325,8 @@ class Builder {
       for (std::size_t k = 0; k < words.size(); ++k) {
         const auto word = words[k].get<std::string>();
         if (contains(known, word)) continue;
-        throw Error(
-            fmt::format("{}: {}/{}: \"{}\" names none{}", source_, pointer, k, word, nearest_known(word, known)));
+        throw Error(fmt::format("{}: {}/{}: {} names none{}", source_, pointer, k, in_quotes(word),
+                                nearest_known(word, known)));
       }
     };
     const Words labels(labels_.begin(), labels_.end());

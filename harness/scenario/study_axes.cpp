@@ -73,9 +73,18 @@ Variant with_fixed(Variant v, const json& axis, const json& value) {
 std::vector<Variant> expand(const json& axes, const std::string& pointer, const std::string& source,
                             const std::vector<std::string>& set) {
   std::vector<Variant> all(1);
+  double count = 1;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const json& axis = axes[a];
     check_lengths(axis, a, pointer, source);
+    const std::optional<json> only = fixed_value(axis, set);
+    if (!only) count *= static_cast<double>(axis["values"].size());
+  }
+  if (!(count <= static_cast<double>(kMostRuns)))
+    throw Error(fmt::format("{}: {}/axes: they make {:.0f} scenes; a study may have at most {} runs", source, pointer,
+                            count, kMostRuns));
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const json& axis = axes[a];
     const std::optional<json> only = fixed_value(axis, set);
     std::vector<Variant> next;
     for (const Variant& v : all) {

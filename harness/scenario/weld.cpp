@@ -42,13 +42,16 @@ class Places {
 std::size_t weld(assets::MeshFile& file, double distance_m) {
   Places places(distance_m);
   std::vector<Vec3> kept;
-  std::vector<std::uint32_t> to;
-  for (const Vec3& x : file.vertices) {
+  std::vector<std::uint32_t> to, lines;
+  for (std::size_t v = 0; v < file.vertices.size(); ++v) {
+    const Vec3& x = file.vertices[v];
     const auto next = static_cast<std::uint32_t>(kept.size());
     // A vertex that is not finite is in no place; the checks of the cloth name it.
     const bool finite = std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]);
     to.push_back(finite ? places.find_or_add(x, next, kept) : next);
-    if (to.back() == next) kept.push_back(x);
+    if (to.back() != next) continue;
+    kept.push_back(x);
+    if (!file.vertex_lines.empty()) lines.push_back(file.vertex_lines[v]);
   }
   const std::size_t removed = file.vertices.size() - kept.size();
   if (removed == 0) return 0;
@@ -56,6 +59,7 @@ std::size_t weld(assets::MeshFile& file, double distance_m) {
     for (std::uint32_t& v : t)
       if (v < to.size()) v = to[v];
   file.vertices = std::move(kept);
+  file.vertex_lines = std::move(lines);
   return removed;
 }
 

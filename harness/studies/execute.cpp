@@ -10,6 +10,7 @@
 #include "report/report.hpp"
 #include "report/verdict.hpp"
 #include "report/withheld.hpp"
+#include "results/result_folder.hpp"
 #include "runner/environment.hpp"
 #include "runner/run_choice.hpp"
 #include "runner/supervise.hpp"
@@ -117,8 +118,10 @@ StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& ca
   StudyEnd end;
   end.out = parent ? parent->out : call.out.empty() ? default_folder(manifest.study) : call.out;
   const bool resume = parent ? parent->resume : call.resume;
+  std::optional<ResultFolder> held;
+  if (!parent)
+    held.emplace(end.out, call.part ? ResultFolder::Use::Shared : ResultFolder::Use::Alone, call.command_line);
   require_same_runs(end.out, plan, resume);
-  std::filesystem::create_directories(end.out);
   if (needs_supervision(plan)) {
     end.exit_code = supervise(plan, end.out, call.resume, call.words);
     end.told = true;

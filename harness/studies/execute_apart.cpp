@@ -5,6 +5,7 @@
 #include "report/report.hpp"
 #include "report/verdict.hpp"
 #include "report/withheld.hpp"
+#include "results/result_folder.hpp"
 #include "runner/child.hpp"
 #include "runner/environment.hpp"
 #include "runner/stability_map.hpp"
@@ -25,7 +26,6 @@ StabilityOptions options_apart(Study& study, StudyManifest& manifest, const Stud
   options.jobs = jobs;
   options.solvers = std::move(only);
   options.progress = call.progress;
-  std::filesystem::create_directories(options.out);
   manifest.created = utc_now();
   manifest.command_line = call.command_line;
   for (const Study::Item& item : study.scenes)
@@ -50,18 +50,22 @@ void tell_drawn(const Study& study, const StudyCall& call) {
   }
 }
 
+ExitCode exit_code_of(const SolverEnds& ends) { return ends.faults().empty() ? ExitCode::Ok : ExitCode::CheckFailed; }
+
 StudyEnd execute_drawn(const Study& study, const StudyManifest& manifest, const StabilityOptions& options,
                        const StudyCall& call) {
   require_same_runs(study, options);
   write_manifest(options.out, manifest);
   tell_drawn(study, call);
-  execute_runs_apart(study, options, [](const RunRecord&) {});
+  SolverEnds ends;
+  execute_runs_apart(study, options, [&](const StudySolver& s, const RunRecord& a) { ends.add(s.solver, a.outcome); });
   const std::string out = options.out.string();
   std::vector<RunRecord> runs = collect({options.out});
   withhold_times(runs);
   const VerdictCounts counts = count_verdicts(runs);
   return {.out = options.out,
-          .faults = {},
+          .exit_code = exit_code_of(ends),
+          .faults = ends.faults(),
           .json =
               [=] {
                 return nlohmann::json{{"out", out}, {"passed", counts.passed}, {"runs", counts.runs}};
@@ -76,7 +80,8 @@ StudyEnd execute_stability(const Study& study, const StudyManifest& manifest, co
   n.add(run_stability_maps(study, options));
   const std::string out = options.out.string();
   return {.out = options.out,
-          .faults = {},
+          .exit_code = exit_code_of(n.ends),
+          .faults = n.ends.faults(),
           .json =
               [=] {
                 return nlohmann::json{{"out", out},         {"stable", n.stable},           {"degraded", n.degraded},
@@ -96,6 +101,7 @@ StudyEnd execute_stability(const Study& study, const StudyManifest& manifest, co
 StudyEnd execute_apart(Study study, StudyManifest manifest, const StudyCall& call, std::vector<std::string> only,
                        int jobs) {
   const StabilityOptions options = options_apart(study, manifest, call, std::move(only), jobs);
+  const ResultFolder held(options.out, ResultFolder::Use::Alone, call.command_line);
   return is_drawn(study) ? execute_drawn(study, manifest, options, call) : execute_stability(study, manifest, options);
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "results/result_folder.hpp"
 #include "runner/effective_moduli.hpp"
 #include "runner/friction.hpp"
 #include "runner/metamorphic.hpp"
@@ -18,14 +19,16 @@ struct Search {
   const Overrides overrides = split_overrides(call.set);
   const std::vector<std::string> solvers;
   Guard guard{call.words};
+  std::optional<ResultFolder> held = {};
   StudyRuns runs;
   std::vector<RunRecord> found = {};
 
   Search(const std::string& study, const SearchCall& c, std::vector<std::string> by_default)
       : call(c), solvers(c.solvers.empty() ? std::move(by_default) : c.solvers), runs(stored(study)) {}
 
-  StudyRuns stored(const std::string& study) const {
+  StudyRuns stored(const std::string& study) {
     if (call.out.empty()) return StudyRuns(call.device.options);
+    if (!Guard::in_child()) held.emplace(call.out, ResultFolder::Use::Alone, call.command_line);
     const nlohmann::json definition = {{"name", study}, {"solvers", solvers}, {"set", call.set}};
     return {call.device.options, call.out, call.resume, {study, "", call.command_line, definition, {}}};
   }

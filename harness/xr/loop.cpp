@@ -9,6 +9,7 @@
 #include "clothbench/vector.hpp"
 #include "gpu_solver.hpp"
 #include "results/replay.hpp"
+#include "results/result_folder.hpp"
 #include "results/store.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"
@@ -379,6 +380,7 @@ class Loop {
 
 LoopResult run_loop(const LoopOptions& options) {
   const Instance xr(options.runtime);
+  const ResultFolder held(options.out, ResultFolder::Use::Alone, "clothbench xr");
   LiveScene live(options.scenario, options.overrides, options.out / "scenario",
                  {xr.tracks_hands(), RoomScanner::offered(xr)});
   const std::shared_ptr<vulkan::Device> device = xr.make_device(options.device);

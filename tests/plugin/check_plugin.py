@@ -168,7 +168,7 @@ class Plugin(unittest.TestCase):
 
     def test_a_crash_is_a_row(self):
         for where, fault in (("accuracy", "crash:5"), ("trial 1 of 1", "crash:365")):
-            self.assertEqual(self.both(FAULT=fault), 0, self.text)
+            self.assertEqual(self.both(FAULT=fault), 1, self.text)
             outcome = self.stored("gravity__faulty__default")[0]
             self.assertEqual((outcome["status"], outcome["class"]), ("crashed", "F8"))
             self.assertIn("signal 11", outcome["message"])
@@ -180,15 +180,15 @@ class Plugin(unittest.TestCase):
             shutil.rmtree(self.out)
 
     def test_a_plugin_that_ends_the_program_or_hangs_is_a_row(self):
-        self.assertEqual(self.both(FAULT="exit:3"), 0, self.text)
+        self.assertEqual(self.both(FAULT="exit:3"), 1, self.text)
         self.assertIn("exit status 0", self.stored("gravity__faulty__default")[0]["message"])
         shutil.rmtree(self.out)
-        self.assertEqual(self.both(FAULT="hang:3", CLOTHBENCH_PLUGIN_LIMIT_S="2"), 0, self.text)
+        self.assertEqual(self.both(FAULT="hang:3", CLOTHBENCH_PLUGIN_LIMIT_S="2"), 1, self.text)
         self.assertEqual(self.stored("gravity__faulty__default")[0]["status"], "timed_out")
         self.assertEqual(self.stored("gravity__ballistic__default")[0]["status"], "ok")
 
     def test_one_that_blows_up_or_cannot_load(self):
-        self.assertEqual(self.both(FAULT="nan:3"), 0, self.text)
+        self.assertEqual(self.both(FAULT="nan:3"), 1, self.text)
         outcome = self.stored("gravity__faulty__default")[0]
         self.assertEqual((outcome["status"], outcome["failed_frame"]), ("not_finite", 3))
         shutil.rmtree(self.out)
@@ -197,6 +197,33 @@ class Plugin(unittest.TestCase):
         self.assertEqual(outcome["status"], "error")
         self.assertIn("it was asked to fail", outcome["message"])
         self.assertEqual(self.stored("gravity__ballistic__default")[0]["status"], "ok")
+
+    def test_one_rule_of_exit_codes(self):
+        """1 where a solver finished none of its runs, however it failed; 0 where it finished one."""
+        faults = {"crash:5": "crashed", "exit:5": "crashed", "hang:5": "timed_out", "nan:5": "not_finite", "create": "crashed", "load": "error"}
+        for fault, status in faults.items():
+            words = ["run", "paper/gravity", "--solver", self.faulty(), *SMALL, "--trials", "0", "--out", self.out]
+            self.assertEqual(self.command(*words, FAULT=fault, CLOTHBENCH_PLUGIN_LIMIT_S="2"), 1, self.text)
+            self.assertEqual(self.stored("gravity__faulty__default")[0]["status"], status)
+            self.assertIn("FAULT faulty: finished none of 1 runs; the last: " + status, self.text)
+            # A scene that it can run: it finished one of two.
+            self.assertEqual(self.command(*words[:2], "validation/free-fall", *words[2:], "--resume"), 0, self.text)
+            shutil.rmtree(self.out)
+
+    def test_what_a_plugin_prints_is_no_part_of_the_summary(self):
+        solver = self.faulty()
+        for words in (
+            ["run", "paper/gravity", "--solver", solver, *SMALL, "--trials", "1", "--out", self.out],
+            ["--in-process", "run", "paper/gravity", "--solver", solver, *SMALL, "--out", os.path.join(self.home, "second")],
+            ["plan", "paper/gravity", "--solver", solver],
+            ["threshold", "validation/incline-stick", "--solver", solver],
+            ["run", "no-such-scene", "--solver", solver],
+        ):
+            env = dict(os.environ, CHATTER="1", CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios"))
+            process = subprocess.run([CLOTHBENCH, "--json", *words], env=env, cwd=self.home, capture_output=True, text=True, timeout=120)
+            json.loads(process.stdout)
+            self.assertNotIn("prints", process.stdout)
+            self.assertIn("prints", process.stderr)
 
     # --- other commands than run and study: a crash is an answer, and what others answered is kept
 

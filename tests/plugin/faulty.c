@@ -1,5 +1,6 @@
 /* A plugin that is wrong in the way it was compiled for (FAULT_…) or that $FAULT names while it runs: crash:N, hang:N, exit:N,
- * nan:N (at the Nth step of a solver), load, create (a crash there). Otherwise its cloth stands still. */
+ * nan:N (at the Nth step of a solver), load, create (a crash there); with $CHATTER it prints on standard output wherever it
+ * can. Otherwise its cloth stands still. */
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -14,6 +15,13 @@ typedef struct {
   ClothbenchStage stage;
   double x[]; /* positions */
 } Solver;
+
+static void chatter(void) {
+  if (getenv("CHATTER")) printf("{\"plugin\": \"prints\"}\n");
+}
+
+__attribute__((constructor)) static void chatter_when_loaded(void) { chatter(); }
+__attribute__((destructor)) static void chatter_when_unloaded(void) { chatter(); }
 
 static void reset(void* self) {
   Solver* s = self;
@@ -46,6 +54,7 @@ static void follow(Solver* s, const ClothbenchFrame* frame) {
 }
 
 static int32_t step(void* self, const ClothbenchFrame* frame) {
+  chatter();
   const char* log = getenv("FRAME_LOG");
   FILE* lines = log ? fopen(log, "a") : NULL;
   if (lines) fprintf(lines, "%d %.17g %.17g\n", (int)frame->index, frame->time_s, frame->dt_s), fclose(lines);

@@ -89,7 +89,7 @@ TEST(MeshInput, RefusesTexturesThatAreNoShape) {
                 .find("bare.obj: triangle 0 has no finite texture"),
             std::string::npos);
   EXPECT_NE(message({{"file", "flat.obj"}, {"rest", "texture"}, {"texture_unit_m", 1}})
-                .find("flat.obj: triangle 0 (vertices 0, 1, 2) has no area in texture"),
+                .find("flat.obj: line 7: triangle 0 (vertices 0, 1, 2) has no area in texture"),
             std::string::npos);
   EXPECT_NE(message({{"file", "panels.obj"}, {"rest", "cotton"}}).find("/cloth/mesh/rest"), std::string::npos);
 }
@@ -194,6 +194,83 @@ TEST(MeshInput, ReadsGltf) {
     const std::vector<double> mass = vertex_masses(pattern);
     EXPECT_NEAR(std::accumulate(mass.begin(), mass.end(), 0.0), 0.3 * 0.25, 1e-12);
   }
+}
+
+TEST(MeshInput, OfAGltfTheActiveSceneIsRead) {
+  json j = square_gltf();
+  j["nodes"].push_back({{"name", "unused"}, {"mesh", 0}, {"translation", {9, 0, 0}}});
+  j["nodes"].push_back({{"name", "parent"}, {"children", {1}}});
+  const auto vertices = [&] { return assets::parse_gltf(j.dump(), "m.gltf").vertices.size(); };
+  EXPECT_EQ(vertices(), 8u) << "a file without scenes is read whole";
+  j["scenes"] = {{{"nodes", {0}}}};
+  EXPECT_EQ(vertices(), 4u) << "the only scene";
+  j["scene"] = 0;
+  EXPECT_EQ(vertices(), 4u);
+  j["scenes"].push_back({{"nodes", {0, 2}}});
+  EXPECT_EQ(vertices(), 4u);
+  j["scene"] = 1;
+  EXPECT_EQ(vertices(), 8u) << "with the children of its nodes";
+  EXPECT_EQ(assets::parse_gltf(binary(j), "m.glb").vertices.size(), 8u);
+  j.erase("scene");
+  EXPECT_EQ(refusal([&] { vertices(); }).find("m.gltf: /scene: missing"), 0u) << refusal([&] { vertices(); });
+  j["scene"] = 2;
+  EXPECT_EQ(refusal([&] { vertices(); }).find("m.gltf: /scenes: index 2"), 0u) << refusal([&] { vertices(); });
+}
+
+TEST(MeshInput, MorphTargetsMoveTheirVertices) {
+  json j = square_gltf();
+  // The positions as displacements: each weight adds the square once more.
+  j["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}, {{"NORMAL", 0}}};
+  const auto corner = [&] { return assets::parse_gltf(j.dump(), "m.gltf").vertices.at(2); };
+  EXPECT_EQ(corner(), (Vec3{2, 2, 5}));
+  j["meshes"][0]["weights"] = {0.5, 1};
+  EXPECT_EQ(corner(), (Vec3{3, 3, 5}));
+  j["nodes"][0]["weights"] = {2, 0};
+  EXPECT_EQ(corner(), (Vec3{6, 6, 5})) << "those of the node take the place of those of its mesh";
+  j["nodes"][0]["weights"] = {2};
+  EXPECT_NE(refusal(corner).find("/meshes/0/primitives/0/targets: 2 morph targets, but 1 weights"), std::string::npos);
+}
+
+TEST(MeshInput, WhatAGltfNeedsIsRefusedByName) {
+  const auto why = [](const char* pointer, const json& value) {
+    json j = square_gltf();
+    j[json::json_pointer(pointer)] = value;
+    const std::string text = refusal([&] { assets::parse_gltf(j.dump(), "m.gltf"); });
+    const std::string bytes = refusal([&] { assets::parse_gltf(binary(j), "m.gltf"); });
+    EXPECT_EQ(text.empty(), bytes.empty());
+    if (text.starts_with("m.gltf: /")) EXPECT_EQ(text, bytes);
+    return text;
+  };
+  EXPECT_EQ(why("/extensionsRequired", {"KHR_materials_unlit", "KHR_texture_transform"}), "");
+  for (const char* needed :
+       {"KHR_mesh_quantization", "KHR_draco_mesh_compression", "EXT_meshopt_compression", "MY_own"})
+    EXPECT_NE(why("/extensionsRequired", {"KHR_materials_unlit", needed})
+                  .find(std::string("m.gltf: /extensionsRequired/1: \"") + needed + "\" is not supported"),
+              std::string::npos);
+  EXPECT_EQ(why("/asset", {{"version", "2.1"}}), "") << "a later minor version is read as this one";
+  for (const char* version : {"1.0", "3.0", "20", ""}) EXPECT_NE(why("/asset", {{"version", version}}), "") << version;
+  EXPECT_NE(why("/asset", {{"version", "2.1"}, {"minVersion", "2.1"}}).find("/asset/minVersion: \"2.1\""),
+            std::string::npos);
+  EXPECT_NE(why("/asset", json::object()), "");
+  std::string old = binary(square_gltf());
+  old[4] = 1;
+  EXPECT_EQ(refusal([&] { assets::parse_gltf(old, "m.glb"); }),
+            "m.glb: not a binary glTF file of version 2: its version is 1");
+}
+
+TEST(MeshInput, NamesOfFilesMayEndInCapitals) {
+  const ScratchFolder folder;
+  folder.file("PANELS.OBJ", kPanels);
+  folder.file("SQUARE.GLTF", square_gltf().dump());
+  folder.file("SQUARE.Glb", binary(square_gltf()));
+  folder.file("square.stl", kPanels);
+  for (const char* file : {"PANELS.OBJ", "SQUARE.GLTF", "SQUARE.Glb"}) {
+    const std::string scene = folder.file("SCENE.JSON", scenario(file).dump());
+    EXPECT_EQ(load_scene(scene).cloth.vertex_count(), 4u) << file;
+  }
+  EXPECT_NE(
+      refusal([&] { scene_of(folder, "square.stl", "", {}); }).find("/cloth/mesh/file: expected a file whose name"),
+      std::string::npos);
 }
 
 TEST(MeshInput, MirroredNodesKeepTheirFrontOutside) {

@@ -1,0 +1,34 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+namespace clothbench {
+
+/// Makes a folder for result files and holds it: a second process that would write the same files is refused. The
+/// kernel releases a lock with its process, so that one that died blocks nothing. Children of the process write under
+/// its lock.
+class ResultFolder {
+ public:
+  enum class Use {
+    Alone,
+    Shared  ///< with other processes that also share it: parts of one study
+  };
+  /// Throws Error naming the folder and who holds it, or why it cannot be made or written (a file, a path too long, no
+  /// permission). `command_line`: told to whom it is refused.
+  ResultFolder(const std::filesystem::path& folder, Use, const std::string& command_line);
+  ~ResultFolder();
+  ResultFolder(const ResultFolder&) = delete;
+  ResultFolder& operator=(const ResultFolder&) = delete;
+
+ private:
+  std::filesystem::path file_;
+  int lock_ = -1;
+};
+
+/// Bytes that a file's name may have before the endings of result files.
+inline constexpr std::size_t kMostRunName = 200;
+
+/// Throws Error unless the files of a run of this name can be made in the folder.
+void require_short_name(const std::filesystem::path& folder, const std::string& run);
+
+}  // namespace clothbench

@@ -1,0 +1,39 @@
+// The rule of exit codes: a solver that finished none of its runs is a fault, however they ended.
+#include "runner/solver_ends.hpp"
+
+#include <gtest/gtest.h>
+
+namespace clothbench {
+namespace {
+
+std::vector<std::string> faults(const std::vector<std::pair<std::string, std::string>>& ends) {
+  SolverEnds all;
+  for (const auto& [solver, status] : ends) all.add(solver, {status, "F8", 3, "why"});
+  return all.faults();
+}
+
+TEST(SolverEnds, EveryKindOfFailureCountsAlike) {
+  for (const char* status : {"crashed", "timed_out", "diverged", "not_finite", "device_lost", "error"}) {
+    EXPECT_EQ(faults({{"mine", status}}),
+              std::vector<std::string>{std::string("mine: finished none of 1 runs; the last: ") + status + ": why"});
+    EXPECT_TRUE(faults({{"mine", status}, {"mine", "ok"}}).empty()) << status;
+    EXPECT_EQ(faults({{"mine", status}, {"other", "ok"}}).size(), 1u) << "of each solver by itself: " << status;
+    EXPECT_EQ(faults({{"mine", status}, {"mine", "unsupported"}}).size(), 1u) << status;
+  }
+}
+
+TEST(SolverEnds, WhatWasNotRunIsNoFailure) {
+  EXPECT_TRUE(faults({{"mine", "unsupported"}, {"mine", "over_budget"}}).empty());
+  EXPECT_TRUE(faults({}).empty());
+}
+
+TEST(SolverEnds, AnEndThatTheSceneExpectsIsNoFailure) {
+  SolverEnds ends;
+  ends.add("mine", {"diverged", "F1", 3, "why", "pass"});
+  EXPECT_TRUE(ends.faults().empty());
+  ends.add("other", {"diverged", "F1", 3, "why", "fail: outcome"});
+  EXPECT_EQ(ends.faults().size(), 1u);
+}
+
+}  // namespace
+}  // namespace clothbench
