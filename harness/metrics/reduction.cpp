@@ -50,6 +50,11 @@ const truth::ReferenceCase& RunView::reference_case() const {
   return case_.value();
 }
 
+const ExactBound& RunView::exact_bound() const {
+  if (!bound_) bound_ = clothbench::exact_bound(TruthJudge(scene));
+  return *bound_;
+}
+
 bool RunView::whole() const { return pass.time_s.size() == static_cast<std::size_t>(scene.time.frames()) + 1; }
 
 const std::vector<double>* RunView::series(const std::string& name) const {

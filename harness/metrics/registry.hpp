@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "clothbench/record.hpp"
+#include "metrics/exact_bound.hpp"
 #include "metrics/metric.hpp"
 #include "truth/reference_case.hpp"
 
@@ -31,9 +32,12 @@ struct RunView {
   std::size_t settled_from() const;
   /// Only for a scene that states a truth.
   const truth::ReferenceCase& reference_case() const;
+  /// The same.
+  const ExactBound& exact_bound() const;
 
  private:
   mutable std::optional<truth::ReferenceCase> case_;
+  mutable std::optional<ExactBound> bound_;
 };
 
 /// How a number is computed from a run.
@@ -115,5 +119,11 @@ std::vector<std::string> metrics_behind(const std::string& summary_name);
 
 /// Prefix of summary values that are the outcome of a bound: 1 pass, 0 fail, NaN not measured.
 inline const std::string kExpect = "expect.";
+
+/// Suffix of the bound on a scalar that a scene with an exact solution expects.
+inline const std::string kBound = "_bound";
+
+/// The scalars that have such a bound.
+inline constexpr const char* kExactlyBounded[] = {"truth_e2", "truth_quantity_error"};
 
 }  // namespace clothbench
