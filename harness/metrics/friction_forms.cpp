@@ -6,6 +6,7 @@
 
 #include "clothbench/error.hpp"
 #include "truth/norms.hpp"
+#include "truth/tolerance.hpp"
 
 namespace clothbench {
 namespace {
@@ -20,13 +21,21 @@ double quantity_of(const RunRecord& run) {
 }  // namespace
 
 const std::vector<FrictionForm>& friction_forms() {
-  static const std::vector<FrictionForm> all = {{"incline-stick", "critical angle [°], ≤ 0.1", true, 1, 0.1},
-                                                {"incline-stick", "creep in 2 s [% L], ≤ 0.01", false, 100, 0.01},
-                                                {"incline-slip", "slip distance [%], ≤ 2", false, 100, 2},
-                                                {"incline-stop", "stopping distance [%], ≤ 2", false, 100, 2},
-                                                {"capstan-hold", "overhang held [%], ≤ 3", true, 100, 3},
-                                                {"capstan-slip", "slip round the capstan [%], ≤ 3", false, 100, 3},
-                                                {"atwood", "displacement of Atwood's strip [%], ≤ 3", false, 100, 3}};
+  static const std::vector<FrictionForm> all = [] {
+    const truth::Tolerance &slope = truth::tolerance_of("incline"), &cylinder = truth::tolerance_of("capstan");
+    const auto share = [](const char* scene, const std::string& what, double at_most) {
+      return FrictionForm{scene, fmt::format("{}, ≤ {:g}", what, 100 * at_most), false, 100, 100 * at_most};
+    };
+    return std::vector<FrictionForm>{
+        {"incline-stick", "critical angle [°], ≤ 0.1", true, 1, 0.1},
+        share("incline-stick", "creep in 2 s [% L]", slope.at_rest),
+        share("incline-slip", "slip distance [%]", slope.of_motion),
+        share("incline-stop", "stopping distance [%]", slope.of_motion),
+        {"capstan-hold", fmt::format("overhang held [%], ≤ {:g}", 100 * cylinder.of_motion), true, 100,
+         100 * cylinder.of_motion},
+        share("capstan-slip", "slip round the capstan [%]", cylinder.of_motion),
+        share("atwood", "displacement of Atwood's strip [%]", truth::tolerance_of("atwood").of_motion)};
+  }();
   return all;
 }
 

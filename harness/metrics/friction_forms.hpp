@@ -11,13 +11,13 @@ namespace clothbench {
 
 /// A closed form of friction: the scene, the quantity compared, and its bound.
 struct FrictionForm {
-  const char *scene, *head;
+  std::string scene, head;
   bool threshold;
   double scale;    ///< to the head's unit
   double at_most;  ///< in the head's unit
 };
 /// Coulomb's cone on a slope, uniform deceleration, Euler and Eytelwein's belt on a polygon, Lagrange's strip over a
-/// cylinder. The bounds are targets that a solver should meet.
+/// cylinder. Except for thresholds, the bounds are the tolerances of the reference cases (truth/tolerance.hpp).
 const std::vector<FrictionForm>& friction_forms();
 
 /// Protocols under which runs are stored: the runs of a search, and the runs judged only by their end state.

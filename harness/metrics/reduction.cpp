@@ -58,9 +58,14 @@ std::span<const motion_check::Finding> RunView::findings() const {
     const bool known = kWithContactMetrics || scene.colliders.empty();
     if (known && !pass.time_s.empty() && pass.position.size() == 3 * scene.cloth.vertex_count() * pass.time_s.size())
       findings_ = motion_check::verify(scene, {pass.time_s, pass.position},
-                                  plan == nullptr ? std::vector<double>() : plan->contact_margins_m);
+                                       plan == nullptr ? std::vector<double>() : plan->contact_margins_m);
   }
   return *findings_;
+}
+
+const ExactBound& RunView::exact_bound() const {
+  if (!bound_) bound_ = clothbench::exact_bound(TruthJudge(scene));
+  return *bound_;
 }
 
 bool RunView::whole() const { return pass.time_s.size() == static_cast<std::size_t>(scene.time.frames()) + 1; }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "clothbench/record.hpp"
+#include "metrics/exact_bound.hpp"
 #include "metrics/metric.hpp"
 #include "metrics/motion_check/motion_check.hpp"
 #include "truth/reference_case.hpp"
@@ -35,10 +36,13 @@ struct RunView {
   std::span<const motion_check::Finding> findings() const;
   /// Only for a scene that states a truth.
   const truth::ReferenceCase& reference_case() const;
+  /// The same.
+  const ExactBound& exact_bound() const;
 
  private:
   mutable std::optional<truth::ReferenceCase> case_;
   mutable std::optional<std::vector<motion_check::Finding>> findings_;
+  mutable std::optional<ExactBound> bound_;
 };
 
 /// How a number is computed from a run.
@@ -122,5 +126,11 @@ std::vector<std::string> metrics_behind(const std::string& summary_name);
 inline const std::string kExpect = "expect.";
 /// Prefix of the statistics of metrics/motion_check: each over its tolerance.
 inline const std::string kMotionCheck = "motion_check.";
+
+/// Suffix of the bound on a scalar that a scene with an exact solution expects.
+inline const std::string kBound = "_bound";
+
+/// The scalars that have such a bound.
+inline constexpr const char* kExactlyBounded[] = {"truth_e2", "truth_quantity_error"};
 
 }  // namespace clothbench

@@ -80,8 +80,22 @@ Reduction worst(const char* series) {
           }};
 }
 
+bool with_truth(const RunView& r) { return has_truth(r.scene); }
+
 double truth_error(const RunView& r) {
   return over_time(r.reference_case().by_quantity ? "truth_quantity_error" : "truth_error_e2").value(r);
+}
+
+/// Bound on another scalar of a whole run.
+Scalar bound_on(const std::string& scalar, double ExactBound::*bound) {
+  return {scalar + kBound,
+          own(
+              {}, "bound on " + scalar + ": tolerance of the reference case, error of the mesh, rounding",
+              [bound](const RunView& r) { return r.whole() ? r.exact_bound().*bound : kMissing; }, "1"),
+          Expect::No,
+          nullptr,
+          0,
+          with_truth};
 }
 
 /// Values that a study adds to the summaries of a scene's runs: runner/reference.cpp, truth_dependence.cpp.
@@ -89,7 +103,6 @@ Scalar of_the_study(const char* name, const char* doc, const Gate* gate = nullpt
   return {name, own({}, doc, nullptr, "1"), Expect::No, gate};
 }
 
-bool with_truth(const RunView& r) { return has_truth(r.scene); }
 bool with_energy(const RunView& r) { return truth_keeps_energy(r.scene); }
 
 std::vector<Metric> truth_series() {
@@ -122,6 +135,8 @@ MetricGroup truth_metrics() {
       {{"truth_quantity_error_max", worst("truth_quantity_error"), Yes, &kErrorGate, 360},
        {"truth_quantity_error", over_time("truth_quantity_error"), No, &kErrorGate, 370, with_truth},
        {"truth_e2", over_time("truth_error_e2"), No, nullptr, 380, with_truth},
+       bound_on("truth_e2", &ExactBound::e2),
+       bound_on("truth_quantity_error", &ExactBound::quantity_error),
        {"truth_max", worst("truth_error_max"), No, nullptr, 0, with_truth},
        {"truth_speed_error", over_time("truth_speed_error"), No, &kErrorGate, 0, with_truth},
        {"truth_quantity", at_the_end("truth_quantity"), No, nullptr, 0, with_truth},

@@ -24,6 +24,7 @@ class TruthJudge {
  public:
   /// Throws Error if the scene has no reference case, or does not meet its requirements.
   explicit TruthJudge(const Scene&);
+  const Scene& scene() const { return scene_; }
   const truth::ReferenceCase& reference_case() const { return case_; }
   TruthErrors judge(int frame, const ClothState&) const;
   /// The ranking error of frames judged at these times, as a run's `truth_error`: RMS over time, at rest the last.

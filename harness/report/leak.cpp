@@ -22,7 +22,7 @@ constexpr std::pair<const char*, const char*> kWords[] = {{"tunnelled_fraction_m
                                                           {"depth_vertex_max_m", "inside [m]"},
                                                           {"grip_edge_ratio_max", "edge pulled"},
                                                           {"strain_mean_released", "strain left"},
-                                                          {"truth_quantity_error_max", "strain off [v0/c]"},
+                                                          {"truth_quantity_error", "strain off [v0/c]"},
                                                           {"pop_max_m", "popping [m]"},
                                                           {"contact_length_settled_m", "contour left [m]"}};
 
@@ -56,8 +56,6 @@ std::string without_bounds(const std::string& kind, const RunRecord& c) {
     most = {{"tunnelled_fraction_max", 0}};
   else if (kind == "grip")
     most = {{"grip_edge_ratio_max", 2}};
-  else if (kind == "wave")
-    most = {{"truth_quantity_error_max", 0.1}};
   else
     most = {{"depth_vertex_max_m", 1e-3}};
   if (hand) most.insert(most.begin(), std::pair("wrong_side_samples_max", 0.0));

@@ -115,7 +115,10 @@ Columns<ContactRow> place_columns() {
 }
 
 /// The bound a scene puts on a summary value, as text: "at most 0".
-std::string bound(const json& scenario, const std::string& name) {
+std::string bound(const RunRecord& c, const std::string& name) {
+  if (const double exact = summary_value(c, name + kBound); std::isfinite(exact))
+    return fmt::format("at most {:.3g}", exact);
+  const json scenario = scenario_of(c);
   const json e = scenario.is_object() ? scenario.value("expect", json::object()).value(name, json()) : json();
   if (e.is_string()) return e.get<std::string>();
   std::string text;
@@ -296,7 +299,7 @@ Table failed_expectations_table(const std::vector<ContactSetUp>& ups) {
   return Columns<Broken>{{"", "scene", &Broken::scene},
                          {"", "solver", [](auto& b) { return b.series.label(); }},
                          {"", "bound", &Broken::name},
-                         {"", "expected", [](auto& b) { return bound(scenario_of(*b.run), b.name); }},
+                         {"", "expected", [](auto& b) { return bound(*b.run, b.name); }},
                          {"", "found",
                           [](auto& b) -> Value {
                             if (b.name == "outcome") return ending(b.run->outcome);

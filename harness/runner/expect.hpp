@@ -7,7 +7,8 @@
 
 namespace clothbench {
 
-/// Result of checking a scene's `expect`.
+/// Result of checking a run against what its scene expects: the `expect` of its file, the bounds of its exact solution
+/// (metrics/exact_bound.hpp), and stability grade 0 if it has a stability block. The last two imply outcome "ok".
 struct Verdict {
   /// "pass"; "fail: " and every broken expectation with its value and bound; "not measured" if the accuracy pass is
   /// shorter than the scene without having failed, or if this build cannot measure the scene's contact; "" if the scene

@@ -21,10 +21,12 @@ truth::ReferenceCase case_with_threshold(const Scene& scene) {
 }
 
 /// The scene at one coefficient of friction, without a truth of its own: at too little of it a strip would leave its
-/// cylinder, and there is none.
+/// cylinder, and there is none. It expects nothing: a probe of a search has no verdict.
 Scene tried(const Scene& scene, const truth::Threshold& t, double friction) {
   Scene out = scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", t.key, friction)});
   out.reference_case.clear();
+  out.expected_outcome.clear();
+  out.expect.clear();
   out.name = tried_scene(scene.name, friction);
   return out;
 }

@@ -238,6 +238,7 @@ ReferenceCase capstan(const Strip& s) {
   return known;
 }
 
+/// The rows form a polygon on the cylinder, whose energy equals that of the smooth strip after every whole cell.
 ReferenceCase atwood(const Strip& s) {
   const Draped strip = draped(s);
   s.need(strip.friction == 0, "no friction");

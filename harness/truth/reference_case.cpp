@@ -35,23 +35,25 @@ ReferenceCase free_fall(const Strip& s) {
   s.need_gravity();
   s.need_even_masses();
   s.need_pins({}, "nothing that is held");
-  s.need_damping(false);
   s.need_flat();
   ReferenceCase known = s.reference_case();
   known.quantity_name = "fall of the centre of mass";
-  const double whole = s.time_s(s.scene.time.frames());
-  known.quantity_scale = 0.5 * s.g * whole * whole;
-  const auto fallen = [s, v0 = s.scene.cloth.initial_velocity_m_per_s](double share, int frame) {
+  const auto body = [c = s.scene.material.damping_per_s](double v, double g) { return FreeFall{0, v, g, c}; };
+  known.quantity_scale = -fall_height_m(body(0, s.g), s.time_s(s.scene.time.frames()));
+  const Vec3 v0 = s.scene.cloth.initial_velocity_m_per_s;
+  const auto fallen = [s, v0, body](double share, int frame) {
     const double t = s.time_s(frame);
-    return s.start + share * s.length_m * s.along + t * v0 + fall_height_m({0, 0, s.g, 0}, t) * s.up;
+    return s.start + share * s.length_m * s.along + fall_height_m(body(1, 0), t) * v0 +
+           fall_height_m(body(0, s.g), t) * s.up;
   };
   known.columns = [s, fallen](int frame) {
     Columns out;
     for (int i = 0; i <= s.links; ++i) out.push_back(fallen(static_cast<double>(i) / s.links, frame));
     return out;
   };
-  known.column_speeds = [s](int frame) {
-    const Vec3 v = s.scene.cloth.initial_velocity_m_per_s + fall_speed_m_per_s({0, 0, s.g, 0}, s.time_s(frame)) * s.up;
+  known.column_speeds = [s, v0, body](int frame) {
+    const double t = s.time_s(frame);
+    const Vec3 v = fall_speed_m_per_s(body(1, 0), t) * v0 + fall_speed_m_per_s(body(0, s.g), t) * s.up;
     return Columns(static_cast<std::size_t>(s.links) + 1, v);
   };
   known.quantity = [s](const Columns& c) {
@@ -137,6 +139,20 @@ ReferenceCase swing_strip(const Strip& s) {
   return known;
 }
 
+/// A strip that does not stretch stays where it starts, whatever its masses.
+ReferenceCase hanging_at_rest_length(const Strip& s) {
+  ReferenceCase known = s.reference_case();
+  known.settles = known.by_quantity = true;
+  known.quantity_name = "stretch of the strip";
+  known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, s.along) - s.length_m; };
+  known.columns = [s](int) {
+    Columns out;
+    for (int i = 0; i <= s.links; ++i) out.push_back(s.at(s.length_m * i / s.links, 0));
+    return out;
+  };
+  return known;
+}
+
 ReferenceCase heavy_strip(const Strip& s) {
   s.need_gravity();
   s.need(std::abs(dot(s.along, s.up) + 1) <= Strip::kLevel, "a sheet whose axis_u points down");
@@ -144,6 +160,7 @@ ReferenceCase heavy_strip(const Strip& s) {
   s.need_pins(s.edge("u0"), "edge u0 pinned and nothing else held");
   s.need_no_bending();
   s.need_damping(true);
+  if (!s.scene.material.membrane_stiffness_N_per_m) return hanging_at_rest_length(s);
   const HeavyStrip strip{s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), s.g,
                          s.end_load_N_per_m()};
   ReferenceCase known = s.reference_case();

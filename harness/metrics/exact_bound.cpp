@@ -1,0 +1,65 @@
+#include "metrics/exact_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "truth/tolerance.hpp"
+
+namespace clothbench {
+namespace {
+
+constexpr double kNothing = 1e-12;  // a motion of rounding errors only
+
+/// A triangle mesh has no exact solution of its own and is compared with the continuum: linear triangles, irregular and
+/// perhaps locked, are of first order in their size (exact grids: no error).
+double mesh_error(const Cloth& c) { return c.mesh ? c.mesh->edge_m / c.width_m : 0; }
+
+/// Half a unit in the last place of float32, of the coordinate that is farthest from the origin.
+double rounding_m(const std::vector<Vec3>& columns) {
+  double largest_m = 0;
+  for (const Vec3& x : columns)
+    for (const double coordinate : x) largest_m = std::max(largest_m, std::abs(coordinate));
+  return std::exp2(-24) * largest_m;
+}
+
+/// What the quantity changes by at most if each coordinate is rounded.
+double rounding_of_quantity(const truth::ReferenceCase& known, std::vector<Vec3> columns, double by_m) {
+  const double exact = known.quantity(columns);
+  double sum = 0;
+  for (Vec3& x : columns)
+    for (double& coordinate : x) {
+      const double kept = coordinate;
+      coordinate += by_m;
+      sum += std::abs(known.quantity(columns) - exact);
+      coordinate = kept;
+    }
+  return sum / known.quantity_scale;
+}
+
+}  // namespace
+
+ExactBound exact_bound(const TruthJudge& judge) {
+  const Scene& scene = judge.scene();
+  const truth::ReferenceCase& known = judge.reference_case();
+  const truth::Tolerance& tolerance = truth::tolerance_of(known.name);
+  const int last = scene.time.frames();
+  const ClothState start{initial_positions(scene), std::vector<double>(3 * scene.cloth.vertex_count())};
+  std::vector<double> times_s, e2, quantity_error;
+  for (int frame = known.settles ? last : 0; frame <= last; ++frame) {
+    const TruthErrors moved = judge.judge(frame, start);
+    times_s.push_back(scene.time.at(frame));
+    e2.push_back(moved.e2);
+    quantity_error.push_back(moved.quantity_error);
+  }
+  const auto bound = [&](const std::vector<double>& errors, double at_rest, double rounding) {
+    const double moved = errors.size() < 2 ? errors.back() : truth::time_rms(times_s, errors);
+    return (moved <= kNothing ? at_rest : (tolerance.of_motion + mesh_error(scene.cloth)) * moved) + rounding;
+  };
+  const std::vector<Vec3> columns = known.columns(last);
+  const double longer_m = std::max(scene.cloth.width_m, scene.cloth.height_m), by_m = rounding_m(columns);
+  return {bound(e2, tolerance.at_rest, std::sqrt(3.0) * by_m / longer_m),
+          bound(quantity_error, tolerance.at_rest * longer_m / known.quantity_scale,
+                rounding_of_quantity(known, columns, by_m))};
+}
+
+}  // namespace clothbench
