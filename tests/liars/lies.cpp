@@ -46,9 +46,7 @@ Index amid(const Right& r, Dice& dice) {
   return std::clamp<Index>(between(6, std::max<Index>(7, end * 3 / 4), dice), 4, n - 5);
 }
 
-Index in_air(const Right& r, Dice& dice) {
-  return r.facts.air[between(0, r.facts.air.size() - 1, dice)];
-}
+Index in_air(const Right& r, Dice& dice) { return r.facts.air[between(0, r.facts.air.size() - 1, dice)]; }
 
 /// The right motion with the vertices that are not held moved.
 template <class Move>
@@ -215,9 +213,8 @@ Told sideways_3cm(const Right& r, Dice& dice) { return one_frame(r, in_air(r, di
 
 Told frozen_then_rest(const Right& r, Dice& dice) {
   const Index from = amid(r, dice), to = std::min(from + 15, r.motion.frames() - 2), last = r.motion.frames() - 1;
-  return moved(r, [&](Index k, Index v, const V3& x) {
-    return k < from ? x : v3(r.motion.at(k < to ? from : last, v));
-  });
+  return moved(r,
+               [&](Index k, Index v, const V3& x) { return k < from ? x : v3(r.motion.at(k < to ? from : last, v)); });
 }
 Told rests_from_20(const Right& r, Dice&) {
   return moved(r, [&](Index k, Index v, const V3& x) { return k < 20 ? x : v3(r.motion.at(20, v)); });
@@ -248,9 +245,7 @@ Told mirrored(const Right& r, Dice&) {
   V3 middle = V3::Zero();
   for (Index v = 0; v < r.motion.vertices(); ++v)
     middle += v3(r.motion.at(0, v)) / static_cast<double>(r.motion.vertices());
-  return moved(r, [&](Index, Index, const V3& x) {
-    return V3(x - 2 * (x - middle).dot(r.facts.up) * r.facts.up);
-  });
+  return moved(r, [&](Index, Index, const V3& x) { return V3(x - 2 * (x - middle).dot(r.facts.up) * r.facts.up); });
 }
 Told backwards(const Right& r, Dice&) {
   const double last = static_cast<double>(r.motion.frames() - 1);

@@ -15,21 +15,21 @@ using V3 = Eigen::Vector3d;
 
 /// What a scene and its right motion are, for the choice of lies. All frames count from 0, the start.
 struct Facts {
-  int equations = 6;          ///< of the six of momentum, those that attachments leave
-  bool falls = false;         ///< the scene has gravity
-  bool attached = false;      ///< pins or grips
-  bool solid = false;         ///< a collider
-  bool mover = false;         ///< a collider that moves
-  bool self = false;          ///< the cloth meets itself
+  int equations = 6;      ///< of the six of momentum, those that attachments leave
+  bool falls = false;     ///< the scene has gravity
+  bool attached = false;  ///< pins or grips
+  bool solid = false;     ///< a collider
+  bool mover = false;     ///< a collider that moves
+  bool self = false;      ///< the cloth meets itself
   std::size_t frames = 0;
   std::size_t first_touch = 0;    ///< first frame with a collider in reach; `frames` if there is none
   std::size_t at_rest = 0;        ///< first frame from which on the cloth stays within 0.2 % of its length
   std::size_t fastest = 0;        ///< frame of the highest RMS speed
   std::size_t deepest_touch = 0;  ///< with a mover: the frame with most contacts; `frames` if there is none
-  std::vector<std::size_t> air;  ///< frames without contact and two neighbours without
-  double speed_m_per_s = 0;   ///< at `fastest`
+  std::vector<std::size_t> air;   ///< frames without contact and two neighbours without
+  double speed_m_per_s = 0;       ///< at `fastest`
   double length_m = 1;
-  V3 up{};                    ///< unit vector against gravity
+  V3 up{};  ///< unit vector against gravity
 };
 
 /// A right motion, and others of the same scene and solver that a lie may need.

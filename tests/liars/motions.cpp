@@ -41,8 +41,8 @@ void add_contact(std::vector<Kind>& out) {
   const std::filesystem::path file = find_scenario("contact");
   const json study = json::parse(read_text(file));
   for (const json& entry : study["scenes"]) {
-    const ContactKind kind = contact_kind(entry, file.parent_path() / entry["file"].get<std::string>(), "contact",
-                                          json{{"grid", {12, 20}}});
+    const ContactKind kind =
+        contact_kind(entry, file.parent_path() / entry["file"].get<std::string>(), "contact", json{{"grid", {12, 20}}});
     out.push_back({kind.name, [kind](std::uint64_t seed) {
                      static ContactDrawer drawer(Assets::MayBeProcedural);
                      const json scene = drawer.draw(kind, "contact", seed);
@@ -81,7 +81,8 @@ void add_files(std::vector<Kind>& out) {
                      if (std::strstr(name, "stretch") == nullptr) set.push_back(rate);
                      set.push_back(fmt::format("cloth.areal_density_kg_per_m2={}", dice.between(0.1, 0.5)));
                      if (std::strstr(name, "hang") == nullptr)
-                       set.push_back(fmt::format("material.membrane_stiffness_N_per_m={}", dice.log_between(500, 4000)));
+                       set.push_back(
+                           fmt::format("material.membrane_stiffness_N_per_m={}", dice.log_between(500, 4000)));
                      if (std::strcmp(name, "paper/gravity") != 0)
                        set.push_back(fmt::format("material.damping_per_s={}", dice.between(0, 0.5)));
                      return load_scene(name, set);

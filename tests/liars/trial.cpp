@@ -165,7 +165,8 @@ std::string as_text(const std::vector<Trial>& trials) {
       const std::size_t at = t.determined ? 0 : 2;
       count[at] += t.failed();
       ++count[at + 1];
-      if (t.failed()) ++by[fmt::format("{} {}", verdict::name_of(t.worst().statistic->check), t.worst().statistic->name)];
+      if (t.failed())
+        ++by[fmt::format("{} {}", verdict::name_of(t.worst().statistic->check), t.worst().statistic->name)];
     }
     if (count[1] + count[3] == 0) continue;
     std::vector<std::pair<int, std::string>> order;
@@ -196,8 +197,17 @@ nlohmann::json as_json(const std::vector<Trial>& trials) {
   for (const Trial& t : trials) {
     nlohmann::json ratios = nlohmann::json::object();
     for (const verdict::Finding& f : t.findings) ratios[f.statistic->name] = {f.ratio, f.frame};
-    rows.push_back({{"kind", t.kind}, {"seed", t.seed}, {"solver", t.solver}, {"lie", t.lie}, {"scene", scene_file(t.kind, t.seed)}, {"motion", t.number}, {"statistic", t.worst().statistic->name}, {"right", t.right},
-                    {"determined", t.determined}, {"failed", t.failed()}, {"difference_m", t.difference_m},
+    rows.push_back({{"kind", t.kind},
+                    {"seed", t.seed},
+                    {"solver", t.solver},
+                    {"lie", t.lie},
+                    {"scene", scene_file(t.kind, t.seed)},
+                    {"motion", t.number},
+                    {"statistic", t.worst().statistic->name},
+                    {"right", t.right},
+                    {"determined", t.determined},
+                    {"failed", t.failed()},
+                    {"difference_m", t.difference_m},
                     {"findings", ratios}});
   }
   const Totals n = totals(trials);
