@@ -52,12 +52,12 @@ const truth::ReferenceCase& RunView::reference_case() const {
   return case_.value();
 }
 
-std::span<const verdict::Finding> RunView::findings() const {
+std::span<const motion_check::Finding> RunView::findings() const {
   if (!findings_) {
     findings_.emplace();
     const bool known = kWithContactMetrics || scene.colliders.empty();
     if (known && !pass.time_s.empty() && pass.position.size() == 3 * scene.cloth.vertex_count() * pass.time_s.size())
-      findings_ = verdict::verify(scene, {pass.time_s, pass.position},
+      findings_ = motion_check::verify(scene, {pass.time_s, pass.position},
                                   plan == nullptr ? std::vector<double>() : plan->contact_margins_m);
   }
   return *findings_;

@@ -7,7 +7,7 @@
 
 #include "clothbench/record.hpp"
 #include "metrics/metric.hpp"
-#include "metrics/verdict/verdict.hpp"
+#include "metrics/motion_check/motion_check.hpp"
 #include "truth/reference_case.hpp"
 
 namespace clothbench {
@@ -31,14 +31,14 @@ struct RunView {
   const std::vector<double>* series(const std::string& name) const;
   /// First frame of the last half second, including the one at its beginning.
   std::size_t settled_from() const;
-  /// The verdict on the positions; empty without positions, or where this build cannot measure the scene's contact.
-  std::span<const verdict::Finding> findings() const;
+  /// The check of the positions; empty without positions, or where this build cannot measure the scene's contact.
+  std::span<const motion_check::Finding> findings() const;
   /// Only for a scene that states a truth.
   const truth::ReferenceCase& reference_case() const;
 
  private:
   mutable std::optional<truth::ReferenceCase> case_;
-  mutable std::optional<std::vector<verdict::Finding>> findings_;
+  mutable std::optional<std::vector<motion_check::Finding>> findings_;
 };
 
 /// How a number is computed from a run.
@@ -120,7 +120,7 @@ std::vector<std::string> metrics_behind(const std::string& summary_name);
 
 /// Prefix of summary values that are the outcome of a bound: 1 pass, 0 fail, NaN not measured.
 inline const std::string kExpect = "expect.";
-/// Prefix of the statistics of the verdict (metrics/verdict): each over its tolerance.
-inline const std::string kVerdict = "verdict_";
+/// Prefix of the statistics of metrics/motion_check: each over its tolerance.
+inline const std::string kMotionCheck = "motion_check.";
 
 }  // namespace clothbench

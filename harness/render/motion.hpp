@@ -10,7 +10,7 @@ namespace clothbench::render {
 
 /// Input of pictures: the trajectory of a cloth, and the colliders that it touches.
 struct Motion {
-  Scene scene;          ///< if read from a file: only the cloth's grid and sizes, and colliders and grips with motion
+  Scene scene;
   bool held = false;    ///< pinned, gripped or with colliders: the cloth stays near its initial place
   std::string name;     ///< of the run, for file names
   std::string title;    ///< for display: "hang · xpbd"

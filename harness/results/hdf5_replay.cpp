@@ -40,21 +40,34 @@ nlohmann::json attribute_value(hid_t at, const std::string& name) {
   return values;
 }
 
-StoredGroup read_group(hid_t file, const std::string& path, const std::vector<std::string>& arrays) {
+/// Every attribute and every dataset of a group but the scales of its dimensions.
+StoredGroup read_group(hid_t file, const std::string& path) {
   const Id group(H5Gopen2(file, path.c_str(), H5P_DEFAULT), H5Gclose, "group " + path);
   StoredGroup g;
   g.path = path;
   for (const std::string& name : h5::attribute_names(group)) g.attributes[name] = attribute_value(group, name);
-  for (const std::string& name : arrays) {
-    if (!h5::exists(group, name.c_str())) continue;
+  for (const std::string& name : h5::link_names(group)) {
+    const Id object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose, "opening " + name);
+    if (H5Iget_type(object) != H5I_DATASET || H5DSis_scale(object) > 0) continue;
+    const Id type(H5Dget_type(object), H5Tclose, "H5Dget_type");
     StoredArray& a = g.arrays.emplace_back();
     a.name = name;
+    a.integer = H5Tget_class(type) == H5T_INTEGER;
     Dims shape;
     a.values = h5::numbers<double>(group, name.c_str(), H5T_NATIVE_DOUBLE, &shape);
     a.shape.assign(shape.begin(), shape.end());
-    a.integer = name == "triangles" || name == "joint_index" || name == "held_vertex" || name == "held";
   }
   return g;
+}
+
+/// The group `path`, if the file has it, and those in it that it counts.
+void read_part(hid_t file, const std::string& path, std::vector<StoredGroup>& out) {
+  if (!h5::exists(file, path.c_str())) return;
+  out.push_back(read_group(file, path));
+  const auto count = out.back().attributes.at("count").get<double>();
+  for (int k = 0; k < count; ++k) out.push_back(read_group(file, path + "/" + std::to_string(k)));
+  if (const std::string grips = path + "/grips"; h5::exists(file, grips.c_str()))
+    out.push_back(read_group(file, grips));
 }
 
 }  // namespace
@@ -72,18 +85,10 @@ Replay read_hdf5_replay(const std::filesystem::path& path, std::size_t stride) {
     if (r.frames.empty()) return r;
     for (const std::size_t f : r.frames) r.time_s.push_back(time_s[f]);
     r.position = rows_of(file, r.frames, vertices);
-    if (!h5::exists(file, "colliders")) return r;
-    r.groups.push_back(read_group(file, "colliders", {}));
-    const auto count = r.groups[0].attributes.at("count").get<double>();
-    for (int k = 0; k < count; ++k)
-      r.groups.push_back(
-          read_group(file, "colliders/" + std::to_string(k),
-                     {"capsules", "position_m", "triangles", "joint_index", "joint_weight", "joint_matrix"}));
-    if (h5::exists(file, "colliders/grips"))
-      r.groups.push_back(read_group(file, "colliders/grips", {"held_vertex", "target_m", "held"}));
+    for (const char* part : {"cloth", "colliders"}) read_part(file, part, r.groups);
     return r;
   } catch (const nlohmann::json::exception& e) {
-    throw Error(path.string() + ": header_json or /colliders: " + e.what());
+    throw Error(path.string() + ": header_json, /cloth or /colliders: " + e.what());
   } catch (const Error& e) {
     throw Error(path.string() + ": " + e.what());
   }

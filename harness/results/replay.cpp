@@ -4,6 +4,7 @@
 #include <span>
 
 #include "clothbench/error.hpp"
+#include "scenario/cloth_mesh.hpp"
 #include "scenario/collider_kinds.hpp"
 
 namespace clothbench {
@@ -22,6 +23,7 @@ json attributes_of(Collider c) {
       a[n.name] = values;
   }
   if (c.mesh) a["closed"] = c.mesh->closed ? 1 : 0;
+  if (c.recorded) a["recorded"] = 1;
   return a;
 }
 
@@ -85,6 +87,41 @@ StoredGroup grips_of(const Scene& scene) {
   return {"colliders/grips", json::object(), {vertex, target, held}};
 }
 
+void add_jumps(const Scene& scene, std::vector<StoredArray>& out) {
+  if (scene.jumps.empty()) return;
+  StoredArray frame{"jump_frame", "1", "first frame that ends after a jump", {"jump"}, {scene.jumps.size()}, true, {}};
+  StoredArray distance{"jump_m", "m", "distance of the jump", {"jump"}, {scene.jumps.size()}, false, {}};
+  for (const Jump& j : scene.jumps) {
+    frame.values.push_back(j.frame);
+    distance.values.push_back(j.distance_m);
+  }
+  out.insert(out.end(), {frame, distance});
+}
+
+/// The mesh without its triangles, which every file has, and its groups: what pins, masses and regions name.
+void add_cloth(const ClothMesh& mesh, std::vector<StoredGroup>& out) {
+  StoredGroup& cloth = out.emplace_back();
+  cloth.path = "cloth";
+  cloth.attributes = {{"count", mesh.groups.size()}};
+  StoredArray position{
+      "position_m", "m", "vertices in the frame of the mesh", {"vertex", "xyz"}, {mesh.vertices.size(), 3}, false, {}};
+  for (const Vec3& x : mesh.vertices) position.values.insert(position.values.end(), x.begin(), x.end());
+  cloth.arrays.push_back(std::move(position));
+  if (!mesh.pattern_m.empty()) {
+    StoredArray pattern{"pattern_m", "m", "corners of each triangle at rest", {"triangle", "corner", "xy"}, {},
+                        false,       {}};
+    pattern.shape = {mesh.pattern_m.size(), 3, 2};
+    for (const auto& triangle : mesh.pattern_m)
+      for (const auto& corner : triangle) pattern.values.insert(pattern.values.end(), corner.begin(), corner.end());
+    cloth.arrays.push_back(std::move(pattern));
+  }
+  for (std::size_t k = 0; const auto& [name, vertices] : mesh.groups) {
+    StoredArray members{"vertex", "1", "vertices of the group", {"member"}, {vertices.size()}, true, {}};
+    members.values.assign(vertices.begin(), vertices.end());
+    out.push_back({"cloth/" + std::to_string(k++), {{"name", name}}, {std::move(members)}});
+  }
+}
+
 const StoredArray* array_of(const StoredGroup& g, const std::string& name) {
   for (const StoredArray& a : g.arrays)
     if (a.name == name) return &a;
@@ -104,6 +141,13 @@ const StoredArray& expect_shape(const StoredGroup& g, const std::string& name,
   if (!fits || a->values.size() != count)
     throw Error("/" + g.path + "/" + name + " is missing or of another shape than expected");
   return *a;
+}
+
+/// The number of a vertex. Throws unless it is one of `vertices`.
+std::uint32_t vertex_of(double stored, std::size_t vertices, const std::string& path) {
+  if (!(stored >= 0 && stored < static_cast<double>(vertices)))
+    throw Error("/" + path + ": expected numbers of vertices");
+  return static_cast<std::uint32_t>(stored);
 }
 
 FrameMotion& frame_of(Scene& scene, std::size_t frame, std::size_t colliders) {
@@ -151,12 +195,9 @@ void read_mesh(const StoredGroup& g, Scene& scene, std::size_t k, std::size_t co
   auto mesh = std::make_shared<ColliderMesh>();
   mesh->positions = expect_shape(g, "position_m", {0, 3}).values;
   for (const StoredArray& t = expect_shape(g, "triangles", {0, 3}); mesh->triangles.size() < t.shape[0];) {
-    const double* v = &t.values[3 * mesh->triangles.size()];
+    auto& corners = mesh->triangles.emplace_back();
     for (std::size_t i = 0; i < 3; ++i)
-      if (!(v[i] >= 0 && v[i] < static_cast<double>(mesh->vertex_count())))
-        throw Error("/" + g.path + "/triangles: expected numbers of vertices");
-    mesh->triangles.push_back(
-        {static_cast<std::uint32_t>(v[0]), static_cast<std::uint32_t>(v[1]), static_cast<std::uint32_t>(v[2])});
+      corners[i] = vertex_of(t.values[3 * (mesh->triangles.size() - 1) + i], mesh->vertex_count(), g.path);
   }
   mesh->closed = g.attributes.value("closed", 0.0) != 0;
   if (array_of(g, "joint_matrix") != nullptr) read_joints(g, *mesh, scene, k, colliders);
@@ -180,6 +221,9 @@ void read_collider(const StoredGroup& g, Scene& scene, std::size_t k, std::size_
   Collider& c = scene.colliders[k];
   const json& a = g.attributes;
   c.name = a.at("name").get<std::string>();
+  c.margin_m = a.at("margin_m").get<double>();
+  c.friction = a.at("friction").get<double>();
+  c.recorded = a.value("recorded", 0.0) != 0;
   const auto shape = a.at("shape").get<std::string>();
   const ColliderKind* const found = kind_named(shape);
   if (found == nullptr) refuse_shape(shape, g.path);
@@ -208,13 +252,40 @@ void read_grips(const StoredGroup& g, Scene& scene) {
   }
 }
 
+void read_jumps(const StoredGroup& g, Scene& scene) {
+  if (array_of(g, "jump_frame") == nullptr) return;
+  const StoredArray& frame = expect_shape(g, "jump_frame", {0});
+  const StoredArray& distance = expect_shape(g, "jump_m", {frame.shape[0]});
+  for (std::size_t k = 0; k < frame.values.size(); ++k)
+    scene.jumps.push_back({static_cast<int>(frame.values[k]), distance.values[k]});
+}
+
+std::map<std::string, const StoredGroup*> by_path(const std::vector<StoredGroup>& groups) {
+  std::map<std::string, const StoredGroup*> out;
+  for (const StoredGroup& g : groups) out[g.path] = &g;
+  return out;
+}
+
+/// Calls `with(group, k)` for the groups `path`/0, `path`/1, ... that the group `path` counts.
+template <class With>
+void each_numbered(const std::map<std::string, const StoredGroup*>& groups, const std::string& path, With with) {
+  const auto count = static_cast<std::size_t>(groups.at(path)->attributes.at("count").get<double>());
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto found = groups.find(path + "/" + std::to_string(k));
+    if (found == groups.end()) throw Error("/" + path + "/" + std::to_string(k) + " is missing");
+    with(*found->second, k, count);
+  }
+}
+
 }  // namespace
 
 std::vector<StoredGroup> replay_of(const Scene& scene) {
-  if (scene.colliders.empty() && scene.grips.vertices.empty()) return {};
   std::vector<StoredGroup> out;
+  if (scene.cloth.mesh) add_cloth(*scene.cloth.mesh, out);
+  if (scene.colliders.empty() && scene.grips.vertices.empty()) return out;
   out.push_back({"colliders", {{"count", scene.colliders.size()}, {"frame_rate_hz", scene.time.frame_rate_hz}}, {}});
   if (!scene.assets.empty()) out.back().attributes["assets"] = scene.assets;
+  add_jumps(scene, out.back().arrays);
   for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
     const Collider& c = scene.colliders[k];
     StoredGroup& g = out.emplace_back();
@@ -229,17 +300,42 @@ std::vector<StoredGroup> replay_of(const Scene& scene) {
 }
 
 void restore_replay(const std::vector<StoredGroup>& groups, Scene& scene) {
-  std::map<std::string, const StoredGroup*> by_path;
-  for (const StoredGroup& g : groups) by_path[g.path] = &g;
-  if (!by_path.contains("colliders")) return;
-  const auto count = static_cast<std::size_t>(by_path["colliders"]->attributes.at("count").get<double>());
-  scene.colliders.resize(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto found = by_path.find("colliders/" + std::to_string(k));
-    if (found == by_path.end()) throw Error("/colliders/" + std::to_string(k) + " is missing");
-    read_collider(*found->second, scene, k, count);
+  const auto named = by_path(groups);
+  if (!named.contains("colliders")) return;
+  const StoredGroup& all = *named.at("colliders");
+  scene.assets = all.attributes.value("assets", "");
+  read_jumps(all, scene);
+  each_numbered(named, "colliders", [&](const StoredGroup& g, std::size_t k, std::size_t count) {
+    scene.colliders.resize(count);
+    read_collider(g, scene, k, count);
+  });
+  if (named.contains("colliders/grips")) read_grips(*named.at("colliders/grips"), scene);
+}
+
+std::shared_ptr<const ClothMesh> restore_mesh(const std::vector<StoredGroup>& groups,
+                                              const std::vector<std::uint32_t>& triangles) {
+  const auto named = by_path(groups);
+  if (!named.contains("cloth")) throw Error("/cloth is missing: the mesh of the cloth");
+  const StoredGroup& cloth = *named.at("cloth");
+  const StoredArray& position = expect_shape(cloth, "position_m", {0, 3});
+  assets::MeshFile file;
+  for (std::size_t k = 0; k + 2 < position.values.size(); k += 3)
+    file.vertices.push_back({position.values[k], position.values[k + 1], position.values[k + 2]});
+  for (std::size_t k = 0; k + 2 < triangles.size(); k += 3)
+    file.triangles.push_back({triangles[k], triangles[k + 1], triangles[k + 2]});
+  const bool patterned = array_of(cloth, "pattern_m") != nullptr;
+  if (patterned) {
+    const double* v = expect_shape(cloth, "pattern_m", {file.triangles.size(), 3, 2}).values.data();
+    for (std::size_t t = 0; t < file.triangles.size(); ++t, v += 6)
+      file.texture.push_back({{{v[0], v[1]}, {v[2], v[3]}, {v[4], v[5]}}});
   }
-  if (by_path.contains("colliders/grips")) read_grips(*by_path["colliders/grips"], scene);
+  ClothMesh mesh = cloth_mesh(std::move(file), {patterned ? 1.0 : 0.0, 0}, "/cloth");
+  each_numbered(named, "cloth", [&](const StoredGroup& g, std::size_t, std::size_t) {
+    std::vector<std::uint32_t>& members = mesh.groups[g.attributes.at("name").get<std::string>()];
+    for (const double v : expect_shape(g, "vertex", {0}).values)
+      members.push_back(vertex_of(v, mesh.vertices.size(), g.path));
+  });
+  return std::make_shared<const ClothMesh>(std::move(mesh));
 }
 
 void show_shape(StoredGroup& g) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "clothbench/record.hpp"
@@ -6,13 +7,19 @@
 
 namespace clothbench {
 
-/// Colliders and grips of a scene at every frame, as result files store them (layout in results/README.md). A replay
-/// then needs neither the scenario's assets nor this program. Empty for a scene without colliders and grips.
+/// The parts of a scene that its JSON only names, as result files store them (layout in results/README.md): colliders
+/// and grips at every frame, and a cloth's mesh. A replay then needs neither the scenario's files nor this program.
+/// Empty for a grid without colliders and grips.
 std::vector<StoredGroup> replay_of(const Scene&);
 
-/// Sets the scene's colliders and grips, with their motion, from the output of `replay_of`; changes nothing else.
-/// Throws Error or nlohmann::json::exception if something is missing or has another shape.
+/// Sets the scene's colliders, grips, their motion, `jumps` and `assets` from the output of `replay_of`; changes
+/// nothing else. Throws Error or nlohmann::json::exception if something is missing or has another shape.
 void restore_replay(const std::vector<StoredGroup>&, Scene&);
+
+/// The cloth's mesh from the output of `replay_of`, and the corners of its triangles, 3 per triangle, which files store
+/// apart. Throws as above.
+std::shared_ptr<const ClothMesh> restore_mesh(const std::vector<StoredGroup>&,
+                                              const std::vector<std::uint32_t>& triangles);
 
 /// Adds the capsules or triangles to draw to a collider's group that has neither, for programs that do not know the
 /// kinds of colliders: arrays of the same names and shapes, and whether the triangles bound a convex body. Does not

@@ -27,11 +27,11 @@ std::string fault(const Expectation& e, double value) {
 /// The checks that hold for every scene; a NaN fails.
 std::string fault_of_motion(const std::map<std::string, double>& summary) {
   std::string wrong;
-  for (const verdict::Statistic& s : verdict::statistics()) {
-    const auto at = summary.find(kVerdict + s.name);
+  for (const motion_check::Statistic& s : motion_check::statistics()) {
+    const auto at = summary.find(kMotionCheck + s.name);
     if (at == summary.end() || at->second <= 1) continue;
     wrong += (wrong.empty() ? "" : "; ") +
-             fmt::format("{} ({}) {:.3g} times its tolerance", s.name, verdict::name_of(s.check), at->second);
+             fmt::format("{} ({}) {:.3g} times its tolerance", s.name, motion_check::name_of(s.check), at->second);
   }
   return wrong;
 }
@@ -51,7 +51,7 @@ Verdict judge(const Scene& scene, const Outcome& outcome, const AccuracyPass& pa
                         ? ""
                         : "outcome " + outcome.status + ", expected " + scene.expected_outcome);
   const std::string wrong_motion = fault_of_motion(summary);
-  if (summary.contains(kVerdict + "finite")) v.scalars[kExpect + "motion"] = wrong_motion.empty() ? 1 : 0;
+  if (summary.contains(kMotionCheck + "finite")) v.scalars[kExpect + "motion"] = wrong_motion.empty() ? 1 : 0;
   if (!wrong_motion.empty()) v.text += (v.text.empty() ? "fail: " : "; ") + wrong_motion;
   for (const Expectation& e : scene.expect) {
     const auto at = summary.find(e.name);

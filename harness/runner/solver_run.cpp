@@ -50,9 +50,12 @@ nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
     j["left_out"].push_back({{"what", l.what}, {"why", l.why}});
     if (!l.no_parameter.empty()) j["left_out"].back()["no_parameter"] = l.no_parameter;
   }
-  for (std::size_t k = 0; k < std::min(plan.contact_margins_m.size(), scene.colliders.size()); ++k)
-    if (std::isfinite(plan.contact_margins_m[k]))
-      j["contact_margins"].push_back({{"collider", scene.colliders[k].name}, {"margin_m", plan.contact_margins_m[k]}});
+  // One per collider, so that a reader need not match names, which need not differ.
+  for (std::size_t k = 0; k < std::min(plan.contact_margins_m.size(), scene.colliders.size()); ++k) {
+    const Collider& c = scene.colliders[k];
+    const double stated = plan.contact_margins_m[k];
+    j["contact_margins"].push_back({{"collider", c.name}, {"margin_m", std::isfinite(stated) ? stated : c.margin_m}});
+  }
   return j;
 }
 

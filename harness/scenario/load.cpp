@@ -17,6 +17,7 @@
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/colliders.hpp"
 #include "scenario/irregular.hpp"
+#include "scenario/scene_parts.hpp"
 #include "scenario/schemas.hpp"
 #include "scenario/strict_contact.hpp"
 #include "scenario/vec3.hpp"
@@ -70,12 +71,12 @@ Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
 }
 
 /// Reads either a grid and its size or a mesh.
-void read_shape(json& j, Cloth& c, const std::string& source) {
+void read_shape(json& j, Cloth& c, const std::string& source, const SceneParts& parts) {
   if (j.contains("mesh")) {
     for (const char* of_grids : {"grid", "size_m", "column_factors"})
       if (j.contains(of_grids))
         refuse(source, std::string("/cloth/") + of_grids, "expected a cloth that is a grid, not a mesh");
-    c.mesh = read_cloth_mesh(j["mesh"], source);
+    c.mesh = parts.mesh(j["mesh"]);
     if (c.mesh->vertices.size() > kMostVertices)
       refuse(source, "/cloth/mesh",
              fmt::format("at most {} vertices; found {}", kMostVertices, c.mesh->vertices.size()));
@@ -98,9 +99,9 @@ void read_shape(json& j, Cloth& c, const std::string& source) {
   c.height_m = j["size_m"][1].get<double>();
 }
 
-Cloth read_cloth(json& j, const std::string& source) {
+Cloth read_cloth(json& j, const std::string& source, const SceneParts& parts) {
   Cloth c;
-  read_shape(j, c, source);
+  read_shape(j, c, source, parts);
   c.areal_density_kg_per_m2 = j["areal_density_kg_per_m2"].get<double>();
   const auto sides = j["sides"].get<std::string>();
   c.sides = sides == "single" ? Sides::Single : sides == "double" ? Sides::Double : Sides::DoubleDuplicated;
@@ -271,6 +272,12 @@ void apply_override(json& scenario, const std::string& assignment, const std::st
 Scene scene_from_json(json scenario, const std::string& source, const std::vector<std::string>& overrides,
                       Assets assets) {
   for (const std::string& o : overrides) apply_override(scenario, o, source);
+  return scene_from_parts(std::move(scenario), source,
+                          {[&](json& mesh) { return read_cloth_mesh(mesh, source); },
+                           [&](json& all, Scene& scene) { read_colliders(all, scene, source, assets); }});
+}
+
+Scene scene_from_parts(json scenario, const std::string& source, const SceneParts& parts) {
   rename_scene_keys(scenario, source);
   validate_json(scenario, kSceneSchema, source);
   fill_defaults(scenario, kSceneSchema);
@@ -280,7 +287,7 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
   s.source = source;
   s.name = scenario["name"].get<std::string>();
   s.why = scenario["why"].get<std::string>();
-  s.cloth = read_cloth(scenario["cloth"], source);
+  s.cloth = read_cloth(scenario["cloth"], source, parts);
   const json& material = scenario["material"];
   if (material["membrane_stiffness_N_per_m"].is_number())
     s.material.membrane_stiffness_N_per_m = material["membrane_stiffness_N_per_m"].get<double>();
@@ -303,7 +310,7 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
     refuse(source, "/time/duration_s", fmt::format("expected at most {} frames", kMostFrames));
   if (s.time.frames() < 1) refuse(source, "/time/duration_s", "expected at least one frame");
   read_frame_times(scenario["time"], s, source);
-  read_colliders(scenario, s, source, assets);
+  parts.colliders(scenario, s);
   read_stability(scenario, s);
   if (scenario.contains("seed")) s.seed = scenario["seed"].get<std::uint64_t>();
   if (scenario.contains("truth")) s.reference_case = scenario["truth"]["case"].get<std::string>();

@@ -165,6 +165,7 @@ class Packer {
 
   /// Index of the colliders among those of the page, as text; "" if there are none or they are too large.
   std::string colliders(const RunRecord& c, std::vector<StoredGroup> groups) {
+    std::erase_if(groups, [](const StoredGroup& g) { return !g.path.starts_with("colliders"); });
     if (groups.empty()) return "";
     json described = json::array();
     std::vector<std::string> packed;

@@ -5,7 +5,7 @@
 
 #include "clothbench/scene.hpp"
 
-namespace clothbench::verdict {
+namespace clothbench::motion_check {
 
 /// What every run of every scene is checked for, from stored positions only; README.md defines each statistic.
 enum class Check : std::uint8_t {
@@ -23,7 +23,7 @@ struct Statistic {
 };
 
 inline constexpr std::size_t kStatistics = 20;
-/// All statistics, in the order of a verdict.
+/// All statistics, in the order of the findings.
 std::span<const Statistic> statistics();
 const char* name_of(Check);
 
@@ -49,4 +49,4 @@ std::vector<Finding> verify(const Scene& scene, const Frames& frames, std::span<
 /// The findings with the largest ratio, NaN before all others; null if there are none.
 const Finding* worst(std::span<const Finding> findings);
 
-}  // namespace clothbench::verdict
+}  // namespace clothbench::motion_check

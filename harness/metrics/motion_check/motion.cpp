@@ -1,4 +1,4 @@
-#include "metrics/verdict/motion.hpp"
+#include "metrics/motion_check/motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +8,12 @@
 #include "clothbench/error.hpp"
 #include "clothbench/motion.hpp"
 
-namespace clothbench::verdict {
+namespace clothbench::motion_check {
 
 Motion::Motion(const Scene& s, const Frames& f)
     : scene(s), vertices(s.cloth.vertex_count()), frames(f.time_s.size()), time_s_(f.time_s), position_(f.position) {
   if (position_.size() != 3 * vertices * frames)
-    throw Error("verdict: the positions are not those of " + std::to_string(frames) + " frames of " +
+    throw Error("motion check: the positions are not those of " + std::to_string(frames) + " frames of " +
                 std::to_string(vertices) + " vertices");
   masses_kg = vertex_masses(s);
   mass_kg = std::accumulate(masses_kg.begin(), masses_kg.end(), 0.0);
@@ -55,7 +55,7 @@ Finding& Findings::of(const char* name) {
     if (std::strcmp(f.statistic->name, name) == 0) return f;
   for (const Statistic& s : statistics())
     if (std::strcmp(s.name, name) == 0) return found_.emplace_back(Finding{&s, 0, 0});
-  throw Error(std::string("verdict: no statistic ") + name);
+  throw Error(std::string("motion check: no statistic ") + name);
 }
 
 void Findings::define(const char* name) { of(name); }
@@ -67,4 +67,4 @@ void Findings::add(const char* name, double ratio, std::size_t frame) {
   f.frame = static_cast<int>(frame);
 }
 
-}  // namespace clothbench::verdict
+}  // namespace clothbench::motion_check

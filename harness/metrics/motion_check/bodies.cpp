@@ -1,4 +1,4 @@
-#include "metrics/verdict/bodies.hpp"
+#include "metrics/motion_check/bodies.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 #include "metrics/contact/tunnel.hpp"
 #include "scenario/collider_kinds.hpp"
 
-namespace clothbench::verdict {
+namespace clothbench::motion_check {
 namespace {
 
 using contact::Box;
@@ -44,6 +44,7 @@ struct Body {
   double offset_m;
   CentreLine line;
   double radius_m = kInfinite;
+  std::vector<double> lengths_m = {};  ///< of its capsules at the start
   std::vector<Corners> triangles = {};
   std::array<std::unique_ptr<Pose>, 4> poses = {};
   std::unique_ptr<contact::TriangleTree> still = nullptr;   ///< the surface of a static mesh
@@ -150,7 +151,10 @@ Bodies::State::State(const Motion& motion, std::span<const double> contact_offse
     Body& b = bodies.emplace_back(
         Body{c, kind_of(c), std::isfinite(said) ? std::max(said, c.margin_m) : c.margin_m, CentreLine(c)});
     if (b.kind.capsules != nullptr) {
-      for (const Capsule& q : b.kind.capsules(c, {})) b.radius_m = std::min(b.radius_m, q.radius_m);
+      for (const Capsule& q : b.kind.capsules(c, {})) {
+        b.radius_m = std::min(b.radius_m, q.radius_m);
+        b.lengths_m.push_back((to_v3(q.b_m) - to_v3(q.a_m)).norm());
+      }
     } else if (c.shape == Collider::Shape::Box) {
       b.radius_m = std::min({c.half_extent_m[0], c.half_extent_m[1], c.half_extent_m[2]});
     } else if (c.moves()) {
@@ -368,13 +372,14 @@ std::vector<V3> Bodies::State::inner_points(Body& b, std::size_t frame) {
   const auto count = [&](double length) {
     return std::clamp(static_cast<int>(std::ceil(2 * length / m.cell_m)), 1, 32);
   };
-  if (b.kind.capsules != nullptr)
-    for (const Capsule& c : pose(b, frame).capsules) {
-      const V3 a = to_v3(c.a_m), along = to_v3(c.b_m) - a;
-      const Capsule& rest = pose(b, 0).capsules[static_cast<std::size_t>(&c - pose(b, frame).capsules.data())];
-      const int n = count((to_v3(rest.b_m) - to_v3(rest.a_m)).norm());
-      for (int i = 0; i <= n; ++i) out.push_back(a + static_cast<double>(i) / n * along);
+  if (b.kind.capsules != nullptr) {
+    const std::vector<Capsule>& capsules = pose(b, frame).capsules;
+    for (std::size_t i = 0; i < capsules.size(); ++i) {
+      const V3 a = to_v3(capsules[i].a_m), along = to_v3(capsules[i].b_m) - a;
+      const int n = count(b.lengths_m[i]);
+      for (int j = 0; j <= n; ++j) out.push_back(a + static_cast<double>(j) / n * along);
     }
+  }
   if (b.collider.shape == Collider::Shape::Box) {
     const Vec3& half = b.collider.half_extent_m;
     std::array<int, 3> n{};
@@ -554,4 +559,4 @@ int Bodies::passages(std::size_t frame) const {
   return count;
 }
 
-}  // namespace clothbench::verdict
+}  // namespace clothbench::motion_check

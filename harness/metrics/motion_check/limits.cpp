@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metrics/verdict/bodies.hpp"
-#include "metrics/verdict/motion.hpp"
+#include "metrics/motion_check/bodies.hpp"
+#include "metrics/motion_check/motion.hpp"
 
-namespace clothbench::verdict {
+namespace clothbench::motion_check {
 namespace {
 
 /// Membrane stiffness [N/m] above which more is not charged: strain then measures a solver's accuracy.
@@ -129,4 +129,4 @@ void Limits::strain(std::size_t k) {
 
 void check_limits(const Motion& m, const Bodies& bodies, Findings& found) { Limits(m, bodies, found).run(); }
 
-}  // namespace clothbench::verdict
+}  // namespace clothbench::motion_check

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metrics/verdict/bodies.hpp"
-#include "metrics/verdict/motion.hpp"
+#include "metrics/motion_check/bodies.hpp"
+#include "metrics/motion_check/motion.hpp"
 
-namespace clothbench::verdict {
+namespace clothbench::motion_check {
 namespace {
 
 using Field = std::vector<V3>;
@@ -131,4 +131,4 @@ void Smoothness::run() {
 
 void check_smoothness(const Motion& m, const Bodies& bodies, Findings& found) { Smoothness(m, bodies, found).run(); }
 
-}  // namespace clothbench::verdict
+}  // namespace clothbench::motion_check

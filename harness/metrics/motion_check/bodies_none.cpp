@@ -1,7 +1,7 @@
 // Built without CGAL: scenes with colliders are not measured, and these functions serve scenes without any.
-#include "metrics/verdict/bodies.hpp"
+#include "metrics/motion_check/bodies.hpp"
 
-namespace clothbench::verdict {
+namespace clothbench::motion_check {
 
 struct Bodies::State {};
 Bodies::Bodies(const Motion&, std::span<const double>) {}
@@ -18,4 +18,4 @@ double Bodies::depth_ratio(std::size_t) const { return 0; }
 bool Bodies::near(std::size_t, std::span<const V3>, double) const { return false; }
 int Bodies::passages(std::size_t) const { return 0; }
 
-}  // namespace clothbench::verdict
+}  // namespace clothbench::motion_check

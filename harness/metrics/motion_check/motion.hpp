@@ -3,9 +3,9 @@
 #include <array>
 #include <vector>
 
-#include "metrics/verdict/verdict.hpp"
+#include "metrics/motion_check/motion_check.hpp"
 
-namespace clothbench::verdict {
+namespace clothbench::motion_check {
 
 using V3 = Eigen::Vector3d;
 
@@ -86,4 +86,4 @@ void check_smoothness(const Motion&, const Bodies&, Findings&);
 /// crossing, depth.
 void check_passage(const Motion&, Bodies&, Findings&);
 
-}  // namespace clothbench::verdict
+}  // namespace clothbench::motion_check

@@ -1,13 +1,13 @@
-#include "metrics/verdict/verdict.hpp"
+#include "metrics/motion_check/motion_check.hpp"
 
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "metrics/verdict/bodies.hpp"
-#include "metrics/verdict/motion.hpp"
+#include "metrics/motion_check/bodies.hpp"
+#include "metrics/motion_check/motion.hpp"
 
-namespace clothbench::verdict {
+namespace clothbench::motion_check {
 
 std::span<const Statistic> statistics() {
   using enum Check;
@@ -99,4 +99,4 @@ void check_passage(const Motion& m, Bodies& bodies, Findings& found) {
   }
 }
 
-}  // namespace clothbench::verdict
+}  // namespace clothbench::motion_check

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "metrics/verdict/motion.hpp"
+#include "metrics/motion_check/motion.hpp"
 
-namespace clothbench::verdict {
+namespace clothbench::motion_check {
 
 /// A point at which a collider may exert force on the cloth in a frame.
 struct Contact {
@@ -44,4 +44,4 @@ class Bodies {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace clothbench::verdict
+}  // namespace clothbench::motion_check

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "metrics/verdict/bodies.hpp"
-#include "metrics/verdict/motion.hpp"
+#include "metrics/motion_check/bodies.hpp"
+#include "metrics/motion_check/motion.hpp"
 
-namespace clothbench::verdict {
+namespace clothbench::motion_check {
 namespace {
 
 using V6 = Eigen::Matrix<double, 6, 1>;
@@ -306,4 +306,4 @@ void Momentum::free_motion() {
 
 void check_momentum(const Motion& m, Bodies& bodies, Findings& found) { Momentum(m, bodies, found).run(); }
 
-}  // namespace clothbench::verdict
+}  // namespace clothbench::motion_check
