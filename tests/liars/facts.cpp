@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "lies.hpp"
-#include "metrics/verdict/bodies.hpp"
+#include "metrics/motion_check/bodies.hpp"
 
 namespace clothbench::liars {
 namespace {
 
 /// Wrenches that attachments leave: 6 less the rank of forces at the held vertices of the start.
-int equations_left(const verdict::Motion& m) {
+int equations_left(const motion_check::Motion& m) {
   const std::vector<std::uint32_t> held = m.held(0);
   Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
   if (held.empty()) return 6;
@@ -27,7 +27,7 @@ int equations_left(const verdict::Motion& m) {
   return 6 - rank;
 }
 
-double rms_way(const verdict::Motion& m, std::size_t from, std::size_t to) {
+double rms_way(const motion_check::Motion& m, std::size_t from, std::size_t to) {
   double sum = 0;
   for (std::size_t v = 0; v < m.vertices; ++v) sum += (m.at(to, v) - m.at(from, v)).squaredNorm();
   return std::sqrt(sum / static_cast<double>(m.vertices));
@@ -37,8 +37,8 @@ double rms_way(const verdict::Motion& m, std::size_t from, std::size_t to) {
 
 Facts facts_of(const Motion& motion) {
   const Scene& s = *motion.scene;
-  const verdict::Motion m(s, {motion.time_s, motion.position});
-  verdict::Bodies bodies(m, motion.contact_offsets_m);
+  const motion_check::Motion m(s, {motion.time_s, motion.position});
+  motion_check::Bodies bodies(m, motion.contact_offsets_m);
   Facts f;
   f.falls = m.gravity.norm() > 0;
   f.up = f.falls ? V3(-m.gravity.normalized()) : V3(V3::UnitY());

@@ -1,4 +1,4 @@
-// Tells lies of right motions and counts those that the verdict on positions sees.
+// Tells lies of right motions and counts those that the check of motions sees.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv) {
   using namespace clothbench::liars;
-  CLI::App app{"Wrong motions, and which of them the verdict fails."};
+  CLI::App app{"Wrong motions, and which of them the check of motions fails."};
   Matrix matrix;
   bool json = false, list = false;
   app.add_option("--seed", matrix.seed, "of the first motion; each motion has the next");

@@ -69,14 +69,14 @@ Trial judged(const Right& right, const Lie& lie, const Motion& told) {
   t.solver = right.motion.solver;
   t.determined = lie.determined(right.facts);
   t.difference_m = difference_m(right, told);
-  t.findings = verdict::verify(*told.scene, {told.time_s, told.position}, told.contact_offsets_m);
+  t.findings = motion_check::verify(*told.scene, {told.time_s, told.position}, told.contact_offsets_m);
   return t;
 }
 
 std::string of(const Trial& t) { return fmt::format("{} {} {}", t.kind, t.seed, t.solver); }
 
 std::string worst_of(const Trial& t) {
-  const verdict::Finding& f = t.worst();
+  const motion_check::Finding& f = t.worst();
   return fmt::format("{} {:.3g} in frame {}", f.statistic->name, f.ratio, f.frame);
 }
 
@@ -166,7 +166,7 @@ std::string as_text(const std::vector<Trial>& trials) {
       count[at] += t.failed();
       ++count[at + 1];
       if (t.failed())
-        ++by[fmt::format("{} {}", verdict::name_of(t.worst().statistic->check), t.worst().statistic->name)];
+        ++by[fmt::format("{} {}", motion_check::name_of(t.worst().statistic->check), t.worst().statistic->name)];
     }
     if (count[1] + count[3] == 0) continue;
     std::vector<std::pair<int, std::string>> order;
@@ -196,7 +196,7 @@ nlohmann::json as_json(const std::vector<Trial>& trials) {
   nlohmann::json rows = nlohmann::json::array();
   for (const Trial& t : trials) {
     nlohmann::json ratios = nlohmann::json::object();
-    for (const verdict::Finding& f : t.findings) ratios[f.statistic->name] = {f.ratio, f.frame};
+    for (const motion_check::Finding& f : t.findings) ratios[f.statistic->name] = {f.ratio, f.frame};
     rows.push_back({{"kind", t.kind},
                     {"seed", t.seed},
                     {"solver", t.solver},

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lies.hpp"
-#include "metrics/verdict/verdict.hpp"
+#include "metrics/motion_check/motion_check.hpp"
 
 namespace clothbench::liars {
 
@@ -21,17 +21,17 @@ struct Matrix {
   std::filesystem::path store;         ///< folder for liar_plugin.c: motions by number, and their scenes; empty: none
 };
 
-/// What the verdict says of one motion.
+/// What the check of motions says of one.
 struct Trial {
   std::string kind, solver, lie;
   std::uint64_t seed = 0;
   bool right = false, determined = false;
   double difference_m = 0;
-  std::vector<verdict::Finding> findings;
+  std::vector<motion_check::Finding> findings;
   int number = -1;  ///< of the file in Matrix::store; -1: none, since a solver cannot leave out frames
 
   bool failed() const;
-  const verdict::Finding& worst() const { return *verdict::worst(findings); }
+  const motion_check::Finding& worst() const { return *motion_check::worst(findings); }
 };
 
 /// Motions of the matrix that pass, with their lies, and those that are right and fail. `progress`: called after each.
