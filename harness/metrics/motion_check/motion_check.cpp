@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "metrics/collider_contact.hpp"
 #include "metrics/motion_check/bodies.hpp"
 #include "metrics/motion_check/motion.hpp"
 
@@ -13,6 +14,7 @@ std::span<const Statistic> statistics() {
   using enum Check;
   static constexpr std::array kAll = std::to_array<Statistic>({
       {"finite", Kinematic, "frames whose positions are not finite"},
+      {"time", Kinematic, "distance of a frame's time from the scene's, in frames"},
       {"start", Kinematic, "distance of a vertex from its initial position"},
       {"attachment", Kinematic, "distance of a pinned or attached vertex from its prescribed position"},
       {"first_step", Dynamic, "force of the first interval that nothing in reach can exert, in weights"},
@@ -31,6 +33,7 @@ std::span<const Statistic> statistics() {
       {"stuck", Dynamic, "vertices without contact that stand still to the digit while the cloth moves"},
       {"crossing", Continuous, "points that pass through the cloth or a surface between two frames"},
       {"depth", Continuous, "depth of a vertex in a collider"},
+      {"self_crossing", Continuous, "length over which the cloth crosses itself, beyond the start's"},
       {"free_motion", Present, "distance from free fall before a collider is in reach"},
       {"support", Present, "force on cloth at rest that nothing in reach can exert, in weights"},
   });
@@ -43,6 +46,30 @@ const char* name_of(Check check) {
   return kNames[static_cast<std::size_t>(check)];
 }
 
+namespace {
+
+/// When a frame ends [s]; frames after the scene's end are as long as its others.
+double time_of(const TimeSpan& t, std::size_t frame) {
+  const int k = static_cast<int>(frame), beyond = k - t.frames();
+  return beyond > 0 ? t.at(t.frames()) + beyond * t.dt() : t.at(k);
+}
+
+/// A cloth that meets itself crosses itself by no more than the corner of a cell.
+void check_self(const Motion& m, Findings& found) {
+  if (!(m.scene.cloth.self_collision.thickness_m > 0) || !kWithContactMetrics) return;
+  found.define("self_crossing");
+  double start_m = 0;
+  std::vector<double> x(3 * m.vertices);
+  for (std::size_t k = 0; k < m.frames; ++k) {
+    for (std::size_t v = 0; v < m.vertices; ++v) V3::Map(x.data() + 3 * v) = m.at(k, v);
+    const double length_m = self_contact(x, m.triangles).length_m;
+    if (k == 0) start_m = length_m;
+    found.add("self_crossing", (length_m - start_m) / (m.cell_m / 2), k);
+  }
+}
+
+}  // namespace
+
 std::vector<Finding> verify(const Scene& scene, const Frames& frames, std::span<const double> contact_offsets_m) {
   const Motion motion(scene, frames);
   Findings found;
@@ -53,6 +80,9 @@ std::vector<Finding> verify(const Scene& scene, const Frames& frames, std::span<
         return found.take();
       }
   found.define("finite");
+  found.define("time");
+  for (std::size_t k = 0; k < motion.frames; ++k)
+    found.add("time", std::abs(frames.time_s[k] - time_of(scene.time, k)) / (0.01 * scene.time.dt()), k);
   if (motion.frames == 0) return found.take();
   check_attachments(motion, found);
   Bodies bodies(motion, contact_offsets_m);
@@ -60,6 +90,7 @@ std::vector<Finding> verify(const Scene& scene, const Frames& frames, std::span<
   check_limits(motion, bodies, found);
   check_smoothness(motion, bodies, found);
   if (!bodies.empty()) check_passage(motion, bodies, found);
+  check_self(motion, found);
   return found.take();
 }
 

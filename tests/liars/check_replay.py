@@ -1,0 +1,73 @@
+"""usage: check_replay.py LIARS CLOTHBENCH PLUGIN SOURCE: lies fail in every output, and the right motion passes."""
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+LIARS, CLOTHBENCH, PLUGIN, SOURCE = sys.argv[1:5]
+KINDS = ["hang", "sphere"]
+LIES = ["the right motion", "pins dropped", "10 m up for a frame", "gravity of a quarter", "at rest from frame 20", "vertices permuted",
+        "5 frames late", "shrunk by 5 %", "half speed", "falls through", "jumps through", "back at the start"]
+
+
+class Replay(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory(prefix="clothbench-liars-")
+        cls.home = pathlib.Path(cls.temporary.name)
+        cls.environment = dict(os.environ, CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios"), CLOTHBENCH_ASSETS="procedural", CLOTHBENCH_LIARS=str(cls.home))
+        cls.environment.pop("CLOTHBENCH_PLUGINS", None)
+        told = cls.command(LIARS, "--json", "--seed", "1000", "--motions", str(len(KINDS)), "--store", str(cls.home), "--kind", *KINDS)
+        trials = json.loads(told.stdout)["trials"]
+        cls.trials = [t for t in trials if t["lie"] in LIES and t["motion"] >= 0]
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    @classmethod
+    def command(cls, *words):
+        return subprocess.run(words, env=cls.environment, cwd=cls.home, capture_output=True, text=True, timeout=300)
+
+    def test_the_matrix_is_whole(self):
+        for kind in KINDS:
+            of = [t for t in self.trials if t["kind"].endswith(kind)]
+            self.assertTrue(any(t["right"] for t in of), kind)
+            self.assertGreaterEqual(sum(not t["right"] for t in of), 6, kind)
+
+    def test_run(self):
+        for t in self.trials:
+            done = self.command(CLOTHBENCH, "run", f"{t['scene']}.json", "--solver", "plugin:" + PLUGIN, "--trials", "0",
+                                "--set", f"solver.motion={t['motion']}", "--out", f"run-{t['motion']}")
+            with self.subTest(scene=t["scene"], lie=t["lie"]):
+                if t["right"]:
+                    self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+                else:
+                    self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+                    self.assertIn(f"{t['statistic']} (", done.stdout + done.stderr)
+
+    def test_study(self):
+        scenes = sorted({t["scene"] for t in self.trials})
+        study = {
+            "name": "lies", "why": "Motions that are wrong, replayed.", "protocol": "penetration", "trials": 1,
+            "scenes": [{"file": f"{s}.json", "labels": [s]} for s in scenes],
+            "solvers": [{"solver": "plugin:" + PLUGIN, "label": str(t["motion"]), "settings": {"motion": t["motion"]}, "only": [t["scene"]]} for t in self.trials],
+            "short": {"frames": 1, "max_wall_s": 0, "min_frames": 1, "warmup_s": 0},
+            "full": {"frames": 1, "max_wall_s": 0, "min_frames": 1, "warmup_s": 0},
+        }
+        (self.home / "lies.json").write_text(json.dumps(study))
+        done = self.command(CLOTHBENCH, "study", "lies.json", "--out", "study")
+        with next((self.home / "study").glob("**/*.csv")).open(newline="") as f:
+            rows = {row["setting"]: row for row in csv.DictReader(f)}
+        for t in self.trials:
+            with self.subTest(scene=t["scene"], lie=t["lie"]):
+                text = rows[str(t["motion"])]["expect"]
+                self.assertIn("pass" if t["right"] else f"{t['statistic']} (", text, done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

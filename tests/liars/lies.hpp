@@ -1,0 +1,62 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/dice.hpp"
+#include "motions.hpp"
+
+namespace clothbench::liars {
+
+using V3 = Eigen::Vector3d;
+
+/// What a scene and its right motion are, for the choice of lies. All frames count from 0, the start.
+struct Facts {
+  int equations = 6;      ///< of the six of momentum, those that attachments leave
+  bool falls = false;     ///< the scene has gravity
+  bool attached = false;  ///< pins or grips
+  bool solid = false;     ///< a collider
+  bool mover = false;     ///< a collider that moves
+  bool self = false;      ///< the cloth meets itself
+  std::size_t frames = 0;
+  std::size_t first_touch = 0;    ///< first frame with a collider in reach; `frames` if there is none
+  std::size_t at_rest = 0;        ///< first frame from which on the cloth stays within 0.2 % of its length
+  std::size_t fastest = 0;        ///< frame of the highest RMS speed
+  std::size_t deepest_touch = 0;  ///< with a mover: the frame with most contacts; `frames` if there is none
+  std::vector<std::size_t> air;   ///< frames without contact and two neighbours without
+  double speed_m_per_s = 0;       ///< at `fastest`
+  double length_m = 1;
+  V3 up{};  ///< unit vector against gravity
+};
+
+/// A right motion, and others of the same scene and solver that a lie may need.
+struct Right {
+  Motion motion;
+  Facts facts;
+  /// Of the scene with something changed; none if the solver fails.
+  std::function<std::optional<Motion>(const char* what, const std::function<void(Scene&)>&)> other;
+  bool held(std::size_t frame, std::size_t vertex) const;
+};
+
+Facts facts_of(const Motion&);
+
+/// One way of being wrong. A lie leaves attached vertices where they belong unless it is about them.
+struct Lie {
+  const char* name;
+  bool right = false;  ///< a control: it must pass
+  bool (*applies)(const Facts&);
+  /// Whether positions determine that the motion is wrong, where it differs from the right one.
+  bool (*determined)(const Facts&);
+  std::optional<Motion> (*tell)(const Right&, Dice&);
+};
+
+/// All lies. Velocities are in no file, so that none is about them.
+std::span<const Lie> lies();
+
+/// Largest distance [m] of a vertex from where it is in the right motion.
+double difference_m(const Right&, const Motion&);
+
+}  // namespace clothbench::liars

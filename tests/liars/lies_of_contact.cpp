@@ -1,0 +1,142 @@
+// Colliders that are ignored, passed or touched wrongly, and files that are not whole.
+#include <limits>
+
+#include "telling.hpp"
+
+namespace clothbench::liars {
+namespace {
+
+Told without_colliders(const Right& r, bool moving_alone) {
+  return r.other(moving_alone ? "no-mover" : "no-collider", [moving_alone](Scene& s) {
+    std::vector<Collider> kept;
+    std::vector<std::size_t> which;
+    for (std::size_t k = 0; k < s.colliders.size(); ++k)
+      if (moving_alone && !s.colliders[k].moves()) kept.push_back(s.colliders[k]), which.push_back(k);
+    for (FrameMotion& now : s.motion) {
+      std::vector<ColliderPose> poses;
+      for (const std::size_t k : which)
+        if (k < now.colliders.size()) poses.push_back(now.colliders[k]);
+      now.colliders = std::move(poses);
+    }
+    s.colliders = std::move(kept);
+    s.jumps.clear();
+    if (s.grips.vertices.empty() && s.colliders.empty()) s.motion.clear();
+  });
+}
+
+Told hovering(const Right& r, const char* what, double by_m) {
+  Told out = r.other(what, [by_m](Scene& s) {
+    for (Collider& c : s.colliders) c.margin_m += by_m;
+  });
+  if (out) out->contact_offsets_m = r.motion.contact_offsets_m;
+  return out;
+}
+
+/// From a frame on the cloth is elsewhere, beyond the collider that it touches, and falls on from there.
+Told jumped_through(const Right& r, bool and_back) {
+  const Motion& m = r.motion;
+  const Index at = std::min(r.facts.first_touch + 1, m.frames() - 4);
+  double deepest = 0, g = 0;
+  for (const double x : m.scene->gravity_m_per_s2) g += x * x;
+  g = std::sqrt(g);
+  for (const Collider& c : m.scene->colliders)
+    if (c.shape == Collider::Shape::Box) {
+      double half = 0;
+      for (std::size_t a = 0; a < 3; ++a) half += std::abs(v3(c.axes[a]).dot(r.facts.up)) * c.half_extent_m[a];
+      deepest = std::max(deepest, std::min(2 * half, 0.12) + 2 * c.margin_m + 0.01);
+    }
+  if (deepest == 0) return std::nullopt;
+  return moved(r, [&](Index k, Index v, const V3& x) -> V3 {
+    if (k < at || (and_back && k > at)) return x;
+    const double t = m.time_s[k] - m.time_s[at], frame = m.time_s[at] - m.time_s[at - 1];
+    const V3 from = v3(m.at(at, v)), speed = (from - v3(m.at(at - 1, v))) / frame;
+    return from - deepest * r.facts.up + t * speed - 0.5 * g * t * t * r.facts.up;
+  });
+}
+
+}  // namespace
+
+// --- contact
+
+Told hovers_5cm(const Right& r, Dice&) { return hovering(r, "hover-50", 0.05); }
+Told hovers_2mm(const Right& r, Dice&) { return hovering(r, "hover-2", 0.002); }
+Told sinks_1cm(const Right& r, Dice&) {
+  const Index from = r.facts.first_touch;
+  return moved(r, [&](Index k, Index, const V3& x) {
+    return V3(x - 0.01 * smooth(static_cast<double>(k < from ? 0 : k - from) / 20) * r.facts.up);
+  });
+}
+Told border_sinks(const Right& r, Dice&) {
+  const Cloth& c = r.motion.scene->cloth;
+  const Index from = r.facts.at_rest;
+  return moved(r, [&](Index k, Index v, const V3& x) {
+    const bool border = static_cast<int>(v) % c.columns == 0;
+    return border && k > from ? V3(x - 0.05 * smooth(static_cast<double>(k - from) / 30) * r.facts.up) : x;
+  });
+}
+Told falls_through(const Right& r, Dice&) { return without_colliders(r, false); }
+Told ignores_mover(const Right& r, Dice&) { return without_colliders(r, true); }
+Told jumps_back(const Right& r, Dice&) {
+  const Told other = without_colliders(r, true);
+  if (!other) return std::nullopt;
+  const Index from = r.facts.deepest_touch;
+  return moved(r, [&](Index k, Index v, const V3& x) { return k < from ? x : v3(other->at(k, v)); });
+}
+Told jumps_through(const Right& r, Dice&) { return jumped_through(r, false); }
+Told through_and_back(const Right& r, Dice&) { return jumped_through(r, true); }
+Told slides(const Right& r, Dice& dice) {
+  const V3 by = 0.5 * level(r.facts.up, dice);
+  const Index from = r.facts.at_rest;
+  return moved(r, [&](Index k, Index, const V3& x) {
+    return k > from ? V3(x + (r.motion.time_s[k] - r.motion.time_s[from]) * by) : x;
+  });
+}
+Told drifts(const Right& r, Dice& dice) {
+  const V3 by = 0.5 * level(r.facts.up, dice);
+  return moved(r, [&](Index k, Index, const V3& x) { return V3(x + r.motion.time_s[k] * by); });
+}
+Told layer_off(const Right& r, Dice&) {
+  const Cloth& c = r.motion.scene->cloth;
+  const double by = -3 * c.self_collision.thickness_m;
+  const Index from = r.motion.frames() / 2;
+  return moved(r, [&](Index k, Index v, const V3& x) {
+    const bool upper = static_cast<int>(v) % c.columns < c.columns / 3;
+    return upper ? V3(x + by * smooth(static_cast<double>(k < from ? 0 : k - from) / 20) * r.facts.up) : x;
+  });
+}
+Told layers_exchanged(const Right& r, Dice&) {
+  const Cloth& c = r.motion.scene->cloth;
+  const Index from = r.motion.frames() / 2, columns = static_cast<Index>(c.columns);
+  return moved(r, [&](Index k, Index v, const V3& x) {
+    const Index twin = v - v % columns + (columns - 1 - v % columns);
+    const double share = smooth(static_cast<double>(k < from ? 0 : k - from) / 20);
+    return V3((1 - share) * x + share * v3(r.motion.at(k, twin)));
+  });
+}
+
+// --- files
+
+Told half_missing(const Right& r, Dice&) {
+  Motion out = r.motion;
+  out.time_s.clear(), out.position.clear();
+  const Index numbers = 3 * r.motion.vertices();
+  for (Index k = 0; k < r.motion.frames(); k += 2) {
+    out.time_s.push_back(r.motion.time_s[k]);
+    const auto from = r.motion.position.begin() + static_cast<std::ptrdiff_t>(k * numbers);
+    out.position.insert(out.position.end(), from, from + static_cast<std::ptrdiff_t>(numbers));
+  }
+  return out;
+}
+Told one_nan(const Right& r, Dice& dice) {
+  Motion out = r.motion;
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  out.put(amid(r, dice), between(0, out.vertices() - 1, dice), {none, none, none});
+  return out;
+}
+Told all_nan(const Right& r, Dice&) {
+  Motion out = r.motion;
+  std::fill(out.position.begin(), out.position.end(), std::numeric_limits<float>::quiet_NaN());
+  return out;
+}
+
+}  // namespace clothbench::liars

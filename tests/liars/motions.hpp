@@ -1,0 +1,54 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "clothbench/scene.hpp"
+
+namespace clothbench::liars {
+
+/// A motion as a file stores it, with what it is a motion of.
+struct Motion {
+  std::shared_ptr<const Scene> scene;
+  std::string solver;  ///< name and quality: "xpbd accurate"
+  std::vector<double> time_s;
+  std::vector<float> position;            ///< [m] (frames, vertices, 3)
+  std::vector<double> contact_offsets_m;  ///< as the solver states them
+
+  std::size_t vertices() const { return scene->cloth.vertex_count(); }
+  std::size_t frames() const { return time_s.size(); }
+  Vec3 at(std::size_t frame, std::size_t vertex) const;
+  void put(std::size_t frame, std::size_t vertex, const Vec3& x);
+};
+
+/// Kinds of scene that a seed draws one of: the kinds of the study of contact, drawn validation scenes, scenes of the
+/// paper, and thin bodies that a cloth falls on. Grids of 12 to 20 vertices a side where the kind allows any, 60 to
+/// 144 frames per second where its motion does.
+const std::vector<std::string>& scene_kinds();
+/// The same kind and seed give the same scene.
+Scene draw_scene(const std::string& kind, std::uint64_t seed);
+
+/// A solver with settings for which a kind of scene is known to come out right.
+struct RightSolver {
+  std::string name, settings_json;
+  std::string label() const;
+};
+/// Those that run the scene; more than one if several do.
+std::vector<RightSolver> right_solvers(const Scene&);
+
+/// The motion by a solver; none if a step fails. `changed`: what the solver is given instead of the scene.
+std::optional<Motion> run(const std::shared_ptr<const Scene>&, const RightSolver&,
+                          const std::function<void(Scene&)>& changed = nullptr);
+
+/// A motion as a file of its own: "LIAR", then counts of frames, vertices and colliders (uint32), contact offsets and
+/// times (float64), positions (float32), all little-endian. liar_plugin.c reads it too.
+void write_motion(const Motion&, const std::filesystem::path&);
+/// False if there is no such file or it is of another scene.
+bool read_motion(Motion&, const std::filesystem::path&);
+
+}  // namespace clothbench::liars
