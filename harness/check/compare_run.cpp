@@ -7,7 +7,9 @@
 #include "check/compare.hpp"
 #include "check/gates.hpp"
 #include "clothbench/error.hpp"
+#include "metrics/collider_contact.hpp"
 #include "metrics/registry.hpp"
+#include "results/stored_motion.hpp"
 #include "results/trajectory.hpp"
 
 namespace clothbench {
@@ -136,9 +138,25 @@ std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& 
 
 std::vector<Finding> motion_findings(const RunRecord& r) {
   if (r.file.empty()) return {};
-  const std::string fault = trajectory_fault(r.file);
-  if (fault.empty()) return {};
-  return {{Verdict::Failed, "positions", "the motion of the outcome", "another or none", "", r.file + ": " + fault}};
+  if (const std::string fault = trajectory_fault(r.file); !fault.empty())
+    return {{Verdict::Failed, "positions", "the motion of the outcome", "another or none", "", r.file + ": " + fault}};
+  if (r.outcome.status != "ok" || r.header.vertices == 0 || std::filesystem::is_directory(r.file)) return {};
+  // What the summary says of the motion is not taken on trust.
+  const StoredMotion motion = read_motion(r.file);
+  if (motion.time_s.empty() || (!kWithContactMetrics && !motion.scene.colliders.empty())) return {};
+  std::vector<Finding> out;
+  for (const motion_check::Finding& f :
+       motion_check::verify(motion.scene, {motion.time_s, motion.position}, motion.contact_margins_m)) {
+    const std::string name = kMotionCheck + f.statistic->name;
+    const auto stored = r.summary.find(name);
+    const bool passed = stored == r.summary.end() || stored->second <= 1;
+    if (!(f.ratio <= 1) && passed)
+      out.push_back({Verdict::Failed, name,
+                     stored == r.summary.end() ? kNotMeasured : fmt::format("{:.6g}", stored->second),
+                     fmt::format("{:.6g}", f.ratio), "≤ 1",
+                     fmt::format("{}: recomputed from the positions, frame {}", r.file, f.frame)});
+  }
+  return out;
 }
 
 std::vector<VersionDifference> version_differences(const BaselineRun& was, const BaselineRun& is) {
