@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kNotStated = "–";
 
-std::string text_of(const nlohmann::json& value) {
+std::string shown_value(const nlohmann::json& value) {
   if (value.is_null() || value == "") return kNotStated;
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
@@ -37,9 +37,9 @@ std::string kind_of_condition(const std::string& what) {
 }
 
 std::vector<Condition> conditions_of(const RunRecord& r) {
-  const auto environment = [&](const char* key) { return text_of(environment_of(r, key)); };
+  const auto environment = [&](const char* key) { return shown_value(environment_of(r, key)); };
   std::vector<Condition> out = {
-      {"scene", "scene SHA-256", text_of(r.header.scenario_sha256)},
+      {"scene", "scene SHA-256", shown_value(r.header.scenario_sha256)},
       {"machine", "CPU", environment("cpu")},
       {"machine", "CPU threads", environment("cpu_threads")},
       {"device", "GPU", environment("gpu")},
