@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fuzz every reader of other people's files for some seconds each, JOBS at a time, under address and undefined-behaviour sanitizers.
-#   scripts/fuzz.sh [seconds] [reader...]     default: 10 s, all readers; new inputs go to build/asan/fuzz/found
+#   scripts/fuzz.sh [seconds] [reader...]     default: 10 s, all readers; new inputs go to build/fuzz/found
 # SEED=N tries the same inputs again, as far as the time goes; default: others every time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -8,17 +8,17 @@ source scripts/common.sh
 seconds=${1:-10}
 readers=(scene obj gltf room hand track raw hdf5)
 [ $# -gt 1 ] && readers=("${@:2}")
-log=$stage_logs/fuzz-build.log
-{ cmake --preset asan -DCMAKE_UNITY_BUILD=ON && cmake --build --preset asan -j "$JOBS" --target "${readers[@]/#/fuzz_}"; } >"$log" 2>&1 || { tail -30 "$log"; exit 1; }
+cmake --preset fuzz -DCMAKE_UNITY_BUILD=ON >build/configure-fuzz.log 2>&1 || { tail -30 build/configure-fuzz.log; exit 1; }
+cmake --build --preset fuzz -j "$JOBS" --target "${readers[@]/#/fuzz_}" >build/fuzz.log 2>&1 || { tail -30 build/fuzz.log; exit 1; }
 
 fuzz() {
-  local reader=$1 found=build/asan/fuzz/found/$1 log=build/asan/fuzz/$1.log dictionary=()
+  local reader=$1 found=build/fuzz/found/$1 log=build/fuzz/$1.log dictionary=()
   mkdir -p "$found"
   [ -f "tests/fuzz/$reader.dict" ] && dictionary=(-dict="tests/fuzz/$reader.dict")
-  if ! build/asan/fuzz_"$reader" -seed="${SEED:-0}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
-    -artifact_prefix="build/asan/fuzz/$reader-" "${dictionary[@]}" "$found" "tests/fuzz/corpus/$reader" >"$log" 2>&1; then
+  if ! build/fuzz/fuzz_"$reader" -seed="${SEED:-0}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
+    -artifact_prefix="build/fuzz/$reader-" "${dictionary[@]}" "$found" "tests/fuzz/corpus/$reader" >"$log" 2>&1; then
     grep -E "ERROR|SUMMARY|runtime error|terminate|what\(\)" "$log" | head -5
-    echo "fuzz: $reader: a finding (build/asan/fuzz/$reader-*; $log)" >&2
+    echo "fuzz: $reader: a finding (build/fuzz/$reader-*; $log)" >&2
     return 1
   fi
   echo "fuzz: $reader: $(grep -o 'stat::number_of_executed_units: *[0-9]*' "$log" | grep -o '[0-9]*$') inputs in $seconds s, $(grep -oE 'cov: [0-9]+' "$log" | tail -1 | cut -d' ' -f2) edges, none crashed"
