@@ -34,12 +34,18 @@ TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>&
 /// Frame times [s] of one run in several processes: of each that has trials the median of the trials' means.
 std::vector<double> process_times(const std::vector<const RunRecord*>&);
 
+/// Whether the processes of the two sides ran in turns, by the start of their trials: from one side to the other at
+/// least as often as in a random order, 2 a b/(a + b) times of a and b processes. Otherwise a drift of the machine is
+/// taken for a difference of the builds. True if a start is not known.
+bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const RunRecord*>& b);
+
 /// A run that is on both sides, or on one (the other list is empty then).
 struct ComparedRun {
   std::string name;
   std::vector<const RunRecord*> a, b;  ///< one per process; results are compared between the first of each side
   std::string marks = {};              ///< kinds of conditions that differ and were allowed: "scene, machine"
   TimeRatio time = {};
+  bool in_turns = true;  ///< see in_turns below
   struct Change {
     std::string name;
     double a = kMissing, b = kMissing;

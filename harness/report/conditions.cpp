@@ -28,7 +28,8 @@ std::string trial_frames(const RunRecord& r) {
 }  // namespace
 
 const std::vector<std::string>& condition_kinds() {
-  static const std::vector<std::string> kinds = {"scene", "machine", "device", "precision", "length", "trials"};
+  static const std::vector<std::string> kinds = {"scene",  "machine", "device", "precision",
+                                                 "length", "trials",  "order"};
   return kinds;
 }
 
