@@ -76,7 +76,7 @@ RunRecord drawn_run(const Spread& s, double frame_s, std::mt19937& random) {
   for (int k = 0; k < 3; ++k) {
     TimedTrial& t = r.trials.emplace_back();
     const double of_trial = of_process * std::exp(s.trial * normal(random));
-    for (int f = 0; f < 20; ++f) t.frame_wall_s.push_back(of_trial * std::exp(s.frame * normal(random)));
+    for (int f = 0; f < 6; ++f) t.frame_wall_s.push_back(of_trial * std::exp(s.frame * normal(random)));
   }
   return r;
 }
