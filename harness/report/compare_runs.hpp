@@ -5,7 +5,7 @@
 
 #include "base/table.hpp"
 #include "clothbench/record.hpp"
-#include "report/conditions.hpp"
+#include "results/conditions.hpp"
 
 namespace clothbench {
 
@@ -72,7 +72,7 @@ struct Comparison {
 };
 
 /// Pairs runs by name. Throws Error if paired runs, or processes of one side, differ in a condition whose kind is not
-/// in `allowed` (report/conditions.hpp), or if a process has a run twice. The records must outlive the result.
+/// in `allowed` (results/conditions.hpp), or if a process has a run twice. The records must outlive the result.
 Comparison compare_runs(const Processes& a, const Processes& b, const std::vector<std::string>& allowed = {});
 
 std::vector<Table> comparison_tables(const Comparison&);
