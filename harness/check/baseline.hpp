@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "clothbench/record.hpp"
-#include "report/conditions.hpp"
+#include "results/conditions.hpp"
 
 namespace clothbench {
 

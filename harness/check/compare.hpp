@@ -61,7 +61,7 @@ std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);
 /// Compares results with a baseline. A run of the baseline without a result fails, unless the results have the run with
 /// another kind of assets that is also in the baseline. A planned run without a result fails too. A run that is not in
 /// the baseline is new. Throws Error if a run is twice among the results, if a condition of a kind that is not in
-/// `allowed` differs from the baseline's (report/conditions.hpp), or if the version of a metric's rule does: values of
+/// `allowed` differs from the baseline's (results/conditions.hpp), or if the version of a metric's rule does: values of
 /// two rules cannot be compared.
 Checked check_runs(const Baseline&, const std::vector<RunRecord>&, const std::vector<std::string>& allowed = {});
 

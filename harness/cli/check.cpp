@@ -52,7 +52,7 @@ void add_check(CLI::App& app, Console& console) {
          "--allow", a.allowed,
          "Check although these differ from the baseline's (scene, device, precision, length), and mark the output")
       ->delimiter(',')
-      ->check(CLI::IsMember(condition_kinds()))
+      ->check(CLI::IsMember({"scene", "device", "precision", "length"}))
       ->excludes(rewrite);
   cmd->add_option("--junit", a.junit, "Also write JUnit XML with one test case per run")->excludes(rewrite);
   cmd->add_flag("--github", a.github, "Also print annotations for GitHub Actions")->excludes(rewrite);

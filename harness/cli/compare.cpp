@@ -1,5 +1,4 @@
 #include "base/files.hpp"
-#include "base/words.hpp"
 #include "cli/command.hpp"
 #include "report/compare_runs.hpp"
 #include "report/report.hpp"
@@ -10,13 +9,29 @@ namespace clothbench {
 namespace {
 
 struct CompareArguments {
-  std::vector<std::string> a, b, allowed;
-  std::string markdown;
+  std::string a, b, markdown;
+  std::vector<std::string> allowed;
 };
 
-Processes read_processes(const std::vector<std::string>& folders) {
+namespace fs = std::filesystem;
+
+/// One folder of results, or the folders in a folder that has no results itself, by name.
+std::vector<fs::path> folders_of(const fs::path& given) {
+  std::vector<fs::path> inside;
+  if (!fs::is_directory(given) || given.extension() == ".part" || fs::exists(given / "study.json")) return {given};
+  for (const auto& entry : fs::directory_iterator(given)) {
+    if (!entry.is_directory() || entry.path().extension() == ".part") return {given};
+    inside.push_back(entry.path());
+  }
+  std::sort(inside.begin(), inside.end());
+  return inside.empty() ? std::vector{given} : inside;
+}
+
+/// `given`: folders or files, separated by commas.
+Processes read_processes(const std::string& given) {
   Processes out;
-  for (const std::string& folder : folders) withhold_times(out.emplace_back(collect({folder})));
+  for (const std::string& one : CLI::detail::split(given, ','))
+    for (const fs::path& folder : folders_of(one)) withhold_times(out.emplace_back(collect({folder})));
   return out;
 }
 
@@ -29,7 +44,7 @@ void compare(const CompareArguments& given, Console& console) {
     end = marks.find('\n', at);
     page += "**" + marks.substr(at, end - at) + "**\n\n";
   }
-  page += fmt::format("A: `{}`, B: `{}`\n\n", joined(given.a, "`, `"), joined(given.b, "`, `"));
+  page += fmt::format("A: `{}`, B: `{}`\n\n", given.a, given.b);
   for (const Table& t : comparison_tables(comparison)) {
     const bool any = t.rows.size() > 1;
     text += any ? t.console() : fmt::format("\n{}: none\n  {}\n", t.title, t.note);
@@ -47,16 +62,13 @@ void add_compare(CLI::App& app, Console& console) {
       "compare",
       "Compare two results of the same study: which runs are faster or slower beyond noise, and which "
       "results differ");
-  const std::string several =
-      fmt::format("; for a statement about times at least {} folders of separate processes: 1,2,3,4,5", kMinProcesses);
-  cmd->add_option("a", given.a, "Study folder or result file: before" + several)
-      ->required()
-      ->expected(1)
-      ->delimiter(',');
-  cmd->add_option("b", given.b, "Study folder or result file: after" + several)
-      ->required()
-      ->expected(1)
-      ->delimiter(',');
+  const std::string several = fmt::format(
+      "; for a statement about times {} or more of separate processes, run in turns: A,B,C,D,E or the folder that "
+      "holds "
+      "them",
+      kMinProcesses);
+  cmd->add_option("a", given.a, "Study folder or result file: before" + several)->required();
+  cmd->add_option("b", given.b, "Study folder or result file: after; likewise")->required();
   cmd->add_option("--allow", given.allowed, "Compare although these differ, and mark the output")
       ->delimiter(',')
       ->check(CLI::IsMember(condition_kinds()));

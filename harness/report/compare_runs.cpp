@@ -88,8 +88,9 @@ void compare_results(ComparedRun& c) {
   if (!c.metrics.empty() && c.outcome.empty()) c.apart = pair_of(a, b, "before").value;
 }
 
-/// Adds what differs between the first run of A and every other one.
-void add_differences(ComparedRun& c, DifferingRuns& differing) {
+/// Adds what differs between the first run of A and every other one. An order without turns is no difference of the
+/// runs, only no basis for a statement on times.
+void add_differences(ComparedRun& c, const std::vector<std::string>& allowed, DifferingRuns& differing) {
   const RunRecord& first = *c.a.front();
   const std::vector<Condition> conditions = conditions_of(first);
   std::vector<std::string> kinds;
@@ -100,6 +101,12 @@ void add_differences(ComparedRun& c, DifferingRuns& differing) {
         differing.add(c.name, d);
         if (!contains(kinds, d.kind)) kinds.push_back(d.kind);
       }
+  c.in_turns = in_turns(c.a, c.b);
+  if (!c.in_turns && contains(allowed, std::string("order"))) {
+    differing.add(c.name, {"order", "processes", "A", "B one after the other, not in turns"});
+    kinds.emplace_back("order");
+    c.in_turns = true;
+  }
   c.marks = joined(kinds);
 }
 
@@ -109,6 +116,7 @@ std::string verdict(const ComparedRun& c) {
   const TimeRatio& t = c.time;
   const std::string out = !std::isfinite(t.ratio) ? "not timed"
                           : !t.enough()           ? fmt::format("too few processes: at least {} a side", kMinProcesses)
+                          : !c.in_turns           ? "no statement: A and B did not run in turns"
                           : t.noise()             ? "noise"
                           : t.ratio < 1           ? "faster"
                                                   : "slower";
@@ -155,6 +163,20 @@ std::vector<double> process_times(const std::vector<const RunRecord*>& processes
   return out;
 }
 
+bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const RunRecord*>& b) {
+  std::vector<std::pair<double, bool>> order;  // start, on B
+  for (const auto* side : {&a, &b})
+    for (const RunRecord* r : *side) {
+      if (r->trials.empty() || !std::isfinite(r->trials.front().start_unix_s)) return true;
+      order.emplace_back(r->trials.front().start_unix_s, side == &b);
+    }
+  std::sort(order.begin(), order.end());
+  double changes = 0;
+  for (std::size_t k = 1; k < order.size(); ++k) changes += order[k].second != order[k - 1].second ? 1 : 0;
+  const auto m = static_cast<double>(a.size()), n = static_cast<double>(b.size());
+  return changes >= std::floor(2 * m * n / (m + n));
+}
+
 Comparison compare_runs(const Processes& a, const Processes& b, const std::vector<std::string>& allowed) {
   Comparison out{{}, DifferingRuns(allowed)};
   const auto add = [&](const Processes& side, std::vector<const RunRecord*> ComparedRun::*to) {
@@ -172,7 +194,7 @@ Comparison compare_runs(const Processes& a, const Processes& b, const std::vecto
   add(a, &ComparedRun::a);
   add(b, &ComparedRun::b);
   for (ComparedRun& c : out.runs)
-    if (!c.a.empty() && !c.b.empty()) add_differences(c, out.differing);
+    if (!c.a.empty() && !c.b.empty()) add_differences(c, allowed, out.differing);
   out.differing.refuse("A", "B");
   for (ComparedRun& c : out.runs)
     if (!c.a.empty() && !c.b.empty()) {

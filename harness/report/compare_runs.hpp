@@ -5,7 +5,7 @@
 
 #include "base/table.hpp"
 #include "clothbench/record.hpp"
-#include "report/conditions.hpp"
+#include "results/conditions.hpp"
 
 namespace clothbench {
 
@@ -34,12 +34,18 @@ TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>&
 /// Frame times [s] of one run in several processes: of each that has trials the median of the trials' means.
 std::vector<double> process_times(const std::vector<const RunRecord*>&);
 
+/// Whether the processes of the two sides ran in turns, by the start of their trials: from one side to the other at
+/// least as often as in a random order, 2 a b/(a + b) times of a and b processes. Otherwise a drift of the machine is
+/// taken for a difference of the builds. True if a start is not known.
+bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const RunRecord*>& b);
+
 /// A run that is on both sides, or on one (the other list is empty then).
 struct ComparedRun {
   std::string name;
   std::vector<const RunRecord*> a, b;  ///< one per process; results are compared between the first of each side
   std::string marks = {};              ///< kinds of conditions that differ and were allowed: "scene, machine"
   TimeRatio time = {};
+  bool in_turns = true;  ///< see in_turns below
   struct Change {
     std::string name;
     double a = kMissing, b = kMissing;
@@ -66,7 +72,7 @@ struct Comparison {
 };
 
 /// Pairs runs by name. Throws Error if paired runs, or processes of one side, differ in a condition whose kind is not
-/// in `allowed` (report/conditions.hpp), or if a process has a run twice. The records must outlive the result.
+/// in `allowed` (results/conditions.hpp), or if a process has a run twice. The records must outlive the result.
 Comparison compare_runs(const Processes& a, const Processes& b, const std::vector<std::string>& allowed = {});
 
 std::vector<Table> comparison_tables(const Comparison&);

@@ -71,7 +71,7 @@ class Console(unittest.TestCase):
         self.assertNotIn("\x1b", self.on_terminal("run", "nothing", TERM="dumb")[1])
         out, _, _ = self.on_terminal("validate", "paper/gravity", "nothing.json")
         self.assertTrue("\x1b[32mok\x1b[0m" in out and "\x1b[31m" in out, out)
-        self.assertIn("\x1b[2mnoise\x1b[0m", self.on_terminal("compare", self.out, self.out)[0])
+        self.assertIn("too few processes", self.on_terminal("compare", self.out, self.out)[0])
 
     def test_a_live_line_that_fits_and_goes_away(self):
         study = ["study", "table3", "--quick", "--trials", "1", "--solver", "ballistic", "--solver", "bullet-soft"]

@@ -76,7 +76,7 @@ RunRecord drawn_run(const Spread& s, double frame_s, std::mt19937& random) {
   for (int k = 0; k < 3; ++k) {
     TimedTrial& t = r.trials.emplace_back();
     const double of_trial = of_process * std::exp(s.trial * normal(random));
-    for (int f = 0; f < 20; ++f) t.frame_wall_s.push_back(of_trial * std::exp(s.frame * normal(random)));
+    for (int f = 0; f < 6; ++f) t.frame_wall_s.push_back(of_trial * std::exp(s.frame * normal(random)));
   }
   return r;
 }
@@ -229,6 +229,22 @@ TEST(CompareRuns, OtherConditionsAreRefusedByNameUnlessAllowed) {
     const std::string table = comparison_tables(allowed)[0].markdown();
     EXPECT_NE(table.find(std::string("other ") + other.kind), std::string::npos) << table;
   }
+}
+
+TEST(CompareRuns, ProcessesThatDidNotRunInTurnsMakeNoStatement) {
+  const auto started = [](Processes side, double first_s, double step_s) {
+    for (std::size_t k = 0; k < side.size(); ++k)
+      for (TimedTrial& t : side[k][0].trials) t.start_unix_s = first_s + step_s * static_cast<double>(k);
+    return side;
+  };
+  const Processes one = processes({run("x", 1e-3, 0.5)}), other = processes({run("x", 2e-3, 0.5)});
+  const Processes a = started(one, 0, 2), turns = started(other, 1, 2), after = started(other, 100, 2);
+  EXPECT_EQ(comparison_json(compare_runs(a, turns))["runs"][0]["verdict"], "slower");
+  const std::string without = comparison_json(compare_runs(a, after))["runs"][0]["verdict"];
+  EXPECT_NE(without.find("did not run in turns"), std::string::npos) << without;
+  const nlohmann::json allowed = comparison_json(compare_runs(a, after, {"order"}));
+  EXPECT_EQ(allowed["runs"][0]["verdict"], "slower; other order");
+  EXPECT_EQ(allowed["overridden"][0]["kind"], "order");
 }
 
 TEST(CompareRuns, ProcessesOfOneSideMustAgreeToo) {

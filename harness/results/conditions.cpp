@@ -1,4 +1,4 @@
-#include "report/conditions.hpp"
+#include "results/conditions.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
-#include "report/grid.hpp"
 
 namespace clothbench {
 namespace {
@@ -28,7 +27,8 @@ std::string trial_frames(const RunRecord& r) {
 }  // namespace
 
 const std::vector<std::string>& condition_kinds() {
-  static const std::vector<std::string> kinds = {"scene", "machine", "device", "precision", "length", "trials"};
+  static const std::vector<std::string> kinds = {"scene",  "machine", "device", "precision",
+                                                 "length", "trials",  "order"};
   return kinds;
 }
 
@@ -37,7 +37,10 @@ std::string kind_of_condition(const std::string& what) {
 }
 
 std::vector<Condition> conditions_of(const RunRecord& r) {
-  const auto environment = [&](const char* key) { return shown_value(environment_of(r, key)); };
+  const nlohmann::json& e = r.header.environment;
+  const auto environment = [&](const char* key) {
+    return e.is_object() ? shown_value(e.value(key, nlohmann::json())) : std::string(kNotStated);
+  };
   std::vector<Condition> out = {
       {"scene", "scene SHA-256", shown_value(r.header.scenario_sha256)},
       {"machine", "CPU", environment("cpu")},
@@ -74,7 +77,8 @@ std::vector<ConditionDifference> differences(const std::vector<Condition>& a, co
 
 std::string scene_difference(const RunRecord& a, const RunRecord& b) {
   constexpr std::size_t kShown = 4;
-  const nlohmann::json p = scenario_of(a), q = scenario_of(b);
+  const nlohmann::json p = nlohmann::json::parse(a.header.scenario_json, nullptr, false),
+                       q = nlohmann::json::parse(b.header.scenario_json, nullptr, false);
   if (!p.is_object() || !q.is_object()) return "";
   const nlohmann::json left = p.flatten(), right = q.flatten();
   std::set<std::string> keys;
@@ -92,8 +96,9 @@ std::string scene_difference(const RunRecord& a, const RunRecord& b) {
 }
 
 void DifferingRuns::add(const std::string& run, const ConditionDifference& d) {
-  Entry& e = find_or_add(all_, [&](const Entry& other) { return other.difference == d; }, {d, {}});
-  if (!contains(e.runs, run)) e.runs.push_back(run);
+  auto at = std::find_if(all_.begin(), all_.end(), [&](const Entry& other) { return other.difference == d; });
+  if (at == all_.end()) at = all_.insert(at, {d, {}});
+  if (!contains(at->runs, run)) at->runs.push_back(run);
 }
 
 std::string DifferingRuns::line(const Entry& e) const {

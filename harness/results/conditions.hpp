@@ -12,7 +12,7 @@ struct Condition {
   std::string kind, what, value;  ///< `value`: "–" if the run does not state it
 };
 
-/// The kinds, in order: "scene", "machine", "device", "precision", "length", "trials".
+/// The kinds, in order: "scene", "machine", "device", "precision", "length", "trials", "order".
 const std::vector<std::string>& condition_kinds();
 
 /// The kind of a condition of results ("GPU" is of "device").
