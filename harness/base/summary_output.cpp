@@ -32,7 +32,7 @@ void SummaryOutput::write(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const ssize_t n = ::write(descriptor(), text.data() + at, text.size() - at);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return;  // nobody reads
+    if (n < 0) return;  // its reader has gone
     at += static_cast<std::size_t>(n);
   }
 }

@@ -14,7 +14,7 @@ class ResultFolder {
     Shared  ///< with other processes that also share it: parts of one study
   };
   /// Throws Error naming the folder and who holds it, or why it cannot be made or written (a file, a path too long, no
-  /// permission). `command_line`: told to whom it is refused.
+  /// permission). `command_line`: for the message of a process that is refused.
   ResultFolder(const std::filesystem::path& folder, Use, const std::string& command_line);
   ~ResultFolder();
   ResultFolder(const ResultFolder&) = delete;

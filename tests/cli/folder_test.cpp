@@ -29,7 +29,7 @@ TEST_F(Out, ThatCannotBeAFolderExitsTwo) {
                                   {(dir_ / "file" / "below").string(), "Not a directory"},
                                   {(dir_ / std::string(300, 'x')).string(), "File name too long"},
                                   {"/proc/clothbench", "cannot be made"}})
-    for (const std::string& command_line :
+    for (const std::string command_line :
          {"run paper/gravity --solver ballistic", "study table3 --quick --solver ballistic",
           "study stability --quick --solver ballistic", "metamorphic ballistic"}) {
       const Answer a = command(command_line + " --out '" + out + "'");

@@ -231,7 +231,8 @@ class Plugin(unittest.TestCase):
         process = self.start("--json", *words, **environment)
         self.text, _ = process.communicate(timeout=120)
         self.assertEqual(process.returncode, code, self.text)
-        return json.loads(self.text[self.text.index("[\n") :] if not self.text.startswith("[]") else "[]")
+        # Standard error is in the text too, before and after.
+        return json.JSONDecoder().raw_decode(self.text[self.text.index("[\n") if "[\n" in self.text else self.text.index("[]") :])[0]
 
     def test_a_crash_is_an_answer_of_plan(self):
         words = ["plan", "paper/gravity", "--solver", self.faulty(), "--solver", "ballistic"]

@@ -238,7 +238,9 @@ TEST(MeshInput, WhatAGltfNeedsIsRefusedByName) {
     const std::string text = refusal([&] { assets::parse_gltf(j.dump(), "m.gltf"); });
     const std::string bytes = refusal([&] { assets::parse_gltf(binary(j), "m.gltf"); });
     EXPECT_EQ(text.empty(), bytes.empty());
-    if (text.starts_with("m.gltf: /")) EXPECT_EQ(text, bytes);
+    if (text.starts_with("m.gltf: /")) {
+      EXPECT_EQ(text, bytes);
+    }
     return text;
   };
   EXPECT_EQ(why("/extensionsRequired", {"KHR_materials_unlit", "KHR_texture_transform"}), "");
