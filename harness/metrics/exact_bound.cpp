@@ -22,18 +22,21 @@ double rounding_m(const std::vector<Vec3>& columns) {
   return std::exp2(-24) * largest_m;
 }
 
-/// What the quantity changes by at most if each coordinate is rounded.
-double rounding_of_quantity(const truth::ReferenceCase& known, std::vector<Vec3> columns, double by_m) {
-  const double exact = known.quantity(columns);
-  double sum = 0;
+/// Three standard deviations of the quantity if every coordinate is rounded (uniformly, by `by_m` at most), over its
+/// scale. Each column is a mean over as many vertices as lie across the strip.
+double rounding_of_quantity(const TruthJudge& judge, std::vector<Vec3> columns, double by_m) {
+  const truth::ReferenceCase& known = judge.reference_case();
+  const Cloth& c = judge.scene().cloth;
+  const double exact = known.quantity(columns), across = c.mesh ? 1 + c.height_m / c.mesh->edge_m : c.rows;
+  double squares = 0;
   for (Vec3& x : columns)
     for (double& coordinate : x) {
       const double kept = coordinate;
       coordinate += by_m;
-      sum += std::abs(known.quantity(columns) - exact);
+      squares += std::pow(known.quantity(columns) - exact, 2);
       coordinate = kept;
     }
-  return sum / known.quantity_scale;
+  return 3 * std::sqrt(squares / 3 / across) / known.quantity_scale;
 }
 
 }  // namespace
@@ -57,9 +60,9 @@ ExactBound exact_bound(const TruthJudge& judge) {
   };
   const std::vector<Vec3> columns = known.columns(last);
   const double longer_m = std::max(scene.cloth.width_m, scene.cloth.height_m), by_m = rounding_m(columns);
-  return {bound(e2, tolerance.at_rest, std::sqrt(3.0) * by_m / longer_m),
+  return {bound(e2, tolerance.at_rest, by_m / longer_m),
           bound(quantity_error, tolerance.at_rest * longer_m / known.quantity_scale,
-                rounding_of_quantity(known, columns, by_m))};
+                rounding_of_quantity(judge, columns, by_m))};
 }
 
 }  // namespace clothbench

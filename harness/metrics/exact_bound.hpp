@@ -9,7 +9,7 @@ namespace clothbench {
 /// a value too small fails as one too large. Each is
 ///   tolerance * moved + mesh + rounding,
 /// where `moved` is the same scalar of a cloth that keeps its start (where that is 0: the tolerance at rest), `mesh`
-/// the part of it that a triangle mesh is off, and `rounding` what positions in float32 change at most.
+/// the part of it that a triangle mesh is off, and `rounding` what positions in float32 change.
 struct ExactBound {
   double e2 = kMissing, quantity_error = kMissing;
 };

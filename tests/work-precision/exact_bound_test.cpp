@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/json_text.hpp"
-#include "metrics/metric_pass.hpp"
 #include "metrics/registry.hpp"
 #include "runner/expect.hpp"
 #include "scenario/load.hpp"
@@ -18,35 +17,48 @@ namespace {
 
 using Motion = std::function<std::vector<double>(int frame)>;
 
-/// The verdict on a run with these positions.
-std::string verdict(const Scene& s, const Motion& motion) {
-  const nlohmann::json settings = nlohmann::json::object();
-  const MetricContext context{s, find_solver("ballistic"), settings};
-  MetricPass metrics(context);
-  AccuracyPass pass;
-  for (int f = 0; f <= s.time.frames(); ++f) {
-    ClothState state{motion(f), {}};
-    state.velocity.assign(state.position.size(), 0);
-    metrics.add(state);
-    pass.time_s.push_back(s.time.at(f));
+/// A scene, its exact solution in every frame, and the verdict on other motions.
+class Judged {
+ public:
+  explicit Judged(const Scene& s) : scene(s), judge_(scene), bound_(exact_bound(judge_)) {
+    for (int f = 0; f <= scene.time.frames(); ++f) {
+      exact.push_back(truth::vertex_positions(scene.cloth, judge_.reference_case(), f));
+      pass_.time_s.push_back(scene.time.at(f));
+    }
   }
-  pass.metrics = metrics.take();
-  auto summary = scalars_of({s, pass}, "truth_");
-  if (!s.stability.name.empty()) summary["stability_grade"] = 0;  // another expectation, of frames with velocities
-  return judge(s, {}, pass, summary).text;
-}
 
-/// The exact solution in every frame; a shape at rest is there from the start.
-std::vector<std::vector<double>> exact_frames(const Scene& s, const truth::ReferenceCase& known) {
-  std::vector<std::vector<double>> out;
-  for (int f = 0; f <= s.time.frames(); ++f) out.push_back(truth::vertex_positions(s.cloth, known, f));
-  return out;
-}
+  std::string verdict(const Motion& motion) const {
+    AccuracyPass pass = pass_;
+    pass.metrics = {{"truth_error_e2", "1", "", {}, 1}, {"truth_quantity_error", "1", "", {}, 1}};
+    for (int f = 0; f <= scene.time.frames(); ++f) {
+      ClothState state{motion(f), {}};
+      state.velocity.assign(state.position.size(), 0);
+      const TruthErrors e = judge_.judge(f, state);
+      pass.metrics[0].values.push_back(e.e2);
+      pass.metrics[1].values.push_back(e.quantity_error);
+    }
+    const RunView run(scene, pass);
+    std::map<std::string, double> summary = {{"truth_e2_bound", bound_.e2},
+                                             {"truth_quantity_error_bound", bound_.quantity_error},
+                                             {"stability_grade", 0}};  // needs velocities
+    for (const char* name : kExactlyBounded) summary[name] = find_scalar(name)->from.value(run);
+    return judge(scene, {}, pass, summary).text;
+  }
+  bool fails(const Motion& motion) const { return verdict(motion).starts_with("fail: truth_"); }
+
+  const Scene scene;
+  std::vector<std::vector<double>> exact;
+
+ private:
+  TruthJudge judge_;
+  ExactBound bound_;
+  AccuracyPass pass_;
+};
 
 /// Start + k (exact - start).
-Motion scaled(const Scene& s, const std::vector<std::vector<double>>& exact, double k) {
-  return [&exact, k, start = initial_positions(s)](int frame) {
-    std::vector<double> out = exact[static_cast<std::size_t>(frame)];
+Motion scaled(const Judged& j, double k) {
+  return [&j, k, start = initial_positions(j.scene)](int frame) {
+    std::vector<double> out = j.exact[static_cast<std::size_t>(frame)];
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = start[i] + k * (out[i] - start[i]);
     return out;
   };
@@ -60,61 +72,70 @@ Motion crept(const Scene& s, double share) {
   return [out](int) { return out; };
 }
 
-void expect_two_sided(const Scene& s) {
-  const auto known = *truth::reference_case_of(s);
-  const truth::Tolerance& tolerance = truth::tolerance_of(known.name);
-  const auto exact = exact_frames(s, known);
-  const auto fails = [&](const Motion& motion) { return verdict(s, motion).starts_with("fail: truth_"); };
-  EXPECT_EQ(verdict(s, scaled(s, exact, 1)), "pass");
-  const std::vector<double> start = initial_positions(s);
-  double moved_m = 0;
-  for (std::size_t i = 0; i < start.size(); ++i) moved_m = std::max(moved_m, std::abs(exact.back()[i] - start[i]));
-  if (moved_m > 1e-12) {
-    for (const double sign : {-1.0, 1.0}) {
-      EXPECT_TRUE(fails(scaled(s, exact, 1 + sign * 3 * tolerance.of_motion))) << sign;
-      EXPECT_EQ(verdict(s, scaled(s, exact, 1 + sign * 0.5 * tolerance.of_motion)), "pass") << sign;
-    }
-    EXPECT_TRUE(fails(scaled(s, exact, 0))) << "frozen";
-  } else {
-    ASSERT_GT(tolerance.at_rest, 0);
-    for (const double sign : {-1.0, 1.0}) {
-      EXPECT_TRUE(fails(crept(s, sign * 3 * tolerance.at_rest))) << sign;
-      EXPECT_EQ(verdict(s, crept(s, sign * 0.5 * tolerance.at_rest)), "pass") << sign;
-    }
+/// Greatest motion of a coordinate [m], and half a unit in the last place of float32 of the greatest coordinate.
+std::pair<double, double> moved_and_rounding_m(const Judged& j) {
+  const std::vector<double> start = initial_positions(j.scene);
+  double moved = 0, greatest = 0;
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    moved = std::max(moved, std::abs(j.exact.back()[i] - start[i]));
+    greatest = std::max(greatest, std::abs(start[i]));
   }
-  EXPECT_TRUE(fails([&](int frame) {
-    std::vector<double> x = exact[static_cast<std::size_t>(frame)];
+  return {moved, std::exp2(-24) * greatest};
+}
+
+void expect_two_sided(const Scene& s) {
+  const Judged j(s);
+  const truth::Tolerance& tolerance = truth::tolerance_of(s.reference_case);
+  EXPECT_EQ(j.verdict(scaled(j, 1)), "pass");
+  EXPECT_TRUE(j.fails([&](int frame) {
+    std::vector<double> x = j.exact[static_cast<std::size_t>(frame)];
     if (frame == s.time.frames()) x[1] = NAN;
     return x;
   }));
+  const auto [moved_m, rounding_m] = moved_and_rounding_m(j);
+  const bool moves = moved_m > 1e-12;
+  if (moves) {
+    EXPECT_TRUE(j.fails(scaled(j, 0))) << "frozen";
+  } else {
+    ASSERT_GT(tolerance.at_rest, 0);
+  }
+  const double of = moves ? tolerance.of_motion : tolerance.at_rest;
+  for (const double sign : {-1.0, 1.0}) {
+    EXPECT_EQ(j.verdict(moves ? scaled(j, 1 + sign * 0.5 * of) : crept(s, sign * 0.5 * of)), "pass") << sign;
+    if (moves && moved_m < 200 * rounding_m) continue;  // stiff strips far away: float32 does not show some per cent
+    EXPECT_TRUE(j.fails(moves ? scaled(j, 1 + sign * 3 * of) : crept(s, sign * 3 * of))) << sign;
+  }
 }
 
 class ExactBound : public ::testing::TestWithParam<std::string> {};
+class DrawnBound : public ::testing::TestWithParam<std::string> {};
 
-std::vector<std::string> scenes_with_a_solution() {
+auto scenes_with_a_solution(const std::vector<std::string>& folders) {
   std::vector<std::string> out;
-  for (const std::string& name : scene_names({"validation", "stability"}))
+  for (const std::string& name : scene_names(folders))
     if (!load_scene(name).reference_case.empty()) out.push_back(name);
-  return out;
+  return ::testing::ValuesIn(out);
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, ExactBound, ::testing::ValuesIn(scenes_with_a_solution()), [](const auto& i) {
+std::string test_name(const ::testing::TestParamInfo<std::string>& i) {
   std::string name = i.param;
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
   return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, ExactBound, scenes_with_a_solution({"validation", "stability"}), test_name);
+INSTANTIATE_TEST_SUITE_P(Every, DrawnBound, scenes_with_a_solution({"validation"}), test_name);
 
 TEST_P(ExactBound, TheSolutionPassesAndWhatIsOffOnEitherSideFails) { expect_two_sided(load_scene(GetParam())); }
 
-TEST_P(ExactBound, HoldsForDrawnParameters) {
+TEST_P(DrawnBound, TheSolutionPassesAndWhatIsOffOnEitherSideFails) {
   const Scene s = load_scene(GetParam());
-  if (!GetParam().starts_with("validation/")) GTEST_SKIP() << "its kind is drawn from the scene in validation/";
-  const bool integrated = s.reference_case.find("sheet") != std::string::npos;
+  const bool slow = s.reference_case.find("sheet") != std::string::npos || s.cloth.mesh;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
     SCOPED_TRACE(seed);
     expect_two_sided(truth::draw(s, seed).scene);
-    if (integrated) break;  // it takes longer
+    if (slow && seed == 2) break;
   }
 }
 
@@ -131,29 +152,39 @@ TEST(Tolerances, EveryReferenceCaseHasOneAndItsReason) {
 }
 
 /// A scene with an exact solution needs no `expect`; the bound is that of the parameters in use.
-TEST(ExactBound, FollowsOverridesAndNeedsNoFile) {
-  const Scene moon = load_scene("validation/incline-slip", {"gravity_m_per_s2=[0,-1.6,0]"});
-  EXPECT_TRUE(moon.expect.empty());
-  const auto exact = exact_frames(moon, *truth::reference_case_of(moon));
-  EXPECT_EQ(verdict(moon, scaled(moon, exact, 1)), "pass");
-  EXPECT_TRUE(verdict(moon, scaled(moon, exact, 9.81 / 1.6)).starts_with("fail: truth_"));
+TEST(ExactBounds, FollowsOverridesAndNeedsNoFile) {
+  const Judged moon(load_scene("validation/incline-slip", {"gravity_m_per_s2=[0,-1.6,0]"}));
+  EXPECT_TRUE(moon.scene.expect.empty());
+  EXPECT_EQ(moon.verdict(scaled(moon, 1)), "pass");
+  EXPECT_TRUE(moon.fails(scaled(moon, 9.81 / 1.6)));
   Outcome broken;
   broken.status = "diverged";
-  EXPECT_TRUE(judge(moon, broken, {}, {}).text.starts_with("fail: outcome diverged, expected ok"));
+  EXPECT_TRUE(judge(moon.scene, broken, {}, {}).text.starts_with("fail: outcome diverged, expected ok"));
+}
+
+/// The bounds are in every result, and are those of the function.
+TEST(ExactBounds, IsPartOfASummary) {
+  const Scene s = load_scene("validation/pendulum");
+  AccuracyPass pass;
+  for (int f = 0; f <= s.time.frames(); ++f) pass.time_s.push_back(s.time.at(f));
+  const auto summary = scalars_of({s, pass}, "truth_");
+  EXPECT_EQ(summary.at("truth_e2_bound"), exact_bound(TruthJudge(s)).e2);
+  EXPECT_EQ(summary.at("truth_quantity_error_bound"), exact_bound(TruthJudge(s)).quantity_error);
+  pass.time_s.pop_back();
+  EXPECT_TRUE(std::isnan(scalars_of({s, pass}, "truth_").at("truth_e2_bound"))) << "only of a whole run";
 }
 
 /// Positions that are right but were rounded to float32, ten metres from the origin, still pass.
-TEST(ExactBound, AllowsTheRoundingOfFloat32) {
-  const Scene s = load_scene("validation/heavy-strip",
-                             {"material.membrane_stiffness_N_per_m=1e6", "cloth.pose.center_m=[10,9.5,10]"});
-  const auto exact = exact_frames(s, *truth::reference_case_of(s));
-  const auto rounded = [&](int frame) {
-    std::vector<double> x = exact[static_cast<std::size_t>(frame)];
+TEST(ExactBounds, AllowsTheRoundingOfFloat32) {
+  const Judged j(load_scene("validation/heavy-strip",
+                            {"material.membrane_stiffness_N_per_m=1e6", "cloth.pose.center_m=[10,9.5,10]"}));
+  EXPECT_EQ(j.verdict([&](int frame) {
+    std::vector<double> x = j.exact[static_cast<std::size_t>(frame)];
     for (double& v : x) v = static_cast<float>(v);
     return x;
-  };
-  EXPECT_EQ(verdict(s, rounded), "pass");
-  EXPECT_TRUE(verdict(s, crept(s, 1e-5)).starts_with("fail: truth_"));
+  }),
+            "pass");
+  EXPECT_TRUE(j.fails(crept(j.scene, 1e-5)));
 }
 
 }  // namespace
