@@ -10,9 +10,15 @@ namespace {
 
 constexpr double kNothing = 1e-12;  // a motion of rounding errors only
 
-/// A triangle mesh has no exact solution of its own and is compared with the continuum: linear triangles, irregular and
-/// perhaps locked, are of first order in their size (exact grids: no error).
-double mesh_error(const Cloth& c) { return c.mesh ? c.mesh->edge_m / c.width_m : 0; }
+/// What the mesh changes, as a share of the exact motion. A triangle mesh has no exact solution of its own and is
+/// compared with the continuum: linear triangles, irregular and perhaps locked, are of first order in their size. A
+/// strip that slides by the law of a smooth one: its distance from that one. Other grids have the exact solution of
+/// their own.
+double mesh_error(const TruthJudge& judge, double moved_quantity) {
+  const Cloth& c = judge.scene().cloth;
+  if (c.mesh) return c.mesh->edge_m / c.width_m;
+  return judge.reference_case().smooth_law ? judge.space_error() / moved_quantity : 0;
+}
 
 /// Half a unit in the last place of float32, of the coordinate that is farthest from the origin.
 double rounding_m(const std::vector<Vec3>& columns) {
@@ -54,9 +60,13 @@ ExactBound exact_bound(const TruthJudge& judge) {
     e2.push_back(moved.e2);
     quantity_error.push_back(moved.quantity_error);
   }
+  const auto norm = [&](const std::vector<double>& errors) {
+    return errors.size() < 2 ? errors.back() : truth::time_rms(times_s, errors);
+  };
+  const bool moves = norm(e2) > kNothing;
+  const double share = moves ? tolerance.of_motion + mesh_error(judge, norm(quantity_error)) : 0;
   const auto bound = [&](const std::vector<double>& errors, double at_rest, double rounding) {
-    const double moved = errors.size() < 2 ? errors.back() : truth::time_rms(times_s, errors);
-    return (moved <= kNothing ? at_rest : (tolerance.of_motion + mesh_error(scene.cloth)) * moved) + rounding;
+    return (moves ? share * norm(errors) : at_rest) + rounding;
   };
   const std::vector<Vec3> columns = known.columns(last);
   const double longer_m = std::max(scene.cloth.width_m, scene.cloth.height_m), by_m = rounding_m(columns);

@@ -212,6 +212,7 @@ ReferenceCase capstan(const Strip& s) {
   const bool moves = states->back().way_m > 0;
   ReferenceCase known = over_cylinder(
       s, [states](int frame) { return states->at(static_cast<std::size_t>(frame)).way_m; }, moves);
+  known.smooth_law = true;
   known.continuum = [s, smooth](double share, int frame) {
     return draped_columns(s, smooth->at(static_cast<std::size_t>(frame)).way_m)
         .at(static_cast<std::size_t>(std::lround(share * s.links)));

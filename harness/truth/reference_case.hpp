@@ -30,6 +30,7 @@ struct ReferenceCase {
   std::string name;
   bool settles = false;      ///< the solution is the shape at rest: only a run's end is compared
   bool by_quantity = false;  ///< runs are ranked by the quantity's error; otherwise by that of the positions
+  bool smooth_law = false;   ///< `columns` move by the continuum's law, so their own mesh adds an error
   std::string quantity_name;
   double quantity_scale = 1;       ///< divisor of errors of the quantity, same unit
   double speed_scale_m_per_s = 1;  ///< the same for speeds
