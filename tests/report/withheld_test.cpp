@@ -79,7 +79,7 @@ TEST(Withheld, TrialsOfSuchRunsCompareWithNothing) {
   EXPECT_EQ(in_short_table(runs).rows[1][5], "–");
   EXPECT_NE(in_short_table(runs).note.find("2 jobs"), std::string::npos);
   EXPECT_NE(in_short_table(alone).rows[1][5], "–");
-  const auto tables = comparison_tables(compare_runs(alone, runs));
+  const auto tables = comparison_tables(compare_runs({alone}, {runs}));
   EXPECT_EQ(tables[0].rows.size(), 1u);
   EXPECT_NE(tables[0].note.find("2 jobs"), std::string::npos) << tables[0].note;
 }
@@ -157,14 +157,15 @@ TEST(Withheld, AVersionNewerThanThisProgramsCountsTheMost) {
 
 TEST(Withheld, RunsByTwoVersionsAreNotCompared) {
   const std::vector<RunRecord> a = {swept("s", 1, 1, 9)}, b = {swept("s", 1, 2, 7)};
-  const auto runs = compare_runs(a, b);
+  const Comparison both = compare_runs({a}, {b});
+  const std::vector<ComparedRun>& runs = both.runs;
   ASSERT_EQ(runs[0].versions.size(), 1u);
   for (const auto& m : runs[0].metrics) EXPECT_EQ(m.name.find("wrong_side"), std::string::npos) << m.name;
-  const Table t = comparison_tables(runs)[1];
+  const Table t = comparison_tables(both)[1];
   EXPECT_EQ(t.rows.back(), (std::vector<std::string>{"sweep-1__s__default", "wrong_side_samples", "by version 1",
                                                      "by version 2: not compared"}));
-  EXPECT_EQ(comparison_json(runs)[0]["versions"]["wrong_side_samples"], (nlohmann::json{1, 2}));
-  EXPECT_TRUE(compare_runs(b, b)[0].versions.empty());
+  EXPECT_EQ(comparison_json(both)["runs"][0]["versions"]["wrong_side_samples"], (nlohmann::json{1, 2}));
+  EXPECT_TRUE(compare_runs({b}, {b}).runs[0].versions.empty());
 }
 
 TEST(Withheld, EveryDocumentOfAReportLacksThem) {
