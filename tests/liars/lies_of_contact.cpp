@@ -62,8 +62,15 @@ Told hovers_5cm(const Right& r, Dice&) { return hovering(r, "hover-50", 0.05); }
 Told hovers_2mm(const Right& r, Dice&) { return hovering(r, "hover-2", 0.002); }
 Told sinks_1cm(const Right& r, Dice&) {
   const Index from = r.facts.first_touch;
+  // What the solver keeps away is no solid yet.
+  double deep_m = 0.01;
+  for (std::size_t c = 0; c < r.motion.scene->colliders.size(); ++c) {
+    const double margin = r.motion.scene->colliders[c].margin_m;
+    const double said = c < r.motion.contact_offsets_m.size() ? r.motion.contact_offsets_m[c] : margin;
+    deep_m = std::max(deep_m, 0.01 + (std::isfinite(said) ? std::max(said, margin) : margin));
+  }
   return moved(r, [&](Index k, Index, const V3& x) {
-    return V3(x - 0.01 * smooth(static_cast<double>(k < from ? 0 : k - from) / 20) * r.facts.up);
+    return V3(x - deep_m * smooth(static_cast<double>(k < from ? 0 : k - from) / 20) * r.facts.up);
   });
 }
 Told border_sinks(const Right& r, Dice&) {

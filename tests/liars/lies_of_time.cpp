@@ -6,6 +6,20 @@
 namespace clothbench::liars {
 namespace {
 
+/// A level direction in which a line of held vertices lets the cloth swing.
+V3 across_held_line(const Right& r, Dice& dice) {
+  V3 line = V3::Zero();
+  Index first = r.motion.vertices();
+  for (Index v = 0; v < r.motion.vertices(); ++v) {
+    if (!r.held(0, v)) continue;
+    first = std::min(first, v);
+    const V3 way = v3(r.motion.at(0, v)) - v3(r.motion.at(0, first));
+    if (way.norm() > line.norm()) line = way;
+  }
+  const V3 across = r.facts.up.cross(line);
+  return across.norm() > 0.01 * r.facts.length_m ? V3(across.normalized()) : level(r.facts.up, dice);
+}
+
 Index in_air(const Right& r, Dice& dice) { return r.facts.air[between(0, r.facts.air.size() - 1, dice)]; }
 
 Motion one_frame(const Right& r, Index frame, const V3& by) {
@@ -110,7 +124,7 @@ Told other_throw(const Right& r, Dice& dice) {
   });
 }
 Told leaning_gravity(const Right& r, Dice& dice) {
-  const V3 by = std::tan(10 * std::numbers::pi / 180) * level(r.facts.up, dice);
+  const V3 by = std::tan(10 * std::numbers::pi / 180) * across_held_line(r, dice);
   return r.other("leaning", [by](Scene& s) {
     const double g = v3(s.gravity_m_per_s2).norm();
     for (std::size_t i = 0; i < 3; ++i) s.gravity_m_per_s2[i] += g * by[static_cast<int>(i)];
