@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "base/former_names.hpp"
@@ -61,8 +62,9 @@ BaselineRun run_from(const json& j, const std::string& where) {
 ordered_json json_of(const BaselineRun& c) {
   ordered_json j = {{"scene", c.key.scene}, {"solver", c.key.solver}, {"setting", c.key.setting}};
   if (!c.key.assets.empty()) j["assets"] = c.key.assets;
-  j["conditions"] = ordered_json::object();
-  for (const Condition& condition : c.conditions) j["conditions"][condition.what] = condition.value;
+  std::map<std::string, std::string> conditions;  // in the order in which they are read
+  for (const Condition& condition : c.conditions) conditions[condition.what] = condition.value;
+  j["conditions"] = conditions;
   j["status"] = c.status;
   j["class"] = c.klass;
   j["failed_frame"] = c.failed_frame;

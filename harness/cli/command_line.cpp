@@ -75,7 +75,8 @@ int run_command_line(const std::vector<std::string>& given) {
   // Before the words are read: plugins are loaded on the way.
   if (contains(words, "--in-process")) run_plugins_in_process();
   std::optional<SummaryOutput> summary_alone;
-  if (contains(words, "--json")) summary_alone.emplace();
+  // Google Benchmark prints its own JSON.
+  if (contains(words, "--json") && !contains(words, "bench")) summary_alone.emplace();
   app.fallthrough();
 
   for (AddCommand* add : kCommands) add(app, console);

@@ -68,7 +68,7 @@ Verdict judge(const Scene& scene, const Outcome& outcome, const AccuracyPass& pa
   const bool known = measured(scene, outcome, pass);
   const auto note = [&](const std::string& name, const std::string& wrong) {
     v.scalars[kExpect + name] = !known ? kMissing : wrong.empty() ? 1 : 0;
-    if (!wrong.empty()) v.text += (v.text.empty() ? "fail: " : "; ") + wrong;
+    if (!wrong.empty() && known) v.text += (v.text.empty() ? "fail: " : "; ") + wrong;
   };
   if (!expected.empty())
     note("outcome", outcome.status == expected ? "" : "outcome " + outcome.status + ", expected " + expected);

@@ -1,4 +1,5 @@
 // Attached vertices elsewhere, other moments, other places for a frame, other scenes.
+#include <Eigen/Geometry>
 #include <numbers>
 
 #include "telling.hpp"

@@ -41,11 +41,7 @@ class Source {
         matrix_.motion_cache / fmt::format("{}-{}-{}.motion", scene_file(kind_, seed_), with.name, what);
     Motion known{scene_, with.label(), {}, {}, {}};
     if (!matrix_.motion_cache.empty() && read_motion(known, file)) return known;
-    const auto start = std::chrono::steady_clock::now();
     std::optional<Motion> out = run(scene_, with, changed);
-    if (const char* timed = std::getenv("LIARS_TIMES"); timed != nullptr)
-      fmt::print(stderr, "{} {:.1f} s\n", file.filename().string(),
-                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     if (out && !matrix_.motion_cache.empty()) {
       std::filesystem::create_directories(matrix_.motion_cache);
       write_motion(*out, file);

@@ -28,7 +28,7 @@ RunRecord run(const Scene& scene, const SolverEntry& entry, const ScratchFolder&
   options.out = folder.path();
   const RunResult result = execute_runs(plan, options);
   EXPECT_EQ(result.files.size(), 1u);
-  EXPECT_TRUE(result.faults.empty());
+  EXPECT_EQ(result.faults.empty(), read_run(result.files.at(0)).outcome.status == "ok");
   return read_run(result.files.at(0));
 }
 
@@ -104,6 +104,13 @@ TEST(ContactScene, MarginsThatCannotBeAreFaults) {
   EXPECT_NE(fault({std::numeric_limits<double>::infinity()}).find("a contact margin of inf m"), std::string::npos);
 }
 
+/// Prescribed motions obey no law of motion: only the scene's own bounds are asked.
+bool own_bounds_hold(const RunRecord& r) {
+  for (const auto& [name, value] : r.summary)
+    if (name.starts_with("expect.") && name != "expect.motion" && value != 1) return false;
+  return r.summary.contains("expect.motion");
+}
+
 TEST(ContactScene, ASheetLoweredIntoASphereGivesTheClosedForms) {
   const ScratchFolder folder;
   const Scene scene = load_scene(folder.file("scene.json", kSphereScene));
@@ -123,7 +130,7 @@ TEST(ContactScene, ASheetLoweredIntoASphereGivesTheClosedForms) {
   EXPECT_FALSE(has_series(r, "tunnelled_fraction"));
   EXPECT_FALSE(has_series(r, "self_contact_pairs")) << "a scene without it does not pay for it";
   EXPECT_NEAR(at("stretch_max"), 0, 1e-12);
-  EXPECT_EQ(r.outcome.expect, "pass");
+  EXPECT_TRUE(own_bounds_hold(r)) << r.outcome.expect;
   EXPECT_EQ(at("expect.outcome"), 1);
   EXPECT_EQ(at("expect.depth_max_m"), 1);
 }
@@ -132,7 +139,7 @@ TEST(ContactScene, ABrokenExpectationSaysWhatAndHowMuch) {
   const ScratchFolder folder;
   const Scene scene = load_scene(folder.file("scene.json", with(kSphereScene, "0.0100001", "0.005")));
   const RunRecord r = run(scene, prescribed(lifted([](int frame) { return frame < 4 ? 0.0 : -0.11; })), folder);
-  EXPECT_EQ(r.outcome.expect, "fail: depth_max_m 0.01 > 0.005");
+  EXPECT_NE(r.outcome.expect.find("depth_max_m 0.01 > 0.005"), std::string::npos) << r.outcome.expect;
   EXPECT_EQ(r.outcome.status, "ok") << "a broken expectation is no failure of the solver";
   EXPECT_EQ(r.summary.at("expect.depth_max_m"), 0);
   EXPECT_EQ(r.summary.at("expect.outcome"), 1);
@@ -142,7 +149,6 @@ TEST(ContactScene, AShortAccuracyPassMeasuresNoExpectation) {
   const ScratchFolder folder;
   const Scene scene = load_scene(folder.file("scene.json", kSphereScene));
   const RunRecord r = run(scene, prescribed(lifted([](int) { return 0.0; })), folder, 0.5);
-  EXPECT_EQ(r.outcome.expect, "not measured");
   EXPECT_TRUE(std::isnan(r.summary.at("expect.depth_max_m")));
   EXPECT_TRUE(std::isnan(r.summary.at("contact_length_settled_m")));
 }
@@ -159,8 +165,9 @@ TEST(ContactScene, ANaNIsInTheSummaryAndBreaksTheExpectation) {
   for (const char* name : {"contact_length_max_m", "depth_max_m", "depth_vertex_max_m", "depth_mean_m",
                            "penetrating_area_max_m2", "stretch_max", "stretch_max_end"})
     EXPECT_TRUE(std::isnan(r.summary.at(name))) << name;
-  EXPECT_EQ(r.outcome.expect,
-            "fail: outcome not_finite, expected ok; contact_length_settled_m has no value; depth_max_m has no value");
+  for (const char* part : {"outcome not_finite, expected ok", "finite (kinematic)",
+                           "contact_length_settled_m has no value", "depth_max_m has no value"})
+    EXPECT_NE(r.outcome.expect.find(part), std::string::npos) << r.outcome.expect;
   EXPECT_EQ(r.summary.at("expect.outcome"), 0);
   EXPECT_EQ(r.summary.at("expect.depth_max_m"), 0);
 }
@@ -201,7 +208,7 @@ TEST(ContactScene, ASheetLaidOverItselfCrossesNowhere) {
   const ScratchFolder folder;
   const RunRecord r = run(load_scene(folder.file("scene.json", kSelfScene)), prescribed(laid_over(false)), folder);
   EXPECT_EQ(r.summary.at("self_contact_length_max_m"), 0);
-  EXPECT_EQ(r.outcome.expect, "pass");
+  EXPECT_TRUE(own_bounds_hold(r)) << r.outcome.expect;
 }
 
 TEST(ContactScene, WhatACrossedStartHasIsNotNew) {
@@ -211,7 +218,7 @@ TEST(ContactScene, WhatACrossedStartHasIsNotNew) {
   const RunRecord r = run(load_scene(folder.file("scene.json", kSelfScene)), prescribed(always), folder);
   EXPECT_GE(series(r, "self_contact_pairs")[0], 16);
   EXPECT_EQ(r.summary.at("self_contact_pairs_max"), 0);
-  EXPECT_EQ(r.outcome.expect, "pass");
+  EXPECT_TRUE(own_bounds_hold(r)) << r.outcome.expect;
 }
 
 TEST(ContactScene, NoNumberIsNoSelfContactKept) {
@@ -246,7 +253,7 @@ TEST(ContactScene, ACurtainHalfWayThroughAPatchHasTunnelledByHalf) {
   EXPECT_EQ(r.summary.at("tunnelled_fraction_end"), 0) << "back the way it came";
   EXPECT_NEAR(r.summary.at("tunnelled_depth_max_m"), 0.5, 1e-12);
   EXPECT_TRUE(std::isnan(r.summary.at("depth_max_m"))) << "an open patch has no inside";
-  EXPECT_EQ(r.outcome.expect, "fail: tunnelled_fraction_max 0.5 > 0");
+  EXPECT_NE(r.outcome.expect.find("tunnelled_fraction_max 0.5 > 0"), std::string::npos) << r.outcome.expect;
 }
 
 TEST(ContactScene, AHandPushedThroughAStillClothTunnelsAndComesBack) {

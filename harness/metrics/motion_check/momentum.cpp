@@ -254,8 +254,11 @@ void Momentum::run() {
       found_.add("first_step", off[0] / (0.55 + noise(0)), 0);
     else
       found_.add("impulse", off[k] / (0.5 + noise(k)), k);
-    if (now.contact && !attached && k > 0)
+    if (now.contact && !attached && k > 0) {
       slip[k] = outside_cone(forces_only * now.wrench, contacts, forces_only, middle, true);
+      // Of one interval of an impact, a quarter of the force.
+      found_.add("friction", slip[k] / (0.5 + 0.25 * now.wrench.head<3>().norm() + noise(k)), k);
+    }
     if (k < 3) continue;
     const auto median = [&](const std::vector<double>& x) {
       return std::max(std::min(x[k - 2], x[k - 1]), std::min(std::max(x[k - 2], x[k - 1]), x[k]));
@@ -287,7 +290,7 @@ void Momentum::window(std::size_t k) {
   if (!(std::sqrt(moved / static_cast<double>(m_.vertices)) < 0.002 * m_.length_m)) return;
   const std::size_t at = k - kWindow / 2;
   const V3 middle = middle_of(at);
-  const double off = outside_cone(mean, contacts_round(at), free_of_attachments(at, middle), middle);
+  const double off = outside_cone(mean, contacts_round(at), free_of_attachments(at, middle), middle, true);
   found_.add("support", off / (0.03 + noise(k) / kWindow), k);
 }
 

@@ -1,0 +1,152 @@
+// Passages between two stored frames: points deep in a solid through the cloth, vertices through static surfaces.
+#include <algorithm>
+#include <cmath>
+
+#include "metrics/motion_check/body_state.hpp"
+
+namespace clothbench::motion_check {
+
+void add_middle(Body& b) {
+  const Vec3& half = b.collider.half_extent_m;
+  const std::size_t thin = static_cast<std::size_t>(std::min_element(half.begin(), half.end()) - half.begin());
+  const std::size_t u = (thin + 1) % 3, v = (thin + 2) % 3;
+  if (!(half[u] > b.radius_m && half[v] > b.radius_m)) return;
+  for (const auto& [i, j] : {std::array{-1, -1}, std::array{1, -1}, std::array{1, 1}, std::array{-1, 1}}) {
+    const V3 at = to_v3(b.collider.center_m) + i * (half[u] - b.radius_m) * to_v3(b.collider.axes[u]) +
+                  j * (half[v] - b.radius_m) * to_v3(b.collider.axes[v]);
+    b.middle_positions.insert(b.middle_positions.end(), {at[0], at[1], at[2]});
+  }
+  b.middle_triangles = {{0, 1, 2}, {0, 2, 3}};
+  b.middle = std::make_unique<contact::TriangleTree>(contact::TriangleMeshView{b.middle_positions, b.middle_triangles});
+}
+
+/// Points deep inside a solid: none of them may pass through the cloth. Their spacing is half a cell.
+std::vector<V3> Bodies::State::inner_points(Body& b, std::size_t frame) {
+  std::vector<V3> out;
+  const auto count = [&](double length) {
+    return std::clamp(static_cast<int>(std::ceil(2 * length / m.cell_m)), 1, 32);
+  };
+  if (b.kind.capsules != nullptr) {
+    const std::vector<Capsule>& capsules = pose(b, frame).capsules;
+    for (std::size_t i = 0; i < capsules.size(); ++i) {
+      const V3 a = to_v3(capsules[i].a_m), along = to_v3(capsules[i].b_m) - a;
+      const int n = count(b.lengths_m[i]);
+      for (int j = 0; j <= n; ++j) out.push_back(a + static_cast<double>(j) / n * along);
+    }
+  }
+  if (b.collider.shape == Collider::Shape::Box) {
+    const Vec3& half = b.collider.half_extent_m;
+    std::array<int, 3> n{};
+    for (std::size_t k = 0; k < 3; ++k) n[k] = count(2 * (half[k] - b.radius_m));
+    for (int i = 0; i <= n[0]; ++i)
+      for (int j = 0; j <= n[1]; ++j)
+        for (int k = 0; k <= n[2]; ++k) {
+          V3 at = to_v3(b.collider.center_m);
+          const std::array<int, 3> index{i, j, k};
+          for (std::size_t a = 0; a < 3; ++a)
+            at += (2.0 * index[a] / n[a] - 1) * (half[a] - b.radius_m) * to_v3(b.collider.axes[a]);
+          out.push_back(at);
+        }
+  }
+  if (b.moves() && b.kind.capsules == nullptr) {
+    const std::size_t index = static_cast<std::size_t>(&b - bodies.data());
+    const std::vector<contact::Bone> rest = b.line.at(m.scripted(0)->colliders[index]);
+    const std::vector<contact::Bone> bones = b.line.at(m.scripted(frame)->colliders[index]);
+    for (std::size_t i = 0; i < bones.size(); ++i) {
+      const int n = count((rest[i][1] - rest[i][0]).norm());
+      for (int j = 0; j <= n; ++j)
+        out.push_back(bones[i][0] + static_cast<double>(j) / n * (bones[i][1] - bones[i][0]));
+    }
+  }
+  return out;
+}
+
+/// Points that pass the cloth whether they move first, last or evenly with it: stored frames do not say which.
+int Bodies::State::through_cloth(std::size_t frame, const std::vector<V3>& from, const std::vector<V3>& to) {
+  Box swept, path;
+  for (std::size_t v = 0; v < m.vertices; ++v) {
+    swept.extend(m.at(frame - 1, v));
+    swept.extend(m.at(frame, v));
+  }
+  for (std::size_t i = 0; i < from.size(); ++i) path.extend(from[i]).extend(to[i]);
+  if (from.empty() || !swept.intersects(path)) return 0;
+  const std::vector<double> was = cloth(frame - 1), now = cloth(frame);
+  const contact::TriangleMeshView before{was, m.triangles}, after{now, m.triangles};
+  const contact::SweptMesh mesh(before, after, each);
+  std::unique_ptr<contact::TriangleTree> at_start, at_end;
+  int count = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const int evenly = mesh.signed_crossings(from[i], to[i]);
+    if (evenly == 0) continue;
+    if (!at_start) {
+      at_start = std::make_unique<contact::TriangleTree>(before);
+      at_end = std::make_unique<contact::TriangleTree>(after);
+    }
+    const int first = contact::signed_crossings(from[i], to[i], *at_start) + mesh.signed_crossings(to[i], to[i]);
+    const int last = mesh.signed_crossings(from[i], from[i]) + contact::signed_crossings(from[i], to[i], *at_end);
+    if (first == evenly && last == evenly) ++count;
+  }
+  return count;
+}
+
+/// Vertices that pass a static surface: once, or in and out through faces that look away from each other.
+int Bodies::State::through_surface(std::size_t frame, const contact::TriangleTree& tree,
+                                   std::span<const double> positions, std::span<const Corners> triangles) {
+  const std::vector<double> was = cloth(frame - 1), now = cloth(frame);
+  Box swept;
+  swept.extend(box_of(was)).extend(box_of(now));
+  if (!swept.intersects(tree.tree().box())) return 0;
+  const auto of = [](const std::vector<double>& x, std::size_t v) { return V3(V3::Map(x.data() + 3 * v)); };
+  const auto crossed = [&](const V3& p, const V3& q, auto note) {
+    tree.tree().for_each_overlapping(Box(p).extend(q), [&](int t) {
+      const Simplex<3>& s = tree.triangles()[static_cast<std::size_t>(t)];
+      if (p != q && contact::crossing<3>(p, q, s) != 0) note(V3((s[1] - s[0]).cross(s[2] - s[0]).normalized()));
+    });
+  };
+  int through = 0;
+  bool any = false;
+  for (std::size_t v = 0; v < m.vertices; ++v) {
+    std::vector<V3> normals;
+    crossed(of(was, v), of(now, v), [&](const V3& n) { normals.push_back(n); });
+    any = any || !normals.empty();
+    bool opposed = false;
+    for (const V3& a : normals)
+      for (const V3& b : normals) opposed = opposed || a.dot(b) < -0.5;
+    through += opposed;
+  }
+  if (!any) return 0;
+  std::optional<contact::Border> border;
+  const contact::TriangleMeshView view{positions, triangles};
+  const contact::StepEvidence evidence{[&] {
+                                         for (const contact::Link& l : links)
+                                           for (const std::vector<double>* x : {&was, &now}) {
+                                             bool meets = false;
+                                             crossed(of(*x, l[0]), of(*x, l[1]), [&](const V3&) { meets = true; });
+                                             if (meets) return true;
+                                           }
+                                         return false;
+                                       },
+                                       [&](const contact::Point<3>& p, const contact::Point<3>& q) {
+                                         if (!border) border.emplace(view, contact::welded_vertices(view));
+                                         return border->out_of_reach(p, q, positions, positions);
+                                       }};
+  contact::TunnelHistory step(m.vertices, links);
+  step.advance(was, now, tree, evidence);
+  for (const int n : step.counts()) through += n != 0;
+  return through;
+}
+
+int Bodies::passages(std::size_t frame) const {
+  State& s = *state_;
+  int count = 0;
+  for (Body& b : s.bodies) {
+    if (b.kind.half_space) continue;
+    count += s.through_cloth(frame, s.inner_points(b, frame - 1), s.inner_points(b, frame));
+    if (b.still && b.collider.shape != Collider::Shape::Box)
+      count += s.through_surface(frame, *b.still, s.pose(b, 0).positions, b.triangles);
+    if (b.middle) count += s.through_surface(frame, *b.middle, b.middle_positions, b.middle_triangles);
+  }
+  return count;
+}
+
+}  // namespace clothbench::motion_check
