@@ -19,13 +19,6 @@ void expect_told_apart(const Matrix& matrix, std::size_t fewest) {
 }
 
 #ifndef CLOTHBENCH_MANY_LIES
-TEST(Liars, OfCloth) {
-  Matrix matrix;
-  matrix.solver = "reference";
-  matrix.kinds = {"free-fall", "heavy-strip", "swing-strip", "paper/gravity"};
-  matrix.motions = 4;
-  expect_told_apart(matrix, 100);
-}
 TEST(Liars, OfContact) {
   Matrix matrix;
   matrix.solver = "bullet-deformable";

@@ -84,7 +84,7 @@ class Plugin(unittest.TestCase):
         two = 'colliders=[{"type":"sphere","center_m":[0,0,0],"radius_m":0.1},{"type":"box","center_m":[0,-1,0],"size_m":[1,1,1]}]'
         words = ["plan", "contact/sphere", "--set", two]
         (plan,) = self.rows(*words, "--solver", self.faulty(), code=0)
-        self.assertEqual([m["margin_m"] for m in plan["contact_margins"]], [0.03])
+        self.assertEqual([m["margin_m"] for m in plan["contact_margins"]], [0.03, 0.004])
         self.assertEqual(self.command(*words, "--solver", self.faulty()), 0, self.text)
         self.assertIn("0.03", self.text)
         run = ["run", "contact/sphere", "--solver", self.faulty(), "--trials", "0", "--set", two, "--out", self.out]
