@@ -56,6 +56,8 @@ std::vector<Case> cases() {
       if (file.path().extension() != ".json" || folder == "schema" || folder == "studies" || folder == "assets")
         continue;
       const std::string scene = relative.replace_extension().string();
+      // A cylinder of 384 sides takes minutes on a software device, and capstan-hold needs the same features.
+      if (!CLOTHBENCH_ALL_CASES && scene == "validation/capstan-slip") continue;
       std::size_t n = 0;  // sides, then grids, of the cases without a profile
       for (const ConformanceCase& c : conformance_cases(scene, e.info.on_gpu)) {
         if (c.whole) continue;  // they take minutes: `clothbench conformance` runs them
