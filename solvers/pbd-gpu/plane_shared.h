@@ -58,7 +58,8 @@ struct ContactLedger {
   uint farthest;                     // greatest displacement of a vertex in a frame [m], the bits of a float: this one
                                      // at its end; until its list is made, the last one; 0: there was none
   uint counted[PAIR_LEVELS];         // pairs at each share of the reaches
-  uint unused0[2];
+  float drift[3];  // velocity [m/s] that the list of the cloth with itself moves along with
+  uint unused0[3];
 };
 
 #define PLANE_FRAME_LISTED 1u  // LineConstants::first_pass where a dispatch before has made the frame's list; else 0
@@ -132,7 +133,7 @@ static_assert(sizeof(PiecePoint) == 32);
 static_assert(sizeof(PieceBox) == 32);
 static_assert(sizeof(PointSource) == 16);
 static_assert(sizeof(PairState) == 64);
-static_assert(sizeof(ContactLedger) == 96);
+static_assert(sizeof(ContactLedger) == 112);
 static_assert(sizeof(SelfBox) == 64);
 static_assert(sizeof(SelfPair) == 8);
 static_assert(sizeof(SelfNear) == 48);

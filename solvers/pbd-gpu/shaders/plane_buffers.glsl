@@ -25,7 +25,6 @@ const float kGuard_m = 2e-4;    // distance of planes from pieces
 const float kRecovered = 0.1;   // share of the margin by which what is too near is let out a substep
 const float kStandingShare = 0.75;  // of the margin: what edges and faces keep from what stands
 const float kHold = 0.25;        // a push before the lines of so many margins doubles a vertex' mass in them
-const float kStruck = 0.7, kMostStruck = 4.0;  // of a margin a frame; how much heavier a vertex is after contact has moved it
 const float kRounding_m = 2e-7;  // of positions
 const float kTiny = 1e-6;       // a weight below is none
 
@@ -65,11 +64,7 @@ void begin_substep(uint substep) {
   t_end = time_of(substep + 1u);
 }
 
-uint stride() { return gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_WorkGroupSize.x; }
+/// How far the list of the cloth with itself moves in the frame [m].
+#define drift_m() (SELF != 0u ? p.frame_s * length(vec3(ledger.drift[0], ledger.drift[1], ledger.drift[2])) : 0.0)
 
-/// How much heavier a vertex is in the constraints after contact has moved it.
-float struck_by(vec3 way) {
-  vec3 by = way * (p.per_h * p.frame_s / (kStruck * MARGIN_M));
-  float square = dot(by, by);
-  return min(square * square, kMostStruck);
-}
+uint stride() { return gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_WorkGroupSize.x; }

@@ -1,5 +1,5 @@
 // A round's end: a vertex takes the mean of what its contacts propose, weighted by length (Jacobi: no contact sees another's move).
-// Before the lines the proposed corrections go into velocity and position, and what was pushed is heavier in the lines.
+// Before the lines the proposed corrections go into velocity and position, and what moving pieces pushed is heavier in the lines.
 // The sum has a fixed order, whatever the number of lanes that share it: SHARES of it, of a vertex' own pairs and of every SHARES-th
 // triangle, one after another.
 const uint SHARES = 8u;
@@ -110,7 +110,7 @@ void gather(uint i, bool valid) {
   STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * moving, 0.0));
   if (turn > 0u) {
     STORE16(y, i, vec4(at.xyz + by, at.w));
-    if (AGAIN && turn == 1u) STORE16(x, i, vec4(at.xyz + by, at.w / (1.0 + struck_by(by))));
+    if (AGAIN && turn == 1u) STORE16(x, i, vec4(at.xyz + by, at.w));
     return;
   }
   float held = dot(by, by) / (kHold * MARGIN_M * kHold * MARGIN_M);

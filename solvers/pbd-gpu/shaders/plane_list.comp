@@ -10,11 +10,10 @@ layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_TOUCHED) writeonly buffer Touched { uint touched[]; };
 layout(std430, binding = BIND_PAIRS) writeonly buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_PAIR_STATES) writeonly buffer States { PairState states[]; };
-layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
-layout(std430, binding = BIND_VELOCITIES) readonly buffer Velocities { vec4 v[]; };
 #define FILL_ALONE
 #else
 layout(std430, binding = BIND_RANGES) writeonly buffer Ranges { uvec4 ranges[]; };
+layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
 #define COUNT_ALONE
 #endif
 #include "plane_list.glsl"

@@ -4,10 +4,11 @@ vec3 low, high;
 void box_for(uvec4 e, float share) {
   low = vec3(1e30);
   high = vec3(-1e30);
+  float drifts = drift_m();
   for (uint c = 0u; c < e.w; ++c) {
     vec4 r = LOAD16(reaches, e[c]);
-    low = min(low, r.xyz - share * r.w);
-    high = max(high, r.xyz + share * r.w);
+    low = min(low, r.xyz - share * (r.w + drifts));
+    high = max(high, r.xyz + share * (r.w + drifts));
   }
 }
 #ifdef PLANE_FRAME
@@ -125,8 +126,6 @@ void list_touched(uint i) {
   STORE4(touched, OF_PAIRS(i), pairs_of);
   if (pairs_of == 0u) return;
   STORE4(touched, atomicAdd(ledger.touched_vertices, 1u), i);
-  vec4 at = LOAD16(x, i);
-  STORE16(x, i, vec4(at.xyz, at.w / (1.0 + LOAD16(v, i).w)));  // plane_project.glsl
 }
 #endif
 

@@ -2,7 +2,7 @@
 // A substep's end, a thread a vertex; SHUFFLES: a team of lanes.
 #include "common.glsl"
 #include "plane_buffers.glsl"
-layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
+layout(std430, binding = BIND_POSITIONS) writeonly buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };  // w: inverse mass
 layout(std430, binding = BIND_REACHES) readonly buffer Reaches { vec4 reaches[]; };

@@ -163,16 +163,11 @@ vec3 within(vec3 to, float room) {
 
 #include "plane_way.glsl"
 
-/// What contact has moved is heavier in the next substep's lines, else they would pull it back in place of the cloth behind it. What lies
-/// is moved by gravity's share alone, and is not. The frame's last substep leaves the mass as it is, and the rest in v.w.
 void end_substep(uint i, vec4 proposed, vec3 at) {
   if (proposed.w > 0.0) {
-    float struck = struck_by(at - LOAD16(x, i).xyz);
-    bool last = substep_now + 1u == p.substeps;
-    if (last || at != proposed.xyz)
-      STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * (at - proposed.xyz), last ? struck : 0.0));
-    if (last) note_way(i, at);
-    STORE16(x, i, vec4(at, last ? proposed.w : proposed.w / (1.0 + struck)));
+    if (at != proposed.xyz) STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * (at - proposed.xyz), 0.0));
+    if (substep_now + 1u == p.substeps) note_way(i, at);
+    STORE16(x, i, vec4(at, proposed.w));
   }
   STORE4(ways, i, distance(at, start));
   STORE16(starts, i, vec4(at, 0.0));

@@ -46,7 +46,11 @@ vec3 within_most(uint i, vec3 to, float w, vec3 from, float most) {
 /// The same within the frame's reach.
 vec3 within_reach(uint i, vec3 to, float w) {
   vec4 reach = LOAD16(reaches, i);
-  return within_most(i, to, w, reach.xyz, reach.w * (SELF != 0u ? min(ledger.reach, ledger.self_reach) : ledger.reach));
+  if (SELF != 0u) {
+    vec3 drift = (t_end * p.frame_s) * vec3(ledger.drift[0], ledger.drift[1], ledger.drift[2]);
+    to = within_most(i, to, w, reach.xyz + drift, reach.w * ledger.self_reach);
+  }
+  return within_most(i, to, w, reach.xyz, (reach.w + drift_m()) * ledger.reach);
 }
 
 void settle(uint i, vec4 at) {
