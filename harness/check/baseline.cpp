@@ -7,7 +7,6 @@
 #include <map>
 #include <set>
 
-#include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "check/gates.hpp"
@@ -100,8 +99,7 @@ BaselineRun gated_part(const RunRecord& r) {
 
 Baseline read_baseline(const std::filesystem::path& file) {
   const std::string source = file.string();
-  json j = parse_json(read_text(file), source);
-  rename_key(j, "cells", "runs", source);
+  const json j = parse_json(read_text(file), source);
   validate_json(j, kBaselineSchema, source);
   Baseline b;
   const json& made = j.at("made_with");

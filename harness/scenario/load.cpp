@@ -8,7 +8,6 @@
 #include <set>
 
 #include "base/data_folder.hpp"
-#include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "base/sha256.hpp"
 #include "base/words.hpp"
@@ -286,7 +285,6 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
 }
 
 Scene scene_from_parts(json scenario, const std::string& source, const SceneParts& parts) {
-  rename_scene_keys(scenario, source);
   validate_json(scenario, kSceneSchema, source);
   fill_defaults(scenario, kSceneSchema);
   check_assumed(scenario, source);
@@ -332,7 +330,7 @@ Scene scene_from_parts(json scenario, const std::string& source, const ScenePart
     read_expect(scenario["expect"], s, source);
   }
   s.json = scenario.dump();
-  s.sha256 = sha256(with_former_keys(scenario).dump());
+  s.sha256 = sha256(s.json);
   return s;
 }
 

@@ -7,7 +7,6 @@
 #include <map>
 #include <set>
 
-#include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "clothbench/solver.hpp"
@@ -367,7 +366,6 @@ Study load_study(const std::string& name_or_path, const StudyOptions& options) {
   const std::filesystem::path file = find_scenario(name_or_path);
   const std::string source = file.string();
   json j = parse_json(read_text(file), source);
-  rename_key(j, "cell_limit_s", "run_limit_s", source);
   validate_json(j, kStudySchema, source);
   fill_defaults(j, kStudySchema);
   return Builder(std::move(j), file, options).build();

@@ -319,7 +319,6 @@ SolverInfo xpbd_info() {
       {"lines_beside", "0",
        "neighbouring lines whose threads take turns, so that memory is read by whole sectors: 1, 2 or 4; 0: by line "
        "and device"}};
-  info.retired = {"contact", "contact_samples", "contact_lanes"};
   return info;
 }
 

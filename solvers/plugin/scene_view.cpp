@@ -32,9 +32,8 @@ bool moved(const double* before, const double* now, std::size_t points, double d
 
 }  // namespace
 
-SceneView::SceneView(const Scene& s, std::uint32_t version)
+SceneView::SceneView(const Scene& s)
     : scene_(s),
-      second_(version >= 2),
       position_(initial_positions(s)),
       velocity_(initial_velocities(s)),
       mass_(vertex_masses(s)) {
@@ -43,9 +42,8 @@ SceneView::SceneView(const Scene& s, std::uint32_t version)
   if (s.needs.has(Feature::Shear)) add_edges(EdgeKind::Shear, shear_);
   if (s.needs.has(Feature::Bend)) add_edges(EdgeKind::SkipOne, skip_);
   add_colliders();
-  if (second_) add_rest_shape();
+  add_rest_shape();
   ClothbenchScene& v = view_;
-  v.struct_size = sizeof v;
   s.needs.for_each([&](Feature f) { v.needs |= 1u << static_cast<unsigned>(f); });
   v.columns = static_cast<std::uint32_t>(s.cloth.columns);
   v.rows = static_cast<std::uint32_t>(s.cloth.rows);
@@ -178,17 +176,14 @@ void SceneView::mark_teleports(const FrameInput& in) {
 
 const ClothbenchFrame* SceneView::frame(const FrameInput& in) {
   frame_ = {};
-  frame_.struct_size = sizeof frame_;
   frame_.index = in.index;
   frame_.time_s = in.time_s;
   frame_.dt_s = in.dt_s;
   frame_.poses = start_.poses.data();
-  if (second_) frame_.poses_before = start_.poses.data();
+  frame_.poses_before = start_.poses.data();
   if (in.motion == nullptr) return &frame_;
-  if (second_) {
-    frame_.poses_before = pose_before(in).poses.data();
-    show_before(in);
-  }
+  frame_.poses_before = pose_before(in).poses.data();
+  show_before(in);
   pose(in.motion, now_);
   posed_ = in.index;
   frame_.poses = now_.poses.data();
@@ -196,7 +191,7 @@ const ClothbenchFrame* SceneView::frame(const FrameInput& in) {
     frame_.grip_position_m = in.motion->grip_position_m.front().data();
     frame_.grip_held = in.motion->grip_held.data();
   }
-  if (second_ && !scene_.jumps.empty()) mark_teleports(in);
+  if (!scene_.jumps.empty()) mark_teleports(in);
   return &frame_;
 }
 

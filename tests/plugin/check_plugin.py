@@ -91,10 +91,6 @@ class Plugin(unittest.TestCase):
         self.assertEqual(self.command(*run), 0, self.text)
         self.assertEqual(self.stored("sphere-drop__faulty__default")[2]["plan"]["contact_margins"], plan["contact_margins"])
 
-    def test_a_library_built_with_the_first_header_of_the_version(self):
-        (plan,) = self.rows("plan", "contact/sphere", "--solver", self.faulty("OLD_HEADER"), code=0)
-        self.assertEqual((plan["status"], plan["contact_margins"]), ("ok", []))
-
     def test_it_joins_studies(self):
         words = [
             "study",

@@ -313,49 +313,23 @@ TEST(Settings, AreCompletedAndChecked) {
   EXPECT_NE(fault({{"mode", true}}).find("expected a string"), std::string::npos);
 }
 
-TEST(Settings, TuningIsOneObjectAndItsMembersAreTakenWhereTheyWereOnce) {
+TEST(Settings, TuningIsOneObject) {
   SolverInfo info;
-  info.name = "moved";
+  info.name = "tuned";
   info.settings = {{"iterations", "5", ""}};
   info.tuning = {{"lanes", "0", ""}, {"shuffles", "true", ""}};
   const nlohmann::json defaults = {{"iterations", 5}, {"tuning", {{"lanes", 0}, {"shuffles", true}}}};
-  const nlohmann::json now = {{"tuning", {{"shuffles", false}}}}, once = {{"shuffles", false}};
-  ::testing::internal::CaptureStderr();
+  const nlohmann::json given = {{"tuning", {{"shuffles", false}}}};
   EXPECT_EQ(complete_settings(info, nlohmann::json::object()), defaults);
-  EXPECT_EQ(complete_settings(info, now)["tuning"], (nlohmann::json{{"lanes", 0}, {"shuffles", false}}));
-  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-  ::testing::internal::CaptureStderr();
-  EXPECT_EQ(complete_settings(info, once), complete_settings(info, now));
-  EXPECT_EQ(complete_settings(info, {{"lanes", 0}, {"iterations", 5}, {"shuffles", true}}), defaults) << "as stored";
-  const std::string notice = ::testing::internal::GetCapturedStderr();
-  EXPECT_NE(notice.find("tuning.<name>"), std::string::npos) << notice;
-  EXPECT_NE(notice.find("shuffles"), std::string::npos) << notice;
-  EXPECT_EQ(std::count(notice.begin(), notice.end(), '\n'), 1) << notice;
-  EXPECT_EQ(flat_settings(now), flat_settings(once));
-  EXPECT_EQ(flat_settings(defaults).dump(), R"({"iterations":5,"lanes":0,"shuffles":true})");
+  EXPECT_EQ(complete_settings(info, given)["tuning"], (nlohmann::json{{"lanes", 0}, {"shuffles", false}}));
   for (const nlohmann::json& bad : {nlohmann::json{{"tuning", {{"shufles", true}}}},
                                     {{"tuning", {{"iterations", 5}}}},
                                     {{"tuning", 3}},
                                     {{"tuning", {{"lanes", true}}}},
-                                    {{"lanes", 1}, {"tuning", {{"lanes", 2}}}}})
+                                    {{"shuffles", true}}})
     EXPECT_THROW(complete_settings(info, bad), Error) << bad;
   info.tuning.clear();
-  EXPECT_THROW(complete_settings(info, now), Error) << "another solver has none";
-}
-
-TEST(Settings, RetiredOnesDoNothingWithOneNotice) {
-  SolverInfo info;
-  info.name = "older";
-  info.settings = {{"iterations", "5", ""}};
-  info.tuning = {{"lanes", "0", ""}};
-  info.retired = {"samples", "mode"};
-  ::testing::internal::CaptureStderr();
-  const nlohmann::json all = complete_settings(info, {{"samples", 3}, {"tuning", {{"mode", "x"}, {"lanes", 2}}}});
-  EXPECT_EQ(all, (nlohmann::json{{"iterations", 5}, {"tuning", {{"lanes", 2}}}}));
-  EXPECT_EQ(complete_settings(info, {{"samples", 4}})["iterations"], 5);
-  const std::string notice = ::testing::internal::GetCapturedStderr();
-  EXPECT_EQ(notice, "notice: solver older: samples, mode: no longer a setting; without effect\n");
-  EXPECT_THROW(complete_settings(info, {{"sample", 3}}), Error);
+  EXPECT_THROW(complete_settings(info, given), Error) << "another solver has none";
 }
 
 TEST(Solvers, NearestNameIsNamed) {
