@@ -103,8 +103,7 @@ void read_accuracy(hid_t file, RunRecord& r, bool with_trajectory) {
     if (n == "time_s" || n == "frame") continue;
     const Id d(H5Dopen2(metrics, n.c_str(), H5P_DEFAULT), H5Dclose, "opening " + n);
     r.accuracy.metrics.push_back({n, text_attribute(d, "units"), text_attribute(d, "long_name"),
-                                  numbers<double>(metrics, n.c_str(), H5T_NATIVE_DOUBLE),
-                                  H5Aexists(d, "version") > 0 ? whole_attribute(d, "version") : 1});
+                                  numbers<double>(metrics, n.c_str(), H5T_NATIVE_DOUBLE)});
   }
 }
 

@@ -234,7 +234,7 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
 void write_accuracy_file(const std::filesystem::path& path, const AccuracyPass& a, std::uint32_t vertices) {
   nlohmann::json names = nlohmann::json::array();
   for (const MetricSeries& m : a.metrics)
-    names.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}, {"version", m.version}});
+    names.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}});
   std::vector<Bytes> frames;
   for (std::size_t f = 0; f < a.time_s.size(); ++f) {
     Bytes b;
@@ -258,8 +258,7 @@ AccuracyPass read_accuracy_file(const std::filesystem::path& path) {
       a.metrics.push_back({m.at("name").get<std::string>(),
                            m.at("units").get<std::string>(),
                            m.at("long_name").get<std::string>(),
-                           {},
-                           m.value("version", 1)});
+                           {}});
     for (const Bytes& b : file.frames) {
       Taker taker(b);
       taker.take(a.time_s, 1);

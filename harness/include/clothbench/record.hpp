@@ -67,7 +67,6 @@ struct TimedTrial {
 struct MetricSeries {
   std::string name, units, long_name;
   std::vector<double> values;  ///< one per stored frame, frame 0 = initial state
-  int version = 1;             ///< of the metric's definition
 };
 
 /// The untimed pass that yields positions and metrics.
