@@ -54,8 +54,7 @@ enum {
   CLOTHBENCH_UNEVEN_GRID = 1 << 17, /* cells of different widths */
   CLOTHBENCH_REGIONS = 1 << 18,     /* a membrane stiffness that varies between columns or groups */
   CLOTHBENCH_SPIN = 1 << 19,        /* an initial spin: the velocity differs between vertices */
-  CLOTHBENCH_CLOTH_MESH = 1 << 20, /* a triangle mesh instead of a grid: columns is the number of vertices, rows is 1 */
-  CLOTHBENCH_STRAIN_LIMIT = 1 << 21 /* edges stretch elastically up to a limit and no further; which, it does not say */
+  CLOTHBENCH_CLOTH_MESH = 1 << 20 /* a triangle mesh instead of a grid: columns is the number of vertices, rows is 1 */
 };
 
 /* How a step ended. Any other than OK ends the run and becomes its status in the results. */

@@ -22,7 +22,7 @@ namespace {
 }  // namespace
 
 const char* protocol_name(StudyLength length) {
-  return length == StudyLength::Full ? "full" : length == StudyLength::Quick ? "quick" : "short";
+  return length == StudyLength::Quick ? "quick" : "full";
 }
 
 const SolverEntry* known_solver(const std::string& name) {

@@ -151,7 +151,7 @@ std::vector<Strand> mesh_strands(const ClothMesh& m, bool rings_overlap) {
 }  // namespace
 
 bool wants_chains(const Scene& s) {
-  return !(s.needs & FeatureSet{Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions, Feature::StrainLimit})
+  return !(s.needs & FeatureSet{Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions})
               .empty();
 }
 

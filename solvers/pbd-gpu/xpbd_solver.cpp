@@ -108,8 +108,7 @@ class Xpbd final : public GpuSolver {
     if (const int calm = substeps_without_gravity(scene(), settings()); calm > 0)
       leave_out(std::to_string(calm) + " substeps",
                 "gravity takes the cloth far in a frame: " + std::to_string(xpbd_substeps(scene(), settings())));
-    const bool chained_links = !membrane.on || scene().material.strain_limit;
-    solves_again_ = touches && chained && chained_links && frame().tuning()["solves_again"] == "auto";
+    solves_again_ = touches && chained && !membrane.on && frame().tuning()["solves_again"] == "auto";
     if (touches)
       contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, colliders(), cloth.particle, solves_again_);
     if (chained)
@@ -156,9 +155,9 @@ class Xpbd final : public GpuSolver {
   void restrict_to_chains() {
     if (scene().needs.has(Feature::Bend) && !scene().cloth.mesh)
       throw Error(
-          "solver xpbd: bending is of triangle meshes and of even grids without strain_limit, and this cloth is "
+          "solver xpbd: bending is of triangle meshes and of even grids, and this cloth is "
           "neither; expected bending_rigidity_N_m 0");
-    if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid without strain_limit");
+    if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid");
     override_setting("iterations", 1, "its links are not all alike: chains take one iteration");
   }
 
@@ -278,7 +277,7 @@ SolverInfo xpbd_info() {
                    Feature::Pins,     Feature::MovingPins,  Feature::Sphere,        Feature::Box,
                    Feature::Plane,    Feature::Capsules,    Feature::StaticMesh,    Feature::MovingMesh,
                    Feature::Friction, Feature::DoubleSided, Feature::Spin,          Feature::UnevenGrid,
-                   Feature::Regions,  Feature::ClothMesh,   Feature::SelfCollision, Feature::StrainLimit};
+                   Feature::Regions,  Feature::ClothMesh,   Feature::SelfCollision};
   info.settings = {
       {"quality", "\"default\"",
        "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},

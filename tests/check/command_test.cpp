@@ -183,8 +183,7 @@ TEST_F(CheckCommand, HoldsARealStudyOfASolverThatTheStudyDoesNotName) {
                        << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/paper/gravity.json",
       "axes":[{"key":"cloth.grid","values":[[8,8]],"labels":["8"]}]}],
     "solvers":[{"solver":"no-such-solver"}],"trials":1,
-    "short":{"frames":12,"max_wall_s":1,"min_frames":12,"warmup_s":0.01},
-    "full":{"frames":12,"max_wall_s":0,"min_frames":12,"warmup_s":0.01},"accuracy_duration_s":0.1})";
+    "rules": {"frames":12,"max_wall_s":1,"min_frames":12,"warmup_s":0.01},"accuracy_duration_s":0.1})";
   ASSERT_EQ(command("study " + study.string() + " --solver ballistic --out " + out.string()), 0) << text_;
   const std::string arguments = "check " + out.string() + " --baseline " + baseline().string();
   ASSERT_EQ(command(arguments + " --update"), 0) << text_;

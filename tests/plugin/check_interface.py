@@ -94,7 +94,7 @@ class Interface(unittest.TestCase):
         rules = {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0}
         scene = os.path.join(SOURCE, "scenarios", "validation", "free-fall.json")
         study = {"name": "small", "why": "Frames in flight.", "protocol": "fps", "trials": 1, "pipelined": True,
-                 "scenes": [{"file": scene}], "solvers": [{"solver": "ballistic"}], "short": rules, "full": rules}
+                 "scenes": [{"file": scene}], "solvers": [{"solver": "ballistic"}], "rules": rules}
         file = os.path.join(self.home, "small.json")
         pathlib.Path(file).write_text(json.dumps(study), encoding="utf-8")
         words = ["study", file, "--solver", self.library(), "--set", "cloth.grid=[5,5]", "--out", self.out]

@@ -287,8 +287,7 @@ class Plugin(unittest.TestCase):
             "trials": 1,
             "scenes": [{"file": os.path.join(SOURCE, "scenarios", "validation", "free-fall.json")}],
             "solvers": [{"solver": "ballistic"}],
-            "short": {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0},
-            "full": {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0},
+            "rules": {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0},
         }
         file = os.path.join(self.home, "small.json")
         with open(file, "w", encoding="utf-8") as out:
@@ -311,7 +310,7 @@ class Plugin(unittest.TestCase):
         scene["time"].update(time or {})
         rules = {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0}
         study = {"name": "uneven", "why": "A hitch.", "protocol": "fps", "trials": 1, "scenes": [{"file": "scene.json"}],
-                 "solvers": [{"solver": self.faulty()}], "short": rules, "full": rules}
+                 "solvers": [{"solver": self.faulty()}], "rules": rules}
         for name, document in (("scene.json", scene), ("uneven.json", study)):
             with open(os.path.join(self.home, name), "w", encoding="utf-8") as out:
                 json.dump(document, out)

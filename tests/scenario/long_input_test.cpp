@@ -49,9 +49,8 @@ json study(const std::string& scene_file) {
           {"scenes",
            {{{"file", scene_file},
              {"axes", {{{"key", "cloth.grid"}, {"values", {{8, 8}, {9, 7}}}, {"labels", {"8", "9x7"}}}}}}}},
-          {"solvers", {{{"solver", "ballistic"}, {"only", {"8"}}}}},
-          {"short", {{"frames", 24}, {"max_wall_s", 1}, {"min_frames", 12}, {"warmup_s", 0.05}}},
-          {"full", {{"frames", 24}, {"max_wall_s", 1}, {"min_frames", 12}, {"warmup_s", 0.05}}}};
+          {"solvers", {{{"solver", "ballistic"}, {"tags", {"8"}}}}},
+          {"rules", {{"frames", 24}, {"max_wall_s", 1}, {"min_frames", 12}, {"warmup_s", 0.05}}}};
 }
 
 const json kTrack = {{"hand", "left"},
@@ -171,7 +170,7 @@ TEST(LongInput, ANameFitsIntoTheNamesOfFiles) {
 TEST(ManyRuns, AreRefusedBeforeAnyIsMade) {
   const ScratchFolder folder;
   json j = study(folder.file("scene.json", scene().dump()));
-  j["solvers"][0].erase("only");
+  j["solvers"][0].erase("tags");
   json values = json::array(), labels = json::array();
   for (int k = 0; k < 1000; ++k) {
     values.push_back(0.1 + k);
