@@ -176,9 +176,7 @@ RunHeader header_from_json(const nlohmann::json& j) {
   return h;
 }
 
-RunHeader read_header(const std::filesystem::path& raw) {
-  return header_from_json(read_raw(raw).header.at("run"));
-}
+RunHeader read_header(const std::filesystem::path& raw) { return header_from_json(read_raw(raw).header.at("run")); }
 
 void write_trial_file(const std::filesystem::path& path, const TimedTrial& t, std::size_t stages) {
   std::vector<Bytes> frames;

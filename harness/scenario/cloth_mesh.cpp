@@ -207,8 +207,7 @@ ClothMesh parse_obj(const std::string& text, const std::string& source) {
 std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::string& source) {
   if (j.contains("drawn") == j.contains("file")) refuse(source, "/cloth/mesh", "expected either \"file\" or \"drawn\"");
   if (j.contains("drawn")) {
-    if (j.contains("sha256"))
-      refuse(source, "/cloth/mesh/sha256", "expected a mesh of a file, not one that is drawn");
+    if (j.contains("sha256")) refuse(source, "/cloth/mesh/sha256", "expected a mesh of a file, not one that is drawn");
     return std::make_shared<const ClothMesh>(read_drawn_mesh(j["drawn"], source));
   }
   const fs::path file = file_of(j["file"].get<std::string>(), source);

@@ -101,7 +101,7 @@ Statements statements_of(std::string_view text, const std::string& source) {
 
 struct Face {
   std::vector<std::uint32_t> corners;  ///< vertices
-  Words names;  ///< its groups, and its object
+  Words names;                         ///< its groups, and its object
   std::uint32_t line;
 };
 

@@ -14,13 +14,13 @@ namespace clothbench {
 /// One solver with one set of settings, as a study names it.
 struct StudySolver {
   std::string solver, label;
-  nlohmann::json settings;        ///< as given; `complete_settings` adds the rest
-  std::vector<std::string> set;   ///< changes to the scenes for this solver alone, `dotted.key=JSON`
+  nlohmann::json settings;                        ///< as given; `complete_settings` adds the rest
+  std::vector<std::string> set;                   ///< changes to the scenes for this solver alone, `dotted.key=JSON`
   nlohmann::json tags = nlohmann::json::array();  ///< of the scenes it runs; empty: all
-  bool joined = false;            ///< comes from StudyOptions::solvers, not from the study
-  int work = 0;                   ///< product of its ladder settings; 0: it is not on the ladder
-  bool timed = true;              ///< false: only the accuracy pass runs
-  std::string name() const;       ///< name in tables: "paper", "paper readback=blocking"
+  bool joined = false;                            ///< comes from StudyOptions::solvers, not from the study
+  int work = 0;                                   ///< product of its ladder settings; 0: it is not on the ladder
+  bool timed = true;                              ///< false: only the accuracy pass runs
+  std::string name() const;                       ///< name in tables: "paper", "paper readback=blocking"
 };
 
 /// Length of a trial, and when to end a ladder or the trials early. The names are those in the file.
@@ -64,7 +64,7 @@ struct Study {
   double accuracy_duration_s = 0;  ///< infinite: the whole scene
   double run_limit_s = 0;          ///< 0 = none
   bool stage_times = true, pipelined = false;
-  StudyRules rules;  ///< of `length`
+  StudyRules rules;           ///< of `length`
   nlohmann::json definition;  ///< the file with its defaults filled in
 };
 

@@ -10,7 +10,7 @@ inline constexpr std::size_t kMostRuns = 100000;
 
 /// One form of a scene of a study: a choice of a value on each axis.
 struct Variant {
-  std::string suffix;                          ///< of the scene's name: "-32-single"
+  std::string suffix;                        ///< of the scene's name: "-32-single"
   std::vector<std::string> overrides, tags;  ///< overrides: as `--set` takes them; tags: labels of its values
   bool timed = true;
   bool merged = false;  ///< an override fixes the value on an axis, for all that differed in it

@@ -25,9 +25,8 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
       tension_(tension),
       membrane_(membrane) {
   const FeatureSet needs = scene.needs;
-  const FeatureSet serves{Feature::Stretch, Feature::Shear,     Feature::Damping,
-                          Feature::Pins,    Feature::ClothMesh, Feature::UnevenGrid,
-                          Feature::Regions, Feature::Bend};
+  const FeatureSet serves{Feature::Stretch,   Feature::Shear,      Feature::Damping, Feature::Pins,
+                          Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions, Feature::Bend};
   const int stage = frame.add_stage("Chains", needs & serves);
   const TetherTable tethers = tether_table(scene, frame.settings()["tethers"].get<bool>());
   tethers_ = tethers.a_vertex;

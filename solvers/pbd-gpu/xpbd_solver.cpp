@@ -273,10 +273,10 @@ SolverInfo xpbd_info() {
   info.precision = "float32";
   info.time_order = 2;
   info.on_gpu = true;
-  info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,          Feature::Damping,
-                   Feature::Pins,     Feature::MovingPins,  Feature::Sphere,        Feature::Box,
-                   Feature::Plane,    Feature::Capsules,    Feature::StaticMesh,    Feature::MovingMesh,
-                   Feature::Friction, Feature::DoubleSided, Feature::Spin,          Feature::UnevenGrid,
+  info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,         Feature::Damping,
+                   Feature::Pins,     Feature::MovingPins,  Feature::Sphere,       Feature::Box,
+                   Feature::Plane,    Feature::Capsules,    Feature::StaticMesh,   Feature::MovingMesh,
+                   Feature::Friction, Feature::DoubleSided, Feature::Spin,         Feature::UnevenGrid,
                    Feature::Regions,  Feature::ClothMesh,   Feature::SelfCollision};
   info.settings = {
       {"quality", "\"default\"",

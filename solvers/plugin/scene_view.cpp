@@ -33,10 +33,7 @@ bool moved(const double* before, const double* now, std::size_t points, double d
 }  // namespace
 
 SceneView::SceneView(const Scene& s)
-    : scene_(s),
-      position_(initial_positions(s)),
-      velocity_(initial_velocities(s)),
-      mass_(vertex_masses(s)) {
+    : scene_(s), position_(initial_positions(s)), velocity_(initial_velocities(s)), mass_(vertex_masses(s)) {
   for (const auto& t : clothbench::triangles(s.cloth)) triangles_.insert(triangles_.end(), t.begin(), t.end());
   add_edges(EdgeKind::Structural, structural_);
   if (s.needs.has(Feature::Shear)) add_edges(EdgeKind::Shear, shear_);

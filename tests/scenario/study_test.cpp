@@ -142,12 +142,10 @@ TEST(Study, AccuracyPassOfPenetrationIsTheWholeScene) {
 
 TEST(Study, QuickLeavesOutAndShortens) {
   const std::string solvers = R"([{"solver":"a"},{"solver":"a","label":"x"},{"solver":"b"}])";
-  const std::string text =
-      study_text(solvers, R"(,"quick":{"tags":{"a x":["8","sphere-drop"],"b":["8"]},"trials":2,
+  const std::string text = study_text(solvers, R"(,"quick":{"tags":{"a x":["8","sphere-drop"],"b":["8"]},"trials":2,
     "rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0},"set":{"time.duration_s":0.25}})");
   const Study quick = study_of(text, {{}, StudyLength::Quick});
-  EXPECT_EQ(runs(quick),
-            (std::vector<std::string>{"gravity-8 a x", "gravity-8 b", "sphere-drop a x"}));
+  EXPECT_EQ(runs(quick), (std::vector<std::string>{"gravity-8 a x", "gravity-8 b", "sphere-drop a x"}));
   EXPECT_EQ(quick.trials, 2);
   EXPECT_EQ(quick.rules.frames, 5);
   EXPECT_EQ(quick.scenes[0].scene.time.frames(), 18);
@@ -161,9 +159,9 @@ TEST(Study, QuickLeavesOutAndShortens) {
 }
 
 TEST(Study, SolversAskedForAloneOrJoined) {
-  const std::string text = study_text(
-      R"([{"solver":"a"},{"solver":"a","label":"x","set":{"cloth.sides":"double"}},{"solver":"b"}])",
-      R"(,"quick":{"tags":{"a":["8"]},"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0}})");
+  const std::string text =
+      study_text(R"([{"solver":"a"},{"solver":"a","label":"x","set":{"cloth.sides":"double"}},{"solver":"b"}])",
+                 R"(,"quick":{"tags":{"a":["8"]},"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0}})");
   const auto asked = [&](StudyLength length, std::vector<std::string> solvers) {
     const Study s = study_of(text, {{}, length, Assets::MayBeProcedural, std::move(solvers)});
     EXPECT_EQ(s.solvers.size(), 4u);
@@ -187,7 +185,8 @@ TEST(Study, WordsThatChooseNothingAreFaults) {
   EXPECT_NE(
       message_of(quick(R"("tags":["shapes"])")).find("/quick/tags/0: \"shapes\" names none; nearest known: shape"),
       std::string::npos);
-  EXPECT_NE(message_of(quick(R"("tags":{"a x":["shape"]})")).find("/quick/tags: \"a x\" names none"), std::string::npos);
+  EXPECT_NE(message_of(quick(R"("tags":{"a x":["shape"]})")).find("/quick/tags: \"a x\" names none"),
+            std::string::npos);
   EXPECT_NE(message_of(study_text(R"([{"solver":"a","tags":["shape","fre"]}])")).find("/solvers/0/tags/1"),
             std::string::npos);
   EXPECT_NE(message_of(study_text(R"([{"solver":"a"},{"solver":"a"}])")).find("two runs are named"), std::string::npos);
