@@ -74,7 +74,8 @@ void require_same_run(const fs::path& folder, const PlannedRun& run) {
   if (!same_settings(run, h->settings))
     throw Error(fmt::format("{}: run with other settings ({}, now {}); {}", file.string(),
                             shortened(h->settings.dump(), 200), shortened(run.settings.dump(), 200), kWhatToDo));
-  const std::string version = h->environment.value("solver_version", "");
+  const nlohmann::json& e = h->environment;
+  const std::string version = e.is_object() ? e.value("solver_version", "") : "";
   if (run.solver != nullptr && version != run.solver->version)
     throw Error(fmt::format("{}: run with version {} of {}, which is now version {}; {}", file.string(), version,
                             run.solver->name, run.solver->version, kWhatToDo));
