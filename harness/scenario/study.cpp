@@ -58,7 +58,7 @@ class Builder {
     study_.protocol = j_["protocol"].get<std::string>();
     study_.trials = (quick_.is_null() ? j_ : quick_)["trials"].get<int>();
     study_.drop_frames = j_["drop_frames"].get<int>();
-    study_.rules = read_rules((quick_.contains("rules") ? quick_ : j_)["rules"]);
+    study_.rules = read_rules((quick_.is_null() ? j_ : quick_)["rules"]);
     const double standard_s = study_.protocol == "fps" ? kFpsAccuracy_s : std::numeric_limits<double>::infinity();
     study_.accuracy_duration_s = j_.value("accuracy_duration_s", standard_s);
     study_.run_limit_s = j_["run_limit_s"].get<double>();
@@ -306,6 +306,7 @@ Study load_study(const std::string& name_or_path, const StudyOptions& options) {
   const std::string source = file.string();
   json j = parse_json(read_text(file), source);
   validate_json(j, kStudySchema, source);
+  if (j.contains("quick") && !j["quick"].contains("rules")) j["quick"]["rules"] = j.value("rules", json::object());
   fill_defaults(j, kStudySchema);
   return Builder(std::move(j), file, options).build();
 }

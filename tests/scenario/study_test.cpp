@@ -155,6 +155,8 @@ TEST(Study, QuickLeavesOutAndShortens) {
   EXPECT_EQ(runs(whole).size(), 9u);
   EXPECT_EQ(whole.trials, 5);
   EXPECT_EQ(whole.rules.frames, 72);
+  EXPECT_EQ(study_of(study_text(solvers, R"(,"quick":{"tags":[]})"), {{}, StudyLength::Quick}).rules.frames, 72)
+      << "rules of the study where quick has none";
   EXPECT_NE(message_of(study_text(solvers), {{}, StudyLength::Quick}).find("\"quick\" is missing"), std::string::npos);
 }
 
