@@ -176,7 +176,7 @@ TEST(PoseModule, Damage) {
         Edit{"radius:", "radios:", "/jointTransforms/wrist: \"radius\" is missing"},
         Edit{"radius: 0", "radius: -0", "/jointTransforms/wrist/radius"},
         Edit{"offsetMatrix: [", "offsetMatrix: [1, ", "/jointTransforms/wrist/offsetMatrix: expected 16 numbers"},
-        Edit{"offsetMatrix: [", "offsetMatrix: [1", "/jointTransforms/wrist/offsetMatrix: expected a rotation"},
+        Edit{"0.9616971015930176", "0.5", "/jointTransforms/wrist/offsetMatrix: expected a rotation"},
         Edit{"offsetMatrix: [", "offsetMatrix: [Math.PI * ", "not valid JSON"},
         Edit{"offsetMatrix: [", "offsetMatrix: [NaN, ", "not valid JSON"},
         Edit{"'thumb-tip'", "'thumb-tip", "not valid JSON"}, Edit{"=", "", "expected a module"}}) {

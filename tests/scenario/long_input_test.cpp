@@ -137,7 +137,7 @@ TEST(LongInput, OfNoFormAtAllIsNotInTheMessage) {
     EXPECT_EQ(why.find("QQQQQ", why.find("QQQQQ") + 130), std::string::npos) << why;
   }
   for (const std::string& line :
-       {"v 0 0 " + kText, "vt " + kText, "f 1 2 " + kText, "f 1 2 " + std::string(kLong, '1'), "v " + kText}) {
+       {"v 0 0 " + kText, "f 1 2 " + kText, "f 1 2 " + std::string(kLong, '1'), "v " + kText}) {
     const std::string why = refusal([&] { read_obj("v 0 0 0\n" + line + "\n", "m.obj"); });
     EXPECT_EQ(why.find("m.obj: line 2: "), 0u) << why.substr(0, 200);
     EXPECT_LE(why.size(), 200u);
