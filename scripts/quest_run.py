@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs clothbench's app on a Quest from a computer, and fetches and imports its results. See scripts/quest/README.md.
 
-  scripts/quest_run.py install APK | push FILE... | run "study table3 --full" | pull | logs | restore
+  scripts/quest_run.py install APK | push FILE... | run "study table3" | pull | logs | restore
 
 Exit codes: 0 ok, 1 the run failed or is not valid, 2 bad input, 3 no headset, 130 interrupted.
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The main job: set up, build, run a study on the best Vulkan device present, print its tables.
-#   scripts/run.sh [STUDY] [--full | --quick] [options of `clothbench study`]     STUDY: table3 (the default), penetration, stability
+#   scripts/run.sh [STUDY] [--quick] [options of `clothbench study`]     STUDY: table3 (the default), penetration, stability
 # JOBS and CLOTHBENCH_CMAKE: see scripts/common.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -29,7 +29,6 @@ fi
 require=()
 study_limit=3
 for argument in "$@"; do
-  [ "$argument" = --full ] && study_limit=60
   [ "$argument" = --require-assets ] && require=(--require-assets)
 done
 

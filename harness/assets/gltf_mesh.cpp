@@ -11,7 +11,7 @@ namespace {
 
 using gltf::fail;
 
-constexpr char kExpected[] = "a mesh: float32 positions and texture coordinates, unsigned integers as indices";
+constexpr char kExpected[] = "a mesh: float32 positions, unsigned integers as indices";
 
 /// Adds the nodes of one model to a MeshFile.
 class MeshReader {
@@ -104,10 +104,7 @@ class MeshReader {
       if (p.extensions.count(compressed) != 0)
         fail(source_, fmt::format("{}: {}: expected a mesh that is not compressed", where, compressed));
     const std::vector<double> x = positions(p, weights, where);
-    const std::vector<double> texture = attribute(p.attributes, "TEXCOORD_0", TINYGLTF_TYPE_VEC2);
     const std::size_t count = x.size() / 3;
-    if (!texture.empty() && texture.size() != 2 * count)
-      fail(source_, where + "/attributes: expected as many texture coordinates as positions");
     const std::vector<double> corners = indices(p, count);
     if (corners.size() % 3 != 0) fail(source_, where + ": expected indices in threes");
     // Primitives may share one list of vertices, so only those that triangles name are taken.
@@ -116,7 +113,6 @@ class MeshReader {
     const bool mirrored = place.linear().determinant() < 0;
     for (std::size_t k = 0; k < corners.size(); k += 3) {
       std::array<std::uint32_t, 3> triangle{};
-      TextureTriangle t;
       for (std::size_t c = 0; c < 3; ++c) {
         const double named = corners[k + (mirrored ? 2 - c : c)];
         if (!(named < static_cast<double>(count)))
@@ -128,14 +124,8 @@ class MeshReader {
           out_.vertices.push_back({at.x(), at.y(), at.z()});
         }
         triangle[c] = taken[v];
-        constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-        if (texture.empty())
-          t[c] = {kMissing, kMissing};
-        else
-          t[c] = {texture[2 * v], texture[2 * v + 1]};
       }
       out_.triangles.push_back(triangle);
-      out_.texture.push_back(t);
     }
   }
 

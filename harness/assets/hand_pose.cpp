@@ -1,13 +1,64 @@
 #include "assets/hand_pose.hpp"
 
 #include <algorithm>
+#include <regex>
+
+#include "assets/json_at.hpp"
+#include "base/json_text.hpp"
+#include "clothbench/error.hpp"
 
 namespace clothbench::assets {
+namespace {
+
+/// The object literal of a module as JSON: names in double quotes, no trailing commas.
+std::string as_json(const std::string& text, const std::string& source) {
+  const std::size_t start = text.find("= {"), end = text.rfind("};");
+  if (start == std::string::npos)
+    throw Error(source + ": no \"= {\": expected a module that exports an object literal");
+  if (end == std::string::npos || end < start)
+    throw Error(source + ": the object literal is not closed (file cut off?)");
+  static const std::regex names(R"((['"]?)([\w-]+)\1\s*:)"), commas(R"(,(\s*[\]}]))");
+  const std::string literal = text.substr(start + 2, end - start - 1);
+  return std::regex_replace(std::regex_replace(literal, names, "\"$2\":"), commas, "$1");
+}
+
+/// 16 numbers, columns first, a rotation and a translation.
+Frame frame_at(const JsonAt& at) {
+  const Eigen::VectorXd numbers = at.numbers(16);
+  const Eigen::Matrix4d m = Eigen::Map<const Eigen::Matrix4d>(numbers.data());
+  const Eigen::Matrix3d r = m.topLeftCorner<3, 3>();
+  if (!((r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-3) || !(r.determinant() > 0) ||
+      !(m.row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
+    at.fail("expected a rotation and a translation, columns first");
+  Frame frame = Frame::Identity();
+  frame.linear() = Eigen::Quaterniond(r).normalized().toRotationMatrix();
+  frame.translation() = m.topRightCorner<3, 1>();
+  return frame;
+}
+
+}  // namespace
 
 int joint_index(std::string_view name) {
   const auto found = std::find(kJointNames.begin(), kJointNames.end(), name);
   return found == kJointNames.end() ? -1 : static_cast<int>(found - kJointNames.begin());
 }
+
+HandPose parse_pose_js(const std::string& text, const std::string& source) {
+  const nlohmann::json document = parse_json(as_json(text, source), source + " (as JSON)");
+  const JsonAt root(document, source);
+  const JsonAt transforms = root.key("jointTransforms");
+  HandPose pose;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const JsonAt joint = transforms.key(std::string(kJointNames[j]));
+    pose.joints[j] = frame_at(joint.key("offsetMatrix"));
+    const JsonAt radius = joint.key("radius");
+    pose.radius_m[j] = radius.number();
+    if (!(pose.radius_m[j] > 0 && pose.radius_m[j] < 0.1)) radius.fail("expected a radius between 0 and 0.1 m");
+  }
+  return pose;
+}
+
+HandPose read_pose_js(const std::filesystem::path& path) { return parse_pose_js(read_text(path), path.string()); }
 
 HandPose mirrored(const HandPose& pose) {
   HandPose out = pose;

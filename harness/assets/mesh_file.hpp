@@ -9,14 +9,10 @@
 
 namespace clothbench::assets {
 
-/// Texture coordinates of the three corners of a triangle; NaN where the file has none.
-using TextureTriangle = std::array<std::array<double, 2>, 3>;
-
 /// Triangles as a file has them; nothing of their shape is checked.
 struct MeshFile {
   std::vector<Vec3> vertices;                           ///< [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< vertices; an index may be out of range
-  std::vector<TextureTriangle> texture;                 ///< one per triangle
   std::map<std::string, std::vector<std::uint32_t>>
       groups;  ///< triangles by name, ascending; a triangle may be in many
   /// Lines of the file, from 1, for messages; empty where the file has no lines.

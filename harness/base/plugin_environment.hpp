@@ -1,13 +1,15 @@
 #pragma once
+#include <cstdlib>
 
 namespace clothbench {
 
 /// Environment variable with the libraries of solvers that a process knows by name: paths, separated by colons.
 inline constexpr char kPluginsVariable[] = "CLOTHBENCH_PLUGINS";
+inline constexpr char kInProcess[] = "CLOTHBENCH_IN_PROCESS";
 
 /// Whether plugins run in this process and not in a child that they may crash: $CLOTHBENCH_IN_PROCESS is set, as
 /// --in-process does. A debugger then sees them, and a crash ends the program.
-bool plugins_in_process();
-void run_plugins_in_process();
+inline bool plugins_in_process() { return std::getenv(kInProcess) != nullptr; }
+inline void run_plugins_in_process() { setenv(kInProcess, "1", 1); }
 
 }  // namespace clothbench

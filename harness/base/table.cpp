@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
+#include "base/columns.hpp"
 #include "base/tint.hpp"
+#include "base/words.hpp"
 
 namespace clothbench {
 namespace {
@@ -24,6 +28,62 @@ std::string markdown_cell(const std::string& text) {
       out += c == '\n' || c == '\r' ? ' ' : c;
   }
   return out;
+}
+
+/// Characters that LaTeX reserves or does not know, and what it prints them for.
+constexpr std::pair<std::string_view, std::string_view> kCharacters[] = {{"\\", "\\textbackslash{}"},
+                                                                         {"{", "\\{"},
+                                                                         {"}", "\\}"},
+                                                                         {"$", "\\$"},
+                                                                         {"&", "\\&"},
+                                                                         {"#", "\\#"},
+                                                                         {"%", "\\%"},
+                                                                         {"_", "\\_"},
+                                                                         {"~", "\\textasciitilde{}"},
+                                                                         {"^", "\\textasciicircum{}"},
+                                                                         {"<", "$<$"},
+                                                                         {">", "$>$"},
+                                                                         {"|", "$|$"},
+                                                                         {"[", "{[}"},
+                                                                         {"–", "--"},
+                                                                         {"−", "$-$"},
+                                                                         {"…", "\\ldots{}"},
+                                                                         {"×", "$\\times$"},
+                                                                         {"·", "$\\cdot$"},
+                                                                         {"±", "$\\pm$"},
+                                                                         {"≤", "$\\le$"},
+                                                                         {"≥", "$\\ge$"},
+                                                                         {"†", "$^\\dagger$"},
+                                                                         {"µ", "$\\mu$"},
+                                                                         {"ν", "$\\nu$"},
+                                                                         {"°", "$^\\circ$"},
+                                                                         {"²", "$^2$"},
+                                                                         {"³", "$^3$"},
+                                                                         {"⁴", "$^4$"},
+                                                                         {"⁵", "$^5$"},
+                                                                         {"⁶", "$^6$"},
+                                                                         {"⁻", "$^-$"},
+                                                                         {"\u00a0", "~"},
+                                                                         {"\n", " "},
+                                                                         {"\r", " "}};
+
+/// Text in LaTeX; what stands between backticks is set in the typewriter font.
+std::string latex_text(std::string_view text) {
+  std::string out;
+  bool code = false;
+  while (!text.empty()) {
+    std::size_t length = 1;
+    std::string_view written = text.substr(0, 1);
+    for (const auto& [character, latex] : kCharacters)
+      if (text.starts_with(character)) {
+        length = character.size();
+        written = latex;
+      }
+    if (text[0] == '`') written = std::exchange(code, !code) ? "}" : "\\texttt{";
+    out += written;
+    text.remove_prefix(length);
+  }
+  return code ? out + "}" : out;
 }
 
 }  // namespace
@@ -100,6 +160,19 @@ std::string Table::console() const {
   return out + (note.empty() ? "" : wrapped(note, 2, kConsoleColumns));
 }
 
+std::string Table::latex() const {
+  if (rows.empty()) return "";
+  std::string out = "\\begin{table}\n\\caption{" + latex_text(title) + "}\n\\begin{tabular}{l" +
+                    std::string(rows[0].empty() ? 0 : rows[0].size() - 1, 'r') + "}\n\\toprule\n";
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t k = 0; k < rows[r].size(); ++k) out += (k > 0 ? " & " : "") + latex_text(rows[r][k]);
+    out += r == 0 ? " \\\\\n\\midrule\n" : " \\\\\n";
+  }
+  out += "\\bottomrule\n\\end{tabular}\n";
+  if (!note.empty()) out += "\\par\\footnotesize " + latex_text(note) + "\n";
+  return out + "\\end{table}\n";
+}
+
 std::string csv_number(double v) { return std::isnan(v) ? "" : fmt::format("{}", v); }
 
 std::string csv_row(const std::vector<std::string>& fields) {
@@ -112,5 +185,30 @@ std::string csv_row(const std::vector<std::string>& fields) {
   }
   return out + "\n";
 }
+
+Value absent() { return Value::value_t::discarded; }
+
+NumberFormat digits(int n) {
+  return [n](double v) { return significant(v, n); };
+}
+
+NumberFormat in_form(const char* form) {
+  return [form](double v) { return std::isfinite(v) ? fmt::format(fmt::runtime(form), v) : "–"; };
+}
+
+std::string printed_value(const Value& v, const NumberFormat& format, const Unit& unit) {
+  if (v.is_number() && format) return format(unit.per_si * v.get<double>());
+  return v.is_null() || v.is_discarded() ? "–" : csv_value(v);
+}
+
+std::string csv_value(const Value& v) {
+  if (v.is_string()) return v.get<std::string>();
+  if (v.is_number_float()) return csv_number(v.get<double>());
+  if (v.is_null() || v.is_discarded()) return "";
+  if (!v.is_array()) return v.dump();
+  return joined(v, ", ", csv_value);
+}
+
+Value json_value(Value v) { return v.is_number_float() && !std::isfinite(v.get<double>()) ? Value() : v; }
 
 }  // namespace clothbench

@@ -1,32 +1,35 @@
 #include "base/tint.hpp"
 
+#include <fmt/color.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <cstring>
-#include <map>
+#include <vector>
+
+#include "base/words.hpp"
 
 namespace clothbench {
 namespace {
 
 bool on_output = false;
 
-const char* code(Tone tone) {
+fmt::text_style style_of(Tone tone) {
   switch (tone) {
     case Tone::Good:
-      return "32";
+      return fg(fmt::terminal_color::green);
     case Tone::Bad:
-      return "31";
+      return fg(fmt::terminal_color::red);
     case Tone::Doubtful:
-      return "33";
+      return fg(fmt::terminal_color::yellow);
     case Tone::Faint:
-      return "2";
+      return fmt::emphasis::faint;
     case Tone::Heading:
-      return "1";
+      return fmt::emphasis::bold;
     case Tone::Plain:
-      return nullptr;
+      break;
   }
-  return nullptr;
+  return {};
 }
 
 }  // namespace
@@ -40,45 +43,23 @@ bool takes_colour(int file_descriptor) {
 }
 
 std::string tinted(Tone tone, const std::string& text) {
-  const char* sgr = code(tone);
-  return on_output && sgr != nullptr && !text.empty() ? std::string("\x1b[") + sgr + "m" + text + "\x1b[0m" : text;
+  return on_output && tone != Tone::Plain && !text.empty() ? format(style_of(tone), "{}", text) : text;
 }
 
 Tone tone_of(const std::string& cell) {
-  static const std::map<std::string, Tone> kVerdicts = {{"pass", Tone::Good},
-                                                        {"ok", Tone::Good},
-                                                        {"yes", Tone::Good},
-                                                        {"stable", Tone::Good},
-                                                        {"faster", Tone::Good},
-                                                        {"improved", Tone::Good},
-                                                        {"fail", Tone::Bad},
-                                                        {"failed", Tone::Bad},
-                                                        {"FAILED", Tone::Bad},
-                                                        {"NO", Tone::Bad},
-                                                        {"crashed", Tone::Bad},
-                                                        {"error", Tone::Bad},
-                                                        {"not_finite", Tone::Bad},
-                                                        {"diverged", Tone::Bad},
-                                                        {"device_lost", Tone::Bad},
-                                                        {"slower", Tone::Bad},
-                                                        {"worse", Tone::Bad},
-                                                        {"unsupported", Tone::Doubtful},
-                                                        {"refused", Tone::Doubtful},
-                                                        {"over_budget", Tone::Doubtful},
-                                                        {"timed_out", Tone::Doubtful},
-                                                        {"degraded", Tone::Doubtful},
-                                                        {"declared", Tone::Doubtful},
-                                                        {"changed", Tone::Doubtful},
-                                                        {"new", Tone::Doubtful},
-                                                        {"noise", Tone::Faint},
-                                                        {"ignored", Tone::Faint},
-                                                        {"no", Tone::Faint},
-                                                        {"–", Tone::Faint}};
+  static const std::pair<Tone, std::vector<std::string>> kVerdicts[] = {
+      {Tone::Good, {"pass", "ok", "yes", "stable", "faster", "improved"}},
+      {Tone::Bad,
+       {"fail", "failed", "FAILED", "NO", "crashed", "error", "not_finite", "diverged", "device_lost", "slower",
+        "worse"}},
+      {Tone::Doubtful,
+       {"unsupported", "refused", "over_budget", "timed_out", "degraded", "declared", "changed", "new"}},
+      {Tone::Faint, {"noise", "ignored", "no", "–"}}};
   const std::size_t from = cell.find_first_not_of("*");
   const std::string word =
       from == std::string::npos ? "" : cell.substr(from, cell.find_first_of(" *(,:;", from) - from);
-  const auto at = kVerdicts.find(word);
-  if (at != kVerdicts.end()) return at->second;
+  for (const auto& [tone, words] : kVerdicts)
+    if (contains(words, word)) return tone;
   return cell.ends_with("✓") ? Tone::Good : Tone::Plain;
 }
 

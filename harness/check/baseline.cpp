@@ -7,14 +7,12 @@
 #include <map>
 #include <set>
 
-#include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "check/gates.hpp"
 #include "check/schema.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
-#include "metrics/registry.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -55,7 +53,6 @@ BaselineRun run_from(const json& j, const std::string& where) {
   c.stages = j.at("stages");
   for (const auto& [name, value] : j.at("scalars").items())
     c.scalars[name] = number_at(value, name, where + "/scalars/" + name);
-  if (j.contains("metric_versions")) c.versions = j["metric_versions"].get<std::map<std::string, int>>();
   return c;
 }
 
@@ -69,7 +66,6 @@ ordered_json json_of(const BaselineRun& c) {
   j["class"] = c.klass;
   j["failed_frame"] = c.failed_frame;
   j["stages"] = c.stages;
-  if (!c.versions.empty()) j["metric_versions"] = c.versions;
   j["scalars"] = ordered_json::object();
   for (const auto& [name, v] : c.scalars) j["scalars"][name] = std::isfinite(v) ? ordered_json(v) : ordered_json();
   return j;
@@ -91,17 +87,12 @@ BaselineRun gated_part(const RunRecord& r) {
   for (const StageRecord& s : r.header.stages) c.stages.push_back(stage_text(s));
   for (const auto& [name, v] : r.summary)
     if (find_gate(name) != nullptr && std::isfinite(v)) c.scalars[name] = v;
-  for (const auto& [name, unused] : c.scalars)
-    for (const std::string& metric : metrics_behind(name))
-      for (const MetricSeries& m : r.accuracy.metrics)
-        if (m.name == metric && m.version != 1) c.versions[metric] = m.version;
   return c;
 }
 
 Baseline read_baseline(const std::filesystem::path& file) {
   const std::string source = file.string();
-  json j = parse_json(read_text(file), source);
-  rename_key(j, "cells", "runs", source);
+  const json j = parse_json(read_text(file), source);
   validate_json(j, kBaselineSchema, source);
   Baseline b;
   const json& made = j.at("made_with");

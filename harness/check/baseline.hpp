@@ -32,7 +32,6 @@ struct BaselineRun {
   int failed_frame = -1;
   std::vector<std::string> stages;        ///< "<name> (<feature>, <feature>)" in order
   std::map<std::string, double> scalars;  ///< only gated ones; NaN or absent = not measured
-  std::map<std::string, int> versions;    ///< of the metrics that the scalars are computed from; absent = 1
 };
 
 /// How a baseline was made. Only for readers of the file; nothing is computed from it.

@@ -40,29 +40,18 @@ struct Checked {
   bool passed() const { return count(Verdict::Failed) == 0; }
 };
 
-/// A metric whose rule has different versions in baseline and result.
-struct VersionDifference {
-  std::string metric;
-  int baseline, found;
-};
-
 /// What is wrong with the motion in the record's file; empty if nothing is, or if it was not read from a file.
 std::vector<Finding> motion_findings(const RunRecord&);
 
-/// For the metrics behind scalars that both have.
-std::vector<VersionDifference> version_differences(const BaselineRun& was, const BaselineRun& is);
-
 /// Differences of `record` from its baseline: outcome, stages, gated scalars; whether one of its trials repeats
 /// another; and what is wrong with the motion in its file, if it has one (results/trajectory.hpp). If the outcome
-/// differs, the rest is not compared; nor are scalars of a metric whose version differs. Throws Error if the record's
-/// scene has no cloth size.
+/// differs, the rest is not compared. Throws Error if the record's scene has no cloth size.
 std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);
 
 /// Compares results with a baseline. A run of the baseline without a result fails, unless the results have the run with
 /// another kind of assets that is also in the baseline. A planned run without a result fails too. A run that is not in
-/// the baseline is new. Throws Error if a run is twice among the results, if a condition of a kind that is not in
-/// `allowed` differs from the baseline's (results/conditions.hpp), or if the version of a metric's rule does: values of
-/// two rules cannot be compared.
+/// the baseline is new. Throws Error if a run is twice among the results, or if a condition of a kind that is not in
+/// `allowed` differs from the baseline's (results/conditions.hpp).
 Checked check_runs(const Baseline&, const std::vector<RunRecord>&, const std::vector<std::string>& allowed = {});
 
 struct Updated {

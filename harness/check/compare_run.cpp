@@ -98,16 +98,6 @@ Verdict judge(const std::string& name, double was, double is, double slack) {
   return is < was - slack ? Verdict::Improved : Verdict::Same;
 }
 
-int version_in(const BaselineRun& c, const std::string& metric) {
-  const auto at = c.versions.find(metric);
-  return at == c.versions.end() ? 1 : at->second;
-}
-
-bool hangs_on(const std::string& scalar, const std::vector<VersionDifference>& versions) {
-  const std::vector<std::string> behind = metrics_behind(scalar);
-  return std::any_of(versions.begin(), versions.end(), [&](const auto& v) { return contains(behind, v.metric); });
-}
-
 std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& is, const RunRecord& record) {
   std::map<std::string, double> names = was.scalars;
   names.insert(is.scalars.begin(), is.scalars.end());
@@ -116,12 +106,7 @@ std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& 
     return at == c.scalars.end() ? kMissing : at->second;
   };
   std::vector<Finding> out;
-  const std::vector<VersionDifference> versions = version_differences(was, is);
-  for (const VersionDifference& v : versions)
-    out.push_back({Verdict::Failed, "metric " + v.metric, fmt::format("version {}", v.baseline),
-                   fmt::format("version {}", v.found), "", "scalars computed from it are not compared"});
   for (const auto& [name, unused] : names) {
-    if (hangs_on(name, versions)) continue;
     const double before = value(was, name), now = value(is, name);
     const Gate& gate = *find_gate(name);
     // Measured moduli and relations of runs have no cloth of their own.
@@ -157,18 +142,6 @@ std::vector<Finding> motion_findings(const RunRecord& r) {
                      fmt::format("{}: recomputed from the positions, frame {}", r.file, f.frame)});
   }
   return out;
-}
-
-std::vector<VersionDifference> version_differences(const BaselineRun& was, const BaselineRun& is) {
-  std::map<std::string, VersionDifference> out;
-  for (const auto& [name, unused] : was.scalars) {
-    if (!is.scalars.contains(name)) continue;
-    for (const std::string& metric : metrics_behind(name))
-      if (const int a = version_in(was, metric), b = version_in(is, metric); a != b) out[metric] = {metric, a, b};
-  }
-  std::vector<VersionDifference> list;
-  for (auto& [unused, v] : out) list.push_back(std::move(v));
-  return list;
 }
 
 std::vector<Finding> compare_run(const BaselineRun& was, const RunRecord& record) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "base/former_names.hpp"
 #include "base/plugin_environment.hpp"
 #include "base/tint.hpp"
 #include "base/words.hpp"
@@ -51,8 +50,7 @@ void tell_nearest(const CLI::App& app, const std::vector<std::string>& words) {
 
 }  // namespace
 
-int run_command_line(const std::vector<std::string>& given) {
-  const std::vector<std::string> words = current_words(given);
+int run_command_line(const std::vector<std::string>& words) {
   CLI::App app{
       "clothbench: runs interchangeable cloth solvers on the same scenes and compares error, time and "
       "robustness",

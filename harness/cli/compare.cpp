@@ -88,7 +88,7 @@ void add_history(CLI::App& app, Console& console) {
   cmd->footer("Example: clothbench history results/runs/mine > benchmark.json");
   cmd->callback([&folders] {
     std::vector<RunRecord> runs = collect({folders.begin(), folders.end()});
-    withhold(runs);
+    withhold_times(runs);
     Console::print(history_json(runs));
   });
 }

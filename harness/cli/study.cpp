@@ -18,7 +18,7 @@ struct StudyArguments {
   std::optional<std::uint64_t> seed;
   std::string eye = "2064x2208", runs;
   bool with_rendering = false, list_runs = false;
-  bool full = false, short_trials = false, quick = false, require_assets = false, procedural = false, no_moduli = false;
+  bool quick = false, require_assets = false, procedural = false, no_moduli = false;
   RunFlags run;
 };
 
@@ -70,7 +70,7 @@ void run_study(StudyArguments& a, Console& console) {
   const Overrides overrides = split_overrides(a.set);
   if (!overrides.solver.empty()) throw Error("--set solver.…: the solver settings of a study are set in its file");
   if (a.run.resume && a.run.out.empty()) throw Error("--resume: expected --out with the folder to continue");
-  const StudyLength length = a.full ? StudyLength::Full : a.quick ? StudyLength::Quick : StudyLength::Short;
+  const StudyLength length = a.quick ? StudyLength::Quick : StudyLength::Full;
   if (a.procedural && a.require_assets) throw Error("--procedural: expected without --require-assets");
   const std::optional<assets::ProceduralAssets> stand_ins =
       a.procedural ? std::optional<assets::ProceduralAssets>(std::in_place) : std::nullopt;
@@ -109,10 +109,8 @@ void add_study(CLI::App& app, Console& console) {
   StudyArguments& a = console.arguments<StudyArguments>();
   CLI::App* cmd = app.add_subcommand("study", "Execute every run of a study");
   cmd->add_option("study", a.study, "Study file or name, such as table3")->required();
-  CLI::Option* quick = cmd->add_flag(
-      "--quick", a.quick, "The study's short form, with fewer scenes and solvers: for a software device on 2 cores");
-  CLI::Option* brief = cmd->add_flag("--short", a.short_trials, "Short trials in every run (default)")->excludes(quick);
-  cmd->add_flag("--full", a.full, "Long trials in every run")->excludes(quick)->excludes(brief);
+  cmd->add_flag("--quick", a.quick,
+                "The study's quick form, with fewer scenes and solvers: for a software device on 2 cores");
   cmd->add_option("--trials", a.trials, "Number of trials per run, instead of the study's")->check(CLI::Range(1, 1000));
   add_solvers(*cmd, "--solver", a.only,
               "Only these solvers; a solver that the study does not name runs with its default settings");

@@ -7,11 +7,9 @@
  * valid until `destroy`, those in a frame or a restart until the call returns, texts and arrays that the plugin returns
  * until its next call. Calls come from one thread at a time. No exception or longjmp may cross them.
  *
- * Version 2. Libraries built for version 1 run unchanged; a library of any other version is refused. Everything marked
- * "Version 2" is present only if the library states version 2, as CLOTHBENCH_PLUGIN_HEADER does. ClothbenchPlugin,
- * ClothbenchScene and ClothbenchFrame may grow at their end within a version, and both sides state the sizes that they
- * were compiled with; all other structs change with the version alone. A library that does not fit is refused. See
- * solvers/plugin/README.md; solvers/plugin/example is a complete solver.
+ * Version 1. CLOTHBENCH_PLUGIN_HEADER states it with the sizes of the structs. A library whose version or sizes differ
+ * was built with another header and is refused. See solvers/plugin/README.md; solvers/plugin/example is a complete
+ * solver.
  *
  *   cc -std=c99 -O2 -shared -fPIC -I <folder of this file> mine.c -lm -o mine.so
  *   clothbench list solvers --solver plugin:mine.so      it loads
@@ -24,7 +22,7 @@
 extern "C" {
 #endif
 
-#define CLOTHBENCH_PLUGIN_VERSION 2u
+#define CLOTHBENCH_PLUGIN_VERSION 1u
 #define CLOTHBENCH_NONE 0xFFFFFFFFu /* no vertex, no triangle */
 
 #if defined(__GNUC__)
@@ -56,8 +54,7 @@ enum {
   CLOTHBENCH_UNEVEN_GRID = 1 << 17, /* cells of different widths */
   CLOTHBENCH_REGIONS = 1 << 18,     /* a membrane stiffness that varies between columns or groups */
   CLOTHBENCH_SPIN = 1 << 19,        /* an initial spin: the velocity differs between vertices */
-  CLOTHBENCH_CLOTH_MESH = 1 << 20, /* a triangle mesh instead of a grid: columns is the number of vertices, rows is 1 */
-  CLOTHBENCH_STRAIN_LIMIT = 1 << 21 /* edges stretch elastically up to a limit and no further; which, it does not say */
+  CLOTHBENCH_CLOTH_MESH = 1 << 20 /* a triangle mesh instead of a grid: columns is the number of vertices, rows is 1 */
 };
 
 /* How a step ended. Any other than OK ends the run and becomes its status in the results. */
@@ -122,7 +119,6 @@ typedef struct ClothbenchPose {
 } ClothbenchPose;
 
 typedef struct ClothbenchScene {
-  uint32_t struct_size;
   uint32_t needs; /* features; `create` is called only for scenes whose needs the solver supports or ignores */
   uint32_t columns, rows, vertex_count;
   double width_m, height_m, areal_density_kg_per_m2;
@@ -148,7 +144,6 @@ typedef struct ClothbenchScene {
   double self_thickness_m, self_friction; /* distance between two layers of the cloth in contact, 0: no
                                              self-collision; Coulomb coefficient of cloth on cloth */
 
-  /* Version 2. */
   /* 3 a vertex: the cloth at rest, in world coordinates. A grid lies flat in its plane, even if it starts bent, folded
    * or scattered (position_m). Lengths of edges are those of this shape. */
   const double* rest_position_m;
@@ -167,14 +162,12 @@ typedef struct ClothbenchScene {
 
 /* One displayed frame. Its data hold at the frame's end; between frames positions change linearly. */
 typedef struct ClothbenchFrame {
-  uint32_t struct_size;
   int32_t index;
   double time_s, dt_s;
   const ClothbenchPose* poses;   /* one per collider */
   const double* grip_position_m; /* one per grip */
   const uint8_t* grip_held;      /* one per grip: 0 from its release on */
 
-  /* Version 2. */
   /* The same at the end of the frame before, or at the scene's start. NULL where the above are NULL. */
   const ClothbenchPose* poses_before;
   const double* grip_position_before_m;
@@ -185,7 +178,7 @@ typedef struct ClothbenchFrame {
   const uint8_t *collider_teleports, *grip_teleports;
 } ClothbenchFrame;
 
-/* Version 2. A state in the course of a scene, and where all else is then. */
+/* A state in the course of a scene, and where all else is then. */
 typedef struct ClothbenchRestart {
   int32_t index; /* of the last frame that is over; -1: the scene's start */
   double time_s; /* at its end */
@@ -195,14 +188,14 @@ typedef struct ClothbenchRestart {
   const uint8_t* grip_held;
 } ClothbenchRestart;
 
-/* Version 2. The device of a solver. */
+/* The device of a solver. */
 typedef struct ClothbenchDevice {
   const char *name, *driver, *api; /* "NVIDIA RTX 4090", "NVIDIA 570.86", "CUDA 12.8" */
   int32_t is_software;             /* 1: a CPU that stands in for a GPU: its times say nothing of one */
   const char* properties_json;     /* a JSON object of all that the API reports, or NULL */
 } ClothbenchDevice;
 
-/* Version 2. Memory that a scene takes. */
+/* Memory that a scene takes. */
 typedef struct ClothbenchBuffer {
   const char* name;
   uint64_t size_B;
@@ -262,12 +255,10 @@ typedef struct ClothbenchPlugin {
    * not known. Not NULL: the solver runs on a GPU. */
   double (*device_s)(void*);
 
-  /* The first libraries of version 1 end above this line. `plugin_size` shows that, and they keep working. */
   /* Distance [m] at which the solver keeps the cloth from the scene's collider of this index, for metrics of contact.
    * NAN, or a NULL function: the collider's margin_m. */
   double (*contact_margin_m)(void*, uint32_t collider);
 
-  /* Version 2. All of the following may be NULL. */
   /* Why the solver cannot run this scene at these settings, beyond what `supports` says, as in "unsupported, because
    * …"; NULL if it can. Called before `create`; a reason gives a row `unsupported` and no error. */
   const char* (*unsupported)(const double* settings, const ClothbenchScene*);
@@ -290,7 +281,6 @@ typedef struct ClothbenchPlugin {
   int32_t (*submit)(void*, const ClothbenchFrame*);
   int32_t (*finish)(void*);
 
-  /* The first libraries of version 2 end above this line. */
   /* Engine from elsewhere that the solver wraps, in its authors' spelling: "NvCloth". A report puts the solver beside
    * published results of the same engine. NULL: none. */
   const char* engine;

@@ -8,16 +8,6 @@
 namespace clothbench {
 namespace {
 
-/// 1: capsules and spheres by a subdivision that reads shallow contours up to 27 % low. 2: capsules within 1 %.
-constexpr int kContour = 3;
-/// 1: the straight path between two frames, whether or not anything shows that it was taken.
-constexpr int kTunnelled = 2;
-
-/// 1: of capsules and spheres at the points of a subdivision, no finer at the contour.
-constexpr int kGreatestDepth = 2;
-/// 1: as above. 2: of capsules and spheres within 1 %.
-constexpr int kDepths = 3;
-
 bool can_tunnel(const Scene& s) {
   return kWithContactMetrics && std::any_of(s.colliders.begin(), s.colliders.end(), counts_crossings);
 }
@@ -80,23 +70,23 @@ std::vector<Metric> contact_series() {
   constexpr Needs kMeshes{"mesh colliders", can_tunnel}, kInside{"colliders with an inside", has_depth};
   return {
       {"contact_length_m", "m", "length of the curves in which cloth and colliders cross", kColliders,
-       contact_field(&C::length_m), kContour, plotted("contour [m]", 2, 1)},
+       contact_field(&C::length_m), plotted("contour [m]", 2, 1)},
       {"contact_pairs", "1", "pairs of cloth triangle and collider triangle or capsule that meet", kColliders,
-       contact_field(&C::pairs), kContour},
+       contact_field(&C::pairs)},
       {"contact_cloth_fraction", "1", "share of the cloth's triangles in such a pair", kColliders,
-       contact_field(&C::cloth_fraction), kContour},
+       contact_field(&C::cloth_fraction)},
       {"tunnelled_fraction", "1", "share of the cloth that has passed to the other side of a mesh", kMeshes,
-       contact_field(&C::tunnelled_fraction), kTunnelled, plotted("tunnelled share of the cloth", 1, 2)},
+       contact_field(&C::tunnelled_fraction), plotted("tunnelled share of the cloth", 1, 2)},
       {"tunnelled_depth_m", "m", "greatest distance of a tunnelled vertex from the mesh", kMeshes,
-       contact_field(&C::tunnelled_depth_m), kTunnelled, plotted("tunnelled depth [m]", 3, 3)},
+       contact_field(&C::tunnelled_depth_m), plotted("tunnelled depth [m]", 3, 3)},
       {"depth_m", "m", "greatest depth in a collider, between the vertices too", kInside, contact_field(&C::depth_m),
-       kGreatestDepth, plotted("depth [m]", 4, 4)},
-      {"depth_vertex_m", "m", "greatest depth of a vertex in a collider", kInside, contact_field(&C::depth_vertex_m), 1,
+       plotted("depth [m]", 4, 4)},
+      {"depth_vertex_m", "m", "greatest depth of a vertex in a collider", kInside, contact_field(&C::depth_vertex_m),
        plotted("depth at vertices [m]", 5, 5)},
       {"depth_p99_m", "m", "depth that 99 % of the penetrating area keeps below", kInside,
-       contact_field(&C::depth_p99_m), kDepths},
-      {"depth_mean_m", "m", "mean depth of the penetrating area", kInside, contact_field(&C::depth_mean_m), kDepths},
-      {"penetrating_area_m2", "m2", "area of the cloth inside colliders", kInside, contact_field(&C::area_m2), kDepths},
+       contact_field(&C::depth_p99_m)},
+      {"depth_mean_m", "m", "mean depth of the penetrating area", kInside, contact_field(&C::depth_mean_m)},
+      {"penetrating_area_m2", "m2", "area of the cloth inside colliders", kInside, contact_field(&C::area_m2)},
   };
 }
 

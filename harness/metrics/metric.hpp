@@ -89,7 +89,6 @@ struct Metric {
   std::string long_name;  ///< one plain phrase: help, result files, documents and the page show it
   Needs needs;
   std::function<double(const MetricFrame&)> value;
-  int version = 1;  ///< of its rule; raise it when the rule changes, so that no table mixes the two
   Plotted drawn = {};
   bool applies(const Scene& s) const { return needs.met(s); }
 };

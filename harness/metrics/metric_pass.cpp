@@ -12,7 +12,7 @@ MetricPass::MetricPass(const MetricContext& context) : context_(context) {
   for (const Metric& m : metrics()) {
     if (!m.applies(context.scene)) continue;
     wanted_.push_back(&m);
-    series_.push_back({m.name, m.units, m.long_name, {}, m.version});
+    series_.push_back({m.name, m.units, m.long_name, {}});
   }
   if (kWithContactMetrics && !context.scene.colliders.empty()) {
     contact_ = std::make_unique<ColliderContact>(context.scene);

@@ -74,12 +74,6 @@ std::map<std::string, double> scalars_of(const RunView& run, const std::string& 
   return out;
 }
 
-int metric_version(const std::string& name) {
-  for (const Metric& m : metrics())
-    if (m.name == name) return m.version;
-  return 0;
-}
-
 namespace {
 
 const Scalar* scalar_behind(const std::string& summary_name) {
@@ -87,11 +81,6 @@ const Scalar* scalar_behind(const std::string& summary_name) {
 }
 
 }  // namespace
-
-std::vector<std::string> metrics_behind(const std::string& summary_name) {
-  const Scalar* s = scalar_behind(summary_name);
-  return s == nullptr ? std::vector<std::string>() : s->from.series;
-}
 
 bool is_of_machine(const std::string& summary_name) {
   const Scalar* s = scalar_behind(summary_name);

@@ -115,13 +115,6 @@ std::map<std::string, double> stage_scalars(const RunView&);
 /// All scalars present in the run's summary whose names begin with `start`.
 std::map<std::string, double> scalars_of(const RunView&, const std::string& start = "");
 
-/// Version of the rule of a metric of this program; 0 if it has none of that name.
-int metric_version(const std::string& name);
-
-/// The metrics from which a value of a result's summary is computed; "expect.<value>" depends on the same ones as the
-/// value itself. Empty for values measured otherwise (times, bytes, counts).
-std::vector<std::string> metrics_behind(const std::string& summary_name);
-
 /// Prefix of summary values that are the outcome of a bound: 1 pass, 0 fail, NaN not measured.
 inline const std::string kExpect = "expect.";
 /// Prefix of the statistics of metrics/motion_check: each over its tolerance.

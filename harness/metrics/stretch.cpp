@@ -61,7 +61,7 @@ double stretch_mean_positive(const MetricFrame& f) {
 MetricGroup stretch_metrics() {
   static constexpr Gate kWorstEdge{0.25, SlackUnit::One, 1, false,
                                    "the worst edge of thousands: 0.047 and 0.117 on two devices"};
-  return {{{"stretch_max", "1", "greatest strain of the structural edges", kAlways, stretch_max, 1,
+  return {{{"stretch_max", "1", "greatest strain of the structural edges", kAlways, stretch_max,
             plotted("greatest strain", 6, 6)},
            {"stretch_rms", "1", "root mean square strain of the structural edges", kAlways, stretch_rms},
            {"stretch_mean", "1", "mean strain of the structural edges", kAlways, stretch_mean},

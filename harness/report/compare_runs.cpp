@@ -59,28 +59,13 @@ bool differ(double a, double b) {
 
 std::string status(const RunRecord& c) { return status_with_class(c.outcome); }
 
-/// Metrics that both runs have, with different versions of their rule.
-std::vector<ComparedRun::Versions> differing_versions(const RunRecord& a, const RunRecord& b) {
-  std::vector<ComparedRun::Versions> out;
-  for (const MetricSeries& m : a.accuracy.metrics)
-    for (const MetricSeries& n : b.accuracy.metrics)
-      if (m.name == n.name && m.version != n.version) out.push_back({m.name, m.version, n.version});
-  return out;
-}
-
-bool hangs_on(const std::string& name, const std::vector<ComparedRun::Versions>& versions) {
-  const std::vector<std::string> behind = metrics_behind(name);
-  return std::any_of(versions.begin(), versions.end(), [&](const auto& v) { return contains(behind, v.metric); });
-}
-
 void compare_results(ComparedRun& c) {
   const RunRecord &a = *c.a.front(), &b = *c.b.front();
-  c.versions = differing_versions(a, b);
   if (status(a) != status(b)) c.outcome = status(a) + " → " + status(b);
   std::set<std::string> names;
   for (const RunRecord* r : {&a, &b})
     for (const auto& [name, unused] : r->summary)
-      if (!is_of_machine(name) && !hangs_on(name, c.versions)) names.insert(name);
+      if (!is_of_machine(name)) names.insert(name);
   for (const std::string& name : names) {
     const double x = summary_value(a, name), y = summary_value(b, name);
     if (differ(x, y)) c.metrics.push_back({name, x, y});
@@ -226,10 +211,7 @@ std::vector<Table> comparison_tables(const Comparison& comparison) {
       differences.push_back({c.name, m.name, significant(m.a, 6), significant(m.b, 6)});
     if (std::isfinite(c.apart))
       differences.push_back({c.name, "positions, apart over L", "–", significant(c.apart, 3)});
-    for (const ComparedRun::Versions& v : c.versions)
-      differences.push_back(
-          {c.name, v.metric, fmt::format("by version {}", v.a), fmt::format("by version {}: not compared", v.b)});
-    same += c.outcome.empty() && c.metrics.empty() && c.versions.empty();
+    same += c.outcome.empty() && c.metrics.empty();
   }
   const Columns<ComparedRun> times = {
       {"", "run", &ComparedRun::name},
@@ -276,7 +258,6 @@ nlohmann::json comparison_json(const Comparison& comparison) {
                           {"p", finite_or_null(c.time.p)},
                           {"apart", finite_or_null(c.apart)},
                           {"metrics", nlohmann::json::object()}};
-    for (const ComparedRun::Versions& v : c.versions) row["versions"][v.metric] = {v.a, v.b};
     for (const ComparedRun::Change& m : c.metrics) row["metrics"][m.name] = {finite_or_null(m.a), finite_or_null(m.b)};
     out["runs"].push_back(std::move(row));
   }

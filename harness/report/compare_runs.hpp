@@ -52,12 +52,7 @@ struct ComparedRun {
   };
   std::vector<Change> metrics =
       {};  ///< summary values that do not depend on the machine and differ by more than 1e-9 of their size
-  struct Versions {
-    std::string metric;
-    int a = 1, b = 1;
-  };
-  std::vector<Versions> versions = {};  ///< metrics whose rule versions differ between the two; these are not compared
-  std::string outcome = {};             ///< "ok → diverged (F1)", empty if it is the same
+  std::string outcome = {};  ///< "ok → diverged (F1)", empty if it is the same
   /// Greatest distance between the two motions over the longer side (relation "before" of pairs.hpp); measured only if
   /// a value of the result differs, since positions are read from the files for it.
   double apart = kMissing;

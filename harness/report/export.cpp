@@ -9,12 +9,6 @@
 namespace clothbench {
 namespace {
 
-nlohmann::json versions_of(const RunRecord& c) {
-  nlohmann::json out = nlohmann::json::object();
-  for (const MetricSeries& m : c.accuracy.metrics) out[m.name] = m.version;
-  return out;
-}
-
 /// A run of an exported table (CSV, JSON), with its group.
 struct Exported : PlacedRun {
   const Family* family = nullptr;
@@ -131,7 +125,6 @@ nlohmann::json runs_json(const std::vector<RunRecord>& runs) {
                    {"probe", is_probe(c)},
                    {"summary", numbers_to_json(c.summary)},
                    {"withheld", c.withheld},
-                   {"metric_versions", versions_of(c)},
                    {"environment", c.header.environment}});
   }
   return all;

@@ -117,8 +117,7 @@ double formerly_finer(const ContactRow& o, const json&, const ContactRow& r, con
 }
 
 bool same_settings(const ContactRow& a, const ContactRow& b) {
-  return a.run->header.solver == b.run->header.solver &&
-         flat_settings(a.run->header.settings) == flat_settings(b.run->header.settings);
+  return a.run->header.solver == b.run->header.solver && a.run->header.settings == b.run->header.settings;
 }
 
 /// Whether a room is whole (`cut` is "none"); none without a room. Erases the cuts.

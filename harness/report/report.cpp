@@ -48,7 +48,7 @@ const std::vector<std::string> kMemoryNames = {"device_memory_B", "dispatches", 
 /// All runs, without values that must not be printed.
 std::vector<RunRecord> printable(const std::vector<fs::path>& results) {
   std::vector<RunRecord> runs = collect(results);
-  withhold(runs);
+  withhold_times(runs);
   return runs;
 }
 

@@ -123,7 +123,7 @@ std::vector<ValueTable> time_tables() {
        nullptr, true},
       milliseconds("Wall time a frame [ms]", "Median over all timed frames.", "frame_wall_median_s"),
       milliseconds("CPU time a frame [ms]",
-                   "Median over the same frames; the sum over a solver's threads. –: a GPU solver, or an older file.",
+                   "Median over the same frames; the sum over a solver's threads. –: a GPU solver.",
                    "frame_cpu_median_s", "frame_cpu_median_s"),
       milliseconds(
           "Frame time with rendering, stereo [ms]",

@@ -21,48 +21,6 @@ void take_out(RunRecord& c, const std::string& name, const std::string& why) {
 
 bool was_timed(const RunRecord& c) { return std::isfinite(summary_value(c, "frame_wall_median_s")); }
 
-/// The newest version of each metric among the runs and this program.
-std::map<std::string, int> newest_versions(const std::vector<RunRecord>& runs) {
-  std::map<std::string, int> out;
-  for (const RunRecord& c : runs)
-    for (const MetricSeries& m : c.accuracy.metrics)
-      out[m.name] = std::max({out[m.name], m.version, metric_version(m.name)});
-  return out;
-}
-
-/// "fail: a 2 > 1; b 3 > 2" without the bounds of these names; "not measured" if no other bound is broken.
-std::string verdict_without(const std::string& text, const std::set<std::string>& names) {
-  const std::string broken = "fail: ", between = "; ";
-  if (!text.starts_with(broken)) return text == "pass" ? "not measured" : text;
-  std::string out;
-  for (std::size_t at = broken.size(), end = 0; at <= text.size(); at = end + between.size()) {
-    end = std::min(text.find(between, at), text.size());
-    const std::string part = text.substr(at, end - at);
-    if (!names.contains(part.substr(0, part.find(' ')))) out += (out.empty() ? "" : between) + part;
-  }
-  return out.empty() ? "not measured" : broken + out;
-}
-
-void withhold_versions(RunRecord& c, const std::map<std::string, int>& newest) {
-  std::map<std::string, std::string> why;  // by metric
-  for (const MetricSeries& m : c.accuracy.metrics)
-    if (m.version < newest.at(m.name))
-      why[m.name] = fmt::format("{} was measured by version {} of its definition; the newest here is {}", m.name,
-                                m.version, newest.at(m.name));
-  if (why.empty()) return;
-  std::erase_if(c.accuracy.metrics, [&](const MetricSeries& m) { return why.contains(m.name); });
-  std::set<std::string> bounds;
-  for (const auto& [name, value] : std::map(c.summary)) {
-    for (const std::string& metric : metrics_behind(name)) {
-      if (!why.contains(metric)) continue;
-      take_out(c, name, why.at(metric));
-      if (name.starts_with(kExpect)) bounds.insert(name.substr(kExpect.size()));
-      break;
-    }
-  }
-  if (!bounds.empty()) c.outcome.expect = verdict_without(c.outcome.expect, bounds);
-}
-
 }  // namespace
 
 bool is_time(const std::string& name) {
@@ -91,16 +49,6 @@ void withhold_times(std::vector<RunRecord>& runs) {
     c.header.load_s = kMissing;
     c.trials.clear();
   }
-}
-
-void withhold_old_versions(std::vector<RunRecord>& runs) {
-  const std::map<std::string, int> newest = newest_versions(runs);
-  for (RunRecord& c : runs) withhold_versions(c, newest);
-}
-
-void withhold(std::vector<RunRecord>& runs) {
-  withhold_times(runs);
-  withhold_old_versions(runs);
 }
 
 std::string withheld_note(const std::vector<const RunRecord*>& runs, const std::vector<std::string>& names) {

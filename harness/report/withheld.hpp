@@ -19,13 +19,6 @@ double jobs_of(const RunRecord&);
 /// Removes the times (trials and summary) of runs that were not timed alone, and stores the reason in `withheld`.
 void withhold_times(std::vector<RunRecord>&);
 
-/// Removes results of metrics whose rule version is older than this program's or than the newest among the runs:
-/// series, the summary values computed from them, and the results of bounds on these. Stores the reason in `withheld`.
-void withhold_old_versions(std::vector<RunRecord>&);
-
-/// Both. Every report is made from runs that this has processed.
-void withhold(std::vector<RunRecord>&);
-
 /// A sentence for a table's note: why some of the runs show "–" for these summary values. Empty if nothing is withheld.
 std::string withheld_note(const std::vector<const RunRecord*>&, const std::vector<std::string>& summary_names);
 

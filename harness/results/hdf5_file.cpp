@@ -289,7 +289,6 @@ class Writer {
     attach(write_numbers(g, "time_s", {count}, r_.accuracy.time_s, {"s", "time"}), {frame});
     for (const MetricSeries& m : r_.accuracy.metrics) {
       const Id d = write_numbers(g, m.name, {count}, m.values, {m.units, m.long_name});
-      integer_attribute(d, "version", m.version);
       attach(d, {frame});
     }
   }

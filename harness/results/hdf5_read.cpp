@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/hdf5_handle.hpp"
@@ -35,7 +34,7 @@ void read_scalars(hid_t file, RunRecord& r) {
   for (const std::string& n : h5::attribute_names(summary)) r.summary[n] = number_attribute(summary, n.c_str());
   r.outcome = {text_attribute(outcome, "status"), text_attribute(outcome, "class"),
                whole_attribute(outcome, "failed_frame"), text_attribute(outcome, "message"),
-               H5Aexists(outcome, "expect") > 0 ? current_verdict(text_attribute(outcome, "expect")) : ""};
+               text_attribute(outcome, "expect")};
 }
 
 void read_trials(hid_t file, RunRecord& r) {
@@ -47,16 +46,15 @@ void read_trials(hid_t file, RunRecord& r) {
   const auto read = numbers<double>(bandwidth, "read_B", H5T_NATIVE_DOUBLE),
              write = numbers<double>(bandwidth, "write_B", H5T_NATIVE_DOUBLE);
   const auto index = numbers<std::int64_t>(timing, "trial", H5T_NATIVE_INT64);
-  const auto by_trial = [&](const char* name) {  // older files lack some
-    auto v = exists(timing, name) ? numbers<double>(timing, name, H5T_NATIVE_DOUBLE)
-                                  : std::vector<double>(index.size(), kMissing);
+  const auto by_trial = [&](const char* name) {
+    auto v = numbers<double>(timing, name, H5T_NATIVE_DOUBLE);
     if (v.size() != index.size())
       throw Error(std::string("/timing/") + name + " has another length than /timing/trial");
     return v;
   };
   const auto pipelined = by_trial("pipelined_wall_s"), start = by_trial("trial_start_unix_s"),
              end = by_trial("trial_end_unix_s"), jobs = by_trial("jobs");
-  const auto by_frame = [&](const char* name) {  // older files lack some
+  const auto by_frame = [&](const char* name) {  // only if they were measured
     return exists(timing, name) ? numbers<double>(timing, name, H5T_NATIVE_DOUBLE)
                                 : std::vector<double>(wall.size(), kMissing);
   };
@@ -105,8 +103,7 @@ void read_accuracy(hid_t file, RunRecord& r, bool with_trajectory) {
     if (n == "time_s" || n == "frame") continue;
     const Id d(H5Dopen2(metrics, n.c_str(), H5P_DEFAULT), H5Dclose, "opening " + n);
     r.accuracy.metrics.push_back({n, text_attribute(d, "units"), text_attribute(d, "long_name"),
-                                  numbers<double>(metrics, n.c_str(), H5T_NATIVE_DOUBLE),
-                                  H5Aexists(d, "version") > 0 ? whole_attribute(d, "version") : 1});
+                                  numbers<double>(metrics, n.c_str(), H5T_NATIVE_DOUBLE)});
   }
 }
 

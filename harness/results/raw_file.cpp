@@ -5,7 +5,6 @@
 #include <cstring>
 #include <fstream>
 
-#include "base/former_names.hpp"
 #include "base/json_number.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
@@ -155,8 +154,7 @@ nlohmann::json outcome_to_json(const Outcome& o, const std::map<std::string, dou
 }
 
 void outcome_from_json(const nlohmann::json& j, RunRecord& r) {
-  r.outcome = {j.at("status"), j.at("class"), j.at("failed_frame"), j.at("message"),
-               current_verdict(j.value("expect", ""))};
+  r.outcome = {j.at("status"), j.at("class"), j.at("failed_frame"), j.at("message"), j.at("expect")};
   r.summary = numbers_from_json(j.at("summary"));
 }
 
@@ -171,7 +169,6 @@ nlohmann::json header_to_json(const RunHeader& h) {
 RunHeader header_from_json(const nlohmann::json& j) {
   RunHeader h;
   each_member(h, [&](const char* key, auto& value) { j.at(key).get_to(value); });
-  h.scenario_json = current_scenario(std::move(h.scenario_json));
   for (const auto& s : j.at("stages"))
     h.stages.push_back({s.at("name").get<std::string>(), s.at("serves").get<std::vector<std::string>>(),
                         s.at("dispatches").get<int>(), s.value("bytes", "")});
@@ -179,11 +176,7 @@ RunHeader header_from_json(const nlohmann::json& j) {
   return h;
 }
 
-RunHeader read_header(const std::filesystem::path& raw) {
-  nlohmann::json j = read_raw(raw).header;
-  rename_key(j, "cell", "run", raw.string());
-  return header_from_json(j.at("run"));
-}
+RunHeader read_header(const std::filesystem::path& raw) { return header_from_json(read_raw(raw).header.at("run")); }
 
 void write_trial_file(const std::filesystem::path& path, const TimedTrial& t, std::size_t stages) {
   std::vector<Bytes> frames;
@@ -216,9 +209,7 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
       throw Error("damaged: frames are missing");
     TimedTrial t;
     t.index = file.header.at("index").get<int>();
-    const auto number = [&](const char* key) {  // older files lack some
-      return number_from_json(file.header.value(key, nlohmann::json()), key);
-    };
+    const auto number = [&](const char* key) { return number_from_json(file.header.at(key), key); };
     t.pipelined_wall_s = number("pipelined_wall_s");
     t.start_unix_s = number("start_unix_s");
     t.end_unix_s = number("end_unix_s");
@@ -241,7 +232,7 @@ TimedTrial read_trial_file(const std::filesystem::path& path) {
 void write_accuracy_file(const std::filesystem::path& path, const AccuracyPass& a, std::uint32_t vertices) {
   nlohmann::json names = nlohmann::json::array();
   for (const MetricSeries& m : a.metrics)
-    names.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}, {"version", m.version}});
+    names.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}});
   std::vector<Bytes> frames;
   for (std::size_t f = 0; f < a.time_s.size(); ++f) {
     Bytes b;
@@ -265,8 +256,7 @@ AccuracyPass read_accuracy_file(const std::filesystem::path& path) {
       a.metrics.push_back({m.at("name").get<std::string>(),
                            m.at("units").get<std::string>(),
                            m.at("long_name").get<std::string>(),
-                           {},
-                           m.value("version", 1)});
+                           {}});
     for (const Bytes& b : file.frames) {
       Taker taker(b);
       taker.take(a.time_s, 1);

@@ -323,13 +323,13 @@ std::shared_ptr<const ClothMesh> restore_mesh(const std::vector<StoredGroup>& gr
     file.vertices.push_back({position.values[k], position.values[k + 1], position.values[k + 2]});
   for (std::size_t k = 0; k + 2 < triangles.size(); k += 3)
     file.triangles.push_back({triangles[k], triangles[k + 1], triangles[k + 2]});
-  const bool patterned = array_of(cloth, "pattern_m") != nullptr;
-  if (patterned) {
+  std::vector<PatternTriangle> pattern;
+  if (array_of(cloth, "pattern_m") != nullptr) {
     const double* v = expect_shape(cloth, "pattern_m", {file.triangles.size(), 3, 2}).values.data();
     for (std::size_t t = 0; t < file.triangles.size(); ++t, v += 6)
-      file.texture.push_back({{{v[0], v[1]}, {v[2], v[3]}, {v[4], v[5]}}});
+      pattern.push_back({{{v[0], v[1]}, {v[2], v[3]}, {v[4], v[5]}}});
   }
-  ClothMesh mesh = cloth_mesh(std::move(file), {patterned ? 1.0 : 0.0, 0}, "/cloth");
+  ClothMesh mesh = cloth_mesh(std::move(file), "/cloth", std::move(pattern));
   each_numbered(named, "cloth", [&](const StoredGroup& g, std::size_t, std::size_t) {
     std::vector<std::uint32_t>& members = mesh.groups[g.attributes.at("name").get<std::string>()];
     for (const double v : expect_shape(g, "vertex", {0}).values)

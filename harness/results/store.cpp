@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "base/files.hpp"
-#include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
@@ -74,8 +73,7 @@ RunWriter::RunWriter(fs::path dir, RunHeader header, Finish finish)
   if (ec) throw Error(part.string() + ": cannot be created: " + ec.message(), ExitCode::CheckFailed);
   if (fs::exists(file)) {
     const RunHeader before = read_header(file);
-    if (before.scenario_sha256 != header_.scenario_sha256 ||
-        flat_settings(before.settings) != flat_settings(header_.settings))
+    if (before.scenario_sha256 != header_.scenario_sha256 || before.settings != header_.settings)
       throw Error(fmt::format(
           "{}: holds trials of another run (scene {} settings {}; now scene {} settings {}); give another --out",
           part.string(), before.scenario_sha256.substr(0, 12), before.settings.dump(),
@@ -197,8 +195,7 @@ StudyManifest read_manifest(const fs::path& dir) {
   if (!fs::is_regular_file(file, ec)) throw Error(file.string() + ": no such file; expected a study folder");
   try {
     std::ifstream in(file);
-    nlohmann::json j = nlohmann::json::parse(in);
-    rename_key(j, "cells", "runs", file.string());
+    const nlohmann::json j = nlohmann::json::parse(in);
     return {j.at("study"), j.at("created"), j.at("command_line"), j.at("definition"), j.at("runs")};
   } catch (const nlohmann::json::exception& e) {
     throw Error(file.string() + ": not a study manifest: " + what_without_text(e));

@@ -22,19 +22,15 @@ constexpr const char* kWhatToDo = "results of both would be mixed; give another 
 /// Where a solver is known both are completed: a process that crashed has stored settings as they were given.
 bool same_settings(const PlannedRun& run, const json& stored) {
   if (run.solver == nullptr) {
-    const json given = flat_settings(run.settings), all = flat_settings(stored);
-    return std::all_of(given.items().begin(), given.items().end(),
-                       [&](const auto& s) { return all.contains(s.key()) && all[s.key()] == s.value(); });
+    json both = stored;
+    both.merge_patch(run.settings);
+    return both == stored;
   }
   try {
     return complete_settings(*run.solver, run.settings) == complete_settings(*run.solver, stored);
   } catch (const Error&) {
     return false;  // a setting that this version of the solver does not have
   }
-}
-
-std::string version_of(const RunHeader& h) {
-  return h.environment.is_object() ? h.environment.value("solver_version", "") : "";
 }
 
 /// Null if there is none. Another process of a sharded study may be finishing the run: its folder then becomes a file.
@@ -78,8 +74,9 @@ void require_same_run(const fs::path& folder, const PlannedRun& run) {
   if (!same_settings(run, h->settings))
     throw Error(fmt::format("{}: run with other settings ({}, now {}); {}", file.string(),
                             shortened(h->settings.dump(), 200), shortened(run.settings.dump(), 200), kWhatToDo));
-  const std::string version = version_of(*h);  // older files lack it
-  if (run.solver != nullptr && !version.empty() && version != run.solver->version)
+  const nlohmann::json& e = h->environment;
+  const std::string version = e.is_object() ? e.value("solver_version", "") : "";
+  if (run.solver != nullptr && version != run.solver->version)
     throw Error(fmt::format("{}: run with version {} of {}, which is now version {}; {}", file.string(), version,
                             run.solver->name, run.solver->version, kWhatToDo));
 }

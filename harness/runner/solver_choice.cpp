@@ -64,7 +64,9 @@ void refuse_scene(const std::vector<std::string>& set, const std::string& expect
 
 std::string Overrides::label() const {
   std::string text;
-  const nlohmann::json flat = flat_settings(solver);
+  nlohmann::json flat = solver;
+  flat.erase(kTuning);
+  if (solver.contains(kTuning)) flat.update(solver[kTuning]);
   for (const auto& [key, value] : flat.items())
     text += (text.empty() ? "" : ",") + key + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
   return text.empty() ? "default" : text;

@@ -57,7 +57,7 @@ class Map {
     const json& axes = quick ? j["quick"] : j;
     x_ = (quick ? axes["x"] : axes["x"]["values"]).get<std::vector<double>>();
     y_ = (quick ? axes["y"] : axes["y"]["values"]).get<std::vector<double>>();
-    seeds_ = quick ? 1 : study.length == StudyLength::Full ? j["seeds"].get<int>() : 1;
+    seeds_ = quick ? 1 : j["seeds"].get<int>();
     file_ = find_scenario(j["scene"].get<std::string>());
     scenario_ = parse_json(read_text(file_), file_.string());
     std::sort(x_.begin(), x_.end());

@@ -21,9 +21,7 @@ namespace {
 
 }  // namespace
 
-const char* protocol_name(StudyLength length) {
-  return length == StudyLength::Full ? "full" : length == StudyLength::Quick ? "quick" : "short";
-}
+const char* protocol_name(StudyLength length) { return length == StudyLength::Quick ? "quick" : "full"; }
 
 const SolverEntry* known_solver(const std::string& name) {
   for (const SolverEntry& e : solvers())

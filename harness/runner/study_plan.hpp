@@ -6,7 +6,7 @@
 
 namespace clothbench {
 
-/// "short", "full" or "quick", as stored with runs.
+/// "full" or "quick", as stored with runs.
 const char* protocol_name(StudyLength);
 
 /// Null if this process does not have it: neither built in nor in a loaded plugin.

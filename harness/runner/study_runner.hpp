@@ -14,7 +14,7 @@ namespace clothbench {
 struct RunPlan {
   std::vector<std::vector<RunSpec>> groups;
   TrialRules rules;
-  std::string protocol;  ///< "short", "full" or "quick", stored with every run
+  std::string protocol;  ///< "full" or "quick", stored with every run
   /// Solvers named by a study but missing from this build: entries without `make`, whose runs become `unsupported`.
   std::vector<std::shared_ptr<const SolverEntry>> not_built;
   bool references = false;  ///< store the reference solution of each scene's truth with its runs

@@ -38,8 +38,10 @@ Scene as_mesh(Scene s, bool bends) {
       file.triangles.push_back({p, q, turned(i, j) ? r : t});
       file.triangles.push_back({other[0], other[1], other[2]});
     }
-  for (const auto& t : file.triangles) file.texture.push_back({pattern[t[0]], pattern[t[1]], pattern[t[2]]});
-  c.mesh = std::make_shared<const ClothMesh>(cloth_mesh(std::move(file), {bent ? 1.0 : 0.0, 0}, s.source));
+  std::vector<PatternTriangle> at_rest;
+  for (const auto& t : file.triangles)
+    if (bent) at_rest.push_back({pattern[t[0]], pattern[t[1]], pattern[t[2]]});
+  c.mesh = std::make_shared<const ClothMesh>(cloth_mesh(std::move(file), s.source, std::move(at_rest)));
   c.columns = static_cast<int>(c.mesh->vertices.size());
   c.rows = 1;
   std::tie(c.width_m, c.height_m) = longest_sides(*c.mesh);

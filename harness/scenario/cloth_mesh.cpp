@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -18,7 +19,6 @@
 #include "scenario/drawn_mesh.hpp"
 #include "scenario/load.hpp"
 #include "scenario/recorded_hand.hpp"
-#include "scenario/weld.hpp"
 
 namespace clothbench {
 namespace {
@@ -64,7 +64,7 @@ void check_triangles(const ClothMesh& m, const assets::MeshFile& file, const std
                               place(source, file.triangle_lines, k), k, t[0], t[1], t[2], in));
     };
     if (!has_area({m.vertices[t[0]], m.vertices[t[1]], m.vertices[t[2]]})) no_area("");
-    if (!m.pattern_m.empty() && !has_area(rest_corners(m, k))) no_area(" in texture coordinates");
+    if (!m.pattern_m.empty() && !has_area(rest_corners(m, k))) no_area(" at rest");
     sorted.emplace_back(t, k);
     std::sort(sorted.back().first.begin(), sorted.back().first.end());
   }
@@ -131,17 +131,28 @@ void add_edges(ClothMesh& m, const assets::MeshFile& file, const std::string& so
   m.edge_m = all;
 }
 
-/// The triangles' shape at rest by their texture coordinates.
-void add_pattern(ClothMesh& m, const assets::MeshFile& file, double unit_m, const std::string& source) {
-  m.pattern_m = file.texture;
-  for (std::size_t k = 0; k < m.pattern_m.size(); ++k)
-    for (auto& corner : m.pattern_m[k])
-      for (double& c : corner) {
-        if (!std::isfinite(c))
-          throw Error(fmt::format(
-              "{}: triangle {} has no finite texture coordinates, which are to be its shape at rest", source, k));
-        c *= unit_m;
-      }
+/// Replaces every vertex in the place of an earlier one by that one; the others keep their order. Returns the number of
+/// vertices removed.
+std::size_t weld(assets::MeshFile& file) {
+  std::map<Vec3, std::uint32_t> places;
+  std::vector<Vec3> kept;
+  std::vector<std::uint32_t> to, lines;
+  for (std::size_t v = 0; v < file.vertices.size(); ++v) {
+    const Vec3& x = file.vertices[v];
+    const auto next = static_cast<std::uint32_t>(kept.size());
+    // A vertex that is not finite is in no place; the checks of the cloth name it.
+    to.push_back(std::isfinite(edge_length(x)) ? places.emplace(x, next).first->second : next);
+    if (to.back() != next) continue;
+    kept.push_back(x);
+    if (!file.vertex_lines.empty()) lines.push_back(file.vertex_lines[v]);
+  }
+  const std::size_t removed = file.vertices.size() - kept.size();
+  for (auto& t : file.triangles)
+    for (std::uint32_t& v : t)
+      if (v < to.size()) v = to[v];
+  file.vertices = std::move(kept);
+  file.vertex_lines = std::move(lines);
+  return removed;
 }
 
 /// Vertices of the triangles of every group, ascending.
@@ -168,46 +179,14 @@ void notice_welded(const ClothMesh& m, const std::string& file) {
              m.welded_vertices);
 }
 
-/// The scale that gives the pattern the area that the cloth has at the start, as a proposal [m a unit].
-double fitting_unit_m(const assets::MeshFile& file) {
-  double start = 0, pattern = 0;
-  for (std::size_t k = 0; k < file.triangles.size(); ++k) {
-    const Triangle& t = file.triangles[k];
-    if (std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return v >= file.vertices.size(); })) return 0;
-    start += area_of({file.vertices[t[0]], file.vertices[t[1]], file.vertices[t[2]]});
-    const auto& p = file.texture[k];
-    pattern += area_of({Vec3{p[0][0], p[0][1], 0}, Vec3{p[1][0], p[1][1], 0}, Vec3{p[2][0], p[2][1], 0}});
-  }
-  return std::sqrt(start / pattern);
-}
-
-MeshChoices choices_of(const nlohmann::json& j, const assets::MeshFile& file, const std::string& source) {
-  MeshChoices out;
-  out.weld_m = j.value("weld_m", 0.0);
-  const bool texture = j.value("rest", std::string("vertices")) == "texture";
-  if (!texture && j.contains("texture_unit_m"))
-    refuse(source, "/cloth/mesh/texture_unit_m", "expected \"rest\": \"texture\" beside it");
-  if (!texture) return out;
-  if (!j.contains("texture_unit_m")) {
-    const double fits = fitting_unit_m(file);
-    refuse(source, "/cloth/mesh",
-           "\"texture_unit_m\" is missing: the length in metres of one unit of the texture coordinates" +
-               (fits > 0 && std::isfinite(fits)
-                    ? fmt::format("; {:.6g} would give the pattern the area that the cloth has at the start", fits)
-                    : std::string()));
-  }
-  out.texture_unit_m = j["texture_unit_m"].get<double>();
-  return out;
-}
-
 }  // namespace
 
-ClothMesh cloth_mesh(assets::MeshFile file, const MeshChoices& choices, const std::string& source) {
+ClothMesh cloth_mesh(assets::MeshFile file, const std::string& source, std::vector<PatternTriangle> pattern_m) {
   ClothMesh m;
-  m.welded_vertices = weld(file, choices.weld_m);
+  m.welded_vertices = weld(file);
   m.vertices = std::move(file.vertices);
   m.triangles = std::move(file.triangles);
-  if (choices.texture_unit_m > 0) add_pattern(m, file, choices.texture_unit_m, source);
+  m.pattern_m = std::move(pattern_m);
   check_triangles(m, file, source);
   add_edges(m, file, source);
   add_groups(m, file);
@@ -218,19 +197,17 @@ ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles
   assets::MeshFile file;
   file.vertices = std::move(vertices);
   file.triangles = std::move(triangles);
-  return cloth_mesh(std::move(file), {}, source);
+  return cloth_mesh(std::move(file), source);
 }
 
 ClothMesh parse_obj(const std::string& text, const std::string& source) {
-  return cloth_mesh(read_obj(text, source), {}, source);
+  return cloth_mesh(read_obj(text, source), source);
 }
 
 std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::string& source) {
   if (j.contains("drawn") == j.contains("file")) refuse(source, "/cloth/mesh", "expected either \"file\" or \"drawn\"");
   if (j.contains("drawn")) {
-    for (const char* of_files : {"rest", "texture_unit_m", "weld_m", "sha256"})
-      if (j.contains(of_files))
-        refuse(source, std::string("/cloth/mesh/") + of_files, "expected a mesh of a file, not one that is drawn");
+    if (j.contains("sha256")) refuse(source, "/cloth/mesh/sha256", "expected a mesh of a file, not one that is drawn");
     return std::make_shared<const ClothMesh>(read_drawn_mesh(j["drawn"], source));
   }
   const fs::path file = file_of(j["file"].get<std::string>(), source);
@@ -242,10 +219,8 @@ std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::s
   const std::string kind = lower_case(file.extension().string());
   if (kind != ".obj" && kind != ".gltf" && kind != ".glb")
     refuse(source, "/cloth/mesh/file", "expected a file whose name ends in .obj, .gltf or .glb");
-  const assets::MeshFile read =
-      kind == ".obj" ? read_obj(text, file.string()) : assets::parse_gltf(text, file.string());
-  const MeshChoices choices = choices_of(j, read, source);
-  auto mesh = std::make_shared<const ClothMesh>(cloth_mesh(read, choices, file.string()));
+  auto mesh = std::make_shared<const ClothMesh>(cloth_mesh(
+      kind == ".obj" ? read_obj(text, file.string()) : assets::parse_gltf(text, file.string()), file.string()));
   notice_welded(*mesh, file.string());
   return mesh;
 }

@@ -23,17 +23,14 @@ assets::MeshFile read_obj(const std::string& text, const std::string& source);
 /// The cloth in the text of an OBJ file.
 ClothMesh parse_obj(const std::string& text, const std::string& source);
 
-/// What a scene asks of its mesh.
-struct MeshChoices {
-  /// Length [m] of a unit of the texture coordinates that give the shape at rest; 0: the vertices give it.
-  double texture_unit_m = 0;
-  double weld_m = 0;  ///< vertices within this distance [m] of an earlier one become that one; 0: those in one place
-};
+/// Corners of a triangle in the plane of its pattern [m].
+using PatternTriangle = std::array<std::array<double, 2>, 3>;
 
 /// The cloth of a file's triangles. Throws Error naming `source` and the first invalid vertex, edge or triangle: not
 /// finite, out of range, without area (at the start or at rest), duplicate, a vertex of no triangle, an edge of more
-/// than two triangles, neighbours that are wound oppositely.
-ClothMesh cloth_mesh(assets::MeshFile, const MeshChoices&, const std::string& source);
+/// than two triangles, neighbours that are wound oppositely. `pattern_m`: shape at rest of each triangle; empty: the
+/// vertices are it.
+ClothMesh cloth_mesh(assets::MeshFile, const std::string& source, std::vector<PatternTriangle> pattern_m = {});
 /// The same of triangles whose vertices are their shape at rest.
 ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles,
                      const std::string& source);

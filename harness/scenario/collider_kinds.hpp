@@ -51,8 +51,6 @@ struct ColliderKind {
   const char* name = "";                                       ///< name in result files
   Feature standing = Feature::Plane, moving = Feature::Plane;  ///< required of a solver for a static and a dynamic one
   std::vector<ColliderType> types = {};
-  /// For each feature a collider so far away that it cannot affect the result; see irrelevant.hpp.
-  std::vector<std::pair<Feature, nlohmann::json>> far = {};
   /// What result files store: numbers, and the capsules or the mesh of every frame.
   std::vector<ColliderNumbers> numbers = {};
   enum class Holds { Numbers, Capsules, Mesh } holds = Holds::Numbers;
@@ -70,7 +68,5 @@ struct ColliderKind {
 const std::vector<ColliderKind>& collider_kinds();
 /// The kind of this collider. Throws Error if there is none.
 const ColliderKind& kind_of(const Collider&);
-
-inline constexpr double kFar_m = 100;  ///< distance [m] of a `far` collider
 
 }  // namespace clothbench

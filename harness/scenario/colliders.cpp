@@ -77,10 +77,8 @@ class StageReader {
                              : corner_first_over(box, scene_.cloth, drop, over["tilt_deg"].get<double>() * kRadians,
                                                  over["inset_m"].get<double>());
     scene_.cloth.center_m = at.center_m;
-    const bool turned = over.value("turned", false);
-    if (turned && (scene_.cloth.width_m != scene_.cloth.height_m)) reader_.refuse("/turned", "expected a square cloth");
-    scene_.cloth.axis_u = turned ? at.axis_v : at.axis_u;
-    scene_.cloth.axis_v = turned ? at.axis_u : at.axis_v;
+    scene_.cloth.axis_u = at.axis_u;
+    scene_.cloth.axis_v = at.axis_v;
     pose["center_m"] = at.center_m;
     pose["axis_u"] = scene_.cloth.axis_u;
     pose["axis_v"] = scene_.cloth.axis_v;

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "base/data_folder.hpp"
-#include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "base/sha256.hpp"
 #include "base/words.hpp"
@@ -286,7 +285,6 @@ Scene scene_from_json(json scenario, const std::string& source, const std::vecto
 }
 
 Scene scene_from_parts(json scenario, const std::string& source, const SceneParts& parts) {
-  rename_scene_keys(scenario, source);
   validate_json(scenario, kSceneSchema, source);
   fill_defaults(scenario, kSceneSchema);
   check_assumed(scenario, source);
@@ -306,12 +304,6 @@ Scene scene_from_parts(json scenario, const std::string& source, const ScenePart
   s.material.bending_rigidity_N_m = material["bending_rigidity_N_m"].get<double>();
   s.material.damping_per_s = material["damping_per_s"].get<double>();
   s.material.shear = material["shear"].get<bool>();
-  if (material.contains("strain_limit")) {
-    if (!s.material.membrane_stiffness_N_per_m)
-      refuse(source, "/material/strain_limit",
-             "expected a cloth with a membrane_stiffness_N_per_m; an inextensible one has a limit of 0");
-    s.material.strain_limit = material["strain_limit"].get<double>();
-  }
   read_irregular(scenario, s, source);
   read_self_collision(scenario["cloth"], s.cloth, source);
   s.pins = read_pins(scenario["pins"], s.cloth, source);
@@ -332,7 +324,7 @@ Scene scene_from_parts(json scenario, const std::string& source, const ScenePart
     read_expect(scenario["expect"], s, source);
   }
   s.json = scenario.dump();
-  s.sha256 = sha256(with_former_keys(scenario).dump());
+  s.sha256 = sha256(s.json);
   return s;
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
-#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -89,8 +88,6 @@ Statements statements_of(std::string_view text, const std::string& source) {
     if (words[0] == "v") {
       check_numbers(words, 3, 3, source, first);
       out.vertices.push_back(first);
-    } else if (words[0] == "vt") {
-      check_numbers(words, 1, 2, source, first);
     } else if (words[0] == "f") {
       check_corners(words, source, first);
       out.faces.push_back(first);
@@ -102,13 +99,9 @@ Statements statements_of(std::string_view text, const std::string& source) {
   return out;
 }
 
-struct Corner {
-  std::uint32_t vertex;
-  std::array<double, 2> texture;
-};
 struct Face {
-  std::vector<Corner> corners;
-  Words names;  ///< its groups, and its object
+  std::vector<std::uint32_t> corners;  ///< vertices
+  Words names;                         ///< its groups, and its object
   std::uint32_t line;
 };
 
@@ -117,43 +110,33 @@ struct Reader {
   const std::string& source;
   const Statements& statements;
   assets::MeshFile& out;
-  std::vector<std::array<double, 2>> texture = {};
   std::vector<Face> faces = {};
   Words groups = {};
   std::string object = {};
 
-  std::size_t number(int index, std::size_t count, const char* what) const {
-    const auto n = static_cast<std::int64_t>(count), k = index < 0 ? n + index : index - std::int64_t{1};
-    if (k >= 0 && k < n) return static_cast<std::size_t>(k);
+  std::uint32_t vertex(int index) const {
+    const auto n = static_cast<std::int64_t>(out.vertices.size()), k = index < 0 ? n + index : index - std::int64_t{1};
+    if (k >= 0 && k < n) return static_cast<std::uint32_t>(k);
     refuse_line(source, statements.faces[faces.size()],
-                fmt::format("{} {} of {} before it (the first is 1)", what, index, count));
+                fmt::format("vertex {} of {} before it (the first is 1)", index, n));
   }
 
   void add_face(const tinyobj::index_t* indices, int count) {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     Face face{{}, groups, statements.faces[faces.size()]};
-    for (int k = 0; k < count; ++k) {
-      const tinyobj::index_t& at = indices[k];
-      face.corners.push_back({static_cast<std::uint32_t>(number(at.vertex_index, out.vertices.size(), "vertex")),
-                              at.texcoord_index == 0
-                                  ? std::array<double, 2>{kNone, kNone}
-                                  : texture[number(at.texcoord_index, texture.size(), "texture coordinate")]});
-    }
+    for (int k = 0; k < count; ++k) face.corners.push_back(vertex(indices[k].vertex_index));
     if (!object.empty() && !contains(face.names, object)) face.names.push_back(object);
     faces.push_back(std::move(face));
   }
 
   void add_triangles(const Face& face) {
     std::vector<Vec3> at;
-    for (const Corner& c : face.corners) at.push_back(out.vertices[c.vertex]);
+    for (const std::uint32_t c : face.corners) at.push_back(out.vertices[c]);
     using Triangles = std::vector<std::array<std::uint32_t, 3>>;
     for (const auto& t :
          at.size() == 3 ? Triangles{{0, 1, 2}} : triangulated(at, fmt::format("{}: line {}", source, face.line))) {
       for (const std::string& name : face.names)
         out.groups[name].push_back(static_cast<std::uint32_t>(out.triangles.size()));
-      const Corner &a = face.corners[t[0]], &b = face.corners[t[1]], &c = face.corners[t[2]];
-      out.triangles.push_back({a.vertex, b.vertex, c.vertex});
-      out.texture.push_back({a.texture, b.texture, c.texture});
+      out.triangles.push_back({face.corners[t[0]], face.corners[t[1]], face.corners[t[2]]});
       out.triangle_lines.push_back(face.line);
     }
   }
@@ -164,7 +147,6 @@ tinyobj::callback_t callbacks() {
   c.vertex_cb = [](void* to, double x, double y, double z, double) {
     static_cast<Reader*>(to)->out.vertices.push_back({x, y, z});
   };
-  c.texcoord_cb = [](void* to, double u, double v, double) { static_cast<Reader*>(to)->texture.push_back({u, v}); };
   c.index_cb = [](void* to, tinyobj::index_t* indices, int count) {
     static_cast<Reader*>(to)->add_face(indices, count);
   };

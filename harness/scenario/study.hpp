@@ -14,15 +14,13 @@ namespace clothbench {
 /// One solver with one set of settings, as a study names it.
 struct StudySolver {
   std::string solver, label;
-  nlohmann::json settings;        ///< as given; `complete_settings` adds the rest
-  std::vector<std::string> set;   ///< changes to the scenes for this solver alone, `dotted.key=JSON`
-  std::vector<std::string> only;  ///< labels of the scenes it runs; empty: all
-  bool joined = false;            ///< comes from StudyOptions::solvers, not from the study
-  int work = 0;                   ///< product of its ladder settings; 0: it is not on the ladder
-  bool all_on = false;            ///< with its other features switched on without effect (irrelevant.hpp)
-  nlohmann::json pair = {};       ///< what its runs are compared with, as in the file; null: nothing
-  bool timed = true;              ///< false: only the accuracy pass runs
-  std::string name() const;       ///< name in tables: "paper", "paper whole-room"
+  nlohmann::json settings;                        ///< as given; `complete_settings` adds the rest
+  std::vector<std::string> set;                   ///< changes to the scenes for this solver alone, `dotted.key=JSON`
+  nlohmann::json tags = nlohmann::json::array();  ///< of the scenes it runs; empty: all
+  bool joined = false;                            ///< comes from StudyOptions::solvers, not from the study
+  int work = 0;                                   ///< product of its ladder settings; 0: it is not on the ladder
+  bool timed = true;                              ///< false: only the accuracy pass runs
+  std::string name() const;                       ///< name in tables: "paper", "paper readback=blocking"
 };
 
 /// Length of a trial, and when to end a ladder or the trials early. The names are those in the file.
@@ -32,13 +30,12 @@ struct StudyRules {
   double ladder_limit_s = 0, agree = 0;
 };
 
-/// Which form of a study runs: trials as in its "short", "full" or "quick". The quick form also leaves out scenes and
-/// solvers.
-enum class StudyLength { Short, Full, Quick };
+/// The quick form has fewer scenes and solvers, and shorter trials.
+enum class StudyLength { Full, Quick };
 
 struct StudyOptions {
   std::vector<std::string> overrides;  ///< applied to every scene, after all changes of the study
-  StudyLength length = StudyLength::Short;
+  StudyLength length = StudyLength::Full;
   Assets assets = Assets::MayBeProcedural;
   /// If not empty, only these run. One that the study lacks joins it, with default settings and unchanged scenes.
   std::vector<std::string> solvers = {};
@@ -58,21 +55,17 @@ struct Study {
     int group = 0;
     bool timed = true;                 ///< false: only the accuracy pass runs
     std::vector<std::size_t> solvers;  ///< indices into Study::solvers
-    nlohmann::json pair = {};          ///< as StudySolver::pair
   };
   std::string name, why, protocol;
-  StudyLength length = StudyLength::Short;
+  StudyLength length = StudyLength::Full;
   std::vector<Item> scenes;
   std::vector<StudySolver> solvers;
   int trials = 0, drop_frames = 0;
   double accuracy_duration_s = 0;  ///< infinite: the whole scene
   double run_limit_s = 0;          ///< 0 = none
   bool stage_times = true, pipelined = false;
-  StudyRules rules;  ///< of `length`
-  /// Completed study file. If scenes or solvers have a "pair", its key "pairs" has one row for each such run: scene,
-  /// solver, setting, relation, and the scenes and settings of the same solver that it is compared with. Its key
-  /// "set_ups" has the set-up of each scene that states one, by name.
-  nlohmann::json definition;
+  StudyRules rules;           ///< of `length`
+  nlohmann::json definition;  ///< the file with its defaults filled in
 };
 
 /// Loads a study by path or name ("table3"). Throws Error as `load_scene` does, and if the quick form is requested and

@@ -48,8 +48,8 @@ std::string label_of_value(const json& value) {
 }
 
 Variant with_value(Variant v, const json& axis, std::size_t k) {
-  v.labels.push_back(axis["labels"][k].get<std::string>());
-  v.suffix += "-" + v.labels.back();
+  v.tags.push_back(axis["labels"][k].get<std::string>());
+  v.suffix += "-" + v.tags.back();
   v.overrides.push_back(axis["key"].get<std::string>() + "=" + axis["values"][k].dump());
   for (const auto& [key, values] : axis["with"].items()) v.overrides.push_back(key + "=" + values[k].dump());
   return v;
@@ -63,7 +63,7 @@ Variant with_fixed(Variant v, const json& axis, const json& value) {
     v = with_value(std::move(v), axis, static_cast<std::size_t>(at - values.begin()));
   else
     v.suffix += "-" + label_of_value(value);
-  for (const auto& label : axis["labels"]) v.labels.push_back(label.get<std::string>());
+  for (const auto& label : axis["labels"]) v.tags.push_back(label.get<std::string>());
   v.merged = true;
   return v;
 }

@@ -151,8 +151,7 @@ std::vector<Strand> mesh_strands(const ClothMesh& m, bool rings_overlap) {
 }  // namespace
 
 bool wants_chains(const Scene& s) {
-  return !(s.needs & FeatureSet{Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions, Feature::StrainLimit})
-              .empty();
+  return !(s.needs & FeatureSet{Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions}).empty();
 }
 
 double substeps_for_short_links(const Scene& s) {

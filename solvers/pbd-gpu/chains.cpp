@@ -25,9 +25,8 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
       tension_(tension),
       membrane_(membrane) {
   const FeatureSet needs = scene.needs;
-  const FeatureSet serves{Feature::Stretch, Feature::Shear,     Feature::Damping,
-                          Feature::Pins,    Feature::ClothMesh, Feature::UnevenGrid,
-                          Feature::Regions, Feature::Bend,      Feature::StrainLimit};
+  const FeatureSet serves{Feature::Stretch,   Feature::Shear,      Feature::Damping, Feature::Pins,
+                          Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions, Feature::Bend};
   const int stage = frame.add_stage("Chains", needs & serves);
   const TetherTable tethers = tether_table(scene, frame.settings()["tethers"].get<bool>());
   tethers_ = tethers.a_vertex;
@@ -68,10 +67,10 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
 void Chains::add_families(const ChainCloth& cloth) {
   const std::size_t n = scene_.cloth.vertex_count();
   const std::vector<ChainFamily> families =
-      !has_links() ? std::vector<ChainFamily>(1) : families_of(strands(scene_, cloth), n, block_);
+      membrane_ ? std::vector<ChainFamily>(1) : families_of(strands(scene_, cloth), n, block_);
   for (std::size_t f = 0; f < families.size(); ++f) {
     const std::vector<ChainEntry> more = entries_of(families[f], scene_, cloth, block_, f == 0);
-    const auto rounds = !has_links() ? 0u : static_cast<std::uint32_t>(std::bit_width(families[f].longest() - 1));
+    const auto rounds = membrane_ ? 0u : static_cast<std::uint32_t>(std::bit_width(families[f].longest() - 1));
     families_.push_back(
         {static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds, 0, 0});
     entries_.insert(entries_.end(), more.begin(), more.end());
@@ -88,8 +87,6 @@ ChainSpecialization Chains::specialization() const {
   if (bends_) s.FEATURES |= LINES_BEND;
   if (predicts_) s.FEATURES |= LINES_PREDICT;
   if (tension_) s.FEATURES |= LINES_TENSION;
-  if (const auto limit = scene_.material.strain_limit)
-    s.LIMIT_BITS = std::bit_cast<std::uint32_t>(static_cast<float>(*limit));
   return s;
 }
 
@@ -172,7 +169,7 @@ std::vector<Traffic> Chains::passes(std::uint32_t bending_iterations) const {
   std::vector<Traffic> all;
   if (bends_ || membrane_) all.push_back(traffic(0, true));
   for (std::uint32_t k = 1; k <= bending_iterations; ++k) all.push_back(bending_traffic(k, bending_iterations));
-  for (std::size_t f = 0; has_links() && f < families_.size(); ++f)
+  for (std::size_t f = 0; !membrane_ && f < families_.size(); ++f)
     all.push_back(traffic(f, f == 0 && !bends_ && !membrane_));
   return all;
 }
@@ -181,7 +178,7 @@ void Chains::record(int count, const TimeStep& step) {
   count_vertices();
   auto c = step_constants<ChainConstants>(frame_, step);
   c.per_keep = static_cast<float>(1 / step.keep);
-  c.families = !has_links() ? 0 : static_cast<std::uint32_t>(families_.size());
+  c.families = membrane_ ? 0 : static_cast<std::uint32_t>(families_.size());
   if (bends_ || membrane_) {
     const double square = step.implicit_h_s * step.implicit_h_s * step.keep, most = square * most_per_s2_;
     c.bending_iterations = bending_iterations_now_ = bending_iterations(most);

@@ -34,8 +34,6 @@ class Chains {
   void add_bending();
   void add_membrane();
   ChainSpecialization specialization() const;
-  /// Triangles take the place of links, unless those have a limit of strain.
-  bool has_links() const { return !membrane_ || scene_.material.strain_limit.has_value(); }
   void count_vertices();
   Traffic traffic(std::size_t family, bool integrates) const;
   Traffic bending_traffic(std::uint32_t iteration, std::uint32_t iterations) const;

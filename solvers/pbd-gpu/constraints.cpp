@@ -30,7 +30,7 @@ double tether_stretch(const Scene& scene) {
   const double rho = c.areal_density_kg_per_m2, length = std::hypot(c.width_m, c.height_m);
   const double slack =
       5 * rho * norm(scene.gravity_m_per_s2) * length / *Y + 2 * norm(c.initial_velocity_m_per_s) * std::sqrt(rho / *Y);
-  return 1 + std::min(slack, scene.material.strain_limit.value_or(slack));
+  return 1 + slack;
 }
 
 /// Through a grid at rest, from a vertex to one that is u and v away along the grid [m].

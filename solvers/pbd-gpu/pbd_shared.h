@@ -46,10 +46,9 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(14, uint, TETHER_3, 0u) C(15, uint, TETHER_3_LAST, 0u) C(16, uint, SUBGROUP, 1u) C(17, uint, BESIDE, 1u) \
   C(18, bool, EXACT, false) C(19, uint, GRIPS, 0u) C(20, uint, REGULAR_0, 0u) C(21, uint, REGULAR_1, 0u) \
   C(22, uint, REGULAR_2, 0u) C(23, uint, REGULAR_3, 0u) C(24, bool, PERSISTENT, false)
-// Chain kernel of `xpbd`. TETHERS: entries a vertex. LIMIT_BITS: strain beyond which links do not stretch, a float; 0: none.
+// Chain kernel of `xpbd`. TETHERS: entries a vertex.
 #define CHAIN_CONSTANTS(C) \
-  C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, PERSISTENT, false) \
-  C(5, uint, LIMIT_BITS, 0u)
+  C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, PERSISTENT, false)
 // Plane contact of `xpbd`. PLANES: half-spaces. GRIPS: vertices that hands may hold. MOST_POINTS: of a piece. MOVING: 1
 // if any piece moves. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, NEAR_CAPACITY, TOUCHING_CAPACITY:
 // pairs, near pairs and those with contacts that its lists have place for; THICKNESS_BITS, SELF_FRICTION_BITS: floats.

@@ -187,7 +187,6 @@ Choice prediction_of(const Scene& scene, const nlohmann::json& settings) {
   if (is_pulled_far(scene)) return {false, kPulledFar};
   if (!resolves_waves(scene, substeps))
     return {false, "a wave crosses the cloth in too few substeps: stiff links would gain energy"};
-  if (scene.material.strain_limit) return {false, "links have a limit of strain: they would rebound from it"};
   // Tethers hold a grid, whose rows are solved last and whole; no family that is solved last holds all of a mesh.
   if (!tension && scene.needs.has(Feature::ClothMesh))
     return {false, "a triangle mesh without implicit tension: single links would stretch far"};

@@ -128,7 +128,7 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
   const bool touched = touches || !(scene.needs & FeatureSet{Feature::Pins, Feature::MovingPins}).empty();
   const bool tethered = is_tethered(scene, settings);
   const auto Y = scene.material.membrane_stiffness_N_per_m;
-  const bool stiff = !Y || *Y >= 1e4 || scene.material.strain_limit;
+  const bool stiff = !Y || *Y >= 1e4;
   // Substeps are counted a frame, whatever its duration: a constant in seconds would differ between scaled copies of a
   // scene. A link must not turn by more than about half a radian a substep.
   constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},

@@ -108,8 +108,7 @@ class Xpbd final : public GpuSolver {
     if (const int calm = substeps_without_gravity(scene(), settings()); calm > 0)
       leave_out(std::to_string(calm) + " substeps",
                 "gravity takes the cloth far in a frame: " + std::to_string(xpbd_substeps(scene(), settings())));
-    const bool chained_links = !membrane.on || scene().material.strain_limit;
-    solves_again_ = touches && chained && chained_links && frame().tuning()["solves_again"] == "auto";
+    solves_again_ = touches && chained && !membrane.on && frame().tuning()["solves_again"] == "auto";
     if (touches)
       contact_ = std::make_unique<PlaneContact>(frame(), scene(), origin, colliders(), cloth.particle, solves_again_);
     if (chained)
@@ -156,9 +155,9 @@ class Xpbd final : public GpuSolver {
   void restrict_to_chains() {
     if (scene().needs.has(Feature::Bend) && !scene().cloth.mesh)
       throw Error(
-          "solver xpbd: bending is of triangle meshes and of even grids without strain_limit, and this cloth is "
+          "solver xpbd: bending is of triangle meshes and of even grids, and this cloth is "
           "neither; expected bending_rigidity_N_m 0");
-    if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid without strain_limit");
+    if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid");
     override_setting("iterations", 1, "its links are not all alike: chains take one iteration");
   }
 
@@ -274,11 +273,11 @@ SolverInfo xpbd_info() {
   info.precision = "float32";
   info.time_order = 2;
   info.on_gpu = true;
-  info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,          Feature::Damping,
-                   Feature::Pins,     Feature::MovingPins,  Feature::Sphere,        Feature::Box,
-                   Feature::Plane,    Feature::Capsules,    Feature::StaticMesh,    Feature::MovingMesh,
-                   Feature::Friction, Feature::DoubleSided, Feature::Spin,          Feature::UnevenGrid,
-                   Feature::Regions,  Feature::ClothMesh,   Feature::SelfCollision, Feature::StrainLimit};
+  info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,         Feature::Damping,
+                   Feature::Pins,     Feature::MovingPins,  Feature::Sphere,       Feature::Box,
+                   Feature::Plane,    Feature::Capsules,    Feature::StaticMesh,   Feature::MovingMesh,
+                   Feature::Friction, Feature::DoubleSided, Feature::Spin,         Feature::UnevenGrid,
+                   Feature::Regions,  Feature::ClothMesh,   Feature::SelfCollision};
   info.settings = {
       {"quality", "\"default\"",
        "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
@@ -319,7 +318,6 @@ SolverInfo xpbd_info() {
       {"lines_beside", "0",
        "neighbouring lines whose threads take turns, so that memory is read by whole sectors: 1, 2 or 4; 0: by line "
        "and device"}};
-  info.retired = {"contact", "contact_samples", "contact_lanes"};
   return info;
 }
 

@@ -8,12 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <list>
-#include <memory>
 #include <sstream>
 
 #include "base/plugin_environment.hpp"
@@ -33,16 +31,10 @@ using Entrance = const ClothbenchPlugin* (*)();
 #include "clothbench/feature_table.hpp"
 #undef FEATURE
 
-/// What the first header of version 1 had of ClothbenchPlugin. Libraries built with it have nothing beyond.
-constexpr std::size_t kFirstSize = offsetof(ClothbenchPlugin, contact_margin_m);
-/// What the first header of version 2 has. Everything up to `unsupported` is version 1.
-constexpr std::size_t kSecondSize = offsetof(ClothbenchPlugin, finish) + sizeof(ClothbenchPlugin::finish);
-constexpr std::size_t kEndOfFirst = offsetof(ClothbenchPlugin, unsupported);
 constexpr char kStageTimes[] = "stage_times";
 
 struct Loaded {
   std::string path;
-  std::unique_ptr<const ClothbenchPlugin> plugin;  ///< a copy in this program's size, which the entry refers to
   SolverEntry entry;
 };
 
@@ -56,28 +48,25 @@ Entrance entrance(void* library) { return reinterpret_cast<Entrance>(dlsym(libra
 [[noreturn]] void refuse(const std::string& path, const std::string& what) { throw Error(path + ": " + what); }
 
 void check_sizes(const std::string& path, const ClothbenchPlugin& c) {
-  if (c.version < 1 || c.version > CLOTHBENCH_PLUGIN_VERSION)
-    refuse(path, fmt::format("it was built for version {} of clothbench_plugin.h; this program expects version 1 or {}",
+  if (c.version != CLOTHBENCH_PLUGIN_VERSION)
+    refuse(path, fmt::format("it was built for version {} of clothbench_plugin.h; this program expects version {}",
                              c.version, CLOTHBENCH_PLUGIN_VERSION));
   struct Size {
     const char* what;
     std::uint32_t theirs;
     std::size_t ours;
-    bool exact;
   };
-  for (const Size& s : {Size{"ClothbenchScene", c.scene_size, sizeof(ClothbenchScene), false},
-                        Size{"ClothbenchFrame", c.frame_size, sizeof(ClothbenchFrame), false},
-                        Size{"ClothbenchEdge", c.edge_size, sizeof(ClothbenchEdge), true},
-                        Size{"ClothbenchCollider", c.collider_size, sizeof(ClothbenchCollider), true},
-                        Size{"ClothbenchPose", c.pose_size, sizeof(ClothbenchPose), true},
-                        Size{"ClothbenchSetting", c.setting_size, sizeof(ClothbenchSetting), true},
-                        Size{"ClothbenchStage", c.stage_size, sizeof(ClothbenchStage), true}})
-    if (s.exact ? s.theirs != s.ours : s.theirs > s.ours || s.theirs == 0)
+  for (const Size& s : {Size{"ClothbenchPlugin", c.plugin_size, sizeof(ClothbenchPlugin)},
+                        {"ClothbenchScene", c.scene_size, sizeof(ClothbenchScene)},
+                        {"ClothbenchFrame", c.frame_size, sizeof(ClothbenchFrame)},
+                        {"ClothbenchEdge", c.edge_size, sizeof(ClothbenchEdge)},
+                        {"ClothbenchCollider", c.collider_size, sizeof(ClothbenchCollider)},
+                        {"ClothbenchPose", c.pose_size, sizeof(ClothbenchPose)},
+                        {"ClothbenchSetting", c.setting_size, sizeof(ClothbenchSetting)},
+                        {"ClothbenchStage", c.stage_size, sizeof(ClothbenchStage)}})
+    if (s.theirs != s.ours)
       refuse(path, fmt::format("its {} has {} bytes: expected {}; it was built with another clothbench_plugin.h",
                                s.what, s.theirs, s.ours));
-  const std::size_t least = c.version == 1 ? kFirstSize : kSecondSize;
-  if (c.plugin_size < least)
-    refuse(path, fmt::format("its ClothbenchPlugin has {} bytes: expected at least {}", c.plugin_size, least));
 }
 
 void check_settings(const std::string& path, const ClothbenchPlugin& c) {
@@ -91,8 +80,8 @@ void check_settings(const std::string& path, const ClothbenchPlugin& c) {
   }
 }
 
-/// Functions that are only of use together.
-void check_second(const std::string& path, const ClothbenchPlugin& c) {
+/// Functions that work only together.
+void check_groups(const std::string& path, const ClothbenchPlugin& c) {
   const int in_flight = (c.frames_in_flight != nullptr) + (c.submit != nullptr) + (c.finish != nullptr);
   if (in_flight % 3 != 0) refuse(path, "frames_in_flight, submit, finish: expected all three or none");
   if (c.stage_device_s == nullptr) return;
@@ -132,17 +121,14 @@ void check_description(const std::string& path, const ClothbenchPlugin& c) {
         {"settings", c.settings != nullptr || c.setting_count == 0}})
     if (!there) refuse(path, fmt::format("{}: missing", what));
   check_settings(path, c);
-  check_second(path, c);
+  check_groups(path, c);
 }
 
-/// As this program's header has it: what an older library does not have is NULL.
-ClothbenchPlugin checked(const std::string& path, const ClothbenchPlugin* given) {
-  if (given == nullptr) refuse(path, fmt::format("{} returns nothing", kSymbol));
-  check_sizes(path, *given);
-  ClothbenchPlugin c{};
-  std::memcpy(&c, given, std::min<std::size_t>(given->plugin_size, given->version == 1 ? kEndOfFirst : sizeof c));
-  check_description(path, c);
-  return c;
+const ClothbenchPlugin& checked(const std::string& path, const ClothbenchPlugin* c) {
+  if (c == nullptr) refuse(path, fmt::format("{} returns nothing", kSymbol));
+  check_sizes(path, *c);
+  check_description(path, *c);
+  return *c;
 }
 
 /// What its constructors and its description do is found out in a child, where it may crash or hang.
@@ -239,13 +225,11 @@ const SolverEntry& load(const std::string& given) {
   if (library == nullptr) refuse(path, fmt::format("cannot be loaded: {}", dlerror()));
   const Entrance enter = entrance(library);
   if (enter == nullptr) refuse(path, fmt::format("has no function {}: expected a plugin of clothbench", kSymbol));
-  const ClothbenchPlugin* c = enter();
-  auto plugin = std::make_unique<const ClothbenchPlugin>(checked(path, c));
+  const ClothbenchPlugin& plugin = checked(path, enter());
   for (const Loaded& l : loaded())
-    if (l.entry.info.name == plugin->name)
-      refuse(path, fmt::format("name: \"{}\" is already the name of {}; expected another", plugin->name, l.path));
-  SolverEntry entry = entry_of(path, *plugin);
-  loaded().push_back({path, std::move(plugin), std::move(entry)});
+    if (l.entry.info.name == plugin.name)
+      refuse(path, fmt::format("name: \"{}\" is already the name of {}; expected another", plugin.name, l.path));
+  loaded().push_back({path, entry_of(path, plugin)});
   remember(path);
   return loaded().back().entry;
 }

@@ -43,7 +43,7 @@ class PluginSolver final : public ClothSolver, public RestartsAtMoment {
 
   void load(const Scene& scene) override {
     drop();
-    view_.emplace(scene, c_.version);
+    view_.emplace(scene);
     if (c_.unsupported != nullptr)
       if (const char* why = c_.unsupported(settings_.data(), view_->scene())) {
         if (*why == '\0') fault("unsupported", "expected a reason or NULL; found an empty text");

@@ -6,7 +6,7 @@
 
 namespace clothbench::plugin {
 
-/// The cloth at rest, as version 2 of the C interface shows it: see ClothbenchScene for layout and units.
+/// The cloth at rest, as the C interface shows it: see ClothbenchScene for layout and units.
 struct RestShape {
   explicit RestShape(const Scene&);
   std::vector<double> position_m;         ///< (vertices, 3)

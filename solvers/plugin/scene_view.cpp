@@ -32,20 +32,15 @@ bool moved(const double* before, const double* now, std::size_t points, double d
 
 }  // namespace
 
-SceneView::SceneView(const Scene& s, std::uint32_t version)
-    : scene_(s),
-      second_(version >= 2),
-      position_(initial_positions(s)),
-      velocity_(initial_velocities(s)),
-      mass_(vertex_masses(s)) {
+SceneView::SceneView(const Scene& s)
+    : scene_(s), position_(initial_positions(s)), velocity_(initial_velocities(s)), mass_(vertex_masses(s)) {
   for (const auto& t : clothbench::triangles(s.cloth)) triangles_.insert(triangles_.end(), t.begin(), t.end());
   add_edges(EdgeKind::Structural, structural_);
   if (s.needs.has(Feature::Shear)) add_edges(EdgeKind::Shear, shear_);
   if (s.needs.has(Feature::Bend)) add_edges(EdgeKind::SkipOne, skip_);
   add_colliders();
-  if (second_) add_rest_shape();
+  add_rest_shape();
   ClothbenchScene& v = view_;
-  v.struct_size = sizeof v;
   s.needs.for_each([&](Feature f) { v.needs |= 1u << static_cast<unsigned>(f); });
   v.columns = static_cast<std::uint32_t>(s.cloth.columns);
   v.rows = static_cast<std::uint32_t>(s.cloth.rows);
@@ -178,17 +173,14 @@ void SceneView::mark_teleports(const FrameInput& in) {
 
 const ClothbenchFrame* SceneView::frame(const FrameInput& in) {
   frame_ = {};
-  frame_.struct_size = sizeof frame_;
   frame_.index = in.index;
   frame_.time_s = in.time_s;
   frame_.dt_s = in.dt_s;
   frame_.poses = start_.poses.data();
-  if (second_) frame_.poses_before = start_.poses.data();
+  frame_.poses_before = start_.poses.data();
   if (in.motion == nullptr) return &frame_;
-  if (second_) {
-    frame_.poses_before = pose_before(in).poses.data();
-    show_before(in);
-  }
+  frame_.poses_before = pose_before(in).poses.data();
+  show_before(in);
   pose(in.motion, now_);
   posed_ = in.index;
   frame_.poses = now_.poses.data();
@@ -196,7 +188,7 @@ const ClothbenchFrame* SceneView::frame(const FrameInput& in) {
     frame_.grip_position_m = in.motion->grip_position_m.front().data();
     frame_.grip_held = in.motion->grip_held.data();
   }
-  if (second_ && !scene_.jumps.empty()) mark_teleports(in);
+  if (!scene_.jumps.empty()) mark_teleports(in);
   return &frame_;
 }
 

@@ -12,8 +12,7 @@ namespace clothbench::plugin {
 /// A scene in the structs of the C interface. The scene must outlive the view and stay at its address.
 class SceneView {
  public:
-  /// `version`: that of the plugin. What version 1 lacks is neither made nor shown.
-  SceneView(const Scene&, std::uint32_t version);
+  explicit SceneView(const Scene&);
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
   const ClothbenchScene* scene() const { return &view_; }
@@ -39,7 +38,6 @@ class SceneView {
   void mark_teleports(const FrameInput&);
 
   const Scene& scene_;
-  const bool second_;  ///< version 2
   ClothbenchScene view_{};
   ClothbenchFrame frame_{};
   ClothbenchRestart restart_{};

@@ -176,10 +176,10 @@ TEST(PoseModule, Damage) {
         Edit{"radius:", "radios:", "/jointTransforms/wrist: \"radius\" is missing"},
         Edit{"radius: 0", "radius: -0", "/jointTransforms/wrist/radius"},
         Edit{"offsetMatrix: [", "offsetMatrix: [1, ", "/jointTransforms/wrist/offsetMatrix: expected 16 numbers"},
-        Edit{"offsetMatrix: [", "offsetMatrix: [1", "/jointTransforms/wrist/offsetMatrix: expected a rotation"},
-        Edit{"offsetMatrix: [", "offsetMatrix: [Math.PI * ", "'*' in an object literal"},
+        Edit{"0.9616971015930176", "0.5", "/jointTransforms/wrist/offsetMatrix: expected a rotation"},
+        Edit{"offsetMatrix: [", "offsetMatrix: [Math.PI * ", "not valid JSON"},
         Edit{"offsetMatrix: [", "offsetMatrix: [NaN, ", "not valid JSON"},
-        Edit{"'thumb-tip'", "'thumb-tip", "not closed"}, Edit{"=", "", "expected a module"}}) {
+        Edit{"'thumb-tip'", "'thumb-tip", "not valid JSON"}, Edit{"=", "", "expected a module"}}) {
     std::string edited = text;
     const std::size_t at = edited.find(e.from);
     ASSERT_NE(at, std::string::npos) << e.from;

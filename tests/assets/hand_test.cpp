@@ -147,19 +147,5 @@ TEST(Pose, BlendIsHalfWay) {
   EXPECT_NE(error_of([&] { hand.pose("relaxd"); }).find("nearest known: relaxed"), std::string::npos);
 }
 
-TEST(Pose, ModuleTextMayBeWrittenInManyWays) {
-  std::string text = "// made = by hand\nconst x /* = { */ = { gripOffsetMatrix: [1,],\n jointTransforms: {\n";
-  for (auto name : kJointNames)
-    text += "\"" + std::string(name) +
-            "\": { /* c */ offsetMatrix: [1,0,0,0, 0,1.,0,0, 0,0,+1,0, .5,-.25,1e-1,1,], 'radius': 0.01, },\n";
-  text += "},\n};\nconst y = { radius: 3 };\n";
-  EXPECT_NE(error_of([&] { parse_pose_js(text, "p.js"); }), "") << "1. and -.25 are no JSON numbers";
-  for (std::size_t at; (at = text.find("1.,")) != std::string::npos;) text.replace(at, 3, "1,");
-  for (std::size_t at; (at = text.find("-.25")) != std::string::npos;) text.replace(at, 4, "-0.25");
-  const HandPose pose = parse_pose_js(text, "p.js");
-  EXPECT_EQ(pose.joints[7].translation(), Vector(0.5, -0.25, 0.1));
-  EXPECT_EQ(pose.radius_m[24], 0.01);
-}
-
 }  // namespace
 }  // namespace clothbench::assets

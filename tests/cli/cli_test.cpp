@@ -37,8 +37,7 @@ class Cli : public WithFolder {
                         << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/paper/gravity.json",
         "axes":[{"key":"cloth.grid","values":[[8,8],[9,7]],"labels":["8","9x7"]}]}],
       "solvers":[{"solver":"ballistic"}],"trials":3,
-      "short":{"frames":24,"max_wall_s":1,"min_frames":12,"warmup_s":0.05},
-      "full":{"frames":48,"max_wall_s":0,"min_frames":48,"warmup_s":0.05},
+      "rules": {"frames":24,"max_wall_s":1,"min_frames":12,"warmup_s":0.05},
       "drop_frames":12,"accuracy_duration_s":0.5})";
     return file.string();
   }
@@ -142,12 +141,12 @@ TEST_F(Cli, SolversThatWereNotBuiltAreRows) {
   const fs::path file = dir_ / "absent.json", out = dir_ / "absent";
   std::ofstream(file) << R"({"name":"absent","why":"A test.","protocol":"penetration",
     "scenes":[{"file":")"
-                      << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/contact/plane.json","labels":["a"]},
+                      << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/contact/plane.json","tags":["a"]},
               {"file":")"
                       << CLOTHBENCH_SOURCE_DIR << R"(/scenarios/contact/sphere.json"}],
     "solvers":[{"solver":"ballistic","set":{"time.duration_s":0.25}},{"solver":"nvcloth","settings":{"x":1}}],"trials":1,
-    "short":{"frames":0,"max_wall_s":0,"min_frames":1,"warmup_s":0},"full":{"frames":0,"max_wall_s":0,"min_frames":1,"warmup_s":0},
-    "quick":{"scenes":["a"],"rules":{"frames":4,"max_wall_s":0,"min_frames":4,"warmup_s":0}}})";
+    "rules": {"frames":0,"max_wall_s":0,"min_frames":1,"warmup_s":0},
+    "quick":{"tags":["a"],"rules":{"frames":4,"max_wall_s":0,"min_frames":4,"warmup_s":0}}})";
   const Answer a = command("study " + file.string() + " --out " + out.string());
   ASSERT_EQ(a.code, 0) << a.text;
   const RunRecord absent = read_run(out / "plane-drop__nvcloth__default.h5");
@@ -224,7 +223,7 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
   std::ofstream(scene) << j.dump();
   std::ofstream(study) << R"({"name":"edited","why":"A test.","protocol":"fps","scenes":[{"file":"gravity.json",
       "axes":[{"key":"cloth.grid","values":[[4,4],[5,5]],"labels":["4","5"]}]}],"solvers":[{"solver":"ballistic"}],"trials":1,
-      "short":{"frames":4,"max_wall_s":1,"min_frames":2,"warmup_s":0},"full":{"frames":4,"max_wall_s":0,"min_frames":4,"warmup_s":0},
+      "rules": {"frames":4,"max_wall_s":1,"min_frames":2,"warmup_s":0},
       "drop_frames":0,"accuracy_duration_s":0.1})";
   const std::string run = "run " + scene.string() + " --solver ballistic --trials 0 --set time.duration_s=0.1 --out " +
                           one.string(),

@@ -9,8 +9,7 @@ STUDY = {
     "name": "small", "why": "A test.", "protocol": "fps",
     "scenes": [{"file": "paper/gravity.json", "axes": [{"key": "cloth.grid", "values": [[8, 8], [9, 7]], "labels": ["8", "9x7"]}]}],
     "solvers": [{"solver": "ballistic"}, {"solver": "xpbd"}], "trials": 3,
-    "short": {"frames": 24, "max_wall_s": 1, "min_frames": 12, "warmup_s": 0.05},
-    "full": {"frames": 48, "max_wall_s": 0, "min_frames": 48, "warmup_s": 0.05}, "drop_frames": 12, "accuracy_duration_s": 0.2}
+    "rules": {"frames": 24, "max_wall_s": 1, "min_frames": 12, "warmup_s": 0.05}, "drop_frames": 12, "accuracy_duration_s": 0.2}
 
 
 def host(folder, args, *steps):

@@ -54,10 +54,9 @@ class Replay(unittest.TestCase):
         scenes = sorted({t["scene"] for t in self.trials})
         study = {
             "name": "lies", "why": "Motions that are wrong, replayed.", "protocol": "penetration", "trials": 1,
-            "scenes": [{"file": f"{s}.json", "labels": [s]} for s in scenes],
-            "solvers": [{"solver": "plugin:" + PLUGIN, "label": str(t["motion"]), "settings": {"motion": t["motion"]}, "only": [t["scene"]]} for t in self.trials],
-            "short": {"frames": 1, "max_wall_s": 0, "min_frames": 1, "warmup_s": 0},
-            "full": {"frames": 1, "max_wall_s": 0, "min_frames": 1, "warmup_s": 0},
+            "scenes": [{"file": f"{s}.json", "tags": [s]} for s in scenes],
+            "solvers": [{"solver": "plugin:" + PLUGIN, "label": str(t["motion"]), "settings": {"motion": t["motion"]}, "tags": [t["scene"]]} for t in self.trials],
+            "rules": {"frames": 1, "max_wall_s": 0, "min_frames": 1, "warmup_s": 0},
         }
         (self.home / "lies.json").write_text(json.dumps(study))
         done = self.command(CLOTHBENCH, "study", "lies.json", "--out", "study")

@@ -88,7 +88,7 @@ const ClothbenchPlugin* clothbench_plugin(void) {
       .summary = "replays a stored motion, right or wrong",
       .solver_version = "1",
       .precision = "float32",
-      .supports = (CLOTHBENCH_STRAIN_LIMIT << 1) - 1,
+      .supports = (CLOTHBENCH_CLOTH_MESH << 1) - 1,
       .time_order = 1,
       .setting_count = 1,
       .settings = settings,

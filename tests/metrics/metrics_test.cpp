@@ -139,66 +139,6 @@ TEST_F(Metrics, ASceneOnlyGetsWhatAppliesToIt) {
   EXPECT_FALSE(applies(ball, "momentum_error")) << "what is touched takes momentum";
 }
 
-TEST(MetricVersions, AreOneUnlessARuleHasChanged) {
-  const std::set<std::string> kSecond = {"tunnelled_fraction", "tunnelled_depth_m", "touching_fraction", "depth_m"},
-                              kThird = {"contact_length_m",   "contact_pairs",      "contact_cloth_fraction",
-                                        "depth_p99_m",        "depth_mean_m",       "penetrating_area_m2",
-                                        "wrong_side_samples", "wrong_side_fraction"};
-  for (const Metric& m : metrics())
-    EXPECT_EQ(m.version, kThird.contains(m.name)    ? 3
-                         : kSecond.contains(m.name) ? 2
-                                                    : 1)
-        << m.name << ": tell what changed in harness/metrics/README.md";
-  EXPECT_EQ(metric_version("wrong_side_samples"), 3);
-  EXPECT_EQ(metric_version("no_such_metric"), 0);
-}
-
-TEST(MetricVersions, EveryScalarKnowsTheMetricsBehindIt) {
-  using Names = std::vector<std::string>;
-  EXPECT_EQ(metrics_behind("wrong_side_samples_max"), Names{"wrong_side_samples"});
-  EXPECT_EQ(metrics_behind("expect.wrong_side_fraction_end"), Names{"wrong_side_fraction"});
-  EXPECT_EQ(metrics_behind("contact_length_settled_m"), Names{"contact_length_m"});
-  EXPECT_EQ(metrics_behind("depth_p99_m"), Names{"depth_p99_m"});
-  EXPECT_EQ(metrics_behind("depth_vertex_max_m"), Names{"depth_vertex_m"});
-  EXPECT_EQ(metrics_behind("penetrating_area_max_m2"), Names{"penetrating_area_m2"});
-  EXPECT_EQ(metrics_behind("untangle_s"), (Names{"contact_length_m", "tunnelled_fraction", "wrong_side_samples"}));
-  for (const char* name :
-       {"frame_wall_median_s", "fps_median", "dispatches", "read_B_per_frame", "load_s", "jobs", "expect.outcome"})
-    EXPECT_TRUE(metrics_behind(name).empty()) << name;
-  // Everything that comes of an accuracy pass.
-  for (const char* name : {"free_fall_error",
-                           "tunnelled_fraction_max",
-                           "tunnelled_depth_max_m",
-                           "depth_max_m",
-                           "depth_mean_m",
-                           "depth_time_mean_m",
-                           "stretch_max",
-                           "stretch_max_end",
-                           "stretch_max_last_second",
-                           "stretch_mean_last_second",
-                           "self_contact_pairs_end",
-                           "self_contact_length_settled_m",
-                           "contact_length_mean_m",
-                           "slip_m",
-                           "slip_settled_m",
-                           "fold_roughness_end",
-                           "fold_angle_rms_end_rad",
-                           "grip_error_max_m",
-                           "grip_edge_ratio_max",
-                           "strain_mean_released",
-                           "truth_e2",
-                           "truth_error",
-                           "truth_quantity_error_max",
-                           "truth_stretch_p99",
-                           "truth_speed_error",
-                           "energy_gain",
-                           "stability_grade"}) {
-    const Names behind = metrics_behind(name);
-    EXPECT_FALSE(behind.empty()) << name;
-    for (const std::string& metric : behind) EXPECT_GT(metric_version(metric), 0) << name << ": " << metric;
-  }
-}
-
 TEST(Registry, EveryEntryIsWhole) {
   std::set<std::string> series, names;
   std::set<int> columns, places;

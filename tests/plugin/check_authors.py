@@ -42,7 +42,7 @@ class Authors(unittest.TestCase):
         scene = os.path.join(SOURCE, "scenarios", "paper", "gravity.json")
         study = {"name": "small", "why": "A test.", "protocol": "fps", "trials": 1,
                  "scenes": [{"file": scene, "axes": [{"key": "cloth.sides", "values": ["single", "double"], "labels": ["single", "double"]}]}],
-                 "solvers": [{"solver": "ballistic"}], "short": RULES, "full": RULES, **more}
+                 "solvers": [{"solver": "ballistic"}], "rules": RULES, **more}
         file = os.path.join(self.home, "small.json")
         pathlib.Path(file).write_text(json.dumps(study), encoding="utf-8")
         return file

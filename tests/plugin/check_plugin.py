@@ -91,10 +91,6 @@ class Plugin(unittest.TestCase):
         self.assertEqual(self.command(*run), 0, self.text)
         self.assertEqual(self.stored("sphere-drop__faulty__default")[2]["plan"]["contact_margins"], plan["contact_margins"])
 
-    def test_a_library_built_with_the_first_header_of_the_version(self):
-        (plan,) = self.rows("plan", "contact/sphere", "--solver", self.faulty("OLD_HEADER"), code=0)
-        self.assertEqual((plan["status"], plan["contact_margins"]), ("ok", []))
-
     def test_it_joins_studies(self):
         words = [
             "study",
@@ -291,8 +287,7 @@ class Plugin(unittest.TestCase):
             "trials": 1,
             "scenes": [{"file": os.path.join(SOURCE, "scenarios", "validation", "free-fall.json")}],
             "solvers": [{"solver": "ballistic"}],
-            "short": {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0},
-            "full": {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0},
+            "rules": {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0},
         }
         file = os.path.join(self.home, "small.json")
         with open(file, "w", encoding="utf-8") as out:
@@ -315,7 +310,7 @@ class Plugin(unittest.TestCase):
         scene["time"].update(time or {})
         rules = {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0}
         study = {"name": "uneven", "why": "A hitch.", "protocol": "fps", "trials": 1, "scenes": [{"file": "scene.json"}],
-                 "solvers": [{"solver": self.faulty()}], "short": rules, "full": rules}
+                 "solvers": [{"solver": self.faulty()}], "rules": rules}
         for name, document in (("scene.json", scene), ("uneven.json", study)):
             with open(os.path.join(self.home, name), "w", encoding="utf-8") as out:
                 json.dump(document, out)

@@ -2,7 +2,6 @@
  * nan:N (at the Nth step of a solver), load, create (a crash there); with $CHATTER it prints on standard output wherever it
  * can. Otherwise its cloth stands still. */
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,11 +108,6 @@ const ClothbenchPlugin* clothbench_plugin(void) {
       create, free, NULL, step, read_state, stages, reset, free_fall, NULL, NULL, contact_margin};
 #ifdef FAULT_VERSION
   plugin.version = 99;
-#endif
-#ifdef FAULT_OLD_HEADER /* built before contact_margin_m was there: what lies beyond its end is not to be read */
-  plugin.version = 1;
-  plugin.plugin_size = offsetof(ClothbenchPlugin, contact_margin_m);
-  *(uintptr_t*)&plugin.contact_margin_m = 8;
 #endif
 #ifdef FAULT_SCENE_SIZE
   plugin.scene_size += 8;

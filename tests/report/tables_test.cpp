@@ -85,7 +85,7 @@ TEST(Tables, WithoutAGpuThereAreNoTablesOfDashes) {
   for (const char* solver : {"bullet-soft", "other"}) runs.push_back(fake_run(solver, 8, "single", 1e-3, false));
   // Two jobs at a time: times are withheld, which leaves their tables; those of a GPU go all the same.
   for (RunRecord& c : runs) c.summary["jobs"] = 2;
-  withhold(runs);
+  withhold_times(runs);
   for (const char* word : {"GPU time", "kB a frame", "bandwidth", "memory"})
     EXPECT_THROW(table_of(runs, word), std::runtime_error) << word;
   EXPECT_EQ(entry(table_of(runs, "Wall time"), "other", "single", "8²"), "–");

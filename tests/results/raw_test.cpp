@@ -46,8 +46,6 @@ TEST_F(Raw, TrialsAndAccuracyRoundTripBitForBit) {
   EXPECT_EQ(a.time_s, r.accuracy.time_s);
   ASSERT_EQ(a.metrics.size(), 2u);
   EXPECT_TRUE(same(a.metrics[0].values, r.accuracy.metrics[0].values));
-  EXPECT_EQ(a.metrics[0].version, 1);
-  EXPECT_EQ(a.metrics[1].version, 3);
   write_replay_file(dir_ / "r.raw", r.replay);
   const std::vector<StoredGroup> replay = read_replay_file(dir_ / "r.raw");
   ASSERT_EQ(replay.size(), 3u);

@@ -99,23 +99,6 @@ TEST_F(Resume, OtherSettingsAreRefusedAndDefaultsAreFilledIn) {
   EXPECT_THROW(require_same_run(options_.out, {name, scene_.sha256, {{"substeps", 5}}, nullptr}), Error);
 }
 
-/// What an earlier version stored has the knobs of `tuning` beside the other settings.
-TEST_F(Resume, BothPlacesOfAKnobAreTheSameSettings) {
-  entry_.info.tuning = {{"lanes", "0", "of a test"}};
-  const auto with = [&](const nlohmann::json& settings) {
-    RunPlan p = plan(scene_);
-    p.groups[0][0].settings = settings;
-    return p;
-  };
-  const RunPlan once = with({{"substeps", 4}, {"lanes", 2}}), now = with({{"substeps", 4}, {"tuning", {{"lanes", 2}}}}),
-                other = with({{"substeps", 4}, {"tuning", {{"lanes", 1}}}});
-  const SolverRun run(once.groups[0][0], {}, "test");
-  RunWriter(options_.out, run.header());
-  EXPECT_THROW(require_same_runs(options_.out, other, true), Error);
-  EXPECT_EQ(refusal(now), "no error") << "begun by the earlier version, finished by this";
-  EXPECT_EQ(refusal(once), "no error") << "of a finished run";
-}
-
 TEST_F(Resume, AnotherVersionOfTheSolverIsRefused) {
   execute_runs(plan(scene_), options_);
   entry_.info.version += "-next";

@@ -104,7 +104,6 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "mesh.obj: line 4: vertex 4 of 3"},
         Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", "mesh.obj: line 4: vertex -4 of 3"},
         Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "mesh.obj: line 4: vertex 0 of 3"},
-        Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n", "mesh.obj: line 4: texture coordinate 1 of 0"},
         Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3.5\n", "mesh.obj: line 4: \"3.5\": expected the numbers of a vertex"},
         Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4294967299\n", "mesh.obj: line 4: \"4294967299\": expected the numbers"},
         Bad{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", "mesh.obj: line 4: expected at least three corners"},

@@ -25,7 +25,7 @@ using nlohmann::json;
 constexpr int kKinds = 9;
 
 /// One form of each scene: as `bullet-soft` runs it.
-Study drawn(std::uint64_t seed, int count, StudyLength length = StudyLength::Short) {
+Study drawn(std::uint64_t seed, int count, StudyLength length = StudyLength::Full) {
   StudyOptions o;
   o.length = length;
   o.solvers = {"bullet-soft"};

@@ -82,9 +82,11 @@ TEST(DrawnMesh, IsAScenesCloth) {
 TEST(DrawnMesh, RefusesOtherKeysBesideIt) {
   const json drawn = {{"size_m", {1, 0.5}}, {"cells", 8}};
   const auto message = [](const json& mesh) { return refusal([&] { scene_from_json(scenario(mesh), "a test"); }); };
-  for (const json& mesh : {json{{"weld_m", 0.1}}, json{{"drawn", drawn}, {"file", "sheet.obj"}}})
+  for (const json& mesh :
+       {json::object({{"sha256", std::string(64, '0')}}), json{{"drawn", drawn}, {"file", "sheet.obj"}}})
     EXPECT_NE(message(mesh).find("/cloth/mesh: expected either \"file\" or \"drawn\""), std::string::npos);
-  EXPECT_NE(message({{"drawn", drawn}, {"weld_m", 0.1}}).find("/cloth/mesh/weld_m"), std::string::npos);
+  EXPECT_NE(message({{"drawn", drawn}, {"sha256", std::string(64, '0')}}).find("/cloth/mesh/sha256"),
+            std::string::npos);
   EXPECT_NE(message({{"drawn", {{"size_m", {1, 1}}, {"cells", 1000}}}}).find("at most 20000 vertices"),
             std::string::npos);
   EXPECT_NE(message({{"drawn", {{"size_m", {1, 1}}, {"cells", 8}, {"share", 0.6}}}}).find("/cloth/mesh/drawn/share"),

@@ -48,23 +48,6 @@ TEST(Load, CompletesDefaults) {
   EXPECT_EQ(scene_from_json(parse_json(s.json, "again"), "again").sha256, s.sha256);
 }
 
-TEST(Load, ALimitOfStrainIsOfElasticCloth) {
-  const auto with = [](const std::string& material) { return changed("1000}", material + "}"); };
-  const Scene s = scene_from_json(parse_json(with("1000,\"strain_limit\":0.05"), "t"), "t");
-  EXPECT_EQ(s.material.strain_limit, 0.05);
-  EXPECT_TRUE(s.needs.has(Feature::StrainLimit));
-  const Scene none = scene_from_json(parse_json(kGood, "t"), "t");
-  EXPECT_FALSE(none.material.strain_limit.has_value());
-  EXPECT_FALSE(none.needs.has(Feature::StrainLimit));
-  EXPECT_EQ(none.json.find("strain_limit"), std::string::npos) << "its hash would change";
-  for (const char* wrong : {"0", "-0.1", "1e9", "\"none\"", "null"})
-    EXPECT_NE(message_of(with(std::string("1000,\"strain_limit\":") + wrong)).find("/material/strain_limit"),
-              std::string::npos)
-        << wrong;
-  const std::string stiff = message_of(with("\"inextensible\",\"strain_limit\":0.05"));
-  EXPECT_NE(stiff.find("test.json: /material/strain_limit: expected"), std::string::npos) << stiff;
-}
-
 TEST(Load, NeedsFollowTheScene) {
   EXPECT_TRUE(scene_from_json(parse_json(changed("1000}", "1000,\"bending_rigidity_N_m\":1e-5}"), "t"), "t")
                   .needs.has(Feature::Bend));

@@ -49,9 +49,8 @@ json study(const std::string& scene_file) {
           {"scenes",
            {{{"file", scene_file},
              {"axes", {{{"key", "cloth.grid"}, {"values", {{8, 8}, {9, 7}}}, {"labels", {"8", "9x7"}}}}}}}},
-          {"solvers", {{{"solver", "ballistic"}, {"only", {"8"}}}}},
-          {"short", {{"frames", 24}, {"max_wall_s", 1}, {"min_frames", 12}, {"warmup_s", 0.05}}},
-          {"full", {{"frames", 24}, {"max_wall_s", 1}, {"min_frames", 12}, {"warmup_s", 0.05}}}};
+          {"solvers", {{{"solver", "ballistic"}, {"tags", {"8"}}}}},
+          {"rules", {{"frames", 24}, {"max_wall_s", 1}, {"min_frames", 12}, {"warmup_s", 0.05}}}};
 }
 
 const json kTrack = {{"hand", "left"},
@@ -138,7 +137,7 @@ TEST(LongInput, OfNoFormAtAllIsNotInTheMessage) {
     EXPECT_EQ(why.find("QQQQQ", why.find("QQQQQ") + 130), std::string::npos) << why;
   }
   for (const std::string& line :
-       {"v 0 0 " + kText, "vt " + kText, "f 1 2 " + kText, "f 1 2 " + std::string(kLong, '1'), "v " + kText}) {
+       {"v 0 0 " + kText, "f 1 2 " + kText, "f 1 2 " + std::string(kLong, '1'), "v " + kText}) {
     const std::string why = refusal([&] { read_obj("v 0 0 0\n" + line + "\n", "m.obj"); });
     EXPECT_EQ(why.find("m.obj: line 2: "), 0u) << why.substr(0, 200);
     EXPECT_LE(why.size(), 200u);
@@ -171,7 +170,7 @@ TEST(LongInput, ANameFitsIntoTheNamesOfFiles) {
 TEST(ManyRuns, AreRefusedBeforeAnyIsMade) {
   const ScratchFolder folder;
   json j = study(folder.file("scene.json", scene().dump()));
-  j["solvers"][0].erase("only");
+  j["solvers"][0].erase("tags");
   json values = json::array(), labels = json::array();
   for (int k = 0; k < 1000; ++k) {
     values.push_back(0.1 + k);

@@ -1,9 +1,8 @@
-// What a mesh's file says beyond its triangles: texture coordinates, seams, names; glTF beside OBJ.
+// What a mesh's file says beyond its triangles: seams, names; glTF beside OBJ.
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "assets/base64.hpp"
 #include "clothbench/error.hpp"
@@ -17,7 +16,7 @@ namespace {
 using nlohmann::json;
 
 // Two triangles of a unit square that meet along a seam: vertices 2 and 3 are there twice. Each panel has its own
-// place in the pattern, the second twice as large.
+// place in the texture, which is not read.
 constexpr char kPanels[] =
     "o front\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\ng waist left\nf 1/1 2/2 3/3\n"
     "o back\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 2 0\nvt 2 1\nvt 1 1\ng\nf 4/4 5/5 6/6\n";
@@ -45,53 +44,6 @@ TEST(MeshInput, WeldsVerticesInOnePlaceWithANotice) {
   EXPECT_EQ(s.cloth.vertex_count(), 4u);
   EXPECT_EQ(s.cloth.mesh->edges.size(), 5u) << "one seam";
   EXPECT_EQ(s.cloth.mesh->triangles[1], (std::array<std::uint32_t, 3>{1, 3, 2}));
-}
-
-TEST(MeshInput, WeldsWithinADistance) {
-  const char* text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.001 0 0\nv 1 1 0\nv 0 1.001 0\nf 1 2 3\nf 4 5 6\n";
-  const assets::MeshFile file = read_obj(text, "near.obj");
-  EXPECT_EQ(cloth_mesh(file, {0, 0}, "near.obj").vertices.size(), 6u);
-  EXPECT_EQ(cloth_mesh(file, {0, 0.0005}, "near.obj").vertices.size(), 6u);
-  const ClothMesh welded = cloth_mesh(file, {0, 0.0011}, "near.obj");
-  EXPECT_EQ(welded.vertices.size(), 4u);
-  EXPECT_EQ(welded.welded_vertices, 2u);
-  EXPECT_NE(refusal([&] { cloth_mesh(file, {0, 2}, "near.obj"); }).find("has no area"), std::string::npos);
-}
-
-TEST(MeshInput, RestsAsItsTextureSays) {
-  const ScratchFolder folder;
-  folder.file("panels.obj", kPanels);
-  const Scene s = scene_of(folder, "panels.obj", "/cloth/mesh",
-                           {{"file", "panels.obj"}, {"rest", "texture"}, {"texture_unit_m", 2}});
-  const std::vector<double> mass = vertex_masses(s);
-  // Panels of legs 1 m and 2 m: areas 1/2 and 2.
-  EXPECT_NEAR(std::accumulate(mass.begin(), mass.end(), 0.0), 0.3 * 2.5, 1e-12);
-  for (const Edge& e : edges(s.cloth, EdgeKind::Structural)) {
-    const double expected = e.a == 1 && e.b == 2 ? 1.5 * std::sqrt(2.0) : e.b == 3 ? 2 : 1;  // seam: the mean
-    EXPECT_NEAR(e.rest_m, expected, 1e-12) << e.a << " " << e.b;
-  }
-  EXPECT_EQ(s.rest_position(3, 0), (Vec3{1, 0, 1})) << "it starts where its vertices are";
-  EXPECT_NEAR(s.cloth.least_height_m(), std::sqrt(0.5), 1e-12);
-}
-
-TEST(MeshInput, RefusesTexturesThatAreNoShape) {
-  const ScratchFolder folder;
-  folder.file("panels.obj", kPanels);
-  folder.file("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  folder.file("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 2 0\nf 1/1 2/2 3/3\n");
-  const auto message = [&](const json& mesh) { return refusal([&] { scene_of(folder, "", "/cloth/mesh", mesh); }); };
-  // Areas: 1 at the start, 0.125 + 0.5 in the pattern.
-  EXPECT_NE(message({{"file", "panels.obj"}, {"rest", "texture"}}).find("1.26491 would give"), std::string::npos)
-      << message({{"file", "panels.obj"}, {"rest", "texture"}});
-  EXPECT_NE(message({{"file", "panels.obj"}, {"texture_unit_m", 1}}).find("/cloth/mesh/texture_unit_m"),
-            std::string::npos);
-  EXPECT_NE(message({{"file", "bare.obj"}, {"rest", "texture"}, {"texture_unit_m", 1}})
-                .find("bare.obj: triangle 0 has no finite texture"),
-            std::string::npos);
-  EXPECT_NE(message({{"file", "flat.obj"}, {"rest", "texture"}, {"texture_unit_m", 1}})
-                .find("flat.obj: line 7: triangle 0 (vertices 0, 1, 2) has no area in texture"),
-            std::string::npos);
-  EXPECT_NE(message({{"file", "panels.obj"}, {"rest", "cotton"}}).find("/cloth/mesh/rest"), std::string::npos);
 }
 
 TEST(MeshInput, NamesOfFacesAreGroupsOfVertices) {
@@ -189,10 +141,6 @@ TEST(MeshInput, ReadsGltf) {
     EXPECT_EQ(s.cloth.mesh->triangles.size(), 2u);
     for (const char* group : {"cape", "cloth", "silk"}) EXPECT_EQ(s.cloth.mesh->groups.at(group).size(), 4u) << group;
     EXPECT_EQ(s.pins.vertices.size(), 4u);
-    const Scene pattern =
-        scene_of(folder, file, "/cloth/mesh", {{"file", file}, {"rest", "texture"}, {"texture_unit_m", 0.5}});
-    const std::vector<double> mass = vertex_masses(pattern);
-    EXPECT_NEAR(std::accumulate(mass.begin(), mass.end(), 0.0), 0.3 * 0.25, 1e-12);
   }
 }
 
@@ -285,14 +233,13 @@ TEST(MeshInput, RefusesBadGltfNamingThePlace) {
   const auto message = [](const char* pointer, const json& value) {
     json j = square_gltf();
     j[json::json_pointer(pointer)] = value;
-    return refusal([&] { cloth_mesh(assets::parse_gltf(j.dump(), "m.gltf"), {}, "m.gltf"); });
+    return refusal([&] { cloth_mesh(assets::parse_gltf(j.dump(), "m.gltf"), "m.gltf"); });
   };
   for (const auto& [pointer, value, expected] : std::vector<std::tuple<const char*, json, const char*>>{
            {"/buffers/0/uri", "/etc/passwd", "/buffers/0/uri: expected the buffer inside"},
            {"/meshes/0/primitives/0/mode", 1, "/meshes/0/primitives/0/mode: expected triangles"},
            {"/meshes/0/primitives/0/attributes", {{"NORMAL", 0}}, "\"POSITION\" is missing"},
            {"/accessors/0/bufferView", 9, "/bufferViews: index 9"},
-           {"/accessors/0/count", 2, "expected as many texture coordinates as positions"},
            {"/accessors/2/componentType", 5121, "has no area"},
            {"/accessors/2/count", 7, "/accessors/2"},
            {"/nodes", json::array({{{"name", "empty"}}}), "/nodes: expected a node with a mesh"},

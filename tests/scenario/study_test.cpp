@@ -60,14 +60,13 @@ std::string study_text(const std::string& solvers, const std::string& more = "",
   const std::string root = CLOTHBENCH_SOURCE_DIR "/scenarios/";
   return R"({"name":"s","why":"A test.","protocol":")" + protocol + R"(","scenes":[
     {"file":")" +
-         root + R"(paper/gravity.json","labels":["free"],
+         root + R"(paper/gravity.json","tags":["free"],
      "axes":[{"key":"cloth.grid","values":[[8,8],[9,7]],"labels":["8","9x7"]}]},
     {"file":")" +
-         root + R"(contact/sphere.json","labels":["shape"]}],
+         root + R"(contact/sphere.json","tags":["shape"]}],
     "solvers":)" +
          solvers + R"(,"trials":5,
-    "short":{"frames":72,"max_wall_s":2,"min_frames":12,"warmup_s":0.1},
-    "full":{"frames":360,"max_wall_s":0,"min_frames":36,"warmup_s":0.2})" +
+    "rules":{"frames":72,"max_wall_s":2,"min_frames":12,"warmup_s":0.1})" +
          more + "}";
 }
 
@@ -97,8 +96,8 @@ std::vector<std::string> runs(const Study& s) {
 
 TEST(Study, SolversChangeScenesForThemselvesAlone) {
   const Study s = study_of(study_text(
-      R"([{"solver":"a","only":["shape"],"set":{"cloth.sides":"double-duplicated","colliders.0.radius_m":0.2}},
-                                          {"solver":"b"},{"solver":"a","label":"x","only":["9x7","shape"]}])",
+      R"([{"solver":"a","tags":["shape"],"set":{"cloth.sides":"double-duplicated","colliders.0.radius_m":0.2}},
+                                          {"solver":"b"},{"solver":"a","label":"x","tags":["9x7","shape"]}])",
       "", "penetration"));
   EXPECT_EQ(runs(s), (std::vector<std::string>{"gravity-8 b", "gravity-9x7 b", "gravity-9x7 a x",
                                                "sphere-drop a duplicated", "sphere-drop b", "sphere-drop a x"}));
@@ -126,57 +125,13 @@ TEST(Study, AnAxisMayChangeOtherKeysAlong) {
             std::string::npos);
 }
 
-TEST(Study, NamesWhatItsRunsAreComparedWith) {
-  const auto text = [](const std::string& solver_with, const std::string& scene_with) {
-    std::string t = study_text(R"([{"solver":"a"},{"solver":"a","label":"fine","only":["shape"],
-                                    "pair":{"relation":"finer","with":[")" +
-                               solver_with + R"("]}}])");
-    const std::string shape = R"("labels":["shape"])";
-    return t.replace(t.find(shape), shape.size(),
-                     shape + R"(,"pair":{"relation":"scale","with":[")" + scene_with + "\"]}");
-  };
-  const nlohmann::json pairs = study_of(text("default", "gravity-8")).definition.at("pairs");
-  ASSERT_EQ(pairs.size(), 3u) << "both runs of the scene, and the one of the entry";
-  for (const auto& p : pairs) EXPECT_EQ(p.at("scene"), "sphere-drop");
-  EXPECT_EQ(pairs[0].at("with"), (nlohmann::json{{"scene", {"gravity-8"}}, {"setting", {"default"}}}));
-  EXPECT_EQ(pairs[2].at("relation"), "finer");
-  EXPECT_EQ(pairs[2].at("with"), (nlohmann::json{{"scene", {"sphere-drop"}}, {"setting", {"default"}}}));
-  EXPECT_NE(message_of(text("defult", "gravity-8"))
-                .find("/solvers/1/pair/with/0: \"defult\" names none; nearest known: default"),
-            std::string::npos);
-  EXPECT_NE(message_of(text("default", "gravity-9")).find("/scenes/1/pair/with/0: \"gravity-9\" names none"),
-            std::string::npos);
-  EXPECT_FALSE(study_of(study_text(R"([{"solver":"a"}])")).definition.contains("pairs"));
-}
-
-TEST(Study, NamesTheSetUpsOfItsScenes) {
-  std::string text = study_text(R"([{"solver":"a"}])");
-  EXPECT_FALSE(study_of(text).definition.contains("set_ups"));
-  const std::string shape = R"("labels":["shape"])";
-  text.replace(text.find(shape), shape.size(), shape + R"(,"set_up":"hand")");
-  EXPECT_EQ(study_of(text).definition.at("set_ups"), (nlohmann::json{{"sphere-drop", "hand"}}));
-}
-
 TEST(Study, SceneFilesMayBeLeftUntimed) {
   std::string text = study_text(R"([{"solver":"a"}])");
   EXPECT_TRUE(study_of(text).scenes[0].timed);
-  const std::string shape = R"("labels":["shape"])";
+  const std::string shape = R"("tags":["shape"])";
   const Study s = study_of(text.replace(text.find(shape), shape.size(), shape + R"(,"timed":false)"));
   EXPECT_TRUE(s.scenes[0].timed);
   EXPECT_FALSE(s.scenes.back().timed);
-}
-
-// The speed sweeps are part of --full alone, and every one of them loads.
-TEST(Study, PenetrationSweepsSpeedsInFullAlone) {
-  const auto swept = [](StudyLength length) {
-    int n = 0;
-    for (const Study::Item& item : load_study("penetration", {{}, length, Assets::MayBeProcedural}).scenes)
-      n += (item.scene.name.ends_with("-5mps") || item.scene.name.ends_with("at-5")) && !item.solvers.empty();
-    return n;
-  };
-  EXPECT_EQ(swept(StudyLength::Quick), 0);
-  EXPECT_EQ(swept(StudyLength::Short), 0);
-  EXPECT_GE(swept(StudyLength::Full), 4 + 2 + 2);
 }
 
 TEST(Study, AccuracyPassOfPenetrationIsTheWholeScene) {
@@ -187,29 +142,28 @@ TEST(Study, AccuracyPassOfPenetrationIsTheWholeScene) {
 
 TEST(Study, QuickLeavesOutAndShortens) {
   const std::string solvers = R"([{"solver":"a"},{"solver":"a","label":"x"},{"solver":"b"}])";
-  const std::string text =
-      study_text(solvers, R"(,"quick":{"scenes":["8","sphere-drop"],"solvers":["a x","b"],"trials":2,
+  const std::string text = study_text(solvers, R"(,"quick":{"tags":{"a x":["8","sphere-drop"],"b":["8"]},"trials":2,
     "rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0},"set":{"time.duration_s":0.25}})");
   const Study quick = study_of(text, {{}, StudyLength::Quick});
-  EXPECT_EQ(runs(quick),
-            (std::vector<std::string>{"gravity-8 a x", "gravity-8 b", "sphere-drop a x", "sphere-drop b"}));
+  EXPECT_EQ(runs(quick), (std::vector<std::string>{"gravity-8 a x", "gravity-8 b", "sphere-drop a x"}));
   EXPECT_EQ(quick.trials, 2);
   EXPECT_EQ(quick.rules.frames, 5);
   EXPECT_EQ(quick.scenes[0].scene.time.frames(), 18);
   EXPECT_EQ(study_of(text, {{"time.duration_s=1"}, StudyLength::Quick}).scenes[0].scene.time.frames(), 72)
       << "--set comes last";
-  const Study whole = study_of(text), full = study_of(text, {{}, StudyLength::Full});
+  const Study whole = study_of(text);
   EXPECT_EQ(runs(whole).size(), 9u);
   EXPECT_EQ(whole.trials, 5);
   EXPECT_EQ(whole.rules.frames, 72);
-  EXPECT_EQ(full.rules.frames, 360);
+  EXPECT_EQ(study_of(study_text(solvers, R"(,"quick":{"tags":[]})"), {{}, StudyLength::Quick}).rules.frames, 72)
+      << "rules of the study where quick has none";
   EXPECT_NE(message_of(study_text(solvers), {{}, StudyLength::Quick}).find("\"quick\" is missing"), std::string::npos);
 }
 
 TEST(Study, SolversAskedForAloneOrJoined) {
-  const std::string text = study_text(
-      R"([{"solver":"a"},{"solver":"a","label":"x","set":{"cloth.sides":"double"}},{"solver":"b"}])",
-      R"(,"quick":{"scenes":["8"],"solvers":["a"],"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0}})");
+  const std::string text =
+      study_text(R"([{"solver":"a"},{"solver":"a","label":"x","set":{"cloth.sides":"double"}},{"solver":"b"}])",
+                 R"(,"quick":{"tags":{"a":["8"]},"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0}})");
   const auto asked = [&](StudyLength length, std::vector<std::string> solvers) {
     const Study s = study_of(text, {{}, length, Assets::MayBeProcedural, std::move(solvers)});
     EXPECT_EQ(s.solvers.size(), 4u);
@@ -219,7 +173,7 @@ TEST(Study, SolversAskedForAloneOrJoined) {
       if (c.starts_with("gravity-8 ")) gravity8.push_back(c.substr(10));
     return gravity8;
   };
-  EXPECT_EQ(asked(StudyLength::Short, {"mine", "a"}), (std::vector<std::string>{"a", "mine", "a x"}));
+  EXPECT_EQ(asked(StudyLength::Full, {"mine", "a"}), (std::vector<std::string>{"a", "mine", "a x"}));
   EXPECT_EQ(asked(StudyLength::Quick, {"mine", "a"}), (std::vector<std::string>{"a", "mine"}));
   EXPECT_EQ(asked(StudyLength::Quick, {"b", "mine"}), (std::vector<std::string>{"b", "mine"})) << "asked for by name";
 }
@@ -229,20 +183,21 @@ TEST(Study, WordsThatChooseNothingAreFaults) {
     return study_text(R"([{"solver":"a"}])",
                       R"(,"quick":{"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0},)" + inside + "}");
   };
-  EXPECT_EQ(message_of(quick(R"("scenes":["shape"])")), "");
+  EXPECT_EQ(message_of(quick(R"("tags":["shape"])")), "");
   EXPECT_NE(
-      message_of(quick(R"("scenes":["shapes"])")).find("/quick/scenes/0: \"shapes\" names none; nearest known: shape"),
+      message_of(quick(R"("tags":["shapes"])")).find("/quick/tags/0: \"shapes\" names none; nearest known: shape"),
       std::string::npos);
-  EXPECT_NE(message_of(quick(R"("solvers":["a x"])")).find("/quick/solvers/0"), std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape","fre"]}])")).find("/solvers/0/only/1"),
+  EXPECT_NE(message_of(quick(R"("tags":{"a x":["shape"]})")).find("/quick/tags: \"a x\" names none"),
+            std::string::npos);
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a","tags":["shape","fre"]}])")).find("/solvers/0/tags/1"),
             std::string::npos);
   EXPECT_NE(message_of(study_text(R"([{"solver":"a"},{"solver":"a"}])")).find("two runs are named"), std::string::npos);
   EXPECT_NE(message_of(study_text(R"([{"solver":"a","set":{"cloth.side":"double"}}])")).find("nearest known: sides"),
             std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape"],"set":{"colliders.1.friction":0}}])"))
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a","tags":["shape"],"set":{"colliders.1.friction":0}}])"))
                 .find("/colliders/1: expected an item"),
             std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a","only":["shape"],"set":{"colliders.x.friction":0}}])"))
+  EXPECT_NE(message_of(study_text(R"([{"solver":"a","tags":["shape"],"set":{"colliders.x.friction":0}}])"))
                 .find("/colliders/x"),
             std::string::npos);
 }
@@ -263,23 +218,6 @@ TEST(Study, PenetrationHasEveryCombinationItNames) {
   }
   EXPECT_TRUE(scenes.contains("self-fold") && scenes.contains("self-crumple"));
   EXPECT_EQ(scenes.size(), 15u);
-  const auto all = runs(s);
-  EXPECT_EQ(std::count(all.begin(), all.end(), "desk-flat-low paper whole-room duplicated"), 1);
-  const Study quick = load_study("penetration", {{}, StudyLength::Quick});
-  for (const std::string& run : runs(quick)) EXPECT_EQ(run.find("whole-room"), std::string::npos);
-}
-
-TEST(Study, SubMeshAndWholeRoomBeginAlike) {
-  const Study s = load_study("penetration");
-  const Scene* cut = nullptr;
-  const Scene* whole = nullptr;
-  for (const Study::Item& item : s.scenes)
-    for (const std::size_t k : item.solvers)
-      if (item.scene.name == "desk-flat-low" && s.solvers[k].solver == "paper")
-        (s.solvers[k].label == "default" ? cut : whole) = &item.scene;
-  ASSERT_TRUE(cut != nullptr && whole != nullptr);
-  EXPECT_EQ(initial_positions(*cut), initial_positions(*whole));
-  EXPECT_GT(whole->colliders.at(0).mesh->triangles.size(), cut->colliders.at(0).mesh->triangles.size());
 }
 
 TEST(Study, RequiredAssetsMustBeThere) {
@@ -290,7 +228,7 @@ TEST(Study, RequiredAssetsMustBeThere) {
   EXPECT_NO_THROW(load_scene("paper/gravity", {}, Assets::Required)) << "a scene that uses none";
   EXPECT_THROW(load_scene("paper/desk-flat-low", {}, Assets::Required), Error);
   EXPECT_THROW(load_scene("paper/two-hand-stretch-2mps", {}, Assets::Required), Error);
-  EXPECT_THROW(load_study("penetration", {{}, StudyLength::Short, Assets::Required}), Error);
+  EXPECT_THROW(load_study("penetration", {{}, StudyLength::Full, Assets::Required}), Error);
   before == nullptr ? unsetenv("CLOTHBENCH_ASSETS") : setenv("CLOTHBENCH_ASSETS", kept.c_str(), 1);
 }
 
@@ -313,49 +251,23 @@ TEST(Settings, AreCompletedAndChecked) {
   EXPECT_NE(fault({{"mode", true}}).find("expected a string"), std::string::npos);
 }
 
-TEST(Settings, TuningIsOneObjectAndItsMembersAreTakenWhereTheyWereOnce) {
+TEST(Settings, TuningIsOneObject) {
   SolverInfo info;
-  info.name = "moved";
+  info.name = "tuned";
   info.settings = {{"iterations", "5", ""}};
   info.tuning = {{"lanes", "0", ""}, {"shuffles", "true", ""}};
   const nlohmann::json defaults = {{"iterations", 5}, {"tuning", {{"lanes", 0}, {"shuffles", true}}}};
-  const nlohmann::json now = {{"tuning", {{"shuffles", false}}}}, once = {{"shuffles", false}};
-  ::testing::internal::CaptureStderr();
+  const nlohmann::json given = {{"tuning", {{"shuffles", false}}}};
   EXPECT_EQ(complete_settings(info, nlohmann::json::object()), defaults);
-  EXPECT_EQ(complete_settings(info, now)["tuning"], (nlohmann::json{{"lanes", 0}, {"shuffles", false}}));
-  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-  ::testing::internal::CaptureStderr();
-  EXPECT_EQ(complete_settings(info, once), complete_settings(info, now));
-  EXPECT_EQ(complete_settings(info, {{"lanes", 0}, {"iterations", 5}, {"shuffles", true}}), defaults) << "as stored";
-  const std::string notice = ::testing::internal::GetCapturedStderr();
-  EXPECT_NE(notice.find("tuning.<name>"), std::string::npos) << notice;
-  EXPECT_NE(notice.find("shuffles"), std::string::npos) << notice;
-  EXPECT_EQ(std::count(notice.begin(), notice.end(), '\n'), 1) << notice;
-  EXPECT_EQ(flat_settings(now), flat_settings(once));
-  EXPECT_EQ(flat_settings(defaults).dump(), R"({"iterations":5,"lanes":0,"shuffles":true})");
+  EXPECT_EQ(complete_settings(info, given)["tuning"], (nlohmann::json{{"lanes", 0}, {"shuffles", false}}));
   for (const nlohmann::json& bad : {nlohmann::json{{"tuning", {{"shufles", true}}}},
                                     {{"tuning", {{"iterations", 5}}}},
                                     {{"tuning", 3}},
                                     {{"tuning", {{"lanes", true}}}},
-                                    {{"lanes", 1}, {"tuning", {{"lanes", 2}}}}})
+                                    {{"shuffles", true}}})
     EXPECT_THROW(complete_settings(info, bad), Error) << bad;
   info.tuning.clear();
-  EXPECT_THROW(complete_settings(info, now), Error) << "another solver has none";
-}
-
-TEST(Settings, RetiredOnesDoNothingWithOneNotice) {
-  SolverInfo info;
-  info.name = "older";
-  info.settings = {{"iterations", "5", ""}};
-  info.tuning = {{"lanes", "0", ""}};
-  info.retired = {"samples", "mode"};
-  ::testing::internal::CaptureStderr();
-  const nlohmann::json all = complete_settings(info, {{"samples", 3}, {"tuning", {{"mode", "x"}, {"lanes", 2}}}});
-  EXPECT_EQ(all, (nlohmann::json{{"iterations", 5}, {"tuning", {{"lanes", 2}}}}));
-  EXPECT_EQ(complete_settings(info, {{"samples", 4}})["iterations"], 5);
-  const std::string notice = ::testing::internal::GetCapturedStderr();
-  EXPECT_EQ(notice, "notice: solver older: samples, mode: no longer a setting; without effect\n");
-  EXPECT_THROW(complete_settings(info, {{"sample", 3}}), Error);
+  EXPECT_THROW(complete_settings(info, given), Error) << "another solver has none";
 }
 
 TEST(Solvers, NearestNameIsNamed) {
@@ -381,7 +293,7 @@ TEST(PenetrationStudy, HandsThatPullAreBoundWhileTheyPullAndAtTheEnd) {
     }
     EXPECT_TRUE(while_pulled && at_end) << item.scene.name;
   }
-  EXPECT_GE(scenes, 10) << "three speeds, and seven of the sweep";
+  EXPECT_EQ(scenes, 3);
 }
 
 }  // namespace

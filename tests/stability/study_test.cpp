@@ -47,8 +47,7 @@ class StabilityStudy : public WithFolder {
                    {"solvers", {{{"solver", "falls"}}, {{"solver", "crashes"}}}},
                    {"trials", 1},
                    {"run_limit_s", 20},
-                   {"short", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}},
-                   {"full", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}},
+                   {"rules", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}},
                    {"maps",
                     {{{"name", "gravity"},
                       {"title", "Gravity and damping"},
@@ -274,7 +273,7 @@ TEST_F(StabilityStudy, ResumesFromItsProbesEvenAfterATornLine) {
 TEST(StabilityCases, AreAllThereAndLoad) {
   std::set<std::string> cases;
   std::size_t full = 0;
-  for (const StudyLength length : {StudyLength::Quick, StudyLength::Short, StudyLength::Full}) {
+  for (const StudyLength length : {StudyLength::Quick, StudyLength::Full}) {
     const Study study = load_study("stability", {{}, length});
     full = study.scenes.size();
     for (const Study::Item& item : study.scenes) {
@@ -291,7 +290,7 @@ TEST(StabilityCases, AreAllThereAndLoad) {
     }
   }
   EXPECT_EQ(cases.size(), 26u);
-  EXPECT_GE(full, 150u);
+  EXPECT_GE(full, 140u);
 }
 
 TEST_F(StabilityStudy, SaysWhatIsWrongWithAMap) {

@@ -35,6 +35,3 @@ FEATURE(Spin, spin, SPIN, Data, "a start that turns: another velocity at every v
         scene.cloth.spin_rad_per_s != Vec3{})
 FEATURE(ClothMesh, cloth_mesh, CLOTH_MESH, Data, "a triangle mesh instead of a grid (cloth.mesh)",
         scene.cloth.mesh != nullptr)
-FEATURE(StrainLimit, strain_limit, STRAIN_LIMIT, Cloth,
-        "links that stretch elastically up to a limit and no further (material.strain_limit)",
-        scene.material.strain_limit.has_value())

@@ -25,8 +25,7 @@ struct StageRecord {
   std::string name;
   std::vector<std::string> serves;
   int dispatches = 0;
-  /// Meaning of the byte counts: "computed", "at least" (the bytes read are a lower bound), or "" if there are none or
-  /// the file is older than this field.
+  /// Meaning of the byte counts: "computed", "at least" (the bytes read are a lower bound), or "" if there are none.
   std::string bytes = {};
 };
 
@@ -54,21 +53,20 @@ struct TimedTrial {
   double pipelined_wall_s = kMissing;
   /// Wall times [s] of the first frames, run again with rendering; empty unless requested.
   std::vector<double> frame_rendered_s = {};
-  /// CPU times [s] of the timed frames of a solver that runs on the host; empty for a GPU solver and in older files. It
+  /// CPU times [s] of the timed frames of a solver that runs on the host; empty for a GPU solver. It
   /// is the time of the process (CLOCK_PROCESS_CPUTIME_ID): for a solver with one thread that of the stepping thread,
   /// for others the sum over its threads.
   std::vector<double> frame_cpu_s = {};
   /// System time at which the first timed frame began and the last one ended [s since 1970 UTC]. It matches the trial
   /// with samples that other programs took at that time.
   double start_unix_s = kMissing, end_unix_s = kMissing;
-  double jobs = kMissing;  ///< concurrent clothbench jobs on the machine, this one included; NaN in older files
+  double jobs = kMissing;  ///< concurrent clothbench jobs on the machine, this one included
   int frames() const { return static_cast<int>(frame_wall_s.size()); }
 };
 
 struct MetricSeries {
   std::string name, units, long_name;
   std::vector<double> values;  ///< one per stored frame, frame 0 = initial state
-  int version = 1;             ///< of the metric's definition
 };
 
 /// The untimed pass that yields positions and metrics.

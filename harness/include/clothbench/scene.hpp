@@ -113,8 +113,6 @@ struct Material {
   bool shear = true;                                 ///< false: no diagonals; the sheet acts as independent strips
   double damping_per_s = 0;                          ///< mass-proportional: dv/dt = -c v
   std::vector<StiffnessRegion> regions;              ///< a later region overrides an earlier one
-  /// Strain beyond which links do not stretch, however they are pulled; shorter, they are elastic. Empty = no limit.
-  std::optional<double> strain_limit = {};
 };
 
 /// Vertices held at their initial position for the whole run.

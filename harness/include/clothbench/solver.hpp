@@ -35,9 +35,6 @@ struct SolverInfo {
   /// Settings for tests and measurements alone, members of one object setting: "tuning": {"shuffles": false}. They
   /// appear in no list.
   std::vector<SettingSpec> tuning = {};
-  /// Settings of earlier versions, of tuning too: accepted with a notice and without effect, for older studies and
-  /// commands.
-  std::vector<std::string> retired = {};
   std::string engine = {};  ///< that a plugin wraps, as clothbench_plugin.h states it; empty for other solvers
 };
 
@@ -187,11 +184,8 @@ inline bool is_external(const SolverInfo& info) { return info.folder.starts_with
 const SolverEntry& find_solver(const std::string& name);
 /// The setting whose members are SolverInfo::tuning.
 inline constexpr char kTuning[] = "tuning";
-/// Fills in defaults; throws Error on an unknown key (with the nearest known one) or a wrong type. Members of `tuning`
-/// are accepted at the top level too, their former place: they are moved into `tuning`, with one notice on stderr.
+/// Fills in defaults; throws Error on an unknown key (with the nearest known one) or a wrong type.
 nlohmann::json complete_settings(const SolverInfo&, const nlohmann::json& given);
-/// Moves the members of `tuning` to the top level, so that settings compare equal in the former and the current form.
-nlohmann::json flat_settings(nlohmann::json settings);
 /// Nearest of `known` by edit distance, for messages; empty if none is near.
 std::string nearest(const std::string& word, const std::vector<std::string>& known);
 

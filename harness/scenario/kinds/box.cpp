@@ -67,7 +67,6 @@ ColliderSurface faces_of_box(const Collider& box, const ColliderPose&, const Ext
 ColliderKind box_kind() {
   ColliderKind k{Collider::Shape::Box, "box", Feature::Box, Feature::Box};
   k.types = {{"box", read_box}};
-  k.far = {{Feature::Box, {{"type", "box"}, {"center_m", {-kFar_m, 0, 0}}, {"size_m", {1, 1, 1}}}}};
   k.numbers = {{"center_m", 3, [](Collider& c) { return c.center_m.data(); }},
                {"half_extent_m", 3, [](Collider& c) { return c.half_extent_m.data(); }},
                {"axis_u", 3, [](Collider& c) { return c.axes[0].data(); }},

@@ -30,8 +30,6 @@ std::vector<Capsule> capsules_now(const Collider& c, const ColliderPose& pose) {
 ColliderKind capsules_kind() {
   ColliderKind k{Collider::Shape::Capsules, "capsules", Feature::Capsules, Feature::Capsules};
   k.types = {{"capsule", read_capsule}, {"hand_capsules", read_hand_capsules}};
-  k.far = {{Feature::Capsules,
-            {{"type", "hand_capsules"}, {"track", "assets/right-hand-sweep.json"}, {"offset_m", {0, 0, kFar_m}}}}};
   k.holds = ColliderKind::Holds::Capsules;
   k.capsules = capsules_now;
   return k;

@@ -88,12 +88,6 @@ ColliderSurface surface_of_mesh(const Collider& c, const ColliderPose& pose, con
 ColliderKind mesh_kind() {
   ColliderKind k{Collider::Shape::Mesh, "mesh", Feature::StaticMesh, Feature::MovingMesh};
   k.types = {{"cylinder", read_cylinder}, {"mesh", read_mesh}, {"room", read_room}, {"hand_mesh", read_hand_mesh}};
-  k.far = {{Feature::StaticMesh,
-            {{"type", "mesh"},
-             {"positions_m", {{-1, 0, -kFar_m}, {1, 0, -kFar_m}, {0, 1, -kFar_m}}},
-             {"triangles", {{0, 1, 2}}}}},
-           {Feature::MovingMesh,
-            {{"type", "hand_mesh"}, {"track", "assets/right-hand-sweep.json"}, {"offset_m", {kFar_m, 0, kFar_m}}}}};
   k.holds = ColliderKind::Holds::Mesh;
   k.surface = surface_of_mesh;
   return k;

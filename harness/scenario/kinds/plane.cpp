@@ -40,7 +40,6 @@ ColliderSurface square_of_plane(const Collider& c, const ColliderPose&, const Ex
 ColliderKind plane_kind() {
   ColliderKind k{Collider::Shape::Plane, "plane", Feature::Plane, Feature::Plane};
   k.types = {{"plane", read_plane}};
-  k.far = {{Feature::Plane, {{"type", "plane"}, {"point_m", {0, -kFar_m, 0}}, {"normal", {0, 1, 0}}}}};
   k.numbers = {{"point_m", 3, [](Collider& c) { return c.center_m.data(); }},
                {"normal", 3, [](Collider& c) { return c.normal.data(); }}};
   k.surface = square_of_plane;

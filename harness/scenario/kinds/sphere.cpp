@@ -20,7 +20,6 @@ std::vector<Capsule> capsule_of_sphere(const Collider& c, const ColliderPose&) {
 ColliderKind sphere_kind() {
   ColliderKind k{Collider::Shape::Sphere, "sphere", Feature::Sphere, Feature::Sphere};
   k.types = {{"sphere", read_sphere}};
-  k.far = {{Feature::Sphere, {{"type", "sphere"}, {"center_m", {kFar_m, 0, 0}}, {"radius_m", 1}}}};
   k.numbers = {{"center_m", 3, [](Collider& c) { return c.center_m.data(); }},
                {"radius_m", 1, [](Collider& c) { return &c.radius_m; }}};
   k.capsules = capsule_of_sphere;

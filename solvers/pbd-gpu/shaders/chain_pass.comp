@@ -36,19 +36,6 @@ void move(vec3 step) {
   vel += step * p.per_h;
 }
 
-// What the neighbours n entries away hold; beyond the block: zeros. Two pages in turn: while some threads still read one,
-// others write the other.
-shared vec4 exchanged[2u * THREADS];
-uint exchange_half = 0u;
-void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
-  uint here = exchange_half, thread = gl_LocalInvocationIndex;
-  exchange_half = THREADS - exchange_half;
-  exchanged[here + thread] = mine;
-  barrier();
-  below = thread >= n ? exchanged[here + thread - n] : vec4(0.0);
-  above = thread + n < THREADS ? exchanged[here + thread + n] : vec4(0.0);
-}
-
 /// Pinned vertices are never written, so reading them here races with nothing.
 void integrate(uint i) {
   vel = limited(vel);
@@ -63,12 +50,22 @@ void integrate(uint i) {
 }
 
 #ifdef MEMBRANE
-const bool kSprings = false, kTension = false;  // links are there for the limit of strain alone
+void stretch(ChainEntry entry, uint rounds) {}  // triangles take the place of links
 #else
-const bool kSprings = true, kTension = (FEATURES & LINES_TENSION) != 0u;
-#endif
-const bool kLimits = LIMIT_BITS != 0u;
-bool at_limit = false;  // the thread's link is held at the limit of strain
+// What the neighbours n entries away hold; beyond the block: zeros. Two pages in turn: while some threads still read one,
+// others write the other.
+shared vec4 exchanged[2u * THREADS];
+uint exchange_half = 0u;
+void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
+  uint here = exchange_half, thread = gl_LocalInvocationIndex;
+  exchange_half = THREADS - exchange_half;
+  exchanged[here + thread] = mine;
+  barrier();
+  below = thread >= n ? exchanged[here + thread - n] : vec4(0.0);
+  above = thread + n < THREADS ? exchanged[here + thread + n] : vec4(0.0);
+}
+
+const bool kTension = (FEATURES & LINES_TENSION) != 0u;
 vec3 direction, direction_below;  // of the thread's link and of the one before; 0 where there is none
 float link_length;
 
@@ -79,13 +76,9 @@ vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   exchange(vec4(pos, w), 1u, none, next);
   vec3 e = next.xyz - pos;
   float square = dot(e, e), sum = w + next.w;
-  bool is = entry.rest >= 0.0 && sum > 0.0 && square > 0.0 && (kSprings || at_limit);
+  bool is = entry.rest >= 0.0 && sum > 0.0 && square > 0.0;
   float per_l = inversesqrt(square), l = square * per_l;
   vec3 g = is ? e * per_l : vec3(0.0);
-  if (kLimits && at_limit) {
-    entry.rest *= 1.0 + uintBitsToFloat(LIMIT_BITS);
-    entry.compliance = 0.0;
-  }
   // As in lines.glsl: what is pulled taut between held vertices yields, by what keeps it regular and its tension from
   // turning links farther than a substep resolves.
   float firm = entry.regularisation;
@@ -131,20 +124,17 @@ void turn(float pull, uint rounds) {
   if (w > 0.0) move(right);
 }
 
-#include "chain_limit.glsl"
-
 void stretch(ChainEntry entry, uint rounds) {
   float pull = 0.0;
-  if (kLimits && !kSprings) find_beyond_limit(entry);
   if (kTension) {
     float lambda = solve_links(entry, rounds, 0.0).y;
     pull = direction != vec3(0.0) ? max(-lambda, 0.0) / link_length : 0.0;
     turn(pull, rounds);
   }
   vec2 lambda = solve_links(entry, rounds, pull);
-  if (kLimits) lambda = hold_at_limit(entry, rounds, pull, lambda);
   move(w * (lambda.x * direction_below - lambda.y * direction));
 }
+#endif
 
 void pass(uint number, bool first, bool links, uint rounds) {
   ChainEntry entry = LOAD(16u, entries, number);

@@ -1,4 +1,4 @@
-/* A plugin that uses everything of version 2 of the interface and checks what it is given: its cloth flies on without
+/* A plugin that uses the whole interface and checks what it is given: its cloth flies on without
  * forces. What it finds wrong fails `create` or a step. $FAULT names what is wrong with its own values: unsupported,
  * driver, properties, buffers, in_flight, device_time, stage_time; or that it refuses a scene: refuse. $LOG: a file for
  * the calls that a test counts. */
@@ -115,7 +115,6 @@ static void at_start(Solver* s) {
 }
 
 static void* create(const double* settings, const ClothbenchScene* scene, const char** why) {
-  if (scene->struct_size != sizeof *scene) return *why = "struct_size of the scene", NULL;
   if ((*why = wrong_shape(scene)) || (*why = wrong_springs(scene))) return NULL;
   const size_t n = 3 * scene->vertex_count * sizeof(double);
   Solver* s = calloc(1, sizeof *s);
@@ -148,7 +147,7 @@ static int32_t restart_at(void* self, const ClothbenchRestart* at) {
 /* What was the end of the last frame must be this one's beginning. */
 static int follows(const Solver* s, const ClothbenchFrame* f) {
   const ClothbenchScene* c = s->scene;
-  if (f->struct_size != sizeof *f || f->index != s->frame + 1) return 0;
+  if (f->index != s->frame + 1) return 0;
   if ((f->poses_before == NULL) != (c->collider_count == 0)) return 0;
   for (uint32_t k = 0; k < c->collider_count; ++k) {
     const ClothbenchPose* p = f->poses_before + k;
@@ -232,7 +231,7 @@ static int32_t finish(void* self) {
 
 CLOTHBENCH_PLUGIN_EXPORT const ClothbenchPlugin* clothbench_plugin(void) {
   static const ClothbenchSetting settings[] = {{"stage_times", "times of stages too", 0, 1}};
-  static ClothbenchPlugin plugin = {CLOTHBENCH_PLUGIN_HEADER, .name = "second", .summary = "uses all of version 2"};
+  static ClothbenchPlugin plugin = {CLOTHBENCH_PLUGIN_HEADER, .name = "full", .summary = "uses the whole interface"};
   plugin.solver_version = "4", plugin.precision = "float64", plugin.time_order = 1;
   plugin.ignores = (1u << 21) - 1;
   plugin.setting_count = 1, plugin.settings = settings;
@@ -251,9 +250,6 @@ CLOTHBENCH_PLUGIN_EXPORT const ClothbenchPlugin* clothbench_plugin(void) {
 #endif
 #ifdef FAULT_TOO_SMALL
   plugin.plugin_size = offsetof(ClothbenchPlugin, finish);
-#endif
-#ifdef FAULT_VERSION_3
-  plugin.version = 3;
 #endif
   return &plugin;
 }
