@@ -53,7 +53,7 @@ std::vector<Finding> motion_findings(const RunRecord&);
 std::vector<VersionDifference> version_differences(const BaselineRun& was, const BaselineRun& is);
 
 /// Differences of `record` from its baseline: outcome, stages, gated scalars; whether one of its trials repeats
-/// another; and what is wrong with the motion in its file, if it has one (results/trajectory.hpp). If the outcome
+/// another; and what is wrong with the motion in its file, if it has one (results/store.hpp). If the outcome
 /// differs, the rest is not compared; nor are scalars of a metric whose version differs. Throws Error if the record's
 /// scene has no cloth size.
 std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);

@@ -19,19 +19,18 @@ struct Outcome {
   std::string message;
   /// Result of the scene's `expect`: "pass", "fail: " and the reason, "not measured", or "" for a scene without it.
   std::string expect = {};
+  std::string trajectory_sha256 = {};  ///< of the motion that this is the outcome of; set by the store
 };
 
 struct StageRecord {
   std::string name;
   std::vector<std::string> serves;
   int dispatches = 0;
-  /// Meaning of the byte counts: "computed", "at least" (the bytes read are a lower bound), or "" if there are none or
-  /// the file is older than this field.
+  /// Meaning of the byte counts: "computed", "at least" (the bytes read are a lower bound), or "" if there are none.
   std::string bytes = {};
 };
 
-/// Facts of a run that are known before its first frame. Serialised as JSON (`to_json`) in raw files and as attributes
-/// in HDF5.
+/// Facts of a run that are known before its first frame. Serialised as JSON (results/part_file.hpp).
 struct RunHeader {
   std::string scene, solver, setting;  ///< setting: short name such as "default" or "readback=blocking"
   nlohmann::json settings;             ///< with defaults filled in
@@ -54,14 +53,14 @@ struct TimedTrial {
   double pipelined_wall_s = kMissing;
   /// Wall times [s] of the first frames, run again with rendering; empty unless requested.
   std::vector<double> frame_rendered_s = {};
-  /// CPU times [s] of the timed frames of a solver that runs on the host; empty for a GPU solver and in older files. It
+  /// CPU times [s] of the timed frames of a solver that runs on the host; empty for a GPU solver. It
   /// is the time of the process (CLOCK_PROCESS_CPUTIME_ID): for a solver with one thread that of the stepping thread,
   /// for others the sum over its threads.
   std::vector<double> frame_cpu_s = {};
   /// System time at which the first timed frame began and the last one ended [s since 1970 UTC]. It matches the trial
   /// with samples that other programs took at that time.
   double start_unix_s = kMissing, end_unix_s = kMissing;
-  double jobs = kMissing;  ///< concurrent clothbench jobs on the machine, this one included; NaN in older files
+  double jobs = kMissing;  ///< concurrent clothbench jobs on the machine, this one included
   int frames() const { return static_cast<int>(frame_wall_s.size()); }
 };
 
